@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <concepts>
+
+namespace umtet {
+
+using Vec3 = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix3d;
+
+/// What the mesher asks of psi: Omega = {psi < 0}, psi C2 near the boundary     [Rangarajan2018, eq. (8)]
+template <class F>
+concept ImplicitFunction = requires(const F f, const Vec3 x) {
+  { f.value(x) } -> std::convertible_to<double>;
+  { f.gradient(x) } -> std::convertible_to<Vec3>;
+};
+
+template <class F>
+concept TwiceDifferentiable = ImplicitFunction<F> && requires(const F f, const Vec3 x) {
+  { f.hessian(x) } -> std::convertible_to<Mat3>;
+};
+
+/// An implicit function that shares work between its derivatives says so with evaluate(): value returned, gradient
+/// and Hessian written where the pointers are not null.
+template <class F>
+concept JointlyEvaluated = requires(const F f, const Vec3 x, Vec3* g, Mat3* H) {
+  { f.evaluate(x, g, H) } -> std::convertible_to<double>;
+};
+
+/// Non-owning view of any ImplicitFunction: two words, one indirect call per evaluation. The function must outlive it.
+/// Thread-safe when the function's const members are.
+class ImplicitFunctionRef {
+ public:
+  template <ImplicitFunction F>
+    requires(!std::same_as<F, ImplicitFunctionRef>)
+  ImplicitFunctionRef(const F& f) : object_(&f), call_(&call<F>), has_hessian_(TwiceDifferentiable<F>) {}
+
+  double value(const Vec3& x) const { return call_(object_, x, nullptr, nullptr); }
+  double value(const Vec3& x, Vec3& gradient) const { return call_(object_, x, &gradient, nullptr); }
+  /// \pre has_hessian()
+  double value(const Vec3& x, Vec3& gradient, Mat3& hessian) const { return call_(object_, x, &gradient, &hessian); }
+  bool has_hessian() const { return has_hessian_; }
+
+ private:
+  template <class F>
+  static double call(const void* object, const Vec3& x, Vec3* g, Mat3* H) {
+    const F& f = *static_cast<const F*>(object);
+    if constexpr (JointlyEvaluated<F>) {
+      return f.evaluate(x, g, H);
+    } else {
+      if (g) *g = f.gradient(x);
+      if constexpr (TwiceDifferentiable<F>) {
+        if (H) *H = f.hessian(x);
+      }
+      return f.value(x);
+    }
+  }
+
+  const void* object_;
+  double (*call_)(const void*, const Vec3&, Vec3*, Mat3*);
+  bool has_hessian_;
+};
+
+}  // namespace umtet
