@@ -1,0 +1,129 @@
+#include "reconstruct/level_set_io.h"
+
+#include <fmt/format.h>
+#include <vtkCommand.h>
+#include <vtkDataArray.h>
+#include <vtkDoubleArray.h>
+#include <vtkErrorCode.h>
+#include <vtkFieldData.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkXMLImageDataReader.h>
+#include <vtkXMLImageDataWriter.h>
+
+#include <cmath>
+#include <fstream>
+#include <system_error>
+
+namespace umtet {
+
+namespace {
+
+// VTK reports on stderr unless somebody listens: libraries print nothing, and the message belongs in the exception.
+class Listener : public vtkCommand {
+ public:
+  static Listener* New() { return new Listener; }
+  void Execute(vtkObject*, unsigned long, void* data) override {
+    if (data && message.empty()) message = static_cast<const char*>(data);
+  }
+  std::string message;
+};
+
+vtkNew<vtkDoubleArray> field(const char* name, const std::vector<double>& values) {
+  vtkNew<vtkDoubleArray> a;
+  a->SetName(name);
+  for (const double v : values) a->InsertNextValue(v);
+  return a;
+}
+
+std::vector<double> read_field(vtkImageData* image, const char* name, std::size_t size, const std::string& file) {
+  vtkDataArray* a = image->GetFieldData()->GetArray(name);
+  if (!a || static_cast<std::size_t>(a->GetNumberOfValues()) != size) {
+    throw LevelSetRefused(fmt::format("{}: field data '{}' with {} numbers is missing: not a level set of this program",
+                                      file, name, size));
+  }
+  std::vector<double> v(size);
+  for (std::size_t i = 0; i < size; ++i) v[i] = a->GetVariantValue(static_cast<vtkIdType>(i)).ToDouble();
+  return v;
+}
+
+}  // namespace
+
+void write_level_set(const std::filesystem::path& file, const LevelSet& psi, const Vec3& shown_at) {
+  const LevelSetLevel& level = psi.levels().front();
+  if (psi.levels().size() != 1) throw std::invalid_argument("only a level set of one level can be written");
+  const Lattice& L = level.lattice;
+  const Vec3 origin = L.origin + shown_at;
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(L.n[0], L.n[1], L.n[2]);
+  image->SetOrigin(origin[0], origin[1], origin[2]);
+  image->SetSpacing(L.h, L.h, L.h);
+  vtkNew<vtkDoubleArray> coefficients;
+  coefficients->SetName("psi_a");
+  coefficients->SetArray(const_cast<double*>(level.coefficients.data()), L.size(), /*save=*/1);  // VTK does not write to it
+  image->GetPointData()->SetScalars(coefficients);
+  const LmePrior& prior = psi.prior();
+  image->GetFieldData()->AddArray(
+      field("lattice", {L.origin[0], L.origin[1], L.origin[2], L.h, double(L.n[0]), double(L.n[1]), double(L.n[2])}));
+  image->GetFieldData()->AddArray(
+      field("prior", {double(prior.kind), prior.gamma, double(prior.support), prior.epsilon}));
+
+  vtkNew<Listener> listener;
+  vtkNew<vtkXMLImageDataWriter> writer;
+  writer->AddObserver(vtkCommand::ErrorEvent, listener);
+  writer->SetFileName(file.c_str());
+  writer->SetInputData(image);
+  writer->SetDataModeToBinary();  // inline base64: appended raw data is not well-formed XML
+  writer->SetHeaderTypeToUInt64();
+  writer->SetCompressorTypeToNone();
+  // Write() returns 1 even when the disk is full; the error code knows.
+  if (writer->Write() != 1 || writer->GetErrorCode() != vtkErrorCode::NoError) {
+    throw std::runtime_error(fmt::format("{}: could not be written: {}", file.string(),
+                                         vtkErrorCode::GetStringFromErrorCode(writer->GetErrorCode())));
+  }
+}
+
+LevelSet read_level_set(const std::filesystem::path& path) {
+  const std::string file = path.string();
+  if (std::ifstream probe(path, std::ios::binary); !probe) {
+    throw std::system_error(errno, std::generic_category(), fmt::format("{}: cannot be opened", file));
+  }
+  vtkNew<Listener> listener;
+  vtkNew<vtkXMLImageDataReader> reader;
+  reader->AddObserver(vtkCommand::ErrorEvent, listener);
+  reader->SetFileName(file.c_str());
+  reader->SetReaderErrorObserver(listener);
+  reader->SetParserErrorObserver(listener);
+  if (!reader->CanReadFile(file.c_str())) throw LevelSetRefused(file + ": not a VTK ImageData file");
+  reader->Update();
+  vtkImageData* image = reader->GetOutput();
+  if (!listener->message.empty() || reader->GetErrorCode() != vtkErrorCode::NoError || !image) {
+    throw LevelSetRefused(fmt::format("{}: damaged: {}", file, listener->message));
+  }
+  const std::vector<double> l = read_field(image, "lattice", 7, file), p = read_field(image, "prior", 4, file);
+  const LmePrior prior{static_cast<LmePrior::Kind>(static_cast<int>(p[0])), p[1], static_cast<int>(p[2]), p[3]};
+  const std::vector<std::string> wrong = problems(prior);
+  if (p[0] != 0 && p[0] != 1) throw LevelSetRefused(file + ": unknown prior");
+  if (!wrong.empty()) throw LevelSetRefused(file + ": " + wrong.front());
+  const int* dims = image->GetDimensions();
+  Lattice lattice{{l[0], l[1], l[2]}, l[3], {dims[0], dims[1], dims[2]}};
+  if (l[4] != dims[0] || l[5] != dims[1] || l[6] != dims[2] || !(l[3] > 0)) {
+    throw LevelSetRefused(file + ": the field data 'lattice' does not fit the image");
+  }
+  auto* a = vtkDoubleArray::SafeDownCast(image->GetPointData()->GetArray("psi_a"));
+  if (!a || a->GetNumberOfComponents() != 1 || a->GetNumberOfTuples() != lattice.size()) {
+    throw LevelSetRefused(fmt::format("{}: point data 'psi_a' with {} doubles is missing", file, lattice.size()));
+  }
+  std::vector<double> c(a->GetPointer(0), a->GetPointer(0) + lattice.size());
+  for (const double v : c) {
+    if (!std::isfinite(v)) throw LevelSetRefused(file + ": a coefficient is not finite");
+  }
+  try {
+    return LevelSet(prior, {{lattice, std::move(c)}});
+  } catch (const std::invalid_argument& e) {
+    throw LevelSetRefused(fmt::format("{}: {}", file, e.what()));
+  }
+}
+
+}  // namespace umtet

@@ -1,0 +1,128 @@
+// The level set: derivatives, smoothness, sign bounds, and its file.
+
+#include "reconstruct/fit_ssd.h"
+#include "reconstruct/level_set_io.h"
+#include "tests/support/clouds.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <unistd.h>
+
+using namespace umtet;
+using namespace umtet::test;
+
+namespace {
+
+const LevelSet& torus_level_set() {
+  static const LevelSet psi = [] {
+    SsdParams p;
+    p.spacing = 0.1;
+    return fit_ssd(torus_cloud(8000), p).psi;
+  }();
+  return psi;
+}
+
+std::filesystem::path scratch(const char* name) {
+  return std::filesystem::temp_directory_path() / ("umtet_" + std::to_string(getpid()) + "_" + name);
+}
+
+}  // namespace
+
+TEST(LevelSet, DerivativesPassFiniteDifferences) {
+  const LevelSet& psi = torus_level_set();
+  const double e = 1e-5;
+  for (const Vec3& x : torus_cloud(40, 11).points) {
+    Vec3 g;
+    Mat3 H;
+    const double f = psi.evaluate(x, &g, &H);
+    EXPECT_EQ(f, psi.value(x));
+    for (int d = 0; d < 3; ++d) {
+      const Vec3 up = x + e * Vec3::Unit(d), down = x - e * Vec3::Unit(d);
+      EXPECT_NEAR(g[d], (psi.value(up) - psi.value(down)) / (2 * e), 1e-8);
+      EXPECT_LT((H.col(d) - (psi.gradient(up) - psi.gradient(down)) / (2 * e)).norm(), 1e-5);
+    }
+  }
+}
+
+TEST(LevelSet, HessianIsContinuousAcrossCells) {
+  const LevelSet& psi = torus_level_set();
+  const Lattice& L = psi.levels().front().lattice;
+  for (const Vec3& x : torus_cloud(200, 12).points) {
+    Vec3 face = x;  // moved onto the nearest plane of nodes
+    face[0] = L.origin[0] + L.h * std::round((x[0] - L.origin[0]) / L.h);
+    const Vec3 step = 1e-9 * L.h * Vec3::UnitX();
+    EXPECT_LT((psi.hessian(face + step) - psi.hessian(face - step)).norm(), 1e-6 * psi.hessian(face).norm() + 1e-6);
+  }
+}
+
+TEST(LevelSet, CellBoundsHoldAndEveryZeroIsListed) {
+  const LevelSet& psi = torus_level_set();
+  const Lattice& L = psi.levels().front().lattice;
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int trial = 0; trial < 2000; ++trial) {
+    const Eigen::Vector3i cell(random() % (L.n[0] - 1), random() % (L.n[1] - 1), random() % (L.n[2] - 1));
+    const LevelSet::Bounds b = psi.cell_bounds(cell);
+    const double f = psi.value(L.origin + L.h * (cell.cast<double>() + Vec3(unit(random), unit(random), unit(random))));
+    EXPECT_LE(b.low - 1e-12, f);
+    EXPECT_GE(b.high + 1e-12, f);
+  }
+  std::vector<char> listed(L.size(), 0);
+  for (const Vec3& centre : psi.sign_change_cells()) {
+    const Eigen::Vector3i c = ((centre - L.origin) / L.h).array().floor().cast<int>();
+    listed[L.index(c[0], c[1], c[2])] = 1;
+    const LevelSet::Bounds b = psi.cell_bounds(c);
+    EXPECT_TRUE(b.low <= 0 && b.high >= 0);
+  }
+  for (Vec3 x : torus_cloud(500, 4).points) {
+    for (int it = 0; it < 5; ++it) {
+      Vec3 g;
+      const double f = psi.evaluate(x, &g, nullptr);
+      x -= f / g.squaredNorm() * g;
+    }
+    const Eigen::Vector3i c = ((x - L.origin) / L.h).array().floor().cast<int>();
+    EXPECT_TRUE(listed[L.index(c[0], c[1], c[2])]);
+  }
+}
+
+TEST(LevelSet, IsPositiveOutsideItsDomain) {
+  const LevelSet& psi = torus_level_set();
+  for (const Vec3& x : {Vec3(5, 0, 0), Vec3(0, -7, 0.1), Vec3(3, 3, 3), Vec3(0, 0, -9)}) {
+    EXPECT_GT(psi.value(x), 0.3 * std::sqrt(psi.domain().squaredExteriorDistance(x)));
+  }
+}
+
+TEST(LevelSetIo, ComesBackBitEqual) {
+  const LevelSet& psi = torus_level_set();
+  const std::filesystem::path file = scratch("level_set.vti");
+  write_level_set(file, psi, Vec3(1e7, 0, -3));
+  const LevelSet back = read_level_set(file);
+  const auto &a = psi.levels().front(), &b = back.levels().front();
+  EXPECT_EQ(a.lattice, b.lattice);
+  EXPECT_EQ(psi.prior(), back.prior());
+  ASSERT_EQ(a.coefficients.size(), b.coefficients.size());
+  EXPECT_EQ(std::memcmp(a.coefficients.data(), b.coefficients.data(), a.coefficients.size() * sizeof(double)), 0);
+  for (const Vec3& x : torus_cloud(20, 8).points) EXPECT_EQ(psi.value(x), back.value(x));
+  std::filesystem::remove(file);
+}
+
+TEST(LevelSetIo, RefusesWhatIsNotALevelSet) {
+  const std::filesystem::path file = scratch("damaged.vti");
+  EXPECT_THROW(read_level_set(scratch("absent.vti")), std::runtime_error);
+  std::ofstream(file) << "<?xml version=\"1.0\"?><VTKFile type=\"ImageData\" version=\"1.0\"></VTKFile>";
+  EXPECT_THROW(read_level_set(file), LevelSetRefused);
+  std::ofstream(file) << "no xml at all";
+  EXPECT_THROW(read_level_set(file), LevelSetRefused);
+  write_level_set(file, torus_level_set());
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+  EXPECT_THROW(read_level_set(file), LevelSetRefused);
+  std::filesystem::remove(file);
+}
+
+TEST(LevelSetIo, SaysWhenTheFileCannotBeWritten) {
+  EXPECT_THROW(write_level_set("/nonexistent/folder/x.vti", torus_level_set()), std::runtime_error);
+  if (std::filesystem::exists("/dev/full")) EXPECT_THROW(write_level_set("/dev/full", torus_level_set()), std::runtime_error);
+}

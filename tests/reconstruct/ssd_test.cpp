@@ -1,0 +1,156 @@
+// The fit: what it must reproduce, that its solvers agree, and how close it comes to a known surface.
+
+#include "reconstruct/fit_ssd.h"
+#include "reconstruct/ssd_assembled.h"
+#include "tests/support/clouds.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cstring>
+
+using namespace umtet;
+using namespace umtet::test;
+
+namespace {
+
+SsdParams params_with(double spacing) {
+  SsdParams p;
+  p.spacing = spacing;
+  return p;
+}
+
+// Largest |psi_a - psi_b| over places near the torus.
+double difference(const LevelSet& a, const LevelSet& b) {
+  double worst = 0;
+  for (const Vec3& x : torus_cloud(500, 9).points) worst = std::max(worst, std::abs(a.value(1.02 * x) - b.value(1.02 * x)));
+  return worst;
+}
+
+}  // namespace
+
+TEST(FitSsd, PlanarCloudIsReproducedExactly) {
+  // The plane's distance has no Hessian: it is in the space and makes every term zero.
+  const Vec3 normal = Vec3(1, 2, -0.5).normalized();
+  for (const SsdWeights weights : {SsdWeights::Area, SsdWeights::Paper}) {
+    SsdParams p = params_with(0.1);
+    p.weights = weights;
+    p.tolerance = 1e-10;
+    const SsdFit fit = fit_ssd(plane_cloud(20, normal), p);
+    for (const Vec3& x : {Vec3(0, 0, 0), Vec3(0.3, -0.1, 0.2), Vec3(-0.2, 0.05, 0.1)}) {
+      EXPECT_NEAR(fit.psi.value(x), normal.dot(x), 1e-6);
+      EXPECT_LT((fit.psi.gradient(x) - normal).norm(), 1e-5);
+    }
+  }
+}
+
+TEST(FitSsd, TorusLiesWithinHalfAThousandthOfTheSpacing) {
+  const double h = 0.076;
+  const SsdFit fit = fit_ssd(torus_cloud(20000), params_with(h));
+  double mean = 0, normal2 = 0;
+  const OrientedPointCloud truth = torus_cloud(5000, 77);
+  for (std::size_t i = 0; i < truth.points.size(); ++i) {
+    Vec3 g;
+    const double f = fit.psi.evaluate(truth.points[i], &g, nullptr);
+    mean += std::abs(f) / g.norm();
+    normal2 += (g.normalized() - truth.normals[i]).squaredNorm();
+  }
+  const double n = static_cast<double>(truth.points.size());
+  EXPECT_LT(mean / n, 5e-4 * h);
+  EXPECT_LT(std::sqrt(normal2 / n), 4e-3);
+  EXPECT_LE(fit.report.iterations, 20);
+}
+
+TEST(FitSsd, MultigridAgreesWithTheAssembledSolve) {
+  const OrientedPointCloud cloud = torus_cloud(600);
+  for (const LmePrior& prior : {LmePrior{}, LmePrior::paper()}) {
+    SsdParams p = params_with(0.5);  // 1690 nodes: a factor of 1331 entries a row fills up at once
+    p.padding = 4;
+    p.prior = prior;
+    p.tolerance = 1e-11;
+    const SsdFit iterative = fit_ssd(cloud, p);
+    p.solver = SsdSolver::Assembled;
+    const SsdFit direct = fit_ssd(cloud, p);
+    EXPECT_LT(difference(iterative.psi, direct.psi), 1e-7 * p.spacing);
+    EXPECT_NEAR(iterative.report.energy_hessian / direct.report.energy_hessian, 1, 1e-6);
+  }
+}
+
+TEST(FitSsd, ScatteredNodesOnALatticeGiveTheLatticeFit) {
+  const OrientedPointCloud cloud = torus_cloud(400);
+  SsdParams p = params_with(0.5);
+  p.weights = SsdWeights::Paper;
+  p.alpha = 0.02;
+  p.padding = 4;
+  p.tolerance = 1e-10;
+  const SsdFit lattice_fit = fit_ssd(cloud, p);
+  const Lattice& L = lattice_fit.psi.levels().front().lattice;
+  std::vector<Vec3> nodes;
+  for (int k = 0; k < L.n[2]; ++k)
+    for (int j = 0; j < L.n[1]; ++j)
+      for (int i = 0; i < L.n[0]; ++i) nodes.push_back(L.origin + L.h * Vec3(i, j, k));
+  std::vector<SsdSample> samples(cloud.points.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = {cloud.points[i], cloud.normals[i], 1, 1};
+  const LmeScattered basis(nodes, p.prior, L.h);
+  const std::vector<double> f = fit_scattered(basis, samples, p.alpha, L.h);
+  double worst = 0;
+  for (const Vec3& x : torus_cloud(100, 5).points) {
+    const LmeValues v = basis.evaluate(1.03 * x);
+    double value = 0;
+    for (std::size_t a = 0; a < v.node.size(); ++a) value += v.N[a] * f[v.node[a]];
+    worst = std::max(worst, std::abs(value - lattice_fit.psi.value(1.03 * x)));
+  }
+  EXPECT_LT(worst, 5e-3 * L.h);  // 2 Gauss points a cell and axis here, 8 there
+  EXPECT_GT(worst, 0);
+}
+
+TEST(FitSsd, AreaWeightsDoNotKnowUnits) {
+  const OrientedPointCloud cloud = torus_cloud(3000);
+  const SsdFit fit = fit_ssd(cloud, params_with(0.15));
+  for (const double scale : {1e-3, 1e3}) {
+    OrientedPointCloud scaled = cloud;
+    for (Vec3& x : scaled.points) x *= scale;
+    const SsdFit other = fit_ssd(scaled, params_with(0.15 * scale));
+    for (const Vec3& x : torus_cloud(50, 3).points) {
+      EXPECT_NEAR(other.psi.value(1.05 * scale * x) / scale, fit.psi.value(1.05 * x), 1e-9);
+    }
+    EXPECT_NEAR(other.report.energy_normal / (scale * scale) / fit.report.energy_normal, 1, 1e-6);
+  }
+}
+
+TEST(FitSsd, ThreadsDoNotChangeABit) {
+  const OrientedPointCloud cloud = torus_cloud(20000);
+  std::vector<double> first;
+  for (const int threads : {1, 2, 3}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const SsdFit fit = fit_ssd(cloud, params_with(0.06));
+    const std::vector<double>& c = fit.psi.levels().front().coefficients;
+    if (first.empty()) first = c;
+    ASSERT_EQ(first.size(), c.size());
+    EXPECT_EQ(std::memcmp(first.data(), c.data(), c.size() * sizeof(double)), 0) << threads << " threads";
+  }
+}
+
+TEST(FitSsd, RefusesBrokenInputAndSaysAllOfIt) {
+  SsdParams p;
+  p.smoothing = 0;
+  p.max_iterations = 0;
+  p.prior.gamma = -1;
+  EXPECT_EQ(problems(p).size(), 3u);
+  EXPECT_THROW(fit_ssd(torus_cloud(100), p), std::invalid_argument);
+  EXPECT_THROW(fit_ssd(torus_cloud(5), SsdParams{}), std::invalid_argument);
+  EXPECT_THROW(fit_ssd(torus_cloud(100), params_with(1e-7)), std::invalid_argument);
+  SsdParams assembled = params_with(0.02);
+  assembled.solver = SsdSolver::Assembled;
+  EXPECT_THROW(fit_ssd(torus_cloud(1000), assembled), SolveError);
+  SsdParams hasty = params_with(0.1);
+  hasty.max_iterations = 1;
+  EXPECT_THROW(fit_ssd(torus_cloud(1000), hasty), SolveError);
+}
+
+TEST(FitSsd, StopsWhenTold) {
+  int calls = 0;
+  EXPECT_THROW(fit_ssd(torus_cloud(2000), params_with(0.1), [&](const char*, double) { return ++calls < 4; }),
+               SolveCancelled);
+  EXPECT_EQ(calls, 4);
+}
