@@ -1,0 +1,17 @@
+# cmake -DMAKE_CLOUDS=program -DCLOUDS=folder -DOUT=folder -P compare_clouds.cmake
+# Fails unless the program writes the very files of CLOUDS, no more and no fewer.
+file(REMOVE_RECURSE "${OUT}")
+execute_process(COMMAND "${MAKE_CLOUDS}" "${OUT}" COMMAND_ERROR_IS_FATAL ANY)
+file(GLOB made RELATIVE "${OUT}" "${OUT}/*")
+file(GLOB kept RELATIVE "${CLOUDS}" "${CLOUDS}/*")
+if(NOT made STREQUAL kept)
+  message(FATAL_ERROR "make_clouds writes ${made}, ${CLOUDS} has ${kept}")
+endif()
+foreach(name IN LISTS made)
+  file(SHA256 "${OUT}/${name}" made_sum)
+  file(SHA256 "${CLOUDS}/${name}" kept_sum)
+  if(NOT made_sum STREQUAL kept_sum)
+    message(FATAL_ERROR "${name} differs from the one in ${CLOUDS}")
+  endif()
+endforeach()
+file(REMOVE_RECURSE "${OUT}")

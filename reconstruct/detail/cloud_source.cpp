@@ -1,0 +1,58 @@
+#include "reconstruct/detail/cloud_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace umtet::detail {
+
+void refuse(const CloudSource& source, const std::string& what) { throw CloudRefused(source.name + ": " + what); }
+
+std::string in_quotes(std::string_view text) {
+  constexpr std::size_t kShown = 40;
+  std::string shown(text.substr(0, kShown));
+  for (char& c : shown)
+    if (c < ' ' || c > '~') c = '?';
+  return fmt::format("'{}{}'", shown, text.size() > kShown ? "..." : "");
+}
+
+std::array<std::size_t, 6> oriented_columns(const CloudSource& source, const std::vector<std::string>& names,
+                                            std::string_view kind) {
+  const auto count = [&](std::string_view name) { return std::count(names.begin(), names.end(), name); };
+  const bool long_names = count("normal_x") + count("normal_y") + count("normal_z") > 0;
+  const std::array<std::string_view, 3> normal =
+      long_names ? std::array<std::string_view, 3>{"normal_x", "normal_y", "normal_z"}
+                 : std::array<std::string_view, 3>{"nx", "ny", "nz"};
+  const std::array<std::string_view, 6> wanted = {"x", "y", "z", normal[0], normal[1], normal[2]};
+  if (count(normal[0]) + count(normal[1]) + count(normal[2]) == 0 && count("x") + count("y") + count("z") == 3)
+    refuse(source,
+           fmt::format("the points have no normals (no {} nx, ny, nz or normal_x, normal_y, normal_z): estimate "
+                       "and orient them first, for example in CloudCompare or MeshLab",
+                       kind));
+
+  std::array<std::size_t, 6> columns{};
+  for (std::size_t c = 0; c < wanted.size(); ++c) {
+    if (count(wanted[c]) == 0)
+      refuse(source, fmt::format("the points have no {} {}: export them with x y z nx ny nz", kind, wanted[c]));
+    if (count(wanted[c]) > 1) refuse(source, fmt::format("the points have {} {} more than once", kind, wanted[c]));
+    columns[c] = static_cast<std::size_t>(std::find(names.begin(), names.end(), wanted[c]) - names.begin());
+  }
+  return columns;
+}
+
+void append_point(OrientedPointCloud& cloud, const std::vector<double>& values,
+                  const std::array<std::size_t, 6>& columns) {
+  cloud.points.emplace_back(values[columns[0]], values[columns[1]], values[columns[2]]);
+  cloud.normals.emplace_back(values[columns[3]], values[columns[4]], values[columns[5]]);
+}
+
+void refuse_surplus(const CloudSource& source, std::size_t offset) {
+  constexpr std::string_view kPadding{" \t\r\n\0", 5};
+  const std::size_t surplus = source.bytes.find_first_not_of(kPadding, offset);
+  if (surplus != std::string_view::npos)
+    refuse(source, fmt::format("byte {}: data go on after the last item the header announces: its counts or types do "
+                               "not fit the data, export the file again",
+                               surplus));
+}
+
+}  // namespace umtet::detail

@@ -1,0 +1,139 @@
+#include "reconstruct/point_cloud_io.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cctype>
+#include <cerrno>
+#include <cmath>
+#include <fstream>
+#include <ostream>
+#include <system_error>
+
+#include "reconstruct/detail/cloud_source.h"
+
+namespace umtet {
+namespace {
+
+using detail::CloudSource;
+using detail::refuse;
+
+constexpr std::size_t kFewestPoints = 10;
+
+std::string load(const std::filesystem::path& file) {
+  const auto fail = [&](int error) {
+    throw std::system_error(error != 0 ? error : EIO, std::generic_category(), file.string());
+  };
+  if (std::filesystem::is_directory(file)) fail(EISDIR);
+  errno = 0;
+  std::ifstream in(file, std::ios::binary);
+  if (!in) fail(errno);
+  std::string bytes;
+  if (std::filesystem::is_regular_file(file)) bytes.reserve(std::filesystem::file_size(file));
+  std::array<char, 1 << 16> chunk;
+  while (in.read(chunk.data(), chunk.size()) || in.gcount() > 0)
+    bytes.append(chunk.data(), static_cast<std::size_t>(in.gcount()));
+  if (in.bad()) fail(errno);
+  return bytes;
+}
+
+/// What the content says, else what the extension says.
+CloudFile parse(const CloudSource& source, const std::filesystem::path& file) {
+  if (source.bytes.empty()) refuse(source, "the file is empty");
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const auto starts_with = [&](std::string_view text) { return source.bytes.starts_with(text); };
+  if (starts_with("ply\n") || starts_with("ply\r\n")) return detail::read_ply(source);
+  if (starts_with("# .PCD") || starts_with("VERSION ")) return detail::read_pcd(source);
+  if (extension == ".ply") return detail::read_ply(source);
+  if (extension == ".pcd") return detail::read_pcd(source);
+  if (extension == ".xyz" || extension == ".txt" || extension == ".pts") return detail::read_xyz(source);
+  refuse(source,
+         "neither PLY nor PCD by its first line, and the extension is none of .xyz .txt .pts: convert it to one "
+         "of these");
+}
+
+/// Counts the points for which bad(i) holds; names the first.
+template <class Predicate>
+void refuse_points(const CloudSource& source, std::size_t n, Predicate bad, std::string_view what) {
+  std::size_t first = n, count = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    if (bad(i)) {
+      first = std::min(first, i);
+      ++count;
+    }
+  if (count > 0)
+    refuse(source, fmt::format("point {} of {} (counted from 1) {}, {} such points in all: remove them", first + 1, n,
+                               what, count));
+}
+
+void check_numbers(const CloudSource& source, const OrientedPointCloud& cloud) {
+  const std::size_t n = cloud.points.size();
+  if (n < kFewestPoints) refuse(source, fmt::format("{} points: a surface needs at least {}", n, kFewestPoints));
+  refuse_points(
+      source, n, [&](std::size_t i) { return !cloud.points[i].allFinite(); },
+      "has a coordinate that is NaN or infinite");
+  // Squares and cubes of lengths must stay finite; no unit makes a body of 1e100.
+  refuse_points(
+      source, n, [&](std::size_t i) { return cloud.points[i].cwiseAbs().maxCoeff() > 1e100; },
+      "has a coordinate beyond 1e100");
+  refuse_points(
+      source, n, [&](std::size_t i) { return !cloud.normals[i].allFinite(); }, "has a normal that is NaN or infinite");
+  refuse_points(
+      source, n, [&](std::size_t i) { return cloud.normals[i].isZero(0); }, "has a zero normal");
+}
+
+/// Returns how many normals were not unit to 1e-3. Normals unit to rounding stay as they are, so that a written cloud
+/// is read back bit by bit.
+std::size_t make_unit(std::vector<Vec3>& normals) {
+  constexpr double kRounding = 1e-14, kWorthTelling = 1e-3;
+  std::size_t n_rescaled = 0;
+  for (Vec3& n : normals) {
+    const double length = n.stableNorm();
+    if (std::abs(length - 1) > kWorthTelling) ++n_rescaled;
+    if (std::abs(length - 1) <= kRounding) continue;
+    // First to the order of 1: the squares of very short and very long normals are no doubles.
+    n /= n.cwiseAbs().maxCoeff();
+    n /= n.norm();
+  }
+  return n_rescaled;
+}
+
+void put_double(char*& at, double value) {
+  auto bytes = std::bit_cast<std::array<char, sizeof(double)>>(value);
+  if constexpr (std::endian::native == std::endian::big) std::reverse(bytes.begin(), bytes.end());
+  at = std::copy(bytes.begin(), bytes.end(), at);
+}
+
+}  // namespace
+
+CloudFile read_point_cloud(const std::filesystem::path& file) {
+  const std::string bytes = load(file);
+  const CloudSource source{file.string(), bytes};
+  CloudFile result = parse(source, file);
+  check_numbers(source, result.cloud);
+  result.report.n_points = result.cloud.points.size();
+  result.report.n_normals_rescaled = make_unit(result.cloud.normals);
+  return result;
+}
+
+void write_ply(std::ostream& out, const OrientedPointCloud& cloud) {
+  if (cloud.points.size() != cloud.normals.size())
+    throw std::invalid_argument(
+        fmt::format("{} points but {} normals: must be equal", cloud.points.size(), cloud.normals.size()));
+  out << "ply\nformat binary_little_endian 1.0\nelement vertex " << cloud.points.size() << '\n';
+  for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) out << "property double " << name << '\n';
+  out << "end_header\n";
+  std::array<char, 6 * sizeof(double)> row;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    char* at = row.data();
+    for (const Vec3* v : {&cloud.points[i], &cloud.normals[i]})
+      for (int axis = 0; axis < 3; ++axis) put_double(at, (*v)[axis]);
+    out.write(row.data(), row.size());
+  }
+}
+
+}  // namespace umtet

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+#include <stdexcept>
+#include <string>
+
+#include "reconstruct/point_cloud.h"
+
+namespace umtet {
+
+/// The content of a cloud file was refused. what() is one sentence: file, place (line, byte or point number), remedy.
+struct CloudRefused : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// What was found in a cloud file besides the points.
+struct CloudFileReport {
+  std::string format;  ///< "ply ascii", "ply binary little endian", "pcd compressed", "xyz" ...
+  std::size_t n_points = 0;
+  std::size_t n_normals_rescaled = 0;  ///< normals that were not unit to 1e-3 and have been made so
+};
+
+struct CloudFile {
+  OrientedPointCloud cloud;
+  CloudFileReport report;
+};
+
+/// Reads .ply, .pcd, .xyz/.txt/.pts by content, then by extension. Double precision throughout.
+///
+/// PLY: ascii, binary little and big endian, any scalar type and property order, extra and list properties, other
+/// elements before and after `vertex`, comments, CRLF headers. PCD: ascii, binary, binary_compressed. XYZ: 6 columns
+/// x y z nx ny nz separated by blanks, tabs or commas, '#' and '//' comments; a first line with the number of points
+/// (.pts) is checked. Normals are nx ny nz or normal_x normal_y normal_z.
+/// Normals are made unit. At least 10 points; duplicates stay.
+///
+/// No count of a header is believed before it was compared with the size of the file: memory stays below a small
+/// multiple of it.
+///
+/// \throw CloudRefused         malformed, empty, non-finite or beyond 1e100, or without normals
+/// \throw std::system_error    the file cannot be opened or read; names it
+CloudFile read_point_cloud(const std::filesystem::path& file);
+
+/// Binary little-endian PLY, double x y z nx ny nz; read_point_cloud gives the same bits back. The caller owns the
+/// stream and checks it.
+/// \throw std::invalid_argument  not as many normals as points
+void write_ply(std::ostream&, const OrientedPointCloud&);
+
+}  // namespace umtet
