@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mesh/implicit_function.h"
+#include "mesh/tet_mesh.h"
+
+namespace umtet {
+
+/// What is true of a tet mesh, measured without trust in how it was made. Lengths are in model units, ratios in h.
+struct MeshCertificate {
+  std::size_t n_tets = 0;
+  std::size_t n_vertices = 0;        ///< vertices that a tet uses
+  std::size_t n_positive_faces = 0;  ///< 0 when none were given
+  double volume = 0;                 ///< sum over tets, model units^3
+  struct Quality {
+    double min = 0, p001 = 0, p01 = 0, mean = 0;  ///< mean ratio, eq. (6); 0.1 % and 1 % quantiles; -1 = not a number
+    double dihedral_min_deg = 0, dihedral_max_deg = 0;
+    std::size_t n_inverted = 0;  ///< exact sign of the volume <= 0
+  } quality;
+  struct Boundary {
+    std::size_t n_faces = 0;            ///< faces of exactly one tet
+    std::size_t n_overused_faces = 0;   ///< faces of more than two tets
+    std::size_t n_same_side_faces = 0;  ///< faces with two tets on one side: overlap or inversion
+    std::size_t n_nonmanifold_edges = 0, n_nonmanifold_vertices = 0;
+    bool closed_manifold = false;
+    std::optional<bool> equals_positive_faces;
+    int components = 0;
+    long euler_characteristic = 0;
+    long genus = 0;  ///< sum over components; meaningful if closed_manifold
+    double area = 0;
+    std::optional<double> max_vertex_distance_over_h;    ///< |psi| / |grad psi| at boundary vertices
+    std::optional<double> max_centroid_distance_over_h;  ///< from face centroids to their closest points
+    std::optional<double> min_cos_normal;                ///< cos(face normal, grad psi) at projected centroids
+    std::size_t n_cos_below_half = 0;                    ///< faces with cos < .5
+    std::size_t n_unprojected_faces = 0;                 ///< faces whose centroid found no point of psi = 0
+  } boundary;
+  double h = 0;  ///< edge length the ratios refer to
+};
+
+/// A mesh and what backs it. The referenced objects must outlive the call.
+struct CertificateInput {
+  const TetMesh* mesh = nullptr;
+  double h = 0;  ///< <= 0: the mean over tets of the root mean square edge length is used
+  const std::vector<Triangle>* positive_faces = nullptr;  ///< optional: compared with the boundary as a set
+  std::optional<ImplicitFunctionRef> psi;                 ///< optional: distances and normals
+};
+
+/// Measures everything above. Does not judge. Not seen here: components of psi = 0 that the mesh lacks (zero_set.h
+/// counts them), and distant parts of the boundary that pass through each other.
+///
+/// Cost: O(n log n); threads over tets and faces, result independent of them.
+/// psi must be thread-safe.
+/// \throw std::invalid_argument without a mesh or tets, or for an index out of range
+MeshCertificate certify(const CertificateInput&);
+
+/// The reasons why a certificate fails, empty = pass: inverted tets, boundary not a closed manifold or not the positive
+/// faces, a vertex farther than 1e-8 h from psi = 0, a face without a point of psi = 0 near it, a face with cos <= 0
+/// (folded).
+std::vector<std::string> failures(const MeshCertificate&);
+
+}  // namespace umtet

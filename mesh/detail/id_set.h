@@ -1,0 +1,54 @@
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace umtet::detail {
+
+/// A set of background ids, one bit each, with the rank of every member once index() was called.
+class IdSet {
+ public:
+  explicit IdSet(std::int64_t n_ids) : words_(static_cast<std::size_t>((n_ids + 63) / 64), 0) {}
+
+  bool test(std::int64_t id) const { return words_[id >> 6] >> (id & 63) & 1; }
+  void insert(std::int64_t id) { words_[id >> 6] |= std::uint64_t{1} << (id & 63); }
+
+  std::size_t n_words() const { return words_.size(); }
+  std::uint64_t word(std::size_t w) const { return words_[w]; }
+  /// Threads may set different words at once.
+  void set_word(std::size_t w, std::uint64_t bits) { words_[w] = bits; }
+
+  /// Prepares rank(); call again after an insertion. Returns the number of members.
+  std::size_t index() {
+    before_.resize(words_.size());
+    std::size_t n = 0;
+    for (std::size_t w = 0; w < words_.size(); ++w) {
+      before_[w] = static_cast<std::uint32_t>(n);
+      n += static_cast<std::size_t>(std::popcount(words_[w]));
+    }
+    return n;
+  }
+  /// Number of members below `id`.
+  int rank(std::int64_t id) const {
+    const std::uint64_t below = (std::uint64_t{1} << (id & 63)) - 1;
+    return static_cast<int>(before_[id >> 6]) + std::popcount(words_[id >> 6] & below);
+  }
+
+  /// Calls f(id) for every member, ascending.
+  template <class F>
+  void for_each(F&& f) const {
+    for (std::size_t w = 0; w < words_.size(); ++w) {
+      for (std::uint64_t bits = words_[w]; bits != 0; bits &= bits - 1) {
+        f(static_cast<std::int64_t>(w * 64) + std::countr_zero(bits));
+      }
+    }
+  }
+
+ private:
+  std::vector<std::uint64_t> words_;
+  std::vector<std::uint32_t> before_;
+};
+
+}  // namespace umtet::detail

@@ -1,0 +1,110 @@
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdint>
+#include <string>
+
+#include "mesh/detail/checked_file.h"
+#include "mesh/detail/mesh_formats.h"
+
+namespace umtet {
+namespace {
+constexpr int kBodyReference = 1, kBoundaryReference = 2;
+}
+
+void write_medit(const std::filesystem::path& path, const TetMesh& mesh, const std::vector<Triangle>& boundary) {
+  std::vector<char> on_boundary(mesh.V.size(), 0);
+  for (const Triangle& f : boundary) {
+    for (const int v : f) on_boundary[v] = 1;
+  }
+  detail::CheckedFile file(path);
+  file.text("MeshVersionFormatted 2\nDimension 3\n\nVertices\n").number(mesh.V.size()).text("\n");
+  for (std::size_t i = 0; i < mesh.V.size(); ++i) {
+    for (int k = 0; k < 3; ++k) file.number(mesh.V[i][k]).text(" ");
+    file.number(on_boundary[i] ? kBoundaryReference : kBodyReference).text("\n");
+  }
+  const auto write = [&](const char* keyword, const auto& simplices, int reference) {
+    file.text("\n").text(keyword).text("\n").number(simplices.size()).text("\n");
+    for (const auto& simplex : simplices) {
+      for (const int v : simplex) file.number(v + 1).text(" ");
+      file.number(reference).text("\n");
+    }
+  };
+  write("Triangles", boundary, kBoundaryReference);
+  write("Tetrahedra", mesh.C, kBodyReference);
+  file.text("\nEnd\n");
+  file.close();
+}
+
+namespace detail {
+namespace {
+
+std::string lower(std::string_view w) {
+  std::string s(w.substr(0, 64));
+  std::transform(s.begin(), s.end(), s.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return s;
+}
+
+void read_vertices(ByteCursor& in, NumberedMesh& mesh) {
+  const std::size_t n = in.count("number of vertices", 8);  // "0 0 0 0\n"
+  const auto known = static_cast<std::int64_t>(mesh.point.size());
+  mesh.number.reserve(n);
+  mesh.point.reserve(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    Vec3 x;
+    for (int k = 0; k < 3; ++k) x[k] = in.number<double>("vertex coordinate");
+    in.number<std::int64_t>("vertex reference");
+    mesh.number.push_back(known + static_cast<std::int64_t>(i) + 1);
+    mesh.point.push_back(x);
+  }
+}
+
+void read_tets(ByteCursor& in, int nodes, NumberedMesh& mesh) {
+  const std::size_t n = in.count("number of tets", static_cast<std::size_t>(2 * nodes + 2));
+  mesh.tets.reserve(mesh.tets.size() + n);
+  for (std::size_t t = 0; t < n; ++t) {
+    std::array<std::int64_t, 4> tet{};
+    for (int k = 0; k < nodes; ++k) {
+      const auto v = in.number<std::int64_t>("vertex of a tet");
+      if (k < 4) tet[k] = v;
+    }
+    in.number<std::int64_t>("tet reference");
+    mesh.tets.push_back(tet);
+  }
+}
+
+}  // namespace
+
+MeshFile read_medit(const std::filesystem::path& path) {
+  const std::string bytes = file_bytes(path);
+  ByteCursor in(path, bytes, '#');
+  NumberedMesh mesh;
+  bool known = false;
+  for (std::string_view w = in.word(); !w.empty(); w = in.word()) {
+    const std::string keyword = lower(w);
+    if (keyword == "meshversionformatted") {
+      in.number<std::int64_t>("version");
+      known = true;
+    } else if (!known) {
+      in.refuse("not a MEDIT file: no MeshVersionFormatted at its beginning");
+    } else if (keyword == "dimension") {
+      if (const auto d = in.number<std::int64_t>("dimension"); d != 3)
+        in.refuse("dimension " + std::to_string(d) + ": must be 3");
+    } else if (keyword == "vertices") {
+      read_vertices(in, mesh);
+    } else if (keyword == "tetrahedra") {
+      read_tets(in, 4, mesh);
+    } else if (keyword == "tetrahedrap2") {
+      read_tets(in, 10, mesh);
+    } else if (keyword == "end") {
+      break;
+    }
+    // Anything else is a keyword we do not need, or one of its numbers.
+  }
+  if (!known) in.refuse("not a MEDIT file: it is empty");
+  if (mesh.tets.empty()) in.refuse("no tets in this file");
+  return assemble(path, std::move(mesh));
+}
+
+}  // namespace detail
+}  // namespace umtet

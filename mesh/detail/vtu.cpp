@@ -1,0 +1,251 @@
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkIdTypeArray.h>
+#include <vtkLogger.h>
+#include <vtkNew.h>
+#include <vtkOutputWindow.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkSmartPointer.h>
+#include <vtkTypeInt64Array.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLUnstructuredGridReader.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+
+#include <limits>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+
+#include "mesh/detail/checked_file.h"
+#include "mesh/detail/mesh_formats.h"
+#include "mesh/detail/vtu_precheck.h"
+
+namespace umtet {
+namespace {
+
+/// VTK reports errors on a process-wide window and a process-wide log, and both print. While one of these lives they go
+/// into a string instead.
+class CapturedVtkMessages {
+ public:
+  CapturedVtkMessages()
+      : lock_(mutex()), before_(vtkOutputWindow::GetInstance()), verbosity_(vtkLogger::GetCurrentVerbosityCutoff()) {
+    vtkOutputWindow::SetInstance(window_);
+    vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+  }
+  ~CapturedVtkMessages() {
+    vtkOutputWindow::SetInstance(before_);
+    vtkLogger::SetStderrVerbosity(verbosity_);
+  }
+  CapturedVtkMessages(const CapturedVtkMessages&) = delete;
+  CapturedVtkMessages& operator=(const CapturedVtkMessages&) = delete;
+  /// The first message, on one line.
+  std::string first() const {
+    std::string s = window_->text.substr(0, 300);
+    for (char& c : s) {
+      if (c < ' ' || c > '~') c = ' ';
+    }
+    return s;
+  }
+
+ private:
+  struct Window : vtkOutputWindow {
+    static Window* New() {
+      auto* window = new Window;
+      window->InitializeObjectBase();
+      return window;
+    }
+    void DisplayText(const char* message) override {
+      if (text.empty() && message) text = message;
+    }
+    std::string text;
+  };
+  static std::mutex& mutex() {
+    static std::mutex m;
+    return m;
+  }
+  std::lock_guard<std::mutex> lock_;
+  vtkSmartPointer<vtkOutputWindow> before_;
+  vtkLogger::Verbosity verbosity_;
+  vtkNew<Window> window_;
+};
+
+template <typename T>
+struct VtkArrayOf;
+template <>
+struct VtkArrayOf<double> {
+  using type = vtkDoubleArray;
+};
+template <>
+struct VtkArrayOf<std::int64_t> {
+  using type = vtkTypeInt64Array;
+};
+template <>
+struct VtkArrayOf<std::uint8_t> {
+  using type = vtkUnsignedCharArray;
+};
+
+void add_data(vtkFieldData* to, const std::map<std::string, FieldValues>& data, std::size_t n) {
+  for (const auto& [name, any] : data) {
+    std::visit(
+        [&](const auto& values) {
+          using Value = typename std::decay_t<decltype(values)>::value_type;
+          if (values.size() != n) throw std::invalid_argument("data '" + name + "': one value each is needed");
+          vtkNew<typename VtkArrayOf<Value>::type> array;
+          array->SetName(name.c_str());
+          array->SetNumberOfValues(static_cast<vtkIdType>(n));
+          std::copy(values.begin(), values.end(), array->GetPointer(0));
+          to->AddArray(array);
+        },
+        any);
+  }
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> to_vtk(const MeshFile& file) {
+  const auto n_points = static_cast<vtkIdType>(file.mesh.V.size());
+  const auto n_tets = static_cast<vtkIdType>(file.mesh.C.size());
+  auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(n_points);
+  for (vtkIdType i = 0; i < n_points; ++i) points->SetPoint(i, file.mesh.V[i].data());
+  grid->SetPoints(points);
+
+  vtkNew<vtkTypeInt64Array> offsets, connectivity;
+  offsets->SetNumberOfValues(n_tets + 1);
+  connectivity->SetNumberOfValues(4 * n_tets);
+  for (vtkIdType t = 0; t < n_tets; ++t) {
+    offsets->SetValue(t, 4 * t);
+    for (int k = 0; k < 4; ++k) connectivity->SetValue(4 * t + k, file.mesh.C[t][k]);
+  }
+  offsets->SetValue(n_tets, 4 * n_tets);
+  vtkNew<vtkCellArray> cells;
+  cells->SetData(offsets, connectivity);
+  grid->SetCells(VTK_TETRA, cells);
+  add_data(grid->GetPointData(), file.point_data, file.mesh.V.size());
+  add_data(grid->GetCellData(), file.cell_data, file.mesh.C.size());
+  return grid;
+}
+
+/// The values of an array with one component, for the kept cells (`keep` null: for all).
+FieldValues from_vtk(vtkDataArray* array, const std::vector<vtkIdType>* keep) {
+  const auto n = keep ? keep->size() : static_cast<std::size_t>(array->GetNumberOfTuples());
+  const auto source = [&](std::size_t i) { return keep ? (*keep)[i] : static_cast<vtkIdType>(i); };
+  const int type = array->GetDataType();
+  if (type == VTK_FLOAT || type == VTK_DOUBLE) {
+    std::vector<double> values(n);
+    for (std::size_t i = 0; i < n; ++i) values[i] = array->GetComponent(source(i), 0);
+    return values;
+  }
+  if (auto* bytes = vtkUnsignedCharArray::SafeDownCast(array)) {
+    std::vector<std::uint8_t> values(n);
+    for (std::size_t i = 0; i < n; ++i) values[i] = bytes->GetValue(source(i));
+    return values;
+  }
+  std::vector<std::int64_t> values(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    values[i] = array->GetVariantValue(source(i)).ToTypeInt64();  // a double would round above 2^53
+  }
+  return values;
+}
+
+void take_data(vtkFieldData* from, vtkIdType n, const std::vector<vtkIdType>* keep,
+               std::map<std::string, FieldValues>& to) {
+  for (int a = 0; a < from->GetNumberOfArrays(); ++a) {
+    vtkDataArray* array = from->GetArray(a);  // null for arrays of strings
+    if (!array || !array->GetName() || array->GetNumberOfComponents() != 1 || array->GetNumberOfTuples() != n) continue;
+    to.emplace(array->GetName(), from_vtk(array, keep));
+  }
+}
+
+/// Corners of the tets, every offset and index checked: VTK believes the file. `kept` receives the cell ids.
+void take_tets(const std::filesystem::path& path, vtkUnstructuredGrid* grid, TetMesh& mesh,
+               std::vector<vtkIdType>& kept) {
+  const vtkIdType n_points = grid->GetNumberOfPoints(), n_cells = grid->GetNumberOfCells();
+  vtkUnsignedCharArray* types = grid->GetCellTypesArray();
+  vtkCellArray* cells = grid->GetCells();
+  const auto refuse = [&](vtkIdType cell, const char* reason) {
+    throw MeshFileRefused(path, "cell " + std::to_string(cell), reason);
+  };
+  if (!types || !cells || types->GetNumberOfTuples() < n_cells) refuse(0, "no cell types");
+  vtkDataArray* offsets = cells->GetOffsetsArray();
+  vtkDataArray* connectivity = cells->GetConnectivityArray();
+  if (offsets->GetNumberOfTuples() < n_cells + 1) refuse(0, "offsets missing");
+  const auto n_indices = static_cast<double>(connectivity->GetNumberOfTuples());
+  for (vtkIdType c = 0; c < n_cells; ++c) {
+    const int type = types->GetValue(c);
+    if (type != VTK_TETRA && type != VTK_QUADRATIC_TETRA) continue;
+    const double begin = offsets->GetComponent(c, 0), end = offsets->GetComponent(c + 1, 0);
+    if (!(begin >= 0 && end >= begin && end <= n_indices)) refuse(c, "offsets do not ascend within the connectivity");
+    if (end - begin != (type == VTK_TETRA ? 4 : 10)) refuse(c, "a tet with a wrong number of points");
+    Tet tet;
+    for (int k = 0; k < 4; ++k) {
+      const double v = connectivity->GetComponent(static_cast<vtkIdType>(begin) + k, 0);
+      if (!(v >= 0 && v < static_cast<double>(n_points))) refuse(c, "a point index out of range");
+      tet[k] = static_cast<int>(v);
+    }
+    mesh.C.push_back(tet);
+    kept.push_back(c);
+  }
+}
+
+}  // namespace
+
+void write_vtu(const std::filesystem::path& path, const MeshFile& file) {
+  const auto grid = to_vtk(file);
+  vtkNew<vtkXMLUnstructuredGridWriter> writer;
+  writer->SetInputData(grid);
+  writer->SetDataModeToBinary();
+  writer->SetHeaderTypeToUInt64();
+  writer->SetCompressorTypeToNone();
+  // On a full disk VTK 9.1 calls a cut file a success (only GetErrorCode() tells) or, in inline mode, frees a pointer
+  // it never set and crashes. So it writes to memory, and the file is ours.
+  writer->WriteToOutputStringOn();
+  {
+    const CapturedVtkMessages messages;
+    if (writer->Write() != 1 || writer->GetErrorCode() != 0) {
+      throw std::runtime_error("cannot write " + path.string() + ": " + messages.first());
+    }
+  }
+  detail::CheckedFile out(path);
+  out.text(writer->GetOutputString());
+  out.close();
+}
+
+MeshFile detail::read_vtu(const std::filesystem::path& path) {
+  detail::precheck_vtu(path);
+  const CapturedVtkMessages messages;
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->SetFileName(path.c_str());
+  try {
+    reader->Update();
+  } catch (const std::bad_alloc&) {
+    throw MeshFileRefused(path, "", "its arrays do not fit into memory");
+  }
+  if (const std::string error = messages.first(); reader->GetErrorCode() != 0 || !error.empty()) {
+    throw MeshFileRefused(path, "", "VTK cannot read it: " + error);
+  }
+  vtkUnstructuredGrid* grid = reader->GetOutput();
+  if (!grid || !grid->GetPoints()) throw MeshFileRefused(path, "", "no points in this file");
+  if (grid->GetNumberOfPoints() > std::numeric_limits<int>::max() ||
+      grid->GetNumberOfCells() > std::numeric_limits<int>::max()) {
+    throw MeshFileRefused(path, "", "more than 2^31 points or cells");
+  }
+  MeshFile file;
+  std::vector<vtkIdType> kept;
+  take_tets(path, grid, file.mesh, kept);
+  if (file.mesh.C.empty()) throw MeshFileRefused(path, "", "no tets in this file");
+  file.mesh.V.resize(static_cast<std::size_t>(grid->GetNumberOfPoints()));
+  for (std::size_t i = 0; i < file.mesh.V.size(); ++i) {
+    grid->GetPoints()->GetPoint(static_cast<vtkIdType>(i), file.mesh.V[i].data());
+  }
+  take_data(grid->GetPointData(), grid->GetNumberOfPoints(), nullptr, file.point_data);
+  take_data(grid->GetCellData(), grid->GetNumberOfCells(), &kept, file.cell_data);
+  drop_unused_vertices(file);
+  return file;
+}
+
+}  // namespace umtet

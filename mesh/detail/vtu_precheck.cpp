@@ -1,0 +1,230 @@
+#include "mesh/detail/vtu_precheck.h"
+
+#include <charconv>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "mesh/detail/mesh_formats.h"
+
+namespace umtet::detail {
+namespace {
+
+/// zlib and lz4 expand at most 1032 and 255 times; uncompressed and ascii files never expand.
+constexpr std::uint64_t kGreatestRatio = 1032;
+constexpr std::uint64_t kMostComponents = 64;
+
+/// Bytes that base64 text stands for, read in groups of four characters. Blanks between them do not count; '=' may end
+/// any group, because VTK encodes a header and its data one after the other.
+class Base64Text {
+ public:
+  explicit Base64Text(std::string_view text) : text_(text) {}
+  /// Appends the bytes of the next group; false at the end of the text or at a character that is not base64.
+  bool next(std::string& bytes);
+  bool valid() const { return valid_; }
+
+ private:
+  std::string_view text_;
+  std::size_t at_ = 0;
+  bool valid_ = true;
+};
+
+int base64_digit(char c) {
+  if (c >= 'A' && c <= 'Z') return c - 'A';
+  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
+  if (c >= '0' && c <= '9') return c - '0' + 52;
+  return c == '+' ? 62 : c == '/' ? 63 : -1;
+}
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+bool Base64Text::next(std::string& bytes) {
+  int n = 0, n_pad = 0;
+  std::uint32_t group = 0;
+  for (; n < 4 && at_ < text_.size(); ++at_) {
+    const char c = text_[at_];
+    if (is_blank(c)) continue;
+    const int digit = c == '=' ? 0 : base64_digit(c);
+    n_pad += c == '=';
+    valid_ = digit >= 0 && (n_pad == 0 || c == '=') && n_pad <= 2;
+    if (!valid_) return false;
+    group = group << 6 | static_cast<std::uint32_t>(digit);
+    ++n;
+  }
+  if (n == 0) return false;
+  valid_ = n == 4;
+  if (!valid_) return false;
+  for (int k = 0; k < 3 - n_pad; ++k) bytes.push_back(static_cast<char>(group >> (16 - 8 * k)));
+  return true;
+}
+
+class TagWalk {
+ public:
+  TagWalk(const std::filesystem::path& path, std::string_view bytes) : path_(path), bytes_(bytes) {}
+  void run();
+
+ private:
+  [[noreturn]] void refuse(std::size_t at, const std::string& reason) const {
+    throw MeshFileRefused(path_, "byte " + std::to_string(at), reason);
+  }
+  std::string_view attribute(std::string_view tag, std::string_view name) const;
+  std::uint64_t count(std::size_t at, std::string_view tag, std::string_view name) const;
+  void open(std::size_t at, std::string_view tag);
+  void close(std::size_t at, std::string_view name);
+  void check_block(std::size_t at, std::string_view text) const;
+  std::size_t after_comment(std::size_t at, std::string_view opening, std::string_view closing) const;
+
+  const std::filesystem::path& path_;
+  std::string_view bytes_;
+  std::vector<std::string_view> open_;
+  std::uint64_t n_tuples_ = 0;
+  std::uint64_t ratio_ = 1;
+  std::size_t header_word_ = 4;  ///< bytes of a number in front of a binary block
+  bool has_root_ = false;
+};
+
+std::string_view name_of(std::string_view tag) { return tag.substr(0, tag.find_first_of(" \t\r\n/")); }
+
+/// The value of an attribute inside a tag's text, empty when it is not there.
+std::string_view TagWalk::attribute(std::string_view tag, std::string_view name) const {
+  for (std::size_t at = tag.find(name); at != std::string_view::npos; at = tag.find(name, at + 1)) {
+    const char before = at == 0 ? ' ' : tag[at - 1];
+    std::size_t i = tag.find_first_not_of(" \t\r\n", at + name.size());
+    if (!(before == ' ' || before == '\t' || before == '\n' || before == '\r') || i == std::string_view::npos ||
+        tag[i] != '=') {
+      continue;
+    }
+    i = tag.find_first_of("\"'", i);
+    if (i == std::string_view::npos) return {};
+    const std::size_t end = tag.find(tag[i], i + 1);
+    return end == std::string_view::npos ? std::string_view{} : tag.substr(i + 1, end - i - 1);
+  }
+  return {};
+}
+
+std::uint64_t TagWalk::count(std::size_t at, std::string_view tag, std::string_view name) const {
+  const std::string_view text = attribute(tag, name);
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) refuse(at, std::string(name) + " is not a count");
+  return value;
+}
+
+void TagWalk::open(std::size_t at, std::string_view tag) {
+  const std::string_view name = name_of(tag);
+  if (!has_root_) {
+    if (name != "VTKFile" || attribute(tag, "type") != "UnstructuredGrid") {
+      refuse(at, "not a VTK XML file of type UnstructuredGrid");
+    }
+    has_root_ = true;
+    if (!attribute(tag, "compressor").empty()) ratio_ = kGreatestRatio;
+    if (attribute(tag, "header_type") == "UInt64") header_word_ = 8;
+  }
+  // A point takes at least three numbers, a cell at least its type: a byte each, or 4/3 characters in base64.
+  const auto check = [&](std::uint64_t n) {
+    if (n > bytes_.size() * ratio_ || n_tuples_ + n > bytes_.size() * ratio_) {
+      refuse(at, std::to_string(n) + " points, cells or tuples: more than the file can hold");
+    }
+  };
+  if (name == "Piece") {
+    for (const char* what : {"NumberOfPoints", "NumberOfCells"}) {
+      const std::uint64_t n = count(at, tag, what);
+      check(n);
+      n_tuples_ += n;
+    }
+  }
+  if (name == "DataArray" || name == "Array") {
+    if (!attribute(tag, "NumberOfTuples").empty()) check(count(at, tag, "NumberOfTuples"));
+    if (!attribute(tag, "NumberOfComponents").empty()) {
+      const std::uint64_t n = count(at, tag, "NumberOfComponents");
+      if (n > kMostComponents) refuse(at, "NumberOfComponents = " + std::to_string(n));
+    }
+    const std::string_view array = attribute(tag, "Name");
+    if (array == "faces" || array == "faceoffsets") refuse(at, "polyhedral cells are not read");
+  }
+  if (tag.back() != '/') open_.push_back(name);
+}
+
+/// An inline binary block holds what its header says. VTK leaves the rest of an array as malloc returned it otherwise.
+/// Header: the number of bytes; of compressed data: number of blocks, size, last size, compressed size of each.
+void TagWalk::check_block(std::size_t at, std::string_view text) const {
+  Base64Text base64(text);
+  std::string bytes;
+  std::uint64_t n_words = ratio_ == 1 ? 1 : 3, expected = 0;
+  const auto word = [&](std::uint64_t i) {
+    std::uint64_t value = 0;
+    std::memcpy(&value, bytes.data() + i * header_word_, header_word_);
+    return value;
+  };
+  while (bytes.size() < n_words * header_word_ && base64.next(bytes)) {
+    if (ratio_ == 1 || bytes.size() < header_word_) continue;
+    if (word(0) > text.size()) refuse(at, "a block with more parts than bytes");
+    n_words = 3 + word(0);
+  }
+  if (bytes.size() < n_words * header_word_) refuse(at, "a binary block without a header");
+  for (std::uint64_t i = ratio_ == 1 ? 0 : 3; i < n_words; ++i) {
+    if (word(i) > text.size()) refuse(at, "a binary block that is shorter than its header says");
+    expected += word(i);
+  }
+  std::uint64_t found = bytes.size() - n_words * header_word_;
+  for (bytes.clear(); base64.next(bytes); bytes.clear()) found += bytes.size();
+  if (!base64.valid()) refuse(at, "a binary block that is not base64");
+  if (found != expected) {
+    refuse(at, "a binary block of " + std::to_string(found) + " bytes whose header says " + std::to_string(expected));
+  }
+}
+
+void TagWalk::close(std::size_t at, std::string_view name) {
+  if (open_.empty() || open_.back() != name) refuse(at, "tags do not nest");
+  open_.pop_back();
+}
+
+std::size_t TagWalk::after_comment(std::size_t at, std::string_view opening, std::string_view closing) const {
+  const std::size_t end = bytes_.find(closing, at + opening.size());
+  if (end == std::string_view::npos) refuse(at, "a comment without an end");
+  return end + closing.size();
+}
+
+void TagWalk::run() {
+  for (std::size_t at = bytes_.find('<'); at != std::string_view::npos;) {
+    const std::string_view rest = bytes_.substr(at);
+    if (rest.starts_with("<!--")) {
+      at = bytes_.find('<', after_comment(at, "<!--", "-->"));
+      continue;
+    }
+    const std::size_t end = rest.find('>');
+    if (end == std::string_view::npos || end < 2) refuse(at, "a tag without an end");
+    const std::string_view tag = rest.substr(1, end - 1);
+    if (tag.front() == '!') refuse(at, "document type declarations are not read");
+    if (tag.front() == '/') {
+      close(at, name_of(tag.substr(1)));
+    } else if (tag.front() != '?') {
+      open(at, tag);
+      const bool array = name_of(tag) == "DataArray" || name_of(tag) == "Array";
+      if (array && tag.back() != '/' && attribute(tag, "format") == "binary") {
+        const std::size_t begin = at + end + 1;
+        check_block(begin, bytes_.substr(begin, bytes_.find('<', begin) - begin));
+      }
+    }
+    if (name_of(tag) == "AppendedData") {
+      // Raw bytes follow that may contain anything; VTK's parser stops here too.
+      if (bytes_.find("</VTKFile>", at) == std::string_view::npos) refuse(bytes_.size(), "the file is cut");
+      return;
+    }
+    at = bytes_.find('<', at + end);
+  }
+  if (!has_root_) refuse(0, "not a VTK XML file");
+  if (!open_.empty()) refuse(bytes_.size(), "the file is cut: <" + std::string(open_.back()) + "> is not closed");
+}
+
+}  // namespace
+
+void precheck_vtu(const std::filesystem::path& path) {
+  const std::string bytes = file_bytes(path);
+  TagWalk(path, bytes).run();
+}
+
+}  // namespace umtet::detail

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+
+namespace umtet::detail {
+
+/// Looks at the tags of a .vtu before VTK does, which believes every count it reads.
+///
+/// Checked: the root is a VTKFile of type UnstructuredGrid; tags nest and the file is not cut; numbers of points,
+/// cells, tuples and components are plain numbers that the bytes of the file can hold (compressed blocks counted at
+/// zlib's greatest ratio); every inline binary block is base64 of the length its header says; no polyhedra, whose face
+/// lists VTK follows blindly.
+///
+/// \throw std::system_error when the file cannot be read, MeshFileRefused for its content
+void precheck_vtu(const std::filesystem::path& path);
+
+}  // namespace umtet::detail

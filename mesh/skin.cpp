@@ -1,0 +1,290 @@
+#include "mesh/skin.h"
+
+#include <Eigen/Geometry>
+#include <OpenMesh/Core/IO/MeshIO.hh>
+#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+#include <OpenMesh/Core/System/omstream.hh>
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <mutex>
+#include <numeric>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "mesh/detail/checked_file.h"
+
+namespace umtet {
+namespace {
+
+struct SurfaceTraits : OpenMesh::DefaultTraits {
+  using Point = OpenMesh::Vec3d;
+};
+using HalfEdgeMesh = OpenMesh::TriMesh_ArrayKernelT<SurfaceTraits>;
+
+/// One use of an edge or a face, under its least vertex.
+template <int N>
+struct Use {
+  std::array<int, N> rest;  ///< the other vertices, ascending
+  std::int64_t source;      ///< which face or edge of which simplex
+  bool reversed;            ///< orientation relative to ascending vertices
+};
+
+/// Groups uses by their least vertex in O(n): a counting sort, then tiny sorts in each group.
+template <int N>
+class UseTable {
+ public:
+  explicit UseTable(std::size_t n_vertices) : begin_(n_vertices + 2, 0) {}
+  void count(int least) { ++begin_[least + 2]; }
+  void allocate() {
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    uses_.resize(begin_.back());
+  }
+  void place(int least, const Use<N>& use) { uses_[begin_[least + 1]++] = use; }
+  /// Calls f(first, last) for every set of uses of the same edge or face; within one they ascend in `source`.
+  template <typename F>
+  void for_each(F&& f) {
+    for (std::size_t v = 0; v + 2 < begin_.size(); ++v) {
+      const auto first = uses_.begin() + begin_[v], last = uses_.begin() + begin_[v + 1];
+      std::sort(first, last, [](const Use<N>& x, const Use<N>& y) {
+        return x.rest != y.rest ? x.rest < y.rest : x.source < y.source;
+      });
+      for (auto i = first; i != last;) {
+        auto j = i;
+        while (j != last && j->rest == i->rest) ++j;
+        f(i, j, static_cast<int>(v));
+        i = j;
+      }
+    }
+  }
+
+ private:
+  std::vector<std::size_t> begin_;
+  std::vector<Use<N>> uses_;
+};
+
+int find_root(std::vector<int>& parent, int i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+/// The smaller root wins, so that roots do not depend on the order of the unions.
+void unite(std::vector<int>& parent, int i, int j) {
+  i = find_root(parent, i);
+  j = find_root(parent, j);
+  if (i != j) parent[std::max(i, j)] = std::min(i, j);
+}
+
+template <std::size_t N>
+void check_indices(const std::vector<std::array<int, N>>& simplices, std::size_t n_vertices, const char* name) {
+  for (std::size_t s = 0; s < simplices.size(); ++s) {
+    for (std::size_t k = 0; k < N; ++k) {
+      const int v = simplices[s][k];
+      if (v < 0 || static_cast<std::size_t>(v) >= n_vertices || std::count(&simplices[s][0], &simplices[s][0] + k, v)) {
+        throw std::invalid_argument(std::string(name) + " " + std::to_string(s) + ": vertex " + std::to_string(v) +
+                                    " is out of range or repeated (" + std::to_string(n_vertices) + " vertices)");
+      }
+    }
+  }
+}
+
+Use<2> face_use(const Tet& tet, int face, std::int64_t source, int& least) {
+  std::array<int, 3> f = {tet[kTetFace[face][0]], tet[kTetFace[face][1]], tet[kTetFace[face][2]]};
+  std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
+  least = f[0];
+  return f[1] < f[2] ? Use<2>{{f[1], f[2]}, source, false} : Use<2>{{f[2], f[1]}, source, true};
+}
+
+/// Edges: how many there are and which are bad; per component counts; the fans at each vertex through shared edges.
+void count_edges(const std::vector<Triangle>& faces, std::size_t n_vertices, SurfaceTopology& s,
+                 std::vector<int>& fan_parent) {
+  UseTable<1> table(n_vertices);
+  for (const Triangle& f : faces)
+    for (int k = 0; k < 3; ++k) table.count(std::min(f[k], f[(k + 1) % 3]));
+  table.allocate();
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const int a = faces[i][k], b = faces[i][(k + 1) % 3];
+      table.place(std::min(a, b), {{std::max(a, b)}, static_cast<std::int64_t>(3 * i + k), a > b});
+    }
+  }
+  // Corner 3 i + k is face i at its vertex k; corners of one vertex in one fan are united through shared edges.
+  const auto corner_of = [&](std::int64_t source, int v) {
+    const std::int64_t i = source / 3;
+    return static_cast<int>(3 * i + (faces[i][0] == v ? 0 : faces[i][1] == v ? 1 : 2));
+  };
+  table.for_each([&](auto first, auto last, int v) {
+    ++s.n_edges;
+    ++s.components[s.component[first->source / 3]].n_edges;
+    if (last - first != 2) {
+      ++s.n_nonmanifold_edges;
+    } else if (first->reversed == (first + 1)->reversed) {
+      ++s.n_misoriented_edges;
+    }
+    for (auto u = first + 1; u != last; ++u) {
+      for (const int w : {v, first->rest[0]}) unite(fan_parent, corner_of(first->source, w), corner_of(u->source, w));
+    }
+  });
+}
+
+void count_components(const std::vector<Vec3>& V, const std::vector<Triangle>& faces, SurfaceTopology& s) {
+  std::vector<int> parent(V.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  std::vector<char> used(V.size(), 0);
+  for (const Triangle& f : faces) {
+    for (const int v : f) used[v] = 1;
+    unite(parent, f[0], f[1]);
+    unite(parent, f[0], f[2]);
+  }
+  std::vector<int> number(V.size(), -1);
+  for (std::size_t v = 0; v < V.size(); ++v) {
+    if (!used[v]) continue;
+    s.vertices.push_back(static_cast<int>(v));
+    int& n = number[find_root(parent, static_cast<int>(v))];
+    if (n < 0) {
+      n = static_cast<int>(s.components.size());
+      s.components.emplace_back();
+    }
+    ++s.components[n].n_vertices;
+  }
+  s.component.resize(faces.size());
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const Triangle& f = faces[i];
+    const Vec3 &a = V[f[0]], &b = V[f[1]], &c = V[f[2]];
+    SurfaceComponent& part = s.components[s.component[i] = number[find_root(parent, f[0])]];
+    ++part.n_faces;
+    part.area += 0.5 * (b - a).cross(c - a).norm();
+    part.volume += (a - V[0]).dot((b - V[0]).cross(c - V[0])) / 6.0;  // from V[0]: no cancellation far from the origin
+  }
+}
+
+/// OpenMesh reports complex edges and written files on its global streams; a library of ours prints nothing.
+class QuietOpenMesh {
+ public:
+  QuietOpenMesh() : lock_(mutex()), err_(omerr().is_enabled()), log_(omlog().is_enabled()) {
+    omerr().disable();
+    omlog().disable();
+  }
+  ~QuietOpenMesh() {
+    if (err_) omerr().enable();
+    if (log_) omlog().enable();
+  }
+  QuietOpenMesh(const QuietOpenMesh&) = delete;
+  QuietOpenMesh& operator=(const QuietOpenMesh&) = delete;
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex m;
+    return m;
+  }
+  std::lock_guard<std::mutex> lock_;
+  bool err_, log_;
+};
+
+/// The surface as half-edges, over its own vertices; `refused` counts the faces that do not fit a 2-manifold.
+HalfEdgeMesh half_edges(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
+                        const std::vector<int>& vertices, std::size_t& refused) {
+  HalfEdgeMesh mesh;
+  mesh.reserve(vertices.size(), 3 * faces.size() / 2, faces.size());
+  std::vector<OpenMesh::VertexHandle> handle(V.size());
+  for (const int v : vertices) handle[v] = mesh.add_vertex(OpenMesh::Vec3d(V[v].x(), V[v].y(), V[v].z()));
+  const QuietOpenMesh quiet;
+  refused = 0;
+  for (const Triangle& f : faces) refused += !mesh.add_face(handle[f[0]], handle[f[1]], handle[f[2]]).is_valid();
+  return mesh;
+}
+
+}  // namespace
+
+BoundaryFaces boundary_faces(const std::vector<Tet>& C, std::size_t n_vertices) {
+  check_indices(C, n_vertices, "tet");
+  UseTable<2> table(n_vertices);
+  int least = 0;
+  for (const Tet& t : C) {
+    for (int k = 0; k < 4; ++k) {
+      face_use(t, k, 0, least);
+      table.count(least);
+    }
+  }
+  table.allocate();
+  for (std::size_t t = 0; t < C.size(); ++t) {
+    for (int k = 0; k < 4; ++k) {
+      const Use<2> use = face_use(C[t], k, static_cast<std::int64_t>(4 * t + k), least);
+      table.place(least, use);
+    }
+  }
+  BoundaryFaces result;
+  std::vector<std::int64_t> single;
+  table.for_each([&](auto first, auto last, int) {
+    if (last - first == 1) single.push_back(first->source);
+    if (last - first == 2 && first->reversed == (first + 1)->reversed) ++result.n_same_side;
+    if (last - first > 2) ++result.n_overused;
+  });
+  std::sort(single.begin(), single.end());
+  for (const std::int64_t s : single) {
+    const auto& f = kTetFace[s % 4];
+    const Tet& t = C[s / 4];
+    result.triangles.push_back({t[f[0]], t[f[1]], t[f[2]]});
+    result.tets.push_back(static_cast<int>(s / 4));
+  }
+  return result;
+}
+
+SurfaceTopology surface_topology(const std::vector<Vec3>& V, const std::vector<Triangle>& faces) {
+  check_indices(faces, V.size(), "face");
+  SurfaceTopology s;
+  if (faces.empty()) return s;
+  count_components(V, faces, s);
+  std::vector<int> fan_parent(3 * faces.size());
+  std::iota(fan_parent.begin(), fan_parent.end(), 0);
+  count_edges(faces, V.size(), s, fan_parent);
+
+  std::vector<int> fans(V.size(), 0);
+  for (std::size_t c = 0; c < fan_parent.size(); ++c)
+    if (fan_parent[c] == static_cast<int>(c)) ++fans[faces[c / 3][c % 3]];
+  for (const int v : s.vertices) s.n_nonmanifold_vertices += fans[v] > 1;
+
+  const HalfEdgeMesh mesh = half_edges(V, faces, s.vertices, s.n_refused_faces);
+  const bool open =
+      std::any_of(mesh.halfedges_begin(), mesh.halfedges_end(), [&](const auto h) { return mesh.is_boundary(h); });
+  for (SurfaceComponent& part : s.components) {
+    part.euler_characteristic = static_cast<long>(part.n_vertices + part.n_faces) - static_cast<long>(part.n_edges);
+    part.genus = (2 - part.euler_characteristic) / 2;
+    s.euler_characteristic += part.euler_characteristic;
+    s.genus += part.genus;
+    s.area += part.area;
+  }
+  s.closed_manifold = !open && s.n_refused_faces == 0 && s.n_nonmanifold_edges == 0 && s.n_misoriented_edges == 0 &&
+                      s.n_nonmanifold_vertices == 0;
+  return s;
+}
+
+void write_surface(const std::filesystem::path& path, const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
+                   SurfaceFormat format) {
+  check_indices(faces, V.size(), "face");
+  std::vector<int> vertices;
+  for (const Triangle& f : faces) vertices.insert(vertices.end(), f.begin(), f.end());
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  std::size_t refused = 0;
+  const HalfEdgeMesh mesh = half_edges(V, faces, vertices, refused);
+  if (refused > 0) {
+    throw std::invalid_argument("cannot write " + path.string() + ": " + std::to_string(refused) +
+                                " faces do not fit a manifold");
+  }
+  const char* const extension = format == SurfaceFormat::Stl ? ".stl" : format == SurfaceFormat::Obj ? ".obj" : ".ply";
+  OpenMesh::IO::Options options = OpenMesh::IO::Options::Default;
+  if (format != SurfaceFormat::Obj) options += OpenMesh::IO::Options::Binary;
+  const QuietOpenMesh quiet;
+  std::ostringstream out;  // OpenMesh calls a cut file a success, so it writes to memory and we write the file
+  const bool written =
+      OpenMesh::IO::write_mesh(mesh, out, extension, options, std::numeric_limits<float>::max_digits10);
+  if (!written || !out) throw std::runtime_error("cannot write " + path.string() + ": OpenMesh gave up");
+  detail::CheckedFile file(path);
+  file.text(out.view());
+  file.close();
+}
+
+}  // namespace umtet

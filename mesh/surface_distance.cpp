@@ -1,0 +1,179 @@
+#include "mesh/surface_distance.h"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <nanoflann.hpp>
+#include <stdexcept>
+#include <string>
+
+namespace umtet {
+namespace {
+
+struct PointSet {
+  const std::vector<Vec3>& points;
+  std::size_t kdtree_get_point_count() const { return points.size(); }
+  double kdtree_get_pt(std::size_t i, std::size_t k) const { return points[i][static_cast<Eigen::Index>(k)]; }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+using KdTree =
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointSet>, PointSet, 3, std::uint32_t>;
+constexpr std::size_t kLeafSize = 16;
+
+void check_finite(const std::vector<Vec3>& points, const char* name) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!points[i].allFinite())
+      throw std::invalid_argument(std::string(name) + " " + std::to_string(i) + " is not finite");
+  }
+}
+
+double segment_distance2(const Vec3& x, const Vec3& a, const Vec3& b) {
+  const Vec3 e = b - a;
+  const double l2 = e.squaredNorm();
+  const double s = l2 > 0 ? std::clamp((x - a).dot(e) / l2, 0.0, 1.0) : 0.0;
+  return (x - a - s * e).squaredNorm();
+}
+
+double triangle_distance2(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, ax = x - a;
+  const Vec3 n = ab.cross(ac);
+  const double n2 = n.squaredNorm();
+  if (n2 > 0) {
+    // Barycentric coordinates of the foot point in the plane, times n2.
+    const double gamma = ab.cross(ax).dot(n), beta = ax.cross(ac).dot(n);
+    if (gamma >= 0 && beta >= 0 && gamma + beta <= n2) {
+      const double height = ax.dot(n);
+      return height * height / n2;
+    }
+  }
+  return std::min({segment_distance2(x, a, b), segment_distance2(x, b, c), segment_distance2(x, c, a)});
+}
+
+/// What nanoflann calls a result set: sees centroids, keeps the least triangle distance, and shrinks the search radius
+/// as it goes.
+class NearestTriangle {
+ public:
+  NearestTriangle(const Vec3& x, const std::vector<std::array<Vec3, 3>>& corners, double reach)
+      : x_(x), corners_(corners), reach_(reach) {}
+  std::size_t size() const { return full() ? 1 : 0; }
+  bool full() const { return best2_ < std::numeric_limits<double>::infinity(); }
+  double worstDist() const {
+    const double radius = std::sqrt(best2_) + reach_;
+    return radius * radius;
+  }
+  bool addPoint(double, std::uint32_t k) {
+    const auto& t = corners_[k];
+    best2_ = std::min(best2_, triangle_distance2(x_, t[0], t[1], t[2]));
+    return true;
+  }
+  double distance() const { return std::sqrt(best2_); }
+
+ private:
+  const Vec3& x_;
+  const std::vector<std::array<Vec3, 3>>& corners_;
+  double reach_;
+  double best2_ = std::numeric_limits<double>::infinity();
+};
+
+/// out[i] = f(i), in fixed blocks: which thread runs one cannot change a result.
+template <typename F>
+std::vector<double> map_blocks(std::size_t n, F&& f) {
+  std::vector<double> out(n);
+  constexpr std::size_t kBlock = 1024;
+  tbb::parallel_for(std::size_t{0}, (n + kBlock - 1) / kBlock, [&](std::size_t block) {
+    const std::size_t last = std::min(n, (block + 1) * kBlock);
+    for (std::size_t i = block * kBlock; i < last; ++i) out[i] = f(i);
+  });
+  return out;
+}
+
+}  // namespace
+
+struct SurfaceDistance::Index {
+  std::vector<std::array<Vec3, 3>> corners;
+  std::vector<Vec3> centroids;
+  double reach = 0;  ///< greatest centroid-corner distance, rounded up
+  PointSet set{centroids};
+  std::unique_ptr<KdTree> tree;
+};
+
+SurfaceDistance::SurfaceDistance(const std::vector<Vec3>& V, const std::vector<Triangle>& faces)
+    : index_(std::make_unique<Index>()) {
+  if (faces.empty()) throw std::invalid_argument("distance to a surface without faces");
+  index_->corners.reserve(faces.size());
+  index_->centroids.reserve(faces.size());
+  double magnitude = 0;
+  for (const Triangle& f : faces) {
+    for (const int v : f) {
+      if (v < 0 || static_cast<std::size_t>(v) >= V.size()) {
+        throw std::invalid_argument("face vertex " + std::to_string(v) + " is out of range");
+      }
+      if (!V[v].allFinite()) throw std::invalid_argument("vertex " + std::to_string(v) + " is not finite");
+      magnitude = std::max(magnitude, V[v].cwiseAbs().maxCoeff());
+    }
+    const std::array<Vec3, 3> t = {V[f[0]], V[f[1]], V[f[2]]};
+    const Vec3 m = (t[0] + t[1] + t[2]) / 3.0;
+    for (const Vec3& corner : t) index_->reach = std::max(index_->reach, (corner - m).norm());
+    index_->corners.push_back(t);
+    index_->centroids.push_back(m);
+  }
+  index_->reach += 1e-14 * (index_->reach + magnitude);  // centroids are rounded: a few units in the last place
+  index_->tree = std::make_unique<KdTree>(3, index_->set, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize));
+}
+
+SurfaceDistance::~SurfaceDistance() = default;
+SurfaceDistance::SurfaceDistance(SurfaceDistance&&) noexcept = default;
+SurfaceDistance& SurfaceDistance::operator=(SurfaceDistance&&) noexcept = default;
+
+double SurfaceDistance::distance(const Vec3& x) const {
+  NearestTriangle nearest(x, index_->corners, index_->reach);
+  index_->tree->findNeighbors(nearest, x.data(), nanoflann::SearchParams());
+  return nearest.distance();
+}
+
+std::vector<double> SurfaceDistance::distances(const std::vector<Vec3>& x) const {
+  return map_blocks(x.size(), [&](std::size_t i) { return distance(x[i]); });
+}
+
+double point_triangle_distance(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c) {
+  return std::sqrt(triangle_distance2(x, a, b, c));
+}
+
+std::vector<double> nearest_sample_distances(const std::vector<Vec3>& x, const std::vector<Vec3>& samples) {
+  if (samples.empty()) throw std::invalid_argument("distance to a cloud without samples");
+  check_finite(samples, "sample");
+  const PointSet set{samples};
+  const KdTree tree(3, set, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize));
+  return map_blocks(x.size(), [&](std::size_t i) {
+    std::uint32_t nearest = 0;
+    double distance2 = 0;
+    tree.knnSearch(x[i].data(), 1, &nearest, &distance2);
+    return std::sqrt(distance2);
+  });
+}
+
+double unsupported_area_fraction(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
+                                 const std::vector<Vec3>& samples, double radius) {
+  std::vector<Vec3> centroids;
+  centroids.reserve(faces.size());
+  for (const Triangle& f : faces) centroids.push_back((V[f[0]] + V[f[1]] + V[f[2]]) / 3.0);
+  const std::vector<double> distance = nearest_sample_distances(centroids, samples);
+  double all = 0, unsupported = 0;
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const Triangle& f = faces[i];
+    const double area = 0.5 * (V[f[1]] - V[f[0]]).cross(V[f[2]] - V[f[0]]).norm();
+    all += area;
+    if (distance[i] > radius) unsupported += area;
+  }
+  return all > 0 ? unsupported / all : 0;
+}
+
+}  // namespace umtet

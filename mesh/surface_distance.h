@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "mesh/tet_mesh.h"
+
+namespace umtet {
+
+/// Distance from x to the triangle abc, edges and corners included, model units. Degenerate triangles are segments or
+/// points.
+double point_triangle_distance(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// Exact distances to a triangle surface.
+///
+/// A kd-tree over centroids with one provable rule: no point of triangle k is nearer to x than |x - m_k| - r, where
+/// m_k is its centroid and r the greatest centroid-corner distance of all. The search therefore ends only when every
+/// remaining centroid is farther than (best distance so far) + r.
+/// Keeps its own copy of the triangles. Immutable; queries are thread-safe.
+class SurfaceDistance {
+ public:
+  /// \throw std::invalid_argument without faces, for an index out of range or a corner that is not finite
+  SurfaceDistance(const std::vector<Vec3>& V, const std::vector<Triangle>& faces);
+  ~SurfaceDistance();
+  SurfaceDistance(SurfaceDistance&&) noexcept;
+  SurfaceDistance& operator=(SurfaceDistance&&) noexcept;
+
+  double distance(const Vec3& x) const;
+  /// One distance per point; threads over points.
+  std::vector<double> distances(const std::vector<Vec3>& x) const;
+
+ private:
+  struct Index;
+  std::unique_ptr<Index> index_;
+};
+
+/// Distance from each x to the nearest sample, model units; threads over x.
+/// \throw std::invalid_argument without samples or for one that is not finite
+std::vector<double> nearest_sample_distances(const std::vector<Vec3>& x, const std::vector<Vec3>& samples);
+
+/// Share of the surface that no data backs: area of the faces whose centroid is farther than `radius` (three sample
+/// spacings, say) from every sample, over the whole area. 0 for an empty surface.
+double unsupported_area_fraction(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
+                                 const std::vector<Vec3>& samples, double radius);
+
+}  // namespace umtet

@@ -1,0 +1,122 @@
+#include "mesh/tet_mesh_io.h"
+
+#include <algorithm>
+#include <cctype>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "mesh/detail/mesh_formats.h"
+#include "mesh/skin.h"
+#include "mesh/tet_quality.h"
+
+namespace umtet {
+
+MeshFileRefused::MeshFileRefused(const std::filesystem::path& path, const std::string& place, const std::string& reason)
+    : std::runtime_error(path.string() + (place.empty() ? "" : ": " + place) + ": " + reason) {}
+
+MeshFile with_standard_data(TetMesh mesh, std::vector<std::int64_t> background_vertex,
+                            std::vector<std::int64_t> background_tet) {
+  if (!background_vertex.empty() && background_vertex.size() != mesh.V.size()) {
+    throw std::invalid_argument("background_vertex: one id per vertex, or none");
+  }
+  if (!background_tet.empty() && background_tet.size() != mesh.C.size()) {
+    throw std::invalid_argument("background_tet: one id per tet, or none");
+  }
+  std::vector<std::uint8_t> boundary(mesh.V.size(), 0);
+  for (const Triangle& f : boundary_faces(mesh.C, mesh.V.size()).triangles) {
+    for (const int v : f) boundary[v] = 1;
+  }
+  std::vector<double> quality;
+  quality.reserve(mesh.C.size());
+  for (const Tet& t : mesh.C) quality.push_back(mean_ratio(mesh, t));
+
+  MeshFile file;
+  file.mesh = std::move(mesh);
+  file.point_data.emplace("boundary", std::move(boundary));
+  file.cell_data.emplace("mean_ratio", std::move(quality));
+  if (!background_vertex.empty()) file.point_data.emplace("background_vertex", std::move(background_vertex));
+  if (!background_tet.empty()) file.cell_data.emplace("background_tet", std::move(background_tet));
+  return file;
+}
+
+MeshFile read_tet_mesh(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension == ".vtu") return detail::read_vtu(path);
+  if (extension == ".msh") return detail::read_msh(path);
+  if (extension == ".mesh") return detail::read_medit(path);
+  throw MeshFileRefused(path, "", "unknown extension: .vtu, .msh and .mesh are read");
+}
+
+namespace detail {
+
+void drop_unused_vertices(MeshFile& file) {
+  std::vector<int> new_index(file.mesh.V.size(), -1);
+  for (const Tet& t : file.mesh.C) {
+    for (const int v : t) new_index[v] = 0;
+  }
+  std::vector<std::size_t> kept;
+  for (std::size_t v = 0; v < new_index.size(); ++v) {
+    if (new_index[v] < 0) continue;
+    new_index[v] = static_cast<int>(kept.size());
+    kept.push_back(v);
+  }
+  file.n_unused_vertices = file.mesh.V.size() - kept.size();
+  if (file.n_unused_vertices == 0) return;
+  const auto keep = [&](auto& values) {
+    for (std::size_t i = 0; i < kept.size(); ++i) values[i] = values[kept[i]];
+    values.resize(kept.size());
+  };
+  keep(file.mesh.V);
+  for (auto& [name, values] : file.point_data) std::visit(keep, values);
+  for (Tet& t : file.mesh.C) {
+    for (int& v : t) v = new_index[v];
+  }
+}
+
+MeshFile assemble(const std::filesystem::path& path, NumberedMesh&& numbered) {
+  const std::vector<std::int64_t>& number = numbered.number;
+  if (number.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()) ||
+      numbered.tets.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+    throw MeshFileRefused(path, "", "more than 2^31 nodes or tets");
+  }
+  std::vector<int> order(number.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int i, int j) { return number[i] < number[j]; });
+  std::vector<std::int64_t> sorted;
+  sorted.reserve(number.size());
+  MeshFile file;
+  file.mesh.V.reserve(number.size());
+  for (const int i : order) {
+    if (!sorted.empty() && sorted.back() == number[i]) {
+      throw MeshFileRefused(path, "", "node " + std::to_string(number[i]) + " is given twice");
+    }
+    sorted.push_back(number[i]);
+    file.mesh.V.push_back(numbered.point[i]);
+  }
+  file.mesh.C.reserve(numbered.tets.size());
+  for (std::size_t t = 0; t < numbered.tets.size(); ++t) {
+    Tet tet;
+    for (int k = 0; k < 4; ++k) {
+      const std::int64_t wanted = numbered.tets[t][k];
+      // Nearly every file numbers its nodes without a gap: then the place is known without a search.
+      const std::int64_t guess = sorted.empty() ? 0 : wanted - sorted.front();
+      auto found = guess >= 0 && guess < static_cast<std::int64_t>(sorted.size()) && sorted[guess] == wanted
+                       ? sorted.begin() + guess
+                       : std::lower_bound(sorted.begin(), sorted.end(), wanted);
+      if (found == sorted.end() || *found != wanted) {
+        throw MeshFileRefused(path, "tet " + std::to_string(t + 1),
+                              "its node " + std::to_string(wanted) + " does not exist");
+      }
+      tet[k] = static_cast<int>(found - sorted.begin());
+    }
+    file.mesh.C.push_back(tet);
+  }
+  drop_unused_vertices(file);
+  return file;
+}
+
+}  // namespace detail
+}  // namespace umtet

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "mesh/tet_mesh.h"
+
+namespace umtet {
+
+/// One number per vertex or per tet.
+using FieldValues = std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::uint8_t>>;
+
+/// A tet mesh with named data.
+struct MeshFile {
+  TetMesh mesh;
+  std::map<std::string, FieldValues> point_data;  ///< one value per mesh.V
+  std::map<std::string, FieldValues> cell_data;   ///< one value per mesh.C
+  std::size_t n_unused_vertices = 0;              ///< read, but in no tet, and therefore dropped
+};
+
+/// A file that is not what its name says or contradicts itself; what() holds the path, the place and the reason.
+class MeshFileRefused : public std::runtime_error {
+ public:
+  MeshFileRefused(const std::filesystem::path& path, const std::string& place, const std::string& reason);
+};
+
+/// The mesh with the data every mesh of this project carries: point data `boundary` (0/1) and `background_vertex`,
+/// cell data `mean_ratio` and `background_tet`. Empty id vectors are left out.
+/// \throw std::invalid_argument when a size does not match or an index is out of range
+MeshFile with_standard_data(TetMesh mesh, std::vector<std::int64_t> background_vertex,
+                            std::vector<std::int64_t> background_tet);
+
+/// Reads .vtu (VTK XML), .msh (Gmsh 2.2 and 4.1, ascii or binary) or .mesh (MEDIT, ascii), by extension.
+///
+/// Tets only: other elements are skipped, of curved tets the four corners are taken; vertices without a tet are
+/// dropped, the others keep their order (.msh: ascending node number). Orientation is kept, inverted tets included.
+/// From .vtu also data with one component comes along: floats as double, unsigned bytes as they are, other integers as
+/// 64 bits. Every count is compared with the size of the file before memory is asked for.
+/// \throw std::system_error when the file cannot be read, MeshFileRefused for its content
+MeshFile read_tet_mesh(const std::filesystem::path& path);
+
+/// VTK XML, inline base64 blocks with 64-bit headers, double coordinates, 64-bit connectivity.
+/// Holds the whole file in memory on the way: about 200 bytes per tet.
+/// \throw std::invalid_argument for data of the wrong size, std::system_error naming the path when writing fails
+void write_vtu(const std::filesystem::path& path, const MeshFile& file);
+
+enum class MshEncoding { Ascii, Binary };
+
+/// Gmsh 2.2: tets in physical volume 1 "body", boundary triangles in physical surface 2 "boundary".
+/// \throw std::system_error naming the path when writing fails
+void write_msh22(const std::filesystem::path& path, const TetMesh& mesh, const std::vector<Triangle>& boundary,
+                 MshEncoding encoding);
+
+/// Gmsh 4.1: the same, with $Entities (one volume, bounded by one surface). Node numbers are vertex indices + 1.
+/// \throw std::system_error naming the path when writing fails
+void write_msh41(const std::filesystem::path& path, const TetMesh& mesh, const std::vector<Triangle>& boundary,
+                 MshEncoding encoding);
+
+/// MEDIT .mesh, ascii: tets with reference 1, boundary triangles and their vertices with reference 2.
+/// \throw std::system_error naming the path when writing fails
+void write_medit(const std::filesystem::path& path, const TetMesh& mesh, const std::vector<Triangle>& boundary);
+
+}  // namespace umtet

@@ -1,0 +1,138 @@
+#include "mesh/skin.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <system_error>
+
+#include "tests/support/tet_shapes.h"
+
+namespace umtet {
+namespace {
+
+SurfaceTopology skin_of(const TetMesh& mesh) {
+  return surface_topology(mesh.V, boundary_faces(mesh.C, mesh.V.size()).triangles);
+}
+
+TEST(BoundaryFaces, OfABallAreItsSphereSeenFromOutside) {
+  std::vector<Triangle> sphere;
+  const TetMesh mesh = testing::ball(2, sphere);
+  const BoundaryFaces skin = boundary_faces(mesh.C, mesh.V.size());
+  EXPECT_EQ(skin.triangles.size(), sphere.size());
+  EXPECT_EQ(skin.n_overused, 0u);
+  EXPECT_EQ(skin.n_same_side, 0u);
+  for (std::size_t i = 0; i < skin.triangles.size(); ++i) {
+    const Triangle& f = skin.triangles[i];
+    const Vec3 &a = mesh.V[f[0]], &b = mesh.V[f[1]], &c = mesh.V[f[2]];
+    EXPECT_GT((b - a).cross(c - a).dot(a), 0);
+    const Tet& t = mesh.C[skin.tets[i]];
+    for (const int v : f) EXPECT_NE(std::find(t.begin(), t.end(), v), t.end());
+  }
+}
+
+TEST(BoundaryFaces, AThirdTetOnAFaceAndATetOnTheSameSideAreCounted) {
+  // Three tets on face 0 1 2: two above, one below.
+  EXPECT_EQ(boundary_faces({{0, 1, 2, 3}, {0, 1, 2, 4}, {0, 2, 1, 5}}, 6).n_overused, 1u);
+  const BoundaryFaces overlap = boundary_faces({{0, 1, 2, 3}, {0, 1, 2, 4}}, 5);
+  EXPECT_EQ(overlap.n_same_side, 1u);
+  EXPECT_EQ(overlap.n_overused, 0u);
+  EXPECT_EQ(boundary_faces({{0, 1, 2, 3}, {0, 2, 1, 4}}, 5).n_same_side, 0u);
+}
+
+TEST(BoundaryFaces, RefusesIndicesThatDoNotExist) {
+  EXPECT_THROW(boundary_faces({{0, 1, 2, 4}}, 4), std::invalid_argument);
+  EXPECT_THROW(boundary_faces({{0, 1, 2, -1}}, 4), std::invalid_argument);
+  EXPECT_THROW(boundary_faces({{0, 1, 2, 2}}, 4), std::invalid_argument);
+}
+
+TEST(SurfaceTopology, BallBlockRingAndDoubleRingHaveTheirGenus) {
+  std::vector<Triangle> sphere;
+  const SurfaceTopology ball = skin_of(testing::ball(3, sphere));
+  EXPECT_TRUE(ball.closed_manifold);
+  EXPECT_EQ(ball.euler_characteristic, 2);
+  EXPECT_EQ(ball.genus, 0);
+  EXPECT_NEAR(ball.area, 4 * std::numbers::pi, 0.02 * 4 * std::numbers::pi);  // 512 faces: measured 1.3 % below
+
+  const SurfaceTopology ring =
+      skin_of(testing::cubes(3, [](int i, int j, int k) { return k == 0 && !(i == 1 && j == 1); }));
+  EXPECT_TRUE(ring.closed_manifold);
+  EXPECT_EQ(ring.euler_characteristic, 0);
+  EXPECT_EQ(ring.genus, 1);
+  EXPECT_NEAR(ring.area, 2 * 8 + 12 + 4, 1e-12);
+  EXPECT_NEAR(ring.components[0].volume, 8, 1e-12);
+
+  const SurfaceTopology two = skin_of(
+      testing::cubes(5, [](int i, int j, int k) { return k == 0 && j < 3 && !((i == 1 || i == 3) && j == 1); }));
+  EXPECT_TRUE(two.closed_manifold);
+  EXPECT_EQ(two.genus, 2);
+}
+
+TEST(SurfaceTopology, ACavityIsAComponentOfNegativeVolume) {
+  const SurfaceTopology s =
+      skin_of(testing::cubes(3, [](int i, int j, int k) { return !(i == 1 && j == 1 && k == 1); }));
+  EXPECT_TRUE(s.closed_manifold);
+  ASSERT_EQ(s.components.size(), 2u);
+  EXPECT_EQ(s.euler_characteristic, 4);
+  EXPECT_NEAR(s.components[0].volume, 27, 1e-12);
+  EXPECT_NEAR(s.components[1].volume, -1, 1e-12);
+}
+
+TEST(SurfaceTopology, BodiesThatTouchInAVertexOrAnEdgeAreNoManifold) {
+  const SurfaceTopology vertex = skin_of(testing::cubes(2, [](int i, int j, int k) { return i == j && j == k; }));
+  EXPECT_FALSE(vertex.closed_manifold);
+  EXPECT_EQ(vertex.n_nonmanifold_vertices, 1u);
+  EXPECT_EQ(vertex.n_nonmanifold_edges, 0u);
+  EXPECT_EQ(vertex.components.size(), 1u);
+
+  const SurfaceTopology edge = skin_of(testing::cubes(2, [](int i, int j, int k) { return i == j && k == 0; }));
+  EXPECT_FALSE(edge.closed_manifold);
+  EXPECT_EQ(edge.n_nonmanifold_edges, 1u);
+  EXPECT_GT(edge.n_refused_faces, 0u) << "OpenMesh should see it too";
+}
+
+TEST(SurfaceTopology, AHoleAndAFlippedFaceAreSeen) {
+  std::vector<Triangle> faces;
+  const TetMesh sphere = testing::sphere_surface(1, faces);
+  std::vector<Triangle> holed(faces.begin() + 1, faces.end());
+  EXPECT_EQ(surface_topology(sphere.V, holed).n_nonmanifold_edges, 3u);
+  EXPECT_FALSE(surface_topology(sphere.V, holed).closed_manifold);
+  std::swap(faces[0][0], faces[0][1]);
+  EXPECT_EQ(surface_topology(sphere.V, faces).n_misoriented_edges, 3u);
+  EXPECT_FALSE(surface_topology(sphere.V, faces).closed_manifold);
+}
+
+TEST(WriteSurface, FilesAreCompleteAndAFullDiskIsAnError) {
+  std::vector<Triangle> faces;
+  const TetMesh sphere = testing::sphere_surface(2, faces);
+  const std::filesystem::path folder(::testing::TempDir());
+  write_surface(folder / "umtet_skin.stl", sphere.V, faces, SurfaceFormat::Stl);
+  EXPECT_EQ(std::filesystem::file_size(folder / "umtet_skin.stl"), 84 + 50 * faces.size());
+  write_surface(folder / "umtet_skin.ply", sphere.V, faces, SurfaceFormat::Ply);
+  std::ifstream ply(folder / "umtet_skin.ply", std::ios::binary);
+  std::ostringstream bytes;
+  bytes << ply.rdbuf();
+  const std::string head = bytes.str().substr(0, bytes.str().find("end_header\n") + 11);
+  EXPECT_EQ(bytes.str().size(), head.size() + 12 * sphere.V.size() + 13 * faces.size());
+  write_surface(folder / "umtet_skin.obj", sphere.V, faces, SurfaceFormat::Obj);
+  std::ifstream obj(folder / "umtet_skin.obj");
+  std::size_t n_v = 0, n_f = 0;
+  for (std::string line; std::getline(obj, line);) {
+    n_v += line.starts_with("v ");
+    n_f += line.starts_with("f ");
+  }
+  EXPECT_EQ(n_v, sphere.V.size());
+  EXPECT_EQ(n_f, faces.size());
+  for (const char* name : {"umtet_skin.stl", "umtet_skin.ply", "umtet_skin.obj"})
+    std::filesystem::remove(folder / name);
+
+  EXPECT_THROW(write_surface("/dev/full", sphere.V, faces, SurfaceFormat::Ply), std::system_error);
+  EXPECT_THROW(write_surface("/nowhere/skin.stl", sphere.V, faces, SurfaceFormat::Stl), std::system_error);
+}
+
+}  // namespace
+}  // namespace umtet

@@ -1,0 +1,325 @@
+#include "mesh/tet_mesh_io.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <random>
+#include <sstream>
+#include <string>
+#include <system_error>
+
+#include "mesh/skin.h"
+#include "tests/support/tet_shapes.h"
+
+namespace umtet {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path scratch(const std::string& name) { return fs::path(::testing::TempDir()) / ("umtet_io_" + name); }
+
+std::string bytes_of(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream out;
+  out << in.rdbuf();
+  return out.str();
+}
+
+fs::path with_bytes(const std::string& name, const std::string& bytes) {
+  const fs::path path = scratch(name);
+  std::ofstream(path, std::ios::binary) << bytes;
+  return path;
+}
+
+bool bit_equal(const std::vector<Vec3>& x, const std::vector<Vec3>& y) {
+  return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(Vec3)) == 0;
+}
+
+struct Shape {
+  TetMesh mesh;
+  std::vector<Triangle> boundary;
+};
+
+/// Coordinates with all their bits in use, and one mixed with tiny and huge values.
+Shape sample(int n = 3) {
+  Shape s;
+  s.mesh = testing::cubes(n, [](int, int, int) { return true; });
+  testing::perturb(s.mesh, 0.1, 5);
+  s.mesh.V[0] *= 1e-30;
+  s.mesh.V[1].x() += 1e9;
+  s.mesh.V[2].y() = -0.0;
+  s.boundary = boundary_faces(s.mesh.C, s.mesh.V.size()).triangles;
+  return s;
+}
+
+struct Format {
+  std::string name;
+  std::function<void(const fs::path&, const Shape&)> write;
+};
+
+std::vector<Format> formats() {
+  return {
+      {"a.vtu", [](const fs::path& p, const Shape& s) { write_vtu(p, with_standard_data(s.mesh, {}, {})); }},
+      {"a22.msh", [](const fs::path& p, const Shape& s) { write_msh22(p, s.mesh, s.boundary, MshEncoding::Ascii); }},
+      {"b22.msh", [](const fs::path& p, const Shape& s) { write_msh22(p, s.mesh, s.boundary, MshEncoding::Binary); }},
+      {"a41.msh", [](const fs::path& p, const Shape& s) { write_msh41(p, s.mesh, s.boundary, MshEncoding::Ascii); }},
+      {"b41.msh", [](const fs::path& p, const Shape& s) { write_msh41(p, s.mesh, s.boundary, MshEncoding::Binary); }},
+      {"a.mesh", [](const fs::path& p, const Shape& s) { write_medit(p, s.mesh, s.boundary); }}};
+}
+
+TEST(TetMeshIo, EveryFormatReadsBackBitEqual) {
+  const Shape shape = sample();
+  for (const Format& format : formats()) {
+    const fs::path path = scratch(format.name);
+    format.write(path, shape);
+    const MeshFile file = read_tet_mesh(path);
+    EXPECT_TRUE(bit_equal(file.mesh.V, shape.mesh.V)) << format.name;
+    EXPECT_EQ(file.mesh.C, shape.mesh.C) << format.name;
+    EXPECT_EQ(file.n_unused_vertices, 0u);
+    fs::remove(path);
+  }
+}
+
+TEST(TetMeshIo, VtuCarriesTheStandardData) {
+  const Shape shape = sample();
+  std::vector<std::int64_t> background_vertex(shape.mesh.V.size()), background_tet(shape.mesh.C.size());
+  for (std::size_t i = 0; i < background_vertex.size(); ++i) background_vertex[i] = (std::int64_t{1} << 60) + 7 * i + 1;
+  for (std::size_t t = 0; t < background_tet.size(); ++t) background_tet[t] = 46 * t + 3;
+  const fs::path path = scratch("data.vtu");
+  const MeshFile written = with_standard_data(shape.mesh, background_vertex, background_tet);
+  write_vtu(path, written);
+  const MeshFile read = read_tet_mesh(path);
+  EXPECT_EQ(read.point_data, written.point_data);
+  EXPECT_EQ(read.cell_data, written.cell_data);
+  EXPECT_EQ(read.point_data.size(), 2u);
+  EXPECT_EQ(read.cell_data.size(), 2u);
+  const auto& boundary = std::get<std::vector<std::uint8_t>>(read.point_data.at("boundary"));
+  EXPECT_EQ(std::count(boundary.begin(), boundary.end(), 0), 8) << "a block of 3 cubes has 2^3 inner vertices";
+  const std::string first = bytes_of(path);
+  write_vtu(path, written);
+  EXPECT_EQ(bytes_of(path), first) << "the same mesh gives the same bytes";
+  EXPECT_NE(first.find("header_type=\"UInt64\""), std::string::npos);
+  EXPECT_EQ(first.find("compressor"), std::string::npos);
+  EXPECT_THROW(write_vtu(path, {shape.mesh, {{"short", std::vector<double>(3)}}, {}, 0}), std::invalid_argument);
+  fs::remove(path);
+}
+
+TEST(TetMeshIo, OtherElementsUnusedVerticesAndMiddleNodesAreLeftOut) {
+  const std::string msh22 =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Comments\n$Nodes is not here\n$EndComments\n$Nodes\n6\n"
+      "10 0 0 0\n2 9 9 9\n30 1 0 0\n40 0 1 0\n50 0 0 1\n60 .5 .5 .5\n$EndNodes\n"
+      "$Elements\n3\n1 15 2 0 0 2\n2 2 2 0 0 10 30 40\n3 4 2 0 0 10 30 40 50\n$EndElements\n";
+  const MeshFile gmsh = read_tet_mesh(with_bytes("other.msh", msh22));
+  EXPECT_EQ(gmsh.mesh.C, (std::vector<Tet>{{0, 1, 2, 3}}));
+  EXPECT_EQ(gmsh.mesh.V[3], Vec3(0, 0, 1));
+  EXPECT_EQ(gmsh.n_unused_vertices, 2u);
+
+  const std::string quadratic =
+      "MeshVersionFormatted 1\nDimension\n3\n# corners, then middles\nVertices\n10\n0 0 0 0\n2 0 0 0\n0 2 0 0\n0 0 2 "
+      "0\n"
+      "1 0 0 0\n1 1 0 0\n0 1 0 0\n0 0 1 0\n1 0 1 0\n0 1 1 0\nRequiredVertices\n1\n1\nTetrahedraP2\n1\n"
+      "1 2 3 4 5 6 7 8 9 10 0\nEnd\n";
+  const MeshFile medit = read_tet_mesh(with_bytes("p2.mesh", quadratic));
+  EXPECT_EQ(medit.mesh.V.size(), 4u);
+  EXPECT_EQ(medit.n_unused_vertices, 6u);
+
+  const std::string vtu =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\">"
+      "<UnstructuredGrid><Piece NumberOfPoints=\"11\" NumberOfCells=\"2\"><PointData><DataArray type=\"Int32\" "
+      "Name=\"id\" "
+      "format=\"ascii\">0 1 2 3 4 5 6 7 8 9 10</DataArray></PointData><CellData><DataArray type=\"Float32\" Name=\"q\" "
+      "format=\"ascii\">7 8</DataArray></CellData><Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" "
+      "format=\"ascii\">9 9 9 0 0 0 2 0 0 0 2 0 0 0 2 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 0 1 1</DataArray></Points><Cells>"
+      "<DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 2 1 2 3 4 5 6 7 8 9 10</DataArray>"
+      "<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">3 13</DataArray>"
+      "<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">5 "
+      "24</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>";
+  const MeshFile vtk = read_tet_mesh(with_bytes("quadratic.vtu", vtu));
+  EXPECT_EQ(vtk.mesh.C, (std::vector<Tet>{{0, 1, 2, 3}}));
+  EXPECT_EQ(vtk.mesh.V[0], Vec3(0, 0, 0));
+  EXPECT_EQ(std::get<std::vector<std::int64_t>>(vtk.point_data.at("id")), (std::vector<std::int64_t>{1, 2, 3, 4}));
+  EXPECT_EQ(std::get<std::vector<double>>(vtk.cell_data.at("q")), std::vector<double>{8});
+  for (const char* name : {"other.msh", "p2.mesh", "quadratic.vtu"}) fs::remove(scratch(name));
+}
+
+/// The reason a file is refused for, or what went wrong.
+std::string refusal(const fs::path& path) {
+  try {
+    read_tet_mesh(path);
+    return "accepted";
+  } catch (const MeshFileRefused& e) {
+    return e.what();
+  }
+}
+
+TEST(TetMeshIo, LyingFilesAreRefusedWithPathPlaceAndReason) {
+  const std::string head = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
+  const std::string vtu =
+      "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"4000000000\" NumberOfCells=\"1\">"
+      "</Piece></UnstructuredGrid></VTKFile>";
+  const std::vector<std::array<std::string, 3>> cases = {
+      {"empty.msh", "", "no $MeshFormat"},
+      {"empty.mesh", "", "empty"},
+      {"empty.vtu", "", "not a VTK XML file"},
+      {"huge.msh", head + "$Nodes\n4000000000\n", "more than the file can hold"},
+      {"negative.msh", head + "$Nodes\n-5\n", "not a number"},
+      {"word.msh", head + "$Nodes\n1\n1 0 zero 0\n", "line 6"},
+      {"version.msh", "$MeshFormat\n4 0 8\n$EndMeshFormat\n", "only 2.2 and 4.1"},
+      {"missing.msh", head + "$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 4 2 0 0 1 2 3 4\n$EndElements\n",
+       "node 2 does not exist"},
+      {"twice.msh", head + "$Nodes\n2\n1 0 0 0\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 4 2 0 0 1 1 1 1\n$EndElements\n",
+       "given twice"},
+      {"huge.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices\n123456789012\n", "more than the file can hold"},
+      {"flat.mesh", "MeshVersionFormatted 2\nDimension 2\n", "must be 3"},
+      {"none.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices\n1\n0 0 0 0\nEnd\n", "no tets"},
+      {"huge.vtu", vtu, "more than the file can hold"},
+      {"nest.vtu", "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid></VTKFile>", "do not nest"},
+      {"other.vtu", "<VTKFile type=\"PolyData\"></VTKFile>", "UnstructuredGrid"},
+      {"what.stl", "solid", "unknown extension"}};
+  for (const auto& [name, bytes, reason] : cases) {
+    const fs::path path = with_bytes(name, bytes);
+    const std::string message = refusal(path);
+    EXPECT_NE(message.find(reason), std::string::npos) << message;
+    EXPECT_NE(message.find(path.string()), std::string::npos) << message;
+    fs::remove(path);
+  }
+  EXPECT_THROW(read_tet_mesh("/nowhere/a.msh"), std::system_error);
+  EXPECT_THROW(read_tet_mesh("/nowhere/a.vtu"), std::system_error);
+}
+
+TEST(TetMeshIo, ACutFileIsRefusedAndADamagedOneNeverCrashes) {
+  const Shape shape = sample(1);
+  std::mt19937 random(11);
+  ::testing::internal::CaptureStderr();
+  for (const Format& format : formats()) {
+    const fs::path path = scratch(format.name);
+    format.write(path, shape);
+    const std::string whole = bytes_of(path);
+    for (int cut = 0; cut < 24; ++cut) {
+      // A MEDIT file that lacks only the closing keyword is complete.
+      std::ofstream(path, std::ios::binary) << whole.substr(0, (whole.size() - 8) * cut / 24);
+      EXPECT_NE(refusal(path), "accepted") << format.name << " cut " << cut;
+    }
+    for (int trial = 0; trial < 60; ++trial) {
+      std::string damaged = whole;
+      for (int hit = 0; hit < 3; ++hit) damaged[random() % damaged.size()] = static_cast<char>(random());
+      std::ofstream(path, std::ios::binary) << damaged;
+      refusal(path);  // read or refused; anything else would escape or end the program
+    }
+    fs::remove(path);
+  }
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "") << "a library does not print";
+}
+
+/// While it lives no file of this process can grow beyond `bytes`: what a full disk looks like to a writer.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, SIG_DFL);
+  }
+
+ private:
+  rlimit before_{};
+};
+
+TEST(TetMeshIo, AFullDiskIsAnErrorThatNamesThePath) {
+  const Shape shape = sample();
+  for (const Format& format : formats()) {
+    const fs::path path = scratch(format.name);
+    format.write(path, shape);
+    // Also one byte short: what is lost then is lost at the close.
+    for (const std::uintmax_t limit : {std::uintmax_t{1000}, fs::file_size(path) - 1}) {
+      std::string message;
+      {
+        const FileSizeLimit full(limit);
+        try {
+          format.write(path, shape);
+        } catch (const std::runtime_error& e) {
+          message = e.what();
+        }
+      }
+      EXPECT_NE(message.find(path.string()), std::string::npos) << format.name << ": '" << message << "'";
+    }
+    fs::remove(path);
+  }
+  EXPECT_THROW(write_vtu("/nowhere/a.vtu", {shape.mesh, {}, {}, 0}), std::runtime_error);
+}
+
+/// Output of a program, with its exit code as last line.
+std::string run(const std::string& command) {
+  std::string out;
+  FILE* pipe = popen((command + " 2>&1; echo exit $?").c_str(), "r");
+  char buffer[4096];
+  while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) out.append(buffer, n);
+  pclose(pipe);
+  return out;
+}
+
+TEST(TetMeshIo, GmshReadsOurFiles) {
+  if (run("gmsh --version").find("exit 0") == std::string::npos) GTEST_SKIP() << "gmsh is not installed";
+  const Shape shape = sample();
+  for (const Format& format : formats()) {
+    if (format.name.ends_with(".vtu")) continue;  // the gmsh of Debian 12 writes VTK files of its own kind only
+    const fs::path path = scratch(format.name), again = scratch("again.msh");
+    format.write(path, shape);
+    const std::string out = run("gmsh " + path.string() + " -save -save_all -format msh22 -o " + again.string());
+    EXPECT_NE(out.find(std::to_string(shape.mesh.V.size()) + " nodes"), std::string::npos) << out;
+    EXPECT_EQ(out.find("Error"), std::string::npos) << out;
+    EXPECT_EQ(out.find("Warning"), std::string::npos) << out;
+    EXPECT_EQ(read_tet_mesh(again).mesh.C.size(), shape.mesh.C.size()) << format.name;
+    const std::string text = bytes_of(again);
+    if (format.name.ends_with(".msh")) {
+      EXPECT_NE(text.find("2 2 \"boundary\""), std::string::npos) << format.name;
+      EXPECT_NE(text.find("3 1 \"body\""), std::string::npos) << format.name;
+    }
+    fs::remove(path);
+    fs::remove(again);
+  }
+}
+
+TEST(TetMeshIo, MeshioReadsOurFiles) {
+  const std::string python = "/usr/bin/python3";  // Debian's, where python3-meshio is installed
+  if (run(python + " -c 'import meshio'").find("exit 0") == std::string::npos)
+    GTEST_SKIP() << "meshio is not installed";
+  const Shape shape = sample();
+  const fs::path script = with_bytes("read.py",
+                                     "import sys, meshio\n"
+                                     "for path in sys.argv[1:]:\n"
+                                     "    m = meshio.read(path)\n"
+                                     "    n = {}\n"
+                                     "    for c in m.cells: n[c.type] = n.get(c.type, 0) + len(c.data)\n"
+                                     "    g = sorted((k, *map(int, v)) for k, v in m.field_data.items())\n"
+                                     "    print('read', len(m.points), n.get('tetra'), n.get('triangle', 0), g)\n");
+  std::string command = python + " " + script.string(), expected;
+  const std::string counts =
+      "read " + std::to_string(shape.mesh.V.size()) + " " + std::to_string(shape.mesh.C.size()) + " ";
+  for (const Format& format : formats()) {
+    const fs::path path = scratch(format.name);
+    format.write(path, shape);
+    command += " " + path.string();
+    expected += counts + std::to_string(format.name == "a.vtu" ? 0 : shape.boundary.size()) +
+                (format.name.ends_with(".msh") ? " [('body', 1, 3), ('boundary', 2, 2)]\n" : " []\n");
+  }
+  std::string out = run(command);
+  for (auto at = out.find("\n\n"); at != std::string::npos; at = out.find("\n\n"))
+    out.erase(at, 1);  // meshio prints those
+  EXPECT_NE(out.find(expected), std::string::npos) << out << "expected\n" << expected;
+  for (const Format& format : formats()) fs::remove(scratch(format.name));
+  fs::remove(script);
+}
+
+}  // namespace
+}  // namespace umtet
