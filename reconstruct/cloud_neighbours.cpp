@@ -105,17 +105,22 @@ NeighbourDistances neighbour_distances(const std::vector<Vec3>& points, int k) {
   return result;
 }
 
-double median_spacing(const std::vector<Vec3>& points) {
-  std::vector<double> nearest = neighbour_distances(points, 1).nearest;
+double median_spacing(const std::vector<Vec3>& points) { return median_spacing(neighbour_distances(points, 1)); }
+
+double median_spacing(const NeighbourDistances& near) {
+  std::vector<double> nearest = near.nearest;
   const auto middle = nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 2);
   std::nth_element(nearest.begin(), middle, nearest.end());
   return *middle;
 }
 
 std::vector<double> sample_areas(const std::vector<Vec3>& points, int k) {
-  const NeighbourDistances near = neighbour_distances(points, k);
+  return sample_areas(neighbour_distances(points, k));
+}
+
+std::vector<double> sample_areas(const NeighbourDistances& near) {
   const double area_per_mean_square = 2 * std::numbers::pi / (near.k + 2);
-  std::vector<double> areas(points.size());
+  std::vector<double> areas(near.nearest.size());
   for (std::size_t i = 0; i < areas.size(); ++i)
     areas[i] = area_per_mean_square * near.mean_square[i] / near.multiplicity[i];
   return areas;

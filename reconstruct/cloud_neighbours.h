@@ -24,6 +24,9 @@ NeighbourDistances neighbour_distances(const std::vector<Vec3>& points, int k);
 /// Median over the points of the distance to the nearest other place (model units).
 /// \throw std::invalid_argument  as neighbour_distances
 double median_spacing(const std::vector<Vec3>& points);
+double median_spacing(const NeighbourDistances& near);
+
+inline constexpr int kAreaNeighbours = 12;
 
 /// a_i: the area of surface that sample i stands for (model units squared).
 ///
@@ -36,7 +39,8 @@ double median_spacing(const std::vector<Vec3>& points);
 /// @note At the edge of a hole half the disc is empty and a_i is up to twice too large. On sheets thinner than
 ///       d_k the other side is counted and a_i is up to twice too small.
 /// \throw std::invalid_argument  as neighbour_distances
-std::vector<double> sample_areas(const std::vector<Vec3>& points, int k = 12);
+std::vector<double> sample_areas(const std::vector<Vec3>& points, int k = kAreaNeighbours);
+std::vector<double> sample_areas(const NeighbourDistances& near);
 
 /// What to subtract from clouds far from the origin (geo-referenced scans), where squares and differences of
 /// coordinates lose digits: zero unless max |coordinate| > 1e3 * diagonal of the box; then, on the axes where the box

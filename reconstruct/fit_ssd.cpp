@@ -1,13 +1,15 @@
 #include "reconstruct/fit_ssd.h"
 
-#include "reconstruct/cloud_neighbours.h"
-#include "reconstruct/multigrid.h"
-#include "reconstruct/ssd_assembled.h"
+#include <fmt/format.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
+#include <limits>
+
+#include "reconstruct/cloud_neighbours.h"
+#include "reconstruct/multigrid.h"
+#include "reconstruct/ssd_assembled.h"
 
 namespace umtet {
 
@@ -18,52 +20,63 @@ std::vector<std::string> problems(const SsdParams& params) {
   if (!(params.alpha > 0)) p.push_back("alpha must be > 0");
   if (!(params.tolerance > 0 && params.tolerance < 1)) p.push_back("tolerance must be in (0, 1)");
   if (params.max_iterations < 1) p.push_back("max_iterations must be >= 1");
-  if (params.padding < 4) p.push_back("padding must be >= 4");
+  if (params.padding < 1) p.push_back("padding must be >= 1");
   return p;
 }
 
 namespace {
 
-// The largest problems for a dense factor of the coarsest lattice, and for a sparse factor of the whole.
-constexpr std::ptrdiff_t kDenseNodes = 1500;
-constexpr std::ptrdiff_t kAssembledNodes = 60000;
+constexpr std::ptrdiff_t kDenseNodes = 3000;       // more are never factored densely on the coarsest lattice
+constexpr std::ptrdiff_t kAssembledNodes = 60000;  // more are never factored at all
+
+// Seconds of one core, measured: a solve per node of the finest lattice; a dense Cholesky factor per node cubed.
+constexpr double kSolveSeconds = 4.5e-6, kFactorSeconds = 4e-11;
 
 struct Hierarchy {
   Lattice finest;
   int n_levels = 1;
 };
 
-// The lattice around the box whose cells can be halved until a dense factor is cheap, with the fewest nodes.
+// The lattice around the box whose cells can be halved until a dense factor is cheap. Each halving rounds the numbers
+// of cells up to a higher power of two: the cheapest sum of both wins.
 Hierarchy choose_hierarchy(const Eigen::AlignedBox3d& box, double h, int padding, int width) {
   const Vec3 wanted = box.sizes() / h + Vec3::Constant(2 * padding);
   if (!(wanted.prod() < 2e9)) {
-    throw std::invalid_argument(fmt::format("spacing {:.6g} asks for {:.3g} lattice nodes: choose a larger one", h,
-                                            wanted.prod()));
+    throw std::invalid_argument(
+        fmt::format("spacing {:.6g} asks for {:.3g} lattice nodes: choose a larger one", h, wanted.prod()));
   }
   Hierarchy best;
+  double least = std::numeric_limits<double>::infinity();
   for (int levels = 1; levels <= 12; ++levels) {
     const int step = 1 << (levels - 1);
     Eigen::Vector3i cells;
     for (int d = 0; d < 3; ++d) {
       cells[d] = std::max((static_cast<int>(std::ceil(wanted[d])) + step - 1) / step, width - 1) * step;
     }
-    if ((cells / step + Eigen::Vector3i::Ones()).prod() > kDenseNodes) continue;
+    const Eigen::Vector3d coarse = (cells / step + Eigen::Vector3i::Ones()).cast<double>();
+    if (coarse.prod() > kDenseNodes) continue;
     const Lattice lattice{box.center() - h / 2 * cells.cast<double>(), h, cells + Eigen::Vector3i::Ones()};
-    if (best.finest.size() == 0 || lattice.size() < best.finest.size()) best = {lattice, levels};
+    const double seconds =
+        kSolveSeconds * static_cast<double>(lattice.size()) + kFactorSeconds * std::pow(coarse.prod(), 3);
+    if (seconds < least) {
+      least = seconds;
+      best = {lattice, levels};
+    }
   }
   return best;
 }
 
 // A tenth of the samples' mean distance to the true surface lies below a thousandth of the spacing once the lattice is
-// as fine as the samples; coarser ones cut cost by eight each time. 1.5 % of the diagonal is what a mesh of ~100k tets shows.
+// as fine as the samples; coarser ones cut cost by eight each time. 1.5 % of the diagonal is what a mesh of ~100k tets
+// shows.
 double automatic_spacing(double cloud_spacing, double diagonal) {
   return std::max(0.75 * cloud_spacing, 0.015 * diagonal);
 }
 
-std::vector<SsdSample> make_samples(const OrientedPointCloud& cloud, const SsdParams& params, const Lattice& lattice) {
+// @param area  a_i; empty for the paper's weights
+std::vector<SsdSample> make_samples(const OrientedPointCloud& cloud, const std::vector<double>& area,
+                                    const Lattice& lattice) {
   const double h = lattice.h;
-  std::vector<double> area;
-  if (params.weights == SsdWeights::Area) area = sample_areas(cloud.points);
   std::vector<SsdSample> samples(cloud.points.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {
     samples[i].xi = (cloud.points[i] - lattice.origin) / h;
@@ -81,8 +94,9 @@ SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const S
   const std::vector<std::string> wrong = problems(params);
   if (!wrong.empty()) throw std::invalid_argument(fmt::format("{}", fmt::join(wrong, "; ")));
   if (cloud.points.size() < 10 || cloud.points.size() != cloud.normals.size()) {
-    throw std::invalid_argument(fmt::format("a cloud needs at least 10 points with a normal each; this one has {} points and {} normals",
-                                            cloud.points.size(), cloud.normals.size()));
+    throw std::invalid_argument(
+        fmt::format("a cloud needs at least 10 points with a normal each; this one has {} points and {} normals",
+                    cloud.points.size(), cloud.normals.size()));
   }
   const auto report_progress = [&](const char* step, double fraction) {
     if (progress && !progress(step, fraction)) throw SolveCancelled(fmt::format("stopped during {}", step));
@@ -93,7 +107,8 @@ SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const S
   report_progress("weights", 0);
   Eigen::AlignedBox3d box;
   for (const Vec3& x : cloud.points) box.extend(x);
-  report.cloud_spacing = median_spacing(cloud.points);
+  const NeighbourDistances near = neighbour_distances(cloud.points, kAreaNeighbours);
+  report.cloud_spacing = median_spacing(near);
   report.spacing = params.spacing > 0 ? params.spacing : automatic_spacing(report.cloud_spacing, box.diagonal().norm());
   const LmeTables tables(params.prior);
   const auto [lattice, n_levels] = choose_hierarchy(box, report.spacing, params.padding, tables.width());
@@ -101,12 +116,14 @@ SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const S
   const double kappa = params.weights == SsdWeights::Area ? params.smoothing : params.alpha * lattice.h;
 
   report_progress("setup", 0);
-  const SsdOperator op(tables, lattice.n, kappa, make_samples(cloud, params, lattice));
+  const std::vector<double> area = params.weights == SsdWeights::Area ? sample_areas(near) : std::vector<double>{};
+  const SsdOperator op(tables, lattice.n, kappa, make_samples(cloud, area, lattice));
   std::vector<double> c, workspace;
   if (params.solver == SsdSolver::Assembled) {
     if (lattice.size() > kAssembledNodes) {
-      throw SolveError(fmt::format("the assembled solver is for up to {} nodes; spacing {:.6g} gives {}: use multigrid or a larger spacing",
-                                   kAssembledNodes, lattice.h, lattice.size()));
+      throw SolveError(fmt::format(
+          "the assembled solver is for up to {} nodes; spacing {:.6g} gives {}: use multigrid or a larger spacing",
+          kAssembledNodes, lattice.h, lattice.size()));
     }
     c = solve_assembled(op);
   } else {
@@ -124,8 +141,9 @@ SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const S
     report.iterations = pcg.iterations;
     report.residuals = pcg.residuals;
     if (!pcg.converged) {
-      throw SolveError(fmt::format("{} nodes, smoothing {:.3g}: relative residual {:.2e} after {} iterations, wanted {:.1e}",
-                                   op.size(), kappa, pcg.residuals.back(), pcg.iterations, params.tolerance));
+      throw SolveError(
+          fmt::format("{} nodes, smoothing {:.3g}: relative residual {:.2e} after {} iterations, wanted {:.1e}",
+                      op.size(), kappa, pcg.residuals.back(), pcg.iterations, params.tolerance));
     }
   }
   c.resize(op.size() + SsdOperator::kPad, 0.0);

@@ -1,15 +1,15 @@
 #pragma once
 
-#include "reconstruct/level_set.h"
-#include "reconstruct/lme_prior.h"
-#include "reconstruct/point_cloud.h"
-#include "reconstruct/solve_error.h"
-
 #include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "reconstruct/level_set.h"
+#include "reconstruct/lme_prior.h"
+#include "reconstruct/point_cloud.h"
+#include "reconstruct/solve_error.h"
 
 namespace umtet {
 
@@ -17,15 +17,17 @@ enum class SsdWeights { Area, Paper };          ///< a_i by area and scale-free;
 enum class SsdSolver { Multigrid, Assembled };  ///< matrix-free PCG + V-cycle; or sparse LDLT (small problems)
 
 struct SsdParams {
-  double spacing = 0;          ///< lattice spacing h, model units; 0: chosen from the cloud's spacing and size
-  double smoothing = 0.01;     ///< c of ½ Σ a (f²/h² + |∇f − n|²) + (c h / 2) ∫ H:H; > 0 (SsdWeights::Area)
-  double alpha = 1e-3;         ///< alpha of eq. (10); > 0 (SsdWeights::Paper)
+  double spacing = 0;       ///< lattice spacing h, model units; 0: chosen from the cloud's spacing and size
+  double smoothing = 0.01;  ///< c of ½ Σ a (f²/h² + |∇f − n|²) + (c h / 2) ∫ H:H; > 0 (SsdWeights::Area)
+  double alpha =
+      1e-2;  ///< alpha of eq. (10), in its units; > 0 (SsdWeights::Paper); below, the duck grows spurious parts
   SsdWeights weights = SsdWeights::Area;
-  LmePrior prior;              ///< which max-ent functions
+  LmePrior prior;  ///< which max-ent functions
   SsdSolver solver = SsdSolver::Multigrid;
-  double tolerance = 1e-5;     ///< PCG stops at this relative residual (psi then moves by < 1e-5 h); in (0, 1)
-  int max_iterations = 200;    ///< >= 1
-  int padding = 5;             ///< lattice cells around the cloud's box; >= 4 (projections fail at the hull otherwise)
+  double tolerance = 1e-5;   ///< PCG stops at this relative residual (psi then moves by < 1e-5 h); in (0, 1)
+  int max_iterations = 200;  ///< >= 1
+  int padding =
+      5;  ///< lattice cells around the cloud's box; >= 1, and >= 4 for the mesher: projections fail at the hull
 };
 
 /// Every broken constraint, not just the first; empty when the parameters are usable.
@@ -33,12 +35,12 @@ std::vector<std::string> problems(const SsdParams&);
 
 struct SsdReport {
   std::size_t n_points = 0, n_nodes = 0;
-  double spacing = 0;               ///< h used
-  double cloud_spacing = 0;         ///< median distance to the nearest sample
+  double spacing = 0;        ///< h used
+  double cloud_spacing = 0;  ///< median distance to the nearest sample
   int iterations = 0;
-  std::vector<double> residuals;    ///< relative, one per iteration, the first is 1
+  std::vector<double> residuals;                                   ///< relative, one per iteration, the first is 1
   double energy_value = 0, energy_normal = 0, energy_hessian = 0;  ///< the three terms of the functional at psi
-  double rms_value = 0;             ///< rms of psi(x_i), model units
+  double rms_value = 0;                                            ///< rms of psi(x_i), model units
 };
 
 /// Where the stage stands: "weights", "setup", "solve"; fraction in [0, 1]. Return false to stop: SolveCancelled.

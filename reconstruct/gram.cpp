@@ -92,7 +92,8 @@ struct PlaneWork {
 
 // One plane of the three arrays that are still to be combined along z: A goes with m, B with b, C with s.
 template <int Chunk>
-void combine_xy(const AxisGram& gx, const AxisGram& gy, const double* c, PlaneWork& work, double* A, double* B, double* C) {
+void combine_xy(const AxisGram& gx, const AxisGram& gy, const double* c, PlaneWork& work, double* A, double* B,
+                double* C) {
   const int nx = gx.m.n, ny = gy.m.n, w = gy.m.half;
   const std::size_t plane = static_cast<std::size_t>(nx) * ny;
   work.rows.resize(3 * plane);
@@ -155,8 +156,10 @@ void HessianEnergy::apply(double kappa, const double* c, double* y, std::vector<
   const std::size_t size = static_cast<std::size_t>(n_[0]) * n_[1] * n_[2];
   workspace.resize(3 * size);
   double *A = workspace.data(), *B = A + size, *C = B + size;
-  if (n_[0] >= 8) apply_energy<8>(axes_, n_, kappa, c, y, A, B, C);
-  else apply_energy<2>(axes_, n_, kappa, c, y, A, B, C);
+  if (n_[0] >= 8)
+    apply_energy<8>(axes_, n_, kappa, c, y, A, B, C);
+  else
+    apply_energy<2>(axes_, n_, kappa, c, y, A, B, C);
 }
 
 double HessianEnergy::entry(const Eigen::Vector3i& p, const Eigen::Vector3i& q) const {

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "reconstruct/lme_lattice.h"
-
 #include <vector>
+
+#include "reconstruct/lme_lattice.h"
 
 namespace umtet {
 
@@ -15,15 +15,15 @@ struct BandMatrix {
   const double* row(int i) const { return a.data() + static_cast<std::size_t>(i) * (2 * half + 1); }
 };
 
-/// The Gram matrices of one axis in lattice units: m = int N N, s = int N' N', b = int N'' N''; 8-point Gauss in each cell
-/// (relative error of b below 1e-3 at gamma = 1.6, smaller for wider functions).
+/// The Gram matrices of one axis in lattice units: m = int N N, s = int N' N', b = int N'' N''; 8-point Gauss in each
+/// cell (relative error of b below 1e-3 at gamma = 1.6, smaller for wider functions).
 struct AxisGram {
   BandMatrix m, s, b;
 };
 AxisGram axis_gram(const LmeTables& tables, int n);
 
-/// The Hessian energy int H(f) : H(f) dV over the hull of a lattice, in lattice units, applied to coefficients without a
-/// matrix: it is the sum of tensor products
+/// The Hessian energy int H(f) : H(f) dV over the hull of a lattice, in lattice units, applied to coefficients without
+/// a matrix: it is the sum of tensor products
 ///   b x m x m + m x b x m + m x m x b + 2 (s x s x m + s x m x s + m x s x s).
 /// In model units int H:H = h times this, for coefficients in units of h.        [Rangarajan2018, eq. (10), third term]
 class HessianEnergy {

@@ -15,7 +15,8 @@ enum Order { Value = 0, Gradient = 1, Hessian = 2 };
 
 // Contraction over z, y, then x of the W^3 coefficients around a point; derivatives with respect to x / h are added.
 template <int W, Order order>
-void contract(const LmeBasis3d& B, const double* base, std::ptrdiff_t nx, std::ptrdiff_t nxy, double& f, Vec3& g, Mat3& H) {
+void contract(const LmeBasis3d& B, const double* base, std::ptrdiff_t nx, std::ptrdiff_t nxy, double& f, Vec3& g,
+              Mat3& H) {
   Lanes v = Lanes::Zero(), vy = v, vz = v, vyy = v, vyz = v, vzz = v;
   for (int j = 0; j < W; ++j) {
     Lanes a = Lanes::Zero(), az = a, azz = a;
@@ -59,9 +60,15 @@ void add_level(const LmeTables& tables, const LevelSetLevel& level, const Vec3& 
   Vec3 gradient = Vec3::Zero();
   Mat3 hessian = Mat3::Zero();
   switch (tables.width()) {
-    case 4: contract<4, order>(B, base, nx, nxy, value, gradient, hessian); break;
-    case 6: contract<6, order>(B, base, nx, nxy, value, gradient, hessian); break;
-    default: contract<8, order>(B, base, nx, nxy, value, gradient, hessian); break;
+    case 4:
+      contract<4, order>(B, base, nx, nxy, value, gradient, hessian);
+      break;
+    case 6:
+      contract<6, order>(B, base, nx, nxy, value, gradient, hessian);
+      break;
+    default:
+      contract<8, order>(B, base, nx, nxy, value, gradient, hessian);
+      break;
   }
   f += value;
   if constexpr (order >= Gradient) g += gradient / L.h;
@@ -90,9 +97,12 @@ double LevelSet::evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const {
   Vec3 g = Vec3::Zero();
   Mat3 H = Mat3::Zero();
   for (const LevelSetLevel& level : levels_) {
-    if (hessian) add_level<Hessian>(*tables_, level, x, f, g, H);
-    else if (gradient) add_level<Gradient>(*tables_, level, x, f, g, H);
-    else add_level<Value>(*tables_, level, x, f, g, H);
+    if (hessian)
+      add_level<Hessian>(*tables_, level, x, f, g, H);
+    else if (gradient)
+      add_level<Gradient>(*tables_, level, x, f, g, H);
+    else
+      add_level<Value>(*tables_, level, x, f, g, H);
   }
   const double outside = std::sqrt(domain_.squaredExteriorDistance(x));
   if (outside > 0) {

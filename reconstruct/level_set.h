@@ -1,11 +1,11 @@
 #pragma once
 
-#include "reconstruct/lme_lattice.h"
-#include "reconstruct/point_cloud.h"
-
 #include <Eigen/Geometry>
 #include <memory>
 #include <vector>
+
+#include "reconstruct/lme_lattice.h"
+#include "reconstruct/point_cloud.h"
 
 namespace umtet {
 
@@ -32,8 +32,9 @@ class LevelSet {
   double value(const Vec3& x) const;
   Vec3 gradient(const Vec3& x) const;
   Mat3 hessian(const Vec3& x) const;
-  /// psi(x); its gradient and Hessian where the pointers are not null. Outside the domain psi continues with the value at
-  /// the closest point of the domain plus the distance to it: positive far from the body, and without a new zero there.
+  /// psi(x); its gradient and Hessian where the pointers are not null. Outside the domain psi continues with the value
+  /// at the closest point of the domain plus the distance to it: positive far from the body, and without a new zero
+  /// there.
   double evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const;
 
   /// Where psi is defined: the hull of the coarsest lattice's nodes.

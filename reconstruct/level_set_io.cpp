@@ -1,17 +1,22 @@
 #include "reconstruct/level_set_io.h"
 
 #include <fmt/format.h>
-#include <vtkCommand.h>
 #include <vtkDataArray.h>
 #include <vtkDoubleArray.h>
 #include <vtkErrorCode.h>
 #include <vtkFieldData.h>
 #include <vtkImageData.h>
+#include <vtkInformation.h>
 #include <vtkNew.h>
+#include <vtkObject.h>
 #include <vtkPointData.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLImageDataWriter.h>
+#include <xxhash.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <fstream>
 #include <system_error>
@@ -20,14 +25,17 @@ namespace umtet {
 
 namespace {
 
-// VTK reports on stderr unless somebody listens: libraries print nothing, and the message belongs in the exception.
-class Listener : public vtkCommand {
+// VTK prints what goes wrong; a library prints nothing. What matters is found from error codes and from the data
+// instead.
+class QuietVtk {
  public:
-  static Listener* New() { return new Listener; }
-  void Execute(vtkObject*, unsigned long, void* data) override {
-    if (data && message.empty()) message = static_cast<const char*>(data);
-  }
-  std::string message;
+  QuietVtk() : before_(vtkObject::GetGlobalWarningDisplay()) { vtkObject::GlobalWarningDisplayOff(); }
+  ~QuietVtk() { vtkObject::SetGlobalWarningDisplay(before_); }
+  QuietVtk(const QuietVtk&) = delete;
+  QuietVtk& operator=(const QuietVtk&) = delete;
+
+ private:
+  int before_;
 };
 
 vtkNew<vtkDoubleArray> field(const char* name, const std::vector<double>& values) {
@@ -35,6 +43,13 @@ vtkNew<vtkDoubleArray> field(const char* name, const std::vector<double>& values
   a->SetName(name);
   for (const double v : values) a->InsertNextValue(v);
   return a;
+}
+
+// Two halves of the coefficients' hash: VTK's reader leaves arrays as they were, without an error, where base64 is
+// damaged.
+std::vector<double> hash(const double* c, std::ptrdiff_t n) {
+  const XXH64_hash_t h = XXH64(c, static_cast<std::size_t>(n) * sizeof(double), 0);
+  return {static_cast<double>(h >> 32), static_cast<double>(h & 0xffffffffu)};
 }
 
 std::vector<double> read_field(vtkImageData* image, const char* name, std::size_t size, const std::string& file) {
@@ -61,26 +76,35 @@ void write_level_set(const std::filesystem::path& file, const LevelSet& psi, con
   image->SetSpacing(L.h, L.h, L.h);
   vtkNew<vtkDoubleArray> coefficients;
   coefficients->SetName("psi_a");
-  coefficients->SetArray(const_cast<double*>(level.coefficients.data()), L.size(), /*save=*/1);  // VTK does not write to it
+  coefficients->SetArray(const_cast<double*>(level.coefficients.data()), L.size(),
+                         /*save=*/1);  // VTK does not write to it
   image->GetPointData()->SetScalars(coefficients);
   const LmePrior& prior = psi.prior();
   image->GetFieldData()->AddArray(
       field("lattice", {L.origin[0], L.origin[1], L.origin[2], L.h, double(L.n[0]), double(L.n[1]), double(L.n[2])}));
   image->GetFieldData()->AddArray(
       field("prior", {double(prior.kind), prior.gamma, double(prior.support), prior.epsilon}));
+  image->GetFieldData()->AddArray(field("xxh64", hash(level.coefficients.data(), L.size())));
 
-  vtkNew<Listener> listener;
+  const QuietVtk quiet;
   vtkNew<vtkXMLImageDataWriter> writer;
-  writer->AddObserver(vtkCommand::ErrorEvent, listener);
-  writer->SetFileName(file.c_str());
+  // Into memory, then to the file ourselves: VTK's own writing returns success on a full disk.
+  writer->WriteToOutputStringOn();
   writer->SetInputData(image);
   writer->SetDataModeToBinary();  // inline base64: appended raw data is not well-formed XML
   writer->SetHeaderTypeToUInt64();
   writer->SetCompressorTypeToNone();
-  // Write() returns 1 even when the disk is full; the error code knows.
   if (writer->Write() != 1 || writer->GetErrorCode() != vtkErrorCode::NoError) {
-    throw std::runtime_error(fmt::format("{}: could not be written: {}", file.string(),
+    throw std::runtime_error(fmt::format("{}: could not be made: {}", file.string(),
                                          vtkErrorCode::GetStringFromErrorCode(writer->GetErrorCode())));
+  }
+  const std::string text = writer->GetOutputString();
+  std::ofstream out(file, std::ios::binary);
+  out.write(text.data(), static_cast<std::streamsize>(text.size()));
+  out.close();
+  if (!out) {
+    throw std::system_error(errno, std::generic_category(),
+                            fmt::format("{}: could not be written completely", file.string()));
   }
 }
 
@@ -89,17 +113,24 @@ LevelSet read_level_set(const std::filesystem::path& path) {
   if (std::ifstream probe(path, std::ios::binary); !probe) {
     throw std::system_error(errno, std::generic_category(), fmt::format("{}: cannot be opened", file));
   }
-  vtkNew<Listener> listener;
+  const QuietVtk quiet;
   vtkNew<vtkXMLImageDataReader> reader;
-  reader->AddObserver(vtkCommand::ErrorEvent, listener);
   reader->SetFileName(file.c_str());
-  reader->SetReaderErrorObserver(listener);
-  reader->SetParserErrorObserver(listener);
   if (!reader->CanReadFile(file.c_str())) throw LevelSetRefused(file + ": not a VTK ImageData file");
+  reader->UpdateInformation();
+  int extent[6] = {0, -1, 0, -1, 0, -1};
+  reader->GetOutputInformation(0)->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
+  double announced = sizeof(double);
+  for (int d = 0; d < 3; ++d) announced *= std::max(0.0, 1.0 + extent[2 * d + 1] - extent[2 * d]);
+  if (announced > static_cast<double>(std::filesystem::file_size(path))) {  // before anything is allocated
+    throw LevelSetRefused(
+        fmt::format("{}: announces {:.3g} bytes of coefficients, more than the file holds", file, announced));
+  }
   reader->Update();
   vtkImageData* image = reader->GetOutput();
-  if (!listener->message.empty() || reader->GetErrorCode() != vtkErrorCode::NoError || !image) {
-    throw LevelSetRefused(fmt::format("{}: damaged: {}", file, listener->message));
+  if (reader->GetErrorCode() != vtkErrorCode::NoError || !image) {
+    throw LevelSetRefused(
+        fmt::format("{}: damaged: {}", file, vtkErrorCode::GetStringFromErrorCode(reader->GetErrorCode())));
   }
   const std::vector<double> l = read_field(image, "lattice", 7, file), p = read_field(image, "prior", 4, file);
   const LmePrior prior{static_cast<LmePrior::Kind>(static_cast<int>(p[0])), p[1], static_cast<int>(p[2]), p[3]};
@@ -116,6 +147,9 @@ LevelSet read_level_set(const std::filesystem::path& path) {
     throw LevelSetRefused(fmt::format("{}: point data 'psi_a' with {} doubles is missing", file, lattice.size()));
   }
   std::vector<double> c(a->GetPointer(0), a->GetPointer(0) + lattice.size());
+  if (read_field(image, "xxh64", 2, file) != hash(c.data(), lattice.size())) {
+    throw LevelSetRefused(file + ": damaged: the coefficients do not have the hash that was written with them");
+  }
   for (const double v : c) {
     if (!std::isfinite(v)) throw LevelSetRefused(file + ": a coefficient is not finite");
   }

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "reconstruct/level_set.h"
-
 #include <filesystem>
 #include <stdexcept>
+
+#include "reconstruct/level_set.h"
 
 namespace umtet {
 
@@ -12,9 +12,9 @@ struct LevelSetRefused : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Writes the artefact level_set.vti: VTK ImageData that opens in ParaView. The point data `psi_a` holds the coefficients,
-/// close to psi itself at the nodes; the field data `lattice` (origin, h, counts) and `prior` (kind, gamma, support, epsilon)
-/// hold what is needed to evaluate psi, as doubles, so that values read back are bit-equal.
+/// Writes the artefact level_set.vti: VTK ImageData that opens in ParaView. The point data `psi_a` holds the
+/// coefficients, close to psi itself at the nodes; the field data `lattice` (origin, h, counts) and `prior` (kind,
+/// gamma, support, epsilon) hold what is needed to evaluate psi, as doubles, so that values read back are bit-equal.
 /// @param shown_at  added to the image's origin for viewers (a cloud far from the origin is fitted near it)
 /// \throw std::runtime_error  with the path: not written completely
 void write_level_set(const std::filesystem::path& file, const LevelSet& psi, const Vec3& shown_at = Vec3::Zero());

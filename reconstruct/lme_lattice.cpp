@@ -64,8 +64,8 @@ double solve_lambda(const double* w, const double* d, int count, double* W, doub
 
 LmeBasis1d evaluate_lme_1d(const LmePrior& prior, int n, double x) {
   const int R = half_width(prior), width = 2 * R;
-  // At the ends lambda is infinite although the functions have limits: they are continued from a little inside, where the
-  // sums below still hold 1e-6 of N'' (they lose eps / inset^2).
+  // At the ends lambda is infinite although the functions have limits: they are continued from a little inside, where
+  // the sums below still hold 1e-6 of N'' (they lose eps / inset^2).
   constexpr double inset = 1e-5;
   const double wanted = x;
   x = std::clamp(x, inset, n - 1 - inset);
@@ -123,7 +123,8 @@ LmeTables::LmeTables(const LmePrior& prior) : prior_(prior), R_(umtet::half_widt
       Lanes N[2], dN[2], ddN[2];
       for (int k = 0; k <= kPieces; ++k) {
         std::swap(N[0], N[1]), std::swap(dN[0], dN[1]), std::swap(ddN[0], ddN[1]);
-        // The upper end of a cell belongs to the next one: stay in this one, where a node may lose its weight at the end.
+        // The upper end of a cell belongs to the next one: stay in this one, where a node may lose its weight at the
+        // end.
         const double x = cell + (k == kPieces ? std::nextafter(1.0, 0.0) : k * step);
         const LmeBasis1d b = evaluate_lme_1d(prior, n, x);
         N[1].setZero(), dN[1].setZero(), ddN[1].setZero();

@@ -1,15 +1,15 @@
 #pragma once
 
-#include "reconstruct/lme_prior.h"
-
 #include <Eigen/Core>
 #include <memory>
 #include <vector>
 
+#include "reconstruct/lme_prior.h"
+
 namespace umtet {
 
-/// Values of the max-ent functions of one axis at one point: those of nodes first, first + 1, ... The lanes that no node
-/// has are zero, so that loops may run over all eight.
+/// Values of the max-ent functions of one axis at one point: those of nodes first, first + 1, ... The lanes that no
+/// node has are zero, so that loops may run over all eight.
 struct alignas(32) LmeBasis1d {
   static constexpr int kLanes = 8;
   double N[kLanes], dN[kLanes], ddN[kLanes];  ///< functions and derivatives with respect to x / h
@@ -27,9 +27,10 @@ struct alignas(32) LmeBasis1d {
 /// @param n  >= 2 half_width(prior)
 LmeBasis1d evaluate_lme_1d(const LmePrior& prior, int n, double x);
 
-/// The same functions from tables: in a lattice cell they depend only on how many nodes there are to the left and to the
-/// right of it, up to the support. Each table holds quintic Hermite pieces of (N, N', N''), so tabulated functions are C2,
-/// sum to one and reproduce x exactly as the originals do. Only for CompactC2 (a cut Gaussian jumps inside a cell).
+/// The same functions from tables: in a lattice cell they depend only on how many nodes there are to the left and to
+/// the right of it, up to the support. Each table holds quintic Hermite pieces of (N, N', N''), so tabulated functions
+/// are C2, sum to one and reproduce x exactly as the originals do. Only for CompactC2 (a cut Gaussian jumps inside a
+/// cell).
 class LmeTables {
  public:
   explicit LmeTables(const LmePrior& prior);
@@ -71,7 +72,8 @@ struct Lattice {
 };
 
 /// The lattice functions N_a(x) = p_i(x) p_j(y) p_k(z) at one point: a Gaussian prior and its compact relative are
-/// products over the axes, and so is Z; the three-dimensional max-ent functions are therefore tensor products, hull included.
+/// products over the axes, and so is Z; the three-dimensional max-ent functions are therefore tensor products, hull
+/// included.
 struct LmeBasis3d {
   LmeBasis1d x, y, z;
 };

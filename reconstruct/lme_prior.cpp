@@ -14,7 +14,8 @@ std::vector<std::string> problems(const LmePrior& prior) {
   if (prior.kind == LmePrior::Kind::CompactC2) {
     if (prior.support < 2 || prior.support > kLargestHalfWidth) p.push_back("prior support must be 2, 3 or 4");
   } else {
-    if (!(prior.epsilon > 0 && prior.epsilon < 1)) p.push_back("prior epsilon must be in (0, 1)");
+    if (!(prior.epsilon > 0 && prior.epsilon < 1))
+      p.push_back("prior epsilon must be in (0, 1)");
     else if (prior.gamma > 0 && !(radius(prior) <= kLargestHalfWidth && radius(prior) > 1))
       p.push_back("prior gamma and epsilon must put the cut sqrt(ln(1/epsilon)/gamma) between 1 and 4 spacings");
   }
@@ -36,7 +37,7 @@ PriorJet evaluate(const LmePrior& prior, double t) {
   constexpr double s = 4;
   const double k = 1.0 / (prior.support * prior.support), A = prior.gamma - s * k;
   const double g = 1 - t * t * k, E = std::exp(-A * t * t), g2 = g * g, g3 = g2 * g;
-  const double h = -2 * A * t * g - 2 * s * t * k;                 // w' = E g^3 h
+  const double h = -2 * A * t * g - 2 * s * t * k;  // w' = E g^3 h
   const double dh = -2 * A * g + 4 * A * t * t * k - 2 * s * k;
   return {E * g2 * g2, E * g3 * h, E * (g3 * dh - 2 * A * t * g3 * h - 6 * t * k * g2 * h)};
 }

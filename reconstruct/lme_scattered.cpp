@@ -140,7 +140,7 @@ LmeValues LmeScattered::evaluate(const Vec3& x) const {
   out.converged = true;
 
   const Mat3 J_inv = J.inverse();
-  Vec3 mean_v = Vec3::Zero();  // sum W dw
+  Vec3 mean_v = Vec3::Zero();      // sum W dw
   Mat3 moment = Mat3::Identity();  // column j: unit_j + sum W d_j w d
   for (std::size_t a = 0; a < n; ++a) {
     mean_v += nb.W[a] * nb.dw[a];

@@ -1,24 +1,24 @@
 #pragma once
 
-#include "reconstruct/lme_prior.h"
-#include "reconstruct/point_cloud.h"
-
 #include <memory>
 #include <vector>
+
+#include "reconstruct/lme_prior.h"
+#include "reconstruct/point_cloud.h"
 
 namespace umtet {
 
 /// Values of the max-ent functions of a node set at one point.
 struct LmeValues {
-  std::vector<int> node;      ///< the nodes within the support, ascending
+  std::vector<int> node;  ///< the nodes within the support, ascending
   std::vector<double> N;
   std::vector<Vec3> grad;
   std::vector<Mat3> hess;
-  bool converged = false;     ///< false: x is not inside the hull of the nodes within reach
+  bool converged = false;  ///< false: x is not inside the hull of the nodes within reach
 };
 
-/// Local max-ent functions on any node set, three-dimensional, by Newton's method on log Z: what the lattice functions are
-/// checked against, and what serves nodes that lie on no lattice.
+/// Local max-ent functions on any node set, three-dimensional, by Newton's method on log Z: what the lattice functions
+/// are checked against, and what serves nodes that lie on no lattice.
 ///
 /// p_a = w_a e^{lambda . d_a} / Z, d_a = x - x_a, sum p_a d_a = 0, W_a = p_a / w_a; with J = sum p d d^T,
 ///   d_j p  = W d_j w + p e_j,   e_j = L_j . d - sum W d_j w,   L_j = -J^-1 (unit_j + sum W d_j w d)

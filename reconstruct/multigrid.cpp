@@ -1,14 +1,14 @@
 #include "reconstruct/multigrid.h"
 
-#include "reconstruct/solve_error.h"
-#include "reconstruct/ssd_assembled.h"
-
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <fmt/format.h>
+
+#include "reconstruct/solve_error.h"
+#include "reconstruct/ssd_assembled.h"
 
 namespace umtet {
 
@@ -36,7 +36,8 @@ double dot(std::ptrdiff_t n, const double* a, const double* b) {
   return sum;
 }
 
-// Cubes in which samples are merged, in spacings: half a spacing keeps PCG at 10 iterations to 1e-5 (a whole one doubles them).
+// Cubes in which samples are merged, in spacings: half a spacing keeps PCG at 10 iterations to 1e-5 (a whole one
+// doubles them).
 constexpr double kMergeCube = 0.5;
 
 // Weighted means of the samples that share a cube of edge `cube` (in this lattice's spacings).
@@ -102,9 +103,9 @@ void restrict_axis(const AxisProlongation& P, const double* x, std::ptrdiff_t in
   });
 }
 
-// Eigenvalues of D^-1 A in [lambda_max / kSmoothingRange, lambda_max] are damped by the smoother. The range is wide because
-// coefficients that alternate in sign give almost no function: high frequencies, small eigenvalues. On a torus with 10 samples
-// a cell, degrees 2 to 6 and ranges 30 to 200 all cost the same time within 20 %.
+// Eigenvalues of D^-1 A in [lambda_max / kSmoothingRange, lambda_max] are damped by the smoother. The range is wide
+// because coefficients that alternate in sign give almost no function: high frequencies, small eigenvalues. On a torus
+// with 10 samples a cell, degrees 2 to 6 and ranges 30 to 200 all cost the same time within 20 %.
 constexpr double kSmoothingRange = 60;
 constexpr int kSmoothingDegree = 3;
 
@@ -237,8 +238,8 @@ void Multigrid::apply(const double* r, double* z) {
   std::copy(level.x.begin(), level.x.begin() + level.op.size(), z);
 }
 
-PcgReport solve_pcg(const SsdOperator& A, Multigrid& M, const std::vector<double>& b, double tolerance, int max_iterations,
-                    std::vector<double>& c, const std::function<bool(double)>& progress) {
+PcgReport solve_pcg(const SsdOperator& A, Multigrid& M, const std::vector<double>& b, double tolerance,
+                    int max_iterations, std::vector<double>& c, const std::function<bool(double)>& progress) {
   const std::ptrdiff_t n = A.size();
   const std::size_t padded = n + SsdOperator::kPad;
   std::vector<double> r(b), z(padded, 0.0), p(padded, 0.0), Ap(padded, 0.0), workspace;

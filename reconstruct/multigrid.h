@@ -1,18 +1,18 @@
 #pragma once
 
-#include "reconstruct/ssd_operator.h"
-
 #include <Eigen/Cholesky>
 #include <functional>
 #include <vector>
+
+#include "reconstruct/ssd_operator.h"
 
 namespace umtet {
 
 /// Prolongation of coefficients along one axis, from n_coarse nodes to 2 n_coarse - 1.
 ///
-/// Coefficients are not samples: a function with coefficients c is c smoothed by a kernel of variance h^2 / (2 gamma), so
-/// coefficients sampled from the coarse function would be smoothed twice. The coarse max-ent functions with
-/// gamma_P = 4 gamma / 3 have the variance that is missing: (2h)^2 / (2 gamma_P) = (2h)^2 / (2 gamma) - h^2 / (2 gamma).
+/// Coefficients are not samples: a function with coefficients c is c smoothed by a kernel of variance h^2 / (2 gamma),
+/// so coefficients sampled from the coarse function would be smoothed twice. The coarse max-ent functions with gamma_P
+/// = 4 gamma / 3 have the variance that is missing: (2h)^2 / (2 gamma_P) = (2h)^2 / (2 gamma) - h^2 / (2 gamma).
 struct AxisProlongation {
   int n_coarse = 0, n_fine = 0, width = 0;
   std::vector<int> first;      ///< first coarse node of each fine node
@@ -21,9 +21,9 @@ struct AxisProlongation {
   AxisProlongation(const LmePrior& prior, int n_coarse);
 };
 
-/// Symmetric V-cycle for an SsdOperator: lattices h, 2h, 4h, ..., each re-discretised, Chebyshev-Jacobi smoothing, dense
-/// Cholesky on the coarsest. Where a level has many samples in a cell, its operator is built from their weighted means:
-/// the preconditioner changes, the solution does not.
+/// Symmetric V-cycle for an SsdOperator: lattices h, 2h, 4h, ..., each re-discretised, Chebyshev-Jacobi smoothing,
+/// dense Cholesky on the coarsest. Where a level has many samples in a cell, its operator is built from their weighted
+/// means: the preconditioner changes, the solution does not.
 class Multigrid {
  public:
   /// @param n_levels  the lattice's cells along each axis must be divisible by 2^(n_levels - 1)
@@ -37,9 +37,9 @@ class Multigrid {
   struct Level {
     SsdOperator op;
     std::vector<double> inverse_diagonal;
-    double lambda_max = 0;                 // of D^-1 A
-    std::vector<AxisProlongation> up;      // three axes, from the next coarser level
-    std::vector<double> x, r, d, Ad;       // iterate, residual, Chebyshev direction
+    double lambda_max = 0;             // of D^-1 A
+    std::vector<AxisProlongation> up;  // three axes, from the next coarser level
+    std::vector<double> x, r, d, Ad;   // iterate, residual, Chebyshev direction
   };
   void cycle(std::size_t level);
   void smooth(Level& level, bool from_zero);
@@ -58,7 +58,7 @@ struct PcgReport {
 /// Preconditioned conjugate gradients for A c = b from c = 0.
 /// @param c  size() + kPad doubles, overwritten
 /// @param progress  called once an iteration with the relative residual; false stops
-PcgReport solve_pcg(const SsdOperator& A, Multigrid& M, const std::vector<double>& b, double tolerance, int max_iterations,
-                    std::vector<double>& c, const std::function<bool(double)>& progress);
+PcgReport solve_pcg(const SsdOperator& A, Multigrid& M, const std::vector<double>& b, double tolerance,
+                    int max_iterations, std::vector<double>& c, const std::function<bool(double)>& progress);
 
 }  // namespace umtet

@@ -1,11 +1,12 @@
 #include "reconstruct/ssd_assembled.h"
 
-#include "reconstruct/solve_error.h"
+#include <fmt/format.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
+
+#include "reconstruct/solve_error.h"
 
 namespace umtet {
 
@@ -19,7 +20,8 @@ Eigen::MatrixXd sample_block(const Eigen::MatrixX4d& B, double w_value, double w
 std::vector<double> solve(const Eigen::SparseMatrix<double>& A, const Eigen::VectorXd& r) {
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> ldlt(A);
   if (ldlt.info() != Eigen::Success) {
-    throw SolveError(fmt::format("sparse factorisation of {} nodes failed: the matrix is not positive definite", A.rows()));
+    throw SolveError(
+        fmt::format("sparse factorisation of {} nodes failed: the matrix is not positive definite", A.rows()));
   }
   Eigen::VectorXd c = ldlt.solve(r);
   c += ldlt.solve(r - A * c);  // one step of refinement: the condition grows as h^-4
@@ -48,8 +50,8 @@ Eigen::SparseMatrix<double> assemble(const SsdOperator& op) {
       for (int j = 0; j < W; ++j)
         for (int i = 0; i < W; ++i, ++a) {
           at[a] = {N.x.first + i, N.y.first + j, N.z.first + k};
-          B.row(a) << N.x.N[i] * N.y.N[j] * N.z.N[k], N.x.dN[i] * N.y.N[j] * N.z.N[k],
-              N.x.N[i] * N.y.dN[j] * N.z.N[k], N.x.N[i] * N.y.N[j] * N.z.dN[k];
+          B.row(a) << N.x.N[i] * N.y.N[j] * N.z.N[k], N.x.dN[i] * N.y.N[j] * N.z.N[k], N.x.N[i] * N.y.dN[j] * N.z.N[k],
+              N.x.N[i] * N.y.N[j] * N.z.dN[k];
         }
     const Eigen::MatrixXd block = sample_block(B, s.w_value, s.w_gradient);
     for (int a = 0; a < W * W * W; ++a) {
@@ -142,8 +144,8 @@ void add_hessian_energy(const LmeScattered& basis, double weight, double quadrat
 
 }  // namespace
 
-std::vector<double> fit_scattered(const LmeScattered& basis, const std::vector<SsdSample>& samples, double energy_weight,
-                                  double quadrature_cell) {
+std::vector<double> fit_scattered(const LmeScattered& basis, const std::vector<SsdSample>& samples,
+                                  double energy_weight, double quadrature_cell) {
   const Eigen::Index n = static_cast<Eigen::Index>(basis.nodes().size());
   PatternMatrix A(basis);
   Eigen::VectorXd r = Eigen::VectorXd::Zero(n);

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <Eigen/Sparse>
+
 #include "reconstruct/lme_scattered.h"
 #include "reconstruct/ssd_operator.h"
-
-#include <Eigen/Sparse>
 
 namespace umtet {
 
@@ -22,7 +22,7 @@ std::vector<double> solve_assembled(const SsdOperator& op);
 /// @param energy_weight  multiplies ½ ∫ H:H dV
 /// @return coefficients f_a, one per node
 /// \throw SolveError  the factorisation failed, or a sample lies outside the hull of the nodes
-std::vector<double> fit_scattered(const LmeScattered& basis, const std::vector<SsdSample>& samples, double energy_weight,
-                                  double quadrature_cell);
+std::vector<double> fit_scattered(const LmeScattered& basis, const std::vector<SsdSample>& samples,
+                                  double energy_weight, double quadrature_cell);
 
 }  // namespace umtet

@@ -14,8 +14,8 @@ namespace {
 using Lanes = Eigen::Array<double, 8, 1>;
 using Aligned = Eigen::Map<const Lanes, Eigen::Aligned32>;
 
-// A sample writes to 2R <= 8 node layers, and its eight-lane stores may touch (adding zero) the first nodes of the layer
-// behind them. Slabs of 8 cell layers of equal parity therefore never write to the same node.
+// A sample writes to 2R <= 8 node layers, and its eight-lane stores may touch (adding zero) the first nodes of the
+// layer behind them. Slabs of 8 cell layers of equal parity therefore never write to the same node.
 constexpr int kSlabLayers = 8;
 
 struct ValueGradient {
@@ -23,7 +23,8 @@ struct ValueGradient {
   Eigen::Vector3d gradient;
 };
 
-// f and grad f at a sample: contraction over z, then y, then x; eight lanes along x, those beyond the support weigh nothing.
+// f and grad f at a sample: contraction over z, then y, then x; eight lanes along x, those beyond the support weigh
+// nothing.
 template <int W>
 ValueGradient gather(const LmeBasis3d& B, const Eigen::Vector3i& n, const double* c) {
   const std::ptrdiff_t nx = n[0], nxy = nx * n[1];
@@ -62,14 +63,18 @@ void scatter(const LmeBasis3d& B, const Eigen::Vector3i& n, double q, const Eige
 
 template <class F>
 void dispatch_width(int width, F&& f) {
-  if (width == 4) f(std::integral_constant<int, 4>{});
-  else if (width == 6) f(std::integral_constant<int, 6>{});
-  else f(std::integral_constant<int, 8>{});
+  if (width == 4)
+    f(std::integral_constant<int, 4>{});
+  else if (width == 6)
+    f(std::integral_constant<int, 6>{});
+  else
+    f(std::integral_constant<int, 8>{});
 }
 
 }  // namespace
 
-SsdOperator::SsdOperator(const LmeTables& tables, const Eigen::Vector3i& n, double kappa, std::vector<SsdSample> samples)
+SsdOperator::SsdOperator(const LmeTables& tables, const Eigen::Vector3i& n, double kappa,
+                         std::vector<SsdSample> samples)
     : tables_(&tables), n_(n), kappa_(kappa), energy_(tables, n), samples_(std::move(samples)) {
   const auto key = [&](const SsdSample& s) {
     const std::int64_t z = std::min<std::int64_t>(s.xi[2], n_[2] - 2), y = std::min<std::int64_t>(s.xi[1], n_[1] - 2),
@@ -157,8 +162,8 @@ Eigen::Vector3d SsdOperator::energies(const double* c, std::vector<double>& work
       LmeBasis3d B;
       evaluate_lme_3d<false>(*tables_, n_, s.xi, B);
       const ValueGradient f = gather<W.value>(B, n_, c);
-      slab_sum[slab] += Eigen::Vector2d(s.w_value * f.value * f.value,
-                                        s.w_gradient * (f.gradient - s.normal).squaredNorm()) / 2;
+      slab_sum[slab] +=
+          Eigen::Vector2d(s.w_value * f.value * f.value, s.w_gradient * (f.gradient - s.normal).squaredNorm()) / 2;
     });
   });
   Eigen::Vector3d e = Eigen::Vector3d::Zero();

@@ -1,22 +1,23 @@
 #pragma once
 
+#include <vector>
+
 #include "reconstruct/gram.h"
 #include "reconstruct/lme_lattice.h"
-
-#include <vector>
 
 namespace umtet {
 
 /// One sample of the quadratic data term ½ w_value f(x)² + ½ w_gradient |∇f(x) − n|², all in lattice units.
 struct SsdSample {
-  Eigen::Vector3d xi;            ///< (x − origin) / h
-  Eigen::Vector3d normal;        ///< n_i
+  Eigen::Vector3d xi;      ///< (x − origin) / h
+  Eigen::Vector3d normal;  ///< n_i
   double w_value = 0, w_gradient = 0;
 };
 
 /// The system matrix and right-hand side of eq. (11) on one lattice, never assembled:
 ///   A = kappa K + Σ_i ( w_v N N^T + w_g ∇N·∇N^T ),   r = Σ_i w_g ∇N · n_i,   N_a = N_a(x_i).
-/// Coefficients are in units of the lattice spacing: f = h Σ c_a N_a.                     [Rangarajan2018, eqs. (10), (11)]
+/// Coefficients are in units of the lattice spacing: f = h Σ c_a N_a.                     [Rangarajan2018, eqs. (10),
+/// (11)]
 class SsdOperator {
  public:
   /// @param samples  inside the lattice hull; sorted here into slabs of cells for locality and threads

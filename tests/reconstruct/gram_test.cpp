@@ -1,12 +1,13 @@
 // The Hessian-energy operator against the energy of functions whose integral is known or sampled.
 
 #include "reconstruct/gram.h"
-#include "reconstruct/ssd_assembled.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
+
+#include "reconstruct/ssd_assembled.h"
 
 using namespace umtet;
 

@@ -1,19 +1,21 @@
 // Max-ent functions: the lattice ones, their tables, and the scattered reference.
 
-#include "reconstruct/lme_lattice.h"
-#include "reconstruct/lme_scattered.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
+
+#include "reconstruct/lme_lattice.h"
+#include "reconstruct/lme_scattered.h"
 
 using namespace umtet;
 
 namespace {
 
 std::vector<LmePrior> priors() {
-  return {LmePrior{}, {LmePrior::Kind::CompactC2, 0.8, 4, 1e-4}, {LmePrior::Kind::CompactC2, 1.6, 2, 1e-4},
+  return {LmePrior{},
+          {LmePrior::Kind::CompactC2, 0.8, 4, 1e-4},
+          {LmePrior::Kind::CompactC2, 1.6, 2, 1e-4},
           LmePrior::paper()};
 }
 
@@ -162,7 +164,8 @@ TEST(LmeScattered, DerivativesOnRandomNodesPassFiniteDifferences) {
   std::uniform_real_distribution<double> unit(-0.25, 0.25);
   std::vector<Vec3> nodes = cube_nodes(7, 1.0);
   for (Vec3& p : nodes) p += Vec3(unit(random), unit(random), unit(random));
-  for (const LmePrior& prior : {LmePrior{LmePrior::Kind::CompactC2, 0.9, 3, 1e-4}, LmePrior{LmePrior::Kind::Gaussian, 1.6, 3, 1e-12}}) {
+  for (const LmePrior& prior :
+       {LmePrior{LmePrior::Kind::CompactC2, 0.9, 3, 1e-4}, LmePrior{LmePrior::Kind::Gaussian, 1.6, 3, 1e-12}}) {
     const LmeScattered basis(nodes, prior, 1.0);
     const Vec3 x(3.1, 2.83, 3.4);
     const LmeValues v = basis.evaluate(x);

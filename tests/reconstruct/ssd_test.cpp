@@ -1,13 +1,13 @@
 // The fit: what it must reproduce, that its solvers agree, and how close it comes to a known surface.
 
-#include "reconstruct/fit_ssd.h"
-#include "reconstruct/ssd_assembled.h"
-#include "tests/support/clouds.h"
-
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
 #include <cstring>
+
+#include "reconstruct/fit_ssd.h"
+#include "reconstruct/ssd_assembled.h"
+#include "tests/support/clouds.h"
 
 using namespace umtet;
 using namespace umtet::test;
@@ -23,7 +23,8 @@ SsdParams params_with(double spacing) {
 // Largest |psi_a - psi_b| over places near the torus.
 double difference(const LevelSet& a, const LevelSet& b) {
   double worst = 0;
-  for (const Vec3& x : torus_cloud(500, 9).points) worst = std::max(worst, std::abs(a.value(1.02 * x) - b.value(1.02 * x)));
+  for (const Vec3& x : torus_cloud(500, 9).points)
+    worst = std::max(worst, std::abs(a.value(1.02 * x) - b.value(1.02 * x)));
   return worst;
 }
 

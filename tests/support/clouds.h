@@ -2,12 +2,12 @@
 
 // Clouds sampled from shapes whose distance is known.
 
-#include "reconstruct/point_cloud.h"
-
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
 #include <random>
+
+#include "reconstruct/point_cloud.h"
 
 namespace umtet::test {
 
