@@ -1,0 +1,122 @@
+// Stage one: what a max-ent basis, an evaluation of psi, an application of the operator and a whole fit cost.
+// ./build/release/tests/bench/reconstruct_bench
+
+#include <benchmark/benchmark.h>
+#include <tbb/global_control.h>
+
+#include "reconstruct/cloud_neighbours.h"
+#include "reconstruct/fit_ssd.h"
+#include "reconstruct/lme_lattice.h"
+#include "reconstruct/lme_scattered.h"
+#include "reconstruct/ssd_operator.h"
+#include "tests/support/clouds.h"
+
+using namespace umtet;
+
+namespace {
+
+const LevelSet& level_set() {
+  static const LevelSet psi = [] {
+    SsdParams p;
+    p.spacing = 0.03;
+    return fit_ssd(test::torus_cloud(50000), p).psi;
+  }();
+  return psi;
+}
+
+// Places near the surface in the order a mesher visits them: neighbours in memory come one after the other.
+std::vector<Vec3> places() {
+  std::vector<Vec3> x = test::torus_cloud(100000, 3).points;
+  const auto key = [](const Vec3& p) {
+    return std::make_tuple(std::floor(p[2] / 0.03), std::floor(p[1] / 0.03), p[0]);
+  };
+  std::sort(x.begin(), x.end(), [&](const Vec3& a, const Vec3& b) { return key(a) < key(b); });
+  return x;
+}
+
+void Basis1dByNewton(benchmark::State& state) {
+  double x = 10;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(evaluate_lme_1d(LmePrior{}, 30, x));
+    x = x > 18 ? 10 : x + 0.0371;
+  }
+  state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK(Basis1dByNewton);
+
+void Basis1dByTable(benchmark::State& state) {
+  const LmeTables tables{LmePrior{}};
+  LmeBasis1d B;
+  double x = 10;
+  for (auto _ : state) {
+    tables.evaluate<true>(30, x, B);
+    benchmark::DoNotOptimize(B);
+    x = x > 18 ? 10 : x + 0.0371;
+  }
+  state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK(Basis1dByTable);
+
+void ScatteredBasis(benchmark::State& state) {
+  std::vector<Vec3> nodes;
+  for (int a = 0; a < 1000; ++a) nodes.push_back(Vec3(a % 10, a / 10 % 10, a / 100));
+  const LmeScattered basis(nodes, LmePrior{}, 1.0);
+  for (auto _ : state) benchmark::DoNotOptimize(basis.evaluate(Vec3(4.3, 5.1, 4.8)));
+  state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK(ScatteredBasis);
+
+// range(0): 0 value, 1 with gradient, 2 with gradient and Hessian
+void EvaluatePsi(benchmark::State& state) {
+  const std::vector<Vec3> x = places();
+  Vec3 g;
+  Mat3 H;
+  const LevelSet& psi = level_set();
+  for (auto _ : state) {
+    double sum = 0;
+    for (const Vec3& p : x)
+      sum += psi.evaluate(p, state.range(0) > 0 ? &g : nullptr, state.range(0) > 1 ? &H : nullptr);
+    benchmark::DoNotOptimize(sum);
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(x.size()));
+}
+BENCHMARK(EvaluatePsi)->Arg(0)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond);
+
+// Items are nodes; range(0) samples on 121 x 121 x 61 nodes, one thread.
+void ApplyOperator(benchmark::State& state) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const LmeTables tables{LmePrior{}};
+  std::vector<SsdSample> samples;
+  for (const Vec3& x : test::torus_cloud(static_cast<int>(state.range(0))).points) {
+    samples.push_back({x / 0.0276 + Vec3(60, 60, 30), Vec3::UnitX(), 1, 1});
+  }
+  const SsdOperator op(tables, {121, 121, 61}, 0.01, samples);
+  std::vector<double> c(op.size() + SsdOperator::kPad, 1.0), y(c), work;
+  for (auto _ : state) op.apply(c.data(), y.data(), work);
+  state.SetItemsProcessed(state.iterations() * op.size());
+}
+BENCHMARK(ApplyOperator)->Arg(0)->Arg(200000)->Unit(benchmark::kMillisecond);
+
+void SampleAreas(benchmark::State& state) {
+  const auto cloud = test::torus_cloud(static_cast<int>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(sample_areas(cloud.points));
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+BENCHMARK(SampleAreas)->Arg(200000)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
+
+// A 0.9 M-node lattice with 200k points; items are nodes, CPU time of all threads.
+void FitTorus(benchmark::State& state) {
+  const auto cloud = test::torus_cloud(200000);
+  SsdParams p;
+  p.spacing = 0.0255;
+  for (auto _ : state) {
+    const SsdFit fit = fit_ssd(cloud, p);
+    state.counters["nodes"] = static_cast<double>(fit.report.n_nodes);
+    state.counters["iterations"] = fit.report.iterations;
+  }
+}
+BENCHMARK(FitTorus)->MeasureProcessCPUTime()->Iterations(2)->Unit(benchmark::kSecond);
+
+}  // namespace
+
+BENCHMARK_MAIN();
