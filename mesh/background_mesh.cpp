@@ -1,0 +1,148 @@
+#include "mesh/background_mesh.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace umtet {
+namespace {
+
+// Ids stay far from overflow, and a mesh this size could not be walked anyway.
+constexpr double kMaxTets = 1099511627776.0;  // 2^40
+
+// The tets of a block of cells miss up to a quarter cell at a wall; see a15().
+constexpr double kWallPit = .25;
+
+}  // namespace
+
+BackgroundMesh::BackgroundMesh(const Tiling& tiling, const Box& box, double h)
+    : tiling_(tiling),
+      tables_(tables(tiling)),
+      h_(h),
+      cell_edge_(h / tiling.mean_edge),
+      n_types_(static_cast<int>(tiling.points.size())),
+      n_cell_tets_(static_cast<int>(tiling.tets.size())) {
+  if (!(h > 0) || !std::isfinite(h)) throw std::invalid_argument("h = " + std::to_string(h) + ": must be > 0");
+  if (box.isEmpty() || !box.sizes().allFinite()) throw std::invalid_argument("box: must be finite and not empty");
+  const Eigen::Array3d n = (box.sizes().array() / cell_edge_ + 2 * kWallPit).ceil();
+  if (n.prod() * n_cell_tets_ > kMaxTets) {
+    throw std::invalid_argument("h = " + std::to_string(h) + ": more than 2^40 tets in the box");
+  }
+  for (int a = 0; a < 3; ++a) n_[a] = static_cast<std::int64_t>(n[a]);
+  origin_ = box.center() - .5 * cell_edge_ * n.matrix();
+}
+
+Box BackgroundMesh::box() const {
+  const Vec3 n(static_cast<double>(n_[0]), static_cast<double>(n_[1]), static_cast<double>(n_[2]));
+  return Box(origin_, origin_ + cell_edge_ * n);
+}
+
+std::int64_t BackgroundMesh::n_vertices() const { return n_types_ * (n_[0] + 2) * (n_[1] + 2) * (n_[2] + 2); }
+
+std::int64_t BackgroundMesh::n_tets() const { return n_cell_tets_ * n_[0] * n_[1] * n_[2]; }
+
+BackgroundMesh::VertexAddress BackgroundMesh::vertex_address(std::int64_t vertex) const {
+  const std::int64_t c = vertex / n_types_, row = c / (n_[0] + 2);
+  return {static_cast<int>(vertex % n_types_), {c % (n_[0] + 2) - 1, row % (n_[1] + 2) - 1, row / (n_[1] + 2) - 1}};
+}
+
+std::int64_t BackgroundMesh::vertex_id(int type, const Cell& cell) const {
+  return type + n_types_ * (cell[0] + 1 + (n_[0] + 2) * (cell[1] + 1 + (n_[1] + 2) * (cell[2] + 1)));
+}
+
+bool BackgroundMesh::holds(const Cell& cell, const std::array<int, 3>& offset) const {
+  for (int a = 0; a < 3; ++a) {
+    const std::int64_t c = cell[a] + offset[a];
+    if (c < 0 || c >= n_[a]) return false;
+  }
+  return true;
+}
+
+std::int64_t BackgroundMesh::tet_id(int tet, const Cell& cell, const std::array<int, 3>& offset) const {
+  return tet + n_cell_tets_ * (cell[0] + offset[0] + n_[0] * (cell[1] + offset[1] + n_[1] * (cell[2] + offset[2])));
+}
+
+Vec3 BackgroundMesh::position(std::int64_t vertex) const {
+  const VertexAddress v = vertex_address(vertex);
+  const auto& p = tiling_.points[v.type];
+  // The sum in brackets is exact for dyadic points.
+  return origin_ + cell_edge_ * Vec3(static_cast<double>(v.cell[0]) + p[0], static_cast<double>(v.cell[1]) + p[1],
+                                     static_cast<double>(v.cell[2]) + p[2]);
+}
+
+std::array<std::int64_t, 4> BackgroundMesh::tet(std::int64_t tet) const {
+  const std::int64_t c = tet / n_cell_tets_, row = c / n_[0];
+  const Cell cell = {c % n_[0], row % n_[1], row / n_[1]};
+  std::array<std::int64_t, 4> vertices;
+  for (int k = 0; k < 4; ++k) {
+    const auto& corner = tiling_.tets[tet % n_cell_tets_][k];
+    vertices[k] =
+        vertex_id(corner.type, {cell[0] + corner.offset[0], cell[1] + corner.offset[1], cell[2] + corner.offset[2]});
+  }
+  return vertices;
+}
+
+void BackgroundMesh::star(std::int64_t vertex, std::vector<std::int64_t>& tets) const {
+  const VertexAddress v = vertex_address(vertex);
+  for (const auto& [tet, offset] : tables_.star[v.type]) {
+    if (holds(v.cell, offset)) tets.push_back(tet_id(tet, v.cell, offset));
+  }
+}
+
+void BackgroundMesh::link(std::int64_t vertex, std::vector<std::int64_t>& vertices) const {
+  const VertexAddress v = vertex_address(vertex);
+  const auto range_holds = [&](const Cell& c) {
+    return c[0] >= -1 && c[0] <= n_[0] && c[1] >= -1 && c[1] <= n_[1] && c[2] >= -1 && c[2] <= n_[2];
+  };
+  const bool complete = !on_rim(vertex);
+  for (const auto& [type, offset] : tables_.link[v.type]) {
+    const Cell c = {v.cell[0] + offset[0], v.cell[1] + offset[1], v.cell[2] + offset[2]};
+    if (!complete) {
+      // At the rim an edge of the tiling may have lost all its tets.
+      if (!range_holds(c)) continue;
+      const std::int64_t other = vertex_id(type, c);
+      bool shares_tet = false;
+      for (const auto& [t, tet_offset] : tables_.star[v.type]) {
+        if (!holds(v.cell, tet_offset)) continue;
+        for (const std::int64_t w : tet(tet_id(t, v.cell, tet_offset))) shares_tet |= w == other;
+      }
+      if (!shares_tet) continue;
+    }
+    vertices.push_back(vertex_id(type, c));
+  }
+}
+
+bool BackgroundMesh::on_rim(std::int64_t vertex) const {
+  const VertexAddress v = vertex_address(vertex);
+  for (const auto& corner : tables_.star[v.type]) {
+    if (!holds(v.cell, corner.offset)) return true;
+  }
+  return false;
+}
+
+bool BackgroundMesh::has_tets(std::int64_t vertex) const {
+  const VertexAddress v = vertex_address(vertex);
+  for (const auto& corner : tables_.star[v.type]) {
+    if (holds(v.cell, corner.offset)) return true;
+  }
+  return false;
+}
+
+std::int64_t BackgroundMesh::neighbor(std::int64_t tet, int face) const {
+  const std::int64_t c = tet / n_cell_tets_, row = c / n_[0];
+  const Cell cell = {c % n_[0], row % n_[1], row / n_[1]};
+  const auto& next = tables_.neighbor[tet % n_cell_tets_][face];
+  return holds(cell, next.offset) ? tet_id(next.tet, cell, next.offset) : -1;
+}
+
+std::int64_t BackgroundMesh::tet_near(const Vec3& x) const {
+  Cell cell;
+  for (int a = 0; a < 3; ++a) {
+    const double c = std::floor((x[a] - origin_[a]) / cell_edge_);
+    if (!(c >= 0 && c < static_cast<double>(n_[a]))) return -1;
+    cell[a] = static_cast<std::int64_t>(c);
+  }
+  return tet_id(0, cell, {0, 0, 0});
+}
+
+}  // namespace umtet

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "mesh/tet_mesh.h"
+#include "mesh/tiling.h"
+
+namespace umtet {
+
+using Box = Eigen::AlignedBox3d;
+
+/// The universal mesh as an implicit lattice of copies of an acute tiling: nothing is stored per vertex or tet.
+///
+/// Cells (i, j, k) with 0 <= i, j, k < n hold the tets; their vertices live in cells -1 .. n. Ids are 64-bit:
+/// vertex = type + 8 * (cell index in the (n + 2)^3 range), tet = k + 46 * (cell index in the n^3 range) for A15.
+/// Ids ascend with x fastest, then y, then z. Immutable; one mesh serves any number of domains and threads.
+class BackgroundMesh {
+ public:
+  /// Covers `box` with whole cells, half a cell of slack or more in each direction shared by both sides (the walls of
+  /// a block of A15 cells have pits of a quarter cell).
+  /// @param h  mean edge length, model units; the cell edge is h / tiling.mean_edge
+  /// \throw std::invalid_argument for h <= 0, an empty box, or more than 2^40 tets
+  BackgroundMesh(const Tiling& tiling, const Box& box, double h);
+
+  const Tiling& tiling() const { return tiling_; }
+  double h() const { return h_; }
+  double cell_edge() const { return cell_edge_; }
+  Box box() const;                  ///< the block of cells
+  std::int64_t n_vertices() const;  ///< size of the id range, vertices without a tet at the rim included
+  std::int64_t n_tets() const;
+  /// origin + cell_edge * (an exact multiple of a quarter for A15): two roundings per coordinate.
+  Vec3 position(std::int64_t vertex) const;
+  std::array<std::int64_t, 4> tet(std::int64_t tet) const;
+  /// Appends the ids of the tets at `vertex` that lie inside the mesh, ascending.
+  void star(std::int64_t vertex, std::vector<std::int64_t>& tets) const;
+  /// Appends the vertices that share an edge with `vertex`, ascending.
+  void link(std::int64_t vertex, std::vector<std::int64_t>& vertices) const;
+  /// True if some tet of the tiling at `vertex` is missing from the mesh.
+  bool on_rim(std::int64_t vertex) const;
+  /// True if some tet of the mesh has `vertex` as a corner.
+  bool has_tets(std::int64_t vertex) const;
+  /// The tet behind the face opposite to local vertex `face`, or -1 at the rim.
+  std::int64_t neighbor(std::int64_t tet, int face) const;
+  /// Some tet whose cell contains x (a place to start a local search), or -1 outside the box.
+  std::int64_t tet_near(const Vec3& x) const;
+
+ private:
+  using Cell = std::array<std::int64_t, 3>;
+  struct VertexAddress {
+    int type;
+    Cell cell;
+  };
+  VertexAddress vertex_address(std::int64_t vertex) const;
+  std::int64_t vertex_id(int type, const Cell& cell) const;
+  bool holds(const Cell& cell, const std::array<int, 3>& offset) const;
+  std::int64_t tet_id(int tet, const Cell& cell, const std::array<int, 3>& offset) const;
+
+  Tiling tiling_;
+  TilingTables tables_;
+  double h_, cell_edge_;
+  Vec3 origin_;
+  Cell n_;  ///< cells in x, y, z
+  int n_types_, n_cell_tets_;
+};
+
+}  // namespace umtet

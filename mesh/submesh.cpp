@@ -1,0 +1,185 @@
+#include "mesh/submesh.h"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "mesh/detail/assemble_submesh.h"
+#include "mesh/detail/id_set.h"
+
+namespace umtet {
+namespace {
+
+using detail::IdSet;
+
+// 64 vertices share a word: 64 words are some thousand evaluations of psi, enough to hide the cost of a task.
+constexpr std::size_t kWordsPerTask = 64;
+constexpr std::int64_t kTetsPerBlock = 1 << 16;
+// Side of the coarse sampling of h_for_tets.
+constexpr int kSamples = 64;
+// omega_h exceeds Omega by a layer of about this many cell edges: its tets need only one vertex inside. Measured.
+constexpr double kExcessLayer = .27;
+
+/// The inside bit of every background vertex that has a tet.             Alg. 1, step 7
+IdSet inside_vertices(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t& n_evaluations) {
+  IdSet inside(background.n_vertices());
+  std::atomic<std::size_t> evaluations = 0;
+  const auto range = tbb::blocked_range<std::size_t>(0, inside.n_words(), kWordsPerTask);
+  tbb::parallel_for(range, [&](const auto& words) {
+    std::size_t n = 0;
+    for (std::size_t w = words.begin(); w != words.end(); ++w) {
+      std::uint64_t bits = 0;
+      const std::int64_t first = static_cast<std::int64_t>(w * 64);
+      const std::int64_t last = std::min(first + 64, background.n_vertices());
+      for (std::int64_t v = first; v < last; ++v) {
+        if (!background.has_tets(v)) continue;
+        ++n;
+        if (psi.value(background.position(v)) < 0) bits |= std::uint64_t{1} << (v - first);
+      }
+      inside.set_word(w, bits);
+    }
+    evaluations += n;
+  });
+  n_evaluations = evaluations;
+  return inside;
+}
+
+unsigned inside_mask(const std::array<std::int64_t, 4>& tet, const IdSet& inside) {
+  unsigned mask = 0;
+  for (unsigned k = 0; k < 4; ++k) mask |= static_cast<unsigned>(inside.test(tet[k])) << k;
+  return mask;
+}
+
+/// Tets with a vertex inside, ascending.                                 Alg. 1, steps 14-16
+std::vector<std::int64_t> cut_or_inside_tets(const BackgroundMesh& background, const IdSet& inside) {
+  const std::int64_t n_blocks = (background.n_tets() + kTetsPerBlock - 1) / kTetsPerBlock;
+  std::vector<std::vector<std::int64_t>> blocks(static_cast<std::size_t>(n_blocks));
+  tbb::parallel_for(std::int64_t{0}, n_blocks, [&](std::int64_t b) {
+    const std::int64_t end = std::min((b + 1) * kTetsPerBlock, background.n_tets());
+    for (std::int64_t t = b * kTetsPerBlock; t < end; ++t) {
+      if (inside_mask(background.tet(t), inside) != 0) blocks[b].push_back(t);
+    }
+  });
+  std::size_t n = 0;
+  for (const auto& block : blocks) n += block.size();
+  std::vector<std::int64_t> tets;
+  tets.reserve(n);
+  for (auto& block : blocks) {
+    tets.insert(tets.end(), block.begin(), block.end());
+    block = {};
+  }
+  return tets;
+}
+
+struct CoarseMeasure {
+  double volume, area;
+};
+
+/// Volume and area of {psi < 0} from the signs of psi on a lattice: counted points for the volume, Cauchy-Crofton for
+/// the area (a unit of area is crossed by 3/2 lattice lines per d^2, averaged over normals).
+CoarseMeasure measure(ImplicitFunctionRef psi, const Box& box) {
+  const double d = box.sizes().maxCoeff() / kSamples;
+  const Eigen::Array3i n = (box.sizes().array() / d).ceil().cast<int>().max(1) + 1;
+  std::vector<double> values(static_cast<std::size_t>(n.prod()));
+  const Vec3 origin = box.center() - .5 * d * (n - 1).cast<double>().matrix();
+  tbb::parallel_for(0, n.z(), [&](int k) {
+    for (int j = 0; j < n.y(); ++j) {
+      for (int i = 0; i < n.x(); ++i) values[i + n.x() * (j + n.y() * k)] = psi.value(origin + d * Vec3(i, j, k));
+    }
+  });
+  double inside = 0, crossings = 0;
+  const std::array<int, 3> stride = {1, n.x(), n.x() * n.y()};
+  for (int k = 0; k < n.z(); ++k) {
+    for (int j = 0; j < n.y(); ++j) {
+      for (int i = 0; i < n.x(); ++i) {
+        const std::size_t at = i + n.x() * (j + n.y() * static_cast<std::size_t>(k));
+        const std::array<int, 3> index = {i, j, k};
+        inside += values[at] < 0;
+        for (int a = 0; a < 3; ++a) {
+          if (index[a] + 1 < n[a]) crossings += (values[at] < 0) != (values[at + stride[a]] < 0);
+        }
+      }
+    }
+  }
+  return {inside * d * d * d, crossings * d * d / 1.5};
+}
+
+}  // namespace
+
+namespace detail {
+
+Submesh assemble_submesh(const BackgroundMesh& background, std::vector<std::int64_t> tets, const IdSet& inside) {
+  constexpr std::size_t kMost = std::numeric_limits<int>::max();
+  IdSet used(background.n_vertices()), positive(background.n_vertices());
+  Submesh result;
+  std::vector<unsigned char> masks(tets.size());
+  for (std::size_t t = 0; t < tets.size(); ++t) {
+    const auto vertices = background.tet(tets[t]);
+    const unsigned mask = inside_mask(vertices, inside);
+    masks[t] = static_cast<unsigned char>(mask);
+    for (unsigned k = 0; k < 4; ++k) {
+      used.insert(vertices[k]);
+      if (is_positively_cut(mask) && !(mask >> k & 1)) positive.insert(vertices[k]);  // Alg. 1, step 18
+    }
+  }
+  const std::size_t n_vertices = used.index();
+  if (tets.size() > kMost || n_vertices > kMost)
+    throw std::length_error("omega_h: more than 2^31 - 1 tets or vertices");
+
+  result.background_vertex.reserve(n_vertices);
+  result.mesh.V.reserve(n_vertices);
+  used.for_each([&](std::int64_t v) {
+    result.background_vertex.push_back(v);
+    result.mesh.V.push_back(background.position(v));  // Alg. 1, step 21
+  });
+  positive.for_each([&](std::int64_t v) { result.positive_vertices.push_back(used.rank(v)); });
+
+  result.mesh.C.resize(tets.size());
+  for (std::size_t t = 0; t < tets.size(); ++t) {
+    const auto vertices = background.tet(tets[t]);
+    Tet& tet = result.mesh.C[t];
+    for (int k = 0; k < 4; ++k) tet[k] = used.rank(vertices[k]);
+    if (!is_positively_cut(masks[t])) continue;
+    const auto& face = kTetFace[std::countr_zero(static_cast<unsigned>(masks[t]))];
+    result.positive_faces.push_back({tet[face[0]], tet[face[1]], tet[face[2]]});
+    result.positive_tets.push_back(static_cast<int>(t));
+  }
+  result.background_tet = std::move(tets);
+  return result;
+}
+
+}  // namespace detail
+
+Submesh find_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t* n_psi_evaluations) {
+  std::size_t n = 0;
+  const IdSet inside = inside_vertices(background, psi, n);
+  if (n_psi_evaluations) *n_psi_evaluations = n;
+  return detail::assemble_submesh(background, cut_or_inside_tets(background, inside), inside);
+}
+
+double h_for_tets(const Tiling& tiling, ImplicitFunctionRef psi, const Box& box, double n_tets) {
+  if (!(n_tets > 0)) throw std::invalid_argument("n_tets = " + std::to_string(n_tets) + ": must be > 0");
+  if (box.isEmpty() || !box.sizes().allFinite()) throw std::invalid_argument("box: must be finite and not empty");
+  const auto [volume, area] = measure(psi, box);
+  if (!(volume > 0)) throw std::invalid_argument("psi: not negative at any of the samples taken in the box");
+  // n a^3 = per_cell (volume + layer a area): a fixed point, contracting because the layer is a part of the whole.
+  const double per_cell = static_cast<double>(tiling.tets.size());
+  double a = std::cbrt(per_cell * volume / n_tets);
+  for (int i = 0; i < 50; ++i) a = std::cbrt(per_cell * (volume + kExcessLayer * a * area) / n_tets);
+  return a * tiling.mean_edge;
+}
+
+double h_for_tets(ImplicitFunctionRef psi, const Box& box, double n_tets) {
+  return h_for_tets(a15(), psi, box, n_tets);
+}
+
+}  // namespace umtet

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+#include "mesh/implicit_function.h"
+
+namespace umtet {
+
+/// How far it is from each point of the boundary, along the normal, to the sheet on the other side: through the body,
+/// or through the gap outside, whichever is shorter. What is thinner than about two background edges cannot be meshed
+/// well.
+///
+/// Each x is first moved onto {psi = 0} along grad psi; then psi is followed along -n and +n until its sign returns.
+/// @param points  near the boundary, within `step` or so (samples of it)
+/// @param step    how finely psi is followed, model units: a wall or gap thinner than this may be stepped over; > 0
+/// @param limit   distances are looked for up to here, model units; farther sheets count as `limit`
+/// @return one distance per point; `limit` where grad psi vanishes or the point does not reach the boundary
+/// Cost: up to 2 limit / step values of psi a point. Threads over points; the result does not depend on them.
+std::vector<double> thickness(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double step, double limit);
+
+}  // namespace umtet

@@ -1,0 +1,340 @@
+#include "mesh/universal_mesh.h"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "mesh/boundary_dvr.h"
+#include "mesh/crawl.h"
+#include "mesh/dvr.h"
+#include "mesh/tet_quality.h"
+
+namespace umtet {
+namespace {
+
+// Right angles of a background count as acute by no more than rounding.
+constexpr double kRightAngleDeg = 90 - 1e-9;
+// The paper leaves the "representative mesh size" of Alg. 3 open. A vertex that moves half an edge leaves its ring, so
+// samples beyond are wasted.
+constexpr double kSampleReach = .5;
+constexpr std::size_t kTetsPerTask = 4096;
+constexpr std::size_t kProjectionsPerTask = 64;
+
+/// The first of the offenders, by number, and how many there are.
+struct Offenders {
+  std::size_t first = std::numeric_limits<std::size_t>::max(), count = 0;
+  void add(std::size_t i) { first = std::min(first, i), ++count; }
+};
+
+template <class Predicate>
+Offenders find_offenders(std::size_t n, Predicate&& bad) {
+  return tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, n, kTetsPerTask), Offenders{},
+      [&](const auto& range, Offenders o) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+          if (bad(i)) o.add(i);
+        }
+        return o;
+      },
+      [](Offenders a, const Offenders& b) {
+        return Offenders{std::min(a.first, b.first), a.count + b.count};
+      });
+}
+
+/// Algorithm 1; a member per group of steps. Each returns false when the run is over, with status and evidence set.
+class Run {
+ public:
+  Run(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params, const UmObserver& observer)
+      : background_(background), psi_(psi), params_(params), observer_(observer) {}
+
+  UmResult operator()(const std::vector<Vec3>& seeds) {
+    if (find_omega_h(seeds) && stays_off_the_rim()) {
+      count_double_positive_faces();
+      mesh_.emplace(submesh().mesh, background_.tiling().rings_are_optimal);
+      if (project_and_relax()) improve_boundary();
+    }
+    result_.final = mesh_ ? std::move(mesh_->V) : submesh().mesh.V;
+    if (result_.projected.empty()) result_.projected = result_.final;
+    return std::move(result_);
+  }
+
+ private:
+  const Submesh& submesh() const { return result_.submesh; }
+  bool find_omega_h(const std::vector<Vec3>& seeds);
+  bool stays_off_the_rim();
+  void count_double_positive_faces();
+  void measure_conditioning_angles();
+  bool project_and_relax();
+  void improve_boundary();
+  bool find_feet();
+  bool advance(double lambda);
+  bool report(const UmProgress& progress);
+  bool fail(UmStatus status, const UmEvidence& evidence);
+  void relax_interior(int round, int r);
+  bool fail_at(UmStatus status, UmEvidence evidence, const Tet& near);
+
+  const BackgroundMesh& background_;
+  ImplicitFunctionRef psi_;
+  const UmParams& params_;
+  const UmObserver& observer_;
+  UmResult result_;
+  std::optional<MovingMesh> mesh_;
+  std::optional<RelaxationOrder> relaxed_;        ///< I_R
+  std::vector<ClosestPoint> feet_;                ///< pi of each positive vertex
+  std::vector<bool> on_double_face_, at_obtuse_;  ///< per vertex, empty if none is
+};
+
+bool Run::fail(UmStatus status, const UmEvidence& evidence) {
+  result_.status = status;
+  result_.evidence = evidence;
+  return false;
+}
+
+bool Run::report(const UmProgress& progress) {
+  if (!observer_ || observer_(progress)) return true;
+  return fail(UmStatus::Cancelled, {.what = std::string("stopped by the observer during ") + progress.step});
+}
+
+/// Steps 1-22.
+bool Run::find_omega_h(const std::vector<Vec3>& seeds) {
+  std::string lost;
+  if (params_.search == SubmeshSearch::FullLoop) {
+    result_.submesh = find_submesh(background_, psi_, &result_.n_psi_evaluations);
+  } else {
+    Crawl found = crawl(background_, psi_, seeds);
+    result_.submesh = std::move(found.submesh);
+    result_.n_psi_evaluations = found.n_psi_evaluations;
+    lost = "; " + std::to_string(found.lost_seeds.size()) + " of " + std::to_string(seeds.size()) +
+           " seeds led to no positively cut tet";
+  }
+  if (submesh().mesh.C.empty()) {
+    return fail(UmStatus::EmptyDomain, {.what = "no vertex of the background mesh was found inside the domain" + lost});
+  }
+  return report({"submesh", 1, 1, &submesh().mesh.V});
+}
+
+/// The set triangulated by the background must strictly contain the closure of Omega (Section 2.1).
+bool Run::stays_off_the_rim() {
+  // A vertex that is not positive is inside, and a vertex on the rim has lost tets of omega_h.
+  std::vector<bool> positive(submesh().mesh.V.size(), false);
+  for (const int i : submesh().positive_vertices) positive[i] = true;
+  const Offenders rim = find_offenders(positive.size(), [&](std::size_t i) {
+    return !positive[i] && background_.on_rim(submesh().background_vertex[i]);
+  });
+  if (rim.count == 0) return true;
+  const Vec3 where = submesh().mesh.V[rim.first];
+  return fail(UmStatus::DomainLeavesBackground, {.background_vertex = submesh().background_vertex[rim.first],
+                                                 .where = where,
+                                                 .count = rim.count,
+                                                 .what = "the domain reaches the rim of the background mesh"});
+}
+
+void Run::count_double_positive_faces() {
+  std::vector<std::pair<Triangle, int>> faces;
+  for (std::size_t f = 0; f < submesh().positive_faces.size(); ++f) {
+    Triangle sorted = submesh().positive_faces[f];
+    std::sort(sorted.begin(), sorted.end());
+    faces.emplace_back(sorted, static_cast<int>(f));
+  }
+  std::sort(faces.begin(), faces.end());
+  for (std::size_t k = 1; k < faces.size(); ++k) {
+    if (faces[k].first != faces[k - 1].first) continue;
+    on_double_face_.resize(submesh().mesh.V.size(), false);
+    for (const int i : faces[k].first) on_double_face_[i] = true;
+    ++result_.double_positive_faces;
+  }
+}
+
+/// Section 5.3: the angles at the positive face along the two edges that meet at the proximal vertex.
+void Run::measure_conditioning_angles() {
+  const TetMesh& mesh = submesh().mesh;
+  std::vector<double> distance(mesh.V.size(), 0);
+  for (std::size_t k = 0; k < feet_.size(); ++k) distance[submesh().positive_vertices[k]] = std::abs(feet_[k].t);
+  for (std::size_t f = 0; f < submesh().positive_faces.size(); ++f) {
+    Triangle face = submesh().positive_faces[f];
+    const auto nearer = [&](int i, int j) { return distance[i] < distance[j]; };
+    std::rotate(face.begin(), std::min_element(face.begin(), face.end(), nearer), face.end());
+    const Tet& tet = mesh.C[submesh().positive_tets[f]];
+    const int inside = *std::find_if(tet.begin(), tet.end(),
+                                     [&](int i) { return std::find(face.begin(), face.end(), i) == face.end(); });
+    const auto angle = [&](int edge_end, int other) {
+      return dihedral_angle_deg(mesh.V[face[0]], mesh.V[edge_end], mesh.V[other], mesh.V[inside]);
+    };
+    const double greatest = std::max(angle(face[1], face[2]), angle(face[2], face[1]));
+    result_.conditioning_angle_max_deg = std::max(result_.conditioning_angle_max_deg, greatest);
+    if (greatest < kRightAngleDeg) continue;
+    at_obtuse_.resize(mesh.V.size(), false);
+    for (const int i : tet) at_obtuse_[i] = true;
+    ++result_.obtuse_conditioning_angles;
+  }
+}
+
+/// Fails with the assumption that is broken at one of these vertices, if there is one, else with the status given.
+bool Run::fail_at(UmStatus status, UmEvidence evidence, const Tet& near) {
+  const auto any_in = [&](const std::vector<bool>& set) {
+    return !set.empty() && std::any_of(near.begin(), near.end(), [&](int i) { return set[i]; });
+  };
+  if (any_in(on_double_face_)) {
+    evidence.what += ", at a face shared by two positively cut tets";
+    return fail(UmStatus::DoublePositiveFace, evidence);
+  }
+  if (any_in(at_obtuse_)) {
+    evidence.what += ", at a conditioning angle that is not acute";
+    return fail(UmStatus::ObtuseConditioningAngle, evidence);
+  }
+  return fail(status, evidence);
+}
+
+/// pi of every positive vertex where it is now.
+bool Run::find_feet() {
+  const auto& positive = submesh().positive_vertices;
+  feet_.resize(positive.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positive.size(), kProjectionsPerTask), [&](const auto& range) {
+    for (std::size_t k = range.begin(); k != range.end(); ++k) {
+      feet_[k] = closest_point(psi_, mesh_->V[positive[k]], background_.h(), params_.closest_point);
+    }
+  });
+  for (const ClosestPoint& foot : feet_) result_.n_psi_evaluations += static_cast<std::size_t>(foot.iterations);
+  const Offenders lost = find_offenders(feet_.size(), [&](std::size_t k) { return !feet_[k].converged; });
+  if (lost.count == 0) return true;
+  const int i = positive[lost.first];
+  return fail_at(UmStatus::ProjectionDiverged,
+                 {.background_vertex = submesh().background_vertex[i],
+                  .where = mesh_->V[i],
+                  .count = lost.count,
+                  .what = "the closest point of a positive vertex was not found"},
+                 {i, i, i, i});
+}
+
+/// Steps 25-27, and the check on entry of dvr (Section 5.5).
+bool Run::advance(double lambda) {
+  const auto& positive = submesh().positive_vertices;
+  for (std::size_t k = 0; k < positive.size(); ++k) {
+    const Vec3& x = mesh_->V[positive[k]];
+    mesh_->move(positive[k], lambda * feet_[k].point + (1 - lambda) * x);  // step 26
+  }
+  const auto& C = submesh().mesh.C;
+  const auto& V = mesh_->V;
+  const Offenders inverted = find_offenders(
+      C.size(), [&](std::size_t t) { return !(volume6(V[C[t][0]], V[C[t][1]], V[C[t][2]], V[C[t][3]]) > 0); });
+  if (inverted.count == 0) return true;
+  const Tet& tet = C[inverted.first];
+  return fail_at(UmStatus::InvertedTet,
+                 {.background_tet = submesh().background_tet[inverted.first],
+                  .where = .25 * (V[tet[0]] + V[tet[1]] + V[tet[2]] + V[tet[3]]),
+                  .count = inverted.count,
+                  .what = "moving positive vertices to the boundary inverted a tet"},
+                 tet);
+}
+
+/// Steps 23-30.
+bool Run::project_and_relax() {
+  std::vector<bool> positive(mesh_->V.size(), false);
+  for (const int i : submesh().positive_vertices) positive[i] = true;
+  std::vector<int> interior;
+  for (int i = 0; i < static_cast<int>(positive.size()); ++i) {
+    if (!positive[i]) interior.push_back(i);
+  }
+  relaxed_.emplace(*mesh_, std::move(interior));  // I_R = I^omega_h \ I^+, Section 3.2
+  for (int pass = 1; pass <= params_.projection_passes; ++pass) {
+    if (!find_feet()) return false;
+    if (pass == 1) measure_conditioning_angles();
+    if (!advance(static_cast<double>(pass) / params_.projection_passes)) return false;
+    UmProgress progress{"project", pass, params_.projection_passes, &mesh_->V, 0, params_.relaxation_iterations};
+    if (!report(progress)) return false;
+    for (int r = 0; r < params_.relaxation_iterations; ++r) {
+      relax_interior(pass - 1, r);  // step 28
+      progress.sweep = r + 1;
+      if (!report(progress)) return false;
+    }
+  }
+  result_.projected = mesh_->V;
+  return true;
+}
+
+/// Iteration r of dvr in its round-th call. Every call begins with e_x, and random directions never come back.
+void Run::relax_interior(int round, int r) {
+  const int stride = (params_.relaxation_iterations + 2) / 3 * 3;
+  const DvrParams dvr_params{params_.directions, params_.max_min, params_.seed, true};
+  dvr(*mesh_, *relaxed_, submesh().background_vertex, dvr_params, round * stride + r, 1);
+}
+
+/// Steps 31-35.
+void Run::improve_boundary() {
+  const RelaxationOrder boundary(*mesh_, submesh().positive_vertices);
+  BoundaryDvrParams boundary_params{params_.samples, kSampleReach * background_.h(), params_.seed,
+                                    params_.closest_point};
+  // A sample is off the boundary by a sagitta only, where Damped settles in as many steps as Newton and needs no
+  // Hessian.
+  if (boundary_params.closest_point.method == ClosestPointMethod::Newton) {
+    boundary_params.closest_point.method = ClosestPointMethod::Damped;
+  }
+  const int n = params_.relaxation_iterations;
+  for (int r = 0; r < n; ++r) {
+    result_.n_psi_evaluations +=
+        boundary_dvr(*mesh_, boundary, submesh().background_vertex, psi_, boundary_params, r);  // step 32
+    relax_interior(params_.projection_passes, r);                                               // step 33
+    if (!report({"relax", r + 1, n, &mesh_->V, 1, 1})) return;
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> problems(const UmParams& params) {
+  std::vector<std::string> list = problems(params.closest_point);
+  for (std::string& problem : list) problem = "closest_point." + problem;
+  const auto at_least = [&](const char* name, int value, int least) {
+    if (value < least) {
+      list.push_back(std::string(name) + " = " + std::to_string(value) + ": must be >= " + std::to_string(least));
+    }
+  };
+  at_least("projection_passes", params.projection_passes, 1);
+  at_least("relaxation_iterations", params.relaxation_iterations, 0);
+  at_least("samples", params.samples, 1);
+#ifndef UMTET_WITH_GSL
+  if (params.max_min == MaxMin::Exact) list.push_back("max_min = Exact: built without GSL, use GoldenSection");
+#endif
+  return list;
+}
+
+const char* to_string(UmStatus status) {
+  switch (status) {
+    case UmStatus::Success:
+      return "success";
+    case UmStatus::EmptyDomain:
+      return "empty domain";
+    case UmStatus::DomainLeavesBackground:
+      return "domain leaves background";
+    case UmStatus::DoublePositiveFace:
+      return "double positive face";
+    case UmStatus::ObtuseConditioningAngle:
+      return "obtuse conditioning angle";
+    case UmStatus::ProjectionDiverged:
+      return "projection diverged";
+    case UmStatus::InvertedTet:
+      return "inverted tet";
+    case UmStatus::Cancelled:
+      return "cancelled";
+  }
+  return "unknown";
+}
+
+UmResult universal_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
+                        const UmObserver& observer, const std::vector<Vec3>& seeds) {
+  std::string all;
+  for (const std::string& problem : problems(params)) all += (all.empty() ? "" : "; ") + problem;
+  if (params.search == SubmeshSearch::Crawl && seeds.empty()) {
+    all += (all.empty() ? "" : "; ") + std::string("seeds: Crawl needs at least one");
+  }
+  if (!all.empty()) throw std::invalid_argument(all);
+  return Run(background, psi, params, observer)(seeds);
+}
+
+}  // namespace umtet

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "mesh/background_mesh.h"
+#include "mesh/closest_point.h"
+#include "mesh/implicit_function.h"
+#include "mesh/max_min.h"
+#include "mesh/relaxation_direction.h"
+#include "mesh/submesh.h"
+
+namespace umtet {
+
+enum class SubmeshSearch { FullLoop, Crawl };  ///< Alg. 1 steps 1-22, or Section 3.8(c) from UmParams::seeds
+
+struct UmParams {
+  int projection_passes = 5;       ///< N_P: positive vertices reach the boundary in this many steps, eq. (1); >= 1
+  int relaxation_iterations = 25;  ///< N_R of Algorithms 1 and 2; >= 0
+  int samples = 20;                ///< N_S: 2 N_S + 1 candidates in [-h, h], eq. (7); >= 1
+  DirectionRule directions = DirectionRule::Random;  ///< .01 better in the least Q than AxesInTurn, Section 3.8(d)
+  MaxMin max_min = MaxMin::Exact;  ///< GoldenSection is the paper's faster, suboptimal choice (Fig. 18)
+  SubmeshSearch search = SubmeshSearch::FullLoop;
+  ClosestPointParams closest_point;
+  std::uint64_t seed = 0;  ///< random tangents of boundary dvr are a function of (seed, iteration, vertex)
+};
+
+/// Every broken constraint, not just the first; empty when the parameters are usable.
+std::vector<std::string> problems(const UmParams&);
+
+enum class UmStatus {
+  Success,
+  EmptyDomain,              ///< psi >= 0 at every background vertex
+  DomainLeavesBackground,   ///< psi < 0 at a vertex on the rim: the box is too small
+  DoublePositiveFace,       ///< the run failed at a face shared by two positively cut tets: too thin or curved for h
+  ObtuseConditioningAngle,  ///< the run failed where the injectivity condition of Section 5.3 is broken
+  ProjectionDiverged,       ///< 3.8(a) did not settle for a positive vertex
+  InvertedTet,              ///< an intermediate mesh has a tet with Q <= 0
+  Cancelled,                ///< the observer said stop
+};
+const char* to_string(UmStatus);
+
+/// What happened, where: ids of the background mesh (-1 = does not apply), a place in model units, a sentence.
+struct UmEvidence {
+  std::int64_t background_vertex = -1;
+  std::int64_t background_tet = -1;
+  Vec3 where = Vec3::Zero();
+  std::size_t count = 0;  ///< how many offenders there are; the fields above describe the first
+  std::string what;
+};
+
+struct UmResult {
+  UmStatus status = UmStatus::Success;
+  UmEvidence evidence;          ///< filled when status != Success
+  Submesh submesh;              ///< omega_h with background coordinates (step 22)
+  std::vector<Vec3> projected;  ///< vertex coordinates after step 30, same numbering
+  std::vector<Vec3> final;      ///< vertex coordinates of T^{Omega_h} (step 35), same numbering
+  double conditioning_angle_max_deg = 0;
+  std::size_t obtuse_conditioning_angles = 0;
+  std::size_t double_positive_faces = 0;
+  std::size_t n_psi_evaluations = 0;
+};
+
+/// Where the algorithm stands; return false to stop at the next safe point (at most one sweep later).
+struct UmProgress {
+  const char* step;             ///< "submesh", "project", "relax"
+  int pass, n_passes;           ///< 1-based
+  const std::vector<Vec3>* V;   ///< the current iterate
+  int sweep = 1, n_sweeps = 1;  ///< relaxation sweeps of this pass done so far, and in all; equal at the end of a pass
+};
+using UmObserver = std::function<bool(const UmProgress&)>;
+
+/// Algorithm 1 of the paper: a boundary-fitting mesh of {psi < 0}.
+///
+/// Foreseen failures are statuses with evidence; the arrays of the result then hold the last iterate. A double positive
+/// face or an obtuse conditioning angle breaks an assumption of the algorithm but need not break the mesh: both are
+/// counted in the result, and become the status only when a projection diverges or a tet inverts right there. With
+/// double positive faces the boundary of the mesh is not the set of positive faces, which a certificate will say.
+/// @param seeds  for SubmeshSearch::Crawl: at least one point near every component of the boundary
+/// \throw std::invalid_argument naming every broken constraint of params
+UmResult universal_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params = {},
+                        const UmObserver& observer = {}, const std::vector<Vec3>& seeds = {});
+
+}  // namespace umtet

@@ -1,0 +1,133 @@
+// Stage two: what a projection, a relaxation, a sweep, the search for omega_h and a whole mesh cost on one core.
+// ./build/release/tests/bench/mesh_bench
+
+#include <benchmark/benchmark.h>
+#include <oneapi/tbb/global_control.h>
+
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+
+#include "mesh/crawl.h"
+#include "mesh/dvr.h"
+#include "mesh/universal_mesh.h"
+#include "tests/support/domains.h"
+
+using namespace umtet;
+
+namespace {
+
+/// omega_h of the torus, its positive vertices two fifths of the way to the boundary.
+struct Half {
+  testing::AnalyticDomain domain = testing::torus();
+  double h;
+  BackgroundMesh background;
+  Submesh submesh;
+  MovingMesh mesh;
+  std::vector<int> interior;
+
+  explicit Half(double n_tets)
+      : h(h_for_tets(domain, domain.box, n_tets)),
+        background(a15(), domain.box, h),
+        submesh(find_submesh(background, domain)),
+        mesh(submesh.mesh, true) {
+    std::vector<int> all(submesh.mesh.V.size());
+    std::iota(all.begin(), all.end(), 0);
+    std::set_difference(all.begin(), all.end(), submesh.positive_vertices.begin(), submesh.positive_vertices.end(),
+                        std::back_inserter(interior));
+    for (const int i : submesh.positive_vertices) {
+      mesh.move(i, mesh.V[i] + .4 * (closest_point(domain, mesh.V[i], h, {}).point - mesh.V[i]));
+    }
+  }
+};
+
+const Half& half() {
+  static const Half data(100000);
+  return data;
+}
+
+void closest_points(benchmark::State& state) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const Half& data = half();
+  ClosestPointParams params;
+  params.method = static_cast<ClosestPointMethod>(state.range(0));
+  std::int64_t n = 0;
+  for (auto _ : state) {
+    for (const int i : data.submesh.positive_vertices) {
+      benchmark::DoNotOptimize(closest_point(data.domain, data.submesh.mesh.V[i], data.h, params));
+    }
+    n += static_cast<std::int64_t>(data.submesh.positive_vertices.size());
+  }
+  state.SetItemsProcessed(n);
+}
+BENCHMARK(closest_points)->ArgName("method")->Arg(0)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond);
+
+void relaxations(benchmark::State& state) {
+  const Half& data = half();
+  std::int64_t n = 0;
+  for (auto _ : state) {
+    for (const int i : data.interior) {
+      const RingOnLine line(data.mesh.ring(i), random_unit_vector(0, 0, i));
+      benchmark::DoNotOptimize(max_min(line, static_cast<MaxMin>(state.range(0))));
+    }
+    n += static_cast<std::int64_t>(data.interior.size());
+  }
+  state.SetItemsProcessed(n);
+}
+#ifdef UMTET_WITH_GSL
+BENCHMARK(relaxations)->ArgName("exact0_golden1")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
+#else
+BENCHMARK(relaxations)->ArgName("exact0_golden1")->Arg(1)->Unit(benchmark::kMillisecond);
+#endif
+
+void dvr_sweeps(benchmark::State& state) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(state.range(0)));
+  const Half& data = half();
+  MovingMesh mesh = data.mesh;
+  const RelaxationOrder order(mesh, data.interior);
+  int r = 0;
+  for (auto _ : state) dvr(mesh, order, data.submesh.background_vertex, {}, r++, 1);
+  state.SetItemsProcessed(r * static_cast<std::int64_t>(data.interior.size()));
+}
+BENCHMARK(dvr_sweeps)->ArgName("threads")->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void search_full_loop(benchmark::State& state) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const Half& data = half();
+  for (auto _ : state) benchmark::DoNotOptimize(find_submesh(data.background, data.domain));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(data.submesh.mesh.C.size()));
+}
+BENCHMARK(search_full_loop)->Unit(benchmark::kMillisecond);
+
+void search_crawl(benchmark::State& state) {
+  const Half& data = half();
+  for (auto _ : state) benchmark::DoNotOptimize(crawl(data.background, data.domain, data.domain.boundary_seeds));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(data.submesh.mesh.C.size()));
+}
+BENCHMARK(search_crawl)->Unit(benchmark::kMillisecond);
+
+/// Items are tets of the result.
+void whole_mesh(benchmark::State& state) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(state.range(1)));
+  const Half& data = half();
+  UmParams params;
+  params.max_min = static_cast<MaxMin>(state.range(0));
+  for (auto _ : state) benchmark::DoNotOptimize(universal_mesh(data.background, data.domain, params));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(data.submesh.mesh.C.size()));
+}
+BENCHMARK(whole_mesh)
+    ->ArgNames({"exact0_golden1", "threads"})
+#ifdef UMTET_WITH_GSL
+    ->Args({0, 1})
+    ->Args({0, 2})
+#endif
+    ->Args({1, 1})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->Iterations(1);
+
+}  // namespace
+
+BENCHMARK_MAIN();

@@ -1,0 +1,211 @@
+#include "mesh/universal_mesh.h"
+
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "mesh/tet_quality.h"
+#include "tests/support/domains.h"
+
+namespace umtet {
+namespace {
+
+using testing::AnalyticDomain;
+
+UmParams usable_params() {
+  UmParams params;
+#ifndef UMTET_WITH_GSL
+  params.max_min = MaxMin::GoldenSection;
+#endif
+  return params;
+}
+
+double min_quality(const Submesh& submesh, const std::vector<Vec3>& V) {
+  double q = 1;
+  for (const Tet& t : submesh.mesh.C) q = std::min(q, mean_ratio(V[t[0]], V[t[1]], V[t[2]], V[t[3]]));
+  return q;
+}
+
+double volume(const UmResult& result) {
+  double v6 = 0;
+  for (const Tet& t : result.submesh.mesh.C) {
+    v6 += volume6(result.final[t[0]], result.final[t[1]], result.final[t[2]], result.final[t[3]]);
+  }
+  return v6 / 6;
+}
+
+UmResult mesh_of(const AnalyticDomain& domain, double n_tets, const UmParams& params = usable_params()) {
+  return universal_mesh(BackgroundMesh(a15(), domain.box, h_for_tets(domain, domain.box, n_tets)), domain, params);
+}
+
+TEST(UniversalMesh, EveryDomainGetsAMeshOnItsBoundaryWithGoodTets) {
+  for (const AnalyticDomain& domain : testing::domains()) {
+    SCOPED_TRACE(domain.name);
+    const double h = h_for_tets(domain, domain.box, 12000);
+    const UmResult result = universal_mesh(BackgroundMesh(a15(), domain.box, h), domain, usable_params());
+    ASSERT_EQ(result.status, UmStatus::Success) << result.evidence.what;
+    EXPECT_GT(min_quality(result.submesh, result.projected), .2);  // eq. (9) is coarse here
+    EXPECT_GT(min_quality(result.submesh, result.final), .7);
+    EXPECT_LT(result.conditioning_angle_max_deg, 78.47);  // the greatest dihedral angle of A15
+    EXPECT_EQ(result.obtuse_conditioning_angles, 0u);
+    EXPECT_EQ(result.double_positive_faces, 0u);
+    for (const int i : result.submesh.positive_vertices) {
+      const double distance = std::abs(domain.value(result.final[i])) / domain.gradient(result.final[i]).norm();
+      ASSERT_LT(distance, 1e-8 * h);
+    }
+    if (domain.volume) {
+      EXPECT_NEAR(volume(result) / *domain.volume, 1, .02);
+    }
+  }
+}
+
+TEST(UniversalMesh, SphereVolumeErrorFallsAsHSquared) {
+  UmParams params = usable_params();
+  params.relaxation_iterations = 5;  // the volume is decided by where the boundary vertices are
+  const AnalyticDomain ball = testing::sphere();
+  const auto error = [&](double h) {
+    return *ball.volume - volume(universal_mesh(BackgroundMesh(a15(), ball.box, h), ball, params));
+  };
+  const double coarse = error(.2), fine = error(.1);
+  EXPECT_GT(fine, 0);  // inscribed
+  EXPECT_NEAR(std::log2(coarse / fine), 2, .3);
+}
+
+TEST(UniversalMesh, DoesNotDependOnThreadsOrOnTheSearch) {
+  UmParams params = usable_params();
+  params.relaxation_iterations = 6;
+  const AnalyticDomain domain = testing::torus();
+  const BackgroundMesh background(a15(), domain.box, h_for_tets(domain, domain.box, 20000));
+  const auto bytes_differ = [](const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+    return a.size() != b.size() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) != 0;
+  };
+  for (const DirectionRule rule : {DirectionRule::AxesInTurn, DirectionRule::Random}) {
+    params.directions = rule;
+    params.search = SubmeshSearch::FullLoop;
+    UmResult one, three;
+    {
+      tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+      one = universal_mesh(background, domain, params);
+    }
+    {
+      tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 3);
+      three = universal_mesh(background, domain, params);
+    }
+    EXPECT_FALSE(bytes_differ(one.final, three.final));
+    EXPECT_EQ(one.n_psi_evaluations, three.n_psi_evaluations);
+    params.search = SubmeshSearch::Crawl;
+    const UmResult crawled = universal_mesh(background, domain, params, {}, domain.boundary_seeds);
+    EXPECT_FALSE(bytes_differ(one.final, crawled.final));
+    EXPECT_LT(crawled.n_psi_evaluations, one.n_psi_evaluations);
+  }
+}
+
+TEST(UniversalMesh, SeedDecidesTheRandomDirections) {
+  UmParams params = usable_params();
+  params.relaxation_iterations = 2;
+  const AnalyticDomain ball = testing::sphere();
+  const UmResult a = mesh_of(ball, 4000, params);
+  EXPECT_EQ(mesh_of(ball, 4000, params).final, a.final);
+  params.seed = 1;
+  EXPECT_NE(mesh_of(ball, 4000, params).final, a.final);
+}
+
+TEST(UniversalMesh, EmptyDomainIsAStatus) {
+  const BackgroundMesh background(a15(), Box(Vec3(3, 3, 3), Vec3(4, 4, 4)), .2);
+  const UmResult result = universal_mesh(background, testing::sphere(), usable_params());
+  EXPECT_EQ(result.status, UmStatus::EmptyDomain);
+  EXPECT_FALSE(result.evidence.what.empty());
+}
+
+TEST(UniversalMesh, DomainThatLeavesTheBackgroundIsAStatus) {
+  const BackgroundMesh background(a15(), testing::cube_box(.8), .2);
+  const UmResult result = universal_mesh(background, testing::sphere(), usable_params());
+  EXPECT_EQ(result.status, UmStatus::DomainLeavesBackground);
+  EXPECT_GT(result.evidence.count, 0u);
+  EXPECT_TRUE(background.on_rim(result.evidence.background_vertex));
+  EXPECT_EQ(result.evidence.where, background.position(result.evidence.background_vertex));
+}
+
+TEST(UniversalMesh, TooThinADomainFailsWithAPlaceOrCountsDoubleFaces) {
+  // A disc a third of an edge thick: the sheets of its boundary share tets.
+  const AnalyticDomain disc = testing::ellipsoid({1, 1, .03});
+  const UmResult result = universal_mesh(BackgroundMesh(a15(), testing::cube_box(1.3), .1), disc, usable_params());
+  EXPECT_GT(result.double_positive_faces, 0u);
+  if (result.status != UmStatus::Success) {
+    EXPECT_FALSE(result.evidence.what.empty());
+    EXPECT_GT(result.evidence.count, 0u);
+  }
+  EXPECT_EQ(result.final.size(), result.submesh.mesh.V.size());
+  EXPECT_EQ(result.projected.size(), result.submesh.mesh.V.size());
+}
+
+TEST(UniversalMesh, ADivergedProjectionNamesItsVertex) {
+  UmParams params = usable_params();
+  params.closest_point.max_iterations = 1;  // no vertex is on the boundary to begin with
+  const AnalyticDomain ball = testing::sphere();
+  const UmResult result = mesh_of(ball, 3000, params);
+  EXPECT_EQ(result.status, UmStatus::ProjectionDiverged);
+  EXPECT_EQ(result.evidence.count, result.submesh.positive_vertices.size());
+  EXPECT_GE(ball.value(result.evidence.where), 0);
+  EXPECT_GE(result.evidence.background_vertex, 0);
+}
+
+TEST(UniversalMesh, AnInvertedIterateNamesItsTet) {
+  UmParams params = usable_params();
+  params.projection_passes = 1;  // in one go, which is what the passes are there to avoid
+  const UmResult result = mesh_of(testing::banchoff_chmutov_4(), 20000, params);
+  ASSERT_EQ(result.status, UmStatus::InvertedTet);
+  EXPECT_GE(result.evidence.background_tet, 0);
+  EXPECT_LE(min_quality(result.submesh, result.final), 0);
+}
+
+TEST(UniversalMesh, ObserverSeesEverySweepAndCanStop) {
+  UmParams params = usable_params();
+  params.relaxation_iterations = 3;
+  params.projection_passes = 2;
+  const AnalyticDomain ball = testing::sphere();
+  const BackgroundMesh background(a15(), ball.box, .3);
+  std::vector<std::string> seen;
+  const UmResult whole = universal_mesh(background, ball, params, [&](const UmProgress& p) {
+    seen.push_back(std::string(p.step) + std::to_string(p.pass) + "/" + std::to_string(p.n_passes) + "." +
+                   std::to_string(p.sweep));
+    return true;
+  });
+  EXPECT_EQ(whole.status, UmStatus::Success);
+  EXPECT_EQ(seen, (std::vector<std::string>{"submesh1/1.1", "project1/2.0", "project1/2.1", "project1/2.2",
+                                            "project1/2.3", "project2/2.0", "project2/2.1", "project2/2.2",
+                                            "project2/2.3", "relax1/3.1", "relax2/3.1", "relax3/3.1"}));
+  for (std::size_t stop = 0; stop < seen.size(); ++stop) {
+    std::size_t calls = 0;
+    const UmResult cut = universal_mesh(background, ball, params, [&](const UmProgress&) { return calls++ != stop; });
+    EXPECT_EQ(cut.status, UmStatus::Cancelled);
+    EXPECT_EQ(calls, stop + 1);
+    EXPECT_EQ(cut.final.size(), cut.submesh.mesh.V.size());
+  }
+}
+
+TEST(UniversalMesh, BrokenParamsAreAllNamed) {
+  UmParams params = usable_params();
+  EXPECT_TRUE(problems(params).empty());
+  params.projection_passes = 0;
+  params.relaxation_iterations = -1;
+  params.samples = 0;
+  params.closest_point.tol = 0;
+  EXPECT_EQ(problems(params).size(), 4u);
+  params.search = SubmeshSearch::Crawl;
+  const AnalyticDomain ball = testing::sphere();
+  const BackgroundMesh background(a15(), ball.box, .5);
+  try {
+    universal_mesh(background, ball, params);
+    FAIL() << "no exception";
+  } catch (const std::invalid_argument& error) {
+    for (const char* name : {"projection_passes", "relaxation_iterations", "samples", "closest_point.tol", "seeds"}) {
+      EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace umtet
