@@ -143,6 +143,7 @@ TEST(UniversalMesh, TooThinADomainFailsWithAPlaceOrCountsDoubleFaces) {
 
 TEST(UniversalMesh, ADivergedProjectionNamesItsVertex) {
   UmParams params = usable_params();
+  params.closest_point.method = ClosestPointMethod::Paper;
   params.closest_point.max_iterations = 1;  // no vertex is on the boundary to begin with
   const AnalyticDomain ball = testing::sphere();
   const UmResult result = mesh_of(ball, 3000, params);
