@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace umtet {
+
+/// Size and XXH3-128 of a file: enough to notice damage, not meant against an adversary.
+struct FileStamp {
+  std::uintmax_t size = 0;
+  std::string xxh3;  ///< 32 hexadecimal digits
+  bool operator==(const FileStamp&) const = default;
+};
+
+/// Reads the whole file once, in pieces of 1 MiB.
+/// \throw std::system_error naming the file
+FileStamp stamp(const std::filesystem::path& file);
+
+/// Creates or replaces `file` so that it is, at any moment and after any crash, the old one or the whole new one:
+/// `writer` fills a temporary file in the same folder; then size > 0, fsync, rename, fsync of the folder.
+///
+/// @param writer  gets the path of the temporary file (same extension); reports its own failures by exceptions.
+/// \throw std::system_error naming `file`, whatever went wrong on the way; the temporary file is then gone
+void write_artefact(const std::filesystem::path& file, const std::function<void(const std::filesystem::path&)>& writer);
+
+/// The same for text held in memory; every write is checked.
+void write_text_artefact(const std::filesystem::path& file, std::string_view text);
+
+/// Removes what a killed run left in `folder`: the temporary files of write_artefact().
+void remove_stale_temporaries(const std::filesystem::path& folder);
+
+/// \throw std::system_error naming the file
+std::string read_text(const std::filesystem::path& file);
+
+}  // namespace umtet

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace umtet {
+
+/// The stages in their order; the values are the numbers of their folders.
+enum class Stage { Cloud = 1, LevelSet = 2, Mesh = 3 };
+/// "cloud", "level-set", "mesh".
+const char* to_string(Stage);
+/// \throw UsageError that names the nearest stage
+Stage parse_stage(const std::string& name);
+/// The section of the parameters that a stage reads: "cloud", "reconstruct", "mesh".
+const char* section_of(Stage);
+
+/// The folder of one case: where things are, and who may write.
+struct CasePaths {
+  std::filesystem::path root;
+
+  std::filesystem::path folder(Stage) const;  ///< 1-cloud, 2-level-set, 3-mesh
+  std::filesystem::path record(Stage stage) const { return folder(stage) / "record.json"; }
+  std::filesystem::path cloud() const { return folder(Stage::Cloud) / "cloud.ply"; }
+  std::filesystem::path level_set() const { return folder(Stage::LevelSet) / "level_set.vti"; }
+  std::filesystem::path mesh() const { return folder(Stage::Mesh) / "mesh.vtu"; }
+  std::filesystem::path exports() const { return root / "4-export"; }
+  std::filesystem::path parameters() const { return root / "case.toml"; }
+  std::filesystem::path certificate() const { return root / "certificate.json"; }
+};
+
+/// The right to write to a case, for as long as the object lives. Creates the folder if there is none, and removes it
+/// again if nothing else was put into it.
+class CaseLock {
+ public:
+  /// \throw std::system_error when another process holds the case (names its pid) or the folder cannot be made
+  explicit CaseLock(const std::filesystem::path& root);
+  ~CaseLock();
+  CaseLock(const CaseLock&) = delete;
+  CaseLock& operator=(const CaseLock&) = delete;
+
+ private:
+  std::filesystem::path root_;
+  bool created_;
+  int fd_ = -1;
+};
+
+}  // namespace umtet

@@ -1,0 +1,130 @@
+#include "pipeline/certificate_json.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "pipeline/version.h"
+
+namespace umtet {
+namespace {
+
+constexpr int kSchema = 1;
+
+/// Times of all stages that made this mesh, from their records.
+Json run_of(const CasePaths& paths, const StageRecord& mesh, const Parameters& parameters) {
+  Json seconds = Json::object();
+  double peak = 0;
+  const auto add = [&](const StageRecord& record) {
+    seconds[section_of(record.stage)] = record.run.value("seconds", 0.);
+    peak = std::max(peak, record.run.value("peak_memory_MB", 0.));
+  };
+  Json points_per_s = nullptr;
+  if (parameters.text("mesh.implicit").empty()) {
+    for (const Stage stage : {Stage::Cloud, Stage::LevelSet}) {
+      const StageState state = inspect_stage(paths, stage, parameters.section(section_of(stage)), std::nullopt);
+      if (!state.record) continue;
+      add(*state.record);
+      const double t = state.record->run.value("seconds", 0.);
+      if (stage == Stage::LevelSet && t > 0) points_per_s = state.record->numbers.value("n_points", 0.) / t;
+    }
+  }
+  add(mesh);
+  const double t = mesh.run.value("seconds", 0.);
+  const Json tets_per_s = t > 0 ? Json(mesh.numbers.at("measured").at("n_tets").get<double>() / t) : Json(nullptr);
+  return {{"seconds", seconds},
+          {"points_per_s", points_per_s},
+          {"tets_per_s", tets_per_s},
+          {"peak_memory_MB", peak},
+          {"threads", mesh.run.value("threads", 0)},
+          {"host", mesh.run.value("host", "")},
+          {"date", mesh.run.value("date", "")}};
+}
+
+/// A number of a block, or "-" where the certificate has null.
+std::string show(const Json& block, const char* key, const char* format) {
+  const auto it = block.find(key);
+  if (it == block.end() || !it->is_number()) return "-";
+  return fmt::format(fmt::runtime(format), it->get<double>());
+}
+
+std::string thousands(std::size_t n) {
+  std::string s = std::to_string(n);
+  for (int k = static_cast<int>(s.size()) - 3; k > 0; k -= 3) s.insert(static_cast<std::size_t>(k), ",");
+  return s;
+}
+
+std::string boundary_line(const Json& b) {
+  const bool closed = b.value("closed_manifold", false);
+  const int n = b.value("components", 0);
+  std::string line =
+      closed ? fmt::format("closed manifold, {} component{}, genus {}", n, n == 1 ? "" : "s", b.value("genus", 0L))
+             : fmt::format("NOT a closed manifold, {} component{}", n, n == 1 ? "" : "s");
+  if (b.contains("max_vertex_distance_over_h") && b["max_vertex_distance_over_h"].is_number()) {
+    line += fmt::format("; off psi = 0: vertices {} h, face centres {} h; cos(normals) >= {}",
+                        show(b, "max_vertex_distance_over_h", "{:.1e}"),
+                        show(b, "max_centroid_distance_over_h", "{:.3f}"), show(b, "min_cos_normal", "{:.3f}"));
+  }
+  return line;
+}
+
+}  // namespace
+
+Json certificate(const CasePaths& paths, const StageRecord& mesh, const Parameters& parameters) {
+  Json json = {{"schema", kSchema}, {"tool", "umtet"}, {"version", kVersion}};
+  const std::string& units = parameters.text("output.units");
+  json["units"] = units.empty() ? Json(nullptr) : Json(units);
+  json.update(mesh.numbers.at("measured"));
+  std::vector<std::string> reasons = json.at("reasons");
+  json.erase("reasons");
+  const double gate = parameters.real("output.min_quality"), q = json.at("quality").at("min");
+  json["gates"] = {{"min_quality", gate > 0 ? Json(gate) : Json(nullptr)}};
+  if (q < gate) reasons.push_back(fmt::format("min quality {:.4f} is below the gate of {:.4f}", q, gate));
+  json["verdict"] = reasons.empty() ? "pass" : "fail";
+  json["reasons"] = reasons;
+  json["run"] = run_of(paths, mesh, parameters);
+  return json;
+}
+
+std::string summary(const Json& c) {
+  const Json& q = c.at("quality");
+  const std::string unit = c.contains("units") && c["units"].is_string() ? " " + c["units"].get<std::string>() : "";
+  std::string out = fmt::format("verdict   {}\n", c.at("verdict").get<std::string>());
+  for (const Json& reason : c.at("reasons")) out += fmt::format("          - {}\n", reason.get<std::string>());
+  out +=
+      fmt::format("mesh      {} tets, {} vertices, {} boundary faces; h = {}{}, volume {}{}\n",
+                  thousands(c.at("n_tets")), thousands(c.at("n_vertices")), thousands(c.at("boundary").at("n_faces")),
+                  show(c, "h", "{:.5g}"), unit, show(c, "volume", "{:.6g}"), unit.empty() ? "" : unit + "^3");
+  out += fmt::format("quality   mean ratio min {} | .1 % {} | 1 % {} | mean {}\n", show(q, "min", "{:.4f}"),
+                     show(q, "p001", "{:.4f}"), show(q, "p01", "{:.4f}"), show(q, "mean", "{:.4f}"));
+  out += fmt::format("          dihedral angles {} to {} degrees, {} inverted tets\n",
+                     show(q, "dihedral_min_deg", "{:.1f}"), show(q, "dihedral_max_deg", "{:.1f}"),
+                     q.at("n_inverted").get<std::size_t>());
+  out += "boundary  " + boundary_line(c.at("boundary")) + "\n";
+  if (c.contains("domain")) {
+    const Json& d = c["domain"];
+    out += fmt::format("domain    psi = 0 has {} pieces, {} dropped", d.at("components_of_zero_set").get<int>(),
+                       d.at("components_dropped").size());
+    if (d.at("unsupported_area_fraction").is_number()) {
+      out += fmt::format("; {:.2f} % of the surface without samples near it",
+                         100 * d["unsupported_area_fraction"].get<double>());
+    }
+    out += "\n";
+  }
+  if (c.contains("cloud") && c["cloud"].is_object()) {
+    const Json& k = c["cloud"];
+    out += fmt::format("cloud     {} samples; distance to the mesh rms {} ({} h), 99 % {} h, max {} h\n",
+                       thousands(c.at("n_points")), show(k, "rms_distance", "{:.3g}") + unit,
+                       show(k, "rms_distance_over_h", "{:.4f}"), show(k, "p99_distance_over_h", "{:.4f}"),
+                       show(k, "max_distance_over_h", "{:.4f}"));
+  }
+  if (c.contains("run")) {
+    out += "time     ";
+    for (const auto& [stage, t] : c["run"].at("seconds").items())
+      out += fmt::format(" {} {:.2f} s,", stage, t.get<double>());
+    out += fmt::format(" peak memory {} MB\n", show(c["run"], "peak_memory_MB", "{:.0f}"));
+  }
+  return out;
+}
+
+}  // namespace umtet

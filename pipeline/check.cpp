@@ -1,0 +1,53 @@
+#include "pipeline/check.h"
+
+#include <fmt/format.h>
+
+#include "mesh/certificate.h"
+#include "mesh/tet_mesh_io.h"
+#include "pipeline/domain.h"
+#include "pipeline/exit_code.h"
+#include "pipeline/mesh_measures.h"
+#include "pipeline/version.h"
+
+namespace umtet {
+namespace fs = std::filesystem;
+namespace {
+
+Domain domain_of_case(const fs::path& root) {
+  const CasePaths paths{root};
+  if (!fs::exists(paths.parameters())) throw UsageError(root.string() + " is not a case: it has no case.toml");
+  Parameters parameters;
+  parameters.load(paths.parameters(), ParamSource::Case);
+  return load_domain(paths, parameters);
+}
+
+}  // namespace
+
+Json check_mesh(const fs::path& file, const std::optional<fs::path>& against, double min_quality) {
+  TetMesh mesh = read_tet_mesh(file).mesh;
+  if (mesh.C.empty()) throw MeshFileRefused(file, "the whole file", "it has no tets");
+  CertificateInput input;
+  input.mesh = &mesh;
+  std::optional<Domain> domain;
+  if (against) {
+    domain.emplace(domain_of_case(*against));
+    for (Vec3& x : mesh.V) x -= domain->shift;
+    input.psi = domain->psi();
+    const StageState state = inspect_stage(CasePaths{*against}, Stage::Mesh, Json::object(), std::nullopt);
+    // Without a mesh of its own the case says nothing about h: the mesh's own edge length is the unit then.
+    if (state.record) input.h = state.record->numbers.at("measured").value("h", 0.);
+  }
+  const MeshCertificate certificate = certify(input);
+  std::vector<std::string> reasons = failures(certificate);
+  if (certificate.quality.min < min_quality) {
+    reasons.push_back(
+        fmt::format("min quality {:.4f} is below the gate of {:.4f}", certificate.quality.min, min_quality));
+  }
+  Json json = {{"schema", 1}, {"tool", "umtet"}, {"version", kVersion}, {"mesh", file.string()}};
+  json.update(to_json(certificate));
+  json["verdict"] = reasons.empty() ? "pass" : "fail";
+  json["reasons"] = reasons;
+  return json;
+}
+
+}  // namespace umtet

@@ -1,0 +1,268 @@
+#include "pipeline/command_line.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <deque>
+#include <filesystem>
+#include <map>
+
+#include "pipeline/export_case.h"
+#include "pipeline/version.h"
+
+namespace umtet {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kFooter = R"(Examples:
+  umtet run duck.ply -o duck                 from a scan to a certified mesh; run again: resumes, or does nothing
+  umtet mesh duck --h 0.02                   another mesh size; the level set is not fitted again
+  umtet mesh --implicit 'x^2+y^2+z^2-1' --box -1.2,-1.2,-1.2,1.2,1.2,1.2 --tets 100000 -o ball
+  umtet check part.msh                       validity and quality of any tet mesh
+  umtet export duck --format msh,stl         files for solvers, in duck/4-export
+
+Exit codes: 0 all well | 1 a bug of ours | 2 usage | 3 input refused | 4 reconstruction failed
+  5 meshing not possible at this h | 6 made, but a gate or the certificate failed | 7 file trouble
+  8 artefact corrupt | 9 resource limit | 130, 143 interrupted, resumable)";
+
+/// Where CLI11 leaves what it read, as text; the table of parameters knows the types.
+struct Inputs {
+  std::string input, output, config, from, until, against;
+  std::vector<std::string> assignments, formats;
+  std::map<std::string, std::string> values;  ///< by key
+  std::map<std::string, bool> switches;       ///< by key
+  bool force = false, strict = false, quiet = false, verbose = false;
+};
+
+class Parser {
+ public:
+  Parser();
+  CommandLine parse(int argc, const char* const* argv);
+
+ private:
+  CLI::App& add_command(const char* name, const char* description, bool has_stages);
+  void add_parameter_flags(CLI::App& command, const std::vector<std::string>& sections,
+                           const std::vector<std::string>& except = {});
+  [[noreturn]] void refuse(const CLI::ParseError& e, int argc, const char* const* argv) const;
+  void finish(const CLI::App& command);
+  void finish_stages(const CLI::App& command);
+
+  CLI::App app_{"umtet: from an oriented point cloud to a certified tetrahedral mesh", "umtet"};
+  Inputs in_;
+  CommandLine result_;
+};
+
+Parser::Parser() {
+  app_.set_version_flag("--version", std::string("umtet ") + kVersion);
+  app_.require_subcommand(1);
+  app_.footer(kFooter);
+
+  CLI::App& run = add_command("run", "All stages; those whose record matches are not run again", true);
+  run.add_option("CLOUD", in_.input, "oriented points: .ply, .pcd, .xyz; or a case, to resume it");
+  run.add_option("--from", in_.from, "first stage that may run: cloud, level-set, mesh");
+  run.add_option("--until", in_.until, "last stage to run");
+  add_parameter_flags(run, {"reconstruct", "mesh", "output"}, {"mesh.implicit"});
+
+  CLI::App& reconstruct = add_command("reconstruct", "Stage one only: the level set", true);
+  reconstruct.add_option("CLOUD", in_.input, "oriented points; or a case, to fit again with other parameters");
+  add_parameter_flags(reconstruct, {"reconstruct"});
+
+  CLI::App& mesh = add_command("mesh", "Stage two only: from the level set of CASE, or from a formula", true);
+  mesh.add_option("CASE", in_.input, "a case with a level set");
+  add_parameter_flags(mesh, {"mesh", "output"});
+
+  CLI::App& check = add_command("check", "Validity and quality of any tet mesh; exit 6 when it fails", false);
+  check.add_option("MESH", in_.input, ".vtu, .msh or .mesh")->required();
+  check.add_option("--against", in_.against, "a case whose surface the mesh should fit");
+  add_parameter_flags(check, {"output"}, {"output.units"});
+
+  CLI::App& exports = add_command("export", "Files for solvers and viewers, in CASE/4-export", false);
+  exports.add_option("CASE", in_.input, "a case with a mesh")->required();
+  exports.add_option("--format", in_.formats, fmt::format("{}", fmt::join(export_formats(), ", ")))
+      ->delimiter(',')
+      ->required();
+}
+
+CLI::App& Parser::add_command(const char* name, const char* description, bool has_stages) {
+  CLI::App& command = *app_.add_subcommand(name, description);
+  command.add_flag("--json", result_.json, "one JSON document on stdout, also on failure");
+  command.add_option("--threads", result_.threads, "number of threads; results do not depend on it")
+      ->check(CLI::Range(1, 4096));
+  command.add_flag("-q,--quiet", in_.quiet, "no messages but warnings and errors");
+  if (!has_stages) return command;
+  command.add_flag("-v,--verbose", in_.verbose, "more messages");
+  command
+      .add_option_function<std::string>(
+          "--progress",
+          [this](const std::string& mode) {
+            result_.progress = mode == "plain"  ? ProgressMode::Plain
+                               : mode == "none" ? ProgressMode::None
+                                                : ProgressMode::Auto;
+          },
+          "auto: a bar on a terminal; plain: lines; none")
+      ->check(CLI::IsMember({"auto", "plain", "none"}));
+  command.add_option("-o", in_.output, "the folder of the case");
+  command.add_option("--config", in_.config, "TOML file with parameters, such as the case.toml of another case");
+  command.add_option("--set", in_.assignments, "any parameter: --set mesh.samples=10; see case.toml for all")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command.add_flag("--force", in_.force, "run the stages although their records match");
+  command.add_flag("--strict", in_.strict, "stop with exit 8 at a damaged artefact instead of making it again");
+  return command;
+}
+
+void Parser::add_parameter_flags(CLI::App& command, const std::vector<std::string>& sections,
+                                 const std::vector<std::string>& except) {
+  const auto holds = [](const std::vector<std::string>& list, const std::string& s) {
+    return std::find(list.begin(), list.end(), s) != list.end();
+  };
+  for (const ParamField& f : params_fields()) {
+    if (f.flag.empty() || !holds(sections, f.key.substr(0, f.key.find('.'))) || holds(except, f.key)) continue;
+    if (std::holds_alternative<bool>(f.preset)) {
+      command.add_flag(f.flag, in_.switches[f.key], f.help);
+    } else {
+      command.add_option(f.flag, in_.values[f.key], f.help)->type_name("");
+    }
+  }
+}
+
+/// Turns what CLI11 says into a UsageError that names the nearest flag or command.
+void Parser::refuse(const CLI::ParseError& e, int argc, const char* const* argv) const {
+  std::vector<std::string> commands;
+  for (const CLI::App* c : app_.get_subcommands({})) commands.push_back(c->get_name());
+  const std::vector<CLI::App*> parsed = app_.get_subcommands();
+  if (parsed.empty()) {
+    if (argc < 2 || argv[1][0] == '-') {
+      throw UsageError(argc < 2 ? "no command; try umtet --help"
+                                : fmt::format("unknown flag {}; try umtet --help", argv[1]));
+    }
+    const std::string near = nearest(argv[1], commands);
+    throw UsageError(fmt::format("unknown command {}{}", argv[1],
+                                 near.empty() ? "; try umtet --help" : "; did you mean " + near + "?"));
+  }
+  const CLI::App& command = *parsed.front();
+  std::vector<std::string> flags;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) flags.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) flags.push_back("-" + name);
+  }
+  for (const std::string& extra : command.remaining()) {
+    if (extra.size() < 2 || extra[0] != '-') continue;
+    const std::string flag = extra.substr(0, extra.find('='));
+    const std::string near = nearest(flag, flags);
+    throw UsageError(fmt::format("{}: unknown flag {}{}", command.get_name(), flag,
+                                 near.empty() ? "" : "; did you mean " + near + "?"));
+  }
+  throw UsageError(command.get_name() + ": " + e.what());
+}
+
+CommandLine Parser::parse(int argc, const char* const* argv) {
+  try {
+    app_.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    const std::vector<CLI::App*> parsed = app_.get_subcommands();
+    result_.text = parsed.empty() ? app_.help() : parsed.front()->help();
+    return result_;
+  } catch (const CLI::CallForVersion& e) {
+    result_.text = std::string(e.what()) + "\n";
+    return result_;
+  } catch (const CLI::ParseError& e) {
+    refuse(e, argc, argv);
+  }
+  finish(*app_.get_subcommands().front());
+  return std::move(result_);
+}
+
+void Parser::finish(const CLI::App& command) {
+  result_.command = command.get_name();
+  if (in_.quiet && in_.verbose) throw UsageError("-q and -v exclude each other");
+  result_.verbosity = in_.quiet ? Verbosity::Quiet : in_.verbose ? Verbosity::Verbose : Verbosity::Normal;
+  // The flags of all commands share their storage; only those of this one have been touched.
+  Parameters& parameters = result_.request.parameters;
+  for (const ParamField& f : params_fields()) {
+    const CLI::Option* option = f.flag.empty() ? nullptr : command.get_option_no_throw(f.flag);
+    if (!option || option->count() == 0) continue;
+    const bool is_switch = std::holds_alternative<bool>(f.preset);
+    parameters.set(f.key, is_switch ? "true" : in_.values[f.key], ParamSource::Flag, f.flag);
+  }
+  if (result_.command == "check") {
+    result_.action = CommandLine::Action::Check;
+    result_.mesh = in_.input;
+    if (!in_.against.empty()) result_.against = in_.against;
+    result_.min_quality = parameters.real("output.min_quality");
+  } else if (result_.command == "export") {
+    result_.action = CommandLine::Action::Export;
+    result_.request.case_folder = in_.input;
+    result_.formats = in_.formats;
+  } else {
+    result_.action = CommandLine::Action::Stages;
+    finish_stages(command);
+  }
+}
+
+void Parser::finish_stages(const CLI::App& command) {
+  const std::string name = command.get_name();
+  RunRequest& request = result_.request;
+  Parameters& parameters = request.parameters;
+  request.force = in_.force;
+  request.strict = in_.strict;
+  const bool input_is_case = !in_.input.empty() && (name == "mesh" || fs::is_directory(in_.input));
+  if (name == "reconstruct") request.until = Stage::LevelSet;
+  if (name == "mesh" || (name == "reconstruct" && input_is_case)) {
+    request.from = name == "mesh" ? Stage::Mesh : Stage::LevelSet;
+  }
+  if (!in_.from.empty()) request.from = parse_stage(in_.from);
+  if (!in_.until.empty()) request.until = parse_stage(in_.until);
+  if (request.from > request.until) throw UsageError("--from " + in_.from + " is after --until " + in_.until);
+
+  for (const std::string& assignment : in_.assignments) parameters.set(assignment);
+  for (const ParamField& f : params_fields()) {
+    const bool early = (f.key.starts_with("cloud.") && request.from > Stage::Cloud) ||
+                       (f.key.starts_with("reconstruct.") && request.from > Stage::LevelSet);
+    if (early && parameters.source(f.key) == ParamSource::Set) {
+      throw UsageError(f.key + " belongs to a stage that this command does not run");
+    }
+  }
+  if (!in_.config.empty()) parameters.load(in_.config, ParamSource::File);
+
+  if (input_is_case) {
+    if (parameters.source("mesh.implicit") == ParamSource::Flag)
+      throw UsageError("--implicit goes with -o, without CASE");
+    if (!in_.output.empty() && fs::path(in_.output) != fs::path(in_.input)) {
+      throw UsageError("-o " + in_.output + ": the case is " + in_.input + " already");
+    }
+    request.case_folder = in_.input;
+    const fs::path toml = CasePaths{in_.input}.parameters();
+    if (!fs::exists(toml)) throw UsageError(in_.input + " is not a case: it has no case.toml");
+    Parameters inherited;
+    inherited.load(toml, ParamSource::Case);
+    parameters.load(toml, ParamSource::Case);
+    // case.toml goes on telling what the stages were made with that this command does not run.
+    for (const Stage stage : {Stage::Cloud, Stage::LevelSet}) {
+      if (stage < request.from) parameters.copy_section(section_of(stage), inherited);
+    }
+    return;
+  }
+  if (in_.output.empty()) throw UsageError(name + ": -o CASE is missing");
+  request.case_folder = in_.output;
+  if (name == "mesh") {
+    if (parameters.text("mesh.implicit").empty())
+      throw UsageError("mesh: give a CASE, or --implicit EXPR with --box and -o");
+    return;
+  }
+  if (!in_.input.empty()) {
+    request.source = in_.input;
+    parameters.set("cloud.file", fs::absolute(in_.input).lexically_normal().string(), ParamSource::Flag,
+                   "command line");
+  }
+  if (parameters.text("cloud.file").empty() && request.from == Stage::Cloud)
+    throw UsageError(name + ": CLOUD is missing");
+  if (request.source.empty()) request.source = parameters.text("cloud.file");
+}
+
+}  // namespace
+
+CommandLine parse_command_line(int argc, const char* const* argv) { return Parser().parse(argc, argv); }
+
+}  // namespace umtet

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/progress.h"
+#include "pipeline/run.h"
+
+namespace umtet {
+
+/// A call of the program, understood.
+struct CommandLine {
+  enum class Action { Text, Stages, Check, Export };
+  Action action = Action::Text;
+  std::string text;     ///< Text: help or version, for stdout
+  std::string command;  ///< "run", "reconstruct", "mesh", "check", "export"
+
+  RunRequest request;                            ///< Stages
+  std::filesystem::path mesh;                    ///< Check
+  std::optional<std::filesystem::path> against;  ///< Check
+  double min_quality = 0;                        ///< Check
+  std::vector<std::string> formats;              ///< Export, with request.case_folder
+
+  bool json = false;
+  ProgressMode progress = ProgressMode::Auto;
+  Verbosity verbosity = Verbosity::Normal;
+  int threads = 0;  ///< 0: as many as the machine has
+};
+
+/// \throw UsageError, with the nearest flag or command where there is one; std::system_error for a --config that cannot
+///        be read
+CommandLine parse_command_line(int argc, const char* const* argv);
+
+}  // namespace umtet

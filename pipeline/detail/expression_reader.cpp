@@ -1,0 +1,304 @@
+#include "pipeline/detail/expression_reader.h"
+
+#include <muParser.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <vector>
+
+#include "pipeline/expression.h"
+
+namespace umtet {
+namespace {
+
+// Longer texts are no formulas any more.
+constexpr std::size_t kMaxText = 4096;
+// x^n beyond this overflows double already for |x| = 2.
+constexpr double kMaxExponent = 1000;
+
+/// muParser hands numbers to its operators; ours are handles: indices of the expressions built so far. So one library
+/// decides what the text means, and GiNaC sees that meaning instead of reading the text a second time.
+class Builder {
+ public:
+  explicit Builder(const std::string& text) : text_(text) {}
+
+  GiNaC::ex build();
+  const std::array<GiNaC::realsymbol, 3>& symbols() const { return symbols_; }
+
+ private:
+  struct Node {
+    GiNaC::ex e;
+    std::size_t column;  ///< where it starts in the text, 1-based
+  };
+
+  double add(const GiNaC::ex& e, std::size_t column);
+  Node& node(double handle) { return nodes_[static_cast<std::size_t>(handle)]; }
+  int read_leaf(const char* s, int* pos, double* handle);
+  std::size_t number_length(const char* s) const;
+  GiNaC::numeric number(const std::string& digits, std::size_t column) const;
+  GiNaC::ex power(const Node& base, const Node& exponent) const;
+
+  template <class F>
+  double binary(double a, double b, F&& f);
+  template <class F>
+  double unary(double a, F&& f);
+
+  const std::string& text_;
+  std::array<GiNaC::realsymbol, 3> symbols_{GiNaC::realsymbol("x"), GiNaC::realsymbol("y"), GiNaC::realsymbol("z")};
+  std::vector<Node> nodes_;
+
+  // muParser's callbacks are plain function pointers; they find their builder here.
+  static thread_local Builder* active_;
+  friend struct Callbacks;
+};
+
+thread_local Builder* Builder::active_ = nullptr;
+
+double Builder::add(const GiNaC::ex& e, std::size_t column) {
+  nodes_.push_back({e, column});
+  return static_cast<double>(nodes_.size() - 1);
+}
+
+std::size_t Builder::number_length(const char* s) const {
+  std::size_t n = 0, digits = 0;
+  for (; std::isdigit(static_cast<unsigned char>(s[n])); ++n) ++digits;
+  if (s[n] == '.') ++n;
+  for (; std::isdigit(static_cast<unsigned char>(s[n])); ++n) ++digits;
+  if (digits == 0) return 0;
+  if (s[n] == 'e' || s[n] == 'E') {
+    std::size_t m = n + 1;
+    if (s[m] == '+' || s[m] == '-') ++m;
+    if (std::isdigit(static_cast<unsigned char>(s[m]))) {
+      while (std::isdigit(static_cast<unsigned char>(s[m]))) ++m;
+      n = m;
+    }
+  }
+  return n;
+}
+
+/// The fraction a decimal number stands for, exactly.
+GiNaC::numeric Builder::number(const std::string& digits, std::size_t column) const {
+  std::string mantissa;
+  int exponent = 0;
+  std::size_t k = 0;
+  bool after_point = false;
+  for (; k < digits.size() && digits[k] != 'e' && digits[k] != 'E'; ++k) {
+    if (digits[k] == '.') {
+      after_point = true;
+    } else {
+      mantissa += digits[k];
+      exponent -= after_point;
+    }
+  }
+  if (k < digits.size()) {
+    const std::string e = digits.substr(k + 1);
+    if (e.size() > 6) throw ExpressionError(text_, column, "the number " + digits + " is out of range");
+    exponent += std::stoi(e);
+  }
+  // Leading zeros would make GiNaC read an octal number.
+  const std::size_t first = mantissa.find_first_not_of('0');
+  if (first == std::string::npos) return 0;
+  mantissa.erase(0, first);
+  const long magnitude = static_cast<long>(mantissa.size()) + exponent;
+  if (magnitude > 308 || magnitude < -307 || mantissa.size() > 300) {
+    throw ExpressionError(text_, column, "the number " + digits + " is out of range");
+  }
+  return GiNaC::numeric(mantissa.c_str()) * GiNaC::pow(GiNaC::numeric(10), GiNaC::numeric(exponent));
+}
+
+/// Numbers and names that are not functions. \return whether the text at `s` starts with one.
+int Builder::read_leaf(const char* s, int* pos, double* handle) {
+  const std::size_t column = static_cast<std::size_t>(*pos) + 1;
+  if (const std::size_t n = number_length(s); n > 0) {
+    *handle = add(number(std::string(s, n), column), column);
+    *pos += static_cast<int>(n);
+    return 1;
+  }
+  std::string name;
+  for (; std::isalnum(static_cast<unsigned char>(*s)) || *s == '_'; ++s) name += *s;
+  GiNaC::ex e;
+  if (name == "x" || name == "y" || name == "z") {
+    e = symbols_[static_cast<std::size_t>(name[0] - 'x')];
+  } else if (name == "pi") {
+    e = GiNaC::Pi;
+  } else {
+    return 0;
+  }
+  *handle = add(e, column);
+  *pos += static_cast<int>(name.size());
+  return 1;
+}
+
+GiNaC::ex Builder::power(const Node& base, const Node& exponent) const {
+  if (GiNaC::is_a<GiNaC::numeric>(exponent.e)) {
+    const double n = GiNaC::ex_to<GiNaC::numeric>(exponent.e).to_double();
+    double decades = 0;
+    if (GiNaC::is_a<GiNaC::numeric>(base.e)) {
+      decades = n * std::log10(std::abs(GiNaC::ex_to<GiNaC::numeric>(base.e).to_double()));
+    }
+    if (std::abs(n) > kMaxExponent || (std::isfinite(decades) && std::abs(decades) > 300)) {
+      throw ExpressionError(text_, exponent.column, "this power is out of range");
+    }
+  }
+  const GiNaC::ex e = GiNaC::pow(base.e, exponent.e);
+  if (GiNaC::is_a<GiNaC::power>(e) && GiNaC::is_a<GiNaC::numeric>(e.op(1)) &&
+      GiNaC::abs(GiNaC::ex_to<GiNaC::numeric>(e.op(1))) > GiNaC::numeric(static_cast<long>(kMaxExponent))) {
+    throw ExpressionError(text_, exponent.column, "this power is out of range");
+  }
+  return e;
+}
+
+/// Runs one operation of GiNaC and gives its refusals a place in the text.
+template <class F>
+double Builder::binary(double a, double b, F&& f) {
+  const Node left = node(a), right = node(b);
+  try {
+    const GiNaC::ex e = f(left, right);
+    if (GiNaC::is_a<GiNaC::numeric>(e) && !std::isfinite(GiNaC::ex_to<GiNaC::numeric>(e).to_double())) {
+      throw ExpressionError(text_, left.column, "a constant out of range");
+    }
+    return add(e, left.column);
+  } catch (const ExpressionError&) {
+    throw;
+  } catch (const std::exception& e) {  // GiNaC: pole_error, overflow_error, invalid_argument
+    throw ExpressionError(text_, right.column, std::string("no value: ") + e.what());
+  }
+}
+
+template <class F>
+double Builder::unary(double a, F&& f) {
+  return binary(a, a, [&](const Node& n, const Node&) { return GiNaC::ex(f(n.e)); });
+}
+
+struct Callbacks {
+  using Node = Builder::Node;
+  static int leaf(const char* s, int* pos, double* v) { return Builder::active_->read_leaf(s, pos, v); }
+  static double plus(double a, double b) {
+    return Builder::active_->binary(a, b, [](const Node& l, const Node& r) { return GiNaC::ex(l.e + r.e); });
+  }
+  static double minus(double a, double b) {
+    return Builder::active_->binary(a, b, [](const Node& l, const Node& r) { return GiNaC::ex(l.e - r.e); });
+  }
+  static double times(double a, double b) {
+    return Builder::active_->binary(a, b, [](const Node& l, const Node& r) { return GiNaC::ex(l.e * r.e); });
+  }
+  static double over(double a, double b) {
+    return Builder::active_->binary(a, b, [](const Node& l, const Node& r) {
+      if (r.e.is_zero()) throw std::overflow_error("division by zero");
+      return GiNaC::ex(l.e / r.e);
+    });
+  }
+  static double power(double a, double b) {
+    Builder& builder = *Builder::active_;
+    return builder.binary(a, b, [&](const Node& l, const Node& r) { return builder.power(l, r); });
+  }
+  static double negate(double a) {
+    return Builder::active_->unary(a, [](const GiNaC::ex& e) { return -e; });
+  }
+  static double identity(double a) { return a; }
+
+#define UMTET_FUNCTION(name)                                                              \
+  static double name##_(double a) {                                                       \
+    return Builder::active_->unary(a, [](const GiNaC::ex& e) { return GiNaC::name(e); }); \
+  }
+  UMTET_FUNCTION(sin)
+  UMTET_FUNCTION(cos)
+  UMTET_FUNCTION(tan)
+  UMTET_FUNCTION(asin)
+  UMTET_FUNCTION(acos)
+  UMTET_FUNCTION(atan)
+  UMTET_FUNCTION(sinh)
+  UMTET_FUNCTION(cosh)
+  UMTET_FUNCTION(tanh)
+  UMTET_FUNCTION(exp)
+  UMTET_FUNCTION(log)
+  UMTET_FUNCTION(sqrt)
+#undef UMTET_FUNCTION
+};
+
+const std::pair<const char*, mu::fun_type1> kFunctions[] = {
+    {"sin", Callbacks::sin_},   {"cos", Callbacks::cos_},   {"tan", Callbacks::tan_},   {"asin", Callbacks::asin_},
+    {"acos", Callbacks::acos_}, {"atan", Callbacks::atan_}, {"sinh", Callbacks::sinh_}, {"cosh", Callbacks::cosh_},
+    {"tanh", Callbacks::tanh_}, {"exp", Callbacks::exp_},   {"log", Callbacks::log_},   {"sqrt", Callbacks::sqrt_}};
+
+/// muParser with nothing in it but the grammar of the header.
+mu::Parser grammar() {
+  mu::Parser p;
+  p.ClearConst();
+  p.ClearFun();
+  p.ClearInfixOprt();
+  p.ClearPostfixOprt();
+  p.EnableBuiltInOprt(false);
+  p.AddValIdent(Callbacks::leaf);
+  p.DefineOprt("+", Callbacks::plus, mu::prADD_SUB, mu::oaLEFT, true);
+  p.DefineOprt("-", Callbacks::minus, mu::prADD_SUB, mu::oaLEFT, true);
+  p.DefineOprt("*", Callbacks::times, mu::prMUL_DIV, mu::oaLEFT, true);
+  p.DefineOprt("/", Callbacks::over, mu::prMUL_DIV, mu::oaLEFT, true);
+  p.DefineOprt("^", Callbacks::power, mu::prPOW, mu::oaRIGHT, true);
+  p.DefineInfixOprt("-", Callbacks::negate);
+  p.DefineInfixOprt("+", Callbacks::identity);
+  for (const auto& [name, f] : kFunctions) p.DefineFun(name, f, true);
+  return p;
+}
+
+std::string refusal(const mu::ParserError& e) {
+  const std::string token = e.GetToken();
+  if (token == "abs" || token.rfind("abs(", 0) == 0) return "abs is not smooth where its argument is 0; psi must be C2";
+  switch (e.GetCode()) {
+    case mu::ecUNASSIGNABLE_TOKEN:
+      for (const auto& [name, f] : kFunctions) {
+        if (token == name) return token + " needs its argument in brackets";
+      }
+      return "unknown name \"" + token + "\" (known: x y z pi, sin cos tan asin acos atan sinh cosh tanh exp log sqrt)";
+    case mu::ecUNEXPECTED_EOF:
+      return "the expression ends too early";
+    case mu::ecMISSING_PARENS:
+      return "a closing bracket is missing";
+    case mu::ecUNEXPECTED_PARENS:
+      return "unexpected bracket \"" + token + "\"";
+    case mu::ecTOO_MANY_PARAMS:
+    case mu::ecTOO_FEW_PARAMS:
+      return "functions take one argument";
+    default:
+      return token.empty() ? e.GetMsg() : "unexpected \"" + token + "\"";
+  }
+}
+
+GiNaC::ex Builder::build() {
+  if (text_.find_first_not_of(" \t") == std::string::npos) throw ExpressionError(text_, 1, "the expression is empty");
+  if (text_.size() > kMaxText) throw ExpressionError(text_, kMaxText + 1, "longer than 4096 characters");
+  for (std::size_t k = 0; k < text_.size(); ++k) {  // muParser has more signs than we do: , ? : = " ...
+    const unsigned char c = static_cast<unsigned char>(text_[k]);
+    if (!(c < 128 && (std::isalnum(c) || std::string(" \t._+-*/^()").find(text_[k]) != std::string::npos))) {
+      throw ExpressionError(text_, k + 1, std::string("unexpected character ") + text_[k]);
+    }
+  }
+  active_ = this;
+  try {
+    mu::Parser p = grammar();
+    p.SetExpr(text_);
+    const GiNaC::ex e = node(p.Eval()).e;
+    for (const GiNaC::realsymbol& s : symbols_) {
+      if (e.has(s)) {
+        if (e.has(GiNaC::I)) throw ExpressionError(text_, 1, "not real: it contains the root of a negative number");
+        return e;
+      }
+    }
+    throw ExpressionError(text_, 1, "depends on none of x, y, z");
+  } catch (const mu::ParserError& e) {
+    const long pos = e.GetPos();
+    const std::size_t column = pos < 0 ? text_.size() + 1 : std::min<std::size_t>(pos + 1, text_.size() + 1);
+    throw ExpressionError(text_, column, refusal(e));
+  }
+}
+
+}  // namespace
+
+SymbolicExpression read_expression(const std::string& text) {
+  Builder builder(text);
+  GiNaC::ex psi = builder.build();
+  return {std::move(psi), builder.symbols()};
+}
+
+}  // namespace umtet

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <ginac/ginac.h>
+
+#include <array>
+#include <string>
+
+namespace umtet {
+
+/// A formula as GiNaC holds it; all its numbers are exact fractions.
+struct SymbolicExpression {
+  GiNaC::ex psi;
+  std::array<GiNaC::realsymbol, 3> symbols;  ///< x, y, z
+};
+
+/// Reads the grammar that pipeline/expression.h describes.
+/// \throw ExpressionError
+SymbolicExpression read_expression(const std::string& text);
+
+}  // namespace umtet

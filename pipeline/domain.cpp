@@ -1,0 +1,56 @@
+#include "pipeline/domain.h"
+
+#include "pipeline/exit_code.h"
+#include "pipeline/stages.h"
+#include "reconstruct/level_set_io.h"
+#include "reconstruct/point_cloud_io.h"
+
+namespace umtet {
+
+// The seam between the two libraries: neither includes the other.
+static_assert(ImplicitFunction<LevelSet> && TwiceDifferentiable<LevelSet> && JointlyEvaluated<LevelSet>);
+static_assert(ImplicitFunction<Expression> && TwiceDifferentiable<Expression> && JointlyEvaluated<Expression>);
+
+namespace {
+
+Domain formula_domain(const Parameters& parameters) {
+  const std::optional<Box> box = parse_box(parameters.text("mesh.box"));
+  if (!box) throw UsageError("--implicit needs --box x0,y0,z0,x1,y1,z1");
+  Domain domain;
+  domain.formula.emplace(parameters.text("mesh.implicit"));
+  domain.box = *box;
+  domain.diagonal = box->diagonal().norm();
+  return domain;
+}
+
+}  // namespace
+
+Domain load_domain(const CasePaths& paths, const Parameters& parameters) {
+  if (!parameters.text("mesh.implicit").empty()) return formula_domain(parameters);
+  const StageState state = inspect_stage(paths, Stage::LevelSet, parameters.section("reconstruct"), std::nullopt);
+  if (!state.record) throw ArtefactDamaged(state.reason);
+  Domain domain;
+  domain.shift = recorded_vector(*state.record, "shift");
+  domain.cloud_spacing = state.record->numbers.value("cloud_spacing", 0.);
+  try {
+    domain.level_set.emplace(read_level_set(paths.level_set()));
+    domain.cloud = read_point_cloud(paths.cloud()).cloud;
+  } catch (const CloudRefused& e) {  // both files are ours: what is wrong with them is damage
+    throw ArtefactDamaged(e.what());
+  } catch (const LevelSetRefused& e) {
+    throw ArtefactDamaged(e.what());
+  }
+  Box cloud_box;
+  for (Vec3& x : domain.cloud.points) {
+    x -= domain.shift;
+    cloud_box.extend(x);
+  }
+  domain.diagonal = cloud_box.diagonal().norm();
+  domain.box = domain.level_set->domain();
+  if (const std::optional<Box> box = parse_box(parameters.text("mesh.box"))) {
+    domain.box = Box(box->min() - domain.shift, box->max() - domain.shift);
+  }
+  return domain;
+}
+
+}  // namespace umtet

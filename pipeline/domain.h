@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+
+#include "mesh/background_mesh.h"
+#include "mesh/implicit_function.h"
+#include "pipeline/case_folder.h"
+#include "pipeline/expression.h"
+#include "pipeline/parameters.h"
+#include "reconstruct/level_set.h"
+#include "reconstruct/point_cloud.h"
+
+namespace umtet {
+
+/// What 3-mesh works on, and what a mesh is judged against: psi, where to look for it, and the samples behind it.
+/// All lengths and places are in working coordinates: model coordinates minus `shift`.
+struct Domain {
+  std::optional<Expression> formula;  ///< one of the two is there
+  std::optional<LevelSet> level_set;
+  Box box;              ///< what the background mesh has to cover
+  double diagonal = 0;  ///< of the cloud's box, or of `box` for a formula
+  Vec3 shift = Vec3::Zero();
+  OrientedPointCloud cloud;  ///< empty for a formula
+  double cloud_spacing = 0;  ///< median distance between neighbouring samples, 0 for a formula
+
+  ImplicitFunctionRef psi() const { return formula ? ImplicitFunctionRef(*formula) : ImplicitFunctionRef(*level_set); }
+};
+
+/// The formula of mesh.implicit, or the level set and the cloud of the case.
+/// \throw UsageError (a formula without a box), ExpressionError, ArtefactDamaged, std::system_error
+Domain load_domain(const CasePaths&, const Parameters&);
+
+}  // namespace umtet

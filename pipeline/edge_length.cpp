@@ -1,0 +1,77 @@
+#include "pipeline/edge_length.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "mesh/quality_report.h"
+#include "mesh/submesh.h"
+#include "mesh/thickness.h"
+#include "pipeline/exit_code.h"
+
+namespace umtet {
+namespace {
+
+// Share of the diagonal that is the edge length of a body without thin parts: 50k to 150k tets.
+constexpr double kShareOfDiagonal = .015;
+// Boundary faces start to fold where the body or a gap is thinner than about two edges; one body in a hundred samples
+// may be thinner.
+constexpr double kEdgesAcross = 2.2;
+constexpr double kThinShare = .01;
+// Enough for a percentile.
+constexpr std::size_t kThicknessSamples = 20000;
+
+/// \throw MeshingImpossible when psi < 0 at none of the places where it is sampled
+double h_of(const Domain& domain, std::int64_t n_tets) {
+  try {
+    return h_for_tets(domain.psi(), domain.box, static_cast<double>(n_tets));
+  } catch (const std::invalid_argument& e) {
+    throw MeshingImpossible(std::string("no edge length can be chosen: ") + e.what());
+  }
+}
+
+/// \throw ResourceLimit
+void refuse_too_many(const Domain& domain, double h, std::int64_t max_tets) {
+  double least = 0;
+  try {
+    least = h_of(domain, max_tets);
+  } catch (const MeshingImpossible&) {
+    return;  // the domain is smaller than the grid of the estimate: so are its tets few
+  }
+  // The estimate is good to 10 % in the number of tets, which is 3 % in h.
+  if (h >= .97 * least) return;
+  throw ResourceLimit(fmt::format("h = {:.4g} makes more than {} tets (that many at h = {:.4g}): raise --max-tets", h,
+                                  max_tets, least));
+}
+
+/// The thickness that a hundredth of the samples fall below, at most `limit`.
+double thin_part(const Domain& domain, double limit) {
+  std::vector<Vec3> samples;
+  const std::size_t stride = domain.cloud.points.size() / kThicknessSamples + 1;
+  for (std::size_t i = 0; i < domain.cloud.points.size(); i += stride) samples.push_back(domain.cloud.points[i]);
+  // psi has no sheets much closer together than its lattice.
+  std::vector<double> t = thickness(domain.psi(), samples, .25 * domain.level_set->spacing(), limit);
+  std::sort(t.begin(), t.end());
+  return quantile(t, kThinShare);
+}
+
+}  // namespace
+
+EdgeLength choose_edge_length(const Domain& domain, const Parameters& parameters) {
+  if (const std::int64_t n = parameters.integer("mesh.tets")) {
+    const double h = h_of(domain, n);
+    return {h, h};
+  }
+  const std::int64_t max_tets = parameters.integer("mesh.max_tets");
+  if (const double h = parameters.real("mesh.h"); h > 0) {
+    refuse_too_many(domain, h, max_tets);
+    return {h, h};
+  }
+  const double least = h_of(domain, max_tets);
+  double h = kShareOfDiagonal * domain.diagonal;
+  if (domain.level_set) h = std::min(h, thin_part(domain, kEdgesAcross * h) / kEdgesAcross);
+  return {std::max(h, least), least};
+}
+
+}  // namespace umtet

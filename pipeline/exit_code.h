@@ -1,0 +1,56 @@
+#pragma once
+
+#include <exception>
+#include <stdexcept>
+#include <string>
+
+namespace umtet {
+
+/// What the program returns; the numbers are part of its contract.
+enum class ExitCode {
+  Success = 0,
+  Bug = 1,
+  Usage = 2,
+  InputRefused = 3,
+  ReconstructionFailed = 4,
+  MeshingImpossible = 5,  ///< not possible at this h
+  GateFailed = 6,         ///< made, but a gate or the certificate failed
+  FileTrouble = 7,
+  ArtefactCorrupt = 8,
+  ResourceLimit = 9,
+  Interrupted = 130,  ///< SIGINT; 143 for SIGTERM
+  Terminated = 143,
+};
+
+/// The call itself is wrong: unknown flag or key, a value out of range, a stage that is not there.
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+/// No mesh of this domain at this h; what() has the status and its evidence.
+struct MeshingImpossible : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+/// A file of the case is not what its record says, or what its format asks for.
+struct ArtefactDamaged : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+/// The work would need more than the caller allowed.
+struct ResourceLimit : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+/// A signal asked to stop and the case has been left resumable.
+struct Interrupted : std::runtime_error {
+  explicit Interrupted(int signal);
+  int signal;
+};
+
+struct Failure {
+  ExitCode code;
+  std::string message;  ///< one or a few lines, without a final newline
+};
+
+/// The one place where exceptions become exit codes.
+/// \pre error is not null
+Failure failure_of(const std::exception_ptr& error);
+
+}  // namespace umtet

@@ -1,0 +1,111 @@
+#include "pipeline/expression.h"
+
+#include <muParser.h>
+#include <tbb/enumerable_thread_specific.h>
+
+#include <array>
+#include <cmath>
+#include <sstream>
+
+#include "pipeline/detail/expression_reader.h"
+
+namespace umtet {
+namespace {
+
+// The second derivatives of a product grow with the cube of its length.
+constexpr std::size_t kMaxDerivativeText = 1 << 22;
+
+std::string at_column(const std::string& text, std::size_t column, const std::string& message) {
+  return "column " + std::to_string(column) + ": " + message + "\n  " + text + "\n  " + std::string(column - 1, ' ') +
+         "^";
+}
+
+/// As muParser reads it: all numbers of `e` are exact fractions, so nothing is rounded in print.
+std::string print(const GiNaC::ex& e) {
+  std::ostringstream s;
+  s.imbue(std::locale::classic());
+  s << GiNaC::dflt << e;
+  return s.str();
+}
+
+/// psi alone, psi with gradient, and all ten: three byte codes over one set of variables.
+class Evaluator {
+ public:
+  explicit Evaluator(const std::array<std::string, 3>& texts) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      mu::Parser& p = parsers_[k];
+      p.DefineConst("Pi", M_PI);
+      p.DefineFun("log", static_cast<mu::fun_type1>(std::log), true);
+      p.DefineVar("x", &x_[0]);
+      p.DefineVar("y", &x_[1]);
+      p.DefineVar("z", &x_[2]);
+      p.SetExpr(texts[k]);
+    }
+  }
+  Evaluator(const Evaluator&) = delete;  // the parsers hold the addresses of x_
+
+  const double* operator()(std::size_t order, const Vec3& x) {
+    x_ = {x[0], x[1], x[2]};
+    int n = 0;
+    return parsers_[order].Eval(n);
+  }
+
+ private:
+  std::array<double, 3> x_{};
+  std::array<mu::Parser, 3> parsers_;
+};
+
+}  // namespace
+
+ExpressionError::ExpressionError(const std::string& text, std::size_t column, const std::string& message)
+    : std::runtime_error(at_column(text, column, message)), column(column) {}
+
+struct Expression::Impl {
+  explicit Impl(std::string t) : text(std::move(t)) {
+    const auto [psi, s] = read_expression(text);
+    texts[0] = print(psi);
+    texts[1] = texts[0];
+    for (std::size_t i = 0; i < 3; ++i) texts[1] += "," + print(psi.diff(s[i]));
+    texts[2] = texts[1];
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = i; j < 3; ++j) texts[2] += "," + print(psi.diff(s[i]).diff(s[j]));
+    }
+    if (texts[2].size() > kMaxDerivativeText) {
+      throw ExpressionError(text, 1, "the second derivatives have " + std::to_string(texts[2].size()) + " characters");
+    }
+  }
+
+  std::string text;
+  std::array<std::string, 3> texts;  ///< psi; psi and gradient; psi, gradient and xx xy xz yy yz zz
+  mutable tbb::enumerable_thread_specific<Evaluator> evaluators{[this] { return Evaluator(texts); }};
+};
+
+Expression::Expression(const std::string& text) : impl_(std::make_unique<Impl>(text)) {}
+Expression::~Expression() = default;
+Expression::Expression(Expression&&) noexcept = default;
+Expression& Expression::operator=(Expression&&) noexcept = default;
+
+const std::string& Expression::text() const { return impl_->text; }
+
+double Expression::evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const {
+  const double* v = impl_->evaluators.local()(hessian ? 2 : gradient ? 1 : 0, x);
+  if (gradient) *gradient = {v[1], v[2], v[3]};
+  if (hessian) *hessian << v[4], v[5], v[6], v[5], v[7], v[8], v[6], v[8], v[9];
+  return v[0];
+}
+
+double Expression::value(const Vec3& x) const { return evaluate(x, nullptr, nullptr); }
+
+Vec3 Expression::gradient(const Vec3& x) const {
+  Vec3 g;
+  evaluate(x, &g, nullptr);
+  return g;
+}
+
+Mat3 Expression::hessian(const Vec3& x) const {
+  Mat3 H;
+  evaluate(x, nullptr, &H);
+  return H;
+}
+
+}  // namespace umtet

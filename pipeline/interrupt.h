@@ -1,0 +1,15 @@
+#pragma once
+
+namespace umtet {
+
+/// From now on SIGINT and SIGTERM ask the running stage to stop; the second one ends the process at once. Files that
+/// grow beyond a limit and closed pipes become errors of write() instead of signals.
+void install_signal_handlers();
+
+/// The signal that asked to stop, or 0.
+int interrupt_signal();
+
+/// \throw Interrupted if a signal has asked to stop: called between the steps of a stage
+void stop_if_interrupted();
+
+}  // namespace umtet

@@ -1,0 +1,101 @@
+#include "mesh/universal_mesh.h"
+#include "pipeline/parameters.h"
+#include "reconstruct/fit_ssd.h"
+
+namespace umtet {
+namespace {
+
+constexpr double kHuge = 1e100;
+constexpr std::int64_t kManyTets = 2'000'000;  // about a minute and 1 GB
+
+std::vector<ParamField> make_fields() {
+  const SsdParams ssd;
+  const UmParams um;
+  const auto text = [](const char* s) { return ParamValue(std::string(s)); };
+  const auto whole = [](auto n) { return ParamValue(static_cast<std::int64_t>(n)); };
+  const double tiny = 1e-300;  // stands for "> 0"
+  return {
+      {"cloud.file", "", text(""), 0, 0, {}, "the oriented point cloud, as given"},
+
+      {"reconstruct.spacing",
+       "--spacing",
+       ssd.spacing,
+       0,
+       kHuge,
+       {},
+       "lattice spacing, model units; 0: from the cloud"},
+      {"reconstruct.smoothing",
+       "--smoothing",
+       ssd.smoothing,
+       tiny,
+       kHuge,
+       {},
+       "c, weight of the Hessian energy (weights = area): .001 clean and dense, .1-1 noisy"},
+      {"reconstruct.alpha", "", ssd.alpha, tiny, kHuge, {}, "alpha of eq. (10) (weights = paper)"},
+      {"reconstruct.weights",
+       "--weights",
+       text("area"),
+       0,
+       0,
+       {"area", "paper"},
+       "area: samples weigh the area they stand for; paper: eq. (10) as printed"},
+      {"reconstruct.prior", "", text("compact_c2"), 0, 0, {"compact_c2", "gaussian"}, "prior of the max-ent functions"},
+      {"reconstruct.gamma", "", ssd.prior.gamma, tiny, 4, {}, "dimensionless locality of the prior (the paper: 1.6)"},
+      {"reconstruct.support", "", whole(ssd.prior.support), 2, 4, {}, "radius in spacings (prior = compact_c2)"},
+      {"reconstruct.epsilon", "", ssd.prior.epsilon, tiny, 1, {}, "cut-off (prior = gaussian)"},
+      {"reconstruct.solver",
+       "--solver",
+       text("multigrid"),
+       0,
+       0,
+       {"multigrid", "assembled"},
+       "assembled: sparse direct solve, small problems only"},
+      {"reconstruct.tolerance", "", ssd.tolerance, 1e-15, .1, {}, "relative residual at which the solver stops"},
+      {"reconstruct.max_iterations", "", whole(ssd.max_iterations), 1, 100000, {}, "of the solver"},
+      {"reconstruct.padding", "", whole(ssd.padding), 4, 64, {}, "lattice cells around the cloud"},
+
+      {"mesh.implicit", "--implicit", text(""), 0, 0, {}, "psi(x, y, z) < 0 inside: mesh a formula instead of a cloud"},
+      {"mesh.box",
+       "--box",
+       text(""),
+       0,
+       0,
+       {},
+       "x0,y0,z0,x1,y1,z1 of the background mesh; empty: around the level set"},
+      {"mesh.h",
+       "--h",
+       0.,
+       0,
+       kHuge,
+       {},
+       "edge length of the background mesh, model units; 0: from size and thickness"},
+      {"mesh.tets", "--tets", whole(0), 0, 1e12, {}, "wanted number of tets, instead of --h; 0: --h decides"},
+      {"mesh.max_tets", "--max-tets", whole(kManyTets), 100, 1e12, {}, "more tets are made for --tets only"},
+      {"mesh.background", "--background", text("a15"), 0, 0, {"a15"}, "acute tiling of the background mesh"},
+      {"mesh.mode", "--mode", text("paper"), 0, 0, {"paper"}, "paper: Algorithms 1-3 as published"},
+      {"mesh.projection_passes", "", whole(um.projection_passes), 1, 1000, {}, "N_P"},
+      {"mesh.relaxation_iterations", "", whole(um.relaxation_iterations), 0, 100000, {}, "N_R"},
+      {"mesh.samples", "", whole(um.samples), 1, 100000, {}, "N_S: 2 N_S + 1 candidates on a line"},
+      {"mesh.max_min",
+       "",
+       text("exact"),
+       0,
+       0,
+       {"exact", "golden"},
+       "exact: roots of polynomials; golden: section search"},
+      {"mesh.seed", "--seed", whole(um.seed), 0, 9e18, {}, "of the random tangents"},
+      {"mesh.keep_iterates", "--keep-iterates", false, 0, 0, {}, "write 3-mesh/pass_<n>.vtu after every pass"},
+
+      {"output.units", "--units", text(""), 0, 0, {}, "name of the model unit, e.g. mm: a label, nothing is converted"},
+      {"output.min_quality", "--min-quality", 0., 0, 1, {}, "gate: exit 6 when the least mean ratio is below"},
+  };
+}
+
+}  // namespace
+
+const std::vector<ParamField>& params_fields() {
+  static const std::vector<ParamField> fields = make_fields();
+  return fields;
+}
+
+}  // namespace umtet

@@ -1,0 +1,252 @@
+#include "pipeline/parameters.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+#include <sstream>
+
+#include "pipeline/artefact.h"
+#include "pipeline/exit_code.h"
+
+namespace umtet {
+namespace {
+
+const ParamField& field(const std::string& key) {
+  static const std::map<std::string, const ParamField*> index = [] {
+    std::map<std::string, const ParamField*> m;
+    for (const ParamField& f : params_fields()) m[f.key] = &f;
+    return m;
+  }();
+  const auto it = index.find(key);
+  if (it != index.end()) return *it->second;
+  std::vector<std::string> keys;
+  for (const ParamField& f : params_fields()) keys.push_back(f.key);
+  const std::string near = nearest(key, keys);
+  throw UsageError("unknown parameter " + key + (near.empty() ? "" : "; did you mean " + near + "?"));
+}
+
+/// The shortest decimal that reads back as the same double, always recognisable as a TOML float.
+std::string print(double v) {
+  std::string s = fmt::format("{}", v);
+  if (s.find_first_of(".e") == std::string::npos) s += ".0";
+  return s;
+}
+
+std::string print(const ParamValue& value) {
+  std::ostringstream s;
+  if (const auto* b = std::get_if<bool>(&value)) s << (*b ? "true" : "false");
+  if (const auto* i = std::get_if<std::int64_t>(&value)) s << *i;
+  if (const auto* d = std::get_if<double>(&value)) s << print(*d);
+  if (const auto* t = std::get_if<std::string>(&value)) s << toml::value<std::string>(*t);
+  return s.str();
+}
+
+template <class T>
+T parse_number(const ParamField& f, const std::string& text) {
+  T v{};
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, v);
+  if (error != std::errc() || stop != end || text.empty()) {
+    throw UsageError(fmt::format("{} = {}: not {} number", f.key, text, std::is_integral_v<T> ? "a whole" : "a"));
+  }
+  return v;
+}
+
+ParamValue parse(const ParamField& f, const std::string& text) {
+  switch (f.preset.index()) {
+    case 0:
+      if (text == "true" || text == "1") return true;
+      if (text == "false" || text == "0") return false;
+      throw UsageError(f.key + " = " + text + ": must be true or false");
+    case 1:
+      return parse_number<std::int64_t>(f, text);
+    case 2:
+      return parse_number<double>(f, text);
+    default:
+      return text;
+  }
+}
+
+void check(const ParamField& f, const ParamValue& value) {
+  const auto in_range = [&](double v) {
+    if (v >= f.min && v <= f.max) return;  // false for NaN
+    throw UsageError(f.min == 1e-300 ? fmt::format("{} = {}: must be > 0 and <= {}", f.key, v, f.max)
+                                     : fmt::format("{} = {}: must be in [{}, {}]", f.key, v, f.min, f.max));
+  };
+  if (const auto* i = std::get_if<std::int64_t>(&value)) in_range(static_cast<double>(*i));
+  if (const auto* d = std::get_if<double>(&value)) in_range(*d);
+  const auto* t = std::get_if<std::string>(&value);
+  if (t && !f.choices.empty() && std::find(f.choices.begin(), f.choices.end(), *t) == f.choices.end()) {
+    throw UsageError(fmt::format("{} = {}: this version has {} only", f.key, *t, fmt::join(f.choices, ", ")));
+  }
+  if (f.key == "mesh.box") parse_box(*t);
+}
+
+/// Names for comments: a control character would end the comment.
+std::string one_line(std::string s) {
+  for (char& c : s) {
+    if (static_cast<unsigned char>(c) < 32 || c == 127) c = '?';
+  }
+  return s;
+}
+
+}  // namespace
+
+std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
+  std::string best;
+  // Further away than a third of the word is a different word.
+  std::size_t best_distance = word.size() / 3 + 2;
+  for (const std::string& candidate : candidates) {
+    std::vector<std::size_t> row(candidate.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < word.size(); ++i) {
+      std::size_t diagonal = row[0];
+      row[0] = i + 1;
+      for (std::size_t j = 0; j < candidate.size(); ++j) {
+        const std::size_t replace = diagonal + (word[i] != candidate[j]);
+        diagonal = row[j + 1];
+        row[j + 1] = std::min({replace, row[j] + 1, diagonal + 1});
+      }
+    }
+    if (row.back() < best_distance) {
+      best_distance = row.back();
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+Parameters::Parameters() {
+  for (const ParamField& f : params_fields()) entries_[f.key].value = f.preset;
+}
+
+ParamSource Parameters::source(const std::string& key) const { return entries_.at(key).source; }
+
+void Parameters::set(const std::string& key, const std::string& text, ParamSource source, const std::string& origin) {
+  assign(key, parse(field(key), text), source, origin);
+}
+
+void Parameters::set(const std::string& assignment) {
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos) throw UsageError("--set " + assignment + ": must be key=value");
+  set(assignment.substr(0, equals), assignment.substr(equals + 1), ParamSource::Set, "--set");
+}
+
+void Parameters::assign(const std::string& key, ParamValue value, ParamSource source, const std::string& origin) {
+  check(field(key), value);
+  Entry& entry = entries_.at(key);
+  if (source < entry.source) return;
+  // h and tets are two ways to say one thing: the stronger voice silences the other.
+  if (key == "mesh.h" || key == "mesh.tets") {
+    Entry& other = entries_.at(key == "mesh.h" ? "mesh.tets" : "mesh.h");
+    const bool speaks = value != ParamValue(0.) && value != ParamValue(std::int64_t{0});
+    const bool other_speaks = other.value != ParamValue(0.) && other.value != ParamValue(std::int64_t{0});
+    if (speaks && other_speaks) {
+      if (other.source == source)
+        throw UsageError("mesh.h and mesh.tets exclude each other: give one of --h and --tets");
+      if (other.source > source) return;
+      other = {key == "mesh.h" ? ParamValue(std::int64_t{0}) : ParamValue(0.), ParamSource::Default, "default"};
+    }
+  }
+  entry = {std::move(value), source, origin};
+}
+
+void Parameters::load(const std::filesystem::path& file, ParamSource source) {
+  toml::table root;
+  try {
+    root = toml::parse(read_text(file), file.string());
+  } catch (const toml::parse_error& e) {
+    throw UsageError(
+        fmt::format("{}:{}:{}: {}", file.string(), e.source().begin.line, e.source().begin.column, e.description()));
+  }
+  const std::string origin = "file " + one_line(file.filename().string());
+  const auto at = [&](const toml::node& node) {
+    return fmt::format("{}:{}: ", file.string(), node.source().begin.line);
+  };
+  for (const auto& [section, node] : root) {
+    const std::string name(section.str());
+    if (!node.is_table()) throw UsageError(at(node) + name + ": expected a section such as [mesh]");
+    for (const auto& [key, entry] : *node.as_table()) {
+      try {
+        const ParamField& f = field(name + "." + std::string(key.str()));
+        ParamValue value;
+        if (f.preset.index() == 0 && entry.is_boolean()) {
+          value = *entry.value<bool>();
+        } else if (f.preset.index() == 1 && entry.is_integer()) {
+          value = *entry.value<std::int64_t>();
+        } else if (f.preset.index() == 2 && entry.is_number()) {
+          value = *entry.value<double>();
+        } else if (f.preset.index() == 3 && entry.is_string()) {
+          value = *entry.value<std::string>();
+        } else {
+          constexpr const char* kTypes[] = {"true or false", "a whole number", "a number", "a text"};
+          throw UsageError(f.key + ": must be " + kTypes[f.preset.index()]);
+        }
+        assign(f.key, std::move(value), source, origin);
+      } catch (const UsageError& e) {
+        throw UsageError(at(entry) + e.what());
+      }
+    }
+  }
+}
+
+void Parameters::copy_section(std::string_view name, const Parameters& other) {
+  for (const ParamField& f : params_fields()) {
+    if (f.key.substr(0, f.key.find('.')) == name) entries_.at(f.key) = other.entries_.at(f.key);
+  }
+}
+
+std::string Parameters::toml() const {
+  std::string out = "# Effective parameters of this case. Feed it back with --config.\n";
+  std::string section;
+  for (const ParamField& f : params_fields()) {
+    const std::size_t dot = f.key.find('.');
+    if (f.key.substr(0, dot) != section) {
+      section = f.key.substr(0, dot);
+      out += fmt::format("\n[{}]\n", section);
+    }
+    const Entry& entry = entries_.at(f.key);
+    out += fmt::format("{} = {}  # {}: {}\n", f.key.substr(dot + 1), print(entry.value), entry.origin, f.help);
+  }
+  return out;
+}
+
+nlohmann::ordered_json Parameters::section(std::string_view name) const {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const ParamField& f : params_fields()) {
+    const std::size_t dot = f.key.find('.');
+    // A cloud is known by its bytes, which the record lists among its inputs; it may move.
+    if (f.key.substr(0, dot) != name || f.key == "cloud.file") continue;
+    std::visit([&](const auto& v) { json[f.key.substr(dot + 1)] = v; }, entries_.at(f.key).value);
+  }
+  return json;
+}
+
+std::optional<Eigen::AlignedBox3d> parse_box(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  std::array<double, 6> v{};
+  const char* at = text.data();
+  const char* end = at + text.size();
+  for (std::size_t k = 0; k < 6; ++k) {
+    while (at != end && *at == ' ') ++at;
+    const auto [stop, error] = std::from_chars(at, end, v[k]);
+    at = stop;
+    while (at != end && *at == ' ') ++at;
+    const bool separated = k == 5 ? at == end : at != end && *at == ',';
+    if (error != std::errc() || !separated || !std::isfinite(v[k])) {
+      throw UsageError("mesh.box = " + text + ": must be six numbers x0,y0,z0,x1,y1,z1");
+    }
+    if (k < 5) ++at;
+  }
+  const Eigen::AlignedBox3d box(Eigen::Vector3d(v[0], v[1], v[2]), Eigen::Vector3d(v[3], v[4], v[5]));
+  if (!(box.sizes().array() > 0).all())
+    throw UsageError("mesh.box = " + text + ": empty; the first corner is the lower one");
+  return box;
+}
+
+}  // namespace umtet

@@ -1,0 +1,45 @@
+#include "pipeline/stages.h"
+
+#include <string>
+
+#include "pipeline/exit_code.h"
+
+namespace umtet {
+namespace fs = std::filesystem;
+
+std::vector<RecordedFile> recorded_inputs(const CasePaths& paths, Stage stage, const Parameters& parameters) {
+  std::vector<RecordedFile> inputs;
+  if (stage == Stage::Cloud || !parameters.text("mesh.implicit").empty()) return inputs;
+  for (const Stage source : {Stage::Cloud, Stage::LevelSet}) {
+    if (source >= stage) break;
+    const StageState state = inspect_stage(paths, source, parameters.section(section_of(source)), std::nullopt);
+    if (!state.record) throw ArtefactDamaged(state.reason);
+    for (const RecordedFile& f : state.record->outputs) {
+      inputs.push_back({paths.folder(source).filename().string() + "/" + f.name, f.stamp});
+    }
+  }
+  return inputs;
+}
+
+void begin_writing(const StageContext& context, Stage stage) {
+  const fs::path folder = context.paths.folder(stage);
+  fs::create_directories(folder);
+  remove_stale_temporaries(folder);
+  remove_stale_temporaries(context.paths.root);
+  fs::remove(context.paths.record(stage));
+  fs::remove(context.paths.certificate());
+  const fs::path file = context.paths.parameters();
+  const std::string text = context.parameters.toml();
+  if (!fs::exists(file) || read_text(file) != text) write_text_artefact(file, text);
+}
+
+Vec3 recorded_vector(const StageRecord& record, const char* key) {
+  try {
+    const Json& v = record.numbers.at(key);
+    return {v.at(0).get<double>(), v.at(1).get<double>(), v.at(2).get<double>()};
+  } catch (const Json::exception&) {
+    throw ArtefactDamaged(std::string("the record of ") + to_string(record.stage) + " has no vector " + key);
+  }
+}
+
+}  // namespace umtet

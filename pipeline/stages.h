@@ -1,0 +1,58 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "mesh/universal_mesh.h"
+#include "pipeline/case_folder.h"
+#include "pipeline/parameters.h"
+#include "pipeline/progress.h"
+#include "pipeline/record.h"
+#include "reconstruct/fit_ssd.h"
+
+namespace umtet {
+
+/// What every stage is given. A stage computes first and touches the case only when it has something to write.
+struct StageContext {
+  const CasePaths& paths;
+  const Parameters& parameters;
+  Progress& progress;
+  int threads;
+};
+
+/// 1-cloud: reads the user's file, checks it, writes cloud.ply (double precision, original coordinates).
+/// \throw CloudRefused, std::system_error; the case is then untouched
+void run_cloud_stage(const StageContext&, const std::filesystem::path& source);
+
+/// The user's cloud as the record of 1-cloud lists it: known by its bytes, not by its name.
+RecordedFile source_input(const std::filesystem::path& source);
+
+/// 2-level-set: fits psi to cloud.ply, writes level_set.vti. A cloud far from the origin is fitted in coordinates
+/// shifted by numbers.shift of the record. \throw SolveError, Interrupted, ArtefactDamaged, std::system_error
+void run_level_set_stage(const StageContext&);
+
+/// 3-mesh: meshes {psi < 0} of the level set, or of mesh.implicit when that is set; writes omega_h.vtu, projected.vtu,
+/// mesh.vtu and quality.csv, and puts everything a certificate needs into the record.
+/// When no mesh can be made, omega_h.vtu and projected.vtu stay for the eye, without mesh.vtu and without a record.
+/// \throw MeshingImpossible, ResourceLimit, Interrupted, ArtefactDamaged, ExpressionError, UsageError,
+/// std::system_error
+void run_mesh_stage(const StageContext&);
+
+/// The parameter structs of the libraries. \throw UsageError with every broken constraint
+SsdParams ssd_params(const Parameters&);
+
+UmParams um_params(const Parameters&);
+
+/// The files a stage reads from the case (not the user's cloud), with the stamps that the records of their stages hold;
+/// empty for the first stage and for a formula.
+std::vector<RecordedFile> recorded_inputs(const CasePaths&, Stage, const Parameters&);
+
+/// To call before the first write of a stage: makes its folder, removes its record (from here on the stage is not done)
+/// and the temporary files of killed runs, withdraws the certificate, and writes case.toml.
+void begin_writing(const StageContext&, Stage);
+
+/// A vector of the numbers of a record. \throw ArtefactDamaged if it is not there
+Vec3 recorded_vector(const StageRecord&, const char* key);
+
+}  // namespace umtet

@@ -1,0 +1,149 @@
+// The program: parses the call, runs it, prints data on stdout and the rest on stderr, and returns the exit code.
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+#include <string_view>
+
+#include "pipeline/certificate_json.h"
+#include "pipeline/check.h"
+#include "pipeline/command_line.h"
+#include "pipeline/exit_code.h"
+#include "pipeline/export_case.h"
+#include "pipeline/interrupt.h"
+#include "pipeline/run.h"
+
+namespace umtet {
+namespace {
+
+/// What goes to stdout: lines for people, or one document for programs.
+struct Output {
+  ExitCode code = ExitCode::Success;
+  std::string text;
+  Json document = Json::object();
+};
+
+std::string file_list(const std::vector<std::filesystem::path>& files) {
+  std::string out;
+  for (const auto& file : files) out += (out.empty() ? "files     " : "          ") + file.string() + "\n";
+  return out;
+}
+
+Json names(const std::vector<std::filesystem::path>& files) {
+  Json list = Json::array();
+  for (const auto& file : files) list.push_back(file.string());
+  return list;
+}
+
+Output run_stages(const CommandLine& call, Progress& progress) {
+  const RunOutcome outcome = run_case(call.request, progress);
+  progress.clear();
+  if (outcome.stages_run.empty()) {
+    progress.say(fmt::format("nothing to do: {} is up to date", call.request.case_folder.string()));
+  }
+  Json stages = Json::array();
+  for (const Stage stage : outcome.stages_run) stages.push_back(to_string(stage));
+  Output output;
+  output.code = outcome.code;
+  output.document = {{"case", call.request.case_folder.string()},
+                     {"stages_run", stages},
+                     {"files", names(outcome.files)},
+                     {"certificate", outcome.certificate ? *outcome.certificate : Json(nullptr)}};
+  if (outcome.certificate) output.text = summary(*outcome.certificate);
+  output.text += file_list(outcome.files);
+  return output;
+}
+
+Output check(const CommandLine& call) {
+  Output output;
+  const Json json = check_mesh(call.mesh, call.against, call.min_quality);
+  if (json.at("verdict") != "pass") output.code = ExitCode::GateFailed;
+  output.document = {{"check", json}};
+  output.text = summary(json);
+  return output;
+}
+
+Output export_files(const CommandLine& call) {
+  Output output;
+  const CasePaths paths{call.request.case_folder};
+  if (!std::filesystem::exists(paths.root)) throw UsageError(paths.root.string() + ": there is no such case");
+  const CaseLock lock(paths.root);
+  const std::vector<std::filesystem::path> files = export_case(paths, call.formats);
+  output.document = {{"files", names(files)}};
+  output.text = file_list(files);
+  return output;
+}
+
+/// @param json  is set as soon as the call is understood, for the document of a failure
+Output execute(int argc, char** argv, bool& json, std::string& command) {
+  CommandLine call = parse_command_line(argc, argv);
+  if (call.action == CommandLine::Action::Text) return {ExitCode::Success, call.text, {}};
+  json = call.json;
+  command = call.command;
+  if (call.threads == 0) call.threads = tbb::info::default_concurrency();
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(call.threads));
+  call.request.threads = call.threads;
+  Progress progress(call.progress, call.verbosity);
+  switch (call.action) {
+    case CommandLine::Action::Check:
+      return check(call);
+    case CommandLine::Action::Export:
+      return export_files(call);
+    default:
+      return run_stages(call, progress);
+  }
+}
+
+/// To stderr, if it can be written; where it cannot, the exit code has to do. (fmt::print would throw.)
+template <class... T>
+void complain(fmt::format_string<T...> format, T&&... args) {
+  const std::string text = fmt::format(format, std::forward<T>(args)...);
+  std::fwrite(text.data(), 1, text.size(), stderr);
+}
+
+bool print(const std::string& text) {
+  return std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+}
+
+int run_program(int argc, char** argv) {
+  // A call that cannot be understood still answers in the language it asked for.
+  bool json = std::any_of(argv, argv + argc, [](const char* a) { return std::string_view(a) == "--json"; });
+  std::string command;
+  Output output;
+  std::optional<Failure> failure;
+  try {
+    output = execute(argc, argv, json, command);
+  } catch (...) {
+    failure = failure_of(std::current_exception());
+  }
+  if (failure) {
+    complain("umtet: {}\n", failure->message);
+    if (failure->code == ExitCode::Bug) complain("umtet: this is a bug; please report it with the case folder\n");
+    output.code = failure->code;
+    output.text.clear();
+    output.document = {{"error", failure->message}};
+  }
+  if (json) {
+    Json document = {{"schema", 1}, {"command", command}, {"exit_code", static_cast<int>(output.code)}};
+    document.update(output.document);
+    output.text = document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  }
+  if (!print(output.text)) {
+    complain("umtet: cannot write to stdout\n");
+    if (output.code == ExitCode::Success) output.code = ExitCode::FileTrouble;
+  }
+  return static_cast<int>(output.code);
+}
+
+}  // namespace
+}  // namespace umtet
+
+int main(int argc, char** argv) {
+  umtet::install_signal_handlers();
+  return umtet::run_program(argc, argv);
+}

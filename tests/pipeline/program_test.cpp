@@ -1,0 +1,325 @@
+// The built program, from outside: exit codes, what is on disk afterwards, what is on stdout.
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace umtet {
+namespace {
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+std::string content(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream s;
+  s << in.rdbuf();
+  return s.str();
+}
+
+/// Removes the block that is different every time.
+std::string without_run(const fs::path& file) {
+  Json json = Json::parse(content(file));
+  json.erase("run");
+  return json.dump();
+}
+
+class Program : public testing::Test {
+ protected:
+  struct Result {
+    int code;
+    std::string out, err;
+  };
+
+  void SetUp() override {
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+    // 600 points of an ellipsoid with half axes 1, .8, .6.
+    std::ofstream ply(cloud);
+    ply.precision(17);
+    ply << "ply\nformat ascii 1.0\nelement vertex 600\n";
+    for (const char* p : {"x", "y", "z", "nx", "ny", "nz"}) ply << "property double " << p << "\n";
+    ply << "end_header\n";
+    for (int i = 0; i < 600; ++i) {
+      const double z = 1 - (2 * i + 1) / 600., r = std::sqrt(1 - z * z), a = 2.399963229728653 * i;
+      const double u[3] = {r * std::cos(a), r * std::sin(a), z}, n[3] = {u[0], u[1] / .8, u[2] / .6};
+      const double l = std::hypot(n[0], n[1], n[2]);
+      ply << u[0] << ' ' << .8 * u[1] << ' ' << .6 * u[2] << ' ' << n[0] / l << ' ' << n[1] / l << ' ' << n[2] / l
+          << '\n';
+    }
+  }
+  void TearDown() override { fs::remove_all(folder); }
+
+  /// Arguments are words without quotes; `shell` goes in front, e.g. "ulimit -f 100;".
+  Result run(const std::string& arguments, const std::string& shell = "") const {
+    const fs::path out = folder / "stdout", err = folder / "stderr";
+    const std::string call = "cd '" + folder.string() + "'; " + shell + " '" + UMTET_PROGRAM + "' " + arguments +
+                             " >'" + out.string() + "' 2>'" + err.string() + "'";
+    const int status = std::system(call.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(out), content(err)};
+  }
+  std::string name_in(const fs::path& p) const { return (folder / p).string(); }
+
+  const fs::path folder = fs::temp_directory_path() / ("umtet_program_" + std::to_string(::getpid()));
+  const fs::path cloud = folder / "egg.ply";
+  const std::string ball = "mesh --implicit 'x^2+y^2+z^2-1' --box -1.3,-1.3,-1.3,1.3,1.3,1.3 --tets 3000 -o ball ";
+};
+
+TEST_F(Program, FormulaBecomesACertifiedMesh) {
+  const Result r = run(ball + "--json");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const Json document = Json::parse(r.out);
+  EXPECT_EQ(document["exit_code"], 0);
+  const Json& c = document["certificate"];
+  EXPECT_EQ(c["verdict"], "pass");
+  EXPECT_EQ(c["boundary"]["genus"], 0);
+  EXPECT_EQ(c["quality"]["n_inverted"], 0);
+  EXPECT_LE(c["boundary"]["max_vertex_distance_over_h"], 1e-8);
+  EXPECT_NEAR(c["n_tets"].get<double>(), 3000, 600);  // the choice of h promises 10 % on finer meshes
+  EXPECT_NEAR(c["resolution"]["kappa_h_max"].get<double>(), c["h"].get<double>(), 1e-6);  // curvature 1
+  EXPECT_TRUE(c["cloud"].is_null());
+  EXPECT_EQ(Json::parse(content(folder / "ball/certificate.json")), c);
+  for (const char* f : {"omega_h.vtu", "projected.vtu", "mesh.vtu", "quality.csv", "record.json"}) {
+    EXPECT_GT(fs::file_size(folder / "ball/3-mesh" / f), 0u) << f;
+  }
+  EXPECT_FALSE(fs::exists(folder / "ball/1-cloud"));
+}
+
+TEST_F(Program, CloudBecomesACertifiedMeshOnceAndThenThereIsNothingToDo) {
+  const Result first = run("run egg.ply -o egg --tets 4000");
+  ASSERT_EQ(first.code, 0) << first.err << first.out;
+  const auto written = fs::last_write_time(folder / "egg/3-mesh/mesh.vtu");
+  const Result second = run("run egg.ply -o egg --tets 4000");
+  EXPECT_EQ(second.code, 0);
+  EXPECT_NE(second.err.find("nothing to do"), std::string::npos) << second.err;
+  EXPECT_EQ(second.out, first.out);
+  EXPECT_EQ(fs::last_write_time(folder / "egg/3-mesh/mesh.vtu"), written);
+  // The case alone, and case.toml as a configuration, mean the same.
+  EXPECT_NE(run("run egg").err.find("nothing to do"), std::string::npos);
+  EXPECT_NE(run("run --config egg/case.toml -o egg").err.find("nothing to do"), std::string::npos);
+}
+
+TEST_F(Program, ChangedEdgeLengthKeepsStageOne) {
+  ASSERT_EQ(run("run egg.ply -o egg --tets 4000").code, 0);
+  const auto written = fs::last_write_time(folder / "egg/2-level-set/level_set.vti");
+  const std::string mesh = content(folder / "egg/3-mesh/mesh.vtu");
+  const Result r = run("mesh egg --h .2 --json");
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_EQ(Json::parse(r.out)["stages_run"], Json::array({"mesh"}));
+  EXPECT_EQ(Json::parse(r.out)["certificate"]["h"], .2);
+  EXPECT_EQ(fs::last_write_time(folder / "egg/2-level-set/level_set.vti"), written);
+  EXPECT_NE(content(folder / "egg/3-mesh/mesh.vtu"), mesh);
+  EXPECT_NE(content(folder / "egg/case.toml").find("h = 0.2  # --h"), std::string::npos);
+  // reconstruct CASE fits the same cloud again.
+  const Result again = run("reconstruct egg --smoothing .1 --json");
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(Json::parse(again.out)["stages_run"], Json::array({"level-set"}));
+  EXPECT_FALSE(fs::exists(folder / "egg/certificate.json"));  // of a mesh of the former level set
+}
+
+TEST_F(Program, ThreadsDoNotChangeAByte) {
+  ASSERT_EQ(run("run egg.ply -o one --tets 4000 --threads 1").code, 0);
+  ASSERT_EQ(run("run egg.ply -o two --tets 4000 --threads 2").code, 0);
+  int n = 0;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder / "one")) {
+    if (!entry.is_regular_file() || entry.path().filename() == ".lock") continue;
+    const fs::path other = folder / "two" / fs::relative(entry.path(), folder / "one");
+    if (entry.path().extension() == ".json") {
+      EXPECT_EQ(without_run(entry.path()), without_run(other)) << other;
+    } else {
+      EXPECT_EQ(content(entry.path()), content(other)) << other;
+    }
+    ++n;
+  }
+  EXPECT_EQ(n, 11);
+}
+
+TEST_F(Program, DamageIsNoticedAndMended) {
+  ASSERT_EQ(run("run egg.ply -o egg --tets 3000").code, 0);
+  const fs::path file = folder / "egg/2-level-set/level_set.vti";
+  const std::string good = content(file);
+  std::string bad = good;
+  bad[bad.size() / 2] ^= 1;
+  std::ofstream(file, std::ios::binary) << bad;
+  const Result strict = run("run egg.ply -o egg --tets 3000 --strict");
+  EXPECT_EQ(strict.code, 8);
+  EXPECT_NE(strict.err.find("level_set.vti"), std::string::npos) << strict.err;
+  const Result mended = run("mesh egg");
+  EXPECT_EQ(mended.code, 0) << mended.err;
+  EXPECT_NE(mended.err.find("level_set.vti does not match its checksum; making it again"), std::string::npos);
+  EXPECT_EQ(content(file), good);
+}
+
+TEST_F(Program, RefusedCloudsTouchNothing) {
+  ASSERT_EQ(run("run egg.ply -o egg --tets 3000").code, 0);
+  const std::string certificate = content(folder / "egg/certificate.json"), toml = content(folder / "egg/case.toml");
+  std::ofstream(folder / "cut.ply") << content(cloud).substr(0, 2000);
+  const Result r = run("run cut.ply -o egg --tets 3000 --json");
+  EXPECT_EQ(r.code, 3);
+  const Json document = Json::parse(r.out);
+  EXPECT_EQ(document["exit_code"], 3);
+  EXPECT_NE(document["error"].get<std::string>().find("cut.ply"), std::string::npos);
+  EXPECT_EQ(content(folder / "egg/certificate.json"), certificate);
+  EXPECT_EQ(content(folder / "egg/case.toml"), toml);
+  EXPECT_EQ(run("run cut.ply -o new").code, 3);
+  EXPECT_FALSE(fs::exists(folder / "new"));
+  const Result missing = run("run none.ply -o new");
+  EXPECT_EQ(missing.code, 7);
+  EXPECT_NE(missing.err.find("none.ply"), std::string::npos);
+  EXPECT_FALSE(fs::exists(folder / "new"));
+}
+
+TEST_F(Program, FarFromTheOriginTheMeshComesBackWhereTheCloudIs) {
+  // The egg moved by multiples of 2^20: its coordinates stay exact to 2^-32.
+  std::istringstream in(content(cloud));
+  std::ofstream out(folder / "far.ply");
+  out.precision(17);
+  std::string line;
+  while (std::getline(in, line) && line != "end_header") out << line << '\n';
+  out << line << '\n';
+  double x[6];
+  while (in >> x[0] >> x[1] >> x[2] >> x[3] >> x[4] >> x[5]) {
+    out << x[0] + 1048576 << ' ' << x[1] - 2097152 << ' ' << x[2] << ' ' << x[3] << ' ' << x[4] << ' ' << x[5] << '\n';
+  }
+  out.close();
+  const Result near = run("run egg.ply -o near --tets 3000 --json"), far = run("run far.ply -o far --tets 3000 --json");
+  ASSERT_EQ(far.code, 0) << far.err;
+  const Json a = Json::parse(near.out)["certificate"], b = Json::parse(far.out)["certificate"];
+  // Another place of the lattice relative to the cloud: the fit differs by its own error, which is below 1e-3.
+  EXPECT_NEAR(a["volume"], b["volume"], 1e-3);
+  const Result check = run("check far/3-mesh/mesh.vtu --against far --json");
+  // Written coordinates are exact to 1e-10 only out there, so 1e-8 h may be missed; the surface itself may not.
+  EXPECT_LT(Json::parse(check.out)["check"]["boundary"]["max_vertex_distance_over_h"].get<double>(), 1e-7) << check.out;
+  EXPECT_EQ(run("export far --format mesh").code, 0);
+  std::istringstream mesh(content(folder / "far/4-export/mesh.mesh"));
+  while (std::getline(mesh, line) && line != "Vertices") {
+  }
+  double n, v;
+  mesh >> n >> v;
+  EXPECT_NEAR(v, 1048576, 1.1);
+}
+
+TEST_F(Program, UsageErrorsNameThePlaceAndTheRemedy) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"mesh --implicit 'x^2+foo(y)' --box -1,-1,-1,1,1,1 -o a", "column 5"},
+      {"mesh --implicit 'x^2+y^2-1' -o a", "--box"},
+      {"run egg.ply -o a --smothing 1", "did you mean --smoothing?"},
+      {"run egg.ply -o a --set mesh.sampels=1", "did you mean mesh.samples?"},
+      {"run egg.ply -o a --tets 10 --h 1", "exclude each other"},
+      {"run egg.ply -o a --mode fast", "paper only"},
+      {"run egg.ply -o a --background bcc", "a15 only"},
+      {"run egg.ply -o a --from mehs", "did you mean mesh?"},
+      {"run egg.ply", "-o CASE"},
+      {"rum egg.ply -o a", "did you mean run?"},
+      {"mesh nowhere", "not a case"},
+      {"", "--help"}};
+  for (const auto& [arguments, message] : cases) {
+    const Result r = run(arguments);
+    EXPECT_EQ(r.code, 2) << arguments;
+    EXPECT_NE(r.err.find(message), std::string::npos) << arguments << "\n" << r.err;
+    EXPECT_EQ(r.out, "") << arguments;
+  }
+  EXPECT_FALSE(fs::exists(folder / "a"));
+  EXPECT_EQ(run("--version").out.substr(0, 6), "umtet ");
+  EXPECT_EQ(run("mesh --help").code, 0);
+}
+
+TEST_F(Program, GatesAndImpossibleMeshesHaveTheirCodes) {
+  const Result gate = run(ball + "--min-quality .99");
+  EXPECT_EQ(gate.code, 6);
+  EXPECT_NE(gate.out.find("below the gate"), std::string::npos);
+  EXPECT_TRUE(fs::exists(folder / "ball/3-mesh/mesh.vtu"));
+  const Result no_gate = run(ball);  // the mesh is the same one, judged anew
+  EXPECT_EQ(no_gate.code, 0);
+  EXPECT_NE(no_gate.err.find("nothing to do"), std::string::npos);
+  const Result rim = run("mesh --implicit 'x' --box -1,-1,-1,1,1,1 --h .2 -o ball");
+  EXPECT_EQ(rim.code, 5);
+  EXPECT_NE(rim.err.find("leaves"), std::string::npos) << rim.err;
+  EXPECT_FALSE(fs::exists(folder / "ball/3-mesh/mesh.vtu"));
+  EXPECT_FALSE(fs::exists(folder / "ball/certificate.json"));
+  EXPECT_EQ(run("mesh --implicit 'x^2+1' --box -1,-1,-1,1,1,1 --tets 1000 -o none").code, 5);
+  EXPECT_EQ(run("mesh --implicit 'x^2+y^2+z^2-1' --box -2,-2,-2,2,2,2 --h .001 -o ball").code, 9);
+}
+
+TEST_F(Program, CheckJudgesAnyMesh) {
+  ASSERT_EQ(run(ball).code, 0);
+  ASSERT_EQ(run("export ball --format msh,msh22,mesh,vtu,stl").code, 0);
+  EXPECT_GT(fs::file_size(folder / "ball/4-export/mesh.stl"), 0u);
+  Json first;
+  for (const char* f : {"mesh.msh", "mesh_22.msh", "mesh.mesh", "mesh.vtu"}) {
+    const Result r = run("check --json --against ball ball/4-export/" + std::string(f));
+    ASSERT_EQ(r.code, 0) << f << r.err;
+    const Json c = Json::parse(r.out)["check"];
+    if (first.is_null()) first = c;
+    EXPECT_EQ(c["quality"]["min"], first["quality"]["min"]) << f;  // formats keep all digits
+    EXPECT_EQ(c["boundary"]["euler_characteristic"], 2);
+  }
+  EXPECT_EQ(run("check ball/3-mesh/mesh.vtu --min-quality .99").code, 6);
+  std::ofstream(folder / "flat.mesh") << "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n"
+                                         "1 1 0 0\nTetrahedra\n1\n1 2 3 4 1\nEnd\n";
+  EXPECT_EQ(run("check flat.mesh").code, 6);
+  EXPECT_EQ(run("check egg.ply").code, 3);
+  EXPECT_EQ(run("check none.vtu").code, 7);
+}
+
+TEST_F(Program, AFullDiskIsFileTroubleAndLeavesNoHalfFile) {
+  // 40 blocks of 512 or 1024 bytes: the record would fit, the meshes do not.
+  const Result r = run(ball, "ulimit -f 40;");
+  EXPECT_EQ(r.code, 7) << r.err;
+  EXPECT_NE(r.err.find(".vtu"), std::string::npos) << r.err;
+  EXPECT_FALSE(fs::exists(folder / "ball/certificate.json"));
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder / "ball")) {
+    EXPECT_FALSE(entry.path().extension() == ".vtu") << entry.path();
+  }
+  EXPECT_EQ(run(ball).code, 0);
+  // The rest of the call, which sends stdout to a file, is a comment.
+  EXPECT_EQ(run(ball + " >/dev/full 2>&1; exit $?; #").code, 7);
+}
+
+TEST_F(Program, InterruptedRunsLeaveAResumableCase) {
+  for (const auto& [signal, code] : {std::pair{SIGINT, 130}, std::pair{SIGTERM, 143}}) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      ::chdir(folder.c_str());
+      ::execl(UMTET_PROGRAM, "umtet", "mesh", "--implicit", "x^2+y^2+z^2-1", "--box", "-1.3,-1.3,-1.3,1.3,1.3,1.3",
+              "--tets", "300000", "-o", "large", "-q", nullptr);
+      ::_exit(127);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(400));
+    ::kill(child, signal);
+    const auto asked = std::chrono::steady_clock::now();
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), code);
+    // A sweep over 300k tets takes well below a second; the rest is for a loaded machine.
+    EXPECT_LT(std::chrono::steady_clock::now() - asked, std::chrono::seconds(4));
+    EXPECT_FALSE(fs::exists(folder / "large/3-mesh/record.json"));
+  }
+  EXPECT_EQ(run("mesh --implicit 'x^2+y^2+z^2-1' --box -1.3,-1.3,-1.3,1.3,1.3,1.3 --tets 3000 -o large").code, 0);
+}
+
+TEST_F(Program, AnswersInJsonAlsoWhenItFails) {
+  for (const char* arguments : {"run --json", "mesh nowhere --json", "run none.ply -o a --json", "frobnicate --json"}) {
+    const Result r = run(arguments);
+    const Json document = Json::parse(r.out, nullptr, false);
+    ASSERT_TRUE(document.is_object()) << arguments << r.out;
+    EXPECT_EQ(document["exit_code"], r.code);
+    EXPECT_TRUE(document.contains("error"));
+  }
+}
+
+}  // namespace
+}  // namespace umtet
