@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <chrono>
 
 #include "pipeline/exit_code.h"
@@ -24,6 +26,22 @@ OrientedPointCloud read_own_cloud(const fs::path& file) {
   } catch (const CloudRefused& e) {  // we wrote it: not the user's file is at fault
     throw ArtefactDamaged(e.what());
   }
+}
+
+// Clean clouds oppose by a fraction of a per cent; a tenth is a patch turned over, or every tenth normal.
+constexpr double kMostOpposed = .1;
+
+/// A fit to normals that are turned over is a level set all the same, but of no body.
+void require_outward_normals(const SsdReport& r) {
+  const auto opposed = static_cast<double>(r.n_opposed_normals) / static_cast<double>(r.n_points);
+  const bool open = r.least_wall_value < 0;
+  if (!open && opposed <= kMostOpposed) return;
+  const std::string what =
+      open ? "psi is negative at the wall of its box, where no body is" : "psi was fitted, but not to these normals";
+  throw SolveError(
+      fmt::format("{}: {:.1f} % of the {} normals point against its gradient; the normals point into the body, "
+                  "or disagree with one another: orient them consistently, outward",
+                  what, 100 * opposed, r.n_points));
 }
 
 }  // namespace
@@ -68,6 +86,7 @@ void run_level_set_stage(const StageContext& context) {
   }();
 
   stop_if_interrupted();
+  require_outward_normals(fit.report);
   begin_writing(context, Stage::LevelSet);
   write_artefact(context.paths.level_set(),
                  [&](const fs::path& temporary) { write_level_set(temporary, fit.psi, shift); });
@@ -82,7 +101,9 @@ void run_level_set_stage(const StageContext& context) {
                         {"energy_value", r.energy_value},
                         {"energy_normal", r.energy_normal},
                         {"energy_hessian", r.energy_hessian},
-                        {"rms_value", r.rms_value}};
+                        {"rms_value", r.rms_value},
+                        {"n_opposed_normals", r.n_opposed_normals},
+                        {"least_wall_value", r.least_wall_value}};
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   write_record(context.paths,
                {Stage::LevelSet,

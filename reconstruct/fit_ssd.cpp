@@ -88,6 +88,29 @@ std::vector<SsdSample> make_samples(const OrientedPointCloud& cloud, const std::
   return samples;
 }
 
+void measure_fit(const OrientedPointCloud& cloud, const LevelSet& psi, SsdReport& report) {
+  double sum2 = 0;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    Vec3 gradient;
+    sum2 += std::pow(psi.evaluate(cloud.points[i], &gradient, nullptr), 2);
+    report.n_opposed_normals += gradient.dot(cloud.normals[i]) < 0;
+  }
+  report.rms_value = std::sqrt(sum2 / static_cast<double>(cloud.points.size()));
+
+  constexpr int kWallSamples = 16;  // along each edge of a face
+  report.least_wall_value = std::numeric_limits<double>::infinity();
+  const Eigen::AlignedBox3d& box = psi.domain();
+  for (int face = 0; face < 6; ++face) {
+    for (int s = 0; s < kWallSamples * kWallSamples; ++s) {
+      Vec3 t;  // position in the box, 0 .. 1 on each axis
+      t[face / 2] = face % 2;
+      t[(face / 2 + 1) % 3] = (s % kWallSamples + 0.5) / kWallSamples;
+      t[(face / 2 + 2) % 3] = (s / kWallSamples + 0.5) / kWallSamples;
+      report.least_wall_value = std::min(report.least_wall_value, psi.value(box.min() + t.cwiseProduct(box.sizes())));
+    }
+  }
+}
+
 }  // namespace
 
 SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const SsdProgress& progress) {
@@ -157,9 +180,7 @@ SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const S
   c.resize(op.size());
   for (double& v : c) v *= lattice.h;
   LevelSet psi(params.prior, {{lattice, std::move(c)}});
-  double sum2 = 0;
-  for (const Vec3& x : cloud.points) sum2 += std::pow(psi.value(x), 2);
-  report.rms_value = std::sqrt(sum2 / static_cast<double>(cloud.points.size()));
+  measure_fit(cloud, psi, report);
   return {std::move(psi), std::move(report)};
 }
 

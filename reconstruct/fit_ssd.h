@@ -41,6 +41,8 @@ struct SsdReport {
   std::vector<double> residuals;                                   ///< relative, one per iteration, the first is 1
   double energy_value = 0, energy_normal = 0, energy_hessian = 0;  ///< the three terms of the functional at psi
   double rms_value = 0;                                            ///< rms of psi(x_i), model units
+  std::size_t n_opposed_normals = 0;  ///< samples with n_i . grad psi(x_i) < 0: the normals disagree with one another
+  double least_wall_value = 0;        ///< least psi sampled on the wall of its domain; < 0: the body has no end
 };
 
 /// Where the stage stands: "weights", "setup", "solve"; fraction in [0, 1]. Return false to stop: SolveCancelled.

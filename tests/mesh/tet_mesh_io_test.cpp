@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstdlib>
@@ -22,7 +23,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path scratch(const std::string& name) { return fs::path(::testing::TempDir()) / ("umtet_io_" + name); }
+fs::path scratch(const std::string& name) {
+  return fs::path(::testing::TempDir()) / ("umtet_io_" + std::to_string(::getpid()) + "_" + name);
+}
 
 std::string bytes_of(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);

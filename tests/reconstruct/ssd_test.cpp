@@ -149,6 +149,19 @@ TEST(FitSsd, RefusesBrokenInputAndSaysAllOfIt) {
   EXPECT_THROW(fit_ssd(torus_cloud(1000), hasty), SolveError);
 }
 
+TEST(FitSsd, ReportsNormalsThatCannotBeRight) {
+  OrientedPointCloud cloud = torus_cloud(3000);
+  const SsdReport good = fit_ssd(cloud, params_with(0.15)).report;
+  EXPECT_EQ(good.n_opposed_normals, 0u);
+  EXPECT_GT(good.least_wall_value, 0);
+  OrientedPointCloud inward = cloud;
+  for (Vec3& n : inward.normals) n = -n;
+  EXPECT_LT(fit_ssd(inward, params_with(0.15)).report.least_wall_value, 0);
+  for (std::size_t i = 0; i < cloud.normals.size(); i += 5) cloud.normals[i] *= -1;
+  const SsdReport mixed = fit_ssd(cloud, params_with(0.15)).report;
+  EXPECT_NEAR(static_cast<double>(mixed.n_opposed_normals), 600, 60);
+}
+
 TEST(FitSsd, StopsWhenTold) {
   int calls = 0;
   EXPECT_THROW(fit_ssd(torus_cloud(2000), params_with(0.1), [&](const char*, double) { return ++calls < 4; }),
