@@ -21,7 +21,7 @@ def view(port, up, cut, center, size):
     camera.SetFocalPoint(center)
     camera.SetPosition([center[i] + size * (1.6 * cut[i] + 0.75 * right[i] + 0.55 * up[i]) for i in range(3)])
     camera.SetViewUp(up)
-    camera.SetViewAngle(21)
+    camera.SetViewAngle(24)
     return r
 
 
@@ -79,7 +79,7 @@ def main():
     window = vtk.vtkRenderWindow()
     window.SetOffScreenRendering(1)
     window.SetMultiSamples(8)
-    window.SetSize(1800, 800)
+    window.SetSize(1700, 700)
     left, right = view((0, 0, 0.5, 1), up, cut, center, size), view((0.5, 0, 1, 1), up, cut, center, size)
     left.AddActor(actor(skin.GetOutputPort(), 1, None))
     right.AddActor(actor(behind.GetOutputPort(), 1, "mean_ratio"))
