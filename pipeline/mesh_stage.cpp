@@ -197,6 +197,11 @@ UmParams um_params(const Parameters& p) {
   um.projection_passes = static_cast<int>(p.integer("mesh.projection_passes"));
   um.relaxation_iterations = static_cast<int>(p.integer("mesh.relaxation_iterations"));
   um.samples = static_cast<int>(p.integer("mesh.samples"));
+  um.directions = p.text("mesh.directions") == "axes" ? DirectionRule::AxesInTurn : DirectionRule::Random;
+  const std::string& projection = p.text("mesh.closest_point");
+  um.closest_point.method = projection == "paper"    ? ClosestPointMethod::Paper
+                            : projection == "damped" ? ClosestPointMethod::Damped
+                                                     : ClosestPointMethod::Newton;
   um.max_min = p.text("mesh.max_min") == "golden" ? MaxMin::GoldenSection : MaxMin::Exact;
   um.seed = static_cast<std::uint64_t>(p.integer("mesh.seed"));
   std::string broken;

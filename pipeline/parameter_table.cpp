@@ -5,6 +5,12 @@
 namespace umtet {
 namespace {
 
+#ifdef UMTET_WITH_GSL
+constexpr const char* kDefaultMaxMin = "exact";
+#else
+constexpr const char* kDefaultMaxMin = "golden";
+#endif
+
 constexpr double kHuge = 1e100;
 constexpr std::int64_t kManyTets = 2'000'000;  // about a minute and 1 GB
 
@@ -76,9 +82,23 @@ std::vector<ParamField> make_fields() {
       {"mesh.projection_passes", "", whole(um.projection_passes), 1, 1000, {}, "N_P"},
       {"mesh.relaxation_iterations", "", whole(um.relaxation_iterations), 0, 100000, {}, "N_R"},
       {"mesh.samples", "", whole(um.samples), 1, 100000, {}, "N_S: 2 N_S + 1 candidates on a line"},
+      {"mesh.directions",
+       "",
+       text("random"),
+       0,
+       0,
+       {"random", "axes"},
+       "along which vertices relax; axes: e_x, e_y, e_z in turn, Section 3.2; random: Section 3.8(d)"},
+      {"mesh.closest_point",
+       "",
+       text("newton"),
+       0,
+       0,
+       {"newton", "damped", "paper"},
+       "projection on psi = 0; paper: the iteration of Section 3.8(a) to the letter"},
       {"mesh.max_min",
        "",
-       text("exact"),
+       text(kDefaultMaxMin),
        0,
        0,
        {"exact", "golden"},
