@@ -36,12 +36,11 @@ void require_outward_normals(const SsdReport& r) {
   const auto opposed = static_cast<double>(r.n_opposed_normals) / static_cast<double>(r.n_points);
   const bool open = r.least_wall_value < 0;
   if (!open && opposed <= kMostOpposed) return;
-  const std::string what =
-      open ? "psi is negative at the wall of its box, where no body is" : "psi was fitted, but not to these normals";
-  throw SolveError(
-      fmt::format("{}: {:.1f} % of the {} normals point against its gradient; the normals point into the body, "
-                  "or disagree with one another: orient them consistently, outward",
-                  what, 100 * opposed, r.n_points));
+  throw SolveError(fmt::format(
+      "{}: {:.1f} % of the {} normals point against its gradient; {}orient the normals consistently, outward",
+      open ? "psi < 0 reaches the wall of its box: the samples do not bound a body with outward normals"
+           : "psi was fitted, but the normals disagree with one another",
+      100 * opposed, r.n_points, open ? "check that the surface is closed, and " : ""));
 }
 
 }  // namespace

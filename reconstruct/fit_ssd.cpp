@@ -27,10 +27,14 @@ std::vector<std::string> problems(const SsdParams& params) {
 namespace {
 
 constexpr std::ptrdiff_t kDenseNodes = 3000;       // more are never factored densely on the coarsest lattice
+constexpr double kMostNodes = 1e9;                 // a full lattice holds no more: about 200 bytes each
 constexpr std::ptrdiff_t kAssembledNodes = 60000;  // more are never factored at all
 
 // Seconds of one core, measured: a solve per node of the finest lattice; a dense Cholesky factor per node cubed.
 constexpr double kSolveSeconds = 4.5e-6, kFactorSeconds = 4e-11;
+
+// Halvings enough for the longest axis that can be asked for.
+constexpr int kMostLevels = 24;
 
 struct Hierarchy {
   Lattice finest;
@@ -41,18 +45,19 @@ struct Hierarchy {
 // of cells up to a higher power of two: the cheapest sum of both wins.
 Hierarchy choose_hierarchy(const Eigen::AlignedBox3d& box, double h, int padding, int width) {
   const Vec3 wanted = box.sizes() / h + Vec3::Constant(2 * padding);
-  if (!(wanted.prod() < 2e9)) {
-    throw std::invalid_argument(
+  if (!(wanted.prod() < kMostNodes && wanted.maxCoeff() < kMostNodes)) {
+    throw std::length_error(
         fmt::format("spacing {:.6g} asks for {:.3g} lattice nodes: choose a larger one", h, wanted.prod()));
   }
   Hierarchy best;
   double least = std::numeric_limits<double>::infinity();
-  for (int levels = 1; levels <= 12; ++levels) {
+  for (int levels = 1; levels <= kMostLevels; ++levels) {
     const int step = 1 << (levels - 1);
     Eigen::Vector3i cells;
     for (int d = 0; d < 3; ++d) {
       cells[d] = std::max((static_cast<int>(std::ceil(wanted[d])) + step - 1) / step, width - 1) * step;
     }
+    if (!(cells.cast<double>().prod() < kMostNodes)) break;  // rounding up to 2^levels makes flat lattices thick
     const Eigen::Vector3d coarse = (cells / step + Eigen::Vector3i::Ones()).cast<double>();
     if (coarse.prod() > kDenseNodes) continue;
     const Lattice lattice{box.center() - h / 2 * cells.cast<double>(), h, cells + Eigen::Vector3i::Ones()};
@@ -63,12 +68,17 @@ Hierarchy choose_hierarchy(const Eigen::AlignedBox3d& box, double h, int padding
       best = {lattice, levels};
     }
   }
+  if (best.finest.size() == 0) {
+    throw std::length_error(
+        fmt::format("spacing {:.6g} asks for a lattice of {:.0f} x {:.0f} x {:.0f} cells, too many or too "
+                    "unlike for multigrid: choose a larger spacing",
+                    h, wanted[0], wanted[1], wanted[2]));
+  }
   return best;
 }
 
-// A tenth of the samples' mean distance to the true surface lies below a thousandth of the spacing once the lattice is
-// as fine as the samples; coarser ones cut cost by eight each time. 1.5 % of the diagonal is what a mesh of ~100k tets
-// shows.
+// As fine as an edge of the default mesh (1.5 % of the diagonal: what the mesh can show), but not finer than the
+// samples can tell.
 double automatic_spacing(double cloud_spacing, double diagonal) {
   return std::max(0.75 * cloud_spacing, 0.015 * diagonal);
 }

@@ -154,7 +154,7 @@ void apply_energy(const AxisGram* axes, const Eigen::Vector3i& n, double kappa, 
 
 void HessianEnergy::apply(double kappa, const double* c, double* y, std::vector<double>& workspace) const {
   const std::size_t size = static_cast<std::size_t>(n_[0]) * n_[1] * n_[2];
-  workspace.resize(3 * size);
+  if (workspace.size() < 3 * size) workspace.resize(3 * size);  // shared by all levels: grows only
   double *A = workspace.data(), *B = A + size, *C = B + size;
   if (n_[0] >= 8)
     apply_energy<8>(axes_, n_, kappa, c, y, A, B, C);

@@ -31,7 +31,7 @@ class HessianEnergy {
   HessianEnergy(const LmeTables& tables, const Eigen::Vector3i& n);
 
   /// y = kappa K c. Arrays of n_x n_y n_z doubles; planes in parallel, bits independent of the number of threads.
-  /// `workspace` is resized to three arrays of that size.
+  /// `workspace` grows to three arrays of that size.
   void apply(double kappa, const double* c, double* y, std::vector<double>& workspace) const;
   /// y += kappa diag(K)
   void add_diagonal(double kappa, double* y) const;

@@ -103,7 +103,7 @@ void write_level_set(const std::filesystem::path& file, const LevelSet& psi, con
   out.write(text.data(), static_cast<std::streamsize>(text.size()));
   out.close();
   if (!out) {
-    throw std::system_error(errno, std::generic_category(),
+    throw std::system_error(errno ? errno : EIO, std::generic_category(),
                             fmt::format("{}: could not be written completely", file.string()));
   }
 }
@@ -111,7 +111,7 @@ void write_level_set(const std::filesystem::path& file, const LevelSet& psi, con
 LevelSet read_level_set(const std::filesystem::path& path) {
   const std::string file = path.string();
   if (std::ifstream probe(path, std::ios::binary); !probe) {
-    throw std::system_error(errno, std::generic_category(), fmt::format("{}: cannot be opened", file));
+    throw std::system_error(errno ? errno : EIO, std::generic_category(), fmt::format("{}: cannot be opened", file));
   }
   const QuietVtk quiet;
   vtkNew<vtkXMLImageDataReader> reader;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <fstream>
 #include <ostream>
+#include <set>
 #include <system_error>
 
 #include "reconstruct/detail/cloud_source.h"
@@ -70,6 +72,30 @@ void refuse_points(const CloudSource& source, std::size_t n, Predicate bad, std:
                                what, count));
 }
 
+// A body needs samples in three dimensions, and more than a handful of places.
+void check_extent(const CloudSource& source, const std::vector<Vec3>& points) {
+  constexpr double kFlat = 1e-6;  // rounding of single precision makes a plane 1e-7 of its extent thick
+  std::set<std::array<double, 3>> places;
+  for (std::size_t i = 0; i < points.size() && places.size() < kFewestPoints; ++i)
+    places.insert({points[i][0], points[i][1], points[i][2]});
+  if (places.size() < kFewestPoints) {
+    refuse(source, fmt::format("{} points at only {} different places: a surface needs at least {}", points.size(),
+                               places.size(), kFewestPoints));
+  }
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& x : points) mean += x / static_cast<double>(points.size());
+  double scale = 0;
+  for (const Vec3& x : points) scale = std::max(scale, (x - mean).cwiseAbs().maxCoeff());
+  Mat3 spread = Mat3::Zero();
+  for (const Vec3& x : points) spread += (x - mean) / scale * ((x - mean) / scale).transpose();
+  const Vec3 extent =
+      Eigen::SelfAdjointEigenSolver<Mat3>(spread, Eigen::EigenvaluesOnly).eigenvalues().cwiseMax(0).cwiseSqrt();
+  if (extent[0] < kFlat * extent[2]) {
+    refuse(source, fmt::format("all points lie on one {}: they do not bound a body",
+                               extent[1] < kFlat * extent[2] ? "line" : "plane"));
+  }
+}
+
 void check_numbers(const CloudSource& source, const OrientedPointCloud& cloud) {
   const std::size_t n = cloud.points.size();
   if (n < kFewestPoints) refuse(source, fmt::format("{} points: a surface needs at least {}", n, kFewestPoints));
@@ -84,6 +110,7 @@ void check_numbers(const CloudSource& source, const OrientedPointCloud& cloud) {
       source, n, [&](std::size_t i) { return !cloud.normals[i].allFinite(); }, "has a normal that is NaN or infinite");
   refuse_points(
       source, n, [&](std::size_t i) { return cloud.normals[i].isZero(0); }, "has a zero normal");
+  check_extent(source, cloud.points);
 }
 
 /// Returns how many normals were not unit to 1e-3. Normals unit to rounding stay as they are, so that a written cloud

@@ -14,9 +14,12 @@ namespace {
 using Lanes = Eigen::Array<double, 8, 1>;
 using Aligned = Eigen::Map<const Lanes, Eigen::Aligned32>;
 
-// A sample writes to 2R <= 8 node layers, and its eight-lane stores may touch (adding zero) the first nodes of the
-// layer behind them. Slabs of 8 cell layers of equal parity therefore never write to the same node.
-constexpr int kSlabLayers = 8;
+// Slabs of L cell layers run in parallel with every other one, and must never write to the node layers of one another.
+// A sample in cell layer z writes to layers z - R + 1 .. z + R, and its eight-lane stores may spill (adding zero) into
+// the next. A slab that begins at z therefore stays apart from the one that ends at z - L if L > 2R - 1; at the upper
+// hull, where windows are moved down to begin at n_z - 2R while z may be as high as n_z - 2, if L > 3R - 2. R is at
+// most 4.
+constexpr int kSlabLayers = 12;
 
 struct ValueGradient {
   double value;

@@ -3,8 +3,10 @@
 #include "reconstruct/gram.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <cmath>
+#include <cstring>
 #include <random>
 
 #include "reconstruct/ssd_assembled.h"
@@ -43,19 +45,22 @@ TEST(HessianEnergy, VanishesOnAffineFunctionsOnly) {
 TEST(HessianEnergy, AppliedEqualsItsEntries) {
   for (const int support : {2, 3, 4}) {
     const LmeTables tables({LmePrior::Kind::CompactC2, 1.2, support, 1e-4});
-    const Eigen::Vector3i n(8, 33, 9);  // shorter, longer than and near the width of the stencils
-    const HessianEnergy K(tables, n);
-    const std::vector<double> c = random_vector(n.prod(), 2);
-    std::vector<double> y(n.prod()), work;
-    K.apply(0.5, c.data(), y.data(), work);
-    for (const Eigen::Vector3i a : {Eigen::Vector3i(0, 0, 0), Eigen::Vector3i(4, 16, 4), Eigen::Vector3i(7, 32, 8)}) {
-      double sum = 0;
-      Eigen::Vector3i b;
-      int at = 0;
-      for (b[2] = 0; b[2] < n[2]; ++b[2])
-        for (b[1] = 0; b[1] < n[1]; ++b[1])
-          for (b[0] = 0; b[0] < n[0]; ++b[0]) sum += 0.5 * K.entry(a, b) * c[at++];
-      EXPECT_NEAR(y[a[0] + n[0] * (a[1] + n[1] * a[2])], sum, 1e-12 * std::max(1.0, std::abs(sum)));
+    for (const Eigen::Vector3i n :
+         {Eigen::Vector3i(8, 33, 9), Eigen::Vector3i(53, 9, 8)}) {  // short rows; a row with an interior
+      const HessianEnergy K(tables, n);
+      const std::vector<double> c = random_vector(n.prod(), 2);
+      std::vector<double> y(n.prod()), work;
+      K.apply(0.5, c.data(), y.data(), work);
+      for (const Eigen::Vector3i a : {Eigen::Vector3i(0, 0, 0), Eigen::Vector3i(n / 2),
+                                      Eigen::Vector3i(n - Eigen::Vector3i::Ones()), Eigen::Vector3i(n[0] / 3, 2, 5)}) {
+        double sum = 0;
+        Eigen::Vector3i b;
+        int at = 0;
+        for (b[2] = 0; b[2] < n[2]; ++b[2])
+          for (b[1] = 0; b[1] < n[1]; ++b[1])
+            for (b[0] = 0; b[0] < n[0]; ++b[0]) sum += 0.5 * K.entry(a, b) * c[at++];
+        EXPECT_NEAR(y[a[0] + n[0] * (a[1] + n[1] * a[2])], sum, 1e-12 * std::max(1.0, std::abs(sum)));
+      }
     }
   }
 }
@@ -116,5 +121,36 @@ TEST(SsdOperator, AppliedEqualsAssembled) {
     EXPECT_LT((Eigen::Map<Eigen::VectorXd>(y.data(), n.prod()) - expected).norm(), 1e-12 * expected.norm());
     EXPECT_LT((Eigen::Map<Eigen::VectorXd>(d.data(), n.prod()) - A.diagonal()).norm(), 1e-12 * A.diagonal().norm());
     EXPECT_LT((Eigen::MatrixXd(A) - Eigen::MatrixXd(A).transpose()).norm(), 1e-12 * A.norm());
+  }
+}
+
+TEST(SsdOperator, ApplyIsTheSameForAnyThreads) {
+  // Samples everywhere, the hull included, crowded on few nodes, and heights around every multiple of a slab.
+  for (const int support : {2, 3, 4}) {
+    const LmeTables tables({LmePrior::Kind::CompactC2, 1.2, support, 1e-4});
+    for (int nz = 18; nz <= 42; ++nz) {
+      const Eigen::Vector3i n(8, 8, nz);
+      std::mt19937_64 random(nz);
+      std::uniform_real_distribution<double> unit(0, 1);
+      std::vector<SsdSample> samples(6000);
+      for (SsdSample& s : samples) {
+        s.xi = Vec3(unit(random), unit(random), unit(random)).cwiseProduct((n.array() - 1).cast<double>().matrix());
+        s.normal = Vec3::UnitZ();
+        s.w_value = s.w_gradient = 1;
+      }
+      const SsdOperator op(tables, n, 0.3, samples);
+      std::vector<double> c = random_vector(n.prod(), 5), one(n.prod() + SsdOperator::kPad), two(one), work;
+      c.resize(c.size() + SsdOperator::kPad, 0.0);
+      {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+        op.apply(c.data(), one.data(), work);
+      }
+      for (int trial = 0; trial < 15; ++trial) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 4);
+        op.apply(c.data(), two.data(), work);
+        ASSERT_EQ(std::memcmp(one.data(), two.data(), n.prod() * sizeof(double)), 0)
+            << "R " << support << " n_z " << nz;
+      }
+    }
   }
 }

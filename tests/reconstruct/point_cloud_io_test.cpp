@@ -329,6 +329,23 @@ TEST_F(PointCloudIo, MalformedXyzIsRefusedWithTheReason) {
   expect_refused("cloud.las", text_, {".xyz"});
 }
 
+TEST_F(PointCloudIo, PointsThatBoundNoBodyAreRefused) {
+  const auto rows = [](auto&& point) {
+    std::string text;
+    for (int i = 0; i < 40; ++i) {
+      const Vec3 x = point(i);
+      for (int d = 0; d < 3; ++d) text += std::to_string(x[d]) + ' ';
+      text += "0 0 1\n";
+    }
+    return text;
+  };
+  expect_refused("one_place.xyz", rows([](int) { return Vec3(1, 2, 3); }), {"1 different places"});
+  expect_refused("corners.xyz", rows([](int i) { return Vec3(i & 1, i >> 1 & 1, i >> 2 & 1); }),
+                 {"8 different places"});
+  expect_refused("line.xyz", rows([](int i) { return Vec3(i, 2 * i, 5); }), {"one line"});
+  expect_refused("plane.xyz", rows([](int i) { return Vec3(i % 7, i / 7, i % 7 + i / 7); }), {"one plane"});
+}
+
 TEST_F(PointCloudIo, TheContentDecidesBeforeTheExtension) {
   expect_cloud("really_ply.xyz", ply("ascii") + text_, cloud_);
   expect_cloud("really_pcd.ply", pcd("ascii") + text_, cloud_);

@@ -140,7 +140,10 @@ TEST(FitSsd, RefusesBrokenInputAndSaysAllOfIt) {
   EXPECT_EQ(problems(p).size(), 3u);
   EXPECT_THROW(fit_ssd(torus_cloud(100), p), std::invalid_argument);
   EXPECT_THROW(fit_ssd(torus_cloud(5), SsdParams{}), std::invalid_argument);
-  EXPECT_THROW(fit_ssd(torus_cloud(100), params_with(1e-7)), std::invalid_argument);
+  EXPECT_THROW(fit_ssd(torus_cloud(100), params_with(1e-7)), std::length_error);
+  OrientedPointCloud needle = torus_cloud(100);  // 1e8 nodes in a row that no halving makes small
+  for (Vec3& x : needle.points) x[1] *= 1e-5, x[2] *= 1e-5;
+  EXPECT_THROW(fit_ssd(needle, params_with(2e-9)), std::length_error);
   SsdParams assembled = params_with(0.02);
   assembled.solver = SsdSolver::Assembled;
   EXPECT_THROW(fit_ssd(torus_cloud(1000), assembled), SolveError);

@@ -1,0 +1,70 @@
+// Clouds of real shapes, from file to certificate by the program itself.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "tests/support/data_files.h"
+
+namespace fs = std::filesystem;
+using umtet::test::committed_cloud;
+using umtet::test::real_cloud;
+
+namespace {
+
+struct Scan {
+  std::string name;
+  int genus;
+};
+
+/// Runs `umtet run CLOUD` without a flag and holds the certificate against what is known of the shape.
+void expect_certified(const fs::path& cloud, int genus) {
+  const fs::path folder = fs::temp_directory_path() / ("umtet_scan_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  const std::string call = "'" + std::string(UMTET_PROGRAM) + "' run '" + cloud.string() + "' -o '" +
+                           (folder / "case").string() + "' --json -q >'" + (folder / "out").string() + "'";
+  const int status = std::system(call.c_str());
+  std::ifstream out(folder / "out");
+  const nlohmann::json document = nlohmann::json::parse(out, nullptr, /*allow_exceptions=*/false);
+  ASSERT_TRUE(WIFEXITED(status) && !document.is_discarded());
+  EXPECT_EQ(WEXITSTATUS(status), 0) << document.dump(1);
+  if (WEXITSTATUS(status) == 0) {
+    const nlohmann::json& c = document["certificate"];
+    std::printf("  %-26s %7ld tets   min Q %.3f   genus %ld\n", cloud.filename().c_str(), c["n_tets"].get<long>(),
+                c["quality"]["min"].get<double>(), c["boundary"]["genus"].get<long>());
+    EXPECT_EQ(c["verdict"], "pass");
+    EXPECT_EQ(c["boundary"]["genus"], genus);
+    EXPECT_EQ(c["boundary"]["components"], 1);
+    EXPECT_EQ(c["quality"]["n_inverted"], 0);
+    EXPECT_GE(c["quality"]["min"].get<double>(), .70);
+    EXPECT_LE(c["cloud"]["p99_distance_over_h"].get<double>(), 1.0);
+  }
+  fs::remove_all(folder);
+}
+
+}  // namespace
+
+TEST(Scans, CommittedCloudsAreCertified) {
+  for (const Scan& s : {Scan{"duck.ply", 1}, Scan{"bird.ply", 0}, Scan{"knot.ply", 7}, Scan{"torus_hole_noise.ply", 1},
+                        Scan{"blob_nonuniform.ply", 0}}) {
+    SCOPED_TRACE(s.name);
+    expect_certified(committed_cloud(s.name), s.genus);
+  }
+}
+
+TEST(Scans, RealCloudsAreCertified) {
+  for (const Scan& s : {Scan{"duck.ply", 1}, Scan{"spot_ascii.ply", 0}, Scan{"blub.xyz", 0}, Scan{"koala.ply", 0},
+                        Scan{"spot_large.ply", 0}}) {
+    SCOPED_TRACE(s.name);
+    const std::optional<fs::path> cloud = real_cloud(s.name);
+    if (!cloud) GTEST_SKIP() << "needs " << s.name << " in the folder of real scans";
+    expect_certified(*cloud, s.genus);
+  }
+}
