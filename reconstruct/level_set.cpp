@@ -3,76 +3,26 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <type_traits>
+
+#include "reconstruct/detail/contract.h"
 
 namespace umtet {
 
 namespace {
 
-using Lanes = Eigen::Array<double, 8, 1>;
+using namespace detail;
 
-enum Order { Value = 0, Gradient = 1, Hessian = 2 };
-
-// Contraction over z, y, then x of the W^3 coefficients around a point; derivatives with respect to x / h are added.
-template <int W, Order order>
-void contract(const LmeBasis3d& B, const double* base, std::ptrdiff_t nx, std::ptrdiff_t nxy, double& f, Vec3& g,
-              Mat3& H) {
-  Lanes v = Lanes::Zero(), vy = v, vz = v, vyy = v, vyz = v, vzz = v;
-  for (int j = 0; j < W; ++j) {
-    Lanes a = Lanes::Zero(), az = a, azz = a;
-    for (int k = 0; k < W; ++k) {
-      const Eigen::Map<const Lanes> row(base + j * nx + k * nxy);
-      a += B.z.N[k] * row;
-      if constexpr (order >= Gradient) az += B.z.dN[k] * row;
-      if constexpr (order >= Hessian) azz += B.z.ddN[k] * row;
-    }
-    v += B.y.N[j] * a;
-    if constexpr (order >= Gradient) {
-      vy += B.y.dN[j] * a;
-      vz += B.y.N[j] * az;
-    }
-    if constexpr (order >= Hessian) {
-      vyy += B.y.ddN[j] * a;
-      vyz += B.y.dN[j] * az;
-      vzz += B.y.N[j] * azz;
-    }
-  }
-  const Eigen::Map<const Lanes> N(B.x.N), dN(B.x.dN), ddN(B.x.ddN);
-  f += (N * v).sum();
-  if constexpr (order >= Gradient) g += Vec3((dN * v).sum(), (N * vy).sum(), (N * vz).sum());
-  if constexpr (order >= Hessian) {
-    const double xy = (dN * vy).sum(), xz = (dN * vz).sum(), yz = (N * vyz).sum();
-    Mat3 h;
-    h << (ddN * v).sum(), xy, xz, xy, (N * vyy).sum(), yz, xz, yz, (N * vzz).sum();
-    H += h;
-  }
-}
-
-template <Order order>
-void add_level(const LmeTables& tables, const LevelSetLevel& level, const Vec3& x, double& f, Vec3& g, Mat3& H) {
+template <JetOrder order>
+void add_level(const LmeTables& tables, const LevelSetLevel& level, const Vec3& x, LatticeJet& sum) {
   const Lattice& L = level.lattice;
   const Vec3 xi = ((x - L.origin) / L.h).cwiseMax(0.0).cwiseMin((L.n.array() - 1).cast<double>().matrix());
   LmeBasis3d B;
-  evaluate_lme_3d<order == Hessian>(tables, L.n, xi, B);
-  const double* base = level.coefficients.data() + L.index(B.x.first, B.y.first, B.z.first);
-  const std::ptrdiff_t nx = L.n[0], nxy = nx * L.n[1];
-  double value = 0;
-  Vec3 gradient = Vec3::Zero();
-  Mat3 hessian = Mat3::Zero();
-  switch (tables.width()) {
-    case 4:
-      contract<4, order>(B, base, nx, nxy, value, gradient, hessian);
-      break;
-    case 6:
-      contract<6, order>(B, base, nx, nxy, value, gradient, hessian);
-      break;
-    default:
-      contract<8, order>(B, base, nx, nxy, value, gradient, hessian);
-      break;
-  }
-  f += value;
-  if constexpr (order >= Gradient) g += gradient / L.h;
-  if constexpr (order >= Hessian) H += hessian / (L.h * L.h);
+  evaluate_lme_3d<order == kHessian>(tables, L.n, xi, B);
+  const LatticeJet f = dispatch_width(
+      tables.width(), [&](auto W) { return contract<W.value, order>(B, L.n, level.coefficients.data()); });
+  sum.value += f.value;
+  if constexpr (order >= kGradient) sum.gradient += f.gradient / L.h;
+  if constexpr (order >= kHessian) sum.hessian += f.hessian / (L.h * L.h);
 }
 
 }  // namespace
@@ -93,27 +43,25 @@ LevelSet::LevelSet(const LmePrior& prior, std::vector<LevelSetLevel> levels)
 }
 
 double LevelSet::evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const {
-  double f = 0;
-  Vec3 g = Vec3::Zero();
-  Mat3 H = Mat3::Zero();
+  LatticeJet f;
   for (const LevelSetLevel& level : levels_) {
     if (hessian)
-      add_level<Hessian>(*tables_, level, x, f, g, H);
+      add_level<kHessian>(*tables_, level, x, f);
     else if (gradient)
-      add_level<Gradient>(*tables_, level, x, f, g, H);
+      add_level<kGradient>(*tables_, level, x, f);
     else
-      add_level<Value>(*tables_, level, x, f, g, H);
+      add_level<kValue>(*tables_, level, x, f);
   }
   const double outside = std::sqrt(domain_.squaredExteriorDistance(x));
   if (outside > 0) {
     const Vec3 away = x - x.cwiseMax(domain_.min()).cwiseMin(domain_.max());
-    f += outside;
-    g = (away.array() != 0).select(0.0, g.array()).matrix() + away / outside;
-    H.setZero();
+    f.value += outside;
+    f.gradient = (away.array() != 0).select(0.0, f.gradient.array()).matrix() + away / outside;
+    f.hessian.setZero();
   }
-  if (gradient) *gradient = g;
-  if (hessian) *hessian = H;
-  return f;
+  if (gradient) *gradient = f.gradient;
+  if (hessian) *hessian = f.hessian;
+  return f.value;
 }
 
 double LevelSet::value(const Vec3& x) const { return evaluate(x, nullptr, nullptr); }

@@ -7,12 +7,13 @@
 #include <cmath>
 #include <cstdint>
 
+#include "reconstruct/detail/contract.h"
+
 namespace umtet {
 
 namespace {
 
-using Lanes = Eigen::Array<double, 8, 1>;
-using Aligned = Eigen::Map<const Lanes, Eigen::Aligned32>;
+using namespace detail;
 
 // Slabs of L cell layers run in parallel with every other one, and must never write to the node layers of one another.
 // A sample in cell layer z writes to layers z - R + 1 .. z + R, and its eight-lane stores may spill (adding zero) into
@@ -21,57 +22,20 @@ using Aligned = Eigen::Map<const Lanes, Eigen::Aligned32>;
 // most 4.
 constexpr int kSlabLayers = 12;
 
-struct ValueGradient {
-  double value;
-  Eigen::Vector3d gradient;
-};
-
-// f and grad f at a sample: contraction over z, then y, then x; eight lanes along x, those beyond the support weigh
-// nothing.
-template <int W>
-ValueGradient gather(const LmeBasis3d& B, const Eigen::Vector3i& n, const double* c) {
-  const std::ptrdiff_t nx = n[0], nxy = nx * n[1];
-  const double* base = c + B.x.first + nx * B.y.first + nxy * B.z.first;
-  Lanes v = Lanes::Zero(), vy = Lanes::Zero(), vz = Lanes::Zero();
-  for (int j = 0; j < W; ++j) {
-    Lanes a = Lanes::Zero(), az = Lanes::Zero();
-    for (int k = 0; k < W; ++k) {
-      const Eigen::Map<const Lanes> row(base + j * nx + k * nxy);
-      a += B.z.N[k] * row;
-      az += B.z.dN[k] * row;
-    }
-    v += B.y.N[j] * a;
-    vy += B.y.dN[j] * a;
-    vz += B.y.N[j] * az;
-  }
-  const Aligned N(B.x.N), dN(B.x.dN);
-  return {(N * v).sum(), {(dN * v).sum(), (N * vy).sum(), (N * vz).sum()}};
-}
-
-// y += q N + g . grad N, the transpose of gather.
+// y += q N + g . grad N, the transpose of contract.
 template <int W>
 void scatter(const LmeBasis3d& B, const Eigen::Vector3i& n, double q, const Eigen::Vector3d& g, double* y) {
   const std::ptrdiff_t nx = n[0], nxy = nx * n[1];
   double* base = y + B.x.first + nx * B.y.first + nxy * B.z.first;
-  const Aligned N(B.x.N), dN(B.x.dN);
-  const Lanes v = q * N + g[0] * dN, vy = g[1] * N, vz = g[2] * N;
+  const LmeLanesMap N(B.x.N), dN(B.x.dN);
+  const LmeLanes v = q * N + g[0] * dN, vy = g[1] * N, vz = g[2] * N;
   for (int j = 0; j < W; ++j) {
-    const Lanes a = B.y.N[j] * v + B.y.dN[j] * vy, az = B.y.N[j] * vz;
+    const LmeLanes a = B.y.N[j] * v + B.y.dN[j] * vy, az = B.y.N[j] * vz;
     for (int k = 0; k < W; ++k) {
       double* row = base + j * nx + k * nxy;
-      Eigen::Map<Lanes>(row) += B.z.N[k] * a + B.z.dN[k] * az;
+      Eigen::Map<LmeLanes>(row) += B.z.N[k] * a + B.z.dN[k] * az;
     }
   }
-}
-
-template <class F>
-void dispatch_width(int width, F&& f) {
-  if (width == 4)
-    f(std::integral_constant<int, 4>{});
-  else if (width == 6)
-    f(std::integral_constant<int, 6>{});
-  else
-    f(std::integral_constant<int, 8>{});
 }
 
 }  // namespace
@@ -119,7 +83,7 @@ void SsdOperator::apply(const double* c, double* y, std::vector<double>& workspa
     for_each_slab([&](const SsdSample& s, int) {
       LmeBasis3d B;
       evaluate_lme_3d<false>(*tables_, n_, s.xi, B);
-      const ValueGradient f = gather<W.value>(B, n_, c);
+      const LatticeJet f = contract<W.value, kGradient>(B, n_, c);
       scatter<W.value>(B, n_, s.w_value * f.value, s.w_gradient * f.gradient, y);
     });
   });
@@ -164,7 +128,7 @@ Eigen::Vector3d SsdOperator::energies(const double* c, std::vector<double>& work
     for_each_slab([&](const SsdSample& s, int slab) {
       LmeBasis3d B;
       evaluate_lme_3d<false>(*tables_, n_, s.xi, B);
-      const ValueGradient f = gather<W.value>(B, n_, c);
+      const LatticeJet f = contract<W.value, kGradient>(B, n_, c);
       slab_sum[slab] +=
           Eigen::Vector2d(s.w_value * f.value * f.value, s.w_gradient * (f.gradient - s.normal).squaredNorm()) / 2;
     });
