@@ -28,7 +28,7 @@ namespace {
 
 constexpr std::ptrdiff_t kDenseNodes = 3000;       // more are never factored densely on the coarsest lattice
 constexpr double kMostNodes = 1e9;                 // a full lattice holds no more: about 200 bytes each
-constexpr std::ptrdiff_t kAssembledNodes = 60000;  // more are never factored at all
+constexpr std::ptrdiff_t kAssembledNodes = 16000;  // more are never factored at all: a minute already
 
 // Seconds of one core, measured: a solve per node of the finest lattice; a dense Cholesky factor per node cubed.
 constexpr double kSolveSeconds = 4.5e-6, kFactorSeconds = 4e-11;
@@ -121,6 +121,39 @@ void measure_fit(const OrientedPointCloud& cloud, const LevelSet& psi, SsdReport
   }
 }
 
+void go_on(const SsdProgress& progress, const char* step, double fraction) {
+  if (progress && !progress(step, fraction)) throw SolveCancelled(fmt::format("stopped during {}", step));
+}
+
+// Coefficients in units of the spacing, by the solver that was asked for.
+std::vector<double> solve(const SsdOperator& op, int n_levels, const SsdParams& params, const SsdProgress& progress,
+                          SsdReport& report) {
+  if (params.solver == SsdSolver::Assembled) {
+    if (op.size() > kAssembledNodes) {
+      throw SolveError(
+          fmt::format("the assembled solver is for up to {} nodes, this lattice has {}: use multigrid or a larger "
+                      "spacing",
+                      kAssembledNodes, op.size()));
+    }
+    return solve_assembled(op);
+  }
+  Multigrid multigrid(op, n_levels);
+  std::vector<double> c, r(op.size() + SsdOperator::kPad, 0.0);
+  op.right_hand_side(r.data());
+  go_on(progress, "solve", 0);
+  const PcgReport pcg = solve_pcg(op, multigrid, r, params.tolerance, params.max_iterations, c, [&](double residual) {
+    go_on(progress, "solve", std::clamp(std::log(residual) / std::log(params.tolerance), 0.0, 1.0));
+  });
+  report.iterations = pcg.iterations;
+  report.residuals = pcg.residuals;
+  if (!pcg.converged) {
+    throw SolveError(
+        fmt::format("{} nodes, smoothing {:.3g}: relative residual {:.2e} after {} iterations, wanted {:.1e}",
+                    op.size(), op.kappa(), pcg.residuals.back(), pcg.iterations, params.tolerance));
+  }
+  return c;
+}
+
 }  // namespace
 
 SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const SsdProgress& progress) {
@@ -131,13 +164,10 @@ SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const S
         fmt::format("a cloud needs at least 10 points with a normal each; this one has {} points and {} normals",
                     cloud.points.size(), cloud.normals.size()));
   }
-  const auto report_progress = [&](const char* step, double fraction) {
-    if (progress && !progress(step, fraction)) throw SolveCancelled(fmt::format("stopped during {}", step));
-  };
   SsdReport report;
   report.n_points = cloud.points.size();
 
-  report_progress("weights", 0);
+  go_on(progress, "weights", 0);
   Eigen::AlignedBox3d box;
   for (const Vec3& x : cloud.points) box.extend(x);
   const NeighbourDistances near = neighbour_distances(cloud.points, kAreaNeighbours);
@@ -148,37 +178,10 @@ SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const S
   report.n_nodes = lattice.size();
   const double kappa = params.weights == SsdWeights::Area ? params.smoothing : params.alpha * lattice.h;
 
-  report_progress("setup", 0);
+  go_on(progress, "setup", 0);
   const std::vector<double> area = params.weights == SsdWeights::Area ? sample_areas(near) : std::vector<double>{};
   const SsdOperator op(tables, lattice.n, kappa, make_samples(cloud, area, lattice));
-  std::vector<double> c, workspace;
-  if (params.solver == SsdSolver::Assembled) {
-    if (lattice.size() > kAssembledNodes) {
-      throw SolveError(fmt::format(
-          "the assembled solver is for up to {} nodes; spacing {:.6g} gives {}: use multigrid or a larger spacing",
-          kAssembledNodes, lattice.h, lattice.size()));
-    }
-    c = solve_assembled(op);
-  } else {
-    Multigrid multigrid(op, n_levels);
-    std::vector<double> r(op.size() + SsdOperator::kPad, 0.0);
-    op.right_hand_side(r.data());
-    report_progress("solve", 0);
-    bool cancelled = false;
-    const PcgReport pcg = solve_pcg(op, multigrid, r, params.tolerance, params.max_iterations, c, [&](double residual) {
-      const double fraction = std::clamp(std::log(residual) / std::log(params.tolerance), 0.0, 1.0);
-      cancelled = progress && !progress("solve", fraction);
-      return !cancelled;
-    });
-    if (cancelled) throw SolveCancelled("stopped during solve");
-    report.iterations = pcg.iterations;
-    report.residuals = pcg.residuals;
-    if (!pcg.converged) {
-      throw SolveError(
-          fmt::format("{} nodes, smoothing {:.3g}: relative residual {:.2e} after {} iterations, wanted {:.1e}",
-                      op.size(), kappa, pcg.residuals.back(), pcg.iterations, params.tolerance));
-    }
-  }
+  std::vector<double> c = solve(op, n_levels, params, progress, report), workspace;
   c.resize(op.size() + SsdOperator::kPad, 0.0);
   const Eigen::Vector3d energies = op.energies(c.data(), workspace);
   // Back to model units: E = h² times the lattice functional for area weights; eq. (10) is written in its own units.

@@ -239,7 +239,7 @@ void Multigrid::apply(const double* r, double* z) {
 }
 
 PcgReport solve_pcg(const SsdOperator& A, Multigrid& M, const std::vector<double>& b, double tolerance,
-                    int max_iterations, std::vector<double>& c, const std::function<bool(double)>& progress) {
+                    int max_iterations, std::vector<double>& c, const std::function<void(double)>& progress) {
   const std::ptrdiff_t n = A.size();
   const std::size_t padded = n + SsdOperator::kPad;
   std::vector<double> r(b), z(padded, 0.0), p(padded, 0.0), Ap(padded, 0.0), workspace;
@@ -269,7 +269,7 @@ PcgReport solve_pcg(const SsdOperator& A, Multigrid& M, const std::vector<double
     ++report.iterations;
     report.residuals.push_back(std::sqrt(dot(n, r.data(), r.data())) / r0);
     report.converged = report.residuals.back() <= tolerance;
-    if (progress && !progress(report.residuals.back())) break;
+    if (progress) progress(report.residuals.back());
   }
   return report;
 }

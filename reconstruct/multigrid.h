@@ -57,8 +57,8 @@ struct PcgReport {
 
 /// Preconditioned conjugate gradients for A c = b from c = 0.
 /// @param c  size() + kPad doubles, overwritten
-/// @param progress  called once an iteration with the relative residual; false stops
+/// @param progress  called once an iteration with the relative residual; what it throws passes through
 PcgReport solve_pcg(const SsdOperator& A, Multigrid& M, const std::vector<double>& b, double tolerance,
-                    int max_iterations, std::vector<double>& c, const std::function<bool(double)>& progress);
+                    int max_iterations, std::vector<double>& c, const std::function<void(double)>& progress);
 
 }  // namespace umtet
