@@ -19,16 +19,6 @@ namespace umtet {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t kBlock = 512;
-
-/// f(i) for i < n; blocks are fixed and each i writes its own results, so threads cannot change them.
-template <typename F>
-void for_all(std::size_t n, F&& f) {
-  tbb::parallel_for(std::size_t{0}, (n + kBlock - 1) / kBlock, [&](std::size_t block) {
-    const std::size_t last = std::min(n, (block + 1) * kBlock);
-    for (std::size_t i = block * kBlock; i < last; ++i) f(i);
-  });
-}
 
 struct TetMeasure {
   double Q, volume, rms_edge, dihedral_min, dihedral_max;
@@ -37,8 +27,7 @@ struct TetMeasure {
 
 TetMeasure measure(const TetMesh& mesh, const Tet& t) {
   const Vec3 &a = mesh.V[t[0]], &b = mesh.V[t[1]], &c = mesh.V[t[2]], &d = mesh.V[t[3]];
-  const double l2 = (b - a).squaredNorm() + (c - a).squaredNorm() + (d - a).squaredNorm() + (c - b).squaredNorm() +
-                    (d - b).squaredNorm() + (d - c).squaredNorm();
+  const double l2 = sum_of_squared_edges(a, b, c, d);
   const DihedralRange angles = dihedral_range(a, b, c, d);
   TetMeasure m{mean_ratio(a, b, c, d), volume6(a, b, c, d) / 6.0,        std::sqrt(l2 / 6.0), angles.min_deg,
                angles.max_deg,         orientation_sign(a, b, c, d) <= 0};
@@ -48,8 +37,9 @@ TetMeasure measure(const TetMesh& mesh, const Tet& t) {
 
 /// Fills n_tets, volume, quality and h.
 void measure_tets(const TetMesh& mesh, double h, MeshCertificate& certificate) {
+  // Here and below, loops write by index and sums are taken in order: threads cannot change a result.
   std::vector<TetMeasure> measures(mesh.C.size());
-  for_all(mesh.C.size(), [&](std::size_t t) { measures[t] = measure(mesh, mesh.C[t]); });
+  tbb::parallel_for(std::size_t{0}, mesh.C.size(), [&](std::size_t t) { measures[t] = measure(mesh, mesh.C[t]); });
 
   MeshCertificate::Quality& quality = certificate.quality;
   quality.dihedral_min_deg = 180;
@@ -153,14 +143,14 @@ struct FaceMeasure {
 void measure_against(ImplicitFunctionRef psi, const TetMesh& mesh, const std::vector<Triangle>& faces,
                      const std::vector<int>& vertices, double h, MeshCertificate::Boundary& boundary) {
   std::vector<double> vertex_distance(vertices.size());
-  for_all(vertices.size(), [&](std::size_t i) {
+  tbb::parallel_for(std::size_t{0}, vertices.size(), [&](std::size_t i) {
     Vec3 g;
     const double value = psi.value(mesh.V[vertices[i]], g);
     const double d = value == 0 ? 0 : std::abs(value) / g.norm();
     vertex_distance[i] = std::isnan(d) ? kInfinity : d;
   });
   std::vector<FaceMeasure> face(faces.size());
-  for_all(faces.size(), [&](std::size_t i) {
+  tbb::parallel_for(std::size_t{0}, faces.size(), [&](std::size_t i) {
     const Vec3 &a = mesh.V[faces[i][0]], &b = mesh.V[faces[i][1]], &c = mesh.V[faces[i][2]];
     const Foot foot = foot_point(psi, (a + b + c) / 3.0, h);
     const Vec3 n = (b - a).cross(c - a);

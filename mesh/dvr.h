@@ -63,7 +63,7 @@ class RelaxationOrder {
 
 struct DvrParams {
   DirectionRule directions = DirectionRule::AxesInTurn;
-  MaxMin max_min = MaxMin::Exact;
+  MaxMin max_min = kBestMaxMin;
   std::uint64_t seed = 0;
   bool skip_settled = true;  ///< leave out relaxations that cannot move their vertex; never changes the result
 };

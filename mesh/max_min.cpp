@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mesh/tet_quality.h"
 #ifdef UMTET_WITH_GSL
 #include "mesh/polynomial_roots.h"
 #endif
@@ -260,7 +261,7 @@ RingOnLine::RingOnLine(const OneRing& ring, const Vec3& d) : n(ring.n) {
   }
 }
 
-double quality_of(double f) { return 7.559526299369239 * std::cbrt(f); }  // 12 cbrt(1/4)
+double quality_of(double f) { return kMeanRatioFactor * std::cbrt(f); }
 
 MaxMinResult max_min(const RingOnLine& ring, MaxMin method) {
   return method == MaxMin::Exact ? exact(ring) : golden_section(ring);

@@ -13,6 +13,13 @@ enum class MaxMin {
   GoldenSection  ///< ten golden-section steps: faster, suboptimal                   [Rangarajan2018, Section 3.8(d)]
 };
 
+/// The default of everything that solves it: Exact where the build has GSL, else GoldenSection.
+#ifdef UMTET_WITH_GSL
+inline constexpr MaxMin kBestMaxMin = MaxMin::Exact;
+#else
+inline constexpr MaxMin kBestMaxMin = MaxMin::GoldenSection;
+#endif
+
 /// Tets a vertex may have. The acute tilings have at most 28; a ring beyond this is refused where rings are built.
 inline constexpr int kMaxRing = 128;
 

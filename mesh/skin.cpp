@@ -15,6 +15,7 @@
 #include <string>
 
 #include "mesh/detail/checked_file.h"
+#include "mesh/detail/disjoint_sets.h"
 
 namespace umtet {
 namespace {
@@ -65,18 +66,6 @@ class UseTable {
   std::vector<Use<N>> uses_;
 };
 
-int find_root(std::vector<int>& parent, int i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
-/// The smaller root wins, so that roots do not depend on the order of the unions.
-void unite(std::vector<int>& parent, int i, int j) {
-  i = find_root(parent, i);
-  j = find_root(parent, j);
-  if (i != j) parent[std::max(i, j)] = std::min(i, j);
-}
-
 template <std::size_t N>
 void check_indices(const std::vector<std::array<int, N>>& simplices, std::size_t n_vertices, const char* name) {
   for (std::size_t s = 0; s < simplices.size(); ++s) {
@@ -99,7 +88,7 @@ Use<2> face_use(const Tet& tet, int face, std::int64_t source, int& least) {
 
 /// Edges: how many there are and which are bad; per component counts; the fans at each vertex through shared edges.
 void count_edges(const std::vector<Triangle>& faces, std::size_t n_vertices, SurfaceTopology& s,
-                 std::vector<int>& fan_parent) {
+                 detail::DisjointSets& fan_of) {
   UseTable<1> table(n_vertices);
   for (const Triangle& f : faces)
     for (int k = 0; k < 3; ++k) table.count(std::min(f[k], f[(k + 1) % 3]));
@@ -124,25 +113,24 @@ void count_edges(const std::vector<Triangle>& faces, std::size_t n_vertices, Sur
       ++s.n_misoriented_edges;
     }
     for (auto u = first + 1; u != last; ++u) {
-      for (const int w : {v, first->rest[0]}) unite(fan_parent, corner_of(first->source, w), corner_of(u->source, w));
+      for (const int w : {v, first->rest[0]}) fan_of.unite(corner_of(first->source, w), corner_of(u->source, w));
     }
   });
 }
 
 void count_components(const std::vector<Vec3>& V, const std::vector<Triangle>& faces, SurfaceTopology& s) {
-  std::vector<int> parent(V.size());
-  std::iota(parent.begin(), parent.end(), 0);
+  detail::DisjointSets pieces(V.size());
   std::vector<char> used(V.size(), 0);
   for (const Triangle& f : faces) {
     for (const int v : f) used[v] = 1;
-    unite(parent, f[0], f[1]);
-    unite(parent, f[0], f[2]);
+    pieces.unite(f[0], f[1]);
+    pieces.unite(f[0], f[2]);
   }
   std::vector<int> number(V.size(), -1);
   for (std::size_t v = 0; v < V.size(); ++v) {
     if (!used[v]) continue;
     s.vertices.push_back(static_cast<int>(v));
-    int& n = number[find_root(parent, static_cast<int>(v))];
+    int& n = number[pieces.find(static_cast<int>(v))];
     if (n < 0) {
       n = static_cast<int>(s.components.size());
       s.components.emplace_back();
@@ -153,7 +141,7 @@ void count_components(const std::vector<Vec3>& V, const std::vector<Triangle>& f
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const Triangle& f = faces[i];
     const Vec3 &a = V[f[0]], &b = V[f[1]], &c = V[f[2]];
-    SurfaceComponent& part = s.components[s.component[i] = number[find_root(parent, f[0])]];
+    SurfaceComponent& part = s.components[s.component[i] = number[pieces.find(f[0])]];
     ++part.n_faces;
     part.area += 0.5 * (b - a).cross(c - a).norm();
     part.volume += (a - V[0]).dot((b - V[0]).cross(c - V[0])) / 6.0;  // from V[0]: no cancellation far from the origin
@@ -237,13 +225,16 @@ SurfaceTopology surface_topology(const std::vector<Vec3>& V, const std::vector<T
   SurfaceTopology s;
   if (faces.empty()) return s;
   count_components(V, faces, s);
-  std::vector<int> fan_parent(3 * faces.size());
-  std::iota(fan_parent.begin(), fan_parent.end(), 0);
-  count_edges(faces, V.size(), s, fan_parent);
+  detail::DisjointSets fan_of(3 * faces.size());  // of corners
+  count_edges(faces, V.size(), s, fan_of);
 
   std::vector<int> fans(V.size(), 0);
-  for (std::size_t c = 0; c < fan_parent.size(); ++c)
-    if (fan_parent[c] == static_cast<int>(c)) ++fans[faces[c / 3][c % 3]];
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const int corner = static_cast<int>(3 * i) + k;
+      fans[faces[i][k]] += fan_of.find(corner) == corner;
+    }
+  }
   for (const int v : s.vertices) s.n_nonmanifold_vertices += fans[v] > 1;
 
   const HalfEdgeMesh mesh = half_edges(V, faces, s.vertices, s.n_refused_faces);

@@ -83,15 +83,11 @@ class NearestTriangle {
   double best2_ = std::numeric_limits<double>::infinity();
 };
 
-/// out[i] = f(i), in fixed blocks: which thread runs one cannot change a result.
+/// out[i] = f(i): which thread runs one cannot change a result.
 template <typename F>
-std::vector<double> map_blocks(std::size_t n, F&& f) {
+std::vector<double> map_indices(std::size_t n, F&& f) {
   std::vector<double> out(n);
-  constexpr std::size_t kBlock = 1024;
-  tbb::parallel_for(std::size_t{0}, (n + kBlock - 1) / kBlock, [&](std::size_t block) {
-    const std::size_t last = std::min(n, (block + 1) * kBlock);
-    for (std::size_t i = block * kBlock; i < last; ++i) out[i] = f(i);
-  });
+  tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) { out[i] = f(i); });
   return out;
 }
 
@@ -140,7 +136,7 @@ double SurfaceDistance::distance(const Vec3& x) const {
 }
 
 std::vector<double> SurfaceDistance::distances(const std::vector<Vec3>& x) const {
-  return map_blocks(x.size(), [&](std::size_t i) { return distance(x[i]); });
+  return map_indices(x.size(), [&](std::size_t i) { return distance(x[i]); });
 }
 
 double point_triangle_distance(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -152,7 +148,7 @@ std::vector<double> nearest_sample_distances(const std::vector<Vec3>& x, const s
   check_finite(samples, "sample");
   const PointSet set{samples};
   const KdTree tree(3, set, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize));
-  return map_blocks(x.size(), [&](std::size_t i) {
+  return map_indices(x.size(), [&](std::size_t i) {
     std::uint32_t nearest = 0;
     double distance2 = 0;
     tree.knnSearch(x[i].data(), 1, &nearest, &distance2);

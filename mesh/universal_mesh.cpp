@@ -2,51 +2,31 @@
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/parallel_reduce.h>
 
-#include <algorithm>
-#include <array>
-#include <limits>
+#include <cmath>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
+#include "mesh/assumptions.h"
 #include "mesh/boundary_dvr.h"
 #include "mesh/crawl.h"
+#include "mesh/detail/offenders.h"
 #include "mesh/dvr.h"
 #include "mesh/tet_quality.h"
 
 namespace umtet {
 namespace {
 
-// Right angles of a background count as acute by no more than rounding.
-constexpr double kRightAngleDeg = 90 - 1e-9;
-// The paper leaves the "representative mesh size" of Alg. 3 open. A vertex that moves half an edge leaves its ring, so
-// samples beyond are wasted.
+using detail::find_offenders;
+using detail::Offenders;
+
+// Samples of Alg. 3 reach this far, in background edges; the paper leaves its "representative mesh size" open. A slide
+// of half an edge to a whole one inverts a tet of the ring, so the best place is hardly ever beyond half an edge:
+// samples there would be lost, and they lie closer together here.
 constexpr double kSampleReach = .5;
-constexpr std::size_t kTetsPerTask = 4096;
 constexpr std::size_t kProjectionsPerTask = 64;
-
-/// The first of the offenders, by number, and how many there are.
-struct Offenders {
-  std::size_t first = std::numeric_limits<std::size_t>::max(), count = 0;
-  void add(std::size_t i) { first = std::min(first, i), ++count; }
-};
-
-template <class Predicate>
-Offenders find_offenders(std::size_t n, Predicate&& bad) {
-  return tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, n, kTetsPerTask), Offenders{},
-      [&](const auto& range, Offenders o) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-          if (bad(i)) o.add(i);
-        }
-        return o;
-      },
-      [](Offenders a, const Offenders& b) {
-        return Offenders{std::min(a.first, b.first), a.count + b.count};
-      });
-}
 
 /// Algorithm 1; a member per group of steps. Each returns false when the run is over, with status and evidence set.
 class Run {
@@ -56,7 +36,8 @@ class Run {
 
   UmResult operator()(const std::vector<Vec3>& seeds) {
     if (find_omega_h(seeds) && stays_off_the_rim()) {
-      count_double_positive_faces();
+      double_faces_ = double_positive_faces(submesh());
+      result_.double_positive_faces = double_faces_.count;
       mesh_.emplace(submesh().mesh, background_.tiling().rings_are_optimal);
       if (project_and_relax()) improve_boundary();
     }
@@ -69,7 +50,6 @@ class Run {
   const Submesh& submesh() const { return result_.submesh; }
   bool find_omega_h(const std::vector<Vec3>& seeds);
   bool stays_off_the_rim();
-  void count_double_positive_faces();
   void measure_conditioning_angles();
   bool project_and_relax();
   void improve_boundary();
@@ -78,7 +58,7 @@ class Run {
   bool report(const UmProgress& progress);
   bool fail(UmStatus status, const UmEvidence& evidence);
   void relax_interior(int round, int r);
-  bool fail_at(UmStatus status, UmEvidence evidence, const Tet& near);
+  bool fail_at(UmStatus status, UmEvidence evidence, std::span<const int> vertices);
 
   const BackgroundMesh& background_;
   ImplicitFunctionRef psi_;
@@ -86,9 +66,9 @@ class Run {
   const UmObserver& observer_;
   UmResult result_;
   std::optional<MovingMesh> mesh_;
-  std::optional<RelaxationOrder> relaxed_;        ///< I_R
-  std::vector<ClosestPoint> feet_;                ///< pi of each positive vertex
-  std::vector<bool> on_double_face_, at_obtuse_;  ///< per vertex, empty if none is
+  std::optional<RelaxationOrder> relaxed_;  ///< I_R
+  std::vector<ClosestPoint> feet_;          ///< pi of each positive vertex
+  BrokenAssumption double_faces_, not_acute_;
 };
 
 bool Run::fail(UmStatus status, const UmEvidence& evidence) {
@@ -136,56 +116,22 @@ bool Run::stays_off_the_rim() {
                                                  .what = "the domain reaches the rim of the background mesh"});
 }
 
-void Run::count_double_positive_faces() {
-  std::vector<std::pair<Triangle, int>> faces;
-  for (std::size_t f = 0; f < submesh().positive_faces.size(); ++f) {
-    Triangle sorted = submesh().positive_faces[f];
-    std::sort(sorted.begin(), sorted.end());
-    faces.emplace_back(sorted, static_cast<int>(f));
-  }
-  std::sort(faces.begin(), faces.end());
-  for (std::size_t k = 1; k < faces.size(); ++k) {
-    if (faces[k].first != faces[k - 1].first) continue;
-    on_double_face_.resize(submesh().mesh.V.size(), false);
-    for (const int i : faces[k].first) on_double_face_[i] = true;
-    ++result_.double_positive_faces;
-  }
-}
-
-/// Section 5.3: the angles at the positive face along the two edges that meet at the proximal vertex.
 void Run::measure_conditioning_angles() {
-  const TetMesh& mesh = submesh().mesh;
-  std::vector<double> distance(mesh.V.size(), 0);
-  for (std::size_t k = 0; k < feet_.size(); ++k) distance[submesh().positive_vertices[k]] = std::abs(feet_[k].t);
-  for (std::size_t f = 0; f < submesh().positive_faces.size(); ++f) {
-    Triangle face = submesh().positive_faces[f];
-    const auto nearer = [&](int i, int j) { return distance[i] < distance[j]; };
-    std::rotate(face.begin(), std::min_element(face.begin(), face.end(), nearer), face.end());
-    const Tet& tet = mesh.C[submesh().positive_tets[f]];
-    const int inside = *std::find_if(tet.begin(), tet.end(),
-                                     [&](int i) { return std::find(face.begin(), face.end(), i) == face.end(); });
-    const auto angle = [&](int edge_end, int other) {
-      return dihedral_angle_deg(mesh.V[face[0]], mesh.V[edge_end], mesh.V[other], mesh.V[inside]);
-    };
-    const double greatest = std::max(angle(face[1], face[2]), angle(face[2], face[1]));
-    result_.conditioning_angle_max_deg = std::max(result_.conditioning_angle_max_deg, greatest);
-    if (greatest < kRightAngleDeg) continue;
-    at_obtuse_.resize(mesh.V.size(), false);
-    for (const int i : tet) at_obtuse_[i] = true;
-    ++result_.obtuse_conditioning_angles;
-  }
+  std::vector<double> distance;
+  for (const ClosestPoint& foot : feet_) distance.push_back(std::abs(foot.t));
+  ConditioningAngles angles = conditioning_angles(submesh(), distance);
+  result_.conditioning_angle_max_deg = angles.max_deg;
+  result_.obtuse_conditioning_angles = angles.not_acute.count;
+  not_acute_ = std::move(angles.not_acute);
 }
 
 /// Fails with the assumption that is broken at one of these vertices, if there is one, else with the status given.
-bool Run::fail_at(UmStatus status, UmEvidence evidence, const Tet& near) {
-  const auto any_in = [&](const std::vector<bool>& set) {
-    return !set.empty() && std::any_of(near.begin(), near.end(), [&](int i) { return set[i]; });
-  };
-  if (any_in(on_double_face_)) {
+bool Run::fail_at(UmStatus status, UmEvidence evidence, std::span<const int> vertices) {
+  if (double_faces_.is_broken_at(vertices)) {
     evidence.what += ", at a face shared by two positively cut tets";
     return fail(UmStatus::DoublePositiveFace, evidence);
   }
-  if (any_in(at_obtuse_)) {
+  if (not_acute_.is_broken_at(vertices)) {
     evidence.what += ", at a conditioning angle that is not acute";
     return fail(UmStatus::ObtuseConditioningAngle, evidence);
   }
@@ -210,7 +156,7 @@ bool Run::find_feet() {
                   .where = mesh_->V[i],
                   .count = lost.count,
                   .what = "the closest point of a positive vertex was not found"},
-                 {i, i, i, i});
+                 {&i, 1});
 }
 
 /// Steps 25-27, and the check on entry of dvr (Section 5.5).

@@ -14,14 +14,15 @@
 
 namespace umtet {
 
-enum class SubmeshSearch { FullLoop, Crawl };  ///< Alg. 1 steps 1-22, or Section 3.8(c) from UmParams::seeds
+enum class SubmeshSearch { FullLoop, Crawl };  ///< Alg. 1, steps 1-22, or Section 3.8(c) from given seeds
 
 struct UmParams {
   int projection_passes = 5;       ///< N_P: positive vertices reach the boundary in this many steps, eq. (1); >= 1
   int relaxation_iterations = 25;  ///< N_R of Algorithms 1 and 2; >= 0
   int samples = 20;                ///< N_S: 2 N_S + 1 candidates in [-h, h], eq. (7); >= 1
-  DirectionRule directions = DirectionRule::Random;  ///< .01 better in the least Q than AxesInTurn, Section 3.8(d)
-  MaxMin max_min = MaxMin::Exact;  ///< GoldenSection is the paper's faster, suboptimal choice (Fig. 18)
+  DirectionRule directions = DirectionRule::Random;  ///< Section 3.8(d); least_quality in mesh_bench compares
+  /// Exact; GoldenSection, the paper's faster, suboptimal choice (Fig. 18), in a build without GSL.
+  MaxMin max_min = kBestMaxMin;
   SubmeshSearch search = SubmeshSearch::FullLoop;
   ClosestPointParams closest_point;
   std::uint64_t seed = 0;  ///< random tangents of boundary dvr are a function of (seed, iteration, vertex)

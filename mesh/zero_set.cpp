@@ -109,12 +109,12 @@ Sweep::Sweep(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spa
   for (int a = 0; a < 3; ++a) {
     // 1e-9: a box of n spacings gets n cells although its size was rounded.
     const double cells = std::max(1.0, std::ceil(size[a] / spacing * (1 - 1e-9)));
-    if (cells > 1e9) throw std::invalid_argument("spacing = " + std::to_string(spacing) + ": too small for the box");
+    if (!(cells <= 1e9)) throw std::length_error("spacing = " + std::to_string(spacing) + ": too small for the box");
     n_[a] = static_cast<int>(cells);
     h_[a] = size[a] / n_[a];
   }
   const double nodes = (n_[0] + 1.0) * (n_[1] + 1.0);
-  if (nodes > std::numeric_limits<int>::max()) throw std::invalid_argument("spacing: too small for the box");
+  if (nodes > std::numeric_limits<int>::max()) throw std::length_error("spacing: too small for the box");
   for (Layer& l : layers_) {
     l.value.resize(static_cast<std::size_t>(nodes));
     l.inside_label.resize(l.value.size());
@@ -175,7 +175,7 @@ void Sweep::find_cut_edges(int k, Directions directions) {
         const double v1 = layer(ek).value[index(ei, ej)];
         if ((v0 < 0) == (v1 < 0)) continue;
         if (edges_.size() >= static_cast<std::size_t>(std::numeric_limits<int>::max())) {
-          throw std::invalid_argument("spacing: the zero set has more than 2^31 cut edges");
+          throw std::length_error("spacing: the zero set has more than 2^31 cut edges");
         }
         ids[c] = surface_.add();
         CutEdge edge;
@@ -229,26 +229,34 @@ void Sweep::join_node(int i, int j, int k, unsigned signs) {
 }
 
 void Sweep::gather(ZeroSetTopology& result) {
-  std::vector<int> number(edges_.size(), -1);
+  std::vector<ZeroSetComponent>& components = result.components;
+  std::vector<int> piece(edges_.size());
   for (std::size_t e = 0; e < edges_.size(); ++e) {
-    int& n = number[surface_.root(static_cast<int>(e))];
-    if (n < 0) {
-      n = static_cast<int>(result.components.size());
-      result.components.emplace_back().seed = edges_[e].point;
+    const int root = surface_.root(static_cast<int>(e));  // <= e
+    if (root == static_cast<int>(e)) {
+      piece[e] = static_cast<int>(components.size());
+      components.emplace_back().seed = edges_[e].point;
+    } else {
+      piece[e] = piece[root];
     }
-    ZeroSetComponent& c = result.components[n];
+    ZeroSetComponent& c = components[piece[e]];
     ++c.n_cut_edges;
     c.euler_characteristic += 1 + edges_[e].faces_minus_edges;
     c.area += edges_[e].area;
     c.box.extend(edges_[e].point);
     if (edges_[e].on_wall) c.closed = false;
   }
-  for (ZeroSetComponent& c : result.components) {
+  std::vector<std::size_t> next(components.size());
+  std::size_t n_points = 0;
+  for (std::size_t n = 0; n < components.size(); ++n) {
+    ZeroSetComponent& c = components[n];
     c.genus = (2 - c.euler_characteristic) / 2;
     result.euler_characteristic += c.euler_characteristic;
+    next[n] = c.first_cut_point = std::exchange(n_points, n_points + c.n_cut_edges);
   }
-  std::stable_sort(result.components.begin(), result.components.end(),
-                   [](const auto& x, const auto& y) { return x.area > y.area; });
+  result.cut_points.resize(edges_.size());
+  for (std::size_t e = 0; e < edges_.size(); ++e) result.cut_points[next[piece[e]]++] = edges_[e].point;
+  std::stable_sort(components.begin(), components.end(), [](const auto& x, const auto& y) { return x.area > y.area; });
 }
 
 void Sweep::join_layer(int k) {

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "mesh/implicit_function.h"
@@ -11,13 +12,14 @@ namespace umtet {
 
 /// One connected piece of {psi = 0} as the grid sees it.
 struct ZeroSetComponent {
-  long euler_characteristic = 0;  ///< cut edges - cut triangles + cut tets
-  long genus = 0;                 ///< (2 - chi) / 2; meaningful when closed
-  bool closed = true;             ///< false: the piece runs into the wall of the box
-  Vec3 seed = Vec3::Zero();       ///< a point of it, linear along a grid edge: |psi| = O(spacing^2)
-  double area = 0;                ///< of the linear interpolant, model units^2: second-order accurate
-  Eigen::AlignedBox3d box;        ///< of its cut points
-  std::size_t n_cut_edges = 0;    ///< how much grid it was seen with; a few dozen means: barely
+  long euler_characteristic = 0;    ///< cut edges - cut triangles + cut tets
+  long genus = 0;                   ///< (2 - chi) / 2; meaningful when closed
+  bool closed = true;               ///< false: the piece runs into the wall of the box
+  Vec3 seed = Vec3::Zero();         ///< a point of it, linear along a grid edge: |psi| = O(spacing^2)
+  double area = 0;                  ///< of the linear interpolant, model units^2: second-order accurate
+  Eigen::AlignedBox3d box;          ///< of its cut points
+  std::size_t n_cut_edges = 0;      ///< how much grid it was seen with; a few dozen means: barely
+  std::size_t first_cut_point = 0;  ///< its n_cut_edges points are ZeroSetTopology::cut_points from here on
 };
 
 struct ZeroSetTopology {
@@ -28,6 +30,11 @@ struct ZeroSetTopology {
   double spacing = 0;                        ///< the one used, <= the one asked for
   std::array<int, 3> n_cells = {0, 0, 0};
   std::size_t n_not_finite = 0;  ///< nodes where psi is not a finite number; they count as outside
+  std::vector<Vec3> cut_points;  ///< where psi = 0 on the cut edges (linear), component by component
+
+  std::span<const Vec3> points_of(const ZeroSetComponent& c) const {
+    return {cut_points.data() + c.first_cut_point, c.n_cut_edges};
+  }
 };
 
 /// Topology of {psi = 0} in a box, counted on a grid that knows nothing of the mesher.
@@ -43,8 +50,8 @@ struct ZeroSetTopology {
 ///
 /// Cost: one value of psi per node (threads over rows of a slab; psi must be thread-safe), memory two slabs plus about
 /// 70 bytes per cut edge. The result does not depend on the number of threads.
-/// \throw std::invalid_argument for an empty or unbounded box, spacing <= 0, more than 2^31 nodes in a slab or cut
-/// edges
+/// \throw std::invalid_argument  an empty or unbounded box, spacing <= 0
+/// \throw std::length_error      more than 1e9 cells along an axis, 2^31 nodes in a slab or 2^31 cut edges
 ZeroSetTopology zero_set_topology(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spacing);
 
 }  // namespace umtet

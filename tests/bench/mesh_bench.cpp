@@ -1,4 +1,5 @@
-// Stage two: what a projection, a relaxation, a sweep, the search for omega_h and a whole mesh cost on one core.
+// Stage two: what a projection, a relaxation, a sweep, the search for omega_h and a whole mesh cost on one core,
+// and what the least quality depends on.
 // ./build/release/tests/bench/mesh_bench
 
 #include <benchmark/benchmark.h>
@@ -10,6 +11,7 @@
 
 #include "mesh/crawl.h"
 #include "mesh/dvr.h"
+#include "mesh/tet_quality.h"
 #include "mesh/universal_mesh.h"
 #include "tests/support/domains.h"
 
@@ -125,6 +127,38 @@ BENCHMARK(whole_mesh)
 #endif
     ->Args({1, 1})
     ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->Iterations(1);
+
+/// The least Q over seeds of the random directions and tangents: counters least_Q_min and least_Q_max.
+void least_quality(benchmark::State& state) {
+  const Half& data = half();
+  UmParams params;
+  params.directions = static_cast<DirectionRule>(state.range(0));
+  double worst = 1, best = 0;
+  for (auto _ : state) {
+    for (params.seed = 0; params.seed < 6; ++params.seed) {
+      const UmResult result = universal_mesh(data.background, data.domain, params);
+      if (result.status != UmStatus::Success) {
+        state.SkipWithError(result.evidence.what.c_str());
+        return;
+      }
+      const TetMesh mesh{result.final, result.submesh.mesh.C};
+      double least = 1;
+      for (const Tet& t : mesh.C) least = std::min(least, mean_ratio(mesh, t));
+      worst = std::min(worst, least);
+      best = std::max(best, least);
+    }
+  }
+  state.counters["least_Q_min"] = worst;
+  state.counters["least_Q_max"] = best;
+}
+static_assert(static_cast<int>(DirectionRule::AxesInTurn) == 0 && static_cast<int>(DirectionRule::Random) == 1);
+BENCHMARK(least_quality)
+    ->ArgName("axes0_random1")
+    ->Arg(0)
+    ->Arg(1)
+    ->Unit(benchmark::kSecond)
     ->UseRealTime()
     ->Iterations(1);
 

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
+#include <numbers>
 
 #include "mesh/relaxation_direction.h"
 #include "tests/support/domains.h"
@@ -50,24 +52,39 @@ TEST(ClosestPoint, StepIsMinusSignedDistance) {
   }
 }
 
+/// The n-th of some points of the boundary, by bisection between a point inside and one outside.
+Vec3 boundary_point(const AnalyticDomain& domain, int n) {
+  Vec3 inside, outside;
+  bool has_inside = false, has_outside = false;
+  for (int k = 0; !has_inside || !has_outside; ++k) {
+    const Vec3 x = domain.box.center() + .6 * domain.box.sizes().cwiseProduct(random_unit_vector(7, n, k));
+    if (!domain.box.contains(x)) continue;
+    const Vec3 y = domain.box.center() + (k % 8 + 1) / 8. * (x - domain.box.center());
+    (domain.value(y) < 0 ? inside : outside) = y;
+    (domain.value(y) < 0 ? has_inside : has_outside) = true;
+  }
+  for (int halving = 0; halving < 60; ++halving) {
+    const Vec3 middle = .5 * (inside + outside);
+    (domain.value(middle) < 0 ? inside : outside) = middle;
+  }
+  return inside;
+}
+
 TEST(ClosestPoint, OffsettingABoundaryPointAlongItsNormalReturnsIt) {
   const double length = .08;
   for (const AnalyticDomain& domain : testing::domains()) {
     for (const ClosestPointMethod method : kMethods) {
       for (int n = 0; n < 40; ++n) {
-        const Vec3 start = domain.boundary_seeds[n % domain.boundary_seeds.size()] + .1 * random_unit_vector(7, 1, n);
-        const ClosestPoint on = closest_point(domain, start, length, with(ClosestPointMethod::Newton));
-        if (!on.converged) continue;  // the seed may be deep inside
-        const Vec3 normal = domain.gradient(on.point).normalized();
+        const Vec3 on = boundary_point(domain, n);
+        const Vec3 normal = domain.gradient(on).normalized();
         const double offset = .05 * (n % 2 ? 1 : -1);
-        const ClosestPoint foot = closest_point(domain, on.point + offset * normal, length, with(method));
-        if (method == ClosestPointMethod::Paper && !foot.converged) continue;  // it may, where curvature is high
+        const ClosestPoint foot = closest_point(domain, on + offset * normal, length, with(method));
         ASSERT_TRUE(foot.converged) << domain.name << " " << n;
         EXPECT_LT(std::abs(domain.value(foot.point)) / domain.gradient(foot.point).norm(), 1e-10 * length)
             << domain.name;
         // The foot may only be another point if that is nearer.
         EXPECT_LE(std::abs(foot.t), .05 + 1e-7) << domain.name;
-        const Vec3 to_x = on.point + offset * normal - foot.point;
+        const Vec3 to_x = on + offset * normal - foot.point;
         EXPECT_LT(to_x.cross(domain.gradient(foot.point).normalized()).norm(), 2e-7 * length) << domain.name;
       }
     }
@@ -83,6 +100,86 @@ TEST(ClosestPoint, DampedAndNewtonReachWhereThePaperDiverges) {
     const ClosestPoint foot = closest_point(domain, x, .1, with(method));
     EXPECT_TRUE(foot.converged);
     EXPECT_NEAR(foot.t, -.15, 1e-3);
+  }
+}
+
+/// A point at `focal` times the distance, inwards, at which the greater principal curvature of the surface brings
+/// neighbouring normals together: beyond 1 the boundary point it came from is no local minimum of the distance.
+Vec3 near_focal_surface(const AnalyticDomain& domain, const Vec3& on, double focal) {
+  const Vec3 g = domain.gradient(on), w = g.normalized(), e1 = w.unitOrthogonal(), e2 = w.cross(e1);
+  const Mat3 H = domain.hessian(on) / g.norm();
+  const double a = e1.dot(H * e1), b = e1.dot(H * e2), d = e2.dot(H * e2);
+  const double curvature = .5 * (a + d) + std::hypot(.5 * (a - d), b);
+  return on - focal / curvature * w;
+}
+
+/// On psi = 0, and no point of the surface around is nearer to x.
+void expect_local_minimum(const AnalyticDomain& domain, const Vec3& x, const ClosestPoint& foot, double length) {
+  const Vec3 g = domain.gradient(foot.point), w = g.normalized(), e1 = w.unitOrthogonal(), e2 = w.cross(e1);
+  ASSERT_LE(std::abs(domain.value(foot.point)) / g.norm(), 1e-10 * length);
+  const double radius = .02;
+  for (int k = 0; k < 16; ++k) {
+    const double angle = k * (std::numbers::pi / 8);
+    Vec3 y = foot.point + radius * (std::cos(angle) * e1 + std::sin(angle) * e2);
+    for (int it = 0; it < 20; ++it) {
+      const Vec3 gy = domain.gradient(y);
+      y -= domain.value(y) / gy.squaredNorm() * gy;
+    }
+    ASSERT_LT(std::abs(domain.value(y)), 1e-12);
+    // What is left of the slide, foot_tol * length, costs no more than its product with the radius over the distance.
+    ASSERT_GE((x - y).norm(), (x - foot.point).norm() - 1e-7 * length * radius / (x - foot.point).norm());
+  }
+}
+
+TEST(ClosestPoint, NewtonIsALocalMinimumNearTheFocalSurface) {
+  const Vec3 axes(1, .8, .6);
+  const AnalyticDomain domain = testing::ellipsoid(axes);
+  int n_paper_fails = 0;
+  for (const double focal : {.9, .95, 1.1, 1.5}) {
+    for (int n = 0; n < 100; ++n) {
+      const Vec3 x = near_focal_surface(domain, axes.cwiseProduct(random_unit_vector(5, 0, n)), focal);
+      const ClosestPoint foot = closest_point(domain, x, .2, with(ClosestPointMethod::Newton));
+      ASSERT_TRUE(foot.converged) << focal << " " << n;
+      expect_local_minimum(domain, x, foot, .2);
+      n_paper_fails += !closest_point(domain, x, .2, with(ClosestPointMethod::Paper)).converged;
+    }
+  }
+  EXPECT_GT(n_paper_fails, 50);
+}
+
+TEST(ClosestPoint, LineSearchSettlesWhereTheIterationGivesUp) {
+  const Vec3 axes(1, .5, .2);
+  const AnalyticDomain domain = testing::ellipsoid(axes);
+  const double length = .1;
+  int n_searched = 0;
+  for (int n = 0; n < 300; ++n) {
+    const Vec3 x = near_focal_surface(domain, axes.cwiseProduct(random_unit_vector(5, 0, n)), .95);
+    ClosestPointParams params = with(ClosestPointMethod::Damped);
+    params.max_distance = 100;  // the flat sides of the ellipsoid are several units from their focal points
+    const ClosestPoint foot = closest_point(domain, x, length, params);
+    if (!foot.converged || foot.iterations <= params.max_iterations) continue;
+    ++n_searched;
+    expect_local_minimum(domain, x, foot, length);
+    params.method = ClosestPointMethod::Paper;
+    EXPECT_FALSE(closest_point(domain, x, length, params).converged) << n;
+  }
+  EXPECT_GE(n_searched, 5);
+}
+
+TEST(ClosestPoint, LineSearchFindsTheFootOfTheIteration) {
+  const AnalyticDomain domain = testing::ellipsoid();
+  for (int n = 0; n < 100; ++n) {
+    const Vec3 on = Vec3(1, .8, .6).cwiseProduct(random_unit_vector(5, 0, n));
+    const Vec3 x = near_focal_surface(domain, on, .3);
+    ClosestPointParams params = with(ClosestPointMethod::Newton);
+    const ClosestPoint iterated = closest_point(domain, x, .2, params);
+    ASSERT_LE(iterated.iterations, params.max_iterations);
+    params.max_iterations = 3;  // too few, so the search begins with ten times as many
+    const ClosestPoint searched = closest_point(domain, x, .2, params);
+    ASSERT_GT(searched.iterations, params.max_iterations);
+    ASSERT_TRUE(searched.converged) << n;
+    EXPECT_LT((searched.point - iterated.point).norm(), 1e-6 * .2) << n;  // two feet, each to foot_tol over 1 - .3
+    EXPECT_LT((searched.point - on).norm(), 1e-6 * .2) << n;
   }
 }
 

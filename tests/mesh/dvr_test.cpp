@@ -16,12 +16,6 @@
 namespace umtet {
 namespace {
 
-#ifdef UMTET_WITH_GSL
-constexpr MaxMin kMaxMin = MaxMin::Exact;
-#else
-constexpr MaxMin kMaxMin = MaxMin::GoldenSection;
-#endif
-
 /// omega_h of a torus whose positive vertices are part of the way to the boundary: work for a relaxation.
 struct Case {
   testing::AnalyticDomain domain = testing::torus();
@@ -62,7 +56,6 @@ double ring_quality(const MovingMesh& mesh, int i) {
 DvrParams params(DirectionRule rule, bool skip) {
   DvrParams p;
   p.directions = rule;
-  p.max_min = kMaxMin;
   p.skip_settled = skip;
   return p;
 }

@@ -4,6 +4,7 @@
 #include <oneapi/tbb/global_control.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 
 #include "mesh/crawl.h"
@@ -97,13 +98,32 @@ TEST(Crawl, EqualsTheFullLoop) {
   }
 }
 
-TEST(Crawl, FindsOnlyTheComponentsThatHaveASeed) {
+TEST(Crawl, ASeedThatIsMissingLosesItsComponentOnly) {
   const AnalyticDomain four = testing::equation_13(3.2);
   const BackgroundMesh background = background_of(four, 20000);
-  const std::size_t all = find_submesh(background, four).background_tet.size();
-  const std::size_t one = crawl(background, four, {four.boundary_seeds[1]}).submesh.background_tet.size();
-  EXPECT_GT(one, 0u);
-  EXPECT_LT(one, all / 3);  // the small components are less than a tenth of the domain each
+  const std::vector<std::int64_t> all = find_submesh(background, four).background_tet;
+  std::size_t n_tets = 0;
+  for (std::size_t k = 0; k < four.boundary_seeds.size(); ++k) {
+    SCOPED_TRACE(k);
+    const std::vector<std::int64_t> component =
+        crawl(background, four, {four.boundary_seeds[k]}).submesh.background_tet;
+    EXPECT_FALSE(component.empty());
+    n_tets += component.size();
+    std::vector<std::int64_t> others;
+    std::set_difference(all.begin(), all.end(), component.begin(), component.end(), std::back_inserter(others));
+
+    std::vector<Vec3> seeds = four.boundary_seeds;
+    seeds[k] = Vec3(40, 0, 0);
+    const Crawl astray = crawl(background, four, seeds);
+    EXPECT_EQ(astray.lost_seeds, std::vector<std::size_t>{k});
+    EXPECT_EQ(astray.submesh.background_tet, others);
+
+    seeds.erase(seeds.begin() + static_cast<std::ptrdiff_t>(k));
+    const Crawl unseeded = crawl(background, four, seeds);
+    EXPECT_TRUE(unseeded.lost_seeds.empty());
+    expect_equal(unseeded.submesh, astray.submesh);
+  }
+  EXPECT_EQ(n_tets, all.size());  // four components, no tet in two of them
 }
 
 TEST(Crawl, NamesTheSeedsThatLeadNowhere) {

@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
+#include "mesh/assumptions.h"
 #include "mesh/tet_quality.h"
 #include "tests/support/domains.h"
 
@@ -13,14 +16,6 @@ namespace umtet {
 namespace {
 
 using testing::AnalyticDomain;
-
-UmParams usable_params() {
-  UmParams params;
-#ifndef UMTET_WITH_GSL
-  params.max_min = MaxMin::GoldenSection;
-#endif
-  return params;
-}
 
 double min_quality(const Submesh& submesh, const std::vector<Vec3>& V) {
   double q = 1;
@@ -36,7 +31,7 @@ double volume(const UmResult& result) {
   return v6 / 6;
 }
 
-UmResult mesh_of(const AnalyticDomain& domain, double n_tets, const UmParams& params = usable_params()) {
+UmResult mesh_of(const AnalyticDomain& domain, double n_tets, const UmParams& params = {}) {
   return universal_mesh(BackgroundMesh(a15(), domain.box, h_for_tets(domain, domain.box, n_tets)), domain, params);
 }
 
@@ -44,7 +39,7 @@ TEST(UniversalMesh, EveryDomainGetsAMeshOnItsBoundaryWithGoodTets) {
   for (const AnalyticDomain& domain : testing::domains()) {
     SCOPED_TRACE(domain.name);
     const double h = h_for_tets(domain, domain.box, 12000);
-    const UmResult result = universal_mesh(BackgroundMesh(a15(), domain.box, h), domain, usable_params());
+    const UmResult result = universal_mesh(BackgroundMesh(a15(), domain.box, h), domain);
     ASSERT_EQ(result.status, UmStatus::Success) << result.evidence.what;
     EXPECT_GT(min_quality(result.submesh, result.projected), .2);  // eq. (9) is coarse here
     EXPECT_GT(min_quality(result.submesh, result.final), .7);
@@ -62,7 +57,7 @@ TEST(UniversalMesh, EveryDomainGetsAMeshOnItsBoundaryWithGoodTets) {
 }
 
 TEST(UniversalMesh, SphereVolumeErrorFallsAsHSquared) {
-  UmParams params = usable_params();
+  UmParams params;
   params.relaxation_iterations = 5;  // the volume is decided by where the boundary vertices are
   const AnalyticDomain ball = testing::sphere();
   const auto error = [&](double h) {
@@ -74,7 +69,7 @@ TEST(UniversalMesh, SphereVolumeErrorFallsAsHSquared) {
 }
 
 TEST(UniversalMesh, DoesNotDependOnThreadsOrOnTheSearch) {
-  UmParams params = usable_params();
+  UmParams params;
   params.relaxation_iterations = 6;
   const AnalyticDomain domain = testing::torus();
   const BackgroundMesh background(a15(), domain.box, h_for_tets(domain, domain.box, 20000));
@@ -103,7 +98,7 @@ TEST(UniversalMesh, DoesNotDependOnThreadsOrOnTheSearch) {
 }
 
 TEST(UniversalMesh, SeedDecidesTheRandomDirections) {
-  UmParams params = usable_params();
+  UmParams params;
   params.relaxation_iterations = 2;
   const AnalyticDomain ball = testing::sphere();
   const UmResult a = mesh_of(ball, 4000, params);
@@ -114,35 +109,77 @@ TEST(UniversalMesh, SeedDecidesTheRandomDirections) {
 
 TEST(UniversalMesh, EmptyDomainIsAStatus) {
   const BackgroundMesh background(a15(), Box(Vec3(3, 3, 3), Vec3(4, 4, 4)), .2);
-  const UmResult result = universal_mesh(background, testing::sphere(), usable_params());
+  const UmResult result = universal_mesh(background, testing::sphere());
   EXPECT_EQ(result.status, UmStatus::EmptyDomain);
   EXPECT_FALSE(result.evidence.what.empty());
 }
 
 TEST(UniversalMesh, DomainThatLeavesTheBackgroundIsAStatus) {
   const BackgroundMesh background(a15(), testing::cube_box(.8), .2);
-  const UmResult result = universal_mesh(background, testing::sphere(), usable_params());
+  const UmResult result = universal_mesh(background, testing::sphere());
   EXPECT_EQ(result.status, UmStatus::DomainLeavesBackground);
   EXPECT_GT(result.evidence.count, 0u);
   EXPECT_TRUE(background.on_rim(result.evidence.background_vertex));
   EXPECT_EQ(result.evidence.where, background.position(result.evidence.background_vertex));
 }
 
-TEST(UniversalMesh, TooThinADomainFailsWithAPlaceOrCountsDoubleFaces) {
-  // A disc a third of an edge thick: the sheets of its boundary share tets.
+TEST(UniversalMesh, DoublePositiveFacesAreCountedWhereTheRunSurvivesThem) {
+  // A disc two thirds of an edge thick: some faces lie between inside vertices on both of their sides.
+  UmParams params;
+  params.projection_passes = 1;  // so that the only check for inverted tets comes before any relaxation
+  params.relaxation_iterations = 3;
   const AnalyticDomain disc = testing::ellipsoid({1, 1, .03});
-  const UmResult result = universal_mesh(BackgroundMesh(a15(), testing::cube_box(1.3), .1), disc, usable_params());
+  const UmResult result = universal_mesh(BackgroundMesh(a15(), testing::cube_box(1.3), .1), disc, params);
+  ASSERT_EQ(result.status, UmStatus::Success) << result.evidence.what;
   EXPECT_GT(result.double_positive_faces, 0u);
-  if (result.status != UmStatus::Success) {
-    EXPECT_FALSE(result.evidence.what.empty());
-    EXPECT_GT(result.evidence.count, 0u);
+  EXPECT_GT(min_quality(result.submesh, result.final), 0);
+}
+
+TEST(UniversalMesh, ADoublePositiveFaceWhereTheRunFailsIsTheStatus) {
+  // Handles about an edge thick. Rounding decides whether a projection or a tet fails first; both do so at such a face.
+  const AnalyticDomain domain = testing::equation_9();
+  const UmResult result = universal_mesh(BackgroundMesh(a15(), domain.box, .45), domain);
+  ASSERT_EQ(result.status, UmStatus::DoublePositiveFace) << result.evidence.what;
+  const BrokenAssumption broken = double_positive_faces(result.submesh);
+  EXPECT_EQ(result.double_positive_faces, broken.count);
+  EXPECT_GT(result.evidence.count, 0u);
+  const auto local = [](const std::vector<std::int64_t>& ids, std::int64_t id) {
+    return static_cast<int>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
+  };
+  if (result.evidence.background_tet >= 0) {
+    const Tet& tet = result.submesh.mesh.C[local(result.submesh.background_tet, result.evidence.background_tet)];
+    EXPECT_LE(mean_ratio({result.final, {}}, tet), 0);
+    EXPECT_TRUE(broken.is_broken_at(tet));
+  } else {
+    const int i = local(result.submesh.background_vertex, result.evidence.background_vertex);
+    EXPECT_EQ(result.evidence.where, result.final[i]);
+    EXPECT_TRUE(broken.is_broken_at(std::array{i}));
   }
-  EXPECT_EQ(result.final.size(), result.submesh.mesh.V.size());
-  EXPECT_EQ(result.projected.size(), result.submesh.mesh.V.size());
+}
+
+TEST(UniversalMesh, ADiscTooThinToProjectOntoNamesThePlace) {
+  // Three tenths of an edge thick, with a rim of curvature 1 / .0009: vertices beside the rim do not find it.
+  const AnalyticDomain disc = testing::ellipsoid({1, 1, .03});
+  const BackgroundMesh background(a15(), testing::cube_box(1.3), .2);
+  const UmResult result = universal_mesh(background, disc);
+  ASSERT_EQ(result.status, UmStatus::ProjectionDiverged);
+  EXPECT_GT(result.double_positive_faces, 0u);
+  EXPECT_EQ(result.evidence.where, background.position(result.evidence.background_vertex));  // nothing has moved yet
+  std::vector<std::int64_t> lost;
+  for (const int i : result.submesh.positive_vertices) {
+    if (closest_point(disc, result.submesh.mesh.V[i], .2, {}).converged) continue;
+    lost.push_back(result.submesh.background_vertex[i]);
+    const Vec3& x = result.submesh.mesh.V[i];
+    EXPECT_GT(std::hypot(x.x(), x.y()), 1);
+  }
+  ASSERT_EQ(result.evidence.count, lost.size());
+  EXPECT_EQ(result.evidence.background_vertex, lost.front());
+  EXPECT_EQ(result.final, result.submesh.mesh.V);
+  EXPECT_EQ(result.projected, result.submesh.mesh.V);
 }
 
 TEST(UniversalMesh, ADivergedProjectionNamesItsVertex) {
-  UmParams params = usable_params();
+  UmParams params;
   params.closest_point.method = ClosestPointMethod::Paper;
   params.closest_point.max_iterations = 1;  // no vertex is on the boundary to begin with
   const AnalyticDomain ball = testing::sphere();
@@ -154,7 +191,7 @@ TEST(UniversalMesh, ADivergedProjectionNamesItsVertex) {
 }
 
 TEST(UniversalMesh, AnInvertedIterateNamesItsTet) {
-  UmParams params = usable_params();
+  UmParams params;
   params.projection_passes = 1;  // in one go, which is what the passes are there to avoid
   const UmResult result = mesh_of(testing::banchoff_chmutov_4(), 20000, params);
   ASSERT_EQ(result.status, UmStatus::InvertedTet);
@@ -163,7 +200,7 @@ TEST(UniversalMesh, AnInvertedIterateNamesItsTet) {
 }
 
 TEST(UniversalMesh, ObserverSeesEverySweepAndCanStop) {
-  UmParams params = usable_params();
+  UmParams params;
   params.relaxation_iterations = 3;
   params.projection_passes = 2;
   const AnalyticDomain ball = testing::sphere();
@@ -188,7 +225,7 @@ TEST(UniversalMesh, ObserverSeesEverySweepAndCanStop) {
 }
 
 TEST(UniversalMesh, BrokenParamsAreAllNamed) {
-  UmParams params = usable_params();
+  UmParams params;
   EXPECT_TRUE(problems(params).empty());
   params.projection_passes = 0;
   params.relaxation_iterations = -1;

@@ -87,6 +87,12 @@ TEST(ZeroSet, SeparatePiecesAndShellsAreToldApart) {
   EXPECT_GT(two.components[0].area, two.components[1].area);
   EXPECT_GT(two.components[0].seed.x(), 0);
   EXPECT_LT(two.components[1].seed.x(), 0);
+  std::size_t n_points = 0;
+  for (const ZeroSetComponent& c : two.components) {
+    for (const Vec3& x : two.points_of(c)) EXPECT_GT(x.x() * c.seed.x(), 0) << "a point of the other ball";
+    n_points += two.points_of(c).size();
+  }
+  EXPECT_EQ(n_points, two.cut_points.size());
 
   const Values shell{[](const Vec3& x) { return std::abs(x.norm() - 0.8) - 0.2; }};
   const ZeroSetTopology walls = zero_set_topology(shell, cube(1.3), 0.07);
@@ -130,7 +136,7 @@ TEST(ZeroSet, DoesNotDependOnTheNumberOfThreads) {
 TEST(ZeroSet, RefusesBoxesAndSpacingsWithoutAGrid) {
   EXPECT_THROW(zero_set_topology(kTorus, Box3(), 0.1), std::invalid_argument);
   EXPECT_THROW(zero_set_topology(kTorus, cube(1), 0), std::invalid_argument);
-  EXPECT_THROW(zero_set_topology(kTorus, cube(1), 1e-12), std::invalid_argument);
+  EXPECT_THROW(zero_set_topology(kTorus, cube(1), 1e-12), std::length_error);
 }
 
 }  // namespace
