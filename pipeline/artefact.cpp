@@ -18,7 +18,8 @@ namespace {
 constexpr std::string_view kTemporaryPrefix = ".tmp-";
 
 [[noreturn]] void fail(int code, const fs::path& file, const std::string& what) {
-  throw std::system_error(code, std::generic_category(), file.string() + ": " + what);
+  // 0 would read "Success" in the message.
+  throw std::system_error(code != 0 ? code : EIO, std::generic_category(), file.string() + ": " + what);
 }
 
 /// A file descriptor that knows which artefact to name when something fails.
@@ -45,7 +46,7 @@ class Descriptor {
     while (!text.empty()) {
       const ssize_t put = ::write(fd_, text.data(), text.size());
       if (put < 0 && errno == EINTR) continue;
-      if (put < 0) fail(errno, artefact_, "cannot write");
+      if (put <= 0) fail(put < 0 ? errno : ENOSPC, artefact_, "cannot write");
       text.remove_prefix(static_cast<std::size_t>(put));
     }
   }
@@ -106,7 +107,8 @@ void write_artefact(const fs::path& file, const std::function<void(const fs::pat
     writer(temporary.path);
   } catch (const std::system_error& e) {
     if (std::string(e.what()).find(file.string()) != std::string::npos) throw;
-    throw std::system_error(e.code(), file.string() + ": not written: " + e.what());
+    const std::error_code code = e.code() ? e.code() : std::make_error_code(std::errc::io_error);
+    throw std::system_error(code, file.string() + ": not written: " + e.what());
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& e) {

@@ -6,6 +6,7 @@
 #include "mesh/tet_mesh_io.h"
 #include "pipeline/domain.h"
 #include "pipeline/exit_code.h"
+#include "pipeline/interrupt.h"
 #include "pipeline/mesh_measures.h"
 #include "pipeline/version.h"
 
@@ -23,9 +24,12 @@ Domain domain_of_case(const fs::path& root) {
 
 }  // namespace
 
-Json check_mesh(const fs::path& file, const std::optional<fs::path>& against, double min_quality) {
+Json check_mesh(const fs::path& file, const std::optional<fs::path>& against, const Parameters& parameters,
+                Progress& progress) {
+  progress.report("check", "read", 0);
   TetMesh mesh = read_tet_mesh(file).mesh;
   if (mesh.C.empty()) throw MeshFileRefused(file, "the whole file", "it has no tets");
+  progress.detail(fmt::format("check: {} tets, {} vertices", mesh.C.size(), mesh.V.size()));
   CertificateInput input;
   input.mesh = &mesh;
   std::optional<Domain> domain;
@@ -36,14 +40,21 @@ Json check_mesh(const fs::path& file, const std::optional<fs::path>& against, do
     const StageState state = inspect_stage(CasePaths{*against}, Stage::Mesh, Json::object(), std::nullopt);
     // Without a mesh of its own the case says nothing about h: the mesh's own edge length is the unit then.
     if (state.record) input.h = state.record->numbers.at("measured").value("h", 0.);
+    progress.detail("check: against psi of " + against->string());
   }
+  stop_if_interrupted();
+  progress.report("check", "certify", .3);
   const MeshCertificate certificate = certify(input);
   std::vector<std::string> reasons = failures(certificate);
+  stop_if_interrupted();
+  const double min_quality = parameters.real("output.min_quality");
   if (certificate.quality.min < min_quality) {
     reasons.push_back(
         fmt::format("min quality {:.4f} is below the gate of {:.4f}", certificate.quality.min, min_quality));
   }
   Json json = {{"schema", 1}, {"tool", "umtet"}, {"version", kVersion}, {"mesh", file.string()}};
+  const std::string& units = parameters.text("output.units");
+  json["units"] = units.empty() ? Json(nullptr) : Json(units);
   json.update(to_json(certificate));
   json["verdict"] = reasons.empty() ? "pass" : "fail";
   json["reasons"] = reasons;

@@ -3,16 +3,19 @@
 #include <filesystem>
 #include <optional>
 
+#include "pipeline/parameters.h"
+#include "pipeline/progress.h"
 #include "pipeline/record.h"
 
 namespace umtet {
 
 /// Judges any .vtu, .msh or .mesh: counts, quality, boundary; with a case also distances and normals against its psi.
-/// @param against      a case whose level set or formula the mesh should fit
-/// @param min_quality  gate on the least mean ratio, 0: none
+/// @param against     a case whose level set or formula the mesh should fit
+/// @param parameters  output.min_quality is the gate on the least mean ratio (0: none), output.units goes into the
+///                    document
 /// @return a document like the certificate, without the parts that a mesh alone does not have
-/// \throw MeshFileRefused, UsageError, ArtefactDamaged, std::system_error
+/// \throw MeshFileRefused, UsageError, ArtefactDamaged, Interrupted, std::system_error
 Json check_mesh(const std::filesystem::path& mesh, const std::optional<std::filesystem::path>& against,
-                double min_quality);
+                const Parameters& parameters, Progress& progress);
 
 }  // namespace umtet

@@ -23,6 +23,7 @@ void run_cloud_stage(const StageContext& context, const fs::path& source) {
   for (const Vec3& x : file.cloud.points) box.extend(x);
   begin_writing(context, Stage::Cloud);
   write_artefact(context.paths.cloud(), [&](const fs::path& temporary) {
+    errno = 0;  // streams do not promise to set it
     std::ofstream out(temporary, std::ios::binary);
     write_ply(out, file.cloud);
     out.close();

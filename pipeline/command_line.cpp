@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <deque>
 #include <filesystem>
 #include <map>
 
@@ -41,11 +40,14 @@ class Parser {
   CommandLine parse(int argc, const char* const* argv);
 
  private:
-  CLI::App& add_command(const char* name, const char* description, bool has_stages);
+  CLI::App& add_command(const char* name, const char* description);
+  void add_parameter_sources(CLI::App& command);
+  void add_stage_flags(CLI::App& command);
   void add_parameter_flags(CLI::App& command, const std::vector<std::string>& sections,
                            const std::vector<std::string>& except = {});
   [[noreturn]] void refuse(const CLI::ParseError& e, int argc, const char* const* argv) const;
   void finish(const CLI::App& command);
+  void read_parameters();
   void finish_stages(const CLI::App& command);
 
   CLI::App app_{"umtet: from an oriented point cloud to a certified tetrahedral mesh", "umtet"};
@@ -58,39 +60,42 @@ Parser::Parser() {
   app_.require_subcommand(1);
   app_.footer(kFooter);
 
-  CLI::App& run = add_command("run", "All stages; those whose record matches are not run again", true);
+  CLI::App& run = add_command("run", "All stages; those whose record matches are not run again");
+  add_stage_flags(run);
   run.add_option("CLOUD", in_.input, "oriented points: .ply, .pcd, .xyz; or a case, to resume it");
   run.add_option("--from", in_.from, "first stage that may run: cloud, level-set, mesh");
   run.add_option("--until", in_.until, "last stage to run");
   add_parameter_flags(run, {"reconstruct", "mesh", "output"}, {"mesh.implicit"});
 
-  CLI::App& reconstruct = add_command("reconstruct", "Stage one only: the level set", true);
+  CLI::App& reconstruct = add_command("reconstruct", "Stage one only: the level set");
+  add_stage_flags(reconstruct);
   reconstruct.add_option("CLOUD", in_.input, "oriented points; or a case, to fit again with other parameters");
   add_parameter_flags(reconstruct, {"reconstruct"});
 
-  CLI::App& mesh = add_command("mesh", "Stage two only: from the level set of CASE, or from a formula", true);
+  CLI::App& mesh = add_command("mesh", "Stage two only: from the level set of CASE, or from a formula");
+  add_stage_flags(mesh);
   mesh.add_option("CASE", in_.input, "a case with a level set");
   add_parameter_flags(mesh, {"mesh", "output"});
 
-  CLI::App& check = add_command("check", "Validity and quality of any tet mesh; exit 6 when it fails", false);
+  CLI::App& check = add_command("check", "Validity and quality of any tet mesh; exit 6 when it fails");
   check.add_option("MESH", in_.input, ".vtu, .msh or .mesh")->required();
   check.add_option("--against", in_.against, "a case whose surface the mesh should fit");
-  add_parameter_flags(check, {"output"}, {"output.units"});
+  add_parameter_sources(check);
+  add_parameter_flags(check, {"output"});
 
-  CLI::App& exports = add_command("export", "Files for solvers and viewers, in CASE/4-export", false);
+  CLI::App& exports = add_command("export", "Files for solvers and viewers, in CASE/4-export");
   exports.add_option("CASE", in_.input, "a case with a mesh")->required();
   exports.add_option("--format", in_.formats, fmt::format("{}", fmt::join(export_formats(), ", ")))
       ->delimiter(',')
       ->required();
 }
 
-CLI::App& Parser::add_command(const char* name, const char* description, bool has_stages) {
+CLI::App& Parser::add_command(const char* name, const char* description) {
   CLI::App& command = *app_.add_subcommand(name, description);
   command.add_flag("--json", result_.json, "one JSON document on stdout, also on failure");
   command.add_option("--threads", result_.threads, "number of threads; results do not depend on it")
       ->check(CLI::Range(1, 4096));
   command.add_flag("-q,--quiet", in_.quiet, "no messages but warnings and errors");
-  if (!has_stages) return command;
   command.add_flag("-v,--verbose", in_.verbose, "more messages");
   command
       .add_option_function<std::string>(
@@ -102,14 +107,22 @@ CLI::App& Parser::add_command(const char* name, const char* description, bool ha
           },
           "auto: a bar on a terminal; plain: lines; none")
       ->check(CLI::IsMember({"auto", "plain", "none"}));
-  command.add_option("-o", in_.output, "the folder of the case");
+  return command;
+}
+
+/// For the commands that have parameters; export has none.
+void Parser::add_parameter_sources(CLI::App& command) {
   command.add_option("--config", in_.config, "TOML file with parameters, such as the case.toml of another case");
   command.add_option("--set", in_.assignments, "any parameter: --set mesh.samples=10; see case.toml for all")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void Parser::add_stage_flags(CLI::App& command) {
+  add_parameter_sources(command);
+  command.add_option("-o", in_.output, "the folder of the case");
   command.add_flag("--force", in_.force, "run the stages although their records match");
   command.add_flag("--strict", in_.strict, "stop with exit 8 at a damaged artefact instead of making it again");
-  return command;
 }
 
 void Parser::add_parameter_flags(CLI::App& command, const std::vector<std::string>& sections,
@@ -190,7 +203,7 @@ void Parser::finish(const CLI::App& command) {
     result_.action = CommandLine::Action::Check;
     result_.mesh = in_.input;
     if (!in_.against.empty()) result_.against = in_.against;
-    result_.min_quality = parameters.real("output.min_quality");
+    read_parameters();
   } else if (result_.command == "export") {
     result_.action = CommandLine::Action::Export;
     result_.request.case_folder = in_.input;
@@ -199,6 +212,22 @@ void Parser::finish(const CLI::App& command) {
     result_.action = CommandLine::Action::Stages;
     finish_stages(command);
   }
+}
+
+/// --set and --config. A file may be about more than this command; --set is refused where it would change nothing. What
+/// is said about a stage to come is kept in case.toml.
+void Parser::read_parameters() {
+  Parameters& parameters = result_.request.parameters;
+  for (const std::string& assignment : in_.assignments) parameters.set(assignment);
+  for (const Stage stage : {Stage::Cloud, Stage::LevelSet, Stage::Mesh}) {
+    if (result_.action == CommandLine::Action::Stages && stage >= result_.request.from) continue;
+    for (const ParamField& f : params_fields()) {
+      if (f.key.starts_with(std::string(section_of(stage)) + ".") && parameters.source(f.key) == ParamSource::Set) {
+        throw UsageError(f.key + " belongs to a stage that this command does not run");
+      }
+    }
+  }
+  if (!in_.config.empty()) parameters.load(in_.config, ParamSource::File);
 }
 
 void Parser::finish_stages(const CLI::App& command) {
@@ -216,16 +245,7 @@ void Parser::finish_stages(const CLI::App& command) {
   if (!in_.until.empty()) request.until = parse_stage(in_.until);
   if (request.from > request.until) throw UsageError("--from " + in_.from + " is after --until " + in_.until);
 
-  for (const std::string& assignment : in_.assignments) parameters.set(assignment);
-  for (const ParamField& f : params_fields()) {
-    const bool early = (f.key.starts_with("cloud.") && request.from > Stage::Cloud) ||
-                       (f.key.starts_with("reconstruct.") && request.from > Stage::LevelSet);
-    if (early && parameters.source(f.key) == ParamSource::Set) {
-      throw UsageError(f.key + " belongs to a stage that this command does not run");
-    }
-  }
-  if (!in_.config.empty()) parameters.load(in_.config, ParamSource::File);
-
+  read_parameters();
   if (input_is_case) {
     if (parameters.source("mesh.implicit") == ParamSource::Flag)
       throw UsageError("--implicit goes with -o, without CASE");

@@ -16,11 +16,10 @@ struct CommandLine {
   std::string text;     ///< Text: help or version, for stdout
   std::string command;  ///< "run", "reconstruct", "mesh", "check", "export"
 
-  RunRequest request;                            ///< Stages
+  RunRequest request;                            ///< Stages; Check: its output.* parameters; Export: its case_folder
   std::filesystem::path mesh;                    ///< Check
   std::optional<std::filesystem::path> against;  ///< Check
-  double min_quality = 0;                        ///< Check
-  std::vector<std::string> formats;              ///< Export, with request.case_folder
+  std::vector<std::string> formats;              ///< Export
 
   bool json = false;
   ProgressMode progress = ProgressMode::Auto;

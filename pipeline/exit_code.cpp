@@ -3,6 +3,8 @@
 #include <csignal>
 #include <filesystem>
 #include <new>
+#include <stdexcept>
+#include <string>
 #include <system_error>
 
 #include "mesh/tet_mesh_io.h"
@@ -11,6 +13,13 @@
 #include "reconstruct/point_cloud_io.h"
 
 namespace umtet {
+namespace {
+
+constexpr const char* kPleaseReport =
+    "\n  this is a bug of umtet: please report it with the command and the case folder (or the input, if there is "
+    "none)";
+
+}  // namespace
 
 Interrupted::Interrupted(int signal)
     : std::runtime_error(signal == SIGTERM ? "terminated; the case can be resumed with the same command"
@@ -42,12 +51,12 @@ Failure failure_of(const std::exception_ptr& error) {
     return {ExitCode::ResourceLimit, "out of memory"};
   } catch (const std::system_error& e) {  // std::filesystem::filesystem_error is one
     return {ExitCode::FileTrouble, e.what()};
-  } catch (const std::invalid_argument& e) {  // a constraint between parameters, which a table of ranges cannot state
-    return {ExitCode::Usage, e.what()};
-  } catch (const std::exception& e) {
-    return {ExitCode::Bug, std::string("internal error: ") + e.what()};
+  } catch (const std::length_error& e) {  // a lattice, grid or mesh of more parts than there are numbers for
+    return {ExitCode::ResourceLimit, e.what()};
+  } catch (const std::exception& e) {  // also std::invalid_argument: what a user can get wrong is checked before
+    return {ExitCode::Bug, std::string("internal error: ") + e.what() + kPleaseReport};
   } catch (...) {
-    return {ExitCode::Bug, "internal error of an unknown kind"};
+    return {ExitCode::Bug, std::string("internal error of an unknown kind") + kPleaseReport};
   }
 }
 

@@ -49,7 +49,8 @@ struct Failure {
   std::string message;  ///< one or a few lines, without a final newline
 };
 
-/// The one place where exceptions become exit codes.
+/// The one place where exceptions become exit codes. What is not one of the types above or of the libraries' is a bug:
+/// in particular std::invalid_argument, because parameters and input are checked before they reach the libraries.
 /// \pre error is not null
 Failure failure_of(const std::exception_ptr& error);
 

@@ -1,10 +1,13 @@
 #include "pipeline/export_case.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "mesh/skin.h"
 #include "mesh/tet_mesh_io.h"
 #include "pipeline/exit_code.h"
+#include "pipeline/interrupt.h"
 #include "pipeline/parameters.h"
 #include "pipeline/record.h"
 
@@ -31,7 +34,7 @@ const std::vector<std::string>& export_formats() {
   return formats;
 }
 
-std::vector<fs::path> export_case(const CasePaths& paths, const std::vector<std::string>& formats) {
+std::vector<fs::path> export_case(const CasePaths& paths, const std::vector<std::string>& formats, Progress& progress) {
   for (const std::string& format : formats) {
     if (std::find(export_formats().begin(), export_formats().end(), format) != export_formats().end()) continue;
     const std::string near = nearest(format, export_formats());
@@ -42,6 +45,7 @@ std::vector<fs::path> export_case(const CasePaths& paths, const std::vector<std:
   const StageState state = inspect_stage(paths, Stage::Mesh, Json::object(), std::nullopt);
   if (state.kind == StageState::Kind::Damaged) throw ArtefactDamaged(state.reason);
   if (!state.record) throw UsageError("nothing to export: " + state.reason);
+  progress.report("export", "read", 0);
   const MeshFile mesh = [&] {
     try {
       return read_tet_mesh(paths.mesh());
@@ -50,10 +54,13 @@ std::vector<fs::path> export_case(const CasePaths& paths, const std::vector<std:
     }
   }();
   const std::vector<Triangle> boundary = boundary_faces(mesh.mesh.C, mesh.mesh.V.size()).triangles;
+  progress.detail(fmt::format("export: {} tets, {} boundary faces", mesh.mesh.C.size(), boundary.size()));
   fs::create_directories(paths.exports());
   remove_stale_temporaries(paths.exports());
   std::vector<fs::path> files;
   for (const std::string& format : formats) {
+    stop_if_interrupted();
+    progress.report("export", format, static_cast<double>(files.size() + 1) / static_cast<double>(formats.size() + 1));
     files.push_back(paths.exports() / name_of(format));
     write_artefact(files.back(), [&](const fs::path& temporary) { write(format, temporary, mesh, boundary); });
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pipeline/case_folder.h"
+#include "pipeline/progress.h"
 
 namespace umtet {
 
@@ -14,7 +15,8 @@ const std::vector<std::string>& export_formats();
 /// Writes 4-export/mesh.<suffix> for every format, from 3-mesh/mesh.vtu.
 /// @return the files written
 /// \throw UsageError for an unknown format (names the nearest) or a case without a mesh; ArtefactDamaged,
-///        std::system_error
-std::vector<std::filesystem::path> export_case(const CasePaths& paths, const std::vector<std::string>& formats);
+///        Interrupted, std::system_error
+std::vector<std::filesystem::path> export_case(const CasePaths& paths, const std::vector<std::string>& formats,
+                                               Progress& progress);
 
 }  // namespace umtet

@@ -16,15 +16,6 @@
 namespace umtet {
 namespace {
 
-// A patch of surface this many sample spacings from any sample is a guess of the fit.
-constexpr double kSupportRadius = 3;
-// Values of psi a count of pieces may cost: about ten seconds.
-constexpr double kMaxGridNodes = 5e7;
-
-double grid_spacing(const Domain& domain, double wanted) {
-  return std::max(wanted, std::cbrt(domain.box.volume() / kMaxGridNodes));
-}
-
 template <class T>
 Json number_or_null(const std::optional<T>& v) {
   return v ? Json(*v) : Json(nullptr);
@@ -74,55 +65,45 @@ Json cloud_block(const Domain& domain, const std::vector<Vec3>& V, const std::ve
           {"p99_distance_over_h", p99 / h}};
 }
 
-/// Does the boundary of the mesh look like psi = 0? Where the two counts differ, the count is repeated on a finer grid
-/// before the mesh is blamed.
+// Halving the spacing is worth its cost if it leaves at least this much of a refinement within the nodes allowed.
+constexpr double kWorthRepeating = .9;
+
+/// Does the boundary of the mesh look like the pieces of psi = 0 that are kept? Where the two counts differ, the count
+/// is repeated on a grid of half the spacing, as far as its size is allowed, before the mesh is blamed.
 void compare_with_zero_set(const Domain& domain, const MeshCertificate& certificate, const ZeroSetChoice& pieces,
                            Json& block, std::vector<std::string>& reasons) {
-  const auto differs = [&](const ZeroSetTopology& topology) {
-    const bool all_kept = pieces.dropped.empty();
-    return static_cast<int>(topology.components.size() - pieces.dropped.size()) != certificate.boundary.components ||
-           (all_kept && topology.euler_characteristic != certificate.boundary.euler_characteristic);
+  const MeshCertificate::Boundary& boundary = certificate.boundary;
+  const auto differs = [&](const ZeroSetChoice& c) {
+    return static_cast<int>(c.seeds.size()) != boundary.components ||
+           c.euler_characteristic != boundary.euler_characteristic;
   };
-  ZeroSetTopology finer;
-  const ZeroSetTopology* topology = &pieces.topology;
-  if (differs(*topology)) {
-    finer = zero_set_topology(domain.psi(), domain.box, grid_spacing(domain, topology->spacing / 2));
-    topology = &finer;
+  ZeroSetChoice repeated;
+  const ZeroSetChoice* counted = &pieces;
+  const double half = pieces.topology.spacing / 2;
+  if (differs(pieces) && counting_spacing(domain, half) < kWorthRepeating * pieces.topology.spacing) {
+    repeated = choose_components(domain, half);
+    counted = &repeated;
   }
-  block["components_of_zero_set"] = topology->components.size();
-  block["euler_characteristic_of_zero_set"] = topology->euler_characteristic;
-  block["components_meshed"] = certificate.boundary.components;
-  block["components_dropped"] = pieces.dropped;
-  if (differs(*topology)) {
-    reasons.push_back(fmt::format(
-        "psi = 0 has {} pieces ({} dropped) and Euler characteristic {} on a grid of spacing {:.3g}, the boundary of "
-        "the mesh {} and {}: h is too large for this shape",
-        topology->components.size(), pieces.dropped.size(), topology->euler_characteristic, topology->spacing,
-        certificate.boundary.components, certificate.boundary.euler_characteristic));
-  }
+  block["components_of_zero_set"] = counted->topology.components.size();
+  block["euler_characteristic_of_zero_set"] = counted->topology.euler_characteristic;
+  block["euler_characteristic_of_kept_components"] = counted->euler_characteristic;
+  block["components_meshed"] = boundary.components;
+  block["components_dropped"] = counted->dropped;
+  if (!differs(*counted)) return;
+  const double spacing = counted->topology.spacing;
+  // A count on a grid coarser than the mesh is as likely to be wrong as the mesh.
+  const char* verdict = spacing > certificate.h
+                            ? "which of the two is wrong is open: the grid is coarser than the mesh, "
+                              "and as fine as its size is allowed to be"
+                            : "h is too large for this shape";
+  reasons.push_back(
+      fmt::format("psi = 0 has {} pieces with samples ({} dropped) and Euler characteristic {} on a grid "
+                  "of spacing {:.3g}, the boundary of the mesh {} and {}: {}",
+                  counted->seeds.size(), counted->dropped.size(), counted->euler_characteristic, spacing,
+                  boundary.components, boundary.euler_characteristic, verdict));
 }
 
 }  // namespace
-
-ZeroSetChoice choose_components(const Domain& domain, double h) {
-  ZeroSetChoice choice;
-  const double wanted = domain.level_set ? std::min(h, domain.level_set->spacing()) : h;
-  choice.topology = zero_set_topology(domain.psi(), domain.box, grid_spacing(domain, wanted));
-  const double radius = kSupportRadius * domain.cloud_spacing;
-  for (const ZeroSetComponent& piece : choice.topology.components) {
-    const bool backed =
-        domain.formula || std::any_of(domain.cloud.points.begin(), domain.cloud.points.end(),
-                                      [&](const Vec3& x) { return piece.box.exteriorDistance(x) <= radius; });
-    if (backed) {
-      choice.seeds.push_back(piece.seed);
-    } else {
-      const Vec3 at = piece.seed + domain.shift;
-      choice.dropped.push_back(fmt::format("piece of area {:.3g} at ({:.6g}, {:.6g}, {:.6g}): no sample within {:.3g}",
-                                           piece.area, at.x(), at.y(), at.z(), radius));
-    }
-  }
-  return choice;
-}
 
 Json to_json(const MeshCertificate& c) {
   return {{"n_tets", c.n_tets},

@@ -9,6 +9,7 @@
 #include "pipeline/edge_length.h"
 #include "pipeline/exit_code.h"
 #include "pipeline/interrupt.h"
+#include "pipeline/mesh_attempts.h"
 #include "pipeline/mesh_measures.h"
 #include "pipeline/stages.h"
 
@@ -16,9 +17,13 @@ namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
-// How often, and by how much, h is reduced when the choice is ours: down to .51 h, 7.5 times the tets.
-constexpr int kAttempts = 4;
-constexpr double kRefinement = .8;
+BackgroundMesh make_background(const Box& box, double h) {
+  try {
+    return BackgroundMesh(a15(), box, h);
+  } catch (const std::invalid_argument& e) {  // h and the box have been checked: their tets are too many to count
+    throw ResourceLimit(fmt::format("h = {:.4g}: no background mesh: {}", h, e.what()));
+  }
+}
 
 class MeshStage {
  public:
@@ -30,29 +35,18 @@ class MeshStage {
   void run();
 
  private:
-  struct Attempt {
-    double h;
-    UmResult result;
-    Json measured;  ///< null when there is no mesh
-
-    bool may_improve() const {
-      if (result.status == UmStatus::Success) return !measured["reasons"].empty();
-      return result.status != UmStatus::EmptyDomain && result.status != UmStatus::DomainLeavesBackground;
-    }
-  };
-  Attempt best_attempt();
-  Attempt attempt(double h);
+  MeshAttempt attempt(double h);
   bool observe(const UmProgress& p);
   UmResult make(const ZeroSetChoice& pieces, double h);
   [[noreturn]] void refuse(const UmResult& result, double h);
   void write_iterate(const std::string& name, const UmResult& result, const std::vector<Vec3>& V);
-  void write_outputs(const UmResult& result);
+  void write_outputs(const MeshAttempt& best);
   void begin();
 
   const StageContext& context_;
   const Domain domain_;
   const bool keep_iterates_;
-  std::vector<std::vector<Vec3>> iterates_;
+  std::vector<std::vector<Vec3>> iterates_;  ///< of the running attempt
   std::vector<std::string> outputs_;
 };
 
@@ -70,7 +64,10 @@ UmResult MeshStage::make(const ZeroSetChoice& pieces, double h) {
   UmParams params = um_params(context_.parameters);
   // The full loop would mesh every piece; crawling starts from the ones to keep.
   if (!pieces.dropped.empty()) params.search = SubmeshSearch::Crawl;
-  const BackgroundMesh background(a15(), domain_.box, h);
+  if (pieces.seeds.empty() && !pieces.dropped.empty()) {
+    throw MeshingImpossible("psi = 0 is nowhere near the samples:\n  no " + pieces.dropped.front());
+  }
+  const BackgroundMesh background = make_background(domain_.box, h);
   context_.progress.detail(fmt::format("mesh: h = {:.6g}, background of {} tets, psi = 0 in {} pieces", h,
                                        background.n_tets(), pieces.topology.components.size()));
   return universal_mesh(
@@ -119,9 +116,9 @@ void MeshStage::refuse(const UmResult& result, double h) {
   throw MeshingImpossible(message);
 }
 
-/// One run of the algorithm and, if it made a mesh, what is true of it.
-MeshStage::Attempt MeshStage::attempt(double h) {
-  Attempt a{h, {}, nullptr};
+MeshAttempt MeshStage::attempt(double h) {
+  MeshAttempt a;
+  a.h = h;
   iterates_.clear();
   stop_if_interrupted();
   context_.progress.report("mesh", "components", .05);
@@ -129,25 +126,12 @@ MeshStage::Attempt MeshStage::attempt(double h) {
   for (const std::string& reason : pieces.dropped) context_.progress.say("mesh: left out a " + reason);
   stop_if_interrupted();
   a.result = make(pieces, h);
+  a.iterates = std::move(iterates_);
   stop_if_interrupted();
-  if (a.result.status == UmStatus::Success) {
+  if (a.made()) {
     context_.progress.report("mesh", "certify", .9);
     a.measured = measure(domain_, a.result, pieces, h);
     stop_if_interrupted();
-  }
-  return a;
-}
-
-/// A few folded faces at a thin place come and go with h. As long as h is ours to choose, a smaller one is tried.
-MeshStage::Attempt MeshStage::best_attempt() {
-  const EdgeLength choice = choose_edge_length(domain_, context_.parameters);
-  Attempt a = attempt(choice.h);
-  for (int k = 1; k < kAttempts && a.may_improve() && a.h * kRefinement >= choice.least; ++k) {
-    const std::string reason =
-        a.measured.is_null() ? a.result.evidence.what : a.measured["reasons"][0].get<std::string>();
-    const double h = a.h * kRefinement;
-    context_.progress.say(fmt::format("mesh: h = {:.4g} will not do ({}); trying {:.4g}", a.h, reason, h));
-    a = attempt(h);
   }
   return a;
 }
@@ -156,14 +140,17 @@ void MeshStage::run() {
   const auto start = std::chrono::steady_clock::now();
   const std::vector<RecordedFile> inputs = recorded_inputs(context_.paths, Stage::Mesh, context_.parameters);
   context_.progress.report("mesh", "size", 0);
-  const auto [h, result, measured] = best_attempt();
-  if (result.status != UmStatus::Success) refuse(result, h);
+  const MeshAttempt best = best_attempt(
+      choose_edge_length(domain_, context_.parameters), [this](double h) { return attempt(h); },
+      [this](const std::string& line) { context_.progress.say(line); });
+  const UmResult& result = best.result;
+  if (!best.made()) refuse(result, best.h);
 
   context_.progress.report("mesh", "write", .97);
-  write_outputs(result);
+  write_outputs(best);
   const Json numbers = {{"conditioning_angle_max_deg", result.conditioning_angle_max_deg},
                         {"n_psi_evaluations", result.n_psi_evaluations},
-                        {"measured", measured}};
+                        {"measured", best.measured}};
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   write_record(context_.paths,
                {Stage::Mesh,
@@ -175,12 +162,13 @@ void MeshStage::run() {
                outputs_);
 }
 
-void MeshStage::write_outputs(const UmResult& result) {
+void MeshStage::write_outputs(const MeshAttempt& best) {
   begin();
+  const UmResult& result = best.result;
   const std::vector<Vec3>& omega_h = result.submesh.mesh.V;
   write_iterate("omega_h.vtu", result, omega_h);
-  for (std::size_t k = 0; k < iterates_.size(); ++k)
-    write_iterate(fmt::format("pass_{}.vtu", k + 1), result, iterates_[k]);
+  for (std::size_t k = 0; k < best.iterates.size(); ++k)
+    write_iterate(fmt::format("pass_{}.vtu", k + 1), result, best.iterates[k]);
   write_iterate("projected.vtu", result, result.projected);
   write_iterate("mesh.vtu", result, result.final);
   write_artefact(context_.paths.folder(Stage::Mesh) / "quality.csv", [&](const fs::path& temporary) {

@@ -58,21 +58,23 @@ Output run_stages(const CommandLine& call, Progress& progress) {
   return output;
 }
 
-Output check(const CommandLine& call) {
+Output check(const CommandLine& call, Progress& progress) {
   Output output;
-  const Json json = check_mesh(call.mesh, call.against, call.min_quality);
+  const Json json = check_mesh(call.mesh, call.against, call.request.parameters, progress);
+  progress.clear();
   if (json.at("verdict") != "pass") output.code = ExitCode::GateFailed;
   output.document = {{"check", json}};
   output.text = summary(json);
   return output;
 }
 
-Output export_files(const CommandLine& call) {
+Output export_files(const CommandLine& call, Progress& progress) {
   Output output;
   const CasePaths paths{call.request.case_folder};
   if (!std::filesystem::exists(paths.root)) throw UsageError(paths.root.string() + ": there is no such case");
   const CaseLock lock(paths.root);
-  const std::vector<std::filesystem::path> files = export_case(paths, call.formats);
+  const std::vector<std::filesystem::path> files = export_case(paths, call.formats, progress);
+  progress.clear();
   output.document = {{"files", names(files)}};
   output.text = file_list(files);
   return output;
@@ -91,9 +93,9 @@ Output execute(int argc, char** argv, bool& json, std::string& command) {
   Progress progress(call.progress, call.verbosity);
   switch (call.action) {
     case CommandLine::Action::Check:
-      return check(call);
+      return check(call, progress);
     case CommandLine::Action::Export:
-      return export_files(call);
+      return export_files(call, progress);
     default:
       return run_stages(call, progress);
   }
@@ -123,7 +125,6 @@ int run_program(int argc, char** argv) {
   }
   if (failure) {
     complain("umtet: {}\n", failure->message);
-    if (failure->code == ExitCode::Bug) complain("umtet: this is a bug; please report it with the case folder\n");
     output.code = failure->code;
     output.text.clear();
     output.document = {{"error", failure->message}};

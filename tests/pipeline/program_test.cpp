@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -181,6 +182,52 @@ TEST_F(Program, RefusedCloudsTouchNothing) {
   EXPECT_FALSE(fs::exists(folder / "new"));
 }
 
+TEST_F(Program, CloudsThatCannotBoundABodyTouchNothing) {
+  ASSERT_EQ(run("run egg.ply -o egg --tets 3000").code, 0);
+  std::map<fs::path, std::string> before;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder / "egg")) {
+    if (entry.is_regular_file() && entry.path().filename() != ".lock") before[entry.path()] = content(entry.path());
+  }
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 12\nproperty double x\nproperty double y\nproperty double z\n";
+  const std::string normals = "property double nx\nproperty double ny\nproperty double nz\n", end = "end_header\n";
+  std::ofstream same(folder / "same.ply"), bare(folder / "bare.ply");
+  same << head << normals << end;
+  bare << head << end;
+  for (int i = 0; i < 12; ++i) {
+    same << "1 2 3 0 0 1\n";
+    bare << i % 3 << ' ' << i / 3 << ' ' << i << '\n';
+  }
+  same.close();
+  bare.close();
+  for (const char* name : {"same.ply", "bare.ply"}) {
+    const Result r = run("run " + std::string(name) + " -o egg --tets 3000 --force");
+    EXPECT_EQ(r.code, 3) << r.err;
+    EXPECT_NE(r.err.find(name), std::string::npos) << r.err;
+    for (const auto& [file, bytes] : before) EXPECT_EQ(content(file), bytes) << name << " changed " << file;
+    EXPECT_EQ(run("run " + std::string(name) + " -o new").code, 3);
+    EXPECT_FALSE(fs::exists(folder / "new"));
+  }
+  EXPECT_NE(run("run egg.ply -o egg --tets 3000").err.find("nothing to do"), std::string::npos);
+}
+
+TEST_F(Program, AFewOutliersMakeABubbleThatIsLeftOut) {
+  // Five points around (2, 0, 0) with normals away from it, half a lattice cell apart: the fit closes a bubble there.
+  std::string ply = content(cloud);
+  ply.replace(ply.find("vertex 600"), 10, "vertex 605");
+  ply += "2.05 0 0 1 0 0\n1.95 0 0 -1 0 0\n2 .05 0 0 1 0\n2 -.05 0 0 -1 0\n2 0 .05 0 0 1\n";
+  std::ofstream(folder / "spots.ply") << ply;
+  const Result r = run("run spots.ply -o spots --tets 4000 --json");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const Json domain = Json::parse(r.out)["certificate"]["domain"];
+  EXPECT_EQ(domain["components_of_zero_set"], 2);
+  EXPECT_EQ(domain["components_meshed"], 1);
+  EXPECT_EQ(domain["euler_characteristic_of_kept_components"], 2);
+  ASSERT_EQ(domain["components_dropped"].size(), 1u);
+  EXPECT_NE(domain["components_dropped"][0].get<std::string>().find(" samples within "), std::string::npos);
+  EXPECT_NE(r.err.find("left out a piece"), std::string::npos) << r.err;
+}
+
 TEST_F(Program, FarFromTheOriginTheMeshComesBackWhereTheCloudIs) {
   // The egg moved by multiples of 2^20: its coordinates stay exact to 2^-32.
   std::istringstream in(content(cloud));
@@ -224,6 +271,8 @@ TEST_F(Program, UsageErrorsNameThePlaceAndTheRemedy) {
       {"run egg.ply", "-o CASE"},
       {"rum egg.ply -o a", "did you mean run?"},
       {"mesh nowhere", "not a case"},
+      {"check a.vtu --set mesh.h=1", "does not run"},
+      {"mesh --implicit 'x' --box -1e308,0,0,1e308,1,1 -o a", "too large"},
       {"", "--help"}};
   for (const auto& [arguments, message] : cases) {
     const Result r = run(arguments);
@@ -267,6 +316,9 @@ TEST_F(Program, CheckJudgesAnyMesh) {
     EXPECT_EQ(c["boundary"]["euler_characteristic"], 2);
   }
   EXPECT_EQ(run("check ball/3-mesh/mesh.vtu --min-quality .99").code, 6);
+  EXPECT_EQ(run("check ball/3-mesh/mesh.vtu --set output.min_quality=.99").code, 6);
+  std::ofstream(folder / "gate.toml") << "[output]\nmin_quality = 0.99\n[mesh]\nsamples = 7\n";
+  EXPECT_EQ(run("check ball/3-mesh/mesh.vtu --config gate.toml").code, 6);
   std::ofstream(folder / "flat.mesh") << "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n"
                                          "1 1 0 0\nTetrahedra\n1\n1 2 3 4 1\nEnd\n";
   EXPECT_EQ(run("check flat.mesh").code, 6);
@@ -309,6 +361,18 @@ TEST_F(Program, InterruptedRunsLeaveAResumableCase) {
     EXPECT_FALSE(fs::exists(folder / "large/3-mesh/record.json"));
   }
   EXPECT_EQ(run("mesh --implicit 'x^2+y^2+z^2-1' --box -1.3,-1.3,-1.3,1.3,1.3,1.3 --tets 3000 -o large").code, 0);
+}
+
+TEST_F(Program, TheCommonFlagsAreUnderstoodByEveryCommand) {
+  ASSERT_EQ(run(ball + "-v --progress none --threads 1").code, 0);
+  for (const std::string command : {"check ball/3-mesh/mesh.vtu", "export ball --format stl"}) {
+    const Result loud = run(command + " -v --progress plain --threads 1 --json");
+    EXPECT_EQ(loud.code, 0) << loud.err;
+    EXPECT_TRUE(Json::accept(loud.out));
+    EXPECT_NE(loud.err.find(" tets, "), std::string::npos) << "-v says nothing: " << loud.err;
+    EXPECT_EQ(run(command + " -q --progress none").err, "");
+    EXPECT_EQ(run(command + " -q -v").code, 2);
+  }
 }
 
 TEST_F(Program, AnswersInJsonAlsoWhenItFails) {

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "mesh/universal_mesh.h"
+#include "pipeline/edge_length.h"
+#include "pipeline/record.h"
+
+namespace umtet {
+
+/// One run of the algorithm and, if it made a mesh, what is true of it.
+struct MeshAttempt {
+  double h = 0;  ///< edge length of the background mesh, model units
+  UmResult result;
+  Json measured;                            ///< of measure(); null when there is no mesh
+  std::vector<std::vector<Vec3>> iterates;  ///< the vertices after every pass, where they are kept
+
+  bool made() const { return result.status == UmStatus::Success; }
+  std::size_t n_reasons() const { return made() ? measured.at("reasons").size() : 0; }
+};
+
+/// Runs `attempt` at choice.h and, while something is wrong that a smaller h may mend, at four fifths of the last h: up
+/// to four times in all, and never below choice.least. A few folded faces at a thin place come and go with h.
+///
+/// @param say  is told why another h is tried, and which mesh is kept if it is not the last
+/// @return the best of them: a mesh before none, then the one with the fewest reasons against it, then the last
+MeshAttempt best_attempt(const EdgeLength& choice, const std::function<MeshAttempt(double h)>& attempt,
+                         const std::function<void(const std::string&)>& say);
+
+}  // namespace umtet
