@@ -97,8 +97,8 @@ void compare_with_zero_set(const Domain& domain, const MeshCertificate& certific
                               "and as fine as its size is allowed to be"
                             : "h is too large for this shape";
   reasons.push_back(
-      fmt::format("psi = 0 has {} pieces with samples ({} dropped) and Euler characteristic {} on a grid "
-                  "of spacing {:.3g}, the boundary of the mesh {} and {}: {}",
+      fmt::format("psi = 0 has {} pieces (and {} dropped ones) of Euler characteristic {} on a grid of spacing {:.3g}, "
+                  "the boundary of the mesh {} of {}: {}",
                   counted->seeds.size(), counted->dropped.size(), counted->euler_characteristic, spacing,
                   boundary.components, boundary.euler_characteristic, verdict));
 }

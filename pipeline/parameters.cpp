@@ -246,7 +246,7 @@ std::optional<Eigen::AlignedBox3d> parse_box(const std::string& text) {
   const Eigen::AlignedBox3d box(Eigen::Vector3d(v[0], v[1], v[2]), Eigen::Vector3d(v[3], v[4], v[5]));
   if (!(box.sizes().array() > 0).all())
     throw UsageError("mesh.box = " + text + ": empty; the first corner is the lower one");
-  if (!box.sizes().allFinite()) throw UsageError("mesh.box = " + text + ": too large: its size is not a number");
+  if (!std::isfinite(box.volume())) throw UsageError("mesh.box = " + text + ": too large: its volume is not a number");
   return box;
 }
 

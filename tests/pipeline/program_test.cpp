@@ -272,7 +272,7 @@ TEST_F(Program, UsageErrorsNameThePlaceAndTheRemedy) {
       {"rum egg.ply -o a", "did you mean run?"},
       {"mesh nowhere", "not a case"},
       {"check a.vtu --set mesh.h=1", "does not run"},
-      {"mesh --implicit 'x' --box -1e308,0,0,1e308,1,1 -o a", "too large"},
+      {"mesh --implicit 'x' --box -1e120,-1e120,-1e120,1e120,1e120,1e120 -o a", "too large"},
       {"", "--help"}};
   for (const auto& [arguments, message] : cases) {
     const Result r = run(arguments);
