@@ -173,6 +173,10 @@ SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const S
   const NeighbourDistances near = neighbour_distances(cloud.points, kAreaNeighbours);
   report.cloud_spacing = median_spacing(near);
   report.spacing = params.spacing > 0 ? params.spacing : automatic_spacing(report.cloud_spacing, box.diagonal().norm());
+  if (report.spacing > box.diagonal().norm()) {
+    throw SolveError(fmt::format("spacing {:.6g} is larger than the cloud (diagonal {:.6g}): choose a smaller one",
+                                 report.spacing, box.diagonal().norm()));
+  }
   const LmeTables tables(params.prior);
   const auto [lattice, n_levels] = choose_hierarchy(box, report.spacing, params.padding, tables.width());
   report.n_nodes = lattice.size();

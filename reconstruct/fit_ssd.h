@@ -59,7 +59,7 @@ struct SsdFit {
 /// Fits psi = argmin E_P, eqs. (10), (11), over tensor-product max-ent functions on a cubic lattice.
 /// \throw std::invalid_argument  broken parameters, fewer than 10 points, all points at one place
 /// \throw std::length_error      a spacing that asks for more nodes than a full lattice can hold
-/// \throw SolveError             not converged, or too large for the assembled solver
+/// \throw SolveError             not converged, too large for the assembled solver, or a spacing beyond the cloud's size
 /// \throw SolveCancelled         `progress` said stop
 SsdFit fit_ssd(const OrientedPointCloud&, const SsdParams& = {}, const SsdProgress& = {});
 

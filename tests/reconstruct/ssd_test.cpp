@@ -144,6 +144,7 @@ TEST(FitSsd, RefusesBrokenInputAndSaysAllOfIt) {
   OrientedPointCloud needle = torus_cloud(100);  // 1e8 nodes in a row that no halving makes small
   for (Vec3& x : needle.points) x[1] *= 1e-5, x[2] *= 1e-5;
   EXPECT_THROW(fit_ssd(needle, params_with(2e-9)), std::length_error);
+  EXPECT_THROW(fit_ssd(torus_cloud(100), params_with(1e50)), SolveError);
   SsdParams assembled = params_with(0.02);
   assembled.solver = SsdSolver::Assembled;
   EXPECT_THROW(fit_ssd(torus_cloud(1000), assembled), SolveError);
