@@ -108,7 +108,7 @@ BENCHMARK(SampleAreas)->Arg(200000)->MeasureProcessCPUTime()->Unit(benchmark::kM
 void FitTorus(benchmark::State& state) {
   const auto cloud = test::torus_cloud(200000);
   SsdParams p;
-  p.spacing = 0.0255;
+  p.spacing = 0.0232;
   for (auto _ : state) {
     const SsdFit fit = fit_ssd(cloud, p);
     state.counters["nodes"] = static_cast<double>(fit.report.n_nodes);
