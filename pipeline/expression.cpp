@@ -3,9 +3,11 @@
 #include <muParser.h>
 #include <tbb/enumerable_thread_specific.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <sstream>
+#include <vector>
 
 #include "pipeline/detail/expression_reader.h"
 
@@ -20,11 +22,26 @@ std::string at_column(const std::string& text, std::size_t column, const std::st
          "^";
 }
 
-/// As muParser reads it: all numbers of `e` are exact fractions, so nothing is rounded in print.
+/// As muParser reads it: all numbers of `e` are exact fractions, so nothing is rounded in print. GiNaC keeps sums and
+/// products in an order that depends on addresses: operands are sorted by their text, or rounding would differ from run
+/// to run.
 std::string print(const GiNaC::ex& e) {
+  const bool sum = GiNaC::is_a<GiNaC::add>(e), power = GiNaC::is_a<GiNaC::power>(e);
+  if (sum || power || GiNaC::is_a<GiNaC::mul>(e) || GiNaC::is_a<GiNaC::function>(e)) {
+    std::vector<std::string> operands;
+    for (std::size_t i = 0; i < e.nops(); ++i) operands.push_back(print(e.op(i)));
+    const bool call = GiNaC::is_a<GiNaC::function>(e);
+    if (!power && !call) std::sort(operands.begin(), operands.end());
+    std::string text = call ? GiNaC::ex_to<GiNaC::function>(e).get_name() + "(" : "(";
+    for (std::size_t i = 0; i < operands.size(); ++i) {
+      if (i > 0) text += call ? "," : power ? "^" : sum ? "+" : "*";
+      text += operands[i];
+    }
+    return text + ")";
+  }
   std::ostringstream s;
   s.imbue(std::locale::classic());
-  s << GiNaC::dflt << e;
+  s << '(' << GiNaC::dflt << e << ')';
   return s.str();
 }
 
