@@ -131,7 +131,7 @@ int run_program(int argc, char** argv) {
   }
   if (json) {
     Json document = {{"schema", 1}, {"command", command}, {"exit_code", static_cast<int>(output.code)}};
-    document.update(output.document);
+    if (output.document.is_object()) document.update(output.document);  // --version and --help have none
     output.text = document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   }
   if (!print(output.text)) {
