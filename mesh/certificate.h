@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mesh/implicit_function.h"
+#include "mesh/keep_going.h"
 #include "mesh/tet_mesh.h"
 
 namespace umtet {
@@ -38,7 +39,8 @@ struct MeshCertificate {
     std::size_t n_cos_below_half = 0;                    ///< faces with cos < .5
     std::size_t n_unprojected_faces = 0;                 ///< faces whose centroid found no point of psi = 0
   } boundary;
-  double h = 0;  ///< edge length the ratios refer to
+  double h = 0;                    ///< edge length the ratios refer to
+  double coordinate_rounding = 0;  ///< CertificateInput::coordinate_rounding
 };
 
 /// A mesh and what backs it. The referenced objects must outlive the call.
@@ -47,19 +49,25 @@ struct CertificateInput {
   double h = 0;  ///< <= 0: the mean over tets of the root mean square edge length is used
   const std::vector<Triangle>* positive_faces = nullptr;  ///< optional: compared with the boundary as a set
   std::optional<ImplicitFunctionRef> psi;                 ///< optional: distances and normals
+  double coordinate_rounding = 0;  ///< how far the file's rounding of coordinates may move a vertex, model units
+  KeepGoing keep_going = {};
 };
+
+/// A boundary vertex may be this far from psi = 0, in h, besides the rounding of its coordinates: what the projection
+/// leaves is a hundred times less.
+inline constexpr double kVertexTolerance = 1e-8;
 
 /// Measures everything above. Does not judge. Not seen here: components of psi = 0 that the mesh lacks (zero_set.h
 /// counts them), and distant parts of the boundary that pass through each other.
 ///
 /// Cost: O(n log n); threads over tets and faces, result independent of them.
 /// psi must be thread-safe.
-/// \throw std::invalid_argument without a mesh or tets, or for an index out of range
+/// \throw std::invalid_argument without a mesh or tets, or for an index out of range; MeshCancelled
 MeshCertificate certify(const CertificateInput&);
 
 /// The reasons why a certificate fails, empty = pass: inverted tets, boundary not a closed manifold or not the positive
-/// faces, a vertex farther than 1e-8 h from psi = 0, a face without a point of psi = 0 near it, a face with cos <= 0
-/// (folded).
+/// faces, a vertex farther than kVertexTolerance h from psi = 0, a face without a point of psi = 0 near it, a face with
+/// cos <= 0 (folded).
 std::vector<std::string> failures(const MeshCertificate&);
 
 }  // namespace umtet

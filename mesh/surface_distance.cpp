@@ -1,7 +1,5 @@
 #include "mesh/surface_distance.h"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -85,9 +83,9 @@ class NearestTriangle {
 
 /// out[i] = f(i): which thread runs one cannot change a result.
 template <typename F>
-std::vector<double> map_indices(std::size_t n, F&& f) {
+std::vector<double> map_indices(std::size_t n, const KeepGoing& keep_going, F&& f) {
   std::vector<double> out(n);
-  tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) { out[i] = f(i); });
+  polled_parallel_for(n, kValuesPerPoll, keep_going, [&](std::size_t i) { out[i] = f(i); });
   return out;
 }
 
@@ -135,20 +133,21 @@ double SurfaceDistance::distance(const Vec3& x) const {
   return nearest.distance();
 }
 
-std::vector<double> SurfaceDistance::distances(const std::vector<Vec3>& x) const {
-  return map_indices(x.size(), [&](std::size_t i) { return distance(x[i]); });
+std::vector<double> SurfaceDistance::distances(const std::vector<Vec3>& x, const KeepGoing& keep_going) const {
+  return map_indices(x.size(), keep_going, [&](std::size_t i) { return distance(x[i]); });
 }
 
 double point_triangle_distance(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c) {
   return std::sqrt(triangle_distance2(x, a, b, c));
 }
 
-std::vector<double> nearest_sample_distances(const std::vector<Vec3>& x, const std::vector<Vec3>& samples) {
+std::vector<double> nearest_sample_distances(const std::vector<Vec3>& x, const std::vector<Vec3>& samples,
+                                             const KeepGoing& keep_going) {
   if (samples.empty()) throw std::invalid_argument("distance to a cloud without samples");
   check_finite(samples, "sample");
   const PointSet set{samples};
   const KdTree tree(3, set, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize));
-  return map_indices(x.size(), [&](std::size_t i) {
+  return map_indices(x.size(), keep_going, [&](std::size_t i) {
     std::uint32_t nearest = 0;
     double distance2 = 0;
     tree.knnSearch(x[i].data(), 1, &nearest, &distance2);
@@ -157,11 +156,11 @@ std::vector<double> nearest_sample_distances(const std::vector<Vec3>& x, const s
 }
 
 double unsupported_area_fraction(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
-                                 const std::vector<Vec3>& samples, double radius) {
+                                 const std::vector<Vec3>& samples, double radius, const KeepGoing& keep_going) {
   std::vector<Vec3> centroids;
   centroids.reserve(faces.size());
   for (const Triangle& f : faces) centroids.push_back((V[f[0]] + V[f[1]] + V[f[2]]) / 3.0);
-  const std::vector<double> distance = nearest_sample_distances(centroids, samples);
+  const std::vector<double> distance = nearest_sample_distances(centroids, samples, keep_going);
   double all = 0, unsupported = 0;
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const Triangle& f = faces[i];

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "mesh/keep_going.h"
 #include "mesh/tet_mesh.h"
 
 namespace umtet {
@@ -27,8 +28,8 @@ class SurfaceDistance {
   SurfaceDistance& operator=(SurfaceDistance&&) noexcept;
 
   double distance(const Vec3& x) const;
-  /// One distance per point; threads over points.
-  std::vector<double> distances(const std::vector<Vec3>& x) const;
+  /// One distance per point; threads over points. \throw MeshCancelled
+  std::vector<double> distances(const std::vector<Vec3>& x, const KeepGoing& keep_going = {}) const;
 
  private:
   struct Index;
@@ -37,11 +38,13 @@ class SurfaceDistance {
 
 /// Distance from each x to the nearest sample, model units; threads over x.
 /// \throw std::invalid_argument without samples or for one that is not finite
-std::vector<double> nearest_sample_distances(const std::vector<Vec3>& x, const std::vector<Vec3>& samples);
+/// \throw MeshCancelled
+std::vector<double> nearest_sample_distances(const std::vector<Vec3>& x, const std::vector<Vec3>& samples,
+                                             const KeepGoing& keep_going = {});
 
 /// Share of the surface that no data backs: area of the faces whose centroid is farther than `radius` (three sample
-/// spacings, say) from every sample, over the whole area. 0 for an empty surface.
+/// spacings, say) from every sample, over the whole area. 0 for an empty surface. \throw MeshCancelled
 double unsupported_area_fraction(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
-                                 const std::vector<Vec3>& samples, double radius);
+                                 const std::vector<Vec3>& samples, double radius, const KeepGoing& keep_going = {});
 
 }  // namespace umtet

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -51,6 +52,24 @@ MeshFile read_tet_mesh(const std::filesystem::path& path) {
 }
 
 namespace detail {
+
+void refuse_broken_tets(const std::filesystem::path& path, const TetMesh& mesh,
+                        const std::function<std::int64_t(std::size_t)>& vertex_number,
+                        const std::function<std::int64_t(std::size_t)>& tet_number) {
+  const auto name = [&](int v) { return std::to_string(vertex_number(static_cast<std::size_t>(v))); };
+  for (std::size_t t = 0; t < mesh.C.size(); ++t) {
+    const Tet& tet = mesh.C[t];
+    for (int k = 0; k < 4; ++k) {
+      if (std::find(tet.begin(), tet.begin() + k, tet[k]) != tet.begin() + k) {
+        throw MeshFileRefused(path, "tet " + std::to_string(tet_number(t)),
+                              "it has its node " + name(tet[k]) + " twice");
+      }
+      if (!mesh.V[tet[k]].allFinite()) {
+        throw MeshFileRefused(path, "node " + name(tet[k]), "a coordinate is not a finite number");
+      }
+    }
+  }
+}
 
 void drop_unused_vertices(MeshFile& file) {
   std::vector<int> new_index(file.mesh.V.size(), -1);
@@ -114,6 +133,9 @@ MeshFile assemble(const std::filesystem::path& path, NumberedMesh&& numbered) {
     }
     file.mesh.C.push_back(tet);
   }
+  refuse_broken_tets(
+      path, file.mesh, [&](std::size_t v) { return sorted[v]; },
+      [](std::size_t t) { return static_cast<std::int64_t>(t) + 1; });
   drop_unused_vertices(file);
   return file;
 }

@@ -39,7 +39,8 @@ MeshFile with_standard_data(TetMesh mesh, std::vector<std::int64_t> background_v
 /// Reads .vtu (VTK XML), .msh (Gmsh 2.2 and 4.1, ascii or binary) or .mesh (MEDIT, ascii), by extension.
 ///
 /// Tets only: other elements are skipped, of curved tets the four corners are taken; vertices without a tet are
-/// dropped, the others keep their order (.msh: ascending node number). Orientation is kept, inverted tets included.
+/// dropped, the others keep their order (.msh: ascending node number). Orientation is kept, inverted tets included; a
+/// tet with a node twice and a vertex that is not finite are refused by number.
 /// From .vtu also data with one component comes along: floats as double, unsigned bytes as they are, other integers as
 /// 64 bits. Every count is compared with the size of the file before memory is asked for.
 /// \throw std::system_error when the file cannot be read, MeshFileRefused for its content

@@ -1,7 +1,5 @@
 #include "mesh/thickness.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -23,9 +21,10 @@ double first_return(ImplicitFunctionRef psi, const Vec3& x, const Vec3& d, doubl
 
 }  // namespace
 
-std::vector<double> thickness(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double step, double limit) {
+std::vector<double> thickness(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double step, double limit,
+                              const KeepGoing& keep_going) {
   std::vector<double> out(points.size(), limit);
-  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+  polled_parallel_for(points.size(), kValuesPerPoll, keep_going, [&](std::size_t i) {
     Vec3 x = points[i], g;
     double value = psi.value(x, g);
     for (int it = 0; it < 8 && std::abs(value) > 1e-6 * step * g.norm(); ++it) {

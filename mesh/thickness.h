@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "mesh/implicit_function.h"
+#include "mesh/keep_going.h"
 
 namespace umtet {
 
@@ -16,6 +17,8 @@ namespace umtet {
 /// @param limit   distances are looked for up to here, model units; farther sheets count as `limit`
 /// @return one distance per point; `limit` where grad psi vanishes or the point does not reach the boundary
 /// Cost: up to 2 limit / step values of psi a point. Threads over points; the result does not depend on them.
-std::vector<double> thickness(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double step, double limit);
+/// \throw MeshCancelled
+std::vector<double> thickness(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double step, double limit,
+                              const KeepGoing& keep_going = {});
 
 }  // namespace umtet

@@ -97,7 +97,7 @@ bool Run::find_omega_h(const std::vector<Vec3>& seeds) {
   if (submesh().mesh.C.empty()) {
     return fail(UmStatus::EmptyDomain, {.what = "no vertex of the background mesh was found inside the domain" + lost});
   }
-  return report({"submesh", 1, 1, &submesh().mesh.V});
+  return report({"submesh", 1, 1, &submesh().mesh.V, submesh().mesh.C.size()});
 }
 
 /// The set triangulated by the background must strictly contain the closure of Omega (Section 2.1).
@@ -193,7 +193,13 @@ bool Run::project_and_relax() {
     if (!find_feet()) return false;
     if (pass == 1) measure_conditioning_angles();
     if (!advance(static_cast<double>(pass) / params_.projection_passes)) return false;
-    UmProgress progress{"project", pass, params_.projection_passes, &mesh_->V, 0, params_.relaxation_iterations};
+    UmProgress progress{"project",
+                        pass,
+                        params_.projection_passes,
+                        &mesh_->V,
+                        submesh().mesh.C.size(),
+                        0,
+                        params_.relaxation_iterations};
     if (!report(progress)) return false;
     for (int r = 0; r < params_.relaxation_iterations; ++r) {
       relax_interior(pass - 1, r);  // step 28
@@ -227,7 +233,7 @@ void Run::improve_boundary() {
     result_.n_psi_evaluations +=
         boundary_dvr(*mesh_, boundary, submesh().background_vertex, psi_, boundary_params, r);  // step 32
     relax_interior(params_.projection_passes, r);                                               // step 33
-    if (!report({"relax", r + 1, n, &mesh_->V, 1, 1})) return;
+    if (!report({"relax", r + 1, n, &mesh_->V, submesh().mesh.C.size()})) return;
   }
 }
 

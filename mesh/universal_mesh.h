@@ -69,6 +69,7 @@ struct UmProgress {
   const char* step;             ///< "submesh", "project", "relax"
   int pass, n_passes;           ///< 1-based
   const std::vector<Vec3>* V;   ///< the current iterate
+  std::size_t n_tets;           ///< of omega_h, and of every mesh made from it
   int sweep = 1, n_sweeps = 1;  ///< relaxation sweeps of this pass done so far, and in all; equal at the end of a pass
 };
 using UmObserver = std::function<bool(const UmProgress&)>;

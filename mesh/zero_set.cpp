@@ -1,7 +1,5 @@
 #include "mesh/zero_set.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -64,7 +62,7 @@ struct Layer {
 
 class Sweep {
  public:
-  Sweep(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spacing);
+  Sweep(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spacing, const KeepGoing& keep_going);
   ZeroSetTopology run();
 
  private:
@@ -82,6 +80,9 @@ class Sweep {
     const int low = from & to, high = from | to;
     return layer(k + (low >> 2)).cut_edge[index(i + (low & 1), j + (low >> 1 & 1))][high & ~low];
   }
+  /// Calls visit(j) for every row of a layer; rows of some microseconds are too short to ask at each.
+  template <class F>
+  void for_each_row(const F& visit);
   void evaluate(int k);
   void label_inside(int k);
   void find_cut_edges(int k, Directions directions);
@@ -92,6 +93,7 @@ class Sweep {
 
   ImplicitFunctionRef psi_;
   Eigen::AlignedBox3d box_;
+  const KeepGoing& keep_going_;
   std::array<int, 3> n_{};
   std::array<double, 3> h_{};
   std::array<Layer, 2> layers_;
@@ -101,7 +103,8 @@ class Sweep {
   bool touches_box_ = false;
 };
 
-Sweep::Sweep(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spacing) : psi_(psi), box_(box) {
+Sweep::Sweep(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spacing, const KeepGoing& keep_going)
+    : psi_(psi), box_(box), keep_going_(keep_going) {
   const Vec3 size = box.sizes();
   if (box.isEmpty() || !size.allFinite() || !(size.minCoeff() > 0))
     throw std::invalid_argument("box: must have a finite volume");
@@ -122,12 +125,22 @@ Sweep::Sweep(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spa
   }
 }
 
+template <class F>
+void Sweep::for_each_row(const F& visit) {
+  const int per_poll = std::max(1, static_cast<int>(kValuesPerPoll) / (n_[0] + 1));
+  for (int j = 0; j <= n_[1]; ++j) {
+    if (j % per_poll == 0) poll(keep_going_);
+    visit(j);
+  }
+}
+
 void Sweep::evaluate(int k) {
   std::vector<double>& value = layer(k).value;
-  tbb::parallel_for(0, n_[1] + 1, [&](int j) {
-    for (int i = 0; i <= n_[0]; ++i) value[index(i, j)] = psi_.value(node(i, j, k));
+  polled_parallel_for(value.size(), kValuesPerPoll, keep_going_, [&](std::size_t n) {
+    const auto row = static_cast<std::size_t>(n_[0] + 1);
+    value[n] = psi_.value(node(static_cast<int>(n % row), static_cast<int>(n / row), k));
   });
-  for (int j = 0; j <= n_[1]; ++j) {
+  for_each_row([&](int j) {
     for (int i = 0; i <= n_[0]; ++i) {
       double& v = value[index(i, j)];
       if (!std::isfinite(v)) {
@@ -137,12 +150,12 @@ void Sweep::evaluate(int k) {
       const bool wall = i == 0 || j == 0 || k == 0 || i == n_[0] || j == n_[1] || k == n_[2];
       touches_box_ |= wall && v < 0;
     }
-  }
+  });
 }
 
 /// Components of {psi < 0}: a node joins those of its seven predecessors along Kuhn edges that are inside.
 void Sweep::label_inside(int k) {
-  for (int j = 0; j <= n_[1]; ++j) {
+  for_each_row([&](int j) {
     for (int i = 0; i <= n_[0]; ++i) {
       int& label = layer(k).inside_label[index(i, j)];
       label = -1;
@@ -160,11 +173,11 @@ void Sweep::label_inside(int k) {
       }
       if (label < 0) label = inside_.add();
     }
-  }
+  });
 }
 
 void Sweep::find_cut_edges(int k, Directions directions) {
-  for (int j = 0; j <= n_[1]; ++j) {
+  for_each_row([&](int j) {
     for (int i = 0; i <= n_[0]; ++i) {
       std::array<int, 8>& ids = layer(k).cut_edge[index(i, j)];
       std::fill(ids.begin() + directions.first, ids.begin() + directions.last, -1);
@@ -185,7 +198,7 @@ void Sweep::find_cut_edges(int k, Directions directions) {
         edges_.push_back(edge);
       }
     }
-  }
+  });
 }
 
 /// A cut tet carries a triangle (one node apart from three) or a quadrilateral (two and two).
@@ -260,7 +273,7 @@ void Sweep::gather(ZeroSetTopology& result) {
 }
 
 void Sweep::join_layer(int k) {
-  for (int j = 0; j <= n_[1]; ++j) {
+  for_each_row([&](int j) {
     for (int i = 0; i <= n_[0]; ++i) {
       unsigned signs = 0, known = 0;
       for (int c = 0; c < 8; ++c) {
@@ -270,7 +283,7 @@ void Sweep::join_layer(int k) {
       }
       if (signs != 0 && signs != known) join_node(i, j, k, signs);
     }
-  }
+  });
 }
 
 ZeroSetTopology Sweep::run() {
@@ -300,8 +313,9 @@ ZeroSetTopology Sweep::run() {
 
 }  // namespace
 
-ZeroSetTopology zero_set_topology(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spacing) {
-  return Sweep(psi, box, spacing).run();
+ZeroSetTopology zero_set_topology(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spacing,
+                                  const KeepGoing& keep_going) {
+  return Sweep(psi, box, spacing, keep_going).run();
 }
 
 }  // namespace umtet

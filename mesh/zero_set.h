@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesh/implicit_function.h"
+#include "mesh/keep_going.h"
 
 namespace umtet {
 
@@ -51,7 +52,10 @@ struct ZeroSetTopology {
 /// Cost: one value of psi per node (threads over rows of a slab; psi must be thread-safe), memory two slabs plus about
 /// 70 bytes per cut edge. The result does not depend on the number of threads.
 /// \throw std::invalid_argument  an empty or unbounded box, spacing <= 0
+/// @param keep_going  asked every few thousand nodes
 /// \throw std::length_error      more than 1e9 cells along an axis, 2^31 nodes in a slab or 2^31 cut edges
-ZeroSetTopology zero_set_topology(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spacing);
+/// \throw MeshCancelled
+ZeroSetTopology zero_set_topology(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spacing,
+                                  const KeepGoing& keep_going = {});
 
 }  // namespace umtet

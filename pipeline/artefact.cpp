@@ -67,6 +67,29 @@ class Descriptor {
   int fd_;
 };
 
+/// Opening a pipe waits for its writer, and /dev/zero has no end.
+Descriptor open_regular(const fs::path& file) {
+  std::error_code ignored;
+  const fs::file_type type = fs::status(file, ignored).type();
+  if (type == fs::file_type::directory) fail(EISDIR, file, "cannot read");
+  if (fs::exists(fs::file_status(type)) && type != fs::file_type::regular) {
+    fail(EINVAL, file, "is a device or a pipe, not a regular file");
+  }
+  return Descriptor(file, O_RDONLY, file);
+}
+
+std::string digits(XXH128_hash_t hash) {
+  XXH128_canonical_t canonical;
+  XXH128_canonicalFromHash(&canonical, hash);
+  std::string text;
+  for (const unsigned char byte : canonical.digest) {
+    constexpr char kHex[] = "0123456789abcdef";
+    text += kHex[byte >> 4];
+    text += kHex[byte & 15];
+  }
+  return text;
+}
+
 /// Removes the temporary file unless it has been renamed.
 struct TemporaryFile {
   fs::path path;
@@ -78,8 +101,10 @@ struct TemporaryFile {
 
 }  // namespace
 
+std::string checksum(std::string_view text) { return digits(XXH3_128bits(text.data(), text.size())); }
+
 FileStamp stamp(const fs::path& file) {
-  Descriptor in(file, O_RDONLY, file);
+  Descriptor in = open_regular(file);
   const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(), &XXH3_freeState);
   if (!state) throw std::bad_alloc();
   XXH3_128bits_reset(state.get());
@@ -89,13 +114,7 @@ FileStamp stamp(const fs::path& file) {
     XXH3_128bits_update(state.get(), buffer.data(), n);
     result.size += n;
   }
-  XXH128_canonical_t canonical;
-  XXH128_canonicalFromHash(&canonical, XXH3_128bits_digest(state.get()));
-  for (const unsigned char byte : canonical.digest) {
-    constexpr char kHex[] = "0123456789abcdef";
-    result.xxh3 += kHex[byte >> 4];
-    result.xxh3 += kHex[byte & 15];
-  }
+  result.xxh3 = digits(XXH3_128bits_digest(state.get()));
   return result;
 }
 
@@ -142,7 +161,7 @@ void remove_stale_temporaries(const fs::path& folder) {
 }
 
 std::string read_text(const fs::path& file) {
-  Descriptor in(file, O_RDONLY, file);
+  Descriptor in = open_regular(file);
   std::string text;
   std::array<char, 1 << 16> buffer;
   while (const std::size_t n = in.read(buffer.data(), buffer.size())) text.append(buffer.data(), n);

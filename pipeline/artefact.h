@@ -15,7 +15,10 @@ struct FileStamp {
   bool operator==(const FileStamp&) const = default;
 };
 
-/// Reads the whole file once, in pieces of 1 MiB.
+/// XXH3-128 of a text, in the digits of FileStamp.
+std::string checksum(std::string_view text);
+
+/// Reads the whole file once, in pieces of 1 MiB. Devices and pipes are refused: some of them have no end.
 /// \throw std::system_error naming the file
 FileStamp stamp(const std::filesystem::path& file);
 
@@ -32,7 +35,7 @@ void write_text_artefact(const std::filesystem::path& file, std::string_view tex
 /// Removes what a killed run left in `folder`: the temporary files of write_artefact().
 void remove_stale_temporaries(const std::filesystem::path& folder);
 
-/// \throw std::system_error naming the file
+/// \throw std::system_error naming the file; also for what is not a regular file
 std::string read_text(const std::filesystem::path& file);
 
 }  // namespace umtet

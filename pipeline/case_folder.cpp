@@ -4,7 +4,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include <array>
+#include <algorithm>
 #include <cerrno>
 #include <system_error>
 
@@ -16,7 +16,6 @@ namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::array kStages = {Stage::Cloud, Stage::LevelSet, Stage::Mesh};
 constexpr const char* kLockName = ".lock";
 
 }  // namespace
@@ -46,8 +45,21 @@ Stage parse_stage(const std::string& name) {
 
 const char* section_of(Stage stage) { return stage == Stage::LevelSet ? "reconstruct" : to_string(stage); }
 
+bool is_artefact(Stage stage, const std::string& name) {
+  if (stage == Stage::Cloud) return name == "cloud.ply";
+  if (stage == Stage::LevelSet) return name == "level_set.vti";
+  for (const char* mesh : {"omega_h.vtu", "projected.vtu", "mesh.vtu", "quality.csv"}) {
+    if (name == mesh) return true;
+  }
+  constexpr std::string_view kPass = "pass_", kSuffix = ".vtu";
+  if (name.size() <= kPass.size() + kSuffix.size() || !name.starts_with(kPass) || !name.ends_with(kSuffix))
+    return false;
+  return std::all_of(name.begin() + kPass.size(), name.end() - kSuffix.size(),
+                     [](char c) { return c >= '0' && c <= '9'; });
+}
+
 fs::path CasePaths::folder(Stage stage) const {
-  return root / (std::to_string(static_cast<int>(stage)) + "-" + to_string(stage));
+  return (renews(stage) ? next() : root) / (std::to_string(static_cast<int>(stage)) + "-" + to_string(stage));
 }
 
 CaseLock::CaseLock(const fs::path& root) : root_(root), created_(fs::create_directories(root)) {
@@ -58,8 +70,9 @@ CaseLock::CaseLock(const fs::path& root) : root_(root), created_(fs::create_dire
     const int code = errno;
     const std::string pid = read_text(file);
     ::close(fd_);
-    throw std::system_error(code, std::generic_category(),
-                            root.string() + ": process " + (pid.empty() ? "?" : pid) + " is working on this case");
+    if (code != EWOULDBLOCK) throw std::system_error(code, std::generic_category(), file.string() + ": cannot lock");
+    throw FileTrouble(root.string() + ": another umtet" + (pid.empty() ? "" : ", process " + pid + ",") +
+                      " is working on this case; wait until it ends, or choose another folder with -o");
   }
   // The kernel drops the lock with the process, so a pid left behind by a killed run means nothing.
   const std::string pid = std::to_string(::getpid());

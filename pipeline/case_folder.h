@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 
@@ -7,6 +8,7 @@ namespace umtet {
 
 /// The stages in their order; the values are the numbers of their folders.
 enum class Stage { Cloud = 1, LevelSet = 2, Mesh = 3 };
+inline constexpr std::array kStages = {Stage::Cloud, Stage::LevelSet, Stage::Mesh};
 /// "cloud", "level-set", "mesh".
 const char* to_string(Stage);
 /// \throw UsageError that names the nearest stage
@@ -14,15 +16,25 @@ Stage parse_stage(const std::string& name);
 /// The section of the parameters that a stage reads: "cloud", "reconstruct", "mesh".
 const char* section_of(Stage);
 
-/// The folder of one case: where things are, and who may write.
+/// True for the names of the files that a stage writes, its record apart.
+bool is_artefact(Stage, const std::string& name);
+
+/// The folder of one case: where things are.
 struct CasePaths {
   std::filesystem::path root;
+  /// By stage: its folder is the one in next(), where it is made anew beside its finished former self.
+  std::array<bool, kStages.size()> renewed = {};
 
+  bool& renews(Stage stage) { return renewed[static_cast<std::size_t>(stage) - 1]; }
+  bool renews(Stage stage) const { return renewed[static_cast<std::size_t>(stage) - 1]; }
+  std::filesystem::path next() const { return root / ".next"; }
   std::filesystem::path folder(Stage) const;  ///< 1-cloud, 2-level-set, 3-mesh
   std::filesystem::path record(Stage stage) const { return folder(stage) / "record.json"; }
   std::filesystem::path cloud() const { return folder(Stage::Cloud) / "cloud.ply"; }
   std::filesystem::path level_set() const { return folder(Stage::LevelSet) / "level_set.vti"; }
   std::filesystem::path mesh() const { return folder(Stage::Mesh) / "mesh.vtu"; }
+  /// What is left of a mesh that could not be made; never in next(), for it is there to be looked at.
+  std::filesystem::path failed() const { return root / "3-mesh" / "failed"; }
   std::filesystem::path exports() const { return root / "4-export"; }
   std::filesystem::path parameters() const { return root / "case.toml"; }
   std::filesystem::path certificate() const { return root / "certificate.json"; }
@@ -32,7 +44,8 @@ struct CasePaths {
 /// again if nothing else was put into it.
 class CaseLock {
  public:
-  /// \throw std::system_error when another process holds the case (names its pid) or the folder cannot be made
+  /// \throw FileTrouble when another process holds the case (names its pid); std::system_error when the folder cannot
+  ///        be made
   explicit CaseLock(const std::filesystem::path& root);
   ~CaseLock();
   CaseLock(const CaseLock&) = delete;

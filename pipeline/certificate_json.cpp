@@ -41,6 +41,19 @@ Json run_of(const CasePaths& paths, const StageRecord& mesh, const Parameters& p
           {"date", mesh.run.value("date", "")}};
 }
 
+/// What to try next when a mesh has failed.
+std::string remedy(const Json& c) {
+  const double h = c.at("h");
+  if (c.at("reasons").size() == 1 && c.at("quality").at("min").get<double>() < c.at("gates").value("min_quality", 0.)) {
+    return fmt::format("another --h (this was {:.4g}) or another --seed moves the worst tets; or lower --min-quality",
+                       h);
+  }
+  return fmt::format(
+      "a smaller --h (this was {:.4g}) resolves more of the shape; where psi itself is wrong there, a "
+      "finer --spacing",
+      h);
+}
+
 /// A number of a block, or "-" where the certificate has null.
 std::string show(const Json& block, const char* key, const char* format) {
   const auto it = block.find(key);
@@ -78,12 +91,15 @@ Json certificate(const CasePaths& paths, const StageRecord& mesh, const Paramete
   std::vector<std::string> reasons = json.at("reasons");
   json.erase("reasons");
   const double gate = parameters.real("output.min_quality"), q = json.at("quality").at("min");
+  const std::int64_t asked = parameters.integer("mesh.tets");
+  json["n_tets_asked"] = asked > 0 ? Json(asked) : Json(nullptr);
   json["gates"] = {{"min_quality", gate > 0 ? Json(gate) : Json(nullptr)}};
   if (q < gate) reasons.push_back(fmt::format("min quality {:.4f} is below the gate of {:.4f}", q, gate));
   json["verdict"] = reasons.empty() ? "pass" : "fail";
   json["reasons"] = reasons;
+  json["remedy"] = reasons.empty() ? Json(nullptr) : Json(remedy(json));
   json["run"] = run_of(paths, mesh, parameters);
-  return json;
+  return sealed(json);
 }
 
 std::string summary(const Json& c) {
@@ -91,10 +107,15 @@ std::string summary(const Json& c) {
   const std::string unit = c.contains("units") && c["units"].is_string() ? " " + c["units"].get<std::string>() : "";
   std::string out = fmt::format("verdict   {}\n", c.at("verdict").get<std::string>());
   for (const Json& reason : c.at("reasons")) out += fmt::format("          - {}\n", reason.get<std::string>());
+  if (c.contains("remedy") && c["remedy"].is_string()) {
+    out += fmt::format("          try {}\n", c["remedy"].get<std::string>());
+  }
+  const bool asked = c.contains("n_tets_asked") && c["n_tets_asked"].is_number();
   out +=
-      fmt::format("mesh      {} tets, {} vertices, {} boundary faces; h = {}{}, volume {}{}\n",
-                  thousands(c.at("n_tets")), thousands(c.at("n_vertices")), thousands(c.at("boundary").at("n_faces")),
-                  show(c, "h", "{:.5g}"), unit, show(c, "volume", "{:.6g}"), unit.empty() ? "" : unit + "^3");
+      fmt::format("mesh      {} tets{}, {} vertices, {} boundary faces; h = {}{}, volume {}{}\n",
+                  thousands(c.at("n_tets")), asked ? fmt::format(" (asked for {})", thousands(c["n_tets_asked"])) : "",
+                  thousands(c.at("n_vertices")), thousands(c.at("boundary").at("n_faces")), show(c, "h", "{:.5g}"),
+                  unit, show(c, "volume", "{:.6g}"), unit.empty() ? "" : unit + "^3");
   out += fmt::format("quality   mean ratio min {} | .1 % {} | 1 % {} | mean {}\n", show(q, "min", "{:.4f}"),
                      show(q, "p001", "{:.4f}"), show(q, "p01", "{:.4f}"), show(q, "mean", "{:.4f}"));
   out += fmt::format("          dihedral angles {} to {} degrees, {} inverted tets\n",

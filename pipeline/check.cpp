@@ -5,6 +5,7 @@
 #include "mesh/certificate.h"
 #include "mesh/tet_mesh_io.h"
 #include "pipeline/domain.h"
+#include "pipeline/edge_length.h"
 #include "pipeline/exit_code.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/mesh_measures.h"
@@ -32,14 +33,19 @@ Json check_mesh(const fs::path& file, const std::optional<fs::path>& against, co
   progress.detail(fmt::format("check: {} tets, {} vertices", mesh.C.size(), mesh.V.size()));
   CertificateInput input;
   input.mesh = &mesh;
+  input.keep_going = not_interrupted;
   std::optional<Domain> domain;
   if (against) {
     domain.emplace(domain_of_case(*against));
     for (Vec3& x : mesh.V) x -= domain->shift;
-    input.psi = domain->psi();
     const StageState state = inspect_stage(CasePaths{*against}, Stage::Mesh, Json::object(), std::nullopt);
     // Without a mesh of its own the case says nothing about h: the mesh's own edge length is the unit then.
-    if (state.record) input.h = state.record->numbers.at("measured").value("h", 0.);
+    if (state.record) {
+      input.h = state.record->numbers.at("measured").value("h", 0.);
+      domain->limit_detail(input.h);
+    }
+    input.psi = domain->psi();
+    input.coordinate_rounding = coordinate_rounding(*domain);
     progress.detail("check: against psi of " + against->string());
   }
   stop_if_interrupted();

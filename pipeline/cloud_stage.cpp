@@ -10,7 +10,13 @@
 namespace umtet {
 namespace fs = std::filesystem;
 
-RecordedFile source_input(const fs::path& source) { return {"source", stamp(source)}; }
+RecordedFile source_input(const fs::path& source) {
+  const fs::file_status status = fs::status(source);
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    throw CloudRefused(source.string() + ": not a regular file; copy what it yields to a file and give that");
+  }
+  return {"source", stamp(source)};
+}
 
 void run_cloud_stage(const StageContext& context, const fs::path& source) {
   const auto start = std::chrono::steady_clock::now();

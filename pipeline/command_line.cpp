@@ -34,6 +34,13 @@ struct Inputs {
   bool force = false, strict = false, quiet = false, verbose = false;
 };
 
+/// Help, choices and default of a parameter.
+std::string described(const ParamField& f) {
+  const std::string preset = preset_text(f);
+  return f.help + (f.choices.empty() ? "" : fmt::format(" {{{}}}", fmt::join(f.choices, ","))) +
+         (preset.empty() ? "" : fmt::format(" (default {})", preset));
+}
+
 class Parser {
  public:
   Parser();
@@ -45,10 +52,12 @@ class Parser {
   void add_stage_flags(CLI::App& command);
   void add_parameter_flags(CLI::App& command, const std::vector<std::string>& sections,
                            const std::vector<std::string>& except = {});
+  void check_command(int argc, const char* const* argv) const;
   [[noreturn]] void refuse(const CLI::ParseError& e, int argc, const char* const* argv) const;
   void finish(const CLI::App& command);
   void read_parameters();
   void finish_stages(const CLI::App& command);
+  void take_cloud();
 
   CLI::App app_{"umtet: from an oriented point cloud to a certified tetrahedral mesh", "umtet"};
   Inputs in_;
@@ -57,6 +66,7 @@ class Parser {
 
 Parser::Parser() {
   app_.set_version_flag("--version", std::string("umtet ") + kVersion);
+  app_.add_flag("--json", result_.json, "one JSON document on stdout, also on failure");
   app_.require_subcommand(1);
   app_.footer(kFooter);
 
@@ -135,24 +145,18 @@ void Parser::add_parameter_flags(CLI::App& command, const std::vector<std::strin
     if (std::holds_alternative<bool>(f.preset)) {
       command.add_flag(f.flag, in_.switches[f.key], f.help);
     } else {
-      command.add_option(f.flag, in_.values[f.key], f.help)->type_name("");
+      command.add_option(f.flag, in_.values[f.key], described(f))->type_name("");
     }
   }
 }
 
 /// Turns what CLI11 says into a UsageError that names the nearest flag or command.
 void Parser::refuse(const CLI::ParseError& e, int argc, const char* const* argv) const {
-  std::vector<std::string> commands;
-  for (const CLI::App* c : app_.get_subcommands({})) commands.push_back(c->get_name());
   const std::vector<CLI::App*> parsed = app_.get_subcommands();
   if (parsed.empty()) {
-    if (argc < 2 || argv[1][0] == '-') {
-      throw UsageError(argc < 2 ? "no command; try umtet --help"
-                                : fmt::format("unknown flag {}; try umtet --help", argv[1]));
-    }
-    const std::string near = nearest(argv[1], commands);
-    throw UsageError(fmt::format("unknown command {}{}", argv[1],
-                                 near.empty() ? "; try umtet --help" : "; did you mean " + near + "?"));
+    const char* const* flag = std::find_if(argv + 1, argv + argc, [](std::string_view a) { return a != "--json"; });
+    throw UsageError(flag == argv + argc ? "no command; try umtet --help"
+                                         : fmt::format("unknown flag {}; try umtet --help", *flag));
   }
   const CLI::App& command = *parsed.front();
   std::vector<std::string> flags;
@@ -170,12 +174,32 @@ void Parser::refuse(const CLI::ParseError& e, int argc, const char* const* argv)
   throw UsageError(command.get_name() + ": " + e.what());
 }
 
+/// The first word must be a command, whatever flags are around it: CLI11 would answer any word with the general help.
+void Parser::check_command(int argc, const char* const* argv) const {
+  const char* const* word = std::find_if(argv + 1, argv + argc, [](const char* a) { return a[0] != '-'; });
+  if (word == argv + argc) return;
+  std::vector<std::string> commands;
+  for (const CLI::App* c : app_.get_subcommands({})) commands.push_back(c->get_name());
+  if (std::find(commands.begin(), commands.end(), *word) != commands.end()) return;
+  for (const char* planned : {"inspect", "report", "evolve", "batch"}) {
+    if (std::string_view(*word) != planned) continue;
+    throw UsageError(fmt::format("{} is not available yet in version {}; there are {}", planned, kVersion,
+                                 fmt::join(commands, ", ")));
+  }
+  const std::string near = nearest(*word, commands);
+  throw UsageError(
+      fmt::format("unknown command {}{}", *word, near.empty() ? "; try umtet --help" : "; did you mean " + near + "?"));
+}
+
 CommandLine Parser::parse(int argc, const char* const* argv) {
+  if (argc > 1) check_command(argc, argv);
   try {
     app_.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
     const std::vector<CLI::App*> parsed = app_.get_subcommands();
-    result_.text = parsed.empty() ? app_.help() : parsed.front()->help();
+    result_.text = parsed.empty()
+                       ? app_.help()
+                       : fmt::format("umtet {}: {}", parsed.front()->get_name(), parsed.front()->help("umtet"));
     return result_;
   } catch (const CLI::CallForVersion& e) {
     result_.text = std::string(e.what()) + "\n";
@@ -214,15 +238,16 @@ void Parser::finish(const CLI::App& command) {
   }
 }
 
-/// --set and --config. A file may be about more than this command; --set is refused where it would change nothing. What
-/// is said about a stage to come is kept in case.toml.
+/// --set and --config. A file may be about more than this command; --set and flags are refused where they would change
+/// nothing.
 void Parser::read_parameters() {
   Parameters& parameters = result_.request.parameters;
   for (const std::string& assignment : in_.assignments) parameters.set(assignment);
   for (const Stage stage : {Stage::Cloud, Stage::LevelSet, Stage::Mesh}) {
-    if (result_.action == CommandLine::Action::Stages && stage >= result_.request.from) continue;
+    const RunRequest& r = result_.request;
+    if (result_.action == CommandLine::Action::Stages && stage >= r.from && stage <= r.until) continue;
     for (const ParamField& f : params_fields()) {
-      if (f.key.starts_with(std::string(section_of(stage)) + ".") && parameters.source(f.key) == ParamSource::Set) {
+      if (f.key.starts_with(std::string(section_of(stage)) + ".") && parameters.source(f.key) >= ParamSource::Set) {
         throw UsageError(f.key + " belongs to a stage that this command does not run");
       }
     }
@@ -255,13 +280,8 @@ void Parser::finish_stages(const CLI::App& command) {
     request.case_folder = in_.input;
     const fs::path toml = CasePaths{in_.input}.parameters();
     if (!fs::exists(toml)) throw UsageError(in_.input + " is not a case: it has no case.toml");
-    Parameters inherited;
-    inherited.load(toml, ParamSource::Case);
     parameters.load(toml, ParamSource::Case);
-    // case.toml goes on telling what the stages were made with that this command does not run.
-    for (const Stage stage : {Stage::Cloud, Stage::LevelSet}) {
-      if (stage < request.from) parameters.copy_section(section_of(stage), inherited);
-    }
+    if (request.from == Stage::Cloud && parameters.source("cloud.file") > ParamSource::Case) take_cloud();
     return;
   }
   if (in_.output.empty()) throw UsageError(name + ": -o CASE is missing");
@@ -271,14 +291,17 @@ void Parser::finish_stages(const CLI::App& command) {
       throw UsageError("mesh: give a CASE, or --implicit EXPR with --box and -o");
     return;
   }
-  if (!in_.input.empty()) {
-    request.source = in_.input;
-    parameters.set("cloud.file", fs::absolute(in_.input).lexically_normal().string(), ParamSource::Flag,
-                   "command line");
-  }
+  if (!in_.input.empty()) parameters.set("cloud.file", in_.input, ParamSource::Flag, "command line");
   if (parameters.text("cloud.file").empty() && request.from == Stage::Cloud)
     throw UsageError(name + ": CLOUD is missing");
-  if (request.source.empty()) request.source = parameters.text("cloud.file");
+  if (request.from == Stage::Cloud) take_cloud();
+}
+
+/// The cloud that was named: to be read, and to be found again from another folder.
+void Parser::take_cloud() {
+  Parameters& parameters = result_.request.parameters;
+  result_.request.source = parameters.text("cloud.file");
+  parameters.make_absolute("cloud.file");
 }
 
 }  // namespace

@@ -23,7 +23,14 @@ Domain formula_domain(const Parameters& parameters) {
   return domain;
 }
 
+// Levels down to this many edges count.
+constexpr double kLeastSpacing = .7;
+
 }  // namespace
+
+void Domain::limit_detail(double h) {
+  if (fitted) level_set = fitted->band_limited(kLeastSpacing * h);
+}
 
 Domain load_domain(const CasePaths& paths, const Parameters& parameters) {
   if (!parameters.text("mesh.implicit").empty()) return formula_domain(parameters);
@@ -33,7 +40,8 @@ Domain load_domain(const CasePaths& paths, const Parameters& parameters) {
   domain.shift = recorded_vector(*state.record, "shift");
   domain.cloud_spacing = state.record->numbers.value("cloud_spacing", 0.);
   try {
-    domain.level_set.emplace(read_level_set(paths.level_set()));
+    domain.fitted.emplace(read_level_set(paths.level_set()));
+    domain.level_set = domain.fitted;
     domain.cloud = read_point_cloud(paths.cloud()).cloud;
   } catch (const CloudRefused& e) {  // both files are ours: what is wrong with them is damage
     throw ArtefactDamaged(e.what());

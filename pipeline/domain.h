@@ -16,12 +16,16 @@ namespace umtet {
 /// All lengths and places are in working coordinates: model coordinates minus `shift`.
 struct Domain {
   std::optional<Expression> formula;  ///< one of the two is there
-  std::optional<LevelSet> level_set;
+  std::optional<LevelSet> level_set;  ///< psi; cut where limit_detail() said
+  std::optional<LevelSet> fitted;     ///< the same with all its levels
   Box box;              ///< what the background mesh has to cover
   double diagonal = 0;  ///< of the cloud's box, or of `box` for a formula
   Vec3 shift = Vec3::Zero();
   OrientedPointCloud cloud;  ///< empty for a formula
   double cloud_spacing = 0;  ///< median distance between neighbouring samples, 0 for a formula
+
+  /// Cuts psi at the detail that a mesh of edge length h can show: boundary faces fold over what is finer.
+  void limit_detail(double h);
 
   ImplicitFunctionRef psi() const { return formula ? ImplicitFunctionRef(*formula) : ImplicitFunctionRef(*level_set); }
 };

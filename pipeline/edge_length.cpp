@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <vector>
 
 #include "mesh/quality_report.h"
@@ -19,6 +21,8 @@ constexpr double kShareOfDiagonal = .015;
 // may be thinner.
 constexpr double kEdgesAcross = 2.2;
 constexpr double kThinShare = .01;
+// A millionth of an edge: quality and folds do not feel it.
+constexpr double kMostRounding = 1e-6;
 // Enough for a percentile.
 constexpr std::size_t kThicknessSamples = 20000;
 
@@ -56,9 +60,8 @@ double thin_part(const Domain& domain, double limit) {
   return quantile(t, kThinShare);
 }
 
-}  // namespace
-
-EdgeLength choose_edge_length(const Domain& domain, const Parameters& parameters) {
+/// The choice, without regard to how it will be written.
+EdgeLength choose(const Domain& domain, const Parameters& parameters) {
   if (const std::int64_t n = parameters.integer("mesh.tets")) {
     const double h = h_of(domain, n);
     return {h, h};
@@ -72,6 +75,37 @@ EdgeLength choose_edge_length(const Domain& domain, const Parameters& parameters
   double h = kShareOfDiagonal * domain.diagonal;
   if (domain.level_set) h = std::min(h, thin_part(domain, kEdgesAcross * h) / kEdgesAcross);
   return {std::max(h, least), least};
+}
+
+Vec3 greatest_coordinates(const Domain& domain) {
+  return (domain.box.min() + domain.shift).cwiseAbs().cwiseMax((domain.box.max() + domain.shift).cwiseAbs());
+}
+
+}  // namespace
+
+double coordinate_rounding(const Domain& domain) {
+  // Half a unit in the last place on every axis.
+  const Vec3 rounding = greatest_coordinates(domain).unaryExpr(
+      [](double x) { return .5 * (std::nextafter(x, std::numeric_limits<double>::infinity()) - x); });
+  return rounding.norm();
+}
+
+double least_h_in_file(const Domain& domain) { return coordinate_rounding(domain) / kMostRounding; }
+
+EdgeLength choose_edge_length(const Domain& domain, const Parameters& parameters) {
+  EdgeLength choice = choose(domain, parameters);
+  const double least = least_h_in_file(domain);
+  if (choice.h < least) {
+    const double far = greatest_coordinates(domain).maxCoeff();
+    throw MeshingImpossible(fmt::format(
+        "h = {:.4g} is too small for coordinates of {:.3g}: they are rounded to multiples of {:.2g} in any "
+        "file of doubles, and boundary vertices would miss psi = 0 by more than {:g} h; move the input "
+        "nearer to the origin{}",
+        choice.h, far, std::nextafter(far, std::numeric_limits<double>::infinity()) - far, kMostRounding,
+        least < kShareOfDiagonal * 10 * domain.diagonal ? fmt::format(", or give --h {:.3g} or more", least) : ""));
+  }
+  choice.least = std::max(choice.least, least);
+  return choice;
 }
 
 }  // namespace umtet

@@ -14,8 +14,16 @@ struct EdgeLength {
 ///
 /// mesh.h if given; else the h that makes about mesh.tets tets; else min(.015 diagonal, t / 2.2), where t is the
 /// thickness that 1 % of the samples fall below (a formula: .015 diagonal of its box). The last choice makes no more
-/// than about mesh.max_tets tets. \throw ResourceLimit      mesh.h asks for more than mesh.max_tets tets \throw
-/// MeshingImpossible  psi < 0 nowhere
+/// than about mesh.max_tets tets.
+/// \throw ResourceLimit      mesh.h asks for more than mesh.max_tets tets
+/// \throw MeshingImpossible  psi < 0 nowhere, or an h below least_h_in_file()
 EdgeLength choose_edge_length(const Domain& domain, const Parameters& parameters);
+
+/// A file holds model coordinates rounded to double: far from the origin that alone moves a vertex off psi = 0, by up
+/// to this much (model units).
+double coordinate_rounding(const Domain& domain);
+
+/// The h below which that is more than a millionth of an edge: such a mesh is refused.
+double least_h_in_file(const Domain& domain);
 
 }  // namespace umtet

@@ -7,8 +7,10 @@
 #include <string>
 #include <system_error>
 
+#include "mesh/keep_going.h"
 #include "mesh/tet_mesh_io.h"
 #include "pipeline/expression.h"
+#include "pipeline/interrupt.h"
 #include "reconstruct/fit_ssd.h"
 #include "reconstruct/point_cloud_io.h"
 
@@ -18,6 +20,25 @@ namespace {
 constexpr const char* kPleaseReport =
     "\n  this is a bug of umtet: please report it with the command and the case folder (or the input, if there is "
     "none)";
+
+/// What a user can do about an error of the system; empty where its own words are enough.
+const char* remedy(const std::error_code& code) {
+  if (code == std::errc::no_such_file_or_directory) return "; check the path";
+  if (code == std::errc::permission_denied || code == std::errc::operation_not_permitted) {
+    return "; check the permissions, or choose another place";
+  }
+  if (code == std::errc::read_only_file_system) return "; choose another place";
+  if (code == std::errc::no_space_on_device) return "; make room on the disk and repeat the command";
+  if (code == std::errc::file_too_large) return "; raise the limit on file sizes (ulimit -f) and repeat the command";
+  if (code == std::errc::not_a_directory || code == std::errc::file_exists) return "; a part of this path is a file";
+  if (code == std::errc::is_a_directory) return "; a file is needed here";
+  return "";
+}
+
+std::string message(const std::filesystem::filesystem_error& e) {
+  const std::string place = e.path1().empty() ? std::string("a file") : e.path1().string();
+  return place + ": " + e.code().message() + remedy(e.code());
+}
 
 }  // namespace
 
@@ -31,6 +52,8 @@ Failure failure_of(const std::exception_ptr& error) {
     std::rethrow_exception(error);
   } catch (const Interrupted& e) {
     return {e.signal == SIGTERM ? ExitCode::Terminated : ExitCode::Interrupted, e.what()};
+  } catch (const MeshCancelled&) {  // not_interrupted() said so
+    return failure_of(std::make_exception_ptr(Interrupted(interrupt_signal())));
   } catch (const UsageError& e) {
     return {ExitCode::Usage, e.what()};
   } catch (const ExpressionError& e) {
@@ -49,8 +72,12 @@ Failure failure_of(const std::exception_ptr& error) {
     return {ExitCode::ResourceLimit, e.what()};
   } catch (const std::bad_alloc&) {
     return {ExitCode::ResourceLimit, "out of memory"};
-  } catch (const std::system_error& e) {  // std::filesystem::filesystem_error is one
+  } catch (const FileTrouble& e) {
     return {ExitCode::FileTrouble, e.what()};
+  } catch (const std::filesystem::filesystem_error& e) {
+    return {ExitCode::FileTrouble, message(e)};
+  } catch (const std::system_error& e) {
+    return {ExitCode::FileTrouble, e.what() + std::string(remedy(e.code()))};
   } catch (const std::length_error& e) {  // a lattice, grid or mesh of more parts than there are numbers for
     return {ExitCode::ResourceLimit, e.what()};
   } catch (const std::exception& e) {  // also std::invalid_argument: what a user can get wrong is checked before

@@ -38,6 +38,11 @@ struct ArtefactDamaged : std::runtime_error {
 struct ResourceLimit : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+/// A file or folder cannot be used; what() is a sentence with the remedy. Where the system's own words say more it is a
+/// std::system_error.
+struct FileTrouble : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 /// A signal asked to stop and the case has been left resumable.
 struct Interrupted : std::runtime_error {
   explicit Interrupted(int signal);

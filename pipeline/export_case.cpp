@@ -24,14 +24,16 @@ void write(const std::string& format, const fs::path& file, const MeshFile& mesh
   if (format == "stl") write_surface(file, mesh.mesh.V, boundary, SurfaceFormat::Stl);
 }
 
-/// Two flavours of one suffix must not overwrite each other.
-std::string name_of(const std::string& format) { return format == "msh22" ? "mesh_22.msh" : "mesh." + format; }
-
 }  // namespace
 
 const std::vector<std::string>& export_formats() {
   static const std::vector<std::string> formats = {"msh", "msh22", "mesh", "vtu", "stl"};
   return formats;
+}
+
+fs::path exported_file(const CasePaths& paths, const std::string& format) {
+  // Two flavours of one suffix must not overwrite each other.
+  return paths.exports() / (format == "msh22" ? "mesh_22.msh" : "mesh." + format);
 }
 
 std::vector<fs::path> export_case(const CasePaths& paths, const std::vector<std::string>& formats, Progress& progress) {
@@ -61,7 +63,7 @@ std::vector<fs::path> export_case(const CasePaths& paths, const std::vector<std:
   for (const std::string& format : formats) {
     stop_if_interrupted();
     progress.report("export", format, static_cast<double>(files.size() + 1) / static_cast<double>(formats.size() + 1));
-    files.push_back(paths.exports() / name_of(format));
+    files.push_back(exported_file(paths, format));
     write_artefact(files.back(), [&](const fs::path& temporary) { write(format, temporary, mesh, boundary); });
   }
   return files;

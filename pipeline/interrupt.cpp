@@ -32,6 +32,8 @@ void install_signal_handlers() {
 
 int interrupt_signal() { return asked_by.load(); }
 
+bool not_interrupted() { return interrupt_signal() == 0; }
+
 void stop_if_interrupted() {
   if (const int signal = interrupt_signal()) throw Interrupted(signal);
 }

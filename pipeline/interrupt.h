@@ -9,6 +9,9 @@ void install_signal_handlers();
 /// The signal that asked to stop, or 0.
 int interrupt_signal();
 
+/// For libraries that ask whether to go on.
+bool not_interrupted();
+
 /// \throw Interrupted if a signal has asked to stop: called between the steps of a stage
 void stop_if_interrupted();
 

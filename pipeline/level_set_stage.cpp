@@ -49,13 +49,20 @@ SsdParams ssd_params(const Parameters& p) {
   SsdParams ssd;
   ssd.spacing = p.real("reconstruct.spacing");
   ssd.smoothing = p.real("reconstruct.smoothing");
+  ssd.detail = p.real("reconstruct.detail");
+  ssd.smooth = p.real("reconstruct.smooth");
   ssd.alpha = p.real("reconstruct.alpha");
   ssd.weights = p.text("reconstruct.weights") == "paper" ? SsdWeights::Paper : SsdWeights::Area;
   ssd.prior.kind = p.text("reconstruct.prior") == "gaussian" ? LmePrior::Kind::Gaussian : LmePrior::Kind::CompactC2;
   ssd.prior.gamma = p.real("reconstruct.gamma");
   ssd.prior.support = static_cast<int>(p.integer("reconstruct.support"));
   ssd.prior.epsilon = p.real("reconstruct.epsilon");
-  ssd.solver = p.text("reconstruct.solver") == "assembled" ? SsdSolver::Assembled : SsdSolver::Multigrid;
+  const std::string& solver = p.text("reconstruct.solver");
+  const bool full_only = ssd.weights == SsdWeights::Paper || ssd.prior.kind == LmePrior::Kind::Gaussian;
+  ssd.solver = solver == "assembled"                             ? SsdSolver::Assembled
+               : solver == "full" || (solver == "auto" && full_only) ? SsdSolver::Full
+                                                                     : SsdSolver::Cascade;
+  ssd.band_tolerance = p.real("reconstruct.band_tolerance");
   ssd.tolerance = p.real("reconstruct.tolerance");
   ssd.max_iterations = static_cast<int>(p.integer("reconstruct.max_iterations"));
   ssd.padding = static_cast<int>(p.integer("reconstruct.padding"));

@@ -1,7 +1,6 @@
 #include "pipeline/mesh_measures.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include "mesh/skin.h"
 #include "mesh/surface_distance.h"
 #include "mesh/thickness.h"
+#include "pipeline/edge_length.h"
 
 namespace umtet {
 namespace {
@@ -27,10 +27,10 @@ double rms(const std::vector<double>& d) {
 }
 
 /// Largest principal curvature of psi = 0 at the boundary vertices, in magnitude, times h.
-double max_curvature(ImplicitFunctionRef psi, const UmResult& result, double h) {
+double max_curvature(ImplicitFunctionRef psi, const UmResult& result, double h, const KeepGoing& keep_going) {
   const std::vector<int>& I = result.submesh.positive_vertices;
   std::vector<double> kappa(I.size());
-  tbb::parallel_for(std::size_t{0}, I.size(), [&](std::size_t k) {
+  polled_parallel_for(I.size(), kValuesPerPoll, keep_going, [&](std::size_t k) {
     Vec3 g;
     Mat3 H;
     psi.value(result.final[I[k]], g, H);
@@ -45,16 +45,17 @@ double max_curvature(ImplicitFunctionRef psi, const UmResult& result, double h) 
 
 /// Least distance from a boundary vertex along the normal to the opposite sheet, inside or outside; looked for up to
 /// four edges, beyond which it does not matter.
-double min_feature_size(ImplicitFunctionRef psi, const UmResult& result, double h) {
+double min_feature_size(ImplicitFunctionRef psi, const UmResult& result, double h, const KeepGoing& keep_going) {
   std::vector<Vec3> points;
   for (const int i : result.submesh.positive_vertices) points.push_back(result.final[i]);
-  const std::vector<double> t = thickness(psi, points, h / 4, 4 * h);
+  const std::vector<double> t = thickness(psi, points, h / 4, 4 * h, keep_going);
   return t.empty() ? 0 : *std::min_element(t.begin(), t.end());
 }
 
-Json cloud_block(const Domain& domain, const std::vector<Vec3>& V, const std::vector<Triangle>& faces, double h) {
+Json cloud_block(const Domain& domain, const std::vector<Vec3>& V, const std::vector<Triangle>& faces, double h,
+                 const KeepGoing& keep_going) {
   if (domain.cloud.points.empty()) return nullptr;
-  std::vector<double> d = SurfaceDistance(V, faces).distances(domain.cloud.points);
+  std::vector<double> d = SurfaceDistance(V, faces).distances(domain.cloud.points, keep_going);
   std::sort(d.begin(), d.end());
   const double r = rms(d), max = d.back(), p99 = quantile(d, .99);
   return {{"rms_distance", r},
@@ -71,7 +72,7 @@ constexpr double kWorthRepeating = .9;
 /// Does the boundary of the mesh look like the pieces of psi = 0 that are kept? Where the two counts differ, the count
 /// is repeated on a grid of half the spacing, as far as its size is allowed, before the mesh is blamed.
 void compare_with_zero_set(const Domain& domain, const MeshCertificate& certificate, const ZeroSetChoice& pieces,
-                           Json& block, std::vector<std::string>& reasons) {
+                           const KeepGoing& keep_going, Json& block, std::vector<std::string>& reasons) {
   const MeshCertificate::Boundary& boundary = certificate.boundary;
   const auto differs = [&](const ZeroSetChoice& c) {
     return static_cast<int>(c.seeds.size()) != boundary.components ||
@@ -81,7 +82,7 @@ void compare_with_zero_set(const Domain& domain, const MeshCertificate& certific
   const ZeroSetChoice* counted = &pieces;
   const double half = pieces.topology.spacing / 2;
   if (differs(pieces) && counting_spacing(domain, half) < kWorthRepeating * pieces.topology.spacing) {
-    repeated = choose_components(domain, half);
+    repeated = choose_components(domain, half, keep_going);
     counted = &repeated;
   }
   block["components_of_zero_set"] = counted->topology.components.size();
@@ -128,18 +129,22 @@ Json to_json(const MeshCertificate& c) {
             {"n_faces", c.boundary.n_faces},
             {"area", c.boundary.area},
             {"max_vertex_distance_over_h", number_or_null(c.boundary.max_vertex_distance_over_h)},
+            {"coordinate_rounding_over_h", c.coordinate_rounding / c.h},
             {"max_centroid_distance_over_h", number_or_null(c.boundary.max_centroid_distance_over_h)},
             {"min_cos_normal", number_or_null(c.boundary.min_cos_normal)},
             {"n_cos_below_half", c.boundary.n_cos_below_half}}}};
 }
 
-Json measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& pieces, double h) {
+Json measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& pieces, double h,
+             const KeepGoing& keep_going) {
   const TetMesh mesh{result.final, result.submesh.mesh.C};
   CertificateInput input;
   input.mesh = &mesh;
   input.h = h;
   input.positive_faces = &result.submesh.positive_faces;
   input.psi = domain.psi();
+  input.coordinate_rounding = coordinate_rounding(domain);
+  input.keep_going = keep_going;
   const MeshCertificate certificate = certify(input);
   std::vector<std::string> reasons = failures(certificate);
 
@@ -147,16 +152,17 @@ Json measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& 
   json.update(to_json(certificate));
   const std::vector<Triangle>& faces = result.submesh.positive_faces;
   Json block = Json::object();
-  compare_with_zero_set(domain, certificate, pieces, block, reasons);
+  block["level_set_spacing"] = domain.level_set ? Json(domain.level_set->spacing()) : Json(nullptr);
+  compare_with_zero_set(domain, certificate, pieces, keep_going, block, reasons);
   block["unsupported_area_fraction"] = nullptr;
   if (!domain.cloud.points.empty()) {
-    block["unsupported_area_fraction"] =
-        unsupported_area_fraction(mesh.V, faces, domain.cloud.points, kSupportRadius * domain.cloud_spacing);
+    block["unsupported_area_fraction"] = unsupported_area_fraction(mesh.V, faces, domain.cloud.points,
+                                                                   kSupportRadius * domain.cloud_spacing, keep_going);
   }
   json["domain"] = std::move(block);
-  json["cloud"] = cloud_block(domain, mesh.V, faces, h);
-  json["resolution"] = {{"kappa_h_max", max_curvature(domain.psi(), result, h)},
-                        {"feature_size_over_h_min", min_feature_size(domain.psi(), result, h) / h},
+  json["cloud"] = cloud_block(domain, mesh.V, faces, h, keep_going);
+  json["resolution"] = {{"kappa_h_max", max_curvature(domain.psi(), result, h, keep_going)},
+                        {"feature_size_over_h_min", min_feature_size(domain.psi(), result, h, keep_going) / h},
                         {"obtuse_conditioning_angles", result.obtuse_conditioning_angles},
                         {"double_positive_faces", result.double_positive_faces}};
   json["reasons"] = reasons;

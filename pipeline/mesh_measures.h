@@ -9,8 +9,9 @@
 namespace umtet {
 
 /// The fields of the certificate that are measured, in its order: n_points ... resolution, then `reasons`, the list of
-/// what is wrong with the mesh. Fields that this input does not have are null.
-Json measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& pieces, double h);
+/// what is wrong with the mesh. Fields that this input does not have are null. \throw MeshCancelled
+Json measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& pieces, double h,
+             const KeepGoing& keep_going = {});
 
 /// The blocks `quality` and `boundary` and the counts before them.
 Json to_json(const MeshCertificate& certificate);

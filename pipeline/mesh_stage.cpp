@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 
 #include "mesh/quality_report.h"
 #include "mesh/tet_mesh_io.h"
@@ -9,6 +10,7 @@
 #include "pipeline/edge_length.h"
 #include "pipeline/exit_code.h"
 #include "pipeline/interrupt.h"
+#include "pipeline/memory.h"
 #include "pipeline/mesh_attempts.h"
 #include "pipeline/mesh_measures.h"
 #include "pipeline/stages.h"
@@ -17,11 +19,35 @@ namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
-BackgroundMesh make_background(const Box& box, double h) {
+/// @param n_tets  that were asked for, or 0
+BackgroundMesh make_background(const Domain& domain, double h, std::int64_t n_tets) {
   try {
-    return BackgroundMesh(a15(), box, h);
+    BackgroundMesh background(a15(), domain.box, h);
+    const double expected = n_tets > 0 ? static_cast<double>(n_tets) : expected_tets(domain.psi(), domain.box, h);
+    require_memory(background, expected);
+    return background;
   } catch (const std::invalid_argument& e) {  // h and the box have been checked: their tets are too many to count
     throw ResourceLimit(fmt::format("h = {:.4g}: no background mesh: {}", h, e.what()));
+  }
+}
+
+/// What the file will hold, in working coordinates: it stores x + shift, rounded, and taking the shift off again is
+/// exact (far_origin_shift). From here on that is the mesh: it is this one that is measured.
+void round_to_file(std::vector<Vec3>& V, const Vec3& shift) {
+  for (Vec3& x : V) x = (x + shift) - shift;
+}
+
+// Another h is tried for the number of tets that was asked for when it is missed by more than this.
+constexpr double kTetsTolerance = .1;
+
+const char* remedy(UmStatus status) {
+  switch (status) {
+    case UmStatus::EmptyDomain:
+      return "a smaller --h, or a --box around the place where psi < 0, may find it";
+    case UmStatus::DomainLeavesBackground:
+      return "give a larger --box, with room of two edges around the domain";
+    default:
+      return "a smaller --h (or a larger --tets) resolves more of the shape";
   }
 }
 
@@ -36,70 +62,78 @@ class MeshStage {
 
  private:
   MeshAttempt attempt(double h);
+  MeshAttempt attempt_for_tets(double h);
   bool observe(const UmProgress& p);
-  UmResult make(const ZeroSetChoice& pieces, double h);
+  UmResult make(const BackgroundMesh& background, const ZeroSetChoice& pieces);
   [[noreturn]] void refuse(const UmResult& result, double h);
-  void write_iterate(const std::string& name, const UmResult& result, const std::vector<Vec3>& V);
+  void write_iterate(const fs::path& file, const UmResult& result, const std::vector<Vec3>& V);
+  void write_output(const std::string& name, const UmResult& result, const std::vector<Vec3>& V);
   void write_outputs(const MeshAttempt& best);
-  void begin();
-
   const StageContext& context_;
-  const Domain domain_;
+  Domain domain_;
   const bool keep_iterates_;
   std::vector<std::vector<Vec3>> iterates_;  ///< of the running attempt
   std::vector<std::string> outputs_;
+  double missed_by_ = 0;   ///< tets made / tets asked for, when the running attempt was given up for it
+  bool may_miss_ = false;  ///< it goes on whatever the number
 };
 
 bool MeshStage::observe(const UmProgress& p) {
   const double n_rounds = static_cast<double>(context_.parameters.integer("mesh.projection_passes")) + 1;
   const std::string_view step = p.step;
   double rounds = 0;
+  if (step == "submesh" && !may_miss_) {
+    const double ratio = static_cast<double>(p.n_tets) / static_cast<double>(context_.parameters.integer("mesh.tets"));
+    if (std::abs(ratio - 1) > kTetsTolerance) {
+      missed_by_ = ratio;
+      return false;
+    }
+  }
   if (step == "project") rounds = p.pass - 1 + static_cast<double>(p.sweep) / std::max(p.n_sweeps, 1);
   if (step == "relax") rounds = n_rounds - 1 + static_cast<double>(p.pass) / std::max(p.n_passes, 1);
   if (keep_iterates_ && step == "project" && p.sweep == p.n_sweeps) iterates_.push_back(*p.V);
   return context_.progress.report("mesh", step, .1 + .8 * rounds / n_rounds);
 }
 
-UmResult MeshStage::make(const ZeroSetChoice& pieces, double h) {
+UmResult MeshStage::make(const BackgroundMesh& background, const ZeroSetChoice& pieces) {
   UmParams params = um_params(context_.parameters);
   // The full loop would mesh every piece; crawling starts from the ones to keep.
   if (!pieces.dropped.empty()) params.search = SubmeshSearch::Crawl;
   if (pieces.seeds.empty() && !pieces.dropped.empty()) {
     throw MeshingImpossible("psi = 0 is nowhere near the samples:\n  no " + pieces.dropped.front());
   }
-  const BackgroundMesh background = make_background(domain_.box, h);
-  context_.progress.detail(fmt::format("mesh: h = {:.6g}, background of {} tets, psi = 0 in {} pieces", h,
+  context_.progress.detail(fmt::format("mesh: h = {:.6g}, background of {} tets, psi = 0 in {} pieces", background.h(),
                                        background.n_tets(), pieces.topology.components.size()));
-  return universal_mesh(
+  UmResult result = universal_mesh(
       background, domain_.psi(), params, [this](const UmProgress& p) { return observe(p); }, pieces.seeds);
+  for (auto* V : {&result.submesh.mesh.V, &result.projected, &result.final}) round_to_file(*V, domain_.shift);
+  return result;
 }
 
-void MeshStage::begin() {
-  begin_writing(context_, Stage::Mesh);
-  // An older mesh would stand beside parameters that did not make it.
-  for (const char* name : {"omega_h.vtu", "projected.vtu", "mesh.vtu", "quality.csv"}) {
-    fs::remove(context_.paths.folder(Stage::Mesh) / name);
-  }
-  for (int pass = 1; fs::remove(context_.paths.folder(Stage::Mesh) / fmt::format("pass_{}.vtu", pass)); ++pass) {
-  }
-}
-
-void MeshStage::write_iterate(const std::string& name, const UmResult& result, const std::vector<Vec3>& V) {
+void MeshStage::write_iterate(const fs::path& file, const UmResult& result, const std::vector<Vec3>& V) {
   TetMesh mesh{V, result.submesh.mesh.C};
   for (Vec3& x : mesh.V) x += domain_.shift;
-  const MeshFile file =
+  const MeshFile content =
       with_standard_data(std::move(mesh), result.submesh.background_vertex, result.submesh.background_tet);
-  write_artefact(context_.paths.folder(Stage::Mesh) / name,
-                 [&](const fs::path& temporary) { write_vtu(temporary, file); });
+  write_artefact(file, [&](const fs::path& temporary) { write_vtu(temporary, content); });
+}
+
+void MeshStage::write_output(const std::string& name, const UmResult& result, const std::vector<Vec3>& V) {
+  write_iterate(context_.paths.folder(Stage::Mesh) / name, result, V);
   outputs_.push_back(name);
 }
 
 void MeshStage::refuse(const UmResult& result, double h) {
-  begin();
+  if (!context_.paths.renews(Stage::Mesh)) begin_writing(context_, Stage::Mesh);
+  const fs::path folder = context_.paths.failed();
+  fs::remove_all(folder);
   const std::size_t n = result.submesh.mesh.V.size();
-  if (n > 0) write_iterate("omega_h.vtu", result, result.submesh.mesh.V);
-  const std::vector<Vec3>& last = result.final.size() == n ? result.final : result.projected;
-  if (n > 0 && last.size() == n) write_iterate("projected.vtu", result, last);
+  if (n > 0) {
+    fs::create_directories(folder);
+    write_iterate(folder / "omega_h.vtu", result, result.submesh.mesh.V);
+    const std::vector<Vec3>& last = result.final.size() == n ? result.final : result.projected;
+    if (last.size() == n) write_iterate(folder / "projected.vtu", result, last);
+  }
   const UmEvidence& e = result.evidence;
   const Vec3 at = e.where + domain_.shift;
   std::string message = fmt::format("no mesh at h = {:.6g}: {}: {}", h, to_string(result.status), e.what);
@@ -109,10 +143,9 @@ void MeshStage::refuse(const UmResult& result, double h) {
     if (e.background_tet >= 0) message += fmt::format(", background tet {}", e.background_tet);
     if (e.count > 1) message += fmt::format(" (the first of {})", e.count);
   }
-  if (!outputs_.empty()) {
-    message += "\n  look at omega_h.vtu and projected.vtu (the last iterate) in " +
-               context_.paths.folder(Stage::Mesh).string();
-  }
+  message += std::string("\n  ") + remedy(result.status);
+  if (n > 0) message += "\n  look at omega_h.vtu and projected.vtu (the last iterate) in " + folder.string();
+  if (context_.paths.renews(Stage::Mesh)) message += "\n  the former mesh and its certificate have been kept";
   throw MeshingImpossible(message);
 }
 
@@ -121,19 +154,34 @@ MeshAttempt MeshStage::attempt(double h) {
   a.h = h;
   iterates_.clear();
   stop_if_interrupted();
+  domain_.limit_detail(h);
+  const BackgroundMesh background = make_background(domain_, h, context_.parameters.integer("mesh.tets"));
   context_.progress.report("mesh", "components", .05);
-  const ZeroSetChoice pieces = choose_components(domain_, h);
+  const ZeroSetChoice pieces = choose_components(domain_, h, not_interrupted);
   for (const std::string& reason : pieces.dropped) context_.progress.say("mesh: left out a " + reason);
   stop_if_interrupted();
-  a.result = make(pieces, h);
+  a.result = make(background, pieces);
   a.iterates = std::move(iterates_);
   stop_if_interrupted();
   if (a.made()) {
     context_.progress.report("mesh", "certify", .9);
-    a.measured = measure(domain_, a.result, pieces, h);
+    a.measured = measure(domain_, a.result, pieces, h, not_interrupted);
     stop_if_interrupted();
   }
   return a;
+}
+
+/// The estimate behind --tets knows the shape from a few thousand samples. Where it is far off, the number of tets at
+/// the first h gives a second h, before anything is moved.
+MeshAttempt MeshStage::attempt_for_tets(double h) {
+  may_miss_ = context_.parameters.integer("mesh.tets") == 0;
+  MeshAttempt a = attempt(h);
+  if (missed_by_ == 0) return a;
+  may_miss_ = true;
+  const double better = std::max(h * std::cbrt(missed_by_), least_h_in_file(domain_));
+  context_.progress.say(
+      fmt::format("mesh: h = {:.4g} makes {:.2g} times the tets asked for; trying {:.4g}", h, missed_by_, better));
+  return attempt(better);
 }
 
 void MeshStage::run() {
@@ -141,7 +189,7 @@ void MeshStage::run() {
   const std::vector<RecordedFile> inputs = recorded_inputs(context_.paths, Stage::Mesh, context_.parameters);
   context_.progress.report("mesh", "size", 0);
   const MeshAttempt best = best_attempt(
-      choose_edge_length(domain_, context_.parameters), [this](double h) { return attempt(h); },
+      choose_edge_length(domain_, context_.parameters), [this](double h) { return attempt_for_tets(h); },
       [this](const std::string& line) { context_.progress.say(line); });
   const UmResult& result = best.result;
   if (!best.made()) refuse(result, best.h);
@@ -163,14 +211,15 @@ void MeshStage::run() {
 }
 
 void MeshStage::write_outputs(const MeshAttempt& best) {
-  begin();
+  begin_writing(context_, Stage::Mesh);
+  fs::remove_all(context_.paths.failed());
   const UmResult& result = best.result;
   const std::vector<Vec3>& omega_h = result.submesh.mesh.V;
-  write_iterate("omega_h.vtu", result, omega_h);
+  write_output("omega_h.vtu", result, omega_h);
   for (std::size_t k = 0; k < best.iterates.size(); ++k)
-    write_iterate(fmt::format("pass_{}.vtu", k + 1), result, best.iterates[k]);
-  write_iterate("projected.vtu", result, result.projected);
-  write_iterate("mesh.vtu", result, result.final);
+    write_output(fmt::format("pass_{}.vtu", k + 1), result, best.iterates[k]);
+  write_output("projected.vtu", result, result.projected);
+  write_output("mesh.vtu", result, result.final);
   write_artefact(context_.paths.folder(Stage::Mesh) / "quality.csv", [&](const fs::path& temporary) {
     write_quality_csv(temporary, quality_curves(result.submesh.mesh.C, result.submesh.positive_vertices, omega_h,
                                                 result.projected, result.final));

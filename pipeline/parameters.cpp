@@ -50,6 +50,14 @@ template <class T>
 T parse_number(const ParamField& f, const std::string& text) {
   T v{};
   const char* end = text.data() + text.size();
+  if constexpr (std::is_integral_v<T>) {          // 1e6 is a whole number too
+    constexpr double kExact = 9007199254740992.;  // 2^53
+    double whole = 0;
+    const auto [stop, error] = std::from_chars(text.data(), end, whole);
+    if (error == std::errc() && stop == end && std::abs(whole) <= kExact && whole == std::trunc(whole)) {
+      return static_cast<T>(whole);
+    }
+  }
   const auto [stop, error] = std::from_chars(text.data(), end, v);
   if (error != std::errc() || stop != end || text.empty()) {
     throw UsageError(fmt::format("{} = {}: not {} number", f.key, text, std::is_integral_v<T> ? "a whole" : "a"));
@@ -72,6 +80,15 @@ ParamValue parse(const ParamField& f, const std::string& text) {
   }
 }
 
+bool is_utf8(const std::string& text) {
+  try {
+    nlohmann::json(text).dump();
+    return true;
+  } catch (const nlohmann::json::type_error&) {
+    return false;
+  }
+}
+
 void check(const ParamField& f, const ParamValue& value) {
   const auto in_range = [&](double v) {
     if (v >= f.min && v <= f.max) return;  // false for NaN
@@ -84,6 +101,8 @@ void check(const ParamField& f, const ParamValue& value) {
   if (t && !f.choices.empty() && std::find(f.choices.begin(), f.choices.end(), *t) == f.choices.end()) {
     throw UsageError(fmt::format("{} = {}: this version has {} only", f.key, *t, fmt::join(f.choices, ", ")));
   }
+  // TOML and JSON hold nothing else.
+  if (t && !is_utf8(*t)) throw UsageError(f.key + ": the text is not valid UTF-8");
   if (f.key == "mesh.box") parse_box(*t);
 }
 
@@ -97,10 +116,16 @@ std::string one_line(std::string s) {
 
 }  // namespace
 
+std::string preset_text(const ParamField& f) {
+  if (const auto* t = std::get_if<std::string>(&f.preset)) return *t;
+  return print(f.preset);
+}
+
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
   std::string best;
   // Further away than a third of the word is a different word.
   std::size_t best_distance = word.size() / 3 + 2;
+  bool best_goes_on = false;
   for (const std::string& candidate : candidates) {
     std::vector<std::size_t> row(candidate.size() + 1);
     std::iota(row.begin(), row.end(), std::size_t{0});
@@ -113,8 +138,11 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
         row[j + 1] = std::min({replace, row[j] + 1, diagonal + 1});
       }
     }
-    if (row.back() < best_distance) {
+    // Of two at the same distance, the one that the word is the beginning of: --tet is --tets, not --set.
+    const bool goes_on = candidate.starts_with(word);
+    if (row.back() < best_distance || (row.back() == best_distance && goes_on && !best_goes_on && !best.empty())) {
       best_distance = row.back();
+      best_goes_on = goes_on;
       best = candidate;
     }
   }
@@ -193,6 +221,12 @@ void Parameters::load(const std::filesystem::path& file, ParamSource source) {
       }
     }
   }
+}
+
+void Parameters::make_absolute(const std::string& key) {
+  Entry& entry = entries_.at(key);
+  const std::string& path = std::get<std::string>(entry.value);
+  if (!path.empty()) entry.value = std::filesystem::absolute(path).lexically_normal().string();
 }
 
 void Parameters::copy_section(std::string_view name, const Parameters& other) {

@@ -28,6 +28,9 @@ struct ParamField {
 /// All parameters, in the order of case.toml.
 const std::vector<ParamField>& params_fields();
 
+/// The default as it is printed; empty for an empty text.
+std::string preset_text(const ParamField&);
+
 /// The candidate with the least edit distance to `word`; empty if none is near enough to be what was meant.
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 
@@ -48,6 +51,9 @@ class Parameters {
   /// Reads a TOML file: the user's, or the case.toml of an earlier run.
   /// \throw UsageError with file, line and column; std::system_error
   void load(const std::filesystem::path& file, ParamSource source);
+
+  /// Makes the path absolute, whoever gave it.
+  void make_absolute(const std::string& key);
 
   /// Takes the whole section from other parameters, sources included.
   void copy_section(std::string_view name, const Parameters& other);

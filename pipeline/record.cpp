@@ -13,7 +13,9 @@ namespace fs = std::filesystem;
 namespace {
 
 // Readers accept this schema only; a record of another one is a stage to run again.
-constexpr int kSchema = 1;
+constexpr int kSchema = 2;
+
+constexpr const char* kSeal = "checksum";
 
 Json to_json(const std::vector<RecordedFile>& files) {
   Json list = Json::array();
@@ -55,6 +57,23 @@ std::string difference(const std::string& section, const Json& before, const Jso
 
 }  // namespace
 
+Json sealed(Json document) {
+  document["run"].erase(kSeal);
+  const std::string text = document.dump(-1, ' ', false, Json::error_handler_t::replace);
+  document["run"][kSeal] = checksum(text);
+  return document;
+}
+
+bool seal_holds(const Json& document) {
+  const auto run = document.find("run");
+  if (run == document.end() || !run->is_object() || !run->contains(kSeal)) return false;
+  return sealed(document)["run"][kSeal] == (*run)[kSeal];
+}
+
+std::string file_text(const Json& document) {
+  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 void write_record(const CasePaths& paths, StageRecord record, const std::vector<std::string>& output_names) {
   for (const std::string& name : output_names) {
     record.outputs.push_back({name, stamp(paths.folder(record.stage) / name)});
@@ -68,7 +87,7 @@ void write_record(const CasePaths& paths, StageRecord record, const std::vector<
                      {"outputs", to_json(record.outputs)},
                      {"numbers", record.numbers},
                      {"run", record.run}};
-  write_text_artefact(paths.record(record.stage), json.dump(2) + "\n");
+  write_text_artefact(paths.record(record.stage), file_text(sealed(json)));
 }
 
 StageState inspect_stage(const CasePaths& paths, Stage stage, const Json& parameters,
@@ -83,6 +102,7 @@ StageState inspect_stage(const CasePaths& paths, Stage stage, const Json& parame
     if (json.at("schema") != kSchema || json.at("stage") != to_string(stage)) {
       return {Kind::Missing, file.string() + " is of another schema", {}};
     }
+    if (!seal_holds(json)) return {Kind::Damaged, file.string() + " does not match its own checksum", {}};
     version = json.at("version");
     record = {stage,
               json.at("parameters"),

@@ -28,6 +28,13 @@ struct StageRecord {
   Json run;      ///< seconds, peak memory, host, date, threads: different every time
 };
 
+/// The document with the checksum of all its content in the block `run`, which is different every time as it is.
+Json sealed(Json document);
+/// False when anything in it was changed after sealed().
+bool seal_holds(const Json& document);
+/// As the files of a case hold it. Bytes that are no UTF-8 (in the name of a file) are replaced.
+std::string file_text(const Json& document);
+
 /// Stamps the outputs, which must be in the folder of the stage, and writes the record atomically.
 /// \throw std::system_error
 void write_record(const CasePaths& paths, StageRecord record, const std::vector<std::string>& output_names);
@@ -38,7 +45,7 @@ struct StageState {
     Done,     ///< everything matches
     Missing,  ///< never finished
     Changed,  ///< finished and whole, but for other parameters, another version or other input
-    Damaged,  ///< an output is gone or is not what was written, or the record cannot be read
+    Damaged,  ///< an output or the record itself is gone or is not what was written
   };
   Kind kind = Kind::Missing;
   std::string reason;                 ///< a clause for the user, empty when Done

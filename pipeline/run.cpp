@@ -1,9 +1,12 @@
 #include "pipeline/run.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "pipeline/certificate_json.h"
 #include "pipeline/interrupt.h"
+#include "pipeline/renewal.h"
 #include "pipeline/stages.h"
 
 namespace umtet {
@@ -16,31 +19,49 @@ class CaseRun {
       : request_(request),
         progress_(progress),
         paths_{request.case_folder},
-        context_{paths_, request.parameters, progress, request.threads} {}
+        parameters_(request.parameters),
+        context_{paths_, parameters_, progress, request.threads} {}
 
   RunOutcome operator()();
 
  private:
+  void take_former_parameters();
   StageState state_of(Stage stage) const;
   bool must_run(Stage stage, const StageState& state) const;
+  StageRecord ensure(Stage stage);
   void run(Stage stage);
+  void compute(Stage stage);
   void certify(const StageRecord& mesh);
 
   const RunRequest& request_;
   Progress& progress_;
-  const CasePaths paths_;
+  CasePaths paths_;
+  Parameters
+      parameters_;  ///< those asked for, and for finished stages that are not asked for those they were made with
   const StageContext context_;
   RunOutcome outcome_;
 };
+
+/// case.toml goes on telling what the stages were made with that this run leaves alone.
+void CaseRun::take_former_parameters() {
+  if (!fs::exists(paths_.parameters())) return;
+  Parameters former;
+  former.load(paths_.parameters(), ParamSource::Case);
+  for (const Stage stage : kStages) {
+    const bool asked = stage >= request_.from && stage <= request_.until;
+    if (!asked && fs::exists(paths_.record(stage))) parameters_.copy_section(section_of(stage), former);
+  }
+  if (request_.until < Stage::Mesh && fs::exists(paths_.certificate())) parameters_.copy_section("output", former);
+}
 
 StageState CaseRun::state_of(Stage stage) const {
   std::optional<std::vector<RecordedFile>> inputs;
   // A stage that is taken as it is may have been made from other input.
   if (stage >= request_.from) {
-    if (stage != Stage::Cloud) inputs = recorded_inputs(paths_, stage, request_.parameters);
+    if (stage != Stage::Cloud) inputs = recorded_inputs(paths_, stage, parameters_);
     if (stage == Stage::Cloud && !request_.source.empty()) inputs = {source_input(request_.source)};
   }
-  return inspect_stage(paths_, stage, request_.parameters.section(section_of(stage)), inputs);
+  return inspect_stage(paths_, stage, parameters_.section(section_of(stage)), inputs);
 }
 
 bool CaseRun::must_run(Stage stage, const StageState& state) const {
@@ -61,10 +82,42 @@ bool CaseRun::must_run(Stage stage, const StageState& state) const {
   return request_.force || state.kind != Kind::Done;
 }
 
+/// Sees to it that the stage is done. Where something finished would be replaced, it is done beside it.
+StageRecord CaseRun::ensure(Stage stage) {
+  stop_if_interrupted();
+  StageState state = state_of(stage);
+  if (!must_run(stage, state)) return *state.record;
+  if (holds_results(paths_, stage)) {
+    paths_.renews(stage) = true;
+    if (!request_.force) state = state_of(stage);
+    if (!request_.force && state.kind == StageState::Kind::Done) {
+      progress_.say(std::string(to_string(stage)) + ": done by an earlier run that was not finished");
+      return *state.record;
+    }
+  }
+  run(stage);
+  outcome_.stages_run.push_back(stage);
+  state = state_of(stage);
+  if (!state.record) throw ArtefactDamaged(state.reason);
+  progress_.say(fmt::format("{}: done in {:.2f} s", to_string(stage), state.record->run.value("seconds", 0.)));
+  return *state.record;
+}
+
 void CaseRun::run(Stage stage) {
+  try {
+    compute(stage);
+  } catch (...) {
+    // Half a stage is of no use; whole ones before it are there for the next run.
+    std::error_code ignored;
+    if (paths_.renews(stage)) fs::remove_all(paths_.folder(stage), ignored);
+    throw;
+  }
+}
+
+void CaseRun::compute(Stage stage) {
   if (stage == Stage::Cloud) {
     fs::path source = request_.source;
-    if (source.empty()) source = request_.parameters.text("cloud.file");
+    if (source.empty()) source = parameters_.text("cloud.file");
     if (source.empty()) throw UsageError("no cloud: give one");
     run_cloud_stage(context_, source);
   } else if (stage == Stage::LevelSet) {
@@ -75,37 +128,39 @@ void CaseRun::run(Stage stage) {
 }
 
 void CaseRun::certify(const StageRecord& mesh) {
-  const Json json = certificate(paths_, mesh, request_.parameters);
-  const std::string text = json.dump(2) + "\n";
+  const Json json = certificate(paths_, mesh, parameters_);
+  const std::string text = file_text(json);
   const fs::path file = paths_.certificate();
-  if (!fs::exists(file) || read_text(file) != text) write_text_artefact(file, text);
+  const std::string former = fs::exists(file) ? read_text(file) : "";
+  if (former != text) {
+    if (!former.empty() && !seal_holds(Json::parse(former, nullptr, false))) {
+      const std::string reason = file.string() + " does not match its own checksum";
+      if (request_.strict) throw ArtefactDamaged(reason);
+      progress_.warn("certificate: " + reason + "; making it again");
+    }
+    write_text_artefact(file, text);
+  }
   outcome_.certificate = json;
-  outcome_.files.push_back(file);
   if (json.at("verdict") != "pass") outcome_.code = ExitCode::GateFailed;
 }
 
 RunOutcome CaseRun::operator()() {
-  const bool has_formula = !request_.parameters.text("mesh.implicit").empty();
   const CaseLock lock(paths_.root);
-  for (const Stage stage : {Stage::Cloud, Stage::LevelSet, Stage::Mesh}) {
-    if (stage > request_.until || (has_formula && stage != Stage::Mesh)) continue;
-    stop_if_interrupted();
-    StageState state = state_of(stage);
-    if (must_run(stage, state)) {
-      run(stage);
-      outcome_.stages_run.push_back(stage);
-      state = state_of(stage);
-      if (!state.record) throw ArtefactDamaged(state.reason);
-      progress_.say(std::string(to_string(stage)) + ": done in " +
-                    std::to_string(state.record->run.value("seconds", 0.)).substr(0, 5) + " s");
-    }
-    for (const RecordedFile& f : state.record->outputs) outcome_.files.push_back(paths_.folder(stage) / f.name);
-    if (stage == Stage::Mesh) certify(*state.record);
+  refuse_foreign_folder(paths_);
+  take_former_parameters();
+  const bool of_formula = request_.until == Stage::Mesh && !parameters_.text("mesh.implicit").empty();
+  std::vector<StageRecord> records;
+  for (const Stage stage : kStages) {
+    if (stage <= request_.until && (!of_formula || stage == Stage::Mesh)) records.push_back(ensure(stage));
   }
-  // Parameters that no stage depends on (output.*) are part of the record of what was asked.
-  const std::string text = request_.parameters.toml();
-  if (!fs::exists(paths_.parameters()) || read_text(paths_.parameters()) != text) {
-    write_text_artefact(paths_.parameters(), text);
+  replace_former(context_, paths_);
+  write_parameters(paths_, parameters_);
+  for (const StageRecord& record : records) {
+    for (const RecordedFile& f : record.outputs) outcome_.files.push_back(paths_.folder(record.stage) / f.name);
+  }
+  if (request_.until == Stage::Mesh) {
+    certify(records.back());
+    outcome_.files.push_back(paths_.certificate());
   }
   return std::move(outcome_);
 }

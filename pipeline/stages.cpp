@@ -9,7 +9,8 @@ namespace fs = std::filesystem;
 
 std::vector<RecordedFile> recorded_inputs(const CasePaths& paths, Stage stage, const Parameters& parameters) {
   std::vector<RecordedFile> inputs;
-  if (stage == Stage::Cloud || !parameters.text("mesh.implicit").empty()) return inputs;
+  const bool formula = stage == Stage::Mesh && !parameters.text("mesh.implicit").empty();
+  if (stage == Stage::Cloud || formula) return inputs;
   for (const Stage source : {Stage::Cloud, Stage::LevelSet}) {
     if (source >= stage) break;
     const StageState state = inspect_stage(paths, source, parameters.section(section_of(source)), std::nullopt);
@@ -27,9 +28,17 @@ void begin_writing(const StageContext& context, Stage stage) {
   remove_stale_temporaries(folder);
   remove_stale_temporaries(context.paths.root);
   fs::remove(context.paths.record(stage));
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (is_artefact(stage, entry.path().filename().string())) fs::remove(entry.path());
+  }
+  if (context.paths.renews(stage)) return;
   fs::remove(context.paths.certificate());
-  const fs::path file = context.paths.parameters();
-  const std::string text = context.parameters.toml();
+  write_parameters(context.paths, context.parameters);
+}
+
+void write_parameters(const CasePaths& paths, const Parameters& parameters) {
+  const fs::path file = paths.parameters();
+  const std::string text = parameters.toml();
   if (!fs::exists(file) || read_text(file) != text) write_text_artefact(file, text);
 }
 

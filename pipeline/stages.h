@@ -13,7 +13,8 @@
 
 namespace umtet {
 
-/// What every stage is given. A stage computes first and touches the case only when it has something to write.
+/// What every stage is given. A stage computes first and touches the case only when it has something to write; it
+/// writes to paths.folder(), which is beside the finished one where there is one.
 struct StageContext {
   const CasePaths& paths;
   const Parameters& parameters;
@@ -26,6 +27,7 @@ struct StageContext {
 void run_cloud_stage(const StageContext&, const std::filesystem::path& source);
 
 /// The user's cloud as the record of 1-cloud lists it: known by its bytes, not by its name.
+/// \throw CloudRefused for a device or a pipe, which could not be read twice; std::system_error
 RecordedFile source_input(const std::filesystem::path& source);
 
 /// 2-level-set: fits psi to cloud.ply, writes level_set.vti. A cloud far from the origin is fitted in coordinates
@@ -34,7 +36,7 @@ void run_level_set_stage(const StageContext&);
 
 /// 3-mesh: meshes {psi < 0} of the level set, or of mesh.implicit when that is set; writes omega_h.vtu, projected.vtu,
 /// mesh.vtu and quality.csv, and puts everything a certificate needs into the record.
-/// When no mesh can be made, omega_h.vtu and projected.vtu stay for the eye, without mesh.vtu and without a record.
+/// When no mesh can be made, omega_h.vtu and projected.vtu go to 3-mesh/failed, for the eye; nothing else is touched.
 /// \throw MeshingImpossible, ResourceLimit, Interrupted, ArtefactDamaged, ExpressionError, UsageError,
 /// std::system_error
 void run_mesh_stage(const StageContext&);
@@ -48,9 +50,12 @@ UmParams um_params(const Parameters&);
 /// empty for the first stage and for a formula.
 std::vector<RecordedFile> recorded_inputs(const CasePaths&, Stage, const Parameters&);
 
-/// To call before the first write of a stage: makes its folder, removes its record (from here on the stage is not done)
-/// and the temporary files of killed runs, withdraws the certificate, and writes case.toml.
+/// To call before the first write of a stage: makes its folder and removes from it what a killed run left. Where
+/// nothing finished is to be kept, the certificate is withdrawn and case.toml written, so that the run can be resumed.
 void begin_writing(const StageContext&, Stage);
+
+/// Writes case.toml if it is not the same already.
+void write_parameters(const CasePaths&, const Parameters&);
 
 /// A vector of the numbers of a record. \throw ArtefactDamaged if it is not there
 Vec3 recorded_vector(const StageRecord&, const char* key);

@@ -20,13 +20,15 @@ constexpr std::size_t kFewestSamples = 10;
 constexpr double kLeastDensity = .02;
 
 /// For each piece the number of samples that are nearest to it and within `radius`.
-std::vector<std::size_t> backing_samples(const Domain& domain, const ZeroSetTopology& topology, double radius) {
+std::vector<std::size_t> backing_samples(const Domain& domain, const ZeroSetTopology& topology, double radius,
+                                         const KeepGoing& keep_going) {
   constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
   const std::vector<Vec3>& samples = domain.cloud.points;
   std::vector<double> least(samples.size(), radius);
   std::vector<std::size_t> owner(samples.size(), kNone), near;
   std::vector<Vec3> x;
   for (std::size_t c = 0; c < topology.components.size(); ++c) {
+    poll(keep_going);
     near.clear();
     x.clear();
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -36,7 +38,7 @@ std::vector<std::size_t> backing_samples(const Domain& domain, const ZeroSetTopo
     }
     if (near.empty()) continue;
     const auto points = topology.points_of(topology.components[c]);
-    const std::vector<double> d = nearest_sample_distances(x, {points.begin(), points.end()});
+    const std::vector<double> d = nearest_sample_distances(x, {points.begin(), points.end()}, keep_going);
     for (std::size_t k = 0; k < near.size(); ++k) {
       const std::size_t i = near[k];
       if (d[k] < least[i] || (owner[i] == kNone && d[k] <= radius)) least[i] = d[k], owner[i] = c;
@@ -69,15 +71,15 @@ double counting_spacing(const Domain& domain, double h) {
   return std::max(wanted, std::cbrt(domain.box.volume() / kMaxGridNodes));
 }
 
-ZeroSetChoice choose_components(const Domain& domain, double h) {
+ZeroSetChoice choose_components(const Domain& domain, double h, const KeepGoing& keep_going) {
   ZeroSetChoice choice;
-  choice.topology = zero_set_topology(domain.psi(), domain.box, counting_spacing(domain, h));
+  choice.topology = zero_set_topology(domain.psi(), domain.box, counting_spacing(domain, h), keep_going);
   const std::vector<ZeroSetComponent>& pieces = choice.topology.components;
   if (pieces.empty()) return choice;
   const double radius = std::max(kSupportRadius * domain.cloud_spacing, choice.topology.spacing);
   std::vector<std::size_t> backing(pieces.size()), wanted(pieces.size());
   if (!domain.formula) {
-    backing = backing_samples(domain, choice.topology, radius);
+    backing = backing_samples(domain, choice.topology, radius, keep_going);
     wanted = wanted_samples(choice.topology, backing);
   }
   for (std::size_t c = 0; c < pieces.size(); ++c) {

@@ -34,6 +34,7 @@ double counting_spacing(const Domain& domain, double h);
 /// @param h  edge length of the mesh to come; the grid has counting_spacing(domain, h)
 /// Cost: one value of psi per node of the grid, one nearest-point query per sample and piece whose box it is near.
 /// \throw std::length_error  a box too unlike a cube for the grid
-ZeroSetChoice choose_components(const Domain& domain, double h);
+/// \throw MeshCancelled
+ZeroSetChoice choose_components(const Domain& domain, double h, const KeepGoing& keep_going = {});
 
 }  // namespace umtet

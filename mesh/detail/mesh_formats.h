@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -58,8 +59,14 @@ struct NumberedMesh {
 };
 
 /// Sorts by node number, renumbers the tets and drops unused nodes.
-/// \throw MeshFileRefused for a node number that is missing or given twice
+/// \throw MeshFileRefused for a node number that is missing or given twice, and as refuse_broken_tets()
 MeshFile assemble(const std::filesystem::path& path, NumberedMesh&& numbered);
+
+/// \throw MeshFileRefused for a tet with a node twice or with a node that has no finite place, by the numbers of the
+///        file: of vertex i and of tet t
+void refuse_broken_tets(const std::filesystem::path& path, const TetMesh& mesh,
+                        const std::function<std::int64_t(std::size_t)>& vertex_number,
+                        const std::function<std::int64_t(std::size_t)>& tet_number);
 
 /// Drops the vertices (and their data) that no tet uses.
 void drop_unused_vertices(MeshFile& file);

@@ -244,6 +244,9 @@ MeshFile detail::read_vtu(const std::filesystem::path& path) {
   }
   take_data(grid->GetPointData(), grid->GetNumberOfPoints(), nullptr, file.point_data);
   take_data(grid->GetCellData(), grid->GetNumberOfCells(), &kept, file.cell_data);
+  refuse_broken_tets(
+      path, file.mesh, [](std::size_t v) { return static_cast<std::int64_t>(v); },
+      [&](std::size_t t) { return static_cast<std::int64_t>(kept[t]); });
   drop_unused_vertices(file);
   return file;
 }

@@ -242,9 +242,16 @@ mu::Parser grammar() {
   return p;
 }
 
-std::string refusal(const mu::ParserError& e) {
+/// muParser takes everything up to the next blank or bracket for a token, and adds a blank to the text.
+std::string offending_token(const mu::ParserError& e) {
   const std::string token = e.GetToken();
-  if (token == "abs" || token.rfind("abs(", 0) == 0) return "abs is not smooth where its argument is 0; psi must be C2";
+  if (!token.empty() && std::string("+-*/^").find(token[0]) != std::string::npos) return token.substr(0, 1);
+  return token.substr(0, token.find_last_not_of(" \t") + 1);
+}
+
+std::string refusal(const mu::ParserError& e) {
+  const std::string token = offending_token(e);
+  if (token == "*" || token == "/" || token == "^") return "unexpected \"" + token + "\" (a power is written x^2)";
   switch (e.GetCode()) {
     case mu::ecUNASSIGNABLE_TOKEN:
       for (const auto& [name, f] : kFunctions) {
@@ -265,13 +272,34 @@ std::string refusal(const mu::ParserError& e) {
   }
 }
 
+/// What other languages have and a C2 function cannot be made of.
+void refuse_kinks(const std::string& text) {
+  for (std::size_t k = 0; k < text.size();) {
+    std::size_t end = k;
+    while (end < text.size() && (std::isalnum(static_cast<unsigned char>(text[end])) || text[end] == '_')) ++end;
+    const std::string name = text.substr(k, end - k);
+    for (const char* kink : {"abs", "fabs", "min", "max", "sign", "floor", "ceil", "round"}) {
+      if (name == kink) throw ExpressionError(text, k + 1, name + " is not smooth; psi must be C2");
+    }
+    k = std::max(end, k + 1);
+  }
+}
+
+/// The character that begins at byte k, all of its bytes.
+std::string character(const std::string& text, std::size_t k) {
+  std::size_t n = 1;
+  while (k + n < text.size() && (static_cast<unsigned char>(text[k + n]) & 0xc0) == 0x80) ++n;
+  return text.substr(k, n);
+}
+
 GiNaC::ex Builder::build() {
   if (text_.find_first_not_of(" \t") == std::string::npos) throw ExpressionError(text_, 1, "the expression is empty");
   if (text_.size() > kMaxText) throw ExpressionError(text_, kMaxText + 1, "longer than 4096 characters");
+  refuse_kinks(text_);
   for (std::size_t k = 0; k < text_.size(); ++k) {  // muParser has more signs than we do: , ? : = " ...
     const unsigned char c = static_cast<unsigned char>(text_[k]);
     if (!(c < 128 && (std::isalnum(c) || std::string(" \t._+-*/^()").find(text_[k]) != std::string::npos))) {
-      throw ExpressionError(text_, k + 1, std::string("unexpected character ") + text_[k]);
+      throw ExpressionError(text_, k + 1, "unexpected character " + character(text_, k));
     }
   }
   active_ = this;

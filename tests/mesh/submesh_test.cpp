@@ -74,6 +74,16 @@ TEST(Submesh, PositiveFacesAreTheBoundaryOrientedOutwards) {
   }
 }
 
+TEST(ExpectedTets, IsNearTheCountAlsoInABoxMuchTooLarge) {
+  const AnalyticDomain ball = testing::sphere();
+  const Box large(Vec3::Constant(-12), Vec3::Constant(14));
+  const double h = h_for_tets(ball, large, 20000);
+  const auto n = static_cast<double>(find_submesh(BackgroundMesh(a15(), ball.box, h), ball).mesh.C.size());
+  EXPECT_NEAR(n, 20000, 2000);
+  EXPECT_NEAR(expected_tets(ball, large, h), 20000, 1);
+  EXPECT_EQ(expected_tets(ball, Box(Vec3::Constant(5), Vec3::Constant(6)), h), 0);
+}
+
 TEST(Submesh, DoesNotDependOnThreads) {
   const AnalyticDomain domain = testing::torus();
   const BackgroundMesh background = background_of(domain, 30000);

@@ -324,5 +324,25 @@ TEST(TetMeshIo, MeshioReadsOurFiles) {
   fs::remove(script);
 }
 
+TEST(ReadTetMesh, ATetWithANodeTwiceAndANodeWithoutAPlaceAreNamed) {
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("umtet_broken_" + std::to_string(::getpid()) + ".mesh");
+  const auto refusal = [&](const std::string& third, const std::string& tet) {
+    std::ofstream(file) << "MeshVersionFormatted 2\nDimension 3\nVertices\n5\n9 9 nan 0\n0 0 0 0\n1 0 0 0\n"
+                        << third << " 0\n0 0 1 0\nTetrahedra\n1\n"
+                        << tet << " 1\nEnd\n";
+    try {
+      read_tet_mesh(file);
+    } catch (const MeshFileRefused& e) {
+      return std::string(e.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(refusal("0 1 0", "2 3 4 5"), "accepted");  // node 1 is no number, but in no tet
+  EXPECT_NE(refusal("0 1 0", "2 3 4 4").find("tet 1: it has its node 4 twice"), std::string::npos);
+  EXPECT_NE(refusal("0 inf 0", "2 3 4 5").find("node 4: a coordinate is not"), std::string::npos);
+  std::filesystem::remove(file);
+}
+
 }  // namespace
 }  // namespace umtet

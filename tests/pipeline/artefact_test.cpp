@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -27,6 +28,13 @@ TEST_F(Artefact, IsReplacedAsAWhole) {
   write_text_artefact(file, "second");
   EXPECT_EQ(read_text(file), "second");
   EXPECT_EQ(n_files(), 1u);
+}
+
+TEST_F(Artefact, DevicesAndPipesAreNotRead) {
+  EXPECT_THROW(stamp("/dev/zero"), std::system_error);
+  EXPECT_THROW(read_text("/dev/zero"), std::system_error);
+  ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);  // opening it would wait for a writer
+  EXPECT_THROW(stamp(file), std::system_error);
 }
 
 TEST_F(Artefact, FailureOfTheWriterKeepsTheOldFileAndNamesIt) {

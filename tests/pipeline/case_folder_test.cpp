@@ -79,7 +79,7 @@ TEST_F(CaseFolder, ARecordCutAnywhereIsNeverDone) {
     EXPECT_EQ(kind(), Kind::Damaged) << n;
   }
   std::string other = good;
-  other.replace(other.find("\"schema\": 1"), 11, "\"schema\": 9");
+  other.replace(other.find("\"schema\": 2"), 11, "\"schema\": 9");
   std::ofstream(paths.record(Stage::LevelSet)) << other;
   EXPECT_EQ(kind(), Kind::Missing);
 }
@@ -88,8 +88,29 @@ TEST_F(CaseFolder, ARecordVouchesForNothingOutsideItsFolder) {
   finish_stage();
   std::string text = read_text(paths.record(Stage::LevelSet));
   text.replace(text.find("level_set.vti"), 13, "../case.toml");
-  std::ofstream(paths.record(Stage::LevelSet)) << text;
+  std::ofstream(paths.record(Stage::LevelSet)) << file_text(sealed(Json::parse(text)));
+  const StageState state = inspect_stage(paths, Stage::LevelSet, parameters, inputs);
+  EXPECT_EQ(state.kind, Kind::Damaged);
+  EXPECT_NE(state.reason.find("outside its folder"), std::string::npos) << state.reason;
+}
+
+TEST_F(CaseFolder, ARecordThatWasEditedIsDamaged) {
+  finish_stage();
+  const fs::path file = paths.record(Stage::LevelSet);
+  const Json good = Json::parse(read_text(file));
+  for (const auto& [key, value] : good.items()) {
+    if (key == "schema" || key == "stage") continue;  // of another kind altogether
+    Json bad = good;
+    bad[key] = "edited";
+    std::ofstream(file) << file_text(bad);
+    EXPECT_EQ(kind(), Kind::Damaged) << key;
+  }
+  Json bad = good;
+  bad["run"]["seconds"] = 2;
+  std::ofstream(file) << file_text(bad);
   EXPECT_EQ(kind(), Kind::Damaged);
+  std::ofstream(file) << good.dump();  // other white space is no other content
+  EXPECT_EQ(kind(), Kind::Done);
 }
 
 TEST_F(CaseFolder, OneProcessAtATime) {
@@ -99,7 +120,7 @@ TEST_F(CaseFolder, OneProcessAtATime) {
     int code = 1;
     try {
       const CaseLock second(root);
-    } catch (const std::system_error& e) {
+    } catch (const FileTrouble& e) {
       code = std::string(e.what()).find("process " + std::to_string(::getppid())) != std::string::npos ? 0 : 2;
     }
     ::_exit(code);

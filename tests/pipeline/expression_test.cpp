@@ -122,6 +122,21 @@ TEST(Expression, RefusalsNameTheColumn) {
   }
 }
 
+TEST(Expression, RefusalsSayWhatIsWrongInWholeCharacters) {
+  const std::pair<const char*, const char*> cases[] = {{"x**2", "unexpected \"*\" (a power is written x^2)"},
+                                                       {"min(x,y)", "column 1: min is not smooth"},
+                                                       {"x+\xc3\xa9", "unexpected character \xc3\xa9\n"},
+                                                       {"x*/2", "unexpected \"/\""}};
+  for (const auto& [text, message] : cases) {
+    try {
+      Expression psi(text);
+      ADD_FAILURE() << "accepted: " << text;
+    } catch (const ExpressionError& e) {
+      EXPECT_NE(std::string(e.what()).find(message), std::string::npos) << e.what();
+    }
+  }
+}
+
 TEST(Expression, AnyTextIsAnExpressionOrARefusal) {
   const std::vector<std::string> tokens = {"x", "y", "z", "pi", "1",    "0",    ".5",   "2", "+",   "-",    "*", "/",
                                            "^", "(", ")", " ",  "sin(", "log(", "sqrt", "e", "1e3", "tan(", "-", ","};

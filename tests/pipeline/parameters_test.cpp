@@ -82,7 +82,7 @@ TEST(Parameters, UnknownKeysNameTheNearest) {
 TEST(Parameters, ValuesOutOfTypeOrRangeAreRefused) {
   for (const char* assignment :
        {"mesh.samples=0", "mesh.samples=2.5", "mesh.samples=", "mesh.samples=3x", "mesh.h=-1", "mesh.h=nan",
-        "mesh.h=inf", "mesh.h=0,1", "reconstruct.smoothing=0", "reconstruct.tolerance=1", "mesh.mode=fast",
+        "mesh.h=inf", "mesh.h=0,1", "reconstruct.smoothing=-1", "reconstruct.tolerance=1", "mesh.mode=fast",
         "mesh.background=z", "mesh.box=0,0,0,1,1", "mesh.box=0,0,0,1,1,0", "mesh.box=0,0,0,1,1,1,",
         "mesh.keep_iterates=maybe", "mesh.h"}) {
     Parameters p;
@@ -109,6 +109,19 @@ TEST(Parameters, EdgeLengthAndCountExcludeEachOther) {
   EXPECT_NE(refusal([&] { p.set("mesh.h", "0.1", ParamSource::Flag, "--h"); }), "accepted");
   p.set("mesh.h=0.2");  // weaker than the flag
   EXPECT_EQ(p.real("mesh.h"), 0);
+}
+
+TEST(Parameters, WholeNumbersMayHaveAnExponentButNoFraction) {
+  Parameters p;
+  p.set("mesh.tets=1e6");
+  EXPECT_EQ(p.integer("mesh.tets"), 1000000);
+  EXPECT_NE(refusal([&] { p.set("mesh.tets=1.5e0"); }), "accepted");
+  EXPECT_NE(refusal([&] { p.set("output.units=\xff"); }), "accepted");
+}
+
+TEST(Nearest, PrefersTheWordThatGoesOn) {
+  EXPECT_EQ(nearest("--tet", {"--set", "--tets"}), "--tets");
+  EXPECT_EQ(nearest("--sett", {"--set", "--tets"}), "--set");
 }
 
 TEST(ParseBox, TakesSixNumbers) {

@@ -22,7 +22,7 @@ LevelSet level_set(const std::function<double(const Vec3&)>& f) {
   for (int k = 0; k < 41; ++k)
     for (int j = 0; j < 41; ++j)
       for (int i = 0; i < 41; ++i) values.push_back(f(lattice.origin + .1 * Vec3(i, j, k)));
-  return LevelSet(LmePrior{}, {{lattice, values}});
+  return LevelSet(LmePrior{}, {lattice, values});
 }
 
 void add_ball_samples(std::vector<Vec3>& points, const Vec3& centre, double radius, int n) {
