@@ -1,25 +1,21 @@
 #include "reconstruct/cloud_neighbours.h"
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <flann/flann.hpp>
 #include <numbers>
 #include <numeric>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+
+#include "reconstruct/neighbour_tree.h"
 
 namespace umtet {
 namespace {
-
-// Queries per call of FLANN, which allocates its result set once per call: 256 amortise that, and leave blocks enough
-// for many threads.
-constexpr std::size_t kQueriesPerBlock = 256;
-// 8 to 32 cost the same with k = 12 on a surface, 4 costs a tenth more.
-constexpr int kLeafSize = 10;
 
 /// The distinct coordinates of a cloud, and where each point sits among them.
 struct Places {
@@ -52,54 +48,56 @@ Places distinct_places(const std::vector<Vec3>& points) {
   return places;
 }
 
-void require_finite(const std::vector<Vec3>& points) {
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (!points[i].allFinite()) throw std::invalid_argument("points[" + std::to_string(i) + "] is not finite");
+struct Distances {
+  std::vector<double> nearest, mean_square;
+  bool has_duplicates = false;
+};
+
+Distances distances_to_others(const NeighbourTree& tree, int k) {
+  Distances distances{std::vector<double>(tree.size()), std::vector<double>(tree.size())};
+  const std::size_t n_found = static_cast<std::size_t>(k) + 1;  // a point finds itself first
+  std::atomic<bool> has_duplicates = false;
+  for_each_neighbourhood(tree, n_found, [&](std::uint32_t i, std::span<const Neighbour> found) {
+    const std::span<const Neighbour> others = found.subspan(1);
+    if (others.front().distance2 == 0) has_duplicates = true;
+    distances.nearest[i] = std::sqrt(others.front().distance2);
+    double sum = 0;
+    for (const Neighbour& other : others) sum += other.distance2;
+    distances.mean_square[i] = sum / k;
+  });
+  distances.has_duplicates = has_duplicates;
+  return distances;
 }
 
 }  // namespace
 
 NeighbourDistances neighbour_distances(const std::vector<Vec3>& points, int k) {
   if (k < 1) throw std::invalid_argument("k = " + std::to_string(k) + ": must be >= 1");
-  require_finite(points);
-  Places places = distinct_places(points);
-  const std::size_t n = places.position.size();
-  if (n < 2) throw std::invalid_argument("the cloud has fewer than two distinct places: it has no spacing");
-  k = static_cast<int>(std::min<std::size_t>(k, n - 1));
-
-  const flann::Matrix<double> rows(places.position.front().data(), n, 3);
-  flann::Index<flann::L2_3D<double>> tree(rows, flann::KDTreeSingleIndexParams(kLeafSize));
-  tree.buildIndex();
-  const flann::SearchParams exact(flann::FLANN_CHECKS_UNLIMITED, 0.0F);
-
-  const std::size_t n_found = static_cast<std::size_t>(k) + 1;  // a place finds itself first
-  std::vector<double> nearest(n), mean_square(n);
-  const std::size_t n_blocks = (n + kQueriesPerBlock - 1) / kQueriesPerBlock;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n_blocks), [&](const tbb::blocked_range<std::size_t>& blocks) {
-    std::vector<std::size_t> ids(kQueriesPerBlock * n_found);
-    std::vector<double> distances2(kQueriesPerBlock * n_found);
-    for (std::size_t block = blocks.begin(); block != blocks.end(); ++block) {
-      const std::size_t first = block * kQueriesPerBlock, count = std::min(kQueriesPerBlock, n - first);
-      const flann::Matrix<double> queries(places.position[first].data(), count, 3);
-      flann::Matrix<std::size_t> id_rows(ids.data(), count, n_found);
-      flann::Matrix<double> distance_rows(distances2.data(), count, n_found);
-      tree.knnSearch(queries, id_rows, distance_rows, n_found, exact);
-      for (std::size_t q = 0; q < count; ++q) {
-        const double* d2 = distance_rows[q];
-        nearest[first + q] = std::sqrt(d2[1]);
-        mean_square[first + q] = std::accumulate(d2 + 1, d2 + n_found, 0.0) / k;
-      }
-    }
-  });
+  constexpr std::string_view kNoSpacing = "the cloud has fewer than two distinct places: it has no spacing";
+  if (points.size() < 2) throw std::invalid_argument(std::string(kNoSpacing));
 
   NeighbourDistances result;
-  result.k = k;
+  result.k = static_cast<int>(std::min<std::size_t>(k, points.size() - 1));
+  // Most clouds have no duplicates, and the search itself shows it: sorting for them would cost a fifth more.
+  Distances distances = distances_to_others(NeighbourTree(points), result.k);
+  if (!distances.has_duplicates) {
+    result.nearest = std::move(distances.nearest);
+    result.mean_square = std::move(distances.mean_square);
+    result.multiplicity.assign(points.size(), 1);
+    return result;
+  }
+
+  const Places places = distinct_places(points);
+  const std::size_t n = places.position.size();
+  if (n < 2) throw std::invalid_argument(std::string(kNoSpacing));
+  result.k = static_cast<int>(std::min<std::size_t>(k, n - 1));
+  distances = distances_to_others(NeighbourTree(places.position), result.k);
   result.nearest.reserve(points.size());
   result.mean_square.reserve(points.size());
   result.multiplicity.reserve(points.size());
   for (const std::size_t place : places.of) {
-    result.nearest.push_back(nearest[place]);
-    result.mean_square.push_back(mean_square[place]);
+    result.nearest.push_back(distances.nearest[place]);
+    result.mean_square.push_back(distances.mean_square[place]);
     result.multiplicity.push_back(places.multiplicity[place]);
   }
   return result;

@@ -1,6 +1,7 @@
 #include "reconstruct/fit_ssd.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -9,6 +10,7 @@
 
 #include "reconstruct/cloud_neighbours.h"
 #include "reconstruct/multigrid.h"
+#include "reconstruct/resolution.h"
 #include "reconstruct/ssd_assembled.h"
 
 namespace umtet {
@@ -16,11 +18,19 @@ namespace umtet {
 std::vector<std::string> problems(const SsdParams& params) {
   std::vector<std::string> p = problems(params.prior);
   if (!(params.spacing >= 0 && std::isfinite(params.spacing))) p.push_back("spacing must be >= 0 (0: automatic)");
-  if (!(params.smoothing > 0)) p.push_back("smoothing must be > 0");
+  if (!(params.smoothing >= 0 && std::isfinite(params.smoothing))) p.push_back("smoothing must be >= 0 (0: automatic)");
+  if (!(params.noise >= 0 && std::isfinite(params.noise))) p.push_back("noise must be >= 0");
+  if (!(params.detail > 0 && std::isfinite(params.detail))) p.push_back("detail must be > 0");
+  if (!(params.smooth > 0 && std::isfinite(params.smooth))) p.push_back("smooth must be > 0");
   if (!(params.alpha > 0)) p.push_back("alpha must be > 0");
   if (!(params.tolerance > 0 && params.tolerance < 1)) p.push_back("tolerance must be in (0, 1)");
   if (params.max_iterations < 1) p.push_back("max_iterations must be >= 1");
+  if (!(params.band_tolerance > 0 && params.band_tolerance < 1)) p.push_back("band_tolerance must be in (0, 1)");
   if (params.padding < 1) p.push_back("padding must be >= 1");
+  if (params.solver == SsdSolver::Cascade) {
+    if (params.weights == SsdWeights::Paper) p.push_back("weights = paper needs solver = full or assembled");
+    if (params.prior.kind == LmePrior::Kind::Gaussian) p.push_back("prior = gaussian needs solver = full or assembled");
+  }
   return p;
 }
 
@@ -77,81 +87,188 @@ Hierarchy choose_hierarchy(const Eigen::AlignedBox3d& box, double h, int padding
   return best;
 }
 
-// As fine as an edge of the default mesh (1.5 % of the diagonal: what the mesh can show), but not finer than the
-// samples can tell.
-double automatic_spacing(double cloud_spacing, double diagonal) {
-  return std::max(0.75 * cloud_spacing, 0.015 * diagonal);
-}
+// A full lattice is no finer than an edge of the default mesh (1.5 % of the diagonal: what the mesh can show).
+constexpr double kFullSpacing = 0.015;
 
 // @param area  a_i; empty for the paper's weights
 std::vector<SsdSample> make_samples(const OrientedPointCloud& cloud, const std::vector<double>& area,
-                                    const Lattice& lattice) {
-  const double h = lattice.h;
+                                    const Lattice& lattice, double noise) {
+  const double h = lattice.h, l = value_length(h, noise);
   std::vector<SsdSample> samples(cloud.points.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {
     samples[i].xi = (cloud.points[i] - lattice.origin) / h;
     samples[i].normal = cloud.normals[i];
     // With f = h F and x = h xi, both functionals divided by h² (area) or as they stand (paper):
-    samples[i].w_value = area.empty() ? h * h : area[i] / (h * h);
+    samples[i].w_value = area.empty() ? h * h : area[i] / (l * l);
     samples[i].w_gradient = area.empty() ? 1.0 : area[i] / (h * h);
   }
   return samples;
 }
 
-void measure_fit(const OrientedPointCloud& cloud, const LevelSet& psi, SsdReport& report) {
-  double sum2 = 0;
-  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+// @param length  by which values are weighed
+void measure_fit(const OrientedPointCloud& cloud, const LevelSet& psi, const std::vector<double>& area, double length,
+                 SsdReport& report) {
+  const std::size_t n = cloud.points.size();
+  std::vector<double> value(n), misfit(n);
+  std::vector<char> opposed(n);
+  tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
     Vec3 gradient;
-    sum2 += std::pow(psi.evaluate(cloud.points[i], &gradient, nullptr), 2);
-    report.n_opposed_normals += gradient.dot(cloud.normals[i]) < 0;
+    value[i] = psi.evaluate(cloud.points[i], &gradient, nullptr);
+    misfit[i] = (gradient - cloud.normals[i]).squaredNorm();
+    opposed[i] = gradient.dot(cloud.normals[i]) < 0;
+  });
+  double sum2 = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double a = area.empty() ? 1 : area[i], scale = area.empty() ? 1 : length;
+    sum2 += value[i] * value[i];
+    report.energy_value += a * std::pow(value[i] / scale, 2) / 2;
+    report.energy_normal += a * misfit[i] / 2;
+    report.n_opposed_normals += opposed[i];
   }
-  report.rms_value = std::sqrt(sum2 / static_cast<double>(cloud.points.size()));
+  report.rms_value = std::sqrt(sum2 / static_cast<double>(n));
 
   constexpr int kWallSamples = 16;  // along each edge of a face
   report.least_wall_value = std::numeric_limits<double>::infinity();
   const Eigen::AlignedBox3d& box = psi.domain();
   for (int face = 0; face < 6; ++face) {
     for (int s = 0; s < kWallSamples * kWallSamples; ++s) {
+      const int row = s / kWallSamples, column = s % kWallSamples;
       Vec3 t;  // position in the box, 0 .. 1 on each axis
       t[face / 2] = face % 2;
-      t[(face / 2 + 1) % 3] = (s % kWallSamples + 0.5) / kWallSamples;
-      t[(face / 2 + 2) % 3] = (s / kWallSamples + 0.5) / kWallSamples;
+      t[(face / 2 + 1) % 3] = (column + 0.5) / kWallSamples;
+      t[(face / 2 + 2) % 3] = (row + 0.5) / kWallSamples;
       report.least_wall_value = std::min(report.least_wall_value, psi.value(box.min() + t.cwiseProduct(box.sizes())));
     }
   }
+}
+
+double median(std::vector<double> v) {
+  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+  std::nth_element(v.begin(), middle, v.end());
+  return *middle;
 }
 
 void go_on(const SsdProgress& progress, const char* step, double fraction) {
   if (progress && !progress(step, fraction)) throw SolveCancelled(fmt::format("stopped during {}", step));
 }
 
-// Coefficients in units of the spacing, by the solver that was asked for.
-std::vector<double> solve(const SsdOperator& op, int n_levels, const SsdParams& params, const SsdProgress& progress,
-                          SsdReport& report) {
+// What both ways of fitting start from.
+struct Problem {
+  const OrientedPointCloud& cloud;
+  const SsdParams& params;
+  const SsdProgress& progress;
+  LmeTables tables;
+  Eigen::AlignedBox3d box;
+  std::vector<double> area;  // a_i; empty for the paper's weights
+};
+
+// The level set on all nodes of one lattice.
+// @param samples  in the units of that lattice
+LevelSet fit_lattice(const Problem& problem, const Hierarchy& hierarchy, std::vector<SsdSample> samples,
+                     SsdReport& report) {
+  const SsdParams& params = problem.params;
+  const Lattice& lattice = hierarchy.finest;
+  const bool by_area = params.weights == SsdWeights::Area;
+  const double kappa = by_area ? report.smoothing : params.alpha * lattice.h;
+  const SsdOperator op(problem.tables, lattice.n, kappa, std::move(samples));
+  report.n_nodes = lattice.size();
+  std::vector<double> c;  // in units of the spacing
   if (params.solver == SsdSolver::Assembled) {
     if (op.size() > kAssembledNodes) {
       throw SolveError(
-          fmt::format("the assembled solver is for up to {} nodes, this lattice has {}: use multigrid or a larger "
+          fmt::format("the assembled solver is for up to {} nodes, this lattice has {}: use another solver or a larger "
                       "spacing",
                       kAssembledNodes, op.size()));
     }
-    return solve_assembled(op);
+    c = solve_assembled(op);
+  } else {
+    Multigrid multigrid(op, hierarchy.n_levels);
+    std::vector<double> r(op.size() + SsdOperator::kPad, 0.0);
+    op.right_hand_side(r.data());
+    go_on(problem.progress, "solve", 0);
+    const PcgReport pcg = solve_pcg(op, multigrid, r, params.tolerance, params.max_iterations, c, [&](double residual) {
+      go_on(problem.progress, "solve", std::clamp(std::log(residual) / std::log(params.tolerance), 0.0, 1.0));
+    });
+    report.iterations = pcg.iterations;
+    report.residuals = pcg.residuals;
+    if (!pcg.converged) {
+      throw SolveError(
+          fmt::format("{} nodes, smoothing {:.3g}: relative residual {:.2e} after {} iterations, wanted {:.1e}",
+                      op.size(), op.kappa(), pcg.residuals.back(), pcg.iterations, params.tolerance));
+    }
   }
-  Multigrid multigrid(op, n_levels);
-  std::vector<double> c, r(op.size() + SsdOperator::kPad, 0.0);
-  op.right_hand_side(r.data());
-  go_on(progress, "solve", 0);
-  const PcgReport pcg = solve_pcg(op, multigrid, r, params.tolerance, params.max_iterations, c, [&](double residual) {
-    go_on(progress, "solve", std::clamp(std::log(residual) / std::log(params.tolerance), 0.0, 1.0));
-  });
-  report.iterations = pcg.iterations;
-  report.residuals = pcg.residuals;
-  if (!pcg.converged) {
-    throw SolveError(
-        fmt::format("{} nodes, smoothing {:.3g}: relative residual {:.2e} after {} iterations, wanted {:.1e}",
-                    op.size(), op.kappa(), pcg.residuals.back(), pcg.iterations, params.tolerance));
+  c.resize(op.size() + SsdOperator::kPad, 0.0);
+  if (params.solver != SsdSolver::Cascade) {
+    std::vector<double> workspace;
+    // Back to model units: E = h² times the lattice functional for area weights; eq. (10) is written in its own units.
+    report.energy_hessian = (by_area ? lattice.h * lattice.h : 1) * op.energies(c.data(), workspace)[2];
   }
-  return c;
+  c.resize(op.size());
+  for (double& v : c) v *= lattice.h;
+  return LevelSet(params.prior, {lattice, std::move(c)});
+}
+
+LevelSet fit_full(const Problem& problem, SsdReport& report) {
+  const Hierarchy hierarchy =
+      choose_hierarchy(problem.box, report.spacing, problem.params.padding, problem.tables.width());
+  return fit_lattice(problem, hierarchy, make_samples(problem.cloud, problem.area, hierarchy.finest, problem.params.noise),
+                     report);
+}
+
+// Enough nodes for a coarsest level that shows every part of a body: a third of a second.
+constexpr double kCoarsestNodes = 150000;
+// Functions of a band stay clear of those that the wall of the coarsest lattice deforms.
+constexpr int kLeastCascadePadding = 5;
+// Samples are merged in half-spacing cubes on every level.
+constexpr double kMergeCube = 0.5;
+// A sample that stands for more than 4 h^2 has no neighbour within about 2 h.
+constexpr double kMostArea = 4;
+
+LevelSet fit_cascade(const Problem& problem, SsdReport& report) {
+  const SsdParams& params = problem.params;
+  const int padding = std::max(params.padding, kLeastCascadePadding);
+  int n_bands = 0;
+  double coarsest = report.spacing;
+  while ((problem.box.sizes() / coarsest + Vec3::Constant(2 * padding)).prod() > kCoarsestNodes) {
+    coarsest *= 2;
+    ++n_bands;
+  }
+  const Hierarchy hierarchy = choose_hierarchy(problem.box, coarsest, padding, problem.tables.width());
+  Lattice lattice = hierarchy.finest;
+  lattice.h = std::ldexp(lattice.h, -n_bands);
+  lattice.n = (lattice.n.array() - 1) * (1 << n_bands) + 1;
+  std::vector<std::vector<SsdSample>> samples(n_bands + 1);
+  samples[n_bands] = merge_samples(make_samples(problem.cloud, problem.area, lattice, params.noise), kMergeCube);
+  for (int level = n_bands; level-- > 0;) {
+    std::vector<SsdSample> coarser = samples[level + 1];
+    coarsen(coarser);
+    const double h = std::ldexp(lattice.h, n_bands - level), l = value_length(h, params.noise);
+    for (SsdSample& s : coarser) s.w_value = s.w_gradient * std::pow(h / l, 2);
+    samples[level] = merge_samples(coarser, kMergeCube);
+    samples[level + 1] = resolved_samples(samples[level + 1], kMostArea);
+  }
+  LevelSet psi = fit_lattice(problem, hierarchy, std::move(samples[0]), report);
+  for (int level = 1; level <= n_bands && !samples[level].empty(); ++level) {
+    const double per_level = 1.0 / n_bands;
+    BandReport band;
+    psi = refine(psi, samples[level], report.smoothing, params.band_tolerance, params.max_iterations,
+                 [&](double residual) {
+                   const double done = std::clamp(std::log(residual) / std::log(params.band_tolerance), 0.0, 1.0);
+                   go_on(problem.progress, "refine", (level - 1 + done) * per_level);
+                 },
+                 band);
+    if (!band.converged) {
+      throw SolveError(fmt::format("band of {} nodes, smoothing {:.3g}: relative residual {:.2e} after {} iterations, "
+                                   "wanted {:.1e}",
+                                   band.n_nodes, report.smoothing, band.residual, band.iterations,
+                                   params.band_tolerance));
+    }
+    samples[level] = {};
+    report.n_nodes += band.n_nodes;
+    report.bands.push_back(band);
+  }
+  report.spacing = psi.spacing();
+  return psi;
 }
 
 }  // namespace
@@ -168,36 +285,30 @@ SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const S
   report.n_points = cloud.points.size();
 
   go_on(progress, "weights", 0);
-  Eigen::AlignedBox3d box;
-  for (const Vec3& x : cloud.points) box.extend(x);
-  const NeighbourDistances near = neighbour_distances(cloud.points, kAreaNeighbours);
-  report.cloud_spacing = median_spacing(near);
-  report.spacing = params.spacing > 0 ? params.spacing : automatic_spacing(report.cloud_spacing, box.diagonal().norm());
-  if (report.spacing > box.diagonal().norm()) {
-    throw SolveError(fmt::format("spacing {:.6g} is larger than the cloud (diagonal {:.6g}): choose a smaller one",
-                                 report.spacing, box.diagonal().norm()));
+  Problem problem{cloud, params, progress, LmeTables(params.prior), {}, {}};
+  for (const Vec3& x : cloud.points) problem.box.extend(x);
+  const double diagonal = problem.box.diagonal().norm();
+  {
+    const NeighbourDistances near = neighbour_distances(cloud.points, kAreaNeighbours);
+    report.cloud_spacing = median_spacing(near);
+    problem.area = sample_areas(near);
   }
-  const LmeTables tables(params.prior);
-  const auto [lattice, n_levels] = choose_hierarchy(box, report.spacing, params.padding, tables.width());
-  report.n_nodes = lattice.size();
-  const double kappa = params.weights == SsdWeights::Area ? params.smoothing : params.alpha * lattice.h;
-
+  const Resolution chosen =
+      choose_resolution(std::sqrt(median(problem.area)), params.noise, params.detail, params.smooth);
+  report.spacing = params.spacing > 0 ? params.spacing : chosen.spacing;
+  if (params.spacing == 0 && params.solver != SsdSolver::Cascade) {
+    report.spacing = std::max(report.spacing, kFullSpacing * diagonal);
+  }
+  report.smoothing = params.smoothing > 0 ? params.smoothing : chosen.smoothing;
+  report.reason = chosen.reason;
+  if (params.weights == SsdWeights::Paper) problem.area = {};
+  if (report.spacing > diagonal) {
+    throw SolveError(fmt::format("spacing {:.6g} is larger than the cloud (diagonal {:.6g}): choose a smaller one",
+                                 report.spacing, diagonal));
+  }
   go_on(progress, "setup", 0);
-  const std::vector<double> area = params.weights == SsdWeights::Area ? sample_areas(near) : std::vector<double>{};
-  const SsdOperator op(tables, lattice.n, kappa, make_samples(cloud, area, lattice));
-  std::vector<double> c = solve(op, n_levels, params, progress, report), workspace;
-  c.resize(op.size() + SsdOperator::kPad, 0.0);
-  const Eigen::Vector3d energies = op.energies(c.data(), workspace);
-  // Back to model units: E = h² times the lattice functional for area weights; eq. (10) is written in its own units.
-  const double unit = params.weights == SsdWeights::Area ? lattice.h * lattice.h : 1;
-  report.energy_value = unit * energies[0];
-  report.energy_normal = unit * energies[1];
-  report.energy_hessian = unit * energies[2];
-
-  c.resize(op.size());
-  for (double& v : c) v *= lattice.h;
-  LevelSet psi(params.prior, {{lattice, std::move(c)}});
-  measure_fit(cloud, psi, report);
+  LevelSet psi = params.solver == SsdSolver::Cascade ? fit_cascade(problem, report) : fit_full(problem, report);
+  measure_fit(cloud, psi, problem.area, value_length(report.spacing, params.noise), report);
   return {std::move(psi), std::move(report)};
 }
 

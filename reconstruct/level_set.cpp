@@ -1,5 +1,7 @@
 #include "reconstruct/level_set.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -12,46 +14,151 @@ namespace {
 
 using namespace detail;
 
+constexpr int kEdge = LatticeBlocks::kEdge;
+
+// Adds a jet in lattice units to one in model units.
 template <JetOrder order>
-void add_level(const LmeTables& tables, const LevelSetLevel& level, const Vec3& x, LatticeJet& sum) {
+void add(const LatticeJet& f, double h, LatticeJet& sum) {
+  sum.value += f.value;
+  if constexpr (order >= kGradient) sum.gradient += f.gradient / h;
+  if constexpr (order >= kHessian) sum.hessian += f.hessian / (h * h);
+}
+
+Vec3 lattice_coordinates(const Lattice& L, const Vec3& x) {
+  return ((x - L.origin) / L.h).cwiseMax(0.0).cwiseMin((L.n.array() - 1).cast<double>().matrix());
+}
+
+template <JetOrder order>
+void add_coarsest(const LmeTables& tables, const LevelSetLevel& level, const Vec3& x, LatticeJet& sum) {
   const Lattice& L = level.lattice;
-  const Vec3 xi = ((x - L.origin) / L.h).cwiseMax(0.0).cwiseMin((L.n.array() - 1).cast<double>().matrix());
   LmeBasis3d B;
-  evaluate_lme_3d<order == kHessian>(tables, L.n, xi, B);
+  evaluate_lme_3d<order == kHessian>(tables, L.n, lattice_coordinates(L, x), B);
   const LatticeJet f = dispatch_width(
       tables.width(), [&](auto W) { return contract<W.value, order>(B, L.n, level.coefficients.data()); });
-  sum.value += f.value;
-  if constexpr (order >= kGradient) sum.gradient += f.gradient / L.h;
-  if constexpr (order >= kHessian) sum.hessian += f.hessian / (L.h * L.h);
+  add<order>(f, L.h, sum);
+}
+
+template <JetOrder order, class Band>
+void add_band(const LmeTables& tables, const Band& band, const Vec3& x, LatticeJet& sum) {
+  const Lattice& L = band.data.blocks.lattice();
+  const Vec3 xi = lattice_coordinates(L, x);
+  const Eigen::Vector3i cell = xi.cast<int>().cwiseMin((L.n.array() - 2).matrix()), block = cell / kEdge;
+  const int window =
+      band.index[block[0] + static_cast<std::size_t>(band.n[0]) * (block[1] + static_cast<std::size_t>(band.n[1]) * block[2])];
+  if (window < 0) return;
+  LmeBasis3d B;
+  evaluate_lme_3d<order == kHessian>(tables, L.n, xi, B);
+  const int corner = band.data.blocks.shift();  // the window begins at node 8 block - shift
+  B.x.first += corner - kEdge * block[0];
+  B.y.first += corner - kEdge * block[1];
+  B.z.first += corner - kEdge * block[2];
+  const int edge = band.edge;
+  const double* c = band.windows.data() + static_cast<std::size_t>(window) * edge * edge * edge;
+  const LatticeJet f =
+      dispatch_width(tables.width(), [&](auto W) { return contract<W.value, order>(B, {edge, edge, edge}, c); });
+  add<order>(f, L.h, sum);
 }
 
 }  // namespace
 
-LevelSet::LevelSet(const LmePrior& prior, std::vector<LevelSetLevel> levels)
-    : tables_(std::make_shared<const LmeTables>(prior)), levels_(std::move(levels)) {
-  if (levels_.empty()) throw std::invalid_argument("a level set needs at least one level");
-  for (LevelSetLevel& level : levels_) {
-    const Lattice& L = level.lattice;
-    if (!(L.h > 0) || L.n.minCoeff() < tables_->width() ||
-        static_cast<std::ptrdiff_t>(level.coefficients.size()) != L.size()) {
-      throw std::invalid_argument("a level needs h > 0, at least 2 half_width nodes an axis and a coefficient a node");
+bool copy_window(const LevelSetLevel& level, const Eigen::Vector3i& first, int n, double* out) {
+  const Lattice& L = level.lattice;
+  const Eigen::Vector3i low = first.cwiseMax(0), high = (first.array() + n).min(L.n.array());
+  if ((low.array() >= high.array()).any()) return false;
+  if (((high - low).array() < n).any()) std::fill(out, out + static_cast<std::ptrdiff_t>(n) * n * n, 0.0);
+  for (int z = low[2]; z < high[2]; ++z)
+    for (int y = low[1]; y < high[1]; ++y) {
+      const double* from = level.coefficients.data() + L.index(low[0], y, z);
+      std::copy(from, from + (high[0] - low[0]),
+                out + low[0] - first[0] + static_cast<std::ptrdiff_t>(n) * (y - first[1] + n * (z - first[2])));
     }
-    level.coefficients.resize(level.coefficients.size() + LevelSetLevel::kPad, 0.0);
+  return true;
+}
+
+LevelSet::Band::Band(LevelSetBand&& band, int half_width) : data(std::move(band)), edge(kEdge + 2 * half_width - 1) {
+  const LatticeBlocks& blocks = data.blocks;
+  n = ((blocks.lattice().n.array() - 1) + kEdge - 1) / kEdge;
+  index.assign(static_cast<std::size_t>(n[0]) * n[1] * n[2], -1);
+  const auto at = [&](const Eigen::Vector3i& b) -> std::int32_t& {
+    return index[b[0] + static_cast<std::size_t>(n[0]) * (b[1] + static_cast<std::size_t>(n[1]) * b[2])];
+  };
+  std::vector<Eigen::Vector3i> cells;
+  for (const Eigen::Vector3i& node_block : blocks.blocks())
+    for (int q = 0; q < 8; ++q) {
+      const Eigen::Vector3i b = node_block - Eigen::Vector3i(q & 1, q >> 1 & 1, q >> 2);
+      if ((b.array() < 0).any() || (b.array() >= n.array()).any() || at(b) >= 0) continue;
+      at(b) = static_cast<std::int32_t>(cells.size());
+      cells.push_back(b);
+    }
+  const std::size_t size = static_cast<std::size_t>(edge) * edge * edge;
+  windows.assign(cells.size() * size + LevelSetLevel::kPad, 0.0);
+  tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t c) {
+    blocks.copy_window(data.coefficients.data(), kEdge * cells[c] - Eigen::Vector3i::Constant(blocks.shift()),
+                       {edge, edge, edge}, edge, windows.data() + c * size);
+  });
+}
+
+LevelSet::LevelSet(const LmePrior& prior, LevelSetLevel coarsest, std::vector<LevelSetBand> bands)
+    : tables_(std::make_shared<const LmeTables>(prior)) {
+  const Lattice& L = coarsest.lattice;
+  if (!(L.h > 0) || L.n.minCoeff() < tables_->width() ||
+      static_cast<std::ptrdiff_t>(coarsest.coefficients.size()) != L.size()) {
+    throw std::invalid_argument("a level needs h > 0, at least 2 half_width nodes an axis and a coefficient a node");
   }
-  const Lattice& L = levels_.front().lattice;
   domain_ = Eigen::AlignedBox3d(L.origin, L.origin + L.h * (L.n.array() - 1).cast<double>().matrix());
+  coarsest.coefficients.resize(coarsest.coefficients.size() + LevelSetLevel::kPad, 0.0);
+  coarsest_ = std::make_shared<const LevelSetLevel>(std::move(coarsest));
+  for (LevelSetBand& band : bands) *this = with_band(std::move(band));
+}
+
+LevelSet LevelSet::with_band(LevelSetBand band) const {
+  const Lattice &L = band.blocks.lattice(), &coarse = lattice(n_levels() - 1);
+  if (L.origin != coarse.origin || 2 * L.h != coarse.h || ((L.n.array() - 1) != 2 * (coarse.n.array() - 1)).any() ||
+      band.coefficients.size() != static_cast<std::size_t>(band.blocks.size()) * LatticeBlocks::kNodes) {
+    throw std::invalid_argument("a band needs the nodes of the level before it, half its spacing, and full blocks");
+  }
+  LevelSet finer = *this;
+  finer.bands_.push_back(std::make_shared<const Band>(std::move(band), tables_->half_width()));
+  return finer;
+}
+
+LevelSet LevelSet::band_limited(double spacing) const {
+  LevelSet limited = *this;
+  while (!limited.bands_.empty() && limited.spacing() < spacing) limited.bands_.pop_back();
+  return limited;
+}
+
+double LevelSet::evaluate_level(int level, const Vec3& x, Vec3* gradient, Mat3* hessian) const {
+  LatticeJet f;
+  const auto add_terms = [&](auto order) {
+    if (level == 0)
+      add_coarsest<order.value>(*tables_, *coarsest_, x, f);
+    else
+      add_band<order.value>(*tables_, *bands_[level - 1], x, f);
+  };
+  if (hessian)
+    add_terms(std::integral_constant<JetOrder, kHessian>{});
+  else if (gradient)
+    add_terms(std::integral_constant<JetOrder, kGradient>{});
+  else
+    add_terms(std::integral_constant<JetOrder, kValue>{});
+  if (gradient) *gradient = f.gradient;
+  if (hessian) *hessian = f.hessian;
+  return f.value;
 }
 
 double LevelSet::evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const {
   LatticeJet f;
-  for (const LevelSetLevel& level : levels_) {
-    if (hessian)
-      add_level<kHessian>(*tables_, level, x, f);
-    else if (gradient)
-      add_level<kGradient>(*tables_, level, x, f);
-    else
-      add_level<kValue>(*tables_, level, x, f);
-  }
+  const auto add_levels = [&](auto order) {
+    add_coarsest<order.value>(*tables_, *coarsest_, x, f);
+    for (const auto& band : bands_) add_band<order.value>(*tables_, *band, x, f);
+  };
+  if (hessian)
+    add_levels(std::integral_constant<JetOrder, kHessian>{});
+  else if (gradient)
+    add_levels(std::integral_constant<JetOrder, kGradient>{});
+  else
+    add_levels(std::integral_constant<JetOrder, kValue>{});
   const double outside = std::sqrt(domain_.squaredExteriorDistance(x));
   if (outside > 0) {
     const Vec3 away = x - x.cwiseMax(domain_.min()).cwiseMin(domain_.max());
@@ -77,90 +184,6 @@ Mat3 LevelSet::hessian(const Vec3& x) const {
   Mat3 H;
   evaluate(x, &g, &H);
   return H;
-}
-
-namespace {
-
-// Least and greatest coefficient over all nodes whose function can be non-zero in the box [low, high] of the model.
-LevelSet::Bounds level_bounds(const LevelSetLevel& level, int R, const Vec3& low, const Vec3& high) {
-  const Lattice& L = level.lattice;
-  Eigen::Vector3i first, last;
-  for (int d = 0; d < 3; ++d) {
-    const int cell_low = static_cast<int>(std::floor((low[d] - L.origin[d]) / L.h));
-    const int cell_high = static_cast<int>(std::ceil((high[d] - L.origin[d]) / L.h)) - 1;
-    first[d] = std::clamp(cell_low - R + 1, 0, L.n[d] - 1);
-    last[d] = std::clamp(std::max(cell_high, cell_low) + R, 0, L.n[d] - 1);
-  }
-  LevelSet::Bounds b{level.coefficients[L.index(first[0], first[1], first[2])], 0};
-  b.high = b.low;
-  for (int k = first[2]; k <= last[2]; ++k)
-    for (int j = first[1]; j <= last[1]; ++j)
-      for (int i = first[0]; i <= last[0]; ++i) {
-        const double c = level.coefficients[L.index(i, j, k)];
-        b.low = std::min(b.low, c);
-        b.high = std::max(b.high, c);
-      }
-  return b;
-}
-
-// Extremes over a window of 2R nodes along one axis, in place: entry i becomes the extreme over i - R + 1 .. i + R.
-template <class Pick>
-void sliding_extreme(std::vector<double>& a, const Eigen::Vector3i& n, int axis, int R, Pick pick) {
-  const std::ptrdiff_t stride = axis == 0 ? 1 : axis == 1 ? n[0] : static_cast<std::ptrdiff_t>(n[0]) * n[1];
-  std::vector<double> line(n[axis]);
-  const Eigen::Vector3i others((axis + 1) % 3, (axis + 2) % 3, 0);
-  const std::ptrdiff_t strides[3] = {1, n[0], static_cast<std::ptrdiff_t>(n[0]) * n[1]};
-  for (int u = 0; u < n[others[0]]; ++u)
-    for (int v = 0; v < n[others[1]]; ++v) {
-      double* base = a.data() + u * strides[others[0]] + v * strides[others[1]];
-      for (int i = 0; i < n[axis]; ++i) line[i] = base[i * stride];
-      for (int i = 0; i < n[axis]; ++i) {
-        double best = line[i];
-        for (int q = std::max(0, i - R + 1); q <= std::min(n[axis] - 1, i + R); ++q) best = pick(best, line[q]);
-        base[i * stride] = best;
-      }
-    }
-}
-
-}  // namespace
-
-LevelSet::Bounds LevelSet::cell_bounds(const Eigen::Vector3i& cell) const {
-  const Lattice& L = levels_.back().lattice;
-  // A tenth of a per mille inside the cell: round-off must not bring in the next layer of coarse cells.
-  const Vec3 low = L.origin + L.h * (cell.cast<double>().array() + 1e-4).matrix();
-  const Vec3 high = low + Vec3::Constant(L.h * (1 - 2e-4));
-  Bounds sum{0, 0};
-  for (const LevelSetLevel& level : levels_) {
-    const Bounds b = level_bounds(level, tables_->half_width(), low, high);
-    sum.low += b.low, sum.high += b.high;
-  }
-  return sum;
-}
-
-std::vector<Vec3> LevelSet::sign_change_cells() const {
-  const LevelSetLevel& finest = levels_.back();
-  const Lattice& L = finest.lattice;
-  const int R = tables_->half_width();
-  std::vector<double> low, high;
-  const bool single = levels_.size() == 1;
-  if (single) {  // separable: one pass an axis instead of (2R)^3 look-ups a cell
-    low.assign(finest.coefficients.begin(), finest.coefficients.begin() + L.size());
-    high = low;
-    for (int axis = 0; axis < 3; ++axis) {
-      sliding_extreme(low, L.n, axis, R, [](double a, double b) { return std::min(a, b); });
-      sliding_extreme(high, L.n, axis, R, [](double a, double b) { return std::max(a, b); });
-    }
-  }
-  std::vector<Vec3> cells;
-  Eigen::Vector3i c;
-  for (c[2] = 0; c[2] + 1 < L.n[2]; ++c[2])
-    for (c[1] = 0; c[1] + 1 < L.n[1]; ++c[1])
-      for (c[0] = 0; c[0] + 1 < L.n[0]; ++c[0]) {
-        const std::ptrdiff_t at = L.index(c[0], c[1], c[2]);
-        const Bounds b = single ? Bounds{low[at], high[at]} : cell_bounds(c);
-        if (b.low <= 0 && b.high >= 0) cells.push_back(L.origin + L.h * (c.cast<double>().array() + 0.5).matrix());
-      }
-  return cells;
 }
 
 }  // namespace umtet

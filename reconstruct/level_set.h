@@ -4,12 +4,13 @@
 #include <memory>
 #include <vector>
 
+#include "reconstruct/lattice_blocks.h"
 #include "reconstruct/lme_lattice.h"
 #include "reconstruct/point_cloud.h"
 
 namespace umtet {
 
-/// Coefficients psi_a, in model units, of the max-ent functions of one lattice: a term of the level set.
+/// Coefficients psi_a, in model units, of all max-ent functions of one lattice.
 struct LevelSetLevel {
   Lattice lattice;
   std::vector<double> coefficients;  ///< lattice.size() values, x fastest; a LevelSet keeps kPad zeros behind them
@@ -17,17 +18,32 @@ struct LevelSetLevel {
   static constexpr std::size_t kPad = 8;  ///< eight-lane loads reach past the last node
 };
 
+/// Coefficients of a finer lattice near the surface: its nodes outside the blocks, and those inside that no sample
+/// needs, have none.
+struct LevelSetBand {
+  LatticeBlocks blocks;
+  std::vector<double> coefficients;  ///< LatticeBlocks::kNodes a block
+};
+
+/// Copies n^3 coefficients of a lattice from node `first` on to `out`, x fastest, zero where there is no node; false if
+/// there is none at all.
+bool copy_window(const LevelSetLevel& level, const Eigen::Vector3i& first, int n, double* out);
+
 /// psi(x) = sum over levels of sum_a psi_a N_a(x), negative inside: C2 on its domain, and satisfies the mesher's
-/// ImplicitFunction.
+/// ImplicitFunction. The first level is a full lattice; each of the others is a correction in a band around the
+/// surface, on a lattice of half the spacing that shares the coarser one's nodes.
 ///
-/// The functions N_a are >= 0 and sum to one, so on a lattice cell psi lies between the least and the greatest sum of
-/// coefficients of its support: sign bounds that list, rigorously, every cell where the surface can be.
-/// All const members are thread-safe and do not allocate, but for sign_change_cells().
+/// Copies share their coefficients. All const members are thread-safe and do not allocate, but for band_limited().
 class LevelSet {
  public:
-  /// @param levels  coarse to fine; the domain is the hull of the first
-  /// \throw std::invalid_argument  no level, sizes that do not match, a lattice below 2 half_width nodes on an axis
-  LevelSet(const LmePrior& prior, std::vector<LevelSetLevel> levels);
+  /// @param bands  coarse to fine, each as fine as 2, 4, 8, ... times the coarsest lattice
+  /// \throw std::invalid_argument  sizes or lattices that do not match, or below 2 half_width nodes on an axis
+  LevelSet(const LmePrior& prior, LevelSetLevel coarsest, std::vector<LevelSetBand> bands = {});
+
+  /// The sum with one more level.
+  LevelSet with_band(LevelSetBand band) const;
+  /// psi down to a spacing: without the levels that are finer (the coarsest always stays).
+  LevelSet band_limited(double spacing) const;
 
   double value(const Vec3& x) const;
   Vec3 gradient(const Vec3& x) const;
@@ -36,25 +52,36 @@ class LevelSet {
   /// at the closest point of the domain plus the distance to it: positive far from the body, and without a new zero
   /// there.
   double evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const;
+  /// The same of one term of the sum, inside the domain: level 0 is the coarsest.
+  double evaluate_level(int level, const Vec3& x, Vec3* gradient, Mat3* hessian) const;
 
   /// Where psi is defined: the hull of the coarsest lattice's nodes.
   const Eigen::AlignedBox3d& domain() const { return domain_; }
+  int n_levels() const { return 1 + static_cast<int>(bands_.size()); }
+  const Lattice& lattice(int level) const {
+    return level == 0 ? coarsest_->lattice : bands_[level - 1]->data.blocks.lattice();
+  }
   /// Lattice spacing of the finest level, model units.
-  double spacing() const { return levels_.back().lattice.h; }
+  double spacing() const { return lattice(n_levels() - 1).h; }
+  const LmeTables& tables() const { return *tables_; }
   const LmePrior& prior() const { return tables_->prior(); }
-  const std::vector<LevelSetLevel>& levels() const { return levels_; }
-
-  /// Least and greatest value psi can take in cell (i, j, k) of the finest lattice, from the coefficients alone.
-  struct Bounds {
-    double low, high;
-  };
-  Bounds cell_bounds(const Eigen::Vector3i& cell) const;
-  /// Centres of the finest lattice's cells whose bounds have both signs: every zero of psi lies in one of these cells.
-  std::vector<Vec3> sign_change_cells() const;
+  const LevelSetLevel& coarsest() const { return *coarsest_; }
+  /// @param level  1 .. n_levels() - 1
+  const LevelSetBand& band(int level) const { return bands_[level - 1]->data; }
 
  private:
+  // For evaluation each block of 8 x 8 x 8 cells has a copy of all coefficients that count in it: no gathering.
+  struct Band {
+    LevelSetBand data;
+    Eigen::Vector3i n;                // cell blocks along each axis
+    int edge;                         // nodes along the edge of a window, 8 + 2R - 1
+    std::vector<std::int32_t> index;  // of a cell block's window, or -1
+    std::vector<double> windows;      // edge^3 a window
+    Band(LevelSetBand&& band, int half_width);
+  };
   std::shared_ptr<const LmeTables> tables_;
-  std::vector<LevelSetLevel> levels_;
+  std::shared_ptr<const LevelSetLevel> coarsest_;
+  std::vector<std::shared_ptr<const Band>> bands_;
   Eigen::AlignedBox3d domain_;
 };
 

@@ -38,36 +38,67 @@ class QuietVtk {
   int before_;
 };
 
-vtkNew<vtkDoubleArray> field(const char* name, const std::vector<double>& values) {
+vtkNew<vtkDoubleArray> field(const std::string& name, const std::vector<double>& values) {
   vtkNew<vtkDoubleArray> a;
-  a->SetName(name);
-  for (const double v : values) a->InsertNextValue(v);
+  a->SetName(name.c_str());
+  a->SetNumberOfValues(static_cast<vtkIdType>(values.size()));
+  std::copy(values.begin(), values.end(), a->GetPointer(0));
   return a;
 }
 
-// Two halves of the coefficients' hash: VTK's reader leaves arrays as they were, without an error, where base64 is
-// damaged.
-std::vector<double> hash(const double* c, std::ptrdiff_t n) {
-  const XXH64_hash_t h = XXH64(c, static_cast<std::size_t>(n) * sizeof(double), 0);
+// Two halves of the hash of all coefficients: VTK's reader leaves arrays as they were, without an error, where base64
+// is damaged.
+std::vector<double> hash(const LevelSet& psi) {
+  XXH64_hash_t h = XXH64(psi.coarsest().coefficients.data(),
+                         static_cast<std::size_t>(psi.coarsest().lattice.size()) * sizeof(double), 0);
+  for (int level = 1; level < psi.n_levels(); ++level) {
+    const LevelSetBand& band = psi.band(level);
+    h = XXH64(band.blocks.blocks().data(), band.blocks.blocks().size() * sizeof(Eigen::Vector3i), h);
+    h = XXH64(band.coefficients.data(), band.coefficients.size() * sizeof(double), h);
+  }
   return {static_cast<double>(h >> 32), static_cast<double>(h & 0xffffffffu)};
 }
 
-std::vector<double> read_field(vtkImageData* image, const char* name, std::size_t size, const std::string& file) {
-  vtkDataArray* a = image->GetFieldData()->GetArray(name);
-  if (!a || static_cast<std::size_t>(a->GetNumberOfValues()) != size) {
+std::string band_name(int level, const char* what) { return fmt::format("level_{}_{}", level, what); }
+
+// @param size  0: any
+std::vector<double> read_field(vtkImageData* image, const std::string& name, std::size_t size, const std::string& file) {
+  auto* a = vtkDoubleArray::SafeDownCast(image->GetFieldData()->GetArray(name.c_str()));
+  if (!a || (size > 0 && static_cast<std::size_t>(a->GetNumberOfValues()) != size)) {
     throw LevelSetRefused(fmt::format("{}: field data '{}' with {} numbers is missing: not a level set of this program",
                                       file, name, size));
   }
-  std::vector<double> v(size);
-  for (std::size_t i = 0; i < size; ++i) v[i] = a->GetVariantValue(static_cast<vtkIdType>(i)).ToDouble();
-  return v;
+  return {a->GetPointer(0), a->GetPointer(0) + a->GetNumberOfValues()};
+}
+
+// The bands of a file, on lattices that follow from the coarsest one.
+std::vector<LevelSetBand> read_bands(vtkImageData* image, const Lattice& coarsest, int half_width,
+                                     const std::string& file) {
+  std::vector<LevelSetBand> bands;
+  Lattice lattice = coarsest;
+  for (int level = 1; image->GetFieldData()->HasArray(band_name(level, "blocks").c_str()); ++level) {
+    lattice.h /= 2;
+    lattice.n = (2 * (lattice.n.array() - 1) + 1).matrix();
+    const std::vector<double> corners = read_field(image, band_name(level, "blocks"), 0, file);
+    std::vector<Eigen::Vector3i> blocks;
+    for (std::size_t i = 0; i + 3 <= corners.size(); i += 3) {
+      blocks.emplace_back(Eigen::Vector3d(corners[i], corners[i + 1], corners[i + 2]).cast<int>());
+    }
+    LevelSetBand band{LatticeBlocks(lattice, half_width, blocks), {}};
+    if (corners.size() % 3 != 0 || band.blocks.blocks() != blocks) {
+      throw LevelSetRefused(fmt::format("{}: the blocks of level {} are not in order", file, level));
+    }
+    band.coefficients =
+        read_field(image, band_name(level, "psi_a"), blocks.size() * LatticeBlocks::kNodes, file);
+    bands.push_back(std::move(band));
+  }
+  return bands;
 }
 
 }  // namespace
 
 void write_level_set(const std::filesystem::path& file, const LevelSet& psi, const Vec3& shown_at) {
-  const LevelSetLevel& level = psi.levels().front();
-  if (psi.levels().size() != 1) throw std::invalid_argument("only a level set of one level can be written");
+  const LevelSetLevel& level = psi.coarsest();
   const Lattice& L = level.lattice;
   const Vec3 origin = L.origin + shown_at;
   vtkNew<vtkImageData> image;
@@ -84,7 +115,14 @@ void write_level_set(const std::filesystem::path& file, const LevelSet& psi, con
       field("lattice", {L.origin[0], L.origin[1], L.origin[2], L.h, double(L.n[0]), double(L.n[1]), double(L.n[2])}));
   image->GetFieldData()->AddArray(
       field("prior", {double(prior.kind), prior.gamma, double(prior.support), prior.epsilon}));
-  image->GetFieldData()->AddArray(field("xxh64", hash(level.coefficients.data(), L.size())));
+  for (int l = 1; l < psi.n_levels(); ++l) {
+    const LevelSetBand& band = psi.band(l);
+    std::vector<double> corners;
+    for (const Eigen::Vector3i& b : band.blocks.blocks()) corners.insert(corners.end(), b.begin(), b.end());
+    image->GetFieldData()->AddArray(field(band_name(l, "blocks"), corners));
+    image->GetFieldData()->AddArray(field(band_name(l, "psi_a"), band.coefficients));
+  }
+  image->GetFieldData()->AddArray(field("xxh64", hash(psi)));
 
   const QuietVtk quiet;
   vtkNew<vtkXMLImageDataWriter> writer;
@@ -147,14 +185,15 @@ LevelSet read_level_set(const std::filesystem::path& path) {
     throw LevelSetRefused(fmt::format("{}: point data 'psi_a' with {} doubles is missing", file, lattice.size()));
   }
   std::vector<double> c(a->GetPointer(0), a->GetPointer(0) + lattice.size());
-  if (read_field(image, "xxh64", 2, file) != hash(c.data(), lattice.size())) {
-    throw LevelSetRefused(file + ": damaged: the coefficients do not have the hash that was written with them");
-  }
   for (const double v : c) {
     if (!std::isfinite(v)) throw LevelSetRefused(file + ": a coefficient is not finite");
   }
   try {
-    return LevelSet(prior, {{lattice, std::move(c)}});
+    LevelSet psi(prior, {lattice, std::move(c)}, read_bands(image, lattice, half_width(prior), file));
+    if (read_field(image, "xxh64", 2, file) != hash(psi)) {
+      throw LevelSetRefused(file + ": damaged: the coefficients do not have the hash that was written with them");
+    }
+    return psi;
   } catch (const std::invalid_argument& e) {
     throw LevelSetRefused(fmt::format("{}: {}", file, e.what()));
   }

@@ -23,6 +23,8 @@ using detail::CloudSource;
 using detail::refuse;
 
 constexpr std::size_t kFewestPoints = 10;
+// Squares and cubes of lengths must stay finite; no unit makes a body of 1e100.
+constexpr double kFarthest = 1e100;
 
 std::string load(const std::filesystem::path& file) {
   const auto fail = [&](int error) {
@@ -102,9 +104,8 @@ void check_numbers(const CloudSource& source, const OrientedPointCloud& cloud) {
   refuse_points(
       source, n, [&](std::size_t i) { return !cloud.points[i].allFinite(); },
       "has a coordinate that is NaN or infinite");
-  // Squares and cubes of lengths must stay finite; no unit makes a body of 1e100.
   refuse_points(
-      source, n, [&](std::size_t i) { return cloud.points[i].cwiseAbs().maxCoeff() > 1e100; },
+      source, n, [&](std::size_t i) { return cloud.points[i].cwiseAbs().maxCoeff() > kFarthest; },
       "has a coordinate beyond 1e100");
   refuse_points(
       source, n, [&](std::size_t i) { return !cloud.normals[i].allFinite(); }, "has a normal that is NaN or infinite");
@@ -119,6 +120,7 @@ std::size_t make_unit(std::vector<Vec3>& normals) {
   constexpr double kRounding = 1e-14, kWorthTelling = 1e-3;
   std::size_t n_rescaled = 0;
   for (Vec3& n : normals) {
+    if (n.isZero(0)) continue;  // only read_scan lets them pass
     const double length = n.stableNorm();
     if (std::abs(length - 1) > kWorthTelling) ++n_rescaled;
     if (std::abs(length - 1) <= kRounding) continue;
@@ -127,6 +129,32 @@ std::size_t make_unit(std::vector<Vec3>& normals) {
     n /= n.norm();
   }
   return n_rescaled;
+}
+
+/// Points that are no numbers go, unusable normals become zero.
+void drop_unusable(const CloudSource& source, CloudFile& file) {
+  OrientedPointCloud& cloud = file.cloud;
+  const std::size_t n = cloud.points.size();
+  const bool has_normals = !cloud.normals.empty();
+  std::size_t n_kept = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3& x = cloud.points[i];
+    if (!x.allFinite() || x.cwiseAbs().maxCoeff() > kFarthest) continue;
+    cloud.points[n_kept] = x;
+    if (has_normals) {
+      const bool is_missing = !cloud.normals[i].allFinite() || cloud.normals[i].isZero(0);
+      if (is_missing) ++file.report.n_normals_missing;
+      cloud.normals[n_kept] = is_missing ? Vec3::Zero() : cloud.normals[i];
+    }
+    ++n_kept;
+  }
+  file.report.n_points_dropped = n - n_kept;
+  if (2 * file.report.n_points_dropped > n)
+    refuse(source, fmt::format("{} of {} points have coordinates that are NaN, infinite or beyond 1e100: that is no "
+                               "cloud with a few bad points, export it again",
+                               file.report.n_points_dropped, n));
+  cloud.points.resize(n_kept);
+  if (has_normals) cloud.normals.resize(n_kept);
 }
 
 void put_double(char*& at, double value) {
@@ -139,10 +167,23 @@ void put_double(char*& at, double value) {
 
 CloudFile read_point_cloud(const std::filesystem::path& file) {
   const std::string bytes = load(file);
-  const CloudSource source{file.string(), bytes};
+  const CloudSource source{.name = file.string(), .bytes = bytes};
   CloudFile result = parse(source, file);
   check_numbers(source, result.cloud);
   result.report.n_points = result.cloud.points.size();
+  result.report.n_normals_rescaled = make_unit(result.cloud.normals);
+  return result;
+}
+
+CloudFile read_scan(const std::filesystem::path& file) {
+  const std::string bytes = load(file);
+  const CloudSource source{.name = file.string(), .bytes = bytes, .needs_normals = false};
+  CloudFile result = parse(source, file);
+  result.report.n_points = result.cloud.points.size();
+  drop_unusable(source, result);
+  if (result.cloud.points.size() < kFewestPoints)
+    refuse(source, fmt::format("{} points: a surface needs at least {}", result.cloud.points.size(), kFewestPoints));
+  check_extent(source, result.cloud.points);
   result.report.n_normals_rescaled = make_unit(result.cloud.normals);
   return result;
 }

@@ -19,6 +19,8 @@ struct CloudFileReport {
   std::string format;  ///< "ply ascii", "ply binary little endian", "pcd compressed", "xyz" ...
   std::size_t n_points = 0;
   std::size_t n_normals_rescaled = 0;  ///< normals that were not unit to 1e-3 and have been made so
+  std::size_t n_points_dropped = 0;    ///< read_scan: coordinates NaN, infinite or beyond 1e100
+  std::size_t n_normals_missing = 0;   ///< read_scan: zero, NaN or infinite; they are zero in the cloud
 };
 
 struct CloudFile {
@@ -40,6 +42,13 @@ struct CloudFile {
 /// \throw CloudRefused         malformed, empty, non-finite or beyond 1e100, or without normals
 /// \throw std::system_error    the file cannot be opened or read; names it
 CloudFile read_point_cloud(const std::filesystem::path& file);
+
+/// Reads the same files for clean(), estimate_normals() and survey(): points without normals give a cloud with none,
+/// unusable normals become zero, and points that are no numbers are dropped and counted.
+///
+/// \throw CloudRefused         malformed, empty, or more than half of the points unusable
+/// \throw std::system_error    the file cannot be opened or read; names it
+CloudFile read_scan(const std::filesystem::path& file);
 
 /// Binary little-endian PLY, double x y z nx ny nz; read_point_cloud gives the same bits back. The caller owns the
 /// stream and checks it.

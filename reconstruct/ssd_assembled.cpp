@@ -159,7 +159,7 @@ std::vector<double> fit_scattered(const LmeScattered& basis, const std::vector<S
     Eigen::MatrixX4d B(v.node.size(), 4);
     for (std::size_t a = 0; a < v.node.size(); ++a) {
       B.row(static_cast<Eigen::Index>(a)) << v.N[a], v.grad[a].transpose();
-      r[v.node[a]] += s.w_gradient * v.grad[a].dot(s.normal);
+      r[v.node[a]] += s.w_gradient * v.grad[a].dot(s.normal) + s.w_value * s.value * v.N[a];
     }
     A.add(v.node, sample_block(B, s.w_value, s.w_gradient));
   }

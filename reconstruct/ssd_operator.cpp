@@ -21,6 +21,7 @@ using namespace detail;
 // hull, where windows are moved down to begin at n_z - 2R while z may be as high as n_z - 2, if L > 3R - 2. R is at
 // most 4.
 constexpr int kSlabLayers = 12;
+static_assert(kSlabLayers > 3 * 4 - 2);
 
 // y += q N + g . grad N, the transpose of contract.
 template <int W>
@@ -95,7 +96,7 @@ void SsdOperator::right_hand_side(double* y) const {
     for_each_slab([&](const SsdSample& s, int) {
       LmeBasis3d B;
       evaluate_lme_3d<false>(*tables_, n_, s.xi, B);
-      scatter<W.value>(B, n_, 0.0, s.w_gradient * s.normal, y);
+      scatter<W.value>(B, n_, s.w_value * s.value, s.w_gradient * s.normal, y);
     });
   });
 }
@@ -130,7 +131,7 @@ Eigen::Vector3d SsdOperator::energies(const double* c, std::vector<double>& work
       evaluate_lme_3d<false>(*tables_, n_, s.xi, B);
       const LatticeJet f = contract<W.value, kGradient>(B, n_, c);
       slab_sum[slab] +=
-          Eigen::Vector2d(s.w_value * f.value * f.value, s.w_gradient * (f.gradient - s.normal).squaredNorm()) / 2;
+          Eigen::Vector2d(s.w_value * std::pow(f.value - s.value, 2), s.w_gradient * (f.gradient - s.normal).squaredNorm()) / 2;
     });
   });
   Eigen::Vector3d e = Eigen::Vector3d::Zero();

@@ -4,18 +4,12 @@
 
 #include "reconstruct/gram.h"
 #include "reconstruct/lme_lattice.h"
+#include "reconstruct/ssd_sample.h"
 
 namespace umtet {
 
-/// One sample of the quadratic data term ½ w_value f(x)² + ½ w_gradient |∇f(x) − n|², all in lattice units.
-struct SsdSample {
-  Eigen::Vector3d xi;      ///< (x − origin) / h
-  Eigen::Vector3d normal;  ///< n_i
-  double w_value = 0, w_gradient = 0;
-};
-
 /// The system matrix and right-hand side of eq. (11) on one lattice, never assembled:
-///   A = kappa K + Σ_i ( w_v N N^T + w_g ∇N·∇N^T ),   r = Σ_i w_g ∇N · n_i,   N_a = N_a(x_i).
+///   A = kappa K + Σ_i ( w_v N N^T + w_g ∇N·∇N^T ),   r = Σ_i ( w_g ∇N · n_i + w_v N v_i ),   N_a = N_a(x_i).
 /// Coefficients are in units of the lattice spacing: f = h Σ c_a N_a.                     [Rangarajan2018, eqs. (10),
 /// (11)]
 class SsdOperator {
@@ -36,7 +30,7 @@ class SsdOperator {
   void diagonal(double* y) const;
   /// y = r; size() + kPad doubles
   void right_hand_side(double* y) const;
-  /// The three terms of the functional at c, in lattice units: ½ Σ w_v f², ½ Σ w_g |∇f − n|², ½ kappa cᵀ K c.
+  /// The three terms of the functional at c, in lattice units: ½ Σ w_v (f − v)², ½ Σ w_g |∇f − n|², ½ kappa cᵀ K c.
   Eigen::Vector3d energies(const double* c, std::vector<double>& workspace) const;
 
   static constexpr int kPad = 8;

@@ -16,34 +16,35 @@ std::string in_quotes(std::string_view text) {
   return fmt::format("'{}{}'", shown, text.size() > kShown ? "..." : "");
 }
 
-std::array<std::size_t, 6> oriented_columns(const CloudSource& source, const std::vector<std::string>& names,
-                                            std::string_view kind) {
+CloudColumns cloud_columns(const CloudSource& source, const std::vector<std::string>& names, std::string_view kind) {
   const auto count = [&](std::string_view name) { return std::count(names.begin(), names.end(), name); };
   const bool long_names = count("normal_x") + count("normal_y") + count("normal_z") > 0;
   const std::array<std::string_view, 3> normal =
       long_names ? std::array<std::string_view, 3>{"normal_x", "normal_y", "normal_z"}
                  : std::array<std::string_view, 3>{"nx", "ny", "nz"};
   const std::array<std::string_view, 6> wanted = {"x", "y", "z", normal[0], normal[1], normal[2]};
-  if (count(normal[0]) + count(normal[1]) + count(normal[2]) == 0 && count("x") + count("y") + count("z") == 3)
+  const bool without_normals = count(normal[0]) + count(normal[1]) + count(normal[2]) == 0;
+  if (source.needs_normals && without_normals && count("x") + count("y") + count("z") == 3)
     refuse(source,
            fmt::format("the points have no normals (no {} nx, ny, nz or normal_x, normal_y, normal_z): estimate "
                        "and orient them first, for example in CloudCompare or MeshLab",
                        kind));
 
-  std::array<std::size_t, 6> columns{};
-  for (std::size_t c = 0; c < wanted.size(); ++c) {
+  CloudColumns columns;
+  columns.has_normals = source.needs_normals || !without_normals;
+  for (std::size_t c = 0; c < (columns.has_normals ? wanted.size() : 3); ++c) {
     if (count(wanted[c]) == 0)
       refuse(source, fmt::format("the points have no {} {}: export them with x y z nx ny nz", kind, wanted[c]));
     if (count(wanted[c]) > 1) refuse(source, fmt::format("the points have {} {} more than once", kind, wanted[c]));
-    columns[c] = static_cast<std::size_t>(std::find(names.begin(), names.end(), wanted[c]) - names.begin());
+    columns.at[c] = static_cast<std::size_t>(std::find(names.begin(), names.end(), wanted[c]) - names.begin());
   }
   return columns;
 }
 
-void append_point(OrientedPointCloud& cloud, const std::vector<double>& values,
-                  const std::array<std::size_t, 6>& columns) {
-  cloud.points.emplace_back(values[columns[0]], values[columns[1]], values[columns[2]]);
-  cloud.normals.emplace_back(values[columns[3]], values[columns[4]], values[columns[5]]);
+void append_point(OrientedPointCloud& cloud, const std::vector<double>& values, const CloudColumns& columns) {
+  const auto& at = columns.at;
+  cloud.points.emplace_back(values[at[0]], values[at[1]], values[at[2]]);
+  if (columns.has_normals) cloud.normals.emplace_back(values[at[3]], values[at[4]], values[at[5]]);
 }
 
 void refuse_surplus(const CloudSource& source, std::size_t offset) {

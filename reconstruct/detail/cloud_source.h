@@ -14,6 +14,7 @@ namespace umtet::detail {
 struct CloudSource {
   std::string name;
   std::string_view bytes;
+  bool needs_normals = true;  ///< false: points without normals make a cloud without normals
 };
 
 /// \throw CloudRefused  always: "NAME: what"
@@ -22,14 +23,22 @@ struct CloudSource {
 /// A piece of a file as it may be shown on a terminal: quoted, clipped to 40 characters, unprintable bytes as '?'.
 std::string in_quotes(std::string_view text);
 
-/// Where x, y, z and the normal (nx ny nz or normal_x normal_y normal_z) are among `names`.
-/// \throw CloudRefused  one of them missing or there twice; `kind` ("property", "field") is the format's word for them
-std::array<std::size_t, 6> oriented_columns(const CloudSource& source, const std::vector<std::string>& names,
-                                            std::string_view kind);
+/// Columns of x, y, z and, where there are any, of the normal.
+struct CloudColumns {
+  std::array<std::size_t, 6> at{};
+  bool has_normals = true;
 
-/// Appends the point (x, y, z) and normal (nx, ny, nz) found in values at columns.
-void append_point(OrientedPointCloud& cloud, const std::vector<double>& values,
-                  const std::array<std::size_t, 6>& columns);
+  const std::size_t* begin() const { return at.data(); }
+  const std::size_t* end() const { return at.data() + (has_normals ? 6 : 3); }
+};
+
+/// Where x, y, z and the normal (nx ny nz or normal_x normal_y normal_z) are among `names`.
+/// \throw CloudRefused  one of them missing, unless all of the normal are and the source does not need them, or there
+/// twice; `kind` ("property", "field") is the format's word for them
+CloudColumns cloud_columns(const CloudSource& source, const std::vector<std::string>& names, std::string_view kind);
+
+/// Appends the point (x, y, z) and, where there is one, the normal (nx, ny, nz) found in values at columns.
+void append_point(OrientedPointCloud& cloud, const std::vector<double>& values, const CloudColumns& columns);
 
 /// \throw CloudRefused  anything but blanks and NUL padding from `offset` on: then a count of the header is wrong
 void refuse_surplus(const CloudSource& source, std::size_t offset);

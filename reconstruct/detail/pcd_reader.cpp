@@ -36,11 +36,10 @@ double decode(const PcdField& field, const std::uint8_t* bytes) {
 }
 
 /// @param body  n_points * point_bytes bytes, little endian as all PCD
-OrientedPointCloud decode_points(const PcdHeader& header, const std::array<std::size_t, 6>& columns,
-                                 const std::uint8_t* body) {
+OrientedPointCloud decode_points(const PcdHeader& header, const CloudColumns& columns, const std::uint8_t* body) {
   OrientedPointCloud cloud;
   cloud.points.reserve(header.n_points);
-  cloud.normals.reserve(header.n_points);
+  if (columns.has_normals) cloud.normals.reserve(header.n_points);
   std::vector<double> values(header.fields.size());
   for (std::size_t i = 0; i < header.n_points; ++i) {
     for (const std::size_t c : columns)
@@ -51,8 +50,7 @@ OrientedPointCloud decode_points(const PcdHeader& header, const std::array<std::
 }
 
 /// Text is parsed here, not by PCL: PCL knows no line numbers.
-OrientedPointCloud read_ascii(const CloudSource& source, const PcdHeader& header,
-                              const std::array<std::size_t, 6>& columns) {
+OrientedPointCloud read_ascii(const CloudSource& source, const PcdHeader& header, const CloudColumns& columns) {
   std::vector<std::size_t> first_token;  // of each field
   std::size_t n_tokens = 0;
   for (const PcdField& field : header.fields) {
@@ -85,7 +83,7 @@ OrientedPointCloud read_ascii(const CloudSource& source, const PcdHeader& header
 
 CloudFile read_pcd(const CloudSource& source) {
   const PcdHeader header = parse_pcd_header(source);
-  const std::array<std::size_t, 6> columns = oriented_columns(source, scalar_names(header), "field");
+  const CloudColumns columns = cloud_columns(source, scalar_names(header), "field");
   switch (header.data) {
     case PcdData::Ascii:
       return {read_ascii(source, header, columns), {.format = "pcd ascii"}};

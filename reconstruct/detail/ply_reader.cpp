@@ -148,19 +148,19 @@ class AsciiBody {
   std::vector<std::string_view> tokens_;
 };
 
-std::array<std::size_t, 6> vertex_columns(const CloudSource& source, const PlyHeader& header) {
+CloudColumns vertex_columns(const CloudSource& source, const PlyHeader& header) {
   std::vector<std::string> names;
   for (const PlyElement& element : header.elements)
     if (element.name == "vertex")
       for (const PlyProperty& p : element.properties) names.push_back(p.is_list ? "list " + p.name : p.name);
-  return oriented_columns(source, names, "property");
+  return cloud_columns(source, names, "property");
 }
 
 template <class Body>
 OrientedPointCloud read_body(const CloudSource& source, const PlyHeader& header) {
   OrientedPointCloud cloud;
   Body body(source, header);
-  const std::array<std::size_t, 6> columns = vertex_columns(source, header);
+  const CloudColumns columns = vertex_columns(source, header);
   std::vector<double> values;
   for (const PlyElement& element : header.elements) {
     const std::size_t least = Body::bytes_per_item(element);
@@ -175,7 +175,7 @@ OrientedPointCloud read_body(const CloudSource& source, const PlyHeader& header)
       continue;
     }
     cloud.points.reserve(element.count);
-    cloud.normals.reserve(element.count);
+    if (columns.has_normals) cloud.normals.reserve(element.count);
     for (std::uint64_t item = 0; item < element.count; ++item) {
       body.read_item(element, item, values);
       append_point(cloud, values, columns);

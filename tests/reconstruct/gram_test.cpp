@@ -45,14 +45,14 @@ TEST(HessianEnergy, VanishesOnAffineFunctionsOnly) {
 TEST(HessianEnergy, AppliedEqualsItsEntries) {
   for (const int support : {2, 3, 4}) {
     const LmeTables tables({LmePrior::Kind::CompactC2, 1.2, support, 1e-4});
-    for (const Eigen::Vector3i n :
+    for (const Eigen::Vector3i& n :
          {Eigen::Vector3i(8, 33, 9), Eigen::Vector3i(53, 9, 8)}) {  // short rows; a row with an interior
       const HessianEnergy K(tables, n);
       const std::vector<double> c = random_vector(n.prod(), 2);
       std::vector<double> y(n.prod()), work;
       K.apply(0.5, c.data(), y.data(), work);
-      for (const Eigen::Vector3i a : {Eigen::Vector3i(0, 0, 0), Eigen::Vector3i(n / 2),
-                                      Eigen::Vector3i(n - Eigen::Vector3i::Ones()), Eigen::Vector3i(n[0] / 3, 2, 5)}) {
+      for (const Eigen::Vector3i& a : {Eigen::Vector3i(0, 0, 0), Eigen::Vector3i(n / 2),
+                                       Eigen::Vector3i(n - Eigen::Vector3i::Ones()), Eigen::Vector3i(n[0] / 3, 2, 5)}) {
         double sum = 0;
         Eigen::Vector3i b;
         int at = 0;
@@ -105,7 +105,7 @@ TEST(SsdOperator, AppliedEqualsAssembled) {
     const Eigen::Vector3i n(10, 9, 12);
     std::mt19937_64 random(7);
     std::uniform_real_distribution<double> unit(0, 1);
-    std::vector<SsdSample> samples(300);
+    std::vector<SsdSample> samples(100);
     for (SsdSample& s : samples) {
       s.xi = Vec3(unit(random), unit(random), unit(random)).cwiseProduct((n.array() - 1).cast<double>().matrix());
       s.normal = Vec3(unit(random), unit(random), 1).normalized();
@@ -125,31 +125,38 @@ TEST(SsdOperator, AppliedEqualsAssembled) {
 }
 
 TEST(SsdOperator, ApplyIsTheSameForAnyThreads) {
-  // Samples everywhere, the hull included, crowded on few nodes, and heights around every multiple of a slab.
+  // Samples in two layers of cells only, so that their slabs run at the same time: the highest layer, where windows of
+  // functions are moved down from the hull, and each below that such a window may reach. Twelve heights: every
+  // remainder of slabs up to twelve layers thick.
+  constexpr int kSamples = 200, kTrials = 4;
   for (const int support : {2, 3, 4}) {
     const LmeTables tables({LmePrior::Kind::CompactC2, 1.2, support, 1e-4});
-    for (int nz = 18; nz <= 42; ++nz) {
+    for (int nz = 26; nz < 38; ++nz) {
       const Eigen::Vector3i n(8, 8, nz);
+      const int top = nz - 2;
       std::mt19937_64 random(nz);
       std::uniform_real_distribution<double> unit(0, 1);
-      std::vector<SsdSample> samples(6000);
-      for (SsdSample& s : samples) {
-        s.xi = Vec3(unit(random), unit(random), unit(random)).cwiseProduct((n.array() - 1).cast<double>().matrix());
-        s.normal = Vec3::UnitZ();
-        s.w_value = s.w_gradient = 1;
-      }
-      const SsdOperator op(tables, n, 0.3, samples);
-      std::vector<double> c = random_vector(n.prod(), 5), one(n.prod() + SsdOperator::kPad), two(one), work;
-      c.resize(c.size() + SsdOperator::kPad, 0.0);
-      {
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
-        op.apply(c.data(), one.data(), work);
-      }
-      for (int trial = 0; trial < 15; ++trial) {
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 4);
-        op.apply(c.data(), two.data(), work);
-        ASSERT_EQ(std::memcmp(one.data(), two.data(), n.prod() * sizeof(double)), 0)
-            << "R " << support << " n_z " << nz;
+      for (int below = 3; below <= 3 * support; ++below) {
+        std::vector<SsdSample> samples(2 * kSamples);
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+          SsdSample& s = samples[i];
+          s.xi = Vec3(7 * unit(random), 7 * unit(random), (i % 2 ? top : top - below) + unit(random));
+          s.normal = Vec3::UnitZ();
+          s.w_value = s.w_gradient = 1;
+        }
+        const SsdOperator op(tables, n, 0.3, samples);
+        std::vector<double> c = random_vector(n.prod(), 5), one(n.prod() + SsdOperator::kPad), two(one), work;
+        c.resize(c.size() + SsdOperator::kPad, 0.0);
+        {
+          const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+          op.apply(c.data(), one.data(), work);
+        }
+        for (int trial = 0; trial < kTrials; ++trial) {
+          const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 4);
+          op.apply(c.data(), two.data(), work);
+          ASSERT_EQ(std::memcmp(one.data(), two.data(), n.prod() * sizeof(double)), 0)
+              << "R " << support << " n_z " << nz << " layers " << below << " apart";
+        }
       }
     }
   }

@@ -329,6 +329,39 @@ TEST_F(PointCloudIo, MalformedXyzIsRefusedWithTheReason) {
   expect_refused("cloud.las", text_, {".xyz"});
 }
 
+TEST_F(PointCloudIo, ScansMayLackNormalsAndHoldPointsThatAreNoNumbers) {
+  const OrientedPointCloud cloud = spiral_sphere(50);
+  std::string bare, rows = text_rows(cloud);
+  for (const Vec3& x : cloud.points) {
+    std::ostringstream row;
+    row.precision(17);
+    row << x.x() << ' ' << x.y() << ' ' << x.z() << '\n';
+    bare += row.str();
+  }
+  const CloudFile without = read_scan(write("bare.xyz", bare));
+  EXPECT_EQ(without.cloud.points, cloud.points);
+  EXPECT_TRUE(without.cloud.normals.empty());
+
+  const CloudFile spoiled =
+      read_scan(write("spoiled.xyz", rows + "nan 0 0 1 0 0\n0 inf 0 1 0 0\n1 2 3 0 0 0\n1 2 3 nan 0 0\n"));
+  EXPECT_EQ(spoiled.report.n_points, 54U);
+  EXPECT_EQ(spoiled.report.n_points_dropped, 2U);
+  EXPECT_EQ(spoiled.report.n_normals_missing, 2U);
+  ASSERT_EQ(spoiled.cloud.points.size(), 52U);
+  EXPECT_EQ(spoiled.cloud.normals[51], Vec3::Zero());
+  EXPECT_EQ(spoiled.cloud.normals[3], cloud.normals[3]);
+
+  std::string header = "ply\nformat ascii 1.0\nelement vertex 50\n";
+  for (const char* axis : {"x", "y", "z"}) header += "property double " + std::string(axis) + "\n";
+  EXPECT_EQ(read_scan(write("bare.ply", header + "end_header\n" + bare)).cloud.points, cloud.points);
+
+  std::string mostly_bad = bare;
+  for (int i = 0; i < 51; ++i) mostly_bad += "nan 0 0\n";
+  EXPECT_THROW(read_scan(write("bad.xyz", mostly_bad)), CloudRefused);
+  EXPECT_THROW(read_scan(write("mixed.xyz", bare + rows)), CloudRefused);
+  EXPECT_THROW(read_scan(write("two.xyz", "1 2\n3 4\n")), CloudRefused);
+}
+
 TEST_F(PointCloudIo, PointsThatBoundNoBodyAreRefused) {
   const auto rows = [](auto&& point) {
     std::string text;

@@ -1,0 +1,224 @@
+#include "reconstruct/cleaning.h"
+
+#include <fmt/format.h>
+#include <oneapi/tbb/parallel_sort.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <stdexcept>
+
+#include "reconstruct/neighbour_tree.h"
+
+namespace umtet {
+namespace {
+
+constexpr std::size_t kNeighbours = 12;
+// The plane is that of the points within 1.2 times the 12th neighbour: above an outlier four spacings off its surface
+// there are some 30.
+constexpr double kPlaneReach2 = 1.44;
+constexpr std::size_t kMostInPlane = 128;
+// Links of the graph of pieces: the 4th neighbour is one lattice step away, and gaps of scans are a few of them.
+constexpr std::size_t kSpacingNeighbour = 4;
+constexpr double kLink = 3;
+
+bool is_usable(const Vec3& x) { return x.allFinite() && x.cwiseAbs().maxCoeff() <= 1e100; }
+
+/// Keeps rows where drop is 0; returns how many went.
+std::size_t keep_only(const std::vector<std::uint8_t>& drop, std::vector<std::uint32_t>& kept) {
+  std::size_t n = 0;
+  for (std::size_t row = 0; row < kept.size(); ++row)
+    if (drop[row] == 0) kept[n++] = kept[row];
+  const std::size_t n_dropped = kept.size() - n;
+  kept.resize(n);
+  return n_dropped;
+}
+
+std::vector<Vec3> positions(const OrientedPointCloud& cloud, const std::vector<std::uint32_t>& kept) {
+  std::vector<Vec3> points;
+  points.reserve(kept.size());
+  for (const std::uint32_t i : kept) points.push_back(cloud.points[i]);
+  return points;
+}
+
+std::vector<std::uint8_t> later_duplicates(const std::vector<Vec3>& points) {
+  std::vector<std::uint32_t> order(points.size());
+  std::iota(order.begin(), order.end(), 0U);
+  tbb::parallel_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    const Vec3 &x = points[a], &y = points[b];
+    for (int axis = 0; axis < 3; ++axis)
+      if (x[axis] != y[axis]) return x[axis] < y[axis];
+    return a < b;
+  });
+  std::vector<std::uint8_t> drop(points.size(), 0);
+  for (std::size_t row = 1; row < order.size(); ++row)
+    if (points[order[row]] == points[order[row - 1]]) drop[order[row]] = 1;
+  return drop;
+}
+
+/// Whether x is off the plane of the points around it by kDeviations of theirs and kSpacings of theirs.
+/// The plane and not a quadric: curvature then counts as deviation, and tips and horns of clean bodies stay.
+bool is_off_plane(const std::vector<Vec3>& points, const Vec3& x, std::span<const Neighbour> around) {
+  constexpr double kDeviations = 5, kSpacings = 2.5;
+  const auto n = static_cast<double>(around.size());
+  Vec3 mean = Vec3::Zero();
+  double scale2 = 0;
+  for (const Neighbour& other : around) {
+    mean += points[other.point] - x;
+    scale2 = std::max(scale2, other.distance2);
+  }
+  mean /= n;
+  Mat3 covariance = Mat3::Zero();
+  const double scale = std::sqrt(scale2);
+  for (const Neighbour& other : around) {
+    const Vec3 d = (points[other.point] - x - mean) / scale;
+    covariance.noalias() += d * d.transpose();
+  }
+  Eigen::SelfAdjointEigenSolver<Mat3> axes;
+  axes.computeDirect(covariance);
+  const Vec3& spread = axes.eigenvalues();
+  const double height = std::abs(mean.dot(axes.eigenvectors().col(0))) / scale;
+  const double variance = std::max(0.0, spread[0]) / (n - 3);
+  // n neighbours fill a disc of r^2 = 2 (spread of both axes) / n, each a cell of s^2 = pi r^2 / n of it.
+  const double spacing2 = 2 * std::numbers::pi * (spread[1] + spread[2]) / (n * n);
+  return height * height > std::max(kDeviations * kDeviations * variance, kSpacings * kSpacings * spacing2);
+}
+
+std::vector<std::uint8_t> outliers(const std::vector<Vec3>& points, const CleaningParams& params) {
+  std::vector<std::uint8_t> drop(points.size(), 0);
+  if (points.size() <= 9 * kNeighbours) return drop;  // too few to speak of a density
+  const NeighbourTree tree(points);
+  const auto suspicious = static_cast<std::size_t>(params.suspicious_crowd * 9 * kNeighbours);
+  const auto certain = static_cast<std::size_t>(params.certain_crowd * 9 * kNeighbours);
+  for_each_neighbourhood(tree, kNeighbours + 1, [&](std::uint32_t i, std::span<const Neighbour> near) {
+    const Vec3& x = points[i];
+    const double reach2 = near.back().distance2;
+    if (tree.count_within(x, 9 * reach2, suspicious) < suspicious) return;
+    if (tree.count_within(x, 9 * reach2, certain) >= certain) {
+      drop[i] = 1;
+      return;
+    }
+    std::array<Neighbour, kMostInPlane> around;
+    std::size_t n = 0;
+    tree.within(x, kPlaneReach2 * reach2, [&](std::uint32_t j, double distance2) {
+      if (j != i && n < around.size()) around[n++] = {distance2, j};
+    });
+    if (is_off_plane(points, x, {around.data(), n})) drop[i] = 1;
+  });
+  return drop;
+}
+
+/// Pieces: union-find over links, with the smallest member as root.
+class Pieces {
+ public:
+  explicit Pieces(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0U); }
+  std::uint32_t find(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = find(a);
+    b = find(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+std::vector<std::uint8_t> crumbs(const std::vector<Vec3>& points, const CleaningParams& params, std::size_t& n_pieces) {
+  const std::size_t n = points.size();
+  std::vector<std::uint8_t> drop(n, 0);
+  n_pieces = 0;
+  if (n <= kNeighbours) return drop;
+  const NeighbourTree tree(points);
+  std::vector<std::uint32_t> near_points(n * kNeighbours);
+  std::vector<double> near2(n * kNeighbours), spacing2(n);
+  for_each_neighbourhood(tree, kNeighbours + 1, [&](std::uint32_t i, std::span<const Neighbour> near) {
+    spacing2[i] = near[kSpacingNeighbour].distance2;
+    for (std::size_t m = 0; m < kNeighbours; ++m) {
+      near_points[i * kNeighbours + m] = near[m + 1].point;
+      near2[i * kNeighbours + m] = near[m + 1].distance2;
+    }
+  });
+  Pieces pieces(n);
+  for (std::uint32_t i = 0; i < n; ++i)
+    for (std::size_t m = i * kNeighbours; m < (i + 1) * kNeighbours; ++m) {
+      const std::uint32_t j = near_points[m];
+      if (near2[m] <= kLink * kLink * std::max(spacing2[i], spacing2[j])) pieces.join(i, j);
+    }
+
+  std::vector<std::vector<std::uint32_t>> members(n);
+  std::vector<std::uint32_t> size(n, 0);
+  for (std::uint32_t i = 0; i < n; ++i) ++size[pieces.find(i)];
+  const auto is_small = [&](std::uint32_t root) { return size[root] < params.crumb_points && size[root] * 100 < n; };
+  for (std::uint32_t i = 0; i < n; ++i)
+    if (is_small(pieces.find(i))) members[pieces.find(i)].push_back(i);
+  for (std::uint32_t root = 0; root < n; ++root) {
+    if (members[root].empty()) continue;
+    std::vector<double> spacings;
+    for (const std::uint32_t i : members[root]) spacings.push_back(spacing2[i]);
+    std::nth_element(spacings.begin(), spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2),
+                     spacings.end());
+    const double reach2 = params.crumb_distance * params.crumb_distance * spacings[spacings.size() / 2];
+    // Alone, or with other crumbs only: does a ball around any member hold a point of something larger?
+    bool is_far = true;
+    for (std::size_t m = 0; m < members[root].size() && is_far; ++m)
+      tree.within(points[members[root][m]], reach2, [&](std::uint32_t j, double) {
+        if (!is_small(pieces.find(j))) is_far = false;
+      });
+    if (!is_far) continue;
+    ++n_pieces;
+    for (const std::uint32_t i : members[root]) drop[i] = 1;
+  }
+  return drop;
+}
+
+}  // namespace
+
+std::vector<std::string> problems(const CleaningParams& params) {
+  std::vector<std::string> found;
+  if (!(params.suspicious_crowd > 1))
+    found.push_back(fmt::format("suspicious_crowd = {}: must be > 1", params.suspicious_crowd));
+  if (!(params.certain_crowd >= params.suspicious_crowd && params.certain_crowd < 1e6))
+    found.push_back(fmt::format("certain_crowd = {}: must be in suspicious_crowd = {}..1e6", params.certain_crowd,
+                                params.suspicious_crowd));
+  if (!(params.crumb_distance > 1))
+    found.push_back(fmt::format("crumb_distance = {}: must be > 1", params.crumb_distance));
+  return found;
+}
+
+CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params) {
+  if (const auto found = problems(params); !found.empty()) throw std::invalid_argument(found.front());
+  const bool has_normals = !cloud.normals.empty();
+  if (has_normals && cloud.normals.size() != cloud.points.size())
+    throw std::invalid_argument(
+        fmt::format("{} points but {} normals: must be equal", cloud.points.size(), cloud.normals.size()));
+  CleaningReport report;
+  std::vector<std::uint32_t>& kept = report.kept;
+  for (std::uint32_t i = 0; i < cloud.points.size(); ++i)
+    if (is_usable(cloud.points[i])) kept.push_back(i);
+  report.n_not_finite = cloud.points.size() - kept.size();
+  report.n_duplicates = keep_only(later_duplicates(positions(cloud, kept)), kept);
+  if (params.outliers) {
+    // A second look where there was something: junk beside junk looks less alone.
+    for (int pass = 0; pass < 2; ++pass) {
+      const std::size_t n_dropped = keep_only(outliers(positions(cloud, kept), params), kept);
+      if (n_dropped == 0) break;
+      report.n_outliers += n_dropped;
+    }
+    report.n_crumbs = keep_only(crumbs(positions(cloud, kept), params, report.n_crumb_pieces), kept);
+  }
+  for (std::size_t row = 0; row < kept.size(); ++row) {
+    cloud.points[row] = cloud.points[kept[row]];
+    if (has_normals) cloud.normals[row] = cloud.normals[kept[row]];
+  }
+  cloud.points.resize(kept.size());
+  if (has_normals) cloud.normals.resize(kept.size());
+  return report;
+}
+
+}  // namespace umtet

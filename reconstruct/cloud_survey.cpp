@@ -1,0 +1,171 @@
+#include "reconstruct/cloud_survey.h"
+
+#include <fmt/format.h>
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "reconstruct/cloud_neighbours.h"
+#include "reconstruct/enclosed_volume.h"
+#include "reconstruct/local_quadric.h"
+#include "reconstruct/neighbour_tree.h"
+
+namespace umtet {
+namespace {
+
+constexpr std::size_t kFewestPoints = 30;  // a quadric, its neighbours, and some of them to spare
+constexpr std::size_t kNoiseNeighbours = 24;
+
+double percentile(std::vector<double>& values, double share) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+/// Every m-th point in the order of the tree: evenly over the surface, and no seed to remember.
+std::vector<std::uint32_t> evenly_picked(const NeighbourTree& tree, std::size_t n_picked) {
+  std::vector<std::uint32_t> picked;
+  const std::size_t stride = std::max<std::size_t>(1, tree.size() / n_picked);
+  std::size_t row = 0;
+  for (std::size_t leaf = 0; leaf < tree.n_leaves(); ++leaf)
+    for (const std::uint32_t i : tree.points_of(leaf))
+      if (row++ % stride == 0) picked.push_back(i);
+  return picked;
+}
+
+/// Residual variance around a point; radius: of its first neighbourhood.
+double local_variance(const std::vector<Vec3>& points, const NeighbourTree& tree, const Vec3& x, double radius,
+                      std::vector<Neighbour>& near) {
+  // Beyond eight times the radius of 24 neighbours (1500 of them) a cloud is not noisy but a cloud.
+  constexpr double kGrowth = std::numbers::sqrt2, kMostGrowth = 8, kDeviations = 5;
+  double variance = -1;
+  for (double growth = 1; growth <= kMostGrowth; growth *= kGrowth) {
+    near.clear();
+    const double r = growth * radius;
+    tree.within(x, r * r, [&](std::uint32_t j, double distance2) { near.push_back({distance2, j}); });
+    const double wider = local_quadric(points, x, near).variance;
+    // Three times as much from twice the area: that is not noise but what else is there.
+    if (variance > 0 && wider > 3 * variance) break;
+    variance = wider;
+    if (r * r >= kDeviations * kDeviations * variance) break;
+  }
+  return variance;
+}
+
+}  // namespace
+
+double noise_along_normals(const std::vector<Vec3>& points, std::size_t sampled_points) {
+  if (points.size() < kFewestPoints)
+    throw std::invalid_argument(fmt::format("{} points: noise needs at least {}", points.size(), kFewestPoints));
+  const NeighbourTree tree(points);
+  const std::vector<std::uint32_t> picked = evenly_picked(tree, sampled_points);
+  std::vector<std::uint8_t> others(points.size(), 1);
+  for (const std::uint32_t i : picked) others[i] = 0;
+  std::vector<double> radius(points.size());
+  for_each_neighbourhood(
+      tree, kNoiseNeighbours,
+      [&](std::uint32_t i, std::span<const Neighbour> near) { radius[i] = std::sqrt(near.back().distance2); }, others);
+  std::vector<double> variance(picked.size());
+  tbb::enumerable_thread_specific<std::vector<Neighbour>> buffers;
+  tbb::parallel_for(std::size_t{0}, picked.size(), [&](std::size_t p) {
+    variance[p] = local_variance(points, tree, points[picked[p]], radius[picked[p]], buffers.local());
+  });
+  return std::sqrt(std::max(0.0, percentile(variance, 0.5)));
+}
+
+std::vector<double> thicknesses(const OrientedPointCloud& cloud, std::size_t sampled_points) {
+  // Wide enough not to slip between the samples of the other side, narrow enough not to meet what is beside it.
+  constexpr double kWidthOverSpacing = 1.5;
+  constexpr double kOpposed = -0.3;  // 107 degrees: walls that narrow by less than 73 degrees
+  const NeighbourTree tree(cloud.points);
+  const std::vector<std::uint32_t> picked = evenly_picked(tree, sampled_points);
+  const std::vector<double> areas = sample_areas(cloud.points);
+  std::vector<double> met(picked.size());
+  tbb::parallel_for(std::size_t{0}, picked.size(), [&](std::size_t p) {
+    const std::uint32_t i = picked[p];
+    const Vec3& n = cloud.normals[i];
+    met[p] = tree.first_along(cloud.points[i], -n, 0, kWidthOverSpacing * std::sqrt(areas[i]),
+                              [&](std::uint32_t j) { return cloud.normals[j].dot(n) < kOpposed; })
+                 .t;
+  });
+  std::erase_if(met, [](double t) { return !std::isfinite(t); });
+  std::sort(met.begin(), met.end());
+  return met;
+}
+
+std::vector<std::string> problems(const SurveyParams& params) {
+  std::vector<std::string> found = problems(params.cleaning);
+  for (std::string& more : problems(params.orientation)) found.push_back(std::move(more));
+  if (!(params.consistent >= 0 && params.consistent <= 1))
+    found.push_back(fmt::format("consistent = {}: must be in 0..1", params.consistent));
+  if (params.sampled_points < 100)
+    found.push_back(fmt::format("sampled_points = {}: must be >= 100", params.sampled_points));
+  return found;
+}
+
+CloudSurvey survey(const OrientedPointCloud& original, const SurveyParams& params) {
+  if (const auto found = problems(params); !found.empty()) throw std::invalid_argument(found.front());
+  CloudSurvey result;
+  result.n_points = original.points.size();
+  OrientedPointCloud cloud = original;
+  result.dropped = clean(cloud, params.cleaning);
+  const std::size_t n = cloud.points.size();
+  if (n < kFewestPoints)
+    throw std::invalid_argument(fmt::format("{} usable points: a survey needs at least {}", n, kFewestPoints));
+
+  result.low = result.high = cloud.points.front();
+  for (const Vec3& x : cloud.points) {
+    result.low = result.low.cwiseMin(x);
+    result.high = result.high.cwiseMax(x);
+  }
+  result.diagonal = (result.high - result.low).norm();
+  NeighbourDistances near = neighbour_distances(cloud.points, kAreaNeighbours);
+  std::vector<double> areas = sample_areas(near);
+  result.spacing = {percentile(near.nearest, 0.01), percentile(near.nearest, 0.5), percentile(near.nearest, 0.99)};
+  const double spacing = result.spacing[1];
+
+  result.noise = noise_along_normals(cloud.points, params.sampled_points);
+  result.noise_over_diagonal = result.noise / result.diagonal;
+  result.noise_over_spacing = result.noise / spacing;
+
+  result.farthest_coordinate = result.low.cwiseAbs().cwiseMax(result.high.cwiseAbs()).maxCoeff();
+  result.ulp_over_spacing = std::numeric_limits<double>::epsilon() * result.farthest_coordinate / spacing;
+  result.float_ulp_over_spacing = std::numeric_limits<float>::epsilon() * result.farthest_coordinate / spacing;
+
+  result.has_normals = !cloud.normals.empty();
+  if (result.has_normals) {
+    for (Vec3& normal : cloud.normals) {
+      if (!normal.allFinite() || normal.isZero(0)) {
+        ++result.n_normals_zero;
+        normal.setZero();
+      } else if (const double length = normal.stableNorm(); std::abs(length - 1) > 1e-3) {
+        ++result.n_normals_not_unit;
+        normal.stableNormalize();
+      }
+    }
+    result.consistency = consistency(cloud, params.orientation);
+    const EnclosedVolume body = enclosed_volumes(cloud, areas, std::vector<std::uint32_t>(n, 0), 1).front();
+    result.volume = body.volume;
+    result.openness = body.openness;
+    if (result.consistency >= params.consistent) {
+      const std::vector<double> met = thicknesses(cloud, params.sampled_points);
+      const std::size_t stride = std::max<std::size_t>(1, n / params.sampled_points),
+                        n_picked = (n + stride - 1) / stride;
+      result.thickness_found = static_cast<double>(met.size()) / static_cast<double>(n_picked);
+      const auto at = [&](double share) {
+        return met[static_cast<std::size_t>(share * static_cast<double>(met.size() - 1))];
+      };
+      if (!met.empty()) result.thickness = Percentiles{at(0.01), at(0.05), at(0.5)};
+    }
+  }
+  const double largest = percentile(areas, 0.99), least = percentile(areas, 0.01);
+  result.density_variation = least > 0 ? largest / least : 1;
+  return result;
+}
+
+}  // namespace umtet

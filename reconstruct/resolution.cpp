@@ -1,0 +1,31 @@
+#include "reconstruct/resolution.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace umtet {
+
+namespace {
+
+constexpr double kSpacings = 1.5, kNoises = 3;
+constexpr double kCleanSmoothing = 0.001, kNoisySmoothing = 0.4;
+// On eq. (9) with noise of 0.5 % and 6 degrees, 4 leaves 60 % of the error that 0 leaves; 10 needs less smoothing.
+constexpr double kValueNoises = 4;
+
+}  // namespace
+
+Resolution choose_resolution(double sample_spacing, double noise, double detail, double smooth) {
+  const bool noisy = kNoises * noise > kSpacings * sample_spacing;
+  Resolution r;
+  r.spacing = (noisy ? kNoises * noise : kSpacings * sample_spacing) / detail;
+  r.smoothing = smooth * (kCleanSmoothing + kNoisySmoothing * std::pow(noise / r.spacing, 2));
+  r.reason = noisy ? fmt::format("{:.3g} times the noise of {:.3g}", kNoises / detail, noise)
+                   : fmt::format("{:.3g} times the distance of {:.3g} between samples", kSpacings / detail, sample_spacing);
+  r.reason += fmt::format("; c = {:.3g} for noise of {:.3g} spacings", r.smoothing, noise / r.spacing);
+  return r;
+}
+
+double value_length(double spacing, double noise) { return std::hypot(spacing, kValueNoises * noise); }
+
+}  // namespace umtet

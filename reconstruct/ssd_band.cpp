@@ -1,0 +1,358 @@
+#include "reconstruct/ssd_band.h"
+
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+
+#include "reconstruct/cross_gram.h"
+#include "reconstruct/detail/contract.h"
+
+namespace umtet {
+
+namespace {
+
+constexpr int kEdge = LatticeBlocks::kEdge, kNodes = LatticeBlocks::kNodes;
+// The nodes of a cell block: two blocks along each axis.
+constexpr int kWindow = 2 * kEdge, kWindowNodes = kWindow * kWindow * kWindow;
+
+using Lanes = Eigen::Array<float, 8, 1>;
+using In = Eigen::Map<const Lanes>;
+
+Eigen::Map<Lanes> lanes(float* at) { return Eigen::Map<Lanes>(at); }
+
+Eigen::Vector3i cell_of(const SsdSample& s) { return s.xi.array().floor().cast<int>(); }
+
+// The node blocks that the functions of the samples' cells belong to.
+std::vector<Eigen::Vector3i> touched_blocks(const std::vector<SsdSample>& samples, int half_width) {
+  std::vector<Eigen::Vector3i> touched;
+  const int reach = 2 * half_width - 1;  // the window of cell c ends in block (c + reach) / 8
+  Eigen::Vector3i last = Eigen::Vector3i::Constant(-1);
+  for (const SsdSample& s : samples) {
+    const Eigen::Vector3i cell = cell_of(s);
+    if (cell == last) continue;
+    last = cell;
+    const Eigen::Vector3i low = cell / kEdge, high = (cell.array() + reach) / kEdge;
+    for (int z = low[2]; z <= high[2]; ++z)
+      for (int y = low[1]; y <= high[1]; ++y)
+        for (int x = low[0]; x <= high[0]; ++x) touched.emplace_back(x, y, z);
+    if (touched.size() > (1u << 20)) {  // not one entry a sample: they repeat
+      const auto less = [](const auto& a, const auto& b) {
+        return std::array{a[2], a[1], a[0]} < std::array{b[2], b[1], b[0]};
+      };
+      std::sort(touched.begin(), touched.end(), less);
+      touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    }
+  }
+  return touched;
+}
+
+template <class T>
+void load_window(const std::array<int, 8>& nodes, const T* values, T* window) {
+  for (int q = 0; q < 8; ++q) {
+    const int ox = kEdge * (q & 1), oy = kEdge * (q >> 1 & 1), oz = kEdge * (q >> 2);
+    for (int z = 0; z < kEdge; ++z)
+      for (int y = 0; y < kEdge; ++y) {
+        T* to = window + ((oz + z) * kWindow + oy + y) * kWindow + ox;
+        if (nodes[q] < 0) {
+          std::fill(to, to + kEdge, T(0));
+        } else {
+          const T* from = values + static_cast<std::size_t>(nodes[q]) * kNodes + (z * kEdge + y) * kEdge;
+          std::copy(from, from + kEdge, to);
+        }
+      }
+  }
+}
+
+template <class T>
+void add_window(const std::array<int, 8>& nodes, const T* window, T* values) {
+  for (int q = 0; q < 8; ++q) {
+    if (nodes[q] < 0) continue;
+    const int ox = kEdge * (q & 1), oy = kEdge * (q >> 1 & 1), oz = kEdge * (q >> 2);
+    for (int z = 0; z < kEdge; ++z)
+      for (int y = 0; y < kEdge; ++y) {
+        const T* from = window + ((oz + z) * kWindow + oy + y) * kWindow + ox;
+        T* to = values + static_cast<std::size_t>(nodes[q]) * kNodes + (z * kEdge + y) * kEdge;
+        for (int x = 0; x < kEdge; ++x) to[x] += from[x];
+      }
+  }
+}
+
+// What is stored of a sample: eight lanes of N and N' in x, W values each in y and z, and the two weights.
+template <int W>
+struct Basis {
+  static constexpr int kStride = 16 + 4 * W + 2;
+  const float* at;
+  In xN() const { return In(at); }
+  In xdN() const { return In(at + 8); }
+  const float* yN() const { return at + 16; }
+  const float* ydN() const { return at + 16 + W; }
+  const float* zN() const { return at + 16 + 2 * W; }
+  const float* zdN() const { return at + 16 + 3 * W; }
+  float w_value() const { return at[16 + 4 * W]; }
+  float w_gradient() const { return at[16 + 4 * W + 1]; }
+};
+
+}  // namespace
+
+SsdBand::SsdBand(const LmeTables& tables, const Lattice& lattice, double kappa, const std::vector<SsdSample>& samples)
+    : tables_(&tables),
+      kappa_(kappa),
+      samples_(&samples),
+      blocks_(lattice, tables.half_width(), touched_blocks(samples, tables.half_width())) {
+  neighbours_.resize(blocks_.size());
+  for (int b = 0; b < blocks_.size(); ++b) neighbours_[b] = blocks_.neighbours(b);
+  for (std::size_t i = 0; i < samples.size();) {
+    CellBlock cells;
+    cells.block = cell_of(samples[i]) / kEdge;
+    cells.begin = i;
+    while (i < samples.size() && cell_of(samples[i]) / kEdge == cells.block) ++i;
+    cells.end = i;
+    for (int q = 0; q < 8; ++q) {
+      cells.nodes[q] = blocks_.at(cells.block + Eigen::Vector3i(q & 1, q >> 1 & 1, q >> 2));
+    }
+    const int colour = (cells.block[0] & 1) | (cells.block[1] & 1) << 1 | (cells.block[2] & 1) << 2;
+    colours_[colour].push_back(static_cast<int>(cell_blocks_.size()));
+    cell_blocks_.push_back(cells);
+  }
+  detail::dispatch_width(tables.width(), [&](auto W) { tabulate<W.value>(); });
+  invert_diagonal();
+}
+
+// Cell blocks of one colour at a time: their windows of nodes are disjoint.
+template <class F>
+void SsdBand::for_each_cell_block(F&& f) const {
+  for (const std::vector<int>& colour : colours_) {
+    tbb::parallel_for(std::size_t{0}, colour.size(), [&](std::size_t c) { f(cell_blocks_[colour[c]]); });
+  }
+}
+
+template <int W>
+void SsdBand::tabulate() {
+  constexpr int kStride = Basis<W>::kStride;
+  bases_.resize(samples_->size() * kStride);
+  window_.resize(samples_->size());
+  tbb::parallel_for(std::size_t{0}, cell_blocks_.size(), [&](std::size_t c) {
+    const CellBlock& cells = cell_blocks_[c];
+    const Eigen::Vector3i corner = kEdge * cells.block - Eigen::Vector3i::Constant(blocks_.shift());
+    for (std::size_t i = cells.begin; i < cells.end; ++i) {
+      const SsdSample& s = (*samples_)[i];
+      LmeBasis3d B;
+      evaluate_lme_3d<false>(*tables_, blocks_.lattice().n, s.xi, B);
+      float* at = bases_.data() + i * kStride;
+      for (int a = 0; a < 8; ++a) {
+        at[a] = static_cast<float>(B.x.N[a]);
+        at[8 + a] = static_cast<float>(B.x.dN[a]);
+      }
+      for (int a = 0; a < W; ++a) {
+        at[16 + a] = static_cast<float>(B.y.N[a]);
+        at[16 + W + a] = static_cast<float>(B.y.dN[a]);
+        at[16 + 2 * W + a] = static_cast<float>(B.z.N[a]);
+        at[16 + 3 * W + a] = static_cast<float>(B.z.dN[a]);
+      }
+      at[16 + 4 * W] = static_cast<float>(s.w_value);
+      at[16 + 4 * W + 1] = static_cast<float>(s.w_gradient);
+      const Eigen::Vector3i first = Eigen::Vector3i(B.x.first, B.y.first, B.z.first) - corner;
+      window_[i] = static_cast<std::uint16_t>((first[2] * kWindow + first[1]) * kWindow + first[0]);
+    }
+  });
+}
+
+template <int W>
+void SsdBand::apply_data(const float* p, float* y) const {
+  for_each_cell_block([&](const CellBlock& cells) {
+    // Eight-lane loads and stores may reach past the last row.
+    alignas(32) float in[kWindowNodes + 8], out[kWindowNodes + 8];
+    load_window(cells.nodes, p, in);
+    std::fill(in + kWindowNodes, in + kWindowNodes + 8, 0.f);
+    std::fill(out, out + kWindowNodes + 8, 0.f);
+    for (std::size_t i = cells.begin; i < cells.end; ++i) {
+      const Basis<W> B{bases_.data() + i * Basis<W>::kStride};
+      const float* from = in + window_[i];
+      Lanes v = Lanes::Zero(), vy = v, vz = v;
+      for (int j = 0; j < W; ++j) {
+        Lanes a = Lanes::Zero(), az = a;
+        for (int k = 0; k < W; ++k) {
+          const In row(from + (k * kWindow + j) * kWindow);
+          a += B.zN()[k] * row;
+          az += B.zdN()[k] * row;
+        }
+        v += B.yN()[j] * a;
+        vy += B.ydN()[j] * a;
+        vz += B.yN()[j] * az;
+      }
+      const Lanes N = B.xN(), dN = B.xdN();
+      const float q = B.w_value() * (N * v).sum(), w = B.w_gradient();
+      const float gx = w * (dN * v).sum(), gy = w * (N * vy).sum(), gz = w * (N * vz).sum();
+      const Lanes t = q * N + gx * dN, ty = gy * N, tz = gz * N;
+      float* to = out + window_[i];
+      for (int j = 0; j < W; ++j) {
+        const Lanes a = B.yN()[j] * t + B.ydN()[j] * ty, az = B.yN()[j] * tz;
+        for (int k = 0; k < W; ++k) {
+          lanes(to + (k * kWindow + j) * kWindow) += B.zN()[k] * a + B.zdN()[k] * az;
+        }
+      }
+    }
+    add_window(cells.nodes, out, y);
+  });
+}
+
+// kappa K p on each block from the nodes around it: the three axes one after the other, as in HessianEnergy.
+template <int R>
+void SsdBand::apply_energy(const float* p, float* y) const {
+  constexpr int kHalf = 2 * R - 1, kAround = kEdge + 2 * kHalf;
+  const CrossGram gram(*tables_, 0);
+  float m[kHalf + 1], s[kHalf + 1], b[kHalf + 1];
+  for (int o = 0; o <= kHalf; ++o) {
+    m[o] = static_cast<float>(gram.m(o)), s[o] = static_cast<float>(gram.s(o)), b[o] = static_cast<float>(gram.b(o));
+  }
+  tbb::parallel_for(0, blocks_.size(), [&](int block) {
+    const std::array<int, 27>& near = neighbours_[block];
+    alignas(32) float with_m[kAround][kNodes / kEdge], with_b[kAround][kNodes / kEdge], with_s[kAround][kNodes / kEdge];
+    for (int z = 0; z < kAround; ++z) {
+      const int kz = z - kHalf + kEdge, bz = kz / kEdge;  // 0, 1, 2: below, in, above
+      alignas(32) float M[kAround][kEdge], S[kAround][kEdge], B[kAround][kEdge];
+      bool plane = false;
+      for (int j = 0; j < kAround; ++j) {
+        const int ky = j - kHalf + kEdge, by = ky / kEdge;
+        const int* three = near.data() + 9 * bz + 3 * by;
+        if (three[0] < 0 && three[1] < 0 && three[2] < 0) {
+          lanes(M[j]).setZero(), lanes(S[j]).setZero(), lanes(B[j]).setZero();
+          continue;
+        }
+        plane = true;
+        alignas(32) float row[3 * kEdge];
+        for (int q = 0; q < 3; ++q) {
+          if (three[q] < 0) {
+            lanes(row + q * kEdge).setZero();
+          } else {
+            lanes(row + q * kEdge) = In(p + static_cast<std::size_t>(three[q]) * kNodes + (kz % kEdge * kEdge + ky % kEdge) * kEdge);
+          }
+        }
+        const Lanes centre = In(row + kEdge);
+        Lanes vm = m[0] * centre, vs = s[0] * centre, vb = b[0] * centre;
+        for (int o = 1; o <= kHalf; ++o) {
+          const Lanes pair = In(row + kEdge - o) + In(row + kEdge + o);
+          vm += m[o] * pair, vs += s[o] * pair, vb += b[o] * pair;
+        }
+        lanes(M[j]) = vm, lanes(S[j]) = vs, lanes(B[j]) = vb;
+      }
+      for (int j = 0; j < kEdge; ++j) {
+        Lanes am = Lanes::Zero(), ab = am, as = am;
+        if (plane) {
+          const int at = j + kHalf;
+          const Lanes Mj = In(M[at]), Sj = In(S[at]);
+          am = m[0] * In(B[at]) + b[0] * Mj + (2 * s[0]) * Sj;
+          ab = m[0] * Mj;
+          as = m[0] * Sj + s[0] * Mj;
+          for (int o = 1; o <= kHalf; ++o) {
+            const Lanes Mo = In(M[at - o]) + In(M[at + o]), So = In(S[at - o]) + In(S[at + o]);
+            am += m[o] * (In(B[at - o]) + In(B[at + o])) + b[o] * Mo + (2 * s[o]) * So;
+            ab += m[o] * Mo;
+            as += m[o] * So + s[o] * Mo;
+          }
+        }
+        lanes(with_m[z] + j * kEdge) = am, lanes(with_b[z] + j * kEdge) = ab, lanes(with_s[z] + j * kEdge) = 2 * as;
+      }
+    }
+    float* to = y + static_cast<std::size_t>(block) * kNodes;
+    const auto kappa = static_cast<float>(kappa_);
+    for (int z = 0; z < kEdge; ++z) {
+      const int at = z + kHalf;
+      for (int j = 0; j < kEdge; ++j) {
+        const int col = j * kEdge;
+        Lanes sum = m[0] * In(with_m[at] + col) + b[0] * In(with_b[at] + col) + s[0] * In(with_s[at] + col);
+        for (int o = 1; o <= kHalf; ++o) {
+          sum += m[o] * (In(with_m[at - o] + col) + In(with_m[at + o] + col)) +
+                 b[o] * (In(with_b[at - o] + col) + In(with_b[at + o] + col)) +
+                 s[o] * (In(with_s[at - o] + col) + In(with_s[at + o] + col));
+        }
+        lanes(to + (z * kEdge + j) * kEdge) = kappa * sum;
+      }
+    }
+  });
+}
+
+void SsdBand::apply(const float* p, float* y) const {
+  detail::dispatch_width(tables_->width(), [&](auto W) {
+    apply_energy<W.value / 2>(p, y);
+    apply_data<W.value>(p, y);
+  });
+}
+
+void SsdBand::invert_diagonal() {
+  std::vector<float>& d = inverse_diagonal_;
+  d.assign(size(), 0.f);
+  detail::dispatch_width(tables_->width(), [&](auto width) {
+    constexpr int W = width.value;
+    for_each_cell_block([&](const CellBlock& cells) {
+      alignas(32) float out[kWindowNodes + 8] = {};
+      for (std::size_t i = cells.begin; i < cells.end; ++i) {
+        const Basis<W> B{bases_.data() + i * Basis<W>::kStride};
+        const Lanes N2 = B.xN().square(), d2 = B.xdN().square();
+        for (int k = 0; k < W; ++k)
+          for (int j = 0; j < W; ++j) {
+            const float yz = B.yN()[j] * B.zN()[k], dyz = B.ydN()[j] * B.zN()[k], ydz = B.yN()[j] * B.zdN()[k];
+            lanes(out + window_[i] + (k * kWindow + j) * kWindow) +=
+                B.w_value() * yz * yz * N2 + B.w_gradient() * (yz * yz * d2 + (dyz * dyz + ydz * ydz) * N2);
+          }
+      }
+      add_window(cells.nodes, out, d.data());
+    });
+  });
+  const CrossGram gram(*tables_, 0);
+  const double m = gram.m(0), s = gram.s(0), b = gram.b(0);
+  const auto energy = static_cast<float>(kappa_ * (3 * b * m * m + 6 * s * s * m));
+  for (float& v : d) {  // a node is active where a sample weighs something on it
+    n_active_ += v > 0;
+    v = v > 0 ? 1 / (v + energy) : 0;
+  }
+}
+
+void SsdBand::residual(const LevelSet& f, std::vector<float>& r) const {
+  const Lattice& L = blocks_.lattice();
+  // H(f), in units of this lattice, against its functions: level by level.
+  std::vector<double> energy(size(), 0.0);
+  for (int level = 0; level < f.n_levels(); ++level) {
+    const CrossGram gram(*tables_, static_cast<int>(std::lround(std::log2(f.lattice(level).h / L.h))));
+    const int n = gram.window_size();
+    tbb::parallel_for(0, blocks_.size(), [&](int block) {
+      thread_local std::vector<double> window;
+      window.resize(static_cast<std::size_t>(n) * n * n);
+      const Eigen::Vector3i first = blocks_.first_node(block), begin = gram.window_begin(first);
+      const bool any = level == 0 ? copy_window(f.coarsest(), begin, n, window.data())
+                                  : f.band(level).blocks.copy_window(f.band(level).coefficients.data(), begin,
+                                                                     {n, n, n}, n, window.data());
+      if (any) gram.add_energy(first, window.data(), energy.data() + static_cast<std::size_t>(block) * kNodes);
+    });
+  }
+  for (double& e : energy) e /= L.h;
+  std::vector<double> data(size(), 0.0);
+  for_each_cell_block([&](const CellBlock& cells) {
+    const Eigen::Vector3i corner = kEdge * cells.block - Eigen::Vector3i::Constant(blocks_.shift());
+    double out[kWindowNodes] = {};
+    for (std::size_t i = cells.begin; i < cells.end; ++i) {
+      const SsdSample& s = (*samples_)[i];
+      Vec3 gradient;
+      const double value = f.evaluate(L.origin + L.h * s.xi, &gradient, nullptr) / L.h;
+      LmeBasis3d B;
+      evaluate_lme_3d<false>(*tables_, L.n, s.xi, B);
+      const double q = s.w_value * (s.value - value);
+      const Vec3 g = s.w_gradient * (s.normal - gradient);
+      double* base = out + ((B.z.first - corner[2]) * kWindow + B.y.first - corner[1]) * kWindow + B.x.first - corner[0];
+      const int W = tables_->width();
+      for (int k = 0; k < W; ++k)
+        for (int j = 0; j < W; ++j) {
+          const double yz = B.y.N[j] * B.z.N[k], v = q * yz + g[1] * B.y.dN[j] * B.z.N[k] + g[2] * B.y.N[j] * B.z.dN[k];
+          double* row = base + (k * kWindow + j) * kWindow;
+          for (int a = 0; a < W; ++a) row[a] += v * B.x.N[a] + g[0] * yz * B.x.dN[a];
+        }
+    }
+    add_window(cells.nodes, out, data.data());
+  });
+  r.resize(size());
+  for (std::size_t a = 0; a < r.size(); ++a) {
+    r[a] = inverse_diagonal_[a] > 0 ? static_cast<float>(data[a] - kappa_ * energy[a]) : 0.f;
+  }
+}
+
+}  // namespace umtet

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace umtet {
+
+/// One sample of the quadratic data term ½ w_value (f(x) − v)² + ½ w_gradient |∇f(x) − n|², all in lattice units.
+struct SsdSample {
+  Eigen::Vector3d xi;      ///< (x − origin) / h
+  Eigen::Vector3d normal;  ///< n_i
+  double w_value = 0, w_gradient = 0;
+  double value = 0;  ///< v: zero for a sample of the surface, not quite for the mean of several
+};
+
+/// Weighted means of the samples that share a cube of edge `cube`, sorted by the blocks of 8 x 8 x 8 cells they lie in.
+///
+/// The mean position of samples of a curved surface lies beside it. Its value is that of the functions that the samples
+/// describe, to third order: f(mean) = sum w (v_i + ½ n_i · (mean − x_i)) / sum w, the trapezoid rule from x_i to the
+/// mean, where the mean's own gradient drops out.
+/// @param cube  in lattice spacings: 1 or ½
+std::vector<SsdSample> merge_samples(const std::vector<SsdSample>& samples, double cube);
+
+/// The samples as those of the lattice of twice the spacing, for coefficients in units of that spacing.
+void coarsen(std::vector<SsdSample>& samples);
+
+}  // namespace umtet

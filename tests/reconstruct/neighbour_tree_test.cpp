@@ -1,0 +1,90 @@
+#include "reconstruct/neighbour_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace umtet {
+namespace {
+
+std::vector<Vec3> clumps(int n) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> gauss;
+  std::vector<Vec3> points;
+  for (int i = 0; i < n; ++i)
+    points.emplace_back(std::exp(3 * gauss(random)), gauss(random), (i % 7) + 1e-3 * gauss(random));
+  for (int i = 0; i < n / 10; ++i) points.push_back(points[static_cast<std::size_t>(3 * i)]);  // duplicates
+  points.emplace_back(1e9, 0, 0);
+  return points;
+}
+
+// Sizes around the 16 points of a leaf, and k around all of them.
+TEST(NeighbourTree, FindsWhatAllPairsFind) {
+  for (const int n : {1, 5, 15, 16, 17, 100, 700}) {
+    const std::vector<Vec3> points = clumps(n);
+    const NeighbourTree tree(points);
+    for (const std::size_t k : {std::size_t{1}, std::size_t{4}, std::size_t{13}, std::size_t{60}, std::size_t{2000}}) {
+      std::vector<int> visits(points.size(), 0);
+      for_each_neighbourhood(tree, k, [&](std::uint32_t i, std::span<const Neighbour> near) {
+        ++visits[i];
+        std::vector<double> all;
+        for (const Vec3& x : points) all.push_back((x - points[i]).squaredNorm());
+        std::sort(all.begin(), all.end());
+        ASSERT_EQ(near.size(), std::min(k, points.size()));
+        std::vector<std::uint32_t> ids;
+        for (std::size_t m = 0; m < near.size(); ++m) {
+          EXPECT_NEAR(near[m].distance2, all[m], 1e-14 * all[m]);
+          EXPECT_NEAR(near[m].distance2, (points[near[m].point] - points[i]).squaredNorm(), 1e-14 * all[m]);
+          ids.push_back(near[m].point);
+        }
+        std::sort(ids.begin(), ids.end());
+        EXPECT_EQ(std::unique(ids.begin(), ids.end()), ids.end());
+      });
+      EXPECT_EQ(visits, std::vector<int>(points.size(), 1));
+    }
+  }
+}
+
+TEST(NeighbourTree, CountsAndVisitsTheSameBall) {
+  const std::vector<Vec3> points = clumps(2000);
+  const NeighbourTree tree(points);
+  for (const double radius : {0.0, 0.1, 1.0, 30.0, 1e10}) {
+    std::size_t expected = 0, visited = 0;
+    for (const Vec3& x : points) expected += (x - points[5]).squaredNorm() <= radius * radius ? 1 : 0;
+    tree.within(points[5], radius * radius, [&](std::uint32_t, double) { ++visited; });
+    EXPECT_EQ(visited, expected);
+    EXPECT_EQ(tree.count_within(points[5], radius * radius, 1000000), expected);
+    EXPECT_EQ(tree.count_within(points[5], radius * radius, 3), std::min<std::size_t>(3, expected));
+  }
+}
+
+TEST(NeighbourTree, TheFirstAlongARayIsTheNearestOfThoseAccepted) {
+  const std::vector<Vec3> points = clumps(3000);
+  const NeighbourTree tree(points);
+  std::mt19937_64 random(8);
+  std::normal_distribution<double> gauss;
+  for (int ray = 0; ray < 100; ++ray) {
+    Vec3 d = Vec3(gauss(random), gauss(random), gauss(random)).normalized();
+    if (ray < 3) d = Vec3::Unit(ray);  // along an axis: divisions by zero
+    const Vec3& x = points[static_cast<std::size_t>(7 * ray)];
+    const auto accept = [](std::uint32_t i) { return i % 3 != 0; };
+    double first = std::numeric_limits<double>::infinity();
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+      const Vec3 r = points[i] - x;
+      const double t = r.dot(d);
+      if (accept(i) && t >= 0.01 && (r - t * d).norm() <= 0.2) first = std::min(first, t);
+    }
+    EXPECT_EQ(tree.first_along(x, d, 0.01, 0.2, accept).t, first);
+  }
+}
+
+TEST(NeighbourTree, RefusesWhatHasNoPlace) {
+  EXPECT_THROW(NeighbourTree({}), std::invalid_argument);
+  EXPECT_THROW(NeighbourTree({Vec3(0, std::numeric_limits<double>::quiet_NaN(), 0)}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace umtet

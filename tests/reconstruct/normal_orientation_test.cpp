@@ -1,0 +1,193 @@
+#include "reconstruct/normal_orientation.h"
+
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+
+#include <algorithm>
+
+#include "reconstruct/normal_estimation.h"
+#include "reconstruct/point_cloud_io.h"
+#include "tests/support/clouds.h"
+#include "tests/support/data_files.h"
+#include "tests/support/sampled_domains.h"
+
+namespace umtet {
+namespace {
+
+using test::sampled;
+
+std::size_t n_wrong(const OrientedPointCloud& cloud, const std::vector<Vec3>& truth) {
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i) wrong += cloud.normals[i].dot(truth[i]) > 0 ? 0 : 1;
+  return wrong;
+}
+
+TEST(OrientNormals, RandomSignsOfTheAnalyticDomainsBecomeOutward) {
+  for (const testing::AnalyticDomain& domain : testing::domains()) {
+    OrientedPointCloud cloud = sampled(domain, 15000);
+    const std::vector<Vec3> truth = cloud.normals;
+    cloud.normals = estimate_normals(cloud.points).normals;
+    test::turn_some(cloud, 0.5);
+    const OrientationReport report = orient_normals(cloud);
+    EXPECT_LE(n_wrong(cloud, truth), 15U) << domain.name;  // one in a thousand
+    EXPECT_LT(report.consistency, 0.55) << domain.name;
+    EXPECT_GT(report.consistency_after, 0.998) << domain.name;
+    EXPECT_EQ(report.n_components, static_cast<std::size_t>(domain.components)) << domain.name;
+  }
+}
+
+TEST(OrientNormals, NoiseLeavesOneInAThousand) {
+  OrientedPointCloud cloud = sampled(testing::equation_9(), 20000);
+  const std::vector<Vec3> truth = cloud.normals;
+  cloud = test::with_noise(cloud, 0.005 * test::box_diagonal(cloud.points));
+  cloud.normals = estimate_normals(cloud.points).normals;
+  orient_normals(cloud);
+  EXPECT_LE(n_wrong(cloud, truth), 20U);
+}
+
+TEST(OrientNormals, BodiesFaceOutwardAndCavitiesInward) {
+  OrientedPointCloud cloud = test::torus_cloud(20000);
+  test::add_sphere(cloud, {1, 0, 0}, 0.2, 5000, -1);  // a bubble in the torus
+  test::add_sphere(cloud, {1, 0, 0}, 0.1, 3000);      // a grain in the bubble
+  test::add_sphere(cloud, {3, 0, 0}, 0.3, 5000);      // beside it
+  test::add_sphere(cloud, {0, 0, 0}, 0.57, 5000);     // in its hole, a spacing from it: outside
+  const std::vector<Vec3> truth = cloud.normals;
+  test::turn_some(cloud, 0.5);
+  const OrientationReport report = orient_normals(cloud);
+  EXPECT_EQ(n_wrong(cloud, truth), 0U);
+  EXPECT_EQ(report.n_components, 5U);
+  EXPECT_EQ(report.n_cavities, 1U);
+  EXPECT_EQ(report.n_doubtful, 0U);
+}
+
+// The rim is as round as the spacing: neighbours across it must not be joined as if they lay on one sheet.
+TEST(OrientNormals, TheSidesOfAThinPlateStayApart) {
+  OrientedPointCloud cloud = sampled(testing::ellipsoid({1, 1, 0.1}), 40000);
+  const std::vector<Vec3> truth = cloud.normals;
+  test::turn_some(cloud, 0.5);
+  const OrientationReport report = orient_normals(cloud);
+  EXPECT_LE(n_wrong(cloud, truth), 40U);
+  EXPECT_EQ(report.n_components, 1U);
+  EXPECT_EQ(report.n_doubtful, 0U);
+}
+
+// Thinner than that the samples do not say how the sides are joined, and the volume shows that they are not.
+TEST(OrientNormals, APlateThatIsTooThinIsDoubtful) {
+  OrientedPointCloud cloud = sampled(testing::ellipsoid({1, 1, 0.02}), 40000);
+  const std::vector<Vec3> truth = cloud.normals;
+  test::turn_some(cloud, 0.5);
+  const OrientationReport report = orient_normals(cloud);
+  EXPECT_TRUE(n_wrong(cloud, truth) <= 40 || report.n_doubtful > 39000) << report.n_doubtful;
+}
+
+TEST(OrientNormals, AnOpenSheetIsAGuessAndSaysSo) {
+  OrientedPointCloud cloud = test::plane_cloud(50, Vec3::UnitZ());
+  test::turn_some(cloud, 0.5);
+  const OrientationReport report = orient_normals(cloud);
+  EXPECT_EQ(report.n_doubtful, 2500U);
+  EXPECT_EQ(report.consistency_after, 1);
+}
+
+TEST(OrientNormals, DoesNotDependOnTheNumberOfThreads) {
+  OrientedPointCloud many = test::with_noise(test::torus_cloud(20000), 0.02);
+  test::turn_some(many, 0.5);
+  OrientedPointCloud one = many;
+  orient_normals(many);
+  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+  orient_normals(one);
+  EXPECT_EQ(one.normals, many.normals);
+}
+
+TEST(RepairNormals, RightNormalsAreLeftAloneBitForBit) {
+  for (const double noise : {0.0, 0.005, 0.01}) {
+    OrientedPointCloud cloud = sampled(testing::equation_9(), 20000);
+    cloud = test::with_noise(cloud, noise * test::box_diagonal(cloud.points));
+    const std::vector<Vec3> given = cloud.normals;
+    const OrientationReport report = repair_normals(cloud);
+    EXPECT_EQ(cloud.normals, given);
+    EXPECT_TRUE(report.left_alone);
+    EXPECT_EQ(report.consistency, report.consistency_after);
+  }
+}
+
+TEST(RepairNormals, AMinorityIsTurnedBack) {
+  OrientedPointCloud cloud = sampled(testing::equation_9(), 20000);
+  const std::vector<Vec3> truth = cloud.normals;
+  std::size_t n_patch = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i)
+    if (cloud.points[i].x() > 0.8) {
+      cloud.normals[i] = -cloud.normals[i];
+      ++n_patch;
+    }
+  const OrientedPointCloud patched = cloud;
+  const OrientationReport patch = repair_normals(cloud);
+  EXPECT_EQ(cloud.normals, truth);
+  EXPECT_EQ(patch.n_turned, n_patch);
+
+  cloud = patched;
+  test::turn_some(cloud, 0.1);
+  EXPECT_LT(consistency(cloud), 0.85);
+  repair_normals(cloud);
+  EXPECT_EQ(cloud.normals, truth);
+}
+
+TEST(RepairNormals, AnInwardCloudIsTurnedOutward) {
+  OrientedPointCloud cloud = test::torus_cloud(5000);
+  const std::vector<Vec3> truth = cloud.normals;
+  flip(cloud);
+  EXPECT_EQ(repair_normals(cloud).n_turned, 5000U);
+  EXPECT_EQ(cloud.normals, truth);
+}
+
+TEST(RepairNormals, WithoutAVolumeTheMajorityDecides) {
+  for (const double side : {-1.0, 1.0}) {
+    OrientedPointCloud cloud = test::plane_cloud(50, side * Vec3::UnitZ());
+    const std::vector<Vec3> truth = cloud.normals;
+    test::turn_some(cloud, 0.3);
+    repair_normals(cloud);
+    EXPECT_EQ(cloud.normals, truth);
+  }
+}
+
+TEST(OrientFrom, EveryNormalLooksAtItsNearestViewpoint) {
+  OrientedPointCloud cloud;
+  cloud.points = {{0, 0, 0}, {10, 0, 0}};
+  cloud.normals = {Vec3::UnitZ(), Vec3::UnitZ()};
+  EXPECT_EQ(orient_from(cloud, {{0, 0, 5}, {10, 0, -5}}), 1U);
+  EXPECT_EQ(cloud.normals[0], Vec3::UnitZ());
+  EXPECT_EQ(cloud.normals[1], -Vec3::UnitZ());
+  EXPECT_THROW(orient_from(cloud, {}), std::invalid_argument);
+  cloud.normals.pop_back();
+  EXPECT_THROW(orient_normals(cloud), std::invalid_argument);
+  EXPECT_THROW(repair_normals(cloud, {.neighbours = 2, .disagreement = 2}), std::invalid_argument);
+}
+
+TEST(RepairNormals, RealScansAreLeftAloneAndThePenguinIsRepaired) {
+  if (!test::real_cloud("penguin_flipped_normals.ply")) GTEST_SKIP() << "no real scans beside the checkout";
+  OrientedPointCloud penguin = read_point_cloud(*test::real_cloud("penguin_flipped_normals.ply")).cloud;
+  const OrientationReport report = repair_normals(penguin);
+  EXPECT_EQ(report.n_turned, 4242U);  // what the data's README says was turned
+  EXPECT_GT(report.consistency_after, 0.999);
+  for (const char* name : {"duck.ply", "blub.xyz", "skull.ply", "scorpion.ply", "bunny_holes.pcd"}) {
+    OrientedPointCloud cloud = read_point_cloud(*test::real_cloud(name)).cloud;
+    const std::vector<Vec3> given = cloud.normals;
+    EXPECT_TRUE(repair_normals(cloud).left_alone) << name;
+    EXPECT_EQ(cloud.normals, given) << name;
+  }
+}
+
+TEST(OrientNormals, RealCloudsWithoutTheirNormals) {
+  for (const auto& [name, share] : {std::pair{"duck.ply", 0.999}, std::pair{"armadillo.ply", 0.998},
+                                    std::pair{"scorpion.ply", 0.999}, std::pair{"skull.ply", 0.999}}) {
+    const auto file = test::real_cloud(name);
+    if (!file) GTEST_SKIP() << "no real scans beside the checkout";
+    OrientedPointCloud cloud = read_point_cloud(*file).cloud;
+    const std::vector<Vec3> truth = cloud.normals;
+    cloud.normals = estimate_normals(cloud.points).normals;
+    orient_normals(cloud);
+    EXPECT_LE(static_cast<double>(n_wrong(cloud, truth)), (1 - share) * static_cast<double>(truth.size())) << name;
+  }
+}
+
+}  // namespace
+}  // namespace umtet

@@ -1,0 +1,91 @@
+#pragma once
+
+// Clouds sampled from the analytic domains, and what scanners do to them.
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "reconstruct/point_cloud.h"
+#include "tests/support/domains.h"
+
+namespace umtet::test {
+
+/// n points of the zero set of a domain with exact normals, uniform by area: where random lines cross it.
+inline OrientedPointCloud sampled(const testing::AnalyticDomain& domain, std::size_t n, std::uint64_t seed = 1) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::normal_distribution<double> gauss;
+  const Vec3 middle = domain.box.center();
+  const double radius = domain.box.diagonal().norm() / 2;
+  constexpr int kSteps = 200;
+  OrientedPointCloud cloud;
+  while (cloud.points.size() < n) {
+    const Vec3 d = Vec3(gauss(random), gauss(random), gauss(random)).normalized(), u = d.unitOrthogonal();
+    const double r = radius * std::sqrt(unit(random)), angle = 2 * std::numbers::pi * unit(random);
+    const Vec3 start = middle + r * (std::cos(angle) * u + std::sin(angle) * d.cross(u)) - radius * d;
+    const double step = 2 * radius / kSteps;
+    for (int s = 0; s < kSteps; ++s) {
+      double t0 = s * step, t1 = t0 + step;
+      if (!domain.box.contains(start + t0 * d) || !domain.box.contains(start + t1 * d)) continue;
+      const bool inside0 = domain.value(start + t0 * d) < 0;
+      if (inside0 == (domain.value(start + t1 * d) < 0)) continue;
+      for (int halving = 0; halving < 50; ++halving) {
+        const double t = (t0 + t1) / 2;
+        ((domain.value(start + t * d) < 0) == inside0 ? t0 : t1) = t;
+      }
+      if (cloud.points.size() == n) break;
+      cloud.points.push_back(start + t0 * d);
+      cloud.normals.push_back(domain.gradient(cloud.points.back()).normalized());
+    }
+  }
+  return cloud;
+}
+
+inline double box_diagonal(const std::vector<Vec3>& points) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : points) box.extend(x);
+  return box.diagonal().norm();
+}
+
+/// Gaussian noise of the given standard deviation along each axis; normals stay.
+inline OrientedPointCloud with_noise(OrientedPointCloud cloud, double sigma, std::uint64_t seed = 3) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> gauss;
+  for (Vec3& x : cloud.points) x += sigma * Vec3(gauss(random), gauss(random), gauss(random));
+  return cloud;
+}
+
+/// Adds n points, uniform in the box of the cloud.
+inline OrientedPointCloud with_outliers(OrientedPointCloud cloud, int n, std::uint64_t seed = 9) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> unit(0, 1);
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : cloud.points) box.extend(x);
+  for (int i = 0; i < n; ++i) {
+    cloud.points.push_back(box.min() + box.sizes().cwiseProduct(Vec3(unit(random), unit(random), unit(random))));
+    cloud.normals.push_back(Vec3::UnitZ());
+  }
+  return cloud;
+}
+
+/// Turns over about a share of the normals.
+inline void turn_some(OrientedPointCloud& cloud, double share, std::uint64_t seed = 5) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (Vec3& n : cloud.normals)
+    if (unit(random) < share) n = -n;
+}
+
+/// A sphere of n points added to a cloud; side -1: its normals point to its centre.
+inline void add_sphere(OrientedPointCloud& cloud, const Vec3& centre, double radius, int n, double side = 1) {
+  for (int i = 0; i < n; ++i) {
+    const double z = 1 - (2 * i + 1.0) / n, r = std::sqrt(1 - z * z),
+                 angle = i * std::numbers::pi * (3 - std::sqrt(5.0));
+    const Vec3 normal(r * std::cos(angle), r * std::sin(angle), z);
+    cloud.points.push_back(centre + radius * normal);
+    cloud.normals.push_back(side * normal);
+  }
+}
+
+}  // namespace umtet::test
