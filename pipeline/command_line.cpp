@@ -18,6 +18,7 @@ constexpr const char* kFooter = R"(Examples:
   umtet run duck.ply -o duck                 from a scan to a certified mesh; run again: resumes, or does nothing
   umtet mesh duck --h 0.02                   another mesh size; the level set is not fitted again
   umtet mesh --implicit 'x^2+y^2+z^2-1' --box -1.2,-1.2,-1.2,1.2,1.2,1.2 --tets 100000 -o ball
+  umtet inspect duck.ply                     spacing, noise, normals, thickness; what is likely to go wrong
   umtet check part.msh                       validity and quality of any tet mesh
   umtet export duck --format msh,stl         files for solvers, in duck/4-export
 
@@ -75,23 +76,26 @@ Parser::Parser() {
   run.add_option("CLOUD", in_.input, "oriented points: .ply, .pcd, .xyz; or a case, to resume it");
   run.add_option("--from", in_.from, "first stage that may run: cloud, level-set, mesh");
   run.add_option("--until", in_.until, "last stage to run");
-  add_parameter_flags(run, {"reconstruct", "mesh", "output"}, {"mesh.implicit"});
+  add_parameter_flags(run, {"cloud", "reconstruct", "mesh", "output"}, {"mesh.implicit"});
 
   CLI::App& reconstruct = add_command("reconstruct", "Stage one only: the level set");
   add_stage_flags(reconstruct);
   reconstruct.add_option("CLOUD", in_.input, "oriented points; or a case, to fit again with other parameters");
-  add_parameter_flags(reconstruct, {"reconstruct"});
+  add_parameter_flags(reconstruct, {"cloud", "reconstruct", "output"}, {"output.units", "output.min_quality"});
 
   CLI::App& mesh = add_command("mesh", "Stage two only: from the level set of CASE, or from a formula");
   add_stage_flags(mesh);
   mesh.add_option("CASE", in_.input, "a case with a level set");
   add_parameter_flags(mesh, {"mesh", "output"});
 
+  CLI::App& inspect = add_command("inspect", "What is in a cloud, and what is likely to go wrong with it");
+  inspect.add_option("CLOUD", in_.input, "points: .ply, .pcd, .xyz")->required();
+
   CLI::App& check = add_command("check", "Validity and quality of any tet mesh; exit 6 when it fails");
   check.add_option("MESH", in_.input, ".vtu, .msh or .mesh")->required();
   check.add_option("--against", in_.against, "a case whose surface the mesh should fit");
   add_parameter_sources(check);
-  add_parameter_flags(check, {"output"});
+  add_parameter_flags(check, {"output"}, {"output.max_memory"});
 
   CLI::App& exports = add_command("export", "Files for solvers and viewers, in CASE/4-export");
   exports.add_option("CASE", in_.input, "a case with a mesh")->required();
@@ -181,7 +185,7 @@ void Parser::check_command(int argc, const char* const* argv) const {
   std::vector<std::string> commands;
   for (const CLI::App* c : app_.get_subcommands({})) commands.push_back(c->get_name());
   if (std::find(commands.begin(), commands.end(), *word) != commands.end()) return;
-  for (const char* planned : {"inspect", "report", "evolve", "batch"}) {
+  for (const char* planned : {"report", "evolve", "batch"}) {
     if (std::string_view(*word) != planned) continue;
     throw UsageError(fmt::format("{} is not available yet in version {}; there are {}", planned, kVersion,
                                  fmt::join(commands, ", ")));
@@ -228,6 +232,9 @@ void Parser::finish(const CLI::App& command) {
     result_.mesh = in_.input;
     if (!in_.against.empty()) result_.against = in_.against;
     read_parameters();
+  } else if (result_.command == "inspect") {
+    result_.action = CommandLine::Action::Inspect;
+    result_.cloud = in_.input;
   } else if (result_.command == "export") {
     result_.action = CommandLine::Action::Export;
     result_.request.case_folder = in_.input;

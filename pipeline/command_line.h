@@ -11,13 +11,14 @@ namespace umtet {
 
 /// A call of the program, understood.
 struct CommandLine {
-  enum class Action { Text, Stages, Check, Export };
+  enum class Action { Text, Stages, Check, Export, Inspect };
   Action action = Action::Text;
   std::string text;     ///< Text: help or version, for stdout
-  std::string command;  ///< "run", "reconstruct", "mesh", "check", "export"
+  std::string command;  ///< "run", "reconstruct", "mesh", "inspect", "check", "export"
 
   RunRequest request;                            ///< Stages; Check: its output.* parameters; Export: its case_folder
   std::filesystem::path mesh;                    ///< Check
+  std::filesystem::path cloud;                   ///< Inspect
   std::optional<std::filesystem::path> against;  ///< Check
   std::vector<std::string> formats;              ///< Export
 

@@ -2,7 +2,8 @@
 
 namespace umtet {
 
-/// From now on SIGINT and SIGTERM ask the running stage to stop; the second one ends the process at once. Files that
+/// From now on SIGINT and SIGTERM ask the running stage to stop. Where it does not do so within 0.15 s, and at a second
+/// signal, the process ends at once: everything in a case is whole at any time. Files that
 /// grow beyond a limit and closed pipes become errors of write() instead of signals.
 void install_signal_handlers();
 

@@ -4,8 +4,10 @@
 
 #include "pipeline/exit_code.h"
 #include "pipeline/interrupt.h"
+#include "pipeline/memory.h"
 #include "pipeline/stages.h"
 #include "reconstruct/cloud_neighbours.h"
+#include "reconstruct/cloud_survey.h"
 #include "reconstruct/level_set_io.h"
 #include "reconstruct/point_cloud_io.h"
 
@@ -13,11 +15,12 @@ namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
-/// The steps of fit_ssd share the bar as their measured times do: on 0.9 M nodes about 1 : 1 : 8.
+/// The steps of fit_ssd share the bar about as their times do.
 double overall_fraction(std::string_view step, double fraction) {
-  if (step == "weights") return .1 * fraction;
-  if (step == "setup") return .1 + .1 * fraction;
-  return .2 + .8 * fraction;
+  if (step == "weights") return .2 * fraction;
+  if (step == "setup") return .2 + .1 * fraction;
+  if (step == "solve") return .3 + .2 * fraction;
+  return .5 + .5 * fraction;
 }
 
 OrientedPointCloud read_own_cloud(const fs::path& file) {
@@ -41,6 +44,14 @@ void require_outward_normals(const SsdReport& r) {
       open ? "psi < 0 reaches the wall of its box: the samples do not bound a body with outward normals"
            : "psi was fitted, but the normals disagree with one another",
       100 * opposed, r.n_points, open ? "check that the surface is closed, and " : ""));
+}
+
+/// Distances between opposed samples; null where none face one another.
+Json thickness_percentiles(const OrientedPointCloud& cloud) {
+  const std::vector<double> t = thicknesses(cloud);
+  if (t.empty()) return nullptr;
+  const auto at = [&](double p) { return t[static_cast<std::size_t>(p * static_cast<double>(t.size() - 1))]; };
+  return {at(.01), at(.05), at(.5)};
 }
 
 }  // namespace
@@ -74,17 +85,24 @@ SsdParams ssd_params(const Parameters& p) {
 
 void run_level_set_stage(const StageContext& context) {
   const auto start = std::chrono::steady_clock::now();
-  const SsdParams params = ssd_params(context.parameters);
+  SsdParams params = ssd_params(context.parameters);
   const std::vector<RecordedFile> inputs = recorded_inputs(context.paths, Stage::LevelSet, context.parameters);
   OrientedPointCloud cloud = read_own_cloud(context.paths.cloud());
   const Vec3 shift = far_origin_shift(cloud);
   for (Vec3& x : cloud.points) x -= shift;
 
+  params.max_memory = allowed_bytes(context.parameters);
+  context.progress.report("level-set", "noise", 0);
+  const double noise = context.parameters.real("reconstruct.noise");
+  params.noise = noise >= 0 ? noise : noise_along_normals(cloud.points);
+  stop_if_interrupted();
   const SsdFit fit = [&] {
     try {
       return fit_ssd(cloud, params, [&](const char* step, double fraction) {
         return context.progress.report("level-set", step, overall_fraction(step, fraction));
       });
+    } catch (const SolveTooLarge& e) {
+      throw ResourceLimit(e.what());
     } catch (const SolveCancelled&) {
       stop_if_interrupted();
       throw;
@@ -97,13 +115,26 @@ void run_level_set_stage(const StageContext& context) {
   write_artefact(context.paths.level_set(),
                  [&](const fs::path& temporary) { write_level_set(temporary, fit.psi, shift); });
   const SsdReport& r = fit.report;
+  Json bands = Json::array();
+  for (const BandReport& b : r.bands) {
+    bands.push_back({{"spacing", b.spacing},
+                     {"n_samples", b.n_samples},
+                     {"n_nodes", b.n_nodes},
+                     {"iterations", b.iterations},
+                     {"residual", b.residual}});
+  }
   const Json numbers = {{"shift", {shift.x(), shift.y(), shift.z()}},
                         {"n_points", r.n_points},
                         {"n_nodes", r.n_nodes},
                         {"spacing", r.spacing},
+                        {"smoothing", r.smoothing},
+                        {"noise", params.noise},
+                        {"reason", r.reason},
                         {"cloud_spacing", r.cloud_spacing},
+                        {"thickness_percentiles_1_5_50", thickness_percentiles(cloud)},
                         {"iterations", r.iterations},
                         {"residuals", r.residuals},
+                        {"bands", bands},
                         {"energy_value", r.energy_value},
                         {"energy_normal", r.energy_normal},
                         {"energy_hessian", r.energy_hessian},

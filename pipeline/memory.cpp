@@ -37,15 +37,19 @@ double available_bytes() {
 
 }  // namespace
 
-void require_memory(const BackgroundMesh& background, double n_tets) {
+double allowed_bytes(const Parameters& parameters) {
+  const double asked = 1e9 * parameters.real("output.max_memory");
+  return asked > 0 ? asked : available_bytes();
+}
+
+void require_memory(const BackgroundMesh& background, double n_tets, double allowed) {
   const double need = kBytesPerTet * n_tets + kBytesPerBackgroundVertex * static_cast<double>(background.n_vertices()) +
                       kBytesPerBackgroundTet * static_cast<double>(background.n_tets());
-  const double available = available_bytes();
-  if (need <= available) return;
+  if (need <= allowed) return;
   throw ResourceLimit(fmt::format(
-      "h = {:.4g}: about {:.3g} tets in a background mesh of {:.3g} need {:.3g} GB of memory, and {:.3g} GB are to be "
-      "had: fewer --tets or a larger --h{}",
-      background.h(), n_tets, static_cast<double>(background.n_tets()), need / 1e9, available / 1e9,
+      "h = {:.4g}: about {:.3g} tets in a background mesh of {:.3g} need {:.3g} GB of memory, and {:.3g} GB are "
+      "allowed: fewer --tets or a larger --h{}",
+      background.h(), n_tets, static_cast<double>(background.n_tets()), need / 1e9, allowed / 1e9,
       n_tets < .01 * static_cast<double>(background.n_tets()) ? ", or a --box closer around the domain" : ""));
 }
 

@@ -11,6 +11,7 @@
 #include "mesh/skin.h"
 #include "mesh/surface_distance.h"
 #include "mesh/thickness.h"
+#include "pipeline/component_proof.h"
 #include "pipeline/edge_length.h"
 
 namespace umtet {
@@ -154,6 +155,16 @@ Json measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& 
   Json block = Json::object();
   block["level_set_spacing"] = domain.level_set ? Json(domain.level_set->spacing()) : Json(nullptr);
   compare_with_zero_set(domain, certificate, pieces, keep_going, block, reasons);
+  block["components_proved"] = nullptr;
+  if (domain.level_set) {
+    const ComponentProof proof = prove_components(*domain.level_set, domain.box, pieces.topology, h / 2);
+    block["components_proved"] = proof.unseen.empty() && proof.n_open == 0;
+    for (const Vec3& at : proof.unseen) {
+      const Vec3 x = at + domain.shift;
+      block["components_dropped"].push_back(
+          fmt::format("piece at ({:.6g}, {:.6g}, {:.6g}): smaller than an edge", x.x(), x.y(), x.z()));
+    }
+  }
   block["unsupported_area_fraction"] = nullptr;
   if (!domain.cloud.points.empty()) {
     block["unsupported_area_fraction"] = unsupported_area_fraction(mesh.V, faces, domain.cloud.points,

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mesh/quality_report.h"
+#include "mesh/surface_distance.h"
 #include "mesh/tet_mesh_io.h"
 #include "mesh/universal_mesh.h"
 #include "pipeline/domain.h"
@@ -20,11 +21,11 @@ namespace fs = std::filesystem;
 namespace {
 
 /// @param n_tets  that were asked for, or 0
-BackgroundMesh make_background(const Domain& domain, double h, std::int64_t n_tets) {
+BackgroundMesh make_background(const Domain& domain, double h, std::int64_t n_tets, double allowed) {
   try {
     BackgroundMesh background(a15(), domain.box, h);
     const double expected = n_tets > 0 ? static_cast<double>(n_tets) : expected_tets(domain.psi(), domain.box, h);
-    require_memory(background, expected);
+    require_memory(background, expected, allowed);
     return background;
   } catch (const std::invalid_argument& e) {  // h and the box have been checked: their tets are too many to count
     throw ResourceLimit(fmt::format("h = {:.4g}: no background mesh: {}", h, e.what()));
@@ -66,6 +67,7 @@ class MeshStage {
   bool observe(const UmProgress& p);
   UmResult make(const BackgroundMesh& background, const ZeroSetChoice& pieces);
   [[noreturn]] void refuse(const UmResult& result, double h);
+  std::vector<double> support(const UmResult& result) const;
   void write_iterate(const fs::path& file, const UmResult& result, const std::vector<Vec3>& V);
   void write_output(const std::string& name, const UmResult& result, const std::vector<Vec3>& V);
   void write_outputs(const MeshAttempt& best);
@@ -113,9 +115,20 @@ UmResult MeshStage::make(const BackgroundMesh& background, const ZeroSetChoice& 
 void MeshStage::write_iterate(const fs::path& file, const UmResult& result, const std::vector<Vec3>& V) {
   TetMesh mesh{V, result.submesh.mesh.C};
   for (Vec3& x : mesh.V) x += domain_.shift;
-  const MeshFile content =
+  MeshFile content =
       with_standard_data(std::move(mesh), result.submesh.background_vertex, result.submesh.background_tet);
+  if (&V == &result.final && !domain_.cloud.points.empty()) content.point_data["support"] = support(result);
   write_artefact(file, [&](const fs::path& temporary) { write_vtu(temporary, content); });
+}
+
+/// What is data and what is a guess of the fit: the distance of each boundary vertex to the nearest sample, -1 inside.
+std::vector<double> MeshStage::support(const UmResult& result) const {
+  std::vector<Vec3> x;
+  for (const int i : result.submesh.positive_vertices) x.push_back(result.final[i]);
+  const std::vector<double> d = nearest_sample_distances(x, domain_.cloud.points, not_interrupted);
+  std::vector<double> all(result.final.size(), -1);
+  for (std::size_t k = 0; k < d.size(); ++k) all[result.submesh.positive_vertices[k]] = d[k];
+  return all;
 }
 
 void MeshStage::write_output(const std::string& name, const UmResult& result, const std::vector<Vec3>& V) {
@@ -155,7 +168,8 @@ MeshAttempt MeshStage::attempt(double h) {
   iterates_.clear();
   stop_if_interrupted();
   domain_.limit_detail(h);
-  const BackgroundMesh background = make_background(domain_, h, context_.parameters.integer("mesh.tets"));
+  const BackgroundMesh background = make_background(domain_, h, context_.parameters.integer("mesh.tets"),
+                                                    allowed_bytes(context_.parameters));
   context_.progress.report("mesh", "components", .05);
   const ZeroSetChoice pieces = choose_components(domain_, h, not_interrupted);
   for (const std::string& reason : pieces.dropped) context_.progress.say("mesh: left out a " + reason);

@@ -21,7 +21,17 @@ std::vector<ParamField> make_fields() {
   const auto whole = [](auto n) { return ParamValue(static_cast<std::int64_t>(n)); };
   const double tiny = 1e-300;  // stands for "> 0"
   return {
-      {"cloud.file", "", text(""), 0, 0, {}, "the oriented point cloud, as given"},
+      {"cloud.file", "", text(""), 0, 0, {}, "the point cloud, as given"},
+      {"cloud.keep_all", "--keep-all", false, 0, 0, {}, "keep outliers and small pieces far from the rest"},
+      {"cloud.normals",
+       "--normals",
+       text("auto"),
+       0,
+       0,
+       {"auto", "given", "estimate"},
+       "auto: those of the file, a turned minority turned back, estimated where there are none"},
+      {"cloud.orient_from", "--orient-from", text(""), 0, 0, {}, "file of viewpoints x y z: normals look to the nearest"},
+      {"cloud.flip", "--flip", false, 0, 0, {}, "turn all normals over in the end"},
 
       {"reconstruct.spacing",
        "--spacing",
@@ -37,6 +47,13 @@ std::vector<ParamField> make_fields() {
        kHuge,
        {},
        "c, weight of the Hessian energy (weights = area); 0: from the noise"},
+      {"reconstruct.noise",
+       "",
+       -1.,
+       -1,
+       kHuge,
+       {},
+       "standard deviation of the samples along the normal, model units; -1: from the cloud"},
       {"reconstruct.detail", "--detail", ssd.detail, .01, 100, {}, "divides the lattice spacing that is chosen"},
       {"reconstruct.smooth", "--smooth", ssd.smooth, 1e-6, 1e6, {}, "multiplies the smoothing that is chosen"},
       {"reconstruct.alpha", "", ssd.alpha, tiny, kHuge, {}, "alpha of eq. (10) (weights = paper)"},
@@ -124,6 +141,7 @@ std::vector<ParamField> make_fields() {
       {"mesh.keep_iterates", "--keep-iterates", false, 0, 0, {}, "write 3-mesh/pass_<n>.vtu after every pass"},
 
       {"output.units", "--units", text(""), 0, 0, {}, "name of the model unit, e.g. mm: a label, nothing is converted"},
+      {"output.max_memory", "--max-memory", 0., 0, 1e6, {}, "GB that a stage may take; 0: what the machine can give"},
       {"output.min_quality", "--min-quality", 0., 0, 1, {}, "gate: exit 6 when the least mean ratio is below"},
   };
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "pipeline/certificate_json.h"
+#include "pipeline/cloud_preparation.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/renewal.h"
 #include "pipeline/stages.h"
@@ -59,7 +60,7 @@ StageState CaseRun::state_of(Stage stage) const {
   // A stage that is taken as it is may have been made from other input.
   if (stage >= request_.from) {
     if (stage != Stage::Cloud) inputs = recorded_inputs(paths_, stage, parameters_);
-    if (stage == Stage::Cloud && !request_.source.empty()) inputs = {source_input(request_.source)};
+    if (stage == Stage::Cloud && !request_.source.empty()) inputs = source_inputs(request_.source, parameters_);
   }
   return inspect_stage(paths_, stage, parameters_.section(section_of(stage)), inputs);
 }

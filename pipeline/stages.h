@@ -26,10 +26,6 @@ struct StageContext {
 /// \throw CloudRefused, std::system_error; the case is then untouched
 void run_cloud_stage(const StageContext&, const std::filesystem::path& source);
 
-/// The user's cloud as the record of 1-cloud lists it: known by its bytes, not by its name.
-/// \throw CloudRefused for a device or a pipe, which could not be read twice; std::system_error
-RecordedFile source_input(const std::filesystem::path& source);
-
 /// 2-level-set: fits psi to cloud.ply, writes level_set.vti. A cloud far from the origin is fitted in coordinates
 /// shifted by numbers.shift of the record. \throw SolveError, Interrupted, ArtefactDamaged, std::system_error
 void run_level_set_stage(const StageContext&);

@@ -14,6 +14,7 @@
 #include "pipeline/command_line.h"
 #include "pipeline/exit_code.h"
 #include "pipeline/export_case.h"
+#include "pipeline/inspect.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/run.h"
 
@@ -68,6 +69,15 @@ Output check(const CommandLine& call, Progress& progress) {
   return output;
 }
 
+Output inspect(const CommandLine& call, Progress& progress) {
+  Output output;
+  const Json json = inspect_cloud(call.cloud, progress);
+  progress.clear();
+  output.document = {{"inspection", json}};
+  output.text = inspection_text(json);
+  return output;
+}
+
 Output export_files(const CommandLine& call, Progress& progress) {
   Output output;
   const CasePaths paths{call.request.case_folder};
@@ -94,6 +104,8 @@ Output execute(int argc, char** argv, bool& json, std::string& command) {
   switch (call.action) {
     case CommandLine::Action::Check:
       return check(call, progress);
+    case CommandLine::Action::Inspect:
+      return inspect(call, progress);
     case CommandLine::Action::Export:
       return export_files(call, progress);
     default:

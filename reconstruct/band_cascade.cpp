@@ -92,8 +92,8 @@ LevelSet refine(const LevelSet& psi, const std::vector<SsdSample>& samples, doub
   std::vector<float> r;
   band.residual(psi, r);
   const std::vector<float> x = solve(band, std::move(r), tolerance, max_iterations, go_on, report);
-  LevelSetBand result{band.blocks(), std::vector<double>(x.size())};
-  for (std::size_t a = 0; a < x.size(); ++a) result.coefficients[a] = fine.h * x[a];
+  LevelSetBand result{band.blocks(), std::vector<float>(x.size())};
+  for (std::size_t a = 0; a < x.size(); ++a) result.coefficients[a] = static_cast<float>(fine.h * x[a]);
   return psi.with_band(std::move(result));
 }
 

@@ -12,6 +12,7 @@
 #include "reconstruct/multigrid.h"
 #include "reconstruct/resolution.h"
 #include "reconstruct/ssd_assembled.h"
+#include "reconstruct/ssd_band.h"
 
 namespace umtet {
 
@@ -224,6 +225,26 @@ constexpr double kMergeCube = 0.5;
 // A sample that stands for more than 4 h^2 has no neighbour within about 2 h.
 constexpr double kMostArea = 4;
 
+// Bytes per node of the coarsest lattice (multigrid) and per point (cloud, areas, samples, merging); and what the level
+// set keeps of a band over what its solve takes. Measured peaks: 200 bytes a point and 150 a band node.
+constexpr double kBytesPerCoarseNode = 250, kBytesPerPoint = 200, kKept = 0.6;
+
+void require_memory(const Problem& problem, const Hierarchy& hierarchy,
+                    const std::vector<std::vector<SsdSample>>& samples) {
+  const double limit = problem.params.max_memory;
+  if (limit == 0) return;
+  double need = kBytesPerPoint * static_cast<double>(problem.cloud.points.size()) +
+                kBytesPerCoarseNode * static_cast<double>(hierarchy.finest.size());
+  for (std::size_t level = 1; level < samples.size(); ++level) {
+    const double bytes = SsdBand::expected_bytes(samples[level], problem.tables.half_width());
+    need += level + 1 < samples.size() ? kKept * bytes : (1 + kKept) * bytes;
+  }
+  if (need <= limit) return;
+  throw SolveTooLarge(fmt::format("a finest spacing of {:.4g} needs {:.3g} GB of memory, {:.3g} GB are allowed: choose a "
+                                  "larger spacing (--detail below 1), or allow more",
+                                  hierarchy.finest.h / std::exp2(samples.size() - 1.0), need / 1e9, limit / 1e9));
+}
+
 LevelSet fit_cascade(const Problem& problem, SsdReport& report) {
   const SsdParams& params = problem.params;
   const int padding = std::max(params.padding, kLeastCascadePadding);
@@ -247,6 +268,7 @@ LevelSet fit_cascade(const Problem& problem, SsdReport& report) {
     samples[level] = merge_samples(coarser, kMergeCube);
     samples[level + 1] = resolved_samples(samples[level + 1], kMostArea);
   }
+  require_memory(problem, hierarchy, samples);
   LevelSet psi = fit_lattice(problem, hierarchy, std::move(samples[0]), report);
   for (int level = 1; level <= n_bands && !samples[level].empty(); ++level) {
     const double per_level = 1.0 / n_bands;

@@ -35,6 +35,7 @@ struct SsdParams {
   double tolerance = 1e-4;       ///< PCG on a full lattice stops at this relative residual (psi then moves by < 1e-5 h); in (0, 1)
   double band_tolerance = 0.1;   ///< the same on the bands of the cascade, for the part the coarser levels leave over
   int max_iterations = 200;      ///< >= 1
+  double max_memory = 0;         ///< bytes that fitting may take; 0: no limit
   int padding =
       5;  ///< lattice cells around the cloud's box; >= 1, and >= 4 for the mesher: projections fail at the hull
 };
@@ -64,6 +65,11 @@ struct SolveCancelled : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// What a fit would need and may not have; what() says both, and the remedy.
+struct SolveTooLarge : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 struct SsdFit {
   LevelSet psi;
   SsdReport report;
@@ -72,6 +78,7 @@ struct SsdFit {
 /// Fits psi = argmin E_P, eqs. (10), (11), over tensor-product max-ent functions on cubic lattices.
 /// \throw std::invalid_argument  broken parameters, fewer than 10 points, all points at one place
 /// \throw std::length_error      a spacing that asks for more nodes than a full lattice can hold
+/// \throw SolveTooLarge          more than max_memory is needed; said before it is taken
 /// \throw SolveError             not converged, too large for the assembled solver, or a spacing beyond the cloud's size
 /// \throw SolveCancelled         `progress` said stop
 SsdFit fit_ssd(const OrientedPointCloud&, const SsdParams& = {}, const SsdProgress& = {});

@@ -43,8 +43,8 @@ class LatticeBlocks {
 
   /// Copies the box of nodes first .. first + n - 1 of values stored by block (kNodes each, x fastest) to `out`, x fastest
   /// with rows of `row` values; zero where there is no block. False when all of the box is zero for that reason.
-  template <class T>
-  bool copy_window(const T* values, const Eigen::Vector3i& first, const Eigen::Vector3i& n, int row, T* out) const;
+  template <class T, class Out>
+  bool copy_window(const T* values, const Eigen::Vector3i& first, const Eigen::Vector3i& n, int row, Out* out) const;
 
   bool operator==(const LatticeBlocks& o) const { return lattice_ == o.lattice_ && blocks_ == o.blocks_; }
 
@@ -56,9 +56,9 @@ class LatticeBlocks {
   std::vector<std::int32_t> index_;
 };
 
-template <class T>
+template <class T, class Out>
 bool LatticeBlocks::copy_window(const T* values, const Eigen::Vector3i& first, const Eigen::Vector3i& n, int row,
-                                T* out) const {
+                                Out* out) const {
   const Eigen::Vector3i begin = first + Eigen::Vector3i::Constant(shift_), end = begin + n;
   bool any = false;
   for (int bz = begin[2] >> 3; bz <= (end[2] - 1) >> 3; ++bz)
@@ -70,9 +70,9 @@ bool LatticeBlocks::copy_window(const T* values, const Eigen::Vector3i& first, c
         any = any || block >= 0;
         for (int z = low[2]; z < high[2]; ++z)
           for (int y = low[1]; y < high[1]; ++y) {
-            T* to = out + (low[0] - begin[0]) + row * ((y - begin[1]) + static_cast<std::ptrdiff_t>(n[1]) * (z - begin[2]));
+            Out* to = out + (low[0] - begin[0]) + row * ((y - begin[1]) + static_cast<std::ptrdiff_t>(n[1]) * (z - begin[2]));
             if (block < 0) {
-              std::fill(to, to + count, T(0));
+              std::fill(to, to + count, Out(0));
             } else {
               const T* from = values + static_cast<std::size_t>(block) * kNodes +
                               ((z & 7) * kEdge + (y & 7)) * kEdge + (low[0] & 7);

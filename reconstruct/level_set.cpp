@@ -53,7 +53,7 @@ void add_band(const LmeTables& tables, const Band& band, const Vec3& x, LatticeJ
   B.y.first += corner - kEdge * block[1];
   B.z.first += corner - kEdge * block[2];
   const int edge = band.edge;
-  const double* c = band.windows.data() + static_cast<std::size_t>(window) * edge * edge * edge;
+  const float* c = band.windows.data() + static_cast<std::size_t>(window) * edge * edge * edge;
   const LatticeJet f =
       dispatch_width(tables.width(), [&](auto W) { return contract<W.value, order>(B, {edge, edge, edge}, c); });
   add<order>(f, L.h, sum);
@@ -91,7 +91,7 @@ LevelSet::Band::Band(LevelSetBand&& band, int half_width) : data(std::move(band)
       cells.push_back(b);
     }
   const std::size_t size = static_cast<std::size_t>(edge) * edge * edge;
-  windows.assign(cells.size() * size + LevelSetLevel::kPad, 0.0);
+  windows.assign(cells.size() * size + LevelSetLevel::kPad, 0.f);
   tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t c) {
     blocks.copy_window(data.coefficients.data(), kEdge * cells[c] - Eigen::Vector3i::Constant(blocks.shift()),
                        {edge, edge, edge}, edge, windows.data() + c * size);

@@ -18,11 +18,14 @@ struct LevelSetLevel {
   static constexpr std::size_t kPad = 8;  ///< eight-lane loads reach past the last node
 };
 
-/// Coefficients of a finer lattice near the surface: its nodes outside the blocks, and those inside that no sample
-/// needs, have none.
+/// Coefficients of a finer lattice near the surface, in model units: its nodes outside the blocks, and those inside that
+/// no sample needs, have none.
+///
+/// Single precision: a band holds what the coarser levels leave over, a hundredth of its spacing and less. Sums are
+/// made in double, so psi is as smooth as its functions.
 struct LevelSetBand {
   LatticeBlocks blocks;
-  std::vector<double> coefficients;  ///< LatticeBlocks::kNodes a block
+  std::vector<float> coefficients;  ///< LatticeBlocks::kNodes a block
 };
 
 /// Copies n^3 coefficients of a lattice from node `first` on to `out`, x fastest, zero where there is no node; false if
@@ -76,7 +79,7 @@ class LevelSet {
     Eigen::Vector3i n;                // cell blocks along each axis
     int edge;                         // nodes along the edge of a window, 8 + 2R - 1
     std::vector<std::int32_t> index;  // of a cell block's window, or -1
-    std::vector<double> windows;      // edge^3 a window
+    std::vector<float> windows;       // edge^3 a window
     Band(LevelSetBand&& band, int half_width);
   };
   std::shared_ptr<const LmeTables> tables_;

@@ -5,6 +5,7 @@
 #include <vtkDoubleArray.h>
 #include <vtkErrorCode.h>
 #include <vtkFieldData.h>
+#include <vtkFloatArray.h>
 #include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkNew.h>
@@ -38,8 +39,9 @@ class QuietVtk {
   int before_;
 };
 
-vtkNew<vtkDoubleArray> field(const std::string& name, const std::vector<double>& values) {
-  vtkNew<vtkDoubleArray> a;
+template <class Array = vtkDoubleArray, class Value = double>
+vtkNew<Array> field(const std::string& name, const std::vector<Value>& values) {
+  vtkNew<Array> a;
   a->SetName(name.c_str());
   a->SetNumberOfValues(static_cast<vtkIdType>(values.size()));
   std::copy(values.begin(), values.end(), a->GetPointer(0));
@@ -54,7 +56,7 @@ std::vector<double> hash(const LevelSet& psi) {
   for (int level = 1; level < psi.n_levels(); ++level) {
     const LevelSetBand& band = psi.band(level);
     h = XXH64(band.blocks.blocks().data(), band.blocks.blocks().size() * sizeof(Eigen::Vector3i), h);
-    h = XXH64(band.coefficients.data(), band.coefficients.size() * sizeof(double), h);
+    h = XXH64(band.coefficients.data(), band.coefficients.size() * sizeof(float), h);
   }
   return {static_cast<double>(h >> 32), static_cast<double>(h & 0xffffffffu)};
 }
@@ -62,8 +64,9 @@ std::vector<double> hash(const LevelSet& psi) {
 std::string band_name(int level, const char* what) { return fmt::format("level_{}_{}", level, what); }
 
 // @param size  0: any
-std::vector<double> read_field(vtkImageData* image, const std::string& name, std::size_t size, const std::string& file) {
-  auto* a = vtkDoubleArray::SafeDownCast(image->GetFieldData()->GetArray(name.c_str()));
+template <class Array = vtkDoubleArray, class Value = double>
+std::vector<Value> read_field(vtkImageData* image, const std::string& name, std::size_t size, const std::string& file) {
+  auto* a = Array::SafeDownCast(image->GetFieldData()->GetArray(name.c_str()));
   if (!a || (size > 0 && static_cast<std::size_t>(a->GetNumberOfValues()) != size)) {
     throw LevelSetRefused(fmt::format("{}: field data '{}' with {} numbers is missing: not a level set of this program",
                                       file, name, size));
@@ -88,8 +91,7 @@ std::vector<LevelSetBand> read_bands(vtkImageData* image, const Lattice& coarses
     if (corners.size() % 3 != 0 || band.blocks.blocks() != blocks) {
       throw LevelSetRefused(fmt::format("{}: the blocks of level {} are not in order", file, level));
     }
-    band.coefficients =
-        read_field(image, band_name(level, "psi_a"), blocks.size() * LatticeBlocks::kNodes, file);
+    band.coefficients = read_field<vtkFloatArray, float>(image, band_name(level, "psi_a"), blocks.size() * LatticeBlocks::kNodes, file);
     bands.push_back(std::move(band));
   }
   return bands;
@@ -120,7 +122,7 @@ void write_level_set(const std::filesystem::path& file, const LevelSet& psi, con
     std::vector<double> corners;
     for (const Eigen::Vector3i& b : band.blocks.blocks()) corners.insert(corners.end(), b.begin(), b.end());
     image->GetFieldData()->AddArray(field(band_name(l, "blocks"), corners));
-    image->GetFieldData()->AddArray(field(band_name(l, "psi_a"), band.coefficients));
+    image->GetFieldData()->AddArray(field<vtkFloatArray>(band_name(l, "psi_a"), band.coefficients));
   }
   image->GetFieldData()->AddArray(field("xxh64", hash(psi)));
 

@@ -62,7 +62,7 @@ Search::Search(const LevelSet& psi, int depth)
     for (int b = 0; b < band.blocks.size(); ++b) {
       const auto begin = band.coefficients.begin() + static_cast<std::ptrdiff_t>(b) * LatticeBlocks::kNodes;
       const auto [low, high] = std::minmax_element(begin, begin + LatticeBlocks::kNodes);
-      block_range_[level].push_back({std::min(0.0, *low), std::max(0.0, *high)});
+      block_range_[level].push_back({std::min(0.0, double(*low)), std::max(0.0, double(*high))});
     }
   }
 }

@@ -22,8 +22,17 @@ Eigen::Map<Lanes> lanes(float* at) { return Eigen::Map<Lanes>(at); }
 
 Eigen::Vector3i cell_of(const SsdSample& s) { return s.xi.array().floor().cast<int>(); }
 
+void sort_and_unite(std::vector<Eigen::Vector3i>& blocks) {
+  std::sort(blocks.begin(), blocks.end(), [](const auto& a, const auto& b) {
+    return std::array{a[2], a[1], a[0]} < std::array{b[2], b[1], b[0]};
+  });
+  blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+}
+
 // The node blocks that the functions of the samples' cells belong to.
 std::vector<Eigen::Vector3i> touched_blocks(const std::vector<SsdSample>& samples, int half_width) {
+  constexpr std::size_t kFirstLimit = 1 << 16;
+  std::size_t limit = kFirstLimit;
   std::vector<Eigen::Vector3i> touched;
   const int reach = 2 * half_width - 1;  // the window of cell c ends in block (c + reach) / 8
   Eigen::Vector3i last = Eigen::Vector3i::Constant(-1);
@@ -35,14 +44,12 @@ std::vector<Eigen::Vector3i> touched_blocks(const std::vector<SsdSample>& sample
     for (int z = low[2]; z <= high[2]; ++z)
       for (int y = low[1]; y <= high[1]; ++y)
         for (int x = low[0]; x <= high[0]; ++x) touched.emplace_back(x, y, z);
-    if (touched.size() > (1u << 20)) {  // not one entry a sample: they repeat
-      const auto less = [](const auto& a, const auto& b) {
-        return std::array{a[2], a[1], a[0]} < std::array{b[2], b[1], b[0]};
-      };
-      std::sort(touched.begin(), touched.end(), less);
-      touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    if (touched.size() > limit) {  // not one entry a sample: they repeat
+      sort_and_unite(touched);
+      limit = 2 * touched.size() + kFirstLimit;
     }
   }
+  sort_and_unite(touched);
   return touched;
 }
 
@@ -116,6 +123,12 @@ SsdBand::SsdBand(const LmeTables& tables, const Lattice& lattice, double kappa, 
   }
   detail::dispatch_width(tables.width(), [&](auto W) { tabulate<W.value>(); });
   invert_diagonal();
+}
+
+double SsdBand::expected_bytes(const std::vector<SsdSample>& samples, int half_width) {
+  constexpr double kPerNode = 5 * sizeof(float) + 2 * sizeof(double), kPerSample = 180;
+  return kNodes * kPerNode * static_cast<double>(touched_blocks(samples, half_width).size()) +
+         kPerSample * static_cast<double>(samples.size());
 }
 
 // Cell blocks of one colour at a time: their windows of nodes are disjoint.

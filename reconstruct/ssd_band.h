@@ -37,9 +37,9 @@ class SsdBand {
   /// @param f  the sum of the coarser levels
   void residual(const LevelSet& f, std::vector<float>& r) const;
 
-  /// Bytes of an SsdBand and the vectors of its solve, per block and per sample.
-  static constexpr double kBytesPerBlock = LatticeBlocks::kNodes * (5 * sizeof(float) + 2 * sizeof(double)) + 256,
-                          kBytesPerSample = 200;
+  /// Bytes that a band of these samples takes while it is solved, before it is made: per block the vectors of the solve
+  /// and the residual in double, per sample its functions.
+  static double expected_bytes(const std::vector<SsdSample>& samples, int half_width);
 
  private:
   struct CellBlock {

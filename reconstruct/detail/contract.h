@@ -22,16 +22,18 @@ struct LatticeJet {
 
 /// Contraction of the W^3 coefficients around a point over z, y, then x; eight lanes along x, of which those beyond the
 /// support weigh nothing.
-/// @param c  coefficients of a lattice of n nodes, readable up to eight doubles behind its end
-template <int W, JetOrder order>
-LatticeJet contract(const LmeBasis3d& B, const Eigen::Vector3i& n, const double* c) {
+/// @param c  coefficients (double or float) of a lattice of n nodes, readable up to eight of them behind its end
+template <int W, JetOrder order, class Coefficient>
+LatticeJet contract(const LmeBasis3d& B, const Eigen::Vector3i& n, const Coefficient* c) {
   const std::ptrdiff_t nx = n[0], nxy = nx * n[1];
-  const double* base = c + B.x.first + nx * B.y.first + nxy * B.z.first;
+  const Coefficient* base = c + B.x.first + nx * B.y.first + nxy * B.z.first;
   LmeLanes v = LmeLanes::Zero(), vy = v, vz = v, vyy = v, vyz = v, vzz = v;
   for (int j = 0; j < W; ++j) {
     LmeLanes a = LmeLanes::Zero(), az = a, azz = a;
     for (int k = 0; k < W; ++k) {
-      const Eigen::Map<const LmeLanes> row(base + j * nx + k * nxy);
+      const LmeLanes row =
+          Eigen::Map<const Eigen::Array<Coefficient, LmeBasis1d::kLanes, 1>>(base + j * nx + k * nxy)
+              .template cast<double>();
       a += B.z.N[k] * row;
       if constexpr (order >= kGradient) az += B.z.dN[k] * row;
       if constexpr (order >= kHessian) azz += B.z.ddN[k] * row;

@@ -322,17 +322,17 @@ TEST(BandCascade, CutAtASpacingIsTheSumOfTheCoarserLevels) {
 
 TEST(BandCascade, ThreadsDoNotChangeABit) {
   OrientedPointCloud cloud = torus_cloud(20000);
-  std::vector<double> first;
+  std::vector<float> first;
   for (const int threads : {1, 3}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     SsdParams p;
     p.spacing = 0.04;
     const SsdFit fit = fit_ssd(cloud, p);
     ASSERT_GE(fit.psi.n_levels(), 2);
-    const std::vector<double>& c = fit.psi.band(fit.psi.n_levels() - 1).coefficients;
+    const std::vector<float>& c = fit.psi.band(fit.psi.n_levels() - 1).coefficients;
     if (first.empty()) first = c;
     ASSERT_EQ(first.size(), c.size());
-    EXPECT_EQ(std::memcmp(first.data(), c.data(), c.size() * sizeof(double)), 0) << threads << " threads";
+    EXPECT_EQ(std::memcmp(first.data(), c.data(), c.size() * sizeof(float)), 0) << threads << " threads";
   }
 }
 

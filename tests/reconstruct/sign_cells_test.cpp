@@ -78,7 +78,7 @@ TEST(SignCells, SignsOutsideAreConstant) {
 TEST(SignCells, FindABallBetweenTheNodesOfAFinerLattice) {
   // One coefficient of a band makes a zero set that none of the coarse nodes shows.
   const Lattice coarse{{0, 0, 0}, 1, {21, 21, 21}}, fine{{0, 0, 0}, 0.5, {41, 41, 41}};
-  LevelSetBand band{LatticeBlocks(fine, 3, {{2, 2, 2}}), std::vector<double>(LatticeBlocks::kNodes, 0.0)};
+  LevelSetBand band{LatticeBlocks(fine, 3, {{2, 2, 2}}), std::vector<float>(LatticeBlocks::kNodes, 0.f)};
   const Eigen::Vector3i node = band.blocks.first_node(0) + Eigen::Vector3i(3, 4, 5);
   band.coefficients[3 + 8 * (4 + 8 * 5)] = -7;
   const LevelSet psi(LmePrior{}, {coarse, std::vector<double>(coarse.size(), 1.0)}, {band});
