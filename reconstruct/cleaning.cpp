@@ -93,7 +93,7 @@ std::vector<std::uint8_t> outliers(const std::vector<Vec3>& points, const Cleani
   const NeighbourTree tree(points);
   const auto suspicious = static_cast<std::size_t>(params.suspicious_crowd * 9 * kNeighbours);
   const auto certain = static_cast<std::size_t>(params.certain_crowd * 9 * kNeighbours);
-  for_each_neighbourhood(tree, kNeighbours + 1, [&](std::uint32_t i, std::span<const Neighbour> near) {
+  tree.for_each_neighbourhood(kNeighbours + 1, [&](std::uint32_t i, std::span<const Neighbour> near) {
     const Vec3& x = points[i];
     const double reach2 = near.back().distance2;
     if (tree.count_within(x, 9 * reach2, suspicious) < suspicious) return;
@@ -137,7 +137,7 @@ std::vector<std::uint8_t> crumbs(const std::vector<Vec3>& points, const Cleaning
   const NeighbourTree tree(points);
   std::vector<std::uint32_t> near_points(n * kNeighbours);
   std::vector<double> near2(n * kNeighbours), spacing2(n);
-  for_each_neighbourhood(tree, kNeighbours + 1, [&](std::uint32_t i, std::span<const Neighbour> near) {
+  tree.for_each_neighbourhood(kNeighbours + 1, [&](std::uint32_t i, std::span<const Neighbour> near) {
     spacing2[i] = near[kSpacingNeighbour].distance2;
     for (std::size_t m = 0; m < kNeighbours; ++m) {
       near_points[i * kNeighbours + m] = near[m + 1].point;

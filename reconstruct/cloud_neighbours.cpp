@@ -57,7 +57,7 @@ Distances distances_to_others(const NeighbourTree& tree, int k) {
   Distances distances{std::vector<double>(tree.size()), std::vector<double>(tree.size())};
   const std::size_t n_found = static_cast<std::size_t>(k) + 1;  // a point finds itself first
   std::atomic<bool> has_duplicates = false;
-  for_each_neighbourhood(tree, n_found, [&](std::uint32_t i, std::span<const Neighbour> found) {
+  tree.for_each_neighbourhood(n_found, [&](std::uint32_t i, std::span<const Neighbour> found) {
     const std::span<const Neighbour> others = found.subspan(1);
     if (others.front().distance2 == 0) has_duplicates = true;
     distances.nearest[i] = std::sqrt(others.front().distance2);

@@ -27,22 +27,21 @@ double percentile(std::vector<double>& values, double share) {
   return *at;
 }
 
-/// Every m-th point in the order of the tree: evenly over the surface, and no seed to remember.
+/// Every m-th point along the tree's curve: evenly over the surface, and no seed to remember.
 std::vector<std::uint32_t> evenly_picked(const NeighbourTree& tree, std::size_t n_picked) {
   std::vector<std::uint32_t> picked;
   const std::size_t stride = std::max<std::size_t>(1, tree.size() / n_picked);
-  std::size_t row = 0;
-  for (std::size_t leaf = 0; leaf < tree.n_leaves(); ++leaf)
-    for (const std::uint32_t i : tree.points_of(leaf))
-      if (row++ % stride == 0) picked.push_back(i);
+  for (std::size_t row = 0; row < tree.size(); row += stride) picked.push_back(tree.order()[row]);
   return picked;
 }
 
-/// Residual variance around a point; radius: of its first neighbourhood.
-double local_variance(const std::vector<Vec3>& points, const NeighbourTree& tree, const Vec3& x, double radius,
+/// Residual variance around a point. `near` is a buffer.
+double local_variance(const std::vector<Vec3>& points, const NeighbourTree& tree, const Vec3& x,
                       std::vector<Neighbour>& near) {
   // Beyond eight times the radius of 24 neighbours (1500 of them) a cloud is not noisy but a cloud.
   constexpr double kGrowth = std::numbers::sqrt2, kMostGrowth = 8, kDeviations = 5;
+  near.resize(kNoiseNeighbours);
+  const double radius = std::sqrt(tree.k_nearest(x, near).back().distance2);
   double variance = -1;
   for (double growth = 1; growth <= kMostGrowth; growth *= kGrowth) {
     near.clear();
@@ -64,16 +63,10 @@ double noise_along_normals(const std::vector<Vec3>& points, std::size_t sampled_
     throw std::invalid_argument(fmt::format("{} points: noise needs at least {}", points.size(), kFewestPoints));
   const NeighbourTree tree(points);
   const std::vector<std::uint32_t> picked = evenly_picked(tree, sampled_points);
-  std::vector<std::uint8_t> others(points.size(), 1);
-  for (const std::uint32_t i : picked) others[i] = 0;
-  std::vector<double> radius(points.size());
-  for_each_neighbourhood(
-      tree, kNoiseNeighbours,
-      [&](std::uint32_t i, std::span<const Neighbour> near) { radius[i] = std::sqrt(near.back().distance2); }, others);
   std::vector<double> variance(picked.size());
   tbb::enumerable_thread_specific<std::vector<Neighbour>> buffers;
   tbb::parallel_for(std::size_t{0}, picked.size(), [&](std::size_t p) {
-    variance[p] = local_variance(points, tree, points[picked[p]], radius[picked[p]], buffers.local());
+    variance[p] = local_variance(points, tree, points[picked[p]], buffers.local());
   });
   return std::sqrt(std::max(0.0, percentile(variance, 0.5)));
 }

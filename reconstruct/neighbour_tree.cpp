@@ -2,10 +2,12 @@
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/parallel_invoke.h>
+#include <oneapi/tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <flann/flann.hpp>
 #include <stdexcept>
 #include <string>
 
@@ -13,225 +15,248 @@ namespace umtet {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Below this many leaves (some 100 us of work) a task costs more than it saves.
-constexpr std::size_t kLeavesPerTask = 256;
-constexpr double kLargest = std::numeric_limits<double>::max();
-// Bounds come from the triangle inequality, whose terms are rounded a few times: a wider bound costs nothing.
+// FLANN compares what it has already summed up over the walk with the bound, so a bound of a few roundings more than
+// the distance that is meant keeps points at exactly that distance; the result sets look again.
 constexpr double kRounding = 1 + 1e-12;
+double rounded_up(double distance2) { return kRounding * distance2 + std::numeric_limits<double>::min(); }
 
-/// Puts the k nearest candidates in order, without a branch that depends on distances: a sort of these few dozen
-/// mispredicts at every second step and takes twice as long. Equal distances stay in the order of candidates.
-void select_nearest(std::vector<double>& distance2, std::size_t n, const std::uint32_t* points,
-                    std::span<Neighbour> nearest) {
-  constexpr std::uint32_t kFree = std::numeric_limits<std::uint32_t>::max();
-  const std::size_t n_padded = (n + 7) / 8 * 8;
-  for (std::size_t i = n; i < n_padded; ++i) distance2[i] = kInfinity;
-  for (Neighbour& slot : nearest) slot.point = kFree;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double d = distance2[i];
-    std::int64_t n_nearer = 0;
-    for (std::size_t j = 0; j < n_padded; ++j) n_nearer += distance2[j] < d ? 1 : 0;
-    auto rank = static_cast<std::size_t>(n_nearer);
-    while (rank < nearest.size() && nearest[rank].point != kFree) ++rank;  // equal distances
-    if (rank < nearest.size()) nearest[rank] = {d, points[i]};
+// With k = 13 on a surface 10 to 20 points a leaf cost the same.
+constexpr int kLeafSize = 16;
+// Some 100 us of searches: a task costs less than a hundredth of that.
+constexpr std::size_t kQueriesPerTask = 128;
+
+/// The nearest few so far, in order. They are rows of the tree until the end: looking up every candidate's number would
+/// cost a cache line each, and only equal distances ask for it.
+class NearestFew final : public flann::ResultSet<double> {
+ public:
+  /// @param bound2  at least the squared distance of the last one there will be room for
+  NearestFew(const std::uint32_t* order, std::span<Neighbour> room, double bound2 = kInfinity)
+      : order_(order), room_(room), bound_(bound2) {}
+  bool full() const override { return size_ == room_.size(); }
+  double worstDist() const override { return bound_; }
+  void addPoint(double distance2, std::size_t row) override {
+    const Neighbour found{distance2, static_cast<std::uint32_t>(row)};
+    if (size_ < room_.size())
+      ++size_;
+    else if (!is_before(found, room_[size_ - 1]))
+      return;
+    std::size_t at = size_ - 1;
+    for (; at > 0 && is_before(found, room_[at - 1]); --at) room_[at] = room_[at - 1];
+    room_[at] = found;
+    if (size_ == room_.size()) bound_ = rounded_up(room_[size_ - 1].distance2);
   }
+  std::span<const Neighbour> points() {
+    for (Neighbour& found : room_.first(size_)) found.point = order_[found.point];
+    return room_.first(size_);
+  }
+
+ private:
+  bool is_before(const Neighbour& a, const Neighbour& b) const {
+    return a.distance2 < b.distance2 || (a.distance2 == b.distance2 && order_[a.point] < order_[b.point]);
+  }
+  const std::uint32_t* order_;
+  std::span<Neighbour> room_;
+  std::size_t size_ = 0;
+  double bound_;
+};
+
+/// Hands on what is in a ball.
+class Ball final : public flann::ResultSet<double> {
+ public:
+  Ball(const std::vector<std::uint32_t>& order, double radius2, const std::function<void(std::uint32_t, double)>& visit)
+      : order_(order), radius2_(radius2), bound_(rounded_up(radius2)), visit_(visit) {}
+  bool full() const override { return true; }
+  double worstDist() const override { return bound_; }
+  void addPoint(double distance2, std::size_t row) override {
+    if (distance2 <= radius2_) visit_(order_[row], distance2);
+  }
+
+ private:
+  const std::vector<std::uint32_t>& order_;
+  double radius2_, bound_;
+  const std::function<void(std::uint32_t, double)>& visit_;
+};
+
+/// Counts what is in a ball up to a limit, and ends the search there: no box is nearer than -1.
+class Count final : public flann::ResultSet<double> {
+ public:
+  Count(double radius2, std::size_t limit) : radius2_(radius2), bound_(rounded_up(radius2)), limit_(limit) {}
+  bool full() const override { return count_ >= limit_; }
+  double worstDist() const override { return full() ? -1 : bound_; }
+  void addPoint(double distance2, std::size_t) override { count_ += distance2 <= radius2_ ? 1 : 0; }
+  std::size_t count() const { return std::min(count_, limit_); }
+
+ private:
+  double radius2_, bound_;
+  std::size_t limit_, count_ = 0;
+};
+
+/// The lowest 21 bits of v, two zeros between each of them.
+std::uint64_t spread_bits(std::uint64_t v) {
+  v = (v | v << 32) & 0x001f00000000ffff;
+  v = (v | v << 16) & 0x001f0000ff0000ff;
+  v = (v | v << 8) & 0x100f00f00f00f00f;
+  v = (v | v << 4) & 0x10c30c30c30c30c3;
+  return (v | v << 2) & 0x1249249249249249;
+}
+
+std::vector<std::uint32_t> along_morton_curve(const std::vector<Vec3>& points, const Vec3& low, const Vec3& high) {
+  constexpr double kCells = (1 << 21) - 1;
+  const double side = (high - low).maxCoeff(), cells_per_length = side > 0 ? kCells / side : 0;
+  struct Key {
+    std::uint64_t code;
+    std::uint32_t point;
+  };
+  std::vector<Key> keys(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3 cell = ((points[i] - low) * cells_per_length).cwiseMin(kCells);
+    std::uint64_t code = 0;
+    for (int axis = 0; axis < 3; ++axis) code |= spread_bits(static_cast<std::uint64_t>(cell[axis])) << axis;
+    keys[i] = {code, static_cast<std::uint32_t>(i)};
+  }
+  tbb::parallel_sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
+    return a.code < b.code || (a.code == b.code && a.point < b.point);
+  });
+  std::vector<std::uint32_t> order;
+  order.reserve(points.size());
+  for (const Key& key : keys) order.push_back(key.point);
+  return order;
 }
 
 }  // namespace
 
-double NeighbourTree::Box::entry(const Vec3& x, const Vec3& inverse_d, double width) const {
-  // An axis along which the ray does not move gives 0 * infinity where x is on the border: such a NaN must not cut.
-  double enter = 0, leave = kInfinity;
-  for (int axis = 0; axis < 3; ++axis) {
-    double a = (low[axis] - width - x[axis]) * inverse_d[axis], b = (high[axis] + width - x[axis]) * inverse_d[axis];
-    if (a > b) std::swap(a, b);
-    if (a > enter) enter = a;
-    if (b < leave) leave = b;
+struct NeighbourTree::Index {
+  Vec3 low, high;
+  std::vector<Vec3> rows;  // the points along the curve; FLANN keeps pointers into them
+  flann::KDTreeSingleIndex<flann::L2_3D<double>> tree;
+
+  Index(const Vec3& lowest, const Vec3& highest, std::vector<Vec3> sorted)
+      : low(lowest),
+        high(highest),
+        rows(std::move(sorted)),
+        tree(flann::Matrix<double>(rows.front().data(), rows.size(), 3), flann::KDTreeSingleIndexParams(kLeafSize)) {
+    tree.buildIndex();
   }
-  return enter <= leave ? enter : kInfinity;
-}
+  void search(flann::ResultSet<double>& found, const Vec3& x) const {
+    tree.findNeighbors(found, x.data(), flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED, 0.0F));
+  }
+};
+
+/// Finds the first accepted point of a piece of the tube around a ray, in a ball that contains the piece.
+class NeighbourTree::TubePiece final : public flann::ResultSet<double> {
+ public:
+  TubePiece(const NeighbourTree& tree, const Vec3& x, const Vec3& d, const std::array<double, 2>& from_to,
+            double width2, double reach2, const std::function<bool(std::uint32_t)>& accept)
+      : tree_(tree), x_(x), d_(d), from_to_(from_to), width2_(width2), reach2_(reach2), accept_(accept) {}
+  bool full() const override { return true; }
+  double worstDist() const override { return reach2_; }
+  void addPoint(double, std::size_t row) override {
+    const Vec3 r = tree_.index_->rows[row] - x_;
+    const double t = r.dot(d_);
+    if (t < from_to_[0] || t > from_to_[1] || t > hit_.t || (r - t * d_).squaredNorm() > width2_) return;
+    const std::uint32_t point = tree_.order_[row];
+    if ((t < hit_.t || point < hit_.point) && accept_(point)) hit_ = {t, point};
+  }
+  const Hit& hit() const { return hit_; }
+
+ private:
+  const NeighbourTree& tree_;
+  const Vec3 &x_, &d_;
+  std::array<double, 2> from_to_;
+  double width2_, reach2_;
+  const std::function<bool(std::uint32_t)>& accept_;
+  Hit hit_;
+};
 
 NeighbourTree::NeighbourTree(const std::vector<Vec3>& points) {
   if (points.empty()) throw std::invalid_argument("a cloud without points has no neighbours");
-  if (points.size() >= std::numeric_limits<std::uint32_t>::max() - 1)
-    throw std::invalid_argument(std::to_string(points.size()) + " points: more than 32 bits can number");
-  std::vector<Record> records(points.size());
+  if (points.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+    throw std::invalid_argument(std::to_string(points.size()) + " points: more than FLANN can number");
+  Vec3 low = points.front(), high = low;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!points[i].allFinite()) throw std::invalid_argument("points[" + std::to_string(i) + "] is not finite");
-    records[i] = {points[i], static_cast<std::uint32_t>(i)};
+    low = low.cwiseMin(points[i]);
+    high = high.cwiseMax(points[i]);
   }
-  n_leaves_ = (points.size() + kLeafPoints - 1) / kLeafPoints;
-  boxes_.resize(2 * n_leaves_ - 1);
-  ids_.resize(points.size());
-  for (std::vector<double>* axis : {&x_, &y_, &z_}) axis->assign(n_leaves_ * kLeafPoints, kInfinity);
-  build(records, root());
+  if (low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff() > kLargestCoordinate)
+    throw std::invalid_argument("coordinates beyond 1e153: squared distances overflow");
+  order_ = along_morton_curve(points, low, high);
+  std::vector<Vec3> rows;
+  rows.reserve(points.size());
+  for (const std::uint32_t i : order_) rows.push_back(points[i]);
+  index_ = std::make_unique<Index>(low, high, std::move(rows));
 }
 
-void NeighbourTree::build(std::vector<Record>& records, Node node) {
-  const std::size_t first = node.first * kLeafPoints, end = leaf_end(node.end - 1);
-  Box& box = boxes_[node.index];
-  box = {records[first].x, records[first].x};
-  for (std::size_t row = first + 1; row < end; ++row) {
-    box.low = box.low.min(records[row].x.array());
-    box.high = box.high.max(records[row].x.array());
-  }
-  if (node.is_leaf()) {
-    for (std::size_t row = first; row < end; ++row) {
-      const Record& r = records[row];
-      x_[row] = r.x[0];
-      y_[row] = r.x[1];
-      z_[row] = r.x[2];
-      ids_[row] = r.id;
-    }
-    return;
-  }
-  int axis = 0;
-  (box.high - box.low).maxCoeff(&axis);
-  const auto begin = records.begin();
-  std::nth_element(begin + static_cast<std::ptrdiff_t>(first),
-                   begin + static_cast<std::ptrdiff_t>(node.middle() * kLeafPoints),
-                   begin + static_cast<std::ptrdiff_t>(end), [axis](const Record& a, const Record& b) {
-                     return a.x[axis] < b.x[axis] || (a.x[axis] == b.x[axis] && a.id < b.id);
-                   });
-  const auto left = [&] { build(records, node.left()); };
-  const auto right = [&] { build(records, node.right()); };
-  if (node.end - node.first > kLeavesPerTask) {
-    tbb::parallel_invoke(left, right);
-  } else {
-    left();
-    right();
-  }
+NeighbourTree::~NeighbourTree() = default;
+NeighbourTree::NeighbourTree(NeighbourTree&&) noexcept = default;
+NeighbourTree& NeighbourTree::operator=(NeighbourTree&&) noexcept = default;
+
+std::span<const Neighbour> NeighbourTree::k_nearest(const Vec3& x, std::span<Neighbour> room) const {
+  if (room.empty()) return room;
+  NearestFew nearest(order_.data(), room);
+  index_->search(nearest, x);
+  return nearest.points();
 }
 
-std::size_t NeighbourTree::gather(std::size_t leaf, const Vec3& x, double bound2, double* distance2,
-                                  std::uint32_t* points) const {
-  const std::size_t first = leaf * kLeafPoints;
-  std::array<double, kLeafPoints> d2;
-  for (std::size_t j = 0; j < kLeafPoints; ++j) {  // one loop without branches: the compiler makes it vector code
-    const double dx = x_[first + j] - x[0], dy = y_[first + j] - x[1], dz = z_[first + j] - x[2];
-    d2[j] = dx * dx + dy * dy + dz * dz;
-  }
-  std::size_t n = 0;
-  for (std::size_t j = 0; j < kLeafPoints; ++j) {
-    distance2[n] = d2[j];
-    points[n] = ids_[first + j];
-    n += d2[j] <= bound2 ? 1 : 0;
-  }
-  return n;
+void NeighbourTree::for_each_neighbourhood(
+    std::size_t k, const std::function<void(std::uint32_t, std::span<const Neighbour>)>& visit) const {
+  if (k == 0) throw std::invalid_argument("k = 0 neighbours: must be >= 1");
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, size(), kQueriesPerTask),
+                    [&](const tbb::blocked_range<std::size_t>& rows) {
+                      std::vector<Neighbour> room(std::min(k, size()));
+                      double reach = kInfinity;  // the ball around the former point that holds k of them
+                      for (std::size_t row = rows.begin(); row != rows.end(); ++row) {
+                        const Vec3& x = index_->rows[row];
+                        if (row > rows.begin()) reach += (x - index_->rows[row - 1]).norm();
+                        NearestFew nearest(order_.data(), room, rounded_up(reach * reach));
+                        index_->search(nearest, x);
+                        const std::span<const Neighbour> found = nearest.points();
+                        reach = std::sqrt(found.back().distance2);
+                        visit(order_[row], found);
+                      }
+                    });
 }
 
-void NeighbourTree::k_nearest(std::size_t leaf, std::size_t k, Neighbourhoods& found) const {
-  k = std::min(k, size());
-  const std::size_t first = leaf * kLeafPoints, n_queries = leaf_end(leaf) - first;
-  found.points_ = points_of(leaf);
-  found.k_ = k;
-  found.found_.resize(kLeafPoints * k);
-  if (k == 0) return;
-
-  // The smallest node around the leaf with k points.
-  std::array<Node, 40> path;
-  std::size_t depth = 0;
-  path[0] = root();
-  while (!path[depth].is_leaf()) {
-    path[depth + 1] = leaf < path[depth].middle() ? path[depth].left() : path[depth].right();
-    ++depth;
-  }
-  const Box home = boxes_[path[depth].index];
-  while (leaf_end(path[depth].end - 1) - path[depth].first * kLeafPoints < k) --depth;
-  const Node start = path[depth];
-
-  // The query in the middle goes first: it learns its distances from that node, and the others from it.
-  const Vec3 middle = 0.5 * (home.low + home.high).matrix();
-  std::size_t centre = 0;
-  for (std::size_t q = 1; q < n_queries; ++q)
-    if ((position(first + q) - middle).squaredNorm() < (position(first + centre) - middle).squaredNorm()) centre = q;
-  found.reserve((start.end - start.first) * kLeafPoints);
-  std::size_t n = 0;
-  for (std::size_t other = start.first; other < start.end; ++other)
-    n += gather(other, position(first + centre), kLargest, &found.distance2_[n], &found.candidates_[n]);
-  std::nth_element(found.distance2_.begin(), found.distance2_.begin() + static_cast<std::ptrdiff_t>(k - 1),
-                   found.distance2_.begin() + static_cast<std::ptrdiff_t>(n));
-  std::array<double, kLeafPoints> reach;  // of the queries that are done: the distance of the k-th neighbour
-  reach[0] = std::sqrt(found.distance2_[k - 1]);
-  double farthest = 0;
-  for (std::size_t q = 0; q < n_queries; ++q)
-    farthest = std::max(farthest, (position(first + q) - position(first + centre)).norm());
-
-  const double bound = kRounding * (reach[0] + farthest);
-  found.leaves_.clear();
-  Stack stack;
-  std::size_t top = 0;
-  stack[top++] = root();
-  while (top > 0) {
-    const Node node = stack[--top];
-    if (boxes_[node.index].distance2(home) > bound * bound) continue;
-    if (node.is_leaf()) {
-      found.leaves_.push_back({node.index, node.first});
-      continue;
-    }
-    stack[top++] = node.right();
-    stack[top++] = node.left();
-  }
-  found.reserve(found.leaves_.size() * kLeafPoints);
-
-  std::array<std::size_t, kLeafPoints> order;
-  for (std::size_t q = 0; q < n_queries; ++q) order[q] = q;
-  std::swap(order[0], order[centre]);
-  for (std::size_t m = 0; m < n_queries; ++m) {
-    const std::size_t q = order[m];
-    const Vec3 x = position(first + q);
-    double radius = reach[0];
-    if (m > 0) radius += (position(first + order[0]) - x).norm();
-    for (std::size_t done = 1; done < m; ++done)
-      radius = std::min(radius, reach[done] + (position(first + order[done]) - x).norm());
-    const double radius2 = kRounding * radius * radius;
-    n = 0;
-    for (const auto& other : found.leaves_)
-      if (boxes_[other.node].distance2(x) <= radius2)
-        n += gather(other.leaf, x, radius2, &found.distance2_[n], &found.candidates_[n]);
-    const std::span<Neighbour> nearest(found.found_.data() + q * k, k);
-    select_nearest(found.distance2_, n, found.candidates_.data(), nearest);
-    reach[m] = std::sqrt(nearest.back().distance2);
-  }
+void NeighbourTree::visit_ball(const Vec3& x, double radius2,
+                               const std::function<void(std::uint32_t, double)>& visit) const {
+  Ball ball(order_, radius2, visit);
+  index_->search(ball, x);
 }
 
 std::size_t NeighbourTree::count_within(const Vec3& x, double radius2, std::size_t limit) const {
-  std::size_t count = 0;
-  Stack stack;
-  std::size_t top = 0;
-  stack[top++] = root();
-  while (top > 0 && count < limit) {
-    const Node node = stack[--top];
-    const Box& box = boxes_[node.index];
-    if (box.distance2(x) > radius2) continue;
-    const std::size_t first = node.first * kLeafPoints, end = leaf_end(node.end - 1);
-    if (box.farthest2(x) <= radius2) {
-      count += end - first;
-    } else if (node.is_leaf()) {
-      for (std::size_t row = first; row < end; ++row) count += (position(row) - x).squaredNorm() <= radius2 ? 1 : 0;
-    } else {
-      stack[top++] = node.right();
-      stack[top++] = node.left();
-    }
-  }
-  return std::min(count, limit);
+  Count count(radius2, limit);
+  index_->search(count, x);
+  return count.count();
 }
 
-void for_each_neighbourhood(const NeighbourTree& tree, std::size_t k,
-                            const std::function<void(std::uint32_t, std::span<const Neighbour>)>& visit,
-                            const std::vector<std::uint8_t>& done) {
-  const auto is_open = [&](std::uint32_t i) { return done.empty() || done[i] == 0; };
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree.n_leaves()),
-                    [&](const tbb::blocked_range<std::size_t>& leaves) {
-                      Neighbourhoods found;
-                      for (std::size_t leaf = leaves.begin(); leaf != leaves.end(); ++leaf) {
-                        const std::span<const std::uint32_t> points = tree.points_of(leaf);
-                        if (std::none_of(points.begin(), points.end(), is_open)) continue;
-                        tree.k_nearest(leaf, k, found);
-                        for (std::size_t q = 0; q < points.size(); ++q)
-                          if (is_open(points[q])) visit(points[q], found.of(q));
-                      }
-                    });
+NeighbourTree::Hit NeighbourTree::first_along(const Vec3& x, const Vec3& d, double t_min, double width,
+                                              const std::function<bool(std::uint32_t)>& accept) const {
+  if (!(width > 0)) throw std::invalid_argument("first_along: width must be > 0");
+  if (d.isZero(0)) return {};
+  // Places on the ray are rounded: this share of the width covers it as long as coordinates hold six digits of that.
+  constexpr double kSlack = 1e-6;
+  const double width2 = width * width, slack = kSlack * width;
+  const double t_end = (x - index_->low).cwiseAbs().cwiseMax((index_->high - x).cwiseAbs()).norm() + width;
+  for (double t = t_min; t <= t_end;) {
+    // An empty ball empties the tube for as long as it covers it. FLANN's boxes are those of its cuts and not of the
+    // points, so it looks into many for an empty ball inside a body: five times as many for a unit of length when the
+    // ball is ten times as wide. An eighth of the way gone keeps the number of balls logarithmic.
+    const double least = 2 * width;
+    double radius = std::max(least, (t - t_min) / 8);
+    while (radius > least && count_within(x + t * d, radius * radius, 1) > 0) radius = std::max(least, radius / 2);
+    if (radius > least) {
+      t += std::sqrt(radius * radius - width2) - slack;
+      continue;
+    }
+    // Between samples: the next piece of the tube, twice as long as its radius, within a ball.
+    const double next = std::max(t + 2 * width, std::nextafter(t, kInfinity));
+    const double reach2 = 2 * (width + slack) * (width + slack);
+    TubePiece piece(*this, x, d, {t_min, next}, width2, reach2, accept);
+    index_->search(piece, x + (t + width) * d);
+    if (piece.hit().t <= next) return piece.hit();
+    t = next;
+  }
+  return {};
 }
 
 }  // namespace umtet

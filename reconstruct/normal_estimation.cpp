@@ -37,13 +37,10 @@ double noise_angle(const LocalQuadric& quadric, double radius, std::size_t n) {
   return 2 * std::sqrt(quadric.variance / static_cast<double>(n)) / radius;
 }
 
-/// The cloud, every third point, every ninth, ...: thinned in the order of the tree, so evenly in space.
+/// The cloud, every third point, every ninth, ...: thinned along the tree's curve, so evenly in space.
 std::vector<ThinnedCloud> thinned(const std::vector<Vec3>& points, const NeighbourTree& tree, double largest_growth) {
   std::vector<ThinnedCloud> levels;
-  std::vector<std::uint32_t> order;
-  order.reserve(points.size());
-  for (std::size_t leaf = 0; leaf < tree.n_leaves(); ++leaf)
-    for (const std::uint32_t i : tree.points_of(leaf)) order.push_back(i);
+  const std::vector<std::uint32_t>& order = tree.order();
   std::size_t stride = 1;
   for (double growth2 = kGrowth2 * kGrowth2; growth2 <= largest_growth * largest_growth; growth2 *= kGrowth2) {
     stride *= 3;
@@ -127,12 +124,12 @@ EstimatedNormals estimate_normals(const std::vector<Vec3>& points, const NormalE
   EstimatedNormals result;
   result.normals.resize(points.size());
   std::vector<std::uint8_t> widened(points.size());
-  for_each_neighbourhood(tree, static_cast<std::size_t>(params.neighbours),
-                         [&](std::uint32_t i, std::span<const Neighbour> near) {
-                           const Estimate found = estimate(points, tree, levels, params, i, near);
-                           result.normals[i] = found.normal;
-                           widened[i] = found.widened ? 1 : 0;
-                         });
+  tree.for_each_neighbourhood(static_cast<std::size_t>(params.neighbours),
+                              [&](std::uint32_t i, std::span<const Neighbour> near) {
+                                const Estimate found = estimate(points, tree, levels, params, i, near);
+                                result.normals[i] = found.normal;
+                                widened[i] = found.widened ? 1 : 0;
+                              });
   result.n_widened = static_cast<std::size_t>(std::count(widened.begin(), widened.end(), std::uint8_t{1}));
   for (const Vec3& n : result.normals) result.n_undefined += n.isZero(0) ? 1 : 0;
   return result;

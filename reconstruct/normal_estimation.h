@@ -29,7 +29,7 @@ struct EstimatedNormals {
 /// Double throughout: PCL's points are float, so its estimation would lose scans of 1e7 from the origin and the last
 /// digits of all others.
 /// \throw std::invalid_argument  fewer than 3 points, a coordinate not finite, a problem of the parameters
-/// Cost: measured 2.4 us a point on clean clouds, 10 where noise is one spacing, 16 at four. 150 bytes a point.
+/// Cost: measured 3.2 us a point of 1 M on a clean torus, 15 with noise of two spacings.
 /// The result does not depend on the number of threads.
 EstimatedNormals estimate_normals(const std::vector<Vec3>& points, const NormalEstimationParams& params = {});
 

@@ -16,9 +16,11 @@ namespace {
 
 // Smaller pieces are crumbs of noise: they are oriented, but not counted.
 constexpr std::size_t kCountedPoints = 100;
-// Analytic normals have a consistency of 0.988 in noise of 1 % of the diagonal; a hundredth of them turned, 0.98. Above
-// this a few points that seem wrong are noise: regions of that were up to 6 points.
-constexpr double kConsistent = 0.985;
+// Right normals have a consistency of 0.9875 in noise of 1 % of the diagonal (torus and eq. (9) of 20k points); a
+// hundredth of them turned, 0.980 without noise. Above this a few points that seem wrong may be noise, unless
+// every pair along their border says so by this cosine: on smooth places that is a wrong normal.
+constexpr double kConsistent = 0.985, kSurelyWrong = -0.5;
+// The regions of noise had up to 4 points at that consistency, and up to 10 in noise of 2 %.
 constexpr std::size_t kFewPoints = 20;
 
 void require(const OrientedPointCloud& cloud, const OrientationParams& params) {
@@ -110,35 +112,60 @@ std::vector<std::int8_t> settle(const OrientedPointCloud& cloud, const Signs& si
   return verdict;
 }
 
+/// What the pairs along the border of a region say, and the region itself.
+struct Region {
+  double disagrees = 0, all = 0;  ///< sums of |weight|
+  double mildest = -1;            ///< the greatest weight
+  std::uint32_t n_points = 0;
+};
+
 /// Repair turns a region only where its border says so: elsewhere the given sign is evidence too, and the better one
-/// along sharp edges and in noise. Regions of a few points are turned only in clouds where that many are wrong. A
-/// region without a border is a whole component, which the volume has decided.
-void keep_undisputed(const std::vector<SignEdge>& edges, double disagreement, std::size_t few,
+/// along sharp edges and in noise. Regions of a few points are turned only in clouds where that many are wrong, or
+/// where there is no doubt. A region that is a body facing outward as it came touches another one: pairs across the
+/// gap do not count against that. A region without a border is a whole component, which the volume has decided.
+void keep_undisputed(const OrientedPointCloud& cloud, const std::vector<double>& areas,
+                     const std::vector<SignEdge>& edges, double disagreement, std::size_t few,
                      std::vector<std::int8_t>& sign) {
   std::vector<std::uint32_t> parent(sign.size());
   std::iota(parent.begin(), parent.end(), 0U);
-  const auto region = [&](std::uint32_t i) {
+  const auto root = [&](std::uint32_t i) {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
   };
   for (const SignEdge& e : edges) {
     if (sign[e.a] > 0 || sign[e.b] > 0 || !(e.weight > 0)) continue;
-    const std::uint32_t a = region(e.a), b = region(e.b);
+    const std::uint32_t a = root(e.a), b = root(e.b);
     parent[std::max(a, b)] = std::min(a, b);
   }
-  std::vector<double> disagrees(sign.size(), 0), all(sign.size(), 0);
-  std::vector<std::size_t> size(sign.size(), 0);
-  for (std::uint32_t i = 0; i < sign.size(); ++i) ++size[region(i)];
+  std::vector<Region> regions(1);  // the first is all that is not turned
+  std::vector<std::uint32_t> region(sign.size(), 0);
+  for (std::uint32_t i = 0; i < sign.size(); ++i) {
+    if (sign[i] > 0) continue;
+    if (root(i) == i) {  // the least of its members, so it comes before them
+      region[i] = static_cast<std::uint32_t>(regions.size());
+      regions.emplace_back();
+    }
+    region[i] = region[root(i)];
+    ++regions[region[i]].n_points;
+  }
   for (const SignEdge& e : edges) {
     if (sign[e.a] == sign[e.b]) continue;
-    const std::uint32_t r = region(sign[e.a] < 0 ? e.a : e.b);
-    all[r] += std::abs(e.weight);
-    if (e.weight < 0) disagrees[r] -= e.weight;
+    Region& r = regions[region[sign[e.a] < 0 ? e.a : e.b]];
+    const double weight = e.weight;
+    r.all += std::abs(weight);
+    r.mildest = std::max(r.mildest, weight);
+    if (weight < 0) r.disagrees -= weight;
   }
-  for (std::uint32_t i = 0; i < sign.size(); ++i) {
-    const std::uint32_t r = region(i);
-    if (sign[i] < 0 && all[r] > 0 && (size[r] <= few || disagrees[r] < disagreement * all[r])) sign[i] = 1;
-  }
+  const std::vector<EnclosedVolume> bodies = enclosed_volumes(cloud, areas, region, regions.size());
+  const auto stays = [&](std::uint32_t r) {
+    const Region& it = regions[r];
+    if (!(it.all > 0)) return false;
+    if (it.n_points <= few && it.mildest > kSurelyWrong) return true;
+    if (it.n_points >= kCountedPoints && bodies[r].tells_sides() && bodies[r].volume > 0) return true;
+    return it.disagrees < disagreement * it.all;
+  };
+  for (std::size_t i = 0; i < sign.size(); ++i)
+    if (sign[i] < 0 && stays(region[i])) sign[i] = 1;
 }
 
 enum class Given { Directions, Signs };
@@ -171,7 +198,7 @@ OrientationReport orient(OrientedPointCloud& cloud, const OrientationParams& par
     signs.sign[i] = static_cast<std::int8_t>(signs.sign[i] * sides.turn[signs.component[i]]);
   if (given == Given::Signs) {
     const std::size_t few = report.consistency >= kConsistent ? kFewPoints : 0;
-    keep_undisputed(edges, params.disagreement, few, signs.sign);
+    keep_undisputed(cloud, areas, edges, params.disagreement, few, signs.sign);
   }
   for (std::size_t i = 0; i < n; ++i) {
     if (signs.sign[i] > 0 || cloud.normals[i].isZero(0)) continue;

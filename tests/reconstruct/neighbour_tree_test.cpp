@@ -21,14 +21,14 @@ std::vector<Vec3> clumps(int n) {
   return points;
 }
 
-// Sizes around the 16 points of a leaf, and k around all of them.
+// Sizes around the 16 points of a leaf of FLANN's tree, and k around all of them.
 TEST(NeighbourTree, FindsWhatAllPairsFind) {
   for (const int n : {1, 5, 15, 16, 17, 100, 700}) {
     const std::vector<Vec3> points = clumps(n);
     const NeighbourTree tree(points);
     for (const std::size_t k : {std::size_t{1}, std::size_t{4}, std::size_t{13}, std::size_t{60}, std::size_t{2000}}) {
       std::vector<int> visits(points.size(), 0);
-      for_each_neighbourhood(tree, k, [&](std::uint32_t i, std::span<const Neighbour> near) {
+      tree.for_each_neighbourhood(k, [&](std::uint32_t i, std::span<const Neighbour> near) {
         ++visits[i];
         std::vector<double> all;
         for (const Vec3& x : points) all.push_back((x - points[i]).squaredNorm());
@@ -46,6 +46,38 @@ TEST(NeighbourTree, FindsWhatAllPairsFind) {
       EXPECT_EQ(visits, std::vector<int>(points.size(), 1));
     }
   }
+}
+
+// A lattice is all ties, on both sides of every cut: any k of them would be nearest, and the least numbers are asked
+// for.
+TEST(NeighbourTree, EqualDistancesComeByPointNumber) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 9; ++i)
+    for (int j = 0; j < 9; ++j)
+      for (int l = 0; l < 9; ++l) points.emplace_back(i, j, l);
+  std::shuffle(points.begin(), points.end(), std::mt19937_64(4));
+  const NeighbourTree tree(points);
+  tree.for_each_neighbourhood(13, [&](std::uint32_t i, std::span<const Neighbour> near) {
+    std::vector<std::pair<double, std::uint32_t>> all;
+    for (std::uint32_t j = 0; j < points.size(); ++j) all.emplace_back((points[j] - points[i]).squaredNorm(), j);
+    std::sort(all.begin(), all.end());
+    for (std::size_t m = 0; m < near.size(); ++m) EXPECT_EQ(std::pair(near[m].distance2, near[m].point), all[m]);
+  });
+}
+
+TEST(NeighbourTree, NearInTheOrderIsNearInSpace) {
+  std::vector<Vec3> points = clumps(3000);
+  points.pop_back();  // the one far away
+  const NeighbourTree tree(points);
+  std::vector<std::uint32_t> order = tree.order();
+  double along = 0, shuffled = 0;
+  for (std::size_t row = 1; row < order.size(); ++row) {
+    along += (points[order[row]] - points[order[row - 1]]).norm();
+    shuffled += (points[row] - points[row - 1]).norm();
+  }
+  EXPECT_LT(along, 0.2 * shuffled);
+  std::sort(order.begin(), order.end());
+  for (std::uint32_t i = 0; i < order.size(); ++i) EXPECT_EQ(order[i], i);
 }
 
 TEST(NeighbourTree, CountsAndVisitsTheSameBall) {
@@ -84,6 +116,14 @@ TEST(NeighbourTree, TheFirstAlongARayIsTheNearestOfThoseAccepted) {
 TEST(NeighbourTree, RefusesWhatHasNoPlace) {
   EXPECT_THROW(NeighbourTree({}), std::invalid_argument);
   EXPECT_THROW(NeighbourTree({Vec3(0, std::numeric_limits<double>::quiet_NaN(), 0)}), std::invalid_argument);
+  EXPECT_THROW(NeighbourTree({Vec3::Zero(), Vec3(0, 1e154, 0)}), std::invalid_argument);
+  const NeighbourTree tree({Vec3::Zero(), Vec3(-1e153, 1e153, 0)});
+  EXPECT_EQ(tree.count_within(Vec3::Zero(), 2.1e306, 3), 2U);
+  EXPECT_THROW(tree.for_each_neighbourhood(0, [](std::uint32_t, std::span<const Neighbour>) {}), std::invalid_argument);
+  EXPECT_THROW(tree.first_along(Vec3::Zero(), Vec3::UnitX(), 0, 0, [](std::uint32_t) { return true; }),
+               std::invalid_argument);
+  EXPECT_EQ(tree.first_along(Vec3::Zero(), Vec3::Zero(), 0, 1, [](std::uint32_t) { return true; }).t,
+            std::numeric_limits<double>::infinity());
 }
 
 }  // namespace

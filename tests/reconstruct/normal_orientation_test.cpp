@@ -139,13 +139,43 @@ TEST(RepairNormals, AnInwardCloudIsTurnedOutward) {
   EXPECT_EQ(cloud.normals, truth);
 }
 
+// The cap of a sphere has a volume about its centroid, whose sign must not win against most of the given normals.
 TEST(RepairNormals, WithoutAVolumeTheMajorityDecides) {
+  OrientedPointCloud sphere;
+  test::add_sphere(sphere, {0, 0, 0}, 1, 8000);
   for (const double side : {-1.0, 1.0}) {
-    OrientedPointCloud cloud = test::plane_cloud(50, side * Vec3::UnitZ());
-    const std::vector<Vec3> truth = cloud.normals;
-    test::turn_some(cloud, 0.3);
+    OrientedPointCloud cap;
+    for (std::size_t i = 0; i < sphere.points.size(); ++i)
+      if (sphere.points[i].z() > 0.5) {
+        cap.points.push_back(sphere.points[i]);
+        cap.normals.push_back(side * sphere.normals[i]);
+      }
+    const std::vector<Vec3> truth = cap.normals;
+    test::turn_some(cap, 0.3);
+    EXPECT_EQ(repair_normals(cap).n_doubtful, truth.size());
+    EXPECT_EQ(cap.normals, truth);
+  }
+}
+
+// Pairs across a gap of a third of the spacing say that one of the two is turned over.
+TEST(RepairNormals, ABodyThatTouchesAnotherStaysAsItCame) {
+  for (const double spacings : {0.1, 0.3, 1.0}) {
+    OrientedPointCloud cloud = test::torus_cloud(20000);
+    const double gap = spacings * 0.028;  // sqrt(area / 20000)
+    test::add_sphere(cloud, {1.4 + gap + 0.3, 0, 0}, 0.3, 1400);
+    const std::vector<Vec3> given = cloud.normals;
+    EXPECT_TRUE(repair_normals(cloud).left_alone) << spacings;
+    EXPECT_EQ(cloud.normals, given) << spacings;
+  }
+}
+
+TEST(RepairNormals, OneInAThousandIsTurnedBackOnSmoothPlaces) {
+  for (const OrientedPointCloud& right : {test::torus_cloud(20000), sampled(testing::equation_9(), 20000)}) {
+    OrientedPointCloud cloud = right;
+    test::turn_some(cloud, 0.001);
+    EXPECT_GT(consistency(cloud), 0.99);
     repair_normals(cloud);
-    EXPECT_EQ(cloud.normals, truth);
+    EXPECT_EQ(cloud.normals, right.normals);
   }
 }
 
