@@ -39,7 +39,8 @@ struct CleaningReport {
 /// away hides all others. It does not matter how far away outliers are, nor that they are neighbours of each other.
 ///
 /// \throw std::invalid_argument  normals, but not as many as points; a problem of the parameters
-/// Cost: measured 3.2 us a point, 8 on overlapping noisy scans. The result does not depend on the number of threads.
+/// Cost: measured 4.7 us a point of 1 M on a clean torus, 12 with noise of two spacings. The result does not depend on
+/// the number of threads.
 CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params = {});
 
 }  // namespace umtet

@@ -24,7 +24,7 @@ enum class SsdSolver {
 struct SsdParams {
   double spacing = 0;    ///< of the finest lattice, model units; 0: chosen from spacing and noise of the samples
   double smoothing = 0;  ///< c of ½ Σ a (f²/l² + |∇f − n|²) + (c h / 2) ∫ H:H (SsdWeights::Area); 0: from the noise
-  double noise = 0;      ///< standard deviation of the samples along the normal, model units; l² = h² + (4 noise)²
+  double noise = 0;      ///< standard deviation of the samples along the normal, model units; l² = h² + (6 noise)²
   double detail = 1;     ///< > 0: divides the spacing that is chosen
   double smooth = 1;     ///< > 0: multiplies the smoothing that is chosen
   double alpha =

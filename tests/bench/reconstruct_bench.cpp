@@ -2,14 +2,17 @@
 // ./build/release/tests/bench/reconstruct_bench
 
 #include <benchmark/benchmark.h>
+#include <sys/resource.h>
 #include <tbb/global_control.h>
 
 #include "reconstruct/cloud_neighbours.h"
+#include "reconstruct/cloud_survey.h"
 #include "reconstruct/fit_ssd.h"
 #include "reconstruct/lme_lattice.h"
 #include "reconstruct/lme_scattered.h"
 #include "reconstruct/ssd_operator.h"
 #include "tests/support/clouds.h"
+#include "tests/support/sampled_domains.h"
 
 using namespace umtet;
 
@@ -66,7 +69,7 @@ void ScatteredBasis(benchmark::State& state) {
 }
 BENCHMARK(ScatteredBasis);
 
-// range(0): 0 value, 1 with gradient, 2 with gradient and Hessian
+// range(0): 0 value, 1 with gradient, 2 with gradient and Hessian; of a sum of `levels` levels
 void EvaluatePsi(benchmark::State& state) {
   const std::vector<Vec3> x = places();
   Vec3 g;
@@ -79,6 +82,7 @@ void EvaluatePsi(benchmark::State& state) {
     benchmark::DoNotOptimize(sum);
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(x.size()));
+  state.counters["levels"] = psi.n_levels();
 }
 BENCHMARK(EvaluatePsi)->Arg(0)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond);
 
@@ -104,18 +108,100 @@ void SampleAreas(benchmark::State& state) {
 }
 BENCHMARK(SampleAreas)->Arg(200000)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
 
-// A 0.9 M-node lattice with 200k points; items are nodes, CPU time of all threads.
-void FitTorus(benchmark::State& state) {
+// A full lattice of 0.9 M nodes with 200k points; CPU time of all threads.
+void FitFullLattice(benchmark::State& state) {
   const auto cloud = test::torus_cloud(200000);
   SsdParams p;
   p.spacing = 0.0232;
+  p.smoothing = 0.01;
+  p.tolerance = 1e-5;
+  p.solver = SsdSolver::Full;
   for (auto _ : state) {
     const SsdFit fit = fit_ssd(cloud, p);
     state.counters["nodes"] = static_cast<double>(fit.report.n_nodes);
     state.counters["iterations"] = fit.report.iterations;
   }
 }
-BENCHMARK(FitTorus)->MeasureProcessCPUTime()->Iterations(2)->Unit(benchmark::kSecond);
+BENCHMARK(FitFullLattice)->MeasureProcessCPUTime()->Iterations(2)->Unit(benchmark::kSecond);
+
+// Distances from points of the surface to psi = 0 along the gradient, over the diagonal of the samples' box.
+std::pair<double, double> mean_and_max_error(const LevelSet& psi, const std::vector<Vec3>& truth, double diagonal) {
+  double sum = 0, most = 0;
+  for (const Vec3& start : truth) {
+    Vec3 x = start, g;
+    for (int it = 0; it < 6; ++it) {
+      const double f = psi.evaluate(x, &g, nullptr);
+      x -= f / g.squaredNorm() * g;
+    }
+    sum += (x - start).norm();
+    most = std::max(most, (x - start).norm());
+  }
+  return {sum / static_cast<double>(truth.size()) / diagonal, most / diagonal};
+}
+
+// The same samples with noise along each axis, in thousandths of the diagonal, and 6 degrees on the normals.
+OrientedPointCloud noisy(OrientedPointCloud cloud, double per_mille) {
+  if (per_mille == 0) return cloud;
+  cloud = test::with_noise(std::move(cloud), 1e-3 * per_mille * test::box_diagonal(cloud.points));
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> gauss;
+  const double tilt = std::tan(6 * std::numbers::pi / 180) / std::numbers::sqrt2;
+  for (Vec3& n : cloud.normals) n = (n + tilt * Vec3(gauss(random), gauss(random), gauss(random))).normalized();
+  return cloud;
+}
+
+// range(0) points of eq. (9), range(1) noise in thousandths of the diagonal; spacing and smoothing from the cloud.
+void FitEquation9(benchmark::State& state) {
+  const auto clean = test::sampled(testing::equation_9(), static_cast<std::size_t>(state.range(0)), 5);
+  const auto truth = test::sampled(testing::equation_9(), 20000, 99).points;
+  const double diagonal = test::box_diagonal(clean.points);
+  const auto cloud = noisy(clean, static_cast<double>(state.range(1)));
+  for (auto _ : state) {
+    SsdParams p;
+    p.noise = noise_along_normals(cloud.points);
+    const SsdFit fit = fit_ssd(cloud, p);
+    state.PauseTiming();
+    const auto [mean, most] = mean_and_max_error(fit.psi, truth, diagonal);
+    state.counters["mean_over_diagonal"] = mean;
+    state.counters["max_over_diagonal"] = most;
+    int iterations = fit.report.iterations;
+    for (const BandReport& band : fit.report.bands) iterations = std::max(iterations, band.iterations);
+    state.counters["iterations"] = iterations;
+    state.ResumeTiming();
+  }
+}
+BENCHMARK(FitEquation9)
+    ->Args({50000, 0})
+    ->Args({500000, 0})
+    ->Args({50000, 5})
+    ->MeasureProcessCPUTime()
+    ->Iterations(1)
+    ->Repetitions(3)
+    ->ReportAggregatesOnly()
+    ->Unit(benchmark::kSecond);
+
+// range(0) points of a torus on a lattice of range(1) million nodes around it.
+void FitLargeTorus(benchmark::State& state) {
+  const auto cloud = test::torus_cloud(static_cast<int>(state.range(0)));
+  SsdParams p;
+  p.spacing = std::cbrt(2.8 * 2.8 * 0.8 / (1e6 * static_cast<double>(state.range(1))));
+  for (auto _ : state) {
+    const SsdFit fit = fit_ssd(cloud, p);
+    int iterations = fit.report.iterations;
+    for (const BandReport& band : fit.report.bands) iterations = std::max(iterations, band.iterations);
+    state.counters["iterations"] = iterations;
+    state.counters["nodes"] = static_cast<double>(fit.report.n_nodes);
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    state.counters["peak_MB"] = static_cast<double>(usage.ru_maxrss) / 1024;
+  }
+}
+BENCHMARK(FitLargeTorus)
+    ->Args({1000000, 8})
+    ->Args({2000000, 28})
+    ->MeasureProcessCPUTime()
+    ->Iterations(1)
+    ->Unit(benchmark::kSecond);
 
 }  // namespace
 
