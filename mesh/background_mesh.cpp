@@ -50,6 +50,11 @@ std::int64_t BackgroundMesh::vertex_id(int type, const Cell& cell) const {
   return type + n_types_ * (cell[0] + 1 + (n_[0] + 2) * (cell[1] + 1 + (n_[1] + 2) * (cell[2] + 1)));
 }
 
+/// Off the walls: offsets of a tiling are in -1 .. 1, so that all tets at the cell's vertices are there.
+bool BackgroundMesh::is_deep(const Cell& cell) const {
+  return cell[0] > 0 && cell[1] > 0 && cell[2] > 0 && cell[0] + 1 < n_[0] && cell[1] + 1 < n_[1] && cell[2] + 1 < n_[2];
+}
+
 bool BackgroundMesh::holds(const Cell& cell, const std::array<int, 3>& offset) const {
   for (int a = 0; a < 3; ++a) {
     const std::int64_t c = cell[a] + offset[a];
@@ -114,6 +119,7 @@ void BackgroundMesh::link(std::int64_t vertex, std::vector<std::int64_t>& vertic
 
 bool BackgroundMesh::on_rim(std::int64_t vertex) const {
   const VertexAddress v = vertex_address(vertex);
+  if (is_deep(v.cell)) return false;
   for (const auto& corner : tables_.star[v.type]) {
     if (!holds(v.cell, corner.offset)) return true;
   }
@@ -122,6 +128,7 @@ bool BackgroundMesh::on_rim(std::int64_t vertex) const {
 
 bool BackgroundMesh::has_tets(std::int64_t vertex) const {
   const VertexAddress v = vertex_address(vertex);
+  if (is_deep(v.cell)) return true;
   for (const auto& corner : tables_.star[v.type]) {
     if (holds(v.cell, corner.offset)) return true;
   }

@@ -46,14 +46,27 @@ class BackgroundMesh {
   /// Some tet whose cell contains x (a place to start a local search), or -1 outside the box.
   std::int64_t tet_near(const Vec3& x) const;
 
- private:
   using Cell = std::array<std::int64_t, 3>;
+  const TilingTables& tiling_tables() const { return tables_; }
+  int n_types() const { return n_types_; }
+  int type(std::int64_t vertex) const { return static_cast<int>(vertex % n_types_); }
+  const Cell& n_cells() const { return n_; }
+  Cell cell(std::int64_t vertex) const { return vertex_address(vertex).cell; }
+  /// id of a corner minus id of a vertex of type `from`, for any vertex of that type whose cell and the corner's are in
+  /// the range of ids. Vertices off the rim reach their whole link this way; from a vertex in the outermost layer of
+  /// cells a step out of the range gives no id, or that of another vertex in the outermost layer, which is on the rim.
+  std::int64_t id_step(int from, const Tiling::Corner& to) const {
+    return to.type - from + n_types_ * (to.offset[0] + (n_[0] + 2) * (to.offset[1] + (n_[1] + 2) * to.offset[2]));
+  }
+  std::int64_t vertex_id(int type, const Cell& cell) const;
+
+ private:
   struct VertexAddress {
     int type;
     Cell cell;
   };
   VertexAddress vertex_address(std::int64_t vertex) const;
-  std::int64_t vertex_id(int type, const Cell& cell) const;
+  bool is_deep(const Cell& cell) const;
   bool holds(const Cell& cell, const std::array<int, 3>& offset) const;
   std::int64_t tet_id(int tet, const Cell& cell, const std::array<int, 3>& offset) const;
 

@@ -44,6 +44,7 @@ class Crawler {
   }
 
   Submesh flood();
+  IdSet flood_inside();
   std::size_t n_evaluations() const { return n_evaluations_; }
 
  private:
@@ -224,7 +225,50 @@ Submesh Crawler::flood() {
   return detail::assemble_submesh(background_, std::move(tets), visited);
 }
 
+/// The same from vertex to vertex.
+IdSet Crawler::flood_inside() {
+  std::vector<std::vector<std::int64_t>> steps(background_.n_types());
+  for (int type = 0; type < background_.n_types(); ++type) {
+    for (const Tiling::Corner& c : background_.tiling_tables().link[type]) {
+      steps[type].push_back(background_.id_step(type, c));
+    }
+  }
+  IdSet visited(background_.n_vertices());
+  std::vector<std::int64_t> stack;
+  const auto visit = [&](std::int64_t v) {
+    if (visited.test(v) || (known_.test(v) && !inside_.test(v))) return;
+    visited.insert(v);
+    stack.push_back(v);
+  };
+  for (const std::int64_t t : positive_list_) {
+    for (const std::int64_t v : background_.tet(t)) visit(v);
+  }
+  while (!stack.empty()) {
+    const std::int64_t v = stack.back();
+    stack.pop_back();
+    if (background_.on_rim(v)) {
+      scratch_.clear();
+      background_.link(v, scratch_);
+      for (const std::int64_t w : scratch_) visit(w);
+      continue;
+    }
+    for (const std::int64_t step : steps[background_.type(v)]) visit(v + step);
+  }
+  return visited;
+}
+
 }  // namespace
+
+detail::CrawledVertices detail::crawl_inside(const BackgroundMesh& background, ImplicitFunctionRef psi,
+                                             const std::vector<Vec3>& seeds) {
+  Crawler crawler(background, psi);
+  std::vector<std::size_t> lost;
+  for (std::size_t s = 0; s < seeds.size(); ++s) {
+    if (!crawler.gather(seeds[s])) lost.push_back(s);
+  }
+  IdSet inside = crawler.flood_inside();
+  return {std::move(inside), std::move(lost), crawler.n_evaluations()};
+}
 
 Crawl crawl(const BackgroundMesh& background, ImplicitFunctionRef psi, const std::vector<Vec3>& seeds) {
   Crawler crawler(background, psi);

@@ -29,30 +29,6 @@ constexpr int kSamples = 64;
 // omega_h exceeds Omega by a layer of about this many cell edges: its tets need only one vertex inside. Measured.
 constexpr double kExcessLayer = .27;
 
-/// The inside bit of every background vertex that has a tet.             Alg. 1, step 7
-IdSet inside_vertices(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t& n_evaluations) {
-  IdSet inside(background.n_vertices());
-  std::atomic<std::size_t> evaluations = 0;
-  const auto range = tbb::blocked_range<std::size_t>(0, inside.n_words(), kWordsPerTask);
-  tbb::parallel_for(range, [&](const auto& words) {
-    std::size_t n = 0;
-    for (std::size_t w = words.begin(); w != words.end(); ++w) {
-      std::uint64_t bits = 0;
-      const std::int64_t first = static_cast<std::int64_t>(w * 64);
-      const std::int64_t last = std::min(first + 64, background.n_vertices());
-      for (std::int64_t v = first; v < last; ++v) {
-        if (!background.has_tets(v)) continue;
-        ++n;
-        if (psi.value(background.position(v)) < 0) bits |= std::uint64_t{1} << (v - first);
-      }
-      inside.set_word(w, bits);
-    }
-    evaluations += n;
-  });
-  n_evaluations = evaluations;
-  return inside;
-}
-
 unsigned inside_mask(const std::array<std::int64_t, 4>& tet, const IdSet& inside) {
   unsigned mask = 0;
   for (unsigned k = 0; k < 4; ++k) mask |= static_cast<unsigned>(inside.test(tet[k])) << k;
@@ -137,6 +113,29 @@ void check_box(const Box& box) {
 
 namespace detail {
 
+IdSet inside_vertices(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t& n_evaluations) {
+  IdSet inside(background.n_vertices());
+  std::atomic<std::size_t> evaluations = 0;
+  const auto range = tbb::blocked_range<std::size_t>(0, inside.n_words(), kWordsPerTask);
+  tbb::parallel_for(range, [&](const auto& words) {
+    std::size_t n = 0;
+    for (std::size_t w = words.begin(); w != words.end(); ++w) {
+      std::uint64_t bits = 0;
+      const std::int64_t first = static_cast<std::int64_t>(w * 64);
+      const std::int64_t last = std::min(first + 64, background.n_vertices());
+      for (std::int64_t v = first; v < last; ++v) {
+        if (!background.has_tets(v)) continue;
+        ++n;
+        if (psi.value(background.position(v)) < 0) bits |= std::uint64_t{1} << (v - first);
+      }
+      inside.set_word(w, bits);
+    }
+    evaluations += n;
+  });
+  n_evaluations = evaluations;
+  return inside;
+}
+
 Submesh assemble_submesh(const BackgroundMesh& background, std::vector<std::int64_t> tets, const IdSet& inside) {
   constexpr std::size_t kMost = std::numeric_limits<int>::max();
   IdSet used(background.n_vertices()), positive(background.n_vertices());
@@ -181,7 +180,7 @@ Submesh assemble_submesh(const BackgroundMesh& background, std::vector<std::int6
 
 Submesh find_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t* n_psi_evaluations) {
   std::size_t n = 0;
-  const IdSet inside = inside_vertices(background, psi, n);
+  const IdSet inside = detail::inside_vertices(background, psi, n);
   if (n_psi_evaluations) *n_psi_evaluations = n;
   return detail::assemble_submesh(background, cut_or_inside_tets(background, inside), inside);
 }

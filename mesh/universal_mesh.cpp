@@ -14,6 +14,7 @@
 #include "mesh/crawl.h"
 #include "mesh/detail/offenders.h"
 #include "mesh/dvr.h"
+#include "mesh/fast_mesh.h"
 #include "mesh/tet_quality.h"
 
 namespace umtet {
@@ -242,6 +243,7 @@ void Run::improve_boundary() {
 std::vector<std::string> problems(const UmParams& params) {
   std::vector<std::string> list = problems(params.closest_point);
   for (std::string& problem : list) problem = "closest_point." + problem;
+  for (const std::string& problem : problems(params.fast)) list.push_back("fast." + problem);
   const auto at_least = [&](const char* name, int value, int least) {
     if (value < least) {
       list.push_back(std::string(name) + " = " + std::to_string(value) + ": must be >= " + std::to_string(least));
@@ -286,6 +288,7 @@ UmResult universal_mesh(const BackgroundMesh& background, ImplicitFunctionRef ps
     all += (all.empty() ? "" : "; ") + std::string("seeds: Crawl needs at least one");
   }
   if (!all.empty()) throw std::invalid_argument(all);
+  if (params.mode == UmMode::Fast) return fast_mesh(background, psi, params, observer, seeds);
   return Run(background, psi, params, observer)(seeds);
 }
 

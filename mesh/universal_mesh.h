@@ -7,6 +7,7 @@
 
 #include "mesh/background_mesh.h"
 #include "mesh/closest_point.h"
+#include "mesh/fast_params.h"
 #include "mesh/implicit_function.h"
 #include "mesh/max_min.h"
 #include "mesh/relaxation_direction.h"
@@ -14,9 +15,15 @@
 
 namespace umtet {
 
+enum class UmMode {
+  Fast,   ///< beyond the paper: chosen labels, guarded projection and p-norm smoothing of a shell, repair; fast_mesh.h
+  Paper,  ///< Algorithm 1 to the letter
+};
 enum class SubmeshSearch { FullLoop, Crawl };  ///< Alg. 1, steps 1-22, or Section 3.8(c) from given seeds
 
 struct UmParams {
+  UmMode mode = UmMode::Paper;
+  FastParams fast;                 ///< of UmMode::Fast, which has no use for the parameters down to max_min
   int projection_passes = 5;       ///< N_P: positive vertices reach the boundary in this many steps, eq. (1); >= 1
   int relaxation_iterations = 25;  ///< N_R of Algorithms 1 and 2; >= 0
   int samples = 20;                ///< N_S: 2 N_S + 1 candidates in [-h, h], eq. (7); >= 1
@@ -74,7 +81,7 @@ struct UmProgress {
 };
 using UmObserver = std::function<bool(const UmProgress&)>;
 
-/// Algorithm 1 of the paper: a boundary-fitting mesh of {psi < 0}.
+/// A boundary-fitting mesh of {psi < 0}: Algorithm 1 of the paper, or what goes beyond it (fast_mesh.h).
 ///
 /// Foreseen failures are statuses with evidence; the arrays of the result then hold the last iterate. A double positive
 /// face or an obtuse conditioning angle breaks an assumption of the algorithm but need not break the mesh: both are

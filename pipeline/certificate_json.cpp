@@ -44,7 +44,8 @@ Json run_of(const CasePaths& paths, const StageRecord& mesh, const Parameters& p
 /// What to try next when a mesh has failed.
 std::string remedy(const Json& c) {
   const double h = c.at("h");
-  if (c.at("reasons").size() == 1 && c.at("quality").at("min").get<double>() < c.at("gates").value("min_quality", 0.)) {
+  if (c.at("reasons").size() == 1 && c.at("gates").at("min_quality").is_number() &&
+      c.at("quality").at("min").get<double>() < c["gates"]["min_quality"].get<double>()) {
     return fmt::format("another --h (this was {:.4g}) or another --seed moves the worst tets; or lower --min-quality",
                        h);
   }

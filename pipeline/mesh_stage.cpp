@@ -245,6 +245,8 @@ void MeshStage::write_outputs(const MeshAttempt& best) {
 
 UmParams um_params(const Parameters& p) {
   UmParams um;
+  um.mode = p.text("mesh.mode") == "paper" ? UmMode::Paper : UmMode::Fast;
+  um.fast.smoothing.target = um.fast.repair.target = p.real("mesh.target_quality");
   um.projection_passes = static_cast<int>(p.integer("mesh.projection_passes"));
   um.relaxation_iterations = static_cast<int>(p.integer("mesh.relaxation_iterations"));
   um.samples = static_cast<int>(p.integer("mesh.samples"));

@@ -107,13 +107,14 @@ std::vector<ParamField> make_fields() {
       {"mesh.background", "--background", text("a15"), 0, 0, {"a15"}, "acute tiling of the background mesh"},
       {"mesh.mode",
        "--mode",
-       text("paper"),
+       text("fast"),
        0,
        0,
-       {"paper"},
-       "paper: Algorithms 1-3 of the paper, by default with random directions (Section 3.8(d)) and Newton projection; "
+       {"fast", "paper"},
+       "fast: chosen labels, p-norm smoothing of a shell, repair; paper: Algorithms 1-3 of the paper, by default with random directions (Section 3.8(d)) and Newton projection; "
        "--set mesh.directions=axes and --set mesh.closest_point=paper give Sections 3.2 and 3.8(a)"},
-      {"mesh.projection_passes", "", whole(um.projection_passes), 1, 1000, {}, "N_P"},
+      {"mesh.target_quality", "", um.fast.smoothing.target, .1, .9, {}, "mean ratio below which tets are worked on (mode = fast)"},
+      {"mesh.projection_passes", "", whole(um.projection_passes), 1, 1000, {}, "N_P (this and below: mode = paper)"},
       {"mesh.relaxation_iterations", "", whole(um.relaxation_iterations), 0, 100000, {}, "N_R"},
       {"mesh.samples", "", whole(um.samples), 1, 100000, {}, "N_S: 2 N_S + 1 candidates on a line"},
       {"mesh.directions",

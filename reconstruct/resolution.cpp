@@ -8,7 +8,7 @@ namespace umtet {
 
 namespace {
 
-constexpr double kSpacings = 1.5, kNoises = 3;
+constexpr double kSpacings = 1.25, kNoises = 3;
 constexpr double kCleanSmoothing = 0.001, kNoisySmoothing = 0.2;
 // On eq. (9), 50k samples with noise of 0.5 % and 6 degrees: mean error 3.3e-4 of the diagonal with 4, 3.0e-4 with 6,
 // 2.9e-4 with 8. Normals estimated from the samples deserve less trust than these.

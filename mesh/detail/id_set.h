@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +14,17 @@ class IdSet {
   explicit IdSet(std::int64_t n_ids) : words_(static_cast<std::size_t>((n_ids + 63) / 64), 0) {}
 
   bool test(std::int64_t id) const { return words_[id >> 6] >> (id & 63) & 1; }
+  /// As test(); false for any number that is no id.
+  bool test_any(std::int64_t id) const { return static_cast<std::uint64_t>(id) < 64 * words_.size() && test(id); }
   void insert(std::int64_t id) { words_[id >> 6] |= std::uint64_t{1} << (id & 63); }
+
+  /// As insert(), for threads that may meet in one word.
+  void insert_shared(std::int64_t id) {
+    const std::atomic_ref word(words_[id >> 6]);
+    const std::uint64_t bit = std::uint64_t{1} << (id & 63);
+    if ((word.load(std::memory_order_relaxed) & bit) == 0) word.fetch_or(bit, std::memory_order_relaxed);
+  }
+  void erase(std::int64_t id) { words_[id >> 6] &= ~(std::uint64_t{1} << (id & 63)); }
 
   std::size_t n_words() const { return words_.size(); }
   std::uint64_t word(std::size_t w) const { return words_[w]; }

@@ -318,6 +318,15 @@ TEST_F(Program, FarFromTheOriginTheMeshComesBackWhereTheCloudIs) {
   EXPECT_NEAR(v, 1048576, 1.1);
 }
 
+TEST_F(Program, OneReasonToFailIsExitSixWithARemedy) {
+  // A lens much thinner at its rim than h.
+  const Result r =
+      run("mesh --implicit 'x^2+y^2+(z/0.15)^2-1' --box=-1.6,-1.6,-.9,1.6,1.6,.9 --h .2 --mode paper -o lens");
+  EXPECT_EQ(r.code, 6) << r.err;
+  EXPECT_NE(r.out.find("verdict   fail"), std::string::npos) << r.out;
+  EXPECT_NE(r.out.find("try a smaller --h"), std::string::npos) << r.out;
+}
+
 TEST_F(Program, UsageErrorsNameThePlaceAndTheRemedy) {
   const std::pair<const char*, const char*> cases[] = {
       {"mesh --implicit 'x^2+foo(y)' --box -1,-1,-1,1,1,1 -o a", "column 5"},
@@ -326,7 +335,7 @@ TEST_F(Program, UsageErrorsNameThePlaceAndTheRemedy) {
       {"run egg.ply -o a --tet 1000", "did you mean --tets?"},
       {"run egg.ply -o a --set mesh.sampels=1", "did you mean mesh.samples?"},
       {"run egg.ply -o a --tets 10 --h 1", "exclude each other"},
-      {"run egg.ply -o a --mode fast", "paper only"},
+      {"run egg.ply -o a --mode quick", "fast, paper only"},
       {"run egg.ply -o a --background bcc", "a15 only"},
       {"run egg.ply -o a --from mehs", "did you mean mesh?"},
       {"run egg.ply", "-o CASE"},

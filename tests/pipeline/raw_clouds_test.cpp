@@ -183,8 +183,8 @@ TEST_F(Program, ScaledAndMovedCloudsGiveTheSameMesh) {
     EXPECT_NEAR(p["rms_value"].get<double>() / scale, psi["rms_value"], 1e-6);
     EXPECT_NEAR(p["spacing"].get<double>() / scale, psi["spacing"], 1e-6);
     EXPECT_EQ(o["n_tets"], c["n_tets"]) << scale << ' ' << shift;
-    // The paper's relaxation makes more of rounding than it is.
-    EXPECT_NEAR(o["volume"].get<double>() / std::pow(scale, 3), c["volume"].get<double>(), 1e-3);
+    EXPECT_NEAR(o["volume"].get<double>() / std::pow(scale, 3), c["volume"].get<double>(), 1e-6);
+    EXPECT_NEAR(o["quality"]["min"].get<double>(), c["quality"]["min"].get<double>(), 1e-6);
   }
 }
 

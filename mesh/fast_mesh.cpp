@@ -1,0 +1,230 @@
+#include "mesh/fast_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "mesh/assumptions.h"
+#include "mesh/detail/assemble_submesh.h"
+#include "mesh/detail/offenders.h"
+#include "mesh/lattice_shell.h"
+#include "mesh/tet_quality.h"
+
+namespace umtet {
+namespace {
+
+using detail::find_offenders;
+using detail::IdSet;
+using detail::Offenders;
+
+class FastRun {
+ public:
+  FastRun(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params, const UmObserver& observer)
+      : background_(background),
+        psi_(psi),
+        params_(params),
+        observer_(observer),
+        links_(link_topology_of(background.tiling())),
+        inside_(0) {}
+
+  UmResult operator()(const std::vector<Vec3>& seeds) {
+    try {
+      if (find_inside(seeds) && label()) fit();
+    } catch (const MeshCancelled&) {
+      fail(UmStatus::Cancelled, {.what = "stopped by the observer"});
+    }
+    if (result_.final.empty()) result_.final = result_.submesh.mesh.V;
+    if (result_.projected.empty()) result_.projected = result_.final;
+    return std::move(result_);
+  }
+
+ private:
+  static std::vector<LinkTopology> link_topology_of(const Tiling& tiling) {
+    return tiling.name == a15().name ? a15_links() : link_topology(tiling, tables(tiling));
+  }
+  bool fail(UmStatus status, const UmEvidence& evidence) {
+    result_.status = status;
+    result_.evidence = evidence;
+    return false;
+  }
+  bool report(const char* step, int pass, int n_passes) {
+    const auto& mesh = result_.submesh.mesh;
+    if (!observer_ ||
+        observer_({step, pass, n_passes, result_.final.empty() ? &mesh.V : &result_.final, mesh.C.size()}))
+      return true;
+    return fail(UmStatus::Cancelled, {.what = std::string("stopped by the observer during ") + step});
+  }
+  bool find_inside(const std::vector<Vec3>& seeds);
+  bool label();
+  bool fit();
+  bool all_arrived(const ProjectionReport& projection);
+  bool none_inverted();
+  std::vector<Vec3> coordinates(const std::vector<Vec3>& shell_V) const;
+  void repair_labels(const KeepGoing& keep_going);
+  void measure_assumptions();
+
+  const BackgroundMesh& background_;
+  ImplicitFunctionRef psi_;
+  const UmParams& params_;
+  const UmObserver& observer_;
+  std::vector<LinkTopology> links_;
+  UmResult result_;
+  IdSet inside_;
+  LatticeShell shell_;
+  std::vector<std::pair<std::int64_t, Vec3>> moved_;  ///< by repair, ascending
+  BrokenAssumption double_faces_;
+};
+
+bool FastRun::find_inside(const std::vector<Vec3>& seeds) {
+  std::string lost;
+  if (params_.search == SubmeshSearch::FullLoop) {
+    inside_ = detail::inside_vertices(background_, psi_, result_.n_psi_evaluations);
+  } else {
+    detail::CrawledVertices found = detail::crawl_inside(background_, psi_, seeds);
+    inside_ = std::move(found.inside);
+    result_.n_psi_evaluations = found.n_psi_evaluations;
+    lost = "; " + std::to_string(found.lost_seeds.size()) + " of " + std::to_string(seeds.size()) +
+           " seeds led to no positively cut tet";
+  }
+  UmEvidence rim{.what = "the domain reaches the rim of the background mesh"};
+  bool empty = true;
+  inside_.for_each([&](std::int64_t v) {
+    empty = false;
+    if (!background_.on_rim(v)) return;
+    if (rim.count++ == 0) rim.background_vertex = v;
+  });
+  if (empty) {
+    return fail(UmStatus::EmptyDomain, {.what = "no vertex of the background mesh was found inside the domain" + lost});
+  }
+  if (rim.count == 0) return true;
+  rim.where = background_.position(rim.background_vertex);
+  result_.submesh = emit_submesh(background_, inside_);
+  return fail(UmStatus::DomainLeavesBackground, rim);
+}
+
+bool FastRun::label() {
+  // Only A15 has measured energies.
+  if (background_.tiling().name == a15().name) {
+    const LabelReport labels = choose_labels(background_, links_, psi_, params_.fast.labels, inside_);
+    result_.n_psi_evaluations += labels.psi_evaluations;
+  }
+  result_.submesh = emit_submesh(background_, inside_);
+  double_faces_ = double_positive_faces(result_.submesh);
+  result_.double_positive_faces = double_faces_.count;
+  return report("submesh", 1, 1);
+}
+
+bool FastRun::all_arrived(const ProjectionReport& projection) {
+  if (projection.not_arrived.empty()) return true;
+  const NotArrived& first = projection.not_arrived.front();
+  const std::int64_t id = shell_.background_vertex[first.vertex];
+  const auto& ids = result_.submesh.background_vertex;
+  const int local = static_cast<int>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
+  const bool is_double = double_faces_.is_broken_at({&local, 1});
+  result_.final = coordinates(shell_.shell.V);
+  return fail(is_double ? UmStatus::DoublePositiveFace : UmStatus::ProjectionDiverged,
+              {.background_vertex = id,
+               .where = shell_.shell.V[first.vertex],
+               .count = projection.not_arrived.size(),
+               .what = std::string(first.reason == NotArrived::Reason::NoFoot
+                                       ? "the closest point of a positive vertex was not found"
+                                       : "a positive vertex cannot reach the boundary without inverting a tet") +
+                       (is_double ? ", at a face shared by two positively cut tets" : "")});
+}
+
+/// The vertices of omega_h with those of the shell at V, and the repaired ones where repair has put them.
+std::vector<Vec3> FastRun::coordinates(const std::vector<Vec3>& shell_V) const {
+  std::vector<Vec3> V = result_.submesh.mesh.V;
+  const auto& ids = result_.submesh.background_vertex;
+  const auto put = [&, at = ids.begin()](std::int64_t id, const Vec3& x) mutable {
+    at = std::lower_bound(at, ids.end(), id);
+    if (at != ids.end() && *at == id) V[at - ids.begin()] = x;
+  };
+  auto put_shell = put;
+  for (std::size_t v = 0; v < shell_V.size(); ++v) put_shell(shell_.background_vertex[v], shell_V[v]);
+  auto put_moved = put;
+  for (const auto& [id, x] : moved_) put_moved(id, x);
+  return V;
+}
+
+bool FastRun::none_inverted() {
+  const auto& C = result_.submesh.mesh.C;
+  const auto& V = result_.final;
+  const Offenders inverted = find_offenders(
+      C.size(), [&](std::size_t t) { return !(volume6(V[C[t][0]], V[C[t][1]], V[C[t][2]], V[C[t][3]]) > 0); });
+  if (inverted.count == 0) return true;
+  const Tet& tet = C[inverted.first];
+  const bool is_double = double_faces_.is_broken_at(tet);
+  return fail(is_double ? UmStatus::DoublePositiveFace : UmStatus::InvertedTet,
+              {.background_tet = result_.submesh.background_tet[inverted.first],
+               .where = .25 * (V[tet[0]] + V[tet[1]] + V[tet[2]] + V[tet[3]]),
+               .count = inverted.count,
+               .what = std::string("a tet stays inverted") +
+                       (is_double ? ", at a face shared by two positively cut tets" : "")});
+}
+
+void FastRun::measure_assumptions() {
+  // How far a vertex has come stands for its distance to the boundary: it only says which vertex of a face is nearest.
+  std::vector<double> distance;
+  for (const int i : result_.submesh.positive_vertices) {
+    distance.push_back((result_.final[i] - result_.submesh.mesh.V[i]).norm());
+  }
+  const ConditioningAngles angles = conditioning_angles(result_.submesh, distance);
+  result_.conditioning_angle_max_deg = angles.max_deg;
+  result_.obtuse_conditioning_angles = angles.not_acute.count;
+}
+
+/// Changes labels where that mends a tet, and omega_h with them.
+void FastRun::repair_labels(const KeepGoing& keep_going) {
+  if (background_.tiling().name != a15().name) return;
+  RepairReport repaired =
+      repair(background_, links_, psi_, params_.fast.labels, params_.fast.repair, shell_, inside_, keep_going);
+  result_.n_psi_evaluations += repaired.psi_evaluations;
+  moved_ = std::move(repaired.moved);
+  if (repaired.flips == 0) return;
+  result_.submesh = emit_submesh(background_, inside_);
+  double_faces_ = double_positive_faces(result_.submesh);
+  result_.double_positive_faces = double_faces_.count;
+}
+
+bool FastRun::fit() {
+  shell_ = lattice_shell(background_, links_, inside_, params_.fast.layers);
+  const KeepGoing keep_going = [&] {
+    const auto& mesh = result_.submesh.mesh;
+    return !observer_ || observer_({"relax", 1, 1, &mesh.V, mesh.C.size()});
+  };
+  const ProjectionReport projection = project(shell_.shell, psi_, params_.fast.projection, keep_going);
+  result_.n_psi_evaluations += projection.psi_evaluations;
+  if (!all_arrived(projection)) return false;
+  const std::vector<Vec3> projected = shell_.shell.V;
+  const SmoothReport smoothing = smooth(shell_.shell, psi_, params_.fast.smoothing, keep_going);
+  result_.n_psi_evaluations += smoothing.psi_evaluations;
+  repair_labels(keep_going);
+  result_.final = coordinates(shell_.shell.V);
+  result_.projected = coordinates(projected);
+  measure_assumptions();
+  return none_inverted() && report("relax", 1, 1);
+}
+
+}  // namespace
+
+std::vector<std::string> problems(const FastParams& params) {
+  std::vector<std::string> list;
+  if (params.layers < 1) list.push_back("layers = " + std::to_string(params.layers) + ": must be >= 1");
+  const auto add = [&](const char* name, const std::vector<std::string>& more) {
+    for (const std::string& problem : more) list.push_back(std::string(name) + "." + problem);
+  };
+  add("labels", problems(params.labels));
+  add("projection", problems(params.projection));
+  add("smoothing", problems(params.smoothing));
+  add("repair", problems(params.repair));
+  return list;
+}
+
+UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
+                   const UmObserver& observer, const std::vector<Vec3>& seeds) {
+  return FastRun(background, psi, params, observer)(seeds);
+}
+
+}  // namespace umtet

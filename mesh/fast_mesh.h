@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "mesh/universal_mesh.h"
+
+namespace umtet {
+
+/// A boundary-fitting mesh of {psi < 0}, better and some ten times faster than Algorithm 1.
+///
+/// labels: which background vertices near psi = 0 count as inside is chosen for the shape of the tets (labels.h);
+/// shell: only the boundary of omega_h and two layers behind it move (lattice_shell.h);
+/// projection: boundary vertices walk to psi = 0 as far as no tet inverts (guarded_projection.h);
+/// smoothing: p-norm Newton steps where a tet is below the target (p_norm_smooth.h).
+///
+/// The result is that of universal_mesh(): omega_h of the chosen labels, with the background's ids. The same bytes for
+/// any number of threads. psi must be thread-safe.
+/// \pre params and seeds are those universal_mesh() accepts; params.mode is not read
+UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
+                   const UmObserver& observer = {}, const std::vector<Vec3>& seeds = {});
+
+}  // namespace umtet

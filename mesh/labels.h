@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "mesh/background_mesh.h"
+#include "mesh/detail/id_set.h"
+#include "mesh/implicit_function.h"
+#include "mesh/keep_going.h"
+#include "mesh/label_quality.h"
+
+namespace umtet {
+
+/// Lengths are in h. The defaults are measured on bodies of labels_fit (seeds not of the fit, 45 of 40k tets and 30 of
+/// 6k): smoothing alone leaves 15 tets below .82 in all of them together, with another value what the line says.
+struct LabelParams {
+  /// The labels start as those of {psi < 0} moved inwards by this; 0 <= shift <= .15. .15: 142 tets
+  double shift = 0;
+  double reach_in = .9;        ///< how deep inside a label may change; >= 0
+  double reach_out = .2;       ///< how far outside; >= 0. .5: 125 tets, at inside vertices that far out
+  double least_thickness = 2;  ///< no label changes where the body or the gap outside is thinner; >= 0
+  /// Price of a boundary vertex at height d outside: outside_weight (d - outside_height)^2; >= 0. Twice both weights:
+  /// 66 tets, half of them: 38. Height -.15: 102 tets, .2: 29
+  double outside_weight = 20, outside_height = .1;
+  /// Price of an inside vertex at depth d < inside_depth: inside_weight (inside_depth - d)^2; >= 0. Depth .4: 19, .6:
+  /// 40
+  double inside_weight = 20, inside_depth = .5;
+  int max_sweeps = 50;  ///< >= 0
+  /// Prices of the labellings of a link; null: those of a15().
+  const LabelEnergies* energies = nullptr;
+};
+
+/// Every broken constraint, not just the first.
+std::vector<std::string> problems(const LabelParams&);
+
+struct LabelReport {
+  std::size_t candidates = 0;    ///< vertices whose label might change
+  std::size_t shifted = 0;       ///< labels changed by the shift
+  std::size_t flips = 0;         ///< labels changed by the descent
+  std::size_t thin = 0;          ///< candidates that kept their label because of least_thickness
+  std::size_t not_manifold = 0;  ///< outside vertices at the boundary of omega_h where it is no manifold
+  int sweeps = 0;
+  bool settled = false;  ///< no single change lowers the energy
+  std::size_t psi_evaluations = 0;
+};
+
+/// Chooses which background vertices near the boundary count as inside, so that the mesh of them can be shaped well.
+///
+/// Which vertices are inside is free near psi = 0: projection moves the boundary onto it either way. A label changes
+/// only at a simple vertex (LinkState), so the inside vertices and their complement keep their topology, and only if
+/// the boundary of omega_h is manifold wherever it was. From the labels of psi moved inwards by `shift`, a descent
+/// changes single labels as long as that lowers
+///
+///     sum over outside vertices v of omega_h of energy(labels of the link of v) + outside_weight (d_v -
+///     outside_height)^2
+///   + sum over inside vertices near the boundary of inside_weight max(0, inside_depth - depth)^2
+///
+/// with distances from psi / |grad psi|, corrected at the foot. Bricks of 4^3 cells in eight colours: the same labels
+/// for any number of threads.
+///
+/// @param inside  the vertices with psi < 0 on entry; none of them, nor a neighbour, on the rim
+/// \throw std::invalid_argument naming every broken constraint of params, MeshCancelled
+LabelReport choose_labels(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
+                          ImplicitFunctionRef psi, const LabelParams& params, detail::IdSet& inside,
+                          const KeepGoing& keep_going = {});
+
+}  // namespace umtet

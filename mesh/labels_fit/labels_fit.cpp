@@ -1,0 +1,137 @@
+// Measures how well the tets around a boundary vertex can be shaped, for every way its link is labelled.
+//
+//   labels_fit SEED SHAPES > mesh/a15_label_qualities.h
+//
+// Random smooth bodies are meshed without the table's help (labels of psi), with prices at random (so that labellings
+// are met that psi alone hardly makes), and with the prices found so far (so that they are met among good neighbours).
+// Each mesh is smoothed towards a target out of reach, and the worst quality around every boundary vertex is booked
+// under (site, positive faces, tets). What a labelling can reach is the 95 % quantile: the best few owe it to luck with
+// curvature, and most others suffer from a neighbour.
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "mesh/detail/assemble_submesh.h"
+#include "mesh/guarded_projection.h"
+#include "mesh/labels.h"
+#include "mesh/labels_fit/random_shape.h"
+#include "mesh/lattice_shell.h"
+#include "mesh/tet_quality.h"
+
+using namespace umtet;
+
+namespace {
+
+constexpr double kTets = 30000;  // features of the bodies are then ten edges and more
+constexpr double kQuantile = .95;
+constexpr std::size_t kEnough = 60;
+constexpr double kOutOfReach = .93;  // no boundary vertex was seen above .90
+constexpr int kRounds = 4;
+
+using Configuration = std::tuple<int, int, int>;  // site, positive faces, tets
+using Book = std::map<Configuration, std::vector<float>>;
+
+/// Meshes one body and books its boundary vertices.
+void measure(const labels_fit::RandomShape& shape, const LabelEnergies* energies, Book& book) {
+  const double h = h_for_tets(shape, shape.box(), kTets);
+  const Box padded(shape.box().min() - Vec3::Constant(2 * h), shape.box().max() + Vec3::Constant(2 * h));
+  const BackgroundMesh background(a15(), padded, h);
+  const auto& links = a15_links();
+  std::size_t evaluations = 0;
+  detail::IdSet inside = detail::inside_vertices(background, shape, evaluations);
+  if (energies) {
+    LabelParams params;
+    params.energies = energies;
+    choose_labels(background, links, shape, params, inside);
+  }
+  LatticeShell cut = lattice_shell(background, links, inside);
+  const ProjectionReport projection = project(cut.shell, shape);
+  if (!projection.not_arrived.empty()) return;
+  SmoothParams smoothing;
+  smoothing.target = kOutOfReach;
+  smoothing.margin = 0;
+  smooth(cut.shell, shape, smoothing);
+  for (std::size_t v = 0; v < cut.shell.V.size(); ++v) {
+    if (cut.shell.role[v] != Shell::Role::Boundary) continue;
+    const std::int64_t id = cut.background_vertex[v];
+    const int type = background.type(id);
+    unsigned mask = 0, k = 0;
+    for (const Tiling::Corner& c : background.tiling_tables().link[type]) {
+      mask |= static_cast<unsigned>(inside.test(id + background.id_step(type, c))) << k++;
+    }
+    const LinkState& state = links[type].states[mask];
+    if (!state.manifold) continue;
+    double worst = 1;
+    for (int r = cut.shell.ring_begin[v]; r < cut.shell.ring_begin[v + 1]; ++r) {
+      worst = std::min(worst, mean_ratio({cut.shell.V, {}}, cut.shell.C[cut.shell.ring[r]]));
+    }
+    book[{links[type].site, state.n_positive_faces, state.n_tets}].push_back(static_cast<float>(worst));
+  }
+}
+
+std::vector<LabelQuality> qualities(Book& book) {
+  std::vector<LabelQuality> list;
+  for (auto& [configuration, seen] : book) {
+    if (seen.size() < kEnough) continue;
+    const auto at = seen.begin() + static_cast<std::ptrdiff_t>(kQuantile * static_cast<double>(seen.size()));
+    std::nth_element(seen.begin(), at, seen.end());
+    const auto [site, faces, tets] = configuration;
+    list.push_back({site, faces, tets, static_cast<double>(*at)});
+  }
+  return list;
+}
+
+/// Prices between 0 and 100 at random, one for each configuration.
+LabelEnergies random_energies(std::uint64_t seed) {
+  std::vector<LabelQuality> list;
+  std::uint64_t state = seed;
+  for (int site = 0; site < 2; ++site) {
+    for (int faces = 3; faces <= 14; ++faces) {
+      for (int tets = 3; tets <= 24; ++tets) {
+        state = state * 6364136223846793005u + 1442695040888963407u;
+        list.push_back({site, faces, tets, .77 + .10 * static_cast<double>(state >> 11) * 0x1p-53});
+      }
+    }
+  }
+  return label_energies(a15_links(), list);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) {
+    std::fprintf(stderr, "usage: labels_fit SEED SHAPES\n");
+    return 2;
+  }
+  const std::uint64_t seed = std::strtoull(argv[1], nullptr, 10);
+  const int n_shapes = std::atoi(argv[2]);
+  Book book;
+  for (int round = 0; round < kRounds; ++round) {
+    const LabelEnergies fitted = label_energies(a15_links(), qualities(book));
+    for (int s = 0; s < n_shapes; ++s) {
+      const std::uint64_t number = seed + static_cast<std::uint64_t>(round * n_shapes + s);
+      const labels_fit::RandomShape shape(number);
+      const LabelEnergies dice = random_energies(number);
+      measure(shape, round == 0 ? nullptr : round == 1 ? &dice : &fitted, book);
+    }
+    std::fprintf(stderr, "round %d of %d done\n", round + 1, kRounds);
+  }
+  const std::vector<LabelQuality> list = qualities(book);
+  std::printf("#pragma once\n\n#include <array>\n\n#include \"mesh/label_quality.h\"\n\nnamespace umtet {\n\n");
+  std::printf(
+      "// Made by: labels_fit %s %s (%.0f tets a body, %d rounds, quantile %.2f, at least %zu vertices each).\n",
+      argv[1], argv[2], kTets, kRounds, kQuantile, kEnough);
+  std::printf("// site 0 is 2a (12 neighbours), site 1 is 6c (14). The last column counts the vertices seen.\n");
+  std::printf("inline constexpr std::array<LabelQuality, %zu> kA15LabelQualities = {{\n", list.size());
+  for (const LabelQuality& q : list) {
+    std::printf("    {%d, %d, %d, %.4f},  // %zu\n", q.site, q.n_positive_faces, q.n_tets, q.quality,
+                book.at({q.site, q.n_positive_faces, q.n_tets}).size());
+  }
+  std::printf("}};\n\n}  // namespace umtet\n");
+  return 0;
+}

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mesh/guarded_projection.h"
+#include "mesh/keep_going.h"
+#include "mesh/labels.h"
+#include "mesh/lattice_shell.h"
+
+namespace umtet {
+
+struct RepairParams {
+  double target = .82;  ///< tets below are mended; in (0, 1)
+  int reach = 2;        ///< a patch moves the vertices within this many edges of the flip and the tet; >= 1
+  int max_tries = 24;   ///< labels tried for one tet; >= 0. 0: no repair
+  /// Patches in all, a millisecond each, for the worst tets first: more means that h is wrong, which labels do not
+  /// mend.
+  std::size_t max_patches = 600;
+  double reach_out = .5;  ///< as LabelParams::reach_out: here a price for distance is not needed, the mesh itself is
+                          ///< looked at; >= 0
+  ProjectionParams projection;
+  SmoothParams smoothing = patch_smoothing();
+
+  /// A patch settles in a dozen sweeps or not at all.
+  static SmoothParams patch_smoothing() {
+    SmoothParams params;
+    params.max_sweeps = 15;
+    return params;
+  }
+};
+
+/// Every broken constraint, not just the first.
+std::vector<std::string> problems(const RepairParams&);
+
+struct RepairReport {
+  std::size_t bad_before = 0;  ///< tets below the target
+  std::size_t tries = 0;       ///< patches shaped on a copy
+  std::size_t flips = 0;       ///< labels changed
+  std::size_t given_up = 0;    ///< tets for which nothing helped
+  std::size_t psi_evaluations = 0;
+  std::vector<std::pair<std::int64_t, Vec3>> moved;  ///< background vertices with a new place, ascending
+};
+
+/// Mends tets below the target by changing labels next to them: connectivity is the limit where smoothing has settled.
+///
+/// For each such tet, the worst first, labels of its vertices and their neighbours are changed one by one, then in
+/// pairs, on a copy of the patch around them, whose boundary is projected and whose inside is smoothed, the patch's rim
+/// held. The best is kept if it lowers neither the least quality of the patch nor raises its number of tets below the
+/// target, and betters one. A label changes only where choose_labels() might change it: at simple vertices, without a
+/// new spot where the boundary is no manifold, and not where the body or the gap is thin. So topology stays.
+///
+/// Serial: some dozens of patches in a mesh of a million tets.
+/// @param shell   smoothed; its coordinates stay as they are, `moved` says what has changed since
+/// @param inside  receives the changes
+/// \throw std::invalid_argument naming every broken constraint, MeshCancelled
+RepairReport repair(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
+                    const LabelParams& labels, const RepairParams& params, const LatticeShell& shell,
+                    detail::IdSet& inside, const KeepGoing& keep_going = {});
+
+}  // namespace umtet

@@ -1,0 +1,192 @@
+#include "mesh/fast_mesh.h"
+
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "mesh/certificate.h"
+#include "mesh/tet_quality.h"
+#include "tests/support/domains.h"
+
+namespace umtet {
+namespace {
+
+using testing::AnalyticDomain;
+
+UmParams fast() {
+  UmParams params;
+  params.mode = UmMode::Fast;
+  return params;
+}
+
+BackgroundMesh background_of(const AnalyticDomain& domain, double n_tets) {
+  return BackgroundMesh(a15(), domain.box, h_for_tets(domain, domain.box, n_tets));
+}
+
+struct Quality {
+  double least = 1;
+  std::size_t bad = 0;
+};
+Quality quality(const UmResult& result, const std::vector<Vec3>& V) {
+  Quality q;
+  for (const Tet& t : result.submesh.mesh.C) {
+    const double of_tet = mean_ratio(V[t[0]], V[t[1]], V[t[2]], V[t[3]]);
+    q.least = std::min(q.least, of_tet);
+    q.bad += of_tet < .82;
+  }
+  return q;
+}
+
+MeshCertificate certificate(const UmResult& result, const AnalyticDomain& domain, double h) {
+  const TetMesh mesh{result.final, result.submesh.mesh.C};
+  CertificateInput input;
+  input.mesh = &mesh;
+  input.h = h;
+  input.positive_faces = &result.submesh.positive_faces;
+  input.psi = ImplicitFunctionRef(domain);
+  return certify(input);
+}
+
+TEST(FastMesh, WorstTetIsAboveTheTargetAndTheCertificatePasses) {
+  for (const AnalyticDomain& domain :
+       {testing::sphere(), testing::torus(), testing::equation_9(), testing::banchoff_chmutov_4()}) {
+    SCOPED_TRACE(domain.name);
+    const BackgroundMesh background = background_of(domain, 50000);
+    const UmResult result = universal_mesh(background, domain, fast());
+    ASSERT_EQ(result.status, UmStatus::Success) << result.evidence.what;
+    EXPECT_GE(quality(result, result.final).least, .82);
+    EXPECT_GT(quality(result, result.projected).least, 0);
+    const MeshCertificate c = certificate(result, domain, background.h());
+    EXPECT_TRUE(failures(c).empty()) << failures(c).front();
+    EXPECT_EQ(c.boundary.genus, domain.genus);
+    EXPECT_EQ(c.boundary.components, domain.components);
+    EXPECT_EQ(c.boundary.n_cos_below_half, 0u);
+    EXPECT_GE(c.quality.p01, .835);
+    EXPECT_GE(c.quality.dihedral_min_deg, 35);
+    EXPECT_LE(c.quality.dihedral_max_deg, 116);
+    EXPECT_LE(*c.boundary.max_vertex_distance_over_h, 1e-10);
+    if (domain.volume) {
+      EXPECT_NEAR(c.volume / *domain.volume, 1, .005);
+    }
+  }
+}
+
+TEST(FastMesh, OnlyTheShellMoves) {
+  const AnalyticDomain domain = testing::sphere();
+  const BackgroundMesh background = background_of(domain, 50000);
+  const UmResult result = universal_mesh(background, domain, fast());
+  ASSERT_EQ(result.status, UmStatus::Success);
+  std::size_t still = 0;
+  for (std::size_t v = 0; v < result.final.size(); ++v) {
+    EXPECT_EQ(result.submesh.mesh.V[v], background.position(result.submesh.background_vertex[v]));
+    const bool moved = result.final[v] != result.submesh.mesh.V[v];
+    if (moved) {
+      EXPECT_GT(result.final[v].norm(), 1 - 4.5 * background.h());
+    }
+    still += !moved;
+  }
+  EXPECT_GT(still, result.final.size() / 3);
+}
+
+TEST(FastMesh, DoesNotDependOnThreadsOrOnTheSearch) {
+  const AnalyticDomain domain = testing::equation_9();
+  const BackgroundMesh background = background_of(domain, 20000);
+  UmParams params = fast();
+  const auto with = [&](std::size_t n) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, n);
+    return universal_mesh(background, domain, params, {}, domain.boundary_seeds);
+  };
+  const UmResult one = with(1), three = with(3);
+  params.search = SubmeshSearch::Crawl;
+  const UmResult crawled = with(2);
+  EXPECT_EQ(one.n_psi_evaluations, three.n_psi_evaluations);
+  EXPECT_LT(crawled.n_psi_evaluations, one.n_psi_evaluations);
+  for (const UmResult* other : {&three, &crawled}) {
+    EXPECT_EQ(other->submesh.background_tet, one.submesh.background_tet);
+    ASSERT_EQ(other->final.size(), one.final.size());
+    EXPECT_EQ(std::memcmp(other->final.data(), one.final.data(), one.final.size() * sizeof(Vec3)), 0);
+    EXPECT_EQ(std::memcmp(other->projected.data(), one.projected.data(), one.final.size() * sizeof(Vec3)), 0);
+  }
+}
+
+TEST(FastMesh, RepairWorsensNeitherTheLeastQualityNorTheNumberOfBadTets) {
+  std::size_t mended = 0;
+  for (const double n_tets : {9000., 14000., 22000.}) {
+    // The disc is thin enough for tets that no label mends.
+    for (const AnalyticDomain& domain :
+         {testing::equation_9(), testing::banchoff_chmutov_4(), testing::ellipsoid({1, 1, .1})}) {
+      SCOPED_TRACE(domain.name);
+      const BackgroundMesh background = background_of(domain, n_tets);
+      UmParams params = fast();
+      const UmResult repaired = universal_mesh(background, domain, params);
+      params.fast.repair.max_tries = 0;
+      const UmResult plain = universal_mesh(background, domain, params);
+      ASSERT_EQ(plain.status, UmStatus::Success);
+      ASSERT_EQ(repaired.status, UmStatus::Success);
+      const Quality before = quality(plain, plain.final), after = quality(repaired, repaired.final);
+      EXPECT_GE(after.least, before.least);
+      EXPECT_LE(after.bad, before.bad);
+      mended += before.bad - after.bad;
+      const MeshCertificate c = certificate(repaired, domain, background.h());
+      EXPECT_TRUE(c.boundary.closed_manifold);
+      EXPECT_EQ(c.quality.n_inverted, 0u);
+      EXPECT_EQ(c.boundary.genus, domain.genus);
+    }
+  }
+  EXPECT_GT(mended, 0u);
+}
+
+TEST(FastMesh, WhatCannotBeMeshedIsAStatusWithEvidence) {
+  const UmResult empty =
+      universal_mesh(BackgroundMesh(a15(), Box(Vec3(3, 3, 3), Vec3(4, 4, 4)), .2), testing::sphere(), fast());
+  EXPECT_EQ(empty.status, UmStatus::EmptyDomain);
+  EXPECT_FALSE(empty.evidence.what.empty());
+
+  const BackgroundMesh small(a15(), testing::cube_box(.8), .2);
+  const UmResult out = universal_mesh(small, testing::sphere(), fast());
+  EXPECT_EQ(out.status, UmStatus::DomainLeavesBackground);
+  EXPECT_GT(out.evidence.count, 0u);
+  EXPECT_TRUE(small.on_rim(out.evidence.background_vertex));
+  EXPECT_EQ(out.final.size(), out.submesh.mesh.V.size());
+
+  const AnalyticDomain disc = testing::ellipsoid({1, 1, .01});  // a tenth of an edge thick
+  const UmResult thin = universal_mesh(BackgroundMesh(a15(), testing::cube_box(1.3), .2), disc, fast());
+  EXPECT_EQ(thin.status, UmStatus::ProjectionDiverged);
+  EXPECT_FALSE(thin.evidence.what.empty());
+  EXPECT_GE(thin.evidence.background_vertex, 0);
+  EXPECT_GT(thin.evidence.count, 0u);
+  EXPECT_EQ(thin.final.size(), thin.submesh.mesh.V.size());
+}
+
+TEST(FastMesh, TheObserverCanStopItAnywhere) {
+  const AnalyticDomain domain = testing::equation_9();
+  const BackgroundMesh background = background_of(domain, 9000);
+  std::size_t n_calls = 0;
+  const UmResult whole = universal_mesh(background, domain, fast(), [&](const UmProgress& p) {
+    EXPECT_GT(p.n_tets, 0u);
+    ++n_calls;
+    return true;
+  });
+  EXPECT_EQ(whole.status, UmStatus::Success);
+  ASSERT_GT(n_calls, 3u);
+  for (std::size_t stop = 0; stop < n_calls; stop += std::max<std::size_t>(1, n_calls / 7)) {
+    std::size_t calls = 0;
+    const UmResult cut = universal_mesh(background, domain, fast(), [&](const UmProgress&) { return calls++ != stop; });
+    EXPECT_EQ(cut.status, UmStatus::Cancelled);
+    EXPECT_EQ(calls, stop + 1);
+    EXPECT_EQ(cut.final.size(), cut.submesh.mesh.V.size());
+  }
+}
+
+TEST(FastMesh, BrokenParamsAreAllNamed) {
+  UmParams params = fast();
+  params.fast.layers = 0;
+  params.fast.labels.shift = 1;
+  params.fast.repair.reach = 0;
+  EXPECT_EQ(problems(params).size(), 3u);
+}
+
+}  // namespace
+}  // namespace umtet

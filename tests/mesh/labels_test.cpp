@@ -1,0 +1,166 @@
+#include "mesh/labels.h"
+
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+
+#include <cmath>
+
+#include "mesh/certificate.h"
+#include "mesh/detail/assemble_submesh.h"
+#include "mesh/lattice_shell.h"
+#include "tests/support/domains.h"
+
+namespace umtet {
+namespace {
+
+using testing::AnalyticDomain;
+
+struct Labelled {
+  detail::IdSet plain, chosen;
+  LabelReport report;
+};
+
+Labelled choose(const BackgroundMesh& background, const AnalyticDomain& domain, const LabelParams& params = {}) {
+  std::size_t n = 0;
+  const detail::IdSet plain = detail::inside_vertices(background, domain, n);
+  Labelled result{plain, plain, {}};
+  result.report = choose_labels(background, a15_links(), domain, params, result.chosen);
+  return result;
+}
+
+BackgroundMesh background_of(const AnalyticDomain& domain, double n_tets) {
+  return BackgroundMesh(a15(), domain.box, h_for_tets(domain, domain.box, n_tets));
+}
+
+MeshCertificate certificate(const Submesh& submesh) {
+  CertificateInput input;
+  input.mesh = &submesh.mesh;
+  input.positive_faces = &submesh.positive_faces;
+  return certify(input);
+}
+
+TEST(Labels, ChangesKeepTheEulerCharacteristicWhateverThePrices) {
+  std::size_t n_flips = 0;
+  for (const AnalyticDomain& domain : testing::domains()) {
+    SCOPED_TRACE(domain.name);
+    const BackgroundMesh background = background_of(domain, 15000);
+    LabelEnergies dice = a15_label_energies();
+    std::uint32_t state = 1;
+    for (auto& of_mask : dice) {
+      for (float& price : of_mask) price = static_cast<float>((state = state * 1664525u + 1013904223u) >> 16) / 100;
+    }
+    LabelParams params;
+    params.energies = &dice;  // up to 655, and as many for what is no manifold: only the guards hold
+    params.reach_out = .5;
+    params.shift = .15;
+    for (const LabelParams& p : {params, LabelParams{}}) {
+      const Labelled labelled = choose(background, domain, p);
+      n_flips += labelled.report.flips;
+      EXPECT_EQ(labelled.report.not_manifold, 0u);
+      const MeshCertificate c = certificate(emit_submesh(background, labelled.chosen));
+      EXPECT_TRUE(c.boundary.closed_manifold);
+      EXPECT_TRUE(c.boundary.equals_positive_faces.value());
+      EXPECT_EQ(c.boundary.components, domain.components);
+      EXPECT_EQ(c.boundary.euler_characteristic, 2 * domain.components - 2 * domain.genus);
+    }
+  }
+  EXPECT_GT(n_flips, 1000u);
+}
+
+TEST(Labels, LowerThePriceOfTheBoundary) {
+  const AnalyticDomain domain = testing::torus();
+  const BackgroundMesh background = background_of(domain, 15000);
+  const auto price = [&](const detail::IdSet& inside) {
+    double sum = 0;
+    for (std::int64_t v = 0; v < background.n_vertices(); ++v) {
+      if (inside.test(v) || background.on_rim(v)) continue;
+      const int type = background.type(v);
+      unsigned mask = 0, k = 0;
+      for (const Tiling::Corner& c : background.tiling_tables().link[type]) {
+        mask |= static_cast<unsigned>(inside.test(v + background.id_step(type, c))) << k++;
+      }
+      sum += a15_label_energies()[type][mask];
+    }
+    return sum;
+  };
+  const Labelled labelled = choose(background, domain);
+  EXPECT_TRUE(labelled.report.settled);
+  EXPECT_LT(price(labelled.chosen), .8 * price(labelled.plain));
+}
+
+TEST(Labels, StayNearTheBoundary) {
+  const AnalyticDomain domain = testing::sphere();
+  const BackgroundMesh background = background_of(domain, 60000);
+  const Labelled labelled = choose(background, domain);
+  std::size_t outwards = 0;
+  for (std::int64_t v = 0; v < background.n_vertices(); ++v) {
+    if (labelled.plain.test(v) == labelled.chosen.test(v)) continue;
+    const double d = (background.position(v).norm() - 1) / background.h();
+    EXPECT_GE(d, -.9 - 1e-3);
+    EXPECT_LE(d, .2 + 1e-3);
+    outwards += labelled.chosen.test(v);
+  }
+  EXPECT_GT(outwards, 0u);
+}
+
+TEST(Labels, NoneChangesWhereTheBodyOrAGapIsThin) {
+  const AnalyticDomain disc = testing::ellipsoid({1, 1, .08});
+  const BackgroundMesh background(a15(), testing::cube_box(1.3), .09);  // 1.8 edges thick
+  const Labelled thin = choose(background, disc);
+  EXPECT_GT(thin.report.thin, 0u);
+  // At the edge of the disc the normal points into it, where it is a diameter thick.
+  const auto n_inner_changes = [](const BackgroundMesh& mesh, const Labelled& labelled) {
+    std::size_t n = 0;
+    for (std::int64_t v = 0; v < mesh.n_vertices(); ++v) {
+      const Vec3 x = mesh.position(v);
+      n += std::hypot(x.x(), x.y()) < .9 && std::abs(x.z()) < .3 && labelled.plain.test(v) != labelled.chosen.test(v);
+    }
+    return n;
+  };
+  EXPECT_EQ(n_inner_changes(background, thin), 0u);
+  LabelParams unguarded;
+  unguarded.least_thickness = 0;
+  EXPECT_GT(n_inner_changes(background, choose(background, disc, unguarded)), 0u);
+
+  // The same disc as a cavity of a ball: a gap of that thickness.
+  AnalyticDomain gap = disc;
+  gap.psi = [disc](const Vec3& x, Vec3* g, Mat3* H) {
+    const double value = disc.psi(x, g, H);
+    if (x.squaredNorm() > 1.2 * 1.2) {
+      if (g) *g = 2 * x;
+      if (H) *H = 2 * Mat3::Identity();
+      return x.squaredNorm() - 1.25 * 1.25;
+    }
+    if (g) *g = -*g;
+    if (H) *H = -*H;
+    return -value;
+  };
+  const BackgroundMesh around(a15(), testing::cube_box(1.5), .09);
+  EXPECT_EQ(n_inner_changes(around, choose(around, gap)), 0u);
+  EXPECT_GT(n_inner_changes(around, choose(around, gap, unguarded)), 0u);
+}
+
+TEST(Labels, DoNotDependOnThreads) {
+  const AnalyticDomain domain = testing::banchoff_chmutov_4();
+  const BackgroundMesh background = background_of(domain, 40000);
+  const auto with = [&](std::size_t n) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, n);
+    return choose(background, domain);
+  };
+  const Labelled one = with(1), three = with(3);
+  EXPECT_EQ(one.report.flips, three.report.flips);
+  EXPECT_EQ(one.report.psi_evaluations, three.report.psi_evaluations);
+  for (std::size_t w = 0; w < one.chosen.n_words(); ++w) ASSERT_EQ(one.chosen.word(w), three.chosen.word(w));
+}
+
+TEST(Labels, BrokenParamsAreAllNamed) {
+  LabelParams params;
+  EXPECT_TRUE(problems(params).empty());
+  params.shift = .2;
+  params.reach_in = -1;
+  params.outside_weight = -1;
+  EXPECT_EQ(problems(params).size(), 3u);
+}
+
+}  // namespace
+}  // namespace umtet
