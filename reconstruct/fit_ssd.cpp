@@ -27,6 +27,7 @@ std::vector<std::string> problems(const SsdParams& params) {
   if (!(params.tolerance > 0 && params.tolerance < 1)) p.push_back("tolerance must be in (0, 1)");
   if (params.max_iterations < 1) p.push_back("max_iterations must be >= 1");
   if (!(params.band_tolerance > 0 && params.band_tolerance < 1)) p.push_back("band_tolerance must be in (0, 1)");
+  if (params.coarsest_nodes < 1) p.push_back("coarsest_nodes must be >= 1");
   if (params.padding < 1) p.push_back("padding must be >= 1");
   if (params.solver == SsdSolver::Cascade) {
     if (params.weights == SsdWeights::Paper) p.push_back("weights = paper needs solver = full or assembled");
@@ -216,8 +217,6 @@ LevelSet fit_full(const Problem& problem, SsdReport& report) {
                      report);
 }
 
-// Enough nodes for a coarsest level that shows every part of a body: a third of a second.
-constexpr double kCoarsestNodes = 150000;
 // Functions of a band stay clear of those that the wall of the coarsest lattice deforms.
 constexpr int kLeastCascadePadding = 5;
 // Samples are merged in half-spacing cubes on every level.
@@ -250,7 +249,7 @@ LevelSet fit_cascade(const Problem& problem, SsdReport& report) {
   const int padding = std::max(params.padding, kLeastCascadePadding);
   int n_bands = 0;
   double coarsest = report.spacing;
-  while ((problem.box.sizes() / coarsest + Vec3::Constant(2 * padding)).prod() > kCoarsestNodes) {
+  while ((problem.box.sizes() / coarsest + Vec3::Constant(2 * padding)).prod() > params.coarsest_nodes) {
     coarsest *= 2;
     ++n_bands;
   }

@@ -35,6 +35,7 @@ struct SsdParams {
   double tolerance = 1e-4;       ///< PCG on a full lattice stops at this relative residual (psi then moves by < 1e-5 h); in (0, 1)
   double band_tolerance = 0.1;   ///< the same on the bands of the cascade, for the part the coarser levels leave over
   int max_iterations = 200;      ///< >= 1
+  int coarsest_nodes = 150000;   ///< most nodes of the cascade's full lattice: what shows every part of a body; > 0
   double max_memory = 0;         ///< bytes that fitting may take; 0: no limit
   int padding =
       5;  ///< lattice cells around the cloud's box; >= 1, and >= 4 for the mesher: projections fail at the hull

@@ -21,8 +21,9 @@ namespace {
 const SsdFit& torus_fit() {
   static const SsdFit fit = [] {
     SsdParams p;
-    p.spacing = 0.4 / 14;
-    return fit_ssd(torus_cloud(40000), p);
+    p.spacing = 0.08;
+    p.coarsest_nodes = 8000;
+    return fit_ssd(torus_cloud(8000), p);
   }();
   return fit;
 }
@@ -250,11 +251,14 @@ TEST(SsdBand, ResidualIsTheDerivativeOfTheFunctional) {
 }
 
 TEST(BandCascade, MeetsItsAccuracyOnTheTorus) {
-  const SsdFit& fit = torus_fit();
+  SsdParams p;
+  p.spacing = 0.4 / 14;
+  p.coarsest_nodes = 20000;
+  const SsdFit fit = fit_ssd(torus_cloud(20000), p);
   ASSERT_GE(fit.psi.n_levels(), 2);
   const double h = fit.report.spacing, r = kTorusr;
   double mean = 0, normal2 = 0, curvature2 = 0;
-  const OrientedPointCloud truth = torus_cloud(3000, 77);
+  const OrientedPointCloud truth = torus_cloud(1500, 77);
   for (std::size_t i = 0; i < truth.points.size(); ++i) {
     Vec3 g;
     Mat3 H;
@@ -321,12 +325,13 @@ TEST(BandCascade, CutAtASpacingIsTheSumOfTheCoarserLevels) {
 }
 
 TEST(BandCascade, ThreadsDoNotChangeABit) {
-  OrientedPointCloud cloud = torus_cloud(20000);
+  OrientedPointCloud cloud = torus_cloud(8000);
   std::vector<float> first;
   for (const int threads : {1, 3}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     SsdParams p;
-    p.spacing = 0.04;
+    p.spacing = 0.07;
+    p.coarsest_nodes = 10000;
     const SsdFit fit = fit_ssd(cloud, p);
     ASSERT_GE(fit.psi.n_levels(), 2);
     const std::vector<float>& c = fit.psi.band(fit.psi.n_levels() - 1).coefficients;
@@ -342,12 +347,15 @@ TEST(BandCascade, DenseHalfIsRefinedAndSparseHalfIsNotDented) {
   OrientedPointCloud cloud;
   std::mt19937_64 random(9);
   std::normal_distribution<double> normal;
-  while (cloud.points.size() < 20000) {
+  while (cloud.points.size() < 8000) {
     const Vec3 n = Vec3(normal(random), normal(random), normal(random)).normalized();
     if (n[0] < 0 && random() % 40 != 0) continue;
     cloud.points.push_back(n), cloud.normals.push_back(n);
   }
-  const SsdFit fit = fit_ssd(cloud);
+  SsdParams p;
+  p.coarsest_nodes = 15000;
+  const SsdFit fit = fit_ssd(cloud, p);
+  ASSERT_GE(fit.psi.n_levels(), 2);
   double dense = 0, sparse = 0;
   for (int i = 0; i < 4000; ++i) {
     const Vec3 n = Vec3(normal(random), normal(random), normal(random)).normalized();

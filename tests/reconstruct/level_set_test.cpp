@@ -82,7 +82,8 @@ TEST(LevelSetIo, ComesBackBitEqual) {
 
 TEST(LevelSetIo, BandsComeBackBitEqual) {
   SsdParams p;
-  p.spacing = 0.03;
+  p.spacing = 0.08;
+  p.coarsest_nodes = 8000;
   const LevelSet psi = fit_ssd(torus_cloud(8000), p).psi;
   ASSERT_GE(psi.n_levels(), 2);
   const std::filesystem::path file = scratch("bands.vti");

@@ -31,13 +31,14 @@ Cube cube_of(const SignCells& s, const Vec3& x) {
 LevelSet torus(double spacing) {
   SsdParams p;
   p.spacing = spacing;
-  return fit_ssd(torus_cloud(20000), p).psi;
+  p.coarsest_nodes = 20000;
+  return fit_ssd(torus_cloud(6000), p).psi;
 }
 
 }  // namespace
 
 TEST(SignCells, HoldEveryZeroAndFewOthers) {
-  const LevelSet psi = torus(0.04);
+  const LevelSet psi = torus(0.05);
   ASSERT_GE(psi.n_levels(), 2);
   for (const double size : {psi.lattice(0).h, psi.spacing(), psi.spacing() / 2}) {
     const SignCells cells = sign_cells(psi, size);
