@@ -52,6 +52,7 @@ TEST(Figure16, ZeroLevelSetFitsTheDuck) {
   SsdParams paper;  // m = 3,550 nodes there, gamma = 1.6, epsilon = 1e-4, eq. (10) with weights 1
   paper.prior = LmePrior::paper();
   paper.weights = SsdWeights::Paper;
+  paper.solver = SsdSolver::Full;
   paper.spacing = 0.055 * diagonal;
   paper.padding = 2;
   const Fit like_paper = fit(cloud, paper), ours = fit(cloud, SsdParams{});
