@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "mesh/detail/disjoint_sets.h"
+
 namespace umtet {
 namespace {
 
@@ -22,28 +24,6 @@ constexpr Directions kInPlane{1, 4}, kUpward{4, 8};
 constexpr std::array<std::pair<int, int>, 12> kTriangles = {
     {{1, 3}, {1, 5}, {1, 7}, {2, 3}, {2, 6}, {2, 7}, {4, 5}, {4, 6}, {4, 7}, {3, 7}, {5, 7}, {6, 7}}};
 constexpr std::array<std::pair<int, int>, 6> kTets = {{{1, 3}, {1, 5}, {2, 3}, {2, 6}, {4, 5}, {4, 6}}};  // then 7
-
-class UnionFind {
- public:
-  int add() {
-    parent_.push_back(static_cast<int>(parent_.size()));
-    return parent_.back();
-  }
-  int root(int i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  /// The smaller root wins: a component is named by its first member in scan order.
-  void unite(int i, int j) {
-    i = root(i);
-    j = root(j);
-    if (i != j) parent_[std::max(i, j)] = std::min(i, j);
-  }
-  std::size_t size() const { return parent_.size(); }
-
- private:
-  std::vector<int> parent_;
-};
 
 /// What is known of a cut edge; sums of a component gather in its members until the end.
 struct CutEdge {
@@ -98,7 +78,7 @@ class Sweep {
   std::array<double, 3> h_{};
   std::array<Layer, 2> layers_;
   std::vector<CutEdge> edges_;
-  UnionFind surface_, inside_;
+  detail::DisjointSets surface_, inside_;
   std::size_t n_not_finite_ = 0;
   bool touches_box_ = false;
 };
@@ -245,7 +225,7 @@ void Sweep::gather(ZeroSetTopology& result) {
   std::vector<ZeroSetComponent>& components = result.components;
   std::vector<int> piece(edges_.size());
   for (std::size_t e = 0; e < edges_.size(); ++e) {
-    const int root = surface_.root(static_cast<int>(e));  // <= e
+    const int root = surface_.find(static_cast<int>(e));  // <= e
     if (root == static_cast<int>(e)) {
       piece[e] = static_cast<int>(components.size());
       components.emplace_back().seed = edges_[e].point;
@@ -306,7 +286,7 @@ ZeroSetTopology Sweep::run() {
   result.n_not_finite = n_not_finite_;
   gather(result);
   for (std::size_t i = 0; i < inside_.size(); ++i) {
-    result.n_inside_components += inside_.root(static_cast<int>(i)) == static_cast<int>(i);
+    result.n_inside_components += inside_.find(static_cast<int>(i)) == static_cast<int>(i);
   }
   return result;
 }
