@@ -191,7 +191,7 @@ std::vector<std::string> problems(const ClosestPointParams& params) {
 
 ClosestPoint closest_point(ImplicitFunctionRef psi, const Vec3& x, double length, const ClosestPointParams& params) {
   if (params.method != ClosestPointMethod::Paper) {
-    const ClosestPoint quick = damped_or_newton(psi, x, length, params);
+    ClosestPoint quick = damped_or_newton(psi, x, length, params);
     if (quick.converged) return quick;
     ClosestPoint slow = descend(psi, x, length, params);
     slow.iterations += quick.iterations;

@@ -60,7 +60,7 @@ void read_vertices(ByteCursor& in, NumberedMesh& mesh) {
 }
 
 void read_tets(ByteCursor& in, int nodes, NumberedMesh& mesh) {
-  const std::size_t n = in.count("number of tets", static_cast<std::size_t>(2 * nodes + 2));
+  const std::size_t n = in.count("number of tets", 2 * static_cast<std::size_t>(nodes) + 2);
   mesh.tets.reserve(mesh.tets.size() + n);
   for (std::size_t t = 0; t < n; ++t) {
     std::array<std::int64_t, 4> tet{};

@@ -118,7 +118,7 @@ void MshReader::read_binary_block22(std::size_t& left) {
   if (count < 1 || static_cast<std::size_t>(count) > left)
     in_.refuse("elements in this block: " + std::to_string(count));
   if (n_tags < 0 || n_tags > 1024) in_.refuse("number of tags: " + std::to_string(n_tags));
-  const auto head = static_cast<std::size_t>(4 * (1 + n_tags)), body = static_cast<std::size_t>(4 * n_nodes);
+  const std::size_t head = 4 * (1 + static_cast<std::size_t>(n_tags)), body = 4 * static_cast<std::size_t>(n_nodes);
   in_.checked_count(static_cast<std::uint64_t>(count), "elements in this block", head + body);
   left -= static_cast<std::size_t>(count);
   if (!is_tet(type)) {
