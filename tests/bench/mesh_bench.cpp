@@ -14,7 +14,7 @@
 #include "mesh/dvr.h"
 #include "mesh/tet_quality.h"
 #include "mesh/universal_mesh.h"
-#include "tests/support/domains.h"
+#include "tests/support/bench_domains.h"
 
 using namespace umtet;
 
@@ -163,31 +163,17 @@ BENCHMARK(least_quality)
     ->UseRealTime()
     ->Iterations(1);
 
-/// The Chebyshev polynomials of degree 6 and 8 as Banchoff-Chmutov surfaces, genus 28 and 81.
-testing::AnalyticDomain banchoff_chmutov_6() {
-  return {"banchoff_chmutov_6", testing::cube_box(1.05), 1, 28, std::nullopt, {}, [](const Vec3& x, Vec3* g, Mat3* H) {
-            const Eigen::Array3d a = x.array().square();
-            if (g) *g = ((192 * a - 192) * a + 36) * x.array();
-            if (H) *H = ((960 * a - 576) * a + 36).matrix().asDiagonal();
-            return (((32 * a - 48) * a + 18) * a - 1).sum();
-          }};
-}
-testing::AnalyticDomain banchoff_chmutov_8() {
-  return {"banchoff_chmutov_8", testing::cube_box(1.04), 1, 81, std::nullopt, {}, [](const Vec3& x, Vec3* g, Mat3* H) {
-            const Eigen::Array3d a = x.array().square();
-            if (g) *g = (((1024 * a - 1536) * a + 640) * a - 64) * x.array();
-            if (H) *H = (((7168 * a - 7680) * a + 1920) * a - 64).matrix().asDiagonal();
-            return ((((128 * a - 256) * a + 160) * a - 32) * a + 1).sum();
-          }};
-}
-
 /// The mesher beyond the paper, all in. CPU time; counters: least Q, 1 % quantile, microseconds per tet.
 void fast_mesh(benchmark::State& state) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(state.range(2)));
-  const std::array<testing::AnalyticDomain, 7> domains = {
-      testing::sphere(),    testing::torus(),     testing::equation_9(),         testing::banchoff_chmutov_4(),
-      banchoff_chmutov_6(), banchoff_chmutov_8(), testing::ellipsoid({1, 1, .1})};
+  const std::array<testing::AnalyticDomain, 7> domains = {testing::sphere(),
+                                                          testing::torus(),
+                                                          testing::equation_9(),
+                                                          testing::banchoff_chmutov_4(),
+                                                          testing::banchoff_chmutov_6(),
+                                                          testing::banchoff_chmutov_8(),
+                                                          testing::ellipsoid({1, 1, .1})};
   const testing::AnalyticDomain& domain = domains[static_cast<std::size_t>(state.range(0))];
   const double n_tets = 1e3 * static_cast<double>(state.range(1));
   const BackgroundMesh background(a15(), domain.box, h_for_tets(domain, domain.box, n_tets));
