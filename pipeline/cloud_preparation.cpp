@@ -59,6 +59,7 @@ class Preparation {
   const Parameters& parameters_;
   const CloudFileReport report_;
   OrientedPointCloud cloud_;
+  Neighbourhoods near_;  ///< of the cleaned cloud
   PreparedCloud result_;
   Json normals_ = Json::object();
 };
@@ -66,7 +67,7 @@ class Preparation {
 void Preparation::clean_points() {
   CleaningParams params;
   params.outliers = !parameters_.flag("cloud.keep_all");
-  const CleaningReport r = clean(cloud_, params);
+  const CleaningReport r = clean(cloud_, params, &near_);
   result_.numbers["dropped"] = {{"not_finite", report_.n_points_dropped + r.n_not_finite},
                                 {"duplicates", r.n_duplicates},
                                 {"outliers", r.n_outliers},
@@ -115,10 +116,10 @@ void Preparation::find_normals() {
     normals_["source"] = "given";
     fill_missing();
     if (how == "given") {
-      normals_["consistency"] = consistency(cloud_);
+      normals_["consistency"] = consistency(cloud_, {}, &near_);
       return;
     }
-    const OrientationReport r = repair_normals(cloud_);
+    const OrientationReport r = repair_normals(cloud_, {}, &near_);
     take(r);
     if (r.n_turned > 0) {
       notice("turned {} of the given normals ({:.1f} %): they were {:.1f} % consistent, now {:.1f} % "
@@ -130,7 +131,7 @@ void Preparation::find_normals() {
   normals_["source"] = "estimated";
   EstimatedNormals estimated = estimate_normals(cloud_.points);
   cloud_.normals = std::move(estimated.normals);
-  const OrientationReport r = orient_normals(cloud_);
+  const OrientationReport r = orient_normals(cloud_, {}, &near_);
   take(r);
   notice("estimated the normals and oriented them: {:.1f} % consistent, {} piece{}", 100 * r.consistency_after,
          r.n_components, r.n_components == 1 ? "" : "s");

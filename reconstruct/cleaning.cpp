@@ -1,6 +1,7 @@
 #include "reconstruct/cleaning.h"
 
 #include <fmt/format.h>
+#include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/parallel_sort.h>
 
 #include <Eigen/Eigenvalues>
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 
 #include "reconstruct/neighbour_tree.h"
@@ -16,7 +18,7 @@
 namespace umtet {
 namespace {
 
-constexpr std::size_t kNeighbours = 12;
+constexpr std::size_t kNeighbours = Neighbourhoods::kDefault;
 // The plane is that of the points within 1.2 times the 12th neighbour: above an outlier four spacings off its surface
 // there are some 30.
 constexpr double kPlaneReach2 = 1.44;
@@ -24,6 +26,10 @@ constexpr std::size_t kMostInPlane = 128;
 // Links of the graph of pieces: the 4th neighbour is one lattice step away, and gaps of scans are a few of them.
 constexpr std::size_t kSpacingNeighbour = 4;
 constexpr double kLink = 3;
+// A crowd is first looked for among every 6th point, 54 of them where it is suspicious and 18 on a surface. What has
+// fewer than 32 there is none: that would be three deviations of points picked at random, and these are picked evenly.
+constexpr std::size_t kThinning = 6;
+constexpr double kThinnedShare = 0.6;
 
 bool is_usable(const Vec3& x) { return x.allFinite() && x.cwiseAbs().maxCoeff() <= 1e100; }
 
@@ -87,15 +93,48 @@ bool is_off_plane(const std::vector<Vec3>& points, const Vec3& x, std::span<cons
   return height * height > std::max(kDeviations * kDeviations * variance, kSpacings * kSpacings * spacing2);
 }
 
-std::vector<std::uint8_t> outliers(const std::vector<Vec3>& points, const CleaningParams& params) {
+/// A cloud, its tree and who is near whom: made again when points have gone.
+struct Surroundings {
+  std::vector<Vec3> points;
+  std::optional<NeighbourTree> tree;  // none for fewer than two points
+  Neighbourhoods near;
+
+  explicit Surroundings(std::vector<Vec3> some) : points(std::move(some)) {
+    if (points.size() < 2) return;
+    tree.emplace(points);
+    near = Neighbourhoods(*tree, kNeighbours);
+  }
+  bool has_duplicates() const {
+    for (std::size_t i = 0; i < near.size(); ++i)
+      if (near.distances2(i).front() == 0) return true;
+    return false;
+  }
+};
+
+/// Every kThinning-th point, along the tree's curve: evenly in space.
+NeighbourTree thinned(const Surroundings& cloud) {
+  std::vector<Vec3> some;
+  some.reserve(cloud.points.size() / kThinning + 1);
+  const std::vector<std::uint32_t>& order = cloud.tree->order();
+  for (std::size_t row = 0; row < order.size(); row += kThinning) some.push_back(cloud.points[order[row]]);
+  return NeighbourTree(some);
+}
+
+std::vector<std::uint8_t> outliers(const Surroundings& cloud, const CleaningParams& params) {
+  const std::vector<Vec3>& points = cloud.points;
   std::vector<std::uint8_t> drop(points.size(), 0);
   if (points.size() <= 9 * kNeighbours) return drop;  // too few to speak of a density
-  const NeighbourTree tree(points);
+  const NeighbourTree& tree = *cloud.tree;
+  const NeighbourTree few = thinned(cloud);
   const auto suspicious = static_cast<std::size_t>(params.suspicious_crowd * 9 * kNeighbours);
   const auto certain = static_cast<std::size_t>(params.certain_crowd * 9 * kNeighbours);
-  tree.for_each_neighbourhood(kNeighbours + 1, [&](std::uint32_t i, std::span<const Neighbour> near) {
+  const auto worth_counting = static_cast<std::size_t>(kThinnedShare * static_cast<double>(suspicious) / kThinning);
+  const std::vector<std::uint32_t>& order = tree.order();
+  tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t row) {
+    const std::uint32_t i = order[row];
     const Vec3& x = points[i];
-    const double reach2 = near.back().distance2;
+    const double reach2 = cloud.near.distances2(i).back();
+    if (few.count_within(x, 9 * reach2, worth_counting) < worth_counting) return;
     if (tree.count_within(x, 9 * reach2, suspicious) < suspicious) return;
     if (tree.count_within(x, 9 * reach2, certain) >= certain) {
       drop[i] = 1;
@@ -129,26 +168,19 @@ class Pieces {
   std::vector<std::uint32_t> parent_;
 };
 
-std::vector<std::uint8_t> crumbs(const std::vector<Vec3>& points, const CleaningParams& params, std::size_t& n_pieces) {
-  const std::size_t n = points.size();
+std::vector<std::uint8_t> crumbs(const Surroundings& cloud, const CleaningParams& params, std::size_t& n_pieces) {
+  const std::size_t n = cloud.points.size();
   std::vector<std::uint8_t> drop(n, 0);
   n_pieces = 0;
   if (n <= kNeighbours) return drop;
-  const NeighbourTree tree(points);
-  std::vector<std::uint32_t> near_points(n * kNeighbours);
-  std::vector<double> near2(n * kNeighbours), spacing2(n);
-  tree.for_each_neighbourhood(kNeighbours + 1, [&](std::uint32_t i, std::span<const Neighbour> near) {
-    spacing2[i] = near[kSpacingNeighbour].distance2;
-    for (std::size_t m = 0; m < kNeighbours; ++m) {
-      near_points[i * kNeighbours + m] = near[m + 1].point;
-      near2[i * kNeighbours + m] = near[m + 1].distance2;
-    }
-  });
+  const Neighbourhoods& near = cloud.near;
+  const auto spacing2 = [&](std::uint32_t i) { return near.distances2(i)[kSpacingNeighbour - 1]; };
   Pieces pieces(n);
   for (std::uint32_t i = 0; i < n; ++i)
-    for (std::size_t m = i * kNeighbours; m < (i + 1) * kNeighbours; ++m) {
-      const std::uint32_t j = near_points[m];
-      if (near2[m] <= kLink * kLink * std::max(spacing2[i], spacing2[j])) pieces.join(i, j);
+    for (std::size_t m = 0; m < kNeighbours; ++m) {
+      const std::uint32_t j = near.points(i)[m];
+      const double reach2 = near.distances2(i)[m] / (kLink * kLink);
+      if (reach2 <= spacing2(i) || reach2 <= spacing2(j)) pieces.join(i, j);
     }
 
   std::vector<std::vector<std::uint32_t>> members(n);
@@ -160,14 +192,14 @@ std::vector<std::uint8_t> crumbs(const std::vector<Vec3>& points, const Cleaning
   for (std::uint32_t root = 0; root < n; ++root) {
     if (members[root].empty()) continue;
     std::vector<double> spacings;
-    for (const std::uint32_t i : members[root]) spacings.push_back(spacing2[i]);
+    for (const std::uint32_t i : members[root]) spacings.push_back(spacing2(i));
     std::nth_element(spacings.begin(), spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2),
                      spacings.end());
     const double reach2 = params.crumb_distance * params.crumb_distance * spacings[spacings.size() / 2];
     // Alone, or with other crumbs only: does a ball around any member hold a point of something larger?
     bool is_far = true;
     for (std::size_t m = 0; m < members[root].size() && is_far; ++m)
-      tree.within(points[members[root][m]], reach2, [&](std::uint32_t j, double) {
+      cloud.tree->within(cloud.points[members[root][m]], reach2, [&](std::uint32_t j, double) {
         if (!is_small(pieces.find(j))) is_far = false;
       });
     if (!is_far) continue;
@@ -191,7 +223,7 @@ std::vector<std::string> problems(const CleaningParams& params) {
   return found;
 }
 
-CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params) {
+CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params, Neighbourhoods* neighbours) {
   if (const auto found = problems(params); !found.empty()) throw std::invalid_argument(found.front());
   const bool has_normals = !cloud.normals.empty();
   if (has_normals && cloud.normals.size() != cloud.points.size())
@@ -202,15 +234,22 @@ CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params) {
   for (std::uint32_t i = 0; i < cloud.points.size(); ++i)
     if (is_usable(cloud.points[i])) kept.push_back(i);
   report.n_not_finite = cloud.points.size() - kept.size();
-  report.n_duplicates = keep_only(later_duplicates(positions(cloud, kept)), kept);
+
+  Surroundings left(positions(cloud, kept));
+  const auto drop = [&](const std::vector<std::uint8_t>& these) {
+    const std::size_t n_dropped = keep_only(these, kept);
+    if (n_dropped > 0) left = Surroundings(positions(cloud, kept));
+    return n_dropped;
+  };
+  if (left.has_duplicates()) report.n_duplicates = drop(later_duplicates(left.points));
   if (params.outliers) {
     // A second look where there was something: junk beside junk looks less alone.
     for (int pass = 0; pass < 2; ++pass) {
-      const std::size_t n_dropped = keep_only(outliers(positions(cloud, kept), params), kept);
+      const std::size_t n_dropped = drop(outliers(left, params));
       if (n_dropped == 0) break;
       report.n_outliers += n_dropped;
     }
-    report.n_crumbs = keep_only(crumbs(positions(cloud, kept), params, report.n_crumb_pieces), kept);
+    report.n_crumbs = drop(crumbs(left, params, report.n_crumb_pieces));
   }
   for (std::size_t row = 0; row < kept.size(); ++row) {
     cloud.points[row] = cloud.points[kept[row]];
@@ -218,6 +257,7 @@ CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params) {
   }
   cloud.points.resize(kept.size());
   if (has_normals) cloud.normals.resize(kept.size());
+  if (neighbours) *neighbours = std::move(left.near);
   return report;
 }
 

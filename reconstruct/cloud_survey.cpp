@@ -5,6 +5,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -33,6 +34,16 @@ std::vector<std::uint32_t> evenly_picked(const NeighbourTree& tree, std::size_t 
   const std::size_t stride = std::max<std::size_t>(1, tree.size() / n_picked);
   for (std::size_t row = 0; row < tree.size(); row += stride) picked.push_back(tree.order()[row]);
   return picked;
+}
+
+/// Root of the area that a sample at x stands for, as sample_areas has it.
+double spacing_around(const NeighbourTree& tree, const Vec3& x) {
+  std::array<Neighbour, kAreaNeighbours + 1> room;
+  const std::span<const Neighbour> near = tree.k_nearest(x, room);
+  double sum = 0;
+  for (const Neighbour& other : near) sum += other.distance2;
+  const auto k = static_cast<double>(near.size() - 1);
+  return k > 0 ? std::sqrt(2 * std::numbers::pi * sum / (k * (k + 2))) : 0;
 }
 
 /// Residual variance around a point. `near` is a buffer.
@@ -77,12 +88,16 @@ std::vector<double> thicknesses(const OrientedPointCloud& cloud, std::size_t sam
   constexpr double kOpposed = -0.3;  // 107 degrees: walls that narrow by less than 73 degrees
   const NeighbourTree tree(cloud.points);
   const std::vector<std::uint32_t> picked = evenly_picked(tree, sampled_points);
-  const std::vector<double> areas = sample_areas(cloud.points);
   std::vector<double> met(picked.size());
   tbb::parallel_for(std::size_t{0}, picked.size(), [&](std::size_t p) {
     const std::uint32_t i = picked[p];
     const Vec3& n = cloud.normals[i];
-    met[p] = tree.first_along(cloud.points[i], -n, 0, kWidthOverSpacing * std::sqrt(areas[i]),
+    const double spacing = spacing_around(tree, cloud.points[i]);
+    if (!(spacing > 0)) {  // so many points at one place have no thickness
+      met[p] = std::numeric_limits<double>::infinity();
+      return;
+    }
+    met[p] = tree.first_along(cloud.points[i], -n, 0, kWidthOverSpacing * spacing,
                               [&](std::uint32_t j) { return cloud.normals[j].dot(n) < kOpposed; })
                  .t;
   });

@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
+#include <span>
 #include <stdexcept>
 
-#include "reconstruct/cloud_neighbours.h"
 #include "reconstruct/enclosed_volume.h"
 #include "reconstruct/sign_graph.h"
 
@@ -168,17 +169,72 @@ void keep_undisputed(const OrientedPointCloud& cloud, const std::vector<double>&
     if (sign[i] < 0 && stays(region[i])) sign[i] = 1;
 }
 
+/// a_i as sample_areas has them where no two points share a place. Areas of duplicates may be 0: they have no say.
+std::vector<double> areas_behind(const Neighbourhoods& near) {
+  std::vector<double> areas(near.size());
+  const auto k = static_cast<double>(near.k());
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    const std::span<const double> distances2 = near.distances2(i);
+    areas[i] = 2 * std::numbers::pi / (k * (k + 2)) * std::accumulate(distances2.begin(), distances2.end(), 0.0);
+  }
+  return areas;
+}
+
+/// Those given, or searched now.
+class FoundNeighbours {
+ public:
+  FoundNeighbours(const OrientedPointCloud& cloud, const OrientationParams& params, const Neighbourhoods* given)
+      : own_(given ? Neighbourhoods() : Neighbourhoods(cloud.points, static_cast<std::size_t>(params.neighbours))),
+        used_(given ? *given : own_) {
+    const std::size_t n = cloud.points.size(), k = std::min(static_cast<std::size_t>(params.neighbours), n - 1);
+    if (used_.size() != n || used_.k() != k)
+      throw std::invalid_argument(
+          fmt::format("neighbourhoods of {} points, {} each: must be {}, {} each", used_.size(), used_.k(), n, k));
+  }
+  const Neighbourhoods& operator*() const { return used_; }
+
+ private:
+  Neighbourhoods own_;
+  const Neighbourhoods& used_;
+};
+
+/// Bodies without contested points that all face the right way: there is nothing to repair.
+bool is_right_as_given(const OrientedPointCloud& cloud, const Neighbourhoods& near, const std::vector<double>& areas,
+                       OrientationReport& report) {
+  Signs signs;
+  signs.component = agreeing_components(cloud, near, signs.n_components);
+  signs.sign.assign(cloud.points.size(), 1);
+  Sides sides(cloud, signs, areas);
+  for (const EnclosedVolume& body : sides.bodies)
+    if (!body.tells_sides() || body.n_points < kCountedPoints) return false;
+  sides.find_cavities(signs.component);
+  for (std::uint32_t c = 0; c < signs.n_components; ++c)
+    if (sides.turn[c] < 0 || sides.half_inside[c]) return false;
+  report.n_components = signs.n_components;
+  report.n_cavities = static_cast<std::size_t>(
+      std::count_if(sides.depth.begin(), sides.depth.end(), [](int depth) { return depth % 2 == 1; }));
+  report.left_alone = true;
+  return true;
+}
+
 enum class Given { Directions, Signs };
 
-OrientationReport orient(OrientedPointCloud& cloud, const OrientationParams& params, Given given) {
+OrientationReport orient(OrientedPointCloud& cloud, const OrientationParams& params, const Neighbourhoods* known,
+                         Given given) {
   require(cloud, params);
   OrientationReport report;
   report.n_undefined = static_cast<std::size_t>(
       std::count_if(cloud.normals.begin(), cloud.normals.end(), [](const Vec3& n) { return n.isZero(0); }));
   const std::size_t n = cloud.points.size();
   if (n < 2) return report;
-  const std::vector<SignEdge> edges = sign_graph(cloud, params.neighbours);
-  const std::vector<double> areas = sample_areas(cloud.points);
+  const FoundNeighbours near(cloud, params, known);
+  const std::vector<double> areas = areas_behind(*near);
+  if (given == Given::Signs) {
+    const SignAgreement agreement = sign_agreement(cloud, *near);
+    report.consistency = report.consistency_after = agreement.share();
+    if (agreement.n_contested == 0 && is_right_as_given(cloud, *near, areas, report)) return report;
+  }
+  const std::vector<SignEdge> edges = sign_graph(cloud, *near);
   report.consistency = report.consistency_after = agreement(edges, nullptr);
 
   Signs signs = solve_signs(n, edges, [&](const Signs& found) { return settle(cloud, found, areas); });
@@ -221,17 +277,19 @@ std::vector<std::string> problems(const OrientationParams& params) {
   return found;
 }
 
-double consistency(const OrientedPointCloud& cloud, const OrientationParams& params) {
+double consistency(const OrientedPointCloud& cloud, const OrientationParams& params, const Neighbourhoods* near) {
   require(cloud, params);
-  return cloud.points.size() < 2 ? 1 : agreement(sign_graph(cloud, params.neighbours), nullptr);
+  return cloud.points.size() < 2 ? 1 : sign_agreement(cloud, *FoundNeighbours(cloud, params, near)).share();
 }
 
-OrientationReport orient_normals(OrientedPointCloud& cloud, const OrientationParams& params) {
-  return orient(cloud, params, Given::Directions);
+OrientationReport orient_normals(OrientedPointCloud& cloud, const OrientationParams& params,
+                                 const Neighbourhoods* near) {
+  return orient(cloud, params, near, Given::Directions);
 }
 
-OrientationReport repair_normals(OrientedPointCloud& cloud, const OrientationParams& params) {
-  return orient(cloud, params, Given::Signs);
+OrientationReport repair_normals(OrientedPointCloud& cloud, const OrientationParams& params,
+                                 const Neighbourhoods* near) {
+  return orient(cloud, params, near, Given::Signs);
 }
 
 std::size_t orient_from(OrientedPointCloud& cloud, const std::vector<Vec3>& viewpoints) {

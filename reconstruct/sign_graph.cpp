@@ -1,5 +1,6 @@
 #include "reconstruct/sign_graph.h"
 
+#include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/parallel_sort.h>
 
 #include <algorithm>
@@ -7,8 +8,6 @@
 #include <numeric>
 #include <queue>
 #include <unordered_map>
-
-#include "reconstruct/neighbour_tree.h"
 
 namespace umtet {
 namespace {
@@ -207,36 +206,93 @@ void turn_groups(const Adjacency& adjacency, const std::vector<std::uint32_t>& g
   }
 }
 
+/// See sign_graph.h; the same bits for (b, a).
+float pair_weight(const OrientedPointCloud& cloud, std::uint32_t a, std::uint32_t b) {
+  if (a > b) std::swap(a, b);
+  const Vec3 &na = cloud.normals[a], &nb = cloud.normals[b];
+  const Vec3 d = cloud.points[b] - cloud.points[a];
+  const double d2 = d.squaredNorm(), cosine = na.dot(nb);
+  if (!(d2 > 0)) return static_cast<float>(cosine);
+  const double da = na.dot(d), db = nb.dot(d), c2 = std::min(1.0, std::max(da * da, db * db) / d2);
+  return static_cast<float>((cosine - 2 * da * db / d2) * (1 - c2) * (1 - c2));
+}
+
+/// A pair that both have is the one's with the smaller number.
+bool owns(const Neighbourhoods& near, std::uint32_t i, std::uint32_t j) { return i < j || !near.has(j, i); }
+
 }  // namespace
 
-std::vector<SignEdge> sign_graph(const OrientedPointCloud& cloud, int k) {
-  const NeighbourTree tree(cloud.points);
-  const std::size_t n = cloud.points.size(), n_others = std::min<std::size_t>(static_cast<std::size_t>(k), n - 1);
-  std::vector<SignEdge> edges(n * n_others);
-  tree.for_each_neighbourhood(n_others + 1, [&](std::uint32_t i, std::span<const Neighbour> near) {
-    SignEdge* out = &edges[i * n_others];
-    std::size_t m = 0;
-    const Vec3& ni = cloud.normals[i];
-    for (const Neighbour& other : near) {
-      const std::uint32_t j = other.point;
-      if (j == i || m == n_others) continue;
-      const Vec3& nj = cloud.normals[j];
-      double weight = ni.dot(nj);
-      if (other.distance2 > 0) {
-        const Vec3 e = (cloud.points[j] - cloud.points[i]) / std::sqrt(other.distance2);
-        const double ci = ni.dot(e), cj = nj.dot(e), c2 = std::min(1.0, std::max(ci * ci, cj * cj));
-        weight = (weight - 2 * ci * cj) * (1 - c2) * (1 - c2);
-      }
-      out[m++] = {std::min(i, j), std::max(i, j), static_cast<float>(weight)};
+std::vector<SignEdge> sign_graph(const OrientedPointCloud& cloud, const Neighbourhoods& near) {
+  const std::size_t n = near.size();
+  std::vector<std::size_t> first(n + 1, 0);
+  for (std::uint32_t i = 0; i < n; ++i)
+    for (const std::uint32_t j : near.points(i))
+      if (owns(near, i, j)) ++first[std::min(i, j) + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<SignEdge> edges(first[n]);
+  std::vector<std::size_t> next(first.begin(), first.end() - 1);
+  for (std::uint32_t i = 0; i < n; ++i)
+    for (std::size_t m = 0; m < near.k(); ++m) {
+      const std::uint32_t j = near.points(i)[m];
+      if (owns(near, i, j)) edges[next[std::min(i, j)]++] = {std::min(i, j), std::max(i, j), 0};
     }
-    for (; m < n_others; ++m) out[m] = {i, i, 0};
+  tbb::parallel_for(std::size_t{0}, n, [&](std::size_t a) {
+    const auto begin = edges.begin() + static_cast<std::ptrdiff_t>(first[a]),
+               end = edges.begin() + static_cast<std::ptrdiff_t>(first[a + 1]);
+    std::sort(begin, end, [](const SignEdge& e, const SignEdge& f) { return e.b < f.b; });
+    for (auto e = begin; e != end; ++e) e->weight = pair_weight(cloud, e->a, e->b);
   });
-  const auto before = [](const SignEdge& e, const SignEdge& f) { return e.a < f.a || (e.a == f.a && e.b < f.b); };
-  tbb::parallel_sort(edges.begin(), edges.end(), before);
-  const auto same = [](const SignEdge& e, const SignEdge& f) { return e.a == f.a && e.b == f.b; };
-  edges.erase(std::unique(edges.begin(), edges.end(), same), edges.end());
-  std::erase_if(edges, [](const SignEdge& e) { return e.a == e.b; });
   return edges;
+}
+
+SignAgreement sign_agreement(const OrientedPointCloud& cloud, const Neighbourhoods& near) {
+  constexpr std::size_t kChunk = 4096;
+  constexpr double kContested = 0.25;
+  const std::size_t n = near.size();
+  std::vector<SignAgreement> sums((n + kChunk - 1) / kChunk);
+  tbb::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t c) {
+    SignAgreement& sum = sums[c];
+    for (std::size_t i = c * kChunk; i < std::min(n, (c + 1) * kChunk); ++i) {
+      double against = 0, all = 0;
+      for (const std::uint32_t j : near.points(i)) {
+        const double weight = pair_weight(cloud, static_cast<std::uint32_t>(i), j);
+        all += std::abs(weight);
+        if (weight < 0) against -= weight;
+        if (!owns(near, static_cast<std::uint32_t>(i), j)) continue;
+        sum.all += std::abs(weight);
+        if (weight > 0) sum.agrees += weight;
+      }
+      if (!(against <= kContested * all && all > 0)) ++sum.n_contested;
+    }
+  });
+  SignAgreement total;
+  for (const SignAgreement& sum : sums) {
+    total.agrees += sum.agrees;
+    total.all += sum.all;
+    total.n_contested += sum.n_contested;
+  }
+  return total;
+}
+
+std::vector<std::uint32_t> agreeing_components(const OrientedPointCloud& cloud, const Neighbourhoods& near,
+                                               std::uint32_t& n_components) {
+  const std::size_t n = near.size();
+  std::vector<std::uint32_t> parent(n);
+  std::iota(parent.begin(), parent.end(), 0U);
+  const auto root = [&](std::uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (std::uint32_t i = 0; i < n; ++i)
+    for (const std::uint32_t j : near.points(i)) {
+      const std::uint32_t a = root(i), b = root(j);
+      if (a == b || pair_weight(cloud, i, j) < kSureBorder) continue;
+      parent[std::max(a, b)] = std::min(a, b);
+    }
+  n_components = 0;
+  std::vector<std::uint32_t> component(n);
+  for (std::uint32_t i = 0; i < n; ++i) component[i] = root(i) == i ? n_components++ : component[root(i)];
+  return component;
 }
 
 Signs solve_signs(std::size_t n_points, const std::vector<SignEdge>& edges, const Settle& settle) {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "reconstruct/neighbourhoods.h"
 #include "reconstruct/point_cloud.h"
 
 namespace umtet {
@@ -15,12 +16,27 @@ struct SignEdge {
   float weight;
 };
 
-/// The pairs of k nearest neighbours, each once, by (a, b).
+/// The pairs of nearest neighbours, each once, by (a, b).
 ///
 /// On the circle through both points with n_a as normal, the normal at b is n_a - 2 (n_a.e) e, e = (x_b - x_a) / |x_b -
 /// x_a|: its cosine with n_b is the weight, times (1 - c^2)^2 with c = max |n.e|, because a pair that runs along its
 /// normals may as well be the two sides of a sheet, or noise.
-std::vector<SignEdge> sign_graph(const OrientedPointCloud& cloud, int k);
+std::vector<SignEdge> sign_graph(const OrientedPointCloud& cloud, const Neighbourhoods& near);
+
+/// What the pairs say about the signs as they are, without the graph being made.
+struct SignAgreement {
+  double agrees = 0, all = 0;   ///< sums of |weight|
+  std::size_t n_contested = 0;  ///< points whose pairs are against them by more than a quarter, or say nothing
+  double share() const { return all > 0 ? agrees / all : 1; }
+};
+
+/// The border of a region that is turned over has half of its points' pairs across it, and so has a single point all:
+/// without contested points there is none. Sums in a fixed order. Cost: 0.2 us a point.
+SignAgreement sign_agreement(const OrientedPointCloud& cloud, const Neighbourhoods& near);
+
+/// Components that pairs in agreement join, where kSureBorder says that they may; numbered by first points.
+std::vector<std::uint32_t> agreeing_components(const OrientedPointCloud& cloud, const Neighbourhoods& near,
+                                               std::uint32_t& n_components);
 
 /// Signs that satisfy the graph, and its components.
 struct Signs {

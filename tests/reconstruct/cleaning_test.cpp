@@ -33,6 +33,13 @@ TEST(Clean, DropsWhatIsNoNumberAndWhatIsThereTwice) {
   EXPECT_EQ(report.n_outliers + report.n_crumbs, 0U);
   EXPECT_EQ(cloud.points, original.points);
   EXPECT_EQ(cloud.normals, original.normals);
+  OrientedPointCloud again = cloud;
+  again.points.push_back(cloud.points.front());
+  again.normals.push_back(cloud.normals.front());
+  Neighbourhoods near;  // of what is left
+  clean(again, {}, &near);
+  EXPECT_EQ(near.size(), 2000U);
+  EXPECT_GT(near.distances2(0).front(), 0);
   ASSERT_EQ(report.kept.size(), 2000U);
   EXPECT_EQ(report.kept[6], 6U);
   EXPECT_EQ(report.kept[7], 8U);

@@ -7,6 +7,8 @@
 #include <limits>
 #include <random>
 
+#include "reconstruct/neighbourhoods.h"
+
 namespace umtet {
 namespace {
 
@@ -46,6 +48,27 @@ TEST(NeighbourTree, FindsWhatAllPairsFind) {
       EXPECT_EQ(visits, std::vector<int>(points.size(), 1));
     }
   }
+}
+
+TEST(Neighbourhoods, AreTheNearestOthers) {
+  for (const int n : {2, 12, 13, 14, 700}) {
+    std::vector<Vec3> points = clumps(n);
+    points.insert(points.end(), 20, points.back());  // more at a place than neighbours are asked for
+    const Neighbourhoods near(points);
+    ASSERT_EQ(near.k(), 12U);
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+      std::vector<double> all;
+      for (std::uint32_t j = 0; j < points.size(); ++j)
+        if (j != i) all.push_back((points[j] - points[i]).squaredNorm());
+      std::sort(all.begin(), all.end());
+      EXPECT_FALSE(near.has(i, i));
+      for (std::size_t m = 0; m < near.k(); ++m) {
+        EXPECT_NEAR(near.distances2(i)[m], all[m], 1e-14 * all[m]);
+        EXPECT_TRUE(near.has(i, near.points(i)[m]));
+      }
+    }
+  }
+  EXPECT_EQ(Neighbourhoods({Vec3::Zero(), Vec3::UnitX()}).k(), 1U);
 }
 
 // A lattice is all ties, on both sides of every cut: any k of them would be nearest, and the least numbers are asked

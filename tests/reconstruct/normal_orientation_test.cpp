@@ -7,6 +7,7 @@
 
 #include "reconstruct/normal_estimation.h"
 #include "reconstruct/point_cloud_io.h"
+#include "reconstruct/sign_graph.h"
 #include "tests/support/clouds.h"
 #include "tests/support/data_files.h"
 #include "tests/support/sampled_domains.h"
@@ -108,6 +109,29 @@ TEST(RepairNormals, RightNormalsAreLeftAloneBitForBit) {
     EXPECT_TRUE(report.left_alone);
     EXPECT_EQ(report.consistency, report.consistency_after);
   }
+}
+
+// What is left alone without a solve must have no region that is turned, however small.
+TEST(RepairNormals, NoTurnedRegionGoesUncontested) {
+  const OrientedPointCloud right = test::torus_cloud(20000);
+  const Neighbourhoods near(right.points);
+  EXPECT_EQ(sign_agreement(right, near).n_contested, 0U);
+  for (const double radius : {0.01, 0.05, 0.2, 0.5}) {
+    OrientedPointCloud cloud = right;
+    for (std::size_t i = 0; i < cloud.points.size(); ++i)
+      if ((cloud.points[i] - right.points[7]).norm() < radius) cloud.normals[i] = -cloud.normals[i];
+    EXPECT_GT(sign_agreement(cloud, near).n_contested, 0U) << radius;
+    repair_normals(cloud, {}, &near);
+    EXPECT_EQ(cloud.normals, right.normals) << radius;
+  }
+}
+
+TEST(RepairNormals, NeighbourhoodsOfAnotherCloudAreRefused) {
+  OrientedPointCloud cloud = test::torus_cloud(500);
+  const Neighbourhoods fewer(test::torus_cloud(499).points), wider(cloud.points, 13), right(cloud.points);
+  EXPECT_THROW(repair_normals(cloud, {}, &fewer), std::invalid_argument);
+  EXPECT_THROW(repair_normals(cloud, {}, &wider), std::invalid_argument);
+  EXPECT_EQ(consistency(cloud, {}, &right), consistency(cloud));
 }
 
 TEST(RepairNormals, AMinorityIsTurnedBack) {
