@@ -23,6 +23,9 @@ constexpr std::int64_t kBrick = 4;
 constexpr std::size_t kVerticesPerTask = 256;
 // A gain below this is rounding of floats.
 constexpr float kLeastGain = 1e-3F;
+// Feet from farther away may be on another sheet, and those closer together, in h, say little about curvature.
+constexpr float kFarthestFoot = 1.8F;
+constexpr double kApart = .3;
 
 /// Vertices within three edges of a change of label, and all the descent knows about them, by rank.
 class Band {
@@ -52,6 +55,8 @@ class Band {
 
   void gather();
   void measure(const KeepGoing& keep_going);
+  bool has_foot(int v) const { return std::abs(phi_[v]) < kFarthestFoot; }  // false for NaN
+  void hold_where_stretched(const KeepGoing& keep_going);
   void make_bricks();
   /// In the outermost layer of cells, where a step along an edge may leave the range of ids.
   bool is_outermost(std::int64_t id) const {
@@ -79,7 +84,7 @@ class Band {
   std::vector<std::vector<std::int64_t>> steps_ = std::vector<std::vector<std::int64_t>>(background_.n_types());
   std::vector<std::int64_t> id_;
   std::vector<std::array<int, kMaxLink>> link_;  ///< ranks, -1 where the neighbour is not in the band
-  std::vector<std::uint8_t> type_, label_, movable_, dirty_;
+  std::vector<std::uint8_t> type_, label_, movable_, held_, dirty_;
   std::vector<std::uint16_t> mask_;
   std::vector<float> phi_;  ///< signed distance in h
   std::vector<Vec3> foot_, normal_;
@@ -131,6 +136,7 @@ void Band::measure(const KeepGoing& keep_going) {
   type_.resize(n);
   label_.resize(n);
   movable_.assign(n, 0);
+  held_.assign(n, 0);
   dirty_.assign(n, 1);
   mask_.assign(n, 0);
   phi_.assign(n, std::numeric_limits<float>::quiet_NaN());
@@ -187,6 +193,25 @@ void Band::measure(const KeepGoing& keep_going) {
     }
     phi_[v] = static_cast<float>(std::isfinite(distance) ? distance / h : label_[v] ? -far : far);
     movable_[v] = complete && phi_[v] >= -params_.reach_in && phi_[v] <= params_.reach_out && !background_.on_rim(id);
+  });
+}
+
+/// Labels stay where a vertex on its way to the surface would draw apart those around it by more than most_stretch: a
+/// patch at depth d under a surface of curvature kappa is 1 / (1 - kappa d) times as wide up there. The curvature is
+/// the greatest between the feet of neighbours, on the side that the vertex would come from.
+void Band::hold_where_stretched(const KeepGoing& keep_going) {
+  const double most = 1 - 1 / params_.most_stretch, apart = kApart * background_.h();
+  polled_parallel_for(id_.size(), kValuesPerPoll, keep_going, [&](std::size_t v) {
+    if (!movable_[v]) return;
+    double kappa = 0;
+    for (int k = 0; k < links_[type_[v]].n; ++k) {
+      const int w = link_[v][k];
+      if (!has_foot(w)) continue;
+      const Vec3 between = foot_[w] - foot_[v];
+      if (between.norm() < apart) continue;
+      kappa = std::max(kappa, (phi_[v] > 0 ? -1 : 1) * between.dot(normal_[w] - normal_[v]) / between.squaredNorm());
+    }
+    if (kappa * std::abs(phi_[v]) * background_.h() > most) movable_[v] = 0, held_[v] = 1;
   });
 }
 
@@ -312,6 +337,7 @@ LabelReport Band::operator()(const KeepGoing& keep_going) {
   LabelReport report;
   gather();
   measure(keep_going);
+  hold_where_stretched(keep_going);
   make_bricks();
   report.candidates = order_.size();
   report.shifted = sweep([&](int v) {
@@ -341,6 +367,7 @@ LabelReport Band::operator()(const KeepGoing& keep_going) {
       report.not_manifold += mask_[v] != 0 && !links_[type_[v]].states[mask_[v]].manifold;
     }
     report.thin += thin_[v] == Thin::Yes;
+    report.stretched += held_[v];
   }
   report.psi_evaluations = psi_evaluations_;
   return report;
@@ -358,6 +385,7 @@ std::vector<std::string> problems(const LabelParams& params) {
   in("shift", params.shift, 0, .15, "in 0 .. .15");
   in("reach_in", params.reach_in, 0, kAny, ">= 0");
   in("reach_out", params.reach_out, 0, kAny, ">= 0");
+  in("most_stretch", params.most_stretch, 1, kAny, ">= 1");
   in("least_thickness", params.least_thickness, 0, kAny, ">= 0");
   in("outside_weight", params.outside_weight, 0, kAny, ">= 0");
   in("inside_weight", params.inside_weight, 0, kAny, ">= 0");

@@ -206,8 +206,12 @@ LatticeShell lattice_patch(const BackgroundMesh& background, const std::vector<L
     std::sort(old.begin(), old.end());
     std::sort(middle, ball.end());
     ball.erase(std::unique(middle, ball.end()), ball.end());
+    // Steps from the outermost cells may lead out of the range of ids.
     ball.erase(std::remove_if(middle, ball.end(),
-                              [&](std::int64_t v) { return std::binary_search(old.begin(), old.end(), v); }),
+                              [&](std::int64_t v) {
+                                return v < 0 || v >= background.n_vertices() ||
+                                       std::binary_search(old.begin(), old.end(), v);
+                              }),
                ball.end());
   }
   std::erase_if(ball, [&](std::int64_t v) { return !builder.in_omega_h(v); });

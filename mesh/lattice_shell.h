@@ -29,7 +29,7 @@ LatticeShell lattice_shell(const BackgroundMesh& background, const std::vector<L
 
 /// The same for the vertices of omega_h within `reach` edges of one of `centres`, whatever their distance from the
 /// boundary: these move. Every tet of omega_h with a vertex that near to a centre is in the patch.
-/// \pre the vertices within `reach` edges of the centres have ids
+/// \pre the centres have ids
 LatticeShell lattice_patch(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
                            const detail::IdSet& inside, const std::vector<std::int64_t>& centres, int reach);
 

@@ -146,6 +146,7 @@ std::vector<Repair::Candidate> Repair::candidates(const Ids& tet) {
   near.erase(std::unique(near.begin(), near.end()), near.end());
   std::vector<Candidate> list;
   for (const std::int64_t v : near) {
+    if (v < 0 || v >= background_.n_vertices()) continue;  // beside a tet at the rim
     const int type = background_.type(v);
     const LinkTopology& link = links_[type];
     const std::uint16_t m = mask(v);

@@ -15,7 +15,8 @@ namespace umtet {
 
 struct RepairParams {
   double target = .82;  ///< tets below are mended; in (0, 1)
-  int reach = 2;        ///< a patch moves the vertices within this many edges of the flip and the tet; >= 1
+  int reach = 3;        ///< a patch moves the vertices within this many edges of the flip and the tet; >= 1. With 2
+                        ///< some tets of koala and spot stay below .8
   int max_tries = 24;   ///< labels tried for one tet; >= 0. 0: no repair
   /// Patches in all, a millisecond each, for the worst tets first: more means that h is wrong, which labels do not
   /// mend.

@@ -39,18 +39,24 @@ MeshCertificate certificate(const Submesh& submesh) {
   return certify(input);
 }
 
+/// Prices up to 655 that mean nothing.
+LabelEnergies dice() {
+  LabelEnergies energies = a15_label_energies();
+  std::uint32_t state = 1;
+  for (auto& of_mask : energies) {
+    for (float& price : of_mask) price = static_cast<float>((state = state * 1664525u + 1013904223u) >> 16) / 100;
+  }
+  return energies;
+}
+
 TEST(Labels, ChangesKeepTheEulerCharacteristicWhateverThePrices) {
   std::size_t n_flips = 0;
   for (const AnalyticDomain& domain : testing::domains()) {
     SCOPED_TRACE(domain.name);
     const BackgroundMesh background = background_of(domain, 15000);
-    LabelEnergies dice = a15_label_energies();
-    std::uint32_t state = 1;
-    for (auto& of_mask : dice) {
-      for (float& price : of_mask) price = static_cast<float>((state = state * 1664525u + 1013904223u) >> 16) / 100;
-    }
+    const LabelEnergies any = dice();
     LabelParams params;
-    params.energies = &dice;  // up to 655, and as many for what is no manifold: only the guards hold
+    params.energies = &any;  // as many for what is no manifold: only the guards hold
     params.reach_out = .5;
     params.shift = .15;
     for (const LabelParams& p : {params, LabelParams{}}) {
@@ -103,10 +109,45 @@ TEST(Labels, StayNearTheBoundary) {
   EXPECT_GT(outwards, 0u);
 }
 
+TEST(Labels, NoneChangesWhereProjectionWouldStretchTheBoundary) {
+  // A ball of 2.5 edges and its complement in a larger one: 1.2 is met .42 edges deep, or as far outside the hollow.
+  const double h = .4;
+  const AnalyticDomain ball = testing::sphere();
+  AnalyticDomain hollow = ball;
+  hollow.psi = [](const Vec3& x, Vec3* g, Mat3* H) {
+    const double side = x.norm() > 2 ? 1 : -1;
+    if (g) *g = side * 2 * x;
+    if (H) *H = side * 2 * Mat3::Identity();
+    return side > 0 ? x.squaredNorm() - 9 : 1 - x.squaredNorm();
+  };
+  const LabelEnergies any = dice();
+  LabelParams free;
+  free.energies = &any;
+  free.most_stretch = 1e9;
+  free.reach_out = .9;
+  LabelParams held = free;
+  held.most_stretch = 1.2;
+  const auto n_far_changes = [&](const AnalyticDomain& domain, const LabelParams& params) {
+    std::size_t n = 0;
+    const BackgroundMesh background(a15(), testing::cube_box(3.7), h);
+    const Labelled labelled = choose(background, domain, params);
+    for (std::int64_t v = 0; v < background.n_vertices(); ++v) {
+      n += background.position(v).norm() < 1 - .5 * h && labelled.plain.test(v) != labelled.chosen.test(v);
+    }
+    return n;
+  };
+  for (const AnalyticDomain& domain : {ball, hollow}) {
+    EXPECT_GT(n_far_changes(domain, free), 0u);
+    EXPECT_EQ(n_far_changes(domain, held), 0u);
+  }
+}
+
 TEST(Labels, NoneChangesWhereTheBodyOrAGapIsThin) {
   const AnalyticDomain disc = testing::ellipsoid({1, 1, .08});
   const BackgroundMesh background(a15(), testing::cube_box(1.3), .09);  // 1.8 edges thick
-  const Labelled thin = choose(background, disc);
+  LabelParams guarded;
+  guarded.least_thickness = 2;
+  const Labelled thin = choose(background, disc, guarded);
   EXPECT_GT(thin.report.thin, 0u);
   // At the edge of the disc the normal points into it, where it is a diameter thick.
   const auto n_inner_changes = [](const BackgroundMesh& mesh, const Labelled& labelled) {
@@ -136,7 +177,7 @@ TEST(Labels, NoneChangesWhereTheBodyOrAGapIsThin) {
     return -value;
   };
   const BackgroundMesh around(a15(), testing::cube_box(1.5), .09);
-  EXPECT_EQ(n_inner_changes(around, choose(around, gap)), 0u);
+  EXPECT_EQ(n_inner_changes(around, choose(around, gap, guarded)), 0u);
   EXPECT_GT(n_inner_changes(around, choose(around, gap, unguarded)), 0u);
 }
 
