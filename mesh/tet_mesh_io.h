@@ -51,6 +51,11 @@ MeshFile read_tet_mesh(const std::filesystem::path& path);
 /// \throw std::invalid_argument for data of the wrong size, std::system_error naming the path when writing fails
 void write_vtu(const std::filesystem::path& path, const MeshFile& file);
 
+/// Points with data, one value each, as VTK XML polydata with a vertex cell per point; encoding as in write_vtu().
+/// \throw std::invalid_argument for data of the wrong size, std::system_error naming the path when writing fails
+void write_vtp(const std::filesystem::path& path, const std::vector<Vec3>& points,
+               const std::map<std::string, FieldValues>& point_data);
+
 enum class MshEncoding { Ascii, Binary };
 
 /// Gmsh 2.2: tets in physical volume 1 "body", boundary triangles in physical surface 2 "boundary".

@@ -21,9 +21,9 @@ double first_return(ImplicitFunctionRef psi, const Vec3& x, const Vec3& d, doubl
 
 }  // namespace
 
-std::vector<double> thickness(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double step, double limit,
-                              const KeepGoing& keep_going) {
-  std::vector<double> out(points.size(), limit);
+std::vector<SheetDistances> sheet_distances(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double step,
+                                            double limit, const KeepGoing& keep_going) {
+  std::vector<SheetDistances> out(points.size(), {limit, limit});
   polled_parallel_for(points.size(), kValuesPerPoll, keep_going, [&](std::size_t i) {
     Vec3 x = points[i], g;
     double value = psi.value(x, g);
@@ -35,8 +35,17 @@ std::vector<double> thickness(ImplicitFunctionRef psi, const std::vector<Vec3>& 
     const double slope = g.norm();
     if (!(slope > 0) || std::abs(value) > 1e-3 * step * slope) return;
     const Vec3 n = g / slope;
-    out[i] = std::min(first_return(psi, x, -n, -1, step, limit), first_return(psi, x, n, 1, step, limit));
+    out[i] = {first_return(psi, x, -n, -1, step, limit), first_return(psi, x, n, 1, step, limit)};
   });
+  return out;
+}
+
+std::vector<double> thickness(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double step, double limit,
+                              const KeepGoing& keep_going) {
+  std::vector<double> out;
+  for (const SheetDistances& d : sheet_distances(psi, points, step, limit, keep_going)) {
+    out.push_back(std::min(d.body, d.gap));
+  }
   return out;
 }
 

@@ -7,6 +7,15 @@
 
 namespace umtet {
 
+/// How far it is from a point of the boundary, along the normal, to the sheet on the other side.
+struct SheetDistances {
+  double body, gap;  ///< through the body, and through the gap outside; model units
+};
+
+/// Both distances of each point; see thickness() for the parameters, the cost and the points that have none.
+std::vector<SheetDistances> sheet_distances(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double step,
+                                            double limit, const KeepGoing& keep_going = {});
+
 /// How far it is from each point of the boundary, along the normal, to the sheet on the other side: through the body,
 /// or through the gap outside, whichever is shorter. What is thinner than about two background edges cannot be meshed
 /// well.

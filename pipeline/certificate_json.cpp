@@ -82,6 +82,16 @@ std::string boundary_line(const Json& b) {
   return line;
 }
 
+/// Which places are thinner than the mesh can show; empty if there are none.
+std::string thin_lines(const Json& c) {
+  const Json places = c.value("/resolution/too_thin"_json_pointer, Json::array());
+  if (places.empty()) return "";
+  const Json& worst = places.front();
+  return fmt::format("thin      {} place{} thinner than h can show, the worst ({}, {:.3g}) needs h = {:.3g}\n", places.size(),
+                     places.size() == 1 ? " is" : "s are", worst.at("kind").get<std::string>(),
+                     worst.at("thickness").get<double>(), worst.at("h_needed").get<double>());
+}
+
 }  // namespace
 
 Json certificate(const CasePaths& paths, const StageRecord& mesh, const Parameters& parameters) {
@@ -140,6 +150,7 @@ std::string summary(const Json& c) {
                        show(k, "rms_distance_over_h", "{:.4f}"), show(k, "p99_distance_over_h", "{:.4f}"),
                        show(k, "max_distance_over_h", "{:.4f}"));
   }
+  out += thin_lines(c);
   if (c.contains("run")) {
     out += "time     ";
     for (const auto& [stage, t] : c["run"].at("seconds").items())

@@ -17,6 +17,7 @@ namespace {
 constexpr const char* kFooter = R"(Examples:
   umtet run duck.ply -o duck                 from a scan to a certified mesh; run again: resumes, or does nothing
   umtet mesh duck --h 0.02                   another mesh size; the level set is not fitted again
+  umtet mesh duck --max-deviation 0.001      flat faces at most so far from the surface
   umtet mesh --implicit 'x^2+y^2+z^2-1' --box -1.2,-1.2,-1.2,1.2,1.2,1.2 --tets 100000 -o ball
   umtet inspect duck.ply                     spacing, noise, normals, thickness; what is likely to go wrong
   umtet check part.msh                       validity and quality of any tet mesh

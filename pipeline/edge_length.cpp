@@ -10,6 +10,7 @@
 #include "mesh/quality_report.h"
 #include "mesh/submesh.h"
 #include "mesh/thickness.h"
+#include "pipeline/deviation.h"
 #include "pipeline/exit_code.h"
 
 namespace umtet {
@@ -17,6 +18,8 @@ namespace {
 
 // Share of the diagonal that is the edge length of a body without thin parts: 50k to 150k tets.
 constexpr double kShareOfDiagonal = .015;
+// However flat the body is: with fewer than ten edges along it there is little left of its shape.
+constexpr double kMostOfDiagonal = .1;
 // Boundary faces start to fold where the body or a gap is thinner than about two edges; one body in a hundred samples
 // may be thinner.
 constexpr double kEdgesAcross = 2.2;
@@ -60,8 +63,19 @@ double thin_part(const Domain& domain, double limit) {
   return quantile(t, kThinShare);
 }
 
+/// By curvature. \throw ResourceLimit
+EdgeLength by_deviation(Domain& domain, const Parameters& parameters, double deviation, const KeepGoing& keep_going) {
+  const std::int64_t max_tets = parameters.integer("mesh.max_tets");
+  const double least = h_of(domain, max_tets);
+  const double h = h_for_deviation(domain, deviation, kMostOfDiagonal * domain.diagonal, least, keep_going);
+  if (h > least) return {h, least};
+  throw ResourceLimit(fmt::format("--max-deviation {:.4g} needs more than {} tets (that many at h = {:.4g}): raise "
+                                  "--max-tets",
+                                  deviation, max_tets, least));
+}
+
 /// The choice, without regard to how it will be written.
-EdgeLength choose(const Domain& domain, const Parameters& parameters) {
+EdgeLength choose(Domain& domain, const Parameters& parameters, const KeepGoing& keep_going) {
   if (const std::int64_t n = parameters.integer("mesh.tets")) {
     const double h = h_of(domain, n);
     return {h, h};
@@ -70,6 +84,9 @@ EdgeLength choose(const Domain& domain, const Parameters& parameters) {
   if (const double h = parameters.real("mesh.h"); h > 0) {
     refuse_too_many(domain, h, max_tets);
     return {h, h};
+  }
+  if (const double deviation = parameters.real("mesh.max_deviation"); deviation > 0) {
+    return by_deviation(domain, parameters, deviation, keep_going);
   }
   const double least = h_of(domain, max_tets);
   double h = kShareOfDiagonal * domain.diagonal;
@@ -90,10 +107,14 @@ double coordinate_rounding(const Domain& domain) {
   return rounding.norm();
 }
 
+double least_h_of_max_tets(const Domain& domain, const Parameters& parameters) {
+  return h_of(domain, parameters.integer("mesh.max_tets"));
+}
+
 double least_h_in_file(const Domain& domain) { return coordinate_rounding(domain) / kMostRounding; }
 
-EdgeLength choose_edge_length(const Domain& domain, const Parameters& parameters) {
-  EdgeLength choice = choose(domain, parameters);
+EdgeLength choose_edge_length(Domain& domain, const Parameters& parameters, const KeepGoing& keep_going) {
+  EdgeLength choice = choose(domain, parameters, keep_going);
   const double least = least_h_in_file(domain);
   if (choice.h < least) {
     const double far = greatest_coordinates(domain).maxCoeff();

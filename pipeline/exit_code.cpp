@@ -64,6 +64,8 @@ Failure failure_of(const std::exception_ptr& error) {
     return {ExitCode::InputRefused, e.what()};
   } catch (const SolveError& e) {
     return {ExitCode::ReconstructionFailed, e.what()};
+  } catch (const TooThin& e) {
+    return {ExitCode::MeshingImpossible, e.what(), e.evidence};
   } catch (const MeshingImpossible& e) {
     return {ExitCode::MeshingImpossible, e.what()};
   } catch (const ArtefactDamaged& e) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <exception>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 
@@ -30,6 +31,12 @@ struct UsageError : std::runtime_error {
 struct MeshingImpossible : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+/// The same, because the domain is too thin for this h somewhere.
+struct TooThin : MeshingImpossible {
+  TooThin(const std::string& message, nlohmann::ordered_json evidence)
+      : MeshingImpossible(message), evidence(std::move(evidence)) {}
+  nlohmann::ordered_json evidence;  ///< too_thin: of to_json(ThinPlaces); h_enough: for all of them, or null
+};
 /// A file of the case is not what its record says, or what its format asks for.
 struct ArtefactDamaged : std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -52,6 +59,7 @@ struct Interrupted : std::runtime_error {
 struct Failure {
   ExitCode code;
   std::string message;  ///< one or a few lines, without a final newline
+  nlohmann::ordered_json evidence = nlohmann::ordered_json::object();  ///< what else a program may want to know
 };
 
 /// The one place where exceptions become exit codes. What is not one of the types above or of the libraries' is a bug:

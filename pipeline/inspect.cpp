@@ -60,7 +60,7 @@ Json troubles(const CloudSurvey& s, const CloudFileReport& file) {
             s.noise_over_spacing);
   }
   if (s.thickness && (*s.thickness)[0] < kThin * s.diagonal) {
-    trouble("1 % of the body is thinner than {:.3g}: the mesh needs --h {:.2g} or smaller there", (*s.thickness)[0],
+    trouble("1 % of the body is thinner than {:.3g}: the mesh needs --h {:.2g} or smaller there, or --allow-thin to go on without", (*s.thickness)[0],
             (*s.thickness)[0] / 2.2);
   }
   if (s.ulp_over_spacing > kUlp) {

@@ -7,6 +7,7 @@
 #include "mesh/universal_mesh.h"
 #include "pipeline/edge_length.h"
 #include "pipeline/record.h"
+#include "pipeline/too_thin.h"
 
 namespace umtet {
 
@@ -15,6 +16,7 @@ struct MeshAttempt {
   double h = 0;  ///< edge length of the background mesh, model units
   UmResult result;
   Json measured;                            ///< of measure(); null when there is no mesh
+  ThinPlaces thin;                          ///< what h is too large for
   std::vector<std::vector<Vec3>> iterates;  ///< the vertices after every pass, where they are kept
 
   bool made() const { return result.status == UmStatus::Success; }

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -12,6 +11,7 @@
 #include "mesh/surface_distance.h"
 #include "mesh/thickness.h"
 #include "pipeline/component_proof.h"
+#include "pipeline/deviation.h"
 #include "pipeline/edge_length.h"
 
 namespace umtet {
@@ -32,14 +32,7 @@ double max_curvature(ImplicitFunctionRef psi, const UmResult& result, double h, 
   const std::vector<int>& I = result.submesh.positive_vertices;
   std::vector<double> kappa(I.size());
   polled_parallel_for(I.size(), kValuesPerPoll, keep_going, [&](std::size_t k) {
-    Vec3 g;
-    Mat3 H;
-    psi.value(result.final[I[k]], g, H);
-    const Vec3 n = g.normalized();
-    const Mat3 P = Mat3::Identity() - n * n.transpose();
-    // P H P / |grad psi| is the shape operator, with a third eigenvalue 0 along the normal.
-    const Mat3 S = P * H * P / g.norm();
-    kappa[k] = Eigen::SelfAdjointEigenSolver<Mat3>(S, Eigen::EigenvaluesOnly).eigenvalues().cwiseAbs().maxCoeff();
+    kappa[k] = principal_curvatures(psi, result.final[I[k]])[0];
   });
   return kappa.empty() ? 0 : h * *std::max_element(kappa.begin(), kappa.end());
 }

@@ -15,6 +15,7 @@
 #include "pipeline/mesh_attempts.h"
 #include "pipeline/mesh_measures.h"
 #include "pipeline/stages.h"
+#include "pipeline/too_thin.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -41,6 +42,16 @@ void round_to_file(std::vector<Vec3>& V, const Vec3& shift) {
 // Another h is tried for the number of tets that was asked for when it is missed by more than this.
 constexpr double kTetsTolerance = .1;
 
+/// The distance that was asked for is a promise: a mesh that breaks it is not right.
+void check_deviation(double asked, Json& measured) {
+  const Json& d = measured.at("boundary").at("max_centroid_distance_over_h");
+  if (asked == 0 || !d.is_number()) return;
+  const double made = d.get<double>() * measured.at("h").get<double>();
+  if (made <= asked) return;
+  measured["reasons"].push_back(
+      fmt::format("a face centre is {:.4g} from psi = 0, more than the {:.4g} of --max-deviation", made, asked));
+}
+
 const char* remedy(UmStatus status) {
   switch (status) {
     case UmStatus::EmptyDomain:
@@ -64,6 +75,9 @@ class MeshStage {
  private:
   MeshAttempt attempt(double h);
   MeshAttempt attempt_for_tets(double h);
+  const ZeroSetChoice& pieces_at(double h);
+  EdgeLength fit_to_thin_places(EdgeLength choice);
+  [[noreturn]] void refuse_thin(const ThinPlaces& thin);
   bool observe(const UmProgress& p);
   UmResult make(const BackgroundMesh& background, const ZeroSetChoice& pieces);
   [[noreturn]] void refuse(const UmResult& result, double h);
@@ -76,6 +90,8 @@ class MeshStage {
   const bool keep_iterates_;
   std::vector<std::vector<Vec3>> iterates_;  ///< of the running attempt
   std::vector<std::string> outputs_;
+  std::optional<std::pair<double, ZeroSetChoice>> pieces_;  ///< of psi cut for the h beside them
+  bool judge_thin_ = true;  ///< no mesh has been tried yet: what is too thin is refused, unless it is allowed
   double missed_by_ = 0;   ///< tets made / tets asked for, when the running attempt was given up for it
   bool may_miss_ = false;  ///< it goes on whatever the number
 };
@@ -162,24 +178,82 @@ void MeshStage::refuse(const UmResult& result, double h) {
   throw MeshingImpossible(message);
 }
 
+/// Cuts psi for h and finds the pieces of psi = 0.
+const ZeroSetChoice& MeshStage::pieces_at(double h) {
+  domain_.limit_detail(h);
+  if (!pieces_ || pieces_->first != h) {
+    context_.progress.report("mesh", "components", .05);
+    pieces_.emplace(h, choose_components(domain_, h, not_interrupted));
+    stop_if_interrupted();
+  }
+  return pieces_->second;
+}
+
+// A smaller h lets detail in that may be thinner still; at most so often, and each time at least by a tenth.
+constexpr int kThinRounds = 8;
+constexpr double kThinStep = .9;
+
+/// Lowers h to what the thin places need, as far as choice.least.
+EdgeLength MeshStage::fit_to_thin_places(EdgeLength choice) {
+  for (int round = 0; round < kThinRounds && choice.h > choice.least; ++round) {
+    const ThinPlaces thin = find_thin_places(domain_, pieces_at(choice.h), choice.h, not_interrupted);
+    if (thin.empty()) break;
+    const double h = std::max(std::min(thin.h_needed(), kThinStep * choice.h), choice.least);
+    context_.progress.detail(fmt::format("mesh: {} thin places at h = {:.4g}; looking at {:.4g}", thin.places.size(),
+                                         choice.h, h));
+    choice.h = h;
+  }
+  return choice;
+}
+
+/// Names what is too thin and writes it for the eye: beside a finished mesh where there is none to be kept.
+void MeshStage::refuse_thin(const ThinPlaces& thin) {
+  const bool keeps = context_.paths.renews(Stage::Mesh);
+  if (!keeps) begin_writing(context_, Stage::Mesh);
+  const fs::path folder = keeps ? context_.paths.failed() : context_.paths.folder(Stage::Mesh);
+  fs::remove_all(context_.paths.failed());
+  fs::create_directories(folder);
+  const fs::path file = folder / "too_thin.vtp";
+  write_thin_places(file, thin, domain_.shift);
+  std::string message = fmt::format("h = {:.4g} is too large: {} place{} thinner than it can show\n{}\n", thin.h,
+                                    thin.places.size(), thin.places.size() == 1 ? " is" : "s are",
+                                    described(thin, domain_.shift));
+  // A finer look finds thinner places: the h that is enough for all of them is sought as an automatic one is.
+  const double least = least_h_of_max_tets(domain_, context_.parameters);
+  const double enough = fit_to_thin_places({thin.h, least}).h;
+  const bool in_reach = enough < thin.h && enough > least;
+  message += in_reach ? fmt::format("  h = {:.3g} is enough, about {:.2g} tets", enough,
+                                    expected_tets(domain_.psi(), domain_.box, enough))
+                      : fmt::format("  that takes more than {} tets: raise --max-tets",
+                                    context_.parameters.integer("mesh.max_tets"));
+  message += "; --allow-thin makes a mesh nevertheless\n  look at " + file.string();
+  if (keeps) message += "\n  the former mesh and its certificate have been kept";
+  throw TooThin(message, {{"too_thin", to_json(thin, domain_.shift)}, {"h_enough", in_reach ? Json(enough) : Json()}});
+}
+
 MeshAttempt MeshStage::attempt(double h) {
   MeshAttempt a;
   a.h = h;
   iterates_.clear();
   stop_if_interrupted();
-  domain_.limit_detail(h);
+  const ZeroSetChoice& pieces = pieces_at(h);
   const BackgroundMesh background = make_background(domain_, h, context_.parameters.integer("mesh.tets"),
                                                     allowed_bytes(context_.parameters));
-  context_.progress.report("mesh", "components", .05);
-  const ZeroSetChoice pieces = choose_components(domain_, h, not_interrupted);
+  a.thin = find_thin_places(domain_, pieces, h, not_interrupted);
+  const bool refuses = judge_thin_ && !a.thin.empty() && !context_.parameters.flag("mesh.allow_thin");
+  if (refuses && may_miss_) refuse_thin(a.thin);
   for (const std::string& reason : pieces.dropped) context_.progress.say("mesh: left out a " + reason);
   stop_if_interrupted();
   a.result = make(background, pieces);
+  if (refuses && missed_by_ == 0) refuse_thin(a.thin);  // h is the one that was asked for with --tets
+  judge_thin_ = judge_thin_ && missed_by_ != 0;
   a.iterates = std::move(iterates_);
   stop_if_interrupted();
   if (a.made()) {
     context_.progress.report("mesh", "certify", .9);
     a.measured = measure(domain_, a.result, pieces, h, not_interrupted);
+    a.measured["resolution"]["too_thin"] = to_json(a.thin, domain_.shift);
+    check_deviation(context_.parameters.real("mesh.max_deviation"), a.measured);
     stop_if_interrupted();
   }
   return a;
@@ -203,7 +277,8 @@ void MeshStage::run() {
   const std::vector<RecordedFile> inputs = recorded_inputs(context_.paths, Stage::Mesh, context_.parameters);
   context_.progress.report("mesh", "size", 0);
   const MeshAttempt best = best_attempt(
-      choose_edge_length(domain_, context_.parameters), [this](double h) { return attempt_for_tets(h); },
+      fit_to_thin_places(choose_edge_length(domain_, context_.parameters, not_interrupted)),
+      [this](double h) { return attempt_for_tets(h); },
       [this](const std::string& line) { context_.progress.say(line); });
   const UmResult& result = best.result;
   if (!best.made()) refuse(result, best.h);
@@ -239,6 +314,9 @@ void MeshStage::write_outputs(const MeshAttempt& best) {
                                                 result.projected, result.final));
   });
   outputs_.push_back("quality.csv");
+  if (best.thin.empty()) return;
+  write_thin_places(context_.paths.folder(Stage::Mesh) / "too_thin.vtp", best.thin, domain_.shift);
+  outputs_.push_back("too_thin.vtp");
 }
 
 }  // namespace

@@ -165,22 +165,30 @@ void Parameters::set(const std::string& assignment) {
   set(assignment.substr(0, equals), assignment.substr(equals + 1), ParamSource::Set, "--set");
 }
 
+/// h, tets and max_deviation are three ways to say one thing: the stronger voice silences the others. False: a stronger
+/// one has spoken already.
+bool Parameters::silences_others(const std::string& key, const ParamValue& value, ParamSource source) {
+  constexpr std::array kWays = {"mesh.h", "mesh.tets", "mesh.max_deviation"};
+  const auto speaks = [](const ParamValue& v) { return v != ParamValue(0.) && v != ParamValue(std::int64_t{0}); };
+  if (std::find(kWays.begin(), kWays.end(), key) == kWays.end() || !speaks(value)) return true;
+  for (const char* way : kWays) {
+    Entry& other = entries_.at(way);
+    if (way == key || !speaks(other.value)) continue;
+    if (other.source == source) {
+      throw UsageError(fmt::format("{} and {} exclude each other: give one of --h, --tets and --max-deviation",
+                                   std::min(key, std::string(way)), std::max(key, std::string(way))));
+    }
+    if (other.source > source) return false;
+    other = {field(way).preset, ParamSource::Default, "default"};
+  }
+  return true;
+}
+
 void Parameters::assign(const std::string& key, ParamValue value, ParamSource source, const std::string& origin) {
   check(field(key), value);
   Entry& entry = entries_.at(key);
   if (source < entry.source) return;
-  // h and tets are two ways to say one thing: the stronger voice silences the other.
-  if (key == "mesh.h" || key == "mesh.tets") {
-    Entry& other = entries_.at(key == "mesh.h" ? "mesh.tets" : "mesh.h");
-    const bool speaks = value != ParamValue(0.) && value != ParamValue(std::int64_t{0});
-    const bool other_speaks = other.value != ParamValue(0.) && other.value != ParamValue(std::int64_t{0});
-    if (speaks && other_speaks) {
-      if (other.source == source)
-        throw UsageError("mesh.h and mesh.tets exclude each other: give one of --h and --tets");
-      if (other.source > source) return;
-      other = {key == "mesh.h" ? ParamValue(std::int64_t{0}) : ParamValue(0.), ParamSource::Default, "default"};
-    }
-  }
+  if (!silences_others(key, value, source)) return;
   entry = {std::move(value), source, origin};
 }
 

@@ -77,6 +77,7 @@ class Parameters {
     std::string origin = "default";
   };
   const ParamValue& value(const std::string& key) const { return entries_.at(key).value; }
+  bool silences_others(const std::string& key, const ParamValue& value, ParamSource source);
   void assign(const std::string& key, ParamValue value, ParamSource source, const std::string& origin);
   std::map<std::string, Entry> entries_;
 };

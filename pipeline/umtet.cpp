@@ -140,6 +140,7 @@ int run_program(int argc, char** argv) {
     output.code = failure->code;
     output.text.clear();
     output.document = {{"error", failure->message}};
+    output.document.update(failure->evidence);
   }
   if (json) {
     Json document = {{"schema", 1}, {"command", command}, {"exit_code", static_cast<int>(output.code)}};

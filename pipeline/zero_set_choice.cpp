@@ -84,6 +84,7 @@ ZeroSetChoice choose_components(const Domain& domain, double h, const KeepGoing&
   }
   for (std::size_t c = 0; c < pieces.size(); ++c) {
     if (backing[c] >= wanted[c]) {
+      choice.kept.push_back(c);
       choice.seeds.push_back(pieces[c].seed);
       choice.euler_characteristic += pieces[c].euler_characteristic;
       continue;

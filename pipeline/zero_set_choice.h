@@ -11,6 +11,7 @@ namespace umtet {
 /// The pieces of psi = 0, counted on a grid of its own, and which of them are meshed.
 struct ZeroSetChoice {
   ZeroSetTopology topology;
+  std::vector<std::size_t> kept;     ///< which of topology.components are meshed
   std::vector<Vec3> seeds;           ///< one point of each piece that is kept
   long euler_characteristic = 0;     ///< of the kept pieces together
   std::vector<std::string> dropped;  ///< for each of the others, why

@@ -7,12 +7,15 @@
 #include <vtkOutputWindow.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
+#include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 #include <vtkTypeInt64Array.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
+#include <vtkXMLPolyDataWriter.h>
 #include <vtkXMLUnstructuredGridReader.h>
 #include <vtkXMLUnstructuredGridWriter.h>
+#include <vtkXMLWriter.h>
 
 #include <limits>
 #include <mutex>
@@ -104,15 +107,18 @@ void add_data(vtkFieldData* to, const std::map<std::string, FieldValues>& data, 
   }
 }
 
+vtkSmartPointer<vtkPoints> to_vtk(const std::vector<Vec3>& V) {
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(static_cast<vtkIdType>(V.size()));
+  for (std::size_t i = 0; i < V.size(); ++i) points->SetPoint(static_cast<vtkIdType>(i), V[i].data());
+  return points;
+}
+
 vtkSmartPointer<vtkUnstructuredGrid> to_vtk(const MeshFile& file) {
-  const auto n_points = static_cast<vtkIdType>(file.mesh.V.size());
   const auto n_tets = static_cast<vtkIdType>(file.mesh.C.size());
   auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(n_points);
-  for (vtkIdType i = 0; i < n_points; ++i) points->SetPoint(i, file.mesh.V[i].data());
-  grid->SetPoints(points);
+  grid->SetPoints(to_vtk(file.mesh.V));
 
   vtkNew<vtkTypeInt64Array> offsets, connectivity;
   offsets->SetNumberOfValues(n_tets + 1);
@@ -192,12 +198,9 @@ void take_tets(const std::filesystem::path& path, vtkUnstructuredGrid* grid, Tet
   }
 }
 
-}  // namespace
-
-void write_vtu(const std::filesystem::path& path, const MeshFile& file) {
-  const auto grid = to_vtk(file);
-  vtkNew<vtkXMLUnstructuredGridWriter> writer;
-  writer->SetInputData(grid);
+/// Inline base64 blocks with 64-bit headers.
+void write_with(vtkXMLWriter* writer, vtkDataObject* data, const std::filesystem::path& path) {
+  writer->SetInputDataObject(data);
   writer->SetDataModeToBinary();
   writer->SetHeaderTypeToUInt64();
   writer->SetCompressorTypeToNone();
@@ -213,6 +216,23 @@ void write_vtu(const std::filesystem::path& path, const MeshFile& file) {
   detail::CheckedFile out(path);
   out.text(writer->GetOutputString());
   out.close();
+}
+
+}  // namespace
+
+void write_vtu(const std::filesystem::path& path, const MeshFile& file) {
+  write_with(vtkSmartPointer<vtkXMLUnstructuredGridWriter>::New(), to_vtk(file), path);
+}
+
+void write_vtp(const std::filesystem::path& path, const std::vector<Vec3>& points,
+               const std::map<std::string, FieldValues>& point_data) {
+  vtkNew<vtkPolyData> cloud;
+  cloud->SetPoints(to_vtk(points));
+  vtkNew<vtkCellArray> vertices;
+  for (vtkIdType i = 0; i < static_cast<vtkIdType>(points.size()); ++i) vertices->InsertNextCell(1, &i);
+  cloud->SetVerts(vertices);
+  add_data(cloud->GetPointData(), point_data, points.size());
+  write_with(vtkSmartPointer<vtkXMLPolyDataWriter>::New(), cloud, path);
 }
 
 MeshFile detail::read_vtu(const std::filesystem::path& path) {

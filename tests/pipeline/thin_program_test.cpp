@@ -1,0 +1,117 @@
+// --allow-thin, --max-deviation and --max-tets, from outside.
+
+#include "tests/pipeline/program_fixture.h"
+
+namespace umtet {
+namespace {
+
+// Half axes 1, 1 and .15: too thin for h = .3.
+const std::string kLens = "mesh --implicit 'x^2+y^2+(z/0.15)^2-1' --box=-1.6,-1.6,-.9,1.6,1.6,.9 -o lens ";
+
+TEST_F(Program, WhatIsTooThinForAGivenHIsNamedAndNotMeshed) {
+  const Result r = run(kLens + "--h .3 --json");
+  EXPECT_EQ(r.code, 5) << r.err;
+  const Json document = Json::parse(r.out);
+  EXPECT_EQ(document["exit_code"], 5);
+  ASSERT_EQ(document["too_thin"].size(), 1u);
+  const Json& place = document["too_thin"][0];
+  EXPECT_EQ(place["kind"], "body");
+  EXPECT_NEAR(place["centre"][0].get<double>(), 0, .1);
+  EXPECT_LT(place["h_needed"], .2);
+  ASSERT_TRUE(document["h_enough"].is_number());
+  for (const char* part : {"is too large", "needs h = ", "is enough", "--allow-thin", "lens/3-mesh/too_thin.vtp"}) {
+    EXPECT_NE(r.err.find(part), std::string::npos) << part << "\n" << r.err;
+  }
+  EXPECT_GT(fs::file_size(folder / "lens/3-mesh/too_thin.vtp"), 0u);
+  EXPECT_FALSE(fs::exists(folder / "lens/3-mesh/mesh.vtu"));
+  EXPECT_FALSE(fs::exists(folder / "lens/certificate.json"));
+  // What it needs is enough.
+  std::ostringstream h;
+  h << document["h_enough"].get<double>();
+  const Result fine = run(kLens + "--json --h " + h.str());
+  EXPECT_EQ(fine.code, 0) << fine.err;
+  EXPECT_TRUE(Json::parse(fine.out)["certificate"]["resolution"]["too_thin"].empty());
+  EXPECT_FALSE(fs::exists(folder / "lens/3-mesh/too_thin.vtp"));
+  // A finished case is left as it was.
+  const auto before = files_of("lens");
+  const Result again = run("mesh lens --h .3");
+  EXPECT_EQ(again.code, 5);
+  EXPECT_NE(again.err.find("lens/3-mesh/failed/too_thin.vtp"), std::string::npos) << again.err;
+  for (const auto& [file, bytes] : before) EXPECT_EQ(content(file), bytes) << file;
+}
+
+TEST_F(Program, WhatIsTooThinIsMeshedWhenAllowedAndNamedInTheCertificate) {
+  const Result r = run(kLens + "--h .3 --allow-thin --json");
+  EXPECT_TRUE(r.code == 0 || r.code == 6) << r.err;
+  const Json document = Json::parse(r.out);
+  const Json& c = document["certificate"];
+  ASSERT_EQ(c["resolution"]["too_thin"].size(), 1u);
+  EXPECT_LT(c["resolution"]["too_thin"][0]["h_needed"], .2);
+  EXPECT_GT(fs::file_size(folder / "lens/3-mesh/too_thin.vtp"), 0u);
+  EXPECT_NE(content(folder / "lens/3-mesh/record.json").find("too_thin.vtp"), std::string::npos);
+  EXPECT_NE(run("mesh lens").out.find("thin      1 place is thinner"), std::string::npos);
+}
+
+TEST_F(Program, AnAutomaticHGoesAsLowAsThinPlacesNeedAndMaxTetsAllows) {
+  // .015 of the diagonal is .072, and the lens needs less than 1.25 h of .016 at z: its half axis is .02.
+  const std::string disc = "mesh --implicit 'x^2+y^2+(z/0.04)^2-1' --box=-1.2,-1.2,-.3,1.2,1.2,.3 -o disc --json ";
+  const Result r = run(disc + "--max-tets 20000");
+  EXPECT_EQ(r.code, 5) << r.err;
+  EXPECT_NE(r.err.find("raise --max-tets"), std::string::npos) << r.err;
+  EXPECT_FALSE(Json::parse(r.out)["too_thin"].empty());
+}
+
+TEST_F(Program, MaxDeviationIsKeptAndNotMuchFinerThanNeeded) {
+  const struct {
+    const char *formula, *box, *deviation;
+  } cases[] = {{"x^2+y^2+z^2-1", "-1.3,-1.3,-1.3,1.3,1.3,1.3", ".004"},
+               {"x^2+y^2/.64+z^2/.36-1", "-1.3,-1.3,-1.3,1.3,1.3,1.3", ".006"},
+               {"(x^2+y^2+z^2+.84)^2-4*(x^2+y^2)", "-1.6,-1.6,-.6,1.6,1.6,.6", ".008"}};
+  for (const auto& [formula, box, deviation] : cases) {
+    const Result r = run("mesh --implicit '" + std::string(formula) + "' --box=" + box + " --max-deviation " +
+                         deviation + " -o a --json");
+    ASSERT_EQ(r.code, 0) << formula << r.err;
+    const Json c = Json::parse(r.out)["certificate"];
+    const double made = c["boundary"]["max_centroid_distance_over_h"].get<double>() * c["h"].get<double>();
+    EXPECT_LE(made, std::stod(deviation)) << formula;
+    EXPECT_GE(made, std::stod(deviation) / 3) << formula;
+  }
+}
+
+TEST_F(Program, ADeviationThatCannotBeKeptIsNoPass) {
+  // h is as small as 3000 tets allow, and that is too coarse.
+  const std::string ball_box = "mesh --implicit 'x^2+y^2+z^2-1' --box=-1.3,-1.3,-1.3,1.3,1.3,1.3 -o a ";
+  const Result r = run(ball_box + "--max-deviation 1e-4 --max-tets 3000");
+  EXPECT_EQ(r.code, 9) << r.err;
+  EXPECT_NE(r.err.find("raise --max-tets"), std::string::npos) << r.err;
+  EXPECT_FALSE(fs::exists(folder / "a"));
+}
+
+TEST_F(Program, TheWaysToChooseHExcludeEachOther) {
+  const std::pair<const char*, const char*> cases[] = {{"--max-deviation .1 --h .1", "exclude each other"},
+                                                       {"--max-deviation .1 --tets 100", "exclude each other"},
+                                                       {"--max-deviation -1", "must be in"},
+                                                       {"--max-deviation nan", "must be in"},
+                                                       {"--max-deviation 1mm", "not a number"},
+                                                       {"--max-deviations 1", "did you mean --max-deviation?"},
+                                                       {"--allow-thn", "did you mean --allow-thin?"},
+                                                       {"--max-tets 0", "must be in"},
+                                                       {"--max-tets 1.5", "not a whole number"}};
+  for (const auto& [flags, message] : cases) {
+    const Result r = run("run egg.ply -o a --json " + std::string(flags));
+    EXPECT_EQ(r.code, 2) << flags;
+    EXPECT_NE(r.err.find(message), std::string::npos) << flags << "\n" << r.err;
+    EXPECT_EQ(Json::parse(r.out)["exit_code"], 2);
+  }
+  EXPECT_FALSE(fs::exists(folder / "a"));
+  // A case that was made with one of them takes another: the flag is the stronger voice.
+  ASSERT_EQ(run("run egg.ply -o egg --tets 3000").code, 0);
+  const Result r = run("mesh egg --max-deviation .01 --json");
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_TRUE(Json::parse(r.out)["certificate"]["n_tets_asked"].is_null());
+  EXPECT_NE(content(folder / "egg/case.toml").find("max_deviation = 0.01  # --max-deviation"), std::string::npos);
+  EXPECT_NE(content(folder / "egg/case.toml").find("tets = 0  # default"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace umtet
