@@ -16,47 +16,42 @@ using namespace detail;
 
 constexpr int kEdge = LatticeBlocks::kEdge;
 
-// Adds a jet in lattice units to one in model units.
-template <JetOrder order>
-void add(const LatticeJet& f, double h, LatticeJet& sum) {
-  sum.value += f.value;
-  if constexpr (order >= kGradient) sum.gradient += f.gradient / h;
-  if constexpr (order >= kHessian) sum.hessian += f.hessian / (h * h);
-}
-
+// Position in spacings of the coarsest lattice; on that of 2^-k times its spacing it is 2^k times as much, exactly.
 Vec3 lattice_coordinates(const Lattice& L, const Vec3& x) {
   return ((x - L.origin) / L.h).cwiseMax(0.0).cwiseMin((L.n.array() - 1).cast<double>().matrix());
 }
 
-template <JetOrder order>
-void add_coarsest(const LmeTables& tables, const LevelSetLevel& level, const Vec3& x, LatticeJet& sum) {
+template <int W, JetOrder order>
+void add_coarsest(const LmeTables& tables, const LevelSetLevel& level, const Vec3& xi, JetLanes<order>& sum) {
   const Lattice& L = level.lattice;
   LmeBasis3d B;
-  evaluate_lme_3d<order == kHessian>(tables, L.n, lattice_coordinates(L, x), B);
-  const LatticeJet f = dispatch_width(
-      tables.width(), [&](auto W) { return contract<W.value, order>(B, L.n, level.coefficients.data()); });
-  add<order>(f, L.h, sum);
+  tables.evaluate_3d<order>(L.n, xi, 1 / L.h, B);
+  contract<W, order>(B, level.coefficients.data() + L.index(B.x.first, B.y.first, B.z.first), L.n[0],
+                     static_cast<std::ptrdiff_t>(L.n[0]) * L.n[1], sum);
 }
 
-template <JetOrder order, class Band>
-void add_band(const LmeTables& tables, const Band& band, const Vec3& x, LatticeJet& sum) {
+// No place is outside the index, not even one that is no number.
+Lanes4i cell_at(const Eigen::Vector3i& n, const Vec3& xi) {
+  return most(least(truncated(Lanes4d{xi[0], xi[1], xi[2], 0}), Lanes4i{n[0], n[1], n[2], n[2]} - 2), Lanes4i{});
+}
+
+template <int W, JetOrder order, class Band>
+void add_band(const LmeTables& tables, const Band& band, const Vec3& xi, JetLanes<order>& sum) {
   const Lattice& L = band.data.blocks.lattice();
-  const Vec3 xi = lattice_coordinates(L, x);
-  const Eigen::Vector3i cell = xi.cast<int>().cwiseMin((L.n.array() - 2).matrix()), block = cell / kEdge;
-  const int window =
-      band.index[block[0] + static_cast<std::size_t>(band.n[0]) * (block[1] + static_cast<std::size_t>(band.n[1]) * block[2])];
+  const Eigen::Vector3i& n = L.n;
+  const Lanes4i cell = cell_at(n, xi);
+  const Lanes4i block = cell >> 3;
+  const int window = band.index[block[0] + static_cast<std::size_t>(band.n[0]) *
+                                               (block[1] + static_cast<std::size_t>(band.n[1]) * block[2])];
   if (window < 0) return;
   LmeBasis3d B;
-  evaluate_lme_3d<order == kHessian>(tables, L.n, xi, B);
-  const int corner = band.data.blocks.shift();  // the window begins at node 8 block - shift
-  B.x.first += corner - kEdge * block[0];
-  B.y.first += corner - kEdge * block[1];
-  B.z.first += corner - kEdge * block[2];
-  const int edge = band.edge;
-  const float* c = band.windows.data() + static_cast<std::size_t>(window) * edge * edge * edge;
-  const LatticeJet f =
-      dispatch_width(tables.width(), [&](auto W) { return contract<W.value, order>(B, {edge, edge, edge}, c); });
-  add<order>(f, L.h, sum);
+  tables.evaluate_3d<order>(n, xi, 1 / L.h, B);
+  constexpr int edge = kEdge + W - 1, corner = W / 2 - 1;  // the window begins at node 8 block - (R - 1)
+  const Lanes4i at = Lanes4i{B.x.first, B.y.first, B.z.first, 0} + corner - block * kEdge;
+  contract<W, order>(B,
+                     band.windows.data() + static_cast<std::ptrdiff_t>(window) * edge * edge * edge + at[0] +
+                         edge * (at[1] + edge * at[2]),
+                     edge, edge * edge, sum);
 }
 
 }  // namespace
@@ -91,7 +86,7 @@ LevelSet::Band::Band(LevelSetBand&& band, int half_width) : data(std::move(band)
       cells.push_back(b);
     }
   const std::size_t size = static_cast<std::size_t>(edge) * edge * edge;
-  windows.assign(cells.size() * size + LevelSetLevel::kPad, 0.f);
+  windows.assign(cells.size() * size, 0.f);
   tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t c) {
     blocks.copy_window(data.coefficients.data(), kEdge * cells[c] - Eigen::Vector3i::Constant(blocks.shift()),
                        {edge, edge, edge}, edge, windows.data() + c * size);
@@ -106,7 +101,6 @@ LevelSet::LevelSet(const LmePrior& prior, LevelSetLevel coarsest, std::vector<Le
     throw std::invalid_argument("a level needs h > 0, at least 2 half_width nodes an axis and a coefficient a node");
   }
   domain_ = Eigen::AlignedBox3d(L.origin, L.origin + L.h * (L.n.array() - 1).cast<double>().matrix());
-  coarsest.coefficients.resize(coarsest.coefficients.size() + LevelSetLevel::kPad, 0.0);
   coarsest_ = std::make_shared<const LevelSetLevel>(std::move(coarsest));
   for (LevelSetBand& band : bands) *this = with_band(std::move(band));
 }
@@ -128,37 +122,35 @@ LevelSet LevelSet::band_limited(double spacing) const {
   return limited;
 }
 
+template <int W, int order>
+LatticeJet LevelSet::sum_levels(const Vec3& x, int first, int end) const {
+  constexpr auto kOrder = static_cast<JetOrder>(order);
+  const Vec3 xi = lattice_coordinates(coarsest_->lattice, x);
+  JetLanes<kOrder> sum;
+  if (first == 0) add_coarsest<W, kOrder>(*tables_, *coarsest_, xi, sum);
+  for (int level = std::max(first, 1); level < end; ++level) {
+    add_band<W, kOrder>(*tables_, *bands_[level - 1], static_cast<double>(1 << level) * xi, sum);
+  }
+  return sum.sum();
+}
+
+LatticeJet LevelSet::sum_levels(const Vec3& x, int first, int end, Vec3* gradient, Mat3* hessian) const {
+  return dispatch_width(tables_->width(), [&](auto W) {
+    if (hessian) return sum_levels<W.value, kHessian>(x, first, end);
+    if (gradient) return sum_levels<W.value, kGradient>(x, first, end);
+    return sum_levels<W.value, kValue>(x, first, end);
+  });
+}
+
 double LevelSet::evaluate_level(int level, const Vec3& x, Vec3* gradient, Mat3* hessian) const {
-  LatticeJet f;
-  const auto add_terms = [&](auto order) {
-    if (level == 0)
-      add_coarsest<order.value>(*tables_, *coarsest_, x, f);
-    else
-      add_band<order.value>(*tables_, *bands_[level - 1], x, f);
-  };
-  if (hessian)
-    add_terms(std::integral_constant<JetOrder, kHessian>{});
-  else if (gradient)
-    add_terms(std::integral_constant<JetOrder, kGradient>{});
-  else
-    add_terms(std::integral_constant<JetOrder, kValue>{});
+  const LatticeJet f = sum_levels(x, level, level + 1, gradient, hessian);
   if (gradient) *gradient = f.gradient;
   if (hessian) *hessian = f.hessian;
   return f.value;
 }
 
 double LevelSet::evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const {
-  LatticeJet f;
-  const auto add_levels = [&](auto order) {
-    add_coarsest<order.value>(*tables_, *coarsest_, x, f);
-    for (const auto& band : bands_) add_band<order.value>(*tables_, *band, x, f);
-  };
-  if (hessian)
-    add_levels(std::integral_constant<JetOrder, kHessian>{});
-  else if (gradient)
-    add_levels(std::integral_constant<JetOrder, kGradient>{});
-  else
-    add_levels(std::integral_constant<JetOrder, kValue>{});
+  LatticeJet f = sum_levels(x, 0, n_levels(), gradient, hessian);
   const double outside = std::sqrt(domain_.squaredExteriorDistance(x));
   if (outside > 0) {
     const Vec3 away = x - x.cwiseMax(domain_.min()).cwiseMin(domain_.max());

@@ -10,16 +10,18 @@
 
 namespace umtet {
 
+namespace detail {
+struct LatticeJet;
+}
+
 /// Coefficients psi_a, in model units, of all max-ent functions of one lattice.
 struct LevelSetLevel {
   Lattice lattice;
-  std::vector<double> coefficients;  ///< lattice.size() values, x fastest; a LevelSet keeps kPad zeros behind them
-
-  static constexpr std::size_t kPad = 8;  ///< eight-lane loads reach past the last node
+  std::vector<double> coefficients;  ///< lattice.size() values, x fastest
 };
 
-/// Coefficients of a finer lattice near the surface, in model units: its nodes outside the blocks, and those inside that
-/// no sample needs, have none.
+/// Coefficients of a finer lattice near the surface, in model units: its nodes outside the blocks, and those inside
+/// that no sample needs, have none.
 ///
 /// Single precision: a band holds what the coarser levels leave over, a hundredth of its spacing and less. Sums are
 /// made in double, so psi is as smooth as its functions.
@@ -82,6 +84,11 @@ class LevelSet {
     std::vector<float> windows;       // edge^3 a window
     Band(LevelSetBand&& band, int half_width);
   };
+  // The sum of the levels first .. end - 1.
+  detail::LatticeJet sum_levels(const Vec3& x, int first, int end, Vec3* gradient, Mat3* hessian) const;
+  template <int W, int order>
+  detail::LatticeJet sum_levels(const Vec3& x, int first, int end) const;
+
   std::shared_ptr<const LmeTables> tables_;
   std::shared_ptr<const LevelSetLevel> coarsest_;
   std::vector<std::shared_ptr<const Band>> bands_;

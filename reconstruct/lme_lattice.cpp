@@ -111,7 +111,7 @@ LmeTables::LmeTables(const LmePrior& prior) : prior_(prior), R_(umtet::half_widt
   const std::vector<std::string> wrong = problems(prior);
   if (!wrong.empty()) throw std::invalid_argument(wrong.front());
   if (prior.kind != LmePrior::Kind::CompactC2) return;
-  pieces_.resize(static_cast<std::size_t>(R_ * R_) * kPieces);
+  pieces_.resize(first_piece(R_, 0));
   const double step = 1.0 / kPieces;
   for (int left = 0; left < R_; ++left) {
     for (int right = 0; right < R_; ++right) {
@@ -134,7 +134,7 @@ LmeTables::LmeTables(const LmePrior& prior) : prior_(prior), R_(umtet::half_widt
           N[1][lane] = b.N[a], dN[1][lane] = b.dN[a] * step, ddN[1][lane] = b.ddN[a] * step * step;
         }
         if (k == 0) continue;
-        Piece& p = pieces_[static_cast<std::size_t>(left * R_ + right) * kPieces + k - 1];
+        Piece& p = pieces_[first_piece(left, right) + k - 1];
         const Lanes dv = N[1] - N[0] - dN[0] - ddN[0] / 2, dd = dN[1] - dN[0] - ddN[0], d2 = ddN[1] - ddN[0];
         p.c[0] = N[0], p.c[1] = dN[0], p.c[2] = ddN[0] / 2;
         p.c[3] = 10 * dv - 4 * dd + d2 / 2;
@@ -145,45 +145,29 @@ LmeTables::LmeTables(const LmePrior& prior) : prior_(prior), R_(umtet::half_widt
   }
 }
 
-template <bool Second>
-void LmeTables::evaluate(int n, double x, LmeBasis1d& out) const {
-  if (pieces_.empty()) {
-    out = evaluate_lme_1d(prior_, n, x);
-    return;
+void LmeTables::evaluate_exactly(const Eigen::Vector3i& n, const Eigen::Vector3d& xi, double scale,
+                                 LmeBasis3d& out) const {
+  LmeBasis1d* axes[] = {&out.x, &out.y, &out.z};
+  for (int d = 0; d < 3; ++d) {
+    *axes[d] = evaluate_lme_1d(prior_, n[d], xi[d]);
+    for (double& v : axes[d]->dN) v *= scale;
+    for (double& v : axes[d]->ddN) v *= scale * scale;
   }
-  const int cell = std::clamp(static_cast<int>(x), 0, n - 2);
-  const int left = std::min(cell, R_ - 1), right = std::min(n - 2 - cell, R_ - 1);
-  const double t = (x - cell) * kPieces;
-  const int k = std::clamp(static_cast<int>(t), 0, kPieces - 1);
-  const double s = t - k;
-  const Lanes* c = table(left, right)[k].c;
-  // Horner's scheme for the value carries those of the derivatives along.
-  Lanes N = c[5] * s + c[4], dN = c[5], ddN = Lanes::Zero();
-  for (int m = 3; m >= 0; --m) {
-    if constexpr (Second) ddN = ddN * s + dN;
-    dN = dN * s + N;
-    N = N * s + c[m];
-  }
-  using Out = Eigen::Map<Lanes, Eigen::Aligned32>;
-  Out(out.N) = N;
-  Out(out.dN) = dN * double(kPieces);
-  if constexpr (Second) Out(out.ddN) = ddN * (2.0 * kPieces * kPieces);
-  out.first = cell - R_ + 1;
-  if (out.first >= 0 && out.first + width() <= n) return;
-  // At the hull the window is moved inside the axis, and the lanes with it.
-  const int first = std::clamp(out.first, 0, n - width()), shift = first - out.first;
-  LmeBasis1d moved{};
-  for (int a = 0; a < width(); ++a) {
-    const int from = a + shift;
-    if (from < 0 || from >= width()) continue;
-    moved.N[a] = out.N[from], moved.dN[a] = out.dN[from];
-    if constexpr (Second) moved.ddN[a] = out.ddN[from];
-  }
-  moved.first = first;
-  out = moved;
 }
 
-template void LmeTables::evaluate<false>(int, double, LmeBasis1d&) const;
-template void LmeTables::evaluate<true>(int, double, LmeBasis1d&) const;
+// At the hull the window is moved inside the axis, and the lanes with it.
+void LmeTables::move_inside(const Eigen::Vector3i& n, LmeBasis3d& out) const {
+  LmeBasis1d* axes[] = {&out.x, &out.y, &out.z};
+  for (int d = 0; d < 3; ++d) {
+    LmeBasis1d& B = *axes[d];
+    const int first = std::clamp(B.first, 0, n[d] - width()), shift = first - B.first;
+    LmeBasis1d moved{};
+    for (int a = std::max(0, -shift); a < width() - std::max(0, shift); ++a) {
+      moved.N[a] = B.N[a + shift], moved.dN[a] = B.dN[a + shift], moved.ddN[a] = B.ddN[a + shift];
+    }
+    moved.first = first;
+    B = moved;
+  }
+}
 
 }  // namespace umtet

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <memory>
 #include <vector>
 
+#include "reconstruct/detail/lanes.h"
 #include "reconstruct/lme_prior.h"
 
 namespace umtet {
@@ -14,6 +16,13 @@ struct alignas(32) LmeBasis1d {
   static constexpr int kLanes = 8;
   double N[kLanes], dN[kLanes], ddN[kLanes];  ///< functions and derivatives with respect to x / h
   int first = 0;
+};
+
+/// The lattice functions N_a(x) = p_i(x) p_j(y) p_k(z) at one point: a Gaussian prior and its compact relative are
+/// products over the axes, and so is Z; the three-dimensional max-ent functions are therefore tensor products, hull
+/// included.
+struct LmeBasis3d {
+  LmeBasis1d x, y, z;
 };
 
 /// One-dimensional max-ent functions on the nodes 0, 1, ..., n - 1 (unit spacing), by Newton's method on log Z.
@@ -40,7 +49,14 @@ class LmeTables {
 
   /// N, N' and (if Second) N'' at x in [0, n - 1] on an axis of n >= width() nodes. Cost: about 10 ns.
   template <bool Second>
-  void evaluate(int n, double x, LmeBasis1d& out) const;
+  void evaluate(int n, double x, LmeBasis1d& out) const {
+    LmeBasis3d B;
+    evaluate_3d<Second ? 2 : 1>({n, n, n}, {x, x, x}, 1, B);
+    out = B.x;
+  }
+  /// Three axes at once; derivatives up to `order` with respect to x / scale: scale = 1 / h gives those in model units.
+  template <int order>
+  void evaluate_3d(const Eigen::Vector3i& n, const Eigen::Vector3d& xi, double scale, LmeBasis3d& out) const;
 
  private:
   using Lanes = Eigen::Array<double, LmeBasis1d::kLanes, 1>;
@@ -48,15 +64,61 @@ class LmeTables {
     Lanes c[6];  // N(s) = sum c_m s^m on a subinterval, s in [0, 1]
   };
   const Piece* table(int nodes_left, int nodes_right) const {
-    return pieces_.data() + static_cast<std::size_t>(nodes_left * R_ + nodes_right) * kPieces;
+    return pieces_.data() + first_piece(nodes_left, nodes_right);
   }
+  template <int order>
+  static void evaluate_piece(const Piece& piece, double s, double scale, LmeBasis1d& out);
+  void evaluate_exactly(const Eigen::Vector3i& n, const Eigen::Vector3d& xi, double scale, LmeBasis3d& out) const;
+  void move_inside(const Eigen::Vector3i& n, LmeBasis3d& out) const;
 
   // 256 pieces a cell: N'' is right to 2e-9 (gamma = 1.2, R = 3), N to rounding.
   static constexpr int kPieces = 256;
+  template <class Int>
+  static Int first_piece(Int nodes_left, Int nodes_right) {
+    return (nodes_left * 4 + nodes_right) * kPieces;  // at most four of each
+  }
   LmePrior prior_;
   int R_;
   std::vector<Piece> pieces_;  // empty for a Gaussian prior
 };
+
+template <int order>
+inline void LmeTables::evaluate_piece(const Piece& piece, double s, double scale, LmeBasis1d& out) {
+  // Horner's scheme for the value carries those of the derivatives along.
+  const Lanes* c = piece.c;
+  Lanes N = c[5] * s + c[4], dN = c[5], ddN = c[5];
+  for (int m = 3; m >= 0; --m) {
+    if constexpr (order > 1) ddN = m == 3 ? dN : ddN * s + dN;
+    if constexpr (order > 0) dN = dN * s + N;
+    N = N * s + c[m];
+  }
+  using Out = Eigen::Map<Lanes, Eigen::Aligned32>;
+  Out(out.N) = N;
+  if constexpr (order > 0) Out(out.dN) = dN * scale;
+  if constexpr (order > 1) Out(out.ddN) = ddN * (2 * scale * scale);
+}
+
+template <int order>
+inline void LmeTables::evaluate_3d(const Eigen::Vector3i& n, const Eigen::Vector3d& xi, double scale,
+                                   LmeBasis3d& out) const {
+  using namespace detail;
+  if (pieces_.empty()) return evaluate_exactly(n, xi, scale, out);
+  const Lanes4i last = Lanes4i{n[0], n[1], n[2], n[2]} - 2, zero = {}, inner = zero + (R_ - 1);
+  const Lanes4d x = {xi[0], xi[1], xi[2], xi[2]};
+  const Lanes4i cell = most(least(truncated(x), last), zero);
+  const Lanes4i left = least(cell, inner), right = least(last - cell, inner);
+  const Lanes4d t = (x - as_doubles(cell)) * double(kPieces);
+  const Lanes4i k = most(least(truncated(t), zero + (kPieces - 1)), zero);
+  const Lanes4d s = t - as_doubles(k);
+  const Lanes4i piece = first_piece(left, right) + k, first = cell - inner;
+  scale *= kPieces;
+  evaluate_piece<order>(pieces_[piece[0]], s[0], scale, out.x);
+  evaluate_piece<order>(pieces_[piece[1]], s[1], scale, out.y);
+  evaluate_piece<order>(pieces_[piece[2]], s[2], scale, out.z);
+  out.x.first = first[0], out.y.first = first[1], out.z.first = first[2];
+  const Lanes4i at_hull = (left < inner) | (right < inner);
+  if (at_hull[0] | at_hull[1] | at_hull[2]) move_inside(n, out);
+}
 
 /// Nodes of a cubic lattice: node (i, j, k) at origin + h (i, j, k), index i + n_x (j + n_y k).
 struct Lattice {
@@ -71,19 +133,10 @@ struct Lattice {
   bool operator==(const Lattice& o) const { return origin == o.origin && h == o.h && n == o.n; }
 };
 
-/// The lattice functions N_a(x) = p_i(x) p_j(y) p_k(z) at one point: a Gaussian prior and its compact relative are
-/// products over the axes, and so is Z; the three-dimensional max-ent functions are therefore tensor products, hull
-/// included.
-struct LmeBasis3d {
-  LmeBasis1d x, y, z;
-};
-
 /// @param xi  (x - origin) / h, inside [0, n - 1] on each axis
 template <bool Second>
 void evaluate_lme_3d(const LmeTables& tables, const Eigen::Vector3i& n, const Eigen::Vector3d& xi, LmeBasis3d& out) {
-  tables.evaluate<Second>(n[0], xi[0], out.x);
-  tables.evaluate<Second>(n[1], xi[1], out.y);
-  tables.evaluate<Second>(n[2], xi[2], out.z);
+  tables.evaluate_3d<Second ? 2 : 1>(n, xi, 1, out);
 }
 
 }  // namespace umtet

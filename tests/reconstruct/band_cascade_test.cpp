@@ -288,6 +288,8 @@ TEST(BandCascade, DerivativesPassFiniteDifferencesAndAreContinuous) {
     double sum = 0;
     for (int level = 0; level < psi.n_levels(); ++level) sum += psi.evaluate_level(level, x, nullptr, nullptr);
     EXPECT_NEAR(f, sum, 1e-15);
+    EXPECT_EQ(f, psi.value(x));
+    EXPECT_EQ(f, psi.evaluate(x, &g, nullptr));
     for (int d = 0; d < 3; ++d) {
       const Vec3 up = x + e * Vec3::Unit(d), down = x - e * Vec3::Unit(d);
       EXPECT_NEAR(g[d], (psi.value(up) - psi.value(down)) / (2 * e), 1e-7);
