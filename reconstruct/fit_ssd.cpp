@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -107,13 +108,30 @@ std::vector<SsdSample> make_samples(const OrientedPointCloud& cloud, const std::
   return samples;
 }
 
+// The points by blocks of cells: psi's coefficients around one are then in the cache for the next.
+std::vector<std::uint32_t> by_place(const std::vector<Vec3>& points, const Lattice& lattice) {
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(points.size());
+  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+    const Vec3 block = (points[i] - lattice.origin) / (LatticeBlocks::kEdge * lattice.h);
+    std::uint64_t key = 0;
+    for (int d = 2; d >= 0; --d) key = key << 21 | static_cast<std::uint64_t>(block[d]);
+    keyed[i] = {key, static_cast<std::uint32_t>(i)};
+  });
+  tbb::parallel_sort(keyed.begin(), keyed.end());
+  std::vector<std::uint32_t> order(points.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = keyed[i].second;
+  return order;
+}
+
 // @param length  by which values are weighed
 void measure_fit(const OrientedPointCloud& cloud, const LevelSet& psi, const std::vector<double>& area, double length,
                  SsdReport& report) {
   const std::size_t n = cloud.points.size();
   std::vector<double> value(n), misfit(n);
   std::vector<char> opposed(n);
-  tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
+  const std::vector<std::uint32_t> order = by_place(cloud.points, psi.lattice(psi.n_levels() - 1));
+  tbb::parallel_for(std::size_t{0}, n, [&](std::size_t at) {
+    const std::uint32_t i = order[at];
     Vec3 gradient;
     value[i] = psi.evaluate(cloud.points[i], &gradient, nullptr);
     misfit[i] = (gradient - cloud.normals[i]).squaredNorm();

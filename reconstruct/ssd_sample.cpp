@@ -37,6 +37,7 @@ std::vector<SsdSample> merge_samples(const std::vector<SsdSample>& samples, doub
   });
   tbb::parallel_sort(order.begin(), order.end());
   std::vector<SsdSample> means;
+  means.reserve(order.size());  // memory that is not written costs nothing
   for (std::size_t i = 0; i < order.size();) {
     std::size_t end = i + 1;
     while (end < order.size() && order[end].key == order[i].key) ++end;
