@@ -52,7 +52,7 @@ using Settle = std::function<std::vector<std::int8_t>(const Signs&)>;
 ///
 /// 1. patches of at most kPatchPoints points grow over the surest pairs (union-find with parity);
 /// 2. the two patches with the greatest |sum of weights| between them are joined, and so on;
-/// 3. patches, then points, whose pairs to the rest disagree in sum are turned over until none is left.
+/// 3. patches, regions of up to 64 smaller ones, then points, whose pairs to the rest disagree in sum are turned over.
 ///
 /// Step 2 goes over sure pairs first. The components that these make go through `settle`; then it goes on down to the
 /// weakest pairs, except between two components that are settled: bodies that touch stay bodies.
