@@ -44,8 +44,16 @@ std::vector<std::vector<Border>> patch_borders(const std::vector<SignEdge>& edge
   return borders;
 }
 
+double sum_of(const std::vector<Border>& borders) {
+  double sum = 0;
+  for (const Border& border : borders) sum += border.second;
+  return sum;
+}
+
 /// The region around seed whose border has the least sum below zero, on the way of greedy growth; or none.
-std::vector<std::uint32_t> region_in_disagreement(const std::vector<std::vector<Border>>& borders, std::uint32_t seed) {
+/// @param total  sum_of every patch
+std::vector<std::uint32_t> region_in_disagreement(const std::vector<std::vector<Border>>& borders,
+                                                  const std::vector<double>& total, std::uint32_t seed) {
   std::vector<std::uint32_t> region;
   std::map<std::uint32_t, double> along = {{seed, 0}};  // patches beside the region: the sums to it
   double sum = 0, least = -kRounding;
@@ -54,10 +62,8 @@ std::vector<std::uint32_t> region_in_disagreement(const std::vector<std::vector<
     std::uint32_t next = 0;
     double change = std::numeric_limits<double>::infinity();
     for (const auto& [q, to_region] : along) {
-      double all = 0;
-      for (const Border& border : borders[q]) all += border.second;
-      if (all - 2 * to_region < change) {
-        change = all - 2 * to_region;
+      if (total[q] - 2 * to_region < change) {
+        change = total[q] - 2 * to_region;
         next = q;
       }
     }
@@ -128,17 +134,21 @@ void turn_groups(const SignAdjacency& adjacency, const std::vector<std::uint32_t
 void turn_regions(const std::vector<SignEdge>& edges, const std::vector<std::uint32_t>& patch, std::uint32_t n_patches,
                   std::vector<std::int8_t>& sign) {
   std::vector<std::vector<Border>> borders = patch_borders(edges, patch, n_patches, sign);
+  std::vector<double> total;
+  for (const std::vector<Border>& of_one : borders) total.push_back(sum_of(of_one));
   std::vector<std::int8_t> turned(n_patches, 1);
   for (std::uint32_t seed = 0; seed < n_patches; ++seed) {
     const auto disagrees = [](const Border& border) { return border.second < -kRounding; };
     if (std::none_of(borders[seed].begin(), borders[seed].end(), disagrees)) continue;
-    for (const std::uint32_t p : region_in_disagreement(borders, seed)) {
+    for (const std::uint32_t p : region_in_disagreement(borders, total, seed)) {
       turned[p] = static_cast<std::int8_t>(-turned[p]);
       for (auto& [q, weight] : borders[p]) {
         weight = -weight;
         for (auto& [r, same] : borders[q])
           if (r == p) same = -same;
+        total[q] = sum_of(borders[q]);
       }
+      total[p] = sum_of(borders[p]);
     }
   }
   for (std::size_t i = 0; i < sign.size(); ++i) sign[i] = static_cast<std::int8_t>(sign[i] * turned[patch[i]]);
