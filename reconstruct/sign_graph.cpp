@@ -19,7 +19,7 @@ namespace {
 // ears and fins.
 constexpr std::uint32_t kPatchPoints = 64;
 // Patches that step 3 builds its regions of. A patch of 64 can hold both a right and a wrong part of a fin: with these
-// 38 of blub's 7106 points face the wrong way instead of 265, in clusters of 20 instead of 141.
+// 41 of blub's 7106 points face the wrong way instead of 265, in clusters of 20 instead of 141.
 constexpr std::array<std::uint32_t, 4> kSmallPatches = {32, 16, 8, 4};
 // Pairs below kSurePair do not grow patches, and those below kSureBorder do not join bodies: across a narrow gap there
 // are many that say a little (at 0.1 a ball one spacing from a torus is joined to it; at 0.5 thin fins come apart).
