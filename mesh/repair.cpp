@@ -1,13 +1,17 @@
 #include "mesh/repair.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <map>
 #include <set>
 #include <span>
 #include <stdexcept>
 
+#include "mesh/patch_state.h"
 #include "mesh/tet_quality.h"
 
 namespace umtet {
@@ -21,11 +25,6 @@ constexpr float kMostEnergy = 150;
 
 // Pairs are tried from this many of the most promising labels, with this many second ones each.
 constexpr std::size_t kFirstOfPair = 6, kSecondOfPair = 8;
-
-struct State {
-  double least = 1;
-  std::size_t bad = 0;
-};
 
 class Repair {
  public:
@@ -52,14 +51,17 @@ class Repair {
   using Ids = std::array<std::int64_t, 4>;
   struct Best {
     LatticeShell shell;
-    State state;
-    std::vector<std::int64_t> flips;  ///< empty: nothing betters the patch
-    bool is_perfect() const { return !flips.empty() && state.bad == 0; }
+    PatchState state;
+    std::vector<std::int64_t> flips;
+    bool found = false;  ///< something betters the patch
+    bool is_perfect() const { return found && state.is_perfect(); }
   };
   struct Bad {
-    double quality;
+    double badness;  ///< the cosine of its face if that is turned, else Q: folded ones are the worst
     Ids tet;
   };
+  /// Where a patch's vertices start from: where they are, or (a fold stays a fold under small steps) the lattice.
+  enum class Start { Here, Lattice };
   struct Candidate {
     std::int64_t vertex;
     float energy;  ///< by which the flip changes the price of the labels around
@@ -72,14 +74,17 @@ class Repair {
     return static_cast<std::uint16_t>(mask);
   }
   Vec3 place(std::int64_t v) const;
-  bool still_bad(const Ids& tet) const;
+  bool is_turned(const Ids& tet);
+  bool still_bad(const Ids& tet);
   bool is_thin(const Vec3& foot, const Vec3& normal);
   bool in_reach(std::int64_t v);
   std::vector<Candidate> candidates(const Ids& tet);
   void flip(std::int64_t v) { inside_.test(v) ? inside_.erase(v) : inside_.insert(v); }
-  LatticeShell patch(const std::vector<std::int64_t>& centres) const;
-  State state(const Shell& shell) const;
-  void attempt(const Ids& tet, std::span<const std::int64_t> flips, Best& best);
+  LatticeShell patch(const std::vector<std::int64_t>& centres, Start start) const;
+  std::vector<std::uint8_t> inside_of(const LatticeShell& cut) const;
+  PatchState state(const LatticeShell& cut);
+  void attempt(const Ids& tet, std::span<const std::int64_t> flips, Start start, Best& best);
+  void try_labels(const Ids& tet, Start start, Best& best);
   bool mend(const Ids& tet);
   void look(const LatticeShell& cut);
 
@@ -105,10 +110,20 @@ Vec3 Repair::place(std::int64_t v) const {
   return at != ids.end() && *at == v ? shell_.shell.V[at - ids.begin()] : background_.position(v);
 }
 
-bool Repair::still_bad(const Ids& tet) const {
+bool Repair::is_turned(const Ids& tet) {
+  std::vector<std::uint8_t> inside;
+  for (const std::int64_t v : tet) inside.push_back(inside_.test(v));
+  Triangle f;
+  if (!positive_face({0, 1, 2, 3}, inside, f)) return false;
+  return normal_cosine(psi_, place(tet[f[0]]), place(tet[f[1]]), place(tet[f[2]]), background_.h(),
+                       report_.psi_evaluations) < kTurnedCosine;
+}
+
+bool Repair::still_bad(const Ids& tet) {
   bool in_omega_h = false;
   for (const std::int64_t v : tet) in_omega_h |= inside_.test(v);
-  return in_omega_h && mean_ratio(place(tet[0]), place(tet[1]), place(tet[2]), place(tet[3])) < params_.target;
+  if (!in_omega_h) return false;
+  return mean_ratio(place(tet[0]), place(tet[1]), place(tet[2]), place(tet[3])) < params_.target || is_turned(tet);
 }
 
 /// As in choose_labels().
@@ -171,63 +186,74 @@ std::vector<Repair::Candidate> Repair::candidates(const Ids& tet) {
   return list;
 }
 
-LatticeShell Repair::patch(const std::vector<std::int64_t>& centres) const {
+LatticeShell Repair::patch(const std::vector<std::int64_t>& centres, Start start) const {
   LatticeShell cut = lattice_patch(background_, links_, inside_, centres, params_.reach);
-  for (std::size_t v = 0; v < cut.shell.V.size(); ++v) cut.shell.V[v] = place(cut.background_vertex[v]);
+  for (std::size_t v = 0; v < cut.shell.V.size(); ++v) {
+    if (start == Start::Here || cut.shell.role[v] == Shell::Role::Fixed)
+      cut.shell.V[v] = place(cut.background_vertex[v]);
+  }
   return cut;
 }
 
-State Repair::state(const Shell& shell) const {
-  State s;
-  for (const Tet& t : shell.C) {
-    const double q = mean_ratio(shell.V[t[0]], shell.V[t[1]], shell.V[t[2]], shell.V[t[3]]);
-    s.least = std::min(s.least, q);
-    s.bad += q < params_.target;
-  }
-  return s;
+std::vector<std::uint8_t> Repair::inside_of(const LatticeShell& cut) const {
+  std::vector<std::uint8_t> inside;
+  for (const std::int64_t v : cut.background_vertex) inside.push_back(inside_.test(v));
+  return inside;
+}
+
+PatchState Repair::state(const LatticeShell& cut) {
+  return patch_state(cut.shell, inside_of(cut), psi_, params_.target, report_.psi_evaluations);
 }
 
 /// Flips these labels on a copy, shapes the patch around them and the tet, and keeps it as the best one if it is.
-void Repair::attempt(const Ids& tet, std::span<const std::int64_t> flips, Best& best) {
+void Repair::attempt(const Ids& tet, std::span<const std::int64_t> flips, Start start, Best& best) {
   if (report_.tries >= params_.max_patches) return;
   ++report_.tries;
   std::vector<std::int64_t> centres(tet.begin(), tet.end());
   centres.insert(centres.end(), flips.begin(), flips.end());
-  const State before = state(patch(centres).shell);
+  const PatchState before = state(patch(centres, Start::Here));
   for (const std::int64_t v : flips) flip(v);
-  LatticeShell trial = patch(centres);
+  LatticeShell trial = patch(centres, start);
   const ProjectionReport projection = project(trial.shell, psi_, params_.projection);
   report_.psi_evaluations += projection.psi_evaluations;
-  State after{-1, 0};
-  if (projection.not_arrived.empty()) {
+  PatchState after;
+  const bool arrived = projection.not_arrived.empty();
+  if (arrived) {
     report_.psi_evaluations += smooth(trial.shell, psi_, params_.smoothing).psi_evaluations;
-    after = state(trial.shell);
+    after = state(trial);
   }
   for (const std::int64_t v : flips) flip(v);
-  const bool no_worse = after.least >= before.least && after.bad <= before.bad;
-  if (!no_worse || (after.least == before.least && after.bad == before.bad)) return;
-  const bool better = best.flips.empty() || after.bad < best.state.bad ||
-                      (after.bad == best.state.bad && after.least > best.state.least);
-  if (better) best = {std::move(trial), after, {flips.begin(), flips.end()}};
+  if (!arrived || !after.is_no_worse_than(before) || !after.is_better_than(before)) return;
+  if (!best.found || after.is_better_than(best.state))
+    best = {std::move(trial), after, {flips.begin(), flips.end()}, true};
 }
 
-bool Repair::mend(const Ids& tet) {
-  Best best;
+void Repair::try_labels(const Ids& tet, Start start, Best& best) {
   const std::vector<Candidate> singles = candidates(tet);
   for (const Candidate& c : singles) {
-    attempt(tet, std::array{c.vertex}, best);
-    if (best.is_perfect()) break;
+    attempt(tet, std::array{c.vertex}, start, best);
+    if (best.is_perfect()) return;
   }
   // Pairs cost as many patches as all singles do, and are for where none of these helps.
-  for (std::size_t a = 0; a < std::min(singles.size(), kFirstOfPair) && best.flips.empty(); ++a) {
+  for (std::size_t a = 0; a < std::min(singles.size(), kFirstOfPair) && !best.found; ++a) {
     flip(singles[a].vertex);
     const std::vector<Candidate> seconds = candidates(tet);
     flip(singles[a].vertex);
     for (std::size_t b = 0; b < std::min(seconds.size(), kSecondOfPair) && !best.is_perfect(); ++b) {
-      if (seconds[b].vertex != singles[a].vertex) attempt(tet, std::array{singles[a].vertex, seconds[b].vertex}, best);
+      if (seconds[b].vertex != singles[a].vertex)
+        attempt(tet, std::array{singles[a].vertex, seconds[b].vertex}, start, best);
     }
   }
-  if (best.flips.empty()) return false;
+}
+
+bool Repair::mend(const Ids& tet) {
+  Best best;
+  if (is_turned(tet)) {
+    attempt(tet, {}, Start::Lattice, best);
+    if (!best.is_perfect()) try_labels(tet, Start::Lattice, best);
+  }
+  if (!best.found) try_labels(tet, Start::Here, best);
+  if (!best.found) return false;
   for (const std::int64_t v : best.flips) flip(v);
   const Shell& shell = best.shell.shell;
   for (std::size_t v = 0; v < shell.V.size(); ++v) {
@@ -238,18 +264,32 @@ bool Repair::mend(const Ids& tet) {
   return true;
 }
 
-/// Puts the tets of a shell that are below the target on the list, the worst first.
+/// Puts the tets of a shell that are below the target, or have a turned face, on the list, the worst first.
 void Repair::look(const LatticeShell& cut) {
+  const std::vector<Vec3>& V = cut.shell.V;
+  const std::vector<Tet>& C = cut.shell.C;
+  const std::vector<std::uint8_t> inside = inside_of(cut);
+  std::vector<double> badness(C.size());
+  std::atomic<std::size_t> evaluations = 0;
+  tbb::parallel_for(std::size_t{0}, C.size(), [&](std::size_t k) {
+    const Tet& t = C[k];
+    badness[k] = mean_ratio(V[t[0]], V[t[1]], V[t[2]], V[t[3]]);
+    Triangle f;
+    if (!positive_face(t, inside, f)) return;
+    std::size_t n = 0;
+    const double cosine = normal_cosine(psi_, V[f[0]], V[f[1]], V[f[2]], cut.shell.h, n);
+    evaluations.fetch_add(n, std::memory_order_relaxed);
+    if (cosine < kTurnedCosine) badness[k] = std::min(badness[k], cosine);
+  });
+  report_.psi_evaluations += evaluations;
   const std::size_t first = todo_.size();
-  for (const Tet& t : cut.shell.C) {
-    const auto& V = cut.shell.V;
-    const double q = mean_ratio(V[t[0]], V[t[1]], V[t[2]], V[t[3]]);
-    if (q >= params_.target) continue;
-    const auto& id = cut.background_vertex;
-    todo_.push_back({q, {id[t[0]], id[t[1]], id[t[2]], id[t[3]]}});
+  const auto& id = cut.background_vertex;
+  for (std::size_t k = 0; k < C.size(); ++k) {
+    const Tet& t = C[k];
+    if (badness[k] < params_.target) todo_.push_back({badness[k], {id[t[0]], id[t[1]], id[t[2]], id[t[3]]}});
   }
   std::stable_sort(todo_.begin() + static_cast<std::ptrdiff_t>(first), todo_.end(),
-                   [](const Bad& a, const Bad& b) { return a.quality < b.quality; });
+                   [](const Bad& a, const Bad& b) { return a.badness < b.badness; });
 }
 
 RepairReport Repair::operator()(const KeepGoing& keep_going) {

@@ -14,7 +14,7 @@
 namespace umtet {
 
 struct RepairParams {
-  double target = .82;  ///< tets below are mended; in (0, 1)
+  double target = .82;  ///< tets below are mended, and turned faces; in (0, 1)
   int reach = 3;        ///< a patch moves the vertices within this many edges of the flip and the tet; >= 1. With 2
                         ///< some tets of koala and spot stay below .8
   int max_tries = 24;   ///< labels tried for one tet; >= 0. 0: no repair
@@ -38,7 +38,7 @@ struct RepairParams {
 std::vector<std::string> problems(const RepairParams&);
 
 struct RepairReport {
-  std::size_t bad_before = 0;  ///< tets below the target
+  std::size_t bad_before = 0;  ///< tets below the target or with a turned face
   std::size_t tries = 0;       ///< patches shaped on a copy
   std::size_t flips = 0;       ///< labels changed
   std::size_t given_up = 0;    ///< tets for which nothing helped
@@ -46,13 +46,16 @@ struct RepairReport {
   std::vector<std::pair<std::int64_t, Vec3>> moved;  ///< background vertices with a new place, ascending
 };
 
-/// Mends tets below the target by changing labels next to them: connectivity is the limit where smoothing has settled.
+/// Mends tets below the target, and boundary faces turned away from psi = 0 (patch_state.h), by changing labels next to
+/// them: connectivity is the limit where smoothing has settled.
 ///
-/// For each such tet, the worst first, labels of its vertices and their neighbours are changed one by one, then in
-/// pairs, on a copy of the patch around them, whose boundary is projected and whose inside is smoothed, the patch's rim
-/// held. The best is kept if it lowers neither the least quality of the patch nor raises its number of tets below the
-/// target, and betters one. A label changes only where choose_labels() might change it: at simple vertices, without a
-/// new spot where the boundary is no manifold, and not where the body or the gap is thin. So topology stays.
+/// For each such tet, the worst first and folded faces before all, labels of its vertices and their neighbours are
+/// changed one by one, then in pairs, on a copy of the patch around them, whose boundary is projected and whose inside
+/// is smoothed, the patch's rim held. A patch with a turned face also starts from the lattice anew. The best is kept if
+/// neither the least quality of the patch nor its least cosine falls and neither its poor tets nor its turned nor its
+/// folded faces become more, and one of these gets better. A label changes only where choose_labels() might change it:
+/// at simple vertices, without a new spot where the boundary is no manifold, and not where the body or the gap is thin.
+/// So topology stays.
 ///
 /// Serial: some dozens of patches in a mesh of a million tets.
 /// @param shell   smoothed; its coordinates stay as they are, `moved` says what has changed since

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "mesh/certificate.h"
+#include "mesh/patch_state.h"
 #include "mesh/tet_quality.h"
 #include "tests/support/domains.h"
 
@@ -111,31 +112,47 @@ TEST(FastMesh, DoesNotDependOnThreadsOrOnTheSearch) {
   }
 }
 
-TEST(FastMesh, RepairWorsensNeitherTheLeastQualityNorTheNumberOfBadTets) {
-  std::size_t mended = 0;
-  for (const double n_tets : {9000., 14000., 22000.}) {
-    // The disc is thin enough for tets that no label mends.
-    for (const AnalyticDomain& domain :
-         {testing::equation_9(), testing::banchoff_chmutov_4(), testing::ellipsoid({1, 1, .1})}) {
-      SCOPED_TRACE(domain.name);
-      const BackgroundMesh background = background_of(domain, n_tets);
-      UmParams params = fast();
-      const UmResult repaired = universal_mesh(background, domain, params);
-      params.fast.repair.max_tries = 0;
-      const UmResult plain = universal_mesh(background, domain, params);
-      ASSERT_EQ(plain.status, UmStatus::Success);
-      ASSERT_EQ(repaired.status, UmStatus::Success);
-      const Quality before = quality(plain, plain.final), after = quality(repaired, repaired.final);
-      EXPECT_GE(after.least, before.least);
-      EXPECT_LE(after.bad, before.bad);
-      mended += before.bad - after.bad;
-      const MeshCertificate c = certificate(repaired, domain, background.h());
-      EXPECT_TRUE(c.boundary.closed_manifold);
-      EXPECT_EQ(c.quality.n_inverted, 0u);
-      EXPECT_EQ(c.boundary.genus, domain.genus);
-    }
+/// All of a result, as repair sees it.
+PatchState state_of(const UmResult& result, const AnalyticDomain& domain, double h) {
+  Shell whole;
+  whole.V = result.final;
+  whole.C = result.submesh.mesh.C;
+  whole.h = h;
+  std::vector<std::uint8_t> inside(whole.V.size(), 1);
+  for (const int i : result.submesh.positive_vertices) inside[i] = 0;
+  std::size_t n = 0;
+  return patch_state(whole, inside, domain, .82, n);
+}
+
+TEST(FastMesh, RepairMakesNothingWorseAndMendsPoorTetsAndFoldedFaces) {
+  std::size_t mended = 0, unturned = 0, unfolded = 0;
+  // The discs are thin enough for folds, and for tets that no label mends.
+  const std::vector<std::pair<AnalyticDomain, double>> cases = {
+      {testing::equation_9(), 9000}, {testing::ellipsoid({1, .5, .1}), 4000}, {testing::ellipsoid({1, .3, .08}), 3000}};
+  for (const auto& [domain, n_tets] : cases) {
+    SCOPED_TRACE(domain.name);
+    const BackgroundMesh background = background_of(domain, n_tets);
+    UmParams params = fast();
+    const UmResult repaired = universal_mesh(background, domain, params);
+    params.fast.repair.max_tries = 0;
+    const UmResult plain = universal_mesh(background, domain, params);
+    ASSERT_EQ(plain.status, UmStatus::Success);
+    ASSERT_EQ(repaired.status, UmStatus::Success);
+    const PatchState before = state_of(plain, domain, background.h()),
+                     after = state_of(repaired, domain, background.h());
+    EXPECT_TRUE(after.is_no_worse_than(before));
+    mended += before.poor - after.poor;
+    unturned += before.turned - after.turned;
+    unfolded += before.folded - after.folded;
+    const MeshCertificate c = certificate(repaired, domain, background.h());
+    EXPECT_TRUE(c.boundary.closed_manifold);
+    EXPECT_EQ(c.quality.n_inverted, 0u);
+    EXPECT_EQ(c.boundary.genus, domain.genus);
+    EXPECT_EQ(c.boundary.n_cos_below_half, after.turned);  // by its own projection
   }
   EXPECT_GT(mended, 0u);
+  EXPECT_GT(unturned, 0u);
+  EXPECT_GT(unfolded, 0u);
 }
 
 TEST(FastMesh, WhatCannotBeMeshedIsAStatusWithEvidence) {

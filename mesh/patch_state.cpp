@@ -1,0 +1,86 @@
+#include "mesh/patch_state.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "mesh/closest_point.h"
+#include "mesh/tet_quality.h"
+
+namespace umtet {
+
+double normal_cosine(ImplicitFunctionRef psi, const Vec3& a, const Vec3& b, const Vec3& c, double h,
+                     std::size_t& evaluations) {
+  constexpr int kSteps = 4;  // from within h; where these do not arrive, the gradient on the way has to do
+  const Vec3 centroid = (a + b + c) / 3;
+  Vec3 y = centroid, g;
+  double value = psi.value(y, g);
+  ++evaluations;
+  for (int k = 0; k < kSteps; ++k) {
+    const double slope = g.norm();
+    if (!(slope > 0) || std::abs(value) <= 1e-3 * h * slope) break;
+    y -= std::clamp(value / slope, -.5 * h, .5 * h) / slope * g;
+    value = psi.value(y, g);
+    ++evaluations;
+  }
+  const Vec3 n = (b - a).cross(c - a);
+  const auto cosine = [&] {
+    const double lengths = n.norm() * g.norm();
+    return lengths > 0 ? n.dot(g) / lengths : -1.;
+  };
+  // At sharp rims the closest point may be another one, with another normal.
+  if (constexpr double kSure = .9; cosine() < kSure) {
+    const ClosestPoint foot = closest_point(psi, centroid, h, {});
+    evaluations += static_cast<std::size_t>(foot.iterations) + 1;
+    if (foot.converged) psi.value(foot.point, g);
+  }
+  return cosine();
+}
+
+bool positive_face(const Tet& tet, const std::vector<std::uint8_t>& inside, Triangle& face) {
+  int apex = -1;
+  for (int k = 0; k < 4; ++k) {
+    if (inside[tet[k]] == 0) continue;
+    if (apex >= 0) return false;
+    apex = k;
+  }
+  if (apex < 0) return false;
+  const auto& f = kTetFace[apex];
+  face = {tet[f[0]], tet[f[1]], tet[f[2]]};
+  return true;
+}
+
+bool PatchState::is_no_worse_than(const PatchState& other) const {
+  return least >= std::min(other.least, target) && poor <= other.poor &&
+         least_cosine >= std::min(other.least_cosine, kTurnedCosine) && turned <= other.turned &&
+         folded <= other.folded;
+}
+
+bool PatchState::is_better_than(const PatchState& other) const {
+  const auto key = [](const PatchState& s) {
+    return std::tuple(s.folded, s.turned + s.poor, -std::min(s.least, s.target),
+                      -std::min(s.least_cosine, kTurnedCosine));
+  };
+  return key(*this) < key(other);
+}
+
+PatchState patch_state(const Shell& shell, const std::vector<std::uint8_t>& inside, ImplicitFunctionRef psi,
+                       double target, std::size_t& evaluations) {
+  PatchState s;
+  s.target = target;
+  Triangle f;
+  for (const Tet& t : shell.C) {
+    const double q = mean_ratio(shell.V[t[0]], shell.V[t[1]], shell.V[t[2]], shell.V[t[3]]);
+    s.least = std::min(s.least, q);
+    s.poor += q < target;
+    if (!positive_face(t, inside, f)) continue;
+    const double cosine = normal_cosine(psi, shell.V[f[0]], shell.V[f[1]], shell.V[f[2]], shell.h, evaluations);
+    s.least_cosine = std::min(s.least_cosine, cosine);
+    s.turned += cosine < kTurnedCosine;
+    s.folded += cosine < 0;
+  }
+  return s;
+}
+
+}  // namespace umtet
