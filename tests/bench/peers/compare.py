@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""umtet beside TetGen, Gmsh and CGAL on the same shapes and sizes: OUT/table.md, OUT/table.csv, OUT/rows.json.
+"""umtet beside TetGen, Gmsh and CGAL on the same shapes and sizes: OUT/summary.md, table.md, table.csv,
+rows.json.
 
 usage: tests/bench/peers/compare.py [-o OUT] [--shapes sphere,torus] [--sizes 100000] [--tools umtet-fast,tetgen] [--repeat 3]
-       --quick is the sphere at 20,000 tets, once
+       --quick is the sphere at 20,000 tets, once; --resume keeps the rows that OUT has (a whole run takes half an hour)
 
 Needs Debian's tetgen, gmsh, libcgal-dev, python3-meshio, python3-scipy; a tool that is missing is a row that says so.
 Every mesh is made by one process on one thread. CPU is user + system of that process, files read and written included,
@@ -129,6 +130,39 @@ def write_table(rows, out):
                 file.write("| " + " | ".join(cells) + " |\n")
 
 
+def write_summary(rows, out):
+    """One line per size and tool over the shapes: the worst of what is extreme, the median of the rest."""
+    with open(out / "summary.md", "w") as file:
+        file.write("| tets | tool | shapes | min Q | 1 % Q | mean Q | dihedral angles | vertices off psi = 0 | centroids | "
+                   "ktets / CPU s | MB / 100k tets |\n" + "|---" * 11 + "|\n")
+        for size, tool in dict.fromkeys((r["size"], r["tool"]) for r in rows):
+            of = [r for r in rows if (r["size"], r["tool"]) == (size, tool) and "tets" in r]
+            if not of:
+                file.write(f"| {size} | {tool} | 0: not installed, or failed |" + " |" * 8 + "\n")
+                continue
+            column = {c: [r[c] for r in of] for c in COLUMNS[2:]}
+            middle = {c: statistics.median(v) for c, v in column.items()}
+            MB = statistics.median(1e5 * r["peak_MB"] / r["tets"] for r in of)
+            file.write(f"| {size} | {tool} | {len(of)} | {min(column['min_Q']):.3f} | {middle['p01_Q']:.3f} | "
+                       f"{middle['mean_Q']:.3f} | {min(column['dihedral_min']):.1f} to {max(column['dihedral_max']):.1f} | "
+                       f"{max(column['vertex_distance']):.0e} | {max(column['centroid_distance']):.2f} | "
+                       f"{middle['ktets_per_CPU_s']:.0f} | {MB:.0f} |\n")
+
+
+def compare(tools, programs, shape, size, folder, repeat):
+    """One row per tool."""
+    folder.mkdir(parents=True, exist_ok=True)
+    ours = json.loads(timed([programs / "peer_umtet", shape, size, "fast", "ours.msh", "skin"], folder)[2])
+    timed([programs / "peer_umtet", shape, HXT_FINER * float(size), "fast", "ours.msh", "finer"], folder)
+    rows = []
+    for tool in tools:
+        result = row(tool, programs, shape, size, ours, folder, repeat)
+        rows.append({"tool": TOOLS[tool], "shape": shape, "size": size, **result})
+        print(f"{size} {shape}, {TOOLS[tool]}: {result.get('note', '')}", *[
+            f"{c} {cell(c, result.get(c))}" for c in COLUMNS[2:] if c in result], file=sys.stderr)
+    return rows
+
+
 def build():
     folder = ROOT / "build" / "release"
     for command in (["cmake", "--preset", "release", "-DUMTET_BUILD_PEERS=ON"], ["cmake", "--build", folder, "--target", "peers"]):
@@ -144,27 +178,26 @@ def main():
     parser.add_argument("--tools", default=",".join(TOOLS))
     parser.add_argument("--repeat", type=int, default=3)
     parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--resume", action="store_true")
     parser.add_argument("--programs", type=Path, help="folder of peer_umtet and peer_cgal; built when not given")
     args = parser.parse_args()
     if args.quick:
         args.shapes, args.sizes, args.repeat = "sphere", "20000", 1
     programs = args.programs.resolve() if args.programs else build()
-    rows = []
+    rows, order = [], list(TOOLS.values())
+    if args.resume and (args.o / "rows.json").exists():
+        rows = [r for r in json.loads((args.o / "rows.json").read_text()) if "tets" in r]
     for size in args.sizes.split(","):
         for shape in args.shapes.split(","):
-            folder = args.o.resolve() / f"{shape}-{size}"
-            folder.mkdir(parents=True, exist_ok=True)
-            command = [programs / "peer_umtet", shape, size, "fast", "ours.msh", "skin"]
-            ours = json.loads(timed(command, folder)[2])
-            timed([programs / "peer_umtet", shape, HXT_FINER * float(size), "fast", "ours.msh", "finer"], folder)
-            for tool in args.tools.split(","):
-                result = row(tool, programs, shape, size, ours, folder, args.repeat)
-                rows.append({"tool": TOOLS[tool], "shape": shape, "size": size, **result})
-                print(f"{size} {shape}, {TOOLS[tool]}: {result.get('note', '')}", *[
-                    f"{c} {cell(c, result.get(c))}" for c in COLUMNS[2:] if c in result], file=sys.stderr)
+            done = {r["tool"] for r in rows if (r["shape"], r["size"]) == (shape, size)}
+            tools = [t for t in args.tools.split(",") if TOOLS[t] not in done]
+            if tools:
+                rows += compare(tools, programs, shape, size, args.o.resolve() / f"{shape}-{size}", args.repeat)
+                rows.sort(key=lambda r: (int(r["size"]), SHAPES.index(r["shape"]), order.index(r["tool"])))
                 (args.o / "rows.json").write_text(json.dumps(rows))
                 write_table(rows, args.o)
-    print((args.o / "table.md").read_text())
+                write_summary(rows, args.o)
+    print((args.o / "summary.md").read_text())
 
 
 if __name__ == "__main__":

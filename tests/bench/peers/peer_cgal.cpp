@@ -28,7 +28,10 @@ int main(int argc, char** argv) {
   }
   const auto shape = umtet::testing::domain_by_name(argv[1]);
   const double h = std::stod(argv[2]);
-  const auto psi = [&](const K::Point_3& p) { return shape.value({p.x(), p.y(), p.z()}); };
+  const auto psi = [&](const K::Point_3& p) {  // outside the box eq. (9) has sheets that are not meant
+    const umtet::Vec3 x(p.x(), p.y(), p.z());
+    return shape.box.contains(x) ? shape.value(x) : 1;
+  };
   const double reach = .5 * shape.box.diagonal().norm();
   const Domain domain = Domain::create_implicit_mesh_domain(psi, K::Sphere_3(CGAL::ORIGIN, reach * reach),
                                                             params::relative_error_bound = 1e-7);

@@ -5,7 +5,6 @@
 // other meshers
 
 #include <oneapi/tbb/global_control.h>
-#include <sys/resource.h>
 
 #include <cstdio>
 #include <cstring>
@@ -13,6 +12,7 @@
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "mesh/certificate.h"
 #include "mesh/skin.h"
@@ -30,10 +30,14 @@ double cpu_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
+/// Not getrusage(): its peak begins with the size of the process that started this one.
 double peak_MB() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024;
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    double kB;
+    if (word == "VmHWM:" && status >> kB) return kB / 1024;
+  }
+  return 0;
 }
 
 /// One entity per piece in SKIN.msh: Gmsh makes a volume of each.
@@ -89,7 +93,7 @@ int run(int argc, char** argv) {
   const MeshCertificate certificate = certify(input);
   const double certified = cpu_seconds(), peak_certified = peak_MB();
 
-  const std::vector<Triangle> skin = boundary_faces(mesh.C, mesh.V.size()).triangles;
+  const std::vector<Triangle>& skin = result.submesh.positive_faces;  // the certificate compares it with the boundary
   write_msh41(argv[4], mesh, skin, MshEncoding::Binary);
   if (argc == 6) write_skin(argv[5], mesh, skin);
   const nlohmann::ordered_json numbers = {{"h", h},

@@ -1,0 +1,145 @@
+#!/usr/bin/python3
+"""Figures 8, 9/10 and 18 of the paper by this project, as docs/figure_8.svg, figure_10.svg and figure_18.svg.
+
+usage: docs/figures.py [--data build/figures] [--peers build/peers] [--programs FOLDER] [--umtet PROGRAM] [--most 8000000]
+
+What is missing of the data is made: Figure 8 by `umtet run --mode paper`, 9/10 by tests/bench/peers/compare.py, 18 by
+peer_umtet (both programs are built by compare.py --quick). Remove a folder to have its data made anew. Needs Debian's
+python3-matplotlib; some ten minutes.
+"""
+import argparse
+import csv
+import io
+import json
+import re
+import subprocess
+from pathlib import Path
+
+import matplotlib
+matplotlib.use("svg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+
+ROOT = Path(__file__).resolve().parent.parent
+GENUS = {"sphere": 0, "torus": 1, "plate_3": 3, "plate_18": 18, "banchoff_chmutov_8": 81}
+plt.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "umtet", "font.size": 9, "axes.grid": True,
+                     "grid.alpha": .3, "path.simplify_threshold": .6, "legend.frameon": False, "axes.spines.top": False, "axes.spines.right": False})
+
+
+def save(figure, name):
+    """Coordinates to a tenth of a point: half the bytes."""
+    text = io.StringIO()
+    figure.savefig(text, format="svg", metadata={"Date": None})
+    lines = (line if "<text" in line else re.sub(r"(\d\.\d)\d+", r"\1", line) for line in text.getvalue().split("\n"))
+    (ROOT / "docs" / name).write_text("\n".join(lines))
+
+
+def figure_8(data, umtet):
+    case = data / "duck"
+    if not (case / "3-mesh" / "quality.csv").exists():
+        subprocess.run([umtet, "run", ROOT / "data/clouds/duck.ply", "-o", case, "--mode", "paper", "--tets", "60000"],
+                       check=True)
+    with open(case / "3-mesh" / "quality.csv") as file:
+        rows = list(csv.DictReader(file))
+    figure, axes = plt.subplots(1, 2, figsize=(8, 3), sharey=True)
+    curves = (("omega_h", "subset of the background", "tab:gray"), ("projected", "projected", "tab:blue"),
+              ("final", "final", "tab:green"))
+    for axis, prefix, title in ((axes[0], "", "all tets"), (axes[1], "boundary_", "tets with a positive vertex")):
+        for name, label, colour in curves:
+            points = [(int(r["index"]), float(r[prefix + name])) for r in rows if r[prefix + name]]
+            axis.plot(*zip(*points), color=colour, label=label, lw=1.2)
+        axis.set(xscale="log", title=title, xlabel="vertex, ascending in quality")
+    axes[0].set_ylabel("least Q at the vertex")
+    axes[0].legend()
+    figure.tight_layout()
+    save(figure, "figure_8.svg")
+
+
+def figure_10(peers, programs):
+    if not (peers / "rows.json").exists():
+        more = ["--programs", programs] if programs else []
+        subprocess.run([ROOT / "tests/bench/peers/compare.py", "-o", peers, *more], check=True)
+    rows = [r for r in json.loads((peers / "rows.json").read_text()) if r["size"] == "100000" and "tets" in r]
+    shapes, tools = (list(dict.fromkeys(r[k] for r in rows)) for k in ("shape", "tool"))
+    colours = dict(zip(tools, ("tab:green", "tab:olive", "tab:red", "tab:orange", "tab:brown", "tab:blue", "tab:purple")))
+    figure, axes = plt.subplots(2, len(shapes), figsize=(12, 5.4), sharey="row", squeeze=False)
+    for r in rows:
+        top, bottom = axes[:, shapes.index(r["shape"])]
+        q, a = (np.array(r[k]).reshape(-1, n).sum(1) for k, n in (("Q_histogram", 2), ("angle_histogram", 3)))
+        style = {"color": colours[r["tool"]], "label": r["tool"], "lw": 1.1}
+        share = np.cumsum(q) / r["tets"]
+        top.plot(np.arange(1, len(q) + 1)[share > 0] / len(q), share[share > 0], **style)
+        bottom.plot(np.arange(.5, len(a))[a > 0] * 180 / len(a), (a / a.sum())[a > 0], **style)
+        top.set(title=r["shape"], yscale="log", xlim=(0, 1), ylim=(1e-5, 1.2), xlabel="mean ratio Q")
+        bottom.set(yscale="log", xlim=(0, 180), ylim=(1e-6, .3), xticks=range(0, 181, 45), xlabel="dihedral angle, degrees")
+    axes[0, 0].set_ylabel("share of tets below Q")
+    axes[1, 0].set_ylabel("share of angles, three degrees each")
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="lower center", ncol=4)
+    figure.tight_layout(rect=(0, .08, 1, 1))
+    save(figure, "figure_10.svg")
+
+
+def timings(data, programs, most):
+    """One row per mesh: figure_18.csv, which is continued where it ends."""
+    path = data / "figure_18.csv"
+    rows = [] if not path.exists() else [dict(r) for r in csv.DictReader(path.open())]
+    n = 250_000
+    while n <= most:
+        for shape in GENUS:
+            if not any(r["shape"] == shape and int(r["asked"]) == n for r in rows):
+                command = [programs / "peer_umtet", shape, str(n), "crawl", data / "figure_18.msh"]
+                made = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+                if made["genus"] != GENUS[shape] or made["failures"]:
+                    raise RuntimeError(f"{shape} at {n} tets: {made}")
+                rows.append({"shape": shape, "asked": n, **{k: made[k] for k in made if k not in ("failures", "pieces")}})
+                with path.open("w", newline="") as file:
+                    writer = csv.DictWriter(file, rows[0])
+                    writer.writeheader()
+                    writer.writerows(rows)
+        n *= 2
+    (data / "figure_18.msh").unlink(missing_ok=True)
+    return rows
+
+
+def figure_18(data, programs, most):
+    rows = timings(data, programs, most)
+    figure, axis = plt.subplots(figsize=(5.4, 4))
+    faces, seconds, tets = (np.array([float(r[k]) for r in rows]) for k in ("positive_faces", "mesh_s", "tets"))
+    slope, at_one = np.polyfit(np.log(faces), np.log(seconds), 1)
+    for shape, genus in GENUS.items():
+        of = [k for k, r in enumerate(rows) if r["shape"] == shape]
+        axis.plot(faces[of], seconds[of], "o", ms=4, label=f"genus {genus}")
+        print(f"{shape}: exponent {np.polyfit(np.log(faces[of]), np.log(seconds[of]), 1)[0]:.3f}")
+    x = np.array([faces.min(), faces.max()])
+    axis.plot(x, np.exp(at_one) * x**slope, "k-", lw=.8, label=f"exponent {slope:.2f}")
+    axis.set(xscale="log", yscale="log", xlabel="positive faces", ylabel="CPU s, one thread",
+             title=f"{tets.min() / 1e6:.2f} to {tets.max() / 1e6:.1f} million tets")
+    axis.legend()
+    figure.tight_layout()
+    save(figure, "figure_18.svg")
+    work = np.linalg.lstsq(np.c_[faces, tets], seconds, rcond=None)[0] * 1e6
+    large = tets > .9 * most
+    held, written = (np.array([float(r[k]) for r in rows])[large] / tets[large] * 1e6 for k in ("mesh_MB", "all_MB"))
+    print(f"all: exponent {slope:.3f}; {1e6 * (seconds / faces).min():.1f} to {1e6 * (seconds / faces).max():.1f} us per "
+          f"positive face; {work[0]:.2f} us a face + {work[1]:.3f} us a tet\nthe largest: mesher {held.min():.0f} to "
+          f"{held.max():.0f} MB per million tets, process with certificate and file {written.min():.0f} to "
+          f"{written.max():.0f}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    build = ROOT / "build"
+    parser.add_argument("--data", type=Path, default=build / "figures")
+    parser.add_argument("--peers", type=Path, default=build / "peers")
+    parser.add_argument("--programs", type=Path, default=build / "release/tests/bench/peers")
+    parser.add_argument("--umtet", type=Path, default=build / "release/pipeline/umtet")
+    parser.add_argument("--most", type=int, default=8_000_000, help="tets of the largest meshes of Figure 18")
+    args = parser.parse_args()
+    args.data.mkdir(parents=True, exist_ok=True)
+    figure_8(args.data, args.umtet)
+    figure_18(args.data, args.programs, args.most)
+    figure_10(args.peers, args.programs)
+
+
+if __name__ == "__main__":
+    main()
