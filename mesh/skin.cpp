@@ -1,5 +1,7 @@
 #include "mesh/skin.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <Eigen/Geometry>
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
@@ -10,6 +12,7 @@
 #include <limits>
 #include <mutex>
 #include <numeric>
+#include <span>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -25,36 +28,34 @@ struct SurfaceTraits : OpenMesh::DefaultTraits {
 };
 using HalfEdgeMesh = OpenMesh::TriMesh_ArrayKernelT<SurfaceTraits>;
 
-/// One use of an edge or a face, under its least vertex.
-template <int N>
-struct Use {
-  std::array<int, N> rest;  ///< the other vertices, ascending
-  std::int64_t source;      ///< which face or edge of which simplex
-  bool reversed;            ///< orientation relative to ascending vertices
+/// One use of an edge by a face, under its least vertex.
+struct EdgeUse {
+  int other;            ///< the greater vertex
+  std::int64_t source;  ///< 3 face + edge
+  bool reversed;        ///< runs from the greater vertex to the least
 };
 
 /// Groups uses by their least vertex in O(n): a counting sort, then tiny sorts in each group.
-template <int N>
-class UseTable {
+class EdgeTable {
  public:
-  explicit UseTable(std::size_t n_vertices) : begin_(n_vertices + 2, 0) {}
+  explicit EdgeTable(std::size_t n_vertices) : begin_(n_vertices + 2, 0) {}
   void count(int least) { ++begin_[least + 2]; }
   void allocate() {
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
     uses_.resize(begin_.back());
   }
-  void place(int least, const Use<N>& use) { uses_[begin_[least + 1]++] = use; }
-  /// Calls f(first, last) for every set of uses of the same edge or face; within one they ascend in `source`.
+  void place(int least, const EdgeUse& use) { uses_[begin_[least + 1]++] = use; }
+  /// Calls f(first, last, least) for every set of uses of the same edge; within one they ascend in `source`.
   template <typename F>
   void for_each(F&& f) {
     for (std::size_t v = 0; v + 2 < begin_.size(); ++v) {
       const auto first = uses_.begin() + begin_[v], last = uses_.begin() + begin_[v + 1];
-      std::sort(first, last, [](const Use<N>& x, const Use<N>& y) {
-        return x.rest != y.rest ? x.rest < y.rest : x.source < y.source;
+      std::sort(first, last, [](const EdgeUse& x, const EdgeUse& y) {
+        return x.other != y.other ? x.other < y.other : x.source < y.source;
       });
       for (auto i = first; i != last;) {
         auto j = i;
-        while (j != last && j->rest == i->rest) ++j;
+        while (j != last && j->other == i->other) ++j;
         f(i, j, static_cast<int>(v));
         i = j;
       }
@@ -63,7 +64,7 @@ class UseTable {
 
  private:
   std::vector<std::size_t> begin_;
-  std::vector<Use<N>> uses_;
+  std::vector<EdgeUse> uses_;
 };
 
 template <std::size_t N>
@@ -79,24 +80,89 @@ void check_indices(const std::vector<std::array<int, N>>& simplices, std::size_t
   }
 }
 
-Use<2> face_use(const Tet& tet, int face, std::int64_t source, int& least) {
-  std::array<int, 3> f = {tet[kTetFace[face][0]], tet[kTetFace[face][1]], tet[kTetFace[face][2]]};
-  std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
-  least = f[0];
-  return f[1] < f[2] ? Use<2>{{f[1], f[2]}, source, false} : Use<2>{{f[2], f[1]}, source, true};
+// A task of some hundred microseconds.
+constexpr std::size_t kVerticesPerBlock = 1 << 10;
+
+/// The tets at each vertex that is the least or the second least of theirs: no other has a face under it.
+class TetsByVertex {
+ public:
+  TetsByVertex(const std::vector<Tet>& C, std::size_t n_vertices) : begin_(n_vertices + 2, 0), tets_(2 * C.size()) {
+    for (const Tet& t : C) {
+      for (const int v : two_least(t)) ++begin_[v + 2];
+    }
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    for (std::size_t t = 0; t < C.size(); ++t) {
+      for (const int v : two_least(C[t])) tets_[begin_[v + 1]++] = static_cast<int>(t);
+    }
+  }
+  std::span<const int> operator[](int v) const { return {tets_.data() + begin_[v], begin_[v + 1] - begin_[v]}; }
+
+ private:
+  static std::array<int, 2> two_least(const Tet& t) {
+    const int a = std::min(t[0], t[1]), b = std::max(t[0], t[1]), c = std::min(t[2], t[3]), d = std::max(t[2], t[3]);
+    return a < c ? std::array{a, std::min(b, c)} : std::array{c, std::min(a, d)};
+  }
+  std::vector<std::size_t> begin_;
+  std::vector<int> tets_;
+};
+
+/// A face under its least vertex.
+struct FaceUse {
+  std::uint64_t rest;    ///< the other two vertices, ascending, 32 bits each
+  std::uint64_t source;  ///< 2 (4 tet + local face) + 1 where it runs against ascending vertices
+
+  bool reversed() const { return (source & 1) != 0; }
+};
+
+/// Appends the faces of a tet whose least vertex is v.
+void add_faces(const Tet& tet, std::size_t t, int v, std::vector<FaceUse>& uses) {
+  const auto own = std::find(tet.begin(), tet.end(), v) - tet.begin();
+  for (int k = 0; k < 4; ++k) {
+    if (k == own) continue;
+    const auto& f = kTetFace[k];
+    // The face from v on: it is a cycle.
+    const int at = f[0] == own ? 0 : f[1] == own ? 1 : 2;
+    const int p = tet[f[(at + 1) % 3]], q = tet[f[(at + 2) % 3]];
+    if (p < v || q < v) continue;
+    const auto low = static_cast<std::uint64_t>(std::min(p, q)), high = static_cast<std::uint64_t>(std::max(p, q));
+    uses.push_back({low << 32 | high, 2 * (4 * t + static_cast<std::uint64_t>(k)) + (p > q ? 1 : 0)});
+  }
+}
+
+struct BlockFaces {
+  std::vector<std::int64_t> single;  ///< 4 tet + local face
+  std::size_t n_overused = 0, n_same_side = 0;
+};
+
+/// The faces whose least vertex is in first .. last - 1.
+BlockFaces count_faces(const std::vector<Tet>& C, const TetsByVertex& table, int first, int last) {
+  BlockFaces result;
+  std::vector<FaceUse> uses;
+  for (int v = first; v < last; ++v) {
+    uses.clear();
+    for (const int t : table[v]) add_faces(C[t], static_cast<std::size_t>(t), v, uses);
+    std::sort(uses.begin(), uses.end(), [](const FaceUse& x, const FaceUse& y) { return x.rest < y.rest; });
+    for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
+      while (j < uses.size() && uses[j].rest == uses[i].rest) ++j;
+      if (j - i == 1) result.single.push_back(static_cast<std::int64_t>(uses[i].source / 2));
+      if (j - i == 2) result.n_same_side += uses[i].reversed() == uses[i + 1].reversed();
+      if (j - i > 2) ++result.n_overused;
+    }
+  }
+  return result;
 }
 
 /// Edges: how many there are and which are bad; per component counts; the fans at each vertex through shared edges.
 void count_edges(const std::vector<Triangle>& faces, std::size_t n_vertices, SurfaceTopology& s,
                  detail::DisjointSets& fan_of) {
-  UseTable<1> table(n_vertices);
+  EdgeTable table(n_vertices);
   for (const Triangle& f : faces)
     for (int k = 0; k < 3; ++k) table.count(std::min(f[k], f[(k + 1) % 3]));
   table.allocate();
   for (std::size_t i = 0; i < faces.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
       const int a = faces[i][k], b = faces[i][(k + 1) % 3];
-      table.place(std::min(a, b), {{std::max(a, b)}, static_cast<std::int64_t>(3 * i + k), a > b});
+      table.place(std::min(a, b), {std::max(a, b), static_cast<std::int64_t>(3 * i + k), a > b});
     }
   }
   // Corner 3 i + k is face i at its vertex k; corners of one vertex in one fan are united through shared edges.
@@ -113,7 +179,7 @@ void count_edges(const std::vector<Triangle>& faces, std::size_t n_vertices, Sur
       ++s.n_misoriented_edges;
     }
     for (auto u = first + 1; u != last; ++u) {
-      for (const int w : {v, first->rest[0]}) fan_of.unite(corner_of(first->source, w), corner_of(u->source, w));
+      for (const int w : {v, first->other}) fan_of.unite(corner_of(first->source, w), corner_of(u->source, w));
     }
   });
 }
@@ -188,29 +254,24 @@ HalfEdgeMesh half_edges(const std::vector<Vec3>& V, const std::vector<Triangle>&
 
 BoundaryFaces boundary_faces(const std::vector<Tet>& C, std::size_t n_vertices) {
   check_indices(C, n_vertices, "tet");
-  UseTable<2> table(n_vertices);
-  int least = 0;
-  for (const Tet& t : C) {
-    for (int k = 0; k < 4; ++k) {
-      face_use(t, k, 0, least);
-      table.count(least);
-    }
-  }
-  table.allocate();
-  for (std::size_t t = 0; t < C.size(); ++t) {
-    for (int k = 0; k < 4; ++k) {
-      const Use<2> use = face_use(C[t], k, static_cast<std::int64_t>(4 * t + k), least);
-      table.place(least, use);
-    }
-  }
+  const TetsByVertex table(C, n_vertices);
+  const std::size_t n_blocks = (n_vertices + kVerticesPerBlock - 1) / kVerticesPerBlock;
+  std::vector<BlockFaces> blocks(n_blocks);
+  tbb::parallel_for(std::size_t{0}, n_blocks, [&](std::size_t b) {
+    const auto first = static_cast<int>(b * kVerticesPerBlock);
+    const auto last = static_cast<int>(std::min(n_vertices, (b + 1) * kVerticesPerBlock));
+    blocks[b] = count_faces(C, table, first, last);
+  });
   BoundaryFaces result;
   std::vector<std::int64_t> single;
-  table.for_each([&](auto first, auto last, int) {
-    if (last - first == 1) single.push_back(first->source);
-    if (last - first == 2 && first->reversed == (first + 1)->reversed) ++result.n_same_side;
-    if (last - first > 2) ++result.n_overused;
-  });
+  for (const BlockFaces& block : blocks) {
+    single.insert(single.end(), block.single.begin(), block.single.end());
+    result.n_overused += block.n_overused;
+    result.n_same_side += block.n_same_side;
+  }
   std::sort(single.begin(), single.end());
+  result.triangles.reserve(single.size());
+  result.tets.reserve(single.size());
   for (const std::int64_t s : single) {
     const auto& f = kTetFace[s % 4];
     const Tet& t = C[s / 4];
