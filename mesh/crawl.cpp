@@ -12,6 +12,7 @@
 
 #include "mesh/detail/assemble_submesh.h"
 #include "mesh/detail/id_set.h"
+#include "mesh/lattice_shell.h"
 
 namespace umtet {
 namespace {
@@ -22,12 +23,15 @@ using detail::IdSet;
 constexpr int kMaxWalk = 200;
 // From a cut edge a positively cut tet is one of the next few dozen cut tets.
 constexpr std::size_t kMaxCutTets = 2000;
+// Of the flood, some ten nanoseconds each.
+constexpr std::size_t kVisitsPerPoll = 1 << 16;
 
 class Crawler {
  public:
-  Crawler(const BackgroundMesh& background, ImplicitFunctionRef psi)
+  Crawler(const BackgroundMesh& background, ImplicitFunctionRef psi, const KeepGoing& keep_going)
       : background_(background),
         psi_(psi),
+        keep_going_(keep_going),
         known_(background.n_vertices()),
         inside_(background.n_vertices()),
         positive_(background.n_tets()) {}
@@ -43,13 +47,12 @@ class Crawler {
     return true;
   }
 
-  Submesh flood();
   IdSet flood_inside();
   std::size_t n_evaluations() const { return n_evaluations_; }
 
  private:
   double value(std::int64_t v) {
-    ++n_evaluations_;
+    if (n_evaluations_++ % kValuesPerPoll == 0) poll(keep_going_);
     const double psi = psi_.value(background_.position(v));
     known_.insert(v);
     if (psi < 0) inside_.insert(v);
@@ -74,6 +77,7 @@ class Crawler {
 
   const BackgroundMesh& background_;
   ImplicitFunctionRef psi_;
+  const KeepGoing& keep_going_;
   IdSet known_, inside_;  ///< vertices where psi was asked, and where it was negative
   IdSet positive_;        ///< positively cut tets gathered so far
   std::vector<std::int64_t> positive_list_;
@@ -198,34 +202,7 @@ void Crawler::aggregate(std::int64_t first) {
   }
 }
 
-Submesh Crawler::flood() {
-  IdSet visited(background_.n_vertices()), in_omega_h(background_.n_tets());
-  std::vector<std::int64_t> stack;
-  const auto visit = [&](std::int64_t v) {
-    if (visited.test(v) || (known_.test(v) && !inside_.test(v))) return;
-    visited.insert(v);
-    stack.push_back(v);
-  };
-  for (const std::int64_t t : positive_list_) {
-    for (const std::int64_t v : background_.tet(t)) visit(v);
-  }
-  while (!stack.empty()) {
-    const std::int64_t v = stack.back();
-    stack.pop_back();
-    scratch_.clear();
-    background_.star(v, scratch_);
-    for (const std::int64_t t : scratch_) {
-      if (in_omega_h.test(t)) continue;
-      in_omega_h.insert(t);
-      for (const std::int64_t w : background_.tet(t)) visit(w);
-    }
-  }
-  std::vector<std::int64_t> tets;
-  in_omega_h.for_each([&](std::int64_t t) { tets.push_back(t); });
-  return detail::assemble_submesh(background_, std::move(tets), visited);
-}
-
-/// The same from vertex to vertex.
+/// The vertices inside, from those of the positively cut tets along edges.
 IdSet Crawler::flood_inside() {
   std::vector<std::vector<std::int64_t>> steps(background_.n_types());
   for (int type = 0; type < background_.n_types(); ++type) {
@@ -243,7 +220,8 @@ IdSet Crawler::flood_inside() {
   for (const std::int64_t t : positive_list_) {
     for (const std::int64_t v : background_.tet(t)) visit(v);
   }
-  while (!stack.empty()) {
+  for (std::size_t n = 0; !stack.empty(); ++n) {
+    if (n % kVisitsPerPoll == 0) poll(keep_going_);
     const std::int64_t v = stack.back();
     stack.pop_back();
     if (background_.on_rim(v)) {
@@ -260,8 +238,8 @@ IdSet Crawler::flood_inside() {
 }  // namespace
 
 detail::CrawledVertices detail::crawl_inside(const BackgroundMesh& background, ImplicitFunctionRef psi,
-                                             const std::vector<Vec3>& seeds) {
-  Crawler crawler(background, psi);
+                                             const std::vector<Vec3>& seeds, const KeepGoing& keep_going) {
+  Crawler crawler(background, psi, keep_going);
   std::vector<std::size_t> lost;
   for (std::size_t s = 0; s < seeds.size(); ++s) {
     if (!crawler.gather(seeds[s])) lost.push_back(s);
@@ -270,15 +248,10 @@ detail::CrawledVertices detail::crawl_inside(const BackgroundMesh& background, I
   return {std::move(inside), std::move(lost), crawler.n_evaluations()};
 }
 
-Crawl crawl(const BackgroundMesh& background, ImplicitFunctionRef psi, const std::vector<Vec3>& seeds) {
-  Crawler crawler(background, psi);
-  Crawl result;
-  for (std::size_t s = 0; s < seeds.size(); ++s) {
-    if (!crawler.gather(seeds[s])) result.lost_seeds.push_back(s);
-  }
-  result.submesh = crawler.flood();
-  result.n_psi_evaluations = crawler.n_evaluations();
-  return result;
+Crawl crawl(const BackgroundMesh& background, ImplicitFunctionRef psi, const std::vector<Vec3>& seeds,
+            const KeepGoing& keep_going) {
+  detail::CrawledVertices found = detail::crawl_inside(background, psi, seeds, keep_going);
+  return {emit_submesh(background, found.inside), std::move(found.lost_seeds), found.n_psi_evaluations};
 }
 
 }  // namespace umtet

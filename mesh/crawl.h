@@ -5,6 +5,7 @@
 
 #include "mesh/background_mesh.h"
 #include "mesh/implicit_function.h"
+#include "mesh/keep_going.h"
 #include "mesh/submesh.h"
 
 namespace umtet {
@@ -25,7 +26,10 @@ struct Crawl {
 /// @param seeds  at least one point within a few h of every component of the boundary, cavities included
 /// @return equal to find_submesh() bit for bit when every component has its seed and every outside vertex next to an
 ///         inside one is positive. The second fails only where Omega's complement is thinner than an edge.
-/// Cost: about ten values of psi per positive vertex; memory: a few bits per background vertex and tet. Serial.
-Crawl crawl(const BackgroundMesh& background, ImplicitFunctionRef psi, const std::vector<Vec3>& seeds);
+/// Cost: about ten values of psi per positive vertex; memory: a few bits per background vertex and tet. The search
+/// and the flood are serial; the tets are read off by all threads, a few nanoseconds per cell of the background.
+/// \throw MeshCancelled
+Crawl crawl(const BackgroundMesh& background, ImplicitFunctionRef psi, const std::vector<Vec3>& seeds,
+            const KeepGoing& keep_going = {});
 
 }  // namespace umtet

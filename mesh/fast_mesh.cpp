@@ -55,6 +55,12 @@ class FastRun {
       return true;
     return fail(UmStatus::Cancelled, {.what = std::string("stopped by the observer during ") + step});
   }
+  KeepGoing asking(const char* step) {
+    return [this, step] {
+      const auto& mesh = result_.submesh.mesh;
+      return !observer_ || observer_({step, 1, 1, &mesh.V, mesh.C.size()});
+    };
+  }
   bool find_inside(const std::vector<Vec3>& seeds);
   bool label();
   bool fit();
@@ -79,9 +85,9 @@ class FastRun {
 bool FastRun::find_inside(const std::vector<Vec3>& seeds) {
   std::string lost;
   if (params_.search == SubmeshSearch::FullLoop) {
-    inside_ = detail::inside_vertices(background_, psi_, result_.n_psi_evaluations);
+    inside_ = detail::inside_vertices(background_, psi_, result_.n_psi_evaluations, asking("search"));
   } else {
-    detail::CrawledVertices found = detail::crawl_inside(background_, psi_, seeds);
+    detail::CrawledVertices found = detail::crawl_inside(background_, psi_, seeds, asking("search"));
     inside_ = std::move(found.inside);
     result_.n_psi_evaluations = found.n_psi_evaluations;
     lost = "; " + std::to_string(found.lost_seeds.size()) + " of " + std::to_string(seeds.size()) +
@@ -106,7 +112,7 @@ bool FastRun::find_inside(const std::vector<Vec3>& seeds) {
 bool FastRun::label() {
   // Only A15 has measured energies.
   if (background_.tiling().name == a15().name) {
-    const LabelReport labels = choose_labels(background_, links_, psi_, params_.fast.labels, inside_);
+    const LabelReport labels = choose_labels(background_, links_, psi_, params_.fast.labels, inside_, asking("search"));
     result_.n_psi_evaluations += labels.psi_evaluations;
   }
   result_.submesh = emit_submesh(background_, inside_);
@@ -190,15 +196,14 @@ void FastRun::repair_labels(const KeepGoing& keep_going) {
 
 bool FastRun::fit() {
   shell_ = lattice_shell(background_, links_, inside_, params_.fast.layers);
-  const KeepGoing keep_going = [&] {
-    const auto& mesh = result_.submesh.mesh;
-    return !observer_ || observer_({"relax", 1, 1, &mesh.V, mesh.C.size()});
-  };
-  const ProjectionReport projection = project(shell_.shell, psi_, params_.fast.projection, keep_going);
+  const KeepGoing keep_going = asking("relax");
+  PNormSmoother smoother(shell_.shell);
+  const ProjectionReport projection = project(smoother, psi_, params_.fast.projection, keep_going);
   result_.n_psi_evaluations += projection.psi_evaluations;
   if (!all_arrived(projection)) return false;
   const std::vector<Vec3> projected = shell_.shell.V;
-  const SmoothReport smoothing = smooth(shell_.shell, psi_, params_.fast.smoothing, keep_going);
+  smoother.wake_all();
+  const SmoothReport smoothing = smoother.run(psi_, params_.fast.smoothing, keep_going);
   result_.n_psi_evaluations += smoothing.psi_evaluations;
   repair_labels(keep_going);
   result_.final = coordinates(shell_.shell.V);

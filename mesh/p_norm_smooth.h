@@ -63,6 +63,8 @@ class PNormSmoother {
   /// Puts vertex i and all vertices of its ring in the queue: to be called when i was moved from outside. Vertices that
   /// share no tet may be woken by different threads at once.
   void wake(int i);
+  /// Puts every vertex in the queue that was not Fixed at construction.
+  void wake_all();
   /// Visits vertices in the queue until none is left, or for max_sweeps; those left stay for the next call. Roles are
   /// read anew: the caller may hold vertices by making them Fixed for a while, which leaves them in the queue.
   /// \throw std::invalid_argument naming every broken constraint of params, MeshCancelled

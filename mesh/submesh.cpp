@@ -21,8 +21,8 @@ namespace {
 
 using detail::IdSet;
 
-// 64 vertices share a word: 64 words are some thousand evaluations of psi, enough to hide the cost of a task.
-constexpr std::size_t kWordsPerTask = 64;
+// 64 vertices share a word: 16 words are a thousand evaluations of psi, enough to hide the cost of a task.
+constexpr std::size_t kWordsPerTask = 16;
 constexpr std::int64_t kTetsPerBlock = 1 << 16;
 // Side of the coarse sampling of h_for_tets.
 constexpr int kSamples = 64;
@@ -113,11 +113,11 @@ void check_box(const Box& box) {
 
 namespace detail {
 
-IdSet inside_vertices(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t& n_evaluations) {
+IdSet inside_vertices(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t& n_evaluations,
+                      const KeepGoing& keep_going) {
   IdSet inside(background.n_vertices());
   std::atomic<std::size_t> evaluations = 0;
-  const auto range = tbb::blocked_range<std::size_t>(0, inside.n_words(), kWordsPerTask);
-  tbb::parallel_for(range, [&](const auto& words) {
+  const auto evaluate = [&](const tbb::blocked_range<std::size_t>& words) {
     std::size_t n = 0;
     for (std::size_t w = words.begin(); w != words.end(); ++w) {
       std::uint64_t bits = 0;
@@ -131,7 +131,14 @@ IdSet inside_vertices(const BackgroundMesh& background, ImplicitFunctionRef psi,
       inside.set_word(w, bits);
     }
     evaluations += n;
-  });
+  };
+  // A vertex's position costs as much as the cheapest psi: a thousandth of the time goes into questions.
+  constexpr std::size_t kWordsPerPoll = 4 * kValuesPerPoll / 64;
+  for (std::size_t begin = 0; begin < inside.n_words(); begin += kWordsPerPoll) {
+    poll(keep_going);
+    const std::size_t end = std::min(inside.n_words(), begin + kWordsPerPoll);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, kWordsPerTask), evaluate);
+  }
   n_evaluations = evaluations;
   return inside;
 }
@@ -178,10 +185,12 @@ Submesh assemble_submesh(const BackgroundMesh& background, std::vector<std::int6
 
 }  // namespace detail
 
-Submesh find_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t* n_psi_evaluations) {
+Submesh find_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t* n_psi_evaluations,
+                     const KeepGoing& keep_going) {
   std::size_t n = 0;
-  const IdSet inside = detail::inside_vertices(background, psi, n);
+  const IdSet inside = detail::inside_vertices(background, psi, n, keep_going);
   if (n_psi_evaluations) *n_psi_evaluations = n;
+  poll(keep_going);
   return detail::assemble_submesh(background, cut_or_inside_tets(background, inside), inside);
 }
 

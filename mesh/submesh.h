@@ -6,6 +6,7 @@
 
 #include "mesh/background_mesh.h"
 #include "mesh/implicit_function.h"
+#include "mesh/keep_going.h"
 #include "mesh/tet_mesh.h"
 
 namespace umtet {
@@ -29,9 +30,9 @@ inline bool is_positively_cut(unsigned inside) { return inside == 1 || inside ==
 /// Algorithm 1, steps 1-22: evaluates psi at every vertex of the background mesh.
 /// Cost: one value of psi per background vertex. A vertex with psi = 0 counts as outside.
 /// @param n_psi_evaluations  if not null, receives that number
-/// \throw std::length_error if omega_h has more than 2^31 - 1 tets or vertices
+/// \throw std::length_error if omega_h has more than 2^31 - 1 tets or vertices; MeshCancelled
 Submesh find_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi,
-                     std::size_t* n_psi_evaluations = nullptr);
+                     std::size_t* n_psi_evaluations = nullptr, const KeepGoing& keep_going = {});
 
 /// About how many tets omega_h will have at mean edge length h: the volume and the area of the boundary, read off a
 /// coarse sampling of psi, in the count 46 (volume + .27 a area) / a^3 for cell edge a (A15's numbers). 0 when no

@@ -36,11 +36,15 @@ class Run {
       : background_(background), psi_(psi), params_(params), observer_(observer) {}
 
   UmResult operator()(const std::vector<Vec3>& seeds) {
-    if (find_omega_h(seeds) && stays_off_the_rim()) {
-      double_faces_ = double_positive_faces(submesh());
-      result_.double_positive_faces = double_faces_.count;
-      mesh_.emplace(submesh().mesh, background_.tiling().rings_are_optimal);
-      if (project_and_relax()) improve_boundary();
+    try {
+      if (find_omega_h(seeds) && stays_off_the_rim()) {
+        double_faces_ = double_positive_faces(submesh());
+        result_.double_positive_faces = double_faces_.count;
+        mesh_.emplace(submesh().mesh, background_.tiling().rings_are_optimal);
+        if (project_and_relax()) improve_boundary();
+      }
+    } catch (const MeshCancelled&) {
+      fail(UmStatus::Cancelled, {.what = "stopped by the observer during search"});
     }
     result_.final = mesh_ ? std::move(mesh_->V) : submesh().mesh.V;
     if (result_.projected.empty()) result_.projected = result_.final;
@@ -86,10 +90,11 @@ bool Run::report(const UmProgress& progress) {
 /// Steps 1-22.
 bool Run::find_omega_h(const std::vector<Vec3>& seeds) {
   std::string lost;
+  const KeepGoing keep_going = [&] { return !observer_ || observer_({"search", 1, 1, &submesh().mesh.V, 0}); };
   if (params_.search == SubmeshSearch::FullLoop) {
-    result_.submesh = find_submesh(background_, psi_, &result_.n_psi_evaluations);
+    result_.submesh = find_submesh(background_, psi_, &result_.n_psi_evaluations, keep_going);
   } else {
-    Crawl found = crawl(background_, psi_, seeds);
+    Crawl found = crawl(background_, psi_, seeds, keep_going);
     result_.submesh = std::move(found.submesh);
     result_.n_psi_evaluations = found.n_psi_evaluations;
     lost = "; " + std::to_string(found.lost_seeds.size()) + " of " + std::to_string(seeds.size()) +

@@ -73,7 +73,7 @@ struct UmResult {
 
 /// Where the algorithm stands; return false to stop at the next safe point (at most one sweep later).
 struct UmProgress {
-  const char* step;             ///< "submesh", "project", "relax"
+  const char* step;             ///< "search" (V is empty yet), "submesh", "project", "relax"
   int pass, n_passes;           ///< 1-based
   const std::vector<Vec3>* V;   ///< the current iterate
   std::size_t n_tets;           ///< of omega_h, and of every mesh made from it

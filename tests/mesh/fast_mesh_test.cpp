@@ -182,7 +182,7 @@ TEST(FastMesh, TheObserverCanStopItAnywhere) {
   const BackgroundMesh background = background_of(domain, 9000);
   std::size_t n_calls = 0;
   const UmResult whole = universal_mesh(background, domain, fast(), [&](const UmProgress& p) {
-    EXPECT_GT(p.n_tets, 0u);
+    EXPECT_EQ(p.n_tets > 0, std::string_view(p.step) != "search");
     ++n_calls;
     return true;
   });

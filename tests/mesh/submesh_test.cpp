@@ -93,6 +93,18 @@ TEST(Submesh, DoesNotDependOnThreads) {
   expect_equal(find_submesh(background, domain), serial);
 }
 
+TEST(Submesh, BothSearchesStopWhenAsked) {
+  const AnalyticDomain ball = testing::sphere();
+  const BackgroundMesh background = background_of(ball, 60000);
+  for (const int stop : {1, 2, 3}) {
+    int asked = 0;
+    const KeepGoing keep_going = [&] { return ++asked < stop; };
+    EXPECT_THROW(find_submesh(background, ball, nullptr, keep_going), MeshCancelled) << stop;
+    asked = 0;
+    EXPECT_THROW(crawl(background, ball, ball.boundary_seeds, keep_going), MeshCancelled) << stop;
+  }
+}
+
 TEST(Crawl, EqualsTheFullLoop) {
   for (const AnalyticDomain& domain : testing::domains()) {
     for (const double n_tets : {4000., 40000.}) {

@@ -212,7 +212,7 @@ TEST(UniversalMesh, ObserverSeesEverySweepAndCanStop) {
     return true;
   });
   EXPECT_EQ(whole.status, UmStatus::Success);
-  EXPECT_EQ(seen, (std::vector<std::string>{"submesh1/1.1", "project1/2.0", "project1/2.1", "project1/2.2",
+  EXPECT_EQ(seen, (std::vector<std::string>{"search1/1.1", "search1/1.1", "submesh1/1.1", "project1/2.0", "project1/2.1", "project1/2.2",
                                             "project1/2.3", "project2/2.0", "project2/2.1", "project2/2.2",
                                             "project2/2.3", "relax1/3.1", "relax2/3.1", "relax3/3.1"}));
   for (std::size_t stop = 0; stop < seen.size(); ++stop) {
