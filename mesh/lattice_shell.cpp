@@ -1,8 +1,11 @@
 #include "mesh/lattice_shell.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -10,6 +13,9 @@ namespace umtet {
 namespace {
 
 using detail::IdSet;
+
+// Of 64 vertices each, a hundred of them in the shell if it is thick.
+constexpr std::size_t kWordsPerBlock = 16;
 
 /// Few ids, where a set of bits for the whole background would cost more than all the rest.
 class SmallSet {
@@ -54,13 +60,22 @@ class Builder {
   /// A vertex of omega_h, if v is an id at all.
   bool in_omega_h(std::int64_t v) const { return inside_.test_any(v) || mask(v) != 0; }
 
-  template <class Movable>
-  LatticeShell build(const Movable& movable) const;
+  /// Calls f(block, v) for the members of a set, threads over blocks of the same ids whatever their number.
+  template <class F>
+  static void for_each_in_blocks(const IdSet& set, const F& f);
+  static std::size_t n_blocks(const IdSet& set) { return (set.n_words() + kWordsPerBlock - 1) / kWordsPerBlock; }
+
+  LatticeShell build(const IdSet& movable) const;
+  LatticeShell build(const SmallSet& movable) const;
 
  private:
   std::vector<int> type_colours() const;
   template <class Movable, class F>
-  void for_each_tet(const Movable& movable, const F& f) const;
+  void tets_at(std::int64_t v, const Movable& movable, const F& f) const;
+  template <class F>
+  void ring_vertices(std::int64_t v, const F& f) const;
+  template <class Movable>
+  Shell::Role role(std::int64_t v, const Movable& movable) const;
 
   const BackgroundMesh& background_;
   const std::vector<LinkTopology>& links_;
@@ -81,73 +96,59 @@ std::vector<int> Builder::type_colours() const {
   return colour;
 }
 
-/// f(v, a, b, c) for every tet of omega_h with a movable vertex, once: at the lowest one of them.
-template <class Movable, class F>
-void Builder::for_each_tet(const Movable& movable, const F& f) const {
-  movable.for_each([&](std::int64_t v) {
-    const LinkTopology& link = links_[background_.type(v)];
-    const auto& step = steps(v);
-    const unsigned in = inside_.test(v) ? ~0u : mask(v);
-    unsigned lower = 0;
-    for (int k = 0; k < link.n; ++k) {
-      lower |= static_cast<unsigned>(step[k] < 0 && movable.test_any(v + step[k])) << k;
-    }
-    for (const auto& t : link.triangles) {
-      const unsigned corners = 1u << t[0] | 1u << t[1] | 1u << t[2];
-      if ((in & corners) != 0 && (lower & corners) == 0) f(v, v + step[t[0]], v + step[t[1]], v + step[t[2]]);
+template <class F>
+void Builder::for_each_in_blocks(const IdSet& set, const F& f) {
+  tbb::parallel_for(std::size_t{0}, n_blocks(set), [&](std::size_t b) {
+    const std::size_t end = std::min(set.n_words(), (b + 1) * kWordsPerBlock);
+    for (std::size_t w = b * kWordsPerBlock; w < end; ++w) {
+      for (std::uint64_t bits = set.word(w); bits != 0; bits &= bits - 1) {
+        f(b, static_cast<std::int64_t>(w * 64) + std::countr_zero(bits));
+      }
     }
   });
 }
 
-template <class Movable>
-LatticeShell Builder::build(const Movable& movable) const {
-  LatticeShell result;
-  Shell& shell = result.shell;
-  shell.h = background_.h();
-  const std::vector<int> colours = type_colours();
-  const auto number = [&](const auto& used) {
-    used.for_each([&](std::int64_t v) {
-      result.background_vertex.push_back(v);
-      shell.V.push_back(background_.position(v));
-      shell.colour.push_back(colours[background_.type(v)]);
-      Shell::Role role = Shell::Role::Fixed;
-      if (movable.test(v)) {
-        const LinkTopology& link = links_[background_.type(v)];
-        const bool positive = !inside_.test(v) && link.states[mask(v)].n_positive_faces > 0;
-        role = positive ? Shell::Role::Boundary : Shell::Role::Inner;
-      }
-      shell.role.push_back(role);
-    });
-    for_each_tet(movable, [&](std::int64_t v, std::int64_t a, std::int64_t b, std::int64_t c) {
-      shell.C.push_back({used.rank(v), used.rank(a), used.rank(b), used.rank(c)});
-    });
-  };
-  if constexpr (std::is_same_v<Movable, SmallSet>) {
-    std::vector<std::int64_t> ids;
-    for_each_tet(movable, [&](std::int64_t v, std::int64_t a, std::int64_t b, std::int64_t c) {
-      ids.insert(ids.end(), {v, a, b, c});
-    });
-    number(SmallSet(std::move(ids)));
-  } else {
-    IdSet used(background_.n_vertices());
-    movable.for_each([&](std::int64_t v) {
-      used.insert(v);
-      const bool all = inside_.test(v);
-      const LinkTopology& link = links_[background_.type(v)];
-      unsigned near = all ? link.full() : mask(v);
-      // The ring of an outside vertex is that of its link triangles with an inside vertex.
-      if (!all) {
-        const unsigned in = near;
-        for (const auto& t : link.triangles) {
-          const unsigned corners = 1u << t[0] | 1u << t[1] | 1u << t[2];
-          if ((in & corners) != 0) near |= corners;
-        }
-      }
-      for (; near != 0; near &= near - 1) used.insert(v + steps(v)[std::countr_zero(near)]);
-    });
-    used.index();
-    number(used);
+/// f(v, a, b, c) for the tets of omega_h at v that have no movable vertex below it.
+template <class Movable, class F>
+void Builder::tets_at(std::int64_t v, const Movable& movable, const F& f) const {
+  const LinkTopology& link = links_[background_.type(v)];
+  const auto& step = steps(v);
+  const unsigned in = inside_.test(v) ? ~0u : mask(v);
+  unsigned lower = 0;
+  for (int k = 0; k < link.n; ++k) {
+    lower |= static_cast<unsigned>(step[k] < 0 && movable.test_any(v + step[k])) << k;
   }
+  for (const auto& t : link.triangles) {
+    const unsigned corners = 1u << t[0] | 1u << t[1] | 1u << t[2];
+    if ((in & corners) != 0 && (lower & corners) == 0) f(v, v + step[t[0]], v + step[t[1]], v + step[t[2]]);
+  }
+}
+
+/// f(w) for v and the vertices of its tets in omega_h.
+template <class F>
+void Builder::ring_vertices(std::int64_t v, const F& f) const {
+  f(v);
+  const LinkTopology& link = links_[background_.type(v)];
+  unsigned near = link.full();
+  if (!inside_.test(v)) {
+    // The ring of an outside vertex is that of its link triangles with an inside vertex.
+    const unsigned in = near = mask(v);
+    for (const auto& t : link.triangles) {
+      const unsigned corners = 1u << t[0] | 1u << t[1] | 1u << t[2];
+      if ((in & corners) != 0) near |= corners;
+    }
+  }
+  for (; near != 0; near &= near - 1) f(v + steps(v)[std::countr_zero(near)]);
+}
+
+template <class Movable>
+Shell::Role Builder::role(std::int64_t v, const Movable& movable) const {
+  if (!movable.test(v)) return Shell::Role::Fixed;
+  const bool positive = !inside_.test(v) && links_[background_.type(v)].states[mask(v)].n_positive_faces > 0;
+  return positive ? Shell::Role::Boundary : Shell::Role::Inner;
+}
+
+void list_rings(Shell& shell) {
   shell.ring_begin.assign(shell.V.size() + 1, 0);
   for (const Tet& tet : shell.C) {
     for (const int v : tet) ++shell.ring_begin[v + 1];
@@ -158,6 +159,65 @@ LatticeShell Builder::build(const Movable& movable) const {
   for (int t = 0; t < static_cast<int>(shell.C.size()); ++t) {
     for (const int v : shell.C[t]) shell.ring[next[v]++] = t;
   }
+}
+
+LatticeShell Builder::build(const IdSet& movable) const {
+  IdSet used(background_.n_vertices());
+  std::vector<std::size_t> begin(n_blocks(movable) + 1, 0);  // of the tets
+  for_each_in_blocks(movable, [&](std::size_t b, std::int64_t v) {
+    ring_vertices(v, [&](std::int64_t w) { used.insert_shared(w); });
+    tets_at(v, movable, [&](auto...) { ++begin[b + 1]; });
+  });
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  const std::size_t n_vertices = used.index();
+
+  LatticeShell result;
+  Shell& shell = result.shell;
+  shell.h = background_.h();
+  result.background_vertex.resize(n_vertices);
+  shell.V.resize(n_vertices);
+  shell.colour.resize(n_vertices);
+  shell.role.resize(n_vertices);
+  shell.C.resize(begin.back());
+  const std::vector<int> colours = type_colours();
+  for_each_in_blocks(used, [&](std::size_t, std::int64_t v) {
+    const int at = used.rank(v);
+    result.background_vertex[at] = v;
+    shell.V[at] = background_.position(v);
+    shell.colour[at] = colours[background_.type(v)];
+    shell.role[at] = role(v, movable);
+  });
+  for_each_in_blocks(movable, [&](std::size_t b, std::int64_t at) {
+    tets_at(at, movable, [&](std::int64_t v, std::int64_t x, std::int64_t y, std::int64_t z) {
+      shell.C[begin[b]++] = {used.rank(v), used.rank(x), used.rank(y), used.rank(z)};
+    });
+  });
+  list_rings(shell);
+  return result;
+}
+
+LatticeShell Builder::build(const SmallSet& movable) const {
+  std::vector<std::array<std::int64_t, 4>> tets;
+  std::vector<std::int64_t> ids;
+  movable.for_each([&](std::int64_t at) {
+    tets_at(at, movable, [&](std::int64_t v, std::int64_t x, std::int64_t y, std::int64_t z) {
+      tets.push_back({v, x, y, z});
+      ids.insert(ids.end(), {v, x, y, z});
+    });
+  });
+  const SmallSet used(std::move(ids));
+  LatticeShell result;
+  Shell& shell = result.shell;
+  shell.h = background_.h();
+  result.background_vertex = used.ids();
+  const std::vector<int> colours = type_colours();
+  for (const std::int64_t v : used.ids()) {
+    shell.V.push_back(background_.position(v));
+    shell.colour.push_back(colours[background_.type(v)]);
+    shell.role.push_back(role(v, movable));
+  }
+  for (const auto& t : tets) shell.C.push_back({used.rank(t[0]), used.rank(t[1]), used.rank(t[2]), used.rank(t[3])});
+  list_rings(shell);
   return result;
 }
 
@@ -167,24 +227,21 @@ LatticeShell lattice_shell(const BackgroundMesh& background, const std::vector<L
                            const IdSet& inside, int layers) {
   const Builder builder(background, links, inside);
   IdSet movable(background.n_vertices());
-  std::vector<std::int64_t> front, next;
-  inside.for_each([&](std::int64_t v) {
+  Builder::for_each_in_blocks(inside, [&](std::size_t, std::int64_t v) {
     for (const std::int64_t step : builder.steps(v)) {
-      if (inside.test(v + step) || movable.test(v + step)) continue;
-      movable.insert(v + step);
-      front.push_back(v + step);
+      if (!inside.test(v + step)) movable.insert_shared(v + step);
     }
   });
+  IdSet front = movable;
   for (int layer = 0; layer < layers; ++layer) {
-    next.clear();
-    for (const std::int64_t v : front) {
+    IdSet next(background.n_vertices());
+    Builder::for_each_in_blocks(front, [&](std::size_t, std::int64_t v) {
       for (const std::int64_t step : builder.steps(v)) {
-        if (!inside.test_any(v + step) || movable.test(v + step)) continue;
-        movable.insert(v + step);
-        next.push_back(v + step);
+        if (inside.test_any(v + step) && !movable.test(v + step)) next.insert_shared(v + step);
       }
-    }
-    front.swap(next);
+    });
+    for (std::size_t w = 0; w < next.n_words(); ++w) movable.set_word(w, movable.word(w) | next.word(w));
+    front = std::move(next);
   }
   return builder.build(movable);
 }
