@@ -10,31 +10,32 @@ namespace {
 // Ids stay far from overflow, and a mesh this size could not be walked anyway.
 constexpr double kMaxTets = 1099511627776.0;  // 2^40
 
-// The tets of a block of cells miss up to a quarter cell at a wall; see a15().
-constexpr double kWallPit = .25;
-
 }  // namespace
 
 BackgroundMesh::BackgroundMesh(const Tiling& tiling, const Box& box, double h)
     : tiling_(tiling),
       tables_(tables(tiling)),
       h_(h),
-      cell_edge_(h / tiling.mean_edge),
+      unit_(h / tiling.mean_edge),
       n_types_(static_cast<int>(tiling.points.size())),
       n_cell_tets_(static_cast<int>(tiling.tets.size())) {
   if (!(h > 0) || !std::isfinite(h)) throw std::invalid_argument("h = " + std::to_string(h) + ": must be > 0");
   if (box.isEmpty() || !box.sizes().allFinite()) throw std::invalid_argument("box: must be finite and not empty");
-  const Eigen::Array3d n = (box.sizes().array() / cell_edge_ + 2 * kWallPit).ceil();
+  const Eigen::Array3d period = Eigen::Array3d::Map(tiling_.period.data());
+  const std::array<double, 3> pit = overhang(tiling_);
+  const Eigen::Array3d n =
+      (box.sizes().array() / (unit_ * period) + 2 * Eigen::Array3d::Map(pit.data()) / period).ceil().max(1);
   if (n.prod() * n_cell_tets_ > kMaxTets) {
     throw std::invalid_argument("h = " + std::to_string(h) + ": more than 2^40 tets in the box");
   }
   for (int a = 0; a < 3; ++a) n_[a] = static_cast<std::int64_t>(n[a]);
-  origin_ = box.center() - .5 * cell_edge_ * n.matrix();
+  origin_ = box.center() - (.5 * unit_ * n * period).matrix();
 }
 
 Box BackgroundMesh::box() const {
-  const Vec3 n(static_cast<double>(n_[0]), static_cast<double>(n_[1]), static_cast<double>(n_[2]));
-  return Box(origin_, origin_ + cell_edge_ * n);
+  Vec3 size;
+  for (int a = 0; a < 3; ++a) size[a] = unit_ * (static_cast<double>(n_[a]) * tiling_.period[a]);
+  return Box(origin_, origin_ + size);
 }
 
 std::int64_t BackgroundMesh::n_vertices() const { return n_types_ * (n_[0] + 2) * (n_[1] + 2) * (n_[2] + 2); }
@@ -70,9 +71,11 @@ std::int64_t BackgroundMesh::tet_id(int tet, const Cell& cell, const std::array<
 Vec3 BackgroundMesh::position(std::int64_t vertex) const {
   const VertexAddress v = vertex_address(vertex);
   const auto& p = tiling_.points[v.type];
-  // The sum in brackets is exact for dyadic points.
-  return origin_ + cell_edge_ * Vec3(static_cast<double>(v.cell[0]) + p[0], static_cast<double>(v.cell[1]) + p[1],
-                                     static_cast<double>(v.cell[2]) + p[2]);
+  const auto& period = tiling_.period;
+  // The numbers in brackets are exact for dyadic points and periods.
+  return origin_ + unit_ * Vec3(static_cast<double>(v.cell[0]) * period[0] + p[0],
+                                static_cast<double>(v.cell[1]) * period[1] + p[1],
+                                static_cast<double>(v.cell[2]) * period[2] + p[2]);
 }
 
 std::array<std::int64_t, 4> BackgroundMesh::tet(std::int64_t tet) const {
@@ -145,7 +148,7 @@ std::int64_t BackgroundMesh::neighbor(std::int64_t tet, int face) const {
 std::int64_t BackgroundMesh::tet_near(const Vec3& x) const {
   Cell cell;
   for (int a = 0; a < 3; ++a) {
-    const double c = std::floor((x[a] - origin_[a]) / cell_edge_);
+    const double c = std::floor((x[a] - origin_[a]) / (unit_ * tiling_.period[a]));
     if (!(c >= 0 && c < static_cast<double>(n_[a]))) return -1;
     cell[a] = static_cast<std::int64_t>(c);
   }

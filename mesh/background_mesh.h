@@ -13,24 +13,24 @@ using Box = Eigen::AlignedBox3d;
 
 /// The universal mesh as an implicit lattice of copies of an acute tiling: nothing is stored per vertex or tet.
 ///
-/// Cells (i, j, k) with 0 <= i, j, k < n hold the tets; their vertices live in cells -1 .. n. Ids are 64-bit:
-/// vertex = type + 8 * (cell index in the (n + 2)^3 range), tet = k + 46 * (cell index in the n^3 range) for A15.
+/// Cells (i, j, k) with 0 <= i, j, k < n, one period of the tiling each, hold the tets; their vertices live in cells
+/// -1 .. n. Ids are 64-bit: vertex = type + n_types * (cell index in the (n + 2)^3 range), tet = tet of the cell + tets
+/// of a cell * (cell index in the n^3 range). A15 has 8 types and 46 tets.
 /// Ids ascend with x fastest, then y, then z. Immutable; one mesh serves any number of domains and threads.
 class BackgroundMesh {
  public:
-  /// Covers `box` with whole cells, half a cell of slack or more in each direction shared by both sides (the walls of
-  /// a block of A15 cells have pits of a quarter cell).
-  /// @param h  mean edge length, model units; the cell edge is h / tiling.mean_edge
+  /// Covers `box` with whole cells, as many as their pits at the walls ask for (overhang(): a quarter cell for A15);
+  /// what is too much is shared by both sides.
+  /// @param h  mean edge length, model units
   /// \throw std::invalid_argument for h <= 0, an empty box, or more than 2^40 tets
   BackgroundMesh(const Tiling& tiling, const Box& box, double h);
 
   const Tiling& tiling() const { return tiling_; }
   double h() const { return h_; }
-  double cell_edge() const { return cell_edge_; }
   Box box() const;                  ///< the block of cells
   std::int64_t n_vertices() const;  ///< size of the id range, vertices without a tet at the rim included
   std::int64_t n_tets() const;
-  /// origin + cell_edge * (an exact multiple of a quarter for A15): two roundings per coordinate.
+  /// origin + unit * (an exact multiple of a quarter for A15): two roundings per coordinate.
   Vec3 position(std::int64_t vertex) const;
   std::array<std::int64_t, 4> tet(std::int64_t tet) const;
   /// Appends the ids of the tets at `vertex` that lie inside the mesh, ascending.
@@ -72,7 +72,7 @@ class BackgroundMesh {
 
   Tiling tiling_;
   TilingTables tables_;
-  double h_, cell_edge_;
+  double h_, unit_;  ///< unit_: of the tiling's lengths, in model units
   Vec3 origin_;
   Cell n_;  ///< cells in x, y, z
   int n_types_, n_cell_tets_;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "mesh/detail/assemble_submesh.h"
 #include "mesh/lattice_shell.h"
 
 namespace umtet {
@@ -17,7 +18,8 @@ using detail::IdSet;
 // Words of 64 vertices: some thousand positions.
 constexpr std::size_t kWordsPerTask = 32;
 
-/// The tets of one cell by their corners among all corners of a cell's tets (27 of A15), as bits.
+/// The tets of one cell by their corners among all corners of a cell's tets (27 of A15), as bits. Of no use, and not
+/// complete, if these do not fit a word.
 struct CellStencil {
   std::vector<std::int64_t> step;           ///< id of each corner minus that of vertex type 0 of the cell
   std::vector<std::array<int, 4>> corners;  ///< of each tet
@@ -34,6 +36,7 @@ struct CellStencil {
         if (c == seen.size()) {
           seen.push_back(tet[k]);
           step.push_back(background.id_step(0, tet[k]));
+          if (!fits_a_word()) return;
         }
         at[k] = static_cast<int>(c);
         mask |= std::uint64_t{1} << c;
@@ -41,8 +44,8 @@ struct CellStencil {
       corners.push_back(at);
       bits.push_back(mask);
     }
-    if (seen.size() > 64) throw std::invalid_argument("tiling: the tets of a cell have more than 64 corners");
   }
+  bool fits_a_word() const { return step.size() <= 64; }
   std::uint64_t inside(const IdSet& set, std::int64_t first) const {
     std::uint64_t mask = 0;
     for (std::size_t c = 0; c < step.size(); ++c) mask |= static_cast<std::uint64_t>(set.test(first + step[c])) << c;
@@ -59,6 +62,9 @@ struct Slab {
 
 Submesh emit_submesh(const BackgroundMesh& background, const IdSet& inside) {
   const CellStencil stencil(background);
+  if (!stencil.fits_a_word()) {
+    return detail::assemble_submesh(background, detail::cut_or_inside_tets(background, inside), inside);
+  }
   const auto& n = background.n_cells();
   const auto n_slabs = static_cast<std::size_t>(n[2]);
   const std::size_t per_cell = stencil.bits.size();

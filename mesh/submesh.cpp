@@ -26,8 +26,13 @@ constexpr std::size_t kWordsPerTask = 16;
 constexpr std::int64_t kTetsPerBlock = 1 << 16;
 // Side of the coarse sampling of h_for_tets.
 constexpr int kSamples = 64;
-// omega_h exceeds Omega by a layer of about this many cell edges: its tets need only one vertex inside. Measured.
-constexpr double kExcessLayer = .27;
+
+/// Tets in a cube whose edge is that of an A15 cell of the same h.
+double tets_per_cube(const Tiling& tiling) {
+  const double a15_cells = tiling.mean_edge / a15().mean_edge;  // a unit of the tiling is 1 / this of such an edge
+  return static_cast<double>(tiling.tets.size()) / (tiling.period[0] * tiling.period[1] * tiling.period[2]) *
+         (a15_cells * a15_cells * a15_cells);
+}
 
 unsigned inside_mask(const std::array<std::int64_t, 4>& tet, const IdSet& inside) {
   unsigned mask = 0;
@@ -35,8 +40,9 @@ unsigned inside_mask(const std::array<std::int64_t, 4>& tet, const IdSet& inside
   return mask;
 }
 
-/// Tets with a vertex inside, ascending.                                 Alg. 1, steps 14-16
-std::vector<std::int64_t> cut_or_inside_tets(const BackgroundMesh& background, const IdSet& inside) {
+}  // namespace
+
+std::vector<std::int64_t> detail::cut_or_inside_tets(const BackgroundMesh& background, const IdSet& inside) {
   const std::int64_t n_blocks = (background.n_tets() + kTetsPerBlock - 1) / kTetsPerBlock;
   std::vector<std::vector<std::int64_t>> blocks(static_cast<std::size_t>(n_blocks));
   tbb::parallel_for(std::int64_t{0}, n_blocks, [&](std::int64_t b) {
@@ -55,6 +61,8 @@ std::vector<std::int64_t> cut_or_inside_tets(const BackgroundMesh& background, c
   }
   return tets;
 }
+
+namespace {
 
 struct CoarseMeasure {
   double volume = 0, area = 0;
@@ -191,15 +199,15 @@ Submesh find_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi, 
   const IdSet inside = detail::inside_vertices(background, psi, n, keep_going);
   if (n_psi_evaluations) *n_psi_evaluations = n;
   poll(keep_going);
-  return detail::assemble_submesh(background, cut_or_inside_tets(background, inside), inside);
+  return detail::assemble_submesh(background, detail::cut_or_inside_tets(background, inside), inside);
 }
 
 double expected_tets(const Tiling& tiling, ImplicitFunctionRef psi, const Box& box, double h) {
   if (!(h > 0)) throw std::invalid_argument("h = " + std::to_string(h) + ": must be > 0");
   check_box(box);
   const auto [volume, area, inside] = measure(psi, box);
-  const double a = h / tiling.mean_edge;
-  return static_cast<double>(tiling.tets.size()) * (volume + kExcessLayer * a * area) / (a * a * a);
+  const double a = h / a15().mean_edge;
+  return tets_per_cube(tiling) * (volume + tiling.excess_layer * a * area) / (a * a * a);
 }
 
 double expected_tets(ImplicitFunctionRef psi, const Box& box, double h) { return expected_tets(a15(), psi, box, h); }
@@ -209,11 +217,11 @@ double h_for_tets(const Tiling& tiling, ImplicitFunctionRef psi, const Box& box,
   check_box(box);
   const auto [volume, area, inside] = measure(psi, box);
   if (!(volume > 0)) throw std::invalid_argument("psi: not negative at any of the samples taken in the box");
-  // n a^3 = per_cell (volume + layer a area): a fixed point, contracting because the layer is a part of the whole.
-  const double per_cell = static_cast<double>(tiling.tets.size());
-  double a = std::cbrt(per_cell * volume / n_tets);
-  for (int i = 0; i < 50; ++i) a = std::cbrt(per_cell * (volume + kExcessLayer * a * area) / n_tets);
-  return a * tiling.mean_edge;
+  // n a^3 = per_cube (volume + layer a area): a fixed point, contracting because the layer is a part of the whole.
+  const double per_cube = tets_per_cube(tiling);
+  double a = std::cbrt(per_cube * volume / n_tets);
+  for (int i = 0; i < 50; ++i) a = std::cbrt(per_cube * (volume + tiling.excess_layer * a * area) / n_tets);
+  return a * a15().mean_edge;
 }
 
 double h_for_tets(ImplicitFunctionRef psi, const Box& box, double n_tets) {

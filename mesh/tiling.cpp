@@ -1,6 +1,7 @@
 #include "mesh/tiling.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <stdexcept>
 #include <tuple>
@@ -100,6 +101,49 @@ const Tiling& a15() {
   static const Tiling tiling{
       "a15", {kA15Points.begin(), kA15Points.end()}, {kA15Tets.begin(), kA15Tets.end()}, kA15MeanEdge, true};
   return tiling;
+}
+
+std::span<const std::string_view> tiling_names() {
+  static constexpr std::array<std::string_view, 4> names = {"a15", "z", "slab", "cube"};
+  return names;
+}
+
+const Tiling& tiling_named(std::string_view name) {
+  if (name == "a15") return a15();
+  if (name == "z") return z_phase();
+  if (name == "slab") return acute_slab();
+  if (name == "cube") return acute_cube();
+  throw std::invalid_argument("no tiling is called " + std::string(name));
+}
+
+double mean_edge(const Tiling& tiling, const TilingTables& tables) {
+  double sum = 0;
+  std::size_t n = 0;
+  for (std::size_t type = 0; type < tiling.points.size(); ++type) {
+    for (const auto& [other, offset] : tables.link[type]) {
+      double square = 0;
+      for (int a = 0; a < 3; ++a) {
+        const double d = tiling.points[other][a] + offset[a] * tiling.period[a] - tiling.points[type][a];
+        square += d * d;
+      }
+      sum += std::sqrt(square);
+      ++n;
+    }
+  }
+  return sum / static_cast<double>(n);
+}
+
+std::array<double, 3> overhang(const Tiling& tiling) {
+  std::array<double, 3> most = {0, 0, 0};
+  for (const auto& tet : tiling.tets) {
+    for (const auto& [type, offset] : tet) {
+      for (int a = 0; a < 3; ++a) {
+        const double x = tiling.points[type][a] + offset[a] * tiling.period[a];
+        most[a] = std::max({most[a], -x, x - tiling.period[a]});
+      }
+    }
+  }
+  return most;
 }
 
 TilingTables tables(const Tiling& tiling) {

@@ -11,6 +11,9 @@
 
 namespace umtet::detail {
 
+/// The tets with a vertex inside, ascending.                                 Alg. 1, steps 14-16
+std::vector<std::int64_t> cut_or_inside_tets(const BackgroundMesh& background, const IdSet& inside);
+
 /// Algorithm 1, steps 14-22, once it is known which tets are in omega_h and which of their vertices are inside.
 /// One tet after the other: emit_submesh() makes the same of the same set.
 /// @param tets  background ids, ascending
