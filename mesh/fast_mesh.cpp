@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "mesh/assumptions.h"
+#include "mesh/background_shell.h"
 #include "mesh/detail/assemble_submesh.h"
 #include "mesh/detail/offenders.h"
 #include "mesh/lattice_shell.h"
@@ -21,12 +22,9 @@ using detail::Offenders;
 class FastRun {
  public:
   FastRun(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params, const UmObserver& observer)
-      : background_(background),
-        psi_(psi),
-        params_(params),
-        observer_(observer),
-        links_(link_topology_of(background.tiling())),
-        inside_(0) {}
+      : background_(background), psi_(psi), params_(params), observer_(observer), inside_(0) {
+    if (has_label_prices()) links_ = a15_links();
+  }
 
   UmResult operator()(const std::vector<Vec3>& seeds) {
     try {
@@ -40,9 +38,8 @@ class FastRun {
   }
 
  private:
-  static std::vector<LinkTopology> link_topology_of(const Tiling& tiling) {
-    return tiling.name == a15().name ? a15_links() : link_topology(tiling, tables(tiling));
-  }
+  /// Only what labels of A15 are worth has been measured; on other backgrounds they stay those of psi.
+  bool has_label_prices() const { return background_.tiling().name == a15().name; }
   bool fail(UmStatus status, const UmEvidence& evidence) {
     result_.status = status;
     result_.evidence = evidence;
@@ -74,7 +71,7 @@ class FastRun {
   ImplicitFunctionRef psi_;
   const UmParams& params_;
   const UmObserver& observer_;
-  std::vector<LinkTopology> links_;
+  std::vector<LinkTopology> links_;  ///< where labels have prices
   UmResult result_;
   IdSet inside_;
   LatticeShell shell_;
@@ -110,8 +107,7 @@ bool FastRun::find_inside(const std::vector<Vec3>& seeds) {
 }
 
 bool FastRun::label() {
-  // Only A15 has measured energies.
-  if (background_.tiling().name == a15().name) {
+  if (has_label_prices()) {
     const LabelReport labels = choose_labels(background_, links_, psi_, params_.fast.labels, inside_, asking("search"));
     result_.n_psi_evaluations += labels.psi_evaluations;
   }
@@ -183,7 +179,7 @@ void FastRun::measure_assumptions() {
 
 /// Changes labels where that mends a tet, and omega_h with them.
 void FastRun::repair_labels(const KeepGoing& keep_going) {
-  if (background_.tiling().name != a15().name) return;
+  if (!has_label_prices()) return;
   RepairReport repaired =
       repair(background_, links_, psi_, params_.fast.labels, params_.fast.repair, shell_, inside_, keep_going);
   result_.n_psi_evaluations += repaired.psi_evaluations;
@@ -195,7 +191,8 @@ void FastRun::repair_labels(const KeepGoing& keep_going) {
 }
 
 bool FastRun::fit() {
-  shell_ = lattice_shell(background_, links_, inside_, params_.fast.layers);
+  shell_ = has_label_prices() ? lattice_shell(background_, links_, inside_, params_.fast.layers)
+                              : background_shell(background_, inside_, params_.fast.layers);
   const KeepGoing keep_going = asking("relax");
   PNormSmoother smoother(shell_.shell);
   const ProjectionReport projection = project(smoother, psi_, params_.fast.projection, keep_going);
