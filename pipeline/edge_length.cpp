@@ -30,19 +30,19 @@ constexpr double kMostRounding = 1e-6;
 constexpr std::size_t kThicknessSamples = 20000;
 
 /// \throw MeshingImpossible when psi < 0 at none of the places where it is sampled
-double h_of(const Domain& domain, std::int64_t n_tets) {
+double h_of(const Domain& domain, const Tiling& tiling, std::int64_t n_tets) {
   try {
-    return h_for_tets(domain.psi(), domain.box, static_cast<double>(n_tets));
+    return h_for_tets(tiling, domain.psi(), domain.box, static_cast<double>(n_tets));
   } catch (const std::invalid_argument& e) {
     throw MeshingImpossible(std::string("no edge length can be chosen: ") + e.what());
   }
 }
 
 /// \throw ResourceLimit
-void refuse_too_many(const Domain& domain, double h, std::int64_t max_tets) {
+void refuse_too_many(const Domain& domain, const Tiling& tiling, double h, std::int64_t max_tets) {
   double least = 0;
   try {
-    least = h_of(domain, max_tets);
+    least = h_of(domain, tiling, max_tets);
   } catch (const MeshingImpossible&) {
     return;  // the domain is smaller than the grid of the estimate: so are its tets few
   }
@@ -64,31 +64,34 @@ double thin_part(const Domain& domain, double limit) {
 }
 
 /// By curvature. \throw ResourceLimit
-EdgeLength by_deviation(Domain& domain, const Parameters& parameters, double deviation, const KeepGoing& keep_going) {
+EdgeLength by_deviation(Domain& domain, const Tiling& tiling, const Parameters& parameters, double deviation,
+                        const KeepGoing& keep_going) {
   const std::int64_t max_tets = parameters.integer("mesh.max_tets");
-  const double least = h_of(domain, max_tets);
+  const double least = h_of(domain, tiling, max_tets);
   const double h = h_for_deviation(domain, deviation, kMostOfDiagonal * domain.diagonal, least, keep_going);
   if (h > least) return {h, least};
-  throw ResourceLimit(fmt::format("--max-deviation {:.4g} needs more than {} tets (that many at h = {:.4g}): raise "
-                                  "--max-tets",
-                                  deviation, max_tets, least));
+  throw ResourceLimit(
+      fmt::format("--max-deviation {:.4g} needs more than {} tets (that many at h = {:.4g}): raise "
+                  "--max-tets",
+                  deviation, max_tets, least));
 }
 
 /// The choice, without regard to how it will be written.
 EdgeLength choose(Domain& domain, const Parameters& parameters, const KeepGoing& keep_going) {
+  const Tiling& tiling = tiling_named(parameters.text("mesh.background"));
   if (const std::int64_t n = parameters.integer("mesh.tets")) {
-    const double h = h_of(domain, n);
+    const double h = h_of(domain, tiling, n);
     return {h, h};
   }
   const std::int64_t max_tets = parameters.integer("mesh.max_tets");
   if (const double h = parameters.real("mesh.h"); h > 0) {
-    refuse_too_many(domain, h, max_tets);
+    refuse_too_many(domain, tiling, h, max_tets);
     return {h, h};
   }
   if (const double deviation = parameters.real("mesh.max_deviation"); deviation > 0) {
-    return by_deviation(domain, parameters, deviation, keep_going);
+    return by_deviation(domain, tiling, parameters, deviation, keep_going);
   }
-  const double least = h_of(domain, max_tets);
+  const double least = h_of(domain, tiling, max_tets);
   double h = kShareOfDiagonal * domain.diagonal;
   if (domain.level_set) h = std::min(h, thin_part(domain, kEdgesAcross * h) / kEdgesAcross);
   return {std::max(h, least), least};

@@ -22,10 +22,12 @@ namespace fs = std::filesystem;
 namespace {
 
 /// @param n_tets  that were asked for, or 0
-BackgroundMesh make_background(const Domain& domain, double h, std::int64_t n_tets, double allowed) {
+BackgroundMesh make_background(const Domain& domain, const Tiling& tiling, double h, std::int64_t n_tets,
+                               double allowed) {
   try {
-    BackgroundMesh background(a15(), domain.box, h);
-    const double expected = n_tets > 0 ? static_cast<double>(n_tets) : expected_tets(domain.psi(), domain.box, h);
+    BackgroundMesh background(tiling, domain.box, h);
+    const double expected =
+        n_tets > 0 ? static_cast<double>(n_tets) : expected_tets(tiling, domain.psi(), domain.box, h);
     require_memory(background, expected, allowed);
     return background;
   } catch (const std::invalid_argument& e) {  // h and the box have been checked: their tets are too many to count
@@ -92,8 +94,8 @@ class MeshStage {
   std::vector<std::string> outputs_;
   std::optional<std::pair<double, ZeroSetChoice>> pieces_;  ///< of psi cut for the h beside them
   bool judge_thin_ = true;  ///< no mesh has been tried yet: what is too thin is refused, unless it is allowed
-  double missed_by_ = 0;   ///< tets made / tets asked for, when the running attempt was given up for it
-  bool may_miss_ = false;  ///< it goes on whatever the number
+  double missed_by_ = 0;    ///< tets made / tets asked for, when the running attempt was given up for it
+  bool may_miss_ = false;   ///< it goes on whatever the number
 };
 
 bool MeshStage::observe(const UmProgress& p) {
@@ -199,8 +201,8 @@ EdgeLength MeshStage::fit_to_thin_places(EdgeLength choice) {
     const ThinPlaces thin = find_thin_places(domain_, pieces_at(choice.h), choice.h, not_interrupted);
     if (thin.empty()) break;
     const double h = std::max(std::min(thin.h_needed(), kThinStep * choice.h), choice.least);
-    context_.progress.detail(fmt::format("mesh: {} thin places at h = {:.4g}; looking at {:.4g}", thin.places.size(),
-                                         choice.h, h));
+    context_.progress.detail(
+        fmt::format("mesh: {} thin places at h = {:.4g}; looking at {:.4g}", thin.places.size(), choice.h, h));
     choice.h = h;
   }
   return choice;
@@ -215,9 +217,9 @@ void MeshStage::refuse_thin(const ThinPlaces& thin) {
   fs::create_directories(folder);
   const fs::path file = folder / "too_thin.vtp";
   write_thin_places(file, thin, domain_.shift);
-  std::string message = fmt::format("h = {:.4g} is too large: {} place{} thinner than it can show\n{}\n", thin.h,
-                                    thin.places.size(), thin.places.size() == 1 ? " is" : "s are",
-                                    described(thin, domain_.shift));
+  std::string message =
+      fmt::format("h = {:.4g} is too large: {} place{} thinner than it can show\n{}\n", thin.h, thin.places.size(),
+                  thin.places.size() == 1 ? " is" : "s are", described(thin, domain_.shift));
   // A finer look finds thinner places: the h that is enough for all of them is sought as an automatic one is.
   const double least = least_h_of_max_tets(domain_, context_.parameters);
   const double enough = fit_to_thin_places({thin.h, least}).h;
@@ -237,8 +239,9 @@ MeshAttempt MeshStage::attempt(double h) {
   iterates_.clear();
   stop_if_interrupted();
   const ZeroSetChoice& pieces = pieces_at(h);
-  const BackgroundMesh background = make_background(domain_, h, context_.parameters.integer("mesh.tets"),
-                                                    allowed_bytes(context_.parameters));
+  const BackgroundMesh background =
+      make_background(domain_, tiling_named(context_.parameters.text("mesh.background")), h,
+                      context_.parameters.integer("mesh.tets"), allowed_bytes(context_.parameters));
   a.thin = find_thin_places(domain_, pieces, h, not_interrupted);
   const bool refuses = judge_thin_ && !a.thin.empty() && !context_.parameters.flag("mesh.allow_thin");
   if (refuses && may_miss_) refuse_thin(a.thin);

@@ -83,7 +83,7 @@ TEST(Parameters, ValuesOutOfTypeOrRangeAreRefused) {
   for (const char* assignment :
        {"mesh.samples=0", "mesh.samples=2.5", "mesh.samples=", "mesh.samples=3x", "mesh.h=-1", "mesh.h=nan",
         "mesh.h=inf", "mesh.h=0,1", "reconstruct.smoothing=-1", "reconstruct.tolerance=1", "mesh.mode=quick",
-        "mesh.background=z", "mesh.box=0,0,0,1,1", "mesh.box=0,0,0,1,1,0", "mesh.box=0,0,0,1,1,1,",
+        "mesh.background=bcc", "mesh.box=0,0,0,1,1", "mesh.box=0,0,0,1,1,0", "mesh.box=0,0,0,1,1,1,",
         "mesh.keep_iterates=maybe", "mesh.h"}) {
     Parameters p;
     EXPECT_NE(refusal([&] { p.set(assignment); }), "accepted") << assignment;

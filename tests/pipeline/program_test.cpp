@@ -327,6 +327,15 @@ TEST_F(Program, OneReasonToFailIsExitSixWithARemedy) {
   EXPECT_NE(r.out.find("try a smaller --h"), std::string::npos) << r.out;
 }
 
+TEST_F(Program, EveryTilingIsABackground) {
+  for (const std::string tiling : {"z", "slab", "cube"}) {
+    const Result r = run("mesh --implicit 'x^2+y^2+z^2-1' --box=-1.2,-1.2,-1.2,1.2,1.2,1.2 --tets 8000 --background " +
+                         tiling + " -o " + tiling);
+    EXPECT_EQ(r.code, 0) << r.out << r.err;
+    EXPECT_NE(r.out.find("verdict   pass"), std::string::npos) << r.out;
+  }
+}
+
 TEST_F(Program, UsageErrorsNameThePlaceAndTheRemedy) {
   const std::pair<const char*, const char*> cases[] = {
       {"mesh --implicit 'x^2+foo(y)' --box -1,-1,-1,1,1,1 -o a", "column 5"},
@@ -336,7 +345,7 @@ TEST_F(Program, UsageErrorsNameThePlaceAndTheRemedy) {
       {"run egg.ply -o a --set mesh.sampels=1", "did you mean mesh.samples?"},
       {"run egg.ply -o a --tets 10 --h 1", "exclude each other"},
       {"run egg.ply -o a --mode quick", "fast, paper only"},
-      {"run egg.ply -o a --background bcc", "a15 only"},
+      {"run egg.ply -o a --background bcc", "a15, z, slab, cube only"},
       {"run egg.ply -o a --from mehs", "did you mean mesh?"},
       {"run egg.ply", "-o CASE"},
       {"rum egg.ply -o a", "did you mean run?"},
