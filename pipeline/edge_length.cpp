@@ -111,7 +111,7 @@ double coordinate_rounding(const Domain& domain) {
 }
 
 double least_h_of_max_tets(const Domain& domain, const Parameters& parameters) {
-  return h_of(domain, parameters.integer("mesh.max_tets"));
+  return h_of(domain, tiling_named(parameters.text("mesh.background")), parameters.integer("mesh.max_tets"));
 }
 
 double least_h_in_file(const Domain& domain) { return coordinate_rounding(domain) / kMostRounding; }
