@@ -31,7 +31,7 @@ struct SignAgreement {
 };
 
 /// The border of a region that is turned over has half of its points' pairs across it, and so has a single point all:
-/// without contested points there is none. Sums in a fixed order. Cost: 0.2 us a point.
+/// without contested points there is none. Sums in a fixed order.
 SignAgreement sign_agreement(const OrientedPointCloud& cloud, const Neighbourhoods& near);
 
 /// Components that pairs in agreement join, where kSureBorder says that they may; numbered by first points.
