@@ -226,7 +226,8 @@ void Parser::finish(const CLI::App& command) {
     const CLI::Option* option = f.flag.empty() ? nullptr : command.get_option_no_throw(f.flag);
     if (!option || option->count() == 0) continue;
     const bool is_switch = std::holds_alternative<bool>(f.preset);
-    parameters.set(f.key, is_switch ? "true" : in_.values[f.key], ParamSource::Flag, f.flag);
+    parameters.set(f.key, is_switch ? (in_.switches[f.key] ? "true" : "false") : in_.values[f.key], ParamSource::Flag,
+                   f.flag);
   }
   if (result_.command == "check") {
     result_.action = CommandLine::Action::Check;

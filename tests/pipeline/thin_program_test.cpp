@@ -50,6 +50,7 @@ TEST_F(Program, WhatIsTooThinIsMeshedWhenAllowedAndNamedInTheCertificate) {
   EXPECT_GT(fs::file_size(folder / "lens/3-mesh/too_thin.vtp"), 0u);
   EXPECT_NE(content(folder / "lens/3-mesh/record.json").find("too_thin.vtp"), std::string::npos);
   EXPECT_NE(run("mesh lens").out.find("thin      1 place is thinner"), std::string::npos);
+  EXPECT_EQ(run("mesh lens --allow-thin=false").code, 5);
 }
 
 TEST_F(Program, AnAutomaticHGoesAsLowAsThinPlacesNeedAndMaxTetsAllows) {

@@ -66,10 +66,12 @@ TEST(ThinPlaces, AGapIsToldFromABodyAndMeasuredWhereItIs) {
 }
 
 TEST(ThinPlaces, AFewSamplesAreNoPlace) {
-  // The gap is .1 = 1.25 h wide at h = .08, and grows with the square of the distance from the axis.
-  const Domain twins = domain_of(kTwins, {2.6, 1.4, 1.4});
-  EXPECT_FALSE(thin_places(twins, .096).empty());
-  EXPECT_TRUE(thin_places(twins, .079).empty());
+  // At r from the axis the gap is .1 + r^2 wide: thinner than 1.25 h on two caps of pi (1.25 h - .1), each .18 h^2 at
+  // h = .0803 and 1.7 h^2 at h = .083; they are more than an edge apart, so they are two places.
+  const Domain twins = domain_of(kTwins, {.4, .4, .4});
+  const ZeroSetChoice fine = choose_components(twins, .02);
+  EXPECT_TRUE(find_thin_places(twins, fine, .0803).empty());
+  EXPECT_EQ(find_thin_places(twins, fine, .083).places.size(), 2u);
 }
 
 TEST(ThinPlaces, AreReadBackAsPolydataInModelCoordinates) {
