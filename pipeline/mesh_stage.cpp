@@ -238,10 +238,11 @@ MeshAttempt MeshStage::attempt(double h) {
   a.h = h;
   iterates_.clear();
   stop_if_interrupted();
-  const ZeroSetChoice& pieces = pieces_at(h);
+  domain_.limit_detail(h);
   const BackgroundMesh background =
       make_background(domain_, tiling_named(context_.parameters.text("mesh.background")), h,
                       context_.parameters.integer("mesh.tets"), allowed_bytes(context_.parameters));
+  const ZeroSetChoice& pieces = pieces_at(h);
   a.thin = find_thin_places(domain_, pieces, h, not_interrupted);
   const bool refuses = judge_thin_ && !a.thin.empty() && !context_.parameters.flag("mesh.allow_thin");
   if (refuses && may_miss_) refuse_thin(a.thin);
