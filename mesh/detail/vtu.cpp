@@ -1,29 +1,20 @@
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
-#include <vtkDoubleArray.h>
-#include <vtkIdTypeArray.h>
 #include <vtkLogger.h>
 #include <vtkNew.h>
 #include <vtkOutputWindow.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
-#include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
-#include <vtkTypeInt64Array.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
-#include <vtkXMLPolyDataWriter.h>
 #include <vtkXMLUnstructuredGridReader.h>
-#include <vtkXMLUnstructuredGridWriter.h>
-#include <vtkXMLWriter.h>
 
 #include <limits>
 #include <mutex>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
 
-#include "mesh/detail/checked_file.h"
 #include "mesh/detail/mesh_formats.h"
 #include "mesh/detail/vtu_precheck.h"
 
@@ -75,66 +66,6 @@ class CapturedVtkMessages {
   vtkLogger::Verbosity verbosity_;
   vtkNew<Window> window_;
 };
-
-template <typename T>
-struct VtkArrayOf;
-template <>
-struct VtkArrayOf<double> {
-  using type = vtkDoubleArray;
-};
-template <>
-struct VtkArrayOf<std::int64_t> {
-  using type = vtkTypeInt64Array;
-};
-template <>
-struct VtkArrayOf<std::uint8_t> {
-  using type = vtkUnsignedCharArray;
-};
-
-void add_data(vtkFieldData* to, const std::map<std::string, FieldValues>& data, std::size_t n) {
-  for (const auto& [name, any] : data) {
-    std::visit(
-        [&](const auto& values) {
-          using Value = typename std::decay_t<decltype(values)>::value_type;
-          if (values.size() != n) throw std::invalid_argument("data '" + name + "': one value each is needed");
-          vtkNew<typename VtkArrayOf<Value>::type> array;
-          array->SetName(name.c_str());
-          array->SetNumberOfValues(static_cast<vtkIdType>(n));
-          std::copy(values.begin(), values.end(), array->GetPointer(0));
-          to->AddArray(array);
-        },
-        any);
-  }
-}
-
-vtkSmartPointer<vtkPoints> to_vtk(const std::vector<Vec3>& V) {
-  auto points = vtkSmartPointer<vtkPoints>::New();
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(static_cast<vtkIdType>(V.size()));
-  for (std::size_t i = 0; i < V.size(); ++i) points->SetPoint(static_cast<vtkIdType>(i), V[i].data());
-  return points;
-}
-
-vtkSmartPointer<vtkUnstructuredGrid> to_vtk(const MeshFile& file) {
-  const auto n_tets = static_cast<vtkIdType>(file.mesh.C.size());
-  auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
-  grid->SetPoints(to_vtk(file.mesh.V));
-
-  vtkNew<vtkTypeInt64Array> offsets, connectivity;
-  offsets->SetNumberOfValues(n_tets + 1);
-  connectivity->SetNumberOfValues(4 * n_tets);
-  for (vtkIdType t = 0; t < n_tets; ++t) {
-    offsets->SetValue(t, 4 * t);
-    for (int k = 0; k < 4; ++k) connectivity->SetValue(4 * t + k, file.mesh.C[t][k]);
-  }
-  offsets->SetValue(n_tets, 4 * n_tets);
-  vtkNew<vtkCellArray> cells;
-  cells->SetData(offsets, connectivity);
-  grid->SetCells(VTK_TETRA, cells);
-  add_data(grid->GetPointData(), file.point_data, file.mesh.V.size());
-  add_data(grid->GetCellData(), file.cell_data, file.mesh.C.size());
-  return grid;
-}
 
 /// The values of an array with one component, for the kept cells (`keep` null: for all).
 FieldValues from_vtk(vtkDataArray* array, const std::vector<vtkIdType>* keep) {
@@ -198,42 +129,7 @@ void take_tets(const std::filesystem::path& path, vtkUnstructuredGrid* grid, Tet
   }
 }
 
-/// Inline base64 blocks with 64-bit headers.
-void write_with(vtkXMLWriter* writer, vtkDataObject* data, const std::filesystem::path& path) {
-  writer->SetInputDataObject(data);
-  writer->SetDataModeToBinary();
-  writer->SetHeaderTypeToUInt64();
-  writer->SetCompressorTypeToNone();
-  // On a full disk VTK 9.1 calls a cut file a success (only GetErrorCode() tells) or, in inline mode, frees a pointer
-  // it never set and crashes. So it writes to memory, and the file is ours.
-  writer->WriteToOutputStringOn();
-  {
-    const CapturedVtkMessages messages;
-    if (writer->Write() != 1 || writer->GetErrorCode() != 0) {
-      throw std::runtime_error("cannot write " + path.string() + ": " + messages.first());
-    }
-  }
-  detail::CheckedFile out(path);
-  out.text(writer->GetOutputString());
-  out.close();
-}
-
 }  // namespace
-
-void write_vtu(const std::filesystem::path& path, const MeshFile& file) {
-  write_with(vtkSmartPointer<vtkXMLUnstructuredGridWriter>::New(), to_vtk(file), path);
-}
-
-void write_vtp(const std::filesystem::path& path, const std::vector<Vec3>& points,
-               const std::map<std::string, FieldValues>& point_data) {
-  vtkNew<vtkPolyData> cloud;
-  cloud->SetPoints(to_vtk(points));
-  vtkNew<vtkCellArray> vertices;
-  for (vtkIdType i = 0; i < static_cast<vtkIdType>(points.size()); ++i) vertices->InsertNextCell(1, &i);
-  cloud->SetVerts(vertices);
-  add_data(cloud->GetPointData(), point_data, points.size());
-  write_with(vtkSmartPointer<vtkXMLPolyDataWriter>::New(), cloud, path);
-}
 
 MeshFile detail::read_vtu(const std::filesystem::path& path) {
   detail::precheck_vtu(path);
