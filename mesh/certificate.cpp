@@ -173,8 +173,8 @@ Foot foot_point(ImplicitFunctionRef psi, const Vec3& x, double h) {
   for (int iteration = 0; iteration < 30; ++iteration) {
     const Vec3 w = g.normalized();
     const Vec3 slide = (x - y) - w.dot(x - y) * w;
-    // The distance is second order in what is left of the slide: it is good to 5e-7 of itself.
-    if (slide.norm() <= 1e-3 * distance + tol) break;
+    // The distance is second order in what is left of the slide, the normal first order.
+    if (slide.norm() <= 1e-4 * distance + tol) break;
     Vec3 next = y + relaxation * slide, next_g;
     if (reach_zero_set(psi, 0.5 * h, tol, next, next_g) && (next - x).norm() < distance) {
       y = next;

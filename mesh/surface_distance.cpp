@@ -55,30 +55,41 @@ double triangle_distance2(const Vec3& x, const Vec3& a, const Vec3& b, const Vec
   return std::min({segment_distance2(x, a, b), segment_distance2(x, b, c), segment_distance2(x, c, a)});
 }
 
+struct CentredTriangle {
+  std::array<Vec3, 3> corners;
+  double reach;  ///< greatest centroid-corner distance, rounded up
+};
+
 /// What nanoflann calls a result set: sees centroids, keeps the least triangle distance, and shrinks the search radius
 /// as it goes.
 class NearestTriangle {
  public:
-  NearestTriangle(const Vec3& x, const std::vector<std::array<Vec3, 3>>& corners, double reach)
-      : x_(x), corners_(corners), reach_(reach) {}
+  /// @param reach  of all triangles
+  NearestTriangle(const Vec3& x, const std::vector<CentredTriangle>& triangles, double reach)
+      : x_(x), triangles_(triangles), reach_(reach) {}
   std::size_t size() const { return full() ? 1 : 0; }
-  bool full() const { return best2_ < std::numeric_limits<double>::infinity(); }
-  double worstDist() const {
-    const double radius = std::sqrt(best2_) + reach_;
-    return radius * radius;
-  }
-  bool addPoint(double, std::uint32_t k) {
-    const auto& t = corners_[k];
-    best2_ = std::min(best2_, triangle_distance2(x_, t[0], t[1], t[2]));
+  bool full() const { return best_ < std::numeric_limits<double>::infinity(); }
+  double worstDist() const { return worst2_; }
+  /// @param centroid2  squared distance to the centroid. The tree asks worstDist() once a leaf; within one, most
+  ///                   triangles are out of their own reach.
+  bool addPoint(double centroid2, std::uint32_t k) {
+    const CentredTriangle& t = triangles_[k];
+    const double near = best_ + t.reach;
+    if (centroid2 > near * near) return true;
+    const double d = std::sqrt(triangle_distance2(x_, t.corners[0], t.corners[1], t.corners[2]));
+    if (d < best_) {
+      best_ = d;
+      worst2_ = (d + reach_) * (d + reach_);
+    }
     return true;
   }
-  double distance() const { return std::sqrt(best2_); }
+  double distance() const { return best_; }
 
  private:
   const Vec3& x_;
-  const std::vector<std::array<Vec3, 3>>& corners_;
+  const std::vector<CentredTriangle>& triangles_;
   double reach_;
-  double best2_ = std::numeric_limits<double>::infinity();
+  double best_ = std::numeric_limits<double>::infinity(), worst2_ = best_;
 };
 
 /// out[i] = f(i): which thread runs one cannot change a result.
@@ -92,9 +103,9 @@ std::vector<double> map_indices(std::size_t n, const KeepGoing& keep_going, F&& 
 }  // namespace
 
 struct SurfaceDistance::Index {
-  std::vector<std::array<Vec3, 3>> corners;
+  std::vector<CentredTriangle> triangles;
   std::vector<Vec3> centroids;
-  double reach = 0;  ///< greatest centroid-corner distance, rounded up
+  double reach = 0;  ///< the greatest of all
   PointSet set{centroids};
   std::unique_ptr<KdTree> tree;
 };
@@ -102,7 +113,7 @@ struct SurfaceDistance::Index {
 SurfaceDistance::SurfaceDistance(const std::vector<Vec3>& V, const std::vector<Triangle>& faces)
     : index_(std::make_unique<Index>()) {
   if (faces.empty()) throw std::invalid_argument("distance to a surface without faces");
-  index_->corners.reserve(faces.size());
+  index_->triangles.reserve(faces.size());
   index_->centroids.reserve(faces.size());
   double magnitude = 0;
   for (const Triangle& f : faces) {
@@ -115,11 +126,15 @@ SurfaceDistance::SurfaceDistance(const std::vector<Vec3>& V, const std::vector<T
     }
     const std::array<Vec3, 3> t = {V[f[0]], V[f[1]], V[f[2]]};
     const Vec3 m = (t[0] + t[1] + t[2]) / 3.0;
-    for (const Vec3& corner : t) index_->reach = std::max(index_->reach, (corner - m).norm());
-    index_->corners.push_back(t);
+    double reach = 0;
+    for (const Vec3& corner : t) reach = std::max(reach, (corner - m).norm());
+    index_->triangles.push_back({t, reach});
     index_->centroids.push_back(m);
   }
-  index_->reach += 1e-14 * (index_->reach + magnitude);  // centroids are rounded: a few units in the last place
+  for (CentredTriangle& t : index_->triangles) {
+    t.reach += 1e-14 * (t.reach + magnitude);  // centroids are rounded: a few units in the last place
+    index_->reach = std::max(index_->reach, t.reach);
+  }
   index_->tree = std::make_unique<KdTree>(3, index_->set, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize));
 }
 
@@ -128,7 +143,7 @@ SurfaceDistance::SurfaceDistance(SurfaceDistance&&) noexcept = default;
 SurfaceDistance& SurfaceDistance::operator=(SurfaceDistance&&) noexcept = default;
 
 double SurfaceDistance::distance(const Vec3& x) const {
-  NearestTriangle nearest(x, index_->corners, index_->reach);
+  NearestTriangle nearest(x, index_->triangles, index_->reach);
   index_->tree->findNeighbors(nearest, x.data(), nanoflann::SearchParams());
   return nearest.distance();
 }
