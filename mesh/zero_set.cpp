@@ -25,6 +25,9 @@ constexpr std::array<std::pair<int, int>, 12> kTriangles = {
     {{1, 3}, {1, 5}, {1, 7}, {2, 3}, {2, 6}, {2, 7}, {4, 5}, {4, 6}, {4, 7}, {3, 7}, {5, 7}, {6, 7}}};
 constexpr std::array<std::pair<int, int>, 6> kTets = {{{1, 3}, {1, 5}, {2, 3}, {2, 6}, {4, 5}, {4, 6}}};  // then 7
 
+// At nodes without a cut edge, which is where psi is not evaluated, only the sign counts.
+constexpr double kFarValue = 1;
+
 /// What is known of a cut edge; sums of a component gather in its members until the end.
 struct CutEdge {
   Vec3 point;
@@ -42,7 +45,8 @@ struct Layer {
 
 class Sweep {
  public:
-  Sweep(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spacing, const KeepGoing& keep_going);
+  Sweep(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spacing, const KeepGoing& keep_going,
+        const FarFromZero& far);
   ZeroSetTopology run();
 
  private:
@@ -74,6 +78,7 @@ class Sweep {
   ImplicitFunctionRef psi_;
   Eigen::AlignedBox3d box_;
   const KeepGoing& keep_going_;
+  const FarFromZero& far_;
   std::array<int, 3> n_{};
   std::array<double, 3> h_{};
   std::array<Layer, 2> layers_;
@@ -83,8 +88,9 @@ class Sweep {
   bool touches_box_ = false;
 };
 
-Sweep::Sweep(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spacing, const KeepGoing& keep_going)
-    : psi_(psi), box_(box), keep_going_(keep_going) {
+Sweep::Sweep(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spacing, const KeepGoing& keep_going,
+             const FarFromZero& far)
+    : psi_(psi), box_(box), keep_going_(keep_going), far_(far) {
   const Vec3 size = box.sizes();
   if (box.isEmpty() || !size.allFinite() || !(size.minCoeff() > 0))
     throw std::invalid_argument("box: must have a finite volume");
@@ -116,9 +122,18 @@ void Sweep::for_each_row(const F& visit) {
 
 void Sweep::evaluate(int k) {
   std::vector<double>& value = layer(k).value;
-  polled_parallel_for(value.size(), kValuesPerPoll, keep_going_, [&](std::size_t n) {
-    const auto row = static_cast<std::size_t>(n_[0] + 1);
-    value[n] = psi_.value(node(static_cast<int>(n % row), static_cast<int>(n / row), k));
+  // Stretches of a row, because a node that is far from any zero takes its sign from the one before.
+  constexpr std::size_t kStretch = 64;
+  const std::size_t row = static_cast<std::size_t>(n_[0]) + 1, per_row = (row + kStretch - 1) / kStretch;
+  polled_parallel_for(per_row * (n_[1] + 1), kValuesPerPoll / kStretch, keep_going_, [&](std::size_t s) {
+    const int j = static_cast<int>(s / per_row);
+    const std::size_t first = s % per_row * kStretch, last = std::min(row, first + kStretch);
+    for (std::size_t i = first; i < last; ++i) {
+      const Vec3 x = node(static_cast<int>(i), j, k);
+      const double before = i > first ? value[j * row + i - 1] : std::numeric_limits<double>::quiet_NaN();
+      const bool known = far_ && std::isfinite(before) && far_(x);
+      value[j * row + i] = !known ? psi_.value(x) : before < 0 ? -kFarValue : kFarValue;
+    }
   });
   for_each_row([&](int j) {
     for (int i = 0; i <= n_[0]; ++i) {
@@ -294,8 +309,8 @@ ZeroSetTopology Sweep::run() {
 }  // namespace
 
 ZeroSetTopology zero_set_topology(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spacing,
-                                  const KeepGoing& keep_going) {
-  return Sweep(psi, box, spacing, keep_going).run();
+                                  const KeepGoing& keep_going, const FarFromZero& far) {
+  return Sweep(psi, box, spacing, keep_going, far).run();
 }
 
 }  // namespace umtet

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
 
 #include "mesh/detail/disjoint_sets.h"
-#include "reconstruct/sign_cells.h"
 
 namespace umtet {
 namespace {
@@ -13,24 +15,28 @@ namespace {
 // Cells this many times finer decide what the first ones leave open.
 constexpr double kFiner = 4;
 
+Eigen::Vector3i cube_of(const Vec3& x, const Vec3& origin, double size) {
+  return ((x - origin) / size).array().floor().cast<int>();
+}
+
 /// Cells by place: they come sorted by z, y, x.
 class CellGroups {
  public:
-  explicit CellGroups(SignCells cells);
+  explicit CellGroups(const SignCells& cells);
 
   int find(const Eigen::Vector3i& cell) const;
-  int cell_of(const Vec3& x) const {
-    return find(((x - cells_.origin) / cells_.size).array().floor().cast<int>());
-  }
-  /// Marks the groups of the cells at x and around it.
-  void mark(const Vec3& x);
+  int cell_of(const Vec3& x) const { return find(cube_of(x, cells_.origin, cells_.size)); }
+  /// Marks the groups of the cells at these points and around them.
+  void mark(const std::vector<Vec3>& points);
   bool is_marked(int cell) { return marked_[groups_.find(cell)]; }
   int group(int cell) { return groups_.find(cell); }
   const SignCells& cells() const { return cells_; }
   Vec3 corner(int cell) const { return cells_.origin + cells_.size * cells_.cells[cell].cast<double>(); }
 
  private:
-  SignCells cells_;
+  const SignCells& cells_;
+  Eigen::Array2i first_ = {0, 0}, n_ = {0, 0};  ///< rows of cells along x: y and z
+  std::vector<int> row_begin_;                  ///< into cells_.cells, y fastest
   detail::DisjointSets groups_;
   std::vector<char> marked_;
 };
@@ -38,9 +44,12 @@ class CellGroups {
 std::array<int, 3> order(const Eigen::Vector3i& c) { return {c[2], c[1], c[0]}; }
 
 int CellGroups::find(const Eigen::Vector3i& cell) const {
-  const auto at = std::lower_bound(cells_.cells.begin(), cells_.cells.end(), cell,
-                                   [](const auto& a, const auto& b) { return order(a) < order(b); });
-  return at != cells_.cells.end() && *at == cell ? static_cast<int>(at - cells_.cells.begin()) : -1;
+  const int j = cell[1] - first_[0], k = cell[2] - first_[1];
+  if (j < 0 || k < 0 || j >= n_[0] || k >= n_[1]) return -1;
+  const auto begin = cells_.cells.begin() + row_begin_[j + n_[0] * k];
+  const auto end = cells_.cells.begin() + row_begin_[j + n_[0] * k + 1];
+  const auto at = std::lower_bound(begin, end, cell[0], [](const auto& a, int x) { return a[0] < x; });
+  return at != end && (*at)[0] == cell[0] ? static_cast<int>(at - cells_.cells.begin()) : -1;
 }
 
 template <class F>
@@ -48,8 +57,16 @@ void for_each_neighbour(const Eigen::Vector3i& cell, F&& f) {
   for (int q = 0; q < 27; ++q) f(Eigen::Vector3i(cell + Eigen::Vector3i(q % 3 - 1, q / 3 % 3 - 1, q / 9 - 1)));
 }
 
-CellGroups::CellGroups(SignCells cells)
-    : cells_(std::move(cells)), groups_(cells_.cells.size()), marked_(cells_.cells.size(), 0) {
+CellGroups::CellGroups(const SignCells& cells)
+    : cells_(cells), groups_(cells_.cells.size()), marked_(cells_.cells.size(), 0) {
+  Eigen::AlignedBox2i rows;
+  for (const Eigen::Vector3i& c : cells_.cells) rows.extend(Eigen::Vector2i(c[1], c[2]));
+  if (rows.isEmpty()) return;
+  first_ = rows.min().array();
+  n_ = rows.sizes().array() + 1;
+  row_begin_.assign(static_cast<std::size_t>(n_.prod()) + 1, 0);
+  for (const Eigen::Vector3i& c : cells_.cells) ++row_begin_[c[1] - first_[0] + n_[0] * (c[2] - first_[1]) + 1];
+  std::partial_sum(row_begin_.begin(), row_begin_.end(), row_begin_.begin());
   for (int c = 0; c < static_cast<int>(cells_.cells.size()); ++c) {
     for_each_neighbour(cells_.cells[c], [&](const Eigen::Vector3i& next) {
       if (order(next) >= order(cells_.cells[c])) return;  // each pair once
@@ -58,11 +75,17 @@ CellGroups::CellGroups(SignCells cells)
   }
 }
 
-void CellGroups::mark(const Vec3& x) {
-  // Cut points are linear along grid edges: they lie beside psi = 0.
-  for_each_neighbour(((x - cells_.origin) / cells_.size).array().floor().cast<int>(), [&](const Eigen::Vector3i& next) {
-    if (const int n = find(next); n >= 0) marked_[groups_.find(n)] = 1;
-  });
+void CellGroups::mark(const std::vector<Vec3>& points) {
+  Eigen::Vector3i last = Eigen::Vector3i::Constant(std::numeric_limits<int>::min());
+  for (const Vec3& x : points) {
+    const Eigen::Vector3i cube = cube_of(x, cells_.origin, cells_.size);
+    if (cube == last) continue;  // cut points of one grid node come one after the other
+    last = cube;
+    // They are linear along grid edges: they lie beside psi = 0.
+    for_each_neighbour(cube, [&](const Eigen::Vector3i& next) {
+      if (const int n = find(next); n >= 0) marked_[groups_.find(n)] = 1;
+    });
+  }
 }
 
 /// psi at the corners and in the middle has both signs.
@@ -76,10 +99,34 @@ bool crosses(const LevelSet& psi, const Vec3& corner, double size) {
 
 }  // namespace
 
+ZeroFreeMap::ZeroFreeMap(const SignCells& cells, const Eigen::AlignedBox3d& box, double reach)
+    : inner_(box.min().array() + reach, box.max().array() - reach),
+      origin_(cells.origin),
+      size_(std::ceil(reach / cells.size) * cells.size) {
+  first_ = cube_of(box.min(), origin_, size_).array();
+  n_ = (cube_of(box.max(), origin_, size_).array() - first_ + 1).max(0);
+  near_.assign(static_cast<std::size_t>(n_[0]) * n_[1] * n_[2], false);
+  Eigen::Vector3i last = Eigen::Vector3i::Constant(std::numeric_limits<int>::min());
+  for (const Eigen::Vector3i& cell : cells.cells) {
+    const Eigen::Vector3i cube =
+        cube_of(origin_ + cells.size * (cell.cast<double>() + Vec3::Constant(.5)), origin_, size_);
+    if (cube == last) continue;
+    last = cube;
+    for_each_neighbour(cube, [&](const Eigen::Vector3i& next) {
+      const Eigen::Array3i at = next.array() - first_;
+      if ((at >= 0).all() && (at < n_).all()) near_[index(at)] = true;
+    });
+  }
+}
+
+bool ZeroFreeMap::operator()(const Vec3& x) const {
+  return inner_.contains(x) && !near_[index(cube_of(x, origin_, size_).array() - first_)];
+}
+
 ComponentProof prove_components(const LevelSet& psi, const Eigen::AlignedBox3d& box, const ZeroSetTopology& counted,
-                                double size) {
-  CellGroups groups(sign_cells(psi, size));
-  for (const Vec3& x : counted.cut_points) groups.mark(x);
+                                const SignCells& cells) {
+  CellGroups groups(cells);
+  groups.mark(counted.cut_points);
   ComponentProof proof;
   const int n = static_cast<int>(groups.cells().cells.size());
   enum Verdict : char { Unknown, Crossing, Open };

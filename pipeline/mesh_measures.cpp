@@ -149,8 +149,8 @@ Json measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& 
   block["level_set_spacing"] = domain.level_set ? Json(domain.level_set->spacing()) : Json(nullptr);
   compare_with_zero_set(domain, certificate, pieces, keep_going, block, reasons);
   block["components_proved"] = nullptr;
-  if (domain.level_set) {
-    const ComponentProof proof = prove_components(*domain.level_set, domain.box, pieces.topology, h / 2);
+  if (domain.level_set && pieces.cells) {
+    const ComponentProof proof = prove_components(*domain.level_set, domain.box, pieces.topology, *pieces.cells);
     block["components_proved"] = proof.unseen.empty() && proof.n_open == 0;
     for (const Vec3& at : proof.unseen) {
       const Vec3 x = at + domain.shift;

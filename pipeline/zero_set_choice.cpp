@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "mesh/surface_distance.h"
+#include "pipeline/component_proof.h"
 
 namespace umtet {
 namespace {
@@ -73,7 +74,13 @@ double counting_spacing(const Domain& domain, double h) {
 
 ZeroSetChoice choose_components(const Domain& domain, double h, const KeepGoing& keep_going) {
   ZeroSetChoice choice;
-  choice.topology = zero_set_topology(domain.psi(), domain.box, counting_spacing(domain, h), keep_going);
+  const double spacing = counting_spacing(domain, h);
+  FarFromZero far;
+  if (domain.level_set) {
+    choice.cells = sign_cells(*domain.level_set, h / 2);
+    far = ZeroFreeMap(*choice.cells, domain.box.intersection(domain.level_set->domain()), spacing);
+  }
+  choice.topology = zero_set_topology(domain.psi(), domain.box, spacing, keep_going, far);
   const std::vector<ZeroSetComponent>& pieces = choice.topology.components;
   if (pieces.empty()) return choice;
   const double radius = std::max(kSupportRadius * domain.cloud_spacing, choice.topology.spacing);

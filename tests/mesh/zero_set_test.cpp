@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -12,6 +13,17 @@
 
 namespace umtet {
 namespace {
+
+/// The signed distance to a ring, with its number of values.
+struct Counted {
+  std::atomic<int>* n;
+  static double distance(const Vec3& x) { return std::hypot(std::hypot(x.x(), x.y()) - 1, x.z()) - .4; }
+  double value(const Vec3& x) const {
+    ++*n;
+    return distance(x);
+  }
+  Vec3 gradient(const Vec3&) const { return Vec3::Zero(); }
+};
 
 using Box3 = Eigen::AlignedBox3d;
 
@@ -37,6 +49,22 @@ const Values kTorus{[](const Vec3& x) {
   const double q = std::hypot(x.x(), x.y()) - 1;
   return q * q + x.z() * x.z() - 0.16;
 }};
+
+TEST(ZeroSet, WhatIsKnownToBeFarFromAZeroNeedsNoValue) {
+  // A distance function: |psi| > sqrt(3) spacing leaves no zero in the box around x.
+  std::atomic<int> n_values = 0;
+  const Counted ring{&n_values};
+  const Eigen::AlignedBox3d box(Vec3(-2, -2, -1), Vec3(2, 2, 1));
+  constexpr double kSpacing = .05;
+  const ZeroSetTopology all = zero_set_topology(ring, box, kSpacing);
+  const int n_nodes = n_values.exchange(0);
+  const ZeroSetTopology some = zero_set_topology(
+      ring, box, kSpacing, {}, [](const Vec3& x) { return std::abs(Counted::distance(x)) > 1.7321 * kSpacing; });
+  EXPECT_LT(n_values, n_nodes / 4);
+  EXPECT_EQ(some.euler_characteristic, all.euler_characteristic);
+  EXPECT_EQ(some.n_inside_components, all.n_inside_components);
+  EXPECT_EQ(some.cut_points, all.cut_points);
+}
 
 TEST(ZeroSet, SphereAndTorusHaveTheirTopologyAreaAndSeeds) {
   const Values sphere{[](const Vec3& x) { return x.squaredNorm() - 1; }};

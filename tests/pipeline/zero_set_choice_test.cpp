@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "mesh/universal_mesh.h"
+#include "pipeline/component_proof.h"
 #include "pipeline/mesh_measures.h"
 
 namespace umtet {
@@ -46,6 +47,27 @@ Domain domain(const std::function<double(const Vec3&)>& psi) {
 }
 
 const Vec3 kCorner(1.4, 1.4, 1.4);
+
+TEST(ChooseComponents, SignCellsSpareValuesAndChangeNothing) {
+  const Domain d = domain([](const Vec3& x) { return std::min(ball(x, {0, 0, 0}, 1), ball(x, kCorner, .25)); });
+  const ZeroSetChoice c = choose_components(d, .1);
+  const ZeroSetTopology all = zero_set_topology(d.psi(), d.box, counting_spacing(d, .1));
+  EXPECT_EQ(c.topology.cut_points, all.cut_points);
+  EXPECT_EQ(c.topology.n_inside_components, all.n_inside_components);
+  EXPECT_EQ(c.topology.euler_characteristic, all.euler_characteristic);
+  const ZeroFreeMap far(*c.cells, d.box, .1);
+  int n_far = 0;
+  for (int i = 0; i < 4096; ++i) {
+    const Vec3 x = -Vec3::Constant(1.75) + 3.5 / 15 * Vec3(i % 16, i / 16 % 16, i / 256);
+    n_far += far(x);
+    for (int q = 0; q < 27 && far(x); ++q) {
+      const Vec3 y = x + .1 * Vec3(q % 3 - 1, q / 3 % 3 - 1, q / 9 - 1);
+      EXPECT_EQ(d.level_set->value(y) < 0, d.level_set->value(x) < 0);
+    }
+  }
+  EXPECT_GT(n_far, 2000);
+  EXPECT_FALSE(far(d.box.min())) << "psi is not known outside";
+}
 
 TEST(ChooseComponents, ABubbleAroundOutliersIsDropped) {
   Domain d = domain([](const Vec3& x) { return std::min(ball(x, {0, 0, 0}, 1), ball(x, kCorner, .25)); });
