@@ -1,0 +1,66 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "mesh/tet_mesh.h"
+
+namespace umtet {
+
+/// What a linear solver says when it gives up: the message holds unknowns, iterations and residual.
+struct StokesError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct KrylovReport {
+  int iterations = 0;
+  double residual = 0;  ///< over that of the start, both in the norm of the preconditioner
+};
+
+/// Symmetric systems of four unknowns a node, three velocities and a pressure, on one pattern for good.
+///
+/// MINRES with a block-diagonal preconditioner [Elman2014, Section 4.2]: BoomerAMG of a *scalar* stiffness matrix for
+/// each velocity component, spectrally equivalent to the coupled block by Korn's inequality, and a diagonal for the
+/// pressure. Products with the matrix use all threads, the rest one: the same bytes for any number of them.
+///
+/// Where PETSc and hypre are fenced. The first object starts them (and MPI, without a launcher) for the process,
+/// without PETSc's signal handlers, option file and messages.
+class SaddlePointSolver {
+ public:
+  /// The pattern couples every two nodes of a tet.
+  SaddlePointSolver(int n_nodes, std::span<const Tet> tets);
+  ~SaddlePointSolver();
+
+  void clear();  ///< all values zero
+
+  /// The block of rows of node i and columns of node j. \pre i and j share a tet
+  Eigen::Map<Eigen::Matrix4d> block(int i, int j) { return Eigen::Map<Eigen::Matrix4d>(&blocks_[16 * at(i, j)]); }
+  /// The matrix that stands in for the block of one velocity component; positive definite when complete.
+  double& stiffness(int i, int j) { return stiffness_[at(i, j)]; }
+  /// The diagonal that stands in for Schur's complement; > 0 when complete.
+  double& pressure_weight(int i) { return pressure_weight_[std::size_t(i)]; }
+
+  /// To be called when the values are complete. @param free_pressure nodes whose common pressure is undetermined: the
+  /// kernel of the matrix; empty: none.
+  void set_up(std::span<const int> free_pressure);
+
+  /// Solves K x = b from x = 0; b[4 i + c].
+  /// \throw StokesError when it takes more than max_iterations, or breaks down
+  KrylovReport solve(std::span<const double> b, std::span<double> x, double tolerance, int max_iterations);
+
+ private:
+  std::size_t at(int i, int j) const;               ///< place of (i, j) in the pattern
+  void multiply(const double* x, double* y) const;  ///< y = K x, rows in parallel
+
+  struct Petsc;
+  std::vector<int> row_, column_;  // compressed rows of nodes, sorted
+  std::vector<double> blocks_;     // column-major 4 x 4, one after the other
+  std::vector<double> stiffness_, pressure_weight_;
+  std::unique_ptr<Petsc> petsc_;  // looks at the four arrays above
+};
+
+}  // namespace umtet

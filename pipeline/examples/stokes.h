@@ -1,0 +1,82 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mesh/tet_mesh.h"
+#include "pipeline/examples/saddle_point_solver.h"
+
+namespace umtet {
+
+struct StokesParams {
+  double viscosity = 1;            ///< mu > 0
+  double stabilisation = 1. / 12;  ///< delta_K = stabilisation h_K^2 / mu; > 0
+  double tolerance = 1e-6;         ///< of the linear solver: residual over that at the start; in (0, 1)
+  int max_iterations = 500;        ///< of the linear solver; >= 1
+};
+
+/// Every broken constraint, not just the first.
+std::vector<std::string> problems(const StokesParams&);
+
+/// Velocities and pressures by vertex of the background; zero at vertices outside the fluid.
+struct StokesFlow {
+  std::vector<Vec3> u;
+  std::vector<double> p;
+  KrylovReport krylov;
+};
+
+/// Creeping flow, mu Lap u - grad p + f = 0 and div u = 0           [Rangarajan2018, eq. (16)], [BrezziPitkaranta1984]
+///
+/// in a fluid made of tets of a fixed background, whose vertices may have moved: u and p continuous, affine on tets,
+///
+///     int 2 mu eps(u) : eps(v) - p div v = int f v,     -int q div u - sum_K delta_K int_K (grad p - f) . grad q = 0,
+///
+/// u given at the fixed vertices, sigma n = 0 on the rest of the boundary. h_K^2 is the mean of the squared edges of K.
+/// The second term of f keeps the scheme consistent where there is a body force [HughesFrancaBalestra1986].
+///
+/// Where the whole boundary is fixed, pressures are determined up to a constant, which is chosen so that their mean
+/// over the fluid is zero; an unbalanced flux through the boundary (of the order of h^2 when exact velocities are
+/// interpolated) is then spread over the fluid.
+class StokesSolver {
+ public:
+  /// @param background all tets of the background: the pattern of every matrix to come. Kept by reference.
+  /// \throw std::invalid_argument for bad parameters or an index out of range
+  StokesSolver(int n_vertices, std::span<const Tet> background, const StokesParams&);
+
+  /// Fills the matrices for another fluid; no pattern is made.
+  /// @param V     all vertices of the background; those of the fluid where they are now.
+  /// @param fluid numbers of background tets, connected through faces.
+  /// @param fixed vertices where the velocity is given; others of them than the fluid's are of no account.
+  /// \throw std::invalid_argument for a tet whose volume is not positive, or less than three fixed vertices
+  void assemble(std::span<const Vec3> V, std::span<const int> fluid, std::span<const int> fixed);
+
+  /// @param velocity by vertex; read at fixed vertices only.
+  /// @param f        force per volume, by vertex; empty: none.
+  /// \pre assemble() was called. \throw StokesError when the linear solver gives up
+  StokesFlow solve(std::span<const Vec3> velocity, std::span<const Vec3> f = {});
+
+  /// The force of the fluid on whatever holds vertex i, by vertex: minus the residual of the momentum equation there,
+  /// -int sigma n N_i with n out of the fluid. The force on a body is the sum over its vertices, eq. (19).
+  ///
+  /// Zero at vertices that are not fixed, to the tolerance of the solver, and the sum over all is int f, to rounding.
+  /// @param f that of solve().
+  std::vector<Vec3> forces(const StokesFlow& flow, std::span<const Vec3> f = {}) const;
+
+ private:
+  std::vector<double> residual(const StokesFlow& flow, std::span<const Vec3> f) const;
+  void shift_to_zero_mean(std::vector<double>& p) const;
+
+  StokesParams params_;
+  std::span<const Tet> background_;
+  SaddlePointSolver system_;
+  std::vector<Vec3> V_;
+  std::vector<int> fluid_;
+  std::vector<int> wet_;     // vertices of the fluid
+  std::vector<char> fixed_;  // by vertex: the velocity is not an unknown
+  bool enclosed_ = false;    // the whole boundary is fixed
+  double volume_ = 0;
+};
+
+}  // namespace umtet
