@@ -192,25 +192,12 @@ void SaddlePointSolver::clear() {
   std::fill(pressure_weight_.begin(), pressure_weight_.end(), 0.);
 }
 
-void SaddlePointSolver::set_up(std::span<const int> free_pressure) {
+void SaddlePointSolver::set_up() {
   Petsc& P = *petsc_;
   for (Mat A : {P.K, P.stiffness}) {  // tells PETSc that the arrays have changed
     check(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
     check(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
   }
-  MatNullSpace kernel = nullptr;
-  if (!free_pressure.empty()) {
-    Vec constant = nullptr;
-    check(VecDuplicate(P.b, &constant));
-    for (const int i : free_pressure) check(VecSetValue(constant, 4 * i + 3, 1, INSERT_VALUES));
-    check(VecAssemblyBegin(constant));
-    check(VecAssemblyEnd(constant));
-    check(VecNormalize(constant, nullptr));
-    check(MatNullSpaceCreate(PETSC_COMM_SELF, PETSC_FALSE, 1, &constant, &kernel));
-    check(VecDestroy(&constant));
-  }
-  check(MatSetNullSpace(P.K, kernel));
-  check(MatNullSpaceDestroy(&kernel));
   check(PCSetOperators(P.amg, P.stiffness, P.stiffness));
   check(PCSetUp(P.amg));
   check(KSPSetOperators(P.krylov, P.K, P.K));

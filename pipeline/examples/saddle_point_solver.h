@@ -44,11 +44,9 @@ class SaddlePointSolver {
   /// The diagonal that stands in for Schur's complement; > 0 when complete.
   double& pressure_weight(int i) { return pressure_weight_[std::size_t(i)]; }
 
-  /// To be called when the values are complete. @param free_pressure nodes whose common pressure is undetermined: the
-  /// kernel of the matrix; empty: none.
-  void set_up(std::span<const int> free_pressure);
+  void set_up();  ///< to be called when the values are complete
 
-  /// Solves K x = b from x = 0; b[4 i + c].
+  /// Solves K x = b from x = 0; b[4 i + c]. K may be singular where b is in its range: MINRES does not mind.
   /// \throw StokesError when it takes more than max_iterations, or breaks down
   KrylovReport solve(std::span<const double> b, std::span<double> x, double tolerance, int max_iterations);
 

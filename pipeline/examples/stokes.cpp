@@ -81,6 +81,7 @@ void StokesSolver::assemble(std::span<const Vec3> V, std::span<const int> fluid,
   const double mu = params_.viscosity;
   std::vector<Vec3> flux(V.size(), Vec3::Zero());  // int grad N_i: not zero on the boundary only
   std::vector<double> flux_scale(V.size(), 0.);    // zero: not a vertex of the fluid
+  share_.assign(V.size(), 0.);
   volume_ = 0;
   system_.clear();
   for (const int t : fluid_) {
@@ -93,6 +94,7 @@ void StokesSolver::assemble(std::span<const Vec3> V, std::span<const int> fluid,
       const int i = K[std::size_t(a)];
       flux[std::size_t(i)] += e.volume * e.G.row(a).transpose();
       flux_scale[std::size_t(i)] += e.volume * e.G.row(a).norm();
+      share_[std::size_t(i)] += e.volume / 4;
       system_.pressure_weight(i) += e.volume / 4 / mu + delta * e.volume * e.G.row(a).squaredNorm();
       for (int b = 0; b < 4; ++b) {
         const int j = K[std::size_t(b)];
@@ -124,7 +126,7 @@ void StokesSolver::assemble(std::span<const Vec3> V, std::span<const int> fluid,
     if (!wet) system_.block(i, i)(3, 3) = system_.pressure_weight(i) = 1;
   }
   if (n_fixed < 3) throw std::invalid_argument(fmt::format("{} fixed vertices in the fluid: must be >= 3", n_fixed));
-  system_.set_up(enclosed_ ? std::span<const int>(wet_) : std::span<const int>());
+  system_.set_up();
 }
 
 std::vector<double> StokesSolver::residual(const StokesFlow& flow, std::span<const Vec3> f) const {
@@ -172,11 +174,11 @@ StokesFlow StokesSolver::solve(std::span<const Vec3> velocity, std::span<const V
   for (double& value : b) value = -value;
   double unbalanced = 0;
   for (const int i : wet_) {
-    unbalanced += b[4 * std::size_t(i) + 3] / double(wet_.size());
+    unbalanced += b[4 * std::size_t(i) + 3];
     if (fixed_[std::size_t(i)]) std::fill_n(&b[4 * std::size_t(i)], 3, 0.);
   }
   if (enclosed_) {
-    for (const int i : wet_) b[4 * std::size_t(i) + 3] -= unbalanced;
+    for (const int i : wet_) b[4 * std::size_t(i) + 3] -= unbalanced * share_[std::size_t(i)] / volume_;
   }
   flow.krylov = system_.solve(b, x, params_.tolerance, params_.max_iterations);
   for (const int i : wet_) {
@@ -184,18 +186,12 @@ StokesFlow StokesSolver::solve(std::span<const Vec3> velocity, std::span<const V
     if (!fixed_[s]) flow.u[s] = Eigen::Map<const Vec3>(&x[4 * s]);
     flow.p[s] = x[4 * s + 3];
   }
-  if (enclosed_) shift_to_zero_mean(flow.p);
-  return flow;
-}
-
-void StokesSolver::shift_to_zero_mean(std::vector<double>& p) const {
-  double integral = 0;
-  for (const int t : fluid_) {
-    const Tet& K = background_[std::size_t(t)];
-    const double mean = (p[std::size_t(K[0])] + p[std::size_t(K[1])] + p[std::size_t(K[2])] + p[std::size_t(K[3])]) / 4;
-    integral += mean * element(V_, K).volume;
+  if (enclosed_) {
+    double integral = 0;
+    for (const int i : wet_) integral += share_[std::size_t(i)] * flow.p[std::size_t(i)];
+    for (const int i : wet_) flow.p[std::size_t(i)] -= integral / volume_;
   }
-  for (const int i : wet_) p[std::size_t(i)] -= integral / volume_;
+  return flow;
 }
 
 std::vector<Vec3> StokesSolver::forces(const StokesFlow& flow, std::span<const Vec3> f) const {

@@ -38,7 +38,7 @@ struct StokesFlow {
 ///
 /// Where the whole boundary is fixed, pressures are determined up to a constant, which is chosen so that their mean
 /// over the fluid is zero; an unbalanced flux through the boundary (of the order of h^2 when exact velocities are
-/// interpolated) is then spread over the fluid.
+/// interpolated) is then spread evenly over the fluid.
 class StokesSolver {
  public:
   /// @param background all tets of the background: the pattern of every matrix to come. Kept by reference.
@@ -66,17 +66,17 @@ class StokesSolver {
 
  private:
   std::vector<double> residual(const StokesFlow& flow, std::span<const Vec3> f) const;
-  void shift_to_zero_mean(std::vector<double>& p) const;
 
   StokesParams params_;
   std::span<const Tet> background_;
   SaddlePointSolver system_;
   std::vector<Vec3> V_;
   std::vector<int> fluid_;
-  std::vector<int> wet_;     // vertices of the fluid
-  std::vector<char> fixed_;  // by vertex: the velocity is not an unknown
-  bool enclosed_ = false;    // the whole boundary is fixed
-  double volume_ = 0;
+  std::vector<int> wet_;       // vertices of the fluid
+  std::vector<char> fixed_;    // by vertex: the velocity is not an unknown
+  bool enclosed_ = false;      // the whole boundary is fixed
+  std::vector<double> share_;  // by vertex: int N_i
+  double volume_ = 0;          // of the fluid
 };
 
 }  // namespace umtet

@@ -143,6 +143,27 @@ TEST(Stokes, LinearFlowAndConstantPressureAreExactWithAnOpenEnd) {
   for (const Vec3& u_i : at_rest.u) EXPECT_EQ(u_i, Vec3(0, 0, 0));
 }
 
+TEST(Stokes, FluidAtRestCarriesItsWeightExactly) {
+  const Vec3 weight(.5, -2, 3);
+  const TetMesh mesh = warped_cube(5);
+  StokesSolver solver(int(mesh.V.size()), mesh.C, {.tolerance = 1e-12});
+  solver.assemble(mesh.V, all_tets(mesh), vertices_where(mesh, on_unit_cube));
+  const StokesFlow flow =
+      solver.solve(std::vector<Vec3>(mesh.V.size(), Vec3::Zero()), std::vector<Vec3>(mesh.V.size(), weight));
+  for (std::size_t i = 0; i < mesh.V.size(); ++i) {
+    EXPECT_LT(flow.u[i].norm(), 1e-9);
+    EXPECT_NEAR(flow.p[i], weight.dot(mesh.V[i] - Vec3::Constant(.5)), 1e-8);
+  }
+}
+
+TEST(Stokes, UnbalancedFluxIsSpreadEvenly) {
+  const TetMesh mesh = warped_cube(5);
+  StokesSolver solver(int(mesh.V.size()), mesh.C, {.tolerance = 1e-12});
+  solver.assemble(mesh.V, all_tets(mesh), vertices_where(mesh, on_unit_cube));
+  const StokesFlow flow = solver.solve(at_vertices(mesh, [](const Vec3& x) { return Vec3(x.x(), 0, 0); }));
+  for (std::size_t i = 0; i < mesh.V.size(); ++i) EXPECT_LT((flow.u[i] - mesh.V[i].x() * Vec3::UnitX()).norm(), 1e-9);
+}
+
 TEST(Stokes, ForceOnAPlateIsThatOfCouetteAndPoiseuille) {
   const double mu = 1.7, G = 3;
   std::vector<double> error;
