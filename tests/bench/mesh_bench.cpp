@@ -7,9 +7,13 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <cmath>
+#include <ctime>
 #include <iterator>
 #include <numeric>
 
+#include "mesh/certificate.h"
 #include "mesh/crawl.h"
 #include "mesh/dvr.h"
 #include "mesh/tet_quality.h"
@@ -198,6 +202,66 @@ BENCHMARK(fast_mesh)
     ->Args({3, 500, 2})
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime();
+
+struct AllIn {
+  double cpu, wall;  ///< s
+  double n_tets, n_faces;
+};
+
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+/// Labels, shell, repair and certificate of {psi < 0}, psi a compiled function.
+AllIn mesh_and_certify(const testing::AnalyticDomain& domain, double n_tets, int threads) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  const double cpu = cpu_seconds();
+  const auto wall = std::chrono::steady_clock::now();
+  const BackgroundMesh background(a15(), domain.box, h_for_tets(domain, domain.box, n_tets));
+  UmParams params;
+  params.mode = UmMode::Fast;
+  const UmResult result = universal_mesh(background, domain, params);
+  const TetMesh mesh{result.final, result.submesh.mesh.C};
+  CertificateInput input;
+  input.mesh = &mesh;
+  input.h = background.h();
+  input.positive_faces = &result.submesh.positive_faces;
+  input.psi = ImplicitFunctionRef(domain);
+  const MeshCertificate certificate = certify(input);
+  return {cpu_seconds() - cpu, std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count(),
+          static_cast<double>(certificate.n_tets), static_cast<double>(certificate.n_positive_faces)};
+}
+
+/// Tets a second on one core, all in; microseconds of CPU per positive face.
+void all_in(benchmark::State& state) {
+  const std::array<testing::AnalyticDomain, 3> domains = {testing::sphere(), testing::torus(),
+                                                          testing::banchoff_chmutov_4()};
+  const testing::AnalyticDomain& domain = domains[static_cast<std::size_t>(state.range(0))];
+  AllIn run{};
+  for (auto _ : state) run = mesh_and_certify(domain, 1e3 * static_cast<double>(state.range(1)), 1);
+  state.SetLabel(domain.name);
+  state.counters["tets"] = run.n_tets;
+  state.counters["tets_per_s"] = run.n_tets / run.cpu;
+  state.counters["us_per_face"] = 1e6 * run.cpu / run.n_faces;
+}
+BENCHMARK(all_in)
+    ->ArgNames({"shape", "thousand_tets"})
+    ->ArgsProduct({{0, 1, 2}, {500, 4000}})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime();
+
+/// Ratios in one run: the exponent of CPU time over tets from 500k to 4M, and how much faster two threads are.
+void all_in_ratios(benchmark::State& state) {
+  const testing::AnalyticDomain domain = testing::banchoff_chmutov_4();
+  AllIn small{}, large{}, two{};
+  for (auto _ : state) {
+    mesh_and_certify(domain, 500000, 1);  // the tables of the tiling are made once
+    small = mesh_and_certify(domain, 500000, 1);
+    large = mesh_and_certify(domain, 4000000, 1);
+    two = mesh_and_certify(domain, 4000000, 2);
+  }
+  state.counters["exponent"] = std::log(large.cpu / small.cpu) / std::log(large.n_tets / small.n_tets);
+  state.counters["two_threads"] = large.wall / two.wall;
+}
+BENCHMARK(all_in_ratios)->Unit(benchmark::kSecond)->Iterations(1)->UseRealTime();
 
 }  // namespace
 
