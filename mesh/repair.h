@@ -19,8 +19,8 @@ struct RepairParams {
                         ///< some tets of koala and spot stay below .8
   int max_tries = 24;   ///< labels tried for one tet; >= 0. 0: no repair
   /// Patches in all, a millisecond each, for the worst tets first: more means that h is wrong, which labels do not
-  /// mend.
-  std::size_t max_patches = 600;
+  /// mend. With 600 the armadillo keeps 93 tets below .81 at 1.4 M tets, with 3000 none.
+  std::size_t max_patches = 3000;
   double reach_out = .5;  ///< as LabelParams::reach_out: here a price for distance is not needed, the mesh itself is
                           ///< looked at; >= 0
   ProjectionParams projection;
