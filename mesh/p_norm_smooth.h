@@ -14,8 +14,10 @@
 namespace umtet {
 
 struct SmoothParams {
-  double target = .82;       ///< mean ratio every tet is to reach; in (0, 1)
-  double margin = .02;       ///< a vertex is visited while its worst tet is below target + margin; >= 0
+  double target = .82;  ///< mean ratio every tet is to reach; in (0, 1)
+  /// A vertex is visited while its worst tet is below target + margin; >= 0. At 100k tets .04 instead of .02 lifts the
+  /// 1 % quantile of Q by .003 (T6) to .014 (sphere), for a fifth more time; beyond .04 nothing is gained.
+  double margin = .04;
   double least_gain = 3e-4;  ///< a relative gain of 1/Q's norm below this is no move, and wakes nobody; > 0
   int max_sweeps = 60;       ///< over the vertices in the queue; >= 0
   /// A vertex that slid is off the surface by a sagitta only, where Damped settles in as many steps as Newton and needs
