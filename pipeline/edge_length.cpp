@@ -24,7 +24,7 @@ constexpr double kMostOfDiagonal = .1;
 // may be thinner.
 constexpr double kEdgesAcross = 2.2;
 // Labels and repair make clean meshes of 1.9 edges across, too, with more work and less room: where 2.2 ask for more
-// than this many tets, 1.9 will do (armadillo 1.4 M instead of 2.1 M, min Q >= .81 and no fold either way).
+// than this many tets, 1.9 will do (armadillo: 1.4 M instead of 2.1 M, no fold).
 constexpr double kLeastEdgesAcross = 1.9;
 constexpr std::int64_t kManyTets = 1'150'000;
 constexpr double kThinShare = .01;
