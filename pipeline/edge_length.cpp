@@ -99,7 +99,7 @@ EdgeLength choose(Domain& domain, const Parameters& parameters, const KeepGoing&
   double h = kShareOfDiagonal * domain.diagonal;
   if (domain.level_set) {
     const double t = thin_part(domain, kEdgesAcross * h);
-    h = std::min(h, std::clamp(h_of(domain, kManyTets), t / kEdgesAcross, t / kLeastEdgesAcross));
+    h = std::min(h, std::clamp(h_of(domain, tiling, kManyTets), t / kEdgesAcross, t / kLeastEdgesAcross));
   }
   return {std::max(h, least), least};
 }
