@@ -10,6 +10,7 @@
 #include "tests/support/domains.h"
 
 using namespace umtet;
+namespace domains = umtet::testing;
 
 TEST(Figure15, LeastQualityInFourBackgrounds) {
   struct Bar {
@@ -21,7 +22,7 @@ TEST(Figure15, LeastQualityInFourBackgrounds) {
   for (const Bar& bar : {Bar{"a15", .75, .645, 78.47}, Bar{"z", .75, .667, 77.08}, Bar{"slab", .69, .600, 77.91},
                          Bar{"cube", .53, .394, 87.19}}) {
     SCOPED_TRACE(bar.tiling);
-    const auto domain = testing::equation_9();
+    const auto domain = domains::equation_9();
     const Tiling& tiling = tiling_named(bar.tiling);
     const double h = h_for_tets(tiling, domain, domain.box, 100000);
     const UmResult r = universal_mesh(BackgroundMesh(tiling, domain.box, h), domain);
