@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace umtet {
 namespace {
@@ -32,15 +33,35 @@ BackgroundMesh::BackgroundMesh(const Tiling& tiling, const Box& box, double h)
   origin_ = box.center() - (.5 * unit_ * n * period).matrix();
 }
 
+BackgroundMesh::BackgroundMesh(TetMesh mesh)
+    : explicit_(std::make_shared<const ExplicitMesh>(std::move(mesh))),
+      h_(explicit_->mean_edge()),
+      unit_(1),
+      origin_(Vec3::Zero()),
+      n_{},
+      n_types_(0),
+      n_cell_tets_(0) {}
+
 Box BackgroundMesh::box() const {
+  if (explicit_) {
+    Box box;
+    for (const Vec3& x : explicit_->mesh().V) box.extend(x);
+    return box;
+  }
   Vec3 size;
   for (int a = 0; a < 3; ++a) size[a] = unit_ * (static_cast<double>(n_[a]) * tiling_.period[a]);
   return Box(origin_, origin_ + size);
 }
 
-std::int64_t BackgroundMesh::n_vertices() const { return n_types_ * (n_[0] + 2) * (n_[1] + 2) * (n_[2] + 2); }
+std::int64_t BackgroundMesh::n_vertices() const {
+  if (explicit_) return static_cast<std::int64_t>(explicit_->mesh().V.size());
+  return n_types_ * (n_[0] + 2) * (n_[1] + 2) * (n_[2] + 2);
+}
 
-std::int64_t BackgroundMesh::n_tets() const { return n_cell_tets_ * n_[0] * n_[1] * n_[2]; }
+std::int64_t BackgroundMesh::n_tets() const {
+  if (explicit_) return static_cast<std::int64_t>(explicit_->mesh().C.size());
+  return n_cell_tets_ * n_[0] * n_[1] * n_[2];
+}
 
 BackgroundMesh::VertexAddress BackgroundMesh::vertex_address(std::int64_t vertex) const {
   const std::int64_t c = vertex / n_types_, row = c / (n_[0] + 2);
@@ -69,6 +90,7 @@ std::int64_t BackgroundMesh::tet_id(int tet, const Cell& cell, const std::array<
 }
 
 Vec3 BackgroundMesh::position(std::int64_t vertex) const {
+  if (explicit_) return explicit_->mesh().V[vertex];
   const VertexAddress v = vertex_address(vertex);
   const auto& p = tiling_.points[v.type];
   const auto& period = tiling_.period;
@@ -79,6 +101,10 @@ Vec3 BackgroundMesh::position(std::int64_t vertex) const {
 }
 
 std::array<std::int64_t, 4> BackgroundMesh::tet(std::int64_t tet) const {
+  if (explicit_) {
+    const Tet& corners = explicit_->mesh().C[tet];
+    return {corners[0], corners[1], corners[2], corners[3]};
+  }
   const std::int64_t c = tet / n_cell_tets_, row = c / n_[0];
   const Cell cell = {c % n_[0], row % n_[1], row / n_[1]};
   std::array<std::int64_t, 4> vertices;
@@ -91,6 +117,11 @@ std::array<std::int64_t, 4> BackgroundMesh::tet(std::int64_t tet) const {
 }
 
 void BackgroundMesh::star(std::int64_t vertex, std::vector<std::int64_t>& tets) const {
+  if (explicit_) {
+    const auto star = explicit_->star(static_cast<int>(vertex));
+    tets.insert(tets.end(), star.begin(), star.end());
+    return;
+  }
   const VertexAddress v = vertex_address(vertex);
   for (const auto& [tet, offset] : tables_.star[v.type]) {
     if (holds(v.cell, offset)) tets.push_back(tet_id(tet, v.cell, offset));
@@ -98,6 +129,11 @@ void BackgroundMesh::star(std::int64_t vertex, std::vector<std::int64_t>& tets) 
 }
 
 void BackgroundMesh::link(std::int64_t vertex, std::vector<std::int64_t>& vertices) const {
+  if (explicit_) {
+    const auto link = explicit_->link(static_cast<int>(vertex));
+    vertices.insert(vertices.end(), link.begin(), link.end());
+    return;
+  }
   const VertexAddress v = vertex_address(vertex);
   const auto range_holds = [&](const Cell& c) {
     return c[0] >= -1 && c[0] <= n_[0] && c[1] >= -1 && c[1] <= n_[1] && c[2] >= -1 && c[2] <= n_[2];
@@ -121,6 +157,7 @@ void BackgroundMesh::link(std::int64_t vertex, std::vector<std::int64_t>& vertic
 }
 
 bool BackgroundMesh::on_rim(std::int64_t vertex) const {
+  if (explicit_) return explicit_->on_rim(static_cast<int>(vertex));
   const VertexAddress v = vertex_address(vertex);
   if (is_deep(v.cell)) return false;
   for (const auto& corner : tables_.star[v.type]) {
@@ -130,6 +167,7 @@ bool BackgroundMesh::on_rim(std::int64_t vertex) const {
 }
 
 bool BackgroundMesh::has_tets(std::int64_t vertex) const {
+  if (explicit_) return !explicit_->star(static_cast<int>(vertex)).empty();
   const VertexAddress v = vertex_address(vertex);
   if (is_deep(v.cell)) return true;
   for (const auto& corner : tables_.star[v.type]) {
@@ -139,6 +177,7 @@ bool BackgroundMesh::has_tets(std::int64_t vertex) const {
 }
 
 std::int64_t BackgroundMesh::neighbor(std::int64_t tet, int face) const {
+  if (explicit_) return explicit_->neighbor(static_cast<int>(tet), face);
   const std::int64_t c = tet / n_cell_tets_, row = c / n_[0];
   const Cell cell = {c % n_[0], row % n_[1], row / n_[1]};
   const auto& next = tables_.neighbor[tet % n_cell_tets_][face];
@@ -146,6 +185,7 @@ std::int64_t BackgroundMesh::neighbor(std::int64_t tet, int face) const {
 }
 
 std::int64_t BackgroundMesh::tet_near(const Vec3& x) const {
+  if (explicit_) return explicit_->tet_near(x);
   Cell cell;
   for (int a = 0; a < 3; ++a) {
     const double c = std::floor((x[a] - origin_[a]) / (unit_ * tiling_.period[a]));

@@ -2,8 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "mesh/explicit_mesh.h"
 #include "mesh/tet_mesh.h"
 #include "mesh/tiling.h"
 
@@ -17,6 +19,10 @@ using Box = Eigen::AlignedBox3d;
 /// -1 .. n. Ids are 64-bit: vertex = type + n_types * (cell index in the (n + 2)^3 range), tet = tet of the cell + tets
 /// of a cell * (cell index in the n^3 range). A15 has 8 types and 46 tets.
 /// Ids ascend with x fastest, then y, then z. Immutable; one mesh serves any number of domains and threads.
+///
+/// Or any other tet mesh, as it is stored: ids are then its vertex and tet numbers, and what speaks of cells and types
+/// does not apply. Both are one class because every question is asked a vertex or a tet at a time: which kind it is
+/// costs a branch that never changes, where a template would double all that is built on backgrounds.
 class BackgroundMesh {
  public:
   /// Covers `box` with whole cells, as many as their pits at the walls ask for (overhang(): a quarter cell for A15);
@@ -24,10 +30,14 @@ class BackgroundMesh {
   /// @param h  mean edge length, model units
   /// \throw std::invalid_argument for h <= 0, an empty box, or more than 2^40 tets
   BackgroundMesh(const Tiling& tiling, const Box& box, double h);
+  /// The mesh as it is; h is its mean edge length. \throw std::invalid_argument for what ExplicitMesh refuses
+  explicit BackgroundMesh(TetMesh mesh);
 
+  bool is_lattice() const { return !explicit_; }
+  /// Of no points and no name for another mesh.
   const Tiling& tiling() const { return tiling_; }
   double h() const { return h_; }
-  Box box() const;                  ///< the block of cells
+  Box box() const;                  ///< the block of cells, or the bounding box
   std::int64_t n_vertices() const;  ///< size of the id range, vertices without a tet at the rim included
   std::int64_t n_tets() const;
   /// origin + unit * (an exact multiple of a quarter for A15): two roundings per coordinate.
@@ -37,15 +47,17 @@ class BackgroundMesh {
   void star(std::int64_t vertex, std::vector<std::int64_t>& tets) const;
   /// Appends the vertices that share an edge with `vertex`, ascending.
   void link(std::int64_t vertex, std::vector<std::int64_t>& vertices) const;
-  /// True if some tet of the tiling at `vertex` is missing from the mesh.
+  /// True if some tet of the tiling at `vertex` is missing from the mesh, or if it is on the boundary of an other mesh.
   bool on_rim(std::int64_t vertex) const;
   /// True if some tet of the mesh has `vertex` as a corner.
   bool has_tets(std::int64_t vertex) const;
   /// The tet behind the face opposite to local vertex `face`, or -1 at the rim.
   std::int64_t neighbor(std::int64_t tet, int face) const;
-  /// Some tet whose cell contains x (a place to start a local search), or -1 outside the box.
+  /// Some tet whose cell contains x (a place to start a local search), or -1 outside the box. In an other mesh one at
+  /// the nearest vertex, by looking at all.
   std::int64_t tet_near(const Vec3& x) const;
 
+  // From here on: of a lattice.
   using Cell = std::array<std::int64_t, 3>;
   const TilingTables& tiling_tables() const { return tables_; }
   int n_types() const { return n_types_; }
@@ -70,6 +82,7 @@ class BackgroundMesh {
   bool holds(const Cell& cell, const std::array<int, 3>& offset) const;
   std::int64_t tet_id(int tet, const Cell& cell, const std::array<int, 3>& offset) const;
 
+  std::shared_ptr<const ExplicitMesh> explicit_;  ///< null for a lattice
   Tiling tiling_;
   TilingTables tables_;
   double h_, unit_;  ///< unit_: of the tiling's lengths, in model units

@@ -224,7 +224,7 @@ IdSet Crawler::flood_inside() {
     if (n % kVisitsPerPoll == 0) poll(keep_going_);
     const std::int64_t v = stack.back();
     stack.pop_back();
-    if (background_.on_rim(v)) {
+    if (!background_.is_lattice() || background_.on_rim(v)) {
       scratch_.clear();
       background_.link(v, scratch_);
       for (const std::int64_t w : scratch_) visit(w);

@@ -62,7 +62,7 @@ struct Slab {
 
 Submesh emit_submesh(const BackgroundMesh& background, const IdSet& inside) {
   const CellStencil stencil(background);
-  if (!stencil.fits_a_word()) {
+  if (!background.is_lattice() || !stencil.fits_a_word()) {
     return detail::assemble_submesh(background, detail::cut_or_inside_tets(background, inside), inside);
   }
   const auto& n = background.n_cells();

@@ -34,7 +34,7 @@ LatticeShell lattice_patch(const BackgroundMesh& background, const std::vector<L
                            const detail::IdSet& inside, const std::vector<std::int64_t>& centres, int reach);
 
 /// omega_h of these inside vertices: equal to detail::assemble_submesh() bit for bit, cell by cell with threads, and
-/// that function itself where the tets of a cell have more than 64 corners (slab and cube).
+/// that function itself without cells or where the tets of one have more than 64 corners (slab and cube).
 /// Cost: some ns per tet, and a few per cell of the background mesh.
 Submesh emit_submesh(const BackgroundMesh& background, const detail::IdSet& inside);
 

@@ -7,6 +7,7 @@
 #include "mesh/surface_distance.h"
 #include "mesh/tet_mesh_io.h"
 #include "mesh/universal_mesh.h"
+#include "pipeline/background_choice.h"
 #include "pipeline/domain.h"
 #include "pipeline/edge_length.h"
 #include "pipeline/exit_code.h"
@@ -20,20 +21,6 @@
 namespace umtet {
 namespace fs = std::filesystem;
 namespace {
-
-/// @param n_tets  that were asked for, or 0
-BackgroundMesh make_background(const Domain& domain, const Tiling& tiling, double h, std::int64_t n_tets,
-                               double allowed) {
-  try {
-    BackgroundMesh background(tiling, domain.box, h);
-    const double expected =
-        n_tets > 0 ? static_cast<double>(n_tets) : expected_tets(tiling, domain.psi(), domain.box, h);
-    require_memory(background, expected, allowed);
-    return background;
-  } catch (const std::invalid_argument& e) {  // h and the box have been checked: their tets are too many to count
-    throw ResourceLimit(fmt::format("h = {:.4g}: no background mesh: {}", h, e.what()));
-  }
-}
 
 /// What the file will hold, in working coordinates: it stores x + shift, rounded, and taking the shift off again is
 /// exact (far_origin_shift). From here on that is the mesh: it is this one that is measured.
@@ -70,6 +57,7 @@ class MeshStage {
   explicit MeshStage(const StageContext& context)
       : context_(context),
         domain_(load_domain(context.paths, context.parameters)),
+        background_(context.parameters, domain_),
         keep_iterates_(context.parameters.flag("mesh.keep_iterates")) {}
 
   void run();
@@ -89,6 +77,7 @@ class MeshStage {
   void write_outputs(const MeshAttempt& best);
   const StageContext& context_;
   Domain domain_;
+  BackgroundChoice background_;
   const bool keep_iterates_;
   std::vector<std::vector<Vec3>> iterates_;  ///< of the running attempt
   std::vector<std::string> outputs_;
@@ -240,8 +229,7 @@ MeshAttempt MeshStage::attempt(double h) {
   stop_if_interrupted();
   domain_.limit_detail(h);
   const BackgroundMesh background =
-      make_background(domain_, tiling_named(context_.parameters.text("mesh.background")), h,
-                      context_.parameters.integer("mesh.tets"), allowed_bytes(context_.parameters));
+      background_.make(domain_, h, context_.parameters.integer("mesh.tets"), allowed_bytes(context_.parameters));
   const ZeroSetChoice& pieces = pieces_at(h);
   a.thin = find_thin_places(domain_, pieces, h, not_interrupted);
   const bool refuses = judge_thin_ && !a.thin.empty() && !context_.parameters.flag("mesh.allow_thin");
@@ -281,7 +269,9 @@ void MeshStage::run() {
   const std::vector<RecordedFile> inputs = recorded_inputs(context_.paths, Stage::Mesh, context_.parameters);
   context_.progress.report("mesh", "size", 0);
   const MeshAttempt best = best_attempt(
-      fit_to_thin_places(choose_edge_length(domain_, context_.parameters, not_interrupted)),
+      background_.own_h()
+          ? EdgeLength{*background_.own_h(), *background_.own_h()}
+          : fit_to_thin_places(choose_edge_length(domain_, context_.parameters, not_interrupted)),
       [this](double h) { return attempt_for_tets(h); },
       [this](const std::string& line) { context_.progress.say(line); });
   const UmResult& result = best.result;

@@ -7,9 +7,11 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <numeric>
 #include <sstream>
 
+#include "mesh/tiling.h"
 #include "pipeline/artefact.h"
 #include "pipeline/exit_code.h"
 
@@ -89,6 +91,15 @@ bool is_utf8(const std::string& text) {
   }
 }
 
+void check_background(const std::string& name) {
+  const auto names = tiling_names();
+  const std::string ending = std::filesystem::path(name).extension();
+  const bool is_file = ending == ".vtu" || ending == ".msh" || ending == ".mesh";
+  if (is_file || std::find(names.begin(), names.end(), name) != names.end()) return;
+  throw UsageError(
+      fmt::format("mesh.background = {}: must be {} or a .vtu, .msh or .mesh file", name, fmt::join(names, ", ")));
+}
+
 void check(const ParamField& f, const ParamValue& value) {
   const auto in_range = [&](double v) {
     if (v >= f.min && v <= f.max) return;  // false for NaN
@@ -104,6 +115,7 @@ void check(const ParamField& f, const ParamValue& value) {
   // TOML and JSON hold nothing else.
   if (t && !is_utf8(*t)) throw UsageError(f.key + ": the text is not valid UTF-8");
   if (f.key == "mesh.box") parse_box(*t);
+  if (f.key == "mesh.background") check_background(*t);
 }
 
 /// Names for comments: a control character would end the comment.

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "pipeline/artefact.h"
+#include "pipeline/background_choice.h"
 #include "pipeline/exit_code.h"
 
 namespace umtet {
@@ -9,6 +11,9 @@ namespace fs = std::filesystem;
 
 std::vector<RecordedFile> recorded_inputs(const CasePaths& paths, Stage stage, const Parameters& parameters) {
   std::vector<RecordedFile> inputs;
+  if (stage == Stage::Mesh) {
+    if (const auto file = background_file(parameters)) inputs.push_back({file->string(), stamp(*file)});
+  }
   const bool formula = stage == Stage::Mesh && !parameters.text("mesh.implicit").empty();
   if (stage == Stage::Cloud || formula) return inputs;
   for (const Stage source : {Stage::Cloud, Stage::LevelSet}) {

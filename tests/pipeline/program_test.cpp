@@ -336,6 +336,20 @@ TEST_F(Program, EveryTilingIsABackground) {
   }
 }
 
+TEST_F(Program, AnyTetMeshIsABackground) {
+  const std::string ball = "mesh --implicit 'x^2+y^2+z^2-1' --box=-1.3,-1.3,-1.3,1.3,1.3,1.3 ";
+  // omega_h of a larger ball serves the unit ball, and a box with walls does.
+  EXPECT_EQ(run("mesh --implicit 'x^2+y^2+z^2-2' --box=-1.6,-1.6,-1.6,1.6,1.6,1.6 --h .15 -o large").code, 0);
+  for (const std::string background : {"--background large/3-mesh/omega_h.vtu", "--h .15 --box-walls"}) {
+    const Result r = run(ball + background + " --mode paper -o unit");
+    EXPECT_EQ(r.code, 0) << background << r.out << r.err;
+    EXPECT_NE(r.out.find("verdict   pass"), std::string::npos) << r.out;
+  }
+  EXPECT_NE(run(ball + "--background large/3-mesh/omega_h.vtu --h .1 -o a").err.find("its own edge lengths"),
+            std::string::npos);
+  EXPECT_NE(run(ball + "--background z --box-walls -o a").err.find("--background a15"), std::string::npos);
+}
+
 TEST_F(Program, UsageErrorsNameThePlaceAndTheRemedy) {
   const std::pair<const char*, const char*> cases[] = {
       {"mesh --implicit 'x^2+foo(y)' --box -1,-1,-1,1,1,1 -o a", "column 5"},
@@ -345,7 +359,7 @@ TEST_F(Program, UsageErrorsNameThePlaceAndTheRemedy) {
       {"run egg.ply -o a --set mesh.sampels=1", "did you mean mesh.samples?"},
       {"run egg.ply -o a --tets 10 --h 1", "exclude each other"},
       {"run egg.ply -o a --mode quick", "fast, paper only"},
-      {"run egg.ply -o a --background bcc", "a15, z, slab, cube only"},
+      {"run egg.ply -o a --background bcc", "must be a15, z, slab, cube or"},
       {"run egg.ply -o a --from mehs", "did you mean mesh?"},
       {"run egg.ply", "-o CASE"},
       {"rum egg.ply -o a", "did you mean run?"},

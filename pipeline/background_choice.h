@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "mesh/background_mesh.h"
+#include "pipeline/domain.h"
+#include "pipeline/parameters.h"
+
+namespace umtet {
+
+/// The mesh file that mesh.background names, if it is no tiling.
+std::optional<std::filesystem::path> background_file(const Parameters&);
+
+/// What --background and --box-walls ask for: a lattice or a box of any edge length, or a mesh that has its own.
+class BackgroundChoice {
+ public:
+  /// Reads the file, if it is one. Its coordinates are model coordinates.
+  /// \throw UsageError when h or a number of tets is asked of a file, or walls of another tiling than a15;
+  ///        MeshFileRefused, std::system_error
+  BackgroundChoice(const Parameters& parameters, const Domain& domain);
+
+  /// That of the file.
+  std::optional<double> own_h() const { return given_ ? std::optional(given_->h()) : std::nullopt; }
+  /// @param n_tets  that were asked for, or 0
+  /// @param allowed  bytes
+  /// \throw ResourceLimit
+  BackgroundMesh make(const Domain& domain, double h, std::int64_t n_tets, double allowed) const;
+
+ private:
+  std::optional<BackgroundMesh> given_;
+  const Tiling* tiling_;  ///< that the number of tets is estimated by, for a file too
+  bool walls_;
+};
+
+}  // namespace umtet
