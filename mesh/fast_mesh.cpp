@@ -9,6 +9,7 @@
 #include "mesh/background_shell.h"
 #include "mesh/detail/assemble_submesh.h"
 #include "mesh/detail/offenders.h"
+#include "mesh/label_prices.h"
 #include "mesh/lattice_shell.h"
 #include "mesh/tet_quality.h"
 
@@ -22,8 +23,14 @@ using detail::Offenders;
 class FastRun {
  public:
   FastRun(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params, const UmObserver& observer)
-      : background_(background), psi_(psi), params_(params), observer_(observer), inside_(0) {
-    if (has_label_prices()) links_ = a15_links();
+      : background_(background),
+        psi_(psi),
+        params_(params),
+        observer_(observer),
+        prices_(label_prices(background.tiling())),
+        label_params_(params.fast.labels),
+        inside_(0) {
+    if (prices_ && !label_params_.energies) label_params_.energies = &prices_->energies;
   }
 
   UmResult operator()(const std::vector<Vec3>& seeds) {
@@ -38,8 +45,6 @@ class FastRun {
   }
 
  private:
-  /// Only what labels of A15 are worth has been measured; on other backgrounds they stay those of psi.
-  bool has_label_prices() const { return background_.tiling().name == a15().name; }
   bool fail(UmStatus status, const UmEvidence& evidence) {
     result_.status = status;
     result_.evidence = evidence;
@@ -71,7 +76,8 @@ class FastRun {
   ImplicitFunctionRef psi_;
   const UmParams& params_;
   const UmObserver& observer_;
-  std::vector<LinkTopology> links_;  ///< where labels have prices
+  const LabelPrices* prices_;  ///< null: labels stay those of psi
+  LabelParams label_params_;   ///< with the prices
   UmResult result_;
   IdSet inside_;
   LatticeShell shell_;
@@ -107,8 +113,9 @@ bool FastRun::find_inside(const std::vector<Vec3>& seeds) {
 }
 
 bool FastRun::label() {
-  if (has_label_prices()) {
-    const LabelReport labels = choose_labels(background_, links_, psi_, params_.fast.labels, inside_, asking("search"));
+  if (prices_) {
+    const LabelReport labels =
+        choose_labels(background_, prices_->links, psi_, label_params_, inside_, asking("search"));
     result_.n_psi_evaluations += labels.psi_evaluations;
   }
   result_.submesh = emit_submesh(background_, inside_);
@@ -179,9 +186,9 @@ void FastRun::measure_assumptions() {
 
 /// Changes labels where that mends a tet, and omega_h with them.
 void FastRun::repair_labels(const KeepGoing& keep_going) {
-  if (!has_label_prices()) return;
+  if (!prices_) return;
   RepairReport repaired =
-      repair(background_, links_, psi_, params_.fast.labels, params_.fast.repair, shell_, inside_, keep_going);
+      repair(background_, prices_->links, psi_, label_params_, params_.fast.repair, shell_, inside_, keep_going);
   result_.n_psi_evaluations += repaired.psi_evaluations;
   moved_ = std::move(repaired.moved);
   if (repaired.flips == 0) return;
@@ -191,8 +198,8 @@ void FastRun::repair_labels(const KeepGoing& keep_going) {
 }
 
 bool FastRun::fit() {
-  shell_ = has_label_prices() ? lattice_shell(background_, links_, inside_, params_.fast.layers)
-                              : background_shell(background_, inside_, params_.fast.layers);
+  shell_ = prices_ ? lattice_shell(background_, prices_->links, inside_, params_.fast.layers)
+                   : background_shell(background_, inside_, params_.fast.layers);
   const KeepGoing keep_going = asking("relax");
   PNormSmoother smoother(shell_.shell);
   const ProjectionReport projection = project(smoother, psi_, params_.fast.projection, keep_going);

@@ -70,10 +70,10 @@ TEST(BackgroundShell, IsTheShellOfTheLattice) {
 }
 
 /// @return the worst quality of eq. (9) at 100k tets on a background [Rangarajan2018, Section 3.6]
-double least_quality(const Tiling& tiling, UmMode mode) {
+double least_quality(const Tiling& tiling) {
   const auto domain = testing::equation_9();
   UmParams params;
-  params.mode = mode;
+  params.mode = UmMode::Fast;
   const UmResult r = universal_mesh(background_of(tiling, domain, 100000), domain, params);
   EXPECT_EQ(r.status, UmStatus::Success) << tiling.name << ": " << r.evidence.what;
   EXPECT_EQ(r.obtuse_conditioning_angles, 0u) << tiling.name;
@@ -85,10 +85,10 @@ double least_quality(const Tiling& tiling, UmMode mode) {
 }
 
 TEST(Backgrounds, FastModeMeshesEquationNineOnEach) {
-  // What it makes, minus .01.
-  EXPECT_GT(least_quality(z_phase(), UmMode::Fast), .758);
-  EXPECT_GT(least_quality(acute_slab(), UmMode::Fast), .724);
-  EXPECT_GT(least_quality(acute_cube(), UmMode::Fast), .556);
+  // What it makes, minus .01. Z's labels have prices.
+  EXPECT_GT(least_quality(z_phase()), .81);
+  EXPECT_GT(least_quality(acute_slab()), .724);
+  EXPECT_GT(least_quality(acute_cube()), .556);
 }
 
 }  // namespace
