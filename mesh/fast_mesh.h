@@ -8,7 +8,8 @@ namespace umtet {
 
 /// A boundary-fitting mesh of {psi < 0}, better and some ten times faster than Algorithm 1.
 ///
-/// labels: which background vertices near psi = 0 count as inside is chosen for the shape of the tets (labels.h);
+/// labels: which background vertices near psi = 0 count as inside is chosen for the shape of the tets (labels.h), where
+/// that has prices (label_prices.h);
 /// shell: only the boundary of omega_h and two layers behind it move (lattice_shell.h);
 /// projection: boundary vertices walk to psi = 0 as far as no tet inverts (guarded_projection.h);
 /// smoothing: p-norm Newton steps where a tet is below the target (p_norm_smooth.h).

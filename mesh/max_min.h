@@ -20,7 +20,8 @@ inline constexpr MaxMin kBestMaxMin = MaxMin::Exact;
 inline constexpr MaxMin kBestMaxMin = MaxMin::GoldenSection;
 #endif
 
-/// Tets a vertex may have. The acute tilings have at most 28; a ring beyond this is refused where rings are built.
+/// Tets a vertex may have. The tilings have at most 80, at corners of cubes; a ring beyond this is refused where rings
+/// are built.
 inline constexpr int kMaxRing = 128;
 
 /// Tets handled at once.
