@@ -209,17 +209,22 @@ void MeshStage::refuse_thin(const ThinPlaces& thin) {
   std::string message =
       fmt::format("h = {:.4g} is too large: {} place{} thinner than it can show\n{}\n", thin.h, thin.places.size(),
                   thin.places.size() == 1 ? " is" : "s are", described(thin, domain_.shift));
-  // A finer look finds thinner places: the h that is enough for all of them is sought as an automatic one is.
-  const double least = least_h_of_max_tets(domain_, context_.parameters);
-  const double enough = fit_to_thin_places({thin.h, least}).h;
-  const bool in_reach = enough < thin.h && enough > least;
-  message += in_reach ? fmt::format("  h = {:.3g} is enough, about {:.2g} tets", enough,
-                                    expected_tets(domain_.psi(), domain_.box, enough))
-                      : fmt::format("  that takes more than {} tets: raise --max-tets",
-                                    context_.parameters.integer("mesh.max_tets"));
+  Json h_enough;
+  if (background_.own_h()) {
+    message += fmt::format("  a background with edges of {:.3g} may show them", thin.h_needed());
+  } else {
+    // A finer look finds thinner places: the h that is enough for all of them is sought as an automatic one is.
+    const double least = least_h_of_max_tets(domain_, context_.parameters);
+    const double enough = fit_to_thin_places({thin.h, least}).h;
+    if (enough < thin.h && enough > least) h_enough = enough;
+    message += h_enough.is_null() ? fmt::format("  that takes more than {} tets: raise --max-tets",
+                                                context_.parameters.integer("mesh.max_tets"))
+                                  : fmt::format("  h = {:.3g} is enough, about {:.2g} tets", enough,
+                                                expected_tets(domain_.psi(), domain_.box, enough));
+  }
   message += "; --allow-thin makes a mesh nevertheless\n  look at " + file.string();
   if (keeps) message += "\n  the former mesh and its certificate have been kept";
-  throw TooThin(message, {{"too_thin", to_json(thin, domain_.shift)}, {"h_enough", in_reach ? Json(enough) : Json()}});
+  throw TooThin(message, {{"too_thin", to_json(thin, domain_.shift)}, {"h_enough", h_enough}});
 }
 
 MeshAttempt MeshStage::attempt(double h) {
@@ -269,9 +274,8 @@ void MeshStage::run() {
   const std::vector<RecordedFile> inputs = recorded_inputs(context_.paths, Stage::Mesh, context_.parameters);
   context_.progress.report("mesh", "size", 0);
   const MeshAttempt best = best_attempt(
-      background_.own_h()
-          ? EdgeLength{*background_.own_h(), *background_.own_h()}
-          : fit_to_thin_places(choose_edge_length(domain_, context_.parameters, not_interrupted)),
+      background_.own_h() ? EdgeLength{*background_.own_h(), *background_.own_h()}
+                          : fit_to_thin_places(choose_edge_length(domain_, context_.parameters, not_interrupted)),
       [this](double h) { return attempt_for_tets(h); },
       [this](const std::string& line) { context_.progress.say(line); });
   const UmResult& result = best.result;
