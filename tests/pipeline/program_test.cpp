@@ -441,7 +441,7 @@ TEST_F(Program, InterruptedRunsLeaveAResumableCase) {
     if (child == 0) {
       ::chdir(folder.c_str());
       ::execl(UMTET_PROGRAM, "umtet", "mesh", "--implicit", "x^2+y^2+z^2-1", "--box", "-1.3,-1.3,-1.3,1.3,1.3,1.3",
-              "--tets", "300000", "-o", "large", "-q", nullptr);
+              "--tets", "300000", "--mode", "paper", "-o", "large", "-q", nullptr);
       ::_exit(127);
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(400));

@@ -75,7 +75,8 @@ TEST_F(Program, MaxDeviationIsKeptAndNotMuchFinerThanNeeded) {
     const Json c = Json::parse(r.out)["certificate"];
     const double made = c["boundary"]["max_centroid_distance_over_h"].get<double>() * c["h"].get<double>();
     EXPECT_LE(made, std::stod(deviation)) << formula;
-    EXPECT_GE(made, std::stod(deviation) / 3) << formula;
+    // Lengths scale with the root of this: h is less than twice as fine as it could be.
+    EXPECT_GE(made, std::stod(deviation) / 3.5) << formula;
   }
 }
 
