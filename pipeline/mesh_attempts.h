@@ -21,10 +21,13 @@ struct MeshAttempt {
 
   bool made() const { return result.status == UmStatus::Success; }
   std::size_t n_reasons() const { return made() ? measured.at("reasons").size() : 0; }
+  bool is_right() const { return made() && n_reasons() == 0; }
+  /// What is wrong with it first of all; empty if nothing is.
+  std::string complaint() const;
 };
 
 /// Runs `attempt` at choice.h and, while something is wrong that a smaller h may mend, at four fifths of the last h: up
-/// to four times in all, and never below choice.least. A few folded faces at a thin place come and go with h.
+/// to four times in all, and never below choice.least, which is tried instead where it is nearer. A few folded faces at a thin place come and go with h.
 ///
 /// @param say  is told why another h is tried, and which mesh is kept if it is not the last
 /// @return the best of them: a mesh before none, then the one with the fewest reasons against it, then the last

@@ -31,9 +31,8 @@ double rms(const std::vector<double>& d) {
 double max_curvature(ImplicitFunctionRef psi, const UmResult& result, double h, const KeepGoing& keep_going) {
   const std::vector<int>& I = result.submesh.positive_vertices;
   std::vector<double> kappa(I.size());
-  polled_parallel_for(I.size(), kValuesPerPoll, keep_going, [&](std::size_t k) {
-    kappa[k] = principal_curvatures(psi, result.final[I[k]])[0];
-  });
+  polled_parallel_for(I.size(), kValuesPerPoll, keep_going,
+                      [&](std::size_t k) { kappa[k] = principal_curvatures(psi, result.final[I[k]])[0]; });
   return kappa.empty() ? 0 : h * *std::max_element(kappa.begin(), kappa.end());
 }
 
@@ -46,10 +45,39 @@ double min_feature_size(ImplicitFunctionRef psi, const UmResult& result, double 
   return t.empty() ? 0 : *std::min_element(t.begin(), t.end());
 }
 
+// So many samples, and this share of them, have to be far from the mesh before it is said to lack something.
+constexpr std::size_t kFewSamples = 10;
+constexpr double kSmallShare = 1e-3;
+
+/// Samples that psi, with all its detail, passes by, and the mesh does not: what has been too small for h.
+void look_for_lost_samples(const Domain& domain, const std::vector<double>& d, double h, const KeepGoing& keep_going,
+                           std::vector<std::string>& reasons) {
+  const std::vector<Vec3>& x = domain.cloud.points;
+  std::vector<std::uint8_t> lost(x.size(), 0);
+  polled_parallel_for(x.size(), kValuesPerPoll, keep_going, [&](std::size_t i) {
+    if (d[i] <= h) return;
+    Vec3 g;
+    const double value = domain.fitted->evaluate(x[i], &g, nullptr);
+    lost[i] = d[i] > h + std::abs(value) / g.norm();
+  });
+  const auto n = static_cast<std::size_t>(std::count(lost.begin(), lost.end(), 1));
+  if (n <= kFewSamples || static_cast<double>(n) <= kSmallShare * static_cast<double>(x.size())) return;
+  std::size_t farthest = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (lost[i] && (!lost[farthest] || d[i] > d[farthest])) farthest = i;
+  }
+  const Vec3 at = x[farthest] + domain.shift;
+  reasons.push_back(
+      fmt::format("{} samples of the surface are farther than h from the mesh, that at ({:.6g}, {:.6g}, "
+                  "{:.6g}) {:.2g} h: h is too large for what is there",
+                  n, at.x(), at.y(), at.z(), d[farthest] / h));
+}
+
 Json cloud_block(const Domain& domain, const std::vector<Vec3>& V, const std::vector<Triangle>& faces, double h,
-                 const KeepGoing& keep_going) {
+                 const KeepGoing& keep_going, std::vector<std::string>& reasons) {
   if (domain.cloud.points.empty()) return nullptr;
   std::vector<double> d = SurfaceDistance(V, faces).distances(domain.cloud.points, keep_going);
+  if (domain.fitted) look_for_lost_samples(domain, d, h, keep_going, reasons);
   std::sort(d.begin(), d.end());
   const double r = rms(d), max = d.back(), p99 = quantile(d, .99);
   return {{"rms_distance", r},
@@ -164,7 +192,7 @@ Json measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& 
                                                                    kSupportRadius * domain.cloud_spacing, keep_going);
   }
   json["domain"] = std::move(block);
-  json["cloud"] = cloud_block(domain, mesh.V, faces, h, keep_going);
+  json["cloud"] = cloud_block(domain, mesh.V, faces, h, keep_going, reasons);
   json["resolution"] = {{"kappa_h_max", max_curvature(domain.psi(), result, h, keep_going)},
                         {"feature_size_over_h_min", min_feature_size(domain.psi(), result, h, keep_going) / h},
                         {"obtuse_conditioning_angles", result.obtuse_conditioning_angles},

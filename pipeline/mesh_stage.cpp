@@ -30,6 +30,8 @@ void round_to_file(std::vector<Vec3>& V, const Vec3& shift) {
 
 // Another h is tried for the number of tets that was asked for when it is missed by more than this.
 constexpr double kTetsTolerance = .1;
+// Pieces of psi = 0 are not looked for on grids finer than this, in h.
+constexpr double kFinestGrid = .1;
 
 /// The distance that was asked for is a promise: a mesh that breaks it is not right.
 void check_deviation(double asked, Json& measured) {
@@ -39,6 +41,17 @@ void check_deviation(double asked, Json& measured) {
   if (made <= asked) return;
   measured["reasons"].push_back(
       fmt::format("a face centre is {:.4g} from psi = 0, more than the {:.4g} of --max-deviation", made, asked));
+}
+
+/// What is skipped as a whole leaves no trace in topology or normals.
+void check_lost(MeshAttempt& a, const Vec3& shift) {
+  const LostPoint lost = lost_of(a.thin, a.result.final, a.result.submesh.positive_faces, not_interrupted);
+  if (lost.count == 0) return;
+  const Vec3 at = lost.where + shift;
+  a.measured["reasons"].push_back(
+      fmt::format("the mesh lacks what is thin around ({:.6g}, {:.6g}, {:.6g}): psi = 0 is "
+                  "{:.2g} h from its boundary there",
+                  at.x(), at.y(), at.z(), lost.distance / a.h));
 }
 
 const char* remedy(UmStatus status) {
@@ -66,8 +79,10 @@ class MeshStage {
   MeshAttempt attempt(double h);
   MeshAttempt attempt_for_tets(double h);
   const ZeroSetChoice& pieces_at(double h);
-  EdgeLength fit_to_thin_places(EdgeLength choice);
-  [[noreturn]] void refuse_thin(const ThinPlaces& thin);
+  EdgeLength enough_for(const ThinPlaces& thin);
+  std::string remedy_for(const ThinPlaces& thin, Json& h_enough);
+  [[noreturn]] void refuse_thin(const MeshAttempt& best);
+  fs::path write_failed(const UmResult& result);
   bool observe(const UmProgress& p);
   UmResult make(const BackgroundMesh& background, const ZeroSetChoice& pieces);
   [[noreturn]] void refuse(const UmResult& result, double h);
@@ -82,9 +97,8 @@ class MeshStage {
   std::vector<std::vector<Vec3>> iterates_;  ///< of the running attempt
   std::vector<std::string> outputs_;
   std::optional<std::pair<double, ZeroSetChoice>> pieces_;  ///< of psi cut for the h beside them
-  bool judge_thin_ = true;  ///< no mesh has been tried yet: what is too thin is refused, unless it is allowed
-  double missed_by_ = 0;    ///< tets made / tets asked for, when the running attempt was given up for it
-  bool may_miss_ = false;   ///< it goes on whatever the number
+  double missed_by_ = 0;   ///< tets made / tets asked for, when the running attempt was given up for it
+  bool may_miss_ = false;  ///< it goes on whatever the number
 };
 
 bool MeshStage::observe(const UmProgress& p) {
@@ -143,17 +157,23 @@ void MeshStage::write_output(const std::string& name, const UmResult& result, co
   outputs_.push_back(name);
 }
 
-void MeshStage::refuse(const UmResult& result, double h) {
-  if (!context_.paths.renews(Stage::Mesh)) begin_writing(context_, Stage::Mesh);
+/// What is left of a mesh that is none, or is not right; returns the folder.
+fs::path MeshStage::write_failed(const UmResult& result) {
   const fs::path folder = context_.paths.failed();
   fs::remove_all(folder);
   const std::size_t n = result.submesh.mesh.V.size();
-  if (n > 0) {
-    fs::create_directories(folder);
-    write_iterate(folder / "omega_h.vtu", result, result.submesh.mesh.V);
-    const std::vector<Vec3>& last = result.final.size() == n ? result.final : result.projected;
-    if (last.size() == n) write_iterate(folder / "projected.vtu", result, last);
-  }
+  if (n == 0) return folder;
+  fs::create_directories(folder);
+  write_iterate(folder / "omega_h.vtu", result, result.submesh.mesh.V);
+  const std::vector<Vec3>& last = result.final.size() == n ? result.final : result.projected;
+  if (last.size() == n) write_iterate(folder / "projected.vtu", result, last);
+  return folder;
+}
+
+void MeshStage::refuse(const UmResult& result, double h) {
+  if (!context_.paths.renews(Stage::Mesh)) begin_writing(context_, Stage::Mesh);
+  const fs::path folder = write_failed(result);
+  const std::size_t n = result.submesh.mesh.V.size();
   const UmEvidence& e = result.evidence;
   const Vec3 at = e.where + domain_.shift;
   std::string message = fmt::format("no mesh at h = {:.6g}: {}: {}", h, to_string(result.status), e.what);
@@ -174,7 +194,11 @@ const ZeroSetChoice& MeshStage::pieces_at(double h) {
   domain_.limit_detail(h);
   if (!pieces_ || pieces_->first != h) {
     context_.progress.report("mesh", "components", .05);
-    pieces_.emplace(h, choose_components(domain_, h, not_interrupted));
+    // A body thinner than the grid may have no node inside.
+    for (double spacing = h; spacing > kFinestGrid * h; spacing /= 2) {
+      pieces_.emplace(h, choose_components(domain_, spacing, not_interrupted));
+      if (!pieces_->second.topology.components.empty()) break;
+    }
     stop_if_interrupted();
   }
   return pieces_->second;
@@ -184,45 +208,45 @@ const ZeroSetChoice& MeshStage::pieces_at(double h) {
 constexpr int kThinRounds = 8;
 constexpr double kThinStep = .9;
 
-/// Lowers h to what the thin places need, as far as choice.least.
-EdgeLength MeshStage::fit_to_thin_places(EdgeLength choice) {
+/// An h at which nothing is thin any more, as far as --max-tets allows.
+EdgeLength MeshStage::enough_for(const ThinPlaces& thin) {
+  EdgeLength choice{thin.h, least_h_of_max_tets(domain_, context_.parameters)};
+  double needed = thin.h_needed();
   for (int round = 0; round < kThinRounds && choice.h > choice.least; ++round) {
-    const ThinPlaces thin = find_thin_places(domain_, pieces_at(choice.h), choice.h, not_interrupted);
-    if (thin.empty()) break;
-    const double h = std::max(std::min(thin.h_needed(), kThinStep * choice.h), choice.least);
-    context_.progress.detail(
-        fmt::format("mesh: {} thin places at h = {:.4g}; looking at {:.4g}", thin.places.size(), choice.h, h));
-    choice.h = h;
+    choice.h = std::max(std::min(needed, kThinStep * choice.h), choice.least);
+    const ThinPlaces left = find_thin_places(domain_, pieces_at(choice.h), choice.h, not_interrupted);
+    if (left.empty()) break;
+    needed = left.h_needed();
   }
   return choice;
 }
 
-/// Names what is too thin and writes it for the eye: beside a finished mesh where there is none to be kept.
-void MeshStage::refuse_thin(const ThinPlaces& thin) {
+std::string MeshStage::remedy_for(const ThinPlaces& thin, Json& h_enough) {
+  if (background_.own_h()) return fmt::format("a background with edges of {:.3g} may show them", thin.h_needed());
+  const EdgeLength enough = enough_for(thin);
+  if (!(enough.h < thin.h && enough.h > enough.least)) {
+    return fmt::format("that takes more than {} tets: raise --max-tets", context_.parameters.integer("mesh.max_tets"));
+  }
+  h_enough = enough.h;
+  return fmt::format("h = {:.3g} is enough, about {:.2g} tets", enough.h,
+                     expected_tets(domain_.psi(), domain_.box, enough.h));
+}
+
+/// Names what is too thin for the mesh that came out wrong, and writes it for the eye: beside a finished mesh where
+/// there is none to be kept.
+void MeshStage::refuse_thin(const MeshAttempt& best) {
+  const ThinPlaces& thin = best.thin;
   const bool keeps = context_.paths.renews(Stage::Mesh);
   if (!keeps) begin_writing(context_, Stage::Mesh);
-  const fs::path folder = keeps ? context_.paths.failed() : context_.paths.folder(Stage::Mesh);
-  fs::remove_all(context_.paths.failed());
+  const fs::path failed = write_failed(best.result), folder = keeps ? failed : context_.paths.folder(Stage::Mesh);
   fs::create_directories(folder);
   const fs::path file = folder / "too_thin.vtp";
   write_thin_places(file, thin, domain_.shift);
-  std::string message =
-      fmt::format("h = {:.4g} is too large: {} place{} thinner than it can show\n{}\n", thin.h, thin.places.size(),
-                  thin.places.size() == 1 ? " is" : "s are", described(thin, domain_.shift));
+  const std::size_t n = thin.places.size();
+  std::string message = fmt::format("h = {:.4g} is too large: {}; {} place{} thinner than it can show\n{}\n  ", thin.h,
+                                    best.complaint(), n, n == 1 ? " is" : "s are", described(thin, domain_.shift));
   Json h_enough;
-  if (background_.own_h()) {
-    message += fmt::format("  a background with edges of {:.3g} may show them", thin.h_needed());
-  } else {
-    // A finer look finds thinner places: the h that is enough for all of them is sought as an automatic one is.
-    const double least = least_h_of_max_tets(domain_, context_.parameters);
-    const double enough = fit_to_thin_places({thin.h, least}).h;
-    if (enough < thin.h && enough > least) h_enough = enough;
-    message += h_enough.is_null() ? fmt::format("  that takes more than {} tets: raise --max-tets",
-                                                context_.parameters.integer("mesh.max_tets"))
-                                  : fmt::format("  h = {:.3g} is enough, about {:.2g} tets", enough,
-                                                expected_tets(domain_.psi(), domain_.box, enough));
-  }
-  message += "; --allow-thin makes a mesh nevertheless\n  look at " + file.string();
+  message += remedy_for(thin, h_enough) + "; --allow-thin keeps the mesh nevertheless\n  look at " + file.string();
   if (keeps) message += "\n  the former mesh and its certificate have been kept";
   throw TooThin(message, {{"too_thin", to_json(thin, domain_.shift)}, {"h_enough", h_enough}});
 }
@@ -237,13 +261,13 @@ MeshAttempt MeshStage::attempt(double h) {
       background_.make(domain_, h, context_.parameters.integer("mesh.tets"), allowed_bytes(context_.parameters));
   const ZeroSetChoice& pieces = pieces_at(h);
   a.thin = find_thin_places(domain_, pieces, h, not_interrupted);
-  const bool refuses = judge_thin_ && !a.thin.empty() && !context_.parameters.flag("mesh.allow_thin");
-  if (refuses && may_miss_) refuse_thin(a.thin);
+  if (!a.thin.empty()) {
+    context_.progress.detail(fmt::format("mesh: {} places are thinner than h = {:.4g} can show for certain:\n{}",
+                                         a.thin.places.size(), h, described(a.thin, domain_.shift)));
+  }
   for (const std::string& reason : pieces.dropped) context_.progress.say("mesh: left out a " + reason);
   stop_if_interrupted();
   a.result = make(background, pieces);
-  if (refuses && missed_by_ == 0) refuse_thin(a.thin);  // h is the one that was asked for with --tets
-  judge_thin_ = judge_thin_ && missed_by_ != 0;
   a.iterates = std::move(iterates_);
   stop_if_interrupted();
   if (a.made()) {
@@ -251,6 +275,7 @@ MeshAttempt MeshStage::attempt(double h) {
     a.measured = measure(domain_, a.result, pieces, h, not_interrupted);
     a.measured["resolution"]["too_thin"] = to_json(a.thin, domain_.shift);
     check_deviation(context_.parameters.real("mesh.max_deviation"), a.measured);
+    check_lost(a, domain_.shift);
     stop_if_interrupted();
   }
   return a;
@@ -275,10 +300,11 @@ void MeshStage::run() {
   context_.progress.report("mesh", "size", 0);
   const MeshAttempt best = best_attempt(
       background_.own_h() ? EdgeLength{*background_.own_h(), *background_.own_h()}
-                          : fit_to_thin_places(choose_edge_length(domain_, context_.parameters, not_interrupted)),
+                          : choose_edge_length(domain_, context_.parameters, not_interrupted),
       [this](double h) { return attempt_for_tets(h); },
       [this](const std::string& line) { context_.progress.say(line); });
   const UmResult& result = best.result;
+  if (!best.is_right() && !best.thin.empty() && !context_.parameters.flag("mesh.allow_thin")) refuse_thin(best);
   if (!best.made()) refuse(result, best.h);
 
   context_.progress.report("mesh", "write", .97);

@@ -117,7 +117,7 @@ std::vector<ParamField> make_fields() {
        0,
        0,
        {},
-       "mesh also what is too thin for h (else exit 5), and name it in the certificate"},
+       "keep a mesh that came out wrong where the body is too thin for h (else exit 5)"},
       {"mesh.background",
        "--background",
        text("a15"),

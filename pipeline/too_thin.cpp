@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "mesh/detail/disjoint_sets.h"
+#include "mesh/surface_distance.h"
 #include "mesh/tet_mesh_io.h"
 #include "mesh/thickness.h"
 #include "pipeline/artefact.h"
@@ -156,6 +157,18 @@ ThinPlaces find_thin_places(const Domain& domain, const ZeroSetChoice& pieces, d
   }
   sort_worst_first(result);
   return result;
+}
+
+LostPoint lost_of(const ThinPlaces& thin, const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
+                  const KeepGoing& keep_going) {
+  LostPoint lost;
+  if (thin.empty()) return lost;
+  const std::vector<double> d = SurfaceDistance(V, faces).distances(thin.points, keep_going);
+  const auto farthest = std::max_element(d.begin(), d.end());
+  lost.where = thin.points[static_cast<std::size_t>(farthest - d.begin())];
+  lost.distance = *farthest;
+  lost.count = static_cast<std::size_t>(std::count_if(d.begin(), d.end(), [&](double t) { return t > thin.h; }));
+  return lost;
 }
 
 Json to_json(const ThinPlaces& thin, const Vec3& shift) {

@@ -50,6 +50,18 @@ inline constexpr double kLeastThinArea = 0.5;
 ThinPlaces find_thin_places(const Domain& domain, const ZeroSetChoice& pieces, double h,
                             const KeepGoing& keep_going = {});
 
+/// A point of a thin place that a mesh does not show, the farthest of them.
+struct LostPoint {
+  Vec3 where = Vec3::Zero();
+  double distance = 0;    ///< to the boundary of the mesh
+  std::size_t count = 0;  ///< points of thin places farther than h from it; 0: nothing is lost
+};
+
+/// Body or gap that is thinner than an edge can be skipped without a trace in topology or normals: this finds it.
+/// @param faces  the boundary of the mesh. \throw MeshCancelled
+LostPoint lost_of(const ThinPlaces&, const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
+                  const KeepGoing& keep_going = {});
+
 /// One object a place: kind, centre and box in model coordinates (`shift` is added), thickness, area, h_needed.
 Json to_json(const ThinPlaces&, const Vec3& shift);
 

@@ -56,7 +56,9 @@ TEST(BestAttempt, StopsAtTheFirstMeshWithoutReasonsAndWhereASmallerHCannotHelp) 
   EXPECT_EQ(Story({kEmpty}).tried.size(), 1u);
   // A given h is its own least: it is taken as it is.
   EXPECT_EQ(Story({kInverted}, 1).tried.size(), 1u);
-  EXPECT_EQ(Story({1, 1}, .7).tried.size(), 2u);
+  // The least is tried where four fifths would go below, unless it is next to the last one.
+  EXPECT_EQ(Story({1, 1, 1}, .7).tried, (std::vector<double>{1, .8, .7}));
+  EXPECT_EQ(Story({1, 1}, .78).tried.size(), 2u);
 }
 
 }  // namespace

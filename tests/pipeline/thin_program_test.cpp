@@ -8,7 +8,7 @@ namespace {
 // Half axes 1, 1 and .15: too thin for h = .3.
 const std::string kLens = "mesh --implicit 'x^2+y^2+(z/0.15)^2-1' --box=-1.6,-1.6,-.9,1.6,1.6,.9 -o lens ";
 
-TEST_F(Program, WhatIsTooThinForAGivenHIsNamedAndNotMeshed) {
+TEST_F(Program, WhatIsTooThinForAGivenHIsNamed) {
   const Result r = run(kLens + "--h .3 --json");
   EXPECT_EQ(r.code, 5) << r.err;
   const Json document = Json::parse(r.out);
@@ -19,10 +19,12 @@ TEST_F(Program, WhatIsTooThinForAGivenHIsNamedAndNotMeshed) {
   EXPECT_NEAR(place["centre"][0].get<double>(), 0, .1);
   EXPECT_LT(place["h_needed"], .2);
   ASSERT_TRUE(document["h_enough"].is_number());
-  for (const char* part : {"is too large", "needs h = ", "is enough", "--allow-thin", "lens/3-mesh/too_thin.vtp"}) {
+  for (const char* part :
+       {"is too large", "folded", "needs h = ", "is enough", "--allow-thin", "3-mesh/too_thin.vtp"}) {
     EXPECT_NE(r.err.find(part), std::string::npos) << part << "\n" << r.err;
   }
   EXPECT_GT(fs::file_size(folder / "lens/3-mesh/too_thin.vtp"), 0u);
+  EXPECT_GT(fs::file_size(folder / "lens/3-mesh/failed/projected.vtu"), 0u);
   EXPECT_FALSE(fs::exists(folder / "lens/3-mesh/mesh.vtu"));
   EXPECT_FALSE(fs::exists(folder / "lens/certificate.json"));
   // What it needs is enough.
@@ -40,23 +42,54 @@ TEST_F(Program, WhatIsTooThinForAGivenHIsNamedAndNotMeshed) {
   for (const auto& [file, bytes] : before) EXPECT_EQ(content(file), bytes) << file;
 }
 
-TEST_F(Program, WhatIsTooThinIsMeshedWhenAllowedAndNamedInTheCertificate) {
-  const Result r = run(kLens + "--h .3 --allow-thin --json");
-  EXPECT_TRUE(r.code == 0 || r.code == 6) << r.err;
-  const Json document = Json::parse(r.out);
-  const Json& c = document["certificate"];
-  ASSERT_EQ(c["resolution"]["too_thin"].size(), 1u);
-  EXPECT_LT(c["resolution"]["too_thin"][0]["h_needed"], .2);
+TEST_F(Program, ThinPlacesThatComeOutRightAreNamedInTheCertificate) {
+  const Result r = run(kLens + "--h .2 --json");  // the rim is thinner than 1.25 h
+  EXPECT_EQ(r.code, 0) << r.err;
+  const Json places = Json::parse(r.out)["certificate"]["resolution"]["too_thin"];
+  ASSERT_FALSE(places.empty());
+  EXPECT_LT(places[0]["h_needed"], .2);
   EXPECT_GT(fs::file_size(folder / "lens/3-mesh/too_thin.vtp"), 0u);
   EXPECT_NE(content(folder / "lens/3-mesh/record.json").find("too_thin.vtp"), std::string::npos);
-  EXPECT_NE(run("mesh lens").out.find("thin      1 place is thinner"), std::string::npos);
+  EXPECT_NE(run("mesh lens").out.find("thinner than h can show"), std::string::npos);
+}
+
+TEST_F(Program, AMeshThatLacksWhatIsThinIsNotRight) {
+  // A ball with a fin .05 thick, an eighth of h, that ends 2.5 h outside: no vertex falls into it.
+  const std::string fin =
+      "mesh --implicit '-log(exp(-20*(x^2+y^2+z^2-1))+exp(-20*((x-1)^4+(y/.5)^4+((z-.2)/.025)^4-1)))' ";
+  const Result r = run(fin + "--box=-2.6,-2.6,-2.6,2.6,2.6,2.6 --h .4 -o fin --json");
+  EXPECT_EQ(r.code, 5) << r.err;
+  EXPECT_NE(r.err.find("the mesh lacks what is thin around"), std::string::npos) << r.err;
+}
+
+TEST_F(Program, AMeshFarFromTheSamplesIsNotRight) {
+  // The bird is 4 wide, its wings 2 long.
+  const Result r =
+      run("run " + std::string(UMTET_SOURCE_DIR) + "/data/clouds/bird.ply --h 1.2 --allow-thin -o bird --json");
+  EXPECT_EQ(r.code, 6) << r.err;
+  const std::string reasons = Json::parse(r.out)["certificate"]["reasons"].dump();
+  EXPECT_NE(reasons.find("samples of the surface are farther than h from the mesh"), std::string::npos) << reasons;
+}
+
+TEST_F(Program, AWrongMeshIsKeptWhereThinIsAllowed) {
+  const Result r = run(kLens + "--h .3 --allow-thin --json");
+  EXPECT_EQ(r.code, 6) << r.err;
+  const Json c = Json::parse(r.out)["certificate"];
+  EXPECT_EQ(c["verdict"], "fail");
+  EXPECT_EQ(c["resolution"]["too_thin"].size(), 1u);
+  EXPECT_GT(fs::file_size(folder / "lens/3-mesh/mesh.vtu"), 0u);
   EXPECT_EQ(run("mesh lens --allow-thin=false").code, 5);
 }
 
-TEST_F(Program, AnAutomaticHGoesAsLowAsThinPlacesNeedAndMaxTetsAllows) {
-  // .015 of the diagonal is .072, and the lens needs less than 1.25 h of .016 at z: its half axis is .02.
+TEST_F(Program, ABodyThinnerThanTheGridIsTooThinNotUnknown) {
+  const Result r = run(kLens + "--h .6 --json");
+  EXPECT_EQ(r.code, 5) << r.err;
+  EXPECT_FALSE(Json::parse(r.out)["too_thin"].empty());
+}
+
+TEST_F(Program, AnAutomaticHGoesAsLowAsMaxTetsAllows) {
   const std::string disc = "mesh --implicit 'x^2+y^2+(z/0.04)^2-1' --box=-1.2,-1.2,-.3,1.2,1.2,.3 -o disc --json ";
-  const Result r = run(disc + "--max-tets 20000");
+  const Result r = run(disc + "--max-tets 5000");
   EXPECT_EQ(r.code, 5) << r.err;
   EXPECT_NE(r.err.find("raise --max-tets"), std::string::npos) << r.err;
   EXPECT_FALSE(Json::parse(r.out)["too_thin"].empty());
