@@ -16,7 +16,7 @@ struct LabelQuality {
   double quality;        ///< the worst mean ratio of its ring that can be reached
 };
 
-/// Of a15(), measured by mesh/labels_fit; see label_quality.cpp for the command.
+/// Of a15(), measured by tools/labels_fit; see label_quality.cpp for the command.
 std::span<const LabelQuality> a15_label_qualities();
 
 /// The price of each labelling of a link around an outside vertex: [type][mask].

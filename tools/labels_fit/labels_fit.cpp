@@ -19,7 +19,7 @@
 #include "mesh/detail/assemble_submesh.h"
 #include "mesh/guarded_projection.h"
 #include "mesh/labels.h"
-#include "mesh/labels_fit/random_shape.h"
+#include "tools/labels_fit/random_shape.h"
 #include "mesh/lattice_shell.h"
 #include "mesh/tet_quality.h"
 

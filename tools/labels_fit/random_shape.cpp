@@ -1,4 +1,4 @@
-#include "mesh/labels_fit/random_shape.h"
+#include "tools/labels_fit/random_shape.h"
 
 #include <cmath>
 #include <numbers>
