@@ -1,0 +1,138 @@
+// The built program, from outside: exit codes, messages and help.
+
+#include "tests/pipeline/program_fixture.h"
+
+namespace umtet {
+namespace {
+
+TEST_F(Program, HelpIsAboutTheCommand) {
+  for (const char* command : {"run", "reconstruct", "mesh", "check", "export"}) {
+    const Result r = run(std::string(command) + " --help");
+    EXPECT_EQ(r.code, 0);
+    EXPECT_EQ(r.out.rfind("umtet " + std::string(command), 0), 0u) << r.out;
+  }
+  EXPECT_NE(run("reconstruct --help").out.find("{area,paper} (default area)"), std::string::npos);
+  for (const char* planned : {"evolve --help", "batch", "report x --help"}) {
+    const Result r = run(planned);
+    EXPECT_EQ(r.code, 2) << planned;
+    EXPECT_NE(r.err.find("not available yet"), std::string::npos) << r.err;
+  }
+  EXPECT_EQ(run("rum --help").code, 2);
+  EXPECT_EQ(Json::parse(run("--json mesh nowhere").out)["exit_code"], 2);
+}
+
+TEST_F(Program, UsageErrorsNameThePlaceAndTheRemedy) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"mesh --implicit 'x^2+foo(y)' --box -1,-1,-1,1,1,1 -o a", "column 5"},
+      {"mesh --implicit 'x^2+y^2-1' -o a", "--box"},
+      {"run egg.ply -o a --smoth 1", "did you mean --smooth?"},
+      {"run egg.ply -o a --tet 1000", "did you mean --tets?"},
+      {"run egg.ply -o a --set mesh.sampels=1", "did you mean mesh.samples?"},
+      {"run egg.ply -o a --tets 10 --h 1", "exclude each other"},
+      {"run egg.ply -o a --mode quick", "fast, paper only"},
+      {"run egg.ply -o a --background bcc", "must be a15, z, slab, cube or"},
+      {"run egg.ply -o a --from mehs", "did you mean mesh?"},
+      {"run egg.ply", "-o CASE"},
+      {"rum egg.ply -o a", "did you mean run?"},
+      {"mesh nowhere", "not a case"},
+      {"check a.vtu --set mesh.h=1", "does not run"},
+      {"mesh --implicit 'x' --box -1e120,-1e120,-1e120,1e120,1e120,1e120 -o a", "too large"},
+      {"", "--help"}};
+  for (const auto& [arguments, message] : cases) {
+    const Result r = run(arguments);
+    EXPECT_EQ(r.code, 2) << arguments;
+    EXPECT_NE(r.err.find(message), std::string::npos) << arguments << "\n" << r.err;
+    EXPECT_EQ(r.out, "") << arguments;
+  }
+  EXPECT_FALSE(fs::exists(folder / "a"));
+  EXPECT_EQ(run("--version").out.substr(0, 6), "umtet ");
+  EXPECT_EQ(run("mesh --help").code, 0);
+}
+
+TEST_F(Program, WhatHasNoEndOrTakesTooMuchIsRefusedAtOnce) {
+  const std::string at_once = "timeout 10";  // dozens of times what it takes
+  EXPECT_EQ(run("run /dev/zero -o a", at_once).code, 3);
+  EXPECT_EQ(run("run pipe -o a", "mkfifo pipe; " + at_once).code, 3);
+  EXPECT_FALSE(fs::exists(folder / "a"));
+  const Result many = run("mesh --implicit 'x^2+y^2+z^2-1' --box -1.3,-1.3,-1.3,1.3,1.3,1.3 --tets 1e11 -o a", at_once);
+  EXPECT_EQ(many.code, 9) << many.err;
+  EXPECT_NE(many.err.find(" GB of memory"), std::string::npos) << many.err;
+  EXPECT_EQ(run("mesh --implicit 'x^2+y^2+z^2-1' --box -2,-2,-2,2,2,2 --h 1e-4 --max-tets 1e12 -o a", at_once).code, 9);
+}
+
+TEST_F(Program, GatesAndImpossibleMeshesHaveTheirCodes) {
+  const Result gate = run(ball + "--min-quality .99");
+  EXPECT_EQ(gate.code, 6);
+  EXPECT_NE(gate.out.find("below the gate"), std::string::npos);
+  EXPECT_TRUE(fs::exists(folder / "ball/3-mesh/mesh.vtu"));
+  const Result no_gate = run(ball);  // the mesh is the same one, judged anew
+  EXPECT_EQ(no_gate.code, 0);
+  EXPECT_NE(no_gate.err.find("nothing to do"), std::string::npos);
+  const auto before = files_of("ball");
+  const Result rim = run("mesh --implicit 'x' --box -1,-1,-1,1,1,1 --h .2 -o ball");
+  EXPECT_EQ(rim.code, 5);
+  EXPECT_NE(rim.err.find("leaves"), std::string::npos) << rim.err;
+  for (const auto& [file, bytes] : before) EXPECT_EQ(content(file), bytes) << file;
+  EXPECT_TRUE(fs::exists(folder / "ball/3-mesh/failed/omega_h.vtu"));
+  EXPECT_NE(run(ball).err.find("nothing to do"), std::string::npos);
+  EXPECT_EQ(run("mesh --implicit 'x^2+1' --box -1,-1,-1,1,1,1 --tets 1000 -o none").code, 5);
+  EXPECT_EQ(run("mesh --implicit 'x^2+y^2+z^2-1' --box -2,-2,-2,2,2,2 --h .001 -o ball").code, 9);
+}
+
+TEST_F(Program, OneReasonToFailIsExitSixWithARemedy) {
+  // A lens much thinner at its rim than h.
+  const Result r =
+      run("mesh --implicit 'x^2+y^2+(z/0.15)^2-1' --box=-1.6,-1.6,-.9,1.6,1.6,.9 --h .2 --mode paper --allow-thin -o lens");
+  EXPECT_EQ(r.code, 6) << r.err;
+  EXPECT_NE(r.out.find("verdict   fail"), std::string::npos) << r.out;
+  EXPECT_NE(r.out.find("try a smaller --h"), std::string::npos) << r.out;
+}
+
+TEST_F(Program, CheckJudgesAnyMesh) {
+  ASSERT_EQ(run(ball).code, 0);
+  ASSERT_EQ(run("export ball --format msh,msh22,mesh,vtu,stl").code, 0);
+  EXPECT_GT(fs::file_size(folder / "ball/4-export/mesh.stl"), 0u);
+  Json first;
+  for (const char* f : {"mesh.msh", "mesh_22.msh", "mesh.mesh", "mesh.vtu"}) {
+    const Result r = run("check --json --against ball ball/4-export/" + std::string(f));
+    ASSERT_EQ(r.code, 0) << f << r.err;
+    const Json c = Json::parse(r.out)["check"];
+    if (first.is_null()) first = c;
+    EXPECT_EQ(c["quality"]["min"], first["quality"]["min"]) << f;  // formats keep all digits
+    EXPECT_EQ(c["boundary"]["euler_characteristic"], 2);
+  }
+  EXPECT_EQ(run("check ball/3-mesh/mesh.vtu --min-quality .99").code, 6);
+  EXPECT_EQ(run("check ball/3-mesh/mesh.vtu --set output.min_quality=.99").code, 6);
+  std::ofstream(folder / "gate.toml") << "[output]\nmin_quality = 0.99\n[mesh]\nsamples = 7\n";
+  EXPECT_EQ(run("check ball/3-mesh/mesh.vtu --config gate.toml").code, 6);
+  std::ofstream(folder / "flat.mesh") << "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n"
+                                         "1 1 0 0\nTetrahedra\n1\n1 2 3 4 1\nEnd\n";
+  EXPECT_EQ(run("check flat.mesh").code, 6);
+  EXPECT_EQ(run("check egg.ply").code, 3);
+  EXPECT_EQ(run("check none.vtu").code, 7);
+}
+
+TEST_F(Program, TheCommonFlagsAreUnderstoodByEveryCommand) {
+  ASSERT_EQ(run(ball + "-v --progress none --threads 1").code, 0);
+  for (const std::string command : {"check ball/3-mesh/mesh.vtu", "export ball --format stl"}) {
+    const Result loud = run(command + " -v --progress plain --threads 1 --json");
+    EXPECT_EQ(loud.code, 0) << loud.err;
+    EXPECT_TRUE(Json::accept(loud.out));
+    EXPECT_NE(loud.err.find(" tets, "), std::string::npos) << "-v says nothing: " << loud.err;
+    EXPECT_EQ(run(command + " -q --progress none").err, "");
+    EXPECT_EQ(run(command + " -q -v").code, 2);
+  }
+}
+
+TEST_F(Program, AnswersInJsonAlsoWhenItFails) {
+  for (const char* arguments : {"run --json", "mesh nowhere --json", "run none.ply -o a --json", "frobnicate --json"}) {
+    const Result r = run(arguments);
+    const Json document = Json::parse(r.out, nullptr, false);
+    ASSERT_TRUE(document.is_object()) << arguments << r.out;
+    EXPECT_EQ(document["exit_code"], r.code);
+    EXPECT_TRUE(document.contains("error"));
+  }
+}
+
+}  // namespace
+}  // namespace umtet
