@@ -58,19 +58,6 @@ std::vector<TetIds> moving_tets(const BackgroundMesh& background, const IdSet& i
   return tets;
 }
 
-void index_rings(Shell& shell) {
-  shell.ring_begin.assign(shell.V.size() + 1, 0);
-  for (const Tet& tet : shell.C) {
-    for (const int v : tet) ++shell.ring_begin[v + 1];
-  }
-  for (std::size_t v = 0; v < shell.V.size(); ++v) shell.ring_begin[v + 1] += shell.ring_begin[v];
-  shell.ring.resize(4 * shell.C.size());
-  std::vector<int> next(shell.ring_begin.begin(), shell.ring_begin.end() - 1);
-  for (int t = 0; t < static_cast<int>(shell.C.size()); ++t) {
-    for (const int v : shell.C[t]) shell.ring[next[v]++] = t;
-  }
-}
-
 /// Each vertex, in ascending order, takes the least colour that no lower vertex of its ring has.
 void colour_greedily(Shell& shell) {
   shell.colour.assign(shell.V.size(), -1);
@@ -117,7 +104,7 @@ LatticeShell background_shell(const BackgroundMesh& background, const IdSet& ins
   for (const TetIds& tet : tets) {
     shell.C.push_back({used.rank(tet[0]), used.rank(tet[1]), used.rank(tet[2]), used.rank(tet[3])});
   }
-  index_rings(shell);
+  list_rings(shell);
   colour_greedily(shell);
   return result;
 }

@@ -12,6 +12,7 @@
 
 #include "mesh/detail/assemble_submesh.h"
 #include "mesh/detail/id_set.h"
+#include "mesh/detail/link_steps.h"
 #include "mesh/lattice_shell.h"
 
 namespace umtet {
@@ -204,12 +205,7 @@ void Crawler::aggregate(std::int64_t first) {
 
 /// The vertices inside, from those of the positively cut tets along edges.
 IdSet Crawler::flood_inside() {
-  std::vector<std::vector<std::int64_t>> steps(background_.n_types());
-  for (int type = 0; type < background_.n_types(); ++type) {
-    for (const Tiling::Corner& c : background_.tiling_tables().link[type]) {
-      steps[type].push_back(background_.id_step(type, c));
-    }
-  }
+  const detail::LinkSteps steps(background_);
   IdSet visited(background_.n_vertices());
   std::vector<std::int64_t> stack;
   const auto visit = [&](std::int64_t v) {
@@ -230,7 +226,7 @@ IdSet Crawler::flood_inside() {
       for (const std::int64_t w : scratch_) visit(w);
       continue;
     }
-    for (const std::int64_t step : steps[background_.type(v)]) visit(v + step);
+    for (const std::int64_t step : steps.at(v)) visit(v + step);
   }
   return visited;
 }

@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mesh/detail/link_steps.h"
+
 namespace umtet {
 namespace {
 
@@ -42,21 +44,10 @@ class SmallSet {
 class Builder {
  public:
   Builder(const BackgroundMesh& background, const std::vector<LinkTopology>& links, const IdSet& inside)
-      : background_(background), links_(links), inside_(inside), steps_(background.n_types()) {
-    for (int type = 0; type < background.n_types(); ++type) {
-      for (const Tiling::Corner& c : background.tiling_tables().link[type])
-        steps_[type].push_back(background.id_step(type, c));
-    }
-  }
+      : background_(background), links_(links), inside_(inside), steps_(background) {}
 
-  const std::vector<std::int64_t>& steps(std::int64_t v) const { return steps_[background_.type(v)]; }
-  /// Inside vertices are off the rim, so that a step out of the range of ids or to a wrong id in the outermost cells
-  /// finds none of them.
-  std::uint16_t mask(std::int64_t v) const {
-    unsigned mask = 0, k = 0;
-    for (const std::int64_t step : steps(v)) mask |= static_cast<unsigned>(inside_.test_any(v + step)) << k++;
-    return static_cast<std::uint16_t>(mask);
-  }
+  const std::vector<std::int64_t>& steps(std::int64_t v) const { return steps_.at(v); }
+  std::uint16_t mask(std::int64_t v) const { return steps_.mask(v, inside_); }
   /// A vertex of omega_h, if v is an id at all.
   bool in_omega_h(std::int64_t v) const { return inside_.test_any(v) || mask(v) != 0; }
 
@@ -80,7 +71,7 @@ class Builder {
   const BackgroundMesh& background_;
   const std::vector<LinkTopology>& links_;
   const IdSet& inside_;
-  std::vector<std::vector<std::int64_t>> steps_;
+  detail::LinkSteps steps_;
 };
 
 std::vector<int> Builder::type_colours() const {
@@ -146,19 +137,6 @@ Shell::Role Builder::role(std::int64_t v, const Movable& movable) const {
   if (!movable.test(v)) return Shell::Role::Fixed;
   const bool positive = !inside_.test(v) && links_[background_.type(v)].states[mask(v)].n_positive_faces > 0;
   return positive ? Shell::Role::Boundary : Shell::Role::Inner;
-}
-
-void list_rings(Shell& shell) {
-  shell.ring_begin.assign(shell.V.size() + 1, 0);
-  for (const Tet& tet : shell.C) {
-    for (const int v : tet) ++shell.ring_begin[v + 1];
-  }
-  for (std::size_t v = 0; v < shell.V.size(); ++v) shell.ring_begin[v + 1] += shell.ring_begin[v];
-  shell.ring.resize(4 * shell.C.size());
-  std::vector<int> next(shell.ring_begin.begin(), shell.ring_begin.end() - 1);
-  for (int t = 0; t < static_cast<int>(shell.C.size()); ++t) {
-    for (const int v : shell.C[t]) shell.ring[next[v]++] = t;
-  }
 }
 
 LatticeShell Builder::build(const IdSet& movable) const {

@@ -15,16 +15,7 @@ namespace umtet::testing {
 
 /// Rings and a greedy colouring for a shell whose V, C and role are set.
 inline void complete(Shell& shell) {
-  shell.ring_begin.assign(shell.V.size() + 1, 0);
-  for (const Tet& t : shell.C) {
-    for (const int i : t) ++shell.ring_begin[i + 1];
-  }
-  for (std::size_t i = 0; i < shell.V.size(); ++i) shell.ring_begin[i + 1] += shell.ring_begin[i];
-  shell.ring.resize(4 * shell.C.size());
-  std::vector<int> next(shell.ring_begin.begin(), shell.ring_begin.end() - 1);
-  for (std::size_t t = 0; t < shell.C.size(); ++t) {
-    for (const int i : shell.C[t]) shell.ring[next[i]++] = static_cast<int>(t);
-  }
+  list_rings(shell);
   shell.colour.assign(shell.V.size(), -1);
   std::vector<bool> taken;
   for (std::size_t i = 0; i < shell.V.size(); ++i) {

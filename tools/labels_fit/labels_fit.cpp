@@ -17,11 +17,12 @@
 #include <vector>
 
 #include "mesh/detail/assemble_submesh.h"
+#include "mesh/detail/link_steps.h"
 #include "mesh/guarded_projection.h"
 #include "mesh/labels.h"
-#include "tools/labels_fit/random_shape.h"
 #include "mesh/lattice_shell.h"
 #include "mesh/tet_quality.h"
+#include "tools/labels_fit/random_shape.h"
 
 using namespace umtet;
 
@@ -56,15 +57,12 @@ void measure(const labels_fit::RandomShape& shape, const LabelEnergies* energies
   smoothing.target = kOutOfReach;
   smoothing.margin = 0;
   smooth(cut.shell, shape, smoothing);
+  const detail::LinkSteps steps(background);
   for (std::size_t v = 0; v < cut.shell.V.size(); ++v) {
     if (cut.shell.role[v] != Shell::Role::Boundary) continue;
     const std::int64_t id = cut.background_vertex[v];
     const int type = background.type(id);
-    unsigned mask = 0, k = 0;
-    for (const Tiling::Corner& c : background.tiling_tables().link[type]) {
-      mask |= static_cast<unsigned>(inside.test(id + background.id_step(type, c))) << k++;
-    }
-    const LinkState& state = links[type].states[mask];
+    const LinkState& state = links[type].states[steps.mask(id, inside)];
     if (!state.manifold) continue;
     double worst = 1;
     for (int r = cut.shell.ring_begin[v]; r < cut.shell.ring_begin[v + 1]; ++r) {
