@@ -52,6 +52,11 @@ struct LabelReport {
   std::size_t psi_evaluations = 0;
 };
 
+/// True if psi changes sign within `thickness` edges of a foot on psi = 0, along the normal on either side: another
+/// sheet lies there. @param n_evaluations  is raised by the number of values of psi
+bool is_thin(ImplicitFunctionRef psi, const Vec3& foot, const Vec3& normal, double thickness, double h,
+             std::size_t& n_evaluations);
+
 /// Chooses which background vertices near the boundary count as inside, so that the mesh of them can be shaped well.
 ///
 /// Which vertices are inside is free near psi = 0: projection moves the boundary onto it either way. A label changes

@@ -11,6 +11,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "mesh/detail/label_candidates.h"
 #include "mesh/patch_state.h"
 #include "mesh/tet_quality.h"
 
@@ -18,10 +19,6 @@ namespace umtet {
 namespace {
 
 using detail::IdSet;
-
-// A flip that makes the labels around this much worse has never been kept: the price of one labelling not met in the
-// fit and some more.
-constexpr float kMostEnergy = 150;
 
 // Pairs are tried from this many of the most promising labels, with this many second ones each.
 constexpr std::size_t kFirstOfPair = 6, kSecondOfPair = 8;
@@ -33,17 +30,10 @@ class Repair {
       : background_(background),
         links_(links),
         psi_(psi),
-        labels_(labels),
         params_(params),
-        energies_(labels.energies ? *labels.energies : a15_label_energies()),
         shell_(shell),
         inside_(inside),
-        steps_(background.n_types()) {
-    for (int type = 0; type < background.n_types(); ++type) {
-      for (const Tiling::Corner& c : background.tiling_tables().link[type])
-        steps_[type].push_back(background.id_step(type, c));
-    }
-  }
+        candidates_(background, links, psi, labels, params, inside) {}
 
   RepairReport operator()(const KeepGoing& keep_going);
 
@@ -62,23 +52,10 @@ class Repair {
   };
   /// Where a patch's vertices start from: where they are, or (a fold stays a fold under small steps) the lattice.
   enum class Start { Here, Lattice };
-  struct Candidate {
-    std::int64_t vertex;
-    float energy;  ///< by which the flip changes the price of the labels around
-  };
 
-  std::uint16_t mask(std::int64_t v) const {
-    unsigned mask = 0, k = 0;
-    for (const std::int64_t step : steps_[background_.type(v)])
-      mask |= static_cast<unsigned>(inside_.test_any(v + step)) << k++;
-    return static_cast<std::uint16_t>(mask);
-  }
   Vec3 place(std::int64_t v) const;
   bool is_turned(const Ids& tet);
   bool still_bad(const Ids& tet);
-  bool is_thin(const Vec3& foot, const Vec3& normal);
-  bool in_reach(std::int64_t v);
-  std::vector<Candidate> candidates(const Ids& tet);
   void flip(std::int64_t v) { inside_.test(v) ? inside_.erase(v) : inside_.insert(v); }
   LatticeShell patch(const std::vector<std::int64_t>& centres, Start start) const;
   std::vector<std::uint8_t> inside_of(const LatticeShell& cut) const;
@@ -91,12 +68,10 @@ class Repair {
   const BackgroundMesh& background_;
   const std::vector<LinkTopology>& links_;
   ImplicitFunctionRef psi_;
-  const LabelParams& labels_;
   const RepairParams& params_;
-  const LabelEnergies& energies_;
   const LatticeShell& shell_;
   IdSet& inside_;
-  std::vector<std::vector<std::int64_t>> steps_;
+  detail::LabelCandidates candidates_;
   std::map<std::int64_t, Vec3> moved_;
   std::set<std::int64_t> hopeless_;  ///< vertices of tets that nothing helped
   std::vector<Bad> todo_;
@@ -124,66 +99,6 @@ bool Repair::still_bad(const Ids& tet) {
   for (const std::int64_t v : tet) in_omega_h |= inside_.test(v);
   if (!in_omega_h) return false;
   return mean_ratio(place(tet[0]), place(tet[1]), place(tet[2]), place(tet[3])) < params_.target || is_turned(tet);
-}
-
-/// As in choose_labels().
-bool Repair::is_thin(const Vec3& foot, const Vec3& normal) {
-  const int n_steps = static_cast<int>(std::ceil(2 * labels_.least_thickness));
-  for (int side = -1; side <= 1; side += 2) {
-    for (int s = 1; s <= n_steps; ++s) {
-      const double t = labels_.least_thickness * s / n_steps * background_.h();
-      ++report_.psi_evaluations;
-      if ((psi_.value(foot + side * t * normal) < 0) != (side < 0)) return true;
-    }
-  }
-  return false;
-}
-
-bool Repair::in_reach(std::int64_t v) {
-  const Vec3 x = background_.position(v);
-  const double h = background_.h();
-  Vec3 g;
-  const double value = psi_.value(x, g), norm = g.norm();
-  ++report_.psi_evaluations;
-  if (!(norm > 0)) return false;
-  const double d = value / norm;
-  if (!(d >= -labels_.reach_in * h && d <= params_.reach_out * h)) return false;
-  return !(labels_.least_thickness > 0 && is_thin(x - d / norm * g, g / norm));
-}
-
-/// The labels around a tet that may change, the most promising first.
-std::vector<Repair::Candidate> Repair::candidates(const Ids& tet) {
-  std::vector<std::int64_t> near(tet.begin(), tet.end());
-  for (const std::int64_t v : tet) {
-    for (const std::int64_t step : steps_[background_.type(v)]) near.push_back(v + step);
-  }
-  std::sort(near.begin(), near.end());
-  near.erase(std::unique(near.begin(), near.end()), near.end());
-  std::vector<Candidate> list;
-  for (const std::int64_t v : near) {
-    if (v < 0 || v >= background_.n_vertices()) continue;  // beside a tet at the rim
-    const int type = background_.type(v);
-    const LinkTopology& link = links_[type];
-    const std::uint16_t m = mask(v);
-    if (!link.states[m].simple || background_.on_rim(v) || !in_reach(v)) continue;
-    const auto price = [&](int t, std::uint16_t labels) { return labels == 0 ? 0.F : energies_[t][labels]; };
-    const auto bad = [&](int t, std::uint16_t labels) { return labels != 0 && !links_[t].states[labels].manifold; };
-    const bool is_inside = inside_.test(v);
-    float energy = is_inside ? price(type, m) : -price(type, m);
-    int spots = is_inside ? bad(type, m) : -bad(type, m);
-    for (int k = 0; k < link.n; ++k) {
-      const std::int64_t w = v + steps_[type][k];
-      if (inside_.test(w)) continue;
-      const int t = background_.type(w);
-      const std::uint16_t now = mask(w), then = static_cast<std::uint16_t>(now ^ 1u << link.back[k]);
-      energy += price(t, then) - price(t, now);
-      spots += bad(t, then) - bad(t, now);
-    }
-    if (spots <= 0 && energy < kMostEnergy) list.push_back({v, energy});
-  }
-  std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.energy < b.energy; });
-  if (list.size() > static_cast<std::size_t>(params_.max_tries)) list.resize(params_.max_tries);
-  return list;
 }
 
 LatticeShell Repair::patch(const std::vector<std::int64_t>& centres, Start start) const {
@@ -229,15 +144,15 @@ void Repair::attempt(const Ids& tet, std::span<const std::int64_t> flips, Start 
 }
 
 void Repair::try_labels(const Ids& tet, Start start, Best& best) {
-  const std::vector<Candidate> singles = candidates(tet);
-  for (const Candidate& c : singles) {
+  const std::vector<detail::LabelCandidates::Candidate> singles = candidates_(tet, report_.psi_evaluations);
+  for (const auto& c : singles) {
     attempt(tet, std::array{c.vertex}, start, best);
     if (best.is_perfect()) return;
   }
   // Pairs cost as many patches as all singles do, and are for where none of these helps.
   for (std::size_t a = 0; a < std::min(singles.size(), kFirstOfPair) && !best.found; ++a) {
     flip(singles[a].vertex);
-    const std::vector<Candidate> seconds = candidates(tet);
+    const std::vector<detail::LabelCandidates::Candidate> seconds = candidates_(tet, report_.psi_evaluations);
     flip(singles[a].vertex);
     for (std::size_t b = 0; b < std::min(seconds.size(), kSecondOfPair) && !best.is_perfect(); ++b) {
       if (seconds[b].vertex != singles[a].vertex)

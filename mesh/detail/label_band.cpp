@@ -1,0 +1,196 @@
+#include "mesh/detail/label_band.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace umtet::detail {
+namespace {
+
+// Flips reach two rings, 1.3 cells of A15; bricks of one colour are this many cells apart.
+constexpr std::int64_t kBrick = 4;
+// Feet from farther away may be on another sheet, and those closer together, in h, say little about curvature.
+constexpr float kFarthestFoot = 1.8F;
+constexpr double kApart = .3;
+
+}  // namespace
+
+LabelBand::LabelBand(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
+                     const LabelParams& params, const IdSet& inside, const KeepGoing& keep_going)
+    : background_(background),
+      links_(links),
+      psi_(psi),
+      params_(params),
+      inside_(inside),
+      steps_(background),
+      band_(background.n_vertices()) {
+  gather();
+  measure(keep_going);
+  hold_where_stretched(keep_going);
+  make_bricks();
+}
+
+/// In the outermost layer of cells, where a step along an edge may leave the range of ids.
+bool LabelBand::is_outermost(std::int64_t v) const {
+  const auto cell = background_.cell(v);
+  bool outermost = false;
+  for (int a = 0; a < 3; ++a) outermost |= cell[a] < 0 || cell[a] >= background_.n_cells()[a];
+  return outermost;
+}
+
+/// The vertices with a neighbour of the other label, and two rings more.
+void LabelBand::gather() {
+  std::vector<std::int64_t> front;
+  inside_.for_each([&](std::int64_t v) {
+    bool cut = false;
+    for (const std::int64_t step : steps_.at(v)) {
+      if (inside_.test(v + step)) continue;
+      cut = true;
+      if (!band_.test(v + step)) {
+        band_.insert(v + step);
+        front.push_back(v + step);
+      }
+    }
+    if (cut && !band_.test(v)) {
+      band_.insert(v);
+      front.push_back(v);
+    }
+  });
+  std::vector<std::int64_t> next;
+  for (int ring = 0; ring < 2; ++ring) {
+    next.clear();
+    for (const std::int64_t v : front) {
+      if (is_outermost(v)) continue;  // too far out for a neighbour to change
+      for (const std::int64_t step : steps_.at(v)) {
+        if (band_.test(v + step)) continue;
+        band_.insert(v + step);
+        next.push_back(v + step);
+      }
+    }
+    front.swap(next);
+  }
+  const std::size_t n = band_.index();
+  id.reserve(n);
+  band_.for_each([&](std::int64_t v) { id.push_back(v); });
+}
+
+/// Label, mask and ranks of the link. Returns whether the whole link is in the band.
+bool LabelBand::find_link(std::size_t v) {
+  type[v] = static_cast<std::uint8_t>(background_.type(id[v]));
+  label[v] = inside_.test(id[v]);
+  mask[v] = steps_.mask(id[v], inside_);
+  link[v].fill(-1);
+  // Labels beyond the range of ids are those of the rim: outside. Ranks are left out there.
+  if (is_outermost(id[v])) return false;
+  const std::vector<std::int64_t>& steps = steps_.at(id[v]);
+  bool complete = true;
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    const std::int64_t w = id[v] + steps[k];
+    if (band_.test(w)) {
+      link[v][k] = band_.rank(w);
+    } else {
+      complete = false;
+    }
+  }
+  return complete;
+}
+
+/// Foot, normal and distance.
+void LabelBand::find_foot(std::size_t v) {
+  const Vec3 x = background_.position(id[v]);
+  const double h = background_.h(), most = far() * h;
+  Vec3 g;
+  double value = psi_.value(x, g), norm = g.norm();
+  psi_evaluations.fetch_add(1, std::memory_order_relaxed);
+  const double first = std::clamp(norm > 0 ? value / norm : most, -most, most);
+  double distance = first;
+  foot[v] = x;
+  normal[v] = norm > 0 ? Vec3(g / norm) : Vec3::Zero();
+  if (norm > 0 && std::abs(first) < most) {
+    // One more step: psi may be far from linear over an edge.
+    foot[v] = x - first * normal[v];
+    value = psi_.value(foot[v], g);
+    norm = g.norm();
+    psi_evaluations.fetch_add(1, std::memory_order_relaxed);
+    if (norm > 0) {
+      normal[v] = g / norm;
+      const double second = std::clamp(value / norm, -h, h);
+      foot[v] -= second * normal[v];
+      distance = (x - foot[v]).norm();
+      if (label[v]) distance = -distance;
+    }
+  }
+  phi[v] = static_cast<float>(std::isfinite(distance) ? distance / h : label[v] ? -far() : far());
+}
+
+void LabelBand::measure(const KeepGoing& keep_going) {
+  const std::size_t n = size();
+  link.resize(n);
+  type.resize(n);
+  label.resize(n);
+  held.assign(n, 0);
+  mask.resize(n);
+  phi.resize(n);
+  foot.resize(n);
+  normal.resize(n);
+  movable_.assign(n, 0);
+  polled_parallel_for(n, kValuesPerPoll, keep_going, [&](std::size_t v) {
+    const bool complete = find_link(v);
+    // A vertex without its whole link in the band is there to complete the masks of others.
+    if (!complete && (mask[v] == 0 || mask[v] == links_[type[v]].full())) {
+      phi[v] = label[v] ? -far() : far();
+      return;
+    }
+    find_foot(v);
+    movable_[v] = complete && phi[v] >= -params_.reach_in && phi[v] <= params_.reach_out && !background_.on_rim(id[v]);
+  });
+}
+
+bool LabelBand::has_foot(int v) const { return std::abs(phi[v]) < kFarthestFoot; }
+
+/// Labels stay where a vertex on its way to the surface would draw apart those around it by more than most_stretch: a
+/// patch at depth d under a surface of curvature kappa is 1 / (1 - kappa d) times as wide up there. The curvature is
+/// the greatest between the feet of neighbours, on the side that the vertex would come from.
+void LabelBand::hold_where_stretched(const KeepGoing& keep_going) {
+  const double most = 1 - 1 / params_.most_stretch, apart = kApart * background_.h();
+  polled_parallel_for(size(), kValuesPerPoll, keep_going, [&](std::size_t v) {
+    if (!movable_[v]) return;
+    double kappa = 0;
+    for (int k = 0; k < links_[type[v]].n; ++k) {
+      const int w = link[v][k];
+      if (!has_foot(w)) continue;
+      const Vec3 between = foot[w] - foot[v];
+      if (between.norm() < apart) continue;
+      kappa = std::max(kappa, (phi[v] > 0 ? -1 : 1) * between.dot(normal[w] - normal[v]) / between.squaredNorm());
+    }
+    if (kappa * std::abs(phi[v]) * background_.h() > most) movable_[v] = 0, held[v] = 1;
+  });
+}
+
+/// Bricks of kBrick^3 cells.
+void LabelBand::make_bricks() {
+  struct Key {
+    std::uint64_t brick;  ///< colour first
+    std::uint32_t vertex;
+  };
+  const auto& n = background_.n_cells();
+  const std::int64_t nx = (n[0] + 2) / kBrick + 1, ny = (n[1] + 2) / kBrick + 1, nz = (n[2] + 2) / kBrick + 1;
+  std::vector<Key> keys;
+  for (std::uint32_t v = 0; v < size(); ++v) {
+    if (!movable_[v]) continue;
+    const auto cell = background_.cell(id[v]);
+    const std::int64_t i = (cell[0] + 1) / kBrick, j = (cell[1] + 1) / kBrick, k = (cell[2] + 1) / kBrick;
+    const std::int64_t colour = (i & 1) + 2 * (j & 1) + 4 * (k & 1);
+    keys.push_back({static_cast<std::uint64_t>(i + nx * (j + ny * (k + nz * colour))), v});
+  }
+  std::stable_sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) { return a.brick < b.brick; });
+  const std::uint64_t per_colour = static_cast<std::uint64_t>(nx * ny * nz);
+  order.reserve(keys.size());
+  for (std::size_t b = 0; b < keys.size();) {
+    std::size_t e = b;
+    while (e < keys.size() && keys[e].brick == keys[b].brick) order.push_back(keys[e++].vertex);
+    bricks[keys[b].brick / per_colour].push_back({static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(e)});
+    b = e;
+  }
+}
+
+}  // namespace umtet::detail

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "mesh/background_mesh.h"
+#include "mesh/detail/id_set.h"
+#include "mesh/detail/link_steps.h"
+#include "mesh/implicit_function.h"
+#include "mesh/keep_going.h"
+#include "mesh/labels.h"
+#include "mesh/link_topology.h"
+
+namespace umtet::detail {
+
+/// Vertices within three edges of a change of label, and all that choose_labels() knows about them, by rank.
+class LabelBand {
+ public:
+  struct Brick {
+    std::uint32_t begin, end;  ///< into order
+  };
+
+  /// @param inside  the vertices with psi < 0
+  /// \throw MeshCancelled
+  LabelBand(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
+            const LabelParams& params, const IdSet& inside, const KeepGoing& keep_going);
+
+  std::size_t size() const { return id.size(); }
+
+  std::vector<std::int64_t> id;                 ///< ascending
+  std::vector<std::array<int, kMaxLink>> link;  ///< ranks, -1 where the neighbour is not in the band
+  std::vector<std::uint8_t> type, label;
+  std::vector<std::uint8_t> held;  ///< its label stays because of most_stretch
+  std::vector<std::uint16_t> mask;
+  std::vector<float> phi;                    ///< signed distance in h
+  std::vector<Vec3> foot, normal;            ///< on psi = 0 and there; not set at the band's edge
+  std::vector<std::uint32_t> order;          ///< vertices whose label may change, brick by brick
+  std::array<std::vector<Brick>, 8> bricks;  ///< per colour: vertices of two bricks of one have no neighbour in common
+  std::atomic<std::size_t> psi_evaluations{0};
+
+ private:
+  void gather();
+  bool find_link(std::size_t v);
+  void find_foot(std::size_t v);
+  void measure(const KeepGoing& keep_going);
+  bool has_foot(int v) const;
+  void hold_where_stretched(const KeepGoing& keep_going);
+  void make_bricks();
+  bool is_outermost(std::int64_t id) const;
+  /// Farther than any vertex that may change, in h.
+  float far() const { return static_cast<float>(params_.reach_in + params_.reach_out + 1); }
+
+  const BackgroundMesh& background_;
+  const std::vector<LinkTopology>& links_;
+  ImplicitFunctionRef psi_;
+  const LabelParams& params_;
+  const IdSet& inside_;
+  LinkSteps steps_;
+  IdSet band_;
+  std::vector<std::uint8_t> movable_;
+};
+
+}  // namespace umtet::detail
