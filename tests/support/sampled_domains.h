@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <utility>
 
 #include "reconstruct/point_cloud.h"
 #include "tests/support/domains.h"
@@ -56,6 +57,15 @@ inline OrientedPointCloud with_noise(OrientedPointCloud cloud, double sigma, std
   return cloud;
 }
 
+/// Turns each normal by a Gaussian angle of about the given standard deviation.
+inline OrientedPointCloud with_tilted_normals(OrientedPointCloud cloud, double degrees, std::uint64_t seed = 3) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> gauss;
+  const double tilt = std::tan(degrees * std::numbers::pi / 180) / std::numbers::sqrt2;
+  for (Vec3& n : cloud.normals) n = (n + tilt * Vec3(gauss(random), gauss(random), gauss(random))).normalized();
+  return cloud;
+}
+
 /// Adds n points, uniform in the box of the cloud.
 inline OrientedPointCloud with_outliers(OrientedPointCloud cloud, int n, std::uint64_t seed = 9) {
   std::mt19937_64 random(seed);
@@ -75,6 +85,22 @@ inline void turn_some(OrientedPointCloud& cloud, double share, std::uint64_t see
   std::uniform_real_distribution<double> unit(0, 1);
   for (Vec3& n : cloud.normals)
     if (unit(random) < share) n = -n;
+}
+
+/// Mean and greatest distance of points of a surface to psi = 0 along the gradient.
+template <class Psi>
+std::pair<double, double> mean_and_max_distance(const Psi& psi, const std::vector<Vec3>& surface) {
+  double sum = 0, most = 0;
+  for (const Vec3& start : surface) {
+    Vec3 x = start, g;
+    for (int it = 0; it < 6; ++it) {
+      const double f = psi.evaluate(x, &g, nullptr);
+      x -= f / g.squaredNorm() * g;
+    }
+    sum += (x - start).norm();
+    most = std::max(most, (x - start).norm());
+  }
+  return {sum / static_cast<double>(surface.size()), most};
 }
 
 /// A sphere of n points added to a cloud; side -1: its normals point to its centre.
