@@ -18,18 +18,21 @@ using namespace umtet;
 
 namespace {
 
+// The torus on lattices from .24 down to .03: four levels.
 const LevelSet& level_set() {
   static const LevelSet psi = [] {
     SsdParams p;
     p.spacing = 0.03;
+    p.coarsest_nodes = 5000;
     return fit_ssd(test::torus_cloud(50000), p).psi;
   }();
   return psi;
 }
 
-// Places near the surface in the order a mesher visits them: neighbours in memory come one after the other.
-std::vector<Vec3> places() {
+// Places near the surface; coherent: in the order a mesher visits them, neighbours in memory one after the other.
+std::vector<Vec3> places(bool coherent) {
   std::vector<Vec3> x = test::torus_cloud(100000, 3).points;
+  if (!coherent) return x;
   const auto key = [](const Vec3& p) {
     return std::make_tuple(std::floor(p[2] / 0.03), std::floor(p[1] / 0.03), p[0]);
   };
@@ -69,12 +72,13 @@ void ScatteredBasis(benchmark::State& state) {
 }
 BENCHMARK(ScatteredBasis);
 
-// range(0): 0 value, 1 with gradient, 2 with gradient and Hessian; of a sum of `levels` levels
+// range(0): 0 value, 1 with gradient, 2 with gradient and Hessian; range(1) levels; range(2): 0 random order, 1
+// coherent
 void EvaluatePsi(benchmark::State& state) {
-  const std::vector<Vec3> x = places();
+  const std::vector<Vec3> x = places(state.range(2) == 1);
   Vec3 g;
   Mat3 H;
-  const LevelSet& psi = level_set();
+  const LevelSet psi = level_set().band_limited(level_set().lattice(static_cast<int>(state.range(1)) - 1).h);
   for (auto _ : state) {
     double sum = 0;
     for (const Vec3& p : x)
@@ -84,7 +88,10 @@ void EvaluatePsi(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(x.size()));
   state.counters["levels"] = psi.n_levels();
 }
-BENCHMARK(EvaluatePsi)->Arg(0)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond);
+BENCHMARK(EvaluatePsi)
+    ->ArgNames({"derivatives", "levels", "coherent"})
+    ->ArgsProduct({{0, 1, 2}, {1, 2, 3, 4}, {0, 1}})
+    ->Unit(benchmark::kMillisecond);
 
 // Items are nodes; range(0) samples on 121 x 121 x 61 nodes, one thread.
 void ApplyOperator(benchmark::State& state) {
@@ -124,30 +131,11 @@ void FitFullLattice(benchmark::State& state) {
 }
 BENCHMARK(FitFullLattice)->MeasureProcessCPUTime()->Iterations(2)->Unit(benchmark::kSecond);
 
-// Distances from points of the surface to psi = 0 along the gradient, over the diagonal of the samples' box.
-std::pair<double, double> mean_and_max_error(const LevelSet& psi, const std::vector<Vec3>& truth, double diagonal) {
-  double sum = 0, most = 0;
-  for (const Vec3& start : truth) {
-    Vec3 x = start, g;
-    for (int it = 0; it < 6; ++it) {
-      const double f = psi.evaluate(x, &g, nullptr);
-      x -= f / g.squaredNorm() * g;
-    }
-    sum += (x - start).norm();
-    most = std::max(most, (x - start).norm());
-  }
-  return {sum / static_cast<double>(truth.size()) / diagonal, most / diagonal};
-}
-
 // The same samples with noise along each axis, in thousandths of the diagonal, and 6 degrees on the normals.
 OrientedPointCloud noisy(OrientedPointCloud cloud, double per_mille) {
   if (per_mille == 0) return cloud;
-  cloud = test::with_noise(std::move(cloud), 1e-3 * per_mille * test::box_diagonal(cloud.points));
-  std::mt19937_64 random(3);
-  std::normal_distribution<double> gauss;
-  const double tilt = std::tan(6 * std::numbers::pi / 180) / std::numbers::sqrt2;
-  for (Vec3& n : cloud.normals) n = (n + tilt * Vec3(gauss(random), gauss(random), gauss(random))).normalized();
-  return cloud;
+  const double sigma = 1e-3 * per_mille * test::box_diagonal(cloud.points);
+  return test::with_tilted_normals(test::with_noise(std::move(cloud), sigma), 6);
 }
 
 // range(0) points of eq. (9), range(1) noise in thousandths of the diagonal; spacing and smoothing from the cloud.
@@ -161,9 +149,9 @@ void FitEquation9(benchmark::State& state) {
     p.noise = noise_along_normals(cloud.points);
     const SsdFit fit = fit_ssd(cloud, p);
     state.PauseTiming();
-    const auto [mean, most] = mean_and_max_error(fit.psi, truth, diagonal);
-    state.counters["mean_over_diagonal"] = mean;
-    state.counters["max_over_diagonal"] = most;
+    const auto [mean, most] = test::mean_and_max_distance(fit.psi, truth);
+    state.counters["mean_over_diagonal"] = mean / diagonal;
+    state.counters["max_over_diagonal"] = most / diagonal;
     int iterations = fit.report.iterations;
     for (const BandReport& band : fit.report.bands) iterations = std::max(iterations, band.iterations);
     state.counters["iterations"] = iterations;
