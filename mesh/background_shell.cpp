@@ -11,7 +11,7 @@ namespace {
 using detail::IdSet;
 using TetIds = std::array<std::int64_t, 4>;
 
-/// Outside vertices with an inside neighbour, and the inside vertices within `layers` edges of them.
+/// Outside vertices with an inside neighbour, and the inside vertices off the rim within `layers` edges of them.
 IdSet movable_vertices(const BackgroundMesh& background, const IdSet& inside, int layers) {
   IdSet movable(background.n_vertices());
   std::vector<std::int64_t> front, next, link;
@@ -30,7 +30,7 @@ IdSet movable_vertices(const BackgroundMesh& background, const IdSet& inside, in
       link.clear();
       background.link(v, link);
       for (const std::int64_t w : link) {
-        if (!inside.test(w) || movable.test(w)) continue;
+        if (!inside.test(w) || movable.test(w) || background.on_rim(w)) continue;
         movable.insert(w);
         next.push_back(w);
       }

@@ -128,6 +128,29 @@ bool same_faces(std::vector<Triangle> x, std::vector<Triangle> y) {
   return x == y;
 }
 
+/// The faces of `all` that are not among `others`, whose rotations may differ.
+std::vector<Triangle> without(const std::vector<Triangle>& all, std::vector<Triangle> others) {
+  const auto rotated = [](Triangle f) {
+    std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
+    return f;
+  };
+  for (Triangle& f : others) f = rotated(f);
+  std::sort(others.begin(), others.end());
+  std::vector<Triangle> rest;
+  for (const Triangle& f : all) {
+    if (!std::binary_search(others.begin(), others.end(), rotated(f))) rest.push_back(f);
+  }
+  return rest;
+}
+
+std::vector<int> vertices_of(const std::vector<Triangle>& faces) {
+  std::vector<int> all;
+  for (const Triangle& f : faces) all.insert(all.end(), f.begin(), f.end());
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
 /// A point of psi = 0 near x.
 struct Foot {
   bool found = false;
@@ -250,6 +273,14 @@ void run_both(const Here& here, const Aside& aside) {
 MeshCertificate certify(const CertificateInput& input) {
   if (!input.mesh || input.mesh->C.empty()) throw std::invalid_argument("certify: a mesh with tets is needed");
   const TetMesh& mesh = *input.mesh;
+  if (input.wall_faces && (!input.background_V || input.background_V->size() != mesh.V.size())) {
+    throw std::invalid_argument("certify: walls need the vertices of the background, one for each of the mesh");
+  }
+  const std::vector<Triangle> walls = input.wall_faces ? *input.wall_faces : std::vector<Triangle>{};
+  const std::vector<int> at_walls = vertices_of(walls);
+  if (!at_walls.empty() && (at_walls.front() < 0 || at_walls.back() >= static_cast<int>(mesh.V.size()))) {
+    throw std::invalid_argument("certify: a wall face with a vertex out of range");
+  }
   poll(input.keep_going);
   const BoundaryFaces skin = boundary_faces(mesh.C, mesh.V.size());  // checks the indices
   poll(input.keep_going);
@@ -271,12 +302,24 @@ MeshCertificate certify(const CertificateInput& input) {
   boundary.euler_characteristic = topology.euler_characteristic;
   boundary.genus = topology.genus;
   boundary.area = topology.area;
+  certificate.n_wall_faces = walls.size();
   if (input.positive_faces) {
     certificate.n_positive_faces = input.positive_faces->size();
-    boundary.equals_positive_faces = same_faces(skin.triangles, *input.positive_faces);
+    std::vector<Triangle> expected = *input.positive_faces;
+    expected.insert(expected.end(), walls.begin(), walls.end());
+    boundary.equals_positive_faces = same_faces(skin.triangles, std::move(expected));
   }
+  for (const int i : at_walls) boundary.n_moved_wall_vertices += mesh.V[i] != (*input.background_V)[i];
   if (input.psi) {
-    measure_against(*input.psi, mesh, skin.triangles, topology.vertices, certificate.h, input.keep_going, boundary);
+    const auto measure = [&](const std::vector<Triangle>& faces, const std::vector<int>& vertices) {
+      measure_against(*input.psi, mesh, faces, vertices, certificate.h, input.keep_going, boundary);
+    };
+    if (walls.empty()) {
+      measure(skin.triangles, topology.vertices);
+    } else {
+      const std::vector<Triangle> fitted = without(skin.triangles, walls);
+      measure(fitted, vertices_of(fitted));
+    }
   }
   return certificate;
 }
@@ -294,9 +337,12 @@ std::vector<std::string> failures(const MeshCertificate& certificate) {
   count(b.n_nonmanifold_vertices, "boundary vertices join more than one fan of boundary faces");
   if (!b.closed_manifold) reasons.emplace_back("the boundary is not a closed 2-manifold");
   if (b.equals_positive_faces == false) {
-    reasons.push_back("the boundary (" + std::to_string(b.n_faces) + " faces) is not the set of positive faces (" +
-                      std::to_string(certificate.n_positive_faces) + ")");
+    reasons.push_back(
+        "the boundary (" + std::to_string(b.n_faces) + " faces) is not the set of positive faces (" +
+        std::to_string(certificate.n_positive_faces) + ")" +
+        (certificate.n_wall_faces > 0 ? " and wall faces (" + std::to_string(certificate.n_wall_faces) + ")" : ""));
   }
+  count(b.n_moved_wall_vertices, "vertices of the walls have left their places");
   const double tolerance = kVertexTolerance + certificate.coordinate_rounding / certificate.h;
   if (b.max_vertex_distance_over_h && !(*b.max_vertex_distance_over_h <= tolerance)) {
     reasons.push_back(fmt::format("a boundary vertex is {:.3g} h from psi = 0, more than rounding explains",

@@ -16,19 +16,22 @@ struct MeshCertificate {
   std::size_t n_tets = 0;
   std::size_t n_vertices = 0;        ///< vertices that a tet uses
   std::size_t n_positive_faces = 0;  ///< 0 when none were given
+  std::size_t n_wall_faces = 0;      ///< 0 when none were given
   double volume = 0;                 ///< sum over tets, model units^3
   struct Quality {
     double min = 0, p001 = 0, p01 = 0, mean = 0;  ///< mean ratio, eq. (6); 0.1 % and 1 % quantiles; -1 = not a number
     double dihedral_min_deg = 0, dihedral_max_deg = 0;
     std::size_t n_inverted = 0;  ///< exact sign of the volume <= 0
   } quality;
+  /// All of it, walls included; what is about psi leaves the faces and vertices of the walls out.
   struct Boundary {
     std::size_t n_faces = 0;            ///< faces of exactly one tet
     std::size_t n_overused_faces = 0;   ///< faces of more than two tets
     std::size_t n_same_side_faces = 0;  ///< faces with two tets on one side: overlap or inversion
     std::size_t n_nonmanifold_edges = 0, n_nonmanifold_vertices = 0;
     bool closed_manifold = false;
-    std::optional<bool> equals_positive_faces;
+    std::optional<bool> equals_positive_faces;  ///< and wall faces; together, as a set
+    std::size_t n_moved_wall_vertices = 0;      ///< not at CertificateInput::background_V, to the bit
     int components = 0;
     long euler_characteristic = 0;
     long genus = 0;  ///< sum over components; meaningful if closed_manifold
@@ -48,7 +51,9 @@ struct CertificateInput {
   const TetMesh* mesh = nullptr;
   double h = 0;  ///< <= 0: the mean over tets of the root mean square edge length is used
   const std::vector<Triangle>* positive_faces = nullptr;  ///< optional: compared with the boundary as a set
-  std::optional<ImplicitFunctionRef> psi;                 ///< optional: distances and normals
+  const std::vector<Triangle>* wall_faces = nullptr;      ///< optional: boundary that is not of psi = 0
+  const std::vector<Vec3>* background_V = nullptr;  ///< by vertex: where those of the walls are to be; with wall_faces
+  std::optional<ImplicitFunctionRef> psi;           ///< optional: distances and normals
   double coordinate_rounding = 0;  ///< how far the file's rounding of coordinates may move a vertex, model units
   KeepGoing keep_going = {};
 };
@@ -62,12 +67,13 @@ inline constexpr double kVertexTolerance = 1e-8;
 ///
 /// Cost: O(n log n); threads over tets and faces, result independent of them.
 /// psi must be thread-safe.
-/// \throw std::invalid_argument without a mesh or tets, or for an index out of range; MeshCancelled
+/// \throw std::invalid_argument without a mesh or tets, for an index out of range, or where background_V is wanting;
+///        MeshCancelled
 MeshCertificate certify(const CertificateInput&);
 
 /// The reasons why a certificate fails, empty = pass: inverted tets, boundary not a closed manifold or not the positive
-/// faces, a vertex farther than kVertexTolerance h from psi = 0, a face without a point of psi = 0 near it, a face with
-/// cos <= 0 (folded).
+/// and wall faces, a wall that has moved, a vertex farther than kVertexTolerance h from psi = 0, a face without a point
+/// of psi = 0 near it, a face with cos <= 0 (folded).
 std::vector<std::string> failures(const MeshCertificate&);
 
 }  // namespace umtet

@@ -12,6 +12,7 @@
 #include "mesh/label_prices.h"
 #include "mesh/lattice_shell.h"
 #include "mesh/tet_quality.h"
+#include "mesh/walls.h"
 
 namespace umtet {
 namespace {
@@ -27,7 +28,7 @@ class FastRun {
         psi_(psi),
         params_(params),
         observer_(observer),
-        prices_(label_prices(background.tiling())),
+        prices_(params.rim == Rim::Wall ? nullptr : label_prices(background.tiling())),
         label_params_(params.fast.labels),
         inside_(0) {
     if (prices_ && !label_params_.energies) label_params_.energies = &prices_->energies;
@@ -100,7 +101,7 @@ bool FastRun::find_inside(const std::vector<Vec3>& seeds) {
   bool empty = true;
   inside_.for_each([&](std::int64_t v) {
     empty = false;
-    if (!background_.on_rim(v)) return;
+    if (params_.rim == Rim::Wall || !background_.on_rim(v)) return;
     if (rim.count++ == 0) rim.background_vertex = v;
   });
   if (empty) {
@@ -121,6 +122,11 @@ bool FastRun::label() {
   result_.submesh = emit_submesh(background_, inside_);
   double_faces_ = double_positive_faces(result_.submesh);
   result_.double_positive_faces = double_faces_.count;
+  if (params_.rim == Rim::Wall) {
+    result_.walls = wall_faces(background_, result_.submesh);
+    const UmEvidence near = boundary_near_walls(background_, result_.submesh);
+    if (near.count > 0) return fail(UmStatus::BoundaryNearWall, near);
+  }
   return report("submesh", 1, 1);
 }
 

@@ -32,8 +32,8 @@ concept JointlyEvaluated = requires(const F f, const Vec3 x, Vec3* g, Mat3* H) {
 class ImplicitFunctionRef {
  public:
   template <ImplicitFunction F>
-    requires(!std::same_as<F, ImplicitFunctionRef>)
-  ImplicitFunctionRef(const F& f) : object_(&f), call_(&call<F>), has_hessian_(TwiceDifferentiable<F>) {}
+  requires(!std::same_as<F, ImplicitFunctionRef>) ImplicitFunctionRef(const F& f)
+      : object_(&f), call_(&call<F>), has_hessian_(TwiceDifferentiable<F>) {}
 
   double value(const Vec3& x) const { return call_(object_, x, nullptr, nullptr); }
   double value(const Vec3& x, Vec3& gradient) const { return call_(object_, x, &gradient, nullptr); }
@@ -59,6 +59,25 @@ class ImplicitFunctionRef {
   const void* object_;
   double (*call_)(const void*, const Vec3&, Vec3*, Mat3*);
   bool has_hessian_;
+};
+
+/// -psi, the level set of the complement of Omega. psi must outlive it.
+template <ImplicitFunction F>
+class Complement {
+ public:
+  explicit Complement(const F& psi) : psi_(psi) {}
+  double value(const Vec3& x) const { return -psi_.value(x); }
+  Vec3 gradient(const Vec3& x) const { return -psi_.gradient(x); }
+  Mat3 hessian(const Vec3& x) const requires TwiceDifferentiable<F> { return -psi_.hessian(x); }
+  double evaluate(const Vec3& x, Vec3* g, Mat3* H) const requires JointlyEvaluated<F> {
+    const double value = psi_.evaluate(x, g, H);
+    if (g) *g = -*g;
+    if (H) *H = -*H;
+    return -value;
+  }
+
+ private:
+  const F& psi_;
 };
 
 }  // namespace umtet

@@ -16,6 +16,7 @@
 #include "mesh/dvr.h"
 #include "mesh/fast_mesh.h"
 #include "mesh/tet_quality.h"
+#include "mesh/walls.h"
 
 namespace umtet {
 namespace {
@@ -106,11 +107,17 @@ bool Run::find_omega_h(const std::vector<Vec3>& seeds) {
   return report({"submesh", 1, 1, &submesh().mesh.V, submesh().mesh.C.size()});
 }
 
-/// The set triangulated by the background must strictly contain the closure of Omega (Section 2.1).
+/// The set triangulated by the background must strictly contain the closure of Omega (Section 2.1), unless its rim is
+/// a wall.
 bool Run::stays_off_the_rim() {
   // A vertex that is not positive is inside, and a vertex on the rim has lost tets of omega_h.
   std::vector<bool> positive(submesh().mesh.V.size(), false);
   for (const int i : submesh().positive_vertices) positive[i] = true;
+  if (params_.rim == Rim::Wall) {
+    result_.walls = wall_faces(background_, submesh());
+    const UmEvidence near = boundary_near_walls(background_, submesh());
+    return near.count == 0 || fail(UmStatus::BoundaryNearWall, near);
+  }
   const Offenders rim = find_offenders(positive.size(), [&](std::size_t i) {
     return !positive[i] && background_.on_rim(submesh().background_vertex[i]);
   });
@@ -192,7 +199,8 @@ bool Run::project_and_relax() {
   for (const int i : submesh().positive_vertices) positive[i] = true;
   std::vector<int> interior;
   for (int i = 0; i < static_cast<int>(positive.size()); ++i) {
-    if (!positive[i]) interior.push_back(i);
+    const bool at_wall = params_.rim == Rim::Wall && background_.on_rim(submesh().background_vertex[i]);
+    if (!positive[i] && !at_wall) interior.push_back(i);
   }
   relaxed_.emplace(*mesh_, std::move(interior));  // I_R = I^omega_h \ I^+, Section 3.2
   for (int pass = 1; pass <= params_.projection_passes; ++pass) {
@@ -271,6 +279,8 @@ const char* to_string(UmStatus status) {
       return "empty domain";
     case UmStatus::DomainLeavesBackground:
       return "domain leaves background";
+    case UmStatus::BoundaryNearWall:
+      return "boundary near wall";
     case UmStatus::DoublePositiveFace:
       return "double positive face";
     case UmStatus::ObtuseConditioningAngle:

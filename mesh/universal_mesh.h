@@ -19,6 +19,13 @@ enum class UmMode {
   Fast,   ///< beyond the paper: chosen labels, guarded projection and p-norm smoothing of a shell, repair; fast_mesh.h
   Paper,  ///< Algorithm 1 to the letter
 };
+/// What becomes of a domain that reaches the rim of the background.
+enum class Rim {
+  Refuse,  ///< UmStatus::DomainLeavesBackground
+  /// The rim is a wall: it bounds the mesh where Omega reaches it, and stays where it is. Labels, which are chosen and
+  /// repaired off the rim only, stay those of psi.
+  Wall,
+};
 enum class SubmeshSearch { FullLoop, Crawl };  ///< Alg. 1, steps 1-22, or Section 3.8(c) from given seeds
 
 struct UmParams {
@@ -31,6 +38,7 @@ struct UmParams {
   /// Exact; GoldenSection, the paper's faster, suboptimal choice (Fig. 18), in a build without GSL.
   MaxMin max_min = kBestMaxMin;
   SubmeshSearch search = SubmeshSearch::FullLoop;
+  Rim rim = Rim::Refuse;
   ClosestPointParams closest_point;
   std::uint64_t seed = 0;  ///< random tangents of boundary dvr are a function of (seed, iteration, vertex)
 };
@@ -42,6 +50,7 @@ enum class UmStatus {
   Success,
   EmptyDomain,              ///< psi >= 0 at every background vertex
   DomainLeavesBackground,   ///< psi < 0 at a vertex on the rim: the box is too small
+  BoundaryNearWall,         ///< Rim::Wall: a positive vertex is within two edges of the rim
   DoublePositiveFace,       ///< the run failed at a face shared by two positively cut tets: too thin or curved for h
   ObtuseConditioningAngle,  ///< the run failed where the injectivity condition of Section 5.3 is broken
   ProjectionDiverged,       ///< 3.8(a) did not settle for a positive vertex
@@ -63,6 +72,7 @@ struct UmResult {
   UmStatus status = UmStatus::Success;
   UmEvidence evidence;          ///< filled when status != Success
   Submesh submesh;              ///< omega_h with background coordinates (step 22)
+  std::vector<Triangle> walls;  ///< Rim::Wall: the faces of omega_h on the rim, local vertex ids, outward
   std::vector<Vec3> projected;  ///< vertex coordinates after step 30, same numbering
   std::vector<Vec3> final;      ///< vertex coordinates of T^{Omega_h} (step 35), same numbering
   double conditioning_angle_max_deg = 0;
@@ -87,6 +97,7 @@ using UmObserver = std::function<bool(const UmProgress&)>;
 /// face or an obtuse conditioning angle breaks an assumption of the algorithm but need not break the mesh: both are
 /// counted in the result, and become the status only when a projection diverges or a tet inverts right there. With
 /// double positive faces the boundary of the mesh is not the set of positive faces, which a certificate will say.
+/// Around a body in a box: psi is a Complement (implicit_function.h), the rim a wall; walls are flat in an a15_box().
 /// @param seeds  for SubmeshSearch::Crawl: at least one point near every component of the boundary
 /// \throw std::invalid_argument naming every broken constraint of params
 UmResult universal_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params = {},
