@@ -95,14 +95,4 @@ class PNormSmoother {
 SmoothReport smooth(Shell& shell, ImplicitFunctionRef psi, const SmoothParams& params = {},
                     const KeepGoing& keep_going = {});
 
-struct PowerSum {
-  double sum = 0;                ///< infinite where some V <= 0
-  Vec3 gradient = Vec3::Zero();  ///< of ln(sum) / p
-  Mat3 hessian = Mat3::Zero();   ///< of ln(sum) / p
-};
-
-/// sum_j (F_j(y) / scale)^p over a ring, p = 2^log2_p, and the derivatives of its ln / p: what the Newton steps are
-/// made of. \throw std::invalid_argument for a log2_p that is not among the steps
-PowerSum power_sum(const OneRing& ring, const Vec3& y, int log2_p, double scale);
-
 }  // namespace umtet

@@ -8,6 +8,7 @@
 #include <random>
 #include <set>
 
+#include "mesh/detail/ring_newton.h"
 #include "mesh/guarded_projection.h"
 #include "tests/support/omega_h_shell.h"
 
@@ -58,7 +59,7 @@ TEST(PNormSmooth, DerivativesAreThoseOfTheSum) {
     for (const int log2_p : {4, 5}) {
       const double p = 1 << log2_p, d = 1e-5;
       const Vec3 y = random_vector(random, .05);
-      const PowerSum at_y = power_sum(ring, y, log2_p, 1.5);
+      const detail::PowerSum at_y = detail::power_sum(ring, y, log2_p, 1.5);
       double sum = 0;
       Shell moved = shell;
       moved.V[0] += y;
@@ -67,22 +68,22 @@ TEST(PNormSmooth, DerivativesAreThoseOfTheSum) {
       }
       EXPECT_NEAR(at_y.sum / sum, 1, 1e-9);
       for (int k = 0; k < 3; ++k) {
-        const PowerSum right = power_sum(ring, y + d * Vec3::Unit(k), log2_p, 1.5);
-        const PowerSum left = power_sum(ring, y - d * Vec3::Unit(k), log2_p, 1.5);
+        const detail::PowerSum right = detail::power_sum(ring, y + d * Vec3::Unit(k), log2_p, 1.5);
+        const detail::PowerSum left = detail::power_sum(ring, y - d * Vec3::Unit(k), log2_p, 1.5);
         EXPECT_NEAR(std::log(right.sum / left.sum) / p / (2 * d), at_y.gradient[k], 1e-5) << "p = " << p;
         const Vec3 column = (right.gradient - left.gradient) / (2 * d);
         EXPECT_LT((column - at_y.hessian.col(k)).norm(), 1e-4 * at_y.hessian.norm()) << "p = " << p;
       }
     }
-    EXPECT_THROW(power_sum(ring, Vec3::Zero(), 3, 1), std::invalid_argument);
+    EXPECT_THROW(detail::power_sum(ring, Vec3::Zero(), 3, 1), std::invalid_argument);
   }
 }
 
 TEST(PNormSmooth, SumIsInfiniteWhereATetIsNotPositive) {
   Shell shell = background_star(0);
   const OneRing ring = PNormSmoother(shell).ring(0);
-  EXPECT_TRUE(std::isfinite(power_sum(ring, Vec3::Zero(), 5, 1).sum));
-  EXPECT_TRUE(std::isinf(power_sum(ring, Vec3(1, 0, 0), 5, 1).sum));
+  EXPECT_TRUE(std::isfinite(detail::power_sum(ring, Vec3::Zero(), 5, 1).sum));
+  EXPECT_TRUE(std::isinf(detail::power_sum(ring, Vec3(1, 0, 0), 5, 1).sum));
 }
 
 TEST(PNormSmooth, DisplacedVertexOfTheBackgroundReturns) {
