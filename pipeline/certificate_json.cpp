@@ -64,7 +64,7 @@ std::string show(const Json& block, const char* key, const char* format) {
 
 std::string thousands(std::size_t n) {
   std::string s = std::to_string(n);
-  for (int k = static_cast<int>(s.size()) - 3; k > 0; k -= 3) s.insert(static_cast<std::size_t>(k), ",");
+  for (int k = static_cast<int>(s.size()) - 3; k > 0; k -= 3) s.insert(s.begin() + k, ',');
   return s;
 }
 

@@ -82,10 +82,10 @@ struct Expression::Impl {
     const auto [psi, s] = read_expression(text);
     texts[0] = print(psi);
     texts[1] = texts[0];
-    for (std::size_t i = 0; i < 3; ++i) texts[1] += "," + print(psi.diff(s[i]));
+    for (std::size_t i = 0; i < 3; ++i) texts[1].append(",").append(print(psi.diff(s[i])));
     texts[2] = texts[1];
     for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = i; j < 3; ++j) texts[2] += "," + print(psi.diff(s[i]).diff(s[j]));
+      for (std::size_t j = i; j < 3; ++j) texts[2].append(",").append(print(psi.diff(s[i]).diff(s[j])));
     }
     if (texts[2].size() > kMaxDerivativeText) {
       throw ExpressionError(text, 1, "the second derivatives have " + std::to_string(texts[2].size()) + " characters");

@@ -286,7 +286,7 @@ TEST(Stokes, ForcesBalanceTheLoadAndVanishWhereNothingHolds) {
   const std::vector<int> held = vertices_where(mesh, on_unit_cube);
   StokesSolver solver(int(mesh.V.size()), mesh.C, {.tolerance = 1e-12});
   solver.assemble(mesh.V, all_tets(mesh), held);
-  const std::vector<Vec3> f = at_vertices(mesh, [&](const Vec3& x) { return exact.f(x) + Vec3(1, 2, 3); });
+  const std::vector<Vec3> f = at_vertices(mesh, [&](const Vec3& x) -> Vec3 { return exact.f(x) + Vec3(1, 2, 3); });
   const std::vector<Vec3> forces = solver.forces(solver.solve(at_vertices(mesh, Manufactured::u), f), f);
   Vec3 load = Vec3::Zero();
   for (const Tet& K : mesh.C) {

@@ -54,7 +54,7 @@ TEST(ClosestPoint, StepIsMinusSignedDistance) {
 
 /// The n-th of some points of the boundary, by bisection between a point inside and one outside.
 Vec3 boundary_point(const AnalyticDomain& domain, int n) {
-  Vec3 inside, outside;
+  Vec3 inside = Vec3::Zero(), outside = Vec3::Zero();
   bool has_inside = false, has_outside = false;
   for (int k = 0; !has_inside || !has_outside; ++k) {
     const Vec3 x = domain.box.center() + .6 * domain.box.sizes().cwiseProduct(random_unit_vector(7, n, k));

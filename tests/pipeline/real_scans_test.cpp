@@ -35,7 +35,7 @@ fs::path own_folder() { return fs::temp_directory_path() / ("umtet_scan_" + std:
 void expect_certified(const fs::path& cloud, int genus, const std::function<void(const fs::path&)>& look = {}) {
   const fs::path folder = own_folder();
   fs::create_directories(folder);
-  const std::string call = "'" + std::string(UMTET_PROGRAM) + "' run '" + cloud.string() + "' -o '" +
+  const std::string call = std::string("'") + UMTET_PROGRAM + "' run '" + cloud.string() + "' -o '" +
                            (folder / "case").string() + "' --json -q >'" + (folder / "out").string() + "'";
   const int status = std::system(call.c_str());
   std::ifstream out(folder / "out");

@@ -54,7 +54,9 @@ TEST(SignCells, HoldEveryZeroAndFewOthers) {
     }
     for (const Cube& c : crossed) ASSERT_TRUE(listed.contains(c)) << size;
     // The bound closes in with the square of the edge.
-    if (size < psi.lattice(0).h) EXPECT_LT(listed.size(), 5 * crossed.size()) << size;
+    if (size < psi.lattice(0).h) {
+      EXPECT_LT(listed.size(), 5 * crossed.size()) << size;
+    }
   }
 }
 
