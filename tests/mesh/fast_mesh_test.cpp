@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cstring>
 
-#include "mesh/certificate.h"
 #include "mesh/patch_state.h"
 #include "mesh/tet_quality.h"
+#include "tests/support/certified.h"
 #include "tests/support/domains.h"
 
 namespace umtet {
@@ -40,16 +40,6 @@ Quality quality(const UmResult& result, const std::vector<Vec3>& V) {
   return q;
 }
 
-MeshCertificate certificate(const UmResult& result, const AnalyticDomain& domain, double h) {
-  const TetMesh mesh{result.final, result.submesh.mesh.C};
-  CertificateInput input;
-  input.mesh = &mesh;
-  input.h = h;
-  input.positive_faces = &result.submesh.positive_faces;
-  input.psi = ImplicitFunctionRef(domain);
-  return certify(input);
-}
-
 TEST(FastMesh, WorstTetIsAboveTheTargetAndTheCertificatePasses) {
   for (const AnalyticDomain& domain :
        {testing::sphere(), testing::torus(), testing::equation_9(), testing::banchoff_chmutov_4()}) {
@@ -59,7 +49,7 @@ TEST(FastMesh, WorstTetIsAboveTheTargetAndTheCertificatePasses) {
     ASSERT_EQ(result.status, UmStatus::Success) << result.evidence.what;
     EXPECT_GE(quality(result, result.final).least, .82);
     EXPECT_GT(quality(result, result.projected).least, 0);
-    const MeshCertificate c = certificate(result, domain, background.h());
+    const MeshCertificate c = testing::certificate_of(result, domain, background.h());
     EXPECT_TRUE(failures(c).empty()) << failures(c).front();
     EXPECT_EQ(c.boundary.genus, domain.genus);
     EXPECT_EQ(c.boundary.components, domain.components);
@@ -144,7 +134,7 @@ TEST(FastMesh, RepairMakesNothingWorseAndMendsPoorTetsAndFoldedFaces) {
     mended += before.poor - after.poor;
     unturned += before.turned - after.turned;
     unfolded += before.folded - after.folded;
-    const MeshCertificate c = certificate(repaired, domain, background.h());
+    const MeshCertificate c = testing::certificate_of(repaired, domain, background.h());
     EXPECT_TRUE(c.boundary.closed_manifold);
     EXPECT_EQ(c.quality.n_inverted, 0u);
     EXPECT_EQ(c.boundary.genus, domain.genus);

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <string>
 
-#include "mesh/certificate.h"
 #include "mesh/universal_mesh.h"
+#include "tests/support/certified.h"
 #include "tests/support/domains.h"
 
 using namespace umtet;
@@ -27,14 +27,8 @@ TEST(Figure15, LeastQualityInFourBackgrounds) {
     const double h = h_for_tets(tiling, domain, domain.box, 100000);
     const UmResult r = universal_mesh(BackgroundMesh(tiling, domain.box, h), domain);
     ASSERT_EQ(r.status, UmStatus::Success) << r.evidence.what;
-    const TetMesh mesh{r.final, r.submesh.mesh.C};
-    CertificateInput input;
-    input.mesh = &mesh;
-    input.h = h;
-    input.positive_faces = &r.submesh.positive_faces;
-    input.psi = ImplicitFunctionRef(domain);
-    const MeshCertificate c = certify(input);
-    std::printf("  %-4s  %7zu tets   %.4f  %.3f   %.3f   %.2f\n", bar.tiling, mesh.C.size(), h, c.quality.min,
+    const MeshCertificate c = domains::certificate_of(r, domain, h);
+    std::printf("  %-4s  %7zu tets   %.4f  %.3f   %.3f   %.2f\n", bar.tiling, r.submesh.mesh.C.size(), h, c.quality.min,
                 bar.paper, r.conditioning_angle_max_deg);
     for (const std::string& reason : failures(c)) ADD_FAILURE() << reason;
     EXPECT_GE(c.quality.min, bar.floor);

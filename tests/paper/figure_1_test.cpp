@@ -4,9 +4,9 @@
 
 #include <cstdio>
 
-#include "mesh/certificate.h"
 #include "mesh/universal_mesh.h"
 #include "tests/support/bench_domains.h"
+#include "tests/support/certified.h"
 
 using namespace umtet;
 namespace domains = umtet::testing;
@@ -23,13 +23,7 @@ TEST(Figure1, QualityAndAnglesAt100kTets) {
     const double h = h_for_tets(domain, domain.box, 100000);
     const UmResult r = universal_mesh(BackgroundMesh(a15(), domain.box, h), domain, params);
     ASSERT_EQ(r.status, UmStatus::Success) << r.evidence.what;
-    const TetMesh mesh{r.final, r.submesh.mesh.C};
-    CertificateInput input;
-    input.mesh = &mesh;
-    input.h = h;
-    input.positive_faces = &r.submesh.positive_faces;
-    input.psi = ImplicitFunctionRef(domain);
-    const MeshCertificate c = certify(input);
+    const MeshCertificate c = domains::certificate_of(r, domain, h);
     std::printf("  %-20s   %.3f  %.3f   %.1f to %.1f\n", domain.name.c_str(), c.quality.min, c.quality.p01,
                 c.quality.dihedral_min_deg, c.quality.dihedral_max_deg);
     for (const std::string& reason : failures(c)) ADD_FAILURE() << reason;

@@ -4,8 +4,8 @@
 
 #include <cstdio>
 
-#include "mesh/certificate.h"
 #include "mesh/universal_mesh.h"
+#include "tests/support/certified.h"
 #include "tests/support/domains.h"
 
 using namespace umtet;
@@ -31,14 +31,9 @@ TEST(LeastQuality, OfImplicitDomainsAt100kTets) {
     const double h = h_for_tets(domain, domain.box, 100000);
     const UmResult r = universal_mesh(BackgroundMesh(a15(), domain.box, h), domain);
     ASSERT_EQ(r.status, UmStatus::Success) << r.evidence.what;
-    const TetMesh mesh{r.final, r.submesh.mesh.C};
-    CertificateInput input;
-    input.mesh = &mesh;
-    input.h = h;
-    input.positive_faces = &r.submesh.positive_faces;
-    input.psi = ImplicitFunctionRef(domain);
-    const MeshCertificate c = certify(input);
-    std::printf("  %-20s %7zu tets   %.3f   %s\n", domain.name.c_str(), mesh.C.size(), c.quality.min, bar.paper);
+    const MeshCertificate c = domains::certificate_of(r, domain, h);
+    std::printf("  %-20s %7zu tets   %.3f   %s\n", domain.name.c_str(), r.submesh.mesh.C.size(), c.quality.min,
+                bar.paper);
     for (const std::string& reason : failures(c)) ADD_FAILURE() << reason;
     EXPECT_GE(c.quality.min, bar.floor);
     EXPECT_EQ(c.boundary.components, domain.components);
