@@ -24,8 +24,7 @@ inline double uniform_density(const Vec3&) { return 1; }
 
 /// n points of {f = 0} within 1e-12, evenly spread like Poisson discs, with unit outward normals.
 ///
-/// Many random surface points, then elimination of the most crowded ones [Yuksel, Sample Elimination for Generating
-/// Poisson Disk Sample Sets, Computer Graphics Forum 34 (2015)].
+/// Many random surface points, then elimination of the most crowded ones [Yuksel2015].
 /// @param low, high  a box that contains the surface
 /// \throw std::runtime_error  grad f vanishes near the surface, or the surface is not within the box
 OrientedPointCloud sample_surface(ShapeFunction f, const Vec3& low, const Vec3& high, std::size_t n, std::uint64_t seed,

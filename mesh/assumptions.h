@@ -31,7 +31,7 @@ struct ConditioningAngles {
 };
 
 /// The conditioning angles of all positively cut tets, which must be acute for the closest point projection to be
-/// injective on each positive face                                          [Rangarajan2018, Section 5.3, Fig. 3C]
+/// injective on each positive face                 [Rangarajan2018, Section 5.3, Fig. 3C; KabariaLew2017, Theorem 3.2]
 ///
 /// The proximal vertex of a positively cut tet is the vertex of its positive face that is nearest to the boundary; the
 /// conditioning angles are the dihedral angles between the positive face and the two other faces that meet there. A

@@ -69,7 +69,8 @@ struct DvrParams {
 };
 
 /// Iterations first .. first + n - 1 of Algorithm 2: vertices in ascending order, each to the max-min point of its ring
-/// along its direction, eq. (5). A vertex stays unless the worst quality of its ring rises by more than rounding.
+/// along its direction, eq. (5) [RangarajanLew2017]. A vertex stays unless the worst quality of its ring rises by more
+/// than rounding.
 /// @param background_vertex  per vertex, the id that random directions are a function of
 /// @return number of moves
 /// \pre every tet at a relaxed vertex has Q > 0
