@@ -7,7 +7,6 @@
 
 #include "pipeline/artefact.h"
 #include "reconstruct/cleaning.h"
-#include "reconstruct/cloud_neighbours.h"
 #include "reconstruct/normal_estimation.h"
 #include "reconstruct/normal_orientation.h"
 
@@ -53,7 +52,9 @@ class Preparation {
   void notice(fmt::format_string<T...> format, T&&... args) {
     result_.notices.push_back(fmt::format(format, std::forward<T>(args)...));
   }
-  double percent(std::size_t n) const { return 100. * static_cast<double>(n) / static_cast<double>(cloud_.points.size()); }
+  double percent(std::size_t n) const {
+    return 100. * static_cast<double>(n) / static_cast<double>(cloud_.points.size());
+  }
 
   const fs::path& source_;
   const Parameters& parameters_;
@@ -72,7 +73,8 @@ void Preparation::clean_points() {
                                 {"duplicates", r.n_duplicates},
                                 {"outliers", r.n_outliers},
                                 {"crumbs", r.n_crumbs}};
-  if (const std::size_t n = report_.n_points_dropped + r.n_not_finite) notice("dropped {} points that are no numbers", n);
+  if (const std::size_t n = report_.n_points_dropped + r.n_not_finite)
+    notice("dropped {} points that are no numbers", n);
   if (r.n_duplicates > 0) notice("dropped {} duplicates", r.n_duplicates);
   if (r.n_outliers + r.n_crumbs > 0) {
     notice("dropped {} outliers and {} points in {} small pieces far from the rest (--keep-all keeps them)",
@@ -122,9 +124,10 @@ void Preparation::find_normals() {
     const OrientationReport r = repair_normals(cloud_, {}, &near_);
     take(r);
     if (r.n_turned > 0) {
-      notice("turned {} of the given normals ({:.1f} %): they were {:.1f} % consistent, now {:.1f} % "
-             "(--normals given keeps them)",
-             r.n_turned, percent(r.n_turned), 100 * r.consistency, 100 * r.consistency_after);
+      notice(
+          "turned {} of the given normals ({:.1f} %): they were {:.1f} % consistent, now {:.1f} % "
+          "(--normals given keeps them)",
+          r.n_turned, percent(r.n_turned), 100 * r.consistency, 100 * r.consistency_after);
     }
     return;
   }
@@ -150,8 +153,8 @@ void Preparation::drop_undefined() {
   cloud_.normals.resize(kept);
   if (kept < n) notice("dropped {} points whose normal cannot be told", n - kept);
   if (kept < kFewestPoints) {
-    throw CloudRefused(fmt::format("{}: no surface: the normals of {} of {} points cannot be told", source_.string(),
-                                   n - kept, n));
+    throw CloudRefused(
+        fmt::format("{}: no surface: the normals of {} of {} points cannot be told", source_.string(), n - kept, n));
   }
 }
 
@@ -171,6 +174,8 @@ PreparedCloud Preparation::operator()() {
   clean_points();
   find_normals();
   drop_undefined();
+  // Differences of coordinates have the same bits with and without the shift: so do distances.
+  if (near_.size() == cloud_.points.size()) result_.near = neighbour_distances(near_);
   for (Vec3& x : cloud_.points) x += shift;
   orient_as_told();
   result_.numbers["normals"] = normals_;

@@ -6,6 +6,7 @@
 
 #include "pipeline/parameters.h"
 #include "pipeline/record.h"
+#include "reconstruct/cloud_neighbours.h"
 #include "reconstruct/point_cloud_io.h"
 
 namespace umtet {
@@ -13,6 +14,7 @@ namespace umtet {
 /// A cloud that stage one can fit, and what had to be done to the scan for it.
 struct PreparedCloud {
   OrientedPointCloud cloud;
+  NeighbourDistances near;           ///< of its points, for areas; empty where preparing did not need them
   Json numbers;                      ///< for the record of 1-cloud
   std::vector<std::string> notices;  ///< what was changed or guessed, for the user
 };
@@ -26,10 +28,9 @@ std::vector<RecordedFile> source_inputs(const std::filesystem::path& source, con
 
 /// Cleans a scan and gives every point an outward normal, as the parameters of the section `cloud` say.
 ///
-/// Normals that came with the scan are scored, and a minority that is turned over is turned back (normals = auto), taken
-/// as they are (given) or thrown away (estimate). Missing ones are estimated. cloud.orient_from and cloud.flip have the
-/// last word.
-/// \throw CloudRefused  fewer than 10 points are left; not a file of viewpoints
+/// Normals that came with the scan are scored, and a minority that is turned over is turned back (normals = auto),
+/// taken as they are (given) or thrown away (estimate). Missing ones are estimated. cloud.orient_from and cloud.flip
+/// have the last word. \throw CloudRefused  fewer than 10 points are left; not a file of viewpoints
 PreparedCloud prepare_cloud(CloudFile file, const std::filesystem::path& source, const Parameters& parameters);
 
 }  // namespace umtet

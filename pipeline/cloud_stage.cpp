@@ -42,6 +42,8 @@ void run_cloud_stage(const StageContext& context, const fs::path& source) {
   run["source"] = fs::absolute(source).string();
   write_record(context.paths, {Stage::Cloud, context.parameters.section("cloud"), inputs, {}, numbers, std::move(run)},
                {"cloud.ply"});
+  context.handover.cloud = std::move(prepared.cloud);
+  context.handover.near = std::move(prepared.near);
 }
 
 }  // namespace umtet

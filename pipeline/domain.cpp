@@ -1,5 +1,7 @@
 #include "pipeline/domain.h"
 
+#include <utility>
+
 #include "pipeline/exit_code.h"
 #include "pipeline/stages.h"
 #include "reconstruct/level_set_io.h"
@@ -32,7 +34,7 @@ void Domain::limit_detail(double h) {
   if (fitted) level_set = fitted->band_limited(kLeastSpacing * h);
 }
 
-Domain load_domain(const CasePaths& paths, const Parameters& parameters) {
+Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handover* handover) {
   if (!parameters.text("mesh.implicit").empty()) return formula_domain(parameters);
   const StageState state = inspect_stage(paths, Stage::LevelSet, parameters.section("reconstruct"), std::nullopt);
   if (!state.record) throw ArtefactDamaged(state.reason);
@@ -40,9 +42,11 @@ Domain load_domain(const CasePaths& paths, const Parameters& parameters) {
   domain.shift = recorded_vector(*state.record, "shift");
   domain.cloud_spacing = state.record->numbers.value("cloud_spacing", 0.);
   try {
-    domain.fitted.emplace(read_level_set(paths.level_set()));
+    domain.fitted = handover && handover->psi ? std::move(*std::exchange(handover->psi, std::nullopt))
+                                              : read_level_set(paths.level_set());
     domain.level_set = domain.fitted;
-    domain.cloud = read_point_cloud(paths.cloud()).cloud;
+    domain.cloud = handover && handover->cloud ? std::move(*std::exchange(handover->cloud, std::nullopt))
+                                               : read_point_cloud(paths.cloud()).cloud;
   } catch (const CloudRefused& e) {  // both files are ours: what is wrong with them is damage
     throw ArtefactDamaged(e.what());
   } catch (const LevelSetRefused& e) {

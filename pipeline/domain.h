@@ -12,14 +12,16 @@
 
 namespace umtet {
 
+struct Handover;
+
 /// What 3-mesh works on, and what a mesh is judged against: psi, where to look for it, and the samples behind it.
 /// All lengths and places are in working coordinates: model coordinates minus `shift`.
 struct Domain {
   std::optional<Expression> formula;  ///< one of the two is there
   std::optional<LevelSet> level_set;  ///< psi; cut where limit_detail() said
   std::optional<LevelSet> fitted;     ///< the same with all its levels
-  Box box;              ///< what the background mesh has to cover
-  double diagonal = 0;  ///< of the cloud's box, or of `box` for a formula
+  Box box;                            ///< what the background mesh has to cover
+  double diagonal = 0;                ///< of the cloud's box, or of `box` for a formula
   Vec3 shift = Vec3::Zero();
   OrientedPointCloud cloud;  ///< empty for a formula
   double cloud_spacing = 0;  ///< median distance between neighbouring samples, 0 for a formula
@@ -31,7 +33,8 @@ struct Domain {
 };
 
 /// The formula of mesh.implicit, or the level set and the cloud of the case.
+/// @param handover  what there is of them in memory is taken from there, and not read
 /// \throw UsageError (a formula without a box), ExpressionError, ArtefactDamaged, std::system_error
-Domain load_domain(const CasePaths&, const Parameters&);
+Domain load_domain(const CasePaths&, const Parameters&, Handover* handover = nullptr);
 
 }  // namespace umtet

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <utility>
 
 #include "pipeline/exit_code.h"
 #include "pipeline/interrupt.h"
@@ -23,9 +24,10 @@ double overall_fraction(std::string_view step, double fraction) {
   return .5 + .5 * fraction;
 }
 
-OrientedPointCloud read_own_cloud(const fs::path& file) {
+OrientedPointCloud take_cloud(const StageContext& context) {
+  if (context.handover.cloud) return std::move(*std::exchange(context.handover.cloud, std::nullopt));
   try {
-    return read_point_cloud(file).cloud;
+    return read_point_cloud(context.paths.cloud()).cloud;
   } catch (const CloudRefused& e) {  // we wrote it: not the user's file is at fault
     throw ArtefactDamaged(e.what());
   }
@@ -47,8 +49,8 @@ void require_outward_normals(const SsdReport& r) {
 }
 
 /// Distances between opposed samples; null where none face one another.
-Json thickness_percentiles(const OrientedPointCloud& cloud) {
-  const std::vector<double> t = thicknesses(cloud);
+Json thickness_percentiles(const OrientedPointCloud& cloud, const NeighbourTree& tree) {
+  const std::vector<double> t = thicknesses(cloud, tree);
   if (t.empty()) return nullptr;
   const auto at = [&](double p) { return t[static_cast<std::size_t>(p * static_cast<double>(t.size() - 1))]; };
   return {at(.01), at(.05), at(.5)};
@@ -70,7 +72,7 @@ SsdParams ssd_params(const Parameters& p) {
   ssd.prior.epsilon = p.real("reconstruct.epsilon");
   const std::string& solver = p.text("reconstruct.solver");
   const bool full_only = ssd.weights == SsdWeights::Paper || ssd.prior.kind == LmePrior::Kind::Gaussian;
-  ssd.solver = solver == "assembled"                             ? SsdSolver::Assembled
+  ssd.solver = solver == "assembled"                                 ? SsdSolver::Assembled
                : solver == "full" || (solver == "auto" && full_only) ? SsdSolver::Full
                                                                      : SsdSolver::Cascade;
   ssd.band_tolerance = p.real("reconstruct.band_tolerance");
@@ -87,20 +89,30 @@ void run_level_set_stage(const StageContext& context) {
   const auto start = std::chrono::steady_clock::now();
   SsdParams params = ssd_params(context.parameters);
   const std::vector<RecordedFile> inputs = recorded_inputs(context.paths, Stage::LevelSet, context.parameters);
-  OrientedPointCloud cloud = read_own_cloud(context.paths.cloud());
+  OrientedPointCloud cloud = take_cloud(context);
   const Vec3 shift = far_origin_shift(cloud);
   for (Vec3& x : cloud.points) x -= shift;
 
   params.max_memory = allowed_bytes(context.parameters);
   context.progress.report("level-set", "noise", 0);
   const double noise = context.parameters.real("reconstruct.noise");
-  params.noise = noise >= 0 ? noise : noise_along_normals(cloud.points);
+  Json thickness;
+  {
+    const NeighbourTree tree(cloud.points);
+    params.noise = noise >= 0 ? noise : noise_along_normals(cloud.points, tree);
+    stop_if_interrupted();
+    thickness = thickness_percentiles(cloud, tree);
+  }
   stop_if_interrupted();
-  const SsdFit fit = [&] {
+  const NeighbourDistances near = std::exchange(context.handover.near, {});
+  SsdFit fit = [&] {
     try {
-      return fit_ssd(cloud, params, [&](const char* step, double fraction) {
-        return context.progress.report("level-set", step, overall_fraction(step, fraction));
-      });
+      return fit_ssd(
+          cloud, params,
+          [&](const char* step, double fraction) {
+            return context.progress.report("level-set", step, overall_fraction(step, fraction));
+          },
+          near.nearest.empty() ? nullptr : &near);
     } catch (const SolveTooLarge& e) {
       throw ResourceLimit(e.what());
     } catch (const SolveCancelled&) {
@@ -131,7 +143,7 @@ void run_level_set_stage(const StageContext& context) {
                         {"noise", params.noise},
                         {"reason", r.reason},
                         {"cloud_spacing", r.cloud_spacing},
-                        {"thickness_percentiles_1_5_50", thickness_percentiles(cloud)},
+                        {"thickness_percentiles_1_5_50", std::move(thickness)},
                         {"iterations", r.iterations},
                         {"residuals", r.residuals},
                         {"bands", bands},
@@ -150,6 +162,9 @@ void run_level_set_stage(const StageContext& context) {
                 numbers,
                 run_block(seconds.count(), context.threads)},
                {"level_set.vti"});
+  for (Vec3& x : cloud.points) x += shift;
+  context.handover.cloud = std::move(cloud);
+  context.handover.psi = std::move(fit.psi);
 }
 
 }  // namespace umtet

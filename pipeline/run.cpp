@@ -21,7 +21,7 @@ class CaseRun {
         progress_(progress),
         paths_{request.case_folder},
         parameters_(request.parameters),
-        context_{paths_, parameters_, progress, request.threads} {}
+        context_{paths_, parameters_, progress, request.threads, handover_} {}
 
   RunOutcome operator()();
 
@@ -39,6 +39,7 @@ class CaseRun {
   CasePaths paths_;
   Parameters
       parameters_;  ///< those asked for, and for finished stages that are not asked for those they were made with
+  Handover handover_;
   const StageContext context_;
   RunOutcome outcome_;
 };

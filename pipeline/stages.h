@@ -13,6 +13,14 @@
 
 namespace umtet {
 
+/// What the stages of a run leave in memory for those after them: bit by bit what their files hold, which so need not
+/// be read back. Empty where a stage had been done before.
+struct Handover {
+  std::optional<OrientedPointCloud> cloud;  ///< cloud.ply
+  NeighbourDistances near;                  ///< of its points, or empty
+  std::optional<LevelSet> psi;              ///< level_set.vti
+};
+
 /// What every stage is given. A stage computes first and touches the case only when it has something to write; it
 /// writes to paths.folder(), which is beside the finished one where there is one.
 struct StageContext {
@@ -20,6 +28,7 @@ struct StageContext {
   const Parameters& parameters;
   Progress& progress;
   int threads;
+  Handover& handover;
 };
 
 /// 1-cloud: reads the user's file, checks it, writes cloud.ply (double precision, original coordinates).

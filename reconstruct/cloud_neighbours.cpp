@@ -103,6 +103,18 @@ NeighbourDistances neighbour_distances(const std::vector<Vec3>& points, int k) {
   return result;
 }
 
+NeighbourDistances neighbour_distances(const Neighbourhoods& near) {
+  const std::size_t n = near.size();
+  NeighbourDistances result{std::vector<double>(n), std::vector<double>(n), static_cast<int>(near.k()),
+                            std::vector<int>(n, 1)};
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::span<const double> d2 = near.distances2(i);
+    result.nearest[i] = std::sqrt(d2.front());
+    result.mean_square[i] = std::accumulate(d2.begin(), d2.end(), 0.) / result.k;
+  }
+  return result;
+}
+
 double median_spacing(const std::vector<Vec3>& points) { return median_spacing(neighbour_distances(points, 1)); }
 
 double median_spacing(const NeighbourDistances& near) {

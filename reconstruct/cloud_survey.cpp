@@ -70,9 +70,12 @@ double local_variance(const std::vector<Vec3>& points, const NeighbourTree& tree
 }  // namespace
 
 double noise_along_normals(const std::vector<Vec3>& points, std::size_t sampled_points) {
+  return noise_along_normals(points, NeighbourTree(points), sampled_points);
+}
+
+double noise_along_normals(const std::vector<Vec3>& points, const NeighbourTree& tree, std::size_t sampled_points) {
   if (points.size() < kFewestPoints)
     throw std::invalid_argument(fmt::format("{} points: noise needs at least {}", points.size(), kFewestPoints));
-  const NeighbourTree tree(points);
   const std::vector<std::uint32_t> picked = evenly_picked(tree, sampled_points);
   std::vector<double> variance(picked.size());
   tbb::enumerable_thread_specific<std::vector<Neighbour>> buffers;
@@ -83,10 +86,14 @@ double noise_along_normals(const std::vector<Vec3>& points, std::size_t sampled_
 }
 
 std::vector<double> thicknesses(const OrientedPointCloud& cloud, std::size_t sampled_points) {
+  return thicknesses(cloud, NeighbourTree(cloud.points), sampled_points);
+}
+
+std::vector<double> thicknesses(const OrientedPointCloud& cloud, const NeighbourTree& tree,
+                                std::size_t sampled_points) {
   // Wide enough not to slip between the samples of the other side, narrow enough not to meet what is beside it.
   constexpr double kWidthOverSpacing = 1.5;
   constexpr double kOpposed = -0.3;  // 107 degrees: walls that narrow by less than 73 degrees
-  const NeighbourTree tree(cloud.points);
   const std::vector<std::uint32_t> picked = evenly_picked(tree, sampled_points);
   std::vector<double> met(picked.size());
   tbb::parallel_for(std::size_t{0}, picked.size(), [&](std::size_t p) {
@@ -137,7 +144,8 @@ CloudSurvey survey(const OrientedPointCloud& original, const SurveyParams& param
   result.spacing = {percentile(near.nearest, 0.01), percentile(near.nearest, 0.5), percentile(near.nearest, 0.99)};
   const double spacing = result.spacing[1];
 
-  result.noise = noise_along_normals(cloud.points, params.sampled_points);
+  const NeighbourTree tree(cloud.points);
+  result.noise = noise_along_normals(cloud.points, tree, params.sampled_points);
   result.noise_over_diagonal = result.noise / result.diagonal;
   result.noise_over_spacing = result.noise / spacing;
 
@@ -161,7 +169,7 @@ CloudSurvey survey(const OrientedPointCloud& original, const SurveyParams& param
     result.volume = body.volume;
     result.openness = body.openness;
     if (result.consistency >= params.consistent) {
-      const std::vector<double> met = thicknesses(cloud, params.sampled_points);
+      const std::vector<double> met = thicknesses(cloud, tree, params.sampled_points);
       const std::size_t stride = std::max<std::size_t>(1, n / params.sampled_points),
                         n_picked = (n + stride - 1) / stride;
       result.thickness_found = static_cast<double>(met.size()) / static_cast<double>(n_picked);

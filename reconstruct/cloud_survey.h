@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "reconstruct/cleaning.h"
+#include "reconstruct/neighbour_tree.h"
 #include "reconstruct/normal_orientation.h"
 #include "reconstruct/point_cloud.h"
 
@@ -61,9 +62,14 @@ CloudSurvey survey(const OrientedPointCloud& cloud, const SurveyParams& params =
 /// a ball that grows until it is five deviations wide (a narrower one cuts the noise off that it is to measure).
 /// Clean clouds read what is left of a quadric over 24 neighbours, a hundredth of the spacing and less.
 double noise_along_normals(const std::vector<Vec3>& points, std::size_t sampled_points = 5000);
+double noise_along_normals(const std::vector<Vec3>& points, const NeighbourTree& tree,
+                           std::size_t sampled_points = 5000);
 
 /// Distances from evenly picked samples along their inward normals to the first sample that faces the other way.
 /// @return ascending, one number for each sample that met one
+/// @param tree  of the points
 std::vector<double> thicknesses(const OrientedPointCloud& cloud, std::size_t sampled_points = 5000);
+std::vector<double> thicknesses(const OrientedPointCloud& cloud, const NeighbourTree& tree,
+                                std::size_t sampled_points = 5000);
 
 }  // namespace umtet

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <limits>
 
-#include "reconstruct/cloud_neighbours.h"
 #include "reconstruct/multigrid.h"
 #include "reconstruct/resolution.h"
 #include "reconstruct/ssd_assembled.h"
@@ -231,8 +230,8 @@ LevelSet fit_lattice(const Problem& problem, const Hierarchy& hierarchy, std::ve
 LevelSet fit_full(const Problem& problem, SsdReport& report) {
   const Hierarchy hierarchy =
       choose_hierarchy(problem.box, report.spacing, problem.params.padding, problem.tables.width());
-  return fit_lattice(problem, hierarchy, make_samples(problem.cloud, problem.area, hierarchy.finest, problem.params.noise),
-                     report);
+  return fit_lattice(problem, hierarchy,
+                     make_samples(problem.cloud, problem.area, hierarchy.finest, problem.params.noise), report);
 }
 
 // Functions of a band stay clear of those that the wall of the coarsest lattice deforms.
@@ -257,9 +256,10 @@ void require_memory(const Problem& problem, const Hierarchy& hierarchy,
     need += level + 1 < samples.size() ? kKept * bytes : (1 + kKept) * bytes;
   }
   if (need <= limit) return;
-  throw SolveTooLarge(fmt::format("a finest spacing of {:.4g} needs {:.3g} GB of memory, {:.3g} GB are allowed: choose a "
-                                  "larger spacing (--detail below 1), or allow more",
-                                  hierarchy.finest.h / std::exp2(samples.size() - 1.0), need / 1e9, limit / 1e9));
+  throw SolveTooLarge(
+      fmt::format("a finest spacing of {:.4g} needs {:.3g} GB of memory, {:.3g} GB are allowed: choose a "
+                  "larger spacing (--detail below 1), or allow more",
+                  hierarchy.finest.h / std::exp2(samples.size() - 1.0), need / 1e9, limit / 1e9));
 }
 
 LevelSet fit_cascade(const Problem& problem, SsdReport& report) {
@@ -290,17 +290,18 @@ LevelSet fit_cascade(const Problem& problem, SsdReport& report) {
   for (int level = 1; level <= n_bands && !samples[level].empty(); ++level) {
     const double per_level = 1.0 / n_bands;
     BandReport band;
-    psi = refine(psi, samples[level], report.smoothing, params.band_tolerance, params.max_iterations,
-                 [&](double residual) {
-                   const double done = std::clamp(std::log(residual) / std::log(params.band_tolerance), 0.0, 1.0);
-                   go_on(problem.progress, "refine", (level - 1 + done) * per_level);
-                 },
-                 band);
+    psi = refine(
+        psi, samples[level], report.smoothing, params.band_tolerance, params.max_iterations,
+        [&](double residual) {
+          const double done = std::clamp(std::log(residual) / std::log(params.band_tolerance), 0.0, 1.0);
+          go_on(problem.progress, "refine", (level - 1 + done) * per_level);
+        },
+        band);
     if (!band.converged) {
-      throw SolveError(fmt::format("band of {} nodes, smoothing {:.3g}: relative residual {:.2e} after {} iterations, "
-                                   "wanted {:.1e}",
-                                   band.n_nodes, report.smoothing, band.residual, band.iterations,
-                                   params.band_tolerance));
+      throw SolveError(
+          fmt::format("band of {} nodes, smoothing {:.3g}: relative residual {:.2e} after {} iterations, "
+                      "wanted {:.1e}",
+                      band.n_nodes, report.smoothing, band.residual, band.iterations, params.band_tolerance));
     }
     samples[level] = {};
     report.n_nodes += band.n_nodes;
@@ -312,13 +313,18 @@ LevelSet fit_cascade(const Problem& problem, SsdReport& report) {
 
 }  // namespace
 
-SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const SsdProgress& progress) {
+SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const SsdProgress& progress,
+               const NeighbourDistances* near) {
   const std::vector<std::string> wrong = problems(params);
   if (!wrong.empty()) throw std::invalid_argument(fmt::format("{}", fmt::join(wrong, "; ")));
   if (cloud.points.size() < 10 || cloud.points.size() != cloud.normals.size()) {
     throw std::invalid_argument(
         fmt::format("a cloud needs at least 10 points with a normal each; this one has {} points and {} normals",
                     cloud.points.size(), cloud.normals.size()));
+  }
+  if (near && near->nearest.size() != cloud.points.size()) {
+    throw std::invalid_argument(
+        fmt::format("neighbours of {} points, the cloud has {}", near->nearest.size(), cloud.points.size()));
   }
   SsdReport report;
   report.n_points = cloud.points.size();
@@ -328,9 +334,11 @@ SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const S
   for (const Vec3& x : cloud.points) problem.box.extend(x);
   const double diagonal = problem.box.diagonal().norm();
   {
-    const NeighbourDistances near = neighbour_distances(cloud.points, kAreaNeighbours);
-    report.cloud_spacing = median_spacing(near);
-    problem.area = sample_areas(near);
+    const NeighbourDistances searched =
+        near ? NeighbourDistances{} : neighbour_distances(cloud.points, kAreaNeighbours);
+    const NeighbourDistances& found = near ? *near : searched;
+    report.cloud_spacing = median_spacing(found);
+    problem.area = sample_areas(found);
   }
   const Resolution chosen =
       choose_resolution(std::sqrt(median(problem.area)), params.noise, params.detail, params.smooth);

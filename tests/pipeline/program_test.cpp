@@ -57,6 +57,29 @@ TEST_F(Program, ChangedEdgeLengthKeepsStageOne) {
   EXPECT_FALSE(fs::exists(folder / "egg/certificate.json"));  // of a mesh of the former level set
 }
 
+// Stages of one run hand clouds and level sets on in memory; those of later runs read the files.
+TEST_F(Program, WhatIsReadBackGivesTheSameBytesAsWhatIsHandedOn) {
+  int line = 0;  // far from the origin, with every twentieth normal of another length, and an outlier
+  write_cloud("far.ply", [&](const double (&x)[6]) {
+    const double length = ++line % 20 == 0 ? 1.3 : 1, out = line == 7 ? 3 : 1;
+    std::ostringstream s;
+    s.precision(17);
+    s << 1e6 + out * x[0] << ' ' << out * x[1] << ' ' << out * x[2];
+    for (int d = 3; d < 6; ++d) s << ' ' << length * x[d];
+    return s.str();
+  });
+  const auto bytes = [&] {
+    return content(folder / "far/2-level-set/level_set.vti") + content(folder / "far/3-mesh/mesh.vtu");
+  };
+  ASSERT_EQ(run("run far.ply -o far --h .2 -q").code, 0);
+  const std::string handed_on = bytes();
+  for (const char* stage : {"far/2-level-set", "far/3-mesh"}) {
+    fs::remove_all(folder / stage);
+    ASSERT_EQ(run("run far.ply -o far --h .2 -q").code, 0);
+    EXPECT_EQ(bytes(), handed_on) << stage;
+  }
+}
+
 TEST_F(Program, ThreadsDoNotChangeAByte) {
   ASSERT_EQ(run("run egg.ply -o one --tets 4000 --threads 1").code, 0);
   ASSERT_EQ(run("run egg.ply -o two --tets 4000 --threads 2").code, 0);

@@ -70,6 +70,21 @@ TEST(NeighbourDistances, DoNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(many.mean_square, one.mean_square);
 }
 
+TEST(NeighbourDistances, OfNeighboursThatAreKnownAreTheSameBits) {
+  std::vector<Vec3> points = uniform_random_sphere(3000);
+  const NeighbourDistances searched = neighbour_distances(points, kAreaNeighbours);
+  // A power of two, and few enough bits left of it: the differences stay what they are.
+  for (Vec3& x : points) x = (x + Vec3::Constant(16)) - Vec3::Constant(16);
+  const NeighbourDistances rounded = neighbour_distances(points, kAreaNeighbours);
+  for (Vec3& x : points) x += Vec3::Constant(16);
+  const NeighbourDistances known = neighbour_distances(Neighbourhoods(points, kAreaNeighbours));
+  EXPECT_NE(searched.mean_square, rounded.mean_square);
+  EXPECT_EQ(known.k, rounded.k);
+  EXPECT_EQ(known.nearest, rounded.nearest);
+  EXPECT_EQ(known.mean_square, rounded.mean_square);
+  EXPECT_EQ(known.multiplicity, rounded.multiplicity);
+}
+
 TEST(NeighbourDistances, RefuseWhatHasNoSpacing) {
   EXPECT_THROW(neighbour_distances({}, 1), std::invalid_argument);
   EXPECT_THROW(neighbour_distances(std::vector<Vec3>(20, Vec3::Ones()), 1), std::invalid_argument);
