@@ -69,7 +69,7 @@ class MeshStage {
  public:
   explicit MeshStage(const StageContext& context)
       : context_(context),
-        domain_(load_domain(context.paths, context.parameters)),
+        domain_(load_domain(context.paths, context.parameters, &context.handover)),
         background_(context.parameters, domain_),
         keep_iterates_(context.parameters.flag("mesh.keep_iterates")) {}
 
