@@ -94,21 +94,25 @@ std::string thin_lines(const Json& c) {
 
 }  // namespace
 
+void judge(Json& measured, const Parameters& parameters) {
+  std::vector<std::string> reasons = measured.at("reasons");
+  measured.erase("reasons");  // they go behind the verdict
+  const double gate = parameters.real("output.min_quality"), q = measured.at("quality").at("min");
+  measured["gates"] = {{"min_quality", gate > 0 ? Json(gate) : Json(nullptr)}};
+  if (q < gate) reasons.push_back(fmt::format("min quality {:.4f} is below the gate of {:.4f}", q, gate));
+  measured["verdict"] = reasons.empty() ? "pass" : "fail";
+  measured["reasons"] = reasons;
+}
+
 Json certificate(const CasePaths& paths, const StageRecord& mesh, const Parameters& parameters) {
   Json json = {{"schema", kSchema}, {"tool", "umtet"}, {"version", kVersion}};
   const std::string& units = parameters.text("output.units");
   json["units"] = units.empty() ? Json(nullptr) : Json(units);
   json.update(mesh.numbers.at("measured"));
-  std::vector<std::string> reasons = json.at("reasons");
-  json.erase("reasons");
-  const double gate = parameters.real("output.min_quality"), q = json.at("quality").at("min");
   const std::int64_t asked = parameters.integer("mesh.tets");
   json["n_tets_asked"] = asked > 0 ? Json(asked) : Json(nullptr);
-  json["gates"] = {{"min_quality", gate > 0 ? Json(gate) : Json(nullptr)}};
-  if (q < gate) reasons.push_back(fmt::format("min quality {:.4f} is below the gate of {:.4f}", q, gate));
-  json["verdict"] = reasons.empty() ? "pass" : "fail";
-  json["reasons"] = reasons;
-  json["remedy"] = reasons.empty() ? Json(nullptr) : Json(remedy(json));
+  judge(json, parameters);
+  json["remedy"] = json["reasons"].empty() ? Json(nullptr) : Json(remedy(json));
   json["run"] = run_of(paths, mesh, parameters);
   return sealed(json);
 }

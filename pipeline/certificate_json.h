@@ -13,6 +13,9 @@ namespace umtet {
 /// time. \pre the stage 3-mesh is done
 Json certificate(const CasePaths& paths, const StageRecord& mesh, const Parameters& parameters);
 
+/// Adds `gates`, `verdict` and the reason of a broken gate to what measure() returned.
+void judge(Json& measured, const Parameters& parameters);
+
 /// A few aligned lines for people: verdict, counts, quality, boundary, domain, cloud, time.
 /// Takes a certificate, or the shorter document of a checked mesh.
 std::string summary(const Json& certificate);

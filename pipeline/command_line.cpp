@@ -22,6 +22,7 @@ constexpr const char* kFooter = R"(Examples:
   umtet inspect duck.ply                     spacing, noise, normals, thickness; what is likely to go wrong
   umtet check part.msh                       validity and quality of any tet mesh
   umtet export duck --format msh,stl         files for solvers, in duck/4-export
+  umtet evolve --implicit '(x-t)^2+y^2+z^2-1' --box=-2,-2,-2,4,2,2 --h .1 --t 0:0.5:2 -o moving
 
 Exit codes: 0 all well | 1 a bug of ours | 2 usage | 3 input refused | 4 reconstruction failed
   5 meshing not possible at this h | 6 made, but a gate or the certificate failed | 7 file trouble
@@ -29,7 +30,7 @@ Exit codes: 0 all well | 1 a bug of ours | 2 usage | 3 input refused | 4 reconst
 
 /// Where CLI11 leaves what it read, as text; the table of parameters knows the types.
 struct Inputs {
-  std::string input, output, config, from, until, against;
+  std::string input, output, config, from, until, against, clouds, times, skip;
   std::vector<std::string> assignments, formats;
   std::map<std::string, std::string> values;  ///< by key
   std::map<std::string, bool> switches;       ///< by key
@@ -59,6 +60,7 @@ class Parser {
   void finish(const CLI::App& command);
   void read_parameters();
   void finish_stages(const CLI::App& command);
+  void finish_evolve();
   void take_cloud();
 
   CLI::App app_{"umtet: from an oriented point cloud to a certified tetrahedral mesh", "umtet"};
@@ -88,6 +90,14 @@ Parser::Parser() {
   add_stage_flags(mesh);
   mesh.add_option("CASE", in_.input, "a case with a level set");
   add_parameter_flags(mesh, {"mesh", "output"});
+
+  CLI::App& evolve = add_command("evolve", "A domain that moves: every instant meshed in one background mesh");
+  add_parameter_sources(evolve);
+  evolve.add_option("-o", in_.output, "the folder of the meshes");
+  evolve.add_option("--clouds", in_.clouds, "a text file with the path of a cloud a line, instead of --implicit");
+  evolve.add_option("--t", in_.times, "FROM:STEP:TO, the times; --implicit may have t in it");
+  evolve.add_option("--skip", in_.skip, "times to leave out: --skip 3.1,3.4");
+  add_parameter_flags(evolve, {"cloud", "reconstruct", "mesh", "output"}, {"mesh.keep_iterates"});
 
   CLI::App& inspect = add_command("inspect", "What is in a cloud, and what is likely to go wrong with it");
   inspect.add_option("CLOUD", in_.input, "points: .ply, .pcd, .xyz")->required();
@@ -186,7 +196,7 @@ void Parser::check_command(int argc, const char* const* argv) const {
   std::vector<std::string> commands;
   for (const CLI::App* c : app_.get_subcommands({})) commands.push_back(c->get_name());
   if (std::find(commands.begin(), commands.end(), *word) != commands.end()) return;
-  for (const char* planned : {"report", "evolve", "batch"}) {
+  for (const char* planned : {"report", "batch"}) {
     if (std::string_view(*word) != planned) continue;
     throw UsageError(fmt::format("{} is not available yet in version {}; there are {}", planned, kVersion,
                                  fmt::join(commands, ", ")));
@@ -241,6 +251,9 @@ void Parser::finish(const CLI::App& command) {
     result_.action = CommandLine::Action::Export;
     result_.request.case_folder = in_.input;
     result_.formats = in_.formats;
+  } else if (result_.command == "evolve") {
+    result_.action = CommandLine::Action::Evolve;
+    finish_evolve();
   } else {
     result_.action = CommandLine::Action::Stages;
     finish_stages(command);
@@ -254,7 +267,8 @@ void Parser::read_parameters() {
   for (const std::string& assignment : in_.assignments) parameters.set(assignment);
   for (const Stage stage : {Stage::Cloud, Stage::LevelSet, Stage::Mesh}) {
     const RunRequest& r = result_.request;
-    if (result_.action == CommandLine::Action::Stages && stage >= r.from && stage <= r.until) continue;
+    const bool runs = result_.action == CommandLine::Action::Stages || result_.action == CommandLine::Action::Evolve;
+    if (runs && stage >= r.from && stage <= r.until) continue;
     for (const ParamField& f : params_fields()) {
       if (f.key.starts_with(std::string(section_of(stage)) + ".") && parameters.source(f.key) >= ParamSource::Set) {
         throw UsageError(f.key + " belongs to a stage that this command does not run");
@@ -262,6 +276,18 @@ void Parser::read_parameters() {
     }
   }
   if (!in_.config.empty()) parameters.load(in_.config, ParamSource::File);
+}
+
+void Parser::finish_evolve() {
+  if (in_.clouds.empty()) result_.request.from = Stage::Mesh;
+  read_parameters();
+  const bool formula = !result_.request.parameters.text("mesh.implicit").empty();
+  if (formula != in_.clouds.empty()) throw UsageError("evolve: give --implicit EXPR with --box, or --clouds LIST");
+  if (in_.output.empty()) throw UsageError("evolve: -o FOLDER is missing");
+  result_.evolve.folder = in_.output;
+  result_.evolve.clouds = in_.clouds;
+  result_.evolve.times = in_.times;
+  result_.evolve.skip = in_.skip;
 }
 
 void Parser::finish_stages(const CLI::App& command) {

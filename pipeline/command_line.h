@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/evolve.h"
 #include "pipeline/progress.h"
 #include "pipeline/run.h"
 
@@ -11,12 +12,13 @@ namespace umtet {
 
 /// A call of the program, understood.
 struct CommandLine {
-  enum class Action { Text, Stages, Check, Export, Inspect };
+  enum class Action { Text, Stages, Check, Export, Inspect, Evolve };
   Action action = Action::Text;
   std::string text;     ///< Text: help or version, for stdout
-  std::string command;  ///< "run", "reconstruct", "mesh", "inspect", "check", "export"
+  std::string command;  ///< "run", "reconstruct", "mesh", "inspect", "check", "export", "evolve"
 
   RunRequest request;                            ///< Stages; Check: its output.* parameters; Export: its case_folder
+  EvolveRequest evolve;                          ///< Evolve, but for its parameters: those of `request`
   std::filesystem::path mesh;                    ///< Check
   std::filesystem::path cloud;                   ///< Inspect
   std::optional<std::filesystem::path> against;  ///< Check

@@ -15,20 +15,20 @@ static_assert(ImplicitFunction<Expression> && TwiceDifferentiable<Expression> &&
 
 namespace {
 
-Domain formula_domain(const Parameters& parameters) {
-  const std::optional<Box> box = parse_box(parameters.text("mesh.box"));
-  if (!box) throw UsageError("--implicit needs --box x0,y0,z0,x1,y1,z1");
-  Domain domain;
-  domain.formula.emplace(parameters.text("mesh.implicit"));
-  domain.box = *box;
-  domain.diagonal = box->diagonal().norm();
-  return domain;
-}
-
 // Levels down to this many edges count.
 constexpr double kLeastSpacing = .7;
 
 }  // namespace
+
+Domain formula_domain(const Parameters& parameters, std::optional<double> t) {
+  const std::optional<Box> box = parse_box(parameters.text("mesh.box"));
+  if (!box) throw UsageError("--implicit needs --box x0,y0,z0,x1,y1,z1");
+  Domain domain;
+  domain.formula.emplace(parameters.text("mesh.implicit"), t);
+  domain.box = *box;
+  domain.diagonal = box->diagonal().norm();
+  return domain;
+}
 
 void Domain::limit_detail(double h) {
   if (fitted) level_set = fitted->band_limited(kLeastSpacing * h);

@@ -32,6 +32,10 @@ struct Domain {
   ImplicitFunctionRef psi() const { return formula ? ImplicitFunctionRef(*formula) : ImplicitFunctionRef(*level_set); }
 };
 
+/// mesh.implicit in mesh.box. @param t  what t stands for in the text; without it there is no such name
+/// \throw UsageError (a formula without a box), ExpressionError
+Domain formula_domain(const Parameters&, std::optional<double> t = std::nullopt);
+
 /// The formula of mesh.implicit, or the level set and the cloud of the case.
 /// @param handover  what there is of them in memory is taken from there, and not read
 /// \throw UsageError (a formula without a box), ExpressionError, ArtefactDamaged, std::system_error

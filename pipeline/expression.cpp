@@ -78,8 +78,8 @@ ExpressionError::ExpressionError(const std::string& text, std::size_t column, co
     : std::runtime_error(at_column(text, column, message)), column(column) {}
 
 struct Expression::Impl {
-  explicit Impl(std::string t) : text(std::move(t)) {
-    const auto [psi, s] = read_expression(text);
+  Impl(std::string formula, std::optional<double> t) : text(std::move(formula)) {
+    const auto [psi, s] = read_expression(text, t);
     texts[0] = print(psi);
     texts[1] = texts[0];
     for (std::size_t i = 0; i < 3; ++i) texts[1].append(",").append(print(psi.diff(s[i])));
@@ -97,7 +97,7 @@ struct Expression::Impl {
   mutable tbb::enumerable_thread_specific<Evaluator> evaluators{[this] { return Evaluator(texts); }};
 };
 
-Expression::Expression(const std::string& text) : impl_(std::make_unique<Impl>(text)) {}
+Expression::Expression(const std::string& text, std::optional<double> t) : impl_(std::make_unique<Impl>(text, t)) {}
 Expression::~Expression() = default;
 Expression::Expression(Expression&&) noexcept = default;
 Expression& Expression::operator=(Expression&&) noexcept = default;

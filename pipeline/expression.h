@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -18,6 +19,8 @@ struct ExpressionError : std::runtime_error {
 
 /// psi given as text in x, y, z; Omega = {psi < 0}. Satisfies ImplicitFunction, TwiceDifferentiable, JointlyEvaluated.
 ///
+/// A family of them has t in its text; each member is an Expression of its own, in which t is a number.
+///
 /// Grammar: + - * / ^ ( ), numbers, x y z pi, and sin cos tan asin acos atan sinh cosh tanh exp log sqrt of one
 /// argument. ^ binds to the right and before a sign: -x^2 = -(x^2), 2^3^2 = 2^9, 2^-1 = .5. There is no abs: psi must
 /// be C2.
@@ -30,7 +33,8 @@ class Expression {
  public:
   /// \throw ExpressionError  not in the grammar, a number or power out of range, a pole or an imaginary number among
   ///                         the constants, or nothing that depends on x, y or z
-  explicit Expression(const std::string& text);
+  /// @param t  finite; read as the shortest decimal number for it: .1 is a tenth. Without it there is no name t
+  explicit Expression(const std::string& text, std::optional<double> t = std::nullopt);
   ~Expression();
   Expression(Expression&&) noexcept;
   Expression& operator=(Expression&&) noexcept;

@@ -128,6 +128,15 @@ void compare_with_zero_set(const Domain& domain, const MeshCertificate& certific
 
 }  // namespace
 
+void check_deviation(double asked, Json& measured) {
+  const Json& d = measured.at("boundary").at("max_centroid_distance_over_h");
+  if (asked == 0 || !d.is_number()) return;
+  const double made = d.get<double>() * measured.at("h").get<double>();
+  if (made <= asked) return;
+  measured["reasons"].push_back(
+      fmt::format("a face centre is {:.4g} from psi = 0, more than the {:.4g} of --max-deviation", made, asked));
+}
+
 Json to_json(const MeshCertificate& c) {
   return {{"n_tets", c.n_tets},
           {"n_vertices", c.n_vertices},

@@ -13,6 +13,9 @@ namespace umtet {
 Json measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& pieces, double h,
              const KeepGoing& keep_going = {});
 
+/// The distance asked for with mesh.max_deviation is a promise: a mesh that breaks it gets a reason. 0: any will do.
+void check_deviation(double asked, Json& measured);
+
 /// The blocks `quality` and `boundary` and the counts before them.
 Json to_json(const MeshCertificate& certificate);
 

@@ -4,14 +4,13 @@
 #include <cmath>
 
 #include "mesh/quality_report.h"
-#include "mesh/surface_distance.h"
-#include "mesh/tet_mesh_io.h"
 #include "mesh/universal_mesh.h"
 #include "pipeline/background_choice.h"
 #include "pipeline/domain.h"
 #include "pipeline/edge_length.h"
 #include "pipeline/exit_code.h"
 #include "pipeline/interrupt.h"
+#include "pipeline/made_mesh.h"
 #include "pipeline/memory.h"
 #include "pipeline/mesh_attempts.h"
 #include "pipeline/mesh_measures.h"
@@ -22,26 +21,10 @@ namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
-/// What the file will hold, in working coordinates: it stores x + shift, rounded, and taking the shift off again is
-/// exact (far_origin_shift). From here on that is the mesh: it is this one that is measured.
-void round_to_file(std::vector<Vec3>& V, const Vec3& shift) {
-  for (Vec3& x : V) x = (x + shift) - shift;
-}
-
 // Another h is tried for the number of tets that was asked for when it is missed by more than this.
 constexpr double kTetsTolerance = .1;
 // Pieces of psi = 0 are not looked for on grids finer than this, in h.
 constexpr double kFinestGrid = .1;
-
-/// The distance that was asked for is a promise: a mesh that breaks it is not right.
-void check_deviation(double asked, Json& measured) {
-  const Json& d = measured.at("boundary").at("max_centroid_distance_over_h");
-  if (asked == 0 || !d.is_number()) return;
-  const double made = d.get<double>() * measured.at("h").get<double>();
-  if (made <= asked) return;
-  measured["reasons"].push_back(
-      fmt::format("a face centre is {:.4g} from psi = 0, more than the {:.4g} of --max-deviation", made, asked));
-}
 
 /// What is skipped as a whole leaves no trace in topology or normals.
 void check_lost(MeshAttempt& a, const Vec3& shift) {
@@ -52,17 +35,6 @@ void check_lost(MeshAttempt& a, const Vec3& shift) {
       fmt::format("the mesh lacks what is thin around ({:.6g}, {:.6g}, {:.6g}): psi = 0 is "
                   "{:.2g} h from its boundary there",
                   at.x(), at.y(), at.z(), lost.distance / a.h));
-}
-
-const char* remedy(UmStatus status) {
-  switch (status) {
-    case UmStatus::EmptyDomain:
-      return "a smaller --h, or a --box around the place where psi < 0, may find it";
-    case UmStatus::DomainLeavesBackground:
-      return "give a larger --box, with room of two edges around the domain";
-    default:
-      return "a smaller --h (or a larger --tets) resolves more of the shape";
-  }
 }
 
 class MeshStage {
@@ -86,8 +58,6 @@ class MeshStage {
   bool observe(const UmProgress& p);
   UmResult make(const BackgroundMesh& background, const ZeroSetChoice& pieces);
   [[noreturn]] void refuse(const UmResult& result, double h);
-  std::vector<double> support(const UmResult& result) const;
-  void write_iterate(const fs::path& file, const UmResult& result, const std::vector<Vec3>& V);
   void write_output(const std::string& name, const UmResult& result, const std::vector<Vec3>& V);
   void write_outputs(const MeshAttempt& best);
   const StageContext& context_;
@@ -129,31 +99,12 @@ UmResult MeshStage::make(const BackgroundMesh& background, const ZeroSetChoice& 
                                        background.n_tets(), pieces.topology.components.size()));
   UmResult result = universal_mesh(
       background, domain_.psi(), params, [this](const UmProgress& p) { return observe(p); }, pieces.seeds);
-  for (auto* V : {&result.submesh.mesh.V, &result.projected, &result.final}) round_to_file(*V, domain_.shift);
+  round_to_file(result, domain_.shift);
   return result;
 }
 
-void MeshStage::write_iterate(const fs::path& file, const UmResult& result, const std::vector<Vec3>& V) {
-  TetMesh mesh{V, result.submesh.mesh.C};
-  for (Vec3& x : mesh.V) x += domain_.shift;
-  MeshFile content =
-      with_standard_data(std::move(mesh), result.submesh.background_vertex, result.submesh.background_tet);
-  if (&V == &result.final && !domain_.cloud.points.empty()) content.point_data["support"] = support(result);
-  write_artefact(file, [&](const fs::path& temporary) { write_vtu(temporary, content); });
-}
-
-/// What is data and what is a guess of the fit: the distance of each boundary vertex to the nearest sample, -1 inside.
-std::vector<double> MeshStage::support(const UmResult& result) const {
-  std::vector<Vec3> x;
-  for (const int i : result.submesh.positive_vertices) x.push_back(result.final[i]);
-  const std::vector<double> d = nearest_sample_distances(x, domain_.cloud.points, not_interrupted);
-  std::vector<double> all(result.final.size(), -1);
-  for (std::size_t k = 0; k < d.size(); ++k) all[result.submesh.positive_vertices[k]] = d[k];
-  return all;
-}
-
 void MeshStage::write_output(const std::string& name, const UmResult& result, const std::vector<Vec3>& V) {
-  write_iterate(context_.paths.folder(Stage::Mesh) / name, result, V);
+  write_mesh(context_.paths.folder(Stage::Mesh) / name, domain_, result, V);
   outputs_.push_back(name);
 }
 
@@ -164,9 +115,9 @@ fs::path MeshStage::write_failed(const UmResult& result) {
   const std::size_t n = result.submesh.mesh.V.size();
   if (n == 0) return folder;
   fs::create_directories(folder);
-  write_iterate(folder / "omega_h.vtu", result, result.submesh.mesh.V);
+  write_mesh(folder / "omega_h.vtu", domain_, result, result.submesh.mesh.V);
   const std::vector<Vec3>& last = result.final.size() == n ? result.final : result.projected;
-  if (last.size() == n) write_iterate(folder / "projected.vtu", result, last);
+  if (last.size() == n) write_mesh(folder / "projected.vtu", domain_, result, last);
   return folder;
 }
 
@@ -174,16 +125,7 @@ void MeshStage::refuse(const UmResult& result, double h) {
   if (!context_.paths.renews(Stage::Mesh)) begin_writing(context_, Stage::Mesh);
   const fs::path folder = write_failed(result);
   const std::size_t n = result.submesh.mesh.V.size();
-  const UmEvidence& e = result.evidence;
-  const Vec3 at = e.where + domain_.shift;
-  std::string message = fmt::format("no mesh at h = {:.6g}: {}: {}", h, to_string(result.status), e.what);
-  if (e.background_vertex >= 0 || e.background_tet >= 0) {
-    message += fmt::format("\n  at ({:.9g}, {:.9g}, {:.9g})", at.x(), at.y(), at.z());
-    if (e.background_vertex >= 0) message += fmt::format(", background vertex {}", e.background_vertex);
-    if (e.background_tet >= 0) message += fmt::format(", background tet {}", e.background_tet);
-    if (e.count > 1) message += fmt::format(" (the first of {})", e.count);
-  }
-  message += std::string("\n  ") + remedy(result.status);
+  std::string message = failure_text(result, h, domain_.shift);
   if (n > 0) message += "\n  look at omega_h.vtu and projected.vtu (the last iterate) in " + folder.string();
   if (context_.paths.renews(Stage::Mesh)) message += "\n  the former mesh and its certificate have been kept";
   throw MeshingImpossible(message);

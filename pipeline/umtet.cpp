@@ -12,6 +12,7 @@
 #include "pipeline/certificate_json.h"
 #include "pipeline/check.h"
 #include "pipeline/command_line.h"
+#include "pipeline/evolve.h"
 #include "pipeline/exit_code.h"
 #include "pipeline/export_case.h"
 #include "pipeline/inspect.h"
@@ -78,6 +79,19 @@ Output inspect(const CommandLine& call, Progress& progress) {
   return output;
 }
 
+Output run_evolution(const CommandLine& call, Progress& progress) {
+  EvolveRequest request = call.evolve;
+  request.parameters = call.request.parameters;
+  request.threads = call.threads;
+  const EvolveOutcome outcome = evolve(request, progress);
+  progress.clear();
+  Output output;
+  output.code = outcome.code;
+  output.document = {{"steps", outcome.steps}, {"files", names(outcome.files)}};
+  output.text = outcome.text + file_list(outcome.files);
+  return output;
+}
+
 Output export_files(const CommandLine& call, Progress& progress) {
   Output output;
   const CasePaths paths{call.request.case_folder};
@@ -106,6 +120,8 @@ Output execute(int argc, char** argv, bool& json, std::string& command) {
       return check(call, progress);
     case CommandLine::Action::Inspect:
       return inspect(call, progress);
+    case CommandLine::Action::Evolve:
+      return run_evolution(call, progress);
     case CommandLine::Action::Export:
       return export_files(call, progress);
     default:

@@ -3,7 +3,9 @@
 #include <muParser.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <vector>
 
@@ -21,7 +23,7 @@ constexpr double kMaxExponent = 1000;
 /// decides what the text means, and GiNaC sees that meaning instead of reading the text a second time.
 class Builder {
  public:
-  explicit Builder(const std::string& text) : text_(text) {}
+  Builder(const std::string& text, std::optional<double> t) : text_(text), t_(t) {}
 
   GiNaC::ex build();
   const std::array<GiNaC::realsymbol, 3>& symbols() const { return symbols_; }
@@ -44,7 +46,10 @@ class Builder {
   template <class F>
   double unary(double a, F&& f);
 
+  GiNaC::ex time() const;
+
   const std::string& text_;
+  std::optional<double> t_;
   std::array<GiNaC::realsymbol, 3> symbols_{GiNaC::realsymbol("x"), GiNaC::realsymbol("y"), GiNaC::realsymbol("z")};
   std::vector<Node> nodes_;
 
@@ -107,6 +112,14 @@ GiNaC::numeric Builder::number(const std::string& digits, std::size_t column) co
   return GiNaC::numeric(mantissa.c_str()) * GiNaC::pow(GiNaC::numeric(10), GiNaC::numeric(exponent));
 }
 
+/// 0.1 is a tenth, as it would be in the text.
+GiNaC::ex Builder::time() const {
+  std::array<char, 32> digits;
+  const auto end = std::to_chars(digits.begin(), digits.end(), std::abs(*t_)).ptr;
+  const GiNaC::numeric n = number(std::string(digits.begin(), end), 1);
+  return *t_ < 0 ? -n : n;
+}
+
 /// Numbers and names that are not functions. \return whether the text at `s` starts with one.
 int Builder::read_leaf(const char* s, int* pos, double* handle) {
   const std::size_t column = static_cast<std::size_t>(*pos) + 1;
@@ -122,6 +135,8 @@ int Builder::read_leaf(const char* s, int* pos, double* handle) {
     e = symbols_[static_cast<std::size_t>(name[0] - 'x')];
   } else if (name == "pi") {
     e = GiNaC::Pi;
+  } else if (name == "t" && t_) {
+    e = time();
   } else {
     return 0;
   }
@@ -257,7 +272,7 @@ std::string refusal(const mu::ParserError& e) {
       for (const auto& [name, f] : kFunctions) {
         if (token == name) return token + " needs its argument in brackets";
       }
-      return "unknown name \"" + token + "\" (known: x y z pi, sin cos tan asin acos atan sinh cosh tanh exp log sqrt)";
+      return "unknown name \"" + token + "\" (known: x y z pi, in umtet evolve t, sin cos tan asin acos atan sinh cosh tanh exp log sqrt)";
     case mu::ecUNEXPECTED_EOF:
       return "the expression ends too early";
     case mu::ecMISSING_PARENS:
@@ -323,8 +338,8 @@ GiNaC::ex Builder::build() {
 
 }  // namespace
 
-SymbolicExpression read_expression(const std::string& text) {
-  Builder builder(text);
+SymbolicExpression read_expression(const std::string& text, std::optional<double> t) {
+  Builder builder(text, t);
   GiNaC::ex psi = builder.build();
   return {std::move(psi), builder.symbols()};
 }

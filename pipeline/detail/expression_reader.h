@@ -3,6 +3,7 @@
 #include <ginac/ginac.h>
 
 #include <array>
+#include <optional>
 #include <string>
 
 namespace umtet {
@@ -14,7 +15,8 @@ struct SymbolicExpression {
 };
 
 /// Reads the grammar that pipeline/expression.h describes.
+/// @param t  the fraction that the shortest decimal number for this double is; without it there is no name t
 /// \throw ExpressionError
-SymbolicExpression read_expression(const std::string& text);
+SymbolicExpression read_expression(const std::string& text, std::optional<double> t = std::nullopt);
 
 }  // namespace umtet

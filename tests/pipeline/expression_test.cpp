@@ -159,6 +159,16 @@ TEST(Expression, AnyTextIsAnExpressionOrARefusal) {
   EXPECT_GT(accepted, 100);  // else the generator tests refusals only
 }
 
+TEST(Expression, TimeIsTheDecimalNumberItLooksLike) {
+  EXPECT_EQ(Expression("x+1e20*(10*t-1)", .1).value({2, 0, 0}), 2);  // with the double nearest to .1 it is 5553
+  EXPECT_EQ(Expression("x*t", -.5).value({3, 0, 0}), -1.5);
+  EXPECT_EQ(Expression("sin(t*x)+y", 0.).value({3, 4, 0}), 4);
+  EXPECT_EQ(Expression("x^t", 3.).gradient({2, 0, 0}).x(), 12);
+  EXPECT_EQ(Expression("x+t", 1e-5).value({1, 0, 0}), 1 + 1e-5);
+  EXPECT_THROW(Expression("x+t"), ExpressionError);
+  EXPECT_THROW(Expression("1/t+x", 0.), ExpressionError);
+}
+
 TEST(Expression, ThreadsSeeTheSameFunction) {
   const Expression psi("sin(3*x)*exp(y*z)+x^3-.1");
   const int n = 20000;

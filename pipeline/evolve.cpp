@@ -1,0 +1,340 @@
+#include "pipeline/evolve.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <optional>
+
+#include "mesh/universal_mesh.h"
+#include "pipeline/artefact.h"
+#include "pipeline/background_choice.h"
+#include "pipeline/certificate_json.h"
+#include "pipeline/domain.h"
+#include "pipeline/edge_length.h"
+#include "pipeline/interrupt.h"
+#include "pipeline/made_mesh.h"
+#include "pipeline/memory.h"
+#include "pipeline/mesh_measures.h"
+#include "pipeline/run.h"
+#include "pipeline/stages.h"
+#include "pipeline/step_plot.h"
+#include "pipeline/time_steps.h"
+#include "pipeline/too_thin.h"
+#include "pipeline/zero_set_choice.h"
+
+namespace umtet {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kSeries = "series.pvd";
+
+/// An instant, and what has become of it.
+struct Step {
+  TimeStep at;
+  std::string file;   ///< its name in the folder
+  std::string error;  ///< why there is no mesh
+  std::exception_ptr thrown;
+  Json measured;           ///< null while there is no mesh
+  double seconds = 0;      ///< mesh and certificate; of a cloud also its level set
+  bool looked_at = false;  ///< by look_at()
+
+  bool made() const { return !measured.is_null(); }
+};
+
+/// A failure that is the matter of one instant; the others may do better.
+bool concerns_one_step(ExitCode code) {
+  switch (code) {
+    case ExitCode::Usage:  // a formula that has no value at this t
+    case ExitCode::InputRefused:
+    case ExitCode::ReconstructionFailed:
+    case ExitCode::MeshingImpossible:
+    case ExitCode::FileTrouble:  // its cloud: what we write ourselves is not written under this guard
+    case ExitCode::ArtefactCorrupt:
+    case ExitCode::ResourceLimit:
+      return true;
+    default:
+      return false;
+  }
+}
+
+class Evolution {
+ public:
+  Evolution(const EvolveRequest& request, Progress& progress)
+      : request_(request),
+        parameters_(request.parameters),
+        progress_(progress),
+        of_clouds_(!request.clouds.empty()),
+        um_params_(um_params(parameters_)) {
+    for (TimeStep& at : time_steps(request.times, request.skip, request.clouds)) {
+      const std::string name = fmt::format("step_{:04}.vtu", steps_.size());
+      Step& step = steps_.emplace_back();
+      step.at = std::move(at);
+      step.file = name;
+    }
+  }
+
+  EvolveOutcome operator()();
+
+ private:
+  void take_folder();
+  CasePaths case_of(const Step& step) const {
+    return {request_.folder / "clouds" / fs::path(step.file).replace_extension()};
+  }
+  Domain domain_of(const Step& step) const;
+  void look_at(Step& step);
+  void choose_background();
+  void mesh(Step& step);
+  std::optional<UmResult> make(Step& step, Domain& domain);
+  void write_tables() const;
+  EvolveOutcome outcome() const;
+  template <class F>
+  void guarded(Step& step, const F& f);
+  bool report(const Step& step, std::string_view what, double part) const {
+    const double k = static_cast<double>(&step - steps_.data());
+    return progress_.report(what, "t = " + time_text(step.at.t), (k + part) / static_cast<double>(steps_.size()));
+  }
+
+  const EvolveRequest& request_;
+  Parameters parameters_;
+  Progress& progress_;
+  const bool of_clouds_;
+  const UmParams um_params_;
+  std::vector<Step> steps_;
+  std::optional<Domain> first_;  ///< of the first instant that has one, its box that of all
+  double h_ = 0;
+  std::optional<BackgroundMesh> background_;
+};
+
+/// Runs f; what goes wrong with this instant alone is written down.
+template <class F>
+void Evolution::guarded(Step& step, const F& f) {
+  const auto start = std::chrono::steady_clock::now();
+  try {
+    f();
+  } catch (...) {
+    const Failure failure = failure_of(std::current_exception());
+    if (!concerns_one_step(failure.code)) throw;
+    step.error = failure.message;
+    step.thrown = std::current_exception();
+    progress_.warn(fmt::format("t = {}: {}", time_text(step.at.t), step.error));
+  }
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  step.seconds += seconds.count();
+}
+
+/// Removes the steps of a former run.
+void Evolution::take_folder() {
+  const bool ours = fs::exists(request_.folder / kSeries);
+  std::vector<fs::path> former;
+  for (const fs::directory_entry& entry : fs::directory_iterator(request_.folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name[0] == '.') continue;
+    if (!ours) {
+      throw UsageError(entry.path().string() + " is in the way: " + request_.folder.string() +
+                       " is no folder of umtet evolve; choose another with -o");
+    }
+    if (name.starts_with("step_") && name.ends_with(".vtu")) former.push_back(entry.path());
+  }
+  remove_stale_temporaries(request_.folder);
+  write_tables();
+  for (const fs::path& file : former) fs::remove(file);
+}
+
+Domain Evolution::domain_of(const Step& step) const {
+  return of_clouds_ ? load_domain(case_of(step), parameters_) : formula_domain(parameters_, step.at.t);
+}
+
+/// Makes the level set of a cloud; takes what the background has to know of every instant.
+void Evolution::look_at(Step& step) {
+  step.looked_at = true;
+  if (of_clouds_) {
+    report(step, "level set", 0);
+    RunRequest run;
+    run.case_folder = case_of(step).root;
+    run.source = step.at.cloud;
+    run.parameters = parameters_;
+    run.parameters.set("cloud.file", step.at.cloud.string(), ParamSource::Flag, "--clouds");
+    run.until = Stage::LevelSet;
+    run.threads = request_.threads;
+    run_case(run, progress_);
+  }
+  Domain domain = domain_of(step);
+  if (first_ && domain.shift != first_->shift) {
+    const Vec3 d = domain.shift - first_->shift;
+    throw MeshingImpossible(
+        fmt::format("this cloud is ({:.3g}, {:.3g}, {:.3g}) away from the first, and so far from the origin that both "
+                    "are shifted, not alike: move all clouds nearer to the origin",
+                    d.x(), d.y(), d.z()));
+  }
+  const bool counts = !first_ || parameters_.integer("mesh.tets") == 0;
+  if (counts) {
+    const double h = choose_edge_length(domain, parameters_, not_interrupted).h;
+    h_ = first_ ? std::min(h_, h) : h;
+  }
+  if (first_) {
+    first_->box.extend(domain.box);
+  } else {
+    first_.emplace(std::move(domain));
+  }
+}
+
+void Evolution::choose_background() {
+  // A formula has one box at all times; with h given, too, the others can wait until it is their turn.
+  const bool one_tells_all = !of_clouds_ && (parameters_.real("mesh.h") > 0 || parameters_.integer("mesh.tets") > 0);
+  for (Step& step : steps_) {
+    stop_if_interrupted();
+    guarded(step, [&] { look_at(step); });
+    if (first_ && one_tells_all) break;
+  }
+  if (!first_) std::rethrow_exception(steps_.front().thrown);
+  const BackgroundChoice choice(parameters_, *first_);
+  if (choice.own_h()) h_ = *choice.own_h();
+  first_->limit_detail(h_);
+  background_ = choice.make(*first_, h_, parameters_.integer("mesh.tets"), allowed_bytes(parameters_));
+  progress_.say(fmt::format("one background of {} tets, h = {:.6g}", background_->n_tets(), h_));
+}
+
+/// As umtet mesh does at a given h.
+std::optional<UmResult> Evolution::make(Step& step, Domain& domain) {
+  domain.limit_detail(h_);
+  const ZeroSetChoice pieces = choose_components(domain, h_, not_interrupted);
+  const ThinPlaces thin = find_thin_places(domain, pieces, h_, not_interrupted);
+  if (!thin.empty() && !parameters_.flag("mesh.allow_thin")) {
+    throw MeshingImpossible(
+        fmt::format("h = {:.4g} is too large: {} places are thinner than it can show\n{}\n"
+                    "  --allow-thin makes a mesh nevertheless",
+                    h_, thin.places.size(), described(thin, domain.shift)));
+  }
+  for (const std::string& reason : pieces.dropped) progress_.say("left out a " + reason);
+  if (pieces.seeds.empty() && !pieces.dropped.empty()) {
+    throw MeshingImpossible("psi = 0 is nowhere near the samples:\n  no " + pieces.dropped.front());
+  }
+  UmParams params = um_params_;
+  if (!pieces.dropped.empty()) params.search = SubmeshSearch::Crawl;
+  UmResult result = universal_mesh(
+      *background_, domain.psi(), params, [&](const UmProgress&) { return report(step, "mesh", .3); }, pieces.seeds);
+  stop_if_interrupted();
+  if (result.status != UmStatus::Success) throw MeshingImpossible(failure_text(result, h_, domain.shift));
+  round_to_file(result, domain.shift);
+  report(step, "certify", .8);
+  Json measured = measure(domain, result, pieces, h_, not_interrupted);
+  measured["resolution"]["too_thin"] = to_json(thin, domain.shift);
+  check_deviation(parameters_.real("mesh.max_deviation"), measured);
+  judge(measured, parameters_);
+  step.measured = std::move(measured);
+  return result;
+}
+
+void Evolution::mesh(Step& step) {
+  stop_if_interrupted();
+  if (!step.error.empty()) return;
+  report(step, "mesh", 0);
+  std::optional<Domain> domain;
+  std::optional<UmResult> result;
+  guarded(step, [&] {
+    if (!step.looked_at) look_at(step);
+    domain.emplace(domain_of(step));
+    result = make(step, *domain);
+  });
+  stop_if_interrupted();
+  if (result) write_mesh(request_.folder / step.file, *domain, *result, result->final);
+  write_tables();
+  if (!result) return;
+  progress_.say(fmt::format(
+      "t = {}: {} tets, min Q {:.4f}, {}", time_text(step.at.t), step.measured.at("n_tets").get<std::size_t>(),
+      step.measured.at("quality").at("min").get<double>(), step.measured.at("verdict").get<std::string>()));
+}
+
+/// A field of CSV: in quotes, on one line.
+std::string quoted(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  for (std::size_t k = 0; (k = text.find('"', k)) != std::string::npos; k += 2) text.insert(k, 1, '"');
+  return '"' + text + '"';
+}
+
+std::string csv_line(const Step& step) {
+  const std::string name = fmt::format("{},{},", step.file.substr(0, step.file.find('.')), time_text(step.at.t));
+  if (!step.made()) return name + fmt::format(",,,,,,,none,{:.3f},{}\n", step.seconds, quoted(step.error));
+  const Json& m = step.measured;
+  const Json &q = m.at("quality"), &b = m.at("boundary");
+  std::string reasons;
+  for (const Json& reason : m.at("reasons")) reasons += (reasons.empty() ? "" : "; ") + reason.get<std::string>();
+  return name + fmt::format("{},{:.6f},{:.6f},{:.3f},{:.3f},{},{},{},{:.3f},{}\n", m.at("n_tets").get<std::size_t>(),
+                            q.at("min").get<double>(), q.at("p01").get<double>(),
+                            q.at("dihedral_min_deg").get<double>(), q.at("dihedral_max_deg").get<double>(),
+                            b.at("components").get<int>(), b.at("genus").get<long>(),
+                            m.at("verdict").get<std::string>(), step.seconds, quoted(reasons));
+}
+
+/// What is there so far.
+void Evolution::write_tables() const {
+  std::string csv =
+      "step,t,tets,min_q,q_01,dihedral_min_deg,dihedral_max_deg,components,genus,verdict,seconds,reason\n";
+  std::string pvd =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
+      "<Collection>\n";
+  std::vector<StepQuality> plot;
+  for (const Step& step : steps_) {
+    if (!step.made() && step.error.empty()) continue;
+    csv += csv_line(step);
+    plot.push_back({step.at.t, step.made(), 0, 0});
+    if (!step.made()) continue;
+    plot.back().min = step.measured.at("quality").at("min");
+    plot.back().p01 = step.measured.at("quality").at("p01");
+    pvd +=
+        fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"0\" file=\"{}\"/>\n", time_text(step.at.t), step.file);
+  }
+  write_text_artefact(request_.folder / "quality.csv", csv);
+  write_text_artefact(request_.folder / "quality.svg", step_plot(plot));
+  write_text_artefact(request_.folder / kSeries, pvd + "</Collection>\n</VTKFile>\n");
+}
+
+EvolveOutcome Evolution::outcome() const {
+  EvolveOutcome result;
+  std::size_t n_made = 0, n_passed = 0;
+  const Step* worst = nullptr;
+  std::string troubles;
+  for (const Step& step : steps_) {
+    Json json = {{"t", step.at.t}, {"file", step.made() ? Json(step.file) : Json(nullptr)}, {"seconds", step.seconds}};
+    if (!step.made()) {
+      json["error"] = step.error;
+      troubles += fmt::format("not made  t = {}: {}\n", time_text(step.at.t), step.error);
+    } else {
+      json.update(step.measured);
+      ++n_made;
+      n_passed += step.measured.at("verdict") == "pass";
+      for (const Json& reason : step.measured.at("reasons")) {
+        troubles += fmt::format("failed    t = {}: {}\n", time_text(step.at.t), reason.get<std::string>());
+      }
+      const auto q = [](const Step& s) { return s.measured.at("quality").at("min").get<double>(); };
+      if (!worst || q(step) < q(*worst)) worst = &step;
+    }
+    result.steps.push_back(std::move(json));
+  }
+  if (n_passed < steps_.size()) result.code = ExitCode::GateFailed;
+  result.text = fmt::format("steps     {} of {} made, {} of them certified, in one background of {} tets; h = {:.5g}\n",
+                            n_made, steps_.size(), n_passed, background_->n_tets(), h_);
+  if (worst) {
+    result.text += fmt::format("quality   worst min Q {:.4f}, at t = {}\n",
+                               worst->measured.at("quality").at("min").get<double>(), time_text(worst->at.t));
+  }
+  result.text += troubles;
+  for (const char* name : {kSeries, "quality.csv", "quality.svg"}) result.files.push_back(request_.folder / name);
+  return result;
+}
+
+EvolveOutcome Evolution::operator()() {
+  const CaseLock lock(request_.folder);
+  take_folder();
+  choose_background();
+  for (Step& step : steps_) mesh(step);
+  return outcome();
+}
+
+}  // namespace
+
+EvolveOutcome evolve(const EvolveRequest& request, Progress& progress) { return Evolution(request, progress)(); }
+
+}  // namespace umtet

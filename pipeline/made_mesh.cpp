@@ -1,0 +1,64 @@
+#include "pipeline/made_mesh.h"
+
+#include <fmt/format.h>
+
+#include "mesh/surface_distance.h"
+#include "mesh/tet_mesh_io.h"
+#include "pipeline/artefact.h"
+#include "pipeline/interrupt.h"
+
+namespace umtet {
+namespace fs = std::filesystem;
+namespace {
+
+const char* remedy(UmStatus status) {
+  switch (status) {
+    case UmStatus::EmptyDomain:
+      return "a smaller --h, or a --box around the place where psi < 0, may find it";
+    case UmStatus::DomainLeavesBackground:
+      return "give a larger --box, with room of two edges around the domain";
+    default:
+      return "a smaller --h (or a larger --tets) resolves more of the shape";
+  }
+}
+
+std::vector<double> support(const Domain& domain, const UmResult& result) {
+  std::vector<Vec3> x;
+  for (const int i : result.submesh.positive_vertices) x.push_back(result.final[i]);
+  const std::vector<double> d = nearest_sample_distances(x, domain.cloud.points, not_interrupted);
+  std::vector<double> all(result.final.size(), -1);
+  for (std::size_t k = 0; k < d.size(); ++k) all[result.submesh.positive_vertices[k]] = d[k];
+  return all;
+}
+
+}  // namespace
+
+void round_to_file(UmResult& result, const Vec3& shift) {
+  for (auto* V : {&result.submesh.mesh.V, &result.projected, &result.final}) {
+    for (Vec3& x : *V) x = (x + shift) - shift;
+  }
+}
+
+void write_mesh(const fs::path& file, const Domain& domain, const UmResult& result, const std::vector<Vec3>& V) {
+  TetMesh mesh{V, result.submesh.mesh.C};
+  for (Vec3& x : mesh.V) x += domain.shift;
+  MeshFile content =
+      with_standard_data(std::move(mesh), result.submesh.background_vertex, result.submesh.background_tet);
+  if (&V == &result.final && !domain.cloud.points.empty()) content.point_data["support"] = support(domain, result);
+  write_artefact(file, [&](const fs::path& temporary) { write_vtu(temporary, content); });
+}
+
+std::string failure_text(const UmResult& result, double h, const Vec3& shift) {
+  const UmEvidence& e = result.evidence;
+  const Vec3 at = e.where + shift;
+  std::string message = fmt::format("no mesh at h = {:.6g}: {}: {}", h, to_string(result.status), e.what);
+  if (e.background_vertex >= 0 || e.background_tet >= 0) {
+    message += fmt::format("\n  at ({:.9g}, {:.9g}, {:.9g})", at.x(), at.y(), at.z());
+    if (e.background_vertex >= 0) message += fmt::format(", background vertex {}", e.background_vertex);
+    if (e.background_tet >= 0) message += fmt::format(", background tet {}", e.background_tet);
+    if (e.count > 1) message += fmt::format(" (the first of {})", e.count);
+  }
+  return message + "\n  " + remedy(result.status);
+}
+
+}  // namespace umtet

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "mesh/universal_mesh.h"
+#include "pipeline/domain.h"
+
+namespace umtet {
+
+/// Makes the vertices those that a file will hold, in working coordinates: it stores x + shift, rounded, and taking the
+/// shift off again is exact (far_origin_shift). From here on that is the mesh: it is this one that is measured.
+void round_to_file(UmResult& result, const Vec3& shift);
+
+/// omega_h with its vertices at V, in model coordinates, with ids of the background; of a cloud's final mesh also the
+/// distance of each boundary vertex to the nearest sample (`support`, -1 inside): what is data and what is a guess.
+/// Complete or not at all. \throw MeshCancelled, std::system_error naming the file
+void write_mesh(const std::filesystem::path& file, const Domain& domain, const UmResult& result,
+                const std::vector<Vec3>& V);
+
+/// Why there is no mesh, where, and what may help; some lines. \pre result.status != UmStatus::Success
+std::string failure_text(const UmResult& result, double h, const Vec3& shift);
+
+}  // namespace umtet
