@@ -35,8 +35,27 @@ class FastRun {
   }
 
   UmResult operator()(const std::vector<Vec3>& seeds) {
+    return run([&] { return find_inside(seeds) && label() && fit(); });
+  }
+  UmResult operator()(IdSet inside, FastMemory& memory) {
+    inside_ = std::move(inside);
+    memory_ = &memory;
+    memory.n_recalled = 0;
+    bool made = false;
+    UmResult result = run([&] { return made = fits_background("") && label() && fit(); });
+    if (made) {
+      remember(memory);
+    } else {
+      memory.moved.clear();
+    }
+    return result;
+  }
+
+ private:
+  template <class F>
+  UmResult run(const F& steps) {
     try {
-      if (find_inside(seeds) && label()) fit();
+      steps();
     } catch (const MeshCancelled&) {
       fail(UmStatus::Cancelled, {.what = "stopped by the observer"});
     }
@@ -44,8 +63,6 @@ class FastRun {
     if (result_.projected.empty()) result_.projected = result_.final;
     return std::move(result_);
   }
-
- private:
   bool fail(UmStatus status, const UmEvidence& evidence) {
     result_.status = status;
     result_.evidence = evidence;
@@ -65,6 +82,9 @@ class FastRun {
     };
   }
   bool find_inside(const std::vector<Vec3>& seeds);
+  bool fits_background(const std::string& lost);
+  void recall();
+  void remember(FastMemory& memory);
   bool label();
   bool fit();
   bool all_arrived(const ProjectionReport& projection);
@@ -81,6 +101,7 @@ class FastRun {
   LabelParams label_params_;   ///< with the prices
   UmResult result_;
   IdSet inside_;
+  FastMemory* memory_ = nullptr;  ///< of the psi before
   LatticeShell shell_;
   std::vector<std::pair<std::int64_t, Vec3>> moved_;  ///< by repair, ascending
   BrokenAssumption double_faces_;
@@ -97,6 +118,10 @@ bool FastRun::find_inside(const std::vector<Vec3>& seeds) {
     lost = "; " + std::to_string(found.lost_seeds.size()) + " of " + std::to_string(seeds.size()) +
            " seeds led to no positively cut tet";
   }
+  return fits_background(lost);
+}
+
+bool FastRun::fits_background(const std::string& lost) {
   UmEvidence rim{.what = "the domain reaches the rim of the background mesh"};
   bool empty = true;
   inside_.for_each([&](std::int64_t v) {
@@ -163,6 +188,55 @@ std::vector<Vec3> FastRun::coordinates(const std::vector<Vec3>& shell_V) const {
   return V;
 }
 
+/// Vertices of the shell whose neighbours are labelled as they were, to where they were.
+void FastRun::recall() {
+  Shell& shell = shell_.shell;
+  std::vector<bool> recalled(shell.V.size(), false);
+  std::vector<std::int64_t> link;
+  auto at = shell_.background_vertex.begin();
+  for (const auto& [id, x] : memory_->moved) {
+    at = std::lower_bound(at, shell_.background_vertex.end(), id);
+    if (at == shell_.background_vertex.end()) break;
+    const auto v = static_cast<std::size_t>(at - shell_.background_vertex.begin());
+    if (*at != id || shell.role[v] == Shell::Role::Fixed) continue;
+    const auto as_before = [&](std::int64_t w) { return inside_.test(w) == memory_->inside.test(w); };
+    link.clear();
+    background_.link(id, link);
+    if (!as_before(id) || !std::all_of(link.begin(), link.end(), as_before)) continue;
+    shell.V[v] = x;
+    recalled[v] = true;
+  }
+  // Beside vertices that begin in the background some tets may be too flat to go on from: their vertices go back, too.
+  const double least = params_.fast.projection.least_quality;
+  for (bool again = true; again;) {
+    again = false;
+    for (const Tet& t : shell.C) {
+      if (std::none_of(t.begin(), t.end(), [&](int v) { return recalled[v]; })) continue;
+      if (mean_ratio(shell.V[t[0]], shell.V[t[1]], shell.V[t[2]], shell.V[t[3]]) >= least) continue;
+      again = true;
+      for (const int v : t) {
+        recalled[v] = false;
+        shell.V[v] = background_.position(shell_.background_vertex[v]);
+      }
+    }
+  }
+  memory_->n_recalled = static_cast<std::size_t>(std::count(recalled.begin(), recalled.end(), true));
+}
+
+/// The places of the shell, and of what repair has moved.
+void FastRun::remember(FastMemory& memory) {
+  memory.moved.clear();
+  const auto earlier = [](const auto& a, const auto& b) { return a.first < b.first; };
+  for (std::size_t v = 0; v < shell_.shell.V.size(); ++v) {
+    const std::pair<std::int64_t, Vec3> place = {shell_.background_vertex[v], shell_.shell.V[v]};
+    if (shell_.shell.role[v] == Shell::Role::Fixed) continue;
+    if (!std::binary_search(moved_.begin(), moved_.end(), place, earlier)) memory.moved.push_back(place);
+  }
+  memory.moved.insert(memory.moved.end(), moved_.begin(), moved_.end());
+  std::sort(memory.moved.begin(), memory.moved.end(), earlier);
+  memory.inside = std::move(inside_);
+}
+
 bool FastRun::none_inverted() {
   const auto& C = result_.submesh.mesh.C;
   const auto& V = result_.final;
@@ -206,6 +280,7 @@ void FastRun::repair_labels(const KeepGoing& keep_going) {
 bool FastRun::fit() {
   shell_ = prices_ ? lattice_shell(background_, prices_->links, inside_, params_.fast.layers)
                    : background_shell(background_, inside_, params_.fast.layers);
+  if (memory_) recall();
   const KeepGoing keep_going = asking("relax");
   PNormSmoother smoother(shell_.shell);
   const ProjectionReport projection = project(smoother, psi_, params_.fast.projection, keep_going);
@@ -240,6 +315,11 @@ std::vector<std::string> problems(const FastParams& params) {
 UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
                    const UmObserver& observer, const std::vector<Vec3>& seeds) {
   return FastRun(background, psi, params, observer)(seeds);
+}
+
+UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
+                   const UmObserver& observer, detail::IdSet inside, FastMemory& memory) {
+  return FastRun(background, psi, params, observer)(std::move(inside), memory);
 }
 
 }  // namespace umtet

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstdint>
+#include <utility>
 #include <vector>
 
+#include "mesh/detail/id_set.h"
 #include "mesh/universal_mesh.h"
 
 namespace umtet {
@@ -19,5 +22,18 @@ namespace umtet {
 /// \pre params and seeds are those universal_mesh() accepts; params.mode is not read
 UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
                    const UmObserver& observer = {}, const std::vector<Vec3>& seeds = {});
+
+/// What the mesh of one psi leaves to that of the next, in the same background mesh.
+struct FastMemory {
+  detail::IdSet inside{0};                           ///< as labelled
+  std::vector<std::pair<std::int64_t, Vec3>> moved;  ///< vertices off their background places, ascending
+  std::size_t n_recalled = 0;                        ///< of these, how many the last mesh began with
+};
+
+/// The same from known inside vertices, those with psi < 0. A vertex of the shell whose neighbours are labelled as in
+/// `memory` begins at its place there, unless a tet would be worse than projection allows.
+/// @param memory  empty (no `moved`) at first; receives that of this mesh, or becomes empty if there is none
+UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
+                   const UmObserver& observer, detail::IdSet inside, FastMemory& memory);
 
 }  // namespace umtet

@@ -16,6 +16,7 @@
 #include "mesh/certificate.h"
 #include "mesh/crawl.h"
 #include "mesh/dvr.h"
+#include "mesh/moving_mesh.h"
 #include "mesh/tet_quality.h"
 #include "mesh/universal_mesh.h"
 #include "tests/support/bench_domains.h"
@@ -262,6 +263,62 @@ void all_in_ratios(benchmark::State& state) {
   state.counters["two_threads"] = large.wall / two.wall;
 }
 BENCHMARK(all_in_ratios)->Unit(benchmark::kSecond)->Iterations(1)->UseRealTime();
+
+/// A ball drifting a quarter cell a step in backgrounds of many sizes: CPU time of 100 updates, and of meshing anew at
+/// every tenth of them.
+void drifting_ball(benchmark::State& state) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const double n_tets = 1e3 * static_cast<double>(state.range(0));
+  // Cells of edge 1 and a ball of radius 5.5: 32k tets. 100 steps cross 25 cells.
+  constexpr double kRadius = 5.5, kLength = 40;
+  const double width = std::max(std::sqrt(n_tets / 46 / kLength), 2 * kRadius + 2);
+  const Vec3 half(.5 * std::max(kLength, n_tets / 46 / (width * width)), .5 * width, .5 * width);
+  const BackgroundMesh background(a15(), Box(-half, half), a15().mean_edge / a15().period[0]);
+  const auto at = [](int k) {
+    return testing::AnalyticDomain{.psi = [x = -12.5 + .25 * k](const Vec3& p, Vec3* g, Mat3* H) {
+      const Vec3 d(p.x() - x, p.y(), p.z());
+      if (g) *g = 2 * d;
+      if (H) *H = 2 * Mat3::Identity();
+      return d.squaredNorm() - kRadius * kRadius;
+    }};
+  };
+  UmParams params;
+  params.mode = UmMode::Fast;
+  double updates = 0, anew = 0, n_faces = 0, n_recalled = 0, worst = 1;
+  for (auto _ : state) {
+    UniversalMesh moving(background, params);
+    moving.update(at(0));
+    for (int k = 1; k <= 100; ++k) {
+      const auto psi = at(k);
+      double cpu = cpu_seconds();
+      const UmUpdate update = moving.update(psi);
+      updates += cpu_seconds() - cpu;
+      if (update.mesh.status != UmStatus::Success) return state.SkipWithError(update.mesh.evidence.what.c_str());
+      n_faces += static_cast<double>(update.mesh.submesh.positive_faces.size());
+      n_recalled += static_cast<double>(update.n_recalled);
+      const std::vector<Vec3>& V = update.mesh.final;
+      for (const Tet& t : update.mesh.submesh.mesh.C) {
+        worst = std::min(worst, mean_ratio(V[t[0]], V[t[1]], V[t[2]], V[t[3]]));
+      }
+      if (k % 10 != 0) continue;
+      cpu = cpu_seconds();
+      benchmark::DoNotOptimize(universal_mesh(background, psi, params));
+      anew += 10 * (cpu_seconds() - cpu);
+    }
+  }
+  state.counters["tets"] = static_cast<double>(background.n_tets());
+  state.counters["us_per_face"] = 1e6 * updates / n_faces;
+  state.counters["anew_over_update"] = anew / updates;
+  state.counters["recalled_per_face"] = n_recalled / n_faces;
+  state.counters["least_Q"] = worst;
+}
+BENCHMARK(drifting_ball)
+    ->ArgName("thousand_tets")
+    ->Arg(300)
+    ->Arg(1000)
+    ->Arg(8000)
+    ->Unit(benchmark::kSecond)
+    ->Iterations(1);
 
 }  // namespace
 

@@ -1,0 +1,184 @@
+#include "mesh/moving_mesh.h"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "mesh/fast_mesh.h"
+#include "mesh/inside_walk.h"
+
+namespace umtet {
+namespace {
+
+constexpr std::size_t kVerticesPerTask = 4096;
+
+using Ids = std::vector<std::int64_t>;
+
+Ids without(const Ids& a, const Ids& b) {
+  Ids rest;
+  std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(rest));
+  return rest;
+}
+
+/// The cells of a lattice, halved until a box has no zero of psi or is one cell: vertices of these go to `found`.
+class ZeroCells {
+ public:
+  ZeroCells(const BackgroundMesh& background, const std::function<bool(const Box&)>& no_zero_in, Ids& found)
+      : background_(background), no_zero_in_(no_zero_in), found_(found), origin_(background.box().min()) {
+    const auto& n = background.n_cells();
+    const Vec3 size = background.box().sizes();
+    for (int a = 0; a < 3; ++a) cell_[a] = size[a] / static_cast<double>(n[a]);
+    search({-1, -1, -1}, {n[0] + 1, n[1] + 1, n[2] + 1});
+  }
+
+ private:
+  using Cell = BackgroundMesh::Cell;
+
+  Vec3 corner(const Cell& c) const {
+    return origin_ + Vec3(cell_[0] * static_cast<double>(c[0]), cell_[1] * static_cast<double>(c[1]),
+                          cell_[2] * static_cast<double>(c[2]));
+  }
+  void search(const Cell& first, const Cell& end) {
+    // Rounding of a place must not put a vertex outside of its cell.
+    const Vec3 slack = 1e-9 * cell_;
+    if (no_zero_in_(Box(corner(first) - slack, corner(end) + slack))) return;
+    int axis = 0;
+    for (int a = 1; a < 3; ++a) {
+      if (end[a] - first[a] > end[axis] - first[axis]) axis = a;
+    }
+    if (end[axis] - first[axis] > 1) {
+      Cell middle_end = end, middle = first;
+      middle_end[axis] = middle[axis] = (first[axis] + end[axis]) / 2;
+      search(first, middle_end);
+      search(middle, end);
+      return;
+    }
+    for (int type = 0; type < background_.n_types(); ++type) {
+      const std::int64_t v = background_.vertex_id(type, first);
+      if (background_.has_tets(v)) found_.push_back(v);
+    }
+  }
+
+  const BackgroundMesh& background_;
+  const std::function<bool(const Box&)>& no_zero_in_;
+  Ids& found_;
+  Vec3 origin_, cell_ = Vec3::Zero();
+};
+
+}  // namespace
+
+SparsityPattern sparsity_pattern(const BackgroundMesh& background) {
+  const auto n = static_cast<std::size_t>(background.n_vertices());
+  SparsityPattern pattern;
+  pattern.row_begin.assign(n + 1, 0);
+  const auto for_each_row = [&](const auto& f) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, kVerticesPerTask), [&](const auto& rows) {
+      Ids link;
+      for (std::size_t v = rows.begin(); v != rows.end(); ++v) {
+        link.clear();
+        background.link(static_cast<std::int64_t>(v), link);
+        f(v, link);
+      }
+    });
+  };
+  for_each_row(
+      [&](std::size_t v, const Ids& link) { pattern.row_begin[v + 1] = static_cast<std::int64_t>(link.size()); });
+  std::partial_sum(pattern.row_begin.begin(), pattern.row_begin.end(), pattern.row_begin.begin());
+  pattern.column.resize(static_cast<std::size_t>(pattern.row_begin.back()));
+  for_each_row([&](std::size_t v, const Ids& link) {
+    std::copy(link.begin(), link.end(), pattern.column.begin() + pattern.row_begin[v]);
+  });
+  return pattern;
+}
+
+struct UniversalMesh::Impl {
+  Impl(BackgroundMesh mesh, const UmParams& um) : background(std::move(mesh)), params(um), walk(background) {}
+
+  std::size_t search(ImplicitFunctionRef psi, const UpdateHints& hints, const UmObserver& observer);
+  void compare(UmUpdate& update);
+
+  const BackgroundMesh background;
+  const UmParams params;
+  InsideWalk walk;
+  bool has_begun = false;  ///< walk knows a boundary
+  FastMemory memory;
+  Submesh last;  ///< ids and places of the last mesh
+  std::vector<Vec3> last_V;
+};
+
+UniversalMesh::UniversalMesh(BackgroundMesh background, const UmParams& params) {
+  std::vector<std::string> broken = problems(params);
+  if (params.mode != UmMode::Fast) broken.push_back("mode = Paper: must be Fast");
+  std::string all;
+  for (const std::string& problem : broken) all += (all.empty() ? "" : "; ") + problem;
+  if (!all.empty()) throw std::invalid_argument(all);
+  impl_ = std::make_unique<Impl>(std::move(background), params);
+}
+UniversalMesh::~UniversalMesh() = default;
+UniversalMesh::UniversalMesh(UniversalMesh&&) noexcept = default;
+UniversalMesh& UniversalMesh::operator=(UniversalMesh&&) noexcept = default;
+
+const BackgroundMesh& UniversalMesh::background() const { return impl_->background; }
+
+std::size_t UniversalMesh::Impl::search(ImplicitFunctionRef psi, const UpdateHints& hints, const UmObserver& observer) {
+  const std::vector<Vec3> none;
+  const KeepGoing keep_going = [&] { return !observer || observer({"search", 1, 1, &none, 0}); };
+  if (!has_begun || (hints.no_zero_in && !background.is_lattice())) return walk.restart(psi, keep_going);
+  Ids more;
+  if (hints.no_zero_in) ZeroCells(background, hints.no_zero_in, more);
+  for (const Vec3& seed : hints.seeds) {
+    const std::int64_t tet = background.tet_near(seed);
+    if (tet < 0) continue;
+    const auto corners = background.tet(tet);
+    more.insert(more.end(), corners.begin(), corners.end());
+    for (const std::int64_t v : corners) background.link(v, more);
+  }
+  return walk.update(psi, std::move(more), keep_going);
+}
+
+/// What is new, against the last mesh; this one takes its place.
+void UniversalMesh::Impl::compare(UmUpdate& update) {
+  const Submesh& now = update.mesh.submesh;
+  update.vertices_entered = without(now.background_vertex, last.background_vertex);
+  update.vertices_left = without(last.background_vertex, now.background_vertex);
+  update.tets_entered = without(now.background_tet, last.background_tet);
+  update.tets_left = without(last.background_tet, now.background_tet);
+  const Ids &a = last.background_vertex, &b = now.background_vertex;
+  for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
+    if (a[i] == b[j]) {
+      if (last_V[i] != update.mesh.final[j]) update.vertices_moved.push_back(b[j]);
+      ++i, ++j;
+    } else {
+      a[i] < b[j] ? ++i : ++j;
+    }
+  }
+  last.background_vertex = now.background_vertex;
+  last.background_tet = now.background_tet;
+  last_V = update.mesh.final;
+}
+
+UmUpdate UniversalMesh::update(ImplicitFunctionRef psi, const UpdateHints& hints, const UmObserver& observer) {
+  UmUpdate update;
+  Impl& impl = *impl_;
+  try {
+    update.n_searched = impl.search(psi, hints, observer);
+    impl.has_begun = true;
+  } catch (const MeshCancelled&) {
+    update.mesh.status = UmStatus::Cancelled;
+    update.mesh.evidence.what = "stopped by the observer during search";
+    return update;
+  }
+  update.mesh = fast_mesh(impl.background, psi, impl.params, observer, impl.walk.inside(), impl.memory);
+  update.mesh.n_psi_evaluations += update.n_searched;
+  update.n_recalled = impl.memory.n_recalled;
+  if (update.mesh.status == UmStatus::Success) impl.compare(update);
+  return update;
+}
+
+}  // namespace umtet

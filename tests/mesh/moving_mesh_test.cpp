@@ -1,0 +1,217 @@
+#include "mesh/moving_mesh.h"
+
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+
+#include <algorithm>
+#include <functional>
+#include <set>
+
+#include "mesh/certificate.h"
+#include "mesh/inside_walk.h"
+#include "mesh/tet_quality.h"
+#include "tests/support/domains.h"
+
+namespace umtet {
+namespace {
+
+namespace domains = umtet::testing;
+
+/// |x - c|^2 - r^2.
+struct Ball {
+  Vec3 c = Vec3::Zero();
+  double r = 1;
+  double value(const Vec3& x) const { return (x - c).squaredNorm() - r * r; }
+  Vec3 gradient(const Vec3& x) const { return 2 * (x - c); }
+  Mat3 hessian(const Vec3&) const { return 2 * Mat3::Identity(); }
+};
+
+UmParams fast() {
+  UmParams params;
+  params.mode = UmMode::Fast;
+  return params;
+}
+
+double least_quality(const UmResult& r) {
+  double least = 1;
+  for (const Tet& t : r.submesh.mesh.C) {
+    least = std::min(least, mean_ratio(r.final[t[0]], r.final[t[1]], r.final[t[2]], r.final[t[3]]));
+  }
+  return least;
+}
+
+void expect_certified(const UmResult& r, ImplicitFunctionRef psi, double h, int components) {
+  ASSERT_EQ(r.status, UmStatus::Success) << r.evidence.what;
+  const TetMesh mesh{r.final, r.submesh.mesh.C};
+  CertificateInput input;
+  input.mesh = &mesh;
+  input.h = h;
+  input.positive_faces = &r.submesh.positive_faces;
+  input.psi = psi;
+  const MeshCertificate c = certify(input);
+  for (const std::string& reason : failures(c)) ADD_FAILURE() << reason;
+  EXPECT_EQ(c.boundary.components, components);
+}
+
+std::vector<std::int64_t> changed_by(const std::vector<std::int64_t>& last, const std::vector<std::int64_t>& entered,
+                                     const std::vector<std::int64_t>& left) {
+  std::set<std::int64_t> ids(last.begin(), last.end());
+  for (const std::int64_t id : left) EXPECT_EQ(ids.erase(id), 1u);
+  for (const std::int64_t id : entered) EXPECT_TRUE(ids.insert(id).second);
+  return {ids.begin(), ids.end()};
+}
+
+/// psi has no zero in a ball of radius |psi| / L around a point.
+std::function<bool(const Box&)> lipschitz(ImplicitFunctionRef psi, double L) {
+  return [psi, L](const Box& box) { return std::abs(psi.value(box.center())) > .5 * L * box.diagonal().norm(); };
+}
+
+TEST(UniversalMesh, ADriftingBallIsMeshedAsWellAsAnew) {
+  const double h = .15;
+  const BackgroundMesh background(a15(), Box(Vec3(-1.5, -1.5, -1.5), Vec3(2, 1.5, 1.5)), h);
+  UniversalMesh moving(background, fast());
+  Submesh last;
+  std::vector<Vec3> last_V;
+  for (int k = 0; k < 8; ++k) {
+    SCOPED_TRACE(k);
+    const Ball psi{Vec3(.065, .01, .02) * k};
+    const UmUpdate update = moving.update(psi);
+    expect_certified(update.mesh, psi, h, 1);
+    const Submesh& now = update.mesh.submesh;
+    EXPECT_NEAR(least_quality(update.mesh), least_quality(universal_mesh(background, psi, fast())), .01);
+    EXPECT_EQ(changed_by(last.background_vertex, update.vertices_entered, update.vertices_left), now.background_vertex);
+    EXPECT_EQ(changed_by(last.background_tet, update.tets_entered, update.tets_left), now.background_tet);
+    for (std::size_t i = 0; i < last_V.size(); ++i) {
+      const auto at =
+          std::lower_bound(now.background_vertex.begin(), now.background_vertex.end(), last.background_vertex[i]);
+      if (at == now.background_vertex.end() || *at != last.background_vertex[i]) continue;
+      EXPECT_EQ(update.mesh.final[at - now.background_vertex.begin()] != last_V[i],
+                std::binary_search(update.vertices_moved.begin(), update.vertices_moved.end(), *at));
+    }
+    EXPECT_EQ(update.n_recalled > 0, k > 0);
+    last = now;
+    last_V = update.mesh.final;
+  }
+}
+
+TEST(UniversalMesh, ADomainThatStaysKeepsItsMesh) {
+  const BackgroundMesh background(a15(), domains::torus().box, .1);
+  UniversalMesh moving(background, fast());
+  const auto psi = domains::torus();
+  const UmUpdate first = moving.update(psi), second = moving.update(psi);
+  EXPECT_EQ(second.mesh.submesh.background_tet, first.mesh.submesh.background_tet);
+  EXPECT_TRUE(second.tets_entered.empty() && second.tets_left.empty());
+  // All but what repair has moved by itself, and flat tets, begin where they were.
+  EXPECT_GT(second.n_recalled, .95 * static_cast<double>(first.mesh.submesh.positive_vertices.size()));
+  EXPECT_GE(least_quality(second.mesh), least_quality(first.mesh) - 1e-3);
+}
+
+TEST(InsideWalk, FindsWhatTheFullLoopFindsAndAsksNearTheSurfaceOnly) {
+  std::size_t n_near = 0;
+  for (const double half : {1.6, 3.}) {
+    const BackgroundMesh background(a15(), domains::cube_box(half), .15);
+    InsideWalk walk(background);
+    EXPECT_GT(walk.restart(Ball{}), .7 * static_cast<double>(background.n_vertices()));  // those with tets
+    std::size_t n = 0;
+    for (int k = 1; k < 6; ++k) {
+      const Ball psi{Vec3(.07, 0, -.03) * k, 1 + .05 * k};
+      n += walk.update(psi, {});
+      for (std::int64_t v = 0; v < background.n_vertices(); ++v) {
+        ASSERT_EQ(walk.inside().test(v), background.has_tets(v) && psi.value(background.position(v)) < 0) << k;
+      }
+    }
+    // The lattices differ by a shift: the numbers by little, where the backgrounds differ by a factor of six.
+    if (n_near > 0) EXPECT_NEAR(static_cast<double>(n) / static_cast<double>(n_near), 1, .1);
+    n_near = n;
+  }
+}
+
+TEST(UniversalMesh, NewComponentsAreFoundBySignBoundsOrSeeds) {
+  const BackgroundMesh background(a15(), domains::cube_box(2.1), .12);
+  const auto before = domains::equation_13(3.0), after = domains::equation_13(3.2);
+  const double L = 16;  // |2 x + t cos(t x)| <= 4.2 + 3.2 + rounding of the box, on three axes
+  for (const bool by_bounds : {true, false}) {
+    UniversalMesh moving(background, fast());
+    expect_certified(moving.update(before).mesh, before, .12, 1);
+    expect_certified(moving.update(after).mesh, after, .12, 1);  // the walk does not meet them
+    UpdateHints hints;
+    if (by_bounds) {
+      hints.no_zero_in = lipschitz(after, L);
+    } else {
+      hints.seeds = after.boundary_seeds;
+    }
+    const UmUpdate found = moving.update(after, hints);
+    expect_certified(found.mesh, after, .12, 4);
+    EXPECT_LT(found.n_searched, .5 * static_cast<double>(background.n_vertices()));
+  }
+}
+
+TEST(UniversalMesh, AFailureLeavesTheNextUpdateWhereItWas) {
+  const BackgroundMesh background(a15(), domains::cube_box(1.4), .15);
+  UniversalMesh moving(background, fast());
+  const Ball ball;
+  const UmUpdate first = moving.update(ball);
+  EXPECT_EQ(moving.update(Ball{Vec3(.6, 0, 0)}).mesh.status, UmStatus::DomainLeavesBackground);
+  EXPECT_EQ(moving.update(ball, {}, [](const UmProgress&) { return false; }).mesh.status, UmStatus::Cancelled);
+  const UmUpdate again = moving.update(ball);
+  expect_certified(again.mesh, ball, .15, 1);
+  EXPECT_EQ(again.mesh.submesh.background_tet, first.mesh.submesh.background_tet);
+  EXPECT_TRUE(again.tets_entered.empty() && again.tets_left.empty());
+  EXPECT_EQ(moving.update(Ball{Vec3::Zero(), 0}).mesh.status, UmStatus::EmptyDomain);
+  UmParams paper;
+  EXPECT_THROW(UniversalMesh(background, paper), std::invalid_argument);
+}
+
+TEST(UniversalMesh, EveryBackgroundWillDo) {
+  const Box box = domains::cube_box(1.3);
+  const BackgroundMesh slab(tiling_named("slab"), box, .2), a(a15(), box, .2);
+  TetMesh stored;
+  for (std::int64_t v = 0; v < a.n_vertices(); ++v) stored.V.push_back(a.position(v));
+  for (std::int64_t t = 0; t < a.n_tets(); ++t) {
+    const auto tet = a.tet(t);
+    stored.C.push_back(
+        {static_cast<int>(tet[0]), static_cast<int>(tet[1]), static_cast<int>(tet[2]), static_cast<int>(tet[3])});
+  }
+  for (const BackgroundMesh& background : {slab, BackgroundMesh(stored)}) {
+    UniversalMesh moving(background, fast());
+    for (int k = 0; k < 3; ++k) {
+      const Ball psi{Vec3(.04, 0, 0) * k};
+      expect_certified(moving.update(psi).mesh, psi, background.h(), 1);
+    }
+  }
+}
+
+TEST(UniversalMesh, ThreadsDoNotChangeTheMesh) {
+  const BackgroundMesh background(a15(), domains::cube_box(1.5), .15);
+  std::vector<Vec3> V[2];
+  for (int n = 1; n <= 2; ++n) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(n));
+    UniversalMesh moving(background, fast());
+    for (int k = 0; k < 3; ++k) V[n - 1] = moving.update(Ball{Vec3(.06, 0, 0) * k}).mesh.final;
+  }
+  EXPECT_EQ(V[0], V[1]);
+}
+
+TEST(SparsityPattern, HoldsEveryEdgeOfTheBackgroundTwice) {
+  const BackgroundMesh background(a15(), domains::cube_box(.3), .15);
+  const SparsityPattern p = sparsity_pattern(background);
+  std::set<std::pair<std::int64_t, std::int64_t>> edges, rows;
+  for (std::int64_t t = 0; t < background.n_tets(); ++t) {
+    for (const std::int64_t a : background.tet(t)) {
+      for (const std::int64_t b : background.tet(t)) {
+        if (a != b) edges.emplace(a, b);
+      }
+    }
+  }
+  ASSERT_EQ(p.row_begin.size(), static_cast<std::size_t>(background.n_vertices()) + 1);
+  for (std::int64_t v = 0; v < background.n_vertices(); ++v) {
+    for (std::int64_t k = p.row_begin[v]; k < p.row_begin[v + 1]; ++k) {
+      rows.emplace(v, p.column[k]);
+      EXPECT_TRUE(k == p.row_begin[v] || p.column[k - 1] < p.column[k]);
+    }
+  }
+  EXPECT_EQ(rows, edges);
+}
+
+}  // namespace
+}  // namespace umtet
