@@ -30,7 +30,9 @@ std::vector<RecordedFile> source_inputs(const std::filesystem::path& source, con
 ///
 /// Normals that came with the scan are scored, and a minority that is turned over is turned back (normals = auto),
 /// taken as they are (given) or thrown away (estimate). Missing ones are estimated. cloud.orient_from and cloud.flip
-/// have the last word. \throw CloudRefused  fewer than 10 points are left; not a file of viewpoints
+/// have the last word.
+///
+/// \throw CloudRefused  fewer than 10 points are left; not a file of viewpoints
 PreparedCloud prepare_cloud(CloudFile file, const std::filesystem::path& source, const Parameters& parameters);
 
 }  // namespace umtet
