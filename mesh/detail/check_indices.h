@@ -1,0 +1,27 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace umtet::detail {
+
+/// \throw std::invalid_argument naming the first simplex with a vertex that is out of range or its own twice
+/// @param name  of a simplex, for the message
+template <std::size_t N>
+void check_indices(const std::vector<std::array<int, N>>& simplices, std::size_t n_vertices, const char* name) {
+  for (std::size_t s = 0; s < simplices.size(); ++s) {
+    for (std::size_t k = 0; k < N; ++k) {
+      const int v = simplices[s][k];
+      if (v < 0 || static_cast<std::size_t>(v) >= n_vertices || std::count(&simplices[s][0], &simplices[s][0] + k, v)) {
+        throw std::invalid_argument(std::string(name) + " " + std::to_string(s) + ": vertex " + std::to_string(v) +
+                                    " is out of range or repeated (" + std::to_string(n_vertices) + " vertices)");
+      }
+    }
+  }
+}
+
+}  // namespace umtet::detail
