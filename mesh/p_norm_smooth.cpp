@@ -140,7 +140,7 @@ void measure(const Shell& shell, SmoothReport& report) {
 
 std::vector<std::string> problems(const SmoothParams& params) {
   std::vector<std::string> list = problems(params.closest_point);
-  for (std::string& problem : list) problem = "closest_point." + problem;
+  for (std::string& problem : list) problem.insert(0, "closest_point.");
   const auto refuse = [&](const char* name, double value, const char* rule) {
     list.push_back(std::string(name).append(" = ").append(std::to_string(value)).append(": must be ").append(rule));
   };
