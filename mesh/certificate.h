@@ -51,11 +51,11 @@ struct CertificateInput {
   const TetMesh* mesh = nullptr;
   double h = 0;  ///< <= 0: the mean over tets of the root mean square edge length is used
   const std::vector<Triangle>* positive_faces = nullptr;  ///< optional: compared with the boundary as a set
-  const std::vector<Triangle>* wall_faces = nullptr;      ///< optional: boundary that is not of psi = 0
-  const std::vector<Vec3>* background_V = nullptr;  ///< by vertex: where those of the walls are to be; with wall_faces
-  std::optional<ImplicitFunctionRef> psi;           ///< optional: distances and normals
+  std::optional<ImplicitFunctionRef> psi;                 ///< optional: distances and normals
   double coordinate_rounding = 0;  ///< how far the file's rounding of coordinates may move a vertex, model units
   KeepGoing keep_going = {};
+  const std::vector<Triangle>* wall_faces = nullptr;  ///< optional: boundary that is not of psi = 0
+  const std::vector<Vec3>* background_V = nullptr;  ///< by vertex: where those of the walls are to be; with wall_faces
 };
 
 /// A boundary vertex may be this far from psi = 0, in h, besides the rounding of its coordinates: what the projection

@@ -9,6 +9,7 @@
 #include "mesh/background_shell.h"
 #include "mesh/detail/assemble_submesh.h"
 #include "mesh/detail/offenders.h"
+#include "mesh/double_faces.h"
 #include "mesh/label_prices.h"
 #include "mesh/lattice_shell.h"
 #include "mesh/tet_quality.h"
@@ -145,6 +146,7 @@ bool FastRun::label() {
     result_.n_psi_evaluations += labels.psi_evaluations;
   }
   result_.submesh = emit_submesh(background_, inside_);
+  if (params_.rim == Rim::Wall) part_double_faces(background_, psi_, inside_, result_.submesh);
   double_faces_ = double_positive_faces(result_.submesh);
   result_.double_positive_faces = double_faces_.count;
   if (params_.rim == Rim::Wall) {

@@ -23,7 +23,8 @@ enum class UmMode {
 enum class Rim {
   Refuse,  ///< UmStatus::DomainLeavesBackground
   /// The rim is a wall: it bounds the mesh where Omega reaches it, and stays where it is. Labels, which are chosen and
-  /// repaired off the rim only, stay those of psi.
+  /// repaired off the rim only, stay those of psi but for
+  /// those that part double positive faces (double_faces.h).
   Wall,
 };
 enum class SubmeshSearch { FullLoop, Crawl };  ///< Alg. 1, steps 1-22, or Section 3.8(c) from given seeds
