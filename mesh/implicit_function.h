@@ -32,8 +32,8 @@ concept JointlyEvaluated = requires(const F f, const Vec3 x, Vec3* g, Mat3* H) {
 class ImplicitFunctionRef {
  public:
   template <ImplicitFunction F>
-  requires(!std::same_as<F, ImplicitFunctionRef>) ImplicitFunctionRef(const F& f)
-      : object_(&f), call_(&call<F>), has_hessian_(TwiceDifferentiable<F>) {}
+    requires(!std::same_as<F, ImplicitFunctionRef>)
+  ImplicitFunctionRef(const F& f) : object_(&f), call_(&call<F>), has_hessian_(TwiceDifferentiable<F>) {}
 
   double value(const Vec3& x) const { return call_(object_, x, nullptr, nullptr); }
   double value(const Vec3& x, Vec3& gradient) const { return call_(object_, x, &gradient, nullptr); }
