@@ -21,7 +21,7 @@ SparsityPattern sparsity_pattern(const BackgroundMesh& background);
 struct UpdateHints {
   std::vector<Vec3> seeds;  ///< a point near each new component, such as a body that enters
   /// True only if psi has no zero in the box. With it no new component is missed: every background vertex is asked
-  /// that lies in a cell for which this does not hold.
+  /// that lies in a cell for which this does not hold; of a background without cells, every vertex.
   std::function<bool(const Box&)> no_zero_in;
 };
 

@@ -31,6 +31,13 @@ class IdSet {
   /// Threads may set different words at once.
   void set_word(std::size_t w, std::uint64_t bits) { words_[w] = bits; }
 
+  /// True only if there is no member in first .. end - 1. Looks at whole words.
+  bool is_empty_around(std::int64_t first, std::int64_t end) const {
+    std::uint64_t any = 0;
+    for (std::int64_t w = first >> 6; w <= (end - 1) >> 6; ++w) any |= words_[w];
+    return any == 0;
+  }
+
   /// Prepares rank(); call again after an insertion. Returns the number of members.
   std::size_t index() {
     before_.resize(words_.size());
