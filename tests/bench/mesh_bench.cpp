@@ -275,12 +275,14 @@ void drifting_ball(benchmark::State& state) {
   const Vec3 half(.5 * std::max(kLength, n_tets / 46 / (width * width)), .5 * width, .5 * width);
   const BackgroundMesh background(a15(), Box(-half, half), a15().mean_edge / a15().period[0]);
   const auto at = [](int k) {
-    return testing::AnalyticDomain{.psi = [x = -12.5 + .25 * k](const Vec3& p, Vec3* g, Mat3* H) {
+    testing::AnalyticDomain ball;
+    ball.psi = [x = -12.5 + .25 * k](const Vec3& p, Vec3* g, Mat3* H) {
       const Vec3 d(p.x() - x, p.y(), p.z());
       if (g) *g = 2 * d;
       if (H) *H = 2 * Mat3::Identity();
       return d.squaredNorm() - kRadius * kRadius;
-    }};
+    };
+    return ball;
   };
   UmParams params;
   params.mode = UmMode::Fast;

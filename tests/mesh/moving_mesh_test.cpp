@@ -121,7 +121,9 @@ TEST(InsideWalk, FindsWhatTheFullLoopFindsAndAsksNearTheSurfaceOnly) {
       }
     }
     // The lattices differ by a shift: the numbers by little, where the backgrounds differ by a factor of six.
-    if (n_near > 0) EXPECT_NEAR(static_cast<double>(n) / static_cast<double>(n_near), 1, .1);
+    if (n_near > 0) {
+      EXPECT_NEAR(static_cast<double>(n) / static_cast<double>(n_near), 1, .1);
+    }
     n_near = n;
   }
 }
