@@ -143,12 +143,15 @@ ComponentProof prove_components(const LevelSet& psi, const Eigen::AlignedBox3d& 
     }
   }
   if (!any_open) return proof;
-  const SignCells finer = sign_cells(psi, groups.cells().size / kFiner);
+  std::vector<int> open;
+  for (int c = 0; c < n; ++c) {
+    if (!groups.is_marked(c) && verdict[groups.group(c)] == Open) open.push_back(c);
+  }
+  const SignCells finer = sign_cells_within(psi, groups.cells(), open, groups.cells().size / kFiner);
   std::vector<char> left(n, 0);
   for (const Eigen::Vector3i& f : finer.cells) {
     const Vec3 corner = finer.origin + finer.size * f.cast<double>();
     const int c = groups.cell_of(corner + Vec3::Constant(finer.size / 2));
-    if (c < 0 || verdict[groups.group(c)] != Open || groups.is_marked(c)) continue;
     char& state = left[groups.group(c)];
     if (state == Crossing) continue;
     if (crosses(psi, corner, finer.size)) {

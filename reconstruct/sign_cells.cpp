@@ -36,8 +36,8 @@ double second_derivative_bound(const LmeTables& tables, bool at_walls) {
 class Search {
  public:
   Search(const LevelSet& psi, int depth);
-  // Adds the cubes of depth `depth_` in a cell of the coarsest lattice.
-  void search(const Eigen::Vector3i& cell, std::vector<Eigen::Vector3i>& found) const { split(0, cell, 0, found); }
+  // Adds the cubes of depth `depth_` in a cube of `depth`; at depth 0, a cell of the coarsest lattice.
+  void search(int depth, const Eigen::Vector3i& cell, std::vector<Eigen::Vector3i>& found) const;
 
  private:
   void split(int depth, const Eigen::Vector3i& cell, double bend, std::vector<Eigen::Vector3i>& found) const;
@@ -143,26 +143,60 @@ void Search::split(int depth, const Eigen::Vector3i& cell, double bend, std::vec
   for (int q = 0; q < 8; ++q) split(depth + 1, 2 * cell + Eigen::Vector3i(q & 1, q >> 1 & 1, q >> 2), bend, found);
 }
 
+void Search::search(int depth, const Eigen::Vector3i& cell, std::vector<Eigen::Vector3i>& found) const {
+  double bend = 0;
+  for (int level = 0; level < std::min(depth, psi_.n_levels()); ++level) {
+    const int up = depth - level;
+    bend += bend_of(level, {cell[0] >> up, cell[1] >> up, cell[2] >> up});
+  }
+  split(depth, cell, bend, found);
+}
+
+int depth_of(const LevelSet& psi, double size) {
+  constexpr int kMostHalvings = 20;
+  int depth = 0;
+  while (depth <= kMostHalvings && std::ldexp(psi.coarsest().lattice.h, -depth) > size) ++depth;
+  if (!(size > 0) || depth > kMostHalvings) throw std::invalid_argument("cubes of this size cannot be made");
+  return depth;
+}
+
+void sort_by_place(std::vector<Eigen::Vector3i>& cells) {
+  std::sort(cells.begin(), cells.end(), [](const auto& a, const auto& b) {
+    return std::array{a[2], a[1], a[0]} < std::array{b[2], b[1], b[0]};
+  });
+}
+
 }  // namespace
 
 SignCells sign_cells(const LevelSet& psi, double size) {
-  constexpr int kMostHalvings = 20;
   const Lattice& L = psi.coarsest().lattice;
-  int depth = 0;
-  while (depth <= kMostHalvings && std::ldexp(L.h, -depth) > size) ++depth;
-  if (!(size > 0) || depth > kMostHalvings) throw std::invalid_argument("cubes of this size cannot be made");
+  const int depth = depth_of(psi, size);
   const Search search(psi, depth);
   const Eigen::Vector3i n = (L.n.array() - 1).matrix();
   std::vector<std::vector<Eigen::Vector3i>> layers(n[2]);
   tbb::parallel_for(0, n[2], [&](int k) {
     for (int j = 0; j < n[1]; ++j)
-      for (int i = 0; i < n[0]; ++i) search.search({i, j, k}, layers[k]);
-    std::sort(layers[k].begin(), layers[k].end(), [](const auto& a, const auto& b) {
-      return std::array{a[2], a[1], a[0]} < std::array{b[2], b[1], b[0]};
-    });
+      for (int i = 0; i < n[0]; ++i) search.search(0, {i, j, k}, layers[k]);
+    sort_by_place(layers[k]);
   });
   SignCells result{L.origin, std::ldexp(L.h, -depth), {}};
   for (const auto& layer : layers) result.cells.insert(result.cells.end(), layer.begin(), layer.end());
+  return result;
+}
+
+SignCells sign_cells_within(const LevelSet& psi, const SignCells& cells, const std::vector<int>& which, double size) {
+  const Lattice& L = psi.coarsest().lattice;
+  const int from = depth_of(psi, cells.size), depth = depth_of(psi, size);
+  if (cells.origin != L.origin || cells.size != std::ldexp(L.h, -from) || depth < from) {
+    throw std::invalid_argument("no cubes of this size within cubes of that");
+  }
+  const Search search(psi, depth);
+  std::vector<std::vector<Eigen::Vector3i>> found(which.size());
+  tbb::parallel_for(std::size_t{0}, which.size(),
+                    [&](std::size_t i) { search.search(from, cells.cells.at(which[i]), found[i]); });
+  SignCells result{L.origin, std::ldexp(L.h, -depth), {}};
+  for (const auto& some : found) result.cells.insert(result.cells.end(), some.begin(), some.end());
+  sort_by_place(result.cells);
   return result;
 }
 

@@ -29,4 +29,11 @@ struct SignCells {
 /// \throw std::invalid_argument  size not > 0, or more than 2^20 times finer than the coarsest lattice
 SignCells sign_cells(const LevelSet& psi, double size);
 
+/// The same within some cubes of an earlier search only: what it costs depends on them alone.
+///
+/// @param cells  of the same psi
+/// @param which  indices into cells.cells, ascending
+/// \throw std::invalid_argument  as above, or `size` larger than the cubes, or these are not of psi's lattices
+SignCells sign_cells_within(const LevelSet& psi, const SignCells& cells, const std::vector<int>& which, double size);
+
 }  // namespace umtet

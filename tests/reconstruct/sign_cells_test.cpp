@@ -60,6 +60,27 @@ TEST(SignCells, HoldEveryZeroAndFewOthers) {
   }
 }
 
+TEST(SignCells, WithinSomeCubesAreThoseOfTheWholeSearch) {
+  const LevelSet psi = torus(0.1);
+  const SignCells coarse = sign_cells(psi, psi.spacing() / 2), all = sign_cells(psi, psi.spacing() / 8);
+  std::vector<int> odd;
+  std::set<Cube> parents;
+  for (int c = 1; c < static_cast<int>(coarse.cells.size()); c += 2) {
+    odd.push_back(c);
+    parents.insert({coarse.cells[c][0], coarse.cells[c][1], coarse.cells[c][2]});
+  }
+  const SignCells within = sign_cells_within(psi, coarse, odd, psi.spacing() / 8);
+  std::vector<Eigen::Vector3i> expected;
+  for (const Eigen::Vector3i& c : all.cells) {
+    if (parents.contains({c[0] >> 2, c[1] >> 2, c[2] >> 2})) expected.push_back(c);
+  }
+  EXPECT_FALSE(expected.empty());
+  EXPECT_LT(expected.size(), all.cells.size());
+  EXPECT_EQ(within.size, all.size);
+  EXPECT_EQ(within.cells, expected);
+  EXPECT_THROW(sign_cells_within(psi, all, odd, coarse.size), std::invalid_argument);
+}
+
 TEST(SignCells, SignsOutsideAreConstant) {
   // Between two points of an unlisted cube psi has one sign, and it is zero at neither.
   const LevelSet psi = torus(0.1);
@@ -69,7 +90,8 @@ TEST(SignCells, SignsOutsideAreConstant) {
   std::uniform_real_distribution<double> unit(0, 1);
   int unlisted = 0;
   for (int trial = 0; trial < 20000; ++trial) {
-    const Vec3 x = psi.domain().min() + Vec3(unit(random), unit(random), unit(random)).cwiseProduct(psi.domain().sizes());
+    const Vec3 x =
+        psi.domain().min() + Vec3(unit(random), unit(random), unit(random)).cwiseProduct(psi.domain().sizes());
     const Cube c = cube_of(cells, x);
     if (listed.contains(c)) continue;
     const Vec3 y = cells.origin + cells.size * Vec3(c[0] + unit(random), c[1] + unit(random), c[2] + unit(random));
@@ -93,7 +115,8 @@ TEST(SignCells, FindABallBetweenTheNodesOfAFinerLattice) {
   for (const Eigen::Vector3i& c : cells.cells) {
     EXPECT_LT((cells.origin + cells.size * (c.cast<double>() + Vec3::Constant(0.5)) - middle).norm(), 1.5);
   }
-  EXPECT_TRUE(sign_cells(LevelSet(LmePrior{}, {coarse, std::vector<double>(coarse.size(), 1.0)}), 1. / 16).cells.empty());
+  EXPECT_TRUE(
+      sign_cells(LevelSet(LmePrior{}, {coarse, std::vector<double>(coarse.size(), 1.0)}), 1. / 16).cells.empty());
 }
 
 TEST(SignCells, RefusesSizesThatCannotBeMade) {
