@@ -71,6 +71,41 @@ void refuse_broken_tets(const std::filesystem::path& path, const TetMesh& mesh,
   }
 }
 
+void take_mid_sides(const std::filesystem::path& path, MeshFile& file, const std::vector<MidSideNodes>& mid_sides,
+                    const std::function<std::int64_t(std::size_t)>& vertex_number) {
+  const TetMesh& mesh = file.mesh;
+  if (mid_sides.empty() || mid_sides.size() != mesh.C.size()) return;
+  enum Role : std::uint8_t { Unused, Corner, MidSide };
+  std::vector<Role> role(mesh.V.size(), Unused);
+  for (const Tet& t : mesh.C) {
+    for (const int v : t) role[v] = Corner;
+  }
+  for (const MidSideNodes& nodes : mid_sides) {
+    for (const int v : nodes) {
+      const char* reason = role[v] == Corner        ? "it is a mid-side of one tet and a corner of another"
+                           : !mesh.V[v].allFinite() ? "a coordinate is not a finite number"
+                                                    : nullptr;
+      if (reason) {
+        throw MeshFileRefused(path, "node " + std::to_string(vertex_number(static_cast<std::size_t>(v))), reason);
+      }
+      role[v] = MidSide;
+    }
+  }
+  QuadraticTetMesh& quadratic = file.quadratic.emplace();
+  std::vector<int> new_index(mesh.V.size(), -1);
+  for (const Role wanted : {Corner, MidSide}) {
+    for (std::size_t v = 0; v < role.size(); ++v) {
+      if (role[v] != wanted) continue;
+      new_index[v] = static_cast<int>(quadratic.V.size());
+      quadratic.V.push_back(mesh.V[v]);
+    }
+  }
+  quadratic.C.resize(mesh.C.size());
+  for (std::size_t t = 0; t < mesh.C.size(); ++t) {
+    for (int k = 0; k < 10; ++k) quadratic.C[t][k] = new_index[k < 4 ? mesh.C[t][k] : mid_sides[t][k - 4]];
+  }
+}
+
 void drop_unused_vertices(MeshFile& file) {
   std::vector<int> new_index(file.mesh.V.size(), -1);
   for (const Tet& t : file.mesh.C) {
@@ -82,8 +117,8 @@ void drop_unused_vertices(MeshFile& file) {
     new_index[v] = static_cast<int>(kept.size());
     kept.push_back(v);
   }
-  file.n_unused_vertices = file.mesh.V.size() - kept.size();
-  if (file.n_unused_vertices == 0) return;
+  if (kept.size() == file.mesh.V.size()) return;
+  file.n_unused_vertices = file.mesh.V.size() - (file.quadratic ? file.quadratic->V.size() : kept.size());
   const auto keep = [&](auto& values) {
     for (std::size_t i = 0; i < kept.size(); ++i) values[i] = values[kept[i]];
     values.resize(kept.size());
@@ -115,27 +150,31 @@ MeshFile assemble(const std::filesystem::path& path, NumberedMesh&& numbered) {
     sorted.push_back(number[i]);
     file.mesh.V.push_back(numbered.point[i]);
   }
-  file.mesh.C.reserve(numbered.tets.size());
-  for (std::size_t t = 0; t < numbered.tets.size(); ++t) {
-    Tet tet;
-    for (int k = 0; k < 4; ++k) {
-      const std::int64_t wanted = numbered.tets[t][k];
-      // Nearly every file numbers its nodes without a gap: then the place is known without a search.
-      const std::int64_t guess = sorted.empty() ? 0 : wanted - sorted.front();
-      auto found = guess >= 0 && guess < static_cast<std::int64_t>(sorted.size()) && sorted[guess] == wanted
-                       ? sorted.begin() + guess
-                       : std::lower_bound(sorted.begin(), sorted.end(), wanted);
-      if (found == sorted.end() || *found != wanted) {
-        throw MeshFileRefused(path, "tet " + std::to_string(t + 1),
-                              "its node " + std::to_string(wanted) + " does not exist");
-      }
-      tet[k] = static_cast<int>(found - sorted.begin());
+  // Nearly every file numbers its nodes without a gap: then the place is known without a search.
+  const auto index_of = [&](std::int64_t wanted, std::size_t t) {
+    const std::int64_t guess = sorted.empty() ? 0 : wanted - sorted.front();
+    auto found = guess >= 0 && guess < static_cast<std::int64_t>(sorted.size()) && sorted[guess] == wanted
+                     ? sorted.begin() + guess
+                     : std::lower_bound(sorted.begin(), sorted.end(), wanted);
+    if (found == sorted.end() || *found != wanted) {
+      throw MeshFileRefused(path, "tet " + std::to_string(t + 1),
+                            "its node " + std::to_string(wanted) + " does not exist");
     }
-    file.mesh.C.push_back(tet);
+    return static_cast<int>(found - sorted.begin());
+  };
+  file.mesh.C.resize(numbered.tets.size());
+  for (std::size_t t = 0; t < numbered.tets.size(); ++t) {
+    for (int k = 0; k < 4; ++k) file.mesh.C[t][k] = index_of(numbered.tets[t][k], t);
+  }
+  std::vector<MidSideNodes> mid_sides;
+  if (numbered.mid_sides.size() == numbered.tets.size()) mid_sides.resize(numbered.tets.size());
+  for (std::size_t t = 0; t < mid_sides.size(); ++t) {
+    for (int k = 0; k < 6; ++k) mid_sides[t][k] = index_of(numbered.mid_sides[t][k], t);
   }
   refuse_broken_tets(
       path, file.mesh, [&](std::size_t v) { return sorted[v]; },
       [](std::size_t t) { return static_cast<std::int64_t>(t) + 1; });
+  take_mid_sides(path, file, mid_sides, [&](std::size_t v) { return sorted[v]; });
   drop_unused_vertices(file);
   return file;
 }

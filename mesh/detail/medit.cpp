@@ -63,13 +63,11 @@ void read_tets(ByteCursor& in, int nodes, NumberedMesh& mesh) {
   const std::size_t n = in.count("number of tets", 2 * static_cast<std::size_t>(nodes) + 2);
   mesh.tets.reserve(mesh.tets.size() + n);
   for (std::size_t t = 0; t < n; ++t) {
-    std::array<std::int64_t, 4> tet{};
-    for (int k = 0; k < nodes; ++k) {
-      const auto v = in.number<std::int64_t>("vertex of a tet");
-      if (k < 4) tet[k] = v;
+    for (auto& v : mesh.tets.emplace_back()) v = in.number<std::int64_t>("vertex of a tet");
+    if (nodes == 10) {
+      for (auto& v : mesh.mid_sides.emplace_back()) v = in.number<std::int64_t>("vertex of a tet");
     }
     in.number<std::int64_t>("tet reference");
-    mesh.tets.push_back(tet);
   }
 }
 

@@ -56,7 +56,11 @@ struct NumberedMesh {
   std::vector<std::int64_t> number;  ///< of each node
   std::vector<Vec3> point;
   std::vector<std::array<std::int64_t, 4>> tets;  ///< node numbers
+  /// Of those tets that have ten nodes, the other six in the order of QuadraticTet.
+  std::vector<std::array<std::int64_t, 6>> mid_sides;
 };
+
+using MidSideNodes = std::array<int, 6>;
 
 /// Sorts by node number, renumbers the tets and drops unused nodes.
 /// \throw MeshFileRefused for a node number that is missing or given twice, and as refuse_broken_tets()
@@ -67,6 +71,13 @@ MeshFile assemble(const std::filesystem::path& path, NumberedMesh&& numbered);
 void refuse_broken_tets(const std::filesystem::path& path, const TetMesh& mesh,
                         const std::function<std::int64_t(std::size_t)>& vertex_number,
                         const std::function<std::int64_t(std::size_t)>& tet_number);
+
+/// Fills file.quadratic if there are mid-sides for every tet; corners come first, and both kinds keep their order.
+/// To be called before drop_unused_vertices(). @param mid_sides  indices into file.mesh.V
+/// @param vertex_number  of vertex i in the file
+/// \throw MeshFileRefused for a mid-side that has no finite place, or is a corner
+void take_mid_sides(const std::filesystem::path& path, MeshFile& file, const std::vector<MidSideNodes>& mid_sides,
+                    const std::function<std::int64_t(std::size_t)>& vertex_number);
 
 /// Drops the vertices (and their data) that no tet uses.
 void drop_unused_vertices(MeshFile& file);

@@ -2,6 +2,7 @@
 #include <cctype>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include "mesh/detail/mesh_formats.h"
 
@@ -12,7 +13,8 @@ namespace {
 constexpr std::array<int, 32> kNodes = {0, 2,  3,  4,  4, 8,  6,  5,  3,  6,  9, 10, 27, 18, 14, 1,
                                         8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5,  6,  20, 35, 56};
 
-bool is_tet(std::int64_t type) { return type == 4 || type == 11 || type == 29 || type == 30 || type == 31; }
+constexpr std::int64_t kSecondOrder = 11;
+bool is_tet(std::int64_t type) { return type == 4 || type == kSecondOrder || type == 29 || type == 30 || type == 31; }
 
 class MshReader {
  public:
@@ -29,6 +31,9 @@ class MshReader {
   void read_block41();
   void expect_end(std::string_view marker);
   int nodes_of(std::int64_t type) const;
+  /// One tet from the file, as far as it is kept. @return how many of its nodes have been read
+  template <class Next>
+  int take_tet(std::int64_t type, const Next& next);
 
   template <typename Raw, typename Text>
   auto get(const char* what) {
@@ -72,6 +77,16 @@ int MshReader::nodes_of(std::int64_t type) const {
   const int n = type >= 0 && type < static_cast<std::int64_t>(kNodes.size()) ? kNodes[type] : 0;
   if (n == 0) in_.refuse("unknown element type " + std::to_string(type));
   return n;
+}
+
+template <class Next>
+int MshReader::take_tet(std::int64_t type, const Next& next) {
+  for (auto& v : mesh_.tets.emplace_back()) v = next();
+  if (type != kSecondOrder) return 4;
+  auto& mid_sides = mesh_.mid_sides.emplace_back();
+  for (auto& v : mid_sides) v = next();
+  std::swap(mid_sides[4], mid_sides[5]);  // Gmsh: 01 12 20 03 23 13
+  return 10;
 }
 
 void MshReader::read_nodes22() {
@@ -127,10 +142,8 @@ void MshReader::read_binary_block22(std::size_t& left) {
   }
   for (std::int32_t e = 0; e < count; ++e) {
     in_.skip(head, "element");
-    std::array<std::int64_t, 4> tet{};
-    for (auto& v : tet) v = in_.raw<std::int32_t>("node of a tet");
-    in_.skip(body - 16, "element");
-    mesh_.tets.push_back(tet);
+    const int n = take_tet(type, [&] { return in_.raw<std::int32_t>("node of a tet"); });
+    in_.skip(body - 4 * static_cast<std::size_t>(n), "element");
   }
 }
 
@@ -146,9 +159,7 @@ void MshReader::read_elements22() {
       if (is_tet(type)) {
         const auto n_tags = in_.number<std::int64_t>("number of tags");
         for (std::int64_t k = 0; k < n_tags; ++k) in_.number<std::int64_t>("tag");
-        std::array<std::int64_t, 4> tet{};
-        for (auto& v : tet) v = in_.number<std::int64_t>("node of a tet");
-        mesh_.tets.push_back(tet);
+        take_tet(type, [&] { return in_.number<std::int64_t>("node of a tet"); });
       }
       in_.line();
     }
@@ -174,10 +185,8 @@ void MshReader::read_block41() {
   }
   for (std::size_t e = 0; e < count; ++e) {
     get_size("element number");
-    std::array<std::int64_t, 4> tet{};
-    for (auto& v : tet) v = static_cast<std::int64_t>(get_size("node of a tet"));
-    for (std::size_t k = 4; k < body; ++k) get_size("node of a tet");
-    mesh_.tets.push_back(tet);
+    const int n = take_tet(type, [&] { return static_cast<std::int64_t>(get_size("node of a tet")); });
+    for (auto k = static_cast<std::size_t>(n); k < body; ++k) get_size("node of a tet");
   }
 }
 

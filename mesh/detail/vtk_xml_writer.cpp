@@ -43,7 +43,10 @@ std::string escaped(const std::string& name) {
 class VtkXmlWriter {
  public:
   explicit VtkXmlWriter(const std::filesystem::path& path) : file_(path) {}
-  void mesh(const MeshFile& content);
+  /// Tets of N nodes.
+  template <std::size_t N>
+  void mesh(const std::vector<Vec3>& V, const std::vector<std::array<int, N>>& C,
+            const std::map<std::string, FieldValues>& point_data, const std::map<std::string, FieldValues>& cell_data);
   void points(const std::vector<Vec3>& V, const std::map<std::string, FieldValues>& point_data);
 
  private:
@@ -52,8 +55,8 @@ class VtkXmlWriter {
   void begin(const char* type, std::size_t n_points, const char* counted, std::size_t n_cells);
   void end(const char* type);
   void coordinates(const std::vector<Vec3>& V);
-  template <class Index>
-  void cells(const std::vector<Tet>& C);
+  template <class Index, std::size_t N>
+  void cells(const std::vector<std::array<int, N>>& C);
   void data(const char* section, const std::map<std::string, FieldValues>& arrays);
   /// A DataArray of n values, which `fill` puts.
   template <class T, class Fill>
@@ -99,17 +102,18 @@ void VtkXmlWriter::array(const std::string& name, std::size_t n, const Fill& fil
   file_.text("\n</DataArray>\n");
 }
 
-template <class Index>
-void VtkXmlWriter::cells(const std::vector<Tet>& C) {
-  array<Index>("connectivity", 4 * C.size(), [&] {
-    for (const Tet& t : C) {
-      const std::array<Index, 4> corners = {t[0], t[1], t[2], t[3]};
-      put(corners.data(), 4);
+template <class Index, std::size_t N>
+void VtkXmlWriter::cells(const std::vector<std::array<int, N>>& C) {
+  array<Index>("connectivity", N * C.size(), [&] {
+    for (const auto& t : C) {
+      std::array<Index, N> nodes;
+      std::copy(t.begin(), t.end(), nodes.begin());
+      put(nodes.data(), N);
     }
   });
   array<Index>("offsets", C.size(), [&] {
     for (std::size_t t = 1; t <= C.size(); ++t) {
-      const auto end = static_cast<Index>(4 * t);
+      const auto end = static_cast<Index>(N * t);
       put(&end, 1);
     }
   });
@@ -147,20 +151,21 @@ void VtkXmlWriter::coordinates(const std::vector<Vec3>& V) {
   file_.text("</Points>\n");
 }
 
-void VtkXmlWriter::mesh(const MeshFile& content) {
-  const std::vector<Vec3>& V = content.mesh.V;
-  const std::vector<Tet>& C = content.mesh.C;
+template <std::size_t N>
+void VtkXmlWriter::mesh(const std::vector<Vec3>& V, const std::vector<std::array<int, N>>& C,
+                        const std::map<std::string, FieldValues>& point_data,
+                        const std::map<std::string, FieldValues>& cell_data) {
   begin("UnstructuredGrid", V.size(), "NumberOfCells", C.size());
-  data("PointData", content.point_data);
-  data("CellData", content.cell_data);
+  data("PointData", point_data);
+  data("CellData", cell_data);
   coordinates(V);
   file_.text("<Cells>\n");
-  if (C.size() <= std::numeric_limits<std::int32_t>::max() / 4) {
+  if (C.size() <= std::numeric_limits<std::int32_t>::max() / N) {
     cells<std::int32_t>(C);
   } else {
     cells<std::int64_t>(C);
   }
-  const std::vector<std::uint8_t> types(C.size(), VTK_TETRA);
+  const std::vector<std::uint8_t> types(C.size(), N == 4 ? VTK_TETRA : VTK_QUADRATIC_TETRA);
   array<std::uint8_t>("types", C.size(), [&] { put(types.data(), types.size()); });
   file_.text("</Cells>\n");
   end("UnstructuredGrid");
@@ -192,7 +197,15 @@ void check_sizes(const std::map<std::string, FieldValues>& arrays, std::size_t n
 void write_vtu(const std::filesystem::path& path, const MeshFile& file) {
   check_sizes(file.point_data, file.mesh.V.size());
   check_sizes(file.cell_data, file.mesh.C.size());
-  VtkXmlWriter(path).mesh(file);
+  VtkXmlWriter(path).mesh(file.mesh.V, file.mesh.C, file.point_data, file.cell_data);
+}
+
+void write_vtu(const std::filesystem::path& path, const QuadraticTetMesh& mesh,
+               const std::map<std::string, FieldValues>& point_data,
+               const std::map<std::string, FieldValues>& cell_data) {
+  check_sizes(point_data, mesh.V.size());
+  check_sizes(cell_data, mesh.C.size());
+  VtkXmlWriter(path).mesh(mesh.V, mesh.C, point_data, cell_data);
 }
 
 void write_vtp(const std::filesystem::path& path, const std::vector<Vec3>& points,

@@ -98,9 +98,10 @@ void take_data(vtkFieldData* from, vtkIdType n, const std::vector<vtkIdType>* ke
   }
 }
 
-/// Corners of the tets, every offset and index checked: VTK believes the file. `kept` receives the cell ids.
+/// Corners of the tets, every offset and index checked: VTK believes the file. `kept` receives the cell ids,
+/// `mid_sides` the other nodes of those that have ten.
 void take_tets(const std::filesystem::path& path, vtkUnstructuredGrid* grid, TetMesh& mesh,
-               std::vector<vtkIdType>& kept) {
+               std::vector<vtkIdType>& kept, std::vector<detail::MidSideNodes>& mid_sides) {
   const vtkIdType n_points = grid->GetNumberOfPoints(), n_cells = grid->GetNumberOfCells();
   vtkUnsignedCharArray* types = grid->GetCellTypesArray();
   vtkCellArray* cells = grid->GetCells();
@@ -118,13 +119,14 @@ void take_tets(const std::filesystem::path& path, vtkUnstructuredGrid* grid, Tet
     const double begin = offsets->GetComponent(c, 0), end = offsets->GetComponent(c + 1, 0);
     if (!(begin >= 0 && end >= begin && end <= n_indices)) refuse(c, "offsets do not ascend within the connectivity");
     if (end - begin != (type == VTK_TETRA ? 4 : 10)) refuse(c, "a tet with a wrong number of points");
-    Tet tet;
-    for (int k = 0; k < 4; ++k) {
+    QuadraticTet tet{};
+    for (int k = 0; k < static_cast<int>(end - begin); ++k) {
       const double v = connectivity->GetComponent(static_cast<vtkIdType>(begin) + k, 0);
       if (!(v >= 0 && v < static_cast<double>(n_points))) refuse(c, "a point index out of range");
       tet[k] = static_cast<int>(v);
     }
-    mesh.C.push_back(tet);
+    mesh.C.push_back({tet[0], tet[1], tet[2], tet[3]});
+    if (type == VTK_QUADRATIC_TETRA) mid_sides.push_back({tet[4], tet[5], tet[6], tet[7], tet[8], tet[9]});
     kept.push_back(c);
   }
 }
@@ -152,7 +154,8 @@ MeshFile detail::read_vtu(const std::filesystem::path& path) {
   }
   MeshFile file;
   std::vector<vtkIdType> kept;
-  take_tets(path, grid, file.mesh, kept);
+  std::vector<MidSideNodes> mid_sides;
+  take_tets(path, grid, file.mesh, kept, mid_sides);
   if (file.mesh.C.empty()) throw MeshFileRefused(path, "", "no tets in this file");
   file.mesh.V.resize(static_cast<std::size_t>(grid->GetNumberOfPoints()));
   for (std::size_t i = 0; i < file.mesh.V.size(); ++i) {
@@ -160,9 +163,9 @@ MeshFile detail::read_vtu(const std::filesystem::path& path) {
   }
   take_data(grid->GetPointData(), grid->GetNumberOfPoints(), nullptr, file.point_data);
   take_data(grid->GetCellData(), grid->GetNumberOfCells(), &kept, file.cell_data);
-  refuse_broken_tets(
-      path, file.mesh, [](std::size_t v) { return static_cast<std::int64_t>(v); },
-      [&](std::size_t t) { return static_cast<std::int64_t>(kept[t]); });
+  const auto point_number = [](std::size_t v) { return static_cast<std::int64_t>(v); };
+  refuse_broken_tets(path, file.mesh, point_number, [&](std::size_t t) { return static_cast<std::int64_t>(kept[t]); });
+  take_mid_sides(path, file, mid_sides, point_number);
   drop_unused_vertices(file);
   return file;
 }

@@ -10,12 +10,15 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <numeric>
 #include <random>
 #include <sstream>
 #include <string>
 #include <system_error>
 
+#include "mesh/quadratic_tets.h"
 #include "mesh/skin.h"
+#include "tests/support/domains.h"
 #include "tests/support/tet_shapes.h"
 
 namespace umtet {
@@ -130,7 +133,7 @@ TEST(TetMeshIo, OtherElementsUnusedVerticesAndMiddleNodesAreLeftOut) {
       "1 2 3 4 5 6 7 8 9 10 0\nEnd\n";
   const MeshFile medit = read_tet_mesh(with_bytes("p2.mesh", quadratic));
   EXPECT_EQ(medit.mesh.V.size(), 4u);
-  EXPECT_EQ(medit.n_unused_vertices, 6u);
+  EXPECT_EQ(medit.n_unused_vertices, 0u);
 
   const std::string vtu =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\">"
@@ -159,6 +162,64 @@ std::string refusal(const fs::path& path) {
   } catch (const MeshFileRefused& e) {
     return e.what();
   }
+}
+
+/// One tet of second order whose mid-sides say between which corners they are, and a vertex in no tet before it.
+const std::array<Vec3, 10> kTenNodes = {
+    {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}}};
+
+TEST(TetMeshIo, TetsOfTenNodesAreReadInTheOrderOfVtk) {
+  const std::string msh22 =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n11\n1 9 9 9\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n6 1 0 1\n"
+      "7 0 1 1\n8 0 0 0\n9 2 0 0\n10 0 2 0\n11 0 0 2\n$EndNodes\n"
+      "$Elements\n1\n1 11 2 0 0 8 9 10 11 2 3 4 5 7 6\n$EndElements\n";
+  const std::string msh41 =
+      "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 11 1 11\n3 1 0 11\n1\n2\n3\n4\n5\n6\n7\n8\n9\n10\n11\n"
+      "9 9 9\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n0 1 1\n0 0 0\n2 0 0\n0 2 0\n0 0 2\n$EndNodes\n"
+      "$Elements\n1 1 1 1\n3 1 11 1\n1 8 9 10 11 2 3 4 5 7 6\n$EndElements\n";
+  const std::string medit =
+      "MeshVersionFormatted 2\nDimension 3\nVertices\n11\n9 9 9 0\n1 0 0 0\n1 1 0 0\n0 1 0 0\n0 0 1 0\n1 0 1 0\n"
+      "0 1 1 0\n0 0 0 0\n2 0 0 0\n0 2 0 0\n0 0 2 0\nTetrahedraP2\n1\n8 9 10 11 2 3 4 5 6 7 0\nEnd\n";
+  for (const auto& [name, bytes] :
+       {std::pair{"q22.msh", msh22}, std::pair{"q41.msh", msh41}, std::pair{"q.mesh", medit}}) {
+    SCOPED_TRACE(name);
+    const MeshFile file = read_tet_mesh(with_bytes(name, bytes));
+    ASSERT_TRUE(file.quadratic);
+    EXPECT_EQ(file.mesh.V.size(), 4u);
+    EXPECT_EQ(file.n_unused_vertices, 1u);
+    for (int n = 0; n < 10; ++n) EXPECT_EQ(file.quadratic->V[file.quadratic->C.at(0)[n]], kTenNodes[n]) << n;
+    fs::remove(scratch(name));
+  }
+}
+
+TEST(TetMeshIo, MeshesOfSecondOrderReadBackBitEqual) {
+  const Shape shape = sample();
+  QuadraticTetMesh mesh = quadratic_tets(shape.mesh, {}, testing::sphere(), 1).mesh;
+  std::vector<double> id(mesh.V.size()), of_tets(mesh.C.size(), 3.);
+  std::iota(id.begin(), id.end(), 0.);
+  const fs::path path = scratch("second.vtu");
+  write_vtu(path, mesh, {{"id", id}}, {{"three", of_tets}});
+  const MeshFile file = read_tet_mesh(path);
+  EXPECT_TRUE(bit_equal(file.mesh.V, shape.mesh.V));
+  EXPECT_EQ(file.mesh.C, shape.mesh.C);
+  ASSERT_TRUE(file.quadratic);
+  EXPECT_TRUE(bit_equal(file.quadratic->V, mesh.V));
+  EXPECT_EQ(file.quadratic->C, mesh.C);
+  EXPECT_EQ(file.n_unused_vertices, 0u);
+  id.resize(shape.mesh.V.size());
+  EXPECT_EQ(std::get<std::vector<double>>(file.point_data.at("id")), id);
+  EXPECT_EQ(std::get<std::vector<double>>(file.cell_data.at("three")), of_tets);
+
+  mesh.C[1][4] = mesh.C[0][0];  // no mid-side, but a corner
+  write_vtu(path, mesh, {}, {});
+  EXPECT_NE(refusal(path).find("node 0: it is a mid-side of one tet and a corner of another"), std::string::npos)
+      << refusal(path);
+  mesh.C[1][4] = mesh.C[0][4];
+  mesh.V[mesh.C[0][4]].y() = std::nan("");
+  write_vtu(path, mesh, {}, {});
+  EXPECT_NE(refusal(path).find("not a finite number"), std::string::npos) << refusal(path);
+  EXPECT_THROW(write_vtu(path, mesh, {{"id", id}}, {}), std::invalid_argument);
+  fs::remove(path);
 }
 
 TEST(TetMeshIo, LyingFilesAreRefusedWithPathPlaceAndReason) {
