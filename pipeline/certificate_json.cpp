@@ -82,6 +82,24 @@ std::string boundary_line(const Json& b) {
   return line;
 }
 
+/// What is true of tets of second order; empty for others.
+std::string second_order_lines(const Json& c) {
+  if (!c.contains("second_order") || !c["second_order"].is_object()) return "";
+  const Json& s = c["second_order"];
+  std::string out = fmt::format("order 2   {} nodes, volume {}; least Jacobian {} of its mean, {} not positive\n",
+                                thousands(s.at("n_nodes")), show(s, "volume", "{:.9g}"),
+                                show(s, "min_scaled_jacobian", "{:.3f}"),
+                                s.at("n_nonpositive_jacobians").get<std::size_t>());
+  if (s.at("max_mid_side_distance_over_h").is_number()) {
+    out += fmt::format("          off psi = 0: mid-sides {} h, faces {} h (rms {} h)",
+                       show(s, "max_mid_side_distance_over_h", "{:.1e}"), show(s, "max_face_distance_over_h", "{:.1e}"),
+                       show(s, "rms_face_distance_over_h", "{:.1e}"));
+    const std::size_t n = s.at("n_mid_sides_off_surface");
+    out += n > 0 ? fmt::format("; {} mid-sides are NOT on it\n", thousands(n)) : "\n";
+  }
+  return out;
+}
+
 /// Which places are thinner than the mesh can show; empty if there are none.
 std::string thin_lines(const Json& c) {
   const Json places = c.value("/resolution/too_thin"_json_pointer, Json::array());
@@ -136,7 +154,7 @@ std::string summary(const Json& c) {
   out += fmt::format("          dihedral angles {} to {} degrees, {} inverted tets\n",
                      show(q, "dihedral_min_deg", "{:.1f}"), show(q, "dihedral_max_deg", "{:.1f}"),
                      q.at("n_inverted").get<std::size_t>());
-  out += "boundary  " + boundary_line(c.at("boundary")) + "\n";
+  out += "boundary  " + boundary_line(c.at("boundary")) + "\n" + second_order_lines(c);
   if (c.contains("domain")) {
     const Json& d = c["domain"];
     out += fmt::format("domain    psi = 0 has {} pieces, {} dropped", d.at("components_of_zero_set").get<int>(),

@@ -9,6 +9,7 @@
 #include "pipeline/exit_code.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/mesh_measures.h"
+#include "pipeline/second_order.h"
 #include "pipeline/version.h"
 
 namespace umtet {
@@ -23,12 +24,27 @@ Domain domain_of_case(const fs::path& root) {
   return load_domain(paths, parameters);
 }
 
+Json check_second_order(const QuadraticTetMesh& mesh, const CertificateInput& corners, double h,
+                        std::vector<std::string>& reasons) {
+  SecondOrderInput input;
+  input.mesh = &mesh;
+  input.h = h;
+  input.psi = corners.psi;
+  input.coordinate_rounding = corners.coordinate_rounding;
+  input.keep_going = corners.keep_going;
+  const SecondOrderCertificate certificate = certify_second_order(input);
+  for (const std::string& reason : failures(certificate)) reasons.push_back(reason);
+  stop_if_interrupted();
+  return to_json(certificate);
+}
+
 }  // namespace
 
 Json check_mesh(const fs::path& file, const std::optional<fs::path>& against, const Parameters& parameters,
                 Progress& progress) {
   progress.report("check", "read", 0);
-  TetMesh mesh = read_tet_mesh(file).mesh;
+  MeshFile content = read_tet_mesh(file);
+  TetMesh& mesh = content.mesh;
   if (mesh.C.empty()) throw MeshFileRefused(file, "the whole file", "it has no tets");
   progress.detail(fmt::format("check: {} tets, {} vertices", mesh.C.size(), mesh.V.size()));
   CertificateInput input;
@@ -38,6 +54,9 @@ Json check_mesh(const fs::path& file, const std::optional<fs::path>& against, co
   if (against) {
     domain.emplace(domain_of_case(*against));
     for (Vec3& x : mesh.V) x -= domain->shift;
+    if (content.quadratic) {
+      for (Vec3& x : content.quadratic->V) x -= domain->shift;
+    }
     const StageState state = inspect_stage(CasePaths{*against}, Stage::Mesh, Json::object(), std::nullopt);
     // Without a mesh of its own the case says nothing about h: the mesh's own edge length is the unit then.
     if (state.record) {
@@ -53,6 +72,8 @@ Json check_mesh(const fs::path& file, const std::optional<fs::path>& against, co
   const MeshCertificate certificate = certify(input);
   std::vector<std::string> reasons = failures(certificate);
   stop_if_interrupted();
+  Json second = nullptr;
+  if (content.quadratic) second = check_second_order(*content.quadratic, input, certificate.h, reasons);
   const double min_quality = parameters.real("output.min_quality");
   if (certificate.quality.min < min_quality) {
     reasons.push_back(
@@ -62,6 +83,8 @@ Json check_mesh(const fs::path& file, const std::optional<fs::path>& against, co
   const std::string& units = parameters.text("output.units");
   json["units"] = units.empty() ? Json(nullptr) : Json(units);
   json.update(to_json(certificate));
+  json["order"] = content.quadratic ? 2 : 1;
+  json["second_order"] = second;
   json["verdict"] = reasons.empty() ? "pass" : "fail";
   json["reasons"] = reasons;
   return json;

@@ -97,7 +97,7 @@ Parser::Parser() {
   evolve.add_option("--clouds", in_.clouds, "a text file with the path of a cloud a line, instead of --implicit");
   evolve.add_option("--t", in_.times, "FROM:STEP:TO, the times; --implicit may have t in it");
   evolve.add_option("--skip", in_.skip, "times to leave out: --skip 3.1,3.4");
-  add_parameter_flags(evolve, {"cloud", "reconstruct", "mesh", "output"}, {"mesh.keep_iterates"});
+  add_parameter_flags(evolve, {"cloud", "reconstruct", "mesh", "output"}, {"mesh.keep_iterates", "mesh.order"});
 
   CLI::App& inspect = add_command("inspect", "What is in a cloud, and what is likely to go wrong with it");
   inspect.add_option("CLOUD", in_.input, "points: .ply, .pcd, .xyz")->required();
@@ -283,6 +283,7 @@ void Parser::finish_evolve() {
   read_parameters();
   const bool formula = !result_.request.parameters.text("mesh.implicit").empty();
   if (formula != in_.clouds.empty()) throw UsageError("evolve: give --implicit EXPR with --box, or --clouds LIST");
+  if (result_.request.parameters.integer("mesh.order") != 1) throw UsageError("evolve: mesh.order must be 1");
   if (in_.output.empty()) throw UsageError("evolve: -o FOLDER is missing");
   result_.evolve.folder = in_.output;
   result_.evolve.clouds = in_.clouds;

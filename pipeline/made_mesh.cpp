@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "mesh/surface_distance.h"
-#include "mesh/tet_mesh_io.h"
 #include "pipeline/artefact.h"
 #include "pipeline/interrupt.h"
 
@@ -22,15 +21,6 @@ const char* remedy(UmStatus status) {
   }
 }
 
-std::vector<double> support(const Domain& domain, const UmResult& result) {
-  std::vector<Vec3> x;
-  for (const int i : result.submesh.positive_vertices) x.push_back(result.final[i]);
-  const std::vector<double> d = nearest_sample_distances(x, domain.cloud.points, not_interrupted);
-  std::vector<double> all(result.final.size(), -1);
-  for (std::size_t k = 0; k < d.size(); ++k) all[result.submesh.positive_vertices[k]] = d[k];
-  return all;
-}
-
 }  // namespace
 
 void round_to_file(UmResult& result, const Vec3& shift) {
@@ -39,12 +29,29 @@ void round_to_file(UmResult& result, const Vec3& shift) {
   }
 }
 
-void write_mesh(const fs::path& file, const Domain& domain, const UmResult& result, const std::vector<Vec3>& V) {
+void set_support(const Domain& domain, const std::vector<Vec3>& V, const std::vector<int>& vertices,
+                 std::vector<double>& support) {
+  std::vector<Vec3> x;
+  for (const int i : vertices) x.push_back(V[i]);
+  const std::vector<double> d = nearest_sample_distances(x, domain.cloud.points, not_interrupted);
+  for (std::size_t k = 0; k < d.size(); ++k) support[vertices[k]] = d[k];
+}
+
+MeshFile mesh_content(const Domain& domain, const UmResult& result, const std::vector<Vec3>& V) {
   TetMesh mesh{V, result.submesh.mesh.C};
   for (Vec3& x : mesh.V) x += domain.shift;
   MeshFile content =
       with_standard_data(std::move(mesh), result.submesh.background_vertex, result.submesh.background_tet);
-  if (&V == &result.final && !domain.cloud.points.empty()) content.point_data["support"] = support(domain, result);
+  if (&V == &result.final && !domain.cloud.points.empty()) {
+    std::vector<double> support(V.size(), -1);
+    set_support(domain, V, result.submesh.positive_vertices, support);
+    content.point_data["support"] = std::move(support);
+  }
+  return content;
+}
+
+void write_mesh(const fs::path& file, const Domain& domain, const UmResult& result, const std::vector<Vec3>& V) {
+  const MeshFile content = mesh_content(domain, result, V);
   write_artefact(file, [&](const fs::path& temporary) { write_vtu(temporary, content); });
 }
 

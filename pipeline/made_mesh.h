@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/tet_mesh_io.h"
 #include "mesh/universal_mesh.h"
 #include "pipeline/domain.h"
 
@@ -12,6 +13,13 @@ namespace umtet {
 /// Makes the vertices those that a file will hold, in working coordinates: it stores x + shift, rounded, and taking the
 /// shift off again is exact (far_origin_shift). From here on that is the mesh: it is this one that is measured.
 void round_to_file(UmResult& result, const Vec3& shift);
+
+/// What is in the file of write_mesh(), below. \throw MeshCancelled
+MeshFile mesh_content(const Domain& domain, const UmResult& result, const std::vector<Vec3>& V);
+
+/// Distances of some vertices to their nearest samples, into their places of `support`. \throw MeshCancelled
+void set_support(const Domain& domain, const std::vector<Vec3>& V, const std::vector<int>& vertices,
+                 std::vector<double>& support);
 
 /// omega_h with its vertices at V, in model coordinates, with ids of the background; of a cloud's final mesh also the
 /// distance of each boundary vertex to the nearest sample (`support`, -1 inside): what is data and what is a guess.

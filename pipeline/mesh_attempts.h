@@ -1,9 +1,11 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "mesh/quadratic_tets.h"
 #include "mesh/universal_mesh.h"
 #include "pipeline/edge_length.h"
 #include "pipeline/record.h"
@@ -15,6 +17,7 @@ namespace umtet {
 struct MeshAttempt {
   double h = 0;  ///< edge length of the background mesh, model units
   UmResult result;
+  std::optional<SecondOrder> second;        ///< the mesh with curved edges, if mesh.order = 2
   Json measured;                            ///< of measure(); null when there is no mesh
   ThinPlaces thin;                          ///< what h is too large for
   std::vector<std::vector<Vec3>> iterates;  ///< the vertices after every pass, where they are kept

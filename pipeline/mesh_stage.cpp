@@ -14,6 +14,7 @@
 #include "pipeline/memory.h"
 #include "pipeline/mesh_attempts.h"
 #include "pipeline/mesh_measures.h"
+#include "pipeline/second_order.h"
 #include "pipeline/stages.h"
 #include "pipeline/too_thin.h"
 
@@ -49,6 +50,7 @@ class MeshStage {
 
  private:
   MeshAttempt attempt(double h);
+  void curve(MeshAttempt& a);
   MeshAttempt attempt_for_tets(double h);
   const ZeroSetChoice& pieces_at(double h);
   EdgeLength enough_for(const ThinPlaces& thin);
@@ -218,9 +220,22 @@ MeshAttempt MeshStage::attempt(double h) {
     a.measured["resolution"]["too_thin"] = to_json(a.thin, domain_.shift);
     check_deviation(context_.parameters.real("mesh.max_deviation"), a.measured);
     check_lost(a, domain_.shift);
+    curve(a);
     stop_if_interrupted();
   }
   return a;
+}
+
+void MeshStage::curve(MeshAttempt& a) {
+  const std::int64_t order = context_.parameters.integer("mesh.order");
+  a.measured["order"] = order;
+  a.measured["second_order"] = nullptr;
+  if (order < 2) return;
+  stop_if_interrupted();
+  context_.progress.report("mesh", "second order", .95);
+  const ClosestPointParams params = um_params(context_.parameters).closest_point;
+  a.second = curved_mesh(domain_, a.result, a.h, params, not_interrupted);
+  measure_second_order(domain_, *a.second, a.h, a.measured, not_interrupted);
 }
 
 /// The estimate behind --tets knows the shape from a few thousand samples. Where it is far off, the number of tets at
@@ -274,7 +289,12 @@ void MeshStage::write_outputs(const MeshAttempt& best) {
   for (std::size_t k = 0; k < best.iterates.size(); ++k)
     write_output(fmt::format("pass_{}.vtu", k + 1), result, best.iterates[k]);
   write_output("projected.vtu", result, result.projected);
-  write_output("mesh.vtu", result, result.final);
+  if (best.second) {
+    write_second_order(context_.paths.folder(Stage::Mesh) / "mesh.vtu", domain_, result, *best.second);
+    outputs_.emplace_back("mesh.vtu");
+  } else {
+    write_output("mesh.vtu", result, result.final);
+  }
   write_artefact(context_.paths.folder(Stage::Mesh) / "quality.csv", [&](const fs::path& temporary) {
     write_quality_csv(temporary, quality_curves(result.submesh.mesh.C, result.submesh.positive_vertices, omega_h,
                                                 result.projected, result.final));

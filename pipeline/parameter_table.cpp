@@ -134,6 +134,7 @@ std::vector<ParamField> make_fields() {
        {"fast", "paper"},
        "fast: chosen labels, p-norm smoothing of a shell, repair; paper: Algorithms 1-3 of the paper, by default with random directions (Section 3.8(d)) and Newton projection; "
        "--set mesh.directions=axes and --set mesh.closest_point=paper give Sections 3.2 and 3.8(a)"},
+      {"mesh.order", "--order", whole(1), 1, 2, {}, "of the tets; 2: ten nodes, mid-sides of boundary edges on psi = 0"},
       {"mesh.target_quality", "", um.fast.smoothing.target, .1, .9, {}, "mean ratio below which tets are worked on (mode = fast)"},
       {"mesh.projection_passes", "", whole(um.projection_passes), 1, 1000, {}, "N_P (this and below: mode = paper)"},
       {"mesh.relaxation_iterations", "", whole(um.relaxation_iterations), 0, 100000, {}, "N_R"},

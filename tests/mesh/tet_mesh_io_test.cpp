@@ -373,7 +373,7 @@ TEST(TetMeshIo, MeshioReadsOurFiles) {
   for (const Format& format : formats()) {
     const fs::path path = scratch(format.name);
     format.write(path, shape);
-    command += " " + path.string();
+    command.append(" ").append(path.string());
     expected += counts + std::to_string(format.name == "a.vtu" ? 0 : shape.boundary.size()) +
                 (format.name.ends_with(".msh") ? " [('body', 1, 3), ('boundary', 2, 2)]\n" : " []\n");
   }

@@ -112,6 +112,43 @@ TEST_F(Program, CheckJudgesAnyMesh) {
   EXPECT_EQ(run("check none.vtu").code, 7);
 }
 
+TEST_F(Program, SecondOrderIsMadeCertifiedAndChecked) {
+  const Result made = run("run egg.ply -o egg --tets 3000 --order 2 --threads 1 --json");
+  ASSERT_EQ(made.code, 0) << made.err;
+  const Json c = Json::parse(made.out)["certificate"];
+  EXPECT_EQ(c["order"], 2);
+  const Json& second = c["second_order"];
+  EXPECT_EQ(second["n_nonpositive_jacobians"], 0);
+  EXPECT_EQ(second["n_mid_sides_off_surface"], 0);
+  EXPECT_GT(second["min_scaled_jacobian"], .5);
+  EXPECT_EQ(2 * second["n_boundary_mid_sides"].get<int>(), 3 * c["n_positive_faces"].get<int>());
+  EXPECT_LT(second["rms_face_distance_over_h"].get<double>(),
+            .1 * c["boundary"]["max_centroid_distance_over_h"].get<double>());
+  const double volume = c["volume"], curved = second["volume"];
+  EXPECT_GT(curved, volume);  // chords of a convex body are inside
+
+  const Result checked = run("check --json --against egg egg/3-mesh/mesh.vtu");
+  ASSERT_EQ(checked.code, 0) << checked.err;
+  Json same = Json::parse(checked.out)["check"]["second_order"];
+  for (const auto& [key, value] : same.items()) EXPECT_EQ(value, second[key]) << key;
+  const std::string mesh = content(folder / "egg/3-mesh/mesh.vtu");
+  ASSERT_EQ(run("run egg.ply -o egg2 --tets 3000 --order 2 --threads 3").code, 0);
+  EXPECT_EQ(content(folder / "egg2/3-mesh/mesh.vtu"), mesh);
+
+  const Result again = run("mesh egg --order 1 --json");
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_TRUE(Json::parse(again.out)["certificate"]["second_order"].is_null());
+  EXPECT_EQ(Json::parse(again.out)["certificate"]["volume"], volume);
+
+  std::ofstream(folder / "bad.mesh") << "MeshVersionFormatted 2\nDimension 3\nVertices\n10\n0 0 0 0\n2 0 0 0\n0 2 0 0\n"
+                                        "0 0 2 0\n1.8 0 0 0\n1 1 0 0\n0 1 0 0\n0 0 1 0\n1 0 1 0\n0 1 1 0\n"
+                                        "TetrahedraP2\n1\n1 2 3 4 5 6 7 8 9 10 1\nEnd\n";
+  const Result bad = run("check bad.mesh");
+  EXPECT_EQ(bad.code, 6);
+  EXPECT_NE(bad.out.find("1 tets of second order have a Jacobian"), std::string::npos) << bad.out;
+  EXPECT_EQ(run("evolve --implicit 'x^2+y^2+z^2-1' --box=-2,-2,-2,2,2,2 --h .3 --t 0:1:1 -o e --set mesh.order=2").code, 2);
+}
+
 TEST_F(Program, TheCommonFlagsAreUnderstoodByEveryCommand) {
   ASSERT_EQ(run(ball + "-v --progress none --threads 1").code, 0);
   for (const std::string command : {"check ball/3-mesh/mesh.vtu", "export ball --format stl"}) {

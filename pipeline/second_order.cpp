@@ -1,0 +1,79 @@
+#include "pipeline/second_order.h"
+
+#include "pipeline/artefact.h"
+#include "pipeline/edge_length.h"
+#include "pipeline/made_mesh.h"
+
+namespace umtet {
+namespace fs = std::filesystem;
+
+SecondOrder curved_mesh(const Domain& domain, const UmResult& result, double h, const ClosestPointParams& params,
+                        const KeepGoing& keep_going) {
+  SecondOrderParams second;
+  second.closest_point = params;
+  SecondOrder curved = quadratic_tets({result.final, result.submesh.mesh.C}, result.submesh.positive_faces,
+                                      domain.psi(), h, second, keep_going);
+  for (std::size_t i = result.final.size(); i < curved.mesh.V.size(); ++i) {
+    Vec3& x = curved.mesh.V[i];
+    x = (x + domain.shift) - domain.shift;
+  }
+  return curved;
+}
+
+Json to_json(const SecondOrderCertificate& c) {
+  const auto or_null = [](const std::optional<double>& v) { return v ? Json(*v) : Json(nullptr); };
+  return {{"n_nodes", c.n_nodes},
+          {"volume", c.volume},
+          {"min_scaled_jacobian", c.min_scaled_jacobian_lower},
+          {"min_scaled_jacobian_upper", c.min_scaled_jacobian_upper},
+          {"n_nonpositive_jacobians", c.n_nonpositive_jacobians},
+          {"n_torn_edges", c.n_torn_edges},
+          {"n_boundary_mid_sides", c.n_boundary_mid_sides},
+          {"n_mid_sides_off_surface", c.n_mid_sides_off_surface},
+          {"max_mid_side_distance_over_h", or_null(c.max_mid_side_distance_over_h)},
+          {"max_face_distance_over_h", or_null(c.max_face_distance_over_h)},
+          {"rms_face_distance_over_h", or_null(c.rms_face_distance_over_h)}};
+}
+
+void measure_second_order(const Domain& domain, const SecondOrder& second, double h, Json& measured,
+                          const KeepGoing& keep_going) {
+  SecondOrderInput input;
+  input.mesh = &second.mesh;
+  input.h = h;
+  input.psi = domain.psi();
+  input.coordinate_rounding = coordinate_rounding(domain);
+  input.keep_going = keep_going;
+  const SecondOrderCertificate certificate = certify_second_order(input);
+  Json block = to_json(certificate);
+  block["n_mid_sides_put_back"] = second.off_surface.size();
+  block["n_mid_sides_unprojected"] = second.n_unprojected;
+  block["n_mid_sides_slid"] = second.n_slid;
+  block["n_mid_sides_relaxed"] = second.n_relaxed;
+  measured["second_order"] = std::move(block);
+  for (const std::string& reason : failures(certificate, second.off_surface.size())) {
+    measured["reasons"].push_back(reason);
+  }
+}
+
+void write_second_order(const fs::path& file, const Domain& domain, const UmResult& result, const SecondOrder& second) {
+  QuadraticTetMesh mesh = second.mesh;
+  for (Vec3& x : mesh.V) x += domain.shift;
+  MeshFile content = mesh_content(domain, result, result.final);
+  for (auto& [name, any] : content.point_data) {
+    std::visit(
+        [&](auto& values) {
+          using Value = typename std::decay_t<decltype(values)>::value_type;
+          values.resize(mesh.V.size(), std::is_signed_v<Value> ? Value(-1) : Value(0));
+        },
+        any);
+  }
+  auto& boundary = std::get<std::vector<std::uint8_t>>(content.point_data.at("boundary"));
+  for (const int m : second.boundary_mid_sides) boundary[m] = 1;
+  if (const auto support = content.point_data.find("support"); support != content.point_data.end()) {
+    set_support(domain, second.mesh.V, second.boundary_mid_sides, std::get<std::vector<double>>(support->second));
+  }
+  write_artefact(file,
+                 [&](const fs::path& temporary) { write_vtu(temporary, mesh, content.point_data, content.cell_data); });
+}
+
+}  // namespace umtet
