@@ -68,6 +68,8 @@ Failure failure_of(const std::exception_ptr& error) {
     return {ExitCode::MeshingImpossible, e.what(), e.evidence};
   } catch (const MeshingImpossible& e) {
     return {ExitCode::MeshingImpossible, e.what()};
+  } catch (const CertificateFailed& e) {
+    return {ExitCode::GateFailed, e.what()};
   } catch (const ArtefactDamaged& e) {
     return {ExitCode::ArtefactCorrupt, e.what()};
   } catch (const ResourceLimit& e) {

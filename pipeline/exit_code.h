@@ -37,6 +37,10 @@ struct TooThin : MeshingImpossible {
       : MeshingImpossible(message), evidence(std::move(evidence)) {}
   nlohmann::ordered_json evidence;  ///< too_thin: of to_json(ThinPlaces); h_enough: for all of them, or null
 };
+/// A mesh was made, but its certificate says no; what() has the first reason.
+struct CertificateFailed : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 /// A file of the case is not what its record says, or what its format asks for.
 struct ArtefactDamaged : std::runtime_error {
   using std::runtime_error::runtime_error;

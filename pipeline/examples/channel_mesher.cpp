@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <exception>
 #include <stdexcept>
 
 #include "mesh/a15_box.h"
@@ -55,7 +56,7 @@ FluidMesh ChannelMesher::mesh(ImplicitFunctionRef fluid) const {
                                                .psi = fluid,
                                                .wall_faces = &made.walls,
                                                .background_V = &omega_h.mesh.V});
-  if (const auto reasons = failures(certificate); !reasons.empty()) throw MeshingImpossible(reasons.front());
+  if (const auto reasons = failures(certificate); !reasons.empty()) throw CertificateFailed(reasons.front());
 
   FluidMesh result{{}, {}, {}, no_slip_};
   for (int i = 0; i < n_vertices(); ++i) result.V.push_back(background_.position(i));
@@ -68,12 +69,16 @@ FluidMesh ChannelMesher::mesh(ImplicitFunctionRef fluid) const {
 }
 
 FluidMesh ChannelMesher::operator()(const Swimmer& swimmer) const {
+  const auto said = [&](const std::exception& error) {
+    return fmt::format("swimmer of t = {:.6g} at z0 = {:.6g}: {}; more --tets resolve more of its shape",
+                       swimmer.time(), swimmer.position(), error.what());
+  };
   try {
     return mesh(Complement(swimmer));
   } catch (const MeshingImpossible& error) {
-    throw MeshingImpossible(
-        fmt::format("swimmer of t = {:.6g} at z0 = {:.6g}: {}; more --tets resolve more of its shape", swimmer.time(),
-                    swimmer.position(), error.what()));
+    throw MeshingImpossible(said(error));
+  } catch (const CertificateFailed& error) {
+    throw CertificateFailed(said(error));
   }
 }
 

@@ -22,7 +22,7 @@ class ChannelMesher {
 
   /// Every mesh is certified.
   /// @param fluid  negative in the fluid: Complement of the body's psi. Vertices of the body are FluidMesh::swimmer
-  /// \throw MeshingImpossible with status and place, or why the certificate fails
+  /// \throw MeshingImpossible with status and place, CertificateFailed with the first reason
   FluidMesh mesh(ImplicitFunctionRef fluid) const;
   FluidMesh operator()(const Swimmer& swimmer) const;  ///< the same; the message has time and place of the swimmer
 

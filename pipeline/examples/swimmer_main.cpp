@@ -4,8 +4,8 @@
 //   umtet_swimmer -o stroke                            300 000 tets, some minutes
 //   umtet_swimmer -o quick --tets 40000 --steps 4      seconds
 //
-// FOLDER: swimmer.csv, swimmer.svg, swimmer.pvd, fields/NNN.vtu. Exit codes are those of umtet, 6 where no flow is
-// found.
+// FOLDER: swimmer.csv, swimmer.svg, swimmer.pvd, fields/NNN.vtu. Exit codes are those of umtet, 6 also where no flow
+// is found.
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>

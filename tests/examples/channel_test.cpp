@@ -118,6 +118,8 @@ TEST(SwimmerProgram, WhatItCannotDoHasItsExitCode) {
   const std::string folder = (std::filesystem::path(::testing::TempDir()) / "umtet_swimmer_thin").string();
   // No vertex of so coarse a channel has two edges between itself, the body and a wall.
   EXPECT_EQ(run("-o " + folder + " --tets 10000 --t0 0 --steps 1"), static_cast<int>(ExitCode::MeshingImpossible));
+  // Edges of 1 fold over the crease between bulge and body: a mesh, but not a good one.
+  EXPECT_EQ(run("-o " + folder + " --tets 40000 --t0 -4 --steps 1"), static_cast<int>(ExitCode::GateFailed));
   std::filesystem::remove_all(folder);
 }
 

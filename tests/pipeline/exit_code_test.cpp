@@ -30,6 +30,11 @@ TEST(ExitCode, WhatIsTooLargeIsAResourceLimit) {
   EXPECT_EQ(failure(ResourceLimit("?")).code, ExitCode::ResourceLimit);
 }
 
+TEST(ExitCode, AMeshThatIsThereButNotCertifiedIsNotOneThatIsNotThere) {
+  EXPECT_EQ(failure(MeshingImpossible("?")).code, ExitCode::MeshingImpossible);
+  EXPECT_EQ(failure(CertificateFailed("?")).code, ExitCode::GateFailed);
+}
+
 TEST(ExitCode, UsageAndFilesKeepTheirs) {
   EXPECT_EQ(failure(UsageError("?")).code, ExitCode::Usage);
   EXPECT_EQ(failure(std::system_error(ENOSPC, std::generic_category())).code, ExitCode::FileTrouble);
