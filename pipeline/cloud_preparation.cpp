@@ -147,10 +147,12 @@ void Preparation::drop_undefined() {
   for (std::size_t i = 0; i < n; ++i) {
     if (cloud_.normals[i].isZero(0)) continue;
     cloud_.points[kept] = cloud_.points[i];
+    if (!cloud_.labels.empty()) cloud_.labels[kept] = cloud_.labels[i];
     cloud_.normals[kept++] = cloud_.normals[i];
   }
   cloud_.points.resize(kept);
   cloud_.normals.resize(kept);
+  if (!cloud_.labels.empty()) cloud_.labels.resize(kept);
   if (kept < n) notice("dropped {} points whose normal cannot be told", n - kept);
   if (kept < kFewestPoints) {
     throw CloudRefused(

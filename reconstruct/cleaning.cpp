@@ -229,6 +229,10 @@ CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params, Ne
   if (has_normals && cloud.normals.size() != cloud.points.size())
     throw std::invalid_argument(
         fmt::format("{} points but {} normals: must be equal", cloud.points.size(), cloud.normals.size()));
+  const bool has_labels = !cloud.labels.empty();
+  if (has_labels && cloud.labels.size() != cloud.points.size())
+    throw std::invalid_argument(
+        fmt::format("{} points but {} labels: must be equal", cloud.points.size(), cloud.labels.size()));
   CleaningReport report;
   std::vector<std::uint32_t>& kept = report.kept;
   for (std::uint32_t i = 0; i < cloud.points.size(); ++i)
@@ -254,9 +258,11 @@ CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params, Ne
   for (std::size_t row = 0; row < kept.size(); ++row) {
     cloud.points[row] = cloud.points[kept[row]];
     if (has_normals) cloud.normals[row] = cloud.normals[kept[row]];
+    if (has_labels) cloud.labels[row] = cloud.labels[kept[row]];
   }
   cloud.points.resize(kept.size());
   if (has_normals) cloud.normals.resize(kept.size());
+  if (has_labels) cloud.labels.resize(kept.size());
   if (neighbours) *neighbours = std::move(left.near);
   return report;
 }

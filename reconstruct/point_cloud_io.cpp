@@ -135,7 +135,7 @@ std::size_t make_unit(std::vector<Vec3>& normals) {
 void drop_unusable(const CloudSource& source, CloudFile& file) {
   OrientedPointCloud& cloud = file.cloud;
   const std::size_t n = cloud.points.size();
-  const bool has_normals = !cloud.normals.empty();
+  const bool has_normals = !cloud.normals.empty(), has_labels = !cloud.labels.empty();
   std::size_t n_kept = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const Vec3& x = cloud.points[i];
@@ -146,6 +146,7 @@ void drop_unusable(const CloudSource& source, CloudFile& file) {
       if (is_missing) ++file.report.n_normals_missing;
       cloud.normals[n_kept] = is_missing ? Vec3::Zero() : cloud.normals[i];
     }
+    if (has_labels) cloud.labels[n_kept] = cloud.labels[i];
     ++n_kept;
   }
   file.report.n_points_dropped = n - n_kept;
@@ -155,10 +156,12 @@ void drop_unusable(const CloudSource& source, CloudFile& file) {
                                file.report.n_points_dropped, n));
   cloud.points.resize(n_kept);
   if (has_normals) cloud.normals.resize(n_kept);
+  if (has_labels) cloud.labels.resize(n_kept);
 }
 
-void put_double(char*& at, double value) {
-  auto bytes = std::bit_cast<std::array<char, sizeof(double)>>(value);
+template <class T>
+void put(char*& at, T value) {
+  auto bytes = std::bit_cast<std::array<char, sizeof(T)>>(value);
   if constexpr (std::endian::native == std::endian::big) std::reverse(bytes.begin(), bytes.end());
   at = std::copy(bytes.begin(), bytes.end(), at);
 }
@@ -192,15 +195,21 @@ void write_ply(std::ostream& out, const OrientedPointCloud& cloud) {
   if (cloud.points.size() != cloud.normals.size())
     throw std::invalid_argument(
         fmt::format("{} points but {} normals: must be equal", cloud.points.size(), cloud.normals.size()));
+  const bool has_labels = !cloud.labels.empty();
+  if (has_labels && cloud.labels.size() != cloud.points.size())
+    throw std::invalid_argument(
+        fmt::format("{} points but {} labels: must be equal", cloud.points.size(), cloud.labels.size()));
   out << "ply\nformat binary_little_endian 1.0\nelement vertex " << cloud.points.size() << '\n';
   for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) out << "property double " << name << '\n';
+  if (has_labels) out << "property int label\n";
   out << "end_header\n";
-  std::array<char, 6 * sizeof(double)> row;
+  std::array<char, 6 * sizeof(double) + sizeof(std::int32_t)> row;
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     char* at = row.data();
     for (const Vec3* v : {&cloud.points[i], &cloud.normals[i]})
-      for (int axis = 0; axis < 3; ++axis) put_double(at, (*v)[axis]);
-    out.write(row.data(), row.size());
+      for (int axis = 0; axis < 3; ++axis) put(at, (*v)[axis]);
+    if (has_labels) put(at, std::int32_t{cloud.labels[i]});
+    out.write(row.data(), at - row.data());
   }
 }
 

@@ -34,6 +34,9 @@ struct CloudFile {
 /// elements before and after `vertex`, comments, CRLF headers. PCD: ascii, binary, binary_compressed. XYZ: 6 columns
 /// x y z nx ny nz separated by blanks, tabs or commas, '#' and '//' comments; a first line with the number of points
 /// (.pts) is checked. Normals are nx ny nz or normal_x normal_y normal_z.
+/// Labels, where there are any, are the property or field `label` (or `patch`), or a column of XYZ behind the others:
+/// whole numbers of 32 bits. A .pts file, or an XYZ file with more than 64 different ones, is refused there: its last
+/// column is an intensity or a colour.
 /// Normals are made unit. At least 10 points; duplicates stay.
 ///
 /// No count of a header is believed before it was compared with the size of the file: memory stays below a small
@@ -50,9 +53,9 @@ CloudFile read_point_cloud(const std::filesystem::path& file);
 /// \throw std::system_error    the file cannot be opened or read; names it
 CloudFile read_scan(const std::filesystem::path& file);
 
-/// Binary little-endian PLY, double x y z nx ny nz; read_point_cloud gives the same bits back. The caller owns the
+/// Binary little-endian PLY, double x y z nx ny nz and, where there are labels, int label; read_point_cloud gives the same bits back. The caller owns the
 /// stream and checks it.
-/// \throw std::invalid_argument  not as many normals as points
+/// \throw std::invalid_argument  not as many normals as points, or labels, where there are any
 void write_ply(std::ostream&, const OrientedPointCloud&);
 
 }  // namespace umtet

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace umtet::detail {
 
@@ -38,13 +40,28 @@ CloudColumns cloud_columns(const CloudSource& source, const std::vector<std::str
     if (count(wanted[c]) > 1) refuse(source, fmt::format("the points have {} {} more than once", kind, wanted[c]));
     columns.at[c] = static_cast<std::size_t>(std::find(names.begin(), names.end(), wanted[c]) - names.begin());
   }
+  for (const std::string_view name : {"label", "patch"}) {
+    if (columns.has_labels || count(name) == 0) continue;
+    if (count(name) > 1) refuse(source, fmt::format("the points have {} {} more than once", kind, name));
+    columns.has_labels = true;
+    columns.at[columns.has_normals ? 6 : 3] =
+        static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  }
   return columns;
 }
 
-void append_point(OrientedPointCloud& cloud, const std::vector<double>& values, const CloudColumns& columns) {
+void append_point(const CloudSource& source, OrientedPointCloud& cloud, const std::vector<double>& values,
+                  const CloudColumns& columns) {
   const auto& at = columns.at;
   cloud.points.emplace_back(values[at[0]], values[at[1]], values[at[2]]);
   if (columns.has_normals) cloud.normals.emplace_back(values[at[3]], values[at[4]], values[at[5]]);
+  if (!columns.has_labels) return;
+  const double label = values[columns.label()];
+  if (label != std::trunc(label) || std::abs(label) > std::numeric_limits<int>::max()) {
+    refuse(source, fmt::format("point {} (counted from 1): its label is {}: labels are whole numbers of 32 bits",
+                               cloud.points.size(), label));
+  }
+  cloud.labels.push_back(static_cast<int>(label));
 }
 
 void refuse_surplus(const CloudSource& source, std::size_t offset) {

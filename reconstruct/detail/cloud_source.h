@@ -23,22 +23,27 @@ struct CloudSource {
 /// A piece of a file as it may be shown on a terminal: quoted, clipped to 40 characters, unprintable bytes as '?'.
 std::string in_quotes(std::string_view text);
 
-/// Columns of x, y, z and, where there are any, of the normal.
+/// Columns of x, y, z and, where there are any, of the normal and of the label.
 struct CloudColumns {
-  std::array<std::size_t, 6> at{};
+  std::array<std::size_t, 7> at{};  ///< the label comes right behind what is there of the others
   bool has_normals = true;
+  bool has_labels = false;
 
+  std::size_t label() const { return at[has_normals ? 6 : 3]; }
   const std::size_t* begin() const { return at.data(); }
-  const std::size_t* end() const { return at.data() + (has_normals ? 6 : 3); }
+  const std::size_t* end() const { return at.data() + (has_normals ? 6 : 3) + (has_labels ? 1 : 0); }
 };
 
-/// Where x, y, z and the normal (nx ny nz or normal_x normal_y normal_z) are among `names`.
+/// Where x, y, z, the normal (nx ny nz or normal_x normal_y normal_z) and the label (label, else patch) are among
+/// `names`.
 /// \throw CloudRefused  one of them missing, unless all of the normal are and the source does not need them, or there
 /// twice; `kind` ("property", "field") is the format's word for them
 CloudColumns cloud_columns(const CloudSource& source, const std::vector<std::string>& names, std::string_view kind);
 
-/// Appends the point (x, y, z) and, where there is one, the normal (nx, ny, nz) found in values at columns.
-void append_point(OrientedPointCloud& cloud, const std::vector<double>& values, const CloudColumns& columns);
+/// Appends the point (x, y, z) and, where there are, the normal (nx, ny, nz) and the label found in values at columns.
+/// \throw CloudRefused  the label is not a whole number of 32 bits
+void append_point(const CloudSource& source, OrientedPointCloud& cloud, const std::vector<double>& values,
+                  const CloudColumns& columns);
 
 /// \throw CloudRefused  anything but blanks and NUL padding from `offset` on: then a count of the header is wrong
 void refuse_surplus(const CloudSource& source, std::size_t offset);

@@ -36,7 +36,8 @@ double decode(const PcdField& field, const std::uint8_t* bytes) {
 }
 
 /// @param body  n_points * point_bytes bytes, little endian as all PCD
-OrientedPointCloud decode_points(const PcdHeader& header, const CloudColumns& columns, const std::uint8_t* body) {
+OrientedPointCloud decode_points(const CloudSource& source, const PcdHeader& header, const CloudColumns& columns,
+                                 const std::uint8_t* body) {
   OrientedPointCloud cloud;
   cloud.points.reserve(header.n_points);
   if (columns.has_normals) cloud.normals.reserve(header.n_points);
@@ -44,7 +45,7 @@ OrientedPointCloud decode_points(const PcdHeader& header, const CloudColumns& co
   for (std::size_t i = 0; i < header.n_points; ++i) {
     for (const std::size_t c : columns)
       values[c] = decode(header.fields[c], body + i * header.point_bytes + header.fields[c].offset);
-    append_point(cloud, values, columns);
+    append_point(source, cloud, values, columns);
   }
   return cloud;
 }
@@ -73,7 +74,7 @@ OrientedPointCloud read_ascii(const CloudSource& source, const PcdHeader& header
                          "export it again",
                          lines.line(), tokens.size(), i + 1, header.n_points, n_tokens));
     for (const std::size_t c : columns) values[c] = parse_number(source, lines.line(), tokens[first_token[c]]);
-    append_point(cloud, values, columns);
+    append_point(source, cloud, values, columns);
   }
   refuse_surplus(source, lines.offset());
   return cloud;
@@ -90,13 +91,13 @@ CloudFile read_pcd(const CloudSource& source) {
     case PcdData::Binary: {
       refuse_surplus(source, header.body + header.n_points * header.point_bytes);
       const auto* bytes = reinterpret_cast<const std::uint8_t*>(source.bytes.data());
-      return {decode_points(header, columns, bytes + header.body), {.format = "pcd binary"}};
+      return {decode_points(source, header, columns, bytes + header.body), {.format = "pcd binary"}};
     }
     case PcdData::Compressed:
       break;
   }
   const std::vector<std::uint8_t> points = unpack(source, header);
-  return {decode_points(header, columns, points.data()), {.format = "pcd compressed"}};
+  return {decode_points(source, header, columns, points.data()), {.format = "pcd compressed"}};
 }
 
 }  // namespace umtet::detail

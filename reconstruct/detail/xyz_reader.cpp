@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <utility>
 
 #include "reconstruct/detail/cloud_source.h"
@@ -10,7 +11,9 @@
 namespace umtet::detail {
 namespace {
 
-constexpr std::array<std::size_t, 6> kColumns = {0, 1, 2, 3, 4, 5};  // x y z nx ny nz
+constexpr std::array<std::size_t, 7> kColumns = {0, 1, 2, 3, 4, 5, 6};  // x y z nx ny nz label, or x y z label
+// More different whole numbers in a column without a name are intensities.
+constexpr std::size_t kMostLabels = 64;
 
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
@@ -35,12 +38,32 @@ void refuse_decimal_commas(const CloudSource& source, std::size_t line,
     refuse(source, fmt::format("line {}: {} columns, but {} before: the file is cut short or damaged, export it again",
                                line, n_columns, n_before));
   if (!source.needs_normals)
-    refuse(source, fmt::format("line {}: {} columns, expected x y z or x y z nx ny nz", line, n_columns));
+    refuse(source,
+           fmt::format("line {}: {} columns, expected x y z or x y z nx ny nz, and perhaps a label", line, n_columns));
   if (n_columns == 3)
     refuse(source, fmt::format("line {}: three columns, so the points have no normals: estimate and orient them first, "
                                "for example in CloudCompare or MeshLab, and export x y z nx ny nz",
                                line));
-  refuse(source, fmt::format("line {}: {} columns, expected the six of x y z nx ny nz", line, n_columns));
+  refuse(source,
+         fmt::format("line {}: {} columns, expected the six of x y z nx ny nz, and perhaps a label", line, n_columns));
+}
+
+/// A last column is the label only if nothing speaks against it: scanners write x y z intensity r g b, too.
+void check_labels(const CloudSource& source, const OrientedPointCloud& cloud, bool is_pts) {
+  if (cloud.labels.empty()) return;
+  const char* const remedy = "export x y z nx ny nz and a label, or PLY, where columns have names";
+  if (is_pts) refuse(source, fmt::format("a .pts file with intensities or colours, which are no labels: {}", remedy));
+  std::vector<int> labels = cloud.labels;
+  std::sort(labels.begin(), labels.end());
+  const auto n = static_cast<std::size_t>(std::unique(labels.begin(), labels.end()) - labels.begin());
+  if (n > kMostLabels)
+    refuse(source, fmt::format("the last column has {} different whole numbers, more than the {} that are taken for "
+                               "labels: {}",
+                               n, kMostLabels, remedy));
+  const auto is_unit = [](const Vec3& normal) { return std::abs(normal.stableNorm() - 1) < .1; };
+  const auto n_unit = std::count_if(cloud.normals.begin(), cloud.normals.end(), is_unit);
+  if (2 * static_cast<std::size_t>(n_unit) < cloud.normals.size())
+    refuse(source, fmt::format("seven columns, but the fourth to sixth are no normals: {}", remedy));
 }
 
 }  // namespace
@@ -62,17 +85,20 @@ CloudFile read_xyz(const CloudSource& source) {
     if (may_announce && (announced = parse_count(tokens.front()))) continue;
     refuse_decimal_commas(source, lines.line(), tokens);
     split(line, " \t,", tokens);
-    const bool fits = tokens.size() == 6 || (tokens.size() == 3 && !source.needs_normals);
+    const std::size_t n = tokens.size();
+    const bool fits = n == 6 || n == 7 || ((n == 3 || n == 4) && !source.needs_normals);
     if (!fits || (!row.empty() && tokens.size() != row.size()))
       refuse_columns(source, lines.line(), tokens.size(), fits ? row.size() : 0);
     row.resize(tokens.size());
-    columns.has_normals = row.size() == 6;
+    columns.has_normals = row.size() >= 6;
+    columns.has_labels = row.size() % 3 == 1;
     for (std::size_t c = 0; c < row.size(); ++c) row[c] = parse_number(source, lines.line(), tokens[c]);
-    append_point(file.cloud, row, columns);
+    append_point(source, file.cloud, row, columns);
   }
   if (announced && *announced != file.cloud.points.size())
     refuse(source, fmt::format("the first line announces {} points, {} follow: the file is cut short or was edited",
                                *announced, file.cloud.points.size()));
+  check_labels(source, file.cloud, announced.has_value());
   return file;
 }
 

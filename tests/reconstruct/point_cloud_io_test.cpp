@@ -1,5 +1,6 @@
 #include "reconstruct/point_cloud_io.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -7,6 +8,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
+#include <functional>
 #include <random>
 #include <sstream>
 #include <system_error>
@@ -308,9 +310,77 @@ TEST_F(PointCloudIo, XyzIsReadWithBlanksTabsCommasAndComments) {
   expect_cloud("plus.xyz", replaced(text_, "1", "+1"), cloud_);
 }
 
+/// Rows of the cloud with a last column.
+std::string labelled_rows(const OrientedPointCloud& cloud, const std::function<std::string(int)>& label) {
+  std::istringstream rows(text_rows(cloud));
+  std::string line, text;
+  for (int i = 0; std::getline(rows, line); ++i) text += line + " " + label(i) + "\n";
+  return text;
+}
+
+TEST_F(PointCloudIo, LabelsComeFromEveryFormat) {
+  OrientedPointCloud cloud = cloud_;
+  for (int i = 0; i < 100; ++i) cloud.labels.push_back(i % 7 - 3);
+  const std::string text = labelled_rows(cloud, [&](int i) { return std::to_string(cloud.labels[i]); });
+  std::string binary_ply, binary_pcd;
+  for (int i = 0; i < 100; ++i) {
+    const std::string row = floats_.substr(24 * static_cast<std::size_t>(i), 24);
+    binary_ply += row;
+    put(binary_ply, static_cast<std::int8_t>(cloud.labels[i]));
+    binary_pcd += row;
+    put(binary_pcd, std::int32_t{cloud.labels[i]});
+  }
+  const auto labelled_pcd = [](const std::string& data) {
+    std::string header = pcd(data);
+    for (const auto& [from, to] : {std::pair{"normal_z\n", "normal_z label\n"},
+                                   {"SIZE 4", "SIZE 4 4"},
+                                   {"F F F F F F", "F F F F F F I"},
+                                   {"COUNT 1", "COUNT 1 1"}}) {
+      header.replace(header.find(from), std::string(from).size(), to);
+    }
+    return header;
+  };
+  std::ostringstream ours;
+  write_ply(ours, cloud);
+  const std::vector<std::pair<std::string, std::string>> files = {
+      {"ascii.ply", ply("ascii", "float", "100", "property int label\n") + text},
+      {"patch.ply", ply("ascii", "float", "100", "property float patch\n") + text},
+      {"binary.ply", ply("binary_little_endian", "float", "100", "property char label\n") + binary_ply},
+      {"ours.ply", ours.str()},
+      {"ascii.pcd", labelled_pcd("ascii") + text},
+      {"binary.pcd", labelled_pcd("binary") + binary_pcd},
+      {"seven.xyz", text}};
+  for (const auto& [name, bytes] : files) EXPECT_EQ(read(name, bytes).cloud.labels, cloud.labels) << name;
+  EXPECT_TRUE(read("none.xyz", text_).cloud.labels.empty());
+  // Three coordinates and a label; points that are no numbers go with theirs.
+  std::string four = "nan 0 0 77\n";
+  for (int i = 0; i < 100; ++i) {
+    const Vec3& x = cloud.points[i];
+    four += fmt::format("{} {} {} {}\n", x.x(), x.y(), x.z(), cloud.labels[i]);
+  }
+  EXPECT_EQ(read_scan(write("four.xyz", four)).cloud.labels, cloud.labels);
+  cloud.labels.pop_back();
+  EXPECT_THROW(write_ply(ours, cloud), std::invalid_argument);
+}
+
+TEST_F(PointCloudIo, ColumnsThatAreNoLabelsAreRefused) {
+  const std::string property = "property float label\n";
+  for (const char* label : {"1.5", "nan", "3000000000"}) {
+    const std::string rows = labelled_rows(cloud_, [&](int i) { return i == 4 ? label : "1"; });
+    expect_refused("label.ply", ply("ascii", "float", "100", property) + rows, {"point 5", "label"});
+  }
+  const std::string intensities = labelled_rows(cloud_, [](int i) { return std::to_string(i); });
+  expect_refused("many.xyz", intensities, {"100 different", "64"});
+  EXPECT_EQ(read("many.ply", ply("ascii", "float", "100", "property int label\n") + intensities).cloud.labels[99], 99);
+  expect_refused("leica.pts", "100\n" + labelled_rows(cloud_, [](int) { return "1"; }), {"intensities"});
+  std::string colours;
+  for (const Vec3& x : cloud_.points) colours += fmt::format("{} {} {} 12 200 17 3\n", x.x(), x.y(), x.z());
+  expect_refused("colours.xyz", colours, {"no normals"});
+}
+
 TEST_F(PointCloudIo, MalformedXyzIsRefusedWithTheReason) {
   expect_refused("three.xyz", "1 2 3\n", {"line 1", "no normals"});
-  expect_refused("seven.xyz", "# head\n1 2 3 0 0 1 7\n", {"line 2", "7 columns"});
+  expect_refused("eight.xyz", "# head\n1 2 3 0 0 1 7 8\n", {"line 2", "8 columns"});
   expect_refused("word.xyz", "x y z nx ny nz\n" + text_, {"line 1", "'x'"});
   std::string commas = text_;
   std::replace(commas.begin(), commas.end(), '.', ',');
