@@ -99,6 +99,35 @@ struct TemporaryFile {
   }
 };
 
+fs::path folder_of(const fs::path& file) { return file.parent_path().empty() ? fs::path(".") : file.parent_path(); }
+
+/// A temporary file in the same folder: filled, not empty, and on the disk.
+std::unique_ptr<TemporaryFile> written_beside(const PendingFile& pending) {
+  const fs::path& file = pending.path;
+  auto temporary = std::make_unique<TemporaryFile>();
+  temporary->path =
+      folder_of(file) / (std::string(kTemporaryPrefix) + std::to_string(::getpid()) + "-" + file.filename().string());
+  try {
+    pending.write(temporary->path);
+  } catch (const std::system_error& e) {
+    if (std::string(e.what()).find(file.string()) != std::string::npos) throw;
+    const std::error_code code = e.code() ? e.code() : std::make_error_code(std::errc::io_error);
+    throw std::system_error(code, file.string() + ": not written: " + e.what());
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& e) {
+    fail(EIO, file, std::string("not written: ") + e.what());
+  }
+  std::error_code status;
+  const std::uintmax_t size = fs::file_size(temporary->path, status);
+  if (status) fail(status.value(), file, "not written: the temporary file is gone");
+  if (size == 0) fail(EIO, file, "not written: the temporary file is empty");
+  Descriptor written(temporary->path, O_RDONLY, file);
+  written.sync();
+  written.close();
+  return temporary;
+}
+
 }  // namespace
 
 std::string checksum(std::string_view text) { return digits(XXH3_128bits(text.data(), text.size())); }
@@ -119,30 +148,19 @@ FileStamp stamp(const fs::path& file) {
 }
 
 void write_artefact(const fs::path& file, const std::function<void(const fs::path&)>& writer) {
-  const fs::path folder = file.parent_path().empty() ? fs::path(".") : file.parent_path();
-  TemporaryFile temporary{
-      folder / (std::string(kTemporaryPrefix) + std::to_string(::getpid()) + "-" + file.filename().string())};
-  try {
-    writer(temporary.path);
-  } catch (const std::system_error& e) {
-    if (std::string(e.what()).find(file.string()) != std::string::npos) throw;
-    const std::error_code code = e.code() ? e.code() : std::make_error_code(std::errc::io_error);
-    throw std::system_error(code, file.string() + ": not written: " + e.what());
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& e) {
-    fail(EIO, file, std::string("not written: ") + e.what());
+  write_artefacts({{file, writer}});
+}
+
+void write_artefacts(const std::vector<PendingFile>& files) {
+  std::vector<std::unique_ptr<TemporaryFile>> temporaries;
+  for (const PendingFile& file : files) temporaries.push_back(written_beside(file));
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const fs::path& file = files[i].path;
+    if (::rename(temporaries[i]->path.c_str(), file.c_str()) != 0)
+      fail(errno, file, "cannot rename the temporary file");
+    temporaries[i]->path.clear();
   }
-  std::error_code status;
-  const std::uintmax_t size = fs::file_size(temporary.path, status);
-  if (status) fail(status.value(), file, "not written: the temporary file is gone");
-  if (size == 0) fail(EIO, file, "not written: the temporary file is empty");
-  Descriptor written(temporary.path, O_RDONLY, file);
-  written.sync();
-  written.close();
-  if (::rename(temporary.path.c_str(), file.c_str()) != 0) fail(errno, file, "cannot rename the temporary file");
-  temporary.path.clear();
-  Descriptor(folder, O_RDONLY | O_DIRECTORY, file).sync();
+  for (const PendingFile& file : files) Descriptor(folder_of(file.path), O_RDONLY | O_DIRECTORY, file.path).sync();
 }
 
 void write_text_artefact(const fs::path& file, std::string_view text) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace umtet {
 
@@ -28,6 +29,15 @@ FileStamp stamp(const std::filesystem::path& file);
 /// @param writer  gets the path of the temporary file (same extension); reports its own failures by exceptions.
 /// \throw std::system_error naming `file`, whatever went wrong on the way; the temporary file is then gone
 void write_artefact(const std::filesystem::path& file, const std::function<void(const std::filesystem::path&)>& writer);
+
+/// A file that is to be written, and what fills a temporary file for it.
+struct PendingFile {
+  std::filesystem::path path;
+  std::function<void(const std::filesystem::path&)> write;
+};
+
+/// The same for files that belong together: none takes its place before all of them are written and flushed.
+void write_artefacts(const std::vector<PendingFile>& files);
 
 /// The same for text held in memory; every write is checked.
 void write_text_artefact(const std::filesystem::path& file, std::string_view text);

@@ -81,6 +81,18 @@ TEST_F(Artefact, AFullDiskIsAFailureThatKeepsTheOldFile) {
   EXPECT_EQ(n_files(), 1u);
 }
 
+TEST_F(Artefact, FilesThatBelongTogetherAppearTogether) {
+  const auto text = [](const std::string& content) {
+    return [content](const fs::path& path) { std::ofstream(path) << content; };
+  };
+  const fs::path other = folder / "b.txt";
+  EXPECT_THROW(write_artefacts({{file, text("x")}, {other, text("")}}), std::system_error);  // empty: not written
+  EXPECT_EQ(n_files(), 0u);
+  write_artefacts({{file, text("x")}, {other, text("y")}});
+  EXPECT_EQ(read_text(file) + read_text(other), "xy");
+  EXPECT_EQ(n_files(), 2u);
+}
+
 TEST_F(Artefact, AMissingFolderIsNamed) {
   try {
     write_text_artefact(folder / "no" / "a.txt", "x");
