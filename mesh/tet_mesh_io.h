@@ -67,20 +67,4 @@ void write_vtu(const std::filesystem::path& path, const QuadraticTetMesh& mesh,
 void write_vtp(const std::filesystem::path& path, const std::vector<Vec3>& points,
                const std::map<std::string, FieldValues>& point_data);
 
-enum class MshEncoding { Ascii, Binary };
-
-/// Gmsh 2.2: tets in physical volume 1 "body", boundary triangles in physical surface 2 "boundary".
-/// \throw std::system_error naming the path when writing fails
-void write_msh22(const std::filesystem::path& path, const TetMesh& mesh, const std::vector<Triangle>& boundary,
-                 MshEncoding encoding);
-
-/// Gmsh 4.1: the same, with $Entities (one volume, bounded by one surface). Node numbers are vertex indices + 1.
-/// \throw std::system_error naming the path when writing fails
-void write_msh41(const std::filesystem::path& path, const TetMesh& mesh, const std::vector<Triangle>& boundary,
-                 MshEncoding encoding);
-
-/// MEDIT .mesh, ascii: tets with reference 1, boundary triangles and their vertices with reference 2.
-/// \throw std::system_error naming the path when writing fails
-void write_medit(const std::filesystem::path& path, const TetMesh& mesh, const std::vector<Triangle>& boundary);
-
 }  // namespace umtet

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 
+#include "pipeline/boundary_patches.h"
 #include "pipeline/export_case.h"
 #include "pipeline/version.h"
 
@@ -21,7 +22,7 @@ constexpr const char* kFooter = R"(Examples:
   umtet mesh --implicit 'x^2+y^2+z^2-1' --box -1.2,-1.2,-1.2,1.2,1.2,1.2 --tets 100000 -o ball
   umtet inspect duck.ply                     spacing, noise, normals, thickness; what is likely to go wrong
   umtet check part.msh                       validity and quality of any tet mesh
-  umtet export duck --format msh,stl         files for solvers, in duck/4-export
+  umtet export duck --format inp,vtu         files for solvers, in duck/4-export
   umtet evolve --implicit '(x-t)^2+y^2+z^2-1' --box=-2,-2,-2,4,2,2 --h .1 --t 0:0.5:2 -o moving
 
 Exit codes: 0 all well | 1 a bug of ours | 2 usage | 3 input refused | 4 reconstruction failed
@@ -51,6 +52,7 @@ class Parser {
 
  private:
   CLI::App& add_command(const char* name, const char* description);
+  CLI::Option& add_formats(CLI::App& command, const char* flag);
   void add_parameter_sources(CLI::App& command);
   void add_stage_flags(CLI::App& command);
   void add_parameter_flags(CLI::App& command, const std::vector<std::string>& sections,
@@ -79,16 +81,20 @@ Parser::Parser() {
   run.add_option("CLOUD", in_.input, "oriented points: .ply, .pcd, .xyz; or a case, to resume it");
   run.add_option("--from", in_.from, "first stage that may run: cloud, level-set, mesh");
   run.add_option("--until", in_.until, "last stage to run");
+  add_formats(run, "--export");
   add_parameter_flags(run, {"cloud", "reconstruct", "mesh", "output"}, {"mesh.implicit"});
 
   CLI::App& reconstruct = add_command("reconstruct", "Stage one only: the level set");
   add_stage_flags(reconstruct);
   reconstruct.add_option("CLOUD", in_.input, "oriented points; or a case, to fit again with other parameters");
-  add_parameter_flags(reconstruct, {"cloud", "reconstruct", "output"}, {"output.units", "output.min_quality"});
+  add_parameter_flags(
+      reconstruct, {"cloud", "reconstruct", "output"},
+      {"output.units", "output.min_quality", "output.label_names", "output.label_min_area", "output.patch_angle"});
 
   CLI::App& mesh = add_command("mesh", "Stage two only: from the level set of CASE, or from a formula");
   add_stage_flags(mesh);
   mesh.add_option("CASE", in_.input, "a case with a level set");
+  add_formats(mesh, "--export");
   add_parameter_flags(mesh, {"mesh", "output"});
 
   CLI::App& evolve = add_command("evolve", "A domain that moves: every instant meshed in one background mesh");
@@ -97,7 +103,9 @@ Parser::Parser() {
   evolve.add_option("--clouds", in_.clouds, "a text file with the path of a cloud a line, instead of --implicit");
   evolve.add_option("--t", in_.times, "FROM:STEP:TO, the times; --implicit may have t in it");
   evolve.add_option("--skip", in_.skip, "times to leave out: --skip 3.1,3.4");
-  add_parameter_flags(evolve, {"cloud", "reconstruct", "mesh", "output"}, {"mesh.keep_iterates", "mesh.order"});
+  add_parameter_flags(
+      evolve, {"cloud", "reconstruct", "mesh", "output"},
+      {"mesh.keep_iterates", "mesh.order", "output.label_names", "output.label_min_area", "output.patch_angle"});
 
   CLI::App& inspect = add_command("inspect", "What is in a cloud, and what is likely to go wrong with it");
   inspect.add_option("CLOUD", in_.input, "points: .ply, .pcd, .xyz")->required();
@@ -106,13 +114,17 @@ Parser::Parser() {
   check.add_option("MESH", in_.input, ".vtu, .msh or .mesh")->required();
   check.add_option("--against", in_.against, "a case whose surface the mesh should fit");
   add_parameter_sources(check);
-  add_parameter_flags(check, {"output"}, {"output.max_memory"});
+  add_parameter_flags(check, {"output"},
+                      {"output.max_memory", "output.label_names", "output.label_min_area", "output.patch_angle"});
 
   CLI::App& exports = add_command("export", "Files for solvers and viewers, in CASE/4-export");
   exports.add_option("CASE", in_.input, "a case with a mesh")->required();
-  exports.add_option("--format", in_.formats, fmt::format("{}", fmt::join(export_formats(), ", ")))
-      ->delimiter(',')
-      ->required();
+  add_formats(exports, "--format").required();
+  add_parameter_flags(exports, {"output"}, {"output.units", "output.max_memory", "output.min_quality"});
+}
+
+CLI::Option& Parser::add_formats(CLI::App& command, const char* flag) {
+  return *command.add_option(flag, in_.formats, fmt::format("{}", fmt::join(export_formats(), ", ")))->delimiter(',');
 }
 
 CLI::App& Parser::add_command(const char* name, const char* description) {
@@ -135,7 +147,7 @@ CLI::App& Parser::add_command(const char* name, const char* description) {
   return command;
 }
 
-/// For the commands that have parameters; export has none.
+/// For the commands that take any parameter.
 void Parser::add_parameter_sources(CLI::App& command) {
   command.add_option("--config", in_.config, "TOML file with parameters, such as the case.toml of another case");
   command.add_option("--set", in_.assignments, "any parameter: --set mesh.samples=10; see case.toml for all")
@@ -239,6 +251,9 @@ void Parser::finish(const CLI::App& command) {
     parameters.set(f.key, is_switch ? (in_.switches[f.key] ? "true" : "false") : in_.values[f.key], ParamSource::Flag,
                    f.flag);
   }
+  result_.formats = in_.formats;
+  require_formats(result_.formats);
+  parse_label_names(parameters.text("output.label_names"));
   if (result_.command == "check") {
     result_.action = CommandLine::Action::Check;
     result_.mesh = in_.input;
@@ -250,7 +265,8 @@ void Parser::finish(const CLI::App& command) {
   } else if (result_.command == "export") {
     result_.action = CommandLine::Action::Export;
     result_.request.case_folder = in_.input;
-    result_.formats = in_.formats;
+    const fs::path toml = CasePaths{in_.input}.parameters();
+    if (fs::exists(toml)) parameters.load(toml, ParamSource::Case);
   } else if (result_.command == "evolve") {
     result_.action = CommandLine::Action::Evolve;
     finish_evolve();
@@ -304,6 +320,8 @@ void Parser::finish_stages(const CLI::App& command) {
   }
   if (!in_.from.empty()) request.from = parse_stage(in_.from);
   if (!in_.until.empty()) request.until = parse_stage(in_.until);
+  if (!in_.formats.empty() && request.until != Stage::Mesh)
+    throw UsageError("--export needs a mesh, and --until is before it");
   if (request.from > request.until) throw UsageError("--from " + in_.from + " is after --until " + in_.until);
 
   read_parameters();

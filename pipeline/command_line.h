@@ -17,12 +17,12 @@ struct CommandLine {
   std::string text;     ///< Text: help or version, for stdout
   std::string command;  ///< "run", "reconstruct", "mesh", "inspect", "check", "export", "evolve"
 
-  RunRequest request;                            ///< Stages; Check: its output.* parameters; Export: its case_folder
-  EvolveRequest evolve;                          ///< Evolve, but for its parameters: those of `request`
-  std::filesystem::path mesh;                    ///< Check
-  std::filesystem::path cloud;                   ///< Inspect
+  RunRequest request;           ///< Stages; Check: its output.* parameters; Export: its case_folder and its output.*
+  EvolveRequest evolve;         ///< Evolve, but for its parameters: those of `request`
+  std::filesystem::path mesh;   ///< Check
+  std::filesystem::path cloud;  ///< Inspect
   std::optional<std::filesystem::path> against;  ///< Check
-  std::vector<std::string> formats;              ///< Export
+  std::vector<std::string> formats;              ///< Export, and Stages after which something is exported
 
   bool json = false;
   ProgressMode progress = ProgressMode::Auto;

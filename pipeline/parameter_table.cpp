@@ -166,6 +166,21 @@ std::vector<ParamField> make_fields() {
       {"output.units", "--units", text(""), 0, 0, {}, "name of the model unit, e.g. mm: a label, nothing is converted"},
       {"output.max_memory", "--max-memory", 0., 0, 1e6, {}, "GB that a stage may take; 0: what the machine can give"},
       {"output.min_quality", "--min-quality", 0., 0, 1, {}, "gate: exit 6 when the least mean ratio is below"},
+      {"output.label_names", "--label-names", text(""), 0, 0, {}, "names of labels in exported files: 1=feet,2=head"},
+      {"output.label_min_area",
+       "--label-min-area",
+       -1.,
+       -1,
+       kHuge,
+       {},
+       "smaller islands of a label go, model units squared; -1: what three samples stand for"},
+      {"output.patch_angle",
+       "--patch-angle",
+       0.,
+       0,
+       180,
+       {},
+       "without labels: boundary patches end where faces meet at more degrees; 0: where the surface ends"},
   };
 }
 

@@ -37,8 +37,7 @@ void move_in(const CasePaths& paths, Stage stage) {
 /// 4-export is derived data: it is made again by a call that the user knows.
 void remove_exports(const CasePaths& paths, Progress& progress) {
   std::string removed;
-  for (const std::string& format : export_formats()) {
-    const fs::path file = exported_file(paths, format);
+  for (const fs::path& file : exported_files(paths)) {
     if (fs::remove(file)) removed += (removed.empty() ? "" : ", ") + file.filename().string();
   }
   if (removed.empty()) return;

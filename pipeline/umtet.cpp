@@ -41,8 +41,17 @@ Json names(const std::vector<std::filesystem::path>& files) {
   return list;
 }
 
+std::vector<std::filesystem::path> exports_of(const CommandLine& call, Progress& progress) {
+  const CasePaths paths{call.request.case_folder};
+  const CaseLock lock(paths.root);
+  return export_case(paths, call.formats, call.request.parameters, progress);
+}
+
 Output run_stages(const CommandLine& call, Progress& progress) {
-  const RunOutcome outcome = run_case(call.request, progress);
+  RunOutcome outcome = run_case(call.request, progress);
+  if (!call.formats.empty()) {
+    for (auto& file : exports_of(call, progress)) outcome.files.push_back(std::move(file));
+  }
   progress.clear();
   if (outcome.stages_run.empty()) {
     progress.say(fmt::format("nothing to do: {} is up to date", call.request.case_folder.string()));
@@ -94,10 +103,9 @@ Output run_evolution(const CommandLine& call, Progress& progress) {
 
 Output export_files(const CommandLine& call, Progress& progress) {
   Output output;
-  const CasePaths paths{call.request.case_folder};
-  if (!std::filesystem::exists(paths.root)) throw UsageError(paths.root.string() + ": there is no such case");
-  const CaseLock lock(paths.root);
-  const std::vector<std::filesystem::path> files = export_case(paths, call.formats, progress);
+  const std::filesystem::path& folder = call.request.case_folder;
+  if (!std::filesystem::exists(folder)) throw UsageError(folder.string() + ": there is no such case");
+  const std::vector<std::filesystem::path> files = exports_of(call, progress);
   progress.clear();
   output.document = {{"files", names(files)}};
   output.text = file_list(files);

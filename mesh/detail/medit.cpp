@@ -6,32 +6,35 @@
 
 #include "mesh/detail/checked_file.h"
 #include "mesh/detail/mesh_formats.h"
+#include "mesh/solver_files.h"
 
 namespace umtet {
-namespace {
-constexpr int kBodyReference = 1, kBoundaryReference = 2;
-}
 
-void write_medit(const std::filesystem::path& path, const TetMesh& mesh, const std::vector<Triangle>& boundary) {
-  std::vector<char> on_boundary(mesh.V.size(), 0);
-  for (const Triangle& f : boundary) {
-    for (const int v : f) on_boundary[v] = 1;
+void write_medit(const std::filesystem::path& path, const SolverMesh& mesh) {
+  require_consistent(mesh);
+  std::vector<int> reference(mesh.nodes.size(), mesh.body.number);
+  const std::vector<std::vector<int>> nodes = patch_nodes(mesh);
+  for (std::size_t p = nodes.size(); p-- > 0;) {
+    for (const int i : nodes[p]) reference[i] = mesh.patches[p].number;
   }
   detail::CheckedFile file(path);
-  file.text("MeshVersionFormatted 2\nDimension 3\n\nVertices\n").number(mesh.V.size()).text("\n");
-  for (std::size_t i = 0; i < mesh.V.size(); ++i) {
-    for (int k = 0; k < 3; ++k) file.number(mesh.V[i][k]).text(" ");
-    file.number(on_boundary[i] ? kBoundaryReference : kBodyReference).text("\n");
+  file.text("MeshVersionFormatted 2\nDimension 3\n\nVertices\n").number(mesh.nodes.size()).text("\n");
+  for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
+    for (int k = 0; k < 3; ++k) file.number(mesh.nodes[i][k]).text(" ");
+    file.number(reference[i]).text("\n");
   }
-  const auto write = [&](const char* keyword, const auto& simplices, int reference) {
-    file.text("\n").text(keyword).text("\n").number(simplices.size()).text("\n");
-    for (const auto& simplex : simplices) {
-      for (const int v : simplex) file.number(v + 1).text(" ");
-      file.number(reference).text("\n");
-    }
-  };
-  write("Triangles", boundary, kBoundaryReference);
-  write("Tetrahedra", mesh.C, kBodyReference);
+  const bool linear = mesh.nodes_per_tet == 4;
+  file.text(linear ? "\nTriangles\n" : "\nTrianglesP2\n").number(mesh.n_faces()).text("\n");
+  for (std::size_t f = 0; f < mesh.n_faces(); ++f) {
+    const std::array<int, 6> ids = mesh.face(f);
+    for (int k = 0; k < mesh.nodes_per_face(); ++k) file.number(ids[k] + 1).text(" ");
+    file.number(mesh.patches[mesh.face_patch[f]].number).text("\n");
+  }
+  file.text(linear ? "\nTetrahedra\n" : "\nTetrahedraP2\n").number(mesh.n_tets()).text("\n");
+  for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
+    for (const int v : mesh.tet(t)) file.number(v + 1).text(" ");
+    file.number(mesh.body.number).text("\n");
+  }
   file.text("\nEnd\n");
   file.close();
 }

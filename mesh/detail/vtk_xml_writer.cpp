@@ -5,12 +5,15 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <variant>
 
 #include "mesh/detail/checked_file.h"
+#include "mesh/detail/node_sets.h"
+#include "mesh/solver_files.h"
 #include "mesh/tet_mesh_io.h"
 
 namespace umtet {
@@ -37,30 +40,40 @@ std::string escaped(const std::string& name) {
   return text;
 }
 
+using Arrays = std::map<std::string, FieldValues>;
+
+/// Cells of one kind.
+struct Cells {
+  std::span<const int> ids;  ///< n_nodes each
+  std::size_t n_nodes;
+  std::uint8_t type;  ///< VTK's
+
+  std::size_t size() const { return ids.size() / n_nodes; }
+};
+
 /// Inline base64 blocks, encoded piece by piece on their way to the file. VTK's own writer takes a copy of the mesh and
 /// makes the whole text in memory, twice, four times the size of the file in all, because on a full disk VTK 9.1 calls
 /// a cut file a success or crashes.
 class VtkXmlWriter {
  public:
   explicit VtkXmlWriter(const std::filesystem::path& path) : file_(path) {}
-  /// Tets of N nodes.
-  template <std::size_t N>
-  void mesh(const std::vector<Vec3>& V, const std::vector<std::array<int, N>>& C,
-            const std::map<std::string, FieldValues>& point_data, const std::map<std::string, FieldValues>& cell_data);
-  void points(const std::vector<Vec3>& V, const std::map<std::string, FieldValues>& point_data);
+  void mesh(const std::vector<Vec3>& V, const Cells& cells, const Arrays& point_data, const Arrays& cell_data,
+            const std::vector<MeshPart>& numbers = {});
+  void points(const std::vector<Vec3>& V, const Arrays& point_data);
 
  private:
   static constexpr std::size_t kPiece = 3 << 14;  ///< bytes encoded at once: whole groups of three
 
-  void begin(const char* type, std::size_t n_points, const char* counted, std::size_t n_cells);
+  void begin(const char* type, std::size_t n_points, const char* counted, std::size_t n_cells,
+             const std::vector<MeshPart>& numbers = {});
   void end(const char* type);
   void coordinates(const std::vector<Vec3>& V);
-  template <class Index, std::size_t N>
-  void cells(const std::vector<std::array<int, N>>& C);
-  void data(const char* section, const std::map<std::string, FieldValues>& arrays);
+  template <class Index>
+  void connect(const Cells& cells);
+  void data(const char* section, const Arrays& arrays);
   /// A DataArray of n values, which `fill` puts.
   template <class T, class Fill>
-  void array(const std::string& name, std::size_t n, const Fill& fill, int components = 1);
+  void array(const std::string& name, std::size_t n, const Fill& fill, const char* attributes = "");
   template <class T>
   void put(const T* values, std::size_t n);
   void encode();
@@ -91,10 +104,9 @@ void VtkXmlWriter::put(const T* values, std::size_t n) {
 }
 
 template <class T, class Fill>
-void VtkXmlWriter::array(const std::string& name, std::size_t n, const Fill& fill, int components) {
+void VtkXmlWriter::array(const std::string& name, std::size_t n, const Fill& fill, const char* attributes) {
   file_.text("<DataArray type=\"").text(kVtkType<T>).text("\" Name=\"").text(escaped(name)).text("\"");
-  if (components > 1) file_.text(" NumberOfComponents=\"").number(components).text("\"");
-  file_.text(" format=\"binary\">\n");
+  file_.text(attributes).text(" format=\"binary\">\n");
   const std::uint64_t n_bytes = n * sizeof(T);
   put(&n_bytes, 1);
   fill();
@@ -102,24 +114,23 @@ void VtkXmlWriter::array(const std::string& name, std::size_t n, const Fill& fil
   file_.text("\n</DataArray>\n");
 }
 
-template <class Index, std::size_t N>
-void VtkXmlWriter::cells(const std::vector<std::array<int, N>>& C) {
-  array<Index>("connectivity", N * C.size(), [&] {
-    for (const auto& t : C) {
-      std::array<Index, N> nodes;
-      std::copy(t.begin(), t.end(), nodes.begin());
-      put(nodes.data(), N);
+template <class Index>
+void VtkXmlWriter::connect(const Cells& cells) {
+  array<Index>("connectivity", cells.ids.size(), [&] {
+    for (const int id : cells.ids) {
+      const Index node = id;
+      put(&node, 1);
     }
   });
-  array<Index>("offsets", C.size(), [&] {
-    for (std::size_t t = 1; t <= C.size(); ++t) {
-      const auto end = static_cast<Index>(N * t);
+  array<Index>("offsets", cells.size(), [&] {
+    for (std::size_t t = 1; t <= cells.size(); ++t) {
+      const auto end = static_cast<Index>(cells.n_nodes * t);
       put(&end, 1);
     }
   });
 }
 
-void VtkXmlWriter::data(const char* section, const std::map<std::string, FieldValues>& arrays) {
+void VtkXmlWriter::data(const char* section, const Arrays& arrays) {
   file_.text("<").text(section).text(">\n");
   for (const auto& [name, any] : arrays) {
     std::visit(
@@ -132,10 +143,21 @@ void VtkXmlWriter::data(const char* section, const std::map<std::string, FieldVa
   file_.text("</").text(section).text(">\n");
 }
 
-void VtkXmlWriter::begin(const char* type, std::size_t n_points, const char* counted, std::size_t n_cells) {
+void VtkXmlWriter::begin(const char* type, std::size_t n_points, const char* counted, std::size_t n_cells,
+                         const std::vector<MeshPart>& numbers) {
   file_.text("<?xml version=\"1.0\"?>\n<VTKFile type=\"").text(type);
   file_.text("\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<").text(type);
-  file_.text(">\n<Piece NumberOfPoints=\"").number(n_points).text("\" ").text(counted).text("=\"").number(n_cells);
+  file_.text(">\n");
+  if (!numbers.empty()) {
+    file_.text("<FieldData>\n");
+    for (const MeshPart& part : numbers) {
+      const std::int64_t number = part.number;
+      array<std::int64_t>(
+          part.name, 1, [&] { put(&number, 1); }, " NumberOfTuples=\"1\"");
+    }
+    file_.text("</FieldData>\n");
+  }
+  file_.text("<Piece NumberOfPoints=\"").number(n_points).text("\" ").text(counted).text("=\"").number(n_cells);
   file_.text("\">\n");
 }
 
@@ -147,31 +169,29 @@ void VtkXmlWriter::end(const char* type) {
 void VtkXmlWriter::coordinates(const std::vector<Vec3>& V) {
   file_.text("<Points>\n");
   array<double>(
-      "Points", 3 * V.size(), [&] { put(V.data(), V.size()); }, 3);
+      "Points", 3 * V.size(), [&] { put(V.data(), V.size()); }, " NumberOfComponents=\"3\"");
   file_.text("</Points>\n");
 }
 
-template <std::size_t N>
-void VtkXmlWriter::mesh(const std::vector<Vec3>& V, const std::vector<std::array<int, N>>& C,
-                        const std::map<std::string, FieldValues>& point_data,
-                        const std::map<std::string, FieldValues>& cell_data) {
-  begin("UnstructuredGrid", V.size(), "NumberOfCells", C.size());
+void VtkXmlWriter::mesh(const std::vector<Vec3>& V, const Cells& cells, const Arrays& point_data,
+                        const Arrays& cell_data, const std::vector<MeshPart>& numbers) {
+  begin("UnstructuredGrid", V.size(), "NumberOfCells", cells.size(), numbers);
   data("PointData", point_data);
   data("CellData", cell_data);
   coordinates(V);
   file_.text("<Cells>\n");
-  if (C.size() <= std::numeric_limits<std::int32_t>::max() / N) {
-    cells<std::int32_t>(C);
+  if (cells.ids.size() <= std::numeric_limits<std::int32_t>::max()) {
+    connect<std::int32_t>(cells);
   } else {
-    cells<std::int64_t>(C);
+    connect<std::int64_t>(cells);
   }
-  const std::vector<std::uint8_t> types(C.size(), N == 4 ? VTK_TETRA : VTK_QUADRATIC_TETRA);
-  array<std::uint8_t>("types", C.size(), [&] { put(types.data(), types.size()); });
+  const std::vector<std::uint8_t> types(cells.size(), cells.type);
+  array<std::uint8_t>("types", types.size(), [&] { put(types.data(), types.size()); });
   file_.text("</Cells>\n");
   end("UnstructuredGrid");
 }
 
-void VtkXmlWriter::points(const std::vector<Vec3>& V, const std::map<std::string, FieldValues>& point_data) {
+void VtkXmlWriter::points(const std::vector<Vec3>& V, const Arrays& point_data) {
   begin("PolyData", V.size(), "NumberOfVerts", V.size());
   data("PointData", point_data);
   coordinates(V);
@@ -185,7 +205,13 @@ void VtkXmlWriter::points(const std::vector<Vec3>& V, const std::map<std::string
   end("PolyData");
 }
 
-void check_sizes(const std::map<std::string, FieldValues>& arrays, std::size_t n) {
+template <std::size_t N>
+std::span<const int> ids_of(const std::vector<std::array<int, N>>& C) {
+  static_assert(sizeof(std::array<int, N>) == N * sizeof(int));
+  return C.empty() ? std::span<const int>() : std::span{C.front().data(), N * C.size()};
+}
+
+void check_sizes(const Arrays& arrays, std::size_t n) {
   for (const auto& [name, any] : arrays) {
     const std::size_t size = std::visit([](const auto& values) { return values.size(); }, any);
     if (size != n) throw std::invalid_argument("data '" + name + "': one value each is needed");
@@ -197,19 +223,35 @@ void check_sizes(const std::map<std::string, FieldValues>& arrays, std::size_t n
 void write_vtu(const std::filesystem::path& path, const MeshFile& file) {
   check_sizes(file.point_data, file.mesh.V.size());
   check_sizes(file.cell_data, file.mesh.C.size());
-  VtkXmlWriter(path).mesh(file.mesh.V, file.mesh.C, file.point_data, file.cell_data);
+  VtkXmlWriter(path).mesh(file.mesh.V, {ids_of(file.mesh.C), 4, VTK_TETRA}, file.point_data, file.cell_data);
 }
 
-void write_vtu(const std::filesystem::path& path, const QuadraticTetMesh& mesh,
-               const std::map<std::string, FieldValues>& point_data,
-               const std::map<std::string, FieldValues>& cell_data) {
+void write_vtu(const std::filesystem::path& path, const QuadraticTetMesh& mesh, const Arrays& point_data,
+               const Arrays& cell_data) {
   check_sizes(point_data, mesh.V.size());
   check_sizes(cell_data, mesh.C.size());
-  VtkXmlWriter(path).mesh(mesh.V, mesh.C, point_data, cell_data);
+  VtkXmlWriter(path).mesh(mesh.V, {ids_of(mesh.C), 10, VTK_QUADRATIC_TETRA}, point_data, cell_data);
 }
 
-void write_vtp(const std::filesystem::path& path, const std::vector<Vec3>& points,
-               const std::map<std::string, FieldValues>& point_data) {
+void write_vtu(const std::filesystem::path& path, const SolverMesh& mesh) {
+  require_consistent(mesh);
+  const bool linear = mesh.nodes_per_tet == 4;
+  const Cells tets{mesh.tets, static_cast<std::size_t>(mesh.nodes_per_tet),
+                   static_cast<std::uint8_t>(linear ? VTK_TETRA : VTK_QUADRATIC_TETRA)};
+  VtkXmlWriter(path).mesh(mesh.nodes, tets, detail::with_node_sets(mesh), mesh.cell_data);
+}
+
+void write_boundary_vtu(const std::filesystem::path& path, const SolverMesh& mesh) {
+  require_consistent(mesh);
+  const bool linear = mesh.nodes_per_tet == 4;
+  const std::vector<int> ids = mesh.faces();
+  const Cells faces{ids, static_cast<std::size_t>(mesh.nodes_per_face()),
+                    static_cast<std::uint8_t>(linear ? VTK_TRIANGLE : VTK_QUADRATIC_TRIANGLE)};
+  VtkXmlWriter(path).mesh(mesh.nodes, faces, detail::with_node_sets(mesh), {{"patch", detail::patch_numbers(mesh)}},
+                          mesh.patches);
+}
+
+void write_vtp(const std::filesystem::path& path, const std::vector<Vec3>& points, const Arrays& point_data) {
   check_sizes(point_data, points.size());
   VtkXmlWriter(path).points(points, point_data);
 }

@@ -1,10 +1,8 @@
 #include "mesh/tet_mesh_io.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -18,7 +16,10 @@
 
 #include "mesh/quadratic_tets.h"
 #include "mesh/skin.h"
+#include "mesh/solver_files.h"
 #include "tests/support/domains.h"
+#include "tests/support/file_size_limit.h"
+#include "tests/support/shell.h"
 #include "tests/support/tet_shapes.h"
 
 namespace umtet {
@@ -72,11 +73,11 @@ struct Format {
 std::vector<Format> formats() {
   return {
       {"a.vtu", [](const fs::path& p, const Shape& s) { write_vtu(p, with_standard_data(s.mesh, {}, {})); }},
-      {"a22.msh", [](const fs::path& p, const Shape& s) { write_msh22(p, s.mesh, s.boundary, MshEncoding::Ascii); }},
-      {"b22.msh", [](const fs::path& p, const Shape& s) { write_msh22(p, s.mesh, s.boundary, MshEncoding::Binary); }},
-      {"a41.msh", [](const fs::path& p, const Shape& s) { write_msh41(p, s.mesh, s.boundary, MshEncoding::Ascii); }},
-      {"b41.msh", [](const fs::path& p, const Shape& s) { write_msh41(p, s.mesh, s.boundary, MshEncoding::Binary); }},
-      {"a.mesh", [](const fs::path& p, const Shape& s) { write_medit(p, s.mesh, s.boundary); }}};
+      {"a22.msh", [](const fs::path& p, const Shape& s) { write_msh22(p, solver_mesh(s.mesh), MshEncoding::Ascii); }},
+      {"b22.msh", [](const fs::path& p, const Shape& s) { write_msh22(p, solver_mesh(s.mesh), MshEncoding::Binary); }},
+      {"a41.msh", [](const fs::path& p, const Shape& s) { write_msh41(p, solver_mesh(s.mesh), MshEncoding::Ascii); }},
+      {"b41.msh", [](const fs::path& p, const Shape& s) { write_msh41(p, solver_mesh(s.mesh), MshEncoding::Binary); }},
+      {"a.mesh", [](const fs::path& p, const Shape& s) { write_medit(p, solver_mesh(s.mesh)); }}};
 }
 
 TEST(TetMeshIo, EveryFormatReadsBackBitEqual) {
@@ -281,24 +282,6 @@ TEST(TetMeshIo, ACutFileIsRefusedAndADamagedOneNeverCrashes) {
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "") << "a library does not print";
 }
 
-/// While it lives no file of this process can grow beyond `bytes`: what a full disk looks like to a writer.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) {
-    std::signal(SIGXFSZ, SIG_IGN);
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{bytes, before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FileSizeLimit() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, SIG_DFL);
-  }
-
- private:
-  rlimit before_{};
-};
-
 TEST(TetMeshIo, AFullDiskIsAnErrorThatNamesThePath) {
   const Shape shape = sample();
   for (const Format& format : formats()) {
@@ -308,7 +291,7 @@ TEST(TetMeshIo, AFullDiskIsAnErrorThatNamesThePath) {
     for (const std::uintmax_t limit : {std::uintmax_t{1000}, fs::file_size(path) - 1}) {
       std::string message;
       {
-        const FileSizeLimit full(limit);
+        const test::FileSizeLimit full(limit);
         try {
           format.write(path, shape);
         } catch (const std::runtime_error& e) {
@@ -322,24 +305,15 @@ TEST(TetMeshIo, AFullDiskIsAnErrorThatNamesThePath) {
   EXPECT_THROW(write_vtu("/nowhere/a.vtu", {shape.mesh, {}, {}, 0}), std::runtime_error);
 }
 
-/// Output of a program, with its exit code as last line.
-std::string run(const std::string& command) {
-  std::string out;
-  FILE* pipe = popen((command + " 2>&1; echo exit $?").c_str(), "r");
-  char buffer[4096];
-  while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) out.append(buffer, n);
-  pclose(pipe);
-  return out;
-}
-
 TEST(TetMeshIo, GmshReadsOurFiles) {
-  if (run("gmsh --version").find("exit 0") == std::string::npos) GTEST_SKIP() << "gmsh is not installed";
+  if (!test::succeeds("gmsh --version")) GTEST_SKIP() << "gmsh is not installed";
   const Shape shape = sample();
   for (const Format& format : formats()) {
     if (format.name.ends_with(".vtu")) continue;  // the gmsh of Debian 12 writes VTK files of its own kind only
     const fs::path path = scratch(format.name), again = scratch("again.msh");
     format.write(path, shape);
-    const std::string out = run("gmsh " + path.string() + " -save -save_all -format msh22 -o " + again.string());
+    const std::string out =
+        test::shell("gmsh " + path.string() + " -save -save_all -format msh22 -o " + again.string());
     EXPECT_NE(out.find(std::to_string(shape.mesh.V.size()) + " nodes"), std::string::npos) << out;
     EXPECT_EQ(out.find("Error"), std::string::npos) << out;
     EXPECT_EQ(out.find("Warning"), std::string::npos) << out;
@@ -355,9 +329,8 @@ TEST(TetMeshIo, GmshReadsOurFiles) {
 }
 
 TEST(TetMeshIo, MeshioReadsOurFiles) {
-  const std::string python = "/usr/bin/python3";  // Debian's, where python3-meshio is installed
-  if (run(python + " -c 'import meshio'").find("exit 0") == std::string::npos)
-    GTEST_SKIP() << "meshio is not installed";
+  const std::string python = test::kPython;
+  if (!test::succeeds(python + " -c 'import meshio'")) GTEST_SKIP() << "meshio is not installed";
   const Shape shape = sample();
   const fs::path script = with_bytes("read.py",
                                      "import sys, meshio\n"
@@ -377,7 +350,7 @@ TEST(TetMeshIo, MeshioReadsOurFiles) {
     expected += counts + std::to_string(format.name == "a.vtu" ? 0 : shape.boundary.size()) +
                 (format.name.ends_with(".msh") ? " [('body', 1, 3), ('boundary', 2, 2)]\n" : " []\n");
   }
-  std::string out = run(command);
+  std::string out = test::shell(command);
   for (auto at = out.find("\n\n"); at != std::string::npos; at = out.find("\n\n"))
     out.erase(at, 1);  // meshio prints those
   EXPECT_NE(out.find(expected), std::string::npos) << out << "expected\n" << expected;

@@ -16,7 +16,7 @@
 
 #include "mesh/certificate.h"
 #include "mesh/skin.h"
-#include "mesh/tet_mesh_io.h"
+#include "mesh/solver_files.h"
 #include "mesh/universal_mesh.h"
 #include "tests/support/bench_domains.h"
 
@@ -94,7 +94,7 @@ int run(int argc, char** argv) {
   const double certified = cpu_seconds(), peak_certified = peak_MB();
 
   const std::vector<Triangle>& skin = result.submesh.positive_faces;  // the certificate compares it with the boundary
-  write_msh41(argv[4], mesh, skin, MshEncoding::Binary);
+  write_msh41(argv[4], solver_mesh(mesh), MshEncoding::Binary);
   if (argc == 6) write_skin(argv[5], mesh, skin);
   const nlohmann::ordered_json numbers = {{"h", h},
                                           {"tets", mesh.C.size()},

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "mesh/solver_mesh.h"
+#include "pipeline/parameters.h"
+#include "pipeline/progress.h"
+#include "reconstruct/point_cloud.h"
+
+namespace umtet {
+
+/// "1=feet,2=head" of output.label_names. \throw UsageError  not of that form, a label or a name twice (case aside), or
+/// a name that a format cannot keep
+std::map<int, std::string> parse_label_names(const std::string& text);
+
+/// Puts the boundary faces into patches: by the labels of the cloud where it has any (the votes of the nearest samples,
+/// then islands below output.label_min_area go), else by output.patch_angle where that is set, else by connected
+/// pieces. A positive label is the number of its patch, others get the numbers after the largest; a patch without a
+/// name is patch_LABEL, region_N or boundary_N. Labels that no face has are said.
+/// \throw UsageError  as parse_label_names(), or a name for a label that the cloud does not have
+void divide_boundary(SolverMesh& mesh, const OrientedPointCloud& cloud, const Parameters& parameters,
+                     Progress& progress);
+
+}  // namespace umtet
