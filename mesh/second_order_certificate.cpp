@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "mesh/certificate.h"
+#include "mesh/closest_point.h"
 #include "mesh/detail/mid_side_numbers.h"
 #include "mesh/jacobian_bounds.h"
 #include "mesh/skin.h"
@@ -17,6 +18,7 @@ namespace umtet {
 namespace {
 
 constexpr std::size_t kTetsPerBlock = 1 << 9, kBlocksPerPoll = 1 << 7;
+constexpr double kSmall = .01;  // of h: slope and closest point agree to a few per cent of it
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Sums and extremes over a block of tets.
@@ -81,9 +83,18 @@ double distance(ImplicitFunctionRef psi, const Vec3& x) {
   return std::isnan(d) ? kInfinity : d;
 }
 
+/// The same, but where it is not small against h the distance to a closest point: what psi's slope says is off then by
+/// its curvature, and without bounds where the gradient nearly vanishes.
+double far_distance(ImplicitFunctionRef psi, const Vec3& x, double h) {
+  const double d = distance(psi, x);
+  if (d <= kSmall * h) return d;
+  const ClosestPoint foot = closest_point(psi, x, h, {});
+  return foot.converged ? (foot.point - x).norm() : d;
+}
+
 /// Distances at the centroid of a curved face and half-way from there to its corners.
 std::array<double, 4> face_distances(ImplicitFunctionRef psi, const QuadraticTetMesh& mesh,
-                                     const QuadraticTriangle& face) {
+                                     const QuadraticTriangle& face, double h) {
   std::array<double, 4> d{};
   for (int s = 0; s < 4; ++s) {
     Vec3 l = Vec3::Constant(s == 3 ? 1. / 3 : 1. / 6);
@@ -92,7 +103,7 @@ std::array<double, 4> face_distances(ImplicitFunctionRef psi, const QuadraticTet
     for (int k = 0; k < 3; ++k) {
       x += l[k] * (2 * l[k] - 1) * mesh.V[face[k]] + 4 * l[k] * l[(k + 1) % 3] * mesh.V[face[3 + k]];
     }
-    d[s] = distance(psi, x);
+    d[s] = far_distance(psi, x, h);
   }
   return d;
 }
@@ -105,7 +116,7 @@ void measure_distances(const SecondOrderInput& input, const std::vector<Quadrati
   polled_parallel_for(nodes.size(), kValuesPerPoll, input.keep_going,
                       [&](std::size_t i) { at_node[i] = distance(psi, input.mesh->V[nodes[i]]); });
   polled_parallel_for(faces.size(), kValuesPerPoll / 4, input.keep_going,
-                      [&](std::size_t i) { at_face[i] = face_distances(psi, *input.mesh, faces[i]); });
+                      [&](std::size_t i) { at_face[i] = face_distances(psi, *input.mesh, faces[i], input.h); });
   const double tolerance = kVertexTolerance * input.h + input.coordinate_rounding;
   double greatest = 0, greatest_at_face = 0, squares = 0;
   for (const double d : at_node) {

@@ -26,7 +26,8 @@ struct SecondOrderCertificate {
   double coordinate_rounding = 0;
   std::optional<double> max_mid_side_distance_over_h;  ///< |psi| / |grad psi| at boundary mid-sides off the walls
   std::size_t n_mid_sides_off_surface = 0;             ///< those of them farther than kVertexTolerance h and rounding
-  /// The same in the curved faces: at their centroids and half-way from there to the corners.
+  /// From the curved faces, at their centroids and half-way from there to the corners, to psi = 0: the same where that
+  /// is at most .01 h, else to the closest points.
   std::optional<double> max_face_distance_over_h, rms_face_distance_over_h;
 };
 
