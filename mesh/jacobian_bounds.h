@@ -57,7 +57,7 @@ struct JacobianBounds {
 /// determinant is not positive at some point is given up where that is known; so is one that is not decided after
 /// some thousand parts, with lower <= 0.
 /// \note not finite coordinates: lower = -infinity
-/// Cost: .2 microseconds where the coefficients decide. Does not allocate.
+/// Cost: .3 microseconds where the coefficients decide. Does not allocate.
 JacobianBounds jacobian_bounds(const QuadraticNodes& x);
 
 }  // namespace umtet
