@@ -269,8 +269,10 @@ void FastRun::measure_assumptions() {
 /// Changes labels where that mends a tet, and omega_h with them.
 void FastRun::repair_labels(const KeepGoing& keep_going) {
   if (!prices_) return;
-  RepairReport repaired =
-      repair(background_, prices_->links, psi_, label_params_, params_.fast.repair, shell_, inside_, keep_going);
+  RepairParams params = params_.fast.repair;
+  params.target = std::min(params.target, prices_->repair_target);
+  params.reach = std::min(params.reach, prices_->repair_reach);
+  RepairReport repaired = repair(background_, prices_->links, psi_, label_params_, params, shell_, inside_, keep_going);
   result_.n_psi_evaluations += repaired.psi_evaluations;
   moved_ = std::move(repaired.moved);
   if (repaired.flips == 0) return;

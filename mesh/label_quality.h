@@ -1,6 +1,7 @@
 #pragma once
 
-#include <cstdint>
+#include <algorithm>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -16,14 +17,30 @@ struct LabelQuality {
   double quality;        ///< the worst mean ratio of its ring that can be reached
 };
 
-/// Of a15(), measured by tools/labels_fit; see label_quality.cpp for the command.
-std::span<const LabelQuality> a15_label_qualities();
+/// The price of a labelling of the link around an outside vertex.
+class LabelEnergies {
+ public:
+  /// @param good  a quality that costs nothing, above all in the list: see label_prices.cpp
+  LabelEnergies(const std::vector<LinkTopology>& links, std::span<const LabelQuality> qualities, double good);
 
-/// The price of each labelling of a link around an outside vertex: [type][mask].
-using LabelEnergies = std::vector<std::vector<float>>;
-LabelEnergies label_energies(const std::vector<LinkTopology>& links, std::span<const LabelQuality> qualities);
+  float operator()(int site, const LinkState& s) const {
+    const OfSite& of = of_site_[static_cast<std::size_t>(site)];
+    return s.manifold ? of.price[s.n_positive_faces * of.row + s.n_tets] : not_manifold_;
+  }
+  /// Sets the price of every labelling to f(), in no order that means anything.
+  template <class F>
+  void generate(const F& f) {
+    for (OfSite& of : of_site_) std::generate(of.price.begin(), of.price.end(), f);
+    not_manifold_ = f();
+  }
 
-/// That of a15() with its qualities, made once.
-const LabelEnergies& a15_label_energies();
+ private:
+  struct OfSite {
+    std::size_t row = 0;       ///< triangles of the link, and one more
+    std::vector<float> price;  ///< by positive faces, then by tets
+  };
+  std::vector<OfSite> of_site_;
+  float not_manifold_;
+};
 
 }  // namespace umtet

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "mesh/detail/label_band.h"
+#include "mesh/label_prices.h"
 
 namespace umtet {
 namespace {
@@ -41,7 +42,7 @@ class Descent {
  private:
   enum class Thin : std::uint8_t { Unknown, No, Yes };
 
-  float price(int v, bool inside, std::uint16_t mask) const;
+  float price(int v, bool inside, LinkMask mask) const;
   float gain_of_flip(int v) const;
   bool may_flip(int v);
   bool keeps_manifold(int v) const;
@@ -61,24 +62,24 @@ class Descent {
 };
 
 /// What vertex v adds to the energy.
-float Descent::price(int v, bool inside, std::uint16_t mask) const {
+float Descent::price(int v, bool inside, LinkMask mask) const {
   if (inside) {
     const float lack = band_.phi[v] + static_cast<float>(params_.inside_depth);
     return lack > 0 ? static_cast<float>(params_.inside_weight) * lack * lack : 0;
   }
   if (mask == 0) return 0;
+  const LinkTopology& link = links_[band_.type[v]];
   const float d = band_.phi[v] - static_cast<float>(params_.outside_height);
-  return energies_[band_.type[v]][mask] + static_cast<float>(params_.outside_weight) * d * d;
+  return energies_(link.site, link.state(mask)) + static_cast<float>(params_.outside_weight) * d * d;
 }
 
 float Descent::gain_of_flip(int v) const {
   const LinkTopology& link = links_[band_.type[v]];
   float change = price(v, !band_.label[v], band_.mask[v]) - price(v, band_.label[v], band_.mask[v]);
   for (int k = 0; k < link.n; ++k) {
-    const int w = band_.link[v][k];
+    const int w = band_.link(v)[k];
     if (band_.label[w]) continue;  // the price of an inside vertex does not depend on its link
-    change += price(w, false, static_cast<std::uint16_t>(band_.mask[w] ^ 1u << link.back[k])) -
-              price(w, false, band_.mask[w]);
+    change += price(w, false, band_.mask[w] ^ LinkMask{1} << link.back[k]) - price(w, false, band_.mask[w]);
   }
   return -change;
 }
@@ -87,17 +88,17 @@ float Descent::gain_of_flip(int v) const {
 bool Descent::keeps_manifold(int v) const {
   const LinkTopology& link = links_[band_.type[v]];
   int before = 0, after = 0;
-  const auto bad = [&](int w, std::uint16_t mask) { return mask != 0 && !links_[band_.type[w]].states[mask].manifold; };
+  const auto bad = [&](int w, LinkMask mask) { return mask != 0 && !links_[band_.type[w]].state(mask).manifold; };
   if (band_.label[v]) {
     after += bad(v, band_.mask[v]);
   } else {
     before += bad(v, band_.mask[v]);
   }
   for (int k = 0; k < link.n; ++k) {
-    const int w = band_.link[v][k];
+    const int w = band_.link(v)[k];
     if (band_.label[w]) continue;
     before += bad(w, band_.mask[w]);
-    after += bad(w, static_cast<std::uint16_t>(band_.mask[w] ^ 1u << link.back[k]));
+    after += bad(w, band_.mask[w] ^ LinkMask{1} << link.back[k]);
   }
   return after <= before;
 }
@@ -105,7 +106,8 @@ bool Descent::keeps_manifold(int v) const {
 bool Descent::is_thin(int v) {
   if (thin_[v] == Thin::Unknown) {
     std::size_t n = 0;
-    const bool thin = umtet::is_thin(psi_, band_.foot[v], band_.normal[v], params_.least_thickness, h_, n);
+    const double unit = links_[band_.type[v]].unit * h_;
+    const bool thin = umtet::is_thin(psi_, band_.foot[v], band_.normal[v], params_.least_thickness, unit, n);
     thin_[v] = thin ? Thin::Yes : Thin::No;
     band_.psi_evaluations.fetch_add(n, std::memory_order_relaxed);
   }
@@ -113,7 +115,7 @@ bool Descent::is_thin(int v) {
 }
 
 bool Descent::may_flip(int v) {
-  return links_[band_.type[v]].states[band_.mask[v]].simple && keeps_manifold(v) &&
+  return links_[band_.type[v]].state(band_.mask[v]).simple && keeps_manifold(v) &&
          !(params_.least_thickness > 0 && is_thin(v));
 }
 
@@ -121,10 +123,10 @@ void Descent::flip(int v) {
   band_.label[v] ^= 1;
   const LinkTopology& link = links_[band_.type[v]];
   for (int k = 0; k < link.n; ++k) {
-    const int w = band_.link[v][k];
-    band_.mask[w] = static_cast<std::uint16_t>(band_.mask[w] ^ 1u << link.back[k]);
+    const int w = band_.link(v)[k];
+    band_.mask[w] ^= LinkMask{1} << link.back[k];
     dirty_[w] = 1;
-    for (const int u : band_.link[w]) {
+    for (const int u : band_.link(w)) {
       if (u >= 0) dirty_[u] = 1;
     }
   }
@@ -157,7 +159,7 @@ LabelReport Descent::operator()(IdSet& inside, const KeepGoing& keep_going) {
     const std::size_t flips = sweep([&](int v) {
       if (!dirty_[v]) return false;
       dirty_[v] = 0;
-      if (!links_[band_.type[v]].states[band_.mask[v]].simple || gain_of_flip(v) <= kLeastGain || !may_flip(v))
+      if (!links_[band_.type[v]].state(band_.mask[v]).simple || gain_of_flip(v) <= kLeastGain || !may_flip(v))
         return false;
       flip(v);
       return true;
@@ -171,7 +173,7 @@ LabelReport Descent::operator()(IdSet& inside, const KeepGoing& keep_going) {
       inside.insert(band_.id[v]);
     } else {
       inside.erase(band_.id[v]);
-      report.not_manifold += band_.mask[v] != 0 && !links_[band_.type[v]].states[band_.mask[v]].manifold;
+      report.not_manifold += band_.mask[v] != 0 && !links_[band_.type[v]].state(band_.mask[v]).manifold;
     }
     report.thin += thin_[v] == Thin::Yes;
     report.stretched += band_.held[v];

@@ -12,8 +12,9 @@
 
 namespace umtet {
 
-/// Lengths are in h. The defaults are measured on bodies of labels_fit (seeds not of the fit, 45 of 40k tets and 30 of
-/// 6k): smoothing alone leaves 15 tets below .82 in all of them together, with another value what the line says.
+/// Lengths are in LinkTopology::unit. The defaults are measured on bodies of labels_fit (seeds not of the fit, 45 of
+/// 40k tets and 30 of 6k): smoothing alone leaves 15 tets below .82 in all of them together, with another value what
+/// the line says.
 struct LabelParams {
   /// The labels start as those of {psi < 0} moved inwards by this; 0 <= shift <= .15. .15: 142 tets
   double shift = 0;
@@ -68,8 +69,8 @@ bool is_thin(ImplicitFunctionRef psi, const Vec3& foot, const Vec3& normal, doub
 ///     outside_height)^2
 ///   + sum over inside vertices near the boundary of inside_weight max(0, inside_depth - depth)^2
 ///
-/// with distances from psi / |grad psi|, corrected at the foot. Bricks of 4^3 cells in eight colours: the same labels
-/// for any number of threads.
+/// with distances from psi / |grad psi|, corrected at the foot, in the unit of each vertex. Bricks of 4^3 cells in
+/// eight colours: the same labels for any number of threads.
 ///
 /// @param inside  the vertices with psi < 0 on entry; none of them, nor a neighbour, on the rim
 /// \throw std::invalid_argument naming every broken constraint of params, MeshCancelled

@@ -47,7 +47,7 @@ class Builder {
       : background_(background), links_(links), inside_(inside), steps_(background) {}
 
   const std::vector<std::int64_t>& steps(std::int64_t v) const { return steps_.at(v); }
-  std::uint16_t mask(std::int64_t v) const { return steps_.mask(v, inside_); }
+  LinkMask mask(std::int64_t v) const { return steps_.mask(v, inside_); }
   /// A vertex of omega_h, if v is an id at all.
   bool in_omega_h(std::int64_t v) const { return inside_.test_any(v) || mask(v) != 0; }
 
@@ -77,10 +77,10 @@ class Builder {
 std::vector<int> Builder::type_colours() const {
   std::vector<int> colour(background_.n_types(), -1);
   for (int type = 0; type < background_.n_types(); ++type) {
-    unsigned taken = 0;
+    std::uint64_t taken = 0;
     for (const Tiling::Corner& c : background_.tiling_tables().link[type]) {
       if (c.type == type) throw std::invalid_argument("tiling: a vertex type that is its own neighbour");
-      if (colour[c.type] >= 0) taken |= 1u << colour[c.type];
+      if (colour[c.type] >= 0) taken |= std::uint64_t{1} << colour[c.type];
     }
     colour[type] = std::countr_one(taken);
   }
@@ -104,13 +104,13 @@ template <class Movable, class F>
 void Builder::tets_at(std::int64_t v, const Movable& movable, const F& f) const {
   const LinkTopology& link = links_[background_.type(v)];
   const auto& step = steps(v);
-  const unsigned in = inside_.test(v) ? ~0u : mask(v);
-  unsigned lower = 0;
+  const LinkMask in = inside_.test(v) ? ~LinkMask{0} : mask(v);
+  LinkMask lower = 0;
   for (int k = 0; k < link.n; ++k) {
-    lower |= static_cast<unsigned>(step[k] < 0 && movable.test_any(v + step[k])) << k;
+    lower |= static_cast<LinkMask>(step[k] < 0 && movable.test_any(v + step[k])) << k;
   }
   for (const auto& t : link.triangles) {
-    const unsigned corners = 1u << t[0] | 1u << t[1] | 1u << t[2];
+    const LinkMask corners = LinkMask{1} << t[0] | LinkMask{1} << t[1] | LinkMask{1} << t[2];
     if ((in & corners) != 0 && (lower & corners) == 0) f(v, v + step[t[0]], v + step[t[1]], v + step[t[2]]);
   }
 }
@@ -120,12 +120,12 @@ template <class F>
 void Builder::ring_vertices(std::int64_t v, const F& f) const {
   f(v);
   const LinkTopology& link = links_[background_.type(v)];
-  unsigned near = link.full();
+  LinkMask near = link.full();
   if (!inside_.test(v)) {
     // The ring of an outside vertex is that of its link triangles with an inside vertex.
-    const unsigned in = near = mask(v);
+    const LinkMask in = near = mask(v);
     for (const auto& t : link.triangles) {
-      const unsigned corners = 1u << t[0] | 1u << t[1] | 1u << t[2];
+      const LinkMask corners = LinkMask{1} << t[0] | LinkMask{1} << t[1] | LinkMask{1} << t[2];
       if ((in & corners) != 0) near |= corners;
     }
   }
@@ -135,7 +135,7 @@ void Builder::ring_vertices(std::int64_t v, const F& f) const {
 template <class Movable>
 Shell::Role Builder::role(std::int64_t v, const Movable& movable) const {
   if (!movable.test(v)) return Shell::Role::Fixed;
-  const bool positive = !inside_.test(v) && links_[background_.type(v)].states[mask(v)].n_positive_faces > 0;
+  const bool positive = !inside_.test(v) && links_[background_.type(v)].state(mask(v)).n_positive_faces > 0;
   return positive ? Shell::Role::Boundary : Shell::Role::Inner;
 }
 

@@ -9,10 +9,11 @@
 
 namespace umtet {
 
-/// A link has at most this many vertices, so that a labelling of it fits a 16-bit mask.
-inline constexpr int kMaxLink = 16;
+/// The inside labels of a vertex's link: bit k belongs to link vertex k.
+using LinkMask = std::uint64_t;
+inline constexpr int kMaxLink = 64;
 
-/// What the inside labels of a vertex's link say about the vertex; bit k of a mask belongs to link vertex k.
+/// What the inside labels of a vertex's link say about the vertex.
 struct LinkState {
   /// Inside and outside part of the link are connected and not empty: the label of the vertex may change and neither
   /// {inside} nor {outside} changes its homotopy type.
@@ -24,18 +25,23 @@ struct LinkState {
   std::uint8_t n_tets = 0;            ///< nt: link triangles with an inside vertex
 };
 
-/// The link of a vertex type of a tiling, a triangulated sphere, as bit masks, and the state of all its labellings.
+/// The link of a vertex type of a tiling, a triangulated sphere, as bit masks.
 struct LinkTopology {
   int n = 0;                                           ///< vertices; in the order of TilingTables::link
-  std::array<std::uint16_t, kMaxLink> adjacent{};      ///< link vertices that share an edge of the link with k
+  std::array<LinkMask, kMaxLink> adjacent{};           ///< link vertices that share an edge of the link with k
   std::array<std::uint8_t, kMaxLink> back{};           ///< the number of the vertex itself in the link of k
   std::vector<std::array<std::uint8_t, 3>> triangles;  ///< with the vertex in front: positively oriented tets
-  std::vector<LinkState> states;                       ///< one per mask
+  std::vector<LinkState> states;                       ///< one per mask; empty where they would be too many
   /// Vertex types with the same table of states up to the order of the link share this number: sites of one symmetry
   /// have the same number of link vertices and of triangles.
   int site = 0;
 
-  std::uint16_t full() const { return static_cast<std::uint16_t>((1u << n) - 1); }
+  /// What a label at such a vertex counts lengths in, in h of the background.
+  float unit = 1;
+
+  LinkMask full() const { return ~LinkMask{0} >> (kMaxLink - n); }
+  LinkState state(LinkMask inside) const { return states.empty() ? find_state(inside) : states[inside]; }
+  LinkState find_state(LinkMask inside) const;
 };
 
 /// One per vertex type.

@@ -124,7 +124,7 @@ std::vector<ParamField> make_fields() {
        0,
        0,
        {},
-       "background mesh: a15, z, slab, cube (acute tilings; labels are chosen on a15 and z), or a file"},
+       "background mesh: a15, z, slab, cube (acute tilings), or a file"},
       {"mesh.box_walls", "--box-walls", false, 0, 0, {}, "fill --box with a15 up to flat walls, halved tets at them"},
       {"mesh.mode",
        "--mode",

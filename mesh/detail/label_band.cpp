@@ -75,10 +75,8 @@ void LabelBand::gather() {
 
 /// Label, mask and ranks of the link. Returns whether the whole link is in the band.
 bool LabelBand::find_link(std::size_t v) {
-  type[v] = static_cast<std::uint8_t>(background_.type(id[v]));
   label[v] = inside_.test(id[v]);
   mask[v] = steps_.mask(id[v], inside_);
-  link[v].fill(-1);
   // Labels beyond the range of ids are those of the rim: outside. Ranks are left out there.
   if (is_outermost(id[v])) return false;
   const std::vector<std::int64_t>& steps = steps_.at(id[v]);
@@ -86,7 +84,7 @@ bool LabelBand::find_link(std::size_t v) {
   for (std::size_t k = 0; k < steps.size(); ++k) {
     const std::int64_t w = id[v] + steps[k];
     if (band_.test(w)) {
-      link[v][k] = band_.rank(w);
+      ranks_[first_[v] + k] = band_.rank(w);
     } else {
       complete = false;
     }
@@ -97,7 +95,7 @@ bool LabelBand::find_link(std::size_t v) {
 /// Foot, normal and distance.
 void LabelBand::find_foot(std::size_t v) {
   const Vec3 x = background_.position(id[v]);
-  const double h = background_.h(), most = far() * h;
+  const double h = unit(v), most = far() * h;
   Vec3 g;
   double value = psi_.value(x, g), norm = g.norm();
   psi_evaluations.fetch_add(1, std::memory_order_relaxed);
@@ -124,8 +122,13 @@ void LabelBand::find_foot(std::size_t v) {
 
 void LabelBand::measure(const KeepGoing& keep_going) {
   const std::size_t n = size();
-  link.resize(n);
   type.resize(n);
+  first_.assign(n + 1, 0);
+  for (std::size_t v = 0; v < n; ++v) {
+    type[v] = static_cast<std::uint16_t>(background_.type(id[v]));
+    first_[v + 1] = first_[v] + static_cast<std::size_t>(links_[type[v]].n);
+  }
+  ranks_.assign(first_[n], -1);
   label.resize(n);
   held.assign(n, 0);
   mask.resize(n);
@@ -156,13 +159,13 @@ void LabelBand::hold_where_stretched(const KeepGoing& keep_going) {
     if (!movable_[v]) return;
     double kappa = 0;
     for (int k = 0; k < links_[type[v]].n; ++k) {
-      const int w = link[v][k];
+      const int w = link(v)[static_cast<std::size_t>(k)];
       if (!has_foot(w)) continue;
       const Vec3 between = foot[w] - foot[v];
       if (between.norm() < apart) continue;
       kappa = std::max(kappa, (phi[v] > 0 ? -1 : 1) * between.dot(normal[w] - normal[v]) / between.squaredNorm());
     }
-    if (kappa * std::abs(phi[v]) * background_.h() > most) movable_[v] = 0, held[v] = 1;
+    if (kappa * std::abs(phi[v]) * unit(v) > most) movable_[v] = 0, held[v] = 1;
   });
 }
 

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "mesh/background_mesh.h"
@@ -30,12 +31,14 @@ class LabelBand {
 
   std::size_t size() const { return id.size(); }
 
-  std::vector<std::int64_t> id;                 ///< ascending
-  std::vector<std::array<int, kMaxLink>> link;  ///< ranks, -1 where the neighbour is not in the band
-  std::vector<std::uint8_t> type, label;
+  std::vector<std::int64_t> id;  ///< ascending
+  /// Ranks of the neighbours of v, -1 where they are not in the band.
+  std::span<const int> link(std::size_t v) const { return {ranks_.data() + first_[v], first_[v + 1] - first_[v]}; }
+  std::vector<std::uint16_t> type;
+  std::vector<std::uint8_t> label;
   std::vector<std::uint8_t> held;  ///< its label stays because of most_stretch
-  std::vector<std::uint16_t> mask;
-  std::vector<float> phi;                    ///< signed distance in h
+  std::vector<LinkMask> mask;
+  std::vector<float> phi;                    ///< signed distance in LinkTopology::unit
   std::vector<Vec3> foot, normal;            ///< on psi = 0 and there; not set at the band's edge
   std::vector<std::uint32_t> order;          ///< vertices whose label may change, brick by brick
   std::array<std::vector<Brick>, 8> bricks;  ///< per colour: vertices of two bricks of one have no neighbour in common
@@ -50,7 +53,8 @@ class LabelBand {
   void hold_where_stretched(const KeepGoing& keep_going);
   void make_bricks();
   bool is_outermost(std::int64_t id) const;
-  /// Farther than any vertex that may change, in h.
+  double unit(std::size_t v) const { return links_[type[v]].unit * background_.h(); }
+  /// Farther than any vertex that may change, in units.
   float far() const { return static_cast<float>(params_.reach_in + params_.reach_out + 1); }
 
   const BackgroundMesh& background_;
@@ -61,6 +65,8 @@ class LabelBand {
   LinkSteps steps_;
   IdSet band_;
   std::vector<std::uint8_t> movable_;
+  std::vector<std::size_t> first_;  ///< into ranks_
+  std::vector<int> ranks_;
 };
 
 }  // namespace umtet::detail

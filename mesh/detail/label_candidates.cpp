@@ -13,7 +13,7 @@ constexpr float kMostEnergy = 150;
 
 bool LabelCandidates::in_reach(std::int64_t v, std::size_t& n_evaluations) const {
   const Vec3 x = background_.position(v);
-  const double h = background_.h();
+  const double h = links_[background_.type(v)].unit * background_.h();
   Vec3 g;
   const double value = psi_.value(x, g), norm = g.norm();
   ++n_evaluations;
@@ -37,10 +37,12 @@ std::vector<LabelCandidates::Candidate> LabelCandidates::operator()(const std::a
     if (v < 0 || v >= background_.n_vertices()) continue;  // beside a tet at the rim
     const int type = background_.type(v);
     const LinkTopology& link = links_[type];
-    const std::uint16_t m = steps_.mask(v, inside_);
-    if (!link.states[m].simple || background_.on_rim(v) || !in_reach(v, n_evaluations)) continue;
-    const auto price = [&](int t, std::uint16_t labels) { return labels == 0 ? 0.F : energies_[t][labels]; };
-    const auto bad = [&](int t, std::uint16_t labels) { return labels != 0 && !links_[t].states[labels].manifold; };
+    const LinkMask m = steps_.mask(v, inside_);
+    if (!link.state(m).simple || background_.on_rim(v) || !in_reach(v, n_evaluations)) continue;
+    const auto price = [&](int t, LinkMask labels) {
+      return labels == 0 ? 0.F : energies_(links_[t].site, links_[t].state(labels));
+    };
+    const auto bad = [&](int t, LinkMask labels) { return labels != 0 && !links_[t].state(labels).manifold; };
     const bool is_inside = inside_.test(v);
     float energy = is_inside ? price(type, m) : -price(type, m);
     int spots = is_inside ? bad(type, m) : -bad(type, m);
@@ -48,7 +50,7 @@ std::vector<LabelCandidates::Candidate> LabelCandidates::operator()(const std::a
       const std::int64_t w = v + steps_.at(v)[k];
       if (inside_.test(w)) continue;
       const int t = background_.type(w);
-      const std::uint16_t now = steps_.mask(w, inside_), then = static_cast<std::uint16_t>(now ^ 1u << link.back[k]);
+      const LinkMask now = steps_.mask(w, inside_), then = now ^ LinkMask { 1 } << link.back[k];
       energy += price(t, then) - price(t, now);
       spots += bad(t, then) - bad(t, now);
     }

@@ -7,6 +7,7 @@
 
 #include "mesh/detail/link_steps.h"
 #include "mesh/implicit_function.h"
+#include "mesh/label_prices.h"
 #include "mesh/labels.h"
 #include "mesh/repair.h"
 

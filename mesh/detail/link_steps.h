@@ -5,6 +5,7 @@
 
 #include "mesh/background_mesh.h"
 #include "mesh/detail/id_set.h"
+#include "mesh/link_topology.h"
 
 namespace umtet::detail {
 
@@ -24,10 +25,11 @@ class LinkSteps {
 
   /// Bit k: link vertex k is inside. Inside vertices are off the rim, so that a step that leaves the range of ids, or
   /// leads to a wrong one in the outermost layer of cells, finds none of them.
-  std::uint16_t mask(std::int64_t v, const IdSet& inside) const {
-    unsigned mask = 0, k = 0;
-    for (const std::int64_t step : at(v)) mask |= static_cast<unsigned>(inside.test_any(v + step)) << k++;
-    return static_cast<std::uint16_t>(mask);
+  LinkMask mask(std::int64_t v, const IdSet& inside) const {
+    LinkMask mask = 0;
+    int k = 0;
+    for (const std::int64_t step : at(v)) mask |= static_cast<LinkMask>(inside.test_any(v + step)) << k++;
+    return mask;
   }
 
  private:

@@ -87,8 +87,8 @@ double least_quality(const Tiling& tiling) {
 TEST(Backgrounds, FastModeMeshesEquationNineOnEach) {
   // What it makes, minus .01. Z's labels have prices.
   EXPECT_GT(least_quality(z_phase()), .81);
-  EXPECT_GT(least_quality(acute_slab()), .724);
-  EXPECT_GT(least_quality(acute_cube()), .556);
+  EXPECT_GT(least_quality(acute_slab()), .77);
+  EXPECT_GT(least_quality(acute_cube()), .615);
 }
 
 }  // namespace

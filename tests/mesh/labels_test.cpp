@@ -7,6 +7,7 @@
 
 #include "mesh/certificate.h"
 #include "mesh/detail/assemble_submesh.h"
+#include "mesh/label_prices.h"
 #include "mesh/lattice_shell.h"
 #include "tests/support/domains.h"
 
@@ -40,12 +41,10 @@ MeshCertificate certificate(const Submesh& submesh) {
 }
 
 /// Prices up to 655 that mean nothing.
-LabelEnergies dice() {
+LabelEnergies dice(std::uint32_t seed = 1) {
   LabelEnergies energies = a15_label_energies();
-  std::uint32_t state = 1;
-  for (auto& of_mask : energies) {
-    for (float& price : of_mask) price = static_cast<float>((state = state * 1664525u + 1013904223u) >> 16) / 100;
-  }
+  std::uint32_t state = seed;
+  energies.generate([&] { return static_cast<float>((state = state * 1664525u + 1013904223u) >> 16) / 100; });
   return energies;
 }
 
@@ -85,7 +84,7 @@ TEST(Labels, LowerThePriceOfTheBoundary) {
       for (const Tiling::Corner& c : background.tiling_tables().link[type]) {
         mask |= static_cast<unsigned>(inside.test(v + background.id_step(type, c))) << k++;
       }
-      sum += a15_label_energies()[type][mask];
+      if (mask != 0) sum += a15_label_energies()(a15_links()[type].site, a15_links()[type].state(mask));
     }
     return sum;
   };
@@ -120,9 +119,8 @@ TEST(Labels, NoneChangesWhereProjectionWouldStretchTheBoundary) {
     if (H) *H = side * 2 * Mat3::Identity();
     return side > 0 ? x.squaredNorm() - 9 : 1 - x.squaredNorm();
   };
-  const LabelEnergies any = dice();
   LabelParams free;
-  free.energies = &any;
+  free.inside_weight = free.outside_weight = 0;
   free.most_stretch = 1e9;
   free.reach_out = .9;
   LabelParams held = free;
@@ -137,8 +135,14 @@ TEST(Labels, NoneChangesWhereProjectionWouldStretchTheBoundary) {
     return n;
   };
   for (const AnalyticDomain& domain : {ball, hollow}) {
-    EXPECT_GT(n_far_changes(domain, free), 0u);
-    EXPECT_EQ(n_far_changes(domain, held), 0u);
+    std::size_t n_free = 0;
+    for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+      const LabelEnergies any = dice(seed);
+      free.energies = held.energies = &any;
+      n_free += n_far_changes(domain, free);
+      EXPECT_EQ(n_far_changes(domain, held), 0u);
+    }
+    EXPECT_GT(n_free, 0u);
   }
 }
 

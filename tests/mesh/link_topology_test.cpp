@@ -14,13 +14,15 @@ namespace {
 
 /// The star of one vertex as sets of ids, found without tables: what LinkTopology says as masks.
 struct Star {
-  BackgroundMesh background{a15(), Box(Vec3::Zero(), Vec3::Constant(4)), .5761730800314409};
+  BackgroundMesh background;
   std::int64_t vertex = 0;
   std::vector<std::int64_t> link;                         ///< ids, in the order of the masks
   std::vector<std::set<std::int64_t>> triangles;          ///< the tets at the vertex without it
   std::map<std::int64_t, std::set<std::int64_t>> nearby;  ///< of each link vertex
 
-  explicit Star(int type) {
+  explicit Star(int type, const Tiling& tiling = a15())
+      : background(tiling, Box(Vec3::Zero(), 4 * Vec3(tiling.period[0], tiling.period[1], tiling.period[2])),
+                   tiling.mean_edge) {
     vertex = background.vertex_id(type, {2, 2, 2});
     for (const Tiling::Corner& c : background.tiling_tables().link[type]) {
       link.push_back(vertex + background.id_step(type, c));
@@ -53,7 +55,7 @@ bool connected(const Nodes& nodes, const Adjacent& adjacent) {
   return seen.size() == nodes.size();
 }
 
-LinkState brute_force(const Star& star, unsigned mask) {
+LinkState brute_force(const Star& star, LinkMask mask) {
   std::set<std::int64_t> inside, outside;
   for (std::size_t k = 0; k < star.link.size(); ++k) (mask >> k & 1 ? inside : outside).insert(star.link[k]);
   const auto joined = [&](std::int64_t a, std::int64_t b) { return star.nearby.at(a).count(b) != 0; };
@@ -122,6 +124,43 @@ TEST(LinkTopology, EveryLabellingOfBothSitesIsJudgedAsByBruteForce) {
     EXPECT_GT(n_simple, n_manifold);
     EXPECT_GT(n_manifold, 50u);
     EXPECT_EQ(n_not_simple_manifold, 0u);
+  }
+}
+
+TEST(LinkTopology, LabellingsWithoutATableAreJudgedAsByBruteForce) {
+  for (const Tiling* tiling : {&acute_slab(), &acute_cube()}) {
+    SCOPED_TRACE(tiling->name);
+    const std::vector<LinkTopology> links = link_topology(*tiling, tables(*tiling));
+    std::set<int> sites;
+    for (std::size_t type = 0; type < links.size(); ++type) {
+      const LinkTopology& link = links[type];
+      if (!link.states.empty() || !sites.insert(link.site).second) continue;
+      const Star star(static_cast<int>(type), *tiling);
+      std::size_t n_manifold = 0;
+      std::uint64_t dice = 1;
+      for (int k = 0; k < 60; ++k) {
+        // One half of the link, a bit frayed: random labels are hardly ever simple.
+        dice = dice * 6364136223846793005u + 1442695040888963407u;
+        const Vec3 n = Vec3(double(dice >> 44), double(dice >> 24 & 0xfffff), double(dice >> 4 & 0xfffff)) / 524288. -
+                       Vec3::Ones();
+        LinkMask mask = 0;
+        for (std::size_t i = 0; i < star.link.size(); ++i) {
+          const Vec3 d = star.background.position(star.link[i]) - star.background.position(star.vertex);
+          mask |= LinkMask{d.dot(n) > .1 * n.norm() * d.norm()} << i;
+        }
+        if (k % 3 == 0) mask ^= LinkMask{1} << k % link.n;
+        const LinkState expected = brute_force(star, mask), found = link.state(mask);
+        ASSERT_EQ(found.simple, expected.simple) << link.n << " " << mask;
+        ASSERT_EQ(found.n_tets, expected.n_tets);
+        ASSERT_EQ(found.n_positive_faces, expected.n_positive_faces);
+        if (found.simple) {
+          ASSERT_EQ(found.manifold, expected.manifold) << link.n << " " << mask;
+        }
+        n_manifold += found.manifold;
+      }
+      EXPECT_GT(n_manifold, 20u) << link.n;
+    }
+    EXPECT_EQ(sites.size(), tiling == &acute_slab() ? 1u : 7u);
   }
 }
 

@@ -1,6 +1,6 @@
 // Measures how well the tets around a boundary vertex can be shaped, for every way its link is labelled.
 //
-//   labels_fit SEED SHAPES > mesh/a15_label_qualities.h
+//   labels_fit TILING SEED SHAPES > mesh/TILING_label_qualities.h
 //
 // Random smooth bodies are meshed without the table's help (labels of psi), with prices at random (so that labellings
 // are met that psi alone hardly makes), and with the prices found so far (so that they are met among good neighbours).
@@ -9,6 +9,7 @@
 // curvature, and most others suffer from a neighbour.
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -19,6 +20,7 @@
 #include "mesh/detail/assemble_submesh.h"
 #include "mesh/detail/link_steps.h"
 #include "mesh/guarded_projection.h"
+#include "mesh/label_prices.h"
 #include "mesh/labels.h"
 #include "mesh/lattice_shell.h"
 #include "mesh/tet_quality.h"
@@ -38,11 +40,11 @@ using Configuration = std::tuple<int, int, int>;  // site, positive faces, tets
 using Book = std::map<Configuration, std::vector<float>>;
 
 /// Meshes one body and books its boundary vertices.
-void measure(const labels_fit::RandomShape& shape, const LabelEnergies* energies, Book& book) {
-  const double h = h_for_tets(shape, shape.box(), kTets);
+void measure(const labels_fit::RandomShape& shape, const Tiling& tiling, const LabelEnergies* energies, Book& book) {
+  const double h = h_for_tets(tiling, shape, shape.box(), kTets);
   const Box padded(shape.box().min() - Vec3::Constant(2 * h), shape.box().max() + Vec3::Constant(2 * h));
-  const BackgroundMesh background(a15(), padded, h);
-  const auto& links = a15_links();
+  const BackgroundMesh background(tiling, padded, h);
+  const auto& links = label_prices(tiling)->links;
   std::size_t evaluations = 0;
   detail::IdSet inside = detail::inside_vertices(background, shape, evaluations);
   if (energies) {
@@ -62,7 +64,7 @@ void measure(const labels_fit::RandomShape& shape, const LabelEnergies* energies
     if (cut.shell.role[v] != Shell::Role::Boundary) continue;
     const std::int64_t id = cut.background_vertex[v];
     const int type = background.type(id);
-    const LinkState& state = links[type].states[steps.mask(id, inside)];
+    const LinkState& state = links[type].state(steps.mask(id, inside));
     if (!state.manifold) continue;
     double worst = 1;
     for (int r = cut.shell.ring_begin[v]; r < cut.shell.ring_begin[v + 1]; ++r) {
@@ -84,48 +86,60 @@ std::vector<LabelQuality> qualities(Book& book) {
   return list;
 }
 
-/// Prices between 0 and 100 at random, one for each configuration.
-LabelEnergies random_energies(std::uint64_t seed) {
+/// Prices up to 100 at random, one for each configuration.
+LabelEnergies random_energies(const LabelPrices& prices, std::uint64_t seed) {
   std::vector<LabelQuality> list;
+  int n_sites = 0;
+  for (const LinkTopology& link : prices.links) n_sites = std::max(n_sites, link.site + 1);
   std::uint64_t state = seed;
-  for (int site = 0; site < 2; ++site) {
+  for (int site = 0; site < n_sites; ++site) {
     for (int faces = 3; faces <= 14; ++faces) {
       for (int tets = 3; tets <= 24; ++tets) {
         state = state * 6364136223846793005u + 1442695040888963407u;
-        list.push_back({site, faces, tets, .77 + .10 * static_cast<double>(state >> 11) * 0x1p-53});
+        list.push_back({site, faces, tets, prices.good - .16 + .10 * static_cast<double>(state >> 11) * 0x1p-53});
       }
     }
   }
-  return label_energies(a15_links(), list);
+  return LabelEnergies(prices.links, list, prices.good);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) {
-    std::fprintf(stderr, "usage: labels_fit SEED SHAPES\n");
+  const auto names = tiling_names();
+  if (argc != 4 || std::find(names.begin(), names.end(), argv[1]) == names.end()) {
+    std::fprintf(stderr, "usage: labels_fit TILING SEED SHAPES\n");
     return 2;
   }
-  const std::uint64_t seed = std::strtoull(argv[1], nullptr, 10);
-  const int n_shapes = std::atoi(argv[2]);
+  const std::string name = argv[1];
+  const Tiling& tiling = tiling_named(name);
+  const LabelPrices& prices = *label_prices(tiling);  // all but its qualities
+  const std::uint64_t seed = std::strtoull(argv[2], nullptr, 10);
+  const int n_shapes = std::atoi(argv[3]);
   Book book;
   for (int round = 0; round < kRounds; ++round) {
-    const LabelEnergies fitted = label_energies(a15_links(), qualities(book));
+    const LabelEnergies fitted(prices.links, qualities(book), prices.good);
     for (int s = 0; s < n_shapes; ++s) {
       const std::uint64_t number = seed + static_cast<std::uint64_t>(round * n_shapes + s);
       const labels_fit::RandomShape shape(number);
-      const LabelEnergies dice = random_energies(number);
-      measure(shape, round == 0 ? nullptr : round == 1 ? &dice : &fitted, book);
+      const LabelEnergies dice = random_energies(prices, number);
+      measure(shape, tiling, round == 0 ? nullptr : round == 1 ? &dice : &fitted, book);
     }
     std::fprintf(stderr, "round %d of %d done\n", round + 1, kRounds);
   }
   const std::vector<LabelQuality> list = qualities(book);
   std::printf("#pragma once\n\n#include <array>\n\n#include \"mesh/label_quality.h\"\n\nnamespace umtet {\n\n");
   std::printf(
-      "// Made by: labels_fit %s %s (%.0f tets a body, %d rounds, quantile %.2f, at least %zu vertices each).\n",
-      argv[1], argv[2], kTets, kRounds, kQuantile, kEnough);
-  std::printf("// site 0 is 2a (12 neighbours), site 1 is 6c (14). The last column counts the vertices seen.\n");
-  std::printf("inline constexpr std::array<LabelQuality, %zu> kA15LabelQualities = {{\n", list.size());
+      "// Made by: labels_fit %s %s %s (%.0f tets a body, %d rounds, quantile %.2f, at least %zu vertices each).\n",
+      argv[1], argv[2], argv[3], kTets, kRounds, kQuantile, kEnough);
+  std::printf("// Neighbours of a vertex of site 0, 1 ...:");
+  std::map<int, int> neighbours;
+  for (const LinkTopology& link : prices.links) neighbours[link.site] = link.n;
+  for (const auto& [site, n] : neighbours) std::printf(" %d", n);
+  std::printf(". The last column counts the vertices seen.\n");
+  const std::string first(1, static_cast<char>(std::toupper(name[0])));
+  std::printf("inline constexpr std::array<LabelQuality, %zu> k%sLabelQualities = {{\n", list.size(),
+              (first + name.substr(1)).c_str());
   for (const LabelQuality& q : list) {
     std::printf("    {%d, %d, %d, %.4f},  // %zu\n", q.site, q.n_positive_faces, q.n_tets, q.quality,
                 book.at({q.site, q.n_positive_faces, q.n_tets}).size());
