@@ -43,6 +43,11 @@ TEST(ChannelMesher, DragOfASphereIsThatOfHappelAndBart) {
   const double of_um = drag(160000), published = testing::wall_corrected_drag(1. / 6);
   std::printf("drag over 6 pi mu a U: %.4f, published %.4f\n", of_um, published);
   EXPECT_NEAR(of_um / published, 1, .05);
+  const double around = testing::drag_in_cylinder(1 / std::sqrt(72.)), within = testing::drag_in_cylinder(1. / 6);
+  for (const double drag : {of_um, published}) {
+    EXPECT_GT(drag, around);
+    EXPECT_LT(drag, within);
+  }
 }
 
 TEST(ChannelMesher, KeepsTheWallsAndFindsTheSwimmerThinnerThanAnEdge) {

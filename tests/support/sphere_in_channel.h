@@ -35,7 +35,15 @@ struct SphereInChannel {
 };
 
 /// The drag of a sphere of radius a that moves along the axis of a long square duct of half width l, over that without
-/// walls: 1 / (1 - 1.903266 a / l), to first order in a / l [HappelBart1974].
+/// walls: 1 / (1 - 1.903266 a / l), to first order in a / l [HappelBart1974]. The coefficient is quoted from memory: the
+/// paper was not at hand. What is sure is that the drag lies between those of the cylinders around and in the duct.
 inline double wall_corrected_drag(double a_over_l) { return 1 / (1 - 1.903266 * a_over_l); }
+
+/// The same on the axis of a circular cylinder of radius R, lambda = a / R up to about .8 [HabermanSayre1958]. Drag in a
+/// container is at least that in a larger one (least dissipation).
+inline double drag_in_cylinder(double lambda) {
+  const double l3 = lambda * lambda * lambda, l5 = l3 * lambda * lambda;
+  return (1 - .75857 * l5) / (1 - 2.105 * lambda + 2.0865 * l3 - 1.7068 * l5 + .72603 * l3 * l3);
+}
 
 }  // namespace umtet::testing
