@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""Figures 8, 9/10 and 18 of the paper by this project, as docs/figure_8.svg, figure_10.svg and figure_18.svg.
+"""Figures 8, 9/10, 15, 18 and 21B of the paper by this project, as docs/figure_8.svg, figure_10.svg ...
 
 usage: docs/figures.py [--data build/figures] [--peers build/peers] [--programs FOLDER] [--umtet PROGRAM] [--most 8000000]
 
-What is missing of the data is made: Figure 8 by `umtet run --mode paper`, 9/10 by tests/bench/peers/compare.py, 18 by
-peer_umtet (both programs are built by compare.py --quick). Remove a folder to have its data made anew. Needs Debian's
+What is missing of the data is made: Figure 8 by `umtet run --mode paper`, 9/10 by tests/bench/peers/compare.py, 15 by
+`umtet mesh`, 21B by `umtet evolve`, 18 by peer_umtet (both programs are built by compare.py --quick). Remove a folder to have its data made anew. Needs Debian's
 python3-matplotlib; some ten minutes.
 """
 import argparse
@@ -79,6 +79,45 @@ def figure_10(peers, programs):
     save(figure, "figure_10.svg")
 
 
+def figure_15(data, umtet):
+    equation_9 = "2*y*(y^2-3*x^2)*(1-z^2)+(x^2+y^2)^2-(9*z^2-1)*(1-z^2)"
+    by_paper = {"a15": .645, "z": .667, "slab": .600, "cube": .394}
+    figure, axis = plt.subplots(figsize=(5.4, 3))
+    for k, (mode, colour) in enumerate((("paper", "tab:blue"), ("fast", "tab:green"))):
+        for place, background in enumerate(by_paper):
+            case = data / "figure_15" / f"{background}_{mode}"
+            if not (case / "certificate.json").exists():
+                subprocess.run([umtet, "mesh", "--implicit", equation_9, "--box=-2.1,-2.1,-1.05,2.1,2.1,1.05", "--tets", "100000",
+                                "--background", background, "--mode", mode, "-o", case], check=True)
+            q = json.loads((case / "certificate.json").read_text())["quality"]["min"]
+            axis.bar(place + .27 * k, q, .25, color=colour, label=f"--mode {mode}" if place == 0 else None)
+            axis.text(place + .27 * k, q, f"{q:.3f}", ha="center", va="bottom", fontsize=7)
+    axis.bar(np.arange(4) - .27, by_paper.values(), .25, color="tab:gray", label="the paper")
+    axis.set(xticks=range(4), xticklabels=by_paper, ylabel="least Q", ylim=(0, 1), title="eq. (9), 100k tets")
+    axis.legend(ncol=3)
+    figure.tight_layout()
+    save(figure, "figure_15.svg")
+
+
+def figure_21(data, umtet):
+    case = data / "figure_21"
+    if not (case / "quality.csv").exists():
+        subprocess.run([umtet, "evolve", "--implicit", "x^2+y^2+z^2+sin(t*x)+sin(t*y)+sin(t*z)-1",
+                        "--box=-2.1,-2.1,-2.1,2.1,2.1,2.1", "--h", "0.0922", "--t", "0:0.1:4.5", "--skip", "3.1,3.4",
+                        "--allow-thin", "-o", case], check=True)
+    with open(case / "quality.csv") as file:
+        rows = list(csv.DictReader(file))
+    t = [float(r["t"]) for r in rows]
+    figure, axis = plt.subplots(figsize=(5.4, 3))
+    axis.plot(t, [float(r["min_q"]) for r in rows], "o-", ms=3, lw=.8, color="tab:green", label="least Q")
+    axis.plot(t, [float(r["q_01"]) for r in rows], "o-", ms=3, lw=.8, color="tab:blue", label="Q that 1 % of the tets are below")
+    axis.axhline(.615, color="tab:gray", lw=1, label="least Q over all instants in the paper")
+    axis.set(xlabel="t", ylim=(.5, 1), title="eq. (13), one background")
+    axis.legend()
+    figure.tight_layout()
+    save(figure, "figure_21.svg")
+
+
 def timings(data, programs, most):
     """One row per mesh: figure_18.csv, which is continued where it ends."""
     path = data / "figure_18.csv"
@@ -137,6 +176,8 @@ def main():
     args = parser.parse_args()
     args.data.mkdir(parents=True, exist_ok=True)
     figure_8(args.data, args.umtet)
+    figure_15(args.data, args.umtet)
+    figure_21(args.data, args.umtet)
     figure_18(args.data, args.programs, args.most)
     figure_10(args.peers, args.programs)
 
