@@ -31,7 +31,7 @@ std::vector<LabelQuality> qualities_of_z(const std::vector<LinkTopology>& links)
   return qualities;
 }
 
-/// Edges of the cube are .4 to 2.7 h long: lengths are counted in the mean edge of each vertex. In h alone, tori and
+/// Edges of the cube are .5 to 3.3 h long: lengths are counted in the mean edge of each vertex. In h alone, tori and
 /// ellipsoids of 100k tets end at min Q .588 instead of .613 and .619, before repair.
 std::vector<LinkTopology> links_of_cube() {
   const Tiling& tiling = acute_cube();
