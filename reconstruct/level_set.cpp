@@ -21,38 +21,34 @@ Vec3 lattice_coordinates(const Lattice& L, const Vec3& x) {
   return ((x - L.origin) / L.h).cwiseMax(0.0).cwiseMin((L.n.array() - 1).cast<double>().matrix());
 }
 
-template <int W, JetOrder order>
-void add_coarsest(const LmeTables& tables, const LevelSetLevel& level, const Vec3& xi, JetLanes<order>& sum) {
-  const Lattice& L = level.lattice;
+// What a level adds at a place, made in two steps: for several levels side by side, see kAtOnce.
+template <class Coefficient>
+struct Term {
+  LmePlace place;
+  Vec3 xi;
+  const Eigen::Vector3i* n;
+  double scale;              // to derivatives in model units
+  const Coefficient* first;  // coefficient of the first function
   LmeBasis3d B;
-  tables.evaluate_3d<order>(L.n, xi, 1 / L.h, B);
-  contract<W, order>(B, level.coefficients.data() + L.index(B.x.first, B.y.first, B.z.first), L.n[0],
-                     static_cast<std::ptrdiff_t>(L.n[0]) * L.n[1], sum);
-}
+};
 
-// No place is outside the index, not even one that is no number.
-Lanes4i cell_at(const Eigen::Vector3i& n, const Vec3& xi) {
-  return most(least(truncated(Lanes4d{xi[0], xi[1], xi[2], 0}), Lanes4i{n[0], n[1], n[2], n[2]} - 2), Lanes4i{});
-}
-
-template <int W, JetOrder order, class Band>
-void add_band(const LmeTables& tables, const Band& band, const Vec3& xi, JetLanes<order>& sum) {
-  const Lattice& L = band.data.blocks.lattice();
-  const Eigen::Vector3i& n = L.n;
-  const Lanes4i cell = cell_at(n, xi);
-  const Lanes4i block = cell >> 3;
+// False where the band has none. No place is outside its index, not even one that is no number.
+template <int edge, class Band>
+bool find_window(const Band& band, Term<float>& term) {
+  const Lanes4i block = term.place.cell >> 3;
   const int window = band.index[block[0] + static_cast<std::size_t>(band.n[0]) *
                                                (block[1] + static_cast<std::size_t>(band.n[1]) * block[2])];
-  if (window < 0) return;
-  LmeBasis3d B;
-  tables.evaluate_3d<order>(n, xi, 1 / L.h, B);
-  constexpr int edge = kEdge + W - 1, corner = W / 2 - 1;  // the window begins at node 8 block - (R - 1)
-  const Lanes4i at = Lanes4i{B.x.first, B.y.first, B.z.first, 0} + corner - block * kEdge;
-  contract<W, order>(B,
-                     band.windows.data() + static_cast<std::ptrdiff_t>(window) * edge * edge * edge + at[0] +
-                         edge * (at[1] + edge * at[2]),
-                     edge, edge * edge, sum);
+  if (window < 0) return false;
+  constexpr int corner = (edge - kEdge + 1) / 2 - 1;  // the window begins at node 8 block - (R - 1)
+  const Lanes4i at = term.place.first + corner - block * kEdge;
+  term.first = band.windows.data() + static_cast<std::ptrdiff_t>(window) * edge * edge * edge + at[0] +
+               edge * (at[1] + edge * at[2]);
+  return true;
 }
+
+// To find a place, its functions and the sum are chains of operations that wait for one another: of so many levels the
+// processor does them side by side (four: 310 ns instead of 380).
+constexpr int kAtOnce = 4;
 
 }  // namespace
 
@@ -126,10 +122,44 @@ template <int W, int order>
 LatticeJet LevelSet::sum_levels(const Vec3& x, int first, int end) const {
   constexpr auto kOrder = static_cast<JetOrder>(order);
   const Vec3 xi = lattice_coordinates(coarsest_->lattice, x);
+  constexpr int edge = kEdge + W - 1;
+  const LmeTables& tables = *tables_;
+  const double scale = 1 / coarsest_->lattice.h;
   JetLanes<kOrder> sum;
-  if (first == 0) add_coarsest<W, kOrder>(*tables_, *coarsest_, xi, sum);
-  for (int level = std::max(first, 1); level < end; ++level) {
-    add_band<W, kOrder>(*tables_, *bands_[level - 1], static_cast<double>(1 << level) * xi, sum);
+  Term<double> coarsest;
+  if (first == 0) {
+    const Lattice& L = coarsest_->lattice;
+    coarsest.place = tables.locate(L.n, xi);
+    const Lanes4i at = coarsest.place.first;
+    coarsest.first = coarsest_->coefficients.data() + L.index(at[0], at[1], at[2]);
+  }
+  for (int level = std::max(first, 1);;) {
+    Term<float> terms[kAtOnce];
+    int n = 0;
+    for (; level < end && n < kAtOnce; ++level) {
+      const Band& band = *bands_[level - 1];
+      const double finer = static_cast<double>(1 << level);
+      Term<float>& term = terms[n];
+      term.n = &band.data.blocks.lattice().n;
+      term.xi = finer * xi, term.scale = finer * scale;
+      term.place = tables.locate(*term.n, term.xi);
+      n += find_window<edge>(band, term);
+    }
+    if (first == 0) tables.evaluate_at<order>(coarsest.place, coarsest_->lattice.n, xi, scale, coarsest.B);
+    for (int i = 0; i < n; ++i) {
+      Term<float>& term = terms[i];
+      tables.evaluate_at<order>(term.place, *term.n, term.xi, term.scale, term.B);
+    }
+    if (first == 0) {
+      const std::ptrdiff_t nx = coarsest_->lattice.n[0], ny = coarsest_->lattice.n[1];
+      contract<W, kOrder>(coarsest.B, coarsest.first, nx, nx * ny, sum);
+      first = 1;
+    }
+    for (int i = 0; i < n; ++i) {
+      contract<W, kOrder>(terms[i].B, terms[i].first, std::integral_constant<int, edge>{},
+                          std::integral_constant<int, edge * edge>{}, sum);
+    }
+    if (level == end) break;
   }
   return sum.sum();
 }
@@ -151,8 +181,8 @@ double LevelSet::evaluate_level(int level, const Vec3& x, Vec3* gradient, Mat3* 
 
 double LevelSet::evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const {
   LatticeJet f = sum_levels(x, 0, n_levels(), gradient, hessian);
-  const double outside = std::sqrt(domain_.squaredExteriorDistance(x));
-  if (outside > 0) {
+  if (const double outside2 = domain_.squaredExteriorDistance(x); outside2 > 0) {
+    const double outside = std::sqrt(outside2);
     const Vec3 away = x - x.cwiseMax(domain_.min()).cwiseMin(domain_.max());
     f.value += outside;
     f.gradient = (away.array() != 0).select(0.0, f.gradient.array()).matrix() + away / outside;

@@ -156,16 +156,16 @@ void LmeTables::evaluate_exactly(const Eigen::Vector3i& n, const Eigen::Vector3d
 }
 
 // At the hull the window is moved inside the axis, and the lanes with it.
-void LmeTables::move_inside(const Eigen::Vector3i& n, LmeBasis3d& out) const {
+void LmeTables::move_inside(const LmePlace& place, LmeBasis3d& out) const {
   LmeBasis1d* axes[] = {&out.x, &out.y, &out.z};
   for (int d = 0; d < 3; ++d) {
     LmeBasis1d& B = *axes[d];
-    const int first = std::clamp(B.first, 0, n[d] - width()), shift = first - B.first;
+    const int shift = place.first[d] - place.cell[d] + R_ - 1;
     LmeBasis1d moved{};
     for (int a = std::max(0, -shift); a < width() - std::max(0, shift); ++a) {
       moved.N[a] = B.N[a + shift], moved.dN[a] = B.dN[a + shift], moved.ddN[a] = B.ddN[a + shift];
     }
-    moved.first = first;
+    moved.first = place.first[d];
     B = moved;
   }
 }

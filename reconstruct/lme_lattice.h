@@ -25,6 +25,12 @@ struct LmeBasis3d {
   LmeBasis1d x, y, z;
 };
 
+/// Where a point lies among the nodes of the three axes; lanes x, y, z and one that nobody reads.
+struct LmePlace {
+  detail::Lanes4i cell, piece, first;  ///< of the axis; of the tables; the first node that has a function there
+  detail::Lanes4d s;                   ///< in the piece, 0 .. 1
+};
+
 /// One-dimensional max-ent functions on the nodes 0, 1, ..., n - 1 (unit spacing), by Newton's method on log Z.
 ///
 /// p_a = w_a e^{lambda d_a} / Z with d_a = x - a and lambda from sum p_a d_a = 0. With W_a = e^{lambda d_a} / Z:
@@ -56,7 +62,15 @@ class LmeTables {
   }
   /// Three axes at once; derivatives up to `order` with respect to x / scale: scale = 1 / h gives those in model units.
   template <int order>
-  void evaluate_3d(const Eigen::Vector3i& n, const Eigen::Vector3d& xi, double scale, LmeBasis3d& out) const;
+  void evaluate_3d(const Eigen::Vector3i& n, const Eigen::Vector3d& xi, double scale, LmeBasis3d& out) const {
+    evaluate_at<order>(locate(n, xi), n, xi, scale, out);
+  }
+  /// The two steps of that. Finding the place is a long chain of short operations: those of several points side by side
+  /// cost little more than one.
+  LmePlace locate(const Eigen::Vector3i& n, const Eigen::Vector3d& xi) const;
+  template <int order>
+  void evaluate_at(const LmePlace& place, const Eigen::Vector3i& n, const Eigen::Vector3d& xi, double scale,
+                   LmeBasis3d& out) const;
 
  private:
   using Lanes = Eigen::Array<double, LmeBasis1d::kLanes, 1>;
@@ -67,9 +81,9 @@ class LmeTables {
     return pieces_.data() + first_piece(nodes_left, nodes_right);
   }
   template <int order>
-  static void evaluate_piece(const Piece& piece, double s, double scale, LmeBasis1d& out);
+  [[gnu::always_inline]] static void evaluate_piece(const Piece& piece, double s, double scale, LmeBasis1d& out);
   void evaluate_exactly(const Eigen::Vector3i& n, const Eigen::Vector3d& xi, double scale, LmeBasis3d& out) const;
-  void move_inside(const Eigen::Vector3i& n, LmeBasis3d& out) const;
+  void move_inside(const LmePlace& place, LmeBasis3d& out) const;
 
   // 256 pieces a cell: N'' is right to 2e-9 (gamma = 1.2, R = 3), N to rounding.
   static constexpr int kPieces = 256;
@@ -98,26 +112,28 @@ inline void LmeTables::evaluate_piece(const Piece& piece, double s, double scale
   if constexpr (order > 1) Out(out.ddN) = ddN * (2 * scale * scale);
 }
 
-template <int order>
-inline void LmeTables::evaluate_3d(const Eigen::Vector3i& n, const Eigen::Vector3d& xi, double scale,
-                                   LmeBasis3d& out) const {
+inline LmePlace LmeTables::locate(const Eigen::Vector3i& n, const Eigen::Vector3d& xi) const {
   using namespace detail;
-  if (pieces_.empty()) return evaluate_exactly(n, xi, scale, out);
   const Lanes4i last = Lanes4i{n[0], n[1], n[2], n[2]} - 2, zero = {}, inner = zero + (R_ - 1);
   const Lanes4d x = {xi[0], xi[1], xi[2], xi[2]};
   const Lanes4i cell = most(least(truncated(x), last), zero);
   const Lanes4i left = least(cell, inner), right = least(last - cell, inner);
   const Lanes4d t = (x - as_doubles(cell)) * double(kPieces);
   const Lanes4i k = most(least(truncated(t), zero + (kPieces - 1)), zero);
-  const Lanes4d s = t - as_doubles(k);
-  const Lanes4i piece = first_piece(left, right) + k, first = cell - inner;
+  return {cell, first_piece(left, right) + k, most(least(cell - inner, last + 2 - width()), zero), t - as_doubles(k)};
+}
+
+template <int order>
+inline void LmeTables::evaluate_at(const LmePlace& place, const Eigen::Vector3i& n, const Eigen::Vector3d& xi,
+                                   double scale, LmeBasis3d& out) const {
+  if (pieces_.empty()) return evaluate_exactly(n, xi, scale, out);
   scale *= kPieces;
-  evaluate_piece<order>(pieces_[piece[0]], s[0], scale, out.x);
-  evaluate_piece<order>(pieces_[piece[1]], s[1], scale, out.y);
-  evaluate_piece<order>(pieces_[piece[2]], s[2], scale, out.z);
-  out.x.first = first[0], out.y.first = first[1], out.z.first = first[2];
-  const Lanes4i at_hull = (left < inner) | (right < inner);
-  if (at_hull[0] | at_hull[1] | at_hull[2]) move_inside(n, out);
+  evaluate_piece<order>(pieces_[place.piece[0]], place.s[0], scale, out.x);
+  evaluate_piece<order>(pieces_[place.piece[1]], place.s[1], scale, out.y);
+  evaluate_piece<order>(pieces_[place.piece[2]], place.s[2], scale, out.z);
+  out.x.first = place.first[0], out.y.first = place.first[1], out.z.first = place.first[2];
+  const detail::Lanes4i moved = place.first - place.cell + (R_ - 1);
+  if (moved[0] | moved[1] | moved[2]) move_inside(place, out);
 }
 
 /// Nodes of a cubic lattice: node (i, j, k) at origin + h (i, j, k), index i + n_x (j + n_y k).

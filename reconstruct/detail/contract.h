@@ -43,78 +43,83 @@ struct JetLanes {
   }
 };
 
+/// The nodes 0 .. W - 1 of two neighbouring rows as W / 2 vectors: four nodes of either, then what is left. Of W = 6
+/// the rests of both rows share a vector.
+template <int W, class Coefficient>
+void load_rows(const Coefficient* row, const Coefficient* next, Lanes4d* c) {
+  c[0] = four(row), c[1] = four(next);
+  if constexpr (W == 6) c[2] = two_and_two(row + 4, next + 4);
+  if constexpr (W == 8) c[2] = four(row + 4), c[3] = four(next + 4);
+}
+
 /// Adds sum c_a N_a over the W^3 nodes around a point: contraction over z, y, then x, whose W nodes are four lanes and
-/// a rest. Of W = 6 the rests of two neighbours in z share a vector.
-/// Not inlined, and its loops not unrolled where sums begin with zero: GCC is free to fuse either product of a b + c d,
-/// and psi alone has to have the bits of psi with its derivatives.
+/// a rest.
+/// Every product is added by fused(): GCC is free to fuse either product of a b + c d, and psi alone has to have the
+/// bits of psi with its derivatives.
 /// @param base    coefficient (double or float) of the first node of all axes
-/// @param nx, nxy distance of coefficients along y and z
-template <int W, JetOrder order, class Coefficient>
-[[gnu::noinline, gnu::noclone]] void contract(const LmeBasis3d& B, const Coefficient* base, std::ptrdiff_t nx,
-                                              std::ptrdiff_t nxy, JetLanes<order>& sum) {
-  constexpr bool kRest = W > 4;
-  constexpr int kRows = W == 6 ? 3 : 2;  // rows at once: their sums fit the registers, and share what is loaded of z
-  // The loops over k are not unrolled: GCC would keep the addresses of all rows at once, on the stack.
-  const double* zN[3] = {B.z.N, B.z.dN, B.z.ddN};
-  Lanes4d a[W][order + 1], rest[W][order + 1];  // by derivative in z
-  for (int j = 0; j < W; j += kRows) {
-    const Coefficient* row = base + j * nx;
-    Lanes4d s[kRows][order + 1] = {};
+/// @param nx, nxy distance of coefficients along y and z: numbers, or integral constants where they are known
+template <int W, JetOrder order, class Coefficient, class Nx, class Nxy>
+[[gnu::noinline, gnu::noclone]] void contract(const LmeBasis3d& B, const Coefficient* base, Nx nx, Nxy nxy,
+                                              JetLanes<order>& sum) {
+  constexpr int kPairs = W / 2, kVectors = W / 2;
+  const double *zN[3] = {B.z.N, B.z.dN, B.z.ddN}, *yN[3] = {B.y.N, B.y.dN, B.y.ddN};
+  Lanes4d a[kPairs][order + 1][kVectors];  // by rows, derivative in z
+  for (int pair = 0; pair < kPairs; ++pair) {
+    const Coefficient* row = base + 2 * pair * nx;
+    Lanes4d s[order + 1][kVectors], c[kVectors];
+    load_rows<W>(row, row + nx, c);
+    for (int d = 0; d <= order; ++d)
+      for (int v = 0; v < kVectors; ++v) s[d][v] = zN[d][0] * c[v];
+    // Not unrolled: GCC would load all of z at once, which is more than there are registers, and loads are what limits.
 #pragma GCC unroll 1
-    for (int k = 0; k < W; ++k)
-#pragma GCC unroll 8
-      for (int q = 0; q < kRows; ++q) {
-        const Lanes4d c = four(row + q * nx + k * nxy);
-        for (int d = 0; d <= order; ++d) s[q][d] += zN[d][k] * c;
-      }
-    for (int q = 0; q < kRows; ++q)
-      for (int d = 0; d <= order; ++d) a[j + q][d] = s[q][d];
-    if constexpr (kRest) {
-      Lanes4d t[kRows][order + 1] = {};
-#pragma GCC unroll 1
-      for (int k = 0; k < W; k += W == 6 ? 2 : 1)
-#pragma GCC unroll 8
-        for (int q = 0; q < kRows; ++q) {
-          const Coefficient* at = row + q * nx + k * nxy + 4;
-          const Lanes4d c = W == 6 ? two_and_two(at, at + nxy) : four(at);
-          for (int d = 0; d <= order; ++d) {
-            const double* z = zN[d] + k;
-            t[q][d] += (W == 6 ? Lanes4d{z[0], z[0], z[1], z[1]} : Lanes4d{z[0], z[0], z[0], z[0]}) * c;
-          }
-        }
-      for (int q = 0; q < kRows; ++q)
-        for (int d = 0; d <= order; ++d) rest[j + q][d] = t[q][d];
+    for (int k = 1; k < W; ++k) {
+      row += nxy;
+      load_rows<W>(row, row + nx, c);
+      for (int d = 0; d <= order; ++d)
+        for (int v = 0; v < kVectors; ++v) s[d][v] = fused(all(zN[d][k]), c[v], s[d][v]);
     }
+    for (int d = 0; d <= order; ++d)
+      for (int v = 0; v < kVectors; ++v) a[pair][d][v] = s[d][v];
   }
-  const auto along_x = [&](const auto& a, const double* N, const double* dN, const double* ddN, bool twice) {
-    Lanes4d v = {}, vy = {}, vz = {}, vyy = {}, vyz = {}, vzz = {};
-#pragma GCC unroll 1
-    for (int j = 0; j < W; ++j) {
-      v += B.y.N[j] * a[j][0];
-      if constexpr (order >= kGradient) {
-        vy += B.y.dN[j] * a[j][0];
-        vz += B.y.N[j] * a[j][1];
-      }
-      if constexpr (order >= kHessian) {
-        vyy += B.y.ddN[j] * a[j][0];
-        vyz += B.y.dN[j] * a[j][1];
-        vzz += B.y.N[j] * a[j][2];
-      }
-    }
-    const auto lanes = [&](const double* N) { return twice ? two_and_two(N, N) : four(N); };
-    const Lanes4d x = lanes(N);
-    sum.f[0] += x * v;
+  // Sums over y, and what they add to the jet.
+  // weight(d, t), term(d, t): derivative d in y, or in z, of the t-th of n terms; x(N): the lanes of x they belong to
+  const auto along_yx = [&](int n, auto weight, auto term, auto x) {
+    constexpr int kSums = order == kValue ? 1 : order == kGradient ? 3 : 6;
+    constexpr int kY[6] = {0, 1, 0, 2, 1, 0}, kZ[6] = {0, 0, 1, 0, 1, 2};
+    Lanes4d s[kSums];
+#pragma GCC unroll 6
+    for (int q = 0; q < kSums; ++q) s[q] = weight(kY[q], 0) * term(kZ[q], 0);
+#pragma GCC unroll 8
+    for (int t = 1; t < n; ++t)
+#pragma GCC unroll 6
+      for (int q = 0; q < kSums; ++q) s[q] = fused(weight(kY[q], t), term(kZ[q], t), s[q]);
+    const auto add = [&](int q, Lanes4d x, Lanes4d v) { sum.f[q] = fused(x, v, sum.f[q]); };
+    const Lanes4d N = x(B.x.N);
+    add(0, N, s[0]);
     if constexpr (order >= kGradient) {
-      const Lanes4d dx = lanes(dN);
-      sum.f[1] += dx * v, sum.f[2] += x * vy, sum.f[3] += x * vz;
+      const Lanes4d dN = x(B.x.dN);
+      add(1, dN, s[0]), add(2, N, s[1]), add(3, N, s[2]);
       if constexpr (order >= kHessian) {
-        sum.f[4] += lanes(ddN) * v, sum.f[5] += dx * vy, sum.f[6] += dx * vz;
-        sum.f[7] += x * vyy, sum.f[8] += x * vyz, sum.f[9] += x * vzz;
+        add(4, x(B.x.ddN), s[0]), add(5, dN, s[1]), add(6, dN, s[2]);
+        add(7, N, s[3]), add(8, N, s[4]), add(9, N, s[5]);
       }
     }
   };
-  along_x(a, B.x.N, B.x.dN, B.x.ddN, false);
-  if constexpr (kRest) along_x(rest, B.x.N + 4, B.x.dN + 4, B.x.ddN + 4, W == 6);
+  const auto y_of_row = [&](int d, int j) { return all(yN[d][j]); };
+  along_yx(
+      W, y_of_row, [&](int d, int j) { return a[j / 2][d][j % 2]; }, [](const double* N) { return four(N); });
+  if constexpr (W == 6) {
+    along_yx(
+        kPairs,
+        [&](int d, int p) {
+          return Lanes4d{yN[d][2 * p], yN[d][2 * p], yN[d][2 * p + 1], yN[d][2 * p + 1]};
+        },
+        [&](int d, int p) { return a[p][d][2]; }, [](const double* N) { return two_and_two(N + 4, N + 4); });
+  }
+  if constexpr (W == 8) {
+    along_yx(
+        W, y_of_row, [&](int d, int j) { return a[j / 2][d][2 + j % 2]; }, [](const double* N) { return four(N + 4); });
+  }
 }
 
 /// The same alone, of a whole lattice.

@@ -2,6 +2,10 @@
 
 #include <cstring>
 
+#ifdef __FMA__
+#include <immintrin.h>
+#endif
+
 namespace umtet::detail {
 
 // Vectors of the compiler, not Eigen's, which have no casts between four numbers of different kinds and no rests of
@@ -21,6 +25,16 @@ inline Lanes4d two_and_two(const float* a, const float* b) {
   std::memcpy(pair, a, sizeof(double)), std::memcpy(pair + 1, b, sizeof(double));
   const auto f = (Lanes4f)Lanes2d{pair[0], pair[1]};
   return Lanes4d{f[0], f[1], f[2], f[3]};
+}
+
+inline Lanes4d all(double a) { return Lanes4d{a, a, a, a}; }
+/// a b + c: rounded once where the machine that is compiled for can.
+inline Lanes4d fused(Lanes4d a, Lanes4d b, Lanes4d c) {
+#ifdef __FMA__
+  return _mm256_fmadd_pd(a, b, c);
+#else
+  return a * b + c;
+#endif
 }
 
 inline Lanes4i truncated(Lanes4d a) { return __builtin_convertvector(a, Lanes4i); }

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <random>
 
 #include "reconstruct/fit_ssd.h"
 #include "reconstruct/level_set_io.h"
@@ -63,6 +64,57 @@ TEST(LevelSet, IsPositiveOutsideItsDomain) {
   const LevelSet& psi = torus_level_set();
   for (const Vec3& x : {Vec3(5, 0, 0), Vec3(0, -7, 0.1), Vec3(3, 3, 3), Vec3(0, 0, -9)}) {
     EXPECT_GT(psi.value(x), 0.3 * std::sqrt(psi.domain().squaredExteriorDistance(x)));
+  }
+}
+
+// More levels than are looked up at once, at the wall, where functions are moved inside, and away from it.
+TEST(LevelSet, IsTheSumOverAllNodesOfAllLevels) {
+  const LmePrior prior;
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> u(-1, 1);
+  LevelSetLevel coarsest{{Vec3(1, -2, 3), 0.5, {7, 8, 9}}, {}};
+  for (std::ptrdiff_t a = 0; a < coarsest.lattice.size(); ++a) coarsest.coefficients.push_back(u(random));
+  LevelSet psi(prior, coarsest);
+  constexpr int kBands = 6;
+  for (int level = 1; level <= kBands; ++level) {
+    Lattice L = psi.lattice(level - 1);
+    L.h /= 2;
+    L.n = 2 * (L.n.array() - 1) + 1;
+    std::vector<Eigen::Vector3i> near_the_corner;
+    for (int q = 0; q < 27; ++q) near_the_corner.emplace_back(q % 3, q / 3 % 3, q / 9);
+    LevelSetBand band{LatticeBlocks(L, half_width(prior), near_the_corner), {}};
+    for (int a = 0; a < band.blocks.size() * LatticeBlocks::kNodes; ++a) {
+      band.coefficients.push_back(static_cast<float>(u(random)));
+    }
+    psi = psi.with_band(std::move(band));
+  }
+  for (int i = 0; i < 200; ++i) {
+    const double reach = std::exp2(-i % 7);  // into bands of all levels
+    const Vec3 x = coarsest.lattice.origin + reach * Vec3(u(random), u(random), u(random)).cwiseAbs();
+    double sum = 0, size = 0;
+    for (int level = 0; level <= kBands; ++level) {
+      const Lattice& L = psi.lattice(level);
+      LmeBasis3d B;
+      evaluate_lme_3d<false>(psi.tables(), L.n, (x - L.origin) / L.h, B);
+      for (int q = 0; q < 6 * 6 * 6; ++q) {
+        const Eigen::Vector3i lane(q % 6, q / 6 % 6, q / 36),
+            node = lane + Eigen::Vector3i(B.x.first, B.y.first, B.z.first);
+        double c = level == 0 ? coarsest.coefficients[L.index(node[0], node[1], node[2])] : 0;
+        float of_band = 0;
+        if (level > 0 &&
+            psi.band(level).blocks.copy_window(psi.band(level).coefficients.data(), node, {1, 1, 1}, 1, &of_band)) {
+          c = of_band;
+        }
+        const double term = c * B.x.N[lane[0]] * B.y.N[lane[1]] * B.z.N[lane[2]];
+        sum += term;
+        size += std::abs(term);
+      }
+    }
+    Vec3 g;
+    Mat3 H;
+    EXPECT_NEAR(psi.value(x), sum, 1e-14 * size);
+    EXPECT_EQ(psi.evaluate(x, &g, &H), psi.value(x));
+    EXPECT_EQ(psi.gradient(x), g);
   }
 }
 
