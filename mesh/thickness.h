@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "mesh/implicit_function.h"
@@ -14,7 +15,8 @@ struct SheetDistances {
 
 /// Both distances of each point; see thickness() for the parameters, the cost and the points that have none.
 std::vector<SheetDistances> sheet_distances(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double step,
-                                            double limit, const KeepGoing& keep_going = {});
+                                            double limit, const KeepGoing& keep_going = {},
+                                            double steepest = std::numeric_limits<double>::infinity());
 
 /// How far it is from each point of the boundary, along the normal, to the sheet on the other side: through the body,
 /// or through the gap outside, whichever is shorter. What is thinner than about two background edges cannot be meshed
@@ -25,9 +27,11 @@ std::vector<SheetDistances> sheet_distances(ImplicitFunctionRef psi, const std::
 /// @param step    how finely psi is followed, model units: a wall or gap thinner than this may be stepped over; > 0
 /// @param limit   distances are looked for up to here, model units; farther sheets count as `limit`
 /// @return one distance per point; `limit` where grad psi vanishes or the point does not reach the boundary
-/// Cost: up to 2 limit / step values of psi a point. Threads over points; the result does not depend on them.
-/// \throw MeshCancelled
+/// @param steepest  a bound of |grad psi|: steps are as long as it allows where psi is far from zero
+/// Cost: up to 2 limit / step values of psi a point; with a bound, about log(limit / step) steepest. Threads over
+/// points; the result does not depend on them. \throw MeshCancelled
 std::vector<double> thickness(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double step, double limit,
-                              const KeepGoing& keep_going = {});
+                              const KeepGoing& keep_going = {},
+                              double steepest = std::numeric_limits<double>::infinity());
 
 }  // namespace umtet

@@ -32,6 +32,8 @@ constexpr double kThinShare = .01;
 constexpr double kMostRounding = 1e-6;
 // Enough for a percentile.
 constexpr std::size_t kThicknessSamples = 20000;
+// A fitted psi has gradients of length one at its samples, and hardly longer ones anywhere.
+constexpr double kSteepest = 2;
 
 /// \throw MeshingImpossible when psi < 0 at none of the places where it is sampled
 double h_of(const Domain& domain, const Tiling& tiling, std::int64_t n_tets) {
@@ -57,12 +59,13 @@ void refuse_too_many(const Domain& domain, const Tiling& tiling, double h, std::
 }
 
 /// The thickness that a hundredth of the samples fall below, at most `limit`.
-double thin_part(const Domain& domain, double limit) {
+double thin_part(const Domain& domain, double limit, const KeepGoing& keep_going) {
   std::vector<Vec3> samples;
   const std::size_t stride = domain.cloud.points.size() / kThicknessSamples + 1;
   for (std::size_t i = 0; i < domain.cloud.points.size(); i += stride) samples.push_back(domain.cloud.points[i]);
   // psi has no sheets much closer together than its lattice.
-  std::vector<double> t = thickness(domain.psi(), samples, .25 * domain.level_set->spacing(), limit);
+  std::vector<double> t =
+      thickness(domain.psi(), samples, .25 * domain.level_set->spacing(), limit, keep_going, kSteepest);
   std::sort(t.begin(), t.end());
   return quantile(t, kThinShare);
 }
@@ -98,8 +101,10 @@ EdgeLength choose(Domain& domain, const Parameters& parameters, const KeepGoing&
   const double least = h_of(domain, tiling, max_tets);
   double h = kShareOfDiagonal * domain.diagonal;
   if (domain.level_set) {
-    const double t = thin_part(domain, kEdgesAcross * h);
-    h = std::min(h, std::clamp(h_of(domain, tiling, kManyTets), t / kEdgesAcross, t / kLeastEdgesAcross));
+    const double t = thin_part(domain, kEdgesAcross * h, keep_going);
+    if (t < kEdgesAcross * h) {
+      h = std::min(h, std::clamp(h_of(domain, tiling, kManyTets), t / kEdgesAcross, t / kLeastEdgesAcross));
+    }
   }
   return {std::max(h, least), least};
 }

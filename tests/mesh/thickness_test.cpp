@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <numbers>
 
@@ -34,6 +35,21 @@ TEST(Thickness, IsTheShorterOfWallAndGap) {
   for (const double t : thickness(ImplicitFunctionRef(thin), sphere_points(1.21), 0.03, 1)) EXPECT_NEAR(t, 0.2, 1e-9);
   for (const double t : thickness(ImplicitFunctionRef(small_cavity), sphere_points(0.05), 0.02, 1))
     EXPECT_NEAR(t, 0.1, 1e-9);
+}
+
+TEST(Thickness, StepsAreLongFarFromZeroWhereTheSlopeIsKnown) {
+  struct Counted {
+    Shell shell;
+    mutable std::atomic<int> n = 0;
+    double value(const Vec3& x) const { return ++n, shell.value(x); }
+    Vec3 gradient(const Vec3& x) const { return shell.gradient(x); }
+  };
+  const Counted psi{{1.0, 1.5}};
+  for (const double t : thickness(ImplicitFunctionRef(psi), sphere_points(1.5), 0.01, 1)) EXPECT_NEAR(t, 0.5, 1e-9);
+  const int n_short = psi.n.exchange(0);
+  for (const double t : thickness(ImplicitFunctionRef(psi), sphere_points(1.5), 0.01, 1, {}, 2))
+    EXPECT_NEAR(t, 0.5, 1e-9);
+  EXPECT_LT(psi.n, n_short / 4);
 }
 
 TEST(Thickness, WhatIsThickIsTheLimit) {
