@@ -156,26 +156,38 @@ double point_triangle_distance(const Vec3& x, const Vec3& a, const Vec3& b, cons
   return std::sqrt(triangle_distance2(x, a, b, c));
 }
 
-std::vector<double> nearest_sample_distances(const std::vector<Vec3>& x, const std::vector<Vec3>& samples,
-                                             const KeepGoing& keep_going) {
+struct SampleDistance::Index {
+  std::vector<Vec3> samples;
+  PointSet set{samples};
+  std::unique_ptr<KdTree> tree;
+};
+
+SampleDistance::SampleDistance(std::vector<Vec3> samples) : index_(std::make_unique<Index>()) {
   if (samples.empty()) throw std::invalid_argument("distance to a cloud without samples");
   check_finite(samples, "sample");
-  const PointSet set{samples};
-  const KdTree tree(3, set, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize));
+  index_->samples = std::move(samples);
+  index_->tree = std::make_unique<KdTree>(3, index_->set, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize));
+}
+
+SampleDistance::~SampleDistance() = default;
+SampleDistance::SampleDistance(SampleDistance&&) noexcept = default;
+SampleDistance& SampleDistance::operator=(SampleDistance&&) noexcept = default;
+
+std::vector<double> SampleDistance::distances(const std::vector<Vec3>& x, const KeepGoing& keep_going) const {
   return map_indices(x.size(), keep_going, [&](std::size_t i) {
     std::uint32_t nearest = 0;
     double distance2 = 0;
-    tree.knnSearch(x[i].data(), 1, &nearest, &distance2);
+    index_->tree->knnSearch(x[i].data(), 1, &nearest, &distance2);
     return std::sqrt(distance2);
   });
 }
 
 double unsupported_area_fraction(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
-                                 const std::vector<Vec3>& samples, double radius, const KeepGoing& keep_going) {
+                                 const SampleDistance& samples, double radius, const KeepGoing& keep_going) {
   std::vector<Vec3> centroids;
   centroids.reserve(faces.size());
   for (const Triangle& f : faces) centroids.push_back((V[f[0]] + V[f[1]] + V[f[2]]) / 3.0);
-  const std::vector<double> distance = nearest_sample_distances(centroids, samples, keep_going);
+  const std::vector<double> distance = samples.distances(centroids, keep_going);
   double all = 0, unsupported = 0;
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const Triangle& f = faces[i];

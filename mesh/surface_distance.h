@@ -36,15 +36,27 @@ class SurfaceDistance {
   std::unique_ptr<Index> index_;
 };
 
-/// Distance from each x to the nearest sample, model units; threads over x.
-/// \throw std::invalid_argument without samples or for one that is not finite
-/// \throw MeshCancelled
-std::vector<double> nearest_sample_distances(const std::vector<Vec3>& x, const std::vector<Vec3>& samples,
-                                             const KeepGoing& keep_going = {});
+/// Distances to samples: a kd-tree that several questions share. Keeps its own copy of the samples. Immutable; queries
+/// are thread-safe.
+class SampleDistance {
+ public:
+  /// \throw std::invalid_argument without samples or for one that is not finite
+  explicit SampleDistance(std::vector<Vec3> samples);
+  ~SampleDistance();
+  SampleDistance(SampleDistance&&) noexcept;
+  SampleDistance& operator=(SampleDistance&&) noexcept;
+
+  /// Distance from each x to the nearest sample, model units; threads over x. \throw MeshCancelled
+  std::vector<double> distances(const std::vector<Vec3>& x, const KeepGoing& keep_going = {}) const;
+
+ private:
+  struct Index;
+  std::unique_ptr<Index> index_;
+};
 
 /// Share of the surface that no data backs: area of the faces whose centroid is farther than `radius` (three sample
 /// spacings, say) from every sample, over the whole area. 0 for an empty surface. \throw MeshCancelled
 double unsupported_area_fraction(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
-                                 const std::vector<Vec3>& samples, double radius, const KeepGoing& keep_going = {});
+                                 const SampleDistance& samples, double radius, const KeepGoing& keep_going = {});
 
 }  // namespace umtet

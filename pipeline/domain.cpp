@@ -57,6 +57,7 @@ Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handove
     x -= domain.shift;
     cloud_box.extend(x);
   }
+  if (!domain.cloud.points.empty()) domain.samples = std::make_shared<const SampleDistance>(domain.cloud.points);
   domain.diagonal = cloud_box.diagonal().norm();
   domain.box = domain.level_set->domain();
   if (const std::optional<Box> box = parse_box(parameters.text("mesh.box"))) {

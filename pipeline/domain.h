@@ -1,9 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "mesh/background_mesh.h"
 #include "mesh/implicit_function.h"
+#include "mesh/surface_distance.h"
 #include "pipeline/case_folder.h"
 #include "pipeline/expression.h"
 #include "pipeline/parameters.h"
@@ -23,8 +25,9 @@ struct Domain {
   Box box;                            ///< what the background mesh has to cover
   double diagonal = 0;                ///< of the cloud's box, or of `box` for a formula
   Vec3 shift = Vec3::Zero();
-  OrientedPointCloud cloud;  ///< empty for a formula
-  double cloud_spacing = 0;  ///< median distance between neighbouring samples, 0 for a formula
+  OrientedPointCloud cloud;                       ///< empty for a formula
+  std::shared_ptr<const SampleDistance> samples;  ///< of the cloud's points; none for a formula
+  double cloud_spacing = 0;                       ///< median distance between neighbouring samples, 0 for a formula
 
   /// Cuts psi at the detail that a mesh of edge length h can show: boundary faces fold over what is finer.
   void limit_detail(double h);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "mesh/surface_distance.h"
 #include "pipeline/artefact.h"
 #include "pipeline/interrupt.h"
 
@@ -33,7 +32,7 @@ void set_support(const Domain& domain, const std::vector<Vec3>& V, const std::ve
                  std::vector<double>& support) {
   std::vector<Vec3> x;
   for (const int i : vertices) x.push_back(V[i]);
-  const std::vector<double> d = nearest_sample_distances(x, domain.cloud.points, not_interrupted);
+  const std::vector<double> d = domain.samples->distances(x, not_interrupted);
   for (std::size_t k = 0; k < d.size(); ++k) support[vertices[k]] = d[k];
 }
 
@@ -42,7 +41,7 @@ MeshFile mesh_content(const Domain& domain, const UmResult& result, const std::v
   for (Vec3& x : mesh.V) x += domain.shift;
   MeshFile content =
       with_standard_data(std::move(mesh), result.submesh.background_vertex, result.submesh.background_tet);
-  if (&V == &result.final && !domain.cloud.points.empty()) {
+  if (&V == &result.final && domain.samples) {
     std::vector<double> support(V.size(), -1);
     set_support(domain, V, result.submesh.positive_vertices, support);
     content.point_data["support"] = std::move(support);

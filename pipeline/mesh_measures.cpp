@@ -196,9 +196,9 @@ Json measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& 
     }
   }
   block["unsupported_area_fraction"] = nullptr;
-  if (!domain.cloud.points.empty()) {
-    block["unsupported_area_fraction"] = unsupported_area_fraction(mesh.V, faces, domain.cloud.points,
-                                                                   kSupportRadius * domain.cloud_spacing, keep_going);
+  if (domain.samples) {
+    block["unsupported_area_fraction"] =
+        unsupported_area_fraction(mesh.V, faces, *domain.samples, kSupportRadius * domain.cloud_spacing, keep_going);
   }
   json["domain"] = std::move(block);
   json["cloud"] = cloud_block(domain, mesh.V, faces, h, keep_going, reasons);

@@ -39,7 +39,7 @@ std::vector<std::size_t> backing_samples(const Domain& domain, const ZeroSetTopo
     }
     if (near.empty()) continue;
     const auto points = topology.points_of(topology.components[c]);
-    const std::vector<double> d = nearest_sample_distances(x, {points.begin(), points.end()}, keep_going);
+    const std::vector<double> d = SampleDistance({points.begin(), points.end()}).distances(x, keep_going);
     for (std::size_t k = 0; k < near.size(); ++k) {
       const std::size_t i = near[k];
       if (d[k] < least[i] || (owner[i] == kNone && d[k] <= radius)) least[i] = d[k], owner[i] = c;

@@ -85,9 +85,9 @@ TEST(SurfaceDistance, SamplesOnOneHalfLeaveTheOtherUnsupported) {
     if (v.z() >= 0) samples.push_back(v);
   }
   // A belt of width .15 below the equator is within reach: its share of the sphere is .15 / 2.
-  EXPECT_NEAR(unsupported_area_fraction(sphere.V, faces, samples, 0.15), 0.5 - 0.075, 0.02);
-  EXPECT_EQ(unsupported_area_fraction(sphere.V, faces, sphere.V, 0.15), 0);
-  const std::vector<double> d = nearest_sample_distances({{0, 0, -1}, {0, 0, 3}}, samples);
+  EXPECT_NEAR(unsupported_area_fraction(sphere.V, faces, SampleDistance(samples), 0.15), 0.5 - 0.075, 0.02);
+  EXPECT_EQ(unsupported_area_fraction(sphere.V, faces, SampleDistance(sphere.V), 0.15), 0);
+  const std::vector<double> d = SampleDistance(samples).distances({{0, 0, -1}, {0, 0, 3}});
   EXPECT_DOUBLE_EQ(d[0], std::sqrt(2.0));
   EXPECT_DOUBLE_EQ(d[1], 2);
 }
@@ -97,7 +97,7 @@ TEST(SurfaceDistance, RefusesWhatHasNoDistance) {
   EXPECT_THROW(SurfaceDistance(V, {}), std::invalid_argument);
   EXPECT_THROW(SurfaceDistance(V, {{0, 1, 3}}), std::invalid_argument);
   EXPECT_THROW(SurfaceDistance(V, {{0, 1, 2}}), std::invalid_argument);
-  EXPECT_THROW(nearest_sample_distances(V, {}), std::invalid_argument);
+  EXPECT_THROW(SampleDistance({}), std::invalid_argument);
 }
 
 }  // namespace
