@@ -31,23 +31,23 @@ void sort_and_unite(std::vector<Eigen::Vector3i>& blocks) {
 
 // The node blocks that the functions of the samples' cells belong to.
 std::vector<Eigen::Vector3i> touched_blocks(const std::vector<SsdSample>& samples, int half_width) {
-  constexpr std::size_t kFirstLimit = 1 << 16;
-  std::size_t limit = kFirstLimit;
   std::vector<Eigen::Vector3i> touched;
-  const int reach = 2 * half_width - 1;  // the window of cell c ends in block (c + reach) / 8
-  Eigen::Vector3i last = Eigen::Vector3i::Constant(-1);
-  for (const SsdSample& s : samples) {
-    const Eigen::Vector3i cell = cell_of(s);
-    if (cell == last) continue;
-    last = cell;
-    const Eigen::Vector3i low = cell / kEdge, high = (cell.array() + reach) / kEdge;
-    for (int z = low[2]; z <= high[2]; ++z)
-      for (int y = low[1]; y <= high[1]; ++y)
-        for (int x = low[0]; x <= high[0]; ++x) touched.emplace_back(x, y, z);
-    if (touched.size() > limit) {  // not one entry a sample: they repeat
-      sort_and_unite(touched);
-      limit = 2 * touched.size() + kFirstLimit;
+  const int reach = 2 * half_width - 1;  // the window of cell c ends in block (c + reach) / 8: its own or the next
+  for (std::size_t i = 0; i < samples.size();) {
+    const Eigen::Vector3i block = cell_of(samples[i]) / kEdge;
+    unsigned ends = 0;  // a bit for each of the eight blocks in which a window ends
+    for (; i < samples.size(); ++i) {
+      const Eigen::Vector3i cell = cell_of(samples[i]);
+      if (cell / kEdge != block) break;
+      const Eigen::Vector3i next = (cell.array() + reach) / kEdge - block.array();
+      ends |= 1U << (next[0] | next[1] << 1 | next[2] << 2);
     }
+    for (int q = 0; q < 8; ++q)
+      for (int end = q; end < 8; ++end) {
+        if ((ends >> end & 1) == 0 || (q & end) != q) continue;
+        touched.push_back(block + Eigen::Vector3i(q & 1, q >> 1 & 1, q >> 2));
+        break;
+      }
   }
   sort_and_unite(touched);
   return touched;
@@ -223,24 +223,31 @@ void SsdBand::apply_energy(const float* p, float* y) const {
     alignas(32) float with_m[kAround][kNodes / kEdge], with_b[kAround][kNodes / kEdge], with_s[kAround][kNodes / kEdge];
     for (int z = 0; z < kAround; ++z) {
       const int kz = z - kHalf + kEdge, bz = kz / kEdge;  // 0, 1, 2: below, in, above
-      alignas(32) float M[kAround][kEdge], S[kAround][kEdge], B[kAround][kEdge];
-      bool plane = false;
+      // All rows of the plane are copied before the first is read: what has just been written in pieces of eight cannot
+      // be read across them until it has left the store buffer.
+      alignas(32) float rows[kAround][3 * kEdge], M[kAround][kEdge], S[kAround][kEdge], B[kAround][kEdge];
+      bool filled[kAround], plane = false;
       for (int j = 0; j < kAround; ++j) {
         const int ky = j - kHalf + kEdge, by = ky / kEdge;
         const int* three = near.data() + 9 * bz + 3 * by;
-        if (three[0] < 0 && three[1] < 0 && three[2] < 0) {
+        filled[j] = three[0] >= 0 || three[1] >= 0 || three[2] >= 0;
+        if (!filled[j]) continue;
+        plane = true;
+        for (int q = 0; q < 3; ++q) {
+          if (three[q] < 0) {
+            lanes(rows[j] + q * kEdge).setZero();
+          } else {
+            lanes(rows[j] + q * kEdge) =
+                In(p + static_cast<std::size_t>(three[q]) * kNodes + (kz % kEdge * kEdge + ky % kEdge) * kEdge);
+          }
+        }
+      }
+      for (int j = 0; j < kAround; ++j) {
+        if (!filled[j]) {
           lanes(M[j]).setZero(), lanes(S[j]).setZero(), lanes(B[j]).setZero();
           continue;
         }
-        plane = true;
-        alignas(32) float row[3 * kEdge];
-        for (int q = 0; q < 3; ++q) {
-          if (three[q] < 0) {
-            lanes(row + q * kEdge).setZero();
-          } else {
-            lanes(row + q * kEdge) = In(p + static_cast<std::size_t>(three[q]) * kNodes + (kz % kEdge * kEdge + ky % kEdge) * kEdge);
-          }
-        }
+        const float* row = rows[j];
         const Lanes centre = In(row + kEdge);
         Lanes vm = m[0] * centre, vs = s[0] * centre, vb = b[0] * centre;
         for (int o = 1; o <= kHalf; ++o) {
@@ -351,7 +358,8 @@ void SsdBand::residual(const LevelSet& f, std::vector<float>& r) const {
       evaluate_lme_3d<false>(*tables_, L.n, s.xi, B);
       const double q = s.w_value * (s.value - value);
       const Vec3 g = s.w_gradient * (s.normal - gradient);
-      double* base = out + ((B.z.first - corner[2]) * kWindow + B.y.first - corner[1]) * kWindow + B.x.first - corner[0];
+      double* base =
+          out + ((B.z.first - corner[2]) * kWindow + B.y.first - corner[1]) * kWindow + B.x.first - corner[0];
       const int W = tables_->width();
       for (int k = 0; k < W; ++k)
         for (int j = 0; j < W; ++j) {
