@@ -63,7 +63,8 @@ const std::vector<ExportFormat>& formats_known() {
 std::vector<PendingFile> files_of(const ExportFormat& format, const fs::path& folder, const SolverMesh& mesh) {
   std::vector<PendingFile> files;
   for (const ExportedFile& file : format.files) {
-    files.push_back({folder / ("mesh" + file.ending), [&](const fs::path& path) { file.write(path, mesh); }});
+    files.push_back(
+        {folder / ("mesh" + file.ending), [&mesh, &file](const fs::path& path) { file.write(path, mesh); }});
   }
   if (!format.skin || mesh.patches.size() < 2) return files;
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
@@ -83,15 +84,25 @@ bool is_exported(const std::string& name) {
   return false;
 }
 
-/// The cloud that the mesh was made of; empty for a formula.
+/// The cloud that the mesh was made of; empty for a formula, and where 1-cloud has been taken away.
 OrientedPointCloud cloud_of_case(const CasePaths& paths, const StageRecord& mesh) {
   if (!mesh.parameters.value("implicit", "").empty()) return {};
   const StageState state = inspect_stage(paths, Stage::Cloud, Json::object(), std::nullopt);
-  if (!state.record) throw ArtefactDamaged(state.reason);
+  if (state.kind == StageState::Kind::Damaged) throw ArtefactDamaged(state.reason);
+  if (!state.record) return {};
   try {
     return read_point_cloud(paths.cloud()).cloud;
   } catch (const CloudRefused& e) {
     throw ArtefactDamaged(e.what());
+  }
+}
+
+/// Patches that had other names in a former export have other files.
+void remove_former_skins(const ExportFormat& format, const CasePaths& paths, const std::vector<fs::path>& written) {
+  if (!format.skin) return;
+  for (const fs::path& file : exported_files(paths)) {
+    const bool is_skin = file.extension() == format.files.front().ending;
+    if (is_skin && std::find(written.begin(), written.end(), file) == written.end()) fs::remove(file);
   }
 }
 
@@ -161,6 +172,7 @@ std::vector<fs::path> export_case(const CasePaths& paths, const std::vector<std:
     const std::vector<PendingFile> files = files_of(*format, paths.exports(), mesh);
     write_artefacts(files);
     for (const PendingFile& file : files) written.push_back(file.path);
+    remove_former_skins(*format, paths, written);
   }
   return written;
 }
