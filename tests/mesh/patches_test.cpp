@@ -62,5 +62,19 @@ TEST(AbsorbIslands, IslandsTakeTheLabelTheyBorderOnMost) {
   EXPECT_THROW(absorb_islands(mesh, 1, labels), std::invalid_argument);
 }
 
+TEST(AbsorbIslands, WhatTwoIslandsMakeIsStillAnIsland) {
+  const SolverMesh mesh = box();
+  std::vector<int> labels, expected;
+  for (const Vec3& x : face_geometry(mesh).centroid) {
+    // Both triangles of the square border on each other most; the square borders equally on four labels.
+    const bool spot = x.z() > 3.9 && x.x() > 1 && x.x() < 2 && x.y() > 1 && x.y() < 2;
+    const int around = x.y() < 1 ? 1 : x.x() > 2 ? 2 : x.y() > 2 ? 3 : 4;
+    labels.push_back(!spot ? around : x.x() > x.y() ? 5 : 6);
+    expected.push_back(spot ? 1 : around);
+  }
+  absorb_islands(mesh, 1.5, labels);
+  EXPECT_EQ(labels, expected);
+}
+
 }  // namespace
 }  // namespace umtet
