@@ -53,8 +53,8 @@ CloudFile read_point_cloud(const std::filesystem::path& file);
 /// \throw std::system_error    the file cannot be opened or read; names it
 CloudFile read_scan(const std::filesystem::path& file);
 
-/// Binary little-endian PLY, double x y z nx ny nz and, where there are labels, int label; read_point_cloud gives the same bits back. The caller owns the
-/// stream and checks it.
+/// Binary little-endian PLY, double x y z nx ny nz and, where there are labels, int label; read_point_cloud gives the
+/// same bits back. The caller owns the stream and checks it.
 /// \throw std::invalid_argument  not as many normals as points, or labels, where there are any
 void write_ply(std::ostream&, const OrientedPointCloud&);
 
