@@ -28,6 +28,14 @@ std::string lower(std::string s) {
   return s;
 }
 
+template <std::size_t N>
+std::vector<int> flat(const std::vector<std::array<int, N>>& C) {
+  std::vector<int> ids;
+  ids.reserve(N * C.size());
+  for (const auto& t : C) ids.insert(ids.end(), t.begin(), t.end());
+  return ids;
+}
+
 }  // namespace
 
 std::array<int, 6> SolverMesh::face(std::size_t f) const {
@@ -86,12 +94,8 @@ SolverMesh solver_mesh(std::vector<Vec3> nodes, int nodes_per_tet, std::vector<i
   return mesh;
 }
 
-SolverMesh solver_mesh(const TetMesh& mesh) {
-  std::vector<int> tets;
-  tets.reserve(4 * mesh.C.size());
-  for (const Tet& t : mesh.C) tets.insert(tets.end(), t.begin(), t.end());
-  return solver_mesh(mesh.V, 4, std::move(tets));
-}
+SolverMesh solver_mesh(const TetMesh& mesh) { return solver_mesh(mesh.V, 4, flat(mesh.C)); }
+SolverMesh solver_mesh(const QuadraticTetMesh& mesh) { return solver_mesh(mesh.V, 10, flat(mesh.C)); }
 
 std::string problem_of_name(const std::string& name) {
   if (name.empty() || !is_letter(name[0])) return "must begin with a letter";

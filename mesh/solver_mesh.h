@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/quadratic_tet_mesh.h"
 #include "mesh/tet_mesh.h"
 #include "mesh/tet_mesh_io.h"
 
@@ -49,6 +50,7 @@ struct SolverMesh {
 /// \throw std::invalid_argument  nodes_per_tet is not 4 or 10, an id out of range, or ids that are not whole tets
 SolverMesh solver_mesh(std::vector<Vec3> nodes, int nodes_per_tet, std::vector<int> tets);
 SolverMesh solver_mesh(const TetMesh& mesh);
+SolverMesh solver_mesh(const QuadraticTetMesh& mesh);
 
 /// Empty for a name that every format keeps: at most 64 letters, digits, '_', '-', '.', the first a letter.
 /// (CalculiX cuts names at 80 and removes blanks, and a comma ends a name of Abaqus.)

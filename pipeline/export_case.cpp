@@ -113,8 +113,9 @@ SolverMesh mesh_of_case(const CasePaths& paths, const Parameters& parameters, Pr
   if (!state.record) throw UsageError("nothing to export: " + state.reason);
   try {
     MeshFile file = read_tet_mesh(paths.mesh());
-    SolverMesh mesh = solver_mesh(file.mesh);
-    mesh.point_data = std::move(file.point_data);
+    SolverMesh mesh = file.quadratic ? solver_mesh(*file.quadratic) : solver_mesh(file.mesh);
+    // What is read for points is read for corners.
+    if (!file.quadratic) mesh.point_data = std::move(file.point_data);
     mesh.cell_data = std::move(file.cell_data);
     divide_boundary(mesh, cloud_of_case(paths, *state.record), parameters, progress);
     return mesh;

@@ -116,6 +116,22 @@ TEST_F(Export, LabelsOfPointsBecomeSetsOfEveryFile) {
   }
 }
 
+TEST_F(Export, CurvedTetsStayCurved) {
+  const Result r =
+      run("mesh --implicit 'x^2+y^2+z^2-1' --box=-1.3,-1.3,-1.3,1.3,1.3,1.3 --tets 400 --order 2 -o ball "
+          "--json --export vtu,msh,msh22,mesh,inp");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const Json made = Json::parse(r.out)["certificate"];
+  const fs::path out = folder / "ball/4-export";
+  for (const char* file : {"mesh.vtu", "mesh.msh", "mesh_22.msh", "mesh.mesh"}) {
+    const Json found = Json::parse(run("check " + (out / file).string() + " --json").out);
+    EXPECT_EQ(found["order"], 2) << file;
+    EXPECT_NEAR(found["second_order"]["volume"].get<double>(), made["second_order"]["volume"].get<double>(), 1e-12)
+        << file;
+  }
+  EXPECT_NE(content(out / "mesh.inp").find("TYPE=C3D10"), std::string::npos);
+}
+
 TEST_F(Export, NamesAreCheckedBeforeAnythingIsMade) {
   label_egg();
   for (const char* names : {"4", "4=", "x=a", "4=a,4=b", "4=a,2=A", "4=body", "'4=a b'"}) {
