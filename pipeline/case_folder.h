@@ -38,6 +38,7 @@ struct CasePaths {
   std::filesystem::path exports() const { return root / "4-export"; }
   std::filesystem::path parameters() const { return root / "case.toml"; }
   std::filesystem::path certificate() const { return root / "certificate.json"; }
+  std::filesystem::path report() const { return root / "report.html"; }
 };
 
 /// The right to write to a case, for as long as the object lives. Creates the folder if there is none, and removes it

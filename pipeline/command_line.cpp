@@ -23,6 +23,7 @@ constexpr const char* kFooter = R"(Examples:
   umtet inspect duck.ply                     spacing, noise, normals, thickness; what is likely to go wrong
   umtet check part.msh                       validity and quality of any tet mesh
   umtet export duck --format inp,vtu         files for solvers, in duck/4-export
+  umtet report duck                          duck/report.html: what a browser shows of it, offline
   umtet evolve --implicit '(x-t)^2+y^2+z^2-1' --box=-2,-2,-2,4,2,2 --h .1 --t 0:0.5:2 -o moving
 
 Exit codes: 0 all well | 1 a bug of ours | 2 usage | 3 input refused | 4 reconstruction failed
@@ -35,7 +36,7 @@ struct Inputs {
   std::vector<std::string> assignments, formats;
   std::map<std::string, std::string> values;  ///< by key
   std::map<std::string, bool> switches;       ///< by key
-  bool force = false, strict = false, quiet = false, verbose = false;
+  bool force = false, strict = false, no_report = false, quiet = false, verbose = false;
 };
 
 /// Help, choices and default of a parameter.
@@ -82,6 +83,7 @@ Parser::Parser() {
   run.add_option("--from", in_.from, "first stage that may run: cloud, level-set, mesh");
   run.add_option("--until", in_.until, "last stage to run");
   add_formats(run, "--export");
+  run.add_flag("--no-report", in_.no_report, "do not make report.html");
   add_parameter_flags(run, {"cloud", "reconstruct", "mesh", "output"}, {"mesh.implicit"});
 
   CLI::App& reconstruct = add_command("reconstruct", "Stage one only: the level set");
@@ -95,6 +97,7 @@ Parser::Parser() {
   add_stage_flags(mesh);
   mesh.add_option("CASE", in_.input, "a case with a level set");
   add_formats(mesh, "--export");
+  mesh.add_flag("--no-report", in_.no_report, "do not make report.html");
   add_parameter_flags(mesh, {"mesh", "output"});
 
   CLI::App& evolve = add_command("evolve", "A domain that moves: every instant meshed in one background mesh");
@@ -121,6 +124,9 @@ Parser::Parser() {
   exports.add_option("CASE", in_.input, "a case with a mesh")->required();
   add_formats(exports, "--format").required();
   add_parameter_flags(exports, {"output"}, {"output.units", "output.max_memory", "output.min_quality"});
+
+  CLI::App& report = add_command("report", "CASE/report.html: certificate, mesh and curves on one page, offline");
+  report.add_option("CASE", in_.input, "a case with a certificate")->required();
 }
 
 CLI::Option& Parser::add_formats(CLI::App& command, const char* flag) {
@@ -208,10 +214,9 @@ void Parser::check_command(int argc, const char* const* argv) const {
   std::vector<std::string> commands;
   for (const CLI::App* c : app_.get_subcommands({})) commands.push_back(c->get_name());
   if (std::find(commands.begin(), commands.end(), *word) != commands.end()) return;
-  for (const char* planned : {"report", "batch"}) {
-    if (std::string_view(*word) != planned) continue;
-    throw UsageError(fmt::format("{} is not available yet in version {}; there are {}", planned, kVersion,
-                                 fmt::join(commands, ", ")));
+  if (std::string_view(*word) == "batch") {
+    throw UsageError(
+        fmt::format("batch is not available yet in version {}; there are {}", kVersion, fmt::join(commands, ", ")));
   }
   const std::string near = nearest(*word, commands);
   throw UsageError(
@@ -267,6 +272,10 @@ void Parser::finish(const CLI::App& command) {
     result_.request.case_folder = in_.input;
     const fs::path toml = CasePaths{in_.input}.parameters();
     if (fs::exists(toml)) parameters.load(toml, ParamSource::Case);
+    result_.formats = in_.formats;
+  } else if (result_.command == "report") {
+    result_.action = CommandLine::Action::Report;
+    result_.request.case_folder = in_.input;
   } else if (result_.command == "evolve") {
     result_.action = CommandLine::Action::Evolve;
     finish_evolve();
@@ -313,6 +322,7 @@ void Parser::finish_stages(const CLI::App& command) {
   Parameters& parameters = request.parameters;
   request.force = in_.force;
   request.strict = in_.strict;
+  request.report = !in_.no_report;
   const bool input_is_case = !in_.input.empty() && (name == "mesh" || fs::is_directory(in_.input));
   if (name == "reconstruct") request.until = Stage::LevelSet;
   if (name == "mesh" || (name == "reconstruct" && input_is_case)) {

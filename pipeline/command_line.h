@@ -12,15 +12,16 @@ namespace umtet {
 
 /// A call of the program, understood.
 struct CommandLine {
-  enum class Action { Text, Stages, Check, Export, Inspect, Evolve };
+  enum class Action { Text, Stages, Check, Export, Report, Inspect, Evolve };
   Action action = Action::Text;
   std::string text;     ///< Text: help or version, for stdout
-  std::string command;  ///< "run", "reconstruct", "mesh", "inspect", "check", "export", "evolve"
+  std::string command;  ///< "run", "reconstruct", "mesh", "inspect", "check", "export", "report",
+                        ///< "evolve"
 
-  RunRequest request;           ///< Stages; Check: its output.* parameters; Export: its case_folder and its output.*
-  EvolveRequest evolve;         ///< Evolve, but for its parameters: those of `request`
-  std::filesystem::path mesh;   ///< Check
-  std::filesystem::path cloud;  ///< Inspect
+  RunRequest request;          ///< Stages; Check: its output.* parameters; Export: the same and its case_folder; Report
+  EvolveRequest evolve;        ///< Evolve, but for its parameters: those of `request`
+  std::filesystem::path mesh;  ///< Check
+  std::filesystem::path cloud;                   ///< Inspect
   std::optional<std::filesystem::path> against;  ///< Check
   std::vector<std::string> formats;              ///< Export, and Stages after which something is exported
 

@@ -49,9 +49,10 @@ MeshFile mesh_content(const Domain& domain, const UmResult& result, const std::v
   return content;
 }
 
-void write_mesh(const fs::path& file, const Domain& domain, const UmResult& result, const std::vector<Vec3>& V) {
-  const MeshFile content = mesh_content(domain, result, V);
+MeshFile write_mesh(const fs::path& file, const Domain& domain, const UmResult& result, const std::vector<Vec3>& V) {
+  MeshFile content = mesh_content(domain, result, V);
   write_artefact(file, [&](const fs::path& temporary) { write_vtu(temporary, content); });
+  return content;
 }
 
 std::string failure_text(const UmResult& result, double h, const Vec3& shift) {

@@ -23,9 +23,10 @@ void set_support(const Domain& domain, const std::vector<Vec3>& V, const std::ve
 
 /// omega_h with its vertices at V, in model coordinates, with ids of the background; of a cloud's final mesh also the
 /// distance of each boundary vertex to the nearest sample (`support`, -1 inside): what is data and what is a guess.
-/// Complete or not at all. \throw MeshCancelled, std::system_error naming the file
-void write_mesh(const std::filesystem::path& file, const Domain& domain, const UmResult& result,
-                const std::vector<Vec3>& V);
+/// Complete or not at all.
+/// @return what the file holds. \throw MeshCancelled, std::system_error naming the file
+MeshFile write_mesh(const std::filesystem::path& file, const Domain& domain, const UmResult& result,
+                    const std::vector<Vec3>& V);
 
 /// Why there is no mesh, where, and what may help; some lines. \pre result.status != UmStatus::Success
 std::string failure_text(const UmResult& result, double h, const Vec3& shift);

@@ -60,7 +60,7 @@ class MeshStage {
   bool observe(const UmProgress& p);
   UmResult make(const BackgroundMesh& background, const ZeroSetChoice& pieces);
   [[noreturn]] void refuse(const UmResult& result, double h);
-  void write_output(const std::string& name, const UmResult& result, const std::vector<Vec3>& V);
+  MeshFile write_output(const std::string& name, const UmResult& result, const std::vector<Vec3>& V);
   void write_outputs(const MeshAttempt& best);
   const StageContext& context_;
   Domain domain_;
@@ -105,9 +105,9 @@ UmResult MeshStage::make(const BackgroundMesh& background, const ZeroSetChoice& 
   return result;
 }
 
-void MeshStage::write_output(const std::string& name, const UmResult& result, const std::vector<Vec3>& V) {
-  write_mesh(context_.paths.folder(Stage::Mesh) / name, domain_, result, V);
+MeshFile MeshStage::write_output(const std::string& name, const UmResult& result, const std::vector<Vec3>& V) {
   outputs_.push_back(name);
+  return write_mesh(context_.paths.folder(Stage::Mesh) / name, domain_, result, V);
 }
 
 /// What is left of a mesh that is none, or is not right; returns the folder.
@@ -278,6 +278,8 @@ void MeshStage::run() {
                 numbers,
                 run_block(seconds.count(), context_.threads)},
                outputs_);
+  domain_.limit_detail(best.h);
+  context_.handover.domain = std::move(domain_);
 }
 
 void MeshStage::write_outputs(const MeshAttempt& best) {
@@ -292,8 +294,9 @@ void MeshStage::write_outputs(const MeshAttempt& best) {
   if (best.second) {
     write_second_order(context_.paths.folder(Stage::Mesh) / "mesh.vtu", domain_, result, *best.second);
     outputs_.emplace_back("mesh.vtu");
+    context_.handover.mesh = mesh_content(domain_, result, result.final);
   } else {
-    write_output("mesh.vtu", result, result.final);
+    context_.handover.mesh = write_output("mesh.vtu", result, result.final);
   }
   write_artefact(context_.paths.folder(Stage::Mesh) / "quality.csv", [&](const fs::path& temporary) {
     write_quality_csv(temporary, quality_curves(result.submesh.mesh.C, result.submesh.positive_vertices, omega_h,

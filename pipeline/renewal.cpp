@@ -81,6 +81,7 @@ void refuse_foreign_folder(const CasePaths& paths) {
 void replace_former(const StageContext& context, CasePaths& paths) {
   if (!renews_any(paths)) return;
   fs::remove(paths.certificate());
+  fs::remove(paths.report());
   write_parameters(paths, context.parameters);
   if (paths.renews(Stage::Mesh) && !same_mesh(paths)) remove_exports(paths, context.progress);
   for (const Stage stage : kStages) {

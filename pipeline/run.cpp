@@ -8,6 +8,7 @@
 #include "pipeline/cloud_preparation.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/renewal.h"
+#include "pipeline/report.h"
 #include "pipeline/stages.h"
 
 namespace umtet {
@@ -33,6 +34,7 @@ class CaseRun {
   void run(Stage stage);
   void compute(Stage stage);
   void certify(const StageRecord& mesh);
+  void report();
 
   const RunRequest& request_;
   Progress& progress_;
@@ -146,6 +148,17 @@ void CaseRun::certify(const StageRecord& mesh) {
   if (json.at("verdict") != "pass") outcome_.code = ExitCode::GateFailed;
 }
 
+/// A report is of the certificate beside it, or there is none.
+void CaseRun::report() {
+  const bool fits = report_is_of(paths_, *outcome_.certificate);
+  if (!request_.report && !fits) fs::remove(paths_.report());
+  if (request_.report && (!fits || request_.force)) {
+    progress_.report("report", "write", .5);
+    write_report(paths_, parameters_, *outcome_.certificate, handover_);
+  }
+  if (fs::exists(paths_.report())) outcome_.files.push_back(paths_.report());
+}
+
 RunOutcome CaseRun::operator()() {
   const CaseLock lock(paths_.root);
   refuse_foreign_folder(paths_);
@@ -163,6 +176,7 @@ RunOutcome CaseRun::operator()() {
   if (request_.until == Stage::Mesh) {
     certify(records.back());
     outcome_.files.push_back(paths_.certificate());
+    report();
   }
   return std::move(outcome_);
 }

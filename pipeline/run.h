@@ -20,6 +20,7 @@ struct RunRequest {
   Stage from = Stage::Cloud, until = Stage::Mesh;
   bool force = false;   ///< run the stages from..until although they are done
   bool strict = false;  ///< a damaged artefact is an error instead of a reason to make it again
+  bool report = true;   ///< make report.html beside a certificate
   int threads = 1;
 };
 

@@ -38,6 +38,7 @@ void begin_writing(const StageContext& context, Stage stage) {
   }
   if (context.paths.renews(stage)) return;
   fs::remove(context.paths.certificate());
+  fs::remove(context.paths.report());
   write_parameters(context.paths, context.parameters);
 }
 

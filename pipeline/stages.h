@@ -4,8 +4,10 @@
 #include <optional>
 #include <vector>
 
+#include "mesh/tet_mesh_io.h"
 #include "mesh/universal_mesh.h"
 #include "pipeline/case_folder.h"
+#include "pipeline/domain.h"
 #include "pipeline/parameters.h"
 #include "pipeline/progress.h"
 #include "pipeline/record.h"
@@ -19,6 +21,8 @@ struct Handover {
   std::optional<OrientedPointCloud> cloud;  ///< cloud.ply
   NeighbourDistances near;                  ///< of its points, or empty
   std::optional<LevelSet> psi;              ///< level_set.vti
+  std::optional<Domain> domain;             ///< what was meshed, psi cut for h
+  MeshFile mesh;                            ///< mesh.vtu, beside the domain
 };
 
 /// What every stage is given. A stage computes first and touches the case only when it has something to write; it

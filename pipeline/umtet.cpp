@@ -17,6 +17,7 @@
 #include "pipeline/export_case.h"
 #include "pipeline/inspect.h"
 #include "pipeline/interrupt.h"
+#include "pipeline/report.h"
 #include "pipeline/run.h"
 
 namespace umtet {
@@ -112,6 +113,19 @@ Output export_files(const CommandLine& call, Progress& progress) {
   return output;
 }
 
+Output make_report(const CommandLine& call, Progress& progress) {
+  const CasePaths paths{call.request.case_folder};
+  if (!std::filesystem::exists(paths.root)) throw UsageError(paths.root.string() + ": there is no such case");
+  const CaseLock lock(paths.root);
+  progress.report("report", "write", .5);
+  report_case(paths);
+  progress.clear();
+  Output output;
+  output.document = {{"files", names({paths.report()})}};
+  output.text = file_list({paths.report()});
+  return output;
+}
+
 /// @param json  is set as soon as the call is understood, for the document of a failure
 Output execute(int argc, char** argv, bool& json, std::string& command) {
   CommandLine call = parse_command_line(argc, argv);
@@ -132,6 +146,8 @@ Output execute(int argc, char** argv, bool& json, std::string& command) {
       return run_evolution(call, progress);
     case CommandLine::Action::Export:
       return export_files(call, progress);
+    case CommandLine::Action::Report:
+      return make_report(call, progress);
     default:
       return run_stages(call, progress);
   }

@@ -12,7 +12,7 @@ TEST_F(Program, HelpIsAboutTheCommand) {
     EXPECT_EQ(r.out.rfind("umtet " + std::string(command), 0), 0u) << r.out;
   }
   EXPECT_NE(run("reconstruct --help").out.find("{area,paper} (default area)"), std::string::npos);
-  for (const char* planned : {"batch", "report x --help"}) {
+  for (const char* planned : {"batch", "batch x --help"}) {
     const Result r = run(planned);
     EXPECT_EQ(r.code, 2) << planned;
     EXPECT_NE(r.err.find("not available yet"), std::string::npos) << r.err;

@@ -1,0 +1,332 @@
+// The view of a mesh: reads the arrays in the page (report_scene.h says what they hold) and draws them when something
+// has changed. What a test wants to know is left in the data- attributes of <body>.
+"use strict";
+(function () {
+  const $ = (id) => document.getElementById(id);
+  const state = document.body.dataset;
+  const info = JSON.parse($("scene").textContent);
+  const ranges = info.ranges;
+
+  function bytes(name) {
+    const text = atob($("block-" + name).textContent);
+    const b = new Uint8Array(text.length);
+    for (let i = 0; i < b.length; ++i) b[i] = text.charCodeAt(i);
+    return b;
+  }
+  const has = (name) => $("block-" + name) !== null;
+  const indices = (name) => {
+    const b = bytes(name);
+    return info.index_bytes === 2 ? new Uint16Array(b.buffer) : new Uint32Array(b.buffer);
+  };
+  // Places relative to the middle of the box: single precision is enough for them.
+  function places(name) {
+    const steps = new Uint16Array(bytes(name).buffer);
+    const x = new Float32Array(steps.length);
+    for (let i = 0; i < x.length; ++i) x[i] = (steps[i] / 65535 - 0.5) * info.box_size[i % 3];
+    return x;
+  }
+
+  // Viridis: even steps for every kind of eye, and in grey.
+  const kStops = ["440154", "482878", "3e4989", "31688e", "26828e", "1f9e89", "35b779", "6ece58", "b5de2b", "fde725"];
+  const kPieces = ["0072b2", "e69f00", "009e73", "cc79a7", "56b4e9", "d55e00", "f0e442", "999999"];
+  const rgb = (hex) => [0, 2, 4].map((k) => parseInt(hex.substr(k, 2), 16));
+  const ramp = [];
+  for (let v = 0; v < 256; ++v) {
+    const at = (v / 255) * (kStops.length - 1), k = Math.min(Math.floor(at), kStops.length - 2);
+    const a = rgb(kStops[k]), b = rgb(kStops[k + 1]);
+    ramp.push(a.map((c, i) => Math.round(c + (at - k) * (b[i] - c))));
+  }
+  const reversed = ramp.slice().reverse();
+  const pieces = [];
+  for (let v = 0; v < 256; ++v) pieces.push(rgb(kPieces[v % kPieces.length]));
+  const plain = new Array(256).fill([226, 196, 128]);
+
+  // Bright is good: small distances at the bright end.
+  const kinds = [
+    {name: "quality (mean ratio)", key: "quality", face: "face_quality", ramp: ramp},
+    {name: "deviation of face centres", key: "deviation", face: "face_deviation", ramp: reversed},
+    {name: "support (next sample)", key: "support", vertex: "vertex_support", ramp: reversed},
+    {name: "connected pieces", face: "face_piece", ramp: pieces},
+    {name: "none", ramp: plain},
+  ].filter((k) => !(k.face || k.vertex) || has(k.face || k.vertex));
+  for (const kind of kinds) {
+    kind.bytes = kind.face || kind.vertex ? bytes(kind.face || kind.vertex) : null;
+    $("colour").add(new Option(kind.name, kinds.indexOf(kind)));
+  }
+
+  const X = places("positions"), F = indices("faces"), T = indices("tets"), tetQuality = bytes("tet_quality");
+  const nFaces = F.length / 4, nTets = T.length / 4;
+  const centroid = (list, k, axis) =>
+    (X[3 * list[4 * k] + axis] + X[3 * list[4 * k + 1] + axis] + X[3 * list[4 * k + 2] + axis] +
+     X[3 * list[4 * k + 3] + axis]) / 4;
+  const kTetFaces = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
+
+  // Triangles that share no corners: each has colours of its own, and weights that tell how near an edge is.
+  function Soup(capacity) {
+    const position = new Float32Array(9 * capacity), colour = new Uint8Array(9 * capacity);
+    let n = 0;
+    this.add = (a, b, c, colours) => {
+      const corners = [a, b, c];
+      for (let k = 0; k < 3; ++k) {
+        for (let i = 0; i < 3; ++i) {
+          position[9 * n + 3 * k + i] = X[3 * corners[k] + i];
+          colour[9 * n + 3 * k + i] = colours[k][i];
+        }
+      }
+      ++n;
+    };
+    this.geometry = () => {
+      const weights = new Uint8Array(9 * n);
+      for (let v = 0; v < 3 * n; ++v) weights[3 * v + (v % 3)] = 1;
+      const g = new THREE.BufferGeometry();
+      g.setAttribute("position", new THREE.BufferAttribute(position.subarray(0, 9 * n), 3));
+      g.setAttribute("tint", new THREE.BufferAttribute(colour.subarray(0, 9 * n), 3, true));
+      g.setAttribute("weight", new THREE.BufferAttribute(weights, 3));
+      return g;
+    };
+  }
+
+  function material(options) {
+    return new THREE.ShaderMaterial(Object.assign({
+      uniforms: {edges: {value: 1}, opacity: {value: 1}},
+      side: THREE.DoubleSide,
+      extensions: {derivatives: true},
+      vertexShader: `
+        attribute vec3 tint; attribute vec3 weight;
+        varying vec3 at, colour, corner;
+        void main() {
+          vec4 p = modelViewMatrix * vec4(position, 1.0);
+          at = p.xyz; colour = tint; corner = weight;
+          gl_Position = projectionMatrix * p;
+        }`,
+      fragmentShader: `
+        uniform float edges, opacity;
+        varying vec3 at, colour, corner;
+        void main() {
+          vec3 n = normalize(cross(dFdx(at), dFdy(at)));
+          float light = 0.42 + 0.63 * abs(dot(n, normalize(vec3(0.25, 0.45, 1.0))));
+          vec3 d = corner / max(fwidth(corner), 1e-9);
+          float line = 1.0 - smoothstep(0.3, 1.3, min(min(d.x, d.y), d.z));
+          // Where triangles are a few pixels wide, their edges would be all that is seen.
+          float size = 1.0 / max(max(fwidth(corner.x), fwidth(corner.y)), fwidth(corner.z));
+          line *= edges * 0.55 * smoothstep(2.0, 9.0, size);
+          gl_FragColor = vec4(mix(colour * light, vec3(0.05), line), opacity);
+        }`,
+    }, options));
+  }
+
+  let renderer = null;
+  try {
+    renderer = new THREE.WebGLRenderer({canvas: $("canvas"), antialias: true, alpha: true, preserveDrawingBuffer: true});
+  } catch (e) {
+    state.webgl = "missing";
+    $("no-webgl").hidden = false;
+    $("legend").hidden = true;
+    state.ready = Math.round(performance.now());
+    return;
+  }
+  renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
+  renderer.setClearColor(0, 0);
+  const world = new THREE.Scene();
+  const camera = new THREE.PerspectiveCamera(28, 1, 0.01, 100);
+  // The surface lies on the faces of tets behind it: it is drawn a hair in front.
+  const surface = new THREE.Mesh(new THREE.BufferGeometry(),
+                                 material({polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -1}));
+  const inside = new THREE.Mesh(new THREE.BufferGeometry(), material({}));
+  const radius = Math.max(Math.hypot(...info.box_size) / 2, 1e-300);
+  // Half of the samples are behind the flat faces that they made: they are drawn a little nearer.
+  const cloud = new THREE.Points(new THREE.BufferGeometry(), new THREE.ShaderMaterial({
+    vertexShader: `
+      void main() {
+        vec4 p = modelViewMatrix * vec4(position, 1.0);
+        p.xyz *= 0.994;
+        gl_Position = projectionMatrix * p;
+        gl_PointSize = 3.0;
+      }`,
+    fragmentShader: "void main() { gl_FragColor = vec4(0.85, 0.11, 0.38, 1.0); }",
+  }));
+  if (info.n_points_shown > 0) {
+    cloud.geometry.setAttribute("position", new THREE.BufferAttribute(places("points"), 3));
+  } else {
+    $("cloud-row").hidden = true;
+  }
+  for (const part of [surface, inside, cloud]) {
+    part.frustumCulled = false;
+    world.add(part);
+  }
+  surface.renderOrder = 1;
+  cloud.renderOrder = 2;
+
+  const setGeometry = (part, soup) => {
+    part.geometry.dispose();
+    part.geometry = soup.geometry();
+  };
+
+  function plane() {
+    const axis = $("axis").value;
+    if (axis === "") return null;
+    const a = Number(axis), sign = $("flip").checked ? -1 : 1;
+    return {axis: a, sign: sign, at: sign * (Number($("place").value) - 0.5) * info.box_size[a]};
+  }
+
+  function build() {
+    const kind = kinds[$("colour").value], cut = plane(), worst = $("worst").checked;
+    const behind = (list, k) => !cut || cut.sign * centroid(list, k, cut.axis) <= cut.at;
+    const shell = new Soup(nFaces);
+    for (let f = 0; f < nFaces; ++f) {
+      if (!behind(F, f)) continue;
+      const colours = [0, 1, 2].map((k) => {
+        const v = kind.face ? kind.bytes[f] : kind.vertex ? kind.bytes[F[4 * f + k]] : 0;
+        return worst ? [150, 155, 165] : kind.ramp[v];
+      });
+      shell.add(F[4 * f], F[4 * f + 1], F[4 * f + 2], colours);
+    }
+    setGeometry(surface, shell);
+    const tets = [];
+    const nWorst = Math.min(Number($("worst-number").value), info.n_worst);
+    if (worst) {
+      for (let t = 0; t < nWorst; ++t) if (behind(T, t)) tets.push(t);
+    } else if (cut) {
+      for (let t = 0; t < nTets; ++t) {
+        const c = cut.sign * centroid(T, t, cut.axis);
+        if (c <= cut.at && c > cut.at - info.layer) tets.push(t);
+      }
+    }
+    const solid = new Soup(4 * tets.length);
+    for (const t of tets) {
+      const c = ramp[tetQuality[t]];
+      for (const face of kTetFaces) solid.add(T[4 * t + face[0]], T[4 * t + face[1]], T[4 * t + face[2]], [c, c, c]);
+    }
+    setGeometry(inside, solid);
+    const glass = worst ? 0.13 : 1;
+    surface.material.transparent = worst;
+    surface.material.depthWrite = !worst;
+    surface.material.uniforms.opacity.value = glass;
+    surface.material.uniforms.edges.value = $("edges").checked && !worst ? 1 : 0;
+    inside.material.uniforms.edges.value = $("edges").checked ? 1 : 0;
+    cloud.visible = $("cloud").checked;
+    $("worst-count").value = nWorst;
+    legend(worst || (cut && !kind.key) ? kinds[0] : kind);
+  }
+
+  const number = (v) => String(Number(v.toPrecision(4)));
+  function legend(kind) {
+    $("legend").textContent = "";
+    if (!kind.key) return;
+    const add = (cls, parent) => {
+      const e = document.createElement("div");
+      e.className = cls;
+      return parent.appendChild(e);
+    };
+    add("name", $("legend")).textContent = kind.key === "quality" ? "mean ratio Q" : kind.name + ", model units";
+    add("bar", $("legend")).style.background =
+      "linear-gradient(90deg," + [0, 51, 102, 153, 204, 255].map((v) => `rgb(${kind.ramp[v].join()})`).join() + ")";
+    const ends = add("ends", $("legend"));
+    for (const v of ranges[kind.key]) ends.appendChild(document.createElement("span")).textContent = number(v);
+  }
+
+  // A turntable around a target: angles, distance, target.
+  const kHome = {turn: 0.6, lift: 0.35, away: 0.72};
+  let eye = Object.assign({x: 0, y: 0, z: 0}, kHome);
+  function axes() {
+    const up = Number($("up").value), e = (k) => new THREE.Vector3().setComponent(k % 3, 1);
+    return {up: e(up), right: e(up + 1), front: e(up + 2)};
+  }
+  function draw() {
+    if (draw.asked) return;
+    draw.asked = true;
+    requestAnimationFrame(render);
+  }
+  function render() {
+    draw.asked = false;
+    const box = $("canvas").parentElement.getBoundingClientRect();
+    renderer.setSize(box.width, box.height, false);
+    camera.aspect = box.width / Math.max(box.height, 1);
+    const a = axes(), cos = Math.cos(eye.lift);
+    const far = eye.away * radius / Math.sin(camera.fov * Math.PI / 360) * Math.max(1, 0.95 / camera.aspect);
+    const target = new THREE.Vector3(eye.x, eye.y, eye.z);
+    camera.position.copy(target)
+      .addScaledVector(a.front, far * cos * Math.cos(eye.turn))
+      .addScaledVector(a.right, far * cos * Math.sin(eye.turn))
+      .addScaledVector(a.up, far * Math.sin(eye.lift));
+    camera.up.copy(a.up);
+    camera.lookAt(target);
+    camera.near = Math.max(far - 4 * radius, far * 0.02);
+    camera.far = far + 4 * radius;
+    camera.updateProjectionMatrix();
+    renderer.render(world, camera);
+  }
+
+  // How many pixels are not background, once, for who wants to know whether there is a picture.
+  function ready() {
+    const gl = renderer.getContext(), w = gl.drawingBufferWidth, h = gl.drawingBufferHeight;
+    const pixels = new Uint8Array(4 * w * h);
+    gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    let n = 0;
+    for (let i = 3; i < pixels.length; i += 4) n += pixels[i] > 0;
+    state.pixels = n;
+    state.webgl = "drawn";
+    state.ready = Math.round(performance.now());
+  }
+
+  const canvas = $("canvas");
+  let grip = null;
+  canvas.addEventListener("pointerdown", (e) => {
+    grip = {x: e.clientX, y: e.clientY, move: e.shiftKey || e.button === 2};
+    canvas.setPointerCapture(e.pointerId);
+  });
+  canvas.addEventListener("pointerup", () => { grip = null; });
+  canvas.addEventListener("pointercancel", () => { grip = null; });
+  canvas.addEventListener("contextmenu", (e) => e.preventDefault());
+  canvas.addEventListener("pointermove", (e) => {
+    if (!grip) return;
+    const dx = (e.clientX - grip.x) / canvas.clientHeight, dy = (e.clientY - grip.y) / canvas.clientHeight;
+    grip.x = e.clientX;
+    grip.y = e.clientY;
+    if (grip.move) {
+      const m = camera.matrixWorld.elements, s = 2 * radius * eye.away;
+      eye.x += s * (dy * m[4] - dx * m[0]);
+      eye.y += s * (dy * m[5] - dx * m[1]);
+      eye.z += s * (dy * m[6] - dx * m[2]);
+    } else {
+      eye.turn -= 4 * dx;
+      eye.lift = Math.max(-1.55, Math.min(1.55, eye.lift + 4 * dy));
+    }
+    draw();
+  });
+  canvas.addEventListener("wheel", (e) => {
+    e.preventDefault();
+    eye.away = Math.max(0.02, Math.min(5, eye.away * Math.exp(0.001 * e.deltaY)));
+    draw();
+  }, {passive: false});
+  $("home").addEventListener("click", () => {
+    eye = Object.assign({x: 0, y: 0, z: 0}, kHome);
+    draw();
+  });
+  window.addEventListener("resize", draw);
+
+  // Of a large mesh only the tets at the middle planes are here.
+  if (info.planes !== null) {
+    for (const option of Array.from($("axis").options)) {
+      if (option.value !== "" && !info.planes.includes(Number(option.value))) option.remove();
+    }
+    $("place").disabled = true;
+  }
+  $("worst-number").max = info.n_worst;
+  // #colour=1&axis=0&worst=1: a view to open with.
+  for (const [id, value] of new URLSearchParams(location.hash.slice(1))) {
+    const control = $(id);
+    if (!control || !control.form) continue;
+    if (control.type === "checkbox") control.checked = value === "1";
+    else control.value = value;
+  }
+  for (const control of $("controls").elements) {
+    if (control.type !== "button" && control.tagName !== "FIELDSET") control.addEventListener("input", () => {
+      build();
+      draw();
+    });
+  }
+  build();
+  render();
+  ready();
+})();
