@@ -32,7 +32,7 @@ Exit codes: 0 all well | 1 a bug of ours | 2 usage | 3 input refused | 4 reconst
 
 /// Where CLI11 leaves what it read, as text; the table of parameters knows the types.
 struct Inputs {
-  std::string input, output, config, from, until, against, clouds, times, skip;
+  std::string input, output, config, from, until, against, clouds, times, skip, other_case;
   std::vector<std::string> assignments, formats;
   std::map<std::string, std::string> values;  ///< by key
   std::map<std::string, bool> switches;       ///< by key
@@ -127,6 +127,13 @@ Parser::Parser() {
 
   CLI::App& report = add_command("report", "CASE/report.html: certificate, mesh and curves on one page, offline");
   report.add_option("CASE", in_.input, "a case with a certificate")->required();
+
+  CLI::App& view = add_command("view", "CASE/5-view: psi on a grid, psi = 0 and a script for ParaView");
+  view.add_option("CASE", in_.input, "a case with a mesh")->required();
+
+  CLI::App& diff = add_command("diff", "The first stage in which two cases differ, and by how much each does");
+  diff.add_option("CASE_A", in_.input, "a case")->required();
+  diff.add_option("CASE_B", in_.other_case, "another")->required();
 }
 
 CLI::Option& Parser::add_formats(CLI::App& command, const char* flag) {
@@ -276,6 +283,13 @@ void Parser::finish(const CLI::App& command) {
   } else if (result_.command == "report") {
     result_.action = CommandLine::Action::Report;
     result_.request.case_folder = in_.input;
+  } else if (result_.command == "view") {
+    result_.action = CommandLine::Action::View;
+    result_.request.case_folder = in_.input;
+  } else if (result_.command == "diff") {
+    result_.action = CommandLine::Action::Diff;
+    result_.case_a = in_.input;
+    result_.case_b = in_.other_case;
   } else if (result_.command == "evolve") {
     result_.action = CommandLine::Action::Evolve;
     finish_evolve();

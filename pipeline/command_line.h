@@ -12,11 +12,11 @@ namespace umtet {
 
 /// A call of the program, understood.
 struct CommandLine {
-  enum class Action { Text, Stages, Check, Export, Report, Inspect, Evolve };
+  enum class Action { Text, Stages, Check, Export, Report, View, Diff, Inspect, Evolve };
   Action action = Action::Text;
   std::string text;     ///< Text: help or version, for stdout
-  std::string command;  ///< "run", "reconstruct", "mesh", "inspect", "check", "export", "report",
-                        ///< "evolve"
+  std::string command;  ///< "run", "reconstruct", "mesh", "inspect", "check", "export", "report", "view",
+                        ///< "diff", "evolve"
 
   RunRequest request;          ///< Stages; Check: its output.* parameters; Export: the same and its case_folder; Report
   EvolveRequest evolve;        ///< Evolve, but for its parameters: those of `request`

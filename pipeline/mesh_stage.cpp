@@ -61,6 +61,7 @@ class MeshStage {
   UmResult make(const BackgroundMesh& background, const ZeroSetChoice& pieces);
   [[noreturn]] void refuse(const UmResult& result, double h);
   MeshFile write_output(const std::string& name, const UmResult& result, const std::vector<Vec3>& V);
+  void write_series();
   void write_outputs(const MeshAttempt& best);
   const StageContext& context_;
   Domain domain_;
@@ -282,6 +283,21 @@ void MeshStage::run() {
   context_.handover.domain = std::move(domain_);
 }
 
+/// The meshes written so far, in the order they were made: time is their number.
+void MeshStage::write_series() {
+  std::string pvd =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
+      "byte_order=\"LittleEndian\">\n<Collection>\n";
+  int step = 0;
+  for (const std::string& name : outputs_) {
+    if (name.ends_with(".vtu")) {
+      pvd += fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"0\" file=\"{}\"/>\n", step++, name);
+    }
+  }
+  write_text_artefact(context_.paths.folder(Stage::Mesh) / "iterates.pvd", pvd + "</Collection>\n</VTKFile>\n");
+  outputs_.push_back("iterates.pvd");
+}
+
 void MeshStage::write_outputs(const MeshAttempt& best) {
   begin_writing(context_, Stage::Mesh);
   fs::remove_all(context_.paths.failed());
@@ -303,6 +319,7 @@ void MeshStage::write_outputs(const MeshAttempt& best) {
                                                 result.projected, result.final));
   });
   outputs_.push_back("quality.csv");
+  if (keep_iterates_) write_series();
   if (best.thin.empty()) return;
   write_thin_places(context_.paths.folder(Stage::Mesh) / "too_thin.vtp", best.thin, domain_.shift);
   outputs_.push_back("too_thin.vtp");

@@ -161,7 +161,7 @@ std::vector<ParamField> make_fields() {
        {"exact", "golden"},
        "exact: roots of polynomials; golden: section search"},
       {"mesh.seed", "--seed", whole(um.seed), 0, 9e18, {}, "of the random tangents"},
-      {"mesh.keep_iterates", "--keep-iterates", false, 0, 0, {}, "write 3-mesh/pass_<n>.vtu after every pass"},
+      {"mesh.keep_iterates", "--keep-iterates", false, 0, 0, {}, "write 3-mesh/iterates.pvd, and pass_<n>.vtu after every pass (mode = paper)"},
 
       {"output.units", "--units", text(""), 0, 0, {}, "name of the model unit, e.g. mm: a label, nothing is converted"},
       {"output.max_memory", "--max-memory", 0., 0, 1e6, {}, "GB that a stage may take; 0: what the machine can give"},

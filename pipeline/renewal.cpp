@@ -4,6 +4,7 @@
 
 #include "pipeline/exit_code.h"
 #include "pipeline/export_case.h"
+#include "pipeline/view_files.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -82,6 +83,7 @@ void replace_former(const StageContext& context, CasePaths& paths) {
   if (!renews_any(paths)) return;
   fs::remove(paths.certificate());
   fs::remove(paths.report());
+  remove_view(paths);
   write_parameters(paths, context.parameters);
   if (paths.renews(Stage::Mesh) && !same_mesh(paths)) remove_exports(paths, context.progress);
   for (const Stage stage : kStages) {

@@ -5,6 +5,7 @@
 #include "pipeline/artefact.h"
 #include "pipeline/background_choice.h"
 #include "pipeline/exit_code.h"
+#include "pipeline/view_files.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -39,6 +40,7 @@ void begin_writing(const StageContext& context, Stage stage) {
   if (context.paths.renews(stage)) return;
   fs::remove(context.paths.certificate());
   fs::remove(context.paths.report());
+  remove_view(context.paths);
   write_parameters(context.paths, context.parameters);
 }
 

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string_view>
 
+#include "pipeline/case_diff.h"
 #include "pipeline/certificate_json.h"
 #include "pipeline/check.h"
 #include "pipeline/command_line.h"
@@ -19,6 +20,7 @@
 #include "pipeline/interrupt.h"
 #include "pipeline/report.h"
 #include "pipeline/run.h"
+#include "pipeline/view_files.h"
 
 namespace umtet {
 namespace {
@@ -126,6 +128,27 @@ Output make_report(const CommandLine& call, Progress& progress) {
   return output;
 }
 
+Output view(const CommandLine& call, Progress& progress) {
+  const CasePaths paths{call.request.case_folder};
+  if (!std::filesystem::exists(paths.root)) throw UsageError(paths.root.string() + ": there is no such case");
+  const CaseLock lock(paths.root);
+  const std::vector<std::filesystem::path> files = write_view(paths, progress);
+  progress.clear();
+  Output output;
+  output.document = {{"files", names(files)}};
+  output.text = file_list(files);
+  return output;
+}
+
+Output diff(const CommandLine& call, Progress& progress) {
+  const Json json = diff_cases({call.case_a}, {call.case_b}, progress);
+  progress.clear();
+  Output output;
+  output.document = {{"diff", json}};
+  output.text = diff_text(json);
+  return output;
+}
+
 /// @param json  is set as soon as the call is understood, for the document of a failure
 Output execute(int argc, char** argv, bool& json, std::string& command) {
   CommandLine call = parse_command_line(argc, argv);
@@ -148,6 +171,10 @@ Output execute(int argc, char** argv, bool& json, std::string& command) {
       return export_files(call, progress);
     case CommandLine::Action::Report:
       return make_report(call, progress);
+    case CommandLine::Action::View:
+      return view(call, progress);
+    case CommandLine::Action::Diff:
+      return diff(call, progress);
     default:
       return run_stages(call, progress);
   }
