@@ -134,7 +134,7 @@ def coloured(display, association, array):
 
 view = GetActiveViewOrCreate("RenderView")
 if os.path.exists(path("1-cloud/cloud.ply")):
-    shown(PLYReader(FileNames=[path("1-cloud/cloud.ply")]), "1 samples", Representation="Points", PointSize=3.0)
+    shown(PLYReader(FileNames=[path("1-cloud/cloud.ply")]), "1 samples", Representation="Point Gaussian", GaussianRadius={radius})
 psi = XMLImageDataReader(FileName=[path("5-view/psi.vti")])
 cut = Slice(Input=psi, SliceType="Plane")
 cut.SliceType.Origin = {centre}
@@ -153,6 +153,8 @@ if os.path.exists(path("3-mesh/iterates.pvd")):
     RenameSource("3 iterates", iterates)
     Hide(iterates, view)
 ResetCamera(view)
+GetActiveCamera().Azimuth(50)
+GetActiveCamera().Elevation(20)
 Render(view)
 )";
 
@@ -190,6 +192,7 @@ std::vector<fs::path> write_view(const CasePaths& paths, Progress& progress) {
   write_text_artefact(
       files[2],
       fmt::format(fmt::runtime(kScript), fmt::arg("case", python_text(paths.root)),
+                  fmt::arg("radius", .002 * domain.diagonal),
                   fmt::arg("centre", fmt::format("[{:.17g}, {:.17g}, {:.17g}]", centre.x(), centre.y(), centre.z()))));
   return files;
 }
