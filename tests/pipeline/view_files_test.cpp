@@ -59,7 +59,7 @@ def reader(**k):
         print("reads", os.path.getsize(name), name)
     return Thing()
 PLYReader = XMLImageDataReader = XMLPolyDataReader = XMLUnstructuredGridReader = PVDReader = reader
-Slice = Clip = GetActiveViewOrCreate = Show = Hide = RenameSource = ColorBy = ResetCamera = Render = Thing()
+Slice = Clip = GetActiveViewOrCreate = Show = Hide = RenameSource = ColorBy = ResetCamera = Render = GetActiveCamera = Thing()
 )";
   const std::string call = "cd / && PYTHONDONTWRITEBYTECODE=1 PYTHONPATH='" + folder.string() + "' /usr/bin/python3 '" +
                            (folder / "egg/5-view/view.py").string() + "' >'" + (folder / "read").string() + "'";
