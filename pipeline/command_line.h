@@ -18,9 +18,10 @@ struct CommandLine {
   std::string command;  ///< "run", "reconstruct", "mesh", "inspect", "check", "export", "report", "view",
                         ///< "diff", "evolve"
 
-  RunRequest request;          ///< Stages; Check: its output.* parameters; Export: the same and its case_folder; Report
-  EvolveRequest evolve;        ///< Evolve, but for its parameters: those of `request`
-  std::filesystem::path mesh;  ///< Check
+  RunRequest request;  ///< Stages; Check: its output.* parameters; Export: these and its case_folder; Report, View and
+                       ///< Diff: its case_folder
+  EvolveRequest evolve;                          ///< Evolve, but for its parameters: those of `request`
+  std::filesystem::path mesh;                    ///< Check
   std::filesystem::path cloud;                   ///< Inspect
   std::optional<std::filesystem::path> against;  ///< Check
   std::vector<std::string> formats;              ///< Export, and Stages after which something is exported

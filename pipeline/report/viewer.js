@@ -29,6 +29,7 @@
   // Viridis: even steps for every kind of eye, and in grey.
   const kStops = ["440154", "482878", "3e4989", "31688e", "26828e", "1f9e89", "35b779", "6ece58", "b5de2b", "fde725"];
   const kPieces = ["0072b2", "e69f00", "009e73", "cc79a7", "56b4e9", "d55e00", "f0e442", "999999"];
+  const kAlarm = [235, 110, 20];  // seen on light and dark, beside grey
   const rgb = (hex) => [0, 2, 4].map((k) => parseInt(hex.substr(k, 2), 16));
   const ramp = [];
   for (let v = 0; v < 256; ++v) {
@@ -194,7 +195,7 @@
     }
     const solid = new Soup(4 * tets.length);
     for (const t of tets) {
-      const c = ramp[tetQuality[t]];
+      const c = worst ? kAlarm : ramp[tetQuality[t]];
       for (const face of kTetFaces) solid.add(T[4 * t + face[0]], T[4 * t + face[1]], T[4 * t + face[2]], [c, c, c]);
     }
     setGeometry(inside, solid);
@@ -206,7 +207,11 @@
     inside.material.uniforms.edges.value = $("edges").checked ? 1 : 0;
     cloud.visible = $("cloud").checked;
     $("worst-count").value = nWorst;
-    legend(worst || (cut && !kind.key) ? kinds[0] : kind);
+    legend(cut && !kind.key ? kinds[0] : kind);
+    if (worst) {
+      const [least, most] = ranges.quality, q = least + (tetQuality[nWorst - 1] / 255) * (most - least);
+      $("legend").textContent = `the ${nWorst} worst tets: mean ratio ${number(least)} to ${q.toFixed(3)}`;
+    }
   }
 
   const number = (v) => String(Number(v.toPrecision(4)));
