@@ -50,8 +50,8 @@ Json cloud_difference(const CasePaths& a, const CasePaths& b) {
   const OrientedPointCloud x = read_point_cloud(a.cloud()).cloud, y = read_point_cloud(b.cloud()).cloud;
   return {{"n_a", x.points.size()},
           {"n_b", y.points.size()},
-          {"a_to_b", spread(nearest_sample_distances(x.points, y.points, not_interrupted))},
-          {"b_to_a", spread(nearest_sample_distances(y.points, x.points, not_interrupted))}};
+          {"a_to_b", spread(SampleDistance(y.points).distances(x.points, not_interrupted))},
+          {"b_to_a", spread(SampleDistance(x.points).distances(y.points, not_interrupted))}};
 }
 
 Json level_set_difference(const CasePaths& a, const CasePaths& b, const StageRecord& record_a,
