@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <sstream>
 
 #include "pipeline/boundary_patches.h"
 #include "pipeline/export_case.h"
@@ -50,6 +51,7 @@ class Parser {
  public:
   Parser();
   CommandLine parse(int argc, const char* const* argv);
+  ProgramHelp help() const;
 
  private:
   CLI::App& add_command(const char* name, const char* description);
@@ -230,6 +232,36 @@ void Parser::check_command(int argc, const char* const* argv) const {
       fmt::format("unknown command {}{}", *word, near.empty() ? "; try umtet --help" : "; did you mean " + near + "?"));
 }
 
+OptionHelp help_of(const CLI::Option& option) {
+  OptionHelp help;
+  for (const std::string& name : option.get_snames()) help.flags.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) help.flags.push_back("--" + name);
+  help.is_flag = !help.flags.empty();
+  if (!help.is_flag) help.flags.push_back(option.get_name());
+  help.takes_value = option.get_items_expected_max() > 0;
+  help.help = option.get_description();
+  const std::string type = option.get_type_name();  // TEXT:{one,two} after CLI::IsMember
+  if (const std::size_t brace = type.find('{'); brace != std::string::npos) {
+    std::istringstream words(type.substr(brace + 1, type.find('}') - brace - 1));
+    for (std::string word; std::getline(words, word, ',');) help.choices.push_back(word);
+  }
+  for (const ParamField& f : params_fields()) {
+    if (!f.flag.empty() && f.flag == help.flags.back()) help.choices = f.choices;
+  }
+  return help;
+}
+
+ProgramHelp Parser::help() const {
+  ProgramHelp program{app_.get_description(), app_.get_footer(), {}};
+  for (const CLI::App* app : app_.get_subcommands({})) {
+    CommandHelp& command = program.commands.emplace_back();
+    command.name = app->get_name();
+    command.help = app->get_description();
+    for (const CLI::Option* option : app->get_options()) command.options.push_back(help_of(*option));
+  }
+  return program;
+}
+
 CommandLine Parser::parse(int argc, const char* const* argv) {
   if (argc > 1) check_command(argc, argv);
   try {
@@ -385,5 +417,7 @@ void Parser::take_cloud() {
 }  // namespace
 
 CommandLine parse_command_line(int argc, const char* const* argv) { return Parser().parse(argc, argv); }
+
+ProgramHelp program_help() { return Parser().help(); }
 
 }  // namespace umtet

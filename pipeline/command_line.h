@@ -32,6 +32,23 @@ struct CommandLine {
   int threads = 0;  ///< 0: as many as the machine has
 };
 
+/// What --help says, for documents that are made from it.
+struct OptionHelp {
+  std::vector<std::string> flags;  ///< "-o", "--h"; of an argument without a flag its name
+  bool is_flag = true, takes_value = false;
+  std::string help;
+  std::vector<std::string> choices;  ///< of a value with a fixed vocabulary
+};
+struct CommandHelp {
+  std::string name, help;
+  std::vector<OptionHelp> options;
+};
+struct ProgramHelp {
+  std::string help, footer;
+  std::vector<CommandHelp> commands;
+};
+ProgramHelp program_help();
+
 /// \throw UsageError, with the nearest flag or command where there is one; std::system_error for a --config that cannot
 ///        be read
 CommandLine parse_command_line(int argc, const char* const* argv);
