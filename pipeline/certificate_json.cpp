@@ -122,15 +122,20 @@ void judge(Json& measured, const Parameters& parameters) {
   measured["reasons"] = reasons;
 }
 
-Json certificate(const CasePaths& paths, const StageRecord& mesh, const Parameters& parameters) {
+Json verdict_on(const Json& measured, const Parameters& parameters) {
   Json json = {{"schema", kSchema}, {"tool", "umtet"}, {"version", kVersion}};
   const std::string& units = parameters.text("output.units");
   json["units"] = units.empty() ? Json(nullptr) : Json(units);
-  json.update(mesh.numbers.at("measured"));
+  json.update(measured);
   const std::int64_t asked = parameters.integer("mesh.tets");
   json["n_tets_asked"] = asked > 0 ? Json(asked) : Json(nullptr);
   judge(json, parameters);
   json["remedy"] = json["reasons"].empty() ? Json(nullptr) : Json(remedy(json));
+  return json;
+}
+
+Json certificate(const CasePaths& paths, const StageRecord& mesh, const Parameters& parameters) {
+  Json json = verdict_on(mesh.numbers.at("measured"), parameters);
   json["run"] = run_of(paths, mesh, parameters);
   return sealed(json);
 }

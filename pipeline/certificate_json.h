@@ -8,6 +8,9 @@
 
 namespace umtet {
 
+/// What measure() returned with its gates and verdict: certificate.json but for its `run` block and its seal.
+Json verdict_on(const Json& measured, const Parameters& parameters);
+
 /// certificate.json: the measurements in the record of 3-mesh, the gates of output.*, the verdict with every reason,
 /// and a `run` block with times. A function of the records and the parameters alone, so it can be made again at any
 /// time. \pre the stage 3-mesh is done

@@ -19,8 +19,9 @@ struct Handover;
 /// What 3-mesh works on, and what a mesh is judged against: psi, where to look for it, and the samples behind it.
 /// All lengths and places are in working coordinates: model coordinates minus `shift`.
 struct Domain {
-  std::optional<Expression> formula;  ///< one of the two is there
+  std::optional<Expression> formula;  ///< one of the three is there
   std::optional<LevelSet> level_set;  ///< psi; cut where limit_detail() said
+  std::optional<ImplicitFunctionRef> function;  ///< the caller's, who keeps it; with a Hessian
   std::optional<LevelSet> fitted;     ///< the same with all its levels
   Box box;                            ///< what the background mesh has to cover
   double diagonal = 0;                ///< of the cloud's box, or of `box` for a formula
@@ -32,7 +33,10 @@ struct Domain {
   /// Cuts psi at the detail that a mesh of edge length h can show: boundary faces fold over what is finer.
   void limit_detail(double h);
 
-  ImplicitFunctionRef psi() const { return formula ? ImplicitFunctionRef(*formula) : ImplicitFunctionRef(*level_set); }
+  ImplicitFunctionRef psi() const {
+    if (function) return *function;
+    return formula ? ImplicitFunctionRef(*formula) : ImplicitFunctionRef(*level_set);
+  }
 };
 
 /// mesh.implicit in mesh.box. @param t  what t stands for in the text; without it there is no such name

@@ -36,7 +36,16 @@ OrientedPointCloud take_cloud(const StageContext& context) {
 // Clean clouds oppose by a fraction of a per cent; a tenth is a patch turned over, or every tenth normal.
 constexpr double kMostOpposed = .1;
 
-/// A fit to normals that are turned over is a level set all the same, but of no body.
+/// Distances between opposed samples; null where none face one another.
+Json thickness_percentiles(const OrientedPointCloud& cloud, const NeighbourTree& tree) {
+  const std::vector<double> t = thicknesses(cloud, tree);
+  if (t.empty()) return nullptr;
+  const auto at = [&](double p) { return t[static_cast<std::size_t>(p * static_cast<double>(t.size() - 1))]; };
+  return {at(.01), at(.05), at(.5)};
+}
+
+}  // namespace
+
 void require_outward_normals(const SsdReport& r) {
   const auto opposed = static_cast<double>(r.n_opposed_normals) / static_cast<double>(r.n_points);
   const bool open = r.least_wall_value < 0;
@@ -47,16 +56,6 @@ void require_outward_normals(const SsdReport& r) {
            : "psi was fitted, but the normals disagree with one another",
       100 * opposed, r.n_points, open ? "check that the surface is closed, and " : ""));
 }
-
-/// Distances between opposed samples; null where none face one another.
-Json thickness_percentiles(const OrientedPointCloud& cloud, const NeighbourTree& tree) {
-  const std::vector<double> t = thicknesses(cloud, tree);
-  if (t.empty()) return nullptr;
-  const auto at = [&](double p) { return t[static_cast<std::size_t>(p * static_cast<double>(t.size() - 1))]; };
-  return {at(.01), at(.05), at(.5)};
-}
-
-}  // namespace
 
 SsdParams ssd_params(const Parameters& p) {
   SsdParams ssd;

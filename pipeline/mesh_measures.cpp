@@ -179,7 +179,7 @@ Json measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& 
   const MeshCertificate certificate = certify(input);
   std::vector<std::string> reasons = failures(certificate);
 
-  Json json = {{"n_points", domain.formula ? Json(nullptr) : Json(domain.cloud.points.size())}};
+  Json json = {{"n_points", domain.level_set ? Json(domain.cloud.points.size()) : Json(nullptr)}};
   json.update(to_json(certificate));
   const std::vector<Triangle>& faces = result.submesh.positive_faces;
   Json block = Json::object();

@@ -55,6 +55,9 @@ SsdParams ssd_params(const Parameters&);
 
 UmParams um_params(const Parameters&);
 
+/// A fit to normals that are turned over is a level set all the same, but of no body. \throw SolveError
+void require_outward_normals(const SsdReport&);
+
 /// The files a stage reads from the case (not the user's cloud), with the stamps that the records of their stages hold;
 /// empty for the first stage and for a formula.
 std::vector<RecordedFile> recorded_inputs(const CasePaths&, Stage, const Parameters&);

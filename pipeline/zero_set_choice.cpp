@@ -85,7 +85,7 @@ ZeroSetChoice choose_components(const Domain& domain, double h, const KeepGoing&
   if (pieces.empty()) return choice;
   const double radius = std::max(kSupportRadius * domain.cloud_spacing, choice.topology.spacing);
   std::vector<std::size_t> backing(pieces.size()), wanted(pieces.size());
-  if (!domain.formula) {
+  if (domain.level_set) {
     backing = backing_samples(domain, choice.topology, radius, keep_going);
     wanted = wanted_samples(choice.topology, backing);
   }

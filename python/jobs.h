@@ -1,0 +1,54 @@
+#pragma once
+
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "pipeline/domain.h"
+#include "pipeline/mesh_attempts.h"
+#include "pipeline/parameters.h"
+#include "reconstruct/fit_ssd.h"
+
+// What `umtet run` does, from memory to memory: no case folder, no signal handlers, nothing printed.
+namespace umtet::python {
+
+/// Called by the thread that called the job, every few milliseconds of work. It stops the job by throwing.
+/// @param step  null: still in the step that was named last
+/// @param fraction  of the step, in [0, 1]
+using Watch = std::function<void(const char* step, double fraction)>;
+
+/// No mesh of this domain at this h. The evidence is a status, places and lengths.
+struct MeshingFailed : std::runtime_error {
+  MeshingFailed(const std::string& message, Json evidence)
+      : std::runtime_error(message), evidence(std::move(evidence)) {}
+  Json evidence;
+};
+
+/// psi of a cloud with its samples, and how it was made.
+struct Reconstruction {
+  Domain domain;
+  SsdReport report;
+  double noise = 0;                  ///< along the normals, model units
+  std::vector<std::string> notices;  ///< what was changed or guessed, for the user
+};
+
+/// Cleans the cloud, orients its normals and fits psi, as the sections `cloud` and `reconstruct` of the parameters say.
+/// @param cloud  model coordinates; a zero normal is a missing one, none at all are estimated
+/// \throw UsageError, CloudRefused, SolveError, SolveTooLarge, and what `watch` throws
+Reconstruction reconstruct(OrientedPointCloud cloud, const Parameters& parameters, const Watch& watch);
+
+/// Meshes {psi < 0} and measures the mesh, with smaller h where the choice of h is left to us and the mesh asks for it.
+/// The vertices are in working coordinates (Domain::shift); a mesh whose certificate fails is returned all the same.
+/// \throw MeshingFailed (also for what is too thin, unless mesh.allow_thin), MeshingImpossible, ResourceLimit,
+///        UsageError, and what `watch` throws
+MeshAttempt make_mesh(Domain& domain, const Parameters& parameters, const Watch& watch);
+
+/// What is true of a mesh of the domain: measure() with its verdict. \throw what `watch` throws
+Json certificate_of(const Domain& domain, const UmResult& result, double h, const Parameters& parameters,
+                    const Watch& watch);
+
+/// What a status other than Success is evidence of.
+MeshingFailed failure(const UmResult& result, double h, const Vec3& shift);
+
+}  // namespace umtet::python

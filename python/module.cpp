@@ -1,0 +1,295 @@
+// umtet._core: the C++ behind umtet/__init__.py, which has the documentation.
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+#include <tbb/parallel_for.h>
+
+#include <filesystem>
+#include <system_error>
+
+#include "mesh/moving_mesh.h"
+#include "mesh/skin.h"
+#include "mesh/tet_mesh_io.h"
+#include "pipeline/certificate_json.h"
+#include "pipeline/made_mesh.h"
+#include "pipeline/mesh_measures.h"
+#include "pipeline/stages.h"
+#include "pipeline/version.h"
+#include "python/arguments.h"
+#include "reconstruct/level_set_io.h"
+#include "reconstruct/point_cloud_io.h"
+
+namespace py = pybind11;
+
+namespace umtet::python {
+namespace {
+
+std::optional<Box> box_of(const Parameters& parameters) { return parse_box(parameters.text("mesh.box")); }
+
+/// A mesh with what it takes to write and to judge it.
+struct Mesh {
+  Parameters parameters;
+  Domain domain;  ///< for its shift and samples; its psi may be gone
+  UmResult result;
+  double h = 0;
+  Json certificate;
+
+  void save(const std::filesystem::path& file) const {
+    const std::string suffix = file.extension();
+    const MeshFile content = mesh_content(domain, result, result.final);
+    const std::vector<Triangle>& boundary = result.submesh.positive_faces;
+    if (suffix == ".vtu") return write_vtu(file, content);
+    if (suffix == ".msh") return write_msh41(file, content.mesh, boundary, MshEncoding::Binary);
+    if (suffix == ".mesh") return write_medit(file, content.mesh, boundary);
+    if (suffix == ".stl") return write_surface(file, content.mesh.V, boundary, SurfaceFormat::Stl);
+    throw std::invalid_argument(file.string() + ": .vtu, .msh, .mesh or .stl is wanted");
+  }
+};
+
+/// Without what refers to a callable.
+Domain left_of(Domain&& domain) {
+  Domain left;
+  left.shift = domain.shift;
+  left.cloud = std::move(domain.cloud);
+  return left;
+}
+
+Mesh mesh(const py::object& psi, const Settings& settings, std::optional<double> t, const py::object& progress,
+          int threads) {
+  Mesh made;
+  made.parameters = parameters_of(settings);
+  Psi p = psi_of(psi, box_of(made.parameters), t, threads);
+  const Watch watch = watch_of(progress);
+  MeshAttempt best = in_arena(p.threads, [&] { return make_mesh(p.domain, made.parameters, watch); });
+  made.h = best.h;
+  made.result = std::move(best.result);
+  made.certificate = verdict_on(best.measured, made.parameters);
+  made.domain = left_of(std::move(p.domain));
+  return made;
+}
+
+/// UniversalMesh with its parameters.
+struct Moving {
+  Parameters parameters;
+  Box box;
+  UniversalMesh mesher;
+
+  explicit Moving(const Settings& settings)
+      : parameters(parameters_of(settings)), box(wanted_box(parameters)), mesher(background(), um_params(parameters)) {}
+
+  static Box wanted_box(const Parameters& parameters) {
+    if (const std::optional<Box> box = box_of(parameters)) return *box;
+    throw std::invalid_argument("box is missing: (x0, y0, z0, x1, y1, z1) around all domains");
+  }
+  BackgroundMesh background() const {
+    return {tiling_named(parameters.text("mesh.background")), box, parameters.real("mesh.h")};
+  }
+};
+
+py::tuple update(Moving& moving, const py::object& psi, std::optional<double> t, const std::optional<Points>& seeds,
+                 bool certify, const py::object& progress, int threads) {
+  Psi p = psi_of(psi, moving.box, t, threads);
+  const double h = moving.mesher.background().h();
+  p.domain.limit_detail(h);
+  UpdateHints hints;
+  if (seeds) hints.seeds = vectors(*seeds, "seeds");
+  for (Vec3& x : hints.seeds) x -= p.domain.shift;
+  const Watch watch = watch_of(progress);
+  Mesh made{moving.parameters, {}, {}, h, nullptr};
+  UmUpdate u = in_arena(p.threads, [&] {
+    UmUpdate next = moving.mesher.update(p.domain.psi(), hints, [&](const UmProgress& at) {
+      watch(at.step, static_cast<double>(at.pass) / std::max(at.n_passes, 1));
+      return true;
+    });
+    if (next.mesh.status != UmStatus::Success) throw failure(next.mesh, h, p.domain.shift);
+    if (certify) made.certificate = certificate_of(p.domain, next.mesh, h, made.parameters, watch);
+    return next;
+  });
+  made.result = std::move(u.mesh);
+  made.domain = left_of(std::move(p.domain));
+  py::dict changes;
+  changes["vertices_entered"] = array(u.vertices_entered);
+  changes["vertices_left"] = array(u.vertices_left);
+  changes["vertices_moved"] = array(u.vertices_moved);
+  changes["tets_entered"] = array(u.tets_entered);
+  changes["tets_left"] = array(u.tets_left);
+  return py::make_tuple(std::move(made), changes);
+}
+
+py::object certificate(const Points& points, const py::array_t<int, py::array::c_style | py::array::forcecast>& tets,
+                       const py::object& psi, const Settings& settings, std::optional<double> t, double h) {
+  if (tets.ndim() != 2 || tets.shape(1) != 4) throw std::invalid_argument("tets: an array (m, 4) is wanted");
+  TetMesh given{vectors(points, "points"), std::vector<Tet>(static_cast<std::size_t>(tets.shape(0)))};
+  for (std::size_t k = 0; k < given.C.size(); ++k) std::copy_n(tets.data() + 4 * k, 4, given.C[k].begin());
+  const Parameters parameters = parameters_of(settings);
+  CertificateInput input;
+  input.mesh = &given;
+  input.h = h;
+  std::optional<Psi> p;
+  if (!psi.is_none()) {
+    Box box;
+    for (const Vec3& x : given.V) box.extend(x);
+    p.emplace(psi_of(psi, box, t, 0));
+    if (h > 0) p->domain.limit_detail(h);
+    for (Vec3& x : given.V) x -= p->domain.shift;
+    input.psi = p->domain.psi();
+  }
+  const Watch watch = watch_of(py::none());
+  input.keep_going = [&] {
+    watch(nullptr, 0);
+    return true;
+  };
+  const MeshCertificate measured = in_arena(p ? p->threads : 0, [&] { return certify(input); });
+  Json json = {{"schema", 1}, {"tool", "umtet"}, {"version", kVersion}};
+  json.update(to_json(measured));
+  json["reasons"] = failures(measured);
+  judge(json, parameters);
+  return dict_of(json);
+}
+
+Reconstruction reconstruct_arrays(const Points& points, const std::optional<Points>& normals, const Settings& settings,
+                                  const py::object& progress, int threads) {
+  OrientedPointCloud cloud;
+  cloud.points = vectors(points, "points");
+  if (normals) cloud.normals = vectors(*normals, "normals");
+  if (normals && cloud.normals.size() != cloud.points.size()) {
+    throw std::invalid_argument("normals: as many as points are wanted, or None");
+  }
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    // 1e100 as for files: squares stay finite
+    if (!(cloud.points[i].cwiseAbs().maxCoeff() < 1e100)) {
+      throw std::invalid_argument("points[" + std::to_string(i) + "] is not finite");
+    }
+  }
+  for (Vec3& n : cloud.normals) n = n.allFinite() && n.norm() > 0 ? Vec3(n.normalized()) : Vec3(Vec3::Zero());
+  const Parameters parameters = parameters_of(settings);
+  const Watch watch = watch_of(progress);
+  return in_arena(threads, [&] { return reconstruct(std::move(cloud), parameters, watch); });
+}
+
+/// psi, its gradients (order 1) or Hessians (order 2) at points, without the GIL.
+py::array_t<double> evaluate(const Reconstruction& r, const Points& points, int order) {
+  std::vector<Vec3> x = vectors(points, "points");
+  const LevelSet& psi = *r.domain.fitted;
+  const auto n = static_cast<py::ssize_t>(x.size());
+  std::vector<py::ssize_t> shape = {n};
+  for (int k = 0; k < order; ++k) shape.push_back(3);
+  py::array_t<double> out(shape);
+  double* p = out.mutable_data();
+  const py::gil_scoped_release no_gil;
+  tbb::parallel_for(std::size_t{0}, x.size(), [&](std::size_t i) {
+    const Vec3 y = x[i] - r.domain.shift;
+    if (order == 0) p[i] = psi.value(y);
+    if (order == 1) Eigen::Map<Vec3>(p + 3 * i) = psi.gradient(y);
+    if (order == 2) Eigen::Map<Mat3>(p + 9 * i) = psi.hessian(y);
+  });
+  return out;
+}
+
+/// Raises `type` with an attribute `evidence`.
+void raise(const py::handle& type, const char* message, const Json& evidence) {
+  const py::object error = type(message);
+  error.attr("evidence") = dict_of(evidence);
+  PyErr_SetObject(type.ptr(), error.ptr());
+}
+
+void register_errors(py::module_& m) {
+  static py::exception<MeshingImpossible> meshing(m, "MeshingError", PyExc_RuntimeError);
+  static py::exception<SolveError> reconstruction(m, "ReconstructionError", PyExc_RuntimeError);
+  static py::exception<Cancelled> cancelled(m, "Cancelled", PyExc_RuntimeError);
+  py::register_exception_translator([](std::exception_ptr error) {
+    try {
+      std::rethrow_exception(error);
+    } catch (const MeshingFailed& e) {
+      raise(meshing, e.what(), e.evidence);
+    } catch (const MeshingImpossible& e) {
+      raise(meshing, e.what(), Json::object());
+    } catch (const ResourceLimit& e) {
+      raise(meshing, e.what(), {{"status", "ResourceLimit"}});
+    } catch (const SolveError& e) {
+      raise(reconstruction, e.what(), {{"status", "SolveError"}});
+    } catch (const SolveTooLarge& e) {
+      raise(reconstruction, e.what(), {{"status", "SolveTooLarge"}});
+    } catch (const CloudRefused& e) {
+      raise(reconstruction, e.what(), {{"status", "CloudRefused"}});
+    } catch (const Cancelled& e) {
+      cancelled(e.what());
+    } catch (const UsageError& e) {
+      PyErr_SetString(PyExc_ValueError, e.what());
+    } catch (const ExpressionError& e) {
+      PyErr_SetString(PyExc_ValueError, e.what());
+    } catch (const MeshFileRefused& e) {
+      PyErr_SetString(PyExc_ValueError, e.what());
+    } catch (const std::system_error& e) {
+      PyErr_SetString(PyExc_OSError, e.what());
+    }
+  });
+}
+
+}  // namespace
+
+void bind(py::module_& m) {
+  register_errors(m);
+  m.attr("__version__") = kVersion;
+  py::class_<Reconstruction>(m, "LevelSet")
+      .def("_evaluate", &evaluate)
+      .def_property_readonly("box",
+                             [](const Reconstruction& r) {
+                               const Box box = r.domain.fitted->domain();
+                               return array(std::vector<Vec3>{box.min(), box.max()}, r.domain.shift);
+                             })
+      .def_property_readonly("points",
+                             [](const Reconstruction& r) { return array(r.domain.cloud.points, r.domain.shift); })
+      .def_property_readonly("normals",
+                             [](const Reconstruction& r) { return array(r.domain.cloud.normals, Vec3::Zero()); })
+      .def_property_readonly("report",
+                             [](const Reconstruction& r) {
+                               return dict_of({{"n_points", r.report.n_points},
+                                               {"n_nodes", r.report.n_nodes},
+                                               {"spacing", r.report.spacing},
+                                               {"smoothing", r.report.smoothing},
+                                               {"noise", r.noise},
+                                               {"reason", r.report.reason},
+                                               {"cloud_spacing", r.report.cloud_spacing},
+                                               {"rms_value", r.report.rms_value},
+                                               {"n_opposed_normals", r.report.n_opposed_normals},
+                                               {"notices", r.notices}});
+                             })
+      .def("save", [](const Reconstruction& r, const std::filesystem::path& file) {
+        write_level_set(file, *r.domain.fitted, r.domain.shift);
+      });
+  py::class_<Mesh>(m, "Mesh")
+      .def_property_readonly("points", [](const Mesh& a) { return array(a.result.final, a.domain.shift); })
+      .def_property_readonly("tets", [](const Mesh& a) { return array(a.result.submesh.mesh.C); })
+      .def_property_readonly("boundary", [](const Mesh& a) { return array(a.result.submesh.positive_faces); })
+      .def_property_readonly("boundary_vertices",
+                             [](const Mesh& a) { return array(a.result.submesh.positive_vertices); })
+      .def_property_readonly("background_vertex",
+                             [](const Mesh& a) { return array(a.result.submesh.background_vertex); })
+      .def_property_readonly("background_tet", [](const Mesh& a) { return array(a.result.submesh.background_tet); })
+      .def_readonly("h", &Mesh::h)
+      .def_property_readonly("certificate", [](const Mesh& a) { return dict_of(a.certificate); })
+      .def("save", [](const Mesh& a, const std::filesystem::path& file) {
+        const py::gil_scoped_release no_gil;
+        a.save(file);
+      });
+  py::class_<Moving>(m, "Moving")
+      .def(py::init<const Settings&>())
+      .def_property_readonly("h", [](const Moving& a) { return a.mesher.background().h(); })
+      .def_property_readonly("n_vertices", [](const Moving& a) { return a.mesher.background().n_vertices(); })
+      .def("update", &update);
+  m.def("mesh", &mesh);
+  m.def("reconstruct", &reconstruct_arrays);
+  m.def("certificate", &certificate);
+  m.def("parameters", [] {
+    std::vector<std::string> keys;
+    for (const ParamField& f : params_fields()) keys.push_back(f.key);
+    return keys;
+  });
+}
+
+}  // namespace umtet::python
+
+PYBIND11_MODULE(_core, m) { umtet::python::bind(m); }

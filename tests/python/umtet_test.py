@@ -1,0 +1,298 @@
+#!/usr/bin/python3
+"""The Python module, from outside. PYTHONPATH has the folder of umtet/; usage: umtet_test.py"""
+import doctest
+import json
+import os
+import signal
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy as np
+import umtet
+
+BALL = "x^2+y^2+z^2-1"
+BOX = (-1.3, -1.3, -1.3, 1.3, 1.3, 1.3)
+
+
+def ball(x):
+    return (x**2).sum(1) - 1, 2 * x, np.broadcast_to(2 * np.eye(3), (len(x), 3, 3))
+
+
+def egg(n=2000, axes=(1, .8, .6)):
+    """Points of an ellipsoid on a spiral, and their normals."""
+    z = 1 - (2 * np.arange(n) + 1) / n
+    r, a = np.sqrt(1 - z**2), 2.399963229728653 * np.arange(n)
+    u = np.c_[r * np.cos(a), r * np.sin(a), z]
+    m = u / axes
+    return u * axes, m / np.linalg.norm(m, axis=1)[:, None]
+
+
+class Reconstruct(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.points, cls.normals = egg()
+        cls.psi = umtet.reconstruct(cls.points, cls.normals)
+
+    def test_zero_set_is_the_surface(self):
+        x, _ = egg(500)
+        self.assertLess(abs(self.psi.value(x)).max(), 1e-3)
+        self.assertLess(self.psi.value([[0, 0, 0]])[0], -.3)
+        self.assertGreater(self.psi.value([[1.1, 0, 0]])[0], .05)
+
+    def test_derivatives_are_those_of_the_values(self):
+        x, d = np.array([[.9, .2, .1], [.1, .7, -.2]]), 1e-5
+        for i, e in enumerate(np.eye(3) * d):
+            np.testing.assert_allclose(self.psi.gradient(x)[:, i], (self.psi.value(x + e) - self.psi.value(x - e)) / 2 / d,
+                                       atol=1e-7)
+            np.testing.assert_allclose(self.psi.hessian(x)[:, i],
+                                       (self.psi.gradient(x + e) - self.psi.gradient(x - e)) / 2 / d, atol=1e-5)
+
+    def test_far_from_the_origin_nothing_changes(self):
+        far = np.array([1e6, -2e6, 3e6])
+        psi = umtet.reconstruct(self.points + far, self.normals)
+        x, _ = egg(50)
+        np.testing.assert_allclose(psi.value(x + far), self.psi.value(x), atol=1e-6)
+        mesh = umtet.mesh(psi, h=.2)
+        self.assertLess(abs(mesh.points.mean(0) - far).max(), .1)
+
+    def test_turned_normals_are_turned_back_and_said(self):
+        n = self.normals.copy()
+        n[::10] *= -1
+        psi = umtet.reconstruct(self.points, n)
+        self.assertIn("turned 200", psi.report["notices"][0])
+
+    def test_meshed_with_certificate(self):
+        mesh = umtet.mesh(self.psi, h=.1)
+        self.assertTrue(mesh.certified, mesh.certificate["reasons"])
+        self.assertEqual(mesh.certificate["n_points"], len(self.points))
+        self.assertAlmostEqual(mesh.certificate["volume"], 4 / 3 * np.pi * .48, delta=.03)
+        self.assertIsNotNone(mesh.certificate["cloud"])
+
+    def test_no_body_is_a_reconstruction_error(self):
+        with self.assertRaises(umtet.ReconstructionError) as e:
+            umtet.reconstruct(self.points, -self.normals, normal_source="given")
+        self.assertEqual(e.exception.evidence["status"], "SolveError")
+
+    def test_broken_contracts(self):
+        for arguments in ((self.points, self.normals[1:]), (self.points[:, :2], ), ([[np.nan, 0, 0]] * 20, )):
+            with self.assertRaises(ValueError):
+                umtet.reconstruct(*arguments)
+        with self.assertRaisesRegex(ValueError, "detail"):
+            umtet.reconstruct(self.points, self.normals, detail=-1)
+        with self.assertRaisesRegex(TypeError, "detial"):
+            umtet.reconstruct(self.points, self.normals, detial=1)
+
+
+class MeshTest(unittest.TestCase):
+    def test_arrays_of_a_mesh(self):
+        m = umtet.mesh(BALL, box=BOX, h=.2)
+        self.assertEqual((m.points.dtype, m.points.shape[1]), (np.float64, 3))
+        self.assertEqual(m.tets.shape, (m.certificate["n_tets"], 4))
+        a, b, c, d = (m.points[m.tets[:, k]] for k in range(4))
+        volumes = np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) / 6
+        self.assertGreater(volumes.min(), 0)
+        self.assertAlmostEqual(volumes.sum(), m.certificate["volume"])
+        np.testing.assert_allclose(np.linalg.norm(m.points[np.unique(m.boundary)], axis=1), 1, atol=1e-9)
+        np.testing.assert_array_equal(np.unique(m.boundary), m.boundary_vertices)
+        self.assertEqual(len(m.background_vertex), len(m.points))
+        self.assertEqual(len(m.background_tet), len(m.tets))
+        self.assertTrue((np.diff(m.background_tet) > 0).all())
+
+    def test_certificate_has_the_keys_of_the_file(self):
+        if "UMTET_PROGRAM" not in os.environ:
+            self.skipTest("no program")
+        with tempfile.TemporaryDirectory() as folder:
+            os.system(f"'{os.environ['UMTET_PROGRAM']}' mesh --implicit '{BALL}' --box={','.join(map(str, BOX))} --h .2 "
+                      f"-o {folder}/ball -q >/dev/null")
+            with open(f"{folder}/ball/certificate.json") as file:
+                written = json.load(file)
+        ours = umtet.mesh(BALL, box=BOX, h=.2).certificate
+        self.assertEqual(set(written) - set(ours) - {"run", "checksum", "order", "second_order"}, set())
+        for key in ("quality", "boundary", "volume", "n_tets"):
+            self.assertEqual(ours[key], written[key])
+
+    def test_a_callable_makes_the_mesh_of_the_formula(self):
+        formula, called = umtet.mesh(BALL, box=BOX, h=.3), umtet.mesh(ball, box=BOX, h=.3)
+        np.testing.assert_array_equal(formula.tets, called.tets)
+        np.testing.assert_allclose(formula.points, called.points, atol=1e-8)
+        self.assertTrue(called.certified)
+
+    def test_missing_derivatives_are_made(self):
+        whole = umtet.mesh(ball, box=BOX, h=.3)
+        for psi in (lambda x: ball(x)[:2], lambda x: ball(x)[0]):
+            made = umtet.mesh(psi, box=BOX, h=.3)
+            self.assertTrue(made.certified, made.certificate["reasons"])
+            np.testing.assert_allclose(made.points, whole.points, atol=1e-6)
+            self.assertAlmostEqual(made.certificate["resolution"]["kappa_h_max"],
+                                   whole.certificate["resolution"]["kappa_h_max"], places=4)
+
+    def test_threads_do_not_change_a_bit(self):
+        one, two = (umtet.mesh(BALL, box=BOX, h=.1, threads=n) for n in (1, 2))
+        self.assertEqual(one.points.tobytes(), two.points.tobytes())
+
+    def test_python_threads_work_side_by_side(self):
+        made = [None] * 3
+
+        def work(k):
+            made[k] = umtet.mesh(ball if k else BALL, box=BOX, h=.3)
+
+        threads = [threading.Thread(target=work, args=(k, )) for k in range(3)]
+        for t in threads:
+            t.start()
+        for t in threads:
+            t.join(20)
+        self.assertTrue(all(m is not None and m.certified for m in made))
+
+    def test_save(self):
+        m = umtet.mesh(BALL, box=BOX, h=.3)
+        with tempfile.TemporaryDirectory() as folder:
+            for suffix in ("vtu", "msh", "mesh", "stl"):
+                path = os.path.join(folder, "ball." + suffix)
+                m.save(path)
+                self.assertGreater(os.path.getsize(path), 1000)
+            with self.assertRaisesRegex(ValueError, ".vtu, .msh"):
+                m.save(os.path.join(folder, "ball.obj"))
+            with self.assertRaises(OSError):
+                m.save(os.path.join(folder, "no", "ball.vtu"))
+
+
+class Failures(unittest.TestCase):
+    def test_too_small_a_box_has_evidence(self):
+        with self.assertRaises(umtet.MeshingError) as e:
+            umtet.mesh(BALL, box=(-1, -1, -1, .2, 1, 1), h=.2)
+        self.assertEqual(e.exception.evidence["h"], .2)
+        self.assertIn("status", e.exception.evidence)
+
+    def test_too_thin_has_places(self):
+        with self.assertRaises(umtet.MeshingError) as e:
+            umtet.mesh("(x^2+y^2)/1+z^2/.0016-1", box=(-1.5, -1.5, -1.5, 1.5, 1.5, 1.5), h=.3)
+        self.assertEqual(e.exception.evidence["status"], "TooThin")
+        self.assertLess(e.exception.evidence["too_thin"][0]["h_needed"], .3)
+
+    def test_broken_contracts(self):
+        with self.assertRaisesRegex(ValueError, "box"):
+            umtet.mesh(BALL, h=.2)
+        with self.assertRaisesRegex(ValueError, "column"):
+            umtet.mesh("x^^2", box=BOX, h=.2)
+        with self.assertRaises(TypeError):
+            umtet.mesh(3, box=BOX, h=.2)
+        with self.assertRaisesRegex(ValueError, "mode"):
+            umtet.mesh(BALL, box=BOX, mode="fats")
+        with self.assertRaisesRegex(ValueError, "points \\(n, 3\\)"):
+            umtet.mesh(lambda x: np.zeros(len(x) + 1), box=BOX, h=.2)
+
+    def test_what_psi_raises_comes_out(self):
+        calls = []
+
+        def psi(x):
+            calls.append(len(x))
+            if len(calls) > 1000:
+                raise KeyError("of psi")
+            return (x**2).sum(1) - 1
+
+        with self.assertRaisesRegex(KeyError, "of psi"):
+            umtet.mesh(psi, box=BOX, h=.2)
+        self.assertEqual(len(calls), 1001)
+
+    def test_progress_stops(self):
+        steps = []
+
+        def progress(step, fraction):
+            self.assertTrue(0 <= fraction <= 1, (step, fraction))
+            steps.append(step)
+            return step != "components"
+
+        with self.assertRaises(umtet.Cancelled):
+            umtet.mesh(BALL, box=BOX, h=.1, progress=progress)
+        self.assertEqual(steps[-1], "components")
+        points, normals = egg()
+        steps.clear()
+        umtet.reconstruct(points, normals, progress=lambda step, fraction: steps.append(step))
+        self.assertIn("solve", steps)
+
+    def test_ctrl_c_within_a_fifth_of_a_second(self):
+        for psi in (BALL, ball):
+            umtet.mesh(psi, box=BOX, h=.5)
+            pressed = []
+
+            def press():
+                pressed.append(time.monotonic())
+                os.kill(os.getpid(), signal.SIGINT)
+
+            timer = threading.Timer(.5, press)
+            self.addCleanup(timer.cancel)
+            timer.start()
+            with self.assertRaises(KeyboardInterrupt):
+                umtet.mesh(psi, box=BOX, h=.03)
+            self.assertLess(time.monotonic() - pressed[0], PATIENCE)
+            timer.join()
+
+
+# Wall time is what is asked for; a machine with more to do than cores gets longer.
+PATIENCE = .2 * max(1, os.getloadavg()[0] / os.cpu_count())
+
+
+class Moving(unittest.TestCase):
+    def test_ids_are_those_of_one_background(self):
+        moving = umtet.UniversalMesh((-1, -1, -1, 3, 1, 1), h=.2)
+        psi = "(x-2*t)^2+y^2+z^2-(.5+.2*t)^2"
+        last = None
+        for t in (0, .1, .2):
+            update = moving.update(psi, t=t, certify=True)
+            self.assertTrue(update.mesh.certified)
+            if last is not None:
+                before, now = set(last.mesh.background_tet.tolist()), set(update.mesh.background_tet.tolist())
+                self.assertEqual(set(update.tets_entered.tolist()), now - before)
+                self.assertEqual(set(update.tets_left.tolist()), before - now)
+            last = update
+        self.assertIsNone(moving.update(psi, t=.2).mesh.certificate)
+        self.assertLess(last.mesh.background_vertex.max(), moving.n_background_vertices)
+
+    def test_a_failed_update_leaves_the_last(self):
+        moving = umtet.UniversalMesh(BOX, h=.2)
+        n = len(moving.update(BALL).mesh.tets)
+        with self.assertRaises(umtet.MeshingError):
+            moving.update("(x-1)^2+y^2+z^2-1")
+        self.assertEqual(len(moving.update(ball).mesh.tets), n)
+
+    def test_broken_contracts(self):
+        with self.assertRaises(ValueError):
+            umtet.UniversalMesh(BOX, h=-1)
+        with self.assertRaises(ValueError):
+            umtet.UniversalMesh((0, 0, 0, 1), h=.1)
+
+
+class Certificate(unittest.TestCase):
+    def test_of_arrays(self):
+        m = umtet.mesh(BALL, box=BOX, h=.2)
+        c = umtet.certificate(m.points, m.tets, BALL, h=.2)
+        for key in ("quality", "volume", "n_tets"):
+            self.assertEqual(c[key], m.certificate[key])
+        self.assertEqual(c["verdict"], "pass")
+        tets = m.tets.copy()
+        tets[0, :2] = tets[0, 1::-1]
+        self.assertEqual(umtet.certificate(m.points, tets)["quality"]["n_inverted"], 1)
+        self.assertEqual(umtet.certificate(m.points, tets)["verdict"], "fail")
+        self.assertEqual(umtet.certificate(m.points, m.tets, min_quality=.99)["verdict"], "fail")
+        self.assertEqual(umtet.certificate(1.01 * m.points, m.tets, BALL, h=.2)["verdict"], "fail")
+        with self.assertRaises(ValueError):
+            umtet.certificate(m.points, m.tets + len(m.points))
+
+
+class Documentation(unittest.TestCase):
+    def test_the_examples_of_the_readme(self):
+        with tempfile.TemporaryDirectory() as folder:
+            here = os.getcwd()
+            os.chdir(folder)
+            try:
+                failed, tried = doctest.testfile(os.environ["UMTET_PYTHON_README"], module_relative=False)
+            finally:
+                os.chdir(here)
+        self.assertEqual(failed, 0)
+        self.assertGreater(tried, 10)
+
+
+if __name__ == "__main__":
+    unittest.main()
