@@ -2,6 +2,8 @@
 
 #include <chrono>
 
+#include "python/interruptible.h"
+
 namespace umtet::python {
 namespace py = pybind11;
 namespace {
@@ -28,6 +30,21 @@ Watch watch_of(const py::object& progress) {
     const py::gil_scoped_acquire gil;
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     if (progress.is_none() || !name) return;
+    if (progress(step, fraction).ptr() == Py_False) throw Cancelled();
+  };
+}
+
+Watch watch_in_thread(const py::object& progress, std::shared_ptr<std::atomic<bool>> stopped) {
+  using Clock = std::chrono::steady_clock;
+  return [progress = py::handle(progress), stopped = std::move(stopped), step = std::string(),
+          next = Clock::time_point()](const char* name, double fraction) mutable {
+    if (*stopped) throw Cancelled();
+    const bool is_new = name && step != name;
+    if (name) step = name;
+    if (progress.is_none() || !name || (!is_new && Clock::now() < next)) return;
+    next = Clock::now() + kPatience;
+    const py::gil_scoped_acquire gil;
+    if (*stopped) throw Cancelled();
     if (progress(step, fraction).ptr() == Py_False) throw Cancelled();
   };
 }

@@ -18,6 +18,7 @@
 #include "pipeline/stages.h"
 #include "pipeline/version.h"
 #include "python/arguments.h"
+#include "python/interruptible.h"
 #include "reconstruct/level_set_io.h"
 #include "reconstruct/point_cloud_io.h"
 
@@ -58,16 +59,17 @@ Domain left_of(Domain&& domain) {
 
 Mesh mesh(const py::object& psi, const Settings& settings, std::optional<double> t, const py::object& progress,
           int threads) {
-  Mesh made;
-  made.parameters = parameters_of(settings);
-  Psi p = psi_of(psi, box_of(made.parameters), t, threads);
+  const Parameters parameters = parameters_of(settings);
+  Psi p = psi_of(psi, box_of(parameters), t, threads);
+  const bool asks_python = p.function != nullptr;
+  auto job = [p = std::move(p), parameters](const Watch& watch) mutable {
+    MeshAttempt best = make_mesh(p.domain, parameters, watch);
+    return Mesh{parameters, left_of(std::move(p.domain)), std::move(best.result), best.h,
+                verdict_on(best.measured, parameters)};
+  };
+  if (!asks_python) return interruptible(progress, threads, std::move(job));
   const Watch watch = watch_of(progress);
-  MeshAttempt best = in_arena(p.threads, [&] { return make_mesh(p.domain, made.parameters, watch); });
-  made.h = best.h;
-  made.result = std::move(best.result);
-  made.certificate = verdict_on(best.measured, made.parameters);
-  made.domain = left_of(std::move(p.domain));
-  return made;
+  return in_arena(1, [&] { return job(watch); });
 }
 
 /// UniversalMesh with its parameters.
@@ -165,8 +167,9 @@ Reconstruction reconstruct_arrays(const Points& points, const std::optional<Poin
   }
   for (Vec3& n : cloud.normals) n = n.allFinite() && n.norm() > 0 ? Vec3(n.normalized()) : Vec3(Vec3::Zero());
   const Parameters parameters = parameters_of(settings);
-  const Watch watch = watch_of(progress);
-  return in_arena(threads, [&] { return reconstruct(std::move(cloud), parameters, watch); });
+  return interruptible(progress, threads, [cloud = std::move(cloud), parameters](const Watch& watch) mutable {
+    return reconstruct(std::move(cloud), parameters, watch);
+  });
 }
 
 /// psi, its gradients (order 1) or Hessians (order 2) at points, without the GIL.
@@ -232,6 +235,10 @@ void register_errors(py::module_& m) {
 
 void bind(py::module_& m) {
   register_errors(m);
+  py::module_::import("atexit").attr("register")(py::cpp_function([] {
+    const py::gil_scoped_release no_gil;
+    while (n_left_behind > 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }));
   m.attr("__version__") = kVersion;
   py::class_<Reconstruction>(m, "LevelSet")
       .def("_evaluate", &evaluate)

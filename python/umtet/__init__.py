@@ -11,7 +11,8 @@ of central differences. The mesher asks point by point: a callable costs some mi
 to one thread; level sets and formulas are evaluated in C++, by all threads, without the GIL.
 
 Keyword arguments beyond those named are the parameters of `umtet run --help` and case.toml: mesh(psi, mode="paper").
-A progress callback is called as progress(step, fraction); when it returns False the work is stopped with Cancelled.
+A progress callback is called as progress(step, fraction), mostly from another thread; when it returns False the work is
+stopped with Cancelled.
 Ctrl-C stops it with KeyboardInterrupt.
 
 ValueError: a broken contract, such as a parameter out of range. MeshingError and ReconstructionError: what was asked for

@@ -213,19 +213,20 @@ class Failures(unittest.TestCase):
         self.assertIn("solve", steps)
 
     def test_ctrl_c_within_a_fifth_of_a_second(self):
-        for psi in (BALL, ball):
-            umtet.mesh(psi, box=BOX, h=.5)
+        cloud = egg(100000)
+        for after, job in ((.5, lambda: umtet.mesh(BALL, box=BOX, h=.03)), (.5, lambda: umtet.mesh(ball, box=BOX, h=.03)),
+                           (.1, lambda: umtet.reconstruct(*cloud))):
             pressed = []
 
             def press():
                 pressed.append(time.monotonic())
                 os.kill(os.getpid(), signal.SIGINT)
 
-            timer = threading.Timer(.5, press)
+            timer = threading.Timer(after, press)
             self.addCleanup(timer.cancel)
             timer.start()
             with self.assertRaises(KeyboardInterrupt):
-                umtet.mesh(psi, box=BOX, h=.03)
+                job()
             self.assertLess(time.monotonic() - pressed[0], PATIENCE)
             timer.join()
 

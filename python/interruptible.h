@@ -1,0 +1,54 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+#include <tbb/task_arena.h>
+
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <memory>
+#include <thread>
+#include <type_traits>
+#include <utility>
+
+#include "python/arguments.h"
+
+namespace umtet::python {
+
+/// Threads that still work although nobody waits for them: they end where their job asks next.
+inline std::atomic<int> n_left_behind{0};
+
+/// Of a job in a thread of its own: `stopped` stops it. It touches Python only while the caller still waits.
+Watch watch_in_thread(const pybind11::object& progress, std::shared_ptr<std::atomic<bool>> stopped);
+
+/// Runs f(watch) in a thread of its own and waits for it without the GIL, so that Ctrl-C is answered at once, also in
+/// steps that do not ask: then f is left behind to end by itself.
+/// @param f  owns all that it uses, and nothing of Python
+template <class F>
+auto interruptible(const pybind11::object& progress, int threads, F f) {
+  using Result = std::invoke_result_t<F&, const Watch&>;
+  const auto stopped = std::make_shared<std::atomic<bool>>(false);
+  std::packaged_task<Result()> task([f = std::move(f), watch = watch_in_thread(progress, stopped), threads]() mutable {
+    tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+    return arena.execute([&] { return f(watch); });
+  });
+  std::future<Result> result = task.get_future();
+  ++n_left_behind;
+  std::thread worker([task = std::move(task)]() mutable {
+    task();
+    task = {};  // what it owns goes before the interpreter may
+    --n_left_behind;
+  });
+  const pybind11::gil_scoped_release no_gil;
+  while (result.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) {
+    const pybind11::gil_scoped_acquire gil;
+    if (PyErr_CheckSignals() == 0) continue;
+    *stopped = true;  // with the GIL: no callback is running, or will
+    worker.detach();
+    throw pybind11::error_already_set();
+  }
+  worker.join();
+  return result.get();
+}
+
+}  // namespace umtet::python
