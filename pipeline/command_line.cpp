@@ -25,6 +25,7 @@ constexpr const char* kFooter = R"(Examples:
   umtet check part.msh                       validity and quality of any tet mesh
   umtet export duck --format inp,vtu         files for solvers, in duck/4-export
   umtet report duck                          duck/report.html: what a browser shows of it, offline
+  umtet batch LIST -o scans --jobs 2         many scans; one table of verdicts, reasons and times
   umtet evolve --implicit '(x-t)^2+y^2+z^2-1' --box=-2,-2,-2,4,2,2 --h .1 --t 0:0.5:2 -o moving
 
 Exit codes: 0 all well | 1 a bug of ours | 2 usage | 3 input refused | 4 reconstruction failed
@@ -37,7 +38,7 @@ struct Inputs {
   std::vector<std::string> assignments, formats;
   std::map<std::string, std::string> values;  ///< by key
   std::map<std::string, bool> switches;       ///< by key
-  bool force = false, strict = false, no_report = false, quiet = false, verbose = false;
+  bool force = false, strict = false, resume = false, no_report = false, quiet = false, verbose = false;
 };
 
 /// Help, choices and default of a parameter.
@@ -58,6 +59,8 @@ class Parser {
   CLI::Option& add_formats(CLI::App& command, const char* flag);
   void add_parameter_sources(CLI::App& command);
   void add_stage_flags(CLI::App& command);
+  void add_timeout(CLI::App& command, const char* help);
+  void add_batch();
   void add_parameter_flags(CLI::App& command, const std::vector<std::string>& sections,
                            const std::vector<std::string>& except = {});
   void check_command(int argc, const char* const* argv) const;
@@ -66,6 +69,7 @@ class Parser {
   void read_parameters();
   void finish_stages(const CLI::App& command);
   void finish_evolve();
+  void finish_batch();
   void take_cloud();
 
   CLI::App app_{"umtet: from an oriented point cloud to a certified tetrahedral mesh", "umtet"};
@@ -104,6 +108,7 @@ Parser::Parser() {
 
   CLI::App& evolve = add_command("evolve", "A domain that moves: every instant meshed in one background mesh");
   add_parameter_sources(evolve);
+  add_timeout(evolve, "seconds that all instants may take together; then exit 9");
   evolve.add_option("-o", in_.output, "the folder of the meshes");
   evolve.add_option("--clouds", in_.clouds, "a text file with the path of a cloud a line, instead of --implicit");
   evolve.add_option("--t", in_.times, "FROM:STEP:TO, the times; --implicit may have t in it");
@@ -111,6 +116,8 @@ Parser::Parser() {
   add_parameter_flags(
       evolve, {"cloud", "reconstruct", "mesh", "output"},
       {"mesh.keep_iterates", "mesh.order", "output.label_names", "output.label_min_area", "output.patch_angle"});
+
+  add_batch();
 
   CLI::App& inspect = add_command("inspect", "What is in a cloud, and what is likely to go wrong with it");
   inspect.add_option("CLOUD", in_.input, "points: .ply, .pcd, .xyz")->required();
@@ -136,6 +143,20 @@ Parser::Parser() {
   CLI::App& diff = add_command("diff", "The first stage in which two cases differ, and by how much each does");
   diff.add_option("CASE_A", in_.input, "a case")->required();
   diff.add_option("CASE_B", in_.other_case, "another")->required();
+}
+
+void Parser::add_batch() {
+  CLI::App& batch = add_command("batch", "Many scans by the same parameters, each in a process of its own; one table");
+  add_parameter_sources(batch);
+  add_timeout(batch, "seconds that a scan may take; then it is a row with exit code 9");
+  batch.add_option("LIST", in_.input, "a text file with the path of a cloud a line")->required();
+  batch.add_option("-o", in_.output, "the folder of the cases and of batch.csv, batch.html");
+  batch.add_option("--jobs", result_.batch.jobs, "scans at a time; they share the threads")->check(CLI::Range(1, 1024));
+  batch.add_flag("--resume", in_.resume, "scans whose input or mesh was refused are not tried again");
+  batch.add_flag("--force", in_.force, "run all stages although their records match");
+  batch.add_flag("--strict", in_.strict, "a damaged artefact is exit 8 of its scan instead of being made again");
+  add_formats(batch, "--export");
+  add_parameter_flags(batch, {"cloud", "reconstruct", "mesh", "output"}, {"mesh.implicit"});
 }
 
 CLI::Option& Parser::add_formats(CLI::App& command, const char* flag) {
@@ -170,8 +191,14 @@ void Parser::add_parameter_sources(CLI::App& command) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
+void Parser::add_timeout(CLI::App& command, const char* help) {
+  // A timer of the system takes no more than a year without doubt.
+  command.add_option("--timeout", result_.timeout, help)->check(CLI::Range(0., 3e7));
+}
+
 void Parser::add_stage_flags(CLI::App& command) {
   add_parameter_sources(command);
+  add_timeout(command, "seconds that the run may take; then exit 9, resumable");
   command.add_option("-o", in_.output, "the folder of the case");
   command.add_flag("--force", in_.force, "run the stages although their records match");
   command.add_flag("--strict", in_.strict, "stop with exit 8 at a damaged artefact instead of making it again");
@@ -223,10 +250,6 @@ void Parser::check_command(int argc, const char* const* argv) const {
   std::vector<std::string> commands;
   for (const CLI::App* c : app_.get_subcommands({})) commands.push_back(c->get_name());
   if (std::find(commands.begin(), commands.end(), *word) != commands.end()) return;
-  if (std::string_view(*word) == "batch") {
-    throw UsageError(
-        fmt::format("batch is not available yet in version {}; there are {}", kVersion, fmt::join(commands, ", ")));
-  }
   const std::string near = nearest(*word, commands);
   throw UsageError(
       fmt::format("unknown command {}{}", *word, near.empty() ? "; try umtet --help" : "; did you mean " + near + "?"));
@@ -325,6 +348,9 @@ void Parser::finish(const CLI::App& command) {
   } else if (result_.command == "evolve") {
     result_.action = CommandLine::Action::Evolve;
     finish_evolve();
+  } else if (result_.command == "batch") {
+    result_.action = CommandLine::Action::Batch;
+    finish_batch();
   } else {
     result_.action = CommandLine::Action::Stages;
     finish_stages(command);
@@ -338,7 +364,7 @@ void Parser::read_parameters() {
   for (const std::string& assignment : in_.assignments) parameters.set(assignment);
   for (const Stage stage : {Stage::Cloud, Stage::LevelSet, Stage::Mesh}) {
     const RunRequest& r = result_.request;
-    const bool runs = result_.action == CommandLine::Action::Stages || result_.action == CommandLine::Action::Evolve;
+    const bool runs = result_.action != CommandLine::Action::Check;
     if (runs && stage >= r.from && stage <= r.until) continue;
     for (const ParamField& f : params_fields()) {
       if (f.key.starts_with(std::string(section_of(stage)) + ".") && parameters.source(f.key) >= ParamSource::Set) {
@@ -360,6 +386,18 @@ void Parser::finish_evolve() {
   result_.evolve.clouds = in_.clouds;
   result_.evolve.times = in_.times;
   result_.evolve.skip = in_.skip;
+}
+
+void Parser::finish_batch() {
+  read_parameters();
+  if (in_.output.empty()) throw UsageError("batch: -o FOLDER is missing");
+  if (!result_.request.parameters.text("mesh.implicit").empty()) throw UsageError("batch: mesh.implicit is no scan");
+  BatchRequest& batch = result_.batch;
+  batch.list = in_.input;
+  batch.folder = in_.output;
+  batch.resume = in_.resume;
+  batch.force = in_.force;
+  batch.strict = in_.strict;
 }
 
 void Parser::finish_stages(const CLI::App& command) {

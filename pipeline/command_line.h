@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/batch.h"
 #include "pipeline/evolve.h"
 #include "pipeline/progress.h"
 #include "pipeline/run.h"
@@ -12,24 +13,26 @@ namespace umtet {
 
 /// A call of the program, understood.
 struct CommandLine {
-  enum class Action { Text, Stages, Check, Export, Report, View, Diff, Inspect, Evolve };
+  enum class Action { Text, Stages, Check, Export, Report, View, Diff, Inspect, Evolve, Batch };
   Action action = Action::Text;
   std::string text;     ///< Text: help or version, for stdout
   std::string command;  ///< "run", "reconstruct", "mesh", "inspect", "check", "export", "report", "view",
-                        ///< "diff", "evolve"
+                        ///< "diff", "evolve", "batch"
 
   RunRequest request;  ///< Stages; Check: its output.* parameters; Export: these and its case_folder; Report, View and
                        ///< Diff: its case_folder
   EvolveRequest evolve;                          ///< Evolve, but for its parameters: those of `request`
+  BatchRequest batch;                            ///< Batch, but for its parameters, formats, timeout and threads
   std::filesystem::path mesh;                    ///< Check
   std::filesystem::path cloud;                   ///< Inspect
   std::optional<std::filesystem::path> against;  ///< Check
   std::vector<std::string> formats;              ///< Export, and Stages after which something is exported
 
+  double timeout = 0;  ///< seconds; Stages and Evolve: for all, Batch: for every scan; 0: any
   bool json = false;
   ProgressMode progress = ProgressMode::Auto;
   Verbosity verbosity = Verbosity::Normal;
-  int threads = 0;  ///< 0: as many as the machine has
+  int threads = 0;  ///< 0: as many as the machine has; Batch: shared by its jobs
 };
 
 /// What --help says, for documents that are made from it.

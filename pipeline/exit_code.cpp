@@ -43,15 +43,20 @@ std::string message(const std::filesystem::filesystem_error& e) {
 }  // namespace
 
 Interrupted::Interrupted(int signal)
-    : std::runtime_error(signal == SIGTERM ? "terminated; the case can be resumed with the same command"
-                                           : "interrupted; the case can be resumed with the same command"),
+    : std::runtime_error(std::string(signal == SIGALRM   ? "out of time"
+                                     : signal == SIGTERM ? "terminated"
+                                                         : "interrupted") +
+                         " in " + work_at_hand() + "; the case can be resumed with the same command"),
       signal(signal) {}
 
 Failure failure_of(const std::exception_ptr& error) {
   try {
     std::rethrow_exception(error);
   } catch (const Interrupted& e) {
-    return {e.signal == SIGTERM ? ExitCode::Terminated : ExitCode::Interrupted, e.what()};
+    return {e.signal == SIGALRM   ? ExitCode::ResourceLimit
+            : e.signal == SIGTERM ? ExitCode::Terminated
+                                  : ExitCode::Interrupted,
+            e.what()};
   } catch (const MeshCancelled&) {  // not_interrupted() said so
     return failure_of(std::make_exception_ptr(Interrupted(interrupt_signal())));
   } catch (const UsageError& e) {
@@ -75,7 +80,7 @@ Failure failure_of(const std::exception_ptr& error) {
   } catch (const ResourceLimit& e) {
     return {ExitCode::ResourceLimit, e.what()};
   } catch (const std::bad_alloc&) {
-    return {ExitCode::ResourceLimit, "out of memory"};
+    return {ExitCode::ResourceLimit, std::string("out of memory in ") + work_at_hand()};
   } catch (const FileTrouble& e) {
     return {ExitCode::FileTrouble, e.what()};
   } catch (const std::filesystem::filesystem_error& e) {

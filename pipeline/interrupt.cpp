@@ -3,7 +3,9 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <csignal>
 #include <cstring>
 
@@ -13,26 +15,40 @@ namespace umtet {
 namespace {
 
 std::atomic<int> asked_by{0};
-static_assert(std::atomic<int>::is_always_lock_free);  // else a signal handler may not touch it
+std::atomic<const char*> work{"start"};
+std::atomic<bool> in_own_time{false};
+// Else a signal handler may not touch them.
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<const char*>::is_always_lock_free &&
+              std::atomic<bool>::is_always_lock_free);
 
 // Steps poll about every tenth of a second; a few library calls on large clouds take longer.
 constexpr long kPatienceMicroseconds = 150'000;
 
+void say(const char* text) { [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text)); }
+
+int code_of(int signal) { return signal == SIGALRM ? static_cast<int>(ExitCode::ResourceLimit) : 128 + signal; }
+
 /// Every file of a case is renamed into place when it is whole, so the process may end at any instruction.
 [[noreturn]] void stop_now(int signal) {
-  const char* text = signal == SIGTERM ? "\numtet: terminated; the case can be resumed with the same command\n"
-                                       : "\numtet: interrupted; the case can be resumed with the same command\n";
-  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text));
-  ::_exit(128 + signal);
+  say(signal == SIGALRM ? "\numtet: out of time" : signal == SIGTERM ? "\numtet: terminated" : "\numtet: interrupted");
+  say(" in ");
+  say(work.load());
+  say("; the case can be resumed with the same command\n");
+  ::_exit(code_of(signal));
 }
 
 extern "C" void ask_to_stop(int signal) {
-  if (asked_by.exchange(signal) != 0) ::_exit(128 + signal);
+  if (asked_by.exchange(signal) != 0) ::_exit(code_of(signal));
+  if (in_own_time) return;
   const itimerval once{{0, 0}, {0, kPatienceMicroseconds}};
   ::setitimer(ITIMER_REAL, &once, nullptr);
 }
 
-extern "C" void lose_patience(int) { stop_now(asked_by.load()); }
+/// The time limit, or the end of patience.
+extern "C" void time_is_over(int) {
+  if (const int signal = asked_by.load()) stop_now(signal);
+  ask_to_stop(SIGALRM);
+}
 
 }  // namespace
 
@@ -43,11 +59,25 @@ void install_signal_handlers() {
   sigemptyset(&action.sa_mask);
   ::sigaction(SIGINT, &action, nullptr);
   ::sigaction(SIGTERM, &action, nullptr);
-  action.sa_handler = lose_patience;
+  action.sa_handler = time_is_over;
   ::sigaction(SIGALRM, &action, nullptr);
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
 }
+
+void stop_after(double seconds) {
+  const double whole = std::floor(seconds);
+  // A timer of zero would be none.
+  const long rest = std::max(1L, static_cast<long>(1e6 * (seconds - whole)));
+  const itimerval once{{0, 0}, {static_cast<time_t>(whole), rest}};
+  ::setitimer(ITIMER_REAL, &once, nullptr);
+}
+
+void stop_in_own_time() { in_own_time = true; }
+
+void set_work_at_hand(const char* name) { work = name; }
+
+const char* work_at_hand() { return work.load(); }
 
 int interrupt_signal() { return asked_by.load(); }
 

@@ -7,7 +7,18 @@ namespace umtet {
 /// grow beyond a limit and closed pipes become errors of write() instead of signals.
 void install_signal_handlers();
 
-/// The signal that asked to stop, or 0.
+/// Asks to stop after so many seconds, as by a signal, with exit code 9.
+void stop_after(double seconds);
+
+/// For a caller that hears of a signal at once and has others to stop before it ends: no end after 0.15 s.
+void stop_in_own_time();
+
+/// What the program is doing, for messages about an end on the way: the name of a stage.
+/// @param work  lives as long as the program
+void set_work_at_hand(const char* work);
+const char* work_at_hand();
+
+/// The signal that asked to stop (SIGALRM: time is over), or 0.
 int interrupt_signal();
 
 /// For libraries that ask whether to go on.

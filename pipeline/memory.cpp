@@ -4,6 +4,8 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <string>
@@ -17,6 +19,21 @@ namespace {
 constexpr double kBytesPerTet = 500;
 // The searches for omega_h keep up to four bits per vertex of the background mesh, with ranks, and two per tet.
 constexpr double kBytesPerBackgroundVertex = 1, kBytesPerBackgroundTet = .25;
+
+// mesh.vtu of a ball: 5.7 MB for 98 thousand tets, 58 bytes a tet.
+constexpr double kFileBytesPerTet = 60;
+// glibc's and TBB's stacks.
+constexpr double kStackBytes = 8 << 20;
+
+/// What the process has mapped for writing; 0 where the system does not say.
+double data_bytes() {
+  std::ifstream in("/proc/self/status");
+  std::string line;
+  while (std::getline(in, line)) {
+    if (line.starts_with("VmData:")) return 1024 * std::strtod(line.c_str() + 7, nullptr);
+  }
+  return 0;
+}
 
 /// What the system says it can give without swapping; infinite where it does not say.
 double available_bytes() {
@@ -40,6 +57,25 @@ double available_bytes() {
 double allowed_bytes(const Parameters& parameters) {
   const double asked = 1e9 * parameters.real("output.max_memory");
   return asked > 0 ? asked : available_bytes();
+}
+
+void limit_memory(double bytes, int threads) {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_DATA, &limit) != 0) return;
+  const double most = data_bytes() + bytes + threads * kStackBytes;
+  if (most >= static_cast<double>(limit.rlim_cur)) return;
+  limit.rlim_cur = static_cast<rlim_t>(most);
+  ::setrlimit(RLIMIT_DATA, &limit);
+}
+
+void require_disk(const std::filesystem::path& folder, double n_tets) {
+  std::error_code unknown;
+  const std::filesystem::space_info space = std::filesystem::space(folder, unknown);
+  const double need = kFileBytesPerTet * n_tets;
+  if (unknown || need <= static_cast<double>(space.available)) return;
+  throw ResourceLimit(fmt::format(
+      "{}: the meshes need about {:.3g} GB of disk, and {:.3g} GB are free: make room, or fewer --tets, a larger --h",
+      folder.string(), need / 1e9, static_cast<double>(space.available) / 1e9));
 }
 
 void require_memory(const BackgroundMesh& background, double n_tets, double allowed) {

@@ -204,6 +204,9 @@ MeshAttempt MeshStage::attempt(double h) {
   domain_.limit_detail(h);
   const BackgroundMesh background =
       background_.make(domain_, h, context_.parameters.integer("mesh.tets"), allowed_bytes(context_.parameters));
+  const double n_files =
+      3 + (keep_iterates_ ? static_cast<double>(context_.parameters.integer("mesh.projection_passes")) : 0);
+  require_disk(context_.paths.root, n_files * expected_tets(domain_.psi(), domain_.box, h));
   const ZeroSetChoice& pieces = pieces_at(h);
   a.thin = find_thin_places(domain_, pieces, h, not_interrupted);
   if (!a.thin.empty()) {

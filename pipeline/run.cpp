@@ -108,6 +108,7 @@ StageRecord CaseRun::ensure(Stage stage) {
 }
 
 void CaseRun::run(Stage stage) {
+  set_work_at_hand(to_string(stage));
   try {
     compute(stage);
   } catch (...) {
@@ -132,6 +133,7 @@ void CaseRun::compute(Stage stage) {
 }
 
 void CaseRun::certify(const StageRecord& mesh) {
+  set_work_at_hand("certificate");
   const Json json = certificate(paths_, mesh, parameters_);
   const std::string text = file_text(json);
   const fs::path file = paths_.certificate();

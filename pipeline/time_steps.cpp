@@ -50,6 +50,8 @@ std::vector<double> range(const std::string& text) {
   return times;
 }
 
+}  // namespace
+
 std::vector<fs::path> listed_clouds(const fs::path& list) {
   std::vector<fs::path> clouds;
   for (std::string line : split(read_text(list), '\n')) {
@@ -59,8 +61,6 @@ std::vector<fs::path> listed_clouds(const fs::path& list) {
   if (clouds.empty()) throw UsageError(list.string() + " names no cloud: one path a line is needed");
   return clouds;
 }
-
-}  // namespace
 
 std::string time_text(double t) { return fmt::format("{}", t); }
 

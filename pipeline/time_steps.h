@@ -25,6 +25,10 @@ struct TimeStep {
 std::vector<TimeStep> time_steps(const std::string& times, const std::string& skip,
                                  const std::filesystem::path& clouds);
 
+/// The paths of a list as above.
+/// \throw UsageError when it names none; std::system_error when it cannot be read
+std::vector<std::filesystem::path> listed_clouds(const std::filesystem::path& list);
+
 /// The shortest decimal number for t.
 std::string time_text(double t);
 

@@ -18,6 +18,7 @@
 #include "pipeline/export_case.h"
 #include "pipeline/inspect.h"
 #include "pipeline/interrupt.h"
+#include "pipeline/memory.h"
 #include "pipeline/report.h"
 #include "pipeline/run.h"
 #include "pipeline/view_files.h"
@@ -45,6 +46,7 @@ Json names(const std::vector<std::filesystem::path>& files) {
 }
 
 std::vector<std::filesystem::path> exports_of(const CommandLine& call, Progress& progress) {
+  set_work_at_hand("export");
   const CasePaths paths{call.request.case_folder};
   const CaseLock lock(paths.root);
   return export_case(paths, call.formats, call.request.parameters, progress);
@@ -73,6 +75,7 @@ Output run_stages(const CommandLine& call, Progress& progress) {
 }
 
 Output check(const CommandLine& call, Progress& progress) {
+  set_work_at_hand("check");
   Output output;
   const Json json = check_mesh(call.mesh, call.against, call.request.parameters, progress);
   progress.clear();
@@ -83,6 +86,7 @@ Output check(const CommandLine& call, Progress& progress) {
 }
 
 Output inspect(const CommandLine& call, Progress& progress) {
+  set_work_at_hand("inspect");
   Output output;
   const Json json = inspect_cloud(call.cloud, progress);
   progress.clear();
@@ -92,6 +96,7 @@ Output inspect(const CommandLine& call, Progress& progress) {
 }
 
 Output run_evolution(const CommandLine& call, Progress& progress) {
+  set_work_at_hand("evolve");
   EvolveRequest request = call.evolve;
   request.parameters = call.request.parameters;
   request.threads = call.threads;
@@ -100,6 +105,21 @@ Output run_evolution(const CommandLine& call, Progress& progress) {
   Output output;
   output.code = outcome.code;
   output.document = {{"steps", outcome.steps}, {"files", names(outcome.files)}};
+  output.text = outcome.text + file_list(outcome.files);
+  return output;
+}
+
+Output run_scans(const CommandLine& call, Progress& progress) {
+  BatchRequest request = call.batch;
+  request.parameters = call.request.parameters;
+  request.formats = call.formats;
+  request.timeout = call.timeout;
+  request.threads = std::max(1, call.threads / request.jobs);
+  const BatchOutcome outcome = run_batch(request, progress);
+  progress.clear();
+  Output output;
+  output.code = outcome.code;
+  output.document = {{"scans", outcome.rows}, {"files", names(outcome.files)}};
   output.text = outcome.text + file_list(outcome.files);
   return output;
 }
@@ -159,6 +179,9 @@ Output execute(int argc, char** argv, bool& json, std::string& command) {
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(call.threads));
   call.request.threads = call.threads;
+  const double max_memory = 1e9 * call.request.parameters.real("output.max_memory");
+  if (max_memory > 0 && call.action != CommandLine::Action::Batch) limit_memory(max_memory, call.threads);
+  if (call.timeout > 0 && call.action != CommandLine::Action::Batch) stop_after(call.timeout);
   Progress progress(call.progress, call.verbosity);
   switch (call.action) {
     case CommandLine::Action::Check:
@@ -167,6 +190,8 @@ Output execute(int argc, char** argv, bool& json, std::string& command) {
       return inspect(call, progress);
     case CommandLine::Action::Evolve:
       return run_evolution(call, progress);
+    case CommandLine::Action::Batch:
+      return run_scans(call, progress);
     case CommandLine::Action::Export:
       return export_files(call, progress);
     case CommandLine::Action::Report:

@@ -1,0 +1,70 @@
+"""What the tests of faults share: small clouds, calls of the program from outside, and what a case holds."""
+import json
+import math
+import os
+import pathlib
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+
+PROGRAM = os.environ.get("UMTET_PROGRAM", "umtet")
+SHIM = os.environ.get("UMTET_FAULT_SHIM", "")
+SLOW = bool(os.environ.get("UMTET_SLOW"))
+
+
+def ellipsoid(n, axes=(1, .8, .6)):
+    """Lines x y z nx ny nz of n points of an ellipsoid with these half axes."""
+    lines = []
+    for i in range(n):
+        z = 1 - (2 * i + 1) / n
+        r, a = math.sqrt(1 - z * z), 2.399963229728653 * i
+        u = (r * math.cos(a), r * math.sin(a), z)
+        x = [axes[k] * u[k] for k in range(3)]
+        g = [u[k] / axes[k] for k in range(3)]
+        length = math.sqrt(sum(c * c for c in g))
+        lines.append(" ".join(repr(c) for c in x + [c / length for c in g]))
+    return lines
+
+
+def write_ply(path, lines, count=None):
+    head = ["ply", "format ascii 1.0", f"element vertex {len(lines) if count is None else count}"]
+    head += [f"property double {p}" for p in ("x", "y", "z", "nx", "ny", "nz")] + ["end_header"]
+    with open(path, "w") as file:
+        file.write("\n".join(head + lines) + "\n")
+    return path
+
+
+def run(*arguments, env=None, cwd=None, timeout=120, **options):
+    """The finished process, with texts; a crash has a negative returncode."""
+    return subprocess.run([PROGRAM, *map(str, arguments)], env={**os.environ, **(env or {})}, cwd=cwd, timeout=timeout,
+                          stdin=subprocess.DEVNULL, stdout=options.pop("stdout", subprocess.PIPE),
+                          stderr=subprocess.PIPE, encoding="utf-8", errors="replace", **options)
+
+
+def promised(case):
+    """Every file of a case that a second run must give again byte by byte, documents without their block `run`."""
+    found = {}
+    for file in sorted(pathlib.Path(case).rglob("*")):
+        name = str(file.relative_to(case))
+        if not file.is_file() or file.name in (".lock", "case.toml") or name.startswith((".next", "3-mesh/failed")):
+            continue
+        content = file.read_bytes()
+        if file.suffix == ".json":
+            document = json.loads(content)
+            document.pop("run", None)
+            content = json.dumps(document).encode()
+        found[name] = content
+    return found
+
+
+class Folder:
+    """A new folder that is gone afterwards."""
+
+    def __enter__(self):
+        self.path = pathlib.Path(tempfile.mkdtemp(prefix="umtet_faults_"))
+        return self.path
+
+    def __exit__(self, *_):
+        shutil.rmtree(self.path, ignore_errors=True)
