@@ -7,7 +7,10 @@
 #include <atomic>
 #include <cmath>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
+#include <exception>
+#include <new>
 
 #include "pipeline/exit_code.h"
 
@@ -17,6 +20,7 @@ namespace {
 std::atomic<int> asked_by{0};
 std::atomic<const char*> work{"start"};
 std::atomic<bool> in_own_time{false};
+std::terminate_handler other_end = nullptr;
 // Else a signal handler may not touch them.
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<const char*>::is_always_lock_free &&
               std::atomic<bool>::is_always_lock_free);
@@ -50,9 +54,25 @@ extern "C" void time_is_over(int) {
   ask_to_stop(SIGALRM);
 }
 
+/// nlohmann's ordered_map and libstdc++'s directory_iterator allocate in noexcept functions.
+[[noreturn]] void end_without_catcher() {
+  try {
+    if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
+  } catch (const std::bad_alloc&) {
+    say("umtet: out of memory in ");
+    say(work.load());
+    say("\n");
+    ::_exit(static_cast<int>(ExitCode::ResourceLimit));
+  } catch (...) {
+  }
+  if (other_end) other_end();  // says what it was
+  std::abort();
+}
+
 }  // namespace
 
 void install_signal_handlers() {
+  other_end = std::set_terminate(end_without_catcher);
   struct sigaction action {};
   action.sa_handler = ask_to_stop;
   action.sa_flags = SA_RESTART;

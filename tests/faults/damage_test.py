@@ -1,0 +1,156 @@
+"""Artefacts that are cut, flipped, absurd or of another version; odd paths, folders and environments."""
+import json
+import shutil
+import subprocess
+import threading
+import time
+import unittest
+
+from support import PROGRAM, SLOW, Folder, ellipsoid, promised, run, write_ply
+
+ARTEFACTS = ("1-cloud/cloud.ply", "1-cloud/record.json", "2-level-set/level_set.vti", "2-level-set/record.json",
+             "3-mesh/mesh.vtu", "3-mesh/omega_h.vtu", "3-mesh/projected.vtu", "3-mesh/quality.csv",
+             "3-mesh/record.json", "certificate.json")
+
+
+class Damage(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scope = Folder()
+        cls.folder = cls.scope.__enter__()
+        cls.addClassCleanup(cls.scope.__exit__)
+        cls.cloud = write_ply(cls.folder / "egg.ply", ellipsoid(250))
+        cls.plain = cls.folder / "plain"
+        made = cls.call(cls.plain)
+        if made.returncode != 0:
+            raise RuntimeError(made.stderr)
+        cls.expected = promised(cls.plain)
+
+    @classmethod
+    def call(cls, case, *more, **options):
+        return run("run", cls.cloud, "-o", case, "--tets", 700, "--progress", "none", *more, **options)
+
+    def mended(self, name, content, what):
+        """--strict refuses with exit 8; the same command without it ends at the bytes that were there."""
+        case = self.folder / "damaged"
+        shutil.rmtree(case, ignore_errors=True)
+        shutil.copytree(self.plain, case)
+        (case / name).write_bytes(content)
+        strict = self.call(case, "--strict")
+        self.assertEqual(strict.returncode, 8, f"{name} {what}: {strict.stderr}")
+        self.assertIn(str(case / name), strict.stderr)
+        again = self.call(case)
+        self.assertEqual(again.returncode, 0, f"{name} {what}: {again.stderr}")
+        self.assertIn("making it again", again.stderr, f"{name} {what}")
+        self.assertEqual(promised(case), self.expected, f"{name} {what}")
+
+    def test_cut_and_flipped_artefacts_are_noticed_and_made_again(self):
+        for k, name in enumerate(ARTEFACTS):
+            good = (self.plain / name).read_bytes()
+            places = range(0, len(good), max(1, len(good) // 12)) if SLOW else [(k * 7919 + 13) % len(good)]
+            for at in places:
+                # The last character of a document is a newline, and says nothing.
+                flipped = bytes(b ^ (1 << k % 7) if i == at else b for i, b in enumerate(good))
+                with self.subTest(name=name, at=at):
+                    if SLOW or k % 2:
+                        self.mended(name, good[:at], f"cut at {at}")
+                    if SLOW or k % 2 == 0:
+                        self.mended(name, flipped, f"flipped at {at}")
+
+    def test_records_of_another_schema_are_made_again(self):
+        case = self.folder / "newer"
+        shutil.copytree(self.plain, case)
+        record = case / "3-mesh/record.json"
+        record.write_text(record.read_text().replace('"schema": 2', '"schema": 999'))
+        again = self.call(case)
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertEqual(promised(case), self.expected)
+
+    def test_paths_may_have_any_characters(self):
+        for name in ("with spaces", "Größe-网格", "line\nbreak", "-dash", "quote'\"$HOME;&"):
+            with self.subTest(name=name):
+                folder = self.folder / f"odd {name}"
+                folder.mkdir()
+                cloud = folder / f"{name}.ply"
+                shutil.copy(self.cloud, cloud)
+                made = run("run", cloud, "-o", folder / name, "--tets", 700, "--json")
+                self.assertEqual(made.returncode, 0, made.stderr)
+                self.assertEqual(json.loads(made.stdout)["certificate"]["verdict"], "pass")
+                self.assertEqual((folder / name / "3-mesh/mesh.vtu").read_bytes(), self.expected["3-mesh/mesh.vtu"])
+
+    def test_the_language_of_the_system_changes_no_byte(self):
+        german = self.call(self.folder / "german", env={"LC_ALL": "de_DE.UTF-8", "LANG": "de_DE.UTF-8"})
+        self.assertEqual(german.returncode, 0, german.stderr)
+        self.assertEqual(promised(self.folder / "german"), self.expected)
+
+    def test_a_closed_stdout_is_file_trouble_and_the_mesh_is_there(self):
+        case = self.folder / "closed"
+        command = '"$0" "$@" >&-'
+        closed = subprocess.run(["/bin/sh", "-c", command, PROGRAM, "run", self.cloud, "-o", case, "--tets", "700"],
+                                stderr=subprocess.PIPE, text=True)
+        self.assertEqual(closed.returncode, 7, closed.stderr)
+        self.assertIn("stdout", closed.stderr)
+        self.assertEqual(promised(case), self.expected)
+
+    def test_folders_that_cannot_be_written_are_file_trouble(self):
+        for place in ("/proc/umtet", "/dev/null/case", str(self.cloud / "case")):
+            refused = self.call(place)
+            self.assertEqual(refused.returncode, 7, refused.stderr)
+            self.assertIn(place.rsplit("/", 1)[0], refused.stderr)
+
+    def test_a_folder_that_goes_away_is_no_success(self):
+        """What was opened is gone from under the run: no record is left that claims what is not there."""
+        case = self.folder / "gone"
+        process = subprocess.Popen([PROGRAM, "run", self.cloud, "-o", case, "--tets", "200000", "--set",
+                                    "mesh.mode=paper", "-q"], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        level_set = case / "2-level-set/record.json"
+        for _ in range(2000):
+            if level_set.exists() or process.poll() is not None:
+                break
+            time.sleep(.01)
+        shutil.rmtree(case, ignore_errors=True)
+        process.terminate()
+        _, said = process.communicate(timeout=20)
+        self.assertIn(process.returncode, (7, 143), said)
+        self.assertFalse((case / "certificate.json").exists())
+
+    def test_one_of_two_runs_on_a_case_is_refused(self):
+        case = self.folder / "shared"
+        calls = [subprocess.Popen([PROGRAM, "run", self.cloud, "-o", case, "--tets", "700", "--progress", "none"],
+                                  stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) for _ in range(2)]
+        ends = [(c.communicate(timeout=60)[1], c.returncode) for c in calls]
+        self.assertIn(0, [code for _, code in ends], ends)
+        for said, code in ends:
+            if code != 0:
+                self.assertEqual(code, 7, said)
+                self.assertIn("another umtet", said)
+        self.assertEqual(promised(case), self.expected)
+
+    def test_input_that_changes_during_a_run_is_never_taken_for_what_was_read(self):
+        """Whatever was read, the next run sees the file of then, and ends at its mesh."""
+        cloud = self.folder / "changing.ply"
+        shutil.copy(self.cloud, cloud)
+        other = write_ply(self.folder / "other.ply", ellipsoid(250, (1, .9, .7)))
+        case, fresh = self.folder / "changed", self.folder / "fresh"
+        stop = threading.Event()
+
+        def change():
+            k = 0
+            while not stop.is_set():
+                shutil.copy((self.cloud, other)[k % 2], cloud)
+                k += 1
+
+        changer = threading.Thread(target=change)
+        changer.start()
+        first = run("run", cloud, "-o", case, "--tets", 700)
+        stop.set()
+        changer.join()
+        self.assertIn(first.returncode, (0, 3, 7), first.stderr)
+        shutil.copy(other, cloud)
+        self.assertEqual(run("run", cloud, "-o", case, "--tets", 700).returncode, 0)
+        self.assertEqual(run("run", cloud, "-o", fresh, "--tets", 700).returncode, 0)
+        self.assertEqual((case / "3-mesh/mesh.vtu").read_bytes(), (fresh / "3-mesh/mesh.vtu").read_bytes())
+
+
+if __name__ == "__main__":
+    unittest.main()
