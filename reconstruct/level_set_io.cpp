@@ -173,6 +173,11 @@ LevelSet read_level_set(const std::filesystem::path& path) {
         fmt::format("{}: damaged: {}", file, vtkErrorCode::GetStringFromErrorCode(reader->GetErrorCode())));
   }
   const std::vector<double> l = read_field(image, "lattice", 7, file), p = read_field(image, "prior", 4, file);
+  const auto is_finite = [](double v) { return std::isfinite(v); };
+  if (!std::all_of(l.begin(), l.end(), is_finite) || !std::all_of(p.begin(), p.end(), is_finite) ||
+      !(std::abs(p[2]) < 1e6)) {  // beyond that there is no int
+    throw LevelSetRefused(file + ": 'lattice' or 'prior' is absurd");
+  }
   const LmePrior prior{static_cast<LmePrior::Kind>(static_cast<int>(p[0])), p[1], static_cast<int>(p[2]), p[3]};
   const std::vector<std::string> wrong = problems(prior);
   if (p[0] != 0 && p[0] != 1) throw LevelSetRefused(file + ": unknown prior");

@@ -42,7 +42,7 @@ class Damage(unittest.TestCase):
         again = self.call(case)
         self.assertEqual(again.returncode, 0, f"{name} {what}: {again.stderr}")
         self.assertIn("making it again", again.stderr, f"{name} {what}")
-        self.assertEqual(promised(case), self.expected, f"{name} {what}")
+        self.assertTrue(promised(case) == self.expected, f"{name} {what}")
 
     def test_cut_and_flipped_artefacts_are_noticed_and_made_again(self):
         for k, name in enumerate(ARTEFACTS):
@@ -64,7 +64,7 @@ class Damage(unittest.TestCase):
         record.write_text(record.read_text().replace('"schema": 2', '"schema": 999'))
         again = self.call(case)
         self.assertEqual(again.returncode, 0, again.stderr)
-        self.assertEqual(promised(case), self.expected)
+        self.assertTrue(promised(case) == self.expected)
 
     def test_paths_may_have_any_characters(self):
         for name in ("with spaces", "Größe-网格", "line\nbreak", "-dash", "quote'\"$HOME;&"):
@@ -76,12 +76,13 @@ class Damage(unittest.TestCase):
                 made = run("run", cloud, "-o", folder / name, "--tets", 700, "--json")
                 self.assertEqual(made.returncode, 0, made.stderr)
                 self.assertEqual(json.loads(made.stdout)["certificate"]["verdict"], "pass")
-                self.assertEqual((folder / name / "3-mesh/mesh.vtu").read_bytes(), self.expected["3-mesh/mesh.vtu"])
+                mesh = (folder / name / "3-mesh/mesh.vtu").read_bytes()
+                self.assertTrue(mesh == self.expected["3-mesh/mesh.vtu"])
 
     def test_the_language_of_the_system_changes_no_byte(self):
         german = self.call(self.folder / "german", env={"LC_ALL": "de_DE.UTF-8", "LANG": "de_DE.UTF-8"})
         self.assertEqual(german.returncode, 0, german.stderr)
-        self.assertEqual(promised(self.folder / "german"), self.expected)
+        self.assertTrue(promised(self.folder / "german") == self.expected)
 
     def test_a_closed_stdout_is_file_trouble_and_the_mesh_is_there(self):
         case = self.folder / "closed"
@@ -90,7 +91,7 @@ class Damage(unittest.TestCase):
                                 stderr=subprocess.PIPE, text=True)
         self.assertEqual(closed.returncode, 7, closed.stderr)
         self.assertIn("stdout", closed.stderr)
-        self.assertEqual(promised(case), self.expected)
+        self.assertTrue(promised(case) == self.expected)
 
     def test_folders_that_cannot_be_written_are_file_trouble(self):
         for place in ("/proc/umtet", "/dev/null/case", str(self.cloud / "case")):
@@ -124,7 +125,7 @@ class Damage(unittest.TestCase):
             if code != 0:
                 self.assertEqual(code, 7, said)
                 self.assertIn("another umtet", said)
-        self.assertEqual(promised(case), self.expected)
+        self.assertTrue(promised(case) == self.expected)
 
     def test_input_that_changes_during_a_run_is_never_taken_for_what_was_read(self):
         """Whatever was read, the next run sees the file of then, and ends at its mesh."""
@@ -149,7 +150,7 @@ class Damage(unittest.TestCase):
         shutil.copy(other, cloud)
         self.assertEqual(run("run", cloud, "-o", case, "--tets", 700).returncode, 0)
         self.assertEqual(run("run", cloud, "-o", fresh, "--tets", 700).returncode, 0)
-        self.assertEqual((case / "3-mesh/mesh.vtu").read_bytes(), (fresh / "3-mesh/mesh.vtu").read_bytes())
+        self.assertTrue((case / "3-mesh/mesh.vtu").read_bytes() == (fresh / "3-mesh/mesh.vtu").read_bytes())
 
 
 if __name__ == "__main__":
