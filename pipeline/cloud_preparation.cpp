@@ -7,6 +7,7 @@
 
 #include "pipeline/artefact.h"
 #include "reconstruct/cleaning.h"
+#include "reconstruct/cloud_survey.h"
 #include "reconstruct/normal_estimation.h"
 #include "reconstruct/normal_orientation.h"
 
@@ -14,7 +15,7 @@ namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kFewestPoints = 10;
+constexpr std::size_t kFewestPoints = kFewestSurveyed;  // the level set asks for the noise
 
 /// Three numbers a line, '#' begins a comment.
 std::vector<Vec3> read_viewpoints(const fs::path& file) {

@@ -79,7 +79,13 @@ Json inspect_cloud(const fs::path& file, Progress& progress) {
   require_regular_file(file);
   const CloudFile scan = read_scan(file);
   progress.report("inspect", "survey", .3);
-  const CloudSurvey s = survey(scan.cloud);
+  const CloudSurvey s = [&] {
+    try {
+      return survey(scan.cloud);
+    } catch (const TooFewPoints& e) {
+      throw CloudRefused(fmt::format("{}: {}: duplicates and outliers are not counted", file.string(), e.what()));
+    }
+  }();
   std::vector<double> area = sample_areas(scan.cloud.points);
   std::nth_element(area.begin(), area.begin() + static_cast<std::ptrdiff_t>(area.size() / 2), area.end());
   const Resolution resolution = choose_resolution(std::sqrt(area[area.size() / 2]), s.noise);

@@ -31,7 +31,7 @@ constexpr double kLink = 3;
 constexpr std::size_t kThinning = 6;
 constexpr double kThinnedShare = 0.6;
 
-bool is_usable(const Vec3& x) { return x.allFinite() && x.cwiseAbs().maxCoeff() <= 1e100; }
+bool is_usable(const Vec3& x) { return x.allFinite() && x.cwiseAbs().maxCoeff() <= 1e50; }
 
 /// Keeps rows where drop is 0; returns how many went.
 std::size_t keep_only(const std::vector<std::uint8_t>& drop, std::vector<std::uint32_t>& kept) {

@@ -20,7 +20,7 @@ std::vector<std::string> problems(const CleaningParams&);
 
 struct CleaningReport {
   std::vector<std::uint32_t> kept;  ///< which points of the cloud that came are left, ascending
-  std::size_t n_not_finite = 0;     ///< coordinates NaN, infinite or beyond 1e100
+  std::size_t n_not_finite = 0;     ///< coordinates NaN, infinite or beyond 1e50
   std::size_t n_duplicates = 0;     ///< at the place of an earlier point
   std::size_t n_outliers = 0;       ///< far from a surface for how near its points are to each other
   std::size_t n_crumbs = 0;         ///< points of small pieces far from the rest

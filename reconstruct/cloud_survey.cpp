@@ -19,7 +19,6 @@
 namespace umtet {
 namespace {
 
-constexpr std::size_t kFewestPoints = 30;  // a quadric, its neighbours, and some of them to spare
 constexpr std::size_t kNoiseNeighbours = 24;
 
 double percentile(std::vector<double>& values, double share) {
@@ -74,8 +73,8 @@ double noise_along_normals(const std::vector<Vec3>& points, std::size_t sampled_
 }
 
 double noise_along_normals(const std::vector<Vec3>& points, const NeighbourTree& tree, std::size_t sampled_points) {
-  if (points.size() < kFewestPoints)
-    throw std::invalid_argument(fmt::format("{} points: noise needs at least {}", points.size(), kFewestPoints));
+  if (points.size() < kFewestSurveyed)
+    throw TooFewPoints(fmt::format("{} points: noise needs at least {}", points.size(), kFewestSurveyed));
   const std::vector<std::uint32_t> picked = evenly_picked(tree, sampled_points);
   std::vector<double> variance(picked.size());
   tbb::enumerable_thread_specific<std::vector<Neighbour>> buffers;
@@ -130,8 +129,8 @@ CloudSurvey survey(const OrientedPointCloud& original, const SurveyParams& param
   OrientedPointCloud cloud = original;
   result.dropped = clean(cloud, params.cleaning);
   const std::size_t n = cloud.points.size();
-  if (n < kFewestPoints)
-    throw std::invalid_argument(fmt::format("{} usable points: a survey needs at least {}", n, kFewestPoints));
+  if (n < kFewestSurveyed)
+    throw TooFewPoints(fmt::format("{} usable points: a survey needs at least {}", n, kFewestSurveyed));
 
   result.low = result.high = cloud.points.front();
   for (const Vec3& x : cloud.points) {

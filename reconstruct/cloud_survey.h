@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,14 @@
 #include "reconstruct/point_cloud.h"
 
 namespace umtet {
+
+/// A quadric, its neighbours, and some of them to spare.
+inline constexpr std::size_t kFewestSurveyed = 30;
+
+/// Fewer than kFewestSurveyed points, or so many after cleaning.
+struct TooFewPoints : std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
+};
 
 struct SurveyParams {
   CleaningParams cleaning;
@@ -53,7 +62,8 @@ struct CloudSurvey {
   double thickness_found = 0;  ///< share of the samples with an opposite one
 };
 
-/// \throw std::invalid_argument  normals, but not as many as points; fewer than 30 usable points; a problem of params
+/// \throw TooFewPoints           fewer than 30 usable points
+/// \throw std::invalid_argument  normals, but not as many as points; a problem of params
 /// Cost: measured 12 us a point of 1 M on a torus, 20 with noise of two spacings. The result does not depend on the
 /// number of threads.
 CloudSurvey survey(const OrientedPointCloud& cloud, const SurveyParams& params = {});

@@ -14,6 +14,7 @@
 #include <set>
 #include <system_error>
 
+#include "reconstruct/cloud_survey.h"
 #include "reconstruct/detail/cloud_source.h"
 
 namespace umtet {
@@ -22,9 +23,9 @@ namespace {
 using detail::CloudSource;
 using detail::refuse;
 
-constexpr std::size_t kFewestPoints = 10;
-// Squares and cubes of lengths must stay finite; no unit makes a body of 1e100.
-constexpr double kFarthest = 1e100;
+constexpr std::size_t kFewestPoints = 10;  // of a surface; what surveys a scan needs more
+// Sixth powers of lengths, products of volumes, must stay normal doubles; no unit makes a body so large or so small.
+constexpr double kFarthest = 1e50, kSmallest = 1e-50;
 
 std::string load(const std::filesystem::path& file) {
   const auto fail = [&](int error) {
@@ -75,19 +76,22 @@ void refuse_points(const CloudSource& source, std::size_t n, Predicate bad, std:
 }
 
 // A body needs samples in three dimensions, and more than a handful of places.
-void check_extent(const CloudSource& source, const std::vector<Vec3>& points) {
+void check_extent(const CloudSource& source, const std::vector<Vec3>& points, std::size_t fewest) {
   constexpr double kFlat = 1e-6;  // rounding of single precision makes a plane 1e-7 of its extent thick
   std::set<std::array<double, 3>> places;
-  for (std::size_t i = 0; i < points.size() && places.size() < kFewestPoints; ++i)
+  for (std::size_t i = 0; i < points.size() && places.size() < fewest; ++i)
     places.insert({points[i][0], points[i][1], points[i][2]});
-  if (places.size() < kFewestPoints) {
+  if (places.size() < fewest) {
     refuse(source, fmt::format("{} points at only {} different places: a surface needs at least {}", points.size(),
-                               places.size(), kFewestPoints));
+                               places.size(), fewest));
   }
   Vec3 mean = Vec3::Zero();
   for (const Vec3& x : points) mean += x / static_cast<double>(points.size());
   double scale = 0;
   for (const Vec3& x : points) scale = std::max(scale, (x - mean).cwiseAbs().maxCoeff());
+  if (scale < kSmallest)
+    refuse(source, fmt::format("the points are within {:.3g} of each other, less than 1e-50: give them in a smaller unit",
+                               2 * scale));
   Mat3 spread = Mat3::Zero();
   for (const Vec3& x : points) spread += (x - mean) / scale * ((x - mean) / scale).transpose();
   const Vec3 extent =
@@ -106,12 +110,12 @@ void check_numbers(const CloudSource& source, const OrientedPointCloud& cloud) {
       "has a coordinate that is NaN or infinite");
   refuse_points(
       source, n, [&](std::size_t i) { return cloud.points[i].cwiseAbs().maxCoeff() > kFarthest; },
-      "has a coordinate beyond 1e100");
+      "has a coordinate beyond 1e50");
   refuse_points(
       source, n, [&](std::size_t i) { return !cloud.normals[i].allFinite(); }, "has a normal that is NaN or infinite");
   refuse_points(
       source, n, [&](std::size_t i) { return cloud.normals[i].isZero(0); }, "has a zero normal");
-  check_extent(source, cloud.points);
+  check_extent(source, cloud.points, kFewestPoints);
 }
 
 /// Returns how many normals were not unit to 1e-3. Normals unit to rounding stay as they are, so that a written cloud
@@ -151,7 +155,7 @@ void drop_unusable(const CloudSource& source, CloudFile& file) {
   }
   file.report.n_points_dropped = n - n_kept;
   if (2 * file.report.n_points_dropped > n)
-    refuse(source, fmt::format("{} of {} points have coordinates that are NaN, infinite or beyond 1e100: that is no "
+    refuse(source, fmt::format("{} of {} points have coordinates that are NaN, infinite or beyond 1e50: that is no "
                                "cloud with a few bad points, export it again",
                                file.report.n_points_dropped, n));
   cloud.points.resize(n_kept);
@@ -184,9 +188,9 @@ CloudFile read_scan(const std::filesystem::path& file) {
   CloudFile result = parse(source, file);
   result.report.n_points = result.cloud.points.size();
   drop_unusable(source, result);
-  if (result.cloud.points.size() < kFewestPoints)
-    refuse(source, fmt::format("{} points: a surface needs at least {}", result.cloud.points.size(), kFewestPoints));
-  check_extent(source, result.cloud.points);
+  if (result.cloud.points.size() < kFewestSurveyed)
+    refuse(source, fmt::format("{} points: a surface needs at least {}", result.cloud.points.size(), kFewestSurveyed));
+  check_extent(source, result.cloud.points, kFewestSurveyed);
   result.report.n_normals_rescaled = make_unit(result.cloud.normals);
   return result;
 }

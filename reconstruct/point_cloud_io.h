@@ -19,7 +19,7 @@ struct CloudFileReport {
   std::string format;  ///< "ply ascii", "ply binary little endian", "pcd compressed", "xyz" ...
   std::size_t n_points = 0;
   std::size_t n_normals_rescaled = 0;  ///< normals that were not unit to 1e-3 and have been made so
-  std::size_t n_points_dropped = 0;    ///< read_scan: coordinates NaN, infinite or beyond 1e100
+  std::size_t n_points_dropped = 0;    ///< read_scan: coordinates NaN, infinite or beyond 1e50
   std::size_t n_normals_missing = 0;   ///< read_scan: zero, NaN or infinite; they are zero in the cloud
 };
 
@@ -42,14 +42,16 @@ struct CloudFile {
 /// No count of a header is believed before it was compared with the size of the file: memory stays below a small
 /// multiple of it.
 ///
-/// \throw CloudRefused         malformed, empty, non-finite or beyond 1e100, or without normals
+/// \throw CloudRefused         malformed, empty, non-finite or beyond 1e50, without normals,
+///                             or all within 1e-50
 /// \throw std::system_error    the file cannot be opened or read; names it
 CloudFile read_point_cloud(const std::filesystem::path& file);
 
 /// Reads the same files for clean(), estimate_normals() and survey(): points without normals give a cloud with none,
 /// unusable normals become zero, and points that are no numbers are dropped and counted.
 ///
-/// \throw CloudRefused         malformed, empty, or more than half of the points unusable
+/// \throw CloudRefused         malformed, empty, more than half of the points unusable, or not as many different ones as
+///                             survey() needs
 /// \throw std::system_error    the file cannot be opened or read; names it
 CloudFile read_scan(const std::filesystem::path& file);
 

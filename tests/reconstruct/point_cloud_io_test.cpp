@@ -394,7 +394,7 @@ TEST_F(PointCloudIo, MalformedXyzIsRefusedWithTheReason) {
   expect_refused("large.xyz", with_line(text_, 6, "1e999 0 0 0 0 1"), {"line 7"});
   expect_refused("infinite.xyz", with_line(with_line(text_, 6, "inf 0 0 0 0 1"), 9, "0 nan 0 0 0 1"),
                  {"point 7 ", "2 such"});
-  expect_refused("huge.xyz", with_line(text_, 6, "1e101 0 0 0 0 1"), {"point 7 ", "1e100"});
+  expect_refused("huge.xyz", with_line(text_, 6, "1e51 0 0 0 0 1"), {"point 7 ", "1e50"});
   expect_refused("zero_normal.xyz", with_line(text_, 6, "0 0 0 0 -0 0"), {"point 7 ", "zero normal"});
   expect_refused("cloud.las", text_, {".xyz"});
 }
@@ -432,6 +432,11 @@ TEST_F(PointCloudIo, ScansMayLackNormalsAndHoldPointsThatAreNoNumbers) {
   EXPECT_THROW(read_scan(write("two.xyz", "1 2\n3 4\n")), CloudRefused);
 }
 
+OrientedPointCloud scaled_to(OrientedPointCloud cloud, double factor) {
+  for (Vec3& x : cloud.points) x *= factor;
+  return cloud;
+}
+
 TEST_F(PointCloudIo, PointsThatBoundNoBodyAreRefused) {
   const auto rows = [](auto&& point) {
     std::string text;
@@ -446,6 +451,7 @@ TEST_F(PointCloudIo, PointsThatBoundNoBodyAreRefused) {
   expect_refused("corners.xyz", rows([](int i) { return Vec3(i & 1, i >> 1 & 1, i >> 2 & 1); }),
                  {"8 different places"});
   expect_refused("line.xyz", rows([](int i) { return Vec3(i, 2 * i, 5); }), {"one line"});
+  expect_refused("tiny.xyz", text_rows(scaled_to(cloud_, 1e-52)), {"1e-50"});
   expect_refused("plane.xyz", rows([](int i) { return Vec3(i % 7, i / 7, i % 7 + i / 7); }), {"one plane"});
 }
 
