@@ -7,11 +7,9 @@
 #include <vtkFieldData.h>
 #include <vtkFloatArray.h>
 #include <vtkImageData.h>
-#include <vtkInformation.h>
 #include <vtkNew.h>
 #include <vtkObject.h>
 #include <vtkPointData.h>
-#include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLImageDataWriter.h>
 #include <xxhash.h>
@@ -21,6 +19,8 @@
 #include <cmath>
 #include <fstream>
 #include <system_error>
+
+#include "reconstruct/detail/vti_precheck.h"
 
 namespace umtet {
 
@@ -74,18 +74,26 @@ std::vector<Value> read_field(vtkImageData* image, const std::string& name, std:
   return {a->GetPointer(0), a->GetPointer(0) + a->GetNumberOfValues()};
 }
 
-// The bands of a file, on lattices that follow from the coarsest one.
+// The bands of a file of n_bytes, on lattices that follow from the coarsest one.
 std::vector<LevelSetBand> read_bands(vtkImageData* image, const Lattice& coarsest, int half_width,
-                                     const std::string& file) {
+                                     double n_bytes, const std::string& file) {
   std::vector<LevelSetBand> bands;
   Lattice lattice = coarsest;
   for (int level = 1; image->GetFieldData()->HasArray(band_name(level, "blocks").c_str()); ++level) {
+    // A band around a surface has more bytes than its lattice has blocks.
+    const Eigen::Array3d n_blocks = 2 * lattice.n.array().cast<double>() / LatticeBlocks::kEdge;
+    if (n_blocks.prod() > n_bytes || n_blocks.maxCoeff() > n_bytes) {
+      throw LevelSetRefused(fmt::format("{}: level {} is finer than a file of {} bytes can be", file, level, n_bytes));
+    }
     lattice.h /= 2;
     lattice.n = (2 * (lattice.n.array() - 1) + 1).matrix();
     const std::vector<double> corners = read_field(image, band_name(level, "blocks"), 0, file);
     std::vector<Eigen::Vector3i> blocks;
     for (std::size_t i = 0; i + 3 <= corners.size(); i += 3) {
-      blocks.emplace_back(Eigen::Vector3d(corners[i], corners[i + 1], corners[i + 2]).cast<int>());
+      const Eigen::Vector3d at(corners[i], corners[i + 1], corners[i + 2]);
+      // What is no index becomes none that a lattice has.
+      const bool is_index = (at.array() >= 0).all() && (at.array() < n_bytes).all();
+      blocks.push_back(is_index ? at.cast<int>() : Eigen::Vector3i(-1, -1, -1));
     }
     LevelSetBand band{LatticeBlocks(lattice, half_width, blocks), {}};
     if (corners.size() % 3 != 0 || band.blocks.blocks() != blocks) {
@@ -153,19 +161,10 @@ LevelSet read_level_set(const std::filesystem::path& path) {
   if (std::ifstream probe(path, std::ios::binary); !probe) {
     throw std::system_error(errno ? errno : EIO, std::generic_category(), fmt::format("{}: cannot be opened", file));
   }
+  detail::precheck_vti(path);
   const QuietVtk quiet;
   vtkNew<vtkXMLImageDataReader> reader;
   reader->SetFileName(file.c_str());
-  if (!reader->CanReadFile(file.c_str())) throw LevelSetRefused(file + ": not a VTK ImageData file");
-  reader->UpdateInformation();
-  int extent[6] = {0, -1, 0, -1, 0, -1};
-  reader->GetOutputInformation(0)->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
-  double announced = sizeof(double);
-  for (int d = 0; d < 3; ++d) announced *= std::max(0.0, 1.0 + extent[2 * d + 1] - extent[2 * d]);
-  if (announced > static_cast<double>(std::filesystem::file_size(path))) {  // before anything is allocated
-    throw LevelSetRefused(
-        fmt::format("{}: announces {:.3g} bytes of coefficients, more than the file holds", file, announced));
-  }
   reader->Update();
   vtkImageData* image = reader->GetOutput();
   if (reader->GetErrorCode() != vtkErrorCode::NoError || !image) {
@@ -174,9 +173,11 @@ LevelSet read_level_set(const std::filesystem::path& path) {
   }
   const std::vector<double> l = read_field(image, "lattice", 7, file), p = read_field(image, "prior", 4, file);
   const auto is_finite = [](double v) { return std::isfinite(v); };
-  if (!std::all_of(l.begin(), l.end(), is_finite) || !std::all_of(p.begin(), p.end(), is_finite) ||
-      !(std::abs(p[2]) < 1e6)) {  // beyond that there is no int
+  if (!std::all_of(l.begin(), l.end(), is_finite) || !std::all_of(p.begin(), p.end(), is_finite)) {
     throw LevelSetRefused(file + ": 'lattice' or 'prior' is absurd");
+  }
+  for (const double number : {p[0], p[2]}) {
+    if (!(number >= 0 && number <= 4)) throw LevelSetRefused(file + ": unknown prior");
   }
   const LmePrior prior{static_cast<LmePrior::Kind>(static_cast<int>(p[0])), p[1], static_cast<int>(p[2]), p[3]};
   const std::vector<std::string> wrong = problems(prior);
@@ -184,7 +185,7 @@ LevelSet read_level_set(const std::filesystem::path& path) {
   if (!wrong.empty()) throw LevelSetRefused(file + ": " + wrong.front());
   const int* dims = image->GetDimensions();
   Lattice lattice{{l[0], l[1], l[2]}, l[3], {dims[0], dims[1], dims[2]}};
-  if (l[4] != dims[0] || l[5] != dims[1] || l[6] != dims[2] || !(l[3] > 0)) {
+  if (l[4] != dims[0] || l[5] != dims[1] || l[6] != dims[2] || !(l[3] > 0) || !std::isfinite(l[0] + l[1] + l[2] + l[3])) {
     throw LevelSetRefused(file + ": the field data 'lattice' does not fit the image");
   }
   auto* a = vtkDoubleArray::SafeDownCast(image->GetPointData()->GetArray("psi_a"));
@@ -196,7 +197,8 @@ LevelSet read_level_set(const std::filesystem::path& path) {
     if (!std::isfinite(v)) throw LevelSetRefused(file + ": a coefficient is not finite");
   }
   try {
-    LevelSet psi(prior, {lattice, std::move(c)}, read_bands(image, lattice, half_width(prior), file));
+    const auto n_bytes = static_cast<double>(std::filesystem::file_size(path));
+    LevelSet psi(prior, {lattice, std::move(c)}, read_bands(image, lattice, half_width(prior), n_bytes, file));
     if (read_field(image, "xxh64", 2, file) != hash(psi)) {
       throw LevelSetRefused(file + ": damaged: the coefficients do not have the hash that was written with them");
     }

@@ -157,6 +157,34 @@ TEST(LevelSetIo, BandsComeBackBitEqual) {
   std::filesystem::remove(file);
 }
 
+// VTK's reader follows a null pointer, allocates what is announced, or leaves arrays as they were: none of this gets
+// there.
+TEST(LevelSetIo, RefusesWhatVtkWouldNotSurvive) {
+  const std::filesystem::path file = scratch("hostile.vti");
+  write_level_set(file, torus_level_set());
+  std::ifstream in(file, std::ios::binary);
+  const std::string good((std::istreambuf_iterator<char>(in)), {});
+  using Change = std::pair<const char*, const char*>;
+  for (const auto& [from, to] :
+       {Change{"Float64", "Float42"}, Change{"Float64", "Float32"},
+        Change{"NumberOfTuples=\"7\"", "NumberOfTuples=\"4000000000\""},
+        Change{"WholeExtent=\"0 ", "WholeExtent=\"0 4000000000"}, Change{"Piece Extent=\"0 ", "Piece Extent=\"0  "},
+        Change{"</PointData>", "</CellData>"}, Change{"AAAA", "AAA"},
+        Change{"format=\"binary\"", "format=\"appended\" offset=\"9\""}, Change{"<?xml", "<!DOCTYPE x><?xml"}}) {
+    std::string text = good;
+    ASSERT_NE(text.find(from), std::string::npos) << from;
+    text.replace(text.find(from), std::string(from).size(), to);
+    std::ofstream(file, std::ios::binary) << text;
+    try {
+      read_level_set(file);
+      ADD_FAILURE() << to;
+    } catch (const LevelSetRefused& refused) {
+      EXPECT_NE(std::string(refused.what()).find("byte "), std::string::npos) << refused.what();
+    }
+  }
+  std::filesystem::remove(file);
+}
+
 TEST(LevelSetIo, RefusesWhatIsNotALevelSet) {
   const std::filesystem::path file = scratch("damaged.vti");
   EXPECT_THROW(read_level_set(scratch("absent.vti")), std::runtime_error);
