@@ -1,0 +1,136 @@
+#!/usr/bin/python3
+"""Clouds that the theory does not cover, meshed by the program from outside: each ends in a mesh that is checked here
+without umtet (volumes, closed boundary, volume of the body, distance of the samples), or in a named exit code with its
+reason. Never a wrong mesh with exit 0. usage: tests/corpus/geometry_test.py UMTET [SHAPE ...]"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import meshio
+import numpy as np
+from scipy.spatial import cKDTree
+
+FACES = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])  # outward for positive tets
+
+
+def sphere(n, radius=1.0, centre=(0, 0, 0)):
+    """n points x y z nx ny nz of a golden spiral."""
+    i = np.arange(n)
+    z, a = 1 - (2 * i + 1) / n, np.pi * (3 - 5**.5) * i
+    normal = np.column_stack([np.sqrt(1 - z * z) * np.cos(a), np.sqrt(1 - z * z) * np.sin(a), z])
+    return np.hstack([np.array(centre) + radius * normal, normal])
+
+
+def box(size, spacing):
+    """Regular points of the six faces, none on an edge."""
+    size, rows = np.asarray(size, float), []
+    for axis in range(3):
+        u, v = [(np.arange(n) + .5) / n for n in np.maximum(1, np.rint(np.delete(size, axis) / spacing)).astype(int)]
+        for side in (0, 1):
+            x, n = np.zeros((len(u) * len(v), 3)), np.zeros((len(u) * len(v), 3))
+            grid = np.stack(np.meshgrid(u, v, indexing="ij"), -1).reshape(-1, 2) * np.delete(size, axis)
+            x[:, [a for a in range(3) if a != axis]] = grid
+            x[:, axis], n[:, axis] = side * size[axis], 2 * side - 1
+            rows.append(np.hstack([x, n]))
+    return np.vstack(rows)
+
+
+def noisy(cloud, sigma, seed=1):
+    """Moved along the normals."""
+    cloud = cloud.copy()
+    cloud[:, :3] += sigma * np.random.default_rng(seed).standard_normal((len(cloud), 1)) * cloud[:, 3:]
+    return cloud
+
+
+def two_scans():
+    """Halves that overlap in a belt, each with noise, one of them two deviations further out."""
+    one, other = noisy(sphere(3000), .005, 1), noisy(sphere(2900, 1.01), .005, 2)
+    return np.vstack([one[one[:, 2] > -.3], other[other[:, 2] < .3]])
+
+
+def plane(noise):
+    rows = np.zeros((900, 6))
+    rows[:, :2] = np.stack(np.meshgrid(*[np.arange(30) / 30.] * 2), -1).reshape(-1, 2)
+    rows[:, 2] = noise * np.random.default_rng(1).standard_normal(900)
+    rows[:, 5] = 1
+    return rows
+
+
+def half(n):
+    cloud = sphere(n)
+    return cloud[cloud[:, 2] > 0]
+
+
+def distance_to(samples, points, triangles):
+    """Distances from samples to triangles, exact for the 12 whose centres are nearest."""
+    corners = points[triangles]
+    _, near = cKDTree(corners.mean(1)).query(samples, min(12, len(triangles)))
+    best = np.full(len(samples), np.inf)
+    for tri in corners[near].transpose(1, 0, 2, 3):
+        a, ab, ac = tri[:, 0], tri[:, 1] - tri[:, 0], tri[:, 2] - tri[:, 0]
+        x, n = samples - a, np.cross(ab, ac)
+        d00, d01, d11 = (ab * ab).sum(1), (ab * ac).sum(1), (ac * ac).sum(1)
+        d20, d21 = (x * ab).sum(1), (x * ac).sum(1)
+        det = d00 * d11 - d01 * d01
+        v, w = (d11 * d20 - d01 * d21) / det, (d00 * d21 - d01 * d20) / det
+        inside = (v >= 0) & (w >= 0) & (v + w <= 1)
+        best = np.where(inside, np.minimum(best, np.abs((x * n).sum(1)) / np.linalg.norm(n, axis=1)), best)
+        for k in range(3):
+            p, e = tri[:, k], tri[:, (k + 1) % 3] - tri[:, k]
+            t = np.clip(((samples - p) * e).sum(1) / (e * e).sum(1), 0, 1)[:, None]
+            best = np.minimum(best, np.linalg.norm(samples - p - t * e, axis=1))
+    return best
+
+
+def measure(file, samples):
+    """What a mesh is, from its file alone."""
+    mesh = meshio.read(file)
+    points, tets = mesh.points, np.vstack([c.data for c in mesh.cells if c.type == "tetra"])
+    edges = points[tets[:, 1:]] - points[tets[:, :1]]
+    volumes = np.linalg.det(edges) / 6
+    faces = tets[:, FACES].reshape(-1, 3)
+    _, first, count = np.unique(np.sort(faces, 1), axis=0, return_index=True, return_counts=True)
+    boundary = faces[first[count == 1]]
+    _, shared = np.unique(np.sort(boundary[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), 1), axis=0, return_counts=True)
+    distances = distance_to(samples, points, boundary)
+    return {"least": volumes.min(), "volume": volumes.sum(), "closed": bool((shared == 2).all() and (count <= 2).all()),
+            "median": np.median(distances), "farthest": distances.max(), "tets": len(tets)}
+
+
+def explore(program, name, cloud, arguments):
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = pathlib.Path(temporary)
+        np.savetxt(folder / "cloud.xyz", cloud, "%.17g")
+        r = subprocess.run([program, "run", str(folder / "cloud.xyz"), "-o", str(folder / "case"), "--json", *arguments],
+                           capture_output=True, text=True)
+        mesh = folder / "case/3-mesh/mesh.vtu"
+        measured = measure(mesh, cloud[:, :3]) if r.returncode == 0 else {}
+        return r.returncode, r.stdout, r.stderr, measured
+
+
+SHAPES = {
+    "cube": (box((1, 1, 1), .05), []),
+    "thin_plate": (box((1, 1, .02), .02), ["--max-tets", "200000"]),
+    "thin_plate_h": (box((1, 1, .02), .02), ["--h", ".05"]),
+    "very_thin": (box((1, 1, .004), .03), ["--max-tets", "100000"]),
+    "touching": (np.vstack([sphere(1500), sphere(1500, 1, (2.02, 0, 0))]), []),
+    "touching_h": (np.vstack([sphere(1500), sphere(1500, 1, (2.02, 0, 0))]), ["--h", ".2"]),
+    "kissing": (np.vstack([sphere(1500), sphere(1500, 1, (2, 0, 0))]), ["--max-tets", "200000"]),
+    "half": (half(3000), []),
+    "crossing": (np.vstack([sphere(2000), sphere(2000, 1, (.9, 0, 0))]), []),
+    "h_large": (sphere(1000), ["--h", "5"]),
+    "h_coarse": (sphere(1000), ["--h", ".9"]),
+    "h_small": (sphere(1000), ["--h", "1e-4"]),
+    "h_tiny": (sphere(1000), ["--h", "1e-12"]),
+    "plane": (plane(0), []),
+    "noisy_plane": (plane(.003), []),
+    "two_scans": (two_scans(), []),
+    "shell": (np.vstack([sphere(3000), sphere(2000, .95) * [1, 1, 1, -1, -1, -1]]), ["--max-tets", "300000"]),
+    "nested": (np.vstack([sphere(2000), sphere(1000, .5)]), []),
+}
+if __name__ == "__main__":
+    for name in sys.argv[2:] or SHAPES:
+        code, out, err, m = explore(sys.argv[1], name, *SHAPES[name])
+        print(name, code, m, "|", err.strip()[-500:] if code else "", flush=True)
