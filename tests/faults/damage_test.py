@@ -80,6 +80,9 @@ class Damage(unittest.TestCase):
                 self.assertTrue(mesh == self.expected["3-mesh/mesh.vtu"])
 
     def test_the_language_of_the_system_changes_no_byte(self):
+        installed = subprocess.run(["locale", "-a"], capture_output=True, text=True).stdout.lower()
+        if "de_de.utf8" not in installed:
+            self.skipTest("needs the locale de_DE.UTF-8, with a comma in numbers")
         german = self.call(self.folder / "german", env={"LC_ALL": "de_DE.UTF-8", "LANG": "de_DE.UTF-8"})
         self.assertEqual(german.returncode, 0, german.stderr)
         self.assertTrue(promised(self.folder / "german") == self.expected)
