@@ -19,13 +19,14 @@ struct CommandLine {
   std::string command;  ///< "run", "reconstruct", "mesh", "inspect", "check", "export", "report", "view",
                         ///< "diff", "evolve", "batch"
 
-  RunRequest request;  ///< Stages; Check: its output.* parameters; Export: these and its case_folder; Report, View and
-                       ///< Diff: its case_folder
-  EvolveRequest evolve;                          ///< Evolve, but for its parameters: those of `request`
-  BatchRequest batch;                            ///< Batch, but for its parameters, formats, timeout and threads
+  RunRequest request;    ///< Stages; Check: its output.* parameters; Export: these and its case_folder; Report and
+                         ///< View: its case_folder
+  EvolveRequest evolve;  ///< Evolve, but for its parameters: those of `request`
+  BatchRequest batch;    ///< Batch, but for its parameters, formats, timeout and threads
   std::filesystem::path mesh;                    ///< Check
   std::filesystem::path cloud;                   ///< Inspect
   std::optional<std::filesystem::path> against;  ///< Check
+  std::filesystem::path case_a, case_b;          ///< Diff
   std::vector<std::string> formats;              ///< Export, and Stages after which something is exported
 
   double timeout = 0;  ///< seconds; Stages and Evolve: for all, Batch: for every scan; 0: any

@@ -75,6 +75,7 @@ Psi psi_of(const py::object& psi, const std::optional<Box>& box, std::optional<d
     domain.fitted = domain.level_set = fitted.fitted;
     domain.shift = fitted.shift;
     domain.cloud = fitted.cloud;
+    domain.samples = fitted.samples;
     domain.cloud_spacing = fitted.cloud_spacing;
     domain.diagonal = fitted.diagonal;
     domain.box = box ? Box(box->min() - domain.shift, box->max() - domain.shift) : fitted.box;

@@ -159,6 +159,7 @@ Reconstruction reconstruct(OrientedPointCloud cloud, const Parameters& parameter
       prepared.near.nearest.empty() ? nullptr : &prepared.near);
   require_outward_normals(fit.report);
   made.report = std::move(fit.report);
+  domain.samples = std::make_shared<const SampleDistance>(domain.cloud.points);
   domain.cloud_spacing = made.report.cloud_spacing;
   domain.box = fit.psi.domain();
   domain.fitted = fit.psi;

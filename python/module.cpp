@@ -11,6 +11,7 @@
 
 #include "mesh/moving_mesh.h"
 #include "mesh/skin.h"
+#include "mesh/solver_files.h"
 #include "mesh/tet_mesh_io.h"
 #include "pipeline/certificate_json.h"
 #include "pipeline/made_mesh.h"
@@ -42,8 +43,8 @@ struct Mesh {
     const MeshFile content = mesh_content(domain, result, result.final);
     const std::vector<Triangle>& boundary = result.submesh.positive_faces;
     if (suffix == ".vtu") return write_vtu(file, content);
-    if (suffix == ".msh") return write_msh41(file, content.mesh, boundary, MshEncoding::Binary);
-    if (suffix == ".mesh") return write_medit(file, content.mesh, boundary);
+    if (suffix == ".msh") return write_msh41(file, solver_mesh(content.mesh), MshEncoding::Binary);
+    if (suffix == ".mesh") return write_medit(file, solver_mesh(content.mesh));
     if (suffix == ".stl") return write_surface(file, content.mesh.V, boundary, SurfaceFormat::Stl);
     throw std::invalid_argument(file.string() + ": .vtu, .msh, .mesh or .stl is wanted");
   }
@@ -54,6 +55,7 @@ Domain left_of(Domain&& domain) {
   Domain left;
   left.shift = domain.shift;
   left.cloud = std::move(domain.cloud);
+  left.samples = std::move(domain.samples);
   return left;
 }
 
