@@ -80,10 +80,12 @@ class Damage(unittest.TestCase):
                 self.assertTrue(mesh == self.expected["3-mesh/mesh.vtu"])
 
     def test_the_language_of_the_system_changes_no_byte(self):
-        installed = subprocess.run(["locale", "-a"], capture_output=True, text=True).stdout.lower()
-        if "de_de.utf8" not in installed:
-            self.skipTest("needs the locale de_DE.UTF-8, with a comma in numbers")
-        german = self.call(self.folder / "german", env={"LC_ALL": "de_DE.UTF-8", "LANG": "de_DE.UTF-8"})
+        locales = self.folder / "locales"
+        locales.mkdir()
+        made = subprocess.run(["localedef", "-i", "de_DE", "-f", "UTF-8", locales / "de_DE.UTF-8"], capture_output=True)
+        if made.returncode != 0:
+            self.skipTest("needs Debian's locales, for numbers with a comma")
+        german = self.call(self.folder / "german", env={"LC_ALL": "de_DE.UTF-8", "LOCPATH": str(locales)})
         self.assertEqual(german.returncode, 0, german.stderr)
         self.assertTrue(promised(self.folder / "german") == self.expected)
 

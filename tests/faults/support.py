@@ -3,10 +3,8 @@ import json
 import math
 import os
 import pathlib
-import random
 import shutil
 import subprocess
-import sys
 import tempfile
 
 PROGRAM = os.environ.get("UMTET_PROGRAM", "umtet")
