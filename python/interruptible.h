@@ -33,12 +33,12 @@ auto interruptible(const pybind11::object& progress, int threads, F f) {
     return arena.execute([&] { return f(watch); });
   });
   std::future<Result> result = task.get_future();
-  ++n_left_behind;
   std::thread worker([task = std::move(task)]() mutable {
     task();
     task = {};  // what it owns goes before the interpreter may
     --n_left_behind;
   });
+  ++n_left_behind;
   const pybind11::gil_scoped_release no_gil;
   while (result.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) {
     const pybind11::gil_scoped_acquire gil;

@@ -6,7 +6,9 @@
 #include <pybind11/stl/filesystem.h>
 #include <tbb/parallel_for.h>
 
+#include <atomic>
 #include <filesystem>
+#include <memory>
 #include <system_error>
 
 #include "mesh/moving_mesh.h"
@@ -32,8 +34,7 @@ std::optional<Box> box_of(const Parameters& parameters) { return parse_box(param
 
 /// A mesh with what it takes to write and to judge it.
 struct Mesh {
-  Parameters parameters;
-  Domain domain;  ///< for its shift and samples; its psi may be gone
+  Domain domain;  ///< its shift and samples; no psi
   UmResult result;
   double h = 0;
   Json certificate;
@@ -66,8 +67,7 @@ Mesh mesh(const py::object& psi, const Settings& settings, std::optional<double>
   const bool asks_python = p.function != nullptr;
   auto job = [p = std::move(p), parameters](const Watch& watch) mutable {
     MeshAttempt best = make_mesh(p.domain, parameters, watch);
-    return Mesh{parameters, left_of(std::move(p.domain)), std::move(best.result), best.h,
-                verdict_on(best.measured, parameters)};
+    return Mesh{left_of(std::move(p.domain)), std::move(best.result), best.h, verdict_on(best.measured, parameters)};
   };
   if (!asks_python) return interruptible(progress, threads, std::move(job));
   const Watch watch = watch_of(progress);
@@ -79,6 +79,7 @@ struct Moving {
   Parameters parameters;
   Box box;
   UniversalMesh mesher;
+  std::atomic<bool> at_work{false};
 
   explicit Moving(const Settings& settings)
       : parameters(parameters_of(settings)), box(wanted_box(parameters)), mesher(background(), um_params(parameters)) {}
@@ -95,20 +96,25 @@ struct Moving {
 py::tuple update(Moving& moving, const py::object& psi, std::optional<double> t, const std::optional<Points>& seeds,
                  bool certify, const py::object& progress, int threads) {
   Psi p = psi_of(psi, moving.box, t, threads);
+  if (!p.domain.shift.isZero(0)) {
+    throw std::invalid_argument("psi: a cloud so far from the origin is fitted near it; move it there before");
+  }
   const double h = moving.mesher.background().h();
   p.domain.limit_detail(h);
   UpdateHints hints;
   if (seeds) hints.seeds = vectors(*seeds, "seeds");
-  for (Vec3& x : hints.seeds) x -= p.domain.shift;
   const Watch watch = watch_of(progress);
-  Mesh made{moving.parameters, {}, {}, h, nullptr};
+  if (moving.at_work.exchange(true)) throw std::invalid_argument("this UniversalMesh is at work in another call");
+  const auto done = [](std::atomic<bool>* at_work) { *at_work = false; };
+  const std::unique_ptr<std::atomic<bool>, decltype(done)> guard(&moving.at_work, done);
+  Mesh made{{}, {}, h, nullptr};
   UmUpdate u = in_arena(p.threads, [&] {
     UmUpdate next = moving.mesher.update(p.domain.psi(), hints, [&](const UmProgress& at) {
       watch(at.step, static_cast<double>(at.pass) / std::max(at.n_passes, 1));
       return true;
     });
     if (next.mesh.status != UmStatus::Success) throw failure(next.mesh, h, p.domain.shift);
-    if (certify) made.certificate = certificate_of(p.domain, next.mesh, h, made.parameters, watch);
+    if (certify) made.certificate = certificate_of(p.domain, next.mesh, h, moving.parameters, watch);
     return next;
   });
   made.result = std::move(u.mesh);
@@ -122,11 +128,18 @@ py::tuple update(Moving& moving, const py::object& psi, std::optional<double> t,
   return py::make_tuple(std::move(made), changes);
 }
 
-py::object certificate(const Points& points, const py::array_t<int, py::array::c_style | py::array::forcecast>& tets,
+py::object certificate(const Points& points,
+                       const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>& tets,
                        const py::object& psi, const Settings& settings, std::optional<double> t, double h) {
   if (tets.ndim() != 2 || tets.shape(1) != 4) throw std::invalid_argument("tets: an array (m, 4) is wanted");
   TetMesh given{vectors(points, "points"), std::vector<Tet>(static_cast<std::size_t>(tets.shape(0)))};
-  for (std::size_t k = 0; k < given.C.size(); ++k) std::copy_n(tets.data() + 4 * k, 4, given.C[k].begin());
+  const std::int64_t* i = tets.data();
+  for (Tet& tet : given.C) {
+    for (int& vertex : tet) {
+      if (*i < 0 || *i >= points.shape(0)) throw std::invalid_argument("tets: an index that points do not have");
+      vertex = static_cast<int>(*i++);
+    }
+  }
   const Parameters parameters = parameters_of(settings);
   CertificateInput input;
   input.mesh = &given;

@@ -44,6 +44,7 @@ for _name in ("implicit", "keep_iterates", "order"):  # of the program
 for _name in ("file", "orient_from"):
     _KEYS["cloud"].pop(_name, None)
 _OUTPUT = ("units", "max_memory", "min_quality")
+_OF_A_CHOICE_OF_H = ("tets", "max_tets", "max_deviation", "allow_thin", "box_walls")
 
 
 def _text(value):
@@ -56,9 +57,9 @@ def _text(value):
     return os.fspath(value) if isinstance(value, os.PathLike) else str(value)
 
 
-def _settings(sections, arguments):
+def _settings(sections, arguments, without=()):
     """Keyword arguments as parameters of the table."""
-    known = {name: key for s in sections for name, key in _KEYS[s].items()}
+    known = {name: key for s in sections for name, key in _KEYS[s].items() if name not in without}
     known.update({name: "output." + name for name in _OUTPUT if "output." + name in _core.parameters()})
     settings = []
     for name, value in arguments.items():
@@ -169,7 +170,7 @@ class UniversalMesh:
     """
 
     def __init__(self, box, h, **parameters):
-        self._core = _core.Moving(_settings(("mesh",), {**parameters, "box": _box(box), "h": h}))
+        self._core = _core.Moving(_settings(("mesh",), {**parameters, "box": _box(box), "h": h}, _OF_A_CHOICE_OF_H))
 
     @property
     def h(self):
@@ -195,4 +196,4 @@ def certificate(points, tets, psi=None, *, h=0, t=None, **parameters):
     points (n, 3), tets (m, 4). h is what ratios refer to (0: the mesh's own edge length). Parameters: min_quality.
     Returns a dict with keys of certificate.json: n_tets, volume, quality, boundary, gates, verdict, reasons.
     """
-    return _core.certificate(points, tets, psi, _settings(("mesh",), parameters), t, h)
+    return _core.certificate(points, tets, psi, _settings((), parameters), t, h)

@@ -142,7 +142,7 @@ class MeshTest(unittest.TestCase):
         for t in threads:
             t.start()
         for t in threads:
-            t.join(20)
+            t.join(120)
         self.assertTrue(all(m is not None and m.certified for m in made))
 
     def test_save(self):
@@ -263,6 +263,24 @@ class Moving(unittest.TestCase):
             umtet.UniversalMesh(BOX, h=-1)
         with self.assertRaises(ValueError):
             umtet.UniversalMesh((0, 0, 0, 1), h=.1)
+        with self.assertRaisesRegex(TypeError, "tets"):
+            umtet.UniversalMesh(BOX, h=.1, tets=1000)
+        points, normals = egg(500)
+        with self.assertRaisesRegex(ValueError, "far from the origin"):
+            umtet.UniversalMesh(BOX, h=.2).update(umtet.reconstruct(points + 1e6, normals))
+
+    def test_one_call_at_a_time(self):
+        moving, calls = umtet.UniversalMesh(BOX, h=.5), []
+
+        def psi(x):
+            calls.append(len(x))
+            if len(calls) == 10:
+                moving.update(BALL)
+            return (x**2).sum(1) - 1
+
+        with self.assertRaisesRegex(ValueError, "at work"):
+            moving.update(psi)
+        moving.update(BALL)
 
 
 class Certificate(unittest.TestCase):
