@@ -152,9 +152,10 @@ MeshFile assemble(const std::filesystem::path& path, NumberedMesh&& numbered) {
   }
   // Nearly every file numbers its nodes without a gap: then the place is known without a search.
   const auto index_of = [&](std::int64_t wanted, std::size_t t) {
-    const std::int64_t guess = sorted.empty() ? 0 : wanted - sorted.front();
-    auto found = guess >= 0 && guess < static_cast<std::int64_t>(sorted.size()) && sorted[guess] == wanted
-                     ? sorted.begin() + guess
+    const std::uint64_t guess =  // unsigned: numbers may be as far apart as 64 bits allow
+        sorted.empty() ? 0 : static_cast<std::uint64_t>(wanted) - static_cast<std::uint64_t>(sorted.front());
+    auto found = guess < sorted.size() && sorted[guess] == wanted
+                     ? sorted.begin() + static_cast<std::ptrdiff_t>(guess)
                      : std::lower_bound(sorted.begin(), sorted.end(), wanted);
     if (found == sorted.end() || *found != wanted) {
       throw MeshFileRefused(path, "tet " + std::to_string(t + 1),

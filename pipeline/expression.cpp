@@ -81,14 +81,23 @@ struct Expression::Impl {
   Impl(std::string formula, std::optional<double> t) : text(std::move(formula)) {
     const auto [psi, s] = read_expression(text, t);
     texts[0] = print(psi);
-    texts[1] = texts[0];
-    for (std::size_t i = 0; i < 3; ++i) texts[1].append(",").append(print(psi.diff(s[i])));
-    texts[2] = texts[1];
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = i; j < 3; ++j) texts[2].append(",").append(print(psi.diff(s[i]).diff(s[j])));
+    try {
+      texts[1] = texts[0];
+      for (std::size_t i = 0; i < 3; ++i) texts[1].append(",").append(print(psi.diff(s[i])));
+      texts[2] = texts[1];
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = i; j < 3; ++j) texts[2].append(",").append(print(psi.diff(s[i]).diff(s[j])));
+      }
+    } catch (const std::exception& e) {  // GiNaC: 0^z has a value, and no derivative
+      throw ExpressionError(text, 1, std::string("no derivative: ") + e.what());
     }
     if (texts[2].size() > kMaxDerivativeText) {
       throw ExpressionError(text, 1, "the second derivatives have " + std::to_string(texts[2].size()) + " characters");
+    }
+    try {
+      for (const std::size_t order : {0, 1, 2}) evaluators.local()(order, Vec3::Zero());
+    } catch (const mu::ParserError& e) {  // it reads its text at the first call
+      throw ExpressionError(text, 1, "cannot be evaluated: " + e.GetMsg());
     }
   }
 
