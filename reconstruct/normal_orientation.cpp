@@ -217,6 +217,30 @@ bool is_right_as_given(const OrientedPointCloud& cloud, const Neighbourhoods& ne
   return true;
 }
 
+/// Whether points that would be turned lie on a sheet of their own: nearer to one of the others than to most of theirs, and
+/// all to the same side of it. Then body or gap between is thinner than the samples are apart, and turning one sheet
+/// would make one surface of two. Where normals are merely turned over, the sides of the others are evenly spread.
+bool lie_on_another_sheet(const OrientedPointCloud& cloud, const Neighbourhoods& near,
+                          const std::vector<std::int8_t>& sign) {
+  std::size_t n_turned = 0;
+  std::vector<double> slopes;  // of the way to the nearest of the others, against its tangent plane
+  for (std::size_t i = 0; i < sign.size(); ++i) {
+    if (sign[i] > 0 || cloud.normals[i].isZero(0)) continue;
+    ++n_turned;
+    for (const std::uint32_t j : near.points(i)) {
+      if (sign[j] < 0 || cloud.normals[j].isZero(0)) continue;
+      const Vec3 way = cloud.points[i] - cloud.points[j];
+      if (!way.isZero(0)) slopes.push_back(way.normalized().dot(cloud.normals[j]));
+      break;
+    }
+  }
+  // Around a turned patch only its rim has others near. Curvature and noise below half a spacing stay under 30 degrees.
+  if (2 * slopes.size() < n_turned || slopes.empty()) return false;
+  const auto middle = slopes.begin() + static_cast<std::ptrdiff_t>(slopes.size() / 2);
+  std::nth_element(slopes.begin(), middle, slopes.end());
+  return std::abs(*middle) > 0.5;
+}
+
 enum class Given { Directions, Signs };
 
 OrientationReport orient(OrientedPointCloud& cloud, const OrientationParams& params, const Neighbourhoods* known,
@@ -255,6 +279,10 @@ OrientationReport orient(OrientedPointCloud& cloud, const OrientationParams& par
   if (given == Given::Signs) {
     const std::size_t few = report.consistency >= kConsistent ? kFewPoints : 0;
     keep_undisputed(cloud, areas, edges, params.disagreement, few, signs.sign);
+  }
+  if (given == Given::Signs && lie_on_another_sheet(cloud, *near, signs.sign)) {
+    report.left_alone = true;
+    return report;
   }
   for (std::size_t i = 0; i < n; ++i) {
     if (signs.sign[i] > 0 || cloud.normals[i].isZero(0)) continue;

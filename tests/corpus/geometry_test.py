@@ -37,30 +37,12 @@ def box(size, spacing):
     return np.vstack(rows)
 
 
-def noisy(cloud, sigma, seed=1):
-    """Moved along the normals."""
-    cloud = cloud.copy()
-    cloud[:, :3] += sigma * np.random.default_rng(seed).standard_normal((len(cloud), 1)) * cloud[:, 3:]
-    return cloud
-
-
-def two_scans():
-    """Halves that overlap in a belt, each with noise, one of them two deviations further out."""
-    one, other = noisy(sphere(3000), .005, 1), noisy(sphere(2900, 1.01), .005, 2)
-    return np.vstack([one[one[:, 2] > -.3], other[other[:, 2] < .3]])
-
-
 def plane(noise):
     rows = np.zeros((900, 6))
     rows[:, :2] = np.stack(np.meshgrid(*[np.arange(30) / 30.] * 2), -1).reshape(-1, 2)
     rows[:, 2] = noise * np.random.default_rng(1).standard_normal(900)
     rows[:, 5] = 1
     return rows
-
-
-def half(n):
-    cloud = sphere(n)
-    return cloud[cloud[:, 2] > 0]
 
 
 def distance_to(samples, points, triangles):
@@ -96,41 +78,69 @@ def measure(file, samples):
     _, shared = np.unique(np.sort(boundary[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), 1), axis=0, return_counts=True)
     distances = distance_to(samples, points, boundary)
     return {"least": volumes.min(), "volume": volumes.sum(), "closed": bool((shared == 2).all() and (count <= 2).all()),
-            "median": np.median(distances), "farthest": distances.max(), "tets": len(tets)}
+            "farthest": distances.max(), "tets": len(tets)}
 
 
-def explore(program, name, cloud, arguments):
+BALL = 4 / 3 * np.pi
+ONE_SIDED = (4, ["reaches the wall", "the surface is closed"])
+# Cloud, arguments, and what must come of it: volume, how far it may be off, and how far the farthest sample may be from
+# the mesh; or an exit code and words of its reason.
+SHAPES = {
+    "cube": (box((1, 1, 1), .05), ["--h", ".05"], (1, .01, .03)),
+    "plate thinner than its samples are apart": (box((1, 1, .004), .03), ["--h", ".03"], ONE_SIDED),
+    "half a sphere": (sphere(1500)[:750], [], ONE_SIDED),
+    "sheets nearer than samples": (np.vstack([sphere(3000), sphere(2000, .95) * [1, 1, 1, -1, -1, -1]]), ["--h", ".1"],
+                                   (5, ["body down to", "needs h ="])),
+    "h beyond the body": (sphere(500), ["--h", "50"], (BALL, 2, .4)),  # a ball of 20 tets: as coarse as asked
+    "h too small": (sphere(500), ["--h", "1e-12"], (9, ["more than 2000000 tets"])),
+    "plane": (plane(0), [], (3, ["one plane"])),
+    "noisy plane": (plane(.003), [], ONE_SIDED),
+}
+
+
+def run(program, cloud, arguments):
+    """Exit code, text of stderr, verdict, and what the mesh is where there should be one."""
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
         np.savetxt(folder / "cloud.xyz", cloud, "%.17g")
         r = subprocess.run([program, "run", str(folder / "cloud.xyz"), "-o", str(folder / "case"), "--json", *arguments],
                            capture_output=True, text=True)
-        mesh = folder / "case/3-mesh/mesh.vtu"
-        measured = measure(mesh, cloud[:, :3]) if r.returncode == 0 else {}
-        return r.returncode, r.stdout, r.stderr, measured
+        if r.returncode != 0:
+            return r.returncode, r.stderr, None, None
+        verdict = json.loads(r.stdout)["certificate"]["verdict"]
+        return 0, r.stderr, verdict, measure(folder / "case/3-mesh/mesh.vtu", cloud[:, :3])
 
 
-SHAPES = {
-    "cube": (box((1, 1, 1), .05), []),
-    "thin_plate": (box((1, 1, .02), .02), ["--max-tets", "200000"]),
-    "thin_plate_h": (box((1, 1, .02), .02), ["--h", ".05"]),
-    "very_thin": (box((1, 1, .004), .03), ["--max-tets", "100000"]),
-    "touching": (np.vstack([sphere(1500), sphere(1500, 1, (2.02, 0, 0))]), []),
-    "touching_h": (np.vstack([sphere(1500), sphere(1500, 1, (2.02, 0, 0))]), ["--h", ".2"]),
-    "kissing": (np.vstack([sphere(1500), sphere(1500, 1, (2, 0, 0))]), ["--max-tets", "200000"]),
-    "half": (half(3000), []),
-    "crossing": (np.vstack([sphere(2000), sphere(2000, 1, (.9, 0, 0))]), []),
-    "h_large": (sphere(1000), ["--h", "5"]),
-    "h_coarse": (sphere(1000), ["--h", ".9"]),
-    "h_small": (sphere(1000), ["--h", "1e-4"]),
-    "h_tiny": (sphere(1000), ["--h", "1e-12"]),
-    "plane": (plane(0), []),
-    "noisy_plane": (plane(.003), []),
-    "two_scans": (two_scans(), []),
-    "shell": (np.vstack([sphere(3000), sphere(2000, .95) * [1, 1, 1, -1, -1, -1]]), ["--max-tets", "300000"]),
-    "nested": (np.vstack([sphere(2000), sphere(1000, .5)]), []),
-}
-if __name__ == "__main__":
+def troubles(expected, code, err, verdict, mesh):
+    if isinstance(expected[1], list):
+        if code != expected[0]:
+            yield f"exit {code} instead of {expected[0]}"
+        yield from (f"'{word}' is missing" for word in expected[1] if word not in err)
+        return
+    volume, tolerance, farthest = expected
+    if code != 0 or verdict != "pass":
+        yield f"exit {code}, verdict {verdict}"
+        return
+    if not (mesh["least"] > 0 and mesh["closed"]):
+        yield "a tet that is not positive, or a boundary that is not closed"
+    if abs(mesh["volume"] - volume) > tolerance:
+        yield f"volume {mesh['volume']:.4g} instead of {volume:.4g}"
+    if mesh["farthest"] > farthest:
+        yield f"a sample is {mesh['farthest']:.3g} from the mesh"
+
+
+def main():
+    n_bad = 0
     for name in sys.argv[2:] or SHAPES:
-        code, out, err, m = explore(sys.argv[1], name, *SHAPES[name])
-        print(name, code, m, "|", err.strip()[-500:] if code else "", flush=True)
+        cloud, arguments, expected = SHAPES[name]
+        code, err, verdict, mesh = run(sys.argv[1], cloud, arguments)
+        found = list(troubles(expected, code, err, verdict, mesh))
+        n_bad += len(found) > 0
+        print(f"{name}: {'; '.join(found) or 'as expected'}: exit {code}, {mesh}")
+        if found:
+            print(err.strip()[-600:])
+    return n_bad > 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
