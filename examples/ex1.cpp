@@ -12,6 +12,7 @@
 #include <string>
 
 #include "mesh/certificate.h"
+#include "mesh/solver_files.h"
 #include "mesh/tet_mesh_io.h"
 #include "mesh/universal_mesh.h"
 
@@ -55,7 +56,7 @@ int main(int argc, char* argv[]) {
 
   // 5. A file, with the ids that vertices and tets have in the background.
   if (file.ends_with(".msh")) {
-    umtet::write_msh41(file, mesh, result.submesh.positive_faces, umtet::MshEncoding::Binary);
+    umtet::write_msh41(file, umtet::solver_mesh(mesh), umtet::MshEncoding::Binary);
   } else {
     umtet::write_vtu(file,
                      umtet::with_standard_data(mesh, result.submesh.background_vertex, result.submesh.background_tet));

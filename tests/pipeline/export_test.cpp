@@ -124,7 +124,7 @@ TEST_F(Export, CurvedTetsStayCurved) {
   const Json made = Json::parse(r.out)["certificate"];
   const fs::path out = folder / "ball/4-export";
   for (const char* file : {"mesh.vtu", "mesh.msh", "mesh_22.msh", "mesh.mesh"}) {
-    const Json found = Json::parse(run("check " + (out / file).string() + " --json").out);
+    const Json found = Json::parse(run("check " + (out / file).string() + " --json").out)["check"];
     EXPECT_EQ(found["order"], 2) << file;
     EXPECT_NEAR(found["second_order"]["volume"].get<double>(), made["second_order"]["volume"].get<double>(), 1e-12)
         << file;
