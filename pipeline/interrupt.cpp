@@ -25,8 +25,9 @@ std::terminate_handler other_end = nullptr;
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<const char*>::is_always_lock_free &&
               std::atomic<bool>::is_always_lock_free);
 
-// Steps poll about every tenth of a second; a few library calls on large clouds take longer.
-constexpr long kPatienceMicroseconds = 150'000;
+// Steps poll more often than this; a few library calls on large clouds take longer, and end without their say. A fifth
+// of a second is promised, and what the kernel takes back of a large process is part of it.
+constexpr long kPatienceMicroseconds = 100'000;
 
 void say(const char* text) { [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text)); }
 
