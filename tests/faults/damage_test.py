@@ -117,7 +117,7 @@ class Damage(unittest.TestCase):
         shutil.rmtree(case, ignore_errors=True)
         process.terminate()
         _, said = process.communicate(timeout=20)
-        self.assertIn(process.returncode, (7, 143), said)
+        self.assertIn(process.returncode, (7, 8, 143), said)  # 8: a stage it had finished is there no more
         self.assertFalse((case / "certificate.json").exists())
 
     def test_one_of_two_runs_on_a_case_is_refused(self):
