@@ -2,18 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <filesystem>
-#include <map>
-#include <sstream>
 
-#include "pipeline/boundary_patches.h"
+#include "pipeline/detail/command_parser.h"
 #include "pipeline/export_case.h"
 #include "pipeline/version.h"
 
 namespace umtet {
-namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kFooter = R"(Examples:
@@ -32,15 +27,6 @@ Exit codes: 0 all well | 1 a bug of ours | 2 usage | 3 input refused | 4 reconst
   5 meshing not possible at this h | 6 made, but a gate or the certificate failed | 7 file trouble
   8 artefact corrupt | 9 resource limit | 130, 143 interrupted, resumable)";
 
-/// Where CLI11 leaves what it read, as text; the table of parameters knows the types.
-struct Inputs {
-  std::string input, output, config, from, until, against, clouds, times, skip, other_case;
-  std::vector<std::string> assignments, formats;
-  std::map<std::string, std::string> values;  ///< by key
-  std::map<std::string, bool> switches;       ///< by key
-  bool force = false, strict = false, resume = false, no_report = false, quiet = false, verbose = false;
-};
-
 /// Help, choices and default of a parameter.
 std::string described(const ParamField& f) {
   const std::string preset = preset_text(f);
@@ -48,36 +34,9 @@ std::string described(const ParamField& f) {
          (preset.empty() ? "" : fmt::format(" (default {})", preset));
 }
 
-class Parser {
- public:
-  Parser();
-  CommandLine parse(int argc, const char* const* argv);
-  ProgramHelp help() const;
+}  // namespace
 
- private:
-  CLI::App& add_command(const char* name, const char* description);
-  CLI::Option& add_formats(CLI::App& command, const char* flag);
-  void add_parameter_sources(CLI::App& command);
-  void add_stage_flags(CLI::App& command);
-  void add_timeout(CLI::App& command, const char* help);
-  void add_batch();
-  void add_parameter_flags(CLI::App& command, const std::vector<std::string>& sections,
-                           const std::vector<std::string>& except = {});
-  void check_command(int argc, const char* const* argv) const;
-  [[noreturn]] void refuse(const CLI::ParseError& e, int argc, const char* const* argv) const;
-  void finish(const CLI::App& command);
-  void read_parameters();
-  void finish_stages(const CLI::App& command);
-  void finish_evolve();
-  void finish_batch();
-  void take_cloud();
-
-  CLI::App app_{"umtet: from an oriented point cloud to a certified tetrahedral mesh", "umtet"};
-  Inputs in_;
-  CommandLine result_;
-};
-
-Parser::Parser() {
+CommandParser::CommandParser() {
   app_.set_version_flag("--version", std::string("umtet ") + kVersion);
   app_.add_flag("--json", result_.json, "one JSON document on stdout, also on failure");
   app_.require_subcommand(1);
@@ -145,7 +104,7 @@ Parser::Parser() {
   diff.add_option("CASE_B", in_.other_case, "another")->required();
 }
 
-void Parser::add_batch() {
+void CommandParser::add_batch() {
   CLI::App& batch = add_command("batch", "Many scans by the same parameters, each in a process of its own; one table");
   add_parameter_sources(batch);
   add_timeout(batch, "seconds that a scan may take; then it is a row with exit code 9");
@@ -159,11 +118,11 @@ void Parser::add_batch() {
   add_parameter_flags(batch, {"cloud", "reconstruct", "mesh", "output"}, {"mesh.implicit"});
 }
 
-CLI::Option& Parser::add_formats(CLI::App& command, const char* flag) {
+CLI::Option& CommandParser::add_formats(CLI::App& command, const char* flag) {
   return *command.add_option(flag, in_.formats, fmt::format("{}", fmt::join(export_formats(), ", ")))->delimiter(',');
 }
 
-CLI::App& Parser::add_command(const char* name, const char* description) {
+CLI::App& CommandParser::add_command(const char* name, const char* description) {
   CLI::App& command = *app_.add_subcommand(name, description);
   command.add_flag("--json", result_.json, "one JSON document on stdout, also on failure");
   command.add_option("--threads", result_.threads, "number of threads; results do not depend on it")
@@ -184,19 +143,19 @@ CLI::App& Parser::add_command(const char* name, const char* description) {
 }
 
 /// For the commands that take any parameter.
-void Parser::add_parameter_sources(CLI::App& command) {
+void CommandParser::add_parameter_sources(CLI::App& command) {
   command.add_option("--config", in_.config, "TOML file with parameters, such as the case.toml of another case");
   command.add_option("--set", in_.assignments, "any parameter: --set mesh.samples=10; see case.toml for all")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
-void Parser::add_timeout(CLI::App& command, const char* help) {
+void CommandParser::add_timeout(CLI::App& command, const char* help) {
   // A timer of the system takes no more than a year without doubt.
   command.add_option("--timeout", result_.timeout, help)->check(CLI::Range(0., 3e7));
 }
 
-void Parser::add_stage_flags(CLI::App& command) {
+void CommandParser::add_stage_flags(CLI::App& command) {
   add_parameter_sources(command);
   add_timeout(command, "seconds that the run may take; then exit 9, resumable");
   command.add_option("-o", in_.output, "the folder of the case");
@@ -204,8 +163,8 @@ void Parser::add_stage_flags(CLI::App& command) {
   command.add_flag("--strict", in_.strict, "stop with exit 8 at a damaged artefact instead of making it again");
 }
 
-void Parser::add_parameter_flags(CLI::App& command, const std::vector<std::string>& sections,
-                                 const std::vector<std::string>& except) {
+void CommandParser::add_parameter_flags(CLI::App& command, const std::vector<std::string>& sections,
+                                        const std::vector<std::string>& except) {
   const auto holds = [](const std::vector<std::string>& list, const std::string& s) {
     return std::find(list.begin(), list.end(), s) != list.end();
   };
@@ -220,7 +179,7 @@ void Parser::add_parameter_flags(CLI::App& command, const std::vector<std::strin
 }
 
 /// Turns what CLI11 says into a UsageError that names the nearest flag or command.
-void Parser::refuse(const CLI::ParseError& e, int argc, const char* const* argv) const {
+void CommandParser::refuse(const CLI::ParseError& e, int argc, const char* const* argv) const {
   const std::vector<CLI::App*> parsed = app_.get_subcommands();
   if (parsed.empty()) {
     const char* const* flag = std::find_if(argv + 1, argv + argc, [](std::string_view a) { return a != "--json"; });
@@ -244,7 +203,7 @@ void Parser::refuse(const CLI::ParseError& e, int argc, const char* const* argv)
 }
 
 /// The first word must be a command, whatever flags are around it: CLI11 would answer any word with the general help.
-void Parser::check_command(int argc, const char* const* argv) const {
+void CommandParser::check_command(int argc, const char* const* argv) const {
   const char* const* word = std::find_if(argv + 1, argv + argc, [](const char* a) { return a[0] != '-'; });
   if (word == argv + argc) return;
   std::vector<std::string> commands;
@@ -255,37 +214,7 @@ void Parser::check_command(int argc, const char* const* argv) const {
       fmt::format("unknown command {}{}", *word, near.empty() ? "; try umtet --help" : "; did you mean " + near + "?"));
 }
 
-OptionHelp help_of(const CLI::Option& option) {
-  OptionHelp help;
-  for (const std::string& name : option.get_snames()) help.flags.push_back("-" + name);
-  for (const std::string& name : option.get_lnames()) help.flags.push_back("--" + name);
-  help.is_flag = !help.flags.empty();
-  if (!help.is_flag) help.flags.push_back(option.get_name());
-  help.takes_value = option.get_items_expected_max() > 0;
-  help.help = option.get_description();
-  const std::string type = option.get_type_name();  // TEXT:{one,two} after CLI::IsMember
-  if (const std::size_t brace = type.find('{'); brace != std::string::npos) {
-    std::istringstream words(type.substr(brace + 1, type.find('}') - brace - 1));
-    for (std::string word; std::getline(words, word, ',');) help.choices.push_back(word);
-  }
-  for (const ParamField& f : params_fields()) {
-    if (!f.flag.empty() && f.flag == help.flags.back()) help.choices = f.choices;
-  }
-  return help;
-}
-
-ProgramHelp Parser::help() const {
-  ProgramHelp program{app_.get_description(), app_.get_footer(), {}};
-  for (const CLI::App* app : app_.get_subcommands({})) {
-    CommandHelp& command = program.commands.emplace_back();
-    command.name = app->get_name();
-    command.help = app->get_description();
-    for (const CLI::Option* option : app->get_options()) command.options.push_back(help_of(*option));
-  }
-  return program;
-}
-
-CommandLine Parser::parse(int argc, const char* const* argv) {
+CommandLine CommandParser::parse(int argc, const char* const* argv) {
   if (argc > 1) check_command(argc, argv);
   try {
     app_.parse(argc, argv);
@@ -301,161 +230,10 @@ CommandLine Parser::parse(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& e) {
     refuse(e, argc, argv);
   }
-  finish(*app_.get_subcommands().front());
+  fill_request(*app_.get_subcommands().front(), in_, result_);
   return std::move(result_);
 }
 
-void Parser::finish(const CLI::App& command) {
-  result_.command = command.get_name();
-  if (in_.quiet && in_.verbose) throw UsageError("-q and -v exclude each other");
-  result_.verbosity = in_.quiet ? Verbosity::Quiet : in_.verbose ? Verbosity::Verbose : Verbosity::Normal;
-  // The flags of all commands share their storage; only those of this one have been touched.
-  Parameters& parameters = result_.request.parameters;
-  for (const ParamField& f : params_fields()) {
-    const CLI::Option* option = f.flag.empty() ? nullptr : command.get_option_no_throw(f.flag);
-    if (!option || option->count() == 0) continue;
-    const bool is_switch = std::holds_alternative<bool>(f.preset);
-    parameters.set(f.key, is_switch ? (in_.switches[f.key] ? "true" : "false") : in_.values[f.key], ParamSource::Flag,
-                   f.flag);
-  }
-  result_.formats = in_.formats;
-  require_formats(result_.formats);
-  parse_label_names(parameters.text("output.label_names"));
-  if (result_.command == "check") {
-    result_.action = CommandLine::Action::Check;
-    result_.mesh = in_.input;
-    if (!in_.against.empty()) result_.against = in_.against;
-    read_parameters();
-  } else if (result_.command == "inspect") {
-    result_.action = CommandLine::Action::Inspect;
-    result_.cloud = in_.input;
-  } else if (result_.command == "export") {
-    result_.action = CommandLine::Action::Export;
-    result_.request.case_folder = in_.input;
-    const fs::path toml = CasePaths{in_.input}.parameters();
-    if (fs::exists(toml)) parameters.load(toml, ParamSource::Case);
-    result_.formats = in_.formats;
-  } else if (result_.command == "report") {
-    result_.action = CommandLine::Action::Report;
-    result_.request.case_folder = in_.input;
-  } else if (result_.command == "view") {
-    result_.action = CommandLine::Action::View;
-    result_.request.case_folder = in_.input;
-  } else if (result_.command == "diff") {
-    result_.action = CommandLine::Action::Diff;
-    result_.case_a = in_.input;
-    result_.case_b = in_.other_case;
-  } else if (result_.command == "evolve") {
-    result_.action = CommandLine::Action::Evolve;
-    finish_evolve();
-  } else if (result_.command == "batch") {
-    result_.action = CommandLine::Action::Batch;
-    finish_batch();
-  } else {
-    result_.action = CommandLine::Action::Stages;
-    finish_stages(command);
-  }
-}
-
-/// --set and --config. A file may be about more than this command; --set and flags are refused where they would change
-/// nothing.
-void Parser::read_parameters() {
-  Parameters& parameters = result_.request.parameters;
-  for (const std::string& assignment : in_.assignments) parameters.set(assignment);
-  for (const Stage stage : {Stage::Cloud, Stage::LevelSet, Stage::Mesh}) {
-    const RunRequest& r = result_.request;
-    const bool runs = result_.action != CommandLine::Action::Check;
-    if (runs && stage >= r.from && stage <= r.until) continue;
-    for (const ParamField& f : params_fields()) {
-      if (f.key.starts_with(std::string(section_of(stage)) + ".") && parameters.source(f.key) >= ParamSource::Set) {
-        throw UsageError(f.key + " belongs to a stage that this command does not run");
-      }
-    }
-  }
-  if (!in_.config.empty()) parameters.load(in_.config, ParamSource::File);
-}
-
-void Parser::finish_evolve() {
-  if (in_.clouds.empty()) result_.request.from = Stage::Mesh;
-  read_parameters();
-  const bool formula = !result_.request.parameters.text("mesh.implicit").empty();
-  if (formula != in_.clouds.empty()) throw UsageError("evolve: give --implicit EXPR with --box, or --clouds LIST");
-  if (result_.request.parameters.integer("mesh.order") != 1) throw UsageError("evolve: mesh.order must be 1");
-  if (in_.output.empty()) throw UsageError("evolve: -o FOLDER is missing");
-  result_.evolve.folder = in_.output;
-  result_.evolve.clouds = in_.clouds;
-  result_.evolve.times = in_.times;
-  result_.evolve.skip = in_.skip;
-}
-
-void Parser::finish_batch() {
-  read_parameters();
-  if (in_.output.empty()) throw UsageError("batch: -o FOLDER is missing");
-  if (!result_.request.parameters.text("mesh.implicit").empty()) throw UsageError("batch: mesh.implicit is no scan");
-  BatchRequest& batch = result_.batch;
-  batch.list = in_.input;
-  batch.folder = in_.output;
-  batch.resume = in_.resume;
-  batch.force = in_.force;
-  batch.strict = in_.strict;
-}
-
-void Parser::finish_stages(const CLI::App& command) {
-  const std::string name = command.get_name();
-  RunRequest& request = result_.request;
-  Parameters& parameters = request.parameters;
-  request.force = in_.force;
-  request.strict = in_.strict;
-  request.report = !in_.no_report;
-  const bool input_is_case = !in_.input.empty() && (name == "mesh" || fs::is_directory(in_.input));
-  if (name == "reconstruct") request.until = Stage::LevelSet;
-  if (name == "mesh" || (name == "reconstruct" && input_is_case)) {
-    request.from = name == "mesh" ? Stage::Mesh : Stage::LevelSet;
-  }
-  if (!in_.from.empty()) request.from = parse_stage(in_.from);
-  if (!in_.until.empty()) request.until = parse_stage(in_.until);
-  if (!in_.formats.empty() && request.until != Stage::Mesh)
-    throw UsageError("--export needs a mesh, and --until is before it");
-  if (request.from > request.until) throw UsageError("--from " + in_.from + " is after --until " + in_.until);
-
-  read_parameters();
-  if (input_is_case) {
-    if (parameters.source("mesh.implicit") == ParamSource::Flag)
-      throw UsageError("--implicit goes with -o, without CASE");
-    if (!in_.output.empty() && fs::path(in_.output) != fs::path(in_.input)) {
-      throw UsageError("-o " + in_.output + ": the case is " + in_.input + " already");
-    }
-    request.case_folder = in_.input;
-    const fs::path toml = CasePaths{in_.input}.parameters();
-    if (!fs::exists(toml)) throw UsageError(in_.input + " is not a case: it has no case.toml");
-    parameters.load(toml, ParamSource::Case);
-    if (request.from == Stage::Cloud && parameters.source("cloud.file") > ParamSource::Case) take_cloud();
-    return;
-  }
-  if (in_.output.empty()) throw UsageError(name + ": -o CASE is missing");
-  request.case_folder = in_.output;
-  if (name == "mesh") {
-    if (parameters.text("mesh.implicit").empty())
-      throw UsageError("mesh: give a CASE, or --implicit EXPR with --box and -o");
-    return;
-  }
-  if (!in_.input.empty()) parameters.set("cloud.file", in_.input, ParamSource::Flag, "command line");
-  if (parameters.text("cloud.file").empty() && request.from == Stage::Cloud)
-    throw UsageError(name + ": CLOUD is missing");
-  if (request.from == Stage::Cloud) take_cloud();
-}
-
-/// The cloud that was named: to be read, and to be found again from another folder.
-void Parser::take_cloud() {
-  Parameters& parameters = result_.request.parameters;
-  result_.request.source = parameters.text("cloud.file");
-  parameters.make_absolute("cloud.file");
-}
-
-}  // namespace
-
-CommandLine parse_command_line(int argc, const char* const* argv) { return Parser().parse(argc, argv); }
-
-ProgramHelp program_help() { return Parser().help(); }
+CommandLine parse_command_line(int argc, const char* const* argv) { return CommandParser().parse(argc, argv); }
 
 }  // namespace umtet
