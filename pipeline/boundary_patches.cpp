@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "mesh/patches.h"
+#include "mesh/planar_pieces.h"
 #include "pipeline/exit_code.h"
 #include "reconstruct/label_votes.h"
 
@@ -18,6 +19,9 @@ namespace {
 
 // A piece that a majority of the voters can make is below the area that so many samples stand for.
 constexpr double kIslandSamples = kVoters / 2 + 1;
+// Mean faces. A vertex with all faces around it, and these with their neighbours, is the least that shows whether a
+// part is flat or bends: with fewer, single faces of a sphere would be planes.
+constexpr double kLeastPlane = 20;
 
 std::string name_of(int label, const std::map<int, std::string>& names) {
   const auto found = names.find(label);
@@ -37,6 +41,22 @@ std::vector<MeshPart> label_patches(const std::vector<int>& labels, const std::m
   return patches;
 }
 
+/// False when nothing is flat.
+bool divide_by_planes(SolverMesh& mesh, double angle) {
+  const FaceGeometry faces = face_geometry(mesh);
+  const double area = std::accumulate(faces.area.begin(), faces.area.end(), 0.);
+  const double least = kLeastPlane * area / static_cast<double>(mesh.n_faces());
+  std::vector<int> plane = planar_pieces(mesh, angle, least);
+  const int n = *std::max_element(plane.begin(), plane.end()) + 1;
+  if (n == 0) return false;
+  std::vector<MeshPart> patches;
+  for (int p = 1; p <= n; ++p) patches.push_back({fmt::format("plane_{}", p), p + 1});
+  if (std::find(plane.begin(), plane.end(), -1) != plane.end()) patches.push_back({"rest", n + 2});
+  for (int& p : plane) p = p < 0 ? n : p;
+  set_patches(mesh, std::move(plane), std::move(patches));
+  return true;
+}
+
 std::vector<int> distinct(std::vector<int> labels) {
   std::sort(labels.begin(), labels.end());
   labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
@@ -44,7 +64,7 @@ std::vector<int> distinct(std::vector<int> labels) {
 }
 
 void divide_by_labels(SolverMesh& mesh, const OrientedPointCloud& cloud, const Parameters& parameters,
-                      Progress& progress) {
+                      const Warn& warn) {
   const std::map<int, std::string> names = parse_label_names(parameters.text("output.label_names"));
   const std::vector<int> in_cloud = distinct(cloud.labels);
   for (const auto& [label, name] : names) {
@@ -63,8 +83,8 @@ void divide_by_labels(SolverMesh& mesh, const OrientedPointCloud& cloud, const P
   const std::vector<int> left = distinct(labels);
   for (const int label : in_cloud) {
     if (std::binary_search(left.begin(), left.end(), label)) continue;
-    progress.warn(fmt::format("export: no boundary face has label {} ({}): too few samples for faces of this size",
-                              label, name_of(label, names)));
+    warn(fmt::format("no boundary face has label {} ({}): too few samples for faces of this size", label,
+                     name_of(label, names)));
   }
   if (left.empty()) return;
   for (int& label : labels) {
@@ -98,13 +118,18 @@ std::map<int, std::string> parse_label_names(const std::string& text) {
 }
 
 void divide_boundary(SolverMesh& mesh, const OrientedPointCloud& cloud, const Parameters& parameters,
-                     Progress& progress) {
-  if (!cloud.labels.empty()) return divide_by_labels(mesh, cloud, parameters, progress);
+                     const Warn& warn) {
+  if (!cloud.labels.empty()) return divide_by_labels(mesh, cloud, parameters, warn);
   if (!parameters.text("output.label_names").empty()) {
     throw UsageError(
         "--label-names: the points have no labels (PLY property label, PCD field label, or a last column)");
   }
-  const double angle = parameters.real("output.patch_angle");
+  const double angle = parameters.real("output.patch_angle"), planar = parameters.real("output.patch_planar");
+  if (angle > 0 && planar > 0) throw UsageError("--patch-angle and --patch-planar exclude each other");
+  if (planar > 0 && mesh.n_faces() > 0) {
+    if (divide_by_planes(mesh, planar)) return;
+    warn(fmt::format("no part of the boundary is flat within {} degrees", planar));
+  }
   std::vector<int> pieces = smooth_pieces(mesh, angle > 0 ? angle : 180);
   const int n = pieces.empty() ? 0 : *std::max_element(pieces.begin(), pieces.end()) + 1;
   if (n < 2) return;

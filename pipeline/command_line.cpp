@@ -54,9 +54,9 @@ CommandParser::CommandParser() {
   CLI::App& reconstruct = add_command("reconstruct", "Stage one only: the level set");
   add_stage_flags(reconstruct);
   reconstruct.add_option("CLOUD", in_.input, "oriented points; or a case, to fit again with other parameters");
-  add_parameter_flags(
-      reconstruct, {"cloud", "reconstruct", "output"},
-      {"output.units", "output.min_quality", "output.label_names", "output.label_min_area", "output.patch_angle"});
+  add_parameter_flags(reconstruct, {"cloud", "reconstruct", "output"},
+                      {"output.units", "output.min_quality", "output.label_names", "output.label_min_area",
+                       "output.patch_angle", "output.patch_planar"});
 
   CLI::App& mesh = add_command("mesh", "Stage two only: from the level set of CASE, or from a formula");
   add_stage_flags(mesh);
@@ -72,9 +72,9 @@ CommandParser::CommandParser() {
   evolve.add_option("--clouds", in_.clouds, "a text file with the path of a cloud a line, instead of --implicit");
   evolve.add_option("--t", in_.times, "FROM:STEP:TO, the times; --implicit may have t in it");
   evolve.add_option("--skip", in_.skip, "times to leave out: --skip 3.1,3.4");
-  add_parameter_flags(
-      evolve, {"cloud", "reconstruct", "mesh", "output"},
-      {"mesh.keep_iterates", "mesh.order", "output.label_names", "output.label_min_area", "output.patch_angle"});
+  add_parameter_flags(evolve, {"cloud", "reconstruct", "mesh", "output"},
+                      {"mesh.keep_iterates", "mesh.order", "output.label_names", "output.label_min_area",
+                       "output.patch_angle", "output.patch_planar"});
 
   add_batch();
 
@@ -86,7 +86,8 @@ CommandParser::CommandParser() {
   check.add_option("--against", in_.against, "a case whose surface the mesh should fit");
   add_parameter_sources(check);
   add_parameter_flags(check, {"output"},
-                      {"output.max_memory", "output.label_names", "output.label_min_area", "output.patch_angle"});
+                      {"output.max_memory", "output.label_names", "output.label_min_area", "output.patch_angle",
+                       "output.patch_planar"});
 
   CLI::App& exports = add_command("export", "Files for solvers and viewers, in CASE/4-export");
   exports.add_option("CASE", in_.input, "a case with a mesh")->required();

@@ -187,6 +187,13 @@ std::vector<ParamField> make_fields() {
        180,
        {},
        "without labels: boundary patches end where faces meet at more degrees; 0: where the surface ends"},
+      {"output.patch_planar",
+       "--patch-planar",
+       0.,
+       0,
+       89,
+       {},
+       "without labels: patches are what lies within so many degrees of a plane, and the rest; 0: not so"},
   };
 }
 

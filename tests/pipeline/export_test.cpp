@@ -185,6 +185,32 @@ TEST_F(Export, WithoutLabelsPiecesAndAnglesMakePatches) {
   EXPECT_LT(sum.norm(), .3);
 }
 
+TEST_F(Export, FlatPartsMakePatchesWhereEdgesAreRound) {
+  const auto box = [](int p) {
+    return "x^" + std::to_string(p) + "+y^" + std::to_string(p) + "+z^" + std::to_string(p);
+  };
+  ASSERT_EQ(run("mesh --implicit '" + box(12) +
+                "-1' --box=-1.9,-1.9,-1.9,1.9,1.9,1.9 --h .12 -o die --export inp "
+                "--patch-planar 8")
+                .code,
+            0);
+  const Inp die(folder / "die/4-export/mesh.inp");
+  EXPECT_EQ(die.area.size(), 8u);  // with the whole boundary
+  for (int p = 1; p <= 6; ++p) {
+    const Vec3& side = die.area.at("plane_" + std::to_string(p));
+    EXPECT_GT(side.cwiseAbs().maxCoeff(), 1.2);
+    EXPECT_GT(side.cwiseAbs().maxCoeff(), .99 * side.norm());
+  }
+  EXPECT_LT(die.area.at("rest").norm(), .1);
+  EXPECT_EQ(run("export die --format inp --patch-angle 30").code, 2);
+  // A ball has no plane: its only piece is one patch.
+  ASSERT_EQ(run(ball).code, 0);
+  const Result r = run("export ball --format inp --patch-planar 5");
+  EXPECT_EQ(r.code, 0);
+  EXPECT_NE(r.err.find("no part of the boundary is flat within 5 degrees"), std::string::npos) << r.err;
+  EXPECT_EQ(Inp(folder / "ball/4-export/mesh.inp").area.size(), 1u);
+}
+
 TEST_F(Export, ADiskThatIsFullAtAnyPointLeavesNoFileAndAValidCase) {
   ASSERT_EQ(run(ball).code, 0);
   const auto before = files_of("ball");
