@@ -11,6 +11,7 @@
 #include "pipeline/made_mesh.h"
 #include "pipeline/memory.h"
 #include "pipeline/mesh_measures.h"
+#include "pipeline/second_order.h"
 #include "pipeline/stages.h"
 #include "pipeline/too_thin.h"
 #include "pipeline/zero_set_choice.h"
@@ -45,6 +46,7 @@ class Mesher {
   EdgeLength edge_length() const;
   std::int64_t n_tets() const;
   MeshAttempt attempt(double h);
+  void curve(MeshAttempt& a) const;
   [[noreturn]] void refuse_thin(const MeshAttempt& best) const;
 
   Domain& domain_;
@@ -90,6 +92,7 @@ MeshAttempt Mesher::attempt(double h) {
   if (!a.made()) return a;
   watch_("certify", 0);
   a.measured = measure(domain_, a.result, pieces, h, polls(watch_));
+  curve(a);
   a.measured["resolution"]["too_thin"] = to_json(a.thin, domain_.shift);
   check_deviation(parameters_.real("mesh.max_deviation"), a.measured);
   const LostPoint lost = lost_of(a.thin, a.result.final, a.result.submesh.positive_faces, polls(watch_));
@@ -99,6 +102,15 @@ MeshAttempt Mesher::attempt(double h) {
         fmt::format("the mesh lacks what is thin around ({:.6g}, {:.6g}, {:.6g})", at.x(), at.y(), at.z()));
   }
   return a;
+}
+
+void Mesher::curve(MeshAttempt& a) const {
+  a.measured["order"] = parameters_.integer("mesh.order");
+  a.measured["second_order"] = nullptr;
+  if (parameters_.integer("mesh.order") < 2) return;
+  watch_("second order", 0);
+  a.second = curved_mesh(domain_, a.result, a.h, um_params(parameters_).closest_point, polls(watch_));
+  measure_second_order(domain_, *a.second, a.h, a.measured, polls(watch_));
 }
 
 void Mesher::refuse_thin(const MeshAttempt& best) const {

@@ -12,16 +12,13 @@
 #include <system_error>
 
 #include "mesh/moving_mesh.h"
-#include "mesh/skin.h"
-#include "mesh/solver_files.h"
-#include "mesh/tet_mesh_io.h"
 #include "pipeline/certificate_json.h"
-#include "pipeline/made_mesh.h"
 #include "pipeline/mesh_measures.h"
 #include "pipeline/stages.h"
 #include "pipeline/version.h"
 #include "python/arguments.h"
 #include "python/interruptible.h"
+#include "python/mesh_object.h"
 #include "reconstruct/level_set_io.h"
 #include "reconstruct/point_cloud_io.h"
 
@@ -31,25 +28,6 @@ namespace umtet::python {
 namespace {
 
 std::optional<Box> box_of(const Parameters& parameters) { return parse_box(parameters.text("mesh.box")); }
-
-/// A mesh with what it takes to write and to judge it.
-struct Mesh {
-  Domain domain;  ///< its shift and samples; no psi
-  UmResult result;
-  double h = 0;
-  Json certificate;
-
-  void save(const std::filesystem::path& file) const {
-    const std::string suffix = file.extension();
-    const MeshFile content = mesh_content(domain, result, result.final);
-    const std::vector<Triangle>& boundary = result.submesh.positive_faces;
-    if (suffix == ".vtu") return write_vtu(file, content);
-    if (suffix == ".msh") return write_msh41(file, solver_mesh(content.mesh), MshEncoding::Binary);
-    if (suffix == ".mesh") return write_medit(file, solver_mesh(content.mesh));
-    if (suffix == ".stl") return write_surface(file, content.mesh.V, boundary, SurfaceFormat::Stl);
-    throw std::invalid_argument(file.string() + ": .vtu, .msh, .mesh or .stl is wanted");
-  }
-};
 
 /// Without what refers to a callable.
 Domain left_of(Domain&& domain) {
@@ -67,7 +45,8 @@ Mesh mesh(const py::object& psi, const Settings& settings, std::optional<double>
   const bool asks_python = p.function != nullptr;
   auto job = [p = std::move(p), parameters](const Watch& watch) mutable {
     MeshAttempt best = make_mesh(p.domain, parameters, watch);
-    return Mesh{left_of(std::move(p.domain)), std::move(best.result), best.h, verdict_on(best.measured, parameters)};
+    return Mesh{left_of(std::move(p.domain)), std::move(best.result), std::move(best.second), best.h,
+                verdict_on(best.measured, parameters)};
   };
   if (!asks_python) return interruptible(progress, threads, std::move(job));
   const Watch watch = watch_of(progress);
@@ -107,7 +86,7 @@ py::tuple update(Moving& moving, const py::object& psi, std::optional<double> t,
   if (moving.at_work.exchange(true)) throw std::invalid_argument("this UniversalMesh is at work in another call");
   const auto done = [](std::atomic<bool>* at_work) { *at_work = false; };
   const std::unique_ptr<std::atomic<bool>, decltype(done)> guard(&moving.at_work, done);
-  Mesh made{{}, {}, h, nullptr};
+  Mesh made{{}, {}, {}, h, nullptr};
   UmUpdate u = in_arena(p.threads, [&] {
     UmUpdate next = moving.mesher.update(p.domain.psi(), hints, [&](const UmProgress& at) {
       watch(at.step, static_cast<double>(at.pass) / std::max(at.n_passes, 1));
@@ -283,13 +262,14 @@ void bind(py::module_& m) {
         write_level_set(file, *r.domain.fitted, r.domain.shift);
       });
   py::class_<Mesh>(m, "Mesh")
-      .def_property_readonly("points", [](const Mesh& a) { return array(a.result.final, a.domain.shift); })
-      .def_property_readonly("tets", [](const Mesh& a) { return array(a.result.submesh.mesh.C); })
-      .def_property_readonly("boundary", [](const Mesh& a) { return array(a.result.submesh.positive_faces); })
-      .def_property_readonly("boundary_vertices",
-                             [](const Mesh& a) { return array(a.result.submesh.positive_vertices); })
-      .def_property_readonly("background_vertex",
-                             [](const Mesh& a) { return array(a.result.submesh.background_vertex); })
+      .def_property_readonly("points", [](const Mesh& a) { return array(a.nodes(), a.domain.shift); })
+      .def_property_readonly(
+          "tets", [](const Mesh& a) { return a.second ? array(a.second->mesh.C) : array(a.result.submesh.mesh.C); })
+      .def_property_readonly(
+          "boundary",
+          [](const Mesh& a) { return a.second ? array(a.curved_boundary()) : array(a.result.submesh.positive_faces); })
+      .def_property_readonly("boundary_vertices", [](const Mesh& a) { return array(a.boundary_nodes()); })
+      .def_property_readonly("background_vertex", [](const Mesh& a) { return array(a.background_vertices()); })
       .def_property_readonly("background_tet", [](const Mesh& a) { return array(a.result.submesh.background_tet); })
       .def_readonly("h", &Mesh::h)
       .def_property_readonly("certificate", [](const Mesh& a) { return dict_of(a.certificate); })

@@ -39,12 +39,12 @@ _KEYS = {}  # of a keyword argument, by section: mesh.h is h of mesh()
 for _key in _core.parameters():
     _section, _name = _key.split(".")
     _KEYS.setdefault(_section, {})[_name] = _key
-for _name in ("implicit", "keep_iterates", "order"):  # of the program
+for _name in ("implicit", "keep_iterates"):  # of the program
     _KEYS["mesh"].pop(_name, None)
 for _name in ("file", "orient_from"):
     _KEYS["cloud"].pop(_name, None)
 _OUTPUT = ("units", "max_memory", "min_quality")
-_OF_A_CHOICE_OF_H = ("tets", "max_tets", "max_deviation", "allow_thin", "box_walls")
+_NOT_OF_A_MOVING_MESH = ("tets", "max_tets", "max_deviation", "allow_thin", "box_walls", "order")
 
 
 def _text(value):
@@ -119,6 +119,9 @@ class Mesh:
     points (n, 3) float64; tets (m, 4), positive; boundary (k, 3), counter-clockwise from outside; boundary_vertices;
     background_vertex (n,), background_tet (m,): ids in the universal mesh; h, its mean edge length; certificate, the
     keys of certificate.json but for `run` and the checksum.
+
+    Of mesh(order=2): tets (m, 10), the corners, then the middles of 01 12 20 03 13 23 as VTK has them; boundary (k, 6),
+    the corners, then the middles of 01 12 20; mid-sides come behind the corners in points and have background_vertex -1.
     """
 
     def __init__(self, core):
@@ -144,7 +147,8 @@ def mesh(psi, *, box=None, t=None, progress=None, threads=0, **parameters):
     """Meshes {psi < 0}, as `umtet mesh` does.
 
     box: around the domain, with room of two edges; a LevelSet has its own. t: what t stands for in a formula. One of
-    h, tets and max_deviation, or none (h from size and thickness). Other parameters: background="z", mode="paper",
+    h, tets and max_deviation, or none (h from size and thickness). order=2: tets of 10 nodes with curved boundary, every
+    Jacobian proved positive in the certificate. Other parameters: background="z", mode="paper",
     max_tets, allow_thin, min_quality, target_quality, seed, ...
 
     Returns a Mesh, the best of up to four where the choice of h is left to umtet. MeshingError: there is none, or the
@@ -170,7 +174,7 @@ class UniversalMesh:
     """
 
     def __init__(self, box, h, **parameters):
-        self._core = _core.Moving(_settings(("mesh",), {**parameters, "box": _box(box), "h": h}, _OF_A_CHOICE_OF_H))
+        self._core = _core.Moving(_settings(("mesh",), {**parameters, "box": _box(box), "h": h}, _NOT_OF_A_MOVING_MESH))
 
     @property
     def h(self):

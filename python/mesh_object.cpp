@@ -1,0 +1,69 @@
+#include "python/mesh_object.h"
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+#include "mesh/skin.h"
+#include "mesh/solver_files.h"
+#include "mesh/tet_mesh_io.h"
+#include "pipeline/made_mesh.h"
+#include "pipeline/second_order.h"
+
+namespace umtet::python {
+namespace {
+
+SolverMesh for_solver(const Mesh& m, const MeshFile& content) {
+  if (!m.second) return solver_mesh(content.mesh);
+  QuadraticTetMesh curved = m.second->mesh;
+  for (Vec3& x : curved.V) x += m.domain.shift;
+  return solver_mesh(curved);
+}
+
+}  // namespace
+
+std::vector<int> Mesh::boundary_nodes() const {
+  std::vector<int> nodes = result.submesh.positive_vertices;
+  if (second) nodes.insert(nodes.end(), second->boundary_mid_sides.begin(), second->boundary_mid_sides.end());
+  return nodes;
+}
+
+std::vector<std::int64_t> Mesh::background_vertices() const {
+  std::vector<std::int64_t> ids(result.submesh.background_vertex.begin(), result.submesh.background_vertex.end());
+  ids.resize(nodes().size(), -1);
+  return ids;
+}
+
+std::vector<QuadraticTriangle> Mesh::curved_boundary() const {
+  const std::vector<int>& mid_sides = second->boundary_mid_sides;
+  std::map<std::pair<int, int>, int> between;  // corners, the lesser first
+  for (const QuadraticTet& t : second->mesh.C) {
+    for (int k = 0; k < 6; ++k) {
+      const auto [p, q] = kMidSideEdge[k];
+      const int mid = t[4 + k];
+      if (std::binary_search(mid_sides.begin(), mid_sides.end(), mid)) between[std::minmax(t[p], t[q])] = mid;
+    }
+  }
+  const auto mid = [&](int a, int b) { return between.at(std::minmax(a, b)); };
+  std::vector<QuadraticTriangle> faces;
+  for (const auto& [a, b, c] : result.submesh.positive_faces) {
+    faces.push_back({a, b, c, mid(a, b), mid(b, c), mid(c, a)});
+  }
+  return faces;
+}
+
+void Mesh::save(const std::filesystem::path& file) const {
+  const std::string suffix = file.extension();
+  if (suffix == ".vtu" && second) return write_second_order(file, domain, result, *second);
+  const MeshFile content = mesh_content(domain, result, result.final);
+  if (suffix == ".vtu") return write_vtu(file, content);
+  if (suffix == ".msh") return write_msh41(file, for_solver(*this, content), MshEncoding::Binary);
+  if (suffix == ".mesh") return write_medit(file, for_solver(*this, content));
+  if (suffix == ".stl") {
+    return write_surface(file, content.mesh.V, result.submesh.positive_faces, SurfaceFormat::Stl);
+  }
+  throw std::invalid_argument(file.string() + ": .vtu, .msh, .mesh or .stl is wanted");
+}
+
+}  // namespace umtet::python

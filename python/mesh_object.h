@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "mesh/quadratic_tets.h"
+#include "mesh/universal_mesh.h"
+#include "pipeline/domain.h"
+#include "pipeline/record.h"
+
+namespace umtet::python {
+
+/// A mesh with what it takes to write and to judge it.
+struct Mesh {
+  Domain domain;  ///< its shift and samples; no psi
+  UmResult result;
+  std::optional<SecondOrder> second;  ///< the same with mid-sides, if mesh.order = 2
+  double h = 0;
+  Json certificate;
+
+  const std::vector<Vec3>& nodes() const { return second ? second->mesh.V : result.final; }
+  /// Those on psi = 0, ascending.
+  std::vector<int> boundary_nodes() const;
+  /// By node; -1 of mid-sides.
+  std::vector<std::int64_t> background_vertices() const;
+  /// The faces on psi = 0, counter-clockwise from outside. \pre second
+  std::vector<QuadraticTriangle> curved_boundary() const;
+  /// \throw std::invalid_argument for a suffix that is not known; std::system_error naming the file
+  void save(const std::filesystem::path& file) const;
+};
+
+}  // namespace umtet::python
