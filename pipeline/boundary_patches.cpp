@@ -125,7 +125,6 @@ void divide_boundary(SolverMesh& mesh, const OrientedPointCloud& cloud, const Pa
         "--label-names: the points have no labels (PLY property label, PCD field label, or a last column)");
   }
   const double angle = parameters.real("output.patch_angle"), planar = parameters.real("output.patch_planar");
-  if (angle > 0 && planar > 0) throw UsageError("--patch-angle and --patch-planar exclude each other");
   if (planar > 0 && mesh.n_faces() > 0) {
     if (divide_by_planes(mesh, planar)) return;
     warn(fmt::format("no part of the boundary is flat within {} degrees", planar));

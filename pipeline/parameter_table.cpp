@@ -193,7 +193,7 @@ std::vector<ParamField> make_fields() {
        0,
        89,
        {},
-       "without labels: patches are what lies within so many degrees of a plane, and the rest; 0: not so"},
+       "without labels, before --patch-angle: patches are what is flat within so many degrees, and the rest; 0: not so"},
   };
 }
 

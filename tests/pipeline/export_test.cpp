@@ -202,7 +202,6 @@ TEST_F(Export, FlatPartsMakePatchesWhereEdgesAreRound) {
     EXPECT_GT(side.cwiseAbs().maxCoeff(), .99 * side.norm());
   }
   EXPECT_LT(die.area.at("rest").norm(), .1);
-  EXPECT_EQ(run("export die --format inp --patch-angle 30").code, 2);
   // A ball has no plane: its only piece is one patch.
   ASSERT_EQ(run(ball).code, 0);
   const Result r = run("export ball --format inp --patch-planar 5");
