@@ -8,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "pipeline/boundary_patches.h"
 #include "pipeline/detail/report_sources.h"
 #include "pipeline/exit_code.h"
 #include "pipeline/interrupt.h"
@@ -23,6 +24,8 @@ constexpr int kAngleBins = 90, kQualityBins = 100;
 constexpr double kDegrees = 57.29577951308232;
 // Angles of all tets of a large mesh would take as long as the rest of the report.
 constexpr std::size_t kAngleTets = 200'000;
+// Bytes of the page with what it was made from: names of labels may take some thousand.
+constexpr std::size_t kHead = 100'000;
 
 /// Shares in percent of the six dihedral angles, in bins from 0 to 180 degrees, of one tet in `step`.
 std::vector<double> angle_shares(const TetMesh& mesh, std::size_t step) {
@@ -154,6 +157,25 @@ Figures figures_of(const CasePaths& paths, const Parameters& parameters, const M
   return f;
 }
 
+/// The mesh with the patches that exported files have; one where names of labels are wrong, which only an export
+/// refuses.
+SolverMesh divided(const MeshFile& mesh, const Domain& domain, const Parameters& parameters) {
+  SolverMesh made = solver_mesh(mesh.mesh);
+  for (Vec3& x : made.nodes) x -= domain.shift;
+  try {
+    divide_boundary(made, domain.cloud, parameters, [](const std::string&) {});
+  } catch (const UsageError&) {
+  }
+  return made;
+}
+
+/// What patches depend on beside the mesh.
+std::string patch_settings(const Parameters& parameters) {
+  return html_text(fmt::format("{} {} {} {}", parameters.text("output.label_names"),
+                               parameters.real("output.label_min_area"), parameters.real("output.patch_angle"),
+                               parameters.real("output.patch_planar")));
+}
+
 std::string checksum_of(const Json& certificate) { return certificate.at("run").value("checksum", ""); }
 
 }  // namespace
@@ -166,8 +188,7 @@ void write_report(const CasePaths& paths, const Parameters& parameters, const Js
   }
   stop_if_interrupted();
   const MeshFile& mesh = handover.mesh;
-  const ReportScene scene =
-      report_scene(mesh, *handover.domain, certificate.at("boundary").at("components").get<int>());
+  const ReportScene scene = report_scene(mesh, *handover.domain, divided(mesh, *handover.domain, parameters));
   stop_if_interrupted();
   std::string blocks;
   for (const auto& [name, text] : scene.blocks) {
@@ -178,6 +199,7 @@ void write_report(const CasePaths& paths, const Parameters& parameters, const Js
   const std::string page = filled(
       report_page_html(),
       {{"checksum", checksum_of(certificate)},
+       {"patch_settings", patch_settings(parameters)},
        {"title", title_of(paths)},
        {"css", std::string(report_page_css())},
        {"js", std::string(report_viewer_js())},
@@ -196,11 +218,15 @@ void write_report(const CasePaths& paths, const Parameters& parameters, const Js
   write_text_artefact(paths.report(), page);
 }
 
-bool report_is_of(const CasePaths& paths, const Json& certificate) {
+bool report_is_of(const CasePaths& paths, const Json& certificate, const Parameters& parameters) {
+  const auto meta = [](const char* name, const std::string& content) {
+    return fmt::format("name=\"umtet-{}\" content=\"{}\"", name, content);
+  };
   std::ifstream in(paths.report(), std::ios::binary);
-  std::string head(1000, '\0');
+  std::string head(kHead, '\0');
   in.read(head.data(), static_cast<std::streamsize>(head.size()));
-  return head.find("name=\"umtet-certificate\" content=\"" + checksum_of(certificate) + "\"") != std::string::npos;
+  return head.find(meta("certificate", checksum_of(certificate))) != std::string::npos &&
+         head.find(meta("patches", patch_settings(parameters))) != std::string::npos;
 }
 
 void report_case(const CasePaths& paths) {

@@ -13,8 +13,8 @@ namespace umtet {
 void write_report(const CasePaths& paths, const Parameters& parameters, const Json& certificate,
                   const Handover& handover = {});
 
-/// True when CASE/report.html was made from this certificate.
-bool report_is_of(const CasePaths& paths, const Json& certificate);
+/// True when CASE/report.html was made from this certificate and shows the patches of these parameters.
+bool report_is_of(const CasePaths& paths, const Json& certificate, const Parameters& parameters);
 
 /// `umtet report`: write_report() of a case as it is on disk.
 /// \throw UsageError when there is no certificate; ArtefactDamaged, Interrupted, std::system_error

@@ -204,4 +204,17 @@ std::string filled(std::string_view page, const std::map<std::string, std::strin
   }
 }
 
+std::string base64(const void* data, std::size_t size) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  const auto* b = static_cast<const unsigned char*>(data);
+  std::string text;
+  text.reserve((size + 2) / 3 * 4);
+  for (std::size_t i = 0; i < size; i += 3) {
+    const unsigned n = (b[i] << 16) | (i + 1 < size ? b[i + 1] << 8 : 0) | (i + 2 < size ? b[i + 2] : 0);
+    for (int k = 3; k >= 0; --k) text += kDigits[(n >> (6 * k)) & 63];
+  }
+  for (std::size_t k = 1; k <= (3 - size % 3) % 3; ++k) text[text.size() - k] = '=';
+  return text;
+}
+
 }  // namespace umtet

@@ -31,4 +31,7 @@ std::string certificate_table(const Json& certificate);
 /// The template with every {{name}} replaced. \throw std::invalid_argument naming a place without a value
 std::string filled(std::string_view page, const std::map<std::string, std::string>& places);
 
+/// RFC 4648, with padding.
+std::string base64(const void* data, std::size_t size);
+
 }  // namespace umtet

@@ -7,8 +7,10 @@
 #include <unordered_map>
 
 #include "mesh/keep_going.h"
+#include "mesh/patches.h"
 #include "mesh/skin.h"
 #include "pipeline/interrupt.h"
+#include "pipeline/report_page.h"
 
 namespace umtet {
 namespace {
@@ -46,10 +48,11 @@ class SceneMaker {
     for (const Vec3& x : mesh_.V) box_.extend(x);
     for (const Vec3& x : domain.cloud.points) box_.extend(x + domain.shift);
   }
-  ReportScene operator()(int n_pieces);
+  ReportScene operator()(const SolverMesh& divided);
 
  private:
-  void take_faces(int n_pieces);
+  void take_faces(const SolverMesh& divided);
+  void take_patches(const SolverMesh& divided);
   void coarsen_faces();
   void take_tets();
   void take_points();
@@ -76,24 +79,42 @@ class SceneMaker {
   const ReportCaps& caps_;
   Box box_;
   std::vector<FacedTet> faces_;
-  std::vector<int> face_tet_, face_piece_;
+  std::vector<int> face_tet_, face_patch_;
   std::vector<int> tets_;
   std::vector<int> shown_id_, shown_;
   ReportScene scene_;
 };
 
-void SceneMaker::take_faces(int n_pieces) {
+void SceneMaker::take_faces(const SolverMesh& divided) {
   const BoundaryFaces boundary = boundary_faces(mesh_.C, mesh_.V.size());
-  if (n_pieces > 1) face_piece_ = surface_topology(mesh_.V, boundary.triangles).component;
   face_tet_ = boundary.tets;
   for (std::size_t f = 0; f < face_tet_.size(); ++f) {
     const Triangle& a = boundary.triangles[f];
     const Tet& t = mesh_.C[face_tet_[f]];
     faces_.push_back({a[0], a[1], a[2], t[0] + t[1] + t[2] + t[3] - a[0] - a[1] - a[2]});
   }
+  take_patches(divided);
   scene_.head["n_faces"] = faces_.size();
   if (faces_.size() > caps_.faces) coarsen_faces();
   scene_.head["n_faces_shown"] = faces_.size();
+}
+
+/// Both list the faces in the order of boundary_faces().
+void SceneMaker::take_patches(const SolverMesh& divided) {
+  if (divided.n_faces() != faces_.size()) throw std::invalid_argument("a scene needs the patches of its own mesh");
+  std::vector<double> area(divided.patches.size(), 0);
+  std::vector<std::size_t> n(divided.patches.size(), 0);
+  const FaceGeometry geometry = face_geometry(divided);
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    area[divided.face_patch[f]] += geometry.area[f];
+    ++n[divided.face_patch[f]];
+  }
+  Json& patches = scene_.head["patches"] = Json::array();
+  for (std::size_t p = 0; p < area.size(); ++p) {
+    const MeshPart& part = divided.patches[p];
+    patches.push_back({{"name", part.name}, {"number", part.number}, {"n_faces", n[p]}, {"area", area[p]}});
+  }
+  if (area.size() > 1) face_patch_ = divided.face_patch;
 }
 
 /// Moves the corners in a cell of a grid to one of them and drops the faces that vanish; cells grow until few enough
@@ -122,10 +143,11 @@ void SceneMaker::coarsen_faces() {
     for (std::size_t k = 0; k < kept.size(); ++k) {
       faces_[k] = faces[kept[k]];
       face_tet_[k] = face_tet_[kept[k]];
-      if (!face_piece_.empty()) face_piece_[k] = face_piece_[kept[k]];
+      if (!face_patch_.empty()) face_patch_[k] = face_patch_[kept[k]];
     }
     faces_.resize(kept.size());
     face_tet_.resize(kept.size());
+    if (!face_patch_.empty()) face_patch_.resize(kept.size());
     if (kept.empty()) return;
   }
 }
@@ -223,10 +245,10 @@ void SceneMaker::write_values() {
   for (const double d : deviation) bytes.push_back(in_steps(d, 0, most));
   write_bytes("face_deviation", bytes);
 
-  if (!face_piece_.empty()) {
+  if (!face_patch_.empty()) {
     bytes.clear();
-    for (const int p : face_piece_) bytes.push_back(static_cast<std::uint8_t>(p % 256));
-    write_bytes("face_piece", bytes);
+    for (const int p : face_patch_) bytes.push_back(static_cast<std::uint8_t>(p % 256));
+    write_bytes("face_patch", bytes);
   }
   if (const std::vector<double>* support = field(file_.point_data, "support")) {
     double far = 0;
@@ -238,14 +260,14 @@ void SceneMaker::write_values() {
   }
 }
 
-ReportScene SceneMaker::operator()(int n_pieces) {
+ReportScene SceneMaker::operator()(const SolverMesh& divided) {
   if (mesh_.C.empty() || !field(file_.cell_data, "mean_ratio")) {
     throw std::invalid_argument("a scene needs tets with mean_ratio");
   }
   const Vec3 size = box_.sizes();
   scene_.head = {{"box_min", {box_.min().x(), box_.min().y(), box_.min().z()}},
                  {"box_size", {size.x(), size.y(), size.z()}}};
-  take_faces(n_pieces);
+  take_faces(divided);
   take_tets();
   shown_id_.assign(mesh_.V.size(), -1);
   std::vector<FacedTet> faces = faces_, tets;
@@ -268,21 +290,9 @@ ReportScene SceneMaker::operator()(int n_pieces) {
 
 }  // namespace
 
-std::string base64(const void* data, std::size_t size) {
-  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  const auto* b = static_cast<const unsigned char*>(data);
-  std::string text;
-  text.reserve((size + 2) / 3 * 4);
-  for (std::size_t i = 0; i < size; i += 3) {
-    const unsigned n = (b[i] << 16) | (i + 1 < size ? b[i + 1] << 8 : 0) | (i + 2 < size ? b[i + 2] : 0);
-    for (int k = 3; k >= 0; --k) text += kDigits[(n >> (6 * k)) & 63];
-  }
-  for (std::size_t k = 1; k <= (3 - size % 3) % 3; ++k) text[text.size() - k] = '=';
-  return text;
-}
-
-ReportScene report_scene(const MeshFile& mesh, const Domain& domain, int n_pieces, const ReportCaps& caps) {
-  return SceneMaker(mesh, domain, caps)(n_pieces);
+ReportScene report_scene(const MeshFile& mesh, const Domain& domain, const SolverMesh& divided,
+                         const ReportCaps& caps) {
+  return SceneMaker(mesh, domain, caps)(divided);
 }
 
 }  // namespace umtet

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/solver_mesh.h"
 #include "mesh/tet_mesh_io.h"
 #include "pipeline/domain.h"
 #include "pipeline/record.h"
@@ -22,21 +23,20 @@ struct ReportCaps {
 ///   positions    uint16 x 3 a vertex, in 65535ths of the box
 ///   faces        4 indices each, uint16 or uint32 (head.index_bytes): a boundary face, and the vertex behind it
 ///   tets         4 indices each: the worst ones first
-///   tet_quality, face_quality, face_deviation, face_piece, vertex_support   a byte each, in 255ths of head.ranges
-///                (pieces by number, modulo 256)
+///   tet_quality, face_quality, face_deviation, vertex_support   a byte each, in 255ths of head.ranges
+///   face_patch   a byte each, where there are several: index into head.patches, modulo 256
 ///   points       uint16 x 3 a sample, in 65535ths of the box
 struct ReportScene {
-  Json head;  ///< box, counts of what is there and of what is shown, ranges, planes
+  Json head;  ///< box, counts of what is there and of what is shown, ranges, planes; patches with the
+              ///< numbers and areas of their faces in the whole mesh
   std::vector<std::pair<std::string, std::string>> blocks;
 };
 
 /// @param mesh      as in mesh.vtu: model coordinates, with `mean_ratio` and, of a cloud, `support`
 /// @param domain    psi as it was meshed: deviations are |psi| / |grad psi| at the centres of faces
-/// @param n_pieces  of the boundary; they have numbers if there are several
+/// @param divided  solver_mesh() of it, its boundary in patches
 /// \throw MeshCancelled, std::invalid_argument without tets
-ReportScene report_scene(const MeshFile& mesh, const Domain& domain, int n_pieces, const ReportCaps& caps = {});
-
-/// RFC 4648, with padding.
-std::string base64(const void* data, std::size_t size);
+ReportScene report_scene(const MeshFile& mesh, const Domain& domain, const SolverMesh& divided,
+                         const ReportCaps& caps = {});
 
 }  // namespace umtet

@@ -152,7 +152,7 @@ void CaseRun::certify(const StageRecord& mesh) {
 
 /// A report is of the certificate beside it, or there is none.
 void CaseRun::report() {
-  const bool fits = report_is_of(paths_, *outcome_.certificate);
+  const bool fits = report_is_of(paths_, *outcome_.certificate, parameters_);
   if (!request_.report && !fits) fs::remove(paths_.report());
   if (request_.report && (!fits || request_.force)) {
     progress_.report("report", "write", .5);

@@ -4,6 +4,13 @@
 (function () {
   const $ = (id) => document.getElementById(id);
   const state = document.body.dataset;
+  // Milliseconds since the page was asked for.
+  const marks = {};
+  const mark = (name) => {
+    marks[name] = Math.round(performance.now());
+    state.marks = JSON.stringify(marks);
+  };
+  mark("script");
   const info = JSON.parse($("scene").textContent);
   const ranges = info.ranges;
 
@@ -14,6 +21,11 @@
     return b;
   }
   const has = (name) => $("block-" + name) !== null;
+  // Decoded when it is first asked for: the surface is on the screen before anybody cuts it open.
+  const once = (make) => {
+    let made;
+    return () => made === undefined ? (made = make()) : made;
+  };
   const indices = (name) => {
     const b = bytes(name);
     return info.index_bytes === 2 ? new Uint16Array(b.buffer) : new Uint32Array(b.buffer);
@@ -28,7 +40,7 @@
 
   // Viridis: even steps for every kind of eye, and in grey.
   const kStops = ["440154", "482878", "3e4989", "31688e", "26828e", "1f9e89", "35b779", "6ece58", "b5de2b", "fde725"];
-  const kPieces = ["0072b2", "e69f00", "009e73", "cc79a7", "56b4e9", "d55e00", "f0e442", "999999"];
+  const kPatches = ["0072b2", "e69f00", "009e73", "cc79a7", "56b4e9", "d55e00", "f0e442", "999999"];
   const kAlarm = [235, 110, 20];  // seen on light and dark, beside grey
   const rgb = (hex) => [0, 2, 4].map((k) => parseInt(hex.substr(k, 2), 16));
   const ramp = [];
@@ -38,25 +50,25 @@
     ramp.push(a.map((c, i) => Math.round(c + (at - k) * (b[i] - c))));
   }
   const reversed = ramp.slice().reverse();
-  const pieces = [];
-  for (let v = 0; v < 256; ++v) pieces.push(rgb(kPieces[v % kPieces.length]));
+  const patchColours = [];
+  for (let v = 0; v < 256; ++v) patchColours.push(rgb(kPatches[v % kPatches.length]));
   const plain = new Array(256).fill([226, 196, 128]);
 
   // Bright is good: small distances at the bright end.
   const kinds = [
-    {name: "quality (mean ratio)", key: "quality", face: "face_quality", ramp: ramp},
-    {name: "deviation of face centres", key: "deviation", face: "face_deviation", ramp: reversed},
-    {name: "support (next sample)", key: "support", vertex: "vertex_support", ramp: reversed},
-    {name: "connected pieces", face: "face_piece", ramp: pieces},
-    {name: "none", ramp: plain},
+    {id: "quality", name: "quality (mean ratio)", key: "quality", face: "face_quality", ramp: ramp},
+    {id: "deviation", name: "deviation of face centres", key: "deviation", face: "face_deviation", ramp: reversed},
+    {id: "support", name: "support (next sample)", key: "support", vertex: "vertex_support", ramp: reversed},
+    {id: "patch", name: "patch", face: "face_patch", ramp: patchColours},
+    {id: "none", name: "none", ramp: plain},
   ].filter((k) => !(k.face || k.vertex) || has(k.face || k.vertex));
   for (const kind of kinds) {
-    kind.bytes = kind.face || kind.vertex ? bytes(kind.face || kind.vertex) : null;
-    $("colour").add(new Option(kind.name, kinds.indexOf(kind)));
+    kind.bytes = kind.face || kind.vertex ? once(() => bytes(kind.face || kind.vertex)) : () => null;
+    $("colour").add(new Option(kind.name, kind.id));
   }
 
-  const X = places("positions"), F = indices("faces"), T = indices("tets"), tetQuality = bytes("tet_quality");
-  const nFaces = F.length / 4, nTets = T.length / 4;
+  const X = places("positions"), F = indices("faces"), nFaces = F.length / 4;
+  const tets = once(() => indices("tets")), tetQuality = once(() => bytes("tet_quality"));
   const centroid = (list, k, axis) =>
     (X[3 * list[4 * k] + axis] + X[3 * list[4 * k + 1] + axis] + X[3 * list[4 * k + 2] + axis] +
      X[3 * list[4 * k + 3] + axis]) / 4;
@@ -66,14 +78,16 @@
   function Soup(capacity) {
     const position = new Float32Array(9 * capacity), colour = new Uint8Array(9 * capacity);
     let n = 0;
-    this.add = (a, b, c, colours) => {
-      const corners = [a, b, c];
-      for (let k = 0; k < 3; ++k) {
-        for (let i = 0; i < 3; ++i) {
-          position[9 * n + 3 * k + i] = X[3 * corners[k] + i];
-          colour[9 * n + 3 * k + i] = colours[k][i];
-        }
+    const put = (at, corner, tint) => {
+      for (let i = 0; i < 3; ++i) {
+        position[at + i] = X[3 * corner + i];
+        colour[at + i] = tint[i];
       }
+    };
+    this.add = (a, b, c, tintA, tintB, tintC) => {
+      put(9 * n, a, tintA);
+      put(9 * n + 3, b, tintB);
+      put(9 * n + 6, c, tintC);
       ++n;
     };
     this.geometry = () => {
@@ -116,6 +130,7 @@
     }, options));
   }
 
+  mark("decoded");
   let renderer = null;
   try {
     renderer = new THREE.WebGLRenderer({canvas: $("canvas"), antialias: true, alpha: true, preserveDrawingBuffer: true});
@@ -126,6 +141,7 @@
     state.ready = Math.round(performance.now());
     return;
   }
+  mark("webgl");
   renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
   renderer.setClearColor(0, 0);
   const world = new THREE.Scene();
@@ -146,11 +162,8 @@
       }`,
     fragmentShader: "void main() { gl_FragColor = vec4(0.85, 0.11, 0.38, 1.0); }",
   }));
-  if (info.n_points_shown > 0) {
-    cloud.geometry.setAttribute("position", new THREE.BufferAttribute(places("points"), 3));
-  } else {
-    $("cloud-row").hidden = true;
-  }
+  const samples = once(() => cloud.geometry.setAttribute("position", new THREE.BufferAttribute(places("points"), 3)));
+  if (info.n_points_shown === 0) $("cloud-row").hidden = true;
   for (const part of [surface, inside, cloud]) {
     part.frustumCulled = false;
     world.add(part);
@@ -171,63 +184,84 @@
   }
 
   function build() {
-    const kind = kinds[$("colour").value], cut = plane(), worst = $("worst").checked;
+    const kind = kinds.find((k) => k.id === $("colour").value), cut = plane(), worst = $("worst").checked;
     const behind = (list, k) => !cut || cut.sign * centroid(list, k, cut.axis) <= cut.at;
-    const shell = new Soup(nFaces);
+    const shell = new Soup(nFaces), values = kind.bytes(), grey = [150, 155, 165];
+    const tint = (v) => worst ? grey : kind.ramp[v];
     for (let f = 0; f < nFaces; ++f) {
       if (!behind(F, f)) continue;
-      const colours = [0, 1, 2].map((k) => {
-        const v = kind.face ? kind.bytes[f] : kind.vertex ? kind.bytes[F[4 * f + k]] : 0;
-        return worst ? [150, 155, 165] : kind.ramp[v];
-      });
-      shell.add(F[4 * f], F[4 * f + 1], F[4 * f + 2], colours);
-    }
-    setGeometry(surface, shell);
-    const tets = [];
-    const nWorst = Math.min(Number($("worst-number").value), info.n_worst);
-    if (worst) {
-      for (let t = 0; t < nWorst; ++t) if (behind(T, t)) tets.push(t);
-    } else if (cut) {
-      for (let t = 0; t < nTets; ++t) {
-        const c = cut.sign * centroid(T, t, cut.axis);
-        if (c <= cut.at && c > cut.at - info.layer) tets.push(t);
+      const a = F[4 * f], b = F[4 * f + 1], c = F[4 * f + 2];
+      if (kind.vertex) {
+        shell.add(a, b, c, tint(values[a]), tint(values[b]), tint(values[c]));
+      } else {
+        const one = tint(values ? values[f] : 0);
+        shell.add(a, b, c, one, one, one);
       }
     }
-    const solid = new Soup(4 * tets.length);
-    for (const t of tets) {
-      const c = worst ? kAlarm : ramp[tetQuality[t]];
-      for (const face of kTetFaces) solid.add(T[4 * t + face[0]], T[4 * t + face[1]], T[4 * t + face[2]], [c, c, c]);
-    }
-    setGeometry(inside, solid);
+    setGeometry(surface, shell);
+    const nWorst = Math.min(Number($("worst-number").value), info.n_worst);
+    setGeometry(inside, worst || cut ? tetsInside(cut, worst ? nWorst : 0, behind) : new Soup(0));
     const glass = worst ? 0.13 : 1;
     surface.material.transparent = worst;
     surface.material.depthWrite = !worst;
     surface.material.uniforms.opacity.value = glass;
     surface.material.uniforms.edges.value = $("edges").checked && !worst ? 1 : 0;
     inside.material.uniforms.edges.value = $("edges").checked ? 1 : 0;
-    cloud.visible = $("cloud").checked;
+    cloud.visible = $("cloud").checked && info.n_points_shown > 0;
+    if (cloud.visible) samples();
     $("worst-count").value = nWorst;
-    legend(cut && !kind.key ? kinds[0] : kind);
+    legend(cut && kind.id === "none" ? kinds[0] : kind);
     if (worst) {
-      const [least, most] = ranges.quality, q = least + (tetQuality[nWorst - 1] / 255) * (most - least);
+      const [least, most] = ranges.quality, q = least + (tetQuality()[nWorst - 1] / 255) * (most - least);
       $("legend").textContent = `the ${nWorst} worst tets: mean ratio ${number(least)} to ${q.toFixed(3)}`;
     }
+  }
+
+  // The worst ones alone, or those at the cut.
+  function tetsInside(cut, nWorst, behind) {
+    const T = tets(), Q = tetQuality(), taken = [];
+    const drawn = (t) => {
+      const c = cut.sign * centroid(T, t, cut.axis);
+      return c <= cut.at && c > cut.at - info.layer;
+    };
+    for (let t = 0; t < (nWorst || T.length / 4); ++t) if (nWorst ? behind(T, t) : drawn(t)) taken.push(t);
+    const solid = new Soup(4 * taken.length);
+    for (const t of taken) {
+      const c = nWorst ? kAlarm : ramp[Q[t]];
+      for (const face of kTetFaces) solid.add(T[4 * t + face[0]], T[4 * t + face[1]], T[4 * t + face[2]], c, c, c);
+    }
+    return solid;
   }
 
   const number = (v) => String(Number(v.toPrecision(4)));
   function legend(kind) {
     $("legend").textContent = "";
-    if (!kind.key) return;
     const add = (cls, parent) => {
       const e = document.createElement("div");
       e.className = cls;
       return parent.appendChild(e);
     };
+    if (kind.face === "face_patch") return patchLegend(add);
+    if (!kind.key) return;
     add("name", $("legend")).textContent = kind.key === "quality" ? "mean ratio Q" : kind.name + ", model units";
     add("bar", $("legend")).style.background =
       "linear-gradient(90deg," + [0, 51, 102, 153, 204, 255].map((v) => `rgb(${kind.ramp[v].join()})`).join() + ")";
     const ends = add("ends", $("legend"));
     for (const v of ranges[kind.key]) ends.appendChild(document.createElement("span")).textContent = number(v);
+  }
+
+  // The largest patches by name, with their shares of the area.
+  function patchLegend(add) {
+    const whole = info.patches.reduce((sum, p) => sum + p.area, 0), kMost = 16;
+    const order = info.patches.map((p, k) => k).sort((a, b) => info.patches[b].area - info.patches[a].area || a - b);
+    for (const k of order.slice(0, kMost)) {
+      const row = add("patch", $("legend")), p = info.patches[k];
+      row.dataset.number = p.number;
+      row.appendChild(document.createElement("i")).style.background = `rgb(${patchColours[k % 256].join()})`;
+      row.appendChild(document.createElement("span")).textContent = p.name;
+      row.appendChild(document.createElement("span")).textContent = (100 * p.area / whole).toFixed(1) + " %";
+    }
+    if (order.length > kMost) add("name", $("legend")).textContent = `and ${order.length - kMost} smaller patches`;
   }
 
   // A turntable around a target: angles, distance, target.
@@ -318,7 +352,7 @@
     $("place").disabled = true;
   }
   $("worst-number").max = info.n_worst;
-  // #colour=1&axis=0&worst=1: a view to open with.
+  // #colour=patch&axis=0&worst=1: a view to open with.
   for (const [id, value] of new URLSearchParams(location.hash.slice(1))) {
     const control = $(id);
     if (!control || !control.form) continue;
@@ -332,6 +366,7 @@
     });
   }
   build();
+  mark("built");
   render();
   ready();
 })();

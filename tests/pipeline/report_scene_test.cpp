@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <set>
 #include <sstream>
 
+#include "mesh/patches.h"
 #include "pipeline/report_page.h"
 #include "pipeline/report_plot.h"
 #include "tests/support/box_tets.h"
@@ -52,9 +55,18 @@ TEST(Base64, IsThatOfTheRfc) {
   EXPECT_EQ(base64("\xff\xfe\xfd", 3), "//79");
 }
 
+/// The six sides of the cube as patches.
+SolverMesh sides(const MeshFile& mesh) {
+  SolverMesh m = solver_mesh(mesh.mesh);
+  std::vector<MeshPart> patches;
+  for (int p = 1; p <= 6; ++p) patches.push_back({"side_" + std::to_string(p), 10 * p});
+  set_patches(m, smooth_pieces(m, 45), patches);
+  return m;
+}
+
 TEST(ReportScene, HoldsTheWholeMesh) {
   const MeshFile mesh = cube(3);
-  const ReportScene scene = report_scene(mesh, cube_domain(), 1);
+  const ReportScene scene = report_scene(mesh, cube_domain(), sides(mesh));
   EXPECT_EQ(scene.head["n_faces_shown"], 108);
   EXPECT_EQ(scene.head["n_tets_shown"], 162);
   EXPECT_TRUE(scene.head["planes"].is_null());
@@ -77,6 +89,41 @@ TEST(ReportScene, HoldsTheWholeMesh) {
   EXPECT_GT(scene.head["ranges"]["deviation"][1].get<double>(), 1);
 }
 
+TEST(ReportScene, FacesHaveTheirPatches) {
+  const MeshFile mesh = cube(9);
+  ReportCaps caps;
+  for (const std::size_t most : {972, 300}) {  // the whole surface, and a coarsened one
+    caps.faces = most;
+    const ReportScene scene = report_scene(mesh, cube_domain(), sides(mesh), caps);
+    const Json& patches = scene.head["patches"];
+    ASSERT_EQ(patches.size(), 6u);
+    for (int p = 0; p < 6; ++p) {
+      EXPECT_EQ(patches[p]["name"], "side_" + std::to_string(p + 1));
+      EXPECT_EQ(patches[p]["number"], 10 * (p + 1));
+      EXPECT_EQ(patches[p]["n_faces"], 162);
+      EXPECT_NEAR(patches[p]["area"].get<double>(), 1, 1e-12);
+    }
+    const std::vector<unsigned> x = words(scene, "positions"), faces = words(scene, "faces"),
+                                pairs = words(scene, "face_patch");
+    ASSERT_EQ(pairs.size(), faces.size() / 8);
+    std::map<unsigned, std::set<int>> of_side;  // patches of the faces whose corners are on a side, by axis and end
+    for (std::size_t f = 0; f < 2 * pairs.size(); ++f) {
+      const int patch = static_cast<int>(f % 2 == 0 ? pairs[f / 2] & 255 : pairs[f / 2] >> 8);
+      for (unsigned axis = 0; axis < 3; ++axis) {
+        const auto at = [&](int k) { return x[3 * faces[4 * f + k] + axis]; };
+        if (at(0) == at(1) && at(1) == at(2) && at(0) % 65535 == 0) of_side[2 * axis + at(0) / 65535].insert(patch);
+      }
+    }
+    ASSERT_EQ(of_side.size(), 6u);
+    std::set<int> all;
+    for (const auto& [side, found] : of_side) {
+      EXPECT_TRUE(most < 972 || found.size() == 1) << side;
+      all.insert(found.begin(), found.end());
+    }
+    EXPECT_EQ(all.size(), 6u);
+  }
+}
+
 TEST(ReportScene, OfALargeMeshThereIsTheWorstAndTheMiddle) {
   MeshFile mesh = cube(9);
   auto& q = std::get<std::vector<double>>(mesh.cell_data.at("mean_ratio"));
@@ -86,7 +133,7 @@ TEST(ReportScene, OfALargeMeshThereIsTheWorstAndTheMiddle) {
   caps.faces = 300;
   caps.tets = 3000;
   caps.worst = 2;
-  const ReportScene scene = report_scene(mesh, cube_domain(), 1, caps);
+  const ReportScene scene = report_scene(mesh, cube_domain(), sides(mesh), caps);
   EXPECT_EQ(scene.head["n_faces"], 972);
   EXPECT_LE(scene.head["n_faces_shown"].get<int>(), 300);
   EXPECT_GT(scene.head["n_faces_shown"].get<int>(), 100);

@@ -16,6 +16,8 @@ TEST_F(Program, ReportsAreOfTheCertificateBesideThem) {
   const auto made = fs::last_write_time(report);
   EXPECT_EQ(run("run egg").code, 0);
   EXPECT_EQ(fs::last_write_time(report), made);
+  EXPECT_EQ(run("run egg --patch-angle 30").code, 0);
+  EXPECT_NE(fs::last_write_time(report), made) << "it shows other patches now";
   EXPECT_EQ(run("run egg --min-quality .99").code, 6);
   EXPECT_TRUE(content(report).find("class=\"verdict fail\"") != std::string::npos);
   EXPECT_EQ(run("run egg --min-quality 0 --no-report").code, 0);
