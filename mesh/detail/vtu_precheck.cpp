@@ -1,5 +1,6 @@
 #include "mesh/detail/vtu_precheck.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
@@ -74,7 +75,10 @@ class TagWalk {
   std::uint64_t count(std::size_t at, std::string_view tag, std::string_view name) const;
   void open(std::size_t at, std::string_view tag);
   void close(std::size_t at, std::string_view name);
+  template <class More>
+  std::uint64_t check_header(std::size_t at, std::uint64_t room, std::string& bytes, const More& more) const;
   void check_block(std::size_t at, std::string_view text) const;
+  void check_appended(std::size_t at, bool raw) const;
   std::size_t after_comment(std::size_t at, std::string_view opening, std::string_view closing) const;
 
   const std::filesystem::path& path_;
@@ -83,6 +87,8 @@ class TagWalk {
   std::uint64_t n_tuples_ = 0;
   std::uint64_t ratio_ = 1;
   std::size_t header_word_ = 4;  ///< bytes of a number in front of a binary block
+  bool big_endian_ = false;
+  std::vector<std::uint64_t> offsets_;  ///< of arrays in the appended data
   bool has_root_ = false;
 };
 
@@ -122,6 +128,7 @@ void TagWalk::open(std::size_t at, std::string_view tag) {
     has_root_ = true;
     if (!attribute(tag, "compressor").empty()) ratio_ = kGreatestRatio;
     if (attribute(tag, "header_type") == "UInt64") header_word_ = 8;
+    big_endian_ = attribute(tag, "byte_order") == "BigEndian";
   }
   // A point takes at least three numbers, a cell at least its type: a byte each, or 4/3 characters in base64.
   const auto check = [&](std::uint64_t n) {
@@ -142,38 +149,75 @@ void TagWalk::open(std::size_t at, std::string_view tag) {
       const std::uint64_t n = count(at, tag, "NumberOfComponents");
       if (n > kMostComponents) refuse(at, "NumberOfComponents = " + std::to_string(n));
     }
+    if (attribute(tag, "format") == "appended") offsets_.push_back(count(at, tag, "offset"));
     const std::string_view array = attribute(tag, "Name");
     if (array == "faces" || array == "faceoffsets") refuse(at, "polyhedral cells are not read");
   }
   if (tag.back() != '/') open_.push_back(name);
 }
 
-/// An inline binary block holds what its header says. VTK leaves the rest of an array as malloc returned it otherwise.
-/// Header: the number of bytes; of compressed data: number of blocks, size, last size, compressed size of each.
-void TagWalk::check_block(std::size_t at, std::string_view text) const {
-  Base64Text base64(text);
-  std::string bytes;
+/// What is in front of a binary block: the number of its bytes, or of compressed data the number of parts, the size of
+/// one before it was compressed, that of the last, and the compressed size of each. VTK divides by the second.
+/// @param more  appends some bytes of the block to `bytes`, false at its end
+/// @param room  bytes that the block has at most
+/// @return bytes that are to follow behind the header, which are not all taken away from `bytes`
+template <class More>
+std::uint64_t TagWalk::check_header(std::size_t at, std::uint64_t room, std::string& bytes, const More& more) const {
   std::uint64_t n_words = ratio_ == 1 ? 1 : 3, expected = 0;
   const auto word = [&](std::uint64_t i) {
+    std::string text = bytes.substr(i * header_word_, header_word_);
+    if (big_endian_) std::reverse(text.begin(), text.end());
     std::uint64_t value = 0;
-    std::memcpy(&value, bytes.data() + i * header_word_, header_word_);
+    std::memcpy(&value, text.data(), text.size());
     return value;
   };
-  while (bytes.size() < n_words * header_word_ && base64.next(bytes)) {
+  while (bytes.size() < n_words * header_word_ && more()) {
     if (ratio_ == 1 || bytes.size() < header_word_) continue;
-    if (word(0) > text.size()) refuse(at, "a block with more parts than bytes");
+    if (word(0) > room) refuse(at, "a block with more parts than bytes");
     n_words = 3 + word(0);
   }
   if (bytes.size() < n_words * header_word_) refuse(at, "a binary block without a header");
+  if (ratio_ != 1 && word(0) > 0 && (word(1) == 0 || word(1) > room * ratio_ || word(2) > word(1)))
+    refuse(at, "a compressed block of parts of " + std::to_string(word(1)) + " bytes, the last of " +
+                   std::to_string(word(2)));
   for (std::uint64_t i = ratio_ == 1 ? 0 : 3; i < n_words; ++i) {
-    if (word(i) > text.size()) refuse(at, "a binary block that is shorter than its header says");
+    if (word(i) > room) refuse(at, "a binary block that is shorter than its header says");
     expected += word(i);
   }
-  std::uint64_t found = bytes.size() - n_words * header_word_;
+  bytes.erase(0, n_words * header_word_);
+  return expected;
+}
+
+/// An inline binary block holds what its header says. VTK leaves the rest of an array as malloc returned it otherwise.
+void TagWalk::check_block(std::size_t at, std::string_view text) const {
+  Base64Text base64(text);
+  std::string bytes;
+  const std::uint64_t expected = check_header(at, text.size(), bytes, [&] { return base64.next(bytes); });
+  std::uint64_t found = bytes.size();
   for (bytes.clear(); base64.next(bytes); bytes.clear()) found += bytes.size();
   if (!base64.valid()) refuse(at, "a binary block that is not base64");
   if (found != expected) {
     refuse(at, "a binary block of " + std::to_string(found) + " bytes whose header says " + std::to_string(expected));
+  }
+}
+
+/// The same of the blocks behind all tags, raw or in base64, as far as the end of the file.
+void TagWalk::check_appended(std::size_t at, bool raw) const {
+  const std::size_t first = bytes_.find('_', at) + 1;
+  if (first == 0) refuse(at, "appended data without a beginning");
+  for (const std::uint64_t offset : offsets_) {
+    if (offset >= bytes_.size() - first) refuse(at, "an offset beyond the appended data");
+    std::string_view rest = bytes_.substr(first + offset);
+    Base64Text base64(rest);
+    std::string bytes;
+    const std::uint64_t expected = check_header(first + offset, rest.size(), bytes, [&] {
+      if (!raw) return base64.next(bytes);
+      const std::string_view some = rest.substr(0, header_word_);
+      bytes += some;
+      rest.remove_prefix(some.size());
+      return !some.empty();
+    });
+    if (expected > rest.size()) refuse(first + offset, "a binary block that is shorter than its header says");
   }
 }
 
@@ -212,6 +256,7 @@ void TagWalk::run() {
     if (name_of(tag) == "AppendedData") {
       // Raw bytes follow that may contain anything; VTK's parser stops here too.
       if (bytes_.find("</VTKFile>", at) == std::string_view::npos) refuse(bytes_.size(), "the file is cut");
+      check_appended(at, attribute(tag, "encoding") == "raw");
       return;
     }
     at = bytes_.find('<', at + end);

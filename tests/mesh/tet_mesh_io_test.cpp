@@ -223,6 +223,20 @@ TEST(TetMeshIo, MeshesOfSecondOrderReadBackBitEqual) {
   fs::remove(path);
 }
 
+// As ParaView writes them. VTK divides by the size of a part before it is compressed.
+TEST(TetMeshIo, AppendedBlocksAreReadAndTheirHeadersChecked) {
+  const fs::path seeds = fs::path(UMTET_SOURCE_DIR) / "tests/fuzz/seeds/mesh_vtu";
+  for (const char* name : {"appended_raw.vtu", "appended_base64.vtu"}) {
+    const MeshFile file = read_tet_mesh(seeds / name);
+    EXPECT_EQ(file.mesh.C, std::vector<Tet>({{0, 1, 2, 3}})) << name;
+    EXPECT_EQ(file.mesh.V.at(3), Vec3(0, 0, 1)) << name;
+  }
+  for (const char* name : {"appended_no_bytes.vtu", "parts_of_no_bytes.vtu"}) {
+    const std::string message = refusal(seeds / name);
+    EXPECT_NE(message.find("parts of 0 bytes"), std::string::npos) << message;
+  }
+}
+
 TEST(TetMeshIo, LyingFilesAreRefusedWithPathPlaceAndReason) {
   const std::string head = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
   const std::string vtu =
