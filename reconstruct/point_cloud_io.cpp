@@ -27,6 +27,15 @@ constexpr std::size_t kFewestPoints = 10;  // of a surface; what surveys a scan 
 // Sixth powers of lengths, products of volumes, must stay normal doubles; no unit makes a body so large or so small.
 constexpr double kFarthest = 1e50, kSmallest = 1e-50;
 
+/// Headers and rows of numbers have short lines: what begins otherwise is refused before the rest of it, perhaps
+/// gigabytes, is read.
+void refuse_endless_line(const std::filesystem::path& file, std::string_view head) {
+  if (head.find('\n') != std::string_view::npos || head.find('\r') != std::string_view::npos) return;
+  refuse({.name = file.string(), .bytes = head},
+         fmt::format("no end of a line in the first {} bytes: this is no PLY, PCD or text with a point a line",
+                     head.size()));
+}
+
 std::string load(const std::filesystem::path& file) {
   const auto fail = [&](int error) {
     throw std::system_error(error != 0 ? error : EIO, std::generic_category(), file.string());
@@ -36,10 +45,15 @@ std::string load(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in) fail(errno);
   std::string bytes;
-  if (std::filesystem::is_regular_file(file)) bytes.reserve(std::filesystem::file_size(file));
   std::array<char, 1 << 16> chunk;
-  while (in.read(chunk.data(), chunk.size()) || in.gcount() > 0)
-    bytes.append(chunk.data(), static_cast<std::size_t>(in.gcount()));
+  while (in.read(chunk.data(), chunk.size()) || in.gcount() > 0) {
+    const auto n = static_cast<std::size_t>(in.gcount());
+    if (bytes.empty()) {
+      if (n == chunk.size()) refuse_endless_line(file, {chunk.data(), n});
+      if (std::filesystem::is_regular_file(file)) bytes.reserve(std::filesystem::file_size(file));
+    }
+    bytes.append(chunk.data(), n);
+  }
   if (in.bad()) fail(errno);
   return bytes;
 }
@@ -90,8 +104,9 @@ void check_extent(const CloudSource& source, const std::vector<Vec3>& points, st
   double scale = 0;
   for (const Vec3& x : points) scale = std::max(scale, (x - mean).cwiseAbs().maxCoeff());
   if (scale < kSmallest)
-    refuse(source, fmt::format("the points are within {:.3g} of each other, less than 1e-50: give them in a smaller unit",
-                               2 * scale));
+    refuse(source,
+           fmt::format("the points are within {:.3g} of each other, less than 1e-50: give them in a smaller unit",
+                       2 * scale));
   Mat3 spread = Mat3::Zero();
   for (const Vec3& x : points) spread += (x - mean) / scale * ((x - mean) / scale).transpose();
   const Vec3 extent =

@@ -14,6 +14,8 @@ namespace {
 constexpr std::array<std::size_t, 7> kColumns = {0, 1, 2, 3, 4, 5, 6};  // x y z nx ny nz label, or x y z label
 // More different whole numbers in a column without a name are intensities.
 constexpr std::size_t kMostLabels = 64;
+// Of a damaged or binary file a line may be gigabytes.
+constexpr std::size_t kLongestLine = 1 << 16;
 
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
@@ -79,6 +81,9 @@ CloudFile read_xyz(const CloudSource& source) {
   std::optional<std::uint64_t> announced;  // .pts files start with a line that holds the number of points
   bool first = true;
   while (lines.next_filled(line)) {
+    if (line.size() > kLongestLine)
+      refuse(source,
+             fmt::format("line {}: {} bytes long: this is no text with a point a line", lines.line(), line.size()));
     split(line, " \t", tokens);
     if (tokens.front().starts_with('#') || tokens.front().starts_with("//")) continue;
     const bool may_announce = std::exchange(first, false) && tokens.size() == 1;

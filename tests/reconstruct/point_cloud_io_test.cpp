@@ -46,6 +46,16 @@ TEST_F(PointCloudIo, XyzIsReadWithBlanksTabsCommasAndComments) {
   expect_cloud("plus.xyz", replaced(text_, "1", "+1"), cloud_);
 }
 
+// 64 GB of zeros: no machine of a test holds them, so they are refused by their beginning.
+TEST_F(PointCloudIo, WhatHasNoLinesIsRefusedBeforeItIsRead) {
+  for (const char* name : {"zeros.ply", "zeros.pcd", "zeros.xyz"}) {
+    const fs::path file = write(name, "");
+    fs::resize_file(file, std::uintmax_t{1} << 36);
+    EXPECT_THROW(read_scan(file), CloudRefused) << name;
+  }
+  expect_refused("one_line.xyz", text_ + std::string(1 << 17, '1'), {"line 101: 131072 bytes long"});
+}
+
 /// Rows of the cloud with a last column.
 std::string labelled_rows(const OrientedPointCloud& cloud, const std::function<std::string(int)>& label) {
   std::istringstream rows(text_rows(cloud));
