@@ -53,7 +53,8 @@ foreach(part reconstruct mesh pipeline)
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
     INCLUDES DESTINATION ${umtet_headers})
   install(DIRECTORY ${part} DESTINATION ${umtet_headers} COMPONENT development
-    FILES_MATCHING PATTERN "*.h" PATTERN detail EXCLUDE PATTERN examples EXCLUDE PATTERN command_line.h EXCLUDE)
+    FILES_MATCHING PATTERN "*.h" PATTERN detail EXCLUDE PATTERN examples EXCLUDE PATTERN command_line.h EXCLUDE
+    PATTERN version.h EXCLUDE)
 endforeach()
 # Those of detail/ that public headers need; a test looks that there are no others.
 install(FILES mesh/detail/id_set.h DESTINATION ${umtet_headers}/mesh/detail COMPONENT development)
@@ -81,9 +82,6 @@ foreach(part reconstruct mesh pipeline)
   list(TRANSFORM umtet_${part}_links PREPEND -l OUTPUT_VARIABLE flags)
   list(JOIN flags " " pc_links)
   set(pc_extra)
-  if(part STREQUAL pipeline)
-    set(pc_extra "-DUMTET_VERSION=\\\"${PROJECT_VERSION}\\\"")
-  endif()
   if(part STREQUAL mesh AND UMTET_WITH_GSL)
     set(pc_extra -DUMTET_WITH_GSL=1)
   endif()
