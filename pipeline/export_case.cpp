@@ -163,6 +163,9 @@ std::vector<fs::path> export_case(const CasePaths& paths, const std::vector<std:
   const SolverMesh mesh = mesh_of_case(paths, parameters, progress);
   progress.detail(fmt::format("export: {} tets, {} boundary faces in {} patches", mesh.n_tets(), mesh.n_faces(),
                               mesh.patches.size()));
+  if (mesh.nodes_per_tet == 10 && std::find(formats.begin(), formats.end(), "mesh") != formats.end()) {
+    progress.warn("export: FreeFEM finds no tets in mesh.mesh: it reads those of 4 nodes (--order 1)");
+  }
   fs::create_directories(paths.exports());
   remove_stale_temporaries(paths.exports());
   std::vector<fs::path> written;
