@@ -21,8 +21,8 @@ using Warn = std::function<void(const std::string&)>;
 /// then islands below output.label_min_area go), else by output.patch_planar or else output.patch_angle where set,
 /// else by connected pieces. A positive label is the number of its patch, others get the numbers after the largest; a
 /// patch without a name is patch_LABEL, region_N, plane_N (and rest) or boundary_N. Labels that no face has are said,
-/// and that nothing is flat. \throw UsageError  as parse_label_names(), or a name for a label that the cloud does not
-/// have
+/// and that nothing is flat.
+/// \throw UsageError  as parse_label_names(), or a name for a label that the cloud does not have
 void divide_boundary(SolverMesh& mesh, const OrientedPointCloud& cloud, const Parameters& parameters, const Warn& warn);
 
 }  // namespace umtet

@@ -157,14 +157,14 @@ Figures figures_of(const CasePaths& paths, const Parameters& parameters, const M
   return f;
 }
 
-/// The mesh with the patches that exported files have; one where names of labels are wrong, which only an export
-/// refuses.
+/// The mesh with the patches that exported files have.
 SolverMesh divided(const MeshFile& mesh, const Domain& domain, const Parameters& parameters) {
   SolverMesh made = solver_mesh(mesh.mesh);
   for (Vec3& x : made.nodes) x -= domain.shift;
   try {
     divide_boundary(made, domain.cloud, parameters, [](const std::string&) {});
   } catch (const UsageError&) {
+    // Names for labels that are not there: an export refuses them, here all faces stay one patch.
   }
   return made;
 }
