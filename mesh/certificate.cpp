@@ -215,13 +215,17 @@ Foot foot_point(ImplicitFunctionRef psi, const Vec3& x, double h) {
 
 struct FaceMeasure {
   bool found;
-  double distance, cos_normal;
+  double distance, cos_normal, area;
 };
+
+// Between a flat face and a quadric through its corners lies this much of area x distance of the centroid.
+constexpr double kMeanOverCentroid = .75;
 
 /// Fills the distances and normals of the boundary.
 void measure_against(ImplicitFunctionRef psi, const TetMesh& mesh, const std::vector<Triangle>& faces,
-                     const std::vector<int>& vertices, double h, const KeepGoing& keep_going,
-                     MeshCertificate::Boundary& boundary) {
+                     const std::vector<int>& vertices, const KeepGoing& keep_going, MeshCertificate& certificate) {
+  const double h = certificate.h;
+  MeshCertificate::Boundary& boundary = certificate.boundary;
   std::vector<double> vertex_distance(vertices.size());
   polled_parallel_for(vertices.size(), kValuesPerPoll, keep_going, [&](std::size_t i) {
     Vec3 g;
@@ -235,10 +239,11 @@ void measure_against(ImplicitFunctionRef psi, const TetMesh& mesh, const std::ve
     const Foot foot = foot_point(psi, (a + b + c) / 3.0, h);
     const Vec3 n = (b - a).cross(c - a);
     const double length = n.norm();
-    face[i] = {foot.found, foot.distance, length > 0 ? n.dot(foot.normal) / length : -1.0};  // no area: no normal
+    const double cosine = length > 0 ? n.dot(foot.normal) / length : -1.0;  // no area: no normal
+    face[i] = {foot.found, foot.distance, cosine, length / 2};
   });
 
-  double max_vertex = 0, max_centroid = 0, min_cos = 1;
+  double max_vertex = 0, max_centroid = 0, min_cos = 1, gap = 0;
   for (const double d : vertex_distance) max_vertex = std::max(max_vertex, d);
   for (const FaceMeasure& f : face) {
     if (!f.found) {
@@ -246,12 +251,14 @@ void measure_against(ImplicitFunctionRef psi, const TetMesh& mesh, const std::ve
       continue;
     }
     max_centroid = std::max(max_centroid, f.distance);
+    gap += kMeanOverCentroid * f.area * f.distance;
     min_cos = std::min(min_cos, f.cos_normal);
     boundary.n_cos_below_half += f.cos_normal < 0.5;
   }
   boundary.max_vertex_distance_over_h = max_vertex / h;
   boundary.max_centroid_distance_over_h = max_centroid / h;
   boundary.min_cos_normal = min_cos;
+  boundary.gap_over_volume = gap / certificate.volume;
 }
 
 /// Runs `aside` in another thread, if there is one, while this one runs `here`.
@@ -312,7 +319,7 @@ MeshCertificate certify(const CertificateInput& input) {
   for (const int i : at_walls) boundary.n_moved_wall_vertices += mesh.V[i] != (*input.background_V)[i];
   if (input.psi) {
     const auto measure = [&](const std::vector<Triangle>& faces, const std::vector<int>& vertices) {
-      measure_against(*input.psi, mesh, faces, vertices, certificate.h, input.keep_going, boundary);
+      measure_against(*input.psi, mesh, faces, vertices, input.keep_going, certificate);
     };
     if (walls.empty()) {
       measure(skin.triangles, topology.vertices);
@@ -352,6 +359,12 @@ std::vector<std::string> failures(const MeshCertificate& certificate) {
   if (b.min_cos_normal && !(*b.min_cos_normal > 0)) {
     reasons.push_back(
         fmt::format("the boundary is folded: cos(face normal, grad psi) is down to {:.3g}", *b.min_cos_normal));
+  }
+  if (b.gap_over_volume && !(*b.gap_over_volume <= kMostGap)) {
+    reasons.push_back(
+        fmt::format("volume_gap: between the flat faces and psi = 0 lies {:.3g} % of the volume of the mesh, more than "
+                    "{:.3g} %: h is too large for this shape",
+                    100 * *b.gap_over_volume, 100 * kMostGap));
   }
   return reasons;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "mesh/certificate.h"
 #include "pipeline/version.h"
 
 namespace umtet {
@@ -75,9 +76,10 @@ std::string boundary_line(const Json& b) {
       closed ? fmt::format("closed manifold, {} component{}, genus {}", n, n == 1 ? "" : "s", b.value("genus", 0L))
              : fmt::format("NOT a closed manifold, {} component{}", n, n == 1 ? "" : "s");
   if (b.contains("max_vertex_distance_over_h") && b["max_vertex_distance_over_h"].is_number()) {
-    line += fmt::format("; off psi = 0: vertices {} h, face centres {} h; cos(normals) >= {}",
+    line += fmt::format("; off psi = 0: vertices {} h, face centres {} h, {} of the volume; cos(normals) >= {}",
                         show(b, "max_vertex_distance_over_h", "{:.1e}"),
-                        show(b, "max_centroid_distance_over_h", "{:.3f}"), show(b, "min_cos_normal", "{:.3f}"));
+                        show(b, "max_centroid_distance_over_h", "{:.3f}"), show(b, "gap_over_volume", "{:.1e}"),
+                        show(b, "min_cos_normal", "{:.3f}"));
   }
   return line;
 }
@@ -116,7 +118,7 @@ void judge(Json& measured, const Parameters& parameters) {
   std::vector<std::string> reasons = measured.at("reasons");
   measured.erase("reasons");  // they go behind the verdict
   const double gate = parameters.real("output.min_quality"), q = measured.at("quality").at("min");
-  measured["gates"] = {{"min_quality", gate > 0 ? Json(gate) : Json(nullptr)}};
+  measured["gates"] = {{"min_quality", gate > 0 ? Json(gate) : Json(nullptr)}, {"volume_gap", kMostGap}};
   if (q < gate) reasons.push_back(fmt::format("min quality {:.4f} is below the gate of {:.4f}", q, gate));
   measured["verdict"] = reasons.empty() ? "pass" : "fail";
   measured["reasons"] = reasons;

@@ -163,6 +163,7 @@ Json to_json(const MeshCertificate& c) {
             {"coordinate_rounding_over_h", c.coordinate_rounding / c.h},
             {"max_centroid_distance_over_h", number_or_null(c.boundary.max_centroid_distance_over_h)},
             {"min_cos_normal", number_or_null(c.boundary.min_cos_normal)},
+            {"gap_over_volume", number_or_null(c.boundary.gap_over_volume)},
             {"n_cos_below_half", c.boundary.n_cos_below_half}}}};
 }
 

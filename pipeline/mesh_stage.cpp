@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "mesh/certificate.h"
 #include "mesh/quality_report.h"
 #include "mesh/universal_mesh.h"
 #include "pipeline/background_choice.h"
@@ -36,6 +37,13 @@ void check_lost(MeshAttempt& a, const Vec3& shift) {
       fmt::format("the mesh lacks what is thin around ({:.6g}, {:.6g}, {:.6g}): psi = 0 is "
                   "{:.2g} h from its boundary there",
                   at.x(), at.y(), at.z(), lost.distance / a.h));
+}
+
+/// Right but for the size of its faces: there to be looked at, and the certificate says no.
+bool is_only_coarse(const MeshAttempt& a) {
+  if (!a.made() || a.n_reasons() != 1) return false;
+  const Json& gap = a.measured.at("boundary").at("gap_over_volume");
+  return gap.is_number() && gap.get<double>() > kMostGap;
 }
 
 class MeshStage {
@@ -265,7 +273,8 @@ void MeshStage::run() {
       [this](double h) { return attempt_for_tets(h); },
       [this](const std::string& line) { context_.progress.say(line); });
   const UmResult& result = best.result;
-  if (!best.is_right() && !best.thin.empty() && !context_.parameters.flag("mesh.allow_thin")) refuse_thin(best);
+  const bool refuses_thin = !best.thin.empty() && !context_.parameters.flag("mesh.allow_thin");
+  if (refuses_thin && !best.is_right() && !is_only_coarse(best)) refuse_thin(best);
   if (!best.made()) refuse(result, best.h);
 
   context_.progress.report("mesh", "write", .97);

@@ -106,6 +106,10 @@ std::string check_list(const Json& c) {
   // What cannot be proved is open, not wrong.
   const Json& proved = at(c, "/domain/components_proved");
   add("all pieces of ψ = 0 proved to be seen", proved == true ? proved : Json(nullptr));
+  const Json &gap = at(c, "/boundary/gap_over_volume"), &most = at(c, "/gates/volume_gap");
+  if (gap.is_number() && most.is_number()) {
+    add(fmt::format("between faces and ψ = 0 at most {:.3g} % of the volume", 100 * most.get<double>()), gap <= most);
+  }
   const Json& gate = at(c, "/gates/min_quality");
   if (gate.is_number()) {
     add("min Q at least " + value(c, "/gates/min_quality", 6),

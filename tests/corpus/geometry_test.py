@@ -37,6 +37,15 @@ def box(size, spacing):
     return np.vstack(rows)
 
 
+def plate(thickness, n):
+    """Two squares, without a rim."""
+    rows = np.zeros((n, 6))
+    rows[:, :2] = np.random.default_rng(3).uniform(-1, 1, (n, 2))
+    rows[:, 5] = np.where(np.arange(n) % 2 == 0, 1, -1)
+    rows[:, 2] = thickness / 2 * rows[:, 5]
+    return rows
+
+
 def plane(noise):
     rows = np.zeros((900, 6))
     rows[:, :2] = np.stack(np.meshgrid(*[np.arange(30) / 30.] * 2), -1).reshape(-1, 2)
@@ -81,17 +90,18 @@ def measure(file, samples):
             "farthest": distances.max(), "tets": len(tets)}
 
 
-BALL = 4 / 3 * np.pi
 ONE_SIDED = (4, ["reaches the wall", "the surface is closed"])
+TOO_NEAR = (4, ["two sides of a body are nearer to each other than its samples"])
 # Cloud, arguments, and what must come of it: volume, how far it may be off, and how far the farthest sample may be from
 # the mesh; or an exit code and words of its reason.
 SHAPES = {
     "cube": (box((1, 1, 1), .05), ["--h", ".05"], (1, .01, .03)),
-    "plate thinner than its samples are apart": (box((1, 1, .004), .03), ["--h", ".03"], ONE_SIDED),
+    "plate thinner than its samples are apart": (box((1, 1, .004), .03), ["--h", ".03"], TOO_NEAR),
+    "the same, its samples at random": (plate(.004, 4000), ["--h", ".03"], TOO_NEAR),
     "half a sphere": (sphere(1500)[:750], [], ONE_SIDED),
     "sheets nearer than samples": (np.vstack([sphere(3000), sphere(2000, .95) * [1, 1, 1, -1, -1, -1]]), ["--h", ".1"],
                                    (5, ["body down to", "needs h ="])),
-    "h beyond the body": (sphere(500), ["--h", "50"], (BALL, 2, .4)),  # a ball of 20 tets: as coarse as asked
+    "h beyond the body": (sphere(500), ["--h", "50"], (6, ["volume_gap"])),  # a ball of 20 tets
     "h too small": (sphere(500), ["--h", "1e-12"], (9, ["more than 2000000 tets"])),
     "plane": (plane(0), [], (3, ["one plane"])),
     "noisy plane": (plane(.003), [], ONE_SIDED),
@@ -106,7 +116,7 @@ def run(program, cloud, arguments):
         r = subprocess.run([program, "run", str(folder / "cloud.xyz"), "-o", str(folder / "case"), "--json", *arguments],
                            capture_output=True, text=True)
         if r.returncode != 0:
-            return r.returncode, r.stderr, None, None
+            return r.returncode, r.stderr + r.stdout, None, None
         verdict = json.loads(r.stdout)["certificate"]["verdict"]
         return 0, r.stderr, verdict, measure(folder / "case/3-mesh/mesh.vtu", cloud[:, :3])
 

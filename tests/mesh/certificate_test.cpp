@@ -62,6 +62,17 @@ TEST(Certificate, ABallPassesAndItsNumbersAreThoseOfTheBall) {
   EXPECT_EQ(c.boundary.n_cos_below_half, 0u);
 }
 
+TEST(Certificate, FacesThatMissMuchOfTheVolumeFail) {
+  for (int levels = 0; levels < 5; ++levels) {
+    const Ball ball(levels);
+    const MeshCertificate c = ball.certificate();
+    const double missed = 4 * std::acos(-1.) / 3 / c.volume - 1;
+    EXPECT_NEAR(*c.boundary.gap_over_volume, missed, (levels < 2 ? .5 : .05) * missed) << levels;
+    EXPECT_EQ(failures(c).empty(), missed < kMostGap) << missed;
+    if (missed > kMostGap) EXPECT_TRUE(says(failures(c), "volume_gap"));
+  }
+}
+
 TEST(Certificate, AMeshAloneIsJudgedWithoutPsi) {
   const Ball ball;
   const MeshCertificate c = certify({&ball.mesh, 0, nullptr, std::nullopt});

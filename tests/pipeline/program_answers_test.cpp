@@ -75,6 +75,19 @@ TEST_F(Program, GatesAndImpossibleMeshesHaveTheirCodes) {
   EXPECT_EQ(run("mesh --implicit 'x^2+y^2+z^2-1' --box -2,-2,-2,2,2,2 --h .001 -o ball").code, 9);
 }
 
+TEST_F(Program, ABodyMeshedFarTooCoarselyIsNoSuccess) {
+  for (const char* call :
+       {"mesh --implicit 'x^2+y^2+z^2-1' --box=-6,-6,-6,6,6,6 --h 5 -o ball", "run egg.ply --h 5 -o egg"}) {
+    const Result r = run(call);
+    EXPECT_EQ(r.code, 6) << r.err;
+    EXPECT_NE(r.out.find("volume_gap: between the flat faces and psi = 0 lies"), std::string::npos) << r.out;
+    EXPECT_NE(r.out.find("try a smaller --h"), std::string::npos) << r.out;
+  }
+  EXPECT_TRUE(fs::exists(folder / "ball/3-mesh/mesh.vtu"));
+  const Json c = Json::parse(content(folder / "ball/certificate.json"));
+  EXPECT_GT(c["boundary"]["gap_over_volume"], c["gates"]["volume_gap"]);
+}
+
 TEST_F(Program, OneReasonToFailIsExitSixWithARemedy) {
   // A lens much thinner at its rim than h.
   const Result r = run(
