@@ -36,6 +36,7 @@ MeshAttempt best_attempt(const EdgeLength& choice, const std::function<MeshAttem
   bool go_on = may_improve(best);
   double h = choice.h, next_h = std::max(kRefinement * h, choice.least);
   std::string why = best.complaint();
+  bool keeps_last = true;
   for (int k = 1; k < kAttempts && go_on && next_h <= kWorthTrying * h; ++k) {
     say(fmt::format("mesh: h = {:.4g} will not do ({}); trying {:.4g}", h, why, next_h));
     h = next_h;
@@ -43,9 +44,10 @@ MeshAttempt best_attempt(const EdgeLength& choice, const std::function<MeshAttem
     MeshAttempt next = attempt(h);
     go_on = may_improve(next);
     why = next.complaint();
-    if (!is_worse(next, best)) best = std::move(next);
+    keeps_last = !is_worse(next, best);
+    if (keeps_last) best = std::move(next);
   }
-  if (best.h != h) say(fmt::format("mesh: h = {:.4g} will not do either ({}); keeping h = {:.4g}", h, why, best.h));
+  if (!keeps_last) say(fmt::format("mesh: h = {:.4g} will not do either ({}); keeping h = {:.4g}", h, why, best.h));
   return best;
 }
 

@@ -54,6 +54,16 @@ TEST(BestAttempt, StopsAtTheFirstMeshWithoutReasonsAndWhereASmallerHCannotHelp) 
   EXPECT_EQ(Story({2, kInverted, 0}).tried.size(), 3u);
   EXPECT_DOUBLE_EQ(Story({2, kInverted, 0}).kept.h, .64);
   EXPECT_EQ(Story({kEmpty}).tried.size(), 1u);
+  // An attempt for a number of tets may have come to another h than it was asked for.
+  std::vector<std::string> said;
+  const auto elsewhere = [](double h) {
+    MeshAttempt a;
+    a.h = 1.1 * h;
+    a.measured["reasons"] = std::vector<std::string>{};
+    return a;
+  };
+  best_attempt({1, 1}, elsewhere, [&](const std::string& line) { said.push_back(line); });
+  EXPECT_TRUE(said.empty());
   // A given h is its own least: it is taken as it is.
   EXPECT_EQ(Story({kInverted}, 1).tried.size(), 1u);
   // The least is tried where four fifths would go below, unless it is next to the last one.
