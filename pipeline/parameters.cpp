@@ -196,6 +196,21 @@ bool Parameters::silences_others(const std::string& key, const ParamValue& value
   return true;
 }
 
+namespace {
+
+// A line that is lost from case.toml would be a parameter that silently has its default again.
+const std::string kTomlHead =
+    "# Effective parameters of this case. Feed it back with --config.\n# Checksum of what follows: ";
+
+bool is_as_written(std::string_view text) {
+  if (!text.starts_with(kTomlHead)) return false;
+  text.remove_prefix(kTomlHead.size());
+  const std::size_t line = std::min(text.find('\n'), text.size());
+  return line < text.size() && text.substr(0, line) == checksum(text.substr(line + 1));
+}
+
+}  // namespace
+
 void Parameters::assign(const std::string& key, ParamValue value, ParamSource source, const std::string& origin) {
   check(field(key), value);
   Entry& entry = entries_.at(key);
@@ -205,9 +220,15 @@ void Parameters::assign(const std::string& key, ParamValue value, ParamSource so
 }
 
 void Parameters::load(const std::filesystem::path& file, ParamSource source) {
+  const std::string text = read_text(file);
+  if (source == ParamSource::Case && !is_as_written(text)) {
+    throw ArtefactDamaged(file.string() +
+                          ": cut short, damaged or edited: `umtet run CLOUD -o CASE` with its flags makes "
+                          "it again, --config takes an edited one");
+  }
   toml::table root;
   try {
-    root = toml::parse(read_text(file), file.string());
+    root = toml::parse(text, file.string());
   } catch (const toml::parse_error& e) {
     throw UsageError(
         fmt::format("{}:{}:{}: {}", file.string(), e.source().begin.line, e.source().begin.column, e.description()));
@@ -256,8 +277,7 @@ void Parameters::copy_section(std::string_view name, const Parameters& other) {
 }
 
 std::string Parameters::toml() const {
-  std::string out = "# Effective parameters of this case. Feed it back with --config.\n";
-  std::string section;
+  std::string out, section;
   for (const ParamField& f : params_fields()) {
     const std::size_t dot = f.key.find('.');
     if (f.key.substr(0, dot) != section) {
@@ -267,7 +287,7 @@ std::string Parameters::toml() const {
     const Entry& entry = entries_.at(f.key);
     out += fmt::format("{} = {}  # {}: {}\n", f.key.substr(dot + 1), print(entry.value), entry.origin, f.help);
   }
-  return out;
+  return kTomlHead + checksum(out) + "\n" + out;
 }
 
 nlohmann::ordered_json Parameters::section(std::string_view name) const {

@@ -49,11 +49,19 @@ class CaseRun {
 /// case.toml goes on telling what the stages were made with that this run leaves alone.
 void CaseRun::take_former_parameters() {
   if (!fs::exists(paths_.parameters())) return;
+  const auto is_kept = [&](Stage stage) {
+    return (stage < request_.from || stage > request_.until) && fs::exists(paths_.record(stage));
+  };
   Parameters former;
-  former.load(paths_.parameters(), ParamSource::Case);
+  try {
+    former.load(paths_.parameters(), ParamSource::Case);
+  } catch (const ArtefactDamaged&) {
+    if (request_.strict || std::any_of(std::begin(kStages), std::end(kStages), is_kept)) throw;
+    progress_.warn(paths_.parameters().string() + ": cut short, damaged or edited; making it again");
+    return;
+  }
   for (const Stage stage : kStages) {
-    const bool asked = stage >= request_.from && stage <= request_.until;
-    if (!asked && fs::exists(paths_.record(stage))) parameters_.copy_section(section_of(stage), former);
+    if (is_kept(stage)) parameters_.copy_section(section_of(stage), former);
   }
   if (request_.until < Stage::Mesh && fs::exists(paths_.certificate())) parameters_.copy_section("output", former);
 }
@@ -164,6 +172,7 @@ void CaseRun::report() {
 RunOutcome CaseRun::operator()() {
   const CaseLock lock(paths_.root);
   refuse_foreign_folder(paths_);
+  remove_stale_temporaries(paths_.root);  // of a run that was killed when its stages were done
   take_former_parameters();
   const bool of_formula = request_.until == Stage::Mesh && !parameters_.text("mesh.implicit").empty();
   std::vector<StageRecord> records;

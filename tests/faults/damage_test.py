@@ -1,5 +1,6 @@
 """Artefacts that are cut, flipped, absurd or of another version; odd paths, folders and environments."""
 import json
+import re
 import shutil
 import subprocess
 import threading
@@ -10,7 +11,18 @@ from support import PROGRAM, SLOW, Folder, ellipsoid, promised, run, write_ply
 
 ARTEFACTS = ("1-cloud/cloud.ply", "1-cloud/record.json", "2-level-set/level_set.vti", "2-level-set/record.json",
              "3-mesh/mesh.vtu", "3-mesh/omega_h.vtu", "3-mesh/projected.vtu", "3-mesh/quality.csv",
-             "3-mesh/record.json", "certificate.json")
+             "3-mesh/record.json", "case.toml", "certificate.json")
+
+
+def sections(name, content):
+    """Where a file may be cut: before and behind every line of a header, tag, array, key, section or table.
+
+    Whatever the format, also in the middle of the longest of these, and before the last byte but one."""
+    pattern = {"ply": rb"(?<=\n)(?=[a-z]+ )|(?<=end_header\n)", "vti": rb"(?=<)|(?<=>)", "vtu": rb"(?=<)|(?<=>)",
+               "csv": rb"(?<=\n)(?=[a-z])|(?<=,)(?=[a-z])", "json": rb"(?<=\n)(?= *\")", "toml": rb"(?<=\n)"}
+    cuts = sorted({m.start() for m in re.finditer(pattern[name.rsplit(".", 1)[1]], content)} | {0, len(content) - 2})
+    longest = max(range(len(cuts) - 1), key=lambda k: cuts[k + 1] - cuts[k])
+    return sorted([*cuts, (cuts[longest] + cuts[longest + 1]) // 2])
 
 
 class Damage(unittest.TestCase):
@@ -43,19 +55,31 @@ class Damage(unittest.TestCase):
         self.assertEqual(again.returncode, 0, f"{name} {what}: {again.stderr}")
         self.assertIn("making it again", again.stderr, f"{name} {what}")
         self.assertTrue(promised(case) == self.expected, f"{name} {what}")
+        if name == "case.toml":
+            self.assertTrue((case / name).read_bytes() == (self.plain / name).read_bytes())
 
     def test_cut_and_flipped_artefacts_are_noticed_and_made_again(self):
+        n_cuts = 0
         for k, name in enumerate(ARTEFACTS):
             good = (self.plain / name).read_bytes()
-            places = range(0, len(good), max(1, len(good) // 12)) if SLOW else [(k * 7919 + 13) % len(good)]
-            for at in places:
-                # The last character of a document is a newline, and says nothing.
-                flipped = bytes(b ^ (1 << k % 7) if i == at else b for i, b in enumerate(good))
-                with self.subTest(name=name, at=at):
-                    if SLOW or k % 2:
-                        self.mended(name, good[:at], f"cut at {at}")
-                    if SLOW or k % 2 == 0:
-                        self.mended(name, flipped, f"flipped at {at}")
+            cuts = sections(name, good)
+            for at in cuts if SLOW else cuts[k * 7919 % len(cuts):][:k % 2]:
+                n_cuts += 1
+                with self.subTest(name=name, cut=at):
+                    self.mended(name, good[:at], f"cut at {at}")
+            for at in range(0, len(good), max(1, len(good) // 12)) if SLOW else [(k * 7919 + 13) % len(good)][k % 2:]:
+                flipped = good[:at] + bytes([good[at] ^ 1 << k % 7]) + good[at + 1:]
+                with self.subTest(name=name, flipped=at):
+                    self.mended(name, flipped, f"flipped at {at}")
+        print(f"{n_cuts} cuts in {len(ARTEFACTS)} artefacts were noticed and made again")
+
+    def test_what_a_killed_run_has_begun_is_removed_though_all_is_done(self):
+        case = self.folder / "begun"
+        shutil.copytree(self.plain, case)
+        for name in ("case.toml", "certificate.json", "report.html"):
+            (case / f".tmp-1-{name}").write_text("begun")
+        self.assertEqual(self.call(case).returncode, 0)
+        self.assertEqual(list(case.rglob(".tmp-*")), [])
 
     def test_records_of_another_schema_are_made_again(self):
         case = self.folder / "newer"
