@@ -10,9 +10,11 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <initializer_list>
 #include <new>
 
 #include "pipeline/exit_code.h"
+#include "pipeline/stop_document.h"
 
 namespace umtet {
 namespace {
@@ -20,6 +22,7 @@ namespace {
 std::atomic<int> asked_by{0};
 std::atomic<const char*> work{"start"};
 std::atomic<bool> in_own_time{false};
+std::atomic<const char*> answers_to{nullptr};  ///< the command whose caller waits for a document
 std::terminate_handler other_end = nullptr;
 // Else a signal handler may not touch them.
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<const char*>::is_always_lock_free &&
@@ -29,21 +32,29 @@ static_assert(std::atomic<int>::is_always_lock_free && std::atomic<const char*>:
 // of a second is promised, and what the kernel takes back of a large process is part of it.
 constexpr long kPatienceMicroseconds = 100'000;
 
-void say(const char* text) { [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text)); }
+void write_all(int file, std::initializer_list<const char*> texts) {
+  for (const char* text : texts) [[maybe_unused]] const auto written = ::write(file, text, std::strlen(text));
+}
+
+void say(const char* text) { write_all(STDERR_FILENO, {text}); }
 
 int code_of(int signal) { return signal == SIGALRM ? static_cast<int>(ExitCode::ResourceLimit) : 128 + signal; }
 
 /// Every file of a case is renamed into place when it is whole, so the process may end at any instruction.
 [[noreturn]] void stop_now(int signal) {
-  say(signal == SIGALRM ? "\numtet: out of time" : signal == SIGTERM ? "\numtet: terminated" : "\numtet: interrupted");
-  say(" in ");
-  say(work.load());
-  say("; the case can be resumed with the same command\n");
+  const char* what = signal == SIGALRM ? "out of time" : signal == SIGTERM ? "terminated" : "interrupted";
+  const char* resume = "; the case can be resumed with the same command";
+  write_all(STDERR_FILENO, {"\numtet: ", what, " in ", work.load(), resume, "\n"});
+  if (const char* command = answers_to.load()) {
+    const char* code = signal == SIGALRM ? "9" : signal == SIGTERM ? "143" : "130";
+    write_all(STDOUT_FILENO, {"{\n  \"schema\": 1,\n  \"command\": \"", command, "\",\n  \"exit_code\": ", code,
+                              ",\n  \"error\": \"", what, " in ", work.load(), resume, "\"\n}\n"});
+  }
   ::_exit(code_of(signal));
 }
 
 extern "C" void ask_to_stop(int signal) {
-  if (asked_by.exchange(signal) != 0) ::_exit(code_of(signal));
+  if (asked_by.exchange(signal) != 0) stop_now(signal);
   if (in_own_time) return;
   const itimerval once{{0, 0}, {0, kPatienceMicroseconds}};
   ::setitimer(ITIMER_REAL, &once, nullptr);
@@ -95,6 +106,8 @@ void stop_after(double seconds) {
 }
 
 void stop_in_own_time() { in_own_time = true; }
+
+void answer_stops_in_json(const char* command) { answers_to = command; }
 
 void set_work_at_hand(const char* name) { work = name; }
 

@@ -21,6 +21,7 @@
 #include "pipeline/memory.h"
 #include "pipeline/report.h"
 #include "pipeline/run.h"
+#include "pipeline/stop_document.h"
 #include "pipeline/view_files.h"
 
 namespace umtet {
@@ -175,6 +176,7 @@ Output execute(int argc, char** argv, bool& json, std::string& command) {
   if (call.action == CommandLine::Action::Text) return {ExitCode::Success, call.text, {}};
   json = call.json;
   command = call.command;
+  if (json) answer_stops_in_json(command.c_str());
   if (call.threads == 0) call.threads = tbb::info::default_concurrency();
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(call.threads));
@@ -219,6 +221,7 @@ bool print(const std::string& text) {
 int run_program(int argc, char** argv) {
   // A call that cannot be understood still answers in the language it asked for.
   bool json = std::any_of(argv, argv + argc, [](const char* a) { return std::string_view(a) == "--json"; });
+  if (json) answer_stops_in_json("");
   std::string command;
   Output output;
   std::optional<Failure> failure;
@@ -235,6 +238,7 @@ int run_program(int argc, char** argv) {
     output.document.update(failure->evidence);
   }
   if (json) {
+    answer_stops_in_json(nullptr);
     Json document = {{"schema", 1}, {"command", command}, {"exit_code", static_cast<int>(output.code)}};
     if (output.document.is_object()) document.update(output.document);  // --version and --help have none
     output.text = document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

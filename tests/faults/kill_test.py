@@ -2,6 +2,7 @@
 
 UMTET_KILLS=n tries n random times (default 6; 200 with UMTET_SLOW=1).
 """
+import json
 import os
 import random
 import signal
@@ -63,6 +64,19 @@ class Kill(unittest.TestCase):
             self.assertEqual([f for f in case.rglob(".tmp-*")], [], "temporary files are left")
         print(f"{KILLS} of {KILLS} reruns are byte-equal; exit codes of the stopped runs: {codes}")
         self.assertGreater(sum(n for code, n in codes.items() if code != 0), KILLS // 3)
+
+    def test_a_second_signal_ends_at_once_and_json_has_its_document(self):
+        for k in range(3):
+            process = subprocess.Popen([PROGRAM, *map(str, self.arguments(self.folder / f"json_{k}", 200000)), "--json"],
+                                       stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            process.stderr.readline()  # a stage is done
+            process.send_signal(signal.SIGINT)
+            process.send_signal(signal.SIGTERM)
+            out, said = process.communicate(timeout=60)
+            self.assertIn(process.returncode, (130, 143), said)
+            document = json.loads(out)
+            self.assertEqual((document["command"], document["exit_code"]), ("run", process.returncode), out)
+            self.assertIn("the case can be resumed", document["error"])
 
 
 if __name__ == "__main__":
