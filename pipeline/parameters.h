@@ -48,8 +48,8 @@ class Parameters {
   void set(const std::string& key, const std::string& text, ParamSource source, const std::string& origin);
   /// "key=value", as --set takes it.
   void set(const std::string& assignment);
-  /// Reads a TOML file: the user's, or the case.toml of an earlier run.
-  /// \throw UsageError with file, line and column; std::system_error
+  /// Reads a TOML file: the user's, or the case.toml of an earlier run, which must be as toml() made it.
+  /// \throw UsageError with file, line and column; std::system_error; ArtefactDamaged, of a case.toml
   void load(const std::filesystem::path& file, ParamSource source);
 
   /// Makes the path absolute, whoever gave it.
@@ -65,7 +65,7 @@ class Parameters {
   const std::string& text(const std::string& key) const { return std::get<std::string>(value(key)); }
   ParamSource source(const std::string& key) const;
 
-  /// Every value with a comment that says where it came from; load() takes it back.
+  /// Every value with a comment that says where it came from, behind their checksum; load() takes it back.
   std::string toml() const;
   /// The values of one section, for the record of its stage.
   nlohmann::ordered_json section(std::string_view name) const;
