@@ -13,13 +13,13 @@
 #include "pipeline/certificate_json.h"
 #include "pipeline/domain.h"
 #include "pipeline/edge_length.h"
+#include "pipeline/evolve_tables.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/made_mesh.h"
 #include "pipeline/memory.h"
 #include "pipeline/mesh_measures.h"
 #include "pipeline/run.h"
 #include "pipeline/stages.h"
-#include "pipeline/step_plot.h"
 #include "pipeline/time_steps.h"
 #include "pipeline/too_thin.h"
 #include "pipeline/zero_set_choice.h"
@@ -28,20 +28,7 @@ namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kSeries = "series.pvd";
-
-/// An instant, and what has become of it.
-struct Step {
-  TimeStep at;
-  std::string file;   ///< its name in the folder
-  std::string error;  ///< why there is no mesh
-  std::exception_ptr thrown;
-  Json measured;           ///< null while there is no mesh
-  double seconds = 0;      ///< mesh and certificate; of a cloud also its level set
-  bool looked_at = false;  ///< by look_at()
-
-  bool made() const { return !measured.is_null(); }
-};
+using Step = EvolveStep;
 
 /// A failure that is the matter of one instant; the others may do better.
 bool concerns_one_step(ExitCode code) {
@@ -87,7 +74,6 @@ class Evolution {
   void choose_background();
   void mesh(Step& step);
   std::optional<UmResult> make(Step& step, Domain& domain);
-  void write_tables() const;
   EvolveOutcome outcome() const;
   template <class F>
   void guarded(Step& step, const F& f);
@@ -138,7 +124,7 @@ void Evolution::take_folder() {
     if (name.starts_with("step_") && name.ends_with(".vtu")) former.push_back(entry.path());
   }
   remove_stale_temporaries(request_.folder);
-  write_tables();
+  write_tables(request_.folder, steps_);
   for (const fs::path& file : former) fs::remove(file);
 }
 
@@ -196,17 +182,20 @@ void Evolution::choose_background() {
   progress_.say(fmt::format("one background of {} tets, h = {:.6g}", background_->n_tets(), h_));
 }
 
+/// Where something is thin for h, that is the reason for a mesh that came out wrong.
+void refuse_thin(const ThinPlaces& thin, const std::string& complaint, const Vec3& shift) {
+  if (thin.empty()) return;
+  throw MeshingImpossible(
+      fmt::format("h = {:.4g} is too large: {}; {} places are thinner than it can show\n{}\n"
+                  "  --allow-thin keeps the mesh nevertheless",
+                  thin.h, complaint, thin.places.size(), described(thin, shift)));
+}
+
 /// As umtet mesh does at a given h.
 std::optional<UmResult> Evolution::make(Step& step, Domain& domain) {
   domain.limit_detail(h_);
   const ZeroSetChoice pieces = choose_components(domain, h_, not_interrupted);
   const ThinPlaces thin = find_thin_places(domain, pieces, h_, not_interrupted);
-  if (!thin.empty() && !parameters_.flag("mesh.allow_thin")) {
-    throw MeshingImpossible(
-        fmt::format("h = {:.4g} is too large: {} places are thinner than it can show\n{}\n"
-                    "  --allow-thin makes a mesh nevertheless",
-                    h_, thin.places.size(), described(thin, domain.shift)));
-  }
   for (const std::string& reason : pieces.dropped) progress_.say("left out a " + reason);
   if (pieces.seeds.empty() && !pieces.dropped.empty()) {
     throw MeshingImpossible("psi = 0 is nowhere near the samples:\n  no " + pieces.dropped.front());
@@ -216,12 +205,19 @@ std::optional<UmResult> Evolution::make(Step& step, Domain& domain) {
   UmResult result = universal_mesh(
       *background_, domain.psi(), params, [&](const UmProgress&) { return report(step, "mesh", .3); }, pieces.seeds);
   stop_if_interrupted();
-  if (result.status != UmStatus::Success) throw MeshingImpossible(failure_text(result, h_, domain.shift));
+  const bool may_be_thin = parameters_.flag("mesh.allow_thin");
+  if (result.status != UmStatus::Success) {
+    if (!may_be_thin) refuse_thin(thin, result.evidence.what, domain.shift);
+    throw MeshingImpossible(failure_text(result, h_, domain.shift));
+  }
   round_to_file(result, domain.shift);
   report(step, "certify", .8);
   Json measured = measure(domain, result, pieces, h_, not_interrupted);
-  measured["resolution"]["too_thin"] = to_json(thin, domain.shift);
+  check_lost(domain, result, thin, measured, not_interrupted);
   check_deviation(parameters_.real("mesh.max_deviation"), measured);
+  if (!may_be_thin && !measured.at("reasons").empty()) {
+    refuse_thin(thin, measured.at("reasons").at(0).get<std::string>(), domain.shift);
+  }
   judge(measured, parameters_);
   step.measured = std::move(measured);
   return result;
@@ -240,55 +236,11 @@ void Evolution::mesh(Step& step) {
   });
   stop_if_interrupted();
   if (result) write_mesh(request_.folder / step.file, *domain, *result, result->final);
-  write_tables();
+  write_tables(request_.folder, steps_);
   if (!result) return;
   progress_.say(fmt::format(
       "t = {}: {} tets, min Q {:.4f}, {}", time_text(step.at.t), step.measured.at("n_tets").get<std::size_t>(),
       step.measured.at("quality").at("min").get<double>(), step.measured.at("verdict").get<std::string>()));
-}
-
-/// A field of CSV: in quotes, on one line.
-std::string quoted(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  for (std::size_t k = 0; (k = text.find('"', k)) != std::string::npos; k += 2) text.insert(k, 1, '"');
-  return '"' + text + '"';
-}
-
-std::string csv_line(const Step& step) {
-  const std::string name = fmt::format("{},{},", step.file.substr(0, step.file.find('.')), time_text(step.at.t));
-  if (!step.made()) return name + fmt::format(",,,,,,,none,{:.3f},{}\n", step.seconds, quoted(step.error));
-  const Json& m = step.measured;
-  const Json &q = m.at("quality"), &b = m.at("boundary");
-  std::string reasons;
-  for (const Json& reason : m.at("reasons")) reasons += (reasons.empty() ? "" : "; ") + reason.get<std::string>();
-  return name + fmt::format("{},{:.6f},{:.6f},{:.3f},{:.3f},{},{},{},{:.3f},{}\n", m.at("n_tets").get<std::size_t>(),
-                            q.at("min").get<double>(), q.at("p01").get<double>(),
-                            q.at("dihedral_min_deg").get<double>(), q.at("dihedral_max_deg").get<double>(),
-                            b.at("components").get<int>(), b.at("genus").get<long>(),
-                            m.at("verdict").get<std::string>(), step.seconds, quoted(reasons));
-}
-
-/// What is there so far.
-void Evolution::write_tables() const {
-  std::string csv =
-      "step,t,tets,min_q,q_01,dihedral_min_deg,dihedral_max_deg,components,genus,verdict,seconds,reason\n";
-  std::string pvd =
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
-      "<Collection>\n";
-  std::vector<StepQuality> plot;
-  for (const Step& step : steps_) {
-    if (!step.made() && step.error.empty()) continue;
-    csv += csv_line(step);
-    plot.push_back({step.at.t, step.made(), 0, 0});
-    if (!step.made()) continue;
-    plot.back().min = step.measured.at("quality").at("min");
-    plot.back().p01 = step.measured.at("quality").at("p01");
-    pvd +=
-        fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"0\" file=\"{}\"/>\n", time_text(step.at.t), step.file);
-  }
-  write_text_artefact(request_.folder / "quality.csv", csv);
-  write_text_artefact(request_.folder / "quality.svg", step_plot(plot));
-  write_text_artefact(request_.folder / kSeries, pvd + "</Collection>\n</VTKFile>\n");
 }
 
 EvolveOutcome Evolution::outcome() const {

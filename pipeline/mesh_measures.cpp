@@ -139,6 +139,18 @@ void check_deviation(double asked, Json& measured) {
 
 Json to_json(const MeshCertificate& c) {
   return {{"n_tets", c.n_tets},
+void check_lost(const Domain& domain, const UmResult& result, const ThinPlaces& thin, Json& measured,
+                const KeepGoing& keep_going) {
+  measured["resolution"]["too_thin"] = to_json(thin, domain.shift);
+  const LostPoint lost = lost_of(thin, result.final, result.submesh.positive_faces, keep_going);
+  if (lost.count == 0) return;
+  const Vec3 at = lost.where + domain.shift;
+  measured["reasons"].push_back(
+      fmt::format("the mesh lacks what is thin around ({:.6g}, {:.6g}, {:.6g}): psi = 0 is "
+                  "{:.2g} h from its boundary there",
+                  at.x(), at.y(), at.z(), lost.distance / thin.h));
+}
+
           {"n_vertices", c.n_vertices},
           {"n_positive_faces", c.n_positive_faces},
           {"h", c.h},

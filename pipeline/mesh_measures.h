@@ -4,6 +4,7 @@
 #include "mesh/universal_mesh.h"
 #include "pipeline/domain.h"
 #include "pipeline/record.h"
+#include "pipeline/too_thin.h"
 #include "pipeline/zero_set_choice.h"
 
 namespace umtet {
@@ -15,6 +16,11 @@ Json measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& 
 
 /// The distance asked for with mesh.max_deviation is a promise: a mesh that breaks it gets a reason. 0: any will do.
 void check_deviation(double asked, Json& measured);
+
+/// Body or gap that is thin for h may be missing from the mesh as a whole, without a trace in topology or normals: that
+/// gets a reason too. Puts the thin places into `resolution`. \throw MeshCancelled
+void check_lost(const Domain& domain, const UmResult& result, const ThinPlaces& thin, Json& measured,
+                const KeepGoing& keep_going = {});
 
 /// The blocks `quality` and `boundary` and the counts before them.
 Json to_json(const MeshCertificate& certificate);

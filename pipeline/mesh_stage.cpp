@@ -28,17 +28,6 @@ constexpr double kTetsTolerance = .1;
 // Pieces of psi = 0 are not looked for on grids finer than this, in h.
 constexpr double kFinestGrid = .1;
 
-/// What is skipped as a whole leaves no trace in topology or normals.
-void check_lost(MeshAttempt& a, const Vec3& shift) {
-  const LostPoint lost = lost_of(a.thin, a.result.final, a.result.submesh.positive_faces, not_interrupted);
-  if (lost.count == 0) return;
-  const Vec3 at = lost.where + shift;
-  a.measured["reasons"].push_back(
-      fmt::format("the mesh lacks what is thin around ({:.6g}, {:.6g}, {:.6g}): psi = 0 is "
-                  "{:.2g} h from its boundary there",
-                  at.x(), at.y(), at.z(), lost.distance / a.h));
-}
-
 /// Right but for the size of its faces: there to be looked at, and the certificate says no.
 bool is_only_coarse(const MeshAttempt& a) {
   if (!a.made() || a.n_reasons() != 1) return false;
@@ -229,9 +218,8 @@ MeshAttempt MeshStage::attempt(double h) {
   if (a.made()) {
     context_.progress.report("mesh", "certify", .9);
     a.measured = measure(domain_, a.result, pieces, h, not_interrupted);
-    a.measured["resolution"]["too_thin"] = to_json(a.thin, domain_.shift);
+    check_lost(domain_, a.result, a.thin, a.measured, not_interrupted);
     check_deviation(context_.parameters.real("mesh.max_deviation"), a.measured);
-    check_lost(a, domain_.shift);
     curve(a);
     stop_if_interrupted();
   }

@@ -92,15 +92,9 @@ MeshAttempt Mesher::attempt(double h) {
   if (!a.made()) return a;
   watch_("certify", 0);
   a.measured = measure(domain_, a.result, pieces, h, polls(watch_));
+  check_lost(domain_, a.result, a.thin, a.measured, polls(watch_));
   curve(a);
-  a.measured["resolution"]["too_thin"] = to_json(a.thin, domain_.shift);
   check_deviation(parameters_.real("mesh.max_deviation"), a.measured);
-  const LostPoint lost = lost_of(a.thin, a.result.final, a.result.submesh.positive_faces, polls(watch_));
-  if (lost.count > 0) {
-    const Vec3 at = lost.where + domain_.shift;
-    a.measured["reasons"].push_back(
-        fmt::format("the mesh lacks what is thin around ({:.6g}, {:.6g}, {:.6g})", at.x(), at.y(), at.z()));
-  }
   return a;
 }
 
