@@ -47,8 +47,8 @@ std::string doubt_about_given_normals(const StageContext& context, double spacin
   const double agreed = normals.value("consistency", 1.);
   if (normals.value("source", "") != "given" || agreed >= kLeastAgreed) return "";
   return fmt::format(
-      "\n  as given, {:.1f} % of the normals agree with their neighbours, as where two sides of a body are nearer to each "
-      "other than its samples (here {:.3g} apart): no level set tells such sides apart, more samples do",
+      "\n  as given, {:.1f} % of the normals agree with their neighbours, as where two sides of a body are nearer to "
+      "each other than its samples (here {:.3g} apart): no level set tells such sides apart, more samples do",
       100 * agreed, spacing);
 }
 
