@@ -137,8 +137,6 @@ void check_deviation(double asked, Json& measured) {
       fmt::format("a face centre is {:.4g} from psi = 0, more than the {:.4g} of --max-deviation", made, asked));
 }
 
-Json to_json(const MeshCertificate& c) {
-  return {{"n_tets", c.n_tets},
 void check_lost(const Domain& domain, const UmResult& result, const ThinPlaces& thin, Json& measured,
                 const KeepGoing& keep_going) {
   measured["resolution"]["too_thin"] = to_json(thin, domain.shift);
@@ -151,6 +149,8 @@ void check_lost(const Domain& domain, const UmResult& result, const ThinPlaces& 
                   at.x(), at.y(), at.z(), lost.distance / thin.h));
 }
 
+Json to_json(const MeshCertificate& c) {
+  return {{"n_tets", c.n_tets},
           {"n_vertices", c.n_vertices},
           {"n_positive_faces", c.n_positive_faces},
           {"h", c.h},
