@@ -32,7 +32,7 @@ constexpr double kFarthest = 1e50, kSmallest = 1e-50;
 void refuse_endless_line(const std::filesystem::path& file, std::string_view head) {
   if (head.find('\n') != std::string_view::npos || head.find('\r') != std::string_view::npos) return;
   refuse({.name = file.string(), .bytes = head},
-         fmt::format("no end of a line in the first {} bytes: this is no PLY, PCD or text with a point a line",
+         fmt::format("line 1 does not end in the first {} bytes: this is no PLY, PCD or text with a point a line",
                      head.size()));
 }
 
