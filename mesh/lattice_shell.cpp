@@ -9,37 +9,17 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mesh/detail/id_list.h"
 #include "mesh/detail/link_steps.h"
 
 namespace umtet {
 namespace {
 
+using detail::IdList;
 using detail::IdSet;
 
 // Of 64 vertices each, a hundred of them in the shell if it is thick.
 constexpr std::size_t kWordsPerBlock = 16;
-
-/// Few ids, where a set of bits for the whole background would cost more than all the rest.
-class SmallSet {
- public:
-  explicit SmallSet(std::vector<std::int64_t> ids) : ids_(std::move(ids)) {
-    std::sort(ids_.begin(), ids_.end());
-    ids_.erase(std::unique(ids_.begin(), ids_.end()), ids_.end());
-  }
-  bool test(std::int64_t id) const { return std::binary_search(ids_.begin(), ids_.end(), id); }
-  bool test_any(std::int64_t id) const { return test(id); }
-  int rank(std::int64_t id) const {
-    return static_cast<int>(std::lower_bound(ids_.begin(), ids_.end(), id) - ids_.begin());
-  }
-  template <class F>
-  void for_each(F&& f) const {
-    for (const std::int64_t id : ids_) f(id);
-  }
-  const std::vector<std::int64_t>& ids() const { return ids_; }
-
- private:
-  std::vector<std::int64_t> ids_;
-};
 
 class Builder {
  public:
@@ -57,7 +37,8 @@ class Builder {
   static std::size_t n_blocks(const IdSet& set) { return (set.n_words() + kWordsPerBlock - 1) / kWordsPerBlock; }
 
   LatticeShell build(const IdSet& movable) const;
-  LatticeShell build(const SmallSet& movable) const;
+  /// @param movable  ascending
+  LatticeShell build(const IdList& movable) const;
 
  private:
   std::vector<int> type_colours() const;
@@ -174,27 +155,29 @@ LatticeShell Builder::build(const IdSet& movable) const {
   return result;
 }
 
-LatticeShell Builder::build(const SmallSet& movable) const {
-  std::vector<std::array<std::int64_t, 4>> tets;
-  std::vector<std::int64_t> ids;
-  movable.for_each([&](std::int64_t at) {
-    tets_at(at, movable, [&](std::int64_t v, std::int64_t x, std::int64_t y, std::int64_t z) {
-      tets.push_back({v, x, y, z});
-      ids.insert(ids.end(), {v, x, y, z});
-    });
-  });
-  const SmallSet used(std::move(ids));
+LatticeShell Builder::build(const IdList& movable) const {
   LatticeShell result;
   Shell& shell = result.shell;
-  shell.h = background_.h();
+  IdList used;
+  for (const std::int64_t at : movable.ids()) {
+    tets_at(at, movable, [&](std::int64_t v, std::int64_t x, std::int64_t y, std::int64_t z) {
+      shell.C.push_back({used.add(v), used.add(x), used.add(y), used.add(z)});
+    });
+  }
   result.background_vertex = used.ids();
+  std::sort(result.background_vertex.begin(), result.background_vertex.end());
+  shell.h = background_.h();
   const std::vector<int> colours = type_colours();
-  for (const std::int64_t v : used.ids()) {
+  std::vector<int> rank(used.ids().size());
+  for (const std::int64_t v : result.background_vertex) {
+    rank[static_cast<std::size_t>(used.find(v))] = static_cast<int>(shell.V.size());
     shell.V.push_back(background_.position(v));
     shell.colour.push_back(colours[background_.type(v)]);
     shell.role.push_back(role(v, movable));
   }
-  for (const auto& t : tets) shell.C.push_back({used.rank(t[0]), used.rank(t[1]), used.rank(t[2]), used.rank(t[3])});
+  for (Tet& t : shell.C) {
+    for (int& v : t) v = rank[v];
+  }
   list_rings(shell);
   return result;
 }
@@ -227,30 +210,23 @@ LatticeShell lattice_shell(const BackgroundMesh& background, const std::vector<L
 LatticeShell lattice_patch(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
                            const IdSet& inside, const std::vector<std::int64_t>& centres, int reach) {
   const Builder builder(background, links, inside);
-  std::vector<std::int64_t> ball = centres;
+  IdList ball;
+  for (const std::int64_t v : centres) ball.add(v);
   std::size_t fresh = 0;
   for (int ring = 0; ring < reach; ++ring) {
-    const std::size_t end = ball.size();
-    for (; fresh < end; ++fresh) {
-      const std::int64_t v = ball[fresh];
-      for (const std::int64_t step : builder.steps(v)) ball.push_back(v + step);
+    for (const std::size_t end = ball.ids().size(); fresh < end; ++fresh) {
+      const std::int64_t v = ball.ids()[fresh];
+      for (const std::int64_t step : builder.steps(v)) {
+        // Steps from the outermost cells may lead out of the range of ids.
+        if (v + step >= 0 && v + step < background.n_vertices()) ball.add(v + step);
+      }
     }
-    // New ones behind the old ones, each once.
-    const auto middle = ball.begin() + static_cast<std::ptrdiff_t>(end);
-    std::vector<std::int64_t> old(ball.begin(), middle);
-    std::sort(old.begin(), old.end());
-    std::sort(middle, ball.end());
-    ball.erase(std::unique(middle, ball.end()), ball.end());
-    // Steps from the outermost cells may lead out of the range of ids.
-    ball.erase(std::remove_if(middle, ball.end(),
-                              [&](std::int64_t v) {
-                                return v < 0 || v >= background.n_vertices() ||
-                                       std::binary_search(old.begin(), old.end(), v);
-                              }),
-               ball.end());
   }
-  std::erase_if(ball, [&](std::int64_t v) { return !builder.in_omega_h(v); });
-  const SmallSet reached(std::move(ball));
+  std::vector<std::int64_t> ids = ball.ids();
+  std::erase_if(ids, [&](std::int64_t v) { return !builder.in_omega_h(v); });
+  std::sort(ids.begin(), ids.end());
+  IdList reached;
+  for (const std::int64_t v : ids) reached.add(v);
   return builder.build(reached);
 }
 

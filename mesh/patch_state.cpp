@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "mesh/closest_point.h"
+#include "mesh/max_min.h"
 #include "mesh/tet_quality.h"
 
 namespace umtet {
@@ -65,15 +66,27 @@ bool PatchState::is_better_than(const PatchState& other) const {
   return key(*this) < key(other);
 }
 
-PatchState patch_state(const Shell& shell, const std::vector<std::uint8_t>& inside, ImplicitFunctionRef psi,
-                       double target, std::size_t& evaluations) {
+PatchState tet_state(const Shell& shell, double target) {
   PatchState s;
   s.target = target;
+  // Q^3 in place of Q: no roots but the last.
+  const double poor_f = std::pow(target / kMeanRatioFactor, 3);
+  double least_f = std::pow(1 / kMeanRatioFactor, 3);
+  for (const Tet& t : shell.C) {
+    const Vec3 &a = shell.V[t[0]], &b = shell.V[t[1]], &c = shell.V[t[2]], &d = shell.V[t[3]];
+    const double V = volume6(a, b, c, d), L = sum_of_squared_edges(a, b, c, d), f = V * std::abs(V) / (L * L * L);
+    least_f = std::min(least_f, f);
+    s.poor += f < poor_f;
+  }
+  s.least = quality_of(least_f);
+  return s;
+}
+
+PatchState patch_state(const Shell& shell, const std::vector<std::uint8_t>& inside, ImplicitFunctionRef psi,
+                       double target, std::size_t& evaluations) {
+  PatchState s = tet_state(shell, target);
   Triangle f;
   for (const Tet& t : shell.C) {
-    const double q = mean_ratio(shell.V[t[0]], shell.V[t[1]], shell.V[t[2]], shell.V[t[3]]);
-    s.least = std::min(s.least, q);
-    s.poor += q < target;
     if (!positive_face(t, inside, f)) continue;
     const double cosine = normal_cosine(psi, shell.V[f[0]], shell.V[f[1]], shell.V[f[2]], shell.h, evaluations);
     s.least_cosine = std::min(s.least_cosine, cosine);

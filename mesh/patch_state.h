@@ -40,6 +40,9 @@ struct PatchState {
   bool is_better_than(const PatchState& other) const;
 };
 
+/// Of all tets of the shell; faces are not looked at.
+PatchState tet_state(const Shell& shell, double target);
+
 /// Of all tets of the shell and all their boundary faces.
 PatchState patch_state(const Shell& shell, const std::vector<std::uint8_t>& inside, ImplicitFunctionRef psi,
                        double target, std::size_t& evaluations);

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace umtet::detail {
+
+/// Some hundred ids in the order of their coming, each found again in a few ns: for parts of a mesh so small that a bit
+/// for every vertex of the background would cost more than all the rest.
+class IdList {
+ public:
+  /// The number of an id, which is appended if it is not there.
+  int add(std::int64_t id) {
+    if (2 * ids_.size() >= table_.size()) grow();
+    int& at = table_[slot(id)];
+    if (at == 0) {
+      ids_.push_back(id);
+      at = static_cast<int>(ids_.size());
+    }
+    return at - 1;
+  }
+  /// -1 where there is none; of any number, id or not.
+  int find(std::int64_t id) const { return table_.empty() ? -1 : table_[slot(id)] - 1; }
+  bool test(std::int64_t id) const { return find(id) >= 0; }
+  bool test_any(std::int64_t id) const { return test(id); }
+  const std::vector<std::int64_t>& ids() const { return ids_; }
+
+ private:
+  /// That of the id, or the free one where it belongs.
+  std::size_t slot(std::int64_t id) const {
+    std::size_t s = static_cast<std::uint64_t>(id) * 0x9e3779b97f4a7c15U >> shift_;  // 2^64 over the golden ratio
+    while (table_[s] != 0 && ids_[static_cast<std::size_t>(table_[s] - 1)] != id) s = (s + 1) & (table_.size() - 1);
+    return s;
+  }
+  void grow() {
+    shift_ = table_.empty() ? 64 - 10 : shift_ - 1;
+    table_.assign(std::size_t{1} << (64 - shift_), 0);
+    for (std::size_t k = 0; k < ids_.size(); ++k) table_[slot(ids_[k])] = static_cast<int>(k) + 1;
+  }
+
+  std::vector<std::int64_t> ids_;
+  std::vector<int> table_;  ///< number + 1, 0 = free; a power of two, at most half full
+  int shift_ = 0;           ///< of a 64-bit hash, to a slot
+};
+
+}  // namespace umtet::detail
