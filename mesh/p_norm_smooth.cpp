@@ -164,9 +164,11 @@ SmoothReport& SmoothReport::operator+=(const SmoothReport& later) {
   return *this;
 }
 
-PNormSmoother::PNormSmoother(Shell& shell) : shell_(shell), faces_(shell.ring.size()), queued_(shell.V.size(), 0) {
+PNormSmoother::PNormSmoother(Shell& shell)
+    : shell_(shell), face_begin_(shell.V.size() + 1, 0), queued_(shell.V.size(), 0) {
   std::vector<std::size_t> count;
   for (std::size_t i = 0; i < shell.V.size(); ++i) {
+    face_begin_[i + 1] = face_begin_[i];
     if (is_fixed(shell, static_cast<int>(i))) continue;
     const int n = shell.ring_begin[i + 1] - shell.ring_begin[i];
     if (n < 1 || n > kMaxRing) {
@@ -174,6 +176,7 @@ PNormSmoother::PNormSmoother(Shell& shell) : shell_(shell), faces_(shell.ring.si
                                   std::to_string(kMaxRing));
     }
     queued_[i] = 1;
+    face_begin_[i + 1] += n;
     const auto colour = static_cast<std::size_t>(shell.colour[i]);
     if (colour >= count.size()) count.resize(colour + 1, 0);
     ++count[colour];
@@ -186,13 +189,14 @@ PNormSmoother::PNormSmoother(Shell& shell) : shell_(shell), faces_(shell.ring.si
     if (queued_[i] != 0) by_colour_[next[shell.colour[i]]++] = static_cast<int>(i);
   }
   if (!count.empty()) todo_.reserve(*std::max_element(count.begin(), count.end()));
+  faces_.resize(static_cast<std::size_t>(face_begin_.back()));
   const auto list_faces = [&](const tbb::blocked_range<std::size_t>& range) {
     for (std::size_t k = range.begin(); k != range.end(); ++k) {
       const int i = by_colour_[k];
-      for (int r = shell.ring_begin[i]; r < shell.ring_begin[i + 1]; ++r) {
+      for (int r = shell.ring_begin[i], f = face_begin_[i]; r < shell.ring_begin[i + 1]; ++r, ++f) {
         const Tet& t = shell.C[shell.ring[r]];
         const auto own = std::find(t.begin(), t.end(), i) - t.begin();
-        faces_[r] = {t[kTetFace[own][0]], t[kTetFace[own][1]], t[kTetFace[own][2]]};
+        faces_[f] = {t[kTetFace[own][0]], t[kTetFace[own][1]], t[kTetFace[own][2]]};
       }
     }
   };
@@ -203,13 +207,12 @@ void PNormSmoother::wake_all() {
   for (const int i : by_colour_) queued_[i] = 1;
 }
 
-void PNormSmoother::wake_tet(int t) {
-  // Vertices that share no tet may share a neighbour: both then write the same one, so relaxed stores will do.
-  for (const int j : shell_.C[t]) std::atomic_ref(queued_[j]).store(1, std::memory_order_relaxed);
-}
-
 void PNormSmoother::wake(int i) {
-  for (int r = shell_.ring_begin[i]; r < shell_.ring_begin[i + 1]; ++r) wake_tet(shell_.ring[r]);
+  // Vertices that share no tet may share a neighbour: both then write the same, so relaxed stores will do.
+  std::atomic_ref(queued_[i]).store(1, std::memory_order_relaxed);
+  for (const Triangle& face : faces(i)) {
+    for (const int j : face) std::atomic_ref(queued_[j]).store(1, std::memory_order_relaxed);
+  }
 }
 
 SmoothReport PNormSmoother::run(ImplicitFunctionRef psi, const SmoothParams& params, const KeepGoing& keep_going) {
@@ -230,8 +233,12 @@ SmoothReport PNormSmoother::run(ImplicitFunctionRef psi, const SmoothParams& par
       if (!result.moved) continue;
       shell_.V[i] = result.place;
       // A tet that was good and is good again keeps nobody from being where it is.
-      for (int r = shell_.ring_begin[i], j = 0; r < shell_.ring_begin[i + 1]; ++r, ++j) {
-        if (result.poor[j]) wake_tet(shell_.ring[r]);
+      if (result.poor.none()) continue;
+      std::atomic_ref(queued_[i]).store(1, std::memory_order_relaxed);
+      const std::span<const Triangle> ring = faces(i);
+      for (std::size_t j = 0; j < ring.size(); ++j) {
+        if (!result.poor[j]) continue;
+        for (const int v : ring[j]) std::atomic_ref(queued_[v]).store(1, std::memory_order_relaxed);
       }
     }
     return counts;

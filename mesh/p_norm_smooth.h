@@ -75,16 +75,16 @@ class PNormSmoother {
   Shell& shell() { return shell_; }
   const Shell& shell() const { return shell_; }
   /// The ring of a vertex that was not Fixed at construction, around its present place.
-  OneRing ring(int i) const {
-    const auto begin = faces_.begin() + shell_.ring_begin[i], end = faces_.begin() + shell_.ring_begin[i + 1];
-    return OneRing(shell_.V[i], shell_.V, {begin, end});
-  }
+  OneRing ring(int i) const { return OneRing(shell_.V[i], shell_.V, faces(i)); }
 
  private:
-  void wake_tet(int t);
+  std::span<const Triangle> faces(int i) const {
+    return {faces_.begin() + face_begin_[i], faces_.begin() + face_begin_[i + 1]};
+  }
 
   Shell& shell_;
-  std::vector<Triangle> faces_;            ///< opposite to a vertex in the tets of its ring, in step with shell_.ring
+  std::vector<int> face_begin_;            ///< per vertex, into faces_
+  std::vector<Triangle> faces_;            ///< opposite to a vertex in the tets of its ring; of those not Fixed
   std::vector<int> by_colour_;             ///< vertices, ascending within a colour
   std::vector<std::size_t> colour_begin_;  ///< into by_colour_
   std::vector<unsigned char> queued_;      ///< per vertex
