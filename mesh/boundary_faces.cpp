@@ -19,13 +19,19 @@ constexpr std::size_t kVerticesPerBlock = 1 << 10;
 /// The tets at each vertex that is the least or the second least of theirs: no other has a face under it.
 class TetsByVertex {
  public:
-  TetsByVertex(const std::vector<Tet>& C, std::size_t n_vertices) : begin_(n_vertices + 2, 0), tets_(2 * C.size()) {
+  /// @param only  per vertex, whether its tets are listed; null: of all
+  TetsByVertex(const std::vector<Tet>& C, std::size_t n_vertices, const std::vector<char>* only)
+      : begin_(n_vertices + 2, 0) {
+    const auto listed = [&](int v) { return !only || (*only)[v] != 0; };
     for (const Tet& t : C) {
-      for (const int v : two_least(t)) ++begin_[v + 2];
+      for (const int v : two_least(t)) begin_[v + 2] += listed(v);
     }
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    tets_.resize(begin_.back());
     for (std::size_t t = 0; t < C.size(); ++t) {
-      for (const int v : two_least(C[t])) tets_[begin_[v + 1]++] = static_cast<int>(t);
+      for (const int v : two_least(C[t])) {
+        if (listed(v)) tets_[begin_[v + 1]++] = static_cast<int>(t);
+      }
     }
   }
   std::span<const int> operator[](int v) const { return {tets_.data() + begin_[v], begin_[v + 1] - begin_[v]}; }
@@ -87,9 +93,9 @@ BlockFaces count_faces(const std::vector<Tet>& C, const TetsByVertex& table, int
 
 }  // namespace
 
-BoundaryFaces boundary_faces(const std::vector<Tet>& C, std::size_t n_vertices) {
+BoundaryFaces boundary_faces(const std::vector<Tet>& C, std::size_t n_vertices, const std::vector<char>* only) {
   detail::check_indices(C, n_vertices, "tet");
-  const TetsByVertex table(C, n_vertices);
+  const TetsByVertex table(C, n_vertices, only);
   const std::size_t n_blocks = (n_vertices + kVerticesPerBlock - 1) / kVerticesPerBlock;
   std::vector<BlockFaces> blocks(n_blocks);
   tbb::parallel_for(std::size_t{0}, n_blocks, [&](std::size_t b) {

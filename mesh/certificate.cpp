@@ -11,6 +11,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "mesh/detail/certificate_memory.h"
+#include "mesh/detail/check_indices.h"
 #include "mesh/orientation.h"
 #include "mesh/quality_report.h"
 #include "mesh/skin.h"
@@ -45,6 +47,18 @@ CotangentRange cotangents(const Vec3& u, const Vec3& v, const Vec3& w, double vo
   return range;
 }
 
+detail::TetValues measure_tet(const TetMesh& mesh, const Tet& tet) {
+  const Vec3 &a = mesh.V[tet[0]], &b = mesh.V[tet[1]], &c = mesh.V[tet[2]], &d = mesh.V[tet[3]];
+  const double six = volume6(a, b, c, d), Q = mean_ratio(a, b, c, d);
+  const CotangentRange range = cotangents(b - a, c - a, d - a, six);
+  return {.quality = std::isfinite(Q) ? Q : -1,
+          .volume6 = six,
+          .rms_edge = std::sqrt(sum_of_squared_edges(a, b, c, d) / 6),
+          .least_cotangent = range.least,
+          .greatest_cotangent = range.greatest,
+          .inverted = orientation_sign(a, b, c, d) <= 0};
+}
+
 /// Sums and extremes over a block of tets.
 struct TetMeasure {
   double volume = 0, rms_edges = 0, qualities = 0;
@@ -52,18 +66,12 @@ struct TetMeasure {
   CotangentRange cotangent;
   std::size_t at_least = 0, at_greatest = 0;  ///< tets with the extreme cotangents
 
-  /// @param Q  receives the tet's quality
-  void add(const TetMesh& mesh, std::size_t t, double& Q) {
-    const Tet& tet = mesh.C[t];
-    const Vec3 &a = mesh.V[tet[0]], &b = mesh.V[tet[1]], &c = mesh.V[tet[2]], &d = mesh.V[tet[3]];
-    const double six = volume6(a, b, c, d);
-    Q = mean_ratio(a, b, c, d);
-    if (!std::isfinite(Q)) Q = -1;
-    qualities += Q;
-    volume += six / 6;
-    rms_edges += std::sqrt(sum_of_squared_edges(a, b, c, d) / 6);
-    n_inverted += orientation_sign(a, b, c, d) <= 0;
-    take({.cotangent = cotangents(b - a, c - a, d - a, six), .at_least = t, .at_greatest = t});
+  void add(const detail::TetValues& tet, std::size_t t) {
+    qualities += tet.quality;
+    volume += tet.volume6 / 6;
+    rms_edges += tet.rms_edge;
+    n_inverted += tet.inverted;
+    take({.cotangent = {tet.least_cotangent, tet.greatest_cotangent}, .at_least = t, .at_greatest = t});
   }
   void add(const TetMeasure& next) {
     volume += next.volume;
@@ -88,7 +96,9 @@ DihedralRange dihedral_range_of(const TetMesh& mesh, const Tet& t) {
 }
 
 /// Fills n_tets, n_vertices, volume, quality and h.
-void measure_tets(const TetMesh& mesh, double h, const KeepGoing& keep_going, MeshCertificate& certificate) {
+/// @param memory  if not null, of what is known of the tets, and receives that
+void measure_tets(const TetMesh& mesh, double h, const KeepGoing& keep_going, detail::CertificateMemory* memory,
+                  MeshCertificate& certificate) {
   // Here and below, loops write by index and sums are taken block by block: threads cannot change a result.
   const std::size_t n = mesh.C.size(), n_blocks = (n + kTetsPerBlock - 1) / kTetsPerBlock;
   std::vector<double> Q(n);
@@ -97,7 +107,11 @@ void measure_tets(const TetMesh& mesh, double h, const KeepGoing& keep_going, Me
   polled_parallel_for(n_blocks, kBlocksPerPoll, keep_going, [&](std::size_t b) {
     const std::size_t end = std::min(n, (b + 1) * kTetsPerBlock);
     for (std::size_t t = b * kTetsPerBlock; t < end; ++t) {
-      blocks[b].add(mesh, t, Q[t]);
+      const detail::TetValues* known = memory ? memory->known(t) : nullptr;
+      const detail::TetValues tet = known ? *known : measure_tet(mesh, mesh.C[t]);
+      if (memory) memory->set(t, tet);
+      Q[t] = tet.quality;
+      blocks[b].add(tet, t);
       for (const int v : mesh.C[t]) std::atomic_ref(used[v]).store(1, std::memory_order_relaxed);
     }
   });
@@ -275,9 +289,9 @@ void run_both(const Here& here, const Aside& aside) {
   group.wait();
 }
 
-}  // namespace
-
-MeshCertificate certify(const CertificateInput& input) {
+/// @param memory  if not null, matched with the mesh
+/// @param skin    receives the boundary
+MeshCertificate certify_with(const CertificateInput& input, detail::CertificateMemory* memory, BoundaryFaces& skin) {
   if (!input.mesh || input.mesh->C.empty()) throw std::invalid_argument("certify: a mesh with tets is needed");
   const TetMesh& mesh = *input.mesh;
   if (input.wall_faces && (!input.background_V || input.background_V->size() != mesh.V.size())) {
@@ -289,13 +303,13 @@ MeshCertificate certify(const CertificateInput& input) {
     throw std::invalid_argument("certify: a wall face with a vertex out of range");
   }
   poll(input.keep_going);
-  const BoundaryFaces skin = boundary_faces(mesh.C, mesh.V.size());  // checks the indices
+  skin = boundary_faces(mesh.C, mesh.V.size(), memory ? memory->to_count() : nullptr);  // checks the indices
   poll(input.keep_going);
 
   MeshCertificate certificate;
   certificate.coordinate_rounding = input.coordinate_rounding;
   SurfaceTopology topology;
-  run_both([&] { measure_tets(mesh, input.h, input.keep_going, certificate); },
+  run_both([&] { measure_tets(mesh, input.h, input.keep_going, memory, certificate); },
            [&] { topology = surface_topology(mesh.V, skin.triangles); });
 
   MeshCertificate::Boundary& boundary = certificate.boundary;
@@ -328,6 +342,24 @@ MeshCertificate certify(const CertificateInput& input) {
       measure(fitted, vertices_of(fitted));
     }
   }
+  return certificate;
+}
+
+}  // namespace
+
+MeshCertificate certify(const CertificateInput& input) {
+  BoundaryFaces skin;
+  return certify_with(input, nullptr, skin);
+}
+
+MeshCertificate certify(const CertificateInput& input, const std::vector<std::int64_t>& vertex_id,
+                        const std::vector<std::int64_t>& tet_id, detail::CertificateMemory& memory) {
+  if (!input.mesh) throw std::invalid_argument("certify: a mesh with tets is needed");
+  detail::check_indices(input.mesh->C, input.mesh->V.size(), "tet");
+  memory.match(*input.mesh, vertex_id, tet_id);
+  BoundaryFaces skin;
+  MeshCertificate certificate = certify_with(input, &memory, skin);
+  memory.remember(*input.mesh, vertex_id, tet_id, skin);
   return certificate;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -76,6 +77,18 @@ inline constexpr double kMostGap = .1;
 /// \throw std::invalid_argument without a mesh or tets, for an index out of range, or where background_V is wanting;
 ///        MeshCancelled
 MeshCertificate certify(const CertificateInput&);
+
+namespace detail {
+class CertificateMemory;
+}
+/// The same, to the bit, of a mesh that differs little from the one that was certified with this memory before: tets
+/// that are the same to the bit keep what was measured of them, and faces are counted where tets have come or gone. The
+/// surface is measured anew. Cost: as the surface and the tets that have changed, and some ns for each of the others.
+/// @param vertex_id, tet_id  by which vertices and tets of the two meshes are known, ascending. Not trusted: they only
+///                           say where to look
+/// @param memory             empty at first; receives what the next call will use
+MeshCertificate certify(const CertificateInput&, const std::vector<std::int64_t>& vertex_id,
+                        const std::vector<std::int64_t>& tet_id, detail::CertificateMemory& memory);
 
 /// The reasons why a certificate fails, empty = pass: inverted tets, boundary not a closed manifold or not the positive
 /// and wall faces, a wall that has moved, a vertex farther than kVertexTolerance h from psi = 0, a face without a point

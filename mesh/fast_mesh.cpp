@@ -14,6 +14,7 @@
 #include "mesh/lattice_shell.h"
 #include "mesh/tet_quality.h"
 #include "mesh/walls.h"
+#include "mesh/warm_start.h"
 
 namespace umtet {
 namespace {
@@ -40,6 +41,7 @@ class FastRun {
   }
   UmResult operator()(IdSet inside, FastMemory& memory) {
     inside_ = std::move(inside);
+    negative_ = inside_;
     memory_ = &memory;
     memory.n_recalled = 0;
     bool made = false;
@@ -84,7 +86,6 @@ class FastRun {
   }
   bool find_inside(const std::vector<Vec3>& seeds);
   bool fits_background(const std::string& lost);
-  void recall();
   void remember(FastMemory& memory);
   bool label();
   bool fit();
@@ -102,6 +103,7 @@ class FastRun {
   LabelParams label_params_;   ///< with the prices
   UmResult result_;
   IdSet inside_;
+  IdSet negative_{0};             ///< of update: psi < 0
   FastMemory* memory_ = nullptr;  ///< of the psi before
   LatticeShell shell_;
   std::vector<std::pair<std::int64_t, Vec3>> moved_;  ///< by repair, ascending
@@ -140,9 +142,12 @@ bool FastRun::fits_background(const std::string& lost) {
 }
 
 bool FastRun::label() {
-  if (prices_) {
+  const IdSet* last = memory_ && !memory_->moved.empty() ? &memory_->inside : nullptr;
+  if (prices_ && last && negative_ == memory_->negative) {
+    inside_ = *last;  // psi = 0 has passed over no vertex
+  } else if (prices_) {
     const LabelReport labels =
-        choose_labels(background_, prices_->links, psi_, label_params_, inside_, asking("search"));
+        choose_labels(background_, prices_->links, psi_, label_params_, inside_, asking("search"), last);
     result_.n_psi_evaluations += labels.psi_evaluations;
   }
   result_.submesh = emit_submesh(background_, inside_);
@@ -190,41 +195,6 @@ std::vector<Vec3> FastRun::coordinates(const std::vector<Vec3>& shell_V) const {
   return V;
 }
 
-/// Vertices of the shell whose neighbours are labelled as they were, to where they were.
-void FastRun::recall() {
-  Shell& shell = shell_.shell;
-  std::vector<bool> recalled(shell.V.size(), false);
-  std::vector<std::int64_t> link;
-  auto at = shell_.background_vertex.begin();
-  for (const auto& [id, x] : memory_->moved) {
-    at = std::lower_bound(at, shell_.background_vertex.end(), id);
-    if (at == shell_.background_vertex.end()) break;
-    const auto v = static_cast<std::size_t>(at - shell_.background_vertex.begin());
-    if (*at != id || shell.role[v] == Shell::Role::Fixed) continue;
-    const auto as_before = [&](std::int64_t w) { return inside_.test(w) == memory_->inside.test(w); };
-    link.clear();
-    background_.link(id, link);
-    if (!as_before(id) || !std::all_of(link.begin(), link.end(), as_before)) continue;
-    shell.V[v] = x;
-    recalled[v] = true;
-  }
-  // Beside vertices that begin in the background some tets may be too flat to go on from: their vertices go back, too.
-  const double least = params_.fast.projection.least_quality;
-  for (bool again = true; again;) {
-    again = false;
-    for (const Tet& t : shell.C) {
-      if (std::none_of(t.begin(), t.end(), [&](int v) { return recalled[v]; })) continue;
-      if (mean_ratio(shell.V[t[0]], shell.V[t[1]], shell.V[t[2]], shell.V[t[3]]) >= least) continue;
-      again = true;
-      for (const int v : t) {
-        recalled[v] = false;
-        shell.V[v] = background_.position(shell_.background_vertex[v]);
-      }
-    }
-  }
-  memory_->n_recalled = static_cast<std::size_t>(std::count(recalled.begin(), recalled.end(), true));
-}
-
 /// The places of the shell, and of what repair has moved.
 void FastRun::remember(FastMemory& memory) {
   memory.moved.clear();
@@ -236,6 +206,7 @@ void FastRun::remember(FastMemory& memory) {
   }
   memory.moved.insert(memory.moved.end(), moved_.begin(), moved_.end());
   std::sort(memory.moved.begin(), memory.moved.end(), earlier);
+  memory.negative = std::move(negative_);
   memory.inside = std::move(inside_);
 }
 
@@ -284,9 +255,15 @@ void FastRun::repair_labels(const KeepGoing& keep_going) {
 bool FastRun::fit() {
   shell_ = prices_ ? lattice_shell(background_, prices_->links, inside_, params_.fast.layers)
                    : background_shell(background_, inside_, params_.fast.layers);
-  if (memory_) recall();
   const KeepGoing keep_going = asking("relax");
+  WarmStart start;
+  if (memory_ && !memory_->moved.empty()) {
+    start = warm_start(background_, psi_, inside_, *memory_, params_.fast.projection, shell_, keep_going);
+    result_.n_psi_evaluations += start.psi_evaluations;
+    memory_->n_recalled = start.n_recalled;
+  }
   PNormSmoother smoother(shell_.shell);
+  smoother.settle(std::move(start.recalled));
   const ProjectionReport projection = project(smoother, psi_, params_.fast.projection, keep_going);
   result_.n_psi_evaluations += projection.psi_evaluations;
   if (!all_arrived(projection)) return false;

@@ -25,13 +25,15 @@ UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, co
 
 /// What the mesh of one psi leaves to that of the next, in the same background mesh.
 struct FastMemory {
+  detail::IdSet negative{0};                         ///< psi < 0
   detail::IdSet inside{0};                           ///< as labelled
   std::vector<std::pair<std::int64_t, Vec3>> moved;  ///< vertices off their background places, ascending
   std::size_t n_recalled = 0;                        ///< of these, how many the last mesh began with
 };
 
-/// The same from known inside vertices, those with psi < 0. A vertex of the shell whose neighbours are labelled as in
-/// `memory` begins at its place there, unless a tet would be worse than projection allows.
+/// The same from known inside vertices, those with psi < 0. Labels stay as in `memory` if psi
+/// has the signs it had everywhere, else where others are not worth more (LabelParams::keep), and the shell begins near
+/// its places there (warm_start.h).
 /// @param memory  empty (no `moved`) at first; receives that of this mesh, or becomes empty if there is none
 UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
                    const UmObserver& observer, detail::IdSet inside, FastMemory& memory);

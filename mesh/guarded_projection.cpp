@@ -147,6 +147,9 @@ void Projection::find_feet() {
 /// As far as the guard allows. Returns whether the vertex arrived.
 bool Projection::step(Traveller& traveller, double target) {
   const int i = traveller.vertex;
+  if ((traveller.foot - traveller.start).norm() <= params_.closest_point.tol * shell_.h) {
+    return traveller.arrived = true;  // a warm start has brought it there
+  }
   const Vec3 x = shell_.V[i];
   const OneRing ring = smoother_.ring(i);
   const double least = std::min(least_f_, ring.min_f(Vec3::Zero()));

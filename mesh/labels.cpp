@@ -26,13 +26,14 @@ class Descent {
  public:
   /// @param h  of the background
   Descent(double h, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi, const LabelParams& params,
-          LabelBand& band)
+          LabelBand& band, const IdSet* last)
       : h_(h),
         links_(links),
         psi_(psi),
         params_(params),
         energies_(params.energies ? *params.energies : a15_label_energies()),
         band_(band),
+        last_(last),
         dirty_(band.size(), 1),
         thin_(band.size(), Thin::Unknown) {}
 
@@ -48,6 +49,10 @@ class Descent {
   bool keeps_manifold(int v) const;
   void flip(int v);
   bool is_thin(int v);
+  bool is_as_before(int v) const { return last_ && (band_.label[v] != 0) == last_->test(band_.id[v]); }
+  float least_gain(int v) const {
+    return is_as_before(v) ? std::max(kLeastGain, static_cast<float>(params_.keep)) : kLeastGain;
+  }
   template <class F>
   std::size_t sweep(const F& visit);
 
@@ -57,6 +62,7 @@ class Descent {
   const LabelParams& params_;
   const LabelEnergies& energies_;
   LabelBand& band_;
+  const IdSet* last_;                ///< labels of the mesh before, or null
   std::vector<std::uint8_t> dirty_;  ///< the gain of a flip may have changed
   std::vector<Thin> thin_;
 };
@@ -153,13 +159,21 @@ LabelReport Descent::operator()(IdSet& inside, const KeepGoing& keep_going) {
     flip(v);
     return true;
   });
+  // Twice: what a change costs, and whether it may be, depends on the labels around.
+  for (int pass = 0; last_ && pass < 2; ++pass) {
+    report.returned += sweep([&](int v) {
+      if (is_as_before(v) || gain_of_flip(v) < -params_.keep || !may_flip(v)) return false;
+      flip(v);
+      return true;
+    });
+  }
   std::fill(dirty_.begin(), dirty_.end(), 1);
   while (report.sweeps < params_.max_sweeps && !report.settled) {
     poll(keep_going);
     const std::size_t flips = sweep([&](int v) {
       if (!dirty_[v]) return false;
       dirty_[v] = 0;
-      if (!links_[band_.type[v]].state(band_.mask[v]).simple || gain_of_flip(v) <= kLeastGain || !may_flip(v))
+      if (!links_[band_.type[v]].state(band_.mask[v]).simple || gain_of_flip(v) <= least_gain(v) || !may_flip(v))
         return false;
       flip(v);
       return true;
@@ -199,6 +213,7 @@ std::vector<std::string> problems(const LabelParams& params) {
   in("outside_weight", params.outside_weight, 0, kAny, ">= 0");
   in("inside_weight", params.inside_weight, 0, kAny, ">= 0");
   in("inside_depth", params.inside_depth, -kAny, kAny, "finite");
+  in("keep", params.keep, 0, kAny, ">= 0");
   in("max_sweeps", params.max_sweeps, 0, kAny, ">= 0");
   return list;
 }
@@ -219,12 +234,12 @@ bool is_thin(ImplicitFunctionRef psi, const Vec3& foot, const Vec3& normal, doub
 
 LabelReport choose_labels(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
                           ImplicitFunctionRef psi, const LabelParams& params, IdSet& inside,
-                          const KeepGoing& keep_going) {
+                          const KeepGoing& keep_going, const IdSet* last) {
   std::string all;
   for (const std::string& problem : problems(params)) all += (all.empty() ? "" : "; ") + problem;
   if (!all.empty()) throw std::invalid_argument(all);
   detail::LabelBand band(background, links, psi, params, inside, keep_going);
-  return Descent(background.h(), links, psi, params, band)(inside, keep_going);
+  return Descent(background.h(), links, psi, params, band, last)(inside, keep_going);
 }
 
 }  // namespace umtet

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mesh/detail/certificate_memory.h"
 #include "mesh/fast_mesh.h"
 #include "mesh/inside_walk.h"
 
@@ -110,6 +111,7 @@ struct UniversalMesh::Impl {
   FastMemory memory;
   Submesh last;  ///< ids and places of the last mesh
   std::vector<Vec3> last_V;
+  detail::CertificateMemory certified;
 };
 
 UniversalMesh::UniversalMesh(BackgroundMesh background, const UmParams& params) {
@@ -179,6 +181,22 @@ UmUpdate UniversalMesh::update(ImplicitFunctionRef psi, const UpdateHints& hints
   update.n_recalled = impl.memory.n_recalled;
   if (update.mesh.status == UmStatus::Success) impl.compare(update);
   return update;
+}
+
+MeshCertificate UniversalMesh::certify(const UmResult& mesh, ImplicitFunctionRef psi, const KeepGoing& keep_going) {
+  const Submesh& omega_h = mesh.submesh;
+  const TetMesh fitted{mesh.final, omega_h.mesh.C};
+  CertificateInput input;
+  input.mesh = &fitted;
+  input.h = impl_->background.h();
+  input.positive_faces = &omega_h.positive_faces;
+  input.psi = psi;
+  input.keep_going = keep_going;
+  if (!mesh.walls.empty()) {
+    input.wall_faces = &mesh.walls;
+    input.background_V = &omega_h.mesh.V;
+  }
+  return umtet::certify(input, omega_h.background_vertex, omega_h.background_tet, impl_->certified);
 }
 
 }  // namespace umtet

@@ -26,6 +26,8 @@ class IdSet {
   }
   void erase(std::int64_t id) { words_[id >> 6] &= ~(std::uint64_t{1} << (id & 63)); }
 
+  /// Of the same ids.
+  bool operator==(const IdSet& other) const { return words_ == other.words_; }
   std::size_t n_words() const { return words_.size(); }
   std::uint64_t word(std::size_t w) const { return words_[w]; }
   /// Threads may set different words at once.

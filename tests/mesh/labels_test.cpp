@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
+#include <bit>
 #include <cmath>
 
 #include "mesh/certificate.h"
@@ -70,6 +71,29 @@ TEST(Labels, ChangesKeepTheEulerCharacteristicWhateverThePrices) {
     }
   }
   EXPECT_GT(n_flips, 1000u);
+}
+
+TEST(Labels, ThoseOfAMeshBeforeStayWhereOthersAreNotBetter) {
+  const AnalyticDomain before = testing::torus();
+  const BackgroundMesh background = background_of(before, 30000);
+  AnalyticDomain after = before;
+  after.psi = [&before, step = .05 * background.h()](const Vec3& x, Vec3* g, Mat3* H) {
+    return before.psi(x - Vec3(0, 0, step), g, H);
+  };
+  const detail::IdSet last = choose(background, before).chosen;
+  const auto changes = [&](const detail::IdSet& inside) {
+    int n = 0;
+    for (std::size_t w = 0; w < inside.n_words(); ++w) n += std::popcount(inside.word(w) ^ last.word(w));
+    return n;
+  };
+  std::size_t n = 0;
+  detail::IdSet kept = detail::inside_vertices(background, after, n);
+  const LabelReport report = choose_labels(background, a15_links(), after, {}, kept, {}, &last);
+  EXPECT_GT(report.returned, 0u);
+  EXPECT_LT(changes(kept), .8 * changes(choose(background, after).chosen));
+  const MeshCertificate c = certificate(emit_submesh(background, kept));
+  EXPECT_TRUE(c.boundary.closed_manifold);
+  EXPECT_EQ(c.boundary.genus, before.genus);
 }
 
 TEST(Labels, LowerThePriceOfTheBoundary) {

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "mesh/skin.h"
+#include "mesh/tet_mesh.h"
+
+namespace umtet::detail {
+
+/// What a certificate measures of one tet.
+struct TetValues {
+  double quality, volume6, rms_edge;
+  double least_cotangent, greatest_cotangent;  ///< signed squares
+  bool inverted;
+};
+
+/// The mesh certified last, and what was found: of the next one only what differs has to be measured.
+///
+/// Ids only say where to look: a tet is the same if its four vertices are the same ones of both meshes, to the bit
+/// where they were. Faces are counted by indices alone: under a vertex whose tets are all in both meshes, and under
+/// which no face had one tet only, all have two tets as before, as long as no face had more, or both on one side.
+class CertificateMemory {
+ public:
+  /// Compares with the mesh before. @param vertex_id, tet_id  ascending, else (or of other sizes) nothing is known
+  void match(const TetMesh& mesh, const std::vector<std::int64_t>& vertex_id, const std::vector<std::int64_t>& tet_id);
+  /// What is known of tet t, or null.
+  const TetValues* known(std::size_t t) const {
+    return source_.empty() || source_[t] < 0 ? nullptr : &old_[source_[t]];
+  }
+  void set(std::size_t t, const TetValues& values) { values_[t] = values; }
+  /// Per vertex, whether the faces whose least vertex it is have to be counted; null: of all.
+  const std::vector<char>* to_count() const { return source_.empty() ? nullptr : &touched_; }
+  /// The mesh that was matched takes the place of the one before.
+  void remember(const TetMesh& mesh, const std::vector<std::int64_t>& vertex_id,
+                const std::vector<std::int64_t>& tet_id, const BoundaryFaces& skin);
+  std::size_t n_known() const { return n_known_; }  ///< tets of the last match that were the same
+
+ private:
+  struct Vertices {
+    std::vector<int> now;     ///< index in the new mesh of each old vertex, or -1
+    std::vector<char> still;  ///< at the same place, too
+  };
+  Vertices match_vertices(const TetMesh& mesh, const std::vector<std::int64_t>& vertex_id) const;
+  void touch(const Tet& t) {
+    for (const int v : t) touched_[v] = 1;
+  }
+
+  TetMesh mesh_;
+  std::vector<std::int64_t> vertex_id_, tet_id_;
+  std::vector<TetValues> values_, old_;  ///< of the mesh, and of the one before while that is matched
+  std::vector<Triangle> single_;         ///< faces of one tet
+  bool is_sound_ = false;                ///< no face of more than two tets, or with both on one side
+  std::vector<int> source_;              ///< per tet of the matched mesh, the same one before, or -1
+  std::vector<char> touched_;            ///< per vertex of the matched mesh
+  std::size_t n_known_ = 0;
+};
+
+}  // namespace umtet::detail

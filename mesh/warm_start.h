@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "mesh/detail/id_set.h"
+#include "mesh/fast_mesh.h"
+#include "mesh/guarded_projection.h"
+#include "mesh/implicit_function.h"
+#include "mesh/keep_going.h"
+#include "mesh/lattice_shell.h"
+
+namespace umtet {
+
+struct WarmStart {
+  std::vector<unsigned char> recalled;  ///< per vertex of the shell: it began at its place in the last mesh
+  std::size_t n_recalled = 0;
+  std::size_t psi_evaluations = 0;
+};
+
+/// Where the shell of a domain that has moved begins: on psi = 0 at once, with the rest drawn along.
+///
+/// A vertex whose neighbours are labelled as in `memory` is recalled: it begins at its place there. Boundary vertices
+/// then go to their closest points, and inner ones that are not recalled are displaced from the background by u, with
+/// u_i the mean of u over the other vertices of the tets at i, from three sweeps over these equations. Where that
+/// leaves a tet below projection.least_quality, its vertices go back to the background, and project() takes them from
+/// there.
+///
+/// @param shell   at the places of the background; receives those to begin with. The same for any number of threads
+/// @param inside  as labelled now
+/// \throw MeshCancelled
+WarmStart warm_start(const BackgroundMesh& background, ImplicitFunctionRef psi, const detail::IdSet& inside,
+                     const FastMemory& memory, const ProjectionParams& projection, LatticeShell& shell,
+                     const KeepGoing& keep_going = {});
+
+}  // namespace umtet
