@@ -35,11 +35,18 @@ std::optional<fs::path> background_file(const Parameters& parameters) {
   return name;
 }
 
+void require_walls(const Parameters& parameters) {
+  const bool walls = parameters.flag("mesh.box_walls");
+  if (walls && parameters.text("mesh.background") != "a15") throw UsageError("--box-walls is for --background a15");
+  if (walls || !parameters.flag("mesh.complement")) return;
+  throw UsageError("--complement needs --box-walls: what is around the body ends at the flat walls of --box");
+}
+
 BackgroundChoice::BackgroundChoice(const Parameters& parameters, const Domain& domain)
     : tiling_(&a15()), walls_(parameters.flag("mesh.box_walls")) {
+  require_walls(parameters);
   const std::optional<fs::path> file = background_file(parameters);
   if (!file) tiling_ = &tiling_named(parameters.text("mesh.background"));
-  if (walls_ && (file || tiling_ != &a15())) throw UsageError("--box-walls is for --background a15");
   if (!file) return;
   if (parameters.real("mesh.h") > 0 || parameters.integer("mesh.tets") > 0) {
     throw UsageError("--h and --tets: " + file->string() + " has its own edge lengths");

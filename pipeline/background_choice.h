@@ -13,12 +13,15 @@ namespace umtet {
 /// The mesh file that mesh.background names, if it is no tiling.
 std::optional<std::filesystem::path> background_file(const Parameters&);
 
+/// \throw UsageError for mesh.box_walls with another background than a15, or mesh.complement without mesh.box_walls
+void require_walls(const Parameters&);
+
 /// What --background and --box-walls ask for: a lattice or a box of any edge length, or a mesh that has its own.
 class BackgroundChoice {
  public:
   /// Reads the file, if it is one. Its coordinates are model coordinates.
-  /// \throw UsageError when h or a number of tets is asked of a file, or walls of another tiling than a15;
-  ///        MeshFileRefused, std::system_error
+  /// \throw UsageError when h or a number of tets is asked of a file, or as require_walls(); MeshFileRefused,
+  ///        std::system_error
   BackgroundChoice(const Parameters& parameters, const Domain& domain);
 
   /// That of the file.

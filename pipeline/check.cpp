@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "mesh/certificate.h"
+#include "mesh/skin.h"
 #include "mesh/tet_mesh_io.h"
 #include "pipeline/domain.h"
 #include "pipeline/edge_length.h"
@@ -24,12 +28,29 @@ Domain domain_of_case(const fs::path& root) {
   return load_domain(paths, parameters);
 }
 
+/// Faces of the boundary in the sides of the box.
+std::vector<Triangle> faces_at_walls(const TetMesh& mesh, const Box& box, double tolerance) {
+  std::vector<Triangle> walls;
+  for (const Triangle& f : boundary_faces(mesh.C, mesh.V.size()).triangles) {
+    for (int side = 0; side < 6; ++side) {
+      const int a = side / 2;
+      const double at = side % 2 ? box.max()[a] : box.min()[a];
+      const auto is_there = [&](int v) { return std::abs(mesh.V[v][a] - at) <= tolerance; };
+      if (!std::all_of(f.begin(), f.end(), is_there)) continue;
+      walls.push_back(f);
+      break;
+    }
+  }
+  return walls;
+}
+
 Json check_second_order(const QuadraticTetMesh& mesh, const CertificateInput& corners, double h,
                         std::vector<std::string>& reasons) {
   SecondOrderInput input;
   input.mesh = &mesh;
   input.h = h;
   input.psi = corners.psi;
+  input.wall_faces = corners.wall_faces;
   input.coordinate_rounding = corners.coordinate_rounding;
   input.keep_going = corners.keep_going;
   const SecondOrderCertificate certificate = certify_second_order(input);
@@ -51,6 +72,7 @@ Json check_mesh(const fs::path& file, const std::optional<fs::path>& against, co
   input.mesh = &mesh;
   input.keep_going = not_interrupted;
   std::optional<Domain> domain;
+  std::vector<Triangle> walls;
   if (against) {
     domain.emplace(domain_of_case(*against));
     for (Vec3& x : mesh.V) x -= domain->shift;
@@ -65,6 +87,11 @@ Json check_mesh(const fs::path& file, const std::optional<fs::path>& against, co
     }
     input.psi = domain->psi();
     input.coordinate_rounding = coordinate_rounding(*domain);
+    if (domain->complement) {
+      walls = faces_at_walls(mesh, domain->box, 2 * input.coordinate_rounding);
+      input.wall_faces = &walls;
+      input.background_V = &mesh.V;  // where they are is where they are to be
+    }
     progress.detail("check: against psi of " + against->string());
   }
   stop_if_interrupted();

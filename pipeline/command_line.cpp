@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "pipeline/background_choice.h"
 #include "pipeline/detail/command_parser.h"
 #include "pipeline/export_case.h"
 #include "pipeline/version.h"
@@ -16,6 +17,7 @@ constexpr const char* kFooter = R"(Examples:
   umtet mesh duck --h 0.02                   another mesh size; the level set is not fitted again
   umtet mesh duck --max-deviation 0.001      flat faces at most so far from the surface
   umtet mesh --implicit 'x^2+y^2+z^2-1' --box -1.2,-1.2,-1.2,1.2,1.2,1.2 --tets 100000 -o ball
+  umtet mesh duck --complement --box-walls --box=-2,-1.5,-2,4,2,2       the fluid around it, in a box
   umtet inspect duck.ply                     spacing, noise, normals, thickness; what is likely to go wrong
   umtet check part.msh                       validity and quality of any tet mesh
   umtet export duck --format inp,vtu         files for solvers, in duck/4-export
@@ -232,6 +234,7 @@ CommandLine CommandParser::parse(int argc, const char* const* argv) {
     refuse(e, argc, argv);
   }
   fill_request(*app_.get_subcommands().front(), in_, result_);
+  require_walls(result_.request.parameters);
   return std::move(result_);
 }
 

@@ -11,6 +11,7 @@ namespace umtet {
 
 // The seam between the two libraries: neither includes the other.
 static_assert(ImplicitFunction<LevelSet> && TwiceDifferentiable<LevelSet> && JointlyEvaluated<LevelSet>);
+static_assert(ImplicitFunction<Domain> && TwiceDifferentiable<Domain> && JointlyEvaluated<Domain>);
 static_assert(ImplicitFunction<Expression> && TwiceDifferentiable<Expression> && JointlyEvaluated<Expression>);
 
 namespace {
@@ -27,6 +28,7 @@ Domain formula_domain(const Parameters& parameters, std::optional<double> t) {
   domain.formula.emplace(parameters.text("mesh.implicit"), t);
   domain.box = *box;
   domain.diagonal = box->diagonal().norm();
+  domain.complement = parameters.flag("mesh.complement");
   return domain;
 }
 
@@ -34,11 +36,37 @@ void Domain::limit_detail(double h) {
   if (fitted) level_set = fitted->band_limited(kLeastSpacing * h);
 }
 
+double Domain::evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const {
+  const ImplicitFunctionRef f = body();
+  Vec3 g;
+  Mat3 H;
+  const double sign = complement ? -1 : 1;
+  const double value = hessian ? f.value(x, g, H) : gradient ? f.value(x, g) : f.value(x);
+  if (gradient) *gradient = sign * g;
+  if (hessian) *hessian = sign * H;
+  return sign * value;
+}
+
+Vec3 Domain::gradient(const Vec3& x) const {
+  Vec3 g;
+  evaluate(x, &g, nullptr);
+  return g;
+}
+
+Mat3 Domain::hessian(const Vec3& x) const {
+  Mat3 H;
+  evaluate(x, nullptr, &H);
+  return H;
+}
+
+ImplicitFunctionRef Domain::psi() const { return complement ? ImplicitFunctionRef(*this) : body(); }
+
 Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handover* handover) {
   if (!parameters.text("mesh.implicit").empty()) return formula_domain(parameters);
   const StageState state = inspect_stage(paths, Stage::LevelSet, parameters.section("reconstruct"), std::nullopt);
   if (!state.record) throw ArtefactDamaged(state.reason);
   Domain domain;
+  domain.complement = parameters.flag("mesh.complement");
   domain.shift = recorded_vector(*state.record, "shift");
   domain.cloud_spacing = state.record->numbers.value("cloud_spacing", 0.);
   try {

@@ -19,24 +19,33 @@ struct Handover;
 /// What 3-mesh works on, and what a mesh is judged against: psi, where to look for it, and the samples behind it.
 /// All lengths and places are in working coordinates: model coordinates minus `shift`.
 struct Domain {
-  std::optional<Expression> formula;  ///< one of the three is there
-  std::optional<LevelSet> level_set;  ///< psi; cut where limit_detail() said
+  std::optional<Expression> formula;            ///< one of the three is there
+  std::optional<LevelSet> level_set;            ///< psi; cut where limit_detail() said
   std::optional<ImplicitFunctionRef> function;  ///< the caller's, who keeps it; with a Hessian
-  std::optional<LevelSet> fitted;     ///< the same with all its levels
-  Box box;                            ///< what the background mesh has to cover
-  double diagonal = 0;                ///< of the cloud's box, or of `box` for a formula
+  std::optional<LevelSet> fitted;               ///< the same with all its levels
+  Box box;                                      ///< what the background mesh has to cover
+  double diagonal = 0;                          ///< of the cloud's box, or of `box` for a formula
   Vec3 shift = Vec3::Zero();
   OrientedPointCloud cloud;                       ///< empty for a formula
   std::shared_ptr<const SampleDistance> samples;  ///< of the cloud's points; none for a formula
   double cloud_spacing = 0;                       ///< median distance between neighbouring samples, 0 for a formula
+  bool complement = false;  ///< mesh.complement: it is {psi > 0} in the box that is meshed, the fluid around a body
 
   /// Cuts psi at the detail that a mesh of edge length h can show: boundary faces fold over what is finer.
   void limit_detail(double h);
 
-  ImplicitFunctionRef psi() const {
+  /// Negative in the body.
+  ImplicitFunctionRef body() const {
     if (function) return *function;
     return formula ? ImplicitFunctionRef(*formula) : ImplicitFunctionRef(*level_set);
   }
+  /// Negative in what is meshed. Valid while this domain stays where it is.
+  ImplicitFunctionRef psi() const;
+  /// The same: a domain is an ImplicitFunction. `gradient` and `hessian` may be null.
+  double evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const;
+  double value(const Vec3& x) const { return evaluate(x, nullptr, nullptr); }
+  Vec3 gradient(const Vec3& x) const;
+  Mat3 hessian(const Vec3& x) const;
 };
 
 /// mesh.implicit in mesh.box. @param t  what t stands for in the text; without it there is no such name

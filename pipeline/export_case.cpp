@@ -114,10 +114,11 @@ SolverMesh mesh_of_case(const CasePaths& paths, const Parameters& parameters, Pr
   try {
     MeshFile file = read_tet_mesh(paths.mesh());
     SolverMesh mesh = file.quadratic ? solver_mesh(*file.quadratic) : solver_mesh(file.mesh);
+    const std::vector<char> at_wall = faces_at_walls(mesh, file);
     // What is read for points is read for corners.
     if (!file.quadratic) mesh.point_data = std::move(file.point_data);
     mesh.cell_data = std::move(file.cell_data);
-    divide_boundary(mesh, cloud_of_case(paths, *state.record), parameters,
+    divide_boundary(mesh, at_wall, cloud_of_case(paths, *state.record), parameters,
                     [&](const std::string& text) { progress.warn("export: " + text); });
     return mesh;
   } catch (const MeshFileRefused& e) {

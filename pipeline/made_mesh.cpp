@@ -13,6 +13,8 @@ const char* remedy(UmStatus status) {
   switch (status) {
     case UmStatus::EmptyDomain:
       return "a smaller --h, or a --box around the place where psi < 0, may find it";
+    case UmStatus::BoundaryNearWall:
+      return "give a larger --box or a smaller --h: the body has to be two edges off its walls";
     case UmStatus::DomainLeavesBackground:
       return "give a larger --box, with room of two edges around the domain";
     default:
@@ -45,6 +47,13 @@ MeshFile mesh_content(const Domain& domain, const UmResult& result, const std::v
     std::vector<double> support(V.size(), -1);
     set_support(domain, V, result.submesh.positive_vertices, support);
     content.point_data["support"] = std::move(support);
+  }
+  if (!result.walls.empty()) {
+    std::vector<std::uint8_t> wall(V.size(), 0);
+    for (const Triangle& f : result.walls) {
+      for (const int i : f) wall[i] = 1;
+    }
+    content.point_data[kAtWall] = std::move(wall);
   }
   return content;
 }

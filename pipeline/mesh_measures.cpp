@@ -91,14 +91,16 @@ Json cloud_block(const Domain& domain, const std::vector<Vec3>& V, const std::ve
 // Halving the spacing is worth its cost if it leaves at least this much of a refinement within the nodes allowed.
 constexpr double kWorthRepeating = .9;
 
-/// Does the boundary of the mesh look like the pieces of psi = 0 that are kept? Where the two counts differ, the count
-/// is repeated on a grid of half the spacing, as far as its size is allowed, before the mesh is blamed.
+/// Does the boundary of the mesh look like the pieces of psi = 0 that are kept, and the walls of the box around a
+/// fluid, one closed piece without a hole? Where the two counts differ, the count is repeated on a grid of half the
+/// spacing, as far as its size is allowed, before the mesh is blamed.
 void compare_with_zero_set(const Domain& domain, const MeshCertificate& certificate, const ZeroSetChoice& pieces,
                            const KeepGoing& keep_going, Json& block, std::vector<std::string>& reasons) {
   const MeshCertificate::Boundary& boundary = certificate.boundary;
+  const int of_psi = boundary.components - (domain.complement ? 1 : 0);
+  const long characteristic = boundary.euler_characteristic - (domain.complement ? 2 : 0);
   const auto differs = [&](const ZeroSetChoice& c) {
-    return static_cast<int>(c.seeds.size()) != boundary.components ||
-           c.euler_characteristic != boundary.euler_characteristic;
+    return static_cast<int>(c.seeds.size()) != of_psi || c.euler_characteristic != characteristic;
   };
   ZeroSetChoice repeated;
   const ZeroSetChoice* counted = &pieces;
@@ -110,7 +112,7 @@ void compare_with_zero_set(const Domain& domain, const MeshCertificate& certific
   block["components_of_zero_set"] = counted->topology.components.size();
   block["euler_characteristic_of_zero_set"] = counted->topology.euler_characteristic;
   block["euler_characteristic_of_kept_components"] = counted->euler_characteristic;
-  block["components_meshed"] = boundary.components;
+  block["components_meshed"] = of_psi;
   block["components_dropped"] = counted->dropped;
   if (!differs(*counted)) return;
   const double spacing = counted->topology.spacing;
@@ -121,9 +123,9 @@ void compare_with_zero_set(const Domain& domain, const MeshCertificate& certific
                             : "h is too large for this shape";
   reasons.push_back(
       fmt::format("psi = 0 has {} pieces (and {} dropped ones) of Euler characteristic {} on a grid of spacing {:.3g}, "
-                  "the boundary of the mesh {} of {}: {}",
-                  counted->seeds.size(), counted->dropped.size(), counted->euler_characteristic, spacing,
-                  boundary.components, boundary.euler_characteristic, verdict));
+                  "the boundary of the mesh {}{} of {}: {}",
+                  counted->seeds.size(), counted->dropped.size(), counted->euler_characteristic, spacing, of_psi,
+                  domain.complement ? " besides the walls" : "", characteristic, verdict));
 }
 
 }  // namespace
@@ -153,6 +155,7 @@ Json to_json(const MeshCertificate& c) {
   return {{"n_tets", c.n_tets},
           {"n_vertices", c.n_vertices},
           {"n_positive_faces", c.n_positive_faces},
+          {"n_wall_faces", c.n_wall_faces},
           {"h", c.h},
           {"volume", c.volume},
           {"quality",
@@ -186,6 +189,10 @@ Json measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& 
   input.mesh = &mesh;
   input.h = h;
   input.positive_faces = &result.submesh.positive_faces;
+  if (!result.walls.empty()) {
+    input.wall_faces = &result.walls;
+    input.background_V = &result.submesh.mesh.V;
+  }
   input.psi = domain.psi();
   input.coordinate_rounding = coordinate_rounding(domain);
   input.keep_going = keep_going;

@@ -235,7 +235,7 @@ void MeshStage::curve(MeshAttempt& a) {
   context_.progress.report("mesh", "second order", .95);
   const ClosestPointParams params = um_params(context_.parameters).closest_point;
   a.second = curved_mesh(domain_, a.result, a.h, params, not_interrupted);
-  measure_second_order(domain_, *a.second, a.h, a.measured, not_interrupted);
+  measure_second_order(domain_, a.result, *a.second, a.h, a.measured, not_interrupted);
 }
 
 /// The estimate behind --tets knows the shape from a few thousand samples. Where it is far off, the number of tets at
@@ -339,6 +339,7 @@ UmParams um_params(const Parameters& p) {
   um.closest_point.method = projection == "paper"    ? ClosestPointMethod::Paper
                             : projection == "damped" ? ClosestPointMethod::Damped
                                                      : ClosestPointMethod::Newton;
+  um.rim = p.flag("mesh.complement") ? Rim::Wall : Rim::Refuse;
   um.max_min = p.text("mesh.max_min") == "golden" ? MaxMin::GoldenSection : MaxMin::Exact;
   um.seed = static_cast<std::uint64_t>(p.integer("mesh.seed"));
   std::string broken;

@@ -162,7 +162,7 @@ SolverMesh divided(const MeshFile& mesh, const Domain& domain, const Parameters&
   SolverMesh made = solver_mesh(mesh.mesh);
   for (Vec3& x : made.nodes) x -= domain.shift;
   try {
-    divide_boundary(made, domain.cloud, parameters, [](const std::string&) {});
+    divide_boundary(made, faces_at_walls(made, mesh), domain.cloud, parameters, [](const std::string&) {});
   } catch (const UsageError&) {
     // Names for labels that are not there: an export refuses them, here all faces stay one patch.
   }

@@ -10,6 +10,7 @@
 #include "mesh/patches.h"
 #include "mesh/skin.h"
 #include "pipeline/interrupt.h"
+#include "pipeline/made_mesh.h"
 #include "pipeline/report_page.h"
 
 namespace umtet {
@@ -26,9 +27,10 @@ std::uint8_t in_steps(double value, double least, double most) {
   return static_cast<std::uint8_t>(std::lround(kSteps8 * std::clamp((value - least) / (most - least), 0., 1.)));
 }
 
-const std::vector<double>* field(const std::map<std::string, FieldValues>& data, const char* name) {
+template <class Value = double>
+const std::vector<Value>* field(const std::map<std::string, FieldValues>& data, const char* name) {
   const auto it = data.find(name);
-  return it == data.end() ? nullptr : std::get_if<std::vector<double>>(&it->second);
+  return it == data.end() ? nullptr : std::get_if<std::vector<Value>>(&it->second);
 }
 
 double longest_edge(const TetMesh& mesh) {
@@ -233,8 +235,10 @@ void SceneMaker::write_values() {
 
   std::vector<double> deviation(faces_.size());
   const ImplicitFunctionRef psi = domain_.psi();
+  const std::vector<std::uint8_t>* wall = field<std::uint8_t>(file_.point_data, kAtWall);
   polled_parallel_for(faces_.size(), kValuesPerPoll, not_interrupted, [&](std::size_t f) {
     const FacedTet& t = faces_[f];
+    if (wall && (*wall)[t[0]] && (*wall)[t[1]] && (*wall)[t[2]]) return;
     Vec3 g;
     const double value = psi.value((mesh_.V[t[0]] + mesh_.V[t[1]] + mesh_.V[t[2]]) / 3 - domain_.shift, g);
     deviation[f] = std::abs(value) / g.norm();

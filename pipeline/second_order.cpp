@@ -1,11 +1,35 @@
 #include "pipeline/second_order.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "pipeline/artefact.h"
 #include "pipeline/edge_length.h"
 #include "pipeline/made_mesh.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
+
+namespace {
+
+/// Of the edges of these faces; some more than once.
+std::vector<int> mid_sides_of(const std::vector<Triangle>& faces, const QuadraticTetMesh& mesh) {
+  std::vector<std::pair<int, int>> edges;
+  for (const Triangle& f : faces) {
+    for (int k = 0; k < 3; ++k) edges.push_back(std::minmax({f[k], f[(k + 1) % 3]}));
+  }
+  std::sort(edges.begin(), edges.end());
+  std::vector<int> nodes;
+  for (const QuadraticTet& tet : mesh.C) {
+    for (int k = 0; k < 6; ++k) {
+      const std::pair<int, int> edge = std::minmax({tet[kMidSideEdge[k][0]], tet[kMidSideEdge[k][1]]});
+      if (std::binary_search(edges.begin(), edges.end(), edge)) nodes.push_back(tet[4 + k]);
+    }
+  }
+  return nodes;
+}
+
+}  // namespace
 
 SecondOrder curved_mesh(const Domain& domain, const UmResult& result, double h, const ClosestPointParams& params,
                         const KeepGoing& keep_going) {
@@ -35,12 +59,13 @@ Json to_json(const SecondOrderCertificate& c) {
           {"rms_face_distance_over_h", or_null(c.rms_face_distance_over_h)}};
 }
 
-void measure_second_order(const Domain& domain, const SecondOrder& second, double h, Json& measured,
-                          const KeepGoing& keep_going) {
+void measure_second_order(const Domain& domain, const UmResult& result, const SecondOrder& second, double h,
+                          Json& measured, const KeepGoing& keep_going) {
   SecondOrderInput input;
   input.mesh = &second.mesh;
   input.h = h;
   input.psi = domain.psi();
+  input.wall_faces = &result.walls;
   input.coordinate_rounding = coordinate_rounding(domain);
   input.keep_going = keep_going;
   const SecondOrderCertificate certificate = certify_second_order(input);
@@ -69,6 +94,10 @@ void write_second_order(const fs::path& file, const Domain& domain, const UmResu
   }
   auto& boundary = std::get<std::vector<std::uint8_t>>(content.point_data.at("boundary"));
   for (const int m : second.boundary_mid_sides) boundary[m] = 1;
+  if (!result.walls.empty()) {
+    auto& wall = std::get<std::vector<std::uint8_t>>(content.point_data.at(kAtWall));
+    for (const int m : mid_sides_of(result.walls, mesh)) boundary[m] = wall[m] = 1;
+  }
   if (const auto support = content.point_data.find("support"); support != content.point_data.end()) {
     set_support(domain, second.mesh.V, second.boundary_mid_sides, std::get<std::vector<double>>(support->second));
   }

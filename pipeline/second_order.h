@@ -20,8 +20,8 @@ Json to_json(const SecondOrderCertificate& certificate);
 
 /// Puts that block, with what had to be done for the Jacobians, into what measure() returned, and what is wrong into
 /// its `reasons`. \throw MeshCancelled
-void measure_second_order(const Domain& domain, const SecondOrder& second, double h, Json& measured,
-                          const KeepGoing& keep_going = {});
+void measure_second_order(const Domain& domain, const UmResult& result, const SecondOrder& second, double h,
+                          Json& measured, const KeepGoing& keep_going = {});
 
 /// As write_mesh() of the final mesh, with tets of 10 nodes; mid-sides have no vertex of the background (-1).
 /// \throw MeshCancelled, std::system_error naming the file

@@ -148,7 +148,7 @@ ThinPlaces find_thin_places(const Domain& domain, const ZeroSetChoice& pieces, d
   ThinPlaces result;
   result.h = h;
   Samples samples = samples_of(pieces);
-  const auto distances = sheet_distances(domain.psi(), samples.points, kStep * h, kReach * h, keep_going);
+  const auto distances = sheet_distances(domain.body(), samples.points, kStep * h, kReach * h, keep_going);
   samples.thickness.resize(distances.size());
   for (const bool is_gap : {false, true}) {
     std::transform(distances.begin(), distances.end(), samples.thickness.begin(),

@@ -30,7 +30,9 @@ KeepGoing polls(const Watch& watch) {
 class Mesher {
  public:
   Mesher(Domain& domain, const Parameters& parameters, const Watch& watch)
-      : domain_(domain), parameters_(parameters), watch_(watch), choice_(parameters, domain) {}
+      : domain_(domain), parameters_(parameters), watch_(watch), choice_(parameters, domain) {
+    domain.complement = parameters.flag("mesh.complement");
+  }
 
   MeshAttempt operator()() {
     watch_("size", 0);

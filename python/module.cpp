@@ -11,7 +11,9 @@
 #include <memory>
 #include <system_error>
 
+#include "mesh/a15_box.h"
 #include "mesh/moving_mesh.h"
+#include "pipeline/background_choice.h"
 #include "pipeline/certificate_json.h"
 #include "pipeline/mesh_measures.h"
 #include "pipeline/stages.h"
@@ -61,13 +63,20 @@ struct Moving {
   std::atomic<bool> at_work{false};
 
   explicit Moving(const Settings& settings)
-      : parameters(parameters_of(settings)), box(wanted_box(parameters)), mesher(background(), um_params(parameters)) {}
+      : parameters(walls_checked(parameters_of(settings))),
+        box(wanted_box(parameters)),
+        mesher(background(), um_params(parameters)) {}
 
+  static Parameters walls_checked(Parameters parameters) {
+    require_walls(parameters);
+    return parameters;
+  }
   static Box wanted_box(const Parameters& parameters) {
     if (const std::optional<Box> box = box_of(parameters)) return *box;
     throw std::invalid_argument("box is missing: (x0, y0, z0, x1, y1, z1) around all domains");
   }
   BackgroundMesh background() const {
+    if (parameters.flag("mesh.box_walls")) return BackgroundMesh(a15_box(box, parameters.real("mesh.h")));
     return {tiling_named(parameters.text("mesh.background")), box, parameters.real("mesh.h")};
   }
 };
@@ -80,6 +89,7 @@ py::tuple update(Moving& moving, const py::object& psi, std::optional<double> t,
   }
   const double h = moving.mesher.background().h();
   p.domain.limit_detail(h);
+  p.domain.complement = moving.parameters.flag("mesh.complement");
   UpdateHints hints;
   if (seeds) hints.seeds = vectors(*seeds, "seeds");
   const Watch watch = watch_of(progress);
@@ -268,6 +278,7 @@ void bind(py::module_& m) {
       .def_property_readonly(
           "boundary",
           [](const Mesh& a) { return a.second ? array(a.curved_boundary()) : array(a.result.submesh.positive_faces); })
+      .def_property_readonly("walls", [](const Mesh& a) { return array(a.result.walls); })
       .def_property_readonly("boundary_vertices", [](const Mesh& a) { return array(a.boundary_nodes()); })
       .def_property_readonly("background_vertex", [](const Mesh& a) { return array(a.background_vertices()); })
       .def_property_readonly("background_tet", [](const Mesh& a) { return array(a.result.submesh.background_tet); })

@@ -44,7 +44,7 @@ for _name in ("implicit", "keep_iterates"):  # of the program
 for _name in ("file", "orient_from"):
     _KEYS["cloud"].pop(_name, None)
 _OUTPUT = ("units", "max_memory", "min_quality")
-_NOT_OF_A_MOVING_MESH = ("tets", "max_tets", "max_deviation", "allow_thin", "box_walls", "order")
+_NOT_OF_A_MOVING_MESH = ("tets", "max_tets", "max_deviation", "allow_thin", "order")
 
 
 def _text(value):
@@ -116,7 +116,8 @@ def reconstruct(points, normals=None, *, normal_source=None, progress=None, thre
 class Mesh:
     """A tet mesh that fits {psi = 0}, with the ids of its background.
 
-    points (n, 3) float64; tets (m, 4), positive; boundary (k, 3), counter-clockwise from outside; boundary_vertices;
+    points (n, 3) float64; tets (m, 4), positive; boundary (k, 3), counter-clockwise from outside; walls (w, 3), the faces
+    at the walls of the box (complement=True); boundary_vertices;
     background_vertex (n,), background_tet (m,): ids in the universal mesh; h, its mean edge length; certificate, the
     keys of certificate.json but for `run` and the checksum.
 
@@ -126,7 +127,7 @@ class Mesh:
 
     def __init__(self, core):
         self._core = core
-        for name in ("points", "tets", "boundary", "boundary_vertices", "background_vertex", "background_tet", "h",
+        for name in ("points", "tets", "boundary", "walls", "boundary_vertices", "background_vertex", "background_tet", "h",
                      "certificate"):
             setattr(self, name, getattr(core, name))
 
@@ -149,7 +150,8 @@ def mesh(psi, *, box=None, t=None, progress=None, threads=0, **parameters):
     box: around the domain, with room of two edges; a LevelSet has its own. t: what t stands for in a formula. One of
     h, tets and max_deviation, or none (h from size and thickness). order=2: tets of 10 nodes with curved boundary, every
     Jacobian proved positive in the certificate. Other parameters: background="z", mode="paper",
-    max_tets, allow_thin, min_quality, target_quality, seed, ...
+    max_tets, allow_thin, min_quality, target_quality, seed, ...; complement=True with box_walls=True: {psi > 0} up to
+    the flat walls of the box, the fluid around the body.
 
     Returns a Mesh, the best of up to four where the choice of h is left to umtet. MeshingError: there is none, or the
     domain is too thin for h; evidence says where, and which h may do.
@@ -170,7 +172,7 @@ class Update:
 class UniversalMesh:
     """Meshes of a domain that moves inside `box`, all in one background mesh of edge length h.
 
-    Parameters are those of mesh() in fast mode: background="z", target_quality, ...
+    Parameters are those of mesh() in fast mode: background="z", target_quality, complement and box_walls, ...
     """
 
     def __init__(self, box, h, **parameters):

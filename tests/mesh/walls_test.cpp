@@ -4,10 +4,12 @@
 
 #include <Eigen/Geometry>
 #include <cstdio>
+#include <numbers>
 #include <vector>
 
 #include "mesh/a15_box.h"
 #include "mesh/certificate.h"
+#include "mesh/moving_mesh.h"
 #include "mesh/universal_mesh.h"
 #include "tests/support/domains.h"
 
@@ -32,6 +34,14 @@ MeshCertificate certificate_of(const BackgroundMesh& background, const UmResult&
                   .wall_faces = &result.walls,
                   .background_V = &result.submesh.mesh.V});
 }
+
+/// |x - c| < 1.
+struct Ball {
+  Vec3 c;
+  double value(const Vec3& x) const { return (x - c).squaredNorm() - 1; }
+  Vec3 gradient(const Vec3& x) const { return 2 * (x - c); }
+  Mat3 hessian(const Vec3&) const { return 2 * Mat3::Identity(); }
+};
 
 double area(const TetMesh& mesh, const Triangle& f) {
   return .5 * (mesh.V[f[1]] - mesh.V[f[0]]).cross(mesh.V[f[2]] - mesh.V[f[0]]).norm();
@@ -106,6 +116,22 @@ TEST(Walls, FluidAroundABodyIsCertifiedInBothModesAndOnAnyBackground) {
         EXPECT_NEAR(certificate.volume, box.volume() - *body.volume, .04 * *body.volume);
       }
     }
+  }
+}
+
+TEST(Walls, FluidAroundABodyThatMovesIsUpdated) {
+  const Box box(Vec3(-2, -2, -2), Vec3(2.5, 2, 2));
+  UniversalMesh fluid(BackgroundMesh(a15_box(box, .2)), with_walls());
+  for (const double x : {0., .1, .3}) {
+    const Ball ball{Vec3(x, 0, 0)};
+    const Complement around(ball);
+    const UmUpdate update = fluid.update(around);
+    ASSERT_EQ(update.mesh.status, UmStatus::Success) << update.mesh.evidence.what;
+    const MeshCertificate certificate = certificate_of(fluid.background(), update.mesh, around);
+    EXPECT_EQ(failures(certificate), std::vector<std::string>{});
+    EXPECT_EQ(certificate.boundary.components, 2);
+    EXPECT_NEAR(certificate.volume, box.volume() - 4. / 3 * std::numbers::pi, .2);
+    EXPECT_EQ(update.tets_left.empty(), x == 0);
   }
 }
 

@@ -287,6 +287,20 @@ class Moving(unittest.TestCase):
         self.assertIsNone(moving.update(psi, t=.2).mesh.certificate)
         self.assertLess(last.mesh.background_vertex.max(), moving.n_background_vertices)
 
+    def test_the_fluid_around_a_body_moves(self):
+        box = (-2, -2, -2, 2.5, 2, 2)
+        moving = umtet.UniversalMesh(box, h=.25, complement=True, box_walls=True)
+        for x in (0, .3):
+            update = moving.update("(x-t)^2+y^2+z^2-1", t=x, certify=True)
+            self.assertTrue(update.mesh.certified, update.mesh.certificate["reasons"])
+            self.assertAlmostEqual(update.mesh.certificate["volume"], 4.5 * 16 - 4 / 3 * np.pi, delta=.3)
+        alone = umtet.mesh(BALL, box=box, h=.25, complement=True, box_walls=True)
+        self.assertTrue(alone.certified, alone.certificate["reasons"])
+        at_walls = alone.points[np.unique(alone.walls)]
+        self.assertTrue(((at_walls == np.array(box[:3])) | (at_walls == np.array(box[3:]))).any(1).all())
+        with self.assertRaisesRegex(ValueError, "box-walls"):
+            umtet.UniversalMesh(box, h=.25, complement=True)
+
     def test_a_failed_update_leaves_the_last(self):
         moving = umtet.UniversalMesh(BOX, h=.2)
         n = len(moving.update(BALL).mesh.tets)
