@@ -15,15 +15,16 @@ namespace umtet {
 /// = 4 gamma / 3 have the variance that is missing: (2h)^2 / (2 gamma_P) = (2h)^2 / (2 gamma) - h^2 / (2 gamma).
 struct AxisProlongation {
   int n_coarse = 0, n_fine = 0, width = 0;
-  std::vector<int> first;      ///< first coarse node of each fine node
-  std::vector<double> weight;  ///< width weights for each fine node
+  std::vector<int> first;     ///< first coarse node of each fine node
+  std::vector<float> weight;  ///< width weights for each fine node
 
   AxisProlongation(const LmePrior& prior, int n_coarse);
 };
 
 /// Symmetric V-cycle for an SsdOperator: lattices h, 2h, 4h, ..., each re-discretised, Chebyshev-Jacobi smoothing,
 /// dense Cholesky on the coarsest. Where a level has many samples in a cell, its operator is built from their weighted
-/// means: the preconditioner changes, the solution does not.
+/// means: the preconditioner changes, the solution does not. All of it but the factor is in single precision: PCG asks
+/// it for one digit at a time.
 class Multigrid {
  public:
   /// @param n_levels  the lattice's cells along each axis must be divisible by 2^(n_levels - 1)
@@ -36,17 +37,17 @@ class Multigrid {
  private:
   struct Level {
     SsdOperator op;
-    std::vector<double> inverse_diagonal;
+    std::vector<float> inverse_diagonal;
     double lambda_max = 0;             // of D^-1 A
     std::vector<AxisProlongation> up;  // three axes, from the next coarser level
-    std::vector<double> x, r, d, Ad;   // iterate, residual, Chebyshev direction
+    std::vector<float> x, r, d, Ad;    // iterate, residual, Chebyshev direction
   };
   void cycle(std::size_t level);
-  void smooth(Level& level, bool from_zero);
+  void smooth(Level& level, bool before);
 
   std::vector<Level> levels_;
   Eigen::LLT<Eigen::MatrixXd> coarsest_;
-  std::vector<double> workspace_, transfer_;
+  std::vector<float> workspace_, transfer_;
 };
 
 struct PcgReport {

@@ -56,7 +56,10 @@ Eigen::SparseMatrix<double> assemble(const SsdOperator& op) {
     const Eigen::MatrixXd block = sample_block(B, s.w_value, s.w_gradient);
     for (int a = 0; a < W * W * W; ++a) {
       double* row = values.data() + row_size * lattice.index(at[a][0], at[a][1], at[a][2]);
-      for (int b = 0; b < W * W * W; ++b) row[slot(at[b] - at[a])] += block(b, a);
+      for (int b = 0; b < W * W * W; b += W) {  // W neighbours along x have W slots one after the other
+        double* to = row + slot(at[b] - at[a]);
+        for (int i = 0; i < W; ++i) to[i] += block(b + i, a);
+      }
     }
   }
 
@@ -67,12 +70,19 @@ Eigen::SparseMatrix<double> assemble(const SsdOperator& op) {
     for (a[1] = 0; a[1] < n[1]; ++a[1])
       for (a[0] = 0; a[0] < n[0]; ++a[0]) {
         const auto row = lattice.index(a[0], a[1], a[2]);
+        const AxisGram &x = op.energy().axis(0), &y = op.energy().axis(1), &z = op.energy().axis(2);
         for (b[2] = std::max(0, a[2] - half); b[2] <= std::min(n[2] - 1, a[2] + half); ++b[2])
-          for (b[1] = std::max(0, a[1] - half); b[1] <= std::min(n[1] - 1, a[1] + half); ++b[1])
+          for (b[1] = std::max(0, a[1] - half); b[1] <= std::min(n[1] - 1, a[1] + half); ++b[1]) {
+            // entry(a, b), what depends on y and z taken out of the sum
+            const double my = y.m(a[1], b[1]), sy = y.s(a[1], b[1]), mz = z.m(a[2], b[2]), sz = z.s(a[2], b[2]);
+            const double with_m = op.kappa() * (y.b(a[1], b[1]) * mz + my * z.b(a[2], b[2]) + 2 * sy * sz),
+                         with_b = op.kappa() * my * mz, with_s = op.kappa() * 2 * (sy * mz + my * sz);
             for (b[0] = std::max(0, a[0] - half); b[0] <= std::min(n[0] - 1, a[0] + half); ++b[0]) {
-              A.insert(lattice.index(b[0], b[1], b[2]), row) =
-                  values[row_size * row + slot(b - a)] + op.kappa() * op.energy().entry(a, b);
+              A.insert(lattice.index(b[0], b[1], b[2]), row) = values[row_size * row + slot(b - a)] +
+                                                               x.m(a[0], b[0]) * with_m + x.b(a[0], b[0]) * with_b +
+                                                               x.s(a[0], b[0]) * with_s;
             }
+          }
       }
   A.makeCompressed();
   return A;

@@ -6,6 +6,7 @@
 
 #include "reconstruct/cross_gram.h"
 #include "reconstruct/detail/contract.h"
+#include "reconstruct/detail/sample_basis.h"
 
 namespace umtet {
 
@@ -15,10 +16,11 @@ constexpr int kEdge = LatticeBlocks::kEdge, kNodes = LatticeBlocks::kNodes;
 // The nodes of a cell block: two blocks along each axis.
 constexpr int kWindow = 2 * kEdge, kWindowNodes = kWindow * kWindow * kWindow;
 
-using Lanes = Eigen::Array<float, 8, 1>;
-using In = Eigen::Map<const Lanes>;
-
-Eigen::Map<Lanes> lanes(float* at) { return Eigen::Map<Lanes>(at); }
+using Lanes = detail::FloatLanes;
+using In = detail::FloatIn;
+using detail::float_lanes;
+template <int W>
+using Basis = detail::SampleBasis<W>;
 
 Eigen::Vector3i cell_of(const SsdSample& s) { return s.xi.array().floor().cast<int>(); }
 
@@ -53,51 +55,43 @@ std::vector<Eigen::Vector3i> touched_blocks(const std::vector<SsdSample>& sample
   return touched;
 }
 
+// Functions of W nodes an axis reach no farther into the upper blocks: rows y and planes z that are of use.
+template <int W>
+constexpr int kReached = kEdge + W - 1;
+
 template <class T>
-void load_window(const std::array<int, 8>& nodes, const T* values, T* window) {
+using Row = Eigen::Array<T, kEdge, 1>;
+
+/// f(row of a block's values, row of the window) for each row of the blocks that functions of W nodes reach.
+template <int W, class F>
+void for_each_row(int q, F&& f) {
+  const int ox = kEdge * (q & 1), oy = kEdge * (q >> 1 & 1), oz = kEdge * (q >> 2);
+  const int ny = oy > 0 ? W - 1 : kEdge, nz = oz > 0 ? W - 1 : kEdge;
+  for (int z = 0; z < nz; ++z)
+    for (int y = 0; y < ny; ++y) f((z * kEdge + y) * kEdge, ((oz + z) * kWindow + oy + y) * kWindow + ox);
+}
+
+template <int W>
+void load_window(const std::array<int, 8>& nodes, const float* values, float* window) {
   for (int q = 0; q < 8; ++q) {
-    const int ox = kEdge * (q & 1), oy = kEdge * (q >> 1 & 1), oz = kEdge * (q >> 2);
-    for (int z = 0; z < kEdge; ++z)
-      for (int y = 0; y < kEdge; ++y) {
-        T* to = window + ((oz + z) * kWindow + oy + y) * kWindow + ox;
-        if (nodes[q] < 0) {
-          std::fill(to, to + kEdge, T(0));
-        } else {
-          const T* from = values + static_cast<std::size_t>(nodes[q]) * kNodes + (z * kEdge + y) * kEdge;
-          std::copy(from, from + kEdge, to);
-        }
-      }
+    if (nodes[q] < 0) {
+      for_each_row<W>(q, [&](int, int to) { float_lanes(window + to).setZero(); });
+      continue;
+    }
+    const float* from = values + static_cast<std::size_t>(nodes[q]) * kNodes;
+    for_each_row<W>(q, [&](int row, int to) { float_lanes(window + to) = In(from + row); });
   }
 }
 
-template <class T>
+template <int W, class T>
 void add_window(const std::array<int, 8>& nodes, const T* window, T* values) {
   for (int q = 0; q < 8; ++q) {
     if (nodes[q] < 0) continue;
-    const int ox = kEdge * (q & 1), oy = kEdge * (q >> 1 & 1), oz = kEdge * (q >> 2);
-    for (int z = 0; z < kEdge; ++z)
-      for (int y = 0; y < kEdge; ++y) {
-        const T* from = window + ((oz + z) * kWindow + oy + y) * kWindow + ox;
-        T* to = values + static_cast<std::size_t>(nodes[q]) * kNodes + (z * kEdge + y) * kEdge;
-        for (int x = 0; x < kEdge; ++x) to[x] += from[x];
-      }
+    T* to = values + static_cast<std::size_t>(nodes[q]) * kNodes;
+    for_each_row<W>(
+        q, [&](int row, int from) { Eigen::Map<Row<T>>(to + row) += Eigen::Map<const Row<T>>(window + from); });
   }
 }
-
-// What is stored of a sample: eight lanes of N and N' in x, W values each in y and z, and the two weights.
-template <int W>
-struct Basis {
-  static constexpr int kStride = 16 + 4 * W + 2;
-  const float* at;
-  In xN() const { return In(at); }
-  In xdN() const { return In(at + 8); }
-  const float* yN() const { return at + 16; }
-  const float* ydN() const { return at + 16 + W; }
-  const float* zN() const { return at + 16 + 2 * W; }
-  const float* zdN() const { return at + 16 + 3 * W; }
-  float w_value() const { return at[16 + 4 * W]; }
-  float w_gradient() const { return at[16 + 4 * W + 1]; }
-};
 
 }  // namespace
 
@@ -151,19 +145,7 @@ void SsdBand::tabulate() {
       const SsdSample& s = (*samples_)[i];
       LmeBasis3d B;
       evaluate_lme_3d<false>(*tables_, blocks_.lattice().n, s.xi, B);
-      float* at = bases_.data() + i * kStride;
-      for (int a = 0; a < 8; ++a) {
-        at[a] = static_cast<float>(B.x.N[a]);
-        at[8 + a] = static_cast<float>(B.x.dN[a]);
-      }
-      for (int a = 0; a < W; ++a) {
-        at[16 + a] = static_cast<float>(B.y.N[a]);
-        at[16 + W + a] = static_cast<float>(B.y.dN[a]);
-        at[16 + 2 * W + a] = static_cast<float>(B.z.N[a]);
-        at[16 + 3 * W + a] = static_cast<float>(B.z.dN[a]);
-      }
-      at[16 + 4 * W] = static_cast<float>(s.w_value);
-      at[16 + 4 * W + 1] = static_cast<float>(s.w_gradient);
+      Basis<W>::store(B, s, bases_.data() + i * kStride);
       const Eigen::Vector3i first = Eigen::Vector3i(B.x.first, B.y.first, B.z.first) - corner;
       window_[i] = static_cast<std::uint16_t>((first[2] * kWindow + first[1]) * kWindow + first[0]);
     }
@@ -173,39 +155,18 @@ void SsdBand::tabulate() {
 template <int W>
 void SsdBand::apply_data(const float* p, float* y) const {
   for_each_cell_block([&](const CellBlock& cells) {
+    constexpr int kUsed = kReached<W> * kWindow * kWindow;
     // Eight-lane loads and stores may reach past the last row.
     alignas(32) float in[kWindowNodes + 8], out[kWindowNodes + 8];
-    load_window(cells.nodes, p, in);
-    std::fill(in + kWindowNodes, in + kWindowNodes + 8, 0.f);
-    std::fill(out, out + kWindowNodes + 8, 0.f);
+    load_window<W>(cells.nodes, p, in);
+    std::fill(in + kUsed, in + kUsed + 8, 0.f);
+    std::fill(out, out + kUsed + 8, 0.f);
     for (std::size_t i = cells.begin; i < cells.end; ++i) {
-      const Basis<W> B{bases_.data() + i * Basis<W>::kStride};
-      const float* from = in + window_[i];
-      Lanes v = Lanes::Zero(), vy = v, vz = v;
-      for (int j = 0; j < W; ++j) {
-        Lanes a = Lanes::Zero(), az = a;
-        for (int k = 0; k < W; ++k) {
-          const In row(from + (k * kWindow + j) * kWindow);
-          a += B.zN()[k] * row;
-          az += B.zdN()[k] * row;
-        }
-        v += B.yN()[j] * a;
-        vy += B.ydN()[j] * a;
-        vz += B.yN()[j] * az;
-      }
-      const Lanes N = B.xN(), dN = B.xdN();
-      const float q = B.w_value() * (N * v).sum(), w = B.w_gradient();
-      const float gx = w * (dN * v).sum(), gy = w * (N * vy).sum(), gz = w * (N * vz).sum();
-      const Lanes t = q * N + gx * dN, ty = gy * N, tz = gz * N;
-      float* to = out + window_[i];
-      for (int j = 0; j < W; ++j) {
-        const Lanes a = B.yN()[j] * t + B.ydN()[j] * ty, az = B.yN()[j] * tz;
-        for (int k = 0; k < W; ++k) {
-          lanes(to + (k * kWindow + j) * kWindow) += B.zN()[k] * a + B.zdN()[k] * az;
-        }
-      }
+      constexpr std::integral_constant<int, kWindow> kRow;
+      constexpr std::integral_constant<int, kWindow * kWindow> kPlane;
+      detail::add_sample<W>({bases_.data() + i * Basis<W>::kStride}, in + window_[i], out + window_[i], kRow, kPlane);
     }
-    add_window(cells.nodes, out, y);
+    add_window<W>(cells.nodes, out, y);
   });
 }
 
@@ -235,16 +196,16 @@ void SsdBand::apply_energy(const float* p, float* y) const {
         plane = true;
         for (int q = 0; q < 3; ++q) {
           if (three[q] < 0) {
-            lanes(rows[j] + q * kEdge).setZero();
+            float_lanes(rows[j] + q * kEdge).setZero();
           } else {
-            lanes(rows[j] + q * kEdge) =
+            float_lanes(rows[j] + q * kEdge) =
                 In(p + static_cast<std::size_t>(three[q]) * kNodes + (kz % kEdge * kEdge + ky % kEdge) * kEdge);
           }
         }
       }
       for (int j = 0; j < kAround; ++j) {
         if (!filled[j]) {
-          lanes(M[j]).setZero(), lanes(S[j]).setZero(), lanes(B[j]).setZero();
+          float_lanes(M[j]).setZero(), float_lanes(S[j]).setZero(), float_lanes(B[j]).setZero();
           continue;
         }
         const float* row = rows[j];
@@ -254,7 +215,7 @@ void SsdBand::apply_energy(const float* p, float* y) const {
           const Lanes pair = In(row + kEdge - o) + In(row + kEdge + o);
           vm += m[o] * pair, vs += s[o] * pair, vb += b[o] * pair;
         }
-        lanes(M[j]) = vm, lanes(S[j]) = vs, lanes(B[j]) = vb;
+        float_lanes(M[j]) = vm, float_lanes(S[j]) = vs, float_lanes(B[j]) = vb;
       }
       for (int j = 0; j < kEdge; ++j) {
         Lanes am = Lanes::Zero(), ab = am, as = am;
@@ -271,7 +232,8 @@ void SsdBand::apply_energy(const float* p, float* y) const {
             as += m[o] * So + s[o] * Mo;
           }
         }
-        lanes(with_m[z] + j * kEdge) = am, lanes(with_b[z] + j * kEdge) = ab, lanes(with_s[z] + j * kEdge) = 2 * as;
+        float_lanes(with_m[z] + j * kEdge) = am, float_lanes(with_b[z] + j * kEdge) = ab,
+                                    float_lanes(with_s[z] + j * kEdge) = 2 * as;
       }
     }
     float* to = y + static_cast<std::size_t>(block) * kNodes;
@@ -286,7 +248,7 @@ void SsdBand::apply_energy(const float* p, float* y) const {
                  b[o] * (In(with_b[at - o] + col) + In(with_b[at + o] + col)) +
                  s[o] * (In(with_s[at - o] + col) + In(with_s[at + o] + col));
         }
-        lanes(to + (z * kEdge + j) * kEdge) = kappa * sum;
+        float_lanes(to + (z * kEdge + j) * kEdge) = kappa * sum;
       }
     }
   });
@@ -312,11 +274,11 @@ void SsdBand::invert_diagonal() {
         for (int k = 0; k < W; ++k)
           for (int j = 0; j < W; ++j) {
             const float yz = B.yN()[j] * B.zN()[k], dyz = B.ydN()[j] * B.zN()[k], ydz = B.yN()[j] * B.zdN()[k];
-            lanes(out + window_[i] + (k * kWindow + j) * kWindow) +=
+            float_lanes(out + window_[i] + (k * kWindow + j) * kWindow) +=
                 B.w_value() * yz * yz * N2 + B.w_gradient() * (yz * yz * d2 + (dyz * dyz + ydz * ydz) * N2);
           }
       }
-      add_window(cells.nodes, out, d.data());
+      add_window<W>(cells.nodes, out, d.data());
     });
   });
   const CrossGram gram(*tables_, 0);
@@ -347,28 +309,31 @@ void SsdBand::residual(const LevelSet& f, std::vector<float>& r) const {
   }
   for (double& e : energy) e /= L.h;
   std::vector<double> data(size(), 0.0);
-  for_each_cell_block([&](const CellBlock& cells) {
-    const Eigen::Vector3i corner = kEdge * cells.block - Eigen::Vector3i::Constant(blocks_.shift());
-    double out[kWindowNodes] = {};
-    for (std::size_t i = cells.begin; i < cells.end; ++i) {
-      const SsdSample& s = (*samples_)[i];
-      Vec3 gradient;
-      const double value = f.evaluate(L.origin + L.h * s.xi, &gradient, nullptr) / L.h;
-      LmeBasis3d B;
-      evaluate_lme_3d<false>(*tables_, L.n, s.xi, B);
-      const double q = s.w_value * (s.value - value);
-      const Vec3 g = s.w_gradient * (s.normal - gradient);
-      double* base =
-          out + ((B.z.first - corner[2]) * kWindow + B.y.first - corner[1]) * kWindow + B.x.first - corner[0];
-      const int W = tables_->width();
-      for (int k = 0; k < W; ++k)
-        for (int j = 0; j < W; ++j) {
-          const double yz = B.y.N[j] * B.z.N[k], v = q * yz + g[1] * B.y.dN[j] * B.z.N[k] + g[2] * B.y.N[j] * B.z.dN[k];
-          double* row = base + (k * kWindow + j) * kWindow;
-          for (int a = 0; a < W; ++a) row[a] += v * B.x.N[a] + g[0] * yz * B.x.dN[a];
-        }
-    }
-    add_window(cells.nodes, out, data.data());
+  detail::dispatch_width(tables_->width(), [&](auto width) {
+    constexpr int W = width.value;
+    for_each_cell_block([&](const CellBlock& cells) {
+      const Eigen::Vector3i corner = kEdge * cells.block - Eigen::Vector3i::Constant(blocks_.shift());
+      double out[kWindowNodes] = {};
+      for (std::size_t i = cells.begin; i < cells.end; ++i) {
+        const SsdSample& s = (*samples_)[i];
+        Vec3 gradient;
+        const double value = f.evaluate(L.origin + L.h * s.xi, &gradient, nullptr) / L.h;
+        LmeBasis3d B;
+        evaluate_lme_3d<false>(*tables_, L.n, s.xi, B);
+        const double q = s.w_value * (s.value - value);
+        const Vec3 g = s.w_gradient * (s.normal - gradient);
+        double* base =
+            out + ((B.z.first - corner[2]) * kWindow + B.y.first - corner[1]) * kWindow + B.x.first - corner[0];
+        for (int k = 0; k < W; ++k)
+          for (int j = 0; j < W; ++j) {
+            const double yz = B.y.N[j] * B.z.N[k],
+                         v = q * yz + g[1] * B.y.dN[j] * B.z.N[k] + g[2] * B.y.N[j] * B.z.dN[k];
+            double* row = base + (k * kWindow + j) * kWindow;
+            for (int a = 0; a < W; ++a) row[a] += v * B.x.N[a] + g[0] * yz * B.x.dN[a];
+          }
+      }
+      add_window<W>(cells.nodes, out, data.data());
+    });
   });
   r.resize(size());
   for (std::size_t a = 0; a < r.size(); ++a) {

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "reconstruct/detail/contract.h"
+#include "reconstruct/detail/sample_basis.h"
 
 namespace umtet {
 
@@ -73,7 +74,7 @@ void SsdOperator::for_each_slab(PerSample&& f) const {
   for (int parity = 0; parity < 2; ++parity) {
     tbb::parallel_for(0, (n_slabs - parity + 1) / 2, [&](int s) {
       const int slab = 2 * s + parity;
-      for (std::size_t i = slab_begin_[slab]; i < slab_begin_[slab + 1]; ++i) f(samples_[i], slab);
+      for (std::size_t i = slab_begin_[slab]; i < slab_begin_[slab + 1]; ++i) f(i, slab);
     });
   }
 }
@@ -81,7 +82,8 @@ void SsdOperator::for_each_slab(PerSample&& f) const {
 void SsdOperator::apply(const double* c, double* y, std::vector<double>& workspace) const {
   energy_.apply(kappa_, c, y, workspace);
   dispatch_width(tables_->width(), [&](auto W) {
-    for_each_slab([&](const SsdSample& s, int) {
+    for_each_slab([&](std::size_t i, int) {
+      const SsdSample& s = samples_[i];
       LmeBasis3d B;
       evaluate_lme_3d<false>(*tables_, n_, s.xi, B);
       const LatticeJet f = contract<W.value, kGradient>(B, n_, c);
@@ -90,10 +92,37 @@ void SsdOperator::apply(const double* c, double* y, std::vector<double>& workspa
   });
 }
 
+void SsdOperator::tabulate() {
+  dispatch_width(tables_->width(), [&](auto W) {
+    using Basis = SampleBasis<W.value>;
+    bases_.resize(samples_.size() * Basis::kStride);
+    first_.resize(samples_.size());
+    tbb::parallel_for(std::size_t{0}, samples_.size(), [&](std::size_t i) {
+      LmeBasis3d B;
+      evaluate_lme_3d<false>(*tables_, n_, samples_[i].xi, B);
+      Basis::store(B, samples_[i], bases_.data() + i * Basis::kStride);
+      first_[i] =
+          B.x.first + static_cast<std::ptrdiff_t>(n_[0]) * (B.y.first + static_cast<std::ptrdiff_t>(n_[1]) * B.z.first);
+    });
+  });
+}
+
+void SsdOperator::apply(const float* c, float* y, std::vector<float>& workspace) const {
+  energy_.apply(kappa_, c, y, workspace);
+  const std::ptrdiff_t nx = n_[0], nxy = nx * n_[1];
+  dispatch_width(tables_->width(), [&](auto W) {
+    using Basis = SampleBasis<W.value>;
+    for_each_slab([&](std::size_t i, int) {
+      add_sample(Basis{bases_.data() + i * Basis::kStride}, c + first_[i], y + first_[i], nx, nxy);
+    });
+  });
+}
+
 void SsdOperator::right_hand_side(double* y) const {
   std::fill(y, y + size(), 0.0);
   dispatch_width(tables_->width(), [&](auto W) {
-    for_each_slab([&](const SsdSample& s, int) {
+    for_each_slab([&](std::size_t i, int) {
+      const SsdSample& s = samples_[i];
       LmeBasis3d B;
       evaluate_lme_3d<false>(*tables_, n_, s.xi, B);
       scatter<W.value>(B, n_, s.w_value * s.value, s.w_gradient * s.normal, y);
@@ -105,7 +134,8 @@ void SsdOperator::diagonal(double* y) const {
   std::fill(y, y + size(), 0.0);
   energy_.add_diagonal(kappa_, y);
   const int W = tables_->width();
-  for_each_slab([&](const SsdSample& s, int) {
+  for_each_slab([&](std::size_t i, int) {
+    const SsdSample& s = samples_[i];
     LmeBasis3d B;
     evaluate_lme_3d<false>(*tables_, n_, s.xi, B);
     const std::ptrdiff_t nx = n_[0], nxy = nx * n_[1];
@@ -126,7 +156,8 @@ void SsdOperator::diagonal(double* y) const {
 Eigen::Vector3d SsdOperator::energies(const double* c, std::vector<double>& workspace) const {
   std::vector<Eigen::Vector2d> slab_sum(slab_begin_.size(), Eigen::Vector2d::Zero());
   dispatch_width(tables_->width(), [&](auto W) {
-    for_each_slab([&](const SsdSample& s, int slab) {
+    for_each_slab([&](std::size_t i, int slab) {
+      const SsdSample& s = samples_[i];
       LmeBasis3d B;
       evaluate_lme_3d<false>(*tables_, n_, s.xi, B);
       const LatticeJet f = contract<W.value, kGradient>(B, n_, c);

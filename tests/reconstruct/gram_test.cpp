@@ -124,6 +124,30 @@ TEST(SsdOperator, AppliedEqualsAssembled) {
   }
 }
 
+TEST(SsdOperator, InSinglePrecisionIsTheSameRounded) {
+  const LmeTables tables{LmePrior{}};
+  for (const Eigen::Vector3i& n : {Eigen::Vector3i(7, 9, 8), Eigen::Vector3i(13, 9, 8), Eigen::Vector3i(53, 9, 8)}) {
+    std::mt19937_64 random(7);
+    std::uniform_real_distribution<double> unit(0, 1);
+    std::vector<SsdSample> samples(100);
+    for (SsdSample& s : samples) {
+      s.xi = Vec3(unit(random), unit(random), unit(random)).cwiseProduct((n.array() - 1).cast<double>().matrix());
+      s.w_value = unit(random), s.w_gradient = unit(random);
+    }
+    SsdOperator op(tables, n, 0.3, samples);
+    op.tabulate();
+    std::vector<double> c = random_vector(n.prod(), 4), y(n.prod() + SsdOperator::kPad), work;
+    c.resize(c.size() + SsdOperator::kPad, 0.0);
+    const std::vector<float> single(c.begin(), c.end());
+    std::vector<float> rounded(y.size()), single_work;
+    op.apply(c.data(), y.data(), work);
+    op.apply(single.data(), rounded.data(), single_work);
+    const Eigen::Map<Eigen::VectorXd> expected(y.data(), n.prod());
+    const Eigen::Map<Eigen::VectorXf> made(rounded.data(), n.prod());
+    EXPECT_LT((made.cast<double>() - expected).norm(), 1e-6 * expected.norm());
+  }
+}
+
 TEST(SsdOperator, ApplyIsTheSameForAnyThreads) {
   // Samples in two layers of cells only, so that their slabs run at the same time: the highest layer, where windows of
   // functions are moved down from the hull, and each below that such a window may reach. Twelve heights: every
