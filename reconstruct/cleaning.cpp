@@ -120,18 +120,45 @@ NeighbourTree thinned(const Surroundings& cloud) {
   return NeighbourTree(some);
 }
 
+/// The points, along the curve of the tree, around which there may be `crowd` others within three times their reach.
+/// One ball for a few points beside each other, which holds all of theirs, clears most of them.
+std::vector<std::uint32_t> maybe_crowded(const Surroundings& cloud, std::size_t crowd) {
+  constexpr std::size_t kTogether = 8;  // on a surface their ball holds some 200 points, where 324 are a crowd
+  const std::vector<std::uint32_t>& order = cloud.tree->order();
+  const std::size_t n_groups = (order.size() + kTogether - 1) / kTogether;
+  std::vector<std::uint8_t> is_open(n_groups);
+  tbb::parallel_for(std::size_t{0}, n_groups, [&](std::size_t g) {
+    const std::span<const std::uint32_t> group =
+        std::span(order).subspan(g * kTogether, std::min(kTogether, order.size() - g * kTogether));
+    Vec3 centre = Vec3::Zero();
+    for (const std::uint32_t i : group) centre += (cloud.points[i] - cloud.points[group[0]]) / group.size();
+    centre += cloud.points[group[0]];
+    double radius = 0;
+    for (const std::uint32_t i : group) {
+      radius = std::max(radius, (cloud.points[i] - centre).norm() + 3 * std::sqrt(cloud.near.distances2(i).back()));
+    }
+    constexpr double kRoundedUp = 1 + 1e-9;
+    is_open[g] = cloud.tree->count_within(centre, radius * radius * kRoundedUp, crowd) >= crowd ? 1 : 0;
+  });
+  std::vector<std::uint32_t> rows;
+  for (std::size_t row = 0; row < order.size(); ++row)
+    if (is_open[row / kTogether] != 0) rows.push_back(order[row]);
+  return rows;
+}
+
 std::vector<std::uint8_t> outliers(const Surroundings& cloud, const CleaningParams& params) {
   const std::vector<Vec3>& points = cloud.points;
   std::vector<std::uint8_t> drop(points.size(), 0);
   if (points.size() <= 9 * kNeighbours) return drop;  // too few to speak of a density
   const NeighbourTree& tree = *cloud.tree;
-  const NeighbourTree few = thinned(cloud);
   const auto suspicious = static_cast<std::size_t>(params.suspicious_crowd * 9 * kNeighbours);
+  const std::vector<std::uint32_t> open = maybe_crowded(cloud, suspicious);
+  if (open.empty()) return drop;
+  const NeighbourTree few = thinned(cloud);
   const auto certain = static_cast<std::size_t>(params.certain_crowd * 9 * kNeighbours);
   const auto worth_counting = static_cast<std::size_t>(kThinnedShare * static_cast<double>(suspicious) / kThinning);
-  const std::vector<std::uint32_t>& order = tree.order();
-  tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t row) {
-    const std::uint32_t i = order[row];
+  tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t row) {
+    const std::uint32_t i = open[row];
     const Vec3& x = points[i];
     const double reach2 = cloud.near.distances2(i).back();
     if (few.count_within(x, 9 * reach2, worth_counting) < worth_counting) return;

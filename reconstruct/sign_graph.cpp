@@ -214,13 +214,14 @@ SignAgreement sign_agreement(const OrientedPointCloud& cloud, const Neighbourhoo
   std::vector<SignAgreement> sums((n + kChunk - 1) / kChunk);
   tbb::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t c) {
     SignAgreement& sum = sums[c];
-    for (std::size_t i = c * kChunk; i < std::min(n, (c + 1) * kChunk); ++i) {
+    for (std::size_t row = c * kChunk; row < std::min(n, (c + 1) * kChunk); ++row) {
+      const std::uint32_t i = near.order()[row];
       double against = 0, all = 0;
       for (const std::uint32_t j : near.points(i)) {
-        const double weight = pair_weight(cloud, static_cast<std::uint32_t>(i), j);
+        const double weight = pair_weight(cloud, i, j);
         all += std::abs(weight);
         if (weight < 0) against -= weight;
-        if (!owns(near, static_cast<std::uint32_t>(i), j)) continue;
+        if (!owns(near, i, j)) continue;
         sum.all += std::abs(weight);
         if (weight > 0) sum.agrees += weight;
       }
@@ -245,7 +246,7 @@ std::vector<std::uint32_t> agreeing_components(const OrientedPointCloud& cloud, 
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
   };
-  for (std::uint32_t i = 0; i < n; ++i)
+  for (const std::uint32_t i : near.order())
     for (const std::uint32_t j : near.points(i)) {
       const std::uint32_t a = root(i), b = root(j);
       if (a == b || pair_weight(cloud, i, j) < kSureBorder) continue;
