@@ -1,7 +1,6 @@
 #include "pipeline/component_proof.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -34,14 +33,15 @@ class CellGroups {
   Vec3 corner(int cell) const { return cells_.origin + cells_.size * cells_.cells[cell].cast<double>(); }
 
  private:
+  /// Joins the cells of two rows that touch.
+  void unite_rows(int j, int k, int other_j, int other_k);
+
   const SignCells& cells_;
   Eigen::Array2i first_ = {0, 0}, n_ = {0, 0};  ///< rows of cells along x: y and z
   std::vector<int> row_begin_;                  ///< into cells_.cells, y fastest
   detail::DisjointSets groups_;
   std::vector<char> marked_;
 };
-
-std::array<int, 3> order(const Eigen::Vector3i& c) { return {c[2], c[1], c[0]}; }
 
 int CellGroups::find(const Eigen::Vector3i& cell) const {
   const int j = cell[1] - first_[0], k = cell[2] - first_[1];
@@ -67,11 +67,26 @@ CellGroups::CellGroups(const SignCells& cells)
   row_begin_.assign(static_cast<std::size_t>(n_.prod()) + 1, 0);
   for (const Eigen::Vector3i& c : cells_.cells) ++row_begin_[c[1] - first_[0] + n_[0] * (c[2] - first_[1]) + 1];
   std::partial_sum(row_begin_.begin(), row_begin_.end(), row_begin_.begin());
-  for (int c = 0; c < static_cast<int>(cells_.cells.size()); ++c) {
-    for_each_neighbour(cells_.cells[c], [&](const Eigen::Vector3i& next) {
-      if (order(next) >= order(cells_.cells[c])) return;  // each pair once
-      if (const int n = find(next); n >= 0) groups_.unite(c, n);
-    });
+  for (int k = 0; k < n_[1]; ++k) {
+    for (int j = 0; j < n_[0]; ++j) {
+      // Each pair once: with the rows before, then within the row.
+      for (const auto& [dj, dk] : {std::pair{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {0, 0}})
+        unite_rows(j, k, j + dj, k + dk);
+    }
+  }
+}
+
+void CellGroups::unite_rows(int j, int k, int other_j, int other_k) {
+  if (other_j < 0 || other_k < 0 || other_j >= n_[0] || other_k >= n_[1]) return;
+  const int row = j + n_[0] * k, other = other_j + n_[0] * other_k;
+  int near = row_begin_[other];
+  const int end = row_begin_[other + 1];
+  for (int c = row_begin_[row]; c < row_begin_[row + 1]; ++c) {
+    const int x = cells_.cells[c][0];
+    while (near < end && cells_.cells[near][0] < x - 1) ++near;
+    for (int n = near; n < end && cells_.cells[n][0] <= x + 1; ++n) {
+      if (n != c) groups_.unite(c, n);
+    }
   }
 }
 
@@ -81,6 +96,11 @@ void CellGroups::mark(const std::vector<Vec3>& points) {
     const Eigen::Vector3i cube = cube_of(x, cells_.origin, cells_.size);
     if (cube == last) continue;  // cut points of one grid node come one after the other
     last = cube;
+    // Cells that touch are one group already.
+    if (const int own = find(cube); own >= 0) {
+      marked_[groups_.find(own)] = 1;
+      continue;
+    }
     // They are linear along grid edges: they lie beside psi = 0.
     for_each_neighbour(cube, [&](const Eigen::Vector3i& next) {
       if (const int n = find(next); n >= 0) marked_[groups_.find(n)] = 1;

@@ -41,6 +41,7 @@ class Search {
 
  private:
   void split(int depth, const Eigen::Vector3i& cell, double bend, std::vector<Eigen::Vector3i>& found) const;
+  bool has_one_sign(const Eigen::Vector3i& cell) const;
   double bend_of(int level, const Eigen::Vector3i& cell) const;
   Range finer_levels(int depth, const Vec3& low, const Vec3& high) const;
 
@@ -120,6 +121,24 @@ Range Search::finer_levels(int depth, const Vec3& low, const Vec3& high) const {
   return sum;
 }
 
+// A cell of the coarsest lattice far from any zero: a sum of functions that are >= 0 and sum to one lies between the
+// least and the greatest coefficient. Most cells end here, before their second derivatives are looked at.
+bool Search::has_one_sign(const Eigen::Vector3i& cell) const {
+  const Lattice& L = psi_.coarsest().lattice;
+  const int width = 2 * R_;
+  const Eigen::Vector3i first = (cell.array() - R_ + 1).cwiseMax(0).min(L.n.array() - width);
+  Range c{1e300, -1e300};
+  for (int z = 0; z < width; ++z)
+    for (int y = 0; y < width; ++y) {
+      const double* row = psi_.coarsest().coefficients.data() + L.index(first[0], first[1] + y, first[2] + z);
+      for (int x = 0; x < width; ++x) c.low = std::min(c.low, row[x]), c.high = std::max(c.high, row[x]);
+    }
+  if (c.low <= 0 && c.high >= 0) return false;
+  const Vec3 low = L.origin + L.h * cell.cast<double>();
+  const Range finer = finer_levels(0, low, low + Vec3::Constant(L.h));
+  return c.low + finer.low > 0 || c.high + finer.high < 0;
+}
+
 // @param bend  bound of the second derivatives of the levels coarser than the cube
 void Search::split(int depth, const Eigen::Vector3i& cell, double bend, std::vector<Eigen::Vector3i>& found) const {
   const Lattice& L = psi_.coarsest().lattice;
@@ -144,6 +163,7 @@ void Search::split(int depth, const Eigen::Vector3i& cell, double bend, std::vec
 }
 
 void Search::search(int depth, const Eigen::Vector3i& cell, std::vector<Eigen::Vector3i>& found) const {
+  if (depth == 0 && has_one_sign(cell)) return;
   double bend = 0;
   for (int level = 0; level < std::min(depth, psi_.n_levels()); ++level) {
     const int up = depth - level;
