@@ -65,8 +65,10 @@ struct CentredTriangle {
 class NearestTriangle {
  public:
   /// @param reach  of all triangles
-  NearestTriangle(const Vec3& x, const std::vector<CentredTriangle>& triangles, double reach)
-      : x_(x), triangles_(triangles), reach_(reach) {}
+  /// @param bound  more than the distance that will be found
+  NearestTriangle(const Vec3& x, const std::vector<CentredTriangle>& triangles, double reach,
+                  double bound = std::numeric_limits<double>::infinity())
+      : x_(x), triangles_(triangles), reach_(reach), best_(bound), worst2_((bound + reach) * (bound + reach)) {}
   std::size_t size() const { return full() ? 1 : 0; }
   bool full() const { return best_ < std::numeric_limits<double>::infinity(); }
   double worstDist() const { return worst2_; }
@@ -88,8 +90,7 @@ class NearestTriangle {
  private:
   const Vec3& x_;
   const std::vector<CentredTriangle>& triangles_;
-  double reach_;
-  double best_ = std::numeric_limits<double>::infinity(), worst2_ = best_;
+  double reach_, best_, worst2_;
 };
 
 /// out[i] = f(i): which thread runs one cannot change a result.
@@ -105,7 +106,8 @@ std::vector<double> map_indices(std::size_t n, const KeepGoing& keep_going, F&& 
 struct SurfaceDistance::Index {
   std::vector<CentredTriangle> triangles;
   std::vector<Vec3> centroids;
-  double reach = 0;  ///< the greatest of all
+  double reach = 0;     ///< the greatest of all
+  double rounding = 0;  ///< more than what a distance may be off by
   PointSet set{centroids};
   std::unique_ptr<KdTree> tree;
 };
@@ -131,6 +133,7 @@ SurfaceDistance::SurfaceDistance(const std::vector<Vec3>& V, const std::vector<T
     index_->triangles.push_back({t, reach});
     index_->centroids.push_back(m);
   }
+  index_->rounding = 1e-13 * magnitude;
   for (CentredTriangle& t : index_->triangles) {
     t.reach += 1e-14 * (t.reach + magnitude);  // centroids are rounded: a few units in the last place
     index_->reach = std::max(index_->reach, t.reach);
@@ -148,8 +151,25 @@ double SurfaceDistance::distance(const Vec3& x) const {
   return nearest.distance();
 }
 
-std::vector<double> SurfaceDistance::distances(const std::vector<Vec3>& x, const KeepGoing& keep_going) const {
-  return map_indices(x.size(), keep_going, [&](std::size_t i) { return distance(x[i]); });
+std::vector<double> SurfaceDistance::distances(const std::vector<Vec3>& x, const KeepGoing& keep_going,
+                                               std::span<const std::uint32_t> order) const {
+  // Chunks are what a thread works through: where points follow each other in space, one bounds the next.
+  constexpr std::size_t kChunk = 64;
+  constexpr double kRoundedUp = 1 + 1e-12;
+  const auto point = [&](std::size_t row) { return order.empty() ? row : order[row]; };
+  std::vector<double> out(x.size());
+  polled_parallel_for((x.size() + kChunk - 1) / kChunk, kValuesPerPoll / kChunk, keep_going, [&](std::size_t c) {
+    double bound = std::numeric_limits<double>::infinity();
+    for (std::size_t row = c * kChunk; row < std::min(x.size(), (c + 1) * kChunk); ++row) {
+      const std::size_t i = point(row);
+      if (row > c * kChunk) bound = out[point(row - 1)] + (x[i] - x[point(row - 1)]).norm();
+      bound = bound * kRoundedUp + index_->rounding;
+      NearestTriangle nearest(x[i], index_->triangles, index_->reach, bound);
+      index_->tree->findNeighbors(nearest, x[i].data(), nanoflann::SearchParams());
+      out[i] = nearest.distance();
+    }
+  });
+  return out;
 }
 
 double point_triangle_distance(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -172,6 +192,8 @@ SampleDistance::SampleDistance(std::vector<Vec3> samples) : index_(std::make_uni
 SampleDistance::~SampleDistance() = default;
 SampleDistance::SampleDistance(SampleDistance&&) noexcept = default;
 SampleDistance& SampleDistance::operator=(SampleDistance&&) noexcept = default;
+
+std::span<const std::uint32_t> SampleDistance::order() const { return index_->tree->vAcc; }
 
 std::vector<double> SampleDistance::distances(const std::vector<Vec3>& x, const KeepGoing& keep_going) const {
   return map_indices(x.size(), keep_going, [&](std::size_t i) {

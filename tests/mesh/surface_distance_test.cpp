@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <random>
 
 #include "tests/support/tet_shapes.h"
@@ -48,6 +49,10 @@ TEST(SurfaceDistance, EqualsTheLeastOverAllTriangles) {
     for (const Triangle& f : faces) least = std::min(least, point_triangle_distance(x[i], V[f[0]], V[f[1]], V[f[2]]));
     ASSERT_EQ(d[i], least) << i;
   }
+  std::vector<std::uint32_t> order(x.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return x[a].x() < x[b].x(); });
+  EXPECT_EQ(surface.distances(x, {}, order), d);
 }
 
 TEST(SurfaceDistance, OfASphereIsRadialAndIndependentOfThreads) {
