@@ -56,7 +56,7 @@ BackgroundChoice::BackgroundChoice(const Parameters& parameters, const Domain& d
 
 BackgroundMesh BackgroundChoice::make(const Domain& domain, double h, std::int64_t n_tets, double allowed) const {
   const auto expected = [&](const BackgroundMesh& background) {
-    const double n = n_tets > 0 ? static_cast<double>(n_tets) : expected_tets(*tiling_, domain.psi(), domain.box, h);
+    const double n = n_tets > 0 ? static_cast<double>(n_tets) : expected_tets(*tiling_, domain.size(), h);
     return std::min(n, static_cast<double>(background.n_tets()));
   };
   try {

@@ -36,6 +36,12 @@ void Domain::limit_detail(double h) {
   if (fitted) level_set = fitted->band_limited(kLeastSpacing * h);
 }
 
+const BodySize& Domain::size() const {
+  const bool known = size_ && size_->first.min() == box.min() && size_->first.max() == box.max();
+  if (!known) size_.emplace(box, body_size(psi(), box, steepest()));
+  return size_->second;
+}
+
 double Domain::evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const {
   const ImplicitFunctionRef f = body();
   Vec3 g;

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "mesh/background_mesh.h"
+#include "mesh/body_size.h"
 #include "mesh/implicit_function.h"
 #include "mesh/surface_distance.h"
 #include "pipeline/case_folder.h"
@@ -34,6 +37,13 @@ struct Domain {
   /// Cuts psi at the detail that a mesh of edge length h can show: boundary faces fold over what is finer.
   void limit_detail(double h);
 
+  /// A bound of |grad psi|: a fitted psi has gradients of length one at its samples, and hardly longer ones anywhere; a
+  /// formula may have any.
+  double steepest() const { return level_set ? 2 : std::numeric_limits<double>::infinity(); }
+
+  /// Volume and area of the body, measured when they are first asked for: an estimate, whatever detail is cut.
+  const BodySize& size() const;
+
   /// Negative in the body.
   ImplicitFunctionRef body() const {
     if (function) return *function;
@@ -46,6 +56,9 @@ struct Domain {
   double value(const Vec3& x) const { return evaluate(x, nullptr, nullptr); }
   Vec3 gradient(const Vec3& x) const;
   Mat3 hessian(const Vec3& x) const;
+
+ private:
+  mutable std::optional<std::pair<Box, BodySize>> size_;  ///< of psi in that box
 };
 
 /// mesh.implicit in mesh.box. @param t  what t stands for in the text; without it there is no such name

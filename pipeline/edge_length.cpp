@@ -32,13 +32,11 @@ constexpr double kThinShare = .01;
 constexpr double kMostRounding = 1e-6;
 // Enough for a percentile.
 constexpr std::size_t kThicknessSamples = 20000;
-// A fitted psi has gradients of length one at its samples, and hardly longer ones anywhere.
-constexpr double kSteepest = 2;
 
 /// \throw MeshingImpossible when psi < 0 at none of the places where it is sampled
 double h_of(const Domain& domain, const Tiling& tiling, std::int64_t n_tets) {
   try {
-    return h_for_tets(tiling, domain.psi(), domain.box, static_cast<double>(n_tets));
+    return h_for_tets(tiling, domain.size(), static_cast<double>(n_tets));
   } catch (const std::invalid_argument& e) {
     throw MeshingImpossible(std::string("no edge length can be chosen: ") + e.what());
   }
@@ -65,7 +63,7 @@ double thin_part(const Domain& domain, double limit, const KeepGoing& keep_going
   for (std::size_t i = 0; i < domain.cloud.points.size(); i += stride) samples.push_back(domain.cloud.points[i]);
   // psi has no sheets much closer together than its lattice.
   std::vector<double> t =
-      thickness(domain.psi(), samples, .25 * domain.level_set->spacing(), limit, keep_going, kSteepest);
+      thickness(domain.psi(), samples, .25 * domain.level_set->spacing(), limit, keep_going, domain.steepest());
   std::sort(t.begin(), t.end());
   return quantile(t, kThinShare);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 #include "mesh/quality_report.h"
 #include "mesh/skin.h"
@@ -38,10 +39,10 @@ double max_curvature(ImplicitFunctionRef psi, const UmResult& result, double h, 
 
 /// Least distance from a boundary vertex along the normal to the opposite sheet, inside or outside; looked for up to
 /// four edges, beyond which it does not matter.
-double min_feature_size(ImplicitFunctionRef psi, const UmResult& result, double h, const KeepGoing& keep_going) {
+double min_feature_size(const Domain& domain, const UmResult& result, double h, const KeepGoing& keep_going) {
   std::vector<Vec3> points;
   for (const int i : result.submesh.positive_vertices) points.push_back(result.final[i]);
-  const std::vector<double> t = thickness(psi, points, h / 4, 4 * h, keep_going);
+  const std::vector<double> t = thickness(domain.psi(), points, h / 4, 4 * h, keep_going, domain.steepest());
   return t.empty() ? 0 : *std::min_element(t.begin(), t.end());
 }
 
@@ -76,7 +77,8 @@ void look_for_lost_samples(const Domain& domain, const std::vector<double>& d, d
 Json cloud_block(const Domain& domain, const std::vector<Vec3>& V, const std::vector<Triangle>& faces, double h,
                  const KeepGoing& keep_going, std::vector<std::string>& reasons) {
   if (domain.cloud.points.empty()) return nullptr;
-  std::vector<double> d = SurfaceDistance(V, faces).distances(domain.cloud.points, keep_going);
+  const auto order = domain.samples ? domain.samples->order() : std::span<const std::uint32_t>();
+  std::vector<double> d = SurfaceDistance(V, faces).distances(domain.cloud.points, keep_going, order);
   if (domain.fitted) look_for_lost_samples(domain, d, h, keep_going, reasons);
   std::sort(d.begin(), d.end());
   const double r = rms(d), max = d.back(), p99 = quantile(d, .99);
@@ -223,7 +225,7 @@ Json measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& 
   json["domain"] = std::move(block);
   json["cloud"] = cloud_block(domain, mesh.V, faces, h, keep_going, reasons);
   json["resolution"] = {{"kappa_h_max", max_curvature(domain.psi(), result, h, keep_going)},
-                        {"feature_size_over_h_min", min_feature_size(domain.psi(), result, h, keep_going) / h},
+                        {"feature_size_over_h_min", min_feature_size(domain, result, h, keep_going) / h},
                         {"obtuse_conditioning_angles", result.obtuse_conditioning_angles},
                         {"double_positive_faces", result.double_positive_faces}};
   json["reasons"] = reasons;

@@ -171,7 +171,7 @@ std::string MeshStage::remedy_for(const ThinPlaces& thin, Json& h_enough) {
   }
   h_enough = enough.h;
   return fmt::format("h = {:.3g} is enough, about {:.2g} tets", enough.h,
-                     expected_tets(domain_.psi(), domain_.box, enough.h));
+                     expected_tets(a15(), domain_.size(), enough.h));
 }
 
 /// Names what is too thin for the mesh that came out wrong, and writes it for the eye: beside a finished mesh where
@@ -203,7 +203,7 @@ MeshAttempt MeshStage::attempt(double h) {
       background_.make(domain_, h, context_.parameters.integer("mesh.tets"), allowed_bytes(context_.parameters));
   const double n_files =
       3 + (keep_iterates_ ? static_cast<double>(context_.parameters.integer("mesh.projection_passes")) : 0);
-  require_disk(context_.paths.root, n_files * expected_tets(domain_.psi(), domain_.box, h));
+  require_disk(context_.paths.root, n_files * expected_tets(a15(), domain_.size(), h));
   const ZeroSetChoice& pieces = pieces_at(h);
   a.thin = find_thin_places(domain_, pieces, h, not_interrupted);
   if (!a.thin.empty()) {

@@ -92,7 +92,7 @@ void collect(const Domain& domain, const Samples& samples, bool is_gap, const Ke
   // Detail that is cut away at this h is there again at a smaller one.
   std::vector<double> with_detail = thin.thickness;
   if (domain.fitted) {
-    const auto d = sheet_distances(*domain.fitted, thin.points, kStep * h, kReach * h, keep_going);
+    const auto d = sheet_distances(*domain.fitted, thin.points, kStep * h, kReach * h, keep_going, domain.steepest());
     for (std::size_t i = 0; i < d.size(); ++i) {
       with_detail[i] = std::min(with_detail[i], is_gap ? d[i].gap : d[i].body);
     }
@@ -148,7 +148,8 @@ ThinPlaces find_thin_places(const Domain& domain, const ZeroSetChoice& pieces, d
   ThinPlaces result;
   result.h = h;
   Samples samples = samples_of(pieces);
-  const auto distances = sheet_distances(domain.body(), samples.points, kStep * h, kReach * h, keep_going);
+  const auto distances =
+      sheet_distances(domain.body(), samples.points, kStep * h, kReach * h, keep_going, domain.steepest());
   samples.thickness.resize(distances.size());
   for (const bool is_gap : {false, true}) {
     std::transform(distances.begin(), distances.end(), samples.thickness.begin(),

@@ -4,9 +4,11 @@
 #include <oneapi/tbb/global_control.h>
 
 #include <algorithm>
+#include <atomic>
 #include <iterator>
 #include <map>
 
+#include "mesh/body_size.h"
 #include "mesh/crawl.h"
 #include "tests/support/domains.h"
 
@@ -82,6 +84,22 @@ TEST(ExpectedTets, IsNearTheCountAlsoInABoxMuchTooLarge) {
   EXPECT_NEAR(n, 20000, 2000);
   EXPECT_NEAR(expected_tets(ball, large, h), 20000, 1);
   EXPECT_EQ(expected_tets(ball, Box(Vec3::Constant(5), Vec3::Constant(6)), h), 0);
+}
+
+TEST(BodySize, WithABoundOfTheGradientIsTheSameForFewerValues) {
+  struct Counted {
+    const AnalyticDomain& domain;
+    mutable std::atomic<int> n = 0;
+    double value(const Vec3& x) const { return ++n, domain.value(x); }
+    Vec3 gradient(const Vec3& x) const { return domain.gradient(x); }
+  };
+  const AnalyticDomain ball = testing::sphere();
+  const double steepest = ball.gradient(ball.box.max()).norm();
+  const Counted all{ball}, some{ball};
+  const BodySize size = body_size(all, ball.box), same = body_size(some, ball.box, steepest);
+  EXPECT_EQ(same.volume, size.volume);
+  EXPECT_EQ(same.area, size.area);
+  EXPECT_LT(some.n, all.n / 2);
 }
 
 TEST(Submesh, DoesNotDependOnThreads) {
