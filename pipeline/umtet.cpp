@@ -1,11 +1,13 @@
 // The program: parses the call, runs it, prints data on stdout and the rest on stderr, and returns the exit code.
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -250,10 +252,21 @@ int run_program(int argc, char** argv) {
   return static_cast<int>(output.code);
 }
 
+/// Arrays of some megabytes come and go in every stage. What is freed is kept: given back, each page would be asked for
+/// again, a twentieth of the time of half a million samples.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_MAX, 0);
+  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+  mallopt(M_TOP_PAD, 16 << 20);
+#endif
+}
+
 }  // namespace
 }  // namespace umtet
 
 int main(int argc, char** argv) {
+  umtet::keep_freed_memory();
   umtet::install_signal_handlers();
   return umtet::run_program(argc, argv);
 }

@@ -52,6 +52,21 @@ std::vector<std::size_t> backing_samples(const Domain& domain, const ZeroSetTopo
   return count;
 }
 
+/// Whether there is a sample within `radius` of the first piece; false may also mean that a few hundred were not.
+bool has_sample(const Domain& domain, const ZeroSetTopology& topology, double radius) {
+  constexpr std::size_t kLookedAt = 300;
+  const auto points = topology.points_of(topology.components.front());
+  const std::vector<Vec3>& samples = domain.cloud.points;
+  const auto is_near = [&](const Vec3& x) {
+    return std::any_of(points.begin(), points.end(),
+                       [&](const Vec3& p) { return (p - x).squaredNorm() <= radius * radius; });
+  };
+  for (std::size_t i = 0; i < std::min(samples.size(), kLookedAt); ++i) {
+    if (is_near(samples[i])) return true;
+  }
+  return false;
+}
+
 /// The number of samples that each piece has to have.
 std::vector<std::size_t> wanted_samples(const ZeroSetTopology& topology, const std::vector<std::size_t>& backing) {
   std::vector<std::size_t> wanted(backing.size(), kFewestSamples);
@@ -85,7 +100,8 @@ ZeroSetChoice choose_components(const Domain& domain, double h, const KeepGoing&
   if (pieces.empty()) return choice;
   const double radius = std::max(kSupportRadius * domain.cloud_spacing, choice.topology.spacing);
   std::vector<std::size_t> backing(pieces.size()), wanted(pieces.size());
-  if (domain.level_set) {
+  // One piece is kept if it has one sample; how many there are matters to none but several.
+  if (domain.level_set && !(pieces.size() == 1 && has_sample(domain, choice.topology, radius))) {
     backing = backing_samples(domain, choice.topology, radius, keep_going);
     wanted = wanted_samples(choice.topology, backing);
   }
