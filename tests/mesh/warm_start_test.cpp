@@ -63,7 +63,7 @@ TEST(WarmStart, BeginsOnTheSurfaceWithoutFlatTets) {
     mean += Q / static_cast<double>(shell.C.size());
   }
   EXPECT_GE(least, ProjectionParams{}.least_quality);
-  EXPECT_GT(mean, .9);  // .88 where inner vertices are left behind
+  EXPECT_GT(mean, .9);
 }
 
 TEST(WarmStart, RecallsWhoseNeighboursAreLabelledAsBefore) {
