@@ -41,8 +41,8 @@ struct UmUpdate {
 /// A vertex changes sides only if psi = 0 passes over it: the search walks from the last boundary as far as vertices do
 /// change, whatever the size of the background. Labels that are as good as others stay, and vertices begin where they
 /// were, or are drawn along by the boundary (warm_start.h), instead of in the background. Then smoothing and repair are
-/// those of fast_mesh(), so that a mesh is as good as one made anew (1 % quantile and mean of Q within .01; the least is
-/// above the same target), but not the same to the bit: it depends on the meshes before it. The same bytes for any
+/// those of fast_mesh(), so that a mesh is as good as one made anew (1 % quantile and mean of Q within .01; the least
+/// is above the same target), but not the same to the bit: it depends on the meshes before it. The same bytes for any
 /// number of threads.
 ///
 /// A new component, or a cavity, away from the last boundary is not met by the walk: see UpdateHints.
