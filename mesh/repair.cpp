@@ -22,8 +22,8 @@ using detail::IdSet;
 
 // Pairs are tried from this many of the most promising labels, with this many second ones each.
 constexpr std::size_t kFirstOfPair = 6, kSecondOfPair = 8;
-// Besides max_patches: so many, and one for so many tets of the shell. A coarse perforated plate of 5092 tets is mended by
-// its 1724th patch, and until then looks no better than lenses that never are: one of 1600 tets took 3000.
+// Besides max_patches: so many, and one for so many tets of the shell. A coarse perforated plate of 5092 tets is mended
+// by its 1724th patch, and until then looks no better than lenses that never are: one of 1600 tets took 3000.
 constexpr std::size_t kFewPatches = 600, kTetsPerPatch = 4;
 // After sweep k of smoothing, how much below what it was the least Q of a patch may be, times k^2, and how many more
 // poor tets it may have, times k. Of the 617 patches that ended better among 3900 (T6 and T8 of 100k and 500k tets,
