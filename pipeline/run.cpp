@@ -145,9 +145,10 @@ void CaseRun::certify(const StageRecord& mesh) {
   const Json json = certificate(paths_, mesh, parameters_);
   const std::string text = file_text(json);
   const fs::path file = paths_.certificate();
-  const std::string former = fs::exists(file) ? read_text(file) : "";
+  const bool exists = fs::exists(file);
+  const std::string former = exists ? read_text(file) : "";
   if (former != text) {
-    if (!former.empty() && !seal_holds(Json::parse(former, nullptr, false))) {
+    if (exists && !seal_holds(Json::parse(former, nullptr, false))) {
       const std::string reason = file.string() + " does not match its own checksum";
       if (request_.strict) throw ArtefactDamaged(reason);
       progress_.warn("certificate: " + reason + "; making it again");

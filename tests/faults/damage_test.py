@@ -22,7 +22,7 @@ def sections(name, content):
                "csv": rb"(?<=\n)(?=[a-z])|(?<=,)(?=[a-z])", "json": rb"(?<=\n)(?= *\")", "toml": rb"(?<=\n)"}
     cuts = sorted({m.start() for m in re.finditer(pattern[name.rsplit(".", 1)[1]], content)} | {0, len(content) - 2})
     longest = max(range(len(cuts) - 1), key=lambda k: cuts[k + 1] - cuts[k])
-    return sorted([*cuts, (cuts[longest] + cuts[longest + 1]) // 2])
+    return sorted({*cuts, (cuts[longest] + cuts[longest + 1]) // 2} - {len(content)})
 
 
 class Damage(unittest.TestCase):
