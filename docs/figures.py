@@ -1,11 +1,13 @@
 #!/usr/bin/python3
-"""Figures 8, 9/10, 15, 18 and 21B of the paper by this project, as docs/figure_8.svg, figure_10.svg ...
+"""Figures 8, 9/10, 14, 15, 18 to 21B and 24 to 26 of the paper by this project, as docs/figure_8.svg, figure_10.svg ...
 
-usage: docs/figures.py [--data build/figures] [--peers build/peers] [--programs FOLDER] [--umtet PROGRAM] [--most 8000000]
+usage: docs/figures.py [--only 14,24] [--data build/figures] [--peers build/peers] [--programs FOLDER] [--umtet PROGRAM]
+                       [--swimmer PROGRAM] [--most 8000000]
 
-What is missing of the data is made: Figure 8 by `umtet run --mode paper`, 9/10 by tests/bench/peers/compare.py, 15 by
-`umtet mesh`, 21B by `umtet evolve`, 18 by peer_umtet (both programs are built by compare.py --quick). Remove a folder to have its data made anew. Needs Debian's
-python3-matplotlib; some ten minutes.
+What is missing of the data is made: Figure 8 by `umtet run --mode paper`, 9/10 by tests/bench/peers/compare.py, 14 and 15
+by `umtet mesh`, 19 by pipeline/examples/bird.py, 20 and 21B by `umtet evolve`, 24 to 26 by umtet_swimmer, 18 by peer_umtet
+(both programs are built by compare.py --quick). Remove a folder to have its data made anew. Needs Debian's
+python3-matplotlib and python3-vtk9; some fifteen minutes.
 """
 import argparse
 import csv
@@ -19,11 +21,17 @@ import matplotlib
 matplotlib.use("svg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
+from vtkmodules.vtkCommonDataModel import vtkPlane  # noqa: E402
+from vtkmodules.vtkFiltersCore import vtkCutter  # noqa: E402
+from vtkmodules.util.numpy_support import vtk_to_numpy  # noqa: E402
+
+import drawn_figures  # noqa: E402
+from mesh_svg import Mesh  # noqa: E402
 
 ROOT = Path(__file__).resolve().parent.parent
 GENUS = {"sphere": 0, "torus": 1, "plate_3": 3, "plate_18": 18, "banchoff_chmutov_8": 81}
 plt.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "umtet", "font.size": 9, "axes.grid": True,
-                     "grid.alpha": .3, "path.simplify_threshold": .6, "legend.frameon": False, "axes.spines.top": False, "axes.spines.right": False})
+                     "grid.alpha": .3, "path.simplify_threshold": .6, "savefig.dpi": 150, "legend.frameon": False, "axes.spines.top": False, "axes.spines.right": False})
 
 
 def save(figure, name):
@@ -80,14 +88,13 @@ def figure_10(peers, programs):
 
 
 def figure_15(data, umtet):
-    equation_9 = "2*y*(y^2-3*x^2)*(1-z^2)+(x^2+y^2)^2-(9*z^2-1)*(1-z^2)"
     by_paper = {"a15": .645, "z": .667, "slab": .600, "cube": .394}
     figure, axis = plt.subplots(figsize=(5.4, 3))
     for k, (mode, colour) in enumerate((("paper", "tab:blue"), ("fast", "tab:green"))):
         for place, background in enumerate(by_paper):
             case = data / "figure_15" / f"{background}_{mode}"
             if not (case / "certificate.json").exists():
-                subprocess.run([umtet, "mesh", "--implicit", equation_9, "--box=-2.1,-2.1,-1.05,2.1,2.1,1.05", "--tets", "100000",
+                subprocess.run([umtet, "mesh", "--implicit", drawn_figures.EQUATION_9, "--box=-2.1,-2.1,-1.05,2.1,2.1,1.05", "--tets", "100000",
                                 "--background", background, "--mode", mode, "-o", case], check=True)
             q = json.loads((case / "certificate.json").read_text())["quality"]["min"]
             axis.bar(place + .27 * k, q, .25, color=colour, label=f"--mode {mode}" if place == 0 else None)
@@ -99,12 +106,16 @@ def figure_15(data, umtet):
     save(figure, "figure_15.svg")
 
 
-def figure_21(data, umtet):
+def equation_13(data, umtet):
+    """The folder of its meshes."""
     case = data / "figure_21"
     if not (case / "quality.csv").exists():
-        subprocess.run([umtet, "evolve", "--implicit", "x^2+y^2+z^2+sin(t*x)+sin(t*y)+sin(t*z)-1",
-                        "--box=-2.1,-2.1,-2.1,2.1,2.1,2.1", "--h", "0.0922", "--t", "0:0.1:4.5", "--skip", "3.1,3.4",
-                        "--allow-thin", "-o", case], check=True)
+        subprocess.run([umtet, "evolve", "--implicit", drawn_figures.EQUATION_13, "--box=-2.1,-2.1,-2.1,2.1,2.1,2.1", "--h",
+                        "0.0922", "--t", "0:0.1:4.5", "--skip", "3.1,3.4", "-o", case], check=True)
+    return case
+
+
+def figure_21(case):
     with open(case / "quality.csv") as file:
         rows = list(csv.DictReader(file))
     t = [float(r["t"]) for r in rows]
@@ -116,6 +127,54 @@ def figure_21(data, umtet):
     axis.legend()
     figure.tight_layout()
     save(figure, "figure_21.svg")
+
+
+def stroke(data, swimmer):
+    """The folder of one stroke of the swimmer."""
+    folder = data / "stroke"
+    if not (folder / "fields" / "016.vtu").exists():
+        subprocess.run([swimmer, "-o", folder], check=True)
+    return folder
+
+
+def figure_25(folder):
+    """At t0 + 7 dt, in the plane x = 0: the flow of the deformation, and that of the translation."""
+    plane, cutter = vtkPlane(), vtkCutter()
+    plane.SetNormal(1, 0, 0)
+    cutter.SetCutFunction(plane)
+    cutter.SetInputData(Mesh(folder / "fields" / "007.vtu").grid)
+    cutter.Update()
+    cut = cutter.GetOutput()
+    y, z = vtk_to_numpy(cut.GetPoints().GetData()).T[1:]
+    triangles = vtk_to_numpy(cut.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    value = {cut.GetPointData().GetArrayName(i): vtk_to_numpy(cut.GetPointData().GetArray(i))
+             for i in range(cut.GetPointData().GetNumberOfArrays())}
+    figure, axes = plt.subplots(4, 1, figsize=(7, 8.4), sharex=True)
+    panels = (("u_phi_z", "axial velocity, deformation"), ("p_phi", "pressure, deformation"),
+              ("u_z_z", "axial velocity, translation"), ("p_z", "pressure, translation"))
+    for axis, (name, title) in zip(axes, panels):
+        # The greatest pressures are at single points of the crease.
+        most = np.quantile(np.abs(value[name]), .998)
+        filled = axis.tricontourf(z, y, triangles, np.clip(value[name], -most, most), 20, cmap="RdBu_r", vmin=-most, vmax=most)
+        for collection in filled.collections:
+            collection.set_rasterized(True)  # a twentieth of the bytes
+        figure.colorbar(filled, ax=axis, shrink=.9, pad=.01, format="%.2g")
+        axis.set(title=title, aspect="equal", ylabel="y")
+        axis.grid(False)
+    axes[-1].set_xlabel("z")
+    figure.tight_layout()
+    save(figure, "figure_25.svg")
+
+
+def figure_26(folder):
+    with open(folder / "swimmer.csv") as file:
+        rows = list(csv.DictReader(file))
+    figure, axes = plt.subplots(1, 2, figsize=(8, 3))
+    for axis, key, title in ((axes[0], "velocity", "velocity"), (axes[1], "z0", "position")):
+        axis.plot([float(r["t"]) for r in rows], [float(r[key]) for r in rows], "o-", ms=3, lw=.8, color="tab:blue")
+        axis.set(title=f"{title} of the swimmer along the channel", xlabel="t")
+    figure.tight_layout()
+    save(figure, "figure_26.svg")
 
 
 def timings(data, programs, most):
@@ -172,14 +231,27 @@ def main():
     parser.add_argument("--peers", type=Path, default=build / "peers")
     parser.add_argument("--programs", type=Path, default=build / "release/tests/bench/peers")
     parser.add_argument("--umtet", type=Path, default=build / "release/pipeline/umtet")
+    parser.add_argument("--swimmer", type=Path, default=build / "release/pipeline/examples/umtet_swimmer")
     parser.add_argument("--most", type=int, default=8_000_000, help="tets of the largest meshes of Figure 18")
+    parser.add_argument("--only", help="these figures: 14,24")
     args = parser.parse_args()
     args.data.mkdir(parents=True, exist_ok=True)
-    figure_8(args.data, args.umtet)
-    figure_15(args.data, args.umtet)
-    figure_21(args.data, args.umtet)
-    figure_18(args.data, args.programs, args.most)
-    figure_10(args.peers, args.programs)
+    data = args.data
+    figures = {
+        8: lambda: figure_8(data, args.umtet),
+        14: lambda: drawn_figures.figure_14(data, args.umtet),
+        15: lambda: figure_15(data, args.umtet),
+        19: lambda: drawn_figures.figure_19(data, args.umtet),
+        20: lambda: drawn_figures.figure_20(equation_13(data, args.umtet)),
+        21: lambda: figure_21(equation_13(data, args.umtet)),
+        24: lambda: drawn_figures.figure_24(stroke(data, args.swimmer)),
+        25: lambda: figure_25(stroke(data, args.swimmer)),
+        26: lambda: figure_26(stroke(data, args.swimmer)),
+        18: lambda: figure_18(data, args.programs, args.most),
+        10: lambda: figure_10(args.peers, args.programs),
+    }
+    for number in [int(n) for n in args.only.split(",")] if args.only else figures:
+        figures[number]()
 
 
 if __name__ == "__main__":
