@@ -106,7 +106,7 @@ void Mesher::curve(MeshAttempt& a) const {
   if (parameters_.integer("mesh.order") < 2) return;
   watch_("second order", 0);
   a.second = curved_mesh(domain_, a.result, a.h, um_params(parameters_).closest_point, polls(watch_));
-  measure_second_order(domain_, *a.second, a.h, a.measured, polls(watch_));
+  measure_second_order(domain_, a.result, *a.second, a.h, a.measured, polls(watch_));
 }
 
 void Mesher::refuse_thin(const MeshAttempt& best) const {
