@@ -66,7 +66,7 @@ struct CertificateInput {
 inline constexpr double kVertexTolerance = 1e-8;
 
 /// Flat faces may miss so much of the volume, gap_over_volume: an edge of about the radius of a ball. Meshes of the
-/// twelve scans miss at most 1.4 %.
+/// eleven clouds miss at most 1.4 %.
 inline constexpr double kMostGap = .1;
 
 /// Measures everything above. Does not judge. Not seen here: components of psi = 0 that the mesh lacks (zero_set.h

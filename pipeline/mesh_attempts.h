@@ -29,8 +29,9 @@ struct MeshAttempt {
   std::string complaint() const;
 };
 
-/// Runs `attempt` at choice.h and, while something is wrong that a smaller h may mend, at four fifths of the last h: up
-/// to four times in all, and never below choice.least, which is tried instead where it is nearer. A few folded faces at a thin place come and go with h.
+/// Runs `attempt` at choice.h and, while something is wrong that a smaller h may mend, at .985 of it (if there was a
+/// mesh at all: a few folded faces come and go with h), then at .8, .64 and .51 of it; never below choice.least, which
+/// is tried instead where it is nearer.
 ///
 /// @param say  is told why another h is tried, and which mesh is kept if it is not the last
 /// @return the best of them: a mesh before none, then the one with the fewest reasons against it, then the last

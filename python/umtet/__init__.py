@@ -153,7 +153,7 @@ def mesh(psi, *, box=None, t=None, progress=None, threads=0, **parameters):
     max_tets, allow_thin, min_quality, target_quality, seed, ...; complement=True with box_walls=True: {psi > 0} up to
     the flat walls of the box, the fluid around the body.
 
-    Returns a Mesh, the best of up to four where the choice of h is left to umtet. MeshingError: there is none, or the
+    Returns a Mesh, the best of up to five where the choice of h is left to umtet. MeshingError: there is none, or the
     domain is too thin for h; evidence says where, and which h may do.
     """
     parameters["box"] = _box(box)
