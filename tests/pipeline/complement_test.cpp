@@ -121,7 +121,9 @@ TEST_F(Program, FluidAroundAMovingBodyIsCertifiedAtEveryInstant) {
       "evolve --implicit '(x-t)^2+y^2+z^2-1' --box=-2,-2,-2,3,2,2 --complement --box-walls --h .25 -o moving --json "
       "--t 0:0.5:1");
   ASSERT_EQ(r.code, 0) << r.err << r.out;
-  for (const Json& step : Json::parse(r.out)["steps"]) {
+  const Json answer = Json::parse(r.out);
+  ASSERT_EQ(answer.at("steps").size(), 3u);
+  for (const Json& step : answer.at("steps")) {
     EXPECT_EQ(step["boundary"]["components"], 2);
     EXPECT_NEAR(step["volume"].get<double>(), 80 - 4. / 3 * kPi, .25);
   }
