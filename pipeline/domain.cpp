@@ -10,9 +10,9 @@
 namespace umtet {
 
 // The seam between the two libraries: neither includes the other.
-static_assert(ImplicitFunction<LevelSet> && TwiceDifferentiable<LevelSet> && JointlyEvaluated<LevelSet>);
-static_assert(ImplicitFunction<Domain> && TwiceDifferentiable<Domain> && JointlyEvaluated<Domain>);
-static_assert(ImplicitFunction<Expression> && TwiceDifferentiable<Expression> && JointlyEvaluated<Expression>);
+static_assert(JointlyEvaluated<LevelSet>);
+static_assert(JointlyEvaluated<Domain>);
+static_assert(JointlyEvaluated<Expression>);
 
 namespace {
 
@@ -51,18 +51,6 @@ double Domain::evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const {
   if (gradient) *gradient = sign * g;
   if (hessian) *hessian = sign * H;
   return sign * value;
-}
-
-Vec3 Domain::gradient(const Vec3& x) const {
-  Vec3 g;
-  evaluate(x, &g, nullptr);
-  return g;
-}
-
-Mat3 Domain::hessian(const Vec3& x) const {
-  Mat3 H;
-  evaluate(x, nullptr, &H);
-  return H;
 }
 
 ImplicitFunctionRef Domain::psi() const { return complement ? ImplicitFunctionRef(*this) : body(); }

@@ -54,8 +54,6 @@ struct Domain {
   /// The same: a domain is an ImplicitFunction. `gradient` and `hessian` may be null.
   double evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const;
   double value(const Vec3& x) const { return evaluate(x, nullptr, nullptr); }
-  Vec3 gradient(const Vec3& x) const;
-  Mat3 hessian(const Vec3& x) const;
 
  private:
   mutable std::optional<std::pair<Box, BodySize>> size_;  ///< of psi in that box

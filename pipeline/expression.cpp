@@ -120,18 +120,4 @@ double Expression::evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const 
   return v[0];
 }
 
-double Expression::value(const Vec3& x) const { return evaluate(x, nullptr, nullptr); }
-
-Vec3 Expression::gradient(const Vec3& x) const {
-  Vec3 g;
-  evaluate(x, &g, nullptr);
-  return g;
-}
-
-Mat3 Expression::hessian(const Vec3& x) const {
-  Mat3 H;
-  evaluate(x, nullptr, &H);
-  return H;
-}
-
 }  // namespace umtet

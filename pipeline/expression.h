@@ -17,7 +17,7 @@ struct ExpressionError : std::runtime_error {
   std::size_t column;  ///< 1-based; text.size() + 1 when something is missing at the end
 };
 
-/// psi given as text in x, y, z; Omega = {psi < 0}. Satisfies ImplicitFunction, TwiceDifferentiable, JointlyEvaluated.
+/// psi given as text in x, y, z; Omega = {psi < 0}. A JointlyEvaluated implicit function.
 ///
 /// A family of them has t in its text; each member is an Expression of its own, in which t is a number.
 ///
@@ -40,9 +40,7 @@ class Expression {
   Expression& operator=(Expression&&) noexcept;
 
   const std::string& text() const;
-  double value(const Vec3& x) const;
-  Vec3 gradient(const Vec3& x) const;
-  Mat3 hessian(const Vec3& x) const;
+  double value(const Vec3& x) const { return evaluate(x, nullptr, nullptr); }
   /// value; gradient and Hessian where the pointers are not null
   double evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const;
 

@@ -66,19 +66,6 @@ Function::Answer Function::call(const Vec3* x, py::ssize_t n) const {
   return answer;
 }
 
-Vec3 Function::gradient(const Vec3& x) const {
-  Vec3 g;
-  evaluate(x, &g, nullptr);
-  return g;
-}
-
-Mat3 Function::hessian(const Vec3& x) const {
-  Vec3 g;
-  Mat3 H;
-  evaluate(x, &g, &H);
-  return H;
-}
-
 double Function::evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const {
   const py::gil_scoped_acquire gil;
   const int wanted = hessian ? 2 : gradient ? 1 : 0;

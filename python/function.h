@@ -19,8 +19,6 @@ class Function {
   Function(pybind11::object callable, const Vec3& probe, double length);
 
   double value(const Vec3& x) const { return evaluate(x, nullptr, nullptr); }
-  Vec3 gradient(const Vec3& x) const;
-  Mat3 hessian(const Vec3& x) const;
   double evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const;
 
  private:

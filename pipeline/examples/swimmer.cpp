@@ -34,18 +34,6 @@ double Swimmer::evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const {
   return 2 / kPi * (std::atan(A) + std::atan(B)) - 1;
 }
 
-Vec3 Swimmer::gradient(const Vec3& x) const {
-  Vec3 g;
-  evaluate(x, &g, nullptr);
-  return g;
-}
-
-Mat3 Swimmer::hessian(const Vec3& x) const {
-  Mat3 H;
-  evaluate(x, nullptr, &H);
-  return H;
-}
-
 double Swimmer::time_derivative(const Vec3& x) const {
   const Parts p = parts(x - z0_ * Vec3::UnitZ(), t_);
   const double dB_dt = -p.grad_B.z() + 25. / 4 * kPi / 16 * std::sin(kPi * t_ / 8);
@@ -53,7 +41,8 @@ double Swimmer::time_derivative(const Vec3& x) const {
 }
 
 Vec3 Swimmer::deformation_velocity(const Vec3& x) const {
-  const Vec3 g = gradient(x);
+  Vec3 g;
+  evaluate(x, &g, nullptr);
   return -time_derivative(x) / g.squaredNorm() * g;
 }
 

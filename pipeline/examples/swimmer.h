@@ -19,8 +19,6 @@ class Swimmer {
   Swimmer(double t, double z0) : t_(t), z0_(z0) {}
 
   double value(const Vec3& x) const { return evaluate(x, nullptr, nullptr); }
-  Vec3 gradient(const Vec3& x) const;
-  Mat3 hessian(const Vec3& x) const;
   double evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const;
 
   /// d psi / dt where the body is held, z0 fixed.

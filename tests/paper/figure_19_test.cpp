@@ -48,15 +48,9 @@ TEST(Figure19, OneBackgroundServesABirdInFlight) {
     const LevelSet f = fitted.band_limited(.7 * h);
     const UmResult r = universal_mesh(background, f, params);
     ASSERT_EQ(r.status, UmStatus::Success) << r.evidence.what;
-    const TetMesh mesh{r.final, r.submesh.mesh.C};
-    CertificateInput input;
-    input.mesh = &mesh;
-    input.h = h;
-    input.positive_faces = &r.submesh.positive_faces;
-    input.psi = ImplicitFunctionRef(f);
-    const MeshCertificate c = certify(input);
+    const MeshCertificate c = umtet::testing::certificate_of(r, f, h);
     for (const std::string& reason : failures(c)) ADD_FAILURE() << reason;
-    std::printf("  %24zu   %.3f\n", mesh.C.size(), c.quality.min);
+    std::printf("  %24zu   %.3f\n", r.submesh.mesh.C.size(), c.quality.min);
     EXPECT_EQ(c.boundary.components, 1);
     EXPECT_EQ(c.boundary.genus, 0);
     EXPECT_GE(c.quality.min, .81);

@@ -7,6 +7,7 @@
 
 #include "mesh/certificate.h"
 #include "mesh/universal_mesh.h"
+#include "tests/support/certified.h"
 #include "tests/support/domains.h"
 
 using namespace umtet;
@@ -30,14 +31,8 @@ TEST(Figure21, OneBackgroundServesADomainThatFallsApartAndJoinsAgain) {
     const auto domain = domains::equation_13(at.t);
     const UmResult r = universal_mesh(background, domain, params);
     ASSERT_EQ(r.status, UmStatus::Success) << r.evidence.what;
-    const TetMesh mesh{r.final, r.submesh.mesh.C};
-    CertificateInput input;
-    input.mesh = &mesh;
-    input.h = h;
-    input.positive_faces = &r.submesh.positive_faces;
-    input.psi = ImplicitFunctionRef(domain);
-    const MeshCertificate c = certify(input);
-    std::printf("  t = %.1f        %8zu   %.4f\n", at.t, mesh.C.size(), c.quality.min);
+    const MeshCertificate c = umtet::testing::certificate_of(r, domain, h);
+    std::printf("  t = %.1f        %8zu   %.4f\n", at.t, r.submesh.mesh.C.size(), c.quality.min);
     for (const std::string& reason : failures(c)) ADD_FAILURE() << reason;
     EXPECT_EQ(c.boundary.components, at.components);
     EXPECT_EQ(c.boundary.genus, at.genus);

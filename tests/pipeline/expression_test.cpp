@@ -13,8 +13,6 @@
 namespace umtet {
 namespace {
 
-static_assert(ImplicitFunction<Expression> && TwiceDifferentiable<Expression> && JointlyEvaluated<Expression>);
-
 const Vec3 kProbe(.7, -1.3, 1.9);
 
 TEST(Expression, ReadsSignsAndPowersAsMathematicsDoes) {
@@ -62,13 +60,14 @@ TEST(Expression, DerivativesMatchCentralDifferences) {
     Vec3 g;
     Mat3 H;
     EXPECT_EQ(psi.evaluate(kProbe, &g, &H), psi.value(kProbe)) << text;
-    EXPECT_EQ(g, psi.gradient(kProbe));
+    const ImplicitFunctionRef f = psi;
+    EXPECT_EQ(g, f.gradient(kProbe));
     const double step = 1e-5;  // truncation step^2 f''' / 6 ~ 1e-10 * |f'''|, rounding 1e-16 / step ~ 1e-11
     for (int i = 0; i < 3; ++i) {
       const Vec3 e = step * Vec3::Unit(i);
       const double scale = std::max(1., g.norm()) + H.norm();
       EXPECT_NEAR((psi.value(kProbe + e) - psi.value(kProbe - e)) / (2 * step), g[i], 1e-7 * scale) << text;
-      const Vec3 row = (psi.gradient(kProbe + e) - psi.gradient(kProbe - e)) / (2 * step);
+      const Vec3 row = (f.gradient(kProbe + e) - f.gradient(kProbe - e)) / (2 * step);
       EXPECT_LT((row - H.col(i)).norm(), 1e-7 * scale) << text;
     }
     EXPECT_EQ(H, H.transpose());
@@ -76,43 +75,44 @@ TEST(Expression, DerivativesMatchCentralDifferences) {
 }
 
 TEST(Expression, RefusalsNameTheColumn) {
-  const std::pair<const char*, std::size_t> cases[] = {{"", 1},
-                                                       {"   ", 1},
-                                                       {"x y", 3},
-                                                       {"x^2+foo(y)", 5},
-                                                       {"x**2", 3},
-                                                       {"x)", 2},
-                                                       {"x+", 3},
-                                                       {"((((", 5},
-                                                       {"x+abs(y)", 3},
-                                                       {"x, y", 2},
-                                                       {"x = y", 3},
-                                                       {"x<y", 2},
-                                                       {"x?y:z", 2},
-                                                       {"\"x\"", 1},
-                                                       {"1e999*x", 1},
-                                                       {"x+1/0", 5},
-                                                       {"x+0^z", 1},                             // a value, but no derivative
-                                                       {"x^184467440737051615^-12+y^9", 1},  // what GiNaC prints has no value
-                                                       {"x/(1-1)", 4},
-                                                       {"log(0)+x", 5},
-                                                       {"x^1001", 3},
-                                                       {"9^9^9^9", 5},
-                                                       {"(x^900)^900", 9},
-                                                       {"3+4", 1},
-                                                       {"sqrt(-1)*x", 1},
-                                                       {"tan(pi/2)*x", 5},
-                                                       {"x^2 + y^2 $", 11},
-                                                       {"2x", 2},
-                                                       {"1.2.3*x", 4},
-                                                       {"sin x", 1},
-                                                       {"sin()", 5},
-                                                       {"x+sin(x", 8},
-                                                       {"e*x", 1},
-                                                       {"_pi*x", 1},
-                                                       {"x\xc3\xa9", 2},
-                                                       {"t+x", 1},
-                                                       {"1e9999999999*x", 1}};
+  const std::pair<const char*, std::size_t> cases[] = {
+      {"", 1},
+      {"   ", 1},
+      {"x y", 3},
+      {"x^2+foo(y)", 5},
+      {"x**2", 3},
+      {"x)", 2},
+      {"x+", 3},
+      {"((((", 5},
+      {"x+abs(y)", 3},
+      {"x, y", 2},
+      {"x = y", 3},
+      {"x<y", 2},
+      {"x?y:z", 2},
+      {"\"x\"", 1},
+      {"1e999*x", 1},
+      {"x+1/0", 5},
+      {"x+0^z", 1},                         // a value, but no derivative
+      {"x^184467440737051615^-12+y^9", 1},  // what GiNaC prints has no value
+      {"x/(1-1)", 4},
+      {"log(0)+x", 5},
+      {"x^1001", 3},
+      {"9^9^9^9", 5},
+      {"(x^900)^900", 9},
+      {"3+4", 1},
+      {"sqrt(-1)*x", 1},
+      {"tan(pi/2)*x", 5},
+      {"x^2 + y^2 $", 11},
+      {"2x", 2},
+      {"1.2.3*x", 4},
+      {"sin x", 1},
+      {"sin()", 5},
+      {"x+sin(x", 8},
+      {"e*x", 1},
+      {"_pi*x", 1},
+      {"x\xc3\xa9", 2},
+      {"t+x", 1},
+      {"1e9999999999*x", 1}};
   for (const auto& [text, column] : cases) {
     try {
       Expression psi(text);
@@ -165,7 +165,7 @@ TEST(Expression, TimeIsTheDecimalNumberItLooksLike) {
   EXPECT_EQ(Expression("x+1e20*(10*t-1)", .1).value({2, 0, 0}), 2);  // with the double nearest to .1 it is 5553
   EXPECT_EQ(Expression("x*t", -.5).value({3, 0, 0}), -1.5);
   EXPECT_EQ(Expression("sin(t*x)+y", 0.).value({3, 4, 0}), 4);
-  EXPECT_EQ(Expression("x^t", 3.).gradient({2, 0, 0}).x(), 12);
+  EXPECT_EQ(ImplicitFunctionRef(Expression("x^t", 3.)).gradient({2, 0, 0}).x(), 12);
   EXPECT_EQ(Expression("x+t", 1e-5).value({1, 0, 0}), 1 + 1e-5);
   EXPECT_THROW(Expression("x+t"), ExpressionError);
   EXPECT_THROW(Expression("1/t+x", 0.), ExpressionError);
