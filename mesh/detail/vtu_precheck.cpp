@@ -201,10 +201,14 @@ void TagWalk::check_block(std::size_t at, std::string_view text) const {
   }
 }
 
-/// The same of the blocks behind all tags, raw or in base64, as far as the end of the file.
+/// The same of the blocks behind all tags, raw or in base64, as far as the end of the file. VTK counts offsets from the
+/// first byte that is no blank, whether it is the underscore that belongs there or not.
+/// @param at  behind the tag
 void TagWalk::check_appended(std::size_t at, bool raw) const {
-  const std::size_t first = bytes_.find('_', at) + 1;
-  if (first == 0) refuse(at, "appended data without a beginning");
+  const std::size_t underscore = bytes_.find_first_not_of(" \t\r\n\v\f", at);
+  if (underscore == std::string_view::npos || bytes_[underscore] != '_')
+    refuse(at, "appended data without a beginning");
+  const std::size_t first = underscore + 1;
   for (const std::uint64_t offset : offsets_) {
     if (offset >= bytes_.size() - first) refuse(at, "an offset beyond the appended data");
     std::string_view rest = bytes_.substr(first + offset);
@@ -256,7 +260,7 @@ void TagWalk::run() {
     if (name_of(tag) == "AppendedData") {
       // Raw bytes follow that may contain anything; VTK's parser stops here too.
       if (bytes_.find("</VTKFile>", at) == std::string_view::npos) refuse(bytes_.size(), "the file is cut");
-      check_appended(at, attribute(tag, "encoding") == "raw");
+      check_appended(at + end + 1, attribute(tag, "encoding") == "raw");
       return;
     }
     at = bytes_.find('<', at + end);
