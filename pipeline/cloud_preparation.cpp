@@ -201,6 +201,8 @@ std::vector<RecordedFile> source_inputs(const fs::path& source, const Parameters
     require_regular_file(file);
     return RecordedFile{name, stamp(file)};
   };
+  require_regular_file(source);
+  check_scan_head(source);  // gigabytes that are no cloud are not read for their checksum
   std::vector<RecordedFile> inputs = {input("source", source)};
   const std::string& viewpoints = parameters.text("cloud.orient_from");
   if (!viewpoints.empty()) inputs.push_back(input("viewpoints", viewpoints));

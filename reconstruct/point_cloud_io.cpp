@@ -27,52 +27,104 @@ constexpr std::size_t kFewestPoints = 10;  // of a surface; what surveys a scan 
 // Sixth powers of lengths, products of volumes, must stay normal doubles; no unit makes a body so large or so small.
 constexpr double kFarthest = 1e50, kSmallest = 1e-50;
 
-/// Headers and rows of numbers have short lines: what begins otherwise is refused before the rest of it, perhaps
-/// gigabytes, is read.
-void refuse_endless_line(const std::filesystem::path& file, std::string_view head) {
-  if (head.find('\n') != std::string_view::npos || head.find('\r') != std::string_view::npos) return;
-  refuse({.name = file.string(), .bytes = head},
-         fmt::format("line 1 does not end in the first {} bytes: this is no PLY, PCD or text with a point a line",
-                     head.size()));
+/// Headers and rows of numbers have short lines.
+void refuse_endless_line(const CloudSource& head) {
+  const std::string_view begin = head.bytes.substr(0, 1 << 16);
+  if (begin.size() < 1 << 16) return;
+  if (begin.find('\n') != std::string_view::npos || begin.find('\r') != std::string_view::npos) return;
+  refuse(head, fmt::format("line 1 does not end in the first {} bytes: this is no PLY, PCD or text with a point a line",
+                           begin.size()));
 }
 
-std::string load(const std::filesystem::path& file) {
-  const auto fail = [&](int error) {
-    throw std::system_error(error != 0 ? error : EIO, std::generic_category(), file.string());
-  };
-  if (std::filesystem::is_directory(file)) fail(EISDIR);
-  errno = 0;
-  std::ifstream in(file, std::ios::binary);
-  if (!in) fail(errno);
-  std::string bytes;
-  std::array<char, 1 << 16> chunk;
-  while (in.read(chunk.data(), chunk.size()) || in.gcount() > 0) {
-    const auto n = static_cast<std::size_t>(in.gcount());
-    if (bytes.empty()) {
-      if (n == chunk.size()) refuse_endless_line(file, {chunk.data(), n});
-      if (std::filesystem::is_regular_file(file)) bytes.reserve(std::filesystem::file_size(file));
-    }
-    bytes.append(chunk.data(), n);
+/// Reads a file in two steps: a beginning, which tells most of what is no cloud before gigabytes are read, and the
+/// rest.
+class CloudBytes {
+ public:
+  /// \throw std::system_error  the file cannot be opened; names it
+  explicit CloudBytes(const std::filesystem::path& file) : file_(file) {
+    if (std::filesystem::is_directory(file)) fail(EISDIR);
+    errno = 0;
+    in_.open(file, std::ios::binary);
+    if (!in_) fail(errno);
+    read(kHead);
+    std::error_code unknown;  // of a pipe
+    const std::uintmax_t size = std::filesystem::file_size(file, unknown);
+    if (!unknown && size > bytes_.size()) n_left_ = size - bytes_.size();
   }
-  if (in.bad()) fail(errno);
-  return bytes;
-}
+  /// What has been read so far.
+  CloudSource source(bool needs_normals) const {
+    return {.name = file_.string(), .bytes = bytes_, .needs_normals = needs_normals, .bytes_left_out = n_left_};
+  }
+  void read_rest() {
+    bytes_.reserve(bytes_.size() + n_left_ + kHead);  // it grows by a whole step before it is cut
+    while (read(kHead)) {
+    }
+    n_left_ = 0;
+  }
+
+ private:
+  static constexpr std::size_t kHead = 1 << 20;  // real headers have some hundred bytes, with comments some thousand
+
+  [[noreturn]] void fail(int error) const {
+    throw std::system_error(error != 0 ? error : EIO, std::generic_category(), file_.string());
+  }
+  bool read(std::size_t n) {
+    const std::size_t before = bytes_.size();
+    bytes_.resize(before + n);
+    in_.read(bytes_.data() + before, static_cast<std::streamsize>(n));
+    bytes_.resize(before + static_cast<std::size_t>(in_.gcount()));
+    if (in_.bad()) fail(errno);
+    return in_.gcount() > 0;
+  }
+
+  std::filesystem::path file_;
+  std::ifstream in_;
+  std::string bytes_;
+  std::size_t n_left_ = 0;
+};
+
+enum class Format { Ply, Pcd, Xyz };
 
 /// What the content says, else what the extension says.
-CloudFile parse(const CloudSource& source, const std::filesystem::path& file) {
+Format format_of(const CloudSource& source, const std::filesystem::path& file) {
   if (source.bytes.empty()) refuse(source, "the file is empty");
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const auto starts_with = [&](std::string_view text) { return source.bytes.starts_with(text); };
-  if (starts_with("ply\n") || starts_with("ply\r\n")) return detail::read_ply(source);
-  if (starts_with("# .PCD") || starts_with("VERSION ")) return detail::read_pcd(source);
-  if (extension == ".ply") return detail::read_ply(source);
-  if (extension == ".pcd") return detail::read_pcd(source);
-  if (extension == ".xyz" || extension == ".txt" || extension == ".pts") return detail::read_xyz(source);
+  if (starts_with("ply\n") || starts_with("ply\r\n")) return Format::Ply;
+  if (starts_with("# .PCD") || starts_with("VERSION ")) return Format::Pcd;
+  if (extension == ".ply") return Format::Ply;
+  if (extension == ".pcd") return Format::Pcd;
+  if (extension == ".xyz" || extension == ".txt" || extension == ".pts") return Format::Xyz;
   refuse(source,
          "neither PLY nor PCD by its first line, and the extension is none of .xyz .txt .pts: convert it to one "
          "of these");
+}
+
+void check_head(const CloudSource& head, const std::filesystem::path& file) {
+  refuse_endless_line(head);
+  if (head.bytes_left_out == 0) return;  // then the reader itself is as fast
+  switch (format_of(head, file)) {
+    case Format::Ply:
+      return detail::check_ply_head(head);
+    case Format::Pcd:
+      return detail::check_pcd_head(head);
+    case Format::Xyz:
+      return detail::check_xyz_head(head);
+  }
+}
+
+CloudFile parse(const CloudSource& source, const std::filesystem::path& file) {
+  switch (format_of(source, file)) {
+    case Format::Ply:
+      return detail::read_ply(source);
+    case Format::Pcd:
+      return detail::read_pcd(source);
+    case Format::Xyz:
+      break;
+  }
+  return detail::read_xyz(source);
 }
 
 /// Counts the points for which bad(i) holds; names the first.
@@ -188,8 +240,10 @@ void put(char*& at, T value) {
 }  // namespace
 
 CloudFile read_point_cloud(const std::filesystem::path& file) {
-  const std::string bytes = load(file);
-  const CloudSource source{.name = file.string(), .bytes = bytes};
+  CloudBytes bytes(file);
+  check_head(bytes.source(true), file);
+  bytes.read_rest();
+  const CloudSource source = bytes.source(true);
   CloudFile result = parse(source, file);
   check_numbers(source, result.cloud);
   result.report.n_points = result.cloud.points.size();
@@ -197,9 +251,13 @@ CloudFile read_point_cloud(const std::filesystem::path& file) {
   return result;
 }
 
+void check_scan_head(const std::filesystem::path& file) { check_head(CloudBytes(file).source(false), file); }
+
 CloudFile read_scan(const std::filesystem::path& file) {
-  const std::string bytes = load(file);
-  const CloudSource source{.name = file.string(), .bytes = bytes, .needs_normals = false};
+  CloudBytes bytes(file);
+  check_head(bytes.source(false), file);
+  bytes.read_rest();
+  const CloudSource source = bytes.source(false);
   CloudFile result = parse(source, file);
   result.report.n_points = result.cloud.points.size();
   drop_unusable(source, result);

@@ -55,6 +55,11 @@ CloudFile read_point_cloud(const std::filesystem::path& file);
 /// \throw std::system_error    the file cannot be opened or read; names it
 CloudFile read_scan(const std::filesystem::path& file);
 
+/// Refuses by its first megabyte what read_scan() would refuse by its header, its first rows, or a count that cannot be:
+/// at once, however large the file is.
+/// \throw CloudRefused, std::system_error  as read_scan()
+void check_scan_head(const std::filesystem::path& file);
+
 /// Binary little-endian PLY, double x y z nx ny nz and, where there are labels, int label; read_point_cloud gives the
 /// same bits back. The caller owns the stream and checks it.
 /// \throw std::invalid_argument  not as many normals as points, or labels, where there are any

@@ -15,6 +15,10 @@ struct CloudSource {
   std::string name;
   std::string_view bytes;
   bool needs_normals = true;  ///< false: points without normals make a cloud without normals
+  std::size_t bytes_left_out =
+      0;  ///< of the file, behind `bytes`: only the check_ functions may be given such a source
+
+  std::size_t size() const { return bytes.size() + bytes_left_out; }  ///< of the file
 };
 
 /// \throw CloudRefused  always: "NAME: what"
@@ -47,6 +51,13 @@ void append_point(const CloudSource& source, OrientedPointCloud& cloud, const st
 
 /// \throw CloudRefused  anything but blanks and NUL padding from `offset` on: then a count of the header is wrong
 void refuse_surplus(const CloudSource& source, std::size_t offset);
+
+/// What the beginning of a file is enough for: its header and, of binary files, counts against the size of the file; of
+/// XYZ the rows that are there. Headers are shorter than this beginning.
+/// \throw CloudRefused  as the reader would
+void check_ply_head(const CloudSource& head);
+void check_pcd_head(const CloudSource& head);
+void check_xyz_head(const CloudSource& head);
 
 /// One reader per format. They check the shape of the file; what the numbers are is checked by read_point_cloud.
 /// \throw CloudRefused

@@ -91,7 +91,7 @@ void parse_fields(const CloudSource& source, const Entries& entries, PcdHeader& 
     field.kind = parse_kind(source, types, types.values[f], field);
     if (counts != entries.end())
       field.count = parse_positive(source, counts->second, "COUNT", counts->second.values[f]);
-    if (field.count > source.bytes.size())
+    if (field.count > source.size())
       refuse(source, fmt::format("line {}: COUNT {} of field {} is larger than the file", counts->second.line,
                                  field.count, in_quotes(field.name)));
     header.fields.push_back(field);
@@ -127,7 +127,7 @@ void lay_out(PcdHeader& header) {
 
 void check_size(const CloudSource& source, const PcdHeader& header) {
   const std::size_t point_bytes = header.point_bytes;
-  const std::size_t left = source.bytes.size() - header.body;
+  const std::size_t left = source.size() - header.body;
   if (point_bytes == 0) refuse(source, "the PCD header has no fields but padding, so the file has no points");
   if (header.data == PcdData::Binary) {
     if (header.n_points > left / point_bytes)
@@ -136,7 +136,8 @@ void check_size(const CloudSource& source, const PcdHeader& header) {
                                  header.body, header.n_points, point_bytes, left));
     return;
   }
-  if (left < 8) refuse(source, fmt::format("byte {}: no compressed block follows: the file is cut short", header.body));
+  if (source.bytes.size() - header.body < 8)
+    refuse(source, fmt::format("byte {}: no compressed block follows: the file is cut short", header.body));
   std::uint32_t packed = 0, unpacked = 0;
   std::memcpy(&packed, source.bytes.data() + header.body, 4);
   std::memcpy(&unpacked, source.bytes.data() + header.body + 4, 4);

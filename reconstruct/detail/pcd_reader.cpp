@@ -82,6 +82,8 @@ OrientedPointCloud read_ascii(const CloudSource& source, const PcdHeader& header
 
 }  // namespace
 
+void check_pcd_head(const CloudSource& head) { cloud_columns(head, scalar_names(parse_pcd_header(head)), "field"); }
+
 CloudFile read_pcd(const CloudSource& source) {
   const PcdHeader header = parse_pcd_header(source);
   const CloudColumns columns = cloud_columns(source, scalar_names(header), "field");

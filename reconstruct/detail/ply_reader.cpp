@@ -65,7 +65,7 @@ class BinaryBody {
     for (const PlyProperty& p : element.properties) bytes += byte_size(p.is_list ? p.count_type : p.type);
     return bytes;
   }
-  std::size_t bytes_left() const { return source_.bytes.size() - at_; }
+  std::size_t bytes_left() const { return source_.size() - at_; }
   std::string place() const { return fmt::format("byte {}", at_); }
 
   void read_item(const PlyElement& element, std::uint64_t item, std::vector<double>& values) {
@@ -109,7 +109,7 @@ class AsciiBody {
 
   static std::size_t bytes_per_item(const PlyElement& element) { return 2 * element.properties.size(); }
   /// The last line may lack its end.
-  std::size_t bytes_left() const { return source_.bytes.size() - lines_.offset() + 1; }
+  std::size_t bytes_left() const { return source_.size() - lines_.offset() + 1; }
   std::string place() const { return fmt::format("line {}", lines_.line() + 1); }
 
   void read_item(const PlyElement& element, std::uint64_t item, std::vector<double>& values) {
@@ -156,6 +156,23 @@ CloudColumns vertex_columns(const CloudSource& source, const PlyHeader& header) 
   return cloud_columns(source, names, "property");
 }
 
+/// Before memory is asked for.
+template <class Body>
+void check_count(const CloudSource& source, const Body& body, const PlyElement& element) {
+  const std::size_t least = Body::bytes_per_item(element);
+  if (element.count > body.bytes_left() / least)
+    refuse(source, fmt::format("{}: the header announces {} x {}, at least {} bytes each, but {} bytes are left: the "
+                               "file is cut short or the count is wrong, export it again",
+                               body.place(), element.count, element.name, least, body.bytes_left()));
+}
+
+/// The first element that takes bytes begins where the header ends.
+template <class Body>
+void check_first_count(const CloudSource& head, const PlyHeader& header) {
+  for (const PlyElement& element : header.elements)
+    if (Body::bytes_per_item(element) > 0) return check_count(head, Body(head, header), element);
+}
+
 template <class Body>
 OrientedPointCloud read_body(const CloudSource& source, const PlyHeader& header) {
   OrientedPointCloud cloud;
@@ -163,12 +180,8 @@ OrientedPointCloud read_body(const CloudSource& source, const PlyHeader& header)
   const CloudColumns columns = vertex_columns(source, header);
   std::vector<double> values;
   for (const PlyElement& element : header.elements) {
-    const std::size_t least = Body::bytes_per_item(element);
-    if (least == 0) continue;  // no properties, no bytes
-    if (element.count > body.bytes_left() / least)
-      refuse(source, fmt::format("{}: the header announces {} x {}, at least {} bytes each, but {} bytes are left: the "
-                                 "file is cut short or the count is wrong, export it again",
-                                 body.place(), element.count, element.name, least, body.bytes_left()));
+    if (Body::bytes_per_item(element) == 0) continue;  // no properties, no bytes
+    check_count(source, body, element);
     values.resize(element.properties.size());
     if (element.name != "vertex") {
       for (std::uint64_t item = 0; item < element.count; ++item) body.read_item(element, item, values);
@@ -187,6 +200,15 @@ OrientedPointCloud read_body(const CloudSource& source, const PlyHeader& header)
 }
 
 }  // namespace
+
+void check_ply_head(const CloudSource& head) {
+  const PlyHeader header = parse_ply_header(head);
+  vertex_columns(head, header);
+  if (header.format == PlyFormat::Ascii)
+    check_first_count<AsciiBody>(head, header);
+  else
+    check_first_count<BinaryBody>(head, header);
+}
 
 CloudFile read_ply(const CloudSource& source) {
   const PlyHeader header = parse_ply_header(source);

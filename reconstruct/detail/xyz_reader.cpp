@@ -68,17 +68,14 @@ void check_labels(const CloudSource& source, const OrientedPointCloud& cloud, bo
     refuse(source, fmt::format("seven columns, but the fourth to sixth are no normals: {}", remedy));
 }
 
-}  // namespace
-
-CloudFile read_xyz(const CloudSource& source) {
-  CloudFile file;
-  file.report.format = "xyz";
+/// Appends a point for every row. Returns the number of points of the first line: .pts files start with it.
+std::optional<std::uint64_t> read_rows(const CloudSource& source, OrientedPointCloud& cloud) {
   LineReader lines(source.bytes);
   std::string_view line;
   std::vector<std::string_view> tokens;
   std::vector<double> row;
   CloudColumns columns{kColumns};
-  std::optional<std::uint64_t> announced;  // .pts files start with a line that holds the number of points
+  std::optional<std::uint64_t> announced;
   bool first = true;
   while (lines.next_filled(line)) {
     if (line.size() > kLongestLine)
@@ -98,8 +95,24 @@ CloudFile read_xyz(const CloudSource& source) {
     columns.has_normals = row.size() >= 6;
     columns.has_labels = row.size() % 3 == 1;
     for (std::size_t c = 0; c < row.size(); ++c) row[c] = parse_number(source, lines.line(), tokens[c]);
-    append_point(source, file.cloud, row, columns);
+    append_point(source, cloud, row, columns);
   }
+  return announced;
+}
+
+}  // namespace
+
+void check_xyz_head(const CloudSource& head) {
+  CloudSource whole_lines = head;
+  whole_lines.bytes = head.bytes.substr(0, head.bytes.rfind('\n') + 1);
+  OrientedPointCloud cloud;
+  read_rows(whole_lines, cloud);
+}
+
+CloudFile read_xyz(const CloudSource& source) {
+  CloudFile file;
+  file.report.format = "xyz";
+  const std::optional<std::uint64_t> announced = read_rows(source, file.cloud);
   if (announced && *announced != file.cloud.points.size())
     refuse(source, fmt::format("the first line announces {} points, {} follow: the file is cut short or was edited",
                                *announced, file.cloud.points.size()));

@@ -15,6 +15,22 @@ CPU_SECONDS = 1
 MEGABYTES = 100
 # Address space, so that an allocation out of a header fails even where no page of it is touched.
 ADDRESS_SPACE = 4 << 30
+# What is no cloud by its beginning, and how it begins. Sparse: zeros follow. Reading so much, if only for a checksum,
+# takes longer than the seconds after which a call is killed.
+HUGE_BYTES = 64 << 30
+HUGE = [
+    ("zeros.ply", b"", ["line 1 does not end"]),
+    ("zeros.pcd", b"", ["line 1 does not end"]),
+    ("zeros.xyz", b"", ["line 1 does not end"]),
+    ("noise.ply", b"\x8fU\n", ["line 1", "'ply'"]),
+    ("no_type.ply", b"ply\nformat ascii 1.0\nelement vertex 9\nproperty real x\nend_header\n", ["line 4", "'real'"]),
+    ("no_x.ply", b"ply\nformat ascii 1.0\nelement vertex 9\nproperty float y\nend_header\n", ["property x"]),
+    ("count.ply", b"ply\nformat binary_little_endian 1.0\nelement vertex 99999999999\nproperty float x\n"
+                  b"property float y\nproperty float z\nend_header\n", ["99999999999 x vertex"]),
+    ("noise.pcd", b"\x8fU\n", ["no line of a PCD header"]),
+    ("no_x.pcd", b"VERSION .7\nFIELDS y\nSIZE 4\nTYPE F\nCOUNT 1\nWIDTH 9\nHEIGHT 1\nPOINTS 9\nDATA binary\n", ["field x"]),
+    ("noise.xyz", b"1 2 3 0 0 1\nU 2\n", ["line 2"]),
+]
 
 
 def call(program, arguments, limited):
@@ -59,11 +75,15 @@ def main():
     n, n_bad, slowest, largest = 0, 0, 0, 0
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
-        for name, data, words in malformed_clouds.cases():
+        huge = [(f"huge_{name}", data, words) for name, data, words in HUGE]
+        for name, data, words in [*malformed_clouds.cases(), *huge]:
             file = folder / name
             file.write_bytes(data)
+            is_huge = name.startswith("huge_")
+            if is_huge:
+                os.truncate(file, HUGE_BYTES)
             calls = [["inspect", str(file)]]
-            if words is not None and n % 4 == 0:  # the same reader: some files are enough
+            if words is not None and (is_huge or n % 4 == 0):  # the same reader: some files are enough
                 calls.append(["run", str(file), "-o", str(folder / "case")])
             for arguments in calls:
                 answer = call(program, arguments, limited)
