@@ -71,8 +71,9 @@ class TagWalk {
   [[noreturn]] void refuse(std::size_t at, const std::string& reason) const {
     throw MeshFileRefused(path_, "byte " + std::to_string(at), reason);
   }
-  std::string_view attribute(std::string_view tag, std::string_view name) const;
-  std::uint64_t count(std::size_t at, std::string_view tag, std::string_view name) const;
+  void take_attributes(std::size_t at, std::string_view tag);
+  std::string_view attribute(std::string_view name) const;
+  std::uint64_t count(std::size_t at, std::string_view name) const;
   void open(std::size_t at, std::string_view tag);
   void close(std::size_t at, std::string_view name);
   template <class More>
@@ -84,6 +85,7 @@ class TagWalk {
   const std::filesystem::path& path_;
   std::string_view bytes_;
   std::vector<std::string_view> open_;
+  std::vector<std::pair<std::string_view, std::string_view>> attributes_;  ///< names and values of the last tag
   std::uint64_t n_tuples_ = 0;
   std::uint64_t ratio_ = 1;
   std::size_t header_word_ = 4;  ///< bytes of a number in front of a binary block
@@ -94,25 +96,39 @@ class TagWalk {
 
 std::string_view name_of(std::string_view tag) { return tag.substr(0, tag.find_first_of(" \t\r\n/")); }
 
-/// The value of an attribute inside a tag's text, empty when it is not there.
-std::string_view TagWalk::attribute(std::string_view tag, std::string_view name) const {
-  for (std::size_t at = tag.find(name); at != std::string_view::npos; at = tag.find(name, at + 1)) {
-    const char before = at == 0 ? ' ' : tag[at - 1];
-    std::size_t i = tag.find_first_not_of(" \t\r\n", at + name.size());
-    if (!(before == ' ' || before == '\t' || before == '\n' || before == '\r') || i == std::string_view::npos ||
-        tag[i] != '=') {
-      continue;
+/// What the parser behind VTK would see, or a refusal: it decodes references to characters, and '>' may be quoted.
+void TagWalk::take_attributes(std::size_t at, std::string_view tag) {
+  constexpr const char* kBlanks = " \t\r\n";
+  attributes_.clear();
+  std::string_view rest = tag.substr(name_of(tag).size());
+  const auto skip_blanks = [&] { rest.remove_prefix(std::min(rest.find_first_not_of(kBlanks), rest.size())); };
+  for (skip_blanks(); !rest.empty() && rest != "/"; skip_blanks()) {
+    const std::string_view name = rest.substr(0, rest.find_first_of(" \t\r\n=\"'/"));
+    rest.remove_prefix(name.size());
+    skip_blanks();
+    if (!name.empty() && rest.starts_with('=')) {
+      rest.remove_prefix(1);
+      skip_blanks();
     }
-    i = tag.find_first_of("\"'", i);
-    if (i == std::string_view::npos) return {};
-    const std::size_t end = tag.find(tag[i], i + 1);
-    return end == std::string_view::npos ? std::string_view{} : tag.substr(i + 1, end - i - 1);
+    const bool is_quoted = rest.starts_with('"') || rest.starts_with('\'');
+    const std::size_t end = is_quoted ? rest.find(rest.front(), 1) : std::string_view::npos;
+    if (name.empty() || end == std::string_view::npos) refuse(at, "attributes that are not name=\"value\"");
+    const std::string_view value = rest.substr(1, end - 1);
+    if (value.find("&#") != std::string_view::npos) refuse(at, "references to characters are not read");
+    attributes_.emplace_back(name, value);
+    rest.remove_prefix(end + 1);
   }
+}
+
+/// The value of an attribute of the last tag, empty when it is not there.
+std::string_view TagWalk::attribute(std::string_view name) const {
+  for (const auto& [known, value] : attributes_)
+    if (known == name) return value;
   return {};
 }
 
-std::uint64_t TagWalk::count(std::size_t at, std::string_view tag, std::string_view name) const {
-  const std::string_view text = attribute(tag, name);
+std::uint64_t TagWalk::count(std::size_t at, std::string_view name) const {
+  const std::string_view text = attribute(name);
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) refuse(at, std::string(name) + " is not a count");
@@ -121,14 +137,15 @@ std::uint64_t TagWalk::count(std::size_t at, std::string_view tag, std::string_v
 
 void TagWalk::open(std::size_t at, std::string_view tag) {
   const std::string_view name = name_of(tag);
+  take_attributes(at, tag);
   if (!has_root_) {
-    if (name != "VTKFile" || attribute(tag, "type") != "UnstructuredGrid") {
+    if (name != "VTKFile" || attribute("type") != "UnstructuredGrid") {
       refuse(at, "not a VTK XML file of type UnstructuredGrid");
     }
     has_root_ = true;
-    if (!attribute(tag, "compressor").empty()) ratio_ = kGreatestRatio;
-    if (attribute(tag, "header_type") == "UInt64") header_word_ = 8;
-    big_endian_ = attribute(tag, "byte_order") == "BigEndian";
+    if (!attribute("compressor").empty()) ratio_ = kGreatestRatio;
+    if (attribute("header_type") == "UInt64") header_word_ = 8;
+    big_endian_ = attribute("byte_order") == "BigEndian";
   }
   // A point takes at least three numbers, a cell at least its type: a byte each, or 4/3 characters in base64.
   const auto check = [&](std::uint64_t n) {
@@ -138,19 +155,20 @@ void TagWalk::open(std::size_t at, std::string_view tag) {
   };
   if (name == "Piece") {
     for (const char* what : {"NumberOfPoints", "NumberOfCells"}) {
-      const std::uint64_t n = count(at, tag, what);
+      const std::uint64_t n = count(at, what);
       check(n);
       n_tuples_ += n;
     }
   }
   if (name == "DataArray" || name == "Array") {
-    if (!attribute(tag, "NumberOfTuples").empty()) check(count(at, tag, "NumberOfTuples"));
-    if (!attribute(tag, "NumberOfComponents").empty()) {
-      const std::uint64_t n = count(at, tag, "NumberOfComponents");
+    if (!attribute("NumberOfTuples").empty()) check(count(at, "NumberOfTuples"));
+    if (!attribute("NumberOfComponents").empty()) {
+      const std::uint64_t n = count(at, "NumberOfComponents");
       if (n > kMostComponents) refuse(at, "NumberOfComponents = " + std::to_string(n));
     }
-    if (attribute(tag, "format") == "appended") offsets_.push_back(count(at, tag, "offset"));
-    const std::string_view array = attribute(tag, "Name");
+    // Whatever the format is called: VTK reads appended data for an offset.
+    if (!attribute("offset").empty() || attribute("format") == "appended") offsets_.push_back(count(at, "offset"));
+    const std::string_view array = attribute("Name");
     if (array == "faces" || array == "faceoffsets") refuse(at, "polyhedral cells are not read");
   }
   if (tag.back() != '/') open_.push_back(name);
@@ -177,9 +195,13 @@ std::uint64_t TagWalk::check_header(std::size_t at, std::uint64_t room, std::str
     n_words = 3 + word(0);
   }
   if (bytes.size() < n_words * header_word_) refuse(at, "a binary block without a header");
-  if (ratio_ != 1 && word(0) > 0 && (word(1) == 0 || word(1) > room * ratio_ || word(2) > word(1)))
-    refuse(at, "a compressed block of parts of " + std::to_string(word(1)) + " bytes, the last of " +
-                   std::to_string(word(2)));
+  if (ratio_ != 1) {
+    const std::uint64_t n_parts = word(0), part = word(1), last = word(2);
+    const bool fits = part > 0 && last <= part && (n_parts > 0 ? part <= room * ratio_ : last == 0);
+    if (!fits)
+      refuse(at, std::to_string(n_parts) + " compressed parts of " + std::to_string(part) + " bytes, the last of " +
+                     std::to_string(last));
+  }
   for (std::uint64_t i = ratio_ == 1 ? 0 : 3; i < n_words; ++i) {
     if (word(i) > room) refuse(at, "a binary block that is shorter than its header says");
     expected += word(i);
@@ -233,6 +255,8 @@ void TagWalk::close(std::size_t at, std::string_view name) {
 std::size_t TagWalk::after_comment(std::size_t at, std::string_view opening, std::string_view closing) const {
   const std::size_t end = bytes_.find(closing, at + opening.size());
   if (end == std::string_view::npos) refuse(at, "a comment without an end");
+  // VTK looks for appended data before anything is parsed.
+  if (bytes_.substr(at, end - at).find("<AppendedData") != std::string_view::npos) refuse(at, "tags in a comment");
   return end + closing.size();
 }
 
@@ -243,24 +267,28 @@ void TagWalk::run() {
       at = bytes_.find('<', after_comment(at, "<!--", "-->"));
       continue;
     }
+    if (rest.starts_with("<?")) {
+      at = bytes_.find('<', after_comment(at, "<?", "?>"));
+      continue;
+    }
     const std::size_t end = rest.find('>');
     if (end == std::string_view::npos || end < 2) refuse(at, "a tag without an end");
     const std::string_view tag = rest.substr(1, end - 1);
     if (tag.front() == '!') refuse(at, "document type declarations are not read");
     if (tag.front() == '/') {
       close(at, name_of(tag.substr(1)));
-    } else if (tag.front() != '?') {
+    } else {
       open(at, tag);
       const bool array = name_of(tag) == "DataArray" || name_of(tag) == "Array";
-      if (array && tag.back() != '/' && attribute(tag, "format") == "binary") {
+      if (array && tag.back() != '/' && attribute("format") == "binary") {
         const std::size_t begin = at + end + 1;
         check_block(begin, bytes_.substr(begin, bytes_.find('<', begin) - begin));
       }
     }
-    if (name_of(tag) == "AppendedData") {
+    if (tag.starts_with("AppendedData")) {
       // Raw bytes follow that may contain anything; VTK's parser stops here too.
       if (bytes_.find("</VTKFile>", at) == std::string_view::npos) refuse(bytes_.size(), "the file is cut");
-      check_appended(at + end + 1, attribute(tag, "encoding") == "raw");
+      check_appended(at + end + 1, attribute("encoding") == "raw");
       return;
     }
     at = bytes_.find('<', at + end);

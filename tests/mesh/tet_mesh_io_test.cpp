@@ -231,9 +231,25 @@ TEST(TetMeshIo, AppendedBlocksAreReadAndTheirHeadersChecked) {
     EXPECT_EQ(file.mesh.C, std::vector<Tet>({{0, 1, 2, 3}})) << name;
     EXPECT_EQ(file.mesh.V.at(3), Vec3(0, 0, 1)) << name;
   }
-  for (const char* name : {"appended_no_bytes.vtu", "parts_of_no_bytes.vtu"}) {
+  for (const char* name :
+       {"appended_no_bytes.vtu", "parts_of_no_bytes.vtu", "no_parts_of_no_bytes.vtu", "offset_without_format.vtu"}) {
     const std::string message = refusal(seeds / name);
     EXPECT_NE(message.find("parts of 0 bytes"), std::string::npos) << message;
+  }
+  const std::string text = bytes_of(seeds / "appended_raw.vtu");
+  // What the parser behind VTK sees otherwise than a search for letters would.
+  const std::vector<std::array<std::string, 3>> hidden = {
+      {"offset=\"96\"", "Note=\"a offset='96'\" offset=\"97\"", "more parts than bytes"},
+      {"offset=\"96\"", "offset=\"&#57;7\"", "references to characters"},
+      {"<Cells>", "<Cells a=\"b>\">", "attributes"},
+      {"<Cells>", "<!-- <AppendedData encoding=\"raw\"> --><Cells>", "in a comment"},
+      {"<Cells>", "<?x ><AppendedData>_?><Cells>", "in a comment"}};
+  for (const auto& [from, to, reason] : hidden) {
+    std::string changed = text;
+    changed.replace(changed.find(from), from.size(), to);
+    const fs::path file = with_bytes("hidden.vtu", changed);
+    EXPECT_NE(refusal(file).find(reason), std::string::npos) << to << ": " << refusal(file);
+    fs::remove(file);
   }
   // VTK would count offsets from the first byte behind the tag, find other headers there, and believe them: 8 GB.
   const std::string message = refusal(seeds / "appended_beside_underscore.vtu");
