@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "mesh/certificate.h"
-#include "mesh/quality_report.h"
 #include "mesh/universal_mesh.h"
 #include "pipeline/background_choice.h"
 #include "pipeline/domain.h"
@@ -15,6 +14,7 @@
 #include "pipeline/memory.h"
 #include "pipeline/mesh_attempts.h"
 #include "pipeline/mesh_measures.h"
+#include "pipeline/mesh_outputs.h"
 #include "pipeline/second_order.h"
 #include "pipeline/stages.h"
 #include "pipeline/too_thin.h"
@@ -53,19 +53,14 @@ class MeshStage {
   EdgeLength enough_for(const ThinPlaces& thin);
   std::string remedy_for(const ThinPlaces& thin, Json& h_enough);
   [[noreturn]] void refuse_thin(const MeshAttempt& best);
-  fs::path write_failed(const UmResult& result);
   bool observe(const UmProgress& p);
   UmResult make(const BackgroundMesh& background, const ZeroSetChoice& pieces);
   [[noreturn]] void refuse(const UmResult& result, double h);
-  MeshFile write_output(const std::string& name, const UmResult& result, const std::vector<Vec3>& V);
-  void write_series();
-  void write_outputs(const MeshAttempt& best);
   const StageContext& context_;
   Domain domain_;
   BackgroundChoice background_;
   const bool keep_iterates_;
-  std::vector<std::vector<Vec3>> iterates_;  ///< of the running attempt
-  std::vector<std::string> outputs_;
+  std::vector<std::vector<Vec3>> iterates_;                 ///< of the running attempt
   std::optional<std::pair<double, ZeroSetChoice>> pieces_;  ///< of psi cut for the h beside them
   double missed_by_ = 0;   ///< tets made / tets asked for, when the running attempt was given up for it
   bool may_miss_ = false;  ///< it goes on whatever the number
@@ -103,27 +98,9 @@ UmResult MeshStage::make(const BackgroundMesh& background, const ZeroSetChoice& 
   return result;
 }
 
-MeshFile MeshStage::write_output(const std::string& name, const UmResult& result, const std::vector<Vec3>& V) {
-  outputs_.push_back(name);
-  return write_mesh(context_.paths.folder(Stage::Mesh) / name, domain_, result, V);
-}
-
-/// What is left of a mesh that is none, or is not right; returns the folder.
-fs::path MeshStage::write_failed(const UmResult& result) {
-  const fs::path folder = context_.paths.failed();
-  fs::remove_all(folder);
-  const std::size_t n = result.submesh.mesh.V.size();
-  if (n == 0) return folder;
-  fs::create_directories(folder);
-  write_mesh(folder / "omega_h.vtu", domain_, result, result.submesh.mesh.V);
-  const std::vector<Vec3>& last = result.final.size() == n ? result.final : result.projected;
-  if (last.size() == n) write_mesh(folder / "projected.vtu", domain_, result, last);
-  return folder;
-}
-
 void MeshStage::refuse(const UmResult& result, double h) {
   if (!context_.paths.renews(Stage::Mesh)) begin_writing(context_, Stage::Mesh);
-  const fs::path folder = write_failed(result);
+  const fs::path folder = write_failed_mesh(context_.paths, domain_, result);
   const std::size_t n = result.submesh.mesh.V.size();
   std::string message = failure_text(result, h, domain_.shift);
   if (n > 0) message += "\n  look at omega_h.vtu and projected.vtu (the last iterate) in " + folder.string();
@@ -180,7 +157,8 @@ void MeshStage::refuse_thin(const MeshAttempt& best) {
   const ThinPlaces& thin = best.thin;
   const bool keeps = context_.paths.renews(Stage::Mesh);
   if (!keeps) begin_writing(context_, Stage::Mesh);
-  const fs::path failed = write_failed(best.result), folder = keeps ? failed : context_.paths.folder(Stage::Mesh);
+  const fs::path failed = write_failed_mesh(context_.paths, domain_, best.result);
+  const fs::path folder = keeps ? failed : context_.paths.folder(Stage::Mesh);
   fs::create_directories(folder);
   const fs::path file = folder / "too_thin.vtp";
   write_thin_places(file, thin, domain_.shift);
@@ -266,7 +244,7 @@ void MeshStage::run() {
   if (!best.made()) refuse(result, best.h);
 
   context_.progress.report("mesh", "write", .97);
-  write_outputs(best);
+  const std::vector<std::string> outputs = write_mesh_outputs(context_, domain_, best);
   const Json numbers = {{"conditioning_angle_max_deg", result.conditioning_angle_max_deg},
                         {"n_psi_evaluations", result.n_psi_evaluations},
                         {"measured", best.measured}};
@@ -278,51 +256,9 @@ void MeshStage::run() {
                 {},
                 numbers,
                 run_block(seconds.count(), context_.threads)},
-               outputs_);
+               outputs);
   domain_.limit_detail(best.h);
   context_.handover.domain = std::move(domain_);
-}
-
-/// The meshes written so far, in the order they were made: time is their number.
-void MeshStage::write_series() {
-  std::string pvd =
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
-      "byte_order=\"LittleEndian\">\n<Collection>\n";
-  int step = 0;
-  for (const std::string& name : outputs_) {
-    if (name.ends_with(".vtu")) {
-      pvd += fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"0\" file=\"{}\"/>\n", step++, name);
-    }
-  }
-  write_text_artefact(context_.paths.folder(Stage::Mesh) / "iterates.pvd", pvd + "</Collection>\n</VTKFile>\n");
-  outputs_.push_back("iterates.pvd");
-}
-
-void MeshStage::write_outputs(const MeshAttempt& best) {
-  begin_writing(context_, Stage::Mesh);
-  fs::remove_all(context_.paths.failed());
-  const UmResult& result = best.result;
-  const std::vector<Vec3>& omega_h = result.submesh.mesh.V;
-  write_output("omega_h.vtu", result, omega_h);
-  for (std::size_t k = 0; k < best.iterates.size(); ++k)
-    write_output(fmt::format("pass_{}.vtu", k + 1), result, best.iterates[k]);
-  write_output("projected.vtu", result, result.projected);
-  if (best.second) {
-    write_second_order(context_.paths.folder(Stage::Mesh) / "mesh.vtu", domain_, result, *best.second);
-    outputs_.emplace_back("mesh.vtu");
-    context_.handover.mesh = mesh_content(domain_, result, result.final);
-  } else {
-    context_.handover.mesh = write_output("mesh.vtu", result, result.final);
-  }
-  write_artefact(context_.paths.folder(Stage::Mesh) / "quality.csv", [&](const fs::path& temporary) {
-    write_quality_csv(temporary, quality_curves(result.submesh.mesh.C, result.submesh.positive_vertices, omega_h,
-                                                result.projected, result.final));
-  });
-  outputs_.push_back("quality.csv");
-  if (keep_iterates_) write_series();
-  if (best.thin.empty()) return;
-  write_thin_places(context_.paths.folder(Stage::Mesh) / "too_thin.vtp", best.thin, domain_.shift);
-  outputs_.push_back("too_thin.vtp");
 }
 
 }  // namespace
