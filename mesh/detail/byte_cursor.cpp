@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
@@ -103,7 +104,8 @@ std::size_t ByteCursor::count(const char* what, std::size_t least_bytes) {
   return checked_count(number<std::uint64_t>(what), what, least_bytes);
 }
 
-std::string file_bytes(const std::filesystem::path& path) {
+std::string file_bytes(const std::filesystem::path& path, std::string_view keyword) {
+  constexpr std::size_t kHead = 1 << 20;
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
     if (!error) error = std::make_error_code(std::errc::invalid_argument);
@@ -111,10 +113,19 @@ std::string file_bytes(const std::filesystem::path& path) {
   }
   errno = 0;
   std::ifstream in(path, std::ios::binary);
-  std::string bytes(in ? std::filesystem::file_size(path) : 0, '\0');
-  if (!in || !in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) {
-    throw std::system_error(errno ? errno : EIO, std::generic_category(), "cannot read " + path.string());
-  }
+  const std::size_t size = in ? std::filesystem::file_size(path) : 0;
+  std::string bytes(std::min(size, kHead), '\0');
+  const auto read = [&](std::size_t from) {
+    if (!in || !in.read(bytes.data() + from, static_cast<std::streamsize>(bytes.size() - from)))
+      throw std::system_error(errno ? errno : EIO, std::generic_category(), "cannot read " + path.string());
+  };
+  read(0);
+  const auto same = [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); };
+  if (bytes.size() < size &&
+      std::search(bytes.begin(), bytes.end(), keyword.begin(), keyword.end(), same) == bytes.end())
+    throw MeshFileRefused(path, "byte 0", "no " + std::string(keyword) + " in the first megabyte");
+  bytes.resize(size);
+  read(std::min(size, kHead));
   return bytes;
 }
 

@@ -77,7 +77,7 @@ void read_tets(ByteCursor& in, int nodes, NumberedMesh& mesh) {
 }  // namespace
 
 MeshFile read_medit(const std::filesystem::path& path) {
-  const std::string bytes = file_bytes(path);
+  const std::string bytes = file_bytes(path, "MeshVersionFormatted");
   ByteCursor in(path, bytes, '#');
   NumberedMesh mesh;
   bool known = false;

@@ -48,8 +48,11 @@ class ByteCursor {
   std::size_t at_ = 0;
 };
 
-/// The bytes of a regular file. \throw std::system_error naming the path
-std::string file_bytes(const std::filesystem::path& path);
+/// The bytes of a regular file. Of a large one the first megabyte has to hold the keyword of its format: else it is
+/// refused before the rest is read.
+/// @param keyword  compared without regard to case
+/// \throw std::system_error naming the path, MeshFileRefused
+std::string file_bytes(const std::filesystem::path& path, std::string_view keyword);
 
 /// Nodes and tets as they stand in a file, by node number.
 struct NumberedMesh {

@@ -226,7 +226,7 @@ NumberedMesh MshReader::read() {
 }  // namespace
 
 MeshFile read_msh(const std::filesystem::path& path) {
-  const std::string bytes = file_bytes(path);
+  const std::string bytes = file_bytes(path, "$MeshFormat");
   return assemble(path, MshReader(path, bytes).read());
 }
 

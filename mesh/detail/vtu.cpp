@@ -8,12 +8,15 @@
 #include <vtkSmartPointer.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
+#include <vtkXMLDataElement.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
+#include <algorithm>
 #include <limits>
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "mesh/detail/mesh_formats.h"
 #include "mesh/detail/vtu_precheck.h"
@@ -65,6 +68,34 @@ class CapturedVtkMessages {
   vtkSmartPointer<vtkOutputWindow> before_;
   vtkLogger::Verbosity verbosity_;
   vtkNew<Window> window_;
+};
+
+/// VTK allocates the connectivity for what the last offset says, before it reads it.
+class BoundedReader : public vtkXMLUnstructuredGridReader {
+ public:
+  static BoundedReader* New() {
+    auto* reader = new BoundedReader;
+    reader->InitializeObjectBase();
+    return reader;
+  }
+  std::uint64_t most_values = 0;  ///< of an array, by the size of the file
+
+ private:
+  int ReadArrayValues(vtkXMLDataElement* element, vtkIdType at, vtkAbstractArray* array, vtkIdType start, vtkIdType n,
+                      FieldType type) override {
+    if (!vtkXMLUnstructuredGridReader::ReadArrayValues(element, at, array, start, n, type)) return 0;
+    vtkXMLDataElement* parent = element->GetParent();
+    auto* numbers = vtkDataArray::SafeDownCast(array);
+    if (!numbers || !parent || std::string_view(parent->GetName()) != "Cells") return 1;
+    if (const char* name = element->GetAttribute("Name"); !name || std::string_view(name) != "offsets") return 1;
+    for (vtkIdType i = at; i < std::min(at + n, numbers->GetNumberOfValues()); ++i) {
+      const double offset = numbers->GetComponent(i, 0);
+      if (offset >= 0 && offset <= static_cast<double>(most_values)) continue;
+      vtkErrorMacro("offset " << offset << ": more than the file can hold");
+      return 0;
+    }
+    return 1;
+  }
 };
 
 /// The values of an array with one component, for the kept cells (`keep` null: for all).
@@ -134,9 +165,10 @@ void take_tets(const std::filesystem::path& path, vtkUnstructuredGrid* grid, Tet
 }  // namespace
 
 MeshFile detail::read_vtu(const std::filesystem::path& path) {
-  detail::precheck_vtu(path);
+  const std::uint64_t most_values = detail::precheck_vtu(path);
   const CapturedVtkMessages messages;
-  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  vtkNew<BoundedReader> reader;
+  reader->most_values = most_values;
   reader->SetFileName(path.c_str());
   try {
     reader->Update();

@@ -66,6 +66,8 @@ class TagWalk {
  public:
   TagWalk(const std::filesystem::path& path, std::string_view bytes) : path_(path), bytes_(bytes) {}
   void run();
+  /// A byte each at least, before it was compressed.
+  std::uint64_t most_values() const { return bytes_.size() * ratio_; }
 
  private:
   [[noreturn]] void refuse(std::size_t at, const std::string& reason) const {
@@ -149,7 +151,7 @@ void TagWalk::open(std::size_t at, std::string_view tag) {
   }
   // A point takes at least three numbers, a cell at least its type: a byte each, or 4/3 characters in base64.
   const auto check = [&](std::uint64_t n) {
-    if (n > bytes_.size() * ratio_ || n_tuples_ + n > bytes_.size() * ratio_) {
+    if (n > most_values() || n_tuples_ + n > most_values()) {
       refuse(at, std::to_string(n) + " points, cells or tuples: more than the file can hold");
     }
   };
@@ -299,9 +301,11 @@ void TagWalk::run() {
 
 }  // namespace
 
-void precheck_vtu(const std::filesystem::path& path) {
-  const std::string bytes = file_bytes(path);
-  TagWalk(path, bytes).run();
+std::uint64_t precheck_vtu(const std::filesystem::path& path) {
+  const std::string bytes = file_bytes(path, "<VTKFile");
+  TagWalk walk(path, bytes);
+  walk.run();
+  return walk.most_values();
 }
 
 }  // namespace umtet::detail

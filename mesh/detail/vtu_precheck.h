@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 
 namespace umtet::detail {
@@ -11,7 +12,8 @@ namespace umtet::detail {
 /// zlib's greatest ratio); every inline binary block is base64 of the length its header says, and parts of compressed
 /// ones have a size, in appended data too; no polyhedra, whose face lists VTK follows blindly.
 ///
+/// @return  the most values that an array of this file can have
 /// \throw std::system_error when the file cannot be read, MeshFileRefused for its content
-void precheck_vtu(const std::filesystem::path& path);
+std::uint64_t precheck_vtu(const std::filesystem::path& path);
 
 }  // namespace umtet::detail

@@ -236,6 +236,8 @@ TEST(TetMeshIo, AppendedBlocksAreReadAndTheirHeadersChecked) {
     const std::string message = refusal(seeds / name);
     EXPECT_NE(message.find("parts of 0 bytes"), std::string::npos) << message;
   }
+  const std::string beyond = refusal(seeds / "last_offset.vtu");
+  EXPECT_NE(beyond.find("more than the file can hold"), std::string::npos) << beyond;
   const std::string text = bytes_of(seeds / "appended_raw.vtu");
   // What the parser behind VTK sees otherwise than a search for letters would.
   const std::vector<std::array<std::string, 3>> hidden = {
