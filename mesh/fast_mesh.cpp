@@ -256,20 +256,20 @@ bool FastRun::fit() {
   shell_ = prices_ ? lattice_shell(background_, prices_->links, inside_, params_.fast.layers)
                    : background_shell(background_, inside_, params_.fast.layers);
   const KeepGoing keep_going = asking("relax");
-  WarmStart start;
+  SmoothParams smoothing_params = params_.fast.smoothing;
   if (memory_ && !memory_->moved.empty()) {
-    start = warm_start(background_, psi_, inside_, *memory_, params_.fast.projection, shell_, keep_going);
+    smoothing_params.margin = std::min(smoothing_params.margin, params_.fast.update_margin);
+    const WarmStart start = warm_start(background_, psi_, inside_, *memory_, params_.fast.projection, shell_, keep_going);
     result_.n_psi_evaluations += start.psi_evaluations;
     memory_->n_recalled = start.n_recalled;
   }
   PNormSmoother smoother(shell_.shell);
-  smoother.settle(std::move(start.recalled));
   const ProjectionReport projection = project(smoother, psi_, params_.fast.projection, keep_going);
   result_.n_psi_evaluations += projection.psi_evaluations;
   if (!all_arrived(projection)) return false;
   const std::vector<Vec3> projected = shell_.shell.V;
   smoother.wake_all();
-  const SmoothReport smoothing = smoother.run(psi_, params_.fast.smoothing, keep_going);
+  const SmoothReport smoothing = smoother.run(psi_, smoothing_params, keep_going);
   result_.n_psi_evaluations += smoothing.psi_evaluations;
   repair_labels(keep_going);
   result_.final = coordinates(shell_.shell.V);
@@ -286,6 +286,9 @@ std::vector<std::string> problems(const FastParams& params) {
   const auto add = [&](const char* name, const std::vector<std::string>& more) {
     for (const std::string& problem : more) list.push_back(std::string(name) + "." + problem);
   };
+  if (!(params.update_margin >= 0)) {
+    list.push_back("update_margin = " + std::to_string(params.update_margin) + ": must be >= 0");
+  }
   add("labels", problems(params.labels));
   add("projection", problems(params.projection));
   add("smoothing", problems(params.smoothing));

@@ -38,7 +38,6 @@ class Visitor {
         psi_(psi),
         closest_point_(params.closest_point),
         good_f_(f_of_quality(params.target + params.margin)),
-        good_enough_f_(f_of_quality(params.target + params.margin - params.settled)),
         least_gain_(params.least_gain) {}
 
   struct Result {
@@ -52,7 +51,7 @@ class Visitor {
     Result result;
     OneRing ring = smoother_.ring(i);
     const double min_f = ring.min_f(Vec3::Zero());
-    if (min_f >= (smoother_.is_settled(i) ? good_enough_f_ : good_f_)) return result;
+    if (min_f >= good_f_) return result;
     result.needed = true;
     detail::silence_padding(ring);
     const detail::Bar bar(ring, min_f, shell_.h, least_gain_);
@@ -98,7 +97,7 @@ class Visitor {
   const Shell& shell_;
   ImplicitFunctionRef psi_;
   const ClosestPointParams& closest_point_;
-  double good_f_, good_enough_f_, least_gain_;
+  double good_f_, least_gain_;
 };
 
 struct Counts {
@@ -147,7 +146,6 @@ std::vector<std::string> problems(const SmoothParams& params) {
   };
   if (!(params.target > 0 && params.target < 1)) refuse("target", params.target, "> 0 and < 1");
   if (!(params.margin >= 0)) refuse("margin", params.margin, ">= 0");
-  if (!(params.settled >= 0)) refuse("settled", params.settled, ">= 0");
   if (!(params.least_gain > 0 && params.least_gain < 1 / detail::kNorm))
     refuse("least_gain", params.least_gain, "> 0 and < 1 / 96");
   if (params.max_sweeps < 0) refuse("max_sweeps", params.max_sweeps, ">= 0");

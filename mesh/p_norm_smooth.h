@@ -19,10 +19,6 @@ struct SmoothParams {
   /// A vertex is visited while its worst tet is below target + margin; >= 0. At 100k tets .04 instead of .02 lifts the
   /// 1 % quantile of Q by .003 (T6) to .014 (sphere), for a fifth more time; beyond .04 nothing is gained.
   double margin = .04;
-  /// A vertex that comes from a settled mesh (PNormSmoother::settle) is visited while its worst tet is below target +
-  /// margin - settled only; >= 0. A ball that drifts a quarter cell a step: a quarter of the visits less, the 1 %
-  /// quantile of Q .003 lower, and .007 where it drifts a fiftieth of a cell.
-  double settled = .01;
   double least_gain = 3e-4;  ///< a relative gain of 1/Q's norm below this is no move, and wakes nobody; > 0
   int max_sweeps = 60;       ///< over the vertices in the queue; >= 0
   /// A vertex that slid is off the surface by a sagitta only, where Damped settles in as many steps as Newton and needs
@@ -70,10 +66,6 @@ class PNormSmoother {
   /// Puts vertex i and all vertices of its ring in the queue: to be called when i was moved from outside. Vertices that
   /// share no tet may be woken by different threads at once.
   void wake(int i);
-  /// Which vertices come, with their rings, from a mesh that was smoothed: SmoothParams::settled.
-  /// @param settled  per vertex, or empty for none
-  void settle(std::vector<unsigned char> settled) { settled_ = std::move(settled); }
-  bool is_settled(int i) const { return !settled_.empty() && settled_[i] != 0; }
   /// Puts every vertex in the queue that was not Fixed at construction.
   void wake_all();
   /// Visits vertices in the queue until none is left, or for max_sweeps; those left stay for the next call. Roles are
@@ -97,7 +89,6 @@ class PNormSmoother {
   std::vector<int> by_colour_;             ///< vertices, ascending within a colour
   std::vector<std::size_t> colour_begin_;  ///< into by_colour_
   std::vector<unsigned char> queued_;      ///< per vertex
-  std::vector<unsigned char> settled_;     ///< per vertex, or empty
   std::vector<int> todo_;                  ///< of one colour
 };
 

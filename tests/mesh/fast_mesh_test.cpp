@@ -202,7 +202,8 @@ TEST(FastMesh, BrokenParamsAreAllNamed) {
   params.fast.layers = 0;
   params.fast.labels.shift = 1;
   params.fast.repair.reach = 0;
-  EXPECT_EQ(problems(params).size(), 3u);
+  params.fast.update_margin = -1;
+  EXPECT_EQ(problems(params).size(), 4u);
 }
 
 }  // namespace
