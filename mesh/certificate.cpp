@@ -5,8 +5,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -14,126 +12,15 @@
 #include "mesh/detail/certificate_memory.h"
 #include "mesh/detail/check_indices.h"
 #include "mesh/detail/foot_point.h"
-#include "mesh/orientation.h"
-#include "mesh/quality_report.h"
+#include "mesh/detail/tet_measures.h"
 #include "mesh/skin.h"
-#include "mesh/tet_quality.h"
 
 namespace umtet {
 namespace {
 
-// A tet takes a tenth of a microsecond, a foot point half a dozen values of psi.
-constexpr std::size_t kTetsPerBlock = 1 << 10, kBlocksPerPoll = 1 << 8, kFeetPerPoll = kValuesPerPoll / 8;
+// A foot point takes half a dozen values of psi.
+constexpr std::size_t kFeetPerPoll = kValuesPerPoll / 8;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// A tet's dihedral angles grow as this falls; it takes no root and no arc.
-struct CotangentRange {
-  double least = kInfinity, greatest = -kInfinity;
-};
-
-/// Signed squares of the cotangents of the dihedral angles. An angle is that of the normals of its two faces, and the
-/// sine of it times their lengths is that of the edge times six volumes.
-CotangentRange cotangents(const Vec3& u, const Vec3& v, const Vec3& w, double volume6) {
-  const Vec3 d = v.cross(u), c = u.cross(w), b = w.cross(v), a = -(b + c + d);  // outward, opposite to each vertex
-  const std::array<double, 6> cosine = {-c.dot(d), -b.dot(d), -b.dot(c), -a.dot(d), -a.dot(c), -a.dot(b)};
-  const std::array<double, 6> edge2 = {u.squaredNorm(),       v.squaredNorm(),       w.squaredNorm(),
-                                       (v - u).squaredNorm(), (w - u).squaredNorm(), (w - v).squaredNorm()};
-  const double volume2 = volume6 * volume6;
-  CotangentRange range;
-  for (int k = 0; k < 6; ++k) {
-    const double square = cosine[k] * std::abs(cosine[k]) / (edge2[k] * volume2);
-    range.least = std::min(range.least, square);
-    range.greatest = std::max(range.greatest, square);
-  }
-  return range;
-}
-
-detail::TetValues measure_tet(const TetMesh& mesh, const Tet& tet) {
-  const Vec3 &a = mesh.V[tet[0]], &b = mesh.V[tet[1]], &c = mesh.V[tet[2]], &d = mesh.V[tet[3]];
-  const double six = volume6(a, b, c, d), Q = mean_ratio(a, b, c, d);
-  const CotangentRange range = cotangents(b - a, c - a, d - a, six);
-  return {.quality = std::isfinite(Q) ? Q : -1,
-          .volume6 = six,
-          .rms_edge = std::sqrt(sum_of_squared_edges(a, b, c, d) / 6),
-          .least_cotangent = range.least,
-          .greatest_cotangent = range.greatest,
-          .inverted = orientation_sign(a, b, c, d) <= 0};
-}
-
-/// Sums and extremes over a block of tets.
-struct TetMeasure {
-  double volume = 0, rms_edges = 0, qualities = 0;
-  std::size_t n_inverted = 0;
-  CotangentRange cotangent;
-  std::size_t at_least = 0, at_greatest = 0;  ///< tets with the extreme cotangents
-
-  void add(const detail::TetValues& tet, std::size_t t) {
-    qualities += tet.quality;
-    volume += tet.volume6 / 6;
-    rms_edges += tet.rms_edge;
-    n_inverted += tet.inverted;
-    take({.cotangent = {tet.least_cotangent, tet.greatest_cotangent}, .at_least = t, .at_greatest = t});
-  }
-  void add(const TetMeasure& next) {
-    volume += next.volume;
-    rms_edges += next.rms_edges;
-    qualities += next.qualities;
-    n_inverted += next.n_inverted;
-    take(next);
-  }
-
- private:
-  void take(const TetMeasure& other) {
-    if (other.cotangent.least < cotangent.least) cotangent.least = other.cotangent.least, at_least = other.at_least;
-    if (other.cotangent.greatest > cotangent.greatest) {
-      cotangent.greatest = other.cotangent.greatest;
-      at_greatest = other.at_greatest;
-    }
-  }
-};
-
-DihedralRange dihedral_range_of(const TetMesh& mesh, const Tet& t) {
-  return dihedral_range(mesh.V[t[0]], mesh.V[t[1]], mesh.V[t[2]], mesh.V[t[3]]);
-}
-
-/// Fills n_tets, n_vertices, volume, quality and h.
-/// @param memory  if not null, of what is known of the tets, and receives that
-void measure_tets(const TetMesh& mesh, double h, const KeepGoing& keep_going, detail::CertificateMemory* memory,
-                  MeshCertificate& certificate) {
-  // Here and below, loops write by index and sums are taken block by block: threads cannot change a result.
-  const std::size_t n = mesh.C.size(), n_blocks = (n + kTetsPerBlock - 1) / kTetsPerBlock;
-  std::vector<double> Q(n);
-  std::vector<char> used(mesh.V.size(), 0);
-  std::vector<TetMeasure> blocks(n_blocks);
-  polled_parallel_for(n_blocks, kBlocksPerPoll, keep_going, [&](std::size_t b) {
-    const std::size_t end = std::min(n, (b + 1) * kTetsPerBlock);
-    for (std::size_t t = b * kTetsPerBlock; t < end; ++t) {
-      const detail::TetValues* known = memory ? memory->known(t) : nullptr;
-      const detail::TetValues tet = known ? *known : measure_tet(mesh, mesh.C[t]);
-      if (memory) memory->set(t, tet);
-      Q[t] = tet.quality;
-      blocks[b].add(tet, t);
-      for (const int v : mesh.C[t]) std::atomic_ref(used[v]).store(1, std::memory_order_relaxed);
-    }
-  });
-  TetMeasure all;
-  for (const TetMeasure& block : blocks) all.add(block);
-
-  MeshCertificate::Quality& quality = certificate.quality;
-  // Quantiles need the lowest hundredth in order.
-  std::partial_sort(Q.begin(), Q.begin() + static_cast<std::ptrdiff_t>(std::min(n, n / 100 + 2)), Q.end());
-  quality.min = Q.front();
-  quality.p001 = quantile(Q, .001);
-  quality.p01 = quantile(Q, .01);
-  quality.mean = all.qualities / static_cast<double>(n);
-  quality.dihedral_min_deg = dihedral_range_of(mesh, mesh.C[all.at_greatest]).min_deg;
-  quality.dihedral_max_deg = dihedral_range_of(mesh, mesh.C[all.at_least]).max_deg;
-  quality.n_inverted = all.n_inverted;
-  certificate.volume = all.volume;
-  certificate.n_tets = n;
-  certificate.n_vertices = static_cast<std::size_t>(std::count(used.begin(), used.end(), 1));
-  certificate.h = h > 0 ? h : all.rms_edges / static_cast<double>(n);
-}
 
 bool same_faces(std::vector<Triangle> x, std::vector<Triangle> y) {
   for (auto* faces : {&x, &y}) {
@@ -248,7 +135,7 @@ MeshCertificate certify_with(const CertificateInput& input, detail::CertificateM
   MeshCertificate certificate;
   certificate.coordinate_rounding = input.coordinate_rounding;
   SurfaceTopology topology;
-  run_both([&] { measure_tets(mesh, input.h, input.keep_going, memory, certificate); },
+  run_both([&] { detail::measure_tets(mesh, input.h, input.keep_going, memory, certificate); },
            [&] { topology = surface_topology(mesh.V, skin.triangles); });
 
   MeshCertificate::Boundary& boundary = certificate.boundary;

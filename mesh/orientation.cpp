@@ -59,11 +59,10 @@ int orientation_sign(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
   // |det - exact| <= (7 + 56 eps) eps permanent with eps = 2^-53 [Shewchuk1997, orient3d, stage A]; we allow 8 eps.
   // A fused multiply-add rounds once where the proof rounds twice, so the bound holds with and without it. The proof
   // excludes underflow: for differences below 1e100 it adds at most 12 * 2^-1075 * 1e100 < eps * 1e-200.
-  constexpr double kBound = 0x1p-50;
   const double largest = std::max({u.cwiseAbs().maxCoeff(), v.cwiseAbs().maxCoeff(), w.cwiseAbs().maxCoeff()});
-  if (largest < 1e100 && permanent > 1e-200) {
-    if (det > kBound * permanent) return 1;
-    if (det < -kBound * permanent) return -1;
+  if (largest < kFilterGreatest && permanent > kFilterLeast) {
+    if (det > kFilterBound * permanent) return 1;
+    if (det < -kFilterBound * permanent) return -1;
   }
   if (!a.allFinite() || !b.allFinite() || !c.allFinite() || !d.allFinite()) return 0;
   return exact_sign({&a, &b, &c, &d});

@@ -12,4 +12,8 @@ namespace umtet {
 /// Cost: 40 flops when the filter decides, some microseconds otherwise. Thread-safe.
 int orientation_sign(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
+/// The filter: |det| > kFilterBound permanent decides where the permanent (the determinant of absolute values) is
+/// greater than kFilterLeast and every difference of coordinates is below kFilterGreatest.
+inline constexpr double kFilterBound = 0x1p-50, kFilterLeast = 1e-200, kFilterGreatest = 1e100;
+
 }  // namespace umtet

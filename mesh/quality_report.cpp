@@ -33,13 +33,15 @@ std::vector<Tet> tets_at(const std::vector<Tet>& C, const std::vector<int>& vert
   return result;
 }
 
-double quantile(const std::vector<double>& ascending, double p) {
-  if (ascending.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const double at = p * static_cast<double>(ascending.size() - 1);
+double quantile(const std::vector<double>& lowest, std::size_t n, double p) {
+  if (lowest.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const double at = p * static_cast<double>(n - 1);
   const auto below = static_cast<std::size_t>(at);
-  const std::size_t above = std::min(below + 1, ascending.size() - 1);
-  return ascending[below] + (at - static_cast<double>(below)) * (ascending[above] - ascending[below]);
+  const std::size_t above = std::min(below + 1, n - 1);
+  return lowest[below] + (at - static_cast<double>(below)) * (lowest[above] - lowest[below]);
 }
+
+double quantile(const std::vector<double>& ascending, double p) { return quantile(ascending, ascending.size(), p); }
 
 QualitySummary summarize(const std::vector<double>& ascending) {
   QualitySummary s;

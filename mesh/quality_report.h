@@ -21,6 +21,8 @@ std::vector<Tet> tets_at(const std::vector<Tet>& C, const std::vector<int>& vert
 
 /// Quantile p in [0, 1] of ascending values, linear between neighbours (numpy's default). NaN without values.
 double quantile(const std::vector<double>& ascending, double p);
+/// The same of n values of which only the lowest are given, at least as many as the quantile needs: p (n - 1) + 2 or n.
+double quantile(const std::vector<double>& lowest, std::size_t n, double p);
 
 /// A quality vector in five numbers.
 struct QualitySummary {

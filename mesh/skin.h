@@ -17,8 +17,7 @@ struct BoundaryFaces {
 };
 
 /// \throw std::invalid_argument naming the first tet with an index outside 0 .. n_vertices - 1 or a repeated vertex
-/// Cost: O(n_tets), 8 bytes per tet and as many per vertex while it runs; threads over vertices, result independent of
-/// them.
+/// Cost: O(n_tets), 5 bytes per tet while it runs; threads over tets and vertices, result independent of them.
 /// @param only  per vertex, whether faces whose least vertex it is are looked at; null: all of them
 BoundaryFaces boundary_faces(const std::vector<Tet>& C, std::size_t n_vertices,
                              const std::vector<char>* only = nullptr);

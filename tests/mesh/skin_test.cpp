@@ -2,10 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <numbers>
+#include <numeric>
+#include <random>
 #include <sstream>
 #include <string>
 #include <system_error>
@@ -42,6 +46,50 @@ TEST(BoundaryFaces, AThirdTetOnAFaceAndATetOnTheSameSideAreCounted) {
   EXPECT_EQ(overlap.n_same_side, 1u);
   EXPECT_EQ(overlap.n_overused, 0u);
   EXPECT_EQ(boundary_faces({{0, 1, 2, 3}, {0, 2, 1, 4}}, 5).n_same_side, 0u);
+}
+
+/// The same by a map of all faces.
+BoundaryFaces counted_one_by_one(const std::vector<Tet>& C) {
+  std::map<Triangle, std::vector<std::pair<int, int>>> uses;
+  for (std::size_t t = 0; t < C.size(); ++t) {
+    for (const auto& f : kTetFace) {
+      Triangle face = {C[t][f[0]], C[t][f[1]], C[t][f[2]]}, key = face;
+      std::sort(key.begin(), key.end());
+      std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+      uses[key].emplace_back(static_cast<int>(t), face == key);
+    }
+  }
+  BoundaryFaces result;
+  for (const auto& [face, by] : uses) {
+    if (by.size() == 1) result.tets.push_back(by[0].first);
+    if (by.size() == 2) result.n_same_side += by[0].second == by[1].second;
+    if (by.size() > 2) ++result.n_overused;
+  }
+  std::sort(result.tets.begin(), result.tets.end());
+  return result;
+}
+
+TEST(BoundaryFaces, AreThoseOfACountOneByOne) {
+  // Vertices of several blocks in any order, and one with more neighbours than are matched as bits.
+  TetMesh mesh = testing::cubes(17, [](int i, int j, int k) { return i + j + k > 2; });
+  std::vector<int> order(mesh.V.size() + 102);
+  std::iota(order.begin(), order.end(), 0);
+  std::mt19937 random(1);
+  std::shuffle(order.begin() + 102, order.end(), random);
+  for (Tet& t : mesh.C) {
+    for (int& v : t) v = order[v + 102];
+  }
+  for (int k = 1; k <= 100; ++k) mesh.C.push_back({0, k, k % 100 + 1, 101});  // around the edge from 0 to 101
+  std::vector<std::vector<Tet>> meshes(4, mesh.C);
+  meshes[1].insert(meshes[1].end(), {mesh.C[0], mesh.C[5000], mesh.C.back(), mesh.C[20000]});  // some twice
+  for (const std::size_t t : {1u, 9000u, 9001u, 29000u}) std::swap(meshes[2][t][0], meshes[2][t][1]);
+  for (const std::size_t t : {2u, 8000u, 20001u}) meshes[3][t] = mesh.C[t + 40];
+  for (const auto& C : meshes) {
+    const BoundaryFaces ours = boundary_faces(C, order.size()), theirs = counted_one_by_one(C);
+    EXPECT_EQ(ours.tets, theirs.tets);
+    EXPECT_EQ(ours.n_same_side, theirs.n_same_side);
+    EXPECT_EQ(ours.n_overused, theirs.n_overused);
+  }
 }
 
 TEST(BoundaryFaces, RefusesIndicesThatDoNotExist) {
