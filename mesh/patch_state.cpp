@@ -53,9 +53,9 @@ bool positive_face(const Tet& tet, const std::vector<std::uint8_t>& inside, Tria
 }
 
 bool PatchState::is_no_worse_than(const PatchState& other) const {
-  return least >= std::min(other.least, target) && poor <= other.poor &&
-         least_cosine >= std::min(other.least_cosine, kTurnedCosine) && turned <= other.turned &&
-         folded <= other.folded;
+  return least >= std::min(other.least, target) && poor <= other.poor && turned <= other.turned &&
+         folded <= other.folded &&
+         (turned < other.turned || least_cosine >= std::min(other.least_cosine, kTurnedCosine));
 }
 
 bool PatchState::is_better_than(const PatchState& other) const {

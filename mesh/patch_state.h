@@ -34,7 +34,9 @@ struct PatchState {
   std::size_t turned = 0, folded = 0;  ///< faces; folded ones are turned, too
 
   bool is_perfect() const { return poor == 0 && turned == 0; }
-  /// Neither of the five is worse; what is above the target, or above kTurnedCosine, is good enough.
+  /// Neither of the five is worse; what is above the target, or above kTurnedCosine, is good enough. Where fewer faces
+  /// are turned, and no more folded, the worst of them may be turned more: the lip of spot_large goes from six turned
+  /// faces to three, two and one, and the worst by way of cos .01 from .04 to .15.
   bool is_no_worse_than(const PatchState& other) const;
   /// Fewer folded faces, or as many and fewer turned faces and poor tets, or as many of all and better worst ones.
   bool is_better_than(const PatchState& other) const;

@@ -59,7 +59,7 @@ TEST(PatchState, NoneOfTheFiveMayGetWorse) {
   EXPECT_FALSE(s.is_better_than(s));
   // A change for the worse, with another one for the better.
   for (const PatchState& other :
-       {PatchState{.82, .69, 2, .2, 4, 0}, PatchState{.82, .75, 4, .2, 4, 0}, PatchState{.82, .7, 3, .1, 3, 0},
+       {PatchState{.82, .69, 2, .2, 4, 0}, PatchState{.82, .75, 4, .2, 4, 0}, PatchState{.82, .7, 2, .1, 4, 0},
         PatchState{.82, .7, 2, .3, 5, 0}, PatchState{.82, .7, 0, .3, 3, 1}}) {
     EXPECT_FALSE(other.is_no_worse_than(s));
   }
@@ -67,6 +67,9 @@ TEST(PatchState, NoneOfTheFiveMayGetWorse) {
                                   PatchState{.82, .7, 3, .3, 4, 0}, PatchState{.82, .7, 3, .2, 3, 0}}) {
     EXPECT_TRUE(other.is_no_worse_than(s) && other.is_better_than(s) && !s.is_no_worse_than(other));
   }
+  // Fewer turned faces, none of them folded: the worst one may be turned more.
+  EXPECT_TRUE((PatchState{.82, .7, 3, .1, 3, 0}).is_no_worse_than(s));
+  EXPECT_FALSE((PatchState{.82, .7, 3, -.1, 3, 1}).is_no_worse_than(s));
   // Beyond the target, and beyond kTurnedCosine, there is nothing to keep.
   EXPECT_TRUE((PatchState{.82, .83, 0, .6, 0, 0}).is_no_worse_than({.82, .9, 0, .9, 0, 0}));
   EXPECT_FALSE((PatchState{.82, .9, 0, .9, 0, 0}).is_better_than({.82, .83, 0, .6, 0, 0}));
