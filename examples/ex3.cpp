@@ -37,7 +37,7 @@ int main(int argc, char* argv[]) {
   for (int step = 0; step <= n_steps; ++step) {
     const double t = static_cast<double>(step) / n_steps;
     const Ball psi{umtet::Vec3(2 * t, 0, 0), .5 + .2 * t};
-    const umtet::UmUpdate update = mesher.update(psi);
+    const umtet::UmUpdate& update = mesher.update(psi);
     if (update.mesh.status != umtet::UmStatus::Success) {
       std::fprintf(stderr, "t = %g: no mesh: %s\n", t, update.mesh.evidence.what.c_str());
       return 1;

@@ -171,6 +171,27 @@ MeshCertificate certify_with(const CertificateInput& input, detail::CertificateM
   return certificate;
 }
 
+/// Of a mesh that has not changed, without walls: faces are compared and psi is asked again.
+MeshCertificate certify_again(const CertificateInput& input, detail::CertificateMemory::Whole& known,
+                              const std::vector<Triangle>& skin) {
+  MeshCertificate certificate = known.certificate;
+  certificate.coordinate_rounding = input.coordinate_rounding;
+  certificate.n_positive_faces = input.positive_faces ? input.positive_faces->size() : 0;
+  MeshCertificate::Boundary& boundary = certificate.boundary;
+  boundary.equals_positive_faces.reset();
+  if (input.positive_faces) boundary.equals_positive_faces = same_faces(skin, *input.positive_faces);
+  boundary.max_vertex_distance_over_h.reset();
+  boundary.max_centroid_distance_over_h.reset();
+  boundary.min_cos_normal.reset();
+  boundary.gap_over_volume.reset();
+  boundary.n_cos_below_half = boundary.n_unprojected_faces = 0;
+  if (input.psi) {
+    if (known.surface_vertices.empty()) known.surface_vertices = vertices_of(skin);
+    measure_against(*input.psi, *input.mesh, skin, known.surface_vertices, input.keep_going, certificate);
+  }
+  return certificate;
+}
+
 }  // namespace
 
 MeshCertificate certify(const CertificateInput& input) {
@@ -183,9 +204,14 @@ MeshCertificate certify(const CertificateInput& input, const std::vector<std::in
   if (!input.mesh) throw std::invalid_argument("certify: a mesh with tets is needed");
   detail::check_indices(input.mesh->C, input.mesh->V.size(), "tet");
   memory.match(*input.mesh, vertex_id, tet_id);
+  if (auto* known = memory.of_the_same(input.h); known && !input.wall_faces) {
+    memory.keep();
+    return certify_again(input, *known, memory.single_faces());
+  }
   BoundaryFaces skin;
   MeshCertificate certificate = certify_with(input, &memory, skin);
   memory.remember(*input.mesh, vertex_id, tet_id, skin);
+  if (!input.wall_faces) memory.remember({input.h, certificate});
   return certificate;
 }
 

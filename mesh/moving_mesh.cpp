@@ -4,6 +4,8 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cmath>
 #include <iterator>
 #include <numeric>
 #include <optional>
@@ -18,6 +20,8 @@ namespace umtet {
 namespace {
 
 constexpr std::size_t kVerticesPerTask = 4096;
+// Of the boundary, to see whether psi has moved: in all but one case the first of them will say so.
+constexpr std::size_t kVerticesPerLook = 256;
 
 using Ids = std::vector<std::int64_t>;
 
@@ -102,15 +106,16 @@ struct UniversalMesh::Impl {
   Impl(BackgroundMesh mesh, const UmParams& um) : background(std::move(mesh)), params(um), walk(background) {}
 
   std::size_t search(ImplicitFunctionRef psi, const UpdateHints& hints, const UmObserver& observer);
-  void compare(UmUpdate& update);
+  bool has_stayed(ImplicitFunctionRef psi, std::size_t& n_evaluations) const;
+  void compare();
 
   const BackgroundMesh background;
   const UmParams params;
   InsideWalk walk;
   bool has_begun = false;  ///< walk knows a boundary
   FastMemory memory;
-  Submesh last;  ///< ids and places of the last mesh
-  std::vector<Vec3> last_V;
+  UmUpdate now;     ///< of the last call
+  UmUpdate before;  ///< the last mesh but that
   detail::CertificateMemory certified;
 };
 
@@ -144,42 +149,72 @@ std::size_t UniversalMesh::Impl::search(ImplicitFunctionRef psi, const UpdateHin
   return walk.update(psi, std::move(more), keep_going);
 }
 
-/// What is new, against the last mesh; this one takes its place.
-void UniversalMesh::Impl::compare(UmUpdate& update) {
-  const Submesh& now = update.mesh.submesh;
-  update.vertices_entered = without(now.background_vertex, last.background_vertex);
-  update.vertices_left = without(last.background_vertex, now.background_vertex);
-  update.tets_entered = without(now.background_tet, last.background_tet);
-  update.tets_left = without(last.background_tet, now.background_tet);
-  const Ids &a = last.background_vertex, &b = now.background_vertex;
+/// True if psi < 0 at the vertices where it was, and psi = 0 at those of the boundary: the last mesh is one of this
+/// psi.
+bool UniversalMesh::Impl::has_stayed(ImplicitFunctionRef psi, std::size_t& n_evaluations) const {
+  if (memory.moved.empty() || !(walk.inside() == memory.negative)) return false;
+  const std::vector<int>& boundary = now.mesh.submesh.positive_vertices;
+  const double tol = params.fast.projection.closest_point.tol * background.h();
+  std::atomic<bool> stayed = true;
+  for (std::size_t begin = 0; begin < boundary.size() && stayed; begin += kVerticesPerLook) {
+    const std::size_t end = std::min(boundary.size(), begin + kVerticesPerLook);
+    tbb::parallel_for(begin, end, [&](std::size_t k) {
+      Vec3 gradient;
+      const double value = psi.value(now.mesh.final[boundary[k]], gradient);
+      if (!(std::abs(value) <= tol * gradient.norm())) stayed.store(false, std::memory_order_relaxed);
+    });
+    n_evaluations += end - begin;
+  }
+  return stayed;
+}
+
+/// What is new now, against the mesh before.
+void UniversalMesh::Impl::compare() {
+  const Ids &a = before.mesh.submesh.background_vertex, &b = now.mesh.submesh.background_vertex;
+  now.vertices_entered = without(b, a);
+  now.vertices_left = without(a, b);
+  now.tets_entered = without(now.mesh.submesh.background_tet, before.mesh.submesh.background_tet);
+  now.tets_left = without(before.mesh.submesh.background_tet, now.mesh.submesh.background_tet);
   for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
     if (a[i] == b[j]) {
-      if (last_V[i] != update.mesh.final[j]) update.vertices_moved.push_back(b[j]);
+      if (before.mesh.final[i] != now.mesh.final[j]) now.vertices_moved.push_back(b[j]);
       ++i, ++j;
     } else {
       a[i] < b[j] ? ++i : ++j;
     }
   }
-  last.background_vertex = now.background_vertex;
-  last.background_tet = now.background_tet;
-  last_V = update.mesh.final;
 }
 
-UmUpdate UniversalMesh::update(ImplicitFunctionRef psi, const UpdateHints& hints, const UmObserver& observer) {
-  UmUpdate update;
+const UmUpdate& UniversalMesh::update(ImplicitFunctionRef psi, const UpdateHints& hints, const UmObserver& observer) {
   Impl& impl = *impl_;
+  const bool has_mesh = impl.now.mesh.status == UmStatus::Success && !impl.now.mesh.final.empty();
+  const auto start = [&]() -> UmUpdate& {
+    if (has_mesh) std::swap(impl.now, impl.before);
+    return impl.now = UmUpdate{};
+  };
+  std::size_t n_searched = 0;
   try {
-    update.n_searched = impl.search(psi, hints, observer);
+    n_searched = impl.search(psi, hints, observer);
     impl.has_begun = true;
   } catch (const MeshCancelled&) {
+    UmUpdate& update = start();
     update.mesh.status = UmStatus::Cancelled;
     update.mesh.evidence.what = "stopped by the observer during search";
     return update;
   }
+  std::size_t n_evaluations = n_searched;
+  if (has_mesh && impl.has_stayed(psi, n_evaluations)) {
+    UmResult mesh = std::move(impl.now.mesh);
+    mesh.n_psi_evaluations = n_evaluations;
+    impl.now = {.mesh = std::move(mesh), .n_searched = n_searched, .n_recalled = impl.memory.moved.size()};
+    return impl.now;
+  }
+  UmUpdate& update = start();
   update.mesh = fast_mesh(impl.background, psi, impl.params, observer, impl.walk.inside(), impl.memory);
-  update.mesh.n_psi_evaluations += update.n_searched;
+  update.mesh.n_psi_evaluations += n_evaluations;
+  update.n_searched = n_searched;
   update.n_recalled = impl.memory.n_recalled;
-  if (update.mesh.status == UmStatus::Success) impl.compare(update);
+  if (update.mesh.status == UmStatus::Success) impl.compare();
   return update;
 }
 

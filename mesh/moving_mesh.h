@@ -26,8 +26,9 @@ struct UpdateHints {
   std::function<bool(const Box&)> no_zero_in;
 };
 
-/// The mesh at one time, and what is new about it. Ids are those of the background, ascending; after an update that did
-/// not succeed the next one compares with the last that did.
+/// The mesh at one time, and what is new about it: nothing, if psi has the signs it had at all vertices and vanishes at
+/// those of the boundary. Ids are those of the background, ascending; after an update that did not succeed the next one
+/// compares with the last that did.
 struct UmUpdate {
   UmResult mesh;
   std::vector<std::int64_t> vertices_entered, vertices_left, tets_entered, tets_left;
@@ -59,7 +60,8 @@ class UniversalMesh {
   const BackgroundMesh& background() const;
   /// Foreseen failures are statuses with evidence, as those of universal_mesh(); the next update then starts from the
   /// same last boundary, and from the background's places.
-  UmUpdate update(ImplicitFunctionRef psi, const UpdateHints& hints = {}, const UmObserver& observer = {});
+  /// @return what the next call of update() overwrites: to be copied where it is wanted longer
+  const UmUpdate& update(ImplicitFunctionRef psi, const UpdateHints& hints = {}, const UmObserver& observer = {});
   /// The certificate of a mesh of update(), field by field that of certify() with its positive faces, walls and psi;
   /// of the tets only those that have changed since the last call are measured.
   /// \throw std::invalid_argument without tets; MeshCancelled

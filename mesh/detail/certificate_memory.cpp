@@ -31,6 +31,7 @@ void CertificateMemory::match(const TetMesh& mesh, const std::vector<std::int64_
                               const std::vector<std::int64_t>& tet_id) {
   source_.clear();
   n_known_ = 0;
+  is_same_ = false;
   const bool was_sound = is_sound_;
   is_sound_ = false;  // until this mesh is remembered
   old_ = std::move(values_);
@@ -66,6 +67,12 @@ void CertificateMemory::match(const TetMesh& mesh, const std::vector<std::int64_
     const int v = old.now[*std::min_element(f.begin(), f.end())];
     if (v >= 0) touched_[v] = 1;
   }
+  is_same_ = n_known_ == mesh.C.size() && n_known_ == tet_id_.size() && vertex_id == vertex_id_;
+}
+
+void CertificateMemory::keep() {
+  values_ = std::move(old_);
+  is_sound_ = true;
 }
 
 void CertificateMemory::remember(const TetMesh& mesh, const std::vector<std::int64_t>& vertex_id,
@@ -74,6 +81,7 @@ void CertificateMemory::remember(const TetMesh& mesh, const std::vector<std::int
   vertex_id_ = vertex_id;
   tet_id_ = tet_id;
   single_ = skin.triangles;
+  whole_.reset();
   is_sound_ = skin.n_overused == 0 && skin.n_same_side == 0 && vertex_id.size() == mesh.V.size() &&
               tet_id.size() == mesh.C.size() && are_ascending(vertex_id);
 }

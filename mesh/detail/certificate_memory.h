@@ -2,8 +2,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
+#include "mesh/certificate.h"
 #include "mesh/skin.h"
 #include "mesh/tet_mesh.h"
 
@@ -37,6 +40,19 @@ class CertificateMemory {
                 const std::vector<std::int64_t>& tet_id, const BoundaryFaces& skin);
   std::size_t n_known() const { return n_known_; }  ///< tets of the last match that were the same
 
+  /// What was found of the mesh before, without walls.
+  struct Whole {
+    double h;  ///< CertificateInput::h
+    MeshCertificate certificate;
+    std::vector<int> surface_vertices = {};  ///< ascending; empty until someone asks
+  };
+  /// That of the mesh before if the one that was matched is the same, bit by bit, or null.
+  Whole* of_the_same(double h) { return is_same_ && whole_ && whole_->h == h ? &*whole_ : nullptr; }
+  const std::vector<Triangle>& single_faces() const { return single_; }
+  void remember(Whole whole) { whole_ = std::move(whole); }
+  /// The mesh before stays; in place of remember(), after a match with the same.
+  void keep();
+
  private:
   struct Vertices {
     std::vector<int> now;     ///< index in the new mesh of each old vertex, or -1
@@ -55,6 +71,8 @@ class CertificateMemory {
   std::vector<int> source_;              ///< per tet of the matched mesh, the same one before, or -1
   std::vector<char> touched_;            ///< per vertex of the matched mesh
   std::size_t n_known_ = 0;
+  bool is_same_ = false;        ///< the matched mesh is the one before
+  std::optional<Whole> whole_;  ///< of the mesh before
 };
 
 }  // namespace umtet::detail

@@ -307,7 +307,7 @@ void drifting_ball(benchmark::State& state) {
     for (int k = 1; k <= 100; ++k) {
       const auto psi = at(k);
       double cpu = cpu_seconds();
-      const UmUpdate update = moving.update(psi);
+      const UmUpdate& update = moving.update(psi);
       updates += cpu_seconds() - cpu;
       cpu = cpu_seconds();
       const MeshCertificate certificate = moving.certify(update.mesh, psi);

@@ -79,7 +79,7 @@ TEST(UniversalMesh, ADriftingBallIsMeshedAsWellAsAnew) {
   for (int k = 0; k < 8; ++k) {
     SCOPED_TRACE(k);
     const Ball psi{Vec3(.065, .01, .02) * k};
-    const UmUpdate update = moving.update(psi);
+    const UmUpdate& update = moving.update(psi);
     expect_certified(update.mesh, psi, h, 1);
     const Submesh& now = update.mesh.submesh;
     // What is above the target by more than that is luck: on balls as small as this, .83 to .86 with or without it.
@@ -168,6 +168,13 @@ TEST(UniversalMesh, ItsCertificateOverlooksNothingThatHasChanged) {
     expect_equal(moving.certify(spoiled, psi), testing::certificate_of(spoiled, psi, .15));
     expect_equal(moving.certify(mesh, psi), testing::certificate_of(mesh, psi, .15));
   };
+  expect_seen(mesh);
+  const Ball other{Vec3(0, 0, .1), 1.01};  // of which it is no mesh
+  expect_equal(moving.certify(mesh, other), testing::certificate_of(mesh, other, .15));
+  EXPECT_FALSE(failures(moving.certify(mesh, other)).empty());
+  UmResult uncovered = mesh;
+  uncovered.submesh.positive_faces.pop_back();
+  expect_seen(uncovered);
   const std::size_t middle = mesh.submesh.mesh.C.size() / 2;
   UmResult inverted = mesh;
   inverted.final[mesh.submesh.mesh.C[middle][0]] += Vec3(.2, 0, 0);
@@ -204,10 +211,37 @@ TEST(UniversalMesh, ADomainThatStaysKeepsItsMesh) {
   const auto psi = domains::torus();
   const UmUpdate first = moving.update(psi), second = moving.update(psi);
   EXPECT_EQ(second.mesh.submesh.background_tet, first.mesh.submesh.background_tet);
-  EXPECT_TRUE(second.tets_entered.empty() && second.tets_left.empty());
+  EXPECT_EQ(second.mesh.final, first.mesh.final);
+  EXPECT_TRUE(second.tets_entered.empty() && second.tets_left.empty() && second.vertices_moved.empty());
+  // psi is asked at vertices with a neighbour on the other side and at those of the boundary, once.
+  EXPECT_EQ(second.mesh.n_psi_evaluations, second.n_searched + first.mesh.submesh.positive_vertices.size());
+  expect_equal(moving.certify(second.mesh, psi), testing::certificate_of(first.mesh, psi, .1));
+}
+
+TEST(UniversalMesh, ADomainThatMovesByAHairDoesNotStay) {
+  const BackgroundMesh background(a15(), domains::cube_box(1.5), .15);
+  UniversalMesh moving(background, fast());
+  const UmUpdate first = moving.update(Ball{});
+  const Ball moved{Vec3(1e-6, 0, 0)};  // and no vertex changes sides
+  const UmUpdate& second = moving.update(moved);
+  EXPECT_EQ(second.mesh.submesh.background_tet, first.mesh.submesh.background_tet);
+  EXPECT_GT(second.vertices_moved.size(), .9 * static_cast<double>(first.mesh.submesh.positive_vertices.size()));
+  expect_certified(second.mesh, moved, .15, 1);
+  EXPECT_GE(least_quality(second.mesh), least_quality(first.mesh) - 1e-3);
   // All but what repair has moved by itself, and flat tets, begin where they were.
   EXPECT_GT(second.n_recalled, .95 * static_cast<double>(first.mesh.submesh.positive_vertices.size()));
-  EXPECT_GE(least_quality(second.mesh), least_quality(first.mesh) - 1e-3);
+}
+
+TEST(UniversalMesh, ItsResultIsOverwrittenByTheNextAndTheOneBeforeIsNotLost) {
+  const BackgroundMesh background(a15(), domains::cube_box(1.4), .15);
+  UniversalMesh moving(background, fast());
+  const UmUpdate& at = moving.update(Ball{});
+  const Submesh first = at.mesh.submesh;
+  EXPECT_EQ(&moving.update(Ball{Vec3(.6, 0, 0)}), &at);
+  EXPECT_NE(at.mesh.status, UmStatus::Success);
+  moving.update(Ball{Vec3(.05, 0, 0)});
+  EXPECT_EQ(changed_by(first.background_vertex, at.vertices_entered, at.vertices_left),
+            at.mesh.submesh.background_vertex);
 }
 
 TEST(InsideWalk, FindsWhatTheFullLoopFindsAndAsksNearTheSurfaceOnly) {
