@@ -257,16 +257,21 @@ bool FastRun::fit() {
                    : background_shell(background_, inside_, params_.fast.layers);
   const KeepGoing keep_going = asking("relax");
   SmoothParams smoothing_params = params_.fast.smoothing;
+  bool is_on_surface = false;
   if (memory_ && !memory_->moved.empty()) {
     smoothing_params.margin = std::min(smoothing_params.margin, params_.fast.update_margin);
-    const WarmStart start = warm_start(background_, psi_, inside_, *memory_, params_.fast.projection, shell_, keep_going);
+    const WarmStart start =
+        warm_start(background_, psi_, inside_, *memory_, params_.fast.projection, shell_, keep_going);
     result_.n_psi_evaluations += start.psi_evaluations;
     memory_->n_recalled = start.n_recalled;
+    is_on_surface = start.is_on_surface;
   }
   PNormSmoother smoother(shell_.shell);
-  const ProjectionReport projection = project(smoother, psi_, params_.fast.projection, keep_going);
-  result_.n_psi_evaluations += projection.psi_evaluations;
-  if (!all_arrived(projection)) return false;
+  if (!is_on_surface) {
+    const ProjectionReport projection = project(smoother, psi_, params_.fast.projection, keep_going);
+    result_.n_psi_evaluations += projection.psi_evaluations;
+    if (!all_arrived(projection)) return false;
+  }
   const std::vector<Vec3> projected = shell_.shell.V;
   smoother.wake_all();
   const SmoothReport smoothing = smoother.run(psi_, smoothing_params, keep_going);

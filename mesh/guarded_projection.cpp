@@ -203,7 +203,7 @@ ProjectionReport Projection::conclude() {
   }
   std::sort(report_.not_arrived.begin(), report_.not_arrived.end(),
             [](const NotArrived& a, const NotArrived& b) { return a.vertex < b.vertex; });
-  relax(0);  // measures
+  smoother_.measure(report_.smoothing);
   report_.psi_evaluations += report_.smoothing.psi_evaluations;
   report_.min_quality = report_.smoothing.min_quality;
   return std::move(report_);

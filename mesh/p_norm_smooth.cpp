@@ -109,33 +109,6 @@ struct Counts {
 
 bool is_fixed(const Shell& shell, int i) { return shell.role[i] == Shell::Role::Fixed; }
 
-/// The state part of a report.
-void measure(const Shell& shell, SmoothReport& report) {
-  const double min_f = tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, shell.C.size(), kTetsPerTask), kInfinity,
-      [&](const auto& range, double least) {
-        for (std::size_t k = range.begin(); k != range.end(); ++k) {
-          const Tet& t = shell.C[k];
-          if (std::all_of(t.begin(), t.end(), [&](int i) { return is_fixed(shell, i); })) continue;
-          const Vec3 &a = shell.V[t[0]], &b = shell.V[t[1]], &c = shell.V[t[2]], &d = shell.V[t[3]];
-          const double V = volume6(a, b, c, d), L = sum_of_squared_edges(a, b, c, d);
-          least = std::min(least, V * std::abs(V) / (L * L * L));
-        }
-        return least;
-      },
-      [](double x, double y) { return std::min(x, y); });
-  report.min_quality = std::min(1., quality_of(min_f));
-  report.tangled = 0;
-  if (min_f > 0) return;
-  std::vector<bool> tangled(shell.V.size(), false);
-  for (const Tet& t : shell.C) {
-    if (volume6(shell.V[t[0]], shell.V[t[1]], shell.V[t[2]], shell.V[t[3]]) > 0) continue;
-    for (const int i : t) {
-      if (!is_fixed(shell, i) && !tangled[i]) tangled[i] = true, ++report.tangled;
-    }
-  }
-}
-
 }  // namespace
 
 std::vector<std::string> problems(const SmoothParams& params) {
@@ -269,12 +242,41 @@ SmoothReport PNormSmoother::run(ImplicitFunctionRef psi, const SmoothParams& par
     report.psi_evaluations += sweep.psi_evaluations;
     report.settled = sweep.moves == 0;
   }
-  measure(shell_, report);
   return report;
 }
 
+void PNormSmoother::measure(SmoothReport& report) const {
+  const Shell& shell = shell_;
+  const double min_f = tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, shell.C.size(), kTetsPerTask), kInfinity,
+      [&](const auto& range, double least) {
+        for (std::size_t k = range.begin(); k != range.end(); ++k) {
+          const Tet& t = shell.C[k];
+          if (std::all_of(t.begin(), t.end(), [&](int i) { return is_fixed(shell, i); })) continue;
+          const Vec3 &a = shell.V[t[0]], &b = shell.V[t[1]], &c = shell.V[t[2]], &d = shell.V[t[3]];
+          const double V = volume6(a, b, c, d), L = sum_of_squared_edges(a, b, c, d);
+          least = std::min(least, V * std::abs(V) / (L * L * L));
+        }
+        return least;
+      },
+      [](double x, double y) { return std::min(x, y); });
+  report.min_quality = std::min(1., quality_of(min_f));
+  report.tangled = 0;
+  if (min_f > 0) return;
+  std::vector<bool> tangled(shell.V.size(), false);
+  for (const Tet& t : shell.C) {
+    if (volume6(shell.V[t[0]], shell.V[t[1]], shell.V[t[2]], shell.V[t[3]]) > 0) continue;
+    for (const int i : t) {
+      if (!is_fixed(shell, i) && !tangled[i]) tangled[i] = true, ++report.tangled;
+    }
+  }
+}
+
 SmoothReport smooth(Shell& shell, ImplicitFunctionRef psi, const SmoothParams& params, const KeepGoing& keep_going) {
-  return PNormSmoother(shell).run(psi, params, keep_going);
+  PNormSmoother smoother(shell);
+  SmoothReport report = smoother.run(psi, params, keep_going);
+  smoother.measure(report);
+  return report;
 }
 
 }  // namespace umtet

@@ -35,9 +35,10 @@ struct SmoothReport {
   std::size_t visits = 0;           ///< Newton solves for one vertex
   std::size_t moves = 0;            ///< visits that moved their vertex
   std::size_t psi_evaluations = 0;  ///< of psi and its derivatives, for vertices on the boundary
-  std::size_t tangled = 0;          ///< vertices left with a tet of V <= 0 in their ring, Fixed ones not counted
-  double min_quality = 1;           ///< mean ratio of the worst tet with a vertex that is not Fixed; 1 without any
   bool settled = false;             ///< nothing moved in the last sweep; false: max_sweeps used up
+  // Of the shell as it is left; not filled by PNormSmoother::run().
+  std::size_t tangled = 0;  ///< vertices left with a tet of V <= 0 in their ring, Fixed ones not counted
+  double min_quality = 1;   ///< mean ratio of the worst tet with a vertex that is not Fixed; 1 without any
 
   SmoothReport& operator+=(const SmoothReport& later);  ///< counters add up, the state is the later one's
 };
@@ -70,8 +71,12 @@ class PNormSmoother {
   void wake_all();
   /// Visits vertices in the queue until none is left, or for max_sweeps; those left stay for the next call. Roles are
   /// read anew: the caller may hold vertices by making them Fixed for a while, which leaves them in the queue.
+  /// What it says of the shell is left to measure(), which looks at every tet.
   /// \throw std::invalid_argument naming every broken constraint of params, MeshCancelled
   SmoothReport run(ImplicitFunctionRef psi, const SmoothParams& params, const KeepGoing& keep_going = {});
+
+  /// Fills in what a report says of the shell.
+  void measure(SmoothReport& report) const;
 
   Shell& shell() { return shell_; }
   const Shell& shell() const { return shell_; }

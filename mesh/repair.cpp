@@ -225,11 +225,15 @@ void Repair::look(const LatticeShell& cut) {
   const std::vector<Vec3>& V = cut.shell.V;
   const std::vector<Tet>& C = cut.shell.C;
   const std::vector<std::uint8_t> inside = inside_of(cut);
-  std::vector<double> badness(C.size());
+  std::vector<double> badness(C.size(), 1);
   std::atomic<std::size_t> evaluations = 0;
+  // Nearly all tets are above the target, which takes no root to see.
+  const double root = params_.target / kMeanRatioFactor, enough = (1 + 1e-12) * root * root * root;
   tbb::parallel_for(std::size_t{0}, C.size(), [&](std::size_t k) {
     const Tet& t = C[k];
-    badness[k] = mean_ratio(V[t[0]], V[t[1]], V[t[2]], V[t[3]]);
+    const Vec3 &p = V[t[0]], &q = V[t[1]], &r = V[t[2]], &s = V[t[3]];
+    const double six = volume6(p, q, r, s), L = sum_of_squared_edges(p, q, r, s);
+    if (!(six * std::abs(six) >= enough * (L * L * L))) badness[k] = mean_ratio(p, q, r, s);
     Triangle f;
     if (!positive_face(t, inside, f)) return;
     std::size_t n = 0;

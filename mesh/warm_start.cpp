@@ -34,6 +34,7 @@ class Start {
   void draw_along();
   void go_back_where_flat();
   const std::vector<unsigned char>& recalled() const { return recalled_; }
+  bool is_on_surface() const { return is_on_surface_; }
 
  private:
   const std::vector<std::int64_t>& ids_;
@@ -41,6 +42,7 @@ class Start {
   const ProjectionParams& projection_;
   const std::vector<Vec3> background_V_;
   std::vector<unsigned char> recalled_;
+  bool is_on_surface_ = true;
 };
 
 void Start::recall(const BackgroundMesh& background, const IdSet& inside, const FastMemory& memory) {
@@ -71,13 +73,18 @@ std::size_t Start::go_to_feet(ImplicitFunctionRef psi, const KeepGoing& keep_goi
   for (std::size_t v = 0; v < shell_.V.size(); ++v) {
     if (shell_.role[v] == Shell::Role::Boundary) boundary.push_back(static_cast<int>(v));
   }
-  std::atomic<std::size_t> evaluations = 0;
+  std::atomic<std::size_t> evaluations = 0, lost = 0;
   polled_parallel_for(boundary.size(), kFeetPerPoll, keep_going, [&](std::size_t k) {
     Vec3& x = shell_.V[boundary[k]];
     const ClosestPoint foot = closest_point(psi, x, shell_.h, projection_.closest_point);
     evaluations.fetch_add(static_cast<std::size_t>(foot.iterations), std::memory_order_relaxed);
-    if (foot.converged && (foot.point - x).norm() <= kFarthestFoot * shell_.h) x = foot.point;
+    if (foot.converged && (foot.point - x).norm() <= kFarthestFoot * shell_.h) {
+      x = foot.point;
+    } else {
+      lost.fetch_add(1, std::memory_order_relaxed);
+    }
   });
+  is_on_surface_ = lost == 0;
   return evaluations;
 }
 
@@ -119,6 +126,7 @@ void Start::go_back_where_flat() {
       for (const int v : t) {
         shell_.V[v] = background_V_[v];
         recalled_[v] = 0;
+        is_on_surface_ &= shell_.role[v] != Shell::Role::Boundary;
       }
     }
   }
@@ -136,6 +144,7 @@ WarmStart warm_start(const BackgroundMesh& background, ImplicitFunctionRef psi, 
   start.draw_along();
   start.go_back_where_flat();
   result.recalled = start.recalled();
+  result.is_on_surface = start.is_on_surface();
   result.n_recalled = static_cast<std::size_t>(std::count(result.recalled.begin(), result.recalled.end(), 1));
   return result;
 }

@@ -152,7 +152,8 @@ TEST(GuardedProjection, TheSmootherGoesOnWhereItEnded) {
   Shell shell = omega_h_shell(domain, 20000);
   PNormSmoother smoother(shell);
   const ProjectionReport report = project(smoother, domain);
-  EXPECT_GT(smoother.run(domain, {}).min_quality, .78);
+  smoother.run(domain, {});
+  EXPECT_GT(worst_quality(shell), .78);
   EXPECT_LT(report.min_quality, .7);
   for (std::size_t i = 0; i < shell.V.size(); ++i) {
     if (shell.role[i] != Role::Boundary) continue;

@@ -45,7 +45,7 @@ TEST(WarmStart, BeginsOnTheSurfaceWithoutFlatTets) {
   const Vec3 c(.06, .02, 0);  // .42 h
   const Begun begun(c);
   const Shell& shell = begun.shell.shell;
-  std::size_t boundary = 0, on_surface = 0;
+  std::size_t boundary = 0, on_surface = 0, left = 0;
   for (std::size_t v = 0; v < shell.V.size(); ++v) {
     const Vec3 background = begun.background.position(begun.shell.background_vertex[v]);
     if (shell.role[v] == Shell::Role::Fixed) {
@@ -54,8 +54,10 @@ TEST(WarmStart, BeginsOnTheSurfaceWithoutFlatTets) {
     if (shell.role[v] != Shell::Role::Boundary) continue;
     ++boundary;
     on_surface += std::abs((shell.V[v] - c).norm() - 1) < 1e-10;
+    left += shell.V[v] == background;
   }
   EXPECT_GT(static_cast<double>(on_surface), .98 * static_cast<double>(boundary));
+  EXPECT_EQ(begun.start.is_on_surface, left == 0);
   double least = 1, mean = 0;
   for (const Tet& t : shell.C) {
     const double Q = mean_ratio(shell.V[t[0]], shell.V[t[1]], shell.V[t[2]], shell.V[t[3]]);
