@@ -61,9 +61,21 @@ struct FaceMeasure {
 // Between a flat face and a quadric through its corners lies this much of area x distance of the centroid.
 constexpr double kMeanOverCentroid = .75;
 
+/// The volume within a closed surface.
+double enclosed_volume(const TetMesh& mesh, const std::vector<Triangle>& faces) {
+  double six = 0;
+  for (const Triangle& f : faces) {
+    const Vec3& from = mesh.V[faces[0][0]];
+    six += (mesh.V[f[0]] - from).dot((mesh.V[f[1]] - from).cross(mesh.V[f[2]] - from));
+  }
+  return std::abs(six) / 6;
+}
+
 /// Fills the distances and normals of the boundary.
+/// @param volume  that the faces are to stand for
 void measure_against(ImplicitFunctionRef psi, const TetMesh& mesh, const std::vector<Triangle>& faces,
-                     const std::vector<int>& vertices, const KeepGoing& keep_going, MeshCertificate& certificate) {
+                     const std::vector<int>& vertices, double volume, const KeepGoing& keep_going,
+                     MeshCertificate& certificate) {
   const double h = certificate.h;
   MeshCertificate::Boundary& boundary = certificate.boundary;
   std::vector<double> vertex_distance(vertices.size());
@@ -98,7 +110,7 @@ void measure_against(ImplicitFunctionRef psi, const TetMesh& mesh, const std::ve
   boundary.max_vertex_distance_over_h = max_vertex / h;
   boundary.max_centroid_distance_over_h = max_centroid / h;
   boundary.min_cos_normal = min_cos;
-  boundary.gap_over_volume = gap / certificate.volume;
+  boundary.gap_over_volume = gap / volume;
 }
 
 /// Runs `aside` in another thread, if there is one, while this one runs `here`.
@@ -158,14 +170,15 @@ MeshCertificate certify_with(const CertificateInput& input, detail::CertificateM
   }
   for (const int i : at_walls) boundary.n_moved_wall_vertices += mesh.V[i] != (*input.background_V)[i];
   if (input.psi) {
-    const auto measure = [&](const std::vector<Triangle>& faces, const std::vector<int>& vertices) {
-      measure_against(*input.psi, mesh, faces, vertices, input.keep_going, certificate);
-    };
     if (walls.empty()) {
-      measure(skin.triangles, topology.vertices);
+      measure_against(*input.psi, mesh, skin.triangles, topology.vertices, certificate.volume, input.keep_going,
+                      certificate);
     } else {
       const std::vector<Triangle> fitted = without(skin.triangles, walls);
-      measure(fitted, vertices_of(fitted));
+      // A small body in much fluid is missed as easily as by a mesh of its inside.
+      const double volume =
+          fitted.empty() ? certificate.volume : std::min(certificate.volume, enclosed_volume(mesh, fitted));
+      measure_against(*input.psi, mesh, fitted, vertices_of(fitted), volume, input.keep_going, certificate);
     }
   }
   return certificate;
@@ -246,8 +259,8 @@ std::vector<std::string> failures(const MeshCertificate& certificate) {
   }
   if (b.gap_over_volume && !(*b.gap_over_volume <= kMostGap)) {
     reasons.push_back(
-        fmt::format("volume_gap: between the flat faces and psi = 0 lies {:.3g} % of the volume of the mesh, more than "
-                    "{:.3g} %: h is too large for this shape",
+        fmt::format("volume_gap: between the flat faces and psi = 0 lies {:.3g} % of the volume of the mesh, or of the "
+                    "body in it, more than {:.3g} %: h is too large for this shape",
                     100 * *b.gap_over_volume, 100 * kMostGap));
   }
   return reasons;

@@ -40,7 +40,8 @@ struct MeshCertificate {
     std::optional<double> max_vertex_distance_over_h;    ///< |psi| / |grad psi| at boundary vertices
     std::optional<double> max_centroid_distance_over_h;  ///< from face centroids to their closest points
     std::optional<double> min_cos_normal;                ///< cos(face normal, grad psi) at projected centroids
-    /// Volume between the flat faces and psi = 0, both sides counted, over the volume of the mesh.
+    /// Volume between the flat faces and psi = 0, both sides counted, over the volume of the mesh or, where that is
+    /// less, of the body that it has walls around.
     std::optional<double> gap_over_volume;
     std::size_t n_cos_below_half = 0;     ///< faces with cos < .5
     std::size_t n_unprojected_faces = 0;  ///< faces whose centroid found no point of psi = 0

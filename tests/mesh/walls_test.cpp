@@ -158,6 +158,21 @@ TEST(Walls, BoundaryWithinTwoEdgesOfOneIsRefusedByName) {
   }
 }
 
+TEST(Walls, FluidAroundABodyOfOneEdgeMissesTooMuchOfIt) {
+  const auto body = testing::sphere();
+  const Complement fluid(body);
+  for (const double h : {1., .4}) {
+    const BackgroundMesh background(a15_box(Box(Vec3::Constant(-4), Vec3::Constant(4)), h));
+    const UmResult made = universal_mesh(background, fluid, with_walls());
+    ASSERT_EQ(made.status, UmStatus::Success);
+    const MeshCertificate c = certificate_of(background, made, fluid);
+    const double in_faces = 512 - c.volume, missed = 4. / 3 * std::numbers::pi / in_faces - 1;
+    EXPECT_NEAR(*c.boundary.gap_over_volume, missed, .5 * missed) << h;
+    EXPECT_EQ(failures(c).empty(), missed < kMostGap) << h;
+    EXPECT_EQ(missed < kMostGap, h < 1) << missed;
+  }
+}
+
 TEST(Walls, CertificateNoticesAWallThatMovedOrIsMissing) {
   const auto body = testing::sphere();
   const Complement fluid(body);
