@@ -78,7 +78,7 @@ std::size_t InsideWalk::update(ImplicitFunctionRef psi, std::vector<std::int64_t
         for_each_neighbour(last[k], add);
       }
     }
-  } catch (const MeshCancelled&) {
+  } catch (...) {
     for (const std::int64_t v : asked) seen_.erase(v);
     throw;
   }

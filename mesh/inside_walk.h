@@ -19,10 +19,12 @@ class InsideWalk {
   std::size_t restart(ImplicitFunctionRef psi, const KeepGoing& keep_going = {});
   /// Asks at the vertices with a neighbour on the other side, at `more`, and from all that have changed sides at their
   /// neighbours, and so on: right wherever a connected set of vertices that change sides touches one of them.
-  /// Cancelled, it stays as it was. @param more  ids. @return the number of values. \throw MeshCancelled
+  /// When it throws, it stays as it was. @param more  ids. @return the number of values. \throw MeshCancelled, and
+  /// what psi throws
   std::size_t update(ImplicitFunctionRef psi, std::vector<std::int64_t> more, const KeepGoing& keep_going = {});
 
   const detail::IdSet& inside() const { return inside_; }
+  bool has_boundary() const { return !boundary_.empty(); }
 
  private:
   template <class F>

@@ -112,7 +112,6 @@ struct UniversalMesh::Impl {
   const BackgroundMesh background;
   const UmParams params;
   InsideWalk walk;
-  bool has_begun = false;  ///< walk knows a boundary
   FastMemory memory;
   UmUpdate now;     ///< of the last call
   UmUpdate before;  ///< the last mesh but that
@@ -136,7 +135,8 @@ const BackgroundMesh& UniversalMesh::background() const { return impl_->backgrou
 std::size_t UniversalMesh::Impl::search(ImplicitFunctionRef psi, const UpdateHints& hints, const UmObserver& observer) {
   const std::vector<Vec3> none;
   const KeepGoing keep_going = [&] { return !observer || observer({"search", 1, 1, &none, 0}); };
-  if (!has_begun || (hints.no_zero_in && !background.is_lattice())) return walk.restart(psi, keep_going);
+  // The walk begins at a boundary: there is none at first, nor after a domain that was nowhere.
+  if (!walk.has_boundary() || (hints.no_zero_in && !background.is_lattice())) return walk.restart(psi, keep_going);
   Ids more;
   if (hints.no_zero_in) ZeroCells(background, hints.no_zero_in, more);
   for (const Vec3& seed : hints.seeds) {
@@ -195,7 +195,6 @@ const UmUpdate& UniversalMesh::update(ImplicitFunctionRef psi, const UpdateHints
   std::size_t n_searched = 0;
   try {
     n_searched = impl.search(psi, hints, observer);
-    impl.has_begun = true;
   } catch (const MeshCancelled&) {
     UmUpdate& update = start();
     update.mesh.status = UmStatus::Cancelled;

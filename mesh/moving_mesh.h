@@ -50,7 +50,8 @@ struct UmUpdate {
 /// Cost: some words a hundred background vertices (bit sets), else as the surface and the tets that are returned.
 class UniversalMesh {
  public:
-  /// @param params  UmMode::Fast. seeds and search are not used: the first update asks psi at every vertex
+  /// @param params  UmMode::Fast. seeds and search are not used: the first update, and one after a domain
+  ///                that was nowhere, asks psi at every vertex
   /// \throw std::invalid_argument naming every broken constraint; UmMode::Paper
   UniversalMesh(BackgroundMesh background, const UmParams& params);
   ~UniversalMesh();
@@ -59,7 +60,8 @@ class UniversalMesh {
 
   const BackgroundMesh& background() const;
   /// Foreseen failures are statuses with evidence, as those of universal_mesh(); the next update then starts from the
-  /// same last boundary, and from the background's places.
+  /// background's places, and is compared with the last mesh there is. What psi throws leaves all as it was, but for the
+  /// result of the call before.
   /// @return what the next call of update() overwrites: to be copied where it is wanted longer
   const UmUpdate& update(ImplicitFunctionRef psi, const UpdateHints& hints = {}, const UmObserver& observer = {});
   /// The certificate of a mesh of update(), field by field that of certify() with its positive faces, walls and psi;

@@ -7,6 +7,7 @@
 #include <array>
 #include <functional>
 #include <set>
+#include <stdexcept>
 #include <utility>
 
 #include "mesh/certificate.h"
@@ -298,8 +299,21 @@ TEST(UniversalMesh, AFailureLeavesTheNextUpdateWhereItWas) {
   EXPECT_EQ(again.mesh.submesh.background_tet, first.mesh.submesh.background_tet);
   EXPECT_TRUE(again.tets_entered.empty() && again.tets_left.empty());
   EXPECT_EQ(moving.update(Ball{Vec3::Zero(), 0}).mesh.status, UmStatus::EmptyDomain);
+  expect_certified(moving.update(ball).mesh, ball, .15, 1);
   UmParams paper;
   EXPECT_THROW(UniversalMesh(background, paper), std::invalid_argument);
+}
+
+TEST(UniversalMesh, APsiThatThrowsLeavesTheNextUpdateWhereItWas) {
+  struct Throwing {
+    double value(const Vec3&) const { throw std::domain_error("no value"); }
+    Vec3 gradient(const Vec3&) const { return Vec3::UnitX(); }
+  };
+  UniversalMesh moving(BackgroundMesh(a15(), domains::cube_box(1.4), .15), fast());
+  const Ball ball, less{Vec3::Zero(), .6};
+  moving.update(ball);
+  EXPECT_THROW(moving.update(Throwing{}), std::domain_error);
+  expect_certified(moving.update(less).mesh, less, .15, 1);
 }
 
 TEST(UniversalMesh, EveryBackgroundWillDo) {
