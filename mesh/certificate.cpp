@@ -200,7 +200,8 @@ MeshCertificate certify_again(const CertificateInput& input, detail::Certificate
   boundary.n_cos_below_half = boundary.n_unprojected_faces = 0;
   if (input.psi) {
     if (known.surface_vertices.empty()) known.surface_vertices = vertices_of(skin);
-    measure_against(*input.psi, *input.mesh, skin, known.surface_vertices, input.keep_going, certificate);
+    measure_against(*input.psi, *input.mesh, skin, known.surface_vertices, certificate.volume, input.keep_going,
+                    certificate);
   }
   return certificate;
 }

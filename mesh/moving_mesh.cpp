@@ -205,7 +205,10 @@ const UmUpdate& UniversalMesh::update(ImplicitFunctionRef psi, const UpdateHints
   if (has_mesh && impl.has_stayed(psi, n_evaluations)) {
     UmResult mesh = std::move(impl.now.mesh);
     mesh.n_psi_evaluations = n_evaluations;
-    impl.now = {.mesh = std::move(mesh), .n_searched = n_searched, .n_recalled = impl.memory.moved.size()};
+    impl.now = UmUpdate{};
+    impl.now.mesh = std::move(mesh);
+    impl.now.n_searched = n_searched;
+    impl.now.n_recalled = impl.memory.moved.size();
     return impl.now;
   }
   UmUpdate& update = start();
