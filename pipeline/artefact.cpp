@@ -178,6 +178,12 @@ void remove_stale_temporaries(const fs::path& folder) {
   }
 }
 
+bool is_too_large_a_text(const fs::path& file) {
+  std::error_code unknown;
+  const std::uintmax_t size = fs::file_size(file, unknown);
+  return !unknown && size > kLargestText;
+}
+
 std::string read_text(const fs::path& file) {
   Descriptor in = open_regular(file);
   std::string text;

@@ -48,4 +48,9 @@ void remove_stale_temporaries(const std::filesystem::path& folder);
 /// \throw std::system_error naming the file; also for what is not a regular file
 std::string read_text(const std::filesystem::path& file);
 
+/// Lists, parameters and viewpoints are written by hand or by a line of shell: what is larger is something else, given
+/// by mistake, and not worth its memory.
+inline constexpr std::uintmax_t kLargestText = 16 << 20;
+bool is_too_large_a_text(const std::filesystem::path& file);
+
 }  // namespace umtet

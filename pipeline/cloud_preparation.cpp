@@ -205,6 +205,8 @@ std::vector<RecordedFile> source_inputs(const fs::path& source, const Parameters
   check_scan_head(source);  // gigabytes that are no cloud are not read for their checksum
   std::vector<RecordedFile> inputs = {input("source", source)};
   const std::string& viewpoints = parameters.text("cloud.orient_from");
+  if (!viewpoints.empty() && is_too_large_a_text(viewpoints))
+    throw CloudRefused(viewpoints + ": too large for viewpoints, lines x y z");
   if (!viewpoints.empty()) inputs.push_back(input("viewpoints", viewpoints));
   return inputs;
 }

@@ -220,6 +220,10 @@ void Parameters::assign(const std::string& key, ParamValue value, ParamSource so
 }
 
 void Parameters::load(const std::filesystem::path& file, ParamSource source) {
+  if (is_too_large_a_text(file)) {
+    if (source == ParamSource::Case) throw ArtefactDamaged(file.string() + ": too large for parameters");
+    throw UsageError(file.string() + ": too large for a file of parameters");
+  }
   const std::string text = read_text(file);
   if (source == ParamSource::Case && !is_as_written(text)) {
     throw ArtefactDamaged(file.string() +

@@ -53,8 +53,12 @@ std::vector<double> range(const std::string& text) {
 }  // namespace
 
 std::vector<fs::path> listed_clouds(const fs::path& list) {
+  constexpr std::size_t kLongestPath = 4096;  // Linux opens none that is longer
+  if (is_too_large_a_text(list)) throw UsageError(list.string() + ": too large for a list of clouds, one path a line");
   std::vector<fs::path> clouds;
   for (std::string line : split(read_text(list), '\n')) {
+    if (line.size() > kLongestPath)
+      throw UsageError(list.string() + ": a line longer than any path: one path a line is needed");
     while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back()))) line.pop_back();
     if (!line.empty() && line[0] != '#') clouds.push_back(fs::absolute(list).parent_path() / line);
   }

@@ -49,6 +49,20 @@ TEST_F(Program, WhatHasNoEndOrTakesTooMuchIsRefusedAtOnce) {
   const std::string at_once = "timeout 10";  // dozens of times what it takes
   EXPECT_EQ(run("run /dev/zero -o a", at_once).code, 3);
   EXPECT_EQ(run("run pipe -o a", "mkfifo pipe; " + at_once).code, 3);
+  // A list of 1.5 GB of zeros took 23 GB.
+  std::ofstream(folder / "large").close();
+  fs::resize_file(folder / "large", 100 << 20);
+  const std::pair<const char*, int> texts[] = {{"batch large -o a", 2},
+                                               {"evolve --clouds large --h .1 -o a", 2},
+                                               {"run egg.ply -o a --config large", 2},
+                                               {"run egg.ply -o a --orient-from large", 3}};
+  for (const auto& [arguments, code] : texts) {
+    const Result r = run(arguments, at_once);
+    EXPECT_EQ(r.code, code) << arguments << "\n" << r.err;
+    EXPECT_NE(r.err.find("large: too large"), std::string::npos) << arguments << "\n" << r.err;
+  }
+  std::ofstream(folder / "long") << std::string(1 << 20, 'x');
+  EXPECT_NE(run("batch long -o a", at_once).err.find("a line longer than any path"), std::string::npos);
   EXPECT_FALSE(fs::exists(folder / "a"));
   const Result many = run("mesh --implicit 'x^2+y^2+z^2-1' --box -1.3,-1.3,-1.3,1.3,1.3,1.3 --tets 1e11 -o a", at_once);
   EXPECT_EQ(many.code, 9) << many.err;
