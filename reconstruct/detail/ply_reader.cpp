@@ -160,7 +160,7 @@ CloudColumns vertex_columns(const CloudSource& source, const PlyHeader& header) 
 template <class Body>
 void check_count(const CloudSource& source, const Body& body, const PlyElement& element) {
   const std::size_t least = Body::bytes_per_item(element);
-  if (element.count > body.bytes_left() / least)
+  if (least > 0 && element.count > body.bytes_left() / least)
     refuse(source, fmt::format("{}: the header announces {} x {}, at least {} bytes each, but {} bytes are left: the "
                                "file is cut short or the count is wrong, export it again",
                                body.place(), element.count, element.name, least, body.bytes_left()));
