@@ -70,7 +70,8 @@ class CapturedVtkMessages {
   vtkNew<Window> window_;
 };
 
-/// VTK allocates the connectivity for what the last offset says, before it reads it.
+/// VTK allocates the connectivity for what the last offset says, before it reads it. And when an array of cell data
+/// cannot be read, it names one of the point data in its message, through a null pointer where there are none.
 class BoundedReader : public vtkXMLUnstructuredGridReader {
  public:
   static BoundedReader* New() {
@@ -83,8 +84,11 @@ class BoundedReader : public vtkXMLUnstructuredGridReader {
  private:
   int ReadArrayValues(vtkXMLDataElement* element, vtkIdType at, vtkAbstractArray* array, vtkIdType start, vtkIdType n,
                       FieldType type) override {
-    if (!vtkXMLUnstructuredGridReader::ReadArrayValues(element, at, array, start, n, type)) return 0;
     vtkXMLDataElement* parent = element->GetParent();
+    if (!vtkXMLUnstructuredGridReader::ReadArrayValues(element, at, array, start, n, type)) {
+      vtkErrorMacro("an array cannot be read");  // with a message, the file is refused
+      return parent && std::string_view(parent->GetName()) == "CellData" ? 1 : 0;
+    }
     auto* numbers = vtkDataArray::SafeDownCast(array);
     if (!numbers || !parent || std::string_view(parent->GetName()) != "Cells") return 1;
     if (const char* name = element->GetAttribute("Name"); !name || std::string_view(name) != "offsets") return 1;

@@ -238,6 +238,8 @@ TEST(TetMeshIo, AppendedBlocksAreReadAndTheirHeadersChecked) {
   }
   const std::string beyond = refusal(seeds / "last_offset.vtu");
   EXPECT_NE(beyond.find("more than the file can hold"), std::string::npos) << beyond;
+  const std::string damaged = refusal(seeds / "damaged_cell_data.vtu");  // and has no point data
+  EXPECT_NE(damaged.find("VTK cannot read it"), std::string::npos) << damaged;
   const std::string text = bytes_of(seeds / "appended_raw.vtu");
   // What the parser behind VTK sees otherwise than a search for letters would.
   const std::vector<std::array<std::string, 3>> hidden = {
