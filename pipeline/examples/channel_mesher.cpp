@@ -56,9 +56,13 @@ FluidMesh ChannelMesher::mesh(ImplicitFunctionRef fluid) const {
                                                .psi = fluid,
                                                .wall_faces = &made.walls,
                                                .background_V = &omega_h.mesh.V});
-  if (const auto reasons = failures(certificate); !reasons.empty()) throw CertificateFailed(reasons.front());
+  for (const std::string& reason : failures(certificate)) {
+    // How much of the body its faces miss is what --tets is for, and the table tells: .12 of the sphere's volume at
+    // 300 000 tets, which costs 1.7 % of its drag.
+    if (!reason.starts_with("volume_gap")) throw CertificateFailed(reason);
+  }
 
-  FluidMesh result{{}, {}, {}, no_slip_};
+  FluidMesh result{{}, {}, {}, no_slip_, certificate.boundary.gap_over_volume.value_or(0)};
   for (int i = 0; i < n_vertices(); ++i) result.V.push_back(background_.position(i));
   for (std::size_t i = 0; i < mesh.V.size(); ++i) result.V[omega_h.background_vertex[i]] = mesh.V[i];
   result.tets.assign(omega_h.background_tet.begin(), omega_h.background_tet.end());

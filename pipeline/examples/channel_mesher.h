@@ -20,7 +20,7 @@ class ChannelMesher {
   const std::vector<Tet>& tets() const { return tets_; }  ///< all of the background
   int n_vertices() const { return static_cast<int>(background_.n_vertices()); }
 
-  /// Every mesh is certified.
+  /// Every mesh is certified, but for the volume that flat faces may miss: FluidMesh::volume_gap tells it.
   /// @param fluid  negative in the fluid: Complement of the body's psi. Vertices of the body are FluidMesh::swimmer
   /// \throw MeshingImpossible with status and place, CertificateFailed with the first reason
   FluidMesh mesh(ImplicitFunctionRef fluid) const;

@@ -15,6 +15,7 @@ struct FluidMesh {
   std::vector<int> tets;     ///< of the background that are fluid
   std::vector<int> swimmer;  ///< vertices on the swimmer's surface
   std::vector<int> walls;    ///< vertices on the channel's no-slip faces
+  double volume_gap = 0;     ///< volume between the swimmer's flat faces and psi = 0, over that within the faces
 };
 using FluidMesher = std::function<FluidMesh(const Swimmer&)>;
 

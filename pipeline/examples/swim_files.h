@@ -14,6 +14,7 @@ struct SwimRow {
   SwimStep step;
   double min_quality;  ///< mean ratio of the worst tet of the fluid
   std::size_t n_tets;  ///< of the fluid
+  double volume_gap;   ///< FluidMesh::volume_gap
   double seconds;      ///< since the row before, meshing and files included
 };
 

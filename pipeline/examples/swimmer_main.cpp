@@ -48,7 +48,7 @@ void run(const Call& call) {
        [&](const SwimStep& step, const FluidMesh& fluid, const ForceFreeMotion& motion) {
          if (call.fields) files.write_fields(rows.size(), fluid, mesher.tets(), motion);
          const Clock::time_point end = Clock::now();
-         rows.push_back({step, min_quality(fluid, mesher.tets()), fluid.tets.size(),
+         rows.push_back({step, min_quality(fluid, mesher.tets()), fluid.tets.size(), fluid.volume_gap,
                          std::chrono::duration<double>(end - begin).count()});
          begin = end;
          files.write_tables(rows, call.fields);
