@@ -15,8 +15,8 @@ struct CloudSource {
   std::string name;
   std::string_view bytes;
   bool needs_normals = true;  ///< false: points without normals make a cloud without normals
-  std::size_t bytes_left_out =
-      0;  ///< of the file, behind `bytes`: only the check_ functions may be given such a source
+  /// Of the file, behind `bytes`. The readers need all of it, check_ply_head() and the like do not.
+  std::size_t bytes_left_out = 0;
 
   std::size_t size() const { return bytes.size() + bytes_left_out; }  ///< of the file
 };
