@@ -153,6 +153,7 @@ void write_artefact(const fs::path& file, const std::function<void(const fs::pat
 
 void write_artefacts(const std::vector<PendingFile>& files) {
   std::vector<std::unique_ptr<TemporaryFile>> temporaries;
+  temporaries.reserve(files.size());
   for (const PendingFile& file : files) temporaries.push_back(written_beside(file));
   for (std::size_t i = 0; i < files.size(); ++i) {
     const fs::path& file = files[i].path;
