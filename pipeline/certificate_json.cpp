@@ -174,10 +174,10 @@ std::string summary(const Json& c) {
   }
   if (c.contains("cloud") && c["cloud"].is_object()) {
     const Json& k = c["cloud"];
-    out += fmt::format("cloud     {} samples; distance to the mesh rms {} ({} h), 99 % {} h, max {} h\n",
-                       thousands(c.at("n_points")), show(k, "rms_distance", "{:.3g}") + unit,
-                       show(k, "rms_distance_over_h", "{:.4f}"), show(k, "p99_distance_over_h", "{:.4f}"),
-                       show(k, "max_distance_over_h", "{:.4f}"));
+    out += fmt::format("cloud     {} samples, noise {} h; distance to the mesh rms {} ({} h), 99 % {} h, max {} h\n",
+                       thousands(c.at("n_points")), show(k, "noise_over_h", "{:.3f}"),
+                       show(k, "rms_distance", "{:.3g}") + unit, show(k, "rms_distance_over_h", "{:.4f}"),
+                       show(k, "p99_distance_over_h", "{:.4f}"), show(k, "max_distance_over_h", "{:.4f}"));
   }
   out += thin_lines(c);
   if (c.contains("run")) {

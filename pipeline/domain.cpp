@@ -63,6 +63,7 @@ Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handove
   domain.complement = parameters.flag("mesh.complement");
   domain.shift = recorded_vector(*state.record, "shift");
   domain.cloud_spacing = state.record->numbers.value("cloud_spacing", 0.);
+  if (state.record->numbers.contains("noise")) domain.noise = state.record->numbers.at("noise").get<double>();
   try {
     domain.fitted = handover && handover->psi ? std::move(*std::exchange(handover->psi, std::nullopt))
                                               : read_level_set(paths.level_set());

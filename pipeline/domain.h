@@ -32,7 +32,8 @@ struct Domain {
   OrientedPointCloud cloud;                       ///< empty for a formula
   std::shared_ptr<const SampleDistance> samples;  ///< of the cloud's points; none for a formula
   double cloud_spacing = 0;                       ///< median distance between neighbouring samples, 0 for a formula
-  bool complement = false;  ///< mesh.complement: it is {psi > 0} in the box that is meshed, the fluid around a body
+  std::optional<double> noise;  ///< standard deviation of the samples along the normal, as the fit took it, model units
+  bool complement = false;      ///< mesh.complement: it is {psi > 0} in the box that is meshed, the fluid around a body
 
   /// Cuts psi at the detail that a mesh of edge length h can show: boundary faces fold over what is finer.
   void limit_detail(double h);
