@@ -11,7 +11,9 @@
 #include <cmath>
 #include <ctime>
 #include <iterator>
+#include <numbers>
 #include <numeric>
+#include <optional>
 
 #include "mesh/certificate.h"
 #include "mesh/crawl.h"
@@ -19,6 +21,7 @@
 #include "mesh/moving_mesh.h"
 #include "mesh/tet_quality.h"
 #include "mesh/universal_mesh.h"
+#include "reconstruct/fit_ssd.h"
 #include "tests/support/bench_domains.h"
 
 using namespace umtet;
@@ -275,9 +278,22 @@ double certified_min_quality(const UmResult& result, ImplicitFunctionRef psi, do
   return failures(certificate).empty() ? certificate.quality.min : -1;
 }
 
-/// A ball drifting a quarter cell a step, to and fro where the background is short: CPU time of 100 updates, and of
-/// meshing anew at every tenth of them. Either holds the mesh in memory with its ids, and its certificate; anew asks
-/// psi at every vertex of the background.
+/// A ball at the origin, as a level set of 50,000 points on its surface.
+LevelSet ball_of_points(double radius) {
+  constexpr int kPoints = 50000;
+  const double turn = std::numbers::pi * (3 - std::sqrt(5.));  // a spiral that covers the sphere evenly
+  OrientedPointCloud cloud;
+  for (int k = 0; k < kPoints; ++k) {
+    const double z = 1 - (2 * k + 1.) / kPoints, r = std::sqrt(1 - z * z);
+    cloud.normals.emplace_back(r * std::cos(turn * k), r * std::sin(turn * k), z);
+    cloud.points.push_back(radius * cloud.normals.back());
+  }
+  return fit_ssd(cloud, {}).psi;
+}
+
+/// A ball drifting so many thousandths of a cell a step, to and fro where the background is short: CPU time of 100
+/// updates, and of meshing anew at every tenth of them. Either holds the mesh in memory with its ids, and its
+/// certificate; anew asks psi at every vertex of the background. psi is a sum of squares, or the level set of a cloud.
 void drifting_ball(benchmark::State& state) {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   const double n_tets = 1e3 * static_cast<double>(state.range(0));
@@ -285,11 +301,19 @@ void drifting_ball(benchmark::State& state) {
   constexpr double kRadius = 5.5, kLength = 40, kMargin = .6;
   const double width = std::max(std::sqrt(n_tets / 46 / kLength), 2 * (kRadius + kMargin));
   const Vec3 half(.5 * n_tets / 46 / (width * width), .5 * width, .5 * width);
-  const double reach = std::min(12.5, half.x() - kRadius - kMargin);
+  const double reach = std::min(12.5, half.x() - kRadius - kMargin), step = 1e-3 * static_cast<double>(state.range(1));
+  std::optional<LevelSet> level_set;
+  if (state.range(2) != 0) level_set = ball_of_points(kRadius);
   const BackgroundMesh background(a15(), Box(-half, half), a15().mean_edge / a15().period[0]);
   const auto at = [&](int k) {
-    const double way = std::fmod(.25 * k, 4 * reach);
+    const double way = std::fmod(step * k, 4 * reach);
     testing::AnalyticDomain ball;
+    if (level_set) {
+      ball.psi = [&psi = *level_set, x = std::abs(way - 2 * reach) - reach](const Vec3& p, Vec3* g, Mat3* H) {
+        return psi.evaluate(p - Vec3(x, 0, 0), g, H);
+      };
+      return ball;
+    }
     ball.psi = [x = std::abs(way - 2 * reach) - reach](const Vec3& p, Vec3* g, Mat3* H) {
       const Vec3 d(p.x() - x, p.y(), p.z());
       if (g) *g = 2 * d;
@@ -335,10 +359,9 @@ void drifting_ball(benchmark::State& state) {
   state.counters["least_Q"] = worst;
 }
 BENCHMARK(drifting_ball)
-    ->ArgName("thousand_tets")
-    ->Arg(100)
-    ->Arg(1000)
-    ->Arg(8000)
+    ->ArgNames({"thousand_tets", "thousandths_of_a_cell", "cloud"})
+    ->ArgsProduct({{100, 1000, 8000}, {250}, {0, 1}})
+    ->ArgsProduct({{1000}, {20, 0}, {0, 1}})
     ->Unit(benchmark::kSecond)
     ->Iterations(1);
 
