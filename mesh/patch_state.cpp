@@ -14,24 +14,27 @@ namespace umtet {
 double normal_cosine(ImplicitFunctionRef psi, const Vec3& a, const Vec3& b, const Vec3& c, double h,
                      std::size_t& evaluations) {
   constexpr int kSteps = 4;  // from within h; where these do not arrive, the gradient on the way has to do
+  // A normal that turns by .05 over .05 h does not lead from here to kTurnedCosine.
+  constexpr double kSure = .9, kNear = .05;
   const Vec3 centroid = (a + b + c) / 3;
   Vec3 y = centroid, g;
-  double value = psi.value(y, g);
-  ++evaluations;
-  for (int k = 0; k < kSteps; ++k) {
-    const double slope = g.norm();
-    if (!(slope > 0) || std::abs(value) <= 1e-3 * h * slope) break;
-    y -= std::clamp(value / slope, -.5 * h, .5 * h) / slope * g;
-    value = psi.value(y, g);
-    ++evaluations;
-  }
   const Vec3 n = (b - a).cross(c - a);
   const auto cosine = [&] {
     const double lengths = n.norm() * g.norm();
     return lengths > 0 ? n.dot(g) / lengths : -1.;
   };
+  double value = psi.value(y, g);
+  ++evaluations;
+  for (int k = 0; k < kSteps; ++k) {
+    const double slope = g.norm();
+    if (!(slope > 0) || std::abs(value) <= 1e-3 * h * slope) break;
+    if (std::abs(value) <= kNear * h * slope && cosine() >= kSure) break;
+    y -= std::clamp(value / slope, -.5 * h, .5 * h) / slope * g;
+    value = psi.value(y, g);
+    ++evaluations;
+  }
   // At sharp rims the closest point may be another one, with another normal.
-  if (constexpr double kSure = .9; cosine() < kSure) {
+  if (cosine() < kSure) {
     const ClosestPoint foot = closest_point(psi, centroid, h, {});
     evaluations += static_cast<std::size_t>(foot.iterations) + 1;
     if (foot.converged) psi.value(foot.point, g);

@@ -18,6 +18,8 @@ using detail::IdSet;
 constexpr int kSweeps = 3;
 // psi = 0 crosses an edge at every positive vertex, and no tiling has longer ones, in h: farther feet are elsewhere.
 constexpr double kFarthestFoot = 1.5;
+// Smoothing slides the feet anyway: what counts is that they are on psi = 0, which takes no Hessian.
+constexpr double kFootTol = 1e-2;
 constexpr std::size_t kFeetPerPoll = kValuesPerPoll / 8;
 
 class Start {
@@ -74,9 +76,12 @@ std::size_t Start::go_to_feet(ImplicitFunctionRef psi, const KeepGoing& keep_goi
     if (shell_.role[v] == Shell::Role::Boundary) boundary.push_back(static_cast<int>(v));
   }
   std::atomic<std::size_t> evaluations = 0, lost = 0;
+  ClosestPointParams params = projection_.closest_point;
+  params.method = ClosestPointMethod::Damped;
+  params.foot_tol = std::max(params.foot_tol, kFootTol);
   polled_parallel_for(boundary.size(), kFeetPerPoll, keep_going, [&](std::size_t k) {
     Vec3& x = shell_.V[boundary[k]];
-    const ClosestPoint foot = closest_point(psi, x, shell_.h, projection_.closest_point);
+    const ClosestPoint foot = closest_point(psi, x, shell_.h, params);
     evaluations.fetch_add(static_cast<std::size_t>(foot.iterations), std::memory_order_relaxed);
     if (foot.converged && (foot.point - x).norm() <= kFarthestFoot * shell_.h) {
       x = foot.point;
