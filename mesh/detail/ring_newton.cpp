@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 
@@ -209,15 +210,16 @@ Vec3 best_displacement(const OneRing& ring, const Bar& bar, double h, const Dire
 }
 
 std::bitset<kMaxRing> poor_tets(const OneRing& ring, const Vec3& y, double good_f) {
-  std::bitset<kMaxRing> poor;
+  static_assert(kMaxRing == 128);
+  std::array<std::uint64_t, 2> poor{};
   const double y2 = 3 * y.squaredNorm();
   for (int k = 0; k < ring.n; k += kLanes) {
     const Lane V0 = lane(ring.v, k), V1 = volumes(ring, k, y), L0 = lane(ring.l, k);
     const Lane L1 = L0 + (lane(ring.sx, k) * y.x() + lane(ring.sy, k) * y.y() + lane(ring.sz, k) * y.z()) + y2;
     const Lane f = (V0 * V0.abs() / (L0 * L0 * L0)).min(V1 * V1.abs() / (L1 * L1 * L1));
-    for (int m = 0; m < kLanes; ++m) poor[k + m] = f[m] < good_f;
+    for (int m = 0; m < kLanes; ++m) poor[k / 64] |= static_cast<std::uint64_t>(f[m] < good_f) << (k % 64 + m);
   }
-  return poor;
+  return std::bitset<kMaxRing>(poor[1]) << 64 | std::bitset<kMaxRing>(poor[0]);
 }
 
 PowerSum power_sum(const OneRing& ring, const Vec3& y, int log2_p, double scale) {
