@@ -60,8 +60,8 @@ class UniversalMesh {
 
   const BackgroundMesh& background() const;
   /// Foreseen failures are statuses with evidence, as those of universal_mesh(); the next update then starts from the
-  /// background's places, and is compared with the last mesh there is. What psi throws leaves all as it was, but for the
-  /// result of the call before.
+  /// background's places, and is compared with the last mesh there is. What psi throws comes out, and the next update
+  /// starts from the last mesh.
   /// @return what the next call of update() overwrites: to be copied where it is wanted longer
   const UmUpdate& update(ImplicitFunctionRef psi, const UpdateHints& hints = {}, const UmObserver& observer = {});
   /// The certificate of a mesh of update(), field by field that of certify() with its positive faces, walls and psi;
