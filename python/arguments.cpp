@@ -1,6 +1,7 @@
 #include "python/arguments.h"
 
 #include <chrono>
+#include <cmath>
 
 #include "python/interruptible.h"
 
@@ -10,6 +11,12 @@ namespace {
 
 // Taking the GIL costs; a fifth of a second is what Ctrl-C may take.
 constexpr auto kPatience = std::chrono::milliseconds(20);
+
+/// False of Python or of numpy, as comparisons give it.
+bool says_stop(const py::object& answer) {
+  py::detail::make_caster<bool> value;
+  return value.load(answer, false) && !static_cast<bool>(value);
+}
 
 }  // namespace
 
@@ -30,7 +37,7 @@ Watch watch_of(const py::object& progress) {
     const py::gil_scoped_acquire gil;
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     if (progress.is_none() || !name) return;
-    if (progress(step, fraction).ptr() == Py_False) throw Cancelled();
+    if (says_stop(progress(step, fraction))) throw Cancelled();
   };
 }
 
@@ -45,7 +52,7 @@ Watch watch_in_thread(const py::object& progress, std::shared_ptr<std::atomic<bo
     next = Clock::now() + kPatience;
     const py::gil_scoped_acquire gil;
     if (*stopped) throw Cancelled();
-    if (progress(step, fraction).ptr() == Py_False) throw Cancelled();
+    if (says_stop(progress(step, fraction))) throw Cancelled();
   };
 }
 
@@ -68,6 +75,7 @@ py::array_t<double> array(const std::vector<Vec3>& x, const Vec3& shift) {
 py::object dict_of(const Json& json) { return py::module_::import("json").attr("loads")(json.dump()); }
 
 Psi psi_of(const py::object& psi, const std::optional<Box>& box, std::optional<double> t, int threads) {
+  if (t && !std::isfinite(*t)) throw std::invalid_argument("t: a finite number is wanted");
   Psi out{nullptr, {}, threads};
   Domain& domain = out.domain;
   if (py::isinstance<Reconstruction>(psi)) {

@@ -19,7 +19,7 @@ constexpr double kStep = 6e-6, kWideStep = 1.2e-4;
 
 Array array_of(const py::handle& result, py::ssize_t size, const char* what) {
   Array a = Array::ensure(result);
-  if (!a) {
+  if (!a || result.is_none()) {  // numpy makes a NaN of None
     PyErr_Clear();
     throw std::invalid_argument(std::string("psi: its ") + what + " are no array of numbers");
   }

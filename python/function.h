@@ -14,7 +14,7 @@ namespace umtet::python {
 class Function {
  public:
   /// Calls it once, at `probe`, to see what it returns.
-  /// @param length  of the domain, > 0: steps of differences are 6e-6 of it, 1e-4 for Hessians made of values
+  /// @param length  of the domain, > 0: steps of differences are 6e-6 of it, 1.2e-4 for Hessians made of values
   /// \throw std::invalid_argument  not of these shapes; what the callable raises
   Function(pybind11::object callable, const Vec3& probe, double length);
 

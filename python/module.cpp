@@ -164,9 +164,9 @@ Reconstruction reconstruct_arrays(const Points& points, const std::optional<Poin
     throw std::invalid_argument("normals: as many as points are wanted, or None");
   }
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
-    // 1e100 as for files: squares stay finite
-    if (!(cloud.points[i].cwiseAbs().maxCoeff() < 1e100)) {
-      throw std::invalid_argument("points[" + std::to_string(i) + "] is not finite");
+    // as for files: squares stay finite
+    if (!(cloud.points[i].cwiseAbs().maxCoeff() <= 1e50)) {
+      throw std::invalid_argument("points[" + std::to_string(i) + "] is not finite, or beyond 1e50");
     }
   }
   for (Vec3& n : cloud.normals) n = n.allFinite() && n.norm() > 0 ? Vec3(n.normalized()) : Vec3(Vec3::Zero());

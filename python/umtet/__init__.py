@@ -102,7 +102,7 @@ LevelSet.value, LevelSet.gradient, LevelSet.hessian = _value, _gradient, _hessia
 def reconstruct(points, normals=None, *, normal_source=None, progress=None, threads=0, **parameters):
     """Fits a C2 level set to a point cloud, as `umtet reconstruct` does.
 
-    points (n, 3), n >= 10; normals (n, 3) outward, of any length, or None: estimated and oriented. Outliers and
+    points (n, 3), 30 at least; normals (n, 3) outward, of any length, or None: estimated and oriented. Outliers and
     duplicates are dropped (keep_all=True keeps outliers), a minority of turned normals is turned back (not with
     normal_source="given"); `report["notices"]` says what was done. Parameters: spacing, detail, smooth, noise, flip, ...
 
@@ -202,4 +202,7 @@ def certificate(points, tets, psi=None, *, h=0, t=None, **parameters):
     points (n, 3), tets (m, 4). h is what ratios refer to (0: the mesh's own edge length). Parameters: min_quality.
     Returns a dict with keys of certificate.json: n_tets, volume, quality, boundary, gates, verdict, reasons.
     """
+    tets = np.asarray(tets)
+    if tets.dtype.kind not in "iu":
+        raise TypeError(f"tets: an array of integers is wanted, not of {tets.dtype}")
     return _core.certificate(points, tets, psi, _settings((), parameters), t, h)

@@ -218,6 +218,10 @@ class Failures(unittest.TestCase):
             umtet.mesh(BALL, box=BOX, mode="fats")
         with self.assertRaisesRegex(ValueError, "points \\(n, 3\\)"):
             umtet.mesh(lambda x: np.zeros(len(x) + 1), box=BOX, h=.2)
+        with self.assertRaisesRegex(ValueError, "no array of numbers"):
+            umtet.mesh(lambda x: None, box=BOX, h=.2)
+        with self.assertRaisesRegex(ValueError, "finite"):
+            umtet.mesh("x^2+y^2+z^2-t", box=BOX, h=.2, t=np.nan)
 
     def test_what_psi_raises_comes_out(self):
         calls = []
@@ -243,6 +247,8 @@ class Failures(unittest.TestCase):
         with self.assertRaises(umtet.Cancelled):
             umtet.mesh(BALL, box=BOX, h=.1, progress=progress)
         self.assertEqual(steps[-1], "components")
+        with self.assertRaises(umtet.Cancelled):
+            umtet.mesh(BALL, box=BOX, h=.1, progress=lambda step, fraction: np.float64(fraction) < 0)
         points, normals = egg()
         steps.clear()
         umtet.reconstruct(points, normals, progress=lambda step, fraction: steps.append(step))
@@ -348,6 +354,8 @@ class Certificate(unittest.TestCase):
         self.assertEqual(umtet.certificate(1.01 * m.points, m.tets, BALL, h=.2)["verdict"], "fail")
         with self.assertRaises(ValueError):
             umtet.certificate(m.points, m.tets + len(m.points))
+        with self.assertRaisesRegex(TypeError, "integers"):
+            umtet.certificate(m.points, m.tets + .3)
 
 
 class Documentation(unittest.TestCase):
