@@ -7,7 +7,9 @@
 #include <string_view>
 
 #include "pipeline/artefact.h"
+#include "pipeline/detail/csv_field.h"
 #include "pipeline/exit_code.h"
+#include "pipeline/report_page.h"
 #include "pipeline/version.h"
 
 namespace umtet {
@@ -15,36 +17,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kSchema = 1;
-
-/// A field of CSV: in quotes, on one line.
-std::string quoted(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  for (std::size_t k = 0; (k = text.find('"', k)) != std::string::npos; k += 2) text.insert(k, 1, '"');
-  return '"' + text + '"';
-}
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
 
 /// The name of a file in a link: what is no letter, digit or one of -._~/ is written as %XX.
 std::string link(std::string_view name) {
@@ -64,8 +36,8 @@ std::string code(const BatchRow& row) { return row.exit_code < 0 ? "" : fmt::for
 std::string csv(const std::vector<BatchRow>& rows) {
   std::string out = "scan,case,verdict,exit_code,reason,seconds,peak_memory_MB,n_tets,min_quality\n";
   for (const BatchRow& r : rows) {
-    out += fmt::format("{},{},{},{},{},{:.2f},{:.0f},{},{}\n", quoted(r.scan), quoted(r.name), r.verdict, code(r),
-                       quoted(r.reason), r.seconds, r.peak_memory_MB, tets(r), quality(r));
+    out += fmt::format("{},{},{},{},{},{:.2f},{:.0f},{},{}\n", csv_field(r.scan), csv_field(r.name), r.verdict, code(r),
+                       csv_field(r.reason), r.seconds, r.peak_memory_MB, tets(r), quality(r));
   }
   return out;
 }
@@ -100,8 +72,8 @@ std::string html(const std::vector<BatchRow>& rows) {
         "<tr><td class=\"{}\"><a href=\"{}/\">{}</a></td><td>{}{}</td><td class=\"r\">{}</td>"
         "<td class=\"n\">{:.1f}</td><td class=\"n\">{:.0f}</td><td class=\"n\">{}</td>"
         "<td class=\"n\">{}</td><td>",
-        look, link(r.name), escaped(r.scan), r.verdict, exit, escaped(r.reason), r.seconds, r.peak_memory_MB, tets(r),
-        quality(r));
+        look, link(r.name), html_text(r.scan), r.verdict, exit, html_text(r.reason), r.seconds, r.peak_memory_MB,
+        tets(r), quality(r));
     out += waits ? "</td></tr>\n" : fmt::format("<a href=\"logs/{}.log\">log</a></td></tr>\n", link(r.name));
   }
   return out + "</tbody></table></body></html>\n";

@@ -12,7 +12,7 @@ namespace umtet {
 
 /// What became of one scan of a batch.
 struct BatchRow {
-  std::string scan;     ///< path as the list has it
+  std::string scan;     ///< its path, absolute
   std::string name;     ///< of its case, a folder in that of the batch
   std::string verdict;  ///< pass, or what verdict_of() says
   int exit_code = -1;   ///< of `umtet run`; -1: not run yet, or ended by a signal

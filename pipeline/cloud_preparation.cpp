@@ -191,6 +191,7 @@ PreparedCloud Preparation::operator()() {
 
 void require_regular_file(const fs::path& file) {
   const fs::file_status status = fs::status(file);
+  if (fs::is_directory(status)) throw CloudRefused(file.string() + ": a folder; give the file of the cloud");
   if (fs::exists(status) && !fs::is_regular_file(status)) {
     throw CloudRefused(file.string() + ": not a regular file; copy what it yields to a file and give that");
   }

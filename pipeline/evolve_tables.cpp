@@ -2,24 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "pipeline/artefact.h"
+#include "pipeline/detail/csv_field.h"
 #include "pipeline/step_plot.h"
 
 namespace umtet {
 namespace {
 
-/// A field of CSV: in quotes, on one line.
-std::string quoted(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  for (std::size_t k = 0; (k = text.find('"', k)) != std::string::npos; k += 2) text.insert(k, 1, '"');
-  return '"' + text + '"';
-}
-
 std::string csv_line(const EvolveStep& step) {
   const std::string name = fmt::format("{},{},", step.file.substr(0, step.file.find('.')), time_text(step.at.t));
-  if (!step.made()) return name + fmt::format(",,,,,,,none,{:.3f},{}\n", step.seconds, quoted(step.error));
+  if (!step.made()) return name + fmt::format(",,,,,,,none,{:.3f},{}\n", step.seconds, csv_field(step.error));
   const Json& m = step.measured;
   const Json &q = m.at("quality"), &b = m.at("boundary");
   std::string reasons;
@@ -28,7 +20,7 @@ std::string csv_line(const EvolveStep& step) {
                             q.at("min").get<double>(), q.at("p01").get<double>(),
                             q.at("dihedral_min_deg").get<double>(), q.at("dihedral_max_deg").get<double>(),
                             b.at("components").get<int>(), b.at("genus").get<long>(),
-                            m.at("verdict").get<std::string>(), step.seconds, quoted(reasons));
+                            m.at("verdict").get<std::string>(), step.seconds, csv_field(reasons));
 }
 
 }  // namespace

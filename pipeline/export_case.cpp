@@ -110,7 +110,7 @@ SolverMesh mesh_of_case(const CasePaths& paths, const Parameters& parameters, Pr
   // Parameters do not matter here: whatever made the mesh, it must be whole.
   const StageState state = inspect_stage(paths, Stage::Mesh, Json::object(), std::nullopt);
   if (state.kind == StageState::Kind::Damaged) throw ArtefactDamaged(state.reason);
-  if (!state.record) throw UsageError("nothing to export: " + state.reason);
+  if (!state.record) throw UsageError("nothing to export: " + state.reason + "; umtet mesh makes it");
   try {
     MeshFile file = read_tet_mesh(paths.mesh());
     SolverMesh mesh = file.quadratic ? solver_mesh(*file.quadratic) : solver_mesh(file.mesh);

@@ -2,7 +2,7 @@
 
 namespace umtet {
 
-/// From now on SIGINT and SIGTERM ask the running stage to stop. Where it does not do so within 0.15 s, and at a second
+/// From now on SIGINT and SIGTERM ask the running stage to stop. Where it does not do so within 0.1 s, and at a second
 /// signal, the process ends at once: everything in a case is whole at any time. Files that
 /// grow beyond a limit and closed pipes become errors of write() instead of signals. An allocation that fails where
 /// nothing can be caught (in noexcept functions of libraries) ends the process with exit code 9.
@@ -11,7 +11,7 @@ void install_signal_handlers();
 /// Asks to stop after so many seconds, as by a signal, with exit code 9.
 void stop_after(double seconds);
 
-/// For a caller that hears of a signal at once and has others to stop before it ends: no end after 0.15 s.
+/// For a caller that hears of a signal at once and has others to stop before it ends: no end after 0.1 s.
 void stop_in_own_time();
 
 /// What the program is doing, for messages about an end on the way: the name of a stage.

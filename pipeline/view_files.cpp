@@ -173,7 +173,7 @@ std::vector<fs::path> write_view(const CasePaths& paths, Progress& progress) {
   parameters.load(paths.parameters(), ParamSource::Case);
   const StageState state = inspect_stage(paths, Stage::Mesh, parameters.section("mesh"), std::nullopt);
   if (state.kind == StageState::Kind::Damaged) throw ArtefactDamaged(state.reason);
-  if (!state.record) throw UsageError("nothing to view: " + state.reason);
+  if (!state.record) throw UsageError("nothing to view: " + state.reason + "; umtet mesh makes it");
   const double h = state.record->numbers.at("measured").at("h");
   Domain domain = load_domain(paths, parameters);
   domain.limit_detail(h);
