@@ -24,7 +24,7 @@ namespace {
 
 using namespace std::chrono_literals;
 constexpr auto kPollPeriod = 10ms;  // a scan takes tenths of a second at least
-// A child ends 0.15 s after its time is over, unless the system holds it.
+// A child ends 0.1 s after its time is over, unless the system holds it.
 constexpr double kGraceSeconds = 5;
 
 std::string value_text(const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
@@ -271,6 +271,9 @@ BatchOutcome Batch::outcome() const {
 
 BatchOutcome Batch::operator()() {
   const CaseLock lock(request_.folder);
+  if (fs::exists(CasePaths{request_.folder}.parameters())) {
+    throw UsageError(request_.folder.string() + " is a case: choose another folder for the cases of the batch");
+  }
   const std::vector<fs::path> files = batch_files(request_.folder);
   if (fs::exists(files.front()) && !fs::exists(files.back())) {
     throw UsageError(files.front().string() +

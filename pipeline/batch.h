@@ -34,9 +34,9 @@ struct BatchOutcome {
 /// Runs `umtet run SCAN -o FOLDER/NAME` for every scan, in processes of their own: whatever becomes of one, a crash
 /// included, is a row, and the others go on. The tables of write_batch() are complete after every scan; what a scan
 /// said is in FOLDER/logs. Cases that are whole are not made again. A scan that runs out of time is asked to stop, and
-/// killed when it does not. \throw UsageError (also for a folder with a batch.csv that is none of ours), Interrupted
-/// when the scans that ran have
-///        stopped, std::system_error when a table cannot be written
+/// killed when it does not.
+/// \throw UsageError (also for a folder that is a case, or has a batch.csv that is none of ours), Interrupted when the
+///        scans that ran have stopped, std::system_error when a table cannot be written
 BatchOutcome run_batch(const BatchRequest& request, Progress& progress);
 
 }  // namespace umtet

@@ -63,6 +63,17 @@ std::vector<fs::path> listed_clouds(const fs::path& list) {
     if (!line.empty() && line[0] != '#') clouds.push_back(fs::absolute(list).parent_path() / line);
   }
   if (clouds.empty()) throw UsageError(list.string() + " names no cloud: one path a line is needed");
+  // A cloud instead of a list has thousands of lines; one that is missing among others is a matter of its own.
+  const auto is_there = [](const fs::path& cloud) {
+    std::error_code unknown;
+    return fs::exists(cloud, unknown);
+  };
+  if (std::none_of(clouds.begin(), clouds.end(), is_there)) {
+    throw UsageError(
+        fmt::format("{}: none of the {} files that it names is there (the first: {}); it is to be a list "
+                    "with the path of a cloud a line",
+                    list.string(), clouds.size(), clouds.front().string()));
+  }
   return clouds;
 }
 

@@ -26,7 +26,7 @@ std::vector<TimeStep> time_steps(const std::string& times, const std::string& sk
                                  const std::filesystem::path& clouds);
 
 /// The paths of a list as above.
-/// \throw UsageError when it names none; std::system_error when it cannot be read
+/// \throw UsageError when it names none, or none that is there; std::system_error when it cannot be read
 std::vector<std::filesystem::path> listed_clouds(const std::filesystem::path& list);
 
 /// The shortest decimal number for t.

@@ -176,9 +176,16 @@ class Batch(unittest.TestCase):
             self.assertEqual(run("batch", "list", cwd=folder).returncode, 2)
             self.assertEqual(run("batch", "nothing", "-o", "out", cwd=folder).returncode, 2)
             self.assertEqual(run("batch", "absent", "-o", "out", cwd=folder).returncode, 7)
+            (folder / "cloud.xyz").write_text("0 0 1\n0 1 0\n")
+            no_list = run("batch", "cloud.xyz", "-o", "out", cwd=folder)
+            self.assertEqual(no_list.returncode, 2)
+            self.assertIn("none of the 2 files", no_list.stderr)
             self.assertFalse((folder / "out").exists())
             self.assertEqual(run("batch", "list", "-o", "mine", cwd=folder).returncode, 2)
             self.assertEqual((folder / "mine" / "batch.csv").read_text(), "precious")
+            (folder / "case").mkdir()
+            (folder / "case" / "case.toml").write_text("")
+            self.assertEqual(run("batch", "list", "-o", "case", cwd=folder).returncode, 2)
             self.assertEqual(run("batch", "list", "-o", "out", "--set", "mesh.implicit=x", cwd=folder).returncode, 2)
 
 
