@@ -164,6 +164,7 @@ void CaseRun::report() {
   const bool fits = report_is_of(paths_, *outcome_.certificate, parameters_);
   if (!request_.report && !fits) fs::remove(paths_.report());
   if (request_.report && (!fits || request_.force)) {
+    set_work_at_hand("report");
     progress_.report("report", "write", .5);
     write_report(paths_, parameters_, *outcome_.certificate, handover_);
   }

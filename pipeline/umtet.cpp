@@ -139,6 +139,7 @@ Output export_files(const CommandLine& call, Progress& progress) {
 }
 
 Output make_report(const CommandLine& call, Progress& progress) {
+  set_work_at_hand("report");
   const CasePaths paths{call.request.case_folder};
   if (!std::filesystem::exists(paths.root)) throw UsageError(paths.root.string() + ": there is no such case");
   const CaseLock lock(paths.root);
@@ -152,6 +153,7 @@ Output make_report(const CommandLine& call, Progress& progress) {
 }
 
 Output view(const CommandLine& call, Progress& progress) {
+  set_work_at_hand("view");
   const CasePaths paths{call.request.case_folder};
   if (!std::filesystem::exists(paths.root)) throw UsageError(paths.root.string() + ": there is no such case");
   const CaseLock lock(paths.root);
@@ -164,6 +166,7 @@ Output view(const CommandLine& call, Progress& progress) {
 }
 
 Output diff(const CommandLine& call, Progress& progress) {
+  set_work_at_hand("diff");
   const Json json = diff_cases({call.case_a}, {call.case_b}, progress);
   progress.clear();
   Output output;
