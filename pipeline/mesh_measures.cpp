@@ -82,9 +82,8 @@ Json cloud_block(const Domain& domain, const std::vector<Vec3>& V, const std::ve
   if (domain.fitted) look_for_lost_samples(domain, d, h, keep_going, reasons);
   std::sort(d.begin(), d.end());
   const double r = rms(d), max = d.back(), p99 = quantile(d, .99);
-  const std::optional<double> noise_over_h = domain.noise ? std::optional(*domain.noise / h) : std::nullopt;
   return {{"noise", number_or_null(domain.noise)},
-          {"noise_over_h", number_or_null(noise_over_h)},
+          {"noise_over_h", domain.noise ? Json(*domain.noise / h) : Json(nullptr)},
           {"rms_distance", r},
           {"max_distance", max},
           {"p99_distance", p99},
