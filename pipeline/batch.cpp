@@ -50,7 +50,7 @@ std::vector<std::string> case_names(const std::vector<fs::path>& scans) {
   std::vector<std::string> names;
   for (const fs::path& scan : scans) {
     std::string stem = scan.stem().string();
-    if (stem.empty() || stem[0] == '.') stem = "_" + stem;
+    if (stem.empty() || stem[0] == '.') stem.insert(0, 1, '_');
     std::string name = stem;
     for (int k = 2; !taken.insert(name).second; ++k) name = fmt::format("{}_{}", stem, k);
     names.push_back(name);

@@ -1,5 +1,6 @@
 #include "pipeline/record.h"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -49,8 +50,8 @@ std::string damage(const fs::path& folder, const std::vector<RecordedFile>& outp
 /// How two sets of parameters differ, as a clause; empty if they do not.
 std::string difference(const std::string& section, const Json& before, const Json& now) {
   for (const auto& [key, value] : now.items()) {
-    if (!before.contains(key)) return section + "." + key + " is new";
-    if (before[key] != value) return section + "." + key + " was " + before[key].dump() + ", is " + value.dump();
+    if (!before.contains(key)) return fmt::format("{}.{} is new", section, key);
+    if (before[key] != value) return fmt::format("{}.{} was {}, is {}", section, key, before[key].dump(), value.dump());
   }
   return before.size() == now.size() ? "" : "other parameters of " + section;
 }
