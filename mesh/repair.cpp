@@ -25,8 +25,6 @@ constexpr std::size_t kFirstOfPair = 6, kSecondOfPair = 8;
 // Besides max_patches: so many, and one for so many tets of the shell. A coarse perforated plate of 5092 tets is mended
 // by its 1724th patch, and until then looks no better than lenses that never are: one of 1600 tets took 3000.
 constexpr std::size_t kFewPatches = 600, kTetsPerPatch = 4;
-// Patches of this reach come first: they take half the time, and mend most.
-constexpr int kFirstReach = 2;
 // After sweep k of smoothing, how much below what it was the least Q of a patch may be, times k^2, and how many more
 // poor tets it may have, times k. Of the 617 patches that ended better among 3900 (T6 and T8 of 100k and 500k tets,
 // eqs. (9) and (13) of 500k), one had lacked more; the others are given up after two fifths of the visits.
@@ -54,7 +52,6 @@ class Repair {
     PatchState state;
     std::vector<std::int64_t> flips;
     bool found = false;  ///< something betters the patch
-    int reach = 0;       ///< of the patches to try
     bool is_perfect() const { return found && state.is_perfect(); }
   };
   struct Bad {
@@ -72,7 +69,7 @@ class Repair {
   bool is_turned(const Ids& tet);
   bool still_bad(const Ids& tet);
   void flip(std::int64_t v) { inside_.test(v) ? inside_.erase(v) : inside_.insert(v); }
-  LatticeShell patch(const std::vector<std::int64_t>& centres, Start start, int reach) const;
+  LatticeShell patch(const std::vector<std::int64_t>& centres, Start start) const;
   std::vector<std::uint8_t> inside_of(const LatticeShell& cut) const;
   PatchState state(const Shell& shell, const std::vector<std::uint8_t>& inside);
   void attempt(const Ids& tet, std::span<const std::int64_t> flips, Start start, Best& best);
@@ -125,8 +122,8 @@ bool Repair::still_bad(const Ids& tet) {
   return mean_ratio(place(tet[0]), place(tet[1]), place(tet[2]), place(tet[3])) < params_.target || is_turned(tet);
 }
 
-LatticeShell Repair::patch(const std::vector<std::int64_t>& centres, Start start, int reach) const {
-  LatticeShell cut = lattice_patch(background_, links_, inside_, centres, reach);
+LatticeShell Repair::patch(const std::vector<std::int64_t>& centres, Start start) const {
+  LatticeShell cut = lattice_patch(background_, links_, inside_, centres, params_.reach);
   for (std::size_t v = 0, from = 0; v < cut.shell.V.size(); ++v) {
     if (start == Start::Here || cut.shell.role[v] == Shell::Role::Fixed)
       cut.shell.V[v] = place(cut.background_vertex[v], from);
@@ -167,21 +164,21 @@ void Repair::attempt(const Ids& tet, std::span<const std::int64_t> flips, Start 
   std::vector<std::int64_t> centres(tet.begin(), tet.end());
   centres.insert(centres.end(), flips.begin(), flips.end());
   for (const std::int64_t v : flips) flip(v);
-  LatticeShell trial = patch(centres, start, best.reach);
+  LatticeShell trial = patch(centres, start);
   const std::vector<std::uint8_t> inside = inside_of(trial);
   for (const std::int64_t v : flips) flip(v);
   PNormSmoother smoother(trial.shell);
   const ProjectionReport projection = project(smoother, psi_, params_.projection);
   report_.psi_evaluations += projection.psi_evaluations;
   if (!projection.not_arrived.empty()) return;
-  const LatticeShell now = patch(centres, Start::Here, best.reach);
+  const LatticeShell now = patch(centres, Start::Here);
   const PatchState before = state(now.shell, inside_of(now));
   smoother.wake_all();
   if (!smooth_while_promising(smoother, before)) return;
   const PatchState after = state(trial.shell, inside);
   if (!after.is_no_worse_than(before) || !after.is_better_than(before)) return;
   if (!best.found || after.is_better_than(best.state))
-    best = {std::move(trial), after, {flips.begin(), flips.end()}, true, best.reach};
+    best = {std::move(trial), after, {flips.begin(), flips.end()}, true};
 }
 
 void Repair::try_labels(const Ids& tet, Start start, Best& best) {
@@ -191,7 +188,6 @@ void Repair::try_labels(const Ids& tet, Start start, Best& best) {
     if (best.is_perfect()) return;
   }
   // Pairs cost as many patches as all singles do, and are for where none of these helps.
-  if (best.reach < params_.reach) return;
   for (std::size_t a = 0; a < std::min(singles.size(), kFirstOfPair) && !best.found; ++a) {
     flip(singles[a].vertex);
     const std::vector<detail::LabelCandidates::Candidate> seconds = candidates_(tet, report_.psi_evaluations);
@@ -205,14 +201,11 @@ void Repair::try_labels(const Ids& tet, Start start, Best& best) {
 
 bool Repair::mend(const Ids& tet) {
   Best best;
-  best.reach = params_.reach;
   if (is_turned(tet)) {
     attempt(tet, {}, Start::Lattice, best);
     if (!best.is_perfect()) try_labels(tet, Start::Lattice, best);
   }
-  for (best.reach = std::min(kFirstReach, params_.reach); !best.found && best.reach <= params_.reach; ++best.reach) {
-    try_labels(tet, Start::Here, best);
-  }
+  if (!best.found) try_labels(tet, Start::Here, best);
   if (!best.found) return false;
   for (const std::int64_t v : best.flips) flip(v);
   const Shell& shell = best.shell.shell;

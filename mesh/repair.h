@@ -58,7 +58,7 @@ struct RepairReport {
 /// vertices, without a new spot where the boundary is no manifold, and not where the body or the gap is thin. So
 /// topology stays.
 ///
-/// Serial: some dozens of patches in a mesh of a million tets. Single labels in smaller patches come first.
+/// Serial: some dozens of patches in a mesh of a million tets.
 /// @param shell   smoothed; its coordinates stay as they are, `moved` says what has changed since
 /// @param inside  receives the changes
 /// \throw std::invalid_argument naming every broken constraint, MeshCancelled
