@@ -25,8 +25,9 @@ namespace {
 
 // Another h is tried for the number of tets that was asked for when it is missed by more than this.
 constexpr double kTetsTolerance = .1;
-// Pieces of psi = 0 are not looked for on grids finer than this, in h.
-constexpr double kFinestGrid = .1;
+// Pieces of psi = 0 are looked for on a grid of h and, where there is none, on so many grids twice as fine as the one
+// before.
+constexpr int kFinerGrids = 3;
 
 /// Right but for the size of its faces: there to be looked at, and the certificate says no.
 bool is_only_coarse(const MeshAttempt& a) {
@@ -114,8 +115,8 @@ const ZeroSetChoice& MeshStage::pieces_at(double h) {
   if (!pieces_ || pieces_->first != h) {
     context_.progress.report("mesh", "components", .05);
     // A body thinner than the grid may have no node inside.
-    for (double spacing = h; spacing > kFinestGrid * h; spacing /= 2) {
-      pieces_.emplace(h, choose_components(domain_, spacing, not_interrupted));
+    for (int halvings = 0; halvings <= kFinerGrids; ++halvings) {
+      pieces_.emplace(h, choose_components(domain_, std::ldexp(h, -halvings), not_interrupted));
       if (!pieces_->second.topology.components.empty()) break;
     }
     stop_if_interrupted();
