@@ -75,7 +75,7 @@ CoarseMeasure sample(ImplicitFunctionRef psi, const Box& box, double steepest) {
 CoarseMeasure measure(ImplicitFunctionRef psi, const Box& box, double steepest) {
   // Below this share of the box's side, samples are too few for 10 %.
   constexpr double kTooSmall = .5;
-  const CoarseMeasure first = sample(psi, box, steepest);
+  CoarseMeasure first = sample(psi, box, steepest);
   if (first.inside.isEmpty()) return first;
   const bool small = first.inside.sizes().maxCoeff() < kTooSmall * box.sizes().maxCoeff();
   return small ? sample(psi, first.inside, steepest) : first;
