@@ -1,5 +1,6 @@
 #include "pipeline/expression.h"
 
+#include <fmt/format.h>
 #include <muParser.h>
 #include <tbb/enumerable_thread_specific.h>
 
@@ -9,13 +10,15 @@
 #include <sstream>
 #include <vector>
 
+#include "pipeline/detail/derivative_size.h"
 #include "pipeline/detail/expression_reader.h"
 
 namespace umtet {
 namespace {
 
-// The second derivatives of a product grow with the cube of its length.
-constexpr std::size_t kMaxDerivativeText = 1 << 22;
+// Of a second derivative: it grows with the cube of the number of factors, or of brackets within each other. Half a
+// second; a sum of ninety Gaussians has 1e4.
+constexpr double kMaxDerivativeSize = 2e5;
 
 std::string at_column(const std::string& text, std::size_t column, const std::string& message) {
   return "column " + std::to_string(column) + ": " + message + "\n  " + text + "\n  " + std::string(column - 1, ' ') +
@@ -81,6 +84,12 @@ struct Expression::Impl {
   Impl(std::string formula, std::optional<double> t) : text(std::move(formula)) {
     const auto [psi, s] = read_expression(text, t);
     texts[0] = print(psi);
+    if (const double size = second_derivative_size(psi); size > kMaxDerivativeSize) {
+      throw ExpressionError(text, 1,
+                            fmt::format("a second derivative would be some {:.2g} terms long, more than {:.0e}: "
+                                        "fewer factors, powers or brackets within each other are needed",
+                                        size, kMaxDerivativeSize));
+    }
     try {
       texts[1] = texts[0];
       for (std::size_t i = 0; i < 3; ++i) texts[1].append(",").append(print(psi.diff(s[i])));
@@ -90,9 +99,6 @@ struct Expression::Impl {
       }
     } catch (const std::exception& e) {  // GiNaC: 0^z has a value, and no derivative
       throw ExpressionError(text, 1, std::string("no derivative: ") + e.what());
-    }
-    if (texts[2].size() > kMaxDerivativeText) {
-      throw ExpressionError(text, 1, "the second derivatives have " + std::to_string(texts[2].size()) + " characters");
     }
     try {
       for (const std::size_t order : {0, 1, 2}) evaluators.local()(order, Vec3::Zero());

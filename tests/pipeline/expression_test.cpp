@@ -161,6 +161,31 @@ TEST(Expression, AnyTextIsAnExpressionOrARefusal) {
   EXPECT_GT(accepted, 100);  // else the generator tests refusals only
 }
 
+TEST(Expression, DerivativesThatWouldTakeMinutesAreRefused) {
+  // Brackets within each other, a product, a tower (found by fuzzing): each took from one second to one minute.
+  const auto repeated = [](int n, const std::string& before, const std::string& middle, const std::string& after) {
+    std::string text;
+    for (int k = 0; k < n; ++k) text += before;
+    text += middle;
+    for (int k = 0; k < n; ++k) text += after;
+    return text;
+  };
+  std::string product = "x", gaussians = "x";
+  for (int k = 1; k < 300; ++k) product += "*sin(x+" + std::to_string(k) + ")";
+  for (int k = 1; k < 90; ++k) gaussians += "+exp(-((x-." + std::to_string(k) + ")^2+(y-.2)^2+(z-.3)^2)/.01)";
+  for (const std::string& text :
+       {repeated(300, "x*(1+", "y", ")"), repeated(100, "sin(x+", "z", ")"), product, repeated(90, "y^5^", "z", "")}) {
+    try {
+      const Expression psi(text);
+      ADD_FAILURE() << text;
+    } catch (const ExpressionError& e) {
+      EXPECT_NE(std::string(e.what()).find("second derivative"), std::string::npos) << e.what();
+    }
+  }
+  EXPECT_GT(Expression(gaussians).value(kProbe), 0);
+  EXPECT_GT(Expression(repeated(30, "x*(1+", "y*y", ")")).value(kProbe), 0);
+}
+
 TEST(Expression, TimeIsTheDecimalNumberItLooksLike) {
   EXPECT_EQ(Expression("x+1e20*(10*t-1)", .1).value({2, 0, 0}), 2);  // with the double nearest to .1 it is 5553
   EXPECT_EQ(Expression("x*t", -.5).value({3, 0, 0}), -1.5);
