@@ -16,8 +16,8 @@
 namespace umtet {
 namespace {
 
-// Of a second derivative: it grows with the cube of the number of factors, or of brackets within each other. Half a
-// second; a sum of ninety Gaussians has 1e4.
+// Of a second derivative: it grows with the cube of the number of factors, or of brackets within each other. So much
+// takes half a second; what muParser still reads has some 1e4.
 constexpr double kMaxDerivativeSize = 2e5;
 
 std::string at_column(const std::string& text, std::size_t column, const std::string& message) {
