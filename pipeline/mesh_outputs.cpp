@@ -64,7 +64,7 @@ std::vector<std::string> write_mesh_outputs(const StageContext& context, const D
 }
 
 fs::path write_failed_mesh(const CasePaths& paths, const Domain& domain, const UmResult& result) {
-  const fs::path folder = paths.failed();
+  fs::path folder = paths.failed();
   fs::remove_all(folder);
   const std::size_t n = result.submesh.mesh.V.size();
   if (n == 0) return folder;
