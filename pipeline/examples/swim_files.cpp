@@ -16,8 +16,8 @@ namespace {
 std::string csv(std::span<const SwimRow> rows) {
   std::string text = "t,velocity,z0,F_deformation,F_translation,min_Q,tets,volume_gap,seconds\n";
   for (const auto& [s, Q, n_tets, gap, seconds] : rows) {
-    text += fmt::format("{},{},{},{},{},{:.4f},{},{:.4f},{:.2f}\n", s.t, s.velocity, s.z0, s.F_deformation, s.F_translation, Q,
-                        n_tets, gap, seconds);
+    text += fmt::format("{},{},{},{},{},{:.4f},{},{:.4f},{:.2f}\n", s.t, s.velocity, s.z0, s.F_deformation,
+                        s.F_translation, Q, n_tets, gap, seconds);
   }
   return text;
 }
