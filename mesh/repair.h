@@ -52,11 +52,11 @@ struct RepairReport {
 /// For each such tet, the worst first and folded faces before all, labels of its vertices and their neighbours are
 /// changed one by one, then in pairs, on a copy of the patch around them, whose boundary is projected and whose inside
 /// is smoothed, the patch's rim held. A patch with a turned face also starts from the lattice anew. A patch far behind
-/// while it is smoothed is given up. The best is kept if neither the least quality of the patch falls nor its poor
-/// tets, its turned or its folded faces become more, and its least cosine does not fall unless fewer faces are turned
-/// then; and if one of these gets better. A label changes only where choose_labels() might change it: at simple
-/// vertices, without a new spot where the boundary is no manifold, and not where the body or the gap is thin. So
-/// topology stays.
+/// while it is smoothed is given up, and where a label helps, those whose flip costs much more are not tried. The best
+/// is kept if neither the least quality of the patch falls nor its poor tets, its turned or its folded faces become
+/// more, and its least cosine does not fall unless fewer faces are turned then; and if one of these gets better. A
+/// label changes only where choose_labels() might change it: at simple vertices, without a new spot where the boundary
+/// is no manifold, and not where the body or the gap is thin. So topology stays.
 ///
 /// Serial: some dozens of patches in a mesh of a million tets.
 /// @param shell   smoothed; its coordinates stay as they are, `moved` says what has changed since
