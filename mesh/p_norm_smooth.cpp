@@ -137,11 +137,9 @@ SmoothReport& SmoothReport::operator+=(const SmoothReport& later) {
   return *this;
 }
 
-PNormSmoother::PNormSmoother(Shell& shell)
-    : shell_(shell), face_begin_(shell.V.size() + 1, 0), queued_(shell.V.size(), 0) {
+PNormSmoother::PNormSmoother(Shell& shell) : shell_(shell), faces_of_(shell.V.size()), queued_(shell.V.size(), 0) {
   std::vector<std::size_t> count;
   for (std::size_t i = 0; i < shell.V.size(); ++i) {
-    face_begin_[i + 1] = face_begin_[i];
     if (is_fixed(shell, static_cast<int>(i))) continue;
     const int n = shell.ring_begin[i + 1] - shell.ring_begin[i];
     if (n < 1 || n > kMaxRing) {
@@ -149,7 +147,6 @@ PNormSmoother::PNormSmoother(Shell& shell)
                                   std::to_string(kMaxRing));
     }
     queued_[i] = 1;
-    face_begin_[i + 1] += n;
     const auto colour = static_cast<std::size_t>(shell.colour[i]);
     if (colour >= count.size()) count.resize(colour + 1, 0);
     ++count[colour];
@@ -162,11 +159,16 @@ PNormSmoother::PNormSmoother(Shell& shell)
     if (queued_[i] != 0) by_colour_[next[shell.colour[i]]++] = static_cast<int>(i);
   }
   if (!count.empty()) todo_.reserve(*std::max_element(count.begin(), count.end()));
-  faces_.resize(static_cast<std::size_t>(face_begin_.back()));
+  int n_faces = 0;
+  for (const int i : by_colour_) {
+    faces_of_[i] = {n_faces, shell.ring_begin[i + 1] - shell.ring_begin[i]};
+    n_faces += faces_of_[i].n;
+  }
+  faces_.resize(static_cast<std::size_t>(n_faces));
   const auto list_faces = [&](const tbb::blocked_range<std::size_t>& range) {
     for (std::size_t k = range.begin(); k != range.end(); ++k) {
       const int i = by_colour_[k];
-      for (int r = shell.ring_begin[i], f = face_begin_[i]; r < shell.ring_begin[i + 1]; ++r, ++f) {
+      for (int r = shell.ring_begin[i], f = faces_of_[i].begin; r < shell.ring_begin[i + 1]; ++r, ++f) {
         const Tet& t = shell.C[shell.ring[r]];
         const auto own = std::find(t.begin(), t.end(), i) - t.begin();
         faces_[f] = {t[kTetFace[own][0]], t[kTetFace[own][1]], t[kTetFace[own][2]]};

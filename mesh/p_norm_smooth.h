@@ -85,12 +85,16 @@ class PNormSmoother {
 
  private:
   std::span<const Triangle> faces(int i) const {
-    return {faces_.begin() + face_begin_[i], faces_.begin() + face_begin_[i + 1]};
+    return {faces_.begin() + faces_of_[i].begin, static_cast<std::size_t>(faces_of_[i].n)};
   }
+  struct Range {
+    int begin = 0, n = 0;
+  };
 
   Shell& shell_;
-  std::vector<int> face_begin_;            ///< per vertex, into faces_
-  std::vector<Triangle> faces_;            ///< opposite to a vertex in the tets of its ring; of those not Fixed
+  std::vector<Range> faces_of_;            ///< per vertex, in faces_
+  std::vector<Triangle> faces_;            ///< opposite to a vertex in the tets of its ring; of those not Fixed, in the
+                                           ///< order of by_colour_, in which sweeps read them
   std::vector<int> by_colour_;             ///< vertices, ascending within a colour
   std::vector<std::size_t> colour_begin_;  ///< into by_colour_
   std::vector<unsigned char> queued_;      ///< per vertex
