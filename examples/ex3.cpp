@@ -3,9 +3,9 @@
 // Sample runs:  ex3
 //               ex3 0.05 20
 //
-// Description:  A ball that moves and grows, meshed at every instant in one background mesh. Each mesh comes from the
-// one
-//               before, with what has changed: the ids of a solver's unknowns are those of the background, and stay.
+// Description:  A ball that moves and grows, meshed at every instant in one background mesh. Each mesh comes from
+//               the one before, with what has changed: the ids of a solver's unknowns are those of the background,
+//               and stay.
 #include <cstdio>
 #include <cstdlib>
 
