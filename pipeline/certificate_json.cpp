@@ -47,13 +47,10 @@ std::string remedy(const Json& c) {
   const double h = c.at("h");
   if (c.at("reasons").size() == 1 && c.at("gates").at("min_quality").is_number() &&
       c.at("quality").at("min").get<double>() < c["gates"]["min_quality"].get<double>()) {
-    return fmt::format("another --h (this was {:.4g}) or another --seed moves the worst tets; or lower --min-quality",
-                       h);
+    return fmt::format("another --h (this was {:.4g}), which moves the worst tets, or a lower --min-quality", h);
   }
-  return fmt::format(
-      "a smaller --h (this was {:.4g}) resolves more of the shape; where psi itself is wrong there, a "
-      "finer --spacing",
-      h);
+  return fmt::format("a smaller --h (this was {:.4g}), which resolves more of the shape", h) +
+         (c.at("n_points").is_number() ? "; where psi itself is wrong there, a finer --spacing" : "");
 }
 
 /// A number of a block, or "-" where the certificate has null.
@@ -164,7 +161,8 @@ std::string summary(const Json& c) {
   out += "boundary  " + boundary_line(c.at("boundary")) + "\n" + second_order_lines(c);
   if (c.contains("domain")) {
     const Json& d = c["domain"];
-    out += fmt::format("domain    psi = 0 has {} pieces, {} dropped", d.at("components_of_zero_set").get<int>(),
+    const int n_pieces = d.at("components_of_zero_set").get<int>();
+    out += fmt::format("domain    psi = 0 has {} piece{}, {} dropped", n_pieces, n_pieces == 1 ? "" : "s",
                        d.at("components_dropped").size());
     if (d.at("unsupported_area_fraction").is_number()) {
       out += fmt::format("; {:.2f} % of the surface without samples near it",

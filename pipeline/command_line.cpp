@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <sstream>
 
 #include "pipeline/background_choice.h"
 #include "pipeline/detail/command_parser.h"
@@ -12,22 +13,43 @@
 namespace umtet {
 namespace {
 
-constexpr const char* kFooter = R"(Examples:
-  umtet run duck.ply -o duck                 from a scan to a certified mesh; run again: resumes, or does nothing
+constexpr const char* kExamples =
+    R"(  umtet run duck.ply -o duck                 from a scan to a certified mesh; run again: resumes, or does nothing
+  umtet reconstruct duck.ply -o duck         the level set only; umtet mesh duck goes on from there
   umtet mesh duck --h 0.02                   another mesh size; the level set is not fitted again
   umtet mesh duck --max-deviation 0.001      flat faces at most so far from the surface
-  umtet mesh --implicit 'x^2+y^2+z^2-1' --box -1.2,-1.2,-1.2,1.2,1.2,1.2 --tets 100000 -o ball
-  umtet mesh duck --complement --box-walls --box=-2,-1.5,-2,4,2,2       the fluid around it, in a box
+  umtet mesh --implicit 'x^2+y^2+z^2-1' --box=-1.2,-1.2,-1.2,1.2,1.2,1.2 --tets 100000 -o ball
+  umtet mesh duck --complement --box-walls --box=-2,-1.5,-2,4,2,2 --h .08    the fluid around it, in a box
+  umtet evolve --implicit '(x-t)^2+y^2+z^2-1' --box=-2,-2,-2,4,2,2 --h .1 --t 0:0.5:2 -o moving
+  umtet batch LIST -o scans --jobs 2         many scans; one table of verdicts, reasons and times
   umtet inspect duck.ply                     spacing, noise, normals, thickness; what is likely to go wrong
   umtet check part.msh                       validity and quality of any tet mesh
   umtet export duck --format inp,vtu         files for solvers, in duck/4-export
   umtet report duck                          duck/report.html: what a browser shows of it, offline
-  umtet batch LIST -o scans --jobs 2         many scans; one table of verdicts, reasons and times
-  umtet evolve --implicit '(x-t)^2+y^2+z^2-1' --box=-2,-2,-2,4,2,2 --h .1 --t 0:0.5:2 -o moving
+  umtet view duck                            then: paraview --script=duck/5-view/view.py
+  umtet diff duck other                      which stage is the first to differ, and by how much
+)";
 
+constexpr const char* kExitCodes = R"(
 Exit codes: 0 all well | 1 a bug of ours | 2 usage | 3 input refused | 4 reconstruction failed
   5 meshing not possible at this h | 6 made, but a gate or the certificate failed | 7 file trouble
   8 artefact corrupt | 9 resource limit | 130, 143 interrupted, resumable)";
+
+/// Examples, all or those of one command, and exit codes.
+std::string footer(const std::string& command = "") {
+  std::string text = "Examples:\n", line;
+  for (std::istringstream lines(kExamples); std::getline(lines, line);) {
+    if (line.starts_with("  umtet " + command)) text += line + "\n";
+  }
+  return text + kExitCodes;
+}
+
+/// What a value is, in the words that CLI11 has for its own.
+const char* type_of(const ParamField& f) {
+  return std::holds_alternative<double>(f.preset)         ? "FLOAT"
+         : std::holds_alternative<std::int64_t>(f.preset) ? "INT"
+                                                          : "TEXT";
+}
 
 /// Help, choices and default of a parameter.
 std::string described(const ParamField& f) {
@@ -42,13 +64,13 @@ CommandParser::CommandParser() {
   app_.set_version_flag("--version", std::string("umtet ") + kVersion);
   app_.add_flag("--json", result_.json, "one JSON document on stdout, also on failure");
   app_.require_subcommand(1);
-  app_.footer(kFooter);
+  app_.footer(footer());
 
   CLI::App& run = add_command("run", "All stages; those whose record matches are not run again");
   add_stage_flags(run);
   run.add_option("CLOUD", in_.input, "oriented points: .ply, .pcd, .xyz; or a case, to resume it");
-  run.add_option("--from", in_.from, "first stage that may run: cloud, level-set, mesh");
-  run.add_option("--until", in_.until, "last stage to run");
+  run.add_option("--from", in_.from, "first stage that may run: cloud, level-set, mesh (default cloud)");
+  run.add_option("--until", in_.until, "last stage to run (default mesh)");
   add_formats(run, "--export");
   run.add_flag("--no-report", in_.no_report, "do not make report.html");
   add_parameter_flags(run, {"cloud", "reconstruct", "mesh", "output"}, {"mesh.implicit"});
@@ -113,7 +135,8 @@ void CommandParser::add_batch() {
   add_timeout(batch, "seconds that a scan may take; then it is a row with exit code 9");
   batch.add_option("LIST", in_.input, "a text file with the path of a cloud a line")->required();
   batch.add_option("-o", in_.output, "the folder of the cases and of batch.csv, batch.html");
-  batch.add_option("--jobs", result_.batch.jobs, "scans at a time; they share the threads")->check(CLI::Range(1, 1024));
+  batch.add_option("--jobs", result_.batch.jobs, "scans at a time; they share the threads (default 1)")
+      ->check(CLI::Range(1, 1024, "1 to 1024"));
   batch.add_flag("--resume", in_.resume, "scans whose input or mesh was refused are not tried again");
   batch.add_flag("--force", in_.force, "run all stages although their records match");
   batch.add_flag("--strict", in_.strict, "a damaged artefact is exit 8 of its scan instead of being made again");
@@ -127,9 +150,12 @@ CLI::Option& CommandParser::add_formats(CLI::App& command, const char* flag) {
 
 CLI::App& CommandParser::add_command(const char* name, const char* description) {
   CLI::App& command = *app_.add_subcommand(name, description);
+  command.footer(footer(std::string(name) + " "));
   command.add_flag("--json", result_.json, "one JSON document on stdout, also on failure");
-  command.add_option("--threads", result_.threads, "number of threads; results do not depend on it")
-      ->check(CLI::Range(1, 4096));
+  command
+      .add_option("--threads", result_.threads,
+                  "number of threads; results do not depend on it (default: all processors)")
+      ->check(CLI::Range(1, 4096, "1 to 4096"));
   command.add_flag("-q,--quiet", in_.quiet, "no messages but warnings and errors");
   command.add_flag("-v,--verbose", in_.verbose, "more messages");
   command
@@ -140,7 +166,7 @@ CLI::App& CommandParser::add_command(const char* name, const char* description) 
                                : mode == "none" ? ProgressMode::None
                                                 : ProgressMode::Auto;
           },
-          "auto: a bar on a terminal; plain: lines; none")
+          "auto: a bar on a terminal, else lines; plain: lines; none (default auto)")
       ->check(CLI::IsMember({"auto", "plain", "none"}));
   return command;
 }
@@ -155,7 +181,7 @@ void CommandParser::add_parameter_sources(CLI::App& command) {
 
 void CommandParser::add_timeout(CLI::App& command, const char* help) {
   // A timer of the system takes no more than a year without doubt.
-  command.add_option("--timeout", result_.timeout, help)->check(CLI::Range(0., 3e7));
+  command.add_option("--timeout", result_.timeout, help)->check(CLI::Range(0., 3e7, "0 to 3e7"));
 }
 
 void CommandParser::add_stage_flags(CLI::App& command) {
@@ -176,7 +202,7 @@ void CommandParser::add_parameter_flags(CLI::App& command, const std::vector<std
     if (std::holds_alternative<bool>(f.preset)) {
       command.add_flag(f.flag, in_.switches[f.key], f.help);
     } else {
-      command.add_option(f.flag, in_.values[f.key], described(f))->type_name("");
+      command.add_option(f.flag, in_.values[f.key], described(f))->type_name(type_of(f));
     }
   }
 }

@@ -38,7 +38,8 @@ double h_of(const Domain& domain, const Tiling& tiling, std::int64_t n_tets) {
   try {
     return h_for_tets(tiling, domain.size(), static_cast<double>(n_tets));
   } catch (const std::invalid_argument& e) {
-    throw MeshingImpossible(std::string("no edge length can be chosen: ") + e.what());
+    throw MeshingImpossible(std::string("no edge length can be chosen: ") + e.what() +
+                            "; give --h, or a --box around the place where psi < 0");
   }
 }
 

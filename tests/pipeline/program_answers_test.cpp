@@ -11,6 +11,14 @@ TEST_F(Program, HelpIsAboutTheCommand) {
     const Result r = run(std::string(command) + " --help");
     EXPECT_EQ(r.code, 0);
     EXPECT_EQ(r.out.rfind("umtet " + std::string(command), 0), 0u) << r.out;
+    // Its own examples, and no others.
+    const std::string example = "  umtet " + std::string(command) + " ";
+    EXPECT_NE(r.out.find("\n" + example), std::string::npos) << r.out;
+    std::istringstream lines(r.out);
+    for (std::string line; std::getline(lines, line);) {
+      EXPECT_TRUE(!line.starts_with("  umtet ") || line.starts_with(example)) << line;
+    }
+    EXPECT_NE(r.out.find("\nExit codes: "), std::string::npos) << r.out;
   }
   EXPECT_NE(run("reconstruct --help").out.find("{area,paper} (default area)"), std::string::npos);
   EXPECT_EQ(run("rum --help").code, 2);
