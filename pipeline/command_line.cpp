@@ -243,10 +243,31 @@ void CommandParser::check_command(int argc, const char* const* argv) const {
       fmt::format("unknown command {}{}", *word, near.empty() ? "; try umtet --help" : "; did you mean " + near + "?"));
 }
 
+namespace {
+
+/// The words of the call, the last one first, as CLI11 takes them. Behind "--box=" it would look for the value in the
+/// next word: an empty one is put there.
+std::vector<std::string> words_of(int argc, const char* const* argv) {
+  std::vector<std::string> words;
+  for (int k = 1; k < argc; ++k) {
+    std::string word = argv[k];
+    const bool clears = std::any_of(params_fields().begin(), params_fields().end(), [&](const ParamField& f) {
+      return !f.flag.empty() && !std::holds_alternative<bool>(f.preset) && word == f.flag + "=";
+    });
+    if (clears) word.pop_back();
+    words.push_back(std::move(word));
+    if (clears) words.emplace_back();
+  }
+  std::reverse(words.begin(), words.end());
+  return words;
+}
+
+}  // namespace
+
 CommandLine CommandParser::parse(int argc, const char* const* argv) {
   if (argc > 1) check_command(argc, argv);
   try {
-    app_.parse(argc, argv);
+    app_.parse(words_of(argc, argv));
   } catch (const CLI::CallForHelp&) {
     const std::vector<CLI::App*> parsed = app_.get_subcommands();
     result_.text = parsed.empty()

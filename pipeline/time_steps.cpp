@@ -59,6 +59,9 @@ std::vector<fs::path> listed_clouds(const fs::path& list) {
   for (std::string line : split(read_text(list), '\n')) {
     if (line.size() > kLongestPath)
       throw UsageError(list.string() + ": a line longer than any path: one path a line is needed");
+    // Such a path would end there, and may be that of a folder.
+    if (line.find('\0') != std::string::npos)
+      throw UsageError(list.string() + ": not a text: one path a line is needed");
     while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back()))) line.pop_back();
     if (!line.empty() && line[0] != '#') clouds.push_back(fs::absolute(list).parent_path() / line);
   }

@@ -180,6 +180,9 @@ class Batch(unittest.TestCase):
             no_list = run("batch", "cloud.xyz", "-o", "out", cwd=folder)
             self.assertEqual(no_list.returncode, 2)
             self.assertIn("none of the 2 files", no_list.stderr)
+            # Up to its NUL the line is the path of a folder, which is there.
+            (folder / "cloud.ply").write_bytes(b"ply\n\0\x3f\x01\n")
+            self.assertEqual(run("batch", "cloud.ply", "-o", "out", cwd=folder).returncode, 2)
             self.assertFalse((folder / "out").exists())
             self.assertEqual(run("batch", "list", "-o", "mine", cwd=folder).returncode, 2)
             self.assertEqual((folder / "mine" / "batch.csv").read_text(), "precious")

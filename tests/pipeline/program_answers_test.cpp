@@ -25,6 +25,13 @@ TEST_F(Program, HelpIsAboutTheCommand) {
   EXPECT_EQ(Json::parse(run("--json mesh nowhere").out)["exit_code"], 2);
 }
 
+TEST_F(Program, AnEmptyValueIsAValue) {
+  ASSERT_EQ(run("run egg.ply -o egg --box=-2,-2,-2,2,2,2 --h .3").code, 0);
+  const Result r = run("mesh egg --box= --h .3");  // the next word is no value of --box
+  EXPECT_EQ(r.code, 0) << r.err;
+  EXPECT_NE(r.err.find("mesh.box was \"-2,-2,-2,2,2,2\", is \"\""), std::string::npos) << r.err;
+}
+
 TEST_F(Program, UsageErrorsNameThePlaceAndTheRemedy) {
   const std::pair<const char*, const char*> cases[] = {
       {"mesh --implicit 'x^2+foo(y)' --box -1,-1,-1,1,1,1 -o a", "column 5"},
