@@ -163,7 +163,7 @@ ThinPlaces find_thin_places(const Domain& domain, const ZeroSetChoice& pieces, d
 LostPoint lost_of(const ThinPlaces& thin, const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
                   const KeepGoing& keep_going) {
   LostPoint lost;
-  if (thin.empty()) return lost;
+  if (thin.empty() || faces.empty()) return lost;
   const std::vector<double> d = SurfaceDistance(V, faces).distances(thin.points, keep_going);
   const auto farthest = std::max_element(d.begin(), d.end());
   lost.where = thin.points[static_cast<std::size_t>(farthest - d.begin())];
