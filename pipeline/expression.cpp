@@ -1,79 +1,77 @@
 #include "pipeline/expression.h"
 
-#include <fmt/format.h>
 #include <muParser.h>
 #include <tbb/enumerable_thread_specific.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
+#include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
-#include "pipeline/detail/derivative_size.h"
+#include "pipeline/detail/chain_rule.h"
 #include "pipeline/detail/expression_reader.h"
 
 namespace umtet {
 namespace {
 
-// Of a second derivative: it grows with the cube of the number of factors, or of brackets within each other. So much
-// takes half a second; what muParser still reads has some 1e4.
-constexpr double kMaxDerivativeSize = 2e5;
+// muParser refuses 20000 characters.
+constexpr std::size_t kMaxText = 19000;
 
 std::string at_column(const std::string& text, std::size_t column, const std::string& message) {
   return "column " + std::to_string(column) + ": " + message + "\n  " + text + "\n  " + std::string(column - 1, ' ') +
          "^";
 }
 
-/// As muParser reads it: all numbers of `e` are exact fractions, so nothing is rounded in print. GiNaC keeps sums and
-/// products in an order that depends on addresses: operands are sorted by their text, or rounding would differ from run
-/// to run.
-std::string print(const GiNaC::ex& e) {
-  const bool sum = GiNaC::is_a<GiNaC::add>(e), power = GiNaC::is_a<GiNaC::power>(e);
-  if (sum || power || GiNaC::is_a<GiNaC::mul>(e) || GiNaC::is_a<GiNaC::function>(e)) {
-    std::vector<std::string> operands;
-    for (std::size_t i = 0; i < e.nops(); ++i) operands.push_back(print(e.op(i)));
-    const bool call = GiNaC::is_a<GiNaC::function>(e);
-    if (!power && !call) std::sort(operands.begin(), operands.end());
-    std::string text = call ? GiNaC::ex_to<GiNaC::function>(e).get_name() + "(" : "(";
-    for (std::size_t i = 0; i < operands.size(); ++i) {
-      if (i > 0) text += call ? "," : power ? "^" : sum ? "+" : "*";
-      text += operands[i];
-    }
-    return text + ")";
-  }
-  std::ostringstream s;
-  s.imbue(std::locale::classic());
-  s << '(' << GiNaC::dflt << e << ')';
-  return s.str();
-}
-
-/// psi alone, psi with gradient, and all ten: three byte codes over one set of variables.
+/// psi with derivatives up to an order: byte codes that work on the same variables, one after the other.
 class Evaluator {
  public:
-  explicit Evaluator(const std::array<std::string, 3>& texts) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      mu::Parser& p = parsers_[k];
-      p.DefineConst("Pi", M_PI);
-      p.DefineFun("log", static_cast<mu::fun_type1>(std::log), true);
-      p.DefineVar("x", &x_[0]);
-      p.DefineVar("y", &x_[1]);
-      p.DefineVar("z", &x_[2]);
-      p.SetExpr(texts[k]);
-    }
+  explicit Evaluator(const Assignments& assignments)
+      : values_(assignments.texts.size()), results_(assignments.results.size()) {
+    std::string text;
+    const auto add = [&](const std::string& more) {
+      if (!text.empty() && text.size() + 1 + more.size() > kMaxText) {
+        parsers_.push_back(parser(text, assignments));
+        text.clear();
+      }
+      text += (text.empty() ? "" : ",") + more;
+    };
+    for (const auto& [name, value] : assignments.texts) add(name + "=" + value);
+    std::string results;
+    for (const std::string& result : assignments.results) results += (result.empty() ? ",0" : "," + result);
+    add(results.substr(1));
+    parsers_.push_back(parser(text, assignments));
   }
-  Evaluator(const Evaluator&) = delete;  // the parsers hold the addresses of x_
+  Evaluator(const Evaluator&) = delete;  // the parsers hold the addresses of x_ and values_
 
-  const double* operator()(std::size_t order, const Vec3& x) {
+  /// \return psi and its derivatives
+  const double* operator()(const Vec3& x) {
     x_ = {x[0], x[1], x[2]};
     int n = 0;
-    return parsers_[order].Eval(n);
+    const double* values = nullptr;
+    for (const auto& p : parsers_) values = p->Eval(n);
+    return values + n - results_;
   }
 
  private:
+  std::unique_ptr<mu::Parser> parser(const std::string& text, const Assignments& assignments) {
+    auto p = std::make_unique<mu::Parser>();
+    p->DefineFun("log", static_cast<mu::fun_type1>(std::log), true);
+    for (std::size_t i = 0; i < 3; ++i) p->DefineVar(std::string(1, "xyz"[i]), &x_[i]);
+    for (std::size_t k = 0; k < values_.size(); ++k) p->DefineVar(assignments.texts[k].first, &values_[k]);
+    for (const auto& [name, value] : assignments.constants) p->DefineConst(name, value);
+    p->SetExpr(text);
+    return p;
+  }
+
   std::array<double, 3> x_{};
-  std::array<mu::Parser, 3> parsers_;
+  std::vector<double> values_;
+  std::size_t results_;
+  std::vector<std::unique_ptr<mu::Parser>> parsers_;
 };
+
+using Evaluators = std::array<Evaluator, 3>;
 
 }  // namespace
 
@@ -82,34 +80,24 @@ ExpressionError::ExpressionError(const std::string& text, std::size_t column, co
 
 struct Expression::Impl {
   Impl(std::string formula, std::optional<double> t) : text(std::move(formula)) {
-    const auto [psi, s] = read_expression(text, t);
-    texts[0] = print(psi);
-    if (const double size = second_derivative_size(psi); size > kMaxDerivativeSize) {
-      throw ExpressionError(text, 1,
-                            fmt::format("a second derivative would be some {:.2g} terms long, more than {:.0e}: "
-                                        "fewer factors, powers or brackets within each other are needed",
-                                        size, kMaxDerivativeSize));
-    }
+    const GiNaC::ex psi = read_expression(text, t).psi;
     try {
-      texts[1] = texts[0];
-      for (std::size_t i = 0; i < 3; ++i) texts[1].append(",").append(print(psi.diff(s[i])));
-      texts[2] = texts[1];
-      for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t j = i; j < 3; ++j) texts[2].append(",").append(print(psi.diff(s[i]).diff(s[j])));
-      }
+      for (const std::size_t order : {0, 1, 2}) assignments[order] = chain_rule(psi, static_cast<int>(order));
     } catch (const std::exception& e) {  // GiNaC: 0^z has a value, and no derivative
       throw ExpressionError(text, 1, std::string("no derivative: ") + e.what());
     }
     try {
-      for (const std::size_t order : {0, 1, 2}) evaluators.local()(order, Vec3::Zero());
+      for (const std::size_t order : {0, 1, 2}) evaluators.local()[order](Vec3::Zero());
     } catch (const mu::ParserError& e) {  // it reads its text at the first call
       throw ExpressionError(text, 1, "cannot be evaluated: " + e.GetMsg());
     }
   }
 
   std::string text;
-  std::array<std::string, 3> texts;  ///< psi; psi and gradient; psi, gradient and xx xy xz yy yz zz
-  mutable tbb::enumerable_thread_specific<Evaluator> evaluators{[this] { return Evaluator(texts); }};
+  std::array<Assignments, 3> assignments;  ///< of psi; of psi and gradient; of psi, gradient and Hessian
+  mutable tbb::enumerable_thread_specific<Evaluators> evaluators{[this] {
+    return Evaluators{Evaluator(assignments[0]), Evaluator(assignments[1]), Evaluator(assignments[2])};
+  }};
 };
 
 Expression::Expression(const std::string& text, std::optional<double> t) : impl_(std::make_unique<Impl>(text, t)) {}
@@ -120,7 +108,7 @@ Expression& Expression::operator=(Expression&&) noexcept = default;
 const std::string& Expression::text() const { return impl_->text; }
 
 double Expression::evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const {
-  const double* v = impl_->evaluators.local()(hessian ? 2 : gradient ? 1 : 0, x);
+  const double* v = impl_->evaluators.local()[hessian ? 2 : gradient ? 1 : 0](x);
   if (gradient) *gradient = {v[1], v[2], v[3]};
   if (hessian) *hessian << v[4], v[5], v[6], v[5], v[7], v[8], v[6], v[8], v[9];
   return v[0];
