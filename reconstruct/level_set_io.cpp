@@ -185,7 +185,7 @@ LevelSet read_level_set(const std::filesystem::path& path) {
   if (!wrong.empty()) throw LevelSetRefused(file + ": " + wrong.front());
   const int* dims = image->GetDimensions();
   Lattice lattice{{l[0], l[1], l[2]}, l[3], {dims[0], dims[1], dims[2]}};
-  if (l[4] != dims[0] || l[5] != dims[1] || l[6] != dims[2] || !(l[3] > 0) || !std::isfinite(l[0] + l[1] + l[2] + l[3])) {
+  if (l[4] != dims[0] || l[5] != dims[1] || l[6] != dims[2] || !(l[3] > 0)) {
     throw LevelSetRefused(file + ": the field data 'lattice' does not fit the image");
   }
   auto* a = vtkDoubleArray::SafeDownCast(image->GetPointData()->GetArray("psi_a"));
