@@ -113,6 +113,17 @@ std::vector<std::int8_t> settle(const OrientedPointCloud& cloud, const Signs& si
   return verdict;
 }
 
+/// Points of components whose outward side is a guess, by the signs that they are left with: of two spheres that touch,
+/// solved as one surface, one is turned and together they enclose nothing, but repair keeps both as they came.
+std::size_t doubtful_points(const OrientedPointCloud& cloud, const Signs& signs, const std::vector<double>& areas) {
+  Sides sides(cloud, signs, areas);
+  sides.find_cavities(signs.component);
+  std::size_t n = 0;
+  for (std::size_t c = 0; c < sides.bodies.size(); ++c)
+    if (!sides.bodies[c].tells_sides() || sides.half_inside[c]) n += sides.bodies[c].n_points;
+  return n;
+}
+
 /// What the pairs along the border of a region say, and the region itself.
 struct Region {
   double disagrees = 0, all = 0;  ///< sums of |weight|
@@ -217,9 +228,10 @@ bool is_right_as_given(const OrientedPointCloud& cloud, const Neighbourhoods& ne
   return true;
 }
 
-/// Whether points that would be turned lie on a sheet of their own: nearer to one of the others than to most of theirs, and
-/// all to the same side of it. Then body or gap between is thinner than the samples are apart, and turning one sheet
-/// would make one surface of two. Where normals are merely turned over, the sides of the others are evenly spread.
+/// Whether points that would be turned lie on a sheet of their own: nearer to one of the others than to most of theirs,
+/// and all to the same side of it. Then body or gap between is thinner than the samples are apart, and turning one
+/// sheet would make one surface of two. Where normals are merely turned over, the sides of the others are evenly
+/// spread.
 bool lie_on_another_sheet(const OrientedPointCloud& cloud, const Neighbourhoods& near,
                           const std::vector<std::int8_t>& sign) {
   std::size_t n_turned = 0;
@@ -270,7 +282,6 @@ OrientationReport orient(OrientedPointCloud& cloud, const OrientationParams& par
     const EnclosedVolume& body = sides.bodies[c];
     const bool is_counted = body.n_points >= kCountedPoints, tells = body.tells_sides();
     if (given == Given::Signs && !(tells && is_counted)) sides.turn[c] = votes[c] < 0 ? -1 : 1;
-    if (!tells || sides.half_inside[c]) report.n_doubtful += body.n_points;
     if (is_counted) ++report.n_components;
     if (sides.depth[c] % 2 == 1) ++report.n_cavities;
   }
@@ -280,10 +291,8 @@ OrientationReport orient(OrientedPointCloud& cloud, const OrientationParams& par
     const std::size_t few = report.consistency >= kConsistent ? kFewPoints : 0;
     keep_undisputed(cloud, areas, edges, params.disagreement, few, signs.sign);
   }
-  if (given == Given::Signs && lie_on_another_sheet(cloud, *near, signs.sign)) {
-    report.left_alone = true;
-    return report;
-  }
+  if (given == Given::Signs && lie_on_another_sheet(cloud, *near, signs.sign)) signs.sign.assign(n, 1);
+  report.n_doubtful = doubtful_points(cloud, signs, areas);
   for (std::size_t i = 0; i < n; ++i) {
     if (signs.sign[i] > 0 || cloud.normals[i].isZero(0)) continue;
     cloud.normals[i] = -cloud.normals[i];

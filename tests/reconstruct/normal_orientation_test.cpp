@@ -209,6 +209,20 @@ TEST(RepairNormals, ABodyThatTouchesAnotherStaysAsItCame) {
   }
 }
 
+// Equal ones enclose nothing when one of them is turned over: what they are left with tells their sides.
+TEST(RepairNormals, SpheresThatTouchAreNoGuess) {
+  for (const double gap : {0.0, 0.01}) {
+    OrientedPointCloud cloud;
+    for (const double side : {-1.0, 1.0}) test::add_sphere(cloud, {side * (1 + gap / 2), 0, 0}, 1, 5000);
+    const std::vector<Vec3> given = cloud.normals;
+    const OrientationReport report = repair_normals(cloud);
+    EXPECT_EQ(report.n_components, 1U) << "no pairs across the gap";
+    EXPECT_EQ(report.n_doubtful, 0U) << gap;
+    EXPECT_TRUE(report.left_alone) << gap;
+    EXPECT_EQ(cloud.normals, given) << gap;
+  }
+}
+
 TEST(RepairNormals, OneInAThousandIsTurnedBackOnSmoothPlaces) {
   for (const OrientedPointCloud& right : {test::torus_cloud(20000), sampled(testing::equation_9(), 20000)}) {
     OrientedPointCloud cloud = right;
