@@ -215,7 +215,7 @@ std::optional<UmResult> Evolution::make(Step& step, Domain& domain) {
   Json measured = measure(domain, result, pieces, h_, not_interrupted);
   check_lost(domain, result, thin, measured, not_interrupted);
   check_deviation(parameters_.real("mesh.max_deviation"), measured);
-  if (!may_be_thin && !measured.at("reasons").empty()) {
+  if (!may_be_thin && !measured.at("reasons").empty() && !is_only_coarse(measured)) {
     refuse_thin(thin, measured.at("reasons").at(0).get<std::string>(), domain.shift);
   }
   judge(measured, parameters_);

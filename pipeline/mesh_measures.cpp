@@ -143,6 +143,11 @@ void check_deviation(double asked, Json& measured) {
       fmt::format("a face centre is {:.4g} from psi = 0, more than the {:.4g} of --max-deviation", made, asked));
 }
 
+bool is_only_coarse(const Json& measured) {
+  const Json& gap = measured.at("boundary").at("gap_over_volume");
+  return measured.at("reasons").size() == 1 && gap.is_number() && gap.get<double>() > kMostGap;
+}
+
 void check_lost(const Domain& domain, const UmResult& result, const ThinPlaces& thin, Json& measured,
                 const KeepGoing& keep_going) {
   measured["resolution"]["too_thin"] = to_json(thin, domain.shift);

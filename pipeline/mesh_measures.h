@@ -22,6 +22,10 @@ void check_deviation(double asked, Json& measured);
 void check_lost(const Domain& domain, const UmResult& result, const ThinPlaces& thin, Json& measured,
                 const KeepGoing& keep_going = {});
 
+/// Of a measured mesh: right but for the size of its faces (kMostGap). It is kept to be looked at, thin places or not,
+/// and the certificate says no.
+bool is_only_coarse(const Json& measured);
+
 /// The blocks `quality` and `boundary` and the counts before them.
 Json to_json(const MeshCertificate& certificate);
 

@@ -3,7 +3,6 @@
 #include <chrono>
 #include <cmath>
 
-#include "mesh/certificate.h"
 #include "mesh/universal_mesh.h"
 #include "pipeline/background_choice.h"
 #include "pipeline/domain.h"
@@ -28,13 +27,6 @@ constexpr double kTetsTolerance = .1;
 // Pieces of psi = 0 are looked for on a grid of h and, where there is none, on so many grids twice as fine as the one
 // before.
 constexpr int kFinerGrids = 3;
-
-/// Right but for the size of its faces: there to be looked at, and the certificate says no.
-bool is_only_coarse(const MeshAttempt& a) {
-  if (!a.made() || a.n_reasons() != 1) return false;
-  const Json& gap = a.measured.at("boundary").at("gap_over_volume");
-  return gap.is_number() && gap.get<double>() > kMostGap;
-}
 
 class MeshStage {
  public:
@@ -241,7 +233,7 @@ void MeshStage::run() {
       [this](const std::string& line) { context_.progress.say(line); });
   const UmResult& result = best.result;
   const bool refuses_thin = !best.thin.empty() && !context_.parameters.flag("mesh.allow_thin");
-  if (refuses_thin && !best.is_right() && !is_only_coarse(best)) refuse_thin(best);
+  if (refuses_thin && !best.is_right() && !(best.made() && is_only_coarse(best.measured))) refuse_thin(best);
   if (!best.made()) refuse(result, best.h);
 
   context_.progress.report("mesh", "write", .97);

@@ -39,7 +39,8 @@ class Mesher {
     const EdgeLength h = edge_length();
     MeshAttempt best = best_attempt(
         h, [this](double tried) { return attempt(tried); }, [](const std::string&) {});
-    if (!best.is_right() && !best.thin.empty() && !parameters_.flag("mesh.allow_thin")) refuse_thin(best);
+    const bool refuses_thin = !best.thin.empty() && !parameters_.flag("mesh.allow_thin");
+    if (refuses_thin && !best.is_right() && !(best.made() && is_only_coarse(best.measured))) refuse_thin(best);
     if (!best.made()) throw failure(best.result, best.h, domain_.shift);
     return best;
   }

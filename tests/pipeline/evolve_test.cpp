@@ -122,6 +122,20 @@ TEST_F(Program, TheMeshDecidesWhereAnInstantIsThin) {
   EXPECT_EQ(Json::parse(kept.out)["steps"][0]["verdict"], "fail") << kept.out;
 }
 
+TEST_F(Program, AnInstantThatIsOnlyCoarseIsKeptAndNamed) {
+  // Thin for h, too, which is not what is wrong with its few tets.
+  const std::string body = "evolve --implicit 'x^2+y^2+4*z^2-1' --box=-6,-6,-6,6,6,6 --h 1.6 --t 2:1:2 -o coarse ";
+  const Result r = run(body + "--json");
+  EXPECT_EQ(r.code, 6);
+  const Json step = Json::parse(r.out)["steps"][0];
+  EXPECT_GT(step["resolution"]["too_thin"].size(), 0u) << step;
+  EXPECT_EQ(step["verdict"], "fail") << step;
+  ASSERT_EQ(step["reasons"].size(), 1u) << step;
+  EXPECT_TRUE(step["reasons"][0].get<std::string>().starts_with("volume_gap")) << step;
+  EXPECT_TRUE(fs::exists(folder / "coarse/step_0000.vtu"));
+  EXPECT_NE(run(body).out.find("failed    t = 2: volume_gap"), std::string::npos);
+}
+
 TEST_F(Program, ACloudThatIsMissingOrBadIsNamedAndTheOthersAreThere) {
   write_cloud("second.ply", [](const double(&x)[6]) {
     return std::to_string(x[0]) + " " + std::to_string(x[1] + .2) + " " + std::to_string(x[2]) + " " +

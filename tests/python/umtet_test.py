@@ -75,6 +75,13 @@ class Reconstruct(unittest.TestCase):
             umtet.reconstruct(self.points, -self.normals, normal_source="given")
         self.assertEqual(e.exception.evidence["status"], "SolveError")
 
+    def test_only_coarse_is_kept_and_fails(self):
+        m = umtet.mesh("x^2+y^2+4*z^2-1", box=(-6, -6, -6, 6, 6, 6), h=1.6)
+        self.assertEqual(len(m.certificate["resolution"]["too_thin"]), 1)
+        self.assertEqual(m.certificate["verdict"], "fail")
+        self.assertEqual(len(m.certificate["reasons"]), 1)
+        self.assertTrue(m.certificate["reasons"][0].startswith("volume_gap"))
+
     def test_broken_contracts(self):
         for arguments in ((self.points, self.normals[1:]), (self.points[:, :2], ), ([[np.nan, 0, 0]] * 20, )):
             with self.assertRaises(ValueError):
