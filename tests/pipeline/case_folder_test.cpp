@@ -54,6 +54,16 @@ TEST_F(CaseFolder, OtherParametersAndOtherInputAreChanges) {
   EXPECT_EQ(inspect_stage(paths, Stage::LevelSet, parameters, std::nullopt).kind, Kind::Done);
 }
 
+TEST_F(CaseFolder, AnotherVersionIsAChange) {
+  finish_stage();
+  Json record = Json::parse(read_text(paths.record(Stage::LevelSet)));
+  record["version"] = "0.0.1";
+  std::ofstream(paths.record(Stage::LevelSet)) << file_text(sealed(record));
+  const StageState state = inspect_stage(paths, Stage::LevelSet, parameters, inputs);
+  EXPECT_EQ(state.kind, Kind::Changed);
+  EXPECT_EQ(state.reason, "made by version 0.0.1");
+}
+
 TEST_F(CaseFolder, EveryFlippedByteOfAnOutputIsDamage) {
   finish_stage();
   const std::string good = read_text(paths.level_set());
