@@ -116,7 +116,7 @@ void judge(Json& measured, const Parameters& parameters) {
   measured.erase("reasons");  // they go behind the verdict
   const double gate = parameters.real("output.min_quality"), q = measured.at("quality").at("min");
   measured["gates"] = {{"min_quality", gate > 0 ? Json(gate) : Json(nullptr)}, {"volume_gap", kMostGap}};
-  if (q < gate) reasons.push_back(fmt::format("min quality {:.4f} is below the gate of {:.4f}", q, gate));
+  if (gate > 0 && q < gate) reasons.push_back(fmt::format("min quality {:.4f} is below the gate of {:.4f}", q, gate));
   measured["verdict"] = reasons.empty() ? "pass" : "fail";
   measured["reasons"] = reasons;
 }

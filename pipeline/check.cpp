@@ -102,7 +102,7 @@ Json check_mesh(const fs::path& file, const std::optional<fs::path>& against, co
   Json second = nullptr;
   if (content.quadratic) second = check_second_order(*content.quadratic, input, certificate.h, reasons);
   const double min_quality = parameters.real("output.min_quality");
-  if (certificate.quality.min < min_quality) {
+  if (min_quality > 0 && certificate.quality.min < min_quality) {
     reasons.push_back(
         fmt::format("min quality {:.4f} is below the gate of {:.4f}", certificate.quality.min, min_quality));
   }

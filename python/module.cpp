@@ -6,9 +6,11 @@
 #include <pybind11/stl/filesystem.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <system_error>
 
 #include "mesh/a15_box.h"
@@ -195,9 +197,22 @@ py::array_t<double> evaluate(const Reconstruction& r, const Points& points, int 
   return out;
 }
 
+/// A message of the pipeline, which names flags of the program, with keyword arguments in their place.
+std::string in_python(std::string message) {
+  for (std::size_t at = 0; (at = message.find("--", at)) != std::string::npos;) {
+    const std::size_t end = message.find_first_not_of("abcdefghijklmnopqrstuvwxyz-", at);
+    const std::string flag = message.substr(at, end - at);
+    const auto& fields = params_fields();
+    const auto field = std::find_if(fields.begin(), fields.end(), [&](const ParamField& f) { return f.flag == flag; });
+    if (field != fields.end()) message.replace(at, flag.size(), field->key.substr(field->key.find('.') + 1));
+    at += 2;
+  }
+  return message;
+}
+
 /// Raises `type` with an attribute `evidence`.
 void raise(const py::handle& type, const char* message, const Json& evidence) {
-  const py::object error = type(message);
+  const py::object error = type(in_python(message));
   error.attr("evidence") = dict_of(evidence);
   PyErr_SetObject(type.ptr(), error.ptr());
 }
@@ -224,11 +239,11 @@ void register_errors(py::module_& m) {
     } catch (const Cancelled& e) {
       cancelled(e.what());
     } catch (const UsageError& e) {
-      PyErr_SetString(PyExc_ValueError, e.what());
+      PyErr_SetString(PyExc_ValueError, in_python(e.what()).c_str());
     } catch (const ExpressionError& e) {
-      PyErr_SetString(PyExc_ValueError, e.what());
+      PyErr_SetString(PyExc_ValueError, in_python(e.what()).c_str());
     } catch (const MeshFileRefused& e) {
-      PyErr_SetString(PyExc_ValueError, e.what());
+      PyErr_SetString(PyExc_ValueError, in_python(e.what()).c_str());
     } catch (const std::system_error& e) {
       PyErr_SetString(PyExc_OSError, e.what());
     }

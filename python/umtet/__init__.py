@@ -109,6 +109,8 @@ def reconstruct(points, normals=None, *, normal_source=None, progress=None, thre
     Returns a LevelSet: value(points), gradient(points), hessian(points), box (2, 3), points and normals that were used,
     report, save("level_set.vti"). ReconstructionError: the samples do not bound a body, or it would not fit in memory.
     """
+    if isinstance(points, (str, os.PathLike)):
+        raise TypeError("points: an array (n, 3) is wanted; files are read by `umtet run`")
     parameters["normals"] = normal_source
     return _core.reconstruct(points, normals, _settings(("cloud", "reconstruct"), parameters), progress, threads)
 

@@ -88,6 +88,8 @@ class Reconstruct(unittest.TestCase):
                 umtet.reconstruct(*arguments)
         with self.assertRaisesRegex(ValueError, "detail"):
             umtet.reconstruct(self.points, self.normals, detail=-1)
+        with self.assertRaisesRegex(TypeError, "files are read by"):
+            umtet.reconstruct("scan.ply")
         with self.assertRaisesRegex(TypeError, "detial"):
             umtet.reconstruct(self.points, self.normals, detial=1)
 
@@ -311,7 +313,7 @@ class Moving(unittest.TestCase):
         self.assertTrue(alone.certified, alone.certificate["reasons"])
         at_walls = alone.points[np.unique(alone.walls)]
         self.assertTrue(((at_walls == np.array(box[:3])) | (at_walls == np.array(box[3:]))).any(1).all())
-        with self.assertRaisesRegex(ValueError, "box-walls"):
+        with self.assertRaisesRegex(ValueError, "^complement needs box_walls: .* of box$"):  # no flags
             umtet.UniversalMesh(box, h=.25, complement=True)
 
     def test_a_failed_update_leaves_the_last(self):
@@ -357,6 +359,8 @@ class Certificate(unittest.TestCase):
         tets[0, :2] = tets[0, 1::-1]
         self.assertEqual(umtet.certificate(m.points, tets)["quality"]["n_inverted"], 1)
         self.assertEqual(umtet.certificate(m.points, tets)["verdict"], "fail")
+        self.assertEqual(umtet.certificate(m.points, tets)["gates"]["min_quality"], None)
+        self.assertFalse([r for r in umtet.certificate(m.points, tets)["reasons"] if "gate" in r])  # none was asked for
         self.assertEqual(umtet.certificate(m.points, m.tets, min_quality=.99)["verdict"], "fail")
         self.assertEqual(umtet.certificate(1.01 * m.points, m.tets, BALL, h=.2)["verdict"], "fail")
         with self.assertRaises(ValueError):
