@@ -31,7 +31,7 @@ enum class SubmeshSearch { FullLoop, Crawl };  ///< Alg. 1, steps 1-22, or Secti
 
 struct UmParams {
   UmMode mode = UmMode::Paper;
-  FastParams fast;                 ///< of UmMode::Fast, which has no use for the parameters down to max_min
+  FastParams fast;                 ///< of UmMode::Fast, which has no use for those down to max_min, and the seed
   int projection_passes = 5;       ///< N_P: positive vertices reach the boundary in this many steps, eq. (1); >= 1
   int relaxation_iterations = 25;  ///< N_R of Algorithms 1 and 2; >= 0
   int samples = 20;                ///< N_S: 2 N_S + 1 candidates in [-h, h], eq. (7); >= 1
