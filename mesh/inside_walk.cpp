@@ -53,7 +53,8 @@ std::size_t InsideWalk::restart(ImplicitFunctionRef psi, const KeepGoing& keep_g
   return n;
 }
 
-std::size_t InsideWalk::update(ImplicitFunctionRef psi, std::vector<std::int64_t> more, const KeepGoing& keep_going) {
+std::size_t InsideWalk::update(ImplicitFunctionRef psi, const std::vector<std::int64_t>& more,
+                               const KeepGoing& keep_going) {
   std::vector<std::int64_t> asked, changed, front;
   const auto add = [&](std::int64_t v) {
     if (seen_.test(v)) return;

@@ -21,7 +21,7 @@ class InsideWalk {
   /// neighbours, and so on: right wherever a connected set of vertices that change sides touches one of them.
   /// When it throws, it stays as it was. @param more  ids. @return the number of values. \throw MeshCancelled, and
   /// what psi throws
-  std::size_t update(ImplicitFunctionRef psi, std::vector<std::int64_t> more, const KeepGoing& keep_going = {});
+  std::size_t update(ImplicitFunctionRef psi, const std::vector<std::int64_t>& more, const KeepGoing& keep_going = {});
 
   const detail::IdSet& inside() const { return inside_; }
   bool has_boundary() const { return !boundary_.empty(); }

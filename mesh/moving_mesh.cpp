@@ -146,7 +146,7 @@ std::size_t UniversalMesh::Impl::search(ImplicitFunctionRef psi, const UpdateHin
     more.insert(more.end(), corners.begin(), corners.end());
     for (const std::int64_t v : corners) background.link(v, more);
   }
-  return walk.update(psi, std::move(more), keep_going);
+  return walk.update(psi, more, keep_going);
 }
 
 /// True if psi < 0 at the vertices where it was, and psi = 0 at those of the boundary: the last mesh is one of this

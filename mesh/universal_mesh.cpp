@@ -47,7 +47,11 @@ class Run {
     } catch (const MeshCancelled&) {
       fail(UmStatus::Cancelled, {.what = "stopped by the observer during search"});
     }
-    result_.final = mesh_ ? std::move(mesh_->V) : submesh().mesh.V;
+    if (mesh_) {
+      result_.final = std::move(mesh_->V);
+    } else {
+      result_.final = submesh().mesh.V;
+    }
     if (result_.projected.empty()) result_.projected = result_.final;
     return std::move(result_);
   }
@@ -255,7 +259,7 @@ void Run::improve_boundary() {
 
 std::vector<std::string> problems(const UmParams& params) {
   std::vector<std::string> list = problems(params.closest_point);
-  for (std::string& problem : list) problem = "closest_point." + problem;
+  for (std::string& problem : list) problem.insert(0, "closest_point.");
   for (const std::string& problem : problems(params.fast)) list.push_back("fast." + problem);
   const auto at_least = [&](const char* name, int value, int least) {
     if (value < least) {

@@ -60,9 +60,9 @@ BackgroundMesh BackgroundChoice::make(const Domain& domain, double h, std::int64
     return std::min(n, static_cast<double>(background.n_tets()));
   };
   try {
-    const BackgroundMesh background = given_   ? *given_
-                                      : walls_ ? BackgroundMesh(a15_box(domain.box, h))
-                                               : BackgroundMesh(*tiling_, domain.box, h);
+    BackgroundMesh background = given_   ? *given_
+                                : walls_ ? BackgroundMesh(a15_box(domain.box, h))
+                                         : BackgroundMesh(*tiling_, domain.box, h);
     require_memory(background, expected(background), allowed);
     return background;
   } catch (const std::invalid_argument& e) {  // h and the box have been checked: their tets are too many to count

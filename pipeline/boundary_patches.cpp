@@ -21,7 +21,7 @@ namespace umtet {
 namespace {
 
 // A piece that a majority of the voters can make is below the area that so many samples stand for.
-constexpr double kIslandSamples = kVoters / 2 + 1;
+constexpr int kIslandSamples = kVoters / 2 + 1;
 // Mean faces. A vertex with all faces around it, and these with their neighbours, is the least that shows whether a
 // part is flat or bends: with fewer, single faces of a sphere would be planes.
 constexpr double kLeastPlane = 20;

@@ -38,11 +38,12 @@ void add_differences(const Json& a, const Json& b, const std::string& pointer, J
     list.push_back({{"at", pointer}, {"a", a}, {"b", b}});
     return;
   }
+  const auto below = [&](const std::string& key) { return pointer + "/" + key; };
   for (const auto& [key, value] : a.items()) {
-    add_differences(value, b.contains(key) ? b[key] : Json(nullptr), pointer + "/" + key, list);
+    add_differences(value, b.contains(key) ? b[key] : Json(nullptr), below(key), list);
   }
   for (const auto& [key, value] : b.items()) {
-    if (!a.contains(key)) add_differences(nullptr, value, pointer + "/" + key, list);
+    if (!a.contains(key)) add_differences(nullptr, value, below(key), list);
   }
 }
 

@@ -33,6 +33,7 @@ void round_to_file(UmResult& result, const Vec3& shift) {
 void set_support(const Domain& domain, const std::vector<Vec3>& V, const std::vector<int>& vertices,
                  std::vector<double>& support) {
   std::vector<Vec3> x;
+  x.reserve(vertices.size());
   for (const int i : vertices) x.push_back(V[i]);
   const std::vector<double> d = domain.samples->distances(x, not_interrupted);
   for (std::size_t k = 0; k < d.size(); ++k) support[vertices[k]] = d[k];

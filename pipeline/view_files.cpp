@@ -33,7 +33,7 @@ constexpr const char* kFolder = "5-view";
 constexpr std::array kNames = {"psi.vti", "zero.vtp", "view.py"};
 
 vtkSmartPointer<vtkFloatArray> values(const char* name, std::size_t n) {
-  const auto array = vtkSmartPointer<vtkFloatArray>::New();
+  auto array = vtkSmartPointer<vtkFloatArray>::New();
   array->SetName(name);
   array->SetNumberOfValues(static_cast<vtkIdType>(n));
   return array;
@@ -53,14 +53,14 @@ vtkSmartPointer<vtkImageData> sampled(const Domain& domain, double h) {
   const std::size_t n_nodes = static_cast<std::size_t>(n.x()) * n.y() * n.z();
   const vtkSmartPointer<vtkFloatArray> psi = values("psi", n_nodes), slope = values("grad_psi", n_nodes);
   polled_parallel_for(n_nodes, kValuesPerPoll, not_interrupted, [&](std::size_t k) {
-    const Vec3 at(static_cast<double>(k % n.x()), static_cast<double>(k / n.x() % n.y()),
-                  static_cast<double>(k / n.x() / n.y()));
+    const std::size_t row = k / n.x(), layer = row / n.y();
+    const Vec3 at(static_cast<double>(k % n.x()), static_cast<double>(row % n.y()), static_cast<double>(layer));
     Vec3 g;
     psi->SetValue(static_cast<vtkIdType>(k), static_cast<float>(domain.psi().value(origin + at.cwiseProduct(step), g)));
     slope->SetValue(static_cast<vtkIdType>(k), static_cast<float>(g.norm()));
   });
   const Vec3 shown = origin + domain.shift;
-  const auto image = vtkSmartPointer<vtkImageData>::New();
+  auto image = vtkSmartPointer<vtkImageData>::New();
   image->SetDimensions(n.data());
   image->SetOrigin(shown.data());
   image->SetSpacing(step.data());
@@ -181,6 +181,7 @@ std::vector<fs::path> write_view(const CasePaths& paths, Progress& progress) {
   fs::create_directories(folder);
   remove_stale_temporaries(folder);
   std::vector<fs::path> files;
+  files.reserve(kNames.size());
   for (const char* name : kNames) files.push_back(folder / name);
   progress.report("view", "psi", 0);
   const vtkSmartPointer<vtkImageData> image = sampled(domain, h);

@@ -35,14 +35,14 @@ class IdList {
     return s;
   }
   void grow() {
-    shift_ = table_.empty() ? 64 - 10 : shift_ - 1;
+    --shift_;
     table_.assign(std::size_t{1} << (64 - shift_), 0);
     for (std::size_t k = 0; k < ids_.size(); ++k) table_[slot(ids_[k])] = static_cast<int>(k) + 1;
   }
 
   std::vector<std::int64_t> ids_;
   std::vector<int> table_;  ///< number + 1, 0 = free; a power of two, at most half full
-  int shift_ = 0;           ///< of a 64-bit hash, to a slot
+  int shift_ = 64 - 9;      ///< of a 64-bit hash, to a slot; the first table has 2^10
 };
 
 }  // namespace umtet::detail

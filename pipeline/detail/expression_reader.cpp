@@ -156,7 +156,7 @@ GiNaC::ex Builder::power(const Node& base, const Node& exponent) const {
       throw ExpressionError(text_, exponent.column, "this power is out of range");
     }
   }
-  const GiNaC::ex e = GiNaC::pow(base.e, exponent.e);
+  GiNaC::ex e = GiNaC::pow(base.e, exponent.e);
   if (GiNaC::is_a<GiNaC::power>(e) && GiNaC::is_a<GiNaC::numeric>(e.op(1)) &&
       GiNaC::abs(GiNaC::ex_to<GiNaC::numeric>(e.op(1))) > GiNaC::numeric(static_cast<long>(kMaxExponent))) {
     throw ExpressionError(text_, exponent.column, "this power is out of range");
@@ -259,7 +259,7 @@ mu::Parser grammar() {
 
 /// muParser takes everything up to the next blank or bracket for a token, and adds a blank to the text.
 std::string offending_token(const mu::ParserError& e) {
-  const std::string token = e.GetToken();
+  const std::string& token = e.GetToken();
   if (!token.empty() && std::string("+-*/^").find(token[0]) != std::string::npos) return token.substr(0, 1);
   return token.substr(0, token.find_last_not_of(" \t") + 1);
 }
@@ -321,7 +321,7 @@ GiNaC::ex Builder::build() {
   try {
     mu::Parser p = grammar();
     p.SetExpr(text_);
-    const GiNaC::ex e = node(p.Eval()).e;
+    GiNaC::ex e = node(p.Eval()).e;
     for (const GiNaC::realsymbol& s : symbols_) {
       if (e.has(s)) {
         if (e.has(GiNaC::I)) throw ExpressionError(text_, 1, "not real: it contains the root of a negative number");

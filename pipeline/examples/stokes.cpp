@@ -11,8 +11,8 @@ namespace {
 
 /// A tet with its four affine functions.
 struct Element {
-  double volume;
   Eigen::Matrix<double, 4, 3> G;  ///< gradients, by row
+  double volume;
   double h2;                      ///< mean of the squared edges
 };
 

@@ -114,15 +114,18 @@ void SwimFiles::write_fields(std::size_t row, const FluidMesh& fluid, std::span<
       with_standard_data(std::move(mesh), vertex, std::vector<std::int64_t>(fluid.tets.begin(), fluid.tets.end()));
   const auto add = [&](const std::string& name, const auto& value_at) {
     std::vector<double> values;
+    values.reserve(vertex.size());
     for (const std::int64_t v : vertex) values.push_back(value_at(static_cast<std::size_t>(v)));
     file.point_data[name] = std::move(values);
   };
-  for (const auto& [name, flow] : {std::pair{"phi", &motion.deformation}, std::pair{"z", &motion.translation}}) {
+  const auto add_flow = [&](const char* name, const auto& flow) {
     for (int c = 0; c < 3; ++c) {
-      add(fmt::format("u_{}_{}", name, "xyz"[c]), [&](std::size_t v) { return flow->u[v][c]; });
+      add(fmt::format("u_{}_{}", name, "xyz"[c]), [&](std::size_t v) { return flow.u[v][c]; });
     }
-    add(fmt::format("p_{}", name), [&](std::size_t v) { return flow->p[v]; });
-  }
+    add(fmt::format("p_{}", name), [&](std::size_t v) { return flow.p[v]; });
+  };
+  add_flow("phi", motion.deformation);
+  add_flow("z", motion.translation);
   write_artefact(folder_ / field_file(row), [&](const std::filesystem::path& path) { write_vtu(path, file); });
 }
 
