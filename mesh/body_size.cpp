@@ -1,5 +1,6 @@
 #include "mesh/body_size.h"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -49,6 +50,7 @@ CoarseMeasure sample(ImplicitFunctionRef psi, const Box& box, double steepest) {
       }
     }
   });
+  BodySize size;
   double inside = 0, crossings = 0;
   Box found;
   const std::array<int, 3> stride = {1, n.x(), n.x() * n.y()};
@@ -57,6 +59,7 @@ CoarseMeasure sample(ImplicitFunctionRef psi, const Box& box, double steepest) {
       for (int i = 0; i < n.x(); ++i) {
         const std::size_t at = i + n.x() * (j + n.y() * static_cast<std::size_t>(k));
         const std::array<int, 3> index = {i, j, k};
+        if (!std::isfinite(values[at]) && size.n_not_finite++ == 0) size.not_finite = origin + d * Vec3(i, j, k);
         if (values[at] < 0) {
           ++inside;
           found.extend(origin + d * Vec3(i, j, k));
@@ -68,7 +71,9 @@ CoarseMeasure sample(ImplicitFunctionRef psi, const Box& box, double steepest) {
     }
   }
   if (!found.isEmpty()) found = Box(found.min() - Vec3::Constant(d), found.max() + Vec3::Constant(d)).intersection(box);
-  return {{inside * d * d * d, crossings * d * d / 1.5}, found};
+  size.volume = inside * d * d * d;
+  size.area = crossings * d * d / 1.5;
+  return {size, found};
 }
 
 /// A body in a large box is sampled again in its own.
@@ -106,7 +111,15 @@ double expected_tets(ImplicitFunctionRef psi, const Box& box, double h) { return
 
 double h_for_tets(const Tiling& tiling, const BodySize& size, double n_tets) {
   if (!(n_tets > 0)) throw std::invalid_argument("n_tets = " + std::to_string(n_tets) + ": must be > 0");
-  if (!(size.volume > 0)) throw std::invalid_argument("psi: not negative at any of the samples taken in the box");
+  if (!(size.volume > 0)) {
+    std::string what = "psi: not negative at any of the samples taken in the box";
+    if (size.n_not_finite > 0) {
+      const Vec3& x = size.not_finite;
+      what += fmt::format(", and not finite at {}, first at ({:.6g}, {:.6g}, {:.6g})", size.n_not_finite, x.x(), x.y(),
+                          x.z());
+    }
+    throw std::invalid_argument(what);
+  }
   // n a^3 = per_cube (volume + layer a area): a fixed point, contracting because the layer is a part of the whole.
   const double per_cube = tets_per_cube(tiling), layer = tiling.excess_layer * size.area;
   double a = std::cbrt(per_cube * size.volume / n_tets);

@@ -10,7 +10,9 @@ namespace umtet {
 
 /// Volume and area of the boundary of {psi < 0}, read off a coarse sampling of psi.
 struct BodySize {
-  double volume = 0, area = 0;  ///< model units^3 and ^2; 0 when no sample lies inside
+  double volume = 0, area = 0;     ///< model units^3 and ^2; 0 when no sample lies inside
+  std::size_t n_not_finite = 0;    ///< samples where psi is no finite number; they count as outside
+  Vec3 not_finite = Vec3::Zero();  ///< the place of the first of them
 };
 
 /// Within 10 % when the features of the domain exceed 1/64 of the longest side of its own box; that is looked for in

@@ -8,6 +8,7 @@
 #include "mesh/assumptions.h"
 #include "mesh/background_shell.h"
 #include "mesh/detail/assemble_submesh.h"
+#include "mesh/detail/nothing_inside.h"
 #include "mesh/detail/offenders.h"
 #include "mesh/double_faces.h"
 #include "mesh/label_prices.h"
@@ -133,7 +134,8 @@ bool FastRun::fits_background(const std::string& lost) {
     if (rim.count++ == 0) rim.background_vertex = v;
   });
   if (empty) {
-    return fail(UmStatus::EmptyDomain, {.what = "no vertex of the background mesh was found inside the domain" + lost});
+    const detail::NothingInside why = detail::nothing_inside(background_, psi_, asking("search"), lost);
+    return fail(why.status, why.evidence);
   }
   if (rim.count == 0) return true;
   rim.where = background_.position(rim.background_vertex);

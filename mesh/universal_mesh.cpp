@@ -12,6 +12,7 @@
 #include "mesh/assumptions.h"
 #include "mesh/boundary_dvr.h"
 #include "mesh/crawl.h"
+#include "mesh/detail/nothing_inside.h"
 #include "mesh/detail/offenders.h"
 #include "mesh/dvr.h"
 #include "mesh/fast_mesh.h"
@@ -106,7 +107,8 @@ bool Run::find_omega_h(const std::vector<Vec3>& seeds) {
            " seeds led to no positively cut tet";
   }
   if (submesh().mesh.C.empty()) {
-    return fail(UmStatus::EmptyDomain, {.what = "no vertex of the background mesh was found inside the domain" + lost});
+    const detail::NothingInside why = detail::nothing_inside(background_, psi_, keep_going, lost);
+    return fail(why.status, why.evidence);
   }
   return report({"submesh", 1, 1, &submesh().mesh.V, submesh().mesh.C.size()});
 }
@@ -281,6 +283,8 @@ const char* to_string(UmStatus status) {
       return "success";
     case UmStatus::EmptyDomain:
       return "empty domain";
+    case UmStatus::PsiNotFinite:
+      return "psi not finite";
     case UmStatus::DomainLeavesBackground:
       return "domain leaves background";
     case UmStatus::BoundaryNearWall:

@@ -49,7 +49,8 @@ std::vector<std::string> problems(const UmParams&);
 
 enum class UmStatus {
   Success,
-  EmptyDomain,              ///< psi >= 0 at every background vertex
+  EmptyDomain,              ///< psi >= 0, or not finite, at every background vertex
+  PsiNotFinite,             ///< psi is a finite number at no background vertex
   DomainLeavesBackground,   ///< psi < 0 at a vertex on the rim: the box is too small
   BoundaryNearWall,         ///< Rim::Wall: a positive vertex is within two edges of the rim
   DoublePositiveFace,       ///< the run failed at a face shared by two positively cut tets: too thin or curved for h

@@ -13,6 +13,8 @@ const char* remedy(UmStatus status) {
   switch (status) {
     case UmStatus::EmptyDomain:
       return "a smaller --h, or a --box around the place where psi < 0, may find it";
+    case UmStatus::PsiNotFinite:
+      return "psi has to have a value in all of the --box: a root, a logarithm or a quotient of it has none";
     case UmStatus::BoundaryNearWall:
       return "give a larger --box or a smaller --h: the body has to be two edges off its walls";
     case UmStatus::DomainLeavesBackground:

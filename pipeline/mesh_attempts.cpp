@@ -20,7 +20,8 @@ constexpr double kWorthTrying = .95;
 
 bool may_improve(const MeshAttempt& a) {
   if (a.made()) return a.n_reasons() > 0;
-  return a.result.status != UmStatus::EmptyDomain && a.result.status != UmStatus::DomainLeavesBackground;
+  return a.result.status != UmStatus::EmptyDomain && a.result.status != UmStatus::PsiNotFinite &&
+         a.result.status != UmStatus::DomainLeavesBackground;
 }
 
 /// What to try after this, in this order.

@@ -114,6 +114,31 @@ TEST(UniversalMesh, EmptyDomainIsAStatus) {
   EXPECT_FALSE(result.evidence.what.empty());
 }
 
+/// No number where x > border; elsewhere a ball.
+struct HalfKnown {
+  double border;
+  double value(const Vec3& x) const { return x.x() > border ? std::sqrt(border - x.x()) : x.norm() - 1; }
+  Vec3 gradient(const Vec3& x) const { return x.normalized(); }
+};
+
+TEST(UniversalMesh, APsiThatIsNoNumberIsSaidToBeWithAPlace) {
+  const BackgroundMesh background(a15(), Box(Vec3(3, 3, 3), Vec3(4, 4, 4)), .2);
+  for (const UmMode mode : {UmMode::Fast, UmMode::Paper}) {
+    UmParams params;
+    params.mode = mode;
+    const HalfKnown nowhere{-9}, somewhere{3.5};
+    const UmResult none = universal_mesh(background, nowhere, params);
+    EXPECT_EQ(none.status, UmStatus::PsiNotFinite);
+    EXPECT_STREQ(to_string(none.status), "psi not finite");
+    EXPECT_EQ(none.evidence.where, background.position(none.evidence.background_vertex));
+    const UmResult some = universal_mesh(background, somewhere, params);
+    EXPECT_EQ(some.status, UmStatus::EmptyDomain);
+    EXPECT_GT(some.evidence.where.x(), 3.5);
+    EXPECT_GT(some.evidence.count, 0u);
+    EXPECT_LT(some.evidence.count, none.evidence.count);
+  }
+}
+
 TEST(UniversalMesh, DomainThatLeavesTheBackgroundIsAStatus) {
   const BackgroundMesh background(a15(), testing::cube_box(.8), .2);
   const UmResult result = universal_mesh(background, testing::sphere());
@@ -212,9 +237,10 @@ TEST(UniversalMesh, ObserverSeesEverySweepAndCanStop) {
     return true;
   });
   EXPECT_EQ(whole.status, UmStatus::Success);
-  EXPECT_EQ(seen, (std::vector<std::string>{"search1/1.1", "search1/1.1", "submesh1/1.1", "project1/2.0", "project1/2.1", "project1/2.2",
-                                            "project1/2.3", "project2/2.0", "project2/2.1", "project2/2.2",
-                                            "project2/2.3", "relax1/3.1", "relax2/3.1", "relax3/3.1"}));
+  EXPECT_EQ(seen,
+            (std::vector<std::string>{"search1/1.1", "search1/1.1", "submesh1/1.1", "project1/2.0", "project1/2.1",
+                                      "project1/2.2", "project1/2.3", "project2/2.0", "project2/2.1", "project2/2.2",
+                                      "project2/2.3", "relax1/3.1", "relax2/3.1", "relax3/3.1"}));
   for (std::size_t stop = 0; stop < seen.size(); ++stop) {
     std::size_t calls = 0;
     const UmResult cut = universal_mesh(background, ball, params, [&](const UmProgress&) { return calls++ != stop; });

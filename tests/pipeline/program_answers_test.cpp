@@ -101,6 +101,13 @@ TEST_F(Program, GatesAndImpossibleMeshesHaveTheirCodes) {
   EXPECT_TRUE(fs::exists(folder / "ball/3-mesh/failed/omega_h.vtu"));
   EXPECT_NE(run(ball).err.find("nothing to do"), std::string::npos);
   EXPECT_EQ(run("mesh --implicit 'x^2+1' --box -1,-1,-1,1,1,1 --tets 1000 -o none").code, 5);
+  // No number anywhere: by a given h, and by the samples that an h is chosen from.
+  for (const char* size : {"--h .2", "--tets 1000"}) {
+    const Result r = run("mesh --implicit 'sqrt(-1-x^2-y^2)' --box -1,-1,-1,1,1,1 -o none " + std::string(size));
+    EXPECT_EQ(r.code, 5);
+    EXPECT_NE(r.err.find("not finite"), std::string::npos) << r.err;
+    EXPECT_NE(r.err.find("at ("), std::string::npos) << r.err;
+  }
   EXPECT_EQ(run("mesh --implicit 'x^2+y^2+z^2-1' --box -2,-2,-2,2,2,2 --h .001 -o ball").code, 9);
 }
 

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+#include "mesh/universal_mesh.h"
+
+namespace umtet::detail {
+
+struct NothingInside {
+  UmStatus status;  ///< EmptyDomain, or PsiNotFinite where no vertex of the background has a number
+  UmEvidence evidence;
+};
+
+/// Why no background vertex was found inside: what is not finite counts as outside, and its first place is the
+/// evidence.
+/// @param search  what else to say about the search
+/// Cost: psi at every vertex of the background, once more. \throw MeshCancelled
+NothingInside nothing_inside(const BackgroundMesh& background, ImplicitFunctionRef psi, const KeepGoing& keep_going,
+                             const std::string& search = {});
+
+}  // namespace umtet::detail
