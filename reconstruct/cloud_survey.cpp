@@ -48,12 +48,13 @@ double spacing_around(const NeighbourTree& tree, const Vec3& x) {
 /// Residual variance around a point. `near` is a buffer.
 double local_variance(const std::vector<Vec3>& points, const NeighbourTree& tree, const Vec3& x,
                       std::vector<Neighbour>& near) {
-  // Beyond eight times the radius of 24 neighbours (1500 of them) a cloud is not noisy but a cloud.
-  constexpr double kGrowth = std::numbers::sqrt2, kMostGrowth = 8, kDeviations = 5;
+  // From eight times the radius of 24 neighbours on (1500 of them) a cloud is not noisy but a cloud.
+  constexpr double kGrowth = std::numbers::sqrt2, kDeviations = 5;
+  constexpr int kRadii = 6;
   near.resize(kNoiseNeighbours);
   const double radius = std::sqrt(tree.k_nearest(x, near).back().distance2);
-  double variance = -1;
-  for (double growth = 1; growth <= kMostGrowth; growth *= kGrowth) {
+  double variance = -1, growth = 1;
+  for (int k = 0; k < kRadii; ++k, growth *= kGrowth) {
     near.clear();
     const double r = growth * radius;
     tree.within(x, r * r, [&](std::uint32_t j, double distance2) { near.push_back({distance2, j}); });

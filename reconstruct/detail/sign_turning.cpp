@@ -138,6 +138,7 @@ void turn_regions(const std::vector<SignEdge>& edges, const std::vector<std::uin
                   std::vector<std::int8_t>& sign) {
   std::vector<std::vector<Border>> borders = patch_borders(edges, patch, n_patches, sign);
   std::vector<double> total;
+  total.reserve(borders.size());
   for (const std::vector<Border>& of_one : borders) total.push_back(sum_of(of_one));
   std::vector<std::int8_t> turned(n_patches, 1);
   for (std::uint32_t seed = 0; seed < n_patches; ++seed) {
