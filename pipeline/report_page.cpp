@@ -36,7 +36,7 @@ std::string value(const Json& certificate, const char* pointer, int digits = 4) 
 
 void add_leaves(const Json& json, const std::string& pointer, std::string& rows) {
   if (json.is_object() && !json.empty()) {
-    for (const auto& [key, child] : json.items()) add_leaves(child, pointer + "/" + key, rows);
+    for (const auto& [key, child] : json.items()) add_leaves(child, fmt::format("{}/{}", pointer, key), rows);
     return;
   }
   rows += fmt::format("<tr><td><code>{}</code></td><td><code data-certificate=\"{}\">{}</code></td></tr>\n",
