@@ -6,7 +6,7 @@ execute_process(COMMAND gzip -dc ${PREFIX}/share/man/man1/umtet.1.gz
 if(NOT warnings STREQUAL "")
   message(FATAL_ERROR "${warnings}")
 endif()
-foreach(text run reconstruct mesh evolve inspect check export)
+foreach(text run reconstruct mesh evolve batch inspect check export report view diff)
   if(NOT page MATCHES "umtet ${text}\n")
     message(FATAL_ERROR "umtet ${text} has no part of its own:\n${page}")
   endif()
