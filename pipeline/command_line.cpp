@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <sstream>
+#include <system_error>
 
 #include "pipeline/background_choice.h"
 #include "pipeline/detail/command_parser.h"
@@ -224,9 +226,15 @@ void CommandParser::refuse(const CLI::ParseError& e, int argc, const char* const
   for (const std::string& extra : command.remaining()) {
     if (extra.size() < 2 || extra[0] != '-') continue;
     const std::string flag = extra.substr(0, extra.find('='));
+    std::vector<std::string> others;
+    for (const CLI::App* other : app_.get_subcommands({})) {
+      if (other->get_option_no_throw(flag)) others.push_back("umtet " + other->get_name());
+    }
     const std::string near = nearest(flag, flags);
     throw UsageError(fmt::format("{}: unknown flag {}{}", command.get_name(), flag,
-                                 near.empty() ? "" : "; did you mean " + near + "?"));
+                                 !others.empty() ? fmt::format("; it belongs to {}", fmt::join(others, ", "))
+                                 : near.empty()  ? ""
+                                                 : "; did you mean " + near + "?"));
   }
   throw UsageError(command.get_name() + ": " + e.what());
 }
@@ -238,7 +246,9 @@ void CommandParser::check_command(int argc, const char* const* argv) const {
   std::vector<std::string> commands;
   for (const CLI::App* c : app_.get_subcommands({})) commands.push_back(c->get_name());
   if (std::find(commands.begin(), commands.end(), *word) != commands.end()) return;
-  const std::string near = nearest(*word, commands);
+  std::string near = nearest(*word, commands);
+  std::error_code unknown;
+  if (std::filesystem::exists(*word, unknown)) near = std::string("umtet run ") + *word;  // a cloud or a case
   throw UsageError(
       fmt::format("unknown command {}{}", *word, near.empty() ? "; try umtet --help" : "; did you mean " + near + "?"));
 }

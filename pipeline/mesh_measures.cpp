@@ -163,7 +163,7 @@ void check_lost(const Domain& domain, const UmResult& result, const ThinPlaces& 
 Json to_json(const MeshCertificate& c) {
   return {{"n_tets", c.n_tets},
           {"n_vertices", c.n_vertices},
-          {"n_positive_faces", c.n_positive_faces},
+          {"n_positive_faces", c.boundary.equals_positive_faces ? Json(c.n_positive_faces) : Json(nullptr)},
           {"n_wall_faces", c.n_wall_faces},
           {"h", c.h},
           {"volume", c.volume},

@@ -38,6 +38,7 @@ TEST_F(Program, UsageErrorsNameThePlaceAndTheRemedy) {
       {"mesh --implicit 'x^2+y^2-1' -o a", "--box"},
       {"run egg.ply -o a --smoth 1", "did you mean --smooth?"},
       {"run egg.ply -o a --tet 1000", "did you mean --tets?"},
+      {"mesh egg --spacing 1", "--spacing; it belongs to umtet run, umtet reconstruct, "},
       {"run egg.ply -o a --set mesh.sampels=1", "did you mean mesh.samples?"},
       {"run egg.ply -o a --tets 10 --h 1", "exclude each other"},
       {"run egg.ply -o a --mode quick", "fast, paper only"},
@@ -45,6 +46,7 @@ TEST_F(Program, UsageErrorsNameThePlaceAndTheRemedy) {
       {"run egg.ply -o a --from mehs", "did you mean mesh?"},
       {"run egg.ply", "-o CASE"},
       {"rum egg.ply -o a", "did you mean run?"},
+      {"egg.ply -o a", "did you mean umtet run egg.ply?"},
       {"mesh nowhere", "not a case"},
       {"check a.vtu --set mesh.h=1", "does not run"},
       {"mesh --implicit 'x' --box -1e120,-1e120,-1e120,1e120,1e120,1e120 -o a", "too large"},
@@ -145,6 +147,7 @@ TEST_F(Program, CheckJudgesAnyMesh) {
     if (first.is_null()) first = c;
     EXPECT_EQ(c["quality"]["min"], first["quality"]["min"]) << f;  // formats keep all digits
     EXPECT_EQ(c["boundary"]["euler_characteristic"], 2);
+    EXPECT_TRUE(c["n_positive_faces"].is_null()) << "nobody knows which were meant";
   }
   EXPECT_EQ(run("check ball/3-mesh/mesh.vtu --min-quality .99").code, 6);
   EXPECT_EQ(run("check ball/3-mesh/mesh.vtu --set output.min_quality=.99").code, 6);
