@@ -43,19 +43,6 @@ double quantile(const std::vector<double>& lowest, std::size_t n, double p) {
 
 double quantile(const std::vector<double>& ascending, double p) { return quantile(ascending, ascending.size(), p); }
 
-QualitySummary summarize(const std::vector<double>& ascending) {
-  QualitySummary s;
-  if (ascending.empty()) return s;
-  s.n = ascending.size();
-  s.min = ascending.front();
-  s.p001 = quantile(ascending, 0.001);
-  s.p01 = quantile(ascending, 0.01);
-  s.median = quantile(ascending, 0.5);
-  for (const double q : ascending) s.mean += q;
-  s.mean /= static_cast<double>(s.n);
-  return s;
-}
-
 std::vector<QualityCurve> quality_curves(const std::vector<Tet>& C, const std::vector<int>& positive_vertices,
                                          const std::vector<Vec3>& omega_h, const std::vector<Vec3>& projected,
                                          const std::vector<Vec3>& final) {

@@ -24,14 +24,6 @@ double quantile(const std::vector<double>& ascending, double p);
 /// The same of n values of which only the lowest are given, at least as many as the quantile needs: p (n - 1) + 2 or n.
 double quantile(const std::vector<double>& lowest, std::size_t n, double p);
 
-/// A quality vector in five numbers.
-struct QualitySummary {
-  std::size_t n = 0;
-  double min = 0, p001 = 0, p01 = 0, median = 0, mean = 0;  ///< .1 % and 1 % quantiles
-};
-/// @param ascending  a quality vector; all zeros for an empty one
-QualitySummary summarize(const std::vector<double>& ascending);
-
 /// One curve of Fig. 8: a name that is a CSV column, and a quality vector.
 struct QualityCurve {
   std::string name;

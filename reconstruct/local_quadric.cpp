@@ -27,7 +27,6 @@ LocalQuadric local_quadric(const std::vector<Vec3>& points, const Vec3& x, std::
   const Vec3 w = axes.eigenvectors().col(0).normalized(), u = w.unitOrthogonal(), v = w.cross(u);
   const double least = std::max(0.0, axes.eigenvalues()[0]);
   quadric.normal = w;
-  quadric.plane_ratio = axes.eigenvalues()[1] > 0 ? std::min(1.0, least / axes.eigenvalues()[1]) : 1;
   quadric.variance = least / std::max(1.0, n - 3) * radius2;
   if (near.size() <= kQuadricCoefficients) return quadric;
 

@@ -10,7 +10,6 @@ namespace umtet {
 struct LocalQuadric {
   Vec3 normal = Vec3::Zero();  ///< unit, of the graph over the point; its sign means nothing
   double variance = 0;         ///< of the neighbours' heights about the graph, corrected for the six coefficients
-  double plane_ratio = 0;  ///< least over middle eigenvalue of the neighbours' covariance: 0 flat, 1 a ball or a line
 };
 
 inline constexpr std::size_t kQuadricCoefficients = 6;
