@@ -41,9 +41,7 @@ double noise_angle(const LocalQuadric& quadric, double radius, std::size_t n) {
 std::vector<ThinnedCloud> thinned(const std::vector<Vec3>& points, const NeighbourTree& tree, double largest_growth) {
   std::vector<ThinnedCloud> levels;
   const std::vector<std::uint32_t>& order = tree.order();
-  std::size_t stride = 1;
-  for (double growth2 = kGrowth2 * kGrowth2; growth2 <= largest_growth * largest_growth; growth2 *= kGrowth2) {
-    stride *= 3;
+  for (std::size_t stride = 3; kGrowth2 * static_cast<double>(stride) <= largest_growth * largest_growth; stride *= 3) {
     std::vector<Vec3> some;
     some.reserve(order.size() / stride + 1);
     for (std::size_t row = 0; row < order.size(); row += stride) some.push_back(points[order[row]]);

@@ -31,7 +31,7 @@ std::vector<double> solve(const Eigen::SparseMatrix<double>& A, const Eigen::Vec
 }  // namespace
 
 Eigen::SparseMatrix<double> assemble(const SsdOperator& op) {
-  const Eigen::Vector3i n = op.n();
+  const Eigen::Vector3i& n = op.n();
   const int W = op.tables().width(), half = W - 1, D = 2 * half + 1;
   const Lattice lattice{Eigen::Vector3d::Zero(), 1.0, n};
   // Every row has the same D^3 neighbours: values are added in place, with no list of entries to sort.
@@ -141,8 +141,8 @@ void add_hessian_energy(const LmeScattered& basis, double weight, double quadrat
   for (int q = 0; q < 8 * cells.prod(); ++q) {
     const int c = q / 8;
     const Vec3 side((q & 1) ? gauss : -gauss, (q & 2) ? gauss : -gauss, (q & 4) ? gauss : -gauss);
-    const Vec3 at(c % cells[0] + 0.5, c / cells[0] % cells[1] + 0.5, c / (cells[0] * cells[1]) + 0.5);
-    const LmeValues v = basis.evaluate(low + (at + side).cwiseProduct(cell));
+    const Eigen::Vector3i at(c % cells[0], c / cells[0] % cells[1], c / (cells[0] * cells[1]));
+    const LmeValues v = basis.evaluate(low + (at.cast<double>() + Vec3::Constant(0.5) + side).cwiseProduct(cell));
     if (!v.converged) continue;
     Eigen::MatrixXd H(v.node.size(), 9);
     for (std::size_t a = 0; a < v.node.size(); ++a) {
