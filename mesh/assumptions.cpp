@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "mesh/detail/sort_faces.h"
 #include "mesh/tet_quality.h"
 
 namespace umtet {
@@ -41,7 +42,7 @@ bool BrokenAssumption::is_broken_at(std::span<const int> vertices) const {
 BrokenAssumption double_positive_faces(const Submesh& submesh) {
   std::vector<Triangle> faces = submesh.positive_faces;
   for (Triangle& face : faces) std::sort(face.begin(), face.end());
-  std::sort(faces.begin(), faces.end());
+  detail::sort_faces(faces, submesh.mesh.V.size());
   BrokenAssumption broken;
   for (std::size_t f = 1; f < faces.size(); ++f) {
     if (faces[f] == faces[f - 1]) add(broken, faces[f], submesh.mesh.V.size());

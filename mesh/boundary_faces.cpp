@@ -9,25 +9,17 @@
 #include <vector>
 
 #include "mesh/detail/check_indices.h"
+#include "mesh/detail/two_least.h"
 #include "mesh/skin.h"
 
 namespace umtet {
 namespace {
 
+using detail::TwoLeast;
+
 // What a task of a millisecond handles; of the vertices, what leaves their tets in the cache.
 constexpr std::size_t kTetsPerBlock = 1 << 16;
 constexpr int kLogVertices = 12, kVerticesPerBlock = 1 << kLogVertices;
-
-/// Only under these two of its vertices has a tet faces: three and one.
-struct TwoLeast {
-  int first, second;
-
-  explicit TwoLeast(const Tet& t) {
-    const int a = std::min(t[0], t[1]), b = std::max(t[0], t[1]), c = std::min(t[2], t[3]), d = std::max(t[2], t[3]);
-    first = std::min(a, c);
-    second = std::min(std::max(a, c), std::min(b, d));
-  }
-};
 
 /// The tets with faces under the vertices of each block, ascending.
 class TetsByBlock {

@@ -12,6 +12,7 @@
 #include "mesh/detail/certificate_memory.h"
 #include "mesh/detail/check_indices.h"
 #include "mesh/detail/foot_point.h"
+#include "mesh/detail/sort_faces.h"
 #include "mesh/detail/tet_measures.h"
 #include "mesh/skin.h"
 
@@ -22,10 +23,16 @@ namespace {
 constexpr std::size_t kFeetPerPoll = kValuesPerPoll / 8;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-bool same_faces(std::vector<Triangle> x, std::vector<Triangle> y) {
+/// \pre the indices of x are in range
+bool same_faces(std::vector<Triangle> x, std::vector<Triangle> y, std::size_t n_vertices) {
+  if (x.size() != y.size()) return false;
+  const auto is_out = [n = static_cast<int>(n_vertices)](int v) { return v < 0 || v >= n; };
+  for (const Triangle& f : y) {
+    if (std::any_of(f.begin(), f.end(), is_out)) return false;
+  }
   for (auto* faces : {&x, &y}) {
     for (Triangle& f : *faces) std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
-    std::sort(faces->begin(), faces->end());
+    detail::sort_faces(*faces, n_vertices);
   }
   return x == y;
 }
@@ -148,7 +155,7 @@ MeshCertificate certify_with(const CertificateInput& input, detail::CertificateM
   certificate.coordinate_rounding = input.coordinate_rounding;
   SurfaceTopology topology;
   run_both([&] { detail::measure_tets(mesh, input.h, input.keep_going, memory, certificate); },
-           [&] { topology = surface_topology(mesh.V, skin.triangles); });
+           [&] { topology = surface_topology(mesh.V, skin.triangles, memory ? SecondCount::No : SecondCount::Yes); });
 
   MeshCertificate::Boundary& boundary = certificate.boundary;
   boundary.n_faces = skin.triangles.size();
@@ -166,7 +173,7 @@ MeshCertificate certify_with(const CertificateInput& input, detail::CertificateM
     certificate.n_positive_faces = input.positive_faces->size();
     std::vector<Triangle> expected = *input.positive_faces;
     expected.insert(expected.end(), walls.begin(), walls.end());
-    boundary.equals_positive_faces = same_faces(skin.triangles, std::move(expected));
+    boundary.equals_positive_faces = same_faces(skin.triangles, std::move(expected), mesh.V.size());
   }
   for (const int i : at_walls) boundary.n_moved_wall_vertices += mesh.V[i] != (*input.background_V)[i];
   if (input.psi) {
@@ -192,7 +199,8 @@ MeshCertificate certify_again(const CertificateInput& input, detail::Certificate
   certificate.n_positive_faces = input.positive_faces ? input.positive_faces->size() : 0;
   MeshCertificate::Boundary& boundary = certificate.boundary;
   boundary.equals_positive_faces.reset();
-  if (input.positive_faces) boundary.equals_positive_faces = same_faces(skin, *input.positive_faces);
+  if (input.positive_faces)
+    boundary.equals_positive_faces = same_faces(skin, *input.positive_faces, input.mesh->V.size());
   boundary.max_vertex_distance_over_h.reset();
   boundary.max_centroid_distance_over_h.reset();
   boundary.min_cos_normal.reset();

@@ -64,6 +64,42 @@ class EdgeTable {
   std::vector<EdgeUse> uses_;
 };
 
+/// A face at a vertex: from the next of its vertices to the last one, around the link.
+struct FanStep {
+  int from, to;
+};
+// Fans beyond this are left to the count that sorts: what is done here is quadratic in their faces.
+constexpr std::size_t kMostInFan = 64;
+
+/// Whether these steps are one closed path that meets no vertex twice. Changes their order.
+bool is_cycle(FanStep* first, FanStep* end) {
+  if (static_cast<std::size_t>(end - first) > kMostInFan) return false;
+  for (FanStep* at = first; at + 1 < end; ++at) {
+    FanStep* const next = std::find_if(at + 1, end, [&](const FanStep& s) { return s.from == at->to; });
+    if (next == end) return false;
+    std::swap(at[1], *next);
+    for (const FanStep* s = first; s <= at; ++s) {
+      if (s->from == at->to) return false;
+    }
+  }
+  return first == end || end[-1].to == first->from;
+}
+
+/// Whether the faces at every vertex are one closed fan. Every edge then has two faces, one on either side.
+bool has_closed_fans(const std::vector<Triangle>& faces, std::size_t n_vertices) {
+  std::vector<std::size_t> end(n_vertices + 1, 0);
+  for (const Triangle& f : faces)
+    for (const int v : f) ++end[static_cast<std::size_t>(v) + 1];
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<FanStep> steps(3 * faces.size());
+  for (const Triangle& f : faces)
+    for (int k = 0; k < 3; ++k) steps[end[f[k]]++] = {f[(k + 1) % 3], f[(k + 2) % 3]};
+  for (std::size_t v = 0, first = 0; v < n_vertices; first = end[v++]) {
+    if (!is_cycle(steps.data() + first, steps.data() + end[v])) return false;
+  }
+  return true;
+}
+
 /// Edges: how many there are and which are bad; per component counts; the fans at each vertex through shared edges.
 void count_edges(const std::vector<Triangle>& faces, std::size_t n_vertices, SurfaceTopology& s,
                  detail::DisjointSets& fan_of) {
@@ -164,26 +200,32 @@ HalfEdgeMesh half_edges(const std::vector<Vec3>& V, const std::vector<Triangle>&
 
 }  // namespace
 
-SurfaceTopology surface_topology(const std::vector<Vec3>& V, const std::vector<Triangle>& faces) {
+SurfaceTopology surface_topology(const std::vector<Vec3>& V, const std::vector<Triangle>& faces, SecondCount second) {
   detail::check_indices(faces, V.size(), "face");
   SurfaceTopology s;
   if (faces.empty()) return s;
   count_components(V, faces, s);
-  detail::DisjointSets fan_of(3 * faces.size());  // of corners
-  count_edges(faces, V.size(), s, fan_of);
-
-  std::vector<int> fans(V.size(), 0);
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    for (int k = 0; k < 3; ++k) {
-      const int corner = static_cast<int>(3 * i) + k;
-      fans[faces[i][k]] += fan_of.find(corner) == corner;
+  const bool is_clean = has_closed_fans(faces, V.size());
+  if (is_clean) {
+    for (SurfaceComponent& part : s.components) s.n_edges += part.n_edges = 3 * part.n_faces / 2;
+  } else {
+    detail::DisjointSets fan_of(3 * faces.size());  // of corners
+    count_edges(faces, V.size(), s, fan_of);
+    std::vector<int> fans(V.size(), 0);
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      for (int k = 0; k < 3; ++k) {
+        const int corner = static_cast<int>(3 * i) + k;
+        fans[faces[i][k]] += fan_of.find(corner) == corner;
+      }
     }
+    for (const int v : s.vertices) s.n_nonmanifold_vertices += fans[v] > 1;
   }
-  for (const int v : s.vertices) s.n_nonmanifold_vertices += fans[v] > 1;
 
-  const HalfEdgeMesh mesh = half_edges(V, faces, s.vertices, s.n_refused_faces);
-  const bool open =
-      std::any_of(mesh.halfedges_begin(), mesh.halfedges_end(), [&](const auto h) { return mesh.is_boundary(h); });
+  bool open = false;
+  if (!is_clean || second == SecondCount::Yes) {
+    const HalfEdgeMesh mesh = half_edges(V, faces, s.vertices, s.n_refused_faces);
+    open = std::any_of(mesh.halfedges_begin(), mesh.halfedges_end(), [&](const auto h) { return mesh.is_boundary(h); });
+  }
   for (SurfaceComponent& part : s.components) {
     part.euler_characteristic = static_cast<long>(part.n_vertices + part.n_faces) - static_cast<long>(part.n_edges);
     part.genus = (2 - part.euler_characteristic) / 2;

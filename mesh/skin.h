@@ -44,13 +44,17 @@ struct SurfaceTopology {
   long euler_characteristic = 0;
   long genus = 0;  ///< sum over components
   double area = 0;
-  /// Every edge has two faces, consistently oriented, and every vertex one fan. Two independent counts must agree:
-  /// ours over indices and the half-edge structure of OpenMesh.
+  /// Every edge has two faces, consistently oriented, and every vertex one fan. Two independent counts must agree
+  /// (SecondCount): ours over indices and the half-edge structure of OpenMesh.
   bool closed_manifold = false;
 };
 
+/// Whether OpenMesh counts, too, where our count finds nothing wrong. Without, n_refused_faces is zero there.
+enum class SecondCount { Yes, No };
+
 /// \throw std::invalid_argument for an index out of range or a face with a repeated vertex
-SurfaceTopology surface_topology(const std::vector<Vec3>& V, const std::vector<Triangle>& faces);
+SurfaceTopology surface_topology(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
+                                 SecondCount second = SecondCount::Yes);
 
 enum class SurfaceFormat { Stl, Obj, Ply };  ///< binary STL and PLY, text OBJ
 

@@ -34,15 +34,17 @@ void CertificateMemory::match(const TetMesh& mesh, const std::vector<std::int64_
   is_same_ = false;
   const bool was_sound = is_sound_;
   is_sound_ = false;  // until this mesh is remembered
-  old_ = std::move(values_);
-  values_.assign(mesh.C.size(), {});
+  old_.swap(values_);
+  values_.resize(mesh.C.size());  // all of them will be set
   const bool is_listed = vertex_id.size() == mesh.V.size() && tet_id.size() == mesh.C.size();
   if (!was_sound || !is_listed || !are_ascending(vertex_id) || !are_ascending(tet_id)) return;
   const Vertices old = match_vertices(mesh, vertex_id);
   source_.assign(mesh.C.size(), -1);
   touched_.assign(mesh.V.size(), 0);
+  // Ids ascend in both meshes: the least vertices of a tet of the one are its least in the other.
   const auto leave = [&](const Tet& t) {
-    for (const int v : t) {
+    const TwoLeast least(t);
+    for (const int v : {least.first, least.second}) {
       if (old.now[v] >= 0) touched_[old.now[v]] = 1;
     }
   };

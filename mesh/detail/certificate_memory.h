@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesh/certificate.h"
+#include "mesh/detail/two_least.h"
 #include "mesh/skin.h"
 #include "mesh/tet_mesh.h"
 
@@ -22,8 +23,9 @@ struct TetValues {
 /// The mesh certified last, and what was found: of the next one only what differs has to be measured.
 ///
 /// Ids only say where to look: a tet is the same if its four vertices are the same ones of both meshes, to the bit
-/// where they were. Faces are counted by indices alone: under a vertex whose tets are all in both meshes, and under
-/// which no face had one tet only, all have two tets as before, as long as no face had more, or both on one side.
+/// where they were. Faces are counted by indices alone: under a vertex with the same tets in both meshes among those
+/// that have faces under it (TwoLeast), and under which no face had one tet only, all have two tets as before, as long
+/// as no face had more, or both on one side.
 class CertificateMemory {
  public:
   /// Compares with the mesh before. @param vertex_id, tet_id  ascending, else (or of other sizes) nothing is known
@@ -60,7 +62,8 @@ class CertificateMemory {
   };
   Vertices match_vertices(const TetMesh& mesh, const std::vector<std::int64_t>& vertex_id) const;
   void touch(const Tet& t) {
-    for (const int v : t) touched_[v] = 1;
+    const TwoLeast least(t);
+    touched_[least.first] = touched_[least.second] = 1;
   }
 
   TetMesh mesh_;

@@ -154,6 +154,28 @@ TEST(SurfaceTopology, AHoleAndAFlippedFaceAreSeen) {
   EXPECT_FALSE(surface_topology(sphere.V, faces).closed_manifold);
 }
 
+TEST(SurfaceTopology, OneCountFindsWhatTwoDo) {
+  std::vector<Triangle> sphere;
+  const TetMesh ball = testing::sphere_surface(2, sphere);
+  std::vector<Triangle> holed(sphere.begin() + 1, sphere.end()), flipped = sphere, twice = sphere, inside_out = sphere;
+  std::swap(flipped[0][0], flipped[0][1]);
+  twice.insert(twice.end(), sphere.begin(), sphere.end());
+  for (Triangle& f : inside_out) std::swap(f[0], f[1]);
+  std::vector<Triangle> both = sphere;
+  both.insert(both.end(), inside_out.begin(), inside_out.end());
+  for (const auto& faces : {sphere, inside_out, holed, flipped, twice, both}) {
+    const SurfaceTopology one = surface_topology(ball.V, faces, SecondCount::No), two = surface_topology(ball.V, faces);
+    EXPECT_EQ(one.closed_manifold, faces == sphere || faces == inside_out);
+    EXPECT_EQ(two.closed_manifold, one.closed_manifold);
+    EXPECT_EQ(two.n_edges, one.n_edges);
+    EXPECT_EQ(two.genus, one.genus);
+    EXPECT_EQ(two.n_refused_faces, one.n_refused_faces);
+  }
+  const SurfaceTopology clean = surface_topology(ball.V, sphere, SecondCount::No);
+  EXPECT_EQ(2 * clean.n_edges, 3 * sphere.size());
+  EXPECT_EQ(clean.components[0].n_edges, clean.n_edges);
+}
+
 TEST(WriteSurface, FilesAreCompleteAndAFullDiskIsAnError) {
   std::vector<Triangle> faces;
   const TetMesh sphere = testing::sphere_surface(2, faces);
