@@ -8,6 +8,7 @@
 #include "mesh/assumptions.h"
 #include "mesh/background_shell.h"
 #include "mesh/detail/assemble_submesh.h"
+#include "mesh/detail/label_band.h"
 #include "mesh/detail/nothing_inside.h"
 #include "mesh/detail/offenders.h"
 #include "mesh/double_faces.h"
@@ -40,7 +41,8 @@ class FastRun {
   UmResult operator()(const std::vector<Vec3>& seeds) {
     return run([&] { return find_inside(seeds) && label() && fit(); });
   }
-  UmResult operator()(IdSet inside, FastMemory& memory) {
+  UmResult operator()(IdSet inside, FastMemory& memory, const detail::PsiValues& known) {
+    if (!known.empty()) known_ = &known;
     inside_ = std::move(inside);
     negative_ = inside_;
     memory_ = &memory;
@@ -106,6 +108,7 @@ class FastRun {
   IdSet inside_;
   IdSet negative_{0};             ///< of update: psi < 0
   FastMemory* memory_ = nullptr;  ///< of the psi before
+  const detail::PsiValues* known_ = nullptr;
   LatticeShell shell_;
   std::vector<std::pair<std::int64_t, Vec3>> moved_;  ///< by repair, ascending
   BrokenAssumption double_faces_;
@@ -148,8 +151,8 @@ bool FastRun::label() {
   if (prices_ && last && negative_ == memory_->negative) {
     inside_ = *last;  // psi = 0 has passed over no vertex
   } else if (prices_) {
-    const LabelReport labels =
-        choose_labels(background_, prices_->links, psi_, label_params_, inside_, asking("search"), last);
+    const LabelReport labels = detail::choose_labels(background_, prices_->links, psi_, label_params_, inside_,
+                                                     asking("search"), last, known_);
     result_.n_psi_evaluations += labels.psi_evaluations;
   }
   result_.submesh = emit_submesh(background_, inside_);
@@ -309,8 +312,9 @@ UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, co
 }
 
 UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
-                   const UmObserver& observer, detail::IdSet inside, FastMemory& memory) {
-  return FastRun(background, psi, params, observer)(std::move(inside), memory);
+                   const UmObserver& observer, detail::IdSet inside, FastMemory& memory,
+                   const detail::PsiValues& known) {
+  return FastRun(background, psi, params, observer)(std::move(inside), memory, known);
 }
 
 }  // namespace umtet

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mesh/detail/id_set.h"
+#include "mesh/detail/psi_values.h"
 #include "mesh/universal_mesh.h"
 
 namespace umtet {
@@ -35,7 +36,9 @@ struct FastMemory {
 /// has the signs it had everywhere, else where others are not worth more (LabelParams::keep), and the shell begins near
 /// its places there (warm_start.h).
 /// @param memory  empty (no `moved`) at first; receives that of this mesh, or becomes empty if there is none
+/// @param known   of this psi, what the search for `inside` has asked
 UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
-                   const UmObserver& observer, detail::IdSet inside, FastMemory& memory);
+                   const UmObserver& observer, detail::IdSet inside, FastMemory& memory,
+                   const detail::PsiValues& known = {});
 
 }  // namespace umtet

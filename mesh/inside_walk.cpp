@@ -39,6 +39,7 @@ std::size_t InsideWalk::restart(ImplicitFunctionRef psi, const KeepGoing& keep_g
   std::size_t n = 0;
   inside_ = detail::inside_vertices(background_, psi, n, keep_going);
   boundary_.clear();
+  values_.clear();
   inside_.for_each([&](std::int64_t v) {
     bool cut = false;
     for_each_neighbour(v, [&](std::int64_t w) {
@@ -55,42 +56,50 @@ std::size_t InsideWalk::restart(ImplicitFunctionRef psi, const KeepGoing& keep_g
 
 std::size_t InsideWalk::update(ImplicitFunctionRef psi, const std::vector<std::int64_t>& more,
                                const KeepGoing& keep_going) {
-  std::vector<std::int64_t> asked, changed, front;
+  std::vector<std::int64_t> changed, front;
+  detail::PsiValues asked;
   const auto add = [&](std::int64_t v) {
     if (seen_.test(v)) return;
     seen_.insert(v);
-    asked.push_back(v);
     front.push_back(v);
   };
   for (const std::int64_t v : boundary_) add(v);
   for (const std::int64_t v : more) add(v);
-  std::vector<unsigned char> changes;
+  const auto forget = [&] {
+    for (const detail::PsiValue& at : asked) seen_.erase(at.vertex);
+    for (const std::int64_t v : front) seen_.erase(v);
+  };
   try {
     while (!front.empty()) {
-      changes.assign(front.size(), 0);
-      polled_parallel_for(front.size(), kValuesPerPoll, keep_going, [&](std::size_t k) {
-        changes[k] = (psi.value(background_.position(front[k])) < 0) != inside_.test(front[k]);
+      const std::size_t first = asked.size(), n = front.size();
+      for (const std::int64_t v : front) asked.push_back({v, 0, Vec3::Zero()});
+      polled_parallel_for(n, kValuesPerPoll, keep_going, [&](std::size_t k) {
+        detail::PsiValue& at = asked[first + k];
+        at.value = psi.value(background_.position(at.vertex), at.gradient);
       });
-      const std::vector<std::int64_t> last = std::move(front);
       front.clear();
-      for (std::size_t k = 0; k < last.size(); ++k) {
-        if (changes[k] == 0) continue;
-        changed.push_back(last[k]);
-        for_each_neighbour(last[k], add);
+      for (std::size_t k = first; k < first + n; ++k) {
+        const std::int64_t v = asked[k].vertex;
+        if ((asked[k].value < 0) == inside_.test(v)) continue;
+        changed.push_back(v);
+        for_each_neighbour(v, add);
       }
     }
   } catch (...) {
-    for (const std::int64_t v : asked) seen_.erase(v);
+    forget();
     throw;
   }
   for (const std::int64_t v : changed) inside_.test(v) ? inside_.erase(v) : inside_.insert(v);
   // Whoever is at the boundary now was there before, or has changed sides, or is a neighbour of one that has: asked.
-  for (const std::int64_t v : asked) seen_.erase(v);
-  boundary_.clear();
-  for (const std::int64_t v : asked) {
-    if (is_at_boundary(v)) boundary_.push_back(v);
+  forget();
+  values_.clear();
+  for (const detail::PsiValue& at : asked) {
+    if (is_at_boundary(at.vertex)) values_.push_back(at);
   }
-  std::sort(boundary_.begin(), boundary_.end());
+  std::sort(values_.begin(), values_.end(),
+            [](const detail::PsiValue& a, const detail::PsiValue& b) { return a.vertex < b.vertex; });
+  boundary_.clear();
+  for (const detail::PsiValue& at : values_) boundary_.push_back(at.vertex);
   return asked.size();
 }
 

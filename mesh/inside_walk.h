@@ -5,6 +5,7 @@
 
 #include "mesh/background_mesh.h"
 #include "mesh/detail/id_set.h"
+#include "mesh/detail/psi_values.h"
 #include "mesh/implicit_function.h"
 #include "mesh/keep_going.h"
 
@@ -25,6 +26,8 @@ class InsideWalk {
 
   const detail::IdSet& inside() const { return inside_; }
   bool has_boundary() const { return !boundary_.empty(); }
+  /// Of the last update, of the vertices that have a neighbour on the other side now; empty after restart().
+  const detail::PsiValues& values() const { return values_; }
 
  private:
   template <class F>
@@ -36,6 +39,7 @@ class InsideWalk {
   detail::IdSet inside_;
   detail::IdSet seen_;                  ///< empty between calls
   std::vector<std::int64_t> boundary_;  ///< vertices with a neighbour on the other side
+  detail::PsiValues values_;            ///< of these
 };
 
 }  // namespace umtet

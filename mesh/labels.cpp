@@ -235,10 +235,16 @@ bool is_thin(ImplicitFunctionRef psi, const Vec3& foot, const Vec3& normal, doub
 LabelReport choose_labels(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
                           ImplicitFunctionRef psi, const LabelParams& params, IdSet& inside,
                           const KeepGoing& keep_going, const IdSet* last) {
+  return detail::choose_labels(background, links, psi, params, inside, keep_going, last, nullptr);
+}
+
+LabelReport detail::choose_labels(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
+                                  ImplicitFunctionRef psi, const LabelParams& params, IdSet& inside,
+                                  const KeepGoing& keep_going, const IdSet* last, const PsiValues* known) {
   std::string all;
   for (const std::string& problem : problems(params)) all += (all.empty() ? "" : "; ") + problem;
   if (!all.empty()) throw std::invalid_argument(all);
-  detail::LabelBand band(background, links, psi, params, inside, keep_going);
+  LabelBand band(background, links, psi, params, inside, keep_going, known);
   return Descent(background.h(), links, psi, params, band, last)(inside, keep_going);
 }
 

@@ -212,7 +212,8 @@ const UmUpdate& UniversalMesh::update(ImplicitFunctionRef psi, const UpdateHints
     return impl.now;
   }
   UmUpdate& update = start();
-  update.mesh = fast_mesh(impl.background, psi, impl.params, observer, impl.walk.inside(), impl.memory);
+  update.mesh =
+      fast_mesh(impl.background, psi, impl.params, observer, impl.walk.inside(), impl.memory, impl.walk.values());
   update.mesh.n_psi_evaluations += n_evaluations;
   update.n_searched = n_searched;
   update.n_recalled = impl.memory.n_recalled;

@@ -15,12 +15,14 @@ constexpr double kApart = .3;
 }  // namespace
 
 LabelBand::LabelBand(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
-                     const LabelParams& params, const IdSet& inside, const KeepGoing& keep_going)
+                     const LabelParams& params, const IdSet& inside, const KeepGoing& keep_going,
+                     const PsiValues* known)
     : background_(background),
       links_(links),
       psi_(psi),
       params_(params),
       inside_(inside),
+      known_(known),
       steps_(background),
       band_(background.n_vertices()) {
   gather();
@@ -37,24 +39,33 @@ bool LabelBand::is_outermost(std::int64_t v) const {
   return outermost;
 }
 
-/// The vertices with a neighbour of the other label, and two rings more.
-void LabelBand::gather() {
-  std::vector<std::int64_t> front;
+/// The vertices with a neighbour of the other label.
+std::vector<std::int64_t> LabelBand::cut_vertices() const {
+  std::vector<std::int64_t> cut;
+  if (known_) {
+    for (const PsiValue& at : *known_) cut.push_back(at.vertex);
+    return cut;
+  }
+  IdSet seen(background_.n_vertices());
   inside_.for_each([&](std::int64_t v) {
-    bool cut = false;
+    bool is_cut = false;
     for (const std::int64_t step : steps_.at(v)) {
       if (inside_.test(v + step)) continue;
-      cut = true;
-      if (!band_.test(v + step)) {
-        band_.insert(v + step);
-        front.push_back(v + step);
+      is_cut = true;
+      if (!seen.test(v + step)) {
+        seen.insert(v + step);
+        cut.push_back(v + step);
       }
     }
-    if (cut && !band_.test(v)) {
-      band_.insert(v);
-      front.push_back(v);
-    }
+    if (is_cut) cut.push_back(v);
   });
+  return cut;
+}
+
+/// These, and two rings more.
+void LabelBand::gather() {
+  std::vector<std::int64_t> front = cut_vertices();
+  for (const std::int64_t v : front) band_.insert(v);
   std::vector<std::int64_t> next;
   for (int ring = 0; ring < 2; ++ring) {
     next.clear();
@@ -92,13 +103,23 @@ bool LabelBand::find_link(std::size_t v) {
   return complete;
 }
 
+/// psi at vertex v, which is at x.
+double LabelBand::value_at(std::size_t v, const Vec3& x, Vec3& gradient) {
+  if (known_ && known_at_[v] >= 0) {
+    const PsiValue& at = (*known_)[known_at_[v]];
+    gradient = at.gradient;
+    return at.value;
+  }
+  psi_evaluations.fetch_add(1, std::memory_order_relaxed);
+  return psi_.value(x, gradient);
+}
+
 /// Foot, normal and distance.
 void LabelBand::find_foot(std::size_t v) {
   const Vec3 x = background_.position(id[v]);
   const double h = unit(v), most = far() * h;
   Vec3 g;
-  double value = psi_.value(x, g), norm = g.norm();
-  psi_evaluations.fetch_add(1, std::memory_order_relaxed);
+  double value = value_at(v, x, g), norm = g.norm();
   const double first = std::clamp(norm > 0 ? value / norm : most, -most, most);
   double distance = first;
   foot[v] = x;
@@ -127,6 +148,13 @@ void LabelBand::measure(const KeepGoing& keep_going) {
   for (std::size_t v = 0; v < n; ++v) {
     type[v] = static_cast<std::uint16_t>(background_.type(id[v]));
     first_[v + 1] = first_[v] + static_cast<std::size_t>(links_[type[v]].n);
+  }
+  if (known_) {
+    known_at_.assign(n, -1);
+    for (std::size_t v = 0, k = 0; v < n && k < known_->size();) {
+      if ((*known_)[k].vertex == id[v]) known_at_[v] = static_cast<int>(k);
+      (*known_)[k].vertex <= id[v] ? ++k : ++v;
+    }
   }
   ranks_.assign(first_[n], -1);
   label.resize(n);

@@ -10,6 +10,7 @@
 #include "mesh/background_mesh.h"
 #include "mesh/detail/id_set.h"
 #include "mesh/detail/link_steps.h"
+#include "mesh/detail/psi_values.h"
 #include "mesh/implicit_function.h"
 #include "mesh/keep_going.h"
 #include "mesh/labels.h"
@@ -25,9 +26,11 @@ class LabelBand {
   };
 
   /// @param inside  the vertices with psi < 0
+  /// @param known   psi at all vertices with a neighbour on the other side, or null
   /// \throw MeshCancelled
   LabelBand(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
-            const LabelParams& params, const IdSet& inside, const KeepGoing& keep_going);
+            const LabelParams& params, const IdSet& inside, const KeepGoing& keep_going,
+            const PsiValues* known = nullptr);
 
   std::size_t size() const { return id.size(); }
 
@@ -45,8 +48,10 @@ class LabelBand {
   std::atomic<std::size_t> psi_evaluations{0};
 
  private:
+  std::vector<std::int64_t> cut_vertices() const;
   void gather();
   bool find_link(std::size_t v);
+  double value_at(std::size_t v, const Vec3& x, Vec3& gradient);
   void find_foot(std::size_t v);
   void measure(const KeepGoing& keep_going);
   bool has_foot(int v) const;
@@ -62,11 +67,18 @@ class LabelBand {
   ImplicitFunctionRef psi_;
   const LabelParams& params_;
   const IdSet& inside_;
+  const PsiValues* known_;
   LinkSteps steps_;
   IdSet band_;
   std::vector<std::uint8_t> movable_;
+  std::vector<int> known_at_;       ///< where in known_ a vertex is, or -1; empty without
   std::vector<std::size_t> first_;  ///< into ranks_
   std::vector<int> ranks_;
 };
+
+/// umtet::choose_labels(), with psi where it is known (LabelBand).
+LabelReport choose_labels(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
+                          ImplicitFunctionRef psi, const LabelParams& params, IdSet& inside,
+                          const KeepGoing& keep_going, const IdSet* last, const PsiValues* known);
 
 }  // namespace umtet::detail

@@ -8,6 +8,8 @@
 
 #include "mesh/certificate.h"
 #include "mesh/detail/assemble_submesh.h"
+#include "mesh/detail/label_band.h"
+#include "mesh/inside_walk.h"
 #include "mesh/label_prices.h"
 #include "mesh/lattice_shell.h"
 #include "tests/support/domains.h"
@@ -94,6 +96,28 @@ TEST(Labels, ThoseOfAMeshBeforeStayWhereOthersAreNotBetter) {
   const MeshCertificate c = certificate(emit_submesh(background, kept));
   EXPECT_TRUE(c.boundary.closed_manifold);
   EXPECT_EQ(c.boundary.genus, before.genus);
+}
+
+TEST(Labels, AreTheSameWithWhatTheSearchHasAsked) {
+  const AnalyticDomain domain = testing::torus();
+  const BackgroundMesh background = background_of(domain, 20000);
+  const Labelled without = choose(background, domain);
+  InsideWalk walk(background);
+  walk.restart(domain);
+  EXPECT_TRUE(walk.values().empty());
+  walk.update(domain, {});
+  detail::IdSet inside = walk.inside();
+  const LabelReport report =
+      detail::choose_labels(background, a15_links(), domain, {}, inside, {}, nullptr, &walk.values());
+  EXPECT_TRUE(inside == without.chosen);
+  EXPECT_GT(report.flips, 0u);
+  EXPECT_EQ(report.psi_evaluations + walk.values().size(), without.report.psi_evaluations);
+  // What is said there is believed: a body half an edge smaller would have other labels.
+  detail::PsiValues smaller = walk.values();
+  for (detail::PsiValue& at : smaller) at.value += .5 * background.h() * at.gradient.norm();
+  inside = walk.inside();
+  detail::choose_labels(background, a15_links(), domain, {}, inside, {}, nullptr, &smaller);
+  EXPECT_FALSE(inside == without.chosen);
 }
 
 TEST(Labels, LowerThePriceOfTheBoundary) {
