@@ -22,10 +22,10 @@ struct WarmStart {
 /// Where the shell of a domain that has moved begins: on psi = 0 at once, with the rest drawn along.
 ///
 /// A vertex whose neighbours are labelled as in `memory` is recalled: it begins at its place there. Boundary vertices
-/// then go to their closest points, and inner ones that are not recalled are displaced from the background by u, with
-/// u_i the mean of u over the other vertices of the tets at i, from three sweeps over these equations. Where that
-/// leaves a tet below projection.least_quality, its vertices go back to the background, and project() takes them from
-/// there.
+/// then go to their closest points, and recalled inner ones move as the vertices around them do in the mean, one sweep
+/// of it. Inner ones that are not recalled are displaced from the background by u, with u_i the mean of u over the
+/// other vertices of the tets at i, from three sweeps over these equations. Where that leaves a tet below
+/// projection.least_quality, its vertices go back to the background, and project() takes them from there.
 ///
 /// @param shell   at the places of the background; receives those to begin with. The same for any number of threads
 /// @param inside  as labelled now

@@ -73,6 +73,7 @@ TEST(WarmStart, RecallsWhoseNeighboursAreLabelledAsBefore) {
   const Begun begun(c);
   const auto& ids = begun.shell.background_vertex;
   std::size_t n = 0;
+  double farthest_boundary = 0, farthest_inner = 0, along_c = 0;
   for (const auto& [id, x] : begun.memory.moved) {
     const auto at = std::lower_bound(ids.begin(), ids.end(), id);
     if (at == ids.end() || *at != id) continue;
@@ -84,10 +85,18 @@ TEST(WarmStart, RecallsWhoseNeighboursAreLabelledAsBefore) {
     n += begun.start.recalled[v];
     if (begun.start.recalled[v] == 0) continue;
     EXPECT_TRUE(same);
+    const Vec3 moved = begun.shell.shell.V[v] - x;
     if (begun.shell.shell.role[v] == Shell::Role::Inner) {
-      EXPECT_EQ(begun.shell.shell.V[v], x);
+      farthest_inner = std::max(farthest_inner, moved.norm());
+      along_c += moved.dot(x) * c.dot(x);
+    } else {
+      farthest_boundary = std::max(farthest_boundary, moved.norm());
     }
   }
+  // Inner ones follow the boundary, which moves along its normals.
+  EXPECT_GT(along_c, 0);
+  EXPECT_GT(farthest_inner, .1 * farthest_boundary);
+  EXPECT_LT(farthest_inner, farthest_boundary);
   EXPECT_EQ(n, begun.start.n_recalled);
   EXPECT_GT(n, begun.memory.moved.size() / 4);
   EXPECT_LT(n, begun.memory.moved.size() * 9 / 10);
@@ -96,6 +105,13 @@ TEST(WarmStart, RecallsWhoseNeighboursAreLabelledAsBefore) {
 TEST(WarmStart, OfADomainThatStaysIsTheLastMesh) {
   const Begun begun(Vec3::Zero());
   EXPECT_GT(begun.start.n_recalled, begun.memory.moved.size() * 95 / 100);
+  const auto& ids = begun.shell.background_vertex;
+  for (const auto& [id, x] : begun.memory.moved) {
+    const auto v = static_cast<std::size_t>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
+    if (begun.start.recalled[v] != 0) {
+      EXPECT_LT((begun.shell.shell.V[v] - x).norm(), 1e-9);
+    }
+  }
 }
 
 }  // namespace
