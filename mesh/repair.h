@@ -18,8 +18,9 @@ struct RepairParams {
   int reach = 3;        ///< a patch moves the vertices within this many edges of the flip and the tet; >= 1. With 2
                         ///< some tets of koala and spot stay below .8
   int max_tries = 24;   ///< labels tried for one tet; >= 0. 0: no repair
-  /// Patches in all, a millisecond each, for the worst tets first (fewer of small meshes): more means that h is wrong,
-  /// which labels do not mend. With 600 the armadillo keeps 93 tets below .81 at 1.4 M tets, with 3000 none.
+  /// Patches for the worst tets first, a millisecond each (fewer of small meshes; what is begun is ended): more means
+  /// that h is wrong, which labels do not mend. With 600 the armadillo keeps 93 tets below .81 at 1.4 M tets, with 3000
+  /// none.
   std::size_t max_patches = 3000;
   double reach_out = .5;  ///< as LabelParams::reach_out: here a price for distance is not needed, the mesh itself is
                           ///< looked at; >= 0
@@ -58,7 +59,7 @@ struct RepairReport {
 /// label changes only where choose_labels() might change it: at simple vertices, without a new spot where the boundary
 /// is no manifold, and not where the body or the gap is thin. So topology stays.
 ///
-/// Serial: some dozens of patches in a mesh of a million tets.
+/// Tets far from each other are mended at once, four at most, by all threads: the same bytes for any number of them.
 /// @param shell   smoothed; its coordinates stay as they are, `moved` says what has changed since
 /// @param inside  receives the changes
 /// \throw std::invalid_argument naming every broken constraint, MeshCancelled

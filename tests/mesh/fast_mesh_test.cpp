@@ -8,6 +8,7 @@
 
 #include "mesh/patch_state.h"
 #include "mesh/tet_quality.h"
+#include "tests/support/bench_domains.h"
 #include "tests/support/certified.h"
 #include "tests/support/domains.h"
 
@@ -144,6 +145,24 @@ TEST(FastMesh, RepairMakesNothingWorseAndMendsPoorTetsAndFoldedFaces) {
   EXPECT_GT(mended, 0u);
   EXPECT_GT(unturned, 0u);
   EXPECT_GT(unfolded, 0u);
+}
+
+// 31 poor tets, mended up to four at once: those of one round must be far enough from each other.
+TEST(FastMesh, TetsThatAreMendedAtOnceDoNotMeet) {
+  const AnalyticDomain domain = testing::banchoff_chmutov_6();
+  const BackgroundMesh background = background_of(domain, 100000);
+  const auto with = [&](std::size_t n) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, n);
+    return universal_mesh(background, domain, fast());
+  };
+  const UmResult one = with(1), three = with(3);
+  ASSERT_EQ(one.status, UmStatus::Success) << one.evidence.what;
+  EXPECT_TRUE(failures(testing::certificate_of(one, domain, background.h())).empty());
+  EXPECT_GE(quality(one, one.final).least, .82);
+  EXPECT_EQ(one.n_psi_evaluations, three.n_psi_evaluations);
+  EXPECT_EQ(one.submesh.background_tet, three.submesh.background_tet);
+  ASSERT_EQ(one.final.size(), three.final.size());
+  EXPECT_EQ(std::memcmp(one.final.data(), three.final.data(), one.final.size() * sizeof(Vec3)), 0);
 }
 
 // The last of its poor tets needs a pair of labels whose patch has 57 more poor tets after a sweep, and none after ten:
