@@ -237,8 +237,9 @@ AllIn mesh_and_certify(const testing::AnalyticDomain& domain, double n_tets, int
 
 /// Tets a second on one core, all in; microseconds of CPU per positive face.
 void all_in(benchmark::State& state) {
-  const std::array<testing::AnalyticDomain, 3> domains = {testing::sphere(), testing::torus(),
-                                                          testing::banchoff_chmutov_4()};
+  const std::array<testing::AnalyticDomain, 5> domains = {testing::sphere(), testing::torus(),
+                                                          testing::banchoff_chmutov_4(), testing::banchoff_chmutov_6(),
+                                                          testing::banchoff_chmutov_8()};
   const testing::AnalyticDomain& domain = domains[static_cast<std::size_t>(state.range(0))];
   AllIn run{};
   for (auto _ : state) run = mesh_and_certify(domain, 1e3 * static_cast<double>(state.range(1)), 1);
@@ -250,6 +251,7 @@ void all_in(benchmark::State& state) {
 BENCHMARK(all_in)
     ->ArgNames({"shape", "thousand_tets"})
     ->ArgsProduct({{0, 1, 2}, {500, 4000}})
+    ->ArgsProduct({{3, 4}, {500}})
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime();
 
