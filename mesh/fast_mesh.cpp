@@ -7,6 +7,7 @@
 
 #include "mesh/assumptions.h"
 #include "mesh/background_shell.h"
+#include "mesh/chord_slide.h"
 #include "mesh/detail/assemble_submesh.h"
 #include "mesh/detail/label_band.h"
 #include "mesh/detail/nothing_inside.h"
@@ -286,6 +287,10 @@ bool FastRun::fit() {
   smoother.wake_all();
   const SmoothReport smoothing = smoother.run(psi_, smoothing_params, keep_going);
   result_.n_psi_evaluations += smoothing.psi_evaluations;
+  if (!memory_) {  // psi at every face: half the price of an update
+    const ChordParams chords{.least_quality = params_.fast.smoothing.target};
+    result_.n_psi_evaluations += slide_to_chords(smoother, psi_, chords, smoothing_params, keep_going).psi_evaluations;
+  }
   repair_labels(keep_going);
   result_.final = coordinates(shell_.shell.V);
   result_.projected = coordinates(projected);

@@ -16,7 +16,9 @@ namespace umtet {
 /// that has prices (label_prices.h);
 /// shell: only the boundary of omega_h and two layers behind it move (lattice_shell.h);
 /// projection: boundary vertices walk to psi = 0 as far as no tet inverts (guarded_projection.h);
-/// smoothing: p-norm Newton steps where a tet is below the target (p_norm_smooth.h).
+/// smoothing: p-norm Newton steps where a tet is below the target (p_norm_smooth.h);
+/// chords: boundary vertices slide on to ridges that h does not resolve (chord_slide.h);
+/// repair: labels change where a tet is still below the target (repair.h).
 ///
 /// The result is that of universal_mesh(): omega_h of the chosen labels, with the background's ids. The same bytes for
 /// any number of threads. psi must be thread-safe.
@@ -34,7 +36,7 @@ struct FastMemory {
 
 /// The same from known inside vertices, those with psi < 0. Labels stay as in `memory` if psi
 /// has the signs it had everywhere, else where others are not worth more (LabelParams::keep), and the shell begins near
-/// its places there (warm_start.h).
+/// its places there (warm_start.h). Nobody slides to chords.
 /// @param memory  empty (no `moved`) at first; receives that of this mesh, or becomes empty if there is none
 /// @param known   of this psi, what the search for `inside` has asked
 UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
