@@ -116,7 +116,7 @@ void run_level_set_stage(const StageContext& context) {
   Json thickness;
   {
     const NeighbourTree tree(cloud.points);
-    params.noise = noise >= 0 ? noise : noise_along_normals(cloud.points, tree);
+    params.noise = noise >= 0 ? noise : noise_along_normals(cloud, tree);
     stop_if_interrupted();
     thickness = thickness_percentiles(cloud, tree);
   }

@@ -85,6 +85,28 @@ double noise_along_normals(const std::vector<Vec3>& points, const NeighbourTree&
   return std::sqrt(std::max(0.0, percentile(variance, 0.5)));
 }
 
+double noise_along_normals(const OrientedPointCloud& cloud, const NeighbourTree& tree, std::size_t sampled_points) {
+  constexpr std::size_t kPairs = 8;  // with each sample: their differences reach twice as far as samples are apart
+  constexpr double kMostOfDistance = .5, kDeviationsOfMedian = 1.4826;
+  const double of_quadrics = noise_along_normals(cloud.points, tree, sampled_points);
+  if (cloud.normals.empty()) return of_quadrics;
+  const std::vector<std::uint32_t> picked = evenly_picked(tree, sampled_points);
+  std::vector<double> defect(kPairs * picked.size()), nearest(picked.size());
+  tbb::parallel_for(std::size_t{0}, picked.size(), [&](std::size_t p) {
+    const std::uint32_t i = picked[p];
+    std::array<Neighbour, kPairs + 1> room;
+    std::size_t k = kPairs * p;
+    for (const Neighbour& other : tree.k_nearest(cloud.points[i], room)) {
+      if (other.point == i || k == kPairs * (p + 1)) continue;
+      if (k == kPairs * p) nearest[p] = std::sqrt(other.distance2);
+      const std::uint32_t j = other.point;
+      defect[k++] = std::abs((cloud.normals[i] + cloud.normals[j]).dot(cloud.points[j] - cloud.points[i])) / 2;
+    }
+  });
+  if (of_quadrics > kMostOfDistance * percentile(nearest, .5)) return of_quadrics;
+  return std::min(of_quadrics, kDeviationsOfMedian / std::numbers::sqrt2 * percentile(defect, .5));
+}
+
 std::vector<double> thicknesses(const OrientedPointCloud& cloud, std::size_t sampled_points) {
   return thicknesses(cloud, NeighbourTree(cloud.points), sampled_points);
 }
@@ -145,10 +167,6 @@ CloudSurvey survey(const OrientedPointCloud& original, const SurveyParams& param
   const double spacing = result.spacing[1];
 
   const NeighbourTree tree(cloud.points);
-  result.noise = noise_along_normals(cloud.points, tree, params.sampled_points);
-  result.noise_over_diagonal = result.noise / result.diagonal;
-  result.noise_over_spacing = result.noise / spacing;
-
   result.farthest_coordinate = result.low.cwiseAbs().cwiseMax(result.high.cwiseAbs()).maxCoeff();
   result.ulp_over_spacing = std::numeric_limits<double>::epsilon() * result.farthest_coordinate / spacing;
   result.float_ulp_over_spacing = std::numeric_limits<float>::epsilon() * result.farthest_coordinate / spacing;
@@ -179,6 +197,9 @@ CloudSurvey survey(const OrientedPointCloud& original, const SurveyParams& param
       if (!met.empty()) result.thickness = Percentiles{at(0.01), at(0.05), at(0.5)};
     }
   }
+  result.noise = noise_along_normals(cloud, tree, params.sampled_points);
+  result.noise_over_diagonal = result.noise / result.diagonal;
+  result.noise_over_spacing = result.noise / spacing;
   const double largest = percentile(areas, 0.99), least = percentile(areas, 0.01);
   result.density_variation = least > 0 ? largest / least : 1;
   return result;

@@ -93,9 +93,10 @@ Hierarchy choose_hierarchy(const Eigen::AlignedBox3d& box, double h, int padding
 constexpr double kFullSpacing = 0.015;
 
 // @param area  a_i; empty for the paper's weights
+// @param l     value_length, for weights by area
 std::vector<SsdSample> make_samples(const OrientedPointCloud& cloud, const std::vector<double>& area,
-                                    const Lattice& lattice, double noise) {
-  const double h = lattice.h, l = value_length(h, noise);
+                                    const Lattice& lattice, double l) {
+  const double h = lattice.h;
   std::vector<SsdSample> samples(cloud.points.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {
     samples[i].xi = (cloud.points[i] - lattice.origin) / h;
@@ -231,7 +232,9 @@ LevelSet fit_full(const Problem& problem, SsdReport& report) {
   const Hierarchy hierarchy =
       choose_hierarchy(problem.box, report.spacing, problem.params.padding, problem.tables.width());
   return fit_lattice(problem, hierarchy,
-                     make_samples(problem.cloud, problem.area, hierarchy.finest, problem.params.noise), report);
+                     make_samples(problem.cloud, problem.area, hierarchy.finest,
+                                  value_length(hierarchy.finest.h, problem.params.noise)),
+                     report);
 }
 
 // Functions of a band stay clear of those that the wall of the coarsest lattice deforms.
@@ -276,12 +279,13 @@ LevelSet fit_cascade(const Problem& problem, SsdReport& report) {
   lattice.h = std::ldexp(lattice.h, -n_bands);
   lattice.n = (lattice.n.array() - 1) * (1 << n_bands) + 1;
   std::vector<std::vector<SsdSample>> samples(n_bands + 1);
-  samples[n_bands] = merge_samples(make_samples(problem.cloud, problem.area, lattice, params.noise), kMergeCube);
+  const double l = n_bands > 0 ? finest_value_length(lattice.h, params.noise) : value_length(lattice.h, params.noise);
+  samples[n_bands] = merge_samples(make_samples(problem.cloud, problem.area, lattice, l), kMergeCube);
   for (int level = n_bands; level-- > 0;) {
     std::vector<SsdSample> coarser = samples[level + 1];
     coarsen(coarser);
-    const double h = std::ldexp(lattice.h, n_bands - level), l = value_length(h, params.noise);
-    for (SsdSample& s : coarser) s.w_value = s.w_gradient * std::pow(h / l, 2);
+    const double h = std::ldexp(lattice.h, n_bands - level);
+    for (SsdSample& s : coarser) s.w_value = s.w_gradient * std::pow(h / value_length(h, params.noise), 2);
     samples[level] = merge_samples(coarser, kMergeCube);
     samples[level + 1] = resolved_samples(samples[level + 1], kMostArea);
   }

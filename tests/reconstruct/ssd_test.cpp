@@ -185,7 +185,7 @@ TEST(FitSsd, StopsWhenTold) {
 }
 
 TEST(FitSsd, NoisyCloudIsFittedWithItsNoiseEstimated) {
-  // Eq. (9), noise of 0.5 % of the diagonal along each axis and 6 degrees: 3.32e-4 measured, 3.27e-4 with the exact noise.
+  // Eq. (9), noise of 0.5 % of the diagonal along each axis and 6 degrees.
   OrientedPointCloud cloud = sampled(umtet::testing::equation_9(), 50000, 5);
   const double diagonal = box_diagonal(cloud.points), tilt = std::tan(6 * std::numbers::pi / 180) / std::numbers::sqrt2;
   cloud = with_noise(std::move(cloud), 0.005 * diagonal);
