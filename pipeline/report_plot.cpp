@@ -63,7 +63,7 @@ std::string tick_text(double t) {
 class LinePlot {
  public:
   LinePlot(const PlotAxes& axes, const std::vector<PlotCurve>& curves)
-      : axes_(axes), curves_(curves), y_{axes.log_y} {}
+      : axes_(axes), curves_(curves), x_{axes.log_x}, y_{axes.log_y} {}
   std::string operator()();
 
  private:

@@ -15,7 +15,7 @@ struct PlotCurve {
 
 struct PlotAxes {
   std::string title, x_label, y_label;
-  bool log_y = false;
+  bool log_x = false, log_y = false;
 };
 
 /// Curves, axes with round ticks, and a legend where more than one has a name: one <svg> element, coloured by the
