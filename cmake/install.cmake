@@ -57,7 +57,7 @@ foreach(part reconstruct mesh pipeline)
     PATTERN version.h EXCLUDE)
 endforeach()
 # Those of detail/ that public headers need; a test looks that there are no others.
-install(FILES mesh/detail/id_set.h DESTINATION ${umtet_headers}/mesh/detail COMPONENT development)
+install(FILES mesh/detail/id_set.h mesh/detail/psi_values.h DESTINATION ${umtet_headers}/mesh/detail COMPONENT development)
 install(FILES reconstruct/detail/lanes.h DESTINATION ${umtet_headers}/reconstruct/detail COMPONENT development)
 
 install(EXPORT umtet NAMESPACE umtet:: FILE umtet-targets.cmake DESTINATION ${umtet_cmake} COMPONENT development)
