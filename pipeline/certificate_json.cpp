@@ -73,10 +73,10 @@ std::string boundary_line(const Json& b) {
       closed ? fmt::format("closed manifold, {} component{}, genus {}", n, n == 1 ? "" : "s", b.value("genus", 0L))
              : fmt::format("NOT a closed manifold, {} component{}", n, n == 1 ? "" : "s");
   if (b.contains("max_vertex_distance_over_h") && b["max_vertex_distance_over_h"].is_number()) {
-    line += fmt::format("; off psi = 0: vertices {} h, face centres {} h, {} of the volume; cos(normals) >= {}",
-                        show(b, "max_vertex_distance_over_h", "{:.1e}"),
-                        show(b, "max_centroid_distance_over_h", "{:.3f}"), show(b, "gap_over_volume", "{:.1e}"),
-                        show(b, "min_cos_normal", "{:.3f}"));
+    line +=
+        fmt::format("; off psi = 0: vertices {} h, face centres {} h, {} of the volume; cos(normals) >= {}",
+                    show(b, "max_vertex_distance_over_h", "{:.1e}"), show(b, "max_centroid_distance_over_h", "{:.3f}"),
+                    show(b, "gap_over_volume", "{:.1e}"), show(b, "min_cos_normal", "{:.3f}"));
   }
   return line;
 }
@@ -85,10 +85,10 @@ std::string boundary_line(const Json& b) {
 std::string second_order_lines(const Json& c) {
   if (!c.contains("second_order") || !c["second_order"].is_object()) return "";
   const Json& s = c["second_order"];
-  std::string out = fmt::format("order 2   {} nodes, volume {}; least Jacobian {} of its mean, {} not positive\n",
-                                thousands(s.at("n_nodes")), show(s, "volume", "{:.9g}"),
-                                show(s, "min_scaled_jacobian", "{:.3f}"),
-                                s.at("n_nonpositive_jacobians").get<std::size_t>());
+  std::string out =
+      fmt::format("order 2   {} nodes, volume {}; least Jacobian {} of its mean, {} not positive\n",
+                  thousands(s.at("n_nodes")), show(s, "volume", "{:.9g}"), show(s, "min_scaled_jacobian", "{:.3f}"),
+                  s.at("n_nonpositive_jacobians").get<std::size_t>());
   if (s.at("max_mid_side_distance_over_h").is_number()) {
     out += fmt::format("          off psi = 0: mid-sides {} h, faces {} h (rms {} h)",
                        show(s, "max_mid_side_distance_over_h", "{:.1e}"), show(s, "max_face_distance_over_h", "{:.1e}"),
@@ -104,8 +104,8 @@ std::string thin_lines(const Json& c) {
   const Json places = c.value("/resolution/too_thin"_json_pointer, Json::array());
   if (places.empty()) return "";
   const Json& worst = places.front();
-  return fmt::format("thin      {} place{} thinner than h can show, the worst ({}, {:.3g}) needs h = {:.3g}\n", places.size(),
-                     places.size() == 1 ? " is" : "s are", worst.at("kind").get<std::string>(),
+  return fmt::format("thin      {} place{} thinner than h can show, the worst ({}, {:.3g}) needs h = {:.3g}\n",
+                     places.size(), places.size() == 1 ? " is" : "s are", worst.at("kind").get<std::string>(),
                      worst.at("thickness").get<double>(), worst.at("h_needed").get<double>());
 }
 

@@ -158,7 +158,8 @@ Reconstruction reconstruct(OrientedPointCloud cloud, const Parameters& parameter
   domain.diagonal = box.diagonal().norm();
   watch("noise", 0);
   const double noise = parameters.real("reconstruct.noise");
-  made.noise = params.noise = noise >= 0 ? noise : noise_along_normals(domain.cloud, NeighbourTree(domain.cloud.points));
+  made.noise = params.noise =
+      noise >= 0 ? noise : noise_along_normals(domain.cloud, NeighbourTree(domain.cloud.points));
   SsdFit fit = fit_ssd(
       domain.cloud, params,
       [&](const char* step, double fraction) {

@@ -75,8 +75,8 @@ std::vector<Value> read_field(vtkImageData* image, const std::string& name, std:
 }
 
 // The bands of a file of n_bytes, on lattices that follow from the coarsest one.
-std::vector<LevelSetBand> read_bands(vtkImageData* image, const Lattice& coarsest, int half_width,
-                                     double n_bytes, const std::string& file) {
+std::vector<LevelSetBand> read_bands(vtkImageData* image, const Lattice& coarsest, int half_width, double n_bytes,
+                                     const std::string& file) {
   std::vector<LevelSetBand> bands;
   Lattice lattice = coarsest;
   for (int level = 1; image->GetFieldData()->HasArray(band_name(level, "blocks").c_str()); ++level) {
@@ -99,7 +99,8 @@ std::vector<LevelSetBand> read_bands(vtkImageData* image, const Lattice& coarses
     if (corners.size() % 3 != 0 || band.blocks.blocks() != blocks) {
       throw LevelSetRefused(fmt::format("{}: the blocks of level {} are not in order", file, level));
     }
-    band.coefficients = read_field<vtkFloatArray, float>(image, band_name(level, "psi_a"), blocks.size() * LatticeBlocks::kNodes, file);
+    band.coefficients =
+        read_field<vtkFloatArray, float>(image, band_name(level, "psi_a"), blocks.size() * LatticeBlocks::kNodes, file);
     bands.push_back(std::move(band));
   }
   return bands;

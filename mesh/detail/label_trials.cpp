@@ -15,8 +15,8 @@ constexpr std::size_t kFirstOfPair = 6, kSecondOfPair = 8;
 // eqs. (9) and (13) of 500k), one had lacked more; the others are given up after two fifths of the visits.
 constexpr double kMostLack = .7, kMostMorePoor = 280;
 // Where a label has been found that helps, those whose flip costs so much more are not tried: of 245 (T6, T8, a plate
-// with 18 holes, eqs. (9) and (13) at 500k tets) three would have been better than with 30, half of the tries went there.
-// With 30 the armadillo keeps a tet of Q = .8075, with 60 or without a bound its worst is .8129.
+// with 18 holes, eqs. (9) and (13) at 500k tets) three would have been better than with 30, half of the tries went
+// there. With 30 the armadillo keeps a tet of Q = .8075, with 60 or without a bound its worst is .8129.
 constexpr float kMostMoreEnergy = 60;
 
 }  // namespace

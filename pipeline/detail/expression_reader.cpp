@@ -272,7 +272,8 @@ std::string refusal(const mu::ParserError& e) {
       for (const auto& [name, f] : kFunctions) {
         if (token == name) return token + " needs its argument in brackets";
       }
-      return "unknown name \"" + token + "\" (known: x y z pi, in umtet evolve t, sin cos tan asin acos atan sinh cosh tanh exp log sqrt)";
+      return "unknown name \"" + token +
+             "\" (known: x y z pi, in umtet evolve t, sin cos tan asin acos atan sinh cosh tanh exp log sqrt)";
     case mu::ecUNEXPECTED_EOF:
       return "the expression ends too early";
     case mu::ecMISSING_PARENS:

@@ -13,7 +13,7 @@ namespace {
 struct Element {
   Eigen::Matrix<double, 4, 3> G;  ///< gradients, by row
   double volume;
-  double h2;                      ///< mean of the squared edges
+  double h2;  ///< mean of the squared edges
 };
 
 Element element(std::span<const Vec3> V, const Tet& K) {

@@ -79,7 +79,7 @@ int run(const std::string& arguments) {
 TEST(SwimmerProgram, TwoStepsMakeTheTableThePictureAndTheFields) {
   const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "umtet_swimmer";
   std::filesystem::remove_all(folder);
-  ASSERT_EQ(run("-o " + folder.string() + " --tets 40000 --steps 2 --dt 8"), 0);
+  ASSERT_EQ(run("-o " + folder.string() + " --tets 60000 --steps 2 --dt 8"), 0);
 
   std::istringstream csv(read_text(folder / "swimmer.csv"));
   std::string line;
