@@ -25,7 +25,7 @@ using detail::TetIds;
 constexpr std::size_t kFewPatches = 600, kTetsPerPatch = 4;
 // So many tets are mended at once, while so many wait for one near them. The caller is asked before each round: the
 // dearest tets take a tenth of a second each, and one thread may have to mend them all.
-constexpr std::size_t kAtOnce = 4, kMostWaiting = 64;
+constexpr std::size_t kAtOnce = 2, kMostWaiting = 64;
 
 /// Of a tiling, as a share of its mean edge.
 double longest_edge(const Tiling& tiling, const TilingTables& tables) {

@@ -59,7 +59,7 @@ struct RepairReport {
 /// label changes only where choose_labels() might change it: at simple vertices, without a new spot where the boundary
 /// is no manifold, and not where the body or the gap is thin. So topology stays.
 ///
-/// Tets far from each other are mended at once, four at most, by all threads: the same bytes for any number of them.
+/// Tets far from each other are mended at once, two at most, with the bytes of one after the other.
 /// @param shell   smoothed; its coordinates stay as they are, `moved` says what has changed since
 /// @param inside  receives the changes
 /// \throw std::invalid_argument naming every broken constraint, MeshCancelled

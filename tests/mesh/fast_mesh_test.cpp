@@ -147,7 +147,7 @@ TEST(FastMesh, RepairMakesNothingWorseAndMendsPoorTetsAndFoldedFaces) {
   EXPECT_GT(unfolded, 0u);
 }
 
-// 31 poor tets, mended up to four at once: those of one round must be far enough from each other.
+// 31 poor tets, mended up to two at once: those of one round must be far enough from each other.
 TEST(FastMesh, TetsThatAreMendedAtOnceDoNotMeet) {
   const AnalyticDomain domain = testing::banchoff_chmutov_6();
   const BackgroundMesh background = background_of(domain, 100000);
