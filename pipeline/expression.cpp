@@ -37,7 +37,7 @@ class Evaluator {
       }
       text += (text.empty() ? "" : ",") + more;
     };
-    for (const auto& [name, value] : assignments.texts) add(name + "=" + value);
+    for (const auto& [name, value] : assignments.texts) add(std::string(name).append("=").append(value));
     std::string results;
     for (const std::string& result : assignments.results) results += (result.empty() ? ",0" : "," + result);
     add(results.substr(1));
