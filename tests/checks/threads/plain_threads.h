@@ -86,6 +86,13 @@ void parallel_for(I first, J last, const F& f) {
   });
 }
 
+struct simple_partitioner {};
+
+template <class I, class J, class F>
+void parallel_for(I first, J last, const F& f, simple_partitioner) {
+  parallel_for(first, last, f);
+}
+
 template <class T, class Value, class F, class Join>
 Value parallel_reduce(const blocked_range<T>& range, const Value& identity, const F& f, const Join& join) {
   const std::size_t n = range.empty() ? 0 : range.size(), step = std::max({range.grainsize(), n / 32, std::size_t{1}});
