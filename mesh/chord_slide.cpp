@@ -21,16 +21,15 @@ constexpr int kTrials = 4;          // lengths of a step that are tried
 constexpr double kLeastGain = .01;  // of the sum: less is not worth a move
 constexpr double kDamping = .05;    // of the Gauss-Newton matrix, relative to its trace
 
-/// Gamma_h^+, counter-clockwise seen from where psi > 0: of the tets whose fourth vertex is inside.
+/// Gamma_h^+: all that is not boundary is inside.
 std::vector<Triangle> boundary_faces(const Shell& shell) {
+  std::vector<std::uint8_t> inside;
+  inside.reserve(shell.role.size());
+  for (const Shell::Role role : shell.role) inside.push_back(role != Shell::Role::Boundary);
   std::vector<Triangle> faces;
+  Triangle face;
   for (const Tet& t : shell.C) {
-    int inside = -1, n_inside = 0;
-    for (int k = 0; k < 4; ++k) {
-      if (shell.role[t[k]] != Shell::Role::Boundary) inside = k, ++n_inside;
-    }
-    if (n_inside != 1) continue;
-    faces.push_back({t[kTetFace[inside][0]], t[kTetFace[inside][1]], t[kTetFace[inside][2]]});
+    if (positive_face(t, inside, face)) faces.push_back(face);
   }
   return faces;
 }
