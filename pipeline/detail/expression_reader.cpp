@@ -7,8 +7,10 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <stdexcept>
 #include <vector>
 
+#include "pipeline/detail/decimal_fraction.h"
 #include "pipeline/expression.h"
 
 namespace umtet {
@@ -37,7 +39,6 @@ class Builder {
   double add(const GiNaC::ex& e, std::size_t column);
   Node& node(double handle) { return nodes_[static_cast<std::size_t>(handle)]; }
   int read_leaf(const char* s, int* pos, double* handle);
-  std::size_t number_length(const char* s) const;
   GiNaC::numeric number(const std::string& digits, std::size_t column) const;
   GiNaC::ex power(const Node& base, const Node& exponent) const;
 
@@ -65,51 +66,12 @@ double Builder::add(const GiNaC::ex& e, std::size_t column) {
   return static_cast<double>(nodes_.size() - 1);
 }
 
-std::size_t Builder::number_length(const char* s) const {
-  std::size_t n = 0, digits = 0;
-  for (; std::isdigit(static_cast<unsigned char>(s[n])); ++n) ++digits;
-  if (s[n] == '.') ++n;
-  for (; std::isdigit(static_cast<unsigned char>(s[n])); ++n) ++digits;
-  if (digits == 0) return 0;
-  if (s[n] == 'e' || s[n] == 'E') {
-    std::size_t m = n + 1;
-    if (s[m] == '+' || s[m] == '-') ++m;
-    if (std::isdigit(static_cast<unsigned char>(s[m]))) {
-      while (std::isdigit(static_cast<unsigned char>(s[m]))) ++m;
-      n = m;
-    }
-  }
-  return n;
-}
-
-/// The fraction a decimal number stands for, exactly.
 GiNaC::numeric Builder::number(const std::string& digits, std::size_t column) const {
-  std::string mantissa;
-  int exponent = 0;
-  std::size_t k = 0;
-  bool after_point = false;
-  for (; k < digits.size() && digits[k] != 'e' && digits[k] != 'E'; ++k) {
-    if (digits[k] == '.') {
-      after_point = true;
-    } else {
-      mantissa += digits[k];
-      exponent -= after_point;
-    }
-  }
-  if (k < digits.size()) {
-    const std::string e = digits.substr(k + 1);
-    if (e.size() > 6) throw ExpressionError(text_, column, "the number " + digits + " is out of range");
-    exponent += std::stoi(e);
-  }
-  // Leading zeros would make GiNaC read an octal number.
-  const std::size_t first = mantissa.find_first_not_of('0');
-  if (first == std::string::npos) return 0;
-  mantissa.erase(0, first);
-  const long magnitude = static_cast<long>(mantissa.size()) + exponent;
-  if (magnitude > 308 || magnitude < -307 || mantissa.size() > 300) {
+  try {
+    return fraction_of_decimal(digits);
+  } catch (const std::out_of_range&) {
     throw ExpressionError(text_, column, "the number " + digits + " is out of range");
   }
-  return GiNaC::numeric(mantissa.c_str()) * GiNaC::pow(GiNaC::numeric(10), GiNaC::numeric(exponent));
 }
 
 /// 0.1 is a tenth, as it would be in the text.
@@ -123,7 +85,7 @@ GiNaC::ex Builder::time() const {
 /// Numbers and names that are not functions. \return whether the text at `s` starts with one.
 int Builder::read_leaf(const char* s, int* pos, double* handle) {
   const std::size_t column = static_cast<std::size_t>(*pos) + 1;
-  if (const std::size_t n = number_length(s); n > 0) {
+  if (const std::size_t n = length_of_decimal(s); n > 0) {
     *handle = add(number(std::string(s, n), column), column);
     *pos += static_cast<int>(n);
     return 1;
