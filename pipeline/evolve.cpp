@@ -17,12 +17,10 @@
 #include "pipeline/interrupt.h"
 #include "pipeline/made_mesh.h"
 #include "pipeline/memory.h"
-#include "pipeline/mesh_measures.h"
+#include "pipeline/mesh_maker.h"
 #include "pipeline/run.h"
 #include "pipeline/stages.h"
 #include "pipeline/time_steps.h"
-#include "pipeline/too_thin.h"
-#include "pipeline/zero_set_choice.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -49,11 +47,8 @@ bool concerns_one_step(ExitCode code) {
 class Evolution {
  public:
   Evolution(const EvolveRequest& request, Progress& progress)
-      : request_(request),
-        parameters_(request.parameters),
-        progress_(progress),
-        of_clouds_(!request.clouds.empty()),
-        um_params_(um_params(parameters_)) {
+      : request_(request), parameters_(request.parameters), progress_(progress), of_clouds_(!request.clouds.empty()) {
+    um_params(parameters_);  // what is wrong with them is no matter of one instant
     for (TimeStep& at : time_steps(request.times, request.skip, request.clouds)) {
       const std::string name = fmt::format("step_{:04}.vtu", steps_.size());
       Step& step = steps_.emplace_back();
@@ -73,7 +68,7 @@ class Evolution {
   void look_at(Step& step);
   void choose_background();
   void mesh(Step& step);
-  std::optional<UmResult> make(Step& step, Domain& domain);
+  UmResult make(Step& step, Domain& domain);
   EvolveOutcome outcome() const;
   template <class F>
   void guarded(Step& step, const F& f);
@@ -86,7 +81,6 @@ class Evolution {
   Parameters parameters_;
   Progress& progress_;
   const bool of_clouds_;
-  const UmParams um_params_;
   std::vector<Step> steps_;
   std::optional<Domain> first_;  ///< of the first instant that has one, its box that of all
   double h_ = 0;
@@ -182,45 +176,26 @@ void Evolution::choose_background() {
   progress_.say(fmt::format("one background of {} tets, h = {:.6g}", background_->n_tets(), h_));
 }
 
-/// Where something is thin for h, that is the reason for a mesh that came out wrong.
-void refuse_thin(const ThinPlaces& thin, const std::string& complaint, const Vec3& shift) {
-  if (thin.empty()) return;
-  throw MeshingImpossible(
-      fmt::format("h = {:.4g} is too large: {}; {} places are thinner than it can show\n{}\n"
-                  "  --allow-thin keeps the mesh nevertheless",
-                  thin.h, complaint, thin.places.size(), described(thin, shift)));
-}
-
 /// As umtet mesh does at a given h.
-std::optional<UmResult> Evolution::make(Step& step, Domain& domain) {
-  domain.limit_detail(h_);
-  const ZeroSetChoice pieces = choose_components(domain, h_, not_interrupted);
-  const ThinPlaces thin = find_thin_places(domain, pieces, h_, not_interrupted);
-  for (const std::string& reason : pieces.dropped) progress_.say("left out a " + reason);
-  if (pieces.seeds.empty() && !pieces.dropped.empty()) {
-    throw MeshingImpossible("psi = 0 is nowhere near the samples:\n  no " + pieces.dropped.front());
-  }
-  UmParams params = um_params_;
-  if (!pieces.dropped.empty()) params.search = SubmeshSearch::Crawl;
-  UmResult result = universal_mesh(
-      *background_, domain.psi(), params, [&](const UmProgress&) { return report(step, "mesh", .3); }, pieces.seeds);
+UmResult Evolution::make(Step& step, Domain& domain) {
+  MeshWatch watch;
+  watch.keep_going = not_interrupted;
+  watch.begins = [&](std::string_view at) {
+    stop_if_interrupted();
+    report(step, at, at == "certify" ? .8 : .3);
+  };
+  watch.progress = [&](const UmProgress&) { return report(step, "mesh", .3); };
+  watch.say = [this](const std::string& line) { progress_.say(line); };
+  MeshMaker maker(domain, parameters_, std::move(watch));
+  MeshAttempt a = maker.attempt(*background_, h_);
   stop_if_interrupted();
-  const bool may_be_thin = parameters_.flag("mesh.allow_thin");
-  if (result.status != UmStatus::Success) {
-    if (!may_be_thin) refuse_thin(thin, result.evidence.what, domain.shift);
-    throw MeshingImpossible(failure_text(result, h_, domain.shift));
+  if (maker.is_refused_as_thin(a)) {
+    throw MeshingImpossible(too_thin_text(a, domain.shift) + "\n  --allow-thin keeps the mesh nevertheless");
   }
-  round_to_file(result, domain.shift);
-  report(step, "certify", .8);
-  Json measured = measure(domain, result, pieces, h_, not_interrupted);
-  check_lost(domain, result, thin, measured, not_interrupted);
-  check_deviation(parameters_.real("mesh.max_deviation"), measured);
-  if (!may_be_thin && !measured.at("reasons").empty() && !is_only_coarse(measured)) {
-    refuse_thin(thin, measured.at("reasons").at(0).get<std::string>(), domain.shift);
-  }
-  judge(measured, parameters_);
-  step.measured = std::move(measured);
-  return result;
+  if (!a.made()) throw MeshingImpossible(failure_text(a.result, h_, domain.shift));
+  judge(a.measured, parameters_);
+  step.measured = std::move(a.measured);
+  return std::move(a.result);
 }
 
 void Evolution::mesh(Step& step) {

@@ -56,7 +56,7 @@ MeshAttempt best_attempt(const EdgeLength& choice, const std::function<MeshAttem
   std::string why = best.complaint();
   for (const double next_h : smaller(best, choice)) {
     if (!go_on) break;
-    say(fmt::format("mesh: h = {:.4g} will not do ({}); trying {:.4g}", h, why, next_h));
+    say(fmt::format("h = {:.4g} will not do ({}); trying {:.4g}", h, why, next_h));
     h = next_h;
     MeshAttempt next = attempt(h);
     go_on = may_improve(next);
@@ -64,7 +64,7 @@ MeshAttempt best_attempt(const EdgeLength& choice, const std::function<MeshAttem
     keeps_last = !is_worse(next, best);
     if (keeps_last) best = std::move(next);
   }
-  if (!keeps_last) say(fmt::format("mesh: h = {:.4g} will not do either ({}); keeping h = {:.4g}", h, why, best.h));
+  if (!keeps_last) say(fmt::format("h = {:.4g} will not do either ({}); keeping h = {:.4g}", h, why, best.h));
   return best;
 }
 

@@ -11,7 +11,6 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <system_error>
 
 #include "mesh/a15_box.h"
 #include "mesh/moving_mesh.h"
@@ -21,10 +20,10 @@
 #include "pipeline/stages.h"
 #include "pipeline/version.h"
 #include "python/arguments.h"
+#include "python/errors.h"
 #include "python/interruptible.h"
 #include "python/mesh_object.h"
 #include "reconstruct/level_set_io.h"
-#include "reconstruct/point_cloud_io.h"
 
 namespace py = pybind11;
 
@@ -195,59 +194,6 @@ py::array_t<double> evaluate(const Reconstruction& r, const Points& points, int 
     if (order == 2) Eigen::Map<Mat3>(p + 9 * i) = psi.hessian(y);
   });
   return out;
-}
-
-/// A message of the pipeline, which names flags of the program, with keyword arguments in their place.
-std::string in_python(std::string message) {
-  for (std::size_t at = 0; (at = message.find("--", at)) != std::string::npos;) {
-    const std::size_t end = message.find_first_not_of("abcdefghijklmnopqrstuvwxyz-", at);
-    const std::string flag = message.substr(at, end - at);
-    const auto& fields = params_fields();
-    const auto field = std::find_if(fields.begin(), fields.end(), [&](const ParamField& f) { return f.flag == flag; });
-    if (field != fields.end()) message.replace(at, flag.size(), field->key.substr(field->key.find('.') + 1));
-    at += 2;
-  }
-  return message;
-}
-
-/// Raises `type` with an attribute `evidence`.
-void raise(const py::handle& type, const char* message, const Json& evidence) {
-  const py::object error = type(in_python(message));
-  error.attr("evidence") = dict_of(evidence);
-  PyErr_SetObject(type.ptr(), error.ptr());
-}
-
-void register_errors(py::module_& m) {
-  static py::exception<MeshingImpossible> meshing(m, "MeshingError", PyExc_RuntimeError);
-  static py::exception<SolveError> reconstruction(m, "ReconstructionError", PyExc_RuntimeError);
-  static py::exception<Cancelled> cancelled(m, "Cancelled", PyExc_RuntimeError);
-  py::register_exception_translator([](std::exception_ptr error) {
-    try {
-      std::rethrow_exception(error);
-    } catch (const MeshingFailed& e) {
-      raise(meshing, e.what(), e.evidence);
-    } catch (const MeshingImpossible& e) {
-      raise(meshing, e.what(), Json::object());
-    } catch (const ResourceLimit& e) {
-      raise(meshing, e.what(), {{"status", "ResourceLimit"}});
-    } catch (const SolveError& e) {
-      raise(reconstruction, e.what(), {{"status", "SolveError"}});
-    } catch (const SolveTooLarge& e) {
-      raise(reconstruction, e.what(), {{"status", "SolveTooLarge"}});
-    } catch (const CloudRefused& e) {
-      raise(reconstruction, e.what(), {{"status", "CloudRefused"}});
-    } catch (const Cancelled& e) {
-      cancelled(e.what());
-    } catch (const UsageError& e) {
-      PyErr_SetString(PyExc_ValueError, in_python(e.what()).c_str());
-    } catch (const ExpressionError& e) {
-      PyErr_SetString(PyExc_ValueError, in_python(e.what()).c_str());
-    } catch (const MeshFileRefused& e) {
-      PyErr_SetString(PyExc_ValueError, in_python(e.what()).c_str());
-    } catch (const std::system_error& e) {
-      PyErr_SetString(PyExc_OSError, e.what());
-    }
-  });
 }
 
 }  // namespace

@@ -190,6 +190,10 @@ class MeshTest(unittest.TestCase):
             t.join(120)
         self.assertTrue(all(m is not None and m.certified for m in made))
 
+    def test_a_number_of_tets_far_from_its_estimate_is_met(self):
+        mesh = umtet.mesh("x^4+y^4+z^4-.5", box=BOX, tets=3000)  # .88 times as many at the first h
+        self.assertLess(abs(len(mesh.tets) / 3000 - 1), .1)
+
     def test_save(self):
         m = umtet.mesh(BALL, box=BOX, h=.3)
         with tempfile.TemporaryDirectory() as folder:
