@@ -41,7 +41,7 @@ bool find_window(const Band& band, Term<float>& term) {
   if (window < 0) return false;
   constexpr int corner = (edge - kEdge + 1) / 2 - 1;  // the window begins at node 8 block - (R - 1)
   const Lanes4i at = term.place.first + corner - block * kEdge;
-  term.first = band.windows.data() + static_cast<std::ptrdiff_t>(window) * edge * edge * edge + at[0] +
+  term.first = band.windows.get() + static_cast<std::ptrdiff_t>(window) * edge * edge * edge + at[0] +
                edge * (at[1] + edge * at[2]);
   return true;
 }
@@ -82,10 +82,10 @@ LevelSet::Band::Band(LevelSetBand&& band, int half_width) : data(std::move(band)
       cells.push_back(b);
     }
   const std::size_t size = static_cast<std::size_t>(edge) * edge * edge;
-  windows.assign(cells.size() * size, 0.f);
+  windows = std::make_unique_for_overwrite<float[]>(cells.size() * size);  // all of it is copied to
   tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t c) {
     blocks.copy_window(data.coefficients.data(), kEdge * cells[c] - Eigen::Vector3i::Constant(blocks.shift()),
-                       {edge, edge, edge}, edge, windows.data() + c * size);
+                       {edge, edge, edge}, edge, windows.get() + c * size);
   });
 }
 

@@ -78,10 +78,10 @@ class LevelSet {
   // For evaluation each block of 8 x 8 x 8 cells has a copy of all coefficients that count in it: no gathering.
   struct Band {
     LevelSetBand data;
-    Eigen::Vector3i n;                // cell blocks along each axis
-    int edge;                         // nodes along the edge of a window, 8 + 2R - 1
-    std::vector<std::int32_t> index;  // of a cell block's window, or -1
-    std::vector<float> windows;       // edge^3 a window
+    Eigen::Vector3i n;                 // cell blocks along each axis
+    int edge;                          // nodes along the edge of a window, 8 + 2R - 1
+    std::vector<std::int32_t> index;   // of a cell block's window, or -1
+    std::unique_ptr<float[]> windows;  // edge^3 a window
     Band(LevelSetBand&& band, int half_width);
   };
   // The sum of the levels first .. end - 1.

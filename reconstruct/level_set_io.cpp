@@ -11,7 +11,6 @@
 #include <vtkObject.h>
 #include <vtkPointData.h>
 #include <vtkXMLImageDataReader.h>
-#include <vtkXMLImageDataWriter.h>
 #include <xxhash.h>
 
 #include <algorithm>
@@ -21,6 +20,7 @@
 #include <system_error>
 
 #include "reconstruct/detail/vti_precheck.h"
+#include "reconstruct/detail/vti_writer.h"
 
 namespace umtet {
 
@@ -38,15 +38,6 @@ class QuietVtk {
  private:
   int before_;
 };
-
-template <class Array = vtkDoubleArray, class Value = double>
-vtkNew<Array> field(const std::string& name, const std::vector<Value>& values) {
-  vtkNew<Array> a;
-  a->SetName(name.c_str());
-  a->SetNumberOfValues(static_cast<vtkIdType>(values.size()));
-  std::copy(values.begin(), values.end(), a->GetPointer(0));
-  return a;
-}
 
 // Two halves of the hash of all coefficients: VTK's reader leaves arrays as they were, without an error, where base64
 // is damaged.
@@ -112,49 +103,26 @@ void write_level_set(const std::filesystem::path& file, const LevelSet& psi, con
   const LevelSetLevel& level = psi.coarsest();
   const Lattice& L = level.lattice;
   const Vec3 origin = L.origin + shown_at;
-  vtkNew<vtkImageData> image;
-  image->SetDimensions(L.n[0], L.n[1], L.n[2]);
-  image->SetOrigin(origin[0], origin[1], origin[2]);
-  image->SetSpacing(L.h, L.h, L.h);
-  vtkNew<vtkDoubleArray> coefficients;
-  coefficients->SetName("psi_a");
-  coefficients->SetArray(const_cast<double*>(level.coefficients.data()), L.size(),
-                         /*save=*/1);  // VTK does not write to it
-  image->GetPointData()->SetScalars(coefficients);
+  const std::string extent = fmt::format("0 {} 0 {} 0 {}", L.n[0] - 1, L.n[1] - 1, L.n[2] - 1);
+  detail::VtiWriter out(file);
+  out.text("<?xml version=\"1.0\"?>\n")
+      .text("<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n")
+      .text(fmt::format("<ImageData WholeExtent=\"{}\" Origin=\"{} {} {}\" Spacing=\"{} {} {}\" "
+                        "Direction=\"1 0 0 0 1 0 0 0 1\">\n<FieldData>\n",
+                        extent, origin[0], origin[1], origin[2], L.h, L.h, L.h));
+  out.field("lattice", std::vector<double>{L.origin[0], L.origin[1], L.origin[2], L.h, double(L.n[0]), double(L.n[1]),
+                                           double(L.n[2])});
   const LmePrior& prior = psi.prior();
-  image->GetFieldData()->AddArray(
-      field("lattice", {L.origin[0], L.origin[1], L.origin[2], L.h, double(L.n[0]), double(L.n[1]), double(L.n[2])}));
-  image->GetFieldData()->AddArray(
-      field("prior", {double(prior.kind), prior.gamma, double(prior.support), prior.epsilon}));
+  out.field("prior", std::vector<double>{double(prior.kind), prior.gamma, double(prior.support), prior.epsilon});
   for (int l = 1; l < psi.n_levels(); ++l) {
     const LevelSetBand& band = psi.band(l);
     std::vector<double> corners;
     for (const Eigen::Vector3i& b : band.blocks.blocks()) corners.insert(corners.end(), b.begin(), b.end());
-    image->GetFieldData()->AddArray(field(band_name(l, "blocks"), corners));
-    image->GetFieldData()->AddArray(field<vtkFloatArray>(band_name(l, "psi_a"), band.coefficients));
+    out.field(band_name(l, "blocks"), corners).field(band_name(l, "psi_a"), band.coefficients);
   }
-  image->GetFieldData()->AddArray(field("xxh64", hash(psi)));
-
-  const QuietVtk quiet;
-  vtkNew<vtkXMLImageDataWriter> writer;
-  // Into memory, then to the file ourselves: VTK's own writing returns success on a full disk.
-  writer->WriteToOutputStringOn();
-  writer->SetInputData(image);
-  writer->SetDataModeToBinary();  // inline base64: appended raw data is not well-formed XML
-  writer->SetHeaderTypeToUInt64();
-  writer->SetCompressorTypeToNone();
-  if (writer->Write() != 1 || writer->GetErrorCode() != vtkErrorCode::NoError) {
-    throw std::runtime_error(fmt::format("{}: could not be made: {}", file.string(),
-                                         vtkErrorCode::GetStringFromErrorCode(writer->GetErrorCode())));
-  }
-  const std::string text = writer->GetOutputString();
-  std::ofstream out(file, std::ios::binary);
-  out.write(text.data(), static_cast<std::streamsize>(text.size()));
-  out.close();
-  if (!out) {
-    throw std::system_error(errno ? errno : EIO, std::generic_category(),
-                            fmt::format("{}: could not be written completely", file.string()));
-  }
+  out.field("xxh64", hash(psi)).text(fmt::format("</FieldData>\n<Piece Extent=\"{}\">\n", extent));
+  out.text("<PointData Scalars=\"psi_a\">\n").points("psi_a", level.coefficients);
+  out.text("</PointData>\n<CellData>\n</CellData>\n</Piece>\n</ImageData>\n</VTKFile>\n").close();
 }
 
 LevelSet read_level_set(const std::filesystem::path& path) {
