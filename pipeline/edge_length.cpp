@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "mesh/quality_report.h"
@@ -59,9 +60,12 @@ void refuse_too_many(const Domain& domain, const Tiling& tiling, double h, std::
 
 /// The thickness that a hundredth of the samples fall below, at most `limit`.
 double thin_part(const Domain& domain, double limit, const KeepGoing& keep_going) {
+  // In their order in space, where psi is in the cache for the next.
   std::vector<Vec3> samples;
   const std::size_t stride = domain.cloud.points.size() / kThicknessSamples + 1;
-  for (std::size_t i = 0; i < domain.cloud.points.size(); i += stride) samples.push_back(domain.cloud.points[i]);
+  for (const std::uint32_t i : domain.samples ? domain.samples->order() : std::span<const std::uint32_t>()) {
+    if (i % stride == 0) samples.push_back(domain.cloud.points[i]);
+  }
   // psi has no sheets much closer together than its lattice.
   std::vector<double> t =
       thickness(domain.psi(), samples, .25 * domain.level_set->spacing(), limit, keep_going, domain.steepest());

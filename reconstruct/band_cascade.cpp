@@ -17,6 +17,9 @@ using Block = Eigen::Array<float, kNodes, 1>;
 Eigen::Map<Block> block(std::vector<float>& v, int b) {
   return Eigen::Map<Block>(v.data() + static_cast<std::size_t>(b) * kNodes);
 }
+Eigen::Map<const Block> block(const std::vector<float>& v, int b) {
+  return Eigen::Map<const Block>(v.data() + static_cast<std::size_t>(b) * kNodes);
+}
 
 // Sum over blocks in their order of what f returns for each: the same bits for any number of threads.
 template <class F>
@@ -32,7 +35,8 @@ double sum_over_blocks(int n, std::vector<double>& partial, F&& f) {
 std::vector<float> solve(const SsdBand& band, std::vector<float> r, double tolerance, int max_iterations,
                          const std::function<void(double)>& go_on, BandReport& report) {
   const int n = band.blocks().size();
-  std::vector<float> D(band.inverse_diagonal()), x(r.size(), 0.f), p(r.size()), Ap(r.size());
+  const std::vector<float>& D = band.inverse_diagonal();
+  std::vector<float> x(r.size(), 0.f), p(r.size()), Ap(r.size());
   std::vector<double> partial;
   double rz = sum_over_blocks(n, partial, [&](int b) {
     block(p, b) = block(D, b) * block(r, b);
@@ -91,9 +95,8 @@ LevelSet refine(const LevelSet& psi, const std::vector<SsdSample>& samples, doub
   report = {fine.h, samples.size(), band.n_active()};
   std::vector<float> r;
   band.residual(psi, r);
-  const std::vector<float> x = solve(band, std::move(r), tolerance, max_iterations, go_on, report);
-  LevelSetBand result{band.blocks(), std::vector<float>(x.size())};
-  for (std::size_t a = 0; a < x.size(); ++a) result.coefficients[a] = static_cast<float>(fine.h * x[a]);
+  LevelSetBand result{band.blocks(), solve(band, std::move(r), tolerance, max_iterations, go_on, report)};
+  for (float& c : result.coefficients) c = static_cast<float>(fine.h * c);
   return psi.with_band(std::move(result));
 }
 

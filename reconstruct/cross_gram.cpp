@@ -5,7 +5,12 @@
 namespace umtet {
 
 CrossGram::CrossGram(const LmeTables& tables, int k)
-    : k_(k), reach_(tables.half_width() * (1 + (1 << k)) - 1), m_(2 * reach_ + 1), s_(m_.size()), b_(m_.size()) {
+    : k_(k),
+      reach_(tables.half_width() * (1 + (1 << k)) - 1),
+      shift_(tables.half_width() - 1),
+      m_(2 * reach_ + 1),
+      s_(m_.size()),
+      b_(m_.size()) {
   const int R = tables.half_width(), ratio = 1 << k;
   const int n = 4 * R + 1, centre = 2 * R;  // an axis whose middle cells are away from its ends
   using Gauss = boost::math::quadrature::gauss<double, 8>;
@@ -31,6 +36,18 @@ CrossGram::CrossGram(const LmeTables& tables, int k)
       }
     }
   }
+  constexpr int kEdge = LatticeBlocks::kEdge;
+  axes_.resize(std::max(1, ratio / kEdge));
+  for (int block = 0; block < static_cast<int>(axes_.size()); ++block) {
+    const int first = kEdge * block - shift_, begin = window_begin(Eigen::Vector3i::Constant(first))[0];
+    for (int j = 0; j < window_size(); ++j)
+      for (int i = 0; i < kEdge; ++i) {
+        const int d = first + i - ((begin + j) << k_);
+        axes_[block].m[j][i] = static_cast<float>(this->m(d));
+        axes_[block].s[j][i] = static_cast<float>(this->s(d));
+        axes_[block].b[j][i] = static_cast<float>(this->b(d));
+      }
+  }
 }
 
 Eigen::Vector3i CrossGram::window_begin(const Eigen::Vector3i& first) const {
@@ -38,38 +55,32 @@ Eigen::Vector3i CrossGram::window_begin(const Eigen::Vector3i& first) const {
   return first.unaryExpr([&](int i) { return (i - reach_ + (1 << k_) - 1) >> k_; });
 }
 
-void CrossGram::add_energy(const Eigen::Vector3i& first, const double* C, double* out) const {
-  constexpr int kEdge = LatticeBlocks::kEdge, kMostWindow = 32;
-  using Lanes = Eigen::Array<double, kEdge, 1>;
+void CrossGram::add_energy(const Eigen::Vector3i& first, const float* C, float* out) const {
+  constexpr int kEdge = LatticeBlocks::kEdge;
+  using Lanes = Axis::Lanes;
   const int n = window_size();
-  const Eigen::Vector3i begin = window_begin(first);
-  // Entries between the eight fine nodes of an axis and each coarse node of the window.
-  Lanes m[3][kMostWindow], s[3][kMostWindow], b[3][kMostWindow];
-  for (int axis = 0; axis < 3; ++axis)
-    for (int j = 0; j < n; ++j)
-      for (int i = 0; i < kEdge; ++i) {
-        const int d = first[axis] + i - ((begin[axis] + j) << k_);
-        m[axis][j][i] = this->m(d), s[axis][j][i] = this->s(d), b[axis][j][i] = this->b(d);
-      }
+  const Axis &X = axis(first[0]), &Y = axis(first[1]), &Z = axis(first[2]);
   // x and y plane by plane; along z the planes A, B and D go with m, b and s.
-  Lanes M[kMostWindow], S[kMostWindow], B[kMostWindow];
-  Eigen::Map<Eigen::Array<double, kEdge, kEdge * kEdge>> sum(out);
+  Lanes M[Axis::kMostWindow], S[Axis::kMostWindow], B[Axis::kMostWindow];
   for (int z = 0; z < n; ++z) {
     for (int y = 0; y < n; ++y) {
-      const double* row = C + (static_cast<std::ptrdiff_t>(z) * n + y) * n;
-      M[y].setZero(), S[y].setZero(), B[y].setZero();
-      for (int x = 0; x < n; ++x) M[y] += row[x] * m[0][x], S[y] += row[x] * s[0][x], B[y] += row[x] * b[0][x];
+      const float* row = C + (static_cast<std::ptrdiff_t>(z) * n + y) * n;
+      Lanes m = Lanes::Zero(), s = m, b = m;
+      for (int x = 0; x < n; ++x) m += row[x] * X.m[x], s += row[x] * X.s[x], b += row[x] * X.b[x];
+      M[y] = m, S[y] = s, B[y] = b;
     }
     for (int j = 0; j < kEdge; ++j) {
       Lanes with_m = Lanes::Zero(), with_b = with_m, with_s = with_m;
       for (int y = 0; y < n; ++y) {
-        const double my = m[1][y][j], sy = s[1][y][j], by = b[1][y][j];
+        const float my = Y.m[y][j], sy = Y.s[y][j], by = Y.b[y][j];
         with_m += my * B[y] + by * M[y] + (2 * sy) * S[y];
         with_b += my * M[y];
         with_s += (2 * my) * S[y] + (2 * sy) * M[y];
       }
-      for (int i = 0; i < kEdge; ++i)
-        sum.col(i * kEdge + j) += m[2][z][i] * with_m + b[2][z][i] * with_b + s[2][z][i] * with_s;
+      for (int i = 0; i < kEdge; ++i) {
+        Eigen::Map<Lanes>(out + (i * kEdge + j) * kEdge) +=
+            Z.m[z][i] * with_m + Z.b[z][i] * with_b + Z.s[z][i] * with_s;
+      }
     }
   }
 }

@@ -45,6 +45,11 @@ class NearestFew final : public flann::ResultSet<double> {
     room_[at] = found;
     if (size_ == room_.size()) bound_ = rounded_up(room_[size_ - 1].distance2);
   }
+  void rows(std::vector<std::uint32_t>& out) const {
+    out.resize(size_);
+    for (std::size_t i = 0; i < size_; ++i) out[i] = room_[i].point;
+  }
+  /// Ends the search: points instead of rows.
   std::span<const Neighbour> points() {
     for (Neighbour& found : room_.first(size_)) found.point = order_[found.point];
     return room_.first(size_);
@@ -204,15 +209,17 @@ void NeighbourTree::for_each_neighbourhood(
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, size(), kQueriesPerTask),
                     [&](const tbb::blocked_range<std::size_t>& rows) {
                       std::vector<Neighbour> room(std::min(k, size()));
-                      double reach = kInfinity;  // the ball around the former point that holds k of them
+                      std::vector<std::uint32_t> former;  // rows of what the point before has found: as many as wanted
                       for (std::size_t row = rows.begin(); row != rows.end(); ++row) {
                         const Vec3& x = index_->rows[row];
-                        if (row > rows.begin()) reach += (x - index_->rows[row - 1]).norm();
-                        NearestFew nearest(order_.data(), room, rounded_up(reach * reach));
+                        double bound2 = former.empty() ? kInfinity : 0;
+                        for (const std::uint32_t near : former) {
+                          bound2 = std::max(bound2, (x - index_->rows[near]).squaredNorm());
+                        }
+                        NearestFew nearest(order_.data(), room, rounded_up(bound2));
                         index_->search(nearest, x);
-                        const std::span<const Neighbour> found = nearest.points();
-                        reach = std::sqrt(found.back().distance2);
-                        visit(order_[row], found);
+                        nearest.rows(former);
+                        visit(order_[row], nearest.points());
                       }
                     });
 }

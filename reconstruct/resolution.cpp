@@ -13,9 +13,8 @@ constexpr double kCleanSmoothing = 0.001, kNoisySmoothing = 0.2;
 // On eq. (9), 50k samples with noise of 0.5 % and 6 degrees: mean error 3.3e-4 of the diagonal with 6, 3.2e-4 with 10;
 // 20k with .2 %: 3.6e-4 and 3.1e-4. Normals estimated from the samples deserve less trust than these.
 constexpr double kValueNoises = 10;
-// Samples of the armadillo are .029 edges of its mesh from psi = 0 instead of .035. A quarter gives .025, but psi is so
-// rough then that tets of Q = .79 are left. On a full lattice the V-cycle takes more iterations (duck: 12 % of the
-// run).
+// Samples of the armadillo are .029 edges of its mesh from psi = 0 instead of .035, those of spot_ascii (one lattice)
+// .031 instead of .037. A quarter gives .025, but psi of the armadillo is so rough then that tets of Q = .79 are left.
 constexpr double kFinestSpacings = .5;
 
 }  // namespace

@@ -28,7 +28,7 @@ Resolution choose_resolution(double sample_spacing, double noise, double detail 
 /// where it is than their normals do about where it goes.
 double value_length(double spacing, double noise);
 
-/// The same on the finest band of a cascade, where nothing finer follows: clean samples are taken at their word.
+/// The same on the finest lattice, where nothing finer follows: clean samples are taken at their word.
 double finest_value_length(double spacing, double noise);
 
 }  // namespace umtet

@@ -15,6 +15,8 @@ namespace {
 constexpr int kEdge = LatticeBlocks::kEdge, kNodes = LatticeBlocks::kNodes;
 // The nodes of a cell block: two blocks along each axis.
 constexpr int kWindow = 2 * kEdge, kWindowNodes = kWindow * kWindow * kWindow;
+constexpr std::integral_constant<int, kWindow> kRow;
+constexpr std::integral_constant<int, kWindow * kWindow> kPlane;
 
 using Lanes = detail::FloatLanes;
 using In = detail::FloatIn;
@@ -120,7 +122,7 @@ SsdBand::SsdBand(const LmeTables& tables, const Lattice& lattice, double kappa, 
 }
 
 double SsdBand::expected_bytes(const std::vector<SsdSample>& samples, int half_width) {
-  constexpr double kPerNode = 5 * sizeof(float) + 2 * sizeof(double), kPerSample = 180;
+  constexpr double kPerNode = 5 * sizeof(float) + 16, kPerSample = 180;
   return kNodes * kPerNode * static_cast<double>(touched_blocks(samples, half_width).size()) +
          kPerSample * static_cast<double>(samples.size());
 }
@@ -162,8 +164,6 @@ void SsdBand::apply_data(const float* p, float* y) const {
     std::fill(in + kUsed, in + kUsed + 8, 0.f);
     std::fill(out, out + kUsed + 8, 0.f);
     for (std::size_t i = cells.begin; i < cells.end; ++i) {
-      constexpr std::integral_constant<int, kWindow> kRow;
-      constexpr std::integral_constant<int, kWindow * kWindow> kPlane;
       detail::add_sample<W>({bases_.data() + i * Basis<W>::kStride}, in + window_[i], out + window_[i], kRow, kPlane);
     }
     add_window<W>(cells.nodes, out, y);
@@ -290,54 +290,64 @@ void SsdBand::invert_diagonal() {
   }
 }
 
-void SsdBand::residual(const LevelSet& f, std::vector<float>& r) const {
+// r = -kappa int H(N) : H(f): f level by level, in units of this lattice.
+void SsdBand::subtract_energy(const LevelSet& f, std::vector<float>& r) const {
   const Lattice& L = blocks_.lattice();
-  // H(f), in units of this lattice, against its functions: level by level.
-  std::vector<double> energy(size(), 0.0);
+  std::vector<CrossGram> grams;
+  std::size_t widest = 0;
   for (int level = 0; level < f.n_levels(); ++level) {
-    const CrossGram gram(*tables_, static_cast<int>(std::lround(std::log2(f.lattice(level).h / L.h))));
-    const int n = gram.window_size();
-    tbb::parallel_for(0, blocks_.size(), [&](int block) {
-      thread_local std::vector<double> window;
-      window.resize(static_cast<std::size_t>(n) * n * n);
-      const Eigen::Vector3i first = blocks_.first_node(block), begin = gram.window_begin(first);
-      const bool any = level == 0 ? copy_window(f.coarsest(), begin, n, window.data())
-                                  : f.band(level).blocks.copy_window(f.band(level).coefficients.data(), begin,
-                                                                     {n, n, n}, n, window.data());
-      if (any) gram.add_energy(first, window.data(), energy.data() + static_cast<std::size_t>(block) * kNodes);
-    });
+    grams.emplace_back(*tables_, static_cast<int>(std::lround(std::log2(f.lattice(level).h / L.h))));
+    widest = std::max<std::size_t>(widest, grams.back().window_size());
   }
-  for (double& e : energy) e /= L.h;
-  std::vector<double> data(size(), 0.0);
-  detail::dispatch_width(tables_->width(), [&](auto width) {
-    constexpr int W = width.value;
-    for_each_cell_block([&](const CellBlock& cells) {
-      const Eigen::Vector3i corner = kEdge * cells.block - Eigen::Vector3i::Constant(blocks_.shift());
-      double out[kWindowNodes] = {};
-      for (std::size_t i = cells.begin; i < cells.end; ++i) {
-        const SsdSample& s = (*samples_)[i];
-        Vec3 gradient;
-        const double value = f.evaluate(L.origin + L.h * s.xi, &gradient, nullptr) / L.h;
-        LmeBasis3d B;
-        evaluate_lme_3d<false>(*tables_, L.n, s.xi, B);
-        const double q = s.w_value * (s.value - value);
-        const Vec3 g = s.w_gradient * (s.normal - gradient);
-        double* base =
-            out + ((B.z.first - corner[2]) * kWindow + B.y.first - corner[1]) * kWindow + B.x.first - corner[0];
-        for (int k = 0; k < W; ++k)
-          for (int j = 0; j < W; ++j) {
-            const double yz = B.y.N[j] * B.z.N[k],
-                         v = q * yz + g[1] * B.y.dN[j] * B.z.N[k] + g[2] * B.y.N[j] * B.z.dN[k];
-            double* row = base + (k * kWindow + j) * kWindow;
-            for (int a = 0; a < W; ++a) row[a] += v * B.x.N[a] + g[0] * yz * B.x.dN[a];
-          }
+  const auto scale = static_cast<float>(-kappa_ / L.h);
+  tbb::parallel_for(0, blocks_.size(), [&](int block) {
+    thread_local std::vector<float> window;
+    thread_local std::vector<double> coarsest;
+    window.resize(widest * widest * widest), coarsest.resize(window.size());
+    const Eigen::Vector3i first = blocks_.first_node(block);
+    Eigen::Map<Eigen::Array<float, kNodes, 1>> energy(r.data() + static_cast<std::size_t>(block) * kNodes);
+    for (int level = 0; level < f.n_levels(); ++level) {
+      const CrossGram& gram = grams[level];
+      const int n = gram.window_size();
+      const Eigen::Vector3i begin = gram.window_begin(first);
+      bool any = false;
+      if (level == 0) {
+        any = copy_window(f.coarsest(), begin, n, coarsest.data());
+        std::copy(coarsest.begin(), coarsest.begin() + static_cast<std::ptrdiff_t>(n) * n * n, window.begin());
+      } else {
+        const LevelSetBand& band = f.band(level);
+        any = band.blocks.copy_window(band.coefficients.data(), begin, {n, n, n}, n, window.data());
       }
-      add_window<W>(cells.nodes, out, data.data());
-    });
+      if (any) gram.add_energy(first, window.data(), energy.data());
+    }
+    energy *= scale;
   });
-  r.resize(size());
+}
+
+template <int W>
+void SsdBand::add_misfit(const LevelSet& f, std::vector<float>& r) const {
+  const Lattice& L = blocks_.lattice();
+  for_each_cell_block([&](const CellBlock& cells) {
+    alignas(32) float out[kWindowNodes + 8] = {};
+    for (std::size_t i = cells.begin; i < cells.end; ++i) {
+      const SsdSample& s = (*samples_)[i];
+      Vec3 gradient;
+      const double value = f.evaluate(L.origin + L.h * s.xi, &gradient, nullptr) / L.h;
+      const Eigen::Vector3f g = (s.w_gradient * (s.normal - gradient)).cast<float>();
+      detail::scatter_sample<W>({bases_.data() + i * Basis<W>::kStride},
+                                static_cast<float>(s.w_value * (s.value - value)), g[0], g[1], g[2], out + window_[i],
+                                kRow, kPlane);
+    }
+    add_window<W>(cells.nodes, out, r.data());
+  });
+}
+
+void SsdBand::residual(const LevelSet& f, std::vector<float>& r) const {
+  r.assign(size(), 0.f);
+  subtract_energy(f, r);
+  detail::dispatch_width(tables_->width(), [&](auto W) { add_misfit<W.value>(f, r); });
   for (std::size_t a = 0; a < r.size(); ++a) {
-    r[a] = inverse_diagonal_[a] > 0 ? static_cast<float>(data[a] - kappa_ * energy[a]) : 0.f;
+    if (inverse_diagonal_[a] == 0) r[a] = 0;
   }
 }
 

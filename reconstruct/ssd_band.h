@@ -16,8 +16,9 @@ namespace umtet {
 ///   r = sum_s ( w_g grad N . (n - grad f) + w_v N (v - f) ) - kappa int H(N) : H(f),    all in lattice units.
 ///
 /// A is applied in single precision: PCG only has to reduce the residual by two or three digits on each level, and the
-/// next level starts from a residual in double precision. Each cell block works on copies of its nodes; blocks that
-/// share nodes have different colours, so that sums have one order for any number of threads.
+/// next level starts from what psi misses in double precision (only the sums of r are single). Each cell block works on
+/// copies of its nodes; blocks that share nodes have different colours, so that sums have one order for any number of
+/// threads.
 class SsdBand {
  public:
   /// @param samples  of the cells to refine, in block order (merge_samples), lattice units; kept by reference
@@ -38,7 +39,7 @@ class SsdBand {
   void residual(const LevelSet& f, std::vector<float>& r) const;
 
   /// Bytes that a band of these samples takes while it is solved, before it is made: per block the vectors of the solve
-  /// and the residual in double, per sample its functions.
+  /// and, made after it, the copies that psi is evaluated from; per sample its functions.
   static double expected_bytes(const std::vector<SsdSample>& samples, int half_width);
 
  private:
@@ -55,6 +56,9 @@ class SsdBand {
   void apply_data(const float* p, float* y) const;
   template <int R>
   void apply_energy(const float* p, float* y) const;
+  void subtract_energy(const LevelSet& f, std::vector<float>& r) const;
+  template <int W>
+  void add_misfit(const LevelSet& f, std::vector<float>& r) const;
   void invert_diagonal();
 
   const LmeTables* tables_;
@@ -64,8 +68,8 @@ class SsdBand {
   std::vector<CellBlock> cell_blocks_;
   std::array<std::vector<int>, 8> colours_;
   std::vector<std::array<int, 27>> neighbours_;
-  std::vector<float> bases_;             // per sample: N, N' in x (8 lanes each), y and z (W each), weights
-  std::vector<std::uint16_t> window_;    // first node of a sample in the 16^3 nodes of its cell block
+  std::vector<float> bases_;           // per sample: N, N' in x (8 lanes each), y and z (W each), weights
+  std::vector<std::uint16_t> window_;  // first node of a sample in the 16^3 nodes of its cell block
   std::vector<float> inverse_diagonal_;
   std::size_t n_active_ = 0;
 };

@@ -42,32 +42,52 @@ struct SampleBasis {
   }
 };
 
+/// y += q N + g . grad N over the W^3 nodes of a sample, as add_sample.
+template <int W, class Nx, class Nxy>
+void scatter_sample(const SampleBasis<W>& B, float q, float gx, float gy, float gz, float* y, Nx nx, Nxy nxy) {
+  const FloatLanes N = B.xN(), t = q * N + gx * B.xdN(), ty = gy * N, tz = gz * N;
+  FloatLanes a[W], az[W];
+#pragma GCC unroll 8
+  for (int j = 0; j < W; ++j) a[j] = B.yN()[j] * t + B.ydN()[j] * ty, az[j] = B.yN()[j] * tz;
+#pragma GCC unroll 1
+  for (int k = 0; k < W; ++k) {
+    const float zN = B.zN()[k], zdN = B.zdN()[k];
+#pragma GCC unroll 8
+    for (int j = 0; j < W; ++j) float_lanes(y + k * nxy + j * nx) += zN * a[j] + zdN * az[j];
+  }
+}
+
 /// y += (w_v N N^T + w_g grad N . grad N^T) c over the W^3 nodes of a sample. Eight-lane loads and stores reach past
 /// the last node of a row, and add zero there.
 /// @param c, y    at the first node of all axes
 /// @param nx, nxy distance of nodes along y and z
 template <int W, class Nx, class Nxy>
 void add_sample(const SampleBasis<W>& B, const float* c, float* y, Nx nx, Nxy nxy) {
-  FloatLanes v = FloatLanes::Zero(), vy = v, vz = v;
-  for (int j = 0; j < W; ++j) {
-    FloatLanes a = FloatLanes::Zero(), az = a;
-    for (int k = 0; k < W; ++k) {
-      const FloatIn row(c + k * nxy + j * nx);
-      a += B.zN()[k] * row;
-      az += B.zdN()[k] * row;
+  // Plane by plane: 2 W sums stay in registers, and a weight in z is loaded once.
+  FloatLanes a[W], az[W];
+#pragma GCC unroll 8
+  for (int j = 0; j < W; ++j) a[j].setZero(), az[j].setZero();
+#pragma GCC unroll 1
+  for (int k = 0; k < W; ++k) {
+    const float N = B.zN()[k], dN = B.zdN()[k];
+#pragma GCC unroll 8
+    for (int j = 0; j < W; ++j) {
+      const FloatLanes row = FloatIn(c + k * nxy + j * nx);
+      a[j] += N * row;
+      az[j] += dN * row;
     }
-    v += B.yN()[j] * a;
-    vy += B.ydN()[j] * a;
-    vz += B.yN()[j] * az;
+  }
+  FloatLanes v = FloatLanes::Zero(), vy = v, vz = v;
+#pragma GCC unroll 8
+  for (int j = 0; j < W; ++j) {
+    v += B.yN()[j] * a[j];
+    vy += B.ydN()[j] * a[j];
+    vz += B.yN()[j] * az[j];
   }
   const FloatLanes N = B.xN(), dN = B.xdN();
   const float q = B.w_value() * (N * v).sum(), w = B.w_gradient();
   const float gx = w * (dN * v).sum(), gy = w * (N * vy).sum(), gz = w * (N * vz).sum();
-  const FloatLanes t = q * N + gx * dN, ty = gy * N, tz = gz * N;
-  for (int j = 0; j < W; ++j) {
-    const FloatLanes a = B.yN()[j] * t + B.ydN()[j] * ty, az = B.yN()[j] * tz;
-    for (int k = 0; k < W; ++k) float_lanes(y + k * nxy + j * nx) += B.zN()[k] * a + B.zdN()[k] * az;
-  }
+  scatter_sample<W>(B, q, gx, gy, gz, y, nx, nxy);
 }
 
 }  // namespace umtet::detail
