@@ -1,11 +1,14 @@
+#include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "mesh/detail/check_indices.h"
@@ -17,148 +20,192 @@ namespace {
 
 using detail::TwoLeast;
 
-// What a task of a millisecond handles; of the vertices, what leaves their tets in the cache.
-constexpr std::size_t kTetsPerBlock = 1 << 16;
-constexpr int kLogVertices = 12, kVerticesPerBlock = 1 << kLogVertices;
+// What a task of a fraction of a millisecond handles; of the vertices, what leaves their tets in the cache.
+constexpr std::size_t kTetsPerPart = 1 << 14;
+constexpr std::size_t kAhead = 16;  // tets that are on the way from memory
+constexpr int kLogVertices = 11, kVerticesPerBlock = 1 << kLogVertices;
 
-/// The tets with faces under the vertices of each block, ascending.
+/// The two least vertices of each of some tets, and whether all indices are good.
+bool two_least(const Tet* tets, std::size_t n, std::size_t n_vertices, int* first, int* second) {
+  int least = 0, greatest = 0;
+  unsigned bad = 0;
+  for (std::size_t k = 0; k < n; ++k) {  // in vector registers: no branches
+    const int p = tets[k][0], q = tets[k][1], r = tets[k][2], s = tets[k][3];
+    const int a = std::min(p, q), b = std::max(p, q), c = std::min(r, s), d = std::max(r, s);
+    const int v0 = std::min(a, c), x = std::max(a, c), y = std::min(b, d), v3 = std::max(b, d);
+    const int v1 = std::min(x, y), v2 = std::max(x, y);
+    least = std::min(least, v0);
+    greatest = std::max(greatest, v3);
+    bad |= static_cast<unsigned>(v0 == v1) | static_cast<unsigned>(v1 == v2) | static_cast<unsigned>(v2 == v3);
+    first[k] = v0;
+    second[k] = v1;
+  }
+  return bad == 0 && least >= 0 && static_cast<std::size_t>(greatest) < n_vertices;
+}
+
+/// Some consecutive tets by the blocks of vertices under which they have faces.
 class TetsByBlock {
  public:
-  /// @param only  per vertex, whether its tets are listed; null: of all
-  TetsByBlock(const std::vector<Tet>& C, std::size_t n_vertices, const std::vector<char>* only)
-      : begin_((n_vertices + kVerticesPerBlock - 1) / kVerticesPerBlock + 1, 0) {
-    const std::size_t n_parts = (C.size() + kTetsPerBlock - 1) / kTetsPerBlock, n_blocks = begin_.size() - 1;
-    std::vector<std::uint32_t> next(n_parts * n_blocks, 0);  // for each part of C, where its tets of a block go
-    const auto for_each = [&](const auto& f) {
-      tbb::parallel_for(std::size_t{0}, n_parts, [&](std::size_t part) {
-        const std::size_t end = std::min(C.size(), (part + 1) * kTetsPerBlock);
-        for (std::size_t t = part * kTetsPerBlock; t < end; ++t) {
-          const TwoLeast least(C[t]);
-          const int a = least.first >> kLogVertices, b = least.second >> kLogVertices;
-          const bool in_a = !only || (*only)[least.first] != 0, in_b = !only || (*only)[least.second] != 0;
-          if (in_a || (in_b && a == b)) f(t, next[part * n_blocks + static_cast<std::size_t>(a)]);
-          if (in_b && a != b) f(t, next[part * n_blocks + static_cast<std::size_t>(b)]);
-        }
-      });
-    };
-    for_each([](std::size_t, std::uint32_t& n) { ++n; });
-    std::uint32_t sum = 0;
-    for (std::size_t block = 0; block < n_blocks; ++block) {
-      for (std::size_t part = 0; part < n_parts; ++part) sum += std::exchange(next[part * n_blocks + block], sum);
-      begin_[block + 1] = sum;
+  /// @return false if an index is out of range or repeated
+  bool sort(const std::vector<Tet>& C, std::size_t part, std::size_t n_vertices, const std::vector<char>* only) {
+    const std::size_t first = part * kTetsPerPart, n = std::min(C.size() - first, kTetsPerPart);
+    std::array<int, kTetsPerPart> a, b;
+    if (!two_least(&C[first], n, n_vertices, a.data(), b.data())) return false;
+    if (only) {
+      for (std::size_t k = 0; k < n; ++k) {  // one that is asked for stands for one that is not; -1: none
+        const bool in_a = (*only)[a[k]] != 0, in_b = (*only)[b[k]] != 0;
+        const int one = in_a ? a[k] : in_b ? b[k] : -1;
+        b[k] = in_b ? b[k] : one;
+        a[k] = one;
+      }
     }
-    tets_.resize(sum);
-    for_each([&](std::size_t t, std::uint32_t& n) { tets_[n++] = static_cast<int>(t); });
+    int least = std::numeric_limits<int>::max(), greatest = -1;
+    for (std::size_t k = 0; k < n; ++k) {
+      a[k] >>= kLogVertices;
+      b[k] >>= kLogVertices;
+      least = std::min(least, a[k] < 0 ? least : std::min(a[k], b[k]));
+      greatest = std::max(greatest, std::max(a[k], b[k]));
+    }
+    if (greatest < 0) return true;
+    first_block_ = static_cast<std::size_t>(least);
+    begin_.assign(static_cast<std::size_t>(greatest - least) + 2, 0);
+    const auto for_each = [&](const auto& f) {
+      for (std::size_t k = 0; k < n; ++k) {
+        if (a[k] < 0) continue;
+        f(begin_[a[k] - least], k);
+        if (b[k] != a[k]) f(begin_[b[k] - least], k);
+      }
+    };
+    for_each([](std::uint32_t& count, std::size_t) { ++count; });
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());  // the ends, which go down to the beginnings
+    tets_.resize(begin_.back());
+    for_each([&](std::uint32_t& end, std::size_t k) { tets_[--end] = static_cast<int>(first + k); });
+    return true;
   }
-  std::size_t size() const { return begin_.size() - 1; }
   std::span<const int> operator[](std::size_t block) const {
-    return {tets_.data() + begin_[block], begin_[block + 1] - begin_[block]};
+    if (block < first_block_ || block + 1 >= first_block_ + begin_.size()) return {};
+    const std::size_t k = block - first_block_;
+    return {tets_.data() + begin_[k], begin_[k + 1] - begin_[k]};
   }
 
  private:
+  std::size_t first_block_ = 0;
   std::vector<std::uint32_t> begin_;
   std::vector<int> tets_;
 };
 
-/// The tets of a block by vertex.
+/// The tets of a block with faces under a vertex, as seen from there.
 class TetsByVertex {
  public:
-  struct Star {
-    std::span<const int> all, least, second;  ///< those it is the least vertex of, then those it is the second of
+  struct Least {
+    int i, j, k, tet;  ///< the face opposite to the vertex, which is the least of the tet
   };
-  TetsByVertex(const std::vector<Tet>& C, std::span<const int> tets, int first_vertex) : first_(first_vertex) {
+  struct Second {
+    int i, j, tet;  ///< the other vertices, without the least of the tet, in the order of the face opposite to this one
+  };
+  void sort(const std::vector<Tet>& C, const std::vector<TetsByBlock>& parts, std::size_t block) {
+    const int first = static_cast<int>(block << kLogVertices);
+    begin_least_.fill(0);
+    begin_second_.fill(0);
     const auto for_each = [&](const auto& f) {
-      for (const int t : tets) {
-        const TwoLeast least(C[t]);
-        const int a = least.first - first_, b = least.second - first_;
-        if (is_here(a)) f(t, a, true);
-        if (is_here(b)) f(t, b, false);
+      for (const TetsByBlock& part : parts) {
+        const std::span<const int> tets = part[block];
+        for (std::size_t k = 0; k < tets.size(); ++k) {
+          const int t = tets[k];
+          __builtin_prefetch(&C[tets[std::min(k + kAhead, tets.size() - 1)]]);
+          const TwoLeast v(C[t]);
+          f(t, v, static_cast<unsigned>(v.first - first), static_cast<unsigned>(v.second - first));
+        }
       }
     };
-    for_each([&](int, int v, bool) { ++begin_[v + 1]; });
-    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-    std::copy(begin_.begin(), begin_.end() - 1, next_.begin());
-    std::copy(begin_.begin() + 1, begin_.end(), last_.begin());
-    tets_.resize(begin_.back());
-    for_each([&](int t, int v, bool least) { tets_[least ? next_[v]++ : --last_[v]] = t; });
+    for_each([&](int, const TwoLeast&, unsigned a, unsigned b) {
+      if (a < kVerticesPerBlock) ++begin_least_[a];
+      if (b < kVerticesPerBlock) ++begin_second_[b];
+    });
+    std::partial_sum(begin_least_.begin(), begin_least_.end(), begin_least_.begin());
+    std::partial_sum(begin_second_.begin(), begin_second_.end(), begin_second_.begin());
+    least_.resize(begin_least_.back());
+    second_.resize(begin_second_.back());
+    for_each([&](int t, const TwoLeast& v, unsigned a, unsigned b) {
+      const Tet& tet = C[t];
+      const auto& face = kTetFace[place_of(tet, v.first)];
+      const int i = tet[face[0]], j = tet[face[1]], k = tet[face[2]];
+      if (a < kVerticesPerBlock) least_[--begin_least_[a]] = {i, j, k, t};
+      if (b >= kVerticesPerBlock) return;
+      // Opposite to i is the face of the least vertex, k and j, and so on around.
+      const std::array<int, 5> around = {i, j, k, i, j};
+      const int at = (v.second == j) + 2 * (v.second == k);
+      second_[--begin_second_[b]] = {around[at + 2], around[at + 1], t};
+    });
   }
   /// Of the v-th vertex of the block.
-  Star operator[](int v) const {
-    const int* const tets = tets_.data();
-    return {{tets + begin_[v], tets + begin_[v + 1]},
-            {tets + begin_[v], tets + next_[v]},
-            {tets + next_[v], tets + begin_[v + 1]}};
+  std::span<const Least> least(int v) const {
+    return {least_.data() + begin_least_[v], least_.data() + begin_least_[v + 1]};
+  }
+  std::span<const Second> second(int v) const {
+    return {second_.data() + begin_second_[v], second_.data() + begin_second_[v + 1]};
   }
 
  private:
-  static bool is_here(int v) { return v >= 0 && v < kVerticesPerBlock; }
+  static int place_of(const Tet& tet, int v) { return (tet[1] == v) + 2 * (tet[2] == v) + 3 * (tet[3] == v); }
 
-  int first_;
-  std::array<std::uint32_t, kVerticesPerBlock + 1> begin_{};
-  std::array<std::uint32_t, kVerticesPerBlock> next_, last_;
-  std::vector<int> tets_;
+  std::array<std::uint32_t, kVerticesPerBlock + 1> begin_least_, begin_second_;
+  std::vector<Least> least_;
+  std::vector<Second> second_;
 };
 
-/// The directed edges opposite to a vertex in its faces, as bits of a small matrix: enough to say that every face has
-/// two tets, one on either side.
+/// The faces under a vertex as a hash table of the directed edges opposite to it.
 class Link {
  public:
-  /// Whether that is true of all faces whose least vertex is v. False, too, where there are more vertices than bits.
-  bool is_closed(const std::vector<Tet>& C, const TetsByVertex::Star& star, int v) {
-    n_ = 0;
-    is_simple_ = true;
-    for (const int t : star.least) {
-      const Tet& tet = C[t];
-      const auto& face = kTetFace[place_of(tet, v)];
-      const int i = number(v, tet[face[0]]), j = number(v, tet[face[1]]), k = number(v, tet[face[2]]);
-      add(i, j);
-      add(j, k);
-      add(k, i);
-      if (n_ > kMost) return false;
+  /// False where some face has more than two tets, or two on one side; or where there are more faces than the table
+  /// holds. Of no further use then.
+  bool is_simple(std::span<const TetsByVertex::Least> least, std::span<const TetsByVertex::Second> second) {
+    const std::size_t n_uses = 3 * least.size() + second.size();
+    log_slots_ = n_uses < kSlots / 4 ? kLogSlots - 2 : kLogSlots;  // fewer are cleared sooner
+    if (n_uses >= kSlots) return false;
+    std::fill_n(edge_.begin(), 1 << log_slots_, 0);
+    std::fill_n(seen_.begin(), 1 << log_slots_, 0);
+    n_single_ = 0;
+    bool good = true;
+    for (const TetsByVertex::Least& t : least)
+      good &= add(t.i, t.j, t.tet) & add(t.j, t.k, t.tet) & add(t.k, t.i, t.tet);
+    for (const TetsByVertex::Second& t : second) good &= add(t.i, t.j, t.tet);
+    return good;
+  }
+  bool is_closed() const { return n_single_ == 0; }
+  /// Calls f(tet, vertex, vertex) for the faces of one tet.
+  template <class F>
+  void for_each_single(const F& f) const {
+    for (unsigned slot = 0; slot >> log_slots_ == 0; ++slot) {
+      if (seen_[slot] == 1 || seen_[slot] == 2) {
+        f(tet_[slot], static_cast<int>(edge_[slot] >> 32), static_cast<int>(edge_[slot] & 0xffffffffu));
+      }
     }
-    for (const int t : star.second) {
-      const Tet& tet = C[t];
-      const auto& face = kTetFace[place_of(tet, v)];
-      const int below = (tet[face[1]] < v) + 2 * (tet[face[2]] < v);
-      add(number(v, tet[face[(below + 1) % 3]]), number(v, tet[face[(below + 2) % 3]]));
-      if (n_ > kMost) return false;
-    }
-    return is_simple_ && std::equal(from_.begin(), from_.begin() + n_, to_.begin());
   }
 
  private:
-  static constexpr int kLogSlots = 6, kSlots = 1 << kLogSlots;
-  static constexpr int kMost = 48;  ///< vertices; a tet adds three at most
+  static constexpr unsigned kLogSlots = 8, kSlots = 1 << kLogSlots;
 
-  static int place_of(const Tet& tet, int v) { return (tet[1] == v) + 2 * (tet[2] == v) + 3 * (tet[3] == v); }
-  /// Of vertex x in the link of v: in the order in which they are met.
-  int number(int v, int x) {
-    const std::uint64_t key = static_cast<std::uint64_t>(v) << 32 | static_cast<std::uint32_t>(x);
-    std::uint32_t slot = (static_cast<std::uint32_t>(x) * 2654435769u) >> (32 - kLogSlots);
-    for (; key_[slot] != key; slot = (slot + 1) % kSlots) {
-      if (key_[slot] >> 32 == static_cast<std::uint64_t>(v)) continue;  // another vertex of this link
-      key_[slot] = key;
-      number_[slot] = n_;
-      from_[n_] = to_[n_] = 0;
-      return n_++;
-    }
-    return number_[slot];
-  }
-  void add(int i, int j) {
-    is_simple_ &= (from_[i] >> j & 1) == 0;
-    from_[i] |= std::uint64_t{1} << j;
-    to_[j] |= std::uint64_t{1} << i;
+  /// @return whether the edge was not there in this direction. Half of the edges are new: no branch asks which.
+  bool add(int from, int to, int tet) {
+    const std::uint64_t key =
+        static_cast<std::uint64_t>(std::min(from, to)) << 32 | static_cast<std::uint64_t>(std::max(from, to));
+    unsigned slot = static_cast<unsigned>((key * 0x9e3779b97f4a7c15u) >> (64 - log_slots_));
+    // Neither this edge nor none: no key is 0.
+    while (std::min(edge_[slot], edge_[slot] ^ key) != 0) slot = (slot + 1) & ((1u << log_slots_) - 1);
+    const unsigned bit = from < to ? 1 : 2, before = seen_[slot];
+    edge_[slot] = key;
+    tet_[slot] = tet;
+    seen_[slot] = static_cast<unsigned char>(before | bit);
+    n_single_ += 1 - 2 * static_cast<int>(before != 0);
+    return (before & bit) == 0;
   }
 
-  std::array<std::uint64_t, kSlots> key_ = [] {
-    std::array<std::uint64_t, kSlots> none;
-    none.fill(~std::uint64_t{0});
-    return none;
-  }();
-  std::array<int, kSlots> number_{};
-  std::array<std::uint64_t, 64> from_{}, to_{};  ///< row i: the j with an edge i -> j, j -> i
-  int n_ = 0;
-  bool is_simple_ = true;  ///< no edge twice in one direction
+  std::array<std::uint64_t, kSlots> edge_;  ///< the lesser end above the greater; 0: none
+  std::array<int, kSlots> tet_;             ///< the last one
+  std::array<unsigned char, kSlots> seen_;  ///< bits: along ascending vertices, against
+  unsigned log_slots_ = kLogSlots;          ///< in use
+  int n_single_ = 0;
 };
 
 /// A face under its least vertex.
@@ -189,11 +236,12 @@ struct BlockFaces {
   std::size_t n_overused = 0, n_same_side = 0;
 };
 
-/// The faces whose least vertex is v, where they are not all inside.
-void count_faces(const std::vector<Tet>& C, std::span<const int> tets, int v, std::vector<FaceUse>& uses,
+/// The faces whose least vertex is v, whatever they are.
+void count_faces(const std::vector<Tet>& C, const TetsByVertex& tets, int v, int local, std::vector<FaceUse>& uses,
                  BlockFaces& result) {
   uses.clear();
-  for (const int t : tets) add_faces(C[t], static_cast<std::size_t>(t), v, uses);
+  for (const auto& t : tets.least(local)) add_faces(C[t.tet], static_cast<std::size_t>(t.tet), v, uses);
+  for (const auto& t : tets.second(local)) add_faces(C[t.tet], static_cast<std::size_t>(t.tet), v, uses);
   std::sort(uses.begin(), uses.end(), [](const FaceUse& x, const FaceUse& y) { return x.rest < y.rest; });
   for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
     while (j < uses.size() && uses[j].rest == uses[i].rest) ++j;
@@ -203,22 +251,44 @@ void count_faces(const std::vector<Tet>& C, std::span<const int> tets, int v, st
   }
 }
 
+/// 4 tet + the local face with these corners.
+std::int64_t face_of(const std::vector<Tet>& C, int t, int a, int b, int c) {
+  int k = 0;
+  while (C[t][k] == a || C[t][k] == b || C[t][k] == c) ++k;
+  return 4 * static_cast<std::int64_t>(t) + k;
+}
+
+/// What a thread keeps from block to block.
+struct Scratch {
+  TetsByVertex tets;
+  Link link;
+  std::vector<FaceUse> uses;
+};
+
 }  // namespace
 
 BoundaryFaces boundary_faces(const std::vector<Tet>& C, std::size_t n_vertices, const std::vector<char>* only) {
-  detail::check_indices(C, n_vertices, "tet");
-  const TetsByBlock table(C, n_vertices, only);
-  std::vector<BlockFaces> blocks(table.size());
+  std::vector<TetsByBlock> parts((C.size() + kTetsPerPart - 1) / kTetsPerPart);
+  std::atomic<bool> good = true;
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t p) {
+    if (!parts[p].sort(C, p, n_vertices, only)) good = false;
+  });
+  if (!good) detail::check_indices(C, n_vertices, "tet");  // throws
+  std::vector<BlockFaces> blocks((n_vertices + kVerticesPerBlock - 1) / kVerticesPerBlock);
+  tbb::enumerable_thread_specific<Scratch> scratch;
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+    auto& [tets, link, uses] = scratch.local();
     const auto first = static_cast<int>(b << kLogVertices);
     const auto n = static_cast<int>(std::min<std::size_t>(kVerticesPerBlock, n_vertices - (b << kLogVertices)));
-    const TetsByVertex stars(C, table[b], first);
-    Link link;
-    std::vector<FaceUse> uses;
-    for (int v = 0; v < n; ++v) {
-      if (only && (*only)[first + v] == 0) continue;
-      const TetsByVertex::Star star = stars[v];
-      if (!link.is_closed(C, star, first + v)) count_faces(C, star.all, first + v, uses, blocks[b]);
+    tets.sort(C, parts, b);
+    for (int k = 0; k < n; ++k) {
+      const int v = first + k;
+      if (only && (*only)[v] == 0) continue;
+      if (!link.is_simple(tets.least(k), tets.second(k))) {
+        count_faces(C, tets, v, k, uses, blocks[b]);
+      } else if (!link.is_closed()) {
+        link.for_each_single([&](int t, int i, int j) { blocks[b].single.push_back(face_of(C, t, v, i, j)); });
+      }
     }
   });
   BoundaryFaces result;
@@ -228,7 +298,7 @@ BoundaryFaces boundary_faces(const std::vector<Tet>& C, std::size_t n_vertices, 
     result.n_overused += block.n_overused;
     result.n_same_side += block.n_same_side;
   }
-  std::sort(single.begin(), single.end());
+  tbb::parallel_sort(single.begin(), single.end());
   result.triangles.reserve(single.size());
   result.tets.reserve(single.size());
   for (const std::int64_t s : single) {

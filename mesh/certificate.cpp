@@ -23,6 +23,20 @@ namespace {
 constexpr std::size_t kFeetPerPoll = kValuesPerPoll / 8;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// Runs `aside` in another thread, if there is one, while this one runs `here`.
+template <class Here, class Aside>
+void run_both(const Here& here, const Aside& aside) {
+  tbb::task_group group;
+  group.run(aside);
+  try {
+    here();
+  } catch (...) {
+    group.wait();
+    throw;
+  }
+  group.wait();
+}
+
 /// \pre the indices of x are in range
 bool same_faces(std::vector<Triangle> x, std::vector<Triangle> y, std::size_t n_vertices) {
   if (x.size() != y.size()) return false;
@@ -30,10 +44,11 @@ bool same_faces(std::vector<Triangle> x, std::vector<Triangle> y, std::size_t n_
   for (const Triangle& f : y) {
     if (std::any_of(f.begin(), f.end(), is_out)) return false;
   }
-  for (auto* faces : {&x, &y}) {
-    for (Triangle& f : *faces) std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
-    detail::sort_faces(*faces, n_vertices);
-  }
+  const auto order = [n_vertices](std::vector<Triangle>& faces) {
+    for (Triangle& f : faces) std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
+    detail::sort_faces(faces, n_vertices);
+  };
+  run_both([&] { order(x); }, [&] { order(y); });
   return x == y;
 }
 
@@ -118,20 +133,6 @@ void measure_against(ImplicitFunctionRef psi, const TetMesh& mesh, const std::ve
   boundary.max_centroid_distance_over_h = max_centroid / h;
   boundary.min_cos_normal = min_cos;
   boundary.gap_over_volume = gap / volume;
-}
-
-/// Runs `aside` in another thread, if there is one, while this one runs `here`.
-template <class Here, class Aside>
-void run_both(const Here& here, const Aside& aside) {
-  tbb::task_group group;
-  group.run(aside);
-  try {
-    here();
-  } catch (...) {
-    group.wait();
-    throw;
-  }
-  group.wait();
 }
 
 /// @param memory  if not null, matched with the mesh

@@ -70,7 +70,7 @@ BoundaryFaces counted_one_by_one(const std::vector<Tet>& C) {
 }
 
 TEST(BoundaryFaces, AreThoseOfACountOneByOne) {
-  // Vertices of several blocks in any order, and one with more neighbours than are matched as bits.
+  // Vertices of several blocks in any order, and one with more faces than are matched by hashing.
   TetMesh mesh = testing::cubes(17, [](int i, int j, int k) { return i + j + k > 2; });
   std::vector<int> order(mesh.V.size() + 102);
   std::iota(order.begin(), order.end(), 0);
