@@ -166,6 +166,12 @@ bool BackgroundMesh::on_rim(std::int64_t vertex) const {
   return false;
 }
 
+bool BackgroundMesh::is_off_rim(std::int64_t first, std::int64_t last) const {
+  if (explicit_) return false;
+  const Cell a = cell(first), b = cell(last);
+  return is_deep(a) && is_deep(b) && a[1] == b[1] && a[2] == b[2];
+}
+
 bool BackgroundMesh::has_tets(std::int64_t vertex) const {
   if (explicit_) return !explicit_->star(static_cast<int>(vertex)).empty();
   const VertexAddress v = vertex_address(vertex);

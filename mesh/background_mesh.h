@@ -49,6 +49,9 @@ class BackgroundMesh {
   void link(std::int64_t vertex, std::vector<std::int64_t>& vertices) const;
   /// True if some tet of the tiling at `vertex` is missing from the mesh, or if it is on the boundary of an other mesh.
   bool on_rim(std::int64_t vertex) const;
+  /// True only if no vertex from `first` to `last` is on the rim: at the price of two of them, true of runs within a
+  /// row of a lattice's cells.
+  bool is_off_rim(std::int64_t first, std::int64_t last) const;
   /// True if some tet of the mesh has `vertex` as a corner.
   bool has_tets(std::int64_t vertex) const;
   /// The tet behind the face opposite to local vertex `face`, or -1 at the rim.

@@ -40,7 +40,7 @@ std::size_t relax_on_boundary(MovingMesh& mesh, int i, std::int64_t background_v
   if (!(norm > 0)) return evaluations;
   const Vec3 d = tangent(gradient / norm, params.seed, iteration, background_vertex);
   const OneRing ring = mesh.ring(i);
-  double best = ring.min_f(Vec3::Zero()) * (1 + kLeastGain);
+  double best = ring.f_here * (1 + kLeastGain);
   Vec3 place = x;
   for (int s = -params.samples; s <= params.samples; ++s) {
     if (s == 0) continue;

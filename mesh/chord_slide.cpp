@@ -93,7 +93,7 @@ class Visitor {
     if (!std::isfinite(length)) return false;
     if (length > kLongestStep * shell_.h) step *= kLongestStep * shell_.h / length;
     const OneRing ring = smoother_.ring(i);
-    const double bar = std::min(least_f_, ring.min_f(Vec3::Zero()));
+    const double bar = std::min(least_f_, ring.f_here);
     const double least_cosine = std::min(now.least_cosine, kTurnedCosine);
     for (int trial = 0; trial < kTrials; ++trial, step *= .5) {
       const Vec3 y = tangents * step;

@@ -1,5 +1,6 @@
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
 
 #include <array>
 #include <atomic>
@@ -73,14 +74,26 @@ class Emitter {
 
   Submesh operator()() {
     count();
-    emit_vertices();
+    tbb::parallel_invoke([&] { result_.mesh.C.resize(begin_.back().n_tets); },
+                         [&] {
+                           result_.background_tet.resize(begin_.back().n_tets);
+                           result_.positive_faces.resize(begin_.back().n_positive);
+                           result_.positive_tets.resize(begin_.back().n_positive);
+                           emit_vertices();
+                         });
     emit_tets();
     return std::move(result_);
+  }
+  SubmeshOutline outline() {
+    count();
+    emit_vertices();
+    return {std::move(result_), begin_.back().n_tets};
   }
 
  private:
   void count();
   void emit_vertices();
+  /// \pre room for all of them
   void emit_tets();
   /// Calls f(slab, first vertex, cell, inside corners) for the cells with any, slabs by all threads.
   template <class F>
@@ -146,14 +159,14 @@ void Emitter::count() {
     begin_[s].n_tets += begin_[s - 1].n_tets;
     begin_[s].n_positive += begin_[s - 1].n_positive;
   }
+  // There are fewer vertices: each inside one has all its tets.
+  if (begin_.back().n_tets > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+    throw std::length_error("omega_h: more than 2^31 - 1 tets");
+  }
 }
 
 void Emitter::emit_vertices() {
-  constexpr std::size_t kMost = std::numeric_limits<int>::max();
   const std::size_t n_vertices = used_.index(), n_positive_vertices = positive_.index();
-  if (begin_.back().n_tets > kMost || n_vertices > kMost) {
-    throw std::length_error("omega_h: more than 2^31 - 1 tets or vertices");
-  }
   result_.background_vertex.resize(n_vertices);
   result_.mesh.V.resize(n_vertices);
   result_.positive_vertices.resize(n_positive_vertices);
@@ -171,10 +184,6 @@ void Emitter::emit_vertices() {
 }
 
 void Emitter::emit_tets() {
-  result_.mesh.C.resize(begin_.back().n_tets);
-  result_.background_tet.resize(begin_.back().n_tets);
-  result_.positive_faces.resize(begin_.back().n_positive);
-  result_.positive_tets.resize(begin_.back().n_positive);
   const std::size_t per_cell = stencil_.bits.size();
   std::vector<Slab> next = begin_;
   for_each_cell([&](std::size_t s, std::int64_t first, std::int64_t cell, std::uint64_t in) {
@@ -210,6 +219,14 @@ Submesh emit_submesh(const BackgroundMesh& background, const IdSet& inside) {
     return detail::assemble_submesh(background, detail::cut_or_inside_tets(background, inside), inside);
   }
   return Emitter(background, stencil, inside)();
+}
+
+SubmeshOutline outline_submesh(const BackgroundMesh& background, const IdSet& inside) {
+  const CellStencil stencil(background);
+  if (background.is_lattice() && stencil.fits_a_word()) return Emitter(background, stencil, inside).outline();
+  SubmeshOutline whole{emit_submesh(background, inside), 0};
+  whole.n_tets = whole.submesh.mesh.C.size();
+  return whole;
 }
 
 }  // namespace umtet

@@ -1,6 +1,11 @@
 #include "mesh/fast_mesh.h"
 
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
+
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -29,6 +34,7 @@ using detail::Offenders;
 // In place of smoothing.least_gain, if that is less, for a mesh that begins from the one before. A ball that drifts a
 // quarter cell a step: .95 of the visits of 3e-4 and least Q .832 (.834); with 1e-3 it is .92 and .828, anew .833.
 constexpr double kUpdateLeastGain = 6e-4;
+constexpr std::size_t kVerticesPerTask = 1 << 14;  // to compare places, a nanosecond each
 
 class FastRun {
  public:
@@ -70,6 +76,7 @@ class FastRun {
     } catch (const MeshCancelled&) {
       fail(UmStatus::Cancelled, {.what = "stopped by the observer"});
     }
+    if (is_labelled_) complete();
     if (result_.final.empty()) result_.final = result_.submesh.mesh.V;
     if (result_.projected.empty()) result_.projected = result_.final;
     return std::move(result_);
@@ -80,22 +87,21 @@ class FastRun {
     return false;
   }
   bool report(const char* step, int pass, int n_passes) {
-    const auto& mesh = result_.submesh.mesh;
-    if (!observer_ ||
-        observer_({step, pass, n_passes, result_.final.empty() ? &mesh.V : &result_.final, mesh.C.size()}))
+    const auto& V = result_.submesh.mesh.V;
+    if (!observer_ || observer_({step, pass, n_passes, result_.final.empty() ? &V : &result_.final, n_tets_}))
       return true;
     return fail(UmStatus::Cancelled, {.what = std::string("stopped by the observer during ") + step});
   }
   KeepGoing asking(const char* step) {
-    return [this, step] {
-      const auto& mesh = result_.submesh.mesh;
-      return !observer_ || observer_({step, 1, 1, &mesh.V, mesh.C.size()});
-    };
+    return [this, step] { return !observer_ || observer_({step, 1, 1, &result_.submesh.mesh.V, n_tets_}); };
   }
   bool find_inside(const std::vector<Vec3>& seeds);
   bool fits_background(const std::string& lost);
   void remember(FastMemory& memory);
   bool label();
+  bool check_walls();
+  void complete();
+  bool relax(const KeepGoing& keep_going, std::vector<Vec3>& projected);
   bool fit();
   bool all_arrived(const ProjectionReport& projection);
   bool none_inverted();
@@ -116,6 +122,8 @@ class FastRun {
   const detail::PsiValues* known_ = nullptr;
   LatticeShell shell_;
   std::vector<std::pair<std::int64_t, Vec3>> moved_;  ///< by repair, ascending
+  bool is_labelled_ = false, is_complete_ = false;    ///< inside_ has been chosen, omega_h made of it
+  std::size_t n_tets_ = 0;                            ///< of omega_h, as far as it is known
   BrokenAssumption double_faces_;
 };
 
@@ -136,11 +144,17 @@ bool FastRun::find_inside(const std::vector<Vec3>& seeds) {
 bool FastRun::fits_background(const std::string& lost) {
   UmEvidence rim{.what = "the domain reaches the rim of the background mesh"};
   bool empty = true;
-  inside_.for_each([&](std::int64_t v) {
+  for (std::size_t w = 0; w < inside_.n_words(); ++w) {
+    const auto first = static_cast<std::int64_t>(64 * w);
+    std::uint64_t bits = inside_.word(w);
+    if (bits == 0) continue;
     empty = false;
-    if (params_.rim == Rim::Wall || !background_.on_rim(v)) return;
-    if (rim.count++ == 0) rim.background_vertex = v;
-  });
+    if (params_.rim == Rim::Wall || background_.is_off_rim(first, first + 63)) continue;
+    for (; bits != 0; bits &= bits - 1) {
+      const std::int64_t v = first + std::countr_zero(bits);
+      if (background_.on_rim(v) && rim.count++ == 0) rim.background_vertex = v;
+    }
+  }
   if (empty) {
     const detail::NothingInside why = detail::nothing_inside(background_, psi_, asking("search"), lost);
     return fail(why.status, why.evidence);
@@ -160,20 +174,39 @@ bool FastRun::label() {
                                                      asking("search"), last, known_);
     result_.n_psi_evaluations += labels.psi_evaluations;
   }
-  result_.submesh = emit_submesh(background_, inside_);
-  if (params_.rim == Rim::Wall) part_double_faces(background_, psi_, inside_, result_.submesh);
-  double_faces_ = double_positive_faces(result_.submesh);
-  result_.double_positive_faces = double_faces_.count;
-  if (params_.rim == Rim::Wall) {
-    result_.walls = wall_faces(background_, result_.submesh);
-    const UmEvidence near = boundary_near_walls(background_, result_.submesh);
-    if (near.count > 0) return fail(UmStatus::BoundaryNearWall, near);
+  is_labelled_ = true;
+  if (!prices_) {
+    complete();
+    if (params_.rim == Rim::Wall && !check_walls()) return false;
+  } else if (observer_) {  // repair will change labels: tets are listed once, behind it
+    SubmeshOutline outline = outline_submesh(background_, inside_);
+    result_.submesh = std::move(outline.submesh);
+    n_tets_ = outline.n_tets;
   }
   return report("submesh", 1, 1);
 }
 
+bool FastRun::check_walls() {
+  result_.walls = wall_faces(background_, result_.submesh);
+  const UmEvidence near = boundary_near_walls(background_, result_.submesh);
+  return near.count == 0 || fail(UmStatus::BoundaryNearWall, near);
+}
+
+/// omega_h of the labels, if it is not there.
+void FastRun::complete() {
+  if (is_complete_) return;
+  result_.submesh = {};  // before the tets need their memory
+  result_.submesh = emit_submesh(background_, inside_);
+  if (params_.rim == Rim::Wall) part_double_faces(background_, psi_, inside_, result_.submesh);
+  n_tets_ = result_.submesh.mesh.C.size();
+  double_faces_ = double_positive_faces(result_.submesh);
+  result_.double_positive_faces = double_faces_.count;
+  is_complete_ = true;
+}
+
 bool FastRun::all_arrived(const ProjectionReport& projection) {
   if (projection.not_arrived.empty()) return true;
+  complete();
   const NotArrived& first = projection.not_arrived.front();
   const std::int64_t id = shell_.background_vertex[first.vertex];
   const auto& ids = result_.submesh.background_vertex;
@@ -195,7 +228,7 @@ std::vector<Vec3> FastRun::coordinates(const std::vector<Vec3>& shell_V) const {
   std::vector<Vec3> V = result_.submesh.mesh.V;
   const auto& ids = result_.submesh.background_vertex;
   const auto put = [&, at = ids.begin()](std::int64_t id, const Vec3& x) mutable {
-    at = std::lower_bound(at, ids.end(), id);
+    while (at != ids.end() && *at < id) ++at;
     if (at != ids.end() && *at == id) V[at - ids.begin()] = x;
   };
   auto put_shell = put;
@@ -223,8 +256,15 @@ void FastRun::remember(FastMemory& memory) {
 bool FastRun::none_inverted() {
   const auto& C = result_.submesh.mesh.C;
   const auto& V = result_.final;
-  const Offenders inverted = find_offenders(
-      C.size(), [&](std::size_t t) { return !(volume6(V[C[t][0]], V[C[t][1]], V[C[t][2]], V[C[t][3]]) > 0); });
+  std::vector<char> has_moved(V.size());  // the background's own tets are positive
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, V.size(), kVerticesPerTask), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) has_moved[i] = V[i] != result_.submesh.mesh.V[i];
+  });
+  const Offenders inverted = find_offenders(C.size(), [&](std::size_t k) {
+    const Tet& t = C[k];
+    return (has_moved[t[0]] | has_moved[t[1]] | has_moved[t[2]] | has_moved[t[3]]) != 0 &&
+           !(volume6(V[t[0]], V[t[1]], V[t[2]], V[t[3]]) > 0);
+  });
   if (inverted.count == 0) return true;
   const Tet& tet = C[inverted.first];
   const bool is_double = double_faces_.is_broken_at(tet);
@@ -247,7 +287,7 @@ void FastRun::measure_assumptions() {
   result_.obtuse_conditioning_angles = angles.not_acute.count;
 }
 
-/// Changes labels where that mends a tet, and omega_h with them.
+/// Changes labels where that mends a tet.
 void FastRun::repair_labels(const KeepGoing& keep_going) {
   if (!prices_) return;
   RepairParams params = params_.fast.repair;
@@ -256,16 +296,12 @@ void FastRun::repair_labels(const KeepGoing& keep_going) {
   RepairReport repaired = repair(background_, prices_->links, psi_, label_params_, params, shell_, inside_, keep_going);
   result_.n_psi_evaluations += repaired.psi_evaluations;
   moved_ = std::move(repaired.moved);
-  if (repaired.flips == 0) return;
-  result_.submesh = emit_submesh(background_, inside_);
-  double_faces_ = double_positive_faces(result_.submesh);
-  result_.double_positive_faces = double_faces_.count;
 }
 
-bool FastRun::fit() {
+/// Boundary vertices go to psi = 0, and the shell is relaxed. @param projected  receives the places between the two
+bool FastRun::relax(const KeepGoing& keep_going, std::vector<Vec3>& projected) {
   shell_ = prices_ ? lattice_shell(background_, prices_->links, inside_, params_.fast.layers)
                    : background_shell(background_, inside_, params_.fast.layers);
-  const KeepGoing keep_going = asking("relax");
   SmoothParams smoothing_params = params_.fast.smoothing;
   bool is_on_surface = false;
   if (memory_ && !memory_->moved.empty()) {
@@ -278,12 +314,13 @@ bool FastRun::fit() {
     is_on_surface = start.is_on_surface;
   }
   PNormSmoother smoother(shell_.shell);
+  shell_.shell.ring = {};  // the smoother has listed their faces, and omega_h will need the memory
   if (!is_on_surface) {
     const ProjectionReport projection = project(smoother, psi_, params_.fast.projection, keep_going);
     result_.n_psi_evaluations += projection.psi_evaluations;
     if (!all_arrived(projection)) return false;
   }
-  const std::vector<Vec3> projected = shell_.shell.V;
+  projected = shell_.shell.V;
   smoother.wake_all();
   const SmoothReport smoothing = smoother.run(psi_, smoothing_params, keep_going);
   result_.n_psi_evaluations += smoothing.psi_evaluations;
@@ -291,9 +328,17 @@ bool FastRun::fit() {
     const ChordParams chords{.least_quality = params_.fast.smoothing.target};
     result_.n_psi_evaluations += slide_to_chords(smoother, psi_, chords, smoothing_params, keep_going).psi_evaluations;
   }
+  return true;
+}
+
+bool FastRun::fit() {
+  const KeepGoing keep_going = asking("relax");
+  std::vector<Vec3> projected;
+  if (!relax(keep_going, projected)) return false;
   repair_labels(keep_going);
-  result_.final = coordinates(shell_.shell.V);
-  result_.projected = coordinates(projected);
+  complete();
+  tbb::parallel_invoke([&] { result_.final = coordinates(shell_.shell.V); },
+                       [&] { result_.projected = coordinates(projected); });
   measure_assumptions();
   return none_inverted() && report("relax", 1, 1);
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -114,19 +115,21 @@ std::size_t Projection::count_over(std::size_t begin, std::size_t end, const F& 
 }
 
 void Projection::set_out() {
+  colour_begin_.assign(1, 0);
   for (std::size_t i = 0; i < shell_.V.size(); ++i) {
     if (shell_.role[i] != Shell::Role::Boundary) continue;
-    Traveller& traveller = travellers_.emplace_back();
-    traveller.vertex = static_cast<int>(i);
+    const auto colour = static_cast<std::size_t>(shell_.colour[i]);
+    if (colour + 1 >= colour_begin_.size()) colour_begin_.resize(colour + 2, 0);
+    ++colour_begin_[colour + 1];
+  }
+  std::partial_sum(colour_begin_.begin(), colour_begin_.end(), colour_begin_.begin());
+  travellers_.resize(colour_begin_.back());
+  std::vector<std::size_t> next = colour_begin_;
+  for (std::size_t i = 0; i < shell_.V.size(); ++i) {
+    if (shell_.role[i] != Shell::Role::Boundary) continue;
+    travellers_[next[static_cast<std::size_t>(shell_.colour[i])]++].vertex = static_cast<int>(i);
     shell_.role[i] = Shell::Role::Fixed;
   }
-  const auto colour = [&](const Traveller& t) { return shell_.colour[t.vertex]; };
-  std::stable_sort(travellers_.begin(), travellers_.end(),
-                   [&](const Traveller& a, const Traveller& b) { return colour(a) < colour(b); });
-  for (std::size_t k = 0; k < travellers_.size(); ++k) {
-    if (k == 0 || colour(travellers_[k]) != colour(travellers_[k - 1])) colour_begin_.push_back(k);
-  }
-  colour_begin_.push_back(travellers_.size());
   report_.boundary = travellers_.size();
 }
 
@@ -152,7 +155,7 @@ bool Projection::step(Traveller& traveller, double target) {
   }
   const Vec3 x = shell_.V[i];
   const OneRing ring = smoother_.ring(i);
-  const double least = std::min(least_f_, ring.min_f(Vec3::Zero()));
+  const double least = std::min(least_f_, ring.f_here);
   for (const double share : kShares) {
     const double t = traveller.t + share * (target - traveller.t);
     const Vec3 place = traveller.start + t * (traveller.foot - traveller.start);
@@ -203,9 +206,7 @@ ProjectionReport Projection::conclude() {
   }
   std::sort(report_.not_arrived.begin(), report_.not_arrived.end(),
             [](const NotArrived& a, const NotArrived& b) { return a.vertex < b.vertex; });
-  smoother_.measure(report_.smoothing);
   report_.psi_evaluations += report_.smoothing.psi_evaluations;
-  report_.min_quality = report_.smoothing.min_quality;
   return std::move(report_);
 }
 
@@ -240,7 +241,10 @@ ProjectionReport project(PNormSmoother& smoother, ImplicitFunctionRef psi, const
 ProjectionReport project(Shell& shell, ImplicitFunctionRef psi, const ProjectionParams& params,
                          const KeepGoing& keep_going) {
   PNormSmoother smoother(shell);
-  return project(smoother, psi, params, keep_going);
+  ProjectionReport report = project(smoother, psi, params, keep_going);
+  smoother.measure(report.smoothing);
+  report.min_quality = report.smoothing.min_quality;
+  return report;
 }
 
 }  // namespace umtet

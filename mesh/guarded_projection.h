@@ -40,8 +40,8 @@ struct ProjectionReport {
   int rounds = 0;
   std::size_t stopped_short = 0;    ///< vertices the guard held back at least once
   std::size_t psi_evaluations = 0;  ///< those of the smoothing included
-  double min_quality = 1;           ///< the worst tet with a vertex that is not Fixed
-  SmoothReport smoothing;
+  double min_quality = 1;           ///< the worst tet with a vertex that is not Fixed; by project(shell) only
+  SmoothReport smoothing;           ///< what it says of the shell, too
 };
 
 /// Moves the Boundary vertices of a shell to their closest points on psi = 0.            [Rangarajan2018, Alg. 1,

@@ -1,7 +1,5 @@
 #include "mesh/lattice_shell.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -9,17 +7,16 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mesh/detail/id_blocks.h"
 #include "mesh/detail/id_list.h"
 #include "mesh/detail/link_steps.h"
 
 namespace umtet {
 namespace {
 
+using detail::for_each_in_blocks;
 using detail::IdList;
 using detail::IdSet;
-
-// Of 64 vertices each, a hundred of them in the shell if it is thick.
-constexpr std::size_t kWordsPerBlock = 16;
 
 class Builder {
  public:
@@ -30,11 +27,6 @@ class Builder {
   LinkMask mask(std::int64_t v) const { return steps_.mask(v, inside_); }
   /// A vertex of omega_h, if v is an id at all.
   bool in_omega_h(std::int64_t v) const { return inside_.test_any(v) || mask(v) != 0; }
-
-  /// Calls f(block, v) for the members of a set, threads over blocks of the same ids whatever their number.
-  template <class F>
-  static void for_each_in_blocks(const IdSet& set, const F& f);
-  static std::size_t n_blocks(const IdSet& set) { return (set.n_words() + kWordsPerBlock - 1) / kWordsPerBlock; }
 
   LatticeShell build(const IdSet& movable) const;
   /// @param movable  ascending
@@ -66,18 +58,6 @@ std::vector<int> Builder::type_colours() const {
     colour[type] = std::countr_one(taken);
   }
   return colour;
-}
-
-template <class F>
-void Builder::for_each_in_blocks(const IdSet& set, const F& f) {
-  tbb::parallel_for(std::size_t{0}, n_blocks(set), [&](std::size_t b) {
-    const std::size_t end = std::min(set.n_words(), (b + 1) * kWordsPerBlock);
-    for (std::size_t w = b * kWordsPerBlock; w < end; ++w) {
-      for (std::uint64_t bits = set.word(w); bits != 0; bits &= bits - 1) {
-        f(b, static_cast<std::int64_t>(w * 64) + std::countr_zero(bits));
-      }
-    }
-  });
 }
 
 /// f(v, a, b, c) for the tets of omega_h at v that have no movable vertex below it.
@@ -122,7 +102,7 @@ Shell::Role Builder::role(std::int64_t v, const Movable& movable) const {
 
 LatticeShell Builder::build(const IdSet& movable) const {
   IdSet used(background_.n_vertices());
-  std::vector<std::size_t> begin(n_blocks(movable) + 1, 0);  // of the tets
+  std::vector<std::size_t> begin(detail::n_blocks(movable) + 1, 0);  // of the tets
   for_each_in_blocks(movable, [&](std::size_t b, std::int64_t v) {
     ring_vertices(v, [&](std::int64_t w) { used.insert_shared(w); });
     tets_at(v, movable, [&](auto...) { ++begin[b + 1]; });
@@ -188,7 +168,7 @@ LatticeShell lattice_shell(const BackgroundMesh& background, const std::vector<L
                            const IdSet& inside, int layers) {
   const Builder builder(background, links, inside);
   IdSet movable(background.n_vertices());
-  Builder::for_each_in_blocks(inside, [&](std::size_t, std::int64_t v) {
+  detail::for_each_in_blocks(inside, [&](std::size_t, std::int64_t v) {
     for (const std::int64_t step : builder.steps(v)) {
       if (!inside.test(v + step)) movable.insert_shared(v + step);
     }
@@ -196,7 +176,7 @@ LatticeShell lattice_shell(const BackgroundMesh& background, const std::vector<L
   IdSet front = movable;
   for (int layer = 0; layer < layers; ++layer) {
     IdSet next(background.n_vertices());
-    Builder::for_each_in_blocks(front, [&](std::size_t, std::int64_t v) {
+    detail::for_each_in_blocks(front, [&](std::size_t, std::int64_t v) {
       for (const std::int64_t step : builder.steps(v)) {
         if (inside.test_any(v + step) && !movable.test(v + step)) next.insert_shared(v + step);
       }

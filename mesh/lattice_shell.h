@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -37,5 +38,12 @@ LatticeShell lattice_patch(const BackgroundMesh& background, const std::vector<L
 /// that function itself without cells or where the tets of one have more than 64 corners (slab and cube).
 /// Cost: some ns per tet, and a few per cell of the background mesh.
 Submesh emit_submesh(const BackgroundMesh& background, const detail::IdSet& inside);
+
+struct SubmeshOutline {
+  Submesh submesh;  ///< with the vertices; tets and faces may be missing
+  std::size_t n_tets = 0;
+};
+/// The vertices of omega_h and how many tets it has, at a quarter of the cost.
+SubmeshOutline outline_submesh(const BackgroundMesh& background, const detail::IdSet& inside);
 
 }  // namespace umtet

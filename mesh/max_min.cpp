@@ -217,6 +217,7 @@ MaxMinResult exact(const RingOnLine&) { throw std::logic_error("max_min: built w
 OneRing::OneRing(const Vec3& x, std::span<const Vec3> V, std::span<const Triangle> faces)
     : n(static_cast<int>(faces.size())) {
   const Lane X = Lane::Constant(x.x()), Y = Lane::Constant(x.y()), Z = Lane::Constant(x.z());
+  Lane least = Lane::Constant(kInfinity);
   for (int k = 0; k < n; k += kLanes) {
     std::array<const Vec3*, kLanes> p, q, r;
     for (int m = 0; m < kLanes; ++m) {
@@ -234,11 +235,15 @@ OneRing::OneRing(const Vec3& x, std::span<const Vec3> V, std::span<const Triangl
     const Lane Sx = ax + bx + cx, Sy = ay + by + cy, Sz = az + bz + cz;
     const Lane spokes = ax * ax + ay * ay + az * az + bx * bx + by * by + bz * bz + cx * cx + cy * cy + cz * cz;
     put(nx, k, Nx), put(ny, k, Ny), put(nz, k, Nz);
-    put(v, k, Nx * ax + Ny * ay + Nz * az);
+    const Lane V0 = Nx * ax + Ny * ay + Nz * az;
+    put(v, k, V0);
     put(sx, k, -2 * Sx), put(sy, k, -2 * Sy), put(sz, k, -2 * Sz);
     // |a|^2 + |b|^2 + |c|^2 and the face's |a - b|^2 + |b - c|^2 + |c - a|^2 = 3 (...) - |a + b + c|^2
-    put(l, k, 4 * spokes - (Sx * Sx + Sy * Sy + Sz * Sz));
+    const Lane L0 = 4 * spokes - (Sx * Sx + Sy * Sy + Sz * Sz);
+    put(l, k, L0);
+    least = least.min(f_of(V0, L0));
   }
+  f_here = least.minCoeff();
 }
 
 double OneRing::min_f(const Vec3& y) const {

@@ -36,7 +36,8 @@ inline constexpr int kLanes = 4;
 /// Qualities are compared through f, which needs no roots. Structure of arrays; the lanes that fill up the last SIMD
 /// word repeat the last tet, which changes no minimum.
 struct OneRing {
-  int n = 0;  ///< tets
+  int n = 0;          ///< tets
+  double f_here = 0;  ///< min_j f_j(0)
   alignas(32) std::array<double, kMaxRing> nx, ny, nz, v, sx, sy, sz, l;
 
   /// The ring of a vertex at x, whose tets are (x, p, q, r) for each face p, q, r, all positively oriented.

@@ -50,15 +50,14 @@ class Visitor {
   Result operator()(int i) const {
     Result result;
     OneRing ring = smoother_.ring(i);
-    const double min_f = ring.min_f(Vec3::Zero());
-    if (min_f >= good_f_) return result;
+    if (ring.f_here >= good_f_) return result;
     result.needed = true;
     detail::silence_padding(ring);
-    const detail::Bar bar(ring, min_f, shell_.h, least_gain_);
+    const detail::Bar bar(ring, shell_.h, least_gain_);
     if (shell_.role[i] == Shell::Role::Inner) {
-      const Vec3 y = detail::best_displacement(ring, bar, shell_.h, {});
-      result.moved = bar.passed(ring, y);
-      result.place = shell_.V[i] + y;
+      const detail::Displacement best = detail::best_displacement(ring, bar, shell_.h, {});
+      result.moved = best.passed(ring, bar);
+      result.place = shell_.V[i] + best.y;
     } else {
       slide(ring, bar, shell_.V[i], result);
     }
@@ -82,8 +81,10 @@ class Visitor {
     detail::Directions tangent{true, {}};
     tangent.tangents.col(0) = gradient.unitOrthogonal();
     tangent.tangents.col(1) = (gradient / norm).cross(tangent.tangents.col(0));
-    Vec3 y = detail::best_displacement(ring, bar, shell_.h, tangent);
-    for (int trial = 0; trial < kSlides && bar.passed(ring, y); ++trial, y *= .5) {
+    const detail::Displacement best = detail::best_displacement(ring, bar, shell_.h, tangent);
+    if (!best.passed(ring, bar)) return;
+    Vec3 y = best.y;
+    for (int trial = 0; trial < kSlides && (trial == 0 || bar.passed(ring, y)); ++trial, y *= .5) {
       const ClosestPoint foot = closest_point(psi_, x + y, shell_.h, closest_point_);
       result.psi_evaluations += static_cast<std::size_t>(foot.iterations);
       if (!foot.converged || !bar.passed(ring, foot.point - x)) continue;
@@ -164,7 +165,8 @@ PNormSmoother::PNormSmoother(Shell& shell) : shell_(shell), faces_of_(shell.V.si
     faces_of_[i] = {n_faces, shell.ring_begin[i + 1] - shell.ring_begin[i]};
     n_faces += faces_of_[i].n;
   }
-  faces_.resize(static_cast<std::size_t>(n_faces));
+  // Not set to zero by one thread first: pages are given out where they are written.
+  faces_ = std::make_unique_for_overwrite<Triangle[]>(static_cast<std::size_t>(n_faces));
   const auto list_faces = [&](const tbb::blocked_range<std::size_t>& range) {
     for (std::size_t k = range.begin(); k != range.end(); ++k) {
       const int i = by_colour_[k];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -85,7 +86,7 @@ class PNormSmoother {
 
  private:
   std::span<const Triangle> faces(int i) const {
-    return {faces_.begin() + faces_of_[i].begin, static_cast<std::size_t>(faces_of_[i].n)};
+    return {faces_.get() + faces_of_[i].begin, static_cast<std::size_t>(faces_of_[i].n)};
   }
   struct Range {
     int begin = 0, n = 0;
@@ -93,7 +94,7 @@ class PNormSmoother {
 
   Shell& shell_;
   std::vector<Range> faces_of_;            ///< per vertex, in faces_
-  std::vector<Triangle> faces_;            ///< opposite to a vertex in the tets of its ring; of those not Fixed, in the
+  std::unique_ptr<Triangle[]> faces_;      ///< opposite to a vertex in the tets of its ring; of those not Fixed, in the
                                            ///< order of by_colour_, in which sweeps read them
   std::vector<int> by_colour_;             ///< vertices, ascending within a colour
   std::vector<std::size_t> colour_begin_;  ///< into by_colour_

@@ -1,7 +1,14 @@
 #include "mesh/detail/label_band.h"
 
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "mesh/detail/id_blocks.h"
 
 namespace umtet::detail {
 namespace {
@@ -11,6 +18,7 @@ constexpr std::int64_t kBrick = 4;
 // Feet from farther away may be on another sheet, and those closer together, in h, say little about curvature.
 constexpr float kFarthestFoot = 1.8F;
 constexpr double kApart = .3;
+constexpr std::size_t kVerticesPerTask = 1 << 12;  // of some ten nanoseconds each
 
 }  // namespace
 
@@ -39,38 +47,47 @@ bool LabelBand::is_outermost(std::int64_t v) const {
   return outermost;
 }
 
-/// The vertices with a neighbour of the other label.
-std::vector<std::int64_t> LabelBand::cut_vertices() const {
-  std::vector<std::int64_t> cut;
+/// The vertices with a neighbour of the other label, and two rings more.
+void LabelBand::gather() {
   if (known_) {
+    std::vector<std::int64_t> cut;
     for (const PsiValue& at : *known_) cut.push_back(at.vertex);
-    return cut;
-  }
-  IdSet seen(background_.n_vertices());
-  inside_.for_each([&](std::int64_t v) {
-    bool is_cut = false;
-    for (const std::int64_t step : steps_.at(v)) {
-      if (inside_.test(v + step)) continue;
-      is_cut = true;
-      if (!seen.test(v + step)) {
-        seen.insert(v + step);
-        cut.push_back(v + step);
+    gather_around(std::move(cut));
+  } else {
+    for_each_in_blocks(inside_, [&](std::size_t, std::int64_t v) {
+      bool is_cut = false;
+      for (const std::int64_t step : steps_.at(v)) {
+        if (inside_.test(v + step)) continue;
+        is_cut = true;
+        band_.insert_shared(v + step);
       }
+      if (is_cut) band_.insert_shared(v);
+    });
+    IdSet front = band_;
+    for (int ring = 0; ring < 2; ++ring) {
+      IdSet next(background_.n_vertices());
+      for_each_in_blocks(front, [&](std::size_t, std::int64_t v) {
+        if (is_outermost(v)) return;  // too far out for a neighbour to change
+        for (const std::int64_t step : steps_.at(v)) {
+          if (!band_.test(v + step)) next.insert_shared(v + step);
+        }
+      });
+      for (std::size_t w = 0; w < next.n_words(); ++w) band_.set_word(w, band_.word(w) | next.word(w));
+      front = std::move(next);
     }
-    if (is_cut) cut.push_back(v);
-  });
-  return cut;
+  }
+  id.resize(band_.index());
+  for_each_in_blocks(band_, [&](std::size_t, std::int64_t v) { id[band_.rank(v)] = v; });
 }
 
-/// These, and two rings more.
-void LabelBand::gather() {
-  std::vector<std::int64_t> front = cut_vertices();
+/// Two rings around a few vertices in a large background.
+void LabelBand::gather_around(std::vector<std::int64_t> front) {
   for (const std::int64_t v : front) band_.insert(v);
   std::vector<std::int64_t> next;
   for (int ring = 0; ring < 2; ++ring) {
     next.clear();
     for (const std::int64_t v : front) {
-      if (is_outermost(v)) continue;  // too far out for a neighbour to change
+      if (is_outermost(v)) continue;
       for (const std::int64_t step : steps_.at(v)) {
         if (band_.test(v + step)) continue;
         band_.insert(v + step);
@@ -79,9 +96,6 @@ void LabelBand::gather() {
     }
     front.swap(next);
   }
-  const std::size_t n = band_.index();
-  id.reserve(n);
-  band_.for_each([&](std::int64_t v) { id.push_back(v); });
 }
 
 /// Label, mask and ranks of the link. Returns whether the whole link is in the band.
@@ -144,9 +158,13 @@ void LabelBand::find_foot(std::size_t v) {
 void LabelBand::measure(const KeepGoing& keep_going) {
   const std::size_t n = size();
   type.resize(n);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, kVerticesPerTask), [&](const auto& range) {
+    for (std::size_t v = range.begin(); v != range.end(); ++v) {
+      type[v] = static_cast<std::uint16_t>(background_.type(id[v]));
+    }
+  });
   first_.assign(n + 1, 0);
   for (std::size_t v = 0; v < n; ++v) {
-    type[v] = static_cast<std::uint16_t>(background_.type(id[v]));
     first_[v + 1] = first_[v] + static_cast<std::size_t>(links_[type[v]].n);
   }
   if (known_) {
@@ -199,28 +217,30 @@ void LabelBand::hold_where_stretched(const KeepGoing& keep_going) {
 
 /// Bricks of kBrick^3 cells.
 void LabelBand::make_bricks() {
-  struct Key {
-    std::uint64_t brick;  ///< colour first
-    std::uint32_t vertex;
-  };
   const auto& n = background_.n_cells();
   const std::int64_t nx = (n[0] + 2) / kBrick + 1, ny = (n[1] + 2) / kBrick + 1, nz = (n[2] + 2) / kBrick + 1;
-  std::vector<Key> keys;
+  std::vector<std::uint32_t> brick(size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, size(), kVerticesPerTask), [&](const auto& range) {
+    for (std::size_t v = range.begin(); v != range.end(); ++v) {
+      if (!movable_[v]) continue;
+      const auto cell = background_.cell(id[v]);
+      const std::int64_t i = (cell[0] + 1) / kBrick, j = (cell[1] + 1) / kBrick, k = (cell[2] + 1) / kBrick;
+      brick[v] = static_cast<std::uint32_t>(i + nx * (j + ny * k));
+    }
+  });
+  std::vector<std::uint32_t> end(static_cast<std::size_t>(nx * ny * nz) + 1, 0);
+  for (std::size_t v = 0; v < size(); ++v) end[brick[v] + 1] += movable_[v];
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  order.resize(end.back());
   for (std::uint32_t v = 0; v < size(); ++v) {
-    if (!movable_[v]) continue;
-    const auto cell = background_.cell(id[v]);
-    const std::int64_t i = (cell[0] + 1) / kBrick, j = (cell[1] + 1) / kBrick, k = (cell[2] + 1) / kBrick;
-    const std::int64_t colour = (i & 1) + 2 * (j & 1) + 4 * (k & 1);
-    keys.push_back({static_cast<std::uint64_t>(i + nx * (j + ny * (k + nz * colour))), v});
+    if (movable_[v]) order[end[brick[v]]++] = v;
   }
-  std::stable_sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) { return a.brick < b.brick; });
-  const std::uint64_t per_colour = static_cast<std::uint64_t>(nx * ny * nz);
-  order.reserve(keys.size());
-  for (std::size_t b = 0; b < keys.size();) {
-    std::size_t e = b;
-    while (e < keys.size() && keys[e].brick == keys[b].brick) order.push_back(keys[e++].vertex);
-    bricks[keys[b].brick / per_colour].push_back({static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(e)});
-    b = e;
+  std::uint32_t begin = 0;
+  for (std::size_t b = 0; b + 1 < end.size(); begin = end[b++]) {
+    if (end[b] == begin) continue;
+    const auto at = static_cast<std::int64_t>(b);
+    const std::int64_t i = at % nx, j = at / nx % ny, k = at / nx / ny;
+    bricks[static_cast<std::size_t>((i & 1) + 2 * (j & 1) + 4 * (k & 1))].push_back({begin, end[b]});
   }
 }
 

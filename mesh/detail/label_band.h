@@ -48,8 +48,8 @@ class LabelBand {
   std::atomic<std::size_t> psi_evaluations{0};
 
  private:
-  std::vector<std::int64_t> cut_vertices() const;
   void gather();
+  void gather_around(std::vector<std::int64_t> front);
   bool find_link(std::size_t v);
   double value_at(std::size_t v, const Vec3& x, Vec3& gradient);
   void find_foot(std::size_t v);

@@ -17,6 +17,7 @@ using Lane = Eigen::Array<double, kLanes, 1>;
 using LaneMap = Eigen::Map<const Lane, Eigen::Aligned32>;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 // log2 of the powers of F, in turn. 16 and 32 with a least gain of 3e-4 end within .005 of the min Q of 4, 16, 64 with
 // 1e-4, in half of the time (sphere, torus, eq. (9), T4, T6, ellipsoid 1:1:.1, 100k tets each); 16 alone loses .004
 // more.
@@ -30,8 +31,8 @@ constexpr double kVolumeScale = .07;      // of h^3: a tenth of six times the vo
 
 LaneMap lane(const std::array<double, kMaxRing>& a, int k) { return LaneMap(a.data() + k); }
 
-template <int log2_p>
-Lane to_power(Lane x) {
+template <int log2_p, class T>
+T to_power(T x) {
   for (int j = 0; j < log2_p; ++j) x *= x;
   return x;
 }
@@ -60,10 +61,22 @@ Sum sum_of_powers(const OneRing& r, const Vec3& y, double scale) {
     const Lane F = L * L * L / (V * V);
     least_V = least_V.min(V);
     greatest = greatest.max(F);
-    sum += to_power<log2_p>(F * inverse);
+    sum += to_power<log2_p>(Lane(F * inverse));
   }
   if (!(least_V.minCoeff() > 0)) return {kInfinity, kInfinity};
   return {sum.sum(), greatest.maxCoeff()};
+}
+
+/// The sum at 0. \pre every V > 0 there
+template <int log2_p>
+double sum_of_powers_here(const OneRing& r, double scale) {
+  const double inverse = 1 / scale;
+  Lane sum = Lane::Zero();
+  for (int k = 0; k < r.n; k += kLanes) {
+    const Lane V = lane(r.v, k), L = lane(r.l, k);
+    sum += to_power<log2_p>(Lane(L * L * L / (V * V) * inverse));
+  }
+  return sum.sum();
 }
 
 template <int log2_p>
@@ -79,7 +92,7 @@ PowerSum power_sum_of(const OneRing& r, const Vec3& y, double scale) {
     const Lane L = lane(r.l, k) + (Sx * y.x() + Sy * y.y() + Sz * y.z()) + y2;
     least_V = least_V.min(V);
     const Lane iV = 1 / V, iL = 1 / L;
-    const Lane w = to_power<log2_p>(L * L * L * iV * iV * inverse);
+    const Lane w = to_power<log2_p>(Lane(L * L * L * iV * iV * inverse));
     // b = -grad V / V, a = grad L / L, and g = grad ln F = 3 a + 2 b. Hess ln F = 18 / L I - 3 a a^T + 2 b b^T.
     const Lane bx = Nx * iV, by = Ny * iV, bz = Nz * iV;
     const Lane ax = (Sx + 6 * y.x()) * iL, ay = (Sy + 6 * y.y()) * iL, az = (Sz + 6 * y.z()) * iL;
@@ -139,14 +152,15 @@ double volume_limit(const OneRing& r, const Vec3& y, const Vec3& step) {
   return std::min(1., (1 - kVolumeKept) / shrink.maxCoeff());
 }
 
-/// A Newton step from y for one power, if there is one that lowers the sum.
+/// A Newton step from y for one power, if there is one that lowers the sum. Returns the sum in the scale of max_F on
+/// entry.
 template <int log2_p>
-void newton_step(const OneRing& ring, double h, const Directions& directions, Vec3& y, double& max_F) {
+double newton_step(const OneRing& ring, double h, const Directions& directions, Vec3& y, double& max_F) {
   const double scale = max_F;
   const PowerSum at = power_sum_of<log2_p>(ring, y, scale);
   Vec3 step = step_of(at, directions);
   const double length = step.norm();
-  if (!(length > 0) || !std::isfinite(length)) return;
+  if (!(length > 0) || !std::isfinite(length)) return at.sum;
   if (length > kStepCap * h) step *= kStepCap * h / length;
   step *= volume_limit(ring, y, step);
   for (int halving = 0; halving <= kHalvings; ++halving, step *= .5) {
@@ -154,15 +168,19 @@ void newton_step(const OneRing& ring, double h, const Directions& directions, Ve
     if (!(there.sum < at.sum)) continue;
     y += step;
     max_F = there.max_F;
-    return;
+    return there.sum;
   }
+  return at.sum;
 }
 
-/// From y, a Newton step for each power. Returns where they end. \pre every V > 0 at y
-Vec3 newton(const OneRing& ring, Vec3 y, double h, const Directions& directions, double max_F) {
+/// From y, a Newton step for each power. Returns where they end, with the sum in the scale of max_F.
+/// \pre every V > 0 at y
+Displacement newton(const OneRing& ring, Vec3 y, double h, const Directions& directions, double max_F) {
+  const double scale = max_F;
   newton_step<kFirstPower>(ring, h, directions, y, max_F);
-  newton_step<kLastPower>(ring, h, directions, y, max_F);
-  return y;
+  const double ratio = max_F / scale;
+  const double sum = newton_step<kLastPower>(ring, h, directions, y, max_F);
+  return {y, sum * to_power<kLastPower>(ratio)};
 }
 
 /// From y, moves until every V > 0 or min V rises no more.
@@ -174,7 +192,7 @@ Vec3 untangle(const OneRing& ring, Vec3 y, double h, const Directions& direction
     if (least > 0) break;
     const double sigma = unit - least;
     for (int j = 0; j < ring.n; ++j) shifted.v[j] = ring.v[j] + sigma;
-    const Vec3 next = newton(shifted, y, h, directions, sum_of_powers<0>(shifted, y, 1).max_F);
+    const Vec3 next = newton(shifted, y, h, directions, sum_of_powers<0>(shifted, y, 1).max_F).y;
     if (!(least_volume(ring, next) > least)) break;
     y = next;
   }
@@ -187,9 +205,9 @@ void silence_padding(OneRing& r) {
   for (int j = r.n; j % kLanes != 0; ++j) r.v[j] = kInfinity, r.nx[j] = r.ny[j] = r.nz[j] = 0;
 }
 
-Bar::Bar(const OneRing& ring, double min_f, double h, double gain) : scale(1 / min_f) {
-  if (min_f > 0) {
-    sum = sum_of_powers<kLastPower>(ring, Vec3::Zero(), scale).sum;
+Bar::Bar(const OneRing& ring, double h, double gain) : scale(1 / ring.f_here) {
+  if (ring.f_here > 0) {
+    sum = sum_of_powers_here<kLastPower>(ring, scale);
     least_gain = kNorm * gain;
   } else {
     least_volume = detail::least_volume(ring, Vec3::Zero());
@@ -199,14 +217,14 @@ Bar::Bar(const OneRing& ring, double min_f, double h, double gain) : scale(1 / m
 
 bool Bar::passed(const OneRing& ring, const Vec3& y) const {
   if (tangled()) return detail::least_volume(ring, y) > least_volume + least_gain;
-  return sum_of_powers<kLastPower>(ring, y, scale).sum < sum * (1 - least_gain);
+  return passed(sum_of_powers<kLastPower>(ring, y, scale).sum);
 }
 
-Vec3 best_displacement(const OneRing& ring, const Bar& bar, double h, const Directions& directions) {
+Displacement best_displacement(const OneRing& ring, const Bar& bar, double h, const Directions& directions) {
   if (!bar.tangled()) return newton(ring, Vec3::Zero(), h, directions, bar.scale);
   const Vec3 y = untangle(ring, Vec3::Zero(), h, directions);
   const double max_F = sum_of_powers<0>(ring, y, 1).max_F;
-  return std::isfinite(max_F) ? newton(ring, y, h, directions, max_F) : y;
+  return {std::isfinite(max_F) ? newton(ring, y, h, directions, max_F).y : y, kNaN};
 }
 
 std::bitset<kMaxRing> poor_tets(const OneRing& ring, const Vec3& y, double good_f) {

@@ -32,14 +32,23 @@ struct Bar {
   double least_volume = 0;                               ///< min V where it is not
   double least_gain = 0;  ///< relative, of the norm or of min V in units of a background tet's
 
-  /// @param min_f  of the ring at 0
-  Bar(const OneRing& ring, double min_f, double h, double gain);
+  Bar(const OneRing& ring, double h, double gain);
   bool tangled() const { return sum == std::numeric_limits<double>::infinity(); }
   bool passed(const OneRing& ring, const Vec3& y) const;
+  bool passed(double sum_there) const { return sum_there < sum * (1 - least_gain); }
+};
+
+struct Displacement {
+  Vec3 y;
+  double sum;  ///< Bar::sum there; not a number for a bar that is tangled
+
+  bool passed(const OneRing& ring, const Bar& bar) const {
+    return bar.tangled() ? bar.passed(ring, y) : bar.passed(sum);
+  }
 };
 
 /// The best displacement of a vertex that may step in these directions; as good as the ring can be had in one visit.
-Vec3 best_displacement(const OneRing& ring, const Bar& bar, double h, const Directions& directions);
+Displacement best_displacement(const OneRing& ring, const Bar& bar, double h, const Directions& directions);
 
 /// The tets of the ring with 1/F, in the sign of V, below `good_f` at 0 or at y.
 std::bitset<kMaxRing> poor_tets(const OneRing& ring, const Vec3& y, double good_f);

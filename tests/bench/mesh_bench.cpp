@@ -14,6 +14,7 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "mesh/certificate.h"
 #include "mesh/crawl.h"
@@ -223,8 +224,8 @@ AllIn mesh_and_certify(const testing::AnalyticDomain& domain, double n_tets, int
   const BackgroundMesh background(a15(), domain.box, h_for_tets(domain, domain.box, n_tets));
   UmParams params;
   params.mode = UmMode::Fast;
-  const UmResult result = universal_mesh(background, domain, params);
-  const TetMesh mesh{result.final, result.submesh.mesh.C};
+  UmResult result = universal_mesh(background, domain, params);
+  const TetMesh mesh{std::move(result.final), std::move(result.submesh.mesh.C)};
   CertificateInput input;
   input.mesh = &mesh;
   input.h = background.h();

@@ -121,6 +121,22 @@ TEST_P(OnEveryTiling, CoversTheBox) {
   }
 }
 
+TEST(BackgroundMesh, RunsOffTheRimHaveNoVertexOnIt) {
+  const BackgroundMesh mesh(a15(), kUnitBox, .05);
+  std::vector<char> on_rim;
+  for (std::int64_t v = 0; v < mesh.n_vertices(); ++v) on_rim.push_back(mesh.on_rim(v));
+  const auto n = static_cast<std::int64_t>(on_rim.size());
+  std::int64_t said = 0;
+  for (std::int64_t first = 0; first < n; ++first) {
+    for (const std::int64_t last : {first, std::min(first + 63, n - 1)}) {
+      if (!mesh.is_off_rim(first, last)) continue;
+      ++said;
+      ASSERT_EQ(std::count(on_rim.begin() + first, on_rim.begin() + last + 1, 1), 0) << first;
+    }
+  }
+  EXPECT_GT(said, n / 2);
+}
+
 TEST(BackgroundMesh, RefusesWhatCannotBeBuilt) {
   EXPECT_THROW(BackgroundMesh(a15(), kUnitBox, 0), std::invalid_argument);
   EXPECT_THROW(BackgroundMesh(a15(), kUnitBox, std::nan("")), std::invalid_argument);

@@ -194,6 +194,7 @@ TEST(FastMesh, WhatCannotBeMeshedIsAStatusWithEvidence) {
   EXPECT_GE(thin.evidence.background_vertex, 0);
   EXPECT_GT(thin.evidence.count, 0u);
   EXPECT_EQ(thin.final.size(), thin.submesh.mesh.V.size());
+  EXPECT_FALSE(thin.submesh.mesh.C.empty());  // to be looked at
 }
 
 TEST(FastMesh, TheObserverCanStopItAnywhere) {
@@ -213,6 +214,7 @@ TEST(FastMesh, TheObserverCanStopItAnywhere) {
     EXPECT_EQ(cut.status, UmStatus::Cancelled);
     EXPECT_EQ(calls, stop + 1);
     EXPECT_EQ(cut.final.size(), cut.submesh.mesh.V.size());
+    EXPECT_EQ(cut.submesh.mesh.C.empty(), cut.submesh.mesh.V.empty());
   }
 }
 

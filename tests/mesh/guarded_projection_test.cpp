@@ -151,10 +151,10 @@ TEST(GuardedProjection, TheSmootherGoesOnWhereItEnded) {
   const testing::AnalyticDomain domain = testing::sphere();
   Shell shell = omega_h_shell(domain, 20000);
   PNormSmoother smoother(shell);
-  const ProjectionReport report = project(smoother, domain);
+  project(smoother, domain);
+  EXPECT_LT(worst_quality(shell), .7);
   smoother.run(domain, {});
   EXPECT_GT(worst_quality(shell), .78);
-  EXPECT_LT(report.min_quality, .7);
   for (std::size_t i = 0; i < shell.V.size(); ++i) {
     if (shell.role[i] != Role::Boundary) continue;
     ASSERT_LE(off_surface(domain, shell.V[i]), 1e-10 * shell.h);

@@ -39,6 +39,10 @@ TEST(EmitSubmesh, IsThePapersOmegaHWhenNoLabelIsChanged) {
     EXPECT_EQ(emitted.positive_faces, cut.submesh.positive_faces);
     EXPECT_EQ(emitted.positive_tets, cut.submesh.positive_tets);
     EXPECT_EQ(emitted.positive_vertices, cut.submesh.positive_vertices);
+    const SubmeshOutline outline = outline_submesh(cut.background, cut.inside);
+    EXPECT_EQ(outline.submesh.mesh.V, cut.submesh.mesh.V);
+    EXPECT_EQ(outline.submesh.background_vertex, cut.submesh.background_vertex);
+    EXPECT_EQ(outline.n_tets, cut.submesh.mesh.C.size());
   }
 }
 
