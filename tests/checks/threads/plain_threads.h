@@ -2,9 +2,11 @@
 
 // The part of oneTBB that the libraries use, on std::thread: ThreadSanitizer sees every step of it, and nothing of
 // Debian's libtbb, whose every hand-over of work would be a race to it. For the preset tsan only: it is slow, and what
-// is called from a task runs in that task's thread.
+// is called from a task runs in that task's thread. The preset hides the configuration of the real one
+// (__TBB_detail__config_H), so that a header of it that has no stand-in here does not compile.
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <exception>
@@ -105,6 +107,12 @@ Value parallel_reduce(const blocked_range<T>& range, const Value& identity, cons
   Value all = identity;
   for (const auto& part : parts) all = join(all, *part);
   return all;
+}
+
+template <class... F>
+void parallel_invoke(const F&... f) {
+  const std::array<std::function<void()>, sizeof...(F)> all = {std::cref(f)...};
+  plain::run_all(all.size(), [&](std::size_t k) { all[k](); });
 }
 
 template <class Iterator, class Less = std::less<>>
