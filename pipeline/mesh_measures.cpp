@@ -110,7 +110,7 @@ void compare_with_zero_set(const Domain& domain, const MeshCertificate& certific
   const ZeroSetChoice* counted = &pieces;
   const double half = pieces.topology.spacing / 2;
   if (differs(pieces) && counting_spacing(domain, half) < kWorthRepeating * pieces.topology.spacing) {
-    repeated = choose_components(domain, half, keep_going);
+    repeated = choose_components(domain, half, keep_going, pieces.cells ? &*pieces.cells : nullptr);
     counted = &repeated;
   }
   block["components_of_zero_set"] = counted->topology.components.size();

@@ -87,13 +87,13 @@ double counting_spacing(const Domain& domain, double h) {
   return std::max(wanted, std::cbrt(domain.box.volume() / kMaxGridNodes));
 }
 
-ZeroSetChoice choose_components(const Domain& domain, double h, const KeepGoing& keep_going) {
+ZeroSetChoice choose_components(const Domain& domain, double h, const KeepGoing& keep_going, const SignCells* cells) {
   ZeroSetChoice choice;
   const double spacing = counting_spacing(domain, h);
   FarFromZero far;
   if (domain.level_set) {
-    choice.cells = sign_cells(*domain.level_set, h / 2);
-    far = ZeroFreeMap(*choice.cells, domain.box.intersection(domain.level_set->domain()), spacing);
+    if (!cells) cells = &choice.cells.emplace(sign_cells(*domain.level_set, h / 2));
+    far = ZeroFreeMap(*cells, domain.box.intersection(domain.level_set->domain()), spacing);
   }
   choice.topology = zero_set_topology(domain.psi(), domain.box, spacing, keep_going, far);
   const std::vector<ZeroSetComponent>& pieces = choice.topology.components;

@@ -14,7 +14,7 @@ namespace umtet {
 struct ZeroSetChoice {
   ZeroSetTopology topology;
   std::vector<std::size_t> kept;     ///< which of topology.components are meshed
-  std::optional<SignCells> cells;    ///< of a level set, edge h / 2 or less: they hold every zero
+  std::optional<SignCells> cells;    ///< of a level set, edge h / 2 or less, if searched: they hold every zero
   std::vector<Vec3> seeds;           ///< one point of each piece that is kept
   long euler_characteristic = 0;     ///< of the kept pieces together
   std::vector<std::string> dropped;  ///< for each of the others, why
@@ -35,10 +35,12 @@ double counting_spacing(const Domain& domain, double h);
 /// have with as many samples per area as the piece that most samples back: a second body may be scanned seven times
 /// as coarsely. The piece that most samples back is kept if it has one. A formula has no artefacts: all is kept.
 ///
-/// @param h  edge length of the mesh to come; the grid has counting_spacing(domain, h)
+/// @param h      edge length of the mesh to come; the grid has counting_spacing(domain, h)
+/// @param cells  of an earlier count of the same psi at a larger h, which need no second search; null: searched
 /// Cost: one value of psi per node of the grid (of a level set: per node within its spacing of a sign cell), one
 /// nearest-point query per sample and piece whose box it is near. \throw std::length_error  a box too unlike a cube for
 /// the grid \throw MeshCancelled
-ZeroSetChoice choose_components(const Domain& domain, double h, const KeepGoing& keep_going = {});
+ZeroSetChoice choose_components(const Domain& domain, double h, const KeepGoing& keep_going = {},
+                                const SignCells* cells = nullptr);
 
 }  // namespace umtet

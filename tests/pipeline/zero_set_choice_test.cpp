@@ -82,6 +82,16 @@ TEST(ChooseComponents, ABubbleAroundOutliersIsDropped) {
   EXPECT_NE(c.dropped[0].find(": 6 of at least 10 samples"), std::string::npos) << c.dropped[0];
 }
 
+TEST(ChooseComponents, AFinerCountNeedsNoSearchOfItsOwn) {
+  const Domain d = domain([](const Vec3& x) { return std::min(ball(x, {0, 0, 0}, 1), ball(x, kCorner, .25)); });
+  const ZeroSetChoice coarse = choose_components(d, .3);
+  const ZeroSetChoice own = choose_components(d, .1), lent = choose_components(d, .1, {}, &*coarse.cells);
+  EXPECT_EQ(own.topology.components.size(), 2u);
+  EXPECT_EQ(lent.topology.cut_points, own.topology.cut_points);
+  EXPECT_EQ(lent.seeds, own.seeds);
+  EXPECT_FALSE(lent.cells);
+}
+
 TEST(ChooseComponents, ASmallBodySampledLikeTheRestIsKept) {
   // A sixteenth of the area with as many samples on it; then with three times the spacing.
   for (const int n : {125, 14}) {
