@@ -21,11 +21,8 @@ constexpr int kTrials = 4;          // lengths of a step that are tried
 constexpr double kLeastGain = .01;  // of the sum: less is not worth a move
 constexpr double kDamping = .05;    // of the Gauss-Newton matrix, relative to its trace
 
-/// Gamma_h^+: all that is not boundary is inside.
-std::vector<Triangle> boundary_faces(const Shell& shell) {
-  std::vector<std::uint8_t> inside;
-  inside.reserve(shell.role.size());
-  for (const Shell::Role role : shell.role) inside.push_back(role != Shell::Role::Boundary);
+/// Gamma_h^+
+std::vector<Triangle> boundary_faces(const Shell& shell, const std::vector<std::uint8_t>& inside) {
   std::vector<Triangle> faces;
   Triangle face;
   for (const Tet& t : shell.C) {
@@ -202,15 +199,15 @@ std::vector<std::string> problems(const ChordParams& params) {
   return list;
 }
 
-ChordReport slide_to_chords(PNormSmoother& smoother, ImplicitFunctionRef psi, const ChordParams& params,
-                            SmoothParams smoothing, const KeepGoing& keep_going) {
+ChordReport slide_to_chords(PNormSmoother& smoother, const std::vector<std::uint8_t>& inside, ImplicitFunctionRef psi,
+                            const ChordParams& params, SmoothParams smoothing, const KeepGoing& keep_going) {
   if (const auto list = problems(params); !list.empty()) {
     std::string all;
     for (const std::string& problem : list) all += (all.empty() ? "" : "; ") + problem;
     throw std::invalid_argument(all);
   }
   Shell& shell = smoother.shell();
-  const std::vector<Triangle> faces = boundary_faces(shell);
+  const std::vector<Triangle> faces = boundary_faces(shell, inside);
   ChordReport report;
   const std::vector<std::vector<int>> colours = vertices_of_far_faces(shell, psi, faces, params, keep_going, report);
   if (report.vertices == 0) return report;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -34,9 +35,10 @@ struct ChordReport {
 ///
 /// Vertices are visited colour by colour: the same bytes for any number of threads.
 /// @param smoother  of a shell whose boundary vertices are on psi = 0
+/// @param inside    per vertex of it; boundary faces have their three vertices outside
 /// @param smoothing  of the vertices behind; max_sweeps is not used
 /// \throw std::invalid_argument naming every broken constraint, MeshCancelled
-ChordReport slide_to_chords(PNormSmoother& smoother, ImplicitFunctionRef psi, const ChordParams& params,
-                            SmoothParams smoothing, const KeepGoing& keep_going = {});
+ChordReport slide_to_chords(PNormSmoother& smoother, const std::vector<std::uint8_t>& inside, ImplicitFunctionRef psi,
+                            const ChordParams& params, SmoothParams smoothing, const KeepGoing& keep_going = {});
 
 }  // namespace umtet

@@ -293,6 +293,7 @@ void FastRun::repair_labels(const KeepGoing& keep_going) {
   RepairParams params = params_.fast.repair;
   params.target = std::min(params.target, prices_->repair_target);
   params.reach = std::min(params.reach, prices_->repair_reach);
+  params.slides = params.slides && !memory_;
   RepairReport repaired = repair(background_, prices_->links, psi_, label_params_, params, shell_, inside_, keep_going);
   result_.n_psi_evaluations += repaired.psi_evaluations;
   moved_ = std::move(repaired.moved);
@@ -326,7 +327,9 @@ bool FastRun::relax(const KeepGoing& keep_going, std::vector<Vec3>& projected) {
   result_.n_psi_evaluations += smoothing.psi_evaluations;
   if (!memory_) {  // psi at every face: half the price of an update
     const ChordParams chords{.least_quality = params_.fast.smoothing.target};
-    result_.n_psi_evaluations += slide_to_chords(smoother, psi_, chords, smoothing_params, keep_going).psi_evaluations;
+    const std::vector<std::uint8_t> inside = inside_of(shell_, inside_);
+    result_.n_psi_evaluations +=
+        slide_to_chords(smoother, inside, psi_, chords, smoothing_params, keep_going).psi_evaluations;
   }
   return true;
 }

@@ -187,6 +187,13 @@ LatticeShell lattice_shell(const BackgroundMesh& background, const std::vector<L
   return builder.build(movable);
 }
 
+std::vector<std::uint8_t> inside_of(const LatticeShell& shell, const IdSet& inside) {
+  std::vector<std::uint8_t> list;
+  list.reserve(shell.background_vertex.size());
+  for (const std::int64_t v : shell.background_vertex) list.push_back(inside.test(v));
+  return list;
+}
+
 LatticeShell lattice_patch(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
                            const IdSet& inside, const std::vector<std::int64_t>& centres, int reach) {
   const Builder builder(background, links, inside);

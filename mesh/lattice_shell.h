@@ -34,6 +34,9 @@ LatticeShell lattice_shell(const BackgroundMesh& background, const std::vector<L
 LatticeShell lattice_patch(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
                            const detail::IdSet& inside, const std::vector<std::int64_t>& centres, int reach);
 
+/// Per vertex of the shell: whether it is in the set.
+std::vector<std::uint8_t> inside_of(const LatticeShell& shell, const detail::IdSet& inside);
+
 /// omega_h of these inside vertices: equal to detail::assemble_submesh() bit for bit, cell by cell with threads, and
 /// that function itself without cells or where the tets of one have more than 64 corners (slab and cube).
 /// Cost: some ns per tet, and a few per cell of the background mesh.

@@ -67,7 +67,8 @@ class Repair {
 
   bool is_worth_trying(const TetIds& tet);
   bool choose_round();
-  void keep(const LabelTrials::Best& best);
+  void keep(const TetIds& tet, const LabelTrials::Best& best);
+  void move(const LatticeShell& patch);
   void look(const LatticeShell& cut);
   void count();
 
@@ -84,9 +85,10 @@ class Repair {
   std::set<std::int64_t> hopeless_;  ///< vertices of tets that nothing helped
   std::vector<Bad> todo_;            ///< from next_ on
   std::size_t next_ = 0;
-  std::vector<TetIds> waiting_;  ///< before todo_
-  std::vector<TetIds> round_;    ///< far from each other: what is done for one does not touch the others
-  double far_ = 0;               ///< model units
+  std::vector<TetIds> waiting_;                  ///< before todo_
+  std::vector<std::vector<std::int64_t>> kept_;  ///< centres of the patches
+  std::vector<TetIds> round_;  ///< far from each other: what is done for one does not touch the others
+  double far_ = 0;             ///< model units
   RepairReport report_;
 };
 
@@ -124,15 +126,20 @@ bool Repair::choose_round() {
   return !round_.empty();
 }
 
-void Repair::keep(const LabelTrials::Best& best) {
+void Repair::move(const LatticeShell& patch) {
+  for (std::size_t v = 0; v < patch.shell.V.size(); ++v) {
+    if (patch.shell.role[v] != Shell::Role::Fixed) places_.move(patch.background_vertex[v], patch.shell.V[v]);
+  }
+}
+
+void Repair::keep(const TetIds& tet, const LabelTrials::Best& best) {
   for (const std::int64_t v : best.flips) {
     inside_.test(v) ? inside_.erase(v) : inside_.insert(v);
     for (LabelTrials& trials : trials_) trials.flip(v);
   }
-  const Shell& shell = best.shell.shell;
-  for (std::size_t v = 0; v < shell.V.size(); ++v) {
-    if (shell.role[v] != Shell::Role::Fixed) places_.move(best.shell.background_vertex[v], shell.V[v]);
-  }
+  move(best.shell);
+  kept_.emplace_back(tet.begin(), tet.end());
+  kept_.back().insert(kept_.back().end(), best.flips.begin(), best.flips.end());
   report_.flips += best.flips.size();
   look(best.shell);  // the patch may have bad tets that were not bad before; max_patches ends this
 }
@@ -146,7 +153,7 @@ void Repair::count() {
 void Repair::look(const LatticeShell& cut) {
   const std::vector<Vec3>& V = cut.shell.V;
   const std::vector<Tet>& C = cut.shell.C;
-  const std::vector<std::uint8_t> inside = detail::inside_of(cut, inside_);
+  const std::vector<std::uint8_t> inside = inside_of(cut, inside_);
   std::vector<double> badness(C.size(), 1);
   std::atomic<std::size_t> evaluations = 0;
   // Nearly all tets are above the target, which takes no root to see.
@@ -195,7 +202,7 @@ RepairReport Repair::operator()(const KeepGoing& keep_going) {
     std::vector<TetIds> again;
     for (std::size_t k = 0; k < round_.size(); ++k) {
       if (best[k].found) {
-        keep(best[k]);
+        keep(round_[k], best[k]);
         again.push_back(round_[k]);  // it may have become better and be bad
       } else {
         ++report_.given_up;
@@ -203,6 +210,12 @@ RepairReport Repair::operator()(const KeepGoing& keep_going) {
       }
     }
     waiting_.insert(waiting_.begin(), again.begin(), again.end());
+  }
+  if (params_.slides) {
+    for (const std::vector<std::int64_t>& centres : kept_) {
+      poll(keep_going);
+      move(trials_.front().slid(centres));
+    }
   }
   for (const LabelTrials& trials : trials_) report_.psi_evaluations += trials.psi_evaluations;
   for (const std::int64_t v : places_.moved()) report_.moved.emplace_back(v, places_.of(v));

@@ -22,6 +22,7 @@ struct RepairParams {
   /// that h is wrong, which labels do not mend. With 600 the armadillo keeps 93 tets below .81 at 1.4 M tets, with 3000
   /// none.
   std::size_t max_patches = 3000;
+  bool slides = true;     ///< patches slide_to_chords() when all is mended: their smoothing has undone that
   double reach_out = .5;  ///< as LabelParams::reach_out: here a price for distance is not needed, the mesh itself is
                           ///< looked at; >= 0
   ProjectionParams projection;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "mesh/chord_slide.h"
 #include "mesh/tet_quality.h"
 
 namespace umtet::detail {
@@ -37,12 +38,6 @@ void Places::move(std::int64_t v, const Vec3& x) {
   const auto at = static_cast<std::size_t>(moved_.add(v));
   moved_to_.resize(moved_.ids().size());
   moved_to_[at] = x;
-}
-
-std::vector<std::uint8_t> inside_of(const LatticeShell& cut, const IdSet& inside) {
-  std::vector<std::uint8_t> list;
-  for (const std::int64_t v : cut.background_vertex) list.push_back(inside.test(v));
-  return list;
 }
 
 bool LabelTrials::is_turned(const TetIds& tet) {
@@ -134,6 +129,22 @@ void LabelTrials::try_labels(const TetIds& tet, Start start, Best& best) {
         attempt(tet, std::array{singles[a].vertex, seconds[b].vertex}, start, best);
     }
   }
+}
+
+LatticeShell LabelTrials::slid(const std::vector<std::int64_t>& centres) {
+  const LatticeShell now = patch(centres, Start::Here);
+  const std::vector<std::uint8_t> inside = inside_of(now, inside_);
+  const PatchState before = state(now.shell, inside);
+  ChordParams chords{.least_quality = params_.target};
+  // Smoothing what is behind the boundary makes room, but looks at sums: without it nothing falls below the target.
+  for (const int inner_sweeps : {chords.inner_sweeps, 0}) {
+    chords.inner_sweeps = inner_sweeps;
+    LatticeShell cut = now;
+    PNormSmoother smoother(cut.shell);
+    psi_evaluations += slide_to_chords(smoother, inside, psi_, chords, params_.smoothing).psi_evaluations;
+    if (state(cut.shell, inside).is_no_worse_than(before)) return cut;
+  }
+  return now;
 }
 
 LabelTrials::Best LabelTrials::operator()(const TetIds& tet, std::size_t most_tries) {

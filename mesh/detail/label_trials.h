@@ -40,9 +40,6 @@ class Places {
   std::vector<Vec3> moved_to_;
 };
 
-/// Per vertex of a shell.
-std::vector<std::uint8_t> inside_of(const LatticeShell& cut, const IdSet& inside);
-
 /// What other labels would make of the patch around one tet. Changes nothing of the mesh.
 class LabelTrials {
  public:
@@ -70,6 +67,8 @@ class LabelTrials {
   /// The best that was found for a tet.
   /// @param most_tries  patches
   Best operator()(const TetIds& tet, std::size_t most_tries);
+  /// The patch around these vertices after slide_to_chords(), or as it is if that would make it worse.
+  LatticeShell slid(const std::vector<std::int64_t>& centres);
   bool is_turned(const TetIds& tet);
   /// In omega_h, and below the target or with a turned face.
   bool is_bad(const TetIds& tet);

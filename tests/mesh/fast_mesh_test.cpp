@@ -147,6 +147,23 @@ TEST(FastMesh, RepairMakesNothingWorseAndMendsPoorTetsAndFoldedFaces) {
   EXPECT_GT(unfolded, 0u);
 }
 
+TEST(FastMesh, PatchesThatAreMendedStayNearARim) {
+  const AnalyticDomain domain = testing::ellipsoid({1, 1, .15});
+  const BackgroundMesh background = background_of(domain, 20000);
+  const auto missed_volume = [&](bool slides, PatchState& state) {
+    UmParams params = fast();
+    params.fast.repair.slides = slides;
+    const UmResult result = universal_mesh(background, domain, params);
+    EXPECT_EQ(result.status, UmStatus::Success) << result.evidence.what;
+    state = state_of(result, domain, background.h());
+    return testing::certificate_of(result, domain, background.h()).boundary.gap_over_volume.value();
+  };
+  PatchState held, slid;
+  const double without = missed_volume(false, held), with = missed_volume(true, slid);
+  EXPECT_LT(with, .97 * without);
+  EXPECT_TRUE(slid.is_no_worse_than(held));
+}
+
 // 31 poor tets, mended up to two at once: those of one round must be far enough from each other.
 TEST(FastMesh, TetsThatAreMendedAtOnceDoNotMeet) {
   const AnalyticDomain domain = testing::banchoff_chmutov_6();
