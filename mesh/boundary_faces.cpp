@@ -167,8 +167,11 @@ class Link {
     std::fill_n(seen_.begin(), 1 << log_slots_, 0);
     n_single_ = 0;
     bool good = true;
-    for (const TetsByVertex::Least& t : least)
-      good &= add(t.i, t.j, t.tet) & add(t.j, t.k, t.tet) & add(t.k, t.i, t.tet);
+    for (const TetsByVertex::Least& t : least) {
+      good &= add(t.i, t.j, t.tet);
+      good &= add(t.j, t.k, t.tet);
+      good &= add(t.k, t.i, t.tet);
+    }
     for (const TetsByVertex::Second& t : second) good &= add(t.i, t.j, t.tet);
     return good;
   }

@@ -132,7 +132,7 @@ void LabelTrials::try_labels(const TetIds& tet, Start start, Best& best) {
 }
 
 LatticeShell LabelTrials::slid(const std::vector<std::int64_t>& centres) {
-  const LatticeShell now = patch(centres, Start::Here);
+  LatticeShell now = patch(centres, Start::Here);
   const std::vector<std::uint8_t> inside = inside_of(now, inside_);
   const PatchState before = state(now.shell, inside);
   ChordParams chords{.least_quality = params_.target};
