@@ -264,12 +264,34 @@
     if (order.length > kMost) add("name", $("legend")).textContent = `and ${order.length - kMost} smaller patches`;
   }
 
-  // A turntable around a target: angles, distance, target.
-  const kHome = {turn: 0.6, lift: 0.35, away: 0.72};
+  // A turntable around a target: angles, distance over that of home, target.
+  const kHome = {turn: 0.6, lift: 0.35, away: 1};
   let eye = Object.assign({x: 0, y: 0, z: 0}, kHome);
   function axes() {
     const up = Number($("up").value), e = (k) => new THREE.Vector3().setComponent(k % 3, 1);
     return {up: e(up), right: e(up + 1), front: e(up + 2)};
+  }
+  /** Towards the camera. */
+  function back(a, {turn, lift}) {
+    const cos = Math.cos(lift);
+    return new THREE.Vector3().addScaledVector(a.front, cos * Math.cos(turn)).addScaledVector(a.right, cos * Math.sin(turn))
+      .addScaledVector(a.up, Math.sin(lift));
+  }
+  const kSlope = Math.tan(camera.fov * Math.PI / 360);
+  /** The least distance from which all of the body is seen, with a margin of a twentieth. */
+  function homeDistance(a) {
+    const of = `${$("up").value} ${camera.aspect}`;
+    if (homeDistance.of === of) return homeDistance.is;
+    const w = back(a, kHome), u = new THREE.Vector3().crossVectors(a.up, w).normalize();
+    const v = new THREE.Vector3().crossVectors(w, u), high = 0.95 * kSlope, wide = high * camera.aspect;
+    const p = new THREE.Vector3();
+    let far = 0.01 * radius;
+    for (let i = 0; i < X.length; i += 3) {
+      p.fromArray(X, i);
+      far = Math.max(far, p.dot(w) + Math.max(Math.abs(p.dot(v)) / high, Math.abs(p.dot(u)) / wide));
+    }
+    Object.assign(homeDistance, {of, is: far});
+    return far;
   }
   function draw() {
     if (draw.asked) return;
@@ -281,13 +303,9 @@
     const box = $("canvas").parentElement.getBoundingClientRect();
     renderer.setSize(box.width, box.height, false);
     camera.aspect = box.width / Math.max(box.height, 1);
-    const a = axes(), cos = Math.cos(eye.lift);
-    const far = eye.away * radius / Math.sin(camera.fov * Math.PI / 360) * Math.max(1, 0.95 / camera.aspect);
+    const a = axes(), far = eye.away * homeDistance(a);
     const target = new THREE.Vector3(eye.x, eye.y, eye.z);
-    camera.position.copy(target)
-      .addScaledVector(a.front, far * cos * Math.cos(eye.turn))
-      .addScaledVector(a.right, far * cos * Math.sin(eye.turn))
-      .addScaledVector(a.up, far * Math.sin(eye.lift));
+    camera.position.copy(target).addScaledVector(back(a, eye), far);
     camera.up.copy(a.up);
     camera.lookAt(target);
     camera.near = Math.max(far - 4 * radius, far * 0.02);
@@ -323,7 +341,7 @@
     grip.x = e.clientX;
     grip.y = e.clientY;
     if (grip.move) {
-      const m = camera.matrixWorld.elements, s = 2 * radius * eye.away;
+      const m = camera.matrixWorld.elements, s = 2 * kSlope * eye.away * homeDistance(axes());
       eye.x += s * (dy * m[4] - dx * m[0]);
       eye.y += s * (dy * m[5] - dx * m[1]);
       eye.z += s * (dy * m[6] - dx * m[2]);
