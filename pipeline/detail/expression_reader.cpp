@@ -40,6 +40,7 @@ class Builder {
   Node& node(double handle) { return nodes_[static_cast<std::size_t>(handle)]; }
   int read_leaf(const char* s, int* pos, double* handle);
   GiNaC::numeric number(const std::string& digits, std::size_t column) const;
+  std::optional<double> constant(const GiNaC::ex& e) const;
   GiNaC::ex power(const Node& base, const Node& exponent) const;
 
   template <class F>
@@ -107,14 +108,24 @@ int Builder::read_leaf(const char* s, int* pos, double* handle) {
   return 1;
 }
 
+/// The value of what does not depend on x, y, z, also of what GiNaC keeps as it is written, such as 2^pi; none if that
+/// is not real.
+std::optional<double> Builder::constant(const GiNaC::ex& e) const {
+  if (GiNaC::is_a<GiNaC::numeric>(e)) return GiNaC::ex_to<GiNaC::numeric>(e).to_double();
+  for (const GiNaC::realsymbol& s : symbols_) {
+    if (e.has(s)) return {};
+  }
+  const GiNaC::ex value = e.evalf();
+  if (!GiNaC::is_a<GiNaC::numeric>(value) || !GiNaC::ex_to<GiNaC::numeric>(value).is_real()) return {};
+  return GiNaC::ex_to<GiNaC::numeric>(value).to_double();
+}
+
 GiNaC::ex Builder::power(const Node& base, const Node& exponent) const {
-  if (GiNaC::is_a<GiNaC::numeric>(exponent.e)) {
-    const double n = GiNaC::ex_to<GiNaC::numeric>(exponent.e).to_double();
+  // Before it is computed: CLN would ask for the memory of 9^9^9^9^.3 to the last digit.
+  if (const std::optional<double> n = constant(exponent.e)) {
     double decades = 0;
-    if (GiNaC::is_a<GiNaC::numeric>(base.e)) {
-      decades = n * std::log10(std::abs(GiNaC::ex_to<GiNaC::numeric>(base.e).to_double()));
-    }
-    if (std::abs(n) > kMaxExponent || (std::isfinite(decades) && std::abs(decades) > 300)) {
+    if (const std::optional<double> b = constant(base.e)) decades = *n * std::log10(std::abs(*b));
+    if (std::abs(*n) > kMaxExponent || (std::isfinite(decades) && std::abs(decades) > 300)) {
       throw ExpressionError(text_, exponent.column, "this power is out of range");
     }
   }
@@ -132,7 +143,7 @@ double Builder::binary(double a, double b, F&& f) {
   const Node left = node(a), right = node(b);
   try {
     const GiNaC::ex e = f(left, right);
-    if (GiNaC::is_a<GiNaC::numeric>(e) && !std::isfinite(GiNaC::ex_to<GiNaC::numeric>(e).to_double())) {
+    if (const std::optional<double> value = constant(e); value && !std::isfinite(*value)) {
       throw ExpressionError(text_, left.column, "a constant out of range");
     }
     return add(e, left.column);

@@ -111,6 +111,19 @@ TEST(Expression, PowersOfPowersAreWhatTheyLookLike) {
   EXPECT_EQ(Expression("x^184467440737051615^-12+y^9").value({2, 1, 0}), 2);
 }
 
+TEST(Expression, TowersOfNumbersAreRefusedBeforeTheyAreComputed) {
+  // Found by fuzzing: of a number of that many digits CLN asks for 16 TB.
+  for (const char* text : {"x*9^9^9^9^.3", "x*3^-9^9^9^9^.3", "x*exp(exp(1000))", "x*2^exp(9)"}) {
+    try {
+      Expression{text};
+      ADD_FAILURE() << text;
+    } catch (const ExpressionError& e) {
+      EXPECT_NE(std::string(e.what()).find("out of range"), std::string::npos) << e.what();
+    }
+  }
+  EXPECT_NEAR(Expression("x*2^pi^.5").value({1, 0, 0}), std::pow(2, std::sqrt(std::acos(-1))), 1e-14);
+}
+
 TEST(Expression, RefusalsNameTheColumn) {
   const std::pair<const char*, std::size_t> cases[] = {
       {"", 1},        {"   ", 1},        {"x y", 3},         {"x^2+foo(y)", 5},    {"x**2", 3},
