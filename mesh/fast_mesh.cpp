@@ -31,7 +31,7 @@ using detail::find_offenders;
 using detail::IdSet;
 using detail::Offenders;
 
-// In place of smoothing.least_gain, if that is less, for a mesh that begins from the one before. A ball that drifts a
+// In place of the least gains of smoothing, if these are less, for a mesh that begins from the one before. A ball that drifts a
 // quarter cell a step: .95 of the visits of 3e-4 and least Q .832 (.834); with 1e-3 it is .92 and .828, anew .833.
 constexpr double kUpdateLeastGain = 6e-4;
 constexpr std::size_t kVerticesPerTask = 1 << 14;  // to compare places, a nanosecond each
@@ -308,6 +308,7 @@ bool FastRun::relax(const KeepGoing& keep_going, std::vector<Vec3>& projected) {
   if (memory_ && !memory_->moved.empty()) {
     smoothing_params.margin = std::min(smoothing_params.margin, params_.fast.update_margin);
     smoothing_params.least_gain = std::max(smoothing_params.least_gain, kUpdateLeastGain);
+    smoothing_params.fine_gain = std::max(smoothing_params.fine_gain, kUpdateLeastGain);
     const WarmStart start =
         warm_start(background_, psi_, inside_, *memory_, params_.fast.projection, shell_, keep_going);
     result_.n_psi_evaluations += start.psi_evaluations;

@@ -23,6 +23,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kSlides = 3;  // lengths of a tangential step that are tried on the surface
+// Over-relaxation. With 1 and 1 the 1 % quantile of Q is .002 (sphere) to .005 (T6) lower at 100k tets, after as many
+// visits; with 1.2 and 1.8, or 1.6 and 1.6, it is as with these within .001.
+constexpr double kInnerFactor = 1.4, kBoundaryFactor = 2;
 // A visit takes about a microsecond, handing a task to a thread a few.
 constexpr std::size_t kVisitsPerTask = 32;
 constexpr std::size_t kWorthThreads = 64;
@@ -38,10 +41,13 @@ class Visitor {
         psi_(psi),
         closest_point_(params.closest_point),
         good_f_(f_of_quality(params.target + params.margin)),
-        least_gain_(params.least_gain) {}
+        target_f_(f_of_quality(params.target)),
+        least_gain_(params.least_gain),
+        fine_gain_(params.fine_gain) {}
 
   struct Result {
     bool needed = false, moved = false;
+    bool good = false;  ///< no tet of the ring was below the target
     Vec3 place;
     std::bitset<kMaxRing> poor;  ///< which tets of the ring are below target + margin, before or after the move
     std::size_t psi_evaluations = 0;
@@ -53,11 +59,12 @@ class Visitor {
     if (ring.f_here >= good_f_) return result;
     result.needed = true;
     detail::silence_padding(ring);
-    const detail::Bar bar(ring, shell_.h, least_gain_);
+    result.good = ring.f_here >= target_f_;
+    const detail::Bar bar(ring, shell_.h, result.good ? fine_gain_ : least_gain_);
     if (shell_.role[i] == Shell::Role::Inner) {
       const detail::Displacement best = detail::best_displacement(ring, bar, shell_.h, {});
       result.moved = best.passed(ring, bar);
-      result.place = shell_.V[i] + best.y;
+      result.place = shell_.V[i] + over_relaxed(ring, bar, best.y, kInnerFactor);
     } else {
       slide(ring, bar, shell_.V[i], result);
     }
@@ -69,6 +76,10 @@ class Visitor {
   static double f_of_quality(double Q) {
     const double root = Q / kMeanRatioFactor;
     return root * root * root;
+  }
+
+  static Vec3 over_relaxed(const OneRing& ring, const detail::Bar& bar, const Vec3& y, double factor) {
+    return !bar.tangled() && bar.passed(ring, factor * y) ? factor * y : y;
   }
 
   /// Along the tangent plane, and back to the surface.
@@ -83,7 +94,7 @@ class Visitor {
     tangent.tangents.col(1) = (gradient / norm).cross(tangent.tangents.col(0));
     const detail::Displacement best = detail::best_displacement(ring, bar, shell_.h, tangent);
     if (!best.passed(ring, bar)) return;
-    Vec3 y = best.y;
+    Vec3 y = over_relaxed(ring, bar, best.y, kBoundaryFactor);
     for (int trial = 0; trial < kSlides && (trial == 0 || bar.passed(ring, y)); ++trial, y *= .5) {
       const ClosestPoint foot = closest_point(psi_, x + y, shell_.h, closest_point_);
       result.psi_evaluations += static_cast<std::size_t>(foot.iterations);
@@ -98,7 +109,7 @@ class Visitor {
   const Shell& shell_;
   ImplicitFunctionRef psi_;
   const ClosestPointParams& closest_point_;
-  double good_f_, least_gain_;
+  double good_f_, target_f_, least_gain_, fine_gain_;
 };
 
 struct Counts {
@@ -122,6 +133,9 @@ std::vector<std::string> problems(const SmoothParams& params) {
   if (!(params.margin >= 0)) refuse("margin", params.margin, ">= 0");
   if (!(params.least_gain > 0 && params.least_gain < 1 / detail::kNorm))
     refuse("least_gain", params.least_gain, "> 0 and < 1 / 96");
+  if (!(params.fine_gain > 0 && params.fine_gain < 1 / detail::kNorm))
+    refuse("fine_gain", params.fine_gain, "> 0 and < 1 / 96");
+  if (!(params.least_step >= 0)) refuse("least_step", params.least_step, ">= 0");
   if (params.max_sweeps < 0) refuse("max_sweeps", params.max_sweeps, ">= 0");
   return list;
 }
@@ -208,7 +222,9 @@ SmoothReport PNormSmoother::run(ImplicitFunctionRef psi, const SmoothParams& par
       counts.moves += result.moved;
       counts.psi_evaluations += result.psi_evaluations;
       if (!result.moved) continue;
+      const double step = (result.place - shell_.V[i]).norm();
       shell_.V[i] = result.place;
+      if (result.good && step < params.least_step * shell_.h) continue;
       // A tet that was good and is good again keeps nobody from being where it is.
       if (result.poor.none()) continue;
       std::atomic_ref(queued_[i]).store(1, std::memory_order_relaxed);

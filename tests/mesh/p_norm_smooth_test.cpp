@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -219,13 +220,42 @@ TEST(PNormSmooth, ManyTangledVerticesAreUntangled) {
 
 TEST(PNormSmooth, SettledMeansThatNobodyWasForgotten) {
   SmoothParams params;
-  params.margin = .02;  // the shares below were measured with it
+  params.margin = .02;  // the shares below were measured with these
+  params.fine_gain = params.least_gain;
+  params.least_step = 0;
   for (const testing::AnalyticDomain& domain : {testing::torus(), testing::equation_9()}) {
     Shell shell = omega_h_shell(domain, 20000);
     project(shell, domain);
     const SmoothReport first = smooth(shell, domain, params), second = smooth(shell, domain, params);
     EXPECT_TRUE(first.settled);
     EXPECT_LT(second.moves, first.moves / 200) << domain.name;  // 1 in 360; 1 in 90 if only poor tets of before wake
+  }
+}
+
+TEST(PNormSmooth, ShortMovesWakeNobodyUnlessARingIsBad) {
+  const testing::AnalyticDomain domain = testing::torus();
+  SmoothParams params;
+  params.least_step = 10;  // h: no move is as long
+  for (const double target : {.3, .82}) {
+    Shell shell = omega_h_shell(domain, 5000);
+    project(shell, domain);
+    std::mt19937_64 random(1);
+    for (std::size_t i = 0; i < shell.V.size(); ++i) {
+      if (shell.role[i] == Role::Inner) shell.V[i] += random_vector(random, .08 * shell.h);
+    }
+    ASSERT_GT(worst_quality(shell), .3);
+    ASSERT_LT(worst_quality(shell), .82);
+    params.target = target;
+    params.margin = .86 - target;
+    const SmoothReport report = smooth(shell, domain, params);
+    const auto movable = static_cast<std::size_t>(
+        std::count_if(shell.role.begin(), shell.role.end(), [](Role role) { return role != Role::Fixed; }));
+    EXPECT_GT(report.moves, 100u);
+    if (target < .5) {
+      EXPECT_EQ(report.looks, movable);
+    } else {
+      EXPECT_GT(report.looks, movable);
+    }
   }
 }
 
@@ -296,9 +326,11 @@ TEST(PNormSmooth, BadParametersAndCancelling) {
   params.target = 1;
   params.margin = -1;
   params.least_gain = 0;
+  params.fine_gain = 0;
+  params.least_step = -1;
   params.max_sweeps = -1;
   params.closest_point.tol = 0;
-  EXPECT_EQ(problems(params).size(), 5u);
+  EXPECT_EQ(problems(params).size(), 7u);
   EXPECT_THROW(smooth(shell, domain, params), std::invalid_argument);
   EXPECT_THROW(smooth(shell, domain, {}, [] { return false; }), MeshCancelled);
 }
