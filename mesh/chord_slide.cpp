@@ -68,8 +68,12 @@ class Visitor {
         fans_(fans),
         params_(params),
         closest_point_(closest_point) {
-    const double root = params.least_quality / kMeanRatioFactor;
-    least_f_ = root * root * root;
+    const auto f_of_quality = [](double Q) {
+      const double root = Q / kMeanRatioFactor;
+      return root * root * root;
+    };
+    least_f_ = f_of_quality(params.least_quality);
+    least_f_near_ = f_of_quality(params.least_quality + params.near_margin);
   }
 
   /// @return true if `place` is better
@@ -90,7 +94,7 @@ class Visitor {
     if (!std::isfinite(length)) return false;
     if (length > kLongestStep * shell_.h) step *= kLongestStep * shell_.h / length;
     const OneRing ring = smoother_.ring(i);
-    const double bar = std::min(least_f_, ring.f_here);
+    const double bar = std::min(now.most < params_.far_chord ? least_f_near_ : least_f_, ring.f_here);
     const double least_cosine = std::min(now.least_cosine, kTurnedCosine);
     for (int trial = 0; trial < kTrials; ++trial, step *= .5) {
       const Vec3 y = tangents * step;
@@ -138,7 +142,7 @@ class Visitor {
   const Fans& fans_;
   const ChordParams& params_;
   const ClosestPointParams& closest_point_;
-  double least_f_ = 0;
+  double least_f_ = 0, least_f_near_ = 0;
 };
 
 // A face that crosses a ridge misses psi = 0 by no less at its middle than a third of what its edges do.
@@ -194,6 +198,8 @@ std::vector<std::string> problems(const ChordParams& params) {
   if (!(params.least_chord > 0)) refuse("least_chord", params.least_chord, "> 0");
   if (!(params.least_quality > 0 && params.least_quality < 1))
     refuse("least_quality", params.least_quality, "> 0 and < 1");
+  if (!(params.near_margin >= 0)) refuse("near_margin", params.near_margin, ">= 0");
+  if (!(params.far_chord >= 0)) refuse("far_chord", params.far_chord, ">= 0");
   if (params.sweeps < 0) refuse("sweeps", params.sweeps, ">= 0");
   if (params.inner_sweeps < 0) refuse("inner_sweeps", params.inner_sweeps, ">= 0");
   return list;

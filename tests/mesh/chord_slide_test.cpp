@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "mesh/guarded_projection.h"
+#include "mesh/tet_quality.h"
 #include "tests/support/omega_h_shell.h"
 
 namespace umtet {
@@ -77,6 +78,17 @@ TEST(ChordSlide, BringsFacesNearerToRidgesAtNoPriceInQuality) {
   }
 }
 
+// Where no face is far, slides stop at a higher quality: fewer of them, and fewer tets just above the least.
+TEST(ChordSlide, KeepsMoreQualityWhereFacesAreNear) {
+  const auto n_below = [](const Shell& shell, double Q) {
+    std::size_t n = 0;
+    for (const Tet& t : shell.C) n += mean_ratio(shell.V[t[0]], shell.V[t[1]], shell.V[t[2]], shell.V[t[3]]) < Q;
+    return n;
+  };
+  const Shell one_bar = slid({.near_margin = 0}), two_bars = slid({});
+  EXPECT_LT(n_below(two_bars, .84), n_below(one_bar, .84));
+}
+
 TEST(ChordSlide, TheSameBytesForAnyNumberOfThreads) {
   const Shell many = slid({});
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
@@ -86,7 +98,13 @@ TEST(ChordSlide, TheSameBytesForAnyNumberOfThreads) {
 
 TEST(ChordSlide, NamesEveryBrokenConstraint) {
   EXPECT_TRUE(problems(ChordParams{}).empty());
-  EXPECT_EQ(problems(ChordParams{.least_chord = 0, .least_quality = 1, .sweeps = -1, .inner_sweeps = -1}).size(), 4u);
+  const ChordParams wrong{.least_chord = 0,
+                          .least_quality = 1,
+                          .near_margin = -1,
+                          .far_chord = -1,
+                          .sweeps = -1,
+                          .inner_sweeps = -1};
+  EXPECT_EQ(problems(wrong).size(), 6u);
 }
 
 }  // namespace
