@@ -55,6 +55,7 @@ class Repair {
         shell_(shell),
         inside_(inside),
         most_patches_(std::min(params.max_patches, kFewPatches + shell.shell.C.size() / kTetsPerPatch)),
+        target_(params.target),
         places_(background, shell) {}
 
   RepairReport operator()(const KeepGoing& keep_going);
@@ -66,6 +67,8 @@ class Repair {
   };
 
   bool is_worth_trying(const TetIds& tet);
+  void mend(const KeepGoing& keep_going);
+  void ask_less();
   bool choose_round();
   void keep(const TetIds& tet, const LabelTrials::Best& best);
   void move(const LatticeShell& patch);
@@ -80,8 +83,10 @@ class Repair {
   const LatticeShell& shell_;
   IdSet& inside_;
   const std::size_t most_patches_;
+  double target_;
   detail::Places places_;
   std::deque<LabelTrials> trials_;   ///< one for each tet of a round, with labels as in inside_
+  std::vector<TetIds> given_up_;
   std::set<std::int64_t> hopeless_;  ///< vertices of tets that nothing helped
   std::vector<Bad> todo_;            ///< from next_ on
   std::size_t next_ = 0;
@@ -98,7 +103,7 @@ bool Repair::is_worth_trying(const TetIds& tet) {
   // Where nothing helped, it would not help the tets that share a vertex either: they see the same labels.
   const bool hopeless = std::any_of(tet.begin(), tet.end(), [&](std::int64_t v) { return hopeless_.count(v) != 0; });
   if (!hopeless && report_.tries < most_patches_) return true;
-  ++report_.given_up;
+  given_up_.push_back(tet);
   return false;
 }
 
@@ -157,7 +162,7 @@ void Repair::look(const LatticeShell& cut) {
   std::vector<double> badness(C.size(), 1);
   std::atomic<std::size_t> evaluations = 0;
   // Nearly all tets are above the target, which takes no root to see.
-  const double root = params_.target / kMeanRatioFactor, enough = (1 + 1e-12) * root * root * root;
+  const double root = target_ / kMeanRatioFactor, enough = (1 + 1e-12) * root * root * root;
   tbb::parallel_for(std::size_t{0}, C.size(), [&](std::size_t k) {
     const Tet& t = C[k];
     const Vec3 &p = V[t[0]], &q = V[t[1]], &r = V[t[2]], &s = V[t[3]];
@@ -175,22 +180,14 @@ void Repair::look(const LatticeShell& cut) {
   const auto& id = cut.background_vertex;
   for (std::size_t k = 0; k < C.size(); ++k) {
     const Tet& t = C[k];
-    if (badness[k] < params_.target) todo_.push_back({badness[k], {id[t[0]], id[t[1]], id[t[2]], id[t[3]]}});
+    if (badness[k] < target_) todo_.push_back({badness[k], {id[t[0]], id[t[1]], id[t[2]], id[t[3]]}});
   }
   std::stable_sort(todo_.begin() + static_cast<std::ptrdiff_t>(first), todo_.end(),
                    [](const Bad& a, const Bad& b) { return a.badness < b.badness; });
 }
 
-RepairReport Repair::operator()(const KeepGoing& keep_going) {
-  if (params_.max_tries > 0) look(shell_);
-  report_.bad_before = todo_.size();
-  if (todo_.empty()) return std::move(report_);
-  for (std::size_t k = 0; k < kAtOnce; ++k) {
-    trials_.emplace_back(background_, links_, psi_, labels_, params_, places_, inside_);
-  }
-  // Seen from one vertex of a tet, flips are within two edges, what moves is within reach + 2; labels and places are
-  // read one edge farther.
-  far_ = (2 * params_.reach + 5) * longest_edge(background_.tiling(), background_.tiling_tables()) * background_.h();
+/// What is on the list, round by round.
+void Repair::mend(const KeepGoing& keep_going) {
   std::vector<LabelTrials::Best> best(kAtOnce);
   while (choose_round()) {
     poll(keep_going);
@@ -205,13 +202,41 @@ RepairReport Repair::operator()(const KeepGoing& keep_going) {
         keep(round_[k], best[k]);
         again.push_back(round_[k]);  // it may have become better and be bad
       } else {
-        ++report_.given_up;
+        given_up_.push_back(round_[k]);
         hopeless_.insert(round_[k].begin(), round_[k].end());
       }
     }
     waiting_.insert(waiting_.begin(), again.begin(), again.end());
   }
+}
+
+/// Puts what was given up on the list again, against a lower target.
+void Repair::ask_less() {
+  target_ -= params_.less_asked;
+  for (LabelTrials& trials : trials_) trials.set_target(target_);
+  waiting_ = std::move(given_up_);
+  given_up_.clear();
+  hopeless_.clear();
+}
+
+RepairReport Repair::operator()(const KeepGoing& keep_going) {
+  if (params_.max_tries > 0) look(shell_);
+  report_.bad_before = todo_.size();
+  if (todo_.empty()) return std::move(report_);
+  for (std::size_t k = 0; k < kAtOnce; ++k) {
+    trials_.emplace_back(background_, links_, psi_, labels_, params_, places_, inside_);
+  }
+  // Seen from one vertex of a tet, flips are within two edges, what moves is within reach + 2; labels and places are
+  // read one edge farther.
+  far_ = (2 * params_.reach + 5) * longest_edge(background_.tiling(), background_.tiling_tables()) * background_.h();
+  mend(keep_going);
+  if (params_.less_asked > 0) {
+    ask_less();
+    mend(keep_going);
+  }
+  report_.given_up = given_up_.size();
   if (params_.slides) {
+    for (LabelTrials& trials : trials_) trials.set_target(params_.target);
     for (const std::vector<std::int64_t>& centres : kept_) {
       poll(keep_going);
       move(trials_.front().slid(centres));
@@ -232,6 +257,7 @@ std::vector<std::string> problems(const RepairParams& params) {
   };
   if (!(params.target > 0 && params.target < 1)) add("target", std::to_string(params.target), "in (0, 1)");
   if (params.reach < 1) add("reach", std::to_string(params.reach), ">= 1");
+  if (!(params.less_asked >= 0)) add("less_asked", std::to_string(params.less_asked), ">= 0");
   if (params.max_tries < 0) add("max_tries", std::to_string(params.max_tries), ">= 0");
   for (const std::string& problem : problems(params.projection)) list.push_back("projection." + problem);
   for (const std::string& problem : problems(params.smoothing)) list.push_back("smoothing." + problem);

@@ -53,7 +53,7 @@ bool LabelTrials::is_bad(const TetIds& tet) {
   bool in_omega_h = false;
   for (const std::int64_t v : tet) in_omega_h |= inside_.test(v);
   if (!in_omega_h) return false;
-  return mean_ratio(places_.of(tet[0]), places_.of(tet[1]), places_.of(tet[2]), places_.of(tet[3])) < params_.target ||
+  return mean_ratio(places_.of(tet[0]), places_.of(tet[1]), places_.of(tet[2]), places_.of(tet[3])) < target_ ||
          is_turned(tet);
 }
 
@@ -67,7 +67,7 @@ LatticeShell LabelTrials::patch(const std::vector<std::int64_t>& centres, Start 
 }
 
 PatchState LabelTrials::state(const Shell& shell, const std::vector<std::uint8_t>& inside) {
-  return patch_state(shell, inside, psi_, params_.target, psi_evaluations);
+  return patch_state(shell, inside, psi_, target_, psi_evaluations);
 }
 
 /// Returns whether the patch may still become better than it was; what it lacks is looked at after every sweep.
@@ -78,8 +78,8 @@ bool LabelTrials::smooth_while_promising(PNormSmoother& smoother, const PatchSta
     const SmoothReport report = smoother.run(psi_, one_sweep);
     psi_evaluations += report.psi_evaluations;
     if (report.settled) break;
-    const PatchState now = tet_state(smoother.shell(), params_.target);
-    const double lack = std::min(before.least, params_.target) - now.least;
+    const PatchState now = tet_state(smoother.shell(), target_);
+    const double lack = std::min(before.least, target_) - now.least;
     const double more_poor = static_cast<double>(now.poor) - static_cast<double>(before.poor);
     if (lack * sweep * sweep > kMostLack || more_poor * sweep > kMostMorePoor) return false;
   }
@@ -135,7 +135,7 @@ LatticeShell LabelTrials::slid(const std::vector<std::int64_t>& centres) {
   LatticeShell now = patch(centres, Start::Here);
   const std::vector<std::uint8_t> inside = inside_of(now, inside_);
   const PatchState before = state(now.shell, inside);
-  ChordParams chords{.least_quality = params_.target};
+  ChordParams chords{.least_quality = target_};
   // Smoothing what is behind the boundary makes room, but looks at sums: without it nothing falls below the target.
   for (const int inner_sweeps : {chords.inner_sweeps, 0}) {
     chords.inner_sweeps = inner_sweeps;

@@ -58,6 +58,7 @@ class LabelTrials {
         links_(links),
         psi_(psi),
         params_(params),
+        target_(params.target),
         places_(places),
         inside_(inside),
         candidates_(background, links, psi, labels, params, inside_) {}
@@ -72,6 +73,8 @@ class LabelTrials {
   bool is_turned(const TetIds& tet);
   /// In omega_h, and below the target or with a turned face.
   bool is_bad(const TetIds& tet);
+  /// From now on tets are poor below this mean ratio, in place of params.target.
+  void set_target(double target) { target_ = target; }
   void flip(std::int64_t v) { inside_.test(v) ? inside_.erase(v) : inside_.insert(v); }
 
   std::size_t tries = 0;            ///< patches shaped, of all calls
@@ -91,6 +94,7 @@ class LabelTrials {
   const std::vector<LinkTopology>& links_;
   ImplicitFunctionRef psi_;
   const RepairParams& params_;
+  double target_;
   const Places& places_;
   IdSet inside_;
   LabelCandidates candidates_;

@@ -164,6 +164,27 @@ TEST(FastMesh, PatchesThatAreMendedStayNearARim) {
   EXPECT_TRUE(slid.is_no_worse_than(held));
 }
 
+// Thin bodies: a patch that has to keep every tet above .82 may not find the way to a boundary without turned faces.
+TEST(FastMesh, WhatNothingMendsIsTriedAgainWithLessAsked) {
+  std::size_t turned_once = 0, turned_twice = 0;
+  for (const AnalyticDomain& domain : {testing::ellipsoid({1, .4, .12}), testing::ellipsoid({1, .5, .15})}) {
+    const BackgroundMesh background = background_of(domain, 3000);
+    const auto state_with = [&](double less_asked) {
+      UmParams params = fast();
+      params.fast.repair.less_asked = less_asked;
+      const UmResult result = universal_mesh(background, domain, params);
+      EXPECT_EQ(result.status, UmStatus::Success) << result.evidence.what;
+      return state_of(result, domain, background.h());
+    };
+    const PatchState once = state_with(0), twice = state_with(.01);
+    EXPECT_LE(twice.folded, once.folded);
+    EXPECT_GE(twice.least, std::min(once.least, .81));
+    turned_once += once.turned;
+    turned_twice += twice.turned;
+  }
+  EXPECT_LT(turned_twice, turned_once);
+}
+
 // 31 poor tets, mended up to two at once: those of one round must be far enough from each other.
 TEST(FastMesh, TetsThatAreMendedAtOnceDoNotMeet) {
   const AnalyticDomain domain = testing::banchoff_chmutov_6();
@@ -240,8 +261,9 @@ TEST(FastMesh, BrokenParamsAreAllNamed) {
   params.fast.layers = 0;
   params.fast.labels.shift = 1;
   params.fast.repair.reach = 0;
+  params.fast.repair.less_asked = -1;
   params.fast.update_margin = -1;
-  EXPECT_EQ(problems(params).size(), 4u);
+  EXPECT_EQ(problems(params).size(), 5u);
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 namespace umtet {
 namespace {
 
-// Half axes 1, 1 and .15: too thin for h = .3.
-const std::string kLens = "mesh --implicit 'x^2+y^2+(z/0.15)^2-1' --box=-1.6,-1.6,-.9,1.6,1.6,.9 -o lens ";
+// Half axes 1, 1 and .12: too thin for h = .3.
+const std::string kLens = "mesh --implicit 'x^2+y^2+(z/0.12)^2-1' --box=-1.6,-1.6,-.9,1.6,1.6,.9 -o lens ";
 
 TEST_F(Program, WhatIsTooThinForAGivenHIsNamed) {
   const Result r = run(kLens + "--h .3 --json");
