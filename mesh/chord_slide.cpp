@@ -10,7 +10,6 @@
 #include <stdexcept>
 
 #include "mesh/patch_state.h"
-#include "mesh/tet_quality.h"
 
 namespace umtet {
 namespace {
@@ -67,14 +66,9 @@ class Visitor {
         psi_(psi),
         fans_(fans),
         params_(params),
-        closest_point_(closest_point) {
-    const auto f_of_quality = [](double Q) {
-      const double root = Q / kMeanRatioFactor;
-      return root * root * root;
-    };
-    least_f_ = f_of_quality(params.least_quality);
-    least_f_near_ = f_of_quality(params.least_quality + params.near_margin);
-  }
+        closest_point_(closest_point),
+        least_f_(f_of_quality(params.least_quality)),
+        least_f_near_(f_of_quality(params.least_quality + params.near_margin)) {}
 
   /// @return true if `place` is better
   bool operator()(int i, Vec3& place, std::size_t& evaluations) const {
@@ -142,7 +136,7 @@ class Visitor {
   const Fans& fans_;
   const ChordParams& params_;
   const ClosestPointParams& closest_point_;
-  double least_f_ = 0, least_f_near_ = 0;
+  double least_f_, least_f_near_;
 };
 
 // A face that crosses a ridge misses psi = 0 by no less at its middle than a third of what its edges do.

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "mesh/max_min.h"
-#include "mesh/tet_quality.h"
 
 namespace umtet {
 namespace {
@@ -53,8 +52,7 @@ class Projection {
         params_(params),
         keep_going_(keep_going),
         roles_(smoother.shell().role) {
-    const double root = params.least_quality / kMeanRatioFactor;
-    least_f_ = root * root * root;
+    least_f_ = f_of_quality(params.least_quality);
     set_out();
   }
 

@@ -268,6 +268,11 @@ RingOnLine::RingOnLine(const OneRing& ring, const Vec3& d) : n(ring.n) {
 
 double quality_of(double f) { return kMeanRatioFactor * std::cbrt(f); }
 
+double f_of_quality(double Q) {
+  const double root = Q / kMeanRatioFactor;
+  return root * root * root;
+}
+
 MaxMinResult max_min(const RingOnLine& ring, MaxMin method) {
   return method == MaxMin::Exact ? exact(ring) : golden_section(ring);
 }

@@ -58,6 +58,9 @@ struct RingOnLine {
 /// Q of a tet whose f is given.
 double quality_of(double f);
 
+/// The f of a tet whose Q is given.
+double f_of_quality(double Q);
+
 struct MaxMinResult {
   double lambda = 0;     ///< lambda_opt, 0 if nothing better was found or the ring is not valid at 0
   double f = 0;          ///< min_j f_j(lambda)

@@ -73,11 +73,6 @@ class Visitor {
   }
 
  private:
-  static double f_of_quality(double Q) {
-    const double root = Q / kMeanRatioFactor;
-    return root * root * root;
-  }
-
   static Vec3 over_relaxed(const OneRing& ring, const detail::Bar& bar, const Vec3& y, double factor) {
     return !bar.tangled() && bar.passed(ring, factor * y) ? factor * y : y;
   }

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "mesh/detail/label_trials.h"
+#include "mesh/max_min.h"
 #include "mesh/tet_quality.h"
 
 namespace umtet {
@@ -162,7 +163,7 @@ void Repair::look(const LatticeShell& cut) {
   std::vector<double> badness(C.size(), 1);
   std::atomic<std::size_t> evaluations = 0;
   // Nearly all tets are above the target, which takes no root to see.
-  const double root = target_ / kMeanRatioFactor, enough = (1 + 1e-12) * root * root * root;
+  const double enough = (1 + 1e-12) * f_of_quality(target_);
   tbb::parallel_for(std::size_t{0}, C.size(), [&](std::size_t k) {
     const Tet& t = C[k];
     const Vec3 &p = V[t[0]], &q = V[t[1]], &r = V[t[2]], &s = V[t[3]];

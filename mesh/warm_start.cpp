@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "mesh/closest_point.h"
+#include "mesh/max_min.h"
 #include "mesh/tet_quality.h"
 
 namespace umtet {
@@ -136,7 +137,7 @@ void Start::draw_along() {
 }
 
 void Start::go_back_where_flat() {
-  const double root = projection_.least_quality / kMeanRatioFactor, least_f = root * root * root;
+  const double least_f = f_of_quality(projection_.least_quality);
   const auto is_flat = [&](const Tet& t) {
     const Vec3 &a = shell_.V[t[0]], &b = shell_.V[t[1]], &c = shell_.V[t[2]], &d = shell_.V[t[3]];
     const double V = volume6(a, b, c, d), L = sum_of_squared_edges(a, b, c, d);
