@@ -20,13 +20,13 @@ struct SmoothParams {
   /// A vertex is visited while its worst tet is below target + margin; >= 0. At 100k tets .034 instead of .02 lifts the
   /// 1 % quantile of Q by .005 (T6) to .012 (sphere), for a quarter more visits; beyond .04 nothing is gained.
   double margin = .034;
-  double fine_gain = 2e-5;     ///< a relative gain of 1/Q's norm below this is no move; > 0
-  double least_step = .0075;   ///< of h: a shorter move wakes nobody; >= 0. Without, a tenth more visits
+  double fine_gain = 2e-5;    ///< a relative gain of 1/Q's norm below this is no move; > 0
+  double least_step = .0075;  ///< of h: a shorter move wakes nobody; >= 0. Without, a tenth more visits
   /// Where a tet of the ring is below the target, it is this gain that counts, and any move wakes; > 0. What smoothing
   /// wins there by small steps it takes from the tets around, and leaves a region just below the target where there were
   /// a few bad tets (koala: 2200 instead of 330).
   double least_gain = 3e-4;
-  int max_sweeps = 60;        ///< over the vertices in the queue; >= 0
+  int max_sweeps = 60;  ///< over the vertices in the queue; >= 0
   /// A vertex that slid is off the surface by a sagitta only, where Damped settles in as many steps as Newton and needs
   /// no Hessian.
   ClosestPointParams closest_point{.method = ClosestPointMethod::Damped};
@@ -64,8 +64,8 @@ struct SmoothReport {
 /// with ever smaller sigma until all V > 0; such a visit counts if it raises min V.
 ///
 /// Vertices are visited colour by colour, those of one colour by all threads, and again when they, or a neighbour in a
-/// tet below target + margin, have moved, by least_step or more where no tet is below the target: the same bytes for any number of threads. Does not
-/// allocate inside a sweep.
+/// tet below target + margin, have moved, by least_step or more where no tet is below the target: the same bytes for any
+/// number of threads. Does not allocate inside a sweep.
 class PNormSmoother {
  public:
   /// Every vertex of the shell that is not Fixed is in the queue.

@@ -215,7 +215,9 @@ void Repair::mend(const KeepGoing& keep_going) {
 void Repair::ask_less() {
   target_ -= params_.less_asked;
   for (LabelTrials& trials : trials_) trials.set_target(target_);
-  waiting_ = std::move(given_up_);
+  todo_.clear();
+  next_ = 0;
+  for (const TetIds& tet : given_up_) todo_.push_back({0, tet});  // in the order in which they were given up
   given_up_.clear();
   hopeless_.clear();
 }
