@@ -13,12 +13,11 @@
 #include "mesh/thickness.h"
 #include "pipeline/deviation.h"
 #include "pipeline/exit_code.h"
+#include "reconstruct/resolution.h"
 
 namespace umtet {
 namespace {
 
-// Share of the diagonal that is the edge length of a body without thin parts: 50k to 150k tets.
-constexpr double kShareOfDiagonal = .015;
 // However flat the body is: with fewer than ten edges along it there is little left of its shape.
 constexpr double kMostOfDiagonal = .1;
 // Boundary faces start to fold where the body or a gap is thinner than about two edges; one body in a hundred samples
@@ -102,7 +101,7 @@ EdgeLength choose(Domain& domain, const Parameters& parameters, const KeepGoing&
     return by_deviation(domain, tiling, parameters, deviation, keep_going);
   }
   const double least = h_of(domain, tiling, max_tets);
-  double h = kShareOfDiagonal * domain.diagonal;
+  double h = kMeshEdge * domain.diagonal;
   if (domain.level_set) {
     const double t = thin_part(domain, kEdgesAcross * h, keep_going);
     if (t < kEdgesAcross * h) {
@@ -141,7 +140,7 @@ EdgeLength choose_edge_length(Domain& domain, const Parameters& parameters, cons
         "file of doubles, and boundary vertices would miss psi = 0 by more than {:g} h; move the input "
         "nearer to the origin{}",
         choice.h, far, std::nextafter(far, std::numeric_limits<double>::infinity()) - far, kMostRounding,
-        least < kShareOfDiagonal * 10 * domain.diagonal ? fmt::format(", or give --h {:.3g} or more", least) : ""));
+        least < kMeshEdge * 10 * domain.diagonal ? fmt::format(", or give --h {:.3g} or more", least) : ""));
   }
   choice.least = std::max(choice.least, least);
   return choice;

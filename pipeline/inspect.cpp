@@ -17,8 +17,8 @@ namespace {
 
 // From here on a share or a ratio is worth a line.
 constexpr double kConsistent = .98, kVariation = 30, kShareDropped = .01, kOpen = .05, kUlp = 1e-3, kFloatUlp = .1;
-// A body thinner than two edges of the default mesh (1.5 % of the diagonal) folds.
-constexpr double kThin = 2.2 * .015;
+// A body thinner than two edges of the default mesh folds.
+constexpr double kThin = 2.2 * kMeshEdge;
 
 Json vector(const Vec3& x) { return {x.x(), x.y(), x.z()}; }
 
@@ -88,7 +88,7 @@ Json inspect_cloud(const fs::path& file, Progress& progress) {
   }();
   std::vector<double> area = sample_areas(scan.cloud.points);
   std::nth_element(area.begin(), area.begin() + static_cast<std::ptrdiff_t>(area.size() / 2), area.end());
-  const Resolution resolution = choose_resolution(std::sqrt(area[area.size() / 2]), s.noise);
+  const Resolution resolution = choose_resolution(std::sqrt(area[area.size() / 2]), kMeshEdge * s.diagonal, s.noise);
   Json json = {{"file", file.string()},
                {"format", scan.report.format},
                {"n_points", s.n_points},

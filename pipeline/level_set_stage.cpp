@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "pipeline/exit_code.h"
+#include "pipeline/given_normals.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/memory.h"
 #include "pipeline/stages.h"
@@ -35,22 +36,6 @@ OrientedPointCloud take_cloud(const StageContext& context) {
 
 // Clean clouds oppose by a fraction of a per cent; a tenth is a patch turned over, or every tenth normal.
 constexpr double kMostOpposed = .1;
-
-// Noise and corners leave more than this of the given normals in agreement with their neighbours.
-constexpr double kLeastAgreed = .9;
-
-/// Where a fit has failed: what the normals were like before any were turned. Empty if that explains nothing.
-std::string doubt_about_given_normals(const StageContext& context, double spacing) {
-  const StageState state = inspect_stage(context.paths, Stage::Cloud, Json::object(), std::nullopt);
-  if (!state.record) return "";
-  const Json normals = state.record->numbers.value("normals", Json::object());
-  const double agreed = normals.value("consistency", 1.);
-  if (normals.value("source", "") != "given" || agreed >= kLeastAgreed) return "";
-  return fmt::format(
-      "\n  as given, {:.1f} % of the normals agree with their neighbours, as where two sides of a body are nearer to "
-      "each other than its samples (here {:.3g} apart): no level set tells such sides apart, more samples do",
-      100 * agreed, spacing);
-}
 
 /// Distances between opposed samples; null where none face one another.
 Json thickness_percentiles(const OrientedPointCloud& cloud, const NeighbourTree& tree) {
@@ -142,7 +127,7 @@ void run_level_set_stage(const StageContext& context) {
   try {
     require_outward_normals(fit.report);
   } catch (const SolveError& e) {
-    throw SolveError(e.what() + doubt_about_given_normals(context, fit.report.cloud_spacing));
+    throw SolveError(e.what() + doubt_about_given_normals(context.paths));
   }
   begin_writing(context, Stage::LevelSet);
   write_artefact(context.paths.level_set(),
@@ -151,6 +136,7 @@ void run_level_set_stage(const StageContext& context) {
   Json bands = Json::array();
   for (const BandReport& b : r.bands) {
     bands.push_back({{"spacing", b.spacing},
+                     {"smoothing", b.smoothing},
                      {"n_samples", b.n_samples},
                      {"n_nodes", b.n_nodes},
                      {"iterations", b.iterations},

@@ -8,6 +8,7 @@
 #include "pipeline/domain.h"
 #include "pipeline/edge_length.h"
 #include "pipeline/exit_code.h"
+#include "pipeline/given_normals.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/made_mesh.h"
 #include "pipeline/memory.h"
@@ -105,6 +106,8 @@ EdgeLength MeshStage::enough_for(const ThinPlaces& thin) {
 
 std::string MeshStage::remedy_for(const ThinPlaces& thin, Json& h_enough) {
   if (background_.own_h()) return fmt::format("a background with edges of {:.3g} may show them", thin.h_needed());
+  // A plate so thin that no place of the grid on which bodies are measured is inside it.
+  if (!(domain_.size().volume > 0)) return fmt::format("h = {:.3g} may show them", thin.h_needed());
   const EdgeLength enough = enough_for(thin);
   if (!(enough.h < thin.h && enough.h > enough.least)) {
     return fmt::format("that takes more than {} tets: raise --max-tets", context_.parameters.integer("mesh.max_tets"));
@@ -128,6 +131,7 @@ void MeshStage::refuse_thin(const MeshAttempt& best) {
   std::string message = too_thin_text(best, domain_.shift) + "\n  ";
   Json h_enough;
   message += remedy_for(thin, h_enough) + "; --allow-thin keeps the mesh nevertheless\n  look at " + file.string();
+  message += doubt_about_given_normals(context_.paths);
   if (keeps) message += "\n  the former mesh and its certificate have been kept";
   throw TooThin(message, {{"too_thin", to_json(thin, domain_.shift)}, {"h_enough", h_enough}});
 }

@@ -92,7 +92,7 @@ LevelSet refine(const LevelSet& psi, const std::vector<SsdSample>& samples, doub
   const Lattice& coarse = psi.lattice(psi.n_levels() - 1);
   const Lattice fine{coarse.origin, coarse.h / 2, (2 * (coarse.n.array() - 1) + 1).matrix()};
   const SsdBand band(psi.tables(), fine, kappa, samples);
-  report = {fine.h, samples.size(), band.n_active()};
+  report = {fine.h, kappa, samples.size(), band.n_active()};
   std::vector<float> r;
   band.residual(psi, r);
   LevelSetBand result{band.blocks(), solve(band, std::move(r), tolerance, max_iterations, go_on, report)};

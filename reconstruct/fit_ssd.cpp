@@ -89,9 +89,6 @@ Hierarchy choose_hierarchy(const Eigen::AlignedBox3d& box, double h, int padding
   return best;
 }
 
-// A full lattice is no finer than an edge of the default mesh (1.5 % of the diagonal: what the mesh can show).
-constexpr double kFullSpacing = 0.015;
-
 // @param area  a_i; empty for the paper's weights
 // @param l     by which values are weighed, for weights by area
 std::vector<SsdSample> make_samples(const OrientedPointCloud& cloud, const std::vector<double>& area,
@@ -190,6 +187,7 @@ struct Problem {
   LmeTables tables;
   Eigen::AlignedBox3d box;
   std::vector<double> area;  // a_i; empty for the paper's weights
+  double finest_smoothing;   // c in the finest band
 };
 
 // The level set on all nodes of one lattice.
@@ -308,9 +306,10 @@ LevelSet fit_cascade(const Problem& problem, SsdReport& report) {
                              (n_bands > 0 ? 1 : kLoneTolerance) * params.tolerance, report);
   for (int level = 1; level <= n_bands && !samples[level].empty(); ++level) {
     const double per_level = 1.0 / n_bands;
+    const double smoothing = level < n_bands ? report.smoothing : problem.finest_smoothing;
     BandReport band;
     psi = refine(
-        psi, samples[level], report.smoothing, params.band_tolerance, params.max_iterations,
+        psi, samples[level], smoothing, params.band_tolerance, params.max_iterations,
         [&](double residual) {
           const double done = std::clamp(std::log(residual) / std::log(params.band_tolerance), 0.0, 1.0);
           go_on(problem.progress, "refine", (level - 1 + done) * per_level);
@@ -320,7 +319,7 @@ LevelSet fit_cascade(const Problem& problem, SsdReport& report) {
       throw SolveError(
           fmt::format("band of {} nodes, smoothing {:.3g}: relative residual {:.2e} after {} iterations, "
                       "wanted {:.1e}",
-                      band.n_nodes, report.smoothing, band.residual, band.iterations, params.band_tolerance));
+                      band.n_nodes, smoothing, band.residual, band.iterations, params.band_tolerance));
     }
     samples[level] = {};
     report.n_nodes += band.n_nodes;
@@ -349,7 +348,7 @@ SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const S
   report.n_points = cloud.points.size();
 
   go_on(progress, "weights", 0);
-  Problem problem{cloud, params, progress, LmeTables(params.prior), {}, {}};
+  Problem problem{cloud, params, progress, LmeTables(params.prior), {}, {}, 0};
   for (const Vec3& x : cloud.points) problem.box.extend(x);
   const double diagonal = problem.box.diagonal().norm();
   {
@@ -359,13 +358,15 @@ SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const S
     report.cloud_spacing = median_spacing(found);
     problem.area = sample_areas(found);
   }
+  const double edge = kMeshEdge * diagonal;
   const Resolution chosen =
-      choose_resolution(std::sqrt(median(problem.area)), params.noise, params.detail, params.smooth);
+      choose_resolution(std::sqrt(median(problem.area)), edge, params.noise, params.detail, params.smooth);
   report.spacing = params.spacing > 0 ? params.spacing : chosen.spacing;
   if (params.spacing == 0 && params.solver != SsdSolver::Cascade) {
-    report.spacing = std::max(report.spacing, kFullSpacing * diagonal);
+    report.spacing = std::max(report.spacing, edge);
   }
   report.smoothing = params.smoothing > 0 ? params.smoothing : chosen.smoothing;
+  problem.finest_smoothing = params.smoothing > 0 ? params.smoothing : chosen.finest_smoothing;
   report.reason = chosen.reason;
   if (params.weights == SsdWeights::Paper) problem.area = {};
   if (report.spacing > diagonal) {

@@ -25,7 +25,8 @@ enum class SsdSolver {
 struct SsdParams {
   double spacing = 0;  ///< of the finest lattice, model units; 0: chosen from spacing and noise of the samples
   double smoothing = 0;  ///< c of ½ Σ a (f²/l² + |∇f − n|²) + (c h / 2) ∫ H:H (SsdWeights::Area); 0: from the noise
-  double noise = 0;   ///< standard deviation of the samples along the normal, model units; l² = h² + (6 noise)²
+  double noise =
+      0;  ///< standard deviation of the samples along the normal, model units; l = value_length (resolution.h)
   double detail = 1;  ///< > 0: divides the spacing that is chosen
   double smooth = 1;  ///< > 0: multiplies the smoothing that is chosen
   double alpha =
@@ -49,7 +50,7 @@ std::vector<std::string> problems(const SsdParams&);
 struct SsdReport {
   std::size_t n_points = 0, n_nodes = 0;
   double spacing = 0;        ///< h used, of the finest lattice
-  double smoothing = 0;      ///< c used
+  double smoothing = 0;      ///< c used on the full lattice
   std::string reason;        ///< why this spacing and smoothing, when they were chosen here
   double cloud_spacing = 0;  ///< median distance to the nearest sample
   int iterations = 0;

@@ -371,13 +371,13 @@ TEST(BandCascade, DenseHalfIsRefinedAndSparseHalfIsNotDented) {
 TEST(BandCascade, FinestLatticeTakesSamplesAtTheirWordWithOrWithoutCoarserOnes) {
   const OrientedPointCloud cloud = torus_cloud(1500);
   SsdParams p;
-  p.coarsest_nodes = 8000;
+  p.coarsest_nodes = 14000;
   const SsdReport banded = fit_ssd(cloud, p).report;
   p.coarsest_nodes = 1000000;
   const SsdReport lone = fit_ssd(cloud, p).report;
   ASSERT_EQ(banded.bands.size(), 1u);
   ASSERT_TRUE(lone.bands.empty());
   ASSERT_EQ(lone.spacing, banded.spacing);
-  // Weighed as on lattices that finer ones follow, the lone one misses its samples 3.1 times as far as the band does.
-  EXPECT_LT(lone.rms_value, 2.2 * banded.rms_value);
+  // Weighed as on lattices that finer ones follow, the lone one misses its samples 2.5 times as far as the band does.
+  EXPECT_LT(lone.rms_value, 1.9 * banded.rms_value);
 }

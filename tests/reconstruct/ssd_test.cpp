@@ -1,5 +1,6 @@
 // The fit: what it must reproduce, that its solvers agree, and how close it comes to a known surface.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -63,6 +64,32 @@ TEST(FitSsd, TorusLiesWithinHalfAThousandthOfTheSpacing) {
   EXPECT_LT(mean / n, 5e-4 * h);
   EXPECT_LT(std::sqrt(normal2 / n), 4e-3);
   EXPECT_LE(fit.report.iterations, 20);
+}
+
+// No sample speaks outside a sharp edge: with c = .001 on all lattices there are bodies beside the edges of four of
+// these.
+TEST(FitSsd, NothingIsInsideBesideASharpEdge) {
+  const std::vector<std::pair<Vec3, double>> boxes = {{{1, 1, 1}, .075},  {{1, 1, 1}, .12},   {{1, .6, .3}, .08},
+                                                      {{2, 1, .2}, .019}, {{2, 1, .2}, .015}, {{2, 1, .2}, .025}};
+  for (const auto& [size, spacing] : boxes) {
+    SCOPED_TRACE(fmt::format("box of {} x {} x {}, spacing {}", size.x(), size.y(), size.z(), spacing));
+    const LevelSet psi = fit_ssd(box_cloud(size, spacing), {}).psi;
+    double least = 1;  // of psi over the distance from the corner's three edges
+    constexpr int n = 10;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vec3 along = Vec3::Unit(axis), a = Vec3::Unit((axis + 1) % 3), b = Vec3::Unit((axis + 2) % 3);
+      for (int i = -n; i <= n; ++i) {
+        for (int j = -n; j <= n; ++j) {
+          const double da = 2.5 * spacing * i / n, db = 2.5 * spacing * j / n;
+          const double off = std::hypot(std::max(da, 0.), std::max(db, 0.));
+          if (off < .75 * spacing) continue;
+          for (int k = 0; k <= 40; ++k)
+            least = std::min(least, psi.value(size + da * a + db * b - k * size[axis] / 40 * along) / off);
+        }
+      }
+    }
+    EXPECT_GT(least, 0);
+  }
 }
 
 TEST(FitSsd, MultigridAgreesWithTheAssembledSolve) {

@@ -32,6 +32,26 @@ inline OrientedPointCloud torus_cloud(int n, std::uint64_t seed = 1) {
 }
 
 /// n x n points of the plane through the origin with the given unit normal, side 1.
+/// Regular samples of the six faces of the box from 0 to `size`, none on an edge.
+inline OrientedPointCloud box_cloud(const Vec3& size, double spacing) {
+  OrientedPointCloud cloud;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const double n_u = std::round(size[u] / spacing), n_v = std::round(size[v] / spacing);
+    for (int i = 0; i < n_u; ++i) {
+      for (int j = 0; j < n_v; ++j) {
+        for (int side = 0; side < 2; ++side) {
+          Vec3 x;
+          x[axis] = side * size[axis], x[u] = (i + .5) / n_u * size[u], x[v] = (j + .5) / n_v * size[v];
+          cloud.points.push_back(x);
+          cloud.normals.emplace_back((2 * side - 1) * Vec3::Unit(axis));
+        }
+      }
+    }
+  }
+  return cloud;
+}
+
 inline OrientedPointCloud plane_cloud(int n, const Vec3& normal) {
   const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u);
   OrientedPointCloud cloud;
