@@ -43,7 +43,8 @@ class Visitor {
         good_f_(f_of_quality(params.target + params.margin)),
         target_f_(f_of_quality(params.target)),
         least_gain_(params.least_gain),
-        fine_gain_(params.fine_gain) {}
+        fine_gain_(params.fine_gain),
+        sharper_(params.sharper) {}
 
   struct Result {
     bool needed = false, moved = false;
@@ -60,7 +61,7 @@ class Visitor {
     result.needed = true;
     detail::silence_padding(ring);
     result.good = ring.f_here >= target_f_;
-    const detail::Bar bar(ring, shell_.h, result.good ? fine_gain_ : least_gain_);
+    const detail::Bar bar(ring, shell_.h, result.good ? fine_gain_ : least_gain_, sharper_);
     if (shell_.role[i] == Shell::Role::Inner) {
       const detail::Displacement best = detail::best_displacement(ring, bar, shell_.h, {});
       result.moved = best.passed(ring, bar);
@@ -105,6 +106,7 @@ class Visitor {
   ImplicitFunctionRef psi_;
   const ClosestPointParams& closest_point_;
   double good_f_, target_f_, least_gain_, fine_gain_;
+  bool sharper_;
 };
 
 struct Counts {
@@ -126,10 +128,10 @@ std::vector<std::string> problems(const SmoothParams& params) {
   };
   if (!(params.target > 0 && params.target < 1)) refuse("target", params.target, "> 0 and < 1");
   if (!(params.margin >= 0)) refuse("margin", params.margin, ">= 0");
-  if (!(params.least_gain > 0 && params.least_gain < 1 / detail::kNorm))
-    refuse("least_gain", params.least_gain, "> 0 and < 1 / 96");
-  if (!(params.fine_gain > 0 && params.fine_gain < 1 / detail::kNorm))
-    refuse("fine_gain", params.fine_gain, "> 0 and < 1 / 96");
+  if (!(params.least_gain > 0 && params.least_gain < 1 / detail::kSharperNorm))
+    refuse("least_gain", params.least_gain, "> 0 and < 1 / 384");
+  if (!(params.fine_gain > 0 && params.fine_gain < 1 / detail::kSharperNorm))
+    refuse("fine_gain", params.fine_gain, "> 0 and < 1 / 384");
   if (!(params.least_step >= 0)) refuse("least_step", params.least_step, ">= 0");
   if (params.max_sweeps < 0) refuse("max_sweeps", params.max_sweeps, ">= 0");
   return list;

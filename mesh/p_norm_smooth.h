@@ -23,9 +23,11 @@ struct SmoothParams {
   double fine_gain = 2e-5;    ///< a relative gain of 1/Q's norm below this is no move; > 0
   double least_step = .0075;  ///< of h: a shorter move wakes nobody; >= 0. Without, a tenth more visits
   /// Where a tet of the ring is below the target, it is this gain that counts, and any move wakes; > 0. What smoothing
-  /// wins there by small steps it takes from the tets around, and leaves a region just below the target where there were
-  /// a few bad tets (koala: 2200 instead of 330).
+  /// wins there by small steps it takes from the tets around, and leaves a region just below the target where there
+  /// were a few bad tets (koala: 2200 instead of 330).
   double least_gain = 3e-4;
+  /// p = 384 after 96: among many tets nearly as bad, the worst still counts. Slower to settle.
+  bool sharper = false;
   int max_sweeps = 60;  ///< over the vertices in the queue; >= 0
   /// A vertex that slid is off the surface by a sagitta only, where Damped settles in as many steps as Newton and needs
   /// no Hessian.
@@ -56,16 +58,16 @@ struct SmoothReport {
 /// V^2) and its powers 16 and 32, so that it takes no roots. A step is at most .5 h long, leaves every V a fifth of its
 /// value or more, and is halved until the sum of the powers falls. A visit counts if it lowers sum F^32 over the ring:
 /// that sum over the whole shell falls monotonically, and no visit leaves its ring with less than n^(-1/96) of the
-/// worst quality it had, n tets: 3.4 % at 28.
+/// worst quality it had, n tets: 3.4 % at 28. With `sharper`, a third step and the sum are those of F^128, p = 384.
 ///
 /// A boundary vertex takes the steps in its tangent plane and is then put back on psi = 0; the visit counts by the sum
-/// there. Steps are over-relaxed, where that lowers the sum, too: alone, a vertex goes less far than with its neighbours.
-/// Where some V <= 0, V + sigma takes the place of V, with sigma > -min V: the same convex problem, solved again
-/// with ever smaller sigma until all V > 0; such a visit counts if it raises min V.
+/// there. Steps are over-relaxed, where that lowers the sum, too: alone, a vertex goes less far than with its
+/// neighbours. Where some V <= 0, V + sigma takes the place of V, with sigma > -min V: the same convex problem, solved
+/// again with ever smaller sigma until all V > 0; such a visit counts if it raises min V.
 ///
 /// Vertices are visited colour by colour, those of one colour by all threads, and again when they, or a neighbour in a
-/// tet below target + margin, have moved, by least_step or more where no tet is below the target: the same bytes for any
-/// number of threads. Does not allocate inside a sweep.
+/// tet below target + margin, have moved, by least_step or more where no tet is below the target: the same bytes for
+/// any number of threads. Does not allocate inside a sweep.
 class PNormSmoother {
  public:
   /// Every vertex of the shell that is not Fixed is in the queue.

@@ -69,7 +69,7 @@ class Repair {
 
   bool is_worth_trying(const TetIds& tet);
   void mend(const KeepGoing& keep_going);
-  void ask_less();
+  void again(double target);
   bool choose_round();
   void keep(const TetIds& tet, const LabelTrials::Best& best);
   void move(const LatticeShell& patch);
@@ -86,7 +86,7 @@ class Repair {
   const std::size_t most_patches_;
   double target_;
   detail::Places places_;
-  std::deque<LabelTrials> trials_;   ///< one for each tet of a round, with labels as in inside_
+  std::deque<LabelTrials> trials_;  ///< one for each tet of a round, with labels as in inside_
   std::vector<TetIds> given_up_;
   std::set<std::int64_t> hopeless_;  ///< vertices of tets that nothing helped
   std::vector<Bad> todo_;            ///< from next_ on
@@ -211,10 +211,10 @@ void Repair::mend(const KeepGoing& keep_going) {
   }
 }
 
-/// Puts what was given up on the list again, against a lower target.
-void Repair::ask_less() {
-  target_ -= params_.less_asked;
-  for (LabelTrials& trials : trials_) trials.set_target(target_);
+/// Puts what was given up on the list again, against another target.
+void Repair::again(double target) {
+  target_ = target;
+  for (LabelTrials& trials : trials_) trials.look_again(target, params_.sharper);
   todo_.clear();
   next_ = 0;
   for (const TetIds& tet : given_up_) todo_.push_back({0, tet});  // in the order in which they were given up
@@ -233,13 +233,17 @@ RepairReport Repair::operator()(const KeepGoing& keep_going) {
   // read one edge farther.
   far_ = (2 * params_.reach + 5) * longest_edge(background_.tiling(), background_.tiling_tables()) * background_.h();
   mend(keep_going);
+  if (params_.sharper) {
+    again(params_.target);
+    mend(keep_going);
+  }
   if (params_.less_asked > 0) {
-    ask_less();
+    again(params_.target - params_.less_asked);
     mend(keep_going);
   }
   report_.given_up = given_up_.size();
   if (params_.slides) {
-    for (LabelTrials& trials : trials_) trials.set_target(params_.target);
+    for (LabelTrials& trials : trials_) trials.look_again(params_.target, false);
     for (const std::vector<std::int64_t>& centres : kept_) {
       poll(keep_going);
       move(trials_.front().slid(centres));

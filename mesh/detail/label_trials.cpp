@@ -72,9 +72,9 @@ PatchState LabelTrials::state(const Shell& shell, const std::vector<std::uint8_t
 
 /// Returns whether the patch may still become better than it was; what it lacks is looked at after every sweep.
 bool LabelTrials::smooth_while_promising(PNormSmoother& smoother, const PatchState& before) {
-  SmoothParams one_sweep = params_.smoothing;
+  SmoothParams one_sweep = smoothing_;
   one_sweep.max_sweeps = 1;
-  for (int sweep = 1; sweep <= params_.smoothing.max_sweeps; ++sweep) {
+  for (int sweep = 1; sweep <= smoothing_.max_sweeps; ++sweep) {
     const SmoothReport report = smoother.run(psi_, one_sweep);
     psi_evaluations += report.psi_evaluations;
     if (report.settled) break;
@@ -154,6 +154,7 @@ LabelTrials::Best LabelTrials::operator()(const TetIds& tet, std::size_t most_tr
     attempt(tet, {}, Start::Lattice, best);
     if (!best.is_perfect()) try_labels(tet, Start::Lattice, best);
   }
+  if (!best.found && smoothing_.sharper) attempt(tet, {}, Start::Here, best);
   if (!best.found) try_labels(tet, Start::Here, best);
   return best;
 }

@@ -59,6 +59,7 @@ class LabelTrials {
         psi_(psi),
         params_(params),
         target_(params.target),
+        smoothing_(params.smoothing),
         places_(places),
         inside_(inside),
         candidates_(background, links, psi, labels, params, inside_) {}
@@ -73,8 +74,12 @@ class LabelTrials {
   bool is_turned(const TetIds& tet);
   /// In omega_h, and below the target or with a turned face.
   bool is_bad(const TetIds& tet);
-  /// From now on tets are poor below this mean ratio, in place of params.target.
-  void set_target(double target) { target_ = target; }
+  /// From now on tets are poor below this mean ratio, in place of params.target. With the sharper norm, patches are
+  /// smoothed by it, at first without other labels.
+  void look_again(double target, bool sharper) {
+    target_ = target;
+    smoothing_.sharper = sharper;
+  }
   void flip(std::int64_t v) { inside_.test(v) ? inside_.erase(v) : inside_.insert(v); }
 
   std::size_t tries = 0;            ///< patches shaped, of all calls
@@ -95,6 +100,7 @@ class LabelTrials {
   ImplicitFunctionRef psi_;
   const RepairParams& params_;
   double target_;
+  SmoothParams smoothing_;
   const Places& places_;
   IdSet inside_;
   LabelCandidates candidates_;

@@ -57,7 +57,7 @@ TEST(PNormSmooth, DerivativesAreThoseOfTheSum) {
     Shell shell = background_star(type);
     for (Vec3& x : shell.V) x += random_vector(random, .05);
     const OneRing ring = PNormSmoother(shell).ring(0);
-    for (const int log2_p : {4, 5}) {
+    for (const int log2_p : {4, 5, 7}) {
       const double p = 1 << log2_p, d = 1e-5;
       const Vec3 y = random_vector(random, .05);
       const detail::PowerSum at_y = detail::power_sum(ring, y, log2_p, 1.5);
@@ -206,6 +206,20 @@ TEST(PNormSmooth, WorstTetRisesToThePlateauOnTheSurface) {
       if (shell.role[i] != Role::Boundary) continue;
       ASSERT_LE(off_surface(domain, shell.V[i]), 1e-10 * shell.h) << domain.name << " vertex " << i;
     }
+  }
+}
+
+TEST(PNormSmooth, SharperNormRaisesTheWorstTetFurther) {
+  SmoothParams sharper;
+  sharper.sharper = true;
+  for (const testing::AnalyticDomain& domain : {testing::sphere(), testing::torus(), testing::equation_9()}) {
+    SCOPED_TRACE(domain.name);
+    Shell shell = omega_h_shell(domain, 10000);
+    EXPECT_TRUE(project(shell, domain).not_arrived.empty());
+    const double settled = smooth(shell, domain).min_quality;
+    const double raised = smooth(shell, domain, sharper).min_quality;
+    EXPECT_NEAR(raised, worst_quality(shell), 1e-12);
+    EXPECT_GT(raised, settled + .001);
   }
 }
 
