@@ -1,7 +1,5 @@
 #include "reconstruct/level_set.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -15,6 +13,8 @@ namespace {
 using namespace detail;
 
 constexpr int kEdge = LatticeBlocks::kEdge;
+
+const float kNotYet = 0;  // its address stands for a window that nobody has asked for
 
 // Position in spacings of the coarsest lattice; on that of 2^-k times its spacing it is 2^k times as much, exactly.
 Vec3 lattice_coordinates(const Lattice& L, const Vec3& x) {
@@ -36,13 +36,11 @@ struct Term {
 template <int edge, class Band>
 bool find_window(const Band& band, Term<float>& term) {
   const Lanes4i block = term.place.cell >> 3;
-  const int window = band.index[block[0] + static_cast<std::size_t>(band.n[0]) *
-                                               (block[1] + static_cast<std::size_t>(band.n[1]) * block[2])];
-  if (window < 0) return false;
+  const float* window = band.window(block);
+  if (window == nullptr) return false;
   constexpr int corner = (edge - kEdge + 1) / 2 - 1;  // the window begins at node 8 block - (R - 1)
   const Lanes4i at = term.place.first + corner - block * kEdge;
-  term.first = band.windows.get() + static_cast<std::ptrdiff_t>(window) * edge * edge * edge + at[0] +
-               edge * (at[1] + edge * at[2]);
+  term.first = window + at[0] + edge * (at[1] + edge * at[2]);
   return true;
 }
 
@@ -69,24 +67,38 @@ bool copy_window(const LevelSetLevel& level, const Eigen::Vector3i& first, int n
 LevelSet::Band::Band(LevelSetBand&& band, int half_width) : data(std::move(band)), edge(kEdge + 2 * half_width - 1) {
   const LatticeBlocks& blocks = data.blocks;
   n = ((blocks.lattice().n.array() - 1) + kEdge - 1) / kEdge;
-  index.assign(static_cast<std::size_t>(n[0]) * n[1] * n[2], -1);
-  const auto at = [&](const Eigen::Vector3i& b) -> std::int32_t& {
-    return index[b[0] + static_cast<std::size_t>(n[0]) * (b[1] + static_cast<std::size_t>(n[1]) * b[2])];
-  };
-  std::vector<Eigen::Vector3i> cells;
+  windows = std::vector<std::atomic<const float*>>(static_cast<std::size_t>(n[0]) * n[1] * n[2]);
   for (const Eigen::Vector3i& node_block : blocks.blocks())
     for (int q = 0; q < 8; ++q) {
       const Eigen::Vector3i b = node_block - Eigen::Vector3i(q & 1, q >> 1 & 1, q >> 2);
-      if ((b.array() < 0).any() || (b.array() >= n.array()).any() || at(b) >= 0) continue;
-      at(b) = static_cast<std::int32_t>(cells.size());
-      cells.push_back(b);
+      if ((b.array() < 0).any() || (b.array() >= n.array()).any()) continue;
+      windows[b[0] + static_cast<std::size_t>(n[0]) * (b[1] + static_cast<std::size_t>(n[1]) * b[2])] = &kNotYet;
     }
-  const std::size_t size = static_cast<std::size_t>(edge) * edge * edge;
-  windows = std::make_unique_for_overwrite<float[]>(cells.size() * size);  // all of it is copied to
-  tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t c) {
-    blocks.copy_window(data.coefficients.data(), kEdge * cells[c] - Eigen::Vector3i::Constant(blocks.shift()),
-                       {edge, edge, edge}, edge, windows.get() + c * size);
-  });
+}
+
+LevelSet::Band::~Band() {
+  for (const std::atomic<const float*>& window : windows) {
+    if (window != &kNotYet) delete[] window.load();
+  }
+}
+
+// Null where the band has nothing to add.
+inline const float* LevelSet::Band::window(const Lanes4i& block) const {
+  const std::size_t index =
+      block[0] + static_cast<std::size_t>(n[0]) * (block[1] + static_cast<std::size_t>(n[1]) * block[2]);
+  const float* made = windows[index].load(std::memory_order_acquire);
+  return made == &kNotYet ? make_window(index) : made;
+}
+
+const float* LevelSet::Band::make_window(std::size_t index) const {
+  const auto along_x = static_cast<std::size_t>(n[0]), in_plane = along_x * n[1];
+  const Eigen::Vector3i block =
+      Eigen::Vector3<std::size_t>(index % along_x, index % in_plane / along_x, index / in_plane).cast<int>();
+  auto mine = std::make_unique_for_overwrite<float[]>(static_cast<std::size_t>(edge) * edge * edge);
+  data.blocks.copy_window(data.coefficients.data(), kEdge * block - Eigen::Vector3i::Constant(data.blocks.shift()),
+                          {edge, edge, edge}, edge, mine.get());
+  const float* first = &kNotYet;  // another thread may have been faster
+  return windows[index].compare_exchange_strong(first, mine.get(), std::memory_order_acq_rel) ? mine.release() : first;
 }
 
 LevelSet::LevelSet(const LmePrior& prior, LevelSetLevel coarsest, std::vector<LevelSetBand> bands)

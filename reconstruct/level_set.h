@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <atomic>
 #include <memory>
 #include <vector>
 
@@ -38,7 +39,8 @@ bool copy_window(const LevelSetLevel& level, const Eigen::Vector3i& first, int n
 /// ImplicitFunction. The first level is a full lattice; each of the others is a correction in a band around the
 /// surface, on a lattice of half the spacing that shares the coarser one's nodes.
 ///
-/// Copies share their coefficients. All const members are thread-safe and do not allocate, but for band_limited().
+/// Copies share their coefficients. All const members are thread-safe. None allocates but band_limited() and, in bands,
+/// the first evaluation in a block of 8 x 8 x 8 cells.
 class LevelSet {
  public:
   /// @param bands  coarse to fine, each as fine as 2, 4, 8, ... times the coarsest lattice
@@ -75,14 +77,20 @@ class LevelSet {
   const LevelSetBand& band(int level) const { return bands_[level - 1]->data; }
 
  private:
-  // For evaluation each block of 8 x 8 x 8 cells has a copy of all coefficients that count in it: no gathering.
+  // For evaluation each block of 8 x 8 x 8 cells has a copy of all coefficients that count in it: no gathering. It is
+  // made when someone first evaluates there: a mesh reads the levels that its h can show, near psi = 0.
   struct Band {
     LevelSetBand data;
-    Eigen::Vector3i n;                 // cell blocks along each axis
-    int edge;                          // nodes along the edge of a window, 8 + 2R - 1
-    std::vector<std::int32_t> index;   // of a cell block's window, or -1
-    std::unique_ptr<float[]> windows;  // edge^3 a window
+    Eigen::Vector3i n;                                       // cell blocks along each axis
+    int edge;                                                // nodes along the edge of a window, 8 + 2R - 1
+    mutable std::vector<std::atomic<const float*>> windows;  // of cell blocks, edge^3 each; null: all zero
+
     Band(LevelSetBand&& band, int half_width);
+    Band(const Band&) = delete;
+    Band& operator=(const Band&) = delete;
+    ~Band();
+    const float* window(const detail::Lanes4i& block) const;
+    const float* make_window(std::size_t index) const;
   };
   // The sum of the levels first .. end - 1.
   detail::LatticeJet sum_levels(const Vec3& x, int first, int end, Vec3* gradient, Mat3* hessian) const;

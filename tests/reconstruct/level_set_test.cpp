@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <thread>
 
 #include "reconstruct/fit_ssd.h"
 #include "reconstruct/level_set_io.h"
@@ -116,6 +117,30 @@ TEST(LevelSet, IsTheSumOverAllNodesOfAllLevels) {
     EXPECT_EQ(psi.evaluate(x, &g, &H), psi.value(x));
     EXPECT_EQ(psi.gradient(x), g);
   }
+}
+
+// Copies of coefficients for evaluation are made by who first asks in a block of cells: here by all threads at once.
+TEST(LevelSet, WhoAsksFirstMakesNoDifference) {
+  SsdParams p;
+  p.spacing = 0.08;
+  p.coarsest_nodes = 8000;
+  const LevelSet psi = fit_ssd(torus_cloud(8000), p).psi;
+  ASSERT_GE(psi.n_levels(), 2);
+  const std::vector<Vec3> points = torus_cloud(2000, 8).points;
+  std::vector<double> alone;
+  for (const Vec3& x : points) alone.push_back(psi.value(x));
+  std::vector<LevelSetBand> bands;
+  for (int level = 1; level < psi.n_levels(); ++level) bands.push_back(psi.band(level));
+  const LevelSet fresh(psi.prior(), psi.coarsest(), std::move(bands));
+  std::vector<std::vector<double>> together(4);
+  std::vector<std::thread> threads;
+  for (std::vector<double>& values : together) {
+    threads.emplace_back([&] {
+      for (const Vec3& x : points) values.push_back(fresh.value(x));
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const std::vector<double>& values : together) EXPECT_EQ(values, alone);
 }
 
 TEST(LevelSetIo, ComesBackBitEqual) {
