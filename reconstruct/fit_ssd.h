@@ -25,8 +25,7 @@ enum class SsdSolver {
 struct SsdParams {
   double spacing = 0;  ///< of the finest lattice, model units; 0: chosen from spacing and noise of the samples
   double smoothing = 0;  ///< c of ½ Σ a (f²/l² + |∇f − n|²) + (c h / 2) ∫ H:H (SsdWeights::Area); 0: from the noise
-  double noise =
-      0;  ///< standard deviation of the samples along the normal, model units; l = value_length (resolution.h)
+  double noise = 0;   ///< standard deviation of the samples along the normal, model units; l: see resolution.h
   double detail = 1;  ///< > 0: divides the spacing that is chosen
   double smooth = 1;  ///< > 0: multiplies the smoothing that is chosen
   double alpha =

@@ -14,10 +14,10 @@ struct Resolution {
 
 /// Spacing and smoothing from what the cloud can tell.
 ///
-/// The finest lattice has 1.25 times the distance between samples (the root of the area a sample stands for); 1.04
-/// times where 1.25 make more than 1.2 edges of the mesh; and no less than three times the noise: below, it fits the
-/// noise of single samples. On clean data c is 0.004, in the finest band 0.001; it rises with the square of noise /
-/// spacing, by 0.022 where noise decides.
+/// The finest lattice has 1.25 times the distance between samples (the root of the area a sample stands for); where
+/// that is more than an edge of the mesh, the edge or 1.04 times, whichever is more; and no less than three times the
+/// noise: below, it fits the noise of single samples. On clean data c is 0.004, in the finest band 0.001; it rises with
+/// the square of noise / spacing, by 0.022 where noise decides.
 ///
 /// @param sample_spacing  model units, > 0
 /// @param mesh_edge  of the finest mesh that is wanted, model units; > 0

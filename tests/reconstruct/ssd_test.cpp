@@ -8,6 +8,7 @@
 
 #include "reconstruct/cloud_survey.h"
 #include "reconstruct/fit_ssd.h"
+#include "reconstruct/resolution.h"
 #include "reconstruct/ssd_assembled.h"
 #include "tests/support/clouds.h"
 #include "tests/support/sampled_domains.h"
@@ -64,6 +65,22 @@ TEST(FitSsd, TorusLiesWithinHalfAThousandthOfTheSpacing) {
   EXPECT_LT(mean / n, 5e-4 * h);
   EXPECT_LT(std::sqrt(normal2 / n), 4e-3);
   EXPECT_LE(fit.report.iterations, 20);
+}
+
+TEST(Resolution, FollowsSamplesMeshAndNoise) {
+  EXPECT_DOUBLE_EQ(choose_resolution(1, 10, 0).spacing, 1.25);
+  EXPECT_DOUBLE_EQ(choose_resolution(1, 1.15, 0).spacing, 1.15);  // as fine as the mesh
+  EXPECT_DOUBLE_EQ(choose_resolution(1, .1, 0).spacing, 1.25 / 1.2);
+  EXPECT_DOUBLE_EQ(choose_resolution(1, 10, .6).spacing, 1.8);
+  EXPECT_DOUBLE_EQ(choose_resolution(1, 10, .6, 2).spacing, .9);
+  const Resolution clean = choose_resolution(1, 10, 0), noisy = choose_resolution(1, 10, .6),
+                   smooth = choose_resolution(1, 10, .6, 1, 3);
+  EXPECT_LT(clean.finest_smoothing, clean.smoothing);
+  EXPECT_GT(noisy.finest_smoothing, clean.finest_smoothing);
+  EXPECT_NEAR(noisy.smoothing - noisy.finest_smoothing, clean.smoothing - clean.finest_smoothing, 1e-15);
+  EXPECT_DOUBLE_EQ(smooth.smoothing, 3 * noisy.smoothing);
+  EXPECT_DOUBLE_EQ(smooth.finest_smoothing, 3 * noisy.finest_smoothing);
+  EXPECT_EQ(noisy.reason.find("3 times the noise of 0.6"), 0U);
 }
 
 // No sample speaks outside a sharp edge: with c = .001 on all lattices there are bodies beside the edges of four of

@@ -31,7 +31,6 @@ inline OrientedPointCloud torus_cloud(int n, std::uint64_t seed = 1) {
   return cloud;
 }
 
-/// n x n points of the plane through the origin with the given unit normal, side 1.
 /// Regular samples of the six faces of the box from 0 to `size`, none on an edge.
 inline OrientedPointCloud box_cloud(const Vec3& size, double spacing) {
   OrientedPointCloud cloud;
@@ -52,6 +51,7 @@ inline OrientedPointCloud box_cloud(const Vec3& size, double spacing) {
   return cloud;
 }
 
+/// n x n points of the plane through the origin with the given unit normal, side 1.
 inline OrientedPointCloud plane_cloud(int n, const Vec3& normal) {
   const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u);
   OrientedPointCloud cloud;
