@@ -206,16 +206,22 @@ std::vector<double> SampleDistance::distances(const std::vector<Vec3>& x, const 
 
 double unsupported_area_fraction(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
                                  const SampleDistance& samples, double radius, const KeepGoing& keep_going) {
-  std::vector<Vec3> centroids;
-  centroids.reserve(faces.size());
-  for (const Triangle& f : faces) centroids.push_back((V[f[0]] + V[f[1]] + V[f[2]]) / 3.0);
-  const std::vector<double> distance = samples.distances(centroids, keep_going);
-  double all = 0, unsupported = 0;
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    const Triangle& f = faces[i];
-    const double area = 0.5 * (V[f[1]] - V[f[0]]).cross(V[f[2]] - V[f[0]]).norm();
-    all += area;
-    if (distance[i] > radius) unsupported += area;
+  std::vector<double> area(V.size(), 0);  // a third of the faces around a vertex
+  double all = 0;
+  for (const Triangle& f : faces) {
+    const double third = (V[f[1]] - V[f[0]]).cross(V[f[2]] - V[f[0]]).norm() / 6;
+    for (const int v : f) area[v] += third;
+    all += 3 * third;
+  }
+  std::vector<int> vertices;
+  std::vector<Vec3> places;
+  for (std::size_t v = 0; v < V.size(); ++v) {
+    if (area[v] > 0) vertices.push_back(static_cast<int>(v)), places.push_back(V[v]);
+  }
+  const std::vector<double> distance = samples.distances(places, keep_going);
+  double unsupported = 0;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    if (distance[i] > radius) unsupported += area[vertices[i]];
   }
   return all > 0 ? unsupported / all : 0;
 }

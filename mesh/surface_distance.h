@@ -60,8 +60,9 @@ class SampleDistance {
   std::unique_ptr<Index> index_;
 };
 
-/// Share of the surface that no data backs: area of the faces whose centroid is farther than `radius` (three sample
-/// spacings, say) from every sample, over the whole area. 0 for an empty surface. \throw MeshCancelled
+/// Share of the surface that no data backs: what belongs to vertices (a third of the faces around each) that are
+/// farther than `radius` (three sample spacings, say) from every sample. Not faces by their centroids, which samples
+/// much finer than the faces are far from wherever psi = 0 is curved. 0 for an empty surface. \throw MeshCancelled
 double unsupported_area_fraction(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
                                  const SampleDistance& samples, double radius, const KeepGoing& keep_going = {});
 

@@ -92,6 +92,10 @@ TEST(SurfaceDistance, SamplesOnOneHalfLeaveTheOtherUnsupported) {
   // A belt of width .15 below the equator is within reach: its share of the sphere is .15 / 2.
   EXPECT_NEAR(unsupported_area_fraction(sphere.V, faces, SampleDistance(samples), 0.15), 0.5 - 0.075, 0.02);
   EXPECT_EQ(unsupported_area_fraction(sphere.V, faces, SampleDistance(sphere.V), 0.15), 0);
+  std::vector<Triangle> few;
+  const TetMesh coarse =
+      testing::sphere_surface(1, few);  // its flat faces are far from any sample, its vertices are not
+  EXPECT_EQ(unsupported_area_fraction(coarse.V, few, SampleDistance(sphere.V), 0.05), 0);
   const std::vector<double> d = SampleDistance(samples).distances({{0, 0, -1}, {0, 0, 3}});
   EXPECT_DOUBLE_EQ(d[0], std::sqrt(2.0));
   EXPECT_DOUBLE_EQ(d[1], 2);
