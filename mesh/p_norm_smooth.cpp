@@ -32,6 +32,8 @@ constexpr std::size_t kWorthThreads = 64;
 constexpr std::size_t kVisitsPerPoll = 1 << 12;
 constexpr std::size_t kTetsPerTask = 1 << 12;  // some ten nanoseconds each
 
+constexpr std::size_t kAhead = 2;  // visits: a ring is asked for before it is needed; of large meshes it is far away
+
 /// One visit. Reads the ring, changes nothing.
 class Visitor {
  public:
@@ -213,6 +215,9 @@ SmoothReport PNormSmoother::run(ImplicitFunctionRef psi, const SmoothParams& par
   const auto visit_some = [&](const tbb::blocked_range<std::size_t>& range, Counts counts) {
     for (std::size_t k = range.begin(); k != range.end(); ++k) {
       const int i = todo_[k];
+      if (k + kAhead < range.end()) {
+        for (const Triangle& face : faces(todo_[k + kAhead])) __builtin_prefetch(&shell_.V[face[0]]);
+      }
       const Visitor::Result result = visit(i);
       ++counts.looks;
       counts.visits += result.needed;
