@@ -151,18 +151,15 @@ double SurfaceDistance::distance(const Vec3& x) const {
   return nearest.distance();
 }
 
-std::vector<double> SurfaceDistance::distances(const std::vector<Vec3>& x, const KeepGoing& keep_going,
-                                               std::span<const std::uint32_t> order) const {
+std::vector<double> SurfaceDistance::distances(const std::vector<Vec3>& x, const KeepGoing& keep_going) const {
   // Chunks are what a thread works through: where points follow each other in space, one bounds the next.
   constexpr std::size_t kChunk = 64;
   constexpr double kRoundedUp = 1 + 1e-12;
-  const auto point = [&](std::size_t row) { return order.empty() ? row : order[row]; };
   std::vector<double> out(x.size());
   polled_parallel_for((x.size() + kChunk - 1) / kChunk, kValuesPerPoll / kChunk, keep_going, [&](std::size_t c) {
     double bound = std::numeric_limits<double>::infinity();
-    for (std::size_t row = c * kChunk; row < std::min(x.size(), (c + 1) * kChunk); ++row) {
-      const std::size_t i = point(row);
-      if (row > c * kChunk) bound = out[point(row - 1)] + (x[i] - x[point(row - 1)]).norm();
+    for (std::size_t i = c * kChunk; i < std::min(x.size(), (c + 1) * kChunk); ++i) {
+      if (i > c * kChunk) bound = out[i - 1] + (x[i] - x[i - 1]).norm();
       bound = bound * kRoundedUp + index_->rounding;
       NearestTriangle nearest(x[i], index_->triangles, index_->reach, bound);
       index_->tree->findNeighbors(nearest, x[i].data(), nanoflann::SearchParams());
@@ -192,8 +189,6 @@ SampleDistance::SampleDistance(std::vector<Vec3> samples) : index_(std::make_uni
 SampleDistance::~SampleDistance() = default;
 SampleDistance::SampleDistance(SampleDistance&&) noexcept = default;
 SampleDistance& SampleDistance::operator=(SampleDistance&&) noexcept = default;
-
-std::span<const std::uint32_t> SampleDistance::order() const { return index_->tree->vAcc; }
 
 std::vector<double> SampleDistance::distances(const std::vector<Vec3>& x, const KeepGoing& keep_going) const {
   return map_indices(x.size(), keep_going, [&](std::size_t i) {

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "mesh/keep_going.h"
@@ -30,10 +29,9 @@ class SurfaceDistance {
   SurfaceDistance& operator=(SurfaceDistance&&) noexcept;
 
   double distance(const Vec3& x) const;
-  /// One distance per point; threads over points. \throw MeshCancelled
-  /// @param order  the points as they follow each other in space, if that is known: takes half the time
-  std::vector<double> distances(const std::vector<Vec3>& x, const KeepGoing& keep_going = {},
-                                std::span<const std::uint32_t> order = {}) const;
+  /// One distance per point; threads over points. Takes half the time for points that follow each other in space.
+  /// \throw MeshCancelled
+  std::vector<double> distances(const std::vector<Vec3>& x, const KeepGoing& keep_going = {}) const;
 
  private:
   struct Index;
@@ -50,8 +48,6 @@ class SampleDistance {
   SampleDistance(SampleDistance&&) noexcept;
   SampleDistance& operator=(SampleDistance&&) noexcept;
 
-  /// All samples, those of a leaf of the tree one after the other.
-  std::span<const std::uint32_t> order() const;
   /// Distance from each x to the nearest sample, model units; threads over x. \throw MeshCancelled
   std::vector<double> distances(const std::vector<Vec3>& x, const KeepGoing& keep_going = {}) const;
 

@@ -8,6 +8,7 @@
 #include "pipeline/artefact.h"
 #include "reconstruct/cleaning.h"
 #include "reconstruct/cloud_survey.h"
+#include "reconstruct/morton_order.h"
 #include "reconstruct/normal_estimation.h"
 #include "reconstruct/normal_orientation.h"
 
@@ -172,6 +173,7 @@ PreparedCloud Preparation::operator()() {
   result_.numbers = {{"format", report_.format},
                      {"n_points_in_file", report_.n_points + report_.n_points_dropped},
                      {"n_normals_rescaled", report_.n_normals_rescaled}};
+  sort_in_space(cloud_);
   const Vec3 shift = far_origin_shift(cloud_);  // squares of far coordinates would lose the surface
   for (Vec3& x : cloud_.points) x -= shift;
   clean_points();

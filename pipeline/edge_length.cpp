@@ -59,12 +59,9 @@ void refuse_too_many(const Domain& domain, const Tiling& tiling, double h, std::
 
 /// The thickness that a hundredth of the samples fall below, at most `limit`.
 double thin_part(const Domain& domain, double limit, const KeepGoing& keep_going) {
-  // In their order in space, where psi is in the cache for the next.
-  std::vector<Vec3> samples;
-  const std::size_t stride = domain.cloud.points.size() / kThicknessSamples + 1;
-  for (const std::uint32_t i : domain.samples ? domain.samples->order() : std::span<const std::uint32_t>()) {
-    if (i % stride == 0) samples.push_back(domain.cloud.points[i]);
-  }
+  const std::vector<Vec3>& all = domain.cloud.points;
+  std::vector<Vec3> samples;  // evenly, as the cloud is sorted in space
+  for (std::size_t i = 0; i < all.size(); i += all.size() / kThicknessSamples + 1) samples.push_back(all[i]);
   // psi has no sheets much closer together than its lattice.
   std::vector<double> t =
       thickness(domain.psi(), samples, .25 * domain.level_set->spacing(), limit, keep_going, domain.steepest());

@@ -77,8 +77,7 @@ void look_for_lost_samples(const Domain& domain, const std::vector<double>& d, d
 Json cloud_block(const Domain& domain, const std::vector<Vec3>& V, const std::vector<Triangle>& faces, double h,
                  const KeepGoing& keep_going, std::vector<std::string>& reasons) {
   if (domain.cloud.points.empty() || faces.empty()) return nullptr;  // no face: the body fell through the background
-  const auto order = domain.samples ? domain.samples->order() : std::span<const std::uint32_t>();
-  std::vector<double> d = SurfaceDistance(V, faces).distances(domain.cloud.points, keep_going, order);
+  std::vector<double> d = SurfaceDistance(V, faces).distances(domain.cloud.points, keep_going);
   if (domain.fitted) look_for_lost_samples(domain, d, h, keep_going, reasons);
   std::sort(d.begin(), d.end());
   const double r = rms(d), max = d.back(), p99 = quantile(d, .99);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -105,21 +104,6 @@ std::vector<SsdSample> make_samples(const OrientedPointCloud& cloud, const std::
   return samples;
 }
 
-// The points by blocks of cells: psi's coefficients around one are then in the cache for the next.
-std::vector<std::uint32_t> by_place(const std::vector<Vec3>& points, const Lattice& lattice) {
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(points.size());
-  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
-    const Vec3 block = (points[i] - lattice.origin) / (LatticeBlocks::kEdge * lattice.h);
-    std::uint64_t key = 0;
-    for (int d = 2; d >= 0; --d) key = key << 21 | static_cast<std::uint64_t>(block[d]);
-    keyed[i] = {key, static_cast<std::uint32_t>(i)};
-  });
-  tbb::parallel_sort(keyed.begin(), keyed.end());
-  std::vector<std::uint32_t> order(points.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = keyed[i].second;
-  return order;
-}
-
 // @param length  by which values are weighed
 void measure_fit(const OrientedPointCloud& cloud, const LevelSet& psi, const std::vector<double>& area, double length,
                  SsdReport& report) {
@@ -127,15 +111,12 @@ void measure_fit(const OrientedPointCloud& cloud, const LevelSet& psi, const std
     double value2 = 0, energy_value = 0, energy_normal = 0;
     std::size_t n_opposed = 0;
   };
-  constexpr std::size_t kChunk = 4096, kAhead = 8;  // samples are anywhere in memory, and needed soon
+  constexpr std::size_t kChunk = 4096;
   const std::size_t n = cloud.points.size();
-  const std::vector<std::uint32_t> order = by_place(cloud.points, psi.lattice(psi.n_levels() - 1));
   std::vector<Sums> sums((n + kChunk - 1) / kChunk);
   tbb::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t chunk) {
     Sums& sum = sums[chunk];
-    for (std::size_t at = chunk * kChunk; at < std::min(n, (chunk + 1) * kChunk); ++at) {
-      const std::uint32_t i = order[at], soon = order[std::min(at + kAhead, n - 1)];
-      __builtin_prefetch(&cloud.points[soon]), __builtin_prefetch(&cloud.normals[soon]);
+    for (std::size_t i = chunk * kChunk; i < std::min(n, (chunk + 1) * kChunk); ++i) {
       const double a = area.empty() ? 1 : area[i], scale = area.empty() ? 1 : length;
       Vec3 gradient;
       const double value = psi.evaluate(cloud.points[i], &gradient, nullptr);

@@ -79,7 +79,8 @@ struct SsdFit {
   SsdReport report;
 };
 
-/// Fits psi = argmin E_P, eqs. (10), (11), over tensor-product max-ent functions on cubic lattices.
+/// Fits psi = argmin E_P, eqs. (10), (11), over tensor-product max-ent functions on cubic lattices. Samples may come in
+/// any order; sorted in space (morton_order.h) they are faster to look up.
 /// @param near  of the points, over kAreaNeighbours; null: searched here
 /// \throw std::invalid_argument  broken parameters, fewer than 10 points, all points at one place, `near` of other ones
 /// \throw std::length_error      a spacing that asks for more nodes than a full lattice can hold

@@ -2,7 +2,6 @@
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +9,8 @@
 #include <flann/flann.hpp>
 #include <stdexcept>
 #include <string>
+
+#include "reconstruct/morton_order.h"
 
 namespace umtet {
 namespace {
@@ -96,38 +97,6 @@ class Count final : public flann::ResultSet<double> {
   std::size_t limit_, count_ = 0;
 };
 
-/// The lowest 21 bits of v, two zeros between each of them.
-std::uint64_t spread_bits(std::uint64_t v) {
-  v = (v | v << 32) & 0x001f00000000ffff;
-  v = (v | v << 16) & 0x001f0000ff0000ff;
-  v = (v | v << 8) & 0x100f00f00f00f00f;
-  v = (v | v << 4) & 0x10c30c30c30c30c3;
-  return (v | v << 2) & 0x1249249249249249;
-}
-
-std::vector<std::uint32_t> along_morton_curve(const std::vector<Vec3>& points, const Vec3& low, const Vec3& high) {
-  constexpr double kCells = (1 << 21) - 1;
-  const double side = (high - low).maxCoeff(), cells_per_length = side > 0 ? kCells / side : 0;
-  struct Key {
-    std::uint64_t code;
-    std::uint32_t point;
-  };
-  std::vector<Key> keys(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec3 cell = ((points[i] - low) * cells_per_length).cwiseMin(kCells);
-    std::uint64_t code = 0;
-    for (int axis = 0; axis < 3; ++axis) code |= spread_bits(static_cast<std::uint64_t>(cell[axis])) << axis;
-    keys[i] = {code, static_cast<std::uint32_t>(i)};
-  }
-  tbb::parallel_sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
-    return a.code < b.code || (a.code == b.code && a.point < b.point);
-  });
-  std::vector<std::uint32_t> order;
-  order.reserve(points.size());
-  for (const Key& key : keys) order.push_back(key.point);
-  return order;
-}
-
 }  // namespace
 
 struct NeighbourTree::Index {
@@ -185,7 +154,7 @@ NeighbourTree::NeighbourTree(const std::vector<Vec3>& points) {
   }
   if (low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff() > kLargestCoordinate)
     throw std::invalid_argument("coordinates beyond 1e153: squared distances overflow");
-  order_ = along_morton_curve(points, low, high);
+  order_ = morton_order(points);
   std::vector<Vec3> rows;
   rows.reserve(points.size());
   for (const std::uint32_t i : order_) rows.push_back(points[i]);

@@ -26,12 +26,10 @@ class Neighbourhoods {
   std::span<const std::uint32_t> points(std::size_t i) const { return {points_.data() + i * k_, k_}; }
   std::span<const double> distances2(std::size_t i) const { return {distances2_.data() + i * k_, k_}; }
   bool has(std::size_t i, std::uint32_t j) const;
-  /// All points, along the curve of the tree: who goes along it finds in the cache what the former point has used.
-  const std::vector<std::uint32_t>& order() const { return order_; }
 
  private:
   std::size_t n_ = 0, k_ = 0;
-  std::vector<std::uint32_t> points_, order_;
+  std::vector<std::uint32_t> points_;
   std::vector<double> distances2_;
 };
 

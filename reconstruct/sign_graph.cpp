@@ -214,8 +214,8 @@ SignAgreement sign_agreement(const OrientedPointCloud& cloud, const Neighbourhoo
   std::vector<SignAgreement> sums((n + kChunk - 1) / kChunk);
   tbb::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t c) {
     SignAgreement& sum = sums[c];
-    for (std::size_t row = c * kChunk; row < std::min(n, (c + 1) * kChunk); ++row) {
-      const std::uint32_t i = near.order()[row];
+    const std::size_t end = std::min(n, (c + 1) * kChunk);
+    for (auto i = static_cast<std::uint32_t>(c * kChunk); i < end; ++i) {
       double against = 0, all = 0;
       for (const std::uint32_t j : near.points(i)) {
         const double weight = pair_weight(cloud, i, j);
@@ -246,7 +246,7 @@ std::vector<std::uint32_t> agreeing_components(const OrientedPointCloud& cloud, 
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
   };
-  for (const std::uint32_t i : near.order())
+  for (std::uint32_t i = 0; i < n; ++i)
     for (const std::uint32_t j : near.points(i)) {
       const std::uint32_t a = root(i), b = root(j);
       if (a == b || pair_weight(cloud, i, j) < kSureBorder) continue;

@@ -1,5 +1,6 @@
 // Scans as they come: without normals, with normals turned over, with junk, too large; and what inspect says of them.
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -51,6 +52,27 @@ TEST_F(Program, ATurnedMinorityIsTurnedBackAndSaidSo) {
   EXPECT_EQ(run("run egg.ply -o egg --until cloud").code, 0);
   EXPECT_EQ(content(folder / "turned/1-cloud/cloud.ply"), content(folder / "egg/1-cloud/cloud.ply"));
   EXPECT_EQ(record(folder / "egg/1-cloud")["numbers"]["normals"]["turned"], 0);
+}
+
+TEST_F(Program, TheOrderOfPointsInTheFileDoesNotMatter) {
+  std::vector<std::string> lines;
+  write_cloud("egg2.ply", [&](const double(&x)[6]) {
+    std::ostringstream s;
+    s.precision(17);
+    for (const double v : x) s << v << ' ';
+    lines.push_back(s.str());
+    return lines.back();
+  });
+  std::shuffle(lines.begin(), lines.end(), std::mt19937_64(1));
+  write_cloud("shuffled.ply", [&](const double(&)[6]) {
+    const std::string line = std::move(lines.back());
+    lines.pop_back();
+    return line;
+  });
+  ASSERT_NE(content(folder / "shuffled.ply"), content(folder / "egg2.ply"));
+  EXPECT_EQ(run("run egg2.ply -o egg2 --until cloud").code, 0);
+  EXPECT_EQ(run("run shuffled.ply -o shuffled --until cloud").code, 0);
+  EXPECT_EQ(content(folder / "shuffled/1-cloud/cloud.ply"), content(folder / "egg2/1-cloud/cloud.ply"));
 }
 
 TEST_F(Program, JunkIsDroppedAndCounted) {
