@@ -26,7 +26,8 @@ void require_regular_file(const std::filesystem::path& file);
 /// \throw CloudRefused (not a regular file), std::system_error
 std::vector<RecordedFile> source_inputs(const std::filesystem::path& source, const Parameters& parameters);
 
-/// Cleans a scan and gives every point an outward normal, as the parameters of the section `cloud` say.
+/// Sorts a scan in space, cleans it and gives every point an outward normal, as the parameters of the section `cloud`
+/// say.
 ///
 /// Normals that came with the scan are scored, and a minority that is turned over is turned back (normals = auto),
 /// taken as they are (given) or thrown away (estimate). Missing ones are estimated. cloud.orient_from and cloud.flip
