@@ -6,8 +6,8 @@
 
 namespace umtet {
 
-// Made by: labels_fit 1 60 (30000 tets a body, 4 rounds, quantile 0.95, at least 60 vertices each).
-// site 0 is 2a (12 neighbours), site 1 is 6c (14). The last column counts the vertices seen.
+// Made by: labels_fit a15 1 60 (30000 tets a body, 4 rounds, quantile 0.95, at least 60 vertices each).
+// Neighbours of a vertex of site 0, 1 ...: 12 14. The last column counts the vertices seen.
 inline constexpr std::array<LabelQuality, 33> kA15LabelQualities = {{
     {0, 3, 19, 0.6653},  // 89
     {0, 4, 18, 0.7965},  // 134
