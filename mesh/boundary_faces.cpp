@@ -145,6 +145,25 @@ class TetsByVertex {
   std::span<const Second> second(int v) const {
     return {second_.data() + begin_second_[v], second_.data() + begin_second_[v + 1]};
   }
+  /// Whether the faces under v are those under w, one after the other, with all their vertices v - w further on.
+  bool is_shifted(int v, int w) const {
+    const std::span<const Least> a = least(v), b = least(w);
+    const std::span<const Second> c = second(v), d = second(w);
+    if (a.size() != b.size() || c.size() != d.size()) return false;
+    const int shift = v - w;
+    int differ = 0;
+    for (std::size_t k = 0; k < a.size(); ++k) {
+      differ |= (a[k].i - b[k].i) ^ shift;
+      differ |= (a[k].j - b[k].j) ^ shift;
+      differ |= (a[k].k - b[k].k) ^ shift;
+      if (differ != 0) return false;
+    }
+    for (std::size_t k = 0; k < c.size(); ++k) {
+      differ |= (c[k].i - d[k].i) ^ shift;
+      differ |= (c[k].j - d[k].j) ^ shift;
+    }
+    return differ == 0;
+  }
 
  private:
   static int place_of(const Tet& tet, int v) { return (tet[1] == v) + 2 * (tet[2] == v) + 3 * (tet[3] == v); }
@@ -211,6 +230,31 @@ class Link {
   int n_single_ = 0;
 };
 
+/// The vertices of a block whose faces all have two tets, one on either side. In the rows of a lattice the faces under
+/// a vertex are those under an earlier one with all vertices as many numbers further on: these need no table.
+class ClosedVertices {
+ public:
+  void clear() { closed_.fill(false); }
+  void insert(int v) { closed_[v] = true; }
+  /// Whether v is closed because one before it is.
+  bool follows(const TetsByVertex& tets, int v) {
+    const auto is_copy = [&](int step) { return step <= v && closed_[v - step] && tets.is_shifted(v, v - step); };
+    if (is_copy(step_)) return true;
+    for (int step = 1; step <= kMostSteps; ++step) {
+      if (step == step_ || !is_copy(step)) continue;
+      step_ = step;
+      return true;
+    }
+    return false;
+  }
+
+ private:
+  static constexpr int kMostSteps = 32;
+
+  std::array<bool, kVerticesPerBlock> closed_{};
+  int step_ = 1;  ///< the one that served last
+};
+
 /// A face under its least vertex.
 struct FaceUse {
   std::uint64_t rest;    ///< the other two vertices, ascending, 32 bits each
@@ -264,6 +308,7 @@ std::int64_t face_of(const std::vector<Tet>& C, int t, int a, int b, int c) {
 /// What a thread keeps from block to block.
 struct Scratch {
   TetsByVertex tets;
+  ClosedVertices closed;
   Link link;
   std::vector<FaceUse> uses;
 };
@@ -280,16 +325,21 @@ BoundaryFaces boundary_faces(const std::vector<Tet>& C, std::size_t n_vertices, 
   std::vector<BlockFaces> blocks((n_vertices + kVerticesPerBlock - 1) / kVerticesPerBlock);
   tbb::enumerable_thread_specific<Scratch> scratch;
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
-    auto& [tets, link, uses] = scratch.local();
+    auto& [tets, closed, link, uses] = scratch.local();
     const auto first = static_cast<int>(b << kLogVertices);
     const auto n = static_cast<int>(std::min<std::size_t>(kVerticesPerBlock, n_vertices - (b << kLogVertices)));
     tets.sort(C, parts, b);
+    closed.clear();
     for (int k = 0; k < n; ++k) {
       const int v = first + k;
       if (only && (*only)[v] == 0) continue;
-      if (!link.is_simple(tets.least(k), tets.second(k))) {
+      if (closed.follows(tets, k)) {
+        closed.insert(k);
+      } else if (!link.is_simple(tets.least(k), tets.second(k))) {
         count_faces(C, tets, v, k, uses, blocks[b]);
-      } else if (!link.is_closed()) {
+      } else if (link.is_closed()) {
+        closed.insert(k);
+      } else {
         link.for_each_single([&](int t, int i, int j) { blocks[b].single.push_back(face_of(C, t, v, i, j)); });
       }
     }

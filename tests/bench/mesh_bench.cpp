@@ -20,6 +20,7 @@
 #include "mesh/crawl.h"
 #include "mesh/dvr.h"
 #include "mesh/moving_mesh.h"
+#include "mesh/skin.h"
 #include "mesh/tet_quality.h"
 #include "mesh/universal_mesh.h"
 #include "reconstruct/fit_ssd.h"
@@ -255,6 +256,28 @@ BENCHMARK(all_in)
     ->ArgsProduct({{3, 4}, {500}})
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime();
+
+/// Nanoseconds a tet of the parts of a certificate that look at all tets: their faces, and all but psi.
+void certificates(benchmark::State& state) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const testing::AnalyticDomain domain = testing::torus();
+  const BackgroundMesh background(a15(), domain.box, h_for_tets(domain, domain.box, 500000));
+  const Submesh submesh = find_submesh(background, domain);
+  const std::vector<Tet>& C = submesh.mesh.C;
+  for (auto _ : state) {
+    if (state.range(0) != 0) {
+      CertificateInput input;
+      input.mesh = &submesh.mesh;
+      input.h = background.h();
+      benchmark::DoNotOptimize(certify(input));
+    } else {
+      benchmark::DoNotOptimize(boundary_faces(C, submesh.mesh.V.size()));
+    }
+  }
+  state.counters["per_tet"] = benchmark::Counter(
+      static_cast<double>(C.size()), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(certificates)->ArgName("faces0_all1")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 
 /// Ratios in one run: the exponent of CPU time over tets from 500k to 4M, and how much faster two threads are.
 void all_in_ratios(benchmark::State& state) {

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <numeric>
 #include <random>
+#include <set>
 #include <sstream>
 #include <string>
 #include <system_error>
@@ -69,6 +70,13 @@ BoundaryFaces counted_one_by_one(const std::vector<Tet>& C) {
   return result;
 }
 
+void expect_count_one_by_one(const std::vector<Tet>& C, std::size_t n_vertices) {
+  const BoundaryFaces ours = boundary_faces(C, n_vertices), theirs = counted_one_by_one(C);
+  EXPECT_EQ(ours.tets, theirs.tets);
+  EXPECT_EQ(ours.n_same_side, theirs.n_same_side);
+  EXPECT_EQ(ours.n_overused, theirs.n_overused);
+}
+
 TEST(BoundaryFaces, AreThoseOfACountOneByOne) {
   // Vertices of several blocks in any order, and one with more faces than are matched by hashing.
   TetMesh mesh = testing::cubes(17, [](int i, int j, int k) { return i + j + k > 2; });
@@ -84,12 +92,33 @@ TEST(BoundaryFaces, AreThoseOfACountOneByOne) {
   meshes[1].insert(meshes[1].end(), {mesh.C[0], mesh.C[5000], mesh.C.back(), mesh.C[20000]});  // some twice
   for (const std::size_t t : {1u, 9000u, 9001u, 29000u}) std::swap(meshes[2][t][0], meshes[2][t][1]);
   for (const std::size_t t : {2u, 8000u, 20001u}) meshes[3][t] = mesh.C[t + 40];
-  for (const auto& C : meshes) {
-    const BoundaryFaces ours = boundary_faces(C, order.size()), theirs = counted_one_by_one(C);
-    EXPECT_EQ(ours.tets, theirs.tets);
-    EXPECT_EQ(ours.n_same_side, theirs.n_same_side);
-    EXPECT_EQ(ours.n_overused, theirs.n_overused);
+  for (const auto& C : meshes) expect_count_one_by_one(C, order.size());
+}
+
+TEST(BoundaryFaces, DamageInTheRowsOfALatticeIsSeen) {
+  // Faces under a vertex are not matched where they repeat those under the last one: what is changed does not repeat,
+  // and what repeats a gap is one.
+  const TetMesh mesh = testing::cubes(17, [](int i, int j, int k) { return i + j + k > 2; });
+  const std::size_t n = mesh.C.size();
+  expect_count_one_by_one(mesh.C, mesh.V.size());
+  std::mt19937 random(2);
+  for (int round = 0; round < 8; ++round) {
+    std::vector<Tet> C = mesh.C;
+    for (int k = 0; k < 12; ++k) {
+      Tet& t = C[random() % n];
+      if (round % 4 == 0) std::swap(t[0], t[1]);
+      if (round % 4 == 1) t = mesh.C[random() % n];
+      if (round % 4 == 2) t[random() % 4] = static_cast<int>(random() % mesh.V.size());
+      if (round % 4 == 3) C.push_back(Tet(t));
+    }
+    std::erase_if(C, [](const Tet& t) { return std::set<int>(t.begin(), t.end()).size() < 4; });
+    expect_count_one_by_one(C, mesh.V.size());
   }
+  std::vector<Tet> gaps;  // some thousand cubes lack the same one of their six tets
+  for (std::size_t t = 0; t < n; ++t) {
+    if (t % 6 != 1 || t < n / 3 || t > n / 2) gaps.push_back(mesh.C[t]);
+  }
+  expect_count_one_by_one(gaps, mesh.V.size());
 }
 
 TEST(BoundaryFaces, RefusesIndicesThatDoNotExist) {
