@@ -1,5 +1,8 @@
 #include "mesh/quality_report.h"
 
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,30 +10,48 @@
 #include <stdexcept>
 
 #include "mesh/detail/checked_file.h"
-#include "mesh/tet_quality.h"
+#include "mesh/detail/tet_lanes.h"
 
 namespace umtet {
+namespace {
 
-std::vector<double> quality_vector(const std::vector<Tet>& C, const std::vector<Vec3>& V) {
-  constexpr double kNoTet = std::numeric_limits<double>::infinity();
-  std::vector<double> q(V.size(), kNoTet);
-  for (const Tet& t : C) {
-    double Q = mean_ratio(V[t[0]], V[t[1]], V[t[2]], V[t[3]]);
-    if (!std::isfinite(Q)) Q = -1;
-    for (const int v : t) q[v] = std::min(q[v], Q);
-  }
-  std::erase(q, kNoTet);
-  std::sort(q.begin(), q.end());
-  return q;
+// A fraction of a millisecond.
+constexpr std::size_t kGroupsPerTask = 1 << 11;
+
+}  // namespace
+
+std::vector<double> mean_ratios(const TetMesh& mesh) {
+  const std::size_t n = mesh.C.size();
+  std::vector<double> Q(n);
+  const auto measure = [&](const tbb::blocked_range<std::size_t>& groups) {
+    for (std::size_t first = groups.begin() * kLanes; first < std::min(n, groups.end() * kLanes); first += kLanes) {
+      const int count = static_cast<int>(std::min<std::size_t>(kLanes, n - first));
+      const detail::TetLanes tets = detail::measure_tet_lanes(mesh, &mesh.C[first], count);
+      std::copy_n(tets.quality.begin(), count, Q.begin() + static_cast<std::ptrdiff_t>(first));
+    }
+  };
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (n + kLanes - 1) / kLanes, kGroupsPerTask), measure);
+  return Q;
 }
 
-std::vector<Tet> tets_at(const std::vector<Tet>& C, const std::vector<int>& vertices, std::size_t n_vertices) {
-  std::vector<char> wanted(n_vertices, 0);
-  for (const int v : vertices) wanted[v] = 1;
-  std::vector<Tet> result;
-  std::copy_if(C.begin(), C.end(), std::back_inserter(result),
-               [&](const Tet& t) { return wanted[t[0]] || wanted[t[1]] || wanted[t[2]] || wanted[t[3]]; });
-  return result;
+QualityVectors quality_vectors(const std::vector<Tet>& C, const std::vector<double>& Q,
+                               const std::vector<int>& positive_vertices, std::size_t n_vertices) {
+  if (Q.size() != C.size()) throw std::invalid_argument("quality vectors: one Q per tet");
+  std::vector<char> is_positive(n_vertices, 0);
+  for (const int v : positive_vertices) is_positive[v] = 1;
+  constexpr double kNoTet = std::numeric_limits<double>::infinity();
+  QualityVectors q = {std::vector<double>(n_vertices, kNoTet), std::vector<double>(n_vertices, kNoTet)};
+  for (std::size_t k = 0; k < C.size(); ++k) {
+    const Tet& t = C[k];
+    for (const int v : t) q.all[v] = std::min(q.all[v], Q[k]);
+    if ((is_positive[t[0]] | is_positive[t[1]] | is_positive[t[2]] | is_positive[t[3]]) == 0) continue;
+    for (const int v : t) q.boundary[v] = std::min(q.boundary[v], Q[k]);
+  }
+  for (std::vector<double>* values : {&q.all, &q.boundary}) {
+    std::erase(*values, kNoTet);
+    std::sort(values->begin(), values->end());
+  }
+  return q;
 }
 
 double quantile(const std::vector<double>& lowest, std::size_t n, double p) {
@@ -42,21 +63,6 @@ double quantile(const std::vector<double>& lowest, std::size_t n, double p) {
 }
 
 double quantile(const std::vector<double>& ascending, double p) { return quantile(ascending, ascending.size(), p); }
-
-std::vector<QualityCurve> quality_curves(const std::vector<Tet>& C, const std::vector<int>& positive_vertices,
-                                         const std::vector<Vec3>& omega_h, const std::vector<Vec3>& projected,
-                                         const std::vector<Vec3>& final) {
-  if (projected.size() != omega_h.size() || final.size() != omega_h.size()) {
-    throw std::invalid_argument("quality curves: the three stages must have the same vertices");
-  }
-  const std::vector<Tet> at_boundary = tets_at(C, positive_vertices, omega_h.size());
-  return {{"omega_h", quality_vector(C, omega_h)},
-          {"projected", quality_vector(C, projected)},
-          {"final", quality_vector(C, final)},
-          {"boundary_omega_h", quality_vector(at_boundary, omega_h)},
-          {"boundary_projected", quality_vector(at_boundary, projected)},
-          {"boundary_final", quality_vector(at_boundary, final)}};
-}
 
 void write_quality_csv(const std::filesystem::path& path, const std::vector<QualityCurve>& curves) {
   std::size_t longest = 0;

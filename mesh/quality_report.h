@@ -9,15 +9,22 @@
 
 namespace umtet {
 
-/// Quality vector Q(S) = asc(q_1, ..., q_alpha) of a mesh, q_i = min Q(K) over the tets K at vertex i
-///                                                                              [Rangarajan2018, Section 3.3]
-/// Its first component is the least quality in the mesh; a bad tet appears up to four times. Vertices without a tet
-/// are left out; a tet whose quality is not a number (not finite, or all in one point) counts as -1.
-/// @param C  connectivity, indices into V
-std::vector<double> quality_vector(const std::vector<Tet>& C, const std::vector<Vec3>& V);
+/// Q of every tet, eq. (6), to the bit as certificates find it; -1 where it is not a number (not finite, or all in one
+/// point). By all threads. \pre indices of C are in range
+std::vector<double> mean_ratios(const TetMesh& mesh);
 
-/// The tets with at least one of the given vertices: with I^+ it is the mesh T_boundary of Fig. 8.
-std::vector<Tet> tets_at(const std::vector<Tet>& C, const std::vector<int>& vertices, std::size_t n_vertices);
+/// Quality vectors Q(S) = asc(q_1, ..., q_alpha), q_i = min Q(K) over the tets K at vertex i
+///                                                                              [Rangarajan2018, Section 3.3]
+/// Their first component is the least quality; a bad tet appears up to four times. Vertices without a tet are left out.
+struct QualityVectors {
+  std::vector<double> all;       ///< of the mesh
+  std::vector<double> boundary;  ///< of its tets with a positive vertex, T_boundary of Fig. 8
+};
+
+/// @param Q  of each tet
+/// \throw std::invalid_argument when Q and C differ in size
+QualityVectors quality_vectors(const std::vector<Tet>& C, const std::vector<double>& Q,
+                               const std::vector<int>& positive_vertices, std::size_t n_vertices);
 
 /// Quantile p in [0, 1] of ascending values, linear between neighbours (numpy's default). NaN without values.
 double quantile(const std::vector<double>& ascending, double p);
@@ -29,13 +36,6 @@ struct QualityCurve {
   std::string name;
   std::vector<double> values;
 };
-
-/// The six curves of Fig. 8: `omega_h`, `projected`, `final` for the mesh, and the same with prefix `boundary_` for its
-/// tets with a positive vertex.
-/// \throw std::invalid_argument when the three coordinate lists differ in size
-std::vector<QualityCurve> quality_curves(const std::vector<Tet>& C, const std::vector<int>& positive_vertices,
-                                         const std::vector<Vec3>& omega_h, const std::vector<Vec3>& projected,
-                                         const std::vector<Vec3>& final);
 
 /// CSV with columns `index` (1-based, as in Fig. 8) and one per curve, empty behind the end of a curve.
 ///

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "mesh/detail/mesh_formats.h"
+#include "mesh/quality_report.h"
 #include "mesh/skin.h"
-#include "mesh/tet_quality.h"
 
 namespace umtet {
 
@@ -28,14 +28,10 @@ MeshFile with_standard_data(TetMesh mesh, std::vector<std::int64_t> background_v
   for (const Triangle& f : boundary_faces(mesh.C, mesh.V.size()).triangles) {
     for (const int v : f) boundary[v] = 1;
   }
-  std::vector<double> quality;
-  quality.reserve(mesh.C.size());
-  for (const Tet& t : mesh.C) quality.push_back(mean_ratio(mesh, t));
-
   MeshFile file;
+  file.cell_data.emplace("mean_ratio", mean_ratios(mesh));
   file.mesh = std::move(mesh);
   file.point_data.emplace("boundary", std::move(boundary));
-  file.cell_data.emplace("mean_ratio", std::move(quality));
   if (!background_vertex.empty()) file.point_data.emplace("background_vertex", std::move(background_vertex));
   if (!background_tet.empty()) file.cell_data.emplace("background_tet", std::move(background_tet));
   return file;

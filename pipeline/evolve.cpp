@@ -210,7 +210,7 @@ void Evolution::mesh(Step& step) {
     result = make(step, *domain);
   });
   stop_if_interrupted();
-  if (result) write_mesh(request_.folder / step.file, *domain, *result, result->final);
+  if (result) write_mesh(request_.folder / step.file, final_content(*domain, *result));
   write_tables(request_.folder, steps_);
   if (!result) return;
   progress_.say(fmt::format(

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "mesh/quality_report.h"
 #include "pipeline/artefact.h"
 #include "pipeline/interrupt.h"
 
@@ -46,11 +47,6 @@ MeshFile mesh_content(const Domain& domain, const UmResult& result, const std::v
   for (Vec3& x : mesh.V) x += domain.shift;
   MeshFile content =
       with_standard_data(std::move(mesh), result.submesh.background_vertex, result.submesh.background_tet);
-  if (&V == &result.final && domain.samples) {
-    std::vector<double> support(V.size(), -1);
-    set_support(domain, V, result.submesh.positive_vertices, support);
-    content.point_data["support"] = std::move(support);
-  }
   if (!result.walls.empty()) {
     std::vector<std::uint8_t> wall(V.size(), 0);
     for (const Triangle& f : result.walls) {
@@ -61,10 +57,26 @@ MeshFile mesh_content(const Domain& domain, const UmResult& result, const std::v
   return content;
 }
 
-MeshFile write_mesh(const fs::path& file, const Domain& domain, const UmResult& result, const std::vector<Vec3>& V) {
-  MeshFile content = mesh_content(domain, result, V);
-  write_artefact(file, [&](const fs::path& temporary) { write_vtu(temporary, content); });
+void move_to(const Domain& domain, const std::vector<Vec3>& V, MeshFile& content) {
+  for (std::size_t i = 0; i < V.size(); ++i) content.mesh.V[i] = V[i] + domain.shift;
+  content.cell_data["mean_ratio"] = mean_ratios(content.mesh);
+}
+
+void add_support(const Domain& domain, const UmResult& result, MeshFile& content) {
+  if (!domain.samples) return;
+  std::vector<double> support(result.final.size(), -1);
+  set_support(domain, result.final, result.submesh.positive_vertices, support);
+  content.point_data["support"] = std::move(support);
+}
+
+MeshFile final_content(const Domain& domain, const UmResult& result) {
+  MeshFile content = mesh_content(domain, result, result.final);
+  add_support(domain, result, content);
   return content;
+}
+
+void write_mesh(const fs::path& file, const MeshFile& content) {
+  write_artefact(file, [&](const fs::path& temporary) { write_vtu(temporary, content); });
 }
 
 std::string failure_text(const UmResult& result, double h, const Vec3& shift) {

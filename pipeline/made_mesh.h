@@ -18,19 +18,25 @@ void round_to_file(UmResult& result, const Vec3& shift);
 /// its corners are.
 inline constexpr const char* kAtWall = "wall";
 
-/// What is in the file of write_mesh(), below. \throw MeshCancelled
+/// What the file of omega_h with its vertices at V holds: model coordinates, ids of the background, walls.
 MeshFile mesh_content(const Domain& domain, const UmResult& result, const std::vector<Vec3>& V);
+
+/// The same mesh at another stage, its vertices at V.
+void move_to(const Domain& domain, const std::vector<Vec3>& V, MeshFile& content);
 
 /// Distances of some vertices to their nearest samples, into their places of `support`. \throw MeshCancelled
 void set_support(const Domain& domain, const std::vector<Vec3>& V, const std::vector<int>& vertices,
                  std::vector<double>& support);
 
-/// omega_h with its vertices at V, in model coordinates, with ids of the background; of a cloud's final mesh also the
-/// distance of each boundary vertex to the nearest sample (`support`, -1 inside and at walls): what is data and what is
-/// a guess. Complete or not at all.
-/// @return what the file holds. \throw MeshCancelled, std::system_error naming the file
-MeshFile write_mesh(const std::filesystem::path& file, const Domain& domain, const UmResult& result,
-                    const std::vector<Vec3>& V);
+/// Of a cloud's final mesh the distance of each boundary vertex to the nearest sample, -1 inside and at walls, as point
+/// data `support`: what is data and what is a guess. Nothing without a cloud. \throw MeshCancelled
+void add_support(const Domain& domain, const UmResult& result, MeshFile& content);
+
+/// The final mesh, with support. \throw MeshCancelled
+MeshFile final_content(const Domain& domain, const UmResult& result);
+
+/// Complete or not at all. \throw std::system_error naming the file
+void write_mesh(const std::filesystem::path& file, const MeshFile& content);
 
 /// Why there is no mesh, where, and what may help; some lines. \pre result.status != UmStatus::Success
 std::string failure_text(const UmResult& result, double h, const Vec3& shift);

@@ -23,6 +23,27 @@ std::string series_of(const std::vector<std::string>& files) {
   return pvd + "</Collection>\n</VTKFile>\n";
 }
 
+/// Figure 8: of each stage the quality vector of the mesh, and of its tets with a positive vertex.
+class QualityCurves {
+ public:
+  explicit QualityCurves(const UmResult& result) : positive_vertices_(result.submesh.positive_vertices) {}
+  void add(const std::string& stage, const MeshFile& content) {
+    const auto& Q = std::get<std::vector<double>>(content.cell_data.at("mean_ratio"));
+    auto [all, boundary] = quality_vectors(content.mesh.C, Q, positive_vertices_, content.mesh.V.size());
+    of_mesh_.push_back({stage, std::move(all)});
+    of_boundary_.push_back({"boundary_" + stage, std::move(boundary)});
+  }
+  std::vector<QualityCurve> all() const {
+    std::vector<QualityCurve> curves = of_mesh_;
+    curves.insert(curves.end(), of_boundary_.begin(), of_boundary_.end());
+    return curves;
+  }
+
+ private:
+  const std::vector<int>& positive_vertices_;
+  std::vector<QualityCurve> of_mesh_, of_boundary_;
+};
+
 }  // namespace
 
 std::vector<std::string> write_mesh_outputs(const StageContext& context, const Domain& domain,
@@ -31,30 +52,38 @@ std::vector<std::string> write_mesh_outputs(const StageContext& context, const D
   fs::remove_all(context.paths.failed());
   const fs::path folder = context.paths.folder(Stage::Mesh);
   const UmResult& result = best.result;
-  const std::vector<Vec3>& omega_h = result.submesh.mesh.V;
   std::vector<std::string> names;
-  const auto write = [&](const std::string& name, const std::vector<Vec3>& V) {
+  QualityCurves curves(result);
+  MeshFile content = mesh_content(domain, result, result.submesh.mesh.V);
+  const auto write = [&](const std::string& name) {
     names.push_back(name);
-    return write_mesh(folder / name, domain, result, V);
+    write_mesh(folder / name, content);
   };
-  write("omega_h.vtu", omega_h);
-  for (std::size_t k = 0; k < best.iterates.size(); ++k) write(fmt::format("pass_{}.vtu", k + 1), best.iterates[k]);
-  write("projected.vtu", result.projected);
+  write("omega_h.vtu");
+  curves.add("omega_h", content);
+  for (std::size_t k = 0; k < best.iterates.size(); ++k) {
+    move_to(domain, best.iterates[k], content);
+    write(fmt::format("pass_{}.vtu", k + 1));
+  }
+  move_to(domain, result.projected, content);
+  write("projected.vtu");
+  curves.add("projected", content);
+  move_to(domain, result.final, content);
+  curves.add("final", content);
+  add_support(domain, result, content);
   if (best.second) {
     names.emplace_back("mesh.vtu");
-    write_second_order(folder / "mesh.vtu", domain, result, *best.second);
-    context.handover.mesh = mesh_content(domain, result, result.final);
+    write_second_order(folder / "mesh.vtu", domain, result, content, *best.second);
   } else {
-    context.handover.mesh = write("mesh.vtu", result.final);
+    write("mesh.vtu");
   }
+  context.handover.mesh = std::move(content);
   if (context.parameters.flag("mesh.keep_iterates")) {
     write_text_artefact(folder / "iterates.pvd", series_of(names));
     names.emplace_back("iterates.pvd");
   }
-  write_artefact(folder / "quality.csv", [&](const fs::path& temporary) {
-    write_quality_csv(temporary, quality_curves(result.submesh.mesh.C, result.submesh.positive_vertices, omega_h,
-                                                result.projected, result.final));
-  });
+  write_artefact(folder / "quality.csv",
+                 [&](const fs::path& temporary) { write_quality_csv(temporary, curves.all()); });
   names.emplace_back("quality.csv");
   if (!best.thin.empty()) {
     write_thin_places(folder / "too_thin.vtp", best.thin, domain.shift);
@@ -69,9 +98,13 @@ fs::path write_failed_mesh(const CasePaths& paths, const Domain& domain, const U
   const std::size_t n = result.submesh.mesh.V.size();
   if (n == 0) return folder;
   fs::create_directories(folder);
-  write_mesh(folder / "omega_h.vtu", domain, result, result.submesh.mesh.V);
-  const std::vector<Vec3>& last = result.final.size() == n ? result.final : result.projected;
-  if (last.size() == n) write_mesh(folder / "projected.vtu", domain, result, last);
+  MeshFile content = mesh_content(domain, result, result.submesh.mesh.V);
+  write_mesh(folder / "omega_h.vtu", content);
+  const bool has_final = result.final.size() == n;
+  if (!has_final && result.projected.size() != n) return folder;
+  move_to(domain, has_final ? result.final : result.projected, content);
+  if (has_final) add_support(domain, result, content);
+  write_mesh(folder / "projected.vtu", content);
   return folder;
 }
 

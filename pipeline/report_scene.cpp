@@ -1,6 +1,7 @@
 #include "pipeline/report_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
@@ -8,7 +9,6 @@
 
 #include "mesh/keep_going.h"
 #include "mesh/patches.h"
-#include "mesh/skin.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/made_mesh.h"
 #include "pipeline/report_page.h"
@@ -88,12 +88,10 @@ class SceneMaker {
 };
 
 void SceneMaker::take_faces(const SolverMesh& divided) {
-  const BoundaryFaces boundary = boundary_faces(mesh_.C, mesh_.V.size());
-  face_tet_ = boundary.tets;
+  face_tet_ = divided.face_tet;
   for (std::size_t f = 0; f < face_tet_.size(); ++f) {
-    const Triangle& a = boundary.triangles[f];
-    const Tet& t = mesh_.C[face_tet_[f]];
-    faces_.push_back({a[0], a[1], a[2], t[0] + t[1] + t[2] + t[3] - a[0] - a[1] - a[2]});
+    const std::array<int, 6> face = divided.face(f);
+    faces_.push_back({face[0], face[1], face[2], mesh_.C[face_tet_[f]][divided.face_opposite[f]]});
   }
   take_patches(divided);
   scene_.head["n_faces"] = faces_.size();
@@ -101,9 +99,7 @@ void SceneMaker::take_faces(const SolverMesh& divided) {
   scene_.head["n_faces_shown"] = faces_.size();
 }
 
-/// Both list the faces in the order of boundary_faces().
 void SceneMaker::take_patches(const SolverMesh& divided) {
-  if (divided.n_faces() != faces_.size()) throw std::invalid_argument("a scene needs the patches of its own mesh");
   std::vector<double> area(divided.patches.size(), 0);
   std::vector<std::size_t> n(divided.patches.size(), 0);
   const FaceGeometry geometry = face_geometry(divided);
@@ -268,6 +264,7 @@ ReportScene SceneMaker::operator()(const SolverMesh& divided) {
   if (mesh_.C.empty() || !field(file_.cell_data, "mean_ratio")) {
     throw std::invalid_argument("a scene needs tets with mean_ratio");
   }
+  if (divided.n_tets() != mesh_.C.size()) throw std::invalid_argument("a scene needs the patches of its own mesh");
   const Vec3 size = box_.sizes();
   scene_.head = {{"box_min", {box_.min().x(), box_.min().y(), box_.min().z()}},
                  {"box_size", {size.x(), size.y(), size.z()}}};

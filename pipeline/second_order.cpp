@@ -80,11 +80,12 @@ void measure_second_order(const Domain& domain, const UmResult& result, const Se
   }
 }
 
-void write_second_order(const fs::path& file, const Domain& domain, const UmResult& result, const SecondOrder& second) {
+void write_second_order(const fs::path& file, const Domain& domain, const UmResult& result, const MeshFile& corners,
+                        const SecondOrder& second) {
   QuadraticTetMesh mesh = second.mesh;
   for (Vec3& x : mesh.V) x += domain.shift;
-  MeshFile content = mesh_content(domain, result, result.final);
-  for (auto& [name, any] : content.point_data) {
+  std::map<std::string, FieldValues> point_data = corners.point_data;
+  for (auto& [name, any] : point_data) {
     std::visit(
         [&](auto& values) {
           using Value = typename std::decay_t<decltype(values)>::value_type;
@@ -92,17 +93,16 @@ void write_second_order(const fs::path& file, const Domain& domain, const UmResu
         },
         any);
   }
-  auto& boundary = std::get<std::vector<std::uint8_t>>(content.point_data.at("boundary"));
+  auto& boundary = std::get<std::vector<std::uint8_t>>(point_data.at("boundary"));
   for (const int m : second.boundary_mid_sides) boundary[m] = 1;
   if (!result.walls.empty()) {
-    auto& wall = std::get<std::vector<std::uint8_t>>(content.point_data.at(kAtWall));
+    auto& wall = std::get<std::vector<std::uint8_t>>(point_data.at(kAtWall));
     for (const int m : mid_sides_of(result.walls, mesh)) boundary[m] = wall[m] = 1;
   }
-  if (const auto support = content.point_data.find("support"); support != content.point_data.end()) {
+  if (const auto support = point_data.find("support"); support != point_data.end()) {
     set_support(domain, second.mesh.V, second.boundary_mid_sides, std::get<std::vector<double>>(support->second));
   }
-  write_artefact(file,
-                 [&](const fs::path& temporary) { write_vtu(temporary, mesh, content.point_data, content.cell_data); });
+  write_artefact(file, [&](const fs::path& temporary) { write_vtu(temporary, mesh, point_data, corners.cell_data); });
 }
 
 }  // namespace umtet

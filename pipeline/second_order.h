@@ -4,6 +4,7 @@
 
 #include "mesh/quadratic_tets.h"
 #include "mesh/second_order_certificate.h"
+#include "mesh/tet_mesh_io.h"
 #include "mesh/universal_mesh.h"
 #include "pipeline/domain.h"
 #include "pipeline/record.h"
@@ -24,8 +25,9 @@ void measure_second_order(const Domain& domain, const UmResult& result, const Se
                           Json& measured, const KeepGoing& keep_going = {});
 
 /// As write_mesh() of the final mesh, with tets of 10 nodes; mid-sides have no vertex of the background (-1).
+/// @param corners  final_content() of the result
 /// \throw MeshCancelled, std::system_error naming the file
 void write_second_order(const std::filesystem::path& file, const Domain& domain, const UmResult& result,
-                        const SecondOrder& second);
+                        const MeshFile& corners, const SecondOrder& second);
 
 }  // namespace umtet

@@ -55,8 +55,8 @@ std::vector<QuadraticTriangle> Mesh::curved_boundary() const {
 
 void Mesh::save(const std::filesystem::path& file) const {
   const std::string suffix = file.extension();
-  if (suffix == ".vtu" && second) return write_second_order(file, domain, result, *second);
-  const MeshFile content = mesh_content(domain, result, result.final);
+  const MeshFile content = final_content(domain, result);
+  if (suffix == ".vtu" && second) return write_second_order(file, domain, result, content, *second);
   if (suffix == ".vtu") return write_vtu(file, content);
   if (suffix == ".msh") return write_msh41(file, for_solver(*this, content), MshEncoding::Binary);
   if (suffix == ".mesh") return write_medit(file, for_solver(*this, content));

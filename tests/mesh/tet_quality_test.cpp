@@ -67,17 +67,34 @@ TEST(QualityVector, IsAscendingStartsAtTheWorstTetAndHasOneEntryPerUsedVertex) {
   double least = 1;
   for (const Tet& t : mesh.C) least = std::min(least, mean_ratio(mesh, t));
   mesh.V.emplace_back(9, 9, 9);  // no tet there
-  const std::vector<double> q = quality_vector(mesh.C, mesh.V);
+  const std::vector<double> Q = mean_ratios(mesh);
+  const std::vector<double> q = quality_vectors(mesh.C, Q, {}, mesh.V.size()).all;
   ASSERT_EQ(q.size(), 64u);
   EXPECT_TRUE(std::is_sorted(q.begin(), q.end()));
-  EXPECT_EQ(q[0], least);
-  EXPECT_EQ(q[3], least) << "the worst tet has four vertices";
+  EXPECT_NEAR(q[0], least, 1e-15);
+  EXPECT_EQ(q[3], q[0]) << "the worst tet has four vertices";
+  EXPECT_THROW(quality_vectors(mesh.C, {1.}, {}, mesh.V.size()), std::invalid_argument);
+}
+
+TEST(QualityVector, OfTheBoundaryIsThatOfTheTetsWithAPositiveVertex) {
+  TetMesh mesh = testing::cubes(3, [](int, int, int) { return true; });
+  testing::perturb(mesh, 0.1, 3);
+  const auto vectors = [](const TetMesh& m, const std::vector<int>& positive) {
+    return quality_vectors(m.C, mean_ratios(m), positive, m.V.size());
+  };
+  TetMesh part{mesh.V, {}};
+  for (const Tet& t : mesh.C) {
+    if (std::count(t.begin(), t.end(), 7) + std::count(t.begin(), t.end(), 20) > 0) part.C.push_back(t);
+  }
+  EXPECT_EQ(vectors(mesh, {7, 20}).boundary, vectors(part, {}).all);
+  EXPECT_LT(part.C.size(), mesh.C.size());
+  EXPECT_TRUE(vectors(mesh, {}).boundary.empty());
 }
 
 TEST(QualityVector, ATetWithoutANumberCountsAsMinusOne) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(quality_vector({{0, 1, 2, 3}}, {{nan, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}})[0], -1);
-  EXPECT_EQ(quality_vector({{0, 1, 2, 3}}, std::vector<Vec3>(4, Vec3(1, 1, 1)))[0], -1);
+  EXPECT_EQ(mean_ratios({{{nan, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}})[0], -1);
+  EXPECT_EQ(mean_ratios({std::vector<Vec3>(4, Vec3(1, 1, 1)), {{0, 1, 2, 3}}})[0], -1);
 }
 
 TEST(Quantile, IsLinearBetweenNeighbours) {
