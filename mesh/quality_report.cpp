@@ -27,7 +27,7 @@ std::vector<double> mean_ratios(const TetMesh& mesh) {
     for (std::size_t first = groups.begin() * kLanes; first < std::min(n, groups.end() * kLanes); first += kLanes) {
       const int count = static_cast<int>(std::min<std::size_t>(kLanes, n - first));
       const detail::TetLanes tets = detail::measure_tet_lanes(mesh, &mesh.C[first], count);
-      std::copy_n(tets.quality.begin(), count, Q.begin() + static_cast<std::ptrdiff_t>(first));
+      for (int m = 0; m < count; ++m) Q[first + m] = tets.quality[m];
     }
   };
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (n + kLanes - 1) / kLanes, kGroupsPerTask), measure);

@@ -1,9 +1,10 @@
 #include "mesh/detail/tet_lanes.h"
 
+#include <Eigen/Core>
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 
 #include "mesh/orientation.h"
@@ -13,6 +14,16 @@ namespace umtet::detail {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Of squared lengths: their cubes, and squares of volumes, are numbers of full precision.
+constexpr double kLeast2 = 1e-80, kGreatest2 = 1e80;
+
+Lane all_lanes(double a) { return Lane{a, a, a, a}; }
+Lane magnitude(Lane a) { return a < 0 ? -a : a; }
+/// @param mask  as comparisons give it: -1 or 0 a lane
+template <class Mask>
+bool is_all(Mask mask) {
+  return (mask[0] & mask[1] & mask[2] & mask[3]) != 0;
+}
 
 struct Lane3 {
   Lane x, y, z;
@@ -27,34 +38,45 @@ Lane3 corner(const TetMesh& mesh, const std::array<const Tet*, kLanes>& tets, in
   static_assert(kLanes == 4);
   const Vec3 &a = mesh.V[(*tets[0])[k]], &b = mesh.V[(*tets[1])[k]], &c = mesh.V[(*tets[2])[k]],
              &d = mesh.V[(*tets[3])[k]];
-  return {Lane(a.x(), b.x(), c.x(), d.x()), Lane(a.y(), b.y(), c.y(), d.y()), Lane(a.z(), b.z(), c.z(), d.z())};
+  return {Lane{a.x(), b.x(), c.x(), d.x()}, Lane{a.y(), b.y(), c.y(), d.y()}, Lane{a.z(), b.z(), c.z(), d.z()}};
+}
+
+/// By Eigen, which has the instruction for all at once.
+Lane square_roots(Lane x) {
+  Eigen::Array<double, kLanes, 1> roots;
+  std::memcpy(roots.data(), &x, sizeof x);
+  roots = roots.sqrt();
+  std::memcpy(&x, roots.data(), sizeof x);
+  return x;
 }
 
 /// Cube roots of numbers in [1e-30, 2], to a few roundings.
-Lane cube_roots(const Lane& x) {
-  Lane root;
-  // A third of the bits of a float is a root within 5 % [Kahan1991]; three steps of Halley leave .05^27.
-  for (int m = 0; m < kLanes; ++m) {
-    root[m] = std::bit_cast<float>(std::bit_cast<std::uint32_t>(static_cast<float>(x[m])) / 3 + 0x2a5137a0u);
+Lane cube_roots(Lane x) {
+  using Floats = float __attribute__((vector_size(4 * kLanes)));
+  using Bits = std::uint32_t __attribute__((vector_size(4 * kLanes)));
+  // A third of the bits of a float is a root within 5 % [Kahan1991]; what follows, y (1 + u)^(-1/3) by its Pade
+  // approximant [2/2] in u = y^3 / x - 1, leaves .0016 |u|^5: 2e-7, then rounding.
+  const auto third = (Bits) __builtin_convertvector(x, Floats) / 3 + 0x2a5137a0u;
+  Lane y = __builtin_convertvector((Floats)third, Lane);
+  for (int step = 0; step < 2; ++step) {
+    const Lane c = y * y * y;
+    y *= (14 * x * x + c * (35 * x + 5 * c)) / (5 * x * x + c * (35 * x + 14 * c));
   }
-  for (int step = 0; step < 3; ++step) {
-    const Lane cube = root * root * root;
-    root *= (cube + 2 * x) / (2 * cube + x);
-  }
-  return root;
+  return y;
 }
 
-/// Q from r = V / L^(3/2), V six volumes, L the sum of squared edges.
-Lane mean_ratios(const Lane& r) {
+/// Q from six volumes V and the sum L of squared edges.
+Lane mean_ratios(Lane V, Lane L) {
   constexpr double kCube = kMeanRatioFactor * kMeanRatioFactor * kMeanRatioFactor;
-  const Lane cubes = kCube * r * r;
-  if ((cubes >= 1e-30 && cubes <= 2.).all()) {
-    const Lane Q = cube_roots(cubes);
-    return (r < 0).select(-Q, Q);
-  }
-  Lane Q;
+  const Lane cubes = kCube * V * V / (L * L * L);
+  const auto is_in_range = (cubes >= 1e-30) & (cubes <= 2.) & (L >= kLeast2) & (L <= kGreatest2);
+  const Lane root = cube_roots(is_in_range ? cubes : all_lanes(1));
+  Lane Q = V < 0 ? -root : root;
+  if (is_all(is_in_range)) return Q;
   for (int m = 0; m < kLanes; ++m) {
-    Q[m] = std::copysign(std::cbrt(cubes[m]), r[m]);
+    if (is_in_range[m] != 0) continue;
+    const double side = std::sqrt(L[m]), root_of_volume = std::cbrt(V[m] / (L[m] * side));
+    Q[m] = kMeanRatioFactor * root_of_volume * std::abs(root_of_volume);
     if (!std::isfinite(Q[m])) Q[m] = -1;
   }
   return Q;
@@ -77,30 +99,30 @@ TetLanes measure_tet_lanes(const TetMesh& mesh, const Tet* tets, int count) {
   const Lane3 a = {-(b.x + c.x + d.x), -(b.y + c.y + d.y), -(b.z + c.z + d.z)};
   TetLanes result;
   result.volume6 = -u.dot(b);
-  const Lane permanent =
-      u.x.abs() * (p0.abs() + p1.abs()) + u.y.abs() * (p2.abs() + p3.abs()) + u.z.abs() * (p4.abs() + p5.abs());
-  constexpr double kGreatest2 = kFilterGreatest * kFilterGreatest;
-  if (!(result.volume6 > kFilterBound * permanent && permanent > kFilterLeast && L < kGreatest2).all()) {
+  const Lane permanent = magnitude(u.x) * (magnitude(p0) + magnitude(p1)) +
+                         magnitude(u.y) * (magnitude(p2) + magnitude(p3)) +
+                         magnitude(u.z) * (magnitude(p4) + magnitude(p5));
+  constexpr double kFilterGreatest2 = kFilterGreatest * kFilterGreatest;
+  if (!is_all((result.volume6 > kFilterBound * permanent) & (permanent > kFilterLeast) & (L < kFilterGreatest2))) {
     for (int m = 0; m < kLanes; ++m) {
       const Tet& t = *tet[m];
       result.inverted[m] = orientation_sign(mesh.V[t[0]], mesh.V[t[1]], mesh.V[t[2]], mesh.V[t[3]]) <= 0;
     }
   }
 
-  const Lane root_L = L.sqrt();
-  result.rms_edge = root_L * std::sqrt(1. / 6);
-  result.quality = mean_ratios(result.volume6 / (L * root_L));
+  result.rms_edge = square_roots(L / 6);
+  result.quality = mean_ratios(result.volume6, L);
 
   // A dihedral angle is that of the normals of its two faces, and the sine of it times their lengths is that of the
   // edge times six volumes.
   const std::array<Lane, 6> cosine = {-c.dot(d), -b.dot(d), -b.dot(c), -a.dot(d), -a.dot(c), -a.dot(b)};
-  const Lane per_volume = 1 / result.volume6.abs();
-  Lane least = Lane::Constant(kInfinity), greatest = Lane::Constant(-kInfinity);
+  const Lane per_volume = 1 / magnitude(result.volume6);
+  Lane least = all_lanes(kInfinity), greatest = all_lanes(-kInfinity);
   for (int k = 0; k < 6; ++k) {
     const Lane cotangent = cosine[k] * per_volume;  // times the edge
-    const Lane square = cotangent * cotangent.abs() / edge2[k];
-    least = (square < least).select(square, least);  // what is not a number is passed over
-    greatest = (square > greatest).select(square, greatest);
+    const Lane square = cotangent * magnitude(cotangent) / edge2[k];
+    least = square < least ? square : least;  // what is not a number is passed over
+    greatest = square > greatest ? square : greatest;
   }
   result.least_cotangent = least;
   result.greatest_cotangent = greatest;

@@ -21,6 +21,13 @@ static_assert(kTetsPerBlock % kLanes == 0);
 constexpr std::size_t kSampledBlocks = 64, kSampledShare = 20;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+double sum(const Lane& a) { return (a[0] + a[1]) + (a[2] + a[3]); }
+/// @param mask  as comparisons give it: -1 or 0 a lane
+template <class Mask>
+bool is_any(const Mask& mask) {
+  return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+}
+
 TetLanes known_lanes(const std::array<const TetValues*, kLanes>& known) {
   TetLanes result;
   for (int m = 0; m < kLanes; ++m) {
@@ -97,7 +104,7 @@ class TetBlocks {
 
 TetMeasure TetBlocks::operator()(std::size_t block, double low) const {
   TetMeasure measure;
-  Lane volume6 = Lane::Zero(), rms_edges = Lane::Zero(), qualities = Lane::Zero();
+  Lane volume6{}, rms_edges{}, qualities{};
   std::array<double, kTetsPerBlock> low_qualities;
   std::size_t n_low = 0;
   const std::size_t end = std::min(mesh_.C.size(), (block + 1) * kTetsPerBlock);
@@ -110,27 +117,30 @@ TetMeasure TetBlocks::operator()(std::size_t block, double low) const {
       rms_edges += tets.rms_edge;
       qualities += tets.quality;
     } else {
-      volume6.head(count) += tets.volume6.head(count);
-      rms_edges.head(count) += tets.rms_edge.head(count);
-      qualities.head(count) += tets.quality.head(count);
+      for (int m = 0; m < count; ++m) {
+        volume6[m] += tets.volume6[m];
+        rms_edges[m] += tets.rms_edge[m];
+        qualities[m] += tets.quality[m];
+      }
     }
-    if ((tets.quality <= low).any()) {
+    if (is_any(tets.quality <= low)) {
       for (int m = 0; m < count; ++m) {
         if (tets.quality[m] <= low) low_qualities[n_low++] = tets.quality[m];
       }
     }
     add(tets, first, count, measure);
   }
-  measure.volume6 = volume6.sum();
-  measure.rms_edges = rms_edges.sum();
-  measure.qualities = qualities.sum();
+  measure.volume6 = sum(volume6);
+  measure.rms_edges = sum(rms_edges);
+  measure.qualities = sum(qualities);
   measure.low_qualities.assign(low_qualities.begin(), low_qualities.begin() + static_cast<std::ptrdiff_t>(n_low));
   return measure;
 }
 
 /// All but the sums.
 void TetBlocks::add(const TetLanes& tets, std::size_t first, int count, TetMeasure& measure) const {
-  if ((tets.least_cotangent < measure.least_cotangent || tets.greatest_cotangent > measure.greatest_cotangent).any()) {
+  if (is_any((tets.least_cotangent < measure.least_cotangent) |
+             (tets.greatest_cotangent > measure.greatest_cotangent))) {
     for (int m = 0; m < count; ++m) {
       measure.take(tets.least_cotangent[m], first + m, tets.greatest_cotangent[m], first + m);
     }

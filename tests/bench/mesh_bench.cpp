@@ -252,7 +252,7 @@ void all_in(benchmark::State& state) {
 }
 BENCHMARK(all_in)
     ->ArgNames({"shape", "thousand_tets"})
-    ->ArgsProduct({{0, 1, 2}, {500, 4000}})
+    ->ArgsProduct({{0, 1, 2}, {500, 4000, 8000}})
     ->ArgsProduct({{3, 4}, {500}})
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime();
