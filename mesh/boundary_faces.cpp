@@ -240,6 +240,7 @@ class ClosedVertices {
   bool follows(const TetsByVertex& tets, int v) {
     const auto is_copy = [&](int step) { return step <= v && closed_[v - step] && tets.is_shifted(v, v - step); };
     if (is_copy(step_)) return true;
+    if (++n_others_ % kOthersPerSearch != 0) return false;
     for (int step = 1; step <= kMostSteps; ++step) {
       if (step == step_ || !is_copy(step)) continue;
       step_ = step;
@@ -249,10 +250,13 @@ class ClosedVertices {
   }
 
  private:
+  // A lattice has one step, and it is soon found; where there is none, searches cost next to nothing.
   static constexpr int kMostSteps = 32;
+  static constexpr unsigned kOthersPerSearch = 16;
 
   std::array<bool, kVerticesPerBlock> closed_{};
   int step_ = 1;  ///< the one that served last
+  unsigned n_others_ = 0;
 };
 
 /// A face under its least vertex.
