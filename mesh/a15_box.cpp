@@ -7,8 +7,8 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
+#include "mesh/detail/id_set.h"
 #include "mesh/tiling.h"
 
 namespace umtet {
@@ -66,19 +66,19 @@ TetMesh a15_box(const Box& box, double h) {
   }
   std::array<std::int64_t, 3> n;
   for (int a = 0; a < 3; ++a) n[a] = static_cast<std::int64_t>(cells[a]);
-  const auto key = [&](const Place& p) { return p[0] + (kParts * n[0] + 1) * (p[1] + (kParts * n[1] + 1) * p[2]); };
-  std::vector<std::int64_t> keys;
+  const Place sides = {kParts * n[0] + 1, kParts * n[1] + 1, kParts * n[2] + 1};  // places along the edges of the box
+  const auto id = [&](const Place& p) { return p[0] + sides[0] * (p[1] + sides[1] * p[2]); };
+  detail::IdSet used(sides[0] * sides[1] * sides[2]);
+  std::size_t n_tets = 0;
   for_each_tet(n, [&](const auto& corners) {
-    for (const Place& p : corners) keys.push_back(key(p));
+    for (const Place& p : corners) used.insert(id(p));
+    ++n_tets;
   });
-  std::vector<std::int64_t> vertices = keys;
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
 
   TetMesh mesh;
-  for (const std::int64_t v : vertices) {
-    const std::int64_t row = v / (kParts * n[0] + 1);
-    const Place p = {v % (kParts * n[0] + 1), row % (kParts * n[1] + 1), row / (kParts * n[1] + 1)};
+  mesh.V.reserve(used.index());
+  used.for_each([&](std::int64_t v) {
+    const Place p = {v % sides[0], v / sides[0] % sides[1], v / (sides[0] * sides[1])};
     Vec3 x;
     for (int a = 0; a < 3; ++a) {
       // The walls get the box's own numbers.
@@ -86,12 +86,11 @@ TetMesh a15_box(const Box& box, double h) {
       x[a] = p[a] == kParts * n[a] ? box.max()[a] : box.min()[a] + share * box.sizes()[a];
     }
     mesh.V.push_back(x);
-  }
-  mesh.C.resize(keys.size() / 4);
-  for (std::size_t c = 0; c < keys.size(); ++c) {
-    const auto at = std::lower_bound(vertices.begin(), vertices.end(), keys[c]);
-    mesh.C[c / 4][c % 4] = static_cast<int>(at - vertices.begin());
-  }
+  });
+  mesh.C.reserve(n_tets);
+  for_each_tet(n, [&](const auto& p) {
+    mesh.C.push_back({used.rank(id(p[0])), used.rank(id(p[1])), used.rank(id(p[2])), used.rank(id(p[3]))});
+  });
   return mesh;
 }
 

@@ -12,12 +12,14 @@
 #include <vector>
 
 #include "mesh/detail/check_indices.h"
+#include "mesh/detail/face_uses.h"
 #include "mesh/detail/two_least.h"
 #include "mesh/skin.h"
 
 namespace umtet {
 namespace {
 
+using detail::FaceUse;
 using detail::TwoLeast;
 
 // What a task of a fraction of a millisecond handles; of the vertices, what leaves their tets in the cache.
@@ -259,29 +261,6 @@ class ClosedVertices {
   unsigned n_others_ = 0;
 };
 
-/// A face under its least vertex.
-struct FaceUse {
-  std::uint64_t rest;    ///< the other two vertices, ascending, 32 bits each
-  std::uint64_t source;  ///< 2 (4 tet + local face) + 1 where it runs against ascending vertices
-
-  bool reversed() const { return (source & 1) != 0; }
-};
-
-/// Appends the faces of a tet whose least vertex is v.
-void add_faces(const Tet& tet, std::size_t t, int v, std::vector<FaceUse>& uses) {
-  const auto own = std::find(tet.begin(), tet.end(), v) - tet.begin();
-  for (int k = 0; k < 4; ++k) {
-    if (k == own) continue;
-    const auto& f = kTetFace[k];
-    // The face from v on: it is a cycle.
-    const int at = f[0] == own ? 0 : f[1] == own ? 1 : 2;
-    const int p = tet[f[(at + 1) % 3]], q = tet[f[(at + 2) % 3]];
-    if (p < v || q < v) continue;
-    const auto low = static_cast<std::uint64_t>(std::min(p, q)), high = static_cast<std::uint64_t>(std::max(p, q));
-    uses.push_back({low << 32 | high, 2 * (4 * t + static_cast<std::uint64_t>(k)) + (p > q ? 1 : 0)});
-  }
-}
-
 struct BlockFaces {
   std::vector<std::int64_t> single;  ///< 4 tet + local face
   std::size_t n_overused = 0, n_same_side = 0;
@@ -291,15 +270,13 @@ struct BlockFaces {
 void count_faces(const std::vector<Tet>& C, const TetsByVertex& tets, int v, int local, std::vector<FaceUse>& uses,
                  BlockFaces& result) {
   uses.clear();
-  for (const auto& t : tets.least(local)) add_faces(C[t.tet], static_cast<std::size_t>(t.tet), v, uses);
-  for (const auto& t : tets.second(local)) add_faces(C[t.tet], static_cast<std::size_t>(t.tet), v, uses);
-  std::sort(uses.begin(), uses.end(), [](const FaceUse& x, const FaceUse& y) { return x.rest < y.rest; });
-  for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
-    while (j < uses.size() && uses[j].rest == uses[i].rest) ++j;
-    if (j - i == 1) result.single.push_back(static_cast<std::int64_t>(uses[i].source / 2));
-    if (j - i == 2) result.n_same_side += uses[i].reversed() == uses[i + 1].reversed();
-    if (j - i > 2) ++result.n_overused;
-  }
+  for (const auto& t : tets.least(local)) detail::add_faces(C[t.tet], static_cast<std::size_t>(t.tet), v, uses);
+  for (const auto& t : tets.second(local)) detail::add_faces(C[t.tet], static_cast<std::size_t>(t.tet), v, uses);
+  detail::for_each_face(uses, [&](std::span<const FaceUse> face) {
+    if (face.size() == 1) result.single.push_back(static_cast<std::int64_t>(face[0].place()));
+    if (face.size() == 2) result.n_same_side += face[0].reversed() == face[1].reversed();
+    if (face.size() > 2) ++result.n_overused;
+  });
 }
 
 /// 4 tet + the local face with these corners.

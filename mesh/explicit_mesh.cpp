@@ -3,26 +3,15 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "mesh/detail/face_uses.h"
 #include "mesh/orientation.h"
 
 namespace umtet {
-namespace {
-
-/// Place of the even rotation of a face that begins with its least vertex: two tets at a face see opposite ones.
-Triangle rotated(Triangle face) {
-  std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
-  return face;
-}
-
-Triangle face_of(const Tet& tet, int k) {
-  return rotated({tet[kTetFace[k][0]], tet[kTetFace[k][1]], tet[kTetFace[k][2]]});
-}
-
-}  // namespace
 
 ExplicitMesh::ExplicitMesh(TetMesh mesh) : mesh_(std::move(mesh)) {
   check_tets();
@@ -61,23 +50,22 @@ void ExplicitMesh::find_stars() {
 void ExplicitMesh::find_neighbors() {
   neighbor_.assign(4 * mesh_.C.size(), -1);
   on_rim_.assign(mesh_.V.size(), false);
-  for (int t = 0; t < static_cast<int>(mesh_.C.size()); ++t) {
-    for (int k = 0; k < 4; ++k) {
-      const Triangle face = face_of(mesh_.C[t], k), seen_from_behind = rotated({face[0], face[2], face[1]});
-      int& behind = neighbor_[4 * static_cast<std::size_t>(t) + k];
-      for (const int other : star(face[0])) {
-        for (int j = 0; other != t && j < 4; ++j) {
-          const Triangle there = face_of(mesh_.C[other], j);
-          if (there == face || (there == seen_from_behind && behind >= 0)) {
-            throw std::invalid_argument("tets " + std::to_string(t) + " and " + std::to_string(other) +
-                                        ": on one side of a face, or a third at it");
-          }
-          if (there == seen_from_behind) behind = other;
-        }
+  std::vector<detail::FaceUse> uses;
+  for (int v = 0; v < static_cast<int>(mesh_.V.size()); ++v) {
+    uses.clear();
+    for (const int t : star(v)) detail::add_faces(mesh_.C[t], static_cast<std::size_t>(t), v, uses);
+    detail::for_each_face(uses, [&](std::span<const detail::FaceUse> face) {
+      const detail::FaceUse &one = face.front(), &other = face.back();
+      if (face.size() == 1) {
+        on_rim_[v] = on_rim_[one.low()] = on_rim_[one.high()] = true;
+      } else if (face.size() == 2 && one.reversed() != other.reversed()) {
+        neighbor_[one.place()] = other.tet();
+        neighbor_[other.place()] = one.tet();
+      } else {
+        throw std::invalid_argument("tets " + std::to_string(one.tet()) + " and " + std::to_string(other.tet()) +
+                                    ": on one side of a face, or a third at it");
       }
-      if (behind >= 0) continue;
-      for (const int v : face) on_rim_[v] = true;
-    }
+    });
   }
 }
 

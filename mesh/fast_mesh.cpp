@@ -32,7 +32,8 @@ using detail::IdSet;
 using detail::Offenders;
 
 // In place of the least gains of smoothing, if these are less, for a mesh that begins from the one before. A ball that
-// drifts a quarter cell a step: .95 of the visits of 3e-4 and least Q .832 (.834); with 1e-3 it is .92 and .828, anew .833.
+// drifts a quarter cell a step: .95 of the visits of 3e-4 and least Q .832 (.834); with 1e-3 it is .92 and .828, anew
+// .833.
 constexpr double kUpdateLeastGain = 6e-4;
 constexpr std::size_t kVerticesPerTask = 1 << 14;  // to compare places, a nanosecond each
 
