@@ -13,10 +13,10 @@ struct EdgeLength {
 
 /// The edge length of the background mesh.
 ///
-/// mesh.h if given; else the h that makes about mesh.tets tets; else that of h_for_deviation() for mesh.max_deviation, at
-/// most a tenth of the diagonal; else min(.015 diagonal, t / 2.2), where t is the thickness that 1 % of the samples fall
-/// below (a formula: .015 diagonal of its box); where t / 2.2 makes more than about 1.15 million tets, up to t / 1.9
-/// instead. The last two make no more than about mesh.max_tets tets.
+/// mesh.h if given; else the h that makes about mesh.tets tets; else that of h_for_deviation() for mesh.max_deviation,
+/// at most a tenth of the diagonal; else min(.015 diagonal, t / 2.2), where t is the thickness that 1 % of the samples
+/// fall below (a formula: .015 diagonal of its box); where t / 2.2 makes more than about 1.15 million tets, up to t
+/// / 1.9 instead. The last two make no more than about mesh.max_tets tets.
 /// @param domain  where psi has to be cut to choose h, it stays cut
 /// \throw ResourceLimit      mesh.h or mesh.max_deviation asks for more than mesh.max_tets tets
 /// \throw MeshingImpossible  psi < 0 nowhere, or an h below least_h_in_file()

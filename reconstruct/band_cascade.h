@@ -9,12 +9,12 @@
 namespace umtet {
 
 struct BandReport {
-  double spacing = 0;           ///< of the level's lattice, model units
-  double smoothing = 0;         ///< c used
-  std::size_t n_samples = 0;    ///< merged samples that were fitted
-  std::size_t n_nodes = 0;      ///< unknowns
+  double spacing = 0;         ///< of the level's lattice, model units
+  double smoothing = 0;       ///< c used
+  std::size_t n_samples = 0;  ///< merged samples that were fitted
+  std::size_t n_nodes = 0;    ///< unknowns
   int iterations = 0;
-  double residual = 1;          ///< reached, relative, in the norm of D^-1
+  double residual = 1;  ///< reached, relative, in the norm of D^-1
   bool converged = true;
 };
 

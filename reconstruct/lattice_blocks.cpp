@@ -7,9 +7,8 @@ namespace umtet {
 LatticeBlocks::LatticeBlocks(const Lattice& lattice, int half_width, std::vector<Eigen::Vector3i> blocks)
     : lattice_(lattice), shift_(half_width - 1), blocks_(std::move(blocks)) {
   n_ = (lattice.n.array() + shift_ + kEdge - 1) / kEdge;
-  std::erase_if(blocks_, [&](const Eigen::Vector3i& b) {
-    return (b.array() < 0).any() || (b.array() >= n_.array()).any();
-  });
+  std::erase_if(blocks_,
+                [&](const Eigen::Vector3i& b) { return (b.array() < 0).any() || (b.array() >= n_.array()).any(); });
   const auto key = [](const Eigen::Vector3i& b) { return std::array{b[2], b[1], b[0]}; };
   std::sort(blocks_.begin(), blocks_.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
   blocks_.erase(std::unique(blocks_.begin(), blocks_.end()), blocks_.end());

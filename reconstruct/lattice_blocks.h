@@ -12,8 +12,8 @@ namespace umtet {
 
 /// A set of blocks of 8 x 8 x 8 nodes of a lattice: storage for coefficients near a surface only.
 ///
-/// Block (bx, by, bz) holds the nodes 8 b - shift .. 8 b - shift + 7 of each axis, with shift = R - 1. The functions that
-/// live in the cells 8 b .. 8 b + 7 then belong to the blocks b and b + 1 of each axis and to no others.
+/// Block (bx, by, bz) holds the nodes 8 b - shift .. 8 b - shift + 7 of each axis, with shift = R - 1. The functions
+/// that live in the cells 8 b .. 8 b + 7 then belong to the blocks b and b + 1 of each axis and to no others.
 class LatticeBlocks {
  public:
   static constexpr int kEdge = 8, kNodes = kEdge * kEdge * kEdge;
@@ -31,9 +31,7 @@ class LatticeBlocks {
     return index_[block[0] + static_cast<std::size_t>(n_[0]) * (block[1] + static_cast<std::size_t>(n_[1]) * block[2])];
   }
   /// The first node of a block; may be negative for blocks at the wall.
-  Eigen::Vector3i first_node(int index) const {
-    return kEdge * blocks_[index] - Eigen::Vector3i::Constant(shift_);
-  }
+  Eigen::Vector3i first_node(int index) const { return kEdge * blocks_[index] - Eigen::Vector3i::Constant(shift_); }
   int shift() const { return shift_; }
   /// Blocks along each axis that cover the lattice.
   const Eigen::Vector3i& n_blocks() const { return n_; }
@@ -41,8 +39,9 @@ class LatticeBlocks {
   /// The 27 blocks around a block, itself in the middle, x fastest; -1 where there is none.
   std::array<int, 27> neighbours(int index) const;
 
-  /// Copies the box of nodes first .. first + n - 1 of values stored by block (kNodes each, x fastest) to `out`, x fastest
-  /// with rows of `row` values; zero where there is no block. False when all of the box is zero for that reason.
+  /// Copies the box of nodes first .. first + n - 1 of values stored by block (kNodes each, x fastest) to `out`, x
+  /// fastest with rows of `row` values; zero where there is no block. False when all of the box is zero for that
+  /// reason.
   template <class T, class Out>
   bool copy_window(const T* values, const Eigen::Vector3i& first, const Eigen::Vector3i& n, int row, Out* out) const;
 
@@ -70,12 +69,13 @@ bool LatticeBlocks::copy_window(const T* values, const Eigen::Vector3i& first, c
         any = any || block >= 0;
         for (int z = low[2]; z < high[2]; ++z)
           for (int y = low[1]; y < high[1]; ++y) {
-            Out* to = out + (low[0] - begin[0]) + row * ((y - begin[1]) + static_cast<std::ptrdiff_t>(n[1]) * (z - begin[2]));
+            Out* to =
+                out + (low[0] - begin[0]) + row * ((y - begin[1]) + static_cast<std::ptrdiff_t>(n[1]) * (z - begin[2]));
             if (block < 0) {
               std::fill(to, to + count, Out(0));
             } else {
-              const T* from = values + static_cast<std::size_t>(block) * kNodes +
-                              ((z & 7) * kEdge + (y & 7)) * kEdge + (low[0] & 7);
+              const T* from = values + static_cast<std::size_t>(block) * kNodes + ((z & 7) * kEdge + (y & 7)) * kEdge +
+                              (low[0] & 7);
               std::copy(from, from + count, to);
             }
           }

@@ -161,8 +161,9 @@ Eigen::Vector3d SsdOperator::energies(const double* c, std::vector<double>& work
       LmeBasis3d B;
       evaluate_lme_3d<false>(*tables_, n_, s.xi, B);
       const LatticeJet f = contract<W.value, kGradient>(B, n_, c);
-      slab_sum[slab] +=
-          Eigen::Vector2d(s.w_value * std::pow(f.value - s.value, 2), s.w_gradient * (f.gradient - s.normal).squaredNorm()) / 2;
+      slab_sum[slab] += Eigen::Vector2d(s.w_value * std::pow(f.value - s.value, 2),
+                                        s.w_gradient * (f.gradient - s.normal).squaredNorm()) /
+                        2;
     });
   });
   Eigen::Vector3d e = Eigen::Vector3d::Zero();

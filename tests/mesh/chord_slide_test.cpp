@@ -98,12 +98,8 @@ TEST(ChordSlide, TheSameBytesForAnyNumberOfThreads) {
 
 TEST(ChordSlide, NamesEveryBrokenConstraint) {
   EXPECT_TRUE(problems(ChordParams{}).empty());
-  const ChordParams wrong{.least_chord = 0,
-                          .least_quality = 1,
-                          .near_margin = -1,
-                          .far_chord = -1,
-                          .sweeps = -1,
-                          .inner_sweeps = -1};
+  const ChordParams wrong{
+      .least_chord = 0, .least_quality = 1, .near_margin = -1, .far_chord = -1, .sweeps = -1, .inner_sweeps = -1};
   EXPECT_EQ(problems(wrong).size(), 6u);
 }
 

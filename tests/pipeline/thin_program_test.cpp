@@ -44,8 +44,7 @@ TEST_F(Program, WhatIsTooThinForAGivenHIsNamed) {
 
 TEST_F(Program, ThinPlacesThatComeOutRightAreNamedInTheCertificate) {
   // The rim is thinner than 1.25 h.
-  const Result r =
-      run("mesh --implicit 'x^2+y^2+(z/0.25)^2-1' --box=-1.6,-1.6,-.9,1.6,1.6,.9 -o lens --h .3 --json");
+  const Result r = run("mesh --implicit 'x^2+y^2+(z/0.25)^2-1' --box=-1.6,-1.6,-.9,1.6,1.6,.9 -o lens --h .3 --json");
   EXPECT_EQ(r.code, 0) << r.err;
   const Json places = Json::parse(r.out)["certificate"]["resolution"]["too_thin"];
   ASSERT_FALSE(places.empty());

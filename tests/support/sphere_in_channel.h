@@ -38,8 +38,8 @@ struct SphereInChannel {
 /// walls: 1 / (1 - 1.903266 a / l), to first order in a / l [HappelBart1974]; `drag_in_duct` finds 1.900.
 inline double wall_corrected_drag(double a_over_l) { return 1 / (1 - 1.903266 * a_over_l); }
 
-/// The same on the axis of a circular cylinder of radius R, lambda = a / R up to about .8 [HabermanSayre1958]. Drag in a
-/// container is at least that in a larger one (least dissipation).
+/// The same on the axis of a circular cylinder of radius R, lambda = a / R up to about .8 [HabermanSayre1958]. Drag in
+/// a container is at least that in a larger one (least dissipation).
 inline double drag_in_cylinder(double lambda) {
   const double l3 = lambda * lambda * lambda, l5 = l3 * lambda * lambda;
   return (1 - .75857 * l5) / (1 - 2.105 * lambda + 2.0865 * l3 - 1.7068 * l5 + .72603 * l3 * l3);
