@@ -76,7 +76,8 @@ TetMesh a15_box(const Box& box, double h) {
   });
 
   TetMesh mesh;
-  mesh.V.reserve(used.index());
+  const std::size_t n_vertices = used.index();  // and prepares rank()
+  mesh.V.reserve(n_vertices);
   used.for_each([&](std::int64_t v) {
     const Place p = {v % sides[0], v / sides[0] % sides[1], v / (sides[0] * sides[1])};
     Vec3 x;

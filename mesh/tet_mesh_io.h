@@ -36,7 +36,7 @@ class MeshFileRefused : public std::runtime_error {
 };
 
 /// The mesh with the data every mesh of this project carries: point data `boundary` (0/1) and `background_vertex`,
-/// cell data `mean_ratio` and `background_tet`. Empty id vectors are left out.
+/// cell data `mean_ratio` (-1 where it is not a number) and `background_tet`. Empty id vectors are left out.
 /// \throw std::invalid_argument when a size does not match or an index is out of range
 MeshFile with_standard_data(TetMesh mesh, std::vector<std::int64_t> background_vertex,
                             std::vector<std::int64_t> background_tet);

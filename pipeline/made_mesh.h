@@ -21,7 +21,7 @@ inline constexpr const char* kAtWall = "wall";
 /// What the file of omega_h with its vertices at V holds: model coordinates, ids of the background, walls.
 MeshFile mesh_content(const Domain& domain, const UmResult& result, const std::vector<Vec3>& V);
 
-/// The same mesh at another stage, its vertices at V.
+/// The same mesh at another stage, its vertices at V. \pre as many as it has, and no support yet
 void move_to(const Domain& domain, const std::vector<Vec3>& V, MeshFile& content);
 
 /// Distances of some vertices to their nearest samples, into their places of `support`. \throw MeshCancelled

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
 #include "mesh/quality_report.h"
 #include "pipeline/artefact.h"
 #include "pipeline/made_mesh.h"
@@ -33,10 +37,9 @@ class QualityCurves {
     of_mesh_.push_back({stage, std::move(all)});
     of_boundary_.push_back({"boundary_" + stage, std::move(boundary)});
   }
-  std::vector<QualityCurve> all() const {
-    std::vector<QualityCurve> curves = of_mesh_;
-    curves.insert(curves.end(), of_boundary_.begin(), of_boundary_.end());
-    return curves;
+  std::vector<QualityCurve> all() && {
+    std::move(of_boundary_.begin(), of_boundary_.end(), std::back_inserter(of_mesh_));
+    return std::move(of_mesh_);
   }
 
  private:
@@ -83,7 +86,7 @@ std::vector<std::string> write_mesh_outputs(const StageContext& context, const D
     names.emplace_back("iterates.pvd");
   }
   write_artefact(folder / "quality.csv",
-                 [&](const fs::path& temporary) { write_quality_csv(temporary, curves.all()); });
+                 [all = std::move(curves).all()](const fs::path& temporary) { write_quality_csv(temporary, all); });
   names.emplace_back("quality.csv");
   if (!best.thin.empty()) {
     write_thin_places(folder / "too_thin.vtp", best.thin, domain.shift);

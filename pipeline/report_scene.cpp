@@ -1,7 +1,6 @@
 #include "pipeline/report_scene.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
@@ -90,8 +89,10 @@ class SceneMaker {
 void SceneMaker::take_faces(const SolverMesh& divided) {
   face_tet_ = divided.face_tet;
   for (std::size_t f = 0; f < face_tet_.size(); ++f) {
-    const std::array<int, 6> face = divided.face(f);
-    faces_.push_back({face[0], face[1], face[2], mesh_.C[face_tet_[f]][divided.face_opposite[f]]});
+    const Tet& tet = mesh_.C[face_tet_[f]];
+    const int behind = divided.face_opposite[f];
+    const auto& [a, b, c] = kTetFace[behind];
+    faces_.push_back({tet[a], tet[b], tet[c], tet[behind]});
   }
   take_patches(divided);
   scene_.head["n_faces"] = faces_.size();

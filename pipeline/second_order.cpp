@@ -1,6 +1,7 @@
 #include "pipeline/second_order.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "pipeline/artefact.h"

@@ -18,7 +18,11 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLeast2 = 1e-80, kGreatest2 = 1e80;
 
 Lane all_lanes(double a) { return Lane{a, a, a, a}; }
-Lane magnitude(Lane a) { return a < 0 ? -a : a; }
+/// Without a sign, of zeros too: 1 / |V| of a flat tet is positive.
+Lane magnitude(Lane a) {
+  using Bits = std::int64_t __attribute__((vector_size(8 * kLanes)));
+  return (Lane)((Bits)a & std::numeric_limits<std::int64_t>::max());
+}
 /// @param mask  as comparisons give it: -1 or 0 a lane
 template <class Mask>
 bool is_all(Mask mask) {
@@ -98,7 +102,7 @@ TetLanes measure_tet_lanes(const TetMesh& mesh, const Tet* tets, int count) {
   const Lane3 b = {p1 - p0, p3 - p2, p5 - p4}, c = u.cross(w), d = v.cross(u);  // outward, opposite to each vertex
   const Lane3 a = {-(b.x + c.x + d.x), -(b.y + c.y + d.y), -(b.z + c.z + d.z)};
   TetLanes result;
-  result.volume6 = -u.dot(b);
+  result.volume6 = 0 - u.dot(b);  // never -0, nor is Q
   const Lane permanent = magnitude(u.x) * (magnitude(p0) + magnitude(p1)) +
                          magnitude(u.y) * (magnitude(p2) + magnitude(p3)) +
                          magnitude(u.z) * (magnitude(p4) + magnitude(p5));

@@ -64,6 +64,17 @@ TEST(TetLanes, AgreeWithWhatIsMeasuredOfOneTet) {
   EXPECT_LT(n_inverted, 1500u);
 }
 
+TEST(TetLanes, ATetWithTwoCornersAtOnePlaceHasAnAngleOfZero) {
+  for (int k = 1; k < 4; ++k) {
+    TetMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}};
+    mesh.V[k] = mesh.V[0];
+    const TetLanes lanes = measure_tet_lanes(mesh, &mesh.C[0], 1);
+    EXPECT_EQ(lanes.greatest_cotangent[0], std::numeric_limits<double>::infinity()) << k;
+    EXPECT_EQ(std::signbit(lanes.quality[0]), false) << k;
+    EXPECT_TRUE(lanes.inverted[0]) << k;
+  }
+}
+
 TEST(TetLanes, WhatIsFoundOfATetDoesNotDependOnTheOthers) {
   TetMesh mesh = random_tets(7);
   mesh.V[9] = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());  // of tet 2
