@@ -238,8 +238,11 @@ class ClosedVertices {
  public:
   void clear() { closed_.fill(false); }
   void insert(int v) { closed_[v] = true; }
-  /// Whether v is closed because one before it is.
-  bool follows(const TetsByVertex& tets, int v) {
+  /// Inserts v if its faces are those of a member before it. @return whether they are
+  bool insert_copy(const TetsByVertex& tets, int v) { return closed_[v] = repeats(tets, v); }
+
+ private:
+  bool repeats(const TetsByVertex& tets, int v) {
     const auto is_copy = [&](int step) { return step <= v && closed_[v - step] && tets.is_shifted(v, v - step); };
     if (is_copy(step_)) return true;
     if (++n_others_ % kOthersPerSearch != 0) return false;
@@ -251,7 +254,6 @@ class ClosedVertices {
     return false;
   }
 
- private:
   // A lattice has one step, and it is soon found; where there is none, searches cost next to nothing.
   static constexpr int kMostSteps = 32;
   static constexpr unsigned kOthersPerSearch = 16;
@@ -314,9 +316,8 @@ BoundaryFaces boundary_faces(const std::vector<Tet>& C, std::size_t n_vertices, 
     for (int k = 0; k < n; ++k) {
       const int v = first + k;
       if (only && (*only)[v] == 0) continue;
-      if (closed.follows(tets, k)) {
-        closed.insert(k);
-      } else if (!link.is_simple(tets.least(k), tets.second(k))) {
+      if (closed.insert_copy(tets, k)) continue;
+      if (!link.is_simple(tets.least(k), tets.second(k))) {
         count_faces(C, tets, v, k, uses, blocks[b]);
       } else if (link.is_closed()) {
         closed.insert(k);
