@@ -13,7 +13,8 @@
 namespace umtet::detail {
 namespace {
 
-// Flips reach two rings, 1.3 cells of A15; bricks of one colour are this many cells apart.
+// Bricks of one colour are this many cells apart. No edge of a tiling is longer than half a cell along an axis, so that
+// is nine rings; changing the labels of a vertex and a neighbour reaches three, and seven are enough.
 constexpr std::int64_t kBrick = 4;
 // Feet from farther away may be on another sheet, and those closer together, in h, say little about curvature.
 constexpr float kFarthestFoot = 1.8F;
@@ -181,7 +182,7 @@ void LabelBand::measure(const KeepGoing& keep_going) {
   phi.resize(n);
   foot.resize(n);
   normal.resize(n);
-  movable_.assign(n, 0);
+  movable.assign(n, 0);
   polled_parallel_for(n, kValuesPerPoll, keep_going, [&](std::size_t v) {
     const bool complete = find_link(v);
     // A vertex without its whole link in the band is there to complete the masks of others.
@@ -190,7 +191,7 @@ void LabelBand::measure(const KeepGoing& keep_going) {
       return;
     }
     find_foot(v);
-    movable_[v] = complete && phi[v] >= -params_.reach_in && phi[v] <= params_.reach_out && !background_.on_rim(id[v]);
+    movable[v] = complete && phi[v] >= -params_.reach_in && phi[v] <= params_.reach_out && !background_.on_rim(id[v]);
   });
 }
 
@@ -202,7 +203,7 @@ bool LabelBand::has_foot(int v) const { return std::abs(phi[v]) < kFarthestFoot;
 void LabelBand::hold_where_stretched(const KeepGoing& keep_going) {
   const double most = 1 - 1 / params_.most_stretch, apart = kApart * background_.h();
   polled_parallel_for(size(), kValuesPerPoll, keep_going, [&](std::size_t v) {
-    if (!movable_[v]) return;
+    if (!movable[v]) return;
     double kappa = 0;
     for (int k = 0; k < links_[type[v]].n; ++k) {
       const int w = link(v)[static_cast<std::size_t>(k)];
@@ -211,7 +212,7 @@ void LabelBand::hold_where_stretched(const KeepGoing& keep_going) {
       if (between.norm() < apart) continue;
       kappa = std::max(kappa, (phi[v] > 0 ? -1 : 1) * between.dot(normal[w] - normal[v]) / between.squaredNorm());
     }
-    if (kappa * std::abs(phi[v]) * unit(v) > most) movable_[v] = 0, held[v] = 1;
+    if (kappa * std::abs(phi[v]) * unit(v) > most) movable[v] = 0, held[v] = 1;
   });
 }
 
@@ -222,18 +223,18 @@ void LabelBand::make_bricks() {
   std::vector<std::uint32_t> brick(size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, size(), kVerticesPerTask), [&](const auto& range) {
     for (std::size_t v = range.begin(); v != range.end(); ++v) {
-      if (!movable_[v]) continue;
+      if (!movable[v]) continue;
       const auto cell = background_.cell(id[v]);
       const std::int64_t i = (cell[0] + 1) / kBrick, j = (cell[1] + 1) / kBrick, k = (cell[2] + 1) / kBrick;
       brick[v] = static_cast<std::uint32_t>(i + nx * (j + ny * k));
     }
   });
   std::vector<std::uint32_t> end(static_cast<std::size_t>(nx * ny * nz) + 1, 0);
-  for (std::size_t v = 0; v < size(); ++v) end[brick[v] + 1] += movable_[v];
+  for (std::size_t v = 0; v < size(); ++v) end[brick[v] + 1] += movable[v];
   std::partial_sum(end.begin(), end.end(), end.begin());
   order.resize(end.back());
   for (std::uint32_t v = 0; v < size(); ++v) {
-    if (movable_[v]) order[end[brick[v]]++] = v;
+    if (movable[v]) order[end[brick[v]]++] = v;
   }
   std::uint32_t begin = 0;
   for (std::size_t b = 0; b + 1 < end.size(); begin = end[b++]) {

@@ -39,12 +39,13 @@ class LabelBand {
   std::span<const int> link(std::size_t v) const { return {ranks_.data() + first_[v], first_[v + 1] - first_[v]}; }
   std::vector<std::uint16_t> type;
   std::vector<std::uint8_t> label;
-  std::vector<std::uint8_t> held;  ///< its label stays because of most_stretch
+  std::vector<std::uint8_t> movable;  ///< its label may change
+  std::vector<std::uint8_t> held;     ///< its label stays because of most_stretch
   std::vector<LinkMask> mask;
   std::vector<float> phi;                    ///< signed distance in LinkTopology::unit
   std::vector<Vec3> foot, normal;            ///< on psi = 0 and there; not set at the band's edge
-  std::vector<std::uint32_t> order;          ///< vertices whose label may change, brick by brick
-  std::array<std::vector<Brick>, 8> bricks;  ///< per colour: vertices of two bricks of one have no neighbour in common
+  std::vector<std::uint32_t> order;          ///< movable vertices, brick by brick
+  std::array<std::vector<Brick>, 8> bricks;  ///< per colour: vertices of two bricks of one are nine rings apart
   std::atomic<std::size_t> psi_evaluations{0};
 
  private:
@@ -70,7 +71,6 @@ class LabelBand {
   const PsiValues* known_;
   LinkSteps steps_;
   IdSet band_;
-  std::vector<std::uint8_t> movable_;
   std::vector<int> known_at_;       ///< where in known_ a vertex is, or -1; empty without
   std::vector<std::size_t> first_;  ///< into ranks_
   std::vector<int> ranks_;

@@ -3,9 +3,13 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <initializer_list>
+#include <set>
 
+#include "mesh/body_size.h"
 #include "mesh/certificate.h"
 #include "mesh/detail/assemble_submesh.h"
 #include "mesh/detail/label_band.h"
@@ -139,6 +143,131 @@ TEST(Labels, LowerThePriceOfTheBoundary) {
   const Labelled labelled = choose(background, domain);
   EXPECT_TRUE(labelled.report.settled);
   EXPECT_LT(price(labelled.chosen), .8 * price(labelled.plain));
+}
+
+/// Changes labels and prices them, without the descent's shortcuts.
+class Pricing {
+ public:
+  /// @param last  labels of a mesh before, or null
+  Pricing(const BackgroundMesh& background, const AnalyticDomain& domain, const Labelled& labelled,
+          const detail::IdSet* last = nullptr)
+      : band_(background, a15_links(), domain, params_, labelled.plain, {}), last_(last) {}
+
+  void take(const detail::IdSet& inside) {
+    for (int v = 0; v < static_cast<int>(band_.size()); ++v) {
+      if ((band_.label[v] != 0) != inside.test(band_.id[v])) change(v);
+    }
+  }
+
+  /// How many changes of a label (or of those of two neighbours) would lower the energy, by `keep` where they leave the
+  /// labels of last.
+  int n_better_singles() {
+    int n = 0;
+    for (const std::uint32_t v : band_.order) n += is_better({static_cast<int>(v)});
+    return n;
+  }
+  int n_better_pairs() {
+    int n = 0;
+    for (const std::uint32_t v : band_.order) {
+      for (const int w : band_.link(v)) {
+        if (band_.movable[w]) n += is_better({static_cast<int>(v), w});
+      }
+    }
+    return n;
+  }
+
+ private:
+  static constexpr double kRounding = 2e-3;
+
+  void change(int v) {
+    band_.label[v] ^= 1;
+    for (std::size_t k = 0; k < band_.link(v).size(); ++k) {
+      if (const int w = band_.link(v)[k]; w >= 0) {
+        band_.mask[w] ^= LinkMask{1} << a15_links()[band_.type[v]].back[k];
+      }
+    }
+  }
+
+  LinkState state(int v) const { return a15_links()[band_.type[v]].state(band_.mask[v]); }
+
+  double price(int v) const {
+    const double phi = band_.phi[v];
+    if (band_.label[v]) {
+      return params_.inside_weight * std::pow(std::max(0., phi + params_.inside_depth), 2);
+    }
+    if (band_.mask[v] == 0) return 0;
+    return a15_label_energies()(a15_links()[band_.type[v]].site, state(v)) +
+           params_.outside_weight * std::pow(phi - params_.outside_height, 2);
+  }
+
+  bool is_better(std::initializer_list<int> vertices) {
+    double least = kRounding;
+    for (const int v : vertices) {
+      const bool as_before = last_ && (band_.label[v] != 0) == last_->test(band_.id[v]);
+      if (as_before) least = params_.keep + kRounding;
+    }
+    return gain(vertices) > least;
+  }
+
+  /// Minus the change of energy; 0 where the topology of inside, outside or boundary would change.
+  double gain(std::initializer_list<int> vertices) {
+    std::set<int> touched(vertices);
+    for (const int v : vertices) touched.insert(band_.link(v).begin(), band_.link(v).end());
+    const auto sum = [&] {
+      double prices = 0;
+      for (const int v : touched) prices += price(v);
+      return prices;
+    };
+    const auto manifold = [&](int v) { return band_.label[v] || band_.mask[v] == 0 || state(v).manifold; };
+    const double before = sum();
+    bool keeps_topology = true;
+    for (const int v : vertices) {
+      keeps_topology &= state(v).simple;
+      change(v);
+      keeps_topology &= std::all_of(touched.begin(), touched.end(), manifold);
+    }
+    const double after = sum();
+    for (const int v : vertices) change(v);
+    return keeps_topology ? before - after : 0;
+  }
+
+  LabelParams params_;
+  detail::LabelBand band_;
+  const detail::IdSet* last_;
+};
+
+TEST(Labels, NoChangeOfOneOrOfTwoNeighboursIsBetter) {
+  for (const AnalyticDomain& domain : {testing::sphere(), testing::torus()}) {
+    SCOPED_TRACE(domain.name);
+    const BackgroundMesh background = background_of(domain, 6000);
+    const Labelled labelled = choose(background, domain);
+    ASSERT_EQ(labelled.report.thin, 0u);
+    Pricing pricing(background, domain, labelled);
+    EXPECT_GT(pricing.n_better_singles(), 50);
+    EXPECT_GT(pricing.n_better_pairs(), 50);
+    pricing.take(labelled.chosen);
+    EXPECT_EQ(pricing.n_better_singles(), 0);
+    EXPECT_EQ(pricing.n_better_pairs(), 0);
+  }
+}
+
+TEST(Labels, NoChangeIsBetterByMoreThanKeepWhereItLeavesTheLabelsBefore) {
+  const AnalyticDomain before = testing::torus();
+  const BackgroundMesh background = background_of(before, 60000);
+  AnalyticDomain after = before;
+  after.psi = [&before, step = .2 * background.h()](const Vec3& x, Vec3* g, Mat3* H) {
+    return before.psi(x - Vec3(0, 0, step), g, H);
+  };
+  const detail::IdSet last = choose(background, before).chosen;
+  Labelled labelled = choose(background, after);
+  detail::IdSet inside = labelled.plain;
+  choose_labels(background, a15_links(), after, {}, inside, {}, &last);
+  Pricing with_keep(background, after, labelled, &last), without(background, after, labelled);
+  with_keep.take(inside);
+  without.take(inside);
+  EXPECT_EQ(with_keep.n_better_singles(), 0);
+  EXPECT_EQ(with_keep.n_better_pairs(), 0);
+  EXPECT_GT(without.n_better_singles() + without.n_better_pairs(), 0);
 }
 
 TEST(Labels, StayNearTheBoundary) {
