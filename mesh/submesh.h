@@ -34,18 +34,4 @@ inline bool is_positively_cut(unsigned inside) { return inside == 1 || inside ==
 Submesh find_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi,
                      std::size_t* n_psi_evaluations = nullptr, const KeepGoing& keep_going = {});
 
-/// About how many tets omega_h will have at mean edge length h: the volume and the area of the boundary, read off a
-/// coarse sampling of psi, in the count 46 (volume + .27 a area) / a^3 for an A15 of cell edge a, and as much more or
-/// less as the tiling has tets a volume. 0 when no sample lies inside. Within 10 % when the features of the domain
-/// exceed 1/64 of the longest side of its own box; that is looked for in `box` first, so the domain must exceed 1/64 of
-/// the longest side of `box` there. Cost: at most 2 * 65^3 values of psi. \throw std::invalid_argument for h <= 0 or an
-/// empty box
-double expected_tets(const Tiling& tiling, ImplicitFunctionRef psi, const Box& box, double h);
-double expected_tets(ImplicitFunctionRef psi, const Box& box, double h);  ///< for A15
-
-/// A mean edge length h at which omega_h has about n_tets tets, by the same count.
-/// \throw std::invalid_argument for n_tets <= 0, an empty box, or when no sample lies inside
-double h_for_tets(const Tiling& tiling, ImplicitFunctionRef psi, const Box& box, double n_tets);
-double h_for_tets(ImplicitFunctionRef psi, const Box& box, double n_tets);  ///< for A15
-
 }  // namespace umtet

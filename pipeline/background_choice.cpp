@@ -7,7 +7,6 @@
 #include <string>
 
 #include "mesh/a15_box.h"
-#include "mesh/submesh.h"
 #include "mesh/tet_mesh_io.h"
 #include "pipeline/exit_code.h"
 #include "pipeline/memory.h"
@@ -42,8 +41,14 @@ void require_walls(const Parameters& parameters) {
   throw UsageError("--complement needs --box-walls: what is around the body ends at the flat walls of --box");
 }
 
+LabelSource label_source(const Parameters& parameters) {
+  const bool chosen =
+      parameters.text("mesh.mode") == "fast" && !parameters.flag("mesh.box_walls") && !background_file(parameters);
+  return chosen ? LabelSource::Chosen : LabelSource::Psi;
+}
+
 BackgroundChoice::BackgroundChoice(const Parameters& parameters, const Domain& domain)
-    : tiling_(&a15()), walls_(parameters.flag("mesh.box_walls")) {
+    : tiling_(&a15()), labels_(label_source(parameters)), walls_(parameters.flag("mesh.box_walls")) {
   require_walls(parameters);
   const std::optional<fs::path> file = background_file(parameters);
   if (!file) tiling_ = &tiling_named(parameters.text("mesh.background"));
@@ -54,9 +59,13 @@ BackgroundChoice::BackgroundChoice(const Parameters& parameters, const Domain& d
   given_.emplace(read_background(*file, domain.shift));
 }
 
+double BackgroundChoice::expected_tets(const Domain& domain, double h) const {
+  return umtet::expected_tets(*tiling_, domain.size(), h, labels_);
+}
+
 BackgroundMesh BackgroundChoice::make(const Domain& domain, double h, std::int64_t n_tets, double allowed) const {
   const auto expected = [&](const BackgroundMesh& background) {
-    const double n = n_tets > 0 ? static_cast<double>(n_tets) : expected_tets(*tiling_, domain.size(), h);
+    const double n = n_tets > 0 ? static_cast<double>(n_tets) : expected_tets(domain, h);
     return std::min(n, static_cast<double>(background.n_tets()));
   };
   try {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "mesh/background_mesh.h"
+#include "mesh/body_size.h"
 #include "pipeline/domain.h"
 #include "pipeline/parameters.h"
 
@@ -16,6 +17,10 @@ std::optional<std::filesystem::path> background_file(const Parameters&);
 /// \throw UsageError for mesh.box_walls with another background than a15, or mesh.complement without mesh.box_walls
 void require_walls(const Parameters&);
 
+/// Whose labels a mesh of these parameters has: fast mode chooses them in backgrounds that are a tiling and have no
+/// walls.
+LabelSource label_source(const Parameters&);
+
 /// What --background and --box-walls ask for: a lattice or a box of any edge length, or a mesh that has its own.
 class BackgroundChoice {
  public:
@@ -26,6 +31,8 @@ class BackgroundChoice {
 
   /// That of the file.
   std::optional<double> own_h() const { return given_ ? std::optional(given_->h()) : std::nullopt; }
+  /// About how many tets of it are taken.
+  double expected_tets(const Domain& domain, double h) const;
   /// @param n_tets  that were asked for, or 0
   /// @param allowed  bytes
   /// \throw ResourceLimit
@@ -34,6 +41,7 @@ class BackgroundChoice {
  private:
   std::optional<BackgroundMesh> given_;
   const Tiling* tiling_;  ///< that the number of tets is estimated by, for a file too
+  LabelSource labels_;
   bool walls_;
 };
 

@@ -8,9 +8,10 @@
 #include <span>
 #include <vector>
 
+#include "mesh/body_size.h"
 #include "mesh/quality_report.h"
-#include "mesh/submesh.h"
 #include "mesh/thickness.h"
+#include "pipeline/background_choice.h"
 #include "pipeline/deviation.h"
 #include "pipeline/exit_code.h"
 #include "reconstruct/resolution.h"
@@ -34,9 +35,10 @@ constexpr double kMostRounding = 1e-6;
 constexpr std::size_t kThicknessSamples = 20000;
 
 /// \throw MeshingImpossible when psi < 0 at none of the places where it is sampled
-double h_of(const Domain& domain, const Tiling& tiling, std::int64_t n_tets) {
+double h_of(const Domain& domain, const Parameters& parameters, std::int64_t n_tets) {
   try {
-    return h_for_tets(tiling, domain.size(), static_cast<double>(n_tets));
+    return h_for_tets(tiling_named(parameters.text("mesh.background")), domain.size(), static_cast<double>(n_tets),
+                      label_source(parameters));
   } catch (const std::invalid_argument& e) {
     throw MeshingImpossible(std::string("no edge length can be chosen: ") + e.what() +
                             "; give --h, or a --box around the place where psi < 0");
@@ -44,10 +46,11 @@ double h_of(const Domain& domain, const Tiling& tiling, std::int64_t n_tets) {
 }
 
 /// \throw ResourceLimit
-void refuse_too_many(const Domain& domain, const Tiling& tiling, double h, std::int64_t max_tets) {
+void refuse_too_many(const Domain& domain, const Parameters& parameters, double h) {
+  const std::int64_t max_tets = parameters.integer("mesh.max_tets");
   double least = 0;
   try {
-    least = h_of(domain, tiling, max_tets);
+    least = h_of(domain, parameters, max_tets);
   } catch (const MeshingImpossible&) {
     return;  // the domain is smaller than the grid of the estimate: so are its tets few
   }
@@ -70,10 +73,9 @@ double thin_part(const Domain& domain, double limit, const KeepGoing& keep_going
 }
 
 /// By curvature. \throw ResourceLimit
-EdgeLength by_deviation(Domain& domain, const Tiling& tiling, const Parameters& parameters, double deviation,
-                        const KeepGoing& keep_going) {
+EdgeLength by_deviation(Domain& domain, const Parameters& parameters, double deviation, const KeepGoing& keep_going) {
   const std::int64_t max_tets = parameters.integer("mesh.max_tets");
-  const double least = h_of(domain, tiling, max_tets);
+  const double least = h_of(domain, parameters, max_tets);
   const double h = h_for_deviation(domain, deviation, kMostOfDiagonal * domain.diagonal, least, keep_going);
   if (h > least) return {h, least};
   throw ResourceLimit(
@@ -84,25 +86,24 @@ EdgeLength by_deviation(Domain& domain, const Tiling& tiling, const Parameters& 
 
 /// The choice, without regard to how it will be written.
 EdgeLength choose(Domain& domain, const Parameters& parameters, const KeepGoing& keep_going) {
-  const Tiling& tiling = tiling_named(parameters.text("mesh.background"));
   if (const std::int64_t n = parameters.integer("mesh.tets")) {
-    const double h = h_of(domain, tiling, n);
+    const double h = h_of(domain, parameters, n);
     return {h, h};
   }
   const std::int64_t max_tets = parameters.integer("mesh.max_tets");
   if (const double h = parameters.real("mesh.h"); h > 0) {
-    refuse_too_many(domain, tiling, h, max_tets);
+    refuse_too_many(domain, parameters, h);
     return {h, h};
   }
   if (const double deviation = parameters.real("mesh.max_deviation"); deviation > 0) {
-    return by_deviation(domain, tiling, parameters, deviation, keep_going);
+    return by_deviation(domain, parameters, deviation, keep_going);
   }
-  const double least = h_of(domain, tiling, max_tets);
+  const double least = h_of(domain, parameters, max_tets);
   double h = kMeshEdge * domain.diagonal;
   if (domain.level_set) {
     const double t = thin_part(domain, kEdgesAcross * h, keep_going);
     if (t < kEdgesAcross * h) {
-      h = std::min(h, std::clamp(h_of(domain, tiling, kManyTets), t / kEdgesAcross, t / kLeastEdgesAcross));
+      h = std::min(h, std::clamp(h_of(domain, parameters, kManyTets), t / kEdgesAcross, t / kLeastEdgesAcross));
     }
   }
   return {std::max(h, least), least};
@@ -122,7 +123,7 @@ double coordinate_rounding(const Domain& domain) {
 }
 
 double least_h_of_max_tets(const Domain& domain, const Parameters& parameters) {
-  return h_of(domain, tiling_named(parameters.text("mesh.background")), parameters.integer("mesh.max_tets"));
+  return h_of(domain, parameters, parameters.integer("mesh.max_tets"));
 }
 
 double least_h_in_file(const Domain& domain) { return coordinate_rounding(domain) / kMostRounding; }

@@ -73,7 +73,7 @@ BackgroundMesh MeshStage::background_of(double h) {
   const Parameters& p = context_.parameters;
   BackgroundMesh made = background_.make(domain_, h, p.integer("mesh.tets"), allowed_bytes(p));
   const double n_iterates = p.flag("mesh.keep_iterates") ? static_cast<double>(p.integer("mesh.projection_passes")) : 0;
-  require_disk(context_.paths.root, (3 + n_iterates) * expected_tets(a15(), domain_.size(), h));
+  require_disk(context_.paths.root, (3 + n_iterates) * background_.expected_tets(domain_, h));
   return made;
 }
 
@@ -113,8 +113,7 @@ std::string MeshStage::remedy_for(const ThinPlaces& thin, Json& h_enough) {
     return fmt::format("that takes more than {} tets: raise --max-tets", context_.parameters.integer("mesh.max_tets"));
   }
   h_enough = enough.h;
-  return fmt::format("h = {:.3g} is enough, about {:.2g} tets", enough.h,
-                     expected_tets(a15(), domain_.size(), enough.h));
+  return fmt::format("h = {:.3g} is enough, about {:.2g} tets", enough.h, background_.expected_tets(domain_, enough.h));
 }
 
 /// Names what is too thin for the mesh that came out wrong, and writes it for the eye: beside a finished mesh where

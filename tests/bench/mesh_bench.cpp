@@ -16,6 +16,7 @@
 #include <optional>
 #include <utility>
 
+#include "mesh/body_size.h"
 #include "mesh/certificate.h"
 #include "mesh/crawl.h"
 #include "mesh/dvr.h"
@@ -187,7 +188,7 @@ void fast_mesh(benchmark::State& state) {
                                                           testing::ellipsoid({1, 1, .1})};
   const testing::AnalyticDomain& domain = domains[static_cast<std::size_t>(state.range(0))];
   const double n_tets = 1e3 * static_cast<double>(state.range(1));
-  const BackgroundMesh background(a15(), domain.box, h_for_tets(domain, domain.box, n_tets));
+  const BackgroundMesh background(a15(), domain.box, h_for_tets(domain, domain.box, n_tets, LabelSource::Chosen));
   UmParams params;
   params.mode = UmMode::Fast;
   UmResult result;
@@ -222,7 +223,7 @@ AllIn mesh_and_certify(const testing::AnalyticDomain& domain, double n_tets, int
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   const double cpu = cpu_seconds();
   const auto wall = std::chrono::steady_clock::now();
-  const BackgroundMesh background(a15(), domain.box, h_for_tets(domain, domain.box, n_tets));
+  const BackgroundMesh background(a15(), domain.box, h_for_tets(domain, domain.box, n_tets, LabelSource::Chosen));
   UmParams params;
   params.mode = UmMode::Fast;
   UmResult result = universal_mesh(background, domain, params);

@@ -5,6 +5,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "mesh/body_size.h"
 #include "mesh/closest_point.h"
 #include "mesh/tet_quality.h"
 #include "tests/support/domains.h"

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "mesh/body_size.h"
 #include "mesh/crawl.h"
 #include "mesh/detail/assemble_submesh.h"
 #include "mesh/lattice_shell.h"

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "mesh/body_size.h"
 #include "mesh/detail/assemble_submesh.h"
 #include "mesh/tet_quality.h"
 #include "mesh/universal_mesh.h"

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "mesh/body_size.h"
 #include "mesh/boundary_dvr.h"
 #include "mesh/submesh.h"
 #include "mesh/tet_quality.h"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesh/a15_box.h"
+#include "mesh/body_size.h"
 #include "mesh/crawl.h"
 #include "mesh/tet_quality.h"
 #include "mesh/universal_mesh.h"

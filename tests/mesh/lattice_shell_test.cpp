@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "mesh/body_size.h"
 #include "mesh/detail/assemble_submesh.h"
 #include "mesh/tet_quality.h"
 #include "tests/support/domains.h"

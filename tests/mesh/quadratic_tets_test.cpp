@@ -8,6 +8,7 @@
 #include <cstring>
 #include <numbers>
 
+#include "mesh/body_size.h"
 #include "mesh/jacobian_bounds.h"
 #include "mesh/second_order_certificate.h"
 #include "mesh/universal_mesh.h"

@@ -4,7 +4,6 @@
 #include <oneapi/tbb/global_control.h>
 
 #include <algorithm>
-#include <atomic>
 #include <iterator>
 #include <map>
 
@@ -74,32 +73,6 @@ TEST(Submesh, PositiveFacesAreTheBoundaryOrientedOutwards) {
                      static_cast<long>(submesh.positive_faces.size());
     EXPECT_EQ(chi, 2 * domain.components - 2 * domain.genus) << domain.name;
   }
-}
-
-TEST(ExpectedTets, IsNearTheCountAlsoInABoxMuchTooLarge) {
-  const AnalyticDomain ball = testing::sphere();
-  const Box large(Vec3::Constant(-12), Vec3::Constant(14));
-  const double h = h_for_tets(ball, large, 20000);
-  const auto n = static_cast<double>(find_submesh(BackgroundMesh(a15(), ball.box, h), ball).mesh.C.size());
-  EXPECT_NEAR(n, 20000, 2000);
-  EXPECT_NEAR(expected_tets(ball, large, h), 20000, 1);
-  EXPECT_EQ(expected_tets(ball, Box(Vec3::Constant(5), Vec3::Constant(6)), h), 0);
-}
-
-TEST(BodySize, WithABoundOfTheGradientIsTheSameForFewerValues) {
-  struct Counted {
-    const AnalyticDomain& domain;
-    mutable std::atomic<int> n = 0;
-    double value(const Vec3& x) const { return ++n, domain.value(x); }
-    Vec3 gradient(const Vec3& x) const { return domain.gradient(x); }
-  };
-  const AnalyticDomain ball = testing::sphere();
-  const double steepest = ball.gradient(ball.box.max()).norm();
-  const Counted all{ball}, some{ball};
-  const BodySize size = body_size(all, ball.box), same = body_size(some, ball.box, steepest);
-  EXPECT_EQ(same.volume, size.volume);
-  EXPECT_EQ(same.area, size.area);
-  EXPECT_LT(some.n, all.n / 2);
 }
 
 TEST(Submesh, DoesNotDependOnThreads) {

@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "mesh/assumptions.h"
+#include "mesh/body_size.h"
 #include "mesh/tet_quality.h"
 #include "tests/support/domains.h"
 

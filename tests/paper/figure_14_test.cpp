@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "mesh/body_size.h"
 #include "mesh/skin.h"
 #include "mesh/universal_mesh.h"
 #include "tests/support/certified.h"

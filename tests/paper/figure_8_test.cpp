@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "mesh/body_size.h"
 #include "mesh/quality_report.h"
 #include "mesh/universal_mesh.h"
 #include "reconstruct/fit_ssd.h"

@@ -206,7 +206,7 @@ TEST_F(Program, ScaledAndMovedCloudsGiveTheSameMesh) {
     EXPECT_NEAR(p["spacing"].get<double>() / scale, psi["spacing"], 1e-6);
     EXPECT_EQ(o["n_tets"], c["n_tets"]) << scale << ' ' << shift;
     EXPECT_NEAR(o["volume"].get<double>() / std::pow(scale, 3), c["volume"].get<double>(), 1e-6);
-    EXPECT_NEAR(o["quality"]["min"].get<double>(), c["quality"]["min"].get<double>(), 1e-6);
+    EXPECT_NEAR(o["quality"]["min"].get<double>(), c["quality"]["min"].get<double>(), 1e-4);
   }
 }
 

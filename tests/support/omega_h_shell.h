@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "mesh/body_size.h"
 #include "mesh/closest_point.h"
 #include "mesh/shell.h"
 #include "mesh/submesh.h"

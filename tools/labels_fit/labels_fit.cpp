@@ -17,6 +17,7 @@
 #include <tuple>
 #include <vector>
 
+#include "mesh/body_size.h"
 #include "mesh/detail/assemble_submesh.h"
 #include "mesh/detail/link_steps.h"
 #include "mesh/guarded_projection.h"

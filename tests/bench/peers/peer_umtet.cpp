@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "mesh/body_size.h"
 #include "mesh/certificate.h"
 #include "mesh/skin.h"
 #include "mesh/solver_files.h"
@@ -79,7 +80,8 @@ int run(int argc, char** argv) {
   params.mode = std::strcmp(argv[3], "paper") == 0 ? UmMode::Paper : UmMode::Fast;
   if (std::strcmp(argv[3], "crawl") == 0) params.search = SubmeshSearch::Crawl;
   const double peak_before = peak_MB(), start = cpu_seconds();
-  const double h = h_for_tets(domain, domain.box, std::stod(argv[2]));
+  const LabelSource labels = params.mode == UmMode::Fast ? LabelSource::Chosen : LabelSource::Psi;
+  const double h = h_for_tets(domain, domain.box, std::stod(argv[2]), labels);
   UmResult result = universal_mesh(BackgroundMesh(a15(), domain.box, h), domain, params, {}, domain.boundary_seeds);
   const double meshed = cpu_seconds(), peak_meshed = peak_MB();
   if (result.status != UmStatus::Success) throw std::runtime_error(result.evidence.what);
