@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <string_view>
 
 #include "pipeline/edge_length.h"
@@ -19,6 +21,8 @@ namespace {
 
 // Another h is tried for the number of tets that was asked for when it is missed by more than this.
 constexpr double kTetsTolerance = .1;
+// So often; then the h that missed it least is taken.
+constexpr int kMostMisses = 4;
 // Pieces of psi = 0 are looked for on a grid of h and, where there is none, on so many grids twice as fine as the one
 // before.
 constexpr int kFinerGrids = 3;
@@ -111,18 +115,26 @@ void MeshMaker::curve(MeshAttempt& a) const {
 }
 
 /// The estimate behind mesh.tets knows the shape from a few thousand samples. Where it is far off, the number of tets
-/// at the first h gives a second h, before anything is moved.
+/// at one h gives the next, before anything is moved. Few tets jump with h, to either side of the number asked for.
 MeshAttempt MeshMaker::attempt_for_tets(double h, const std::function<BackgroundMesh(double h)>& background) {
-  missed_by_ = 0;
   may_miss_ = parameters_.integer("mesh.tets") == 0;
-  MeshAttempt a = attempt(background(h), h);
-  may_miss_ = true;
-  if (missed_by_ == 0) return a;
-  const double better = std::max(h * std::cbrt(missed_by_), least_h_in_file(domain_));
-  if (watch_.say) {
-    watch_.say(fmt::format("h = {:.4g} makes {:.2g} times the tets asked for; trying {:.4g}", h, missed_by_, better));
+  double nearest = h, least_miss = std::numeric_limits<double>::infinity();
+  std::optional<double> makes_more, makes_less;
+  for (int k = 1;; ++k) {
+    missed_by_ = 0;
+    MeshAttempt a = attempt(background(h), h);
+    if (missed_by_ == 0) return a;
+    if (const double miss = std::abs(std::log(missed_by_)); miss < least_miss) nearest = h, least_miss = miss;
+    (missed_by_ > 1 ? makes_more : makes_less) = h;
+    may_miss_ = k == kMostMisses;
+    const double better = may_miss_                  ? nearest
+                          : makes_more && makes_less ? std::sqrt(*makes_more * *makes_less)
+                                                     : h * std::cbrt(missed_by_);
+    if (watch_.say) {
+      watch_.say(fmt::format("h = {:.4g} makes {:.2g} times the tets asked for; trying {:.4g}", h, missed_by_, better));
+    }
+    h = std::max(better, least_h_in_file(domain_));
   }
-  return attempt(background(better), better);
 }
 
 MeshAttempt MeshMaker::best(const EdgeLength& choice, const std::function<BackgroundMesh(double h)>& background) {
