@@ -43,7 +43,9 @@ class Descent {
         last_(last),
         gain_(band.size()),
         open_(band.size(), kAll),
-        thin_(band.size(), Thin::Unknown) {}
+        thin_(band.size(), Thin::Unknown) {
+    find_prices_of_distance();
+  }
 
   /// @param inside  receives the labels
   LabelReport operator()(IdSet& inside, const KeepGoing& keep_going);
@@ -53,7 +55,8 @@ class Descent {
   /// What is to be done about a vertex since a label near it has changed.
   enum Open : std::uint8_t { kSingle = 1, kPair = 2, kGain = 4, kAll = 7 };
 
-  float price(int v, bool inside, LinkMask mask) const;
+  void find_prices_of_distance();
+  float price_outside(int v, LinkMask mask) const;
   float find_gain(int v) const;
   float gain_of_flip(int v);
   bool may_flip(int v);
@@ -79,33 +82,43 @@ class Descent {
   const LabelParams& params_;
   const LabelEnergies& energies_;
   LabelBand& band_;
-  const IdSet* last_;  ///< labels of the mesh before, or null
+  const IdSet* last_;                 ///< labels of the mesh before, or null
+  std::vector<float> height_, lack_;  ///< prices of distance: of an outside vertex at the boundary, of an inside one
   std::vector<float> gain_;
   std::vector<std::uint8_t> open_;  ///< Open
   std::vector<Thin> thin_;
 };
 
-/// What vertex v adds to the energy.
-float Descent::price(int v, bool inside, LinkMask mask) const {
-  if (inside) {
-    const float lack = band_.phi[v] + static_cast<float>(params_.inside_depth);
-    return lack > 0 ? static_cast<float>(params_.inside_weight) * lack * lack : 0;
+void Descent::find_prices_of_distance() {
+  const auto outside_height = static_cast<float>(params_.outside_height);
+  const auto inside_depth = static_cast<float>(params_.inside_depth);
+  const auto square = [](double weight, float d) { return static_cast<float>(weight) * d * d; };
+  height_.resize(band_.size());
+  lack_.resize(band_.size());
+  for (std::size_t v = 0; v < band_.size(); ++v) {
+    height_[v] = square(params_.outside_weight, band_.phi[v] - outside_height);
+    lack_[v] = square(params_.inside_weight, std::max(0.F, band_.phi[v] + inside_depth));
   }
+}
+
+/// What vertex v adds to the energy while it is outside; an inside one adds lack_.
+inline float Descent::price_outside(int v, LinkMask mask) const {
   if (mask == 0) return 0;
   const LinkTopology& link = links_[band_.type[v]];
-  const float d = band_.phi[v] - static_cast<float>(params_.outside_height);
-  return energies_(link.site, link.state(mask)) + static_cast<float>(params_.outside_weight) * d * d;
+  return energies_(link.site, link.state(mask)) + height_[v];
 }
 
 float Descent::find_gain(int v) const {
   const LinkTopology& link = links_[band_.type[v]];
-  float change = price(v, !band_.label[v], band_.mask[v]) - price(v, band_.label[v], band_.mask[v]);
+  const std::span<const int> ring = band_.link(v);
+  float gain = lack_[v] - price_outside(v, band_.mask[v]);
+  if (!band_.label[v]) gain = -gain;
   for (int k = 0; k < link.n; ++k) {
-    const int w = band_.link(v)[k];
+    const int w = ring[k];
     if (band_.label[w]) continue;  // the price of an inside vertex does not depend on its link
-    change += price(w, false, band_.mask[w] ^ LinkMask{1} << link.back[k]) - price(w, false, band_.mask[w]);
+    gain += price_outside(w, band_.mask[w]) - price_outside(w, band_.mask[w] ^ LinkMask{1} << link.back[k]);
   }
-  return -change;
+  return gain;
 }
 
 float Descent::gain_of_flip(int v) {
@@ -183,7 +196,8 @@ int Descent::flip_with_neighbour(int v) {
   std::array<int, kMaxLink> partners;
   int n = 0;
   for (const int w : band_.link(v)) {
-    if (band_.movable[w] && gain + gain_of_flip(w) > -kMostCost) partners[n++] = w;
+    if (!band_.movable[w] || (open_[w] & kPair) != 0) continue;  // an open one will try v
+    if (gain + gain_of_flip(w) > -kMostCost) partners[n++] = w;
   }
   if (n == 0 || !keeps_manifold(v)) return 0;
   float most = least_gain(v);
