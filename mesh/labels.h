@@ -12,14 +12,14 @@
 
 namespace umtet {
 
-/// Lengths are in LinkTopology::unit. The defaults are measured on bodies of labels_fit (seeds not of the fit, 45 of
-/// 40k tets and 30 of 6k): smoothing alone leaves 15 tets below .82 in all of them together, none in those of 40k, with
-/// another value what the line says.
+/// Lengths are in LinkTopology::unit. Measured on bodies of labels_fit (seeds not of the fit, 100 of 40k tets and 60 of
+/// 6k): of their 4.3 M tets smoothing alone leaves 24 below .82, in 6 bodies, and with another value what the line says.
 struct LabelParams {
-  /// The labels start as those of {psi < 0} moved inwards by this; 0 <= shift <= .15. 0: 28 tets, .05: 26, .15: 19
+  /// The labels start as those of {psi < 0} moved inwards by this; 0 <= shift <= .15. 0: 25 tets, .05: 19,
+  /// .15: 25; but with 0 the 1 % quantile of Q of T6 is .839 where it is .842 with .1 (as below, weight 20)
   double shift = .1;
   double reach_in = .9;   ///< how deep inside a label may change; >= 0
-  double reach_out = .2;  ///< how far outside; >= 0. .5: 45 tets
+  double reach_out = .2;  ///< how far outside; >= 0. .5: 17 tets
   /// No label changes where projection would draw the vertices around apart by more than this factor; >= 1. A tip whose
   /// innermost vertex is no longer inside is cut off, or folds. Samples of the koala to its mesh of 160k tets, 99 %:
   /// .17 h, .21 h with 1.4, .33 h without limit; folded faces of the armadillo's (2.1 M): 4, and 20 without.
@@ -27,12 +27,12 @@ struct LabelParams {
   /// Nor where the body or the gap outside is thinner than this; >= 0. With 2 blub's tail fin keeps 98 tets below .81,
   /// with 1.5 two, and three of the clouds of data/ that are 2 h thick get boundaries that are no manifolds.
   double least_thickness = 1;
-  /// Price of a boundary vertex at height d outside: outside_weight (d - outside_height)^2; >= 0. Weight 20: 4 tets,
-  /// but the 1 % quantile of Q of T6 (100k tets, the lattice in 41 places) is .842 at least, and .844 with 40; 80: 23
-  /// tets, .838. Height -.15: 33 tets, 0: 17, .2: 4
+  /// Price of a boundary vertex at height d outside: outside_weight (d - outside_height)^2; >= 0. Weight 20: 22 tets,
+  /// but the 1 % quantile of Q of T6 (100k tets, the lattice in 41 places) is .842 at least, and .844 with 40; 80: 85
+  /// tets, .838. Height -.15: 129 tets, 0: 65, .2: 15
   double outside_weight = 40, outside_height = .1;
-  /// Price of an inside vertex at depth d < inside_depth: inside_weight (inside_depth - d)^2; >= 0. Weight 10: 15 tets,
-  /// 40: 12; depth .4: 15, .6: 12
+  /// Price of an inside vertex at depth d < inside_depth: inside_weight (inside_depth - d)^2; >= 0. Weight 10: 17 tets,
+  /// 40: 30; depth .4: 17, .6: 37
   double inside_weight = 20, inside_depth = .5;
   int max_sweeps = 50;  ///< >= 0
   /// Where there are labels of a mesh before, one that is as it was then changes for a gain above this only; >= 0. A
