@@ -36,9 +36,9 @@ struct LabelParams {
   double inside_weight = 20, inside_depth = .5;
   int max_sweeps = 50;  ///< >= 0
   /// Where there are labels of a mesh before, one that is as it was then changes for a gain above this only; >= 0. A
-  /// ball that drifts a quarter cell a step: .113 labels a face change (.125 with 0; psi = 0 passes over
-  /// .112 vertices), least Q .834 (.829); with 5 repair takes ten times as long, and where all labels begin as they
-  /// were, whatever that costs, least Q is up to .04 lower.
+  /// ball that drifts a fiftieth of a cell a step: .0151 labels a face change (.0172 with 0, .0116 with 5; psi = 0
+  /// passes over .0092 vertices), least Q .827 (.824, .828). In steps of a quarter cell they are .113 (.114, .109;
+  /// .115). Where all labels begin as they were, whatever that costs, least Q is up to .04 lower.
   double keep = 1;
   /// Prices of the labellings of a link, 100 for one that was never met; null: those of a15().
   const LabelEnergies* energies = nullptr;
