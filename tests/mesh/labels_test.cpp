@@ -149,9 +149,7 @@ TEST(Labels, LowerThePriceOfTheBoundary) {
 class Pricing {
  public:
   /// @param last  labels of a mesh before, or null
-  Pricing(const BackgroundMesh& background, const AnalyticDomain& domain, const Labelled& labelled,
-          const detail::IdSet* last = nullptr)
-      : band_(background, a15_links(), domain, params_, labelled.plain, {}), last_(last) {}
+  explicit Pricing(detail::LabelBand& band, const detail::IdSet* last = nullptr) : band_(band), last_(last) {}
 
   void take(const detail::IdSet& inside) {
     for (int v = 0; v < static_cast<int>(band_.size()); ++v) {
@@ -232,7 +230,7 @@ class Pricing {
   }
 
   LabelParams params_;
-  detail::LabelBand band_;
+  detail::LabelBand& band_;
   const detail::IdSet* last_;
 };
 
@@ -242,7 +240,9 @@ TEST(Labels, NoChangeOfOneOrOfTwoNeighboursIsBetter) {
     const BackgroundMesh background = background_of(domain, 6000);
     const Labelled labelled = choose(background, domain);
     ASSERT_EQ(labelled.report.thin, 0u);
-    Pricing pricing(background, domain, labelled);
+    const LabelParams params;
+    detail::LabelBand band(background, a15_links(), domain, params, labelled.plain, {});
+    Pricing pricing(band);
     EXPECT_GT(pricing.n_better_singles(), 50);
     EXPECT_GT(pricing.n_better_pairs(), 50);
     pricing.take(labelled.chosen);
@@ -259,12 +259,13 @@ TEST(Labels, NoChangeIsBetterByMoreThanKeepWhereItLeavesTheLabelsBefore) {
     return before.psi(x - Vec3(0, 0, step), g, H);
   };
   const detail::IdSet last = choose(background, before).chosen;
-  Labelled labelled = choose(background, after);
-  detail::IdSet inside = labelled.plain;
-  choose_labels(background, a15_links(), after, {}, inside, {}, &last);
-  Pricing with_keep(background, after, labelled, &last), without(background, after, labelled);
+  const LabelParams params;
+  const detail::IdSet plain = choose(background, after).plain;
+  detail::IdSet inside = plain;
+  choose_labels(background, a15_links(), after, params, inside, {}, &last);
+  detail::LabelBand band(background, a15_links(), after, params, plain, {});
+  Pricing with_keep(band, &last), without(band);
   with_keep.take(inside);
-  without.take(inside);
   EXPECT_EQ(with_keep.n_better_singles(), 0);
   EXPECT_EQ(with_keep.n_better_pairs(), 0);
   EXPECT_GT(without.n_better_singles() + without.n_better_pairs(), 0);

@@ -65,7 +65,7 @@ TEST_F(Program, TheOrderOfPointsInTheFileDoesNotMatter) {
   });
   std::shuffle(lines.begin(), lines.end(), std::mt19937_64(1));
   write_cloud("shuffled.ply", [&](const double(&)[6]) {
-    const std::string line = std::move(lines.back());
+    std::string line = std::move(lines.back());
     lines.pop_back();
     return line;
   });
