@@ -40,6 +40,12 @@ BackgroundMesh background_of(const AnalyticDomain& domain, double n_tets) {
   return BackgroundMesh(a15(), domain.box, h_for_tets(domain, domain.box, n_tets));
 }
 
+AnalyticDomain raised(const AnalyticDomain& domain, double step) {
+  AnalyticDomain result = domain;
+  result.psi = [psi = domain.psi, step](const Vec3& x, Vec3* g, Mat3* H) { return psi(x - Vec3(0, 0, step), g, H); };
+  return result;
+}
+
 MeshCertificate certificate(const Submesh& submesh) {
   CertificateInput input;
   input.mesh = &submesh.mesh;
@@ -82,10 +88,7 @@ TEST(Labels, ChangesKeepTheEulerCharacteristicWhateverThePrices) {
 TEST(Labels, ThoseOfAMeshBeforeStayWhereOthersAreNotBetter) {
   const AnalyticDomain before = testing::torus();
   const BackgroundMesh background = background_of(before, 30000);
-  AnalyticDomain after = before;
-  after.psi = [&before, step = .05 * background.h()](const Vec3& x, Vec3* g, Mat3* H) {
-    return before.psi(x - Vec3(0, 0, step), g, H);
-  };
+  const AnalyticDomain after = raised(before, .05 * background.h());
   const detail::IdSet last = choose(background, before).chosen;
   const auto changes = [&](const detail::IdSet& inside) {
     int n = 0;
@@ -254,10 +257,7 @@ TEST(Labels, NoChangeOfOneOrOfTwoNeighboursIsBetter) {
 TEST(Labels, NoChangeIsBetterByMoreThanKeepWhereItLeavesTheLabelsBefore) {
   const AnalyticDomain before = testing::torus();
   const BackgroundMesh background = background_of(before, 60000);
-  AnalyticDomain after = before;
-  after.psi = [&before, step = .2 * background.h()](const Vec3& x, Vec3* g, Mat3* H) {
-    return before.psi(x - Vec3(0, 0, step), g, H);
-  };
+  const AnalyticDomain after = raised(before, .2 * background.h());
   const detail::IdSet last = choose(background, before).chosen;
   const LabelParams params;
   const detail::IdSet plain = choose(background, after).plain;
