@@ -193,20 +193,21 @@ TEST_F(Program, ScaledAndMovedCloudsGiveTheSameMesh) {
       return s.str();
     };
   };
-  const Result r = run("run egg.ply -o egg --tets 5000 --json");
+  // No tet is near .82 at this h: of tets that are as poor by symmetry, rounding would say which is mended first.
+  const Result r = run("run egg.ply -o egg --tets 6000 --json");
   ASSERT_EQ(r.code, 0) << r.err;
   const Json c = Json::parse(r.out)["certificate"];
   const Json psi = record(folder / "egg/2-level-set")["numbers"];
   for (const auto& [scale, shift] : {std::pair{1e-6, 0.}, {1e6, 0.}, {1., 1e7}}) {
     write_cloud("other.ply", changed(scale, shift));
-    const Result other = run("run other.ply -o other --force --tets 5000 --json");
+    const Result other = run("run other.ply -o other --force --tets 6000 --json");
     ASSERT_EQ(other.code, 0) << scale << ' ' << shift << other.err;
     const Json o = Json::parse(other.out)["certificate"], p = record(folder / "other/2-level-set")["numbers"];
     EXPECT_NEAR(p["rms_value"].get<double>() / scale, psi["rms_value"], 1e-6);
     EXPECT_NEAR(p["spacing"].get<double>() / scale, psi["spacing"], 1e-6);
     EXPECT_EQ(o["n_tets"], c["n_tets"]) << scale << ' ' << shift;
     EXPECT_NEAR(o["volume"].get<double>() / std::pow(scale, 3), c["volume"].get<double>(), 1e-6);
-    EXPECT_NEAR(o["quality"]["min"].get<double>(), c["quality"]["min"].get<double>(), 1e-4);
+    EXPECT_NEAR(o["quality"]["min"].get<double>(), c["quality"]["min"].get<double>(), 1e-6);
   }
 }
 
