@@ -193,7 +193,7 @@ TEST_F(Program, ScaledAndMovedCloudsGiveTheSameMesh) {
       return s.str();
     };
   };
-  // No tet is near .82 at this h: of tets that are as poor by symmetry, rounding would say which is mended first.
+  // No tet is near .82 at this h. With 5000 repair has to choose, and rounding decides between choices as good.
   const Result r = run("run egg.ply -o egg --tets 6000 --json");
   ASSERT_EQ(r.code, 0) << r.err;
   const Json c = Json::parse(r.out)["certificate"];
