@@ -10,7 +10,7 @@
 #include <string>
 
 #include "data/surface_sampling.h"
-#include "reconstruct/point_cloud_io.h"
+#include "reconstruct/io/point_cloud_io.h"
 
 namespace umtet {
 namespace {

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "data/shapes.h"
-#include "reconstruct/point_cloud.h"
+#include "reconstruct/cloud/point_cloud.h"
 
 namespace umtet {
 

@@ -11,9 +11,9 @@
 #include <cstdlib>
 #include <string>
 
-#include "mesh/certificate.h"
-#include "mesh/solver_files.h"
-#include "mesh/tet_mesh_io.h"
+#include "mesh/certify/certificate.h"
+#include "mesh/io/solver_files.h"
+#include "mesh/io/tet_mesh_io.h"
 #include "mesh/universal_mesh.h"
 
 struct Ball {

@@ -11,11 +11,11 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "mesh/certificate.h"
-#include "mesh/tet_mesh_io.h"
+#include "mesh/certify/certificate.h"
+#include "mesh/io/tet_mesh_io.h"
 #include "mesh/universal_mesh.h"
-#include "reconstruct/fit_ssd.h"
-#include "reconstruct/point_cloud_io.h"
+#include "reconstruct/solve/fit_ssd.h"
+#include "reconstruct/io/point_cloud_io.h"
 
 // 5000 points of an ellipsoid with half axes 1, .8, .6 on a spiral, and their normals.
 umtet::OrientedPointCloud ellipsoid() {

@@ -12,9 +12,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "mesh/detail/certificate_memory.h"
-#include "mesh/fast_mesh.h"
-#include "mesh/inside_walk.h"
+#include "mesh/certify/detail/certificate_memory.h"
+#include "mesh/fast/fast_mesh.h"
+#include "mesh/submesh/inside_walk.h"
 
 namespace umtet {
 namespace {

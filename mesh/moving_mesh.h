@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "mesh/certificate.h"
+#include "mesh/certify/certificate.h"
 #include "mesh/universal_mesh.h"
 
 namespace umtet {

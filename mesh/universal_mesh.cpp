@@ -9,15 +9,15 @@
 #include <stdexcept>
 #include <utility>
 
-#include "mesh/assumptions.h"
-#include "mesh/boundary_dvr.h"
-#include "mesh/crawl.h"
-#include "mesh/detail/nothing_inside.h"
-#include "mesh/detail/offenders.h"
-#include "mesh/dvr.h"
-#include "mesh/fast_mesh.h"
-#include "mesh/tet_quality.h"
-#include "mesh/walls.h"
+#include "mesh/submesh/assumptions.h"
+#include "mesh/paper/boundary_dvr.h"
+#include "mesh/submesh/crawl.h"
+#include "mesh/submesh/detail/nothing_inside.h"
+#include "mesh/base/violations.h"
+#include "mesh/paper/dvr.h"
+#include "mesh/fast/fast_mesh.h"
+#include "mesh/core/tet_quality.h"
+#include "mesh/submesh/walls.h"
 
 namespace umtet {
 namespace {

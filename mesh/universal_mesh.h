@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "mesh/background_mesh.h"
-#include "mesh/closest_point.h"
-#include "mesh/fast_params.h"
-#include "mesh/implicit_function.h"
-#include "mesh/max_min.h"
-#include "mesh/relaxation_direction.h"
-#include "mesh/submesh.h"
+#include "mesh/background/background_mesh.h"
+#include "mesh/implicit/closest_point.h"
+#include "mesh/fast/fast_params.h"
+#include "mesh/core/implicit_function.h"
+#include "mesh/core/max_min.h"
+#include "mesh/paper/relaxation_direction.h"
+#include "mesh/submesh/submesh.h"
 
 namespace umtet {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/command_line.h"
-#include "pipeline/version.h"
+#include "pipeline/cli/command_line.h"
+#include "pipeline/case/version.h"
 
 namespace umtet {
 namespace {

@@ -5,14 +5,14 @@
 #include <string>
 #include <system_error>
 
-#include "mesh/tet_mesh_io.h"
-#include "pipeline/exit_code.h"
-#include "pipeline/expression.h"
-#include "pipeline/parameters.h"
+#include "mesh/io/tet_mesh_io.h"
+#include "pipeline/case/exit_code.h"
+#include "pipeline/expression/expression.h"
+#include "pipeline/case/parameters.h"
 #include "python/arguments.h"
 #include "python/jobs.h"
-#include "reconstruct/point_cloud_io.h"
-#include "reconstruct/solve_error.h"
+#include "reconstruct/io/point_cloud_io.h"
+#include "reconstruct/solve/solve_error.h"
 
 namespace py = pybind11;
 

@@ -3,7 +3,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
-#include "mesh/implicit_function.h"
+#include "mesh/core/implicit_function.h"
 
 namespace umtet::python {
 

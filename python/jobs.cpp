@@ -5,17 +5,17 @@
 #include <algorithm>
 #include <utility>
 
-#include "pipeline/background_choice.h"
-#include "pipeline/certificate_json.h"
-#include "pipeline/cloud_preparation.h"
-#include "pipeline/edge_length.h"
-#include "pipeline/memory.h"
-#include "pipeline/mesh_maker.h"
-#include "pipeline/mesh_measures.h"
-#include "pipeline/stages.h"
-#include "pipeline/too_thin.h"
-#include "pipeline/zero_set_choice.h"
-#include "reconstruct/cloud_survey.h"
+#include "pipeline/meshing/background_choice.h"
+#include "pipeline/meshing/certificate_json.h"
+#include "pipeline/stages/cloud_preparation.h"
+#include "pipeline/meshing/edge_length.h"
+#include "pipeline/case/memory.h"
+#include "pipeline/meshing/mesh_maker.h"
+#include "pipeline/meshing/mesh_measures.h"
+#include "pipeline/stages/stages.h"
+#include "pipeline/meshing/too_thin.h"
+#include "pipeline/meshing/zero_set_choice.h"
+#include "reconstruct/cloud/cloud_survey.h"
 
 namespace umtet::python {
 namespace {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/domain.h"
-#include "pipeline/mesh_attempts.h"
-#include "pipeline/parameters.h"
-#include "reconstruct/fit_ssd.h"
+#include "pipeline/meshing/domain.h"
+#include "pipeline/meshing/mesh_attempts.h"
+#include "pipeline/case/parameters.h"
+#include "reconstruct/solve/fit_ssd.h"
 
 // What `umtet run` does, from memory to memory: no case folder, no signal handlers, nothing printed.
 namespace umtet::python {

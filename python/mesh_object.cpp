@@ -5,11 +5,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "mesh/skin.h"
-#include "mesh/solver_files.h"
-#include "mesh/tet_mesh_io.h"
-#include "pipeline/made_mesh.h"
-#include "pipeline/second_order.h"
+#include "mesh/io/surface_files.h"
+#include "mesh/io/solver_files.h"
+#include "mesh/io/tet_mesh_io.h"
+#include "pipeline/meshing/made_mesh.h"
+#include "pipeline/meshing/second_order.h"
 
 namespace umtet::python {
 namespace {

@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "mesh/quadratic_tets.h"
+#include "mesh/certify/quadratic_tets.h"
 #include "mesh/universal_mesh.h"
-#include "pipeline/domain.h"
-#include "pipeline/record.h"
+#include "pipeline/meshing/domain.h"
+#include "pipeline/case/record.h"
 
 namespace umtet::python {
 

@@ -12,18 +12,18 @@
 #include <memory>
 #include <string>
 
-#include "mesh/a15_box.h"
+#include "mesh/background/a15_box.h"
 #include "mesh/moving_mesh.h"
-#include "pipeline/background_choice.h"
-#include "pipeline/certificate_json.h"
-#include "pipeline/mesh_measures.h"
-#include "pipeline/stages.h"
-#include "pipeline/version.h"
+#include "pipeline/meshing/background_choice.h"
+#include "pipeline/meshing/certificate_json.h"
+#include "pipeline/meshing/mesh_measures.h"
+#include "pipeline/stages/stages.h"
+#include "pipeline/case/version.h"
 #include "python/arguments.h"
 #include "python/errors.h"
 #include "python/interruptible.h"
 #include "python/mesh_object.h"
-#include "reconstruct/level_set_io.h"
+#include "reconstruct/io/level_set_io.h"
 
 namespace py = pybind11;
 

@@ -6,10 +6,10 @@
 #include <exception>
 #include <stdexcept>
 
-#include "mesh/a15_box.h"
-#include "mesh/certificate.h"
+#include "mesh/background/a15_box.h"
+#include "mesh/certify/certificate.h"
 #include "mesh/universal_mesh.h"
-#include "pipeline/exit_code.h"
+#include "pipeline/case/exit_code.h"
 
 namespace umtet {
 namespace {

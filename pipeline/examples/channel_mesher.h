@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "mesh/background_mesh.h"
-#include "mesh/implicit_function.h"
+#include "mesh/background/background_mesh.h"
+#include "mesh/core/implicit_function.h"
 #include "pipeline/examples/swim.h"
 
 namespace umtet {

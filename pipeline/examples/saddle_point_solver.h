@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "mesh/tet_mesh.h"
+#include "mesh/core/tet_mesh.h"
 
 namespace umtet {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/tet_mesh.h"
+#include "mesh/core/tet_mesh.h"
 #include "pipeline/examples/saddle_point_solver.h"
 
 namespace umtet {

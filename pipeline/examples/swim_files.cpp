@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include "mesh/tet_mesh_io.h"
-#include "mesh/tet_quality.h"
-#include "pipeline/artefact.h"
+#include "mesh/io/tet_mesh_io.h"
+#include "mesh/core/tet_quality.h"
+#include "pipeline/case/artefact.h"
 
 namespace umtet {
 namespace {

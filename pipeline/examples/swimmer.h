@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mesh/implicit_function.h"
+#include "mesh/core/implicit_function.h"
 
 namespace umtet {
 

@@ -20,8 +20,8 @@
 
 #include "pipeline/examples/channel_mesher.h"
 #include "pipeline/examples/swim_files.h"
-#include "pipeline/exit_code.h"
-#include "pipeline/interrupt.h"
+#include "pipeline/case/exit_code.h"
+#include "pipeline/case/interrupt.h"
 
 namespace umtet {
 namespace {

@@ -16,15 +16,15 @@
 #include <optional>
 #include <utility>
 
-#include "mesh/body_size.h"
-#include "mesh/certificate.h"
-#include "mesh/crawl.h"
-#include "mesh/dvr.h"
+#include "mesh/background/body_size.h"
+#include "mesh/certify/certificate.h"
+#include "mesh/submesh/crawl.h"
+#include "mesh/paper/dvr.h"
 #include "mesh/moving_mesh.h"
-#include "mesh/skin.h"
-#include "mesh/tet_quality.h"
+#include "mesh/certify/boundary_surface.h"
+#include "mesh/core/tet_quality.h"
 #include "mesh/universal_mesh.h"
-#include "reconstruct/fit_ssd.h"
+#include "reconstruct/solve/fit_ssd.h"
 #include "tests/support/bench_domains.h"
 #include "tests/support/certified.h"
 

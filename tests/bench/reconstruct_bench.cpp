@@ -5,13 +5,13 @@
 #include <sys/resource.h>
 #include <tbb/global_control.h>
 
-#include "reconstruct/cloud_neighbours.h"
-#include "reconstruct/cloud_survey.h"
-#include "reconstruct/fit_ssd.h"
-#include "reconstruct/lme_lattice.h"
-#include "reconstruct/lme_scattered.h"
-#include "reconstruct/morton_order.h"
-#include "reconstruct/ssd_operator.h"
+#include "reconstruct/cloud/cloud_neighbours.h"
+#include "reconstruct/cloud/cloud_survey.h"
+#include "reconstruct/solve/fit_ssd.h"
+#include "reconstruct/basis/lme_lattice.h"
+#include "reconstruct/basis/lme_scattered.h"
+#include "reconstruct/cloud/morton_order.h"
+#include "reconstruct/solve/ssd_operator.h"
 #include "tests/support/clouds.h"
 #include "tests/support/sampled_domains.h"
 

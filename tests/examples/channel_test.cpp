@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "mesh/tet_mesh_io.h"
-#include "pipeline/artefact.h"
+#include "mesh/io/tet_mesh_io.h"
+#include "pipeline/case/artefact.h"
 #include "pipeline/examples/channel_mesher.h"
-#include "pipeline/exit_code.h"
+#include "pipeline/case/exit_code.h"
 #include "tests/support/domains.h"
 #include "tests/support/sphere_in_channel.h"
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "mesh/implicit_function.h"
+#include "mesh/core/implicit_function.h"
 #include "tests/support/box_tets.h"
 #include "tests/support/drag_in_duct.h"
 #include "tests/support/sphere_in_channel.h"

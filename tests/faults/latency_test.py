@@ -20,7 +20,7 @@ from support import PROGRAM, SLOW, Folder, run
 POINTS = int(os.environ.get("UMTET_POINTS", "1000000"))
 TRIES = int(os.environ.get("UMTET_TRIES", "7"))
 PROMISED = .2  # seconds
-PATIENCE = .1  # of pipeline/interrupt.cpp
+PATIENCE = .1  # of pipeline/case/interrupt.cpp
 STAGES = ("cloud", "level-set", "mesh")
 
 

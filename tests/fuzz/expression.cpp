@@ -1,4 +1,4 @@
-#include "pipeline/expression.h"
+#include "pipeline/expression/expression.h"
 
 #include <cstdlib>
 #include <string>

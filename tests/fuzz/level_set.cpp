@@ -1,6 +1,6 @@
 #include <cstdlib>
 
-#include "reconstruct/level_set_io.h"
+#include "reconstruct/io/level_set_io.h"
 #include "tests/fuzz/input_file.h"
 
 /// A level set with values, or a refusal.

@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-#include "reconstruct/point_cloud_io.h"
+#include "reconstruct/io/point_cloud_io.h"
 #include "tests/fuzz/input_file.h"
 
 namespace umtet::fuzz {

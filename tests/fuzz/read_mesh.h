@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-#include "mesh/tet_mesh_io.h"
+#include "mesh/io/tet_mesh_io.h"
 #include "tests/fuzz/input_file.h"
 
 namespace umtet::fuzz {

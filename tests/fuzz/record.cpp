@@ -1,4 +1,4 @@
-#include "pipeline/record.h"
+#include "pipeline/case/record.h"
 
 #include <cstdlib>
 

@@ -1,7 +1,7 @@
 #include <cstdlib>
 
-#include "pipeline/exit_code.h"
-#include "pipeline/parameters.h"
+#include "pipeline/case/exit_code.h"
+#include "pipeline/case/parameters.h"
 #include "tests/fuzz/input_file.h"
 
 /// Parameters that are written and read back the same, or a refusal.

@@ -10,10 +10,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "mesh/certificate.h"
-#include "mesh/detail/certificate_memory.h"
-#include "mesh/inside_walk.h"
-#include "mesh/tet_quality.h"
+#include "mesh/certify/certificate.h"
+#include "mesh/certify/detail/certificate_memory.h"
+#include "mesh/submesh/inside_walk.h"
+#include "mesh/core/tet_quality.h"
 #include "tests/support/certified.h"
 #include "tests/support/domains.h"
 

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "mesh/assumptions.h"
-#include "mesh/body_size.h"
-#include "mesh/tet_quality.h"
+#include "mesh/submesh/assumptions.h"
+#include "mesh/background/body_size.h"
+#include "mesh/core/tet_quality.h"
 #include "tests/support/domains.h"
 
 namespace umtet {

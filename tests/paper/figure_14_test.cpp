@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <vector>
 
-#include "mesh/body_size.h"
-#include "mesh/skin.h"
+#include "mesh/background/body_size.h"
+#include "mesh/certify/boundary_surface.h"
 #include "mesh/universal_mesh.h"
 #include "tests/support/certified.h"
 #include "tests/support/domains.h"

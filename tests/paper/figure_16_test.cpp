@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "mesh/zero_set.h"
-#include "reconstruct/fit_ssd.h"
-#include "reconstruct/point_cloud_io.h"
+#include "mesh/implicit/zero_set.h"
+#include "reconstruct/solve/fit_ssd.h"
+#include "reconstruct/io/point_cloud_io.h"
 #include "tests/support/data_files.h"
 
 using namespace umtet;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "mesh/certificate.h"
+#include "mesh/certify/certificate.h"
 #include "mesh/universal_mesh.h"
 #include "tests/support/certified.h"
 #include "tests/support/domains.h"

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "mesh/body_size.h"
-#include "mesh/quality_report.h"
+#include "mesh/background/body_size.h"
+#include "mesh/certify/quality_report.h"
 #include "mesh/universal_mesh.h"
-#include "reconstruct/fit_ssd.h"
-#include "reconstruct/point_cloud_io.h"
+#include "reconstruct/solve/fit_ssd.h"
+#include "reconstruct/io/point_cloud_io.h"
 #include "tests/support/data_files.h"
 
 using namespace umtet;

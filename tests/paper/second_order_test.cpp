@@ -6,12 +6,12 @@
 #include <cstdio>
 #include <vector>
 
-#include "mesh/certificate.h"
-#include "mesh/quadratic_tets.h"
-#include "mesh/second_order_certificate.h"
+#include "mesh/certify/certificate.h"
+#include "mesh/certify/quadratic_tets.h"
+#include "mesh/certify/second_order_certificate.h"
 #include "mesh/universal_mesh.h"
-#include "reconstruct/fit_ssd.h"
-#include "reconstruct/point_cloud_io.h"
+#include "reconstruct/solve/fit_ssd.h"
+#include "reconstruct/io/point_cloud_io.h"
 #include "tests/support/data_files.h"
 #include "tests/support/domains.h"
 

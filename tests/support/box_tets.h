@@ -4,7 +4,7 @@
 #include <functional>
 #include <numeric>
 
-#include "mesh/tet_mesh.h"
+#include "mesh/core/tet_mesh.h"
 
 namespace umtet::testing {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "mesh/certificate.h"
-#include "mesh/implicit_function.h"
+#include "mesh/certify/certificate.h"
+#include "mesh/core/implicit_function.h"
 #include "mesh/universal_mesh.h"
 
 namespace umtet::testing {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "reconstruct/point_cloud.h"
+#include "reconstruct/cloud/point_cloud.h"
 
 namespace umtet::test {
 

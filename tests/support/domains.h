@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "mesh/background_mesh.h"
-#include "mesh/implicit_function.h"
+#include "mesh/background/background_mesh.h"
+#include "mesh/core/implicit_function.h"
 
 namespace umtet::testing {
 

@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "mesh/skin.h"
-#include "mesh/solver_files.h"
-#include "mesh/tet_mesh_io.h"
+#include "mesh/certify/boundary_surface.h"
+#include "mesh/io/solver_files.h"
+#include "mesh/io/tet_mesh_io.h"
 #include "tests/support/tet_shapes.h"
 
 namespace umtet::test {

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <vector>
 
-#include "mesh/body_size.h"
-#include "mesh/closest_point.h"
-#include "mesh/shell.h"
-#include "mesh/submesh.h"
-#include "mesh/tet_quality.h"
+#include "mesh/background/body_size.h"
+#include "mesh/implicit/closest_point.h"
+#include "mesh/submesh/active_layer.h"
+#include "mesh/submesh/submesh.h"
+#include "mesh/core/tet_quality.h"
 #include "tests/support/domains.h"
 
 namespace umtet::testing {

@@ -7,7 +7,7 @@
 #include <random>
 #include <utility>
 
-#include "reconstruct/point_cloud.h"
+#include "reconstruct/cloud/point_cloud.h"
 #include "tests/support/domains.h"
 
 namespace umtet::test {

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/tet_mesh.h"
-#include "mesh/tet_quality.h"
+#include "mesh/core/tet_mesh.h"
+#include "mesh/core/tet_quality.h"
 
 namespace umtet::testing {
 

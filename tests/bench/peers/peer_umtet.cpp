@@ -14,10 +14,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "mesh/body_size.h"
-#include "mesh/certificate.h"
-#include "mesh/skin.h"
-#include "mesh/solver_files.h"
+#include "mesh/background/body_size.h"
+#include "mesh/certify/certificate.h"
+#include "mesh/certify/boundary_surface.h"
+#include "mesh/io/solver_files.h"
 #include "mesh/universal_mesh.h"
 #include "tests/support/bench_domains.h"
 

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mesh/core/tet_mesh.h"
+
+namespace umtet {
+
+/// A tet mesh that is stored, with who meets whom: the other kind of background mesh, without a lattice behind it.
+/// Lists ascend. About 60 bytes a tet. Immutable.
+class ExplicitMesh {
+ public:
+  /// \throw std::invalid_argument naming the first offender: no tets, an index out of range, a tet that is inverted or
+  /// flat (exact), a face of three tets or of two on the same side of it
+  explicit ExplicitMesh(TetMesh mesh);
+
+  const TetMesh& mesh() const { return mesh_; }
+  double mean_edge() const { return mean_edge_; }
+  /// The tets at a vertex.
+  std::span<const int> star(int vertex) const { return list(star_begin_, star_, vertex); }
+  /// The vertices it shares an edge with.
+  std::span<const int> link(int vertex) const { return list(link_begin_, link_, vertex); }
+  /// Behind the face opposite to local vertex `face`, or -1.
+  int neighbor(int tet, int face) const { return neighbor_[4 * static_cast<std::size_t>(tet) + face]; }
+  /// True for a vertex of a face with one tet.
+  bool on_rim(int vertex) const { return on_rim_[vertex]; }
+  /// A tet at the vertex nearest to x, by looking at all, or -1 outside the bounding box.
+  int tet_near(const Vec3& x) const;
+
+ private:
+  static std::span<const int> list(const std::vector<std::size_t>& begin, const std::vector<int>& items, int i) {
+    return {items.data() + begin[i], items.data() + begin[i + 1]};
+  }
+  void check_tets() const;
+  void find_stars();
+  void find_neighbors();
+  void find_links();
+
+  TetMesh mesh_;
+  double mean_edge_ = 0;
+  std::vector<std::size_t> star_begin_, link_begin_;
+  std::vector<int> star_, link_, neighbor_;
+  std::vector<bool> on_rim_;
+};
+
+}  // namespace umtet

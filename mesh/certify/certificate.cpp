@@ -1,0 +1,279 @@
+#include "mesh/certify/certificate.h"
+
+#include <fmt/format.h>
+#include <oneapi/tbb/task_group.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "mesh/certify/detail/certificate_memory.h"
+#include "mesh/base/check_indices.h"
+#include "mesh/implicit/foot_point.h"
+#include "mesh/core/sort_faces.h"
+#include "mesh/certify/detail/tet_measures.h"
+#include "mesh/certify/boundary_surface.h"
+
+namespace umtet {
+namespace {
+
+// A foot point takes half a dozen values of psi.
+constexpr std::size_t kFeetPerPoll = kValuesPerPoll / 8;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Runs `aside` in another thread, if there is one, while this one runs `here`.
+template <class Here, class Aside>
+void run_both(const Here& here, const Aside& aside) {
+  tbb::task_group group;
+  group.run(aside);
+  try {
+    here();
+  } catch (...) {
+    group.wait();
+    throw;
+  }
+  group.wait();
+}
+
+/// \pre the indices of x are in range
+bool same_faces(std::vector<Triangle> x, std::vector<Triangle> y, std::size_t n_vertices) {
+  if (x.size() != y.size()) return false;
+  const auto is_out = [n = static_cast<int>(n_vertices)](int v) { return v < 0 || v >= n; };
+  for (const Triangle& f : y) {
+    if (std::any_of(f.begin(), f.end(), is_out)) return false;
+  }
+  const auto order = [n_vertices](std::vector<Triangle>& faces) {
+    for (Triangle& f : faces) std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
+    detail::sort_faces(faces, n_vertices);
+  };
+  run_both([&] { order(x); }, [&] { order(y); });
+  return x == y;
+}
+
+/// The faces of `all` that are not among `others`, whose rotations may differ.
+std::vector<Triangle> without(const std::vector<Triangle>& all, std::vector<Triangle> others) {
+  const auto rotated = [](Triangle f) {
+    std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
+    return f;
+  };
+  for (Triangle& f : others) f = rotated(f);
+  std::sort(others.begin(), others.end());
+  std::vector<Triangle> rest;
+  for (const Triangle& f : all) {
+    if (!std::binary_search(others.begin(), others.end(), rotated(f))) rest.push_back(f);
+  }
+  return rest;
+}
+
+std::vector<int> vertices_of(const std::vector<Triangle>& faces) {
+  std::vector<int> all;
+  for (const Triangle& f : faces) all.insert(all.end(), f.begin(), f.end());
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+struct FaceMeasure {
+  bool found;
+  double distance, cos_normal, area;
+};
+
+// Between a flat face and a quadric through its corners lies this much of area x distance of the centroid.
+constexpr double kMeanOverCentroid = .75;
+
+/// The volume within a closed surface.
+double enclosed_volume(const TetMesh& mesh, const std::vector<Triangle>& faces) {
+  double six = 0;
+  for (const Triangle& f : faces) {
+    const Vec3& from = mesh.V[faces[0][0]];
+    six += (mesh.V[f[0]] - from).dot((mesh.V[f[1]] - from).cross(mesh.V[f[2]] - from));
+  }
+  return std::abs(six) / 6;
+}
+
+/// Fills the distances and normals of the boundary.
+/// @param volume  that the faces are to stand for
+void measure_against(ImplicitFunctionRef psi, const TetMesh& mesh, const std::vector<Triangle>& faces,
+                     const std::vector<int>& vertices, double volume, const KeepGoing& keep_going,
+                     MeshCertificate& certificate) {
+  const double h = certificate.h;
+  MeshCertificate::Boundary& boundary = certificate.boundary;
+  std::vector<double> vertex_distance(vertices.size());
+  polled_parallel_for(vertices.size(), kValuesPerPoll, keep_going, [&](std::size_t i) {
+    Vec3 g;
+    const double value = psi.value(mesh.V[vertices[i]], g);
+    const double d = value == 0 ? 0 : std::abs(value) / g.norm();
+    vertex_distance[i] = std::isnan(d) ? kInfinity : d;
+  });
+  std::vector<FaceMeasure> face(faces.size());
+  polled_parallel_for(faces.size(), kFeetPerPoll, keep_going, [&](std::size_t i) {
+    const Vec3 &a = mesh.V[faces[i][0]], &b = mesh.V[faces[i][1]], &c = mesh.V[faces[i][2]];
+    const detail::Foot foot = detail::foot_point(psi, (a + b + c) / 3.0, h);
+    const Vec3 n = (b - a).cross(c - a);
+    const double length = n.norm();
+    const double cosine = length > 0 ? n.dot(foot.normal) / length : -1.0;  // no area: no normal
+    face[i] = {foot.found, foot.distance, cosine, length / 2};
+  });
+
+  double max_vertex = 0, max_centroid = 0, min_cos = 1, gap = 0;
+  for (const double d : vertex_distance) max_vertex = std::max(max_vertex, d);
+  for (const FaceMeasure& f : face) {
+    if (!f.found) {
+      ++boundary.n_unprojected_faces;
+      continue;
+    }
+    max_centroid = std::max(max_centroid, f.distance);
+    gap += kMeanOverCentroid * f.area * f.distance;
+    min_cos = std::min(min_cos, f.cos_normal);
+    boundary.n_cos_below_half += f.cos_normal < 0.5;
+  }
+  boundary.max_vertex_distance_over_h = max_vertex / h;
+  boundary.max_centroid_distance_over_h = max_centroid / h;
+  boundary.min_cos_normal = min_cos;
+  boundary.gap_over_volume = gap / volume;
+}
+
+/// @param memory  if not null, matched with the mesh
+/// @param skin    receives the boundary
+MeshCertificate certify_with(const CertificateInput& input, detail::CertificateMemory* memory, BoundaryFaces& skin) {
+  if (!input.mesh || input.mesh->C.empty()) throw std::invalid_argument("certify: a mesh with tets is needed");
+  const TetMesh& mesh = *input.mesh;
+  if (input.wall_faces && (!input.background_V || input.background_V->size() != mesh.V.size())) {
+    throw std::invalid_argument("certify: walls need the vertices of the background, one for each of the mesh");
+  }
+  const std::vector<Triangle> walls = input.wall_faces ? *input.wall_faces : std::vector<Triangle>{};
+  const std::vector<int> at_walls = vertices_of(walls);
+  if (!at_walls.empty() && (at_walls.front() < 0 || at_walls.back() >= static_cast<int>(mesh.V.size()))) {
+    throw std::invalid_argument("certify: a wall face with a vertex out of range");
+  }
+  poll(input.keep_going);
+  skin = boundary_faces(mesh.C, mesh.V.size(), memory ? memory->to_count() : nullptr);  // checks the indices
+  poll(input.keep_going);
+
+  MeshCertificate certificate;
+  certificate.coordinate_rounding = input.coordinate_rounding;
+  SurfaceTopology topology;
+  run_both([&] { detail::measure_tets(mesh, input.h, input.keep_going, memory, certificate); },
+           [&] { topology = surface_topology(mesh.V, skin.triangles); });
+
+  MeshCertificate::Boundary& boundary = certificate.boundary;
+  boundary.n_faces = skin.triangles.size();
+  boundary.n_overused_faces = skin.n_overused;
+  boundary.n_same_side_faces = skin.n_same_side;
+  boundary.n_nonmanifold_edges = topology.n_nonmanifold_edges;
+  boundary.n_nonmanifold_vertices = topology.n_nonmanifold_vertices;
+  boundary.closed_manifold = topology.closed_manifold && skin.n_overused == 0 && skin.n_same_side == 0;
+  boundary.components = static_cast<int>(topology.components.size());
+  boundary.euler_characteristic = topology.euler_characteristic;
+  boundary.genus = topology.genus;
+  boundary.area = topology.area;
+  certificate.n_wall_faces = walls.size();
+  if (input.positive_faces) {
+    certificate.n_positive_faces = input.positive_faces->size();
+    std::vector<Triangle> expected = *input.positive_faces;
+    expected.insert(expected.end(), walls.begin(), walls.end());
+    boundary.equals_positive_faces = same_faces(skin.triangles, std::move(expected), mesh.V.size());
+  }
+  for (const int i : at_walls) boundary.n_moved_wall_vertices += mesh.V[i] != (*input.background_V)[i];
+  if (input.psi) {
+    if (walls.empty()) {
+      measure_against(*input.psi, mesh, skin.triangles, topology.vertices, certificate.volume, input.keep_going,
+                      certificate);
+    } else {
+      const std::vector<Triangle> fitted = without(skin.triangles, walls);
+      // A small body in much fluid is missed as easily as by a mesh of its inside.
+      const double volume =
+          fitted.empty() ? certificate.volume : std::min(certificate.volume, enclosed_volume(mesh, fitted));
+      measure_against(*input.psi, mesh, fitted, vertices_of(fitted), volume, input.keep_going, certificate);
+    }
+  }
+  return certificate;
+}
+
+/// Of a mesh that has not changed, without walls: faces are compared and psi is asked again.
+MeshCertificate certify_again(const CertificateInput& input, detail::CertificateMemory::Whole& known,
+                              const std::vector<Triangle>& skin) {
+  MeshCertificate certificate = known.certificate;
+  certificate.coordinate_rounding = input.coordinate_rounding;
+  certificate.n_positive_faces = input.positive_faces ? input.positive_faces->size() : 0;
+  MeshCertificate::Boundary& boundary = certificate.boundary;
+  boundary.equals_positive_faces.reset();
+  if (input.positive_faces)
+    boundary.equals_positive_faces = same_faces(skin, *input.positive_faces, input.mesh->V.size());
+  boundary.max_vertex_distance_over_h.reset();
+  boundary.max_centroid_distance_over_h.reset();
+  boundary.min_cos_normal.reset();
+  boundary.gap_over_volume.reset();
+  boundary.n_cos_below_half = boundary.n_unprojected_faces = 0;
+  if (input.psi) {
+    if (known.surface_vertices.empty()) known.surface_vertices = vertices_of(skin);
+    measure_against(*input.psi, *input.mesh, skin, known.surface_vertices, certificate.volume, input.keep_going,
+                    certificate);
+  }
+  return certificate;
+}
+
+}  // namespace
+
+MeshCertificate certify(const CertificateInput& input) {
+  BoundaryFaces skin;
+  return certify_with(input, nullptr, skin);
+}
+
+MeshCertificate certify(const CertificateInput& input, const std::vector<std::int64_t>& vertex_id,
+                        const std::vector<std::int64_t>& tet_id, detail::CertificateMemory& memory) {
+  if (!input.mesh) throw std::invalid_argument("certify: a mesh with tets is needed");
+  detail::check_indices(input.mesh->C, input.mesh->V.size(), "tet");
+  memory.match(*input.mesh, vertex_id, tet_id);
+  if (auto* known = memory.of_the_same(input.h); known && !input.wall_faces) {
+    memory.keep();
+    return certify_again(input, *known, memory.single_faces());
+  }
+  BoundaryFaces skin;
+  MeshCertificate certificate = certify_with(input, &memory, skin);
+  memory.remember(*input.mesh, vertex_id, tet_id, skin);
+  if (!input.wall_faces) memory.remember({input.h, certificate});
+  return certificate;
+}
+
+std::vector<std::string> failures(const MeshCertificate& certificate) {
+  std::vector<std::string> reasons;
+  const auto count = [&](std::size_t n, const char* what) {
+    if (n > 0) reasons.push_back(std::to_string(n) + " " + what);
+  };
+  const MeshCertificate::Boundary& b = certificate.boundary;
+  count(certificate.quality.n_inverted, "tets are inverted or flat (exact sign of the volume)");
+  count(b.n_overused_faces, "faces belong to more than two tets");
+  count(b.n_same_side_faces, "faces have both their tets on the same side");
+  count(b.n_nonmanifold_edges, "boundary edges do not have exactly two boundary faces");
+  count(b.n_nonmanifold_vertices, "boundary vertices join more than one fan of boundary faces");
+  if (!b.closed_manifold) reasons.emplace_back("the boundary is not a closed 2-manifold");
+  if (b.equals_positive_faces == false) {
+    reasons.push_back(
+        "the boundary (" + std::to_string(b.n_faces) + " faces) is not the set of positive faces (" +
+        std::to_string(certificate.n_positive_faces) + ")" +
+        (certificate.n_wall_faces > 0 ? " and wall faces (" + std::to_string(certificate.n_wall_faces) + ")" : ""));
+  }
+  count(b.n_moved_wall_vertices, "vertices of the walls have left their places");
+  const double tolerance = kVertexTolerance + certificate.coordinate_rounding / certificate.h;
+  if (b.max_vertex_distance_over_h && !(*b.max_vertex_distance_over_h <= tolerance)) {
+    reasons.push_back(fmt::format("a boundary vertex is {:.3g} h from psi = 0, more than rounding explains",
+                                  *b.max_vertex_distance_over_h));
+  }
+  count(b.n_unprojected_faces, "boundary faces have no point of psi = 0 near their centroid");
+  if (b.min_cos_normal && !(*b.min_cos_normal > 0)) {
+    reasons.push_back(
+        fmt::format("the boundary is folded: cos(face normal, grad psi) is down to {:.3g}", *b.min_cos_normal));
+  }
+  if (b.gap_over_volume && !(*b.gap_over_volume <= kMostGap)) {
+    reasons.push_back(
+        fmt::format("volume_gap: between the flat faces and psi = 0 lies {:.3g} % of the volume of the mesh, or of the "
+                    "body in it, more than {:.3g} %: h is too large for this shape",
+                    100 * *b.gap_over_volume, 100 * kMostGap));
+  }
+  return reasons;
+}
+
+}  // namespace umtet

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mesh/certify/quadratic_tets.h"
+
+namespace umtet::detail {
+
+/// What a mid-side may do.
+enum class MidSide : std::uint8_t {
+  Free,     ///< inside the body, or on an edge of it that is not to be curved
+  Surface,  ///< on psi = 0, along which it may slide
+  Fixed,    ///< of a curved edge, but not on psi = 0
+};
+
+/// Moves mid-sides until the Jacobians of all tets are as great as SecondOrderParams asks: steps 2 and 3 of
+/// quadratic_tets(). One mid-side after the other, so threads cannot change a result.
+class MidSideRelaxation {
+ public:
+  /// Nothing is copied: all but h must outlive this.
+  /// @param kind  of every mid-side, by vertex less n_corners
+  MidSideRelaxation(QuadraticTetMesh& mesh, std::size_t n_corners, std::vector<MidSide>& kind, ImplicitFunctionRef psi,
+                    double h, const SecondOrderParams& params);
+
+  /// Step 2. @param poor  the tets below the target; receives those that still are
+  /// @return closest points asked for, in evaluations of psi
+  std::size_t relax(std::vector<int>& poor, const KeepGoing& keep_going);
+
+  /// Step 3. Surface mid-sides that are moved become Fixed. @param poor  tets that may be below params.least
+  void retreat(const std::vector<int>& poor);
+
+ private:
+  std::span<const int> tets_at(int mid_side) const;
+  Vec3 chord_middle(int mid_side) const;
+  double energy(int mid_side) const;
+  bool improve(int mid_side);
+  std::vector<int> mid_sides_of(const std::vector<int>& tets) const;
+  /// Ascending tets at these mid-sides with min det / mean det proved to be no more than `bar`.
+  std::vector<int> poor_at(const std::vector<int>& mid_sides, double bar) const;
+
+  QuadraticTetMesh& mesh_;
+  const int n_corners_;
+  std::vector<MidSide>& kind_;
+  ImplicitFunctionRef psi_;
+  const double h_;
+  const SecondOrderParams& params_;
+  std::size_t n_psi_evaluations_ = 0;
+  std::vector<std::size_t> begin_;  ///< by mid-side: where its tets begin
+  std::vector<int> tets_;
+};
+
+}  // namespace umtet::detail

@@ -1,0 +1,65 @@
+#include "mesh/certify/quality_report.h"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "mesh/core/tet_packs.h"
+
+namespace umtet {
+namespace {
+
+// A fraction of a millisecond.
+constexpr std::size_t kGroupsPerTask = 1 << 11;
+
+}  // namespace
+
+std::vector<double> mean_ratios(const TetMesh& mesh) {
+  const std::size_t n = mesh.C.size();
+  std::vector<double> Q(n);
+  const auto measure = [&](const tbb::blocked_range<std::size_t>& groups) {
+    for (std::size_t first = groups.begin() * kLanes; first < std::min(n, groups.end() * kLanes); first += kLanes) {
+      const int count = static_cast<int>(std::min<std::size_t>(kLanes, n - first));
+      const detail::TetLanes tets = detail::measure_tet_lanes(mesh, &mesh.C[first], count);
+      for (int m = 0; m < count; ++m) Q[first + m] = tets.quality[m];
+    }
+  };
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (n + kLanes - 1) / kLanes, kGroupsPerTask), measure);
+  return Q;
+}
+
+QualityVectors quality_vectors(const std::vector<Tet>& C, const std::vector<double>& Q,
+                               const std::vector<int>& positive_vertices, std::size_t n_vertices) {
+  if (Q.size() != C.size()) throw std::invalid_argument("quality vectors: one Q per tet");
+  std::vector<char> is_positive(n_vertices, 0);
+  for (const int v : positive_vertices) is_positive[v] = 1;
+  constexpr double kNoTet = std::numeric_limits<double>::infinity();
+  QualityVectors q = {std::vector<double>(n_vertices, kNoTet), std::vector<double>(n_vertices, kNoTet)};
+  for (std::size_t k = 0; k < C.size(); ++k) {
+    const Tet& t = C[k];
+    for (const int v : t) q.all[v] = std::min(q.all[v], Q[k]);
+    if ((is_positive[t[0]] | is_positive[t[1]] | is_positive[t[2]] | is_positive[t[3]]) == 0) continue;
+    for (const int v : t) q.boundary[v] = std::min(q.boundary[v], Q[k]);
+  }
+  for (std::vector<double>* values : {&q.all, &q.boundary}) {
+    std::erase(*values, kNoTet);
+    std::sort(values->begin(), values->end());
+  }
+  return q;
+}
+
+double quantile(const std::vector<double>& lowest, std::size_t n, double p) {
+  if (lowest.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const double at = p * static_cast<double>(n - 1);
+  const auto below = static_cast<std::size_t>(at);
+  const std::size_t above = std::min(below + 1, n - 1);
+  return lowest[below] + (at - static_cast<double>(below)) * (lowest[above] - lowest[below]);
+}
+
+double quantile(const std::vector<double>& ascending, double p) { return quantile(ascending, ascending.size(), p); }
+
+}  // namespace umtet

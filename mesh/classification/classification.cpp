@@ -1,0 +1,341 @@
+#include "mesh/classification/classification.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <stdexcept>
+
+#include "mesh/classification/detail/classification_band.h"
+#include "mesh/classification/configuration_costs.h"
+
+namespace umtet {
+namespace {
+
+using detail::IdSet;
+using detail::LabelBand;
+
+// A gain below this is rounding of floats.
+constexpr float kLeastGain = 1e-3F;
+// Two neighbours whose changes, each by itself, would together cost more than this are not tried as a pair. One pair in
+// twenty that wins costs more than 150, and a whole mesh turns on some of these: with 150 smoothing leaves 111 tets
+// below .82 in the bodies of LabelParams, with 200 it is 53, with 300 it is 24, as with all pairs, of which nine tenths
+// are left out. A labelling that was never met costs 100 (label_quality).
+constexpr float kMostCost = 300;
+
+/// Changes labels in the band, brick by brick.
+class Descent {
+ public:
+  /// @param h  of the background
+  Descent(double h, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi, const LabelParams& params,
+          LabelBand& band, const IdSet* last)
+      : h_(h),
+        links_(links),
+        psi_(psi),
+        params_(params),
+        energies_(params.energies ? *params.energies : a15_label_energies()),
+        band_(band),
+        last_(last),
+        gain_(band.size()),
+        open_(band.size(), kAll),
+        thin_(band.size(), Thin::Unknown) {
+    find_prices_of_distance();
+  }
+
+  /// @param inside  receives the labels
+  LabelReport operator()(IdSet& inside, const KeepGoing& keep_going);
+
+ private:
+  enum class Thin : std::uint8_t { Unknown, No, Yes };
+  /// What is to be done about a vertex since a label near it has changed.
+  enum Open : std::uint8_t { kSingle = 1, kPair = 2, kGain = 4, kAll = 7 };
+
+  void find_prices_of_distance();
+  float price_outside(int v, LinkMask mask) const;
+  float find_gain(int v) const;
+  float gain_of_flip(int v);
+  bool may_flip(int v);
+  bool is_simple(int v) const { return links_[band_.type[v]].state(band_.mask[v]).simple; }
+  bool keeps_manifold(int v) const;
+  void toggle(int v);
+  void flip(int v);
+  int flip_if_better(int v);
+  int flip_with_neighbour(int v);
+  bool is_thick(int v);
+  bool is_as_before(int v) const { return last_ && (band_.label[v] != 0) == last_->test(band_.id[v]); }
+  float least_gain(int v) const {
+    return is_as_before(v) ? std::max(kLeastGain, static_cast<float>(params_.keep)) : kLeastGain;
+  }
+  template <class F>
+  std::size_t sweep(const F& visit);
+  template <class F>
+  bool descend(Open what, const F& visit, const KeepGoing& keep_going, LabelReport& report);
+
+  double h_;
+  const std::vector<LinkTopology>& links_;
+  ImplicitFunctionRef psi_;
+  const LabelParams& params_;
+  const LabelEnergies& energies_;
+  LabelBand& band_;
+  const IdSet* last_;                 ///< labels of the mesh before, or null
+  std::vector<float> height_, lack_;  ///< prices of distance: of an outside vertex at the boundary, of an inside one
+  std::vector<float> gain_;
+  std::vector<std::uint8_t> open_;  ///< Open
+  std::vector<Thin> thin_;
+};
+
+void Descent::find_prices_of_distance() {
+  const auto outside_height = static_cast<float>(params_.outside_height);
+  const auto inside_depth = static_cast<float>(params_.inside_depth);
+  const auto square = [](double weight, float d) { return static_cast<float>(weight) * d * d; };
+  height_.resize(band_.size());
+  lack_.resize(band_.size());
+  for (std::size_t v = 0; v < band_.size(); ++v) {
+    height_[v] = square(params_.outside_weight, band_.phi[v] - outside_height);
+    lack_[v] = square(params_.inside_weight, std::max(0.F, band_.phi[v] + inside_depth));
+  }
+}
+
+/// What vertex v adds to the energy while it is outside; an inside one adds lack_.
+inline float Descent::price_outside(int v, LinkMask mask) const {
+  if (mask == 0) return 0;
+  const LinkTopology& link = links_[band_.type[v]];
+  return energies_(link.site, link.state(mask)) + height_[v];
+}
+
+float Descent::find_gain(int v) const {
+  const LinkTopology& link = links_[band_.type[v]];
+  const std::span<const int> ring = band_.link(v);
+  float gain = lack_[v] - price_outside(v, band_.mask[v]);
+  if (!band_.label[v]) gain = -gain;
+  for (int k = 0; k < link.n; ++k) {
+    const int w = ring[k];
+    if (band_.label[w]) continue;  // the price of an inside vertex does not depend on its link
+    gain += price_outside(w, band_.mask[w]) - price_outside(w, band_.mask[w] ^ LinkMask{1} << link.back[k]);
+  }
+  return gain;
+}
+
+float Descent::gain_of_flip(int v) {
+  if ((open_[v] & kGain) != 0) {
+    gain_[v] = find_gain(v);
+    open_[v] &= ~kGain;
+  }
+  return gain_[v];
+}
+
+/// True if no outside vertex of the ring leaves the manifold boundary it has, or gets a bad one it did not have.
+bool Descent::keeps_manifold(int v) const {
+  const LinkTopology& link = links_[band_.type[v]];
+  int before = 0, after = 0;
+  const auto bad = [&](int w, LinkMask mask) { return mask != 0 && !links_[band_.type[w]].state(mask).manifold; };
+  if (band_.label[v]) {
+    after += bad(v, band_.mask[v]);
+  } else {
+    before += bad(v, band_.mask[v]);
+  }
+  for (int k = 0; k < link.n; ++k) {
+    const int w = band_.link(v)[k];
+    if (band_.label[w]) continue;
+    before += bad(w, band_.mask[w]);
+    after += bad(w, band_.mask[w] ^ LinkMask{1} << link.back[k]);
+  }
+  return after <= before;
+}
+
+/// Asks psi: the last of all questions.
+bool Descent::is_thick(int v) {
+  if (params_.least_thickness == 0) return true;
+  if (thin_[v] == Thin::Unknown) {
+    std::size_t n = 0;
+    const double unit = links_[band_.type[v]].unit * h_;
+    const bool thin = umtet::is_thin(psi_, band_.foot[v], band_.normal[v], params_.least_thickness, unit, n);
+    thin_[v] = thin ? Thin::Yes : Thin::No;
+    band_.psi_evaluations.fetch_add(n, std::memory_order_relaxed);
+  }
+  return thin_[v] == Thin::No;
+}
+
+bool Descent::may_flip(int v) { return is_simple(v) && keeps_manifold(v) && is_thick(v); }
+
+void Descent::toggle(int v) {
+  band_.label[v] ^= 1;
+  const LinkTopology& link = links_[band_.type[v]];
+  for (int k = 0; k < link.n; ++k) band_.mask[band_.link(v)[k]] ^= LinkMask{1} << link.back[k];
+}
+
+/// Changes the label, and opens all whose gain that changes.
+void Descent::flip(int v) {
+  toggle(v);
+  for (const int w : band_.link(v)) {
+    open_[w] = kAll;
+    for (const int u : band_.link(w)) {
+      if (u >= 0) open_[u] = kAll;
+    }
+  }
+}
+
+/// @return how many labels have changed
+int Descent::flip_if_better(int v) {
+  if (!is_simple(v) || gain_of_flip(v) <= least_gain(v) || !may_flip(v)) return 0;
+  flip(v);
+  return 1;
+}
+
+/// The label of v, or that of v and then that of the neighbour with which most is gained.
+/// @return how many labels have changed
+int Descent::flip_with_neighbour(int v) {
+  if (flip_if_better(v) == 1) return 1;
+  if (!is_simple(v)) return 0;
+  const float gain = gain_of_flip(v);
+  std::array<int, kMaxLink> partners;
+  int n = 0;
+  for (const int w : band_.link(v)) {
+    if (!band_.movable[w] || (open_[w] & kPair) != 0) continue;  // an open one will try v
+    if (gain + gain_of_flip(w) > -kMostCost) partners[n++] = w;
+  }
+  if (n == 0 || !keeps_manifold(v)) return 0;
+  float most = least_gain(v);
+  int best = -1;
+  toggle(v);
+  for (const int w : std::span(partners.data(), static_cast<std::size_t>(n))) {
+    if (!is_simple(w)) continue;
+    const float both = gain + find_gain(w);
+    if (both <= std::max(most, least_gain(w)) || !may_flip(w)) continue;
+    most = both;
+    best = w;
+  }
+  toggle(v);
+  if (best < 0 || !is_thick(v)) return 0;
+  flip(v);
+  flip(best);
+  return 2;
+}
+
+/// @param visit  returns how many labels it has changed
+template <class F>
+std::size_t Descent::sweep(const F& visit) {
+  std::atomic<std::size_t> flips = 0;
+  for (const auto& bricks : band_.bricks) {
+    tbb::parallel_for(std::size_t{0}, bricks.size(), [&](std::size_t b) {
+      std::size_t n = 0;
+      for (std::uint32_t k = bricks[b].begin; k < bricks[b].end; ++k) {
+        n += static_cast<std::size_t>(visit(static_cast<int>(band_.order[k])));
+      }
+      if (n != 0) flips.fetch_add(n, std::memory_order_relaxed);
+    });
+  }
+  return flips;
+}
+
+/// Sweeps over the vertices with `what` to be done until nothing changes.
+/// @return false if max_sweeps are used up
+template <class F>
+bool Descent::descend(Open what, const F& visit, const KeepGoing& keep_going, LabelReport& report) {
+  while (report.sweeps < params_.max_sweeps) {
+    poll(keep_going);
+    const std::size_t flips = sweep([&](int v) {
+      if ((open_[v] & what) == 0) return 0;
+      open_[v] &= ~what;
+      return visit(v);
+    });
+    report.flips += flips;
+    ++report.sweeps;
+    if (flips == 0) return true;
+  }
+  return false;
+}
+
+LabelReport Descent::operator()(IdSet& inside, const KeepGoing& keep_going) {
+  LabelReport report;
+  report.candidates = band_.order.size();
+  report.shifted = sweep([&](int v) {
+    if (!band_.label[v] || band_.phi[v] < -params_.shift || !may_flip(v)) return 0;
+    flip(v);
+    return 1;
+  });
+  // Twice: what a change costs, and whether it may be, depends on the labels around.
+  for (int pass = 0; last_ && pass < 2; ++pass) {
+    report.returned += sweep([&](int v) {
+      if (is_as_before(v) || gain_of_flip(v) < -params_.keep || !may_flip(v)) return 0;
+      flip(v);
+      return 1;
+    });
+  }
+  // Pairs cost ten times as much: they come when single labels have nothing more to win.
+  report.settled = descend(
+                       kSingle, [&](int v) { return flip_if_better(v); }, keep_going, report) &&
+                   descend(
+                       kPair, [&](int v) { return flip_with_neighbour(v); }, keep_going, report);
+  for (std::size_t v = 0; v < band_.size(); ++v) {
+    if (band_.label[v]) {
+      inside.insert(band_.id[v]);
+    } else {
+      inside.erase(band_.id[v]);
+      report.not_manifold += band_.mask[v] != 0 && !links_[band_.type[v]].state(band_.mask[v]).manifold;
+    }
+    report.thin += thin_[v] == Thin::Yes;
+    report.stretched += band_.held[v];
+  }
+  report.psi_evaluations = band_.psi_evaluations;
+  return report;
+}
+
+}  // namespace
+
+std::vector<std::string> problems(const LabelParams& params) {
+  std::vector<std::string> list;
+  const auto in = [&](const char* name, double value, double low, double high, const char* range) {
+    if (!(value >= low && value <= high))
+      list.push_back(std::string(name) + " = " + std::to_string(value) + ": must be " + range);
+  };
+  constexpr double kAny = std::numeric_limits<double>::max();
+  in("shift", params.shift, 0, .15, "in 0 .. .15");
+  in("reach_in", params.reach_in, 0, kAny, ">= 0");
+  in("reach_out", params.reach_out, 0, kAny, ">= 0");
+  in("most_stretch", params.most_stretch, 1, kAny, ">= 1");
+  in("least_thickness", params.least_thickness, 0, kAny, ">= 0");
+  in("outside_weight", params.outside_weight, 0, kAny, ">= 0");
+  in("inside_weight", params.inside_weight, 0, kAny, ">= 0");
+  in("inside_depth", params.inside_depth, -kAny, kAny, "finite");
+  in("keep", params.keep, 0, kAny, ">= 0");
+  in("max_sweeps", params.max_sweeps, 0, kAny, ">= 0");
+  return list;
+}
+
+bool is_thin(ImplicitFunctionRef psi, const Vec3& foot, const Vec3& normal, double thickness, double h,
+             std::size_t& n_evaluations) {
+  // Steps of half an edge see all sheets that the background can resolve.
+  const int n_steps = static_cast<int>(std::ceil(2 * thickness));
+  for (int side = -1; side <= 1; side += 2) {
+    for (int s = 1; s <= n_steps; ++s) {
+      const double t = thickness * s / n_steps * h;
+      ++n_evaluations;
+      if ((psi.value(foot + side * t * normal) < 0) != (side < 0)) return true;
+    }
+  }
+  return false;
+}
+
+LabelReport choose_labels(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
+                          ImplicitFunctionRef psi, const LabelParams& params, IdSet& inside,
+                          const KeepGoing& keep_going, const IdSet* last) {
+  return detail::choose_labels(background, links, psi, params, inside, keep_going, last, nullptr);
+}
+
+LabelReport detail::choose_labels(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
+                                  ImplicitFunctionRef psi, const LabelParams& params, IdSet& inside,
+                                  const KeepGoing& keep_going, const IdSet* last, const PsiValues* known) {
+  std::string all;
+  for (const std::string& problem : problems(params)) all += (all.empty() ? "" : "; ") + problem;
+  if (!all.empty()) throw std::invalid_argument(all);
+  LabelBand band(background, links, psi, params, inside, keep_going, known);
+  return Descent(background.h(), links, psi, params, band, last)(inside, keep_going);
+}
+
+}  // namespace umtet

@@ -1,0 +1,248 @@
+#include "mesh/classification/detail/classification_band.h"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "mesh/base/id_blocks.h"
+
+namespace umtet::detail {
+namespace {
+
+// Bricks of one colour are this many cells apart. No edge of a tiling is longer than half a cell along an axis, so that
+// is nine rings; changing the labels of a vertex and a neighbour reaches three, and seven are enough.
+constexpr std::int64_t kBrick = 4;
+// Feet from farther away may be on another sheet, and those closer together, in h, say little about curvature.
+constexpr float kFarthestFoot = 1.8F;
+constexpr double kApart = .3;
+constexpr std::size_t kVerticesPerTask = 1 << 12;  // of some ten nanoseconds each
+
+}  // namespace
+
+LabelBand::LabelBand(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
+                     const LabelParams& params, const IdSet& inside, const KeepGoing& keep_going,
+                     const PsiValues* known)
+    : background_(background),
+      links_(links),
+      psi_(psi),
+      params_(params),
+      inside_(inside),
+      known_(known),
+      steps_(background),
+      band_(background.n_vertices()) {
+  gather();
+  measure(keep_going);
+  hold_where_stretched(keep_going);
+  make_bricks();
+}
+
+/// In the outermost layer of cells, where a step along an edge may leave the range of ids.
+bool LabelBand::is_outermost(std::int64_t v) const {
+  const auto cell = background_.cell(v);
+  bool outermost = false;
+  for (int a = 0; a < 3; ++a) outermost |= cell[a] < 0 || cell[a] >= background_.n_cells()[a];
+  return outermost;
+}
+
+/// The vertices with a neighbour of the other label, and two rings more.
+void LabelBand::gather() {
+  if (known_) {
+    std::vector<std::int64_t> cut;
+    for (const PsiValue& at : *known_) cut.push_back(at.vertex);
+    gather_around(std::move(cut));
+  } else {
+    for_each_in_blocks(inside_, [&](std::size_t, std::int64_t v) {
+      bool is_cut = false;
+      for (const std::int64_t step : steps_.at(v)) {
+        if (inside_.test(v + step)) continue;
+        is_cut = true;
+        band_.insert_shared(v + step);
+      }
+      if (is_cut) band_.insert_shared(v);
+    });
+    IdSet front = band_;
+    for (int ring = 0; ring < 2; ++ring) {
+      IdSet next(background_.n_vertices());
+      for_each_in_blocks(front, [&](std::size_t, std::int64_t v) {
+        if (is_outermost(v)) return;  // too far out for a neighbour to change
+        for (const std::int64_t step : steps_.at(v)) {
+          if (!band_.test(v + step)) next.insert_shared(v + step);
+        }
+      });
+      for (std::size_t w = 0; w < next.n_words(); ++w) band_.set_word(w, band_.word(w) | next.word(w));
+      front = std::move(next);
+    }
+  }
+  id.resize(band_.index());
+  for_each_in_blocks(band_, [&](std::size_t, std::int64_t v) { id[band_.rank(v)] = v; });
+}
+
+/// Two rings around a few vertices in a large background.
+void LabelBand::gather_around(std::vector<std::int64_t> front) {
+  for (const std::int64_t v : front) band_.insert(v);
+  std::vector<std::int64_t> next;
+  for (int ring = 0; ring < 2; ++ring) {
+    next.clear();
+    for (const std::int64_t v : front) {
+      if (is_outermost(v)) continue;
+      for (const std::int64_t step : steps_.at(v)) {
+        if (band_.test(v + step)) continue;
+        band_.insert(v + step);
+        next.push_back(v + step);
+      }
+    }
+    front.swap(next);
+  }
+}
+
+/// Label, mask and ranks of the link. Returns whether the whole link is in the band.
+bool LabelBand::find_link(std::size_t v) {
+  label[v] = inside_.test(id[v]);
+  mask[v] = steps_.mask(id[v], inside_);
+  // Labels beyond the range of ids are those of the rim: outside. Ranks are left out there.
+  if (is_outermost(id[v])) return false;
+  const std::vector<std::int64_t>& steps = steps_.at(id[v]);
+  bool complete = true;
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    const std::int64_t w = id[v] + steps[k];
+    if (band_.test(w)) {
+      ranks_[first_[v] + k] = band_.rank(w);
+    } else {
+      complete = false;
+    }
+  }
+  return complete;
+}
+
+/// psi at vertex v, which is at x.
+double LabelBand::value_at(std::size_t v, const Vec3& x, Vec3& gradient) {
+  if (known_ && known_at_[v] >= 0) {
+    const PsiValue& at = (*known_)[known_at_[v]];
+    gradient = at.gradient;
+    return at.value;
+  }
+  psi_evaluations.fetch_add(1, std::memory_order_relaxed);
+  return psi_.value(x, gradient);
+}
+
+/// Foot, normal and distance.
+void LabelBand::find_foot(std::size_t v) {
+  const Vec3 x = background_.position(id[v]);
+  const double h = unit(v), most = far() * h;
+  Vec3 g;
+  double value = value_at(v, x, g), norm = g.norm();
+  const double first = std::clamp(norm > 0 ? value / norm : most, -most, most);
+  double distance = first;
+  foot[v] = x;
+  normal[v] = norm > 0 ? Vec3(g / norm) : Vec3::Zero();
+  if (norm > 0 && std::abs(first) < most) {
+    // One more step: psi may be far from linear over an edge.
+    foot[v] = x - first * normal[v];
+    value = psi_.value(foot[v], g);
+    norm = g.norm();
+    psi_evaluations.fetch_add(1, std::memory_order_relaxed);
+    if (norm > 0) {
+      normal[v] = g / norm;
+      const double second = std::clamp(value / norm, -h, h);
+      foot[v] -= second * normal[v];
+      distance = (x - foot[v]).norm();
+      if (label[v]) distance = -distance;
+    }
+  }
+  phi[v] = static_cast<float>(std::isfinite(distance) ? distance / h : label[v] ? -far() : far());
+}
+
+void LabelBand::measure(const KeepGoing& keep_going) {
+  const std::size_t n = size();
+  type.resize(n);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, kVerticesPerTask), [&](const auto& range) {
+    for (std::size_t v = range.begin(); v != range.end(); ++v) {
+      type[v] = static_cast<std::uint16_t>(background_.type(id[v]));
+    }
+  });
+  first_.assign(n + 1, 0);
+  for (std::size_t v = 0; v < n; ++v) {
+    first_[v + 1] = first_[v] + static_cast<std::size_t>(links_[type[v]].n);
+  }
+  if (known_) {
+    known_at_.assign(n, -1);
+    for (std::size_t v = 0, k = 0; v < n && k < known_->size();) {
+      if ((*known_)[k].vertex == id[v]) known_at_[v] = static_cast<int>(k);
+      (*known_)[k].vertex <= id[v] ? ++k : ++v;
+    }
+  }
+  ranks_.assign(first_[n], -1);
+  label.resize(n);
+  held.assign(n, 0);
+  mask.resize(n);
+  phi.resize(n);
+  foot.resize(n);
+  normal.resize(n);
+  movable.assign(n, 0);
+  polled_parallel_for(n, kValuesPerPoll, keep_going, [&](std::size_t v) {
+    const bool complete = find_link(v);
+    // A vertex without its whole link in the band is there to complete the masks of others.
+    if (!complete && (mask[v] == 0 || mask[v] == links_[type[v]].full())) {
+      phi[v] = label[v] ? -far() : far();
+      return;
+    }
+    find_foot(v);
+    movable[v] = complete && phi[v] >= -params_.reach_in && phi[v] <= params_.reach_out && !background_.on_rim(id[v]);
+  });
+}
+
+bool LabelBand::has_foot(int v) const { return std::abs(phi[v]) < kFarthestFoot; }
+
+/// Labels stay where a vertex on its way to the surface would draw apart those around it by more than most_stretch: a
+/// patch at depth d under a surface of curvature kappa is 1 / (1 - kappa d) times as wide up there. The curvature is
+/// the greatest between the feet of neighbours, on the side that the vertex would come from.
+void LabelBand::hold_where_stretched(const KeepGoing& keep_going) {
+  const double most = 1 - 1 / params_.most_stretch, apart = kApart * background_.h();
+  polled_parallel_for(size(), kValuesPerPoll, keep_going, [&](std::size_t v) {
+    if (!movable[v]) return;
+    double kappa = 0;
+    for (int k = 0; k < links_[type[v]].n; ++k) {
+      const int w = link(v)[static_cast<std::size_t>(k)];
+      if (!has_foot(w)) continue;
+      const Vec3 between = foot[w] - foot[v];
+      if (between.norm() < apart) continue;
+      kappa = std::max(kappa, (phi[v] > 0 ? -1 : 1) * between.dot(normal[w] - normal[v]) / between.squaredNorm());
+    }
+    if (kappa * std::abs(phi[v]) * unit(v) > most) movable[v] = 0, held[v] = 1;
+  });
+}
+
+/// Bricks of kBrick^3 cells.
+void LabelBand::make_bricks() {
+  const auto& n = background_.n_cells();
+  const std::int64_t nx = (n[0] + 2) / kBrick + 1, ny = (n[1] + 2) / kBrick + 1, nz = (n[2] + 2) / kBrick + 1;
+  std::vector<std::uint32_t> brick(size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, size(), kVerticesPerTask), [&](const auto& range) {
+    for (std::size_t v = range.begin(); v != range.end(); ++v) {
+      if (!movable[v]) continue;
+      const auto cell = background_.cell(id[v]);
+      const std::int64_t i = (cell[0] + 1) / kBrick, j = (cell[1] + 1) / kBrick, k = (cell[2] + 1) / kBrick;
+      brick[v] = static_cast<std::uint32_t>(i + nx * (j + ny * k));
+    }
+  });
+  std::vector<std::uint32_t> end(static_cast<std::size_t>(nx * ny * nz) + 1, 0);
+  for (std::size_t v = 0; v < size(); ++v) end[brick[v] + 1] += movable[v];
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  order.resize(end.back());
+  for (std::uint32_t v = 0; v < size(); ++v) {
+    if (movable[v]) order[end[brick[v]]++] = v;
+  }
+  std::uint32_t begin = 0;
+  for (std::size_t b = 0; b + 1 < end.size(); begin = end[b++]) {
+    if (end[b] == begin) continue;
+    const auto at = static_cast<std::int64_t>(b);
+    const std::int64_t i = at % nx, j = at / nx % ny, k = at / nx / ny;
+    bricks[static_cast<std::size_t>((i & 1) + 2 * (j & 1) + 4 * (k & 1))].push_back({begin, end[b]});
+  }
+}
+
+}  // namespace umtet::detail

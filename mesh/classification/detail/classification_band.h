@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mesh/background/background_mesh.h"
+#include "mesh/base/id_set.h"
+#include "mesh/background/link_steps.h"
+#include "mesh/core/psi_values.h"
+#include "mesh/core/implicit_function.h"
+#include "common/context.h"
+#include "mesh/classification/classification.h"
+#include "mesh/background/link_topology.h"
+
+namespace umtet::detail {
+
+/// Vertices within three edges of a change of label, and all that choose_labels() knows about them, by rank.
+class LabelBand {
+ public:
+  struct Brick {
+    std::uint32_t begin, end;  ///< into order
+  };
+
+  /// @param inside  the vertices with psi < 0
+  /// @param known   psi at all vertices with a neighbour on the other side, or null
+  /// \throw MeshCancelled
+  LabelBand(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
+            const LabelParams& params, const IdSet& inside, const KeepGoing& keep_going,
+            const PsiValues* known = nullptr);
+
+  std::size_t size() const { return id.size(); }
+
+  std::vector<std::int64_t> id;  ///< ascending
+  /// Ranks of the neighbours of v, -1 where they are not in the band.
+  std::span<const int> link(std::size_t v) const { return {ranks_.data() + first_[v], first_[v + 1] - first_[v]}; }
+  std::vector<std::uint16_t> type;
+  std::vector<std::uint8_t> label;
+  std::vector<std::uint8_t> movable;  ///< its label may change
+  std::vector<std::uint8_t> held;     ///< its label stays because of most_stretch
+  std::vector<LinkMask> mask;
+  std::vector<float> phi;                    ///< signed distance in LinkTopology::unit
+  std::vector<Vec3> foot, normal;            ///< on psi = 0 and there; not set at the band's edge
+  std::vector<std::uint32_t> order;          ///< movable vertices, brick by brick
+  std::array<std::vector<Brick>, 8> bricks;  ///< per colour: vertices of two bricks of one are nine rings apart
+  std::atomic<std::size_t> psi_evaluations{0};
+
+ private:
+  void gather();
+  void gather_around(std::vector<std::int64_t> front);
+  bool find_link(std::size_t v);
+  double value_at(std::size_t v, const Vec3& x, Vec3& gradient);
+  void find_foot(std::size_t v);
+  void measure(const KeepGoing& keep_going);
+  bool has_foot(int v) const;
+  void hold_where_stretched(const KeepGoing& keep_going);
+  void make_bricks();
+  bool is_outermost(std::int64_t id) const;
+  double unit(std::size_t v) const { return links_[type[v]].unit * background_.h(); }
+  /// Farther than any vertex that may change, in units.
+  float far() const { return static_cast<float>(params_.reach_in + params_.reach_out + 1); }
+
+  const BackgroundMesh& background_;
+  const std::vector<LinkTopology>& links_;
+  ImplicitFunctionRef psi_;
+  const LabelParams& params_;
+  const IdSet& inside_;
+  const PsiValues* known_;
+  LinkSteps steps_;
+  IdSet band_;
+  std::vector<int> known_at_;       ///< where in known_ a vertex is, or -1; empty without
+  std::vector<std::size_t> first_;  ///< into ranks_
+  std::vector<int> ranks_;
+};
+
+/// umtet::choose_labels(), with psi where it is known (LabelBand).
+LabelReport choose_labels(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
+                          ImplicitFunctionRef psi, const LabelParams& params, IdSet& inside,
+                          const KeepGoing& keep_going, const IdSet* last, const PsiValues* known);
+
+}  // namespace umtet::detail

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mesh/core/tet_mesh.h"
+
+namespace umtet::detail {
+
+/// psi at vertices of the background, where somebody has asked for it already.
+struct PsiValue {
+  std::int64_t vertex;
+  double value;
+  Vec3 gradient;
+};
+using PsiValues = std::vector<PsiValue>;  ///< ascending vertices
+
+}  // namespace umtet::detail

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <algorithm>
+
+#include "mesh/core/tet_mesh.h"
+
+namespace umtet::detail {
+
+/// The two least vertices of a tet. Only under these has it faces, if each is put under its least vertex: three and
+/// one.
+struct TwoLeast {
+  int first, second;
+
+  explicit TwoLeast(const Tet& t) {
+    const int a = std::min(t[0], t[1]), b = std::max(t[0], t[1]), c = std::min(t[2], t[3]), d = std::max(t[2], t[3]);
+    first = std::min(a, c);
+    second = std::min(std::max(a, c), std::min(b, d));
+  }
+};
+
+}  // namespace umtet::detail

@@ -1,0 +1,380 @@
+#include "mesh/fast/fast_mesh.h"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "mesh/submesh/assumptions.h"
+#include "mesh/submesh/background_active_layer.h"
+#include "mesh/fast/tangential_relaxation.h"
+#include "mesh/submesh/detail/assemble_submesh.h"
+#include "mesh/classification/detail/classification_band.h"
+#include "mesh/submesh/detail/nothing_inside.h"
+#include "mesh/base/violations.h"
+#include "mesh/submesh/double_faces.h"
+#include "mesh/classification/configuration_costs.h"
+#include "mesh/submesh/lattice_active_layer.h"
+#include "mesh/core/tet_quality.h"
+#include "mesh/submesh/walls.h"
+#include "mesh/fast/warm_start.h"
+
+namespace umtet {
+namespace {
+
+using detail::find_offenders;
+using detail::IdSet;
+using detail::Offenders;
+
+// In place of the least gains of smoothing, if these are less, for a mesh that begins from the one before. A ball that
+// drifts a quarter cell a step: .95 of the visits of 3e-4 and least Q .832 (.834); with 1e-3 it is .92 and .828, anew
+// .833.
+constexpr double kUpdateLeastGain = 6e-4;
+constexpr std::size_t kVerticesPerTask = 1 << 14;  // to compare places, a nanosecond each
+
+class FastRun {
+ public:
+  FastRun(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params, const UmObserver& observer)
+      : background_(background),
+        psi_(psi),
+        params_(params),
+        observer_(observer),
+        prices_(params.rim == Rim::Wall ? nullptr : label_prices(background.tiling())),
+        label_params_(params.fast.labels),
+        inside_(0) {
+    if (prices_ && !label_params_.energies) label_params_.energies = &prices_->energies;
+  }
+
+  UmResult operator()(const std::vector<Vec3>& seeds) {
+    return run([&] { return find_inside(seeds) && label() && fit(); });
+  }
+  UmResult operator()(IdSet inside, FastMemory& memory, const detail::PsiValues& known) {
+    if (!known.empty()) known_ = &known;
+    inside_ = std::move(inside);
+    negative_ = inside_;
+    memory_ = &memory;
+    memory.n_recalled = 0;
+    bool made = false;
+    UmResult result = run([&] { return made = fits_background("") && label() && fit(); });
+    if (made) {
+      remember(memory);
+    } else {
+      memory.moved.clear();
+    }
+    return result;
+  }
+
+ private:
+  template <class F>
+  UmResult run(const F& steps) {
+    try {
+      steps();
+    } catch (const MeshCancelled&) {
+      fail(UmStatus::Cancelled, {.what = "stopped by the observer"});
+    }
+    if (is_labelled_) complete();
+    if (result_.final.empty()) result_.final = result_.submesh.mesh.V;
+    if (result_.projected.empty()) result_.projected = result_.final;
+    return std::move(result_);
+  }
+  bool fail(UmStatus status, const UmEvidence& evidence) {
+    result_.status = status;
+    result_.evidence = evidence;
+    return false;
+  }
+  bool report(const char* step, int pass, int n_passes) {
+    const auto& V = result_.submesh.mesh.V;
+    if (!observer_ || observer_({step, pass, n_passes, result_.final.empty() ? &V : &result_.final, n_tets_}))
+      return true;
+    return fail(UmStatus::Cancelled, {.what = std::string("stopped by the observer during ") + step});
+  }
+  KeepGoing asking(const char* step) {
+    return [this, step] { return !observer_ || observer_({step, 1, 1, &result_.submesh.mesh.V, n_tets_}); };
+  }
+  bool find_inside(const std::vector<Vec3>& seeds);
+  bool fits_background(const std::string& lost);
+  void remember(FastMemory& memory);
+  bool label();
+  bool check_walls();
+  void complete();
+  bool relax(const KeepGoing& keep_going, std::vector<Vec3>& projected);
+  bool fit();
+  bool all_arrived(const ProjectionReport& projection);
+  bool none_inverted();
+  std::vector<Vec3> coordinates(const std::vector<Vec3>& shell_V) const;
+  void repair_labels(const KeepGoing& keep_going);
+  void measure_assumptions();
+
+  const BackgroundMesh& background_;
+  ImplicitFunctionRef psi_;
+  const UmParams& params_;
+  const UmObserver& observer_;
+  const LabelPrices* prices_;  ///< null: labels stay those of psi
+  LabelParams label_params_;   ///< with the prices
+  UmResult result_;
+  IdSet inside_;
+  IdSet negative_{0};             ///< of update: psi < 0
+  FastMemory* memory_ = nullptr;  ///< of the psi before
+  const detail::PsiValues* known_ = nullptr;
+  LatticeShell shell_;
+  std::vector<std::pair<std::int64_t, Vec3>> moved_;  ///< by repair, ascending
+  bool is_labelled_ = false, is_complete_ = false;    ///< inside_ has been chosen, omega_h made of it
+  std::size_t n_tets_ = 0;                            ///< of omega_h, as far as it is known
+  BrokenAssumption double_faces_;
+};
+
+bool FastRun::find_inside(const std::vector<Vec3>& seeds) {
+  std::string lost;
+  if (params_.search == SubmeshSearch::FullLoop) {
+    inside_ = detail::inside_vertices(background_, psi_, result_.n_psi_evaluations, asking("search"));
+  } else {
+    detail::CrawledVertices found = detail::crawl_inside(background_, psi_, seeds, asking("search"));
+    inside_ = std::move(found.inside);
+    result_.n_psi_evaluations = found.n_psi_evaluations;
+    lost = "; " + std::to_string(found.lost_seeds.size()) + " of " + std::to_string(seeds.size()) +
+           " seeds led to no positively cut tet";
+  }
+  return fits_background(lost);
+}
+
+bool FastRun::fits_background(const std::string& lost) {
+  UmEvidence rim{.what = "the domain reaches the rim of the background mesh"};
+  bool empty = true;
+  for (std::size_t w = 0; w < inside_.n_words(); ++w) {
+    const auto first = static_cast<std::int64_t>(64 * w);
+    std::uint64_t bits = inside_.word(w);
+    if (bits == 0) continue;
+    empty = false;
+    if (params_.rim == Rim::Wall || background_.is_off_rim(first, first + 63)) continue;
+    for (; bits != 0; bits &= bits - 1) {
+      const std::int64_t v = first + std::countr_zero(bits);
+      if (background_.on_rim(v) && rim.count++ == 0) rim.background_vertex = v;
+    }
+  }
+  if (empty) {
+    const detail::NothingInside why = detail::nothing_inside(background_, psi_, asking("search"), lost);
+    return fail(why.status, why.evidence);
+  }
+  if (rim.count == 0) return true;
+  rim.where = background_.position(rim.background_vertex);
+  result_.submesh = emit_submesh(background_, inside_);
+  return fail(UmStatus::DomainLeavesBackground, rim);
+}
+
+bool FastRun::label() {
+  const IdSet* last = memory_ && !memory_->moved.empty() ? &memory_->inside : nullptr;
+  if (prices_ && last && negative_ == memory_->negative) {
+    inside_ = *last;  // psi = 0 has passed over no vertex
+  } else if (prices_) {
+    const LabelReport labels = detail::choose_labels(background_, prices_->links, psi_, label_params_, inside_,
+                                                     asking("search"), last, known_);
+    result_.n_psi_evaluations += labels.psi_evaluations;
+  }
+  is_labelled_ = true;
+  if (!prices_) {
+    complete();
+    if (params_.rim == Rim::Wall && !check_walls()) return false;
+  } else if (observer_) {  // repair will change labels: tets are listed once, behind it
+    SubmeshOutline outline = outline_submesh(background_, inside_);
+    result_.submesh = std::move(outline.submesh);
+    n_tets_ = outline.n_tets;
+  }
+  return report("submesh", 1, 1);
+}
+
+bool FastRun::check_walls() {
+  result_.walls = wall_faces(background_, result_.submesh);
+  const UmEvidence near = boundary_near_walls(background_, result_.submesh);
+  return near.count == 0 || fail(UmStatus::BoundaryNearWall, near);
+}
+
+/// omega_h of the labels, if it is not there.
+void FastRun::complete() {
+  if (is_complete_) return;
+  result_.submesh = {};  // before the tets need their memory
+  result_.submesh = emit_submesh(background_, inside_);
+  if (params_.rim == Rim::Wall) part_double_faces(background_, psi_, inside_, result_.submesh);
+  n_tets_ = result_.submesh.mesh.C.size();
+  double_faces_ = double_positive_faces(result_.submesh);
+  result_.double_positive_faces = double_faces_.count;
+  is_complete_ = true;
+}
+
+bool FastRun::all_arrived(const ProjectionReport& projection) {
+  if (projection.not_arrived.empty()) return true;
+  complete();
+  const NotArrived& first = projection.not_arrived.front();
+  const std::int64_t id = shell_.background_vertex[first.vertex];
+  const auto& ids = result_.submesh.background_vertex;
+  const int local = static_cast<int>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
+  const bool is_double = double_faces_.is_broken_at({&local, 1});
+  result_.final = coordinates(shell_.shell.V);
+  return fail(is_double ? UmStatus::DoublePositiveFace : UmStatus::ProjectionDiverged,
+              {.background_vertex = id,
+               .where = shell_.shell.V[first.vertex],
+               .count = projection.not_arrived.size(),
+               .what = std::string(first.reason == NotArrived::Reason::NoFoot
+                                       ? "the closest point of a positive vertex was not found"
+                                       : "a positive vertex cannot reach the boundary without inverting a tet") +
+                       (is_double ? ", at a face shared by two positively cut tets" : "")});
+}
+
+/// The vertices of omega_h with those of the shell at V, and the repaired ones where repair has put them.
+std::vector<Vec3> FastRun::coordinates(const std::vector<Vec3>& shell_V) const {
+  std::vector<Vec3> V = result_.submesh.mesh.V;
+  const auto& ids = result_.submesh.background_vertex;
+  const auto put = [&, at = ids.begin()](std::int64_t id, const Vec3& x) mutable {
+    while (at != ids.end() && *at < id) ++at;
+    if (at != ids.end() && *at == id) V[at - ids.begin()] = x;
+  };
+  auto put_shell = put;
+  for (std::size_t v = 0; v < shell_V.size(); ++v) put_shell(shell_.background_vertex[v], shell_V[v]);
+  auto put_moved = put;
+  for (const auto& [id, x] : moved_) put_moved(id, x);
+  return V;
+}
+
+/// The places of the shell, and of what repair has moved.
+void FastRun::remember(FastMemory& memory) {
+  memory.moved.clear();
+  const auto earlier = [](const auto& a, const auto& b) { return a.first < b.first; };
+  for (std::size_t v = 0; v < shell_.shell.V.size(); ++v) {
+    const std::pair<std::int64_t, Vec3> place = {shell_.background_vertex[v], shell_.shell.V[v]};
+    if (shell_.shell.role[v] == Shell::Role::Fixed) continue;
+    if (!std::binary_search(moved_.begin(), moved_.end(), place, earlier)) memory.moved.push_back(place);
+  }
+  memory.moved.insert(memory.moved.end(), moved_.begin(), moved_.end());
+  std::sort(memory.moved.begin(), memory.moved.end(), earlier);
+  memory.negative = std::move(negative_);
+  memory.inside = std::move(inside_);
+}
+
+bool FastRun::none_inverted() {
+  const auto& C = result_.submesh.mesh.C;
+  const auto& V = result_.final;
+  std::vector<char> has_moved(V.size());  // the background's own tets are positive
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, V.size(), kVerticesPerTask), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) has_moved[i] = V[i] != result_.submesh.mesh.V[i];
+  });
+  const Offenders inverted = find_offenders(C.size(), [&](std::size_t k) {
+    const Tet& t = C[k];
+    return (has_moved[t[0]] | has_moved[t[1]] | has_moved[t[2]] | has_moved[t[3]]) != 0 &&
+           !(volume6(V[t[0]], V[t[1]], V[t[2]], V[t[3]]) > 0);
+  });
+  if (inverted.count == 0) return true;
+  const Tet& tet = C[inverted.first];
+  const bool is_double = double_faces_.is_broken_at(tet);
+  return fail(is_double ? UmStatus::DoublePositiveFace : UmStatus::InvertedTet,
+              {.background_tet = result_.submesh.background_tet[inverted.first],
+               .where = .25 * (V[tet[0]] + V[tet[1]] + V[tet[2]] + V[tet[3]]),
+               .count = inverted.count,
+               .what = std::string("a tet stays inverted") +
+                       (is_double ? ", at a face shared by two positively cut tets" : "")});
+}
+
+void FastRun::measure_assumptions() {
+  // How far a vertex has come stands for its distance to the boundary: it only says which vertex of a face is nearest.
+  std::vector<double> distance;
+  for (const int i : result_.submesh.positive_vertices) {
+    distance.push_back((result_.final[i] - result_.submesh.mesh.V[i]).norm());
+  }
+  const ConditioningAngles angles = conditioning_angles(result_.submesh, distance);
+  result_.conditioning_angle_max_deg = angles.max_deg;
+  result_.obtuse_conditioning_angles = angles.not_acute.count;
+}
+
+/// Changes labels where that mends a tet.
+void FastRun::repair_labels(const KeepGoing& keep_going) {
+  if (!prices_) return;
+  RepairParams params = params_.fast.repair;
+  params.target = std::min(params.target, prices_->repair_target);
+  params.reach = std::min(params.reach, prices_->repair_reach);
+  params.slides = params.slides && !memory_;
+  RepairReport repaired = repair(background_, prices_->links, psi_, label_params_, params, shell_, inside_, keep_going);
+  result_.n_psi_evaluations += repaired.psi_evaluations;
+  moved_ = std::move(repaired.moved);
+}
+
+/// Boundary vertices go to psi = 0, and the shell is relaxed. @param projected  receives the places between the two
+bool FastRun::relax(const KeepGoing& keep_going, std::vector<Vec3>& projected) {
+  shell_ = prices_ ? lattice_shell(background_, prices_->links, inside_, params_.fast.layers)
+                   : background_shell(background_, inside_, params_.fast.layers);
+  SmoothParams smoothing_params = params_.fast.smoothing;
+  bool is_on_surface = false;
+  if (memory_ && !memory_->moved.empty()) {
+    smoothing_params.margin = std::min(smoothing_params.margin, params_.fast.update_margin);
+    smoothing_params.least_gain = std::max(smoothing_params.least_gain, kUpdateLeastGain);
+    smoothing_params.fine_gain = std::max(smoothing_params.fine_gain, kUpdateLeastGain);
+    const WarmStart start =
+        warm_start(background_, psi_, inside_, *memory_, params_.fast.projection, shell_, keep_going);
+    result_.n_psi_evaluations += start.psi_evaluations;
+    memory_->n_recalled = start.n_recalled;
+    is_on_surface = start.is_on_surface;
+  }
+  PNormSmoother smoother(shell_.shell);
+  shell_.shell.ring = {};  // the smoother has listed their faces, and omega_h will need the memory
+  if (!is_on_surface) {
+    const ProjectionReport projection = project(smoother, psi_, params_.fast.projection, keep_going);
+    result_.n_psi_evaluations += projection.psi_evaluations;
+    if (!all_arrived(projection)) return false;
+  }
+  projected = shell_.shell.V;
+  smoother.wake_all();
+  const SmoothReport smoothing = smoother.run(psi_, smoothing_params, keep_going);
+  result_.n_psi_evaluations += smoothing.psi_evaluations;
+  if (!memory_) {  // psi at every face: half the price of an update
+    const ChordParams chords{.least_quality = params_.fast.smoothing.target};
+    const std::vector<std::uint8_t> inside = inside_of(shell_, inside_);
+    result_.n_psi_evaluations +=
+        slide_to_chords(smoother, inside, psi_, chords, smoothing_params, keep_going).psi_evaluations;
+  }
+  return true;
+}
+
+bool FastRun::fit() {
+  const KeepGoing keep_going = asking("relax");
+  std::vector<Vec3> projected;
+  if (!relax(keep_going, projected)) return false;
+  repair_labels(keep_going);
+  complete();
+  tbb::parallel_invoke([&] { result_.final = coordinates(shell_.shell.V); },
+                       [&] { result_.projected = coordinates(projected); });
+  measure_assumptions();
+  return none_inverted() && report("relax", 1, 1);
+}
+
+}  // namespace
+
+std::vector<std::string> problems(const FastParams& params) {
+  std::vector<std::string> list;
+  if (params.layers < 1) list.push_back("layers = " + std::to_string(params.layers) + ": must be >= 1");
+  const auto add = [&](const char* name, const std::vector<std::string>& more) {
+    for (const std::string& problem : more) list.push_back(std::string(name) + "." + problem);
+  };
+  if (!(params.update_margin >= 0)) {
+    list.push_back("update_margin = " + std::to_string(params.update_margin) + ": must be >= 0");
+  }
+  add("labels", problems(params.labels));
+  add("projection", problems(params.projection));
+  add("smoothing", problems(params.smoothing));
+  add("repair", problems(params.repair));
+  return list;
+}
+
+UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
+                   const UmObserver& observer, const std::vector<Vec3>& seeds) {
+  return FastRun(background, psi, params, observer)(seeds);
+}
+
+UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
+                   const UmObserver& observer, detail::IdSet inside, FastMemory& memory,
+                   const detail::PsiValues& known) {
+  return FastRun(background, psi, params, observer)(std::move(inside), memory, known);
+}
+
+}  // namespace umtet

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "mesh/base/id_set.h"
+#include "mesh/core/psi_values.h"
+#include "mesh/universal_mesh.h"
+
+namespace umtet {
+
+/// A boundary-fitting mesh of {psi < 0}, better and some ten times faster than Algorithm 1.
+///
+/// labels: which background vertices near psi = 0 count as inside is chosen for the shape of the tets (classification.h), where
+/// that has prices (configuration_costs.h);
+/// shell: only the boundary of omega_h and two layers behind it move (lattice_active_layer.h);
+/// projection: boundary vertices walk to psi = 0 as far as no tet inverts (backtracking_projection.h);
+/// smoothing: p-norm Newton steps where a tet is below the target (p_norm_smoothing.h);
+/// chords: boundary vertices slide on to ridges that h does not resolve (tangential_relaxation.h);
+/// repair: labels change where a tet is still below the target (repair.h).
+///
+/// The result is that of universal_mesh(): omega_h of the chosen labels, with the background's ids. The same bytes for
+/// any number of threads. psi must be thread-safe.
+/// \pre params and seeds are those universal_mesh() accepts; params.mode is not read
+UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
+                   const UmObserver& observer = {}, const std::vector<Vec3>& seeds = {});
+
+/// What the mesh of one psi leaves to that of the next, in the same background mesh.
+struct FastMemory {
+  detail::IdSet negative{0};                         ///< psi < 0
+  detail::IdSet inside{0};                           ///< as labelled
+  std::vector<std::pair<std::int64_t, Vec3>> moved;  ///< vertices off their background places, ascending
+  std::size_t n_recalled = 0;                        ///< of these, how many the last mesh began with
+};
+
+/// The same from known inside vertices, those with psi < 0. Labels stay as in `memory` if psi
+/// has the signs it had everywhere, else where others are not worth more (LabelParams::keep), and the shell begins near
+/// its places there (warm_start.h). Nobody slides to chords.
+/// @param memory  empty (no `moved`) at first; receives that of this mesh, or becomes empty if there is none
+/// @param known   of this psi, what the search for `inside` has asked
+UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
+                   const UmObserver& observer, detail::IdSet inside, FastMemory& memory,
+                   const detail::PsiValues& known = {});
+
+}  // namespace umtet

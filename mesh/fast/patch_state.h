@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "mesh/core/implicit_function.h"
+#include "mesh/submesh/active_layer.h"
+
+namespace umtet {
+
+/// cos of the angle between a boundary face (counter-clockwise seen from outside) and psi = 0: its normal with grad psi
+/// at the closest point of its centroid, or, where that says they agree, where a few steps along grad psi lead from it.
+/// -1 for a face without area.
+/// @param h  background edge length: a thousandth of it is near enough to the surface
+/// @param evaluations  receives the number of values of psi
+double normal_cosine(ImplicitFunctionRef psi, const Vec3& a, const Vec3& b, const Vec3& c, double h,
+                     std::size_t& evaluations);
+
+/// A face with a smaller normal_cosine() is turned: it wants mending. Below 0 it is folded: the certificate fails.
+inline constexpr double kTurnedCosine = .5;
+
+/// The boundary face of a tet of omega_h, counter-clockwise seen from outside: that of its three outside vertices.
+/// @param inside  per vertex
+/// @return false if it has none
+bool positive_face(const Tet& tet, const std::vector<std::uint8_t>& inside, Triangle& face);
+
+/// What is wrong with a part of a mesh.
+struct PatchState {
+  double target = 0;                   ///< mean ratio below which a tet is poor
+  double least = 1;                    ///< mean ratio
+  std::size_t poor = 0;                ///< tets
+  double least_cosine = 1;             ///< of boundary faces
+  std::size_t turned = 0, folded = 0;  ///< faces; folded ones are turned, too
+
+  bool is_perfect() const { return poor == 0 && turned == 0; }
+  /// Neither of the five is worse; what is above the target, or above kTurnedCosine, is good enough. Where fewer faces
+  /// are turned, and no more folded, the worst of them may be turned more: the lip of spot_large goes from six turned
+  /// faces to three, two and one, and the worst by way of cos .01 from .04 to .15.
+  bool is_no_worse_than(const PatchState& other) const;
+  /// Fewer folded faces, or as many and fewer turned faces and poor tets, or as many of all and better worst ones.
+  bool is_better_than(const PatchState& other) const;
+};
+
+/// Of all tets of the shell; faces are not looked at.
+PatchState tet_state(const Shell& shell, double target);
+
+/// Of all tets of the shell and all their boundary faces.
+PatchState patch_state(const Shell& shell, const std::vector<std::uint8_t>& inside, ImplicitFunctionRef psi,
+                       double target, std::size_t& evaluations);
+
+}  // namespace umtet

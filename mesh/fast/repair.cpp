@@ -1,0 +1,285 @@
+#include "mesh/fast/repair.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <deque>
+#include <set>
+#include <stdexcept>
+
+#include "mesh/fast/detail/flip_trials.h"
+#include "mesh/core/max_min.h"
+#include "mesh/core/tet_quality.h"
+
+namespace umtet {
+namespace {
+
+using detail::IdSet;
+using detail::LabelTrials;
+using detail::TetIds;
+
+// Besides max_patches: so many, and one for so many tets of the shell. A coarse perforated plate of 5092 tets is mended
+// by its 1724th patch, and until then looks no better than lenses that never are: one of 1600 tets took 3000.
+constexpr std::size_t kFewPatches = 600, kTetsPerPatch = 4;
+// So many tets are mended at once, while so many wait for one near them. The caller is asked before each round: the
+// dearest tets take a tenth of a second each, and one thread may have to mend them all.
+constexpr std::size_t kAtOnce = 2, kMostWaiting = 64;
+
+/// Of a tiling, as a share of its mean edge.
+double longest_edge(const Tiling& tiling, const TilingTables& tables) {
+  double longest2 = 0;
+  for (std::size_t type = 0; type < tiling.points.size(); ++type) {
+    for (const Tiling::Corner& c : tables.link[type]) {
+      double d2 = 0;
+      for (int k = 0; k < 3; ++k) {
+        const double d = tiling.points[c.type][k] + c.offset[k] * tiling.period[k] - tiling.points[type][k];
+        d2 += d * d;
+      }
+      longest2 = std::max(longest2, d2);
+    }
+  }
+  return std::sqrt(longest2) / tiling.mean_edge;
+}
+
+class Repair {
+ public:
+  Repair(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
+         const LabelParams& labels, const RepairParams& params, const LatticeShell& shell, IdSet& inside)
+      : background_(background),
+        links_(links),
+        psi_(psi),
+        labels_(labels),
+        params_(params),
+        shell_(shell),
+        inside_(inside),
+        most_patches_(std::min(params.max_patches, kFewPatches + shell.shell.C.size() / kTetsPerPatch)),
+        target_(params.target),
+        places_(background, shell) {}
+
+  RepairReport operator()(const KeepGoing& keep_going);
+
+ private:
+  struct Bad {
+    double badness;  ///< the cosine of its face if that is turned, else Q: folded ones are the worst
+    TetIds tet;
+  };
+
+  bool is_worth_trying(const TetIds& tet);
+  void mend(const KeepGoing& keep_going);
+  void again(double target);
+  bool choose_round();
+  void keep(const TetIds& tet, const LabelTrials::Best& best);
+  void move(const LatticeShell& patch);
+  void look(const LatticeShell& cut);
+  void count();
+
+  const BackgroundMesh& background_;
+  const std::vector<LinkTopology>& links_;
+  ImplicitFunctionRef psi_;
+  const LabelParams& labels_;
+  const RepairParams& params_;
+  const LatticeShell& shell_;
+  IdSet& inside_;
+  const std::size_t most_patches_;
+  double target_;
+  detail::Places places_;
+  std::deque<LabelTrials> trials_;  ///< one for each tet of a round, with labels as in inside_
+  std::vector<TetIds> given_up_;
+  std::set<std::int64_t> hopeless_;  ///< vertices of tets that nothing helped
+  std::vector<Bad> todo_;            ///< from next_ on
+  std::size_t next_ = 0;
+  std::vector<TetIds> waiting_;                  ///< before todo_
+  std::vector<std::vector<std::int64_t>> kept_;  ///< centres of the patches
+  std::vector<TetIds> round_;  ///< far from each other: what is done for one does not touch the others
+  double far_ = 0;             ///< model units
+  RepairReport report_;
+};
+
+/// False for one that is all right, or given up.
+bool Repair::is_worth_trying(const TetIds& tet) {
+  if (!trials_.front().is_bad(tet)) return false;
+  // Where nothing helped, it would not help the tets that share a vertex either: they see the same labels.
+  const bool hopeless = std::any_of(tet.begin(), tet.end(), [&](std::int64_t v) { return hopeless_.count(v) != 0; });
+  if (!hopeless && report_.tries < most_patches_) return true;
+  given_up_.push_back(tet);
+  return false;
+}
+
+/// The next tets in their order, but for those near one that comes before them: these wait.
+bool Repair::choose_round() {
+  round_.clear();
+  std::vector<TetIds> held;
+  std::vector<Vec3> before;
+  std::size_t w = 0;
+  while (round_.size() < kAtOnce && held.size() < kMostWaiting && (w < waiting_.size() || next_ < todo_.size())) {
+    const TetIds tet = w < waiting_.size() ? waiting_[w++] : todo_[next_++].tet;
+    const Vec3 at = background_.position(tet[0]);
+    const bool near = std::any_of(before.begin(), before.end(), [&](const Vec3& x) { return (x - at).norm() <= far_; });
+    if (near) {
+      held.push_back(tet);
+    } else if (is_worth_trying(tet)) {
+      round_.push_back(tet);
+    } else {
+      continue;
+    }
+    before.push_back(at);
+  }
+  held.insert(held.end(), waiting_.begin() + static_cast<std::ptrdiff_t>(w), waiting_.end());
+  waiting_ = std::move(held);
+  return !round_.empty();
+}
+
+void Repair::move(const LatticeShell& patch) {
+  for (std::size_t v = 0; v < patch.shell.V.size(); ++v) {
+    if (patch.shell.role[v] != Shell::Role::Fixed) places_.move(patch.background_vertex[v], patch.shell.V[v]);
+  }
+}
+
+void Repair::keep(const TetIds& tet, const LabelTrials::Best& best) {
+  for (const std::int64_t v : best.flips) {
+    inside_.test(v) ? inside_.erase(v) : inside_.insert(v);
+    for (LabelTrials& trials : trials_) trials.flip(v);
+  }
+  move(best.shell);
+  kept_.emplace_back(tet.begin(), tet.end());
+  kept_.back().insert(kept_.back().end(), best.flips.begin(), best.flips.end());
+  report_.flips += best.flips.size();
+  look(best.shell);  // the patch may have bad tets that were not bad before; max_patches ends this
+}
+
+void Repair::count() {
+  report_.tries = 0;
+  for (const LabelTrials& trials : trials_) report_.tries += trials.tries;
+}
+
+/// Puts the tets of a shell that are below the target, or have a turned face, on the list, the worst first.
+void Repair::look(const LatticeShell& cut) {
+  const std::vector<Vec3>& V = cut.shell.V;
+  const std::vector<Tet>& C = cut.shell.C;
+  const std::vector<std::uint8_t> inside = inside_of(cut, inside_);
+  std::vector<double> badness(C.size(), 1);
+  std::atomic<std::size_t> evaluations = 0;
+  // Nearly all tets are above the target, which takes no root to see.
+  const double enough = (1 + 1e-12) * f_of_quality(target_);
+  tbb::parallel_for(std::size_t{0}, C.size(), [&](std::size_t k) {
+    const Tet& t = C[k];
+    const Vec3 &p = V[t[0]], &q = V[t[1]], &r = V[t[2]], &s = V[t[3]];
+    const double six = volume6(p, q, r, s), L = sum_of_squared_edges(p, q, r, s);
+    if (!(six * std::abs(six) >= enough * (L * L * L))) badness[k] = mean_ratio(p, q, r, s);
+    Triangle f;
+    if (!positive_face(t, inside, f)) return;
+    std::size_t n = 0;
+    const double cosine = normal_cosine(psi_, V[f[0]], V[f[1]], V[f[2]], cut.shell.h, n);
+    evaluations.fetch_add(n, std::memory_order_relaxed);
+    if (cosine < kTurnedCosine) badness[k] = std::min(badness[k], cosine);
+  });
+  report_.psi_evaluations += evaluations;
+  const std::size_t first = todo_.size();
+  const auto& id = cut.background_vertex;
+  for (std::size_t k = 0; k < C.size(); ++k) {
+    const Tet& t = C[k];
+    if (badness[k] < target_) todo_.push_back({badness[k], {id[t[0]], id[t[1]], id[t[2]], id[t[3]]}});
+  }
+  std::stable_sort(todo_.begin() + static_cast<std::ptrdiff_t>(first), todo_.end(),
+                   [](const Bad& a, const Bad& b) { return a.badness < b.badness; });
+}
+
+/// What is on the list, round by round.
+void Repair::mend(const KeepGoing& keep_going) {
+  std::vector<LabelTrials::Best> best(kAtOnce);
+  while (choose_round()) {
+    poll(keep_going);
+    const std::size_t most_tries = most_patches_ - report_.tries;
+    tbb::parallel_for(
+        std::size_t{0}, round_.size(), [&](std::size_t k) { best[k] = trials_[k](round_[k], most_tries); },
+        tbb::simple_partitioner());
+    count();
+    std::vector<TetIds> again;
+    for (std::size_t k = 0; k < round_.size(); ++k) {
+      if (best[k].found) {
+        keep(round_[k], best[k]);
+        again.push_back(round_[k]);  // it may have become better and be bad
+      } else {
+        given_up_.push_back(round_[k]);
+        hopeless_.insert(round_[k].begin(), round_[k].end());
+      }
+    }
+    waiting_.insert(waiting_.begin(), again.begin(), again.end());
+  }
+}
+
+/// Puts what was given up on the list again, against another target.
+void Repair::again(double target) {
+  target_ = target;
+  for (LabelTrials& trials : trials_) trials.look_again(target, params_.sharper);
+  todo_.clear();
+  next_ = 0;
+  for (const TetIds& tet : given_up_) todo_.push_back({0, tet});  // in the order in which they were given up
+  given_up_.clear();
+  hopeless_.clear();
+}
+
+RepairReport Repair::operator()(const KeepGoing& keep_going) {
+  if (params_.max_tries > 0) look(shell_);
+  report_.bad_before = todo_.size();
+  if (todo_.empty()) return std::move(report_);
+  for (std::size_t k = 0; k < kAtOnce; ++k) {
+    trials_.emplace_back(background_, links_, psi_, labels_, params_, places_, inside_);
+  }
+  // Seen from one vertex of a tet, flips are within two edges, what moves is within reach + 2; labels and places are
+  // read one edge farther.
+  far_ = (2 * params_.reach + 5) * longest_edge(background_.tiling(), background_.tiling_tables()) * background_.h();
+  mend(keep_going);
+  if (params_.sharper) {
+    again(params_.target);
+    mend(keep_going);
+  }
+  if (params_.less_asked > 0) {
+    again(params_.target - params_.less_asked);
+    mend(keep_going);
+  }
+  report_.given_up = given_up_.size();
+  if (params_.slides) {
+    for (LabelTrials& trials : trials_) trials.look_again(params_.target, false);
+    for (const std::vector<std::int64_t>& centres : kept_) {
+      poll(keep_going);
+      move(trials_.front().slid(centres));
+    }
+  }
+  for (const LabelTrials& trials : trials_) report_.psi_evaluations += trials.psi_evaluations;
+  for (const std::int64_t v : places_.moved()) report_.moved.emplace_back(v, places_.of(v));
+  std::sort(report_.moved.begin(), report_.moved.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  return std::move(report_);
+}
+
+}  // namespace
+
+std::vector<std::string> problems(const RepairParams& params) {
+  std::vector<std::string> list;
+  const auto add = [&](const char* name, const std::string& value, const char* range) {
+    list.push_back(std::string(name) + " = " + value + ": must be " + range);
+  };
+  if (!(params.target > 0 && params.target < 1)) add("target", std::to_string(params.target), "in (0, 1)");
+  if (params.reach < 1) add("reach", std::to_string(params.reach), ">= 1");
+  if (!(params.less_asked >= 0)) add("less_asked", std::to_string(params.less_asked), ">= 0");
+  if (params.max_tries < 0) add("max_tries", std::to_string(params.max_tries), ">= 0");
+  for (const std::string& problem : problems(params.projection)) list.push_back("projection." + problem);
+  for (const std::string& problem : problems(params.smoothing)) list.push_back("smoothing." + problem);
+  return list;
+}
+
+RepairReport repair(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
+                    const LabelParams& labels, const RepairParams& params, const LatticeShell& shell, IdSet& inside,
+                    const KeepGoing& keep_going) {
+  std::string all;
+  for (const auto& list : {problems(labels), problems(params)}) {
+    for (const std::string& problem : list) all += (all.empty() ? "" : "; ") + problem;
+  }
+  if (!all.empty()) throw std::invalid_argument(all);
+  return Repair(background, links, psi, labels, params, shell, inside)(keep_going);
+}
+
+}  // namespace umtet

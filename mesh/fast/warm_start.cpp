@@ -1,0 +1,180 @@
+#include "mesh/fast/warm_start.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "mesh/implicit/closest_point.h"
+#include "mesh/core/max_min.h"
+#include "mesh/core/tet_quality.h"
+
+namespace umtet {
+namespace {
+
+using detail::IdSet;
+
+// Six sweeps instead of three save smoothing a fiftieth of its visits, which is what they cost (drifting_ball).
+constexpr int kSweeps = 3;
+// psi = 0 crosses an edge at every positive vertex, and no tiling has longer ones, in h: farther feet are elsewhere.
+constexpr double kFarthestFoot = 1.5;
+// Smoothing slides the feet anyway: what counts is that they are on psi = 0, which takes no Hessian.
+constexpr double kFootTol = 1e-2;
+constexpr std::size_t kFeetPerPoll = kValuesPerPoll / 8;
+
+class Start {
+ public:
+  Start(LatticeShell& shell, const ProjectionParams& projection)
+      : ids_(shell.background_vertex),
+        shell_(shell.shell),
+        projection_(projection),
+        background_V_(shell.shell.V),
+        recalled_(shell.shell.V.size(), 0) {}
+
+  void recall(const BackgroundMesh& background, const IdSet& inside, const FastMemory& memory);
+  std::size_t go_to_feet(ImplicitFunctionRef psi, const KeepGoing& keep_going);
+  void follow_boundary();
+  void draw_along();
+  void go_back_where_flat();
+  const std::vector<unsigned char>& recalled() const { return recalled_; }
+  bool is_on_surface() const { return is_on_surface_; }
+
+ private:
+  Vec3 mean_around(int v, const std::vector<Vec3>& u) const;
+
+  const std::vector<std::int64_t>& ids_;
+  Shell& shell_;
+  const ProjectionParams& projection_;
+  const std::vector<Vec3> background_V_;
+  std::vector<unsigned char> recalled_;
+  std::vector<std::pair<int, Vec3>> boundary_from_;  ///< recalled Boundary vertices, before they went to their feet
+  bool is_on_surface_ = true;
+};
+
+void Start::recall(const BackgroundMesh& background, const IdSet& inside, const FastMemory& memory) {
+  IdSet changed(background.n_vertices());  // and their neighbours
+  std::vector<std::int64_t> link;
+  for (std::size_t w = 0; w < inside.n_words(); ++w) {
+    for (std::uint64_t bits = inside.word(w) ^ memory.inside.word(w); bits != 0; bits &= bits - 1) {
+      const std::int64_t v = static_cast<std::int64_t>(w * 64) + std::countr_zero(bits);
+      link.clear();
+      background.link(v, link);
+      changed.insert(v);
+      for (const std::int64_t n : link) changed.insert(n);
+    }
+  }
+  std::size_t v = 0;
+  for (const auto& [id, x] : memory.moved) {
+    while (v < ids_.size() && ids_[v] < id) ++v;
+    if (v == ids_.size()) break;
+    if (ids_[v] != id || shell_.role[v] == Shell::Role::Fixed || changed.test(id)) continue;
+    shell_.V[v] = x;
+    recalled_[v] = 1;
+  }
+}
+
+/// Returns the number of values of psi.
+std::size_t Start::go_to_feet(ImplicitFunctionRef psi, const KeepGoing& keep_going) {
+  std::vector<int> boundary;
+  for (std::size_t v = 0; v < shell_.V.size(); ++v) {
+    if (shell_.role[v] != Shell::Role::Boundary) continue;
+    boundary.push_back(static_cast<int>(v));
+    if (recalled_[v] != 0) boundary_from_.emplace_back(v, shell_.V[v]);
+  }
+  std::atomic<std::size_t> evaluations = 0, lost = 0;
+  ClosestPointParams params = projection_.closest_point;
+  params.method = ClosestPointMethod::Damped;
+  params.foot_tol = std::max(params.foot_tol, kFootTol);
+  polled_parallel_for(boundary.size(), kFeetPerPoll, keep_going, [&](std::size_t k) {
+    Vec3& x = shell_.V[boundary[k]];
+    const ClosestPoint foot = closest_point(psi, x, shell_.h, params);
+    evaluations.fetch_add(static_cast<std::size_t>(foot.iterations), std::memory_order_relaxed);
+    if (foot.converged && (foot.point - x).norm() <= kFarthestFoot * shell_.h) {
+      x = foot.point;
+    } else {
+      lost.fetch_add(1, std::memory_order_relaxed);
+    }
+  });
+  is_on_surface_ = lost == 0;
+  return evaluations;
+}
+
+/// The mean of u over the other vertices of the tets at v.
+Vec3 Start::mean_around(int v, const std::vector<Vec3>& u) const {
+  const int begin = shell_.ring_begin[v], end = shell_.ring_begin[v + 1];
+  Vec3 sum = -(end - begin) * u[v];
+  for (int r = begin; r < end; ++r) {
+    const Tet& t = shell_.C[shell_.ring[r]];
+    sum += (u[t[0]] + u[t[1]]) + (u[t[2]] + u[t[3]]);
+  }
+  return sum / (3 * (end - begin));
+}
+
+/// Once, from all of these at rest: a second sweep saves a hundredth of smoothing's visits, which it costs itself.
+void Start::follow_boundary() {
+  std::vector<Vec3> moved(shell_.V.size(), Vec3::Zero());
+  for (const auto& [v, from] : boundary_from_) moved[v] = shell_.V[v] - from;
+  for (std::size_t v = 0; v < shell_.V.size(); ++v) {
+    if (shell_.role[v] != Shell::Role::Inner || recalled_[v] == 0) continue;
+    moved[v] = mean_around(static_cast<int>(v), moved);
+    shell_.V[v] += moved[v];
+  }
+}
+
+void Start::draw_along() {
+  std::vector<Vec3> u(shell_.V.size());
+  std::vector<int> drawn;
+  for (std::size_t v = 0; v < u.size(); ++v) {
+    u[v] = shell_.V[v] - background_V_[v];
+    if (shell_.role[v] == Shell::Role::Inner && recalled_[v] == 0) drawn.push_back(static_cast<int>(v));
+  }
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (const int v : drawn) u[v] = mean_around(v, u);
+  }
+  for (const int v : drawn) shell_.V[v] = background_V_[v] + u[v];
+}
+
+void Start::go_back_where_flat() {
+  const double least_f = f_of_quality(projection_.least_quality);
+  const auto is_flat = [&](const Tet& t) {
+    const Vec3 &a = shell_.V[t[0]], &b = shell_.V[t[1]], &c = shell_.V[t[2]], &d = shell_.V[t[3]];
+    const double V = volume6(a, b, c, d), L = sum_of_squared_edges(a, b, c, d);
+    return !(V * std::abs(V) >= least_f * (L * L * L));
+  };
+  const auto has_left = [&](int v) { return shell_.V[v] != background_V_[v]; };
+  // A vertex that goes back may leave a tet flat that was not.
+  for (bool again = true; again;) {
+    again = false;
+    for (const Tet& t : shell_.C) {
+      if (!is_flat(t) || std::none_of(t.begin(), t.end(), has_left)) continue;
+      again = true;
+      for (const int v : t) {
+        shell_.V[v] = background_V_[v];
+        recalled_[v] = 0;
+        is_on_surface_ &= shell_.role[v] != Shell::Role::Boundary;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+WarmStart warm_start(const BackgroundMesh& background, ImplicitFunctionRef psi, const IdSet& inside,
+                     const FastMemory& memory, const ProjectionParams& projection, LatticeShell& shell,
+                     const KeepGoing& keep_going) {
+  Start start(shell, projection);
+  WarmStart result;
+  start.recall(background, inside, memory);
+  result.psi_evaluations = start.go_to_feet(psi, keep_going);
+  start.follow_boundary();
+  start.draw_along();
+  start.go_back_where_flat();
+  result.recalled = start.recalled();
+  result.is_on_surface = start.is_on_surface();
+  result.n_recalled = static_cast<std::size_t>(std::count(result.recalled.begin(), result.recalled.end(), 1));
+  return result;
+}
+
+}  // namespace umtet

@@ -1,0 +1,54 @@
+#include "mesh/implicit/thickness.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace umtet {
+
+namespace {
+
+// The distance from x along d at which psi, of sign `side` behind the start, changes sign again; or limit.
+double first_return(ImplicitFunctionRef psi, const Vec3& x, const Vec3& d, double side, double step, double limit,
+                    double steepest) {
+  double before = step / 2, value = side * psi.value(x + before * d);
+  if (!(value > 0)) return limit;  // psi does not take the sign of this side: grazing, or not a simple zero
+  while (true) {
+    const double t = before + std::max(step, value / steepest);
+    if (!(t < limit)) return limit;
+    const double next = side * psi.value(x + t * d);
+    if (next <= 0) return before + (t - before) * value / (value - next);  // linear in between
+    before = t, value = next;
+  }
+}
+
+}  // namespace
+
+std::vector<SheetDistances> sheet_distances(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double step,
+                                            double limit, const KeepGoing& keep_going, double steepest) {
+  std::vector<SheetDistances> out(points.size(), {limit, limit});
+  polled_parallel_for(points.size(), kValuesPerPoll, keep_going, [&](std::size_t i) {
+    Vec3 x = points[i], g;
+    double value = psi.value(x, g);
+    for (int it = 0; it < 8 && std::abs(value) > 1e-6 * step * g.norm(); ++it) {
+      const Vec3 move = -value / std::max(g.squaredNorm(), 1e-300) * g;
+      x += move * std::min(1.0, step / std::max(move.norm(), 1e-300));
+      value = psi.value(x, g);
+    }
+    const double slope = g.norm();
+    if (!(slope > 0) || std::abs(value) > 1e-3 * step * slope) return;
+    const Vec3 n = g / slope;
+    out[i] = {first_return(psi, x, -n, -1, step, limit, steepest), first_return(psi, x, n, 1, step, limit, steepest)};
+  });
+  return out;
+}
+
+std::vector<double> thickness(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double step, double limit,
+                              const KeepGoing& keep_going, double steepest) {
+  std::vector<double> out;
+  for (const SheetDistances& d : sheet_distances(psi, points, step, limit, keep_going, steepest)) {
+    out.push_back(std::min(d.body, d.gap));
+  }
+  return out;
+}
+
+}  // namespace umtet

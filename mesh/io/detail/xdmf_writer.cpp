@@ -1,0 +1,213 @@
+#include <hdf5.h>
+
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "mesh/io/checked_file.h"
+#include "mesh/io/detail/node_sets.h"
+#include "mesh/io/solver_files.h"
+
+namespace umtet {
+namespace {
+
+/// Debian's HDF5 is not for several threads, and reports on stderr; what goes wrong is told by its return values.
+class QuietHdf5 {
+ public:
+  QuietHdf5() : lock_(mutex()) {
+    H5Eget_auto2(H5E_DEFAULT, &report_, &data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  ~QuietHdf5() { H5Eset_auto2(H5E_DEFAULT, report_, data_); }
+  QuietHdf5(const QuietHdf5&) = delete;
+  QuietHdf5& operator=(const QuietHdf5&) = delete;
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex m;
+    return m;
+  }
+  std::lock_guard<std::mutex> lock_;
+  H5E_auto2_t report_ = nullptr;
+  void* data_ = nullptr;
+};
+
+template <class T>
+T checked(T result, const char* what) {
+  if (result < 0) throw std::runtime_error(std::string("HDF5: ") + what + " failed");
+  return result;
+}
+
+/// An object of HDF5 with the function that closes it.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t), const char* what) : id_(checked(id, what)), close_(close) {}
+  ~Handle() { close_(id_); }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  operator hid_t() const { return id_; }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+template <class T>
+hid_t memory_type() {
+  if constexpr (std::is_same_v<T, double>) return H5T_NATIVE_DOUBLE;
+  if constexpr (std::is_same_v<T, int>) return H5T_NATIVE_INT;
+  if constexpr (std::is_same_v<T, std::int64_t>) return H5T_NATIVE_INT64;
+  return H5T_NATIVE_UINT8;
+}
+
+/// A file in memory, written by CheckedFile in the end: HDF5 writes late, so that a full disk would show at its close
+/// or at the end of the program.
+class Hdf5Image {
+ public:
+  Hdf5Image()
+      : access_(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "H5Pcreate"),
+        make_(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "H5Pcreate"),
+        link_(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "H5Pcreate"),
+        file_(create(), H5Fclose, "H5Fcreate") {
+    checked(H5Pset_obj_track_times(make_, false), "H5Pset_obj_track_times");  // equal bytes for equal meshes
+    checked(H5Pset_create_intermediate_group(link_, 1), "H5Pset_create_intermediate_group");
+  }
+
+  /// @param columns  0: a list
+  template <class T>
+  void put(const std::string& name, const T* values, std::size_t rows, std::size_t columns = 0) {
+    const hsize_t size[2] = {rows, columns};
+    const Handle space(H5Screate_simple(columns == 0 ? 1 : 2, size, nullptr), H5Sclose, "H5Screate_simple");
+    const Handle set(H5Dcreate2(file_, name.c_str(), memory_type<T>(), space, link_, make_, H5P_DEFAULT), H5Dclose,
+                     "H5Dcreate");
+    if (rows > 0) checked(H5Dwrite(set, memory_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values), "H5Dwrite");
+  }
+  void put(const std::string& name, const FieldValues& any) {
+    std::visit([&](const auto& values) { put(name, values.data(), values.size()); }, any);
+  }
+
+  std::string bytes() {
+    checked(H5Fflush(file_, H5F_SCOPE_GLOBAL), "H5Fflush");
+    std::string image(static_cast<std::size_t>(checked(H5Fget_file_image(file_, nullptr, 0), "H5Fget_file_image")),
+                      '\0');
+    checked(H5Fget_file_image(file_, image.data(), image.size()), "H5Fget_file_image");
+    return image;
+  }
+
+ private:
+  hid_t create() {
+    constexpr std::size_t kGrowth = std::size_t{1} << 20;
+    constexpr bool kOnDisk = false;
+    checked(H5Pset_fapl_core(access_, kGrowth, kOnDisk), "H5Pset_fapl_core");
+    return H5Fcreate("in memory", H5F_ACC_TRUNC, H5P_DEFAULT, access_);
+  }
+
+  Handle access_, make_, link_, file_;
+};
+
+/// One grid: its cells are the dataset `cells` of the HDF5 file.
+class XdmfWriter {
+ public:
+  XdmfWriter(const std::filesystem::path& path, const SolverMesh& mesh, std::string hdf5)
+      : mesh_(mesh), hdf5_(std::move(hdf5)), file_(path) {}
+
+  void grid(const char* name, const char* topology, const char* cells, std::size_t n_cells, int n_nodes) {
+    file_.text("<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain><Grid Name=\"").text(name);
+    file_.text("\" GridType=\"Uniform\">\n<Geometry GeometryType=\"XYZ\">\n");
+    item<double>("nodes", mesh_.nodes.size(), 3);
+    file_.text("</Geometry>\n<Topology TopologyType=\"").text(topology);
+    file_.text("\" NumberOfElements=\"").number(n_cells).text("\">\n");
+    item<int>(cells, n_cells, n_nodes);
+    file_.text("</Topology>\n");
+  }
+  template <class T>
+  void attribute(const std::string& name, const char* center, const std::string& dataset, std::size_t n) {
+    file_.text("<Attribute Name=\"").text(name).text("\" AttributeType=\"Scalar\" Center=\"").text(center);
+    file_.text("\">\n");
+    item<T>(dataset, n, 0);
+    file_.text("</Attribute>\n");
+  }
+  void attributes(const std::map<std::string, FieldValues>& data, const char* center, const std::string& group) {
+    for (const auto& [name, any] : data) {
+      std::visit(
+          [&, &name = name](const auto& values) {
+            using Value = typename std::decay_t<decltype(values)>::value_type;
+            attribute<Value>(name, center, group + name, values.size());
+          },
+          any);
+    }
+  }
+  /// As meshio does: XDMF has no word for it.
+  void names(const std::vector<MeshPart>& patches) {
+    file_.text("<Information Name=\"patches\"><![CDATA[<main>");
+    for (const MeshPart& patch : patches) {
+      file_.text("<map key=\"").text(patch.name).text("\" dim=\"2\">").number(patch.number).text("</map>");
+    }
+    file_.text("</main>]]></Information>\n");
+  }
+  void end() {
+    file_.text("</Grid></Domain></Xdmf>\n");
+    file_.close();
+  }
+
+ private:
+  template <class T>
+  void item(const std::string& dataset, std::size_t rows, int columns) {
+    file_.text("<DataItem DataType=\"");
+    file_.text(std::is_same_v<T, double> ? "Float" : std::is_same_v<T, std::uint8_t> ? "UChar" : "Int");
+    file_.text("\" Precision=\"").number(sizeof(T)).text("\" Dimensions=\"").number(rows);
+    if (columns > 0) file_.text(" ").number(columns);
+    file_.text("\" Format=\"HDF\">").text(hdf5_).text(":/").text(dataset).text("</DataItem>\n");
+  }
+
+  const SolverMesh& mesh_;
+  std::string hdf5_;
+  detail::CheckedFile file_;
+};
+
+}  // namespace
+
+void write_hdf5(const std::filesystem::path& path, const SolverMesh& mesh) {
+  require_consistent(mesh);
+  std::string bytes;
+  {
+    const QuietHdf5 quiet;
+    Hdf5Image image;
+    static_assert(sizeof(Vec3) == 3 * sizeof(double));
+    image.put("nodes", reinterpret_cast<const double*>(mesh.nodes.data()), mesh.nodes.size(), 3);
+    image.put("tets", mesh.tets.data(), mesh.n_tets(), static_cast<std::size_t>(mesh.nodes_per_tet));
+    const std::vector<int> faces = mesh.faces();
+    image.put("faces", faces.data(), mesh.n_faces(), static_cast<std::size_t>(mesh.nodes_per_face()));
+    image.put("patch", FieldValues(detail::patch_numbers(mesh)));
+    for (const auto& [name, values] : detail::with_node_sets(mesh)) image.put("point_data/" + name, values);
+    for (const auto& [name, values] : mesh.cell_data) image.put("cell_data/" + name, values);
+    bytes = image.bytes();
+  }
+  detail::CheckedFile file(path);
+  file.text(bytes);
+  file.close();
+}
+
+void write_xdmf(const std::filesystem::path& path, const SolverMesh& mesh, const std::string& hdf5) {
+  require_consistent(mesh);
+  const bool linear = mesh.nodes_per_tet == 4;
+  XdmfWriter out(path, mesh, hdf5);
+  out.grid("mesh", linear ? "Tetrahedron" : "Tetrahedron_10", "tets", mesh.n_tets(), mesh.nodes_per_tet);
+  out.attributes(detail::with_node_sets(mesh), "Node", "point_data/");
+  out.attributes(mesh.cell_data, "Cell", "cell_data/");
+  out.end();
+}
+
+void write_boundary_xdmf(const std::filesystem::path& path, const SolverMesh& mesh, const std::string& hdf5) {
+  require_consistent(mesh);
+  const bool linear = mesh.nodes_per_tet == 4;
+  XdmfWriter out(path, mesh, hdf5);
+  out.grid("boundary", linear ? "Triangle" : "Triangle_6", "faces", mesh.n_faces(), mesh.nodes_per_face());
+  out.names(mesh.patches);
+  out.attribute<std::int64_t>("patch", "Cell", "patch", mesh.n_faces());
+  out.end();
+}
+
+}  // namespace umtet

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "mesh/core/max_min.h"
+#include "mesh/paper/relaxation_direction.h"
+#include "mesh/core/tet_mesh.h"
+
+namespace umtet {
+
+/// A tet mesh whose vertices move while its connectivity stays: coordinates, the faces opposite to each vertex in its
+/// 1-ring, and which vertices are worth relaxing again.
+class MovingMesh {
+ public:
+  /// @param rings_are_optimal  no relaxation would move anything as long as nothing has moved; see Tiling
+  /// \throw std::invalid_argument for a vertex with more than kMaxRing tets
+  explicit MovingMesh(const TetMesh& mesh, bool rings_are_optimal = false);
+
+  std::vector<Vec3> V;  ///< change it through move()
+
+  std::span<const Triangle> one_ring(int i) const { return {faces_.data() + begin_[i], faces_.data() + begin_[i + 1]}; }
+  /// The ring of i around its present place.
+  OneRing ring(int i) const { return OneRing(V[i], V, one_ring(i)); }
+
+  /// Places vertex i at x; it and its neighbours are relaxed again at their next turn. Vertices that share no tet may
+  /// be moved by different threads at once.
+  void move(int i, const Vec3& x);
+
+  /// The axis that stands for all directions: settled only in an optimal ring where nothing has moved yet.
+  static constexpr int kAnyDirection = 3;
+  /// False if vertex i, or a neighbour, has moved since settle(i, axis). If true, relaxing i along the axis again would
+  /// leave it where it is, by the same arithmetic on the same numbers.
+  bool is_settled(int i, int axis) const { return (settled_[i] >> axis & 1) != 0; }
+  void settle(int i, int axis) { settled_[i] = static_cast<unsigned char>(settled_[i] | 1u << axis); }
+
+ private:
+  std::vector<std::size_t> begin_;      ///< per vertex, into faces_
+  std::vector<Triangle> faces_;         ///< positively oriented with the vertex in front
+  std::vector<unsigned char> settled_;  ///< a bit per axis, and one for kAnyDirection
+};
+
+/// An order of relaxation that threads may follow and that gives the bits of the sequential one: vertex i is in level
+/// 1 + the highest level among its lower-numbered neighbours in the list, so that whoever it depends on has moved, and
+/// vertices of one level share no tet.
+class RelaxationOrder {
+ public:
+  /// @param vertices  I_R or I^+: to be relaxed in ascending order
+  RelaxationOrder(const MovingMesh& mesh, std::vector<int> vertices);
+
+  const std::vector<int>& vertices() const { return vertices_; }  ///< ascending
+  /// Calls relax(i) for every vertex that wants(i), in an order equivalent to ascending i. Whether a vertex wants is
+  /// asked when all it depends on have moved.
+  void for_each(const std::function<bool(int)>& wants, const std::function<void(int)>& relax) const;
+
+ private:
+  std::vector<int> vertices_;
+  std::vector<int> by_level_;        ///< vertices_ sorted by level, ascending within a level
+  std::vector<std::size_t> levels_;  ///< begin of each level in by_level_, and the end
+};
+
+struct DvrParams {
+  DirectionRule directions = DirectionRule::AxesInTurn;
+  MaxMin max_min = kBestMaxMin;
+  std::uint64_t seed = 0;
+  bool skip_settled = true;  ///< leave out relaxations that cannot move their vertex; never changes the result
+};
+
+/// Iterations first .. first + n - 1 of Algorithm 2: vertices in ascending order, each to the max-min point of its ring
+/// along its direction, eq. (5) [RangarajanLew2017]. A vertex stays unless the worst quality of its ring rises by more
+/// than rounding.
+/// @param background_vertex  per vertex, the id that random directions are a function of
+/// @return number of moves
+/// \pre every tet at a relaxed vertex has Q > 0
+std::size_t dvr(MovingMesh& mesh, const RelaxationOrder& relaxed, std::span<const std::int64_t> background_vertex,
+                const DvrParams& params, int first_iteration, int n_iterations);
+
+/// A relative gain of min f below this is rounding: vertices in a perfect part of the lattice must not drift.
+inline constexpr double kLeastGain = 1e-10;
+
+}  // namespace umtet

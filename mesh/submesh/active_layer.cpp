@@ -1,0 +1,42 @@
+#include "mesh/submesh/active_layer.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+namespace umtet {
+namespace {
+
+// Tets of one part are counted and listed by one thread: each part needs a counter a vertex. Patches have one part.
+constexpr std::size_t kTetsPerPart = 1 << 16, kMostParts = 8;
+
+}  // namespace
+
+void list_rings(Shell& shell) {
+  const std::size_t n_tets = shell.C.size(), n_vertices = shell.V.size();
+  const std::size_t n_parts = std::clamp<std::size_t>(n_tets / kTetsPerPart, 1, kMostParts);
+  std::vector<std::vector<int>> next(n_parts);  // per part: how many tets of a vertex, then where they go
+  const auto for_each_corner = [&](std::size_t part, const auto& f) {
+    for (std::size_t t = n_tets * part / n_parts; t < n_tets * (part + 1) / n_parts; ++t) {
+      for (const int v : shell.C[t]) f(static_cast<int>(t), v);
+    }
+  };
+  tbb::parallel_for(std::size_t{0}, n_parts, [&](std::size_t part) {
+    next[part].assign(n_vertices, 0);
+    for_each_corner(part, [&](int, int v) { ++next[part][v]; });
+  });
+  shell.ring_begin.assign(n_vertices + 1, 0);
+  int sum = 0;
+  for (std::size_t v = 0; v < n_vertices; ++v) {
+    for (std::vector<int>& n : next) sum += std::exchange(n[v], sum);
+    shell.ring_begin[v + 1] = sum;
+  }
+  shell.ring.resize(4 * n_tets);
+  tbb::parallel_for(std::size_t{0}, n_parts, [&](std::size_t part) {
+    for_each_corner(part, [&](int t, int v) { shell.ring[next[part][v]++] = t; });
+  });
+}
+
+}  // namespace umtet

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mesh/core/tet_mesh.h"
+
+namespace umtet {
+
+/// The part of omega_h that moves: the tets of a few layers behind the boundary, with the rings of their vertices. All
+/// else stays in the background mesh as it is.
+struct Shell {
+  enum class Role : std::uint8_t {
+    Fixed,    ///< its ring is not complete in the shell, or it is beyond the last layer
+    Inner,    ///< relaxes freely
+    Boundary  ///< a positive vertex: projected onto psi = 0, relaxes in its tangent plane
+  };
+  std::vector<Vec3> V;
+  std::vector<Tet> C;                 ///< indices into V, positively oriented in the background mesh
+  std::vector<Role> role;             ///< per vertex
+  std::vector<int> colour;            ///< per vertex: vertices of one colour share no tet. Small numbers, from 0
+  std::vector<int> ring_begin, ring;  ///< the tets of vertex v: ring[ring_begin[v]] .. ring[ring_begin[v + 1] - 1]
+  double h = 0;                       ///< mean edge length of the background mesh, model units
+};
+
+/// Fills in ring_begin and ring, ascending, from V and C.
+void list_rings(Shell& shell);
+
+}  // namespace umtet

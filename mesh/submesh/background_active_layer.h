@@ -1,0 +1,15 @@
+#pragma once
+
+#include "mesh/background/background_mesh.h"
+#include "mesh/base/id_set.h"
+#include "mesh/submesh/lattice_active_layer.h"
+
+namespace umtet {
+
+/// The shell of lattice_shell() out of any background mesh: through stars and links instead of tables of bit masks,
+/// with a greedy colouring of the shell's own vertices in ascending order. The same vertices, roles and tets. Cost:
+/// linear in the stars of the inside vertices, some ten times that of lattice_shell().
+/// @param inside  its vertices on the rim stay where they are
+LatticeShell background_shell(const BackgroundMesh& background, const detail::IdSet& inside, int layers = 2);
+
+}  // namespace umtet

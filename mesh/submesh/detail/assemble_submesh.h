@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mesh/background/background_mesh.h"
+#include "mesh/base/id_set.h"
+#include "mesh/core/implicit_function.h"
+#include "common/context.h"
+#include "mesh/submesh/submesh.h"
+
+namespace umtet::detail {
+
+/// The tets with a vertex inside, ascending.                                 Alg. 1, steps 14-16
+std::vector<std::int64_t> cut_or_inside_tets(const BackgroundMesh& background, const IdSet& inside);
+
+/// Algorithm 1, steps 14-22, once it is known which tets are in omega_h and which of their vertices are inside.
+/// One tet after the other: emit_submesh() makes the same of the same set.
+/// @param tets  background ids, ascending
+Submesh assemble_submesh(const BackgroundMesh& background, std::vector<std::int64_t> tets, const IdSet& inside);
+
+/// The background vertices with psi < 0.                                   Alg. 1, step 7
+/// @param n_evaluations  receives the number of values of psi
+/// \throw MeshCancelled
+IdSet inside_vertices(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t& n_evaluations,
+                      const KeepGoing& keep_going = {});
+
+struct CrawledVertices {
+  IdSet inside;
+  std::vector<std::size_t> lost_seeds;
+  std::size_t n_psi_evaluations = 0;
+};
+/// The inside vertices that crawl() finds from these seeds. \throw MeshCancelled
+CrawledVertices crawl_inside(const BackgroundMesh& background, ImplicitFunctionRef psi, const std::vector<Vec3>& seeds,
+                             const KeepGoing& keep_going = {});
+
+}  // namespace umtet::detail

@@ -1,0 +1,106 @@
+#include "mesh/submesh/inside_walk.h"
+
+#include <algorithm>
+
+#include "mesh/submesh/detail/assemble_submesh.h"
+
+namespace umtet {
+
+InsideWalk::InsideWalk(const BackgroundMesh& background)
+    : background_(background), inside_(background.n_vertices()), seen_(background.n_vertices()) {
+  if (!background.is_lattice()) return;
+  steps_.resize(background.n_types());
+  for (int type = 0; type < background.n_types(); ++type) {
+    for (const Tiling::Corner& c : background.tiling_tables().link[type]) {
+      steps_[type].push_back(background.id_step(type, c));
+    }
+  }
+}
+
+template <class F>
+void InsideWalk::for_each_neighbour(std::int64_t v, const F& f) const {
+  if (background_.is_lattice() && !background_.on_rim(v)) {
+    for (const std::int64_t step : steps_[background_.type(v)]) f(v + step);
+    return;
+  }
+  std::vector<std::int64_t> link;
+  background_.link(v, link);
+  for (const std::int64_t w : link) f(w);
+}
+
+bool InsideWalk::is_at_boundary(std::int64_t v) const {
+  const bool side = inside_.test(v);
+  bool other = false;
+  for_each_neighbour(v, [&](std::int64_t w) { other |= inside_.test(w) != side; });
+  return other;
+}
+
+std::size_t InsideWalk::restart(ImplicitFunctionRef psi, const KeepGoing& keep_going) {
+  std::size_t n = 0;
+  inside_ = detail::inside_vertices(background_, psi, n, keep_going);
+  boundary_.clear();
+  values_.clear();
+  inside_.for_each([&](std::int64_t v) {
+    bool cut = false;
+    for_each_neighbour(v, [&](std::int64_t w) {
+      if (inside_.test(w)) return;
+      cut = true;
+      boundary_.push_back(w);
+    });
+    if (cut) boundary_.push_back(v);
+  });
+  std::sort(boundary_.begin(), boundary_.end());
+  boundary_.erase(std::unique(boundary_.begin(), boundary_.end()), boundary_.end());
+  return n;
+}
+
+std::size_t InsideWalk::update(ImplicitFunctionRef psi, const std::vector<std::int64_t>& more,
+                               const KeepGoing& keep_going) {
+  std::vector<std::int64_t> changed, front;
+  detail::PsiValues asked;
+  const auto add = [&](std::int64_t v) {
+    if (seen_.test(v)) return;
+    seen_.insert(v);
+    front.push_back(v);
+  };
+  for (const std::int64_t v : boundary_) add(v);
+  for (const std::int64_t v : more) add(v);
+  const auto forget = [&] {
+    for (const detail::PsiValue& at : asked) seen_.erase(at.vertex);
+    for (const std::int64_t v : front) seen_.erase(v);
+  };
+  try {
+    while (!front.empty()) {
+      const std::size_t first = asked.size(), n = front.size();
+      for (const std::int64_t v : front) asked.push_back({v, 0, Vec3::Zero()});
+      polled_parallel_for(n, kValuesPerPoll, keep_going, [&](std::size_t k) {
+        detail::PsiValue& at = asked[first + k];
+        at.value = psi.value(background_.position(at.vertex), at.gradient);
+      });
+      front.clear();
+      for (std::size_t k = first; k < first + n; ++k) {
+        const std::int64_t v = asked[k].vertex;
+        if ((asked[k].value < 0) == inside_.test(v)) continue;
+        changed.push_back(v);
+        for_each_neighbour(v, add);
+      }
+    }
+  } catch (...) {
+    forget();
+    throw;
+  }
+  for (const std::int64_t v : changed) inside_.test(v) ? inside_.erase(v) : inside_.insert(v);
+  // Whoever is at the boundary now was there before, or has changed sides, or is a neighbour of one that has: asked.
+  forget();
+  values_.clear();
+  for (const detail::PsiValue& at : asked) {
+    if (is_at_boundary(at.vertex)) values_.push_back(at);
+  }
+  std::sort(values_.begin(), values_.end(),
+            [](const detail::PsiValue& a, const detail::PsiValue& b) { return a.vertex < b.vertex; });
+  boundary_.clear();
+  for (const detail::PsiValue& at : values_) boundary_.push_back(at.vertex);
+  return asked.size();
+}
+
+}  // namespace umtet

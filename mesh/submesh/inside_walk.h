@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mesh/background/background_mesh.h"
+#include "mesh/base/id_set.h"
+#include "mesh/core/psi_values.h"
+#include "mesh/core/implicit_function.h"
+#include "common/context.h"
+
+namespace umtet {
+
+/// The background vertices with psi < 0, kept up to date as psi changes.
+class InsideWalk {
+ public:
+  explicit InsideWalk(const BackgroundMesh& background);
+
+  /// Asks psi at every vertex of the background. @return the number of values. \throw MeshCancelled
+  std::size_t restart(ImplicitFunctionRef psi, const KeepGoing& keep_going = {});
+  /// Asks at the vertices with a neighbour on the other side, at `more`, and from all that have changed sides at their
+  /// neighbours, and so on: right wherever a connected set of vertices that change sides touches one of them.
+  /// When it throws, it stays as it was. @param more  ids. @return the number of values. \throw MeshCancelled, and
+  /// what psi throws
+  std::size_t update(ImplicitFunctionRef psi, const std::vector<std::int64_t>& more, const KeepGoing& keep_going = {});
+
+  const detail::IdSet& inside() const { return inside_; }
+  bool has_boundary() const { return !boundary_.empty(); }
+  /// Of the last update, of the vertices that have a neighbour on the other side now; empty after restart().
+  const detail::PsiValues& values() const { return values_; }
+
+ private:
+  template <class F>
+  void for_each_neighbour(std::int64_t v, const F& f) const;
+  bool is_at_boundary(std::int64_t v) const;
+
+  const BackgroundMesh& background_;
+  std::vector<std::vector<std::int64_t>> steps_;  ///< per type of a lattice
+  detail::IdSet inside_;
+  detail::IdSet seen_;                  ///< empty between calls
+  std::vector<std::int64_t> boundary_;  ///< vertices with a neighbour on the other side
+  detail::PsiValues values_;            ///< of these
+};
+
+}  // namespace umtet

@@ -1,0 +1,139 @@
+#include "mesh/submesh/submesh.h"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "mesh/submesh/detail/assemble_submesh.h"
+#include "mesh/base/id_set.h"
+
+namespace umtet {
+namespace {
+
+using detail::IdSet;
+
+// 64 vertices share a word: 16 words are a thousand evaluations of psi, enough to hide the cost of a task.
+constexpr std::size_t kWordsPerTask = 16;
+constexpr std::int64_t kTetsPerBlock = 1 << 16;
+
+unsigned inside_mask(const std::array<std::int64_t, 4>& tet, const IdSet& inside) {
+  unsigned mask = 0;
+  for (unsigned k = 0; k < 4; ++k) mask |= static_cast<unsigned>(inside.test(tet[k])) << k;
+  return mask;
+}
+
+}  // namespace
+
+std::vector<std::int64_t> detail::cut_or_inside_tets(const BackgroundMesh& background, const IdSet& inside) {
+  const std::int64_t n_blocks = (background.n_tets() + kTetsPerBlock - 1) / kTetsPerBlock;
+  std::vector<std::vector<std::int64_t>> blocks(static_cast<std::size_t>(n_blocks));
+  tbb::parallel_for(std::int64_t{0}, n_blocks, [&](std::int64_t b) {
+    const std::int64_t end = std::min((b + 1) * kTetsPerBlock, background.n_tets());
+    for (std::int64_t t = b * kTetsPerBlock; t < end; ++t) {
+      if (inside_mask(background.tet(t), inside) != 0) blocks[b].push_back(t);
+    }
+  });
+  std::size_t n = 0;
+  for (const auto& block : blocks) n += block.size();
+  std::vector<std::int64_t> tets;
+  tets.reserve(n);
+  for (auto& block : blocks) {
+    tets.insert(tets.end(), block.begin(), block.end());
+    block = {};
+  }
+  return tets;
+}
+
+namespace detail {
+
+IdSet inside_vertices(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t& n_evaluations,
+                      const KeepGoing& keep_going) {
+  IdSet inside(background.n_vertices());
+  std::atomic<std::size_t> evaluations = 0;
+  const auto evaluate = [&](const tbb::blocked_range<std::size_t>& words) {
+    std::size_t n = 0;
+    for (std::size_t w = words.begin(); w != words.end(); ++w) {
+      std::uint64_t bits = 0;
+      const std::int64_t first = static_cast<std::int64_t>(w * 64);
+      const std::int64_t last = std::min(first + 64, background.n_vertices());
+      for (std::int64_t v = first; v < last; ++v) {
+        if (!background.has_tets(v)) continue;
+        ++n;
+        if (psi.value(background.position(v)) < 0) bits |= std::uint64_t{1} << (v - first);
+      }
+      inside.set_word(w, bits);
+    }
+    evaluations += n;
+  };
+  // A vertex's position costs as much as the cheapest psi: a thousandth of the time goes into questions.
+  constexpr std::size_t kWordsPerPoll = 4 * kValuesPerPoll / 64;
+  for (std::size_t begin = 0; begin < inside.n_words(); begin += kWordsPerPoll) {
+    poll(keep_going);
+    const std::size_t end = std::min(inside.n_words(), begin + kWordsPerPoll);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, kWordsPerTask), evaluate);
+  }
+  n_evaluations = evaluations;
+  return inside;
+}
+
+Submesh assemble_submesh(const BackgroundMesh& background, std::vector<std::int64_t> tets, const IdSet& inside) {
+  constexpr std::size_t kMost = std::numeric_limits<int>::max();
+  IdSet used(background.n_vertices()), positive(background.n_vertices());
+  Submesh result;
+  std::vector<unsigned char> masks(tets.size());
+  for (std::size_t t = 0; t < tets.size(); ++t) {
+    const auto vertices = background.tet(tets[t]);
+    const unsigned mask = inside_mask(vertices, inside);
+    masks[t] = static_cast<unsigned char>(mask);
+    for (unsigned k = 0; k < 4; ++k) {
+      used.insert(vertices[k]);
+      if (is_positively_cut(mask) && !(mask >> k & 1)) positive.insert(vertices[k]);  // Alg. 1, step 18
+    }
+  }
+  const std::size_t n_vertices = used.index();
+  if (tets.size() > kMost || n_vertices > kMost)
+    throw std::length_error("omega_h: more than 2^31 - 1 tets or vertices");
+
+  result.background_vertex.reserve(n_vertices);
+  result.mesh.V.reserve(n_vertices);
+  used.for_each([&](std::int64_t v) {
+    result.background_vertex.push_back(v);
+    result.mesh.V.push_back(background.position(v));  // Alg. 1, step 21
+  });
+  positive.for_each([&](std::int64_t v) { result.positive_vertices.push_back(used.rank(v)); });
+
+  result.mesh.C.resize(tets.size());
+  for (std::size_t t = 0; t < tets.size(); ++t) {
+    const auto vertices = background.tet(tets[t]);
+    Tet& tet = result.mesh.C[t];
+    for (int k = 0; k < 4; ++k) tet[k] = used.rank(vertices[k]);
+    if (!is_positively_cut(masks[t])) continue;
+    const auto& face = kTetFace[std::countr_zero(static_cast<unsigned>(masks[t]))];
+    result.positive_faces.push_back({tet[face[0]], tet[face[1]], tet[face[2]]});
+    result.positive_tets.push_back(static_cast<int>(t));
+  }
+  result.background_tet = std::move(tets);
+  return result;
+}
+
+}  // namespace detail
+
+Submesh find_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t* n_psi_evaluations,
+                     const KeepGoing& keep_going) {
+  std::size_t n = 0;
+  const IdSet inside = detail::inside_vertices(background, psi, n, keep_going);
+  if (n_psi_evaluations) *n_psi_evaluations = n;
+  poll(keep_going);
+  return detail::assemble_submesh(background, detail::cut_or_inside_tets(background, inside), inside);
+}
+
+}  // namespace umtet

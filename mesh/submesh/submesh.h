@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "mesh/background/background_mesh.h"
+#include "mesh/core/implicit_function.h"
+#include "common/context.h"
+#include "mesh/core/tet_mesh.h"
+
+namespace umtet {
+
+/// T^{omega_h}: the tets of the background mesh with at least one vertex in Omega       [Rangarajan2018, Section 2.2.1]
+///
+/// Vertices and tets are numbered anew, in ascending order of their background ids, so that two searches that find
+/// the same set return equal bytes.
+struct Submesh {
+  TetMesh mesh;                                 ///< coordinates are those of the background mesh
+  std::vector<std::int64_t> background_vertex;  ///< id in the universal mesh of each vertex, ascending
+  std::vector<std::int64_t> background_tet;     ///< id in the universal mesh of each tet, ascending
+  std::vector<Triangle> positive_faces;         ///< Gamma_h^+, local vertex ids, outward; one per positively cut tet
+  std::vector<int> positive_tets;               ///< the positively cut tet behind each positive face, ascending
+  std::vector<int> positive_vertices;           ///< I^+, local ids, ascending
+};
+
+/// A tet is positively cut if exactly one of its four vertices is inside; `inside` bit k belongs to local vertex k.
+inline bool is_positively_cut(unsigned inside) { return inside == 1 || inside == 2 || inside == 4 || inside == 8; }
+
+/// Algorithm 1, steps 1-22: evaluates psi at every vertex of the background mesh.
+/// Cost: one value of psi per background vertex. A vertex with psi = 0 counts as outside.
+/// @param n_psi_evaluations  if not null, receives that number
+/// \throw std::length_error if omega_h has more than 2^31 - 1 tets or vertices; MeshCancelled
+Submesh find_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi,
+                     std::size_t* n_psi_evaluations = nullptr, const KeepGoing& keep_going = {});
+
+}  // namespace umtet

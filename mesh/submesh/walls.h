@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "mesh/background/background_mesh.h"
+#include "mesh/submesh/submesh.h"
+#include "mesh/universal_mesh.h"
+
+namespace umtet {
+
+/// The faces of omega_h on the rim of the background, local vertex ids, outward; ascending in (tet, local face).
+std::vector<Triangle> wall_faces(const BackgroundMesh& background, const Submesh& submesh);
+
+/// Positive vertices within two edges of a vertex of omega_h on the rim: psi = 0 and a wall would share a shell of two
+/// layers, or a face. count == 0: none.
+UmEvidence boundary_near_walls(const BackgroundMesh& background, const Submesh& submesh);
+
+}  // namespace umtet

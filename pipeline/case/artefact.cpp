@@ -1,0 +1,196 @@
+#include "pipeline/case/artefact.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include <array>
+#include <cerrno>
+#include <memory>
+#include <system_error>
+#include <vector>
+
+namespace umtet {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::string_view kTemporaryPrefix = ".tmp-";
+
+[[noreturn]] void fail(int code, const fs::path& file, const std::string& what) {
+  // 0 would read "Success" in the message.
+  throw std::system_error(code != 0 ? code : EIO, std::generic_category(), file.string() + ": " + what);
+}
+
+/// A file descriptor that knows which artefact to name when something fails.
+class Descriptor {
+ public:
+  Descriptor(const fs::path& path, int flags, const fs::path& artefact)
+      : artefact_(artefact), fd_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {
+    if (fd_ < 0) fail(errno, artefact_, "cannot open");
+  }
+  Descriptor(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+
+  std::size_t read(char* buffer, std::size_t n) {
+    for (;;) {
+      const ssize_t got = ::read(fd_, buffer, n);
+      if (got >= 0) return static_cast<std::size_t>(got);
+      if (errno != EINTR) fail(errno, artefact_, "cannot read");
+    }
+  }
+
+  void write(std::string_view text) {
+    while (!text.empty()) {
+      const ssize_t put = ::write(fd_, text.data(), text.size());
+      if (put < 0 && errno == EINTR) continue;
+      if (put <= 0) fail(put < 0 ? errno : ENOSPC, artefact_, "cannot write");
+      text.remove_prefix(static_cast<std::size_t>(put));
+    }
+  }
+
+  void sync() {
+    // EINVAL: a file system without fsync (some network and FUSE mounts); there is nothing more to ask of it.
+    if (::fsync(fd_) != 0 && errno != EINVAL) fail(errno, artefact_, "cannot flush to disk");
+  }
+
+  void close() {
+    const int fd = fd_;
+    fd_ = -1;
+    if (::close(fd) != 0 && errno != EINTR) fail(errno, artefact_, "cannot close");
+  }
+
+ private:
+  fs::path artefact_;
+  int fd_;
+};
+
+/// Opening a pipe waits for its writer, and /dev/zero has no end.
+Descriptor open_regular(const fs::path& file) {
+  std::error_code ignored;
+  const fs::file_type type = fs::status(file, ignored).type();
+  if (type == fs::file_type::directory) fail(EISDIR, file, "cannot read");
+  if (fs::exists(fs::file_status(type)) && type != fs::file_type::regular) {
+    fail(EINVAL, file, "is a device or a pipe, not a regular file");
+  }
+  return Descriptor(file, O_RDONLY, file);
+}
+
+std::string digits(XXH128_hash_t hash) {
+  XXH128_canonical_t canonical;
+  XXH128_canonicalFromHash(&canonical, hash);
+  std::string text;
+  for (const unsigned char byte : canonical.digest) {
+    constexpr char kHex[] = "0123456789abcdef";
+    text += kHex[byte >> 4];
+    text += kHex[byte & 15];
+  }
+  return text;
+}
+
+/// Removes the temporary file unless it has been renamed.
+struct TemporaryFile {
+  fs::path path;
+  ~TemporaryFile() {
+    std::error_code ignored;
+    if (!path.empty()) fs::remove(path, ignored);
+  }
+};
+
+fs::path folder_of(const fs::path& file) { return file.parent_path().empty() ? fs::path(".") : file.parent_path(); }
+
+/// A temporary file in the same folder: filled, not empty, and on the disk.
+std::unique_ptr<TemporaryFile> written_beside(const PendingFile& pending) {
+  const fs::path& file = pending.path;
+  auto temporary = std::make_unique<TemporaryFile>();
+  temporary->path =
+      folder_of(file) / (std::string(kTemporaryPrefix) + std::to_string(::getpid()) + "-" + file.filename().string());
+  try {
+    pending.write(temporary->path);
+  } catch (const std::system_error& e) {
+    if (std::string(e.what()).find(file.string()) != std::string::npos) throw;
+    const std::error_code code = e.code() ? e.code() : std::make_error_code(std::errc::io_error);
+    throw std::system_error(code, file.string() + ": not written: " + e.what());
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& e) {
+    fail(EIO, file, std::string("not written: ") + e.what());
+  }
+  std::error_code status;
+  const std::uintmax_t size = fs::file_size(temporary->path, status);
+  if (status) fail(status.value(), file, "not written: the temporary file is gone");
+  if (size == 0) fail(EIO, file, "not written: the temporary file is empty");
+  Descriptor written(temporary->path, O_RDONLY, file);
+  written.sync();
+  written.close();
+  return temporary;
+}
+
+}  // namespace
+
+std::string checksum(std::string_view text) { return digits(XXH3_128bits(text.data(), text.size())); }
+
+FileStamp stamp(const fs::path& file) {
+  Descriptor in = open_regular(file);
+  const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(), &XXH3_freeState);
+  if (!state) throw std::bad_alloc();
+  XXH3_128bits_reset(state.get());
+  std::vector<char> buffer(1 << 20);
+  FileStamp result;
+  while (const std::size_t n = in.read(buffer.data(), buffer.size())) {
+    XXH3_128bits_update(state.get(), buffer.data(), n);
+    result.size += n;
+  }
+  result.xxh3 = digits(XXH3_128bits_digest(state.get()));
+  return result;
+}
+
+void write_artefact(const fs::path& file, const std::function<void(const fs::path&)>& writer) {
+  write_artefacts({{file, writer}});
+}
+
+void write_artefacts(const std::vector<PendingFile>& files) {
+  std::vector<std::unique_ptr<TemporaryFile>> temporaries;
+  temporaries.reserve(files.size());
+  for (const PendingFile& file : files) temporaries.push_back(written_beside(file));
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const fs::path& file = files[i].path;
+    if (::rename(temporaries[i]->path.c_str(), file.c_str()) != 0)
+      fail(errno, file, "cannot rename the temporary file");
+    temporaries[i]->path.clear();
+  }
+  for (const PendingFile& file : files) Descriptor(folder_of(file.path), O_RDONLY | O_DIRECTORY, file.path).sync();
+}
+
+void write_text_artefact(const fs::path& file, std::string_view text) {
+  write_artefact(file, [&](const fs::path& temporary) {
+    Descriptor out(temporary, O_WRONLY | O_CREAT | O_TRUNC, file);
+    out.write(text);
+    out.close();
+  });
+}
+
+void remove_stale_temporaries(const fs::path& folder) {
+  std::error_code missing;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, missing)) {
+    if (entry.path().filename().string().starts_with(kTemporaryPrefix)) fs::remove(entry.path());
+  }
+}
+
+bool is_too_large_a_text(const fs::path& file) {
+  std::error_code unknown;
+  const std::uintmax_t size = fs::file_size(file, unknown);
+  return !unknown && size > kLargestText;
+}
+
+std::string read_text(const fs::path& file) {
+  Descriptor in = open_regular(file);
+  std::string text;
+  std::array<char, 1 << 16> buffer;
+  while (const std::size_t n = in.read(buffer.data(), buffer.size())) text.append(buffer.data(), n);
+  return text;
+}
+
+}  // namespace umtet

@@ -1,0 +1,97 @@
+#include "pipeline/case/case_folder.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+
+#include "pipeline/case/artefact.h"
+#include "pipeline/case/exit_code.h"
+#include "pipeline/case/parameters.h"
+
+namespace umtet {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kLockName = ".lock";
+
+}  // namespace
+
+const char* to_string(Stage stage) {
+  switch (stage) {
+    case Stage::Cloud:
+      return "cloud";
+    case Stage::LevelSet:
+      return "level-set";
+    case Stage::Mesh:
+      return "mesh";
+  }
+  throw std::invalid_argument("not a stage");
+}
+
+Stage parse_stage(const std::string& name) {
+  std::vector<std::string> names;
+  for (const Stage stage : kStages) {
+    if (name == to_string(stage)) return stage;
+    names.push_back(to_string(stage));
+  }
+  const std::string near = nearest(name, names);
+  throw UsageError("no stage is called " + name +
+                   (near.empty() ? "; there are cloud, level-set, mesh" : "; did you mean " + near + "?"));
+}
+
+const char* section_of(Stage stage) { return stage == Stage::LevelSet ? "reconstruct" : to_string(stage); }
+
+bool is_artefact(Stage stage, const std::string& name) {
+  if (stage == Stage::Cloud) return name == "cloud.ply";
+  if (stage == Stage::LevelSet) return name == "level_set.vti";
+  for (const char* mesh : {"omega_h.vtu", "projected.vtu", "mesh.vtu", "quality.csv", "too_thin.vtp", "iterates.pvd"}) {
+    if (name == mesh) return true;
+  }
+  constexpr std::string_view kPass = "pass_", kSuffix = ".vtu";
+  if (name.size() <= kPass.size() + kSuffix.size() || !name.starts_with(kPass) || !name.ends_with(kSuffix))
+    return false;
+  return std::all_of(name.begin() + kPass.size(), name.end() - kSuffix.size(),
+                     [](char c) { return c >= '0' && c <= '9'; });
+}
+
+fs::path CasePaths::folder(Stage stage) const {
+  return (renews(stage) ? next() : root) / (std::to_string(static_cast<int>(stage)) + "-" + to_string(stage));
+}
+
+CaseLock::CaseLock(const fs::path& root) : root_(root), created_(fs::create_directories(root)) {
+  const fs::path file = root / kLockName;
+  fd_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (fd_ < 0) throw std::system_error(errno, std::generic_category(), file.string() + ": cannot open");
+  if (::flock(fd_, LOCK_EX | LOCK_NB) != 0) {
+    const int code = errno;
+    const std::string pid = read_text(file);
+    ::close(fd_);
+    if (code != EWOULDBLOCK) throw std::system_error(code, std::generic_category(), file.string() + ": cannot lock");
+    throw FileTrouble(root.string() + ": another umtet" + (pid.empty() ? "" : ", process " + pid + ",") +
+                      " is working on this case; wait until it ends, or choose another folder with -o");
+  }
+  // The kernel drops the lock with the process, so a pid left behind by a killed run means nothing.
+  const std::string pid = std::to_string(::getpid());
+  if (::ftruncate(fd_, 0) != 0 || ::pwrite(fd_, pid.data(), pid.size(), 0) != static_cast<ssize_t>(pid.size())) {
+    const int code = errno;
+    ::close(fd_);
+    throw std::system_error(code, std::generic_category(), file.string() + ": cannot write");
+  }
+}
+
+CaseLock::~CaseLock() {
+  std::error_code ignored;
+  if (created_ && std::distance(fs::directory_iterator(root_, ignored), {}) == 1) {
+    fs::remove(root_ / kLockName, ignored);
+    fs::remove(root_, ignored);
+  } else if (::ftruncate(fd_, 0) != 0) {
+    // An unreadable pid in the lock file only spoils a message.
+  }
+  ::close(fd_);
+}
+
+}  // namespace umtet

@@ -1,0 +1,99 @@
+#include "pipeline/case/memory.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include "pipeline/case/exit_code.h"
+
+namespace umtet {
+namespace {
+
+// Peak of the whole run over its tets: 133 MB for a ball of 300 000, and 1 GB for two million.
+constexpr double kBytesPerTet = 500;
+// The searches for omega_h keep up to four bits per vertex of the background mesh, with ranks, and two per tet.
+constexpr double kBytesPerBackgroundVertex = 1, kBytesPerBackgroundTet = .25;
+
+// mesh.vtu of a ball: 5.7 MB for 98 thousand tets, 58 bytes a tet.
+constexpr double kFileBytesPerTet = 60;
+// glibc's and TBB's stacks.
+constexpr double kStackBytes = 8 << 20;
+// AddressSanitizer's allocator ends the process where the system refuses it memory; what is asked for beforehand
+// (require_memory) is refused there, too.
+#ifdef __SANITIZE_ADDRESS__
+constexpr bool kAllocationsMayFail = false;
+#else
+constexpr bool kAllocationsMayFail = true;
+#endif
+
+/// What the process has mapped for writing; 0 where the system does not say.
+double data_bytes() {
+  std::ifstream in("/proc/self/status");
+  std::string line;
+  while (std::getline(in, line)) {
+    if (line.starts_with("VmData:")) return 1024 * std::strtod(line.c_str() + 7, nullptr);
+  }
+  return 0;
+}
+
+/// What the system says it can give without swapping; infinite where it does not say.
+double available_bytes() {
+  double least = std::numeric_limits<double>::infinity();
+  std::ifstream in("/proc/meminfo");
+  std::string key, unit;
+  double kib = 0;
+  while (in >> key >> kib) {
+    if (key == "MemAvailable:") least = 1024 * kib;
+    std::getline(in, unit);
+  }
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
+    least = std::min(least, static_cast<double>(limit.rlim_cur));
+  }
+  return least;
+}
+
+}  // namespace
+
+double allowed_bytes(const Parameters& parameters) {
+  const double asked = 1e9 * parameters.real("output.max_memory");
+  return asked > 0 ? asked : available_bytes();
+}
+
+void limit_memory(double bytes, int threads) {
+  rlimit limit{};
+  if (!kAllocationsMayFail || ::getrlimit(RLIMIT_DATA, &limit) != 0) return;
+  const double most = data_bytes() + bytes + threads * kStackBytes;
+  if (most >= static_cast<double>(limit.rlim_cur)) return;
+  limit.rlim_cur = static_cast<rlim_t>(most);
+  ::setrlimit(RLIMIT_DATA, &limit);
+}
+
+void require_disk(const std::filesystem::path& folder, double n_tets) {
+  std::error_code unknown;
+  const std::filesystem::space_info space = std::filesystem::space(folder, unknown);
+  const double need = kFileBytesPerTet * n_tets;
+  if (unknown || need <= static_cast<double>(space.available)) return;
+  throw ResourceLimit(fmt::format(
+      "{}: the meshes need about {:.3g} GB of disk, and {:.3g} GB are free: make room, or fewer --tets, a larger --h",
+      folder.string(), need / 1e9, static_cast<double>(space.available) / 1e9));
+}
+
+void require_memory(const BackgroundMesh& background, double n_tets, double allowed) {
+  const double need = kBytesPerTet * n_tets + kBytesPerBackgroundVertex * static_cast<double>(background.n_vertices()) +
+                      kBytesPerBackgroundTet * static_cast<double>(background.n_tets());
+  if (need <= allowed) return;
+  throw ResourceLimit(fmt::format(
+      "h = {:.4g}: about {:.3g} tets in a background mesh of {:.3g} need {:.3g} GB of memory, and {:.3g} GB are "
+      "allowed: fewer --tets or a larger --h{}",
+      background.h(), n_tets, static_cast<double>(background.n_tets()), need / 1e9, allowed / 1e9,
+      n_tets < .01 * static_cast<double>(background.n_tets()) ? ", or a --box closer around the domain" : ""));
+}
+
+}  // namespace umtet

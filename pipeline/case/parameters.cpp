@@ -1,0 +1,227 @@
+#include "pipeline/case/parameters.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <numeric>
+
+#include "mesh/background/tiling.h"
+#include "pipeline/case/detail/param_field.h"
+#include "pipeline/case/exit_code.h"
+
+namespace umtet {
+namespace {
+
+template <class T>
+T parse_number(const ParamField& f, const std::string& text) {
+  T v{};
+  const char* end = text.data() + text.size();
+  if constexpr (std::is_integral_v<T>) {          // 1e6 is a whole number too
+    constexpr double kExact = 9007199254740992.;  // 2^53
+    double whole = 0;
+    const auto [stop, error] = std::from_chars(text.data(), end, whole);
+    if (error == std::errc() && stop == end && std::abs(whole) <= kExact && whole == std::trunc(whole)) {
+      return static_cast<T>(whole);
+    }
+  }
+  const auto [stop, error] = std::from_chars(text.data(), end, v);
+  if (error != std::errc() || stop != end || text.empty()) {
+    throw UsageError(fmt::format("{} = {}: not {} number", f.key, text, std::is_integral_v<T> ? "a whole" : "a"));
+  }
+  return v;
+}
+
+ParamValue parse(const ParamField& f, const std::string& text) {
+  switch (f.preset.index()) {
+    case 0:
+      if (text == "true" || text == "1") return true;
+      if (text == "false" || text == "0") return false;
+      throw UsageError(f.key + " = " + text + ": must be true or false");
+    case 1:
+      return parse_number<std::int64_t>(f, text);
+    case 2:
+      return parse_number<double>(f, text);
+    default:
+      return text;
+  }
+}
+
+bool is_utf8(const std::string& text) {
+  try {
+    nlohmann::json(text).dump();
+    return true;
+  } catch (const nlohmann::json::type_error&) {
+    return false;
+  }
+}
+
+void check_background(const std::string& name) {
+  const auto names = tiling_names();
+  const std::string ending = std::filesystem::path(name).extension();
+  const bool is_file = ending == ".vtu" || ending == ".msh" || ending == ".mesh";
+  if (is_file || std::find(names.begin(), names.end(), name) != names.end()) return;
+  throw UsageError(
+      fmt::format("mesh.background = {}: must be {} or a .vtu, .msh or .mesh file", name, fmt::join(names, ", ")));
+}
+
+void check(const ParamField& f, const ParamValue& value) {
+  const auto in_range = [&](double v) {
+    if (v >= f.min && v <= f.max) return;  // false for NaN
+    throw UsageError(f.min == 1e-300 ? fmt::format("{} = {}: must be > 0 and <= {}", f.key, v, f.max)
+                                     : fmt::format("{} = {}: must be in [{}, {}]", f.key, v, f.min, f.max));
+  };
+  if (const auto* i = std::get_if<std::int64_t>(&value)) in_range(static_cast<double>(*i));
+  if (const auto* d = std::get_if<double>(&value)) in_range(*d);
+  const auto* t = std::get_if<std::string>(&value);
+  if (t && !f.choices.empty() && std::find(f.choices.begin(), f.choices.end(), *t) == f.choices.end()) {
+    throw UsageError(fmt::format("{} = {}: this version has {} only", f.key, *t, fmt::join(f.choices, ", ")));
+  }
+  // TOML and JSON hold nothing else.
+  if (t && !is_utf8(*t)) throw UsageError(f.key + ": the text is not valid UTF-8");
+  if (f.key == "mesh.box") parse_box(*t);
+  if (f.key == "mesh.background") check_background(*t);
+}
+
+}  // namespace
+
+const ParamField& detail::field(const std::string& key) {
+  static const std::map<std::string, const ParamField*> index = [] {
+    std::map<std::string, const ParamField*> m;
+    for (const ParamField& f : params_fields()) m[f.key] = &f;
+    return m;
+  }();
+  const auto it = index.find(key);
+  if (it != index.end()) return *it->second;
+  std::vector<std::string> keys;
+  for (const ParamField& f : params_fields()) keys.push_back(f.key);
+  const std::string near = nearest(key, keys);
+  throw UsageError("unknown parameter " + key + (near.empty() ? "" : "; did you mean " + near + "?"));
+}
+
+std::string preset_text(const ParamField& f) {
+  if (const auto* t = std::get_if<std::string>(&f.preset)) return *t;
+  return detail::print(f.preset);
+}
+
+std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
+  std::string best;
+  // Further away than a third of the word is a different word.
+  std::size_t best_distance = word.size() / 3 + 2;
+  bool best_goes_on = false;
+  for (const std::string& candidate : candidates) {
+    std::vector<std::size_t> row(candidate.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < word.size(); ++i) {
+      std::size_t diagonal = row[0];
+      row[0] = i + 1;
+      for (std::size_t j = 0; j < candidate.size(); ++j) {
+        const std::size_t replace = diagonal + (word[i] != candidate[j]);
+        diagonal = row[j + 1];
+        row[j + 1] = std::min({replace, row[j] + 1, diagonal + 1});
+      }
+    }
+    // Of two at the same distance, the one that the word is the beginning of: --tet is --tets, not --set.
+    const bool goes_on = candidate.starts_with(word);
+    if (row.back() < best_distance || (row.back() == best_distance && goes_on && !best_goes_on && !best.empty())) {
+      best_distance = row.back();
+      best_goes_on = goes_on;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+Parameters::Parameters() {
+  for (const ParamField& f : params_fields()) entries_[f.key].value = f.preset;
+}
+
+ParamSource Parameters::source(const std::string& key) const { return entries_.at(key).source; }
+
+void Parameters::set(const std::string& key, const std::string& text, ParamSource source, const std::string& origin) {
+  assign(key, parse(detail::field(key), text), source, origin);
+}
+
+void Parameters::set(const std::string& assignment) {
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos) throw UsageError("--set " + assignment + ": must be key=value");
+  set(assignment.substr(0, equals), assignment.substr(equals + 1), ParamSource::Set, "--set");
+}
+
+/// h, tets and max_deviation are three ways to say one thing: the stronger voice silences the others. False: a stronger
+/// one has spoken already.
+bool Parameters::silences_others(const std::string& key, const ParamValue& value, ParamSource source) {
+  constexpr std::array kWays = {"mesh.h", "mesh.tets", "mesh.max_deviation"};
+  const auto speaks = [](const ParamValue& v) { return v != ParamValue(0.) && v != ParamValue(std::int64_t{0}); };
+  if (std::find(kWays.begin(), kWays.end(), key) == kWays.end() || !speaks(value)) return true;
+  for (const char* way : kWays) {
+    Entry& other = entries_.at(way);
+    if (way == key || !speaks(other.value)) continue;
+    if (other.source == source) {
+      throw UsageError(fmt::format("{} and {} exclude each other: give one of --h, --tets and --max-deviation",
+                                   std::min(key, std::string(way)), std::max(key, std::string(way))));
+    }
+    if (other.source > source) return false;
+    other = {detail::field(way).preset, ParamSource::Default, "default"};
+  }
+  return true;
+}
+
+void Parameters::assign(const std::string& key, ParamValue value, ParamSource source, const std::string& origin) {
+  check(detail::field(key), value);
+  Entry& entry = entries_.at(key);
+  if (source < entry.source) return;
+  if (!silences_others(key, value, source)) return;
+  entry = {std::move(value), source, origin};
+}
+
+void Parameters::make_absolute(const std::string& key) {
+  Entry& entry = entries_.at(key);
+  const std::string& path = std::get<std::string>(entry.value);
+  if (!path.empty()) entry.value = std::filesystem::absolute(path).lexically_normal().string();
+}
+
+void Parameters::copy_section(std::string_view name, const Parameters& other) {
+  for (const ParamField& f : params_fields()) {
+    if (f.key.substr(0, f.key.find('.')) == name) entries_.at(f.key) = other.entries_.at(f.key);
+  }
+}
+
+nlohmann::ordered_json Parameters::section(std::string_view name) const {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const ParamField& f : params_fields()) {
+    const std::size_t dot = f.key.find('.');
+    // A cloud is known by its bytes, which the record lists among its inputs; it may move.
+    if (f.key.substr(0, dot) != name || f.key == "cloud.file") continue;
+    std::visit([&](const auto& v) { json[f.key.substr(dot + 1)] = v; }, entries_.at(f.key).value);
+  }
+  return json;
+}
+
+std::optional<Eigen::AlignedBox3d> parse_box(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  std::array<double, 6> v{};
+  const char* at = text.data();
+  const char* end = at + text.size();
+  for (std::size_t k = 0; k < 6; ++k) {
+    while (at != end && *at == ' ') ++at;
+    const auto [stop, error] = std::from_chars(at, end, v[k]);
+    at = stop;
+    while (at != end && *at == ' ') ++at;
+    const bool separated = k == 5 ? at == end : at != end && *at == ',';
+    if (error != std::errc() || !separated || !std::isfinite(v[k])) {
+      throw UsageError("mesh.box = " + text + ": must be six numbers x0,y0,z0,x1,y1,z1");
+    }
+    if (k < 5) ++at;
+  }
+  const Eigen::AlignedBox3d box(Eigen::Vector3d(v[0], v[1], v[2]), Eigen::Vector3d(v[3], v[4], v[5]));
+  if (!(box.sizes().array() > 0).all())
+    throw UsageError("mesh.box = " + text + ": empty; the first corner is the lower one");
+  if (!std::isfinite(box.volume())) throw UsageError("mesh.box = " + text + ": too large: its volume is not a number");
+  return box;
+}
+
+}  // namespace umtet

@@ -1,0 +1,144 @@
+#include "pipeline/case/record.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <array>
+#include <ctime>
+
+#include "pipeline/case/version.h"
+
+namespace umtet {
+namespace fs = std::filesystem;
+namespace {
+
+// Readers accept this schema only; a record of another one is a stage to run again.
+constexpr int kSchema = 2;
+
+constexpr const char* kSeal = "checksum";
+
+Json to_json(const std::vector<RecordedFile>& files) {
+  Json list = Json::array();
+  for (const RecordedFile& f : files)
+    list.push_back({{"file", f.name}, {"size", f.stamp.size}, {"xxh3", f.stamp.xxh3}});
+  return list;
+}
+
+std::vector<RecordedFile> files_from(const Json& list) {
+  std::vector<RecordedFile> files;
+  for (const Json& f : list) files.push_back({f.at("file"), {f.at("size"), f.at("xxh3")}});
+  return files;
+}
+
+/// The first output that is not what was written, as a clause; empty if all are.
+std::string damage(const fs::path& folder, const std::vector<RecordedFile>& outputs) {
+  for (const RecordedFile& f : outputs) {
+    // A name with a slash would make the record of a stage vouch for files elsewhere.
+    if (f.name.find('/') != std::string::npos) return "record.json names a file outside its folder";
+    const fs::path file = folder / f.name;
+    if (!fs::exists(file)) return file.string() + " is gone";
+    const FileStamp now = stamp(file);
+    if (now.size != f.stamp.size) {
+      return file.string() + " has " + std::to_string(now.size) + " bytes instead of " + std::to_string(f.stamp.size);
+    }
+    if (now != f.stamp) return file.string() + " does not match its checksum";
+  }
+  return "";
+}
+
+/// How two sets of parameters differ, as a clause; empty if they do not.
+std::string difference(const std::string& section, const Json& before, const Json& now) {
+  for (const auto& [key, value] : now.items()) {
+    if (!before.contains(key)) return fmt::format("{}.{} is new", section, key);
+    if (before[key] != value) return fmt::format("{}.{} was {}, is {}", section, key, before[key].dump(), value.dump());
+  }
+  return before.size() == now.size() ? "" : "other parameters of " + section;
+}
+
+}  // namespace
+
+Json sealed(Json document) {
+  document["run"].erase(kSeal);
+  const std::string text = document.dump(-1, ' ', false, Json::error_handler_t::replace);
+  document["run"][kSeal] = checksum(text);
+  return document;
+}
+
+bool seal_holds(const Json& document) {
+  const auto run = document.find("run");
+  if (run == document.end() || !run->is_object() || !run->contains(kSeal)) return false;
+  return sealed(document)["run"][kSeal] == (*run)[kSeal];
+}
+
+std::string file_text(const Json& document) {
+  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void write_record(const CasePaths& paths, StageRecord record, const std::vector<std::string>& output_names) {
+  for (const std::string& name : output_names) {
+    record.outputs.push_back({name, stamp(paths.folder(record.stage) / name)});
+  }
+  const Json json = {{"schema", kSchema},
+                     {"tool", "umtet"},
+                     {"version", kVersion},
+                     {"stage", to_string(record.stage)},
+                     {"parameters", record.parameters},
+                     {"inputs", to_json(record.inputs)},
+                     {"outputs", to_json(record.outputs)},
+                     {"numbers", record.numbers},
+                     {"run", record.run}};
+  write_text_artefact(paths.record(record.stage), file_text(sealed(json)));
+}
+
+StageState inspect_stage(const CasePaths& paths, Stage stage, const Json& parameters,
+                         const std::optional<std::vector<RecordedFile>>& inputs) {
+  using Kind = StageState::Kind;
+  const fs::path file = paths.record(stage);
+  if (!fs::exists(file)) return {Kind::Missing, "there is no " + file.string(), {}};
+  StageRecord record;
+  std::string version;
+  try {
+    const Json json = Json::parse(read_text(file));
+    if (json.at("schema") != kSchema || json.at("stage") != to_string(stage)) {
+      return {Kind::Missing, file.string() + " is of another schema", {}};
+    }
+    if (!seal_holds(json)) return {Kind::Damaged, file.string() + " does not match its own checksum", {}};
+    version = json.at("version");
+    record = {stage,
+              json.at("parameters"),
+              files_from(json.at("inputs")),
+              files_from(json.at("outputs")),
+              json.at("numbers"),
+              json.at("run")};
+  } catch (const Json::exception&) {
+    return {Kind::Damaged, file.string() + " cannot be read", {}};
+  }
+  if (const std::string what = damage(paths.folder(stage), record.outputs); !what.empty()) {
+    return {Kind::Damaged, what, {}};
+  }
+  std::string reason = difference(section_of(stage), record.parameters, parameters);
+  if (version != kVersion) reason = "made by version " + version;
+  if (reason.empty() && inputs && *inputs != record.inputs) reason = "its input has changed";
+  const Kind kind = reason.empty() ? Kind::Done : Kind::Changed;
+  return {kind, reason, std::move(record)};
+}
+
+Json run_block(double seconds, int threads) {
+  std::array<char, 256> host{};
+  ::gethostname(host.data(), host.size() - 1);
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  ::gmtime_r(&now, &utc);
+  std::array<char, 32> date{};
+  std::strftime(date.data(), date.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return {{"seconds", seconds},
+          {"peak_memory_MB", static_cast<double>(usage.ru_maxrss) / 1024},  // Linux counts in KiB
+          {"threads", threads},
+          {"host", host.data()},
+          {"date", date.data()}};
+}
+
+}  // namespace umtet

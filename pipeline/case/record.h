@@ -1,0 +1,63 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/case/artefact.h"
+#include "pipeline/case/case_folder.h"
+
+namespace umtet {
+
+using Json = nlohmann::ordered_json;
+
+/// A file that a stage read or wrote, as its record remembers it.
+struct RecordedFile {
+  std::string name;  ///< outputs: in the folder of the stage; inputs: in the case, or "source" for the user's cloud
+  FileStamp stamp;
+  bool operator==(const RecordedFile&) const = default;
+};
+
+/// record.json: what a finished stage did. Written last, so a record that holds means that the stage is done.
+struct StageRecord {
+  Stage stage = Stage::Cloud;
+  Json parameters;  ///< those of its section
+  std::vector<RecordedFile> inputs, outputs;
+  Json numbers;  ///< results; like all of the above, equal bytes for equal input, parameters and version
+  Json run;      ///< seconds, peak memory, host, date, threads: different every time
+};
+
+/// The document with the checksum of all its content in the block `run`, which is different every time as it is.
+Json sealed(Json document);
+/// False when anything in it was changed after sealed().
+bool seal_holds(const Json& document);
+/// As the files of a case hold it. Bytes that are no UTF-8 (in the name of a file) are replaced.
+std::string file_text(const Json& document);
+
+/// Stamps the outputs, which must be in the folder of the stage, and writes the record atomically.
+/// \throw std::system_error
+void write_record(const CasePaths& paths, StageRecord record, const std::vector<std::string>& output_names);
+
+/// What a record and the files it names say about a stage.
+struct StageState {
+  enum class Kind {
+    Done,     ///< everything matches
+    Missing,  ///< never finished
+    Changed,  ///< finished and whole, but for other parameters, another version or other input
+    Damaged,  ///< an output or the record itself is gone or is not what was written
+  };
+  Kind kind = Kind::Missing;
+  std::string reason;                 ///< a clause for the user, empty when Done
+  std::optional<StageRecord> record;  ///< for Done and Changed
+};
+
+/// @param inputs  what the stage would read now; nullopt: take the recorded ones for right
+/// Cost: reads every output of the stage once.
+StageState inspect_stage(const CasePaths& paths, Stage stage, const Json& parameters,
+                         const std::optional<std::vector<RecordedFile>>& inputs);
+
+/// Seconds, peak memory, host, date and threads of the stage that ends now.
+Json run_block(double seconds, int threads);
+
+}  // namespace umtet

@@ -1,0 +1,300 @@
+#include "pipeline/cli/command_line.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
+#include <system_error>
+
+#include "pipeline/meshing/background_choice.h"
+#include "pipeline/cli/detail/command_parser.h"
+#include "pipeline/output/export_case.h"
+#include "pipeline/case/version.h"
+
+namespace umtet {
+namespace {
+
+constexpr const char* kExamples =
+    R"(  umtet run duck.ply -o duck                 from a scan to a certified mesh; run again: resumes, or does nothing
+  umtet reconstruct duck.ply -o duck         the level set only; umtet mesh duck goes on from there
+  umtet mesh duck --h 0.02                   another mesh size; the level set is not fitted again
+  umtet mesh duck --max-deviation 0.001      flat faces at most so far from the surface
+  umtet mesh --implicit 'x^2+y^2+z^2-1' --box=-1.2,-1.2,-1.2,1.2,1.2,1.2 --tets 100000 -o ball
+  umtet mesh duck --complement --box-walls --box=-2,-1.5,-2,4,2,2 --h .08    the fluid around it, in a box
+  umtet evolve --implicit '(x-t)^2+y^2+z^2-1' --box=-2,-2,-2,4,2,2 --h .1 --t 0:0.5:2 -o moving
+  umtet batch LIST -o scans --jobs 2         many scans; one table of verdicts, reasons and times
+  umtet inspect duck.ply                     spacing, noise, normals, thickness; what is likely to go wrong
+  umtet check part.msh                       validity and quality of any tet mesh
+  umtet export duck --format inp,vtu         files for solvers, in duck/4-export
+  umtet report duck                          duck/report.html: what a browser shows of it, offline
+  umtet view duck                            then: paraview --script=duck/5-view/view.py
+  umtet diff duck other                      which stage is the first to differ, and by how much
+)";
+
+constexpr const char* kExitCodes = R"(
+Exit codes: 0 all well | 1 a bug of ours | 2 usage | 3 input refused | 4 reconstruction failed
+  5 meshing not possible at this h | 6 made, but a gate or the certificate failed | 7 file trouble
+  8 artefact corrupt | 9 resource limit | 130, 143 interrupted, resumable)";
+
+/// Examples, all or those of one command, and exit codes.
+std::string footer(const std::string& command = "") {
+  std::string text = "Examples:\n", line;
+  for (std::istringstream lines(kExamples); std::getline(lines, line);) {
+    if (line.starts_with("  umtet " + command)) text += line + "\n";
+  }
+  return text + kExitCodes;
+}
+
+/// What a value is, in the words that CLI11 has for its own.
+const char* type_of(const ParamField& f) {
+  return std::holds_alternative<double>(f.preset)         ? "FLOAT"
+         : std::holds_alternative<std::int64_t>(f.preset) ? "INT"
+                                                          : "TEXT";
+}
+
+/// Help, choices and default of a parameter.
+std::string described(const ParamField& f) {
+  const std::string preset = preset_text(f);
+  return f.help + (f.choices.empty() ? "" : fmt::format(" {{{}}}", fmt::join(f.choices, ","))) +
+         (preset.empty() ? "" : fmt::format(" (default {})", preset));
+}
+
+}  // namespace
+
+CommandParser::CommandParser() {
+  app_.set_version_flag("--version", std::string("umtet ") + kVersion);
+  app_.add_flag("--json", result_.json, "one JSON document on stdout, also on failure");
+  app_.require_subcommand(1);
+  app_.footer(footer());
+
+  CLI::App& run = add_command("run", "All stages; those whose record matches are not run again");
+  add_stage_flags(run);
+  run.add_option("CLOUD", in_.input, "oriented points: .ply, .pcd, .xyz; or a case, to resume it");
+  run.add_option("--from", in_.from, "first stage that may run: cloud, level-set, mesh (default cloud)");
+  run.add_option("--until", in_.until, "last stage to run (default mesh)");
+  add_formats(run, "--export");
+  run.add_flag("--no-report", in_.no_report, "do not make report.html");
+  add_parameter_flags(run, {"cloud", "reconstruct", "mesh", "output"}, {"mesh.implicit"});
+
+  CLI::App& reconstruct = add_command("reconstruct", "Stage one only: the level set");
+  add_stage_flags(reconstruct);
+  reconstruct.add_option("CLOUD", in_.input, "oriented points; or a case, to fit again with other parameters");
+  add_parameter_flags(reconstruct, {"cloud", "reconstruct", "output"},
+                      {"output.units", "output.min_quality", "output.label_names", "output.label_min_area",
+                       "output.patch_angle", "output.patch_planar"});
+
+  CLI::App& mesh = add_command("mesh", "Stage two only: from the level set of CASE, or from a formula");
+  add_stage_flags(mesh);
+  mesh.add_option("CASE", in_.input, "a case with a level set");
+  add_formats(mesh, "--export");
+  mesh.add_flag("--no-report", in_.no_report, "do not make report.html");
+  add_parameter_flags(mesh, {"mesh", "output"});
+
+  CLI::App& evolve = add_command("evolve", "A domain that moves: every instant meshed in one background mesh");
+  add_parameter_sources(evolve);
+  add_timeout(evolve, "seconds that all instants may take together; then exit 9");
+  evolve.add_option("-o", in_.output, "the folder of the meshes");
+  evolve.add_option("--clouds", in_.clouds, "a text file with the path of a cloud a line, instead of --implicit");
+  evolve.add_option("--t", in_.times, "FROM:STEP:TO, the times; --implicit may have t in it");
+  evolve.add_option("--skip", in_.skip, "times to leave out: --skip 3.1,3.4");
+  add_parameter_flags(evolve, {"cloud", "reconstruct", "mesh", "output"},
+                      {"mesh.keep_iterates", "mesh.order", "output.label_names", "output.label_min_area",
+                       "output.patch_angle", "output.patch_planar"});
+
+  add_batch();
+
+  CLI::App& inspect = add_command("inspect", "What is in a cloud, and what is likely to go wrong with it");
+  inspect.add_option("CLOUD", in_.input, "points: .ply, .pcd, .xyz")->required();
+
+  CLI::App& check = add_command("check", "Validity and quality of any tet mesh; exit 6 when it fails");
+  check.add_option("MESH", in_.input, ".vtu, .msh or .mesh")->required();
+  check.add_option("--against", in_.against, "a case whose surface the mesh should fit");
+  add_parameter_sources(check);
+  add_parameter_flags(check, {"output"},
+                      {"output.max_memory", "output.label_names", "output.label_min_area", "output.patch_angle",
+                       "output.patch_planar"});
+
+  CLI::App& exports = add_command("export", "Files for solvers and viewers, in CASE/4-export");
+  exports.add_option("CASE", in_.input, "a case with a mesh")->required();
+  add_formats(exports, "--format").required();
+  add_parameter_flags(exports, {"output"}, {"output.units", "output.max_memory", "output.min_quality"});
+
+  CLI::App& report = add_command("report", "CASE/report.html: certificate, mesh and curves on one page, offline");
+  report.add_option("CASE", in_.input, "a case with a certificate")->required();
+
+  CLI::App& view = add_command("view", "CASE/5-view: psi on a grid, psi = 0 and a script for ParaView");
+  view.add_option("CASE", in_.input, "a case with a mesh")->required();
+
+  CLI::App& diff = add_command("diff", "The first stage in which two cases differ, and by how much each does");
+  diff.add_option("CASE_A", in_.input, "a case")->required();
+  diff.add_option("CASE_B", in_.other_case, "another")->required();
+}
+
+void CommandParser::add_batch() {
+  CLI::App& batch = add_command("batch", "Many scans by the same parameters, each in a process of its own; one table");
+  add_parameter_sources(batch);
+  add_timeout(batch, "seconds that a scan may take; then it is a row with exit code 9");
+  batch.add_option("LIST", in_.input, "a text file with the path of a cloud a line")->required();
+  batch.add_option("-o", in_.output, "the folder of the cases and of batch.csv, batch.html");
+  batch.add_option("--jobs", result_.batch.jobs, "scans at a time; they share the threads (default 1)")
+      ->check(CLI::Range(1, 1024, "1 to 1024"));
+  batch.add_flag("--resume", in_.resume, "scans whose input or mesh was refused are not tried again");
+  batch.add_flag("--force", in_.force, "run all stages although their records match");
+  batch.add_flag("--strict", in_.strict, "a damaged artefact is exit 8 of its scan instead of being made again");
+  add_formats(batch, "--export");
+  add_parameter_flags(batch, {"cloud", "reconstruct", "mesh", "output"}, {"mesh.implicit"});
+}
+
+CLI::Option& CommandParser::add_formats(CLI::App& command, const char* flag) {
+  return *command.add_option(flag, in_.formats, fmt::format("{}", fmt::join(export_formats(), ", ")))->delimiter(',');
+}
+
+CLI::App& CommandParser::add_command(const char* name, const char* description) {
+  CLI::App& command = *app_.add_subcommand(name, description);
+  command.footer(footer(std::string(name) + " "));
+  command.add_flag("--json", result_.json, "one JSON document on stdout, also on failure");
+  command
+      .add_option("--threads", result_.threads,
+                  "number of threads; results do not depend on it (default: all processors)")
+      ->check(CLI::Range(1, 4096, "1 to 4096"));
+  command.add_flag("-q,--quiet", in_.quiet, "no messages but warnings and errors");
+  command.add_flag("-v,--verbose", in_.verbose, "more messages");
+  command
+      .add_option_function<std::string>(
+          "--progress",
+          [this](const std::string& mode) {
+            result_.progress = mode == "plain"  ? ProgressMode::Plain
+                               : mode == "none" ? ProgressMode::None
+                                                : ProgressMode::Auto;
+          },
+          "auto: a bar on a terminal, else lines; plain: lines; none (default auto)")
+      ->check(CLI::IsMember({"auto", "plain", "none"}));
+  return command;
+}
+
+/// For the commands that take any parameter.
+void CommandParser::add_parameter_sources(CLI::App& command) {
+  command.add_option("--config", in_.config, "TOML file with parameters, such as the case.toml of another case");
+  command.add_option("--set", in_.assignments, "any parameter: --set mesh.samples=10; see case.toml for all")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void CommandParser::add_timeout(CLI::App& command, const char* help) {
+  // A timer of the system takes no more than a year without doubt.
+  command.add_option("--timeout", result_.timeout, help)->check(CLI::Range(0., 3e7, "0 to 3e7"));
+}
+
+void CommandParser::add_stage_flags(CLI::App& command) {
+  add_parameter_sources(command);
+  add_timeout(command, "seconds that the run may take; then exit 9, resumable");
+  command.add_option("-o", in_.output, "the folder of the case");
+  command.add_flag("--force", in_.force, "run the stages although their records match");
+  command.add_flag("--strict", in_.strict, "stop with exit 8 at a damaged artefact instead of making it again");
+}
+
+void CommandParser::add_parameter_flags(CLI::App& command, const std::vector<std::string>& sections,
+                                        const std::vector<std::string>& except) {
+  const auto holds = [](const std::vector<std::string>& list, const std::string& s) {
+    return std::find(list.begin(), list.end(), s) != list.end();
+  };
+  for (const ParamField& f : params_fields()) {
+    if (f.flag.empty() || !holds(sections, f.key.substr(0, f.key.find('.'))) || holds(except, f.key)) continue;
+    if (std::holds_alternative<bool>(f.preset)) {
+      command.add_flag(f.flag, in_.switches[f.key], f.help);
+    } else {
+      command.add_option(f.flag, in_.values[f.key], described(f))->type_name(type_of(f));
+    }
+  }
+}
+
+/// Turns what CLI11 says into a UsageError that names the nearest flag or command.
+void CommandParser::refuse(const CLI::ParseError& e, int argc, const char* const* argv) const {
+  const std::vector<CLI::App*> parsed = app_.get_subcommands();
+  if (parsed.empty()) {
+    const char* const* flag = std::find_if(argv + 1, argv + argc, [](std::string_view a) { return a != "--json"; });
+    throw UsageError(flag == argv + argc ? "no command; try umtet --help"
+                                         : fmt::format("unknown flag {}; try umtet --help", *flag));
+  }
+  const CLI::App& command = *parsed.front();
+  std::vector<std::string> flags;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) flags.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) flags.push_back("-" + name);
+  }
+  for (const std::string& extra : command.remaining()) {
+    if (extra.size() < 2 || extra[0] != '-') continue;
+    const std::string flag = extra.substr(0, extra.find('='));
+    std::vector<std::string> others;
+    for (const CLI::App* other : app_.get_subcommands({})) {
+      if (other->get_option_no_throw(flag)) others.push_back("umtet " + other->get_name());
+    }
+    const std::string near = nearest(flag, flags);
+    throw UsageError(fmt::format("{}: unknown flag {}{}", command.get_name(), flag,
+                                 !others.empty() ? fmt::format("; it belongs to {}", fmt::join(others, ", "))
+                                 : near.empty()  ? ""
+                                                 : "; did you mean " + near + "?"));
+  }
+  throw UsageError(command.get_name() + ": " + e.what());
+}
+
+/// The first word must be a command, whatever flags are around it: CLI11 would answer any word with the general help.
+void CommandParser::check_command(int argc, const char* const* argv) const {
+  const char* const* word = std::find_if(argv + 1, argv + argc, [](const char* a) { return a[0] != '-'; });
+  if (word == argv + argc) return;
+  std::vector<std::string> commands;
+  for (const CLI::App* c : app_.get_subcommands({})) commands.push_back(c->get_name());
+  if (std::find(commands.begin(), commands.end(), *word) != commands.end()) return;
+  std::string near = nearest(*word, commands);
+  std::error_code unknown;
+  if (std::filesystem::exists(*word, unknown)) near = std::string("umtet run ") + *word;  // a cloud or a case
+  throw UsageError(
+      fmt::format("unknown command {}{}", *word, near.empty() ? "; try umtet --help" : "; did you mean " + near + "?"));
+}
+
+namespace {
+
+/// The words of the call, the last one first, as CLI11 takes them. Behind "--box=" it would look for the value in the
+/// next word: an empty one is put there.
+std::vector<std::string> words_of(int argc, const char* const* argv) {
+  std::vector<std::string> words;
+  for (int k = 1; k < argc; ++k) {
+    std::string word = argv[k];
+    const bool clears = std::any_of(params_fields().begin(), params_fields().end(), [&](const ParamField& f) {
+      return !f.flag.empty() && !std::holds_alternative<bool>(f.preset) && word == f.flag + "=";
+    });
+    if (clears) word.pop_back();
+    words.push_back(std::move(word));
+    if (clears) words.emplace_back();
+  }
+  std::reverse(words.begin(), words.end());
+  return words;
+}
+
+}  // namespace
+
+CommandLine CommandParser::parse(int argc, const char* const* argv) {
+  if (argc > 1) check_command(argc, argv);
+  try {
+    app_.parse(words_of(argc, argv));
+  } catch (const CLI::CallForHelp&) {
+    const std::vector<CLI::App*> parsed = app_.get_subcommands();
+    result_.text = parsed.empty()
+                       ? app_.help()
+                       : fmt::format("umtet {}: {}", parsed.front()->get_name(), parsed.front()->help("umtet"));
+    return result_;
+  } catch (const CLI::CallForVersion& e) {
+    result_.text = std::string(e.what()) + "\n";
+    return result_;
+  } catch (const CLI::ParseError& e) {
+    refuse(e, argc, argv);
+  }
+  fill_request(*app_.get_subcommands().front(), in_, result_);
+  require_walls(result_.request.parameters);
+  return std::move(result_);
+}
+
+CommandLine parse_command_line(int argc, const char* const* argv) { return CommandParser().parse(argc, argv); }
+
+}  // namespace umtet

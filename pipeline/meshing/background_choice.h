@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "mesh/background/background_mesh.h"
+#include "mesh/background/body_size.h"
+#include "pipeline/meshing/domain.h"
+#include "pipeline/case/parameters.h"
+
+namespace umtet {
+
+/// The mesh file that mesh.background names, if it is no tiling.
+std::optional<std::filesystem::path> background_file(const Parameters&);
+
+/// \throw UsageError for mesh.box_walls with another background than a15, or mesh.complement without mesh.box_walls
+void require_walls(const Parameters&);
+
+/// Whose labels a mesh of these parameters has: fast mode chooses them in backgrounds that are a tiling and have no
+/// walls.
+LabelSource label_source(const Parameters&);
+
+/// What --background and --box-walls ask for: a lattice or a box of any edge length, or a mesh that has its own.
+class BackgroundChoice {
+ public:
+  /// Reads the file, if it is one. Its coordinates are model coordinates.
+  /// \throw UsageError when h or a number of tets is asked of a file, or as require_walls(); MeshFileRefused,
+  ///        std::system_error
+  BackgroundChoice(const Parameters& parameters, const Domain& domain);
+
+  /// That of the file.
+  std::optional<double> own_h() const { return given_ ? std::optional(given_->h()) : std::nullopt; }
+  /// About how many tets of it are taken.
+  double expected_tets(const Domain& domain, double h) const;
+  /// @param n_tets  that were asked for, or 0
+  /// @param allowed  bytes
+  /// \throw ResourceLimit
+  BackgroundMesh make(const Domain& domain, double h, std::int64_t n_tets, double allowed) const;
+
+ private:
+  std::optional<BackgroundMesh> given_;
+  const Tiling* tiling_;  ///< that the number of tets is estimated by, for a file too
+  LabelSource labels_;
+  bool walls_;
+};
+
+}  // namespace umtet

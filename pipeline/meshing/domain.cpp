@@ -1,0 +1,92 @@
+#include "pipeline/meshing/domain.h"
+
+#include <utility>
+
+#include "pipeline/case/exit_code.h"
+#include "pipeline/stages/stages.h"
+#include "reconstruct/io/level_set_io.h"
+#include "reconstruct/io/point_cloud_io.h"
+
+namespace umtet {
+
+// The seam between the two libraries: neither includes the other.
+static_assert(JointlyEvaluated<LevelSet>);
+static_assert(JointlyEvaluated<Domain>);
+static_assert(JointlyEvaluated<Expression>);
+
+namespace {
+
+// Levels down to this many edges count.
+constexpr double kLeastSpacing = .7;
+
+}  // namespace
+
+Domain formula_domain(const Parameters& parameters, std::optional<double> t) {
+  const std::optional<Box> box = parse_box(parameters.text("mesh.box"));
+  if (!box) throw UsageError("--implicit needs --box x0,y0,z0,x1,y1,z1");
+  Domain domain;
+  domain.formula.emplace(parameters.text("mesh.implicit"), t);
+  domain.box = *box;
+  domain.diagonal = box->diagonal().norm();
+  domain.complement = parameters.flag("mesh.complement");
+  return domain;
+}
+
+void Domain::limit_detail(double h) {
+  if (fitted) level_set = fitted->band_limited(kLeastSpacing * h);
+}
+
+const BodySize& Domain::size() const {
+  const bool known = size_ && size_->first.min() == box.min() && size_->first.max() == box.max();
+  if (!known) size_.emplace(box, body_size(psi(), box, steepest()));
+  return size_->second;
+}
+
+double Domain::evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const {
+  const ImplicitFunctionRef f = body();
+  Vec3 g;
+  Mat3 H;
+  const double sign = complement ? -1 : 1;
+  const double value = hessian ? f.value(x, g, H) : gradient ? f.value(x, g) : f.value(x);
+  if (gradient) *gradient = sign * g;
+  if (hessian) *hessian = sign * H;
+  return sign * value;
+}
+
+ImplicitFunctionRef Domain::psi() const { return complement ? ImplicitFunctionRef(*this) : body(); }
+
+Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handover* handover) {
+  if (!parameters.text("mesh.implicit").empty()) return formula_domain(parameters);
+  const StageState state = inspect_stage(paths, Stage::LevelSet, parameters.section("reconstruct"), std::nullopt);
+  if (!state.record) throw ArtefactDamaged(state.reason);
+  Domain domain;
+  domain.complement = parameters.flag("mesh.complement");
+  domain.shift = recorded_vector(*state.record, "shift");
+  domain.cloud_spacing = state.record->numbers.value("cloud_spacing", 0.);
+  if (state.record->numbers.contains("noise")) domain.noise = state.record->numbers.at("noise").get<double>();
+  try {
+    domain.fitted = handover && handover->psi ? std::move(*std::exchange(handover->psi, std::nullopt))
+                                              : read_level_set(paths.level_set());
+    domain.level_set = domain.fitted;
+    domain.cloud = handover && handover->cloud ? std::move(*std::exchange(handover->cloud, std::nullopt))
+                                               : read_point_cloud(paths.cloud()).cloud;
+  } catch (const CloudRefused& e) {  // both files are ours: what is wrong with them is damage
+    throw ArtefactDamaged(e.what());
+  } catch (const LevelSetRefused& e) {
+    throw ArtefactDamaged(e.what());
+  }
+  Box cloud_box;
+  for (Vec3& x : domain.cloud.points) {
+    x -= domain.shift;
+    cloud_box.extend(x);
+  }
+  if (!domain.cloud.points.empty()) domain.samples = std::make_shared<const SampleDistance>(domain.cloud.points);
+  domain.diagonal = cloud_box.diagonal().norm();
+  domain.box = domain.level_set->domain();
+  if (const std::optional<Box> box = parse_box(parameters.text("mesh.box"))) {
+    domain.box = Box(box->min() - domain.shift, box->max() - domain.shift);
+  }
+  return domain;
+}
+
+}  // namespace umtet

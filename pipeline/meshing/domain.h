@@ -1,0 +1,72 @@
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "mesh/background/background_mesh.h"
+#include "mesh/background/body_size.h"
+#include "mesh/core/implicit_function.h"
+#include "mesh/implicit/surface_distance.h"
+#include "pipeline/case/case_folder.h"
+#include "pipeline/expression/expression.h"
+#include "pipeline/case/parameters.h"
+#include "reconstruct/level_set/level_set.h"
+#include "reconstruct/cloud/point_cloud.h"
+
+namespace umtet {
+
+struct Handover;
+
+/// What 3-mesh works on, and what a mesh is judged against: psi, where to look for it, and the samples behind it.
+/// All lengths and places are in working coordinates: model coordinates minus `shift`.
+struct Domain {
+  std::optional<Expression> formula;            ///< one of the three is there
+  std::optional<LevelSet> level_set;            ///< psi; cut where limit_detail() said
+  std::optional<ImplicitFunctionRef> function;  ///< the caller's, who keeps it; with a Hessian
+  std::optional<LevelSet> fitted;               ///< the same with all its levels
+  Box box;                                      ///< what the background mesh has to cover
+  double diagonal = 0;                          ///< of the cloud's box, or of `box` for a formula
+  Vec3 shift = Vec3::Zero();
+  OrientedPointCloud cloud;                       ///< empty for a formula
+  std::shared_ptr<const SampleDistance> samples;  ///< of the cloud's points; none for a formula
+  double cloud_spacing = 0;                       ///< median distance between neighbouring samples, 0 for a formula
+  std::optional<double> noise;  ///< standard deviation of the samples along the normal, as the fit took it, model units
+  bool complement = false;      ///< mesh.complement: it is {psi > 0} in the box that is meshed, the fluid around a body
+
+  /// Cuts psi at the detail that a mesh of edge length h can show: boundary faces fold over what is finer.
+  void limit_detail(double h);
+
+  /// A bound of |grad psi|: a fitted psi has gradients of length one at its samples, and hardly longer ones anywhere; a
+  /// formula may have any.
+  double steepest() const { return level_set ? 2 : std::numeric_limits<double>::infinity(); }
+
+  /// Volume and area of what is meshed, measured when they are first asked for: an estimate, whatever detail is cut.
+  const BodySize& size() const;
+
+  /// Negative in the body.
+  ImplicitFunctionRef body() const {
+    if (function) return *function;
+    return formula ? ImplicitFunctionRef(*formula) : ImplicitFunctionRef(*level_set);
+  }
+  /// Negative in what is meshed. Valid while this domain stays where it is.
+  ImplicitFunctionRef psi() const;
+  /// The same: a domain is an ImplicitFunction. `gradient` and `hessian` may be null.
+  double evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const;
+  double value(const Vec3& x) const { return evaluate(x, nullptr, nullptr); }
+
+ private:
+  mutable std::optional<std::pair<Box, BodySize>> size_;  ///< of psi in that box
+};
+
+/// mesh.implicit in mesh.box. @param t  what t stands for in the text; without it there is no such name
+/// \throw UsageError (a formula without a box), ExpressionError
+Domain formula_domain(const Parameters&, std::optional<double> t = std::nullopt);
+
+/// The formula of mesh.implicit, or the level set and the cloud of the case.
+/// @param handover  what there is of them in memory is taken from there, and not read
+/// \throw UsageError (a formula without a box), ExpressionError, ArtefactDamaged, std::system_error
+Domain load_domain(const CasePaths&, const Parameters&, Handover* handover = nullptr);
+
+}  // namespace umtet

@@ -1,0 +1,147 @@
+#include "pipeline/meshing/edge_length.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "mesh/background/body_size.h"
+#include "mesh/certify/quality_report.h"
+#include "mesh/implicit/thickness.h"
+#include "pipeline/meshing/background_choice.h"
+#include "pipeline/meshing/deviation.h"
+#include "pipeline/case/exit_code.h"
+#include "reconstruct/solve/resolution.h"
+
+namespace umtet {
+namespace {
+
+// However flat the body is: with fewer than ten edges along it there is little left of its shape.
+constexpr double kMostOfDiagonal = .1;
+// Boundary faces start to fold where the body or a gap is thinner than about two edges; one body in a hundred samples
+// may be thinner.
+constexpr double kEdgesAcross = 2.2;
+// Labels and repair make clean meshes of 1.9 edges across, too, with more work and less room: where 2.2 ask for more
+// than this many tets, 1.9 will do (armadillo: 1.4 M instead of 2.1 M, no fold).
+constexpr double kLeastEdgesAcross = 1.9;
+constexpr std::int64_t kManyTets = 1'150'000;
+constexpr double kThinShare = .01;
+// A millionth of an edge: quality and folds do not feel it.
+constexpr double kMostRounding = 1e-6;
+// Enough for a percentile.
+constexpr std::size_t kThicknessSamples = 20000;
+
+/// \throw MeshingImpossible when psi < 0 at none of the places where it is sampled
+double h_of(const Domain& domain, const Parameters& parameters, std::int64_t n_tets) {
+  try {
+    return h_for_tets(tiling_named(parameters.text("mesh.background")), domain.size(), static_cast<double>(n_tets),
+                      label_source(parameters));
+  } catch (const std::invalid_argument& e) {
+    throw MeshingImpossible(std::string("no edge length can be chosen: ") + e.what() +
+                            "; give --h, or a --box around the place where psi < 0");
+  }
+}
+
+/// \throw ResourceLimit
+void refuse_too_many(const Domain& domain, const Parameters& parameters, double h) {
+  const std::int64_t max_tets = parameters.integer("mesh.max_tets");
+  double least = 0;
+  try {
+    least = h_of(domain, parameters, max_tets);
+  } catch (const MeshingImpossible&) {
+    return;  // the domain is smaller than the grid of the estimate: so are its tets few
+  }
+  // The estimate is good to 10 % in the number of tets, which is 3 % in h.
+  if (h >= .97 * least) return;
+  throw ResourceLimit(fmt::format("h = {:.4g} makes more than {} tets (that many at h = {:.4g}): raise --max-tets", h,
+                                  max_tets, least));
+}
+
+/// The thickness that a hundredth of the samples fall below, at most `limit`.
+double thin_part(const Domain& domain, double limit, const KeepGoing& keep_going) {
+  const std::vector<Vec3>& all = domain.cloud.points;
+  std::vector<Vec3> samples;  // evenly, as the cloud is sorted in space
+  for (std::size_t i = 0; i < all.size(); i += all.size() / kThicknessSamples + 1) samples.push_back(all[i]);
+  // psi has no sheets much closer together than its lattice.
+  std::vector<double> t =
+      thickness(domain.psi(), samples, .25 * domain.level_set->spacing(), limit, keep_going, domain.steepest());
+  std::sort(t.begin(), t.end());
+  return quantile(t, kThinShare);
+}
+
+/// By curvature. \throw ResourceLimit
+EdgeLength by_deviation(Domain& domain, const Parameters& parameters, double deviation, const KeepGoing& keep_going) {
+  const std::int64_t max_tets = parameters.integer("mesh.max_tets");
+  const double least = h_of(domain, parameters, max_tets);
+  const double h = h_for_deviation(domain, deviation, kMostOfDiagonal * domain.diagonal, least, keep_going);
+  if (h > least) return {h, least};
+  throw ResourceLimit(
+      fmt::format("--max-deviation {:.4g} needs more than {} tets (that many at h = {:.4g}): raise "
+                  "--max-tets",
+                  deviation, max_tets, least));
+}
+
+/// The choice, without regard to how it will be written.
+EdgeLength choose(Domain& domain, const Parameters& parameters, const KeepGoing& keep_going) {
+  if (const std::int64_t n = parameters.integer("mesh.tets")) {
+    const double h = h_of(domain, parameters, n);
+    return {h, h};
+  }
+  const std::int64_t max_tets = parameters.integer("mesh.max_tets");
+  if (const double h = parameters.real("mesh.h"); h > 0) {
+    refuse_too_many(domain, parameters, h);
+    return {h, h};
+  }
+  if (const double deviation = parameters.real("mesh.max_deviation"); deviation > 0) {
+    return by_deviation(domain, parameters, deviation, keep_going);
+  }
+  const double least = h_of(domain, parameters, max_tets);
+  double h = kMeshEdge * domain.diagonal;
+  if (domain.level_set) {
+    const double t = thin_part(domain, kEdgesAcross * h, keep_going);
+    if (t < kEdgesAcross * h) {
+      h = std::min(h, std::clamp(h_of(domain, parameters, kManyTets), t / kEdgesAcross, t / kLeastEdgesAcross));
+    }
+  }
+  return {std::max(h, least), least};
+}
+
+Vec3 greatest_coordinates(const Domain& domain) {
+  return (domain.box.min() + domain.shift).cwiseAbs().cwiseMax((domain.box.max() + domain.shift).cwiseAbs());
+}
+
+}  // namespace
+
+double coordinate_rounding(const Domain& domain) {
+  // Half a unit in the last place on every axis.
+  const Vec3 rounding = greatest_coordinates(domain).unaryExpr(
+      [](double x) { return .5 * (std::nextafter(x, std::numeric_limits<double>::infinity()) - x); });
+  return rounding.norm();
+}
+
+double least_h_of_max_tets(const Domain& domain, const Parameters& parameters) {
+  return h_of(domain, parameters, parameters.integer("mesh.max_tets"));
+}
+
+double least_h_in_file(const Domain& domain) { return coordinate_rounding(domain) / kMostRounding; }
+
+EdgeLength choose_edge_length(Domain& domain, const Parameters& parameters, const KeepGoing& keep_going) {
+  EdgeLength choice = choose(domain, parameters, keep_going);
+  const double least = least_h_in_file(domain);
+  if (choice.h < least) {
+    const double far = greatest_coordinates(domain).maxCoeff();
+    throw MeshingImpossible(fmt::format(
+        "h = {:.4g} is too small for coordinates of {:.3g}: they are rounded to multiples of {:.2g} in any "
+        "file of doubles, and boundary vertices would miss psi = 0 by more than {:g} h; move the input "
+        "nearer to the origin{}",
+        choice.h, far, std::nextafter(far, std::numeric_limits<double>::infinity()) - far, kMostRounding,
+        least < kMeshEdge * 10 * domain.diagonal ? fmt::format(", or give --h {:.3g} or more", least) : ""));
+  }
+  choice.least = std::max(choice.least, least);
+  return choice;
+}
+
+}  // namespace umtet

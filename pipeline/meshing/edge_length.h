@@ -1,0 +1,35 @@
+#pragma once
+
+#include "common/context.h"
+#include "pipeline/meshing/domain.h"
+#include "pipeline/case/parameters.h"
+
+namespace umtet {
+
+struct EdgeLength {
+  double h;      ///< model units
+  double least;  ///< the h that makes about mesh.max_tets tets if the choice of h was left to us, else h
+};
+
+/// The edge length of the background mesh.
+///
+/// mesh.h if given; else the h that makes about mesh.tets tets; else that of h_for_deviation() for mesh.max_deviation,
+/// at most a tenth of the diagonal; else min(.015 diagonal, t / 2.2), where t is the thickness that 1 % of the samples
+/// fall below (a formula: .015 diagonal of its box); where t / 2.2 makes more than about 1.15 million tets, up to t
+/// / 1.9 instead. The last two make no more than about mesh.max_tets tets.
+/// @param domain  where psi has to be cut to choose h, it stays cut
+/// \throw ResourceLimit      mesh.h or mesh.max_deviation asks for more than mesh.max_tets tets
+/// \throw MeshingImpossible  psi < 0 nowhere, or an h below least_h_in_file()
+EdgeLength choose_edge_length(Domain& domain, const Parameters& parameters, const KeepGoing& keep_going = {});
+
+/// The h at which about mesh.max_tets tets are made. \throw MeshingImpossible  psi < 0 nowhere
+double least_h_of_max_tets(const Domain& domain, const Parameters& parameters);
+
+/// A file holds model coordinates rounded to double: far from the origin that alone moves a vertex off psi = 0, by up
+/// to this much (model units).
+double coordinate_rounding(const Domain& domain);
+
+/// The h below which that is more than a millionth of an edge: such a mesh is refused.
+double least_h_in_file(const Domain& domain);
+
+}  // namespace umtet

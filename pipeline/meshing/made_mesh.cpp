@@ -1,0 +1,95 @@
+#include "pipeline/meshing/made_mesh.h"
+
+#include <fmt/format.h>
+
+#include "mesh/certify/quality_report.h"
+#include "pipeline/case/artefact.h"
+#include "pipeline/case/interrupt.h"
+
+namespace umtet {
+namespace fs = std::filesystem;
+namespace {
+
+const char* remedy(UmStatus status) {
+  switch (status) {
+    case UmStatus::EmptyDomain:
+      return "a smaller --h, or a --box around the place where psi < 0, may find it";
+    case UmStatus::PsiNotFinite:
+      return "psi has to have a value in all of the --box: a root, a logarithm or a quotient of it has none";
+    case UmStatus::BoundaryNearWall:
+      return "give a larger --box or a smaller --h: the body has to be two edges off its walls";
+    case UmStatus::DomainLeavesBackground:
+      return "give a larger --box, with room of two edges around the domain";
+    default:
+      return "a smaller --h (or a larger --tets) resolves more of the shape";
+  }
+}
+
+}  // namespace
+
+void round_to_file(UmResult& result, const Vec3& shift) {
+  for (auto* V : {&result.submesh.mesh.V, &result.projected, &result.final}) {
+    for (Vec3& x : *V) x = (x + shift) - shift;
+  }
+}
+
+void set_support(const Domain& domain, const std::vector<Vec3>& V, const std::vector<int>& vertices,
+                 std::vector<double>& support) {
+  std::vector<Vec3> x;
+  x.reserve(vertices.size());
+  for (const int i : vertices) x.push_back(V[i]);
+  const std::vector<double> d = domain.samples->distances(x, not_interrupted);
+  for (std::size_t k = 0; k < d.size(); ++k) support[vertices[k]] = d[k];
+}
+
+MeshFile mesh_content(const Domain& domain, const UmResult& result, const std::vector<Vec3>& V) {
+  TetMesh mesh{V, result.submesh.mesh.C};
+  for (Vec3& x : mesh.V) x += domain.shift;
+  MeshFile content =
+      with_standard_data(std::move(mesh), result.submesh.background_vertex, result.submesh.background_tet);
+  if (!result.walls.empty()) {
+    std::vector<std::uint8_t> wall(V.size(), 0);
+    for (const Triangle& f : result.walls) {
+      for (const int i : f) wall[i] = 1;
+    }
+    content.point_data[kAtWall] = std::move(wall);
+  }
+  return content;
+}
+
+void move_to(const Domain& domain, const std::vector<Vec3>& V, MeshFile& content) {
+  for (std::size_t i = 0; i < V.size(); ++i) content.mesh.V[i] = V[i] + domain.shift;
+  content.cell_data["mean_ratio"] = mean_ratios(content.mesh);
+}
+
+void add_support(const Domain& domain, const UmResult& result, MeshFile& content) {
+  if (!domain.samples) return;
+  std::vector<double> support(result.final.size(), -1);
+  set_support(domain, result.final, result.submesh.positive_vertices, support);
+  content.point_data["support"] = std::move(support);
+}
+
+MeshFile final_content(const Domain& domain, const UmResult& result) {
+  MeshFile content = mesh_content(domain, result, result.final);
+  add_support(domain, result, content);
+  return content;
+}
+
+void write_mesh(const fs::path& file, const MeshFile& content) {
+  write_artefact(file, [&](const fs::path& temporary) { write_vtu(temporary, content); });
+}
+
+std::string failure_text(const UmResult& result, double h, const Vec3& shift) {
+  const UmEvidence& e = result.evidence;
+  const Vec3 at = e.where + shift;
+  std::string message = fmt::format("no mesh at h = {:.6g}: {}: {}", h, to_string(result.status), e.what);
+  if (e.background_vertex >= 0 || e.background_tet >= 0) {
+    message += fmt::format("\n  at ({:.9g}, {:.9g}, {:.9g})", at.x(), at.y(), at.z());
+    if (e.background_vertex >= 0) message += fmt::format(", background vertex {}", e.background_vertex);
+    if (e.background_tet >= 0) message += fmt::format(", background tet {}", e.background_tet);
+    if (e.count > 1) message += fmt::format(" (the first of {})", e.count);
+  }
+  return message + "\n  " + remedy(result.status);
+}
+
+}  // namespace umtet

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "mesh/io/tet_mesh_io.h"
+#include "mesh/universal_mesh.h"
+#include "pipeline/meshing/domain.h"
+
+namespace umtet {
+
+/// Makes the vertices those that a file will hold, in working coordinates: it stores x + shift, rounded, and taking the
+/// shift off again is exact (far_origin_shift). From here on that is the mesh: it is this one that is measured.
+void round_to_file(UmResult& result, const Vec3& shift);
+
+/// Point data of a mesh with walls: 1 at their vertices, else 0. psi = 0 stays two edges away: a face is of a wall if
+/// its corners are.
+inline constexpr const char* kAtWall = "wall";
+
+/// What the file of omega_h with its vertices at V holds: model coordinates, ids of the background, walls.
+MeshFile mesh_content(const Domain& domain, const UmResult& result, const std::vector<Vec3>& V);
+
+/// The same mesh at another stage, its vertices at V. \pre as many as it has, and no support yet
+void move_to(const Domain& domain, const std::vector<Vec3>& V, MeshFile& content);
+
+/// Distances of some vertices to their nearest samples, into their places of `support`. \throw MeshCancelled
+void set_support(const Domain& domain, const std::vector<Vec3>& V, const std::vector<int>& vertices,
+                 std::vector<double>& support);
+
+/// Of a cloud's final mesh the distance of each boundary vertex to the nearest sample, -1 inside and at walls, as point
+/// data `support`: what is data and what is a guess. Nothing without a cloud. \throw MeshCancelled
+void add_support(const Domain& domain, const UmResult& result, MeshFile& content);
+
+/// The final mesh, with support. \throw MeshCancelled
+MeshFile final_content(const Domain& domain, const UmResult& result);
+
+/// Complete or not at all. \throw std::system_error naming the file
+void write_mesh(const std::filesystem::path& file, const MeshFile& content);
+
+/// Why there is no mesh, where, and what may help; some lines. \pre result.status != UmStatus::Success
+std::string failure_text(const UmResult& result, double h, const Vec3& shift);
+
+}  // namespace umtet

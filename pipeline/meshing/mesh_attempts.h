@@ -1,0 +1,41 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mesh/certify/quadratic_tets.h"
+#include "mesh/universal_mesh.h"
+#include "pipeline/meshing/edge_length.h"
+#include "pipeline/case/record.h"
+#include "pipeline/meshing/too_thin.h"
+
+namespace umtet {
+
+/// One run of the algorithm and, if it made a mesh, what is true of it.
+struct MeshAttempt {
+  double h = 0;  ///< edge length of the background mesh, model units
+  UmResult result;
+  std::optional<SecondOrder> second;        ///< the mesh with curved edges, if mesh.order = 2
+  Json measured;                            ///< of measure(); null when there is no mesh
+  ThinPlaces thin;                          ///< what h is too large for
+  std::vector<std::vector<Vec3>> iterates;  ///< the vertices after every pass, where they are kept
+
+  bool made() const { return result.status == UmStatus::Success; }
+  std::size_t n_reasons() const { return made() ? measured.at("reasons").size() : 0; }
+  bool is_right() const { return made() && n_reasons() == 0; }
+  /// What is wrong with it first of all; empty if nothing is.
+  std::string complaint() const;
+};
+
+/// Runs `attempt` at choice.h and, while something is wrong that a smaller h may mend, at .985 of it (if there was a
+/// mesh at all: a few folded faces come and go with h), then at .8, .64 and .51 of it; never below choice.least, which
+/// is tried instead where it is nearer.
+///
+/// @param say  is told why another h is tried, and which mesh is kept if it is not the last
+/// @return the best of them: a mesh before none, then the one with the fewest reasons against it, then the last
+MeshAttempt best_attempt(const EdgeLength& choice, const std::function<MeshAttempt(double h)>& attempt,
+                         const std::function<void(const std::string&)>& say);
+
+}  // namespace umtet

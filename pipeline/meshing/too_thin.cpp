@@ -1,0 +1,220 @@
+#include "pipeline/meshing/too_thin.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <numeric>
+#include <optional>
+
+#include "mesh/base/disjoint_sets.h"
+#include "mesh/implicit/surface_distance.h"
+#include "mesh/io/tet_mesh_io.h"
+#include "mesh/implicit/thickness.h"
+#include "pipeline/case/artefact.h"
+
+namespace umtet {
+namespace {
+
+// psi is followed in steps of this many edges, up to a little more than what counts.
+constexpr double kStep = .125, kReach = kLeastEdgesAcross + 2 * kStep;
+// Places listed in an error.
+constexpr std::size_t kListed = 5;
+
+/// Points of the boundary with the area each stands for.
+struct Samples {
+  std::vector<Vec3> points;
+  std::vector<double> area, thickness;
+};
+
+Samples samples_of(const ZeroSetChoice& pieces) {
+  Samples s;
+  for (const std::size_t c : pieces.kept) {
+    const ZeroSetComponent& piece = pieces.topology.components[c];
+    const auto points = pieces.topology.points_of(piece);
+    s.points.insert(s.points.end(), points.begin(), points.end());
+    s.area.insert(s.area.end(), points.size(), piece.area / static_cast<double>(points.size()));
+  }
+  return s;
+}
+
+/// Sets of points: those in one cube of edge `size`, or in cubes that touch, are together. Returns one number a point,
+/// the least index in its set.
+std::vector<int> clusters(const std::vector<Vec3>& x, double size) {
+  using Key = std::array<std::int64_t, 3>;
+  std::vector<std::pair<Key, int>> cubes;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Eigen::Array3d q = (x[i] / size).array().floor();
+    cubes.push_back(
+        {{static_cast<std::int64_t>(q[0]), static_cast<std::int64_t>(q[1]), static_cast<std::int64_t>(q[2])},
+         static_cast<int>(i)});
+  }
+  std::sort(cubes.begin(), cubes.end());
+  detail::DisjointSets sets(x.size());
+  for (const auto& [key, i] : cubes) {
+    for (int n = 0; n < 27; ++n) {
+      const Key next = {key[0] + n % 3 - 1, key[1] + n / 3 % 3 - 1, key[2] + n / 9 - 1};
+      // The first point of a cube stands for all of them: each is joined to its own cube's first.
+      const auto at = std::lower_bound(cubes.begin(), cubes.end(), std::pair(next, 0));
+      if (at != cubes.end() && at->first == next) sets.unite(i, at->second);
+    }
+  }
+  std::vector<int> set(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) set[i] = sets.find(static_cast<int>(i));
+  return set;
+}
+
+/// The largest h at which less than kLeastThinArea h^2 is thinner than kLeastEdgesAcross h.
+double needed(std::vector<std::pair<double, double>> thickness_and_area) {
+  std::sort(thickness_and_area.begin(), thickness_and_area.end());
+  double area = 0, h = 0;
+  for (const auto& [t, a] : thickness_and_area) {
+    h = t / kLeastEdgesAcross;
+    area += a;
+    if (area >= kLeastThinArea * h * h) return h;
+  }
+  return h;
+}
+
+/// The thin points of one kind, set by set, appended to the result where a set is large enough.
+void collect(const Domain& domain, const Samples& samples, bool is_gap, const KeepGoing& keep_going,
+             ThinPlaces& result) {
+  const double h = result.h;
+  Samples thin;
+  for (std::size_t i = 0; i < samples.points.size(); ++i) {
+    if (samples.thickness[i] >= kLeastEdgesAcross * h) continue;
+    thin.points.push_back(samples.points[i]);
+    thin.area.push_back(samples.area[i]);
+    thin.thickness.push_back(samples.thickness[i]);
+  }
+  if (thin.points.empty()) return;
+  // Detail that is cut away at this h is there again at a smaller one.
+  std::vector<double> with_detail = thin.thickness;
+  if (domain.fitted) {
+    const auto d = sheet_distances(*domain.fitted, thin.points, kStep * h, kReach * h, keep_going, domain.steepest());
+    for (std::size_t i = 0; i < d.size(); ++i) {
+      with_detail[i] = std::min(with_detail[i], is_gap ? d[i].gap : d[i].body);
+    }
+  }
+  const std::vector<int> set = clusters(thin.points, h / 2);
+  std::vector<int> order(set.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return set[a] < set[b]; });
+  for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+    ThinPlace place;
+    place.is_gap = is_gap;
+    place.thickness = kReach * h;
+    std::vector<std::pair<double, double>> spectrum;
+    for (; end < order.size() && set[order[end]] == set[order[begin]]; ++end) {
+      const int i = order[end];
+      place.area += thin.area[i];
+      place.box.extend(thin.points[i]);
+      place.centre += thin.points[i];
+      place.thickness = std::min(place.thickness, thin.thickness[i]);
+      spectrum.push_back({with_detail[i], thin.area[i]});
+    }
+    if (place.area < kLeastThinArea * h * h) continue;
+    place.centre /= static_cast<double>(end - begin);
+    place.h_needed = needed(std::move(spectrum));
+    for (std::size_t k = begin; k < end; ++k) {
+      result.points.push_back(thin.points[order[k]]);
+      result.thickness.push_back(thin.thickness[order[k]]);
+      result.place.push_back(static_cast<int>(result.places.size()));
+    }
+    result.places.push_back(place);
+  }
+}
+
+void sort_worst_first(ThinPlaces& result) {
+  std::vector<int> order(result.places.size()), rank(order.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return result.places[a].h_needed < result.places[b].h_needed; });
+  std::vector<ThinPlace> places;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    rank[order[k]] = static_cast<int>(k);
+    places.push_back(result.places[order[k]]);
+  }
+  result.places = std::move(places);
+  for (int& p : result.place) p = rank[p];
+}
+
+Json vector(const Vec3& x) { return {x.x(), x.y(), x.z()}; }
+
+}  // namespace
+
+ThinPlaces find_thin_places(const Domain& domain, const ZeroSetChoice& pieces, double h, const KeepGoing& keep_going) {
+  ThinPlaces result;
+  result.h = h;
+  Samples samples = samples_of(pieces);
+  const auto distances =
+      sheet_distances(domain.body(), samples.points, kStep * h, kReach * h, keep_going, domain.steepest());
+  samples.thickness.resize(distances.size());
+  for (const bool is_gap : {false, true}) {
+    std::transform(distances.begin(), distances.end(), samples.thickness.begin(),
+                   [&](const SheetDistances& d) { return is_gap ? d.gap : d.body; });
+    collect(domain, samples, is_gap, keep_going, result);
+  }
+  sort_worst_first(result);
+  return result;
+}
+
+LostPoint lost_of(const ThinPlaces& thin, const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
+                  const KeepGoing& keep_going) {
+  LostPoint lost;
+  if (thin.empty() || faces.empty()) return lost;
+  const std::vector<double> d = SurfaceDistance(V, faces).distances(thin.points, keep_going);
+  const auto farthest = std::max_element(d.begin(), d.end());
+  lost.where = thin.points[static_cast<std::size_t>(farthest - d.begin())];
+  lost.distance = *farthest;
+  lost.count = static_cast<std::size_t>(std::count_if(d.begin(), d.end(), [&](double t) { return t > thin.h; }));
+  return lost;
+}
+
+Json to_json(const ThinPlaces& thin, const Vec3& shift) {
+  Json list = Json::array();
+  for (const ThinPlace& p : thin.places) {
+    list.push_back({{"kind", p.is_gap ? "gap" : "body"},
+                    {"centre", vector(p.centre + shift)},
+                    {"box", {{"min", vector(p.box.min() + shift)}, {"max", vector(p.box.max() + shift)}}},
+                    {"thickness", p.thickness},
+                    {"thickness_over_h", p.thickness / thin.h},
+                    {"area", p.area},
+                    {"h_needed", p.h_needed}});
+  }
+  return list;
+}
+
+std::string described(const ThinPlaces& thin, const Vec3& shift) {
+  std::string out;
+  for (std::size_t k = 0; k < std::min(kListed, thin.places.size()); ++k) {
+    const ThinPlace& p = thin.places[k];
+    const Vec3 at = p.centre + shift, size = p.box.sizes();
+    out += fmt::format(
+        "{}  {} down to {:.3g} thick around ({:.6g}, {:.6g}, {:.6g}), {:.2g} x {:.2g} x {:.2g} wide: needs h = {:.3g}",
+        k > 0 ? "\n" : "", p.is_gap ? "gap" : "body", p.thickness, at.x(), at.y(), at.z(), size.x(), size.y(), size.z(),
+        p.h_needed);
+  }
+  if (thin.places.size() > kListed) out += fmt::format("\n  and {} more", thin.places.size() - kListed);
+  return out;
+}
+
+void write_thin_places(const std::filesystem::path& file, const ThinPlaces& thin, const Vec3& shift) {
+  std::vector<Vec3> points = thin.points;
+  std::vector<double> h_needed;
+  std::vector<std::int64_t> place;
+  std::vector<std::uint8_t> gap;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i] += shift;
+    place.push_back(thin.place[i]);
+    h_needed.push_back(thin.places[thin.place[i]].h_needed);
+    gap.push_back(thin.places[thin.place[i]].is_gap);
+  }
+  write_artefact(file, [&](const std::filesystem::path& temporary) {
+    write_vtp(temporary, points,
+              {{"thickness", thin.thickness}, {"h_needed", h_needed}, {"place", place}, {"gap", gap}});
+  });
+}
+
+}  // namespace umtet

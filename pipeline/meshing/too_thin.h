@@ -1,0 +1,75 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pipeline/meshing/domain.h"
+#include "pipeline/case/exit_code.h"
+#include "pipeline/case/record.h"
+#include "pipeline/meshing/zero_set_choice.h"
+
+namespace umtet {
+
+/// A connected place where the body, or the gap outside it, is too thin for a mesh of some edge length. Lengths in
+/// model units, places in working coordinates.
+struct ThinPlace {
+  bool is_gap = false;
+  Eigen::AlignedBox3d box;     ///< of the points of the boundary that belong to it
+  Vec3 centre = Vec3::Zero();  ///< their mean
+  double thickness = 0;        ///< the least
+  double area = 0;             ///< of the boundary that belongs to it, both sides
+  double h_needed = 0;         ///< the largest edge length at which it is not too thin any more
+};
+
+/// All of them, and the points of the boundary that they consist of.
+struct ThinPlaces {
+  double h = 0;                   ///< the edge length they are too thin for
+  std::vector<ThinPlace> places;  ///< ascending in h_needed: worst first
+  std::vector<Vec3> points;       ///< of psi = 0
+  std::vector<double> thickness;  ///< of each point
+  std::vector<int> place;         ///< of each point, into places
+
+  bool empty() const { return places.empty(); }
+  double h_needed() const { return places.front().h_needed; }  ///< for all of them. \pre !empty()
+};
+
+/// A place is too thin if it is thinner than this many edges ...
+inline constexpr double kLeastEdgesAcross = 1.25;
+/// ... on more than this much of the boundary, in h^2: a few samples of a rim or of noise do no harm.
+inline constexpr double kLeastThinArea = 0.5;
+
+/// What a mesh of edge length h cannot show, before it is made.
+///
+/// The thickness of psi, as it is cut for h, at the cut points of the pieces that are kept. Thin points half an edge
+/// apart or less are one place. What h a place needs is asked of psi with all its detail.
+/// @param pieces  of choose_components(domain, h)
+/// Cost: some twenty values of psi a cut point. The result does not depend on the number of threads.
+/// \throw MeshCancelled
+ThinPlaces find_thin_places(const Domain& domain, const ZeroSetChoice& pieces, double h,
+                            const KeepGoing& keep_going = {});
+
+/// A point of a thin place that a mesh does not show, the farthest of them.
+struct LostPoint {
+  Vec3 where = Vec3::Zero();
+  double distance = 0;    ///< to the boundary of the mesh
+  std::size_t count = 0;  ///< points of thin places farther than h from it; 0: nothing is lost
+};
+
+/// Body or gap that is thinner than an edge can be skipped without a trace in topology or normals: this finds it.
+/// @param faces  the boundary of the mesh. \throw MeshCancelled
+LostPoint lost_of(const ThinPlaces&, const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
+                  const KeepGoing& keep_going = {});
+
+/// One object a place: kind, centre and box in model coordinates (`shift` is added), thickness, area, h_needed.
+Json to_json(const ThinPlaces&, const Vec3& shift);
+
+/// The first few in words, a line each, without a newline at the end.
+std::string described(const ThinPlaces&, const Vec3& shift);
+
+/// The points with `thickness`, `h_needed`, `place` and `gap` (0/1), in model coordinates; complete or not at all.
+/// \throw std::system_error naming the file
+void write_thin_places(const std::filesystem::path& file, const ThinPlaces&, const Vec3& shift);
+
+}  // namespace umtet

@@ -1,0 +1,202 @@
+#include "pipeline/output/boundary_patches.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <set>
+#include <sstream>
+
+#include "mesh/io/patches.h"
+#include "mesh/io/planar_pieces.h"
+#include "pipeline/case/exit_code.h"
+#include "pipeline/meshing/made_mesh.h"
+#include "reconstruct/cloud/label_votes.h"
+
+namespace umtet {
+namespace {
+
+// A piece that a majority of the voters can make is below the area that so many samples stand for.
+constexpr int kIslandSamples = kVoters / 2 + 1;
+// Mean faces. A vertex with all faces around it, and these with their neighbours, is the least that shows whether a
+// part is flat or bends: with fewer, single faces of a sphere would be planes.
+constexpr double kLeastPlane = 20;
+
+std::string name_of(int label, const std::map<int, std::string>& names) {
+  const auto found = names.find(label);
+  if (found != names.end()) return found->second;
+  return label < 0 ? fmt::format("patch_m{}", -static_cast<long>(label)) : fmt::format("patch_{}", label);
+}
+
+/// Patches of the labels that are there, in ascending order of the labels.
+std::vector<MeshPart> label_patches(const std::vector<int>& labels, const std::map<int, std::string>& names) {
+  long free = std::max(0, labels.back());
+  std::vector<MeshPart> patches;
+  for (const int label : labels) {
+    const long number = label > 0 ? label : ++free;
+    if (number >= std::numeric_limits<int>::max()) throw UsageError("labels beyond 2147483646 have no number in files");
+    patches.push_back({name_of(label, names), static_cast<int>(number)});
+  }
+  return patches;
+}
+
+constexpr const char* kWalls = "walls";
+
+std::string lower_case(std::string name) {
+  for (char& c : name) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return name;
+}
+
+bool has_walls(const std::vector<char>& at_wall) {
+  return std::find(at_wall.begin(), at_wall.end(), 1) != at_wall.end();
+}
+
+/// False when nothing is flat, besides walls.
+bool divide_by_planes(SolverMesh& mesh, const std::vector<char>& at_wall, double angle) {
+  const FaceGeometry faces = face_geometry(mesh);
+  const double area = std::accumulate(faces.area.begin(), faces.area.end(), 0.);
+  const double least = kLeastPlane * area / static_cast<double>(mesh.n_faces());
+  std::vector<int> plane = planar_pieces(mesh, angle, least);
+  const int n = *std::max_element(plane.begin(), plane.end()) + 1;
+  std::vector<char> plane_at_wall(n, 0);
+  for (std::size_t f = 0; f < at_wall.size(); ++f) {
+    if (plane[f] >= 0) plane_at_wall[plane[f]] |= at_wall[f];
+  }
+  int n_planes = 0, n_walls = 0;
+  std::vector<MeshPart> patches;
+  for (int p = 0; p < n; ++p) {
+    const std::string name =
+        plane_at_wall[p] ? fmt::format("{}_{}", kWalls, ++n_walls) : fmt::format("plane_{}", ++n_planes);
+    patches.push_back({name, p + 2});
+  }
+  if (n_planes == 0) return false;
+  if (std::find(plane.begin(), plane.end(), -1) != plane.end()) patches.push_back({"rest", n + 2});
+  for (int& p : plane) p = p < 0 ? n : p;
+  set_patches(mesh, std::move(plane), std::move(patches));
+  return true;
+}
+
+std::vector<int> distinct(std::vector<int> labels) {
+  std::sort(labels.begin(), labels.end());
+  labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
+  return labels;
+}
+
+void divide_by_labels(SolverMesh& mesh, const std::vector<char>& at_wall, const OrientedPointCloud& cloud,
+                      const Parameters& parameters, const Warn& warn) {
+  const std::map<int, std::string> names = parse_label_names(parameters.text("output.label_names"));
+  const std::vector<int> in_cloud = distinct(cloud.labels);
+  for (const auto& [label, name] : names) {
+    if (has_walls(at_wall) && lower_case(name) == kWalls) {
+      throw UsageError(
+          fmt::format("--label-names {}={}: the faces at the walls of the box have that name", label, name));
+    }
+    if (std::binary_search(in_cloud.begin(), in_cloud.end(), label)) continue;
+    throw UsageError(fmt::format("--label-names {}={}: no point has that label; there are {}", label, name,
+                                 fmt::join(in_cloud, ", ")));
+  }
+  const FaceGeometry faces = face_geometry(mesh);
+  const auto is_wall = [&](std::size_t f) { return !at_wall.empty() && at_wall[f]; };
+  std::vector<int> labels = vote_labels(cloud, faces.centroid, faces.normal);
+  double least = parameters.real("output.label_min_area");
+  if (least < 0) {
+    double area = 0;
+    for (std::size_t f = 0; f < faces.area.size(); ++f) area += is_wall(f) ? 0 : faces.area[f];
+    least = kIslandSamples * area / static_cast<double>(cloud.points.size());
+  }
+  absorb_islands(mesh, least, labels);
+  std::vector<int> of_cloud;
+  for (std::size_t f = 0; f < labels.size(); ++f) {
+    if (!is_wall(f)) of_cloud.push_back(labels[f]);
+  }
+  const std::vector<int> left = distinct(std::move(of_cloud));
+  for (const int label : in_cloud) {
+    if (std::binary_search(left.begin(), left.end(), label)) continue;
+    warn(fmt::format("no boundary face has label {} ({}): too few samples for faces of this size", label,
+                     name_of(label, names)));
+  }
+  if (left.empty()) return;
+  std::vector<MeshPart> patches = label_patches(left, names);
+  for (std::size_t f = 0; f < labels.size(); ++f) {
+    const auto at = is_wall(f) ? left.end() : std::lower_bound(left.begin(), left.end(), labels[f]);
+    labels[f] = static_cast<int>(at - left.begin());
+  }
+  if (has_walls(at_wall)) {
+    const auto by_number = [](const MeshPart& a, const MeshPart& b) { return a.number < b.number; };
+    patches.push_back({kWalls, std::max_element(patches.begin(), patches.end(), by_number)->number + 1});
+  }
+  set_patches(mesh, std::move(labels), std::move(patches));
+}
+
+}  // namespace
+
+std::map<int, std::string> parse_label_names(const std::string& text) {
+  std::map<int, std::string> names;
+  std::set<std::string> taken = {"body", kWholeBoundary};
+  std::istringstream items(text);
+  for (std::string item; std::getline(items, item, ',');) {
+    const auto refuse = [&](const std::string& what) {
+      throw UsageError(fmt::format("--label-names '{}': {}; give LABEL=NAME,LABEL=NAME", item, what));
+    };
+    int label = 0;
+    const std::size_t equals = std::min(item.find('='), item.size());
+    const auto [end, error] = std::from_chars(item.data(), item.data() + equals, label);
+    if (error != std::errc() || end != item.data() + equals || equals == item.size()) refuse("not LABEL=NAME");
+    const std::string name = item.substr(equals + 1);
+    if (const std::string problem = problem_of_name(name); !problem.empty()) refuse("the name " + problem);
+    if (!taken.insert(lower_case(name)).second) refuse("that name is taken (case aside)");
+    if (!names.emplace(label, name).second) refuse("that label has a name already");
+  }
+  return names;
+}
+
+std::vector<char> faces_at_walls(const SolverMesh& mesh, const MeshFile& file) {
+  const auto found = file.point_data.find(kAtWall);
+  if (found == file.point_data.end()) return {};
+  const auto* wall = std::get_if<std::vector<std::uint8_t>>(&found->second);
+  std::vector<char> at_wall(mesh.n_faces());
+  for (std::size_t f = 0; wall && f < at_wall.size(); ++f) {
+    const std::array<int, 6> face = mesh.face(f);
+    at_wall[f] = std::all_of(face.begin(), face.begin() + 3, [&](int v) { return (*wall)[v]; });
+  }
+  return at_wall;
+}
+
+void divide_boundary(SolverMesh& mesh, const std::vector<char>& at_wall, const OrientedPointCloud& cloud,
+                     const Parameters& parameters, const Warn& warn) {
+  if (!cloud.labels.empty()) return divide_by_labels(mesh, at_wall, cloud, parameters, warn);
+  if (!parameters.text("output.label_names").empty()) {
+    throw UsageError(
+        "--label-names: the points have no labels (PLY property label, PCD field label, or a last column)");
+  }
+  const double angle = parameters.real("output.patch_angle"), planar = parameters.real("output.patch_planar");
+  if (planar > 0 && mesh.n_faces() > 0) {
+    if (divide_by_planes(mesh, at_wall, planar)) return;
+    warn(fmt::format("no part of the boundary is flat within {} degrees", planar));
+  }
+  std::vector<int> pieces = smooth_pieces(mesh, angle > 0 ? angle : 180);
+  const int n = pieces.empty() ? 0 : *std::max_element(pieces.begin(), pieces.end()) + 1;
+  if (n < 2) return;
+  std::vector<char> piece_at_wall(n, 0);
+  for (std::size_t f = 0; f < at_wall.size(); ++f) piece_at_wall[pieces[f]] |= at_wall[f];
+  const auto n_walls = std::count(piece_at_wall.begin(), piece_at_wall.end(), 1);
+  std::vector<int> patch_of(n);
+  std::vector<MeshPart> patches;
+  for (const bool walls : {false, true}) {
+    const std::string name = walls ? kWalls : angle > 0 ? "region" : kWholeBoundary;
+    for (int p = 0, k = 1; p < n; ++p) {
+      if (piece_at_wall[p] != walls) continue;
+      patch_of[p] = static_cast<int>(patches.size());
+      // The body keeps the number 1 that it has without patches.
+      patches.push_back({walls && n_walls == 1 ? name : fmt::format("{}_{}", name, k++), patch_of[p] + 2});
+    }
+  }
+  for (int& piece : pieces) piece = patch_of[piece];
+  set_patches(mesh, std::move(pieces), std::move(patches));
+}
+
+}  // namespace umtet

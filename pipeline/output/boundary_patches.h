@@ -1,0 +1,36 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "mesh/io/solver_mesh.h"
+#include "mesh/io/tet_mesh_io.h"
+#include "pipeline/case/parameters.h"
+#include "reconstruct/cloud/point_cloud.h"
+
+namespace umtet {
+
+/// "1=feet,2=head" of output.label_names. \throw UsageError  not of that form, a label or a name twice (case aside), or
+/// a name that a format cannot keep
+std::map<int, std::string> parse_label_names(const std::string& text);
+
+/// What the user should know of patches that did not come out as asked for.
+using Warn = std::function<void(const std::string&)>;
+
+/// What at_wall is of a mesh and its file. Empty without walls.
+std::vector<char> faces_at_walls(const SolverMesh& mesh, const MeshFile& file);
+
+/// Puts the boundary faces into patches: by the labels of the cloud where it has any (the votes of the nearest samples,
+/// then islands below output.label_min_area go), else by output.patch_planar or else output.patch_angle where set,
+/// else by connected pieces. A positive label is the number of its patch, others get the numbers after the largest; a
+/// patch without a name is patch_LABEL, region_N, plane_N (and rest) or boundary_N. Labels that no face has are said,
+/// and that nothing is flat. Faces at walls are patches of their own: "walls", or by angle or plane walls_1, walls_2
+/// ...
+/// @param at_wall  1 for faces at walls, 0 for others; empty: there are no walls
+/// \throw UsageError  as parse_label_names(), or a name for a label that the cloud does not have, or that of the walls
+void divide_boundary(SolverMesh& mesh, const std::vector<char>& at_wall, const OrientedPointCloud& cloud,
+                     const Parameters& parameters, const Warn& warn);
+
+}  // namespace umtet

@@ -1,0 +1,157 @@
+#include "pipeline/output/inspect.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/stages/cloud_preparation.h"
+#include "reconstruct/cloud/cloud_neighbours.h"
+#include "reconstruct/cloud/cloud_survey.h"
+#include "reconstruct/io/point_cloud_io.h"
+#include "reconstruct/solve/resolution.h"
+
+namespace umtet {
+namespace fs = std::filesystem;
+namespace {
+
+// From here on a share or a ratio is worth a line.
+constexpr double kConsistent = .98, kVariation = 30, kShareDropped = .01, kOpen = .05, kUlp = 1e-3, kFloatUlp = .1;
+// A body thinner than two edges of the default mesh folds.
+constexpr double kThin = 2.2 * kMeshEdge;
+
+Json vector(const Vec3& x) { return {x.x(), x.y(), x.z()}; }
+
+/// What may go wrong, and what to do about it.
+Json troubles(const CloudSurvey& s, const CloudFileReport& file) {
+  Json list = Json::array();
+  const auto trouble = [&]<class... T>(fmt::format_string<T...> format, T&&... args) {
+    list.push_back(fmt::format(format, std::forward<T>(args)...));
+  };
+  const auto n = static_cast<double>(s.n_points);
+  if (file.n_points_dropped > 0) trouble("{} points are no numbers: they are dropped", file.n_points_dropped);
+  if (s.dropped.n_duplicates > 0) trouble("{} points are there twice: one of each is kept", s.dropped.n_duplicates);
+  if (const std::size_t junk = s.dropped.n_outliers + s.dropped.n_crumbs; static_cast<double>(junk) > kShareDropped * n) {
+    trouble("{} points ({:.1f} %) are far from any surface: they are dropped; --keep-all keeps them", junk,
+            100 * static_cast<double>(junk) / n);
+  }
+  if (!s.has_normals) {
+    trouble("no normals: they are estimated and oriented; check the result, or give the scanner's place with "
+            "--orient-from");
+  } else {
+    if (s.n_normals_zero > 0) trouble("{} normals are missing: they are estimated", s.n_normals_zero);
+    if (s.consistency < kConsistent) {
+      trouble("the normals agree with their neighbours to {:.1f} % only: a turned minority is turned back; "
+              "--normals estimate throws them away",
+              100 * s.consistency);
+    }
+    if (s.volume < 0) trouble("the normals point inward: they are turned");
+    if (s.openness > kOpen) {
+      trouble("the surface is open or sampled on one side (|sum a n| / sum a = {:.2f}): what closes it is a guess, "
+              "marked as unsupported",
+              s.openness);
+    }
+  }
+  if (s.density_variation > kVariation) {
+    trouble("the density varies {:.0f} : 1: sparse parts get a coarser surface", s.density_variation);
+  }
+  if (s.noise > s.spacing[1]) {
+    trouble("noise of {:.2g} spacings: the surface is smoothed over three times the noise; --detail keeps more of it",
+            s.noise_over_spacing);
+  }
+  if (s.thickness && (*s.thickness)[0] < kThin * s.diagonal) {
+    trouble("1 % of the body is thinner than {:.3g}: the mesh needs --h {:.2g} or smaller there, or --allow-thin to go on without", (*s.thickness)[0],
+            (*s.thickness)[0] / 2.2);
+  }
+  if (s.ulp_over_spacing > kUlp) {
+    trouble("coordinates of {:.3g} leave {:.1g} of the spacing to rounding: move the cloud nearer to the origin",
+            s.farthest_coordinate, s.ulp_over_spacing);
+  } else if (s.float_ulp_over_spacing > kFloatUlp) {
+    trouble("if these coordinates ever were single precision, they hold steps of {:.1g} spacings", s.float_ulp_over_spacing);
+  }
+  return list;
+}
+
+}  // namespace
+
+Json inspect_cloud(const fs::path& file, Progress& progress) {
+  progress.report("inspect", "read", 0);
+  require_regular_file(file);
+  const CloudFile scan = read_scan(file);
+  progress.report("inspect", "survey", .3);
+  const CloudSurvey s = [&] {
+    try {
+      return survey(scan.cloud);
+    } catch (const TooFewPoints& e) {
+      throw CloudRefused(fmt::format("{}: {}: duplicates and outliers are not counted", file.string(), e.what()));
+    }
+  }();
+  std::vector<double> area = sample_areas(scan.cloud.points);
+  std::nth_element(area.begin(), area.begin() + static_cast<std::ptrdiff_t>(area.size() / 2), area.end());
+  const Resolution resolution = choose_resolution(std::sqrt(area[area.size() / 2]), kMeshEdge * s.diagonal, s.noise);
+  Json json = {{"file", file.string()},
+               {"format", scan.report.format},
+               {"n_points", s.n_points},
+               {"box", {{"min", vector(s.low)}, {"max", vector(s.high)}, {"diagonal", s.diagonal}}},
+               {"spacing", {{"p01", s.spacing[0]}, {"median", s.spacing[1]}, {"p99", s.spacing[2]}}},
+               {"density_variation", s.density_variation}};
+  json["normals"] = {{"present", s.has_normals}};
+  if (s.has_normals) {
+    json["normals"].update({{"missing", s.n_normals_zero},
+                            {"rescaled", scan.report.n_normals_rescaled},
+                            {"consistency", s.consistency},
+                            {"outward", s.volume > 0},
+                            {"openness", s.openness}});
+  }
+  json["noise"] = {{"sigma", s.noise}, {"over_spacing", s.noise_over_spacing}, {"over_diagonal", s.noise_over_diagonal}};
+  json["thickness"] = s.thickness ? Json({{"p01", (*s.thickness)[0]},
+                                          {"p05", (*s.thickness)[1]},
+                                          {"median", (*s.thickness)[2]},
+                                          {"share_of_samples_with_an_opposite", s.thickness_found}})
+                                  : Json(nullptr);
+  json["dropped"] = {{"not_finite", scan.report.n_points_dropped + s.dropped.n_not_finite},
+                     {"duplicates", s.dropped.n_duplicates},
+                     {"outliers", s.dropped.n_outliers},
+                     {"crumbs", s.dropped.n_crumbs}};
+  json["origin"] = {{"farthest_coordinate", s.farthest_coordinate}, {"ulp_over_spacing", s.ulp_over_spacing}};
+  json["lattice"] = {{"spacing", resolution.spacing}, {"smoothing", resolution.smoothing}, {"reason", resolution.reason}};
+  json["trouble"] = troubles(s, scan.report);
+  return json;
+}
+
+std::string inspection_text(const Json& j) {
+  const auto number = [&](const char* block, const char* key) { return j.at(block).at(key).get<double>(); };
+  const Json &low = j.at("box").at("min"), &high = j.at("box").at("max");
+  std::string out = fmt::format("cloud     {}: {}, {} points\n", j.at("file").get<std::string>(),
+                                j.at("format").get<std::string>(), j.at("n_points").get<std::size_t>());
+  out += fmt::format("box       {:.6g} x {:.6g} x {:.6g}, diagonal {:.6g}\n", high[0].get<double>() - low[0].get<double>(),
+                     high[1].get<double>() - low[1].get<double>(), high[2].get<double>() - low[2].get<double>(),
+                     number("box", "diagonal"));
+  out += fmt::format("spacing   median {:.4g}, 1 % {:.4g}, 99 % {:.4g}; density varies {:.1f} : 1\n",
+                     number("spacing", "median"), number("spacing", "p01"), number("spacing", "p99"),
+                     j.at("density_variation").get<double>());
+  if (j.at("normals").at("present").get<bool>()) {
+    out += fmt::format("normals   {:.1f} % consistent, {}; {} missing, {} made unit\n",
+                       100 * number("normals", "consistency"),
+                       j.at("normals").at("outward").get<bool>() ? "outward" : "inward",
+                       j.at("normals").at("missing").get<std::size_t>(), j.at("normals").at("rescaled").get<std::size_t>());
+  } else {
+    out += "normals   none\n";
+  }
+  out += fmt::format("noise     {:.3g} ({:.3g} spacings, {:.2g} of the diagonal)\n", number("noise", "sigma"),
+                     number("noise", "over_spacing"), number("noise", "over_diagonal"));
+  if (!j.at("thickness").is_null()) {
+    out += fmt::format("thickness 1 % {:.4g}, 5 % {:.4g}, median {:.4g}\n", number("thickness", "p01"),
+                       number("thickness", "p05"), number("thickness", "median"));
+  }
+  const Json& d = j.at("dropped");
+  out += fmt::format("dropped   {} no numbers, {} duplicates, {} outliers, {} in small pieces\n",
+                     d.at("not_finite").get<std::size_t>(), d.at("duplicates").get<std::size_t>(),
+                     d.at("outliers").get<std::size_t>(), d.at("crumbs").get<std::size_t>());
+  out += fmt::format("lattice   {:.4g}: {}\n", number("lattice", "spacing"), j.at("lattice").at("reason").get<std::string>());
+  if (j.at("trouble").empty()) out += "trouble   none seen\n";
+  for (const Json& t : j.at("trouble")) out += "trouble   " + t.get<std::string>() + "\n";
+  return out;
+}
+
+}  // namespace umtet

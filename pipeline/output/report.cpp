@@ -1,0 +1,251 @@
+#include "pipeline/output/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "pipeline/output/boundary_patches.h"
+#include "pipeline/output/detail/report_sources.h"
+#include "pipeline/case/exit_code.h"
+#include "pipeline/case/interrupt.h"
+#include "pipeline/output/report_page.h"
+#include "pipeline/output/report_plot.h"
+#include "pipeline/output/report_scene.h"
+
+namespace umtet {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kAngleBins = 90, kQualityBins = 100;
+constexpr double kDegrees = 57.29577951308232;
+// Angles of all tets of a large mesh would take as long as the rest of the report.
+constexpr std::size_t kAngleTets = 200'000;
+// Bytes of the page with what it was made from: names of labels may take some thousand.
+constexpr std::size_t kHead = 100'000;
+
+/// Shares in percent of the six dihedral angles, in bins from 0 to 180 degrees, of one tet in `step`.
+std::vector<double> angle_shares(const TetMesh& mesh, std::size_t step) {
+  std::vector<double> share(kAngleBins, 0);
+  for (std::size_t at = 0; at < mesh.C.size(); at += step) {
+    const Tet& t = mesh.C[at];
+    std::array<Vec3, 4> n;
+    for (int k = 0; k < 4; ++k) {
+      const Vec3& a = mesh.V[t[kTetFace[k][0]]];
+      n[k] = (mesh.V[t[kTetFace[k][1]]] - a).cross(mesh.V[t[kTetFace[k][2]]] - a);
+      n[k] /= n[k].norm();
+    }
+    for (int i = 0; i < 3; ++i) {
+      for (int j = i + 1; j < 4; ++j) {
+        const double degrees = kDegrees * std::acos(std::clamp(-n[i].dot(n[j]), -1., 1.));
+        ++share[std::min(kAngleBins - 1, static_cast<int>(degrees * kAngleBins / 180))];
+      }
+    }
+  }
+  const std::size_t n = (mesh.C.size() + step - 1) / step;
+  for (double& s : share) s *= 100 / (6 * static_cast<double>(n));
+  return share;
+}
+
+std::string angle_plot(const TetMesh& mesh) {
+  const std::size_t step = mesh.C.size() / kAngleTets + 1;
+  const std::string title =
+      step == 1 ? "Dihedral angles of all tets" : fmt::format("Dihedral angles of one tet in {}", step);
+  return line_plot({title, "degrees", "share, %", false, false},
+                   {{"", "c0", histogram_outline(angle_shares(mesh, step), 0, 180)}});
+}
+
+/// Numbers of tets by mean ratio, in bins from 0 to 1.
+std::vector<double> quality_counts(const MeshFile& mesh) {
+  std::vector<double> count(kQualityBins, 0);
+  for (const double q : std::get<std::vector<double>>(mesh.cell_data.at("mean_ratio")))
+    ++count[std::clamp(static_cast<int>(q * kQualityBins), 0, kQualityBins - 1)];
+  return count;
+}
+
+/// The columns of quality.csv behind the first, which is the x of all of them.
+std::vector<PlotCurve> quality_curves_of(const fs::path& file) {
+  // Solid: all vertices; dashed: those of tets at the boundary.
+  std::vector<PlotCurve> curves = {{"cut out of the background", "c0", {}},
+                                   {"projected on ψ = 0", "c1", {}},
+                                   {"final mesh", "c2", {}},
+                                   {"", "c0 dashed", {}},
+                                   {"", "c1 dashed", {}},
+                                   {"the same at the boundary", "c2 dashed", {}}};
+  std::istringstream in(read_text(file));
+  std::string line;
+  std::getline(in, line);
+  while (std::getline(in, line)) {
+    std::istringstream cells(line);
+    std::string cell;
+    std::getline(cells, cell, ',');
+    const double index = std::stod(cell);
+    for (PlotCurve& c : curves) {
+      if (std::getline(cells, cell, ',') && !cell.empty()) c.points.push_back({index, std::stod(cell)});
+    }
+  }
+  return curves;
+}
+
+std::string residual_plot(const Json& level_set_record) {
+  PlotCurve curve{"", "c0", {}};
+  for (const Json& r : level_set_record.at("numbers").value("residuals", Json::array()))
+    curve.points.push_back({static_cast<double>(curve.points.size()), r.get<double>()});
+  return line_plot({"Fit of ψ on the coarsest lattice", "iteration", "relative residual", false, true}, {curve});
+}
+
+std::string shown_text(const Json& scene) {
+  const auto part = [&](const char* key, const char* what) {
+    const std::string shown = std::string(key) + "_shown";
+    return scene.at(key) == scene.at(shown)
+               ? fmt::format("all {} {}", scene.at(key).dump(), what)
+               : fmt::format("{} of {} {}", scene.at(shown).dump(), scene.at(key).dump(), what);
+  };
+  std::string text = "In this file: " + part("n_faces", "boundary faces") + ", " + part("n_tets", "tets");
+  if (scene.at("n_points") != 0) text += ", " + part("n_points", "samples");
+  text += ".";
+  if (scene.at("n_faces") != scene.at("n_faces_shown")) text += " The surface is coarsened for the view.";
+  if (!scene.at("planes").is_null()) text += " Of the tets, the worst and those at the middle planes of the box.";
+  return text + " Places are rounded to 1/65535 of the box, colours to 1/255 of their range. Deviation is |ψ| / |∇ψ|.";
+}
+
+std::string title_of(const CasePaths& paths) {
+  const fs::path root = fs::absolute(paths.root).lexically_normal();
+  const fs::path name = root.has_filename() ? root.filename() : root.parent_path().filename();
+  return html_text(name.string());
+}
+
+Json record_of(const CasePaths& paths, Stage stage) { return Json::parse(read_text(paths.record(stage))); }
+
+/// mesh.vtu, and psi as it was meshed. \throw ArtefactDamaged, std::system_error
+Handover read_back(const CasePaths& paths, const Parameters& parameters, double h) {
+  Handover read;
+  read.domain = load_domain(paths, parameters);
+  read.domain->limit_detail(h);
+  try {
+    read.mesh = read_tet_mesh(paths.mesh());
+  } catch (const MeshFileRefused& e) {
+    throw ArtefactDamaged(e.what());
+  }
+  return read;
+}
+
+struct Figures {
+  std::string figures, tables;
+};
+
+Figures figures_of(const CasePaths& paths, const Parameters& parameters, const MeshFile& mesh,
+                   const Json& certificate) {
+  const bool of_cloud = parameters.text("mesh.implicit").empty();
+  std::vector<Json> records;
+  if (of_cloud) records = {record_of(paths, Stage::Cloud), record_of(paths, Stage::LevelSet)};
+  records.push_back(record_of(paths, Stage::Mesh));
+  Figures f;
+  f.figures = line_plot({"Quality vectors of the three stages", "index of the vertex, worst first",
+                         "least mean ratio Q around it", true, false},
+                        quality_curves_of(paths.folder(Stage::Mesh) / "quality.csv"));
+  f.figures += angle_plot(mesh.mesh);
+  f.figures += line_plot({"Mean ratio of the tets", "mean ratio Q", "tets", false, true},
+                         {{"", "c2", histogram_outline(quality_counts(mesh), 0, 1)}});
+  if (of_cloud) f.figures += residual_plot(records[1]);
+  f.tables = stage_table(records);
+  if (of_cloud) f.tables += band_table(records[1]);
+  f.tables += parameter_table(read_text(paths.parameters())) + certificate_table(certificate);
+  return f;
+}
+
+/// The mesh with the patches that exported files have.
+SolverMesh divided(const MeshFile& mesh, const Domain& domain, const Parameters& parameters) {
+  SolverMesh made = solver_mesh(mesh.mesh);
+  for (Vec3& x : made.nodes) x -= domain.shift;
+  try {
+    divide_boundary(made, faces_at_walls(made, mesh), domain.cloud, parameters, [](const std::string&) {});
+  } catch (const UsageError&) {
+    // Names for labels that are not there: an export refuses them, here all faces stay one patch.
+  }
+  return made;
+}
+
+/// What patches depend on beside the mesh.
+std::string patch_settings(const Parameters& parameters) {
+  return html_text(fmt::format("{} {} {} {}", parameters.text("output.label_names"),
+                               parameters.real("output.label_min_area"), parameters.real("output.patch_angle"),
+                               parameters.real("output.patch_planar")));
+}
+
+std::string checksum_of(const Json& certificate) { return certificate.at("run").value("checksum", ""); }
+
+}  // namespace
+
+void write_report(const CasePaths& paths, const Parameters& parameters, const Json& certificate,
+                  const Handover& handover) {
+  if (!handover.domain) {
+    return write_report(paths, parameters, certificate,
+                        read_back(paths, parameters, certificate.at("h").get<double>()));
+  }
+  stop_if_interrupted();
+  const MeshFile& mesh = handover.mesh;
+  const ReportScene scene = report_scene(mesh, *handover.domain, divided(mesh, *handover.domain, parameters));
+  stop_if_interrupted();
+  std::string blocks;
+  for (const auto& [name, text] : scene.blocks) {
+    blocks += fmt::format("<script type=\"text/plain\" id=\"block-{}\">{}</script>\n", name, text);
+  }
+  const Figures figures = figures_of(paths, parameters, mesh, certificate);
+  const Json& run = certificate.at("run");
+  const std::string page = filled(
+      report_page_html(),
+      {{"checksum", checksum_of(certificate)},
+       {"patch_settings", patch_settings(parameters)},
+       {"title", title_of(paths)},
+       {"css", std::string(report_page_css())},
+       {"js", std::string(report_viewer_js())},
+       {"three", std::string(report_three_js())},
+       {"verdict", certificate.at("verdict").get<std::string>()},
+       {"made", html_text(fmt::format("umtet {} · {}", certificate.value("version", ""), run.value("date", "")))},
+       {"reasons", reason_list(certificate)},
+       {"checks", check_list(certificate)},
+       {"cards", headline_cards(certificate)},
+       {"shown", shown_text(scene.head)},
+       {"figures", figures.figures},
+       {"tables", figures.tables},
+       {"certificate", script_json(certificate)},
+       {"scene", script_json(scene.head)},
+       {"blocks", blocks}});
+  write_text_artefact(paths.report(), page);
+}
+
+bool report_is_of(const CasePaths& paths, const Json& certificate, const Parameters& parameters) {
+  const auto meta = [](const char* name, const std::string& content) {
+    return fmt::format("name=\"umtet-{}\" content=\"{}\"", name, content);
+  };
+  std::ifstream in(paths.report(), std::ios::binary);
+  std::string head(kHead, '\0');
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  return head.find(meta("certificate", checksum_of(certificate))) != std::string::npos &&
+         head.find(meta("patches", patch_settings(parameters))) != std::string::npos;
+}
+
+void report_case(const CasePaths& paths) {
+  if (!fs::exists(paths.parameters()) || !fs::exists(paths.certificate())) {
+    throw UsageError(paths.root.string() + ": there is no certificate to report on; umtet run makes one");
+  }
+  Parameters parameters;
+  parameters.load(paths.parameters(), ParamSource::Case);
+  const bool formula = !parameters.text("mesh.implicit").empty();
+  for (const Stage stage : kStages) {
+    if (formula && stage != Stage::Mesh) continue;
+    const StageState state = inspect_stage(paths, stage, parameters.section(section_of(stage)), std::nullopt);
+    if (!state.record) throw ArtefactDamaged(state.reason);
+  }
+  const Json certificate = Json::parse(read_text(paths.certificate()), nullptr, false);
+  if (certificate.is_discarded() || !seal_holds(certificate)) {
+    throw ArtefactDamaged(paths.certificate().string() + " does not match its own checksum; umtet run makes it again");
+  }
+  write_report(paths, parameters, certificate);
+}
+
+}  // namespace umtet

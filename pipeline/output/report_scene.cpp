@@ -1,0 +1,300 @@
+#include "pipeline/output/report_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <unordered_map>
+
+#include "common/context.h"
+#include "mesh/io/patches.h"
+#include "pipeline/case/interrupt.h"
+#include "pipeline/meshing/made_mesh.h"
+#include "pipeline/output/report_page.h"
+
+namespace umtet {
+namespace {
+
+constexpr double kSteps16 = 65535, kSteps8 = 255;
+constexpr std::size_t kValuesPerPoll = 100'000;
+
+/// A face and the vertex of its tet behind it.
+using FacedTet = std::array<int, 4>;
+
+std::uint8_t in_steps(double value, double least, double most) {
+  if (!(most > least)) return 0;
+  return static_cast<std::uint8_t>(std::lround(kSteps8 * std::clamp((value - least) / (most - least), 0., 1.)));
+}
+
+template <class Value = double>
+const std::vector<Value>* field(const std::map<std::string, FieldValues>& data, const char* name) {
+  const auto it = data.find(name);
+  return it == data.end() ? nullptr : std::get_if<std::vector<Value>>(&it->second);
+}
+
+double longest_edge(const TetMesh& mesh) {
+  double l2 = 0;
+  for (const Tet& t : mesh.C) {
+    for (int i = 0; i < 3; ++i) {
+      for (int j = i + 1; j < 4; ++j) l2 = std::max(l2, (mesh.V[t[i]] - mesh.V[t[j]]).squaredNorm());
+    }
+  }
+  return std::sqrt(l2);
+}
+
+class SceneMaker {
+ public:
+  SceneMaker(const MeshFile& file, const Domain& domain, const ReportCaps& caps)
+      : file_(file), mesh_(file.mesh), domain_(domain), caps_(caps) {
+    for (const Vec3& x : mesh_.V) box_.extend(x);
+    for (const Vec3& x : domain.cloud.points) box_.extend(x + domain.shift);
+  }
+  ReportScene operator()(const SolverMesh& divided);
+
+ private:
+  void take_faces(const SolverMesh& divided);
+  void take_patches(const SolverMesh& divided);
+  void coarsen_faces();
+  void take_tets();
+  void take_points();
+  void write_indices(const char* name, const std::vector<FacedTet>& list);
+  void write_positions(const char* name, const std::vector<Vec3>& points);
+  void write_bytes(const char* name, const std::vector<std::uint8_t>& bytes) {
+    scene_.blocks.emplace_back(name, base64(bytes.data(), bytes.size()));
+  }
+  void write_range(const char* name, double least, double most) { scene_.head["ranges"][name] = {least, most}; }
+  void write_values();
+  /// Numbers the vertices that are shown, in the order they are met.
+  int shown(int vertex) {
+    int& id = shown_id_[vertex];
+    if (id < 0) {
+      id = static_cast<int>(shown_.size());
+      shown_.push_back(vertex);
+    }
+    return id;
+  }
+
+  const MeshFile& file_;
+  const TetMesh& mesh_;
+  const Domain& domain_;
+  const ReportCaps& caps_;
+  Box box_;
+  std::vector<FacedTet> faces_;
+  std::vector<int> face_tet_, face_patch_;
+  std::vector<int> tets_;
+  std::vector<int> shown_id_, shown_;
+  ReportScene scene_;
+};
+
+void SceneMaker::take_faces(const SolverMesh& divided) {
+  face_tet_ = divided.face_tet;
+  for (std::size_t f = 0; f < face_tet_.size(); ++f) {
+    const Tet& tet = mesh_.C[face_tet_[f]];
+    const int behind = divided.face_opposite[f];
+    const auto& [a, b, c] = kTetFace[behind];
+    faces_.push_back({tet[a], tet[b], tet[c], tet[behind]});
+  }
+  take_patches(divided);
+  scene_.head["n_faces"] = faces_.size();
+  if (faces_.size() > caps_.faces) coarsen_faces();
+  scene_.head["n_faces_shown"] = faces_.size();
+}
+
+void SceneMaker::take_patches(const SolverMesh& divided) {
+  std::vector<double> area(divided.patches.size(), 0);
+  std::vector<std::size_t> n(divided.patches.size(), 0);
+  const FaceGeometry geometry = face_geometry(divided);
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    area[divided.face_patch[f]] += geometry.area[f];
+    ++n[divided.face_patch[f]];
+  }
+  Json& patches = scene_.head["patches"] = Json::array();
+  for (std::size_t p = 0; p < area.size(); ++p) {
+    const MeshPart& part = divided.patches[p];
+    patches.push_back({{"name", part.name}, {"number", part.number}, {"n_faces", n[p]}, {"area", area[p]}});
+  }
+  if (area.size() > 1) face_patch_ = divided.face_patch;
+}
+
+/// Moves the corners in a cell of a grid to one of them and drops the faces that vanish; cells grow until few enough
+/// are left. The drawing stays closed.
+void SceneMaker::coarsen_faces() {
+  double area = 0;
+  for (const FacedTet& f : faces_) {
+    area += (mesh_.V[f[1]] - mesh_.V[f[0]]).cross(mesh_.V[f[2]] - mesh_.V[f[0]]).norm() / 2;
+  }
+  // Two triangles a square of the grid, about.
+  double cell = std::sqrt(2 * area / static_cast<double>(caps_.faces));
+  for (std::vector<std::size_t> kept; kept.empty() || kept.size() > caps_.faces; cell *= 1.1) {
+    kept.clear();
+    std::unordered_map<std::uint64_t, int> corner_of;
+    std::vector<FacedTet> faces = faces_;
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      FacedTet& f = faces[i];
+      for (int k = 0; k < 3; ++k) {
+        const Eigen::Matrix<std::uint64_t, 3, 1> at =
+            ((mesh_.V[f[k]] - box_.min()) / cell).array().floor().matrix().cast<std::uint64_t>();
+        f[k] = corner_of.try_emplace((at.z() << 42) + (at.y() << 21) + at.x(), f[k]).first->second;
+      }
+      if (f[0] != f[1] && f[1] != f[2] && f[2] != f[0]) kept.push_back(i);
+    }
+    if (kept.size() > caps_.faces) continue;
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+      faces_[k] = faces[kept[k]];
+      face_tet_[k] = face_tet_[kept[k]];
+      if (!face_patch_.empty()) face_patch_[k] = face_patch_[kept[k]];
+    }
+    faces_.resize(kept.size());
+    face_tet_.resize(kept.size());
+    if (!face_patch_.empty()) face_patch_.resize(kept.size());
+    if (kept.empty()) return;
+  }
+}
+
+/// All tets, or the worst and those at the middle planes. A tet is drawn at a cut when a neighbour is on its other
+/// side; centroids of neighbours are at most half the longest edge apart.
+void SceneMaker::take_tets() {
+  const std::vector<double>& q = *field(file_.cell_data, "mean_ratio");
+  tets_.resize(mesh_.C.size());
+  std::iota(tets_.begin(), tets_.end(), 0);
+  const std::size_t n_worst = std::min(caps_.worst, tets_.size());
+  std::partial_sort(tets_.begin(), tets_.begin() + static_cast<std::ptrdiff_t>(n_worst), tets_.end(),
+                    [&](int a, int b) { return q[a] != q[b] ? q[a] < q[b] : a < b; });
+  const double layer = longest_edge(mesh_) / 2;
+  Json planes = Json::array();
+  if (tets_.size() > caps_.tets) {
+    std::vector<char> taken(tets_.size(), 0);
+    tets_.resize(n_worst);
+    for (const int t : tets_) taken[t] = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      std::vector<int> more;
+      for (std::size_t t = 0; t < mesh_.C.size(); ++t) {
+        double sum = 0;
+        for (const int v : mesh_.C[t]) sum += mesh_.V[v][axis];
+        if (!taken[t] && std::abs(sum / 4 - box_.center()[axis]) <= layer) more.push_back(static_cast<int>(t));
+      }
+      if (tets_.size() + more.size() > caps_.tets) continue;
+      for (const int t : more) taken[t] = 1;
+      tets_.insert(tets_.end(), more.begin(), more.end());
+      planes.push_back(axis);
+    }
+  }
+  scene_.head["n_tets"] = mesh_.C.size();
+  scene_.head["n_tets_shown"] = tets_.size();
+  scene_.head["n_worst"] = n_worst;
+  scene_.head["layer"] = layer;
+  scene_.head["planes"] = tets_.size() == mesh_.C.size() ? Json(nullptr) : planes;  // null: any plane
+}
+
+void SceneMaker::take_points() {
+  const std::vector<Vec3>& all = domain_.cloud.points;
+  const std::size_t step = all.size() / caps_.points + 1;
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < all.size(); i += step) points.push_back(all[i] + domain_.shift);
+  scene_.head["n_points"] = all.size();
+  scene_.head["n_points_shown"] = points.size();
+  write_positions("points", points);
+}
+
+void SceneMaker::write_positions(const char* name, const std::vector<Vec3>& points) {
+  std::vector<std::uint16_t> steps;
+  const Vec3 scale = kSteps16 * box_.sizes().cwiseMax(1e-300).cwiseInverse();
+  for (const Vec3& x : points) {
+    for (int k = 0; k < 3; ++k)
+      steps.push_back(static_cast<std::uint16_t>(std::lround((x[k] - box_.min()[k]) * scale[k])));
+  }
+  scene_.blocks.emplace_back(name, base64(steps.data(), 2 * steps.size()));
+}
+
+void SceneMaker::write_indices(const char* name, const std::vector<FacedTet>& list) {
+  if (scene_.head["index_bytes"] == 2) {
+    std::vector<std::uint16_t> ids;
+    for (const FacedTet& t : list) {
+      for (const int v : t) ids.push_back(static_cast<std::uint16_t>(v));
+    }
+    scene_.blocks.emplace_back(name, base64(ids.data(), 2 * ids.size()));
+  } else {
+    scene_.blocks.emplace_back(name, base64(list.data(), sizeof(FacedTet) * list.size()));
+  }
+}
+
+void SceneMaker::write_values() {
+  const std::vector<double>& q = *field(file_.cell_data, "mean_ratio");
+  const auto [least_q, most_q] = std::minmax_element(q.begin(), q.end());
+  const double q0 = *least_q, q1 = *most_q;
+  write_range("quality", q0, q1);
+  std::vector<std::uint8_t> bytes;
+  for (const int t : tets_) bytes.push_back(in_steps(q[t], q0, q1));
+  write_bytes("tet_quality", bytes);
+  bytes.clear();
+  for (const int t : face_tet_) bytes.push_back(in_steps(q[t], q0, q1));
+  write_bytes("face_quality", bytes);
+
+  std::vector<double> deviation(faces_.size());
+  const ImplicitFunctionRef psi = domain_.psi();
+  const std::vector<std::uint8_t>* wall = field<std::uint8_t>(file_.point_data, kAtWall);
+  polled_parallel_for(faces_.size(), kValuesPerPoll, not_interrupted, [&](std::size_t f) {
+    const FacedTet& t = faces_[f];
+    if (wall && (*wall)[t[0]] && (*wall)[t[1]] && (*wall)[t[2]]) return;
+    Vec3 g;
+    const double value = psi.value((mesh_.V[t[0]] + mesh_.V[t[1]] + mesh_.V[t[2]]) / 3 - domain_.shift, g);
+    deviation[f] = std::abs(value) / g.norm();
+  });
+  const double most = deviation.empty() ? 0 : *std::max_element(deviation.begin(), deviation.end());
+  write_range("deviation", 0, most);
+  bytes.clear();
+  for (const double d : deviation) bytes.push_back(in_steps(d, 0, most));
+  write_bytes("face_deviation", bytes);
+
+  if (!face_patch_.empty()) {
+    bytes.clear();
+    for (const int p : face_patch_) bytes.push_back(static_cast<std::uint8_t>(p % 256));
+    write_bytes("face_patch", bytes);
+  }
+  if (const std::vector<double>* support = field(file_.point_data, "support")) {
+    double far = 0;
+    for (const double d : *support) far = std::max(far, d);
+    write_range("support", 0, far);
+    bytes.clear();
+    for (const int v : shown_) bytes.push_back(in_steps((*support)[v], 0, far));
+    write_bytes("vertex_support", bytes);
+  }
+}
+
+ReportScene SceneMaker::operator()(const SolverMesh& divided) {
+  if (mesh_.C.empty() || !field(file_.cell_data, "mean_ratio")) {
+    throw std::invalid_argument("a scene needs tets with mean_ratio");
+  }
+  if (divided.n_tets() != mesh_.C.size()) throw std::invalid_argument("a scene needs the patches of its own mesh");
+  const Vec3 size = box_.sizes();
+  scene_.head = {{"box_min", {box_.min().x(), box_.min().y(), box_.min().z()}},
+                 {"box_size", {size.x(), size.y(), size.z()}}};
+  take_faces(divided);
+  take_tets();
+  shown_id_.assign(mesh_.V.size(), -1);
+  std::vector<FacedTet> faces = faces_, tets;
+  for (const int t : tets_) tets.push_back(mesh_.C[t]);
+  for (auto* list : {&faces, &tets}) {
+    for (FacedTet& t : *list) {
+      for (int& v : t) v = shown(v);
+    }
+  }
+  scene_.head["index_bytes"] = shown_.size() <= kSteps16 + 1 ? 2 : 4;
+  write_indices("faces", faces);
+  write_indices("tets", tets);
+  std::vector<Vec3> positions;
+  for (const int v : shown_) positions.push_back(mesh_.V[v]);
+  write_positions("positions", positions);
+  write_values();
+  take_points();
+  return std::move(scene_);
+}
+
+}  // namespace
+
+ReportScene report_scene(const MeshFile& mesh, const Domain& domain, const SolverMesh& divided,
+                         const ReportCaps& caps) {
+  return SceneMaker(mesh, domain, caps)(divided);
+}
+
+}  // namespace umtet

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mesh/io/solver_mesh.h"
+#include "mesh/io/tet_mesh_io.h"
+#include "pipeline/meshing/domain.h"
+#include "pipeline/case/record.h"
+
+namespace umtet {
+
+/// So much of a mesh fits into a report of some megabytes.
+struct ReportCaps {
+  std::size_t faces = 150'000;
+  std::size_t tets = 150'000;  ///< 1.3 MB; a mesh with more is shown behind the middle planes of its box only
+  std::size_t points = 30'000;
+  std::size_t worst = 500;  ///< tets that come first, ascending in quality, whatever else is left out
+};
+
+/// What the viewer of a report draws. Little-endian arrays in base64, by name:
+///   positions    uint16 x 3 a vertex, in 65535ths of the box
+///   faces        4 indices each, uint16 or uint32 (head.index_bytes): a boundary face, and the vertex behind it
+///   tets         4 indices each: the worst ones first
+///   tet_quality, face_quality, face_deviation, vertex_support   a byte each, in 255ths of head.ranges
+///   face_patch   a byte each, where there are several: index into head.patches, modulo 256
+///   points       uint16 x 3 a sample, in 65535ths of the box
+struct ReportScene {
+  Json head;  ///< box, counts of what is there and of what is shown, ranges, planes; patches with the
+              ///< numbers and areas of their faces in the whole mesh
+  std::vector<std::pair<std::string, std::string>> blocks;
+};
+
+/// @param mesh      as in mesh.vtu: model coordinates, with `mean_ratio` and, of a cloud, `support`
+/// @param domain    psi as it was meshed: deviations are |psi| / |grad psi| at the centres of faces
+/// @param divided   solver_mesh() of it, its boundary in patches
+/// \throw MeshCancelled, std::invalid_argument without tets, or with another number of them in `divided`
+ReportScene report_scene(const MeshFile& mesh, const Domain& domain, const SolverMesh& divided,
+                         const ReportCaps& caps = {});
+
+}  // namespace umtet

@@ -1,0 +1,267 @@
+#include "pipeline/run/evolve.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <optional>
+
+#include "mesh/universal_mesh.h"
+#include "pipeline/case/artefact.h"
+#include "pipeline/meshing/background_choice.h"
+#include "pipeline/meshing/certificate_json.h"
+#include "pipeline/meshing/domain.h"
+#include "pipeline/meshing/edge_length.h"
+#include "pipeline/run/evolve_tables.h"
+#include "pipeline/case/interrupt.h"
+#include "pipeline/meshing/made_mesh.h"
+#include "pipeline/case/memory.h"
+#include "pipeline/meshing/mesh_maker.h"
+#include "pipeline/run/run.h"
+#include "pipeline/stages/stages.h"
+#include "pipeline/run/time_steps.h"
+
+namespace umtet {
+namespace fs = std::filesystem;
+namespace {
+
+using Step = EvolveStep;
+
+/// A failure that is the matter of one instant; the others may do better.
+bool concerns_one_step(ExitCode code) {
+  switch (code) {
+    case ExitCode::Usage:  // a formula that has no value at this t
+    case ExitCode::InputRefused:
+    case ExitCode::ReconstructionFailed:
+    case ExitCode::MeshingImpossible:
+    case ExitCode::FileTrouble:  // its cloud: what we write ourselves is not written under this guard
+    case ExitCode::ArtefactCorrupt:
+    case ExitCode::ResourceLimit:
+      return true;
+    default:
+      return false;
+  }
+}
+
+class Evolution {
+ public:
+  Evolution(const EvolveRequest& request, Progress& progress)
+      : request_(request), parameters_(request.parameters), progress_(progress), of_clouds_(!request.clouds.empty()) {
+    um_params(parameters_);  // what is wrong with them is no matter of one instant
+    for (TimeStep& at : time_steps(request.times, request.skip, request.clouds)) {
+      const std::string name = fmt::format("step_{:04}.vtu", steps_.size());
+      Step& step = steps_.emplace_back();
+      step.at = std::move(at);
+      step.file = name;
+    }
+  }
+
+  EvolveOutcome operator()();
+
+ private:
+  void take_folder();
+  CasePaths case_of(const Step& step) const {
+    return {request_.folder / "clouds" / fs::path(step.file).replace_extension()};
+  }
+  Domain domain_of(const Step& step) const;
+  void look_at(Step& step);
+  void choose_background();
+  void mesh(Step& step);
+  UmResult make(Step& step, Domain& domain);
+  EvolveOutcome outcome() const;
+  template <class F>
+  void guarded(Step& step, const F& f);
+  bool report(const Step& step, std::string_view what, double part) const {
+    const double k = static_cast<double>(&step - steps_.data());
+    return progress_.report(what, "t = " + time_text(step.at.t), (k + part) / static_cast<double>(steps_.size()));
+  }
+
+  const EvolveRequest& request_;
+  Parameters parameters_;
+  Progress& progress_;
+  const bool of_clouds_;
+  std::vector<Step> steps_;
+  std::optional<Domain> first_;  ///< of the first instant that has one, its box that of all
+  double h_ = 0;
+  std::optional<BackgroundMesh> background_;
+};
+
+/// Runs f; what goes wrong with this instant alone is written down.
+template <class F>
+void Evolution::guarded(Step& step, const F& f) {
+  const auto start = std::chrono::steady_clock::now();
+  try {
+    f();
+  } catch (...) {
+    const Failure failure = failure_of(std::current_exception());
+    if (!concerns_one_step(failure.code)) throw;
+    step.error = failure.message;
+    step.thrown = std::current_exception();
+    progress_.warn(fmt::format("t = {}: {}", time_text(step.at.t), step.error));
+  }
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  step.seconds += seconds.count();
+}
+
+/// Removes the steps of a former run.
+void Evolution::take_folder() {
+  const bool ours = fs::exists(request_.folder / kSeries);
+  std::vector<fs::path> former;
+  for (const fs::directory_entry& entry : fs::directory_iterator(request_.folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name[0] == '.') continue;
+    if (!ours) {
+      throw UsageError(entry.path().string() + " is in the way: " + request_.folder.string() +
+                       " is no folder of umtet evolve; choose another with -o");
+    }
+    if (name.starts_with("step_") && name.ends_with(".vtu")) former.push_back(entry.path());
+  }
+  remove_stale_temporaries(request_.folder);
+  write_tables(request_.folder, steps_);
+  for (const fs::path& file : former) fs::remove(file);
+}
+
+Domain Evolution::domain_of(const Step& step) const {
+  return of_clouds_ ? load_domain(case_of(step), parameters_) : formula_domain(parameters_, step.at.t);
+}
+
+/// Makes the level set of a cloud; takes what the background has to know of every instant.
+void Evolution::look_at(Step& step) {
+  step.looked_at = true;
+  if (of_clouds_) {
+    report(step, "level set", 0);
+    RunRequest run;
+    run.case_folder = case_of(step).root;
+    run.source = step.at.cloud;
+    run.parameters = parameters_;
+    run.parameters.set("cloud.file", step.at.cloud.string(), ParamSource::Flag, "--clouds");
+    run.until = Stage::LevelSet;
+    run.threads = request_.threads;
+    run_case(run, progress_);
+  }
+  Domain domain = domain_of(step);
+  if (first_ && domain.shift != first_->shift) {
+    const Vec3 d = domain.shift - first_->shift;
+    throw MeshingImpossible(
+        fmt::format("this cloud is ({:.3g}, {:.3g}, {:.3g}) away from the first, and so far from the origin that both "
+                    "are shifted, not alike: move all clouds nearer to the origin",
+                    d.x(), d.y(), d.z()));
+  }
+  const bool counts = !first_ || parameters_.integer("mesh.tets") == 0;
+  if (counts) {
+    const double h = choose_edge_length(domain, parameters_, not_interrupted).h;
+    h_ = first_ ? std::min(h_, h) : h;
+  }
+  if (first_) {
+    first_->box.extend(domain.box);
+  } else {
+    first_.emplace(std::move(domain));
+  }
+}
+
+void Evolution::choose_background() {
+  // A formula has one box at all times; with h given, too, the others can wait until it is their turn.
+  const bool one_tells_all = !of_clouds_ && (parameters_.real("mesh.h") > 0 || parameters_.integer("mesh.tets") > 0);
+  for (Step& step : steps_) {
+    stop_if_interrupted();
+    guarded(step, [&] { look_at(step); });
+    if (first_ && one_tells_all) break;
+  }
+  if (!first_) std::rethrow_exception(steps_.front().thrown);
+  const BackgroundChoice choice(parameters_, *first_);
+  if (choice.own_h()) h_ = *choice.own_h();
+  first_->limit_detail(h_);
+  background_ = choice.make(*first_, h_, parameters_.integer("mesh.tets"), allowed_bytes(parameters_));
+  progress_.say(fmt::format("one background of {} tets, h = {:.6g}", background_->n_tets(), h_));
+}
+
+/// As umtet mesh does at a given h.
+UmResult Evolution::make(Step& step, Domain& domain) {
+  MeshWatch watch;
+  watch.keep_going = not_interrupted;
+  watch.begins = [&](std::string_view at) {
+    stop_if_interrupted();
+    report(step, at, at == "certify" ? .8 : .3);
+  };
+  watch.progress = [&](const UmProgress&) { return report(step, "mesh", .3); };
+  watch.say = [this](const std::string& line) { progress_.say(line); };
+  MeshMaker maker(domain, parameters_, std::move(watch));
+  MeshAttempt a = maker.attempt(*background_, h_);
+  stop_if_interrupted();
+  if (maker.is_refused_as_thin(a)) {
+    throw MeshingImpossible(too_thin_text(a, domain.shift) + "\n  --allow-thin keeps the mesh nevertheless");
+  }
+  if (!a.made()) throw MeshingImpossible(failure_text(a.result, h_, domain.shift));
+  judge(a.measured, parameters_);
+  step.measured = std::move(a.measured);
+  return std::move(a.result);
+}
+
+void Evolution::mesh(Step& step) {
+  stop_if_interrupted();
+  if (!step.error.empty()) return;
+  report(step, "mesh", 0);
+  std::optional<Domain> domain;
+  std::optional<UmResult> result;
+  guarded(step, [&] {
+    if (!step.looked_at) look_at(step);
+    domain.emplace(domain_of(step));
+    result = make(step, *domain);
+  });
+  stop_if_interrupted();
+  if (result) write_mesh(request_.folder / step.file, final_content(*domain, *result));
+  write_tables(request_.folder, steps_);
+  if (!result) return;
+  progress_.say(fmt::format(
+      "t = {}: {} tets, min Q {:.4f}, {}", time_text(step.at.t), step.measured.at("n_tets").get<std::size_t>(),
+      step.measured.at("quality").at("min").get<double>(), step.measured.at("verdict").get<std::string>()));
+}
+
+EvolveOutcome Evolution::outcome() const {
+  EvolveOutcome result;
+  std::size_t n_made = 0, n_passed = 0;
+  const Step* worst = nullptr;
+  std::string troubles;
+  for (const Step& step : steps_) {
+    Json json = {{"t", step.at.t}, {"file", step.made() ? Json(step.file) : Json(nullptr)}, {"seconds", step.seconds}};
+    if (!step.made()) {
+      json["error"] = step.error;
+      troubles += fmt::format("not made  t = {}: {}\n", time_text(step.at.t), step.error);
+    } else {
+      json.update(step.measured);
+      ++n_made;
+      n_passed += step.measured.at("verdict") == "pass";
+      for (const Json& reason : step.measured.at("reasons")) {
+        troubles += fmt::format("failed    t = {}: {}\n", time_text(step.at.t), reason.get<std::string>());
+      }
+      const auto q = [](const Step& s) { return s.measured.at("quality").at("min").get<double>(); };
+      if (!worst || q(step) < q(*worst)) worst = &step;
+    }
+    result.steps.push_back(std::move(json));
+  }
+  if (n_passed < steps_.size()) result.code = ExitCode::GateFailed;
+  result.text = fmt::format("steps     {} of {} made, {} of them certified, in one background of {} tets; h = {:.5g}\n",
+                            n_made, steps_.size(), n_passed, background_->n_tets(), h_);
+  if (worst) {
+    result.text += fmt::format("quality   worst min Q {:.4f}, at t = {}\n",
+                               worst->measured.at("quality").at("min").get<double>(), time_text(worst->at.t));
+  }
+  result.text += troubles;
+  for (const char* name : {kSeries, "quality.csv", "quality.svg"}) result.files.push_back(request_.folder / name);
+  return result;
+}
+
+EvolveOutcome Evolution::operator()() {
+  const CaseLock lock(request_.folder);
+  take_folder();
+  choose_background();
+  for (Step& step : steps_) mesh(step);
+  return outcome();
+}
+
+}  // namespace
+
+EvolveOutcome evolve(const EvolveRequest& request, Progress& progress) { return Evolution(request, progress)(); }
+
+}  // namespace umtet

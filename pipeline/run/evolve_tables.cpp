@@ -1,0 +1,50 @@
+#include "pipeline/run/evolve_tables.h"
+
+#include <fmt/format.h>
+
+#include "pipeline/case/artefact.h"
+#include "pipeline/run/detail/csv_field.h"
+#include "pipeline/output/step_plot.h"
+
+namespace umtet {
+namespace {
+
+std::string csv_line(const EvolveStep& step) {
+  const std::string name = fmt::format("{},{},", step.file.substr(0, step.file.find('.')), time_text(step.at.t));
+  if (!step.made()) return name + fmt::format(",,,,,,,none,{:.3f},{}\n", step.seconds, csv_field(step.error));
+  const Json& m = step.measured;
+  const Json &q = m.at("quality"), &b = m.at("boundary");
+  std::string reasons;
+  for (const Json& reason : m.at("reasons")) reasons += (reasons.empty() ? "" : "; ") + reason.get<std::string>();
+  return name + fmt::format("{},{:.6f},{:.6f},{:.3f},{:.3f},{},{},{},{:.3f},{}\n", m.at("n_tets").get<std::size_t>(),
+                            q.at("min").get<double>(), q.at("p01").get<double>(),
+                            q.at("dihedral_min_deg").get<double>(), q.at("dihedral_max_deg").get<double>(),
+                            b.at("components").get<int>(), b.at("genus").get<long>(),
+                            m.at("verdict").get<std::string>(), step.seconds, csv_field(reasons));
+}
+
+}  // namespace
+
+void write_tables(const std::filesystem::path& folder, const std::vector<EvolveStep>& steps) {
+  std::string csv =
+      "step,t,tets,min_q,q_01,dihedral_min_deg,dihedral_max_deg,components,genus,verdict,seconds,reason\n";
+  std::string pvd =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
+      "<Collection>\n";
+  std::vector<StepQuality> plot;
+  for (const EvolveStep& step : steps) {
+    if (!step.made() && step.error.empty()) continue;
+    csv += csv_line(step);
+    plot.push_back({step.at.t, step.made(), 0, 0});
+    if (!step.made()) continue;
+    plot.back().min = step.measured.at("quality").at("min");
+    plot.back().p01 = step.measured.at("quality").at("p01");
+    pvd +=
+        fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"0\" file=\"{}\"/>\n", time_text(step.at.t), step.file);
+  }
+  write_text_artefact(folder / "quality.csv", csv);
+  write_text_artefact(folder / "quality.svg", step_plot(plot));
+  write_text_artefact(folder / kSeries, pvd + "</Collection>\n</VTKFile>\n");
+}
+
+}  // namespace umtet

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pipeline/case/record.h"
+#include "pipeline/run/time_steps.h"
+
+namespace umtet {
+
+/// An instant of `umtet evolve`, and what has become of it.
+struct EvolveStep {
+  TimeStep at;
+  std::string file;   ///< its name in the folder
+  std::string error;  ///< why there is no mesh
+  std::exception_ptr thrown;
+  Json measured;           ///< of measure() and judge(); null while there is no mesh
+  double seconds = 0;      ///< mesh and certificate; of a cloud also its level set
+  bool looked_at = false;  ///< what the background has to know of it has been taken
+
+  bool made() const { return !measured.is_null(); }
+};
+
+inline constexpr const char* kSeries = "series.pvd";
+
+/// quality.csv, quality.svg and series.pvd, with the steps that are made or have failed so far; each complete or not at
+/// all. \throw std::system_error naming the file
+void write_tables(const std::filesystem::path& folder, const std::vector<EvolveStep>& steps);
+
+}  // namespace umtet

@@ -1,0 +1,201 @@
+#include "pipeline/run/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "pipeline/meshing/certificate_json.h"
+#include "pipeline/stages/cloud_preparation.h"
+#include "pipeline/case/interrupt.h"
+#include "pipeline/run/renewal.h"
+#include "pipeline/output/report.h"
+#include "pipeline/stages/stages.h"
+
+namespace umtet {
+namespace fs = std::filesystem;
+namespace {
+
+class CaseRun {
+ public:
+  CaseRun(const RunRequest& request, Progress& progress)
+      : request_(request),
+        progress_(progress),
+        paths_{request.case_folder},
+        parameters_(request.parameters),
+        context_{paths_, parameters_, progress, request.threads, handover_} {}
+
+  RunOutcome operator()();
+
+ private:
+  void take_former_parameters();
+  StageState state_of(Stage stage) const;
+  bool must_run(Stage stage, const StageState& state) const;
+  StageRecord ensure(Stage stage);
+  void run(Stage stage);
+  void compute(Stage stage);
+  void certify(const StageRecord& mesh);
+  void report();
+
+  const RunRequest& request_;
+  Progress& progress_;
+  CasePaths paths_;
+  Parameters
+      parameters_;  ///< those asked for, and for finished stages that are not asked for those they were made with
+  Handover handover_;
+  const StageContext context_;
+  RunOutcome outcome_;
+};
+
+/// case.toml goes on telling what the stages were made with that this run leaves alone.
+void CaseRun::take_former_parameters() {
+  if (!fs::exists(paths_.parameters())) return;
+  const auto is_kept = [&](Stage stage) {
+    return (stage < request_.from || stage > request_.until) && fs::exists(paths_.record(stage));
+  };
+  Parameters former;
+  try {
+    former.load(paths_.parameters(), ParamSource::Case);
+  } catch (const ArtefactDamaged&) {
+    if (request_.strict || std::any_of(std::begin(kStages), std::end(kStages), is_kept)) throw;
+    progress_.warn(paths_.parameters().string() + ": cut short, damaged or edited; making it again");
+    return;
+  }
+  for (const Stage stage : kStages) {
+    if (is_kept(stage)) parameters_.copy_section(section_of(stage), former);
+  }
+  if (request_.until < Stage::Mesh && fs::exists(paths_.certificate())) parameters_.copy_section("output", former);
+}
+
+StageState CaseRun::state_of(Stage stage) const {
+  std::optional<std::vector<RecordedFile>> inputs;
+  // A stage that is taken as it is may have been made from other input.
+  if (stage >= request_.from) {
+    if (stage != Stage::Cloud) inputs = recorded_inputs(paths_, stage, parameters_);
+    if (stage == Stage::Cloud && !request_.source.empty()) inputs = source_inputs(request_.source, parameters_);
+  }
+  return inspect_stage(paths_, stage, parameters_.section(section_of(stage)), inputs);
+}
+
+bool CaseRun::must_run(Stage stage, const StageState& state) const {
+  using Kind = StageState::Kind;
+  const std::string name = to_string(stage);
+  if (state.kind == Kind::Damaged) {
+    if (request_.strict) throw ArtefactDamaged(state.reason);
+    progress_.warn(name + ": " + state.reason + "; making it again");
+    return true;
+  }
+  if (stage < request_.from) {
+    if (state.kind == Kind::Missing) {
+      throw UsageError(state.reason + ": the stage " + name + " has to be run first (umtet run, umtet reconstruct)");
+    }
+    return false;
+  }
+  if (state.kind == Kind::Changed) progress_.say(name + ": " + state.reason);
+  return request_.force || state.kind != Kind::Done;
+}
+
+/// Sees to it that the stage is done. Where something finished would be replaced, it is done beside it.
+StageRecord CaseRun::ensure(Stage stage) {
+  stop_if_interrupted();
+  StageState state = state_of(stage);
+  if (!must_run(stage, state)) return *state.record;
+  if (holds_results(paths_, stage)) {
+    paths_.renews(stage) = true;
+    if (!request_.force) state = state_of(stage);
+    if (!request_.force && state.kind == StageState::Kind::Done) {
+      progress_.say(std::string(to_string(stage)) + ": done by an earlier run that was not finished");
+      return *state.record;
+    }
+  }
+  run(stage);
+  outcome_.stages_run.push_back(stage);
+  state = state_of(stage);
+  if (!state.record) throw ArtefactDamaged(state.reason);
+  progress_.say(fmt::format("{}: done in {:.2f} s", to_string(stage), state.record->run.value("seconds", 0.)));
+  return *state.record;
+}
+
+void CaseRun::run(Stage stage) {
+  set_work_at_hand(to_string(stage));
+  try {
+    compute(stage);
+  } catch (...) {
+    // Half a stage is of no use; whole ones before it are there for the next run.
+    std::error_code ignored;
+    if (paths_.renews(stage)) fs::remove_all(paths_.folder(stage), ignored);
+    throw;
+  }
+}
+
+void CaseRun::compute(Stage stage) {
+  if (stage == Stage::Cloud) {
+    fs::path source = request_.source;
+    if (source.empty()) source = parameters_.text("cloud.file");
+    if (source.empty()) throw UsageError("no cloud: give one");
+    run_cloud_stage(context_, source);
+  } else if (stage == Stage::LevelSet) {
+    run_level_set_stage(context_);
+  } else {
+    run_mesh_stage(context_);
+  }
+}
+
+void CaseRun::certify(const StageRecord& mesh) {
+  set_work_at_hand("certificate");
+  const Json json = certificate(paths_, mesh, parameters_);
+  const std::string text = file_text(json);
+  const fs::path file = paths_.certificate();
+  const bool exists = fs::exists(file);
+  const std::string former = exists ? read_text(file) : "";
+  if (former != text) {
+    if (exists && !seal_holds(Json::parse(former, nullptr, false))) {
+      const std::string reason = file.string() + " does not match its own checksum";
+      if (request_.strict) throw ArtefactDamaged(reason);
+      progress_.warn("certificate: " + reason + "; making it again");
+    }
+    write_text_artefact(file, text);
+  }
+  outcome_.certificate = json;
+  if (json.at("verdict") != "pass") outcome_.code = ExitCode::GateFailed;
+}
+
+/// A report is of the certificate beside it, or there is none.
+void CaseRun::report() {
+  const bool fits = report_is_of(paths_, *outcome_.certificate, parameters_);
+  if (!request_.report && !fits) fs::remove(paths_.report());
+  if (request_.report && (!fits || request_.force)) {
+    set_work_at_hand("report");
+    progress_.report("report", "write", .5);
+    write_report(paths_, parameters_, *outcome_.certificate, handover_);
+  }
+  if (fs::exists(paths_.report())) outcome_.files.push_back(paths_.report());
+}
+
+RunOutcome CaseRun::operator()() {
+  const CaseLock lock(paths_.root);
+  refuse_foreign_folder(paths_);
+  remove_stale_temporaries(paths_.root);  // of a run that was killed when its stages were done
+  take_former_parameters();
+  const bool of_formula = request_.until == Stage::Mesh && !parameters_.text("mesh.implicit").empty();
+  std::vector<StageRecord> records;
+  for (const Stage stage : kStages) {
+    if (stage <= request_.until && (!of_formula || stage == Stage::Mesh)) records.push_back(ensure(stage));
+  }
+  replace_former(context_, paths_);
+  write_parameters(paths_, parameters_);
+  for (const StageRecord& record : records) {
+    for (const RecordedFile& f : record.outputs) outcome_.files.push_back(paths_.folder(record.stage) / f.name);
+  }
+  if (request_.until == Stage::Mesh) {
+    certify(records.back());
+    outcome_.files.push_back(paths_.certificate());
+    report();
+  }
+  return std::move(outcome_);
+}
+
+}  // namespace
+
+RunOutcome run_case(const RunRequest& request, Progress& progress) { return CaseRun(request, progress)(); }
+
+}  // namespace umtet

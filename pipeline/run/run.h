@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/case/exit_code.h"
+#include "pipeline/case/parameters.h"
+#include "pipeline/case/progress.h"
+#include "pipeline/case/record.h"
+
+namespace umtet {
+
+/// What the user asked of the stages.
+struct RunRequest {
+  std::filesystem::path case_folder;
+  std::filesystem::path source;  ///< the cloud; empty: the case has its own, or there is a formula
+  Parameters parameters;
+  Stage from = Stage::Cloud, until = Stage::Mesh;
+  bool force = false;   ///< run the stages from..until although they are done
+  bool strict = false;  ///< a damaged artefact is an error instead of a reason to make it again
+  bool report = true;   ///< make report.html beside a certificate
+  int threads = 1;
+};
+
+struct RunOutcome {
+  std::vector<Stage> stages_run;
+  std::optional<Json> certificate;           ///< when 3-mesh is done and was asked for
+  std::vector<std::filesystem::path> files;  ///< that the user may want to open
+  ExitCode code = ExitCode::Success;         ///< Success, or GateFailed when the verdict is fail
+};
+
+/// Brings a case to the state that was asked for: every stage up to `until` whose record does not match is run again,
+/// those before `from` are taken as they are while they are whole. Holds the lock of the case meanwhile.
+/// \throw everything that failure_of() knows
+RunOutcome run_case(const RunRequest& request, Progress& progress);
+
+}  // namespace umtet

@@ -1,0 +1,221 @@
+#include "pipeline/stages/cloud_preparation.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "pipeline/case/artefact.h"
+#include "reconstruct/cloud/cleaning.h"
+#include "reconstruct/cloud/cloud_survey.h"
+#include "reconstruct/cloud/morton_order.h"
+#include "reconstruct/cloud/normal_estimation.h"
+#include "reconstruct/cloud/normal_orientation.h"
+
+namespace umtet {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t kFewestPoints = kFewestSurveyed;  // the level set asks for the noise
+
+/// Three numbers a line, '#' begins a comment.
+std::vector<Vec3> read_viewpoints(const fs::path& file) {
+  std::ifstream in(file);
+  if (!in) throw std::system_error(errno, std::generic_category(), file.string() + ": cannot be opened");
+  std::vector<Vec3> points;
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    std::istringstream words(line.substr(0, line.find('#')));
+    Vec3 x;
+    if (!(words >> std::ws) || words.eof()) continue;
+    if (!(words >> x[0] >> x[1] >> x[2]) || !x.allFinite()) {
+      throw CloudRefused(fmt::format("{}:{}: not three numbers; a viewpoint is a line x y z", file.string(), number));
+    }
+    points.push_back(x);
+  }
+  if (points.empty()) throw CloudRefused(file.string() + ": no viewpoint; give lines x y z");
+  return points;
+}
+
+class Preparation {
+ public:
+  Preparation(CloudFile&& file, const fs::path& source, const Parameters& parameters)
+      : source_(source), parameters_(parameters), report_(file.report), cloud_(std::move(file.cloud)) {}
+  PreparedCloud operator()();
+
+ private:
+  void clean_points();
+  void find_normals();
+  void fill_missing();
+  void drop_undefined();
+  void orient_as_told();
+  void take(const OrientationReport& r);
+  template <class... T>
+  void notice(fmt::format_string<T...> format, T&&... args) {
+    result_.notices.push_back(fmt::format(format, std::forward<T>(args)...));
+  }
+  double percent(std::size_t n) const {
+    return 100. * static_cast<double>(n) / static_cast<double>(cloud_.points.size());
+  }
+
+  const fs::path& source_;
+  const Parameters& parameters_;
+  const CloudFileReport report_;
+  OrientedPointCloud cloud_;
+  Neighbourhoods near_;  ///< of the cleaned cloud
+  PreparedCloud result_;
+  Json normals_ = Json::object();
+};
+
+void Preparation::clean_points() {
+  CleaningParams params;
+  params.outliers = !parameters_.flag("cloud.keep_all");
+  const CleaningReport r = clean(cloud_, params, &near_);
+  result_.numbers["dropped"] = {{"not_finite", report_.n_points_dropped + r.n_not_finite},
+                                {"duplicates", r.n_duplicates},
+                                {"outliers", r.n_outliers},
+                                {"crumbs", r.n_crumbs}};
+  if (const std::size_t n = report_.n_points_dropped + r.n_not_finite)
+    notice("dropped {} points that are no numbers", n);
+  if (r.n_duplicates > 0) notice("dropped {} duplicates", r.n_duplicates);
+  if (r.n_outliers + r.n_crumbs > 0) {
+    notice("dropped {} outliers and {} points in {} small pieces far from the rest (--keep-all keeps them)",
+           r.n_outliers, r.n_crumbs, r.n_crumb_pieces);
+  }
+  if (cloud_.points.size() < kFewestPoints) {
+    throw CloudRefused(fmt::format("{}: {} points are left after cleaning, {} are needed; --keep-all keeps outliers",
+                                   source_.string(), cloud_.points.size(), kFewestPoints));
+  }
+}
+
+void Preparation::take(const OrientationReport& r) {
+  normals_["consistency"] = r.consistency;
+  normals_["consistency_after"] = r.consistency_after;
+  normals_["turned"] = r.n_turned;
+  normals_["pieces"] = r.n_components;
+  normals_["cavities"] = r.n_cavities;
+  normals_["doubtful"] = r.n_doubtful;
+  if (r.n_doubtful > 0) {
+    notice("which side is outside is a guess for {:.1f} % of the points (--flip or --orient-from decide)",
+           percent(r.n_doubtful));
+  }
+}
+
+/// Given normals that are no normals get the estimated ones of their places.
+void Preparation::fill_missing() {
+  std::size_t missing = 0;
+  for (const Vec3& n : cloud_.normals) missing += n.isZero(0);
+  normals_["missing"] = missing;
+  if (missing == 0) return;
+  const EstimatedNormals estimated = estimate_normals(cloud_.points);
+  for (std::size_t i = 0; i < cloud_.normals.size(); ++i) {
+    if (cloud_.normals[i].isZero(0)) cloud_.normals[i] = estimated.normals[i];
+  }
+  notice("estimated {} normals that were missing", missing);
+}
+
+void Preparation::find_normals() {
+  const std::string& how = parameters_.text("cloud.normals");
+  if (!cloud_.normals.empty() && how != "estimate") {
+    normals_["source"] = "given";
+    fill_missing();
+    if (how == "given") {
+      normals_["consistency"] = consistency(cloud_, {}, &near_);
+      return;
+    }
+    const OrientationReport r = repair_normals(cloud_, {}, &near_);
+    take(r);
+    if (r.n_turned > 0) {
+      notice(
+          "turned {} of the given normals ({:.1f} %): they were {:.1f} % consistent, now {:.1f} % "
+          "(--normals given keeps them)",
+          r.n_turned, percent(r.n_turned), 100 * r.consistency, 100 * r.consistency_after);
+    }
+    return;
+  }
+  normals_["source"] = "estimated";
+  EstimatedNormals estimated = estimate_normals(cloud_.points);
+  cloud_.normals = std::move(estimated.normals);
+  const OrientationReport r = orient_normals(cloud_, {}, &near_);
+  take(r);
+  notice("estimated the normals and oriented them: {:.1f} % consistent, {} piece{}", 100 * r.consistency_after,
+         r.n_components, r.n_components == 1 ? "" : "s");
+}
+
+/// A point whose neighbours all lie at one place, or on a line, has no normal.
+void Preparation::drop_undefined() {
+  std::size_t kept = 0;
+  const std::size_t n = cloud_.points.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    if (cloud_.normals[i].isZero(0)) continue;
+    cloud_.points[kept] = cloud_.points[i];
+    if (!cloud_.labels.empty()) cloud_.labels[kept] = cloud_.labels[i];
+    cloud_.normals[kept++] = cloud_.normals[i];
+  }
+  cloud_.points.resize(kept);
+  cloud_.normals.resize(kept);
+  if (!cloud_.labels.empty()) cloud_.labels.resize(kept);
+  if (kept < n) notice("dropped {} points whose normal cannot be told", n - kept);
+  if (kept < kFewestPoints) {
+    throw CloudRefused(
+        fmt::format("{}: no surface: the normals of {} of {} points cannot be told", source_.string(), n - kept, n));
+  }
+}
+
+void Preparation::orient_as_told() {
+  if (const std::string& file = parameters_.text("cloud.orient_from"); !file.empty()) {
+    normals_["turned_to_viewpoints"] = orient_from(cloud_, read_viewpoints(file));
+  }
+  if (parameters_.flag("cloud.flip")) flip(cloud_);
+}
+
+PreparedCloud Preparation::operator()() {
+  result_.numbers = {{"format", report_.format},
+                     {"n_points_in_file", report_.n_points + report_.n_points_dropped},
+                     {"n_normals_rescaled", report_.n_normals_rescaled}};
+  sort_in_space(cloud_);
+  const Vec3 shift = far_origin_shift(cloud_);  // squares of far coordinates would lose the surface
+  for (Vec3& x : cloud_.points) x -= shift;
+  clean_points();
+  find_normals();
+  drop_undefined();
+  // Differences of coordinates have the same bits with and without the shift: so do distances.
+  if (near_.size() == cloud_.points.size()) result_.near = neighbour_distances(near_);
+  for (Vec3& x : cloud_.points) x += shift;
+  orient_as_told();
+  result_.numbers["normals"] = normals_;
+  result_.numbers["n_points"] = cloud_.points.size();
+  result_.cloud = std::move(cloud_);
+  return std::move(result_);
+}
+
+}  // namespace
+
+void require_regular_file(const fs::path& file) {
+  const fs::file_status status = fs::status(file);
+  if (fs::is_directory(status)) throw CloudRefused(file.string() + ": a folder; give the file of the cloud");
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    throw CloudRefused(file.string() + ": not a regular file; copy what it yields to a file and give that");
+  }
+}
+
+std::vector<RecordedFile> source_inputs(const fs::path& source, const Parameters& parameters) {
+  const auto input = [](const char* name, const fs::path& file) {
+    require_regular_file(file);
+    return RecordedFile{name, stamp(file)};
+  };
+  require_regular_file(source);
+  check_scan_head(source);  // gigabytes that are no cloud are not read for their checksum
+  std::vector<RecordedFile> inputs = {input("source", source)};
+  const std::string& viewpoints = parameters.text("cloud.orient_from");
+  if (!viewpoints.empty() && is_too_large_a_text(viewpoints))
+    throw CloudRefused(viewpoints + ": too large for viewpoints, lines x y z");
+  if (!viewpoints.empty()) inputs.push_back(input("viewpoints", viewpoints));
+  return inputs;
+}
+
+PreparedCloud prepare_cloud(CloudFile file, const fs::path& source, const Parameters& parameters) {
+  return Preparation(std::move(file), source, parameters)();
+}
+
+}  // namespace umtet

@@ -1,0 +1,49 @@
+#include <Eigen/Geometry>
+#include <cerrno>
+#include <chrono>
+#include <fstream>
+#include <system_error>
+
+#include "pipeline/stages/cloud_preparation.h"
+#include "pipeline/case/interrupt.h"
+#include "pipeline/stages/stages.h"
+#include "reconstruct/io/point_cloud_io.h"
+
+namespace umtet {
+namespace fs = std::filesystem;
+
+void run_cloud_stage(const StageContext& context, const fs::path& source) {
+  const auto start = std::chrono::steady_clock::now();
+  context.progress.report("cloud", "read", 0);
+  // Stamped before they are parsed: if a file changes meanwhile, the next run sees other bytes and reads it again.
+  const std::vector<RecordedFile> inputs = source_inputs(source, context.parameters);
+  CloudFile file = read_scan(source);
+  context.progress.report("cloud", "prepare", .2);
+  PreparedCloud prepared = prepare_cloud(std::move(file), source, context.parameters);
+  stop_if_interrupted();
+  for (const std::string& notice : prepared.notices) context.progress.say("cloud: " + notice);
+
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : prepared.cloud.points) box.extend(x);
+  begin_writing(context, Stage::Cloud);
+  write_artefact(context.paths.cloud(), [&](const fs::path& temporary) {
+    errno = 0;  // streams do not promise to set it
+    std::ofstream out(temporary, std::ios::binary);
+    write_ply(out, prepared.cloud);
+    out.close();
+    if (!out) throw std::system_error(errno ? errno : EIO, std::generic_category(), "stream failed");
+  });
+  Json numbers = std::move(prepared.numbers);
+  numbers["box_min"] = {box.min().x(), box.min().y(), box.min().z()};
+  numbers["box_max"] = {box.max().x(), box.max().y(), box.max().z()};
+  numbers["notices"] = prepared.notices;
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  Json run = run_block(seconds.count(), context.threads);
+  run["source"] = fs::absolute(source).string();
+  write_record(context.paths, {Stage::Cloud, context.parameters.section("cloud"), inputs, {}, numbers, std::move(run)},
+               {"cloud.ply"});
+  context.handover.cloud = std::move(prepared.cloud);
+  context.handover.near = std::move(prepared.near);
+}
+
+}  // namespace umtet

@@ -1,0 +1,27 @@
+#include "pipeline/stages/given_normals.h"
+
+#include <fmt/format.h>
+
+#include "pipeline/case/record.h"
+
+namespace umtet {
+namespace {
+
+// Noise and corners leave more than this of the given normals in agreement with their neighbours.
+constexpr double kLeastAgreed = .9;
+
+}  // namespace
+
+std::string doubt_about_given_normals(const CasePaths& paths) {
+  const StageState state = inspect_stage(paths, Stage::Cloud, Json::object(), std::nullopt);
+  if (!state.record) return "";
+  const Json normals = state.record->numbers.value("normals", Json::object());
+  const double agreed = normals.value("consistency", 1.);
+  if (normals.value("source", "") != "given" || agreed >= kLeastAgreed) return "";
+  return fmt::format(
+      "\n  as given, {:.1f} % of the normals agree with their neighbours, as where two sides of a body are nearer to "
+      "each other than its samples: no level set tells such sides apart, more samples do",
+      100 * agreed);
+}
+
+}  // namespace umtet

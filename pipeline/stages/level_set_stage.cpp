@@ -1,0 +1,177 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <utility>
+
+#include "pipeline/case/exit_code.h"
+#include "pipeline/stages/given_normals.h"
+#include "pipeline/case/interrupt.h"
+#include "pipeline/case/memory.h"
+#include "pipeline/stages/stages.h"
+#include "reconstruct/cloud/cloud_neighbours.h"
+#include "reconstruct/cloud/cloud_survey.h"
+#include "reconstruct/io/level_set_io.h"
+#include "reconstruct/io/point_cloud_io.h"
+
+namespace umtet {
+namespace fs = std::filesystem;
+namespace {
+
+/// The steps of fit_ssd share the bar about as their times do.
+double overall_fraction(std::string_view step, double fraction) {
+  if (step == "weights") return .2 * fraction;
+  if (step == "setup") return .2 + .1 * fraction;
+  if (step == "solve") return .3 + .2 * fraction;
+  return .5 + .5 * fraction;
+}
+
+OrientedPointCloud take_cloud(const StageContext& context) {
+  if (context.handover.cloud) return std::move(*std::exchange(context.handover.cloud, std::nullopt));
+  try {
+    return read_point_cloud(context.paths.cloud()).cloud;
+  } catch (const CloudRefused& e) {  // we wrote it: not the user's file is at fault
+    throw ArtefactDamaged(e.what());
+  }
+}
+
+// Clean clouds oppose by a fraction of a per cent; a tenth is a patch turned over, or every tenth normal.
+constexpr double kMostOpposed = .1;
+
+/// Distances between opposed samples; null where none face one another.
+Json thickness_percentiles(const OrientedPointCloud& cloud, const NeighbourTree& tree) {
+  // A ray through half a million samples takes 80 us; of 2000 rays the hundredth part is 20.
+  constexpr std::size_t kRays = 2000;
+  const std::vector<double> t = thicknesses(cloud, tree, kRays);
+  if (t.empty()) return nullptr;
+  const auto at = [&](double p) { return t[static_cast<std::size_t>(p * static_cast<double>(t.size() - 1))]; };
+  return {at(.01), at(.05), at(.5)};
+}
+
+}  // namespace
+
+void require_outward_normals(const SsdReport& r) {
+  const auto opposed = static_cast<double>(r.n_opposed_normals) / static_cast<double>(r.n_points);
+  const bool open = r.least_wall_value < 0;
+  if (!open && opposed <= kMostOpposed) return;
+  throw SolveError(fmt::format(
+      "{}: {:.1f} % of the {} normals point against its gradient; {}orient the normals consistently, outward",
+      open ? "psi < 0 reaches the wall of its box: the samples do not bound a body with outward normals"
+           : "psi was fitted, but the normals disagree with one another",
+      100 * opposed, r.n_points, open ? "check that the surface is closed, and " : ""));
+}
+
+SsdParams ssd_params(const Parameters& p) {
+  SsdParams ssd;
+  ssd.spacing = p.real("reconstruct.spacing");
+  ssd.smoothing = p.real("reconstruct.smoothing");
+  ssd.detail = p.real("reconstruct.detail");
+  ssd.smooth = p.real("reconstruct.smooth");
+  ssd.alpha = p.real("reconstruct.alpha");
+  ssd.weights = p.text("reconstruct.weights") == "paper" ? SsdWeights::Paper : SsdWeights::Area;
+  ssd.prior.kind = p.text("reconstruct.prior") == "gaussian" ? LmePrior::Kind::Gaussian : LmePrior::Kind::CompactC2;
+  ssd.prior.gamma = p.real("reconstruct.gamma");
+  ssd.prior.support = static_cast<int>(p.integer("reconstruct.support"));
+  ssd.prior.epsilon = p.real("reconstruct.epsilon");
+  const std::string& solver = p.text("reconstruct.solver");
+  const bool full_only = ssd.weights == SsdWeights::Paper || ssd.prior.kind == LmePrior::Kind::Gaussian;
+  ssd.solver = solver == "assembled"                                 ? SsdSolver::Assembled
+               : solver == "full" || (solver == "auto" && full_only) ? SsdSolver::Full
+                                                                     : SsdSolver::Cascade;
+  ssd.band_tolerance = p.real("reconstruct.band_tolerance");
+  ssd.tolerance = p.real("reconstruct.tolerance");
+  ssd.max_iterations = static_cast<int>(p.integer("reconstruct.max_iterations"));
+  ssd.padding = static_cast<int>(p.integer("reconstruct.padding"));
+  std::string broken;
+  for (const std::string& problem : problems(ssd)) broken += (broken.empty() ? "reconstruct: " : "; ") + problem;
+  if (!broken.empty()) throw UsageError(broken);
+  return ssd;
+}
+
+void run_level_set_stage(const StageContext& context) {
+  const auto start = std::chrono::steady_clock::now();
+  SsdParams params = ssd_params(context.parameters);
+  const std::vector<RecordedFile> inputs = recorded_inputs(context.paths, Stage::LevelSet, context.parameters);
+  OrientedPointCloud cloud = take_cloud(context);
+  const Vec3 shift = far_origin_shift(cloud);
+  for (Vec3& x : cloud.points) x -= shift;
+
+  params.max_memory = allowed_bytes(context.parameters);
+  context.progress.report("level-set", "noise", 0);
+  const double noise = context.parameters.real("reconstruct.noise");
+  Json thickness;
+  {
+    const NeighbourTree tree(cloud.points);
+    params.noise = noise >= 0 ? noise : noise_along_normals(cloud, tree);
+    stop_if_interrupted();
+    thickness = thickness_percentiles(cloud, tree);
+  }
+  stop_if_interrupted();
+  const NeighbourDistances near = std::exchange(context.handover.near, {});
+  SsdFit fit = [&] {
+    try {
+      return fit_ssd(
+          cloud, params,
+          [&](const char* step, double fraction) {
+            return context.progress.report("level-set", step, overall_fraction(step, fraction));
+          },
+          near.nearest.empty() ? nullptr : &near);
+    } catch (const SolveTooLarge& e) {
+      throw ResourceLimit(e.what());
+    } catch (const SolveCancelled&) {
+      stop_if_interrupted();
+      throw;
+    }
+  }();
+
+  stop_if_interrupted();
+  try {
+    require_outward_normals(fit.report);
+  } catch (const SolveError& e) {
+    throw SolveError(e.what() + doubt_about_given_normals(context.paths));
+  }
+  begin_writing(context, Stage::LevelSet);
+  write_artefact(context.paths.level_set(),
+                 [&](const fs::path& temporary) { write_level_set(temporary, fit.psi, shift); });
+  const SsdReport& r = fit.report;
+  Json bands = Json::array();
+  for (const BandReport& b : r.bands) {
+    bands.push_back({{"spacing", b.spacing},
+                     {"smoothing", b.smoothing},
+                     {"n_samples", b.n_samples},
+                     {"n_nodes", b.n_nodes},
+                     {"iterations", b.iterations},
+                     {"residual", b.residual}});
+  }
+  const Json numbers = {{"shift", {shift.x(), shift.y(), shift.z()}},
+                        {"n_points", r.n_points},
+                        {"n_nodes", r.n_nodes},
+                        {"spacing", r.spacing},
+                        {"smoothing", r.smoothing},
+                        {"noise", params.noise},
+                        {"reason", r.reason},
+                        {"cloud_spacing", r.cloud_spacing},
+                        {"thickness_percentiles_1_5_50", std::move(thickness)},
+                        {"iterations", r.iterations},
+                        {"residuals", r.residuals},
+                        {"bands", bands},
+                        {"energy_value", r.energy_value},
+                        {"energy_normal", r.energy_normal},
+                        {"energy_hessian", r.energy_hessian},
+                        {"rms_value", r.rms_value},
+                        {"n_opposed_normals", r.n_opposed_normals},
+                        {"least_wall_value", r.least_wall_value}};
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  write_record(context.paths,
+               {Stage::LevelSet,
+                context.parameters.section("reconstruct"),
+                inputs,
+                {},
+                numbers,
+                run_block(seconds.count(), context.threads)},
+               {"level_set.vti"});
+  for (Vec3& x : cloud.points) x += shift;
+  context.handover.cloud = std::move(cloud);
+  context.handover.psi = std::move(fit.psi);
+}
+
+}  // namespace umtet

@@ -1,0 +1,115 @@
+#include "pipeline/stages/mesh_outputs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "mesh/certify/quality_report.h"
+#include "mesh/io/quality_csv.h"
+#include "pipeline/case/artefact.h"
+#include "pipeline/meshing/made_mesh.h"
+#include "pipeline/meshing/second_order.h"
+
+namespace umtet {
+namespace fs = std::filesystem;
+namespace {
+
+/// The meshes of these files in ParaView, in this order: time is their number.
+std::string series_of(const std::vector<std::string>& files) {
+  std::string pvd =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
+      "byte_order=\"LittleEndian\">\n<Collection>\n";
+  int step = 0;
+  for (const std::string& name : files) {
+    pvd += fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"0\" file=\"{}\"/>\n", step++, name);
+  }
+  return pvd + "</Collection>\n</VTKFile>\n";
+}
+
+/// Figure 8: of each stage the quality vector of the mesh, and of its tets with a positive vertex.
+class QualityCurves {
+ public:
+  explicit QualityCurves(const UmResult& result) : positive_vertices_(result.submesh.positive_vertices) {}
+  void add(const std::string& stage, const MeshFile& content) {
+    const auto& Q = std::get<std::vector<double>>(content.cell_data.at("mean_ratio"));
+    auto [all, boundary] = quality_vectors(content.mesh.C, Q, positive_vertices_, content.mesh.V.size());
+    of_mesh_.push_back({stage, std::move(all)});
+    of_boundary_.push_back({"boundary_" + stage, std::move(boundary)});
+  }
+  std::vector<QualityCurve> all() && {
+    std::move(of_boundary_.begin(), of_boundary_.end(), std::back_inserter(of_mesh_));
+    return std::move(of_mesh_);
+  }
+
+ private:
+  const std::vector<int>& positive_vertices_;
+  std::vector<QualityCurve> of_mesh_, of_boundary_;
+};
+
+}  // namespace
+
+std::vector<std::string> write_mesh_outputs(const StageContext& context, const Domain& domain,
+                                            const MeshAttempt& best) {
+  begin_writing(context, Stage::Mesh);
+  fs::remove_all(context.paths.failed());
+  const fs::path folder = context.paths.folder(Stage::Mesh);
+  const UmResult& result = best.result;
+  std::vector<std::string> names;
+  QualityCurves curves(result);
+  MeshFile content = mesh_content(domain, result, result.submesh.mesh.V);
+  const auto write = [&](const std::string& name) {
+    names.push_back(name);
+    write_mesh(folder / name, content);
+  };
+  write("omega_h.vtu");
+  curves.add("omega_h", content);
+  for (std::size_t k = 0; k < best.iterates.size(); ++k) {
+    move_to(domain, best.iterates[k], content);
+    write(fmt::format("pass_{}.vtu", k + 1));
+  }
+  move_to(domain, result.projected, content);
+  write("projected.vtu");
+  curves.add("projected", content);
+  move_to(domain, result.final, content);
+  curves.add("final", content);
+  add_support(domain, result, content);
+  if (best.second) {
+    names.emplace_back("mesh.vtu");
+    write_second_order(folder / "mesh.vtu", domain, result, content, *best.second);
+  } else {
+    write("mesh.vtu");
+  }
+  context.handover.mesh = std::move(content);
+  if (context.parameters.flag("mesh.keep_iterates")) {
+    write_text_artefact(folder / "iterates.pvd", series_of(names));
+    names.emplace_back("iterates.pvd");
+  }
+  write_artefact(folder / "quality.csv",
+                 [all = std::move(curves).all()](const fs::path& temporary) { write_quality_csv(temporary, all); });
+  names.emplace_back("quality.csv");
+  if (!best.thin.empty()) {
+    write_thin_places(folder / "too_thin.vtp", best.thin, domain.shift);
+    names.emplace_back("too_thin.vtp");
+  }
+  return names;
+}
+
+fs::path write_failed_mesh(const CasePaths& paths, const Domain& domain, const UmResult& result) {
+  fs::path folder = paths.failed();
+  fs::remove_all(folder);
+  const std::size_t n = result.submesh.mesh.V.size();
+  if (n == 0) return folder;
+  fs::create_directories(folder);
+  MeshFile content = mesh_content(domain, result, result.submesh.mesh.V);
+  write_mesh(folder / "omega_h.vtu", content);
+  const bool has_final = result.final.size() == n;
+  if (!has_final && result.projected.size() != n) return folder;
+  move_to(domain, has_final ? result.final : result.projected, content);
+  if (has_final) add_support(domain, result, content);
+  write_mesh(folder / "projected.vtu", content);
+  return folder;
+}
+
+}  // namespace umtet

@@ -1,0 +1,194 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "mesh/universal_mesh.h"
+#include "pipeline/meshing/background_choice.h"
+#include "pipeline/meshing/domain.h"
+#include "pipeline/meshing/edge_length.h"
+#include "pipeline/case/exit_code.h"
+#include "pipeline/stages/given_normals.h"
+#include "pipeline/case/interrupt.h"
+#include "pipeline/meshing/made_mesh.h"
+#include "pipeline/case/memory.h"
+#include "pipeline/meshing/mesh_maker.h"
+#include "pipeline/stages/mesh_outputs.h"
+#include "pipeline/stages/stages.h"
+#include "pipeline/meshing/too_thin.h"
+
+namespace umtet {
+namespace fs = std::filesystem;
+namespace {
+
+class MeshStage {
+ public:
+  explicit MeshStage(const StageContext& context)
+      : context_(context),
+        domain_(load_domain(context.paths, context.parameters, &context.handover)),
+        background_(context.parameters, domain_),
+        maker_(domain_, context.parameters, watch()) {}
+
+  void run();
+
+ private:
+  MeshWatch watch();
+  bool observe(const UmProgress& p);
+  BackgroundMesh background_of(double h);
+  EdgeLength enough_for(const ThinPlaces& thin);
+  std::string remedy_for(const ThinPlaces& thin, Json& h_enough);
+  [[noreturn]] void refuse_thin(const MeshAttempt& best);
+  [[noreturn]] void refuse(const UmResult& result, double h);
+  const StageContext& context_;
+  Domain domain_;
+  BackgroundChoice background_;
+  MeshMaker maker_;
+};
+
+MeshWatch MeshStage::watch() {
+  MeshWatch watch;
+  watch.keep_going = not_interrupted;
+  watch.begins = [this](std::string_view step) {
+    stop_if_interrupted();
+    context_.progress.report("mesh", step, step == "components" ? .05 : step == "submesh" ? .1 : .9);
+  };
+  watch.progress = [this](const UmProgress& p) { return observe(p); };
+  watch.say = [this](const std::string& line) { context_.progress.say("mesh: " + line); };
+  watch.detail = [this](const std::string& line) { context_.progress.detail("mesh: " + line); };
+  return watch;
+}
+
+bool MeshStage::observe(const UmProgress& p) {
+  const double n_rounds = static_cast<double>(context_.parameters.integer("mesh.projection_passes")) + 1;
+  const std::string_view step = p.step;
+  double rounds = 0;
+  if (step == "project") rounds = p.pass - 1 + static_cast<double>(p.sweep) / std::max(p.n_sweeps, 1);
+  if (step == "relax") rounds = n_rounds - 1 + static_cast<double>(p.pass) / std::max(p.n_passes, 1);
+  return context_.progress.report("mesh", step, .1 + .8 * rounds / n_rounds);
+}
+
+/// With room on the disk for the meshes in it.
+BackgroundMesh MeshStage::background_of(double h) {
+  stop_if_interrupted();
+  const Parameters& p = context_.parameters;
+  BackgroundMesh made = background_.make(domain_, h, p.integer("mesh.tets"), allowed_bytes(p));
+  const double n_iterates = p.flag("mesh.keep_iterates") ? static_cast<double>(p.integer("mesh.projection_passes")) : 0;
+  require_disk(context_.paths.root, (3 + n_iterates) * background_.expected_tets(domain_, h));
+  return made;
+}
+
+void MeshStage::refuse(const UmResult& result, double h) {
+  if (!context_.paths.renews(Stage::Mesh)) begin_writing(context_, Stage::Mesh);
+  const fs::path folder = write_failed_mesh(context_.paths, domain_, result);
+  const std::size_t n = result.submesh.mesh.V.size();
+  std::string message = failure_text(result, h, domain_.shift);
+  if (n > 0) message += "\n  look at omega_h.vtu and projected.vtu (the last iterate) in " + folder.string();
+  if (context_.paths.renews(Stage::Mesh)) message += "\n  the former mesh and its certificate have been kept";
+  throw MeshingImpossible(message);
+}
+
+// A smaller h lets detail in that may be thinner still; at most so often, and each time at least by a tenth.
+constexpr int kThinRounds = 8;
+constexpr double kThinStep = .9;
+
+/// An h at which nothing is thin any more, as far as --max-tets allows.
+EdgeLength MeshStage::enough_for(const ThinPlaces& thin) {
+  EdgeLength choice{thin.h, least_h_of_max_tets(domain_, context_.parameters)};
+  double needed = thin.h_needed();
+  for (int round = 0; round < kThinRounds && choice.h > choice.least; ++round) {
+    choice.h = std::max(std::min(needed, kThinStep * choice.h), choice.least);
+    const ThinPlaces left = find_thin_places(domain_, maker_.pieces_at(choice.h), choice.h, not_interrupted);
+    if (left.empty()) break;
+    needed = left.h_needed();
+  }
+  return choice;
+}
+
+std::string MeshStage::remedy_for(const ThinPlaces& thin, Json& h_enough) {
+  if (background_.own_h()) return fmt::format("a background with edges of {:.3g} may show them", thin.h_needed());
+  // A plate so thin that no place of the grid on which bodies are measured is inside it.
+  if (!(domain_.size().volume > 0)) return fmt::format("h = {:.3g} may show them", thin.h_needed());
+  const EdgeLength enough = enough_for(thin);
+  if (!(enough.h < thin.h && enough.h > enough.least)) {
+    return fmt::format("that takes more than {} tets: raise --max-tets", context_.parameters.integer("mesh.max_tets"));
+  }
+  h_enough = enough.h;
+  return fmt::format("h = {:.3g} is enough, about {:.2g} tets", enough.h, background_.expected_tets(domain_, enough.h));
+}
+
+/// Names what is too thin for the mesh that came out wrong, and writes it for the eye: beside a finished mesh where
+/// there is none to be kept.
+void MeshStage::refuse_thin(const MeshAttempt& best) {
+  const ThinPlaces& thin = best.thin;
+  const bool keeps = context_.paths.renews(Stage::Mesh);
+  if (!keeps) begin_writing(context_, Stage::Mesh);
+  const fs::path failed = write_failed_mesh(context_.paths, domain_, best.result);
+  const fs::path folder = keeps ? failed : context_.paths.folder(Stage::Mesh);
+  fs::create_directories(folder);
+  const fs::path file = folder / "too_thin.vtp";
+  write_thin_places(file, thin, domain_.shift);
+  std::string message = too_thin_text(best, domain_.shift) + "\n  ";
+  Json h_enough;
+  message += remedy_for(thin, h_enough) + "; --allow-thin keeps the mesh nevertheless\n  look at " + file.string();
+  message += doubt_about_given_normals(context_.paths);
+  if (keeps) message += "\n  the former mesh and its certificate have been kept";
+  throw TooThin(message, {{"too_thin", to_json(thin, domain_.shift)}, {"h_enough", h_enough}});
+}
+
+void MeshStage::run() {
+  const auto start = std::chrono::steady_clock::now();
+  const std::vector<RecordedFile> inputs = recorded_inputs(context_.paths, Stage::Mesh, context_.parameters);
+  context_.progress.report("mesh", "size", 0);
+  const MeshAttempt best =
+      maker_.best(background_.own_h() ? EdgeLength{*background_.own_h(), *background_.own_h()}
+                                      : choose_edge_length(domain_, context_.parameters, not_interrupted),
+                  [this](double h) { return background_of(h); });
+  stop_if_interrupted();
+  const UmResult& result = best.result;
+  if (maker_.is_refused_as_thin(best)) refuse_thin(best);
+  if (!best.made()) refuse(result, best.h);
+
+  context_.progress.report("mesh", "write", .97);
+  const std::vector<std::string> outputs = write_mesh_outputs(context_, domain_, best);
+  const Json numbers = {{"conditioning_angle_max_deg", result.conditioning_angle_max_deg},
+                        {"n_psi_evaluations", result.n_psi_evaluations},
+                        {"measured", best.measured}};
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  write_record(context_.paths,
+               {Stage::Mesh,
+                context_.parameters.section("mesh"),
+                inputs,
+                {},
+                numbers,
+                run_block(seconds.count(), context_.threads)},
+               outputs);
+  domain_.limit_detail(best.h);
+  context_.handover.domain = std::move(domain_);
+}
+
+}  // namespace
+
+UmParams um_params(const Parameters& p) {
+  UmParams um;
+  um.mode = p.text("mesh.mode") == "paper" ? UmMode::Paper : UmMode::Fast;
+  um.fast.smoothing.target = um.fast.repair.target = p.real("mesh.target_quality");
+  um.projection_passes = static_cast<int>(p.integer("mesh.projection_passes"));
+  um.relaxation_iterations = static_cast<int>(p.integer("mesh.relaxation_iterations"));
+  um.samples = static_cast<int>(p.integer("mesh.samples"));
+  um.directions = p.text("mesh.directions") == "axes" ? DirectionRule::AxesInTurn : DirectionRule::Random;
+  const std::string& projection = p.text("mesh.closest_point");
+  um.closest_point.method = projection == "paper"    ? ClosestPointMethod::Paper
+                            : projection == "damped" ? ClosestPointMethod::Damped
+                                                     : ClosestPointMethod::Newton;
+  um.rim = p.flag("mesh.complement") ? Rim::Wall : Rim::Refuse;
+  um.max_min = p.text("mesh.max_min") == "golden" ? MaxMin::GoldenSection : MaxMin::Exact;
+  um.seed = static_cast<std::uint64_t>(p.integer("mesh.seed"));
+  std::string broken;
+  for (const std::string& problem : problems(um)) broken += (broken.empty() ? "mesh: " : "; ") + problem;
+  if (!broken.empty()) throw UsageError(broken);
+  return um;
+}
+
+void run_mesh_stage(const StageContext& context) { MeshStage(context).run(); }
+
+}  // namespace umtet

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "mesh/io/tet_mesh_io.h"
+#include "mesh/universal_mesh.h"
+#include "pipeline/case/case_folder.h"
+#include "pipeline/meshing/domain.h"
+#include "pipeline/case/parameters.h"
+#include "pipeline/case/progress.h"
+#include "pipeline/case/record.h"
+#include "reconstruct/solve/fit_ssd.h"
+
+namespace umtet {
+
+/// What the stages of a run leave in memory for those after them: bit by bit what their files hold, which so need not
+/// be read back. Empty where a stage had been done before.
+struct Handover {
+  std::optional<OrientedPointCloud> cloud;  ///< cloud.ply
+  NeighbourDistances near;                  ///< of its points, or empty
+  std::optional<LevelSet> psi;              ///< level_set.vti
+  std::optional<Domain> domain;             ///< what was meshed, psi cut for h
+  MeshFile mesh;                            ///< mesh.vtu, beside the domain
+};
+
+/// What every stage is given. A stage computes first and touches the case only when it has something to write; it
+/// writes to paths.folder(), which is beside the finished one where there is one.
+struct StageContext {
+  const CasePaths& paths;
+  const Parameters& parameters;
+  Progress& progress;
+  int threads;
+  Handover& handover;
+};
+
+/// 1-cloud: reads the user's file, checks it, writes cloud.ply (double precision, original coordinates).
+/// \throw CloudRefused, std::system_error; the case is then untouched
+void run_cloud_stage(const StageContext&, const std::filesystem::path& source);
+
+/// 2-level-set: fits psi to cloud.ply, writes level_set.vti. A cloud far from the origin is fitted in coordinates
+/// shifted by numbers.shift of the record. \throw SolveError, Interrupted, ArtefactDamaged, std::system_error
+void run_level_set_stage(const StageContext&);
+
+/// 3-mesh: meshes {psi < 0} of the level set, or of mesh.implicit when that is set; writes omega_h.vtu, projected.vtu,
+/// mesh.vtu and quality.csv, and puts everything a certificate needs into the record.
+/// When no mesh can be made, omega_h.vtu and projected.vtu go to 3-mesh/failed, for the eye; nothing else is touched.
+/// \throw MeshingImpossible, ResourceLimit, Interrupted, ArtefactDamaged, ExpressionError, UsageError,
+/// std::system_error
+void run_mesh_stage(const StageContext&);
+
+/// The parameter structs of the libraries. \throw UsageError with every broken constraint
+SsdParams ssd_params(const Parameters&);
+
+UmParams um_params(const Parameters&);
+
+/// A fit to normals that are turned over is a level set all the same, but of no body. \throw SolveError
+void require_outward_normals(const SsdReport&);
+
+/// The files a stage reads from the case (not the user's cloud), with the stamps that the records of their stages hold;
+/// empty for the first stage and for a formula.
+std::vector<RecordedFile> recorded_inputs(const CasePaths&, Stage, const Parameters&);
+
+/// To call before the first write of a stage: makes its folder and removes from it what a killed run left. Where
+/// nothing finished is to be kept, the certificate is withdrawn and case.toml written, so that the run can be resumed.
+void begin_writing(const StageContext&, Stage);
+
+/// Writes case.toml if it is not the same already.
+void write_parameters(const CasePaths&, const Parameters&);
+
+/// A vector of the numbers of a record. \throw ArtefactDamaged if it is not there
+Vec3 recorded_vector(const StageRecord&, const char* key);
+
+}  // namespace umtet

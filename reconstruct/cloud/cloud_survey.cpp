@@ -1,0 +1,208 @@
+#include "reconstruct/cloud/cloud_survey.h"
+
+#include <fmt/format.h>
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "reconstruct/cloud/cloud_neighbours.h"
+#include "reconstruct/cloud/enclosed_volume.h"
+#include "reconstruct/cloud/local_quadric.h"
+#include "reconstruct/cloud/neighbour_tree.h"
+
+namespace umtet {
+namespace {
+
+constexpr std::size_t kNoiseNeighbours = 24;
+
+double percentile(std::vector<double>& values, double share) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+/// Every m-th point along the tree's curve: evenly over the surface, and no seed to remember.
+std::vector<std::uint32_t> evenly_picked(const NeighbourTree& tree, std::size_t n_picked) {
+  std::vector<std::uint32_t> picked;
+  const std::size_t stride = std::max<std::size_t>(1, tree.size() / n_picked);
+  for (std::size_t row = 0; row < tree.size(); row += stride) picked.push_back(tree.order()[row]);
+  return picked;
+}
+
+/// Root of the area that a sample at x stands for, as sample_areas has it.
+double spacing_around(const NeighbourTree& tree, const Vec3& x) {
+  std::array<Neighbour, kAreaNeighbours + 1> room;
+  const std::span<const Neighbour> near = tree.k_nearest(x, room);
+  double sum = 0;
+  for (const Neighbour& other : near) sum += other.distance2;
+  const auto k = static_cast<double>(near.size() - 1);
+  return k > 0 ? std::sqrt(2 * std::numbers::pi * sum / (k * (k + 2))) : 0;
+}
+
+/// Residual variance around a point. `near` is a buffer.
+double local_variance(const std::vector<Vec3>& points, const NeighbourTree& tree, const Vec3& x,
+                      std::vector<Neighbour>& near) {
+  // From eight times the radius of 24 neighbours on (1500 of them) a cloud is not noisy but a cloud.
+  constexpr double kGrowth = std::numbers::sqrt2, kDeviations = 5;
+  constexpr int kRadii = 6;
+  near.resize(kNoiseNeighbours);
+  const double radius = std::sqrt(tree.k_nearest(x, near).back().distance2);
+  double variance = -1, growth = 1;
+  for (int k = 0; k < kRadii; ++k, growth *= kGrowth) {
+    near.clear();
+    const double r = growth * radius;
+    tree.within(x, r * r, [&](std::uint32_t j, double distance2) { near.push_back({distance2, j}); });
+    const double wider = local_quadric(points, x, near).variance;
+    // Three times as much from twice the area: that is not noise but what else is there.
+    if (variance > 0 && wider > 3 * variance) break;
+    variance = wider;
+    if (r * r >= kDeviations * kDeviations * variance) break;
+  }
+  return variance;
+}
+
+}  // namespace
+
+double noise_along_normals(const std::vector<Vec3>& points, std::size_t sampled_points) {
+  return noise_along_normals(points, NeighbourTree(points), sampled_points);
+}
+
+double noise_along_normals(const std::vector<Vec3>& points, const NeighbourTree& tree, std::size_t sampled_points) {
+  if (points.size() < kFewestSurveyed)
+    throw TooFewPoints(fmt::format("{} points: noise needs at least {}", points.size(), kFewestSurveyed));
+  const std::vector<std::uint32_t> picked = evenly_picked(tree, sampled_points);
+  std::vector<double> variance(picked.size());
+  tbb::enumerable_thread_specific<std::vector<Neighbour>> buffers;
+  tbb::parallel_for(std::size_t{0}, picked.size(), [&](std::size_t p) {
+    variance[p] = local_variance(points, tree, points[picked[p]], buffers.local());
+  });
+  return std::sqrt(std::max(0.0, percentile(variance, 0.5)));
+}
+
+double noise_along_normals(const OrientedPointCloud& cloud, const NeighbourTree& tree, std::size_t sampled_points) {
+  constexpr std::size_t kPairs = 8;  // with each sample: their differences reach twice as far as samples are apart
+  constexpr double kMostOfDistance = .5, kDeviationsOfMedian = 1.4826;
+  const double of_quadrics = noise_along_normals(cloud.points, tree, sampled_points);
+  if (cloud.normals.empty()) return of_quadrics;
+  const std::vector<std::uint32_t> picked = evenly_picked(tree, sampled_points);
+  std::vector<double> defect(kPairs * picked.size()), nearest(picked.size());
+  tbb::parallel_for(std::size_t{0}, picked.size(), [&](std::size_t p) {
+    const std::uint32_t i = picked[p];
+    std::array<Neighbour, kPairs + 1> room;
+    std::size_t k = kPairs * p;
+    for (const Neighbour& other : tree.k_nearest(cloud.points[i], room)) {
+      if (other.point == i || k == kPairs * (p + 1)) continue;
+      if (k == kPairs * p) nearest[p] = std::sqrt(other.distance2);
+      const std::uint32_t j = other.point;
+      defect[k++] = std::abs((cloud.normals[i] + cloud.normals[j]).dot(cloud.points[j] - cloud.points[i])) / 2;
+    }
+  });
+  if (of_quadrics > kMostOfDistance * percentile(nearest, .5)) return of_quadrics;
+  return std::min(of_quadrics, kDeviationsOfMedian / std::numbers::sqrt2 * percentile(defect, .5));
+}
+
+std::vector<double> thicknesses(const OrientedPointCloud& cloud, std::size_t sampled_points) {
+  return thicknesses(cloud, NeighbourTree(cloud.points), sampled_points);
+}
+
+std::vector<double> thicknesses(const OrientedPointCloud& cloud, const NeighbourTree& tree,
+                                std::size_t sampled_points) {
+  // Wide enough not to slip between the samples of the other side, narrow enough not to meet what is beside it.
+  constexpr double kWidthOverSpacing = 1.5;
+  constexpr double kOpposed = -0.3;  // 107 degrees: walls that narrow by less than 73 degrees
+  const std::vector<std::uint32_t> picked = evenly_picked(tree, sampled_points);
+  std::vector<double> met(picked.size());
+  tbb::parallel_for(std::size_t{0}, picked.size(), [&](std::size_t p) {
+    const std::uint32_t i = picked[p];
+    const Vec3& n = cloud.normals[i];
+    const double spacing = spacing_around(tree, cloud.points[i]);
+    if (!(spacing > 0)) {  // so many points at one place have no thickness
+      met[p] = std::numeric_limits<double>::infinity();
+      return;
+    }
+    met[p] = tree.first_along(cloud.points[i], -n, 0, kWidthOverSpacing * spacing,
+                              [&](std::uint32_t j) { return cloud.normals[j].dot(n) < kOpposed; })
+                 .t;
+  });
+  std::erase_if(met, [](double t) { return !std::isfinite(t); });
+  std::sort(met.begin(), met.end());
+  return met;
+}
+
+std::vector<std::string> problems(const SurveyParams& params) {
+  std::vector<std::string> found = problems(params.cleaning);
+  for (std::string& more : problems(params.orientation)) found.push_back(std::move(more));
+  if (!(params.consistent >= 0 && params.consistent <= 1))
+    found.push_back(fmt::format("consistent = {}: must be in 0..1", params.consistent));
+  if (params.sampled_points < 100)
+    found.push_back(fmt::format("sampled_points = {}: must be >= 100", params.sampled_points));
+  return found;
+}
+
+CloudSurvey survey(const OrientedPointCloud& original, const SurveyParams& params) {
+  if (const auto found = problems(params); !found.empty()) throw std::invalid_argument(found.front());
+  CloudSurvey result;
+  result.n_points = original.points.size();
+  OrientedPointCloud cloud = original;
+  result.dropped = clean(cloud, params.cleaning);
+  const std::size_t n = cloud.points.size();
+  if (n < kFewestSurveyed)
+    throw TooFewPoints(fmt::format("{} usable points: a survey needs at least {}", n, kFewestSurveyed));
+
+  result.low = result.high = cloud.points.front();
+  for (const Vec3& x : cloud.points) {
+    result.low = result.low.cwiseMin(x);
+    result.high = result.high.cwiseMax(x);
+  }
+  result.diagonal = (result.high - result.low).norm();
+  NeighbourDistances near = neighbour_distances(cloud.points, kAreaNeighbours);
+  std::vector<double> areas = sample_areas(near);
+  result.spacing = {percentile(near.nearest, 0.01), percentile(near.nearest, 0.5), percentile(near.nearest, 0.99)};
+  const double spacing = result.spacing[1];
+
+  const NeighbourTree tree(cloud.points);
+  result.farthest_coordinate = result.low.cwiseAbs().cwiseMax(result.high.cwiseAbs()).maxCoeff();
+  result.ulp_over_spacing = std::numeric_limits<double>::epsilon() * result.farthest_coordinate / spacing;
+  result.float_ulp_over_spacing = std::numeric_limits<float>::epsilon() * result.farthest_coordinate / spacing;
+
+  result.has_normals = !cloud.normals.empty();
+  if (result.has_normals) {
+    for (Vec3& normal : cloud.normals) {
+      if (!normal.allFinite() || normal.isZero(0)) {
+        ++result.n_normals_zero;
+        normal.setZero();
+      } else if (const double length = normal.stableNorm(); std::abs(length - 1) > 1e-3) {
+        ++result.n_normals_not_unit;
+        normal.stableNormalize();
+      }
+    }
+    result.consistency = consistency(cloud, params.orientation);
+    const EnclosedVolume body = enclosed_volumes(cloud, areas, std::vector<std::uint32_t>(n, 0), 1).front();
+    result.volume = body.volume;
+    result.openness = body.openness;
+    if (result.consistency >= params.consistent) {
+      const std::vector<double> met = thicknesses(cloud, tree, params.sampled_points);
+      const std::size_t stride = std::max<std::size_t>(1, n / params.sampled_points),
+                        n_picked = (n + stride - 1) / stride;
+      result.thickness_found = static_cast<double>(met.size()) / static_cast<double>(n_picked);
+      const auto at = [&](double share) {
+        return met[static_cast<std::size_t>(share * static_cast<double>(met.size() - 1))];
+      };
+      if (!met.empty()) result.thickness = Percentiles{at(0.01), at(0.05), at(0.5)};
+    }
+  }
+  result.noise = noise_along_normals(cloud, tree, params.sampled_points);
+  result.noise_over_diagonal = result.noise / result.diagonal;
+  result.noise_over_spacing = result.noise / spacing;
+  const double largest = percentile(areas, 0.99), least = percentile(areas, 0.01);
+  result.density_variation = least > 0 ? largest / least : 1;
+  return result;
+}
+
+}  // namespace umtet

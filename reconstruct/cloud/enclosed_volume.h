@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "reconstruct/cloud/point_cloud.h"
+
+namespace umtet {
+
+/// What a piece of surface encloses, from its samples.
+struct EnclosedVolume {
+  double volume = 0;    ///< sum a_i (x_i - c).n_i / 3 about its centroid c: > 0 where the normals point outward
+  double area = 0;      ///< sum a_i
+  double openness = 1;  ///< |sum a_i n_i| / area: 0 for a closed surface, 1 for a flat piece
+  double fullness = 0;  ///< |volume| / that of the sphere of this area: 1 for a sphere, 0 for a sheet
+  std::size_t n_points = 0;
+
+  /// The sign of the volume is one of a body. A hemisphere has openness 0.5; sheets, ears on their own and patches of
+  /// scans lie beyond these bounds. The scorpion, the thinnest of the scans we have, has a fullness of 0.18, an
+  /// ellipsoid of 1 : 1 : 0.02 has 0.05.
+  bool tells_sides() const { return openness < 0.3 && fullness > 0.02; }
+};
+
+/// Of every component. @param areas  a_i of sample_areas
+std::vector<EnclosedVolume> enclosed_volumes(const OrientedPointCloud& cloud, const std::vector<double>& areas,
+                                             const std::vector<std::uint32_t>& component, std::size_t n_components);
+
+/// How often the component winds around x: 1 inside, 0 outside, by its normals. Sums at most 20000 samples, evenly
+/// picked: points nearer than a few spacings to the component get rough values.
+double winding_number(const OrientedPointCloud& cloud, const std::vector<double>& areas,
+                      const std::vector<std::uint32_t>& members, const Vec3& x);
+
+}  // namespace umtet

@@ -1,0 +1,238 @@
+#include "reconstruct/cloud/neighbour_tree.h"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <flann/flann.hpp>
+#include <stdexcept>
+#include <string>
+
+#include "reconstruct/cloud/morton_order.h"
+
+namespace umtet {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// FLANN compares what it has already summed up over the walk with the bound, so a bound of a few roundings more than
+// the distance that is meant keeps points at exactly that distance; the result sets look again.
+constexpr double kRounding = 1 + 1e-12;
+double rounded_up(double distance2) { return kRounding * distance2 + std::numeric_limits<double>::min(); }
+
+// With k = 13 on a surface 10 to 20 points a leaf cost the same.
+constexpr int kLeafSize = 16;
+// Some 100 us of searches: a task costs less than a hundredth of that.
+constexpr std::size_t kQueriesPerTask = 128;
+
+/// The nearest few so far, in order. They are rows of the tree until the end: looking up every candidate's number would
+/// cost a cache line each, and only equal distances ask for it.
+class NearestFew final : public flann::ResultSet<double> {
+ public:
+  /// @param bound2  at least the squared distance of the last one there will be room for
+  NearestFew(const std::uint32_t* order, std::span<Neighbour> room, double bound2 = kInfinity)
+      : order_(order), room_(room), bound_(bound2) {}
+  bool full() const override { return size_ == room_.size(); }
+  double worstDist() const override { return bound_; }
+  void addPoint(double distance2, std::size_t row) override {
+    const Neighbour found{distance2, static_cast<std::uint32_t>(row)};
+    if (size_ < room_.size())
+      ++size_;
+    else if (!is_before(found, room_[size_ - 1]))
+      return;
+    std::size_t at = size_ - 1;
+    for (; at > 0 && is_before(found, room_[at - 1]); --at) room_[at] = room_[at - 1];
+    room_[at] = found;
+    if (size_ == room_.size()) bound_ = rounded_up(room_[size_ - 1].distance2);
+  }
+  void rows(std::vector<std::uint32_t>& out) const {
+    out.resize(size_);
+    for (std::size_t i = 0; i < size_; ++i) out[i] = room_[i].point;
+  }
+  /// Ends the search: points instead of rows.
+  std::span<const Neighbour> points() {
+    for (Neighbour& found : room_.first(size_)) found.point = order_[found.point];
+    return room_.first(size_);
+  }
+
+ private:
+  bool is_before(const Neighbour& a, const Neighbour& b) const {
+    return a.distance2 < b.distance2 || (a.distance2 == b.distance2 && order_[a.point] < order_[b.point]);
+  }
+  const std::uint32_t* order_;
+  std::span<Neighbour> room_;
+  std::size_t size_ = 0;
+  double bound_;
+};
+
+/// Hands on what is in a ball.
+class Ball final : public flann::ResultSet<double> {
+ public:
+  Ball(const std::vector<std::uint32_t>& order, double radius2, const std::function<void(std::uint32_t, double)>& visit)
+      : order_(order), radius2_(radius2), bound_(rounded_up(radius2)), visit_(visit) {}
+  bool full() const override { return true; }
+  double worstDist() const override { return bound_; }
+  void addPoint(double distance2, std::size_t row) override {
+    if (distance2 <= radius2_) visit_(order_[row], distance2);
+  }
+
+ private:
+  const std::vector<std::uint32_t>& order_;
+  double radius2_, bound_;
+  const std::function<void(std::uint32_t, double)>& visit_;
+};
+
+/// Counts what is in a ball up to a limit, and ends the search there: no box is nearer than -1.
+class Count final : public flann::ResultSet<double> {
+ public:
+  Count(double radius2, std::size_t limit) : radius2_(radius2), bound_(rounded_up(radius2)), limit_(limit) {}
+  bool full() const override { return count_ >= limit_; }
+  double worstDist() const override { return full() ? -1 : bound_; }
+  void addPoint(double distance2, std::size_t) override { count_ += distance2 <= radius2_ ? 1 : 0; }
+  std::size_t count() const { return std::min(count_, limit_); }
+
+ private:
+  double radius2_, bound_;
+  std::size_t limit_, count_ = 0;
+};
+
+}  // namespace
+
+struct NeighbourTree::Index {
+  Vec3 low, high;
+  std::vector<Vec3> rows;  // the points along the curve; FLANN keeps pointers into them
+  flann::KDTreeSingleIndex<flann::L2_3D<double>> tree;
+
+  Index(const Vec3& lowest, const Vec3& highest, std::vector<Vec3> sorted)
+      : low(lowest),
+        high(highest),
+        rows(std::move(sorted)),
+        tree(flann::Matrix<double>(rows.front().data(), rows.size(), 3), flann::KDTreeSingleIndexParams(kLeafSize)) {
+    tree.buildIndex();
+  }
+  void search(flann::ResultSet<double>& found, const Vec3& x) const {
+    tree.findNeighbors(found, x.data(), flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED, 0.0F));
+  }
+};
+
+/// Finds the first accepted point of a piece of the tube around a ray, in a ball that contains the piece.
+class NeighbourTree::TubePiece final : public flann::ResultSet<double> {
+ public:
+  TubePiece(const NeighbourTree& tree, const Vec3& x, const Vec3& d, const std::array<double, 2>& from_to,
+            double width2, double reach2, const std::function<bool(std::uint32_t)>& accept)
+      : tree_(tree), x_(x), d_(d), from_to_(from_to), width2_(width2), reach2_(reach2), accept_(accept) {}
+  bool full() const override { return true; }
+  double worstDist() const override { return reach2_; }
+  void addPoint(double, std::size_t row) override {
+    const Vec3 r = tree_.index_->rows[row] - x_;
+    const double t = r.dot(d_);
+    if (t < from_to_[0] || t > from_to_[1] || t > hit_.t || (r - t * d_).squaredNorm() > width2_) return;
+    const std::uint32_t point = tree_.order_[row];
+    if ((t < hit_.t || point < hit_.point) && accept_(point)) hit_ = {t, point};
+  }
+  const Hit& hit() const { return hit_; }
+
+ private:
+  const NeighbourTree& tree_;
+  const Vec3 &x_, &d_;
+  std::array<double, 2> from_to_;
+  double width2_, reach2_;
+  const std::function<bool(std::uint32_t)>& accept_;
+  Hit hit_;
+};
+
+NeighbourTree::NeighbourTree(const std::vector<Vec3>& points) {
+  if (points.empty()) throw std::invalid_argument("a cloud without points has no neighbours");
+  if (points.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+    throw std::invalid_argument(std::to_string(points.size()) + " points: more than FLANN can number");
+  Vec3 low = points.front(), high = low;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!points[i].allFinite()) throw std::invalid_argument("points[" + std::to_string(i) + "] is not finite");
+    low = low.cwiseMin(points[i]);
+    high = high.cwiseMax(points[i]);
+  }
+  if (low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff() > kLargestCoordinate)
+    throw std::invalid_argument("coordinates beyond 1e153: squared distances overflow");
+  order_ = morton_order(points);
+  std::vector<Vec3> rows;
+  rows.reserve(points.size());
+  for (const std::uint32_t i : order_) rows.push_back(points[i]);
+  index_ = std::make_unique<Index>(low, high, std::move(rows));
+}
+
+NeighbourTree::~NeighbourTree() = default;
+NeighbourTree::NeighbourTree(NeighbourTree&&) noexcept = default;
+NeighbourTree& NeighbourTree::operator=(NeighbourTree&&) noexcept = default;
+
+std::span<const Neighbour> NeighbourTree::k_nearest(const Vec3& x, std::span<Neighbour> room) const {
+  if (room.empty()) return room;
+  NearestFew nearest(order_.data(), room);
+  index_->search(nearest, x);
+  return nearest.points();
+}
+
+void NeighbourTree::for_each_neighbourhood(
+    std::size_t k, const std::function<void(std::uint32_t, std::span<const Neighbour>)>& visit) const {
+  if (k == 0) throw std::invalid_argument("k = 0 neighbours: must be >= 1");
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, size(), kQueriesPerTask),
+                    [&](const tbb::blocked_range<std::size_t>& rows) {
+                      std::vector<Neighbour> room(std::min(k, size()));
+                      std::vector<std::uint32_t> former;  // rows of what the point before has found: as many as wanted
+                      for (std::size_t row = rows.begin(); row != rows.end(); ++row) {
+                        const Vec3& x = index_->rows[row];
+                        double bound2 = former.empty() ? kInfinity : 0;
+                        for (const std::uint32_t near : former) {
+                          bound2 = std::max(bound2, (x - index_->rows[near]).squaredNorm());
+                        }
+                        NearestFew nearest(order_.data(), room, rounded_up(bound2));
+                        index_->search(nearest, x);
+                        nearest.rows(former);
+                        visit(order_[row], nearest.points());
+                      }
+                    });
+}
+
+void NeighbourTree::visit_ball(const Vec3& x, double radius2,
+                               const std::function<void(std::uint32_t, double)>& visit) const {
+  Ball ball(order_, radius2, visit);
+  index_->search(ball, x);
+}
+
+std::size_t NeighbourTree::count_within(const Vec3& x, double radius2, std::size_t limit) const {
+  Count count(radius2, limit);
+  index_->search(count, x);
+  return count.count();
+}
+
+NeighbourTree::Hit NeighbourTree::first_along(const Vec3& x, const Vec3& d, double t_min, double width,
+                                              const std::function<bool(std::uint32_t)>& accept) const {
+  if (!(width > 0)) throw std::invalid_argument("first_along: width must be > 0");
+  if (d.isZero(0)) return {};
+  // Places on the ray are rounded: this share of the width covers it as long as coordinates hold six digits of that.
+  constexpr double kSlack = 1e-6;
+  const double width2 = width * width, slack = kSlack * width;
+  const double t_end = (x - index_->low).cwiseAbs().cwiseMax((index_->high - x).cwiseAbs()).norm() + width;
+  for (double t = t_min; t <= t_end;) {
+    // An empty ball empties the tube for as long as it covers it. FLANN's boxes are those of its cuts and not of the
+    // points, so it looks into many for an empty ball inside a body: five times as many for a unit of length when the
+    // ball is ten times as wide. An eighth of the way gone keeps the number of balls logarithmic.
+    const double least = 2 * width;
+    double radius = std::max(least, (t - t_min) / 8);
+    while (radius > least && count_within(x + t * d, radius * radius, 1) > 0) radius = std::max(least, radius / 2);
+    if (radius > least) {
+      t += std::sqrt(radius * radius - width2) - slack;
+      continue;
+    }
+    // Between samples: the next piece of the tube, twice as long as its radius, within a ball.
+    const double next = std::max(t + 2 * width, std::nextafter(t, kInfinity));
+    const double reach2 = 2 * (width + slack) * (width + slack);
+    TubePiece piece(*this, x, d, {t_min, next}, width2, reach2, accept);
+    index_->search(piece, x + (t + width) * d);
+    if (piece.hit().t <= next) return piece.hit();
+    t = next;
+  }
+  return {};
+}
+
+}  // namespace umtet

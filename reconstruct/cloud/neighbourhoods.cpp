@@ -1,0 +1,31 @@
+#include "reconstruct/cloud/neighbourhoods.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace umtet {
+
+Neighbourhoods::Neighbourhoods(const NeighbourTree& tree, std::size_t k)
+    : n_(tree.size()), k_(std::min(k, tree.size() - 1)), points_(n_ * k_), distances2_(n_ * k_) {
+  if (k == 0) throw std::invalid_argument("k = 0 neighbours: must be >= 1");
+  tree.for_each_neighbourhood(k_ + 1, [&](std::uint32_t i, std::span<const Neighbour> near) {
+    std::size_t at = i * k_;
+    const std::size_t end = at + k_;
+    for (const Neighbour& other : near) {
+      // Among more duplicates than k the point itself may be missing.
+      if (other.point == i || at == end) continue;
+      points_[at] = other.point;
+      distances2_[at++] = other.distance2;
+    }
+  });
+}
+
+Neighbourhoods::Neighbourhoods(const std::vector<Vec3>& points, std::size_t k)
+    : Neighbourhoods(NeighbourTree(points), k) {}
+
+bool Neighbourhoods::has(std::size_t i, std::uint32_t j) const {
+  const std::span<const std::uint32_t> near = points(i);
+  return std::find(near.begin(), near.end(), j) != near.end();
+}
+
+}  // namespace umtet

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "reconstruct/cloud/neighbour_tree.h"
+
+namespace umtet {
+
+/// The k nearest others of every point, nearest first, equal distances by point number: searched once, and read by
+/// cleaning, areas, the sign graph. A point at the same place is another one, at distance 0.
+class Neighbourhoods {
+ public:
+  /// What every step of the preparation asks for: a second ring.
+  static constexpr std::size_t kDefault = 12;
+
+  Neighbourhoods() = default;
+  /// k is cut to size - 1. \throw std::invalid_argument  k = 0, or as NeighbourTree
+  /// Cost: 1.1 us a point with k = 12, and 12 k bytes.
+  Neighbourhoods(const NeighbourTree& tree, std::size_t k);
+  explicit Neighbourhoods(const std::vector<Vec3>& points, std::size_t k = kDefault);
+
+  std::size_t size() const { return n_; }
+  std::size_t k() const { return k_; }
+  std::span<const std::uint32_t> points(std::size_t i) const { return {points_.data() + i * k_, k_}; }
+  std::span<const double> distances2(std::size_t i) const { return {distances2_.data() + i * k_, k_}; }
+  bool has(std::size_t i, std::uint32_t j) const;
+
+ private:
+  std::size_t n_ = 0, k_ = 0;
+  std::vector<std::uint32_t> points_;
+  std::vector<double> distances2_;
+};
+
+}  // namespace umtet

@@ -1,0 +1,76 @@
+#include "reconstruct/io/detail/cloud_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace umtet::detail {
+
+void refuse(const CloudSource& source, const std::string& what) { throw CloudRefused(source.name + ": " + what); }
+
+std::string in_quotes(std::string_view text) {
+  constexpr std::size_t kShown = 40;
+  std::string shown(text.substr(0, kShown));
+  for (char& c : shown)
+    if (c < ' ' || c > '~') c = '?';
+  return fmt::format("'{}{}'", shown, text.size() > kShown ? "..." : "");
+}
+
+CloudColumns cloud_columns(const CloudSource& source, const std::vector<std::string>& names, std::string_view kind) {
+  const auto count = [&](std::string_view name) { return std::count(names.begin(), names.end(), name); };
+  const bool long_names = count("normal_x") + count("normal_y") + count("normal_z") > 0;
+  const std::array<std::string_view, 3> normal =
+      long_names ? std::array<std::string_view, 3>{"normal_x", "normal_y", "normal_z"}
+                 : std::array<std::string_view, 3>{"nx", "ny", "nz"};
+  const std::array<std::string_view, 6> wanted = {"x", "y", "z", normal[0], normal[1], normal[2]};
+  const bool without_normals = count(normal[0]) + count(normal[1]) + count(normal[2]) == 0;
+  if (source.needs_normals && without_normals && count("x") + count("y") + count("z") == 3)
+    refuse(source,
+           fmt::format("the points have no normals (no {} nx, ny, nz or normal_x, normal_y, normal_z): estimate "
+                       "and orient them first, for example in CloudCompare or MeshLab",
+                       kind));
+
+  CloudColumns columns;
+  columns.has_normals = source.needs_normals || !without_normals;
+  for (std::size_t c = 0; c < (columns.has_normals ? wanted.size() : 3); ++c) {
+    if (count(wanted[c]) == 0)
+      refuse(source, fmt::format("the points have no {} {}: export them with x y z nx ny nz", kind, wanted[c]));
+    if (count(wanted[c]) > 1) refuse(source, fmt::format("the points have {} {} more than once", kind, wanted[c]));
+    columns.at[c] = static_cast<std::size_t>(std::find(names.begin(), names.end(), wanted[c]) - names.begin());
+  }
+  for (const std::string_view name : {"label", "patch"}) {
+    if (columns.has_labels || count(name) == 0) continue;
+    if (count(name) > 1) refuse(source, fmt::format("the points have {} {} more than once", kind, name));
+    columns.has_labels = true;
+    columns.at[columns.has_normals ? 6 : 3] =
+        static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  }
+  return columns;
+}
+
+void append_point(const CloudSource& source, OrientedPointCloud& cloud, const std::vector<double>& values,
+                  const CloudColumns& columns) {
+  const auto& at = columns.at;
+  cloud.points.emplace_back(values[at[0]], values[at[1]], values[at[2]]);
+  if (columns.has_normals) cloud.normals.emplace_back(values[at[3]], values[at[4]], values[at[5]]);
+  if (!columns.has_labels) return;
+  const double label = values[columns.label()];
+  if (label != std::trunc(label) || std::abs(label) > std::numeric_limits<int>::max()) {
+    refuse(source, fmt::format("point {} (counted from 1): its label is {}: labels are whole numbers of 32 bits",
+                               cloud.points.size(), label));
+  }
+  cloud.labels.push_back(static_cast<int>(label));
+}
+
+void refuse_surplus(const CloudSource& source, std::size_t offset) {
+  constexpr std::string_view kPadding{" \t\r\n\0", 5};
+  const std::size_t surplus = source.bytes.find_first_not_of(kPadding, offset);
+  if (surplus != std::string_view::npos)
+    refuse(source, fmt::format("byte {}: data go on after the last item the header announces: its counts or types do "
+                               "not fit the data, export the file again",
+                               surplus));
+}
+
+}  // namespace umtet::detail

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "reconstruct/io/point_cloud_io.h"
+
+namespace umtet::detail {
+
+/// A cloud file in memory, and its name for messages. The bytes outlive every reader.
+struct CloudSource {
+  std::string name;
+  std::string_view bytes;
+  bool needs_normals = true;  ///< false: points without normals make a cloud without normals
+  /// Of the file, behind `bytes`. The readers need all of it, check_ply_head() and the like do not.
+  std::size_t bytes_left_out = 0;
+
+  std::size_t size() const { return bytes.size() + bytes_left_out; }  ///< of the file
+};
+
+/// \throw CloudRefused  always: "NAME: what"
+[[noreturn]] void refuse(const CloudSource& source, const std::string& what);
+
+/// A piece of a file as it may be shown on a terminal: quoted, clipped to 40 characters, unprintable bytes as '?'.
+std::string in_quotes(std::string_view text);
+
+/// Columns of x, y, z and, where there are any, of the normal and of the label.
+struct CloudColumns {
+  std::array<std::size_t, 7> at{};  ///< the label comes right behind what is there of the others
+  bool has_normals = true;
+  bool has_labels = false;
+
+  std::size_t label() const { return at[has_normals ? 6 : 3]; }
+  const std::size_t* begin() const { return at.data(); }
+  const std::size_t* end() const { return at.data() + (has_normals ? 6 : 3) + (has_labels ? 1 : 0); }
+};
+
+/// Where x, y, z, the normal (nx ny nz or normal_x normal_y normal_z) and the label (label, else patch) are among
+/// `names`.
+/// \throw CloudRefused  one of them missing, unless all of the normal are and the source does not need them, or there
+/// twice; `kind` ("property", "field") is the format's word for them
+CloudColumns cloud_columns(const CloudSource& source, const std::vector<std::string>& names, std::string_view kind);
+
+/// Appends the point (x, y, z) and, where there are, the normal (nx, ny, nz) and the label found in values at columns.
+/// \throw CloudRefused  the label is not a whole number of 32 bits
+void append_point(const CloudSource& source, OrientedPointCloud& cloud, const std::vector<double>& values,
+                  const CloudColumns& columns);
+
+/// \throw CloudRefused  anything but blanks and NUL padding from `offset` on: then a count of the header is wrong
+void refuse_surplus(const CloudSource& source, std::size_t offset);
+
+/// What the beginning of a file is enough for: its header and, of binary files, counts against the size of the file; of
+/// XYZ the rows that are there. Headers are shorter than this beginning.
+/// \throw CloudRefused  as the reader would
+void check_ply_head(const CloudSource& head);
+void check_pcd_head(const CloudSource& head);
+void check_xyz_head(const CloudSource& head);
+
+/// One reader per format. They check the shape of the file; what the numbers are is checked by read_point_cloud.
+/// \throw CloudRefused
+CloudFile read_ply(const CloudSource& source);
+CloudFile read_pcd(const CloudSource& source);
+CloudFile read_xyz(const CloudSource& source);
+
+}  // namespace umtet::detail

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "reconstruct/io/detail/pcd_header.h"
+
+namespace umtet::detail {
+
+/// The points of a binary_compressed file, n_points * point_bytes bytes, point by point.
+/// \throw CloudRefused  the block is damaged
+std::vector<std::uint8_t> unpack(const CloudSource& source, const PcdHeader& header);
+
+}  // namespace umtet::detail

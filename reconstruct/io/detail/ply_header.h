@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "reconstruct/io/detail/cloud_source.h"
+
+namespace umtet::detail {
+
+enum class PlyFormat { Ascii, BinaryLittleEndian, BinaryBigEndian };
+enum class PlyType { Int8, UInt8, Int16, UInt16, Int32, UInt32, Float32, Float64 };
+
+std::size_t byte_size(PlyType type);
+
+/// A scalar, or a list: its length as count_type, then that many values.
+struct PlyProperty {
+  std::string name;
+  PlyType type = PlyType::Float32;
+  bool is_list = false;
+  PlyType count_type = PlyType::UInt8;
+};
+
+struct PlyElement {
+  std::string name;
+  std::uint64_t count = 0;  ///< as announced: compare with the file before use
+  std::vector<PlyProperty> properties;
+};
+
+struct PlyHeader {
+  PlyFormat format = PlyFormat::Ascii;
+  std::vector<PlyElement> elements;  ///< exactly one is called "vertex"
+  std::size_t body = 0;              ///< byte where the data begin
+  std::size_t body_line = 0;         ///< and its line, from 1
+};
+
+/// \throw CloudRefused  with the line that is wrong
+PlyHeader parse_ply_header(const CloudSource& source);
+
+}  // namespace umtet::detail

@@ -1,0 +1,363 @@
+#include "reconstruct/solve/fit_ssd.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "reconstruct/solve/multigrid.h"
+#include "reconstruct/solve/resolution.h"
+#include "reconstruct/solve/ssd_assembled.h"
+#include "reconstruct/solve/ssd_band.h"
+
+namespace umtet {
+
+std::vector<std::string> problems(const SsdParams& params) {
+  std::vector<std::string> p = problems(params.prior);
+  if (!(params.spacing >= 0 && std::isfinite(params.spacing))) p.push_back("spacing must be >= 0 (0: automatic)");
+  if (!(params.smoothing >= 0 && std::isfinite(params.smoothing))) p.push_back("smoothing must be >= 0 (0: automatic)");
+  if (!(params.noise >= 0 && std::isfinite(params.noise))) p.push_back("noise must be >= 0");
+  if (!(params.detail > 0 && std::isfinite(params.detail))) p.push_back("detail must be > 0");
+  if (!(params.smooth > 0 && std::isfinite(params.smooth))) p.push_back("smooth must be > 0");
+  if (!(params.alpha > 0)) p.push_back("alpha must be > 0");
+  if (!(params.tolerance > 0 && params.tolerance < 1)) p.push_back("tolerance must be in (0, 1)");
+  if (params.max_iterations < 1) p.push_back("max_iterations must be >= 1");
+  if (!(params.band_tolerance > 0 && params.band_tolerance < 1)) p.push_back("band_tolerance must be in (0, 1)");
+  if (params.coarsest_nodes < 1) p.push_back("coarsest_nodes must be >= 1");
+  if (params.padding < 1) p.push_back("padding must be >= 1");
+  if (params.solver == SsdSolver::Cascade) {
+    if (params.weights == SsdWeights::Paper) p.push_back("weights = paper needs solver = full or assembled");
+    if (params.prior.kind == LmePrior::Kind::Gaussian) p.push_back("prior = gaussian needs solver = full or assembled");
+  }
+  return p;
+}
+
+namespace {
+
+constexpr std::ptrdiff_t kDenseNodes = 3000;       // more are never factored densely on the coarsest lattice
+constexpr double kMostNodes = 1e9;                 // a full lattice holds no more: about 200 bytes each
+constexpr std::ptrdiff_t kAssembledNodes = 16000;  // more are never factored at all: a minute already
+
+// Seconds of one core, measured: a solve per node of the finest lattice; a dense Cholesky factor per node cubed.
+constexpr double kSolveSeconds = 4.5e-6, kFactorSeconds = 4e-11;
+
+// Halvings enough for the longest axis that can be asked for.
+constexpr int kMostLevels = 24;
+
+struct Hierarchy {
+  Lattice finest;
+  int n_levels = 1;
+};
+
+// The lattice around the box whose cells can be halved until a dense factor is cheap. Each halving rounds the numbers
+// of cells up to a higher power of two: the cheapest sum of both wins.
+Hierarchy choose_hierarchy(const Eigen::AlignedBox3d& box, double h, int padding, int width) {
+  const Vec3 wanted = box.sizes() / h + Vec3::Constant(2 * padding);
+  if (!(wanted.prod() < kMostNodes && wanted.maxCoeff() < kMostNodes)) {
+    throw std::length_error(
+        fmt::format("spacing {:.6g} asks for {:.3g} lattice nodes: choose a larger one", h, wanted.prod()));
+  }
+  Hierarchy best;
+  double least = std::numeric_limits<double>::infinity();
+  for (int levels = 1; levels <= kMostLevels; ++levels) {
+    const int step = 1 << (levels - 1);
+    Eigen::Vector3i cells;
+    for (int d = 0; d < 3; ++d) {
+      cells[d] = std::max((static_cast<int>(std::ceil(wanted[d])) + step - 1) / step, width - 1) * step;
+    }
+    if (!(cells.cast<double>().prod() < kMostNodes)) break;  // rounding up to 2^levels makes flat lattices thick
+    const Eigen::Vector3d coarse = (cells / step + Eigen::Vector3i::Ones()).cast<double>();
+    if (coarse.prod() > kDenseNodes) continue;
+    const Lattice lattice{box.center() - h / 2 * cells.cast<double>(), h, cells + Eigen::Vector3i::Ones()};
+    const double seconds =
+        kSolveSeconds * static_cast<double>(lattice.size()) + kFactorSeconds * std::pow(coarse.prod(), 3);
+    if (seconds < least) {
+      least = seconds;
+      best = {lattice, levels};
+    }
+  }
+  if (best.finest.size() == 0) {
+    throw std::length_error(
+        fmt::format("spacing {:.6g} asks for a lattice of {:.0f} x {:.0f} x {:.0f} cells, too many or too "
+                    "unlike for multigrid: choose a larger spacing",
+                    h, wanted[0], wanted[1], wanted[2]));
+  }
+  return best;
+}
+
+// @param area  a_i; empty for the paper's weights
+// @param l     by which values are weighed, for weights by area
+std::vector<SsdSample> make_samples(const OrientedPointCloud& cloud, const std::vector<double>& area,
+                                    const Lattice& lattice, double l) {
+  const double h = lattice.h;
+  std::vector<SsdSample> samples(cloud.points.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    samples[i].xi = (cloud.points[i] - lattice.origin) / h;
+    samples[i].normal = cloud.normals[i];
+    // With f = h F and x = h xi, both functionals divided by h² (area) or as they stand (paper):
+    samples[i].w_value = area.empty() ? h * h : area[i] / (l * l);
+    samples[i].w_gradient = area.empty() ? 1.0 : area[i] / (h * h);
+  }
+  return samples;
+}
+
+// @param length  by which values are weighed
+void measure_fit(const OrientedPointCloud& cloud, const LevelSet& psi, const std::vector<double>& area, double length,
+                 SsdReport& report) {
+  struct Sums {
+    double value2 = 0, energy_value = 0, energy_normal = 0;
+    std::size_t n_opposed = 0;
+  };
+  constexpr std::size_t kChunk = 4096;
+  const std::size_t n = cloud.points.size();
+  std::vector<Sums> sums((n + kChunk - 1) / kChunk);
+  tbb::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t chunk) {
+    Sums& sum = sums[chunk];
+    for (std::size_t i = chunk * kChunk; i < std::min(n, (chunk + 1) * kChunk); ++i) {
+      const double a = area.empty() ? 1 : area[i], scale = area.empty() ? 1 : length;
+      Vec3 gradient;
+      const double value = psi.evaluate(cloud.points[i], &gradient, nullptr);
+      sum.value2 += value * value;
+      sum.energy_value += a * std::pow(value / scale, 2) / 2;
+      sum.energy_normal += a * (gradient - cloud.normals[i]).squaredNorm() / 2;
+      sum.n_opposed += gradient.dot(cloud.normals[i]) < 0;
+    }
+  });
+  double value2 = 0;
+  for (const Sums& sum : sums) {
+    value2 += sum.value2;
+    report.energy_value += sum.energy_value;
+    report.energy_normal += sum.energy_normal;
+    report.n_opposed_normals += sum.n_opposed;
+  }
+  report.rms_value = std::sqrt(value2 / static_cast<double>(n));
+
+  constexpr int kWallSamples = 16;  // along each edge of a face
+  report.least_wall_value = std::numeric_limits<double>::infinity();
+  const Eigen::AlignedBox3d& box = psi.domain();
+  for (int face = 0; face < 6; ++face) {
+    for (int s = 0; s < kWallSamples * kWallSamples; ++s) {
+      const int row = s / kWallSamples, column = s % kWallSamples;
+      Vec3 t;  // position in the box, 0 .. 1 on each axis
+      t[face / 2] = face % 2;
+      t[(face / 2 + 1) % 3] = (column + 0.5) / kWallSamples;
+      t[(face / 2 + 2) % 3] = (row + 0.5) / kWallSamples;
+      report.least_wall_value = std::min(report.least_wall_value, psi.value(box.min() + t.cwiseProduct(box.sizes())));
+    }
+  }
+}
+
+double median(std::vector<double> v) {
+  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+  std::nth_element(v.begin(), middle, v.end());
+  return *middle;
+}
+
+void go_on(const SsdProgress& progress, const char* step, double fraction) {
+  if (progress && !progress(step, fraction)) throw SolveCancelled(fmt::format("stopped during {}", step));
+}
+
+// What both ways of fitting start from.
+struct Problem {
+  const OrientedPointCloud& cloud;
+  const SsdParams& params;
+  const SsdProgress& progress;
+  LmeTables tables;
+  Eigen::AlignedBox3d box;
+  std::vector<double> area;  // a_i; empty for the paper's weights
+  double finest_smoothing;   // c in the finest band
+};
+
+// The level set on all nodes of one lattice.
+// @param samples  in the units of that lattice
+LevelSet fit_lattice(const Problem& problem, const Hierarchy& hierarchy, std::vector<SsdSample> samples,
+                     double tolerance, SsdReport& report) {
+  const SsdParams& params = problem.params;
+  const Lattice& lattice = hierarchy.finest;
+  const bool by_area = params.weights == SsdWeights::Area;
+  const double kappa = by_area ? report.smoothing : params.alpha * lattice.h;
+  const SsdOperator op(problem.tables, lattice.n, kappa, std::move(samples));
+  report.n_nodes = lattice.size();
+  std::vector<double> c;  // in units of the spacing
+  if (params.solver == SsdSolver::Assembled) {
+    if (op.size() > kAssembledNodes) {
+      throw SolveError(
+          fmt::format("the assembled solver is for up to {} nodes, this lattice has {}: use another solver or a larger "
+                      "spacing",
+                      kAssembledNodes, op.size()));
+    }
+    c = solve_assembled(op);
+  } else {
+    Multigrid multigrid(op, hierarchy.n_levels);
+    std::vector<double> r(op.size() + SsdOperator::kPad, 0.0);
+    op.right_hand_side(r.data());
+    go_on(problem.progress, "solve", 0);
+    const PcgReport pcg = solve_pcg(op, multigrid, r, tolerance, params.max_iterations, c, [&](double residual) {
+      go_on(problem.progress, "solve", std::clamp(std::log(residual) / std::log(tolerance), 0.0, 1.0));
+    });
+    report.iterations = pcg.iterations;
+    report.residuals = pcg.residuals;
+    if (!pcg.converged) {
+      throw SolveError(
+          fmt::format("{} nodes, smoothing {:.3g}: relative residual {:.2e} after {} iterations, wanted {:.1e}",
+                      op.size(), op.kappa(), pcg.residuals.back(), pcg.iterations, tolerance));
+    }
+  }
+  c.resize(op.size() + SsdOperator::kPad, 0.0);
+  if (params.solver != SsdSolver::Cascade) {
+    std::vector<double> workspace;
+    // Back to model units: E = h² times the lattice functional for area weights; eq. (10) is written in its own units.
+    report.energy_hessian = (by_area ? lattice.h * lattice.h : 1) * op.energies(c.data(), workspace)[2];
+  }
+  c.resize(op.size());
+  for (double& v : c) v *= lattice.h;
+  return LevelSet(params.prior, {lattice, std::move(c)});
+}
+
+LevelSet fit_full(const Problem& problem, SsdReport& report) {
+  const Hierarchy hierarchy =
+      choose_hierarchy(problem.box, report.spacing, problem.params.padding, problem.tables.width());
+  return fit_lattice(problem, hierarchy,
+                     make_samples(problem.cloud, problem.area, hierarchy.finest,
+                                  finest_value_length(hierarchy.finest.h, problem.params.noise)),
+                     problem.params.tolerance, report);
+}
+
+// Functions of a band stay clear of those that the wall of the coarsest lattice deforms.
+constexpr int kLeastCascadePadding = 5;
+// Bands take up what a coarser lattice leaves over only around samples, and only to a tenth: solved to 5e-4 there, the
+// koala's samples are .041 h from its mesh instead of .038 h. A lattice that none follow is done when psi is .0003 h
+// rms off its limit.
+constexpr double kLoneTolerance = 5;
+// Samples are merged in half-spacing cubes on every level.
+constexpr double kMergeCube = 0.5;
+// A sample that stands for more than 4 h^2 has no neighbour within about 2 h.
+constexpr double kMostArea = 4;
+
+// Bytes per node of the coarsest lattice (multigrid) and per point (cloud, areas, samples, merging); and what the level
+// set keeps of a band over what its solve takes. Measured peaks: 200 bytes a point and 150 a band node.
+constexpr double kBytesPerCoarseNode = 250, kBytesPerPoint = 200, kKept = 0.6;
+
+void require_memory(const Problem& problem, const Hierarchy& hierarchy,
+                    const std::vector<std::vector<SsdSample>>& samples) {
+  const double limit = problem.params.max_memory;
+  if (limit == 0) return;
+  double need = kBytesPerPoint * static_cast<double>(problem.cloud.points.size()) +
+                kBytesPerCoarseNode * static_cast<double>(hierarchy.finest.size());
+  for (std::size_t level = 1; level < samples.size(); ++level) {
+    const double bytes = SsdBand::expected_bytes(samples[level], problem.tables.half_width());
+    need += level + 1 < samples.size() ? kKept * bytes : (1 + kKept) * bytes;
+  }
+  if (need <= limit) return;
+  throw SolveTooLarge(
+      fmt::format("a finest spacing of {:.4g} needs {:.3g} GB of memory, {:.3g} GB are allowed: choose a "
+                  "larger spacing (--detail below 1), or allow more",
+                  hierarchy.finest.h / std::exp2(samples.size() - 1.0), need / 1e9, limit / 1e9));
+}
+
+LevelSet fit_cascade(const Problem& problem, SsdReport& report) {
+  const SsdParams& params = problem.params;
+  const int padding = std::max(params.padding, kLeastCascadePadding);
+  int n_bands = 0;
+  double coarsest = report.spacing;
+  while ((problem.box.sizes() / coarsest + Vec3::Constant(2 * padding)).prod() > params.coarsest_nodes) {
+    coarsest *= 2;
+    ++n_bands;
+  }
+  const Hierarchy hierarchy = choose_hierarchy(problem.box, coarsest, padding, problem.tables.width());
+  Lattice lattice = hierarchy.finest;
+  lattice.h = std::ldexp(lattice.h, -n_bands);
+  lattice.n = (lattice.n.array() - 1) * (1 << n_bands) + 1;
+  std::vector<std::vector<SsdSample>> samples(n_bands + 1);
+  samples[n_bands] = merge_samples(
+      make_samples(problem.cloud, problem.area, lattice, finest_value_length(lattice.h, params.noise)), kMergeCube);
+  for (int level = n_bands; level-- > 0;) {
+    std::vector<SsdSample> coarser = samples[level + 1];
+    coarsen(coarser);
+    const double h = std::ldexp(lattice.h, n_bands - level);
+    for (SsdSample& s : coarser) s.w_value = s.w_gradient * std::pow(h / value_length(h, params.noise), 2);
+    samples[level] = merge_samples(coarser, kMergeCube);
+    samples[level + 1] = resolved_samples(samples[level + 1], kMostArea);
+  }
+  require_memory(problem, hierarchy, samples);
+  LevelSet psi = fit_lattice(problem, hierarchy, std::move(samples[0]),
+                             (n_bands > 0 ? 1 : kLoneTolerance) * params.tolerance, report);
+  for (int level = 1; level <= n_bands && !samples[level].empty(); ++level) {
+    const double per_level = 1.0 / n_bands;
+    const double smoothing = level < n_bands ? report.smoothing : problem.finest_smoothing;
+    BandReport band;
+    psi = refine(
+        psi, samples[level], smoothing, params.band_tolerance, params.max_iterations,
+        [&](double residual) {
+          const double done = std::clamp(std::log(residual) / std::log(params.band_tolerance), 0.0, 1.0);
+          go_on(problem.progress, "refine", (level - 1 + done) * per_level);
+        },
+        band);
+    if (!band.converged) {
+      throw SolveError(
+          fmt::format("band of {} nodes, smoothing {:.3g}: relative residual {:.2e} after {} iterations, "
+                      "wanted {:.1e}",
+                      band.n_nodes, smoothing, band.residual, band.iterations, params.band_tolerance));
+    }
+    samples[level] = {};
+    report.n_nodes += band.n_nodes;
+    report.bands.push_back(band);
+  }
+  report.spacing = psi.spacing();
+  return psi;
+}
+
+}  // namespace
+
+SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const SsdProgress& progress,
+               const NeighbourDistances* near) {
+  const std::vector<std::string> wrong = problems(params);
+  if (!wrong.empty()) throw std::invalid_argument(fmt::format("{}", fmt::join(wrong, "; ")));
+  if (cloud.points.size() < 10 || cloud.points.size() != cloud.normals.size()) {
+    throw std::invalid_argument(
+        fmt::format("a cloud needs at least 10 points with a normal each; this one has {} points and {} normals",
+                    cloud.points.size(), cloud.normals.size()));
+  }
+  if (near && near->nearest.size() != cloud.points.size()) {
+    throw std::invalid_argument(
+        fmt::format("neighbours of {} points, the cloud has {}", near->nearest.size(), cloud.points.size()));
+  }
+  SsdReport report;
+  report.n_points = cloud.points.size();
+
+  go_on(progress, "weights", 0);
+  Problem problem{cloud, params, progress, LmeTables(params.prior), {}, {}, 0};
+  for (const Vec3& x : cloud.points) problem.box.extend(x);
+  const double diagonal = problem.box.diagonal().norm();
+  {
+    const NeighbourDistances searched =
+        near ? NeighbourDistances{} : neighbour_distances(cloud.points, kAreaNeighbours);
+    const NeighbourDistances& found = near ? *near : searched;
+    report.cloud_spacing = median_spacing(found);
+    problem.area = sample_areas(found);
+  }
+  const double edge = kMeshEdge * diagonal;
+  const Resolution chosen =
+      choose_resolution(std::sqrt(median(problem.area)), edge, params.noise, params.detail, params.smooth);
+  report.spacing = params.spacing > 0 ? params.spacing : chosen.spacing;
+  if (params.spacing == 0 && params.solver != SsdSolver::Cascade) {
+    report.spacing = std::max(report.spacing, edge);
+  }
+  report.smoothing = params.smoothing > 0 ? params.smoothing : chosen.smoothing;
+  problem.finest_smoothing = params.smoothing > 0 ? params.smoothing : chosen.finest_smoothing;
+  report.reason = chosen.reason;
+  if (params.weights == SsdWeights::Paper) problem.area = {};
+  if (report.spacing > diagonal) {
+    throw SolveError(fmt::format("spacing {:.6g} is larger than the cloud (diagonal {:.6g}): choose a smaller one",
+                                 report.spacing, diagonal));
+  }
+  go_on(progress, "setup", 0);
+  LevelSet psi = params.solver == SsdSolver::Cascade ? fit_cascade(problem, report) : fit_full(problem, report);
+  measure_fit(cloud, psi, problem.area, finest_value_length(report.spacing, params.noise), report);
+  return {std::move(psi), std::move(report)};
+}
+
+}  // namespace umtet

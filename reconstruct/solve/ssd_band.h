@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "reconstruct/basis/lattice_blocks.h"
+#include "reconstruct/level_set/level_set.h"
+#include "reconstruct/solve/ssd_operator.h"
+
+namespace umtet {
+
+/// The system of eq. (11) for a correction g on one level of the band cascade: the unknowns are the nodes whose
+/// functions meet a sample, and what is fitted is the residual of the sum f of the coarser levels:
+///   A = kappa K + sum_s ( w_v N N^T + w_g grad N . grad N^T ),
+///   r = sum_s ( w_g grad N . (n - grad f) + w_v N (v - f) ) - kappa int H(N) : H(f),    all in lattice units.
+///
+/// A is applied in single precision: PCG only has to reduce the residual by two or three digits on each level, and the
+/// next level starts from what psi misses in double precision (only the sums of r are single). Each cell block works on
+/// copies of its nodes; blocks that share nodes have different colours, so that sums have one order for any number of
+/// threads.
+class SsdBand {
+ public:
+  /// @param samples  of the cells to refine, in block order (merge_samples), lattice units; kept by reference
+  SsdBand(const LmeTables& tables, const Lattice& lattice, double kappa, const std::vector<SsdSample>& samples);
+
+  const LatticeBlocks& blocks() const { return blocks_; }
+  /// Values of one array: LatticeBlocks::kNodes a block.
+  std::size_t size() const { return static_cast<std::size_t>(blocks_.size()) * LatticeBlocks::kNodes; }
+  std::size_t n_active() const { return n_active_; }
+
+  /// y = A p, where p is zero on nodes that are not active.
+  void apply(const float* p, float* y) const;
+  /// 1 / diag(A) on active nodes, 0 on the others: a step along it leaves them out.
+  const std::vector<float>& inverse_diagonal() const { return inverse_diagonal_; }
+
+  /// r; zero on nodes that are not active.
+  /// @param f  the sum of the coarser levels
+  void residual(const LevelSet& f, std::vector<float>& r) const;
+
+  /// Bytes that a band of these samples takes while it is solved, before it is made: per block the vectors of the solve
+  /// and, made after it, the copies that psi is evaluated from; per sample its functions.
+  static double expected_bytes(const std::vector<SsdSample>& samples, int half_width);
+
+ private:
+  struct CellBlock {
+    std::array<int, 8> nodes;  // blocks b and b + 1 of each axis, x fastest; -1: no active node there
+    Eigen::Vector3i block;
+    std::size_t begin, end;  // its samples
+  };
+  template <class F>
+  void for_each_cell_block(F&& f) const;
+  template <int W>
+  void tabulate();
+  template <int W>
+  void apply_data(const float* p, float* y) const;
+  template <int R>
+  void apply_energy(const float* p, float* y) const;
+  void subtract_energy(const LevelSet& f, std::vector<float>& r) const;
+  template <int W>
+  void add_misfit(const LevelSet& f, std::vector<float>& r) const;
+  void invert_diagonal();
+
+  const LmeTables* tables_;
+  double kappa_;
+  const std::vector<SsdSample>* samples_;
+  LatticeBlocks blocks_;
+  std::vector<CellBlock> cell_blocks_;
+  std::array<std::vector<int>, 8> colours_;
+  std::vector<std::array<int, 27>> neighbours_;
+  std::vector<float> bases_;           // per sample: N, N' in x (8 lanes each), y and z (W each), weights
+  std::vector<std::uint16_t> window_;  // first node of a sample in the 16^3 nodes of its cell block
+  std::vector<float> inverse_diagonal_;
+  std::size_t n_active_ = 0;
+};
+
+}  // namespace umtet

@@ -1,0 +1,78 @@
+#include "reconstruct/solve/ssd_sample.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <cmath>
+#include <cstdint>
+
+namespace umtet {
+
+namespace {
+
+struct Keyed {
+  std::uint64_t key;
+  std::uint32_t index;
+  bool operator<(const Keyed& o) const { return key != o.key ? key < o.key : index < o.index; }
+};
+
+// Block of cells (17 bits an axis), then cube in the block (4 bits an axis: at most 16 cubes along 8 cells).
+std::uint64_t key_of(const Eigen::Vector3d& xi, double cubes_per_cell) {
+  std::uint64_t block = 0, inner = 0;
+  const auto per_block = static_cast<std::uint64_t>(8 * cubes_per_cell);
+  for (int d = 2; d >= 0; --d) {
+    const auto q = static_cast<std::uint64_t>(xi[d] * cubes_per_cell);
+    block = block << 17 | q / per_block;
+    inner = inner * per_block + q % per_block;
+  }
+  return block << 12 | inner;
+}
+
+}  // namespace
+
+std::vector<SsdSample> merge_samples(const std::vector<SsdSample>& samples, double cube) {
+  std::vector<Keyed> order(samples.size());
+  tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
+    order[i] = {key_of(samples[i].xi, 1 / cube), static_cast<std::uint32_t>(i)};
+  });
+  tbb::parallel_sort(order.begin(), order.end());
+  std::vector<SsdSample> means;
+  means.reserve(order.size());  // memory that is not written costs nothing
+  for (std::size_t i = 0; i < order.size();) {
+    std::size_t end = i + 1;
+    while (end < order.size() && order[end].key == order[i].key) ++end;
+    if (end == i + 1) {
+      means.push_back(samples[order[i++].index]);
+      continue;
+    }
+    SsdSample mean{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+    for (std::size_t k = i; k < end; ++k) {
+      const SsdSample& s = samples[order[k].index];
+      mean.xi += s.w_gradient * s.xi;
+      mean.normal += s.w_gradient * s.normal;
+      mean.w_value += s.w_value;
+      mean.w_gradient += s.w_gradient;
+    }
+    mean.xi /= mean.w_gradient;
+    mean.normal /= mean.w_gradient;
+    for (std::size_t k = i; k < end; ++k) {
+      const SsdSample& s = samples[order[k].index];
+      mean.value += s.w_gradient * (s.value + s.normal.dot(mean.xi - s.xi) / 2);
+    }
+    mean.value /= mean.w_gradient;
+    means.push_back(mean);
+    i = end;
+  }
+  return means;
+}
+
+void coarsen(std::vector<SsdSample>& samples) {
+  for (SsdSample& s : samples) {
+    s.xi /= 2;
+    s.value /= 2;
+    s.w_value /= 4;
+    s.w_gradient /= 4;
+  }
+}
+
+}  // namespace umtet

@@ -1,0 +1,389 @@
+#include "mesh/classification/classification.h"
+
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <initializer_list>
+#include <set>
+
+#include "mesh/background/body_size.h"
+#include "mesh/certify/certificate.h"
+#include "mesh/submesh/detail/assemble_submesh.h"
+#include "mesh/classification/detail/classification_band.h"
+#include "mesh/submesh/inside_walk.h"
+#include "mesh/classification/configuration_costs.h"
+#include "mesh/submesh/lattice_active_layer.h"
+#include "tests/support/domains.h"
+
+namespace umtet {
+namespace {
+
+using testing::AnalyticDomain;
+
+struct Labelled {
+  detail::IdSet plain, chosen;
+  LabelReport report;
+};
+
+Labelled choose(const BackgroundMesh& background, const AnalyticDomain& domain, const LabelParams& params = {}) {
+  std::size_t n = 0;
+  const detail::IdSet plain = detail::inside_vertices(background, domain, n);
+  Labelled result{plain, plain, {}};
+  result.report = choose_labels(background, a15_links(), domain, params, result.chosen);
+  return result;
+}
+
+BackgroundMesh background_of(const AnalyticDomain& domain, double n_tets) {
+  return BackgroundMesh(a15(), domain.box, h_for_tets(domain, domain.box, n_tets));
+}
+
+AnalyticDomain raised(const AnalyticDomain& domain, double step) {
+  AnalyticDomain result = domain;
+  result.psi = [psi = domain.psi, step](const Vec3& x, Vec3* g, Mat3* H) { return psi(x - Vec3(0, 0, step), g, H); };
+  return result;
+}
+
+MeshCertificate certificate(const Submesh& submesh) {
+  CertificateInput input;
+  input.mesh = &submesh.mesh;
+  input.positive_faces = &submesh.positive_faces;
+  return certify(input);
+}
+
+/// Prices up to 655 that mean nothing.
+LabelEnergies dice(std::uint32_t seed = 1) {
+  LabelEnergies energies = a15_label_energies();
+  std::uint32_t state = seed;
+  energies.generate([&] { return static_cast<float>((state = state * 1664525u + 1013904223u) >> 16) / 100; });
+  return energies;
+}
+
+TEST(Labels, ChangesKeepTheEulerCharacteristicWhateverThePrices) {
+  std::size_t n_flips = 0;
+  for (const AnalyticDomain& domain : testing::domains()) {
+    SCOPED_TRACE(domain.name);
+    const BackgroundMesh background = background_of(domain, 15000);
+    const LabelEnergies any = dice();
+    LabelParams params;
+    params.energies = &any;  // as many for what is no manifold: only the guards hold
+    params.reach_out = .5;
+    params.shift = .15;
+    for (const LabelParams& p : {params, LabelParams{}}) {
+      const Labelled labelled = choose(background, domain, p);
+      n_flips += labelled.report.flips;
+      EXPECT_EQ(labelled.report.not_manifold, 0u);
+      const MeshCertificate c = certificate(emit_submesh(background, labelled.chosen));
+      EXPECT_TRUE(c.boundary.closed_manifold);
+      EXPECT_TRUE(c.boundary.equals_positive_faces.value());
+      EXPECT_EQ(c.boundary.components, domain.components);
+      EXPECT_EQ(c.boundary.euler_characteristic, 2 * domain.components - 2 * domain.genus);
+    }
+  }
+  EXPECT_GT(n_flips, 1000u);
+}
+
+TEST(Labels, ThoseOfAMeshBeforeStayWhereOthersAreNotBetter) {
+  const AnalyticDomain before = testing::torus();
+  const BackgroundMesh background = background_of(before, 30000);
+  const AnalyticDomain after = raised(before, .05 * background.h());
+  const detail::IdSet last = choose(background, before).chosen;
+  const auto changes = [&](const detail::IdSet& inside) {
+    int n = 0;
+    for (std::size_t w = 0; w < inside.n_words(); ++w) n += std::popcount(inside.word(w) ^ last.word(w));
+    return n;
+  };
+  std::size_t n = 0;
+  detail::IdSet kept = detail::inside_vertices(background, after, n);
+  const LabelReport report = choose_labels(background, a15_links(), after, {}, kept, {}, &last);
+  EXPECT_GT(report.returned, 0u);
+  EXPECT_LT(changes(kept), .8 * changes(choose(background, after).chosen));
+  const MeshCertificate c = certificate(emit_submesh(background, kept));
+  EXPECT_TRUE(c.boundary.closed_manifold);
+  EXPECT_EQ(c.boundary.genus, before.genus);
+}
+
+TEST(Labels, AreTheSameWithWhatTheSearchHasAsked) {
+  const AnalyticDomain domain = testing::torus();
+  const BackgroundMesh background = background_of(domain, 20000);
+  const Labelled without = choose(background, domain);
+  InsideWalk walk(background);
+  walk.restart(domain);
+  EXPECT_TRUE(walk.values().empty());
+  walk.update(domain, {});
+  detail::IdSet inside = walk.inside();
+  const LabelReport report =
+      detail::choose_labels(background, a15_links(), domain, {}, inside, {}, nullptr, &walk.values());
+  EXPECT_TRUE(inside == without.chosen);
+  EXPECT_GT(report.flips, 0u);
+  EXPECT_EQ(report.psi_evaluations + walk.values().size(), without.report.psi_evaluations);
+  // What is said there is believed: a body half an edge smaller would have other labels.
+  detail::PsiValues smaller = walk.values();
+  for (detail::PsiValue& at : smaller) at.value += .5 * background.h() * at.gradient.norm();
+  inside = walk.inside();
+  detail::choose_labels(background, a15_links(), domain, {}, inside, {}, nullptr, &smaller);
+  EXPECT_FALSE(inside == without.chosen);
+}
+
+TEST(Labels, LowerThePriceOfTheBoundary) {
+  const AnalyticDomain domain = testing::torus();
+  const BackgroundMesh background = background_of(domain, 15000);
+  const auto price = [&](const detail::IdSet& inside) {
+    double sum = 0;
+    for (std::int64_t v = 0; v < background.n_vertices(); ++v) {
+      if (inside.test(v) || background.on_rim(v)) continue;
+      const int type = background.type(v);
+      unsigned mask = 0, k = 0;
+      for (const Tiling::Corner& c : background.tiling_tables().link[type]) {
+        mask |= static_cast<unsigned>(inside.test(v + background.id_step(type, c))) << k++;
+      }
+      if (mask != 0) sum += a15_label_energies()(a15_links()[type].site, a15_links()[type].state(mask));
+    }
+    return sum;
+  };
+  const Labelled labelled = choose(background, domain);
+  EXPECT_TRUE(labelled.report.settled);
+  EXPECT_LT(price(labelled.chosen), .8 * price(labelled.plain));
+}
+
+/// Changes labels and prices them, without the descent's shortcuts.
+class Pricing {
+ public:
+  /// @param last  labels of a mesh before, or null
+  explicit Pricing(detail::LabelBand& band, const detail::IdSet* last = nullptr) : band_(band), last_(last) {}
+
+  void take(const detail::IdSet& inside) {
+    for (int v = 0; v < static_cast<int>(band_.size()); ++v) {
+      if ((band_.label[v] != 0) != inside.test(band_.id[v])) change(v);
+    }
+  }
+
+  /// How many changes of a label (or of those of two neighbours) would lower the energy, by `keep` where they leave the
+  /// labels of last.
+  int n_better_singles() {
+    int n = 0;
+    for (const std::uint32_t v : band_.order) n += is_better({static_cast<int>(v)});
+    return n;
+  }
+  int n_better_pairs() {
+    int n = 0;
+    for (const std::uint32_t v : band_.order) {
+      for (const int w : band_.link(v)) {
+        if (band_.movable[w]) n += is_better({static_cast<int>(v), w});
+      }
+    }
+    return n;
+  }
+
+ private:
+  static constexpr double kRounding = 2e-3;
+
+  void change(int v) {
+    band_.label[v] ^= 1;
+    for (std::size_t k = 0; k < band_.link(v).size(); ++k) {
+      if (const int w = band_.link(v)[k]; w >= 0) {
+        band_.mask[w] ^= LinkMask{1} << a15_links()[band_.type[v]].back[k];
+      }
+    }
+  }
+
+  LinkState state(int v) const { return a15_links()[band_.type[v]].state(band_.mask[v]); }
+
+  double price(int v) const {
+    const double phi = band_.phi[v];
+    if (band_.label[v]) {
+      return params_.inside_weight * std::pow(std::max(0., phi + params_.inside_depth), 2);
+    }
+    if (band_.mask[v] == 0) return 0;
+    return a15_label_energies()(a15_links()[band_.type[v]].site, state(v)) +
+           params_.outside_weight * std::pow(phi - params_.outside_height, 2);
+  }
+
+  bool is_better(std::initializer_list<int> vertices) {
+    double least = kRounding;
+    for (const int v : vertices) {
+      const bool as_before = last_ && (band_.label[v] != 0) == last_->test(band_.id[v]);
+      if (as_before) least = params_.keep + kRounding;
+    }
+    return gain(vertices) > least;
+  }
+
+  /// Minus the change of energy; 0 where the topology of inside, outside or boundary would change.
+  double gain(std::initializer_list<int> vertices) {
+    std::set<int> touched(vertices);
+    for (const int v : vertices) touched.insert(band_.link(v).begin(), band_.link(v).end());
+    const auto sum = [&] {
+      double prices = 0;
+      for (const int v : touched) prices += price(v);
+      return prices;
+    };
+    const auto manifold = [&](int v) { return band_.label[v] || band_.mask[v] == 0 || state(v).manifold; };
+    const double before = sum();
+    bool keeps_topology = true;
+    for (const int v : vertices) {
+      keeps_topology &= state(v).simple;
+      change(v);
+      keeps_topology &= std::all_of(touched.begin(), touched.end(), manifold);
+    }
+    const double after = sum();
+    for (const int v : vertices) change(v);
+    return keeps_topology ? before - after : 0;
+  }
+
+  LabelParams params_;
+  detail::LabelBand& band_;
+  const detail::IdSet* last_;
+};
+
+TEST(Labels, NoChangeOfOneOrOfTwoNeighboursIsBetter) {
+  for (const AnalyticDomain& domain : {testing::sphere(), testing::torus()}) {
+    SCOPED_TRACE(domain.name);
+    const BackgroundMesh background = background_of(domain, 6000);
+    const Labelled labelled = choose(background, domain);
+    ASSERT_EQ(labelled.report.thin, 0u);
+    const LabelParams params;
+    detail::LabelBand band(background, a15_links(), domain, params, labelled.plain, {});
+    Pricing pricing(band);
+    EXPECT_GT(pricing.n_better_singles(), 50);
+    EXPECT_GT(pricing.n_better_pairs(), 50);
+    pricing.take(labelled.chosen);
+    EXPECT_EQ(pricing.n_better_singles(), 0);
+    EXPECT_EQ(pricing.n_better_pairs(), 0);
+  }
+}
+
+TEST(Labels, NoChangeIsBetterByMoreThanKeepWhereItLeavesTheLabelsBefore) {
+  const AnalyticDomain before = testing::torus();
+  const BackgroundMesh background = background_of(before, 60000);
+  const AnalyticDomain after = raised(before, .2 * background.h());
+  const detail::IdSet last = choose(background, before).chosen;
+  const LabelParams params;
+  const detail::IdSet plain = choose(background, after).plain;
+  detail::IdSet inside = plain;
+  choose_labels(background, a15_links(), after, params, inside, {}, &last);
+  detail::LabelBand band(background, a15_links(), after, params, plain, {});
+  Pricing with_keep(band, &last), without(band);
+  with_keep.take(inside);
+  EXPECT_EQ(with_keep.n_better_singles(), 0);
+  EXPECT_EQ(with_keep.n_better_pairs(), 0);
+  EXPECT_GT(without.n_better_singles() + without.n_better_pairs(), 0);
+}
+
+TEST(Labels, StayNearTheBoundary) {
+  const AnalyticDomain domain = testing::sphere();
+  const BackgroundMesh background = background_of(domain, 60000);
+  const Labelled labelled = choose(background, domain);
+  std::size_t outwards = 0;
+  for (std::int64_t v = 0; v < background.n_vertices(); ++v) {
+    if (labelled.plain.test(v) == labelled.chosen.test(v)) continue;
+    const double d = (background.position(v).norm() - 1) / background.h();
+    EXPECT_GE(d, -.9 - 1e-3);
+    EXPECT_LE(d, .2 + 1e-3);
+    outwards += labelled.chosen.test(v);
+  }
+  EXPECT_GT(outwards, 0u);
+}
+
+TEST(Labels, NoneChangesWhereProjectionWouldStretchTheBoundary) {
+  // A ball of 2.5 edges and its complement in a larger one: 1.2 is met .42 edges deep, or as far outside the hollow.
+  const double h = .4;
+  const AnalyticDomain ball = testing::sphere();
+  AnalyticDomain hollow = ball;
+  hollow.psi = [](const Vec3& x, Vec3* g, Mat3* H) {
+    const double side = x.norm() > 2 ? 1 : -1;
+    if (g) *g = side * 2 * x;
+    if (H) *H = side * 2 * Mat3::Identity();
+    return side > 0 ? x.squaredNorm() - 9 : 1 - x.squaredNorm();
+  };
+  LabelParams free;
+  free.inside_weight = free.outside_weight = 0;
+  free.most_stretch = 1e9;
+  free.reach_out = .9;
+  LabelParams held = free;
+  held.most_stretch = 1.2;
+  const auto n_far_changes = [&](const AnalyticDomain& domain, const LabelParams& params) {
+    std::size_t n = 0;
+    const BackgroundMesh background(a15(), testing::cube_box(3.7), h);
+    const Labelled labelled = choose(background, domain, params);
+    for (std::int64_t v = 0; v < background.n_vertices(); ++v) {
+      n += background.position(v).norm() < 1 - .5 * h && labelled.plain.test(v) != labelled.chosen.test(v);
+    }
+    return n;
+  };
+  for (const AnalyticDomain& domain : {ball, hollow}) {
+    std::size_t n_free = 0;
+    for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+      const LabelEnergies any = dice(seed);
+      free.energies = held.energies = &any;
+      n_free += n_far_changes(domain, free);
+      EXPECT_EQ(n_far_changes(domain, held), 0u);
+    }
+    EXPECT_GT(n_free, 0u);
+  }
+}
+
+TEST(Labels, NoneChangesWhereTheBodyOrAGapIsThin) {
+  const AnalyticDomain disc = testing::ellipsoid({1, 1, .08});
+  const BackgroundMesh background(a15(), testing::cube_box(1.3), .09);  // 1.8 edges thick
+  LabelParams guarded;
+  guarded.least_thickness = 2;
+  const Labelled thin = choose(background, disc, guarded);
+  EXPECT_GT(thin.report.thin, 0u);
+  // At the edge of the disc the normal points into it, where it is a diameter thick.
+  const auto n_inner_changes = [](const BackgroundMesh& mesh, const Labelled& labelled) {
+    std::size_t n = 0;
+    for (std::int64_t v = 0; v < mesh.n_vertices(); ++v) {
+      const Vec3 x = mesh.position(v);
+      n += std::hypot(x.x(), x.y()) < .9 && std::abs(x.z()) < .3 && labelled.plain.test(v) != labelled.chosen.test(v);
+    }
+    return n;
+  };
+  EXPECT_EQ(n_inner_changes(background, thin), 0u);
+  LabelParams unguarded;
+  unguarded.least_thickness = 0;
+  EXPECT_GT(n_inner_changes(background, choose(background, disc, unguarded)), 0u);
+
+  // The same disc as a cavity of a ball: a gap of that thickness.
+  AnalyticDomain gap = disc;
+  gap.psi = [disc](const Vec3& x, Vec3* g, Mat3* H) {
+    const double value = disc.psi(x, g, H);
+    if (x.squaredNorm() > 1.2 * 1.2) {
+      if (g) *g = 2 * x;
+      if (H) *H = 2 * Mat3::Identity();
+      return x.squaredNorm() - 1.25 * 1.25;
+    }
+    if (g) *g = -*g;
+    if (H) *H = -*H;
+    return -value;
+  };
+  const BackgroundMesh around(a15(), testing::cube_box(1.5), .09);
+  EXPECT_EQ(n_inner_changes(around, choose(around, gap, guarded)), 0u);
+  EXPECT_GT(n_inner_changes(around, choose(around, gap, unguarded)), 0u);
+}
+
+TEST(Labels, DoNotDependOnThreads) {
+  const AnalyticDomain domain = testing::banchoff_chmutov_4();
+  const BackgroundMesh background = background_of(domain, 40000);
+  const auto with = [&](std::size_t n) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, n);
+    return choose(background, domain);
+  };
+  const Labelled one = with(1), three = with(3);
+  EXPECT_EQ(one.report.flips, three.report.flips);
+  EXPECT_EQ(one.report.psi_evaluations, three.report.psi_evaluations);
+  for (std::size_t w = 0; w < one.chosen.n_words(); ++w) ASSERT_EQ(one.chosen.word(w), three.chosen.word(w));
+}
+
+TEST(Labels, BrokenParamsAreAllNamed) {
+  LabelParams params;
+  EXPECT_TRUE(problems(params).empty());
+  params.shift = .2;
+  params.reach_in = -1;
+  params.outside_weight = -1;
+  EXPECT_EQ(problems(params).size(), 3u);
+}
+
+}  // namespace
+}  // namespace umtet

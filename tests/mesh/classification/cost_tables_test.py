@@ -1,0 +1,44 @@
+#!/usr/bin/python3
+"""The tables of what labels are worth are those that star_costs makes: a fifth of its bodies, where they met a label often.
+
+usage: cost_tables_test.py LABELS_FIT SOURCES
+"""
+import re
+import subprocess
+import sys
+import unittest
+
+LABELS_FIT, SOURCES = sys.argv[1:3]
+BODIES, OFTEN, TOLERANCE = 12, 1000, 0.015
+
+
+def qualities(text):
+    """(site, positive faces, tets) -> (quality, vertices seen)"""
+    rows = re.findall(r"\{(\d+), (\d+), (\d+), (0\.\d+)\},  // (\d+)", text)
+    return {tuple(map(int, row[:3])): (float(row[3]), int(row[4])) for row in rows}
+
+
+class LabelTables(unittest.TestCase):
+    def check(self, tiling):
+        with open(f"{SOURCES}/mesh/classification/tables/{tiling}.h") as f:
+            text = f.read()
+        self.assertRegex(text, f"// Made by: star_costs {tiling} 1 ")
+        stored = qualities(text)
+        made = qualities(subprocess.run([LABELS_FIT, tiling, "1", str(BODIES)], check=True, capture_output=True, text=True).stdout)
+        often = {label: quality for label, (quality, seen) in made.items() if seen >= OFTEN}
+        self.assertGreater(len(often), 5)
+        for label, quality in often.items():
+            self.assertAlmostEqual(quality, stored[label][0], delta=TOLERANCE, msg=f"{tiling} {label}")
+
+    def test_a15(self):
+        self.check("a15")
+
+    def test_slab(self):
+        self.check("slab")
+
+    def test_cube(self):
+        self.check("cube")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

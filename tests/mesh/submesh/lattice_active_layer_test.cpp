@@ -1,0 +1,141 @@
+#include "mesh/submesh/lattice_active_layer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "mesh/background/body_size.h"
+#include "mesh/submesh/detail/assemble_submesh.h"
+#include "mesh/core/tet_quality.h"
+#include "tests/support/domains.h"
+
+namespace umtet {
+namespace {
+
+using testing::AnalyticDomain;
+
+struct Cut {
+  BackgroundMesh background;
+  detail::IdSet inside;
+  Submesh submesh;
+
+  explicit Cut(const AnalyticDomain& domain, double n_tets = 8000)
+      : background(a15(), domain.box, h_for_tets(domain, domain.box, n_tets)), inside(0), submesh() {
+    std::size_t n = 0;
+    inside = detail::inside_vertices(background, domain, n);
+    submesh = find_submesh(background, domain);
+  }
+};
+
+TEST(EmitSubmesh, IsThePapersOmegaHWhenNoLabelIsChanged) {
+  for (const AnalyticDomain& domain : testing::domains()) {
+    SCOPED_TRACE(domain.name);
+    const Cut cut(domain);
+    const Submesh emitted = emit_submesh(cut.background, cut.inside);
+    EXPECT_EQ(emitted.mesh.V, cut.submesh.mesh.V);
+    EXPECT_EQ(emitted.mesh.C, cut.submesh.mesh.C);
+    EXPECT_EQ(emitted.background_vertex, cut.submesh.background_vertex);
+    EXPECT_EQ(emitted.background_tet, cut.submesh.background_tet);
+    EXPECT_EQ(emitted.positive_faces, cut.submesh.positive_faces);
+    EXPECT_EQ(emitted.positive_tets, cut.submesh.positive_tets);
+    EXPECT_EQ(emitted.positive_vertices, cut.submesh.positive_vertices);
+    const SubmeshOutline outline = outline_submesh(cut.background, cut.inside);
+    EXPECT_EQ(outline.submesh.mesh.V, cut.submesh.mesh.V);
+    EXPECT_EQ(outline.submesh.background_vertex, cut.submesh.background_vertex);
+    EXPECT_EQ(outline.n_tets, cut.submesh.mesh.C.size());
+  }
+}
+
+TEST(CrawlInside, FindsTheVerticesOfTheFullLoop) {
+  for (const AnalyticDomain& domain : testing::domains()) {
+    SCOPED_TRACE(domain.name);
+    const Cut cut(domain);
+    const detail::CrawledVertices crawled = detail::crawl_inside(cut.background, domain, domain.boundary_seeds);
+    EXPECT_TRUE(crawled.lost_seeds.empty());
+    for (std::size_t w = 0; w < cut.inside.n_words(); ++w) ASSERT_EQ(crawled.inside.word(w), cut.inside.word(w));
+  }
+}
+
+std::vector<int> tets_at(const Submesh& submesh) {
+  std::vector<int> n(submesh.mesh.V.size(), 0);
+  for (const Tet& t : submesh.mesh.C) {
+    for (const int v : t) ++n[v];
+  }
+  return n;
+}
+
+void check(const Cut& cut, const LatticeShell& part) {
+  const Shell& shell = part.shell;
+  const std::vector<int> whole = tets_at(cut.submesh);
+  const auto& ids = cut.submesh.background_vertex;
+  EXPECT_TRUE(std::is_sorted(part.background_vertex.begin(), part.background_vertex.end()));
+  std::set<std::set<int>> seen;
+  for (const Tet& t : shell.C) {
+    EXPECT_GT(volume6(shell.V[t[0]], shell.V[t[1]], shell.V[t[2]], shell.V[t[3]]), 0);
+    EXPECT_TRUE(seen.insert(std::set<int>(t.begin(), t.end())).second);
+    for (int a = 0; a < 4; ++a) {
+      for (int b = 0; b < a; ++b) EXPECT_NE(shell.colour[t[a]], shell.colour[t[b]]);
+    }
+  }
+  for (std::size_t v = 0; v < shell.V.size(); ++v) {
+    const auto at = std::lower_bound(ids.begin(), ids.end(), part.background_vertex[v]);
+    ASSERT_TRUE(at != ids.end() && *at == part.background_vertex[v]);
+    const int local = static_cast<int>(at - ids.begin());
+    EXPECT_EQ(shell.V[v], cut.submesh.mesh.V[local]);
+    EXPECT_LT(shell.colour[v], 7);
+    const int n = shell.ring_begin[v + 1] - shell.ring_begin[v];
+    for (int r = shell.ring_begin[v]; r < shell.ring_begin[v + 1]; ++r) {
+      const Tet& t = shell.C[shell.ring[r]];
+      EXPECT_NE(std::find(t.begin(), t.end(), static_cast<int>(v)), t.end());
+    }
+    if (shell.role[v] != Shell::Role::Fixed) {
+      EXPECT_EQ(n, whole[local]);
+    }
+    const bool positive =
+        std::binary_search(cut.submesh.positive_vertices.begin(), cut.submesh.positive_vertices.end(), local);
+    if (shell.role[v] != Shell::Role::Fixed) {
+      EXPECT_EQ(shell.role[v] == Shell::Role::Boundary, positive);
+    }
+  }
+}
+
+TEST(LatticeShell, RingsAreCompleteAndColoursProper) {
+  for (const AnalyticDomain& domain : testing::domains()) {
+    SCOPED_TRACE(domain.name);
+    const Cut cut(domain);
+    std::size_t last = 0;
+    for (const int layers : {1, 2, 100}) {
+      const LatticeShell part = lattice_shell(cut.background, a15_links(), cut.inside, layers);
+      check(cut, part);
+      const auto n_boundary = std::count(part.shell.role.begin(), part.shell.role.end(), Shell::Role::Boundary);
+      EXPECT_EQ(static_cast<std::size_t>(n_boundary), cut.submesh.positive_vertices.size());
+      EXPECT_GE(part.shell.C.size(), last);
+      last = part.shell.C.size();
+    }
+    EXPECT_EQ(last, cut.submesh.mesh.C.size());  // a hundred layers are all of it
+  }
+}
+
+TEST(LatticeShell, APatchHoldsEveryTetNearItsCentres) {
+  const Cut cut(testing::torus());
+  for (const std::size_t k : {0u, 100u, 333u}) {
+    const std::int64_t centre = cut.submesh.background_vertex[cut.submesh.positive_vertices[k]];
+    const LatticeShell part = lattice_patch(cut.background, a15_links(), cut.inside, {centre}, 2);
+    check(cut, part);
+    std::set<std::int64_t> ball = {centre};
+    for (int ring = 0; ring < 2; ++ring) {
+      std::vector<std::int64_t> more;
+      for (const std::int64_t v : ball) cut.background.link(v, more);
+      ball.insert(more.begin(), more.end());
+    }
+    std::size_t n = 0;
+    for (const Tet& t : cut.submesh.mesh.C) {
+      n += std::any_of(t.begin(), t.end(), [&](int v) { return ball.count(cut.submesh.background_vertex[v]) != 0; });
+    }
+    EXPECT_EQ(part.shell.C.size(), n);
+  }
+}
+
+}  // namespace
+}  // namespace umtet

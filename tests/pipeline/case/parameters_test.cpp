@@ -1,0 +1,136 @@
+#include "pipeline/case/parameters.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "pipeline/case/artefact.h"
+#include "pipeline/case/exit_code.h"
+
+namespace umtet {
+namespace {
+namespace fs = std::filesystem;
+
+std::string refusal(const std::function<void()>& f) {
+  try {
+    f();
+  } catch (const UsageError& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+struct TomlFile {
+  explicit TomlFile(const std::string& text) { write_text_artefact(path, text); }
+  ~TomlFile() { fs::remove(path); }
+  const fs::path path = fs::temp_directory_path() / ("umtet_parameters_" + std::to_string(::getpid()) + ".toml");
+};
+
+TEST(Parameters, DefaultsAreInsideTheirOwnRanges) {
+  for (const ParamField& f : params_fields()) {
+    Parameters p;
+    const TomlFile file(p.toml());
+    EXPECT_NO_THROW(p.load(file.path, ParamSource::File)) << f.key;
+    EXPECT_FALSE(f.help.empty()) << f.key;
+  }
+}
+
+TEST(Parameters, FlagBeatsSetBeatsFileBeatsDefaultInAnyOrder) {
+  const TomlFile file("[mesh]\nsamples = 3\nseed = 3\n[reconstruct]\nsmoothing = 1\n");
+  Parameters p;
+  p.set("mesh.samples", "1", ParamSource::Flag, "--samples");
+  p.set("mesh.samples=2");
+  p.set("mesh.seed=2");
+  p.load(file.path, ParamSource::File);
+  EXPECT_EQ(p.integer("mesh.samples"), 1);
+  EXPECT_EQ(p.integer("mesh.seed"), 2);
+  EXPECT_EQ(p.real("reconstruct.smoothing"), 1);  // a TOML integer is a number too
+  EXPECT_EQ(p.source("reconstruct.smoothing"), ParamSource::File);
+  EXPECT_EQ(p.source("reconstruct.gamma"), ParamSource::Default);
+}
+
+TEST(Parameters, CaseTomlReadsBackToTheSameValues) {
+  Parameters p;
+  p.set("cloud.file=a \"quoted\"\\ path\nwith a line break.ply");
+  p.set("mesh.h=0.1");
+  p.set("reconstruct.tolerance=1e-08");
+  p.set("reconstruct.smoothing=0.30000000000000004");
+  p.set("mesh.implicit=x^2+y^2-1");
+  p.set("mesh.keep_iterates=true");
+  const TomlFile file(p.toml());
+  Parameters q;
+  q.load(file.path, ParamSource::File);
+  for (const char* section : {"cloud", "reconstruct", "mesh", "output"})
+    EXPECT_EQ(p.section(section), q.section(section));
+  EXPECT_NE(p.toml().find("h = 0.1  # --set"), std::string::npos) << p.toml();
+}
+
+TEST(Parameters, UnknownKeysNameTheNearest) {
+  Parameters p;
+  EXPECT_EQ(refusal([&] { p.set("mesh.sampels=3"); }), "unknown parameter mesh.sampels; did you mean mesh.samples?");
+  EXPECT_EQ(refusal([&] { p.set("nonsense=3"); }), "unknown parameter nonsense");
+  const TomlFile file("[mesh]\nsamples = 3\n\n[reconstruct]\nsmothing = 1\n");
+  const std::string message = refusal([&] { p.load(file.path, ParamSource::File); });
+  EXPECT_NE(message.find(":5: unknown parameter reconstruct.smothing; did you mean reconstruct.smoothing?"),
+            std::string::npos)
+      << message;
+}
+
+TEST(Parameters, ValuesOutOfTypeOrRangeAreRefused) {
+  for (const char* assignment :
+       {"mesh.samples=0", "mesh.samples=2.5", "mesh.samples=", "mesh.samples=3x", "mesh.h=-1", "mesh.h=nan",
+        "mesh.h=inf", "mesh.h=0,1", "reconstruct.smoothing=-1", "reconstruct.tolerance=1", "mesh.mode=quick",
+        "mesh.background=bcc", "mesh.box=0,0,0,1,1", "mesh.box=0,0,0,1,1,0", "mesh.box=0,0,0,1,1,1,",
+        "mesh.keep_iterates=maybe", "mesh.h"}) {
+    Parameters p;
+    EXPECT_NE(refusal([&] { p.set(assignment); }), "accepted") << assignment;
+  }
+}
+
+TEST(Parameters, FilesThatAreNotTomlAreRefusedWithTheirPlace) {
+  Parameters p;
+  const TomlFile broken("[mesh]\nh = = 3\n");
+  EXPECT_NE(refusal([&] { p.load(broken.path, ParamSource::File); }).find(".toml:2:"), std::string::npos);
+  const TomlFile typed("[mesh]\nh = \"small\"\n");
+  EXPECT_NE(refusal([&] { p.load(typed.path, ParamSource::File); }).find(":2: mesh.h: must be a number"),
+            std::string::npos);
+  EXPECT_THROW(p.load("/nowhere/case.toml", ParamSource::File), std::system_error);
+}
+
+TEST(Parameters, EdgeLengthAndCountExcludeEachOther) {
+  Parameters p;
+  p.set("mesh.h", "0.1", ParamSource::Case, "case.toml");
+  p.set("mesh.tets", "1000", ParamSource::Flag, "--tets");
+  EXPECT_EQ(p.real("mesh.h"), 0);
+  EXPECT_EQ(p.integer("mesh.tets"), 1000);
+  EXPECT_NE(refusal([&] { p.set("mesh.h", "0.1", ParamSource::Flag, "--h"); }), "accepted");
+  p.set("mesh.h=0.2");  // weaker than the flag
+  EXPECT_EQ(p.real("mesh.h"), 0);
+}
+
+TEST(Parameters, WholeNumbersMayHaveAnExponentButNoFraction) {
+  Parameters p;
+  p.set("mesh.tets=1e6");
+  EXPECT_EQ(p.integer("mesh.tets"), 1000000);
+  EXPECT_NE(refusal([&] { p.set("mesh.tets=1.5e0"); }), "accepted");
+  EXPECT_NE(refusal([&] { p.set("output.units=\xff"); }), "accepted");
+}
+
+TEST(Nearest, PrefersTheWordThatGoesOn) {
+  EXPECT_EQ(nearest("--tet", {"--set", "--tets"}), "--tets");
+  EXPECT_EQ(nearest("--sett", {"--set", "--tets"}), "--set");
+}
+
+TEST(ParseBox, TakesSixNumbers) {
+  const auto box = parse_box(" -1, -2.5,0 , 1e0,2,3");
+  ASSERT_TRUE(box);
+  EXPECT_EQ(box->min(), Eigen::Vector3d(-1, -2.5, 0));
+  EXPECT_EQ(box->max(), Eigen::Vector3d(1, 2, 3));
+  EXPECT_FALSE(parse_box(""));
+}
+
+}  // namespace
+}  // namespace umtet
