@@ -11,7 +11,7 @@ namespace umtet {
 namespace {
 
 constexpr std::size_t kCandidatesPerSample = 10;  // from Yuksel's study: more gain little
-constexpr double kShell = 0.02;                   // half thickness of the layer candidates are drawn from, model units
+constexpr double kActiveLayer = 0.02;             // half thickness of the layer candidates are drawn from, model units
 constexpr int kNewtonSteps = 12;
 constexpr double kLeastSlope = 0.2;  // |grad f| on the surface; the shapes have about 1
 
@@ -46,7 +46,8 @@ Vec3 project(ShapeFunction f, Vec3& x) {
   return g / slope;
 }
 
-/// Points uniform in volume in the layer |f| < kShell |grad f|, projected: uniform in area up to curvature squared.
+/// Points uniform in volume in the layer |f| < kActiveLayer |grad f|, projected: uniform in area up to curvature
+/// squared.
 Candidates draw_candidates(ShapeFunction f, const Vec3& low, const Vec3& high, std::size_t n, Density density,
                            Uniform& uniform) {
   const Vec3 size = high - low;
@@ -58,14 +59,14 @@ Candidates draw_candidates(ShapeFunction f, const Vec3& low, const Vec3& high, s
     for (int a = 0; a < 3; ++a) x[a] = low[a] + uniform() * size[a];
     const double lot = uniform();
     const Dual at = evaluate(f, x);
-    if (std::abs(at.value) >= kShell * norm(gradient(at))) continue;
+    if (std::abs(at.value) >= kActiveLayer * norm(gradient(at))) continue;
     const Vec3 normal = project(f, x);
     if (lot >= density(x)) continue;
     drawn.cloud.points.push_back(x);
     drawn.cloud.normals.push_back(normal);
   }
   const double hit_rate = static_cast<double>(n) / static_cast<double>(n_tries);
-  drawn.density_integral = hit_rate * size[0] * size[1] * size[2] / (2 * kShell);
+  drawn.density_integral = hit_rate * size[0] * size[1] * size[2] / (2 * kActiveLayer);
   return drawn;
 }
 

@@ -14,8 +14,8 @@
 #include "mesh/certify/certificate.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "mesh/universal_mesh.h"
-#include "reconstruct/solve/fit_ssd.h"
 #include "reconstruct/io/point_cloud_io.h"
+#include "reconstruct/solve/fit_ssd.h"
 
 // 5000 points of an ellipsoid with half axes 1, .8, .6 on a spiral, and their normals.
 umtet::OrientedPointCloud ellipsoid() {

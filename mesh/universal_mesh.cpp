@@ -9,21 +9,21 @@
 #include <stdexcept>
 #include <utility>
 
-#include "mesh/submesh/assumptions.h"
+#include "mesh/base/violations.h"
+#include "mesh/core/tet_quality.h"
+#include "mesh/fast/fast_mesh.h"
 #include "mesh/paper/boundary_dvr.h"
+#include "mesh/paper/dvr.h"
+#include "mesh/submesh/assumptions.h"
 #include "mesh/submesh/crawl.h"
 #include "mesh/submesh/detail/nothing_inside.h"
-#include "mesh/base/violations.h"
-#include "mesh/paper/dvr.h"
-#include "mesh/fast/fast_mesh.h"
-#include "mesh/core/tet_quality.h"
 #include "mesh/submesh/walls.h"
 
 namespace umtet {
 namespace {
 
-using detail::find_offenders;
-using detail::Offenders;
+using detail::find_violations;
+using detail::Violations;
 
 // Samples of Alg. 3 reach this far, in background edges; the paper leaves its "representative mesh size" open. A slide
 // of half an edge to a whole one inverts a tet of the ring, so the best place is hardly ever beyond half an edge:
@@ -39,7 +39,7 @@ class Run {
 
   UmResult operator()(const std::vector<Vec3>& seeds) {
     try {
-      if (find_omega_h(seeds) && stays_off_the_rim()) {
+      if (find_omega_h(seeds) && stays_off_the_background_boundary()) {
         double_faces_ = double_positive_faces(submesh());
         result_.double_positive_faces = double_faces_.count;
         mesh_.emplace(submesh().mesh, background_.tiling().rings_are_optimal);
@@ -60,7 +60,7 @@ class Run {
  private:
   const Submesh& submesh() const { return result_.submesh; }
   bool find_omega_h(const std::vector<Vec3>& seeds);
-  bool stays_off_the_rim();
+  bool stays_off_the_background_boundary();
   void measure_conditioning_angles();
   bool project_and_relax();
   void improve_boundary();
@@ -113,26 +113,27 @@ bool Run::find_omega_h(const std::vector<Vec3>& seeds) {
   return report({"submesh", 1, 1, &submesh().mesh.V, submesh().mesh.C.size()});
 }
 
-/// The set triangulated by the background must strictly contain the closure of Omega (Section 2.1), unless its rim is
-/// a wall.
-bool Run::stays_off_the_rim() {
-  // A vertex that is not positive is inside, and a vertex on the rim has lost tets of omega_h.
+/// The set triangulated by the background must strictly contain the closure of Omega (Section 2.1), unless its
+/// background boundary is a wall.
+bool Run::stays_off_the_background_boundary() {
+  // A vertex that is not positive is inside, and a vertex on the background boundary has lost tets of omega_h.
   std::vector<bool> positive(submesh().mesh.V.size(), false);
   for (const int i : submesh().positive_vertices) positive[i] = true;
-  if (params_.rim == Rim::Wall) {
+  if (params_.background_boundary == BackgroundBoundary::Wall) {
     result_.walls = wall_faces(background_, submesh());
     const UmEvidence near = boundary_near_walls(background_, submesh());
     return near.count == 0 || fail(UmStatus::BoundaryNearWall, near);
   }
-  const Offenders rim = find_offenders(positive.size(), [&](std::size_t i) {
-    return !positive[i] && background_.on_rim(submesh().background_vertex[i]);
+  const Violations background_boundary = find_violations(positive.size(), [&](std::size_t i) {
+    return !positive[i] && background_.on_boundary(submesh().background_vertex[i]);
   });
-  if (rim.count == 0) return true;
-  const Vec3 where = submesh().mesh.V[rim.first];
-  return fail(UmStatus::DomainLeavesBackground, {.background_vertex = submesh().background_vertex[rim.first],
-                                                 .where = where,
-                                                 .count = rim.count,
-                                                 .what = "the domain reaches the rim of the background mesh"});
+  if (background_boundary.count == 0) return true;
+  const Vec3 where = submesh().mesh.V[background_boundary.first];
+  return fail(UmStatus::DomainLeavesBackground,
+              {.background_vertex = submesh().background_vertex[background_boundary.first],
+               .where = where,
+               .count = background_boundary.count,
+               .what = "the domain reaches the background_boundary of the background mesh"});
 }
 
 void Run::measure_conditioning_angles() {
@@ -167,7 +168,7 @@ bool Run::find_feet() {
     }
   });
   for (const ClosestPoint& foot : feet_) result_.n_psi_evaluations += static_cast<std::size_t>(foot.iterations);
-  const Offenders lost = find_offenders(feet_.size(), [&](std::size_t k) { return !feet_[k].converged; });
+  const Violations lost = find_violations(feet_.size(), [&](std::size_t k) { return !feet_[k].converged; });
   if (lost.count == 0) return true;
   const int i = positive[lost.first];
   return fail_at(UmStatus::ProjectionDiverged,
@@ -187,7 +188,7 @@ bool Run::advance(double lambda) {
   }
   const auto& C = submesh().mesh.C;
   const auto& V = mesh_->V;
-  const Offenders inverted = find_offenders(
+  const Violations inverted = find_violations(
       C.size(), [&](std::size_t t) { return !(volume6(V[C[t][0]], V[C[t][1]], V[C[t][2]], V[C[t][3]]) > 0); });
   if (inverted.count == 0) return true;
   const Tet& tet = C[inverted.first];
@@ -205,7 +206,8 @@ bool Run::project_and_relax() {
   for (const int i : submesh().positive_vertices) positive[i] = true;
   std::vector<int> interior;
   for (int i = 0; i < static_cast<int>(positive.size()); ++i) {
-    const bool at_wall = params_.rim == Rim::Wall && background_.on_rim(submesh().background_vertex[i]);
+    const bool at_wall = params_.background_boundary == BackgroundBoundary::Wall &&
+                         background_.on_boundary(submesh().background_vertex[i]);
     if (!positive[i] && !at_wall) interior.push_back(i);
   }
   relaxed_.emplace(*mesh_, std::move(interior));  // I_R = I^omega_h \ I^+, Section 3.2

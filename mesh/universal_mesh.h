@@ -6,25 +6,25 @@
 #include <vector>
 
 #include "mesh/background/background_mesh.h"
-#include "mesh/implicit/closest_point.h"
-#include "mesh/fast/fast_params.h"
 #include "mesh/core/implicit_function.h"
 #include "mesh/core/max_min.h"
+#include "mesh/fast/fast_params.h"
+#include "mesh/implicit/closest_point.h"
 #include "mesh/paper/relaxation_direction.h"
 #include "mesh/submesh/submesh.h"
 
 namespace umtet {
 
 enum class UmMode {
-  Fast,   ///< beyond the paper: chosen labels, guarded projection and p-norm smoothing of a shell, repair; fast_mesh.h
+  Fast,   ///< beyond the paper: chosen labels, guarded projection and p-norm smoothing of a layer, repair; fast_mesh.h
   Paper,  ///< Algorithm 1 to the letter
 };
-/// What becomes of a domain that reaches the rim of the background.
-enum class Rim {
+/// What becomes of a domain that reaches the background boundary.
+enum class BackgroundBoundary {
   Refuse,  ///< UmStatus::DomainLeavesBackground
-  /// The rim is a wall: it bounds the mesh where Omega reaches it, and stays where it is. Labels, which are chosen and
-  /// repaired off the rim only, stay those of psi but for
-  /// those that part double positive faces (double_faces.h).
+  /// The background boundary is a wall: it bounds the mesh where Omega reaches it, and stays where it is. Labels, which
+  /// are chosen and repaired off the background boundary only, stay those of psi but for those that part double
+  /// positive faces (double_faces.h).
   Wall,
 };
 enum class SubmeshSearch { FullLoop, Crawl };  ///< Alg. 1, steps 1-22, or Section 3.8(c) from given seeds
@@ -39,7 +39,7 @@ struct UmParams {
   /// Exact; GoldenSection, the paper's faster, suboptimal choice (Fig. 18), in a build without GSL.
   MaxMin max_min = kBestMaxMin;
   SubmeshSearch search = SubmeshSearch::FullLoop;
-  Rim rim = Rim::Refuse;
+  BackgroundBoundary background_boundary = BackgroundBoundary::Refuse;
   ClosestPointParams closest_point;
   std::uint64_t seed = 0;  ///< random tangents of boundary dvr are a function of (seed, iteration, vertex)
 };
@@ -49,11 +49,11 @@ std::vector<std::string> problems(const UmParams&);
 
 enum class UmStatus {
   Success,
-  EmptyDomain,              ///< psi >= 0, or not finite, at every background vertex
-  PsiNotFinite,             ///< psi is a finite number at no background vertex
-  DomainLeavesBackground,   ///< psi < 0 at a vertex on the rim: the box is too small
-  BoundaryNearWall,         ///< Rim::Wall: a positive vertex is within two edges of the rim
-  DoublePositiveFace,       ///< the run failed at a face shared by two positively cut tets: too thin or curved for h
+  EmptyDomain,             ///< psi >= 0, or not finite, at every background vertex
+  PsiNotFinite,            ///< psi is a finite number at no background vertex
+  DomainLeavesBackground,  ///< psi < 0 at a vertex on the background boundary: the box is too small
+  BoundaryNearWall,    ///< BackgroundBoundary::Wall: a positive vertex is within two edges of the background boundary
+  DoublePositiveFace,  ///< the run failed at a face shared by two positively cut tets: too thin or curved for h
   ObtuseConditioningAngle,  ///< the run failed where the injectivity condition of Section 5.3 is broken
   ProjectionDiverged,       ///< 3.8(a) did not settle for a positive vertex
   InvertedTet,              ///< an intermediate mesh has a tet with Q <= 0
@@ -72,9 +72,10 @@ struct UmEvidence {
 
 struct UmResult {
   UmStatus status = UmStatus::Success;
-  UmEvidence evidence;          ///< filled when status != Success
-  Submesh submesh;              ///< omega_h with background coordinates (step 22)
-  std::vector<Triangle> walls;  ///< Rim::Wall: the faces of omega_h on the rim, local vertex ids, outward
+  UmEvidence evidence;  ///< filled when status != Success
+  Submesh submesh;      ///< omega_h with background coordinates (step 22)
+  std::vector<Triangle>
+      walls;  ///< BackgroundBoundary::Wall: the faces of omega_h on the background boundary, local vertex ids, outward
   std::vector<Vec3> projected;  ///< vertex coordinates after step 30, same numbering
   std::vector<Vec3> final;      ///< vertex coordinates of T^{Omega_h} (step 35), same numbering
   double conditioning_angle_max_deg = 0;
@@ -99,7 +100,8 @@ using UmObserver = std::function<bool(const UmProgress&)>;
 /// face or an obtuse conditioning angle breaks an assumption of the algorithm but need not break the mesh: both are
 /// counted in the result, and become the status only when a projection diverges or a tet inverts right there. With
 /// double positive faces the boundary of the mesh is not the set of positive faces, which a certificate will say.
-/// Around a body in a box: psi is a Complement (implicit_function.h), the rim a wall; walls are flat in an a15_box().
+/// Around a body in a box: psi is a Complement (implicit_function.h), the background boundary a wall; walls are flat in
+/// an a15_box().
 /// @param seeds  for SubmeshSearch::Crawl: at least one point near every component of the boundary
 /// \throw std::invalid_argument naming every broken constraint of params
 UmResult universal_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params = {},

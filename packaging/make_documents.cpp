@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/cli/command_line.h"
 #include "pipeline/case/version.h"
+#include "pipeline/cli/command_line.h"
 
 namespace umtet {
 namespace {

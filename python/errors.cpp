@@ -7,8 +7,8 @@
 
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/exit_code.h"
-#include "pipeline/expression/expression.h"
 #include "pipeline/case/parameters.h"
+#include "pipeline/expression/expression.h"
 #include "python/arguments.h"
 #include "python/jobs.h"
 #include "reconstruct/io/point_cloud_io.h"

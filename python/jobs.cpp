@@ -5,16 +5,16 @@
 #include <algorithm>
 #include <utility>
 
+#include "pipeline/case/memory.h"
 #include "pipeline/meshing/background_choice.h"
 #include "pipeline/meshing/certificate_json.h"
-#include "pipeline/stages/cloud_preparation.h"
 #include "pipeline/meshing/edge_length.h"
-#include "pipeline/case/memory.h"
 #include "pipeline/meshing/mesh_maker.h"
 #include "pipeline/meshing/mesh_measures.h"
-#include "pipeline/stages/stages.h"
 #include "pipeline/meshing/too_thin.h"
 #include "pipeline/meshing/zero_set_choice.h"
+#include "pipeline/stages/cloud_preparation.h"
+#include "pipeline/stages/stages.h"
 #include "reconstruct/cloud/cloud_survey.h"
 
 namespace umtet::python {

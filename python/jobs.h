@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/case/parameters.h"
 #include "pipeline/meshing/domain.h"
 #include "pipeline/meshing/mesh_attempts.h"
-#include "pipeline/case/parameters.h"
 #include "reconstruct/solve/fit_ssd.h"
 
 // What `umtet run` does, from memory to memory: no case folder, no signal handlers, nothing printed.

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "mesh/io/surface_files.h"
 #include "mesh/io/solver_files.h"
+#include "mesh/io/surface_files.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/meshing/made_mesh.h"
 #include "pipeline/meshing/second_order.h"

@@ -6,8 +6,8 @@
 
 #include "mesh/certify/quadratic_tets.h"
 #include "mesh/universal_mesh.h"
-#include "pipeline/meshing/domain.h"
 #include "pipeline/case/record.h"
+#include "pipeline/meshing/domain.h"
 
 namespace umtet::python {
 

@@ -14,11 +14,11 @@
 
 #include "mesh/background/a15_box.h"
 #include "mesh/moving_mesh.h"
+#include "pipeline/case/version.h"
 #include "pipeline/meshing/background_choice.h"
 #include "pipeline/meshing/certificate_json.h"
 #include "pipeline/meshing/mesh_measures.h"
 #include "pipeline/stages/stages.h"
-#include "pipeline/case/version.h"
 #include "python/arguments.h"
 #include "python/errors.h"
 #include "python/interruptible.h"

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "mesh/base/id_set.h"
 #include "mesh/background/tiling.h"
+#include "mesh/base/id_set.h"
 
 namespace umtet {
 namespace {

@@ -138,11 +138,11 @@ void BackgroundMesh::link(std::int64_t vertex, std::vector<std::int64_t>& vertic
   const auto range_holds = [&](const Cell& c) {
     return c[0] >= -1 && c[0] <= n_[0] && c[1] >= -1 && c[1] <= n_[1] && c[2] >= -1 && c[2] <= n_[2];
   };
-  const bool complete = !on_rim(vertex);
+  const bool complete = !on_boundary(vertex);
   for (const auto& [type, offset] : tables_.link[v.type]) {
     const Cell c = {v.cell[0] + offset[0], v.cell[1] + offset[1], v.cell[2] + offset[2]};
     if (!complete) {
-      // At the rim an edge of the tiling may have lost all its tets.
+      // At the background boundary an edge of the tiling may have lost all its tets.
       if (!range_holds(c)) continue;
       const std::int64_t other = vertex_id(type, c);
       bool shares_tet = false;
@@ -156,8 +156,8 @@ void BackgroundMesh::link(std::int64_t vertex, std::vector<std::int64_t>& vertic
   }
 }
 
-bool BackgroundMesh::on_rim(std::int64_t vertex) const {
-  if (explicit_) return explicit_->on_rim(static_cast<int>(vertex));
+bool BackgroundMesh::on_boundary(std::int64_t vertex) const {
+  if (explicit_) return explicit_->on_boundary(static_cast<int>(vertex));
   const VertexAddress v = vertex_address(vertex);
   if (is_deep(v.cell)) return false;
   for (const auto& corner : tables_.star[v.type]) {
@@ -166,7 +166,7 @@ bool BackgroundMesh::on_rim(std::int64_t vertex) const {
   return false;
 }
 
-bool BackgroundMesh::is_off_rim(std::int64_t first, std::int64_t last) const {
+bool BackgroundMesh::is_off_boundary(std::int64_t first, std::int64_t last) const {
   if (explicit_) return false;
   const Cell a = cell(first), b = cell(last);
   return is_deep(a) && is_deep(b) && a[1] == b[1] && a[2] == b[2];

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "mesh/background/explicit_mesh.h"
-#include "mesh/core/tet_mesh.h"
 #include "mesh/background/tiling.h"
+#include "mesh/core/tet_mesh.h"
 
 namespace umtet {
 
@@ -37,8 +37,9 @@ class BackgroundMesh {
   /// Of no points and no name for another mesh.
   const Tiling& tiling() const { return tiling_; }
   double h() const { return h_; }
-  Box box() const;                  ///< the block of cells, or the bounding box
-  std::int64_t n_vertices() const;  ///< size of the id range, vertices without a tet at the rim included
+  Box box() const;  ///< the block of cells, or the bounding box
+  std::int64_t n_vertices()
+      const;  ///< size of the id range, vertices without a tet at the background boundary included
   std::int64_t n_tets() const;
   /// origin + unit * (an exact multiple of a quarter for A15): two roundings per coordinate.
   Vec3 position(std::int64_t vertex) const;
@@ -48,13 +49,13 @@ class BackgroundMesh {
   /// Appends the vertices that share an edge with `vertex`, ascending.
   void link(std::int64_t vertex, std::vector<std::int64_t>& vertices) const;
   /// True if some tet of the tiling at `vertex` is missing from the mesh, or if it is on the boundary of an other mesh.
-  bool on_rim(std::int64_t vertex) const;
-  /// True only if no vertex from `first` to `last` is on the rim: at the price of two of them, true of runs within a
-  /// row of a lattice's cells.
-  bool is_off_rim(std::int64_t first, std::int64_t last) const;
+  bool on_boundary(std::int64_t vertex) const;
+  /// True only if no vertex from `first` to `last` is on the background boundary: at the cost of two of them, true of
+  /// runs within a row of a lattice's cells.
+  bool is_off_boundary(std::int64_t first, std::int64_t last) const;
   /// True if some tet of the mesh has `vertex` as a corner.
   bool has_tets(std::int64_t vertex) const;
-  /// The tet behind the face opposite to local vertex `face`, or -1 at the rim.
+  /// The tet behind the face opposite to local vertex `face`, or -1 at the background boundary.
   std::int64_t neighbor(std::int64_t tet, int face) const;
   /// Some tet whose cell contains x (a place to start a local search), or -1 outside the box. In an other mesh one at
   /// the nearest vertex, by looking at all.
@@ -68,8 +69,9 @@ class BackgroundMesh {
   const Cell& n_cells() const { return n_; }
   Cell cell(std::int64_t vertex) const { return vertex_address(vertex).cell; }
   /// id of a corner minus id of a vertex of type `from`, for any vertex of that type whose cell and the corner's are in
-  /// the range of ids. Vertices off the rim reach their whole link this way; from a vertex in the outermost layer of
-  /// cells a step out of the range gives no id, or that of another vertex in the outermost layer, which is on the rim.
+  /// the range of ids. Vertices off the background boundary reach their whole link this way; from a vertex in the
+  /// outermost layer of cells a step out of the range gives no id, or that of another vertex in the outermost layer,
+  /// which is on the background boundary.
   std::int64_t id_step(int from, const Tiling::Corner& to) const {
     return to.type - from + n_types_ * (to.offset[0] + (n_[0] + 2) * (to.offset[1] + (n_[1] + 2) * to.offset[2]));
   }

@@ -85,10 +85,10 @@ CoarseMeasure measure(ImplicitFunctionRef psi, const Box& box, double steepest) 
 }
 
 /// omega_h exceeds Omega by so many cell edges of an A15.
-double excess_layer(const Tiling& tiling, LabelSource labels) {
+double excess_layer(const Tiling& tiling, ClassificationSource labels) {
   // Seven shapes of 20k and 100k tets: .1 to .19 less in a15, .06 to .19 in the others.
   constexpr double kLessByChoice = .15;
-  return tiling.excess_layer - (labels == LabelSource::Chosen ? kLessByChoice : 0);
+  return tiling.excess_layer - (labels == ClassificationSource::Chosen ? kLessByChoice : 0);
 }
 
 void check_box(const Box& box) {
@@ -102,7 +102,7 @@ BodySize body_size(ImplicitFunctionRef psi, const Box& box, double steepest) {
   return measure(psi, box, steepest).size;
 }
 
-double expected_tets(const Tiling& tiling, const BodySize& size, double h, LabelSource labels) {
+double expected_tets(const Tiling& tiling, const BodySize& size, double h, ClassificationSource labels) {
   if (!(h > 0)) throw std::invalid_argument("h = " + std::to_string(h) + ": must be > 0");
   const double a = h / a15().mean_edge;
   const double volume = size.volume + excess_layer(tiling, labels) * a * size.area;  // < 0 for specks in a cube
@@ -115,7 +115,7 @@ double expected_tets(const Tiling& tiling, ImplicitFunctionRef psi, const Box& b
 
 double expected_tets(ImplicitFunctionRef psi, const Box& box, double h) { return expected_tets(a15(), psi, box, h); }
 
-double h_for_tets(const Tiling& tiling, const BodySize& size, double n_tets, LabelSource labels) {
+double h_for_tets(const Tiling& tiling, const BodySize& size, double n_tets, ClassificationSource labels) {
   if (!(n_tets > 0)) throw std::invalid_argument("n_tets = " + std::to_string(n_tets) + ": must be > 0");
   if (!(size.volume > 0)) {
     std::string what = "psi: not negative at any of the samples taken in the box";
@@ -138,7 +138,7 @@ double h_for_tets(const Tiling& tiling, ImplicitFunctionRef psi, const Box& box,
   return h_for_tets(tiling, body_size(psi, box), n_tets);
 }
 
-double h_for_tets(ImplicitFunctionRef psi, const Box& box, double n_tets, LabelSource labels) {
+double h_for_tets(ImplicitFunctionRef psi, const Box& box, double n_tets, ClassificationSource labels) {
   return h_for_tets(a15(), body_size(psi, box), n_tets, labels);
 }
 

@@ -49,7 +49,7 @@ void ExplicitMesh::find_stars() {
 
 void ExplicitMesh::find_neighbors() {
   neighbor_.assign(4 * mesh_.C.size(), -1);
-  on_rim_.assign(mesh_.V.size(), false);
+  on_boundary_.assign(mesh_.V.size(), false);
   std::vector<detail::FaceUse> uses;
   for (int v = 0; v < static_cast<int>(mesh_.V.size()); ++v) {
     uses.clear();
@@ -57,7 +57,7 @@ void ExplicitMesh::find_neighbors() {
     detail::for_each_face(uses, [&](std::span<const detail::FaceUse> face) {
       const detail::FaceUse &one = face.front(), &other = face.back();
       if (face.size() == 1) {
-        on_rim_[v] = on_rim_[one.low()] = on_rim_[one.high()] = true;
+        on_boundary_[v] = on_boundary_[one.low()] = on_boundary_[one.high()] = true;
       } else if (face.size() == 2 && one.reversed() != other.reversed()) {
         neighbor_[one.place()] = other.tet();
         neighbor_[other.place()] = one.tet();

@@ -24,7 +24,7 @@ class ExplicitMesh {
   /// Behind the face opposite to local vertex `face`, or -1.
   int neighbor(int tet, int face) const { return neighbor_[4 * static_cast<std::size_t>(tet) + face]; }
   /// True for a vertex of a face with one tet.
-  bool on_rim(int vertex) const { return on_rim_[vertex]; }
+  bool on_boundary(int vertex) const { return on_boundary_[vertex]; }
   /// A tet at the vertex nearest to x, by looking at all, or -1 outside the bounding box.
   int tet_near(const Vec3& x) const;
 
@@ -41,7 +41,7 @@ class ExplicitMesh {
   double mean_edge_ = 0;
   std::vector<std::size_t> star_begin_, link_begin_;
   std::vector<int> star_, link_, neighbor_;
-  std::vector<bool> on_rim_;
+  std::vector<bool> on_boundary_;
 };
 
 }  // namespace umtet

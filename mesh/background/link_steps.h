@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "mesh/background/background_mesh.h"
-#include "mesh/base/id_set.h"
 #include "mesh/background/link_topology.h"
+#include "mesh/base/id_set.h"
 
 namespace umtet::detail {
 
@@ -23,8 +23,8 @@ class LinkSteps {
 
   const std::vector<std::int64_t>& at(std::int64_t v) const { return steps_[background_.type(v)]; }
 
-  /// Bit k: link vertex k is inside. Inside vertices are off the rim, so that a step that leaves the range of ids, or
-  /// leads to a wrong one in the outermost layer of cells, finds none of them.
+  /// Bit k: link vertex k is inside. Inside vertices are off the background boundary, so that a step that leaves the
+  /// range of ids, or leads to a wrong one in the outermost layer of cells, finds none of them.
   LinkMask mask(std::int64_t v, const IdSet& inside) const {
     LinkMask mask = 0;
     int k = 0;

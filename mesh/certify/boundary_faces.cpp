@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "mesh/base/check_indices.h"
+#include "mesh/certify/boundary_surface.h"
 #include "mesh/core/face_uses.h"
 #include "mesh/core/two_least.h"
-#include "mesh/certify/boundary_surface.h"
 
 namespace umtet {
 namespace {

@@ -46,7 +46,6 @@ struct SurfaceTopology {
   bool closed_manifold = false;
 };
 
-
 /// \throw std::invalid_argument for an index out of range or a face with a repeated vertex
 SurfaceTopology surface_topology(const std::vector<Vec3>& V, const std::vector<Triangle>& faces);
 

@@ -9,12 +9,12 @@
 #include <limits>
 #include <stdexcept>
 
-#include "mesh/certify/detail/certificate_memory.h"
 #include "mesh/base/check_indices.h"
-#include "mesh/implicit/foot_point.h"
-#include "mesh/core/sort_faces.h"
-#include "mesh/certify/detail/tet_measures.h"
 #include "mesh/certify/boundary_surface.h"
+#include "mesh/certify/detail/certificate_memory.h"
+#include "mesh/certify/detail/tet_measures.h"
+#include "mesh/core/sort_faces.h"
+#include "mesh/implicit/foot_point.h"
 
 namespace umtet {
 namespace {
@@ -136,8 +136,8 @@ void measure_against(ImplicitFunctionRef psi, const TetMesh& mesh, const std::ve
 }
 
 /// @param memory  if not null, matched with the mesh
-/// @param skin    receives the boundary
-MeshCertificate certify_with(const CertificateInput& input, detail::CertificateMemory* memory, BoundaryFaces& skin) {
+/// @param surface    receives the boundary
+MeshCertificate certify_with(const CertificateInput& input, detail::CertificateMemory* memory, BoundaryFaces& surface) {
   if (!input.mesh || input.mesh->C.empty()) throw std::invalid_argument("certify: a mesh with tets is needed");
   const TetMesh& mesh = *input.mesh;
   if (input.wall_faces && (!input.background_V || input.background_V->size() != mesh.V.size())) {
@@ -149,22 +149,22 @@ MeshCertificate certify_with(const CertificateInput& input, detail::CertificateM
     throw std::invalid_argument("certify: a wall face with a vertex out of range");
   }
   poll(input.keep_going);
-  skin = boundary_faces(mesh.C, mesh.V.size(), memory ? memory->to_count() : nullptr);  // checks the indices
+  surface = boundary_faces(mesh.C, mesh.V.size(), memory ? memory->to_count() : nullptr);  // checks the indices
   poll(input.keep_going);
 
   MeshCertificate certificate;
   certificate.coordinate_rounding = input.coordinate_rounding;
   SurfaceTopology topology;
   run_both([&] { detail::measure_tets(mesh, input.h, input.keep_going, memory, certificate); },
-           [&] { topology = surface_topology(mesh.V, skin.triangles); });
+           [&] { topology = surface_topology(mesh.V, surface.triangles); });
 
   MeshCertificate::Boundary& boundary = certificate.boundary;
-  boundary.n_faces = skin.triangles.size();
-  boundary.n_overused_faces = skin.n_overused;
-  boundary.n_same_side_faces = skin.n_same_side;
+  boundary.n_faces = surface.triangles.size();
+  boundary.n_overused_faces = surface.n_overused;
+  boundary.n_same_side_faces = surface.n_same_side;
   boundary.n_nonmanifold_edges = topology.n_nonmanifold_edges;
   boundary.n_nonmanifold_vertices = topology.n_nonmanifold_vertices;
-  boundary.closed_manifold = topology.closed_manifold && skin.n_overused == 0 && skin.n_same_side == 0;
+  boundary.closed_manifold = topology.closed_manifold && surface.n_overused == 0 && surface.n_same_side == 0;
   boundary.components = static_cast<int>(topology.components.size());
   boundary.euler_characteristic = topology.euler_characteristic;
   boundary.genus = topology.genus;
@@ -174,15 +174,15 @@ MeshCertificate certify_with(const CertificateInput& input, detail::CertificateM
     certificate.n_positive_faces = input.positive_faces->size();
     std::vector<Triangle> expected = *input.positive_faces;
     expected.insert(expected.end(), walls.begin(), walls.end());
-    boundary.equals_positive_faces = same_faces(skin.triangles, std::move(expected), mesh.V.size());
+    boundary.equals_positive_faces = same_faces(surface.triangles, std::move(expected), mesh.V.size());
   }
   for (const int i : at_walls) boundary.n_moved_wall_vertices += mesh.V[i] != (*input.background_V)[i];
   if (input.psi) {
     if (walls.empty()) {
-      measure_against(*input.psi, mesh, skin.triangles, topology.vertices, certificate.volume, input.keep_going,
+      measure_against(*input.psi, mesh, surface.triangles, topology.vertices, certificate.volume, input.keep_going,
                       certificate);
     } else {
-      const std::vector<Triangle> fitted = without(skin.triangles, walls);
+      const std::vector<Triangle> fitted = without(surface.triangles, walls);
       // A small body in much fluid is missed as easily as by a mesh of its inside.
       const double volume =
           fitted.empty() ? certificate.volume : std::min(certificate.volume, enclosed_volume(mesh, fitted));
@@ -194,22 +194,22 @@ MeshCertificate certify_with(const CertificateInput& input, detail::CertificateM
 
 /// Of a mesh that has not changed, without walls: faces are compared and psi is asked again.
 MeshCertificate certify_again(const CertificateInput& input, detail::CertificateMemory::Whole& known,
-                              const std::vector<Triangle>& skin) {
+                              const std::vector<Triangle>& surface) {
   MeshCertificate certificate = known.certificate;
   certificate.coordinate_rounding = input.coordinate_rounding;
   certificate.n_positive_faces = input.positive_faces ? input.positive_faces->size() : 0;
   MeshCertificate::Boundary& boundary = certificate.boundary;
   boundary.equals_positive_faces.reset();
   if (input.positive_faces)
-    boundary.equals_positive_faces = same_faces(skin, *input.positive_faces, input.mesh->V.size());
+    boundary.equals_positive_faces = same_faces(surface, *input.positive_faces, input.mesh->V.size());
   boundary.max_vertex_distance_over_h.reset();
   boundary.max_centroid_distance_over_h.reset();
   boundary.min_cos_normal.reset();
   boundary.gap_over_volume.reset();
   boundary.n_cos_below_half = boundary.n_unprojected_faces = 0;
   if (input.psi) {
-    if (known.surface_vertices.empty()) known.surface_vertices = vertices_of(skin);
-    measure_against(*input.psi, *input.mesh, skin, known.surface_vertices, certificate.volume, input.keep_going,
+    if (known.surface_vertices.empty()) known.surface_vertices = vertices_of(surface);
+    measure_against(*input.psi, *input.mesh, surface, known.surface_vertices, certificate.volume, input.keep_going,
                     certificate);
   }
   return certificate;
@@ -218,8 +218,8 @@ MeshCertificate certify_again(const CertificateInput& input, detail::Certificate
 }  // namespace
 
 MeshCertificate certify(const CertificateInput& input) {
-  BoundaryFaces skin;
-  return certify_with(input, nullptr, skin);
+  BoundaryFaces surface;
+  return certify_with(input, nullptr, surface);
 }
 
 MeshCertificate certify(const CertificateInput& input, const std::vector<std::int64_t>& vertex_id,
@@ -231,9 +231,9 @@ MeshCertificate certify(const CertificateInput& input, const std::vector<std::in
     memory.keep();
     return certify_again(input, *known, memory.single_faces());
   }
-  BoundaryFaces skin;
-  MeshCertificate certificate = certify_with(input, &memory, skin);
-  memory.remember(*input.mesh, vertex_id, tet_id, skin);
+  BoundaryFaces surface;
+  MeshCertificate certificate = certify_with(input, &memory, surface);
+  memory.remember(*input.mesh, vertex_id, tet_id, surface);
   if (!input.wall_faces) memory.remember({input.h, certificate});
   return certificate;
 }

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "mesh/core/implicit_function.h"
 #include "common/context.h"
+#include "mesh/core/implicit_function.h"
 #include "mesh/core/tet_mesh.h"
 
 namespace umtet {

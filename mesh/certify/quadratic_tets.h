@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "mesh/implicit/closest_point.h"
-#include "mesh/core/implicit_function.h"
 #include "common/context.h"
+#include "mesh/core/implicit_function.h"
 #include "mesh/core/quadratic_tet_mesh.h"
+#include "mesh/implicit/closest_point.h"
 
 namespace umtet {
 

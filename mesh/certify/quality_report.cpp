@@ -22,13 +22,14 @@ std::vector<double> mean_ratios(const TetMesh& mesh) {
   const std::size_t n = mesh.C.size();
   std::vector<double> Q(n);
   const auto measure = [&](const tbb::blocked_range<std::size_t>& groups) {
-    for (std::size_t first = groups.begin() * kLanes; first < std::min(n, groups.end() * kLanes); first += kLanes) {
-      const int count = static_cast<int>(std::min<std::size_t>(kLanes, n - first));
-      const detail::TetLanes tets = detail::measure_tet_lanes(mesh, &mesh.C[first], count);
+    for (std::size_t first = groups.begin() * kPackSize; first < std::min(n, groups.end() * kPackSize);
+         first += kPackSize) {
+      const int count = static_cast<int>(std::min<std::size_t>(kPackSize, n - first));
+      const detail::TetPack tets = detail::measure_tet_pack(mesh, &mesh.C[first], count);
       for (int m = 0; m < count; ++m) Q[first + m] = tets.quality[m];
     }
   };
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (n + kLanes - 1) / kLanes, kGroupsPerTask), measure);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (n + kPackSize - 1) / kPackSize, kGroupsPerTask), measure);
   return Q;
 }
 

@@ -8,11 +8,11 @@
 #include <limits>
 #include <stdexcept>
 
+#include "mesh/certify/boundary_surface.h"
 #include "mesh/certify/certificate.h"
-#include "mesh/implicit/closest_point.h"
 #include "mesh/certify/detail/mid_side_numbers.h"
 #include "mesh/certify/jacobian_bounds.h"
-#include "mesh/certify/boundary_surface.h"
+#include "mesh/implicit/closest_point.h"
 
 namespace umtet {
 namespace {

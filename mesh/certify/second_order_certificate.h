@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "mesh/core/implicit_function.h"
 #include "common/context.h"
+#include "mesh/core/implicit_function.h"
 #include "mesh/core/quadratic_tet_mesh.h"
 
 namespace umtet {

@@ -11,52 +11,52 @@
 #include <span>
 #include <stdexcept>
 
-#include "mesh/classification/detail/classification_band.h"
 #include "mesh/classification/configuration_costs.h"
+#include "mesh/classification/detail/classification_band.h"
 
 namespace umtet {
 namespace {
 
+using detail::ClassificationBand;
 using detail::IdSet;
-using detail::LabelBand;
 
 // A gain below this is rounding of floats.
 constexpr float kLeastGain = 1e-3F;
 // Two neighbours whose changes, each by itself, would together cost more than this are not tried as a pair. One pair in
 // twenty that wins costs more than 150, and a whole mesh turns on some of these: with 150 smoothing leaves 111 tets
-// below .82 in the bodies of LabelParams, with 200 it is 53, with 300 it is 24, as with all pairs, of which nine tenths
-// are left out. A labelling that was never met costs 100 (label_quality).
+// below .82 in the bodies of ClassificationParams, with 200 it is 53, with 300 it is 24, as with all pairs, of which
+// nine tenths are left out. A configuration that was never met costs 100 (label_quality).
 constexpr float kMostCost = 300;
 
-/// Changes labels in the band, brick by brick.
+/// Changes labels in the band, block by block.
 class Descent {
  public:
   /// @param h  of the background
-  Descent(double h, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi, const LabelParams& params,
-          LabelBand& band, const IdSet* last)
+  Descent(double h, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi, const ClassificationParams& params,
+          ClassificationBand& band, const IdSet* last)
       : h_(h),
         links_(links),
         psi_(psi),
         params_(params),
-        energies_(params.energies ? *params.energies : a15_label_energies()),
+        costs_(params.costs ? *params.costs : a15_star_costs()),
         band_(band),
         last_(last),
         gain_(band.size()),
         open_(band.size(), kAll),
         thin_(band.size(), Thin::Unknown) {
-    find_prices_of_distance();
+    find_costs_of_distance();
   }
 
   /// @param inside  receives the labels
-  LabelReport operator()(IdSet& inside, const KeepGoing& keep_going);
+  ClassificationReport operator()(IdSet& inside, const KeepGoing& keep_going);
 
  private:
   enum class Thin : std::uint8_t { Unknown, No, Yes };
   /// What is to be done about a vertex since a label near it has changed.
   enum Open : std::uint8_t { kSingle = 1, kPair = 2, kGain = 4, kAll = 7 };
 
-  void find_prices_of_distance();
-  float price_outside(int v, LinkMask mask) const;
+  void find_costs_of_distance();
+  float cost_outside(int v, LinkMask mask) const;
   float find_gain(int v) const;
   float gain_of_flip(int v);
   bool may_flip(int v);
@@ -74,22 +74,22 @@ class Descent {
   template <class F>
   std::size_t sweep(const F& visit);
   template <class F>
-  bool descend(Open what, const F& visit, const KeepGoing& keep_going, LabelReport& report);
+  bool descend(Open what, const F& visit, const KeepGoing& keep_going, ClassificationReport& report);
 
   double h_;
   const std::vector<LinkTopology>& links_;
   ImplicitFunctionRef psi_;
-  const LabelParams& params_;
-  const LabelEnergies& energies_;
-  LabelBand& band_;
+  const ClassificationParams& params_;
+  const StarCostTable& costs_;
+  ClassificationBand& band_;
   const IdSet* last_;                 ///< labels of the mesh before, or null
-  std::vector<float> height_, lack_;  ///< prices of distance: of an outside vertex at the boundary, of an inside one
+  std::vector<float> height_, lack_;  ///< costs of distance: of an outside vertex at the boundary, of an inside one
   std::vector<float> gain_;
   std::vector<std::uint8_t> open_;  ///< Open
   std::vector<Thin> thin_;
 };
 
-void Descent::find_prices_of_distance() {
+void Descent::find_costs_of_distance() {
   const auto outside_height = static_cast<float>(params_.outside_height);
   const auto inside_depth = static_cast<float>(params_.inside_depth);
   const auto square = [](double weight, float d) { return static_cast<float>(weight) * d * d; };
@@ -101,22 +101,22 @@ void Descent::find_prices_of_distance() {
   }
 }
 
-/// What vertex v adds to the energy while it is outside; an inside one adds lack_.
-inline float Descent::price_outside(int v, LinkMask mask) const {
+/// What vertex v adds to the cost while it is outside; an inside one adds lack_.
+inline float Descent::cost_outside(int v, LinkMask mask) const {
   if (mask == 0) return 0;
   const LinkTopology& link = links_[band_.type[v]];
-  return energies_(link.site, link.state(mask)) + height_[v];
+  return costs_(link.site, link.state(mask)) + height_[v];
 }
 
 float Descent::find_gain(int v) const {
   const LinkTopology& link = links_[band_.type[v]];
   const std::span<const int> ring = band_.link(v);
-  float gain = lack_[v] - price_outside(v, band_.mask[v]);
+  float gain = lack_[v] - cost_outside(v, band_.mask[v]);
   if (!band_.label[v]) gain = -gain;
   for (int k = 0; k < link.n; ++k) {
     const int w = ring[k];
-    if (band_.label[w]) continue;  // the price of an inside vertex does not depend on its link
-    gain += price_outside(w, band_.mask[w]) - price_outside(w, band_.mask[w] ^ LinkMask{1} << link.back[k]);
+    if (band_.label[w]) continue;  // the cost of an inside vertex does not depend on its link
+    gain += cost_outside(w, band_.mask[w]) - cost_outside(w, band_.mask[w] ^ LinkMask{1} << link.back[k]);
   }
   return gain;
 }
@@ -221,10 +221,10 @@ int Descent::flip_with_neighbour(int v) {
 template <class F>
 std::size_t Descent::sweep(const F& visit) {
   std::atomic<std::size_t> flips = 0;
-  for (const auto& bricks : band_.bricks) {
-    tbb::parallel_for(std::size_t{0}, bricks.size(), [&](std::size_t b) {
+  for (const auto& blocks : band_.blocks) {
+    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
       std::size_t n = 0;
-      for (std::uint32_t k = bricks[b].begin; k < bricks[b].end; ++k) {
+      for (std::uint32_t k = blocks[b].begin; k < blocks[b].end; ++k) {
         n += static_cast<std::size_t>(visit(static_cast<int>(band_.order[k])));
       }
       if (n != 0) flips.fetch_add(n, std::memory_order_relaxed);
@@ -236,7 +236,7 @@ std::size_t Descent::sweep(const F& visit) {
 /// Sweeps over the vertices with `what` to be done until nothing changes.
 /// @return false if max_sweeps are used up
 template <class F>
-bool Descent::descend(Open what, const F& visit, const KeepGoing& keep_going, LabelReport& report) {
+bool Descent::descend(Open what, const F& visit, const KeepGoing& keep_going, ClassificationReport& report) {
   while (report.sweeps < params_.max_sweeps) {
     poll(keep_going);
     const std::size_t flips = sweep([&](int v) {
@@ -251,8 +251,8 @@ bool Descent::descend(Open what, const F& visit, const KeepGoing& keep_going, La
   return false;
 }
 
-LabelReport Descent::operator()(IdSet& inside, const KeepGoing& keep_going) {
-  LabelReport report;
+ClassificationReport Descent::operator()(IdSet& inside, const KeepGoing& keep_going) {
+  ClassificationReport report;
   report.candidates = band_.order.size();
   report.shifted = sweep([&](int v) {
     if (!band_.label[v] || band_.phi[v] < -params_.shift || !may_flip(v)) return 0;
@@ -288,7 +288,7 @@ LabelReport Descent::operator()(IdSet& inside, const KeepGoing& keep_going) {
 
 }  // namespace
 
-std::vector<std::string> problems(const LabelParams& params) {
+std::vector<std::string> problems(const ClassificationParams& params) {
   std::vector<std::string> list;
   const auto in = [&](const char* name, double value, double low, double high, const char* range) {
     if (!(value >= low && value <= high))
@@ -322,19 +322,20 @@ bool is_thin(ImplicitFunctionRef psi, const Vec3& foot, const Vec3& normal, doub
   return false;
 }
 
-LabelReport choose_labels(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
-                          ImplicitFunctionRef psi, const LabelParams& params, IdSet& inside,
-                          const KeepGoing& keep_going, const IdSet* last) {
-  return detail::choose_labels(background, links, psi, params, inside, keep_going, last, nullptr);
+ClassificationReport classify_vertices(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
+                                       ImplicitFunctionRef psi, const ClassificationParams& params, IdSet& inside,
+                                       const KeepGoing& keep_going, const IdSet* last) {
+  return detail::classify_vertices(background, links, psi, params, inside, keep_going, last, nullptr);
 }
 
-LabelReport detail::choose_labels(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
-                                  ImplicitFunctionRef psi, const LabelParams& params, IdSet& inside,
-                                  const KeepGoing& keep_going, const IdSet* last, const PsiValues* known) {
+ClassificationReport detail::classify_vertices(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
+                                               ImplicitFunctionRef psi, const ClassificationParams& params,
+                                               IdSet& inside, const KeepGoing& keep_going, const IdSet* last,
+                                               const PsiValues* known) {
   std::string all;
   for (const std::string& problem : problems(params)) all += (all.empty() ? "" : "; ") + problem;
   if (!all.empty()) throw std::invalid_argument(all);
-  LabelBand band(background, links, psi, params, inside, keep_going, known);
+  ClassificationBand band(background, links, psi, params, inside, keep_going, known);
   return Descent(background.h(), links, psi, params, band, last)(inside, keep_going);
 }
 

@@ -4,17 +4,18 @@
 #include <string>
 #include <vector>
 
+#include "common/context.h"
 #include "mesh/background/background_mesh.h"
 #include "mesh/base/id_set.h"
-#include "mesh/core/implicit_function.h"
-#include "common/context.h"
 #include "mesh/classification/star_cost_table.h"
+#include "mesh/core/implicit_function.h"
 
 namespace umtet {
 
 /// Lengths are in LinkTopology::unit. Measured on bodies of star_costs (seeds not of the fit, 100 of 40k tets and 60 of
-/// 6k): of their 4.3 M tets smoothing alone leaves 24 below .82, in 6 bodies, and with another value what the line says.
-struct LabelParams {
+/// 6k): of their 4.3 M tets smoothing alone leaves 24 below .82, in 6 bodies, and with another value what the line
+/// says.
+struct ClassificationParams {
   /// The labels start as those of {psi < 0} moved inwards by this; 0 <= shift <= .15. 0: 25 tets, .05: 19,
   /// .15: 25; but with 0 the 1 % quantile of Q of T6 is .839 where it is .842 with .1 (as below, weight 20)
   double shift = .1;
@@ -22,7 +23,7 @@ struct LabelParams {
   double reach_out = .2;  ///< how far outside; >= 0. .5: 17 tets
   /// No label changes where projection would draw the vertices around apart by more than this factor; >= 1. A tip whose
   /// innermost vertex is no longer inside is cut off, or folds. Samples of the koala to its mesh of 160k tets, 99 %:
-  /// .17 h, .21 h with 1.4, .33 h without limit; folded faces of the armadillo's (2.1 M): 4, and 20 without.
+  /// .17 h, .21 h with 1.4, .33 h without limit; folded over faces of the armadillo's (2.1 M): 4, and 20 without.
   double most_stretch = 1.2;
   /// Nor where the body or the gap outside is thinner than this; >= 0. With 2 blub's tail fin keeps 98 tets below .81,
   /// with 1.5 two, and three of the clouds of data/ that are 2 h thick get boundaries that are no manifolds.
@@ -40,14 +41,14 @@ struct LabelParams {
   /// passes over .0092 vertices), least Q .827 (.824, .828). In steps of a quarter cell they are .113 (.114, .109;
   /// .115). Where all labels begin as they were, whatever that costs, least Q is up to .04 lower.
   double keep = 1;
-  /// Prices of the labellings of a link, 100 for one that was never met; null: those of a15().
-  const LabelEnergies* energies = nullptr;
+  /// Prices of the configurations of a link, 100 for one that was never met; null: those of a15().
+  const StarCostTable* costs = nullptr;
 };
 
 /// Every broken constraint, not just the first.
-std::vector<std::string> problems(const LabelParams&);
+std::vector<std::string> problems(const ClassificationParams&);
 
-struct LabelReport {
+struct ClassificationReport {
   std::size_t candidates = 0;    ///< vertices whose label might change
   std::size_t shifted = 0;       ///< labels changed by the shift
   std::size_t returned = 0;      ///< labels changed to those of the mesh before
@@ -72,18 +73,19 @@ bool is_thin(ImplicitFunctionRef psi, const Vec3& foot, const Vec3& normal, doub
 /// the boundary of omega_h is manifold wherever it was. From the labels of psi moved inwards by `shift`, a descent
 /// changes single labels, and then those of two neighbours at once, as long as that lowers
 ///
-///     sum over outside vertices v of omega_h of energy(labels of the link of v) + outside_weight (d_v -
+///     sum over outside vertices v of omega_h of cost(labels of the link of v) + outside_weight (d_v -
 ///     outside_height)^2
 ///   + sum over inside vertices near the boundary of inside_weight max(0, inside_depth - depth)^2
 ///
-/// with distances from psi / |grad psi|, corrected at the foot, in the unit of each vertex. Bricks of 4^3 cells in
+/// with distances from psi / |grad psi|, corrected at the foot, in the unit of each vertex. Blocks of 4^3 cells in
 /// eight colours: the same labels for any number of threads.
 ///
-/// @param inside  the vertices with psi < 0 on entry; none of them, nor a neighbour, on the rim
+/// @param inside  the vertices with psi < 0 on entry; none of them, nor a neighbour, on the background boundary
 /// @param last    labels of a mesh before, or null: where the descent would as well have these, it begins with them
 /// \throw std::invalid_argument naming every broken constraint of params, MeshCancelled
-LabelReport choose_labels(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
-                          ImplicitFunctionRef psi, const LabelParams& params, detail::IdSet& inside,
-                          const KeepGoing& keep_going = {}, const detail::IdSet* last = nullptr);
+ClassificationReport classify_vertices(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
+                                       ImplicitFunctionRef psi, const ClassificationParams& params,
+                                       detail::IdSet& inside, const KeepGoing& keep_going = {},
+                                       const detail::IdSet* last = nullptr);
 
 }  // namespace umtet

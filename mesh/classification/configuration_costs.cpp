@@ -14,13 +14,13 @@
 namespace umtet {
 namespace {
 
-// Above every quality in the table, so that all labellings have a price and good ones are told from better ones. In the
-// bodies of LabelParams smoothing leaves 24 tets below .82 with .93 here, 45 with .915 and 12 with .95.
+// Above every quality in the table, so that all configurations have a cost and good ones are told from better ones. In
+// the bodies of ClassificationParams smoothing leaves 24 tets below .82 with .93 here, 45 with .915 and 12 with .95.
 constexpr double kGoodInA15 = .93;
 
-std::vector<LabelQuality> qualities_of_z(const std::vector<LinkTopology>& links) {
-  std::vector<LabelQuality> qualities;
-  for (const LabelQuality& q : kA15LabelQualities) {
+std::vector<ConfigurationQuality> qualities_of_z(const std::vector<LinkTopology>& links) {
+  std::vector<ConfigurationQuality> qualities;
+  for (const ConfigurationQuality& q : kA15ConfigurationQualities) {
     const int n = q.site == 0 ? 12 : 14;
     for (const int like : {n, n == 14 ? 15 : n}) {
       const auto link = std::find_if(links.begin(), links.end(), [&](const LinkTopology& l) { return l.n == like; });
@@ -52,44 +52,44 @@ std::vector<LinkTopology> links_of_cube() {
   return links;
 }
 
-LabelPrices prices(std::vector<LinkTopology> links, std::span<const LabelQuality> qualities, double good,
-                   double repair_target, int repair_reach) {
-  LabelEnergies energies(links, qualities, good);
-  return {std::move(links), good, std::move(energies), repair_target, repair_reach};
+ConfigurationCosts costs(std::vector<LinkTopology> links, std::span<const ConfigurationQuality> qualities, double good,
+                         double repair_target, int repair_reach) {
+  StarCostTable costs(links, qualities, good);
+  return {std::move(links), good, std::move(costs), repair_target, repair_reach};
 }
 
-const LabelPrices& prices_of_a15() {
-  static const LabelPrices made = prices(a15_links(), kA15LabelQualities, kGoodInA15, .82, 3);
+const ConfigurationCosts& prices_of_a15() {
+  static const ConfigurationCosts made = costs(a15_links(), kA15ConfigurationQualities, kGoodInA15, .82, 3);
   return made;
 }
 
-LabelPrices prices_of_z() {
+ConfigurationCosts costs_of_z() {
   std::vector<LinkTopology> links = link_topology(z_phase(), tables(z_phase()));
-  const std::vector<LabelQuality> qualities = qualities_of_z(links);
-  return prices(std::move(links), qualities, kGoodInA15, .82, 3);
+  const std::vector<ConfigurationQuality> qualities = qualities_of_z(links);
+  return costs(std::move(links), qualities, kGoodInA15, .82, 3);
 }
 
 }  // namespace
 
-const LabelPrices* label_prices(const Tiling& tiling) {
+const ConfigurationCosts* configuration_costs(const Tiling& tiling) {
   if (tiling.name == a15().name) return &prices_of_a15();
   if (tiling.name == z_phase().name) {
-    static const LabelPrices made = prices_of_z();
+    static const ConfigurationCosts made = costs_of_z();
     return &made;
   }
   // Patches of three edges are three and ten times as large as in A15, and mend no more than those of two.
   if (tiling.name == acute_slab().name) {
-    static const LabelPrices made =
-        prices(link_topology(acute_slab(), tables(acute_slab())), kSlabLabelQualities, .936, .78, 2);
+    static const ConfigurationCosts made =
+        costs(link_topology(acute_slab(), tables(acute_slab())), kSlabConfigurationQualities, .936, .78, 2);
     return &made;
   }
   if (tiling.name == acute_cube().name) {
-    static const LabelPrices made = prices(links_of_cube(), kCubeLabelQualities, .847, .62, 2);
+    static const ConfigurationCosts made = costs(links_of_cube(), kCubeConfigurationQualities, .847, .62, 2);
     return &made;
   }
   return nullptr;
 }
 
-const LabelEnergies& a15_label_energies() { return prices_of_a15().energies; }
+const StarCostTable& a15_star_costs() { return prices_of_a15().costs; }
 
 }  // namespace umtet

@@ -2,17 +2,17 @@
 
 #include <vector>
 
-#include "mesh/classification/star_cost_table.h"
 #include "mesh/background/link_topology.h"
 #include "mesh/background/tiling.h"
+#include "mesh/classification/star_cost_table.h"
 
 namespace umtet {
 
 /// What the choice of labels, and their repair, need to know of a tiling.
-struct LabelPrices {
+struct ConfigurationCosts {
   std::vector<LinkTopology> links;
-  double good;  ///< of LabelEnergies
-  LabelEnergies energies;
+  double good;  ///< of StarCostTable
+  StarCostTable costs;
   double repair_target;  ///< what labels and smoothing reach on nearly every tet: no use to mend those above
   int repair_reach;      ///< of RepairParams, at most
 };
@@ -21,9 +21,9 @@ struct LabelPrices {
 ///
 /// Prices are measured (star_costs) but for Z, where a site's are those of A15 with as many neighbours: 12 and 14
 /// neighbours are the Frank-Kasper polyhedra of A15 in Z too. Z's third kind, 15 neighbours, is priced like 14.
-const LabelPrices* label_prices(const Tiling& tiling);
+const ConfigurationCosts* configuration_costs(const Tiling& tiling);
 
 /// That of a15().
-const LabelEnergies& a15_label_energies();
+const StarCostTable& a15_star_costs();
 
 }  // namespace umtet

@@ -3,27 +3,27 @@
 namespace umtet {
 namespace {
 
-constexpr float kScale = 1e4F;  // .1 below good is 100: the unit of all prices
-// A labelling that the fit never met, or met too seldom to say.
+constexpr float kScale = 1e4F;  // .1 below good is 100: the unit of all costs
+// A configuration that the fit never met, or met too seldom to say.
 constexpr float kUnknown = 100;
 // Worse than all the rings a flip can spoil.
 constexpr float kNotManifold = 1000;
 
 }  // namespace
 
-LabelEnergies::LabelEnergies(const std::vector<LinkTopology>& links, std::span<const LabelQuality> qualities,
+StarCostTable::StarCostTable(const std::vector<LinkTopology>& links, std::span<const ConfigurationQuality> qualities,
                              double good)
     : not_manifold_(kNotManifold) {
   for (const LinkTopology& link : links) {
     const auto site = static_cast<std::size_t>(link.site);
     if (site >= of_site_.size()) of_site_.resize(site + 1);
     of_site_[site].row = link.triangles.size() + 1;
-    of_site_[site].price.assign(of_site_[site].row * of_site_[site].row, kUnknown);
+    of_site_[site].cost.assign(of_site_[site].row * of_site_[site].row, kUnknown);
   }
-  for (const LabelQuality& q : qualities) {
+  for (const ConfigurationQuality& q : qualities) {
     OfSite& of = of_site_[static_cast<std::size_t>(q.site)];
     const float lack = std::max(0.F, static_cast<float>(good) - static_cast<float>(q.quality));
-    of.price[static_cast<std::size_t>(q.n_positive_faces) * of.row + static_cast<std::size_t>(q.n_tets)] =
+    of.cost[static_cast<std::size_t>(q.n_positive_faces) * of.row + static_cast<std::size_t>(q.n_tets)] =
         std::min(kUnknown, kScale * lack * lack);
   }
 }

@@ -10,34 +10,34 @@
 namespace umtet {
 
 /// How well the tets around a boundary vertex can be shaped when its link is labelled so: measured, not derived.
-struct LabelQuality {
+struct ConfigurationQuality {
   int site;              ///< LinkTopology::site
   int n_positive_faces;  ///< bv
   int n_tets;            ///< nt
   double quality;        ///< the worst mean ratio of its ring that can be reached
 };
 
-/// The price of a labelling of the link around an outside vertex.
-class LabelEnergies {
+/// The cost of a configuration of the link around an outside vertex.
+class StarCostTable {
  public:
   /// @param good  a quality that costs nothing, above all in the list: see configuration_costs.cpp
-  LabelEnergies(const std::vector<LinkTopology>& links, std::span<const LabelQuality> qualities, double good);
+  StarCostTable(const std::vector<LinkTopology>& links, std::span<const ConfigurationQuality> qualities, double good);
 
   float operator()(int site, const LinkState& s) const {
     const OfSite& of = of_site_[static_cast<std::size_t>(site)];
-    return s.manifold ? of.price[s.n_positive_faces * of.row + s.n_tets] : not_manifold_;
+    return s.manifold ? of.cost[s.n_positive_faces * of.row + s.n_tets] : not_manifold_;
   }
-  /// Sets the price of every labelling to f(), in no order that means anything.
+  /// Sets the cost of every configuration to f(), in no order that means anything.
   template <class F>
   void generate(const F& f) {
-    for (OfSite& of : of_site_) std::generate(of.price.begin(), of.price.end(), f);
+    for (OfSite& of : of_site_) std::generate(of.cost.begin(), of.cost.end(), f);
     not_manifold_ = f();
   }
 
  private:
   struct OfSite {
-    std::size_t row = 0;       ///< triangles of the link, and one more
-    std::vector<float> price;  ///< by positive faces, then by tets
+    std::size_t row = 0;      ///< triangles of the link, and one more
+    std::vector<float> cost;  ///< by positive faces, then by tets
   };
   std::vector<OfSite> of_site_;
   float not_manifold_;

@@ -16,19 +16,19 @@
 namespace umtet {
 namespace {
 
-using Lane = Eigen::Array<double, kLanes, 1>;
-using LaneMap = Eigen::Map<const Lane, Eigen::Aligned32>;
+using Pack = Eigen::Array<double, kPackSize, 1>;
+using PackMap = Eigen::Map<const Pack, Eigen::Aligned32>;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kGoldenSteps = 10;  // [Rangarajan2018, Section 3.8(d)]
 
-LaneMap lane(const std::array<double, kMaxRing>& a, int k) { return LaneMap(a.data() + k); }
+PackMap lane(const std::array<double, kMaxRing>& a, int k) { return PackMap(a.data() + k); }
 
-void put(std::array<double, kMaxRing>& a, int k, const Lane& x) {
-  Eigen::Map<Lane, Eigen::Aligned32>(a.data() + k) = x;
+void put(std::array<double, kMaxRing>& a, int k, const Pack& x) {
+  Eigen::Map<Pack, Eigen::Aligned32>(a.data() + k) = x;
 }
 
-Lane f_of(const Lane& V, const Lane& L) { return V * V.abs() / (L * L * L); }
+Pack f_of(const Pack& V, const Pack& L) { return V * V.abs() / (L * L * L); }
 
 struct Probe {
   double f;
@@ -38,11 +38,11 @@ struct Probe {
 /// The least f at lambda and whose it is (the first one's, among equals).
 Probe lowest(const RingOnLine& r, double lambda) {
   alignas(32) std::array<double, kMaxRing> f;
-  Lane least = Lane::Constant(kInfinity);
-  for (int k = 0; k < r.n; k += kLanes) {
-    const Lane V = lane(r.v0, k) + lane(r.v1, k) * lambda;
-    const Lane L = lane(r.l0, k) + (lane(r.l1, k) + 3 * lambda) * lambda;
-    const Lane here = f_of(V, L);
+  Pack least = Pack::Constant(kInfinity);
+  for (int k = 0; k < r.n; k += kPackSize) {
+    const Pack V = lane(r.v0, k) + lane(r.v1, k) * lambda;
+    const Pack L = lane(r.l0, k) + (lane(r.l1, k) + 3 * lambda) * lambda;
+    const Pack here = f_of(V, L);
     put(f, k, here);
     least = least.min(here);
   }
@@ -216,30 +216,30 @@ MaxMinResult exact(const RingOnLine&) { throw std::logic_error("max_min: built w
 
 OneRing::OneRing(const Vec3& x, std::span<const Vec3> V, std::span<const Triangle> faces)
     : n(static_cast<int>(faces.size())) {
-  const Lane X = Lane::Constant(x.x()), Y = Lane::Constant(x.y()), Z = Lane::Constant(x.z());
-  Lane least = Lane::Constant(kInfinity);
-  for (int k = 0; k < n; k += kLanes) {
-    std::array<const Vec3*, kLanes> p, q, r;
-    for (int m = 0; m < kLanes; ++m) {
+  const Pack X = Pack::Constant(x.x()), Y = Pack::Constant(x.y()), Z = Pack::Constant(x.z());
+  Pack least = Pack::Constant(kInfinity);
+  for (int k = 0; k < n; k += kPackSize) {
+    std::array<const Vec3*, kPackSize> p, q, r;
+    for (int m = 0; m < kPackSize; ++m) {
       const Triangle& face = faces[std::min(k + m, n - 1)];
       p[m] = &V[face[0]], q[m] = &V[face[1]], r[m] = &V[face[2]];
     }
-    const auto component = [](const std::array<const Vec3*, kLanes>& a, int c) {
-      return Lane((*a[0])[c], (*a[1])[c], (*a[2])[c], (*a[3])[c]);
+    const auto component = [](const std::array<const Vec3*, kPackSize>& a, int c) {
+      return Pack((*a[0])[c], (*a[1])[c], (*a[2])[c], (*a[3])[c]);
     };
-    const Lane ax = component(p, 0) - X, ay = component(p, 1) - Y, az = component(p, 2) - Z;
-    const Lane bx = component(q, 0) - X, by = component(q, 1) - Y, bz = component(q, 2) - Z;
-    const Lane cx = component(r, 0) - X, cy = component(r, 1) - Y, cz = component(r, 2) - Z;
-    const Lane ux = bx - ax, uy = by - ay, uz = bz - az, wx = cx - ax, wy = cy - ay, wz = cz - az;
-    const Lane Nx = uy * wz - uz * wy, Ny = uz * wx - ux * wz, Nz = ux * wy - uy * wx;
-    const Lane Sx = ax + bx + cx, Sy = ay + by + cy, Sz = az + bz + cz;
-    const Lane spokes = ax * ax + ay * ay + az * az + bx * bx + by * by + bz * bz + cx * cx + cy * cy + cz * cz;
+    const Pack ax = component(p, 0) - X, ay = component(p, 1) - Y, az = component(p, 2) - Z;
+    const Pack bx = component(q, 0) - X, by = component(q, 1) - Y, bz = component(q, 2) - Z;
+    const Pack cx = component(r, 0) - X, cy = component(r, 1) - Y, cz = component(r, 2) - Z;
+    const Pack ux = bx - ax, uy = by - ay, uz = bz - az, wx = cx - ax, wy = cy - ay, wz = cz - az;
+    const Pack Nx = uy * wz - uz * wy, Ny = uz * wx - ux * wz, Nz = ux * wy - uy * wx;
+    const Pack Sx = ax + bx + cx, Sy = ay + by + cy, Sz = az + bz + cz;
+    const Pack spokes = ax * ax + ay * ay + az * az + bx * bx + by * by + bz * bz + cx * cx + cy * cy + cz * cz;
     put(nx, k, Nx), put(ny, k, Ny), put(nz, k, Nz);
-    const Lane V0 = Nx * ax + Ny * ay + Nz * az;
+    const Pack V0 = Nx * ax + Ny * ay + Nz * az;
     put(v, k, V0);
     put(sx, k, -2 * Sx), put(sy, k, -2 * Sy), put(sz, k, -2 * Sz);
     // |a|^2 + |b|^2 + |c|^2 and the face's |a - b|^2 + |b - c|^2 + |c - a|^2 = 3 (...) - |a + b + c|^2
-    const Lane L0 = 4 * spokes - (Sx * Sx + Sy * Sy + Sz * Sz);
+    const Pack L0 = 4 * spokes - (Sx * Sx + Sy * Sy + Sz * Sz);
     put(l, k, L0);
     least = least.min(f_of(V0, L0));
   }
@@ -247,18 +247,18 @@ OneRing::OneRing(const Vec3& x, std::span<const Vec3> V, std::span<const Triangl
 }
 
 double OneRing::min_f(const Vec3& y) const {
-  Lane least = Lane::Constant(kInfinity);
+  Pack least = Pack::Constant(kInfinity);
   const double y2 = 3 * y.squaredNorm();
-  for (int k = 0; k < n; k += kLanes) {
-    const Lane V = lane(v, k) - (lane(nx, k) * y.x() + lane(ny, k) * y.y() + lane(nz, k) * y.z());
-    const Lane L = lane(l, k) + (lane(sx, k) * y.x() + lane(sy, k) * y.y() + lane(sz, k) * y.z()) + y2;
+  for (int k = 0; k < n; k += kPackSize) {
+    const Pack V = lane(v, k) - (lane(nx, k) * y.x() + lane(ny, k) * y.y() + lane(nz, k) * y.z());
+    const Pack L = lane(l, k) + (lane(sx, k) * y.x() + lane(sy, k) * y.y() + lane(sz, k) * y.z()) + y2;
     least = least.min(f_of(V, L));
   }
   return least.minCoeff();
 }
 
 RingOnLine::RingOnLine(const OneRing& ring, const Vec3& d) : n(ring.n) {
-  for (int k = 0; k < n; k += kLanes) {
+  for (int k = 0; k < n; k += kPackSize) {
     put(v0, k, lane(ring.v, k));
     put(v1, k, -(lane(ring.nx, k) * d.x() + lane(ring.ny, k) * d.y() + lane(ring.nz, k) * d.z()));
     put(l0, k, lane(ring.l, k));

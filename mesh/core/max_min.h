@@ -25,7 +25,7 @@ inline constexpr MaxMin kBestMaxMin = MaxMin::GoldenSection;
 inline constexpr int kMaxRing = 128;
 
 /// Tets handled at once.
-inline constexpr int kLanes = 4;
+inline constexpr int kPackSize = 4;
 
 /// The 1-ring of a vertex as functions of its displacement y:                        [Rangarajan2018, eq. (6)]
 ///

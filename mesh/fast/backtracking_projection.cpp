@@ -22,7 +22,7 @@ constexpr std::size_t kVerticesPerTask = 64;  // of a microsecond or two each
 constexpr std::size_t kVerticesPerPoll = 1 << 12;
 
 /// A Boundary vertex under way.
-struct Traveller {
+struct BoundaryVertex {
   int vertex = 0;
   bool has_foot = false, arrived = false, held_back = false;
   double t = 0;  ///< the vertex is at start + t (foot - start)
@@ -32,14 +32,14 @@ struct Traveller {
 /// Roles as they were, whatever happens.
 class RolesOnLoan {
  public:
-  explicit RolesOnLoan(std::vector<Shell::Role>& roles) : roles_(roles), kept_(roles) {}
+  explicit RolesOnLoan(std::vector<ActiveLayer::Role>& roles) : roles_(roles), kept_(roles) {}
   ~RolesOnLoan() { roles_ = std::move(kept_); }
   RolesOnLoan(const RolesOnLoan&) = delete;
   RolesOnLoan& operator=(const RolesOnLoan&) = delete;
 
  private:
-  std::vector<Shell::Role>& roles_;
-  std::vector<Shell::Role> kept_;
+  std::vector<ActiveLayer::Role>& roles_;
+  std::vector<ActiveLayer::Role> kept_;
 };
 
 class Projection {
@@ -47,21 +47,21 @@ class Projection {
   Projection(PNormSmoother& smoother, ImplicitFunctionRef psi, const ProjectionParams& params,
              const KeepGoing& keep_going)
       : smoother_(smoother),
-        shell_(smoother.shell()),
+        layer_(smoother.layer()),
         psi_(psi),
         params_(params),
         keep_going_(keep_going),
-        roles_(smoother.shell().role) {
+        roles_(smoother.layer().role) {
     least_f_ = f_of_quality(params.least_quality);
     set_out();
   }
 
   ProjectionReport operator()() {
     find_feet();
-    while (report_.rounds < params_.max_rounds && n_arrived_ < travellers_.size()) {
+    while (report_.rounds < params_.max_rounds && n_arrived_ < boundary_vertices_.size()) {
       ++report_.rounds;
       advance(std::min(1., static_cast<double>(report_.rounds) / params_.passes));
-      if (n_arrived_ == travellers_.size()) break;
+      if (n_arrived_ == boundary_vertices_.size()) break;
       const bool last_pass_is_over = report_.rounds >= params_.passes;
       if (last_pass_is_over) make_room();
       relax(params_.sweeps);
@@ -77,19 +77,19 @@ class Projection {
   void find_feet();
   void make_room();
   void advance(double target);
-  bool step(Traveller& traveller, double target);
+  bool step(BoundaryVertex& boundary_vertex, double target);
   void relax(int sweeps);
   ProjectionReport conclude();
 
   PNormSmoother& smoother_;
-  Shell& shell_;
+  ActiveLayer& layer_;
   ImplicitFunctionRef psi_;
   const ProjectionParams& params_;
   const KeepGoing& keep_going_;
-  RolesOnLoan roles_;  ///< travellers are Fixed for the smoother until they arrive
+  RolesOnLoan roles_;  ///< boundary_vertices are Fixed for the smoother until they arrive
   double least_f_;
-  std::vector<Traveller> travellers_;      ///< by colour, ascending vertex within one
-  std::vector<std::size_t> colour_begin_;  ///< into travellers_
+  std::vector<BoundaryVertex> boundary_vertices_;  ///< by colour, ascending vertex within one
+  std::vector<std::size_t> colour_begin_;          ///< into boundary_vertices_
   std::size_t n_arrived_ = 0;
   ProjectionReport report_;
 };
@@ -114,67 +114,67 @@ std::size_t Projection::count_over(std::size_t begin, std::size_t end, const F& 
 
 void Projection::set_out() {
   colour_begin_.assign(1, 0);
-  for (std::size_t i = 0; i < shell_.V.size(); ++i) {
-    if (shell_.role[i] != Shell::Role::Boundary) continue;
-    const auto colour = static_cast<std::size_t>(shell_.colour[i]);
+  for (std::size_t i = 0; i < layer_.V.size(); ++i) {
+    if (layer_.role[i] != ActiveLayer::Role::Boundary) continue;
+    const auto colour = static_cast<std::size_t>(layer_.colour[i]);
     if (colour + 1 >= colour_begin_.size()) colour_begin_.resize(colour + 2, 0);
     ++colour_begin_[colour + 1];
   }
   std::partial_sum(colour_begin_.begin(), colour_begin_.end(), colour_begin_.begin());
-  travellers_.resize(colour_begin_.back());
+  boundary_vertices_.resize(colour_begin_.back());
   std::vector<std::size_t> next = colour_begin_;
-  for (std::size_t i = 0; i < shell_.V.size(); ++i) {
-    if (shell_.role[i] != Shell::Role::Boundary) continue;
-    travellers_[next[static_cast<std::size_t>(shell_.colour[i])]++].vertex = static_cast<int>(i);
-    shell_.role[i] = Shell::Role::Fixed;
+  for (std::size_t i = 0; i < layer_.V.size(); ++i) {
+    if (layer_.role[i] != ActiveLayer::Role::Boundary) continue;
+    boundary_vertices_[next[static_cast<std::size_t>(layer_.colour[i])]++].vertex = static_cast<int>(i);
+    layer_.role[i] = ActiveLayer::Role::Fixed;
   }
-  report_.boundary = travellers_.size();
+  report_.boundary = boundary_vertices_.size();
 }
 
 /// Of those who have not arrived, from where they are.
 void Projection::find_feet() {
-  report_.psi_evaluations += count_over(0, travellers_.size(), [&](std::size_t k) {
-    Traveller& traveller = travellers_[k];
-    if (traveller.arrived) return std::size_t{0};
-    traveller.t = 0;
-    traveller.start = shell_.V[traveller.vertex];
-    const ClosestPoint foot = closest_point(psi_, traveller.start, shell_.h, params_.closest_point);
-    traveller.has_foot = foot.converged;
-    traveller.foot = foot.point;
+  report_.psi_evaluations += count_over(0, boundary_vertices_.size(), [&](std::size_t k) {
+    BoundaryVertex& boundary_vertex = boundary_vertices_[k];
+    if (boundary_vertex.arrived) return std::size_t{0};
+    boundary_vertex.t = 0;
+    boundary_vertex.start = layer_.V[boundary_vertex.vertex];
+    const ClosestPoint foot = closest_point(psi_, boundary_vertex.start, layer_.h, params_.closest_point);
+    boundary_vertex.has_foot = foot.converged;
+    boundary_vertex.foot = foot.point;
     return static_cast<std::size_t>(foot.iterations);
   });
 }
 
 /// As far as the guard allows. Returns whether the vertex arrived.
-bool Projection::step(Traveller& traveller, double target) {
-  const int i = traveller.vertex;
-  if ((traveller.foot - traveller.start).norm() <= params_.closest_point.tol * shell_.h) {
-    return traveller.arrived = true;  // a warm start has brought it there
+bool Projection::step(BoundaryVertex& boundary_vertex, double target) {
+  const int i = boundary_vertex.vertex;
+  if ((boundary_vertex.foot - boundary_vertex.start).norm() <= params_.closest_point.tol * layer_.h) {
+    return boundary_vertex.arrived = true;  // a warm start has brought it there
   }
-  const Vec3 x = shell_.V[i];
+  const Vec3 x = layer_.V[i];
   const OneRing ring = smoother_.ring(i);
   const double least = std::min(least_f_, ring.f_here);
   for (const double share : kShares) {
-    const double t = traveller.t + share * (target - traveller.t);
-    const Vec3 place = traveller.start + t * (traveller.foot - traveller.start);
+    const double t = boundary_vertex.t + share * (target - boundary_vertex.t);
+    const Vec3 place = boundary_vertex.start + t * (boundary_vertex.foot - boundary_vertex.start);
     if (!(ring.min_f(place - x) >= least)) {
-      traveller.held_back = true;
+      boundary_vertex.held_back = true;
       continue;
     }
-    traveller.t = t;
-    traveller.arrived = t == 1;
-    shell_.V[i] = place;
-    smoother_.wake(i);
+    boundary_vertex.t = t;
+    boundary_vertex.arrived = t == 1;
+    layer_.V[i] = place;
+    smoother_.enqueue(i);
     break;
   }
-  return traveller.arrived;
+  return boundary_vertex.arrived;
 }
 
 void Projection::advance(double target) {
   for (std::size_t c = 0; c + 1 < colour_begin_.size(); ++c) {
     n_arrived_ += count_over(colour_begin_[c], colour_begin_[c + 1], [&](std::size_t k) -> std::size_t {
-      Traveller& traveller = travellers_[k];
-      return traveller.has_foot && !traveller.arrived && step(traveller, target) ? 1 : 0;
+      BoundaryVertex& boundary_vertex = boundary_vertices_[k];
+      return boundary_vertex.has_foot && !boundary_vertex.arrived && step(boundary_vertex, target) ? 1 : 0;
     });
   }
 }
@@ -182,25 +182,26 @@ void Projection::advance(double target) {
 /// Those on the surface may slide from now on. Those held back keep what they have won, and every now and then go where
 /// their rings are best instead: the way to the surface from there is another one.
 void Projection::make_room() {
-  const Shell::Role held_back = report_.rounds % kRoundsPerDetour == 0 ? Shell::Role::Inner : Shell::Role::Fixed;
-  for (const Traveller& traveller : travellers_) {
-    shell_.role[traveller.vertex] = traveller.arrived ? Shell::Role::Boundary : held_back;
+  const ActiveLayer::Role held_back =
+      report_.rounds % kRoundsPerDetour == 0 ? ActiveLayer::Role::Inner : ActiveLayer::Role::Fixed;
+  for (const BoundaryVertex& boundary_vertex : boundary_vertices_) {
+    layer_.role[boundary_vertex.vertex] = boundary_vertex.arrived ? ActiveLayer::Role::Boundary : held_back;
   }
 }
 
 void Projection::relax(int sweeps) {
-  SmoothParams smoothing = params_.smoothing;
+  SmoothingParams smoothing = params_.smoothing;
   smoothing.max_sweeps = sweeps;
   report_.smoothing += smoother_.run(psi_, smoothing, keep_going_);
 }
 
 ProjectionReport Projection::conclude() {
-  for (const Traveller& traveller : travellers_) {
-    shell_.role[traveller.vertex] = Shell::Role::Boundary;
-    report_.stopped_short += traveller.held_back;
-    if (traveller.arrived) continue;
+  for (const BoundaryVertex& boundary_vertex : boundary_vertices_) {
+    layer_.role[boundary_vertex.vertex] = ActiveLayer::Role::Boundary;
+    report_.stopped_short += boundary_vertex.held_back;
+    if (boundary_vertex.arrived) continue;
     report_.not_arrived.push_back(
-        {traveller.vertex, traveller.has_foot ? NotArrived::Reason::Guard : NotArrived::Reason::NoFoot});
+        {boundary_vertex.vertex, boundary_vertex.has_foot ? NotArrived::Reason::Guard : NotArrived::Reason::NoFoot});
   }
   std::sort(report_.not_arrived.begin(), report_.not_arrived.end(),
             [](const NotArrived& a, const NotArrived& b) { return a.vertex < b.vertex; });
@@ -236,9 +237,9 @@ ProjectionReport project(PNormSmoother& smoother, ImplicitFunctionRef psi, const
   return Projection(smoother, psi, params, keep_going)();
 }
 
-ProjectionReport project(Shell& shell, ImplicitFunctionRef psi, const ProjectionParams& params,
+ProjectionReport project(ActiveLayer& layer, ImplicitFunctionRef psi, const ProjectionParams& params,
                          const KeepGoing& keep_going) {
-  PNormSmoother smoother(shell);
+  PNormSmoother smoother(layer);
   ProjectionReport report = project(smoother, psi, params, keep_going);
   smoother.measure(report.smoothing);
   report.min_quality = report.smoothing.min_quality;

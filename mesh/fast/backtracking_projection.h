@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "mesh/implicit/closest_point.h"
-#include "mesh/core/implicit_function.h"
 #include "common/context.h"
+#include "mesh/core/implicit_function.h"
 #include "mesh/fast/p_norm_smoothing.h"
+#include "mesh/implicit/closest_point.h"
 #include "mesh/submesh/active_layer.h"
 
 namespace umtet {
@@ -16,9 +16,9 @@ struct ProjectionParams {
   int passes = 3;       ///< N_P: parts of the way, with relaxation of inner vertices after each; >= 1
   int max_rounds = 20;  ///< attempts in all, those of passes included; >= passes
   double least_quality =
-      .2;                  ///< a vertex goes no farther than its worst tet keeps this, or does not get worse; in (0, 1)
-  int sweeps = 3;          ///< of smoothing after each round; >= 0
-  SmoothParams smoothing;  ///< max_sweeps is not used, sweeps is
+      .2;          ///< a vertex goes no farther than its worst tet keeps this, or does not get worse; in (0, 1)
+  int sweeps = 3;  ///< of smoothing after each round; >= 0
+  SmoothingParams smoothing;  ///< max_sweeps is not used, sweeps is
   ClosestPointParams closest_point;
 };
 
@@ -40,25 +40,25 @@ struct ProjectionReport {
   int rounds = 0;
   std::size_t stopped_short = 0;    ///< vertices the guard held back at least once
   std::size_t psi_evaluations = 0;  ///< those of the smoothing included
-  double min_quality = 1;           ///< the worst tet with a vertex that is not Fixed; by project(shell) only
-  SmoothReport smoothing;           ///< what it says of the shell, too
+  double min_quality = 1;           ///< the worst tet with a vertex that is not Fixed; by project(layer) only
+  SmoothingReport smoothing;        ///< what it says of the layer, too
 };
 
-/// Moves the Boundary vertices of a shell to their closest points on psi = 0.            [Rangarajan2018, Alg. 1,
+/// Moves the Boundary vertices of a layer to their closest points on psi = 0.            [Rangarajan2018, Alg. 1,
 /// 23-30]
 ///
 /// In pass k of N_P each vertex is offered k / N_P of its way, colour by colour, and takes as much of the step (all of
 /// it, a half, a quarter, an eighth) as leaves every tet of its ring at Q >= least_quality, or not worse than its
 /// worst. Inner vertices are smoothed after each pass but the last. If some were held back, those that have arrived
 /// slide on the surface and make room, and the others try again; in every third round these relax like inner vertices
-/// first. Their feet are found anew from where they are. A shell without a tet at Q <= 0 gets none.
+/// first. Their feet are found anew from where they are. A layer without a tet at Q <= 0 gets none.
 ///
 /// Vertices that arrive satisfy |psi| / |grad psi| <= 1e-10 h (closest_point.tol). The same bytes for any number of
-/// threads. The smoother must be of the shell as it is; afterwards it can go on with its queue and its rings.
+/// threads. The smoother must be of the layer as it is; afterwards it can go on with its queue and its rings.
 /// \throw std::invalid_argument naming every broken constraint of params, MeshCancelled
 ProjectionReport project(PNormSmoother& smoother, ImplicitFunctionRef psi, const ProjectionParams& params = {},
                          const KeepGoing& keep_going = {});
-ProjectionReport project(Shell& shell, ImplicitFunctionRef psi, const ProjectionParams& params = {},
+ProjectionReport project(ActiveLayer& layer, ImplicitFunctionRef psi, const ProjectionParams& params = {},
                          const KeepGoing& keep_going = {});
 
 }  // namespace umtet

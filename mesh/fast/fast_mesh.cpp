@@ -10,29 +10,29 @@
 #include <string>
 #include <utility>
 
+#include "mesh/base/violations.h"
+#include "mesh/classification/configuration_costs.h"
+#include "mesh/classification/detail/classification_band.h"
+#include "mesh/core/tet_quality.h"
+#include "mesh/fast/tangential_relaxation.h"
+#include "mesh/fast/warm_start.h"
 #include "mesh/submesh/assumptions.h"
 #include "mesh/submesh/background_active_layer.h"
-#include "mesh/fast/tangential_relaxation.h"
 #include "mesh/submesh/detail/assemble_submesh.h"
-#include "mesh/classification/detail/classification_band.h"
 #include "mesh/submesh/detail/nothing_inside.h"
-#include "mesh/base/violations.h"
 #include "mesh/submesh/double_faces.h"
-#include "mesh/classification/configuration_costs.h"
 #include "mesh/submesh/lattice_active_layer.h"
-#include "mesh/core/tet_quality.h"
 #include "mesh/submesh/walls.h"
-#include "mesh/fast/warm_start.h"
 
 namespace umtet {
 namespace {
 
-using detail::find_offenders;
+using detail::find_violations;
 using detail::IdSet;
-using detail::Offenders;
+using detail::Violations;
 
 // In place of the least gains of smoothing, if these are less, for a mesh that begins from the one before. A ball that
-// drifts a quarter cell a step: .95 of the visits of 3e-4 and least Q .832 (.834); with 1e-3 it is .92 and .828, anew
+// drifts a quarter cell a step: .95 of the solves of 3e-4 and least Q .832 (.834); with 1e-3 it is .92 and .828, anew
 // .833.
 constexpr double kUpdateLeastGain = 6e-4;
 constexpr std::size_t kVerticesPerTask = 1 << 14;  // to compare places, a nanosecond each
@@ -44,10 +44,12 @@ class FastRun {
         psi_(psi),
         params_(params),
         observer_(observer),
-        prices_(params.rim == Rim::Wall ? nullptr : label_prices(background.tiling())),
-        label_params_(params.fast.labels),
+        costs_of_tiling_(params.background_boundary == BackgroundBoundary::Wall
+                             ? nullptr
+                             : configuration_costs(background.tiling())),
+        classification_params_(params.fast.labels),
         inside_(0) {
-    if (prices_ && !label_params_.energies) label_params_.energies = &prices_->energies;
+    if (costs_of_tiling_ && !classification_params_.costs) classification_params_.costs = &costs_of_tiling_->costs;
   }
 
   UmResult operator()(const std::vector<Vec3>& seeds) {
@@ -77,7 +79,7 @@ class FastRun {
     } catch (const MeshCancelled&) {
       fail(UmStatus::Cancelled, {.what = "stopped by the observer"});
     }
-    if (is_labelled_) complete();
+    if (is_classified_) complete();
     if (result_.final.empty()) result_.final = result_.submesh.mesh.V;
     if (result_.projected.empty()) result_.projected = result_.final;
     return std::move(result_);
@@ -106,24 +108,24 @@ class FastRun {
   bool fit();
   bool all_arrived(const ProjectionReport& projection);
   bool none_inverted();
-  std::vector<Vec3> coordinates(const std::vector<Vec3>& shell_V) const;
-  void repair_labels(const KeepGoing& keep_going);
+  std::vector<Vec3> coordinates(const std::vector<Vec3>& layer_V) const;
+  void repair_classification(const KeepGoing& keep_going);
   void measure_assumptions();
 
   const BackgroundMesh& background_;
   ImplicitFunctionRef psi_;
   const UmParams& params_;
   const UmObserver& observer_;
-  const LabelPrices* prices_;  ///< null: labels stay those of psi
-  LabelParams label_params_;   ///< with the prices
+  const ConfigurationCosts* costs_of_tiling_;   ///< null: labels stay those of psi
+  ClassificationParams classification_params_;  ///< with the costs
   UmResult result_;
   IdSet inside_;
   IdSet negative_{0};             ///< of update: psi < 0
   FastMemory* memory_ = nullptr;  ///< of the psi before
   const detail::PsiValues* known_ = nullptr;
-  LatticeShell shell_;
+  LatticeActiveLayer layer_;
   std::vector<std::pair<std::int64_t, Vec3>> moved_;  ///< by repair, ascending
-  bool is_labelled_ = false, is_complete_ = false;    ///< inside_ has been chosen, omega_h made of it
+  bool is_classified_ = false, is_complete_ = false;  ///< inside_ has been chosen, omega_h made of it
   std::size_t n_tets_ = 0;                            ///< of omega_h, as far as it is known
   BrokenAssumption double_faces_;
 };
@@ -143,42 +145,43 @@ bool FastRun::find_inside(const std::vector<Vec3>& seeds) {
 }
 
 bool FastRun::fits_background(const std::string& lost) {
-  UmEvidence rim{.what = "the domain reaches the rim of the background mesh"};
+  UmEvidence background_boundary{.what = "the domain reaches the background_boundary of the background mesh"};
   bool empty = true;
   for (std::size_t w = 0; w < inside_.n_words(); ++w) {
     const auto first = static_cast<std::int64_t>(64 * w);
     std::uint64_t bits = inside_.word(w);
     if (bits == 0) continue;
     empty = false;
-    if (params_.rim == Rim::Wall || background_.is_off_rim(first, first + 63)) continue;
+    if (params_.background_boundary == BackgroundBoundary::Wall || background_.is_off_boundary(first, first + 63))
+      continue;
     for (; bits != 0; bits &= bits - 1) {
       const std::int64_t v = first + std::countr_zero(bits);
-      if (background_.on_rim(v) && rim.count++ == 0) rim.background_vertex = v;
+      if (background_.on_boundary(v) && background_boundary.count++ == 0) background_boundary.background_vertex = v;
     }
   }
   if (empty) {
     const detail::NothingInside why = detail::nothing_inside(background_, psi_, asking("search"), lost);
     return fail(why.status, why.evidence);
   }
-  if (rim.count == 0) return true;
-  rim.where = background_.position(rim.background_vertex);
+  if (background_boundary.count == 0) return true;
+  background_boundary.where = background_.position(background_boundary.background_vertex);
   result_.submesh = emit_submesh(background_, inside_);
-  return fail(UmStatus::DomainLeavesBackground, rim);
+  return fail(UmStatus::DomainLeavesBackground, background_boundary);
 }
 
 bool FastRun::label() {
   const IdSet* last = memory_ && !memory_->moved.empty() ? &memory_->inside : nullptr;
-  if (prices_ && last && negative_ == memory_->negative) {
+  if (costs_of_tiling_ && last && negative_ == memory_->negative) {
     inside_ = *last;  // psi = 0 has passed over no vertex
-  } else if (prices_) {
-    const LabelReport labels = detail::choose_labels(background_, prices_->links, psi_, label_params_, inside_,
-                                                     asking("search"), last, known_);
+  } else if (costs_of_tiling_) {
+    const ClassificationReport labels = detail::classify_vertices(
+        background_, costs_of_tiling_->links, psi_, classification_params_, inside_, asking("search"), last, known_);
     result_.n_psi_evaluations += labels.psi_evaluations;
   }
-  is_labelled_ = true;
-  if (!prices_) {
+  is_classified_ = true;
+  if (!costs_of_tiling_) {
     complete();
-    if (params_.rim == Rim::Wall && !check_walls()) return false;
+    if (params_.background_boundary == BackgroundBoundary::Wall && !check_walls()) return false;
   } else if (observer_) {  // repair will change labels: tets are listed once, behind it
     SubmeshOutline outline = outline_submesh(background_, inside_);
     result_.submesh = std::move(outline.submesh);
@@ -198,7 +201,8 @@ void FastRun::complete() {
   if (is_complete_) return;
   result_.submesh = {};  // before the tets need their memory
   result_.submesh = emit_submesh(background_, inside_);
-  if (params_.rim == Rim::Wall) part_double_faces(background_, psi_, inside_, result_.submesh);
+  if (params_.background_boundary == BackgroundBoundary::Wall)
+    part_double_faces(background_, psi_, inside_, result_.submesh);
   n_tets_ = result_.submesh.mesh.C.size();
   double_faces_ = double_positive_faces(result_.submesh);
   result_.double_positive_faces = double_faces_.count;
@@ -209,14 +213,14 @@ bool FastRun::all_arrived(const ProjectionReport& projection) {
   if (projection.not_arrived.empty()) return true;
   complete();
   const NotArrived& first = projection.not_arrived.front();
-  const std::int64_t id = shell_.background_vertex[first.vertex];
+  const std::int64_t id = layer_.background_vertex[first.vertex];
   const auto& ids = result_.submesh.background_vertex;
   const int local = static_cast<int>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
   const bool is_double = double_faces_.is_broken_at({&local, 1});
-  result_.final = coordinates(shell_.shell.V);
+  result_.final = coordinates(layer_.layer.V);
   return fail(is_double ? UmStatus::DoublePositiveFace : UmStatus::ProjectionDiverged,
               {.background_vertex = id,
-               .where = shell_.shell.V[first.vertex],
+               .where = layer_.layer.V[first.vertex],
                .count = projection.not_arrived.size(),
                .what = std::string(first.reason == NotArrived::Reason::NoFoot
                                        ? "the closest point of a positive vertex was not found"
@@ -224,28 +228,28 @@ bool FastRun::all_arrived(const ProjectionReport& projection) {
                        (is_double ? ", at a face shared by two positively cut tets" : "")});
 }
 
-/// The vertices of omega_h with those of the shell at V, and the repaired ones where repair has put them.
-std::vector<Vec3> FastRun::coordinates(const std::vector<Vec3>& shell_V) const {
+/// The vertices of omega_h with those of the layer at V, and the repaired ones where repair has put them.
+std::vector<Vec3> FastRun::coordinates(const std::vector<Vec3>& layer_V) const {
   std::vector<Vec3> V = result_.submesh.mesh.V;
   const auto& ids = result_.submesh.background_vertex;
   const auto put = [&, at = ids.begin()](std::int64_t id, const Vec3& x) mutable {
     while (at != ids.end() && *at < id) ++at;
     if (at != ids.end() && *at == id) V[at - ids.begin()] = x;
   };
-  auto put_shell = put;
-  for (std::size_t v = 0; v < shell_V.size(); ++v) put_shell(shell_.background_vertex[v], shell_V[v]);
+  auto put_layer = put;
+  for (std::size_t v = 0; v < layer_V.size(); ++v) put_layer(layer_.background_vertex[v], layer_V[v]);
   auto put_moved = put;
   for (const auto& [id, x] : moved_) put_moved(id, x);
   return V;
 }
 
-/// The places of the shell, and of what repair has moved.
+/// The places of the layer, and of what repair has moved.
 void FastRun::remember(FastMemory& memory) {
   memory.moved.clear();
   const auto earlier = [](const auto& a, const auto& b) { return a.first < b.first; };
-  for (std::size_t v = 0; v < shell_.shell.V.size(); ++v) {
-    const std::pair<std::int64_t, Vec3> place = {shell_.background_vertex[v], shell_.shell.V[v]};
-    if (shell_.shell.role[v] == Shell::Role::Fixed) continue;
+  for (std::size_t v = 0; v < layer_.layer.V.size(); ++v) {
+    const std::pair<std::int64_t, Vec3> place = {layer_.background_vertex[v], layer_.layer.V[v]};
+    if (layer_.layer.role[v] == ActiveLayer::Role::Fixed) continue;
     if (!std::binary_search(moved_.begin(), moved_.end(), place, earlier)) memory.moved.push_back(place);
   }
   memory.moved.insert(memory.moved.end(), moved_.begin(), moved_.end());
@@ -261,7 +265,7 @@ bool FastRun::none_inverted() {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, V.size(), kVerticesPerTask), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) has_moved[i] = V[i] != result_.submesh.mesh.V[i];
   });
-  const Offenders inverted = find_offenders(C.size(), [&](std::size_t k) {
+  const Violations inverted = find_violations(C.size(), [&](std::size_t k) {
     const Tet& t = C[k];
     return (has_moved[t[0]] | has_moved[t[1]] | has_moved[t[2]] | has_moved[t[3]]) != 0 &&
            !(volume6(V[t[0]], V[t[1]], V[t[2]], V[t[3]]) > 0);
@@ -289,49 +293,50 @@ void FastRun::measure_assumptions() {
 }
 
 /// Changes labels where that mends a tet.
-void FastRun::repair_labels(const KeepGoing& keep_going) {
-  if (!prices_) return;
+void FastRun::repair_classification(const KeepGoing& keep_going) {
+  if (!costs_of_tiling_) return;
   RepairParams params = params_.fast.repair;
-  params.target = std::min(params.target, prices_->repair_target);
-  params.reach = std::min(params.reach, prices_->repair_reach);
+  params.target = std::min(params.target, costs_of_tiling_->repair_target);
+  params.reach = std::min(params.reach, costs_of_tiling_->repair_reach);
   params.slides = params.slides && !memory_;
-  RepairReport repaired = repair(background_, prices_->links, psi_, label_params_, params, shell_, inside_, keep_going);
+  RepairReport repaired =
+      repair(background_, costs_of_tiling_->links, psi_, classification_params_, params, layer_, inside_, keep_going);
   result_.n_psi_evaluations += repaired.psi_evaluations;
   moved_ = std::move(repaired.moved);
 }
 
-/// Boundary vertices go to psi = 0, and the shell is relaxed. @param projected  receives the places between the two
+/// Boundary vertices go to psi = 0, and the layer is relaxed. @param projected  receives the places between the two
 bool FastRun::relax(const KeepGoing& keep_going, std::vector<Vec3>& projected) {
-  shell_ = prices_ ? lattice_shell(background_, prices_->links, inside_, params_.fast.layers)
-                   : background_shell(background_, inside_, params_.fast.layers);
-  SmoothParams smoothing_params = params_.fast.smoothing;
+  layer_ = costs_of_tiling_ ? lattice_active_layer(background_, costs_of_tiling_->links, inside_, params_.fast.layers)
+                            : background_active_layer(background_, inside_, params_.fast.layers);
+  SmoothingParams smoothing_params = params_.fast.smoothing;
   bool is_on_surface = false;
   if (memory_ && !memory_->moved.empty()) {
     smoothing_params.margin = std::min(smoothing_params.margin, params_.fast.update_margin);
     smoothing_params.least_gain = std::max(smoothing_params.least_gain, kUpdateLeastGain);
     smoothing_params.fine_gain = std::max(smoothing_params.fine_gain, kUpdateLeastGain);
     const WarmStart start =
-        warm_start(background_, psi_, inside_, *memory_, params_.fast.projection, shell_, keep_going);
+        warm_start(background_, psi_, inside_, *memory_, params_.fast.projection, layer_, keep_going);
     result_.n_psi_evaluations += start.psi_evaluations;
     memory_->n_recalled = start.n_recalled;
     is_on_surface = start.is_on_surface;
   }
-  PNormSmoother smoother(shell_.shell);
-  shell_.shell.ring = {};  // the smoother has listed their faces, and omega_h will need the memory
+  PNormSmoother smoother(layer_.layer);
+  layer_.layer.ring = {};  // the smoother has listed their faces, and omega_h will need the memory
   if (!is_on_surface) {
     const ProjectionReport projection = project(smoother, psi_, params_.fast.projection, keep_going);
     result_.n_psi_evaluations += projection.psi_evaluations;
     if (!all_arrived(projection)) return false;
   }
-  projected = shell_.shell.V;
-  smoother.wake_all();
-  const SmoothReport smoothing = smoother.run(psi_, smoothing_params, keep_going);
+  projected = layer_.layer.V;
+  smoother.enqueue_all();
+  const SmoothingReport smoothing = smoother.run(psi_, smoothing_params, keep_going);
   result_.n_psi_evaluations += smoothing.psi_evaluations;
-  if (!memory_) {  // psi at every face: half the price of an update
-    const ChordParams chords{.least_quality = params_.fast.smoothing.target};
-    const std::vector<std::uint8_t> inside = inside_of(shell_, inside_);
+  if (!memory_) {  // psi at every face: half the cost of an update
+    const TangentialRelaxationParams chords{.least_quality = params_.fast.smoothing.target};
+    const std::vector<std::uint8_t> inside = inside_of(layer_, inside_);
     result_.n_psi_evaluations +=
-        slide_to_chords(smoother, inside, psi_, chords, smoothing_params, keep_going).psi_evaluations;
+        relax_tangentially(smoother, inside, psi_, chords, smoothing_params, keep_going).psi_evaluations;
   }
   return true;
 }
@@ -340,9 +345,9 @@ bool FastRun::fit() {
   const KeepGoing keep_going = asking("relax");
   std::vector<Vec3> projected;
   if (!relax(keep_going, projected)) return false;
-  repair_labels(keep_going);
+  repair_classification(keep_going);
   complete();
-  tbb::parallel_invoke([&] { result_.final = coordinates(shell_.shell.V); },
+  tbb::parallel_invoke([&] { result_.final = coordinates(layer_.layer.V); },
                        [&] { result_.projected = coordinates(projected); });
   measure_assumptions();
   return none_inverted() && report("relax", 1, 1);

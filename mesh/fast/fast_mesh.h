@@ -12,11 +12,10 @@ namespace umtet {
 
 /// A boundary-fitting mesh of {psi < 0}, better and some ten times faster than Algorithm 1.
 ///
-/// labels: which background vertices near psi = 0 count as inside is chosen for the shape of the tets (classification.h), where
-/// that has prices (configuration_costs.h);
-/// shell: only the boundary of omega_h and two layers behind it move (lattice_active_layer.h);
-/// projection: boundary vertices walk to psi = 0 as far as no tet inverts (backtracking_projection.h);
-/// smoothing: p-norm Newton steps where a tet is below the target (p_norm_smoothing.h);
+/// labels: which background vertices near psi = 0 count as inside is chosen for the shape of the tets
+/// (classification.h), where that has costs (configuration_costs.h); layer: only the boundary of omega_h and two layers
+/// behind it move (lattice_active_layer.h); projection: boundary vertices walk to psi = 0 as far as no tet inverts
+/// (backtracking_projection.h); smoothing: p-norm Newton steps where a tet is below the target (p_norm_smoothing.h);
 /// chords: boundary vertices slide on to ridges that h does not resolve (tangential_relaxation.h);
 /// repair: labels change where a tet is still below the target (repair.h).
 ///
@@ -35,8 +34,8 @@ struct FastMemory {
 };
 
 /// The same from known inside vertices, those with psi < 0. Labels stay as in `memory` if psi
-/// has the signs it had everywhere, else where others are not worth more (LabelParams::keep), and the shell begins near
-/// its places there (warm_start.h). Nobody slides to chords.
+/// has the signs it had everywhere, else where others are not worth more (ClassificationParams::keep), and the layer
+/// begins near its places there (warm_start.h). Nobody slides to chords.
 /// @param memory  empty (no `moved`) at first; receives that of this mesh, or becomes empty if there is none
 /// @param known   of this psi, what the search for `inside` has asked
 UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "mesh/fast/backtracking_projection.h"
 #include "mesh/classification/classification.h"
+#include "mesh/fast/backtracking_projection.h"
 #include "mesh/fast/p_norm_smoothing.h"
 #include "mesh/fast/repair.h"
 
@@ -12,9 +12,9 @@ namespace umtet {
 
 struct FastParams {
   int layers = 2;  ///< of vertices behind the boundary that move; >= 1. One is too few, three gain nothing: mesh_bench
-  LabelParams labels;
+  ClassificationParams labels;
   ProjectionParams projection;
-  SmoothParams smoothing;
+  SmoothingParams smoothing;
   /// In place of smoothing.margin, if that is greater, for a mesh that begins from the one before; >= 0. A ball that
   /// drifts a quarter cell a step: .85 of the visits of .04, and 1 % quantiles of Q within .004 of meshing anew. With
   /// .03 it is .77 and .006, and .01 on a ball of 5k tets.

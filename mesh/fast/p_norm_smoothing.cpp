@@ -15,8 +15,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "mesh/fast/detail/ring_newton.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/fast/detail/ring_newton.h"
 
 namespace umtet {
 namespace {
@@ -24,22 +24,22 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kSlides = 3;  // lengths of a tangential step that are tried on the surface
 // Over-relaxation. With 1 and 1 the 1 % quantile of Q is .002 (sphere) to .005 (T6) lower at 100k tets, after as many
-// visits; with 1.2 and 1.8, or 1.6 and 1.6, it is as with these within .001.
+// solves; with 1.2 and 1.8, or 1.6 and 1.6, it is as with these within .001.
 constexpr double kInnerFactor = 1.4, kBoundaryFactor = 2;
-// A visit takes about a microsecond, handing a task to a thread a few.
-constexpr std::size_t kVisitsPerTask = 32;
+// A solve takes about a microsecond, handing a task to a thread a few.
+constexpr std::size_t kSolvesPerTask = 32;
 constexpr std::size_t kWorthThreads = 64;
-constexpr std::size_t kVisitsPerPoll = 1 << 12;
+constexpr std::size_t kSolvesPerPoll = 1 << 12;
 constexpr std::size_t kTetsPerTask = 1 << 12;  // some ten nanoseconds each
 
-constexpr std::size_t kAhead = 2;  // visits: a ring is asked for before it is needed; of large meshes it is far away
+constexpr std::size_t kAhead = 2;  // solves: a ring is asked for before it is needed; of large meshes it is far away
 
-/// One visit. Reads the ring, changes nothing.
+/// One solve. Reads the ring, changes nothing.
 class Visitor {
  public:
-  Visitor(const PNormSmoother& smoother, ImplicitFunctionRef psi, const SmoothParams& params)
+  Visitor(const PNormSmoother& smoother, ImplicitFunctionRef psi, const SmoothingParams& params)
       : smoother_(smoother),
-        shell_(smoother.shell()),
+        layer_(smoother.layer()),
         psi_(psi),
         closest_point_(params.closest_point),
         good_f_(f_of_quality(params.target + params.margin)),
@@ -52,7 +52,7 @@ class Visitor {
     bool needed = false, moved = false;
     bool good = false;  ///< no tet of the ring was below the target
     Vec3 place;
-    std::bitset<kMaxRing> poor;  ///< which tets of the ring are below target + margin, before or after the move
+    std::bitset<kMaxRing> below_target;  ///< which tets of the ring are below target + margin, before or after the move
     std::size_t psi_evaluations = 0;
   };
 
@@ -63,15 +63,15 @@ class Visitor {
     result.needed = true;
     detail::silence_padding(ring);
     result.good = ring.f_here >= target_f_;
-    const detail::Bar bar(ring, shell_.h, result.good ? fine_gain_ : least_gain_, sharper_);
-    if (shell_.role[i] == Shell::Role::Inner) {
-      const detail::Displacement best = detail::best_displacement(ring, bar, shell_.h, {});
+    const detail::Bar bar(ring, layer_.h, result.good ? fine_gain_ : least_gain_, sharper_);
+    if (layer_.role[i] == ActiveLayer::Role::Inner) {
+      const detail::Displacement best = detail::best_displacement(ring, bar, layer_.h, {});
       result.moved = best.passed(ring, bar);
-      result.place = shell_.V[i] + over_relaxed(ring, bar, best.y, kInnerFactor);
+      result.place = layer_.V[i] + over_relaxed(ring, bar, best.y, kInnerFactor);
     } else {
-      slide(ring, bar, shell_.V[i], result);
+      slide(ring, bar, layer_.V[i], result);
     }
-    if (result.moved) result.poor = detail::poor_tets(ring, result.place - shell_.V[i], good_f_);
+    if (result.moved) result.below_target = detail::tets_below_target(ring, result.place - layer_.V[i], good_f_);
     return result;
   }
 
@@ -90,11 +90,11 @@ class Visitor {
     detail::Directions tangent{true, {}};
     tangent.tangents.col(0) = gradient.unitOrthogonal();
     tangent.tangents.col(1) = (gradient / norm).cross(tangent.tangents.col(0));
-    const detail::Displacement best = detail::best_displacement(ring, bar, shell_.h, tangent);
+    const detail::Displacement best = detail::best_displacement(ring, bar, layer_.h, tangent);
     if (!best.passed(ring, bar)) return;
     Vec3 y = over_relaxed(ring, bar, best.y, kBoundaryFactor);
     for (int trial = 0; trial < kSlides && (trial == 0 || bar.passed(ring, y)); ++trial, y *= .5) {
-      const ClosestPoint foot = closest_point(psi_, x + y, shell_.h, closest_point_);
+      const ClosestPoint foot = closest_point(psi_, x + y, layer_.h, closest_point_);
       result.psi_evaluations += static_cast<std::size_t>(foot.iterations);
       if (!foot.converged || !bar.passed(ring, foot.point - x)) continue;
       result.moved = true;
@@ -104,7 +104,7 @@ class Visitor {
   }
 
   const PNormSmoother& smoother_;
-  const Shell& shell_;
+  const ActiveLayer& layer_;
   ImplicitFunctionRef psi_;
   const ClosestPointParams& closest_point_;
   double good_f_, target_f_, least_gain_, fine_gain_;
@@ -112,17 +112,17 @@ class Visitor {
 };
 
 struct Counts {
-  std::size_t looks = 0, visits = 0, moves = 0, psi_evaluations = 0;
+  std::size_t checks = 0, solves = 0, moves = 0, psi_evaluations = 0;
   Counts operator+(const Counts& o) const {
-    return {looks + o.looks, visits + o.visits, moves + o.moves, psi_evaluations + o.psi_evaluations};
+    return {checks + o.checks, solves + o.solves, moves + o.moves, psi_evaluations + o.psi_evaluations};
   }
 };
 
-bool is_fixed(const Shell& shell, int i) { return shell.role[i] == Shell::Role::Fixed; }
+bool is_fixed(const ActiveLayer& layer, int i) { return layer.role[i] == ActiveLayer::Role::Fixed; }
 
 }  // namespace
 
-std::vector<std::string> problems(const SmoothParams& params) {
+std::vector<std::string> problems(const SmoothingParams& params) {
   std::vector<std::string> list = problems(params.closest_point);
   for (std::string& problem : list) problem.insert(0, "closest_point.");
   const auto refuse = [&](const char* name, double value, const char* rule) {
@@ -139,10 +139,10 @@ std::vector<std::string> problems(const SmoothParams& params) {
   return list;
 }
 
-SmoothReport& SmoothReport::operator+=(const SmoothReport& later) {
+SmoothingReport& SmoothingReport::operator+=(const SmoothingReport& later) {
   sweeps += later.sweeps;
-  looks += later.looks;
-  visits += later.visits;
+  checks += later.checks;
+  solves += later.solves;
   moves += later.moves;
   psi_evaluations += later.psi_evaluations;
   tangled = later.tangled;
@@ -151,17 +151,18 @@ SmoothReport& SmoothReport::operator+=(const SmoothReport& later) {
   return *this;
 }
 
-PNormSmoother::PNormSmoother(Shell& shell) : shell_(shell), faces_of_(shell.V.size()), queued_(shell.V.size(), 0) {
+PNormSmoother::PNormSmoother(ActiveLayer& layer)
+    : layer_(layer), faces_of_(layer.V.size()), queued_(layer.V.size(), 0) {
   std::vector<std::size_t> count;
-  for (std::size_t i = 0; i < shell.V.size(); ++i) {
-    if (is_fixed(shell, static_cast<int>(i))) continue;
-    const int n = shell.ring_begin[i + 1] - shell.ring_begin[i];
+  for (std::size_t i = 0; i < layer.V.size(); ++i) {
+    if (is_fixed(layer, static_cast<int>(i))) continue;
+    const int n = layer.ring_begin[i + 1] - layer.ring_begin[i];
     if (n < 1 || n > kMaxRing) {
       throw std::invalid_argument("vertex " + std::to_string(i) + " has " + std::to_string(n) + " tets: must be 1 to " +
                                   std::to_string(kMaxRing));
     }
     queued_[i] = 1;
-    const auto colour = static_cast<std::size_t>(shell.colour[i]);
+    const auto colour = static_cast<std::size_t>(layer.colour[i]);
     if (colour >= count.size()) count.resize(colour + 1, 0);
     ++count[colour];
   }
@@ -169,13 +170,13 @@ PNormSmoother::PNormSmoother(Shell& shell) : shell_(shell), faces_of_(shell.V.si
   for (const std::size_t n : count) colour_begin_.push_back(colour_begin_.back() + n);
   by_colour_.resize(colour_begin_.back());
   std::vector<std::size_t> next(colour_begin_.begin(), colour_begin_.end() - 1);
-  for (std::size_t i = 0; i < shell.V.size(); ++i) {
-    if (queued_[i] != 0) by_colour_[next[shell.colour[i]]++] = static_cast<int>(i);
+  for (std::size_t i = 0; i < layer.V.size(); ++i) {
+    if (queued_[i] != 0) by_colour_[next[layer.colour[i]]++] = static_cast<int>(i);
   }
   if (!count.empty()) todo_.reserve(*std::max_element(count.begin(), count.end()));
   int n_faces = 0;
   for (const int i : by_colour_) {
-    faces_of_[i] = {n_faces, shell.ring_begin[i + 1] - shell.ring_begin[i]};
+    faces_of_[i] = {n_faces, layer.ring_begin[i + 1] - layer.ring_begin[i]};
     n_faces += faces_of_[i].n;
   }
   // Not set to zero by one thread first: pages are given out where they are written.
@@ -183,8 +184,8 @@ PNormSmoother::PNormSmoother(Shell& shell) : shell_(shell), faces_of_(shell.V.si
   const auto list_faces = [&](const tbb::blocked_range<std::size_t>& range) {
     for (std::size_t k = range.begin(); k != range.end(); ++k) {
       const int i = by_colour_[k];
-      for (int r = shell.ring_begin[i], f = faces_of_[i].begin; r < shell.ring_begin[i + 1]; ++r, ++f) {
-        const Tet& t = shell.C[shell.ring[r]];
+      for (int r = layer.ring_begin[i], f = faces_of_[i].begin; r < layer.ring_begin[i + 1]; ++r, ++f) {
+        const Tet& t = layer.C[layer.ring[r]];
         const auto own = std::find(t.begin(), t.end(), i) - t.begin();
         faces_[f] = {t[kTetFace[own][0]], t[kTetFace[own][1]], t[kTetFace[own][2]]};
       }
@@ -193,11 +194,11 @@ PNormSmoother::PNormSmoother(Shell& shell) : shell_(shell), faces_of_(shell.V.si
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, by_colour_.size(), kTetsPerTask / 16), list_faces);
 }
 
-void PNormSmoother::wake_all() {
+void PNormSmoother::enqueue_all() {
   for (const int i : by_colour_) queued_[i] = 1;
 }
 
-void PNormSmoother::wake(int i) {
+void PNormSmoother::enqueue(int i) {
   // Vertices that share no tet may share a neighbour: both then write the same, so relaxed stores will do.
   std::atomic_ref(queued_[i]).store(1, std::memory_order_relaxed);
   for (const Triangle& face : faces(i)) {
@@ -205,61 +206,62 @@ void PNormSmoother::wake(int i) {
   }
 }
 
-SmoothReport PNormSmoother::run(ImplicitFunctionRef psi, const SmoothParams& params, const KeepGoing& keep_going) {
+SmoothingReport PNormSmoother::run(ImplicitFunctionRef psi, const SmoothingParams& params,
+                                   const KeepGoing& keep_going) {
   if (const auto list = problems(params); !list.empty()) {
     std::string all;
     for (const std::string& problem : list) all += (all.empty() ? "" : "; ") + problem;
     throw std::invalid_argument(all);
   }
-  const Visitor visit(*this, psi, params);
+  const Visitor solve(*this, psi, params);
   const auto visit_some = [&](const tbb::blocked_range<std::size_t>& range, Counts counts) {
     for (std::size_t k = range.begin(); k != range.end(); ++k) {
       const int i = todo_[k];
       if (k + kAhead < range.end()) {
-        for (const Triangle& face : faces(todo_[k + kAhead])) __builtin_prefetch(&shell_.V[face[0]]);
+        for (const Triangle& face : faces(todo_[k + kAhead])) __builtin_prefetch(&layer_.V[face[0]]);
       }
-      const Visitor::Result result = visit(i);
-      ++counts.looks;
-      counts.visits += result.needed;
+      const Visitor::Result result = solve(i);
+      ++counts.checks;
+      counts.solves += result.needed;
       counts.moves += result.moved;
       counts.psi_evaluations += result.psi_evaluations;
       if (!result.moved) continue;
-      const double step = (result.place - shell_.V[i]).norm();
-      shell_.V[i] = result.place;
-      if (result.good && step < params.least_step * shell_.h) continue;
+      const double step = (result.place - layer_.V[i]).norm();
+      layer_.V[i] = result.place;
+      if (result.good && step < params.least_step * layer_.h) continue;
       // A tet that was good and is good again keeps nobody from being where it is.
-      if (result.poor.none()) continue;
+      if (result.below_target.none()) continue;
       std::atomic_ref(queued_[i]).store(1, std::memory_order_relaxed);
       const std::span<const Triangle> ring = faces(i);
       for (std::size_t j = 0; j < ring.size(); ++j) {
-        if (!result.poor[j]) continue;
+        if (!result.below_target[j]) continue;
         for (const int v : ring[j]) std::atomic_ref(queued_[v]).store(1, std::memory_order_relaxed);
       }
     }
     return counts;
   };
-  SmoothReport report;
+  SmoothingReport report;
   while (report.sweeps < params.max_sweeps && !report.settled) {
     Counts sweep;
     for (std::size_t c = 0; c + 1 < colour_begin_.size(); ++c) {
       todo_.clear();
       for (std::size_t k = colour_begin_[c]; k < colour_begin_[c + 1]; ++k) {
         const int i = by_colour_[k];
-        if (queued_[i] == 0 || is_fixed(shell_, i)) continue;
+        if (queued_[i] == 0 || is_fixed(layer_, i)) continue;
         queued_[i] = 0;
         todo_.push_back(i);
       }
-      for (std::size_t begin = 0; begin < todo_.size(); begin += kVisitsPerPoll) {
+      for (std::size_t begin = 0; begin < todo_.size(); begin += kSolvesPerPoll) {
         poll(keep_going);
-        const tbb::blocked_range<std::size_t> some(begin, std::min(todo_.size(), begin + kVisitsPerPoll),
-                                                   kVisitsPerTask);
+        const tbb::blocked_range<std::size_t> some(begin, std::min(todo_.size(), begin + kSolvesPerPoll),
+                                                   kSolvesPerTask);
         sweep = sweep + (some.size() < kWorthThreads ? visit_some(some, Counts{})
                                                      : tbb::parallel_reduce(some, Counts{}, visit_some, std::plus<>()));
       }
     }
     ++report.sweeps;
-    report.looks += sweep.looks;
-    report.visits += sweep.visits;
+    report.checks += sweep.checks;
+    report.solves += sweep.solves;
     report.moves += sweep.moves;
     report.psi_evaluations += sweep.psi_evaluations;
     report.settled = sweep.moves == 0;
@@ -267,15 +269,15 @@ SmoothReport PNormSmoother::run(ImplicitFunctionRef psi, const SmoothParams& par
   return report;
 }
 
-void PNormSmoother::measure(SmoothReport& report) const {
-  const Shell& shell = shell_;
+void PNormSmoother::measure(SmoothingReport& report) const {
+  const ActiveLayer& layer = layer_;
   const double min_f = tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, shell.C.size(), kTetsPerTask), kInfinity,
+      tbb::blocked_range<std::size_t>(0, layer.C.size(), kTetsPerTask), kInfinity,
       [&](const auto& range, double least) {
         for (std::size_t k = range.begin(); k != range.end(); ++k) {
-          const Tet& t = shell.C[k];
-          if (std::all_of(t.begin(), t.end(), [&](int i) { return is_fixed(shell, i); })) continue;
-          const Vec3 &a = shell.V[t[0]], &b = shell.V[t[1]], &c = shell.V[t[2]], &d = shell.V[t[3]];
+          const Tet& t = layer.C[k];
+          if (std::all_of(t.begin(), t.end(), [&](int i) { return is_fixed(layer, i); })) continue;
+          const Vec3 &a = layer.V[t[0]], &b = layer.V[t[1]], &c = layer.V[t[2]], &d = layer.V[t[3]];
           const double V = volume6(a, b, c, d), L = sum_of_squared_edges(a, b, c, d);
           least = std::min(least, V * std::abs(V) / (L * L * L));
         }
@@ -285,18 +287,19 @@ void PNormSmoother::measure(SmoothReport& report) const {
   report.min_quality = std::min(1., quality_of(min_f));
   report.tangled = 0;
   if (min_f > 0) return;
-  std::vector<bool> tangled(shell.V.size(), false);
-  for (const Tet& t : shell.C) {
-    if (volume6(shell.V[t[0]], shell.V[t[1]], shell.V[t[2]], shell.V[t[3]]) > 0) continue;
+  std::vector<bool> tangled(layer.V.size(), false);
+  for (const Tet& t : layer.C) {
+    if (volume6(layer.V[t[0]], layer.V[t[1]], layer.V[t[2]], layer.V[t[3]]) > 0) continue;
     for (const int i : t) {
-      if (!is_fixed(shell, i) && !tangled[i]) tangled[i] = true, ++report.tangled;
+      if (!is_fixed(layer, i) && !tangled[i]) tangled[i] = true, ++report.tangled;
     }
   }
 }
 
-SmoothReport smooth(Shell& shell, ImplicitFunctionRef psi, const SmoothParams& params, const KeepGoing& keep_going) {
-  PNormSmoother smoother(shell);
-  SmoothReport report = smoother.run(psi, params, keep_going);
+SmoothingReport smooth(ActiveLayer& layer, ImplicitFunctionRef psi, const SmoothingParams& params,
+                       const KeepGoing& keep_going) {
+  PNormSmoother smoother(layer);
+  SmoothingReport report = smoother.run(psi, params, keep_going);
   smoother.measure(report);
   return report;
 }

@@ -7,21 +7,21 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/implicit/closest_point.h"
-#include "mesh/core/implicit_function.h"
 #include "common/context.h"
+#include "mesh/core/implicit_function.h"
 #include "mesh/core/max_min.h"
+#include "mesh/implicit/closest_point.h"
 #include "mesh/submesh/active_layer.h"
 
 namespace umtet {
 
-struct SmoothParams {
+struct SmoothingParams {
   double target = .82;  ///< mean ratio every tet is to reach; in (0, 1)
   /// A vertex is visited while its worst tet is below target + margin; >= 0. At 100k tets .034 instead of .02 lifts the
-  /// 1 % quantile of Q by .005 (T6) to .012 (sphere), for a quarter more visits; beyond .04 nothing is gained.
+  /// 1 % quantile of Q by .005 (T6) to .012 (sphere), for a quarter more solves; beyond .04 nothing is gained.
   double margin = .034;
   double fine_gain = 2e-5;    ///< a relative gain of 1/Q's norm below this is no move; > 0
-  double least_step = .0075;  ///< of h: a shorter move wakes nobody; >= 0. Without, a tenth more visits
+  double least_step = .0075;  ///< of h: a shorter move wakes nobody; >= 0. Without, a tenth more solves
   /// Where a tet of the ring is below the target, it is this gain that counts, and any move wakes; > 0. What smoothing
   /// wins there by small steps it takes from the tets around, and leaves a region just below the target where there
   /// were a few bad tets (koala: 2200 instead of 330).
@@ -35,63 +35,63 @@ struct SmoothParams {
 };
 
 /// Every broken constraint, not just the first.
-std::vector<std::string> problems(const SmoothParams&);
+std::vector<std::string> problems(const SmoothingParams&);
 
-struct SmoothReport {
+struct SmoothingReport {
   int sweeps = 0;
-  std::size_t looks = 0;            ///< at a ring, to see whether its vertex needs a visit
-  std::size_t visits = 0;           ///< Newton solves for one vertex
-  std::size_t moves = 0;            ///< visits that moved their vertex
+  std::size_t checks = 0;           ///< at a ring, to see whether its vertex needs a solve
+  std::size_t solves = 0;           ///< Newton solves for one vertex
+  std::size_t moves = 0;            ///< solves that moved their vertex
   std::size_t psi_evaluations = 0;  ///< of psi and its derivatives, for vertices on the boundary
   bool settled = false;             ///< nothing moved in the last sweep; false: max_sweeps used up
-  // Of the shell as it is left; not filled by PNormSmoother::run().
+  // Of the layer as it is left; not filled by PNormSmoother::run().
   std::size_t tangled = 0;  ///< vertices left with a tet of V <= 0 in their ring, Fixed ones not counted
   double min_quality = 1;   ///< mean ratio of the worst tet with a vertex that is not Fixed; 1 without any
 
-  SmoothReport& operator+=(const SmoothReport& later);  ///< counters add up, the state is the later one's
+  SmoothingReport& operator+=(const SmoothingReport& later);  ///< counters add up, the state is the later one's
 };
 
-/// Maximises the worst mean ratio around each vertex of a shell, one vertex at a time.
+/// Maximises the worst mean ratio around each vertex of a layer, one vertex at a time.
 ///
 /// 1/Q is proportional to L / V^(2/3), convex in the place of one vertex while V > 0, and so is the p-norm of the 1/Q
-/// of its ring. A visit makes a Newton step on that norm for p = 48 and one for p = 96, through F = Q^-3 = L^3 / (432
+/// of its ring. A solve makes a Newton step on that norm for p = 48 and one for p = 96, through F = Q^-3 = L^3 / (432
 /// V^2) and its powers 16 and 32, so that it takes no roots. A step is at most .5 h long, leaves every V a fifth of its
-/// value or more, and is halved until the sum of the powers falls. A visit counts if it lowers sum F^32 over the ring:
-/// that sum over the whole shell falls monotonically, and no visit leaves its ring with less than n^(-1/96) of the
+/// value or more, and is halved until the sum of the powers falls. A solve counts if it lowers sum F^32 over the ring:
+/// that sum over the whole layer falls monotonically, and no solve leaves its ring with less than n^(-1/96) of the
 /// worst quality it had, n tets: 3.4 % at 28. With `sharper`, a third step and the sum are those of F^128, p = 384.
 ///
-/// A boundary vertex takes the steps in its tangent plane and is then put back on psi = 0; the visit counts by the sum
+/// A boundary vertex takes the steps in its tangent plane and is then put back on psi = 0; the solve counts by the sum
 /// there. Steps are over-relaxed, where that lowers the sum, too: alone, a vertex goes less far than with its
 /// neighbours. Where some V <= 0, V + sigma takes the place of V, with sigma > -min V: the same convex problem, solved
-/// again with ever smaller sigma until all V > 0; such a visit counts if it raises min V.
+/// again with ever smaller sigma until all V > 0; such a solve counts if it raises min V.
 ///
 /// Vertices are visited colour by colour, those of one colour by all threads, and again when they, or a neighbour in a
 /// tet below target + margin, have moved, by least_step or more where no tet is below the target: the same bytes for
 /// any number of threads. Does not allocate inside a sweep.
 class PNormSmoother {
  public:
-  /// Every vertex of the shell that is not Fixed is in the queue.
+  /// Every vertex of the layer that is not Fixed is in the queue.
   /// \throw std::invalid_argument for a vertex with more than kMaxRing tets, unless Fixed
-  explicit PNormSmoother(Shell& shell);
+  explicit PNormSmoother(ActiveLayer& layer);
 
   /// Puts vertex i and all vertices of its ring in the queue: to be called when i was moved from outside. Vertices that
   /// share no tet may be woken by different threads at once.
-  void wake(int i);
+  void enqueue(int i);
   /// Puts every vertex in the queue that was not Fixed at construction.
-  void wake_all();
+  void enqueue_all();
   /// Visits vertices in the queue until none is left, or for max_sweeps; those left stay for the next call. Roles are
   /// read anew: the caller may hold vertices by making them Fixed for a while, which leaves them in the queue.
-  /// What it says of the shell is left to measure(), which looks at every tet.
+  /// What it says of the layer is left to measure(), which checks at every tet.
   /// \throw std::invalid_argument naming every broken constraint of params, MeshCancelled
-  SmoothReport run(ImplicitFunctionRef psi, const SmoothParams& params, const KeepGoing& keep_going = {});
+  SmoothingReport run(ImplicitFunctionRef psi, const SmoothingParams& params, const KeepGoing& keep_going = {});
 
-  /// Fills in what a report says of the shell.
-  void measure(SmoothReport& report) const;
+  /// Fills in what a report says of the layer.
+  void measure(SmoothingReport& report) const;
 
-  Shell& shell() { return shell_; }
-  const Shell& shell() const { return shell_; }
+  ActiveLayer& layer() { return layer_; }
+  const ActiveLayer& layer() const { return layer_; }
   /// The ring of a vertex that was not Fixed at construction, around its present place.
-  OneRing ring(int i) const { return OneRing(shell_.V[i], shell_.V, faces(i)); }
+  OneRing ring(int i) const { return OneRing(layer_.V[i], layer_.V, faces(i)); }
 
  private:
   std::span<const Triangle> faces(int i) const {
@@ -101,7 +101,7 @@ class PNormSmoother {
     int begin = 0, n = 0;
   };
 
-  Shell& shell_;
+  ActiveLayer& layer_;
   std::vector<Range> faces_of_;            ///< per vertex, in faces_
   std::unique_ptr<Triangle[]> faces_;      ///< opposite to a vertex in the tets of its ring; of those not Fixed, in the
                                            ///< order of by_colour_, in which sweeps read them
@@ -112,7 +112,7 @@ class PNormSmoother {
 };
 
 /// PNormSmoother for one call.
-SmoothReport smooth(Shell& shell, ImplicitFunctionRef psi, const SmoothParams& params = {},
-                    const KeepGoing& keep_going = {});
+SmoothingReport smooth(ActiveLayer& layer, ImplicitFunctionRef psi, const SmoothingParams& params = {},
+                       const KeepGoing& keep_going = {});
 
 }  // namespace umtet

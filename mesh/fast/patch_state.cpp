@@ -5,16 +5,16 @@
 #include <cmath>
 #include <tuple>
 
-#include "mesh/implicit/closest_point.h"
 #include "mesh/core/max_min.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/implicit/closest_point.h"
 
 namespace umtet {
 
 double normal_cosine(ImplicitFunctionRef psi, const Vec3& a, const Vec3& b, const Vec3& c, double h,
                      std::size_t& evaluations) {
   constexpr int kSteps = 4;  // from within h; where these do not arrive, the gradient on the way has to do
-  // A normal that turns by .05 over .05 h does not lead from here to kTurnedCosine.
+  // A normal that turns by .05 over .05 h does not lead from here to kMisalignedCosine.
   constexpr double kSure = .9, kNear = .05;
   const Vec3 centroid = (a + b + c) / 3;
   Vec3 y = centroid, g;
@@ -33,7 +33,7 @@ double normal_cosine(ImplicitFunctionRef psi, const Vec3& a, const Vec3& b, cons
     value = psi.value(y, g);
     ++evaluations;
   }
-  // At sharp rims the closest point may be another one, with another normal.
+  // At sharp background boundaries the closest point may be another one, with another normal.
   if (cosine() < kSure) {
     const ClosestPoint foot = closest_point(psi, centroid, h, {});
     evaluations += static_cast<std::size_t>(foot.iterations) + 1;
@@ -56,45 +56,45 @@ bool positive_face(const Tet& tet, const std::vector<std::uint8_t>& inside, Tria
 }
 
 bool PatchState::is_no_worse_than(const PatchState& other) const {
-  return least >= std::min(other.least, target) && poor <= other.poor && turned <= other.turned &&
-         folded <= other.folded &&
-         (turned < other.turned || least_cosine >= std::min(other.least_cosine, kTurnedCosine));
+  return least >= std::min(other.least, target) && below_target <= other.below_target &&
+         misaligned <= other.misaligned && folded_over <= other.folded_over &&
+         (misaligned < other.misaligned || least_cosine >= std::min(other.least_cosine, kMisalignedCosine));
 }
 
 bool PatchState::is_better_than(const PatchState& other) const {
   const auto key = [](const PatchState& s) {
-    return std::tuple(s.folded, s.turned + s.poor, -std::min(s.least, s.target),
-                      -std::min(s.least_cosine, kTurnedCosine));
+    return std::tuple(s.folded_over, s.misaligned + s.below_target, -std::min(s.least, s.target),
+                      -std::min(s.least_cosine, kMisalignedCosine));
   };
   return key(*this) < key(other);
 }
 
-PatchState tet_state(const Shell& shell, double target) {
+PatchState tet_state(const ActiveLayer& layer, double target) {
   PatchState s;
   s.target = target;
   // Q^3 in place of Q: no roots but the last.
-  const double poor_f = std::pow(target / kMeanRatioFactor, 3);
+  const double below_target_f = std::pow(target / kMeanRatioFactor, 3);
   double least_f = std::pow(1 / kMeanRatioFactor, 3);
-  for (const Tet& t : shell.C) {
-    const Vec3 &a = shell.V[t[0]], &b = shell.V[t[1]], &c = shell.V[t[2]], &d = shell.V[t[3]];
+  for (const Tet& t : layer.C) {
+    const Vec3 &a = layer.V[t[0]], &b = layer.V[t[1]], &c = layer.V[t[2]], &d = layer.V[t[3]];
     const double V = volume6(a, b, c, d), L = sum_of_squared_edges(a, b, c, d), f = V * std::abs(V) / (L * L * L);
     least_f = std::min(least_f, f);
-    s.poor += f < poor_f;
+    s.below_target += f < below_target_f;
   }
   s.least = quality_of(least_f);
   return s;
 }
 
-PatchState patch_state(const Shell& shell, const std::vector<std::uint8_t>& inside, ImplicitFunctionRef psi,
+PatchState patch_state(const ActiveLayer& layer, const std::vector<std::uint8_t>& inside, ImplicitFunctionRef psi,
                        double target, std::size_t& evaluations) {
-  PatchState s = tet_state(shell, target);
+  PatchState s = tet_state(layer, target);
   Triangle f;
-  for (const Tet& t : shell.C) {
+  for (const Tet& t : layer.C) {
     if (!positive_face(t, inside, f)) continue;
-    const double cosine = normal_cosine(psi, shell.V[f[0]], shell.V[f[1]], shell.V[f[2]], shell.h, evaluations);
+    const double cosine = normal_cosine(psi, layer.V[f[0]], layer.V[f[1]], layer.V[f[2]], layer.h, evaluations);
     s.least_cosine = std::min(s.least_cosine, cosine);
-    s.turned += cosine < kTurnedCosine;
-    s.folded += cosine < 0;
+    s.misaligned += cosine < kMisalignedCosine;
+    s.folded_over += cosine < 0;
   }
   return s;
 }

@@ -17,8 +17,9 @@ namespace umtet {
 double normal_cosine(ImplicitFunctionRef psi, const Vec3& a, const Vec3& b, const Vec3& c, double h,
                      std::size_t& evaluations);
 
-/// A face with a smaller normal_cosine() is turned: it wants mending. Below 0 it is folded: the certificate fails.
-inline constexpr double kTurnedCosine = .5;
+/// A face with a smaller normal_cosine() is misaligned: it wants mending. Below 0 it is folded over: the certificate
+/// fails.
+inline constexpr double kMisalignedCosine = .5;
 
 /// The boundary face of a tet of omega_h, counter-clockwise seen from outside: that of its three outside vertices.
 /// @param inside  per vertex
@@ -27,26 +28,27 @@ bool positive_face(const Tet& tet, const std::vector<std::uint8_t>& inside, Tria
 
 /// What is wrong with a part of a mesh.
 struct PatchState {
-  double target = 0;                   ///< mean ratio below which a tet is poor
-  double least = 1;                    ///< mean ratio
-  std::size_t poor = 0;                ///< tets
-  double least_cosine = 1;             ///< of boundary faces
-  std::size_t turned = 0, folded = 0;  ///< faces; folded ones are turned, too
+  double target = 0;                            ///< mean ratio below which a tet is below target
+  double least = 1;                             ///< mean ratio
+  std::size_t below_target = 0;                 ///< tets
+  double least_cosine = 1;                      ///< of boundary faces
+  std::size_t misaligned = 0, folded_over = 0;  ///< faces; folded over ones are misaligned, too
 
-  bool is_perfect() const { return poor == 0 && turned == 0; }
-  /// Neither of the five is worse; what is above the target, or above kTurnedCosine, is good enough. Where fewer faces
-  /// are turned, and no more folded, the worst of them may be turned more: the lip of spot_large goes from six turned
-  /// faces to three, two and one, and the worst by way of cos .01 from .04 to .15.
+  bool is_perfect() const { return below_target == 0 && misaligned == 0; }
+  /// Neither of the five is worse; what is above the target, or above kMisalignedCosine, is good enough. Where fewer
+  /// faces are misaligned, and no more folded over, the worst of them may be misaligned more: the lip of spot_large
+  /// goes from six misaligned faces to three, two and one, and the worst by way of cos .01 from .04 to .15.
   bool is_no_worse_than(const PatchState& other) const;
-  /// Fewer folded faces, or as many and fewer turned faces and poor tets, or as many of all and better worst ones.
+  /// Fewer folded over faces, or as many and fewer misaligned faces and below target tets, or as many of all and better
+  /// worst ones.
   bool is_better_than(const PatchState& other) const;
 };
 
-/// Of all tets of the shell; faces are not looked at.
-PatchState tet_state(const Shell& shell, double target);
+/// Of all tets of the layer; faces are not looked at.
+PatchState tet_state(const ActiveLayer& layer, double target);
 
-/// Of all tets of the shell and all their boundary faces.
-PatchState patch_state(const Shell& shell, const std::vector<std::uint8_t>& inside, ImplicitFunctionRef psi,
+/// Of all tets of the layer and all their boundary faces.
+PatchState patch_state(const ActiveLayer& layer, const std::vector<std::uint8_t>& inside, ImplicitFunctionRef psi,
                        double target, std::size_t& evaluations);
 
 }  // namespace umtet

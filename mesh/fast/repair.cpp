@@ -10,19 +10,19 @@
 #include <set>
 #include <stdexcept>
 
-#include "mesh/fast/detail/flip_trials.h"
 #include "mesh/core/max_min.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/fast/detail/flip_trials.h"
 
 namespace umtet {
 namespace {
 
+using detail::FlipTrials;
 using detail::IdSet;
-using detail::LabelTrials;
 using detail::TetIds;
 
-// Besides max_patches: so many, and one for so many tets of the shell. A coarse perforated plate of 5092 tets is mended
-// by its 1724th patch, and until then looks no better than lenses that never are: one of 1600 tets took 3000.
+// Besides max_patches: so many, and one for so many tets of the layer. A coarse perforated plate of 5092 tets is mended
+// by its 1724th patch, and until then checks no better than lenses that never are: one of 1600 tets took 3000.
 constexpr std::size_t kFewPatches = 600, kTetsPerPatch = 4;
 // So many tets are mended at once, while so many wait for one near them. The caller is asked before each round: the
 // dearest tets take a tenth of a second each, and one thread may have to mend them all.
@@ -47,23 +47,23 @@ double longest_edge(const Tiling& tiling, const TilingTables& tables) {
 class Repair {
  public:
   Repair(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
-         const LabelParams& labels, const RepairParams& params, const LatticeShell& shell, IdSet& inside)
+         const ClassificationParams& labels, const RepairParams& params, const LatticeActiveLayer& layer, IdSet& inside)
       : background_(background),
         links_(links),
         psi_(psi),
         labels_(labels),
         params_(params),
-        shell_(shell),
+        layer_(layer),
         inside_(inside),
-        most_patches_(std::min(params.max_patches, kFewPatches + shell.shell.C.size() / kTetsPerPatch)),
+        most_patches_(std::min(params.max_patches, kFewPatches + layer.layer.C.size() / kTetsPerPatch)),
         target_(params.target),
-        places_(background, shell) {}
+        positions_(background, layer) {}
 
   RepairReport operator()(const KeepGoing& keep_going);
 
  private:
   struct Bad {
-    double badness;  ///< the cosine of its face if that is turned, else Q: folded ones are the worst
+    double badness;  ///< the cosine of its face if that is misaligned, else Q: folded over ones are the worst
     TetIds tet;
   };
 
@@ -71,22 +71,22 @@ class Repair {
   void mend(const KeepGoing& keep_going);
   void again(double target);
   bool choose_round();
-  void keep(const TetIds& tet, const LabelTrials::Best& best);
-  void move(const LatticeShell& patch);
-  void look(const LatticeShell& cut);
+  void keep(const TetIds& tet, const FlipTrials::Best& best);
+  void move(const LatticeActiveLayer& patch);
+  void look(const LatticeActiveLayer& cut);
   void count();
 
   const BackgroundMesh& background_;
   const std::vector<LinkTopology>& links_;
   ImplicitFunctionRef psi_;
-  const LabelParams& labels_;
+  const ClassificationParams& labels_;
   const RepairParams& params_;
-  const LatticeShell& shell_;
+  const LatticeActiveLayer& layer_;
   IdSet& inside_;
   const std::size_t most_patches_;
   double target_;
-  detail::Places places_;
-  std::deque<LabelTrials> trials_;  ///< one for each tet of a round, with labels as in inside_
+  detail::Positions positions_;
+  std::deque<FlipTrials> trials_;  ///< one for each tet of a round, with labels as in inside_
   std::vector<TetIds> given_up_;
   std::set<std::int64_t> hopeless_;  ///< vertices of tets that nothing helped
   std::vector<Bad> todo_;            ///< from next_ on
@@ -132,33 +132,33 @@ bool Repair::choose_round() {
   return !round_.empty();
 }
 
-void Repair::move(const LatticeShell& patch) {
-  for (std::size_t v = 0; v < patch.shell.V.size(); ++v) {
-    if (patch.shell.role[v] != Shell::Role::Fixed) places_.move(patch.background_vertex[v], patch.shell.V[v]);
+void Repair::move(const LatticeActiveLayer& patch) {
+  for (std::size_t v = 0; v < patch.layer.V.size(); ++v) {
+    if (patch.layer.role[v] != ActiveLayer::Role::Fixed) positions_.move(patch.background_vertex[v], patch.layer.V[v]);
   }
 }
 
-void Repair::keep(const TetIds& tet, const LabelTrials::Best& best) {
+void Repair::keep(const TetIds& tet, const FlipTrials::Best& best) {
   for (const std::int64_t v : best.flips) {
     inside_.test(v) ? inside_.erase(v) : inside_.insert(v);
-    for (LabelTrials& trials : trials_) trials.flip(v);
+    for (FlipTrials& trials : trials_) trials.flip(v);
   }
-  move(best.shell);
+  move(best.layer);
   kept_.emplace_back(tet.begin(), tet.end());
   kept_.back().insert(kept_.back().end(), best.flips.begin(), best.flips.end());
   report_.flips += best.flips.size();
-  look(best.shell);  // the patch may have bad tets that were not bad before; max_patches ends this
+  look(best.layer);  // the patch may have bad tets that were not bad before; max_patches ends this
 }
 
 void Repair::count() {
   report_.tries = 0;
-  for (const LabelTrials& trials : trials_) report_.tries += trials.tries;
+  for (const FlipTrials& trials : trials_) report_.tries += trials.tries;
 }
 
-/// Puts the tets of a shell that are below the target, or have a turned face, on the list, the worst first.
-void Repair::look(const LatticeShell& cut) {
-  const std::vector<Vec3>& V = cut.shell.V;
-  const std::vector<Tet>& C = cut.shell.C;
+/// Puts the tets of a layer that are below the target, or have a misaligned face, on the list, the worst first.
+void Repair::look(const LatticeActiveLayer& cut) {
+  const std::vector<Vec3>& V = cut.layer.V;
+  const std::vector<Tet>& C = cut.layer.C;
   const std::vector<std::uint8_t> inside = inside_of(cut, inside_);
   std::vector<double> badness(C.size(), 1);
   std::atomic<std::size_t> evaluations = 0;
@@ -172,9 +172,9 @@ void Repair::look(const LatticeShell& cut) {
     Triangle f;
     if (!positive_face(t, inside, f)) return;
     std::size_t n = 0;
-    const double cosine = normal_cosine(psi_, V[f[0]], V[f[1]], V[f[2]], cut.shell.h, n);
+    const double cosine = normal_cosine(psi_, V[f[0]], V[f[1]], V[f[2]], cut.layer.h, n);
     evaluations.fetch_add(n, std::memory_order_relaxed);
-    if (cosine < kTurnedCosine) badness[k] = std::min(badness[k], cosine);
+    if (cosine < kMisalignedCosine) badness[k] = std::min(badness[k], cosine);
   });
   report_.psi_evaluations += evaluations;
   const std::size_t first = todo_.size();
@@ -189,7 +189,7 @@ void Repair::look(const LatticeShell& cut) {
 
 /// What is on the list, round by round.
 void Repair::mend(const KeepGoing& keep_going) {
-  std::vector<LabelTrials::Best> best(kAtOnce);
+  std::vector<FlipTrials::Best> best(kAtOnce);
   while (choose_round()) {
     poll(keep_going);
     const std::size_t most_tries = most_patches_ - report_.tries;
@@ -214,7 +214,7 @@ void Repair::mend(const KeepGoing& keep_going) {
 /// Puts what was given up on the list again, against another target.
 void Repair::again(double target) {
   target_ = target;
-  for (LabelTrials& trials : trials_) trials.look_again(target, params_.sharper);
+  for (FlipTrials& trials : trials_) trials.look_again(target, params_.sharper);
   todo_.clear();
   next_ = 0;
   for (const TetIds& tet : given_up_) todo_.push_back({0, tet});  // in the order in which they were given up
@@ -223,11 +223,11 @@ void Repair::again(double target) {
 }
 
 RepairReport Repair::operator()(const KeepGoing& keep_going) {
-  if (params_.max_tries > 0) look(shell_);
+  if (params_.max_tries > 0) look(layer_);
   report_.bad_before = todo_.size();
   if (todo_.empty()) return std::move(report_);
   for (std::size_t k = 0; k < kAtOnce; ++k) {
-    trials_.emplace_back(background_, links_, psi_, labels_, params_, places_, inside_);
+    trials_.emplace_back(background_, links_, psi_, labels_, params_, positions_, inside_);
   }
   // Seen from one vertex of a tet, flips are within two edges, what moves is within reach + 2; labels and places are
   // read one edge farther.
@@ -243,14 +243,14 @@ RepairReport Repair::operator()(const KeepGoing& keep_going) {
   }
   report_.given_up = given_up_.size();
   if (params_.slides) {
-    for (LabelTrials& trials : trials_) trials.look_again(params_.target, false);
+    for (FlipTrials& trials : trials_) trials.look_again(params_.target, false);
     for (const std::vector<std::int64_t>& centres : kept_) {
       poll(keep_going);
       move(trials_.front().slid(centres));
     }
   }
-  for (const LabelTrials& trials : trials_) report_.psi_evaluations += trials.psi_evaluations;
-  for (const std::int64_t v : places_.moved()) report_.moved.emplace_back(v, places_.of(v));
+  for (const FlipTrials& trials : trials_) report_.psi_evaluations += trials.psi_evaluations;
+  for (const std::int64_t v : positions_.moved()) report_.moved.emplace_back(v, positions_.of(v));
   std::sort(report_.moved.begin(), report_.moved.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   return std::move(report_);
 }
@@ -272,14 +272,14 @@ std::vector<std::string> problems(const RepairParams& params) {
 }
 
 RepairReport repair(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
-                    const LabelParams& labels, const RepairParams& params, const LatticeShell& shell, IdSet& inside,
-                    const KeepGoing& keep_going) {
+                    const ClassificationParams& labels, const RepairParams& params, const LatticeActiveLayer& layer,
+                    IdSet& inside, const KeepGoing& keep_going) {
   std::string all;
   for (const auto& list : {problems(labels), problems(params)}) {
     for (const std::string& problem : list) all += (all.empty() ? "" : "; ") + problem;
   }
   if (!all.empty()) throw std::invalid_argument(all);
-  return Repair(background, links, psi, labels, params, shell, inside)(keep_going);
+  return Repair(background, links, psi, labels, params, layer, inside)(keep_going);
 }
 
 }  // namespace umtet

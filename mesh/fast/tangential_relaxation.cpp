@@ -21,10 +21,10 @@ constexpr double kLeastGain = .01;  // of the sum: less is not worth a move
 constexpr double kDamping = .05;    // of the Gauss-Newton matrix, relative to its trace
 
 /// Gamma_h^+
-std::vector<Triangle> boundary_faces(const Shell& shell, const std::vector<std::uint8_t>& inside) {
+std::vector<Triangle> boundary_faces(const ActiveLayer& layer, const std::vector<std::uint8_t>& inside) {
   std::vector<Triangle> faces;
   Triangle face;
-  for (const Tet& t : shell.C) {
+  for (const Tet& t : layer.C) {
     if (positive_face(t, inside, face)) faces.push_back(face);
   }
   return faces;
@@ -32,7 +32,7 @@ std::vector<Triangle> boundary_faces(const Shell& shell, const std::vector<std::
 
 /// Boundary faces by their corners.
 struct Fans {
-  std::vector<int> begin;                  ///< per vertex of the shell, into others
+  std::vector<int> begin;                  ///< per vertex of the layer, into others
   std::vector<std::array<int, 2>> others;  ///< the next and the last corner of each face
 
   Fans(const std::vector<Triangle>& faces, std::size_t n_vertices)
@@ -59,10 +59,10 @@ struct Chords {
 
 class Visitor {
  public:
-  Visitor(const PNormSmoother& smoother, ImplicitFunctionRef psi, const Fans& fans, const ChordParams& params,
-          const ClosestPointParams& closest_point)
+  Visitor(const PNormSmoother& smoother, ImplicitFunctionRef psi, const Fans& fans,
+          const TangentialRelaxationParams& params, const ClosestPointParams& closest_point)
       : smoother_(smoother),
-        shell_(smoother.shell()),
+        layer_(smoother.layer()),
         psi_(psi),
         fans_(fans),
         params_(params),
@@ -72,7 +72,7 @@ class Visitor {
 
   /// @return true if `place` is better
   bool operator()(int i, Vec3& place, std::size_t& evaluations) const {
-    const Vec3 x = shell_.V[i];
+    const Vec3 x = layer_.V[i];
     Vec3 g;
     psi_.value(x, g);
     ++evaluations;
@@ -83,17 +83,17 @@ class Visitor {
     if (!(now.most >= params_.least_chord)) return false;
     const double damping = kDamping * now.normal.trace();
     if (!(damping > 0)) return false;
-    Eigen::Vector2d step = -(now.normal + damping * Eigen::Matrix2d::Identity()).inverse() * now.gradient * shell_.h;
+    Eigen::Vector2d step = -(now.normal + damping * Eigen::Matrix2d::Identity()).inverse() * now.gradient * layer_.h;
     const double length = step.norm();
     if (!std::isfinite(length)) return false;
-    if (length > kLongestStep * shell_.h) step *= kLongestStep * shell_.h / length;
+    if (length > kLongestStep * layer_.h) step *= kLongestStep * layer_.h / length;
     const OneRing ring = smoother_.ring(i);
     const double bar = std::min(now.most < params_.far_chord ? least_f_near_ : least_f_, ring.f_here);
-    const double least_cosine = std::min(now.least_cosine, kTurnedCosine);
+    const double least_cosine = std::min(now.least_cosine, kMisalignedCosine);
     for (int trial = 0; trial < kTrials; ++trial, step *= .5) {
       const Vec3 y = tangents * step;
       if (ring.min_f(y) < bar) continue;
-      const ClosestPoint foot = closest_point(psi_, x + y, shell_.h, closest_point_);
+      const ClosestPoint foot = closest_point(psi_, x + y, layer_.h, closest_point_);
       evaluations += static_cast<std::size_t>(foot.iterations);
       if (!foot.converged || ring.min_f(foot.point - x) < bar) continue;
       const Chords then = chords(i, foot.point, nullptr, evaluations);
@@ -109,7 +109,7 @@ class Visitor {
     Chords c;
     const auto look = [&](const Vec3& m, double share) {
       Vec3 g;
-      const double value = psi_.value(m, g), norm = g.norm(), e = value / (norm * shell_.h);
+      const double value = psi_.value(m, g), norm = g.norm(), e = value / (norm * layer_.h);
       ++evaluations;
       c.sum += e * e * e * e;
       c.most = std::max(c.most, std::abs(e));
@@ -122,7 +122,7 @@ class Visitor {
       return g;
     };
     for (int k = fans_.begin[i]; k < fans_.begin[i + 1]; ++k) {
-      const Vec3 &a = shell_.V[fans_.others[k][0]], &b = shell_.V[fans_.others[k][1]];
+      const Vec3 &a = layer_.V[fans_.others[k][0]], &b = layer_.V[fans_.others[k][1]];
       look((x + a) / 2, .5);  // each edge is the first of one face
       const Vec3 g = look((x + a + b) / 3, 1. / 3), n = (a - x).cross(b - x);
       c.least_cosine = std::min(c.least_cosine, n.dot(g) / n.norm());
@@ -131,10 +131,10 @@ class Visitor {
   }
 
   const PNormSmoother& smoother_;
-  const Shell& shell_;
+  const ActiveLayer& layer_;
   ImplicitFunctionRef psi_;
   const Fans& fans_;
-  const ChordParams& params_;
+  const TangentialRelaxationParams& params_;
   const ClosestPointParams& closest_point_;
   double least_f_, least_f_near_;
 };
@@ -156,25 +156,26 @@ bool is_far(ImplicitFunctionRef psi, const Vec3& a, const Vec3& b, const Vec3& c
 }
 
 /// By colour, ascending.
-std::vector<std::vector<int>> vertices_of_far_faces(const Shell& shell, ImplicitFunctionRef psi,
-                                                    const std::vector<Triangle>& faces, const ChordParams& params,
-                                                    const KeepGoing& keep_going, ChordReport& report) {
+std::vector<std::vector<int>> vertices_of_far_faces(const ActiveLayer& layer, ImplicitFunctionRef psi,
+                                                    const std::vector<Triangle>& faces,
+                                                    const TangentialRelaxationParams& params,
+                                                    const KeepGoing& keep_going, TangentialRelaxationReport& report) {
   std::vector<std::uint8_t> far(faces.size(), 0);
   std::vector<int> evaluations(faces.size(), 0);
   polled_parallel_for(faces.size(), kValuesPerPoll, keep_going, [&](std::size_t k) {
     const Triangle& f = faces[k];
-    far[k] = is_far(psi, shell.V[f[0]], shell.V[f[1]], shell.V[f[2]], params.least_chord * shell.h, evaluations[k]);
+    far[k] = is_far(psi, layer.V[f[0]], layer.V[f[1]], layer.V[f[2]], params.least_chord * layer.h, evaluations[k]);
   });
-  std::vector<std::uint8_t> chosen(shell.V.size(), 0);
+  std::vector<std::uint8_t> chosen(layer.V.size(), 0);
   for (std::size_t k = 0; k < faces.size(); ++k) {
     report.psi_evaluations += static_cast<std::size_t>(evaluations[k]);
     if (far[k] == 0) continue;
-    for (const int v : faces[k]) chosen[v] = shell.role[v] == Shell::Role::Boundary;
+    for (const int v : faces[k]) chosen[v] = layer.role[v] == ActiveLayer::Role::Boundary;
   }
   std::vector<std::vector<int>> colours;
   for (std::size_t v = 0; v < chosen.size(); ++v) {
     if (chosen[v] == 0) continue;
-    const auto colour = static_cast<std::size_t>(shell.colour[v]);
+    const auto colour = static_cast<std::size_t>(layer.colour[v]);
     if (colour >= colours.size()) colours.resize(colour + 1);
     colours[colour].push_back(static_cast<int>(v));
     ++report.vertices;
@@ -184,7 +185,7 @@ std::vector<std::vector<int>> vertices_of_far_faces(const Shell& shell, Implicit
 
 }  // namespace
 
-std::vector<std::string> problems(const ChordParams& params) {
+std::vector<std::string> problems(const TangentialRelaxationParams& params) {
   std::vector<std::string> list;
   const auto refuse = [&](const char* name, double value, const char* rule) {
     list.push_back(std::string(name).append(" = ").append(std::to_string(value)).append(": must be ").append(rule));
@@ -199,23 +200,24 @@ std::vector<std::string> problems(const ChordParams& params) {
   return list;
 }
 
-ChordReport slide_to_chords(PNormSmoother& smoother, const std::vector<std::uint8_t>& inside, ImplicitFunctionRef psi,
-                            const ChordParams& params, SmoothParams smoothing, const KeepGoing& keep_going) {
+TangentialRelaxationReport relax_tangentially(PNormSmoother& smoother, const std::vector<std::uint8_t>& inside,
+                                              ImplicitFunctionRef psi, const TangentialRelaxationParams& params,
+                                              SmoothingParams smoothing, const KeepGoing& keep_going) {
   if (const auto list = problems(params); !list.empty()) {
     std::string all;
     for (const std::string& problem : list) all += (all.empty() ? "" : "; ") + problem;
     throw std::invalid_argument(all);
   }
-  Shell& shell = smoother.shell();
-  const std::vector<Triangle> faces = boundary_faces(shell, inside);
-  ChordReport report;
-  const std::vector<std::vector<int>> colours = vertices_of_far_faces(shell, psi, faces, params, keep_going, report);
+  ActiveLayer& layer = smoother.layer();
+  const std::vector<Triangle> faces = boundary_faces(layer, inside);
+  TangentialRelaxationReport report;
+  const std::vector<std::vector<int>> colours = vertices_of_far_faces(layer, psi, faces, params, keep_going, report);
   if (report.vertices == 0) return report;
-  const Fans fans(faces, shell.V.size());
-  const Visitor visit(smoother, psi, fans, params, smoothing.closest_point);
+  const Fans fans(faces, layer.V.size());
+  const Visitor solve(smoother, psi, fans, params, smoothing.closest_point);
   smoothing.max_sweeps = params.inner_sweeps;
-  std::vector<std::size_t> evaluations(shell.V.size());
-  std::vector<Shell::Role> roles = shell.role;
+  std::vector<std::size_t> evaluations(layer.V.size());
+  std::vector<ActiveLayer::Role> roles = layer.role;
   for (int sweep = 0; sweep < params.sweeps; ++sweep) {
     std::size_t moves = 0;
     for (const std::vector<int>& colour : colours) {
@@ -223,18 +225,19 @@ ChordReport slide_to_chords(PNormSmoother& smoother, const std::vector<std::uint
       polled_parallel_for(colour.size(), kValuesPerPoll / 64, keep_going, [&](std::size_t k) {
         const int i = colour[k];
         Vec3 place;
-        moved[k] = visit(i, place, evaluations[i]);
+        moved[k] = solve(i, place, evaluations[i]);
         if (!moved[k]) return;
-        shell.V[i] = place;
-        smoother.wake(i);
+        layer.V[i] = place;
+        smoother.enqueue(i);
       });
       moves += static_cast<std::size_t>(std::count(moved.begin(), moved.end(), 1));
     }
     report.moves += moves;
     if (moves == 0) break;
-    for (Shell::Role& role : shell.role) role = role == Shell::Role::Boundary ? Shell::Role::Fixed : role;
+    for (ActiveLayer::Role& role : layer.role)
+      role = role == ActiveLayer::Role::Boundary ? ActiveLayer::Role::Fixed : role;
     smoother.run(psi, smoothing, keep_going);
-    shell.role = roles;
+    layer.role = roles;
   }
   for (const std::size_t n : evaluations) report.psi_evaluations += n;
   return report;

@@ -9,7 +9,7 @@
 
 namespace umtet {
 
-struct ChordParams {
+struct TangentialRelaxationParams {
   double least_chord = .1;     ///< boundary faces farther than this many h from psi = 0 are worth a move; > 0
   double least_quality = .82;  ///< no tet falls below this mean ratio, or below the worst of its ring; in (0, 1)
   /// Added to least_quality around vertices without a face farther than far_chord h; both >= 0. The 1 % quantile of Q
@@ -20,9 +20,9 @@ struct ChordParams {
 };
 
 /// Every broken constraint, not just the first.
-std::vector<std::string> problems(const ChordParams&);
+std::vector<std::string> problems(const TangentialRelaxationParams&);
 
-struct ChordReport {
+struct TangentialRelaxationReport {
   std::size_t vertices = 0;         ///< with a face that is farther from psi = 0 than least_chord h
   std::size_t moves = 0;            ///< of these, all sweeps together
   std::size_t psi_evaluations = 0;  ///< those of the smoothing included
@@ -32,16 +32,18 @@ struct ChordReport {
 /// all, whose curvature h does not resolve.
 ///
 /// e(m) = |psi| / |grad psi| is the distance at the middles m_k of the faces around a vertex and of its edges in them.
-/// A visit lowers sum e^4 by one Gauss-Newton step in the tangent plane, put back on psi = 0, and halved until the sum
-/// falls, every tet of the ring keeps Q >= least_quality or more (or the worst it had) and no face is turned further
-/// than kTurnedCosine. After each sweep the vertices behind the boundary are smoothed while the boundary is held.
+/// A solve lowers sum e^4 by one Gauss-Newton step in the tangent plane, put back on psi = 0, and halved until the sum
+/// falls, every tet of the ring keeps Q >= least_quality or more (or the worst it had) and no face is misaligned
+/// further than kMisalignedCosine. After each sweep the vertices behind the boundary are smoothed while the boundary is
+/// held.
 ///
 /// Vertices are visited colour by colour: the same bytes for any number of threads.
-/// @param smoother  of a shell whose boundary vertices are on psi = 0
+/// @param smoother  of a layer whose boundary vertices are on psi = 0
 /// @param inside    per vertex of it; boundary faces have their three vertices outside
 /// @param smoothing  of the vertices behind; max_sweeps is not used
 /// \throw std::invalid_argument naming every broken constraint, MeshCancelled
-ChordReport slide_to_chords(PNormSmoother& smoother, const std::vector<std::uint8_t>& inside, ImplicitFunctionRef psi,
-                            const ChordParams& params, SmoothParams smoothing, const KeepGoing& keep_going = {});
+TangentialRelaxationReport relax_tangentially(PNormSmoother& smoother, const std::vector<std::uint8_t>& inside,
+                                              ImplicitFunctionRef psi, const TangentialRelaxationParams& params,
+                                              SmoothingParams smoothing, const KeepGoing& keep_going = {});
 
 }  // namespace umtet

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <utility>
 
-#include "mesh/implicit/closest_point.h"
 #include "mesh/core/max_min.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/implicit/closest_point.h"
 
 namespace umtet {
 namespace {
@@ -26,12 +26,12 @@ constexpr std::size_t kFeetPerPoll = kValuesPerPoll / 8;
 
 class Start {
  public:
-  Start(LatticeShell& shell, const ProjectionParams& projection)
-      : ids_(shell.background_vertex),
-        shell_(shell.shell),
+  Start(LatticeActiveLayer& layer, const ProjectionParams& projection)
+      : ids_(layer.background_vertex),
+        layer_(layer.layer),
         projection_(projection),
-        background_V_(shell.shell.V),
-        recalled_(shell.shell.V.size(), 0) {}
+        background_V_(layer.layer.V),
+        recalled_(layer.layer.V.size(), 0) {}
 
   void recall(const BackgroundMesh& background, const IdSet& inside, const FastMemory& memory);
   std::size_t go_to_feet(ImplicitFunctionRef psi, const KeepGoing& keep_going);
@@ -45,7 +45,7 @@ class Start {
   Vec3 mean_around(int v, const std::vector<Vec3>& u) const;
 
   const std::vector<std::int64_t>& ids_;
-  Shell& shell_;
+  ActiveLayer& layer_;
   const ProjectionParams& projection_;
   const std::vector<Vec3> background_V_;
   std::vector<unsigned char> recalled_;
@@ -69,8 +69,8 @@ void Start::recall(const BackgroundMesh& background, const IdSet& inside, const 
   for (const auto& [id, x] : memory.moved) {
     while (v < ids_.size() && ids_[v] < id) ++v;
     if (v == ids_.size()) break;
-    if (ids_[v] != id || shell_.role[v] == Shell::Role::Fixed || changed.test(id)) continue;
-    shell_.V[v] = x;
+    if (ids_[v] != id || layer_.role[v] == ActiveLayer::Role::Fixed || changed.test(id)) continue;
+    layer_.V[v] = x;
     recalled_[v] = 1;
   }
 }
@@ -78,20 +78,20 @@ void Start::recall(const BackgroundMesh& background, const IdSet& inside, const 
 /// Returns the number of values of psi.
 std::size_t Start::go_to_feet(ImplicitFunctionRef psi, const KeepGoing& keep_going) {
   std::vector<int> boundary;
-  for (std::size_t v = 0; v < shell_.V.size(); ++v) {
-    if (shell_.role[v] != Shell::Role::Boundary) continue;
+  for (std::size_t v = 0; v < layer_.V.size(); ++v) {
+    if (layer_.role[v] != ActiveLayer::Role::Boundary) continue;
     boundary.push_back(static_cast<int>(v));
-    if (recalled_[v] != 0) boundary_from_.emplace_back(v, shell_.V[v]);
+    if (recalled_[v] != 0) boundary_from_.emplace_back(v, layer_.V[v]);
   }
   std::atomic<std::size_t> evaluations = 0, lost = 0;
   ClosestPointParams params = projection_.closest_point;
   params.method = ClosestPointMethod::Damped;
   params.foot_tol = std::max(params.foot_tol, kFootTol);
   polled_parallel_for(boundary.size(), kFeetPerPoll, keep_going, [&](std::size_t k) {
-    Vec3& x = shell_.V[boundary[k]];
-    const ClosestPoint foot = closest_point(psi, x, shell_.h, params);
+    Vec3& x = layer_.V[boundary[k]];
+    const ClosestPoint foot = closest_point(psi, x, layer_.h, params);
     evaluations.fetch_add(static_cast<std::size_t>(foot.iterations), std::memory_order_relaxed);
-    if (foot.converged && (foot.point - x).norm() <= kFarthestFoot * shell_.h) {
+    if (foot.converged && (foot.point - x).norm() <= kFarthestFoot * layer_.h) {
       x = foot.point;
     } else {
       lost.fetch_add(1, std::memory_order_relaxed);
@@ -103,10 +103,10 @@ std::size_t Start::go_to_feet(ImplicitFunctionRef psi, const KeepGoing& keep_goi
 
 /// The mean of u over the other vertices of the tets at v.
 Vec3 Start::mean_around(int v, const std::vector<Vec3>& u) const {
-  const int begin = shell_.ring_begin[v], end = shell_.ring_begin[v + 1];
+  const int begin = layer_.ring_begin[v], end = layer_.ring_begin[v + 1];
   Vec3 sum = -(end - begin) * u[v];
   for (int r = begin; r < end; ++r) {
-    const Tet& t = shell_.C[shell_.ring[r]];
+    const Tet& t = layer_.C[layer_.ring[r]];
     sum += (u[t[0]] + u[t[1]]) + (u[t[2]] + u[t[3]]);
   }
   return sum / (3 * (end - begin));
@@ -114,46 +114,46 @@ Vec3 Start::mean_around(int v, const std::vector<Vec3>& u) const {
 
 /// Once, from all of these at rest: a second sweep saves a hundredth of smoothing's visits, which it costs itself.
 void Start::follow_boundary() {
-  std::vector<Vec3> moved(shell_.V.size(), Vec3::Zero());
-  for (const auto& [v, from] : boundary_from_) moved[v] = shell_.V[v] - from;
-  for (std::size_t v = 0; v < shell_.V.size(); ++v) {
-    if (shell_.role[v] != Shell::Role::Inner || recalled_[v] == 0) continue;
+  std::vector<Vec3> moved(layer_.V.size(), Vec3::Zero());
+  for (const auto& [v, from] : boundary_from_) moved[v] = layer_.V[v] - from;
+  for (std::size_t v = 0; v < layer_.V.size(); ++v) {
+    if (layer_.role[v] != ActiveLayer::Role::Inner || recalled_[v] == 0) continue;
     moved[v] = mean_around(static_cast<int>(v), moved);
-    shell_.V[v] += moved[v];
+    layer_.V[v] += moved[v];
   }
 }
 
 void Start::draw_along() {
-  std::vector<Vec3> u(shell_.V.size());
+  std::vector<Vec3> u(layer_.V.size());
   std::vector<int> drawn;
   for (std::size_t v = 0; v < u.size(); ++v) {
-    u[v] = shell_.V[v] - background_V_[v];
-    if (shell_.role[v] == Shell::Role::Inner && recalled_[v] == 0) drawn.push_back(static_cast<int>(v));
+    u[v] = layer_.V[v] - background_V_[v];
+    if (layer_.role[v] == ActiveLayer::Role::Inner && recalled_[v] == 0) drawn.push_back(static_cast<int>(v));
   }
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     for (const int v : drawn) u[v] = mean_around(v, u);
   }
-  for (const int v : drawn) shell_.V[v] = background_V_[v] + u[v];
+  for (const int v : drawn) layer_.V[v] = background_V_[v] + u[v];
 }
 
 void Start::go_back_where_flat() {
   const double least_f = f_of_quality(projection_.least_quality);
   const auto is_flat = [&](const Tet& t) {
-    const Vec3 &a = shell_.V[t[0]], &b = shell_.V[t[1]], &c = shell_.V[t[2]], &d = shell_.V[t[3]];
+    const Vec3 &a = layer_.V[t[0]], &b = layer_.V[t[1]], &c = layer_.V[t[2]], &d = layer_.V[t[3]];
     const double V = volume6(a, b, c, d), L = sum_of_squared_edges(a, b, c, d);
     return !(V * std::abs(V) >= least_f * (L * L * L));
   };
-  const auto has_left = [&](int v) { return shell_.V[v] != background_V_[v]; };
+  const auto has_left = [&](int v) { return layer_.V[v] != background_V_[v]; };
   // A vertex that goes back may leave a tet flat that was not.
   for (bool again = true; again;) {
     again = false;
-    for (const Tet& t : shell_.C) {
+    for (const Tet& t : layer_.C) {
       if (!is_flat(t) || std::none_of(t.begin(), t.end(), has_left)) continue;
       again = true;
       for (const int v : t) {
-        shell_.V[v] = background_V_[v];
+        layer_.V[v] = background_V_[v];
         recalled_[v] = 0;
-        is_on_surface_ &= shell_.role[v] != Shell::Role::Boundary;
+        is_on_surface_ &= layer_.role[v] != ActiveLayer::Role::Boundary;
       }
     }
   }
@@ -162,9 +162,9 @@ void Start::go_back_where_flat() {
 }  // namespace
 
 WarmStart warm_start(const BackgroundMesh& background, ImplicitFunctionRef psi, const IdSet& inside,
-                     const FastMemory& memory, const ProjectionParams& projection, LatticeShell& shell,
+                     const FastMemory& memory, const ProjectionParams& projection, LatticeActiveLayer& layer,
                      const KeepGoing& keep_going) {
-  Start start(shell, projection);
+  Start start(layer, projection);
   WarmStart result;
   start.recall(background, inside, memory);
   result.psi_evaluations = start.go_to_feet(psi, keep_going);

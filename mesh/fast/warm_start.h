@@ -3,23 +3,23 @@
 #include <cstddef>
 #include <vector>
 
-#include "mesh/base/id_set.h"
-#include "mesh/fast/fast_mesh.h"
-#include "mesh/fast/backtracking_projection.h"
-#include "mesh/core/implicit_function.h"
 #include "common/context.h"
+#include "mesh/base/id_set.h"
+#include "mesh/core/implicit_function.h"
+#include "mesh/fast/backtracking_projection.h"
+#include "mesh/fast/fast_mesh.h"
 #include "mesh/submesh/lattice_active_layer.h"
 
 namespace umtet {
 
 struct WarmStart {
-  std::vector<unsigned char> recalled;  ///< per vertex of the shell: it began at its place in the last mesh
+  std::vector<unsigned char> recalled;  ///< per vertex of the layer: it began at its place in the last mesh
   std::size_t n_recalled = 0;
   bool is_on_surface = false;  ///< all Boundary vertices are: nobody is left to project
   std::size_t psi_evaluations = 0;
 };
 
-/// Where the shell of a domain that has moved begins: on psi = 0 at once, with the rest drawn along.
+/// Where the layer of a domain that has moved begins: on psi = 0 at once, with the rest drawn along.
 ///
 /// A vertex whose neighbours are labelled as in `memory` is recalled: it begins at its place there. Boundary vertices
 /// then go to their closest points, and recalled inner ones move as the vertices around them do in the mean, one sweep
@@ -27,11 +27,11 @@ struct WarmStart {
 /// other vertices of the tets at i, from three sweeps over these equations. Where that leaves a tet below
 /// projection.least_quality, its vertices go back to the background, and project() takes them from there.
 ///
-/// @param shell   at the places of the background; receives those to begin with. The same for any number of threads
+/// @param layer   at the places of the background; receives those to begin with. The same for any number of threads
 /// @param inside  as labelled now
 /// \throw MeshCancelled
 WarmStart warm_start(const BackgroundMesh& background, ImplicitFunctionRef psi, const detail::IdSet& inside,
-                     const FastMemory& memory, const ProjectionParams& projection, LatticeShell& shell,
+                     const FastMemory& memory, const ProjectionParams& projection, LatticeActiveLayer& layer,
                      const KeepGoing& keep_going = {});
 
 }  // namespace umtet

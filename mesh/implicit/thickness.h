@@ -3,8 +3,8 @@
 #include <limits>
 #include <vector>
 
-#include "mesh/core/implicit_function.h"
 #include "common/context.h"
+#include "mesh/core/implicit_function.h"
 
 namespace umtet {
 

@@ -68,7 +68,7 @@ class Sweep {
   template <class F>
   void for_each_row(const F& visit);
   void evaluate(int k);
-  void label_inside(int k);
+  void inside_of_psi_label(int k);
   void find_cut_edges(int k, Directions directions);
   void join_node(int i, int j, int k, unsigned signs);
   void join_tet(int i, int j, int k, const std::array<int, 4>& corner, unsigned signs);
@@ -149,7 +149,7 @@ void Sweep::evaluate(int k) {
 }
 
 /// Components of {psi < 0}: a node joins those of its seven predecessors along Kuhn edges that are inside.
-void Sweep::label_inside(int k) {
+void Sweep::inside_of_psi_label(int k) {
   for_each_row([&](int j) {
     for (int i = 0; i <= n_[0]; ++i) {
       int& label = layer(k).inside_label[index(i, j)];
@@ -283,11 +283,11 @@ void Sweep::join_layer(int k) {
 
 ZeroSetTopology Sweep::run() {
   evaluate(0);
-  label_inside(0);
+  inside_of_psi_label(0);
   find_cut_edges(0, kInPlane);
   for (int k = 0; k < n_[2]; ++k) {
     evaluate(k + 1);
-    label_inside(k + 1);
+    inside_of_psi_label(k + 1);
     find_cut_edges(k, kUpward);
     find_cut_edges(k + 1, kInPlane);
     join_layer(k);

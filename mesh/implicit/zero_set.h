@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "mesh/core/implicit_function.h"
 #include "common/context.h"
+#include "mesh/core/implicit_function.h"
 
 namespace umtet {
 

@@ -47,7 +47,8 @@ void write_xdmf(const std::filesystem::path& path, const SolverMesh& mesh, const
 void write_boundary_xdmf(const std::filesystem::path& path, const SolverMesh& mesh, const std::string& hdf5);
 
 /// The boundary, or one patch of it, as flat triangles of the corners, by write_surface().
-void write_skin(const std::filesystem::path& path, const SolverMesh& mesh, SurfaceFormat format);
-void write_skin(const std::filesystem::path& path, const SolverMesh& mesh, SurfaceFormat format, std::size_t patch);
+void write_boundary_surface(const std::filesystem::path& path, const SolverMesh& mesh, SurfaceFormat format);
+void write_boundary_surface(const std::filesystem::path& path, const SolverMesh& mesh, SurfaceFormat format,
+                            std::size_t patch);
 
 }  // namespace umtet

@@ -45,8 +45,7 @@ class QuietOpenMesh {
 };
 
 /// The surface as half-edges, over its own vertices; `refused` counts the faces that do not fit a 2-manifold.
-HalfEdgeMesh half_edges(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
-                        std::size_t& refused) {
+HalfEdgeMesh half_edges(const std::vector<Vec3>& V, const std::vector<Triangle>& faces, std::size_t& refused) {
   detail::check_indices(faces, V.size(), "face");
   std::vector<int> vertices;
   for (const Triangle& f : faces) vertices.insert(vertices.end(), f.begin(), f.end());

@@ -7,9 +7,9 @@
 #include <numeric>
 #include <utility>
 
-#include "mesh/io/detail/mesh_formats.h"
-#include "mesh/certify/quality_report.h"
 #include "mesh/certify/boundary_surface.h"
+#include "mesh/certify/quality_report.h"
+#include "mesh/io/detail/mesh_formats.h"
 
 namespace umtet {
 

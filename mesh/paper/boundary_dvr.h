@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <span>
 
+#include "mesh/core/implicit_function.h"
 #include "mesh/implicit/closest_point.h"
 #include "mesh/paper/dvr.h"
-#include "mesh/core/implicit_function.h"
 
 namespace umtet {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "mesh/core/max_min.h"
-#include "mesh/paper/relaxation_direction.h"
 #include "mesh/core/tet_mesh.h"
+#include "mesh/paper/relaxation_direction.h"
 
 namespace umtet {
 
@@ -25,8 +25,8 @@ class MovingMesh {
   /// The ring of i around its present place.
   OneRing ring(int i) const { return OneRing(V[i], V, one_ring(i)); }
 
-  /// Places vertex i at x; it and its neighbours are relaxed again at their next turn. Vertices that share no tet may
-  /// be moved by different threads at once.
+  /// Positions vertex i at x; it and its neighbours are relaxed again at their next turn. Vertices that share no tet
+  /// may be moved by different threads at once.
   void move(int i, const Vec3& x);
 
   /// The axis that stands for all directions: settled only in an optimal ring where nothing has moved yet.

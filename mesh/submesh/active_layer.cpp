@@ -14,28 +14,28 @@ constexpr std::size_t kTetsPerPart = 1 << 16, kMostParts = 8;
 
 }  // namespace
 
-void list_rings(Shell& shell) {
-  const std::size_t n_tets = shell.C.size(), n_vertices = shell.V.size();
+void list_rings(ActiveLayer& layer) {
+  const std::size_t n_tets = layer.C.size(), n_vertices = layer.V.size();
   const std::size_t n_parts = std::clamp<std::size_t>(n_tets / kTetsPerPart, 1, kMostParts);
   std::vector<std::vector<int>> next(n_parts);  // per part: how many tets of a vertex, then where they go
   const auto for_each_corner = [&](std::size_t part, const auto& f) {
     for (std::size_t t = n_tets * part / n_parts; t < n_tets * (part + 1) / n_parts; ++t) {
-      for (const int v : shell.C[t]) f(static_cast<int>(t), v);
+      for (const int v : layer.C[t]) f(static_cast<int>(t), v);
     }
   };
   tbb::parallel_for(std::size_t{0}, n_parts, [&](std::size_t part) {
     next[part].assign(n_vertices, 0);
     for_each_corner(part, [&](int, int v) { ++next[part][v]; });
   });
-  shell.ring_begin.assign(n_vertices + 1, 0);
+  layer.ring_begin.assign(n_vertices + 1, 0);
   int sum = 0;
   for (std::size_t v = 0; v < n_vertices; ++v) {
     for (std::vector<int>& n : next) sum += std::exchange(n[v], sum);
-    shell.ring_begin[v + 1] = sum;
+    layer.ring_begin[v + 1] = sum;
   }
-  shell.ring.resize(4 * n_tets);
+  layer.ring.resize(4 * n_tets);
   tbb::parallel_for(std::size_t{0}, n_parts, [&](std::size_t part) {
-    for_each_corner(part, [&](int t, int v) { shell.ring[next[part][v]++] = t; });
+    for_each_corner(part, [&](int t, int v) { layer.ring[next[part][v]++] = t; });
   });
 }
 

@@ -9,9 +9,9 @@ namespace umtet {
 
 /// The part of omega_h that moves: the tets of a few layers behind the boundary, with the rings of their vertices. All
 /// else stays in the background mesh as it is.
-struct Shell {
+struct ActiveLayer {
   enum class Role : std::uint8_t {
-    Fixed,    ///< its ring is not complete in the shell, or it is beyond the last layer
+    Fixed,    ///< its ring is not complete in the layer, or it is beyond the last layer
     Inner,    ///< relaxes freely
     Boundary  ///< a positive vertex: projected onto psi = 0, relaxes in its tangent plane
   };
@@ -24,6 +24,6 @@ struct Shell {
 };
 
 /// Fills in ring_begin and ring, ascending, from V and C.
-void list_rings(Shell& shell);
+void list_rings(ActiveLayer& layer);
 
 }  // namespace umtet

@@ -11,7 +11,8 @@ namespace {
 using detail::IdSet;
 using TetIds = std::array<std::int64_t, 4>;
 
-/// Outside vertices with an inside neighbour, and the inside vertices off the rim within `layers` edges of them.
+/// Outside vertices with an inside neighbour, and the inside vertices off the background boundary within `layers` edges
+/// of them.
 IdSet movable_vertices(const BackgroundMesh& background, const IdSet& inside, int layers) {
   IdSet movable(background.n_vertices());
   std::vector<std::int64_t> front, next, link;
@@ -30,7 +31,7 @@ IdSet movable_vertices(const BackgroundMesh& background, const IdSet& inside, in
       link.clear();
       background.link(v, link);
       for (const std::int64_t w : link) {
-        if (!inside.test(w) || movable.test(w) || background.on_rim(w)) continue;
+        if (!inside.test(w) || movable.test(w) || background.on_boundary(w)) continue;
         movable.insert(w);
         next.push_back(w);
       }
@@ -59,26 +60,26 @@ std::vector<TetIds> moving_tets(const BackgroundMesh& background, const IdSet& i
 }
 
 /// Each vertex, in ascending order, takes the least colour that no lower vertex of its ring has.
-void colour_greedily(Shell& shell) {
-  shell.colour.assign(shell.V.size(), -1);
+void colour_greedily(ActiveLayer& layer) {
+  layer.colour.assign(layer.V.size(), -1);
   std::vector<int> taken_by;  // per colour, the last vertex that found it taken
-  for (int v = 0; v < static_cast<int>(shell.V.size()); ++v) {
-    for (int r = shell.ring_begin[v]; r < shell.ring_begin[v + 1]; ++r) {
-      for (const int w : shell.C[shell.ring[r]]) {
-        const int colour = shell.colour[w];
+  for (int v = 0; v < static_cast<int>(layer.V.size()); ++v) {
+    for (int r = layer.ring_begin[v]; r < layer.ring_begin[v + 1]; ++r) {
+      for (const int w : layer.C[layer.ring[r]]) {
+        const int colour = layer.colour[w];
         if (colour < 0) continue;
         if (colour >= static_cast<int>(taken_by.size())) taken_by.resize(colour + 1, -1);
         taken_by[colour] = v;
       }
     }
-    shell.colour[v] = static_cast<int>(std::find_if(taken_by.begin(), taken_by.end(), [&](int w) { return w != v; }) -
+    layer.colour[v] = static_cast<int>(std::find_if(taken_by.begin(), taken_by.end(), [&](int w) { return w != v; }) -
                                        taken_by.begin());
   }
 }
 
 }  // namespace
 
-LatticeShell background_shell(const BackgroundMesh& background, const IdSet& inside, int layers) {
+LatticeActiveLayer background_active_layer(const BackgroundMesh& background, const IdSet& inside, int layers) {
   const IdSet movable = movable_vertices(background, inside, layers);
   const std::vector<TetIds> tets = moving_tets(background, inside, movable);
   IdSet used(background.n_vertices()), positive(background.n_vertices());
@@ -89,23 +90,23 @@ LatticeShell background_shell(const BackgroundMesh& background, const IdSet& ins
       if (n_inside == 1 && !inside.test(v)) positive.insert(v);
     }
   }
-  LatticeShell result;
-  Shell& shell = result.shell;
-  shell.h = background.h();
+  LatticeActiveLayer result;
+  ActiveLayer& layer = result.layer;
+  layer.h = background.h();
   used.index();
   used.for_each([&](std::int64_t v) {
     result.background_vertex.push_back(v);
-    shell.V.push_back(background.position(v));
-    shell.role.push_back(!movable.test(v)   ? Shell::Role::Fixed
-                         : positive.test(v) ? Shell::Role::Boundary
-                                            : Shell::Role::Inner);
+    layer.V.push_back(background.position(v));
+    layer.role.push_back(!movable.test(v)   ? ActiveLayer::Role::Fixed
+                         : positive.test(v) ? ActiveLayer::Role::Boundary
+                                            : ActiveLayer::Role::Inner);
   });
-  shell.C.reserve(tets.size());
+  layer.C.reserve(tets.size());
   for (const TetIds& tet : tets) {
-    shell.C.push_back({used.rank(tet[0]), used.rank(tet[1]), used.rank(tet[2]), used.rank(tet[3])});
+    layer.C.push_back({used.rank(tet[0]), used.rank(tet[1]), used.rank(tet[2]), used.rank(tet[3])});
   }
-  list_rings(shell);
-  colour_greedily(shell);
+  list_rings(layer);
+  colour_greedily(layer);
   return result;
 }
 

@@ -6,10 +6,11 @@
 
 namespace umtet {
 
-/// The shell of lattice_shell() out of any background mesh: through stars and links instead of tables of bit masks,
-/// with a greedy colouring of the shell's own vertices in ascending order. The same vertices, roles and tets. Cost:
-/// linear in the stars of the inside vertices, some ten times that of lattice_shell().
-/// @param inside  its vertices on the rim stay where they are
-LatticeShell background_shell(const BackgroundMesh& background, const detail::IdSet& inside, int layers = 2);
+/// The layer of lattice_active_layer() out of any background mesh: through stars and links instead of tables of bit
+/// masks, with a greedy colouring of the layer's own vertices in ascending order. The same vertices, roles and tets.
+/// Cost: linear in the stars of the inside vertices, some ten times that of lattice_active_layer().
+/// @param inside  its vertices on the background boundary stay where they are
+LatticeActiveLayer background_active_layer(const BackgroundMesh& background, const detail::IdSet& inside,
+                                           int layers = 2);
 
 }  // namespace umtet

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/submesh/detail/assemble_submesh.h"
-#include "mesh/base/id_set.h"
 #include "mesh/background/link_steps.h"
+#include "mesh/base/id_set.h"
+#include "mesh/submesh/detail/assemble_submesh.h"
 #include "mesh/submesh/lattice_active_layer.h"
 
 namespace umtet {
@@ -25,7 +25,7 @@ constexpr int kMaxWalk = 200;
 // From a cut edge a positively cut tet is one of the next few dozen cut tets.
 constexpr std::size_t kMaxCutTets = 2000;
 // Of the flood, some ten nanoseconds each.
-constexpr std::size_t kVisitsPerPoll = 1 << 16;
+constexpr std::size_t kSolvesPerPoll = 1 << 16;
 
 class Crawler {
  public:
@@ -217,10 +217,10 @@ IdSet Crawler::flood_inside() {
     for (const std::int64_t v : background_.tet(t)) visit(v);
   }
   for (std::size_t n = 0; !stack.empty(); ++n) {
-    if (n % kVisitsPerPoll == 0) poll(keep_going_);
+    if (n % kSolvesPerPoll == 0) poll(keep_going_);
     const std::int64_t v = stack.back();
     stack.pop_back();
-    if (!background_.is_lattice() || background_.on_rim(v)) {
+    if (!background_.is_lattice() || background_.on_boundary(v)) {
       scratch_.clear();
       background_.link(v, scratch_);
       for (const std::int64_t w : scratch_) visit(w);

@@ -3,9 +3,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "common/context.h"
 #include "mesh/background/background_mesh.h"
 #include "mesh/core/implicit_function.h"
-#include "common/context.h"
 #include "mesh/submesh/submesh.h"
 
 namespace umtet {

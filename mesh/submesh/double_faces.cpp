@@ -56,7 +56,7 @@ std::size_t part_double_faces(const BackgroundMesh& background, ImplicitFunction
       for (const std::int64_t v : vertices) {
         Vec3 g;
         const double distance = std::abs(psi.value(background.position(v), g)) / g.norm();
-        if (!changed.test(v) && !background.on_rim(v) && distance < least) nearest = v, least = distance;
+        if (!changed.test(v) && !background.on_boundary(v) && distance < least) nearest = v, least = distance;
       }
       if (nearest < 0) continue;
       inside.test(nearest) ? inside.erase(nearest) : inside.insert(nearest);

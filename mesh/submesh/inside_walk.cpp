@@ -19,7 +19,7 @@ InsideWalk::InsideWalk(const BackgroundMesh& background)
 
 template <class F>
 void InsideWalk::for_each_neighbour(std::int64_t v, const F& f) const {
-  if (background_.is_lattice() && !background_.on_rim(v)) {
+  if (background_.is_lattice() && !background_.on_boundary(v)) {
     for (const std::int64_t step : steps_[background_.type(v)]) f(v + step);
     return;
   }

@@ -3,11 +3,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/context.h"
 #include "mesh/background/background_mesh.h"
 #include "mesh/base/id_set.h"
-#include "mesh/core/psi_values.h"
 #include "mesh/core/implicit_function.h"
-#include "common/context.h"
+#include "mesh/core/psi_values.h"
 
 namespace umtet {
 

@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mesh/background/link_steps.h"
 #include "mesh/base/id_blocks.h"
 #include "mesh/base/id_list.h"
-#include "mesh/background/link_steps.h"
 
 namespace umtet {
 namespace {
@@ -28,9 +28,9 @@ class Builder {
   /// A vertex of omega_h, if v is an id at all.
   bool in_omega_h(std::int64_t v) const { return inside_.test_any(v) || mask(v) != 0; }
 
-  LatticeShell build(const IdSet& movable) const;
+  LatticeActiveLayer build(const IdSet& movable) const;
   /// @param movable  ascending
-  LatticeShell build(const IdList& movable) const;
+  LatticeActiveLayer build(const IdList& movable) const;
 
  private:
   std::vector<int> type_colours() const;
@@ -39,7 +39,7 @@ class Builder {
   template <class F>
   void ring_vertices(std::int64_t v, const F& f) const;
   template <class Movable>
-  Shell::Role role(std::int64_t v, const Movable& movable) const;
+  ActiveLayer::Role role(std::int64_t v, const Movable& movable) const;
 
   const BackgroundMesh& background_;
   const std::vector<LinkTopology>& links_;
@@ -94,13 +94,13 @@ void Builder::ring_vertices(std::int64_t v, const F& f) const {
 }
 
 template <class Movable>
-Shell::Role Builder::role(std::int64_t v, const Movable& movable) const {
-  if (!movable.test(v)) return Shell::Role::Fixed;
+ActiveLayer::Role Builder::role(std::int64_t v, const Movable& movable) const {
+  if (!movable.test(v)) return ActiveLayer::Role::Fixed;
   const bool positive = !inside_.test(v) && links_[background_.type(v)].state(mask(v)).n_positive_faces > 0;
-  return positive ? Shell::Role::Boundary : Shell::Role::Inner;
+  return positive ? ActiveLayer::Role::Boundary : ActiveLayer::Role::Inner;
 }
 
-LatticeShell Builder::build(const IdSet& movable) const {
+LatticeActiveLayer Builder::build(const IdSet& movable) const {
   IdSet used(background_.n_vertices());
   std::vector<std::size_t> begin(detail::n_blocks(movable) + 1, 0);  // of the tets
   for_each_in_blocks(movable, [&](std::size_t b, std::int64_t v) {
@@ -110,62 +110,62 @@ LatticeShell Builder::build(const IdSet& movable) const {
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
   const std::size_t n_vertices = used.index();
 
-  LatticeShell result;
-  Shell& shell = result.shell;
-  shell.h = background_.h();
+  LatticeActiveLayer result;
+  ActiveLayer& layer = result.layer;
+  layer.h = background_.h();
   result.background_vertex.resize(n_vertices);
-  shell.V.resize(n_vertices);
-  shell.colour.resize(n_vertices);
-  shell.role.resize(n_vertices);
-  shell.C.resize(begin.back());
+  layer.V.resize(n_vertices);
+  layer.colour.resize(n_vertices);
+  layer.role.resize(n_vertices);
+  layer.C.resize(begin.back());
   const std::vector<int> colours = type_colours();
   for_each_in_blocks(used, [&](std::size_t, std::int64_t v) {
     const int at = used.rank(v);
     result.background_vertex[at] = v;
-    shell.V[at] = background_.position(v);
-    shell.colour[at] = colours[background_.type(v)];
-    shell.role[at] = role(v, movable);
+    layer.V[at] = background_.position(v);
+    layer.colour[at] = colours[background_.type(v)];
+    layer.role[at] = role(v, movable);
   });
   for_each_in_blocks(movable, [&](std::size_t b, std::int64_t at) {
     tets_at(at, movable, [&](std::int64_t v, std::int64_t x, std::int64_t y, std::int64_t z) {
-      shell.C[begin[b]++] = {used.rank(v), used.rank(x), used.rank(y), used.rank(z)};
+      layer.C[begin[b]++] = {used.rank(v), used.rank(x), used.rank(y), used.rank(z)};
     });
   });
-  list_rings(shell);
+  list_rings(layer);
   return result;
 }
 
-LatticeShell Builder::build(const IdList& movable) const {
-  LatticeShell result;
-  Shell& shell = result.shell;
+LatticeActiveLayer Builder::build(const IdList& movable) const {
+  LatticeActiveLayer result;
+  ActiveLayer& layer = result.layer;
   IdList used;
   for (const std::int64_t at : movable.ids()) {
     tets_at(at, movable, [&](std::int64_t v, std::int64_t x, std::int64_t y, std::int64_t z) {
-      shell.C.push_back({used.add(v), used.add(x), used.add(y), used.add(z)});
+      layer.C.push_back({used.add(v), used.add(x), used.add(y), used.add(z)});
     });
   }
   result.background_vertex = used.ids();
   std::sort(result.background_vertex.begin(), result.background_vertex.end());
-  shell.h = background_.h();
+  layer.h = background_.h();
   const std::vector<int> colours = type_colours();
   std::vector<int> rank(used.ids().size());
   for (const std::int64_t v : result.background_vertex) {
-    rank[static_cast<std::size_t>(used.find(v))] = static_cast<int>(shell.V.size());
-    shell.V.push_back(background_.position(v));
-    shell.colour.push_back(colours[background_.type(v)]);
-    shell.role.push_back(role(v, movable));
+    rank[static_cast<std::size_t>(used.find(v))] = static_cast<int>(layer.V.size());
+    layer.V.push_back(background_.position(v));
+    layer.colour.push_back(colours[background_.type(v)]);
+    layer.role.push_back(role(v, movable));
   }
-  for (Tet& t : shell.C) {
+  for (Tet& t : layer.C) {
     for (int& v : t) v = rank[v];
   }
-  list_rings(shell);
+  list_rings(layer);
   return result;
 }
 
 }  // namespace
 
-LatticeShell lattice_shell(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
-                           const IdSet& inside, int layers) {
+LatticeActiveLayer lattice_active_layer(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
+                                        const IdSet& inside, int layers) {
   const Builder builder(background, links, inside);
   IdSet movable(background.n_vertices());
   detail::for_each_in_blocks(inside, [&](std::size_t, std::int64_t v) {
@@ -187,15 +187,15 @@ LatticeShell lattice_shell(const BackgroundMesh& background, const std::vector<L
   return builder.build(movable);
 }
 
-std::vector<std::uint8_t> inside_of(const LatticeShell& shell, const IdSet& inside) {
+std::vector<std::uint8_t> inside_of(const LatticeActiveLayer& layer, const IdSet& inside) {
   std::vector<std::uint8_t> list;
-  list.reserve(shell.background_vertex.size());
-  for (const std::int64_t v : shell.background_vertex) list.push_back(inside.test(v));
+  list.reserve(layer.background_vertex.size());
+  for (const std::int64_t v : layer.background_vertex) list.push_back(inside.test(v));
   return list;
 }
 
-LatticeShell lattice_patch(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
-                           const IdSet& inside, const std::vector<std::int64_t>& centres, int reach) {
+LatticeActiveLayer lattice_patch(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
+                                 const IdSet& inside, const std::vector<std::int64_t>& centres, int reach) {
   const Builder builder(background, links, inside);
   IdList ball;
   for (const std::int64_t v : centres) ball.add(v);

@@ -5,37 +5,37 @@
 #include <vector>
 
 #include "mesh/background/background_mesh.h"
-#include "mesh/base/id_set.h"
 #include "mesh/background/link_topology.h"
+#include "mesh/base/id_set.h"
 #include "mesh/submesh/active_layer.h"
 #include "mesh/submesh/submesh.h"
 
 namespace umtet {
 
-/// A shell and where its vertices are in the background mesh.
-struct LatticeShell {
-  Shell shell;
+/// A layer and where its vertices are in the background mesh.
+struct LatticeActiveLayer {
+  ActiveLayer layer;
   std::vector<std::int64_t> background_vertex;  ///< ascending
 };
 
-/// Cuts the shell of the tets with an inside vertex out of the background mesh: positive vertices, `layers` layers of
+/// Cuts the layer of the tets with an inside vertex out of the background mesh: positive vertices, `layers` layers of
 /// other vertices behind them, and the rings of all these.
 ///
-/// Every vertex that moves has its whole ring in the shell. Colours are those of a colouring of the vertex types.
-/// Cost: linear in the shell, plus a scan of the bits of the background's vertices.
-/// @param inside  none of its vertices on the rim
+/// Every vertex that moves has its whole ring in the layer. Colours are those of a colouring of the vertex types.
+/// Cost: linear in the layer, plus a scan of the bits of the background's vertices.
+/// @param inside  none of its vertices on the background boundary
 /// \throw std::invalid_argument if a vertex type of the tiling is its own neighbour (types then do not colour it)
-LatticeShell lattice_shell(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
-                           const detail::IdSet& inside, int layers = 2);
+LatticeActiveLayer lattice_active_layer(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
+                                        const detail::IdSet& inside, int layers = 2);
 
 /// The same for the vertices of omega_h within `reach` edges of one of `centres`, whatever their distance from the
 /// boundary: these move. Every tet of omega_h with a vertex that near to a centre is in the patch.
 /// \pre the centres have ids
-LatticeShell lattice_patch(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
-                           const detail::IdSet& inside, const std::vector<std::int64_t>& centres, int reach);
+LatticeActiveLayer lattice_patch(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
+                                 const detail::IdSet& inside, const std::vector<std::int64_t>& centres, int reach);
 
-/// Per vertex of the shell: whether it is in the set.
-std::vector<std::uint8_t> inside_of(const LatticeShell& shell, const detail::IdSet& inside);
+/// Per vertex of the layer: whether it is in the set.
+std::vector<std::uint8_t> inside_of(const LatticeActiveLayer& layer, const detail::IdSet& inside);
 
 /// omega_h of these inside vertices: equal to detail::assemble_submesh() bit for bit, cell by cell with threads, and
 /// that function itself without cells or where the tets of one have more than 64 corners (slab and cube).

@@ -13,8 +13,8 @@
 #include <string>
 #include <utility>
 
-#include "mesh/submesh/detail/assemble_submesh.h"
 #include "mesh/base/id_set.h"
+#include "mesh/submesh/detail/assemble_submesh.h"
 
 namespace umtet {
 namespace {

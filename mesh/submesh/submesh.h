@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/context.h"
 #include "mesh/background/background_mesh.h"
 #include "mesh/core/implicit_function.h"
-#include "common/context.h"
 #include "mesh/core/tet_mesh.h"
 
 namespace umtet {

@@ -19,7 +19,7 @@ std::vector<Triangle> wall_faces(const BackgroundMesh& background, const Submesh
 
 UmEvidence boundary_near_walls(const BackgroundMesh& background, const Submesh& submesh) {
   std::vector<char> near(submesh.mesh.V.size(), 0);
-  for (std::size_t i = 0; i < near.size(); ++i) near[i] = background.on_rim(submesh.background_vertex[i]);
+  for (std::size_t i = 0; i < near.size(); ++i) near[i] = background.on_boundary(submesh.background_vertex[i]);
   for (int edge = 0; edge < 2; ++edge) {
     std::vector<char> next = near;
     for (const Tet& tet : submesh.mesh.C) {

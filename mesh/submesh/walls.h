@@ -8,11 +8,11 @@
 
 namespace umtet {
 
-/// The faces of omega_h on the rim of the background, local vertex ids, outward; ascending in (tet, local face).
+/// The faces of omega_h on the background boundary, local vertex ids, outward; ascending in (tet, local face).
 std::vector<Triangle> wall_faces(const BackgroundMesh& background, const Submesh& submesh);
 
-/// Positive vertices within two edges of a vertex of omega_h on the rim: psi = 0 and a wall would share a shell of two
-/// layers, or a face. count == 0: none.
+/// Positive vertices within two edges of a vertex of omega_h on the background boundary: psi = 0 and a wall would share
+/// a layer of two layers, or a face. count == 0: none.
 UmEvidence boundary_near_walls(const BackgroundMesh& background, const Submesh& submesh);
 
 }  // namespace umtet

@@ -9,10 +9,10 @@
 
 #include "common/context.h"
 #include "mesh/io/tet_mesh_io.h"
-#include "pipeline/expression/expression.h"
 #include "pipeline/case/interrupt.h"
-#include "reconstruct/solve/fit_ssd.h"
+#include "pipeline/expression/expression.h"
 #include "reconstruct/io/point_cloud_io.h"
+#include "reconstruct/solve/fit_ssd.h"
 
 namespace umtet {
 namespace {

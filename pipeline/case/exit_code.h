@@ -62,7 +62,7 @@ struct Interrupted : std::runtime_error {
 
 struct Failure {
   ExitCode code;
-  std::string message;  ///< one or a few lines, without a final newline
+  std::string message;                                                 ///< one or a few lines, without a final newline
   nlohmann::ordered_json evidence = nlohmann::ordered_json::object();  ///< what else a program may want to know
 };
 

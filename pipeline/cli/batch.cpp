@@ -11,12 +11,12 @@
 #include <set>
 #include <thread>
 
-#include "pipeline/cli/batch_table.h"
 #include "pipeline/case/case_folder.h"
-#include "pipeline/cli/child_process.h"
 #include "pipeline/case/interrupt.h"
-#include "pipeline/run/time_steps.h"
 #include "pipeline/case/version.h"
+#include "pipeline/cli/batch_table.h"
+#include "pipeline/cli/child_process.h"
+#include "pipeline/run/time_steps.h"
 
 namespace umtet {
 namespace fs = std::filesystem;

@@ -7,10 +7,10 @@
 #include <string_view>
 
 #include "pipeline/case/artefact.h"
-#include "pipeline/run/detail/csv_field.h"
 #include "pipeline/case/exit_code.h"
-#include "pipeline/output/report_page.h"
 #include "pipeline/case/version.h"
+#include "pipeline/output/report_page.h"
+#include "pipeline/run/detail/csv_field.h"
 
 namespace umtet {
 namespace fs = std::filesystem;

@@ -7,10 +7,10 @@
 #include <sstream>
 #include <system_error>
 
-#include "pipeline/meshing/background_choice.h"
-#include "pipeline/cli/detail/command_parser.h"
-#include "pipeline/output/export_case.h"
 #include "pipeline/case/version.h"
+#include "pipeline/cli/detail/command_parser.h"
+#include "pipeline/meshing/background_choice.h"
+#include "pipeline/output/export_case.h"
 
 namespace umtet {
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/case/progress.h"
 #include "pipeline/cli/batch.h"
 #include "pipeline/run/evolve.h"
-#include "pipeline/case/progress.h"
 #include "pipeline/run/run.h"
 
 namespace umtet {

@@ -1,8 +1,8 @@
 #include <filesystem>
 
-#include "pipeline/output/boundary_patches.h"
 #include "pipeline/cli/command_line.h"
 #include "pipeline/cli/detail/command_parser.h"
+#include "pipeline/output/boundary_patches.h"
 #include "pipeline/output/export_case.h"
 
 namespace umtet {

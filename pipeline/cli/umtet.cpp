@@ -11,20 +11,20 @@
 #include <optional>
 #include <string_view>
 
-#include "pipeline/output/case_diff.h"
-#include "pipeline/meshing/certificate_json.h"
-#include "pipeline/meshing/check.h"
-#include "pipeline/cli/command_line.h"
-#include "pipeline/run/evolve.h"
 #include "pipeline/case/exit_code.h"
-#include "pipeline/output/export_case.h"
-#include "pipeline/output/inspect.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/case/memory.h"
-#include "pipeline/output/report.h"
-#include "pipeline/run/run.h"
 #include "pipeline/case/stop_document.h"
+#include "pipeline/cli/command_line.h"
+#include "pipeline/meshing/certificate_json.h"
+#include "pipeline/meshing/check.h"
+#include "pipeline/output/case_diff.h"
+#include "pipeline/output/export_case.h"
+#include "pipeline/output/inspect.h"
+#include "pipeline/output/report.h"
 #include "pipeline/output/view_files.h"
+#include "pipeline/run/evolve.h"
+#include "pipeline/run/run.h"
 
 namespace umtet {
 namespace {

@@ -45,7 +45,7 @@ ChannelMesher::ChannelMesher(double n_tets) : background_(channel(n_tets)) {
 FluidMesh ChannelMesher::mesh(ImplicitFunctionRef fluid) const {
   UmParams params;
   params.mode = UmMode::Fast;
-  params.rim = Rim::Wall;
+  params.background_boundary = BackgroundBoundary::Wall;
   const UmResult made = universal_mesh(background_, fluid, params);
   if (made.status != UmStatus::Success) throw MeshingImpossible(why(made));
   const Submesh& omega_h = made.submesh;

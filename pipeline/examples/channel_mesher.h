@@ -9,7 +9,7 @@
 namespace umtet {
 
 /// The fluid around a body in the channel of [Rangarajan2018, Section 4.3], 12 x 12 x 29.16 about the origin, as a
-/// part of one universal mesh: A15 with flat walls (a15_box.h), fast mode with Rim::Wall. The end at z = 14.58 is open,
+/// part of one universal mesh: A15 with flat walls (a15_box.h), fast mode with BackgroundBoundary::Wall. The end at z = 14.58 is open,
 /// the other five faces are walls without slip.
 class ChannelMesher {
  public:

@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "mesh/io/tet_mesh_io.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/artefact.h"
 
 namespace umtet {

@@ -18,10 +18,10 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/examples/channel_mesher.h"
-#include "pipeline/examples/swim_files.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
+#include "pipeline/examples/channel_mesher.h"
+#include "pipeline/examples/swim_files.h"
 
 namespace umtet {
 namespace {

@@ -41,14 +41,14 @@ void require_walls(const Parameters& parameters) {
   throw UsageError("--complement needs --box-walls: what is around the body ends at the flat walls of --box");
 }
 
-LabelSource label_source(const Parameters& parameters) {
+ClassificationSource classification_source(const Parameters& parameters) {
   const bool chosen =
       parameters.text("mesh.mode") == "fast" && !parameters.flag("mesh.box_walls") && !background_file(parameters);
-  return chosen ? LabelSource::Chosen : LabelSource::Psi;
+  return chosen ? ClassificationSource::Chosen : ClassificationSource::Psi;
 }
 
 BackgroundChoice::BackgroundChoice(const Parameters& parameters, const Domain& domain)
-    : tiling_(&a15()), labels_(label_source(parameters)), walls_(parameters.flag("mesh.box_walls")) {
+    : tiling_(&a15()), labels_(classification_source(parameters)), walls_(parameters.flag("mesh.box_walls")) {
   require_walls(parameters);
   const std::optional<fs::path> file = background_file(parameters);
   if (!file) tiling_ = &tiling_named(parameters.text("mesh.background"));

@@ -6,8 +6,8 @@
 
 #include "mesh/background/background_mesh.h"
 #include "mesh/background/body_size.h"
-#include "pipeline/meshing/domain.h"
 #include "pipeline/case/parameters.h"
+#include "pipeline/meshing/domain.h"
 
 namespace umtet {
 
@@ -19,7 +19,7 @@ void require_walls(const Parameters&);
 
 /// Whose labels a mesh of these parameters has: fast mode chooses them in backgrounds that are a tiling and have no
 /// walls.
-LabelSource label_source(const Parameters&);
+ClassificationSource classification_source(const Parameters&);
 
 /// What --background and --box-walls ask for: a lattice or a box of any edge length, or a mesh that has its own.
 class BackgroundChoice {
@@ -41,7 +41,7 @@ class BackgroundChoice {
  private:
   std::optional<BackgroundMesh> given_;
   const Tiling* tiling_;  ///< that the number of tets is estimated by, for a file too
-  LabelSource labels_;
+  ClassificationSource labels_;
   bool walls_;
 };
 

@@ -5,16 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/certify/certificate.h"
 #include "mesh/certify/boundary_surface.h"
+#include "mesh/certify/certificate.h"
 #include "mesh/io/tet_mesh_io.h"
-#include "pipeline/meshing/domain.h"
-#include "pipeline/meshing/edge_length.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
+#include "pipeline/case/version.h"
+#include "pipeline/meshing/domain.h"
+#include "pipeline/meshing/edge_length.h"
 #include "pipeline/meshing/mesh_measures.h"
 #include "pipeline/meshing/second_order.h"
-#include "pipeline/case/version.h"
 
 namespace umtet {
 namespace fs = std::filesystem;

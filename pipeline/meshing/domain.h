@@ -10,10 +10,10 @@
 #include "mesh/core/implicit_function.h"
 #include "mesh/implicit/surface_distance.h"
 #include "pipeline/case/case_folder.h"
-#include "pipeline/expression/expression.h"
 #include "pipeline/case/parameters.h"
-#include "reconstruct/level_set/level_set.h"
+#include "pipeline/expression/expression.h"
 #include "reconstruct/cloud/point_cloud.h"
+#include "reconstruct/level_set/level_set.h"
 
 namespace umtet {
 

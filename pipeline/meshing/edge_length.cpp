@@ -11,9 +11,9 @@
 #include "mesh/background/body_size.h"
 #include "mesh/certify/quality_report.h"
 #include "mesh/implicit/thickness.h"
+#include "pipeline/case/exit_code.h"
 #include "pipeline/meshing/background_choice.h"
 #include "pipeline/meshing/deviation.h"
-#include "pipeline/case/exit_code.h"
 #include "reconstruct/solve/resolution.h"
 
 namespace umtet {
@@ -38,7 +38,7 @@ constexpr std::size_t kThicknessSamples = 20000;
 double h_of(const Domain& domain, const Parameters& parameters, std::int64_t n_tets) {
   try {
     return h_for_tets(tiling_named(parameters.text("mesh.background")), domain.size(), static_cast<double>(n_tets),
-                      label_source(parameters));
+                      classification_source(parameters));
   } catch (const std::invalid_argument& e) {
     throw MeshingImpossible(std::string("no edge length can be chosen: ") + e.what() +
                             "; give --h, or a --box around the place where psi < 0");

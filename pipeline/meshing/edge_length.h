@@ -1,8 +1,8 @@
 #pragma once
 
 #include "common/context.h"
-#include "pipeline/meshing/domain.h"
 #include "pipeline/case/parameters.h"
+#include "pipeline/meshing/domain.h"
 
 namespace umtet {
 

@@ -7,8 +7,8 @@
 
 #include "mesh/certify/quadratic_tets.h"
 #include "mesh/universal_mesh.h"
-#include "pipeline/meshing/edge_length.h"
 #include "pipeline/case/record.h"
+#include "pipeline/meshing/edge_length.h"
 #include "pipeline/meshing/too_thin.h"
 
 namespace umtet {

@@ -8,13 +8,13 @@
 #include <optional>
 #include <string_view>
 
-#include "pipeline/meshing/edge_length.h"
 #include "pipeline/case/exit_code.h"
+#include "pipeline/meshing/edge_length.h"
 #include "pipeline/meshing/made_mesh.h"
 #include "pipeline/meshing/mesh_measures.h"
 #include "pipeline/meshing/second_order.h"
-#include "pipeline/stages/stages.h"
 #include "pipeline/meshing/too_thin.h"
+#include "pipeline/stages/stages.h"
 
 namespace umtet {
 namespace {

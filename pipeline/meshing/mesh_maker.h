@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/background/background_mesh.h"
 #include "common/context.h"
+#include "mesh/background/background_mesh.h"
 #include "mesh/universal_mesh.h"
+#include "pipeline/case/parameters.h"
 #include "pipeline/meshing/domain.h"
 #include "pipeline/meshing/mesh_attempts.h"
-#include "pipeline/case/parameters.h"
 #include "pipeline/meshing/zero_set_choice.h"
 
 namespace umtet {

@@ -7,8 +7,8 @@
 #include <numeric>
 #include <span>
 
-#include "mesh/certify/quality_report.h"
 #include "mesh/certify/boundary_surface.h"
+#include "mesh/certify/quality_report.h"
 #include "mesh/implicit/surface_distance.h"
 #include "mesh/implicit/thickness.h"
 #include "pipeline/meshing/component_proof.h"

@@ -2,8 +2,8 @@
 
 #include "mesh/certify/certificate.h"
 #include "mesh/universal_mesh.h"
-#include "pipeline/meshing/domain.h"
 #include "pipeline/case/record.h"
+#include "pipeline/meshing/domain.h"
 #include "pipeline/meshing/too_thin.h"
 #include "pipeline/meshing/zero_set_choice.h"
 

@@ -6,8 +6,8 @@
 #include "mesh/certify/second_order_certificate.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "mesh/universal_mesh.h"
-#include "pipeline/meshing/domain.h"
 #include "pipeline/case/record.h"
+#include "pipeline/meshing/domain.h"
 
 namespace umtet {
 

@@ -10,8 +10,8 @@
 
 #include "mesh/base/disjoint_sets.h"
 #include "mesh/implicit/surface_distance.h"
-#include "mesh/io/tet_mesh_io.h"
 #include "mesh/implicit/thickness.h"
+#include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/artefact.h"
 
 namespace umtet {
@@ -19,7 +19,7 @@ namespace {
 
 // psi is followed in steps of this many edges, up to a little more than what counts.
 constexpr double kStep = .125, kReach = kLeastEdgesAcross + 2 * kStep;
-// Places listed in an error.
+// Positions listed in an error.
 constexpr std::size_t kListed = 5;
 
 /// Points of the boundary with the area each stands for.

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/meshing/domain.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/record.h"
+#include "pipeline/meshing/domain.h"
 #include "pipeline/meshing/zero_set_choice.h"
 
 namespace umtet {

@@ -7,11 +7,11 @@
 #include <optional>
 
 #include "mesh/io/solver_files.h"
-#include "pipeline/output/boundary_patches.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/case/parameters.h"
 #include "pipeline/case/record.h"
+#include "pipeline/output/boundary_patches.h"
 #include "reconstruct/io/point_cloud_io.h"
 
 namespace umtet {
@@ -34,7 +34,7 @@ struct ExportFormat {
 
 const std::vector<ExportFormat>& formats_known() {
   const auto skin = [](SurfaceFormat format) {
-    return [format](const fs::path& p, const SolverMesh& m) { write_skin(p, m, format); };
+    return [format](const fs::path& p, const SolverMesh& m) { write_boundary_surface(p, m, format); };
   };
   static const std::vector<ExportFormat> formats = {
       {"vtu",
@@ -68,8 +68,9 @@ std::vector<PendingFile> files_of(const ExportFormat& format, const fs::path& fo
   }
   if (!format.skin || mesh.patches.size() < 2) return files;
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
-    files.push_back({folder / ("mesh." + mesh.patches[p].name + format.files.front().ending),
-                     [&mesh, p, skin = *format.skin](const fs::path& path) { write_skin(path, mesh, skin, p); }});
+    files.push_back(
+        {folder / ("mesh." + mesh.patches[p].name + format.files.front().ending),
+         [&mesh, p, skin = *format.skin](const fs::path& path) { write_boundary_surface(path, mesh, skin, p); }});
   }
   return files;
 }
@@ -98,7 +99,7 @@ OrientedPointCloud cloud_of_case(const CasePaths& paths, const StageRecord& mesh
 }
 
 /// Patches that had other names in a former export have other files.
-void remove_former_skins(const ExportFormat& format, const CasePaths& paths, const std::vector<fs::path>& written) {
+void remove_former_surfaces(const ExportFormat& format, const CasePaths& paths, const std::vector<fs::path>& written) {
   if (!format.skin) return;
   for (const fs::path& file : exported_files(paths)) {
     const bool is_skin = file.extension() == format.files.front().ending;
@@ -178,7 +179,7 @@ std::vector<fs::path> export_case(const CasePaths& paths, const std::vector<std:
     const std::vector<PendingFile> files = files_of(*format, paths.exports(), mesh);
     write_artefacts(files);
     for (const PendingFile& file : files) written.push_back(file.path);
-    remove_former_skins(*format, paths, written);
+    remove_former_surfaces(*format, paths, written);
   }
   return written;
 }

@@ -31,25 +31,29 @@ Json troubles(const CloudSurvey& s, const CloudFileReport& file) {
   const auto n = static_cast<double>(s.n_points);
   if (file.n_points_dropped > 0) trouble("{} points are no numbers: they are dropped", file.n_points_dropped);
   if (s.dropped.n_duplicates > 0) trouble("{} points are there twice: one of each is kept", s.dropped.n_duplicates);
-  if (const std::size_t junk = s.dropped.n_outliers + s.dropped.n_crumbs; static_cast<double>(junk) > kShareDropped * n) {
+  if (const std::size_t junk = s.dropped.n_outliers + s.dropped.n_small_components;
+      static_cast<double>(junk) > kShareDropped * n) {
     trouble("{} points ({:.1f} %) are far from any surface: they are dropped; --keep-all keeps them", junk,
             100 * static_cast<double>(junk) / n);
   }
   if (!s.has_normals) {
-    trouble("no normals: they are estimated and oriented; check the result, or give the scanner's place with "
-            "--orient-from");
+    trouble(
+        "no normals: they are estimated and oriented; check the result, or give the scanner's place with "
+        "--orient-from");
   } else {
     if (s.n_normals_zero > 0) trouble("{} normals are missing: they are estimated", s.n_normals_zero);
     if (s.consistency < kConsistent) {
-      trouble("the normals agree with their neighbours to {:.1f} % only: a turned minority is turned back; "
-              "--normals estimate throws them away",
-              100 * s.consistency);
+      trouble(
+          "the normals agree with their neighbours to {:.1f} % only: a turned minority is turned back; "
+          "--normals estimate throws them away",
+          100 * s.consistency);
     }
     if (s.volume < 0) trouble("the normals point inward: they are turned");
     if (s.openness > kOpen) {
-      trouble("the surface is open or sampled on one side (|sum a n| / sum a = {:.2f}): what closes it is a guess, "
-              "marked as unsupported",
-              s.openness);
+      trouble(
+          "the surface is open or sampled on one side (|sum a n| / sum a = {:.2f}): what closes it is a guess, "
+          "marked as unsupported",
+          s.openness);
     }
   }
   if (s.density_variation > kVariation) {
@@ -60,14 +64,17 @@ Json troubles(const CloudSurvey& s, const CloudFileReport& file) {
             s.noise_over_spacing);
   }
   if (s.thickness && (*s.thickness)[0] < kThin * s.diagonal) {
-    trouble("1 % of the body is thinner than {:.3g}: the mesh needs --h {:.2g} or smaller there, or --allow-thin to go on without", (*s.thickness)[0],
-            (*s.thickness)[0] / 2.2);
+    trouble(
+        "1 % of the body is thinner than {:.3g}: the mesh needs --h {:.2g} or smaller there, or --allow-thin to go on "
+        "without",
+        (*s.thickness)[0], (*s.thickness)[0] / 2.2);
   }
   if (s.ulp_over_spacing > kUlp) {
     trouble("coordinates of {:.3g} leave {:.1g} of the spacing to rounding: move the cloud nearer to the origin",
             s.farthest_coordinate, s.ulp_over_spacing);
   } else if (s.float_ulp_over_spacing > kFloatUlp) {
-    trouble("if these coordinates ever were single precision, they hold steps of {:.1g} spacings", s.float_ulp_over_spacing);
+    trouble("if these coordinates ever were single precision, they hold steps of {:.1g} spacings",
+            s.float_ulp_over_spacing);
   }
   return list;
 }
@@ -103,7 +110,8 @@ Json inspect_cloud(const fs::path& file, Progress& progress) {
                             {"outward", s.volume > 0},
                             {"openness", s.openness}});
   }
-  json["noise"] = {{"sigma", s.noise}, {"over_spacing", s.noise_over_spacing}, {"over_diagonal", s.noise_over_diagonal}};
+  json["noise"] = {
+      {"sigma", s.noise}, {"over_spacing", s.noise_over_spacing}, {"over_diagonal", s.noise_over_diagonal}};
   json["thickness"] = s.thickness ? Json({{"p01", (*s.thickness)[0]},
                                           {"p05", (*s.thickness)[1]},
                                           {"median", (*s.thickness)[2]},
@@ -112,9 +120,10 @@ Json inspect_cloud(const fs::path& file, Progress& progress) {
   json["dropped"] = {{"not_finite", scan.report.n_points_dropped + s.dropped.n_not_finite},
                      {"duplicates", s.dropped.n_duplicates},
                      {"outliers", s.dropped.n_outliers},
-                     {"crumbs", s.dropped.n_crumbs}};
+                     {"small_components", s.dropped.n_small_components}};
   json["origin"] = {{"farthest_coordinate", s.farthest_coordinate}, {"ulp_over_spacing", s.ulp_over_spacing}};
-  json["lattice"] = {{"spacing", resolution.spacing}, {"smoothing", resolution.smoothing}, {"reason", resolution.reason}};
+  json["lattice"] = {
+      {"spacing", resolution.spacing}, {"smoothing", resolution.smoothing}, {"reason", resolution.reason}};
   json["trouble"] = troubles(s, scan.report);
   return json;
 }
@@ -124,17 +133,17 @@ std::string inspection_text(const Json& j) {
   const Json &low = j.at("box").at("min"), &high = j.at("box").at("max");
   std::string out = fmt::format("cloud     {}: {}, {} points\n", j.at("file").get<std::string>(),
                                 j.at("format").get<std::string>(), j.at("n_points").get<std::size_t>());
-  out += fmt::format("box       {:.6g} x {:.6g} x {:.6g}, diagonal {:.6g}\n", high[0].get<double>() - low[0].get<double>(),
-                     high[1].get<double>() - low[1].get<double>(), high[2].get<double>() - low[2].get<double>(),
-                     number("box", "diagonal"));
+  out += fmt::format("box       {:.6g} x {:.6g} x {:.6g}, diagonal {:.6g}\n",
+                     high[0].get<double>() - low[0].get<double>(), high[1].get<double>() - low[1].get<double>(),
+                     high[2].get<double>() - low[2].get<double>(), number("box", "diagonal"));
   out += fmt::format("spacing   median {:.4g}, 1 % {:.4g}, 99 % {:.4g}; density varies {:.1f} : 1\n",
                      number("spacing", "median"), number("spacing", "p01"), number("spacing", "p99"),
                      j.at("density_variation").get<double>());
   if (j.at("normals").at("present").get<bool>()) {
-    out += fmt::format("normals   {:.1f} % consistent, {}; {} missing, {} made unit\n",
-                       100 * number("normals", "consistency"),
-                       j.at("normals").at("outward").get<bool>() ? "outward" : "inward",
-                       j.at("normals").at("missing").get<std::size_t>(), j.at("normals").at("rescaled").get<std::size_t>());
+    out += fmt::format(
+        "normals   {:.1f} % consistent, {}; {} missing, {} made unit\n", 100 * number("normals", "consistency"),
+        j.at("normals").at("outward").get<bool>() ? "outward" : "inward",
+        j.at("normals").at("missing").get<std::size_t>(), j.at("normals").at("rescaled").get<std::size_t>());
   } else {
     out += "normals   none\n";
   }
@@ -147,8 +156,9 @@ std::string inspection_text(const Json& j) {
   const Json& d = j.at("dropped");
   out += fmt::format("dropped   {} no numbers, {} duplicates, {} outliers, {} in small pieces\n",
                      d.at("not_finite").get<std::size_t>(), d.at("duplicates").get<std::size_t>(),
-                     d.at("outliers").get<std::size_t>(), d.at("crumbs").get<std::size_t>());
-  out += fmt::format("lattice   {:.4g}: {}\n", number("lattice", "spacing"), j.at("lattice").at("reason").get<std::string>());
+                     d.at("outliers").get<std::size_t>(), d.at("small_components").get<std::size_t>());
+  out += fmt::format("lattice   {:.4g}: {}\n", number("lattice", "spacing"),
+                     j.at("lattice").at("reason").get<std::string>());
   if (j.at("trouble").empty()) out += "trouble   none seen\n";
   for (const Json& t : j.at("trouble")) out += "trouble   " + t.get<std::string>() + "\n";
   return out;

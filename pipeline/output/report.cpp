@@ -8,10 +8,10 @@
 #include <fstream>
 #include <sstream>
 
-#include "pipeline/output/boundary_patches.h"
-#include "pipeline/output/detail/report_sources.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
+#include "pipeline/output/boundary_patches.h"
+#include "pipeline/output/detail/report_sources.h"
 #include "pipeline/output/report_page.h"
 #include "pipeline/output/report_plot.h"
 #include "pipeline/output/report_scene.h"
@@ -109,7 +109,8 @@ std::string shown_text(const Json& scene) {
   text += ".";
   if (scene.at("n_faces") != scene.at("n_faces_shown")) text += " The surface is coarsened for the view.";
   if (!scene.at("planes").is_null()) text += " Of the tets, the worst and those at the middle planes of the box.";
-  return text + " Places are rounded to 1/65535 of the box, colours to 1/255 of their range. Deviation is |ψ| / |∇ψ|.";
+  return text +
+         " Positions are rounded to 1/65535 of the box, colours to 1/255 of their range. Deviation is |ψ| / |∇ψ|.";
 }
 
 std::string title_of(const CasePaths& paths) {

@@ -21,7 +21,7 @@ std::string headline_cards(const Json& certificate);
 
 /// Seconds and memory of the stages, with bars. @param records  of the stages that were run
 std::string stage_table(const std::vector<Json>& records);
-/// The levels of a fit by the band cascade; empty when there are none.
+/// The levels of a fit by the multilevel fit; empty when there are none.
 std::string band_table(const Json& level_set_record);
 /// Every parameter, from the text of case.toml; those that somebody gave stand out.
 std::string parameter_table(const std::string& case_toml);

@@ -6,8 +6,8 @@
 
 #include "mesh/io/solver_mesh.h"
 #include "mesh/io/tet_mesh_io.h"
-#include "pipeline/meshing/domain.h"
 #include "pipeline/case/record.h"
+#include "pipeline/meshing/domain.h"
 
 namespace umtet {
 

@@ -16,9 +16,9 @@
 #include <cmath>
 
 #include "common/context.h"
-#include "pipeline/meshing/domain.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
+#include "pipeline/meshing/domain.h"
 #include "pipeline/stages/stages.h"
 
 namespace umtet {

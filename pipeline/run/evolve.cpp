@@ -9,18 +9,18 @@
 
 #include "mesh/universal_mesh.h"
 #include "pipeline/case/artefact.h"
+#include "pipeline/case/interrupt.h"
+#include "pipeline/case/memory.h"
 #include "pipeline/meshing/background_choice.h"
 #include "pipeline/meshing/certificate_json.h"
 #include "pipeline/meshing/domain.h"
 #include "pipeline/meshing/edge_length.h"
-#include "pipeline/run/evolve_tables.h"
-#include "pipeline/case/interrupt.h"
 #include "pipeline/meshing/made_mesh.h"
-#include "pipeline/case/memory.h"
 #include "pipeline/meshing/mesh_maker.h"
+#include "pipeline/run/evolve_tables.h"
 #include "pipeline/run/run.h"
-#include "pipeline/stages/stages.h"
 #include "pipeline/run/time_steps.h"
+#include "pipeline/stages/stages.h"
 
 namespace umtet {
 namespace fs = std::filesystem;

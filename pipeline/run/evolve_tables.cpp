@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "pipeline/case/artefact.h"
-#include "pipeline/run/detail/csv_field.h"
 #include "pipeline/output/step_plot.h"
+#include "pipeline/run/detail/csv_field.h"
 
 namespace umtet {
 namespace {

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "pipeline/meshing/certificate_json.h"
-#include "pipeline/stages/cloud_preparation.h"
 #include "pipeline/case/interrupt.h"
-#include "pipeline/run/renewal.h"
+#include "pipeline/meshing/certificate_json.h"
 #include "pipeline/output/report.h"
+#include "pipeline/run/renewal.h"
+#include "pipeline/stages/cloud_preparation.h"
 #include "pipeline/stages/stages.h"
 
 namespace umtet {

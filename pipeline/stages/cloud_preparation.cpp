@@ -74,13 +74,13 @@ void Preparation::clean_points() {
   result_.numbers["dropped"] = {{"not_finite", report_.n_points_dropped + r.n_not_finite},
                                 {"duplicates", r.n_duplicates},
                                 {"outliers", r.n_outliers},
-                                {"crumbs", r.n_crumbs}};
+                                {"small_components", r.n_small_components}};
   if (const std::size_t n = report_.n_points_dropped + r.n_not_finite)
     notice("dropped {} points that are no numbers", n);
   if (r.n_duplicates > 0) notice("dropped {} duplicates", r.n_duplicates);
-  if (r.n_outliers + r.n_crumbs > 0) {
+  if (r.n_outliers + r.n_small_components > 0) {
     notice("dropped {} outliers and {} points in {} small pieces far from the rest (--keep-all keeps them)",
-           r.n_outliers, r.n_crumbs, r.n_crumb_pieces);
+           r.n_outliers, r.n_small_components, r.n_small_component_pieces);
   }
   if (cloud_.points.size() < kFewestPoints) {
     throw CloudRefused(fmt::format("{}: {} points are left after cleaning, {} are needed; --keep-all keeps outliers",

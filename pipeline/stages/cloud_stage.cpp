@@ -4,8 +4,8 @@
 #include <fstream>
 #include <system_error>
 
-#include "pipeline/stages/cloud_preparation.h"
 #include "pipeline/case/interrupt.h"
+#include "pipeline/stages/cloud_preparation.h"
 #include "pipeline/stages/stages.h"
 #include "reconstruct/io/point_cloud_io.h"
 

@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "pipeline/case/exit_code.h"
-#include "pipeline/stages/given_normals.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/case/memory.h"
+#include "pipeline/stages/given_normals.h"
 #include "pipeline/stages/stages.h"
 #include "reconstruct/cloud/cloud_neighbours.h"
 #include "reconstruct/cloud/cloud_survey.h"
@@ -76,7 +76,7 @@ SsdParams ssd_params(const Parameters& p) {
   const bool full_only = ssd.weights == SsdWeights::Paper || ssd.prior.kind == LmePrior::Kind::Gaussian;
   ssd.solver = solver == "assembled"                                 ? SsdSolver::Assembled
                : solver == "full" || (solver == "auto" && full_only) ? SsdSolver::Full
-                                                                     : SsdSolver::Cascade;
+                                                                     : SsdSolver::Multilevel;
   ssd.band_tolerance = p.real("reconstruct.band_tolerance");
   ssd.tolerance = p.real("reconstruct.tolerance");
   ssd.max_iterations = static_cast<int>(p.integer("reconstruct.max_iterations"));

@@ -4,18 +4,18 @@
 #include <chrono>
 
 #include "mesh/universal_mesh.h"
+#include "pipeline/case/exit_code.h"
+#include "pipeline/case/interrupt.h"
+#include "pipeline/case/memory.h"
 #include "pipeline/meshing/background_choice.h"
 #include "pipeline/meshing/domain.h"
 #include "pipeline/meshing/edge_length.h"
-#include "pipeline/case/exit_code.h"
-#include "pipeline/stages/given_normals.h"
-#include "pipeline/case/interrupt.h"
 #include "pipeline/meshing/made_mesh.h"
-#include "pipeline/case/memory.h"
 #include "pipeline/meshing/mesh_maker.h"
+#include "pipeline/meshing/too_thin.h"
+#include "pipeline/stages/given_normals.h"
 #include "pipeline/stages/mesh_outputs.h"
 #include "pipeline/stages/stages.h"
-#include "pipeline/meshing/too_thin.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -180,7 +180,7 @@ UmParams um_params(const Parameters& p) {
   um.closest_point.method = projection == "paper"    ? ClosestPointMethod::Paper
                             : projection == "damped" ? ClosestPointMethod::Damped
                                                      : ClosestPointMethod::Newton;
-  um.rim = p.flag("mesh.complement") ? Rim::Wall : Rim::Refuse;
+  um.background_boundary = p.flag("mesh.complement") ? BackgroundBoundary::Wall : BackgroundBoundary::Refuse;
   um.max_min = p.text("mesh.max_min") == "golden" ? MaxMin::GoldenSection : MaxMin::Exact;
   um.seed = static_cast<std::uint64_t>(p.integer("mesh.seed"));
   std::string broken;

@@ -3,8 +3,8 @@
 #include <string>
 
 #include "pipeline/case/artefact.h"
-#include "pipeline/meshing/background_choice.h"
 #include "pipeline/case/exit_code.h"
+#include "pipeline/meshing/background_choice.h"
 #include "pipeline/output/view_files.h"
 
 namespace umtet {

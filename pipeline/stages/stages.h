@@ -7,10 +7,10 @@
 #include "mesh/io/tet_mesh_io.h"
 #include "mesh/universal_mesh.h"
 #include "pipeline/case/case_folder.h"
-#include "pipeline/meshing/domain.h"
 #include "pipeline/case/parameters.h"
 #include "pipeline/case/progress.h"
 #include "pipeline/case/record.h"
+#include "pipeline/meshing/domain.h"
 #include "reconstruct/solve/fit_ssd.h"
 
 namespace umtet {

@@ -8,7 +8,7 @@ namespace umtet {
 
 namespace {
 
-constexpr int kLanes = LmeBasis1d::kLanes;
+constexpr int kPackSize = LmeBasis1d::kPackSize;
 
 // Moments of the functions at a trial lambda.
 struct Moments {
@@ -73,7 +73,7 @@ LmeBasis1d evaluate_lme_1d(const LmePrior& prior, int n, double x) {
   LmeBasis1d out;
   out.first = std::clamp(cell - R + 1, 0, n - width);
 
-  double w[kLanes] = {}, dw[kLanes] = {}, ddw[kLanes] = {}, d[kLanes] = {}, W[kLanes] = {};
+  double w[kPackSize] = {}, dw[kPackSize] = {}, ddw[kPackSize] = {}, d[kPackSize] = {}, W[kPackSize] = {};
   for (int a = 0; a < width; ++a) {
     d[a] = x - (out.first + a);
     const PriorJet jet = evaluate(prior, d[a]);
@@ -88,14 +88,14 @@ LmeBasis1d evaluate_lme_1d(const LmePrior& prior, int n, double x) {
     moment_v += W[a] * dw[a] * d[a];
   }
   const double dlambda = -(1 + moment_v) / J;
-  double T[kLanes], sum_T = 0, sum_Td = 0;
+  double T[kPackSize], sum_T = 0, sum_Td = 0;
   for (int a = 0; a < width; ++a) {
     const double p = W[a] * w[a], e = dlambda * d[a] - mean_v;
     T[a] = W[a] * ddw[a] + 2 * W[a] * dw[a] * e + p * e * e;
     sum_T += T[a];
     sum_Td += T[a] * d[a];
   }
-  for (int a = 0; a < kLanes; ++a) {
+  for (int a = 0; a < kPackSize; ++a) {
     const double p = a < width ? W[a] * w[a] : 0;
     out.N[a] = p;
     out.dN[a] = a < width ? W[a] * dw[a] + p * (dlambda * d[a] - mean_v) : 0;

@@ -5,16 +5,16 @@
 #include <memory>
 #include <vector>
 
-#include "reconstruct/basis/simd_packs.h"
 #include "reconstruct/basis/lme_prior.h"
+#include "reconstruct/basis/simd_packs.h"
 
 namespace umtet {
 
 /// Values of the max-ent functions of one axis at one point: those of nodes first, first + 1, ... The lanes that no
 /// node has are zero, so that loops may run over all eight.
 struct alignas(32) LmeBasis1d {
-  static constexpr int kLanes = 8;
-  double N[kLanes], dN[kLanes], ddN[kLanes];  ///< functions and derivatives with respect to x / h
+  static constexpr int kPackSize = 8;
+  double N[kPackSize], dN[kPackSize], ddN[kPackSize];  ///< functions and derivatives with respect to x / h
   int first = 0;
 };
 
@@ -27,8 +27,8 @@ struct LmeBasis3d {
 
 /// Where a point lies among the nodes of the three axes; lanes x, y, z and one that nobody reads.
 struct LmePlace {
-  detail::Lanes4i cell, piece, first;  ///< of the axis; of the tables; the first node that has a function there
-  detail::Lanes4d s;                   ///< in the piece, 0 .. 1
+  detail::Pack4i cell, piece, first;  ///< of the axis; of the tables; the first node that has a function there
+  detail::Pack4d s;                   ///< in the piece, 0 .. 1
 };
 
 /// One-dimensional max-ent functions on the nodes 0, 1, ..., n - 1 (unit spacing), by Newton's method on log Z.
@@ -73,7 +73,7 @@ class LmeTables {
                    LmeBasis3d& out) const;
 
  private:
-  using Lanes = Eigen::Array<double, LmeBasis1d::kLanes, 1>;
+  using Lanes = Eigen::Array<double, LmeBasis1d::kPackSize, 1>;
   struct Piece {
     Lanes c[6];  // N(s) = sum c_m s^m on a subinterval, s in [0, 1]
   };
@@ -114,12 +114,12 @@ inline void LmeTables::evaluate_piece(const Piece& piece, double s, double scale
 
 inline LmePlace LmeTables::locate(const Eigen::Vector3i& n, const Eigen::Vector3d& xi) const {
   using namespace detail;
-  const Lanes4i last = Lanes4i{n[0], n[1], n[2], n[2]} - 2, zero = {}, inner = zero + (R_ - 1);
-  const Lanes4d x = {xi[0], xi[1], xi[2], xi[2]};
-  const Lanes4i cell = most(least(truncated(x), last), zero);
-  const Lanes4i left = least(cell, inner), right = least(last - cell, inner);
-  const Lanes4d t = (x - as_doubles(cell)) * double(kPieces);
-  const Lanes4i k = most(least(truncated(t), zero + (kPieces - 1)), zero);
+  const Pack4i last = Pack4i{n[0], n[1], n[2], n[2]} - 2, zero = {}, inner = zero + (R_ - 1);
+  const Pack4d x = {xi[0], xi[1], xi[2], xi[2]};
+  const Pack4i cell = most(least(truncated(x), last), zero);
+  const Pack4i left = least(cell, inner), right = least(last - cell, inner);
+  const Pack4d t = (x - as_doubles(cell)) * double(kPieces);
+  const Pack4i k = most(least(truncated(t), zero + (kPieces - 1)), zero);
   return {cell, first_piece(left, right) + k, most(least(cell - inner, last + 2 - width()), zero), t - as_doubles(k)};
 }
 
@@ -132,7 +132,7 @@ inline void LmeTables::evaluate_at(const LmePlace& place, const Eigen::Vector3i&
   evaluate_piece<order>(pieces_[place.piece[1]], place.s[1], scale, out.y);
   evaluate_piece<order>(pieces_[place.piece[2]], place.s[2], scale, out.z);
   out.x.first = place.first[0], out.y.first = place.first[1], out.z.first = place.first[2];
-  const detail::Lanes4i moved = place.first - place.cell + (R_ - 1);
+  const detail::Pack4i moved = place.first - place.cell + (R_ - 1);
   if (moved[0] | moved[1] | moved[2]) move_inside(place, out);
 }
 

@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "reconstruct/basis/lme_prior.h"
 #include "common/vec3.h"
+#include "reconstruct/basis/lme_prior.h"
 
 namespace umtet {
 

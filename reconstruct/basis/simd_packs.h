@@ -10,26 +10,26 @@ namespace umtet::detail {
 
 // Vectors of the compiler, not Eigen's, which have no casts between four numbers of different kinds and no rests of
 // two.
-using Lanes4d = double __attribute__((vector_size(32)));
-using Lanes4i = int __attribute__((vector_size(16)));
+using Pack4d = double __attribute__((vector_size(32)));
+using Pack4i = int __attribute__((vector_size(16)));
 
-inline Lanes4d four(const double* a) { return Lanes4d{a[0], a[1], a[2], a[3]}; }
-inline Lanes4d four(const float* a) { return Lanes4d{a[0], a[1], a[2], a[3]}; }
+inline Pack4d four(const double* a) { return Pack4d{a[0], a[1], a[2], a[3]}; }
+inline Pack4d four(const float* a) { return Pack4d{a[0], a[1], a[2], a[3]}; }
 /// a0 a1 b0 b1
-inline Lanes4d two_and_two(const double* a, const double* b) { return Lanes4d{a[0], a[1], b[0], b[1]}; }
-inline Lanes4d two_and_two(const float* a, const float* b) {
+inline Pack4d two_and_two(const double* a, const double* b) { return Pack4d{a[0], a[1], b[0], b[1]}; }
+inline Pack4d two_and_two(const float* a, const float* b) {
   // Pairs are loaded as one number of eight bytes each: two instructions, where four floats take seven.
-  using Lanes2d = double __attribute__((vector_size(16)));
-  using Lanes4f = float __attribute__((vector_size(16)));
+  using Pack2d = double __attribute__((vector_size(16)));
+  using Pack4f = float __attribute__((vector_size(16)));
   double pair[2];
   std::memcpy(pair, a, sizeof(double)), std::memcpy(pair + 1, b, sizeof(double));
-  const auto f = (Lanes4f)Lanes2d{pair[0], pair[1]};
-  return Lanes4d{f[0], f[1], f[2], f[3]};
+  const auto f = (Pack4f)Pack2d{pair[0], pair[1]};
+  return Pack4d{f[0], f[1], f[2], f[3]};
 }
 
-inline Lanes4d all(double a) { return Lanes4d{a, a, a, a}; }
+inline Pack4d all(double a) { return Pack4d{a, a, a, a}; }
 /// a b + c: rounded once where the machine that is compiled for can.
-inline Lanes4d fused(Lanes4d a, Lanes4d b, Lanes4d c) {
+inline Pack4d fused(Pack4d a, Pack4d b, Pack4d c) {
 #ifdef __FMA__
   return _mm256_fmadd_pd(a, b, c);
 #else
@@ -37,10 +37,10 @@ inline Lanes4d fused(Lanes4d a, Lanes4d b, Lanes4d c) {
 #endif
 }
 
-inline Lanes4i truncated(Lanes4d a) { return __builtin_convertvector(a, Lanes4i); }
-inline Lanes4d as_doubles(Lanes4i a) {
-  return Lanes4d{static_cast<double>(a[0]), static_cast<double>(a[1]), static_cast<double>(a[2]),
-                 static_cast<double>(a[3])};
+inline Pack4i truncated(Pack4d a) { return __builtin_convertvector(a, Pack4i); }
+inline Pack4d as_doubles(Pack4i a) {
+  return Pack4d{static_cast<double>(a[0]), static_cast<double>(a[1]), static_cast<double>(a[2]),
+                static_cast<double>(a[3])};
 }
 template <class V>
 V least(V a, V b) {

@@ -195,7 +195,8 @@ class Pieces {
   std::vector<std::uint32_t> parent_;
 };
 
-std::vector<std::uint8_t> crumbs(const Surroundings& cloud, const CleaningParams& params, std::size_t& n_pieces) {
+std::vector<std::uint8_t> small_components(const Surroundings& cloud, const CleaningParams& params,
+                                           std::size_t& n_pieces) {
   const std::size_t n = cloud.points.size();
   std::vector<std::uint8_t> drop(n, 0);
   n_pieces = 0;
@@ -213,7 +214,9 @@ std::vector<std::uint8_t> crumbs(const Surroundings& cloud, const CleaningParams
   std::vector<std::vector<std::uint32_t>> members(n);
   std::vector<std::uint32_t> size(n, 0);
   for (std::uint32_t i = 0; i < n; ++i) ++size[pieces.find(i)];
-  const auto is_small = [&](std::uint32_t root) { return size[root] < params.crumb_points && size[root] * 100 < n; };
+  const auto is_small = [&](std::uint32_t root) {
+    return size[root] < params.small_component_points && size[root] * 100 < n;
+  };
   for (std::uint32_t i = 0; i < n; ++i)
     if (is_small(pieces.find(i))) members[pieces.find(i)].push_back(i);
   for (std::uint32_t root = 0; root < n; ++root) {
@@ -222,8 +225,9 @@ std::vector<std::uint8_t> crumbs(const Surroundings& cloud, const CleaningParams
     for (const std::uint32_t i : members[root]) spacings.push_back(spacing2(i));
     std::nth_element(spacings.begin(), spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2),
                      spacings.end());
-    const double reach2 = params.crumb_distance * params.crumb_distance * spacings[spacings.size() / 2];
-    // Alone, or with other crumbs only: does a ball around any member hold a point of something larger?
+    const double reach2 =
+        params.small_component_distance * params.small_component_distance * spacings[spacings.size() / 2];
+    // Alone, or with other small_components only: does a ball around any member hold a point of something larger?
     bool is_far = true;
     for (std::size_t m = 0; m < members[root].size() && is_far; ++m)
       cloud.tree->within(cloud.points[members[root][m]], reach2, [&](std::uint32_t j, double) {
@@ -245,8 +249,8 @@ std::vector<std::string> problems(const CleaningParams& params) {
   if (!(params.certain_crowd >= params.suspicious_crowd && params.certain_crowd < 1e6))
     found.push_back(fmt::format("certain_crowd = {}: must be in suspicious_crowd = {}..1e6", params.certain_crowd,
                                 params.suspicious_crowd));
-  if (!(params.crumb_distance > 1))
-    found.push_back(fmt::format("crumb_distance = {}: must be > 1", params.crumb_distance));
+  if (!(params.small_component_distance > 1))
+    found.push_back(fmt::format("small_component_distance = {}: must be > 1", params.small_component_distance));
   return found;
 }
 
@@ -280,7 +284,7 @@ CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params, Ne
       if (n_dropped == 0) break;
       report.n_outliers += n_dropped;
     }
-    report.n_crumbs = drop(crumbs(left, params, report.n_crumb_pieces));
+    report.n_small_components = drop(small_components(left, params, report.n_small_component_pieces));
   }
   for (std::size_t row = 0; row < kept.size(); ++row) {
     cloud.points[row] = cloud.points[kept[row]];

@@ -10,21 +10,22 @@
 namespace umtet {
 
 struct CleaningParams {
-  bool outliers = true;            ///< false: only what is no number and what is there twice goes (--keep-all)
-  double suspicious_crowd = 3;     ///< times the points around it that its spacing speaks of: off its plane too? > 1
-  double certain_crowd = 20;       ///< an outlier wherever it is; >= suspicious_crowd
-  std::size_t crumb_points = 100;  ///< a crumb has fewer points than this, and less than a hundredth of the cloud,
-  double crumb_distance = 10;      ///< and is this many of its own spacings from the rest; > 1
+  bool outliers = true;         ///< false: only what is no number and what is there twice goes (--keep-all)
+  double suspicious_crowd = 3;  ///< times the points around it that its spacing speaks of: off its plane too? > 1
+  double certain_crowd = 20;    ///< an outlier wherever it is; >= suspicious_crowd
+  std::size_t small_component_points =
+      100;  ///< a small_component has fewer points than this, and less than a hundredth of the cloud,
+  double small_component_distance = 10;  ///< and is this many of its own spacings from the rest; > 1
 };
 std::vector<std::string> problems(const CleaningParams&);
 
 struct CleaningReport {
-  std::vector<std::uint32_t> kept;  ///< which points of the cloud that came are left, ascending
-  std::size_t n_not_finite = 0;     ///< coordinates NaN, infinite or beyond 1e50
-  std::size_t n_duplicates = 0;     ///< at the place of an earlier point
-  std::size_t n_outliers = 0;       ///< far from a surface for how near its points are to each other
-  std::size_t n_crumbs = 0;         ///< points of small pieces far from the rest
-  std::size_t n_crumb_pieces = 0;
+  std::vector<std::uint32_t> kept;     ///< which points of the cloud that came are left, ascending
+  std::size_t n_not_finite = 0;        ///< coordinates NaN, infinite or beyond 1e50
+  std::size_t n_duplicates = 0;        ///< at the place of an earlier point
+  std::size_t n_outliers = 0;          ///< far from a surface for how near its points are to each other
+  std::size_t n_small_components = 0;  ///< points of small pieces far from the rest
+  std::size_t n_small_component_pieces = 0;
 };
 
 /// Drops what is no sample of a surface. Normals may be missing (an empty array).

@@ -18,7 +18,7 @@ namespace umtet {
 namespace {
 
 /// The distinct coordinates of a cloud, and where each point sits among them.
-struct Places {
+struct Positions {
   std::vector<Vec3> position;
   std::vector<int> multiplicity;  // points at a place
   std::vector<std::size_t> of;    // point -> place
@@ -28,13 +28,13 @@ bool lexicographically_less(const Vec3& a, const Vec3& b) {
   return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
 }
 
-Places distinct_places(const std::vector<Vec3>& points) {
+Positions distinct_places(const std::vector<Vec3>& points) {
   std::vector<std::size_t> order(points.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   tbb::parallel_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return lexicographically_less(points[a], points[b]); });
 
-  Places places;
+  Positions places;
   places.of.resize(points.size());
   places.position.reserve(points.size());
   for (const std::size_t i : order) {
@@ -87,7 +87,7 @@ NeighbourDistances neighbour_distances(const std::vector<Vec3>& points, int k) {
     return result;
   }
 
-  const Places places = distinct_places(points);
+  const Positions places = distinct_places(points);
   const std::size_t n = places.position.size();
   if (n < 2) throw std::invalid_argument(std::string(kNoSpacing));
   result.k = static_cast<int>(std::min<std::size_t>(k, n - 1));

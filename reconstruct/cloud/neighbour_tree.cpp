@@ -209,7 +209,7 @@ NeighbourTree::Hit NeighbourTree::first_along(const Vec3& x, const Vec3& d, doub
                                               const std::function<bool(std::uint32_t)>& accept) const {
   if (!(width > 0)) throw std::invalid_argument("first_along: width must be > 0");
   if (d.isZero(0)) return {};
-  // Places on the ray are rounded: this share of the width covers it as long as coordinates hold six digits of that.
+  // Positions on the ray are rounded: this share of the width covers it as long as coordinates hold six digits of that.
   constexpr double kSlack = 1e-6;
   const double width2 = width * width, slack = kSlack * width;
   const double t_end = (x - index_->low).cwiseAbs().cwiseMax((index_->high - x).cwiseAbs()).norm() + width;

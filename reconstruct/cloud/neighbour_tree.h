@@ -22,7 +22,8 @@ struct Neighbour {
 ///
 /// Its searches run with our result sets: its own take radii in single precision and leave the choice between equal
 /// distances to the shape of the tree. Here that is the order of point numbers. Nothing depends on the number of
-/// threads. Places one asks from are finite and at most kLargestCoordinate, like the points. Searches may run at once.
+/// threads. Positions one asks from are finite and at most kLargestCoordinate, like the points. Searches may run at
+/// once.
 class NeighbourTree {
  public:
   /// Squared distances stay finite up to here.

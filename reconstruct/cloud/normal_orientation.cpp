@@ -15,7 +15,7 @@
 namespace umtet {
 namespace {
 
-// Smaller pieces are crumbs of noise: they are oriented, but not counted.
+// Smaller pieces are small_components of noise: they are oriented, but not counted.
 constexpr std::size_t kCountedPoints = 100;
 // Right normals have a consistency of 0.9875 in noise of 1 % of the diagonal (torus and eq. (9) of 20k points); a
 // hundredth of them turned, 0.980 without noise. Above this a few points that seem wrong may be noise, unless

@@ -50,14 +50,14 @@ CloudFile read_point_cloud(const std::filesystem::path& file);
 /// Reads the same files for clean(), estimate_normals() and survey(): points without normals give a cloud with none,
 /// unusable normals become zero, and points that are no numbers are dropped and counted.
 ///
-/// \throw CloudRefused         malformed, empty, more than half of the points unusable, or not as many different ones as
+/// \throw CloudRefused         malformed, empty, more than half of the points unusable, or not as many different ones
+/// as
 ///                             survey() needs
 /// \throw std::system_error    the file cannot be opened or read; names it
 CloudFile read_scan(const std::filesystem::path& file);
 
-/// Refuses by its first megabyte what read_scan() would refuse by its header, its first rows, or a count that cannot be:
-/// at once, however large the file is.
-/// \throw CloudRefused, std::system_error  as read_scan()
+/// Refuses by its first megabyte what read_scan() would refuse by its header, its first rows, or a count that cannot
+/// be: at once, however large the file is. \throw CloudRefused, std::system_error  as read_scan()
 void check_scan_head(const std::filesystem::path& file);
 
 /// Binary little-endian PLY, double x y z nx ny nz and, where there are labels, int label; read_point_cloud gives the

@@ -35,11 +35,11 @@ struct Term {
 // False where the band has none. No place is outside its index, not even one that is no number.
 template <int edge, class Band>
 bool find_window(const Band& band, Term<float>& term) {
-  const Lanes4i block = term.place.cell >> 3;
+  const Pack4i block = term.place.cell >> 3;
   const float* window = band.window(block);
   if (window == nullptr) return false;
   constexpr int corner = (edge - kEdge + 1) / 2 - 1;  // the window begins at node 8 block - (R - 1)
-  const Lanes4i at = term.place.first + corner - block * kEdge;
+  const Pack4i at = term.place.first + corner - block * kEdge;
   term.first = window + at[0] + edge * (at[1] + edge * at[2]);
   return true;
 }
@@ -83,7 +83,7 @@ LevelSet::Band::~Band() {
 }
 
 // Null where the band has nothing to add.
-inline const float* LevelSet::Band::window(const Lanes4i& block) const {
+inline const float* LevelSet::Band::window(const Pack4i& block) const {
   const std::size_t index =
       block[0] + static_cast<std::size_t>(n[0]) * (block[1] + static_cast<std::size_t>(n[1]) * block[2]);
   const float* made = windows[index].load(std::memory_order_acquire);
@@ -137,12 +137,12 @@ LatticeJet LevelSet::sum_levels(const Vec3& x, int first, int end) const {
   constexpr int edge = kEdge + W - 1;
   const LmeTables& tables = *tables_;
   const double scale = 1 / coarsest_->lattice.h;
-  JetLanes<kOrder> sum;
+  JetPacks<kOrder> sum;
   Term<double> coarsest;
   if (first == 0) {
     const Lattice& L = coarsest_->lattice;
     coarsest.place = tables.locate(L.n, xi);
-    const Lanes4i at = coarsest.place.first;
+    const Pack4i at = coarsest.place.first;
     coarsest.first = coarsest_->coefficients.data() + L.index(at[0], at[1], at[2]);
   }
   for (int level = std::max(first, 1);;) {

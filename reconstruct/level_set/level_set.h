@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
+#include "common/vec3.h"
 #include "reconstruct/basis/lattice_blocks.h"
 #include "reconstruct/basis/lme_lattice.h"
-#include "common/vec3.h"
 
 namespace umtet {
 
@@ -89,7 +89,7 @@ class LevelSet {
     Band(const Band&) = delete;
     Band& operator=(const Band&) = delete;
     ~Band();
-    const float* window(const detail::Lanes4i& block) const;
+    const float* window(const detail::Pack4i& block) const;
     const float* make_window(std::size_t index) const;
   };
   // The sum of the levels first .. end - 1.

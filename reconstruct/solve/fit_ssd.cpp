@@ -28,7 +28,7 @@ std::vector<std::string> problems(const SsdParams& params) {
   if (!(params.band_tolerance > 0 && params.band_tolerance < 1)) p.push_back("band_tolerance must be in (0, 1)");
   if (params.coarsest_nodes < 1) p.push_back("coarsest_nodes must be >= 1");
   if (params.padding < 1) p.push_back("padding must be >= 1");
-  if (params.solver == SsdSolver::Cascade) {
+  if (params.solver == SsdSolver::Multilevel) {
     if (params.weights == SsdWeights::Paper) p.push_back("weights = paper needs solver = full or assembled");
     if (params.prior.kind == LmePrior::Kind::Gaussian) p.push_back("prior = gaussian needs solver = full or assembled");
   }
@@ -207,7 +207,7 @@ LevelSet fit_lattice(const Problem& problem, const Hierarchy& hierarchy, std::ve
     }
   }
   c.resize(op.size() + SsdOperator::kPad, 0.0);
-  if (params.solver != SsdSolver::Cascade) {
+  if (params.solver != SsdSolver::Multilevel) {
     std::vector<double> workspace;
     // Back to model units: E = h² times the lattice functional for area weights; eq. (10) is written in its own units.
     report.energy_hessian = (by_area ? lattice.h * lattice.h : 1) * op.energies(c.data(), workspace)[2];
@@ -227,7 +227,7 @@ LevelSet fit_full(const Problem& problem, SsdReport& report) {
 }
 
 // Functions of a band stay clear of those that the wall of the coarsest lattice deforms.
-constexpr int kLeastCascadePadding = 5;
+constexpr int kLeastMultilevelPadding = 5;
 // Bands take up what a coarser lattice leaves over only around samples, and only to a tenth: solved to 5e-4 there, the
 // koala's samples are .041 h from its mesh instead of .038 h. A lattice that none follow is done when psi is .0003 h
 // rms off its limit.
@@ -258,9 +258,9 @@ void require_memory(const Problem& problem, const Hierarchy& hierarchy,
                   hierarchy.finest.h / std::exp2(samples.size() - 1.0), need / 1e9, limit / 1e9));
 }
 
-LevelSet fit_cascade(const Problem& problem, SsdReport& report) {
+LevelSet fit_multilevel(const Problem& problem, SsdReport& report) {
   const SsdParams& params = problem.params;
-  const int padding = std::max(params.padding, kLeastCascadePadding);
+  const int padding = std::max(params.padding, kLeastMultilevelPadding);
   int n_bands = 0;
   double coarsest = report.spacing;
   while ((problem.box.sizes() / coarsest + Vec3::Constant(2 * padding)).prod() > params.coarsest_nodes) {
@@ -343,7 +343,7 @@ SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const S
   const Resolution chosen =
       choose_resolution(std::sqrt(median(problem.area)), edge, params.noise, params.detail, params.smooth);
   report.spacing = params.spacing > 0 ? params.spacing : chosen.spacing;
-  if (params.spacing == 0 && params.solver != SsdSolver::Cascade) {
+  if (params.spacing == 0 && params.solver != SsdSolver::Multilevel) {
     report.spacing = std::max(report.spacing, edge);
   }
   report.smoothing = params.smoothing > 0 ? params.smoothing : chosen.smoothing;
@@ -355,7 +355,7 @@ SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const S
                                  report.spacing, diagonal));
   }
   go_on(progress, "setup", 0);
-  LevelSet psi = params.solver == SsdSolver::Cascade ? fit_cascade(problem, report) : fit_full(problem, report);
+  LevelSet psi = params.solver == SsdSolver::Multilevel ? fit_multilevel(problem, report) : fit_full(problem, report);
   measure_fit(cloud, psi, problem.area, finest_value_length(report.spacing, params.noise), report);
   return {std::move(psi), std::move(report)};
 }

@@ -6,20 +6,20 @@
 #include <string>
 #include <vector>
 
-#include "reconstruct/solve/multilevel_fit.h"
-#include "reconstruct/cloud/cloud_neighbours.h"
-#include "reconstruct/level_set/level_set.h"
 #include "reconstruct/basis/lme_prior.h"
+#include "reconstruct/cloud/cloud_neighbours.h"
 #include "reconstruct/cloud/point_cloud.h"
+#include "reconstruct/level_set/level_set.h"
+#include "reconstruct/solve/multilevel_fit.h"
 #include "reconstruct/solve/solve_error.h"
 
 namespace umtet {
 
 enum class SsdWeights { Area, Paper };  ///< a_i by area and scale-free; or eq. (10) taken literally
 enum class SsdSolver {
-  Cascade,    ///< full solve on a coarse lattice, corrections in bands of finer ones: the cost follows the surface
-  Full,       ///< one full lattice: matrix-free PCG + V-cycle
-  Assembled,  ///< one full lattice: sparse LDLT (small problems)
+  Multilevel,  ///< full solve on a coarse lattice, corrections in bands of finer ones: the cost follows the surface
+  Full,        ///< one full lattice: matrix-free PCG + V-cycle
+  Assembled,   ///< one full lattice: sparse LDLT (small problems)
 };
 
 struct SsdParams {
@@ -32,13 +32,15 @@ struct SsdParams {
       1e-2;  ///< alpha of eq. (10), in its units; > 0 (SsdWeights::Paper); below, the duck grows spurious parts
   SsdWeights weights = SsdWeights::Area;  ///< Paper: only on a full lattice
   LmePrior prior;                         ///< which max-ent functions; Gaussian: only on a full lattice
-  SsdSolver solver = SsdSolver::Cascade;
-  double tolerance = 1e-4;  ///< PCG on a full lattice stops at this relative residual, in a cascade without bands at
-                            ///< five times as much (psi is then < .0004 h rms off); in (0, 1)
-  double band_tolerance = 0.1;  ///< the same on the bands of the cascade, for the part the coarser levels leave over
-  int max_iterations = 200;     ///< >= 1
-  int coarsest_nodes = 150000;  ///< most nodes of the cascade's full lattice: what shows every part of a body; > 0
-  double max_memory = 0;        ///< bytes that fitting may take; 0: no limit
+  SsdSolver solver = SsdSolver::Multilevel;
+  double tolerance = 1e-4;  ///< PCG on a full lattice stops at this relative residual, in a multilevel fit without
+                            ///< bands at five times as much (psi is then < .0004 h rms off); in (0, 1)
+  double band_tolerance =
+      0.1;  ///< the same on the bands of the multilevel fit, for the part the coarser levels leave over
+  int max_iterations = 200;  ///< >= 1
+  int coarsest_nodes =
+      150000;  ///< most nodes of the full lattice of the multilevel fit: what shows every part of a body; > 0
+  double max_memory = 0;  ///< bytes that fitting may take; 0: no limit
   int padding =
       5;  ///< lattice cells around the cloud's box; >= 1, and >= 4 for the mesher: projections fail at the hull
 };
@@ -54,7 +56,7 @@ struct SsdReport {
   double cloud_spacing = 0;  ///< median distance to the nearest sample
   int iterations = 0;
   std::vector<double> residuals;               ///< of the full lattice: relative, one per iteration, the first is 1
-  std::vector<BandReport> bands;               ///< the finer levels of the cascade, coarse to fine
+  std::vector<BandReport> bands;               ///< the finer levels of the multilevel fit, coarse to fine
   double energy_value = 0, energy_normal = 0;  ///< the data terms of the functional at psi
   double energy_hessian = 0;                   ///< its third term; not known for a sum of levels (0)
   double rms_value = 0;                        ///< rms of psi(x_i), model units

@@ -23,7 +23,7 @@ struct BandReport {
 /// @param samples  in block order (merge_samples), lattice units, w_gradient = area / h²; the order is kept
 std::vector<SsdSample> resolved_samples(const std::vector<SsdSample>& samples, double most_area);
 
-/// One step of the band cascade: the correction g on the lattice of half psi's spacing that minimises
+/// One step of the multilevel fit: the correction g on the lattice of half psi's spacing that minimises
 ///   ½ Σ w_v (psi + g − v)² + ½ Σ w_g |∇psi + ∇g − n|² + ½ kappa ∫ H(psi + g) : H(psi + g)     (units of that lattice)
 /// over the nodes whose functions meet a sample, by conjugate gradients with the diagonal as preconditioner.
 /// @param samples  resolved samples of the finer lattice, not empty

@@ -18,9 +18,9 @@ constexpr int kWindow = 2 * kEdge, kWindowNodes = kWindow * kWindow * kWindow;
 constexpr std::integral_constant<int, kWindow> kRow;
 constexpr std::integral_constant<int, kWindow * kWindow> kPlane;
 
-using Lanes = detail::FloatLanes;
+using Lanes = detail::FloatPack;
 using In = detail::FloatIn;
-using detail::float_lanes;
+using detail::float_pack;
 template <int W>
 using Basis = detail::SampleBasis<W>;
 
@@ -77,11 +77,11 @@ template <int W>
 void load_window(const std::array<int, 8>& nodes, const float* values, float* window) {
   for (int q = 0; q < 8; ++q) {
     if (nodes[q] < 0) {
-      for_each_row<W>(q, [&](int, int to) { float_lanes(window + to).setZero(); });
+      for_each_row<W>(q, [&](int, int to) { float_pack(window + to).setZero(); });
       continue;
     }
     const float* from = values + static_cast<std::size_t>(nodes[q]) * kNodes;
-    for_each_row<W>(q, [&](int row, int to) { float_lanes(window + to) = In(from + row); });
+    for_each_row<W>(q, [&](int row, int to) { float_pack(window + to) = In(from + row); });
   }
 }
 
@@ -196,16 +196,16 @@ void SsdBand::apply_energy(const float* p, float* y) const {
         plane = true;
         for (int q = 0; q < 3; ++q) {
           if (three[q] < 0) {
-            float_lanes(rows[j] + q * kEdge).setZero();
+            float_pack(rows[j] + q * kEdge).setZero();
           } else {
-            float_lanes(rows[j] + q * kEdge) =
+            float_pack(rows[j] + q * kEdge) =
                 In(p + static_cast<std::size_t>(three[q]) * kNodes + (kz % kEdge * kEdge + ky % kEdge) * kEdge);
           }
         }
       }
       for (int j = 0; j < kAround; ++j) {
         if (!filled[j]) {
-          float_lanes(M[j]).setZero(), float_lanes(S[j]).setZero(), float_lanes(B[j]).setZero();
+          float_pack(M[j]).setZero(), float_pack(S[j]).setZero(), float_pack(B[j]).setZero();
           continue;
         }
         const float* row = rows[j];
@@ -215,7 +215,7 @@ void SsdBand::apply_energy(const float* p, float* y) const {
           const Lanes pair = In(row + kEdge - o) + In(row + kEdge + o);
           vm += m[o] * pair, vs += s[o] * pair, vb += b[o] * pair;
         }
-        float_lanes(M[j]) = vm, float_lanes(S[j]) = vs, float_lanes(B[j]) = vb;
+        float_pack(M[j]) = vm, float_pack(S[j]) = vs, float_pack(B[j]) = vb;
       }
       for (int j = 0; j < kEdge; ++j) {
         Lanes am = Lanes::Zero(), ab = am, as = am;
@@ -232,8 +232,8 @@ void SsdBand::apply_energy(const float* p, float* y) const {
             as += m[o] * So + s[o] * Mo;
           }
         }
-        float_lanes(with_m[z] + j * kEdge) = am, float_lanes(with_b[z] + j * kEdge) = ab,
-                                    float_lanes(with_s[z] + j * kEdge) = 2 * as;
+        float_pack(with_m[z] + j * kEdge) = am, float_pack(with_b[z] + j * kEdge) = ab,
+                                   float_pack(with_s[z] + j * kEdge) = 2 * as;
       }
     }
     float* to = y + static_cast<std::size_t>(block) * kNodes;
@@ -248,7 +248,7 @@ void SsdBand::apply_energy(const float* p, float* y) const {
                  b[o] * (In(with_b[at - o] + col) + In(with_b[at + o] + col)) +
                  s[o] * (In(with_s[at - o] + col) + In(with_s[at + o] + col));
         }
-        float_lanes(to + (z * kEdge + j) * kEdge) = kappa * sum;
+        float_pack(to + (z * kEdge + j) * kEdge) = kappa * sum;
       }
     }
   });
@@ -274,7 +274,7 @@ void SsdBand::invert_diagonal() {
         for (int k = 0; k < W; ++k)
           for (int j = 0; j < W; ++j) {
             const float yz = B.yN()[j] * B.zN()[k], dyz = B.ydN()[j] * B.zN()[k], ydz = B.yN()[j] * B.zdN()[k];
-            float_lanes(out + window_[i] + (k * kWindow + j) * kWindow) +=
+            float_pack(out + window_[i] + (k * kWindow + j) * kWindow) +=
                 B.w_value() * yz * yz * N2 + B.w_gradient() * (yz * yz * d2 + (dyz * dyz + ydz * ydz) * N2);
           }
       }

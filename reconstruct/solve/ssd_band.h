@@ -10,7 +10,7 @@
 
 namespace umtet {
 
-/// The system of eq. (11) for a correction g on one level of the band cascade: the unknowns are the nodes whose
+/// The system of eq. (11) for a correction g on one level of the multilevel fit: the unknowns are the nodes whose
 /// functions meet a sample, and what is fitted is the residual of the sum f of the coarser levels:
 ///   A = kappa K + sum_s ( w_v N N^T + w_g grad N . grad N^T ),
 ///   r = sum_s ( w_g grad N . (n - grad f) + w_v N (v - f) ) - kappa int H(N) : H(f),    all in lattice units.

@@ -29,13 +29,13 @@ template <int W>
 void scatter(const LmeBasis3d& B, const Eigen::Vector3i& n, double q, const Eigen::Vector3d& g, double* y) {
   const std::ptrdiff_t nx = n[0], nxy = nx * n[1];
   double* base = y + B.x.first + nx * B.y.first + nxy * B.z.first;
-  const LmeLanesMap N(B.x.N), dN(B.x.dN);
-  const LmeLanes v = q * N + g[0] * dN, vy = g[1] * N, vz = g[2] * N;
+  const LmePackMap N(B.x.N), dN(B.x.dN);
+  const LmePack v = q * N + g[0] * dN, vy = g[1] * N, vz = g[2] * N;
   for (int j = 0; j < W; ++j) {
-    const LmeLanes a = B.y.N[j] * v + B.y.dN[j] * vy, az = B.y.N[j] * vz;
+    const LmePack a = B.y.N[j] * v + B.y.dN[j] * vy, az = B.y.N[j] * vz;
     for (int k = 0; k < W; ++k) {
       double* row = base + j * nx + k * nxy;
-      Eigen::Map<LmeLanes>(row) += B.z.N[k] * a + B.z.dN[k] * az;
+      Eigen::Map<LmePack>(row) += B.z.N[k] * a + B.z.dN[k] * az;
     }
   }
 }

@@ -17,12 +17,12 @@
 #include <utility>
 
 #include "mesh/background/body_size.h"
-#include "mesh/certify/certificate.h"
-#include "mesh/submesh/crawl.h"
-#include "mesh/paper/dvr.h"
-#include "mesh/moving_mesh.h"
 #include "mesh/certify/boundary_surface.h"
+#include "mesh/certify/certificate.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/moving_mesh.h"
+#include "mesh/paper/dvr.h"
+#include "mesh/submesh/crawl.h"
 #include "mesh/universal_mesh.h"
 #include "reconstruct/solve/fit_ssd.h"
 #include "tests/support/bench_domains.h"
@@ -188,7 +188,8 @@ void fast_mesh(benchmark::State& state) {
                                                           testing::ellipsoid({1, 1, .1})};
   const testing::AnalyticDomain& domain = domains[static_cast<std::size_t>(state.range(0))];
   const double n_tets = 1e3 * static_cast<double>(state.range(1));
-  const BackgroundMesh background(a15(), domain.box, h_for_tets(domain, domain.box, n_tets, LabelSource::Chosen));
+  const BackgroundMesh background(a15(), domain.box,
+                                  h_for_tets(domain, domain.box, n_tets, ClassificationSource::Chosen));
   UmParams params;
   params.mode = UmMode::Fast;
   UmResult result;
@@ -218,12 +219,13 @@ struct AllIn {
 
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-/// Labels, shell, repair and certificate of {psi < 0}, psi a compiled function.
+/// Labels, layer, repair and certificate of {psi < 0}, psi a compiled function.
 AllIn mesh_and_certify(const testing::AnalyticDomain& domain, double n_tets, int threads) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   const double cpu = cpu_seconds();
   const auto wall = std::chrono::steady_clock::now();
-  const BackgroundMesh background(a15(), domain.box, h_for_tets(domain, domain.box, n_tets, LabelSource::Chosen));
+  const BackgroundMesh background(a15(), domain.box,
+                                  h_for_tets(domain, domain.box, n_tets, ClassificationSource::Chosen));
   UmParams params;
   params.mode = UmMode::Fast;
   UmResult result = universal_mesh(background, domain, params);

@@ -5,12 +5,12 @@
 #include <sys/resource.h>
 #include <tbb/global_control.h>
 
-#include "reconstruct/cloud/cloud_neighbours.h"
-#include "reconstruct/cloud/cloud_survey.h"
-#include "reconstruct/solve/fit_ssd.h"
 #include "reconstruct/basis/lme_lattice.h"
 #include "reconstruct/basis/lme_scattered.h"
+#include "reconstruct/cloud/cloud_neighbours.h"
+#include "reconstruct/cloud/cloud_survey.h"
 #include "reconstruct/cloud/morton_order.h"
+#include "reconstruct/solve/fit_ssd.h"
 #include "reconstruct/solve/ssd_operator.h"
 #include "tests/support/clouds.h"
 #include "tests/support/sampled_domains.h"
@@ -30,7 +30,7 @@ const LevelSet& level_set() {
   return psi;
 }
 
-// Places near the surface; coherent: in the order a mesher visits them, neighbours in memory one after the other.
+// Positions near the surface; coherent: in the order a mesher solves them, neighbours in memory one after the other.
 std::vector<Vec3> places(bool coherent) {
   std::vector<Vec3> x = test::torus_cloud(100000, 3).points;
   if (!coherent) return x;

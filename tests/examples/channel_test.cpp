@@ -13,8 +13,8 @@
 
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/artefact.h"
-#include "pipeline/examples/channel_mesher.h"
 #include "pipeline/case/exit_code.h"
+#include "pipeline/examples/channel_mesher.h"
 #include "tests/support/domains.h"
 #include "tests/support/sphere_in_channel.h"
 

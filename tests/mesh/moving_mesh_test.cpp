@@ -12,8 +12,8 @@
 
 #include "mesh/certify/certificate.h"
 #include "mesh/certify/detail/certificate_memory.h"
-#include "mesh/submesh/inside_walk.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/submesh/inside_walk.h"
 #include "tests/support/certified.h"
 #include "tests/support/domains.h"
 
@@ -185,9 +185,9 @@ TEST(UniversalMesh, ItsCertificateOverlooksNothingThatHasChanged) {
   hole.submesh.mesh.C.erase(hole.submesh.mesh.C.begin() + static_cast<std::ptrdiff_t>(middle));
   hole.submesh.background_tet.erase(hole.submesh.background_tet.begin() + static_cast<std::ptrdiff_t>(middle));
   expect_seen(hole);
-  UmResult turned = mesh;  // under the same id
-  std::swap(turned.submesh.mesh.C[middle][0], turned.submesh.mesh.C[middle][1]);
-  expect_seen(turned);
+  UmResult misaligned = mesh;  // under the same id
+  std::swap(misaligned.submesh.mesh.C[middle][0], misaligned.submesh.mesh.C[middle][1]);
+  expect_seen(misaligned);
   UmResult doubled = mesh;  // one tet under the id of another
   doubled.submesh.mesh.C[middle] = doubled.submesh.mesh.C[middle + 1];
   expect_seen(doubled);

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "mesh/submesh/assumptions.h"
 #include "mesh/background/body_size.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/submesh/assumptions.h"
 #include "tests/support/domains.h"
 
 namespace umtet {
@@ -145,7 +145,7 @@ TEST(UniversalMesh, DomainThatLeavesTheBackgroundIsAStatus) {
   const UmResult result = universal_mesh(background, testing::sphere());
   EXPECT_EQ(result.status, UmStatus::DomainLeavesBackground);
   EXPECT_GT(result.evidence.count, 0u);
-  EXPECT_TRUE(background.on_rim(result.evidence.background_vertex));
+  EXPECT_TRUE(background.on_boundary(result.evidence.background_vertex));
   EXPECT_EQ(result.evidence.where, background.position(result.evidence.background_vertex));
 }
 

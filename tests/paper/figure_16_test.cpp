@@ -6,8 +6,8 @@
 #include <cstdio>
 
 #include "mesh/implicit/zero_set.h"
-#include "reconstruct/solve/fit_ssd.h"
 #include "reconstruct/io/point_cloud_io.h"
+#include "reconstruct/solve/fit_ssd.h"
 #include "tests/support/data_files.h"
 
 using namespace umtet;

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "mesh/universal_mesh.h"
-#include "reconstruct/solve/fit_ssd.h"
 #include "reconstruct/io/point_cloud_io.h"
+#include "reconstruct/solve/fit_ssd.h"
 #include "tests/support/certified.h"
 #include "tests/support/data_files.h"
 

@@ -8,8 +8,8 @@
 #include "mesh/background/body_size.h"
 #include "mesh/certify/quality_report.h"
 #include "mesh/universal_mesh.h"
-#include "reconstruct/solve/fit_ssd.h"
 #include "reconstruct/io/point_cloud_io.h"
+#include "reconstruct/solve/fit_ssd.h"
 #include "tests/support/data_files.h"
 
 using namespace umtet;

@@ -46,7 +46,7 @@ TEST(LeastQuality, OfImplicitDomainsAt100kTets) {
 
 TEST(LeastQuality, DoesNotDependOnWhereTheLatticeLies) {
   const domains::AnalyticDomain domain = domains::banchoff_chmutov_6();
-  const double h = h_for_tets(domain, domain.box, 100000, LabelSource::Chosen);
+  const double h = h_for_tets(domain, domain.box, 100000, ClassificationSource::Chosen);
   const double cell = h / a15().mean_edge;
   const Box padded(domain.box.min() - Vec3::Constant(cell), domain.box.max() + Vec3::Constant(cell));
   for (int place = 0; place < 8; ++place) {

@@ -10,8 +10,8 @@
 #include "mesh/certify/quadratic_tets.h"
 #include "mesh/certify/second_order_certificate.h"
 #include "mesh/universal_mesh.h"
-#include "reconstruct/solve/fit_ssd.h"
 #include "reconstruct/io/point_cloud_io.h"
+#include "reconstruct/solve/fit_ssd.h"
 #include "tests/support/data_files.h"
 #include "tests/support/domains.h"
 

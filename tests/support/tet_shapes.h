@@ -79,7 +79,7 @@ inline TetMesh sphere_surface(int levels, std::vector<Triangle>& faces) {
   return surface;
 }
 
-/// The unit ball: a shell of prisms between the sphere surface and half its size, and tets to the centre. Boundary
+/// The unit ball: a layer of prisms between the sphere surface and half its size, and tets to the centre. Boundary
 /// vertices are on |x| = 1; `boundary` receives the outer triangles.
 inline TetMesh ball(int levels, std::vector<Triangle>& boundary) {
   TetMesh mesh = sphere_surface(levels, boundary);

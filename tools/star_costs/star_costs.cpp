@@ -2,11 +2,11 @@
 //
 //   star_costs TILING SEED SHAPES > mesh/classification/tables/TILING.h
 //
-// Random smooth bodies are meshed without the table's help (labels of psi), with prices at random (so that labellings
-// are met that psi alone hardly makes), and with the prices found so far (so that they are met among good neighbours).
-// Each mesh is smoothed towards a target out of reach, and the worst quality around every boundary vertex is booked
-// under (site, positive faces, tets). What a labelling can reach is the 95 % quantile: the best few owe it to luck with
-// curvature, and most others suffer from a neighbour.
+// Random smooth bodies are meshed without the table's help (labels of psi), with costs at random (so that
+// configurations are met that psi alone hardly makes), and with the costs found so far (so that they are met among good
+// neighbours). Each mesh is smoothed towards a target out of reach, and the worst quality around every boundary vertex
+// is booked under (site, positive faces, tets). What a configuration can reach is the 95 % quantile: the best few owe
+// it to luck with curvature, and most others suffer from a neighbour.
 
 #include <algorithm>
 #include <cctype>
@@ -18,13 +18,13 @@
 #include <vector>
 
 #include "mesh/background/body_size.h"
-#include "mesh/submesh/detail/assemble_submesh.h"
 #include "mesh/background/link_steps.h"
-#include "mesh/fast/backtracking_projection.h"
-#include "mesh/classification/configuration_costs.h"
 #include "mesh/classification/classification.h"
-#include "mesh/submesh/lattice_active_layer.h"
+#include "mesh/classification/configuration_costs.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/fast/backtracking_projection.h"
+#include "mesh/submesh/detail/assemble_submesh.h"
+#include "mesh/submesh/lattice_active_layer.h"
 #include "tools/star_costs/random_shape.h"
 
 using namespace umtet;
@@ -41,42 +41,42 @@ using Configuration = std::tuple<int, int, int>;  // site, positive faces, tets
 using Book = std::map<Configuration, std::vector<float>>;
 
 /// Meshes one body and books its boundary vertices.
-void measure(const star_costs::RandomShape& shape, const Tiling& tiling, const LabelEnergies* energies, Book& book) {
+void measure(const star_costs::RandomShape& shape, const Tiling& tiling, const StarCostTable* costs, Book& book) {
   const double h = h_for_tets(tiling, shape, shape.box(), kTets);
   const Box padded(shape.box().min() - Vec3::Constant(2 * h), shape.box().max() + Vec3::Constant(2 * h));
   const BackgroundMesh background(tiling, padded, h);
-  const auto& links = label_prices(tiling)->links;
+  const auto& links = configuration_costs(tiling)->links;
   std::size_t evaluations = 0;
   detail::IdSet inside = detail::inside_vertices(background, shape, evaluations);
-  if (energies) {
-    LabelParams params;
-    params.energies = energies;
-    choose_labels(background, links, shape, params, inside);
+  if (costs) {
+    ClassificationParams params;
+    params.costs = costs;
+    classify_vertices(background, links, shape, params, inside);
   }
-  LatticeShell cut = lattice_shell(background, links, inside);
-  const ProjectionReport projection = project(cut.shell, shape);
+  LatticeActiveLayer cut = lattice_active_layer(background, links, inside);
+  const ProjectionReport projection = project(cut.layer, shape);
   if (!projection.not_arrived.empty()) return;
-  SmoothParams smoothing;
+  SmoothingParams smoothing;
   smoothing.target = kOutOfReach;
   smoothing.margin = 0;
-  smooth(cut.shell, shape, smoothing);
+  smooth(cut.layer, shape, smoothing);
   const detail::LinkSteps steps(background);
-  for (std::size_t v = 0; v < cut.shell.V.size(); ++v) {
-    if (cut.shell.role[v] != Shell::Role::Boundary) continue;
+  for (std::size_t v = 0; v < cut.layer.V.size(); ++v) {
+    if (cut.layer.role[v] != ActiveLayer::Role::Boundary) continue;
     const std::int64_t id = cut.background_vertex[v];
     const int type = background.type(id);
     const LinkState& state = links[type].state(steps.mask(id, inside));
     if (!state.manifold) continue;
     double worst = 1;
-    for (int r = cut.shell.ring_begin[v]; r < cut.shell.ring_begin[v + 1]; ++r) {
-      worst = std::min(worst, mean_ratio({cut.shell.V, {}}, cut.shell.C[cut.shell.ring[r]]));
+    for (int r = cut.layer.ring_begin[v]; r < cut.layer.ring_begin[v + 1]; ++r) {
+      worst = std::min(worst, mean_ratio({cut.layer.V, {}}, cut.layer.C[cut.layer.ring[r]]));
     }
     book[{links[type].site, state.n_positive_faces, state.n_tets}].push_back(static_cast<float>(worst));
   }
 }
 
-std::vector<LabelQuality> qualities(Book& book) {
-  std::vector<LabelQuality> list;
+std::vector<ConfigurationQuality> qualities(Book& book) {
+  std::vector<ConfigurationQuality> list;
   for (auto& [configuration, seen] : book) {
     if (seen.size() < kEnough) continue;
     const auto at = seen.begin() + static_cast<std::ptrdiff_t>(kQuantile * static_cast<double>(seen.size()));
@@ -88,20 +88,20 @@ std::vector<LabelQuality> qualities(Book& book) {
 }
 
 /// Prices up to 100 at random, one for each configuration.
-LabelEnergies random_energies(const LabelPrices& prices, std::uint64_t seed) {
-  std::vector<LabelQuality> list;
+StarCostTable random_costs(const ConfigurationCosts& costs, std::uint64_t seed) {
+  std::vector<ConfigurationQuality> list;
   int n_sites = 0;
-  for (const LinkTopology& link : prices.links) n_sites = std::max(n_sites, link.site + 1);
+  for (const LinkTopology& link : costs.links) n_sites = std::max(n_sites, link.site + 1);
   std::uint64_t state = seed;
   for (int site = 0; site < n_sites; ++site) {
     for (int faces = 3; faces <= 14; ++faces) {
       for (int tets = 3; tets <= 24; ++tets) {
         state = state * 6364136223846793005u + 1442695040888963407u;
-        list.push_back({site, faces, tets, prices.good - .16 + .10 * static_cast<double>(state >> 11) * 0x1p-53});
+        list.push_back({site, faces, tets, costs.good - .16 + .10 * static_cast<double>(state >> 11) * 0x1p-53});
       }
     }
   }
-  return LabelEnergies(prices.links, list, prices.good);
+  return StarCostTable(costs.links, list, costs.good);
 }
 
 }  // namespace
@@ -114,34 +114,36 @@ int main(int argc, char** argv) {
   }
   const std::string name = argv[1];
   const Tiling& tiling = tiling_named(name);
-  const LabelPrices& prices = *label_prices(tiling);  // all but its qualities
+  const ConfigurationCosts& costs = *configuration_costs(tiling);  // all but its qualities
   const std::uint64_t seed = std::strtoull(argv[2], nullptr, 10);
   const int n_shapes = std::atoi(argv[3]);
   Book book;
   for (int round = 0; round < kRounds; ++round) {
-    const LabelEnergies fitted(prices.links, qualities(book), prices.good);
+    const StarCostTable fitted(costs.links, qualities(book), costs.good);
     for (int s = 0; s < n_shapes; ++s) {
       const std::uint64_t number = seed + static_cast<std::uint64_t>(round * n_shapes + s);
       const star_costs::RandomShape shape(number);
-      const LabelEnergies dice = random_energies(prices, number);
+      const StarCostTable dice = random_costs(costs, number);
       measure(shape, tiling, round == 0 ? nullptr : round == 1 ? &dice : &fitted, book);
     }
     std::fprintf(stderr, "round %d of %d done\n", round + 1, kRounds);
   }
-  const std::vector<LabelQuality> list = qualities(book);
-  std::printf("#pragma once\n\n#include <array>\n\n#include \"mesh/classification/star_cost_table.h\"\n\nnamespace umtet {\n\n");
+  const std::vector<ConfigurationQuality> list = qualities(book);
+  std::printf(
+      "#pragma once\n\n#include <array>\n\n#include \"mesh/classification/star_cost_table.h\"\n\nnamespace umtet "
+      "{\n\n");
   std::printf(
       "// Made by: star_costs %s %s %s (%.0f tets a body, %d rounds, quantile %.2f, at least %zu vertices each).\n",
       argv[1], argv[2], argv[3], kTets, kRounds, kQuantile, kEnough);
   std::printf("// Neighbours of a vertex of site 0, 1 ...:");
   std::map<int, int> neighbours;
-  for (const LinkTopology& link : prices.links) neighbours[link.site] = link.n;
+  for (const LinkTopology& link : costs.links) neighbours[link.site] = link.n;
   for (const auto& [site, n] : neighbours) std::printf(" %d", n);
   std::printf(". The last column counts the vertices seen.\n");
   const std::string first(1, static_cast<char>(std::toupper(name[0])));
-  std::printf("inline constexpr std::array<LabelQuality, %zu> k%sLabelQualities = {{\n", list.size(),
+  std::printf("inline constexpr std::array<ConfigurationQuality, %zu> k%sConfigurationQualities = {{\n", list.size(),
               (first + name.substr(1)).c_str());
-  for (const LabelQuality& q : list) {
+  for (const ConfigurationQuality& q : list) {
     std::printf("    {%d, %d, %d, %.4f},  // %zu\n", q.site, q.n_positive_faces, q.n_tets, q.quality,
                 book.at({q.site, q.n_positive_faces, q.n_tets}).size());
   }

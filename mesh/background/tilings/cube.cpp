@@ -122,10 +122,10 @@ const Tiling& acute_cube() {
     std::vector<ExactTet> block;
     for (int c = 0; c < 8; ++c) {
       const int i = c & 1, j = c >> 1 & 1, k = c >> 2;
-      // Opposite faces carry the same pattern turned by 90 degrees, so every other cube is turned.
-      const bool turned = (i + j + k) % 2 != 0;
+      // Opposite faces carry the same pattern misaligned by 90 degrees, so every other cube is misaligned.
+      const bool misaligned = (i + j + k) % 2 != 0;
       for (ExactTet tet : one) {
-        for (Vec3& p : tet) p = Vec3(i + .5, j + .5, k + .5) + (turned ? Vec3(-p.y(), p.x(), p.z()) : p);
+        for (Vec3& p : tet) p = Vec3(i + .5, j + .5, k + .5) + (misaligned ? Vec3(-p.y(), p.x(), p.z()) : p);
         block.push_back(tet);
       }
     }

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "mesh/core/tet_mesh.h"
 #include "mesh/background/tiling.h"
+#include "mesh/core/tet_mesh.h"
 
 namespace umtet::detail {
 

@@ -78,13 +78,13 @@ void CertificateMemory::keep() {
 }
 
 void CertificateMemory::remember(const TetMesh& mesh, const std::vector<std::int64_t>& vertex_id,
-                                 const std::vector<std::int64_t>& tet_id, const BoundaryFaces& skin) {
+                                 const std::vector<std::int64_t>& tet_id, const BoundaryFaces& surface) {
   mesh_ = mesh;
   vertex_id_ = vertex_id;
   tet_id_ = tet_id;
-  single_ = skin.triangles;
+  single_ = surface.triangles;
   whole_.reset();
-  is_sound_ = skin.n_overused == 0 && skin.n_same_side == 0 && vertex_id.size() == mesh.V.size() &&
+  is_sound_ = surface.n_overused == 0 && surface.n_same_side == 0 && vertex_id.size() == mesh.V.size() &&
               tet_id.size() == mesh.C.size() && are_ascending(vertex_id);
 }
 

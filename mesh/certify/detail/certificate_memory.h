@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/certify/certificate.h"
-#include "mesh/core/two_least.h"
 #include "mesh/certify/boundary_surface.h"
+#include "mesh/certify/certificate.h"
 #include "mesh/core/tet_mesh.h"
+#include "mesh/core/two_least.h"
 
 namespace umtet::detail {
 
@@ -39,7 +39,7 @@ class CertificateMemory {
   const std::vector<char>* to_count() const { return source_.empty() ? nullptr : &touched_; }
   /// The mesh that was matched takes the place of the one before.
   void remember(const TetMesh& mesh, const std::vector<std::int64_t>& vertex_id,
-                const std::vector<std::int64_t>& tet_id, const BoundaryFaces& skin);
+                const std::vector<std::int64_t>& tet_id, const BoundaryFaces& surface);
   std::size_t n_known() const { return n_known_; }  ///< tets of the last match that were the same
 
   /// What was found of the mesh before, without walls.

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "mesh/certify/detail/certificate_memory.h"
-#include "mesh/core/tet_packs.h"
 #include "mesh/certify/quality_report.h"
+#include "mesh/core/tet_packs.h"
 #include "mesh/core/tet_quality.h"
 
 namespace umtet::detail {
@@ -16,21 +16,21 @@ namespace {
 
 // A tet takes some tens of nanoseconds.
 constexpr std::size_t kTetsPerBlock = 1 << 10, kBlocksPerPoll = 1 << 8;
-static_assert(kTetsPerBlock % kLanes == 0);
+static_assert(kTetsPerBlock % kPackSize == 0);
 // So many blocks, evenly spread, say how low the lowest twentieth of all qualities may be.
 constexpr std::size_t kSampledBlocks = 64, kSampledShare = 20;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-double sum(const Lane& a) { return (a[0] + a[1]) + (a[2] + a[3]); }
+double sum(const Pack& a) { return (a[0] + a[1]) + (a[2] + a[3]); }
 /// @param mask  as comparisons give it: -1 or 0 a lane
 template <class Mask>
 bool is_any(const Mask& mask) {
   return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
 }
 
-TetLanes known_lanes(const std::array<const TetValues*, kLanes>& known) {
-  TetLanes result;
-  for (int m = 0; m < kLanes; ++m) {
+TetPack known_pack(const std::array<const TetValues*, kPackSize>& known) {
+  TetPack result;
+  for (int m = 0; m < kPackSize; ++m) {
     result.quality[m] = known[m]->quality;
     result.volume6[m] = known[m]->volume6;
     result.rms_edge[m] = known[m]->rms_edge;
@@ -42,17 +42,17 @@ TetLanes known_lanes(const std::array<const TetValues*, kLanes>& known) {
 }
 
 /// Of tets first .. first + count - 1: what is known of all of them, or measured.
-TetLanes lanes_of(const TetMesh& mesh, std::size_t first, int count, const CertificateMemory* memory) {
+TetPack packs_of(const TetMesh& mesh, std::size_t first, int count, const CertificateMemory* memory) {
   if (memory) {
-    std::array<const TetValues*, kLanes> known;
+    std::array<const TetValues*, kPackSize> known;
     bool all = true;
-    for (int m = 0; m < kLanes; ++m) all &= (known[m] = memory->known(first + std::min(m, count - 1))) != nullptr;
-    if (all) return known_lanes(known);
+    for (int m = 0; m < kPackSize; ++m) all &= (known[m] = memory->known(first + std::min(m, count - 1))) != nullptr;
+    if (all) return known_pack(known);
   }
-  return measure_tet_lanes(mesh, &mesh.C[first], count);
+  return measure_tet_pack(mesh, &mesh.C[first], count);
 }
 
-void remember(const TetLanes& tets, std::size_t first, int count, CertificateMemory& memory) {
+void remember(const TetPack& tets, std::size_t first, int count, CertificateMemory& memory) {
   for (int m = 0; m < count; ++m) {
     memory.set(first + m, {.quality = tets.quality[m],
                            .volume6 = tets.volume6[m],
@@ -95,7 +95,7 @@ class TetBlocks {
   TetMeasure operator()(std::size_t block, double low) const;
 
  private:
-  void add(const TetLanes& tets, std::size_t first, int count, TetMeasure& measure) const;
+  void add(const TetPack& tets, std::size_t first, int count, TetMeasure& measure) const;
 
   const TetMesh& mesh_;
   CertificateMemory* memory_;
@@ -104,15 +104,15 @@ class TetBlocks {
 
 TetMeasure TetBlocks::operator()(std::size_t block, double low) const {
   TetMeasure measure;
-  Lane volume6{}, rms_edges{}, qualities{};
+  Pack volume6{}, rms_edges{}, qualities{};
   std::array<double, kTetsPerBlock> low_qualities;
   std::size_t n_low = 0;
   const std::size_t end = std::min(mesh_.C.size(), (block + 1) * kTetsPerBlock);
-  for (std::size_t first = block * kTetsPerBlock; first < end; first += kLanes) {
-    const int count = static_cast<int>(std::min<std::size_t>(kLanes, end - first));
-    const TetLanes tets = lanes_of(mesh_, first, count, memory_);
+  for (std::size_t first = block * kTetsPerBlock; first < end; first += kPackSize) {
+    const int count = static_cast<int>(std::min<std::size_t>(kPackSize, end - first));
+    const TetPack tets = packs_of(mesh_, first, count, memory_);
     if (memory_) remember(tets, first, count, *memory_);
-    if (count == kLanes) {
+    if (count == kPackSize) {
       volume6 += tets.volume6;
       rms_edges += tets.rms_edge;
       qualities += tets.quality;
@@ -138,7 +138,7 @@ TetMeasure TetBlocks::operator()(std::size_t block, double low) const {
 }
 
 /// All but the sums.
-void TetBlocks::add(const TetLanes& tets, std::size_t first, int count, TetMeasure& measure) const {
+void TetBlocks::add(const TetPack& tets, std::size_t first, int count, TetMeasure& measure) const {
   if (is_any((tets.least_cotangent < measure.least_cotangent) |
              (tets.greatest_cotangent > measure.greatest_cotangent))) {
     for (int m = 0; m < count; ++m) {

@@ -2,8 +2,8 @@
 
 #include <cstddef>
 
-#include "mesh/certify/certificate.h"
 #include "common/context.h"
+#include "mesh/certify/certificate.h"
 #include "mesh/core/tet_mesh.h"
 
 namespace umtet::detail {

@@ -13,9 +13,9 @@
 namespace umtet::detail {
 namespace {
 
-// Bricks of one colour are this many cells apart. No edge of a tiling is longer than half a cell along an axis, so that
+// Blocks of one colour are this many cells apart. No edge of a tiling is longer than half a cell along an axis, so that
 // is nine rings; changing the labels of a vertex and a neighbour reaches three, and seven are enough.
-constexpr std::int64_t kBrick = 4;
+constexpr std::int64_t kBlock = 4;
 // Feet from farther away may be on another sheet, and those closer together, in h, say little about curvature.
 constexpr float kFarthestFoot = 1.8F;
 constexpr double kApart = .3;
@@ -23,9 +23,9 @@ constexpr std::size_t kVerticesPerTask = 1 << 12;  // of some ten nanoseconds ea
 
 }  // namespace
 
-LabelBand::LabelBand(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
-                     const LabelParams& params, const IdSet& inside, const KeepGoing& keep_going,
-                     const PsiValues* known)
+ClassificationBand::ClassificationBand(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
+                                       ImplicitFunctionRef psi, const ClassificationParams& params, const IdSet& inside,
+                                       const KeepGoing& keep_going, const PsiValues* known)
     : background_(background),
       links_(links),
       psi_(psi),
@@ -37,11 +37,11 @@ LabelBand::LabelBand(const BackgroundMesh& background, const std::vector<LinkTop
   gather();
   measure(keep_going);
   hold_where_stretched(keep_going);
-  make_bricks();
+  make_blocks();
 }
 
 /// In the outermost layer of cells, where a step along an edge may leave the range of ids.
-bool LabelBand::is_outermost(std::int64_t v) const {
+bool ClassificationBand::is_outermost(std::int64_t v) const {
   const auto cell = background_.cell(v);
   bool outermost = false;
   for (int a = 0; a < 3; ++a) outermost |= cell[a] < 0 || cell[a] >= background_.n_cells()[a];
@@ -49,7 +49,7 @@ bool LabelBand::is_outermost(std::int64_t v) const {
 }
 
 /// The vertices with a neighbour of the other label, and two rings more.
-void LabelBand::gather() {
+void ClassificationBand::gather() {
   if (known_) {
     std::vector<std::int64_t> cut;
     for (const PsiValue& at : *known_) cut.push_back(at.vertex);
@@ -82,7 +82,7 @@ void LabelBand::gather() {
 }
 
 /// Two rings around a few vertices in a large background.
-void LabelBand::gather_around(std::vector<std::int64_t> front) {
+void ClassificationBand::gather_around(std::vector<std::int64_t> front) {
   for (const std::int64_t v : front) band_.insert(v);
   std::vector<std::int64_t> next;
   for (int ring = 0; ring < 2; ++ring) {
@@ -100,10 +100,10 @@ void LabelBand::gather_around(std::vector<std::int64_t> front) {
 }
 
 /// Label, mask and ranks of the link. Returns whether the whole link is in the band.
-bool LabelBand::find_link(std::size_t v) {
+bool ClassificationBand::find_link(std::size_t v) {
   label[v] = inside_.test(id[v]);
   mask[v] = steps_.mask(id[v], inside_);
-  // Labels beyond the range of ids are those of the rim: outside. Ranks are left out there.
+  // Labels beyond the range of ids are those of the background boundary: outside. Ranks are left out there.
   if (is_outermost(id[v])) return false;
   const std::vector<std::int64_t>& steps = steps_.at(id[v]);
   bool complete = true;
@@ -119,7 +119,7 @@ bool LabelBand::find_link(std::size_t v) {
 }
 
 /// psi at vertex v, which is at x.
-double LabelBand::value_at(std::size_t v, const Vec3& x, Vec3& gradient) {
+double ClassificationBand::value_at(std::size_t v, const Vec3& x, Vec3& gradient) {
   if (known_ && known_at_[v] >= 0) {
     const PsiValue& at = (*known_)[known_at_[v]];
     gradient = at.gradient;
@@ -130,7 +130,7 @@ double LabelBand::value_at(std::size_t v, const Vec3& x, Vec3& gradient) {
 }
 
 /// Foot, normal and distance.
-void LabelBand::find_foot(std::size_t v) {
+void ClassificationBand::find_foot(std::size_t v) {
   const Vec3 x = background_.position(id[v]);
   const double h = unit(v), most = far() * h;
   Vec3 g;
@@ -156,7 +156,7 @@ void LabelBand::find_foot(std::size_t v) {
   phi[v] = static_cast<float>(std::isfinite(distance) ? distance / h : label[v] ? -far() : far());
 }
 
-void LabelBand::measure(const KeepGoing& keep_going) {
+void ClassificationBand::measure(const KeepGoing& keep_going) {
   const std::size_t n = size();
   type.resize(n);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, kVerticesPerTask), [&](const auto& range) {
@@ -191,16 +191,17 @@ void LabelBand::measure(const KeepGoing& keep_going) {
       return;
     }
     find_foot(v);
-    movable[v] = complete && phi[v] >= -params_.reach_in && phi[v] <= params_.reach_out && !background_.on_rim(id[v]);
+    movable[v] =
+        complete && phi[v] >= -params_.reach_in && phi[v] <= params_.reach_out && !background_.on_boundary(id[v]);
   });
 }
 
-bool LabelBand::has_foot(int v) const { return std::abs(phi[v]) < kFarthestFoot; }
+bool ClassificationBand::has_foot(int v) const { return std::abs(phi[v]) < kFarthestFoot; }
 
 /// Labels stay where a vertex on its way to the surface would draw apart those around it by more than most_stretch: a
 /// patch at depth d under a surface of curvature kappa is 1 / (1 - kappa d) times as wide up there. The curvature is
 /// the greatest between the feet of neighbours, on the side that the vertex would come from.
-void LabelBand::hold_where_stretched(const KeepGoing& keep_going) {
+void ClassificationBand::hold_where_stretched(const KeepGoing& keep_going) {
   const double most = 1 - 1 / params_.most_stretch, apart = kApart * background_.h();
   polled_parallel_for(size(), kValuesPerPoll, keep_going, [&](std::size_t v) {
     if (!movable[v]) return;
@@ -216,32 +217,32 @@ void LabelBand::hold_where_stretched(const KeepGoing& keep_going) {
   });
 }
 
-/// Bricks of kBrick^3 cells.
-void LabelBand::make_bricks() {
+/// Blocks of kBlock^3 cells.
+void ClassificationBand::make_blocks() {
   const auto& n = background_.n_cells();
-  const std::int64_t nx = (n[0] + 2) / kBrick + 1, ny = (n[1] + 2) / kBrick + 1, nz = (n[2] + 2) / kBrick + 1;
-  std::vector<std::uint32_t> brick(size());
+  const std::int64_t nx = (n[0] + 2) / kBlock + 1, ny = (n[1] + 2) / kBlock + 1, nz = (n[2] + 2) / kBlock + 1;
+  std::vector<std::uint32_t> block(size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, size(), kVerticesPerTask), [&](const auto& range) {
     for (std::size_t v = range.begin(); v != range.end(); ++v) {
       if (!movable[v]) continue;
       const auto cell = background_.cell(id[v]);
-      const std::int64_t i = (cell[0] + 1) / kBrick, j = (cell[1] + 1) / kBrick, k = (cell[2] + 1) / kBrick;
-      brick[v] = static_cast<std::uint32_t>(i + nx * (j + ny * k));
+      const std::int64_t i = (cell[0] + 1) / kBlock, j = (cell[1] + 1) / kBlock, k = (cell[2] + 1) / kBlock;
+      block[v] = static_cast<std::uint32_t>(i + nx * (j + ny * k));
     }
   });
   std::vector<std::uint32_t> end(static_cast<std::size_t>(nx * ny * nz) + 1, 0);
-  for (std::size_t v = 0; v < size(); ++v) end[brick[v] + 1] += movable[v];
+  for (std::size_t v = 0; v < size(); ++v) end[block[v] + 1] += movable[v];
   std::partial_sum(end.begin(), end.end(), end.begin());
   order.resize(end.back());
   for (std::uint32_t v = 0; v < size(); ++v) {
-    if (movable[v]) order[end[brick[v]]++] = v;
+    if (movable[v]) order[end[block[v]]++] = v;
   }
   std::uint32_t begin = 0;
   for (std::size_t b = 0; b + 1 < end.size(); begin = end[b++]) {
     if (end[b] == begin) continue;
     const auto at = static_cast<std::int64_t>(b);
     const std::int64_t i = at % nx, j = at / nx % ny, k = at / nx / ny;
-    bricks[static_cast<std::size_t>((i & 1) + 2 * (j & 1) + 4 * (k & 1))].push_back({begin, end[b]});
+    blocks[static_cast<std::size_t>((i & 1) + 2 * (j & 1) + 4 * (k & 1))].push_back({begin, end[b]});
   }
 }
 

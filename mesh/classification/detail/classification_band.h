@@ -7,30 +7,30 @@
 #include <span>
 #include <vector>
 
-#include "mesh/background/background_mesh.h"
-#include "mesh/base/id_set.h"
-#include "mesh/background/link_steps.h"
-#include "mesh/core/psi_values.h"
-#include "mesh/core/implicit_function.h"
 #include "common/context.h"
-#include "mesh/classification/classification.h"
+#include "mesh/background/background_mesh.h"
+#include "mesh/background/link_steps.h"
 #include "mesh/background/link_topology.h"
+#include "mesh/base/id_set.h"
+#include "mesh/classification/classification.h"
+#include "mesh/core/implicit_function.h"
+#include "mesh/core/psi_values.h"
 
 namespace umtet::detail {
 
-/// Vertices within three edges of a change of label, and all that choose_labels() knows about them, by rank.
-class LabelBand {
+/// Vertices within three edges of a change of label, and all that classify_vertices() knows about them, by rank.
+class ClassificationBand {
  public:
-  struct Brick {
+  struct Block {
     std::uint32_t begin, end;  ///< into order
   };
 
   /// @param inside  the vertices with psi < 0
   /// @param known   psi at all vertices with a neighbour on the other side, or null
   /// \throw MeshCancelled
-  LabelBand(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
-            const LabelParams& params, const IdSet& inside, const KeepGoing& keep_going,
-            const PsiValues* known = nullptr);
+  ClassificationBand(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
+                     const ClassificationParams& params, const IdSet& inside, const KeepGoing& keep_going,
+                     const PsiValues* known = nullptr);
 
   std::size_t size() const { return id.size(); }
 
@@ -44,8 +44,8 @@ class LabelBand {
   std::vector<LinkMask> mask;
   std::vector<float> phi;                    ///< signed distance in LinkTopology::unit
   std::vector<Vec3> foot, normal;            ///< on psi = 0 and there; not set at the band's edge
-  std::vector<std::uint32_t> order;          ///< movable vertices, brick by brick
-  std::array<std::vector<Brick>, 8> bricks;  ///< per colour: vertices of two bricks of one are nine rings apart
+  std::vector<std::uint32_t> order;          ///< movable vertices, block by block
+  std::array<std::vector<Block>, 8> blocks;  ///< per colour: vertices of two blocks of one are nine rings apart
   std::atomic<std::size_t> psi_evaluations{0};
 
  private:
@@ -57,7 +57,7 @@ class LabelBand {
   void measure(const KeepGoing& keep_going);
   bool has_foot(int v) const;
   void hold_where_stretched(const KeepGoing& keep_going);
-  void make_bricks();
+  void make_blocks();
   bool is_outermost(std::int64_t id) const;
   double unit(std::size_t v) const { return links_[type[v]].unit * background_.h(); }
   /// Farther than any vertex that may change, in units.
@@ -66,7 +66,7 @@ class LabelBand {
   const BackgroundMesh& background_;
   const std::vector<LinkTopology>& links_;
   ImplicitFunctionRef psi_;
-  const LabelParams& params_;
+  const ClassificationParams& params_;
   const IdSet& inside_;
   const PsiValues* known_;
   LinkSteps steps_;
@@ -76,9 +76,9 @@ class LabelBand {
   std::vector<int> ranks_;
 };
 
-/// umtet::choose_labels(), with psi where it is known (LabelBand).
-LabelReport choose_labels(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
-                          ImplicitFunctionRef psi, const LabelParams& params, IdSet& inside,
-                          const KeepGoing& keep_going, const IdSet* last, const PsiValues* known);
+/// umtet::classify_vertices(), with psi where it is known (ClassificationBand).
+ClassificationReport classify_vertices(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
+                                       ImplicitFunctionRef psi, const ClassificationParams& params, IdSet& inside,
+                                       const KeepGoing& keep_going, const IdSet* last, const PsiValues* known);
 
 }  // namespace umtet::detail

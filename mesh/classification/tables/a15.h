@@ -8,7 +8,7 @@ namespace umtet {
 
 // Made by: star_costs a15 1 60 (30000 tets a body, 4 rounds, quantile 0.95, at least 60 vertices each).
 // Neighbours of a vertex of site 0, 1 ...: 12 14. The last column counts the vertices seen.
-inline constexpr std::array<LabelQuality, 33> kA15LabelQualities = {{
+inline constexpr std::array<ConfigurationQuality, 33> kA15ConfigurationQualities = {{
     {0, 3, 19, 0.6653},  // 89
     {0, 4, 18, 0.7965},  // 134
     {0, 5, 5, 0.8827},  // 18747

@@ -8,7 +8,7 @@ namespace umtet {
 
 // Made by: star_costs cube 1 40 (30000 tets a body, 4 rounds, quantile 0.95, at least 60 vertices each).
 // Neighbours of a vertex of site 0, 1 ...: 12 14 17 18 20 26 42. The last column counts the vertices seen.
-inline constexpr std::array<LabelQuality, 163> kCubeLabelQualities = {{
+inline constexpr std::array<ConfigurationQuality, 163> kCubeConfigurationQualities = {{
     {0, 3, 19, 0.6606},  // 157
     {0, 4, 18, 0.7441},  // 542
     {0, 5, 5, 0.7862},  // 37784

@@ -8,7 +8,7 @@ namespace umtet {
 
 // Made by: star_costs slab 1 60 (30000 tets a body, 4 rounds, quantile 0.95, at least 60 vertices each).
 // Neighbours of a vertex of site 0, 1 ...: 12 14 20. The last column counts the vertices seen.
-inline constexpr std::array<LabelQuality, 59> kSlabLabelQualities = {{
+inline constexpr std::array<ConfigurationQuality, 59> kSlabConfigurationQualities = {{
     {0, 3, 19, 0.6639},  // 320
     {0, 4, 18, 0.8090},  // 300
     {0, 5, 5, 0.8678},  // 58604

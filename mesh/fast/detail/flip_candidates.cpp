@@ -5,13 +5,13 @@
 namespace umtet::detail {
 namespace {
 
-// A flip that makes the labels around this much worse has never been kept: the price of one labelling not met in the
+// A flip that makes the labels around this much worse has never been kept: the cost of one configuration not met in the
 // fit and some more.
-constexpr float kMostEnergy = 150;
+constexpr float kMostCostOfFlip = 150;
 
 }  // namespace
 
-bool LabelCandidates::in_reach(std::int64_t v, std::size_t& n_evaluations) const {
+bool FlipCandidates::in_reach(std::int64_t v, std::size_t& n_evaluations) const {
   const Vec3 x = background_.position(v);
   const double h = links_[background_.type(v)].unit * background_.h();
   Vec3 g;
@@ -24,8 +24,8 @@ bool LabelCandidates::in_reach(std::int64_t v, std::size_t& n_evaluations) const
            is_thin(psi_, x - d / norm * g, g / norm, labels_.least_thickness, h, n_evaluations));
 }
 
-std::vector<LabelCandidates::Candidate> LabelCandidates::operator()(const std::array<std::int64_t, 4>& tet,
-                                                                    std::size_t& n_evaluations) const {
+std::vector<FlipCandidates::Candidate> FlipCandidates::operator()(const std::array<std::int64_t, 4>& tet,
+                                                                  std::size_t& n_evaluations) const {
   std::vector<std::int64_t> near(tet.begin(), tet.end());
   for (const std::int64_t v : tet) {
     for (const std::int64_t step : steps_.at(v)) near.push_back(v + step);
@@ -34,29 +34,29 @@ std::vector<LabelCandidates::Candidate> LabelCandidates::operator()(const std::a
   near.erase(std::unique(near.begin(), near.end()), near.end());
   std::vector<Candidate> list;
   for (const std::int64_t v : near) {
-    if (v < 0 || v >= background_.n_vertices()) continue;  // beside a tet at the rim
+    if (v < 0 || v >= background_.n_vertices()) continue;  // beside a tet at the background boundary
     const int type = background_.type(v);
     const LinkTopology& link = links_[type];
     const LinkMask m = steps_.mask(v, inside_);
-    if (!link.state(m).simple || background_.on_rim(v) || !in_reach(v, n_evaluations)) continue;
-    const auto price = [&](int t, LinkMask labels) {
-      return labels == 0 ? 0.F : energies_(links_[t].site, links_[t].state(labels));
+    if (!link.state(m).simple || background_.on_boundary(v) || !in_reach(v, n_evaluations)) continue;
+    const auto cost = [&](int t, LinkMask labels) {
+      return labels == 0 ? 0.F : costs_(links_[t].site, links_[t].state(labels));
     };
     const auto bad = [&](int t, LinkMask labels) { return labels != 0 && !links_[t].state(labels).manifold; };
     const bool is_inside = inside_.test(v);
-    float energy = is_inside ? price(type, m) : -price(type, m);
+    float change = is_inside ? cost(type, m) : -cost(type, m);
     int spots = is_inside ? bad(type, m) : -bad(type, m);
     for (int k = 0; k < link.n; ++k) {
       const std::int64_t w = v + steps_.at(v)[k];
       if (inside_.test(w)) continue;
       const int t = background_.type(w);
       const LinkMask now = steps_.mask(w, inside_), then = now ^ LinkMask { 1 } << link.back[k];
-      energy += price(t, then) - price(t, now);
+      change += cost(t, then) - cost(t, now);
       spots += bad(t, then) - bad(t, now);
     }
-    if (spots <= 0 && energy < kMostEnergy) list.push_back({v, energy});
+    if (spots <= 0 && change < kMostCostOfFlip) list.push_back({v, change});
   }
-  std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.energy < b.energy; });
+  std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
   if (list.size() > static_cast<std::size_t>(params_.max_tries)) list.resize(params_.max_tries);
   return list;
 }

@@ -6,30 +6,30 @@
 #include <vector>
 
 #include "mesh/background/link_steps.h"
-#include "mesh/core/implicit_function.h"
-#include "mesh/classification/configuration_costs.h"
 #include "mesh/classification/classification.h"
+#include "mesh/classification/configuration_costs.h"
+#include "mesh/core/implicit_function.h"
 #include "mesh/fast/repair.h"
 
 namespace umtet::detail {
 
-/// The labels that repair() may change, by the rules of choose_labels().
-class LabelCandidates {
+/// The labels that repair() may change, by the rules of classify_vertices().
+class FlipCandidates {
  public:
   struct Candidate {
     std::int64_t vertex;
-    float energy;  ///< by which the flip changes the price of the labels around
+    float cost;  ///< by which the flip changes the cost of the labels around
   };
 
   /// Keeps what it is given by reference: `inside` as it is when asked.
-  LabelCandidates(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
-                  const LabelParams& labels, const RepairParams& params, const IdSet& inside)
+  FlipCandidates(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
+                 const ClassificationParams& labels, const RepairParams& params, const IdSet& inside)
       : background_(background),
         links_(links),
         psi_(psi),
         labels_(labels),
         params_(params),
-        energies_(labels.energies ? *labels.energies : a15_label_energies()),
+        costs_(labels.costs ? *labels.costs : a15_star_costs()),
         inside_(inside),
         steps_(background) {}
 
@@ -43,9 +43,9 @@ class LabelCandidates {
   const BackgroundMesh& background_;
   const std::vector<LinkTopology>& links_;
   ImplicitFunctionRef psi_;
-  const LabelParams& labels_;
+  const ClassificationParams& labels_;
   const RepairParams& params_;
-  const LabelEnergies& energies_;
+  const StarCostTable& costs_;
   const IdSet& inside_;
   LinkSteps steps_;
 };

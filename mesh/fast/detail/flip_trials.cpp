@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "mesh/fast/tangential_relaxation.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/fast/tangential_relaxation.h"
 
 namespace umtet::detail {
 namespace {
@@ -12,117 +12,118 @@ namespace {
 // Pairs are tried from this many of the most promising labels, with this many second ones each.
 constexpr std::size_t kFirstOfPair = 6, kSecondOfPair = 8;
 // After sweep k of smoothing, how much below what it was the least Q of a patch may be, times k^2, and how many more
-// poor tets it may have, times k. Of the 617 patches that ended better among 3900 (T6 and T8 of 100k and 500k tets,
-// eqs. (9) and (13) of 500k), one had lacked more; the others are given up after two fifths of the visits.
-constexpr double kMostLack = .7, kMostMorePoor = 280;
+// below target tets it may have, times k. Of the 617 patches that ended better among 3900 (T6 and T8 of 100k and 500k
+// tets, eqs. (9) and (13) of 500k), one had lacked more; the others are given up after two fifths of the solves.
+constexpr double kMostLack = .7, kMostMoreBelowTarget = 280;
 // Where a label has been found that helps, those whose flip costs so much more are not tried: of 245 (T6, T8, a plate
 // with 18 holes, eqs. (9) and (13) at 500k tets) three would have been better than with 30, half of the tries went
 // there. With 30 the armadillo keeps a tet of Q = .8075, with 60 or without a bound its worst is .8129.
-constexpr float kMostMoreEnergy = 60;
+constexpr float kMostMoreCost = 60;
 
 }  // namespace
 
-Vec3 Places::of(std::int64_t v, std::size_t& from) const {
+Vec3 Positions::of(std::int64_t v, std::size_t& from) const {
   if (const int moved = moved_.find(v); moved >= 0) return moved_to_[moved];
-  // The vertices of a patch are near each other in the shell: steps that double.
-  const auto& ids = shell_.background_vertex;
+  // The vertices of a patch are near each other in the layer: steps that double.
+  const auto& ids = layer_.background_vertex;
   std::size_t step = 1;
   for (; from + step < ids.size() && ids[from + step] < v; step *= 2) from += step;
   const auto begin = ids.begin() + static_cast<std::ptrdiff_t>(from),
              end = ids.begin() + static_cast<std::ptrdiff_t>(std::min(from + step, ids.size()));
   from = static_cast<std::size_t>(std::lower_bound(begin, end, v) - ids.begin());
-  return from < ids.size() && ids[from] == v ? shell_.shell.V[from] : background_.position(v);
+  return from < ids.size() && ids[from] == v ? layer_.layer.V[from] : background_.position(v);
 }
 
-void Places::move(std::int64_t v, const Vec3& x) {
+void Positions::move(std::int64_t v, const Vec3& x) {
   const auto at = static_cast<std::size_t>(moved_.add(v));
   moved_to_.resize(moved_.ids().size());
   moved_to_[at] = x;
 }
 
-bool LabelTrials::is_turned(const TetIds& tet) {
+bool FlipTrials::is_misaligned(const TetIds& tet) {
   std::vector<std::uint8_t> inside;
   for (const std::int64_t v : tet) inside.push_back(inside_.test(v));
   Triangle f;
   if (!positive_face({0, 1, 2, 3}, inside, f)) return false;
-  return normal_cosine(psi_, places_.of(tet[f[0]]), places_.of(tet[f[1]]), places_.of(tet[f[2]]), background_.h(),
-                       psi_evaluations) < kTurnedCosine;
+  return normal_cosine(psi_, positions_.of(tet[f[0]]), positions_.of(tet[f[1]]), positions_.of(tet[f[2]]),
+                       background_.h(), psi_evaluations) < kMisalignedCosine;
 }
 
-bool LabelTrials::is_bad(const TetIds& tet) {
+bool FlipTrials::is_bad(const TetIds& tet) {
   bool in_omega_h = false;
   for (const std::int64_t v : tet) in_omega_h |= inside_.test(v);
   if (!in_omega_h) return false;
-  return mean_ratio(places_.of(tet[0]), places_.of(tet[1]), places_.of(tet[2]), places_.of(tet[3])) < target_ ||
-         is_turned(tet);
+  return mean_ratio(positions_.of(tet[0]), positions_.of(tet[1]), positions_.of(tet[2]), positions_.of(tet[3])) <
+             target_ ||
+         is_misaligned(tet);
 }
 
-LatticeShell LabelTrials::patch(const std::vector<std::int64_t>& centres, Start start) const {
-  LatticeShell cut = lattice_patch(background_, links_, inside_, centres, params_.reach);
-  for (std::size_t v = 0, from = 0; v < cut.shell.V.size(); ++v) {
-    if (start == Start::Here || cut.shell.role[v] == Shell::Role::Fixed)
-      cut.shell.V[v] = places_.of(cut.background_vertex[v], from);
+LatticeActiveLayer FlipTrials::patch(const std::vector<std::int64_t>& centres, Start start) const {
+  LatticeActiveLayer cut = lattice_patch(background_, links_, inside_, centres, params_.reach);
+  for (std::size_t v = 0, from = 0; v < cut.layer.V.size(); ++v) {
+    if (start == Start::Here || cut.layer.role[v] == ActiveLayer::Role::Fixed)
+      cut.layer.V[v] = positions_.of(cut.background_vertex[v], from);
   }
   return cut;
 }
 
-PatchState LabelTrials::state(const Shell& shell, const std::vector<std::uint8_t>& inside) {
-  return patch_state(shell, inside, psi_, target_, psi_evaluations);
+PatchState FlipTrials::state(const ActiveLayer& layer, const std::vector<std::uint8_t>& inside) {
+  return patch_state(layer, inside, psi_, target_, psi_evaluations);
 }
 
 /// Returns whether the patch may still become better than it was; what it lacks is looked at after every sweep.
-bool LabelTrials::smooth_while_promising(PNormSmoother& smoother, const PatchState& before) {
-  SmoothParams one_sweep = smoothing_;
+bool FlipTrials::smooth_while_promising(PNormSmoother& smoother, const PatchState& before) {
+  SmoothingParams one_sweep = smoothing_;
   one_sweep.max_sweeps = 1;
   for (int sweep = 1; sweep <= smoothing_.max_sweeps; ++sweep) {
-    const SmoothReport report = smoother.run(psi_, one_sweep);
+    const SmoothingReport report = smoother.run(psi_, one_sweep);
     psi_evaluations += report.psi_evaluations;
     if (report.settled) break;
-    const PatchState now = tet_state(smoother.shell(), target_);
+    const PatchState now = tet_state(smoother.layer(), target_);
     const double lack = std::min(before.least, target_) - now.least;
-    const double more_poor = static_cast<double>(now.poor) - static_cast<double>(before.poor);
-    if (lack * sweep * sweep > kMostLack || more_poor * sweep > kMostMorePoor) return false;
+    const double more_below_target = static_cast<double>(now.below_target) - static_cast<double>(before.below_target);
+    if (lack * sweep * sweep > kMostLack || more_below_target * sweep > kMostMoreBelowTarget) return false;
   }
   return true;
 }
 
 /// Flips these labels on a copy, shapes the patch around them and the tet, and keeps it as the best one if it is.
-void LabelTrials::attempt(const TetIds& tet, std::span<const std::int64_t> flips, Start start, Best& best) {
+void FlipTrials::attempt(const TetIds& tet, std::span<const std::int64_t> flips, Start start, Best& best) {
   if (tries >= end_of_tries_) return;
   ++tries;
   std::vector<std::int64_t> centres(tet.begin(), tet.end());
   centres.insert(centres.end(), flips.begin(), flips.end());
   for (const std::int64_t v : flips) flip(v);
-  LatticeShell trial = patch(centres, start);
+  LatticeActiveLayer trial = patch(centres, start);
   const std::vector<std::uint8_t> inside = inside_of(trial, inside_);
   for (const std::int64_t v : flips) flip(v);
-  PNormSmoother smoother(trial.shell);
+  PNormSmoother smoother(trial.layer);
   const ProjectionReport projection = project(smoother, psi_, params_.projection);
   psi_evaluations += projection.psi_evaluations;
   if (!projection.not_arrived.empty()) return;
-  const LatticeShell now = patch(centres, Start::Here);
-  const PatchState before = state(now.shell, inside_of(now, inside_));
-  smoother.wake_all();
+  const LatticeActiveLayer now = patch(centres, Start::Here);
+  const PatchState before = state(now.layer, inside_of(now, inside_));
+  smoother.enqueue_all();
   if (!smooth_while_promising(smoother, before)) return;
-  const PatchState after = state(trial.shell, inside);
+  const PatchState after = state(trial.layer, inside);
   if (!after.is_no_worse_than(before) || !after.is_better_than(before)) return;
   if (!best.found || after.is_better_than(best.state))
     best = {std::move(trial), after, {flips.begin(), flips.end()}, true};
 }
 
-void LabelTrials::try_labels(const TetIds& tet, Start start, Best& best) {
-  const std::vector<LabelCandidates::Candidate> singles = candidates_(tet, psi_evaluations);
-  float most_energy = std::numeric_limits<float>::infinity();
+void FlipTrials::try_flips(const TetIds& tet, Start start, Best& best) {
+  const std::vector<FlipCandidates::Candidate> singles = candidates_(tet, psi_evaluations);
+  float most_cost = std::numeric_limits<float>::infinity();
   for (const auto& c : singles) {
-    if (c.energy > most_energy) break;
+    if (c.cost > most_cost) break;
     attempt(tet, std::array{c.vertex}, start, best);
     if (best.is_perfect()) return;
-    if (best.found) most_energy = std::min(most_energy, c.energy + kMostMoreEnergy);
+    if (best.found) most_cost = std::min(most_cost, c.cost + kMostMoreCost);
   }
   // Pairs cost as many patches as all singles do, and are for where none of these helps.
   for (std::size_t a = 0; a < std::min(singles.size(), kFirstOfPair) && !best.found; ++a) {
     flip(singles[a].vertex);
-    const std::vector<LabelCandidates::Candidate> seconds = candidates_(tet, psi_evaluations);
+    const std::vector<FlipCandidates::Candidate> seconds = candidates_(tet, psi_evaluations);
     flip(singles[a].vertex);
     for (std::size_t b = 0; b < std::min(seconds.size(), kSecondOfPair) && !best.is_perfect(); ++b) {
       if (seconds[b].vertex != singles[a].vertex)
@@ -131,31 +132,31 @@ void LabelTrials::try_labels(const TetIds& tet, Start start, Best& best) {
   }
 }
 
-LatticeShell LabelTrials::slid(const std::vector<std::int64_t>& centres) {
-  LatticeShell now = patch(centres, Start::Here);
+LatticeActiveLayer FlipTrials::slid(const std::vector<std::int64_t>& centres) {
+  LatticeActiveLayer now = patch(centres, Start::Here);
   const std::vector<std::uint8_t> inside = inside_of(now, inside_);
-  const PatchState before = state(now.shell, inside);
-  ChordParams chords{.least_quality = target_};
-  // Smoothing what is behind the boundary makes room, but looks at sums: without it nothing falls below the target.
+  const PatchState before = state(now.layer, inside);
+  TangentialRelaxationParams chords{.least_quality = target_};
+  // Smoothing what is behind the boundary makes room, but checks at sums: without it nothing falls below the target.
   for (const int inner_sweeps : {chords.inner_sweeps, 0}) {
     chords.inner_sweeps = inner_sweeps;
-    LatticeShell cut = now;
-    PNormSmoother smoother(cut.shell);
-    psi_evaluations += slide_to_chords(smoother, inside, psi_, chords, params_.smoothing).psi_evaluations;
-    if (state(cut.shell, inside).is_no_worse_than(before)) return cut;
+    LatticeActiveLayer cut = now;
+    PNormSmoother smoother(cut.layer);
+    psi_evaluations += relax_tangentially(smoother, inside, psi_, chords, params_.smoothing).psi_evaluations;
+    if (state(cut.layer, inside).is_no_worse_than(before)) return cut;
   }
   return now;
 }
 
-LabelTrials::Best LabelTrials::operator()(const TetIds& tet, std::size_t most_tries) {
+FlipTrials::Best FlipTrials::operator()(const TetIds& tet, std::size_t most_tries) {
   end_of_tries_ = tries + most_tries;
   Best best;
-  if (is_turned(tet)) {
+  if (is_misaligned(tet)) {
     attempt(tet, {}, Start::Lattice, best);
-    if (!best.is_perfect()) try_labels(tet, Start::Lattice, best);
+    if (!best.is_perfect()) try_flips(tet, Start::Lattice, best);
   }
   if (!best.found && smoothing_.sharper) attempt(tet, {}, Start::Here, best);
-  if (!best.found) try_labels(tet, Start::Here, best);
+  if (!best.found) try_flips(tet, Start::Here, best);
   return best;
 }
 

@@ -9,42 +9,43 @@
 #include "mesh/base/id_list.h"
 #include "mesh/base/id_set.h"
 #include "mesh/fast/detail/flip_candidates.h"
-#include "mesh/submesh/lattice_active_layer.h"
 #include "mesh/fast/p_norm_smoothing.h"
 #include "mesh/fast/patch_state.h"
 #include "mesh/fast/repair.h"
+#include "mesh/submesh/lattice_active_layer.h"
 
 namespace umtet::detail {
 
 using TetIds = std::array<std::int64_t, 4>;
 
-/// Where the vertices of a mesh under repair are: moved, or in the shell, or in the background mesh.
-class Places {
+/// Where the vertices of a mesh under repair are: moved, or in the layer, or in the background mesh.
+class Positions {
  public:
   /// Keeps both by reference.
-  Places(const BackgroundMesh& background, const LatticeShell& shell) : background_(background), shell_(shell) {}
+  Positions(const BackgroundMesh& background, const LatticeActiveLayer& layer)
+      : background_(background), layer_(layer) {}
 
   Vec3 of(std::int64_t v) const {
     std::size_t from = 0;
     return of(v, from);
   }
-  /// @param from  where in the shell to look; receives where it was found, for the next greater one
+  /// @param from  where in the layer to look; receives where it was found, for the next greater one
   Vec3 of(std::int64_t v, std::size_t& from) const;
   void move(std::int64_t v, const Vec3& x);
   const std::vector<std::int64_t>& moved() const { return moved_.ids(); }
 
  private:
   const BackgroundMesh& background_;
-  const LatticeShell& shell_;
+  const LatticeActiveLayer& layer_;
   IdList moved_;
   std::vector<Vec3> moved_to_;
 };
 
 /// What other labels would make of the patch around one tet. Changes nothing of the mesh.
-class LabelTrials {
+class FlipTrials {
  public:
   struct Best {
-    LatticeShell shell;
+    LatticeActiveLayer layer;
     PatchState state;
     std::vector<std::int64_t> flips;
     bool found = false;  ///< something betters the patch
@@ -52,30 +53,31 @@ class LabelTrials {
   };
 
   /// Keeps what it is given by reference, but for the labels, of which it has its own.
-  LabelTrials(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
-              const LabelParams& labels, const RepairParams& params, const Places& places, const IdSet& inside)
+  FlipTrials(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
+             const ClassificationParams& labels, const RepairParams& params, const Positions& places,
+             const IdSet& inside)
       : background_(background),
         links_(links),
         psi_(psi),
         params_(params),
         target_(params.target),
         smoothing_(params.smoothing),
-        places_(places),
+        positions_(places),
         inside_(inside),
         candidates_(background, links, psi, labels, params, inside_) {}
-  LabelTrials(const LabelTrials&) = delete;  // candidates_ reads inside_
-  LabelTrials& operator=(const LabelTrials&) = delete;
+  FlipTrials(const FlipTrials&) = delete;  // candidates_ reads inside_
+  FlipTrials& operator=(const FlipTrials&) = delete;
 
   /// The best that was found for a tet.
   /// @param most_tries  patches
   Best operator()(const TetIds& tet, std::size_t most_tries);
-  /// The patch around these vertices after slide_to_chords(), or as it is if that would make it worse.
-  LatticeShell slid(const std::vector<std::int64_t>& centres);
-  bool is_turned(const TetIds& tet);
-  /// In omega_h, and below the target or with a turned face.
+  /// The patch around these vertices after relax_tangentially(), or as it is if that would make it worse.
+  LatticeActiveLayer slid(const std::vector<std::int64_t>& centres);
+  bool is_misaligned(const TetIds& tet);
+  /// In omega_h, and below the target or with a misaligned face.
   bool is_bad(const TetIds& tet);
-  /// From now on tets are poor below this mean ratio, in place of params.target. With the sharper norm, patches are
-  /// smoothed by it, at first without other labels.
+  /// From now on tets are below target below this mean ratio, in place of params.target. With the sharper norm, patches
+  /// are smoothed by it, at first without other labels.
   void look_again(double target, bool sharper) {
     target_ = target;
     smoothing_.sharper = sharper;
@@ -89,21 +91,21 @@ class LabelTrials {
   /// Where a patch's vertices start from: where they are, or (a fold stays a fold under small steps) the lattice.
   enum class Start { Here, Lattice };
 
-  LatticeShell patch(const std::vector<std::int64_t>& centres, Start start) const;
-  PatchState state(const Shell& shell, const std::vector<std::uint8_t>& inside);
+  LatticeActiveLayer patch(const std::vector<std::int64_t>& centres, Start start) const;
+  PatchState state(const ActiveLayer& layer, const std::vector<std::uint8_t>& inside);
   void attempt(const TetIds& tet, std::span<const std::int64_t> flips, Start start, Best& best);
   bool smooth_while_promising(PNormSmoother& smoother, const PatchState& before);
-  void try_labels(const TetIds& tet, Start start, Best& best);
+  void try_flips(const TetIds& tet, Start start, Best& best);
 
   const BackgroundMesh& background_;
   const std::vector<LinkTopology>& links_;
   ImplicitFunctionRef psi_;
   const RepairParams& params_;
   double target_;
-  SmoothParams smoothing_;
-  const Places& places_;
+  SmoothingParams smoothing_;
+  const Positions& positions_;
   IdSet inside_;
-  LabelCandidates candidates_;
+  FlipCandidates candidates_;
   std::size_t end_of_tries_ = 0;
 };
 

@@ -13,8 +13,8 @@
 namespace umtet::detail {
 namespace {
 
-using Lane = Eigen::Array<double, kLanes, 1>;
-using LaneMap = Eigen::Map<const Lane, Eigen::Aligned32>;
+using Pack = Eigen::Array<double, kPackSize, 1>;
+using PackMap = Eigen::Map<const Pack, Eigen::Aligned32>;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -29,7 +29,7 @@ constexpr int kHalvings = 4;          // of a step that does not lower its sum; 
 constexpr int kUntangleRounds = 8;    // values of sigma; the queue comes back for those that rise
 constexpr double kVolumeScale = .07;  // of h^3: a tenth of six times the volume of a background tet
 
-LaneMap lane(const std::array<double, kMaxRing>& a, int k) { return LaneMap(a.data() + k); }
+PackMap lane(const std::array<double, kMaxRing>& a, int k) { return PackMap(a.data() + k); }
 
 template <int log2_p, class T>
 T to_power(T x) {
@@ -37,13 +37,13 @@ T to_power(T x) {
   return x;
 }
 
-Lane volumes(const OneRing& r, int k, const Vec3& y) {
+Pack volumes(const OneRing& r, int k, const Vec3& y) {
   return lane(r.v, k) - (lane(r.nx, k) * y.x() + lane(r.ny, k) * y.y() + lane(r.nz, k) * y.z());
 }
 
 double least_volume(const OneRing& r, const Vec3& y) {
-  Lane least = Lane::Constant(kInfinity);
-  for (int k = 0; k < r.n; k += kLanes) least = least.min(volumes(r, k, y));
+  Pack least = Pack::Constant(kInfinity);
+  for (int k = 0; k < r.n; k += kPackSize) least = least.min(volumes(r, k, y));
   return least.minCoeff();
 }
 
@@ -54,14 +54,14 @@ struct Sum {
 template <int log2_p>
 Sum sum_of_powers(const OneRing& r, const Vec3& y, double scale) {
   const double y2 = 3 * y.squaredNorm(), inverse = 1 / scale;
-  Lane sum = Lane::Zero(), greatest = Lane::Zero(), least_V = Lane::Constant(kInfinity);
-  for (int k = 0; k < r.n; k += kLanes) {
-    const Lane V = volumes(r, k, y);
-    const Lane L = lane(r.l, k) + (lane(r.sx, k) * y.x() + lane(r.sy, k) * y.y() + lane(r.sz, k) * y.z()) + y2;
-    const Lane F = L * L * L / (V * V);
+  Pack sum = Pack::Zero(), greatest = Pack::Zero(), least_V = Pack::Constant(kInfinity);
+  for (int k = 0; k < r.n; k += kPackSize) {
+    const Pack V = volumes(r, k, y);
+    const Pack L = lane(r.l, k) + (lane(r.sx, k) * y.x() + lane(r.sy, k) * y.y() + lane(r.sz, k) * y.z()) + y2;
+    const Pack F = L * L * L / (V * V);
     least_V = least_V.min(V);
     greatest = greatest.max(F);
-    sum += to_power<log2_p>(Lane(F * inverse));
+    sum += to_power<log2_p>(Pack(F * inverse));
   }
   if (!(least_V.minCoeff() > 0)) return {kInfinity, kInfinity};
   return {sum.sum(), greatest.maxCoeff()};
@@ -71,10 +71,10 @@ Sum sum_of_powers(const OneRing& r, const Vec3& y, double scale) {
 template <int log2_p>
 double sum_of_powers_here(const OneRing& r, double scale) {
   const double inverse = 1 / scale;
-  Lane sum = Lane::Zero();
-  for (int k = 0; k < r.n; k += kLanes) {
-    const Lane V = lane(r.v, k), L = lane(r.l, k);
-    sum += to_power<log2_p>(Lane(L * L * L / (V * V) * inverse));
+  Pack sum = Pack::Zero();
+  for (int k = 0; k < r.n; k += kPackSize) {
+    const Pack V = lane(r.v, k), L = lane(r.l, k);
+    sum += to_power<log2_p>(Pack(L * L * L / (V * V) * inverse));
   }
   return sum.sum();
 }
@@ -82,25 +82,25 @@ double sum_of_powers_here(const OneRing& r, double scale) {
 template <int log2_p>
 PowerSum power_sum_of(const OneRing& r, const Vec3& y, double scale) {
   const double y2 = 3 * y.squaredNorm(), inverse = 1 / scale, p = 1 << log2_p;
-  Lane sum = Lane::Zero(), least_V = Lane::Constant(kInfinity), diagonal = Lane::Zero();
-  std::array<Lane, 3> G = {Lane::Zero(), Lane::Zero(), Lane::Zero()};
-  std::array<Lane, 6> M = {Lane::Zero(), Lane::Zero(), Lane::Zero(), Lane::Zero(), Lane::Zero(), Lane::Zero()};
-  for (int k = 0; k < r.n; k += kLanes) {
-    const Lane Nx = lane(r.nx, k), Ny = lane(r.ny, k), Nz = lane(r.nz, k);
-    const Lane Sx = lane(r.sx, k), Sy = lane(r.sy, k), Sz = lane(r.sz, k);
-    const Lane V = lane(r.v, k) - (Nx * y.x() + Ny * y.y() + Nz * y.z());
-    const Lane L = lane(r.l, k) + (Sx * y.x() + Sy * y.y() + Sz * y.z()) + y2;
+  Pack sum = Pack::Zero(), least_V = Pack::Constant(kInfinity), diagonal = Pack::Zero();
+  std::array<Pack, 3> G = {Pack::Zero(), Pack::Zero(), Pack::Zero()};
+  std::array<Pack, 6> M = {Pack::Zero(), Pack::Zero(), Pack::Zero(), Pack::Zero(), Pack::Zero(), Pack::Zero()};
+  for (int k = 0; k < r.n; k += kPackSize) {
+    const Pack Nx = lane(r.nx, k), Ny = lane(r.ny, k), Nz = lane(r.nz, k);
+    const Pack Sx = lane(r.sx, k), Sy = lane(r.sy, k), Sz = lane(r.sz, k);
+    const Pack V = lane(r.v, k) - (Nx * y.x() + Ny * y.y() + Nz * y.z());
+    const Pack L = lane(r.l, k) + (Sx * y.x() + Sy * y.y() + Sz * y.z()) + y2;
     least_V = least_V.min(V);
-    const Lane iV = 1 / V, iL = 1 / L;
-    const Lane w = to_power<log2_p>(Lane(L * L * L * iV * iV * inverse));
+    const Pack iV = 1 / V, iL = 1 / L;
+    const Pack w = to_power<log2_p>(Pack(L * L * L * iV * iV * inverse));
     // b = -grad V / V, a = grad L / L, and g = grad ln F = 3 a + 2 b. Hess ln F = 18 / L I - 3 a a^T + 2 b b^T.
-    const Lane bx = Nx * iV, by = Ny * iV, bz = Nz * iV;
-    const Lane ax = (Sx + 6 * y.x()) * iL, ay = (Sy + 6 * y.y()) * iL, az = (Sz + 6 * y.z()) * iL;
-    const Lane gx = 3 * ax + 2 * bx, gy = 3 * ay + 2 * by, gz = 3 * az + 2 * bz;
+    const Pack bx = Nx * iV, by = Ny * iV, bz = Nz * iV;
+    const Pack ax = (Sx + 6 * y.x()) * iL, ay = (Sy + 6 * y.y()) * iL, az = (Sz + 6 * y.z()) * iL;
+    const Pack gx = 3 * ax + 2 * bx, gy = 3 * ay + 2 * by, gz = 3 * az + 2 * bz;
     sum += w;
     diagonal += w * iL;
     G[0] += w * gx, G[1] += w * gy, G[2] += w * gz;
-    const Lane pw = p * w, a3 = 3 * w, b2 = 2 * w;
+    const Pack pw = p * w, a3 = 3 * w, b2 = 2 * w;
     M[0] += pw * gx * gx - a3 * ax * ax + b2 * bx * bx;
     M[1] += pw * gy * gy - a3 * ay * ay + b2 * by * by;
     M[2] += pw * gz * gz - a3 * az * az + b2 * bz * bz;
@@ -144,9 +144,9 @@ Vec3 step_of(const PowerSum& at, const Directions& directions) {
 
 /// The greatest part of a step, at most all of it, that leaves every V the share kVolumeKept.
 double volume_limit(const OneRing& r, const Vec3& y, const Vec3& step) {
-  Lane shrink = Lane::Zero();
-  for (int k = 0; k < r.n; k += kLanes) {
-    const Lane rate = lane(r.nx, k) * step.x() + lane(r.ny, k) * step.y() + lane(r.nz, k) * step.z();
+  Pack shrink = Pack::Zero();
+  for (int k = 0; k < r.n; k += kPackSize) {
+    const Pack rate = lane(r.nx, k) * step.x() + lane(r.ny, k) * step.y() + lane(r.nz, k) * step.z();
     shrink = shrink.max(rate / volumes(r, k, y));
   }
   return std::min(1., (1 - kVolumeKept) / shrink.maxCoeff());
@@ -205,7 +205,7 @@ Vec3 untangle(const OneRing& ring, Vec3 y, double h, const Directions& direction
 }  // namespace
 
 void silence_padding(OneRing& r) {
-  for (int j = r.n; j % kLanes != 0; ++j) r.v[j] = kInfinity, r.nx[j] = r.ny[j] = r.nz[j] = 0;
+  for (int j = r.n; j % kPackSize != 0; ++j) r.v[j] = kInfinity, r.nx[j] = r.ny[j] = r.nz[j] = 0;
 }
 
 Bar::Bar(const OneRing& ring, double h, double gain, bool sharper) : sharper(sharper), scale(1 / ring.f_here) {
@@ -231,17 +231,18 @@ Displacement best_displacement(const OneRing& ring, const Bar& bar, double h, co
   return {std::isfinite(max_F) ? newton(ring, y, h, directions, max_F, bar.sharper).y : y, kNaN};
 }
 
-std::bitset<kMaxRing> poor_tets(const OneRing& ring, const Vec3& y, double good_f) {
+std::bitset<kMaxRing> tets_below_target(const OneRing& ring, const Vec3& y, double good_f) {
   static_assert(kMaxRing == 128);
-  std::array<std::uint64_t, 2> poor{};
+  std::array<std::uint64_t, 2> below_target{};
   const double y2 = 3 * y.squaredNorm();
-  for (int k = 0; k < ring.n; k += kLanes) {
-    const Lane V0 = lane(ring.v, k), V1 = volumes(ring, k, y), L0 = lane(ring.l, k);
-    const Lane L1 = L0 + (lane(ring.sx, k) * y.x() + lane(ring.sy, k) * y.y() + lane(ring.sz, k) * y.z()) + y2;
-    const Lane f = (V0 * V0.abs() / (L0 * L0 * L0)).min(V1 * V1.abs() / (L1 * L1 * L1));
-    for (int m = 0; m < kLanes; ++m) poor[k / 64] |= static_cast<std::uint64_t>(f[m] < good_f) << (k % 64 + m);
+  for (int k = 0; k < ring.n; k += kPackSize) {
+    const Pack V0 = lane(ring.v, k), V1 = volumes(ring, k, y), L0 = lane(ring.l, k);
+    const Pack L1 = L0 + (lane(ring.sx, k) * y.x() + lane(ring.sy, k) * y.y() + lane(ring.sz, k) * y.z()) + y2;
+    const Pack f = (V0 * V0.abs() / (L0 * L0 * L0)).min(V1 * V1.abs() / (L1 * L1 * L1));
+    for (int m = 0; m < kPackSize; ++m)
+      below_target[k / 64] |= static_cast<std::uint64_t>(f[m] < good_f) << (k % 64 + m);
   }
-  return std::bitset<kMaxRing>(poor[1]) << 64 | std::bitset<kMaxRing>(poor[0]);
+  return std::bitset<kMaxRing>(below_target[1]) << 64 | std::bitset<kMaxRing>(below_target[0]);
 }
 
 PowerSum power_sum(const OneRing& ring, const Vec3& y, int log2_p, double scale) {

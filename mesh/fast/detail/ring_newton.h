@@ -48,11 +48,11 @@ struct Displacement {
   }
 };
 
-/// The best displacement of a vertex that may step in these directions; as good as the ring can be had in one visit.
+/// The best displacement of a vertex that may step in these directions; as good as the ring can be had in one solve.
 Displacement best_displacement(const OneRing& ring, const Bar& bar, double h, const Directions& directions);
 
 /// The tets of the ring with 1/F, in the sign of V, below `good_f` at 0 or at y.
-std::bitset<kMaxRing> poor_tets(const OneRing& ring, const Vec3& y, double good_f);
+std::bitset<kMaxRing> tets_below_target(const OneRing& ring, const Vec3& y, double good_f);
 
 struct PowerSum {
   double sum = 0;                ///< infinite where some V <= 0

@@ -19,12 +19,13 @@ void write_faces(const std::filesystem::path& path, const SolverMesh& mesh, Surf
 
 }  // namespace
 
-void write_skin(const std::filesystem::path& path, const SolverMesh& mesh, SurfaceFormat format) {
+void write_boundary_surface(const std::filesystem::path& path, const SolverMesh& mesh, SurfaceFormat format) {
   write_faces(path, mesh, format, [](int) { return true; });
 }
 
-void write_skin(const std::filesystem::path& path, const SolverMesh& mesh, SurfaceFormat format, std::size_t patch) {
-  if (patch >= mesh.patches.size()) throw std::invalid_argument("write_skin: no such patch");
+void write_boundary_surface(const std::filesystem::path& path, const SolverMesh& mesh, SurfaceFormat format,
+                            std::size_t patch) {
+  if (patch >= mesh.patches.size()) throw std::invalid_argument("write_boundary_surface: no such patch");
   write_faces(path, mesh, format, [patch](int p) { return static_cast<std::size_t>(p) == patch; });
 }
 

@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/context.h"
 #include "mesh/background/background_mesh.h"
 #include "mesh/base/id_set.h"
 #include "mesh/core/implicit_function.h"
-#include "common/context.h"
 #include "mesh/submesh/submesh.h"
 
 namespace umtet::detail {

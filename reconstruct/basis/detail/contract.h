@@ -4,13 +4,13 @@
 #include <cstddef>
 #include <type_traits>
 
-#include "reconstruct/basis/simd_packs.h"
 #include "reconstruct/basis/lme_lattice.h"
+#include "reconstruct/basis/simd_packs.h"
 
 namespace umtet::detail {
 
-using LmeLanes = Eigen::Array<double, LmeBasis1d::kLanes, 1>;
-using LmeLanesMap = Eigen::Map<const LmeLanes, Eigen::Aligned32>;
+using LmePack = Eigen::Array<double, LmeBasis1d::kPackSize, 1>;
+using LmePackMap = Eigen::Map<const LmePack, Eigen::Aligned32>;
 
 enum JetOrder { kValue = 0, kGradient = 1, kHessian = 2 };
 
@@ -24,13 +24,13 @@ struct LatticeJet {
 /// The numbers of a jet as four partial sums each: f, fx fy fz, fxx fxy fxz fyy fyz fzz. Terms are added lane by lane,
 /// and the lanes once at the end.
 template <JetOrder order>
-struct JetLanes {
+struct JetPacks {
   static constexpr int kNumbers = order == kValue ? 1 : order == kGradient ? 4 : 10;
-  Lanes4d f[kNumbers];
+  Pack4d f[kNumbers];
 
-  JetLanes() {
+  JetPacks() {
 #pragma GCC unroll 10
-    for (int q = 0; q < kNumbers; ++q) f[q] = Lanes4d{};  // GCC makes a slow string instruction of "= {}"
+    for (int q = 0; q < kNumbers; ++q) f[q] = Pack4d{};  // GCC makes a slow string instruction of "= {}"
   }
   LatticeJet sum() const {
     double s[10];
@@ -46,7 +46,7 @@ struct JetLanes {
 /// The nodes 0 .. W - 1 of two neighbouring rows as W / 2 vectors: four nodes of either, then what is left. Of W = 6
 /// the rests of both rows share a vector.
 template <int W, class Coefficient>
-void load_rows(const Coefficient* row, const Coefficient* next, Lanes4d* c) {
+void load_rows(const Coefficient* row, const Coefficient* next, Pack4d* c) {
   c[0] = four(row), c[1] = four(next);
   if constexpr (W == 6) c[2] = two_and_two(row + 4, next + 4);
   if constexpr (W == 8) c[2] = four(row + 4), c[3] = four(next + 4);
@@ -60,17 +60,18 @@ void load_rows(const Coefficient* row, const Coefficient* next, Lanes4d* c) {
 /// @param nx, nxy distance of coefficients along y and z: numbers, or integral constants where they are known
 template <int W, JetOrder order, class Coefficient, class Nx, class Nxy>
 [[gnu::noinline, gnu::noclone]] void contract(const LmeBasis3d& B, const Coefficient* base, Nx nx, Nxy nxy,
-                                              JetLanes<order>& sum) {
+                                              JetPacks<order>& sum) {
   constexpr int kPairs = W / 2, kVectors = W / 2;
   const double *zN[3] = {B.z.N, B.z.dN, B.z.ddN}, *yN[3] = {B.y.N, B.y.dN, B.y.ddN};
-  Lanes4d a[kPairs][order + 1][kVectors];  // by rows, derivative in z
+  Pack4d a[kPairs][order + 1][kVectors];  // by rows, derivative in z
   for (int pair = 0; pair < kPairs; ++pair) {
     const Coefficient* row = base + 2 * pair * nx;
-    Lanes4d s[order + 1][kVectors], c[kVectors];
+    Pack4d s[order + 1][kVectors], c[kVectors];
     load_rows<W>(row, row + nx, c);
     for (int d = 0; d <= order; ++d)
       for (int v = 0; v < kVectors; ++v) s[d][v] = zN[d][0] * c[v];
-    // Not unrolled: GCC would load all of z at once, which is more than there are registers, and loads are what limits.
+        // Not unrolled: GCC would load all of z at once, which is more than there are registers, and loads are what
+        // limits.
 #pragma GCC unroll 1
     for (int k = 1; k < W; ++k) {
       row += nxy;
@@ -86,18 +87,18 @@ template <int W, JetOrder order, class Coefficient, class Nx, class Nxy>
   const auto along_yx = [&](int n, auto weight, auto term, auto x) {
     constexpr int kSums = order == kValue ? 1 : order == kGradient ? 3 : 6;
     constexpr int kY[6] = {0, 1, 0, 2, 1, 0}, kZ[6] = {0, 0, 1, 0, 1, 2};
-    Lanes4d s[kSums];
+    Pack4d s[kSums];
 #pragma GCC unroll 6
     for (int q = 0; q < kSums; ++q) s[q] = weight(kY[q], 0) * term(kZ[q], 0);
 #pragma GCC unroll 8
     for (int t = 1; t < n; ++t)
 #pragma GCC unroll 6
       for (int q = 0; q < kSums; ++q) s[q] = fused(weight(kY[q], t), term(kZ[q], t), s[q]);
-    const auto add = [&](int q, Lanes4d x, Lanes4d v) { sum.f[q] = fused(x, v, sum.f[q]); };
-    const Lanes4d N = x(B.x.N);
+    const auto add = [&](int q, Pack4d x, Pack4d v) { sum.f[q] = fused(x, v, sum.f[q]); };
+    const Pack4d N = x(B.x.N);
     add(0, N, s[0]);
     if constexpr (order >= kGradient) {
-      const Lanes4d dN = x(B.x.dN);
+      const Pack4d dN = x(B.x.dN);
       add(1, dN, s[0]), add(2, N, s[1]), add(3, N, s[2]);
       if constexpr (order >= kHessian) {
         add(4, x(B.x.ddN), s[0]), add(5, dN, s[1]), add(6, dN, s[2]);
@@ -112,7 +113,7 @@ template <int W, JetOrder order, class Coefficient, class Nx, class Nxy>
     along_yx(
         kPairs,
         [&](int d, int p) {
-          return Lanes4d{yN[d][2 * p], yN[d][2 * p], yN[d][2 * p + 1], yN[d][2 * p + 1]};
+          return Pack4d{yN[d][2 * p], yN[d][2 * p], yN[d][2 * p + 1], yN[d][2 * p + 1]};
         },
         [&](int d, int p) { return a[p][d][2]; }, [](const double* N) { return two_and_two(N + 4, N + 4); });
   }
@@ -127,7 +128,7 @@ template <int W, JetOrder order, class Coefficient, class Nx, class Nxy>
 template <int W, JetOrder order, class Coefficient>
 LatticeJet contract(const LmeBasis3d& B, const Eigen::Vector3i& n, const Coefficient* c) {
   const std::ptrdiff_t nx = n[0], nxy = nx * n[1];
-  JetLanes<order> sum;
+  JetPacks<order> sum;
   contract<W, order>(B, c + B.x.first + nx * B.y.first + nxy * B.z.first, nx, nxy, sum);
   return sum.sum();
 }

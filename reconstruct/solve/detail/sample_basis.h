@@ -7,9 +7,9 @@
 
 namespace umtet::detail {
 
-using FloatLanes = Eigen::Array<float, LmeBasis1d::kLanes, 1>;
-using FloatIn = Eigen::Map<const FloatLanes>;
-inline Eigen::Map<FloatLanes> float_lanes(float* at) { return Eigen::Map<FloatLanes>(at); }
+using FloatPack = Eigen::Array<float, LmeBasis1d::kPackSize, 1>;
+using FloatIn = Eigen::Map<const FloatPack>;
+inline Eigen::Map<FloatPack> float_pack(float* at) { return Eigen::Map<FloatPack>(at); }
 
 /// What is stored of a sample in single precision: eight lanes of N and N' in x, W values each in y and z, and the two
 /// weights.
@@ -45,15 +45,15 @@ struct SampleBasis {
 /// y += q N + g . grad N over the W^3 nodes of a sample, as add_sample.
 template <int W, class Nx, class Nxy>
 void scatter_sample(const SampleBasis<W>& B, float q, float gx, float gy, float gz, float* y, Nx nx, Nxy nxy) {
-  const FloatLanes N = B.xN(), t = q * N + gx * B.xdN(), ty = gy * N, tz = gz * N;
-  FloatLanes a[W], az[W];
+  const FloatPack N = B.xN(), t = q * N + gx * B.xdN(), ty = gy * N, tz = gz * N;
+  FloatPack a[W], az[W];
 #pragma GCC unroll 8
   for (int j = 0; j < W; ++j) a[j] = B.yN()[j] * t + B.ydN()[j] * ty, az[j] = B.yN()[j] * tz;
 #pragma GCC unroll 1
   for (int k = 0; k < W; ++k) {
     const float zN = B.zN()[k], zdN = B.zdN()[k];
 #pragma GCC unroll 8
-    for (int j = 0; j < W; ++j) float_lanes(y + k * nxy + j * nx) += zN * a[j] + zdN * az[j];
+    for (int j = 0; j < W; ++j) float_pack(y + k * nxy + j * nx) += zN * a[j] + zdN * az[j];
   }
 }
 
@@ -64,7 +64,7 @@ void scatter_sample(const SampleBasis<W>& B, float q, float gx, float gy, float 
 template <int W, class Nx, class Nxy>
 void add_sample(const SampleBasis<W>& B, const float* c, float* y, Nx nx, Nxy nxy) {
   // Plane by plane: 2 W sums stay in registers, and a weight in z is loaded once.
-  FloatLanes a[W], az[W];
+  FloatPack a[W], az[W];
 #pragma GCC unroll 8
   for (int j = 0; j < W; ++j) a[j].setZero(), az[j].setZero();
 #pragma GCC unroll 1
@@ -72,19 +72,19 @@ void add_sample(const SampleBasis<W>& B, const float* c, float* y, Nx nx, Nxy nx
     const float N = B.zN()[k], dN = B.zdN()[k];
 #pragma GCC unroll 8
     for (int j = 0; j < W; ++j) {
-      const FloatLanes row = FloatIn(c + k * nxy + j * nx);
+      const FloatPack row = FloatIn(c + k * nxy + j * nx);
       a[j] += N * row;
       az[j] += dN * row;
     }
   }
-  FloatLanes v = FloatLanes::Zero(), vy = v, vz = v;
+  FloatPack v = FloatPack::Zero(), vy = v, vz = v;
 #pragma GCC unroll 8
   for (int j = 0; j < W; ++j) {
     v += B.yN()[j] * a[j];
     vy += B.ydN()[j] * a[j];
     vz += B.yN()[j] * az[j];
   }
-  const FloatLanes N = B.xN(), dN = B.xdN();
+  const FloatPack N = B.xN(), dN = B.xdN();
   const float q = B.w_value() * (N * v).sum(), w = B.w_gradient();
   const float gx = w * (dN * v).sum(), gy = w * (N * vy).sum(), gz = w * (N * vz).sum();
   scatter_sample<W>(B, q, gx, gy, gz, y, nx, nxy);

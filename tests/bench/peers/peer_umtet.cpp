@@ -15,8 +15,8 @@
 #include <string>
 
 #include "mesh/background/body_size.h"
-#include "mesh/certify/certificate.h"
 #include "mesh/certify/boundary_surface.h"
+#include "mesh/certify/certificate.h"
 #include "mesh/io/solver_files.h"
 #include "mesh/universal_mesh.h"
 #include "tests/support/bench_domains.h"
@@ -42,7 +42,7 @@ double peak_MB() {
 }
 
 /// One entity per piece in SKIN.msh: Gmsh makes a volume of each.
-void write_skin(const std::string& stem, const TetMesh& mesh, const std::vector<Triangle>& skin) {
+void write_boundary_surface(const std::string& stem, const TetMesh& mesh, const std::vector<Triangle>& skin) {
   const SurfaceTopology topology = surface_topology(mesh.V, skin);
   std::vector<std::size_t> number(mesh.V.size());
   std::ofstream off(stem + ".off"), msh(stem + ".msh");
@@ -80,7 +80,8 @@ int run(int argc, char** argv) {
   params.mode = std::strcmp(argv[3], "paper") == 0 ? UmMode::Paper : UmMode::Fast;
   if (std::strcmp(argv[3], "crawl") == 0) params.search = SubmeshSearch::Crawl;
   const double peak_before = peak_MB(), start = cpu_seconds();
-  const LabelSource labels = params.mode == UmMode::Fast ? LabelSource::Chosen : LabelSource::Psi;
+  const ClassificationSource labels =
+      params.mode == UmMode::Fast ? ClassificationSource::Chosen : ClassificationSource::Psi;
   const double h = h_for_tets(domain, domain.box, std::stod(argv[2]), labels);
   UmResult result = universal_mesh(BackgroundMesh(a15(), domain.box, h), domain, params, {}, domain.boundary_seeds);
   const double meshed = cpu_seconds(), peak_meshed = peak_MB();
@@ -97,7 +98,7 @@ int run(int argc, char** argv) {
 
   const std::vector<Triangle>& skin = result.submesh.positive_faces;  // the certificate compares it with the boundary
   write_msh41(argv[4], solver_mesh(mesh), MshEncoding::Binary);
-  if (argc == 6) write_skin(argv[5], mesh, skin);
+  if (argc == 6) write_boundary_surface(argv[5], mesh, skin);
   const nlohmann::ordered_json numbers = {{"h", h},
                                           {"tets", mesh.C.size()},
                                           {"positive_faces", result.submesh.positive_faces.size()},

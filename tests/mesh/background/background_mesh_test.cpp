@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "mesh/background/body_size.h"
+#include "mesh/core/tet_quality.h"
 #include "mesh/submesh/crawl.h"
 #include "mesh/submesh/detail/assemble_submesh.h"
 #include "mesh/submesh/lattice_active_layer.h"
-#include "mesh/core/tet_quality.h"
 #include "tests/support/domains.h"
 
 namespace umtet {
@@ -56,16 +56,16 @@ TEST_P(OnEveryTiling, NeighborsShareTheirFaceAndAgree) {
       ASSERT_EQ(mesh.neighbor(other, back), t);
     }
   }
-  std::size_t rim = 0;
+  std::size_t background_boundary = 0;
   for (std::int64_t t = 0; t < mesh.n_tets(); ++t) {
-    for (int k = 0; k < 4; ++k) rim += mesh.neighbor(t, k) < 0;
+    for (int k = 0; k < 4; ++k) background_boundary += mesh.neighbor(t, k) < 0;
   }
   std::size_t single = 0;
   for (const auto& [face, n] : faces) {
     ASSERT_LE(n, 2);
     single += n == 1;
   }
-  EXPECT_EQ(single, rim);
+  EXPECT_EQ(single, background_boundary);
 }
 
 TEST_P(OnEveryTiling, StarAndLinkAreWhatTheTetsSay) {
@@ -86,7 +86,7 @@ TEST_P(OnEveryTiling, StarAndLinkAreWhatTheTetsSay) {
     ASSERT_EQ(s, std::vector<std::int64_t>(star[v].begin(), star[v].end()));
     ASSERT_EQ(l, std::vector<std::int64_t>(link[v].begin(), link[v].end()));
     ASSERT_EQ(mesh.has_tets(v), !star[v].empty());
-    ASSERT_EQ(mesh.on_rim(v), star[v].size() < mesh.tiling_tables().star[mesh.type(v)].size());
+    ASSERT_EQ(mesh.on_boundary(v), star[v].size() < mesh.tiling_tables().star[mesh.type(v)].size());
   }
 }
 
@@ -124,15 +124,15 @@ TEST_P(OnEveryTiling, CoversTheBox) {
 
 TEST(BackgroundMesh, RunsOffTheRimHaveNoVertexOnIt) {
   const BackgroundMesh mesh(a15(), kUnitBox, .05);
-  std::vector<char> on_rim;
-  for (std::int64_t v = 0; v < mesh.n_vertices(); ++v) on_rim.push_back(mesh.on_rim(v));
-  const auto n = static_cast<std::int64_t>(on_rim.size());
+  std::vector<char> on_boundary;
+  for (std::int64_t v = 0; v < mesh.n_vertices(); ++v) on_boundary.push_back(mesh.on_boundary(v));
+  const auto n = static_cast<std::int64_t>(on_boundary.size());
   std::int64_t said = 0;
   for (std::int64_t first = 0; first < n; ++first) {
     for (const std::int64_t last : {first, std::min(first + 63, n - 1)}) {
-      if (!mesh.is_off_rim(first, last)) continue;
+      if (!mesh.is_off_boundary(first, last)) continue;
       ++said;
-      ASSERT_EQ(std::count(on_rim.begin() + first, on_rim.begin() + last + 1, 1), 0) << first;
+      ASSERT_EQ(std::count(on_boundary.begin() + first, on_boundary.begin() + last + 1, 1), 0) << first;
     }
   }
   EXPECT_GT(said, n / 2);

@@ -27,15 +27,15 @@ TEST(ExpectedTets, ChosenLabelsTakeFewer) {
   for (const AnalyticDomain& domain : {testing::sphere(), testing::torus(), testing::banchoff_chmutov_4()}) {
     SCOPED_TRACE(domain.name);
     constexpr double kAsked = 20000;
-    const double h = h_for_tets(domain, domain.box, kAsked, LabelSource::Chosen);
+    const double h = h_for_tets(domain, domain.box, kAsked, ClassificationSource::Chosen);
     UmParams params;
     params.mode = UmMode::Fast;
     const UmResult result = universal_mesh(BackgroundMesh(a15(), domain.box, h), domain, params);
     ASSERT_EQ(result.status, UmStatus::Success) << result.evidence.what;
     EXPECT_NEAR(static_cast<double>(result.submesh.mesh.C.size()), kAsked, .07 * kAsked);
     const BodySize size = body_size(domain, domain.box);
-    EXPECT_NEAR(expected_tets(a15(), size, h, LabelSource::Chosen), kAsked, 1);
-    EXPECT_GT(expected_tets(a15(), size, h, LabelSource::Psi), 1.07 * kAsked);
+    EXPECT_NEAR(expected_tets(a15(), size, h, ClassificationSource::Chosen), kAsked, 1);
+    EXPECT_GT(expected_tets(a15(), size, h, ClassificationSource::Psi), 1.07 * kAsked);
   }
 }
 

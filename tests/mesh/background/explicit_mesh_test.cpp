@@ -8,8 +8,8 @@
 
 #include "mesh/background/a15_box.h"
 #include "mesh/background/body_size.h"
-#include "mesh/submesh/crawl.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/submesh/crawl.h"
 #include "mesh/universal_mesh.h"
 #include "tests/support/domains.h"
 
@@ -37,7 +37,7 @@ TEST(ExplicitMesh, AsABackgroundIsTheLatticeItLists) {
   const BackgroundMesh lattice(a15(), domain.box, h_for_tets(domain, domain.box, 8000));
   const BackgroundMesh background(listed(lattice));
   EXPECT_FALSE(background.is_lattice());
-  EXPECT_NEAR(background.h(), lattice.h(), .02 * lattice.h());  // edges at the rim have another mean
+  EXPECT_NEAR(background.h(), lattice.h(), .02 * lattice.h());  // edges at the background boundary have another mean
   const Submesh expected = find_submesh(lattice, domain);
   for (const Submesh& found :
        {find_submesh(background, domain), crawl(background, domain, domain.boundary_seeds).submesh}) {
@@ -46,14 +46,14 @@ TEST(ExplicitMesh, AsABackgroundIsTheLatticeItLists) {
     EXPECT_EQ(found.background_tet, expected.background_tet);
     EXPECT_EQ(found.positive_faces, expected.positive_faces);
   }
-  std::size_t rim = 0;
+  std::size_t background_boundary = 0;
   for (std::int64_t t = 0; t < lattice.n_tets(); ++t) {
     for (int k = 0; k < 4; ++k) {
       ASSERT_EQ(background.neighbor(t, k), lattice.neighbor(t, k));
-      rim += lattice.neighbor(t, k) < 0;
+      background_boundary += lattice.neighbor(t, k) < 0;
     }
   }
-  EXPECT_GT(rim, 0u);
+  EXPECT_GT(background_boundary, 0u);
 }
 
 TEST(ExplicitMesh, IsMeshedInBothModes) {
@@ -113,7 +113,7 @@ TEST(A15Box, HasFlatWallsAndNoObtuseAngle) {
   const ExplicitMesh stored(mesh);
   for (std::size_t v = 0; v < mesh.V.size(); ++v) {
     const double to_wall = std::min((mesh.V[v] - box.min()).minCoeff(), (box.max() - mesh.V[v]).minCoeff());
-    EXPECT_EQ(stored.on_rim(static_cast<int>(v)), to_wall == 0);
+    EXPECT_EQ(stored.on_boundary(static_cast<int>(v)), to_wall == 0);
   }
   const TetMesh cell = a15_box(Box(Vec3::Zero(), Vec3::Ones()), a15().mean_edge);
   EXPECT_EQ(cell.V.size(), 33u);

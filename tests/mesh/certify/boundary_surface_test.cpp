@@ -16,22 +16,22 @@
 namespace umtet {
 namespace {
 
-SurfaceTopology skin_of(const TetMesh& mesh) {
+SurfaceTopology surface_of(const TetMesh& mesh) {
   return surface_topology(mesh.V, boundary_faces(mesh.C, mesh.V.size()).triangles);
 }
 
 TEST(BoundaryFaces, OfABallAreItsSphereSeenFromOutside) {
   std::vector<Triangle> sphere;
   const TetMesh mesh = testing::ball(2, sphere);
-  const BoundaryFaces skin = boundary_faces(mesh.C, mesh.V.size());
-  EXPECT_EQ(skin.triangles.size(), sphere.size());
-  EXPECT_EQ(skin.n_overused, 0u);
-  EXPECT_EQ(skin.n_same_side, 0u);
-  for (std::size_t i = 0; i < skin.triangles.size(); ++i) {
-    const Triangle& f = skin.triangles[i];
+  const BoundaryFaces surface = boundary_faces(mesh.C, mesh.V.size());
+  EXPECT_EQ(surface.triangles.size(), sphere.size());
+  EXPECT_EQ(surface.n_overused, 0u);
+  EXPECT_EQ(surface.n_same_side, 0u);
+  for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
+    const Triangle& f = surface.triangles[i];
     const Vec3 &a = mesh.V[f[0]], &b = mesh.V[f[1]], &c = mesh.V[f[2]];
     EXPECT_GT((b - a).cross(c - a).dot(a), 0);
-    const Tet& t = mesh.C[skin.tets[i]];
+    const Tet& t = mesh.C[surface.tets[i]];
     for (const int v : f) EXPECT_NE(std::find(t.begin(), t.end(), v), t.end());
   }
 }
@@ -125,21 +125,21 @@ TEST(BoundaryFaces, RefusesIndicesThatDoNotExist) {
 
 TEST(SurfaceTopology, BallBlockRingAndDoubleRingHaveTheirGenus) {
   std::vector<Triangle> sphere;
-  const SurfaceTopology ball = skin_of(testing::ball(3, sphere));
+  const SurfaceTopology ball = surface_of(testing::ball(3, sphere));
   EXPECT_TRUE(ball.closed_manifold);
   EXPECT_EQ(ball.euler_characteristic, 2);
   EXPECT_EQ(ball.genus, 0);
   EXPECT_NEAR(ball.area, 4 * std::numbers::pi, 0.02 * 4 * std::numbers::pi);  // 512 faces: measured 1.3 % below
 
   const SurfaceTopology ring =
-      skin_of(testing::cubes(3, [](int i, int j, int k) { return k == 0 && !(i == 1 && j == 1); }));
+      surface_of(testing::cubes(3, [](int i, int j, int k) { return k == 0 && !(i == 1 && j == 1); }));
   EXPECT_TRUE(ring.closed_manifold);
   EXPECT_EQ(ring.euler_characteristic, 0);
   EXPECT_EQ(ring.genus, 1);
   EXPECT_NEAR(ring.area, 2 * 8 + 12 + 4, 1e-12);
   EXPECT_NEAR(ring.components[0].volume, 8, 1e-12);
 
-  const SurfaceTopology two = skin_of(
+  const SurfaceTopology two = surface_of(
       testing::cubes(5, [](int i, int j, int k) { return k == 0 && j < 3 && !((i == 1 || i == 3) && j == 1); }));
   EXPECT_TRUE(two.closed_manifold);
   EXPECT_EQ(two.genus, 2);
@@ -147,7 +147,7 @@ TEST(SurfaceTopology, BallBlockRingAndDoubleRingHaveTheirGenus) {
 
 TEST(SurfaceTopology, ACavityIsAComponentOfNegativeVolume) {
   const SurfaceTopology s =
-      skin_of(testing::cubes(3, [](int i, int j, int k) { return !(i == 1 && j == 1 && k == 1); }));
+      surface_of(testing::cubes(3, [](int i, int j, int k) { return !(i == 1 && j == 1 && k == 1); }));
   EXPECT_TRUE(s.closed_manifold);
   ASSERT_EQ(s.components.size(), 2u);
   EXPECT_EQ(s.euler_characteristic, 4);
@@ -156,13 +156,13 @@ TEST(SurfaceTopology, ACavityIsAComponentOfNegativeVolume) {
 }
 
 TEST(SurfaceTopology, BodiesThatTouchInAVertexOrAnEdgeAreNoManifold) {
-  const SurfaceTopology vertex = skin_of(testing::cubes(2, [](int i, int j, int k) { return i == j && j == k; }));
+  const SurfaceTopology vertex = surface_of(testing::cubes(2, [](int i, int j, int k) { return i == j && j == k; }));
   EXPECT_FALSE(vertex.closed_manifold);
   EXPECT_EQ(vertex.n_nonmanifold_vertices, 1u);
   EXPECT_EQ(vertex.n_nonmanifold_edges, 0u);
   EXPECT_EQ(vertex.components.size(), 1u);
 
-  const SurfaceTopology edge = skin_of(testing::cubes(2, [](int i, int j, int k) { return i == j && k == 0; }));
+  const SurfaceTopology edge = surface_of(testing::cubes(2, [](int i, int j, int k) { return i == j && k == 0; }));
   EXPECT_FALSE(edge.closed_manifold);
   EXPECT_EQ(edge.n_nonmanifold_edges, 1u);
 }

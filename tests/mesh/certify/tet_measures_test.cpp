@@ -7,16 +7,16 @@
 #include <limits>
 #include <random>
 
-#include "mesh/core/tet_packs.h"
-#include "mesh/core/orientation.h"
 #include "mesh/certify/quality_report.h"
+#include "mesh/core/orientation.h"
+#include "mesh/core/tet_packs.h"
 #include "mesh/core/tet_quality.h"
 
 namespace umtet {
 namespace {
 
-using detail::measure_tet_lanes;
-using detail::TetLanes;
+using detail::measure_tet_pack;
+using detail::TetPack;
 
 double cotangent2(double degrees) {
   const double cotangent = 1 / std::tan(degrees * M_PI / 180);
@@ -39,11 +39,11 @@ TetMesh random_tets(std::size_t n) {
   return mesh;
 }
 
-TEST(TetLanes, AgreeWithWhatIsMeasuredOfOneTet) {
+TEST(TetPack, AgreeWithWhatIsMeasuredOfOneTet) {
   const TetMesh mesh = random_tets(2000);
   std::size_t n_inverted = 0;
   for (std::size_t t = 0; t + 4 <= mesh.C.size(); t += 4) {
-    const TetLanes lanes = measure_tet_lanes(mesh, &mesh.C[t], 4);
+    const TetPack lanes = measure_tet_pack(mesh, &mesh.C[t], 4);
     for (int m = 0; m < 4; ++m) {
       const Tet& tet = mesh.C[t + m];
       const Vec3 &a = mesh.V[tet[0]], &b = mesh.V[tet[1]], &c = mesh.V[tet[2]], &d = mesh.V[tet[3]];
@@ -64,26 +64,26 @@ TEST(TetLanes, AgreeWithWhatIsMeasuredOfOneTet) {
   EXPECT_LT(n_inverted, 1500u);
 }
 
-TEST(TetLanes, ATetWithTwoCornersAtOnePlaceHasAnAngleOfZero) {
+TEST(TetPack, ATetWithTwoCornersAtOnePlaceHasAnAngleOfZero) {
   for (int k = 1; k < 4; ++k) {
     TetMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}};
     mesh.V[k] = mesh.V[0];
-    const TetLanes lanes = measure_tet_lanes(mesh, &mesh.C[0], 1);
+    const TetPack lanes = measure_tet_pack(mesh, &mesh.C[0], 1);
     EXPECT_EQ(lanes.greatest_cotangent[0], std::numeric_limits<double>::infinity()) << k;
     EXPECT_EQ(std::signbit(lanes.quality[0]), false) << k;
     EXPECT_TRUE(lanes.inverted[0]) << k;
   }
 }
 
-TEST(TetLanes, WhatIsFoundOfATetDoesNotDependOnTheOthers) {
+TEST(TetPack, WhatIsFoundOfATetDoesNotDependOnTheOthers) {
   TetMesh mesh = random_tets(7);
   mesh.V[9] = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());  // of tet 2
   mesh.V[20] = mesh.V[21] = mesh.V[22] = mesh.V[23];                     // tet 5 in one point
-  const TetLanes first = measure_tet_lanes(mesh, &mesh.C[0], 4), later = measure_tet_lanes(mesh, &mesh.C[3], 4);
+  const TetPack first = measure_tet_pack(mesh, &mesh.C[0], 4), later = measure_tet_pack(mesh, &mesh.C[3], 4);
   EXPECT_EQ(first.quality[3], later.quality[0]);
   EXPECT_EQ(first.volume6[3], later.volume6[0]);
   EXPECT_EQ(first.least_cotangent[3], later.least_cotangent[0]);
-  EXPECT_EQ(measure_tet_lanes(mesh, &mesh.C[3], 1).quality[0], later.quality[0]);
+  EXPECT_EQ(measure_tet_pack(mesh, &mesh.C[3], 1).quality[0], later.quality[0]);
   EXPECT_EQ(first.quality[2], -1) << "not a number";
   EXPECT_TRUE(first.inverted[2]);
   EXPECT_EQ(later.quality[2], -1) << "no size";

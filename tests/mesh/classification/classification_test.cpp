@@ -11,10 +11,10 @@
 
 #include "mesh/background/body_size.h"
 #include "mesh/certify/certificate.h"
-#include "mesh/submesh/detail/assemble_submesh.h"
-#include "mesh/classification/detail/classification_band.h"
-#include "mesh/submesh/inside_walk.h"
 #include "mesh/classification/configuration_costs.h"
+#include "mesh/classification/detail/classification_band.h"
+#include "mesh/submesh/detail/assemble_submesh.h"
+#include "mesh/submesh/inside_walk.h"
 #include "mesh/submesh/lattice_active_layer.h"
 #include "tests/support/domains.h"
 
@@ -25,14 +25,15 @@ using testing::AnalyticDomain;
 
 struct Labelled {
   detail::IdSet plain, chosen;
-  LabelReport report;
+  ClassificationReport report;
 };
 
-Labelled choose(const BackgroundMesh& background, const AnalyticDomain& domain, const LabelParams& params = {}) {
+Labelled choose(const BackgroundMesh& background, const AnalyticDomain& domain,
+                const ClassificationParams& params = {}) {
   std::size_t n = 0;
   const detail::IdSet plain = detail::inside_vertices(background, domain, n);
   Labelled result{plain, plain, {}};
-  result.report = choose_labels(background, a15_links(), domain, params, result.chosen);
+  result.report = classify_vertices(background, a15_links(), domain, params, result.chosen);
   return result;
 }
 
@@ -54,11 +55,11 @@ MeshCertificate certificate(const Submesh& submesh) {
 }
 
 /// Prices up to 655 that mean nothing.
-LabelEnergies dice(std::uint32_t seed = 1) {
-  LabelEnergies energies = a15_label_energies();
+StarCostTable dice(std::uint32_t seed = 1) {
+  StarCostTable costs = a15_star_costs();
   std::uint32_t state = seed;
-  energies.generate([&] { return static_cast<float>((state = state * 1664525u + 1013904223u) >> 16) / 100; });
-  return energies;
+  costs.generate([&] { return static_cast<float>((state = state * 1664525u + 1013904223u) >> 16) / 100; });
+  return costs;
 }
 
 TEST(Labels, ChangesKeepTheEulerCharacteristicWhateverThePrices) {
@@ -66,12 +67,12 @@ TEST(Labels, ChangesKeepTheEulerCharacteristicWhateverThePrices) {
   for (const AnalyticDomain& domain : testing::domains()) {
     SCOPED_TRACE(domain.name);
     const BackgroundMesh background = background_of(domain, 15000);
-    const LabelEnergies any = dice();
-    LabelParams params;
-    params.energies = &any;  // as many for what is no manifold: only the guards hold
+    const StarCostTable any = dice();
+    ClassificationParams params;
+    params.costs = &any;  // as many for what is no manifold: only the guards hold
     params.reach_out = .5;
     params.shift = .15;
-    for (const LabelParams& p : {params, LabelParams{}}) {
+    for (const ClassificationParams& p : {params, ClassificationParams{}}) {
       const Labelled labelled = choose(background, domain, p);
       n_flips += labelled.report.flips;
       EXPECT_EQ(labelled.report.not_manifold, 0u);
@@ -97,7 +98,7 @@ TEST(Labels, ThoseOfAMeshBeforeStayWhereOthersAreNotBetter) {
   };
   std::size_t n = 0;
   detail::IdSet kept = detail::inside_vertices(background, after, n);
-  const LabelReport report = choose_labels(background, a15_links(), after, {}, kept, {}, &last);
+  const ClassificationReport report = classify_vertices(background, a15_links(), after, {}, kept, {}, &last);
   EXPECT_GT(report.returned, 0u);
   EXPECT_LT(changes(kept), .8 * changes(choose(background, after).chosen));
   const MeshCertificate c = certificate(emit_submesh(background, kept));
@@ -114,8 +115,8 @@ TEST(Labels, AreTheSameWithWhatTheSearchHasAsked) {
   EXPECT_TRUE(walk.values().empty());
   walk.update(domain, {});
   detail::IdSet inside = walk.inside();
-  const LabelReport report =
-      detail::choose_labels(background, a15_links(), domain, {}, inside, {}, nullptr, &walk.values());
+  const ClassificationReport report =
+      detail::classify_vertices(background, a15_links(), domain, {}, inside, {}, nullptr, &walk.values());
   EXPECT_TRUE(inside == without.chosen);
   EXPECT_GT(report.flips, 0u);
   EXPECT_EQ(report.psi_evaluations + walk.values().size(), without.report.psi_evaluations);
@@ -123,36 +124,36 @@ TEST(Labels, AreTheSameWithWhatTheSearchHasAsked) {
   detail::PsiValues smaller = walk.values();
   for (detail::PsiValue& at : smaller) at.value += .5 * background.h() * at.gradient.norm();
   inside = walk.inside();
-  detail::choose_labels(background, a15_links(), domain, {}, inside, {}, nullptr, &smaller);
+  detail::classify_vertices(background, a15_links(), domain, {}, inside, {}, nullptr, &smaller);
   EXPECT_FALSE(inside == without.chosen);
 }
 
 TEST(Labels, LowerThePriceOfTheBoundary) {
   const AnalyticDomain domain = testing::torus();
   const BackgroundMesh background = background_of(domain, 15000);
-  const auto price = [&](const detail::IdSet& inside) {
+  const auto cost = [&](const detail::IdSet& inside) {
     double sum = 0;
     for (std::int64_t v = 0; v < background.n_vertices(); ++v) {
-      if (inside.test(v) || background.on_rim(v)) continue;
+      if (inside.test(v) || background.on_boundary(v)) continue;
       const int type = background.type(v);
       unsigned mask = 0, k = 0;
       for (const Tiling::Corner& c : background.tiling_tables().link[type]) {
         mask |= static_cast<unsigned>(inside.test(v + background.id_step(type, c))) << k++;
       }
-      if (mask != 0) sum += a15_label_energies()(a15_links()[type].site, a15_links()[type].state(mask));
+      if (mask != 0) sum += a15_star_costs()(a15_links()[type].site, a15_links()[type].state(mask));
     }
     return sum;
   };
   const Labelled labelled = choose(background, domain);
   EXPECT_TRUE(labelled.report.settled);
-  EXPECT_LT(price(labelled.chosen), .8 * price(labelled.plain));
+  EXPECT_LT(cost(labelled.chosen), .8 * cost(labelled.plain));
 }
 
-/// Changes labels and prices them, without the descent's shortcuts.
+/// Changes labels and costs them, without the descent's shortcuts.
 class Pricing {
  public:
   /// @param last  labels of a mesh before, or null
-  explicit Pricing(detail::LabelBand& band, const detail::IdSet* last = nullptr) : band_(band), last_(last) {}
+  explicit Pricing(detail::ClassificationBand& band, const detail::IdSet* last = nullptr) : band_(band), last_(last) {}
 
   void take(const detail::IdSet& inside) {
     for (int v = 0; v < static_cast<int>(band_.size()); ++v) {
@@ -160,7 +161,7 @@ class Pricing {
     }
   }
 
-  /// How many changes of a label (or of those of two neighbours) would lower the energy, by `keep` where they leave the
+  /// How many changes of a label (or of those of two neighbours) would lower the cost, by `keep` where they leave the
   /// labels of last.
   int n_better_singles() {
     int n = 0;
@@ -191,13 +192,13 @@ class Pricing {
 
   LinkState state(int v) const { return a15_links()[band_.type[v]].state(band_.mask[v]); }
 
-  double price(int v) const {
+  double cost(int v) const {
     const double phi = band_.phi[v];
     if (band_.label[v]) {
       return params_.inside_weight * std::pow(std::max(0., phi + params_.inside_depth), 2);
     }
     if (band_.mask[v] == 0) return 0;
-    return a15_label_energies()(a15_links()[band_.type[v]].site, state(v)) +
+    return a15_star_costs()(a15_links()[band_.type[v]].site, state(v)) +
            params_.outside_weight * std::pow(phi - params_.outside_height, 2);
   }
 
@@ -210,14 +211,14 @@ class Pricing {
     return gain(vertices) > least;
   }
 
-  /// Minus the change of energy; 0 where the topology of inside, outside or boundary would change.
+  /// Minus the change of cost; 0 where the topology of inside, outside or boundary would change.
   double gain(std::initializer_list<int> vertices) {
     std::set<int> touched(vertices);
     for (const int v : vertices) touched.insert(band_.link(v).begin(), band_.link(v).end());
     const auto sum = [&] {
-      double prices = 0;
-      for (const int v : touched) prices += price(v);
-      return prices;
+      double costs = 0;
+      for (const int v : touched) costs += cost(v);
+      return costs;
     };
     const auto manifold = [&](int v) { return band_.label[v] || band_.mask[v] == 0 || state(v).manifold; };
     const double before = sum();
@@ -232,8 +233,8 @@ class Pricing {
     return keeps_topology ? before - after : 0;
   }
 
-  LabelParams params_;
-  detail::LabelBand& band_;
+  ClassificationParams params_;
+  detail::ClassificationBand& band_;
   const detail::IdSet* last_;
 };
 
@@ -243,8 +244,8 @@ TEST(Labels, NoChangeOfOneOrOfTwoNeighboursIsBetter) {
     const BackgroundMesh background = background_of(domain, 6000);
     const Labelled labelled = choose(background, domain);
     ASSERT_EQ(labelled.report.thin, 0u);
-    const LabelParams params;
-    detail::LabelBand band(background, a15_links(), domain, params, labelled.plain, {});
+    const ClassificationParams params;
+    detail::ClassificationBand band(background, a15_links(), domain, params, labelled.plain, {});
     Pricing pricing(band);
     EXPECT_GT(pricing.n_better_singles(), 50);
     EXPECT_GT(pricing.n_better_pairs(), 50);
@@ -259,11 +260,11 @@ TEST(Labels, NoChangeIsBetterByMoreThanKeepWhereItLeavesTheLabelsBefore) {
   const BackgroundMesh background = background_of(before, 60000);
   const AnalyticDomain after = raised(before, .2 * background.h());
   const detail::IdSet last = choose(background, before).chosen;
-  const LabelParams params;
+  const ClassificationParams params;
   const detail::IdSet plain = choose(background, after).plain;
   detail::IdSet inside = plain;
-  choose_labels(background, a15_links(), after, params, inside, {}, &last);
-  detail::LabelBand band(background, a15_links(), after, params, plain, {});
+  classify_vertices(background, a15_links(), after, params, inside, {}, &last);
+  detail::ClassificationBand band(background, a15_links(), after, params, plain, {});
   Pricing with_keep(band, &last), without(band);
   with_keep.take(inside);
   EXPECT_EQ(with_keep.n_better_singles(), 0);
@@ -297,13 +298,13 @@ TEST(Labels, NoneChangesWhereProjectionWouldStretchTheBoundary) {
     if (H) *H = side * 2 * Mat3::Identity();
     return side > 0 ? x.squaredNorm() - 9 : 1 - x.squaredNorm();
   };
-  LabelParams free;
+  ClassificationParams free;
   free.inside_weight = free.outside_weight = 0;
   free.most_stretch = 1e9;
   free.reach_out = .9;
-  LabelParams held = free;
+  ClassificationParams held = free;
   held.most_stretch = 1.2;
-  const auto n_far_changes = [&](const AnalyticDomain& domain, const LabelParams& params) {
+  const auto n_far_changes = [&](const AnalyticDomain& domain, const ClassificationParams& params) {
     std::size_t n = 0;
     const BackgroundMesh background(a15(), testing::cube_box(3.7), h);
     const Labelled labelled = choose(background, domain, params);
@@ -315,8 +316,8 @@ TEST(Labels, NoneChangesWhereProjectionWouldStretchTheBoundary) {
   for (const AnalyticDomain& domain : {ball, hollow}) {
     std::size_t n_free = 0;
     for (std::uint32_t seed = 1; seed <= 8; ++seed) {
-      const LabelEnergies any = dice(seed);
-      free.energies = held.energies = &any;
+      const StarCostTable any = dice(seed);
+      free.costs = held.costs = &any;
       n_free += n_far_changes(domain, free);
       EXPECT_EQ(n_far_changes(domain, held), 0u);
     }
@@ -327,7 +328,7 @@ TEST(Labels, NoneChangesWhereProjectionWouldStretchTheBoundary) {
 TEST(Labels, NoneChangesWhereTheBodyOrAGapIsThin) {
   const AnalyticDomain disc = testing::ellipsoid({1, 1, .08});
   const BackgroundMesh background(a15(), testing::cube_box(1.3), .09);  // 1.8 edges thick
-  LabelParams guarded;
+  ClassificationParams guarded;
   guarded.least_thickness = 2;
   const Labelled thin = choose(background, disc, guarded);
   EXPECT_GT(thin.report.thin, 0u);
@@ -341,7 +342,7 @@ TEST(Labels, NoneChangesWhereTheBodyOrAGapIsThin) {
     return n;
   };
   EXPECT_EQ(n_inner_changes(background, thin), 0u);
-  LabelParams unguarded;
+  ClassificationParams unguarded;
   unguarded.least_thickness = 0;
   EXPECT_GT(n_inner_changes(background, choose(background, disc, unguarded)), 0u);
 
@@ -377,7 +378,7 @@ TEST(Labels, DoNotDependOnThreads) {
 }
 
 TEST(Labels, BrokenParamsAreAllNamed) {
-  LabelParams params;
+  ClassificationParams params;
   EXPECT_TRUE(problems(params).empty());
   params.shift = .2;
   params.reach_in = -1;

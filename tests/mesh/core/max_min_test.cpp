@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/paper/relaxation_direction.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/paper/relaxation_direction.h"
 
 #ifdef UMTET_WITH_GSL
 #include "mesh/core/polynomial_roots.h"

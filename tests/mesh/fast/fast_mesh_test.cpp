@@ -7,8 +7,8 @@
 #include <cstring>
 
 #include "mesh/background/body_size.h"
-#include "mesh/fast/patch_state.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/fast/patch_state.h"
 #include "tests/support/bench_domains.h"
 #include "tests/support/certified.h"
 #include "tests/support/domains.h"
@@ -25,7 +25,7 @@ UmParams fast() {
 }
 
 BackgroundMesh background_of(const AnalyticDomain& domain, double n_tets) {
-  return BackgroundMesh(a15(), domain.box, h_for_tets(domain, domain.box, n_tets, LabelSource::Chosen));
+  return BackgroundMesh(a15(), domain.box, h_for_tets(domain, domain.box, n_tets, ClassificationSource::Chosen));
 }
 
 struct Quality {
@@ -106,7 +106,7 @@ TEST(FastMesh, DoesNotDependOnThreadsOrOnTheSearch) {
 
 /// All of a result, as repair sees it.
 PatchState state_of(const UmResult& result, const AnalyticDomain& domain, double h, double target = .82) {
-  Shell whole;
+  ActiveLayer whole;
   whole.V = result.final;
   whole.C = result.submesh.mesh.C;
   whole.h = h;
@@ -134,14 +134,14 @@ TEST(FastMesh, RepairMakesNothingWorseAndMendsPoorTetsAndFoldedFaces) {
     const PatchState before = state_of(plain, domain, background.h()),
                      after = state_of(repaired, domain, background.h());
     EXPECT_TRUE(after.is_no_worse_than(before));
-    mended += before.poor - after.poor;
-    unturned += before.turned - after.turned;
-    unfolded += before.folded - after.folded;
+    mended += before.below_target - after.below_target;
+    unturned += before.misaligned - after.misaligned;
+    unfolded += before.folded_over - after.folded_over;
     const MeshCertificate c = testing::certificate_of(repaired, domain, background.h());
     EXPECT_TRUE(c.boundary.closed_manifold);
     EXPECT_EQ(c.quality.n_inverted, 0u);
     EXPECT_EQ(c.boundary.genus, domain.genus);
-    EXPECT_EQ(c.boundary.n_cos_below_half, after.turned);  // by its own projection
+    EXPECT_EQ(c.boundary.n_cos_below_half, after.misaligned);  // by its own projection
   }
   EXPECT_GT(mended, 0u);
   EXPECT_GT(unturned, 0u);
@@ -166,7 +166,7 @@ TEST(FastMesh, PatchesThatAreMendedStayNearARim) {
 }
 
 // Thin bodies. By the norm of all meshes, a patch may stay a little below the target; and one that has to keep every
-// tet above it may not find the way to a boundary without turned faces. How many are mended then hangs on rounding;
+// tet above it may not find the way to a boundary without misaligned faces. How many are mended then hangs on rounding;
 // that some are, and that nothing gets worse, does not.
 TEST(FastMesh, WhatNothingMendsIsTriedAgainOtherwise) {
   constexpr double kTarget = .82, kLess = .01;
@@ -199,7 +199,7 @@ TEST(FastMesh, WhatNothingMendsIsTriedAgainOtherwise) {
   EXPECT_GT(by_less, 0u);
 }
 
-// 31 poor tets, mended up to two at once: those of one round must be far enough from each other.
+// 31 below target tets, mended up to two at once: those of one round must be far enough from each other.
 TEST(FastMesh, TetsThatAreMendedAtOnceDoNotMeet) {
   const AnalyticDomain domain = testing::banchoff_chmutov_6();
   const BackgroundMesh background = background_of(domain, 100000);
@@ -217,8 +217,8 @@ TEST(FastMesh, TetsThatAreMendedAtOnceDoNotMeet) {
   EXPECT_EQ(std::memcmp(one.final.data(), three.final.data(), one.final.size() * sizeof(Vec3)), 0);
 }
 
-// The last of its poor tets needs a pair of labels whose patch has 57 more poor tets after a sweep, and none after ten:
-// given up too early, it leaves .8187.
+// The last of its below target tets needs a pair of labels whose patch has 57 more below target tets after a sweep, and
+// none after ten: given up too early, it leaves .8187.
 TEST(FastMesh, RepairWaitsForPatchesThatGetWorseFirst) {
   const AnalyticDomain domain = testing::equation_9();
   const UmResult result = universal_mesh(background_of(domain, 500000), domain, fast());
@@ -236,7 +236,7 @@ TEST(FastMesh, WhatCannotBeMeshedIsAStatusWithEvidence) {
   const UmResult out = universal_mesh(small, testing::sphere(), fast());
   EXPECT_EQ(out.status, UmStatus::DomainLeavesBackground);
   EXPECT_GT(out.evidence.count, 0u);
-  EXPECT_TRUE(small.on_rim(out.evidence.background_vertex));
+  EXPECT_TRUE(small.on_boundary(out.evidence.background_vertex));
   EXPECT_EQ(out.final.size(), out.submesh.mesh.V.size());
 
   const AnalyticDomain disc = testing::ellipsoid({1, 1, .01});  // a tenth of an edge thick

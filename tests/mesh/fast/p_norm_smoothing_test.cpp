@@ -9,8 +9,8 @@
 #include <random>
 #include <set>
 
-#include "mesh/fast/detail/ring_newton.h"
 #include "mesh/fast/backtracking_projection.h"
+#include "mesh/fast/detail/ring_newton.h"
 #include "tests/support/omega_h_shell.h"
 
 namespace umtet {
@@ -21,7 +21,7 @@ using testing::off_surface;
 using testing::omega_h_shell;
 using testing::ring_quality;
 using testing::worst_quality;
-using Role = Shell::Role;
+using Role = ActiveLayer::Role;
 
 Vec3 random_vector(std::mt19937_64& random, double size) {
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -29,20 +29,20 @@ Vec3 random_vector(std::mt19937_64& random, double size) {
 }
 
 /// Vertices on psi = 0 where they are Boundary, and away from where they belong along it and inside.
-Shell disordered(const testing::AnalyticDomain& domain, double n_tets, double size) {
-  Shell shell = omega_h_shell(domain, n_tets);
+ActiveLayer disordered(const testing::AnalyticDomain& domain, double n_tets, double size) {
+  ActiveLayer layer = omega_h_shell(domain, n_tets);
   std::mt19937_64 random(1);
-  for (std::size_t i = 0; i < shell.V.size(); ++i) {
-    shell.V[i] += random_vector(random, size * shell.h);
-    if (shell.role[i] == Role::Boundary) shell.V[i] = closest_point(domain, shell.V[i], shell.h, {}).point;
+  for (std::size_t i = 0; i < layer.V.size(); ++i) {
+    layer.V[i] += random_vector(random, size * layer.h);
+    if (layer.role[i] == Role::Boundary) layer.V[i] = closest_point(domain, layer.V[i], layer.h, {}).point;
   }
-  return shell;
+  return layer;
 }
 
-std::size_t tangled_vertices(const Shell& shell) {
+std::size_t tangled_vertices(const ActiveLayer& layer) {
   std::set<int> tangled;
-  for (std::size_t i = 0; i < shell.V.size(); ++i) {
-    if (shell.role[i] != Role::Fixed && !(ring_quality(shell, static_cast<int>(i)) > 0)) tangled.insert(i);
+  for (std::size_t i = 0; i < layer.V.size(); ++i) {
+    if (layer.role[i] != Role::Fixed && !(ring_quality(layer, static_cast<int>(i)) > 0)) tangled.insert(i);
   }
   return tangled.size();
 }
@@ -54,17 +54,17 @@ bool same_bytes(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 TEST(PNormSmooth, DerivativesAreThoseOfTheSum) {
   std::mt19937_64 random(3);
   for (const int type : {0, 2}) {
-    Shell shell = background_star(type);
-    for (Vec3& x : shell.V) x += random_vector(random, .05);
-    const OneRing ring = PNormSmoother(shell).ring(0);
+    ActiveLayer layer = background_star(type);
+    for (Vec3& x : layer.V) x += random_vector(random, .05);
+    const OneRing ring = PNormSmoother(layer).ring(0);
     for (const int log2_p : {4, 5, 7}) {
       const double p = 1 << log2_p, d = 1e-5;
       const Vec3 y = random_vector(random, .05);
       const detail::PowerSum at_y = detail::power_sum(ring, y, log2_p, 1.5);
       double sum = 0;
-      Shell moved = shell;
+      ActiveLayer moved = layer;
       moved.V[0] += y;
-      for (int t = 0; t < static_cast<int>(shell.C.size()); ++t) {
+      for (int t = 0; t < static_cast<int>(layer.C.size()); ++t) {
         sum += std::pow(std::pow(testing::tet_quality(moved, t), -3) / 1.5, p);
       }
       EXPECT_NEAR(at_y.sum / sum, 1, 1e-9);
@@ -81,8 +81,8 @@ TEST(PNormSmooth, DerivativesAreThoseOfTheSum) {
 }
 
 TEST(PNormSmooth, SumIsInfiniteWhereATetIsNotPositive) {
-  Shell shell = background_star(0);
-  const OneRing ring = PNormSmoother(shell).ring(0);
+  ActiveLayer layer = background_star(0);
+  const OneRing ring = PNormSmoother(layer).ring(0);
   EXPECT_TRUE(std::isfinite(detail::power_sum(ring, Vec3::Zero(), 5, 1).sum));
   EXPECT_TRUE(std::isinf(detail::power_sum(ring, Vec3(1, 0, 0), 5, 1).sum));
 }
@@ -90,18 +90,18 @@ TEST(PNormSmooth, SumIsInfiniteWhereATetIsNotPositive) {
 TEST(PNormSmooth, DisplacedVertexOfTheBackgroundReturns) {
   std::mt19937_64 random(5);
   const testing::AnalyticDomain unused = testing::sphere();
-  SmoothParams params;
+  SmoothingParams params;
   params.target = .97;  // more than the star can have: it is visited until nothing is gained
   for (const int type : {0, 1, 2, 5}) {
-    Shell shell = background_star(type);
-    const Vec3 home = shell.V[0];
-    const double best = worst_quality(shell);
+    ActiveLayer layer = background_star(type);
+    const Vec3 home = layer.V[0];
+    const double best = worst_quality(layer);
     for (int trial = 0; trial < 20; ++trial) {
-      shell.V[0] = home + random_vector(random, .25);
-      const SmoothReport report = smooth(shell, unused, params);
+      layer.V[0] = home + random_vector(random, .25);
+      const SmoothingReport report = smooth(layer, unused, params);
       EXPECT_TRUE(report.settled);
-      EXPECT_LT((shell.V[0] - home).norm(), 2e-2) << "type " << type;
-      EXPECT_GT(worst_quality(shell), best - 5e-3) << "type " << type;
+      EXPECT_LT((layer.V[0] - home).norm(), 2e-2) << "type " << type;
+      EXPECT_GT(worst_quality(layer), best - 5e-3) << "type " << type;
     }
   }
 }
@@ -110,16 +110,16 @@ TEST(PNormSmooth, TangledVertexIsUntangled) {
   std::mt19937_64 random(7);
   const testing::AnalyticDomain unused = testing::sphere();
   for (const int type : {0, 1, 2, 5}) {
-    Shell shell = background_star(type);
-    const Vec3 home = shell.V[0];
+    ActiveLayer layer = background_star(type);
+    const Vec3 home = layer.V[0];
     int n = 0;
     for (int trial = 0; trial < 200; ++trial) {
-      shell.V[0] = home + random_vector(random, 1.2);
-      if (worst_quality(shell) > 0) continue;
+      layer.V[0] = home + random_vector(random, 1.2);
+      if (worst_quality(layer) > 0) continue;
       ++n;
-      const SmoothReport report = smooth(shell, unused);
+      const SmoothingReport report = smooth(layer, unused);
       EXPECT_EQ(report.tangled, 0u);
-      EXPECT_GE(worst_quality(shell), .82) << "type " << type << " from " << (shell.V[0] - home).transpose();
+      EXPECT_GE(worst_quality(layer), .82) << "type " << type << " from " << (layer.V[0] - home).transpose();
     }
     EXPECT_GT(n, 50);
   }
@@ -127,25 +127,25 @@ TEST(PNormSmooth, TangledVertexIsUntangled) {
 
 TEST(PNormSmooth, TangledBoundaryVertexIsUntangledOnTheSurface) {
   const testing::AnalyticDomain domain = testing::sphere();
-  const Shell good = [&] {
-    Shell shell = disordered(domain, 4000, 0);
-    smooth(shell, domain);
-    return shell;
+  const ActiveLayer good = [&] {
+    ActiveLayer layer = disordered(domain, 4000, 0);
+    smooth(layer, domain);
+    return layer;
   }();
   ASSERT_GT(worst_quality(good), .6);
   int n = 0;
   for (std::size_t i = 0; i < good.V.size() && n < 60; i += 7) {
     if (good.role[i] != Role::Boundary) continue;
-    Shell shell = good;
-    for (Role& role : shell.role) role = Role::Fixed;
-    shell.role[i] = Role::Boundary;
-    const Vec3 aside = 1.1 * shell.h * domain.gradient(shell.V[i]).unitOrthogonal();
-    shell.V[i] = closest_point(domain, shell.V[i] + aside, shell.h, {}).point;
-    if (ring_quality(shell, static_cast<int>(i)) > 0) continue;
+    ActiveLayer layer = good;
+    for (Role& role : layer.role) role = Role::Fixed;
+    layer.role[i] = Role::Boundary;
+    const Vec3 aside = 1.1 * layer.h * domain.gradient(layer.V[i]).unitOrthogonal();
+    layer.V[i] = closest_point(domain, layer.V[i] + aside, layer.h, {}).point;
+    if (ring_quality(layer, static_cast<int>(i)) > 0) continue;
     ++n;
-    EXPECT_EQ(smooth(shell, domain).tangled, 0u) << "vertex " << i;
-    EXPECT_GT(ring_quality(shell, static_cast<int>(i)), .5) << "vertex " << i;
-    EXPECT_LE(off_surface(domain, shell.V[i]), 1e-10 * shell.h);
+    EXPECT_EQ(smooth(layer, domain).tangled, 0u) << "vertex " << i;
+    EXPECT_GT(ring_quality(layer, static_cast<int>(i)), .5) << "vertex " << i;
+    EXPECT_LE(off_surface(domain, layer.V[i]), 1e-10 * layer.h);
   }
   EXPECT_GT(n, 20);
 }
@@ -159,144 +159,145 @@ TEST(PNormSmooth, FootThatInvertsTetsIsRefused) {
   std::mt19937_64 random(11);
   int n = 0;
   for (int trial = 0; trial < 4000; ++trial) {
-    Shell shell = background_star(trial % 8);
-    shell.role[0] = Role::Boundary;
-    shell.V[0] += random_vector(random, 1);
+    ActiveLayer layer = background_star(trial % 8);
+    layer.role[0] = Role::Boundary;
+    layer.V[0] += random_vector(random, 1);
     // Nearly flat: an inverted ring behind the star may well have lower L^3 / V^2.
-    if (!(worst_quality(shell) > 0 && worst_quality(shell) < .1)) continue;
+    if (!(worst_quality(layer) > 0 && worst_quality(layer) < .1)) continue;
     ++n;
-    smooth(shell, Plane{shell.V[0].z() + random_vector(random, 1.5).z()});
-    ASSERT_GT(worst_quality(shell), 0);
+    smooth(layer, Plane{layer.V[0].z() + random_vector(random, 1.5).z()});
+    ASSERT_GT(worst_quality(layer), 0);
   }
   EXPECT_GT(n, 20);
 }
 
 TEST(PNormSmooth, VisitLosesNoMoreThanTheGuardSays) {
   const testing::AnalyticDomain domain = testing::torus();
-  Shell shell = disordered(domain, 3000, .12);
-  for (int i = 0; i < static_cast<int>(shell.V.size()); ++i) {
-    Shell one = shell;
+  ActiveLayer layer = disordered(domain, 3000, .12);
+  for (int i = 0; i < static_cast<int>(layer.V.size()); ++i) {
+    ActiveLayer one = layer;
     for (Role& role : one.role) role = Role::Fixed;
-    one.role[i] = shell.role[i];
+    one.role[i] = layer.role[i];
     const double before = ring_quality(one, i), n = one.ring_begin[i + 1] - one.ring_begin[i];
-    SmoothParams params;
+    SmoothingParams params;
     params.max_sweeps = 1;
     smooth(one, domain, params);
     if (before > 0) {
       ASSERT_GE(ring_quality(one, i), before * std::pow(n, -1. / 96)) << "vertex " << i;
     }
-    shell.V[i] = one.V[i];
+    layer.V[i] = one.V[i];
     if (i == 300) break;
   }
 }
 
 TEST(PNormSmooth, WorstTetRisesToThePlateauOnTheSurface) {
   for (const testing::AnalyticDomain& domain : {testing::sphere(), testing::torus(), testing::equation_9()}) {
-    Shell shell = omega_h_shell(domain, 10000);
-    EXPECT_TRUE(project(shell, domain).not_arrived.empty());
-    EXPECT_LT(worst_quality(shell), .6) << domain.name;
-    const SmoothReport report = smooth(shell, domain);
-    EXPECT_NEAR(report.min_quality, worst_quality(shell), 1e-12) << domain.name;
+    ActiveLayer layer = omega_h_shell(domain, 10000);
+    EXPECT_TRUE(project(layer, domain).not_arrived.empty());
+    EXPECT_LT(worst_quality(layer), .6) << domain.name;
+    const SmoothingReport report = smooth(layer, domain);
+    EXPECT_NEAR(report.min_quality, worst_quality(layer), 1e-12) << domain.name;
     EXPECT_GT(report.min_quality, .77) << domain.name;  // labels as they are; the paper's dvr ends at .73-.77
     EXPECT_TRUE(report.settled) << domain.name;
-    EXPECT_GE(report.looks, report.visits);
-    EXPECT_GE(report.visits, report.moves);
+    EXPECT_GE(report.checks, report.solves);
+    EXPECT_GE(report.solves, report.moves);
     EXPECT_GT(report.psi_evaluations, report.moves / 4);
-    for (std::size_t i = 0; i < shell.V.size(); ++i) {
-      if (shell.role[i] != Role::Boundary) continue;
-      ASSERT_LE(off_surface(domain, shell.V[i]), 1e-10 * shell.h) << domain.name << " vertex " << i;
+    for (std::size_t i = 0; i < layer.V.size(); ++i) {
+      if (layer.role[i] != Role::Boundary) continue;
+      ASSERT_LE(off_surface(domain, layer.V[i]), 1e-10 * layer.h) << domain.name << " vertex " << i;
     }
   }
 }
 
 TEST(PNormSmooth, SharperNormRaisesTheWorstTetFurther) {
-  SmoothParams sharper;
+  SmoothingParams sharper;
   sharper.sharper = true;
   for (const testing::AnalyticDomain& domain : {testing::sphere(), testing::torus(), testing::equation_9()}) {
     SCOPED_TRACE(domain.name);
-    Shell shell = omega_h_shell(domain, 10000);
-    EXPECT_TRUE(project(shell, domain).not_arrived.empty());
-    const double settled = smooth(shell, domain).min_quality;
-    const double raised = smooth(shell, domain, sharper).min_quality;
-    EXPECT_NEAR(raised, worst_quality(shell), 1e-12);
+    ActiveLayer layer = omega_h_shell(domain, 10000);
+    EXPECT_TRUE(project(layer, domain).not_arrived.empty());
+    const double settled = smooth(layer, domain).min_quality;
+    const double raised = smooth(layer, domain, sharper).min_quality;
+    EXPECT_NEAR(raised, worst_quality(layer), 1e-12);
     EXPECT_GT(raised, settled + .001);
   }
 }
 
 TEST(PNormSmooth, ManyTangledVerticesAreUntangled) {
   for (const testing::AnalyticDomain& domain : {testing::sphere(), testing::torus(), testing::equation_9()}) {
-    Shell shell = disordered(domain, 10000, .1);
-    EXPECT_GT(tangled_vertices(shell), 50u) << domain.name;
-    EXPECT_EQ(smooth(shell, domain).tangled, 0u) << domain.name;
-    EXPECT_EQ(tangled_vertices(shell), 0u) << domain.name;
+    ActiveLayer layer = disordered(domain, 10000, .1);
+    EXPECT_GT(tangled_vertices(layer), 50u) << domain.name;
+    EXPECT_EQ(smooth(layer, domain).tangled, 0u) << domain.name;
+    EXPECT_EQ(tangled_vertices(layer), 0u) << domain.name;
   }
 }
 
 TEST(PNormSmooth, SettledMeansThatNobodyWasForgotten) {
-  SmoothParams params;
+  SmoothingParams params;
   params.margin = .02;  // the shares below were measured with these
   params.fine_gain = params.least_gain;
   params.least_step = 0;
   for (const testing::AnalyticDomain& domain : {testing::torus(), testing::equation_9()}) {
-    Shell shell = omega_h_shell(domain, 20000);
-    project(shell, domain);
-    const SmoothReport first = smooth(shell, domain, params), second = smooth(shell, domain, params);
+    ActiveLayer layer = omega_h_shell(domain, 20000);
+    project(layer, domain);
+    const SmoothingReport first = smooth(layer, domain, params), second = smooth(layer, domain, params);
     EXPECT_TRUE(first.settled);
-    EXPECT_LT(second.moves, first.moves / 200) << domain.name;  // 1 in 360; 1 in 90 if only poor tets of before wake
+    EXPECT_LT(second.moves, first.moves / 200)
+        << domain.name;  // 1 in 360; 1 in 90 if only below target tets of before enqueue
   }
 }
 
 TEST(PNormSmooth, ShortMovesWakeNobodyUnlessARingIsBad) {
   const testing::AnalyticDomain domain = testing::torus();
-  SmoothParams params;
+  SmoothingParams params;
   params.least_step = 10;  // h: no move is as long
   for (const double target : {.3, .82}) {
-    Shell shell = omega_h_shell(domain, 5000);
-    project(shell, domain);
+    ActiveLayer layer = omega_h_shell(domain, 5000);
+    project(layer, domain);
     std::mt19937_64 random(1);
-    for (std::size_t i = 0; i < shell.V.size(); ++i) {
-      if (shell.role[i] == Role::Inner) shell.V[i] += random_vector(random, .08 * shell.h);
+    for (std::size_t i = 0; i < layer.V.size(); ++i) {
+      if (layer.role[i] == Role::Inner) layer.V[i] += random_vector(random, .08 * layer.h);
     }
-    ASSERT_GT(worst_quality(shell), .3);
-    ASSERT_LT(worst_quality(shell), .82);
+    ASSERT_GT(worst_quality(layer), .3);
+    ASSERT_LT(worst_quality(layer), .82);
     params.target = target;
     params.margin = .86 - target;
-    const SmoothReport report = smooth(shell, domain, params);
+    const SmoothingReport report = smooth(layer, domain, params);
     const auto movable = static_cast<std::size_t>(
-        std::count_if(shell.role.begin(), shell.role.end(), [](Role role) { return role != Role::Fixed; }));
+        std::count_if(layer.role.begin(), layer.role.end(), [](Role role) { return role != Role::Fixed; }));
     EXPECT_GT(report.moves, 100u);
     if (target < .5) {
-      EXPECT_EQ(report.looks, movable);
+      EXPECT_EQ(report.checks, movable);
     } else {
-      EXPECT_GT(report.looks, movable);
+      EXPECT_GT(report.checks, movable);
     }
   }
 }
 
 TEST(PNormSmooth, GoodRingsAndFixedVerticesDoNotMoveABit) {
   const testing::AnalyticDomain domain = testing::torus();
-  Shell shell = disordered(domain, 5000, .1);
-  for (std::size_t i = 0; i < shell.V.size(); i += 3) shell.role[i] = Role::Fixed;
-  const Shell before = shell;
-  const SmoothReport report = smooth(shell, domain);
+  ActiveLayer layer = disordered(domain, 5000, .1);
+  for (std::size_t i = 0; i < layer.V.size(); i += 3) layer.role[i] = Role::Fixed;
+  const ActiveLayer before = layer;
+  const SmoothingReport report = smooth(layer, domain);
   EXPECT_GT(report.moves, 100u);
-  EXPECT_EQ(report.tangled, tangled_vertices(shell));
-  for (std::size_t i = 0; i < shell.V.size(); i += 3) {
-    ASSERT_EQ(std::memcmp(&shell.V[i], &before.V[i], sizeof(Vec3)), 0) << "vertex " << i;
+  EXPECT_EQ(report.tangled, tangled_vertices(layer));
+  for (std::size_t i = 0; i < layer.V.size(); i += 3) {
+    ASSERT_EQ(std::memcmp(&layer.V[i], &before.V[i], sizeof(Vec3)), 0) << "vertex " << i;
   }
-  Shell background = omega_h_shell(domain, 5000);
+  ActiveLayer background = omega_h_shell(domain, 5000);
   const std::vector<Vec3> lattice = background.V;
-  const SmoothReport nothing = smooth(background, domain);
-  EXPECT_EQ(nothing.visits, 0u);
+  const SmoothingReport nothing = smooth(background, domain);
+  EXPECT_EQ(nothing.solves, 0u);
   EXPECT_EQ(nothing.moves, 0u);
   EXPECT_TRUE(nothing.settled);
   EXPECT_TRUE(same_bytes(background.V, lattice));
 }
 
 TEST(PNormSmooth, ReportsWhatCannotBeUntangled) {
-  Shell shell = background_star(0);
-  for (std::size_t i = 1; i < shell.V.size(); ++i) shell.V[i].x() = -shell.V[i].x();  // a star inside out
-  const SmoothReport report = smooth(shell, testing::sphere());
+  ActiveLayer layer = background_star(0);
+  for (std::size_t i = 1; i < layer.V.size(); ++i) layer.V[i].x() = -layer.V[i].x();  // a star inside out
+  const SmoothingReport report = smooth(layer, testing::sphere());
   EXPECT_EQ(report.tangled, 1u);
   EXPECT_LE(report.min_quality, 0);
 }
@@ -304,39 +305,39 @@ TEST(PNormSmooth, ReportsWhatCannotBeUntangled) {
 TEST(PNormSmooth, SameBytesForAnyNumberOfThreads) {
   const testing::AnalyticDomain domain = testing::torus();
   std::vector<std::vector<Vec3>> results;
-  std::vector<SmoothReport> reports;
+  std::vector<SmoothingReport> reports;
   for (const int threads : {1, 2, 3}) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-    Shell shell = disordered(domain, 20000, .12);
-    reports.push_back(smooth(shell, domain));
-    results.push_back(shell.V);
+    ActiveLayer layer = disordered(domain, 20000, .12);
+    reports.push_back(smooth(layer, domain));
+    results.push_back(layer.V);
   }
   for (int k = 1; k < 3; ++k) {
     EXPECT_TRUE(same_bytes(results[0], results[k]));
-    EXPECT_EQ(reports[0].visits, reports[k].visits);
+    EXPECT_EQ(reports[0].solves, reports[k].solves);
     EXPECT_EQ(reports[0].psi_evaluations, reports[k].psi_evaluations);
   }
 }
 
 TEST(PNormSmooth, HeldVerticesStayInTheQueue) {
   const testing::AnalyticDomain domain = testing::torus();
-  Shell shell = disordered(domain, 3000, .1);
-  const std::vector<Role> roles = shell.role;
-  PNormSmoother smoother(shell);
-  shell.role.assign(roles.size(), Role::Fixed);
-  const std::vector<Vec3> before = shell.V;
-  EXPECT_EQ(smoother.run(domain, {}).looks, 0u);
-  EXPECT_TRUE(same_bytes(before, shell.V));
-  shell.role = roles;
+  ActiveLayer layer = disordered(domain, 3000, .1);
+  const std::vector<Role> roles = layer.role;
+  PNormSmoother smoother(layer);
+  layer.role.assign(roles.size(), Role::Fixed);
+  const std::vector<Vec3> before = layer.V;
+  EXPECT_EQ(smoother.run(domain, {}).checks, 0u);
+  EXPECT_TRUE(same_bytes(before, layer.V));
+  layer.role = roles;
   smoother.run(domain, {});
-  EXPECT_EQ(tangled_vertices(shell), 0u);
-  EXPECT_GT(worst_quality(shell), .7);
+  EXPECT_EQ(tangled_vertices(layer), 0u);
+  EXPECT_GT(worst_quality(layer), .7);
 }
 
 TEST(PNormSmooth, BadParametersAndCancelling) {
   const testing::AnalyticDomain domain = testing::sphere();
-  Shell shell = omega_h_shell(domain, 2000);
-  SmoothParams params;
+  ActiveLayer layer = omega_h_shell(domain, 2000);
+  SmoothingParams params;
   params.target = 1;
   params.margin = -1;
   params.least_gain = 0;
@@ -345,8 +346,8 @@ TEST(PNormSmooth, BadParametersAndCancelling) {
   params.max_sweeps = -1;
   params.closest_point.tol = 0;
   EXPECT_EQ(problems(params).size(), 7u);
-  EXPECT_THROW(smooth(shell, domain, params), std::invalid_argument);
-  EXPECT_THROW(smooth(shell, domain, {}, [] { return false; }), MeshCancelled);
+  EXPECT_THROW(smooth(layer, domain, params), std::invalid_argument);
+  EXPECT_THROW(smooth(layer, domain, {}, [] { return false; }), MeshCancelled);
 }
 
 }  // namespace

@@ -32,22 +32,23 @@ TEST(PositiveFace, IsThatOfThreeOutsideVerticesSeenFromOutside) {
 }
 
 TEST(PatchState, CountsTetsAndFaces) {
-  // A tet with its vertex 0 in the ball and the face opposite to it above the surface; then with that face turned over.
+  // A tet with its vertex 0 in the ball and the face opposite to it above the surface; then with that face misaligned
+  // over.
   const testing::AnalyticDomain ball = testing::sphere();
-  Shell shell;
-  shell.h = .2;
-  shell.V = {{0, 0, .8}, {.1, 0, 1}, {-.05, .08, 1}, {-.05, -.08, 1}};
-  shell.C = {{0, 1, 2, 3}};
+  ActiveLayer layer;
+  layer.h = .2;
+  layer.V = {{0, 0, .8}, {.1, 0, 1}, {-.05, .08, 1}, {-.05, -.08, 1}};
+  layer.C = {{0, 1, 2, 3}};
   std::size_t n = 0;
-  PatchState s = patch_state(shell, {1, 0, 0, 0}, ball, .82, n);
-  EXPECT_EQ(s.turned, 0u);
+  PatchState s = patch_state(layer, {1, 0, 0, 0}, ball, .82, n);
+  EXPECT_EQ(s.misaligned, 0u);
   EXPECT_NEAR(s.least_cosine, 1, 1e-6);
   EXPECT_GT(s.least, 0);
-  std::swap(shell.V[2], shell.V[3]);
-  s = patch_state(shell, {1, 0, 0, 0}, ball, .82, n);
-  EXPECT_EQ(s.poor, 1u);
-  EXPECT_EQ(s.turned, 1u);
-  EXPECT_EQ(s.folded, 1u);
+  std::swap(layer.V[2], layer.V[3]);
+  s = patch_state(layer, {1, 0, 0, 0}, ball, .82, n);
+  EXPECT_EQ(s.below_target, 1u);
+  EXPECT_EQ(s.misaligned, 1u);
+  EXPECT_EQ(s.folded_over, 1u);
   EXPECT_LT(s.least, 0);
   EXPECT_NEAR(s.least_cosine, -1, 1e-6);
   EXPECT_FALSE(s.is_perfect());
@@ -67,10 +68,10 @@ TEST(PatchState, NoneOfTheFiveMayGetWorse) {
                                   PatchState{.82, .7, 3, .3, 4, 0}, PatchState{.82, .7, 3, .2, 3, 0}}) {
     EXPECT_TRUE(other.is_no_worse_than(s) && other.is_better_than(s) && !s.is_no_worse_than(other));
   }
-  // Fewer turned faces, none of them folded: the worst one may be turned more.
+  // Fewer misaligned faces, none of them folded over: the worst one may be misaligned more.
   EXPECT_TRUE((PatchState{.82, .7, 3, .1, 3, 0}).is_no_worse_than(s));
   EXPECT_FALSE((PatchState{.82, .7, 3, -.1, 3, 1}).is_no_worse_than(s));
-  // Beyond the target, and beyond kTurnedCosine, there is nothing to keep.
+  // Beyond the target, and beyond kMisalignedCosine, there is nothing to keep.
   EXPECT_TRUE((PatchState{.82, .83, 0, .6, 0, 0}).is_no_worse_than({.82, .9, 0, .9, 0, 0}));
   EXPECT_FALSE((PatchState{.82, .9, 0, .9, 0, 0}).is_better_than({.82, .83, 0, .6, 0, 0}));
 }

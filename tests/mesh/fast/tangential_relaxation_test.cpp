@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "mesh/fast/backtracking_projection.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/fast/backtracking_projection.h"
 #include "tests/support/omega_h_shell.h"
 
 namespace umtet {
@@ -16,7 +16,7 @@ namespace {
 using testing::off_surface;
 using testing::omega_h_shell;
 using testing::worst_quality;
-using Role = Shell::Role;
+using Role = ActiveLayer::Role;
 
 /// A lens: its rim bends too sharply for h.
 const testing::AnalyticDomain& lens() {
@@ -25,48 +25,48 @@ const testing::AnalyticDomain& lens() {
 }
 
 /// Projected and smoothed.
-const Shell& lens_shell() {
-  static const Shell made = [] {
-    Shell shell = omega_h_shell(lens(), 20000);
-    PNormSmoother smoother(shell);
+const ActiveLayer& lens_layer() {
+  static const ActiveLayer made = [] {
+    ActiveLayer layer = omega_h_shell(lens(), 20000);
+    PNormSmoother smoother(layer);
     EXPECT_TRUE(project(smoother, lens()).not_arrived.empty());
-    smoother.wake_all();
+    smoother.enqueue_all();
     smoother.run(lens(), {});
-    return shell;
+    return layer;
   }();
   return made;
 }
 
-Shell slid(const ChordParams& params) {
-  Shell shell = lens_shell();
-  PNormSmoother smoother(shell);
+ActiveLayer slid(const TangentialRelaxationParams& params) {
+  ActiveLayer layer = lens_layer();
+  PNormSmoother smoother(layer);
   std::vector<std::uint8_t> inside;
-  for (const Role role : shell.role) inside.push_back(role != Role::Boundary);
-  EXPECT_GT(slide_to_chords(smoother, inside, lens(), params, {}).moves, 0u);
-  return shell;
+  for (const Role role : layer.role) inside.push_back(role != Role::Boundary);
+  EXPECT_GT(relax_tangentially(smoother, inside, lens(), params, {}).moves, 0u);
+  return layer;
 }
 
 /// Distances to psi = 0 of the middles of faces and their edges, ascending, in h.
-std::vector<double> chords(const Shell& shell) {
+std::vector<double> chords(const ActiveLayer& layer) {
   std::vector<double> list;
-  for (const Tet& t : shell.C) {
+  for (const Tet& t : layer.C) {
     std::vector<Vec3> face;
     for (const int v : t) {
-      if (shell.role[v] == Role::Boundary) face.push_back(shell.V[v]);
+      if (layer.role[v] == Role::Boundary) face.push_back(layer.V[v]);
     }
     if (face.size() != 3) continue;
     const Vec3 &a = face[0], &b = face[1], &c = face[2];
     for (const Vec3& m : {Vec3((a + b + c) / 3), Vec3((a + b) / 2), Vec3((b + c) / 2), Vec3((c + a) / 2)}) {
-      list.push_back(off_surface(lens(), m) / shell.h);
+      list.push_back(off_surface(lens(), m) / layer.h);
     }
   }
   std::sort(list.begin(), list.end());
   return list;
 }
 
-TEST(ChordSlide, BringsFacesNearerToRidgesAtNoPriceInQuality) {
-  const Shell& before = lens_shell();
-  const Shell after = slid({});
+TEST(TangentialRelaxation, BringsFacesNearerToRidgesAtNoPriceInQuality) {
+  const ActiveLayer& before = lens_layer();
+  const ActiveLayer after = slid({});
   const std::vector<double> was = chords(before), is = chords(after);
   const auto at_99 = [](const std::vector<double>& v) { return v[v.size() * 99 / 100]; };
   EXPECT_LT(at_99(is), .92 * at_99(was)) << at_99(was) << " h";
@@ -79,26 +79,26 @@ TEST(ChordSlide, BringsFacesNearerToRidgesAtNoPriceInQuality) {
 }
 
 // Where no face is far, slides stop at a higher quality: fewer of them, and fewer tets just above the least.
-TEST(ChordSlide, KeepsMoreQualityWhereFacesAreNear) {
-  const auto n_below = [](const Shell& shell, double Q) {
+TEST(TangentialRelaxation, KeepsMoreQualityWhereFacesAreNear) {
+  const auto n_below = [](const ActiveLayer& layer, double Q) {
     std::size_t n = 0;
-    for (const Tet& t : shell.C) n += mean_ratio(shell.V[t[0]], shell.V[t[1]], shell.V[t[2]], shell.V[t[3]]) < Q;
+    for (const Tet& t : layer.C) n += mean_ratio(layer.V[t[0]], layer.V[t[1]], layer.V[t[2]], layer.V[t[3]]) < Q;
     return n;
   };
-  const Shell one_bar = slid({.near_margin = 0}), two_bars = slid({});
+  const ActiveLayer one_bar = slid({.near_margin = 0}), two_bars = slid({});
   EXPECT_LT(n_below(two_bars, .84), n_below(one_bar, .84));
 }
 
-TEST(ChordSlide, TheSameBytesForAnyNumberOfThreads) {
-  const Shell many = slid({});
+TEST(TangentialRelaxation, TheSameBytesForAnyNumberOfThreads) {
+  const ActiveLayer many = slid({});
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
-  const Shell one = slid({});
+  const ActiveLayer one = slid({});
   EXPECT_EQ(std::memcmp(one.V.data(), many.V.data(), one.V.size() * sizeof(Vec3)), 0);
 }
 
-TEST(ChordSlide, NamesEveryBrokenConstraint) {
-  EXPECT_TRUE(problems(ChordParams{}).empty());
-  const ChordParams wrong{
+TEST(TangentialRelaxation, NamesEveryBrokenConstraint) {
+  EXPECT_TRUE(problems(TangentialRelaxationParams{}).empty());
+  const TangentialRelaxationParams wrong{
       .least_chord = 0, .least_quality = 1, .near_margin = -1, .far_chord = -1, .sweeps = -1, .inner_sweeps = -1};
   EXPECT_EQ(problems(wrong).size(), 6u);
 }

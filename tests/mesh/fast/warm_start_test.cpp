@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "mesh/submesh/detail/assemble_submesh.h"
-#include "mesh/classification/configuration_costs.h"
 #include "mesh/classification/classification.h"
+#include "mesh/classification/configuration_costs.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/submesh/detail/assemble_submesh.h"
 #include "tests/support/domains.h"
 
 namespace umtet {
@@ -25,7 +25,7 @@ struct Begun {
   BackgroundMesh background{a15(), testing::cube_box(1.6), .15};
   FastMemory memory;
   detail::IdSet inside{0};
-  LatticeShell shell;
+  LatticeActiveLayer layer;
   WarmStart start;
 
   /// From the mesh of the ball at 0 to one that has moved by c.
@@ -35,34 +35,34 @@ struct Begun {
     std::size_t n = 0;
     fast_mesh(background, Ball{}, params, {}, detail::inside_vertices(background, Ball{}, n), memory);
     inside = detail::inside_vertices(background, Ball{c}, n);
-    choose_labels(background, a15_links(), Ball{c}, {}, inside, {}, &memory.inside);
-    shell = lattice_shell(background, a15_links(), inside);
-    start = warm_start(background, Ball{c}, inside, memory, {}, shell);
+    classify_vertices(background, a15_links(), Ball{c}, {}, inside, {}, &memory.inside);
+    layer = lattice_active_layer(background, a15_links(), inside);
+    start = warm_start(background, Ball{c}, inside, memory, {}, layer);
   }
 };
 
 TEST(WarmStart, BeginsOnTheSurfaceWithoutFlatTets) {
   const Vec3 c(.06, .02, 0);  // .42 h
   const Begun begun(c);
-  const Shell& shell = begun.shell.shell;
+  const ActiveLayer& layer = begun.layer.layer;
   std::size_t boundary = 0, on_surface = 0, left = 0;
-  for (std::size_t v = 0; v < shell.V.size(); ++v) {
-    const Vec3 background = begun.background.position(begun.shell.background_vertex[v]);
-    if (shell.role[v] == Shell::Role::Fixed) {
-      EXPECT_EQ(shell.V[v], background);
+  for (std::size_t v = 0; v < layer.V.size(); ++v) {
+    const Vec3 background = begun.background.position(begun.layer.background_vertex[v]);
+    if (layer.role[v] == ActiveLayer::Role::Fixed) {
+      EXPECT_EQ(layer.V[v], background);
     }
-    if (shell.role[v] != Shell::Role::Boundary) continue;
+    if (layer.role[v] != ActiveLayer::Role::Boundary) continue;
     ++boundary;
-    on_surface += std::abs((shell.V[v] - c).norm() - 1) < 1e-10;
-    left += shell.V[v] == background;
+    on_surface += std::abs((layer.V[v] - c).norm() - 1) < 1e-10;
+    left += layer.V[v] == background;
   }
   EXPECT_GT(static_cast<double>(on_surface), .98 * static_cast<double>(boundary));
   EXPECT_EQ(begun.start.is_on_surface, left == 0);
   double least = 1, mean = 0;
-  for (const Tet& t : shell.C) {
-    const double Q = mean_ratio(shell.V[t[0]], shell.V[t[1]], shell.V[t[2]], shell.V[t[3]]);
+  for (const Tet& t : layer.C) {
+    const double Q = mean_ratio(layer.V[t[0]], layer.V[t[1]], layer.V[t[2]], layer.V[t[3]]);
     least = std::min(least, Q);
-    mean += Q / static_cast<double>(shell.C.size());
+    mean += Q / static_cast<double>(layer.C.size());
   }
   EXPECT_GE(least, ProjectionParams{}.least_quality);
   EXPECT_GT(mean, .9);
@@ -71,7 +71,7 @@ TEST(WarmStart, BeginsOnTheSurfaceWithoutFlatTets) {
 TEST(WarmStart, RecallsWhoseNeighboursAreLabelledAsBefore) {
   const Vec3 c(.06, .02, 0);
   const Begun begun(c);
-  const auto& ids = begun.shell.background_vertex;
+  const auto& ids = begun.layer.background_vertex;
   std::size_t n = 0;
   double farthest_boundary = 0, farthest_inner = 0, along_c = 0;
   for (const auto& [id, x] : begun.memory.moved) {
@@ -85,8 +85,8 @@ TEST(WarmStart, RecallsWhoseNeighboursAreLabelledAsBefore) {
     n += begun.start.recalled[v];
     if (begun.start.recalled[v] == 0) continue;
     EXPECT_TRUE(same);
-    const Vec3 moved = begun.shell.shell.V[v] - x;
-    if (begun.shell.shell.role[v] == Shell::Role::Inner) {
+    const Vec3 moved = begun.layer.layer.V[v] - x;
+    if (begun.layer.layer.role[v] == ActiveLayer::Role::Inner) {
       farthest_inner = std::max(farthest_inner, moved.norm());
       along_c += moved.dot(x) * c.dot(x);
     } else {
@@ -105,11 +105,11 @@ TEST(WarmStart, RecallsWhoseNeighboursAreLabelledAsBefore) {
 TEST(WarmStart, OfADomainThatStaysIsTheLastMesh) {
   const Begun begun(Vec3::Zero());
   EXPECT_GT(begun.start.n_recalled, begun.memory.moved.size() * 95 / 100);
-  const auto& ids = begun.shell.background_vertex;
+  const auto& ids = begun.layer.background_vertex;
   for (const auto& [id, x] : begun.memory.moved) {
     const auto v = static_cast<std::size_t>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
     if (begun.start.recalled[v] != 0) {
-      EXPECT_LT((begun.shell.shell.V[v] - x).norm(), 1e-9);
+      EXPECT_LT((begun.layer.layer.V[v] - x).norm(), 1e-9);
     }
   }
 }

@@ -13,7 +13,7 @@ using namespace umtet;
 namespace {
 
 // A spherical shell r_in < |x| < r_out: wall r_out - r_in, cavity 2 r_in.
-struct Shell {
+struct ActiveLayer {
   double r_in, r_out;
   double value(const Vec3& x) const { return std::max(r_in - x.norm(), x.norm() - r_out); }
   Vec3 gradient(const Vec3& x) const { return (x.norm() > (r_in + r_out) / 2 ? 1.0 : -1.0) * x.normalized(); }
@@ -31,7 +31,7 @@ std::vector<Vec3> sphere_points(double r) {
 }  // namespace
 
 TEST(Thickness, IsTheShorterOfWallAndGap) {
-  const Shell thin{1.0, 1.2}, small_cavity{0.05, 1.0};
+  const ActiveLayer thin{1.0, 1.2}, small_cavity{0.05, 1.0};
   for (const double t : thickness(ImplicitFunctionRef(thin), sphere_points(1.21), 0.03, 1)) EXPECT_NEAR(t, 0.2, 1e-9);
   for (const double t : thickness(ImplicitFunctionRef(small_cavity), sphere_points(0.05), 0.02, 1))
     EXPECT_NEAR(t, 0.1, 1e-9);
@@ -39,7 +39,7 @@ TEST(Thickness, IsTheShorterOfWallAndGap) {
 
 TEST(Thickness, StepsAreLongFarFromZeroWhereTheSlopeIsKnown) {
   struct Counted {
-    Shell shell;
+    ActiveLayer shell;
     mutable std::atomic<int> n = 0;
     double value(const Vec3& x) const { return ++n, shell.value(x); }
     Vec3 gradient(const Vec3& x) const { return shell.gradient(x); }
@@ -53,11 +53,11 @@ TEST(Thickness, StepsAreLongFarFromZeroWhereTheSlopeIsKnown) {
 }
 
 TEST(Thickness, WhatIsThickIsTheLimit) {
-  const Shell shell{1.0, 2.0};
+  const ActiveLayer shell{1.0, 2.0};
   for (const double t : thickness(ImplicitFunctionRef(shell), sphere_points(2.0), 0.05, 0.5)) EXPECT_EQ(t, 0.5);
 }
 
 TEST(Thickness, PointsThatReachNoBoundaryAreTheLimit) {
-  const Shell shell{1.0, 1.1};
+  const ActiveLayer shell{1.0, 1.1};
   for (const double t : thickness(ImplicitFunctionRef(shell), sphere_points(5.0), 0.05, 0.5)) EXPECT_EQ(t, 0.5);
 }

@@ -44,7 +44,7 @@ SolverMesh block(int n = 3) {
   SolverMesh mesh = solver_mesh(tets);
   std::vector<int> patch;
   for (const Vec3& x : face_geometry(mesh).centroid) patch.push_back(x.x() < .2 ? 2 : x.x() > n - .2 ? 0 : 1);
-  set_patches(mesh, patch, {{"head-2", 12}, {"skin", 1}, {"Feet", 7}});
+  set_patches(mesh, patch, {{"head-2", 12}, {"surface", 1}, {"Feet", 7}});
   mesh.cell_data["mean_ratio"] = std::vector<double>(mesh.n_tets(), .5);
   mesh.point_data["background_vertex"] = std::vector<std::int64_t>(mesh.nodes.size(), std::int64_t{1} << 60);
   return mesh;
@@ -79,9 +79,9 @@ std::vector<Format> formats() {
           {"a.h5", write_hdf5},
           {"a.xdmf", [](P p, M m) { write_xdmf(p, m, "a.h5"); }},
           {"faces.xdmf", [](P p, M m) { write_boundary_xdmf(p, m, "a.h5"); }},
-          {"a.stl", [](P p, M m) { write_skin(p, m, SurfaceFormat::Stl); }},
-          {"feet.obj", [](P p, M m) { write_skin(p, m, SurfaceFormat::Obj, 0); }},
-          {"a.ply", [](P p, M m) { write_skin(p, m, SurfaceFormat::Ply); }}};
+          {"a.stl", [](P p, M m) { write_boundary_surface(p, m, SurfaceFormat::Stl); }},
+          {"feet.obj", [](P p, M m) { write_boundary_surface(p, m, SurfaceFormat::Obj, 0); }},
+          {"a.ply", [](P p, M m) { write_boundary_surface(p, m, SurfaceFormat::Ply); }}};
 }
 
 /// What meshio finds in files, by name; see read_back.py.

@@ -43,9 +43,9 @@ TEST(CountHalfEdges, AgreesWithSurfaceTopologyOnDamagedSpheres) {
 
 TEST(CountHalfEdges, RefusesBodiesThatShareAnEdge) {
   const TetMesh touching = testing::cubes(2, [](int i, int j, int k) { return i == j && k == 0; });
-  const std::vector<Triangle> skin = boundary_faces(touching.C, touching.V.size()).triangles;
-  EXPECT_GT(count_half_edges(touching.V, skin).n_refused_faces, 0u);
-  EXPECT_FALSE(surface_topology(touching.V, skin).closed_manifold);
+  const std::vector<Triangle> surface = boundary_faces(touching.C, touching.V.size()).triangles;
+  EXPECT_GT(count_half_edges(touching.V, surface).n_refused_faces, 0u);
+  EXPECT_FALSE(surface_topology(touching.V, surface).closed_manifold);
 }
 
 TEST(WriteSurface, FilesAreCompleteAndAFullDiskIsAnError) {
@@ -73,7 +73,7 @@ TEST(WriteSurface, FilesAreCompleteAndAFullDiskIsAnError) {
     std::filesystem::remove(folder / name);
 
   EXPECT_THROW(write_surface("/dev/full", sphere.V, faces, SurfaceFormat::Ply), std::system_error);
-  EXPECT_THROW(write_surface("/nowhere/skin.stl", sphere.V, faces, SurfaceFormat::Stl), std::system_error);
+  EXPECT_THROW(write_surface("/nowhere/surface.stl", sphere.V, faces, SurfaceFormat::Stl), std::system_error);
 }
 
 }  // namespace

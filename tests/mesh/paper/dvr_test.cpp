@@ -9,9 +9,9 @@
 #include <numeric>
 
 #include "mesh/background/body_size.h"
+#include "mesh/core/tet_quality.h"
 #include "mesh/paper/boundary_dvr.h"
 #include "mesh/submesh/submesh.h"
-#include "mesh/core/tet_quality.h"
 #include "tests/support/domains.h"
 
 namespace umtet {

@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "mesh/background/body_size.h"
-#include "mesh/implicit/closest_point.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/implicit/closest_point.h"
 #include "tests/support/domains.h"
 
 namespace umtet {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "mesh/background/body_size.h"
-#include "mesh/submesh/detail/assemble_submesh.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/submesh/detail/assemble_submesh.h"
 #include "mesh/universal_mesh.h"
 #include "tests/support/domains.h"
 
@@ -29,25 +29,25 @@ TEST(BackgroundShell, HoldsTheRingsOfWhatMovesAndColoursShareNoTet) {
     std::size_t n = 0;
     const detail::IdSet inside = detail::inside_vertices(background, domain, n);
     const Submesh submesh = find_submesh(background, domain);
-    const LatticeShell part = background_shell(background, inside);
-    const Shell& shell = part.shell;
+    const LatticeActiveLayer part = background_active_layer(background, inside);
+    const ActiveLayer& layer = part.layer;
     std::set<std::int64_t> positive;
     for (const int i : submesh.positive_vertices) positive.insert(submesh.background_vertex[i]);
     std::vector<std::int64_t> star;
-    for (int v = 0; v < static_cast<int>(shell.V.size()); ++v) {
+    for (int v = 0; v < static_cast<int>(layer.V.size()); ++v) {
       const std::int64_t id = part.background_vertex[v];
-      ASSERT_EQ(shell.V[v], background.position(id));
-      EXPECT_EQ(shell.role[v] == Shell::Role::Boundary, positive.erase(id) == 1);
-      for (int r = shell.ring_begin[v]; r < shell.ring_begin[v + 1]; ++r) {
-        for (const int w : shell.C[shell.ring[r]]) ASSERT_TRUE(w == v || shell.colour[w] != shell.colour[v]);
+      ASSERT_EQ(layer.V[v], background.position(id));
+      EXPECT_EQ(layer.role[v] == ActiveLayer::Role::Boundary, positive.erase(id) == 1);
+      for (int r = layer.ring_begin[v]; r < layer.ring_begin[v + 1]; ++r) {
+        for (const int w : layer.C[layer.ring[r]]) ASSERT_TRUE(w == v || layer.colour[w] != layer.colour[v]);
       }
-      if (shell.role[v] == Shell::Role::Fixed) continue;
+      if (layer.role[v] == ActiveLayer::Role::Fixed) continue;
       star.clear();
       background.star(id, star);
       const auto in_omega_h = std::count_if(star.begin(), star.end(), [&](std::int64_t t) {
         return std::binary_search(submesh.background_tet.begin(), submesh.background_tet.end(), t);
       });
-      ASSERT_EQ(shell.ring_begin[v + 1] - shell.ring_begin[v], in_omega_h);
+      ASSERT_EQ(layer.ring_begin[v + 1] - layer.ring_begin[v], in_omega_h);
     }
     EXPECT_TRUE(positive.empty());
   }
@@ -58,16 +58,16 @@ TEST(BackgroundShell, IsTheShellOfTheLattice) {
   const BackgroundMesh background = background_of(a15(), domain, 20000);
   std::size_t n = 0;
   const detail::IdSet inside = detail::inside_vertices(background, domain, n);
-  const LatticeShell lattice = lattice_shell(background, a15_links(), inside),
-                     any = background_shell(background, inside);
+  const LatticeActiveLayer lattice = lattice_active_layer(background, a15_links(), inside),
+                           any = background_active_layer(background, inside);
   EXPECT_EQ(any.background_vertex, lattice.background_vertex);
-  EXPECT_EQ(any.shell.role, lattice.shell.role);
+  EXPECT_EQ(any.layer.role, lattice.layer.role);
   const auto sorted = [](std::vector<Tet> tets) {
     for (Tet& tet : tets) std::sort(tet.begin(), tet.end());
     std::sort(tets.begin(), tets.end());
     return tets;
   };
-  EXPECT_EQ(sorted(any.shell.C), sorted(lattice.shell.C));
+  EXPECT_EQ(sorted(any.layer.C), sorted(lattice.layer.C));
 }
 
 /// @return the worst quality of eq. (9) at 100k tets on a background [Rangarajan2018, Section 3.6]
@@ -86,7 +86,7 @@ double least_quality(const Tiling& tiling) {
 }
 
 TEST(Backgrounds, FastModeMeshesEquationNineOnEach) {
-  // What it makes, minus .01. Z's labels have prices.
+  // What it makes, minus .01. Z's labels have costs.
   EXPECT_GT(least_quality(z_phase()), .81);
   EXPECT_GT(least_quality(acute_slab()), .77);
   EXPECT_GT(least_quality(acute_cube()), .615);

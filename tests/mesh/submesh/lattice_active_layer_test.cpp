@@ -6,8 +6,8 @@
 #include <set>
 
 #include "mesh/background/body_size.h"
-#include "mesh/submesh/detail/assemble_submesh.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/submesh/detail/assemble_submesh.h"
 #include "tests/support/domains.h"
 
 namespace umtet {
@@ -65,63 +65,63 @@ std::vector<int> tets_at(const Submesh& submesh) {
   return n;
 }
 
-void check(const Cut& cut, const LatticeShell& part) {
-  const Shell& shell = part.shell;
+void check(const Cut& cut, const LatticeActiveLayer& part) {
+  const ActiveLayer& layer = part.layer;
   const std::vector<int> whole = tets_at(cut.submesh);
   const auto& ids = cut.submesh.background_vertex;
   EXPECT_TRUE(std::is_sorted(part.background_vertex.begin(), part.background_vertex.end()));
   std::set<std::set<int>> seen;
-  for (const Tet& t : shell.C) {
-    EXPECT_GT(volume6(shell.V[t[0]], shell.V[t[1]], shell.V[t[2]], shell.V[t[3]]), 0);
+  for (const Tet& t : layer.C) {
+    EXPECT_GT(volume6(layer.V[t[0]], layer.V[t[1]], layer.V[t[2]], layer.V[t[3]]), 0);
     EXPECT_TRUE(seen.insert(std::set<int>(t.begin(), t.end())).second);
     for (int a = 0; a < 4; ++a) {
-      for (int b = 0; b < a; ++b) EXPECT_NE(shell.colour[t[a]], shell.colour[t[b]]);
+      for (int b = 0; b < a; ++b) EXPECT_NE(layer.colour[t[a]], layer.colour[t[b]]);
     }
   }
-  for (std::size_t v = 0; v < shell.V.size(); ++v) {
+  for (std::size_t v = 0; v < layer.V.size(); ++v) {
     const auto at = std::lower_bound(ids.begin(), ids.end(), part.background_vertex[v]);
     ASSERT_TRUE(at != ids.end() && *at == part.background_vertex[v]);
     const int local = static_cast<int>(at - ids.begin());
-    EXPECT_EQ(shell.V[v], cut.submesh.mesh.V[local]);
-    EXPECT_LT(shell.colour[v], 7);
-    const int n = shell.ring_begin[v + 1] - shell.ring_begin[v];
-    for (int r = shell.ring_begin[v]; r < shell.ring_begin[v + 1]; ++r) {
-      const Tet& t = shell.C[shell.ring[r]];
+    EXPECT_EQ(layer.V[v], cut.submesh.mesh.V[local]);
+    EXPECT_LT(layer.colour[v], 7);
+    const int n = layer.ring_begin[v + 1] - layer.ring_begin[v];
+    for (int r = layer.ring_begin[v]; r < layer.ring_begin[v + 1]; ++r) {
+      const Tet& t = layer.C[layer.ring[r]];
       EXPECT_NE(std::find(t.begin(), t.end(), static_cast<int>(v)), t.end());
     }
-    if (shell.role[v] != Shell::Role::Fixed) {
+    if (layer.role[v] != ActiveLayer::Role::Fixed) {
       EXPECT_EQ(n, whole[local]);
     }
     const bool positive =
         std::binary_search(cut.submesh.positive_vertices.begin(), cut.submesh.positive_vertices.end(), local);
-    if (shell.role[v] != Shell::Role::Fixed) {
-      EXPECT_EQ(shell.role[v] == Shell::Role::Boundary, positive);
+    if (layer.role[v] != ActiveLayer::Role::Fixed) {
+      EXPECT_EQ(layer.role[v] == ActiveLayer::Role::Boundary, positive);
     }
   }
 }
 
-TEST(LatticeShell, RingsAreCompleteAndColoursProper) {
+TEST(LatticeActiveLayer, RingsAreCompleteAndColoursProper) {
   for (const AnalyticDomain& domain : testing::domains()) {
     SCOPED_TRACE(domain.name);
     const Cut cut(domain);
     std::size_t last = 0;
     for (const int layers : {1, 2, 100}) {
-      const LatticeShell part = lattice_shell(cut.background, a15_links(), cut.inside, layers);
+      const LatticeActiveLayer part = lattice_active_layer(cut.background, a15_links(), cut.inside, layers);
       check(cut, part);
-      const auto n_boundary = std::count(part.shell.role.begin(), part.shell.role.end(), Shell::Role::Boundary);
+      const auto n_boundary = std::count(part.layer.role.begin(), part.layer.role.end(), ActiveLayer::Role::Boundary);
       EXPECT_EQ(static_cast<std::size_t>(n_boundary), cut.submesh.positive_vertices.size());
-      EXPECT_GE(part.shell.C.size(), last);
-      last = part.shell.C.size();
+      EXPECT_GE(part.layer.C.size(), last);
+      last = part.layer.C.size();
     }
     EXPECT_EQ(last, cut.submesh.mesh.C.size());  // a hundred layers are all of it
   }
 }
 
-TEST(LatticeShell, APatchHoldsEveryTetNearItsCentres) {
+TEST(LatticeActiveLayer, APatchHoldsEveryTetNearItsCentres) {
   const Cut cut(testing::torus());
   for (const std::size_t k : {0u, 100u, 333u}) {
     const std::int64_t centre = cut.submesh.background_vertex[cut.submesh.positive_vertices[k]];
-    const LatticeShell part = lattice_patch(cut.background, a15_links(), cut.inside, {centre}, 2);
+    const LatticeActiveLayer part = lattice_patch(cut.background, a15_links(), cut.inside, {centre}, 2);
     check(cut, part);
     std::set<std::int64_t> ball = {centre};
     for (int ring = 0; ring < 2; ++ring) {
@@ -133,7 +133,7 @@ TEST(LatticeShell, APatchHoldsEveryTetNearItsCentres) {
     for (const Tet& t : cut.submesh.mesh.C) {
       n += std::any_of(t.begin(), t.end(), [&](int v) { return ball.count(cut.submesh.background_vertex[v]) != 0; });
     }
-    EXPECT_EQ(part.shell.C.size(), n);
+    EXPECT_EQ(part.layer.C.size(), n);
   }
 }
 

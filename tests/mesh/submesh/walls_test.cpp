@@ -21,7 +21,7 @@ const Box kChannel(Vec3(-6, -6, -14.58), Vec3(6, 6, 14.58));
 UmParams with_walls(UmMode mode = UmMode::Fast) {
   UmParams params;
   params.mode = mode;
-  params.rim = Rim::Wall;
+  params.background_boundary = BackgroundBoundary::Wall;
   return params;
 }
 
@@ -153,7 +153,7 @@ TEST(Walls, BoundaryWithinTwoEdgesOfOneIsRefusedByName) {
     EXPECT_GT(near.evidence.count, 0u);
     EXPECT_LT((near.evidence.where + Vec3::UnitX()).norm(), 2.5 * h);
     EXPECT_EQ(made(-.5).status, UmStatus::BoundaryNearWall);
-    params.rim = Rim::Refuse;
+    params.background_boundary = BackgroundBoundary::Refuse;
     EXPECT_EQ(made(3.5 * h).status, UmStatus::DomainLeavesBackground);
   }
 }

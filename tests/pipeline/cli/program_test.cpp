@@ -60,7 +60,7 @@ TEST_F(Program, ChangedEdgeLengthKeepsStageOne) {
 // Stages of one run hand clouds and level sets on in memory; those of later runs read the files.
 TEST_F(Program, WhatIsReadBackGivesTheSameBytesAsWhatIsHandedOn) {
   int line = 0;  // far from the origin, with every twentieth normal of another length, and an outlier
-  write_cloud("far.ply", [&](const double (&x)[6]) {
+  write_cloud("far.ply", [&](const double(&x)[6]) {
     const double length = ++line % 20 == 0 ? 1.3 : 1, out = line == 7 ? 3 : 1;
     std::ostringstream s;
     s.precision(17);

@@ -5,8 +5,8 @@
 #include <array>
 #include <set>
 
-#include "pipeline/output/boundary_patches.h"
 #include "pipeline/case/exit_code.h"
+#include "pipeline/output/boundary_patches.h"
 #include "reconstruct/io/point_cloud_io.h"
 #include "tests/pipeline/cli/program_fixture.h"
 #include "tests/support/data_files.h"

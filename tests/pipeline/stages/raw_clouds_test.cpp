@@ -93,7 +93,7 @@ TEST_F(Program, JunkIsDroppedAndCounted) {
   const Json dropped = record(folder / "junk/1-cloud")["numbers"]["dropped"];
   EXPECT_EQ(dropped["not_finite"], 1);
   EXPECT_EQ(dropped["duplicates"], 1);
-  EXPECT_EQ(dropped["outliers"].get<int>() + dropped["crumbs"].get<int>(), 1);
+  EXPECT_EQ(dropped["outliers"].get<int>() + dropped["small_components"].get<int>(), 1);
   EXPECT_EQ(Json::parse(r.out)["certificate"]["n_points"], i - 3);
   EXPECT_TRUE(Json::parse(r.out)["certificate"]["domain"]["components_proved"]);
   EXPECT_EQ(run("run junk.ply -o kept --until cloud --keep-all").code, 0);

@@ -30,7 +30,7 @@ TEST(Clean, DropsWhatIsNoNumberAndWhatIsThereTwice) {
   const CleaningReport report = clean(cloud);
   EXPECT_EQ(report.n_not_finite, 2U);
   EXPECT_EQ(report.n_duplicates, 5U);
-  EXPECT_EQ(report.n_outliers + report.n_crumbs, 0U);
+  EXPECT_EQ(report.n_outliers + report.n_small_components, 0U);
   EXPECT_EQ(cloud.points, original.points);
   EXPECT_EQ(cloud.normals, original.normals);
   OrientedPointCloud again = cloud;
@@ -110,8 +110,8 @@ TEST(Clean, CrumbsFarFromTheRestGoAndSmallPartsNearItStay) {
   test::add_sphere(cloud, {3, 0, 0}, 0.3, 2000);    // far and not small
   test::add_sphere(cloud, {0, 1, 0.74}, 0.09, 60);  // small and near: gap .25, six of its spacings of .04
   const CleaningReport report = clean(cloud);
-  EXPECT_EQ(report.n_crumb_pieces, 1U);
-  EXPECT_EQ(report.n_crumbs, 60U);
+  EXPECT_EQ(report.n_small_component_pieces, 1U);
+  EXPECT_EQ(report.n_small_components, 60U);
   EXPECT_EQ(report.kept.size(), 22060U);
 }
 
@@ -137,7 +137,7 @@ TEST(Clean, RefusesWhatItCannotUse) {
   CleaningParams params;
   params.suspicious_crowd = 1;
   params.certain_crowd = 0;
-  params.crumb_distance = 0;
+  params.small_component_distance = 0;
   EXPECT_EQ(problems(params).size(), 3U);
 }
 
@@ -147,7 +147,7 @@ TEST(Clean, RealScansLoseNextToNothing) {
     if (!file) GTEST_SKIP() << "no real scans beside the checkout";
     OrientedPointCloud cloud = read_point_cloud(*file).cloud;
     const CleaningReport report = clean(cloud);
-    EXPECT_EQ(report.n_outliers + report.n_crumbs, 0U) << name;
+    EXPECT_EQ(report.n_outliers + report.n_small_components, 0U) << name;
   }
 }
 

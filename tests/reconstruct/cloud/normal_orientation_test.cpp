@@ -7,8 +7,8 @@
 
 #include "reconstruct/cloud/detail/sign_turning.h"
 #include "reconstruct/cloud/normal_estimation.h"
-#include "reconstruct/io/point_cloud_io.h"
 #include "reconstruct/cloud/sign_graph.h"
+#include "reconstruct/io/point_cloud_io.h"
 #include "tests/support/clouds.h"
 #include "tests/support/data_files.h"
 #include "tests/support/sampled_domains.h"

@@ -9,8 +9,8 @@
 #include <random>
 #include <thread>
 
-#include "reconstruct/solve/fit_ssd.h"
 #include "reconstruct/io/level_set_io.h"
+#include "reconstruct/solve/fit_ssd.h"
 #include "tests/support/clouds.h"
 
 using namespace umtet;

@@ -1,4 +1,4 @@
-// The band cascade: merged samples, cross-level Gram terms, the operator of a band, and the sum of levels.
+// The multilevel fit: merged samples, cross-level Gram terms, the operator of a band, and the sum of levels.
 
 #include "reconstruct/solve/multilevel_fit.h"
 
@@ -250,7 +250,7 @@ TEST(SsdBand, ResidualIsTheDerivativeOfTheFunctional) {
   EXPECT_GT(compared, 20);
 }
 
-TEST(BandCascade, MeetsItsAccuracyOnTheTorus) {
+TEST(MultilevelFit, MeetsItsAccuracyOnTheTorus) {
   SsdParams p;
   p.spacing = 0.4 / 14;
   p.coarsest_nodes = 20000;
@@ -278,7 +278,7 @@ TEST(BandCascade, MeetsItsAccuracyOnTheTorus) {
   for (const BandReport& band : fit.report.bands) EXPECT_LE(band.iterations, 20);
 }
 
-TEST(BandCascade, DerivativesPassFiniteDifferencesAndAreContinuous) {
+TEST(MultilevelFit, DerivativesPassFiniteDifferencesAndAreContinuous) {
   const LevelSet& psi = torus_fit().psi;
   const double e = 1e-5, h = psi.spacing();
   for (const Vec3& x : torus_cloud(40, 11).points) {
@@ -315,7 +315,7 @@ TEST(BandCascade, DerivativesPassFiniteDifferencesAndAreContinuous) {
   EXPECT_GT(beyond, 0u);
 }
 
-TEST(BandCascade, CutAtASpacingIsTheSumOfTheCoarserLevels) {
+TEST(MultilevelFit, CutAtASpacingIsTheSumOfTheCoarserLevels) {
   const LevelSet& psi = torus_fit().psi;
   const LevelSet coarse = psi.band_limited(psi.lattice(0).h * 0.9);
   ASSERT_EQ(coarse.n_levels(), 1);
@@ -326,7 +326,7 @@ TEST(BandCascade, CutAtASpacingIsTheSumOfTheCoarserLevels) {
   }
 }
 
-TEST(BandCascade, ThreadsDoNotChangeABit) {
+TEST(MultilevelFit, ThreadsDoNotChangeABit) {
   OrientedPointCloud cloud = torus_cloud(8000);
   std::vector<float> first;
   for (const int threads : {1, 3}) {
@@ -343,7 +343,7 @@ TEST(BandCascade, ThreadsDoNotChangeABit) {
   }
 }
 
-TEST(BandCascade, DenseHalfIsRefinedAndSparseHalfIsNotDented) {
+TEST(MultilevelFit, DenseHalfIsRefinedAndSparseHalfIsNotDented) {
   // The half x > 0 of a sphere has forty times the samples of the other: a lattice for the dense half must not leave
   // marks around each sample of the sparse one.
   OrientedPointCloud cloud;
@@ -368,7 +368,7 @@ TEST(BandCascade, DenseHalfIsRefinedAndSparseHalfIsNotDented) {
   EXPECT_LT(sparse, 0.05 * fit.report.spacing);
 }
 
-TEST(BandCascade, FinestLatticeTakesSamplesAtTheirWordWithOrWithoutCoarserOnes) {
+TEST(MultilevelFit, FinestLatticeTakesSamplesAtTheirWordWithOrWithoutCoarserOnes) {
   const OrientedPointCloud cloud = torus_cloud(1500);
   SsdParams p;
   p.coarsest_nodes = 14000;
