@@ -1,6 +1,5 @@
 #include "mesh/background/body_size.h"
 
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -9,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "common/formatted.h"
 
 namespace umtet {
 namespace {
@@ -121,8 +122,7 @@ double h_for_tets(const Tiling& tiling, const BodySize& size, double n_tets, Cla
     std::string what = "psi: not negative at any of the samples taken in the box";
     if (size.n_not_finite > 0) {
       const Vec3& x = size.not_finite;
-      what += fmt::format(", and not finite at {}, first at ({:.6g}, {:.6g}, {:.6g})", size.n_not_finite, x.x(), x.y(),
-                          x.z());
+      what += formatted(", and not finite at %zu, first at (%.6g, %.6g, %.6g)", size.n_not_finite, x.x(), x.y(), x.z());
     }
     throw std::invalid_argument(what);
   }

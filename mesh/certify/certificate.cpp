@@ -1,6 +1,5 @@
 #include "mesh/certify/certificate.h"
 
-#include <fmt/format.h>
 #include <oneapi/tbb/task_group.h>
 
 #include <Eigen/Geometry>
@@ -9,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "common/formatted.h"
 #include "mesh/base/check_indices.h"
 #include "mesh/certify/boundary_surface.h"
 #include "mesh/certify/detail/certificate_memory.h"
@@ -259,19 +259,19 @@ std::vector<std::string> failures(const MeshCertificate& certificate) {
   count(b.n_moved_wall_vertices, "vertices of the walls have left their places");
   const double tolerance = kVertexTolerance + certificate.coordinate_rounding / certificate.h;
   if (b.max_vertex_distance_over_h && !(*b.max_vertex_distance_over_h <= tolerance)) {
-    reasons.push_back(fmt::format("a boundary vertex is {:.3g} h from psi = 0, more than rounding explains",
-                                  *b.max_vertex_distance_over_h));
+    reasons.push_back(formatted("a boundary vertex is %.3g h from psi = 0, more than rounding explains",
+                                *b.max_vertex_distance_over_h));
   }
   count(b.n_unprojected_faces, "boundary faces have no point of psi = 0 near their centroid");
   if (b.min_cos_normal && !(*b.min_cos_normal > 0)) {
     reasons.push_back(
-        fmt::format("the boundary is folded: cos(face normal, grad psi) is down to {:.3g}", *b.min_cos_normal));
+        formatted("the boundary is folded: cos(face normal, grad psi) is down to %.3g", *b.min_cos_normal));
   }
   if (b.gap_over_volume && !(*b.gap_over_volume <= kMostGap)) {
     reasons.push_back(
-        fmt::format("volume_gap: between the flat faces and psi = 0 lies {:.3g} % of the volume of the mesh, or of the "
-                    "body in it, more than {:.3g} %: h is too large for this shape",
-                    100 * *b.gap_over_volume, 100 * kMostGap));
+        formatted("volume_gap: between the flat faces and psi = 0 lies %.3g %% of the volume of the mesh, or of the "
+                  "body in it, more than %.3g %%: h is too large for this shape",
+                  100 * *b.gap_over_volume, 100 * kMostGap));
   }
   return reasons;
 }

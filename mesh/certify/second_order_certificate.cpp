@@ -1,13 +1,12 @@
 #include "mesh/certify/second_order_certificate.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
+#include "common/formatted.h"
 #include "mesh/certify/boundary_surface.h"
 #include "mesh/certify/certificate.h"
 #include "mesh/certify/detail/mid_side_numbers.h"
@@ -190,15 +189,15 @@ SecondOrderCertificate certify_second_order(const SecondOrderInput& input) {
 std::vector<std::string> failures(const SecondOrderCertificate& c, std::size_t n_named) {
   std::vector<std::string> reasons;
   if (c.n_nonpositive_jacobians > 0) {
-    reasons.push_back(fmt::format("{} tets of second order have a Jacobian that is not proved to be positive",
-                                  c.n_nonpositive_jacobians));
+    reasons.push_back(formatted("%zu tets of second order have a Jacobian that is not proved to be positive",
+                                c.n_nonpositive_jacobians));
   }
   if (c.n_torn_edges > 0) {
-    reasons.push_back(fmt::format("{} edges do not have one mid-side that all their tets share", c.n_torn_edges));
+    reasons.push_back(formatted("%zu edges do not have one mid-side that all their tets share", c.n_torn_edges));
   }
   if (c.n_mid_sides_off_surface > n_named) {
-    reasons.push_back(fmt::format("{} mid-sides of boundary edges are off psi = 0, the farthest {:.3g} h",
-                                  c.n_mid_sides_off_surface, *c.max_mid_side_distance_over_h));
+    reasons.push_back(formatted("%zu mid-sides of boundary edges are off psi = 0, the farthest %.3g h",
+                                c.n_mid_sides_off_surface, *c.max_mid_side_distance_over_h));
   }
   return reasons;
 }

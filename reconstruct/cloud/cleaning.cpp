@@ -1,6 +1,5 @@
 #include "reconstruct/cloud/cleaning.h"
 
-#include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/parallel_sort.h>
 
@@ -13,6 +12,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "common/formatted.h"
 #include "reconstruct/cloud/neighbour_tree.h"
 
 namespace umtet {
@@ -245,12 +245,12 @@ std::vector<std::uint8_t> small_components(const Surroundings& cloud, const Clea
 std::vector<std::string> problems(const CleaningParams& params) {
   std::vector<std::string> found;
   if (!(params.suspicious_crowd > 1))
-    found.push_back(fmt::format("suspicious_crowd = {}: must be > 1", params.suspicious_crowd));
+    found.push_back(formatted("suspicious_crowd = %g: must be > 1", params.suspicious_crowd));
   if (!(params.certain_crowd >= params.suspicious_crowd && params.certain_crowd < 1e6))
-    found.push_back(fmt::format("certain_crowd = {}: must be in suspicious_crowd = {}..1e6", params.certain_crowd,
-                                params.suspicious_crowd));
+    found.push_back(formatted("certain_crowd = %g: must be in suspicious_crowd = %g..1e6", params.certain_crowd,
+                              params.suspicious_crowd));
   if (!(params.small_component_distance > 1))
-    found.push_back(fmt::format("small_component_distance = {}: must be > 1", params.small_component_distance));
+    found.push_back(formatted("small_component_distance = %g: must be > 1", params.small_component_distance));
   return found;
 }
 
@@ -259,11 +259,11 @@ CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params, Ne
   const bool has_normals = !cloud.normals.empty();
   if (has_normals && cloud.normals.size() != cloud.points.size())
     throw std::invalid_argument(
-        fmt::format("{} points but {} normals: must be equal", cloud.points.size(), cloud.normals.size()));
+        formatted("%zu points but %zu normals: must be equal", cloud.points.size(), cloud.normals.size()));
   const bool has_labels = !cloud.labels.empty();
   if (has_labels && cloud.labels.size() != cloud.points.size())
     throw std::invalid_argument(
-        fmt::format("{} points but {} labels: must be equal", cloud.points.size(), cloud.labels.size()));
+        formatted("%zu points but %zu labels: must be equal", cloud.points.size(), cloud.labels.size()));
   CleaningReport report;
   std::vector<std::uint32_t>& kept = report.kept;
   for (std::uint32_t i = 0; i < cloud.points.size(); ++i)

@@ -1,6 +1,5 @@
 #include "reconstruct/cloud/cloud_survey.h"
 
-#include <fmt/format.h>
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/parallel_for.h>
 
@@ -11,6 +10,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "common/formatted.h"
 #include "reconstruct/cloud/cloud_neighbours.h"
 #include "reconstruct/cloud/enclosed_volume.h"
 #include "reconstruct/cloud/local_quadric.h"
@@ -75,7 +75,7 @@ double noise_along_normals(const std::vector<Vec3>& points, std::size_t sampled_
 
 double noise_along_normals(const std::vector<Vec3>& points, const NeighbourTree& tree, std::size_t sampled_points) {
   if (points.size() < kFewestSurveyed)
-    throw TooFewPoints(fmt::format("{} points: noise needs at least {}", points.size(), kFewestSurveyed));
+    throw TooFewPoints(formatted("%zu points: noise needs at least %zu", points.size(), kFewestSurveyed));
   const std::vector<std::uint32_t> picked = evenly_picked(tree, sampled_points);
   std::vector<double> variance(picked.size());
   tbb::enumerable_thread_specific<std::vector<Neighbour>> buffers;
@@ -139,9 +139,9 @@ std::vector<std::string> problems(const SurveyParams& params) {
   std::vector<std::string> found = problems(params.cleaning);
   for (std::string& more : problems(params.orientation)) found.push_back(std::move(more));
   if (!(params.consistent >= 0 && params.consistent <= 1))
-    found.push_back(fmt::format("consistent = {}: must be in 0..1", params.consistent));
+    found.push_back(formatted("consistent = %g: must be in 0..1", params.consistent));
   if (params.sampled_points < 100)
-    found.push_back(fmt::format("sampled_points = {}: must be >= 100", params.sampled_points));
+    found.push_back(formatted("sampled_points = %zu: must be >= 100", params.sampled_points));
   return found;
 }
 
@@ -153,7 +153,7 @@ CloudSurvey survey(const OrientedPointCloud& original, const SurveyParams& param
   result.dropped = clean(cloud, params.cleaning);
   const std::size_t n = cloud.points.size();
   if (n < kFewestSurveyed)
-    throw TooFewPoints(fmt::format("{} usable points: a survey needs at least {}", n, kFewestSurveyed));
+    throw TooFewPoints(formatted("%zu usable points: a survey needs at least %zu", n, kFewestSurveyed));
 
   result.low = result.high = cloud.points.front();
   for (const Vec3& x : cloud.points) {

@@ -1,7 +1,5 @@
 #include "reconstruct/cloud/normal_estimation.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "common/formatted.h"
 #include "reconstruct/cloud/local_quadric.h"
 
 namespace umtet {
@@ -106,17 +105,16 @@ Estimate estimate(const std::vector<Vec3>& points, const NeighbourTree& tree, co
 std::vector<std::string> problems(const NormalEstimationParams& params) {
   std::vector<std::string> found;
   if (params.neighbours < 8 || params.neighbours > 64)
-    found.push_back(
-        fmt::format("neighbours = {}: must be in 8..64, a quadric has six coefficients", params.neighbours));
-  if (!(params.noise_angle > 0)) found.push_back(fmt::format("noise_angle = {}: must be > 0", params.noise_angle));
+    found.push_back(formatted("neighbours = %d: must be in 8..64, a quadric has six coefficients", params.neighbours));
+  if (!(params.noise_angle > 0)) found.push_back(formatted("noise_angle = %g: must be > 0", params.noise_angle));
   if (!(params.largest_growth >= 1))
-    found.push_back(fmt::format("largest_growth = {}: must be >= 1", params.largest_growth));
+    found.push_back(formatted("largest_growth = %g: must be >= 1", params.largest_growth));
   return found;
 }
 
 EstimatedNormals estimate_normals(const std::vector<Vec3>& points, const NormalEstimationParams& params) {
   if (const auto found = problems(params); !found.empty()) throw std::invalid_argument(found.front());
-  if (points.size() < 3) throw std::invalid_argument(fmt::format("{} points have no normals", points.size()));
+  if (points.size() < 3) throw std::invalid_argument(formatted("%zu points have no normals", points.size()));
   const NeighbourTree tree(points);
   const std::vector<ThinnedCloud> levels = thinned(points, tree, params.largest_growth);
   EstimatedNormals result;

@@ -1,7 +1,5 @@
 #include "reconstruct/cloud/normal_orientation.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,6 +7,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "common/formatted.h"
 #include "reconstruct/cloud/enclosed_volume.h"
 #include "reconstruct/cloud/sign_graph.h"
 
@@ -28,9 +27,9 @@ void require(const OrientedPointCloud& cloud, const OrientationParams& params) {
   if (const auto found = problems(params); !found.empty()) throw std::invalid_argument(found.front());
   if (cloud.points.size() != cloud.normals.size())
     throw std::invalid_argument(
-        fmt::format("{} points but {} normals: must be equal", cloud.points.size(), cloud.normals.size()));
+        formatted("%zu points but %zu normals: must be equal", cloud.points.size(), cloud.normals.size()));
   for (std::size_t i = 0; i < cloud.normals.size(); ++i)
-    if (!cloud.normals[i].allFinite()) throw std::invalid_argument(fmt::format("normals[{}] is not finite", i));
+    if (!cloud.normals[i].allFinite()) throw std::invalid_argument(formatted("normals[%zu] is not finite", i));
 }
 
 double agreement(const std::vector<SignEdge>& edges, const std::vector<std::int8_t>* sign) {
@@ -200,7 +199,7 @@ class FoundNeighbours {
     const std::size_t n = cloud.points.size(), k = std::min(static_cast<std::size_t>(params.neighbours), n - 1);
     if (used_.size() != n || used_.k() != k)
       throw std::invalid_argument(
-          fmt::format("neighbourhoods of {} points, {} each: must be {}, {} each", used_.size(), used_.k(), n, k));
+          formatted("neighbourhoods of %zu points, %zu each: must be %zu, %zu each", used_.size(), used_.k(), n, k));
   }
   const Neighbourhoods& operator*() const { return used_; }
 
@@ -308,9 +307,9 @@ OrientationReport orient(OrientedPointCloud& cloud, const OrientationParams& par
 std::vector<std::string> problems(const OrientationParams& params) {
   std::vector<std::string> found;
   if (params.neighbours < 4 || params.neighbours > 64)
-    found.push_back(fmt::format("neighbours = {}: must be in 4..64", params.neighbours));
+    found.push_back(formatted("neighbours = %d: must be in 4..64", params.neighbours));
   if (!(params.disagreement >= 0.5 && params.disagreement < 1))
-    found.push_back(fmt::format("disagreement = {}: must be at least 0.5 and below 1", params.disagreement));
+    found.push_back(formatted("disagreement = %g: must be at least 0.5 and below 1", params.disagreement));
   return found;
 }
 

@@ -1,6 +1,5 @@
 #include "reconstruct/solve/fit_ssd.h"
 
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <Eigen/Geometry>
@@ -8,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/formatted.h"
 #include "reconstruct/solve/multigrid.h"
 #include "reconstruct/solve/resolution.h"
 #include "reconstruct/solve/ssd_assembled.h"
@@ -58,7 +58,7 @@ Hierarchy choose_hierarchy(const Eigen::AlignedBox3d& box, double h, int padding
   const Vec3 wanted = box.sizes() / h + Vec3::Constant(2 * padding);
   if (!(wanted.prod() < kMostNodes && wanted.maxCoeff() < kMostNodes)) {
     throw std::length_error(
-        fmt::format("spacing {:.6g} asks for {:.3g} lattice nodes: choose a larger one", h, wanted.prod()));
+        formatted("spacing %.6g asks for %.3g lattice nodes: choose a larger one", h, wanted.prod()));
   }
   Hierarchy best;
   double least = std::numeric_limits<double>::infinity();
@@ -81,9 +81,9 @@ Hierarchy choose_hierarchy(const Eigen::AlignedBox3d& box, double h, int padding
   }
   if (best.finest.size() == 0) {
     throw std::length_error(
-        fmt::format("spacing {:.6g} asks for a lattice of {:.0f} x {:.0f} x {:.0f} cells, too many or too "
-                    "unlike for multigrid: choose a larger spacing",
-                    h, wanted[0], wanted[1], wanted[2]));
+        formatted("spacing %.6g asks for a lattice of %.0f x %.0f x %.0f cells, too many or too "
+                  "unlike for multigrid: choose a larger spacing",
+                  h, wanted[0], wanted[1], wanted[2]));
   }
   return best;
 }
@@ -157,7 +157,7 @@ double median(std::vector<double> v) {
 }
 
 void go_on(const SsdProgress& progress, const char* step, double fraction) {
-  if (progress && !progress(step, fraction)) throw SolveCancelled(fmt::format("stopped during {}", step));
+  if (progress && !progress(step, fraction)) throw SolveCancelled(formatted("stopped during %s", step));
 }
 
 // What both ways of fitting start from.
@@ -185,9 +185,9 @@ LevelSet fit_lattice(const Problem& problem, const Hierarchy& hierarchy, std::ve
   if (params.solver == SsdSolver::Assembled) {
     if (op.size() > kAssembledNodes) {
       throw SolveError(
-          fmt::format("the assembled solver is for up to {} nodes, this lattice has {}: use another solver or a larger "
-                      "spacing",
-                      kAssembledNodes, op.size()));
+          formatted("the assembled solver is for up to %zu nodes, this lattice has %zu: use another solver or a larger "
+                    "spacing",
+                    kAssembledNodes, op.size()));
     }
     c = solve_assembled(op);
   } else {
@@ -201,9 +201,8 @@ LevelSet fit_lattice(const Problem& problem, const Hierarchy& hierarchy, std::ve
     report.iterations = pcg.iterations;
     report.residuals = pcg.residuals;
     if (!pcg.converged) {
-      throw SolveError(
-          fmt::format("{} nodes, smoothing {:.3g}: relative residual {:.2e} after {} iterations, wanted {:.1e}",
-                      op.size(), op.kappa(), pcg.residuals.back(), pcg.iterations, tolerance));
+      throw SolveError(formatted("%zu nodes, smoothing %.3g: relative residual %.2e after %d iterations, wanted %.1e",
+                                 op.size(), op.kappa(), pcg.residuals.back(), pcg.iterations, tolerance));
     }
   }
   c.resize(op.size() + SsdOperator::kPad, 0.0);
@@ -253,9 +252,9 @@ void require_memory(const Problem& problem, const Hierarchy& hierarchy,
   }
   if (need <= limit) return;
   throw SolveTooLarge(
-      fmt::format("a finest spacing of {:.4g} needs {:.3g} GB of memory, {:.3g} GB are allowed: choose a "
-                  "larger spacing (--detail below 1), or allow more",
-                  hierarchy.finest.h / std::exp2(samples.size() - 1.0), need / 1e9, limit / 1e9));
+      formatted("a finest spacing of %.4g needs %.3g GB of memory, %.3g GB are allowed: choose a "
+                "larger spacing (--detail below 1), or allow more",
+                hierarchy.finest.h / std::exp2(samples.size() - 1.0), need / 1e9, limit / 1e9));
 }
 
 LevelSet fit_multilevel(const Problem& problem, SsdReport& report) {
@@ -298,9 +297,9 @@ LevelSet fit_multilevel(const Problem& problem, SsdReport& report) {
         band);
     if (!band.converged) {
       throw SolveError(
-          fmt::format("band of {} nodes, smoothing {:.3g}: relative residual {:.2e} after {} iterations, "
-                      "wanted {:.1e}",
-                      band.n_nodes, smoothing, band.residual, band.iterations, params.band_tolerance));
+          formatted("band of %zu nodes, smoothing %.3g: relative residual %.2e after %d iterations, "
+                    "wanted %.1e",
+                    band.n_nodes, smoothing, band.residual, band.iterations, params.band_tolerance));
     }
     samples[level] = {};
     report.n_nodes += band.n_nodes;
@@ -315,15 +314,15 @@ LevelSet fit_multilevel(const Problem& problem, SsdReport& report) {
 SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const SsdProgress& progress,
                const NeighbourDistances* near) {
   const std::vector<std::string> wrong = problems(params);
-  if (!wrong.empty()) throw std::invalid_argument(fmt::format("{}", fmt::join(wrong, "; ")));
+  if (!wrong.empty()) throw std::invalid_argument(joined(wrong, "; "));
   if (cloud.points.size() < 10 || cloud.points.size() != cloud.normals.size()) {
     throw std::invalid_argument(
-        fmt::format("a cloud needs at least 10 points with a normal each; this one has {} points and {} normals",
-                    cloud.points.size(), cloud.normals.size()));
+        formatted("a cloud needs at least 10 points with a normal each; this one has %zu points and %zu normals",
+                  cloud.points.size(), cloud.normals.size()));
   }
   if (near && near->nearest.size() != cloud.points.size()) {
     throw std::invalid_argument(
-        fmt::format("neighbours of {} points, the cloud has {}", near->nearest.size(), cloud.points.size()));
+        formatted("neighbours of %zu points, the cloud has %zu", near->nearest.size(), cloud.points.size()));
   }
   SsdReport report;
   report.n_points = cloud.points.size();
@@ -351,8 +350,8 @@ SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const S
   report.reason = chosen.reason;
   if (params.weights == SsdWeights::Paper) problem.area = {};
   if (report.spacing > diagonal) {
-    throw SolveError(fmt::format("spacing {:.6g} is larger than the cloud (diagonal {:.6g}): choose a smaller one",
-                                 report.spacing, diagonal));
+    throw SolveError(formatted("spacing %.6g is larger than the cloud (diagonal %.6g): choose a smaller one",
+                               report.spacing, diagonal));
   }
   go_on(progress, "setup", 0);
   LevelSet psi = params.solver == SsdSolver::Multilevel ? fit_multilevel(problem, report) : fit_full(problem, report);

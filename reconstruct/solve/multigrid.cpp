@@ -1,12 +1,12 @@
 #include "reconstruct/solve/multigrid.h"
 
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "common/formatted.h"
 #include "reconstruct/solve/solve_error.h"
 #include "reconstruct/solve/ssd_assembled.h"
 
@@ -172,8 +172,8 @@ Multigrid::Multigrid(const SsdOperator& finest, int n_levels) {
   }
   coarsest_.compute(Eigen::MatrixXd(assemble(levels_.back().op)));
   if (coarsest_.info() != Eigen::Success) {
-    throw SolveError(fmt::format("the coarsest lattice ({} nodes) gives a matrix that is not positive definite",
-                                 levels_.back().op.size()));
+    throw SolveError(formatted("the coarsest lattice (%zu nodes) gives a matrix that is not positive definite",
+                               levels_.back().op.size()));
   }
 }
 

@@ -1,9 +1,9 @@
 #include "reconstruct/solve/resolution.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include "common/formatted.h"
 
 namespace umtet {
 
@@ -35,11 +35,11 @@ Resolution choose_resolution(double sample_spacing, double mesh_edge, double noi
   const double of_noise = kNoisySmoothing * std::pow(noise / r.spacing, 2);
   r.smoothing = smooth * (kCleanSmoothing + of_noise);
   r.finest_smoothing = smooth * (kFinestSmoothing + of_noise);
-  r.reason = noisy ? fmt::format("{:.3g} times the noise of {:.3g}", kNoises / detail, noise)
-                   : fmt::format("{:.3g} times the distance of {:.3g} between samples", r.spacing / sample_spacing,
-                                 sample_spacing);
-  r.reason += fmt::format("; c = {:.3g}, {:.3g} in the finest band, for noise of {:.3g} spacings", r.smoothing,
-                          r.finest_smoothing, noise / r.spacing);
+  r.reason =
+      noisy ? formatted("%.3g times the noise of %.3g", kNoises / detail, noise)
+            : formatted("%.3g times the distance of %.3g between samples", r.spacing / sample_spacing, sample_spacing);
+  r.reason += formatted("; c = %.3g, %.3g in the finest band, for noise of %.3g spacings", r.smoothing,
+                        r.finest_smoothing, noise / r.spacing);
   return r;
 }
 

@@ -1,11 +1,10 @@
 #include "reconstruct/solve/ssd_assembled.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
+#include "common/formatted.h"
 #include "reconstruct/solve/solve_error.h"
 
 namespace umtet {
@@ -21,7 +20,7 @@ std::vector<double> solve(const Eigen::SparseMatrix<double>& A, const Eigen::Vec
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> ldlt(A);
   if (ldlt.info() != Eigen::Success) {
     throw SolveError(
-        fmt::format("sparse factorisation of {} nodes failed: the matrix is not positive definite", A.rows()));
+        formatted("sparse factorisation of %td nodes failed: the matrix is not positive definite", A.rows()));
   }
   Eigen::VectorXd c = ldlt.solve(r);
   c += ldlt.solve(r - A * c);  // one step of refinement: the condition grows as h^-4
@@ -163,8 +162,8 @@ std::vector<double> fit_scattered(const LmeScattered& basis, const std::vector<S
     const SsdSample& s = samples[i];
     const LmeValues v = basis.evaluate(s.xi);
     if (!v.converged) {
-      throw SolveError(fmt::format("sample {} at ({:.6g}, {:.6g}, {:.6g}) lies outside the hull of the {} nodes", i,
-                                   s.xi[0], s.xi[1], s.xi[2], n));
+      throw SolveError(formatted("sample %zu at (%.6g, %.6g, %.6g) lies outside the hull of the %zu nodes", i, s.xi[0],
+                                 s.xi[1], s.xi[2], n));
     }
     Eigen::MatrixX4d B(v.node.size(), 4);
     for (std::size_t a = 0; a < v.node.size(); ++a) {

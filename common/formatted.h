@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdarg>
+#include <cstdio>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace umtet {
+
+/// What printf() would print, as a string: for messages of the libraries, which then need no library for text.
+[[gnu::format(printf, 1, 2)]] inline std::string formatted(const char* format, ...) {
+  std::va_list arguments, again;
+  va_start(arguments, format);
+  va_copy(again, arguments);
+  std::string text(static_cast<std::size_t>(std::vsnprintf(nullptr, 0, format, arguments)), '\0');
+  std::vsnprintf(text.data(), text.size() + 1, format, again);
+  va_end(again);
+  va_end(arguments);
+  return text;
+}
+
+/// The items one after the other, with `separator` between them.
+inline std::string joined(const std::vector<std::string>& items, std::string_view separator) {
+  std::string all;
+  for (const std::string& item : items) {
+    if (!all.empty()) all += separator;
+    all += item;
+  }
+  return all;
+}
+
+}  // namespace umtet
