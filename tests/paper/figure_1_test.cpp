@@ -15,7 +15,7 @@ namespace domains = umtet::testing;
 TEST(Figure1, QualityAndAnglesAt100kTets) {
   std::printf(
       "Figure 1, 100k tets     least Q   1 %%  dihedral angles   (paper: .660 .663 .669 .634; TetGen there: .071 to "
-      ".086; Gmsh, TetGen and CGAL here: README.md)\n");
+      ".086; Gmsh, TetGen and CGAL here: docs/comparison.md)\n");
   UmParams params;
   params.mode = UmMode::Fast;
   for (const auto& domain : {domains::sphere(), domains::torus(), domains::equation_9(), domains::banchoff_chmutov_6(),

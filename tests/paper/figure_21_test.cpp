@@ -1,4 +1,4 @@
-// Figs. 20 and 21B: eq. (13) at some of its 44 instants, in one background mesh. All of them: README, `umtet evolve`.
+// Figs. 20 and 21B: eq. (13) at some of its 44 instants, in one background mesh. All of them: docs/using.md, `umtet evolve`.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-"""docs/reference.md names every key, column and field that the program writes, and README.md every command: reference_test.py PROGRAM REPOSITORY."""
+"""docs/reference.md names every key, column, field and parameter of the program, and docs/using.md every command: reference_test.py PROGRAM REPOSITORY."""
 import json
 import pathlib
 import re
@@ -64,13 +64,17 @@ class Reference(unittest.TestCase):
         self.expect(keys(scans), "--json of batch")
         self.expect((self.at / "scans/batch.csv").read_text().split("\n")[0].split(","), "batch.csv")
 
-    def test_commands_are_in_the_readme(self):
+    def test_the_table_of_parameters_is_fresh(self):
+        check = subprocess.run([sys.executable, REPOSITORY / "docs/parameters.py", PROGRAM, "--check"], capture_output=True, text=True)
+        self.assertEqual(check.returncode, 0, check.stdout + check.stderr)
+
+    def test_commands_are_documented(self):
         help_text = run("--help")
         commands = re.findall(r"^  (\w+) ", help_text[help_text.index("Subcommands:"):help_text.index("Examples:")], re.M)
         self.assertIn("run", commands)
-        readme = (REPOSITORY / "README.md").read_text()
+        using = (REPOSITORY / "docs/using.md").read_text()
         for command in commands:
-            self.assertIn(f"umtet {command} ", readme)
+            self.assertIn(f"umtet {command} ", using)
 
 
 if __name__ == "__main__":
