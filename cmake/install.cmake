@@ -1,5 +1,5 @@
-# What `cmake --install` puts where: the program, its documents, and the three libraries for find_package(umtet) and
-# pkg-config. Three components, as Debian would pack them: program, development, python (python/CMakeLists.txt).
+# What `cmake --install` puts where: the program, its documents, and the libraries for find_package(umtet) and
+# pkg-config. Packed as Debian would: program, development, python (python/CMakeLists.txt).
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # tests and benchmarks are not packed: cpack need not build them
@@ -13,9 +13,10 @@ if(UMTET_ARCH MATCHES "v3|v4|native")
 endif()
 set(umtet_definitions EIGEN_MAX_ALIGN_BYTES=${umtet_alignment} EIGEN_MAX_STATIC_ALIGN_BYTES=${umtet_alignment})
 
+get_directory_property(umtet_has_pcl DIRECTORY reconstruct DEFINITION PCL_FOUND)
+
 # A component is an archive, what it links (umtet-config.cmake finds it), and its file of targets. Whoever asks for the
 # mesher alone needs none of the libraries behind the files.
-set(umtet_components reconstruct mesh cloud_io mesh_io pipeline)
 foreach(component IN LISTS umtet_components)
   set(library umtet_${component})
   set_target_properties(${library} PROPERTIES EXPORT_NAME ${component})
@@ -29,6 +30,48 @@ foreach(component IN LISTS umtet_components)
   install(EXPORT umtet-${component} NAMESPACE umtet:: FILE umtet-${component}-targets.cmake
     DESTINATION ${umtet_cmake} COMPONENT development)
 endforeach()
+
+# umtet-mesh.pc and the like; umtet.pc is the pipeline's, with all the others. VTK has no .pc files: by name.
+set(vtk)
+if(NOT UMTET_CORE_ONLY)
+  get_directory_property(vtk_major DIRECTORY mesh DEFINITION VTK_MAJOR_VERSION)
+  get_directory_property(vtk_minor DIRECTORY mesh DEFINITION VTK_MINOR_VERSION)
+  set(vtk vtkFiltersCore vtkIOXML vtkIOCore vtkCommonExecutionModel vtkCommonDataModel vtkCommonMisc vtkCommonCore)
+  list(TRANSFORM vtk PREPEND -l)
+  list(TRANSFORM vtk APPEND -${vtk_major}.${vtk_minor})
+  list(JOIN vtk " " vtk)
+endif()
+set(mesh_requires "eigen3 tbb")
+set(mesh_extra)
+if(UMTET_WITH_GSL)
+  string(APPEND mesh_requires " gsl")
+  set(mesh_extra -DUMTET_WITH_GSL=1)
+endif()
+set(reconstruct_requires "eigen3 tbb flann")
+set(mesh_io_requires "umtet-mesh fmt hdf5-serial")
+set(mesh_io_libs "-lOpenMeshCore ${vtk}")
+set(cloud_io_requires "umtet-reconstruct fmt libxxhash")
+set(cloud_io_libs ${vtk})
+if(umtet_has_pcl)
+  string(PREPEND cloud_io_libs "-lpcl_io -lpcl_common ")
+endif()
+set(pipeline_requires "umtet-mesh_io umtet-cloud_io nlohmann_json tomlplusplus muparser ginac")
+set(pipeline_libs ${vtk})
+list(JOIN umtet_definitions " -D" pc_definitions)
+file(RELATIVE_PATH pc_up /p/${CMAKE_INSTALL_LIBDIR}/pkgconfig /p)
+string(REGEX REPLACE "/$" "" pc_up ${pc_up})
+foreach(component IN LISTS umtet_components)
+  set(pc_name umtet-${component})
+  if(component STREQUAL pipeline)
+    set(pc_name umtet)
+  endif()
+  set(pc_requires ${${component}_requires})
+  set(pc_libs ${${component}_libs})
+  set(pc_extra ${${component}_extra})
+  configure_file(cmake/umtet.pc.in ${PROJECT_BINARY_DIR}/${pc_name}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/${pc_name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
+endforeach()
+
 foreach(folder common reconstruct mesh pipeline)
   install(DIRECTORY ${folder} DESTINATION ${umtet_headers} COMPONENT development
     FILES_MATCHING PATTERN "*.h" PATTERN detail EXCLUDE PATTERN examples EXCLUDE PATTERN cli EXCLUDE
@@ -41,7 +84,11 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/umtet-config-version.cmak
 install(FILES ${PROJECT_BINARY_DIR}/umtet-config.cmake ${PROJECT_BINARY_DIR}/umtet-config-version.cmake
   DESTINATION ${umtet_cmake} COMPONENT development)
 
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libumtet-dev COMPONENT development)
+if(UMTET_CORE_ONLY)
+  return()
+endif()
+
 install(TARGETS umtet RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 install(FILES README.md CHANGELOG.md REFERENCES.bib DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program FILES_MATCHING PATTERN "*.md")
-install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libumtet-dev COMPONENT development)

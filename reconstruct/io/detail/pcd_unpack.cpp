@@ -7,13 +7,18 @@
 #include "reconstruct/io/detail/pcd_unpack.h"
 
 #include <fmt/format.h>
+
+#ifdef UMTET_WITH_PCL
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/console/print.h>
 #include <pcl/io/pcd_io.h>
 
 #include <utility>
+#endif
 
 namespace umtet::detail {
+
+#ifdef UMTET_WITH_PCL
 namespace {
 
 /// PCL reports on stderr; what it finds wrong is told by its return value.
@@ -70,5 +75,11 @@ std::vector<std::uint8_t> unpack(const CloudSource& source, const PcdHeader& hea
                                header.body));
   return std::move(blob.data);
 }
+#else
+std::vector<std::uint8_t> unpack(const CloudSource& source, const PcdHeader&) {
+  refuse(source, "DATA binary_compressed takes PCL, and this umtet was built without it: install libpcl-dev and build again, or "
+                 "save the cloud as binary or ascii");
+}
+#endif
 
 }  // namespace umtet::detail
