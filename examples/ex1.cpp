@@ -34,9 +34,7 @@ int main(int argc, char* argv[]) {
   // 3. The mesh: tets of the background with a vertex inside, their outer vertices moved to psi = 0. What can go wrong
   //    is a status with evidence, and no exception.
   const Ball psi;
-  umtet::UmParams params;
-  params.mode = umtet::UmMode::Fast;
-  const umtet::UmResult result = umtet::universal_mesh(background, psi, params);
+  const umtet::UmResult result = umtet::universal_mesh(background, psi);
   if (result.status != umtet::UmStatus::Success) {
     std::fprintf(stderr, "no mesh: %s: %s\n", umtet::to_string(result.status), result.evidence.what.c_str());
     return 1;

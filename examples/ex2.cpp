@@ -46,9 +46,7 @@ int main(int argc, char* argv[]) {
   const umtet::BackgroundMesh background(umtet::a15(), psi.domain(), h);
 
   // 4. Mesh and certificate, as in example 1.
-  umtet::UmParams params;
-  params.mode = umtet::UmMode::Fast;
-  const umtet::UmResult result = umtet::universal_mesh(background, psi, params);
+  const umtet::UmResult result = umtet::universal_mesh(background, psi);
   if (result.status != umtet::UmStatus::Success) {
     std::fprintf(stderr, "no mesh: %s: %s\n", umtet::to_string(result.status), result.evidence.what.c_str());
     return 1;

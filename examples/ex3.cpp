@@ -25,9 +25,7 @@ int main(int argc, char* argv[]) {
 
   // 1. One background for all times, and a mesher that remembers.
   const umtet::Box box(umtet::Vec3::Constant(-1), umtet::Vec3(3, 1, 1));
-  umtet::UmParams params;
-  params.mode = umtet::UmMode::Fast;
-  umtet::UniversalMesh mesher(umtet::BackgroundMesh(umtet::a15(), box, h), params);
+  umtet::UniversalMesh mesher(umtet::BackgroundMesh(umtet::a15(), box, h));
 
   // 2. The pattern of all matrices of the family: who meets whom in the background.
   const umtet::SparsityPattern pattern = umtet::sparsity_pattern(mesher.background());

@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "mesh/certify/detail/certificate_memory.h"
+#include "mesh/certify/certificate_memory.h"
 #include "mesh/fast/fast_mesh.h"
 #include "mesh/submesh/inside_walk.h"
 
@@ -115,7 +115,7 @@ struct UniversalMesh::Impl {
   FastMemory memory;
   UmUpdate now;     ///< of the last call
   UmUpdate before;  ///< the last mesh but that
-  detail::CertificateMemory certified;
+  CertificateMemory certified;
 };
 
 UniversalMesh::UniversalMesh(BackgroundMesh background, const UmParams& params) {
@@ -212,8 +212,8 @@ const UmUpdate& UniversalMesh::update(ImplicitFunctionRef psi, const UpdateHints
     return impl.now;
   }
   UmUpdate& update = start();
-  update.mesh =
-      fast_mesh(impl.background, psi, impl.params, observer, impl.walk.inside(), impl.memory, impl.walk.values());
+  update.mesh = fast_mesh(impl.background, psi, impl.params.submesh, impl.params.fast, observer, impl.walk.inside(),
+                          impl.memory, impl.walk.values());
   update.mesh.n_psi_evaluations += n_evaluations;
   update.n_searched = n_searched;
   update.n_recalled = impl.memory.n_recalled;

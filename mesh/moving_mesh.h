@@ -53,7 +53,7 @@ class UniversalMesh {
   /// @param params  UmMode::Fast. seeds and search are not used: the first update, and one after a domain
   ///                that was nowhere, asks psi at every vertex
   /// \throw std::invalid_argument naming every broken constraint; UmMode::Paper
-  UniversalMesh(BackgroundMesh background, const UmParams& params);
+  explicit UniversalMesh(BackgroundMesh background, const UmParams& params = {});
   ~UniversalMesh();
   UniversalMesh(UniversalMesh&&) noexcept;
   UniversalMesh& operator=(UniversalMesh&&) noexcept;

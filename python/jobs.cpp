@@ -9,6 +9,7 @@
 #include "pipeline/meshing/background_choice.h"
 #include "pipeline/meshing/certificate_json.h"
 #include "pipeline/meshing/edge_length.h"
+#include "pipeline/meshing/library_params.h"
 #include "pipeline/meshing/mesh_maker.h"
 #include "pipeline/meshing/mesh_measures.h"
 #include "pipeline/meshing/too_thin.h"

@@ -68,7 +68,7 @@ TetMesh a15_box(const Box& box, double h) {
   for (int a = 0; a < 3; ++a) n[a] = static_cast<std::int64_t>(cells[a]);
   const Place sides = {kParts * n[0] + 1, kParts * n[1] + 1, kParts * n[2] + 1};  // places along the edges of the box
   const auto id = [&](const Place& p) { return p[0] + sides[0] * (p[1] + sides[1] * p[2]); };
-  detail::IdSet used(sides[0] * sides[1] * sides[2]);
+  IdSet used(sides[0] * sides[1] * sides[2]);
   std::size_t n_tets = 0;
   for_each_tet(n, [&](const auto& corners) {
     for (const Place& p : corners) used.insert(id(p));

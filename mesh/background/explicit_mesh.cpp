@@ -50,12 +50,12 @@ void ExplicitMesh::find_stars() {
 void ExplicitMesh::find_neighbors() {
   neighbor_.assign(4 * mesh_.C.size(), -1);
   on_boundary_.assign(mesh_.V.size(), false);
-  std::vector<detail::FaceUse> uses;
+  std::vector<FaceUse> uses;
   for (int v = 0; v < static_cast<int>(mesh_.V.size()); ++v) {
     uses.clear();
-    for (const int t : star(v)) detail::add_faces(mesh_.C[t], static_cast<std::size_t>(t), v, uses);
-    detail::for_each_face(uses, [&](std::span<const detail::FaceUse> face) {
-      const detail::FaceUse &one = face.front(), &other = face.back();
+    for (const int t : star(v)) add_faces(mesh_.C[t], static_cast<std::size_t>(t), v, uses);
+    for_each_face(uses, [&](std::span<const FaceUse> face) {
+      const FaceUse &one = face.front(), &other = face.back();
       if (face.size() == 1) {
         on_boundary_[v] = on_boundary_[one.low()] = on_boundary_[one.high()] = true;
       } else if (face.size() == 2 && one.reversed() != other.reversed()) {

@@ -7,7 +7,7 @@
 #include "mesh/background/link_topology.h"
 #include "mesh/base/id_set.h"
 
-namespace umtet::detail {
+namespace umtet {
 
 /// What is added to the id of a lattice vertex for the ids of its link, in the order of TilingTables::link. What that
 /// gives in the outermost layer of cells is said at BackgroundMesh::id_step().
@@ -37,4 +37,4 @@ class LinkSteps {
   std::vector<std::vector<std::int64_t>> steps_;  ///< per vertex type
 };
 
-}  // namespace umtet::detail
+}  // namespace umtet

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace umtet::detail {
+namespace umtet {
 
 /// \throw std::invalid_argument naming the first simplex with a vertex that is out of range or its own twice
 /// @param name  of a simplex, for the message
@@ -33,4 +33,4 @@ void check_indices(const std::vector<std::array<int, N>>& simplices, std::size_t
   }
 }
 
-}  // namespace umtet::detail
+}  // namespace umtet

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <vector>
 
-namespace umtet::detail {
+namespace umtet {
 
 /// Union-find. The least member represents a set, so that representatives do not depend on the order of the unions.
 class DisjointSets {
@@ -32,4 +32,4 @@ class DisjointSets {
   std::vector<int> parent_;
 };
 
-}  // namespace umtet::detail
+}  // namespace umtet

@@ -9,7 +9,7 @@
 
 #include "mesh/base/id_set.h"
 
-namespace umtet::detail {
+namespace umtet {
 
 /// So many words of a set are a block: 64 ids each, a hundred of them in the shell if it is thick.
 inline constexpr std::size_t kWordsPerBlock = 16;
@@ -29,4 +29,4 @@ void for_each_in_blocks(const IdSet& set, const F& f) {
   });
 }
 
-}  // namespace umtet::detail
+}  // namespace umtet

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace umtet::detail {
+namespace umtet {
 
 /// Some hundred ids in the order of their coming, each found again in a few ns: for parts of a mesh so small that a bit
 /// for every vertex of the background would cost more than all the rest.
@@ -45,4 +45,4 @@ class IdList {
   int shift_ = 64 - 9;      ///< of a 64-bit hash, to a slot; the first table has 2^10
 };
 
-}  // namespace umtet::detail
+}  // namespace umtet

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace umtet::detail {
+namespace umtet {
 
 /// A set of background ids, one bit each, with the rank of every member once index() was called.
 class IdSet {
@@ -71,4 +71,4 @@ class IdSet {
   std::vector<std::uint32_t> before_;
 };
 
-}  // namespace umtet::detail
+}  // namespace umtet

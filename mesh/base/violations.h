@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <limits>
 
-namespace umtet::detail {
+namespace umtet {
 
 /// The first of those that break a rule, by number, and how many there are.
 struct Violations {
@@ -31,4 +31,4 @@ Violations find_violations(std::size_t n, Predicate&& bad) {
       });
 }
 
-}  // namespace umtet::detail
+}  // namespace umtet

@@ -19,9 +19,6 @@
 namespace umtet {
 namespace {
 
-using detail::FaceUse;
-using detail::TwoLeast;
-
 // What a task of a fraction of a millisecond handles; of the vertices, what leaves their tets in the cache.
 constexpr std::size_t kTetsPerPart = 1 << 14;
 constexpr std::size_t kAhead = 16;  // tets that are on the way from memory
@@ -272,9 +269,9 @@ struct BlockFaces {
 void count_faces(const std::vector<Tet>& C, const TetsByVertex& tets, int v, int local, std::vector<FaceUse>& uses,
                  BlockFaces& result) {
   uses.clear();
-  for (const auto& t : tets.least(local)) detail::add_faces(C[t.tet], static_cast<std::size_t>(t.tet), v, uses);
-  for (const auto& t : tets.second(local)) detail::add_faces(C[t.tet], static_cast<std::size_t>(t.tet), v, uses);
-  detail::for_each_face(uses, [&](std::span<const FaceUse> face) {
+  for (const auto& t : tets.least(local)) add_faces(C[t.tet], static_cast<std::size_t>(t.tet), v, uses);
+  for (const auto& t : tets.second(local)) add_faces(C[t.tet], static_cast<std::size_t>(t.tet), v, uses);
+  for_each_face(uses, [&](std::span<const FaceUse> face) {
     if (face.size() == 1) result.single.push_back(static_cast<std::int64_t>(face[0].place()));
     if (face.size() == 2) result.n_same_side += face[0].reversed() == face[1].reversed();
     if (face.size() > 2) ++result.n_overused;
@@ -304,7 +301,7 @@ BoundaryFaces boundary_faces(const std::vector<Tet>& C, std::size_t n_vertices, 
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t p) {
     if (!parts[p].sort(C, p, n_vertices, only)) good = false;
   });
-  if (!good) detail::check_indices(C, n_vertices, "tet");  // throws
+  if (!good) check_indices(C, n_vertices, "tet");  // throws
   std::vector<BlockFaces> blocks((n_vertices + kVerticesPerBlock - 1) / kVerticesPerBlock);
   tbb::enumerable_thread_specific<Scratch> scratch;
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {

@@ -87,8 +87,7 @@ bool has_closed_fans(const std::vector<Triangle>& faces, std::size_t n_vertices)
 }
 
 /// Edges: how many there are and which are bad; per component counts; the fans at each vertex through shared edges.
-void count_edges(const std::vector<Triangle>& faces, std::size_t n_vertices, SurfaceTopology& s,
-                 detail::DisjointSets& fan_of) {
+void count_edges(const std::vector<Triangle>& faces, std::size_t n_vertices, SurfaceTopology& s, DisjointSets& fan_of) {
   EdgeTable table(n_vertices);
   for (const Triangle& f : faces)
     for (int k = 0; k < 3; ++k) table.count(std::min(f[k], f[(k + 1) % 3]));
@@ -119,7 +118,7 @@ void count_edges(const std::vector<Triangle>& faces, std::size_t n_vertices, Sur
 }
 
 void count_components(const std::vector<Vec3>& V, const std::vector<Triangle>& faces, SurfaceTopology& s) {
-  detail::DisjointSets pieces(V.size());
+  DisjointSets pieces(V.size());
   std::vector<char> used(V.size(), 0);
   for (const Triangle& f : faces) {
     for (const int v : f) used[v] = 1;
@@ -151,7 +150,7 @@ void count_components(const std::vector<Vec3>& V, const std::vector<Triangle>& f
 }  // namespace
 
 SurfaceTopology surface_topology(const std::vector<Vec3>& V, const std::vector<Triangle>& faces) {
-  detail::check_indices(faces, V.size(), "face");
+  check_indices(faces, V.size(), "face");
   SurfaceTopology s;
   if (faces.empty()) return s;
   count_components(V, faces, s);
@@ -159,7 +158,7 @@ SurfaceTopology surface_topology(const std::vector<Vec3>& V, const std::vector<T
   if (is_clean) {
     for (SurfaceComponent& part : s.components) s.n_edges += part.n_edges = 3 * part.n_faces / 2;
   } else {
-    detail::DisjointSets fan_of(3 * faces.size());  // of corners
+    DisjointSets fan_of(3 * faces.size());  // of corners
     count_edges(faces, V.size(), s, fan_of);
     std::vector<int> fans(V.size(), 0);
     for (std::size_t i = 0; i < faces.size(); ++i) {

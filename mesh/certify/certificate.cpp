@@ -11,7 +11,7 @@
 #include "common/formatted.h"
 #include "mesh/base/check_indices.h"
 #include "mesh/certify/boundary_surface.h"
-#include "mesh/certify/detail/certificate_memory.h"
+#include "mesh/certify/certificate_memory.h"
 #include "mesh/certify/detail/tet_measures.h"
 #include "mesh/core/sort_faces.h"
 #include "mesh/implicit/foot_point.h"
@@ -46,7 +46,7 @@ bool same_faces(std::vector<Triangle> x, std::vector<Triangle> y, std::size_t n_
   }
   const auto order = [n_vertices](std::vector<Triangle>& faces) {
     for (Triangle& f : faces) std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
-    detail::sort_faces(faces, n_vertices);
+    sort_faces(faces, n_vertices);
   };
   run_both([&] { order(x); }, [&] { order(y); });
   return x == y;
@@ -110,7 +110,7 @@ void measure_against(ImplicitFunctionRef psi, const TetMesh& mesh, const std::ve
   std::vector<FaceMeasure> face(faces.size());
   polled_parallel_for(faces.size(), kFeetPerPoll, keep_going, [&](std::size_t i) {
     const Vec3 &a = mesh.V[faces[i][0]], &b = mesh.V[faces[i][1]], &c = mesh.V[faces[i][2]];
-    const detail::Foot foot = detail::foot_point(psi, (a + b + c) / 3.0, h);
+    const Foot foot = foot_point(psi, (a + b + c) / 3.0, h);
     const Vec3 n = (b - a).cross(c - a);
     const double length = n.norm();
     const double cosine = length > 0 ? n.dot(foot.normal) / length : -1.0;  // no area: no normal
@@ -137,7 +137,7 @@ void measure_against(ImplicitFunctionRef psi, const TetMesh& mesh, const std::ve
 
 /// @param memory  if not null, matched with the mesh
 /// @param surface    receives the boundary
-MeshCertificate certify_with(const CertificateInput& input, detail::CertificateMemory* memory, BoundaryFaces& surface) {
+MeshCertificate certify_with(const CertificateInput& input, CertificateMemory* memory, BoundaryFaces& surface) {
   if (!input.mesh || input.mesh->C.empty()) throw std::invalid_argument("certify: a mesh with tets is needed");
   const TetMesh& mesh = *input.mesh;
   if (input.wall_faces && (!input.background_V || input.background_V->size() != mesh.V.size())) {
@@ -193,7 +193,7 @@ MeshCertificate certify_with(const CertificateInput& input, detail::CertificateM
 }
 
 /// Of a mesh that has not changed, without walls: faces are compared and psi is asked again.
-MeshCertificate certify_again(const CertificateInput& input, detail::CertificateMemory::Whole& known,
+MeshCertificate certify_again(const CertificateInput& input, CertificateMemory::Whole& known,
                               const std::vector<Triangle>& surface) {
   MeshCertificate certificate = known.certificate;
   certificate.coordinate_rounding = input.coordinate_rounding;
@@ -223,9 +223,9 @@ MeshCertificate certify(const CertificateInput& input) {
 }
 
 MeshCertificate certify(const CertificateInput& input, const std::vector<std::int64_t>& vertex_id,
-                        const std::vector<std::int64_t>& tet_id, detail::CertificateMemory& memory) {
+                        const std::vector<std::int64_t>& tet_id, CertificateMemory& memory) {
   if (!input.mesh) throw std::invalid_argument("certify: a mesh with tets is needed");
-  detail::check_indices(input.mesh->C, input.mesh->V.size(), "tet");
+  check_indices(input.mesh->C, input.mesh->V.size(), "tet");
   memory.match(*input.mesh, vertex_id, tet_id);
   if (auto* known = memory.of_the_same(input.h); known && !input.wall_faces) {
     memory.keep();

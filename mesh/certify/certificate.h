@@ -79,9 +79,7 @@ inline constexpr double kMostGap = .1;
 ///        MeshCancelled
 MeshCertificate certify(const CertificateInput&);
 
-namespace detail {
 class CertificateMemory;
-}
 /// The same, to the bit, of a mesh that differs little from the one that was certified with this memory before: tets
 /// that are the same to the bit keep what was measured of them, and faces are counted where tets have come or gone. The
 /// surface is measured anew. Cost: as the surface and the tets that have changed, and some ns for each of the others.
@@ -89,7 +87,7 @@ class CertificateMemory;
 ///                           say where to look
 /// @param memory             empty at first; receives what the next call will use
 MeshCertificate certify(const CertificateInput&, const std::vector<std::int64_t>& vertex_id,
-                        const std::vector<std::int64_t>& tet_id, detail::CertificateMemory& memory);
+                        const std::vector<std::int64_t>& tet_id, CertificateMemory& memory);
 
 /// The reasons why a certificate fails, empty = pass: inverted tets, boundary not a closed manifold or not the positive
 /// and wall faces, a wall that has moved, a vertex farther than kVertexTolerance h from psi = 0, a face without a point

@@ -25,7 +25,7 @@ std::vector<double> mean_ratios(const TetMesh& mesh) {
     for (std::size_t first = groups.begin() * kPackSize; first < std::min(n, groups.end() * kPackSize);
          first += kPackSize) {
       const int count = static_cast<int>(std::min<std::size_t>(kPackSize, n - first));
-      const detail::TetPack tets = detail::measure_tet_pack(mesh, &mesh.C[first], count);
+      const TetPack tets = measure_tet_pack(mesh, &mesh.C[first], count);
       for (int m = 0; m < count; ++m) Q[first + m] = tets.quality[m];
     }
   };

@@ -11,14 +11,11 @@
 #include <span>
 #include <stdexcept>
 
+#include "mesh/classification/classification_band.h"
 #include "mesh/classification/configuration_costs.h"
-#include "mesh/classification/detail/classification_band.h"
 
 namespace umtet {
 namespace {
-
-using detail::ClassificationBand;
-using detail::IdSet;
 
 // A gain below this is rounding of floats.
 constexpr float kLeastGain = 1e-3F;
@@ -324,14 +321,7 @@ bool is_thin(ImplicitFunctionRef psi, const Vec3& foot, const Vec3& normal, doub
 
 ClassificationReport classify_vertices(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
                                        ImplicitFunctionRef psi, const ClassificationParams& params, IdSet& inside,
-                                       const KeepGoing& keep_going, const IdSet* last) {
-  return detail::classify_vertices(background, links, psi, params, inside, keep_going, last, nullptr);
-}
-
-ClassificationReport detail::classify_vertices(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
-                                               ImplicitFunctionRef psi, const ClassificationParams& params,
-                                               IdSet& inside, const KeepGoing& keep_going, const IdSet* last,
-                                               const PsiValues* known) {
+                                       const KeepGoing& keep_going, const IdSet* last, const PsiValues* known) {
   std::string all;
   for (const std::string& problem : problems(params)) all += (all.empty() ? "" : "; ") + problem;
   if (!all.empty()) throw std::invalid_argument(all);

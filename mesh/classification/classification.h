@@ -9,6 +9,7 @@
 #include "mesh/base/id_set.h"
 #include "mesh/classification/star_cost_table.h"
 #include "mesh/core/implicit_function.h"
+#include "mesh/core/psi_values.h"
 
 namespace umtet {
 
@@ -82,10 +83,11 @@ bool is_thin(ImplicitFunctionRef psi, const Vec3& foot, const Vec3& normal, doub
 ///
 /// @param inside  the vertices with psi < 0 on entry; none of them, nor a neighbour, on the background boundary
 /// @param last    labels of a mesh before, or null: where the descent would as well have these, it begins with them
+/// @param known   psi at all vertices with a neighbour on the other side, or null
 /// \throw std::invalid_argument naming every broken constraint of params, MeshCancelled
 ClassificationReport classify_vertices(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
-                                       ImplicitFunctionRef psi, const ClassificationParams& params,
-                                       detail::IdSet& inside, const KeepGoing& keep_going = {},
-                                       const detail::IdSet* last = nullptr);
+                                       ImplicitFunctionRef psi, const ClassificationParams& params, IdSet& inside,
+                                       const KeepGoing& keep_going = {}, const IdSet* last = nullptr,
+                                       const PsiValues* known = nullptr);
 
 }  // namespace umtet

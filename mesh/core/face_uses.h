@@ -8,7 +8,7 @@
 
 #include "mesh/core/tet_mesh.h"
 
-namespace umtet::detail {
+namespace umtet {
 
 /// A face of a tet, under its least vertex.
 struct FaceUse {
@@ -49,4 +49,4 @@ void for_each_face(std::vector<FaceUse>& uses, const F& f) {
   }
 }
 
-}  // namespace umtet::detail
+}  // namespace umtet

@@ -5,7 +5,7 @@
 
 #include "mesh/core/tet_mesh.h"
 
-namespace umtet::detail {
+namespace umtet {
 
 /// psi at vertices of the background, where somebody has asked for it already.
 struct PsiValue {
@@ -15,4 +15,4 @@ struct PsiValue {
 };
 using PsiValues = std::vector<PsiValue>;  ///< ascending vertices
 
-}  // namespace umtet::detail
+}  // namespace umtet

@@ -7,7 +7,7 @@
 
 #include "mesh/core/tet_mesh.h"
 
-namespace umtet::detail {
+namespace umtet {
 
 /// Sorts faces as triples of vertices: into groups of near first vertices by counting, about as many as there are
 /// faces, then in these groups, which are small. \pre indices in 0 .. n_vertices - 1
@@ -27,4 +27,4 @@ inline void sort_faces(std::vector<Triangle>& faces, std::size_t n_vertices) {
   faces.swap(sorted);
 }
 
-}  // namespace umtet::detail
+}  // namespace umtet

@@ -10,7 +10,7 @@
 #include "mesh/core/orientation.h"
 #include "mesh/core/tet_quality.h"
 
-namespace umtet::detail {
+namespace umtet {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -133,4 +133,4 @@ TetPack measure_tet_pack(const TetMesh& mesh, const Tet* tets, int count) {
   return result;
 }
 
-}  // namespace umtet::detail
+}  // namespace umtet

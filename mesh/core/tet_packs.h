@@ -5,7 +5,7 @@
 #include "mesh/core/max_min.h"
 #include "mesh/core/tet_mesh.h"
 
-namespace umtet::detail {
+namespace umtet {
 
 // A vector of the compiler: Eigen's arrays compare and select one number after the other.
 using Pack = double __attribute__((vector_size(8 * kPackSize)));
@@ -22,4 +22,4 @@ struct TetPack {
 /// its lane, nor on the others. \pre 1 <= count <= kPackSize
 TetPack measure_tet_pack(const TetMesh& mesh, const Tet* tets, int count);
 
-}  // namespace umtet::detail
+}  // namespace umtet

@@ -4,7 +4,7 @@
 
 #include "mesh/core/tet_mesh.h"
 
-namespace umtet::detail {
+namespace umtet {
 
 /// The two least vertices of a tet. Only under these has it faces, if each is put under its least vertex: three and
 /// one.
@@ -18,4 +18,4 @@ struct TwoLeast {
   }
 };
 
-}  // namespace umtet::detail
+}  // namespace umtet

@@ -11,25 +11,21 @@
 #include <utility>
 
 #include "mesh/base/violations.h"
+#include "mesh/classification/classification.h"
 #include "mesh/classification/configuration_costs.h"
-#include "mesh/classification/detail/classification_band.h"
 #include "mesh/core/tet_quality.h"
 #include "mesh/fast/tangential_relaxation.h"
 #include "mesh/fast/warm_start.h"
+#include "mesh/submesh/assemble_submesh.h"
 #include "mesh/submesh/assumptions.h"
 #include "mesh/submesh/background_active_layer.h"
-#include "mesh/submesh/detail/assemble_submesh.h"
-#include "mesh/submesh/detail/nothing_inside.h"
 #include "mesh/submesh/double_faces.h"
 #include "mesh/submesh/lattice_active_layer.h"
+#include "mesh/submesh/nothing_inside.h"
 #include "mesh/submesh/walls.h"
 
 namespace umtet {
 namespace {
-
-using detail::find_violations;
-using detail::IdSet;
-using detail::Violations;
 
 // In place of the least gains of smoothing, if these are less, for a mesh that begins from the one before. A ball that
 // drifts a quarter cell a step: .95 of the solves of 3e-4 and least Q .832 (.834); with 1e-3 it is .92 and .828, anew
@@ -39,15 +35,17 @@ constexpr std::size_t kVerticesPerTask = 1 << 14;  // to compare places, a nanos
 
 class FastRun {
  public:
-  FastRun(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params, const UmObserver& observer)
+  FastRun(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
+          const FastParams& params, const UmObserver& observer)
       : background_(background),
         psi_(psi),
+        submesh_params_(submesh),
         params_(params),
         observer_(observer),
-        costs_of_tiling_(params.background_boundary == BackgroundBoundary::Wall
+        costs_of_tiling_(submesh.background_boundary == BackgroundBoundary::Wall
                              ? nullptr
                              : configuration_costs(background.tiling())),
-        classification_params_(params.fast.labels),
+        classification_params_(params.labels),
         inside_(0) {
     if (costs_of_tiling_ && !classification_params_.costs) classification_params_.costs = &costs_of_tiling_->costs;
   }
@@ -55,7 +53,7 @@ class FastRun {
   UmResult operator()(const std::vector<Vec3>& seeds) {
     return run([&] { return find_inside(seeds) && label() && fit(); });
   }
-  UmResult operator()(IdSet inside, FastMemory& memory, const detail::PsiValues& known) {
+  UmResult operator()(IdSet inside, FastMemory& memory, const PsiValues& known) {
     if (!known.empty()) known_ = &known;
     inside_ = std::move(inside);
     negative_ = inside_;
@@ -114,7 +112,8 @@ class FastRun {
 
   const BackgroundMesh& background_;
   ImplicitFunctionRef psi_;
-  const UmParams& params_;
+  const SubmeshParams& submesh_params_;
+  const FastParams& params_;
   const UmObserver& observer_;
   const ConfigurationCosts* costs_of_tiling_;   ///< null: labels stay those of psi
   ClassificationParams classification_params_;  ///< with the costs
@@ -122,7 +121,7 @@ class FastRun {
   IdSet inside_;
   IdSet negative_{0};             ///< of update: psi < 0
   FastMemory* memory_ = nullptr;  ///< of the psi before
-  const detail::PsiValues* known_ = nullptr;
+  const PsiValues* known_ = nullptr;
   LatticeActiveLayer layer_;
   std::vector<std::pair<std::int64_t, Vec3>> moved_;  ///< by repair, ascending
   bool is_classified_ = false, is_complete_ = false;  ///< inside_ has been chosen, omega_h made of it
@@ -132,10 +131,10 @@ class FastRun {
 
 bool FastRun::find_inside(const std::vector<Vec3>& seeds) {
   std::string lost;
-  if (params_.search == SubmeshSearch::FullLoop) {
-    inside_ = detail::inside_vertices(background_, psi_, result_.n_psi_evaluations, asking("search"));
+  if (submesh_params_.search == SubmeshSearch::FullLoop) {
+    inside_ = inside_vertices(background_, psi_, result_.n_psi_evaluations, asking("search"));
   } else {
-    detail::CrawledVertices found = detail::crawl_inside(background_, psi_, seeds, asking("search"));
+    CrawledVertices found = crawl_inside(background_, psi_, seeds, asking("search"));
     inside_ = std::move(found.inside);
     result_.n_psi_evaluations = found.n_psi_evaluations;
     lost = "; " + std::to_string(found.lost_seeds.size()) + " of " + std::to_string(seeds.size()) +
@@ -152,7 +151,8 @@ bool FastRun::fits_background(const std::string& lost) {
     std::uint64_t bits = inside_.word(w);
     if (bits == 0) continue;
     empty = false;
-    if (params_.background_boundary == BackgroundBoundary::Wall || background_.is_off_boundary(first, first + 63))
+    if (submesh_params_.background_boundary == BackgroundBoundary::Wall ||
+        background_.is_off_boundary(first, first + 63))
       continue;
     for (; bits != 0; bits &= bits - 1) {
       const std::int64_t v = first + std::countr_zero(bits);
@@ -160,7 +160,7 @@ bool FastRun::fits_background(const std::string& lost) {
     }
   }
   if (empty) {
-    const detail::NothingInside why = detail::nothing_inside(background_, psi_, asking("search"), lost);
+    const NothingInside why = nothing_inside(background_, psi_, asking("search"), lost);
     return fail(why.status, why.evidence);
   }
   if (background_boundary.count == 0) return true;
@@ -174,14 +174,14 @@ bool FastRun::label() {
   if (costs_of_tiling_ && last && negative_ == memory_->negative) {
     inside_ = *last;  // psi = 0 has passed over no vertex
   } else if (costs_of_tiling_) {
-    const ClassificationReport labels = detail::classify_vertices(
+    const ClassificationReport labels = classify_vertices(
         background_, costs_of_tiling_->links, psi_, classification_params_, inside_, asking("search"), last, known_);
     result_.n_psi_evaluations += labels.psi_evaluations;
   }
   is_classified_ = true;
   if (!costs_of_tiling_) {
     complete();
-    if (params_.background_boundary == BackgroundBoundary::Wall && !check_walls()) return false;
+    if (submesh_params_.background_boundary == BackgroundBoundary::Wall && !check_walls()) return false;
   } else if (observer_) {  // repair will change labels: tets are listed once, behind it
     SubmeshOutline outline = outline_submesh(background_, inside_);
     result_.submesh = std::move(outline.submesh);
@@ -201,7 +201,7 @@ void FastRun::complete() {
   if (is_complete_) return;
   result_.submesh = {};  // before the tets need their memory
   result_.submesh = emit_submesh(background_, inside_);
-  if (params_.background_boundary == BackgroundBoundary::Wall)
+  if (submesh_params_.background_boundary == BackgroundBoundary::Wall)
     part_double_faces(background_, psi_, inside_, result_.submesh);
   n_tets_ = result_.submesh.mesh.C.size();
   double_faces_ = double_positive_faces(result_.submesh);
@@ -295,7 +295,7 @@ void FastRun::measure_assumptions() {
 /// Changes labels where that mends a tet.
 void FastRun::repair_classification(const KeepGoing& keep_going) {
   if (!costs_of_tiling_) return;
-  RepairParams params = params_.fast.repair;
+  RepairParams params = params_.repair;
   params.target = std::min(params.target, costs_of_tiling_->repair_target);
   params.reach = std::min(params.reach, costs_of_tiling_->repair_reach);
   params.slides = params.slides && !memory_;
@@ -307,16 +307,15 @@ void FastRun::repair_classification(const KeepGoing& keep_going) {
 
 /// Boundary vertices go to psi = 0, and the layer is relaxed. @param projected  receives the places between the two
 bool FastRun::relax(const KeepGoing& keep_going, std::vector<Vec3>& projected) {
-  layer_ = costs_of_tiling_ ? lattice_active_layer(background_, costs_of_tiling_->links, inside_, params_.fast.layers)
-                            : background_active_layer(background_, inside_, params_.fast.layers);
-  SmoothingParams smoothing_params = params_.fast.smoothing;
+  layer_ = costs_of_tiling_ ? lattice_active_layer(background_, costs_of_tiling_->links, inside_, params_.layers)
+                            : background_active_layer(background_, inside_, params_.layers);
+  SmoothingParams smoothing_params = params_.smoothing;
   bool is_on_surface = false;
   if (memory_ && !memory_->moved.empty()) {
-    smoothing_params.margin = std::min(smoothing_params.margin, params_.fast.update_margin);
+    smoothing_params.margin = std::min(smoothing_params.margin, params_.update_margin);
     smoothing_params.least_gain = std::max(smoothing_params.least_gain, kUpdateLeastGain);
     smoothing_params.fine_gain = std::max(smoothing_params.fine_gain, kUpdateLeastGain);
-    const WarmStart start =
-        warm_start(background_, psi_, inside_, *memory_, params_.fast.projection, layer_, keep_going);
+    const WarmStart start = warm_start(background_, psi_, inside_, *memory_, params_.projection, layer_, keep_going);
     result_.n_psi_evaluations += start.psi_evaluations;
     memory_->n_recalled = start.n_recalled;
     is_on_surface = start.is_on_surface;
@@ -324,7 +323,7 @@ bool FastRun::relax(const KeepGoing& keep_going, std::vector<Vec3>& projected) {
   PNormSmoother smoother(layer_.layer);
   layer_.layer.ring = {};  // the smoother has listed their faces, and omega_h will need the memory
   if (!is_on_surface) {
-    const ProjectionReport projection = project(smoother, psi_, params_.fast.projection, keep_going);
+    const ProjectionReport projection = project(smoother, psi_, params_.projection, keep_going);
     result_.n_psi_evaluations += projection.psi_evaluations;
     if (!all_arrived(projection)) return false;
   }
@@ -333,7 +332,7 @@ bool FastRun::relax(const KeepGoing& keep_going, std::vector<Vec3>& projected) {
   const SmoothingReport smoothing = smoother.run(psi_, smoothing_params, keep_going);
   result_.n_psi_evaluations += smoothing.psi_evaluations;
   if (!memory_) {  // psi at every face: half the cost of an update
-    const TangentialRelaxationParams chords{.least_quality = params_.fast.smoothing.target};
+    const TangentialRelaxationParams chords{.least_quality = params_.smoothing.target};
     const std::vector<std::uint8_t> inside = inside_of(layer_, inside_);
     result_.n_psi_evaluations +=
         relax_tangentially(smoother, inside, psi_, chords, smoothing_params, keep_going).psi_evaluations;
@@ -371,15 +370,15 @@ std::vector<std::string> problems(const FastParams& params) {
   return list;
 }
 
-UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
-                   const UmObserver& observer, const std::vector<Vec3>& seeds) {
-  return FastRun(background, psi, params, observer)(seeds);
+UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
+                   const FastParams& params, const UmObserver& observer, const std::vector<Vec3>& seeds) {
+  return FastRun(background, psi, submesh, params, observer)(seeds);
 }
 
-UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
-                   const UmObserver& observer, detail::IdSet inside, FastMemory& memory,
-                   const detail::PsiValues& known) {
-  return FastRun(background, psi, params, observer)(std::move(inside), memory, known);
+UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
+                   const FastParams& params, const UmObserver& observer, IdSet inside, FastMemory& memory,
+                   const PsiValues& known) {
+  return FastRun(background, psi, submesh, params, observer)(std::move(inside), memory, known);
 }
 
 }  // namespace umtet

@@ -4,9 +4,13 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/background/background_mesh.h"
 #include "mesh/base/id_set.h"
+#include "mesh/core/implicit_function.h"
 #include "mesh/core/psi_values.h"
-#include "mesh/universal_mesh.h"
+#include "mesh/fast/fast_params.h"
+#include "mesh/submesh/submesh_params.h"
+#include "mesh/submesh/um_result.h"
 
 namespace umtet {
 
@@ -21,14 +25,14 @@ namespace umtet {
 ///
 /// The result is that of universal_mesh(): omega_h of the chosen labels, with the background's ids. The same bytes for
 /// any number of threads. psi must be thread-safe.
-/// \pre params and seeds are those universal_mesh() accepts; params.mode is not read
-UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
-                   const UmObserver& observer = {}, const std::vector<Vec3>& seeds = {});
+/// \pre params and seeds are those universal_mesh() accepts
+UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
+                   const FastParams& params, const UmObserver& observer = {}, const std::vector<Vec3>& seeds = {});
 
 /// What the mesh of one psi leaves to that of the next, in the same background mesh.
 struct FastMemory {
-  detail::IdSet negative{0};                         ///< psi < 0
-  detail::IdSet inside{0};                           ///< as labelled
+  IdSet negative{0};                                 ///< psi < 0
+  IdSet inside{0};                                   ///< as labelled
   std::vector<std::pair<std::int64_t, Vec3>> moved;  ///< vertices off their background places, ascending
   std::size_t n_recalled = 0;                        ///< of these, how many the last mesh began with
 };
@@ -38,8 +42,8 @@ struct FastMemory {
 /// begins near its places there (warm_start.h). Nobody slides to chords.
 /// @param memory  empty (no `moved`) at first; receives that of this mesh, or becomes empty if there is none
 /// @param known   of this psi, what the search for `inside` has asked
-UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
-                   const UmObserver& observer, detail::IdSet inside, FastMemory& memory,
-                   const detail::PsiValues& known = {});
+UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
+                   const FastParams& params, const UmObserver& observer, IdSet inside, FastMemory& memory,
+                   const PsiValues& known = {});
 
 }  // namespace umtet

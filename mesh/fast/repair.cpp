@@ -18,7 +18,6 @@ namespace umtet {
 namespace {
 
 using detail::FlipTrials;
-using detail::IdSet;
 using detail::TetIds;
 
 // Besides max_patches: so many, and one for so many tets of the layer. A coarse perforated plate of 5092 tets is mended

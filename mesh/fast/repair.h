@@ -79,6 +79,6 @@ struct RepairReport {
 /// \throw std::invalid_argument naming every broken constraint, MeshCancelled
 RepairReport repair(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
                     const ClassificationParams& labels, const RepairParams& params, const LatticeActiveLayer& layer,
-                    detail::IdSet& inside, const KeepGoing& keep_going = {});
+                    IdSet& inside, const KeepGoing& keep_going = {});
 
 }  // namespace umtet

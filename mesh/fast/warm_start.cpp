@@ -14,8 +14,6 @@
 namespace umtet {
 namespace {
 
-using detail::IdSet;
-
 // Six sweeps instead of three save smoothing a fiftieth of its visits, which is what they cost (drifting_ball).
 constexpr int kSweeps = 3;
 // psi = 0 crosses an edge at every positive vertex, and no tiling has longer ones, in h: farther feet are elsewhere.

@@ -30,7 +30,7 @@ struct WarmStart {
 /// @param layer   at the places of the background; receives those to begin with. The same for any number of threads
 /// @param inside  as labelled now
 /// \throw MeshCancelled
-WarmStart warm_start(const BackgroundMesh& background, ImplicitFunctionRef psi, const detail::IdSet& inside,
+WarmStart warm_start(const BackgroundMesh& background, ImplicitFunctionRef psi, const IdSet& inside,
                      const FastMemory& memory, const ProjectionParams& projection, LatticeActiveLayer& layer,
                      const KeepGoing& keep_going = {});
 

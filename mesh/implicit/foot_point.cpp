@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace umtet::detail {
+namespace umtet {
 namespace {
 
 /// Damped Newton along the gradient: from y to a point with |psi| <= tol |grad psi|. `y` and `g` are updated.
@@ -58,4 +58,4 @@ Foot foot_point(ImplicitFunctionRef psi, const Vec3& x, double h) {
   return foot;
 }
 
-}  // namespace umtet::detail
+}  // namespace umtet

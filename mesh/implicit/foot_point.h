@@ -4,7 +4,7 @@
 
 #include "mesh/core/implicit_function.h"
 
-namespace umtet::detail {
+namespace umtet {
 
 /// A point of psi = 0 near x.
 struct Foot {
@@ -20,4 +20,4 @@ struct Foot {
 /// @param h  edge length: no step is longer than half of it
 Foot foot_point(ImplicitFunctionRef psi, const Vec3& x, double h);
 
-}  // namespace umtet::detail
+}  // namespace umtet

@@ -83,7 +83,7 @@ class Sweep {
   std::array<double, 3> h_{};
   std::array<Layer, 2> layers_;
   std::vector<CutEdge> edges_;
-  detail::DisjointSets surface_, inside_;
+  DisjointSets surface_, inside_;
   std::size_t n_not_finite_ = 0;
   bool touches_box_ = false;
 };

@@ -4,7 +4,7 @@
 #include <system_error>
 #include <utility>
 
-namespace umtet::detail {
+namespace umtet {
 namespace {
 constexpr std::size_t kBufferBytes = std::size_t{1} << 18;
 }
@@ -45,4 +45,4 @@ void CheckedFile::fail(int error) const {
   throw std::system_error(error, std::generic_category(), "cannot write " + path_.string());
 }
 
-}  // namespace umtet::detail
+}  // namespace umtet

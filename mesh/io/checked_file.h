@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace umtet::detail {
+namespace umtet {
 
 /// An output file that cannot lose bytes silently: every write and the close are checked.
 /// \throw std::system_error naming the path, from every member but the destructor
@@ -45,4 +45,4 @@ class CheckedFile {
   std::vector<char> buffer_;
 };
 
-}  // namespace umtet::detail
+}  // namespace umtet

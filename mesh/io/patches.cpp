@@ -47,7 +47,7 @@ class Islands {
 
 Islands::Islands(const SolverMesh& mesh, const std::vector<int>& labels) : piece_of_(mesh.n_faces(), -1) {
   const std::vector<SharedEdge> edges = shared_edges(mesh);
-  detail::DisjointSets joined(mesh.n_faces());
+  DisjointSets joined(mesh.n_faces());
   for (const SharedEdge& e : edges) {
     if (labels[e.face] == labels[e.other]) joined.unite(e.face, e.other);
   }
@@ -134,7 +134,7 @@ std::vector<int> smooth_pieces(const SolverMesh& mesh, double angle) {
   const FaceGeometry faces = face_geometry(mesh);
   // A little more than 180 degrees, where the cosine of rounding may fall.
   const double least_cosine = angle >= 180 ? -2 : std::cos(angle * std::numbers::pi / 180);
-  detail::DisjointSets joined(mesh.n_faces());
+  DisjointSets joined(mesh.n_faces());
   for (const SharedEdge& e : shared_edges(mesh)) {
     if (faces.normal[e.face].dot(faces.normal[e.other]) >= least_cosine) joined.unite(e.face, e.other);
   }

@@ -22,7 +22,7 @@ void write_quality_csv(const std::filesystem::path& path, const std::vector<Qual
     if (i > longest) break;
     indices.insert(i);
   }
-  detail::CheckedFile file(path);
+  CheckedFile file(path);
   file.text("index");
   for (const QualityCurve& c : curves) file.text(",").text(c.name);
   file.text("\n");

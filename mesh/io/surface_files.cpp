@@ -46,7 +46,7 @@ class QuietOpenMesh {
 
 /// The surface as half-edges, over its own vertices; `refused` counts the faces that do not fit a 2-manifold.
 HalfEdgeMesh half_edges(const std::vector<Vec3>& V, const std::vector<Triangle>& faces, std::size_t& refused) {
-  detail::check_indices(faces, V.size(), "face");
+  check_indices(faces, V.size(), "face");
   std::vector<int> vertices;
   for (const Triangle& f : faces) vertices.insert(vertices.end(), f.begin(), f.end());
   std::sort(vertices.begin(), vertices.end());
@@ -87,7 +87,7 @@ void write_surface(const std::filesystem::path& path, const std::vector<Vec3>& V
   const bool written =
       OpenMesh::IO::write_mesh(mesh, out, extension, options, std::numeric_limits<float>::max_digits10);
   if (!written || !out) throw std::runtime_error("cannot write " + path.string() + ": OpenMesh gave up");
-  detail::CheckedFile file(path);
+  CheckedFile file(path);
   file.text(out.view());
   file.close();
 }

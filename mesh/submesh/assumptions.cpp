@@ -46,7 +46,7 @@ bool BrokenAssumption::is_broken_at(std::span<const int> vertices) const {
 BrokenAssumption double_positive_faces(const Submesh& submesh) {
   std::vector<Triangle> faces = submesh.positive_faces;
   for (Triangle& face : faces) std::sort(face.begin(), face.end());
-  detail::sort_faces(faces, submesh.mesh.V.size());
+  sort_faces(faces, submesh.mesh.V.size());
   BrokenAssumption broken;
   for (std::size_t f = 1; f < faces.size(); ++f) {
     if (faces[f] == faces[f - 1]) add(broken, faces[f], submesh.mesh.V.size());

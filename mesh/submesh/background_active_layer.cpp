@@ -8,7 +8,6 @@
 namespace umtet {
 namespace {
 
-using detail::IdSet;
 using TetIds = std::array<std::int64_t, 4>;
 
 /// Outside vertices with an inside neighbour, and the inside vertices off the background boundary within `layers` edges

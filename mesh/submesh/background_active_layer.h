@@ -10,7 +10,6 @@ namespace umtet {
 /// masks, with a greedy colouring of the layer's own vertices in ascending order. The same vertices, roles and tets.
 /// Cost: linear in the stars of the inside vertices, some ten times that of lattice_active_layer().
 /// @param inside  its vertices on the background boundary stay where they are
-LatticeActiveLayer background_active_layer(const BackgroundMesh& background, const detail::IdSet& inside,
-                                           int layers = 2);
+LatticeActiveLayer background_active_layer(const BackgroundMesh& background, const IdSet& inside, int layers = 2);
 
 }  // namespace umtet

@@ -12,13 +12,11 @@
 
 #include "mesh/background/link_steps.h"
 #include "mesh/base/id_set.h"
-#include "mesh/submesh/detail/assemble_submesh.h"
+#include "mesh/submesh/assemble_submesh.h"
 #include "mesh/submesh/lattice_active_layer.h"
 
 namespace umtet {
 namespace {
-
-using detail::IdSet;
 
 // A seed within a few h of the boundary is a handful of edges away; a walk this long has lost its way.
 constexpr int kMaxWalk = 200;
@@ -205,7 +203,7 @@ void Crawler::aggregate(std::int64_t first) {
 
 /// The vertices inside, from those of the positively cut tets along edges.
 IdSet Crawler::flood_inside() {
-  const detail::LinkSteps steps(background_);
+  const LinkSteps steps(background_);
   IdSet visited(background_.n_vertices());
   std::vector<std::int64_t> stack;
   const auto visit = [&](std::int64_t v) {
@@ -233,8 +231,8 @@ IdSet Crawler::flood_inside() {
 
 }  // namespace
 
-detail::CrawledVertices detail::crawl_inside(const BackgroundMesh& background, ImplicitFunctionRef psi,
-                                             const std::vector<Vec3>& seeds, const KeepGoing& keep_going) {
+CrawledVertices crawl_inside(const BackgroundMesh& background, ImplicitFunctionRef psi, const std::vector<Vec3>& seeds,
+                             const KeepGoing& keep_going) {
   Crawler crawler(background, psi, keep_going);
   std::vector<std::size_t> lost;
   for (std::size_t s = 0; s < seeds.size(); ++s) {
@@ -246,7 +244,7 @@ detail::CrawledVertices detail::crawl_inside(const BackgroundMesh& background, I
 
 Crawl crawl(const BackgroundMesh& background, ImplicitFunctionRef psi, const std::vector<Vec3>& seeds,
             const KeepGoing& keep_going) {
-  detail::CrawledVertices found = detail::crawl_inside(background, psi, seeds, keep_going);
+  CrawledVertices found = crawl_inside(background, psi, seeds, keep_going);
   return {emit_submesh(background, found.inside), std::move(found.lost_seeds), found.n_psi_evaluations};
 }
 

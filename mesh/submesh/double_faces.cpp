@@ -39,9 +39,9 @@ std::vector<std::array<std::int64_t, 5>> double_faces(const Submesh& submesh) {
 
 }  // namespace
 
-std::size_t part_double_faces(const BackgroundMesh& background, ImplicitFunctionRef psi, detail::IdSet& inside,
+std::size_t part_double_faces(const BackgroundMesh& background, ImplicitFunctionRef psi, IdSet& inside,
                               Submesh& submesh) {
-  detail::IdSet changed(background.n_vertices());
+  IdSet changed(background.n_vertices());
   std::size_t n_changed = 0;
   for (auto found = double_faces(submesh); !found.empty(); found = double_faces(submesh)) {
     const std::size_t before = n_changed;

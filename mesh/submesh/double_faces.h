@@ -14,7 +14,7 @@ namespace umtet {
 /// sides, once at most. What is left when that does not help any more is in double_positive_faces().
 /// @param submesh  emit_submesh() of `inside`, on entry and on return
 /// @return number of labels changed
-std::size_t part_double_faces(const BackgroundMesh& background, ImplicitFunctionRef psi, detail::IdSet& inside,
+std::size_t part_double_faces(const BackgroundMesh& background, ImplicitFunctionRef psi, IdSet& inside,
                               Submesh& submesh);
 
 }  // namespace umtet

@@ -10,13 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/submesh/detail/assemble_submesh.h"
+#include "mesh/submesh/assemble_submesh.h"
 #include "mesh/submesh/lattice_active_layer.h"
 
 namespace umtet {
 namespace {
-
-using detail::IdSet;
 
 // Words of 64 vertices: some thousand positions.
 constexpr std::size_t kWordsPerTask = 32;
@@ -216,7 +214,7 @@ void Emitter::emit_tets() {
 Submesh emit_submesh(const BackgroundMesh& background, const IdSet& inside) {
   const CellStencil stencil(background);
   if (!background.is_lattice() || !stencil.fits_a_word()) {
-    return detail::assemble_submesh(background, detail::cut_or_inside_tets(background, inside), inside);
+    return assemble_submesh(background, cut_or_inside_tets(background, inside), inside);
   }
   return Emitter(background, stencil, inside)();
 }

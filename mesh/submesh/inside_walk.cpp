@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mesh/submesh/detail/assemble_submesh.h"
+#include "mesh/submesh/assemble_submesh.h"
 
 namespace umtet {
 
@@ -37,7 +37,7 @@ bool InsideWalk::is_at_boundary(std::int64_t v) const {
 
 std::size_t InsideWalk::restart(ImplicitFunctionRef psi, const KeepGoing& keep_going) {
   std::size_t n = 0;
-  inside_ = detail::inside_vertices(background_, psi, n, keep_going);
+  inside_ = inside_vertices(background_, psi, n, keep_going);
   boundary_.clear();
   values_.clear();
   inside_.for_each([&](std::int64_t v) {
@@ -57,7 +57,7 @@ std::size_t InsideWalk::restart(ImplicitFunctionRef psi, const KeepGoing& keep_g
 std::size_t InsideWalk::update(ImplicitFunctionRef psi, const std::vector<std::int64_t>& more,
                                const KeepGoing& keep_going) {
   std::vector<std::int64_t> changed, front;
-  detail::PsiValues asked;
+  PsiValues asked;
   const auto add = [&](std::int64_t v) {
     if (seen_.test(v)) return;
     seen_.insert(v);
@@ -66,7 +66,7 @@ std::size_t InsideWalk::update(ImplicitFunctionRef psi, const std::vector<std::i
   for (const std::int64_t v : boundary_) add(v);
   for (const std::int64_t v : more) add(v);
   const auto forget = [&] {
-    for (const detail::PsiValue& at : asked) seen_.erase(at.vertex);
+    for (const PsiValue& at : asked) seen_.erase(at.vertex);
     for (const std::int64_t v : front) seen_.erase(v);
   };
   try {
@@ -74,7 +74,7 @@ std::size_t InsideWalk::update(ImplicitFunctionRef psi, const std::vector<std::i
       const std::size_t first = asked.size(), n = front.size();
       for (const std::int64_t v : front) asked.push_back({v, 0, Vec3::Zero()});
       polled_parallel_for(n, kValuesPerPoll, keep_going, [&](std::size_t k) {
-        detail::PsiValue& at = asked[first + k];
+        PsiValue& at = asked[first + k];
         at.value = psi.value(background_.position(at.vertex), at.gradient);
       });
       front.clear();
@@ -93,13 +93,12 @@ std::size_t InsideWalk::update(ImplicitFunctionRef psi, const std::vector<std::i
   // Whoever is at the boundary now was there before, or has changed sides, or is a neighbour of one that has: asked.
   forget();
   values_.clear();
-  for (const detail::PsiValue& at : asked) {
+  for (const PsiValue& at : asked) {
     if (is_at_boundary(at.vertex)) values_.push_back(at);
   }
-  std::sort(values_.begin(), values_.end(),
-            [](const detail::PsiValue& a, const detail::PsiValue& b) { return a.vertex < b.vertex; });
+  std::sort(values_.begin(), values_.end(), [](const PsiValue& a, const PsiValue& b) { return a.vertex < b.vertex; });
   boundary_.clear();
-  for (const detail::PsiValue& at : values_) boundary_.push_back(at.vertex);
+  for (const PsiValue& at : values_) boundary_.push_back(at.vertex);
   return asked.size();
 }
 

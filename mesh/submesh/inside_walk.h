@@ -24,10 +24,10 @@ class InsideWalk {
   /// what psi throws
   std::size_t update(ImplicitFunctionRef psi, const std::vector<std::int64_t>& more, const KeepGoing& keep_going = {});
 
-  const detail::IdSet& inside() const { return inside_; }
+  const IdSet& inside() const { return inside_; }
   bool has_boundary() const { return !boundary_.empty(); }
   /// Of the last update, of the vertices that have a neighbour on the other side now; empty after restart().
-  const detail::PsiValues& values() const { return values_; }
+  const PsiValues& values() const { return values_; }
 
  private:
   template <class F>
@@ -36,10 +36,10 @@ class InsideWalk {
 
   const BackgroundMesh& background_;
   std::vector<std::vector<std::int64_t>> steps_;  ///< per type of a lattice
-  detail::IdSet inside_;
-  detail::IdSet seen_;                  ///< empty between calls
+  IdSet inside_;
+  IdSet seen_;                          ///< empty between calls
   std::vector<std::int64_t> boundary_;  ///< vertices with a neighbour on the other side
-  detail::PsiValues values_;            ///< of these
+  PsiValues values_;                    ///< of these
 };
 
 }  // namespace umtet

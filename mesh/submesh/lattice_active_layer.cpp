@@ -14,10 +14,6 @@
 namespace umtet {
 namespace {
 
-using detail::for_each_in_blocks;
-using detail::IdList;
-using detail::IdSet;
-
 class Builder {
  public:
   Builder(const BackgroundMesh& background, const std::vector<LinkTopology>& links, const IdSet& inside)
@@ -44,7 +40,7 @@ class Builder {
   const BackgroundMesh& background_;
   const std::vector<LinkTopology>& links_;
   const IdSet& inside_;
-  detail::LinkSteps steps_;
+  LinkSteps steps_;
 };
 
 std::vector<int> Builder::type_colours() const {
@@ -102,7 +98,7 @@ ActiveLayer::Role Builder::role(std::int64_t v, const Movable& movable) const {
 
 LatticeActiveLayer Builder::build(const IdSet& movable) const {
   IdSet used(background_.n_vertices());
-  std::vector<std::size_t> begin(detail::n_blocks(movable) + 1, 0);  // of the tets
+  std::vector<std::size_t> begin(n_blocks(movable) + 1, 0);  // of the tets
   for_each_in_blocks(movable, [&](std::size_t b, std::int64_t v) {
     ring_vertices(v, [&](std::int64_t w) { used.insert_shared(w); });
     tets_at(v, movable, [&](auto...) { ++begin[b + 1]; });
@@ -168,7 +164,7 @@ LatticeActiveLayer lattice_active_layer(const BackgroundMesh& background, const 
                                         const IdSet& inside, int layers) {
   const Builder builder(background, links, inside);
   IdSet movable(background.n_vertices());
-  detail::for_each_in_blocks(inside, [&](std::size_t, std::int64_t v) {
+  for_each_in_blocks(inside, [&](std::size_t, std::int64_t v) {
     for (const std::int64_t step : builder.steps(v)) {
       if (!inside.test(v + step)) movable.insert_shared(v + step);
     }
@@ -176,7 +172,7 @@ LatticeActiveLayer lattice_active_layer(const BackgroundMesh& background, const 
   IdSet front = movable;
   for (int layer = 0; layer < layers; ++layer) {
     IdSet next(background.n_vertices());
-    detail::for_each_in_blocks(front, [&](std::size_t, std::int64_t v) {
+    for_each_in_blocks(front, [&](std::size_t, std::int64_t v) {
       for (const std::int64_t step : builder.steps(v)) {
         if (inside.test_any(v + step) && !movable.test(v + step)) next.insert_shared(v + step);
       }

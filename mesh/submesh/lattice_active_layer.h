@@ -26,27 +26,27 @@ struct LatticeActiveLayer {
 /// @param inside  none of its vertices on the background boundary
 /// \throw std::invalid_argument if a vertex type of the tiling is its own neighbour (types then do not colour it)
 LatticeActiveLayer lattice_active_layer(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
-                                        const detail::IdSet& inside, int layers = 2);
+                                        const IdSet& inside, int layers = 2);
 
 /// The same for the vertices of omega_h within `reach` edges of one of `centres`, whatever their distance from the
 /// boundary: these move. Every tet of omega_h with a vertex that near to a centre is in the patch.
 /// \pre the centres have ids
 LatticeActiveLayer lattice_patch(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
-                                 const detail::IdSet& inside, const std::vector<std::int64_t>& centres, int reach);
+                                 const IdSet& inside, const std::vector<std::int64_t>& centres, int reach);
 
 /// Per vertex of the layer: whether it is in the set.
-std::vector<std::uint8_t> inside_of(const LatticeActiveLayer& layer, const detail::IdSet& inside);
+std::vector<std::uint8_t> inside_of(const LatticeActiveLayer& layer, const IdSet& inside);
 
-/// omega_h of these inside vertices: equal to detail::assemble_submesh() bit for bit, cell by cell with threads, and
+/// omega_h of these inside vertices: equal to assemble_submesh() bit for bit, cell by cell with threads, and
 /// that function itself without cells or where the tets of one have more than 64 corners (slab and cube).
 /// Cost: some ns per tet, and a few per cell of the background mesh.
-Submesh emit_submesh(const BackgroundMesh& background, const detail::IdSet& inside);
+Submesh emit_submesh(const BackgroundMesh& background, const IdSet& inside);
 
 struct SubmeshOutline {
   Submesh submesh;  ///< with the vertices; tets and faces may be missing
   std::size_t n_tets = 0;
 };
 /// The vertices of omega_h and how many tets it has, at a quarter of the cost.
-SubmeshOutline outline_submesh(const BackgroundMesh& background, const detail::IdSet& inside);
+SubmeshOutline outline_submesh(const BackgroundMesh& background, const IdSet& inside);
 
 }  // namespace umtet

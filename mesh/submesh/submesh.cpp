@@ -14,12 +14,10 @@
 #include <utility>
 
 #include "mesh/base/id_set.h"
-#include "mesh/submesh/detail/assemble_submesh.h"
+#include "mesh/submesh/assemble_submesh.h"
 
 namespace umtet {
 namespace {
-
-using detail::IdSet;
 
 // 64 vertices share a word: 16 words are a thousand evaluations of psi, enough to hide the cost of a task.
 constexpr std::size_t kWordsPerTask = 16;
@@ -33,7 +31,7 @@ unsigned inside_mask(const std::array<std::int64_t, 4>& tet, const IdSet& inside
 
 }  // namespace
 
-std::vector<std::int64_t> detail::cut_or_inside_tets(const BackgroundMesh& background, const IdSet& inside) {
+std::vector<std::int64_t> cut_or_inside_tets(const BackgroundMesh& background, const IdSet& inside) {
   const std::int64_t n_blocks = (background.n_tets() + kTetsPerBlock - 1) / kTetsPerBlock;
   std::vector<std::vector<std::int64_t>> blocks(static_cast<std::size_t>(n_blocks));
   tbb::parallel_for(std::int64_t{0}, n_blocks, [&](std::int64_t b) {
@@ -52,8 +50,6 @@ std::vector<std::int64_t> detail::cut_or_inside_tets(const BackgroundMesh& backg
   }
   return tets;
 }
-
-namespace detail {
 
 IdSet inside_vertices(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t& n_evaluations,
                       const KeepGoing& keep_going) {
@@ -125,15 +121,13 @@ Submesh assemble_submesh(const BackgroundMesh& background, std::vector<std::int6
   return result;
 }
 
-}  // namespace detail
-
 Submesh find_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t* n_psi_evaluations,
                      const KeepGoing& keep_going) {
   std::size_t n = 0;
-  const IdSet inside = detail::inside_vertices(background, psi, n, keep_going);
+  const IdSet inside = inside_vertices(background, psi, n, keep_going);
   if (n_psi_evaluations) *n_psi_evaluations = n;
   poll(keep_going);
-  return detail::assemble_submesh(background, detail::cut_or_inside_tets(background, inside), inside);
+  return assemble_submesh(background, cut_or_inside_tets(background, inside), inside);
 }
 
 }  // namespace umtet

@@ -3,8 +3,7 @@
 #include <vector>
 
 #include "mesh/background/background_mesh.h"
-#include "mesh/submesh/submesh.h"
-#include "mesh/universal_mesh.h"
+#include "mesh/submesh/um_result.h"
 
 namespace umtet {
 

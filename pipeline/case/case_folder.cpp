@@ -43,6 +43,12 @@ Stage parse_stage(const std::string& name) {
                    (near.empty() ? "; there are cloud, level-set, mesh" : "; did you mean " + near + "?"));
 }
 
+void remove_view(const CasePaths& paths) {
+  for (const char* name : kViewFiles) fs::remove(paths.view() / name);
+  std::error_code not_empty;
+  fs::remove(paths.view(), not_empty);
+}
+
 const char* section_of(Stage stage) { return stage == Stage::LevelSet ? "reconstruct" : to_string(stage); }
 
 bool is_artefact(Stage stage, const std::string& name) {

@@ -36,10 +36,16 @@ struct CasePaths {
   /// What is left of a mesh that could not be made; never in next(), for it is there to be looked at.
   std::filesystem::path failed() const { return root / "3-mesh" / "failed"; }
   std::filesystem::path exports() const { return root / "4-export"; }
+  std::filesystem::path view() const { return root / "5-view"; }
   std::filesystem::path parameters() const { return root / "case.toml"; }
   std::filesystem::path certificate() const { return root / "certificate.json"; }
   std::filesystem::path report() const { return root / "report.html"; }
 };
+
+/// What is in CasePaths::view(), of one mesh.
+inline constexpr std::array kViewFiles = {"psi.vti", "zero.vtp", "view.py"};
+/// Removes these files, and the folder if nothing else is in it.
+void remove_view(const CasePaths& paths);
 
 /// The right to write to a case, for as long as the object lives. Creates the folder if there is none, and removes it
 /// again if nothing else was put into it.

@@ -141,4 +141,13 @@ Json run_block(double seconds, int threads) {
           {"date", date.data()}};
 }
 
+Vec3 recorded_vector(const StageRecord& record, const char* key) {
+  try {
+    const Json& v = record.numbers.at(key);
+    return {v.at(0).get<double>(), v.at(1).get<double>(), v.at(2).get<double>()};
+  } catch (const Json::exception&) {
+    throw ArtefactDamaged(std::string("the record of ") + to_string(record.stage) + " has no vector " + key);
+  }
+}
+
 }  // namespace umtet

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/vec3.h"
 #include "pipeline/case/artefact.h"
 #include "pipeline/case/case_folder.h"
 
@@ -56,6 +57,9 @@ struct StageState {
 /// Cost: reads every output of the stage once.
 StageState inspect_stage(const CasePaths& paths, Stage stage, const Json& parameters,
                          const std::optional<std::vector<RecordedFile>>& inputs);
+
+/// A vector of the numbers of a record. \throw ArtefactDamaged if it is not there
+Vec3 recorded_vector(const StageRecord&, const char* key);
 
 /// Seconds, peak memory, host, date and threads of the stage that ends now.
 Json run_block(double seconds, int threads);

@@ -10,7 +10,7 @@
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/version.h"
 #include "pipeline/output/report_page.h"
-#include "pipeline/run/detail/csv_field.h"
+#include "pipeline/run/csv_field.h"
 
 namespace umtet {
 namespace fs = std::filesystem;

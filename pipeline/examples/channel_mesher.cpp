@@ -44,8 +44,7 @@ ChannelMesher::ChannelMesher(double n_tets) : background_(channel(n_tets)) {
 
 FluidMesh ChannelMesher::mesh(ImplicitFunctionRef fluid) const {
   UmParams params;
-  params.mode = UmMode::Fast;
-  params.background_boundary = BackgroundBoundary::Wall;
+  params.submesh.background_boundary = BackgroundBoundary::Wall;
   const UmResult made = universal_mesh(background_, fluid, params);
   if (made.status != UmStatus::Success) throw MeshingImpossible(why(made));
   const Submesh& omega_h = made.submesh;

@@ -39,7 +39,7 @@ class CellGroups {
   const SignCells& cells_;
   Eigen::Array2i first_ = {0, 0}, n_ = {0, 0};  ///< rows of cells along x: y and z
   std::vector<int> row_begin_;                  ///< into cells_.cells, y fastest
-  detail::DisjointSets groups_;
+  DisjointSets groups_;
   std::vector<char> marked_;
 };
 

@@ -3,7 +3,8 @@
 #include <utility>
 
 #include "pipeline/case/exit_code.h"
-#include "pipeline/stages/stages.h"
+#include "pipeline/case/record.h"
+#include "pipeline/meshing/handover.h"
 #include "reconstruct/io/level_set_io.h"
 #include "reconstruct/io/point_cloud_io.h"
 

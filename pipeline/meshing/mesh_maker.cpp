@@ -10,11 +10,11 @@
 
 #include "pipeline/case/exit_code.h"
 #include "pipeline/meshing/edge_length.h"
+#include "pipeline/meshing/library_params.h"
 #include "pipeline/meshing/made_mesh.h"
 #include "pipeline/meshing/mesh_measures.h"
 #include "pipeline/meshing/second_order.h"
 #include "pipeline/meshing/too_thin.h"
-#include "pipeline/stages/stages.h"
 
 namespace umtet {
 namespace {
@@ -65,7 +65,7 @@ const ZeroSetChoice& MeshMaker::pieces_at(double h) {
 UmResult MeshMaker::make(const BackgroundMesh& background, const ZeroSetChoice& pieces) {
   UmParams params = params_;
   // The full loop would mesh every piece; crawling starts from the ones to keep.
-  if (!pieces.dropped.empty()) params.search = SubmeshSearch::Crawl;
+  if (!pieces.dropped.empty()) params.submesh.search = SubmeshSearch::Crawl;
   if (pieces.seeds.empty() && !pieces.dropped.empty()) {
     throw MeshingImpossible("psi = 0 is nowhere near the samples:\n  no " + pieces.dropped.front());
   }
@@ -110,7 +110,7 @@ void MeshMaker::curve(MeshAttempt& a) const {
   a.measured["second_order"] = nullptr;
   if (order < 2) return;
   begin("second order");
-  a.second = curved_mesh(domain_, a.result, a.h, params_.closest_point, watch_.keep_going);
+  a.second = curved_mesh(domain_, a.result, a.h, params_.paper.closest_point, watch_.keep_going);
   measure_second_order(domain_, a.result, *a.second, a.h, a.measured, watch_.keep_going);
 }
 

@@ -51,7 +51,7 @@ std::vector<int> clusters(const std::vector<Vec3>& x, double size) {
          static_cast<int>(i)});
   }
   std::sort(cubes.begin(), cubes.end());
-  detail::DisjointSets sets(x.size());
+  DisjointSets sets(x.size());
   for (const auto& [key, i] : cubes) {
     for (int n = 0; n < 27; ++n) {
       const Key next = {key[0] + n % 3 - 1, key[1] + n / 3 % 3 - 1, key[2] + n / 9 - 1};

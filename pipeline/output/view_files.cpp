@@ -12,7 +12,6 @@
 #include <vtkXMLImageDataWriter.h>
 #include <vtkXMLPolyDataWriter.h>
 
-#include <array>
 #include <cmath>
 
 #include "common/context.h"
@@ -28,9 +27,6 @@ namespace {
 // psi and |grad psi| in single precision: 16 MB.
 constexpr double kMostNodes = 2e6;
 constexpr std::size_t kValuesPerPoll = 100'000;
-
-constexpr const char* kFolder = "5-view";
-constexpr std::array kNames = {"psi.vti", "zero.vtp", "view.py"};
 
 vtkSmartPointer<vtkFloatArray> values(const char* name, std::size_t n) {
   auto array = vtkSmartPointer<vtkFloatArray>::New();
@@ -160,13 +156,6 @@ Render(view)
 
 }  // namespace
 
-void remove_view(const CasePaths& paths) {
-  const fs::path folder = paths.root / kFolder;
-  for (const char* name : kNames) fs::remove(folder / name);
-  std::error_code not_empty;
-  fs::remove(folder, not_empty);
-}
-
 std::vector<fs::path> write_view(const CasePaths& paths, Progress& progress) {
   if (!fs::exists(paths.parameters())) throw UsageError(paths.root.string() + " is not a case: it has no case.toml");
   Parameters parameters;
@@ -177,12 +166,12 @@ std::vector<fs::path> write_view(const CasePaths& paths, Progress& progress) {
   const double h = state.record->numbers.at("measured").at("h");
   Domain domain = load_domain(paths, parameters);
   domain.limit_detail(h);
-  const fs::path folder = paths.root / kFolder;
+  const fs::path folder = paths.view();
   fs::create_directories(folder);
   remove_stale_temporaries(folder);
   std::vector<fs::path> files;
-  files.reserve(kNames.size());
-  for (const char* name : kNames) files.push_back(folder / name);
+  files.reserve(kViewFiles.size());
+  for (const char* name : kViewFiles) files.push_back(folder / name);
   progress.report("view", "psi", 0);
   const vtkSmartPointer<vtkImageData> image = sampled(domain, h);
   stop_if_interrupted();

@@ -13,12 +13,8 @@ namespace umtet {
 ///   zero.vtp   psi = 0: the surface of that grid's linear interpolant, its vertices moved on by one step of Newton's
 ///              method; with |grad psi|
 ///   view.py    `paraview --script=CASE/5-view/view.py`: samples, psi, psi = 0, a cut through the tets, and the
-///   iterates
-///              where they were kept
+///              iterates where they were kept
 /// @return the files. \throw UsageError without a mesh; ArtefactDamaged, Interrupted, MeshCancelled, std::system_error
 std::vector<std::filesystem::path> write_view(const CasePaths& paths, Progress& progress);
-
-/// Removes these files, which are of one mesh, and the folder if nothing else is in it.
-void remove_view(const CasePaths& paths);
 
 }  // namespace umtet

@@ -15,6 +15,7 @@
 #include "pipeline/meshing/certificate_json.h"
 #include "pipeline/meshing/domain.h"
 #include "pipeline/meshing/edge_length.h"
+#include "pipeline/meshing/library_params.h"
 #include "pipeline/meshing/made_mesh.h"
 #include "pipeline/meshing/mesh_maker.h"
 #include "pipeline/run/evolve_tables.h"

@@ -4,7 +4,7 @@
 
 #include "pipeline/case/artefact.h"
 #include "pipeline/output/step_plot.h"
-#include "pipeline/run/detail/csv_field.h"
+#include "pipeline/run/csv_field.h"
 
 namespace umtet {
 namespace {

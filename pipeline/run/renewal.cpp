@@ -4,7 +4,6 @@
 
 #include "pipeline/case/exit_code.h"
 #include "pipeline/output/export_case.h"
-#include "pipeline/output/view_files.h"
 
 namespace umtet {
 namespace fs = std::filesystem;

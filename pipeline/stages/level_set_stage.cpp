@@ -6,6 +6,7 @@
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/case/memory.h"
+#include "pipeline/meshing/library_params.h"
 #include "pipeline/stages/given_normals.h"
 #include "pipeline/stages/stages.h"
 #include "reconstruct/cloud/cloud_neighbours.h"
@@ -58,33 +59,6 @@ void require_outward_normals(const SsdReport& r) {
       open ? "psi < 0 reaches the wall of its box: the samples do not bound a body with outward normals"
            : "psi was fitted, but the normals disagree with one another",
       100 * opposed, r.n_points, open ? "check that the surface is closed, and " : ""));
-}
-
-SsdParams ssd_params(const Parameters& p) {
-  SsdParams ssd;
-  ssd.spacing = p.real("reconstruct.spacing");
-  ssd.smoothing = p.real("reconstruct.smoothing");
-  ssd.detail = p.real("reconstruct.detail");
-  ssd.smooth = p.real("reconstruct.smooth");
-  ssd.alpha = p.real("reconstruct.alpha");
-  ssd.weights = p.text("reconstruct.weights") == "paper" ? SsdWeights::Paper : SsdWeights::Area;
-  ssd.prior.kind = p.text("reconstruct.prior") == "gaussian" ? LmePrior::Kind::Gaussian : LmePrior::Kind::CompactC2;
-  ssd.prior.gamma = p.real("reconstruct.gamma");
-  ssd.prior.support = static_cast<int>(p.integer("reconstruct.support"));
-  ssd.prior.epsilon = p.real("reconstruct.epsilon");
-  const std::string& solver = p.text("reconstruct.solver");
-  const bool full_only = ssd.weights == SsdWeights::Paper || ssd.prior.kind == LmePrior::Kind::Gaussian;
-  ssd.solver = solver == "assembled"                                 ? SsdSolver::Assembled
-               : solver == "full" || (solver == "auto" && full_only) ? SsdSolver::Full
-                                                                     : SsdSolver::Multilevel;
-  ssd.band_tolerance = p.real("reconstruct.band_tolerance");
-  ssd.tolerance = p.real("reconstruct.tolerance");
-  ssd.max_iterations = static_cast<int>(p.integer("reconstruct.max_iterations"));
-  ssd.padding = static_cast<int>(p.integer("reconstruct.padding"));
-  std::string broken;
-  for (const std::string& problem : problems(ssd)) broken += (broken.empty() ? "reconstruct: " : "; ") + problem;
-  if (!broken.empty()) throw UsageError(broken);
-  return ssd;
 }
 
 void run_level_set_stage(const StageContext& context) {

@@ -168,27 +168,6 @@ void MeshStage::run() {
 
 }  // namespace
 
-UmParams um_params(const Parameters& p) {
-  UmParams um;
-  um.mode = p.text("mesh.mode") == "paper" ? UmMode::Paper : UmMode::Fast;
-  um.fast.smoothing.target = um.fast.repair.target = p.real("mesh.target_quality");
-  um.projection_passes = static_cast<int>(p.integer("mesh.projection_passes"));
-  um.relaxation_iterations = static_cast<int>(p.integer("mesh.relaxation_iterations"));
-  um.samples = static_cast<int>(p.integer("mesh.samples"));
-  um.directions = p.text("mesh.directions") == "axes" ? DirectionRule::AxesInTurn : DirectionRule::Random;
-  const std::string& projection = p.text("mesh.closest_point");
-  um.closest_point.method = projection == "paper"    ? ClosestPointMethod::Paper
-                            : projection == "damped" ? ClosestPointMethod::Damped
-                                                     : ClosestPointMethod::Newton;
-  um.background_boundary = p.flag("mesh.complement") ? BackgroundBoundary::Wall : BackgroundBoundary::Refuse;
-  um.max_min = p.text("mesh.max_min") == "golden" ? MaxMin::GoldenSection : MaxMin::Exact;
-  um.seed = static_cast<std::uint64_t>(p.integer("mesh.seed"));
-  std::string broken;
-  for (const std::string& problem : problems(um)) broken += (broken.empty() ? "mesh: " : "; ") + problem;
-  if (!broken.empty()) throw UsageError(broken);
-  return um;
-}
-
 void run_mesh_stage(const StageContext& context) { MeshStage(context).run(); }
 
 }  // namespace umtet

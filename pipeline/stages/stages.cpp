@@ -5,7 +5,6 @@
 #include "pipeline/case/artefact.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/meshing/background_choice.h"
-#include "pipeline/output/view_files.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -48,15 +47,6 @@ void write_parameters(const CasePaths& paths, const Parameters& parameters) {
   const fs::path file = paths.parameters();
   const std::string text = parameters.toml();
   if (!fs::exists(file) || read_text(file) != text) write_text_artefact(file, text);
-}
-
-Vec3 recorded_vector(const StageRecord& record, const char* key) {
-  try {
-    const Json& v = record.numbers.at(key);
-    return {v.at(0).get<double>(), v.at(1).get<double>(), v.at(2).get<double>()};
-  } catch (const Json::exception&) {
-    throw ArtefactDamaged(std::string("the record of ") + to_string(record.stage) + " has no vector " + key);
-  }
 }
 
 }  // namespace umtet

@@ -1,29 +1,16 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <vector>
 
-#include "mesh/io/tet_mesh_io.h"
-#include "mesh/universal_mesh.h"
 #include "pipeline/case/case_folder.h"
 #include "pipeline/case/parameters.h"
 #include "pipeline/case/progress.h"
 #include "pipeline/case/record.h"
-#include "pipeline/meshing/domain.h"
+#include "pipeline/meshing/handover.h"
 #include "reconstruct/solve/fit_ssd.h"
 
 namespace umtet {
-
-/// What the stages of a run leave in memory for those after them: bit by bit what their files hold, which so need not
-/// be read back. Empty where a stage had been done before.
-struct Handover {
-  std::optional<OrientedPointCloud> cloud;  ///< cloud.ply
-  NeighbourDistances near;                  ///< of its points, or empty
-  std::optional<LevelSet> psi;              ///< level_set.vti
-  std::optional<Domain> domain;             ///< what was meshed, psi cut for h
-  MeshFile mesh;                            ///< mesh.vtu, beside the domain
-};
 
 /// What every stage is given. A stage computes first and touches the case only when it has something to write; it
 /// writes to paths.folder(), which is beside the finished one where there is one.
@@ -50,11 +37,6 @@ void run_level_set_stage(const StageContext&);
 /// std::system_error
 void run_mesh_stage(const StageContext&);
 
-/// The parameter structs of the libraries. \throw UsageError with every broken constraint
-SsdParams ssd_params(const Parameters&);
-
-UmParams um_params(const Parameters&);
-
 /// A fit to normals that are turned over is a level set all the same, but of no body. \throw SolveError
 void require_outward_normals(const SsdReport&);
 
@@ -68,8 +50,5 @@ void begin_writing(const StageContext&, Stage);
 
 /// Writes case.toml if it is not the same already.
 void write_parameters(const CasePaths&, const Parameters&);
-
-/// A vector of the numbers of a record. \throw ArtefactDamaged if it is not there
-Vec3 recorded_vector(const StageRecord&, const char* key);
 
 }  // namespace umtet

@@ -27,8 +27,8 @@ struct LmeBasis3d {
 
 /// Where a point lies among the nodes of the three axes; lanes x, y, z and one that nobody reads.
 struct LmePlace {
-  detail::Pack4i cell, piece, first;  ///< of the axis; of the tables; the first node that has a function there
-  detail::Pack4d s;                   ///< in the piece, 0 .. 1
+  simd::Pack4i cell, piece, first;  ///< of the axis; of the tables; the first node that has a function there
+  simd::Pack4d s;                   ///< in the piece, 0 .. 1
 };
 
 /// One-dimensional max-ent functions on the nodes 0, 1, ..., n - 1 (unit spacing), by Newton's method on log Z.
@@ -113,7 +113,7 @@ inline void LmeTables::evaluate_piece(const Piece& piece, double s, double scale
 }
 
 inline LmePlace LmeTables::locate(const Eigen::Vector3i& n, const Eigen::Vector3d& xi) const {
-  using namespace detail;
+  using namespace simd;
   const Pack4i last = Pack4i{n[0], n[1], n[2], n[2]} - 2, zero = {}, inner = zero + (R_ - 1);
   const Pack4d x = {xi[0], xi[1], xi[2], xi[2]};
   const Pack4i cell = most(least(truncated(x), last), zero);
@@ -132,7 +132,7 @@ inline void LmeTables::evaluate_at(const LmePlace& place, const Eigen::Vector3i&
   evaluate_piece<order>(pieces_[place.piece[1]], place.s[1], scale, out.y);
   evaluate_piece<order>(pieces_[place.piece[2]], place.s[2], scale, out.z);
   out.x.first = place.first[0], out.y.first = place.first[1], out.z.first = place.first[2];
-  const detail::Pack4i moved = place.first - place.cell + (R_ - 1);
+  const simd::Pack4i moved = place.first - place.cell + (R_ - 1);
   if (moved[0] | moved[1] | moved[2]) move_inside(place, out);
 }
 

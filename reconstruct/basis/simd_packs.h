@@ -6,7 +6,7 @@
 #include <immintrin.h>
 #endif
 
-namespace umtet::detail {
+namespace umtet::simd {
 
 // Vectors of the compiler, not Eigen's, which have no casts between four numbers of different kinds and no rests of
 // two.
@@ -51,4 +51,4 @@ V most(V a, V b) {
   return a > b ? a : b;
 }
 
-}  // namespace umtet::detail
+}  // namespace umtet::simd

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "reconstruct/basis/detail/contract.h"
+#include "reconstruct/basis/contract.h"
 
 namespace umtet {
 
 namespace {
 
-using namespace detail;
+using namespace simd;
 
 constexpr int kEdge = LatticeBlocks::kEdge;
 

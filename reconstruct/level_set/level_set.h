@@ -11,7 +11,7 @@
 
 namespace umtet {
 
-namespace detail {
+namespace simd {
 struct LatticeJet;
 }
 
@@ -89,13 +89,13 @@ class LevelSet {
     Band(const Band&) = delete;
     Band& operator=(const Band&) = delete;
     ~Band();
-    const float* window(const detail::Pack4i& block) const;
+    const float* window(const simd::Pack4i& block) const;
     const float* make_window(std::size_t index) const;
   };
   // The sum of the levels first .. end - 1.
-  detail::LatticeJet sum_levels(const Vec3& x, int first, int end, Vec3* gradient, Mat3* hessian) const;
+  simd::LatticeJet sum_levels(const Vec3& x, int first, int end, Vec3* gradient, Mat3* hessian) const;
   template <int W, int order>
-  detail::LatticeJet sum_levels(const Vec3& x, int first, int end) const;
+  simd::LatticeJet sum_levels(const Vec3& x, int first, int end) const;
 
   std::shared_ptr<const LmeTables> tables_;
   std::shared_ptr<const LevelSetLevel> coarsest_;

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "reconstruct/basis/contract.h"
 #include "reconstruct/basis/cross_gram.h"
-#include "reconstruct/basis/detail/contract.h"
 #include "reconstruct/solve/detail/sample_basis.h"
 
 namespace umtet {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "reconstruct/basis/detail/contract.h"
+#include "reconstruct/basis/contract.h"
 #include "reconstruct/solve/detail/sample_basis.h"
 
 namespace umtet {
@@ -15,6 +15,7 @@ namespace umtet {
 namespace {
 
 using namespace detail;
+using namespace simd;
 
 // Slabs of L cell layers run in parallel with every other one, and must never write to the node layers of one another.
 // A sample in cell layer z writes to layers z - R + 1 .. z + R, and its eight-lane stores may spill (adding zero) into

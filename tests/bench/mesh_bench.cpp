@@ -128,7 +128,8 @@ void whole_mesh(benchmark::State& state) {
                                   static_cast<std::size_t>(state.range(1)));
   const Half& data = half();
   UmParams params;
-  params.max_min = static_cast<MaxMin>(state.range(0));
+  params.mode = UmMode::Paper;
+  params.paper.max_min = static_cast<MaxMin>(state.range(0));
   for (auto _ : state) benchmark::DoNotOptimize(universal_mesh(data.background, data.domain, params));
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(data.submesh.mesh.C.size()));
 }
@@ -147,10 +148,11 @@ BENCHMARK(whole_mesh)
 void least_quality(benchmark::State& state) {
   const Half& data = half();
   UmParams params;
-  params.directions = static_cast<DirectionRule>(state.range(0));
+  params.mode = UmMode::Paper;
+  params.paper.directions = static_cast<DirectionRule>(state.range(0));
   double worst = 1, best = 0;
   for (auto _ : state) {
-    for (params.seed = 0; params.seed < 6; ++params.seed) {
+    for (params.paper.seed = 0; params.paper.seed < 6; ++params.paper.seed) {
       const UmResult result = universal_mesh(data.background, data.domain, params);
       if (result.status != UmStatus::Success) {
         state.SkipWithError(result.evidence.what.c_str());
@@ -190,10 +192,8 @@ void fast_mesh(benchmark::State& state) {
   const double n_tets = 1e3 * static_cast<double>(state.range(1));
   const BackgroundMesh background(a15(), domain.box,
                                   h_for_tets(domain, domain.box, n_tets, ClassificationSource::Chosen));
-  UmParams params;
-  params.mode = UmMode::Fast;
   UmResult result;
-  for (auto _ : state) result = universal_mesh(background, domain, params);
+  for (auto _ : state) result = universal_mesh(background, domain);
   const TetMesh mesh{result.final, result.submesh.mesh.C};
   std::vector<double> quality;
   for (const Tet& t : mesh.C) quality.push_back(mean_ratio(mesh, t));
@@ -226,9 +226,7 @@ AllIn mesh_and_certify(const testing::AnalyticDomain& domain, double n_tets, int
   const auto wall = std::chrono::steady_clock::now();
   const BackgroundMesh background(a15(), domain.box,
                                   h_for_tets(domain, domain.box, n_tets, ClassificationSource::Chosen));
-  UmParams params;
-  params.mode = UmMode::Fast;
-  UmResult result = universal_mesh(background, domain, params);
+  UmResult result = universal_mesh(background, domain);
   const TetMesh mesh{std::move(result.final), std::move(result.submesh.mesh.C)};
   CertificateInput input;
   input.mesh = &mesh;
@@ -341,12 +339,10 @@ void drifting_ball(benchmark::State& state) {
     };
     return ball;
   };
-  UmParams params;
-  params.mode = UmMode::Fast;
   double updates = 0, certificates = 0, anew = 0, n_faces = 0, n_recalled = 0, n_values = 0, worst = 1, worst_anew = 1;
   double lack01 = -1, lack_mean = -1;
   for (auto _ : state) {
-    UniversalMesh moving(background, params);
+    UniversalMesh moving(background);
     moving.update(at(0));
     for (int k = 1; k <= 100; ++k) {
       const auto psi = at(k);
@@ -364,7 +360,7 @@ void drifting_ball(benchmark::State& state) {
       n_recalled += static_cast<double>(update.n_recalled);
       if (k % 10 != 0) continue;
       cpu = cpu_seconds();
-      const UmResult fresh = universal_mesh(background, psi, params);
+      const UmResult fresh = universal_mesh(background, psi);
       const MeshCertificate c = testing::certificate_of(fresh, psi, background.h());
       if (!failures(c).empty()) return state.SkipWithError(failures(c).front().c_str());
       worst_anew = std::min(worst_anew, c.quality.min);

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "mesh/certify/certificate.h"
-#include "mesh/certify/detail/certificate_memory.h"
+#include "mesh/certify/certificate_memory.h"
 #include "mesh/core/tet_quality.h"
 #include "mesh/submesh/inside_walk.h"
 #include "tests/support/certified.h"
@@ -30,12 +30,6 @@ struct Ball {
   Vec3 gradient(const Vec3& x) const { return 2 * (x - c); }
   Mat3 hessian(const Vec3&) const { return 2 * Mat3::Identity(); }
 };
-
-UmParams fast() {
-  UmParams params;
-  params.mode = UmMode::Fast;
-  return params;
-}
 
 double least_quality(const UmResult& r) {
   double least = 1;
@@ -74,7 +68,7 @@ std::function<bool(const Box&)> lipschitz(ImplicitFunctionRef psi, double L) {
 TEST(UniversalMesh, ADriftingBallIsMeshedAsWellAsAnew) {
   const double h = .15;
   const BackgroundMesh background(a15(), Box(Vec3(-1.5, -1.5, -1.5), Vec3(2, 1.5, 1.5)), h);
-  UniversalMesh moving(background, fast());
+  UniversalMesh moving(background);
   Submesh last;
   std::vector<Vec3> last_V;
   for (int k = 0; k < 8; ++k) {
@@ -84,7 +78,7 @@ TEST(UniversalMesh, ADriftingBallIsMeshedAsWellAsAnew) {
     expect_certified(update.mesh, psi, h, 1);
     const Submesh& now = update.mesh.submesh;
     // What is above the target by more than that is luck: on balls as small as this, .83 to .86 with or without it.
-    EXPECT_GT(least_quality(update.mesh), std::min(.83, least_quality(universal_mesh(background, psi, fast()))) - .01);
+    EXPECT_GT(least_quality(update.mesh), std::min(.83, least_quality(universal_mesh(background, psi))) - .01);
     EXPECT_EQ(changed_by(last.background_vertex, update.vertices_entered, update.vertices_left), now.background_vertex);
     EXPECT_EQ(changed_by(last.background_tet, update.tets_entered, update.tets_left), now.background_tet);
     for (std::size_t i = 0; i < last_V.size(); ++i) {
@@ -141,7 +135,7 @@ void expect_equal(const MeshCertificate& a, const MeshCertificate& b) {
 TEST(UniversalMesh, AHundredStepsOfAQuarterCellAreCertifiedAndAsGoodAsAnew) {
   const double h = a15().mean_edge / a15().period[0];  // cells of edge 1
   const BackgroundMesh background(a15(), Box(Vec3(-8, -4, -4), Vec3(8, 4, 4)), h);
-  UniversalMesh moving(background, fast());
+  UniversalMesh moving(background);
   for (int k = 0; k <= 100; ++k) {
     SCOPED_TRACE(k);
     const int step = k <= 40 ? k : k <= 80 ? 80 - k : k - 80;  // to and fro
@@ -150,7 +144,7 @@ TEST(UniversalMesh, AHundredStepsOfAQuarterCellAreCertifiedAndAsGoodAsAnew) {
     ASSERT_EQ(update.mesh.status, UmStatus::Success) << update.mesh.evidence.what;
     const MeshCertificate c = moving.certify(update.mesh, psi);
     EXPECT_TRUE(failures(c).empty()) << failures(c).front();
-    const UmResult anew = universal_mesh(background, psi, fast());
+    const UmResult anew = universal_mesh(background, psi);
     const MeshCertificate fresh = testing::certificate_of(anew, psi, h);
     EXPECT_GT(c.quality.min, std::min(.83, fresh.quality.min) - .01);  // .83: see above
     EXPECT_GT(c.quality.p01, fresh.quality.p01 - .01);
@@ -162,7 +156,7 @@ TEST(UniversalMesh, AHundredStepsOfAQuarterCellAreCertifiedAndAsGoodAsAnew) {
 TEST(UniversalMesh, ItsCertificateOverlooksNothingThatHasChanged) {
   const BackgroundMesh background(a15(), domains::cube_box(1.5), .15);
   const Ball psi;
-  UniversalMesh moving(background, fast());
+  UniversalMesh moving(background);
   const UmResult mesh = moving.update(psi).mesh;
   const auto expect_seen = [&](const UmResult& spoiled) {
     expect_equal(moving.certify(mesh, psi), testing::certificate_of(mesh, psi, .15));
@@ -195,9 +189,9 @@ TEST(UniversalMesh, ItsCertificateOverlooksNothingThatHasChanged) {
 
 TEST(CertificateMemory, KnowsTheTetsThatStay) {
   const BackgroundMesh background(a15(), domains::cube_box(1.5), .15);
-  const auto one = universal_mesh(background, Ball{}, fast());
+  const auto one = universal_mesh(background, Ball{});
   const TetMesh mesh{one.final, one.submesh.mesh.C};
-  detail::CertificateMemory memory;
+  CertificateMemory memory;
   memory.match(mesh, one.submesh.background_vertex, one.submesh.background_tet);
   EXPECT_EQ(memory.n_known(), 0u);
   CertificateInput input;
@@ -208,7 +202,7 @@ TEST(CertificateMemory, KnowsTheTetsThatStay) {
 
 TEST(UniversalMesh, ADomainThatStaysKeepsItsMesh) {
   const BackgroundMesh background(a15(), domains::torus().box, .1);
-  UniversalMesh moving(background, fast());
+  UniversalMesh moving(background);
   const auto psi = domains::torus();
   const UmUpdate first = moving.update(psi), second = moving.update(psi);
   EXPECT_EQ(second.mesh.submesh.background_tet, first.mesh.submesh.background_tet);
@@ -221,7 +215,7 @@ TEST(UniversalMesh, ADomainThatStaysKeepsItsMesh) {
 
 TEST(UniversalMesh, ADomainThatMovesByAHairDoesNotStay) {
   const BackgroundMesh background(a15(), domains::cube_box(1.5), .15);
-  UniversalMesh moving(background, fast());
+  UniversalMesh moving(background);
   const UmUpdate first = moving.update(Ball{});
   const Ball moved{Vec3(1e-6, 0, 0)};  // and no vertex changes sides
   const UmUpdate& second = moving.update(moved);
@@ -235,7 +229,7 @@ TEST(UniversalMesh, ADomainThatMovesByAHairDoesNotStay) {
 
 TEST(UniversalMesh, ItsResultIsOverwrittenByTheNextAndTheOneBeforeIsNotLost) {
   const BackgroundMesh background(a15(), domains::cube_box(1.4), .15);
-  UniversalMesh moving(background, fast());
+  UniversalMesh moving(background);
   const UmUpdate& at = moving.update(Ball{});
   const Submesh first = at.mesh.submesh;
   EXPECT_EQ(&moving.update(Ball{Vec3(.6, 0, 0)}), &at);
@@ -272,7 +266,7 @@ TEST(UniversalMesh, NewComponentsAreFoundBySignBoundsOrSeeds) {
   const auto before = domains::equation_13(3.0), after = domains::equation_13(3.2);
   const double L = 16;  // |2 x + t cos(t x)| <= 4.2 + 3.2 + rounding of the box, on three axes
   for (const bool by_bounds : {true, false}) {
-    UniversalMesh moving(background, fast());
+    UniversalMesh moving(background);
     expect_certified(moving.update(before).mesh, before, .12, 1);
     expect_certified(moving.update(after).mesh, after, .12, 1);  // the walk does not meet them
     UpdateHints hints;
@@ -289,7 +283,7 @@ TEST(UniversalMesh, NewComponentsAreFoundBySignBoundsOrSeeds) {
 
 TEST(UniversalMesh, AFailureLeavesTheNextUpdateWhereItWas) {
   const BackgroundMesh background(a15(), domains::cube_box(1.4), .15);
-  UniversalMesh moving(background, fast());
+  UniversalMesh moving(background);
   const Ball ball;
   const UmUpdate first = moving.update(ball);
   EXPECT_EQ(moving.update(Ball{Vec3(.6, 0, 0)}).mesh.status, UmStatus::DomainLeavesBackground);
@@ -301,6 +295,7 @@ TEST(UniversalMesh, AFailureLeavesTheNextUpdateWhereItWas) {
   EXPECT_EQ(moving.update(Ball{Vec3::Zero(), 0}).mesh.status, UmStatus::EmptyDomain);
   expect_certified(moving.update(ball).mesh, ball, .15, 1);
   UmParams paper;
+  paper.mode = UmMode::Paper;
   EXPECT_THROW(UniversalMesh(background, paper), std::invalid_argument);
 }
 
@@ -309,7 +304,7 @@ TEST(UniversalMesh, APsiThatThrowsLeavesTheNextUpdateWhereItWas) {
     double value(const Vec3&) const { throw std::domain_error("no value"); }
     Vec3 gradient(const Vec3&) const { return Vec3::UnitX(); }
   };
-  UniversalMesh moving(BackgroundMesh(a15(), domains::cube_box(1.4), .15), fast());
+  UniversalMesh moving(BackgroundMesh(a15(), domains::cube_box(1.4), .15));
   const Ball ball, less{Vec3::Zero(), .6};
   moving.update(ball);
   EXPECT_THROW(moving.update(Throwing{}), std::domain_error);
@@ -327,7 +322,7 @@ TEST(UniversalMesh, EveryBackgroundWillDo) {
         {static_cast<int>(tet[0]), static_cast<int>(tet[1]), static_cast<int>(tet[2]), static_cast<int>(tet[3])});
   }
   for (const BackgroundMesh& background : {slab, BackgroundMesh(stored)}) {
-    UniversalMesh moving(background, fast());
+    UniversalMesh moving(background);
     for (int k = 0; k < 3; ++k) {
       const Ball psi{Vec3(.04, 0, 0) * k};
       expect_certified(moving.update(psi).mesh, psi, background.h(), 1);
@@ -340,7 +335,7 @@ TEST(UniversalMesh, ThreadsDoNotChangeTheMesh) {
   std::vector<Vec3> V[2];
   for (int n = 1; n <= 2; ++n) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(n));
-    UniversalMesh moving(background, fast());
+    UniversalMesh moving(background);
     for (int k = 0; k < 3; ++k) V[n - 1] = moving.update(Ball{Vec3(.06, 0, 0) * k}).mesh.final;
   }
   EXPECT_EQ(V[0], V[1]);

@@ -32,7 +32,13 @@ double volume(const UmResult& result) {
   return v6 / 6;
 }
 
-UmResult mesh_of(const AnalyticDomain& domain, double n_tets, const UmParams& params = {}) {
+UmParams paper() {
+  UmParams params;
+  params.mode = UmMode::Paper;
+  return params;
+}
+
+UmResult mesh_of(const AnalyticDomain& domain, double n_tets, const UmParams& params = paper()) {
   return universal_mesh(BackgroundMesh(a15(), domain.box, h_for_tets(domain, domain.box, n_tets)), domain, params);
 }
 
@@ -40,7 +46,7 @@ TEST(UniversalMesh, EveryDomainGetsAMeshOnItsBoundaryWithGoodTets) {
   for (const AnalyticDomain& domain : testing::domains()) {
     SCOPED_TRACE(domain.name);
     const double h = h_for_tets(domain, domain.box, 12000);
-    const UmResult result = universal_mesh(BackgroundMesh(a15(), domain.box, h), domain);
+    const UmResult result = universal_mesh(BackgroundMesh(a15(), domain.box, h), domain, paper());
     ASSERT_EQ(result.status, UmStatus::Success) << result.evidence.what;
     EXPECT_GT(min_quality(result.submesh, result.projected), .2);  // eq. (9) is coarse here
     EXPECT_GT(min_quality(result.submesh, result.final), .7);
@@ -58,8 +64,8 @@ TEST(UniversalMesh, EveryDomainGetsAMeshOnItsBoundaryWithGoodTets) {
 }
 
 TEST(UniversalMesh, SphereVolumeErrorFallsAsHSquared) {
-  UmParams params;
-  params.relaxation_iterations = 5;  // the volume is decided by where the boundary vertices are
+  UmParams params = paper();
+  params.paper.relaxation_iterations = 5;  // the volume is decided by where the boundary vertices are
   const AnalyticDomain ball = testing::sphere();
   const auto error = [&](double h) {
     return *ball.volume - volume(universal_mesh(BackgroundMesh(a15(), ball.box, h), ball, params));
@@ -70,16 +76,16 @@ TEST(UniversalMesh, SphereVolumeErrorFallsAsHSquared) {
 }
 
 TEST(UniversalMesh, DoesNotDependOnThreadsOrOnTheSearch) {
-  UmParams params;
-  params.relaxation_iterations = 6;
+  UmParams params = paper();
+  params.paper.relaxation_iterations = 6;
   const AnalyticDomain domain = testing::torus();
   const BackgroundMesh background(a15(), domain.box, h_for_tets(domain, domain.box, 20000));
   const auto bytes_differ = [](const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
     return a.size() != b.size() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) != 0;
   };
   for (const DirectionRule rule : {DirectionRule::AxesInTurn, DirectionRule::Random}) {
-    params.directions = rule;
-    params.search = SubmeshSearch::FullLoop;
+    params.paper.directions = rule;
+    params.submesh.search = SubmeshSearch::FullLoop;
     UmResult one, three;
     {
       tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
@@ -91,7 +97,7 @@ TEST(UniversalMesh, DoesNotDependOnThreadsOrOnTheSearch) {
     }
     EXPECT_FALSE(bytes_differ(one.final, three.final));
     EXPECT_EQ(one.n_psi_evaluations, three.n_psi_evaluations);
-    params.search = SubmeshSearch::Crawl;
+    params.submesh.search = SubmeshSearch::Crawl;
     const UmResult crawled = universal_mesh(background, domain, params, {}, domain.boundary_seeds);
     EXPECT_FALSE(bytes_differ(one.final, crawled.final));
     EXPECT_LT(crawled.n_psi_evaluations, one.n_psi_evaluations);
@@ -99,18 +105,18 @@ TEST(UniversalMesh, DoesNotDependOnThreadsOrOnTheSearch) {
 }
 
 TEST(UniversalMesh, SeedDecidesTheRandomDirections) {
-  UmParams params;
-  params.relaxation_iterations = 2;
+  UmParams params = paper();
+  params.paper.relaxation_iterations = 2;
   const AnalyticDomain ball = testing::sphere();
   const UmResult a = mesh_of(ball, 4000, params);
   EXPECT_EQ(mesh_of(ball, 4000, params).final, a.final);
-  params.seed = 1;
+  params.paper.seed = 1;
   EXPECT_NE(mesh_of(ball, 4000, params).final, a.final);
 }
 
 TEST(UniversalMesh, EmptyDomainIsAStatus) {
   const BackgroundMesh background(a15(), Box(Vec3(3, 3, 3), Vec3(4, 4, 4)), .2);
-  const UmResult result = universal_mesh(background, testing::sphere());
+  const UmResult result = universal_mesh(background, testing::sphere(), paper());
   EXPECT_EQ(result.status, UmStatus::EmptyDomain);
   EXPECT_FALSE(result.evidence.what.empty());
 }
@@ -142,7 +148,7 @@ TEST(UniversalMesh, APsiThatIsNoNumberIsSaidToBeWithAPlace) {
 
 TEST(UniversalMesh, DomainThatLeavesTheBackgroundIsAStatus) {
   const BackgroundMesh background(a15(), testing::cube_box(.8), .2);
-  const UmResult result = universal_mesh(background, testing::sphere());
+  const UmResult result = universal_mesh(background, testing::sphere(), paper());
   EXPECT_EQ(result.status, UmStatus::DomainLeavesBackground);
   EXPECT_GT(result.evidence.count, 0u);
   EXPECT_TRUE(background.on_boundary(result.evidence.background_vertex));
@@ -151,9 +157,9 @@ TEST(UniversalMesh, DomainThatLeavesTheBackgroundIsAStatus) {
 
 TEST(UniversalMesh, DoublePositiveFacesAreCountedWhereTheRunSurvivesThem) {
   // A disc two thirds of an edge thick: some faces lie between inside vertices on both of their sides.
-  UmParams params;
-  params.projection_passes = 1;  // so that the only check for inverted tets comes before any relaxation
-  params.relaxation_iterations = 3;
+  UmParams params = paper();
+  params.paper.projection_passes = 1;  // so that the only check for inverted tets comes before any relaxation
+  params.paper.relaxation_iterations = 3;
   const AnalyticDomain disc = testing::ellipsoid({1, 1, .03});
   const UmResult result = universal_mesh(BackgroundMesh(a15(), testing::cube_box(1.3), .1), disc, params);
   ASSERT_EQ(result.status, UmStatus::Success) << result.evidence.what;
@@ -164,7 +170,7 @@ TEST(UniversalMesh, DoublePositiveFacesAreCountedWhereTheRunSurvivesThem) {
 TEST(UniversalMesh, ADoublePositiveFaceWhereTheRunFailsIsTheStatus) {
   // Handles about an edge thick. Rounding decides whether a projection or a tet fails first; both do so at such a face.
   const AnalyticDomain domain = testing::equation_9();
-  const UmResult result = universal_mesh(BackgroundMesh(a15(), domain.box, .45), domain);
+  const UmResult result = universal_mesh(BackgroundMesh(a15(), domain.box, .45), domain, paper());
   ASSERT_EQ(result.status, UmStatus::DoublePositiveFace) << result.evidence.what;
   const BrokenAssumption broken = double_positive_faces(result.submesh);
   EXPECT_EQ(result.double_positive_faces, broken.count);
@@ -187,7 +193,7 @@ TEST(UniversalMesh, ADiscTooThinToProjectOntoNamesThePlace) {
   // Three tenths of an edge thick, with a rim of curvature 1 / .0009: vertices beside the rim do not find it.
   const AnalyticDomain disc = testing::ellipsoid({1, 1, .03});
   const BackgroundMesh background(a15(), testing::cube_box(1.3), .2);
-  const UmResult result = universal_mesh(background, disc);
+  const UmResult result = universal_mesh(background, disc, paper());
   ASSERT_EQ(result.status, UmStatus::ProjectionDiverged);
   EXPECT_GT(result.double_positive_faces, 0u);
   EXPECT_EQ(result.evidence.where, background.position(result.evidence.background_vertex));  // nothing has moved yet
@@ -205,9 +211,9 @@ TEST(UniversalMesh, ADiscTooThinToProjectOntoNamesThePlace) {
 }
 
 TEST(UniversalMesh, ADivergedProjectionNamesItsVertex) {
-  UmParams params;
-  params.closest_point.method = ClosestPointMethod::Paper;
-  params.closest_point.max_iterations = 1;  // no vertex is on the boundary to begin with
+  UmParams params = paper();
+  params.paper.closest_point.method = ClosestPointMethod::Paper;
+  params.paper.closest_point.max_iterations = 1;  // no vertex is on the boundary to begin with
   const AnalyticDomain ball = testing::sphere();
   const UmResult result = mesh_of(ball, 3000, params);
   EXPECT_EQ(result.status, UmStatus::ProjectionDiverged);
@@ -217,8 +223,8 @@ TEST(UniversalMesh, ADivergedProjectionNamesItsVertex) {
 }
 
 TEST(UniversalMesh, AnInvertedIterateNamesItsTet) {
-  UmParams params;
-  params.projection_passes = 1;  // in one go, which is what the passes are there to avoid
+  UmParams params = paper();
+  params.paper.projection_passes = 1;  // in one go, which is what the passes are there to avoid
   const UmResult result = mesh_of(testing::banchoff_chmutov_4(), 20000, params);
   ASSERT_EQ(result.status, UmStatus::InvertedTet);
   EXPECT_GE(result.evidence.background_tet, 0);
@@ -226,9 +232,9 @@ TEST(UniversalMesh, AnInvertedIterateNamesItsTet) {
 }
 
 TEST(UniversalMesh, ObserverSeesEverySweepAndCanStop) {
-  UmParams params;
-  params.relaxation_iterations = 3;
-  params.projection_passes = 2;
+  UmParams params = paper();
+  params.paper.relaxation_iterations = 3;
+  params.paper.projection_passes = 2;
   const AnalyticDomain ball = testing::sphere();
   const BackgroundMesh background(a15(), ball.box, .3);
   std::vector<std::string> seen;
@@ -254,12 +260,12 @@ TEST(UniversalMesh, ObserverSeesEverySweepAndCanStop) {
 TEST(UniversalMesh, BrokenParamsAreAllNamed) {
   UmParams params;
   EXPECT_TRUE(problems(params).empty());
-  params.projection_passes = 0;
-  params.relaxation_iterations = -1;
-  params.samples = 0;
-  params.closest_point.tol = 0;
+  params.paper.projection_passes = 0;
+  params.paper.relaxation_iterations = -1;
+  params.paper.samples = 0;
+  params.paper.closest_point.tol = 0;
   EXPECT_EQ(problems(params).size(), 4u);
-  params.search = SubmeshSearch::Crawl;
+  params.submesh.search = SubmeshSearch::Crawl;
   const AnalyticDomain ball = testing::sphere();
   const BackgroundMesh background(a15(), ball.box, .5);
   try {

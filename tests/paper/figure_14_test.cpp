@@ -44,10 +44,8 @@ TEST(Figure14, MeshesHaveTheSizesOfTheirBackgrounds) {
     const auto domain = domains::equation_9();
     const Tiling& tiling = tiling_named(b.tiling);
     const double h = h_for_tets(tiling, domain, domain.box, 40000);
-    UmParams params;
-    params.mode = UmMode::Fast;
     const BackgroundMesh background(tiling, domain.box, h);
-    const UmResult r = universal_mesh(background, domain, params);
+    const UmResult r = universal_mesh(background, domain);
     ASSERT_EQ(r.status, UmStatus::Success) << r.evidence.what;
     const Submesh& omega_h = r.submesh;
     for (std::size_t i = 0; i < omega_h.mesh.V.size(); ++i) {

@@ -26,7 +26,7 @@ TEST(Figure15, LeastQualityInFourBackgrounds) {
     const auto domain = domains::equation_9();
     const Tiling& tiling = tiling_named(bar.tiling);
     const double h = h_for_tets(tiling, domain, domain.box, 100000);
-    const UmResult r = universal_mesh(BackgroundMesh(tiling, domain.box, h), domain);
+    const UmResult r = universal_mesh(BackgroundMesh(tiling, domain.box, h), domain, {.mode = UmMode::Paper});
     ASSERT_EQ(r.status, UmStatus::Success) << r.evidence.what;
     const MeshCertificate c = domains::certificate_of(r, domain, h);
     std::printf("  %-4s  %7zu tets   %.4f  %.3f   %.3f   %.2f\n", bar.tiling, r.submesh.mesh.C.size(), h, c.quality.min,
@@ -53,9 +53,7 @@ TEST(Figure15, FastModeIsBetterInEveryBackground) {
     const auto domain = domains::equation_9();
     const Tiling& tiling = tiling_named(bar.tiling);
     const double h = h_for_tets(tiling, domain, domain.box, 100000);
-    UmParams params;
-    params.mode = UmMode::Fast;
-    const UmResult r = universal_mesh(BackgroundMesh(tiling, domain.box, h), domain, params);
+    const UmResult r = universal_mesh(BackgroundMesh(tiling, domain.box, h), domain);
     ASSERT_EQ(r.status, UmStatus::Success) << r.evidence.what;
     const MeshCertificate c = domains::certificate_of(r, domain, h);
     std::printf("  %-4s               %.4f   %.3f        %.3f\n", bar.tiling, c.quality.min, bar.of_paper_mode,

@@ -30,8 +30,7 @@ struct Timed {
 
 Timed timed(const domains::AnalyticDomain& domain, double h) {
   UmParams params;
-  params.mode = UmMode::Fast;
-  params.search = SubmeshSearch::Crawl;
+  params.submesh.search = SubmeshSearch::Crawl;
   Timed t{0, 0, 1e9};
   const BackgroundMesh background(a15(), domain.box, h);
   for (int run = 0; run < 3; ++run) {

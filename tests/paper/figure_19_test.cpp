@@ -41,12 +41,10 @@ TEST(Figure19, OneBackgroundServesABirdInFlight) {
   }
   const double h = .0724;  // what `umtet evolve` chooses
   const BackgroundMesh background(a15(), box, h);
-  UmParams params;
-  params.mode = UmMode::Fast;
   std::printf("The bird, h = %.4f   tets   min Q   (the paper, at worst: .657)\n", h);
   for (const LevelSet& fitted : psi) {
     const LevelSet f = fitted.band_limited(.7 * h);
-    const UmResult r = universal_mesh(background, f, params);
+    const UmResult r = universal_mesh(background, f);
     ASSERT_EQ(r.status, UmStatus::Success) << r.evidence.what;
     const MeshCertificate c = umtet::testing::certificate_of(r, f, h);
     for (const std::string& reason : failures(c)) ADD_FAILURE() << reason;

@@ -16,13 +16,11 @@ TEST(Figure1, QualityAndAnglesAt100kTets) {
   std::printf(
       "Figure 1, 100k tets     least Q   1 %%  dihedral angles   (paper: .660 .663 .669 .634; TetGen there: .071 to "
       ".086; Gmsh, TetGen and CGAL here: docs/comparison.md)\n");
-  UmParams params;
-  params.mode = UmMode::Fast;
   for (const auto& domain : {domains::sphere(), domains::torus(), domains::equation_9(), domains::banchoff_chmutov_6(),
                              domains::equation_13(3.2)}) {
     SCOPED_TRACE(domain.name);
     const double h = h_for_tets(domain, domain.box, 100000);
-    const UmResult r = universal_mesh(BackgroundMesh(a15(), domain.box, h), domain, params);
+    const UmResult r = universal_mesh(BackgroundMesh(a15(), domain.box, h), domain);
     ASSERT_EQ(r.status, UmStatus::Success) << r.evidence.what;
     const MeshCertificate c = domains::certificate_of(r, domain, h);
     std::printf("  %-20s   %.3f  %.3f   %.1f to %.1f\n", domain.name.c_str(), c.quality.min, c.quality.p01,

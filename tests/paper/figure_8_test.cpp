@@ -20,7 +20,7 @@ TEST(Figure8, QualitiesAtThreeStages) {
   const LevelSet psi = fit_ssd(cloud).psi;
   const ImplicitFunctionRef f(psi);
   const BackgroundMesh background(a15(), psi.domain(), h_for_tets(f, psi.domain(), 60000));
-  const UmResult r = universal_mesh(background, f);
+  const UmResult r = universal_mesh(background, f, {.mode = UmMode::Paper});
   ASSERT_EQ(r.status, UmStatus::Success) << r.evidence.what;
 
   const std::vector<Tet>& C = r.submesh.mesh.C;

@@ -31,7 +31,7 @@ TEST(LeastQuality, OfImplicitDomainsAt100kTets) {
     const domains::AnalyticDomain& domain = bar.domain;
     SCOPED_TRACE(domain.name);
     const double h = h_for_tets(domain, domain.box, 100000);
-    const UmResult r = universal_mesh(BackgroundMesh(a15(), domain.box, h), domain);
+    const UmResult r = universal_mesh(BackgroundMesh(a15(), domain.box, h), domain, {.mode = UmMode::Paper});
     ASSERT_EQ(r.status, UmStatus::Success) << r.evidence.what;
     const MeshCertificate c = domains::certificate_of(r, domain, h);
     std::printf("  %-20s %7zu tets   %.3f   %s\n", domain.name.c_str(), r.submesh.mesh.C.size(), c.quality.min,
@@ -56,9 +56,7 @@ TEST(LeastQuality, DoesNotDependOnWhereTheLatticeLies) {
     const Vec3 part = Vec3(.8191725, .6710436, .5497005) * place;
     Box box = padded;
     box.translate(cell * Vec3(part - part.array().floor().matrix()));
-    UmParams params;
-    params.mode = UmMode::Fast;
-    const UmResult r = universal_mesh(BackgroundMesh(a15(), box, h), domain, params);
+    const UmResult r = universal_mesh(BackgroundMesh(a15(), box, h), domain);
     ASSERT_EQ(r.status, UmStatus::Success) << r.evidence.what;
     const MeshCertificate c = domains::certificate_of(r, domain, h);
     for (const std::string& reason : failures(c)) ADD_FAILURE() << reason;

@@ -24,9 +24,7 @@ struct Volumes {
 };
 
 Volumes volumes(ImplicitFunctionRef psi, const Box& box, double h) {
-  UmParams params;
-  params.mode = UmMode::Fast;
-  const UmResult result = universal_mesh(BackgroundMesh(a15(), box, h), psi, params);
+  const UmResult result = universal_mesh(BackgroundMesh(a15(), box, h), psi);
   EXPECT_EQ(result.status, UmStatus::Success) << result.evidence.what;
   const TetMesh mesh{result.final, result.submesh.mesh.C};
   const SecondOrder second = quadratic_tets(mesh, result.submesh.positive_faces, psi, h);

@@ -23,7 +23,7 @@
 #include "mesh/classification/configuration_costs.h"
 #include "mesh/core/tet_quality.h"
 #include "mesh/fast/backtracking_projection.h"
-#include "mesh/submesh/detail/assemble_submesh.h"
+#include "mesh/submesh/assemble_submesh.h"
 #include "mesh/submesh/lattice_active_layer.h"
 #include "tools/star_costs/random_shape.h"
 
@@ -47,7 +47,7 @@ void measure(const star_costs::RandomShape& shape, const Tiling& tiling, const S
   const BackgroundMesh background(tiling, padded, h);
   const auto& links = configuration_costs(tiling)->links;
   std::size_t evaluations = 0;
-  detail::IdSet inside = detail::inside_vertices(background, shape, evaluations);
+  IdSet inside = inside_vertices(background, shape, evaluations);
   if (costs) {
     ClassificationParams params;
     params.costs = costs;
@@ -60,7 +60,7 @@ void measure(const star_costs::RandomShape& shape, const Tiling& tiling, const S
   smoothing.target = kOutOfReach;
   smoothing.margin = 0;
   smooth(cut.layer, shape, smoothing);
-  const detail::LinkSteps steps(background);
+  const LinkSteps steps(background);
   for (std::size_t v = 0; v < cut.layer.V.size(); ++v) {
     if (cut.layer.role[v] != ActiveLayer::Role::Boundary) continue;
     const std::int64_t id = cut.background_vertex[v];

@@ -129,7 +129,7 @@ const Tiling& acute_cube() {
         block.push_back(tet);
       }
     }
-    Tiling made = detail::periodic_tiling("cube", block, Vec3::Constant(2), Vec3::Ones());
+    Tiling made = periodic_tiling("cube", block, Vec3::Constant(2), Vec3::Ones());
     made.excess_layer = .09;  // small tets sit around the centres of the cubes: .05 and .12 were seen
     return made;
   }();

@@ -80,14 +80,14 @@ const Vec3& hexagonal_unit() {
 
 const Tiling& z_phase() {
   static const Tiling tiling =
-      detail::periodic_tiling("z", images(z_orbits(), kMirrorOfZ, 1), Vec3(4, 12, 4), hexagonal_unit());
+      periodic_tiling("z", images(z_orbits(), kMirrorOfZ, 1), Vec3(4, 12, 4), hexagonal_unit());
   return tiling;
 }
 
 const Tiling& acute_slab() {
   // Two triangles wide, or a vertex of the wall would be its own neighbour a period away.
   static const Tiling tiling =
-      detail::periodic_tiling("slab", images(slab_orbits(), kMirrorOfSlab, 2), Vec3(8, 12, 9), hexagonal_unit());
+      periodic_tiling("slab", images(slab_orbits(), kMirrorOfSlab, 2), Vec3(8, 12, 9), hexagonal_unit());
   return tiling;
 }
 

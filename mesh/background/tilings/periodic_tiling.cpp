@@ -10,7 +10,7 @@
 
 #include "mesh/core/tet_quality.h"
 
-namespace umtet::detail {
+namespace umtet {
 namespace {
 
 using Offset = std::array<int, 3>;
@@ -78,4 +78,4 @@ Tiling periodic_tiling(std::string name, const std::vector<std::array<Vec3, 4>>&
   return tiling;
 }
 
-}  // namespace umtet::detail
+}  // namespace umtet

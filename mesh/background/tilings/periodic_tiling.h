@@ -7,7 +7,7 @@
 #include "mesh/background/tiling.h"
 #include "mesh/core/tet_mesh.h"
 
-namespace umtet::detail {
+namespace umtet {
 
 /// A tiling from all tets of a period, each perhaps several times and moved by periods.
 ///
@@ -20,4 +20,4 @@ namespace umtet::detail {
 Tiling periodic_tiling(std::string name, const std::vector<std::array<Vec3, 4>>& tets, const Vec3& period,
                        const Vec3& unit);
 
-}  // namespace umtet::detail
+}  // namespace umtet

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "mesh/certify/detail/certificate_memory.h"
+#include "mesh/certify/certificate_memory.h"
 #include "mesh/certify/quality_report.h"
 #include "mesh/core/tet_packs.h"
 #include "mesh/core/tet_quality.h"

@@ -13,7 +13,7 @@ constexpr int kIdsPerLine = 16;
 /// Abaqus' number of the face opposite to corner k: S1 = 1-2-3, S2 = 1-4-2, S3 = 2-4-3, S4 = 3-4-1.
 constexpr int kFaceNumber[4] = {3, 4, 2, 1};
 
-void write_node_set(detail::CheckedFile& file, const std::string& name, const std::vector<int>& nodes) {
+void write_node_set(CheckedFile& file, const std::string& name, const std::vector<int>& nodes) {
   if (nodes.empty()) return;
   file.text("*NSET, NSET=").text(name).text("\n");
   for (std::size_t k = 0; k < nodes.size(); ++k) {
@@ -23,7 +23,7 @@ void write_node_set(detail::CheckedFile& file, const std::string& name, const st
 }
 
 /// @param patch  -1: all of them
-void write_surface_set(detail::CheckedFile& file, const SolverMesh& mesh, const std::string& name, int patch) {
+void write_surface_set(CheckedFile& file, const SolverMesh& mesh, const std::string& name, int patch) {
   bool begun = false;
   for (std::size_t f = 0; f < mesh.n_faces(); ++f) {
     if (patch >= 0 && mesh.face_patch[f] != patch) continue;
@@ -37,7 +37,7 @@ void write_surface_set(detail::CheckedFile& file, const SolverMesh& mesh, const 
 
 void write_inp(const std::filesystem::path& path, const SolverMesh& mesh) {
   require_consistent(mesh);
-  detail::CheckedFile file(path);
+  CheckedFile file(path);
   file.text("*HEADING\numtet: tets, node sets and surfaces\n*NODE\n");
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
     file.number(i + 1);

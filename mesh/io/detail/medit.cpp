@@ -17,7 +17,7 @@ void write_medit(const std::filesystem::path& path, const SolverMesh& mesh) {
   for (std::size_t p = nodes.size(); p-- > 0;) {
     for (const int i : nodes[p]) reference[i] = mesh.patches[p].number;
   }
-  detail::CheckedFile file(path);
+  CheckedFile file(path);
   file.text("MeshVersionFormatted 2\nDimension 3\n\nVertices\n").number(mesh.nodes.size()).text("\n");
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
     for (int k = 0; k < 3; ++k) file.number(mesh.nodes[i][k]).text(" ");

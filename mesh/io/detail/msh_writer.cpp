@@ -47,7 +47,7 @@ class MshWriter {
 
   const SolverMesh& mesh_;
   bool binary_;
-  detail::CheckedFile file_;
+  CheckedFile file_;
   std::vector<std::vector<int>> faces_of_;  ///< by patch
   std::uint64_t n_patches_ = 0;             ///< that have faces
   std::int32_t id_ = 0;                     ///< of the last element

@@ -17,7 +17,7 @@ constexpr int kFieldsPerLine = 8;
 /// A card of whole numbers: fields of 8 characters, continued behind every eighth.
 class Card {
  public:
-  Card(detail::CheckedFile& file, std::string_view name) : file_(file) { pad(name, 8); }
+  Card(CheckedFile& file, std::string_view name) : file_(file) { pad(name, 8); }
   Card& field(std::size_t value) {
     if (n_ == kFieldsPerLine) {
       file_.text("+\n");
@@ -36,11 +36,11 @@ class Card {
     constexpr std::string_view kBlanks = "        ";
     file_.text(text).text(kBlanks.substr(0, width - text.size()));
   }
-  detail::CheckedFile& file_;
+  CheckedFile& file_;
   int n_ = 0;
 };
 
-void write_grid(detail::CheckedFile& file, std::size_t id, const Vec3& x) {
+void write_grid(CheckedFile& file, std::size_t id, const Vec3& x) {
   constexpr std::string_view kBlanks = "                ";
   const auto pad = [&](std::string_view text) { file.text(text).text(kBlanks.substr(0, 16 - text.size())); };
   char digits[24];
@@ -63,7 +63,7 @@ void write_nastran(const std::filesystem::path& path, const SolverMesh& mesh) {
   if (std::max({mesh.nodes.size(), mesh.n_tets() + mesh.n_faces(), static_cast<std::size_t>(largest)}) > kLargestId) {
     throw std::invalid_argument("a Nastran file with a number beyond 99999999");
   }
-  detail::CheckedFile file(path);
+  CheckedFile file(path);
   file.text("$ umtet: tets, property ").number(mesh.body.number).text(" = ").text(mesh.body.name).text("\n");
   for (const MeshPart& patch : mesh.patches) {
     file.text("$ faces, property ").number(patch.number).text(", and nodes, SET1 ").number(patch.number);

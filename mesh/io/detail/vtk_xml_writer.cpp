@@ -78,7 +78,7 @@ class VtkXmlWriter {
   void put(const T* values, std::size_t n);
   void encode();
 
-  detail::CheckedFile file_;
+  CheckedFile file_;
   std::vector<unsigned char> raw_ = std::vector<unsigned char>(kPiece);
   std::vector<unsigned char> text_ = std::vector<unsigned char>(kPiece / 3 * 4);
   std::size_t n_raw_ = 0;

@@ -164,7 +164,7 @@ class XdmfWriter {
 
   const SolverMesh& mesh_;
   std::string hdf5_;
-  detail::CheckedFile file_;
+  CheckedFile file_;
 };
 
 }  // namespace
@@ -185,7 +185,7 @@ void write_hdf5(const std::filesystem::path& path, const SolverMesh& mesh) {
     for (const auto& [name, values] : mesh.cell_data) image.put("cell_data/" + name, values);
     bytes = image.bytes();
   }
-  detail::CheckedFile file(path);
+  CheckedFile file(path);
   file.text(bytes);
   file.close();
 }

@@ -7,6 +7,8 @@
 
 namespace umtet::detail {
 
+using namespace simd;
+
 using FloatPack = Eigen::Array<float, LmeBasis1d::kPackSize, 1>;
 using FloatIn = Eigen::Map<const FloatPack>;
 inline Eigen::Map<FloatPack> float_pack(float* at) { return Eigen::Map<FloatPack>(at); }

@@ -78,7 +78,7 @@ int run(int argc, char** argv) {
   const testing::AnalyticDomain domain = testing::domain_by_name(argv[1]);
   UmParams params;
   params.mode = std::strcmp(argv[3], "paper") == 0 ? UmMode::Paper : UmMode::Fast;
-  if (std::strcmp(argv[3], "crawl") == 0) params.search = SubmeshSearch::Crawl;
+  if (std::strcmp(argv[3], "crawl") == 0) params.submesh.search = SubmeshSearch::Crawl;
   const double peak_before = peak_MB(), start = cpu_seconds();
   const ClassificationSource labels =
       params.mode == UmMode::Fast ? ClassificationSource::Chosen : ClassificationSource::Psi;

@@ -14,8 +14,8 @@
 
 #include "mesh/background/body_size.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/submesh/assemble_submesh.h"
 #include "mesh/submesh/crawl.h"
-#include "mesh/submesh/detail/assemble_submesh.h"
 #include "mesh/submesh/lattice_active_layer.h"
 #include "tests/support/domains.h"
 
@@ -155,7 +155,7 @@ TEST_P(OnEveryTiling, CrawlingAndCellsFindWhatTheFullLoopFinds) {
     const Submesh all = find_submesh(background, domain);
     const Crawl crawled = crawl(background, domain, domain.boundary_seeds);
     EXPECT_TRUE(crawled.lost_seeds.empty()) << domain.name;
-    const detail::CrawledVertices flooded = detail::crawl_inside(background, domain, domain.boundary_seeds);
+    const CrawledVertices flooded = crawl_inside(background, domain, domain.boundary_seeds);
     for (const Submesh& other : {crawled.submesh, emit_submesh(background, flooded.inside)}) {
       EXPECT_EQ(other.background_tet, all.background_tet) << domain.name;
       EXPECT_EQ(other.background_vertex, all.background_vertex) << domain.name;

@@ -28,9 +28,7 @@ TEST(ExpectedTets, ChosenLabelsTakeFewer) {
     SCOPED_TRACE(domain.name);
     constexpr double kAsked = 20000;
     const double h = h_for_tets(domain, domain.box, kAsked, ClassificationSource::Chosen);
-    UmParams params;
-    params.mode = UmMode::Fast;
-    const UmResult result = universal_mesh(BackgroundMesh(a15(), domain.box, h), domain, params);
+    const UmResult result = universal_mesh(BackgroundMesh(a15(), domain.box, h), domain);
     ASSERT_EQ(result.status, UmStatus::Success) << result.evidence.what;
     EXPECT_NEAR(static_cast<double>(result.submesh.mesh.C.size()), kAsked, .07 * kAsked);
     const BodySize size = body_size(domain, domain.box);

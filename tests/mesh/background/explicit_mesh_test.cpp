@@ -63,8 +63,8 @@ TEST(ExplicitMesh, IsMeshedInBothModes) {
     for (const SubmeshSearch search : {SubmeshSearch::FullLoop, SubmeshSearch::Crawl}) {
       UmParams params;
       params.mode = mode;
-      params.search = search;
-      params.relaxation_iterations = 5;
+      params.submesh.search = search;
+      params.paper.relaxation_iterations = 5;
       const UmResult r = universal_mesh(background, domain, params, {}, domain.boundary_seeds);
       EXPECT_EQ(r.status, UmStatus::Success) << r.evidence.what;
       EXPECT_GT(r.conditioning_angle_max_deg, 70);

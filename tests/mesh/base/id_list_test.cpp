@@ -4,7 +4,7 @@
 
 #include <map>
 
-using umtet::detail::IdList;
+using umtet::IdList;
 
 // Ids of a lattice, many of one row and some of all others, as patches have them: more than its first table holds.
 TEST(IdList, NumbersEveryIdOnceInTheOrderOfComing) {

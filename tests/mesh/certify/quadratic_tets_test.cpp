@@ -27,7 +27,8 @@ struct Linear {
 
   Linear(const AnalyticDomain& domain, double edge) : h(edge) {
     UmParams params;
-    params.relaxation_iterations = 5;
+    params.mode = UmMode::Paper;
+    params.paper.relaxation_iterations = 5;
     UmResult result = universal_mesh(BackgroundMesh(a15(), domain.box, h), domain, params);
     EXPECT_EQ(result.status, UmStatus::Success) << result.evidence.what;
     mesh = {std::move(result.final), std::move(result.submesh.mesh.C)};

@@ -15,9 +15,6 @@
 namespace umtet {
 namespace {
 
-using detail::measure_tet_pack;
-using detail::TetPack;
-
 double cotangent2(double degrees) {
   const double cotangent = 1 / std::tan(degrees * M_PI / 180);
   return cotangent * std::abs(cotangent);

@@ -11,9 +11,9 @@
 
 #include "mesh/background/body_size.h"
 #include "mesh/certify/certificate.h"
+#include "mesh/classification/classification_band.h"
 #include "mesh/classification/configuration_costs.h"
-#include "mesh/classification/detail/classification_band.h"
-#include "mesh/submesh/detail/assemble_submesh.h"
+#include "mesh/submesh/assemble_submesh.h"
 #include "mesh/submesh/inside_walk.h"
 #include "mesh/submesh/lattice_active_layer.h"
 #include "tests/support/domains.h"
@@ -24,14 +24,14 @@ namespace {
 using testing::AnalyticDomain;
 
 struct Labelled {
-  detail::IdSet plain, chosen;
+  IdSet plain, chosen;
   ClassificationReport report;
 };
 
 Labelled choose(const BackgroundMesh& background, const AnalyticDomain& domain,
                 const ClassificationParams& params = {}) {
   std::size_t n = 0;
-  const detail::IdSet plain = detail::inside_vertices(background, domain, n);
+  const IdSet plain = inside_vertices(background, domain, n);
   Labelled result{plain, plain, {}};
   result.report = classify_vertices(background, a15_links(), domain, params, result.chosen);
   return result;
@@ -90,14 +90,14 @@ TEST(Labels, ThoseOfAMeshBeforeStayWhereOthersAreNotBetter) {
   const AnalyticDomain before = testing::torus();
   const BackgroundMesh background = background_of(before, 30000);
   const AnalyticDomain after = raised(before, .05 * background.h());
-  const detail::IdSet last = choose(background, before).chosen;
-  const auto changes = [&](const detail::IdSet& inside) {
+  const IdSet last = choose(background, before).chosen;
+  const auto changes = [&](const IdSet& inside) {
     int n = 0;
     for (std::size_t w = 0; w < inside.n_words(); ++w) n += std::popcount(inside.word(w) ^ last.word(w));
     return n;
   };
   std::size_t n = 0;
-  detail::IdSet kept = detail::inside_vertices(background, after, n);
+  IdSet kept = inside_vertices(background, after, n);
   const ClassificationReport report = classify_vertices(background, a15_links(), after, {}, kept, {}, &last);
   EXPECT_GT(report.returned, 0u);
   EXPECT_LT(changes(kept), .8 * changes(choose(background, after).chosen));
@@ -114,24 +114,24 @@ TEST(Labels, AreTheSameWithWhatTheSearchHasAsked) {
   walk.restart(domain);
   EXPECT_TRUE(walk.values().empty());
   walk.update(domain, {});
-  detail::IdSet inside = walk.inside();
+  IdSet inside = walk.inside();
   const ClassificationReport report =
-      detail::classify_vertices(background, a15_links(), domain, {}, inside, {}, nullptr, &walk.values());
+      classify_vertices(background, a15_links(), domain, {}, inside, {}, nullptr, &walk.values());
   EXPECT_TRUE(inside == without.chosen);
   EXPECT_GT(report.flips, 0u);
   EXPECT_EQ(report.psi_evaluations + walk.values().size(), without.report.psi_evaluations);
   // What is said there is believed: a body half an edge smaller would have other labels.
-  detail::PsiValues smaller = walk.values();
-  for (detail::PsiValue& at : smaller) at.value += .5 * background.h() * at.gradient.norm();
+  PsiValues smaller = walk.values();
+  for (PsiValue& at : smaller) at.value += .5 * background.h() * at.gradient.norm();
   inside = walk.inside();
-  detail::classify_vertices(background, a15_links(), domain, {}, inside, {}, nullptr, &smaller);
+  classify_vertices(background, a15_links(), domain, {}, inside, {}, nullptr, &smaller);
   EXPECT_FALSE(inside == without.chosen);
 }
 
 TEST(Labels, LowerThePriceOfTheBoundary) {
   const AnalyticDomain domain = testing::torus();
   const BackgroundMesh background = background_of(domain, 15000);
-  const auto cost = [&](const detail::IdSet& inside) {
+  const auto cost = [&](const IdSet& inside) {
     double sum = 0;
     for (std::int64_t v = 0; v < background.n_vertices(); ++v) {
       if (inside.test(v) || background.on_boundary(v)) continue;
@@ -153,9 +153,9 @@ TEST(Labels, LowerThePriceOfTheBoundary) {
 class Pricing {
  public:
   /// @param last  labels of a mesh before, or null
-  explicit Pricing(detail::ClassificationBand& band, const detail::IdSet* last = nullptr) : band_(band), last_(last) {}
+  explicit Pricing(ClassificationBand& band, const IdSet* last = nullptr) : band_(band), last_(last) {}
 
-  void take(const detail::IdSet& inside) {
+  void take(const IdSet& inside) {
     for (int v = 0; v < static_cast<int>(band_.size()); ++v) {
       if ((band_.label[v] != 0) != inside.test(band_.id[v])) change(v);
     }
@@ -234,8 +234,8 @@ class Pricing {
   }
 
   ClassificationParams params_;
-  detail::ClassificationBand& band_;
-  const detail::IdSet* last_;
+  ClassificationBand& band_;
+  const IdSet* last_;
 };
 
 TEST(Labels, NoChangeOfOneOrOfTwoNeighboursIsBetter) {
@@ -245,7 +245,7 @@ TEST(Labels, NoChangeOfOneOrOfTwoNeighboursIsBetter) {
     const Labelled labelled = choose(background, domain);
     ASSERT_EQ(labelled.report.thin, 0u);
     const ClassificationParams params;
-    detail::ClassificationBand band(background, a15_links(), domain, params, labelled.plain, {});
+    ClassificationBand band(background, a15_links(), domain, params, labelled.plain, {});
     Pricing pricing(band);
     EXPECT_GT(pricing.n_better_singles(), 50);
     EXPECT_GT(pricing.n_better_pairs(), 50);
@@ -259,12 +259,12 @@ TEST(Labels, NoChangeIsBetterByMoreThanKeepWhereItLeavesTheLabelsBefore) {
   const AnalyticDomain before = testing::torus();
   const BackgroundMesh background = background_of(before, 60000);
   const AnalyticDomain after = raised(before, .2 * background.h());
-  const detail::IdSet last = choose(background, before).chosen;
+  const IdSet last = choose(background, before).chosen;
   const ClassificationParams params;
-  const detail::IdSet plain = choose(background, after).plain;
-  detail::IdSet inside = plain;
+  const IdSet plain = choose(background, after).plain;
+  IdSet inside = plain;
   classify_vertices(background, a15_links(), after, params, inside, {}, &last);
-  detail::ClassificationBand band(background, a15_links(), after, params, plain, {});
+  ClassificationBand band(background, a15_links(), after, params, plain, {});
   Pricing with_keep(band, &last), without(band);
   with_keep.take(inside);
   EXPECT_EQ(with_keep.n_better_singles(), 0);

@@ -18,12 +18,6 @@ namespace {
 
 using testing::AnalyticDomain;
 
-UmParams fast() {
-  UmParams params;
-  params.mode = UmMode::Fast;
-  return params;
-}
-
 BackgroundMesh background_of(const AnalyticDomain& domain, double n_tets) {
   return BackgroundMesh(a15(), domain.box, h_for_tets(domain, domain.box, n_tets, ClassificationSource::Chosen));
 }
@@ -47,7 +41,7 @@ TEST(FastMesh, WorstTetIsAboveTheTargetAndTheCertificatePasses) {
        {testing::sphere(), testing::torus(), testing::equation_9(), testing::banchoff_chmutov_4()}) {
     SCOPED_TRACE(domain.name);
     const BackgroundMesh background = background_of(domain, 50000);
-    const UmResult result = universal_mesh(background, domain, fast());
+    const UmResult result = universal_mesh(background, domain);
     ASSERT_EQ(result.status, UmStatus::Success) << result.evidence.what;
     EXPECT_GE(quality(result, result.final).least, .82);
     EXPECT_GT(quality(result, result.projected).least, 0);
@@ -69,7 +63,7 @@ TEST(FastMesh, WorstTetIsAboveTheTargetAndTheCertificatePasses) {
 TEST(FastMesh, OnlyTheShellMoves) {
   const AnalyticDomain domain = testing::sphere();
   const BackgroundMesh background = background_of(domain, 50000);
-  const UmResult result = universal_mesh(background, domain, fast());
+  const UmResult result = universal_mesh(background, domain);
   ASSERT_EQ(result.status, UmStatus::Success);
   std::size_t still = 0;
   for (std::size_t v = 0; v < result.final.size(); ++v) {
@@ -86,13 +80,13 @@ TEST(FastMesh, OnlyTheShellMoves) {
 TEST(FastMesh, DoesNotDependOnThreadsOrOnTheSearch) {
   const AnalyticDomain domain = testing::equation_9();
   const BackgroundMesh background = background_of(domain, 20000);
-  UmParams params = fast();
+  UmParams params;
   const auto with = [&](std::size_t n) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, n);
     return universal_mesh(background, domain, params, {}, domain.boundary_seeds);
   };
   const UmResult one = with(1), three = with(3);
-  params.search = SubmeshSearch::Crawl;
+  params.submesh.search = SubmeshSearch::Crawl;
   const UmResult crawled = with(2);
   EXPECT_EQ(one.n_psi_evaluations, three.n_psi_evaluations);
   EXPECT_LT(crawled.n_psi_evaluations, one.n_psi_evaluations);
@@ -124,7 +118,7 @@ TEST(FastMesh, RepairMakesNothingWorseAndMendsPoorTetsAndFoldedFaces) {
   for (const auto& [domain, n_tets] : cases) {
     SCOPED_TRACE(domain.name);
     const BackgroundMesh background = background_of(domain, n_tets);
-    UmParams params = fast();
+    UmParams params;
     params.fast.repair.max_patches = 150;  // the discs have more that nothing mends
     const UmResult repaired = universal_mesh(background, domain, params);
     params.fast.repair.max_tries = 0;
@@ -152,7 +146,7 @@ TEST(FastMesh, PatchesThatAreMendedStayNearARim) {
   const AnalyticDomain domain = testing::ellipsoid({1, 1, .15});
   const BackgroundMesh background = background_of(domain, 20000);
   const auto missed_volume = [&](bool slides, PatchState& state) {
-    UmParams params = fast();
+    UmParams params;
     params.fast.repair.slides = slides;
     const UmResult result = universal_mesh(background, domain, params);
     EXPECT_EQ(result.status, UmStatus::Success) << result.evidence.what;
@@ -175,7 +169,7 @@ TEST(FastMesh, WhatNothingMendsIsTriedAgainOtherwise) {
     const AnalyticDomain domain = testing::ellipsoid(axes);
     const BackgroundMesh background = background_of(domain, 400);
     const auto repaired = [&](bool sharper, double less_asked) {
-      UmParams params = fast();
+      UmParams params;
       params.fast.repair.max_tries = 6;  // leaves enough to be tried again
       params.fast.repair.slides = false;
       params.fast.repair.sharper = sharper;
@@ -205,7 +199,7 @@ TEST(FastMesh, TetsThatAreMendedAtOnceDoNotMeet) {
   const BackgroundMesh background = background_of(domain, 100000);
   const auto with = [&](std::size_t n) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, n);
-    return universal_mesh(background, domain, fast());
+    return universal_mesh(background, domain);
   };
   const UmResult one = with(1), three = with(3);
   ASSERT_EQ(one.status, UmStatus::Success) << one.evidence.what;
@@ -221,26 +215,26 @@ TEST(FastMesh, TetsThatAreMendedAtOnceDoNotMeet) {
 // none after ten: given up too early, it leaves .8187.
 TEST(FastMesh, RepairWaitsForPatchesThatGetWorseFirst) {
   const AnalyticDomain domain = testing::equation_9();
-  const UmResult result = universal_mesh(background_of(domain, 500000), domain, fast());
+  const UmResult result = universal_mesh(background_of(domain, 500000), domain);
   ASSERT_EQ(result.status, UmStatus::Success) << result.evidence.what;
   EXPECT_GE(quality(result, result.final).least, .82);
 }
 
 TEST(FastMesh, WhatCannotBeMeshedIsAStatusWithEvidence) {
   const UmResult empty =
-      universal_mesh(BackgroundMesh(a15(), Box(Vec3(3, 3, 3), Vec3(4, 4, 4)), .2), testing::sphere(), fast());
+      universal_mesh(BackgroundMesh(a15(), Box(Vec3(3, 3, 3), Vec3(4, 4, 4)), .2), testing::sphere());
   EXPECT_EQ(empty.status, UmStatus::EmptyDomain);
   EXPECT_FALSE(empty.evidence.what.empty());
 
   const BackgroundMesh small(a15(), testing::cube_box(.8), .2);
-  const UmResult out = universal_mesh(small, testing::sphere(), fast());
+  const UmResult out = universal_mesh(small, testing::sphere());
   EXPECT_EQ(out.status, UmStatus::DomainLeavesBackground);
   EXPECT_GT(out.evidence.count, 0u);
   EXPECT_TRUE(small.on_boundary(out.evidence.background_vertex));
   EXPECT_EQ(out.final.size(), out.submesh.mesh.V.size());
 
   const AnalyticDomain disc = testing::ellipsoid({1, 1, .01});  // a tenth of an edge thick
-  const UmResult thin = universal_mesh(BackgroundMesh(a15(), testing::cube_box(1.3), .2), disc, fast());
+  const UmResult thin = universal_mesh(BackgroundMesh(a15(), testing::cube_box(1.3), .2), disc);
   EXPECT_EQ(thin.status, UmStatus::ProjectionDiverged);
   EXPECT_FALSE(thin.evidence.what.empty());
   EXPECT_GE(thin.evidence.background_vertex, 0);
@@ -253,7 +247,7 @@ TEST(FastMesh, TheObserverCanStopItAnywhere) {
   const AnalyticDomain domain = testing::equation_9();
   const BackgroundMesh background = background_of(domain, 9000);
   std::size_t n_calls = 0;
-  const UmResult whole = universal_mesh(background, domain, fast(), [&](const UmProgress& p) {
+  const UmResult whole = universal_mesh(background, domain, {}, [&](const UmProgress& p) {
     EXPECT_EQ(p.n_tets > 0, std::string_view(p.step) != "search");
     ++n_calls;
     return true;
@@ -262,7 +256,7 @@ TEST(FastMesh, TheObserverCanStopItAnywhere) {
   ASSERT_GT(n_calls, 3u);
   for (std::size_t stop = 0; stop < n_calls; stop += std::max<std::size_t>(1, n_calls / 7)) {
     std::size_t calls = 0;
-    const UmResult cut = universal_mesh(background, domain, fast(), [&](const UmProgress&) { return calls++ != stop; });
+    const UmResult cut = universal_mesh(background, domain, {}, [&](const UmProgress&) { return calls++ != stop; });
     EXPECT_EQ(cut.status, UmStatus::Cancelled);
     EXPECT_EQ(calls, stop + 1);
     EXPECT_EQ(cut.final.size(), cut.submesh.mesh.V.size());
@@ -271,7 +265,7 @@ TEST(FastMesh, TheObserverCanStopItAnywhere) {
 }
 
 TEST(FastMesh, BrokenParamsAreAllNamed) {
-  UmParams params = fast();
+  UmParams params;
   params.fast.layers = 0;
   params.fast.labels.shift = 1;
   params.fast.repair.reach = 0;

@@ -7,7 +7,7 @@
 #include "mesh/classification/classification.h"
 #include "mesh/classification/configuration_costs.h"
 #include "mesh/core/tet_quality.h"
-#include "mesh/submesh/detail/assemble_submesh.h"
+#include "mesh/submesh/assemble_submesh.h"
 #include "tests/support/domains.h"
 
 namespace umtet {
@@ -24,17 +24,15 @@ struct Ball {
 struct Begun {
   BackgroundMesh background{a15(), testing::cube_box(1.6), .15};
   FastMemory memory;
-  detail::IdSet inside{0};
+  IdSet inside{0};
   LatticeActiveLayer layer;
   WarmStart start;
 
   /// From the mesh of the ball at 0 to one that has moved by c.
   explicit Begun(const Vec3& c) {
-    UmParams params;
-    params.mode = UmMode::Fast;
     std::size_t n = 0;
-    fast_mesh(background, Ball{}, params, {}, detail::inside_vertices(background, Ball{}, n), memory);
-    inside = detail::inside_vertices(background, Ball{c}, n);
+    fast_mesh(background, Ball{}, {}, {}, {}, inside_vertices(background, Ball{}, n), memory);
+    inside = inside_vertices(background, Ball{c}, n);
     classify_vertices(background, a15_links(), Ball{c}, {}, inside, {}, &memory.inside);
     layer = lattice_active_layer(background, a15_links(), inside);
     start = warm_start(background, Ball{c}, inside, memory, {}, layer);

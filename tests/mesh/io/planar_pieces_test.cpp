@@ -46,7 +46,7 @@ struct RoundedCylinder {
 };
 
 SolverMesh meshed(ImplicitFunctionRef psi, double h) {
-  const UmResult made = universal_mesh(BackgroundMesh(a15(), testing::cube_box(1.4), h), psi);
+  const UmResult made = universal_mesh(BackgroundMesh(a15(), testing::cube_box(1.4), h), psi, {.mode = UmMode::Paper});
   EXPECT_EQ(made.status, UmStatus::Success);
   return solver_mesh(TetMesh{made.final, made.submesh.mesh.C});
 }

@@ -10,7 +10,7 @@
 
 #include "mesh/background/body_size.h"
 #include "mesh/core/tet_quality.h"
-#include "mesh/submesh/detail/assemble_submesh.h"
+#include "mesh/submesh/assemble_submesh.h"
 #include "mesh/universal_mesh.h"
 #include "tests/support/domains.h"
 
@@ -27,7 +27,7 @@ TEST(BackgroundShell, HoldsTheRingsOfWhatMovesAndColoursShareNoTet) {
     const auto domain = testing::torus();
     const BackgroundMesh background = background_of(tiling_named(name), domain, 15000);
     std::size_t n = 0;
-    const detail::IdSet inside = detail::inside_vertices(background, domain, n);
+    const IdSet inside = inside_vertices(background, domain, n);
     const Submesh submesh = find_submesh(background, domain);
     const LatticeActiveLayer part = background_active_layer(background, inside);
     const ActiveLayer& layer = part.layer;
@@ -57,7 +57,7 @@ TEST(BackgroundShell, IsTheShellOfTheLattice) {
   const auto domain = testing::equation_9();
   const BackgroundMesh background = background_of(a15(), domain, 20000);
   std::size_t n = 0;
-  const detail::IdSet inside = detail::inside_vertices(background, domain, n);
+  const IdSet inside = inside_vertices(background, domain, n);
   const LatticeActiveLayer lattice = lattice_active_layer(background, a15_links(), inside),
                            any = background_active_layer(background, inside);
   EXPECT_EQ(any.background_vertex, lattice.background_vertex);
@@ -73,9 +73,7 @@ TEST(BackgroundShell, IsTheShellOfTheLattice) {
 /// @return the worst quality of eq. (9) at 100k tets on a background [Rangarajan2018, Section 3.6]
 double least_quality(const Tiling& tiling) {
   const auto domain = testing::equation_9();
-  UmParams params;
-  params.mode = UmMode::Fast;
-  const UmResult r = universal_mesh(background_of(tiling, domain, 100000), domain, params);
+  const UmResult r = universal_mesh(background_of(tiling, domain, 100000), domain);
   EXPECT_EQ(r.status, UmStatus::Success) << tiling.name << ": " << r.evidence.what;
   EXPECT_EQ(r.obtuse_conditioning_angles, 0u) << tiling.name;
   double least = 1;

@@ -7,7 +7,7 @@
 
 #include "mesh/background/body_size.h"
 #include "mesh/core/tet_quality.h"
-#include "mesh/submesh/detail/assemble_submesh.h"
+#include "mesh/submesh/assemble_submesh.h"
 #include "tests/support/domains.h"
 
 namespace umtet {
@@ -17,13 +17,13 @@ using testing::AnalyticDomain;
 
 struct Cut {
   BackgroundMesh background;
-  detail::IdSet inside;
+  IdSet inside;
   Submesh submesh;
 
   explicit Cut(const AnalyticDomain& domain, double n_tets = 8000)
       : background(a15(), domain.box, h_for_tets(domain, domain.box, n_tets)), inside(0), submesh() {
     std::size_t n = 0;
-    inside = detail::inside_vertices(background, domain, n);
+    inside = inside_vertices(background, domain, n);
     submesh = find_submesh(background, domain);
   }
 };
@@ -51,7 +51,7 @@ TEST(CrawlInside, FindsTheVerticesOfTheFullLoop) {
   for (const AnalyticDomain& domain : testing::domains()) {
     SCOPED_TRACE(domain.name);
     const Cut cut(domain);
-    const detail::CrawledVertices crawled = detail::crawl_inside(cut.background, domain, domain.boundary_seeds);
+    const CrawledVertices crawled = crawl_inside(cut.background, domain, domain.boundary_seeds);
     EXPECT_TRUE(crawled.lost_seeds.empty());
     for (std::size_t w = 0; w < cut.inside.n_words(); ++w) ASSERT_EQ(crawled.inside.word(w), cut.inside.word(w));
   }

@@ -21,7 +21,7 @@ const Box kChannel(Vec3(-6, -6, -14.58), Vec3(6, 6, 14.58));
 UmParams with_walls(UmMode mode = UmMode::Fast) {
   UmParams params;
   params.mode = mode;
-  params.background_boundary = BackgroundBoundary::Wall;
+  params.submesh.background_boundary = BackgroundBoundary::Wall;
   return params;
 }
 
@@ -96,7 +96,7 @@ TEST(Walls, FluidAroundABodyIsCertifiedInBothModesAndOnAnyBackground) {
   for (const BackgroundMesh& background : backgrounds) {
     for (const UmMode mode : {UmMode::Fast, UmMode::Paper}) {
       UmParams params = with_walls(mode);
-      params.relaxation_iterations = 6;
+      params.paper.relaxation_iterations = 6;
       params.fast.layers = 6;  // as far as the walls and beyond
       const UmResult result = universal_mesh(background, fluid, params);
       ASSERT_EQ(result.status, UmStatus::Success) << result.evidence.what;
@@ -141,7 +141,7 @@ TEST(Walls, BoundaryWithinTwoEdgesOfOneIsRefusedByName) {
   const double h = .2;
   for (const UmMode mode : {UmMode::Fast, UmMode::Paper}) {
     UmParams params = with_walls(mode);
-    params.relaxation_iterations = 3;
+    params.paper.relaxation_iterations = 3;
     const auto made = [&](double gap) {
       const Box box(Vec3(-1 - gap, -2, -2), Vec3(2, 2, 2));
       const BackgroundMesh background(a15_box(box, h));
@@ -153,7 +153,7 @@ TEST(Walls, BoundaryWithinTwoEdgesOfOneIsRefusedByName) {
     EXPECT_GT(near.evidence.count, 0u);
     EXPECT_LT((near.evidence.where + Vec3::UnitX()).norm(), 2.5 * h);
     EXPECT_EQ(made(-.5).status, UmStatus::BoundaryNearWall);
-    params.background_boundary = BackgroundBoundary::Refuse;
+    params.submesh.background_boundary = BackgroundBoundary::Refuse;
     EXPECT_EQ(made(3.5 * h).status, UmStatus::DomainLeavesBackground);
   }
 }

@@ -140,7 +140,8 @@ TEST(CountingSpacing, IsBoundedByTheNodesOfTheBox) {
 /// Meshes the kept pieces of `d` and measures the result against `judge`.
 Json measured(const Domain& d, const Domain& judge, double h) {
   UmParams params;
-  params.search = SubmeshSearch::Crawl;
+  params.mode = UmMode::Paper;
+  params.submesh.search = SubmeshSearch::Crawl;
   const BackgroundMesh background(a15(), d.box, h);
   const UmResult result = universal_mesh(background, d.psi(), params, {}, choose_components(d, h).seeds);
   EXPECT_EQ(result.status, UmStatus::Success) << result.evidence.what;

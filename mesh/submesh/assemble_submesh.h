@@ -9,7 +9,7 @@
 #include "mesh/core/implicit_function.h"
 #include "mesh/submesh/submesh.h"
 
-namespace umtet::detail {
+namespace umtet {
 
 /// The tets with a vertex inside, ascending.                                 Alg. 1, steps 14-16
 std::vector<std::int64_t> cut_or_inside_tets(const BackgroundMesh& background, const IdSet& inside);
@@ -34,4 +34,4 @@ struct CrawledVertices {
 CrawledVertices crawl_inside(const BackgroundMesh& background, ImplicitFunctionRef psi, const std::vector<Vec3>& seeds,
                              const KeepGoing& keep_going = {});
 
-}  // namespace umtet::detail
+}  // namespace umtet

@@ -2,9 +2,12 @@
 
 #include <string>
 
-#include "mesh/universal_mesh.h"
+#include "common/context.h"
+#include "mesh/background/background_mesh.h"
+#include "mesh/core/implicit_function.h"
+#include "mesh/submesh/um_result.h"
 
-namespace umtet::detail {
+namespace umtet {
 
 struct NothingInside {
   UmStatus status;  ///< EmptyDomain, or PsiNotFinite where no vertex of the background has a number
@@ -18,4 +21,4 @@ struct NothingInside {
 NothingInside nothing_inside(const BackgroundMesh& background, ImplicitFunctionRef psi, const KeepGoing& keep_going,
                              const std::string& search = {});
 
-}  // namespace umtet::detail
+}  // namespace umtet

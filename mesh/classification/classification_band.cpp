@@ -1,4 +1,4 @@
-#include "mesh/classification/detail/classification_band.h"
+#include "mesh/classification/classification_band.h"
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
@@ -10,7 +10,7 @@
 
 #include "mesh/base/id_blocks.h"
 
-namespace umtet::detail {
+namespace umtet {
 namespace {
 
 // Blocks of one colour are this many cells apart. No edge of a tiling is longer than half a cell along an axis, so that
@@ -246,4 +246,4 @@ void ClassificationBand::make_blocks() {
   }
 }
 
-}  // namespace umtet::detail
+}  // namespace umtet

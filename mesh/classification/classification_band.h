@@ -16,7 +16,7 @@
 #include "mesh/core/implicit_function.h"
 #include "mesh/core/psi_values.h"
 
-namespace umtet::detail {
+namespace umtet {
 
 /// Vertices within three edges of a change of label, and all that classify_vertices() knows about them, by rank.
 class ClassificationBand {
@@ -76,9 +76,4 @@ class ClassificationBand {
   std::vector<int> ranks_;
 };
 
-/// umtet::classify_vertices(), with psi where it is known (ClassificationBand).
-ClassificationReport classify_vertices(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
-                                       ImplicitFunctionRef psi, const ClassificationParams& params, IdSet& inside,
-                                       const KeepGoing& keep_going, const IdSet* last, const PsiValues* known);
-
-}  // namespace umtet::detail
+}  // namespace umtet

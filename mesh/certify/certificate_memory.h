@@ -11,7 +11,7 @@
 #include "mesh/core/tet_mesh.h"
 #include "mesh/core/two_least.h"
 
-namespace umtet::detail {
+namespace umtet {
 
 /// What a certificate measures of one tet.
 struct TetValues {
@@ -78,4 +78,4 @@ class CertificateMemory {
   std::optional<Whole> whole_;  ///< of the mesh before
 };
 
-}  // namespace umtet::detail
+}  // namespace umtet

@@ -7,7 +7,7 @@
 #include "reconstruct/basis/lme_lattice.h"
 #include "reconstruct/basis/simd_packs.h"
 
-namespace umtet::detail {
+namespace umtet::simd {
 
 using LmePack = Eigen::Array<double, LmeBasis1d::kPackSize, 1>;
 using LmePackMap = Eigen::Map<const LmePack, Eigen::Aligned32>;
@@ -141,4 +141,4 @@ decltype(auto) dispatch_width(int width, F&& f) {
   return f(std::integral_constant<int, 8>{});
 }
 
-}  // namespace umtet::detail
+}  // namespace umtet::simd

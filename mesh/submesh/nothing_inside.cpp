@@ -1,10 +1,10 @@
-#include "mesh/submesh/detail/nothing_inside.h"
+#include "mesh/submesh/nothing_inside.h"
 
 #include <cmath>
 
-#include "mesh/submesh/detail/assemble_submesh.h"
+#include "mesh/submesh/assemble_submesh.h"
 
-namespace umtet::detail {
+namespace umtet {
 namespace {
 
 /// "Inside" where psi has no finite value: the search for {psi < 0} then finds those vertices.
@@ -34,4 +34,4 @@ NothingInside nothing_inside(const BackgroundMesh& background, ImplicitFunctionR
   return {UmStatus::PsiNotFinite, evidence};
 }
 
-}  // namespace umtet::detail
+}  // namespace umtet

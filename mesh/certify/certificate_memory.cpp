@@ -1,9 +1,9 @@
-#include "mesh/certify/detail/certificate_memory.h"
+#include "mesh/certify/certificate_memory.h"
 
 #include <algorithm>
 #include <functional>
 
-namespace umtet::detail {
+namespace umtet {
 namespace {
 
 bool are_ascending(const std::vector<std::int64_t>& ids) {
@@ -88,4 +88,4 @@ void CertificateMemory::remember(const TetMesh& mesh, const std::vector<std::int
               tet_id.size() == mesh.C.size() && are_ascending(vertex_id);
 }
 
-}  // namespace umtet::detail
+}  // namespace umtet

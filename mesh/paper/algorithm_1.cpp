@@ -1,0 +1,284 @@
+#include "mesh/paper/algorithm_1.h"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <cmath>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "mesh/base/violations.h"
+#include "mesh/core/tet_quality.h"
+#include "mesh/paper/boundary_dvr.h"
+#include "mesh/paper/dvr.h"
+#include "mesh/submesh/assumptions.h"
+#include "mesh/submesh/crawl.h"
+#include "mesh/submesh/nothing_inside.h"
+#include "mesh/submesh/walls.h"
+
+namespace umtet {
+namespace {
+
+// Samples of Alg. 3 reach this far, in background edges; the paper leaves its "representative mesh size" open. A slide
+// of half an edge to a whole one inverts a tet of the ring, so the best place is hardly ever beyond half an edge:
+// samples there would be lost, and they lie closer together here.
+constexpr double kSampleReach = .5;
+constexpr std::size_t kProjectionsPerTask = 64;
+
+/// Algorithm 1; a member per group of steps. Each returns false when the run is over, with status and evidence set.
+class Run {
+ public:
+  Run(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
+      const PaperParams& params, const UmObserver& observer)
+      : background_(background), psi_(psi), submesh_params_(submesh), params_(params), observer_(observer) {}
+
+  UmResult operator()(const std::vector<Vec3>& seeds) {
+    try {
+      if (find_omega_h(seeds) && stays_off_the_background_boundary()) {
+        double_faces_ = double_positive_faces(submesh());
+        result_.double_positive_faces = double_faces_.count;
+        mesh_.emplace(submesh().mesh, background_.tiling().rings_are_optimal);
+        if (project_and_relax()) improve_boundary();
+      }
+    } catch (const MeshCancelled&) {
+      fail(UmStatus::Cancelled, {.what = "stopped by the observer during search"});
+    }
+    if (mesh_) {
+      result_.final = std::move(mesh_->V);
+    } else {
+      result_.final = submesh().mesh.V;
+    }
+    if (result_.projected.empty()) result_.projected = result_.final;
+    return std::move(result_);
+  }
+
+ private:
+  const Submesh& submesh() const { return result_.submesh; }
+  bool find_omega_h(const std::vector<Vec3>& seeds);
+  bool stays_off_the_background_boundary();
+  void measure_conditioning_angles();
+  bool project_and_relax();
+  void improve_boundary();
+  bool find_feet();
+  bool advance(double lambda);
+  bool report(const UmProgress& progress);
+  bool fail(UmStatus status, const UmEvidence& evidence);
+  void relax_interior(int round, int r);
+  bool fail_at(UmStatus status, UmEvidence evidence, std::span<const int> vertices);
+
+  const BackgroundMesh& background_;
+  ImplicitFunctionRef psi_;
+  const SubmeshParams& submesh_params_;
+  const PaperParams& params_;
+  const UmObserver& observer_;
+  UmResult result_;
+  std::optional<MovingMesh> mesh_;
+  std::optional<RelaxationOrder> relaxed_;  ///< I_R
+  std::vector<ClosestPoint> feet_;          ///< pi of each positive vertex
+  BrokenAssumption double_faces_, not_acute_;
+};
+
+bool Run::fail(UmStatus status, const UmEvidence& evidence) {
+  result_.status = status;
+  result_.evidence = evidence;
+  return false;
+}
+
+bool Run::report(const UmProgress& progress) {
+  if (!observer_ || observer_(progress)) return true;
+  return fail(UmStatus::Cancelled, {.what = std::string("stopped by the observer during ") + progress.step});
+}
+
+/// Steps 1-22.
+bool Run::find_omega_h(const std::vector<Vec3>& seeds) {
+  std::string lost;
+  const KeepGoing keep_going = [&] { return !observer_ || observer_({"search", 1, 1, &submesh().mesh.V, 0}); };
+  if (submesh_params_.search == SubmeshSearch::FullLoop) {
+    result_.submesh = find_submesh(background_, psi_, &result_.n_psi_evaluations, keep_going);
+  } else {
+    Crawl found = crawl(background_, psi_, seeds, keep_going);
+    result_.submesh = std::move(found.submesh);
+    result_.n_psi_evaluations = found.n_psi_evaluations;
+    lost = "; " + std::to_string(found.lost_seeds.size()) + " of " + std::to_string(seeds.size()) +
+           " seeds led to no positively cut tet";
+  }
+  if (submesh().mesh.C.empty()) {
+    const NothingInside why = nothing_inside(background_, psi_, keep_going, lost);
+    return fail(why.status, why.evidence);
+  }
+  return report({"submesh", 1, 1, &submesh().mesh.V, submesh().mesh.C.size()});
+}
+
+/// The set triangulated by the background must strictly contain the closure of Omega (Section 2.1), unless its
+/// background boundary is a wall.
+bool Run::stays_off_the_background_boundary() {
+  // A vertex that is not positive is inside, and a vertex on the background boundary has lost tets of omega_h.
+  std::vector<bool> positive(submesh().mesh.V.size(), false);
+  for (const int i : submesh().positive_vertices) positive[i] = true;
+  if (submesh_params_.background_boundary == BackgroundBoundary::Wall) {
+    result_.walls = wall_faces(background_, submesh());
+    const UmEvidence near = boundary_near_walls(background_, submesh());
+    return near.count == 0 || fail(UmStatus::BoundaryNearWall, near);
+  }
+  const Violations background_boundary = find_violations(positive.size(), [&](std::size_t i) {
+    return !positive[i] && background_.on_boundary(submesh().background_vertex[i]);
+  });
+  if (background_boundary.count == 0) return true;
+  const Vec3 where = submesh().mesh.V[background_boundary.first];
+  return fail(UmStatus::DomainLeavesBackground,
+              {.background_vertex = submesh().background_vertex[background_boundary.first],
+               .where = where,
+               .count = background_boundary.count,
+               .what = "the domain reaches the background_boundary of the background mesh"});
+}
+
+void Run::measure_conditioning_angles() {
+  std::vector<double> distance;
+  for (const ClosestPoint& foot : feet_) distance.push_back(std::abs(foot.t));
+  ConditioningAngles angles = conditioning_angles(submesh(), distance);
+  result_.conditioning_angle_max_deg = angles.max_deg;
+  result_.obtuse_conditioning_angles = angles.not_acute.count;
+  not_acute_ = std::move(angles.not_acute);
+}
+
+/// Fails with the assumption that is broken at one of these vertices, if there is one, else with the status given.
+bool Run::fail_at(UmStatus status, UmEvidence evidence, std::span<const int> vertices) {
+  if (double_faces_.is_broken_at(vertices)) {
+    evidence.what += ", at a face shared by two positively cut tets";
+    return fail(UmStatus::DoublePositiveFace, evidence);
+  }
+  if (not_acute_.is_broken_at(vertices)) {
+    evidence.what += ", at a conditioning angle that is not acute";
+    return fail(UmStatus::ObtuseConditioningAngle, evidence);
+  }
+  return fail(status, evidence);
+}
+
+/// pi of every positive vertex where it is now.
+bool Run::find_feet() {
+  const auto& positive = submesh().positive_vertices;
+  feet_.resize(positive.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positive.size(), kProjectionsPerTask), [&](const auto& range) {
+    for (std::size_t k = range.begin(); k != range.end(); ++k) {
+      feet_[k] = closest_point(psi_, mesh_->V[positive[k]], background_.h(), params_.closest_point);
+    }
+  });
+  for (const ClosestPoint& foot : feet_) result_.n_psi_evaluations += static_cast<std::size_t>(foot.iterations);
+  const Violations lost = find_violations(feet_.size(), [&](std::size_t k) { return !feet_[k].converged; });
+  if (lost.count == 0) return true;
+  const int i = positive[lost.first];
+  return fail_at(UmStatus::ProjectionDiverged,
+                 {.background_vertex = submesh().background_vertex[i],
+                  .where = mesh_->V[i],
+                  .count = lost.count,
+                  .what = "the closest point of a positive vertex was not found"},
+                 {&i, 1});
+}
+
+/// Steps 25-27, and the check on entry of dvr (Section 5.5).
+bool Run::advance(double lambda) {
+  const auto& positive = submesh().positive_vertices;
+  for (std::size_t k = 0; k < positive.size(); ++k) {
+    const Vec3& x = mesh_->V[positive[k]];
+    mesh_->move(positive[k], lambda * feet_[k].point + (1 - lambda) * x);  // step 26
+  }
+  const auto& C = submesh().mesh.C;
+  const auto& V = mesh_->V;
+  const Violations inverted = find_violations(
+      C.size(), [&](std::size_t t) { return !(volume6(V[C[t][0]], V[C[t][1]], V[C[t][2]], V[C[t][3]]) > 0); });
+  if (inverted.count == 0) return true;
+  const Tet& tet = C[inverted.first];
+  return fail_at(UmStatus::InvertedTet,
+                 {.background_tet = submesh().background_tet[inverted.first],
+                  .where = .25 * (V[tet[0]] + V[tet[1]] + V[tet[2]] + V[tet[3]]),
+                  .count = inverted.count,
+                  .what = "moving positive vertices to the boundary inverted a tet"},
+                 tet);
+}
+
+/// Steps 23-30.
+bool Run::project_and_relax() {
+  std::vector<bool> positive(mesh_->V.size(), false);
+  for (const int i : submesh().positive_vertices) positive[i] = true;
+  std::vector<int> interior;
+  for (int i = 0; i < static_cast<int>(positive.size()); ++i) {
+    const bool at_wall = submesh_params_.background_boundary == BackgroundBoundary::Wall &&
+                         background_.on_boundary(submesh().background_vertex[i]);
+    if (!positive[i] && !at_wall) interior.push_back(i);
+  }
+  relaxed_.emplace(*mesh_, std::move(interior));  // I_R = I^omega_h \ I^+, Section 3.2
+  for (int pass = 1; pass <= params_.projection_passes; ++pass) {
+    if (!find_feet()) return false;
+    if (pass == 1) measure_conditioning_angles();
+    if (!advance(static_cast<double>(pass) / params_.projection_passes)) return false;
+    UmProgress progress{"project",
+                        pass,
+                        params_.projection_passes,
+                        &mesh_->V,
+                        submesh().mesh.C.size(),
+                        0,
+                        params_.relaxation_iterations};
+    if (!report(progress)) return false;
+    for (int r = 0; r < params_.relaxation_iterations; ++r) {
+      relax_interior(pass - 1, r);  // step 28
+      progress.sweep = r + 1;
+      if (!report(progress)) return false;
+    }
+  }
+  result_.projected = mesh_->V;
+  return true;
+}
+
+/// Iteration r of dvr in its round-th call. Every call begins with e_x, and random directions never come back.
+void Run::relax_interior(int round, int r) {
+  const int stride = (params_.relaxation_iterations + 2) / 3 * 3;
+  const DvrParams dvr_params{params_.directions, params_.max_min, params_.seed, true};
+  dvr(*mesh_, *relaxed_, submesh().background_vertex, dvr_params, round * stride + r, 1);
+}
+
+/// Steps 31-35.
+void Run::improve_boundary() {
+  const RelaxationOrder boundary(*mesh_, submesh().positive_vertices);
+  BoundaryDvrParams boundary_params{params_.samples, kSampleReach * background_.h(), params_.seed,
+                                    params_.closest_point};
+  // A sample is off the boundary by a sagitta only, where Damped settles in as many steps as Newton and needs no
+  // Hessian.
+  if (boundary_params.closest_point.method == ClosestPointMethod::Newton) {
+    boundary_params.closest_point.method = ClosestPointMethod::Damped;
+  }
+  const int n = params_.relaxation_iterations;
+  for (int r = 0; r < n; ++r) {
+    result_.n_psi_evaluations +=
+        boundary_dvr(*mesh_, boundary, submesh().background_vertex, psi_, boundary_params, r);  // step 32
+    relax_interior(params_.projection_passes, r);                                               // step 33
+    if (!report({"relax", r + 1, n, &mesh_->V, submesh().mesh.C.size()})) return;
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> problems(const PaperParams& params) {
+  std::vector<std::string> list = problems(params.closest_point);
+  for (std::string& problem : list) problem.insert(0, "closest_point.");
+  const auto at_least = [&](const char* name, int value, int least) {
+    if (value < least) {
+      list.push_back(std::string(name) + " = " + std::to_string(value) + ": must be >= " + std::to_string(least));
+    }
+  };
+  at_least("projection_passes", params.projection_passes, 1);
+  at_least("relaxation_iterations", params.relaxation_iterations, 0);
+  at_least("samples", params.samples, 1);
+#ifndef UMTET_WITH_GSL
+  if (params.max_min == MaxMin::Exact) list.push_back("max_min = Exact: built without GSL, use GoldenSection");
+#endif
+  return list;
+}
+
+UmResult algorithm_1(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
+                     const PaperParams& params, const UmObserver& observer, const std::vector<Vec3>& seeds) {
+  return Run(background, psi, submesh, params, observer)(seeds);
+}
+
+}  // namespace umtet

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "mesh/background/background_mesh.h"
+#include "mesh/core/implicit_function.h"
+#include "mesh/core/max_min.h"
+#include "mesh/implicit/closest_point.h"
+#include "mesh/paper/relaxation_direction.h"
+#include "mesh/submesh/submesh_params.h"
+#include "mesh/submesh/um_result.h"
+
+namespace umtet {
+
+struct PaperParams {
+  int projection_passes = 5;       ///< N_P: positive vertices reach the boundary in this many steps, eq. (1); >= 1
+  int relaxation_iterations = 25;  ///< N_R of Algorithms 1 and 2; >= 0
+  int samples = 20;                ///< N_S: 2 N_S + 1 candidates in [-h, h], eq. (7); >= 1
+  DirectionRule directions = DirectionRule::Random;  ///< Section 3.8(d); least_quality in mesh_bench compares
+  /// Exact; GoldenSection, the paper's faster, suboptimal choice (Fig. 18), in a build without GSL.
+  MaxMin max_min = kBestMaxMin;
+  ClosestPointParams closest_point;
+  std::uint64_t seed = 0;  ///< random tangents of boundary dvr are a function of (seed, iteration, vertex)
+};
+
+/// Every broken constraint, not just the first; empty when the parameters are usable.
+std::vector<std::string> problems(const PaperParams&);
+
+/// Algorithm 1 of the paper to the letter: a boundary-fitting mesh of {psi < 0}      [Rangarajan2018, Algorithm 1]
+///
+/// A double positive face or an obtuse conditioning angle becomes the status only when a projection diverges or a tet
+/// inverts right there. psi must be thread-safe.
+/// \pre params and seeds are those that universal_mesh() accepts
+UmResult algorithm_1(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
+                     const PaperParams& params, const UmObserver& observer = {}, const std::vector<Vec3>& seeds = {});
+
+}  // namespace umtet

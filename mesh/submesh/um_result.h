@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "mesh/core/tet_mesh.h"
+#include "mesh/submesh/submesh.h"
+
+namespace umtet {
+
+enum class UmStatus {
+  Success,
+  EmptyDomain,             ///< psi >= 0, or not finite, at every background vertex
+  PsiNotFinite,            ///< psi is a finite number at no background vertex
+  DomainLeavesBackground,  ///< psi < 0 at a vertex on the background boundary: the box is too small
+  BoundaryNearWall,    ///< BackgroundBoundary::Wall: a positive vertex is within two edges of the background boundary
+  DoublePositiveFace,  ///< the run failed at a face shared by two positively cut tets: too thin or curved for h
+  ObtuseConditioningAngle,  ///< the run failed where the injectivity condition of Section 5.3 is broken
+  ProjectionDiverged,       ///< 3.8(a) did not settle for a positive vertex
+  InvertedTet,              ///< an intermediate mesh has a tet with Q <= 0
+  Cancelled,                ///< the observer said stop
+};
+const char* to_string(UmStatus);
+
+/// What happened, where: ids of the background mesh (-1 = does not apply), a place in model units, a sentence.
+struct UmEvidence {
+  std::int64_t background_vertex = -1;
+  std::int64_t background_tet = -1;
+  Vec3 where = Vec3::Zero();
+  std::size_t count = 0;  ///< how many offenders there are; the fields above describe the first
+  std::string what;
+};
+
+struct UmResult {
+  UmStatus status = UmStatus::Success;
+  UmEvidence evidence;  ///< filled when status != Success
+  Submesh submesh;      ///< omega_h with background coordinates (step 22)
+  std::vector<Triangle>
+      walls;  ///< BackgroundBoundary::Wall: the faces of omega_h on the background boundary, local vertex ids, outward
+  std::vector<Vec3> projected;  ///< vertex coordinates after step 30, same numbering
+  std::vector<Vec3> final;      ///< vertex coordinates of T^{Omega_h} (step 35), same numbering
+  double conditioning_angle_max_deg = 0;
+  std::size_t obtuse_conditioning_angles = 0;
+  std::size_t double_positive_faces = 0;
+  std::size_t n_psi_evaluations = 0;
+};
+
+/// Where the algorithm stands; return false to stop at the next safe point (at most one sweep later).
+struct UmProgress {
+  const char* step;             ///< "search" (V is empty yet), "submesh", "project", "relax"
+  int pass, n_passes;           ///< 1-based
+  const std::vector<Vec3>* V;   ///< the current iterate
+  std::size_t n_tets;           ///< of omega_h, and of every mesh made from it
+  int sweep = 1, n_sweeps = 1;  ///< relaxation sweeps of this pass done so far, and in all; equal at the end of a pass
+};
+using UmObserver = std::function<bool(const UmProgress&)>;
+
+}  // namespace umtet

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+
+#include "mesh/io/tet_mesh_io.h"
+#include "pipeline/meshing/domain.h"
+#include "reconstruct/cloud/cloud_neighbours.h"
+#include "reconstruct/cloud/point_cloud.h"
+#include "reconstruct/level_set/level_set.h"
+
+namespace umtet {
+
+/// What the stages of a run leave in memory for those after them: bit by bit what their files hold, which so need not
+/// be read back. Empty where a stage had been done before.
+struct Handover {
+  std::optional<OrientedPointCloud> cloud;  ///< cloud.ply
+  NeighbourDistances near;                  ///< of its points, or empty
+  std::optional<LevelSet> psi;              ///< level_set.vti
+  std::optional<Domain> domain;             ///< what was meshed, psi cut for h
+  MeshFile mesh;                            ///< mesh.vtu, beside the domain
+};
+
+}  // namespace umtet
