@@ -75,14 +75,14 @@ CommandParser::CommandParser() {
   run.add_option("--until", in_.until, "last stage to run (default mesh)");
   add_formats(run, "--export");
   run.add_flag("--no-report", in_.no_report, "do not make report.html");
-  add_parameter_flags(run, {"cloud", "reconstruct", "mesh", "output"}, {"mesh.implicit"});
+  add_parameter_flags(run, {"cloud", "reconstruct", "mesh", "output"}, {keys::mesh::implicit});
 
   CLI::App& reconstruct = add_command("reconstruct", "Stage one only: the level set");
   add_stage_flags(reconstruct);
   reconstruct.add_option("CLOUD", in_.input, "oriented points; or a case, to fit again with other parameters");
   add_parameter_flags(reconstruct, {"cloud", "reconstruct", "output"},
-                      {"output.units", "output.min_quality", "output.label_names", "output.label_min_area",
-                       "output.patch_angle", "output.patch_planar"});
+                      {keys::output::units, keys::output::min_quality, keys::output::label_names,
+                       keys::output::label_min_area, keys::output::patch_angle, keys::output::patch_planar});
 
   CLI::App& mesh = add_command("mesh", "Stage two only: from the level set of CASE, or from a formula");
   add_stage_flags(mesh);
@@ -99,8 +99,8 @@ CommandParser::CommandParser() {
   evolve.add_option("--t", in_.times, "FROM:STEP:TO, the times; --implicit may have t in it");
   evolve.add_option("--skip", in_.skip, "times to leave out: --skip 3.1,3.4");
   add_parameter_flags(evolve, {"cloud", "reconstruct", "mesh", "output"},
-                      {"mesh.keep_iterates", "mesh.order", "output.label_names", "output.label_min_area",
-                       "output.patch_angle", "output.patch_planar"});
+                      {keys::mesh::keep_iterates, keys::mesh::order, keys::output::label_names,
+                       keys::output::label_min_area, keys::output::patch_angle, keys::output::patch_planar});
 
   add_batch();
 
@@ -112,13 +112,13 @@ CommandParser::CommandParser() {
   check.add_option("--against", in_.against, "a case whose surface the mesh should fit");
   add_parameter_sources(check);
   add_parameter_flags(check, {"output"},
-                      {"output.max_memory", "output.label_names", "output.label_min_area", "output.patch_angle",
-                       "output.patch_planar"});
+                      {keys::output::max_memory, keys::output::label_names, keys::output::label_min_area,
+                       keys::output::patch_angle, keys::output::patch_planar});
 
   CLI::App& exports = add_command("export", "Files for solvers and viewers, in CASE/4-export");
   exports.add_option("CASE", in_.input, "a case with a mesh")->required();
   add_formats(exports, "--format").required();
-  add_parameter_flags(exports, {"output"}, {"output.units", "output.max_memory", "output.min_quality"});
+  add_parameter_flags(exports, {"output"}, {keys::output::units, keys::output::max_memory, keys::output::min_quality});
 
   CLI::App& report = add_command("report", "CASE/report.html: certificate, mesh and curves on one page, offline");
   report.add_option("CASE", in_.input, "a case with a certificate")->required();
@@ -143,7 +143,7 @@ void CommandParser::add_batch() {
   batch.add_flag("--force", in_.force, "run all stages although their records match");
   batch.add_flag("--strict", in_.strict, "a damaged artefact is exit 8 of its scan instead of being made again");
   add_formats(batch, "--export");
-  add_parameter_flags(batch, {"cloud", "reconstruct", "mesh", "output"}, {"mesh.implicit"});
+  add_parameter_flags(batch, {"cloud", "reconstruct", "mesh", "output"}, {keys::mesh::implicit});
 }
 
 CLI::Option& CommandParser::add_formats(CLI::App& command, const char* flag) {

@@ -42,7 +42,7 @@ void RequestMaker::finish() {
   }
   call_.formats = in_.formats;
   require_formats(call_.formats);
-  parse_label_names(parameters.text("output.label_names"));
+  parse_label_names(parameters.output().label_names);
   if (call_.command == "check") {
     call_.action = CommandLine::Action::Check;
     call_.mesh = in_.input;
@@ -100,9 +100,9 @@ void RequestMaker::read_parameters() {
 void RequestMaker::finish_evolve() {
   if (in_.clouds.empty()) call_.request.from = Stage::Mesh;
   read_parameters();
-  const bool formula = !call_.request.parameters.text("mesh.implicit").empty();
+  const bool formula = !call_.request.parameters.mesh().implicit.empty();
   if (formula != in_.clouds.empty()) throw UsageError("evolve: give --implicit EXPR with --box, or --clouds LIST");
-  if (call_.request.parameters.integer("mesh.order") != 1) throw UsageError("evolve: mesh.order must be 1");
+  if (call_.request.parameters.mesh().order != 1) throw UsageError("evolve: mesh.order must be 1");
   if (in_.output.empty()) throw UsageError("evolve: -o FOLDER is missing");
   call_.evolve.folder = in_.output;
   call_.evolve.clouds = in_.clouds;
@@ -113,7 +113,7 @@ void RequestMaker::finish_evolve() {
 void RequestMaker::finish_batch() {
   read_parameters();
   if (in_.output.empty()) throw UsageError("batch: -o FOLDER is missing");
-  if (!call_.request.parameters.text("mesh.implicit").empty()) throw UsageError("batch: mesh.implicit is no scan");
+  if (!call_.request.parameters.mesh().implicit.empty()) throw UsageError("batch: mesh.implicit is no scan");
   BatchRequest& batch = call_.batch;
   batch.list = in_.input;
   batch.folder = in_.output;
@@ -142,7 +142,7 @@ void RequestMaker::finish_stages() {
 
   read_parameters();
   if (input_is_case) {
-    if (parameters.source("mesh.implicit") == ParamSource::Flag)
+    if (parameters.source(keys::mesh::implicit) == ParamSource::Flag)
       throw UsageError("--implicit goes with -o, without CASE");
     if (!in_.output.empty() && fs::path(in_.output) != fs::path(in_.input)) {
       throw UsageError("-o " + in_.output + ": the case is " + in_.input + " already");
@@ -151,27 +151,25 @@ void RequestMaker::finish_stages() {
     const fs::path toml = CasePaths{in_.input}.parameters();
     if (!fs::exists(toml)) throw UsageError(in_.input + " is not a case: it has no case.toml");
     parameters.load(toml, ParamSource::Case);
-    if (request.from == Stage::Cloud && parameters.source("cloud.file") > ParamSource::Case) take_cloud();
+    if (request.from == Stage::Cloud && parameters.source(keys::cloud::file) > ParamSource::Case) take_cloud();
     return;
   }
   if (in_.output.empty()) throw UsageError(name + ": -o CASE is missing");
   request.case_folder = in_.output;
   if (name == "mesh") {
-    if (parameters.text("mesh.implicit").empty())
-      throw UsageError("mesh: give a CASE, or --implicit EXPR with --box and -o");
+    if (parameters.mesh().implicit.empty()) throw UsageError("mesh: give a CASE, or --implicit EXPR with --box and -o");
     return;
   }
-  if (!in_.input.empty()) parameters.set("cloud.file", in_.input, ParamSource::Flag, "command line");
-  if (parameters.text("cloud.file").empty() && request.from == Stage::Cloud)
-    throw UsageError(name + ": CLOUD is missing");
+  if (!in_.input.empty()) parameters.set(keys::cloud::file, in_.input, ParamSource::Flag, "command line");
+  if (parameters.cloud().file.empty() && request.from == Stage::Cloud) throw UsageError(name + ": CLOUD is missing");
   if (request.from == Stage::Cloud) take_cloud();
 }
 
 /// The cloud that was named: to be read, and to be found again from another folder.
 void RequestMaker::take_cloud() {
   Parameters& parameters = call_.request.parameters;
-  call_.request.source = parameters.text("cloud.file");
-  parameters.make_absolute("cloud.file");
+  call_.request.source = parameters.cloud().file;
+  parameters.make_cloud_absolute();
 }
 
 }  // namespace

@@ -186,7 +186,7 @@ Output execute(int argc, char** argv, bool& json, std::string& command) {
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(call.threads));
   call.request.threads = call.threads;
-  const double max_memory = 1e9 * call.request.parameters.real("output.max_memory");
+  const double max_memory = 1e9 * call.request.parameters.output().max_memory;
   if (max_memory > 0 && call.action != CommandLine::Action::Batch) limit_memory(max_memory, call.threads);
   if (call.timeout > 0 && call.action != CommandLine::Action::Batch) stop_after(call.timeout);
   Progress progress(call.progress, call.verbosity);

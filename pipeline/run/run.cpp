@@ -130,7 +130,7 @@ void CaseRun::run(Stage stage) {
 void CaseRun::compute(Stage stage) {
   if (stage == Stage::Cloud) {
     fs::path source = request_.source;
-    if (source.empty()) source = parameters_.text("cloud.file");
+    if (source.empty()) source = parameters_.cloud().file;
     if (source.empty()) throw UsageError("no cloud: give one");
     run_cloud_stage(context_, source);
   } else if (stage == Stage::LevelSet) {
@@ -176,7 +176,7 @@ RunOutcome CaseRun::operator()() {
   refuse_foreign_folder(paths_);
   remove_stale_temporaries(paths_.root);  // of a run that was killed when its stages were done
   take_former_parameters();
-  const bool of_formula = request_.until == Stage::Mesh && !parameters_.text("mesh.implicit").empty();
+  const bool of_formula = request_.until == Stage::Mesh && !parameters_.mesh().implicit.empty();
   std::vector<StageRecord> records;
   for (const Stage stage : kStages) {
     if (stage <= request_.until && (!of_formula || stage == Stage::Mesh)) records.push_back(ensure(stage));

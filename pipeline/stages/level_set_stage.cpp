@@ -62,25 +62,26 @@ void require_outward_normals(const SsdReport& r) {
 
 SsdParams ssd_params(const Parameters& p) {
   SsdParams ssd;
-  ssd.spacing = p.real("reconstruct.spacing");
-  ssd.smoothing = p.real("reconstruct.smoothing");
-  ssd.detail = p.real("reconstruct.detail");
-  ssd.smooth = p.real("reconstruct.smooth");
-  ssd.alpha = p.real("reconstruct.alpha");
-  ssd.weights = p.text("reconstruct.weights") == "paper" ? SsdWeights::Paper : SsdWeights::Area;
-  ssd.prior.kind = p.text("reconstruct.prior") == "gaussian" ? LmePrior::Kind::Gaussian : LmePrior::Kind::CompactC2;
-  ssd.prior.gamma = p.real("reconstruct.gamma");
-  ssd.prior.support = static_cast<int>(p.integer("reconstruct.support"));
-  ssd.prior.epsilon = p.real("reconstruct.epsilon");
-  const std::string& solver = p.text("reconstruct.solver");
+  ssd.spacing = p.reconstruct().spacing;
+  ssd.smoothing = p.reconstruct().smoothing;
+  ssd.detail = p.reconstruct().detail;
+  ssd.smooth = p.reconstruct().smooth;
+  ssd.alpha = p.reconstruct().alpha;
+  ssd.weights = p.reconstruct().weights == SampleWeights::Paper ? SsdWeights::Paper : SsdWeights::Area;
+  ssd.prior.kind =
+      p.reconstruct().prior == MaxEntPrior::Gaussian ? LmePrior::Kind::Gaussian : LmePrior::Kind::CompactC2;
+  ssd.prior.gamma = p.reconstruct().gamma;
+  ssd.prior.support = static_cast<int>(p.reconstruct().support);
+  ssd.prior.epsilon = p.reconstruct().epsilon;
+  const FitSolver solver = p.reconstruct().solver;
   const bool full_only = ssd.weights == SsdWeights::Paper || ssd.prior.kind == LmePrior::Kind::Gaussian;
-  ssd.solver = solver == "assembled"                                 ? SsdSolver::Assembled
-               : solver == "full" || (solver == "auto" && full_only) ? SsdSolver::Full
-                                                                     : SsdSolver::Multilevel;
-  ssd.band_tolerance = p.real("reconstruct.band_tolerance");
-  ssd.tolerance = p.real("reconstruct.tolerance");
-  ssd.max_iterations = static_cast<int>(p.integer("reconstruct.max_iterations"));
-  ssd.padding = static_cast<int>(p.integer("reconstruct.padding"));
+  ssd.solver = solver == FitSolver::Assembled                                          ? SsdSolver::Assembled
+               : solver == FitSolver::Full || (solver == FitSolver::Auto && full_only) ? SsdSolver::Full
+                                                                                       : SsdSolver::Multilevel;
+  ssd.band_tolerance = p.reconstruct().band_tolerance;
+  ssd.tolerance = p.reconstruct().tolerance;
+  ssd.max_iterations = static_cast<int>(p.reconstruct().max_iterations);
+  ssd.padding = static_cast<int>(p.reconstruct().padding);
   std::string broken;
   for (const std::string& problem : problems(ssd)) broken += (broken.empty() ? "reconstruct: " : "; ") + problem;
   if (!broken.empty()) throw UsageError(broken);
@@ -97,7 +98,7 @@ void run_level_set_stage(const StageContext& context) {
 
   params.max_memory = allowed_bytes(context.parameters);
   context.progress.report("level-set", "noise", 0);
-  const double noise = context.parameters.real("reconstruct.noise");
+  const double noise = context.parameters.reconstruct().noise;
   Json thickness;
   {
     const NeighbourTree tree(cloud.points);

@@ -59,7 +59,7 @@ MeshWatch MeshStage::watch() {
 }
 
 bool MeshStage::observe(const UmProgress& p) {
-  const double n_rounds = static_cast<double>(context_.parameters.integer("mesh.projection_passes")) + 1;
+  const double n_rounds = static_cast<double>(context_.parameters.mesh().projection_passes) + 1;
   const std::string_view step = p.step;
   double rounds = 0;
   if (step == "project") rounds = p.pass - 1 + static_cast<double>(p.sweep) / std::max(p.n_sweeps, 1);
@@ -71,8 +71,8 @@ bool MeshStage::observe(const UmProgress& p) {
 BackgroundMesh MeshStage::background_of(double h) {
   stop_if_interrupted();
   const Parameters& p = context_.parameters;
-  BackgroundMesh made = background_.make(domain_, h, p.integer("mesh.tets"), allowed_bytes(p));
-  const double n_iterates = p.flag("mesh.keep_iterates") ? static_cast<double>(p.integer("mesh.projection_passes")) : 0;
+  BackgroundMesh made = background_.make(domain_, h, p.mesh().tets, allowed_bytes(p));
+  const double n_iterates = p.mesh().keep_iterates ? static_cast<double>(p.mesh().projection_passes) : 0;
   require_disk(context_.paths.root, (3 + n_iterates) * background_.expected_tets(domain_, h));
   return made;
 }
@@ -110,7 +110,7 @@ std::string MeshStage::remedy_for(const ThinPlaces& thin, Json& h_enough) {
   if (!(domain_.size().volume > 0)) return fmt::format("h = {:.3g} may show them", thin.h_needed());
   const EdgeLength enough = enough_for(thin);
   if (!(enough.h < thin.h && enough.h > enough.least)) {
-    return fmt::format("that takes more than {} tets: raise --max-tets", context_.parameters.integer("mesh.max_tets"));
+    return fmt::format("that takes more than {} tets: raise --max-tets", context_.parameters.mesh().max_tets);
   }
   h_enough = enough.h;
   return fmt::format("h = {:.3g} is enough, about {:.2g} tets", enough.h, background_.expected_tets(domain_, enough.h));
@@ -170,19 +170,19 @@ void MeshStage::run() {
 
 UmParams um_params(const Parameters& p) {
   UmParams um;
-  um.mode = p.text("mesh.mode") == "paper" ? UmMode::Paper : UmMode::Fast;
-  um.fast.smoothing.target = um.fast.repair.target = p.real("mesh.target_quality");
-  um.projection_passes = static_cast<int>(p.integer("mesh.projection_passes"));
-  um.relaxation_iterations = static_cast<int>(p.integer("mesh.relaxation_iterations"));
-  um.samples = static_cast<int>(p.integer("mesh.samples"));
-  um.directions = p.text("mesh.directions") == "axes" ? DirectionRule::AxesInTurn : DirectionRule::Random;
-  const std::string& projection = p.text("mesh.closest_point");
-  um.closest_point.method = projection == "paper"    ? ClosestPointMethod::Paper
-                            : projection == "damped" ? ClosestPointMethod::Damped
-                                                     : ClosestPointMethod::Newton;
-  um.background_boundary = p.flag("mesh.complement") ? BackgroundBoundary::Wall : BackgroundBoundary::Refuse;
-  um.max_min = p.text("mesh.max_min") == "golden" ? MaxMin::GoldenSection : MaxMin::Exact;
-  um.seed = static_cast<std::uint64_t>(p.integer("mesh.seed"));
+  um.mode = p.mesh().mode == MeshingMode::Paper ? UmMode::Paper : UmMode::Fast;
+  um.fast.smoothing.target = um.fast.repair.target = p.mesh().target_quality;
+  um.projection_passes = static_cast<int>(p.mesh().projection_passes);
+  um.relaxation_iterations = static_cast<int>(p.mesh().relaxation_iterations);
+  um.samples = static_cast<int>(p.mesh().samples);
+  um.directions = p.mesh().directions == RelaxationDirections::Axes ? DirectionRule::AxesInTurn : DirectionRule::Random;
+  const Projection projection = p.mesh().closest_point;
+  um.closest_point.method = projection == Projection::Paper    ? ClosestPointMethod::Paper
+                            : projection == Projection::Damped ? ClosestPointMethod::Damped
+                                                               : ClosestPointMethod::Newton;
+  um.background_boundary = p.mesh().complement ? BackgroundBoundary::Wall : BackgroundBoundary::Refuse;
+  um.max_min = p.mesh().max_min == MaxMinSearch::Golden ? MaxMin::GoldenSection : MaxMin::Exact;
+  um.seed = static_cast<std::uint64_t>(p.mesh().seed);
   std::string broken;
   for (const std::string& problem : problems(um)) broken += (broken.empty() ? "mesh: " : "; ") + problem;
   if (!broken.empty()) throw UsageError(broken);

@@ -15,7 +15,7 @@ std::vector<RecordedFile> recorded_inputs(const CasePaths& paths, Stage stage, c
   if (stage == Stage::Mesh) {
     if (const auto file = background_file(parameters)) inputs.push_back({file->string(), stamp(*file)});
   }
-  const bool formula = stage == Stage::Mesh && !parameters.text("mesh.implicit").empty();
+  const bool formula = stage == Stage::Mesh && !parameters.mesh().implicit.empty();
   if (stage == Stage::Cloud || formula) return inputs;
   for (const Stage source : {Stage::Cloud, Stage::LevelSet}) {
     if (source >= stage) break;
