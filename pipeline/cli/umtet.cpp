@@ -53,11 +53,9 @@ Output output_of_files(const std::vector<std::filesystem::path>& files) {
   return {ExitCode::Success, file_list(files), {{"files", names(files)}}};
 }
 
-std::vector<std::filesystem::path> exports_of(const std::filesystem::path& case_folder,
-                                              const std::vector<std::string>& formats, const Parameters& parameters,
-                                              Progress& progress) {
+std::vector<std::filesystem::path> exports_of(const CasePaths& paths, const std::vector<std::string>& formats,
+                                              const Parameters& parameters, Progress& progress) {
   set_work_at_hand("export");
-  const CasePaths paths{case_folder};
   const CaseLock lock(paths.root);
   return export_case(paths, formats, parameters, progress);
 }
@@ -77,7 +75,8 @@ Output perform(RunCommand& command, const CommonOptions& options, Progress& prog
   request.threads = options.threads;
   RunOutcome outcome = run_case(request, progress);
   if (!command.formats.empty()) {
-    for (auto& file : exports_of(request.case_folder, command.formats, request.parameters, progress)) {
+    const CasePaths paths{request.case_folder, {}, request.stamps};
+    for (auto& file : exports_of(paths, command.formats, request.parameters, progress)) {
       outcome.files.push_back(std::move(file));
     }
   }
@@ -134,7 +133,7 @@ Output perform(BatchCommand& command, const CommonOptions& options, Progress& pr
 
 Output perform(const ExportCommand& command, const CommonOptions&, Progress& progress) {
   require_case(command.case_folder);
-  const auto files = exports_of(command.case_folder, command.formats, command.parameters, progress);
+  const auto files = exports_of({command.case_folder}, command.formats, command.parameters, progress);
   progress.clear();
   return output_of_files(files);
 }

@@ -62,7 +62,7 @@ class Evolution {
  private:
   void take_folder();
   CasePaths case_of(const Step& step) const {
-    return {request_.folder / "clouds" / fs::path(step.file).replace_extension()};
+    return {request_.folder / "clouds" / fs::path(step.file).replace_extension(), {}, stamps_};
   }
   Domain domain_of(const Step& step) const;
   void look_at(Step& step);
@@ -85,6 +85,7 @@ class Evolution {
   std::optional<Domain> first_;  ///< of the first instant that has one, its box that of all
   double h_ = 0;
   std::optional<BackgroundMesh> background_;
+  const std::shared_ptr<FileStamps> stamps_ = std::make_shared<FileStamps>();
 };
 
 /// Runs f; what goes wrong with this instant alone is written down.
@@ -133,6 +134,7 @@ void Evolution::look_at(Step& step) {
     report(step, "level set", 0);
     RunRequest run;
     run.case_folder = case_of(step).root;
+    run.stamps = stamps_;
     run.source = step.at.cloud;
     run.parameters = parameters_;
     run.parameters.set(keys::cloud::file, step.at.cloud.string(), ParamSource::Flag, "--clouds");

@@ -20,7 +20,7 @@ class CaseRun {
   CaseRun(const RunRequest& request, Progress& progress)
       : request_(request),
         progress_(progress),
-        paths_{request.case_folder},
+        paths_{request.case_folder, {}, request.stamps},
         parameters_(request.parameters),
         context_{paths_, parameters_, progress, request.threads, handover_} {}
 
@@ -71,7 +71,8 @@ StageState CaseRun::state_of(Stage stage) const {
   // A stage that is taken as it is may have been made from other input.
   if (stage >= request_.from) {
     if (stage != Stage::Cloud) inputs = recorded_inputs(paths_, stage, parameters_);
-    if (stage == Stage::Cloud && !request_.source.empty()) inputs = source_inputs(request_.source, parameters_);
+    if (stage == Stage::Cloud && !request_.source.empty())
+      inputs = source_inputs(request_.source, parameters_, *paths_.stamps);
   }
   return inspect_stage(paths_, stage, parameters_.section(section_of(stage)), inputs);
 }

@@ -199,10 +199,10 @@ void require_regular_file(const fs::path& file) {
   }
 }
 
-std::vector<RecordedFile> source_inputs(const fs::path& source, const Parameters& parameters) {
-  const auto input = [](const char* name, const fs::path& file) {
+std::vector<RecordedFile> source_inputs(const fs::path& source, const Parameters& parameters, FileStamps& stamps) {
+  const auto input = [&stamps](const char* name, const fs::path& file) {
     require_regular_file(file);
-    return RecordedFile{name, stamp(file)};
+    return RecordedFile{name, stamps.of(file)};
   };
   require_regular_file(source);
   check_scan_head(source);  // gigabytes that are no cloud are not read for their checksum
