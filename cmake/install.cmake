@@ -74,7 +74,7 @@ endforeach()
 
 foreach(folder common reconstruct mesh pipeline)
   install(DIRECTORY ${folder} DESTINATION ${umtet_headers} COMPONENT development
-    FILES_MATCHING PATTERN "*.h" PATTERN detail EXCLUDE PATTERN examples EXCLUDE PATTERN cli EXCLUDE
+    FILES_MATCHING PATTERN "*.h" PATTERN "*.def" PATTERN detail EXCLUDE PATTERN examples EXCLUDE PATTERN cli EXCLUDE
     PATTERN version.h EXCLUDE)
 endforeach()
 

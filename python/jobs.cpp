@@ -33,7 +33,7 @@ KeepGoing polls(const Watch& watch) {
 EdgeLength edge_length(Domain& domain, const BackgroundChoice& background, const Parameters& parameters,
                        const Watch& watch) {
   if (background.own_h()) return {*background.own_h(), *background.own_h()};
-  const double h = parameters.real("mesh.h");
+  const double h = parameters.mesh().h;
   if (domain.function && h >= least_h_in_file(domain) && h > 0) return {h, h};
   return choose_edge_length(domain, parameters, polls(watch));
 }
@@ -94,7 +94,7 @@ Reconstruction reconstruct(OrientedPointCloud cloud, const Parameters& parameter
   }
   domain.diagonal = box.diagonal().norm();
   watch("noise", 0);
-  const double noise = parameters.real("reconstruct.noise");
+  const double noise = parameters.reconstruct().noise;
   made.noise = params.noise =
       noise >= 0 ? noise : noise_along_normals(domain.cloud, NeighbourTree(domain.cloud.points));
   SsdFit fit = fit_ssd(
@@ -116,10 +116,10 @@ Reconstruction reconstruct(OrientedPointCloud cloud, const Parameters& parameter
 
 MeshAttempt make_mesh(Domain& domain, const Parameters& parameters, const Watch& watch) {
   watch("size", 0);
-  domain.complement = parameters.flag("mesh.complement");
+  domain.complement = parameters.mesh().complement;
   const BackgroundChoice background(parameters, domain);
   MeshMaker maker(domain, parameters, mesh_watch(watch));
-  const std::int64_t n_tets = parameters.integer(domain.function ? "mesh.max_tets" : "mesh.tets");
+  const std::int64_t n_tets = domain.function ? parameters.mesh().max_tets : parameters.mesh().tets;
   MeshAttempt best = maker.best(edge_length(domain, background, parameters, watch), [&](double h) {
     return background.make(domain, h, n_tets, allowed_bytes(parameters));
   });

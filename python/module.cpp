@@ -31,7 +31,7 @@ namespace py = pybind11;
 namespace umtet::python {
 namespace {
 
-std::optional<Box> box_of(const Parameters& parameters) { return parse_box(parameters.text("mesh.box")); }
+std::optional<Box> box_of(const Parameters& parameters) { return parse_box(parameters.mesh().box); }
 
 /// Without what refers to a callable.
 Domain left_of(Domain&& domain) {
@@ -78,8 +78,8 @@ struct Moving {
     throw std::invalid_argument("box is missing: (x0, y0, z0, x1, y1, z1) around all domains");
   }
   BackgroundMesh background() const {
-    if (parameters.flag("mesh.box_walls")) return BackgroundMesh(a15_box(box, parameters.real("mesh.h")));
-    return {tiling_named(parameters.text("mesh.background")), box, parameters.real("mesh.h")};
+    if (parameters.mesh().box_walls) return BackgroundMesh(a15_box(box, parameters.mesh().h));
+    return {tiling_named(parameters.mesh().background), box, parameters.mesh().h};
   }
 };
 
@@ -91,7 +91,7 @@ py::tuple update(Moving& moving, const py::object& psi, std::optional<double> t,
   }
   const double h = moving.mesher.background().h();
   p.domain.limit_detail(h);
-  p.domain.complement = moving.parameters.flag("mesh.complement");
+  p.domain.complement = moving.parameters.mesh().complement;
   UpdateHints hints;
   if (seeds) hints.seeds = vectors(*seeds, "seeds");
   const Watch watch = watch_of(progress);

@@ -147,6 +147,18 @@ FileStamp stamp(const fs::path& file) {
   return result;
 }
 
+FileStamp FileStamps::of(const fs::path& file) {
+  // What it was before it is read: changed meanwhile, it is another the next time.
+  struct stat status {};
+  const bool exists = ::stat(file.c_str(), &status) == 0;
+  const Identity now = {status.st_dev, status.st_ino, static_cast<std::uintmax_t>(status.st_size),
+                        status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
+  if (const auto known = known_.find(now); exists && known != known_.end()) return known->second;
+  FileStamp read = stamp(file);
+  ++n_read_[file];
+  return known_[now] = std::move(read);
+}
+
 void write_artefact(const fs::path& file, const std::function<void(const fs::path&)>& writer) {
   write_artefacts({{file, writer}});
 }

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +24,27 @@ std::string checksum(std::string_view text);
 /// Reads the whole file once, in pieces of 1 MiB. Devices and pipes are refused: some of them have no end.
 /// \throw std::system_error naming the file
 FileStamp stamp(const std::filesystem::path& file);
+
+/// The stamps of the files that one run deals with: each file is read once, however often it is asked for. A file is
+/// taken for unchanged while its inode, size and time of change are what they were; it may be renamed meanwhile. Not
+/// for several threads at a time.
+class FileStamps {
+ public:
+  /// \throw as stamp()
+  FileStamp of(const std::filesystem::path& file);
+  /// How often a file was read, by the path at which it was.
+  const std::map<std::filesystem::path, int>& n_read() const { return n_read_; }
+
+ private:
+  /// One state of one file.
+  struct Identity {
+    std::uintmax_t device = 0, inode = 0, size = 0;
+    std::int64_t seconds = 0, nanoseconds = 0;  ///< of its last change
+    auto operator<=>(const Identity&) const = default;
+  };
+  std::map<Identity, FileStamp> known_;
+  std::map<std::filesystem::path, int> n_read_;
+};
 
 /// Creates or replaces `file` so that it is, at any moment and after any crash, the old one or the whole new one:
 /// `writer` fills a temporary file in the same folder; then size > 0, fsync, rename, fsync of the folder.

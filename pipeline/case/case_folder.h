@@ -2,7 +2,10 @@
 
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <string>
+
+#include "pipeline/case/artefact.h"
 
 namespace umtet {
 
@@ -19,11 +22,13 @@ const char* section_of(Stage);
 /// True for the names of the files that a stage writes, its record apart.
 bool is_artefact(Stage, const std::string& name);
 
-/// The folder of one case: where things are.
+/// The folder of one case: where things are, and what is known of their bytes.
 struct CasePaths {
   std::filesystem::path root;
   /// By stage: its folder is the one in next(), where it is made anew beside its finished former self.
   std::array<bool, kStages.size()> renewed = {};
+  /// Of the files in it and of those it is made from; copies share them.
+  std::shared_ptr<FileStamps> stamps = std::make_shared<FileStamps>();
 
   bool& renews(Stage stage) { return renewed[static_cast<std::size_t>(stage) - 1]; }
   bool renews(Stage stage) const { return renewed[static_cast<std::size_t>(stage) - 1]; }

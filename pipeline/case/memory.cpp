@@ -62,7 +62,7 @@ double available_bytes() {
 }  // namespace
 
 double allowed_bytes(const Parameters& parameters) {
-  const double asked = 1e9 * parameters.real("output.max_memory");
+  const double asked = 1e9 * parameters.output().max_memory;
   return asked > 0 ? asked : available_bytes();
 }
 

@@ -71,8 +71,8 @@ void check_background(const std::string& name) {
 void check(const ParamField& f, const ParamValue& value) {
   const auto in_range = [&](double v) {
     if (v >= f.min && v <= f.max) return;  // false for NaN
-    throw UsageError(f.min == 1e-300 ? fmt::format("{} = {}: must be > 0 and <= {}", f.key, v, f.max)
-                                     : fmt::format("{} = {}: must be in [{}, {}]", f.key, v, f.min, f.max));
+    throw UsageError(f.min == detail::kAboveZero ? fmt::format("{} = {}: must be > 0 and <= {}", f.key, v, f.max)
+                                                 : fmt::format("{} = {}: must be in [{}, {}]", f.key, v, f.min, f.max));
   };
   if (const auto* i = std::get_if<std::int64_t>(&value)) in_range(static_cast<double>(*i));
   if (const auto* d = std::get_if<double>(&value)) in_range(*d);
@@ -82,8 +82,8 @@ void check(const ParamField& f, const ParamValue& value) {
   }
   // TOML and JSON hold nothing else.
   if (t && !is_utf8(*t)) throw UsageError(f.key + ": the text is not valid UTF-8");
-  if (f.key == "mesh.box") parse_box(*t);
-  if (f.key == "mesh.background") check_background(*t);
+  if (f.key == keys::mesh::box) parse_box(*t);
+  if (f.key == keys::mesh::background) check_background(*t);
 }
 
 }  // namespace
@@ -136,13 +136,12 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
 }
 
 Parameters::Parameters() {
-  for (const ParamField& f : params_fields()) entries_[f.key].value = f.preset;
+  for (const ParamField& f : params_fields()) origins_[f.key];
 }
 
-ParamSource Parameters::source(const std::string& key) const { return entries_.at(key).source; }
-
 void Parameters::set(const std::string& key, const std::string& text, ParamSource source, const std::string& origin) {
-  assign(key, parse(detail::field(key), text), source, origin);
+  const ParamField& f = detail::field(key);
+  assign(f, parse(f, text), source, origin);
 }
 
 void Parameters::set(const std::string& assignment) {
@@ -153,40 +152,45 @@ void Parameters::set(const std::string& assignment) {
 
 /// h, tets and max_deviation are three ways to say one thing: the stronger voice silences the others. False: a stronger
 /// one has spoken already.
-bool Parameters::silences_others(const std::string& key, const ParamValue& value, ParamSource source) {
-  constexpr std::array kWays = {"mesh.h", "mesh.tets", "mesh.max_deviation"};
+bool Parameters::silences_others(const ParamField& field, const ParamValue& value, ParamSource source) {
+  constexpr std::array kWays = {keys::mesh::h, keys::mesh::tets, keys::mesh::max_deviation};
   const auto speaks = [](const ParamValue& v) { return v != ParamValue(0.) && v != ParamValue(std::int64_t{0}); };
-  if (std::find(kWays.begin(), kWays.end(), key) == kWays.end() || !speaks(value)) return true;
+  if (std::find(kWays.begin(), kWays.end(), field.key) == kWays.end() || !speaks(value)) return true;
   for (const char* way : kWays) {
-    Entry& other = entries_.at(way);
-    if (way == key || !speaks(other.value)) continue;
-    if (other.source == source) {
+    const ParamField& other = detail::field(way);
+    if (way == field.key || !speaks(other.get(other, values_))) continue;
+    Origin& origin = origins_.at(way);
+    if (origin.source == source) {
       throw UsageError(fmt::format("{} and {} exclude each other: give one of --h, --tets and --max-deviation",
-                                   std::min(key, std::string(way)), std::max(key, std::string(way))));
+                                   std::min(field.key, other.key), std::max(field.key, other.key)));
     }
-    if (other.source > source) return false;
-    other = {detail::field(way).preset, ParamSource::Default, "default"};
+    if (origin.source > source) return false;
+    other.put(other, other.preset, values_);
+    origin = {};
   }
   return true;
 }
 
-void Parameters::assign(const std::string& key, ParamValue value, ParamSource source, const std::string& origin) {
-  check(detail::field(key), value);
-  Entry& entry = entries_.at(key);
-  if (source < entry.source) return;
-  if (!silences_others(key, value, source)) return;
-  entry = {std::move(value), source, origin};
+void Parameters::assign(const ParamField& field, const ParamValue& value, ParamSource source,
+                        const std::string& origin) {
+  check(field, value);
+  Origin& former = origins_.at(field.key);
+  if (source < former.source) return;
+  if (!silences_others(field, value, source)) return;
+  field.put(field, value, values_);
+  former = {source, origin};
 }
 
-void Parameters::make_absolute(const std::string& key) {
-  Entry& entry = entries_.at(key);
-  const std::string& path = std::get<std::string>(entry.value);
-  if (!path.empty()) entry.value = std::filesystem::absolute(path).lexically_normal().string();
+void Parameters::make_cloud_absolute() {
+  std::string& path = values_.cloud.file;
+  if (!path.empty()) path = std::filesystem::absolute(path).lexically_normal().string();
 }
 
 void Parameters::copy_section(std::string_view name, const Parameters& other) {
   for (const ParamField& f : params_fields()) {
-    if (f.key.substr(0, f.key.find('.')) == name) entries_.at(f.key) = other.entries_.at(f.key);
+    if (f.key.substr(0, f.key.find('.')) != name) continue;
+    f.put(f, f.get(f, other.values_), values_);
+    origins_.at(f.key) = other.origins_.at(f.key);
   }
 }
 
@@ -195,8 +199,8 @@ nlohmann::ordered_json Parameters::section(std::string_view name) const {
   for (const ParamField& f : params_fields()) {
     const std::size_t dot = f.key.find('.');
     // A cloud is known by its bytes, which the record lists among its inputs; it may move.
-    if (f.key.substr(0, dot) != name || f.key == "cloud.file") continue;
-    std::visit([&](const auto& v) { json[f.key.substr(dot + 1)] = v; }, entries_.at(f.key).value);
+    if (f.key.substr(0, dot) != name || f.key == keys::cloud::file) continue;
+    std::visit([&](const auto& v) { json[f.key.substr(dot + 1)] = v; }, f.get(f, values_));
   }
   return json;
 }

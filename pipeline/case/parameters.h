@@ -15,14 +15,71 @@ namespace umtet {
 
 using ParamValue = std::variant<bool, std::int64_t, double, std::string>;
 
-/// One row of the table from which configuration files, the command line, records and the help come.
+// What a text with a fixed vocabulary may say; the values stand in the order of its words in parameters.def.
+enum class NormalsOf { Auto, Given, Estimate };
+enum class SampleWeights { Area, Paper };
+enum class MaxEntPrior { CompactC2, Gaussian };
+enum class FitSolver { Auto, Multilevel, Full, Assembled };
+enum class MeshingMode { Fast, Paper };
+enum class RelaxationDirections { Random, Axes };
+enum class Projection { Newton, Damped, Paper };
+enum class MaxMinSearch { Exact, Golden };
+
+// The fields, their meaning, units, ranges and defaults are those of parameters.def.
+
+/// The section [cloud]: how a scan is prepared.
+struct CloudParameters {
+#define UMTET_CLOUD(type, name, ...) type name{};
+#include "pipeline/case/parameters.def"
+};
+
+/// The section [reconstruct]: how psi is fitted.
+struct ReconstructParameters {
+#define UMTET_RECONSTRUCT(type, name, ...) type name{};
+#include "pipeline/case/parameters.def"
+};
+
+/// The section [mesh]: what is meshed, how fine and how.
+struct MeshParameters {
+#define UMTET_MESH(type, name, ...) type name{};
+#include "pipeline/case/parameters.def"
+};
+
+/// The section [output]: limits, gates, names.
+struct OutputParameters {
+#define UMTET_OUTPUT(type, name, ...) type name{};
+#include "pipeline/case/parameters.def"
+};
+
+/// All of them, at first at their defaults.
+struct ParameterValues {
+  ParameterValues();
+  CloudParameters cloud;
+  ReconstructParameters reconstruct;
+  MeshParameters mesh;
+  OutputParameters output;
+};
+
+/// The names of parameters in files and behind --set: keys::mesh::h is "mesh.h".
+namespace keys {
+#define UMTET_PARAMETER(section, type, name, ...)    \
+  namespace section {                                \
+  inline constexpr char name[] = #section "." #name; \
+  }
+#include "pipeline/case/parameters.def"
+}  // namespace keys
+
+/// One parameter as configuration files, the command line, records and the help need it. The fields that a line of
+/// parameters.def names come first.
 struct ParamField {
-  std::string key;                   ///< "mesh.h": section and name of the TOML file
-  std::string flag;                  ///< "--h", or empty: only --set and --config reach it
-  ParamValue preset;                 ///< the default; its type is the type of the parameter
-  double min, max;                   ///< for numbers
-  std::vector<std::string> choices;  ///< for texts with a fixed vocabulary
-  std::string help;
+  std::string flag{};                  ///< "--h", or empty: only --set and --config reach it
+  double min = 0, max = 0;             ///< for numbers
+  std::vector<std::string> choices{};  ///< for texts with a fixed vocabulary
+  std::string help{};
+  std::string key{};    ///< "mesh.h": section and name of the TOML file
+  ParamValue preset{};  ///< the default; its type is the type of the parameter
+  ParamValue (*get)(const ParamField&, const ParameterValues&) = nullptr;
+  void (*put)(const ParamField&, const ParamValue&, ParameterValues&) = nullptr;  ///< of a value that has been checked
 };
 
 /// All parameters, in the order of case.toml.
@@ -52,18 +109,19 @@ class Parameters {
   /// \throw UsageError with file, line and column; std::system_error; ArtefactDamaged, of a case.toml
   void load(const std::filesystem::path& file, ParamSource source);
 
-  /// Makes the path absolute, whoever gave it.
-  void make_absolute(const std::string& key);
+  /// Makes the path cloud.file absolute, whoever gave it.
+  void make_cloud_absolute();
 
   /// Takes the whole section from other parameters, sources included.
   void copy_section(std::string_view name, const Parameters& other);
 
-  /// \throw std::out_of_range for a key or a type that the table does not have: a bug of the caller
-  double real(const std::string& key) const { return std::get<double>(value(key)); }
-  std::int64_t integer(const std::string& key) const { return std::get<std::int64_t>(value(key)); }
-  bool flag(const std::string& key) const { return std::get<bool>(value(key)); }
-  const std::string& text(const std::string& key) const { return std::get<std::string>(value(key)); }
-  ParamSource source(const std::string& key) const;
+  const CloudParameters& cloud() const { return values_.cloud; }
+  const ReconstructParameters& reconstruct() const { return values_.reconstruct; }
+  const MeshParameters& mesh() const { return values_.mesh; }
+  const OutputParameters& output() const { return values_.output; }
+
+  /// \throw std::out_of_range for a key that the table does not have: a bug of the caller
+  ParamSource source(const std::string& key) const { return origins_.at(key).source; }
 
   /// Every value with a comment that says where it came from, behind their checksum; load() takes it back.
   std::string toml() const;
@@ -71,15 +129,15 @@ class Parameters {
   nlohmann::ordered_json section(std::string_view name) const;
 
  private:
-  struct Entry {
-    ParamValue value;
+  struct Origin {
     ParamSource source = ParamSource::Default;
-    std::string origin = "default";
+    std::string text = "default";
   };
-  const ParamValue& value(const std::string& key) const { return entries_.at(key).value; }
-  bool silences_others(const std::string& key, const ParamValue& value, ParamSource source);
-  void assign(const std::string& key, ParamValue value, ParamSource source, const std::string& origin);
-  std::map<std::string, Entry> entries_;
+  bool silences_others(const ParamField& field, const ParamValue& value, ParamSource source);
+  void assign(const ParamField& field, const ParamValue& value, ParamSource source, const std::string& origin);
+
+  ParameterValues values_;
+  std::map<std::string, Origin> origins_;  ///< by key
 };
 
 /// "x0,y0,z0,x1,y1,z1" of mesh.box; nullopt when it is empty. \throw UsageError

@@ -92,7 +92,7 @@ void Parameters::load(const std::filesystem::path& file, ParamSource source) {
           constexpr const char* kTypes[] = {"true or false", "a whole number", "a number", "a text"};
           throw UsageError(f.key + ": must be " + kTypes[f.preset.index()]);
         }
-        assign(f.key, std::move(value), source, origin);
+        assign(f, value, source, origin);
       } catch (const UsageError& e) {
         throw UsageError(at(entry) + e.what());
       }
@@ -108,8 +108,8 @@ std::string Parameters::toml() const {
       section = f.key.substr(0, dot);
       out += fmt::format("\n[{}]\n", section);
     }
-    const Entry& entry = entries_.at(f.key);
-    out += fmt::format("{} = {}  # {}: {}\n", f.key.substr(dot + 1), detail::print(entry.value), entry.origin, f.help);
+    out += fmt::format("{} = {}  # {}: {}\n", f.key.substr(dot + 1), detail::print(f.get(f, values_)),
+                       origins_.at(f.key).text, f.help);
   }
   return kTomlHead + checksum(out) + "\n" + out;
 }

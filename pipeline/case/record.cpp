@@ -32,13 +32,13 @@ std::vector<RecordedFile> files_from(const Json& list) {
 }
 
 /// The first output that is not what was written, as a clause; empty if all are.
-std::string damage(const fs::path& folder, const std::vector<RecordedFile>& outputs) {
+std::string damage(const fs::path& folder, const std::vector<RecordedFile>& outputs, FileStamps& stamps) {
   for (const RecordedFile& f : outputs) {
     // A name with a slash would make the record of a stage vouch for files elsewhere.
     if (f.name.find('/') != std::string::npos) return "record.json names a file outside its folder";
     const fs::path file = folder / f.name;
     if (!fs::exists(file)) return file.string() + " is gone";
-    const FileStamp now = stamp(file);
+    const FileStamp now = stamps.of(file);
     if (now.size != f.stamp.size) {
       return file.string() + " has " + std::to_string(now.size) + " bytes instead of " + std::to_string(f.stamp.size);
     }
@@ -77,7 +77,7 @@ std::string file_text(const Json& document) {
 
 void write_record(const CasePaths& paths, StageRecord record, const std::vector<std::string>& output_names) {
   for (const std::string& name : output_names) {
-    record.outputs.push_back({name, stamp(paths.folder(record.stage) / name)});
+    record.outputs.push_back({name, paths.stamps->of(paths.folder(record.stage) / name)});
   }
   const Json json = {{"schema", kSchema},
                      {"tool", "umtet"},
@@ -114,7 +114,7 @@ StageState inspect_stage(const CasePaths& paths, Stage stage, const Json& parame
   } catch (const Json::exception&) {
     return {Kind::Damaged, file.string() + " cannot be read", {}};
   }
-  if (const std::string what = damage(paths.folder(stage), record.outputs); !what.empty()) {
+  if (const std::string what = damage(paths.folder(stage), record.outputs, *paths.stamps); !what.empty()) {
     return {Kind::Damaged, what, {}};
   }
   std::string reason = difference(section_of(stage), record.parameters, parameters);

@@ -36,7 +36,7 @@ bool seal_holds(const Json& document);
 /// As the files of a case hold it. Bytes that are no UTF-8 (in the name of a file) are replaced.
 std::string file_text(const Json& document);
 
-/// Stamps the outputs, which must be in the folder of the stage, and writes the record atomically.
+/// Stamps the outputs, which must be in the folder of the stage and whole, and writes the record atomically.
 /// \throw std::system_error
 void write_record(const CasePaths& paths, StageRecord record, const std::vector<std::string>& output_names);
 
@@ -54,7 +54,7 @@ struct StageState {
 };
 
 /// @param inputs  what the stage would read now; nullopt: take the recorded ones for right
-/// Cost: reads every output of the stage once.
+/// Cost: reads every output of the stage whose stamp is not known yet.
 StageState inspect_stage(const CasePaths& paths, Stage stage, const Json& parameters,
                          const std::optional<std::vector<RecordedFile>>& inputs);
 

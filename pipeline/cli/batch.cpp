@@ -37,7 +37,7 @@ std::vector<std::string> assignments(const Parameters& parameters) {
     const Json now = parameters.section(section), preset = defaults.section(section);
     for (const auto& [name, value] : now.items()) {
       const std::string key = std::string(section) + "." + name;
-      if (key == "cloud.file" || value == preset.at(name)) continue;
+      if (key == keys::cloud::file || value == preset.at(name)) continue;
       out.insert(out.end(), {"--set", key + "=" + value_text(value)});
     }
   }

@@ -9,7 +9,6 @@
 
 #include "pipeline/case/version.h"
 #include "pipeline/cli/detail/command_parser.h"
-#include "pipeline/meshing/background_choice.h"
 #include "pipeline/output/export_case.h"
 
 namespace umtet {
@@ -64,34 +63,35 @@ std::string described(const ParamField& f) {
 
 CommandParser::CommandParser() {
   app_.set_version_flag("--version", std::string("umtet ") + kVersion);
-  app_.add_flag("--json", result_.json, "one JSON document on stdout, also on failure");
+  app_.add_flag("--json", result_.options.json, "one JSON document on stdout, also on failure");
   app_.require_subcommand(1);
   app_.footer(footer());
 
-  CLI::App& run = add_command("run", "All stages; those whose record matches are not run again");
+  CLI::App& run = add_command("run", make_run, "All stages; those whose record matches are not run again");
   add_stage_flags(run);
   run.add_option("CLOUD", in_.input, "oriented points: .ply, .pcd, .xyz; or a case, to resume it");
   run.add_option("--from", in_.from, "first stage that may run: cloud, level-set, mesh (default cloud)");
   run.add_option("--until", in_.until, "last stage to run (default mesh)");
   add_formats(run, "--export");
   run.add_flag("--no-report", in_.no_report, "do not make report.html");
-  add_parameter_flags(run, {"cloud", "reconstruct", "mesh", "output"}, {"mesh.implicit"});
+  add_parameter_flags(run, {"cloud", "reconstruct", "mesh", "output"}, {keys::mesh::implicit});
 
-  CLI::App& reconstruct = add_command("reconstruct", "Stage one only: the level set");
+  CLI::App& reconstruct = add_command("reconstruct", make_reconstruct, "Stage one only: the level set");
   add_stage_flags(reconstruct);
   reconstruct.add_option("CLOUD", in_.input, "oriented points; or a case, to fit again with other parameters");
   add_parameter_flags(reconstruct, {"cloud", "reconstruct", "output"},
-                      {"output.units", "output.min_quality", "output.label_names", "output.label_min_area",
-                       "output.patch_angle", "output.patch_planar"});
+                      {keys::output::units, keys::output::min_quality, keys::output::label_names,
+                       keys::output::label_min_area, keys::output::patch_angle, keys::output::patch_planar});
 
-  CLI::App& mesh = add_command("mesh", "Stage two only: from the level set of CASE, or from a formula");
+  CLI::App& mesh = add_command("mesh", make_mesh, "Stage two only: from the level set of CASE, or from a formula");
   add_stage_flags(mesh);
   mesh.add_option("CASE", in_.input, "a case with a level set");
   add_formats(mesh, "--export");
   mesh.add_flag("--no-report", in_.no_report, "do not make report.html");
   add_parameter_flags(mesh, {"mesh", "output"});
 
-  CLI::App& evolve = add_command("evolve", "A domain that moves: every instant meshed in one background mesh");
+  CLI::App& evolve =
+      add_command("evolve", make_evolve, "A domain that moves: every instant meshed in one background mesh");
   add_parameter_sources(evolve);
   add_timeout(evolve, "seconds that all instants may take together; then exit 9");
   evolve.add_option("-o", in_.output, "the folder of the meshes");
@@ -99,63 +99,74 @@ CommandParser::CommandParser() {
   evolve.add_option("--t", in_.times, "FROM:STEP:TO, the times; --implicit may have t in it");
   evolve.add_option("--skip", in_.skip, "times to leave out: --skip 3.1,3.4");
   add_parameter_flags(evolve, {"cloud", "reconstruct", "mesh", "output"},
-                      {"mesh.keep_iterates", "mesh.order", "output.label_names", "output.label_min_area",
-                       "output.patch_angle", "output.patch_planar"});
+                      {keys::mesh::keep_iterates, keys::mesh::order, keys::output::label_names,
+                       keys::output::label_min_area, keys::output::patch_angle, keys::output::patch_planar});
 
   add_batch();
 
-  CLI::App& inspect = add_command("inspect", "What is in a cloud, and what is likely to go wrong with it");
+  CLI::App& inspect =
+      add_command("inspect", make_inspect, "What is in a cloud, and what is likely to go wrong with it");
   inspect.add_option("CLOUD", in_.input, "points: .ply, .pcd, .xyz")->required();
 
-  CLI::App& check = add_command("check", "Validity and quality of any tet mesh; exit 6 when it fails");
+  CLI::App& check = add_command("check", make_check, "Validity and quality of any tet mesh; exit 6 when it fails");
   check.add_option("MESH", in_.input, ".vtu, .msh or .mesh")->required();
   check.add_option("--against", in_.against, "a case whose surface the mesh should fit");
   add_parameter_sources(check);
   add_parameter_flags(check, {"output"},
-                      {"output.max_memory", "output.label_names", "output.label_min_area", "output.patch_angle",
-                       "output.patch_planar"});
+                      {keys::output::max_memory, keys::output::label_names, keys::output::label_min_area,
+                       keys::output::patch_angle, keys::output::patch_planar});
 
-  CLI::App& exports = add_command("export", "Files for solvers and viewers, in CASE/4-export");
+  CLI::App& exports = add_command("export", make_export, "Files for solvers and viewers, in CASE/4-export");
   exports.add_option("CASE", in_.input, "a case with a mesh")->required();
   add_formats(exports, "--format").required();
-  add_parameter_flags(exports, {"output"}, {"output.units", "output.max_memory", "output.min_quality"});
+  add_parameter_flags(exports, {"output"}, {keys::output::units, keys::output::max_memory, keys::output::min_quality});
 
-  CLI::App& report = add_command("report", "CASE/report.html: certificate, mesh and curves on one page, offline");
+  CLI::App& report =
+      add_command("report", make_report, "CASE/report.html: certificate, mesh and curves on one page, offline");
   report.add_option("CASE", in_.input, "a case with a certificate")->required();
 
-  CLI::App& view = add_command("view", "CASE/5-view: psi on a grid, psi = 0 and a script for ParaView");
+  CLI::App& view = add_command("view", make_view, "CASE/5-view: psi on a grid, psi = 0 and a script for ParaView");
   view.add_option("CASE", in_.input, "a case with a mesh")->required();
 
-  CLI::App& diff = add_command("diff", "The first stage in which two cases differ, and by how much each does");
+  CLI::App& diff =
+      add_command("diff", make_diff, "The first stage in which two cases differ, and by how much each does");
   diff.add_option("CASE_A", in_.input, "a case")->required();
   diff.add_option("CASE_B", in_.other_case, "another")->required();
 }
 
 void CommandParser::add_batch() {
-  CLI::App& batch = add_command("batch", "Many scans by the same parameters, each in a process of its own; one table");
+  CLI::App& batch =
+      add_command("batch", make_batch, "Many scans by the same parameters, each in a process of its own; one table");
   add_parameter_sources(batch);
   add_timeout(batch, "seconds that a scan may take; then it is a row with exit code 9");
   batch.add_option("LIST", in_.input, "a text file with the path of a cloud a line")->required();
   batch.add_option("-o", in_.output, "the folder of the cases and of batch.csv, batch.html");
-  batch.add_option("--jobs", result_.batch.jobs, "scans at a time; they share the threads (default 1)")
+  batch.add_option("--jobs", in_.jobs, "scans at a time; they share the threads (default 1)")
       ->check(CLI::Range(1, 1024, "1 to 1024"));
   batch.add_flag("--resume", in_.resume, "scans whose input or mesh was refused are not tried again");
   batch.add_flag("--force", in_.force, "run all stages although their records match");
   batch.add_flag("--strict", in_.strict, "a damaged artefact is exit 8 of its scan instead of being made again");
   add_formats(batch, "--export");
-  add_parameter_flags(batch, {"cloud", "reconstruct", "mesh", "output"}, {"mesh.implicit"});
+  add_parameter_flags(batch, {"cloud", "reconstruct", "mesh", "output"}, {keys::mesh::implicit});
 }
 
 CLI::Option& CommandParser::add_formats(CLI::App& command, const char* flag) {
   return *command.add_option(flag, in_.formats, fmt::format("{}", fmt::join(export_formats(), ", ")))->delimiter(',');
 }
 
-CLI::App& CommandParser::add_command(const char* name, const char* description) {
+CLI::App& CommandParser::add_command(const char* name, CommandMaker make, const char* description) {
   CLI::App& command = *app_.add_subcommand(name, description);
   command.footer(footer(std::string(name) + " "));
-  command.add_flag("--json", result_.json, "one JSON document on stdout, also on failure");
+  command.callback([this, &command, make] {
+    if (in_.quiet && in_.verbose) throw UsageError("-q and -v exclude each other");
+    CommonOptions& options = result_.options;
+    options.verbosity = in_.quiet ? Verbosity::Quiet : in_.verbose ? Verbosity::Verbose : Verbosity::Normal;
+    result_.name = command.get_name();
+    result_.command = make(command, in_);
+  });
+  command.add_flag("--json", result_.options.json, "one JSON document on stdout, also on failure");
   command
-      .add_option("--threads", result_.threads,
+      .add_option("--threads", result_.options.threads,
                   "number of threads; results do not depend on it (default: all processors)")
       ->check(CLI::Range(1, 4096, "1 to 4096"));
   command.add_flag("-q,--quiet", in_.quiet, "no messages but warnings and errors");
@@ -164,9 +175,9 @@ CLI::App& CommandParser::add_command(const char* name, const char* description) 
       .add_option_function<std::string>(
           "--progress",
           [this](const std::string& mode) {
-            result_.progress = mode == "plain"  ? ProgressMode::Plain
-                               : mode == "none" ? ProgressMode::None
-                                                : ProgressMode::Auto;
+            result_.options.progress = mode == "plain"  ? ProgressMode::Plain
+                                       : mode == "none" ? ProgressMode::None
+                                                        : ProgressMode::Auto;
           },
           "auto: a bar on a terminal, else lines; plain: lines; none (default auto)")
       ->check(CLI::IsMember({"auto", "plain", "none"}));
@@ -183,7 +194,7 @@ void CommandParser::add_parameter_sources(CLI::App& command) {
 
 void CommandParser::add_timeout(CLI::App& command, const char* help) {
   // A timer of the system takes no more than a year without doubt.
-  command.add_option("--timeout", result_.timeout, help)->check(CLI::Range(0., 3e7, "0 to 3e7"));
+  command.add_option("--timeout", result_.options.timeout, help)->check(CLI::Range(0., 3e7, "0 to 3e7"));
 }
 
 void CommandParser::add_stage_flags(CLI::App& command) {
@@ -277,21 +288,17 @@ std::vector<std::string> words_of(int argc, const char* const* argv) {
 CommandLine CommandParser::parse(int argc, const char* const* argv) {
   if (argc > 1) check_command(argc, argv);
   try {
-    app_.parse(words_of(argc, argv));
+    app_.parse(words_of(argc, argv));  // calls the maker of the command
   } catch (const CLI::CallForHelp&) {
     const std::vector<CLI::App*> parsed = app_.get_subcommands();
-    result_.text = parsed.empty()
-                       ? app_.help()
-                       : fmt::format("umtet {}: {}", parsed.front()->get_name(), parsed.front()->help("umtet"));
-    return result_;
+    result_.command = TextAnswer{
+        parsed.empty() ? app_.help()
+                       : fmt::format("umtet {}: {}", parsed.front()->get_name(), parsed.front()->help("umtet"))};
   } catch (const CLI::CallForVersion& e) {
-    result_.text = std::string(e.what()) + "\n";
-    return result_;
+    result_.command = TextAnswer{std::string(e.what()) + "\n"};
   } catch (const CLI::ParseError& e) {
     refuse(e, argc, argv);
   }
-  fill_request(*app_.get_subcommands().front(), in_, result_);
-  require_walls(result_.request.parameters);
   return std::move(result_);
 }
 

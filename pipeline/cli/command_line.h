@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "pipeline/case/progress.h"
@@ -11,29 +12,71 @@
 
 namespace umtet {
 
-/// A call of the program, understood.
-struct CommandLine {
-  enum class Action { Text, Stages, Check, Export, Report, View, Diff, Inspect, Evolve, Batch };
-  Action action = Action::Text;
-  std::string text;     ///< Text: help or version, for stdout
-  std::string command;  ///< "run", "reconstruct", "mesh", "inspect", "check", "export", "report", "view",
-                        ///< "diff", "evolve", "batch"
+// What a call of the program may ask for, a struct for each command.
 
-  RunRequest request;    ///< Stages; Check: its output.* parameters; Export: these and its case_folder; Report and
-                         ///< View: its case_folder
-  EvolveRequest evolve;  ///< Evolve, but for its parameters: those of `request`
-  BatchRequest batch;    ///< Batch, but for its parameters, formats, timeout and threads
-  std::filesystem::path mesh;                    ///< Check
-  std::filesystem::path cloud;                   ///< Inspect
-  std::optional<std::filesystem::path> against;  ///< Check
-  std::filesystem::path case_a, case_b;          ///< Diff
-  std::vector<std::string> formats;              ///< Export, and Stages after which something is exported
+struct TextAnswer {
+  std::string text;  ///< help or version, for stdout
+};
 
-  double timeout = 0;  ///< seconds; Stages and Evolve: for all, Batch: for every scan; 0: any
-  bool json = false;
+/// umtet run, reconstruct, mesh.
+struct RunCommand {
+  RunRequest request;                ///< but for its threads
+  std::vector<std::string> formats;  ///< exported from the mesh
+};
+
+struct EvolveCommand {
+  EvolveRequest request;  ///< but for its threads
+};
+
+struct BatchCommand {
+  BatchRequest request;  ///< but for its threads and its timeout
+};
+
+struct InspectCommand {
+  std::filesystem::path cloud;
+};
+
+struct CheckCommand {
+  std::filesystem::path mesh;
+  std::optional<std::filesystem::path> against;  ///< a case
+  Parameters parameters;                         ///< output.*
+};
+
+struct ExportCommand {
+  std::filesystem::path case_folder;
+  std::vector<std::string> formats;
+  Parameters parameters;  ///< of the case, and those of output.* that the call gives
+};
+
+struct ReportCommand {
+  std::filesystem::path case_folder;
+};
+
+struct ViewCommand {
+  std::filesystem::path case_folder;
+};
+
+struct DiffCommand {
+  std::filesystem::path case_a, case_b;
+};
+
+using Command = std::variant<TextAnswer, RunCommand, EvolveCommand, BatchCommand, InspectCommand, CheckCommand,
+                             ExportCommand, ReportCommand, ViewCommand, DiffCommand>;
+
+/// What every command takes.
+struct CommonOptions {
+  double timeout = 0;  ///< seconds that the command may take, of a batch every scan; 0: any
+  bool json = false;   ///< answer by one document
   ProgressMode progress = ProgressMode::Auto;
   Verbosity verbosity = Verbosity::Normal;
-  int threads = 0;  ///< 0: as many as the machine has; Batch: shared by its jobs
+  int threads = 0;  ///< 0: as many as the machine has; the jobs of a batch share them
+};
+
+/// A call of the program, understood.
+struct CommandLine {
+  std::string name;  ///< "run", "reconstruct", ..., "batch"; empty for a TextAnswer
+  Command command;
+  CommonOptions options;
 };
 
 /// What --help says, for documents that are made from it.

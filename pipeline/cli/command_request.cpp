@@ -1,7 +1,10 @@
+// What the words of a call ask for, command by command.
+
 #include <filesystem>
 
 #include "pipeline/cli/command_line.h"
 #include "pipeline/cli/detail/command_parser.h"
+#include "pipeline/meshing/background_choice.h"
 #include "pipeline/output/boundary_patches.h"
 #include "pipeline/output/export_case.h"
 
@@ -9,175 +12,167 @@ namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
-class RequestMaker {
- public:
-  RequestMaker(const CLI::App& command, const CommandInputs& in, CommandLine& call)
-      : command_(command), in_(in), call_(call) {}
-  void finish();
-
- private:
-  void read_parameters();
-  void finish_stages();
-  void finish_evolve();
-  void finish_batch();
-  void take_cloud();
-
-  const CLI::App& command_;
-  const CommandInputs& in_;
-  CommandLine& call_;
-};
-
-void RequestMaker::finish() {
-  call_.command = command_.get_name();
-  if (in_.quiet && in_.verbose) throw UsageError("-q and -v exclude each other");
-  call_.verbosity = in_.quiet ? Verbosity::Quiet : in_.verbose ? Verbosity::Verbose : Verbosity::Normal;
-  // The flags of all commands share their storage; only those of this one have been touched.
-  Parameters& parameters = call_.request.parameters;
+/// Parameters by the flags of this command. All commands share the storage of their flags; only those of this one have
+/// been touched.
+Parameters flag_parameters(const CLI::App& app, const CommandInputs& in) {
+  Parameters parameters;
   for (const ParamField& f : params_fields()) {
-    const CLI::Option* option = f.flag.empty() ? nullptr : command_.get_option_no_throw(f.flag);
+    const CLI::Option* option = f.flag.empty() ? nullptr : app.get_option_no_throw(f.flag);
     if (!option || option->count() == 0) continue;
     const bool is_switch = std::holds_alternative<bool>(f.preset);
-    parameters.set(f.key, is_switch ? (in_.switches.at(f.key) ? "true" : "false") : in_.values.at(f.key),
+    parameters.set(f.key, is_switch ? (in.switches.at(f.key) ? "true" : "false") : in.values.at(f.key),
                    ParamSource::Flag, f.flag);
   }
-  call_.formats = in_.formats;
-  require_formats(call_.formats);
-  parse_label_names(parameters.text("output.label_names"));
-  if (call_.command == "check") {
-    call_.action = CommandLine::Action::Check;
-    call_.mesh = in_.input;
-    if (!in_.against.empty()) call_.against = in_.against;
-    read_parameters();
-  } else if (call_.command == "inspect") {
-    call_.action = CommandLine::Action::Inspect;
-    call_.cloud = in_.input;
-  } else if (call_.command == "export") {
-    call_.action = CommandLine::Action::Export;
-    call_.request.case_folder = in_.input;
-    const fs::path toml = CasePaths{in_.input}.parameters();
-    if (fs::exists(toml)) parameters.load(toml, ParamSource::Case);
-    call_.formats = in_.formats;
-  } else if (call_.command == "report") {
-    call_.action = CommandLine::Action::Report;
-    call_.request.case_folder = in_.input;
-  } else if (call_.command == "view") {
-    call_.action = CommandLine::Action::View;
-    call_.request.case_folder = in_.input;
-  } else if (call_.command == "diff") {
-    call_.action = CommandLine::Action::Diff;
-    call_.case_a = in_.input;
-    call_.case_b = in_.other_case;
-  } else if (call_.command == "evolve") {
-    call_.action = CommandLine::Action::Evolve;
-    finish_evolve();
-  } else if (call_.command == "batch") {
-    call_.action = CommandLine::Action::Batch;
-    finish_batch();
-  } else {
-    call_.action = CommandLine::Action::Stages;
-    finish_stages();
-  }
+  require_formats(in.formats);
+  parse_label_names(parameters.output().label_names);
+  return parameters;
 }
 
-/// --set and --config. A file may be about more than this command; --set and flags are refused where they would change
-/// nothing.
-void RequestMaker::read_parameters() {
-  Parameters& parameters = call_.request.parameters;
-  for (const std::string& assignment : in_.assignments) parameters.set(assignment);
-  for (const Stage stage : {Stage::Cloud, Stage::LevelSet, Stage::Mesh}) {
-    const RunRequest& r = call_.request;
-    const bool runs = call_.action != CommandLine::Action::Check;
-    if (runs && stage >= r.from && stage <= r.until) continue;
+/// Adds --set and --config. A file may be about more than this command; --set and flags are refused where they would
+/// change nothing.
+/// @param runs  whether the command runs this stage
+template <class F>
+void read_parameters(const CommandInputs& in, const F& runs, Parameters& parameters) {
+  for (const std::string& assignment : in.assignments) parameters.set(assignment);
+  for (const Stage stage : kStages) {
+    if (runs(stage)) continue;
     for (const ParamField& f : params_fields()) {
       if (f.key.starts_with(std::string(section_of(stage)) + ".") && parameters.source(f.key) >= ParamSource::Set) {
         throw UsageError(f.key + " belongs to a stage that this command does not run");
       }
     }
   }
-  if (!in_.config.empty()) parameters.load(in_.config, ParamSource::File);
-}
-
-void RequestMaker::finish_evolve() {
-  if (in_.clouds.empty()) call_.request.from = Stage::Mesh;
-  read_parameters();
-  const bool formula = !call_.request.parameters.text("mesh.implicit").empty();
-  if (formula != in_.clouds.empty()) throw UsageError("evolve: give --implicit EXPR with --box, or --clouds LIST");
-  if (call_.request.parameters.integer("mesh.order") != 1) throw UsageError("evolve: mesh.order must be 1");
-  if (in_.output.empty()) throw UsageError("evolve: -o FOLDER is missing");
-  call_.evolve.folder = in_.output;
-  call_.evolve.clouds = in_.clouds;
-  call_.evolve.times = in_.times;
-  call_.evolve.skip = in_.skip;
-}
-
-void RequestMaker::finish_batch() {
-  read_parameters();
-  if (in_.output.empty()) throw UsageError("batch: -o FOLDER is missing");
-  if (!call_.request.parameters.text("mesh.implicit").empty()) throw UsageError("batch: mesh.implicit is no scan");
-  BatchRequest& batch = call_.batch;
-  batch.list = in_.input;
-  batch.folder = in_.output;
-  batch.resume = in_.resume;
-  batch.force = in_.force;
-  batch.strict = in_.strict;
-}
-
-void RequestMaker::finish_stages() {
-  const std::string name = command_.get_name();
-  RunRequest& request = call_.request;
-  Parameters& parameters = request.parameters;
-  request.force = in_.force;
-  request.strict = in_.strict;
-  request.report = !in_.no_report;
-  const bool input_is_case = !in_.input.empty() && (name == "mesh" || fs::is_directory(in_.input));
-  if (name == "reconstruct") request.until = Stage::LevelSet;
-  if (name == "mesh" || (name == "reconstruct" && input_is_case)) {
-    request.from = name == "mesh" ? Stage::Mesh : Stage::LevelSet;
-  }
-  if (!in_.from.empty()) request.from = parse_stage(in_.from);
-  if (!in_.until.empty()) request.until = parse_stage(in_.until);
-  if (!in_.formats.empty() && request.until != Stage::Mesh)
-    throw UsageError("--export needs a mesh, and --until is before it");
-  if (request.from > request.until) throw UsageError("--from " + in_.from + " is after --until " + in_.until);
-
-  read_parameters();
-  if (input_is_case) {
-    if (parameters.source("mesh.implicit") == ParamSource::Flag)
-      throw UsageError("--implicit goes with -o, without CASE");
-    if (!in_.output.empty() && fs::path(in_.output) != fs::path(in_.input)) {
-      throw UsageError("-o " + in_.output + ": the case is " + in_.input + " already");
-    }
-    request.case_folder = in_.input;
-    const fs::path toml = CasePaths{in_.input}.parameters();
-    if (!fs::exists(toml)) throw UsageError(in_.input + " is not a case: it has no case.toml");
-    parameters.load(toml, ParamSource::Case);
-    if (request.from == Stage::Cloud && parameters.source("cloud.file") > ParamSource::Case) take_cloud();
-    return;
-  }
-  if (in_.output.empty()) throw UsageError(name + ": -o CASE is missing");
-  request.case_folder = in_.output;
-  if (name == "mesh") {
-    if (parameters.text("mesh.implicit").empty())
-      throw UsageError("mesh: give a CASE, or --implicit EXPR with --box and -o");
-    return;
-  }
-  if (!in_.input.empty()) parameters.set("cloud.file", in_.input, ParamSource::Flag, "command line");
-  if (parameters.text("cloud.file").empty() && request.from == Stage::Cloud)
-    throw UsageError(name + ": CLOUD is missing");
-  if (request.from == Stage::Cloud) take_cloud();
+  if (!in.config.empty()) parameters.load(in.config, ParamSource::File);
 }
 
 /// The cloud that was named: to be read, and to be found again from another folder.
-void RequestMaker::take_cloud() {
-  Parameters& parameters = call_.request.parameters;
-  call_.request.source = parameters.text("cloud.file");
-  parameters.make_absolute("cloud.file");
+void take_cloud(RunRequest& request) {
+  request.source = request.parameters.cloud().file;
+  request.parameters.make_cloud_absolute();
 }
+
+/// The stages first..last of the case or cloud that was given, or as --from and --until say.
+/// @param input_is_case  the word that was given is no cloud
+Command make_stages(const CLI::App& app, const CommandInputs& in, Stage first, Stage last, bool input_is_case) {
+  RunRequest request;
+  request.parameters = flag_parameters(app, in);
+  Parameters& parameters = request.parameters;
+  request.force = in.force;
+  request.strict = in.strict;
+  request.report = !in.no_report;
+  request.from = in.from.empty() ? first : parse_stage(in.from);
+  request.until = in.until.empty() ? last : parse_stage(in.until);
+  if (!in.formats.empty() && request.until != Stage::Mesh)
+    throw UsageError("--export needs a mesh, and --until is before it");
+  if (request.from > request.until) throw UsageError("--from " + in.from + " is after --until " + in.until);
+
+  read_parameters(
+      in, [&](Stage stage) { return stage >= request.from && stage <= request.until; }, parameters);
+  if (input_is_case) {
+    if (parameters.source(keys::mesh::implicit) == ParamSource::Flag)
+      throw UsageError("--implicit goes with -o, without CASE");
+    if (!in.output.empty() && fs::path(in.output) != fs::path(in.input)) {
+      throw UsageError("-o " + in.output + ": the case is " + in.input + " already");
+    }
+    request.case_folder = in.input;
+    const fs::path toml = CasePaths{in.input}.parameters();
+    if (!fs::exists(toml)) throw UsageError(in.input + " is not a case: it has no case.toml");
+    parameters.load(toml, ParamSource::Case);
+    if (request.from == Stage::Cloud && parameters.source(keys::cloud::file) > ParamSource::Case) take_cloud(request);
+  } else {
+    const std::string name = app.get_name();
+    if (in.output.empty()) throw UsageError(name + ": -o CASE is missing");
+    request.case_folder = in.output;
+    if (first == Stage::Mesh) {
+      if (parameters.mesh().implicit.empty())
+        throw UsageError("mesh: give a CASE, or --implicit EXPR with --box and -o");
+    } else {
+      if (!in.input.empty()) parameters.set(keys::cloud::file, in.input, ParamSource::Flag, "command line");
+      if (parameters.cloud().file.empty() && request.from == Stage::Cloud)
+        throw UsageError(name + ": CLOUD is missing");
+      if (request.from == Stage::Cloud) take_cloud(request);
+    }
+  }
+  require_walls(parameters);
+  return RunCommand{std::move(request), in.formats};
+}
+
+bool is_folder(const std::string& input) { return !input.empty() && fs::is_directory(input); }
 
 }  // namespace
 
-void fill_request(const CLI::App& command, const CommandInputs& in, CommandLine& result) {
-  RequestMaker(command, in, result).finish();
+Command make_run(const CLI::App& app, const CommandInputs& in) {
+  return make_stages(app, in, Stage::Cloud, Stage::Mesh, is_folder(in.input));
 }
+
+Command make_reconstruct(const CLI::App& app, const CommandInputs& in) {
+  const bool again = is_folder(in.input);
+  return make_stages(app, in, again ? Stage::LevelSet : Stage::Cloud, Stage::LevelSet, again);
+}
+
+Command make_mesh(const CLI::App& app, const CommandInputs& in) {
+  return make_stages(app, in, Stage::Mesh, Stage::Mesh, !in.input.empty());
+}
+
+Command make_evolve(const CLI::App& app, const CommandInputs& in) {
+  EvolveRequest request;
+  request.parameters = flag_parameters(app, in);
+  const bool of_clouds = !in.clouds.empty();
+  read_parameters(
+      in, [&](Stage stage) { return of_clouds || stage == Stage::Mesh; }, request.parameters);
+  const bool formula = !request.parameters.mesh().implicit.empty();
+  if (formula == of_clouds) throw UsageError("evolve: give --implicit EXPR with --box, or --clouds LIST");
+  if (request.parameters.mesh().order != 1) throw UsageError("evolve: mesh.order must be 1");
+  if (in.output.empty()) throw UsageError("evolve: -o FOLDER is missing");
+  request.folder = in.output;
+  request.clouds = in.clouds;
+  request.times = in.times;
+  request.skip = in.skip;
+  require_walls(request.parameters);
+  return EvolveCommand{std::move(request)};
+}
+
+Command make_batch(const CLI::App& app, const CommandInputs& in) {
+  BatchRequest request;
+  request.parameters = flag_parameters(app, in);
+  read_parameters(
+      in, [](Stage) { return true; }, request.parameters);
+  if (in.output.empty()) throw UsageError("batch: -o FOLDER is missing");
+  if (!request.parameters.mesh().implicit.empty()) throw UsageError("batch: mesh.implicit is no scan");
+  request.list = in.input;
+  request.folder = in.output;
+  request.formats = in.formats;
+  request.jobs = in.jobs;
+  request.resume = in.resume;
+  request.force = in.force;
+  request.strict = in.strict;
+  require_walls(request.parameters);
+  return BatchCommand{std::move(request)};
+}
+
+Command make_inspect(const CLI::App&, const CommandInputs& in) { return InspectCommand{in.input}; }
+
+Command make_check(const CLI::App& app, const CommandInputs& in) {
+  CheckCommand command{in.input, {}, flag_parameters(app, in)};
+  if (!in.against.empty()) command.against = in.against;
+  read_parameters(
+      in, [](Stage) { return false; }, command.parameters);
+  require_walls(command.parameters);
+  return command;
+}
+
+Command make_export(const CLI::App& app, const CommandInputs& in) {
+  ExportCommand command{in.input, in.formats, flag_parameters(app, in)};
+  const fs::path toml = CasePaths{in.input}.parameters();
+  if (fs::exists(toml)) command.parameters.load(toml, ParamSource::Case);
+  require_walls(command.parameters);
+  return command;
+}
+
+Command make_report(const CLI::App&, const CommandInputs& in) { return ReportCommand{in.input}; }
+
+Command make_view(const CLI::App&, const CommandInputs& in) { return ViewCommand{in.input}; }
+
+Command make_diff(const CLI::App&, const CommandInputs& in) { return DiffCommand{in.input, in.other_case}; }
 
 }  // namespace umtet

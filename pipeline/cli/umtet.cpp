@@ -10,6 +10,7 @@
 #include <limits>
 #include <optional>
 #include <string_view>
+#include <variant>
 
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
@@ -48,27 +49,46 @@ Json names(const std::vector<std::filesystem::path>& files) {
   return list;
 }
 
-std::vector<std::filesystem::path> exports_of(const CommandLine& call, Progress& progress) {
-  set_work_at_hand("export");
-  const CasePaths paths{call.request.case_folder};
-  const CaseLock lock(paths.root);
-  return export_case(paths, call.formats, call.request.parameters, progress);
+Output output_of_files(const std::vector<std::filesystem::path>& files) {
+  return {ExitCode::Success, file_list(files), {{"files", names(files)}}};
 }
 
-Output run_stages(const CommandLine& call, Progress& progress) {
-  RunOutcome outcome = run_case(call.request, progress);
-  if (!call.formats.empty()) {
-    for (auto& file : exports_of(call, progress)) outcome.files.push_back(std::move(file));
+std::vector<std::filesystem::path> exports_of(const CasePaths& paths, const std::vector<std::string>& formats,
+                                              const Parameters& parameters, Progress& progress) {
+  set_work_at_hand("export");
+  const CaseLock lock(paths.root);
+  return export_case(paths, formats, parameters, progress);
+}
+
+void require_case(const std::filesystem::path& folder) {
+  if (!std::filesystem::exists(folder)) throw UsageError(folder.string() + ": there is no such case");
+}
+
+// perform() of every command does its work and says what goes to stdout.
+
+Output perform(const TextAnswer& command, const CommonOptions&, Progress&) {
+  return {ExitCode::Success, command.text, {}};
+}
+
+Output perform(RunCommand& command, const CommonOptions& options, Progress& progress) {
+  RunRequest& request = command.request;
+  request.threads = options.threads;
+  RunOutcome outcome = run_case(request, progress);
+  if (!command.formats.empty()) {
+    const CasePaths paths{request.case_folder, {}, request.stamps};
+    for (auto& file : exports_of(paths, command.formats, request.parameters, progress)) {
+      outcome.files.push_back(std::move(file));
+    }
   }
   progress.clear();
   if (outcome.stages_run.empty()) {
-    progress.say(fmt::format("nothing to do: {} is up to date", call.request.case_folder.string()));
+    progress.say(fmt::format("nothing to do: {} is up to date", request.case_folder.string()));
   }
   Json stages = Json::array();
   for (const Stage stage : outcome.stages_run) stages.push_back(to_string(stage));
   Output output;
   output.code = outcome.code;
-  output.document = {{"case", call.request.case_folder.string()},
+  output.document = {{"case", request.case_folder.string()},
                      {"stages_run", stages},
                      {"files", names(outcome.files)},
                      {"certificate", outcome.certificate ? *outcome.certificate : Json(nullptr)}};
@@ -77,139 +97,104 @@ Output run_stages(const CommandLine& call, Progress& progress) {
   return output;
 }
 
-Output check(const CommandLine& call, Progress& progress) {
+Output perform(const CheckCommand& command, const CommonOptions&, Progress& progress) {
   set_work_at_hand("check");
-  Output output;
-  const Json json = check_mesh(call.mesh, call.against, call.request.parameters, progress);
+  const Json json = check_mesh(command.mesh, command.against, command.parameters, progress);
   progress.clear();
-  if (json.at("verdict") != "pass") output.code = ExitCode::GateFailed;
-  output.document = {{"check", json}};
-  output.text = summary(json);
-  return output;
+  return {json.at("verdict") == "pass" ? ExitCode::Success : ExitCode::GateFailed, summary(json), {{"check", json}}};
 }
 
-Output inspect(const CommandLine& call, Progress& progress) {
+Output perform(const InspectCommand& command, const CommonOptions&, Progress& progress) {
   set_work_at_hand("inspect");
-  Output output;
-  const Json json = inspect_cloud(call.cloud, progress);
+  const Json json = inspect_cloud(command.cloud, progress);
   progress.clear();
-  output.document = {{"inspection", json}};
-  output.text = inspection_text(json);
-  return output;
+  return {ExitCode::Success, inspection_text(json), {{"inspection", json}}};
 }
 
-Output run_evolution(const CommandLine& call, Progress& progress) {
+Output perform(EvolveCommand& command, const CommonOptions& options, Progress& progress) {
   set_work_at_hand("evolve");
-  EvolveRequest request = call.evolve;
-  request.parameters = call.request.parameters;
-  request.threads = call.threads;
-  const EvolveOutcome outcome = evolve(request, progress);
+  command.request.threads = options.threads;
+  const EvolveOutcome outcome = evolve(command.request, progress);
   progress.clear();
-  Output output;
-  output.code = outcome.code;
-  output.document = {{"steps", outcome.steps}, {"files", names(outcome.files)}};
-  output.text = outcome.text + file_list(outcome.files);
-  return output;
+  return {outcome.code,
+          outcome.text + file_list(outcome.files),
+          {{"steps", outcome.steps}, {"files", names(outcome.files)}}};
 }
 
-Output run_scans(const CommandLine& call, Progress& progress) {
-  BatchRequest request = call.batch;
-  request.parameters = call.request.parameters;
-  request.formats = call.formats;
-  request.timeout = call.timeout;
-  request.threads = std::max(1, call.threads / request.jobs);
-  const BatchOutcome outcome = run_batch(request, progress);
+Output perform(BatchCommand& command, const CommonOptions& options, Progress& progress) {
+  command.request.timeout = options.timeout;
+  command.request.threads = std::max(1, options.threads / command.request.jobs);
+  const BatchOutcome outcome = run_batch(command.request, progress);
   progress.clear();
-  Output output;
-  output.code = outcome.code;
-  output.document = {{"scans", outcome.rows}, {"files", names(outcome.files)}};
-  output.text = outcome.text + file_list(outcome.files);
-  return output;
+  return {outcome.code,
+          outcome.text + file_list(outcome.files),
+          {{"scans", outcome.rows}, {"files", names(outcome.files)}}};
 }
 
-Output export_files(const CommandLine& call, Progress& progress) {
-  Output output;
-  const std::filesystem::path& folder = call.request.case_folder;
-  if (!std::filesystem::exists(folder)) throw UsageError(folder.string() + ": there is no such case");
-  const std::vector<std::filesystem::path> files = exports_of(call, progress);
+Output perform(const ExportCommand& command, const CommonOptions&, Progress& progress) {
+  require_case(command.case_folder);
+  const auto files = exports_of({command.case_folder}, command.formats, command.parameters, progress);
   progress.clear();
-  output.document = {{"files", names(files)}};
-  output.text = file_list(files);
-  return output;
+  return output_of_files(files);
 }
 
-Output make_report(const CommandLine& call, Progress& progress) {
+Output perform(const ReportCommand& command, const CommonOptions&, Progress& progress) {
   set_work_at_hand("report");
-  const CasePaths paths{call.request.case_folder};
-  if (!std::filesystem::exists(paths.root)) throw UsageError(paths.root.string() + ": there is no such case");
+  require_case(command.case_folder);
+  const CasePaths paths{command.case_folder};
   const CaseLock lock(paths.root);
   progress.report("report", "write", .5);
   report_case(paths);
   progress.clear();
-  Output output;
-  output.document = {{"files", names({paths.report()})}};
-  output.text = file_list({paths.report()});
-  return output;
+  return output_of_files({paths.report()});
 }
 
-Output view(const CommandLine& call, Progress& progress) {
+Output perform(const ViewCommand& command, const CommonOptions&, Progress& progress) {
   set_work_at_hand("view");
-  const CasePaths paths{call.request.case_folder};
-  if (!std::filesystem::exists(paths.root)) throw UsageError(paths.root.string() + ": there is no such case");
+  require_case(command.case_folder);
+  const CasePaths paths{command.case_folder};
   const CaseLock lock(paths.root);
   const std::vector<std::filesystem::path> files = write_view(paths, progress);
   progress.clear();
-  Output output;
-  output.document = {{"files", names(files)}};
-  output.text = file_list(files);
-  return output;
+  return output_of_files(files);
 }
 
-Output diff(const CommandLine& call, Progress& progress) {
+Output perform(const DiffCommand& command, const CommonOptions&, Progress& progress) {
   set_work_at_hand("diff");
-  const Json json = diff_cases({call.case_a}, {call.case_b}, progress);
+  const Json json = diff_cases({command.case_a}, {command.case_b}, progress);
   progress.clear();
-  Output output;
-  output.document = {{"diff", json}};
-  output.text = diff_text(json);
-  return output;
+  return {ExitCode::Success, diff_text(json), {{"diff", json}}};
+}
+
+/// Limits of memory and time that this process is to keep. Those of a batch are for its scans, each a process.
+void keep_limits(const Command& command, const CommonOptions& options) {
+  if (std::holds_alternative<BatchCommand>(command)) return;
+  const OutputParameters limits = std::visit(
+      [](const auto& c) {
+        if constexpr (requires { c.parameters; }) return c.parameters.output();
+        if constexpr (requires { c.request; }) return c.request.parameters.output();
+        return OutputParameters{};
+      },
+      command);
+  if (limits.max_memory > 0) limit_memory(1e9 * limits.max_memory, options.threads);
+  if (options.timeout > 0) stop_after(options.timeout);
 }
 
 /// @param json  is set as soon as the call is understood, for the document of a failure
-Output execute(int argc, char** argv, bool& json, std::string& command) {
+Output execute(int argc, char** argv, bool& json, std::string& name) {
   CommandLine call = parse_command_line(argc, argv);
-  if (call.action == CommandLine::Action::Text) return {ExitCode::Success, call.text, {}};
-  json = call.json;
-  command = call.command;
-  if (json) answer_stops_in_json(command.c_str());
-  if (call.threads == 0) call.threads = tbb::info::default_concurrency();
+  CommonOptions& options = call.options;
+  Progress progress(options.progress, options.verbosity);
+  if (std::holds_alternative<TextAnswer>(call.command))
+    return perform(std::get<TextAnswer>(call.command), options, progress);
+  json = options.json;
+  name = call.name;
+  if (json) answer_stops_in_json(name.c_str());
+  if (options.threads == 0) options.threads = tbb::info::default_concurrency();
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
-                                    static_cast<std::size_t>(call.threads));
-  call.request.threads = call.threads;
-  const double max_memory = 1e9 * call.request.parameters.real("output.max_memory");
-  if (max_memory > 0 && call.action != CommandLine::Action::Batch) limit_memory(max_memory, call.threads);
-  if (call.timeout > 0 && call.action != CommandLine::Action::Batch) stop_after(call.timeout);
-  Progress progress(call.progress, call.verbosity);
-  switch (call.action) {
-    case CommandLine::Action::Check:
-      return check(call, progress);
-    case CommandLine::Action::Inspect:
-      return inspect(call, progress);
-    case CommandLine::Action::Evolve:
-      return run_evolution(call, progress);
-    case CommandLine::Action::Batch:
-      return run_scans(call, progress);
-    case CommandLine::Action::Export:
-      return export_files(call, progress);
-    case CommandLine::Action::Report:
-      return make_report(call, progress);
-    case CommandLine::Action::View:
-      return view(call, progress);
-    case CommandLine::Action::Diff:
-      return diff(call, progress);
-    default:
-      return run_stages(call, progress);
-  }
+                                    static_cast<std::size_t>(options.threads));
+  keep_limits(call.command, options);
+  return std::visit([&](auto& command) { return perform(command, options, progress); }, call.command);
 }
 
 /// To stderr, if it can be written; where it cannot, the exit code has to do. (fmt::print would throw.)

@@ -28,32 +28,32 @@ BackgroundMesh read_background(const fs::path& file, const Vec3& shift) {
 }  // namespace
 
 std::optional<fs::path> background_file(const Parameters& parameters) {
-  const std::string& name = parameters.text("mesh.background");
+  const std::string& name = parameters.mesh().background;
   const auto names = tiling_names();
   if (std::find(names.begin(), names.end(), name) != names.end()) return std::nullopt;
   return name;
 }
 
 void require_walls(const Parameters& parameters) {
-  const bool walls = parameters.flag("mesh.box_walls");
-  if (walls && parameters.text("mesh.background") != "a15") throw UsageError("--box-walls is for --background a15");
-  if (walls || !parameters.flag("mesh.complement")) return;
+  const bool walls = parameters.mesh().box_walls;
+  if (walls && parameters.mesh().background != "a15") throw UsageError("--box-walls is for --background a15");
+  if (walls || !parameters.mesh().complement) return;
   throw UsageError("--complement needs --box-walls: what is around the body ends at the flat walls of --box");
 }
 
 ClassificationSource classification_source(const Parameters& parameters) {
   const bool chosen =
-      parameters.text("mesh.mode") == "fast" && !parameters.flag("mesh.box_walls") && !background_file(parameters);
+      parameters.mesh().mode == MeshingMode::Fast && !parameters.mesh().box_walls && !background_file(parameters);
   return chosen ? ClassificationSource::Chosen : ClassificationSource::Psi;
 }
 
 BackgroundChoice::BackgroundChoice(const Parameters& parameters, const Domain& domain)
-    : tiling_(&a15()), labels_(classification_source(parameters)), walls_(parameters.flag("mesh.box_walls")) {
+    : tiling_(&a15()), labels_(classification_source(parameters)), walls_(parameters.mesh().box_walls) {
   require_walls(parameters);
   const std::optional<fs::path> file = background_file(parameters);
-  if (!file) tiling_ = &tiling_named(parameters.text("mesh.background"));
+  if (!file) tiling_ = &tiling_named(parameters.mesh().background);
   if (!file) return;
-  if (parameters.real("mesh.h") > 0 || parameters.integer("mesh.tets") > 0) {
+  if (parameters.mesh().h > 0 || parameters.mesh().tets > 0) {
     throw UsageError("--h and --tets: " + file->string() + " has its own edge lengths");
   }
   given_.emplace(read_background(*file, domain.shift));

@@ -21,7 +21,7 @@ Json run_of(const CasePaths& paths, const StageRecord& mesh, const Parameters& p
     peak = std::max(peak, record.run.value("peak_memory_MB", 0.));
   };
   Json points_per_s = nullptr;
-  if (parameters.text("mesh.implicit").empty()) {
+  if (parameters.mesh().implicit.empty()) {
     for (const Stage stage : {Stage::Cloud, Stage::LevelSet}) {
       const StageState state = inspect_stage(paths, stage, parameters.section(section_of(stage)), std::nullopt);
       if (!state.record) continue;
@@ -114,7 +114,7 @@ std::string thin_lines(const Json& c) {
 void judge(Json& measured, const Parameters& parameters) {
   std::vector<std::string> reasons = measured.at("reasons");
   measured.erase("reasons");  // they go behind the verdict
-  const double gate = parameters.real("output.min_quality"), q = measured.at("quality").at("min");
+  const double gate = parameters.output().min_quality, q = measured.at("quality").at("min");
   measured["gates"] = {{"min_quality", gate > 0 ? Json(gate) : Json(nullptr)}, {"volume_gap", kMostGap}};
   if (gate > 0 && q < gate) reasons.push_back(fmt::format("min quality {:.4f} is below the gate of {:.4f}", q, gate));
   measured["verdict"] = reasons.empty() ? "pass" : "fail";
@@ -123,10 +123,10 @@ void judge(Json& measured, const Parameters& parameters) {
 
 Json verdict_on(const Json& measured, const Parameters& parameters) {
   Json json = {{"schema", kSchema}, {"tool", "umtet"}, {"version", kVersion}};
-  const std::string& units = parameters.text("output.units");
+  const std::string& units = parameters.output().units;
   json["units"] = units.empty() ? Json(nullptr) : Json(units);
   json.update(measured);
-  const std::int64_t asked = parameters.integer("mesh.tets");
+  const std::int64_t asked = parameters.mesh().tets;
   json["n_tets_asked"] = asked > 0 ? Json(asked) : Json(nullptr);
   judge(json, parameters);
   json["remedy"] = json["reasons"].empty() ? Json(nullptr) : Json(remedy(json));

@@ -101,13 +101,13 @@ Json check_mesh(const fs::path& file, const std::optional<fs::path>& against, co
   stop_if_interrupted();
   Json second = nullptr;
   if (content.quadratic) second = check_second_order(*content.quadratic, input, certificate.h, reasons);
-  const double min_quality = parameters.real("output.min_quality");
+  const double min_quality = parameters.output().min_quality;
   if (min_quality > 0 && certificate.quality.min < min_quality) {
     reasons.push_back(
         fmt::format("min quality {:.4f} is below the gate of {:.4f}", certificate.quality.min, min_quality));
   }
   Json json = {{"schema", 1}, {"tool", "umtet"}, {"version", kVersion}, {"mesh", file.string()}};
-  const std::string& units = parameters.text("output.units");
+  const std::string& units = parameters.output().units;
   json["units"] = units.empty() ? Json(nullptr) : Json(units);
   json.update(to_json(certificate));
   json["order"] = content.quadratic ? 2 : 1;

@@ -23,13 +23,13 @@ constexpr double kLeastSpacing = .7;
 }  // namespace
 
 Domain formula_domain(const Parameters& parameters, std::optional<double> t) {
-  const std::optional<Box> box = parse_box(parameters.text("mesh.box"));
+  const std::optional<Box> box = parse_box(parameters.mesh().box);
   if (!box) throw UsageError("--implicit needs --box x0,y0,z0,x1,y1,z1");
   Domain domain;
-  domain.formula.emplace(parameters.text("mesh.implicit"), t);
+  domain.formula.emplace(parameters.mesh().implicit, t);
   domain.box = *box;
   domain.diagonal = box->diagonal().norm();
-  domain.complement = parameters.flag("mesh.complement");
+  domain.complement = parameters.mesh().complement;
   return domain;
 }
 
@@ -57,11 +57,11 @@ double Domain::evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const {
 ImplicitFunctionRef Domain::psi() const { return complement ? ImplicitFunctionRef(*this) : body(); }
 
 Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handover* handover) {
-  if (!parameters.text("mesh.implicit").empty()) return formula_domain(parameters);
+  if (!parameters.mesh().implicit.empty()) return formula_domain(parameters);
   const StageState state = inspect_stage(paths, Stage::LevelSet, parameters.section("reconstruct"), std::nullopt);
   if (!state.record) throw ArtefactDamaged(state.reason);
   Domain domain;
-  domain.complement = parameters.flag("mesh.complement");
+  domain.complement = parameters.mesh().complement;
   domain.shift = recorded_vector(*state.record, "shift");
   domain.cloud_spacing = state.record->numbers.value("cloud_spacing", 0.);
   if (state.record->numbers.contains("noise")) domain.noise = state.record->numbers.at("noise").get<double>();
@@ -84,7 +84,7 @@ Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handove
   if (!domain.cloud.points.empty()) domain.samples = std::make_shared<const SampleDistance>(domain.cloud.points);
   domain.diagonal = cloud_box.diagonal().norm();
   domain.box = domain.level_set->domain();
-  if (const std::optional<Box> box = parse_box(parameters.text("mesh.box"))) {
+  if (const std::optional<Box> box = parse_box(parameters.mesh().box)) {
     domain.box = Box(box->min() - domain.shift, box->max() - domain.shift);
   }
   return domain;

@@ -37,7 +37,7 @@ constexpr std::size_t kThicknessSamples = 20000;
 /// \throw MeshingImpossible when psi < 0 at none of the places where it is sampled
 double h_of(const Domain& domain, const Parameters& parameters, std::int64_t n_tets) {
   try {
-    return h_for_tets(tiling_named(parameters.text("mesh.background")), domain.size(), static_cast<double>(n_tets),
+    return h_for_tets(tiling_named(parameters.mesh().background), domain.size(), static_cast<double>(n_tets),
                       classification_source(parameters));
   } catch (const std::invalid_argument& e) {
     throw MeshingImpossible(std::string("no edge length can be chosen: ") + e.what() +
@@ -47,7 +47,7 @@ double h_of(const Domain& domain, const Parameters& parameters, std::int64_t n_t
 
 /// \throw ResourceLimit
 void refuse_too_many(const Domain& domain, const Parameters& parameters, double h) {
-  const std::int64_t max_tets = parameters.integer("mesh.max_tets");
+  const std::int64_t max_tets = parameters.mesh().max_tets;
   double least = 0;
   try {
     least = h_of(domain, parameters, max_tets);
@@ -74,7 +74,7 @@ double thin_part(const Domain& domain, double limit, const KeepGoing& keep_going
 
 /// By curvature. \throw ResourceLimit
 EdgeLength by_deviation(Domain& domain, const Parameters& parameters, double deviation, const KeepGoing& keep_going) {
-  const std::int64_t max_tets = parameters.integer("mesh.max_tets");
+  const std::int64_t max_tets = parameters.mesh().max_tets;
   const double least = h_of(domain, parameters, max_tets);
   const double h = h_for_deviation(domain, deviation, kMostOfDiagonal * domain.diagonal, least, keep_going);
   if (h > least) return {h, least};
@@ -86,16 +86,16 @@ EdgeLength by_deviation(Domain& domain, const Parameters& parameters, double dev
 
 /// The choice, without regard to how it will be written.
 EdgeLength choose(Domain& domain, const Parameters& parameters, const KeepGoing& keep_going) {
-  if (const std::int64_t n = parameters.integer("mesh.tets")) {
+  if (const std::int64_t n = parameters.mesh().tets) {
     const double h = h_of(domain, parameters, n);
     return {h, h};
   }
-  const std::int64_t max_tets = parameters.integer("mesh.max_tets");
-  if (const double h = parameters.real("mesh.h"); h > 0) {
+  const std::int64_t max_tets = parameters.mesh().max_tets;
+  if (const double h = parameters.mesh().h; h > 0) {
     refuse_too_many(domain, parameters, h);
     return {h, h};
   }
-  if (const double deviation = parameters.real("mesh.max_deviation"); deviation > 0) {
+  if (const double deviation = parameters.mesh().max_deviation; deviation > 0) {
     return by_deviation(domain, parameters, deviation, keep_going);
   }
   const double least = h_of(domain, parameters, max_tets);
@@ -123,7 +123,7 @@ double coordinate_rounding(const Domain& domain) {
 }
 
 double least_h_of_max_tets(const Domain& domain, const Parameters& parameters) {
-  return h_of(domain, parameters, parameters.integer("mesh.max_tets"));
+  return h_of(domain, parameters, parameters.mesh().max_tets);
 }
 
 double least_h_in_file(const Domain& domain) { return coordinate_rounding(domain) / kMostRounding; }

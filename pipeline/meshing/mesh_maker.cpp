@@ -39,13 +39,13 @@ void MeshMaker::begin(const char* step) const {
 bool MeshMaker::observe(const UmProgress& p) {
   const std::string_view step = p.step;
   if (step == "submesh" && !may_miss_) {
-    const double ratio = static_cast<double>(p.n_tets) / static_cast<double>(parameters_.integer("mesh.tets"));
+    const double ratio = static_cast<double>(p.n_tets) / static_cast<double>(parameters_.mesh().tets);
     if (std::abs(ratio - 1) > kTetsTolerance) {
       missed_by_ = ratio;
       return false;
     }
   }
-  if (parameters_.flag("mesh.keep_iterates") && step == "project" && p.sweep == p.n_sweeps) iterates_.push_back(*p.V);
+  if (parameters_.mesh().keep_iterates && step == "project" && p.sweep == p.n_sweeps) iterates_.push_back(*p.V);
   return !watch_.progress || watch_.progress(p);
 }
 
@@ -99,13 +99,13 @@ MeshAttempt MeshMaker::attempt(const BackgroundMesh& background, double h) {
   if (!a.made()) return a;
   a.measured = measure(domain_, a.result, pieces, h, watch_.keep_going);
   check_lost(domain_, a.result, a.thin, a.measured, watch_.keep_going);
-  check_deviation(parameters_.real("mesh.max_deviation"), a.measured);
+  check_deviation(parameters_.mesh().max_deviation, a.measured);
   curve(a);
   return a;
 }
 
 void MeshMaker::curve(MeshAttempt& a) const {
-  const std::int64_t order = parameters_.integer("mesh.order");
+  const std::int64_t order = parameters_.mesh().order;
   a.measured["order"] = order;
   a.measured["second_order"] = nullptr;
   if (order < 2) return;
@@ -117,7 +117,7 @@ void MeshMaker::curve(MeshAttempt& a) const {
 /// The estimate behind mesh.tets knows the shape from a few thousand samples. Where it is far off, the number of tets
 /// at one h gives the next, before anything is moved. Few tets jump with h, to either side of the number asked for.
 MeshAttempt MeshMaker::attempt_for_tets(double h, const std::function<BackgroundMesh(double h)>& background) {
-  may_miss_ = parameters_.integer("mesh.tets") == 0;
+  may_miss_ = parameters_.mesh().tets == 0;
   double nearest = h, least_miss = std::numeric_limits<double>::infinity();
   std::optional<double> makes_more, makes_less;
   for (int k = 1;; ++k) {
@@ -146,7 +146,7 @@ MeshAttempt MeshMaker::best(const EdgeLength& choice, const std::function<Backgr
 }
 
 bool MeshMaker::is_refused_as_thin(const MeshAttempt& a) const {
-  if (a.thin.empty() || parameters_.flag("mesh.allow_thin") || a.is_right()) return false;
+  if (a.thin.empty() || parameters_.mesh().allow_thin || a.is_right()) return false;
   return !a.made() || !is_only_coarse(a.measured);
 }
 

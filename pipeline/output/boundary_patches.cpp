@@ -88,7 +88,7 @@ std::vector<int> distinct(std::vector<int> labels) {
 
 void divide_by_labels(SolverMesh& mesh, const std::vector<char>& at_wall, const OrientedPointCloud& cloud,
                       const Parameters& parameters, const Warn& warn) {
-  const std::map<int, std::string> names = parse_label_names(parameters.text("output.label_names"));
+  const std::map<int, std::string> names = parse_label_names(parameters.output().label_names);
   const std::vector<int> in_cloud = distinct(cloud.labels);
   for (const auto& [label, name] : names) {
     if (has_walls(at_wall) && lower_case(name) == kWalls) {
@@ -102,7 +102,7 @@ void divide_by_labels(SolverMesh& mesh, const std::vector<char>& at_wall, const 
   const FaceGeometry faces = face_geometry(mesh);
   const auto is_wall = [&](std::size_t f) { return !at_wall.empty() && at_wall[f]; };
   std::vector<int> labels = vote_labels(cloud, faces.centroid, faces.normal);
-  double least = parameters.real("output.label_min_area");
+  double least = parameters.output().label_min_area;
   if (least < 0) {
     double area = 0;
     for (std::size_t f = 0; f < faces.area.size(); ++f) area += is_wall(f) ? 0 : faces.area[f];
@@ -169,11 +169,11 @@ std::vector<char> faces_at_walls(const SolverMesh& mesh, const MeshFile& file) {
 void divide_boundary(SolverMesh& mesh, const std::vector<char>& at_wall, const OrientedPointCloud& cloud,
                      const Parameters& parameters, const Warn& warn) {
   if (!cloud.labels.empty()) return divide_by_labels(mesh, at_wall, cloud, parameters, warn);
-  if (!parameters.text("output.label_names").empty()) {
+  if (!parameters.output().label_names.empty()) {
     throw UsageError(
         "--label-names: the points have no labels (PLY property label, PCD field label, or a last column)");
   }
-  const double angle = parameters.real("output.patch_angle"), planar = parameters.real("output.patch_planar");
+  const double angle = parameters.output().patch_angle, planar = parameters.output().patch_planar;
   if (planar > 0 && mesh.n_faces() > 0) {
     if (divide_by_planes(mesh, at_wall, planar)) return;
     warn(fmt::format("no part of the boundary is flat within {} degrees", planar));

@@ -140,7 +140,7 @@ struct Figures {
 
 Figures figures_of(const CasePaths& paths, const Parameters& parameters, const MeshFile& mesh,
                    const Json& certificate) {
-  const bool of_cloud = parameters.text("mesh.implicit").empty();
+  const bool of_cloud = parameters.mesh().implicit.empty();
   std::vector<Json> records;
   if (of_cloud) records = {record_of(paths, Stage::Cloud), record_of(paths, Stage::LevelSet)};
   records.push_back(record_of(paths, Stage::Mesh));
@@ -172,9 +172,8 @@ SolverMesh divided(const MeshFile& mesh, const Domain& domain, const Parameters&
 
 /// What patches depend on beside the mesh.
 std::string patch_settings(const Parameters& parameters) {
-  return html_text(fmt::format("{} {} {} {}", parameters.text("output.label_names"),
-                               parameters.real("output.label_min_area"), parameters.real("output.patch_angle"),
-                               parameters.real("output.patch_planar")));
+  return html_text(fmt::format("{} {} {} {}", parameters.output().label_names, parameters.output().label_min_area,
+                               parameters.output().patch_angle, parameters.output().patch_planar));
 }
 
 std::string checksum_of(const Json& certificate) { return certificate.at("run").value("checksum", ""); }
@@ -236,7 +235,7 @@ void report_case(const CasePaths& paths) {
   }
   Parameters parameters;
   parameters.load(paths.parameters(), ParamSource::Case);
-  const bool formula = !parameters.text("mesh.implicit").empty();
+  const bool formula = !parameters.mesh().implicit.empty();
   for (const Stage stage : kStages) {
     if (formula && stage != Stage::Mesh) continue;
     const StageState state = inspect_stage(paths, stage, parameters.section(section_of(stage)), std::nullopt);

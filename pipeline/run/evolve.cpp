@@ -63,7 +63,7 @@ class Evolution {
  private:
   void take_folder();
   CasePaths case_of(const Step& step) const {
-    return {request_.folder / "clouds" / fs::path(step.file).replace_extension()};
+    return {request_.folder / "clouds" / fs::path(step.file).replace_extension(), {}, stamps_};
   }
   Domain domain_of(const Step& step) const;
   void look_at(Step& step);
@@ -86,6 +86,7 @@ class Evolution {
   std::optional<Domain> first_;  ///< of the first instant that has one, its box that of all
   double h_ = 0;
   std::optional<BackgroundMesh> background_;
+  const std::shared_ptr<FileStamps> stamps_ = std::make_shared<FileStamps>();
 };
 
 /// Runs f; what goes wrong with this instant alone is written down.
@@ -134,9 +135,10 @@ void Evolution::look_at(Step& step) {
     report(step, "level set", 0);
     RunRequest run;
     run.case_folder = case_of(step).root;
+    run.stamps = stamps_;
     run.source = step.at.cloud;
     run.parameters = parameters_;
-    run.parameters.set("cloud.file", step.at.cloud.string(), ParamSource::Flag, "--clouds");
+    run.parameters.set(keys::cloud::file, step.at.cloud.string(), ParamSource::Flag, "--clouds");
     run.until = Stage::LevelSet;
     run.threads = request_.threads;
     run_case(run, progress_);
@@ -149,7 +151,7 @@ void Evolution::look_at(Step& step) {
                     "are shifted, not alike: move all clouds nearer to the origin",
                     d.x(), d.y(), d.z()));
   }
-  const bool counts = !first_ || parameters_.integer("mesh.tets") == 0;
+  const bool counts = !first_ || parameters_.mesh().tets == 0;
   if (counts) {
     const double h = choose_edge_length(domain, parameters_, not_interrupted).h;
     h_ = first_ ? std::min(h_, h) : h;
@@ -163,7 +165,7 @@ void Evolution::look_at(Step& step) {
 
 void Evolution::choose_background() {
   // A formula has one box at all times; with h given, too, the others can wait until it is their turn.
-  const bool one_tells_all = !of_clouds_ && (parameters_.real("mesh.h") > 0 || parameters_.integer("mesh.tets") > 0);
+  const bool one_tells_all = !of_clouds_ && (parameters_.mesh().h > 0 || parameters_.mesh().tets > 0);
   for (Step& step : steps_) {
     stop_if_interrupted();
     guarded(step, [&] { look_at(step); });
@@ -173,7 +175,7 @@ void Evolution::choose_background() {
   const BackgroundChoice choice(parameters_, *first_);
   if (choice.own_h()) h_ = *choice.own_h();
   first_->limit_detail(h_);
-  background_ = choice.make(*first_, h_, parameters_.integer("mesh.tets"), allowed_bytes(parameters_));
+  background_ = choice.make(*first_, h_, parameters_.mesh().tets, allowed_bytes(parameters_));
   progress_.say(fmt::format("one background of {} tets, h = {:.6g}", background_->n_tets(), h_));
 }
 

@@ -51,7 +51,7 @@ bool renews_any(const CasePaths& paths) {
 
 bool same_mesh(const CasePaths& paths) {
   const CasePaths former{paths.root};
-  return fs::exists(former.mesh()) && stamp(former.mesh()) == stamp(paths.mesh());
+  return fs::exists(former.mesh()) && paths.stamps->of(former.mesh()) == paths.stamps->of(paths.mesh());
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ class CaseRun {
   CaseRun(const RunRequest& request, Progress& progress)
       : request_(request),
         progress_(progress),
-        paths_{request.case_folder},
+        paths_{request.case_folder, {}, request.stamps},
         parameters_(request.parameters),
         context_{paths_, parameters_, progress, request.threads, handover_} {}
 
@@ -71,7 +71,8 @@ StageState CaseRun::state_of(Stage stage) const {
   // A stage that is taken as it is may have been made from other input.
   if (stage >= request_.from) {
     if (stage != Stage::Cloud) inputs = recorded_inputs(paths_, stage, parameters_);
-    if (stage == Stage::Cloud && !request_.source.empty()) inputs = source_inputs(request_.source, parameters_);
+    if (stage == Stage::Cloud && !request_.source.empty())
+      inputs = source_inputs(request_.source, parameters_, *paths_.stamps);
   }
   return inspect_stage(paths_, stage, parameters_.section(section_of(stage)), inputs);
 }
@@ -130,7 +131,7 @@ void CaseRun::run(Stage stage) {
 void CaseRun::compute(Stage stage) {
   if (stage == Stage::Cloud) {
     fs::path source = request_.source;
-    if (source.empty()) source = parameters_.text("cloud.file");
+    if (source.empty()) source = parameters_.cloud().file;
     if (source.empty()) throw UsageError("no cloud: give one");
     run_cloud_stage(context_, source);
   } else if (stage == Stage::LevelSet) {
@@ -176,7 +177,7 @@ RunOutcome CaseRun::operator()() {
   refuse_foreign_folder(paths_);
   remove_stale_temporaries(paths_.root);  // of a run that was killed when its stages were done
   take_former_parameters();
-  const bool of_formula = request_.until == Stage::Mesh && !parameters_.text("mesh.implicit").empty();
+  const bool of_formula = request_.until == Stage::Mesh && !parameters_.mesh().implicit.empty();
   std::vector<StageRecord> records;
   for (const Stage stage : kStages) {
     if (stage <= request_.until && (!of_formula || stage == Stage::Mesh)) records.push_back(ensure(stage));

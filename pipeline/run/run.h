@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,8 @@ struct RunRequest {
   bool strict = false;  ///< a damaged artefact is an error instead of a reason to make it again
   bool report = true;   ///< make report.html beside a certificate
   int threads = 1;
+  /// Of the files that are known by now; after the run those of the case, too.
+  std::shared_ptr<FileStamps> stamps = std::make_shared<FileStamps>();
 };
 
 struct RunOutcome {

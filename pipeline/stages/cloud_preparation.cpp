@@ -69,7 +69,7 @@ class Preparation {
 
 void Preparation::clean_points() {
   CleaningParams params;
-  params.outliers = !parameters_.flag("cloud.keep_all");
+  params.outliers = !parameters_.cloud().keep_all;
   const CleaningReport r = clean(cloud_, params, &near_);
   result_.numbers["dropped"] = {{"not_finite", report_.n_points_dropped + r.n_not_finite},
                                 {"duplicates", r.n_duplicates},
@@ -115,11 +115,11 @@ void Preparation::fill_missing() {
 }
 
 void Preparation::find_normals() {
-  const std::string& how = parameters_.text("cloud.normals");
-  if (!cloud_.normals.empty() && how != "estimate") {
+  const NormalsOf how = parameters_.cloud().normals;
+  if (!cloud_.normals.empty() && how != NormalsOf::Estimate) {
     normals_["source"] = "given";
     fill_missing();
-    if (how == "given") {
+    if (how == NormalsOf::Given) {
       normals_["consistency"] = consistency(cloud_, {}, &near_);
       return;
     }
@@ -163,10 +163,10 @@ void Preparation::drop_undefined() {
 }
 
 void Preparation::orient_as_told() {
-  if (const std::string& file = parameters_.text("cloud.orient_from"); !file.empty()) {
+  if (const std::string& file = parameters_.cloud().orient_from; !file.empty()) {
     normals_["turned_to_viewpoints"] = orient_from(cloud_, read_viewpoints(file));
   }
-  if (parameters_.flag("cloud.flip")) flip(cloud_);
+  if (parameters_.cloud().flip) flip(cloud_);
 }
 
 PreparedCloud Preparation::operator()() {
@@ -199,15 +199,15 @@ void require_regular_file(const fs::path& file) {
   }
 }
 
-std::vector<RecordedFile> source_inputs(const fs::path& source, const Parameters& parameters) {
-  const auto input = [](const char* name, const fs::path& file) {
+std::vector<RecordedFile> source_inputs(const fs::path& source, const Parameters& parameters, FileStamps& stamps) {
+  const auto input = [&stamps](const char* name, const fs::path& file) {
     require_regular_file(file);
-    return RecordedFile{name, stamp(file)};
+    return RecordedFile{name, stamps.of(file)};
   };
   require_regular_file(source);
   check_scan_head(source);  // gigabytes that are no cloud are not read for their checksum
   std::vector<RecordedFile> inputs = {input("source", source)};
-  const std::string& viewpoints = parameters.text("cloud.orient_from");
+  const std::string& viewpoints = parameters.cloud().orient_from;
   if (!viewpoints.empty() && is_too_large_a_text(viewpoints))
     throw CloudRefused(viewpoints + ": too large for viewpoints, lines x y z");
   if (!viewpoints.empty()) inputs.push_back(input("viewpoints", viewpoints));

@@ -24,7 +24,8 @@ void require_regular_file(const std::filesystem::path& file);
 
 /// The files that 1-cloud reads: the user's cloud, and the viewpoints of cloud.orient_from.
 /// \throw CloudRefused (not a regular file), std::system_error
-std::vector<RecordedFile> source_inputs(const std::filesystem::path& source, const Parameters& parameters);
+std::vector<RecordedFile> source_inputs(const std::filesystem::path& source, const Parameters& parameters,
+                                        FileStamps& stamps);
 
 /// Sorts a scan in space, cleans it and gives every point an outward normal, as the parameters of the section `cloud`
 /// say.

@@ -16,7 +16,7 @@ void run_cloud_stage(const StageContext& context, const fs::path& source) {
   const auto start = std::chrono::steady_clock::now();
   context.progress.report("cloud", "read", 0);
   // Stamped before they are parsed: if a file changes meanwhile, the next run sees other bytes and reads it again.
-  const std::vector<RecordedFile> inputs = source_inputs(source, context.parameters);
+  const std::vector<RecordedFile> inputs = source_inputs(source, context.parameters, *context.paths.stamps);
   CloudFile file = read_scan(source);
   context.progress.report("cloud", "prepare", .2);
   PreparedCloud prepared = prepare_cloud(std::move(file), source, context.parameters);

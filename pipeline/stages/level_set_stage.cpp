@@ -71,7 +71,7 @@ void run_level_set_stage(const StageContext& context) {
 
   params.max_memory = allowed_bytes(context.parameters);
   context.progress.report("level-set", "noise", 0);
-  const double noise = context.parameters.real("reconstruct.noise");
+  const double noise = context.parameters.reconstruct().noise;
   Json thickness;
   {
     const NeighbourTree tree(cloud.points);

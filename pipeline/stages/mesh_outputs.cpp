@@ -82,7 +82,7 @@ std::vector<std::string> write_mesh_outputs(const StageContext& context, const D
     write("mesh.vtu");
   }
   context.handover.mesh = std::move(content);
-  if (context.parameters.flag("mesh.keep_iterates")) {
+  if (context.parameters.mesh().keep_iterates) {
     write_text_artefact(folder / "iterates.pvd", series_of(names));
     names.emplace_back("iterates.pvd");
   }

@@ -59,7 +59,7 @@ MeshWatch MeshStage::watch() {
 }
 
 bool MeshStage::observe(const UmProgress& p) {
-  const double n_rounds = static_cast<double>(context_.parameters.integer("mesh.projection_passes")) + 1;
+  const double n_rounds = static_cast<double>(context_.parameters.mesh().projection_passes) + 1;
   const std::string_view step = p.step;
   double rounds = 0;
   if (step == "project") rounds = p.pass - 1 + static_cast<double>(p.sweep) / std::max(p.n_sweeps, 1);
@@ -71,8 +71,8 @@ bool MeshStage::observe(const UmProgress& p) {
 BackgroundMesh MeshStage::background_of(double h) {
   stop_if_interrupted();
   const Parameters& p = context_.parameters;
-  BackgroundMesh made = background_.make(domain_, h, p.integer("mesh.tets"), allowed_bytes(p));
-  const double n_iterates = p.flag("mesh.keep_iterates") ? static_cast<double>(p.integer("mesh.projection_passes")) : 0;
+  BackgroundMesh made = background_.make(domain_, h, p.mesh().tets, allowed_bytes(p));
+  const double n_iterates = p.mesh().keep_iterates ? static_cast<double>(p.mesh().projection_passes) : 0;
   require_disk(context_.paths.root, (3 + n_iterates) * background_.expected_tets(domain_, h));
   return made;
 }
@@ -110,7 +110,7 @@ std::string MeshStage::remedy_for(const ThinPlaces& thin, Json& h_enough) {
   if (!(domain_.size().volume > 0)) return fmt::format("h = {:.3g} may show them", thin.h_needed());
   const EdgeLength enough = enough_for(thin);
   if (!(enough.h < thin.h && enough.h > enough.least)) {
-    return fmt::format("that takes more than {} tets: raise --max-tets", context_.parameters.integer("mesh.max_tets"));
+    return fmt::format("that takes more than {} tets: raise --max-tets", context_.parameters.mesh().max_tets);
   }
   h_enough = enough.h;
   return fmt::format("h = {:.3g} is enough, about {:.2g} tets", enough.h, background_.expected_tets(domain_, enough.h));

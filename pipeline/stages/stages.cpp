@@ -12,9 +12,9 @@ namespace fs = std::filesystem;
 std::vector<RecordedFile> recorded_inputs(const CasePaths& paths, Stage stage, const Parameters& parameters) {
   std::vector<RecordedFile> inputs;
   if (stage == Stage::Mesh) {
-    if (const auto file = background_file(parameters)) inputs.push_back({file->string(), stamp(*file)});
+    if (const auto file = background_file(parameters)) inputs.push_back({file->string(), paths.stamps->of(*file)});
   }
-  const bool formula = stage == Stage::Mesh && !parameters.text("mesh.implicit").empty();
+  const bool formula = stage == Stage::Mesh && !parameters.mesh().implicit.empty();
   if (stage == Stage::Cloud || formula) return inputs;
   for (const Stage source : {Stage::Cloud, Stage::LevelSet}) {
     if (source >= stage) break;

@@ -6,6 +6,9 @@
 
 namespace umtet::detail {
 
+/// The least value of parameters that must be > 0.
+inline constexpr double kAboveZero = 1e-300;
+
 /// The row of a key. \throw UsageError that names the nearest
 const ParamField& field(const std::string& key);
 

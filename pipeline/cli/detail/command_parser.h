@@ -16,8 +16,25 @@ struct CommandInputs {
   std::vector<std::string> assignments, formats;
   std::map<std::string, std::string> values;  ///< by key
   std::map<std::string, bool> switches;       ///< by key
+  int jobs = 1;
   bool force = false, strict = false, resume = false, no_report = false, quiet = false, verbose = false;
 };
+
+/// Makes a command of what was read.
+/// @param app  the one that was called: tells which flags were given
+/// \throw UsageError; std::system_error for a --config or case.toml that cannot be read
+using CommandMaker = Command (*)(const CLI::App& app, const CommandInputs& in);
+Command make_run(const CLI::App& app, const CommandInputs& in);
+Command make_reconstruct(const CLI::App& app, const CommandInputs& in);
+Command make_mesh(const CLI::App& app, const CommandInputs& in);
+Command make_evolve(const CLI::App& app, const CommandInputs& in);
+Command make_batch(const CLI::App& app, const CommandInputs& in);
+Command make_inspect(const CLI::App& app, const CommandInputs& in);
+Command make_check(const CLI::App& app, const CommandInputs& in);
+Command make_export(const CLI::App& app, const CommandInputs& in);
+Command make_report(const CLI::App& app, const CommandInputs& in);
+Command make_view(const CLI::App& app, const CommandInputs& in);
+Command make_diff(const CLI::App& app, const CommandInputs& in);
 
 /// The table of all commands. CLI11 writes into its members: it stays where it is.
 class CommandParser {
@@ -29,7 +46,7 @@ class CommandParser {
   const CLI::App& app() const { return app_; }
 
  private:
-  CLI::App& add_command(const char* name, const char* description);
+  CLI::App& add_command(const char* name, CommandMaker make, const char* description);
   CLI::Option& add_formats(CLI::App& command, const char* flag);
   void add_parameter_sources(CLI::App& command);
   void add_stage_flags(CLI::App& command);
@@ -44,11 +61,5 @@ class CommandParser {
   CommandInputs in_;
   CommandLine result_;
 };
-
-/// Makes the request of what was read.
-/// @param command  the one that was called
-/// @param result   has what CLI11 wrote there itself (threads, timeout, jobs, json, progress); gets the rest
-/// \throw UsageError; std::system_error for a --config or case.toml that cannot be read
-void fill_request(const CLI::App& command, const CommandInputs& in, CommandLine& result);
 
 }  // namespace umtet

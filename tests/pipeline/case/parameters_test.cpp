@@ -45,11 +45,11 @@ TEST(Parameters, FlagBeatsSetBeatsFileBeatsDefaultInAnyOrder) {
   p.set("mesh.samples=2");
   p.set("mesh.seed=2");
   p.load(file.path, ParamSource::File);
-  EXPECT_EQ(p.integer("mesh.samples"), 1);
-  EXPECT_EQ(p.integer("mesh.seed"), 2);
-  EXPECT_EQ(p.real("reconstruct.smoothing"), 1);  // a TOML integer is a number too
-  EXPECT_EQ(p.source("reconstruct.smoothing"), ParamSource::File);
-  EXPECT_EQ(p.source("reconstruct.gamma"), ParamSource::Default);
+  EXPECT_EQ(p.mesh().samples, 1);
+  EXPECT_EQ(p.mesh().seed, 2);
+  EXPECT_EQ(p.reconstruct().smoothing, 1);  // a TOML integer is a number too
+  EXPECT_EQ(p.source(keys::reconstruct::smoothing), ParamSource::File);
+  EXPECT_EQ(p.source(keys::reconstruct::gamma), ParamSource::Default);
 }
 
 TEST(Parameters, CaseTomlReadsBackToTheSameValues) {
@@ -104,17 +104,17 @@ TEST(Parameters, EdgeLengthAndCountExcludeEachOther) {
   Parameters p;
   p.set("mesh.h", "0.1", ParamSource::Case, "case.toml");
   p.set("mesh.tets", "1000", ParamSource::Flag, "--tets");
-  EXPECT_EQ(p.real("mesh.h"), 0);
-  EXPECT_EQ(p.integer("mesh.tets"), 1000);
+  EXPECT_EQ(p.mesh().h, 0);
+  EXPECT_EQ(p.mesh().tets, 1000);
   EXPECT_NE(refusal([&] { p.set("mesh.h", "0.1", ParamSource::Flag, "--h"); }), "accepted");
   p.set("mesh.h=0.2");  // weaker than the flag
-  EXPECT_EQ(p.real("mesh.h"), 0);
+  EXPECT_EQ(p.mesh().h, 0);
 }
 
 TEST(Parameters, WholeNumbersMayHaveAnExponentButNoFraction) {
   Parameters p;
   p.set("mesh.tets=1e6");
-  EXPECT_EQ(p.integer("mesh.tets"), 1000000);
+  EXPECT_EQ(p.mesh().tets, 1000000);
   EXPECT_NE(refusal([&] { p.set("mesh.tets=1.5e0"); }), "accepted");
   EXPECT_NE(refusal([&] { p.set("output.units=\xff"); }), "accepted");
 }
