@@ -102,13 +102,13 @@ struct TemporaryFile {
 fs::path folder_of(const fs::path& file) { return file.parent_path().empty() ? fs::path(".") : file.parent_path(); }
 
 /// A temporary file in the same folder: filled, not empty, and on the disk.
-std::unique_ptr<TemporaryFile> written_beside(const PendingFile& pending) {
-  const fs::path& file = pending.path;
+std::unique_ptr<TemporaryFile> written_beside(const fs::path& file,
+                                              const std::function<void(const fs::path&)>& writer) {
   auto temporary = std::make_unique<TemporaryFile>();
   temporary->path =
       folder_of(file) / (std::string(kTemporaryPrefix) + std::to_string(::getpid()) + "-" + file.filename().string());
   try {
-    pending.write(temporary->path);
+    writer(temporary->path);
   } catch (const std::system_error& e) {
     if (std::string(e.what()).find(file.string()) != std::string::npos) throw;
     const std::error_code code = e.code() ? e.code() : std::make_error_code(std::errc::io_error);
@@ -127,6 +127,14 @@ std::unique_ptr<TemporaryFile> written_beside(const PendingFile& pending) {
   written.close();
   return temporary;
 }
+
+void take_place(TemporaryFile& temporary, const fs::path& file) {
+  if (::rename(temporary.path.c_str(), file.c_str()) != 0) fail(errno, file, "cannot rename the temporary file");
+  temporary.path.clear();
+}
+
+/// To the disk with the name of the file.
+void sync_folder_of(const fs::path& file) { Descriptor(folder_of(file), O_RDONLY | O_DIRECTORY, file).sync(); }
 
 }  // namespace
 
@@ -160,20 +168,17 @@ FileStamp FileStamps::of(const fs::path& file) {
 }
 
 void write_artefact(const fs::path& file, const std::function<void(const fs::path&)>& writer) {
-  write_artefacts({{file, writer}});
+  const std::unique_ptr<TemporaryFile> temporary = written_beside(file, writer);
+  take_place(*temporary, file);
+  sync_folder_of(file);
 }
 
 void write_artefacts(const std::vector<PendingFile>& files) {
   std::vector<std::unique_ptr<TemporaryFile>> temporaries;
   temporaries.reserve(files.size());
-  for (const PendingFile& file : files) temporaries.push_back(written_beside(file));
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    const fs::path& file = files[i].path;
-    if (::rename(temporaries[i]->path.c_str(), file.c_str()) != 0)
-      fail(errno, file, "cannot rename the temporary file");
-    temporaries[i]->path.clear();
-  }
-  for (const PendingFile& file : files) Descriptor(folder_of(file.path), O_RDONLY | O_DIRECTORY, file.path).sync();
+  for (const PendingFile& file : files) temporaries.push_back(written_beside(file.path, file.write));
+  for (std::size_t i = 0; i < files.size(); ++i) take_place(*temporaries[i], files[i].path);
+  for (const PendingFile& file : files) sync_folder_of(file.path);
 }
 
 void write_text_artefact(const fs::path& file, std::string_view text) {

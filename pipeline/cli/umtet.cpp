@@ -64,13 +64,24 @@ void require_case(const std::filesystem::path& folder) {
   if (!std::filesystem::exists(folder)) throw UsageError(folder.string() + ": there is no such case");
 }
 
-// perform() of every command does its work and says what goes to stdout.
+/// Does the work of a command and says what goes to stdout.
+struct Execution {
+  const CommonOptions& options;
+  Progress& progress;
 
-Output perform(const TextAnswer& command, const CommonOptions&, Progress&) {
-  return {ExitCode::Success, command.text, {}};
-}
+  Output operator()(const TextAnswer& command) const { return {ExitCode::Success, command.text, {}}; }
+  Output operator()(RunCommand& command) const;
+  Output operator()(EvolveCommand& command) const;
+  Output operator()(BatchCommand& command) const;
+  Output operator()(const InspectCommand& command) const;
+  Output operator()(const CheckCommand& command) const;
+  Output operator()(const ExportCommand& command) const;
+  Output operator()(const ReportCommand& command) const;
+  Output operator()(const ViewCommand& command) const;
+  Output operator()(const DiffCommand& command) const;
+};
 
-Output perform(RunCommand& command, const CommonOptions& options, Progress& progress) {
+Output Execution::operator()(RunCommand& command) const {
   RunRequest& request = command.request;
   request.threads = options.threads;
   RunOutcome outcome = run_case(request, progress);
@@ -97,21 +108,21 @@ Output perform(RunCommand& command, const CommonOptions& options, Progress& prog
   return output;
 }
 
-Output perform(const CheckCommand& command, const CommonOptions&, Progress& progress) {
+Output Execution::operator()(const CheckCommand& command) const {
   set_work_at_hand("check");
   const Json json = check_mesh(command.mesh, command.against, command.parameters, progress);
   progress.clear();
   return {json.at("verdict") == "pass" ? ExitCode::Success : ExitCode::GateFailed, summary(json), {{"check", json}}};
 }
 
-Output perform(const InspectCommand& command, const CommonOptions&, Progress& progress) {
+Output Execution::operator()(const InspectCommand& command) const {
   set_work_at_hand("inspect");
   const Json json = inspect_cloud(command.cloud, progress);
   progress.clear();
   return {ExitCode::Success, inspection_text(json), {{"inspection", json}}};
 }
 
-Output perform(EvolveCommand& command, const CommonOptions& options, Progress& progress) {
+Output Execution::operator()(EvolveCommand& command) const {
   set_work_at_hand("evolve");
   command.request.threads = options.threads;
   const EvolveOutcome outcome = evolve(command.request, progress);
@@ -121,7 +132,7 @@ Output perform(EvolveCommand& command, const CommonOptions& options, Progress& p
           {{"steps", outcome.steps}, {"files", names(outcome.files)}}};
 }
 
-Output perform(BatchCommand& command, const CommonOptions& options, Progress& progress) {
+Output Execution::operator()(BatchCommand& command) const {
   command.request.timeout = options.timeout;
   command.request.threads = std::max(1, options.threads / command.request.jobs);
   const BatchOutcome outcome = run_batch(command.request, progress);
@@ -131,14 +142,14 @@ Output perform(BatchCommand& command, const CommonOptions& options, Progress& pr
           {{"scans", outcome.rows}, {"files", names(outcome.files)}}};
 }
 
-Output perform(const ExportCommand& command, const CommonOptions&, Progress& progress) {
+Output Execution::operator()(const ExportCommand& command) const {
   require_case(command.case_folder);
   const auto files = exports_of({command.case_folder}, command.formats, command.parameters, progress);
   progress.clear();
   return output_of_files(files);
 }
 
-Output perform(const ReportCommand& command, const CommonOptions&, Progress& progress) {
+Output Execution::operator()(const ReportCommand& command) const {
   set_work_at_hand("report");
   require_case(command.case_folder);
   const CasePaths paths{command.case_folder};
@@ -149,7 +160,7 @@ Output perform(const ReportCommand& command, const CommonOptions&, Progress& pro
   return output_of_files({paths.report()});
 }
 
-Output perform(const ViewCommand& command, const CommonOptions&, Progress& progress) {
+Output Execution::operator()(const ViewCommand& command) const {
   set_work_at_hand("view");
   require_case(command.case_folder);
   const CasePaths paths{command.case_folder};
@@ -159,7 +170,7 @@ Output perform(const ViewCommand& command, const CommonOptions&, Progress& progr
   return output_of_files(files);
 }
 
-Output perform(const DiffCommand& command, const CommonOptions&, Progress& progress) {
+Output Execution::operator()(const DiffCommand& command) const {
   set_work_at_hand("diff");
   const Json json = diff_cases({command.case_a}, {command.case_b}, progress);
   progress.clear();
@@ -185,8 +196,8 @@ Output execute(int argc, char** argv, bool& json, std::string& name) {
   CommandLine call = parse_command_line(argc, argv);
   CommonOptions& options = call.options;
   Progress progress(options.progress, options.verbosity);
-  if (std::holds_alternative<TextAnswer>(call.command))
-    return perform(std::get<TextAnswer>(call.command), options, progress);
+  const Execution execution{options, progress};
+  if (const auto* answer = std::get_if<TextAnswer>(&call.command)) return execution(*answer);
   json = options.json;
   name = call.name;
   if (json) answer_stops_in_json(name.c_str());
@@ -194,7 +205,7 @@ Output execute(int argc, char** argv, bool& json, std::string& name) {
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(options.threads));
   keep_limits(call.command, options);
-  return std::visit([&](auto& command) { return perform(command, options, progress); }, call.command);
+  return std::visit(execution, call.command);
 }
 
 /// To stderr, if it can be written; where it cannot, the exit code has to do. (fmt::print would throw.)

@@ -24,15 +24,21 @@ class CaseRun {
         parameters_(request.parameters),
         context_{paths_, parameters_, progress, request.threads, handover_} {}
 
-  RunOutcome operator()();
+  /// Looks at what there is, and refuses a folder that is none of ours.
+  void begin();
+  /// Those that this run is about.
+  std::vector<Stage> stages() const;
+  /// Sees to it that the stage is done. Where something finished would be replaced, it is done beside it.
+  StageRecord ensure(Stage stage);
+  /// Puts what was made into its place; certificate and report.
+  /// @param records  of stages()
+  RunOutcome finish(const std::vector<StageRecord>& records);
 
  private:
   void take_former_parameters();
   StageState state_of(Stage stage) const;
   bool must_run(Stage stage, const StageState& state) const;
-  StageRecord ensure(Stage stage);
-  void run(Stage stage);
-  void compute(Stage stage);
+  void make(Stage stage);
   void certify(const StageRecord& mesh);
   void report();
 
@@ -95,7 +101,6 @@ bool CaseRun::must_run(Stage stage, const StageState& state) const {
   return request_.force || state.kind != Kind::Done;
 }
 
-/// Sees to it that the stage is done. Where something finished would be replaced, it is done beside it.
 StageRecord CaseRun::ensure(Stage stage) {
   stop_if_interrupted();
   StageState state = state_of(stage);
@@ -108,7 +113,7 @@ StageRecord CaseRun::ensure(Stage stage) {
       return *state.record;
     }
   }
-  run(stage);
+  make(stage);
   outcome_.stages_run.push_back(stage);
   state = state_of(stage);
   if (!state.record) throw ArtefactDamaged(state.reason);
@@ -116,28 +121,24 @@ StageRecord CaseRun::ensure(Stage stage) {
   return *state.record;
 }
 
-void CaseRun::run(Stage stage) {
+void CaseRun::make(Stage stage) {
   set_work_at_hand(to_string(stage));
   try {
-    compute(stage);
+    if (stage == Stage::Cloud) {
+      fs::path source = request_.source;
+      if (source.empty()) source = parameters_.cloud().file;
+      if (source.empty()) throw UsageError("no cloud: give one");
+      run_cloud_stage(context_, source);
+    } else if (stage == Stage::LevelSet) {
+      run_level_set_stage(context_);
+    } else {
+      run_mesh_stage(context_);
+    }
   } catch (...) {
     // Half a stage is of no use; whole ones before it are there for the next run.
     std::error_code ignored;
     if (paths_.renews(stage)) fs::remove_all(paths_.folder(stage), ignored);
     throw;
-  }
-}
-
-void CaseRun::compute(Stage stage) {
-  if (stage == Stage::Cloud) {
-    fs::path source = request_.source;
-    if (source.empty()) source = parameters_.cloud().file;
-    if (source.empty()) throw UsageError("no cloud: give one");
-    run_cloud_stage(context_, source);
-  } else if (stage == Stage::LevelSet) {
-    run_level_set_stage(context_);
-  } else {
-    run_mesh_stage(context_);
   }
 }
 
@@ -172,16 +173,22 @@ void CaseRun::report() {
   if (fs::exists(paths_.report())) outcome_.files.push_back(paths_.report());
 }
 
-RunOutcome CaseRun::operator()() {
-  const CaseLock lock(paths_.root);
+void CaseRun::begin() {
   refuse_foreign_folder(paths_);
   remove_stale_temporaries(paths_.root);  // of a run that was killed when its stages were done
   take_former_parameters();
+}
+
+std::vector<Stage> CaseRun::stages() const {
   const bool of_formula = request_.until == Stage::Mesh && !parameters_.mesh().implicit.empty();
-  std::vector<StageRecord> records;
+  std::vector<Stage> list;
   for (const Stage stage : kStages) {
-    if (stage <= request_.until && (!of_formula || stage == Stage::Mesh)) records.push_back(ensure(stage));
+    if (stage <= request_.until && (!of_formula || stage == Stage::Mesh)) list.push_back(stage);
   }
+  return list;
+}
+
+RunOutcome CaseRun::finish(const std::vector<StageRecord>& records) {
   replace_former(context_, paths_);
   write_parameters(paths_, parameters_);
   for (const StageRecord& record : records) {
@@ -197,6 +204,13 @@ RunOutcome CaseRun::operator()() {
 
 }  // namespace
 
-RunOutcome run_case(const RunRequest& request, Progress& progress) { return CaseRun(request, progress)(); }
+RunOutcome run_case(const RunRequest& request, Progress& progress) {
+  const CaseLock lock(request.case_folder);
+  CaseRun run(request, progress);
+  run.begin();
+  std::vector<StageRecord> records;
+  for (const Stage stage : run.stages()) records.push_back(run.ensure(stage));
+  return run.finish(records);
+}
 
 }  // namespace umtet

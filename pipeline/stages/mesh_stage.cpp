@@ -29,7 +29,10 @@ class MeshStage {
         background_(context.parameters, domain_),
         maker_(domain_, context.parameters, watch()) {}
 
-  void run();
+  /// Of the best h. \throw MeshingImpossible when there is none, or it came out wrong where the body is thin
+  MeshAttempt best_mesh();
+
+  Domain& domain() { return domain_; }
 
  private:
   MeshWatch watch();
@@ -135,39 +138,41 @@ void MeshStage::refuse_thin(const MeshAttempt& best) {
   throw TooThin(message, {{"too_thin", to_json(thin, domain_.shift)}, {"h_enough", h_enough}});
 }
 
-void MeshStage::run() {
-  const auto start = std::chrono::steady_clock::now();
-  const std::vector<RecordedFile> inputs = recorded_inputs(context_.paths, Stage::Mesh, context_.parameters);
+MeshAttempt MeshStage::best_mesh() {
   context_.progress.report("mesh", "size", 0);
-  const MeshAttempt best =
+  MeshAttempt best =
       maker_.best(background_.own_h() ? EdgeLength{*background_.own_h(), *background_.own_h()}
                                       : choose_edge_length(domain_, context_.parameters, not_interrupted),
                   [this](double h) { return background_of(h); });
   stop_if_interrupted();
-  const UmResult& result = best.result;
   if (maker_.is_refused_as_thin(best)) refuse_thin(best);
-  if (!best.made()) refuse(result, best.h);
-
-  context_.progress.report("mesh", "write", .97);
-  const std::vector<std::string> outputs = write_mesh_outputs(context_, domain_, best);
-  const Json numbers = {{"conditioning_angle_max_deg", result.conditioning_angle_max_deg},
-                        {"n_psi_evaluations", result.n_psi_evaluations},
-                        {"measured", best.measured}};
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  write_record(context_.paths,
-               {Stage::Mesh,
-                context_.parameters.section("mesh"),
-                inputs,
-                {},
-                numbers,
-                run_block(seconds.count(), context_.threads)},
-               outputs);
-  domain_.limit_detail(best.h);
-  context_.handover.domain = std::move(domain_);
+  if (!best.made()) refuse(best.result, best.h);
+  return best;
 }
 
 }  // namespace
 
-void run_mesh_stage(const StageContext& context) { MeshStage(context).run(); }
+void run_mesh_stage(const StageContext& context) {
+  MeshStage stage(context);
+  const auto start = std::chrono::steady_clock::now();
+  const std::vector<RecordedFile> inputs = recorded_inputs(context.paths, Stage::Mesh, context.parameters);
+  const MeshAttempt best = stage.best_mesh();
+  context.progress.report("mesh", "write", .97);
+  const std::vector<std::string> outputs = write_mesh_outputs(context, stage.domain(), best);
+  const Json numbers = {{"conditioning_angle_max_deg", best.result.conditioning_angle_max_deg},
+                        {"n_psi_evaluations", best.result.n_psi_evaluations},
+                        {"measured", best.measured}};
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  write_record(context.paths,
+               {Stage::Mesh,
+                context.parameters.section("mesh"),
+                inputs,
+                {},
+                numbers,
+                run_block(seconds.count(), context.threads)},
+               outputs);
+  stage.domain().limit_detail(best.h);
+  context.handover.domain = std::move(stage.domain());
+}
 
 }  // namespace umtet

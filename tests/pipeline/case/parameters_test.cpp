@@ -38,6 +38,26 @@ TEST(Parameters, DefaultsAreInsideTheirOwnRanges) {
   }
 }
 
+TEST(Parameters, WordsOfAVocabularyAreValuesOfAnEnum) {
+  Parameters p;
+  EXPECT_EQ(p.mesh().mode, MeshingMode::Fast);
+  EXPECT_EQ(p.reconstruct().solver, FitSolver::Auto);
+  p.set("mesh.mode=paper");
+  p.set("reconstruct.solver=assembled");
+  p.set("cloud.normals=estimate");
+  p.set("mesh.closest_point=damped");
+  EXPECT_EQ(p.mesh().mode, MeshingMode::Paper);
+  EXPECT_EQ(p.reconstruct().solver, FitSolver::Assembled);
+  EXPECT_EQ(p.cloud().normals, NormalsOf::Estimate);
+  EXPECT_EQ(p.mesh().closest_point, Projection::Damped);
+  for (const ParamField& f : params_fields()) {
+    for (const std::string& word : f.choices) {
+      p.set(f.key + "=" + word);
+      EXPECT_EQ(p.section(f.key.substr(0, f.key.find('.'))).at(f.key.substr(f.key.find('.') + 1)), word) << f.key;
+    }
+  }
+}
+
 TEST(Parameters, FlagBeatsSetBeatsFileBeatsDefaultInAnyOrder) {
   const TomlFile file("[mesh]\nsamples = 3\nseed = 3\n[reconstruct]\nsmoothing = 1\n");
   Parameters p;
