@@ -60,14 +60,15 @@ class UniversalMesh {
 
   const BackgroundMesh& background() const;
   /// Foreseen failures are statuses with evidence, as those of universal_mesh(); the next update then starts from the
-  /// background's places, and is compared with the last mesh there is. What psi throws comes out, and the next update
-  /// starts from the last mesh.
+  /// background's places, and is compared with the last mesh there is. Where psi or the context throws, or it is
+  /// cancelled, the last mesh is what the next update starts from and is compared with; what an earlier call returned
+  /// may be empty. Reports the steps "search" and those of fit_submesh(). \throw Cancelled
   /// @return what the next call of update() overwrites: to be copied where it is wanted longer
-  const UmUpdate& update(ImplicitFunctionRef psi, const UpdateHints& hints = {}, const UmObserver& observer = {});
+  const UmUpdate& update(ImplicitFunctionRef psi, const UpdateHints& hints = {}, const Context& context = {});
   /// The certificate of a mesh of update(), field by field that of certify() with its positive faces, walls and psi;
   /// of the tets only those that have changed since the last call are measured.
-  /// \throw std::invalid_argument without tets; MeshCancelled
-  MeshCertificate certify(const UmResult& mesh, ImplicitFunctionRef psi, const KeepGoing& keep_going = {});
+  /// \throw std::invalid_argument without tets; Cancelled
+  MeshCertificate certify(const UmResult& mesh, ImplicitFunctionRef psi, const Context& context = {});
 
  private:
   struct Impl;

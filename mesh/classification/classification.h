@@ -84,10 +84,10 @@ bool is_thin(ImplicitFunctionRef psi, const Vec3& foot, const Vec3& normal, doub
 /// @param inside  the vertices with psi < 0 on entry; none of them, nor a neighbour, on the background boundary
 /// @param last    labels of a mesh before, or null: where the descent would as well have these, it begins with them
 /// @param known   psi at all vertices with a neighbour on the other side, or null
-/// \throw std::invalid_argument naming every broken constraint of params, MeshCancelled
+/// \throw std::invalid_argument naming every broken constraint of params, Cancelled
 ClassificationReport classify_vertices(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
                                        ImplicitFunctionRef psi, const ClassificationParams& params, IdSet& inside,
-                                       const KeepGoing& keep_going = {}, const IdSet* last = nullptr,
+                                       const Context& context = {}, const IdSet* last = nullptr,
                                        const PsiValues* known = nullptr);
 
 }  // namespace umtet

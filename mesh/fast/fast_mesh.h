@@ -4,11 +4,13 @@
 #include <utility>
 #include <vector>
 
+#include "common/context.h"
 #include "mesh/background/background_mesh.h"
 #include "mesh/base/id_set.h"
 #include "mesh/core/implicit_function.h"
 #include "mesh/core/psi_values.h"
 #include "mesh/fast/fast_params.h"
+#include "mesh/submesh/chosen_submesh.h"
 #include "mesh/submesh/submesh_params.h"
 #include "mesh/submesh/um_result.h"
 
@@ -25,9 +27,19 @@ namespace umtet {
 ///
 /// The result is that of universal_mesh(): omega_h of the chosen labels, with the background's ids. The same bytes for
 /// any number of threads. psi must be thread-safe.
-/// \pre params and seeds are those universal_mesh() accepts
+/// Reports the steps "project", "relax" and "repair".
+/// \pre params are those universal_mesh() accepts
+/// @param chosen  by classified_submesh(): what failed there is the result
+/// \throw Cancelled
 UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
-                   const FastParams& params, const UmObserver& observer = {}, const std::vector<Vec3>& seeds = {});
+                   const FastParams& params, ChosenSubmesh chosen, const Context& context = {});
+
+/// The step before: which vertices count as inside, and how many tets that makes, at a quarter of what listing them
+/// costs. Repair may change both by a few. Reports the step "search".
+/// @param seeds  as those of universal_mesh(). \throw Cancelled
+ChosenSubmesh classified_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi,
+                                 const SubmeshParams& submesh, const FastParams& params, const Context& context = {},
+                                 const std::vector<Vec3>& seeds = {});
 
 /// What the mesh of one psi leaves to that of the next, in the same background mesh.
 struct FastMemory {
@@ -43,7 +55,7 @@ struct FastMemory {
 /// @param memory  empty (no `moved`) at first; receives that of this mesh, or becomes empty if there is none
 /// @param known   of this psi, what the search for `inside` has asked
 UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
-                   const FastParams& params, const UmObserver& observer, IdSet inside, FastMemory& memory,
+                   const FastParams& params, const Context& context, IdSet inside, FastMemory& memory,
                    const PsiValues& known = {});
 
 }  // namespace umtet

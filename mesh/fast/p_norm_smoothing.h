@@ -82,8 +82,8 @@ class PNormSmoother {
   /// Visits vertices in the queue until none is left, or for max_sweeps; those left stay for the next call. Roles are
   /// read anew: the caller may hold vertices by making them Fixed for a while, which leaves them in the queue.
   /// What it says of the layer is left to measure(), which checks at every tet.
-  /// \throw std::invalid_argument naming every broken constraint of params, MeshCancelled
-  SmoothingReport run(ImplicitFunctionRef psi, const SmoothingParams& params, const KeepGoing& keep_going = {});
+  /// \throw std::invalid_argument naming every broken constraint of params, Cancelled
+  SmoothingReport run(ImplicitFunctionRef psi, const SmoothingParams& params, const Context& context = {});
 
   /// Fills in what a report says of the layer.
   void measure(SmoothingReport& report) const;
@@ -113,6 +113,6 @@ class PNormSmoother {
 
 /// PNormSmoother for one call.
 SmoothingReport smooth(ActiveLayer& layer, ImplicitFunctionRef psi, const SmoothingParams& params = {},
-                       const KeepGoing& keep_going = {});
+                       const Context& context = {});
 
 }  // namespace umtet

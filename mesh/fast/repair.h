@@ -76,9 +76,9 @@ struct RepairReport {
 /// Tets far from each other are mended at once, two at most, with the bytes of one after the other.
 /// @param layer   smoothed; its coordinates stay as they are, `moved` says what has changed since
 /// @param inside  receives the changes
-/// \throw std::invalid_argument naming every broken constraint, MeshCancelled
+/// \throw std::invalid_argument naming every broken constraint, Cancelled
 RepairReport repair(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
                     const ClassificationParams& labels, const RepairParams& params, const LatticeActiveLayer& layer,
-                    IdSet& inside, const KeepGoing& keep_going = {});
+                    IdSet& inside, const Context& context = {});
 
 }  // namespace umtet

@@ -29,9 +29,9 @@ struct WarmStart {
 ///
 /// @param layer   at the places of the background; receives those to begin with. The same for any number of threads
 /// @param inside  as labelled now
-/// \throw MeshCancelled
+/// \throw Cancelled
 WarmStart warm_start(const BackgroundMesh& background, ImplicitFunctionRef psi, const IdSet& inside,
                      const FastMemory& memory, const ProjectionParams& projection, LatticeActiveLayer& layer,
-                     const KeepGoing& keep_going = {});
+                     const Context& context = {});
 
 }  // namespace umtet

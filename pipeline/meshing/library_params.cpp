@@ -48,6 +48,7 @@ UmParams um_params(const Parameters& p) {
   um.submesh.background_boundary = p.flag("mesh.complement") ? BackgroundBoundary::Wall : BackgroundBoundary::Refuse;
   um.paper.max_min = p.text("mesh.max_min") == "golden" ? MaxMin::GoldenSection : MaxMin::Exact;
   um.paper.seed = static_cast<std::uint64_t>(p.integer("mesh.seed"));
+  um.paper.keep_iterates = p.flag("mesh.keep_iterates");
   std::string broken;
   for (const std::string& problem : problems(um)) broken += (broken.empty() ? "mesh: " : "; ") + problem;
   if (!broken.empty()) throw UsageError(broken);

@@ -88,8 +88,8 @@ TEST(Certificate, StopsWhenItIsTold) {
   EXPECT_GE(calls, 2 + ball.faces.size() / kValuesPerPoll);
   for (const std::size_t stop : {std::size_t{1}, calls / 2, calls}) {
     std::size_t n = 0;
-    input.keep_going = [&] { return ++n < stop; };
-    EXPECT_THROW(certify(input), MeshCancelled) << stop;
+    input.context.cancelled = [&] { return ++n >= stop; };
+    EXPECT_THROW(certify(input), Cancelled) << stop;
     EXPECT_EQ(n, stop);
   }
 }
