@@ -56,6 +56,7 @@ class FastRun {
       result_.submesh = std::move(outline.submesh);
       n_tets_ = outline.n_tets;
     }
+    context_.report("submesh", 1);
     const bool is_whole = is_complete_ || result_.status != UmStatus::Success;
     return {.status = result_.status,
             .evidence = std::move(result_.evidence),
@@ -123,7 +124,7 @@ class FastRun {
   const SubmeshParams& submesh_params_;
   const FastParams& params_;
   const Context& context_;
-  const ConfigurationCosts* costs_of_tiling_;   ///< null: labels stay those of psi
+  const ConfigurationCosts* costs_of_tiling_;   ///< null: inside is where psi < 0
   ClassificationParams classification_params_;  ///< with the costs
   UmResult result_;
   IdSet inside_;
@@ -198,7 +199,7 @@ bool FastRun::check_walls() {
   return near.count == 0 || fail(UmStatus::BoundaryNearWall, near);
 }
 
-/// omega_h of the labels, if it is not there.
+/// omega_h of the inside vertices, if it has not been listed.
 void FastRun::complete() {
   if (is_complete_) return;
   result_.submesh = {};  // before the tets need their memory
@@ -298,7 +299,7 @@ void FastRun::measure_assumptions() {
   result_.obtuse_conditioning_angles = angles.not_acute.count;
 }
 
-/// Changes labels where that mends a tet.
+/// Changes vertices between inside and outside where that mends a tet.
 void FastRun::repair_classification() {
   if (!costs_of_tiling_) return;
   RepairParams params = params_.repair;

@@ -228,7 +228,7 @@ SmoothingReport PNormSmoother::run(ImplicitFunctionRef psi, const SmoothingParam
       const double step = (result.place - layer_.V[i]).norm();
       layer_.V[i] = result.place;
       if (result.good && step < params.least_step * layer_.h) continue;
-      // A tet that was good and is good again keeps nobody from being where it is.
+      // A tet that was above the target and still is gives its vertices no reason to move.
       if (result.below_target.none()) continue;
       std::atomic_ref(queued_[i]).store(1, std::memory_order_relaxed);
       const std::span<const Triangle> ring = faces(i);

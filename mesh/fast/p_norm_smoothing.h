@@ -21,10 +21,10 @@ struct SmoothingParams {
   /// 1 % quantile of Q by .005 (T6) to .012 (sphere), for a quarter more solves; beyond .04 nothing is gained.
   double margin = .034;
   double fine_gain = 2e-5;    ///< a relative gain of 1/Q's norm below this is no move; > 0
-  double least_step = .0075;  ///< of h: a shorter move wakes nobody; >= 0. Without, a tenth more solves
-  /// Where a tet of the ring is below the target, it is this gain that counts, and any move wakes; > 0. What smoothing
-  /// wins there by small steps it takes from the tets around, and leaves a region just below the target where there
-  /// were a few bad tets (koala: 2200 instead of 330).
+  double least_step = .0075;  ///< of h: a shorter move enqueues no neighbour; >= 0. Without, a tenth more solves
+  /// Where a tet of the ring is below the target, it is this gain that counts, and any move enqueues its neighbours; >
+  /// 0. What smoothing wins there by small steps it takes from the tets around, and leaves a region just below the
+  /// target where there were a few bad tets (of a scan: 2200 instead of 330).
   double least_gain = 3e-4;
   /// p = 384 after 96: among many tets nearly as bad, the worst still counts. Slower to settle.
   bool sharper = false;

@@ -23,8 +23,8 @@ using detail::TetIds;
 // Besides max_patches: so many, and one for so many tets of the layer. A coarse perforated plate of 5092 tets is mended
 // by its 1724th patch, and until then checks no better than lenses that never are: one of 1600 tets took 3000.
 constexpr std::size_t kFewPatches = 600, kTetsPerPatch = 4;
-// So many tets are mended at once, while so many wait for one near them. The caller is asked before each round: the
-// dearest tets take a tenth of a second each, and one thread may have to mend them all.
+// So many tets are mended at once, while so many wait for one near them. The context is polled before each round:
+// the costliest tets take a tenth of a second each, and one thread may have to mend them all.
 constexpr std::size_t kAtOnce = 2, kMostWaiting = 64;
 
 /// Of a tiling, as a share of its mean edge.

@@ -15,7 +15,7 @@ namespace umtet {
 struct WarmStart {
   std::vector<unsigned char> recalled;  ///< per vertex of the layer: it began at its place in the last mesh
   std::size_t n_recalled = 0;
-  bool is_on_surface = false;  ///< all Boundary vertices are: nobody is left to project
+  bool is_on_surface = false;  ///< all Boundary vertices are: none is left to project
   std::size_t psi_evaluations = 0;
 };
 

@@ -26,8 +26,8 @@ struct MeshLines {
 /// the meshes of `umtet mesh`, `umtet evolve` and Python's umtet.mesh.
 class MeshMaker {
  public:
-  /// The domain and the parameters stay where they are. The context is told of "components", "submesh", the steps of
-  /// universal_mesh(), "certify" and "second order"; fractions are those of one attempt.
+  /// The domain and the parameters stay where they are. The context is told of "components", the steps of
+  /// choose_submesh() and fit_submesh(), "certify" and "second order"; fractions are those of one attempt.
   /// \throw UsageError as um_params()
   MeshMaker(Domain& domain, const Parameters& parameters, Context context, MeshLines lines = {});
 
