@@ -20,6 +20,7 @@ namespace umtet {
 namespace {
 
 constexpr std::size_t kVerticesPerTask = 4096;
+constexpr double kSearchShare = .1;  // of the time of an update, about
 // Of the boundary, to see whether psi has moved: in all but one case the first of them will say so.
 constexpr std::size_t kVerticesPerLook = 256;
 
@@ -105,7 +106,7 @@ SparsityPattern sparsity_pattern(const BackgroundMesh& background) {
 struct UniversalMesh::Impl {
   Impl(BackgroundMesh mesh, const UmParams& um) : background(std::move(mesh)), params(um), walk(background) {}
 
-  std::size_t search(ImplicitFunctionRef psi, const UpdateHints& hints, const UmObserver& observer);
+  std::size_t search(ImplicitFunctionRef psi, const UpdateHints& hints, const Context& context);
   bool has_stayed(ImplicitFunctionRef psi, std::size_t& n_evaluations) const;
   void compare();
 
@@ -132,11 +133,10 @@ UniversalMesh& UniversalMesh::operator=(UniversalMesh&&) noexcept = default;
 
 const BackgroundMesh& UniversalMesh::background() const { return impl_->background; }
 
-std::size_t UniversalMesh::Impl::search(ImplicitFunctionRef psi, const UpdateHints& hints, const UmObserver& observer) {
-  const std::vector<Vec3> none;
-  const KeepGoing keep_going = [&] { return !observer || observer({"search", 1, 1, &none, 0}); };
+std::size_t UniversalMesh::Impl::search(ImplicitFunctionRef psi, const UpdateHints& hints, const Context& context) {
+  context.report("search", 0);
   // The walk begins at a boundary: there is none at first, nor after a domain that was nowhere.
-  if (!walk.has_boundary() || (hints.no_zero_in && !background.is_lattice())) return walk.restart(psi, keep_going);
+  if (!walk.has_boundary() || (hints.no_zero_in && !background.is_lattice())) return walk.restart(psi, context);
   Ids more;
   if (hints.no_zero_in) ZeroCells(background, hints.no_zero_in, more);
   for (const Vec3& seed : hints.seeds) {
@@ -146,7 +146,7 @@ std::size_t UniversalMesh::Impl::search(ImplicitFunctionRef psi, const UpdateHin
     more.insert(more.end(), corners.begin(), corners.end());
     for (const std::int64_t v : corners) background.link(v, more);
   }
-  return walk.update(psi, more, keep_going);
+  return walk.update(psi, more, context);
 }
 
 /// True if psi < 0 at the vertices where it was, and psi = 0 at those of the boundary: the last mesh is one of this
@@ -185,22 +185,14 @@ void UniversalMesh::Impl::compare() {
   }
 }
 
-const UmUpdate& UniversalMesh::update(ImplicitFunctionRef psi, const UpdateHints& hints, const UmObserver& observer) {
+const UmUpdate& UniversalMesh::update(ImplicitFunctionRef psi, const UpdateHints& hints, const Context& context) {
   Impl& impl = *impl_;
   const bool has_mesh = impl.now.mesh.status == UmStatus::Success && !impl.now.mesh.final.empty();
   const auto start = [&]() -> UmUpdate& {
     if (has_mesh) std::swap(impl.now, impl.before);
     return impl.now = UmUpdate{};
   };
-  std::size_t n_searched = 0;
-  try {
-    n_searched = impl.search(psi, hints, observer);
-  } catch (const MeshCancelled&) {
-    UmUpdate& update = start();
-    update.mesh.status = UmStatus::Cancelled;
-    update.mesh.evidence.what = "stopped by the observer during search";
-    return update;
-  }
+  const std::size_t n_searched = impl.search(psi, hints, context);
   std::size_t n_evaluations = n_searched;
   if (has_mesh && impl.has_stayed(psi, n_evaluations)) {
     UmResult mesh = std::move(impl.now.mesh);
@@ -212,8 +204,8 @@ const UmUpdate& UniversalMesh::update(ImplicitFunctionRef psi, const UpdateHints
     return impl.now;
   }
   UmUpdate& update = start();
-  update.mesh = fast_mesh(impl.background, psi, impl.params.submesh, impl.params.fast, observer, impl.walk.inside(),
-                          impl.memory, impl.walk.values());
+  update.mesh = fast_mesh(impl.background, psi, impl.params.submesh, impl.params.fast, context.part(kSearchShare, 1),
+                          impl.walk.inside(), impl.memory, impl.walk.values());
   update.mesh.n_psi_evaluations += n_evaluations;
   update.n_searched = n_searched;
   update.n_recalled = impl.memory.n_recalled;
@@ -221,7 +213,7 @@ const UmUpdate& UniversalMesh::update(ImplicitFunctionRef psi, const UpdateHints
   return update;
 }
 
-MeshCertificate UniversalMesh::certify(const UmResult& mesh, ImplicitFunctionRef psi, const KeepGoing& keep_going) {
+MeshCertificate UniversalMesh::certify(const UmResult& mesh, ImplicitFunctionRef psi, const Context& context) {
   const Submesh& omega_h = mesh.submesh;
   const TetMesh fitted{mesh.final, omega_h.mesh.C};
   CertificateInput input;
@@ -229,7 +221,7 @@ MeshCertificate UniversalMesh::certify(const UmResult& mesh, ImplicitFunctionRef
   input.h = impl_->background.h();
   input.positive_faces = &omega_h.positive_faces;
   input.psi = psi;
-  input.keep_going = keep_going;
+  input.context = context;
   if (!mesh.walls.empty()) {
     input.wall_faces = &mesh.walls;
     input.background_V = &omega_h.mesh.V;

@@ -21,8 +21,8 @@ SparsityPattern sparsity_pattern(const BackgroundMesh& background);
 /// Where the boundary may be that was not there before; all optional.
 struct UpdateHints {
   std::vector<Vec3> seeds;  ///< a point near each new component, such as a body that enters
-  /// True only if psi has no zero in the box. With it no new component is missed: every background vertex is asked
-  /// that lies in a cell for which this does not hold; of a background without cells, every vertex.
+  /// True only if psi has no zero in the box. With it no new component is missed: psi is evaluated at every background
+  /// vertex that lies in a cell for which this does not hold; of a background without cells, every vertex.
   std::function<bool(const Box&)> no_zero_in;
 };
 
@@ -40,11 +40,11 @@ struct UmUpdate {
 /// Meshes of a domain that moves, in one background mesh, each from the one before         [Rangarajan2018, Section 4]
 ///
 /// A vertex changes sides only if psi = 0 passes over it: the search walks from the last boundary as far as vertices do
-/// change, whatever the size of the background. Labels that are as good as others stay, and vertices begin where they
-/// were, or are drawn along by the boundary (warm_start.h), instead of in the background. Then smoothing and repair are
-/// those of fast_mesh(), so that a mesh is as good as one made anew (1 % quantile and mean of Q within .01; the least
-/// is above the same target), but not the same to the bit: it depends on the meshes before it. The same bytes for any
-/// number of threads.
+/// change, whatever the size of the background. Vertices stay inside or outside where that costs as little as a change,
+/// and begin where they were, or are drawn along by the boundary (warm_start.h), instead of in the background. Then
+/// smoothing and repair are those of fast_mesh(), so that a mesh is as good as one made anew (1 % quantile and mean of
+/// Q within .01; the least is above the same target), but not the same to the bit: it depends on the meshes before it.
+/// The same bytes for any number of threads.
 ///
 /// A new component, or a cavity, away from the last boundary is not met by the walk: see UpdateHints.
 /// Cost: some words a hundred background vertices (bit sets), else as the surface and the tets that are returned.
@@ -60,14 +60,15 @@ class UniversalMesh {
 
   const BackgroundMesh& background() const;
   /// Foreseen failures are statuses with evidence, as those of universal_mesh(); the next update then starts from the
-  /// background's places, and is compared with the last mesh there is. What psi throws comes out, and the next update
-  /// starts from the last mesh.
+  /// background's places, and is compared with the last mesh there is. Where psi or the context throws, or it is
+  /// cancelled, the last mesh is what the next update starts from and is compared with; what an earlier call returned
+  /// may be empty. Reports the steps "search" and those of fit_submesh(). \throw Cancelled
   /// @return what the next call of update() overwrites: to be copied where it is wanted longer
-  const UmUpdate& update(ImplicitFunctionRef psi, const UpdateHints& hints = {}, const UmObserver& observer = {});
+  const UmUpdate& update(ImplicitFunctionRef psi, const UpdateHints& hints = {}, const Context& context = {});
   /// The certificate of a mesh of update(), field by field that of certify() with its positive faces, walls and psi;
   /// of the tets only those that have changed since the last call are measured.
-  /// \throw std::invalid_argument without tets; MeshCancelled
-  MeshCertificate certify(const UmResult& mesh, ImplicitFunctionRef psi, const KeepGoing& keep_going = {});
+  /// \throw std::invalid_argument without tets; Cancelled
+  MeshCertificate certify(const UmResult& mesh, ImplicitFunctionRef psi, const Context& context = {});
 
  private:
   struct Impl;

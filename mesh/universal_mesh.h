@@ -3,10 +3,12 @@
 #include <string>
 #include <vector>
 
+#include "common/context.h"
 #include "mesh/background/background_mesh.h"
 #include "mesh/core/implicit_function.h"
 #include "mesh/fast/fast_params.h"
 #include "mesh/paper/algorithm_1.h"
+#include "mesh/submesh/chosen_submesh.h"
 #include "mesh/submesh/submesh_params.h"
 #include "mesh/submesh/um_result.h"
 
@@ -38,8 +40,21 @@ std::vector<std::string> problems(const UmParams&);
 /// Around a body in a box: psi is a Complement (implicit_function.h), the background boundary a wall; walls are flat in
 /// an a15_box().
 /// @param seeds  for SubmeshSearch::Crawl: at least one point near every component of the boundary
-/// \throw std::invalid_argument naming every broken constraint of params
+/// \throw std::invalid_argument naming every broken constraint of params; Cancelled
 UmResult universal_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params = {},
-                        const UmObserver& observer = {}, const std::vector<Vec3>& seeds = {});
+                        const Context& context = {}, const std::vector<Vec3>& seeds = {});
+
+/// The first of its two steps: which tets of the background become the mesh. Reports "search" and "submesh".
+/// @param seeds  as above
+/// \throw std::invalid_argument naming every broken constraint of params; Cancelled
+ChosenSubmesh choose_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params = {},
+                             const Context& context = {}, const std::vector<Vec3>& seeds = {});
+
+/// The second: their vertices move until the boundary is on psi = 0 and the tets are well shaped.
+/// Reports "project", "relax" and, in UmMode::Fast, "repair".
+/// @param chosen  by choose_submesh() of the same background, psi and params: what failed there is the result
+/// \throw std::invalid_argument naming every broken constraint of params; Cancelled
+UmResult fit_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
+                     ChosenSubmesh chosen, const Context& context = {});
 
 }  // namespace umtet

@@ -22,17 +22,17 @@ namespace umtet::python {
 using Points = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
 using Settings = std::vector<std::pair<std::string, std::string>>;  ///< key and text of a parameter
 
-/// The progress callback has answered False.
-struct Cancelled : std::runtime_error {
-  Cancelled() : std::runtime_error("stopped by the progress callback") {}
-};
-
 /// \throw UsageError
 Parameters parameters_of(const Settings& settings);
 
 /// Asks for Ctrl-C and tells the callback, both at most every 20 ms.
 /// @param progress  a callable (step, fraction), or None; it must outlive the watch
 Watch watch_of(const pybind11::object& progress);
+
+/// A call of a library that the watch follows and, where it throws, ends; it must outlive the context.
+Context context_of(const Watch& watch);
+/// The same of a call that is a part of one whose steps are told otherwise.
+Context polls_of(const Watch& watch);
 
 /// Runs f without the GIL. @param threads  0: as many as the machine has
 template <class F>

@@ -21,13 +21,6 @@
 namespace umtet::python {
 namespace {
 
-KeepGoing polls(const Watch& watch) {
-  return [&watch] {
-    watch(nullptr, 0);
-    return true;
-  };
-}
-
 // Foretelling the number of tets takes a million values of psi, whatever h is: some ten seconds of a Python callable.
 // Where h is given it is left out, and memory is asked for as many as are allowed.
 EdgeLength edge_length(Domain& domain, const BackgroundChoice& background, const Parameters& parameters,
@@ -35,18 +28,7 @@ EdgeLength edge_length(Domain& domain, const BackgroundChoice& background, const
   if (background.own_h()) return {*background.own_h(), *background.own_h()};
   const double h = parameters.mesh().h;
   if (domain.function && h >= least_h_in_file(domain) && h > 0) return {h, h};
-  return choose_edge_length(domain, parameters, polls(watch));
-}
-
-MeshWatch mesh_watch(const Watch& watch) {
-  MeshWatch all;
-  all.keep_going = polls(watch);
-  all.begins = [&watch](const char* step) { watch(step, 0); };
-  all.progress = [&watch](const UmProgress& p) {
-    watch(p.step, static_cast<double>(p.pass) / std::max(p.n_passes, 1));
-    return true;
-  };
-  return all;
+  return choose_edge_length(domain, parameters, polls_of(watch));
 }
 
 MeshingFailed too_thin(const MeshAttempt& best, const Vec3& shift) {
@@ -97,13 +79,8 @@ Reconstruction reconstruct(OrientedPointCloud cloud, const Parameters& parameter
   const double noise = parameters.reconstruct().noise;
   made.noise = params.noise =
       noise >= 0 ? noise : noise_along_normals(domain.cloud, NeighbourTree(domain.cloud.points));
-  SsdFit fit = fit_ssd(
-      domain.cloud, params,
-      [&](const char* step, double fraction) {
-        watch(step, fraction);
-        return true;
-      },
-      prepared.near.nearest.empty() ? nullptr : &prepared.near);
+  SsdFit fit =
+      fit_ssd(domain.cloud, params, context_of(watch), prepared.near.nearest.empty() ? nullptr : &prepared.near);
   require_outward_normals(fit.report);
   made.report = std::move(fit.report);
   domain.samples = std::make_shared<const SampleDistance>(domain.cloud.points);
@@ -118,7 +95,7 @@ MeshAttempt make_mesh(Domain& domain, const Parameters& parameters, const Watch&
   watch("size", 0);
   domain.complement = parameters.mesh().complement;
   const BackgroundChoice background(parameters, domain);
-  MeshMaker maker(domain, parameters, mesh_watch(watch));
+  MeshMaker maker(domain, parameters, context_of(watch));
   const std::int64_t n_tets = domain.function ? parameters.mesh().max_tets : parameters.mesh().tets;
   MeshAttempt best = maker.best(edge_length(domain, background, parameters, watch), [&](double h) {
     return background.make(domain, h, n_tets, allowed_bytes(parameters));
@@ -131,9 +108,9 @@ MeshAttempt make_mesh(Domain& domain, const Parameters& parameters, const Watch&
 Json certificate_of(const Domain& domain, const UmResult& result, double h, const Parameters& parameters,
                     const Watch& watch) {
   watch("components", 0);
-  const ZeroSetChoice pieces = choose_components(domain, h, polls(watch));
+  const ZeroSetChoice pieces = choose_components(domain, h, polls_of(watch));
   watch("certify", 0);
-  return verdict_on(measure(domain, result, pieces, h, polls(watch)), parameters);
+  return verdict_on(measure(domain, result, pieces, h, polls_of(watch)), parameters);
 }
 
 }  // namespace umtet::python

@@ -100,10 +100,7 @@ py::tuple update(Moving& moving, const py::object& psi, std::optional<double> t,
   const std::unique_ptr<std::atomic<bool>, decltype(done)> guard(&moving.at_work, done);
   Mesh made{{}, {}, {}, h, nullptr};
   UmUpdate u = in_arena(p.threads, [&] {
-    UmUpdate next = moving.mesher.update(p.domain.psi(), hints, [&](const UmProgress& at) {
-      watch(at.step, static_cast<double>(at.pass) / std::max(at.n_passes, 1));
-      return true;
-    });
+    UmUpdate next = moving.mesher.update(p.domain.psi(), hints, context_of(watch));
     if (next.mesh.status != UmStatus::Success) throw failure(next.mesh, h, p.domain.shift);
     if (certify) made.certificate = certificate_of(p.domain, next.mesh, h, moving.parameters, watch);
     return next;
@@ -145,10 +142,7 @@ py::object certificate(const Points& points,
     input.psi = p->domain.psi();
   }
   const Watch watch = watch_of(py::none());
-  input.keep_going = [&] {
-    watch(nullptr, 0);
-    return true;
-  };
+  input.context = polls_of(watch);
   const MeshCertificate measured = in_arena(p ? p->threads : 0, [&] { return certify(input); });
   Json json = {{"schema", 1}, {"tool", "umtet"}, {"version", kVersion}};
   json.update(to_json(measured));

@@ -96,19 +96,19 @@ double enclosed_volume(const TetMesh& mesh, const std::vector<Triangle>& faces) 
 /// Fills the distances and normals of the boundary.
 /// @param volume  that the faces are to stand for
 void measure_against(ImplicitFunctionRef psi, const TetMesh& mesh, const std::vector<Triangle>& faces,
-                     const std::vector<int>& vertices, double volume, const KeepGoing& keep_going,
+                     const std::vector<int>& vertices, double volume, const Context& context,
                      MeshCertificate& certificate) {
   const double h = certificate.h;
   MeshCertificate::Boundary& boundary = certificate.boundary;
   std::vector<double> vertex_distance(vertices.size());
-  polled_parallel_for(vertices.size(), kValuesPerPoll, keep_going, [&](std::size_t i) {
+  polled_parallel_for(vertices.size(), kValuesPerPoll, context, [&](std::size_t i) {
     Vec3 g;
     const double value = psi.value(mesh.V[vertices[i]], g);
     const double d = value == 0 ? 0 : std::abs(value) / g.norm();
     vertex_distance[i] = std::isnan(d) ? kInfinity : d;
   });
   std::vector<FaceMeasure> face(faces.size());
-  polled_parallel_for(faces.size(), kFeetPerPoll, keep_going, [&](std::size_t i) {
+  polled_parallel_for(faces.size(), kFeetPerPoll, context, [&](std::size_t i) {
     const Vec3 &a = mesh.V[faces[i][0]], &b = mesh.V[faces[i][1]], &c = mesh.V[faces[i][2]];
     const Foot foot = foot_point(psi, (a + b + c) / 3.0, h);
     const Vec3 n = (b - a).cross(c - a);
@@ -148,14 +148,14 @@ MeshCertificate certify_with(const CertificateInput& input, CertificateMemory* m
   if (!at_walls.empty() && (at_walls.front() < 0 || at_walls.back() >= static_cast<int>(mesh.V.size()))) {
     throw std::invalid_argument("certify: a wall face with a vertex out of range");
   }
-  poll(input.keep_going);
+  input.context.poll();
   surface = boundary_faces(mesh.C, mesh.V.size(), memory ? memory->to_count() : nullptr);  // checks the indices
-  poll(input.keep_going);
+  input.context.poll();
 
   MeshCertificate certificate;
   certificate.coordinate_rounding = input.coordinate_rounding;
   SurfaceTopology topology;
-  run_both([&] { detail::measure_tets(mesh, input.h, input.keep_going, memory, certificate); },
+  run_both([&] { detail::measure_tets(mesh, input.h, input.context, memory, certificate); },
            [&] { topology = surface_topology(mesh.V, surface.triangles); });
 
   MeshCertificate::Boundary& boundary = certificate.boundary;
@@ -179,14 +179,14 @@ MeshCertificate certify_with(const CertificateInput& input, CertificateMemory* m
   for (const int i : at_walls) boundary.n_moved_wall_vertices += mesh.V[i] != (*input.background_V)[i];
   if (input.psi) {
     if (walls.empty()) {
-      measure_against(*input.psi, mesh, surface.triangles, topology.vertices, certificate.volume, input.keep_going,
+      measure_against(*input.psi, mesh, surface.triangles, topology.vertices, certificate.volume, input.context,
                       certificate);
     } else {
       const std::vector<Triangle> fitted = without(surface.triangles, walls);
       // A small body in much fluid is missed as easily as by a mesh of its inside.
       const double volume =
           fitted.empty() ? certificate.volume : std::min(certificate.volume, enclosed_volume(mesh, fitted));
-      measure_against(*input.psi, mesh, fitted, vertices_of(fitted), volume, input.keep_going, certificate);
+      measure_against(*input.psi, mesh, fitted, vertices_of(fitted), volume, input.context, certificate);
     }
   }
   return certificate;
@@ -209,7 +209,7 @@ MeshCertificate certify_again(const CertificateInput& input, CertificateMemory::
   boundary.n_cos_below_half = boundary.n_unprojected_faces = 0;
   if (input.psi) {
     if (known.surface_vertices.empty()) known.surface_vertices = vertices_of(surface);
-    measure_against(*input.psi, *input.mesh, surface, known.surface_vertices, certificate.volume, input.keep_going,
+    measure_against(*input.psi, *input.mesh, surface, known.surface_vertices, certificate.volume, input.context,
                     certificate);
   }
   return certificate;

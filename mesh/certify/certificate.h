@@ -57,7 +57,7 @@ struct CertificateInput {
   const std::vector<Triangle>* positive_faces = nullptr;  ///< optional: compared with the boundary as a set
   std::optional<ImplicitFunctionRef> psi;                 ///< optional: distances and normals
   double coordinate_rounding = 0;  ///< how far the file's rounding of coordinates may move a vertex, model units
-  KeepGoing keep_going = {};
+  Context context = {};
   const std::vector<Triangle>* wall_faces = nullptr;  ///< optional: boundary that is not of psi = 0
   const std::vector<Vec3>* background_V = nullptr;  ///< by vertex: where those of the walls are to be; with wall_faces
 };
@@ -76,7 +76,7 @@ inline constexpr double kMostGap = .1;
 /// Cost: O(n log n); threads over tets and faces, result independent of them.
 /// psi must be thread-safe.
 /// \throw std::invalid_argument without a mesh or tets, for an index out of range, or where background_V is wanting;
-///        MeshCancelled
+///        Cancelled
 MeshCertificate certify(const CertificateInput&);
 
 class CertificateMemory;

@@ -46,7 +46,7 @@ class CertificateMemory {
   struct Whole {
     double h;  ///< CertificateInput::h
     MeshCertificate certificate;
-    std::vector<int> surface_vertices = {};  ///< ascending; empty until someone asks
+    std::vector<int> surface_vertices = {};  ///< ascending; empty until they are needed
   };
   /// That of the mesh before if the one that was matched is the same, bit by bit, or null.
   Whole* of_the_same(double h) { return is_same_ && whole_ && whole_->h == h ? &*whole_ : nullptr; }

@@ -44,10 +44,10 @@ std::vector<CurvedEdge> edges_of(const std::vector<Triangle>& faces, const detai
 /// @return evaluations of psi
 std::size_t project(const std::vector<CurvedEdge>& edges, ImplicitFunctionRef psi, double h,
                     const ClosestPointParams& params, std::vector<Vec3>& V, std::vector<MidSide>& kind,
-                    const KeepGoing& keep_going) {
+                    const Context& context) {
   const std::size_t n_corners = V.size() - kind.size();
   std::vector<int> evaluations(edges.size());
-  polled_parallel_for(edges.size(), kValuesPerPoll / 8, keep_going, [&](std::size_t i) {
+  polled_parallel_for(edges.size(), kValuesPerPoll / 8, context, [&](std::size_t i) {
     const auto& [m, a, b] = edges[i];
     const ClosestPoint foot = closest_point(psi, V[m], h, params);
     const bool found = foot.converged && (foot.point - V[m]).norm() <= kMostSag * (V[b] - V[a]).norm();
@@ -60,10 +60,10 @@ std::size_t project(const std::vector<CurvedEdge>& edges, ImplicitFunctionRef ps
 
 /// The tets that may have a determinant below `bar` times its mean, of those with a curved edge.
 std::vector<int> poor_tets(const QuadraticTetMesh& mesh, const std::vector<MidSide>& kind, double bar,
-                           const KeepGoing& keep_going) {
+                           const Context& context) {
   const std::size_t n_corners = mesh.V.size() - kind.size();
   std::vector<char> is_poor(mesh.C.size(), 0);
-  polled_parallel_for(mesh.C.size(), kTetsPerPoll, keep_going, [&](std::size_t t) {
+  polled_parallel_for(mesh.C.size(), kTetsPerPoll, context, [&](std::size_t t) {
     const QuadraticTet& tet = mesh.C[t];
     const bool curved =
         std::any_of(tet.begin() + 4, tet.end(), [&](int m) { return kind[m - n_corners] == MidSide::Surface; });
@@ -87,7 +87,7 @@ std::vector<std::string> problems(const SecondOrderParams& params) {
 }
 
 SecondOrder quadratic_tets(const TetMesh& mesh, const std::vector<Triangle>& curved_faces, ImplicitFunctionRef psi,
-                           double h, const SecondOrderParams& params, const KeepGoing& keep_going) {
+                           double h, const SecondOrderParams& params, const Context& context) {
   std::string broken;
   for (const std::string& problem : problems(params)) broken += (broken.empty() ? "" : "; ") + problem;
   if (!(h > 0)) broken += "; h: must be > 0";
@@ -99,20 +99,20 @@ SecondOrder quadratic_tets(const TetMesh& mesh, const std::vector<Triangle>& cur
   std::vector<CurvedEdge> edges;
   {
     const detail::MidSideNumbers number(mesh.C, n_corners);
-    poll(keep_going);
+    context.poll();
     result.mesh = number.straight_mesh(mesh);
     edges = edges_of(curved_faces, number, n_corners);
     kind.assign(number.n_edges(), MidSide::Free);
   }
   std::vector<Vec3>& V = result.mesh.V;
-  result.n_psi_evaluations = project(edges, psi, h, params.closest_point, V, kind, keep_going);
+  result.n_psi_evaluations = project(edges, psi, h, params.closest_point, V, kind, context);
   for (const CurvedEdge& e : edges) result.n_unprojected += kind[e.mid_side - n_corners] == MidSide::Fixed;
 
-  std::vector<int> poor = poor_tets(result.mesh, kind, params.target, keep_going);
+  std::vector<int> poor = poor_tets(result.mesh, kind, params.target, context);
   if (!poor.empty()) {
     const std::vector<Vec3> before(V.begin() + static_cast<std::ptrdiff_t>(n_corners), V.end());
     detail::MidSideRelaxation relaxation(result.mesh, n_corners, kind, psi, h, params);
-    result.n_psi_evaluations += relaxation.relax(poor, keep_going);
+    result.n_psi_evaluations += relaxation.relax(poor, context);
     relaxation.retreat(poor);
     for (std::size_t m = 0; m < kind.size(); ++m) {
       const bool moved = V[n_corners + m] != before[m];

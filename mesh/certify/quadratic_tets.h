@@ -50,10 +50,10 @@ struct SecondOrder {
 /// @param psi           C2 near the boundary, negative inside; thread-safe
 /// @param h             edge length that the tolerances of params.closest_point are relative to, model units, > 0
 /// \throw std::invalid_argument for an index out of range, a face with an edge of no tet, params with problems();
-///        MeshCancelled
+///        Cancelled
 /// Cost: 1.5 closest points a face and .2 microseconds a tet, more only where mid-sides are relaxed; 140 bytes a tet.
 /// Result independent of threads.
 SecondOrder quadratic_tets(const TetMesh& mesh, const std::vector<Triangle>& curved_faces, ImplicitFunctionRef psi,
-                           double h, const SecondOrderParams& params = {}, const KeepGoing& keep_going = {});
+                           double h, const SecondOrderParams& params = {}, const Context& context = {});
 
 }  // namespace umtet

@@ -44,7 +44,7 @@ void measure_jacobians(const SecondOrderInput& input, SecondOrderCertificate& ce
   const QuadraticTetMesh& mesh = *input.mesh;
   const std::size_t n = mesh.C.size(), n_blocks = (n + kTetsPerBlock - 1) / kTetsPerBlock;
   std::vector<JacobianMeasure> blocks(n_blocks);
-  polled_parallel_for(n_blocks, kBlocksPerPoll, input.keep_going, [&](std::size_t b) {
+  polled_parallel_for(n_blocks, kBlocksPerPoll, input.context, [&](std::size_t b) {
     const std::size_t end = std::min(n, (b + 1) * kTetsPerBlock);
     for (std::size_t t = b * kTetsPerBlock; t < end; ++t) blocks[b].add(jacobian_bounds(nodes_of(mesh, mesh.C[t])));
   });
@@ -112,9 +112,9 @@ void measure_distances(const SecondOrderInput& input, const std::vector<Quadrati
   const ImplicitFunctionRef psi = *input.psi;
   std::vector<double> at_node(nodes.size());
   std::vector<std::array<double, 4>> at_face(faces.size());
-  polled_parallel_for(nodes.size(), kValuesPerPoll, input.keep_going,
+  polled_parallel_for(nodes.size(), kValuesPerPoll, input.context,
                       [&](std::size_t i) { at_node[i] = distance(psi, input.mesh->V[nodes[i]]); });
-  polled_parallel_for(faces.size(), kValuesPerPoll / 4, input.keep_going,
+  polled_parallel_for(faces.size(), kValuesPerPoll / 4, input.context,
                       [&](std::size_t i) { at_face[i] = face_distances(psi, *input.mesh, faces[i], input.h); });
   const double tolerance = kVertexTolerance * input.h + input.coordinate_rounding;
   double greatest = 0, greatest_at_face = 0, squares = 0;
@@ -167,10 +167,10 @@ SecondOrderCertificate certify_second_order(const SecondOrderInput& input) {
   certificate.coordinate_rounding = input.coordinate_rounding;
   certificate.n_nodes = static_cast<std::size_t>(std::count(used.begin(), used.end(), 1));
   measure_jacobians(input, certificate);
-  poll(input.keep_going);
+  input.context.poll();
   const detail::MidSideNumbers number(C, mesh.V.size());
   const std::vector<int> of_edge = mid_sides(mesh, number, certificate.n_torn_edges);
-  poll(input.keep_going);
+  input.context.poll();
 
   std::vector<Triangle> walls = input.wall_faces ? *input.wall_faces : std::vector<Triangle>{};
   for (Triangle& f : walls) f = rotated(f);

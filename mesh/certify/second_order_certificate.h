@@ -38,13 +38,13 @@ struct SecondOrderInput {
   std::optional<ImplicitFunctionRef> psi;             ///< optional: distances; thread-safe
   double coordinate_rounding = 0;                     ///< as in CertificateInput
   const std::vector<Triangle>* wall_faces = nullptr;  ///< optional: boundary that is not of psi = 0
-  KeepGoing keep_going = {};
+  Context context = {};
 };
 
 /// Measures everything above. Does not judge. Distances and result are independent of threads.
 /// Cost: .3 microseconds a tet, four values of psi a boundary face.
 /// \throw std::invalid_argument without a mesh, tets or h, for an index out of range or a tet that repeats a corner;
-///        MeshCancelled
+///        Cancelled
 SecondOrderCertificate certify_second_order(const SecondOrderInput&);
 
 /// The reasons why it fails, empty = pass: a Jacobian that is not positive, torn edges, boundary mid-sides off psi = 0.

@@ -45,7 +45,7 @@ class Descent {
   }
 
   /// @param inside  receives the labels
-  ClassificationReport operator()(IdSet& inside, const KeepGoing& keep_going);
+  ClassificationReport operator()(IdSet& inside, const Context& context);
 
  private:
   enum class Thin : std::uint8_t { Unknown, No, Yes };
@@ -71,7 +71,7 @@ class Descent {
   template <class F>
   std::size_t sweep(const F& visit);
   template <class F>
-  bool descend(Open what, const F& visit, const KeepGoing& keep_going, ClassificationReport& report);
+  bool descend(Open what, const F& visit, const Context& context, ClassificationReport& report);
 
   double h_;
   const std::vector<LinkTopology>& links_;
@@ -233,9 +233,9 @@ std::size_t Descent::sweep(const F& visit) {
 /// Sweeps over the vertices with `what` to be done until nothing changes.
 /// @return false if max_sweeps are used up
 template <class F>
-bool Descent::descend(Open what, const F& visit, const KeepGoing& keep_going, ClassificationReport& report) {
+bool Descent::descend(Open what, const F& visit, const Context& context, ClassificationReport& report) {
   while (report.sweeps < params_.max_sweeps) {
-    poll(keep_going);
+    context.poll();
     const std::size_t flips = sweep([&](int v) {
       if ((open_[v] & what) == 0) return 0;
       open_[v] &= ~what;
@@ -248,7 +248,7 @@ bool Descent::descend(Open what, const F& visit, const KeepGoing& keep_going, Cl
   return false;
 }
 
-ClassificationReport Descent::operator()(IdSet& inside, const KeepGoing& keep_going) {
+ClassificationReport Descent::operator()(IdSet& inside, const Context& context) {
   ClassificationReport report;
   report.candidates = band_.order.size();
   report.shifted = sweep([&](int v) {
@@ -266,9 +266,9 @@ ClassificationReport Descent::operator()(IdSet& inside, const KeepGoing& keep_go
   }
   // Pairs cost ten times as much: they come when single labels have nothing more to win.
   report.settled = descend(
-                       kSingle, [&](int v) { return flip_if_better(v); }, keep_going, report) &&
+                       kSingle, [&](int v) { return flip_if_better(v); }, context, report) &&
                    descend(
-                       kPair, [&](int v) { return flip_with_neighbour(v); }, keep_going, report);
+                       kPair, [&](int v) { return flip_with_neighbour(v); }, context, report);
   for (std::size_t v = 0; v < band_.size(); ++v) {
     if (band_.label[v]) {
       inside.insert(band_.id[v]);
@@ -321,12 +321,12 @@ bool is_thin(ImplicitFunctionRef psi, const Vec3& foot, const Vec3& normal, doub
 
 ClassificationReport classify_vertices(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
                                        ImplicitFunctionRef psi, const ClassificationParams& params, IdSet& inside,
-                                       const KeepGoing& keep_going, const IdSet* last, const PsiValues* known) {
+                                       const Context& context, const IdSet* last, const PsiValues* known) {
   std::string all;
   for (const std::string& problem : problems(params)) all += (all.empty() ? "" : "; ") + problem;
   if (!all.empty()) throw std::invalid_argument(all);
-  ClassificationBand band(background, links, psi, params, inside, keep_going, known);
-  return Descent(background.h(), links, psi, params, band, last)(inside, keep_going);
+  ClassificationBand band(background, links, psi, params, inside, context, known);
+  return Descent(background.h(), links, psi, params, band, last)(inside, context);
 }
 
 }  // namespace umtet

@@ -23,11 +23,11 @@ struct ClassificationParams {
   double reach_in = .9;   ///< how deep inside a label may change; >= 0
   double reach_out = .2;  ///< how far outside; >= 0. .5: 17 tets
   /// No label changes where projection would draw the vertices around apart by more than this factor; >= 1. A tip whose
-  /// innermost vertex is no longer inside is cut off, or folds. Samples of the koala to its mesh of 160k tets, 99 %:
-  /// .17 h, .21 h with 1.4, .33 h without limit; folded over faces of the armadillo's (2.1 M): 4, and 20 without.
+  /// innermost vertex is no longer inside is cut off, or folds. Samples of a scan to its mesh of 160k tets, 99 %:
+  /// .17 h, .21 h with 1.4, .33 h without limit; folded over faces of another's (2.1 M): 4, and 20 without.
   double most_stretch = 1.2;
-  /// Nor where the body or the gap outside is thinner than this; >= 0. With 2 blub's tail fin keeps 98 tets below .81,
-  /// with 1.5 two, and three of the clouds of data/ that are 2 h thick get boundaries that are no manifolds.
+  /// Nor where the body or the gap outside is thinner than this; >= 0. With 2 the thin fin of a scan keeps 98 tets
+  /// below .81, with 1.5 two, and three of the clouds of data/ that are 2 h thick get boundaries that are no manifolds.
   double least_thickness = 1;
   /// Price of a boundary vertex at height d outside: outside_weight (d - outside_height)^2; >= 0. Weight 20: 22 tets,
   /// but the 1 % quantile of Q of T6 (100k tets, the lattice in 41 places) is .842 at least, and .844 with 40; 80: 85
@@ -84,10 +84,10 @@ bool is_thin(ImplicitFunctionRef psi, const Vec3& foot, const Vec3& normal, doub
 /// @param inside  the vertices with psi < 0 on entry; none of them, nor a neighbour, on the background boundary
 /// @param last    labels of a mesh before, or null: where the descent would as well have these, it begins with them
 /// @param known   psi at all vertices with a neighbour on the other side, or null
-/// \throw std::invalid_argument naming every broken constraint of params, MeshCancelled
+/// \throw std::invalid_argument naming every broken constraint of params, Cancelled
 ClassificationReport classify_vertices(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
                                        ImplicitFunctionRef psi, const ClassificationParams& params, IdSet& inside,
-                                       const KeepGoing& keep_going = {}, const IdSet* last = nullptr,
+                                       const Context& context = {}, const IdSet* last = nullptr,
                                        const PsiValues* known = nullptr);
 
 }  // namespace umtet

@@ -25,7 +25,7 @@ constexpr std::size_t kVerticesPerTask = 1 << 12;  // of some ten nanoseconds ea
 
 ClassificationBand::ClassificationBand(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
                                        ImplicitFunctionRef psi, const ClassificationParams& params, const IdSet& inside,
-                                       const KeepGoing& keep_going, const PsiValues* known)
+                                       const Context& context, const PsiValues* known)
     : background_(background),
       links_(links),
       psi_(psi),
@@ -35,8 +35,8 @@ ClassificationBand::ClassificationBand(const BackgroundMesh& background, const s
       steps_(background),
       band_(background.n_vertices()) {
   gather();
-  measure(keep_going);
-  hold_where_stretched(keep_going);
+  measure(context);
+  hold_where_stretched(context);
   make_blocks();
 }
 
@@ -156,7 +156,7 @@ void ClassificationBand::find_foot(std::size_t v) {
   phi[v] = static_cast<float>(std::isfinite(distance) ? distance / h : label[v] ? -far() : far());
 }
 
-void ClassificationBand::measure(const KeepGoing& keep_going) {
+void ClassificationBand::measure(const Context& context) {
   const std::size_t n = size();
   type.resize(n);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, kVerticesPerTask), [&](const auto& range) {
@@ -183,7 +183,7 @@ void ClassificationBand::measure(const KeepGoing& keep_going) {
   foot.resize(n);
   normal.resize(n);
   movable.assign(n, 0);
-  polled_parallel_for(n, kValuesPerPoll, keep_going, [&](std::size_t v) {
+  polled_parallel_for(n, kValuesPerPoll, context, [&](std::size_t v) {
     const bool complete = find_link(v);
     // A vertex without its whole link in the band is there to complete the masks of others.
     if (!complete && (mask[v] == 0 || mask[v] == links_[type[v]].full())) {
@@ -201,9 +201,9 @@ bool ClassificationBand::has_foot(int v) const { return std::abs(phi[v]) < kFart
 /// Labels stay where a vertex on its way to the surface would draw apart those around it by more than most_stretch: a
 /// patch at depth d under a surface of curvature kappa is 1 / (1 - kappa d) times as wide up there. The curvature is
 /// the greatest between the feet of neighbours, on the side that the vertex would come from.
-void ClassificationBand::hold_where_stretched(const KeepGoing& keep_going) {
+void ClassificationBand::hold_where_stretched(const Context& context) {
   const double most = 1 - 1 / params_.most_stretch, apart = kApart * background_.h();
-  polled_parallel_for(size(), kValuesPerPoll, keep_going, [&](std::size_t v) {
+  polled_parallel_for(size(), kValuesPerPoll, context, [&](std::size_t v) {
     if (!movable[v]) return;
     double kappa = 0;
     for (int k = 0; k < links_[type[v]].n; ++k) {

@@ -27,9 +27,9 @@ class ClassificationBand {
 
   /// @param inside  the vertices with psi < 0
   /// @param known   psi at all vertices with a neighbour on the other side, or null
-  /// \throw MeshCancelled
+  /// \throw Cancelled
   ClassificationBand(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
-                     const ClassificationParams& params, const IdSet& inside, const KeepGoing& keep_going,
+                     const ClassificationParams& params, const IdSet& inside, const Context& context,
                      const PsiValues* known = nullptr);
 
   std::size_t size() const { return id.size(); }
@@ -54,9 +54,9 @@ class ClassificationBand {
   bool find_link(std::size_t v);
   double value_at(std::size_t v, const Vec3& x, Vec3& gradient);
   void find_foot(std::size_t v);
-  void measure(const KeepGoing& keep_going);
+  void measure(const Context& context);
   bool has_foot(int v) const;
-  void hold_where_stretched(const KeepGoing& keep_going);
+  void hold_where_stretched(const Context& context);
   void make_blocks();
   bool is_outermost(std::int64_t id) const;
   double unit(std::size_t v) const { return links_[type[v]].unit * background_.h(); }

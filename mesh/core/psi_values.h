@@ -7,7 +7,7 @@
 
 namespace umtet {
 
-/// psi at vertices of the background, where somebody has asked for it already.
+/// psi at vertices of the background, where it has been evaluated already.
 struct PsiValue {
   std::int64_t vertex;
   double value;

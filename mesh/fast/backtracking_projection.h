@@ -55,10 +55,10 @@ struct ProjectionReport {
 ///
 /// Vertices that arrive satisfy |psi| / |grad psi| <= 1e-10 h (closest_point.tol). The same bytes for any number of
 /// threads. The smoother must be of the layer as it is; afterwards it can go on with its queue and its rings.
-/// \throw std::invalid_argument naming every broken constraint of params, MeshCancelled
+/// \throw std::invalid_argument naming every broken constraint of params, Cancelled
 ProjectionReport project(PNormSmoother& smoother, ImplicitFunctionRef psi, const ProjectionParams& params = {},
-                         const KeepGoing& keep_going = {});
+                         const Context& context = {});
 ProjectionReport project(ActiveLayer& layer, ImplicitFunctionRef psi, const ProjectionParams& params = {},
-                         const KeepGoing& keep_going = {});
+                         const Context& context = {});
 
 }  // namespace umtet

@@ -36,12 +36,12 @@ constexpr std::size_t kVerticesPerTask = 1 << 14;  // to compare places, a nanos
 class FastRun {
  public:
   FastRun(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
-          const FastParams& params, const UmObserver& observer)
+          const FastParams& params, const Context& context)
       : background_(background),
         psi_(psi),
         submesh_params_(submesh),
         params_(params),
-        observer_(observer),
+        context_(context),
         costs_of_tiling_(submesh.background_boundary == BackgroundBoundary::Wall
                              ? nullptr
                              : configuration_costs(background.tiling())),
@@ -50,8 +50,31 @@ class FastRun {
     if (costs_of_tiling_ && !classification_params_.costs) classification_params_.costs = &costs_of_tiling_->costs;
   }
 
-  UmResult operator()(const std::vector<Vec3>& seeds) {
-    return run([&] { return find_inside(seeds) && label() && fit(); });
+  ChosenSubmesh choose(const std::vector<Vec3>& seeds) {
+    if (find_inside(seeds) && classify() && !is_complete_) {
+      SubmeshOutline outline = outline_submesh(background_, inside_);
+      result_.submesh = std::move(outline.submesh);
+      n_tets_ = outline.n_tets;
+    }
+    context_.report("submesh", 1);
+    const bool is_whole = is_complete_ || result_.status != UmStatus::Success;
+    return {.status = result_.status,
+            .evidence = std::move(result_.evidence),
+            .inside = std::move(inside_),
+            .submesh = std::move(result_.submesh),
+            .is_whole = is_whole,
+            .walls = std::move(result_.walls),
+            .n_tets = result_.status == UmStatus::Success ? n_tets_ : 0,
+            .n_psi_evaluations = result_.n_psi_evaluations};
+  }
+  UmResult fit(ChosenSubmesh chosen) {
+    inside_ = std::move(chosen.inside);
+    is_classified_ = chosen.status == UmStatus::Success;
+    is_complete_ = chosen.is_whole;
+    result_ = result_of(std::move(chosen));
+    if (is_complete_) count_double_faces();
+    if (is_classified_) fit();
+    return finished();
   }
   UmResult operator()(IdSet inside, FastMemory& memory, const PsiValues& known) {
     if (!known.empty()) known_ = &known;
@@ -59,8 +82,8 @@ class FastRun {
     negative_ = inside_;
     memory_ = &memory;
     memory.n_recalled = 0;
-    bool made = false;
-    UmResult result = run([&] { return made = fits_background("") && label() && fit(); });
+    const bool made = fits_background("") && classify() && fit();
+    UmResult result = finished();
     if (made) {
       remember(memory);
     } else {
@@ -70,13 +93,7 @@ class FastRun {
   }
 
  private:
-  template <class F>
-  UmResult run(const F& steps) {
-    try {
-      steps();
-    } catch (const MeshCancelled&) {
-      fail(UmStatus::Cancelled, {.what = "stopped by the observer"});
-    }
+  UmResult finished() {
     if (is_classified_) complete();
     if (result_.final.empty()) result_.final = result_.submesh.mesh.V;
     if (result_.projected.empty()) result_.projected = result_.final;
@@ -87,35 +104,27 @@ class FastRun {
     result_.evidence = evidence;
     return false;
   }
-  bool report(const char* step, int pass, int n_passes) {
-    const auto& V = result_.submesh.mesh.V;
-    if (!observer_ || observer_({step, pass, n_passes, result_.final.empty() ? &V : &result_.final, n_tets_}))
-      return true;
-    return fail(UmStatus::Cancelled, {.what = std::string("stopped by the observer during ") + step});
-  }
-  KeepGoing asking(const char* step) {
-    return [this, step] { return !observer_ || observer_({step, 1, 1, &result_.submesh.mesh.V, n_tets_}); };
-  }
   bool find_inside(const std::vector<Vec3>& seeds);
   bool fits_background(const std::string& lost);
   void remember(FastMemory& memory);
-  bool label();
+  bool classify();
   bool check_walls();
   void complete();
-  bool relax(const KeepGoing& keep_going, std::vector<Vec3>& projected);
+  void count_double_faces();
+  bool relax(std::vector<Vec3>& projected);
   bool fit();
   bool all_arrived(const ProjectionReport& projection);
   bool none_inverted();
   std::vector<Vec3> coordinates(const std::vector<Vec3>& layer_V) const;
-  void repair_classification(const KeepGoing& keep_going);
+  void repair_classification();
   void measure_assumptions();
 
   const BackgroundMesh& background_;
   ImplicitFunctionRef psi_;
   const SubmeshParams& submesh_params_;
   const FastParams& params_;
-  const UmObserver& observer_;
-  const ConfigurationCosts* costs_of_tiling_;   ///< null: labels stay those of psi
+  const Context& context_;
+  const ConfigurationCosts* costs_of_tiling_;   ///< null: inside is where psi < 0
   ClassificationParams classification_params_;  ///< with the costs
   UmResult result_;
   IdSet inside_;
@@ -131,14 +140,14 @@ class FastRun {
 
 bool FastRun::find_inside(const std::vector<Vec3>& seeds) {
   std::string lost;
+  context_.report("search", 0);
   if (submesh_params_.search == SubmeshSearch::FullLoop) {
-    inside_ = inside_vertices(background_, psi_, result_.n_psi_evaluations, asking("search"));
+    inside_ = inside_vertices(background_, psi_, result_.n_psi_evaluations, context_);
   } else {
-    CrawledVertices found = crawl_inside(background_, psi_, seeds, asking("search"));
+    CrawledVertices found = crawl_inside(background_, psi_, seeds, context_);
     inside_ = std::move(found.inside);
     result_.n_psi_evaluations = found.n_psi_evaluations;
-    lost = "; " + std::to_string(found.lost_seeds.size()) + " of " + std::to_string(seeds.size()) +
-           " seeds led to no positively cut tet";
+    lost = text_of_lost_seeds(found.lost_seeds.size(), seeds.size());
   }
   return fits_background(lost);
 }
@@ -160,7 +169,7 @@ bool FastRun::fits_background(const std::string& lost) {
     }
   }
   if (empty) {
-    const NothingInside why = nothing_inside(background_, psi_, asking("search"), lost);
+    const NothingInside why = nothing_inside(background_, psi_, context_, lost);
     return fail(why.status, why.evidence);
   }
   if (background_boundary.count == 0) return true;
@@ -169,25 +178,19 @@ bool FastRun::fits_background(const std::string& lost) {
   return fail(UmStatus::DomainLeavesBackground, background_boundary);
 }
 
-bool FastRun::label() {
+bool FastRun::classify() {
   const IdSet* last = memory_ && !memory_->moved.empty() ? &memory_->inside : nullptr;
   if (costs_of_tiling_ && last && negative_ == memory_->negative) {
     inside_ = *last;  // psi = 0 has passed over no vertex
   } else if (costs_of_tiling_) {
-    const ClassificationReport labels = classify_vertices(
-        background_, costs_of_tiling_->links, psi_, classification_params_, inside_, asking("search"), last, known_);
+    const ClassificationReport labels = classify_vertices(background_, costs_of_tiling_->links, psi_,
+                                                          classification_params_, inside_, context_, last, known_);
     result_.n_psi_evaluations += labels.psi_evaluations;
   }
   is_classified_ = true;
-  if (!costs_of_tiling_) {
-    complete();
-    if (submesh_params_.background_boundary == BackgroundBoundary::Wall && !check_walls()) return false;
-  } else if (observer_) {  // repair will change labels: tets are listed once, behind it
-    SubmeshOutline outline = outline_submesh(background_, inside_);
-    result_.submesh = std::move(outline.submesh);
-    n_tets_ = outline.n_tets;
-  }
-  return report("submesh", 1, 1);
+  if (costs_of_tiling_) return true;
+  complete();
+  return submesh_params_.background_boundary != BackgroundBoundary::Wall || check_walls();
 }
 
 bool FastRun::check_walls() {
@@ -196,7 +199,7 @@ bool FastRun::check_walls() {
   return near.count == 0 || fail(UmStatus::BoundaryNearWall, near);
 }
 
-/// omega_h of the labels, if it is not there.
+/// omega_h of the inside vertices, if it has not been listed.
 void FastRun::complete() {
   if (is_complete_) return;
   result_.submesh = {};  // before the tets need their memory
@@ -204,9 +207,13 @@ void FastRun::complete() {
   if (submesh_params_.background_boundary == BackgroundBoundary::Wall)
     part_double_faces(background_, psi_, inside_, result_.submesh);
   n_tets_ = result_.submesh.mesh.C.size();
+  count_double_faces();
+  is_complete_ = true;
+}
+
+void FastRun::count_double_faces() {
   double_faces_ = double_positive_faces(result_.submesh);
   result_.double_positive_faces = double_faces_.count;
-  is_complete_ = true;
 }
 
 bool FastRun::all_arrived(const ProjectionReport& projection) {
@@ -292,21 +299,21 @@ void FastRun::measure_assumptions() {
   result_.obtuse_conditioning_angles = angles.not_acute.count;
 }
 
-/// Changes labels where that mends a tet.
-void FastRun::repair_classification(const KeepGoing& keep_going) {
+/// Changes vertices between inside and outside where that mends a tet.
+void FastRun::repair_classification() {
   if (!costs_of_tiling_) return;
   RepairParams params = params_.repair;
   params.target = std::min(params.target, costs_of_tiling_->repair_target);
   params.reach = std::min(params.reach, costs_of_tiling_->repair_reach);
   params.slides = params.slides && !memory_;
   RepairReport repaired =
-      repair(background_, costs_of_tiling_->links, psi_, classification_params_, params, layer_, inside_, keep_going);
+      repair(background_, costs_of_tiling_->links, psi_, classification_params_, params, layer_, inside_, context_);
   result_.n_psi_evaluations += repaired.psi_evaluations;
   moved_ = std::move(repaired.moved);
 }
 
 /// Boundary vertices go to psi = 0, and the layer is relaxed. @param projected  receives the places between the two
-bool FastRun::relax(const KeepGoing& keep_going, std::vector<Vec3>& projected) {
+bool FastRun::relax(std::vector<Vec3>& projected) {
   layer_ = costs_of_tiling_ ? lattice_active_layer(background_, costs_of_tiling_->links, inside_, params_.layers)
                             : background_active_layer(background_, inside_, params_.layers);
   SmoothingParams smoothing_params = params_.smoothing;
@@ -315,7 +322,7 @@ bool FastRun::relax(const KeepGoing& keep_going, std::vector<Vec3>& projected) {
     smoothing_params.margin = std::min(smoothing_params.margin, params_.update_margin);
     smoothing_params.least_gain = std::max(smoothing_params.least_gain, kUpdateLeastGain);
     smoothing_params.fine_gain = std::max(smoothing_params.fine_gain, kUpdateLeastGain);
-    const WarmStart start = warm_start(background_, psi_, inside_, *memory_, params_.projection, layer_, keep_going);
+    const WarmStart start = warm_start(background_, psi_, inside_, *memory_, params_.projection, layer_, context_);
     result_.n_psi_evaluations += start.psi_evaluations;
     memory_->n_recalled = start.n_recalled;
     is_on_surface = start.is_on_surface;
@@ -323,33 +330,36 @@ bool FastRun::relax(const KeepGoing& keep_going, std::vector<Vec3>& projected) {
   PNormSmoother smoother(layer_.layer);
   layer_.layer.ring = {};  // the smoother has listed their faces, and omega_h will need the memory
   if (!is_on_surface) {
-    const ProjectionReport projection = project(smoother, psi_, params_.projection, keep_going);
+    const ProjectionReport projection = project(smoother, psi_, params_.projection, context_);
     result_.n_psi_evaluations += projection.psi_evaluations;
     if (!all_arrived(projection)) return false;
   }
   projected = layer_.layer.V;
+  context_.report("relax", .3);
   smoother.enqueue_all();
-  const SmoothingReport smoothing = smoother.run(psi_, smoothing_params, keep_going);
+  const SmoothingReport smoothing = smoother.run(psi_, smoothing_params, context_);
   result_.n_psi_evaluations += smoothing.psi_evaluations;
   if (!memory_) {  // psi at every face: half the cost of an update
     const TangentialRelaxationParams chords{.least_quality = params_.smoothing.target};
     const std::vector<std::uint8_t> inside = inside_of(layer_, inside_);
     result_.n_psi_evaluations +=
-        relax_tangentially(smoother, inside, psi_, chords, smoothing_params, keep_going).psi_evaluations;
+        relax_tangentially(smoother, inside, psi_, chords, smoothing_params, context_).psi_evaluations;
   }
   return true;
 }
 
 bool FastRun::fit() {
-  const KeepGoing keep_going = asking("relax");
+  context_.report("project", 0);
   std::vector<Vec3> projected;
-  if (!relax(keep_going, projected)) return false;
-  repair_classification(keep_going);
+  if (!relax(projected)) return false;
+  context_.report("repair", .7);
+  repair_classification();
   complete();
   tbb::parallel_invoke([&] { result_.final = coordinates(layer_.layer.V); },
                        [&] { result_.projected = coordinates(projected); });
   measure_assumptions();
-  return none_inverted() && report("relax", 1, 1);
+  context_.report("repair", 1);
+  return none_inverted();
 }
 
 }  // namespace
@@ -370,15 +380,21 @@ std::vector<std::string> problems(const FastParams& params) {
   return list;
 }
 
-UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
-                   const FastParams& params, const UmObserver& observer, const std::vector<Vec3>& seeds) {
-  return FastRun(background, psi, submesh, params, observer)(seeds);
+ChosenSubmesh classified_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi,
+                                 const SubmeshParams& submesh, const FastParams& params, const Context& context,
+                                 const std::vector<Vec3>& seeds) {
+  return FastRun(background, psi, submesh, params, context).choose(seeds);
 }
 
 UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
-                   const FastParams& params, const UmObserver& observer, IdSet inside, FastMemory& memory,
+                   const FastParams& params, ChosenSubmesh chosen, const Context& context) {
+  return FastRun(background, psi, submesh, params, context).fit(std::move(chosen));
+}
+
+UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
+                   const FastParams& params, const Context& context, IdSet inside, FastMemory& memory,
                    const PsiValues& known) {
-  return FastRun(background, psi, submesh, params, observer)(std::move(inside), memory, known);
+  return FastRun(background, psi, submesh, params, context)(std::move(inside), memory, known);
 }
 
 }  // namespace umtet

@@ -4,11 +4,13 @@
 #include <utility>
 #include <vector>
 
+#include "common/context.h"
 #include "mesh/background/background_mesh.h"
 #include "mesh/base/id_set.h"
 #include "mesh/core/implicit_function.h"
 #include "mesh/core/psi_values.h"
 #include "mesh/fast/fast_params.h"
+#include "mesh/submesh/chosen_submesh.h"
 #include "mesh/submesh/submesh_params.h"
 #include "mesh/submesh/um_result.h"
 
@@ -16,18 +18,27 @@ namespace umtet {
 
 /// A boundary-fitting mesh of {psi < 0}, better and some ten times faster than Algorithm 1.
 ///
-/// labels: which background vertices near psi = 0 count as inside is chosen for the shape of the tets
+/// classification: which background vertices near psi = 0 count as inside is chosen for the shape of the tets
 /// (classification.h), where that has costs (configuration_costs.h); layer: only the boundary of omega_h and two layers
 /// behind it move (lattice_active_layer.h); projection: boundary vertices walk to psi = 0 as far as no tet inverts
 /// (backtracking_projection.h); smoothing: p-norm Newton steps where a tet is below the target (p_norm_smoothing.h);
-/// chords: boundary vertices slide on to ridges that h does not resolve (tangential_relaxation.h);
-/// repair: labels change where a tet is still below the target (repair.h).
+/// tangential relaxation: boundary vertices slide on to ridges that h does not resolve (tangential_relaxation.h);
+/// repair: vertices change between inside and outside where a tet is still below the target (repair.h).
 ///
-/// The result is that of universal_mesh(): omega_h of the chosen labels, with the background's ids. The same bytes for
-/// any number of threads. psi must be thread-safe.
-/// \pre params and seeds are those universal_mesh() accepts
+/// The result is that of universal_mesh(): omega_h of the chosen inside vertices, with the background's ids. The same
+/// bytes for any number of threads. psi must be thread-safe. Reports the steps "project", "relax" and "repair". \pre
+/// params are those universal_mesh() accepts
+/// @param chosen  by classified_submesh(): what failed there is the result
+/// \throw Cancelled
 UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
-                   const FastParams& params, const UmObserver& observer = {}, const std::vector<Vec3>& seeds = {});
+                   const FastParams& params, ChosenSubmesh chosen, const Context& context = {});
+
+/// The step before: which vertices count as inside, and how many tets that makes, at a quarter of what listing them
+/// costs. Repair may change both by a few. Reports the steps "search" and "submesh".
+/// @param seeds  as those of universal_mesh(). \throw Cancelled
+ChosenSubmesh classified_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi,
+                                 const SubmeshParams& submesh, const FastParams& params, const Context& context = {},
+                                 const std::vector<Vec3>& seeds = {});
 
 /// What the mesh of one psi leaves to that of the next, in the same background mesh.
 struct FastMemory {
@@ -37,13 +48,14 @@ struct FastMemory {
   std::size_t n_recalled = 0;                        ///< of these, how many the last mesh began with
 };
 
-/// The same from known inside vertices, those with psi < 0. Labels stay as in `memory` if psi
-/// has the signs it had everywhere, else where others are not worth more (ClassificationParams::keep), and the layer
-/// begins near its places there (warm_start.h). Nobody slides to chords.
+/// The same from known inside vertices, those with psi < 0. The classification stays as
+/// in `memory` if psi has the signs it had everywhere, else where another costs little less
+/// (ClassificationParams::keep), and the layer begins near its places there (warm_start.h). There is no tangential
+/// relaxation.
 /// @param memory  empty (no `moved`) at first; receives that of this mesh, or becomes empty if there is none
-/// @param known   of this psi, what the search for `inside` has asked
+/// @param known   of this psi, its values at the vertices where the search for `inside` evaluated it
 UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
-                   const FastParams& params, const UmObserver& observer, IdSet inside, FastMemory& memory,
+                   const FastParams& params, const Context& context, IdSet inside, FastMemory& memory,
                    const PsiValues& known = {});
 
 }  // namespace umtet

@@ -206,8 +206,7 @@ void PNormSmoother::enqueue(int i) {
   }
 }
 
-SmoothingReport PNormSmoother::run(ImplicitFunctionRef psi, const SmoothingParams& params,
-                                   const KeepGoing& keep_going) {
+SmoothingReport PNormSmoother::run(ImplicitFunctionRef psi, const SmoothingParams& params, const Context& context) {
   if (const auto list = problems(params); !list.empty()) {
     std::string all;
     for (const std::string& problem : list) all += (all.empty() ? "" : "; ") + problem;
@@ -229,7 +228,7 @@ SmoothingReport PNormSmoother::run(ImplicitFunctionRef psi, const SmoothingParam
       const double step = (result.place - layer_.V[i]).norm();
       layer_.V[i] = result.place;
       if (result.good && step < params.least_step * layer_.h) continue;
-      // A tet that was good and is good again keeps nobody from being where it is.
+      // A tet that was above the target and still is gives its vertices no reason to move.
       if (result.below_target.none()) continue;
       std::atomic_ref(queued_[i]).store(1, std::memory_order_relaxed);
       const std::span<const Triangle> ring = faces(i);
@@ -252,7 +251,7 @@ SmoothingReport PNormSmoother::run(ImplicitFunctionRef psi, const SmoothingParam
         todo_.push_back(i);
       }
       for (std::size_t begin = 0; begin < todo_.size(); begin += kSolvesPerPoll) {
-        poll(keep_going);
+        context.poll();
         const tbb::blocked_range<std::size_t> some(begin, std::min(todo_.size(), begin + kSolvesPerPoll),
                                                    kSolvesPerTask);
         sweep = sweep + (some.size() < kWorthThreads ? visit_some(some, Counts{})
@@ -297,9 +296,9 @@ void PNormSmoother::measure(SmoothingReport& report) const {
 }
 
 SmoothingReport smooth(ActiveLayer& layer, ImplicitFunctionRef psi, const SmoothingParams& params,
-                       const KeepGoing& keep_going) {
+                       const Context& context) {
   PNormSmoother smoother(layer);
-  SmoothingReport report = smoother.run(psi, params, keep_going);
+  SmoothingReport report = smoother.run(psi, params, context);
   smoother.measure(report);
   return report;
 }

@@ -21,10 +21,10 @@ struct SmoothingParams {
   /// 1 % quantile of Q by .005 (T6) to .012 (sphere), for a quarter more solves; beyond .04 nothing is gained.
   double margin = .034;
   double fine_gain = 2e-5;    ///< a relative gain of 1/Q's norm below this is no move; > 0
-  double least_step = .0075;  ///< of h: a shorter move wakes nobody; >= 0. Without, a tenth more solves
-  /// Where a tet of the ring is below the target, it is this gain that counts, and any move wakes; > 0. What smoothing
-  /// wins there by small steps it takes from the tets around, and leaves a region just below the target where there
-  /// were a few bad tets (koala: 2200 instead of 330).
+  double least_step = .0075;  ///< of h: a shorter move enqueues no neighbour; >= 0. Without, a tenth more solves
+  /// Where a tet of the ring is below the target, it is this gain that counts, and any move enqueues its neighbours; >
+  /// 0. What smoothing wins there by small steps it takes from the tets around, and leaves a region just below the
+  /// target where there were a few bad tets (of a scan: 2200 instead of 330).
   double least_gain = 3e-4;
   /// p = 384 after 96: among many tets nearly as bad, the worst still counts. Slower to settle.
   bool sharper = false;
@@ -82,8 +82,8 @@ class PNormSmoother {
   /// Visits vertices in the queue until none is left, or for max_sweeps; those left stay for the next call. Roles are
   /// read anew: the caller may hold vertices by making them Fixed for a while, which leaves them in the queue.
   /// What it says of the layer is left to measure(), which checks at every tet.
-  /// \throw std::invalid_argument naming every broken constraint of params, MeshCancelled
-  SmoothingReport run(ImplicitFunctionRef psi, const SmoothingParams& params, const KeepGoing& keep_going = {});
+  /// \throw std::invalid_argument naming every broken constraint of params, Cancelled
+  SmoothingReport run(ImplicitFunctionRef psi, const SmoothingParams& params, const Context& context = {});
 
   /// Fills in what a report says of the layer.
   void measure(SmoothingReport& report) const;
@@ -113,6 +113,6 @@ class PNormSmoother {
 
 /// PNormSmoother for one call.
 SmoothingReport smooth(ActiveLayer& layer, ImplicitFunctionRef psi, const SmoothingParams& params = {},
-                       const KeepGoing& keep_going = {});
+                       const Context& context = {});
 
 }  // namespace umtet

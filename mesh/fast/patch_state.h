@@ -36,7 +36,7 @@ struct PatchState {
 
   bool is_perfect() const { return below_target == 0 && misaligned == 0; }
   /// Neither of the five is worse; what is above the target, or above kMisalignedCosine, is good enough. Where fewer
-  /// faces are misaligned, and no more folded over, the worst of them may be misaligned more: the lip of spot_large
+  /// faces are misaligned, and no more folded over, the worst of them may be misaligned more: a thin edge of a scan
   /// goes from six misaligned faces to three, two and one, and the worst by way of cos .01 from .04 to .15.
   bool is_no_worse_than(const PatchState& other) const;
   /// Fewer folded over faces, or as many and fewer misaligned faces and below target tets, or as many of all and better

@@ -23,8 +23,8 @@ using detail::TetIds;
 // Besides max_patches: so many, and one for so many tets of the layer. A coarse perforated plate of 5092 tets is mended
 // by its 1724th patch, and until then checks no better than lenses that never are: one of 1600 tets took 3000.
 constexpr std::size_t kFewPatches = 600, kTetsPerPatch = 4;
-// So many tets are mended at once, while so many wait for one near them. The caller is asked before each round: the
-// dearest tets take a tenth of a second each, and one thread may have to mend them all.
+// So many tets are mended at once, while so many wait for one near them. The context is polled before each round:
+// the costliest tets take a tenth of a second each, and one thread may have to mend them all.
 constexpr std::size_t kAtOnce = 2, kMostWaiting = 64;
 
 /// Of a tiling, as a share of its mean edge.
@@ -58,7 +58,7 @@ class Repair {
         target_(params.target),
         positions_(background, layer) {}
 
-  RepairReport operator()(const KeepGoing& keep_going);
+  RepairReport operator()(const Context& context);
 
  private:
   struct Bad {
@@ -67,7 +67,7 @@ class Repair {
   };
 
   bool is_worth_trying(const TetIds& tet);
-  void mend(const KeepGoing& keep_going);
+  void mend(const Context& context);
   void again(double target);
   bool choose_round();
   void keep(const TetIds& tet, const FlipTrials::Best& best);
@@ -187,10 +187,10 @@ void Repair::look(const LatticeActiveLayer& cut) {
 }
 
 /// What is on the list, round by round.
-void Repair::mend(const KeepGoing& keep_going) {
+void Repair::mend(const Context& context) {
   std::vector<FlipTrials::Best> best(kAtOnce);
   while (choose_round()) {
-    poll(keep_going);
+    context.poll();
     const std::size_t most_tries = most_patches_ - report_.tries;
     tbb::parallel_for(
         std::size_t{0}, round_.size(), [&](std::size_t k) { best[k] = trials_[k](round_[k], most_tries); },
@@ -221,7 +221,7 @@ void Repair::again(double target) {
   hopeless_.clear();
 }
 
-RepairReport Repair::operator()(const KeepGoing& keep_going) {
+RepairReport Repair::operator()(const Context& context) {
   if (params_.max_tries > 0) look(layer_);
   report_.bad_before = todo_.size();
   if (todo_.empty()) return std::move(report_);
@@ -231,20 +231,20 @@ RepairReport Repair::operator()(const KeepGoing& keep_going) {
   // Seen from one vertex of a tet, flips are within two edges, what moves is within reach + 2; labels and places are
   // read one edge farther.
   far_ = (2 * params_.reach + 5) * longest_edge(background_.tiling(), background_.tiling_tables()) * background_.h();
-  mend(keep_going);
+  mend(context);
   if (params_.sharper) {
     again(params_.target);
-    mend(keep_going);
+    mend(context);
   }
   if (params_.less_asked > 0) {
     again(params_.target - params_.less_asked);
-    mend(keep_going);
+    mend(context);
   }
   report_.given_up = given_up_.size();
   if (params_.slides) {
     for (FlipTrials& trials : trials_) trials.look_again(params_.target, false);
     for (const std::vector<std::int64_t>& centres : kept_) {
-      poll(keep_going);
+      context.poll();
       move(trials_.front().slid(centres));
     }
   }
@@ -272,13 +272,13 @@ std::vector<std::string> problems(const RepairParams& params) {
 
 RepairReport repair(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
                     const ClassificationParams& labels, const RepairParams& params, const LatticeActiveLayer& layer,
-                    IdSet& inside, const KeepGoing& keep_going) {
+                    IdSet& inside, const Context& context) {
   std::string all;
   for (const auto& list : {problems(labels), problems(params)}) {
     for (const std::string& problem : list) all += (all.empty() ? "" : "; ") + problem;
   }
   if (!all.empty()) throw std::invalid_argument(all);
-  return Repair(background, links, psi, labels, params, layer, inside)(keep_going);
+  return Repair(background, links, psi, labels, params, layer, inside)(context);
 }
 
 }  // namespace umtet

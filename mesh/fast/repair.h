@@ -16,17 +16,17 @@ namespace umtet {
 struct RepairParams {
   double target = .82;  ///< tets below are mended, and misaligned faces; in (0, 1)
   int reach = 3;        ///< a patch moves the vertices within this many edges of the flip and the tet; >= 1. With 2
-                        ///< some tets of koala and spot stay below .8
-  int max_tries = 24;   ///< labels tried for one tet; >= 0. 0: no repair
+                        ///< some tets of two scans stay below .8
+  int max_tries = 24;   ///< vertices reclassified on trial for one tet; >= 0. 0: no repair
   /// Patches for the worst tets first, a millisecond each (fewer of small meshes; what is begun is ended): more means
-  /// that h is wrong, which labels do not mend. With 600 the armadillo keeps 93 tets below .81 at 1.4 M tets, with 3000
+  /// that h is wrong, which no classification mends. With 600 a scan keeps 93 tets below .81 at 1.4 M tets, with 3000
   /// none.
   std::size_t max_patches = 3000;
-  /// What nothing mends is tried again with SmoothingParams::sharper: of four meshes of the armadillo (h in steps of .1
+  /// What nothing mends is tried again with SmoothingParams::sharper: of four meshes of a scan (h in steps of .1
   /// %) 7 places stay below .82 in place of 22, all of them thinner than 2 h.
   bool sharper = true;
   /// What nothing mends then is tried once more against a target so much lower; >= 0, 0: it is not. Where a body is
-  /// thinner than h, a tet above .82 may cost a fold next to it: of nine meshes of armadillo and scorpion (h in steps
+  /// thinner than h, a tet above .82 may cost a fold next to it: of nine meshes of two scans (h in steps
   /// of .04 to .5 %) two had a folded over face with 0, and none has with .01.
   double less_asked = .01;
   bool slides = true;     ///< patches relax_tangentially() when all is mended: their smoothing has undone that
@@ -36,7 +36,7 @@ struct RepairParams {
   SmoothingParams smoothing = patch_smoothing();
 
   /// A patch settles in a dozen sweeps or not at all, and checks at all that moves: with least_step and fine_gain as
-  /// elsewhere one mesh in twenty of the koala keeps a tet below the target that it does not keep so.
+  /// elsewhere one mesh in twenty of a scan keeps a tet below the target that it does not keep so.
   static SmoothingParams patch_smoothing() {
     SmoothingParams params;
     params.margin = .04;
@@ -76,9 +76,9 @@ struct RepairReport {
 /// Tets far from each other are mended at once, two at most, with the bytes of one after the other.
 /// @param layer   smoothed; its coordinates stay as they are, `moved` says what has changed since
 /// @param inside  receives the changes
-/// \throw std::invalid_argument naming every broken constraint, MeshCancelled
+/// \throw std::invalid_argument naming every broken constraint, Cancelled
 RepairReport repair(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
                     const ClassificationParams& labels, const RepairParams& params, const LatticeActiveLayer& layer,
-                    IdSet& inside, const KeepGoing& keep_going = {});
+                    IdSet& inside, const Context& context = {});
 
 }  // namespace umtet

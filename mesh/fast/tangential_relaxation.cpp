@@ -158,11 +158,11 @@ bool is_far(ImplicitFunctionRef psi, const Vec3& a, const Vec3& b, const Vec3& c
 /// By colour, ascending.
 std::vector<std::vector<int>> vertices_of_far_faces(const ActiveLayer& layer, ImplicitFunctionRef psi,
                                                     const std::vector<Triangle>& faces,
-                                                    const TangentialRelaxationParams& params,
-                                                    const KeepGoing& keep_going, TangentialRelaxationReport& report) {
+                                                    const TangentialRelaxationParams& params, const Context& context,
+                                                    TangentialRelaxationReport& report) {
   std::vector<std::uint8_t> far(faces.size(), 0);
   std::vector<int> evaluations(faces.size(), 0);
-  polled_parallel_for(faces.size(), kValuesPerPoll, keep_going, [&](std::size_t k) {
+  polled_parallel_for(faces.size(), kValuesPerPoll, context, [&](std::size_t k) {
     const Triangle& f = faces[k];
     far[k] = is_far(psi, layer.V[f[0]], layer.V[f[1]], layer.V[f[2]], params.least_chord * layer.h, evaluations[k]);
   });
@@ -202,7 +202,7 @@ std::vector<std::string> problems(const TangentialRelaxationParams& params) {
 
 TangentialRelaxationReport relax_tangentially(PNormSmoother& smoother, const std::vector<std::uint8_t>& inside,
                                               ImplicitFunctionRef psi, const TangentialRelaxationParams& params,
-                                              SmoothingParams smoothing, const KeepGoing& keep_going) {
+                                              SmoothingParams smoothing, const Context& context) {
   if (const auto list = problems(params); !list.empty()) {
     std::string all;
     for (const std::string& problem : list) all += (all.empty() ? "" : "; ") + problem;
@@ -211,7 +211,7 @@ TangentialRelaxationReport relax_tangentially(PNormSmoother& smoother, const std
   ActiveLayer& layer = smoother.layer();
   const std::vector<Triangle> faces = boundary_faces(layer, inside);
   TangentialRelaxationReport report;
-  const std::vector<std::vector<int>> colours = vertices_of_far_faces(layer, psi, faces, params, keep_going, report);
+  const std::vector<std::vector<int>> colours = vertices_of_far_faces(layer, psi, faces, params, context, report);
   if (report.vertices == 0) return report;
   const Fans fans(faces, layer.V.size());
   const Visitor solve(smoother, psi, fans, params, smoothing.closest_point);
@@ -222,7 +222,7 @@ TangentialRelaxationReport relax_tangentially(PNormSmoother& smoother, const std
     std::size_t moves = 0;
     for (const std::vector<int>& colour : colours) {
       std::vector<std::uint8_t> moved(colour.size(), 0);
-      polled_parallel_for(colour.size(), kValuesPerPoll / 64, keep_going, [&](std::size_t k) {
+      polled_parallel_for(colour.size(), kValuesPerPoll / 64, context, [&](std::size_t k) {
         const int i = colour[k];
         Vec3 place;
         moved[k] = solve(i, place, evaluations[i]);
@@ -236,7 +236,7 @@ TangentialRelaxationReport relax_tangentially(PNormSmoother& smoother, const std
     if (moves == 0) break;
     for (ActiveLayer::Role& role : layer.role)
       role = role == ActiveLayer::Role::Boundary ? ActiveLayer::Role::Fixed : role;
-    smoother.run(psi, smoothing, keep_going);
+    smoother.run(psi, smoothing, context);
     layer.role = roles;
   }
   for (const std::size_t n : evaluations) report.psi_evaluations += n;

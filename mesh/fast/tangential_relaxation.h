@@ -41,9 +41,9 @@ struct TangentialRelaxationReport {
 /// @param smoother  of a layer whose boundary vertices are on psi = 0
 /// @param inside    per vertex of it; boundary faces have their three vertices outside
 /// @param smoothing  of the vertices behind; max_sweeps is not used
-/// \throw std::invalid_argument naming every broken constraint, MeshCancelled
+/// \throw std::invalid_argument naming every broken constraint, Cancelled
 TangentialRelaxationReport relax_tangentially(PNormSmoother& smoother, const std::vector<std::uint8_t>& inside,
                                               ImplicitFunctionRef psi, const TangentialRelaxationParams& params,
-                                              SmoothingParams smoothing, const KeepGoing& keep_going = {});
+                                              SmoothingParams smoothing, const Context& context = {});
 
 }  // namespace umtet

@@ -32,7 +32,7 @@ class Start {
         recalled_(layer.layer.V.size(), 0) {}
 
   void recall(const BackgroundMesh& background, const IdSet& inside, const FastMemory& memory);
-  std::size_t go_to_feet(ImplicitFunctionRef psi, const KeepGoing& keep_going);
+  std::size_t go_to_feet(ImplicitFunctionRef psi, const Context& context);
   void follow_boundary();
   void draw_along();
   void go_back_where_flat();
@@ -74,7 +74,7 @@ void Start::recall(const BackgroundMesh& background, const IdSet& inside, const 
 }
 
 /// Returns the number of values of psi.
-std::size_t Start::go_to_feet(ImplicitFunctionRef psi, const KeepGoing& keep_going) {
+std::size_t Start::go_to_feet(ImplicitFunctionRef psi, const Context& context) {
   std::vector<int> boundary;
   for (std::size_t v = 0; v < layer_.V.size(); ++v) {
     if (layer_.role[v] != ActiveLayer::Role::Boundary) continue;
@@ -85,7 +85,7 @@ std::size_t Start::go_to_feet(ImplicitFunctionRef psi, const KeepGoing& keep_goi
   ClosestPointParams params = projection_.closest_point;
   params.method = ClosestPointMethod::Damped;
   params.foot_tol = std::max(params.foot_tol, kFootTol);
-  polled_parallel_for(boundary.size(), kFeetPerPoll, keep_going, [&](std::size_t k) {
+  polled_parallel_for(boundary.size(), kFeetPerPoll, context, [&](std::size_t k) {
     Vec3& x = layer_.V[boundary[k]];
     const ClosestPoint foot = closest_point(psi, x, layer_.h, params);
     evaluations.fetch_add(static_cast<std::size_t>(foot.iterations), std::memory_order_relaxed);
@@ -161,11 +161,11 @@ void Start::go_back_where_flat() {
 
 WarmStart warm_start(const BackgroundMesh& background, ImplicitFunctionRef psi, const IdSet& inside,
                      const FastMemory& memory, const ProjectionParams& projection, LatticeActiveLayer& layer,
-                     const KeepGoing& keep_going) {
+                     const Context& context) {
   Start start(layer, projection);
   WarmStart result;
   start.recall(background, inside, memory);
-  result.psi_evaluations = start.go_to_feet(psi, keep_going);
+  result.psi_evaluations = start.go_to_feet(psi, context);
   start.follow_boundary();
   start.draw_along();
   start.go_back_where_flat();

@@ -15,7 +15,7 @@ namespace umtet {
 struct WarmStart {
   std::vector<unsigned char> recalled;  ///< per vertex of the layer: it began at its place in the last mesh
   std::size_t n_recalled = 0;
-  bool is_on_surface = false;  ///< all Boundary vertices are: nobody is left to project
+  bool is_on_surface = false;  ///< all Boundary vertices are: none is left to project
   std::size_t psi_evaluations = 0;
 };
 
@@ -29,9 +29,9 @@ struct WarmStart {
 ///
 /// @param layer   at the places of the background; receives those to begin with. The same for any number of threads
 /// @param inside  as labelled now
-/// \throw MeshCancelled
+/// \throw Cancelled
 WarmStart warm_start(const BackgroundMesh& background, ImplicitFunctionRef psi, const IdSet& inside,
                      const FastMemory& memory, const ProjectionParams& projection, LatticeActiveLayer& layer,
-                     const KeepGoing& keep_going = {});
+                     const Context& context = {});
 
 }  // namespace umtet

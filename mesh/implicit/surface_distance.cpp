@@ -95,9 +95,9 @@ class NearestTriangle {
 
 /// out[i] = f(i): which thread runs one cannot change a result.
 template <typename F>
-std::vector<double> map_indices(std::size_t n, const KeepGoing& keep_going, F&& f) {
+std::vector<double> map_indices(std::size_t n, const Context& context, F&& f) {
   std::vector<double> out(n);
-  polled_parallel_for(n, kValuesPerPoll, keep_going, [&](std::size_t i) { out[i] = f(i); });
+  polled_parallel_for(n, kValuesPerPoll, context, [&](std::size_t i) { out[i] = f(i); });
   return out;
 }
 
@@ -151,12 +151,12 @@ double SurfaceDistance::distance(const Vec3& x) const {
   return nearest.distance();
 }
 
-std::vector<double> SurfaceDistance::distances(const std::vector<Vec3>& x, const KeepGoing& keep_going) const {
+std::vector<double> SurfaceDistance::distances(const std::vector<Vec3>& x, const Context& context) const {
   // Chunks are what a thread works through: where points follow each other in space, one bounds the next.
   constexpr std::size_t kChunk = 64;
   constexpr double kRoundedUp = 1 + 1e-12;
   std::vector<double> out(x.size());
-  polled_parallel_for((x.size() + kChunk - 1) / kChunk, kValuesPerPoll / kChunk, keep_going, [&](std::size_t c) {
+  polled_parallel_for((x.size() + kChunk - 1) / kChunk, kValuesPerPoll / kChunk, context, [&](std::size_t c) {
     double bound = std::numeric_limits<double>::infinity();
     for (std::size_t i = c * kChunk; i < std::min(x.size(), (c + 1) * kChunk); ++i) {
       if (i > c * kChunk) bound = out[i - 1] + (x[i] - x[i - 1]).norm();
@@ -190,8 +190,8 @@ SampleDistance::~SampleDistance() = default;
 SampleDistance::SampleDistance(SampleDistance&&) noexcept = default;
 SampleDistance& SampleDistance::operator=(SampleDistance&&) noexcept = default;
 
-std::vector<double> SampleDistance::distances(const std::vector<Vec3>& x, const KeepGoing& keep_going) const {
-  return map_indices(x.size(), keep_going, [&](std::size_t i) {
+std::vector<double> SampleDistance::distances(const std::vector<Vec3>& x, const Context& context) const {
+  return map_indices(x.size(), context, [&](std::size_t i) {
     std::uint32_t nearest = 0;
     double distance2 = 0;
     index_->tree->knnSearch(x[i].data(), 1, &nearest, &distance2);
@@ -200,7 +200,7 @@ std::vector<double> SampleDistance::distances(const std::vector<Vec3>& x, const 
 }
 
 double unsupported_area_fraction(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
-                                 const SampleDistance& samples, double radius, const KeepGoing& keep_going) {
+                                 const SampleDistance& samples, double radius, const Context& context) {
   std::vector<double> area(V.size(), 0);  // a third of the faces around a vertex
   double all = 0;
   for (const Triangle& f : faces) {
@@ -213,7 +213,7 @@ double unsupported_area_fraction(const std::vector<Vec3>& V, const std::vector<T
   for (std::size_t v = 0; v < V.size(); ++v) {
     if (area[v] > 0) vertices.push_back(static_cast<int>(v)), places.push_back(V[v]);
   }
-  const std::vector<double> distance = samples.distances(places, keep_going);
+  const std::vector<double> distance = samples.distances(places, context);
   double unsupported = 0;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     if (distance[i] > radius) unsupported += area[vertices[i]];

@@ -30,8 +30,8 @@ class SurfaceDistance {
 
   double distance(const Vec3& x) const;
   /// One distance per point; threads over points. Takes half the time for points that follow each other in space.
-  /// \throw MeshCancelled
-  std::vector<double> distances(const std::vector<Vec3>& x, const KeepGoing& keep_going = {}) const;
+  /// \throw Cancelled
+  std::vector<double> distances(const std::vector<Vec3>& x, const Context& context = {}) const;
 
  private:
   struct Index;
@@ -48,8 +48,8 @@ class SampleDistance {
   SampleDistance(SampleDistance&&) noexcept;
   SampleDistance& operator=(SampleDistance&&) noexcept;
 
-  /// Distance from each x to the nearest sample, model units; threads over x. \throw MeshCancelled
-  std::vector<double> distances(const std::vector<Vec3>& x, const KeepGoing& keep_going = {}) const;
+  /// Distance from each x to the nearest sample, model units; threads over x. \throw Cancelled
+  std::vector<double> distances(const std::vector<Vec3>& x, const Context& context = {}) const;
 
  private:
   struct Index;
@@ -58,8 +58,8 @@ class SampleDistance {
 
 /// Share of the surface that no data backs: what belongs to vertices (a third of the faces around each) that are
 /// farther than `radius` (three sample spacings, say) from every sample. Not faces by their centroids, which samples
-/// much finer than the faces are far from wherever psi = 0 is curved. 0 for an empty surface. \throw MeshCancelled
+/// much finer than the faces are far from wherever psi = 0 is curved. 0 for an empty surface. \throw Cancelled
 double unsupported_area_fraction(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
-                                 const SampleDistance& samples, double radius, const KeepGoing& keep_going = {});
+                                 const SampleDistance& samples, double radius, const Context& context = {});
 
 }  // namespace umtet

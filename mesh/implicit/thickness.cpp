@@ -24,9 +24,9 @@ double first_return(ImplicitFunctionRef psi, const Vec3& x, const Vec3& d, doubl
 }  // namespace
 
 std::vector<SheetDistances> sheet_distances(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double step,
-                                            double limit, const KeepGoing& keep_going, double steepest) {
+                                            double limit, const Context& context, double steepest) {
   std::vector<SheetDistances> out(points.size(), {limit, limit});
-  polled_parallel_for(points.size(), kValuesPerPoll, keep_going, [&](std::size_t i) {
+  polled_parallel_for(points.size(), kValuesPerPoll, context, [&](std::size_t i) {
     Vec3 x = points[i], g;
     double value = psi.value(x, g);
     for (int it = 0; it < 8 && std::abs(value) > 1e-6 * step * g.norm(); ++it) {
@@ -43,9 +43,9 @@ std::vector<SheetDistances> sheet_distances(ImplicitFunctionRef psi, const std::
 }
 
 std::vector<double> thickness(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double step, double limit,
-                              const KeepGoing& keep_going, double steepest) {
+                              const Context& context, double steepest) {
   std::vector<double> out;
-  for (const SheetDistances& d : sheet_distances(psi, points, step, limit, keep_going, steepest)) {
+  for (const SheetDistances& d : sheet_distances(psi, points, step, limit, context, steepest)) {
     out.push_back(std::min(d.body, d.gap));
   }
   return out;

@@ -15,7 +15,7 @@ struct SheetDistances {
 
 /// Both distances of each point; see thickness() for the parameters, the cost and the points that have none.
 std::vector<SheetDistances> sheet_distances(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double step,
-                                            double limit, const KeepGoing& keep_going = {},
+                                            double limit, const Context& context = {},
                                             double steepest = std::numeric_limits<double>::infinity());
 
 /// How far it is from each point of the boundary, along the normal, to the sheet on the other side: through the body,
@@ -29,9 +29,8 @@ std::vector<SheetDistances> sheet_distances(ImplicitFunctionRef psi, const std::
 /// @return one distance per point; `limit` where grad psi vanishes or the point does not reach the boundary
 /// @param steepest  a bound of |grad psi|: steps are as long as it allows where psi is far from zero
 /// Cost: up to 2 limit / step values of psi a point; with a bound, about log(limit / step) steepest. Threads over
-/// points; the result does not depend on them. \throw MeshCancelled
+/// points; the result does not depend on them. \throw Cancelled
 std::vector<double> thickness(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double step, double limit,
-                              const KeepGoing& keep_going = {},
-                              double steepest = std::numeric_limits<double>::infinity());
+                              const Context& context = {}, double steepest = std::numeric_limits<double>::infinity());
 
 }  // namespace umtet

@@ -45,7 +45,7 @@ struct Layer {
 
 class Sweep {
  public:
-  Sweep(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spacing, const KeepGoing& keep_going,
+  Sweep(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spacing, const Context& context,
         const FarFromZero& far);
   ZeroSetTopology run();
 
@@ -77,7 +77,7 @@ class Sweep {
 
   ImplicitFunctionRef psi_;
   Eigen::AlignedBox3d box_;
-  const KeepGoing& keep_going_;
+  const Context& context_;
   const FarFromZero& far_;
   std::array<int, 3> n_{};
   std::array<double, 3> h_{};
@@ -88,9 +88,9 @@ class Sweep {
   bool touches_box_ = false;
 };
 
-Sweep::Sweep(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spacing, const KeepGoing& keep_going,
+Sweep::Sweep(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spacing, const Context& context,
              const FarFromZero& far)
-    : psi_(psi), box_(box), keep_going_(keep_going), far_(far) {
+    : psi_(psi), box_(box), context_(context), far_(far) {
   const Vec3 size = box.sizes();
   if (box.isEmpty() || !size.allFinite() || !(size.minCoeff() > 0))
     throw std::invalid_argument("box: must have a finite volume");
@@ -115,7 +115,7 @@ template <class F>
 void Sweep::for_each_row(const F& visit) {
   const int per_poll = std::max(1, static_cast<int>(kValuesPerPoll) / (n_[0] + 1));
   for (int j = 0; j <= n_[1]; ++j) {
-    if (j % per_poll == 0) poll(keep_going_);
+    if (j % per_poll == 0) context_.poll();
     visit(j);
   }
 }
@@ -125,7 +125,7 @@ void Sweep::evaluate(int k) {
   // Stretches of a row, because a node that is far from any zero takes its sign from the one before.
   constexpr std::size_t kStretch = 64;
   const std::size_t row = static_cast<std::size_t>(n_[0]) + 1, per_row = (row + kStretch - 1) / kStretch;
-  polled_parallel_for(per_row * (n_[1] + 1), kValuesPerPoll / kStretch, keep_going_, [&](std::size_t s) {
+  polled_parallel_for(per_row * (n_[1] + 1), kValuesPerPoll / kStretch, context_, [&](std::size_t s) {
     const int j = static_cast<int>(s / per_row);
     const std::size_t first = s % per_row * kStretch, last = std::min(row, first + kStretch);
     for (std::size_t i = first; i < last; ++i) {
@@ -309,8 +309,8 @@ ZeroSetTopology Sweep::run() {
 }  // namespace
 
 ZeroSetTopology zero_set_topology(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spacing,
-                                  const KeepGoing& keep_going, const FarFromZero& far) {
-  return Sweep(psi, box, spacing, keep_going, far).run();
+                                  const Context& context, const FarFromZero& far) {
+  return Sweep(psi, box, spacing, context, far).run();
 }
 
 }  // namespace umtet

@@ -56,12 +56,12 @@ using FarFromZero = std::function<bool(const Vec3& x)>;
 /// Cost: one value of psi per node (threads over rows of a slab; psi must be thread-safe), memory two slabs plus about
 /// 70 bytes per cut edge. The result does not depend on the number of threads.
 /// \throw std::invalid_argument  an empty or unbounded box, spacing <= 0
-/// @param keep_going  asked every few thousand nodes
+/// @param context  asked every few thousand nodes
 /// @param far         where it says so psi is not evaluated: it has the sign of the node before. The result is the same
 ///                    (but n_not_finite counts only nodes where psi was asked).
 /// \throw std::length_error      more than 1e9 cells along an axis, 2^31 nodes in a slab or 2^31 cut edges
-/// \throw MeshCancelled
+/// \throw Cancelled
 ZeroSetTopology zero_set_topology(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spacing,
-                                  const KeepGoing& keep_going = {}, const FarFromZero& far = {});
+                                  const Context& context = {}, const FarFromZero& far = {});
 
 }  // namespace umtet

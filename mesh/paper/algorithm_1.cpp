@@ -14,9 +14,6 @@
 #include "mesh/paper/boundary_dvr.h"
 #include "mesh/paper/dvr.h"
 #include "mesh/submesh/assumptions.h"
-#include "mesh/submesh/crawl.h"
-#include "mesh/submesh/nothing_inside.h"
-#include "mesh/submesh/walls.h"
 
 namespace umtet {
 namespace {
@@ -27,23 +24,25 @@ namespace {
 constexpr double kSampleReach = .5;
 constexpr std::size_t kProjectionsPerTask = 64;
 
-/// Algorithm 1; a member per group of steps. Each returns false when the run is over, with status and evidence set.
+/// Algorithm 1, steps 23-35; a member per group of steps. Each returns false when the run is over, with status and
+/// evidence set.
 class Run {
  public:
   Run(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
-      const PaperParams& params, const UmObserver& observer)
-      : background_(background), psi_(psi), submesh_params_(submesh), params_(params), observer_(observer) {}
+      const PaperParams& params, ChosenSubmesh chosen, const Context& context)
+      : background_(background),
+        psi_(psi),
+        submesh_params_(submesh),
+        params_(params),
+        context_(context),
+        result_(result_of(std::move(chosen))) {}
 
-  UmResult operator()(const std::vector<Vec3>& seeds) {
-    try {
-      if (find_omega_h(seeds) && stays_off_the_background_boundary()) {
-        double_faces_ = double_positive_faces(submesh());
-        result_.double_positive_faces = double_faces_.count;
-        mesh_.emplace(submesh().mesh, background_.tiling().rings_are_optimal);
-        if (project_and_relax()) improve_boundary();
-      }
-    } catch (const MeshCancelled&) {
-      fail(UmStatus::Cancelled, {.what = "stopped by the observer during search"});
+  UmResult operator()() {
+    if (result_.status == UmStatus::Success) {
+      double_faces_ = double_positive_faces(submesh());
+      result_.double_positive_faces = double_faces_.count;
+      mesh_.emplace(submesh().mesh, background_.tiling().rings_are_optimal);
+      if (project_and_relax()) improve_boundary();
     }
     if (mesh_) {
       result_.final = std::move(mesh_->V);
@@ -56,14 +55,12 @@ class Run {
 
  private:
   const Submesh& submesh() const { return result_.submesh; }
-  bool find_omega_h(const std::vector<Vec3>& seeds);
-  bool stays_off_the_background_boundary();
   void measure_conditioning_angles();
   bool project_and_relax();
   void improve_boundary();
   bool find_feet();
   bool advance(double lambda);
-  bool report(const UmProgress& progress);
+  void report(const char* step, double n_rounds) const;
   bool fail(UmStatus status, const UmEvidence& evidence);
   void relax_interior(int round, int r);
   bool fail_at(UmStatus status, UmEvidence evidence, std::span<const int> vertices);
@@ -72,7 +69,7 @@ class Run {
   ImplicitFunctionRef psi_;
   const SubmeshParams& submesh_params_;
   const PaperParams& params_;
-  const UmObserver& observer_;
+  const Context& context_;
   UmResult result_;
   std::optional<MovingMesh> mesh_;
   std::optional<RelaxationOrder> relaxed_;  ///< I_R
@@ -86,52 +83,9 @@ bool Run::fail(UmStatus status, const UmEvidence& evidence) {
   return false;
 }
 
-bool Run::report(const UmProgress& progress) {
-  if (!observer_ || observer_(progress)) return true;
-  return fail(UmStatus::Cancelled, {.what = std::string("stopped by the observer during ") + progress.step});
-}
-
-/// Steps 1-22.
-bool Run::find_omega_h(const std::vector<Vec3>& seeds) {
-  std::string lost;
-  const KeepGoing keep_going = [&] { return !observer_ || observer_({"search", 1, 1, &submesh().mesh.V, 0}); };
-  if (submesh_params_.search == SubmeshSearch::FullLoop) {
-    result_.submesh = find_submesh(background_, psi_, &result_.n_psi_evaluations, keep_going);
-  } else {
-    Crawl found = crawl(background_, psi_, seeds, keep_going);
-    result_.submesh = std::move(found.submesh);
-    result_.n_psi_evaluations = found.n_psi_evaluations;
-    lost = "; " + std::to_string(found.lost_seeds.size()) + " of " + std::to_string(seeds.size()) +
-           " seeds led to no positively cut tet";
-  }
-  if (submesh().mesh.C.empty()) {
-    const NothingInside why = nothing_inside(background_, psi_, keep_going, lost);
-    return fail(why.status, why.evidence);
-  }
-  return report({"submesh", 1, 1, &submesh().mesh.V, submesh().mesh.C.size()});
-}
-
-/// The set triangulated by the background must strictly contain the closure of Omega (Section 2.1), unless its
-/// background boundary is a wall.
-bool Run::stays_off_the_background_boundary() {
-  // A vertex that is not positive is inside, and a vertex on the background boundary has lost tets of omega_h.
-  std::vector<bool> positive(submesh().mesh.V.size(), false);
-  for (const int i : submesh().positive_vertices) positive[i] = true;
-  if (submesh_params_.background_boundary == BackgroundBoundary::Wall) {
-    result_.walls = wall_faces(background_, submesh());
-    const UmEvidence near = boundary_near_walls(background_, submesh());
-    return near.count == 0 || fail(UmStatus::BoundaryNearWall, near);
-  }
-  const Violations background_boundary = find_violations(positive.size(), [&](std::size_t i) {
-    return !positive[i] && background_.on_boundary(submesh().background_vertex[i]);
-  });
-  if (background_boundary.count == 0) return true;
-  const Vec3 where = submesh().mesh.V[background_boundary.first];
-  return fail(UmStatus::DomainLeavesBackground,
-              {.background_vertex = submesh().background_vertex[background_boundary.first],
-               .where = where,
-               .count = background_boundary.count,
-               .what = "the domain reaches the background_boundary of the background mesh"});
+/// @param n_rounds  done of those that cost alike: the projection passes, and the improvement of the boundary
+void Run::report(const char* step, double n_rounds) const {
+  context_.report(step, n_rounds / (params_.projection_passes + 1));
 }
 
 void Run::measure_conditioning_angles() {
@@ -213,19 +167,13 @@ bool Run::project_and_relax() {
     if (!find_feet()) return false;
     if (pass == 1) measure_conditioning_angles();
     if (!advance(static_cast<double>(pass) / params_.projection_passes)) return false;
-    UmProgress progress{"project",
-                        pass,
-                        params_.projection_passes,
-                        &mesh_->V,
-                        submesh().mesh.C.size(),
-                        0,
-                        params_.relaxation_iterations};
-    if (!report(progress)) return false;
-    for (int r = 0; r < params_.relaxation_iterations; ++r) {
+    report("project", pass - 1);
+    const int n = params_.relaxation_iterations;
+    for (int r = 0; r < n; ++r) {
       relax_interior(pass - 1, r);  // step 28
-      progress.sweep = r + 1;
-      if (!report(progress)) return false;
+      report("project", pass - 1 + static_cast<double>(r + 1) / n);
     }
+    if (params_.keep_iterates) result_.iterates.push_back(mesh_->V);
   }
   result_.projected = mesh_->V;
   return true;
@@ -253,7 +201,7 @@ void Run::improve_boundary() {
     result_.n_psi_evaluations +=
         boundary_dvr(*mesh_, boundary, submesh().background_vertex, psi_, boundary_params, r);  // step 32
     relax_interior(params_.projection_passes, r);                                               // step 33
-    if (!report({"relax", r + 1, n, &mesh_->V, submesh().mesh.C.size()})) return;
+    report("relax", params_.projection_passes + static_cast<double>(r + 1) / n);
   }
 }
 
@@ -277,8 +225,8 @@ std::vector<std::string> problems(const PaperParams& params) {
 }
 
 UmResult algorithm_1(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
-                     const PaperParams& params, const UmObserver& observer, const std::vector<Vec3>& seeds) {
-  return Run(background, psi, submesh, params, observer)(seeds);
+                     const PaperParams& params, ChosenSubmesh chosen, const Context& context) {
+  return Run(background, psi, submesh, params, std::move(chosen), context)();
 }
 
 }  // namespace umtet

@@ -4,11 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "common/context.h"
 #include "mesh/background/background_mesh.h"
 #include "mesh/core/implicit_function.h"
 #include "mesh/core/max_min.h"
 #include "mesh/implicit/closest_point.h"
 #include "mesh/paper/relaxation_direction.h"
+#include "mesh/submesh/chosen_submesh.h"
 #include "mesh/submesh/submesh_params.h"
 #include "mesh/submesh/um_result.h"
 
@@ -22,18 +24,21 @@ struct PaperParams {
   /// Exact; GoldenSection, the paper's faster, suboptimal choice (Fig. 18), in a build without GSL.
   MaxMin max_min = kBestMaxMin;
   ClosestPointParams closest_point;
-  std::uint64_t seed = 0;  ///< random tangents of boundary dvr are a function of (seed, iteration, vertex)
+  std::uint64_t seed = 0;      ///< random tangents of boundary dvr are a function of (seed, iteration, vertex)
+  bool keep_iterates = false;  ///< UmResult::iterates
 };
 
 /// Every broken constraint, not just the first; empty when the parameters are usable.
 std::vector<std::string> problems(const PaperParams&);
 
-/// Algorithm 1 of the paper to the letter: a boundary-fitting mesh of {psi < 0}      [Rangarajan2018, Algorithm 1]
+/// Algorithm 1 of the paper to the letter, steps 23-35: projection and relaxation of omega_h   [Rangarajan2018]
 ///
 /// A double positive face or an obtuse conditioning angle becomes the status only when a projection diverges or a tet
-/// inverts right there. psi must be thread-safe.
-/// \pre params and seeds are those that universal_mesh() accepts
+/// inverts right there. Reports the steps "project" and "relax". psi must be thread-safe.
+/// \pre params are those that universal_mesh() accepts
+/// @param chosen  by submesh_by_sign(): what failed there is the result
+/// \throw Cancelled
 UmResult algorithm_1(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
-                     const PaperParams& params, const UmObserver& observer = {}, const std::vector<Vec3>& seeds = {});
+                     const PaperParams& params, ChosenSubmesh chosen, const Context& context = {});
 
 }  // namespace umtet

@@ -21,17 +21,17 @@ Submesh assemble_submesh(const BackgroundMesh& background, std::vector<std::int6
 
 /// The background vertices with psi < 0.                                   Alg. 1, step 7
 /// @param n_evaluations  receives the number of values of psi
-/// \throw MeshCancelled
+/// \throw Cancelled
 IdSet inside_vertices(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t& n_evaluations,
-                      const KeepGoing& keep_going = {});
+                      const Context& context = {});
 
 struct CrawledVertices {
   IdSet inside;
   std::vector<std::size_t> lost_seeds;
   std::size_t n_psi_evaluations = 0;
 };
-/// The inside vertices that crawl() finds from these seeds. \throw MeshCancelled
+/// The inside vertices that crawl() finds from these seeds. \throw Cancelled
 CrawledVertices crawl_inside(const BackgroundMesh& background, ImplicitFunctionRef psi, const std::vector<Vec3>& seeds,
-                             const KeepGoing& keep_going = {});
+                             const Context& context = {});
 
 }  // namespace umtet

@@ -27,10 +27,10 @@ constexpr std::size_t kSolvesPerPoll = 1 << 16;
 
 class Crawler {
  public:
-  Crawler(const BackgroundMesh& background, ImplicitFunctionRef psi, const KeepGoing& keep_going)
+  Crawler(const BackgroundMesh& background, ImplicitFunctionRef psi, const Context& context)
       : background_(background),
         psi_(psi),
-        keep_going_(keep_going),
+        context_(context),
         known_(background.n_vertices()),
         inside_(background.n_vertices()),
         positive_(background.n_tets()) {}
@@ -51,7 +51,7 @@ class Crawler {
 
  private:
   double value(std::int64_t v) {
-    if (n_evaluations_++ % kValuesPerPoll == 0) poll(keep_going_);
+    if (n_evaluations_++ % kValuesPerPoll == 0) context_.poll();
     const double psi = psi_.value(background_.position(v));
     known_.insert(v);
     if (psi < 0) inside_.insert(v);
@@ -76,7 +76,7 @@ class Crawler {
 
   const BackgroundMesh& background_;
   ImplicitFunctionRef psi_;
-  const KeepGoing& keep_going_;
+  const Context& context_;
   IdSet known_, inside_;  ///< vertices where psi was asked, and where it was negative
   IdSet positive_;        ///< positively cut tets gathered so far
   std::vector<std::int64_t> positive_list_;
@@ -215,7 +215,7 @@ IdSet Crawler::flood_inside() {
     for (const std::int64_t v : background_.tet(t)) visit(v);
   }
   for (std::size_t n = 0; !stack.empty(); ++n) {
-    if (n % kSolvesPerPoll == 0) poll(keep_going_);
+    if (n % kSolvesPerPoll == 0) context_.poll();
     const std::int64_t v = stack.back();
     stack.pop_back();
     if (!background_.is_lattice() || background_.on_boundary(v)) {
@@ -232,8 +232,8 @@ IdSet Crawler::flood_inside() {
 }  // namespace
 
 CrawledVertices crawl_inside(const BackgroundMesh& background, ImplicitFunctionRef psi, const std::vector<Vec3>& seeds,
-                             const KeepGoing& keep_going) {
-  Crawler crawler(background, psi, keep_going);
+                             const Context& context) {
+  Crawler crawler(background, psi, context);
   std::vector<std::size_t> lost;
   for (std::size_t s = 0; s < seeds.size(); ++s) {
     if (!crawler.gather(seeds[s])) lost.push_back(s);
@@ -243,8 +243,8 @@ CrawledVertices crawl_inside(const BackgroundMesh& background, ImplicitFunctionR
 }
 
 Crawl crawl(const BackgroundMesh& background, ImplicitFunctionRef psi, const std::vector<Vec3>& seeds,
-            const KeepGoing& keep_going) {
-  CrawledVertices found = crawl_inside(background, psi, seeds, keep_going);
+            const Context& context) {
+  CrawledVertices found = crawl_inside(background, psi, seeds, context);
   return {emit_submesh(background, found.inside), std::move(found.lost_seeds), found.n_psi_evaluations};
 }
 

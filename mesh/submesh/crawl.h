@@ -28,8 +28,8 @@ struct Crawl {
 ///         inside one is positive. The second fails only where Omega's complement is thinner than an edge.
 /// Cost: about ten values of psi per positive vertex; memory: a few bits per background vertex and tet. The search
 /// and the flood are serial; the tets are read off by all threads, a few nanoseconds per cell of the background.
-/// \throw MeshCancelled
+/// \throw Cancelled
 Crawl crawl(const BackgroundMesh& background, ImplicitFunctionRef psi, const std::vector<Vec3>& seeds,
-            const KeepGoing& keep_going = {});
+            const Context& context = {});
 
 }  // namespace umtet

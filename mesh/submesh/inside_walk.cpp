@@ -35,9 +35,9 @@ bool InsideWalk::is_at_boundary(std::int64_t v) const {
   return other;
 }
 
-std::size_t InsideWalk::restart(ImplicitFunctionRef psi, const KeepGoing& keep_going) {
+std::size_t InsideWalk::restart(ImplicitFunctionRef psi, const Context& context) {
   std::size_t n = 0;
-  inside_ = inside_vertices(background_, psi, n, keep_going);
+  inside_ = inside_vertices(background_, psi, n, context);
   boundary_.clear();
   values_.clear();
   inside_.for_each([&](std::int64_t v) {
@@ -54,8 +54,7 @@ std::size_t InsideWalk::restart(ImplicitFunctionRef psi, const KeepGoing& keep_g
   return n;
 }
 
-std::size_t InsideWalk::update(ImplicitFunctionRef psi, const std::vector<std::int64_t>& more,
-                               const KeepGoing& keep_going) {
+std::size_t InsideWalk::update(ImplicitFunctionRef psi, const std::vector<std::int64_t>& more, const Context& context) {
   std::vector<std::int64_t> changed, front;
   PsiValues asked;
   const auto add = [&](std::int64_t v) {
@@ -73,7 +72,7 @@ std::size_t InsideWalk::update(ImplicitFunctionRef psi, const std::vector<std::i
     while (!front.empty()) {
       const std::size_t first = asked.size(), n = front.size();
       for (const std::int64_t v : front) asked.push_back({v, 0, Vec3::Zero()});
-      polled_parallel_for(n, kValuesPerPoll, keep_going, [&](std::size_t k) {
+      polled_parallel_for(n, kValuesPerPoll, context, [&](std::size_t k) {
         PsiValue& at = asked[first + k];
         at.value = psi.value(background_.position(at.vertex), at.gradient);
       });

@@ -16,13 +16,13 @@ class InsideWalk {
  public:
   explicit InsideWalk(const BackgroundMesh& background);
 
-  /// Asks psi at every vertex of the background. @return the number of values. \throw MeshCancelled
-  std::size_t restart(ImplicitFunctionRef psi, const KeepGoing& keep_going = {});
+  /// Asks psi at every vertex of the background. @return the number of values. \throw Cancelled
+  std::size_t restart(ImplicitFunctionRef psi, const Context& context = {});
   /// Asks at the vertices with a neighbour on the other side, at `more`, and from all that have changed sides at their
   /// neighbours, and so on: right wherever a connected set of vertices that change sides touches one of them.
-  /// When it throws, it stays as it was. @param more  ids. @return the number of values. \throw MeshCancelled, and
+  /// When it throws, it stays as it was. @param more  ids. @return the number of values. \throw Cancelled, and
   /// what psi throws
-  std::size_t update(ImplicitFunctionRef psi, const std::vector<std::int64_t>& more, const KeepGoing& keep_going = {});
+  std::size_t update(ImplicitFunctionRef psi, const std::vector<std::int64_t>& more, const Context& context = {});
 
   const IdSet& inside() const { return inside_; }
   bool has_boundary() const { return !boundary_.empty(); }

@@ -16,12 +16,12 @@ struct NotFinite {
 
 }  // namespace
 
-NothingInside nothing_inside(const BackgroundMesh& background, ImplicitFunctionRef psi, const KeepGoing& keep_going,
+NothingInside nothing_inside(const BackgroundMesh& background, ImplicitFunctionRef psi, const Context& context,
                              const std::string& search) {
   UmEvidence evidence{.what = "no vertex of the background mesh was found inside the domain" + search};
   std::size_t n_asked = 0;
   const NotFinite not_finite{psi};
-  inside_vertices(background, not_finite, n_asked, keep_going).for_each([&](std::int64_t v) {
+  inside_vertices(background, not_finite, n_asked, context).for_each([&](std::int64_t v) {
     if (evidence.count++ == 0) evidence.background_vertex = v;
   });
   if (evidence.count == 0) return {UmStatus::EmptyDomain, evidence};

@@ -17,8 +17,8 @@ struct NothingInside {
 /// Why no background vertex was found inside: what is not finite counts as outside, and its first place is the
 /// evidence.
 /// @param search  what else to say about the search
-/// Cost: psi at every vertex of the background, once more. \throw MeshCancelled
-NothingInside nothing_inside(const BackgroundMesh& background, ImplicitFunctionRef psi, const KeepGoing& keep_going,
+/// Cost: psi at every vertex of the background, once more. \throw Cancelled
+NothingInside nothing_inside(const BackgroundMesh& background, ImplicitFunctionRef psi, const Context& context,
                              const std::string& search = {});
 
 }  // namespace umtet

@@ -52,7 +52,7 @@ std::vector<std::int64_t> cut_or_inside_tets(const BackgroundMesh& background, c
 }
 
 IdSet inside_vertices(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t& n_evaluations,
-                      const KeepGoing& keep_going) {
+                      const Context& context) {
   IdSet inside(background.n_vertices());
   std::atomic<std::size_t> evaluations = 0;
   const auto evaluate = [&](const tbb::blocked_range<std::size_t>& words) {
@@ -73,7 +73,7 @@ IdSet inside_vertices(const BackgroundMesh& background, ImplicitFunctionRef psi,
   // A vertex's position costs as much as the cheapest psi: a thousandth of the time goes into questions.
   constexpr std::size_t kWordsPerPoll = 4 * kValuesPerPoll / 64;
   for (std::size_t begin = 0; begin < inside.n_words(); begin += kWordsPerPoll) {
-    poll(keep_going);
+    context.poll();
     const std::size_t end = std::min(inside.n_words(), begin + kWordsPerPoll);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, kWordsPerTask), evaluate);
   }
@@ -122,11 +122,11 @@ Submesh assemble_submesh(const BackgroundMesh& background, std::vector<std::int6
 }
 
 Submesh find_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t* n_psi_evaluations,
-                     const KeepGoing& keep_going) {
+                     const Context& context) {
   std::size_t n = 0;
-  const IdSet inside = inside_vertices(background, psi, n, keep_going);
+  const IdSet inside = inside_vertices(background, psi, n, context);
   if (n_psi_evaluations) *n_psi_evaluations = n;
-  poll(keep_going);
+  context.poll();
   return assemble_submesh(background, cut_or_inside_tets(background, inside), inside);
 }
 

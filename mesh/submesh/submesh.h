@@ -30,8 +30,8 @@ inline bool is_positively_cut(unsigned inside) { return inside == 1 || inside ==
 /// Algorithm 1, steps 1-22: evaluates psi at every vertex of the background mesh.
 /// Cost: one value of psi per background vertex. A vertex with psi = 0 counts as outside.
 /// @param n_psi_evaluations  if not null, receives that number
-/// \throw std::length_error if omega_h has more than 2^31 - 1 tets or vertices; MeshCancelled
+/// \throw std::length_error if omega_h has more than 2^31 - 1 tets or vertices; Cancelled
 Submesh find_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi,
-                     std::size_t* n_psi_evaluations = nullptr, const KeepGoing& keep_going = {});
+                     std::size_t* n_psi_evaluations = nullptr, const Context& context = {});
 
 }  // namespace umtet

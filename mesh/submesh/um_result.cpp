@@ -22,8 +22,6 @@ const char* to_string(UmStatus status) {
       return "projection diverged";
     case UmStatus::InvertedTet:
       return "inverted tet";
-    case UmStatus::Cancelled:
-      return "cancelled";
   }
   return "unknown";
 }

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -21,7 +20,6 @@ enum class UmStatus {
   ObtuseConditioningAngle,  ///< the run failed where the injectivity condition of Section 5.3 is broken
   ProjectionDiverged,       ///< 3.8(a) did not settle for a positive vertex
   InvertedTet,              ///< an intermediate mesh has a tet with Q <= 0
-  Cancelled,                ///< the observer said stop
 };
 const char* to_string(UmStatus);
 
@@ -46,16 +44,8 @@ struct UmResult {
   std::size_t obtuse_conditioning_angles = 0;
   std::size_t double_positive_faces = 0;
   std::size_t n_psi_evaluations = 0;
+  /// Vertex coordinates after every projection pass, same numbering; where PaperParams::keep_iterates says so.
+  std::vector<std::vector<Vec3>> iterates;
 };
-
-/// Where the algorithm stands; return false to stop at the next safe point (at most one sweep later).
-struct UmProgress {
-  const char* step;             ///< "search" (V is empty yet), "submesh", "project", "relax"
-  int pass, n_passes;           ///< 1-based
-  const std::vector<Vec3>* V;   ///< the current iterate
-  std::size_t n_tets;           ///< of omega_h, and of every mesh made from it
-  int sweep = 1, n_sweeps = 1;  ///< relaxation sweeps of this pass done so far, and in all; equal at the end of a pass
-};
-using UmObserver = std::function<bool(const UmProgress&)>;
 
 }  // namespace umtet

@@ -57,7 +57,7 @@ Failure failure_of(const std::exception_ptr& error) {
             : e.signal == SIGTERM ? ExitCode::Terminated
                                   : ExitCode::Interrupted,
             e.what()};
-  } catch (const MeshCancelled&) {  // not_interrupted() said so
+  } catch (const Cancelled&) {  // until_interrupted() said so
     return failure_of(std::make_exception_ptr(Interrupted(interrupt_signal())));
   } catch (const UsageError& e) {
     return {ExitCode::Usage, e.what()};

@@ -115,7 +115,10 @@ const char* work_at_hand() { return work.load(); }
 
 int interrupt_signal() { return asked_by.load(); }
 
-bool not_interrupted() { return interrupt_signal() == 0; }
+const Context& until_interrupted() {
+  static const Context context{.cancelled = [] { return interrupt_signal() != 0; }};
+  return context;
+}
 
 void stop_if_interrupted() {
   if (const int signal = interrupt_signal()) throw Interrupted(signal);

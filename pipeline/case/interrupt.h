@@ -1,5 +1,7 @@
 #pragma once
 
+#include "common/context.h"
+
 namespace umtet {
 
 /// From now on SIGINT and SIGTERM ask the running stage to stop. Where it does not do so within 0.1 s, and at a second
@@ -22,8 +24,8 @@ const char* work_at_hand();
 /// The signal that asked to stop (SIGALRM: time is over), or 0.
 int interrupt_signal();
 
-/// For libraries that ask whether to go on.
-bool not_interrupted();
+/// For calls of libraries: a signal that asks to stop cancels them.
+const Context& until_interrupted();
 
 /// \throw Interrupted if a signal has asked to stop: called between the steps of a stage
 void stop_if_interrupted();

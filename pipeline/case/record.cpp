@@ -7,6 +7,7 @@
 #include <array>
 #include <ctime>
 
+#include "pipeline/case/exit_code.h"
 #include "pipeline/case/version.h"
 
 namespace umtet {

@@ -52,7 +52,7 @@ Json check_second_order(const QuadraticTetMesh& mesh, const CertificateInput& co
   input.psi = corners.psi;
   input.wall_faces = corners.wall_faces;
   input.coordinate_rounding = corners.coordinate_rounding;
-  input.keep_going = corners.keep_going;
+  input.context = corners.context;
   const SecondOrderCertificate certificate = certify_second_order(input);
   for (const std::string& reason : failures(certificate)) reasons.push_back(reason);
   stop_if_interrupted();
@@ -70,7 +70,7 @@ Json check_mesh(const fs::path& file, const std::optional<fs::path>& against, co
   progress.detail(fmt::format("check: {} tets, {} vertices", mesh.C.size(), mesh.V.size()));
   CertificateInput input;
   input.mesh = &mesh;
-  input.keep_going = not_interrupted;
+  input.context = until_interrupted();
   std::optional<Domain> domain;
   std::vector<Triangle> walls;
   if (against) {

@@ -16,15 +16,15 @@ constexpr double kFlatness = 6.8;
 constexpr int kRounds = 8;
 
 /// max |k1| + |k2| over the pieces that are meshed, each curvature at most `cap`.
-double greatest_curvature(const Domain& domain, double h, double cap, const KeepGoing& keep_going) {
-  const ZeroSetChoice pieces = choose_components(domain, h, keep_going);
+double greatest_curvature(const Domain& domain, double h, double cap, const Context& context) {
+  const ZeroSetChoice pieces = choose_components(domain, h, context);
   std::vector<Vec3> x;
   for (const std::size_t c : pieces.kept) {
     const auto points = pieces.topology.points_of(pieces.topology.components[c]);
     x.insert(x.end(), points.begin(), points.end());
   }
   std::vector<double> sum(x.size());
-  polled_parallel_for(x.size(), kValuesPerPoll, keep_going, [&](std::size_t i) {
+  polled_parallel_for(x.size(), kValuesPerPoll, context, [&](std::size_t i) {
     const Eigen::Vector2d k = principal_curvatures(domain.psi(), x[i]);
     sum[i] = k.allFinite() ? k.cwiseMin(cap).sum() : 0;  // grad psi = 0: no surface there
   });
@@ -46,11 +46,11 @@ Eigen::Vector2d principal_curvatures(ImplicitFunctionRef psi, const Vec3& x) {
   return {k[2], k[1]};
 }
 
-double h_for_deviation(Domain& domain, double deviation, double start, double least, const KeepGoing& keep_going) {
+double h_for_deviation(Domain& domain, double deviation, double start, double least, const Context& context) {
   double h = start;
   for (int round = 0; round < kRounds && h > least; ++round) {
     domain.limit_detail(h);
-    const double k = greatest_curvature(domain, h, 1 / deviation, keep_going);
+    const double k = greatest_curvature(domain, h, 1 / deviation, context);
     const double wanted = k > 0 ? std::sqrt(kFlatness * deviation / k) : h;
     if (wanted >= h) return h;
     h = std::max(wanted, least);

@@ -18,7 +18,7 @@ Eigen::Vector2d principal_curvatures(ImplicitFunctionRef psi, const Vec3& x);
 /// the detail that it lets in. On return domain is cut for the result.
 /// @param deviation, start  model units, > 0
 /// @return at most `start`; not above start, and `least` where even that is too coarse
-/// \throw MeshCancelled
-double h_for_deviation(Domain& domain, double deviation, double start, double least, const KeepGoing& keep_going = {});
+/// \throw Cancelled
+double h_for_deviation(Domain& domain, double deviation, double start, double least, const Context& context = {});
 
 }  // namespace umtet

@@ -61,22 +61,22 @@ void refuse_too_many(const Domain& domain, const Parameters& parameters, double 
 }
 
 /// The thickness that a hundredth of the samples fall below, at most `limit`.
-double thin_part(const Domain& domain, double limit, const KeepGoing& keep_going) {
+double thin_part(const Domain& domain, double limit, const Context& context) {
   const std::vector<Vec3>& all = domain.cloud.points;
   std::vector<Vec3> samples;  // evenly, as the cloud is sorted in space
   for (std::size_t i = 0; i < all.size(); i += all.size() / kThicknessSamples + 1) samples.push_back(all[i]);
   // psi has no sheets much closer together than its lattice.
   std::vector<double> t =
-      thickness(domain.psi(), samples, .25 * domain.level_set->spacing(), limit, keep_going, domain.steepest());
+      thickness(domain.psi(), samples, .25 * domain.level_set->spacing(), limit, context, domain.steepest());
   std::sort(t.begin(), t.end());
   return quantile(t, kThinShare);
 }
 
 /// By curvature. \throw ResourceLimit
-EdgeLength by_deviation(Domain& domain, const Parameters& parameters, double deviation, const KeepGoing& keep_going) {
+EdgeLength by_deviation(Domain& domain, const Parameters& parameters, double deviation, const Context& context) {
   const std::int64_t max_tets = parameters.mesh().max_tets;
   const double least = h_of(domain, parameters, max_tets);
-  const double h = h_for_deviation(domain, deviation, kMostOfDiagonal * domain.diagonal, least, keep_going);
+  const double h = h_for_deviation(domain, deviation, kMostOfDiagonal * domain.diagonal, least, context);
   if (h > least) return {h, least};
   throw ResourceLimit(
       fmt::format("--max-deviation {:.4g} needs more than {} tets (that many at h = {:.4g}): raise "
@@ -85,7 +85,7 @@ EdgeLength by_deviation(Domain& domain, const Parameters& parameters, double dev
 }
 
 /// The choice, without regard to how it will be written.
-EdgeLength choose(Domain& domain, const Parameters& parameters, const KeepGoing& keep_going) {
+EdgeLength choose(Domain& domain, const Parameters& parameters, const Context& context) {
   if (const std::int64_t n = parameters.mesh().tets) {
     const double h = h_of(domain, parameters, n);
     return {h, h};
@@ -96,12 +96,12 @@ EdgeLength choose(Domain& domain, const Parameters& parameters, const KeepGoing&
     return {h, h};
   }
   if (const double deviation = parameters.mesh().max_deviation; deviation > 0) {
-    return by_deviation(domain, parameters, deviation, keep_going);
+    return by_deviation(domain, parameters, deviation, context);
   }
   const double least = h_of(domain, parameters, max_tets);
   double h = kMeshEdge * domain.diagonal;
   if (domain.level_set) {
-    const double t = thin_part(domain, kEdgesAcross * h, keep_going);
+    const double t = thin_part(domain, kEdgesAcross * h, context);
     if (t < kEdgesAcross * h) {
       h = std::min(h, std::clamp(h_of(domain, parameters, kManyTets), t / kEdgesAcross, t / kLeastEdgesAcross));
     }
@@ -128,8 +128,8 @@ double least_h_of_max_tets(const Domain& domain, const Parameters& parameters) {
 
 double least_h_in_file(const Domain& domain) { return coordinate_rounding(domain) / kMostRounding; }
 
-EdgeLength choose_edge_length(Domain& domain, const Parameters& parameters, const KeepGoing& keep_going) {
-  EdgeLength choice = choose(domain, parameters, keep_going);
+EdgeLength choose_edge_length(Domain& domain, const Parameters& parameters, const Context& context) {
+  EdgeLength choice = choose(domain, parameters, context);
   const double least = least_h_in_file(domain);
   if (choice.h < least) {
     const double far = greatest_coordinates(domain).maxCoeff();

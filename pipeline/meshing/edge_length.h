@@ -20,7 +20,7 @@ struct EdgeLength {
 /// @param domain  where psi has to be cut to choose h, it stays cut
 /// \throw ResourceLimit      mesh.h or mesh.max_deviation asks for more than mesh.max_tets tets
 /// \throw MeshingImpossible  psi < 0 nowhere, or an h below least_h_in_file()
-EdgeLength choose_edge_length(Domain& domain, const Parameters& parameters, const KeepGoing& keep_going = {});
+EdgeLength choose_edge_length(Domain& domain, const Parameters& parameters, const Context& context = {});
 
 /// The h at which about mesh.max_tets tets are made. \throw MeshingImpossible  psi < 0 nowhere
 double least_h_of_max_tets(const Domain& domain, const Parameters& parameters);

@@ -50,6 +50,7 @@ UmParams um_params(const Parameters& p) {
   um.submesh.background_boundary = p.mesh().complement ? BackgroundBoundary::Wall : BackgroundBoundary::Refuse;
   um.paper.max_min = p.mesh().max_min == MaxMinSearch::Golden ? MaxMin::GoldenSection : MaxMin::Exact;
   um.paper.seed = static_cast<std::uint64_t>(p.mesh().seed);
+  um.paper.keep_iterates = p.mesh().keep_iterates;
   std::string broken;
   for (const std::string& problem : problems(um)) broken += (broken.empty() ? "mesh: " : "; ") + problem;
   if (!broken.empty()) throw UsageError(broken);

@@ -38,7 +38,7 @@ void set_support(const Domain& domain, const std::vector<Vec3>& V, const std::ve
   std::vector<Vec3> x;
   x.reserve(vertices.size());
   for (const int i : vertices) x.push_back(V[i]);
-  const std::vector<double> d = domain.samples->distances(x, not_interrupted);
+  const std::vector<double> d = domain.samples->distances(x, until_interrupted());
   for (std::size_t k = 0; k < d.size(); ++k) support[vertices[k]] = d[k];
 }
 

@@ -24,15 +24,15 @@ MeshFile mesh_content(const Domain& domain, const UmResult& result, const std::v
 /// The same mesh at another stage, its vertices at V. \pre as many as it has, and no support yet
 void move_to(const Domain& domain, const std::vector<Vec3>& V, MeshFile& content);
 
-/// Distances of some vertices to their nearest samples, into their places of `support`. \throw MeshCancelled
+/// Distances of some vertices to their nearest samples, into their places of `support`. \throw Cancelled
 void set_support(const Domain& domain, const std::vector<Vec3>& V, const std::vector<int>& vertices,
                  std::vector<double>& support);
 
 /// Of a cloud's final mesh the distance of each boundary vertex to the nearest sample, -1 inside and at walls, as point
-/// data `support`: what is data and what is a guess. Nothing without a cloud. \throw MeshCancelled
+/// data `support`: what is data and what is a guess. Nothing without a cloud. \throw Cancelled
 void add_support(const Domain& domain, const UmResult& result, MeshFile& content);
 
-/// The final mesh, with support. \throw MeshCancelled
+/// The final mesh, with support. \throw Cancelled
 MeshFile final_content(const Domain& domain, const UmResult& result);
 
 /// Complete or not at all. \throw std::system_error naming the file

@@ -17,10 +17,9 @@ namespace umtet {
 struct MeshAttempt {
   double h = 0;  ///< edge length of the background mesh, model units
   UmResult result;
-  std::optional<SecondOrder> second;        ///< the mesh with curved edges, if mesh.order = 2
-  Json measured;                            ///< of measure(); null when there is no mesh
-  ThinPlaces thin;                          ///< what h is too large for
-  std::vector<std::vector<Vec3>> iterates;  ///< the vertices after every pass, where they are kept
+  std::optional<SecondOrder> second;  ///< the mesh with curved edges, if mesh.order = 2
+  Json measured;                      ///< of measure(); null when there is no mesh
+  ThinPlaces thin;                    ///< what h is too large for
 
   bool made() const { return result.status == UmStatus::Success; }
   std::size_t n_reasons() const { return made() ? measured.at("reasons").size() : 0; }

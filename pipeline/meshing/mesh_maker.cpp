@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <string_view>
 
 #include "pipeline/case/exit_code.h"
 #include "pipeline/meshing/edge_length.h"
@@ -26,81 +25,80 @@ constexpr int kMostMisses = 4;
 // Pieces of psi = 0 are looked for on a grid of h and, where there is none, on so many grids twice as fine as the one
 // before.
 constexpr int kFinerGrids = 3;
+// Parts of an attempt, about as their times: where each begins.
+constexpr double kPieces = .05, kChoice = .1, kFit = .2, kCertificate = .9, kCurving = .95;
 
 }  // namespace
 
-MeshMaker::MeshMaker(Domain& domain, const Parameters& parameters, MeshWatch watch)
-    : domain_(domain), parameters_(parameters), watch_(std::move(watch)), params_(um_params(parameters)) {}
-
-void MeshMaker::begin(const char* step) const {
-  if (watch_.begins) watch_.begins(step);
-}
-
-bool MeshMaker::observe(const UmProgress& p) {
-  const std::string_view step = p.step;
-  if (step == "submesh" && !may_miss_) {
-    const double ratio = static_cast<double>(p.n_tets) / static_cast<double>(parameters_.mesh().tets);
-    if (std::abs(ratio - 1) > kTetsTolerance) {
-      missed_by_ = ratio;
-      return false;
-    }
-  }
-  if (parameters_.mesh().keep_iterates && step == "project" && p.sweep == p.n_sweeps) iterates_.push_back(*p.V);
-  return !watch_.progress || watch_.progress(p);
-}
+MeshMaker::MeshMaker(Domain& domain, const Parameters& parameters, Context context, MeshLines lines)
+    : domain_(domain),
+      parameters_(parameters),
+      context_(std::move(context)),
+      lines_(std::move(lines)),
+      params_(um_params(parameters)) {}
 
 const ZeroSetChoice& MeshMaker::pieces_at(double h) {
   domain_.limit_detail(h);
   if (!pieces_ || pieces_->first != h) {
-    begin("components");
+    context_.report("components", kPieces);
     // A body thinner than the grid may have no node inside.
     for (int halvings = 0; halvings <= kFinerGrids; ++halvings) {
-      pieces_.emplace(h, choose_components(domain_, std::ldexp(h, -halvings), watch_.keep_going));
+      pieces_.emplace(h, choose_components(domain_, std::ldexp(h, -halvings), context_));
       if (!pieces_->second.topology.components.empty()) break;
     }
   }
   return pieces_->second;
 }
 
-UmResult MeshMaker::make(const BackgroundMesh& background, const ZeroSetChoice& pieces) {
+UmParams MeshMaker::params_for(const ZeroSetChoice& pieces) const {
   UmParams params = params_;
   // The full loop would mesh every piece; crawling starts from the ones to keep.
   if (!pieces.dropped.empty()) params.submesh.search = SubmeshSearch::Crawl;
+  return params;
+}
+
+/// psi cut for h, and what h is too large for.
+MeshAttempt MeshMaker::begin(double h) {
+  MeshAttempt a;
+  a.h = h;
+  const ZeroSetChoice& pieces = pieces_at(h);
+  a.thin = find_thin_places(domain_, pieces, h, context_);
+  if (!a.thin.empty() && lines_.detail) {
+    lines_.detail(fmt::format("{} places are thinner than h = {:.4g} can show for certain:\n{}", a.thin.places.size(),
+                              h, described(a.thin, domain_.shift)));
+  }
+  for (const std::string& reason : pieces.dropped) say("left out a " + reason);
+  return a;
+}
+
+ChosenSubmesh MeshMaker::choose(const BackgroundMesh& background, double h) {
+  const ZeroSetChoice& pieces = pieces_at(h);
   if (pieces.seeds.empty() && !pieces.dropped.empty()) {
     throw MeshingImpossible("psi = 0 is nowhere near the samples:\n  no " + pieces.dropped.front());
   }
-  if (watch_.detail) {
-    watch_.detail(fmt::format("h = {:.6g}, background of {} tets, psi = 0 in {} pieces", background.h(),
+  if (lines_.detail) {
+    lines_.detail(fmt::format("h = {:.6g}, background of {} tets, psi = 0 in {} pieces", background.h(),
                               background.n_tets(), pieces.topology.components.size()));
   }
-  begin("submesh");
-  UmResult result = universal_mesh(
-      background, domain_.psi(), params, [this](const UmProgress& p) { return observe(p); }, pieces.seeds);
-  round_to_file(result, domain_.shift);
-  return result;
+  return choose_submesh(background, domain_.psi(), params_for(pieces), context_.part(kChoice, kFit), pieces.seeds);
+}
+
+void MeshMaker::finish(const BackgroundMesh& background, ChosenSubmesh chosen, MeshAttempt& a) {
+  const ZeroSetChoice& pieces = pieces_at(a.h);
+  a.result =
+      fit_submesh(background, domain_.psi(), params_for(pieces), std::move(chosen), context_.part(kFit, kCertificate));
+  round_to_file(a.result, domain_.shift);
+  context_.report("certify", kCertificate);
+  if (!a.made()) return;
+  a.measured = measure(domain_, a.result, pieces, a.h, context_);
+  check_lost(domain_, a.result, a.thin, a.measured, context_);
+  check_deviation(parameters_.real("mesh.max_deviation"), a.measured);
+  curve(a);
 }
 
 MeshAttempt MeshMaker::attempt(const BackgroundMesh& background, double h) {
-  MeshAttempt a;
-  a.h = h;
-  iterates_.clear();
-  const ZeroSetChoice& pieces = pieces_at(h);
-  a.thin = find_thin_places(domain_, pieces, h, watch_.keep_going);
-  if (!a.thin.empty() && watch_.detail) {
-    watch_.detail(fmt::format("{} places are thinner than h = {:.4g} can show for certain:\n{}", a.thin.places.size(),
-                              h, described(a.thin, domain_.shift)));
-  }
-  for (const std::string& reason : pieces.dropped) {
-    if (watch_.say) watch_.say("left out a " + reason);
-  }
-  a.result = make(background, pieces);
-  a.iterates = std::move(iterates_);
-  begin("certify");  // stops here if what watches has ended the run
-  if (!a.made()) return a;
-  a.measured = measure(domain_, a.result, pieces, h, watch_.keep_going);
-  check_lost(domain_, a.result, a.thin, a.measured, watch_.keep_going);
-  check_deviation(parameters_.mesh().max_deviation, a.measured);
-  curve(a);
+  MeshAttempt a = begin(h);
+  finish(background, choose(background, h), a);
   return a;
 }
 
@@ -109,30 +107,33 @@ void MeshMaker::curve(MeshAttempt& a) const {
   a.measured["order"] = order;
   a.measured["second_order"] = nullptr;
   if (order < 2) return;
-  begin("second order");
-  a.second = curved_mesh(domain_, a.result, a.h, params_.paper.closest_point, watch_.keep_going);
-  measure_second_order(domain_, a.result, *a.second, a.h, a.measured, watch_.keep_going);
+  context_.report("second order", kCurving);
+  a.second = curved_mesh(domain_, a.result, a.h, params_.paper.closest_point, context_);
+  measure_second_order(domain_, a.result, *a.second, a.h, a.measured, context_);
 }
 
 /// The estimate behind mesh.tets knows the shape from a few thousand samples. Where it is far off, the number of tets
 /// at one h gives the next, before anything is moved. Few tets jump with h, to either side of the number asked for.
 MeshAttempt MeshMaker::attempt_for_tets(double h, const std::function<BackgroundMesh(double h)>& background) {
-  may_miss_ = parameters_.mesh().tets == 0;
+  const auto asked = static_cast<double>(parameters_.mesh().tets);
+  if (asked == 0) return attempt(background(h), h);
   double nearest = h, least_miss = std::numeric_limits<double>::infinity();
   std::optional<double> makes_more, makes_less;
-  for (int k = 1;; ++k) {
-    missed_by_ = 0;
-    MeshAttempt a = attempt(background(h), h);
-    if (missed_by_ == 0) return a;
-    if (const double miss = std::abs(std::log(missed_by_)); miss < least_miss) nearest = h, least_miss = miss;
-    (missed_by_ > 1 ? makes_more : makes_less) = h;
-    may_miss_ = k == kMostMisses;
-    const double better = may_miss_                  ? nearest
-                          : makes_more && makes_less ? std::sqrt(*makes_more * *makes_less)
-                                                     : h * std::cbrt(missed_by_);
-    if (watch_.say) {
-      watch_.say(fmt::format("h = {:.4g} makes {:.2g} times the tets asked for; trying {:.4g}", h, missed_by_, better));
+  for (int n_misses = 0;;) {
+    const BackgroundMesh made = background(h);
+    MeshAttempt a = begin(h);
+    ChosenSubmesh chosen = choose(made, h);
+    const double ratio = static_cast<double>(chosen.n_tets) / asked;
+    if (chosen.status != UmStatus::Success || n_misses == kMostMisses || std::abs(ratio - 1) <= kTetsTolerance) {
+      finish(made, std::move(chosen), a);
+      return a;
     }
+    if (const double miss = std::abs(std::log(ratio)); miss < least_miss) nearest = h, least_miss = miss;
+    (ratio > 1 ? makes_more : makes_less) = h;
+    const double better = ++n_misses == kMostMisses  ? nearest
+                          : makes_more && makes_less ? std::sqrt(*makes_more * *makes_less)
+                                                     : h * std::cbrt(ratio);
+    say(fmt::format("h = {:.4g} makes {:.2g} times the tets asked for; trying {:.4g}", h, ratio, better));
     h = std::max(better, least_h_in_file(domain_));
   }
 }
@@ -140,9 +141,7 @@ MeshAttempt MeshMaker::attempt_for_tets(double h, const std::function<Background
 MeshAttempt MeshMaker::best(const EdgeLength& choice, const std::function<BackgroundMesh(double h)>& background) {
   return best_attempt(
       choice, [&](double h) { return attempt_for_tets(h, background); },
-      [this](const std::string& line) {
-        if (watch_.say) watch_.say(line);
-      });
+      [this](const std::string& line) { say(line); });
 }
 
 bool MeshMaker::is_refused_as_thin(const MeshAttempt& a) const {

@@ -16,31 +16,30 @@
 
 namespace umtet {
 
-/// Who follows a mesh while it is made. Any of them may throw, which ends the work.
-struct MeshWatch {
-  KeepGoing keep_going;                                 ///< whether to, asked every few milliseconds
-  std::function<void(const char* step)> begins;         ///< "components", "submesh", "certify", "second order"
-  std::function<bool(const UmProgress&)> progress;      ///< of the algorithm; false stops it
-  std::function<void(const std::string& line)> say;     ///< what the user should know
-  std::function<void(const std::string& line)> detail;  ///< what explains a result
+/// What is said to the user while a mesh is made; either may be empty, and may throw, which ends the work.
+struct MeshLines {
+  std::function<void(const std::string& line)> say = {};     ///< what the user should know
+  std::function<void(const std::string& line)> detail = {};  ///< what explains a result
 };
 
 /// Meshes a domain and measures what came out, as the section `mesh` of the parameters says: the one way that leads to
 /// the meshes of `umtet mesh`, `umtet evolve` and Python's umtet.mesh.
 class MeshMaker {
  public:
-  /// The domain and the parameters stay where they are. \throw UsageError as um_params()
-  MeshMaker(Domain& domain, const Parameters& parameters, MeshWatch watch);
+  /// The domain and the parameters stay where they are. The context is told of "components", the steps of
+  /// choose_submesh() and fit_submesh(), "certify" and "second order"; fractions are those of one attempt.
+  /// \throw UsageError as um_params()
+  MeshMaker(Domain& domain, const Parameters& parameters, Context context, MeshLines lines = {});
 
   /// psi, cut for h, meshed in this background. A mesh whose certificate fails is a result; so is none.
-  /// \throw MeshingImpossible  no sample is near psi = 0; MeshCancelled
+  /// \throw MeshingImpossible  no sample is near psi = 0; Cancelled
   MeshAttempt attempt(const BackgroundMesh& background, double h);
 
   /// The best_attempt() from this h on, each in a background of its own. Where mesh.tets asks for a number that h
   /// misses by more than a tenth, which shows before anything is moved, another h takes its place.
   MeshAttempt best(const EdgeLength& choice, const std::function<BackgroundMesh(double h)>& background);
 
-  /// The pieces of psi = 0, psi cut for h: kept until another h is asked for. \throw MeshCancelled
+  /// The pieces of psi = 0, psi cut for h: kept until another h is asked for. \throw Cancelled
   const ZeroSetChoice& pieces_at(double h);
 
   /// Whether the mesh is not right (or none), something is too thin for its h, and mesh.allow_thin does not say to keep
@@ -48,20 +47,22 @@ class MeshMaker {
   bool is_refused_as_thin(const MeshAttempt& attempt) const;
 
  private:
-  UmResult make(const BackgroundMesh& background, const ZeroSetChoice& pieces);
+  MeshAttempt begin(double h);
+  ChosenSubmesh choose(const BackgroundMesh& background, double h);
+  void finish(const BackgroundMesh& background, ChosenSubmesh chosen, MeshAttempt& a);
+  UmParams params_for(const ZeroSetChoice& pieces) const;
   MeshAttempt attempt_for_tets(double h, const std::function<BackgroundMesh(double h)>& background);
-  bool observe(const UmProgress& p);
-  void begin(const char* step) const;
   void curve(MeshAttempt& a) const;
+  void say(const std::string& line) const {
+    if (lines_.say) lines_.say(line);
+  }
 
   Domain& domain_;
   const Parameters& parameters_;
-  const MeshWatch watch_;
+  const Context context_;
+  const MeshLines lines_;
   const UmParams params_;
   std::optional<std::pair<double, ZeroSetChoice>> pieces_;  ///< of psi cut for the h beside them
-  std::vector<std::vector<Vec3>> iterates_;                 ///< of the running attempt
-  double missed_by_ = 0;  ///< tets made / tets asked for, when the running attempt was given up for it
-  bool may_miss_ = true;  ///< it goes on whatever the number
 };
 
 /// What is refused, and the first of the thin places; some lines, without a newline at the end. Coordinates are those

@@ -29,20 +29,20 @@ double rms(const std::vector<double>& d) {
 }
 
 /// Largest principal curvature of psi = 0 at the boundary vertices, in magnitude, times h.
-double max_curvature(ImplicitFunctionRef psi, const UmResult& result, double h, const KeepGoing& keep_going) {
+double max_curvature(ImplicitFunctionRef psi, const UmResult& result, double h, const Context& context) {
   const std::vector<int>& I = result.submesh.positive_vertices;
   std::vector<double> kappa(I.size());
-  polled_parallel_for(I.size(), kValuesPerPoll, keep_going,
+  polled_parallel_for(I.size(), kValuesPerPoll, context,
                       [&](std::size_t k) { kappa[k] = principal_curvatures(psi, result.final[I[k]])[0]; });
   return kappa.empty() ? 0 : h * *std::max_element(kappa.begin(), kappa.end());
 }
 
 /// Least distance from a boundary vertex along the normal to the opposite sheet, inside or outside; looked for up to
 /// four edges, beyond which it does not matter.
-double min_feature_size(const Domain& domain, const UmResult& result, double h, const KeepGoing& keep_going) {
+double min_feature_size(const Domain& domain, const UmResult& result, double h, const Context& context) {
   std::vector<Vec3> points;
   for (const int i : result.submesh.positive_vertices) points.push_back(result.final[i]);
-  const std::vector<double> t = thickness(domain.psi(), points, h / 4, 4 * h, keep_going, domain.steepest());
+  const std::vector<double> t = thickness(domain.psi(), points, h / 4, 4 * h, context, domain.steepest());
   return t.empty() ? 0 : *std::min_element(t.begin(), t.end());
 }
 
@@ -51,11 +51,11 @@ constexpr std::size_t kFewSamples = 10;
 constexpr double kSmallShare = 1e-3;
 
 /// Samples that psi, with all its detail, passes by, and the mesh does not: what has been too small for h.
-void look_for_lost_samples(const Domain& domain, const std::vector<double>& d, double h, const KeepGoing& keep_going,
+void look_for_lost_samples(const Domain& domain, const std::vector<double>& d, double h, const Context& context,
                            std::vector<std::string>& reasons) {
   const std::vector<Vec3>& x = domain.cloud.points;
   std::vector<std::uint8_t> lost(x.size(), 0);
-  polled_parallel_for(x.size(), kValuesPerPoll, keep_going, [&](std::size_t i) {
+  polled_parallel_for(x.size(), kValuesPerPoll, context, [&](std::size_t i) {
     if (d[i] <= h) return;
     Vec3 g;
     const double value = domain.fitted->evaluate(x[i], &g, nullptr);
@@ -75,10 +75,10 @@ void look_for_lost_samples(const Domain& domain, const std::vector<double>& d, d
 }
 
 Json cloud_block(const Domain& domain, const std::vector<Vec3>& V, const std::vector<Triangle>& faces, double h,
-                 const KeepGoing& keep_going, std::vector<std::string>& reasons) {
+                 const Context& context, std::vector<std::string>& reasons) {
   if (domain.cloud.points.empty() || faces.empty()) return nullptr;  // no face: the body fell through the background
-  std::vector<double> d = SurfaceDistance(V, faces).distances(domain.cloud.points, keep_going);
-  if (domain.fitted) look_for_lost_samples(domain, d, h, keep_going, reasons);
+  std::vector<double> d = SurfaceDistance(V, faces).distances(domain.cloud.points, context);
+  if (domain.fitted) look_for_lost_samples(domain, d, h, context, reasons);
   std::sort(d.begin(), d.end());
   const double r = rms(d), max = d.back(), p99 = quantile(d, .99);
   return {{"noise", number_or_null(domain.noise)},
@@ -98,7 +98,7 @@ constexpr double kWorthRepeating = .9;
 /// fluid, one closed piece without a hole? Where the two counts differ, the count is repeated on a grid of half the
 /// spacing, as far as its size is allowed, before the mesh is blamed.
 void compare_with_zero_set(const Domain& domain, const MeshCertificate& certificate, const ZeroSetChoice& pieces,
-                           const KeepGoing& keep_going, Json& block, std::vector<std::string>& reasons) {
+                           const Context& context, Json& block, std::vector<std::string>& reasons) {
   const MeshCertificate::Boundary& boundary = certificate.boundary;
   const int of_psi = boundary.components - (domain.complement ? 1 : 0);
   const long characteristic = boundary.euler_characteristic - (domain.complement ? 2 : 0);
@@ -109,7 +109,7 @@ void compare_with_zero_set(const Domain& domain, const MeshCertificate& certific
   const ZeroSetChoice* counted = &pieces;
   const double half = pieces.topology.spacing / 2;
   if (differs(pieces) && counting_spacing(domain, half) < kWorthRepeating * pieces.topology.spacing) {
-    repeated = choose_components(domain, half, keep_going, pieces.cells ? &*pieces.cells : nullptr);
+    repeated = choose_components(domain, half, context, pieces.cells ? &*pieces.cells : nullptr);
     counted = &repeated;
   }
   block["components_of_zero_set"] = counted->topology.components.size();
@@ -148,9 +148,9 @@ bool is_only_coarse(const Json& measured) {
 }
 
 void check_lost(const Domain& domain, const UmResult& result, const ThinPlaces& thin, Json& measured,
-                const KeepGoing& keep_going) {
+                const Context& context) {
   measured["resolution"]["too_thin"] = to_json(thin, domain.shift);
-  const LostPoint lost = lost_of(thin, result.final, result.submesh.positive_faces, keep_going);
+  const LostPoint lost = lost_of(thin, result.final, result.submesh.positive_faces, context);
   if (lost.count == 0) return;
   const Vec3 at = lost.where + domain.shift;
   measured["reasons"].push_back(
@@ -191,7 +191,7 @@ Json to_json(const MeshCertificate& c) {
 }
 
 Json measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& pieces, double h,
-             const KeepGoing& keep_going) {
+             const Context& context) {
   const TetMesh mesh{result.final, result.submesh.mesh.C};
   CertificateInput input;
   input.mesh = &mesh;
@@ -203,7 +203,7 @@ Json measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& 
   }
   input.psi = domain.psi();
   input.coordinate_rounding = coordinate_rounding(domain);
-  input.keep_going = keep_going;
+  input.context = context;
   const MeshCertificate certificate = certify(input);
   std::vector<std::string> reasons = failures(certificate);
 
@@ -212,7 +212,7 @@ Json measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& 
   const std::vector<Triangle>& faces = result.submesh.positive_faces;
   Json block = Json::object();
   block["level_set_spacing"] = domain.level_set ? Json(domain.level_set->spacing()) : Json(nullptr);
-  compare_with_zero_set(domain, certificate, pieces, keep_going, block, reasons);
+  compare_with_zero_set(domain, certificate, pieces, context, block, reasons);
   block["components_proved"] = nullptr;
   if (domain.level_set && pieces.cells) {
     const ComponentProof proof = prove_components(*domain.level_set, domain.box, pieces.topology, *pieces.cells);
@@ -226,12 +226,12 @@ Json measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& 
   block["unsupported_area_fraction"] = nullptr;
   if (domain.samples) {
     block["unsupported_area_fraction"] =
-        unsupported_area_fraction(mesh.V, faces, *domain.samples, kSupportRadius * domain.cloud_spacing, keep_going);
+        unsupported_area_fraction(mesh.V, faces, *domain.samples, kSupportRadius * domain.cloud_spacing, context);
   }
   json["domain"] = std::move(block);
-  json["cloud"] = cloud_block(domain, mesh.V, faces, h, keep_going, reasons);
-  json["resolution"] = {{"kappa_h_max", max_curvature(domain.psi(), result, h, keep_going)},
-                        {"feature_size_over_h_min", min_feature_size(domain, result, h, keep_going) / h},
+  json["cloud"] = cloud_block(domain, mesh.V, faces, h, context, reasons);
+  json["resolution"] = {{"kappa_h_max", max_curvature(domain.psi(), result, h, context)},
+                        {"feature_size_over_h_min", min_feature_size(domain, result, h, context) / h},
                         {"obtuse_conditioning_angles", result.obtuse_conditioning_angles},
                         {"double_positive_faces", result.double_positive_faces}};
   json["reasons"] = reasons;

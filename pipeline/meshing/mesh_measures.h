@@ -10,17 +10,17 @@
 namespace umtet {
 
 /// The fields of the certificate that are measured, in its order: n_points ... resolution, then `reasons`, the list of
-/// what is wrong with the mesh. Fields that this input does not have are null. \throw MeshCancelled
+/// what is wrong with the mesh. Fields that this input does not have are null. \throw Cancelled
 Json measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& pieces, double h,
-             const KeepGoing& keep_going = {});
+             const Context& context = {});
 
 /// The distance asked for with mesh.max_deviation is a promise: a mesh that breaks it gets a reason. 0: any will do.
 void check_deviation(double asked, Json& measured);
 
 /// Body or gap that is thin for h may be missing from the mesh as a whole, without a trace in topology or normals: that
-/// gets a reason too. Puts the thin places into `resolution`. \throw MeshCancelled
+/// gets a reason too. Puts the thin places into `resolution`. \throw Cancelled
 void check_lost(const Domain& domain, const UmResult& result, const ThinPlaces& thin, Json& measured,
-                const KeepGoing& keep_going = {});
+                const Context& context = {});
 
 /// Of a measured mesh: right but for the size of its faces (kMostGap). It is kept to be looked at, thin places or not,
 /// and the certificate says no.

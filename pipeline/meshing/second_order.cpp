@@ -33,11 +33,11 @@ std::vector<int> mid_sides_of(const std::vector<Triangle>& faces, const Quadrati
 }  // namespace
 
 SecondOrder curved_mesh(const Domain& domain, const UmResult& result, double h, const ClosestPointParams& params,
-                        const KeepGoing& keep_going) {
+                        const Context& context) {
   SecondOrderParams second;
   second.closest_point = params;
   SecondOrder curved = quadratic_tets({result.final, result.submesh.mesh.C}, result.submesh.positive_faces,
-                                      domain.psi(), h, second, keep_going);
+                                      domain.psi(), h, second, context);
   for (std::size_t i = result.final.size(); i < curved.mesh.V.size(); ++i) {
     Vec3& x = curved.mesh.V[i];
     x = (x + domain.shift) - domain.shift;
@@ -61,14 +61,14 @@ Json to_json(const SecondOrderCertificate& c) {
 }
 
 void measure_second_order(const Domain& domain, const UmResult& result, const SecondOrder& second, double h,
-                          Json& measured, const KeepGoing& keep_going) {
+                          Json& measured, const Context& context) {
   SecondOrderInput input;
   input.mesh = &second.mesh;
   input.h = h;
   input.psi = domain.psi();
   input.wall_faces = &result.walls;
   input.coordinate_rounding = coordinate_rounding(domain);
-  input.keep_going = keep_going;
+  input.context = context;
   const SecondOrderCertificate certificate = certify_second_order(input);
   Json block = to_json(certificate);
   block["n_mid_sides_put_back"] = second.off_surface.size();

@@ -12,21 +12,21 @@
 namespace umtet {
 
 /// The final mesh of a result with curved edges (mesh.order = 2), its mid-sides where a file will hold them.
-/// \pre result.status == UmStatus::Success, and round_to_file(result) \throw MeshCancelled
+/// \pre result.status == UmStatus::Success, and round_to_file(result) \throw Cancelled
 SecondOrder curved_mesh(const Domain& domain, const UmResult& result, double h, const ClosestPointParams& params,
-                        const KeepGoing& keep_going = {});
+                        const Context& context = {});
 
 /// The block `second_order` of what is measured.
 Json to_json(const SecondOrderCertificate& certificate);
 
 /// Puts that block, with what had to be done for the Jacobians, into what measure() returned, and what is wrong into
-/// its `reasons`. \throw MeshCancelled
+/// its `reasons`. \throw Cancelled
 void measure_second_order(const Domain& domain, const UmResult& result, const SecondOrder& second, double h,
-                          Json& measured, const KeepGoing& keep_going = {});
+                          Json& measured, const Context& context = {});
 
 /// As write_mesh() of the final mesh, with tets of 10 nodes; mid-sides have no vertex of the background (-1).
 /// @param corners  final_content() of the result
-/// \throw MeshCancelled, std::system_error naming the file
+/// \throw Cancelled, std::system_error naming the file
 void write_second_order(const std::filesystem::path& file, const Domain& domain, const UmResult& result,
                         const MeshFile& corners, const SecondOrder& second);
 

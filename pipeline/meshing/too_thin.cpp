@@ -78,8 +78,7 @@ double needed(std::vector<std::pair<double, double>> thickness_and_area) {
 }
 
 /// The thin points of one kind, set by set, appended to the result where a set is large enough.
-void collect(const Domain& domain, const Samples& samples, bool is_gap, const KeepGoing& keep_going,
-             ThinPlaces& result) {
+void collect(const Domain& domain, const Samples& samples, bool is_gap, const Context& context, ThinPlaces& result) {
   const double h = result.h;
   Samples thin;
   for (std::size_t i = 0; i < samples.points.size(); ++i) {
@@ -92,7 +91,7 @@ void collect(const Domain& domain, const Samples& samples, bool is_gap, const Ke
   // Detail that is cut away at this h is there again at a smaller one.
   std::vector<double> with_detail = thin.thickness;
   if (domain.fitted) {
-    const auto d = sheet_distances(*domain.fitted, thin.points, kStep * h, kReach * h, keep_going, domain.steepest());
+    const auto d = sheet_distances(*domain.fitted, thin.points, kStep * h, kReach * h, context, domain.steepest());
     for (std::size_t i = 0; i < d.size(); ++i) {
       with_detail[i] = std::min(with_detail[i], is_gap ? d[i].gap : d[i].body);
     }
@@ -144,27 +143,27 @@ Json vector(const Vec3& x) { return {x.x(), x.y(), x.z()}; }
 
 }  // namespace
 
-ThinPlaces find_thin_places(const Domain& domain, const ZeroSetChoice& pieces, double h, const KeepGoing& keep_going) {
+ThinPlaces find_thin_places(const Domain& domain, const ZeroSetChoice& pieces, double h, const Context& context) {
   ThinPlaces result;
   result.h = h;
   Samples samples = samples_of(pieces);
   const auto distances =
-      sheet_distances(domain.body(), samples.points, kStep * h, kReach * h, keep_going, domain.steepest());
+      sheet_distances(domain.body(), samples.points, kStep * h, kReach * h, context, domain.steepest());
   samples.thickness.resize(distances.size());
   for (const bool is_gap : {false, true}) {
     std::transform(distances.begin(), distances.end(), samples.thickness.begin(),
                    [&](const SheetDistances& d) { return is_gap ? d.gap : d.body; });
-    collect(domain, samples, is_gap, keep_going, result);
+    collect(domain, samples, is_gap, context, result);
   }
   sort_worst_first(result);
   return result;
 }
 
 LostPoint lost_of(const ThinPlaces& thin, const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
-                  const KeepGoing& keep_going) {
+                  const Context& context) {
   LostPoint lost;
   if (thin.empty() || faces.empty()) return lost;
-  const std::vector<double> d = SurfaceDistance(V, faces).distances(thin.points, keep_going);
+  const std::vector<double> d = SurfaceDistance(V, faces).distances(thin.points, context);
   const auto farthest = std::max_element(d.begin(), d.end());
   lost.where = thin.points[static_cast<std::size_t>(farthest - d.begin())];
   lost.distance = *farthest;

@@ -46,9 +46,8 @@ inline constexpr double kLeastThinArea = 0.5;
 /// apart or less are one place. What h a place needs is asked of psi with all its detail.
 /// @param pieces  of choose_components(domain, h)
 /// Cost: some twenty values of psi a cut point. The result does not depend on the number of threads.
-/// \throw MeshCancelled
-ThinPlaces find_thin_places(const Domain& domain, const ZeroSetChoice& pieces, double h,
-                            const KeepGoing& keep_going = {});
+/// \throw Cancelled
+ThinPlaces find_thin_places(const Domain& domain, const ZeroSetChoice& pieces, double h, const Context& context = {});
 
 /// A point of a thin place that a mesh does not show, the farthest of them.
 struct LostPoint {
@@ -58,9 +57,9 @@ struct LostPoint {
 };
 
 /// Body or gap that is thinner than an edge can be skipped without a trace in topology or normals: this finds it.
-/// @param faces  the boundary of the mesh. \throw MeshCancelled
+/// @param faces  the boundary of the mesh. \throw Cancelled
 LostPoint lost_of(const ThinPlaces&, const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
-                  const KeepGoing& keep_going = {});
+                  const Context& context = {});
 
 /// One object a place: kind, centre and box in model coordinates (`shift` is added), thickness, area, h_needed.
 Json to_json(const ThinPlaces&, const Vec3& shift);

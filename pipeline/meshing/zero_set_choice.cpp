@@ -22,14 +22,14 @@ constexpr double kLeastDensity = .02;
 
 /// For each piece the number of samples that are nearest to it and within `radius`.
 std::vector<std::size_t> backing_samples(const Domain& domain, const ZeroSetTopology& topology, double radius,
-                                         const KeepGoing& keep_going) {
+                                         const Context& context) {
   constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
   const std::vector<Vec3>& samples = domain.cloud.points;
   std::vector<double> least(samples.size(), radius);
   std::vector<std::size_t> owner(samples.size(), kNone), near;
   std::vector<Vec3> x;
   for (std::size_t c = 0; c < topology.components.size(); ++c) {
-    poll(keep_going);
+    context.poll();
     near.clear();
     x.clear();
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -39,7 +39,7 @@ std::vector<std::size_t> backing_samples(const Domain& domain, const ZeroSetTopo
     }
     if (near.empty()) continue;
     const auto points = topology.points_of(topology.components[c]);
-    const std::vector<double> d = SampleDistance({points.begin(), points.end()}).distances(x, keep_going);
+    const std::vector<double> d = SampleDistance({points.begin(), points.end()}).distances(x, context);
     for (std::size_t k = 0; k < near.size(); ++k) {
       const std::size_t i = near[k];
       if (d[k] < least[i] || (owner[i] == kNone && d[k] <= radius)) least[i] = d[k], owner[i] = c;
@@ -87,7 +87,7 @@ double counting_spacing(const Domain& domain, double h) {
   return std::max(wanted, std::cbrt(domain.box.volume() / kMaxGridNodes));
 }
 
-ZeroSetChoice choose_components(const Domain& domain, double h, const KeepGoing& keep_going, const SignCells* cells) {
+ZeroSetChoice choose_components(const Domain& domain, double h, const Context& context, const SignCells* cells) {
   ZeroSetChoice choice;
   const double spacing = counting_spacing(domain, h);
   FarFromZero far;
@@ -95,14 +95,14 @@ ZeroSetChoice choose_components(const Domain& domain, double h, const KeepGoing&
     if (!cells) cells = &choice.cells.emplace(sign_cells(*domain.level_set, h / 2));
     far = ZeroFreeMap(*cells, domain.box.intersection(domain.level_set->domain()), spacing);
   }
-  choice.topology = zero_set_topology(domain.psi(), domain.box, spacing, keep_going, far);
+  choice.topology = zero_set_topology(domain.psi(), domain.box, spacing, context, far);
   const std::vector<ZeroSetComponent>& pieces = choice.topology.components;
   if (pieces.empty()) return choice;
   const double radius = std::max(kSupportRadius * domain.cloud_spacing, choice.topology.spacing);
   std::vector<std::size_t> backing(pieces.size()), wanted(pieces.size());
   // One piece is kept if it has one sample; how many there are matters to none but several.
   if (domain.level_set && !(pieces.size() == 1 && has_sample(domain, choice.topology, radius))) {
-    backing = backing_samples(domain, choice.topology, radius, keep_going);
+    backing = backing_samples(domain, choice.topology, radius, context);
     wanted = wanted_samples(choice.topology, backing);
   }
   for (std::size_t c = 0; c < pieces.size(); ++c) {

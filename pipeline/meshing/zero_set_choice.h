@@ -39,8 +39,8 @@ double counting_spacing(const Domain& domain, double h);
 /// @param cells  of an earlier count of the same psi at a larger h, which need no second search; null: searched
 /// Cost: one value of psi per node of the grid (of a level set: per node within its spacing of a sign cell), one
 /// nearest-point query per sample and piece whose box it is near. \throw std::length_error  a box too unlike a cube for
-/// the grid \throw MeshCancelled
-ZeroSetChoice choose_components(const Domain& domain, double h, const KeepGoing& keep_going = {},
+/// the grid \throw Cancelled
+ZeroSetChoice choose_components(const Domain& domain, double h, const Context& context = {},
                                 const SignCells* cells = nullptr);
 
 }  // namespace umtet

@@ -51,8 +51,8 @@ Json cloud_difference(const CasePaths& a, const CasePaths& b) {
   const OrientedPointCloud x = read_point_cloud(a.cloud()).cloud, y = read_point_cloud(b.cloud()).cloud;
   return {{"n_a", x.points.size()},
           {"n_b", y.points.size()},
-          {"a_to_b", spread(SampleDistance(y.points).distances(x.points, not_interrupted))},
-          {"b_to_a", spread(SampleDistance(x.points).distances(y.points, not_interrupted))}};
+          {"a_to_b", spread(SampleDistance(y.points).distances(x.points, until_interrupted()))},
+          {"b_to_a", spread(SampleDistance(x.points).distances(y.points, until_interrupted()))}};
 }
 
 Json level_set_difference(const CasePaths& a, const CasePaths& b, const StageRecord& record_a,
@@ -84,7 +84,7 @@ struct Skin {
     }
   }
   std::vector<double> distances(const std::vector<Vec3>& x) const {
-    return SurfaceDistance(file.mesh.V, faces).distances(x, not_interrupted);
+    return SurfaceDistance(file.mesh.V, faces).distances(x, until_interrupted());
   }
 };
 

@@ -14,7 +14,7 @@ namespace umtet {
 ///   level-set   |psi_a - psi_b| at the samples of A
 ///   mesh        distance of boundary vertices to the other's boundary; if the tets are the same, moves of the vertices
 /// `first_difference` is the first stage whose files differ, or null.
-/// \throw UsageError for what is no case; ArtefactDamaged, Interrupted, MeshCancelled, std::system_error
+/// \throw UsageError for what is no case; ArtefactDamaged, Interrupted, Cancelled, std::system_error
 Json diff_cases(const CasePaths& a, const CasePaths& b, Progress& progress);
 
 /// The same for people, some lines a stage.

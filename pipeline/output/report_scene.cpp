@@ -233,7 +233,7 @@ void SceneMaker::write_values() {
   std::vector<double> deviation(faces_.size());
   const ImplicitFunctionRef psi = domain_.psi();
   const std::vector<std::uint8_t>* wall = field<std::uint8_t>(file_.point_data, kAtWall);
-  polled_parallel_for(faces_.size(), kValuesPerPoll, not_interrupted, [&](std::size_t f) {
+  polled_parallel_for(faces_.size(), kValuesPerPoll, until_interrupted(), [&](std::size_t f) {
     const FacedTet& t = faces_[f];
     if (wall && (*wall)[t[0]] && (*wall)[t[1]] && (*wall)[t[2]]) return;
     Vec3 g;

@@ -35,7 +35,7 @@ struct ReportScene {
 /// @param mesh      as in mesh.vtu: model coordinates, with `mean_ratio` and, of a cloud, `support`
 /// @param domain    psi as it was meshed: deviations are |psi| / |grad psi| at the centres of faces
 /// @param divided   solver_mesh() of it, its boundary in patches
-/// \throw MeshCancelled, std::invalid_argument without tets, or with another number of them in `divided`
+/// \throw Cancelled, std::invalid_argument without tets, or with another number of them in `divided`
 ReportScene report_scene(const MeshFile& mesh, const Domain& domain, const SolverMesh& divided,
                          const ReportCaps& caps = {});
 

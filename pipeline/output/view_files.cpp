@@ -48,7 +48,7 @@ vtkSmartPointer<vtkImageData> sampled(const Domain& domain, double h) {
   const Vec3 step = size.cwiseQuotient((n.array() - 1).matrix().cast<double>()), origin = domain.box.min();
   const std::size_t n_nodes = static_cast<std::size_t>(n.x()) * n.y() * n.z();
   const vtkSmartPointer<vtkFloatArray> psi = values("psi", n_nodes), slope = values("grad_psi", n_nodes);
-  polled_parallel_for(n_nodes, kValuesPerPoll, not_interrupted, [&](std::size_t k) {
+  polled_parallel_for(n_nodes, kValuesPerPoll, until_interrupted(), [&](std::size_t k) {
     const std::size_t row = k / n.x(), layer = row / n.y();
     const Vec3 at(static_cast<double>(k % n.x()), static_cast<double>(row % n.y()), static_cast<double>(layer));
     Vec3 g;

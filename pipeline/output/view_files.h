@@ -14,7 +14,7 @@ namespace umtet {
 ///              method; with |grad psi|
 ///   view.py    `paraview --script=CASE/5-view/view.py`: samples, psi, psi = 0, a cut through the tets, and the
 ///              iterates where they were kept
-/// @return the files. \throw UsageError without a mesh; ArtefactDamaged, Interrupted, MeshCancelled, std::system_error
+/// @return the files. \throw UsageError without a mesh; ArtefactDamaged, Interrupted, Cancelled, std::system_error
 std::vector<std::filesystem::path> write_view(const CasePaths& paths, Progress& progress);
 
 }  // namespace umtet

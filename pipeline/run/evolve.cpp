@@ -153,7 +153,7 @@ void Evolution::look_at(Step& step) {
   }
   const bool counts = !first_ || parameters_.mesh().tets == 0;
   if (counts) {
-    const double h = choose_edge_length(domain, parameters_, not_interrupted).h;
+    const double h = choose_edge_length(domain, parameters_, until_interrupted()).h;
     h_ = first_ ? std::min(h_, h) : h;
   }
   if (first_) {
@@ -181,15 +181,9 @@ void Evolution::choose_background() {
 
 /// As umtet mesh does at a given h.
 UmResult Evolution::make(Step& step, Domain& domain) {
-  MeshWatch watch;
-  watch.keep_going = not_interrupted;
-  watch.begins = [&](std::string_view at) {
-    stop_if_interrupted();
-    report(step, at, at == "certify" ? .8 : .3);
-  };
-  watch.progress = [&](const UmProgress&) { return report(step, "mesh", .3); };
-  watch.say = [this](const std::string& line) { progress_.say(line); };
-  MeshMaker maker(domain, parameters_, std::move(watch));
+  const Context call{.progress = [&](const char* at, double part) { report(step, at, part); },
+                     .cancelled = until_interrupted().cancelled};
+  MeshMaker maker(domain, parameters_, call, {.say = [this](const std::string& line) { progress_.say(line); }});
   MeshAttempt a = maker.attempt(*background_, h_);
   stop_if_interrupted();
   if (maker.is_refused_as_thin(a)) {

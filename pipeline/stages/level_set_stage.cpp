@@ -18,14 +18,6 @@ namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
-/// The steps of fit_ssd share the bar about as their times do.
-double overall_fraction(std::string_view step, double fraction) {
-  if (step == "weights") return .2 * fraction;
-  if (step == "setup") return .2 + .1 * fraction;
-  if (step == "solve") return .3 + .2 * fraction;
-  return .5 + .5 * fraction;
-}
-
 OrientedPointCloud take_cloud(const StageContext& context) {
   if (context.handover.cloud) return std::move(*std::exchange(context.handover.cloud, std::nullopt));
   try {
@@ -83,17 +75,12 @@ void run_level_set_stage(const StageContext& context) {
   const NeighbourDistances near = std::exchange(context.handover.near, {});
   SsdFit fit = [&] {
     try {
-      return fit_ssd(
-          cloud, params,
-          [&](const char* step, double fraction) {
-            return context.progress.report("level-set", step, overall_fraction(step, fraction));
-          },
-          near.nearest.empty() ? nullptr : &near);
+      const Context call{
+          .progress = [&](const char* step, double part) { context.progress.report("level-set", step, part); },
+          .cancelled = until_interrupted().cancelled};
+      return fit_ssd(cloud, params, call, near.nearest.empty() ? nullptr : &near);
     } catch (const SolveTooLarge& e) {
       throw ResourceLimit(e.what());
-    } catch (const SolveCancelled&) {
-      stop_if_interrupted();
-      throw;
     }
   }();
 

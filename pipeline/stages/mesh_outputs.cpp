@@ -65,8 +65,8 @@ std::vector<std::string> write_mesh_outputs(const StageContext& context, const D
   };
   write("omega_h.vtu");
   curves.add("omega_h", content);
-  for (std::size_t k = 0; k < best.iterates.size(); ++k) {
-    move_to(domain, best.iterates[k], content);
+  for (std::size_t k = 0; k < result.iterates.size(); ++k) {
+    move_to(domain, result.iterates[k], content);
     write(fmt::format("pass_{}.vtu", k + 1));
   }
   move_to(domain, result.projected, content);

@@ -27,7 +27,7 @@ class MeshStage {
       : context_(context),
         domain_(load_domain(context.paths, context.parameters, &context.handover)),
         background_(context.parameters, domain_),
-        maker_(domain_, context.parameters, watch()) {}
+        maker_(domain_, context.parameters, call(), lines()) {}
 
   /// Of the best h. \throw MeshingImpossible when there is none, or it came out wrong where the body is thin
   MeshAttempt best_mesh();
@@ -35,8 +35,8 @@ class MeshStage {
   Domain& domain() { return domain_; }
 
  private:
-  MeshWatch watch();
-  bool observe(const UmProgress& p);
+  Context call() const;
+  MeshLines lines() const;
   BackgroundMesh background_of(double h);
   EdgeLength enough_for(const ThinPlaces& thin);
   std::string remedy_for(const ThinPlaces& thin, Json& h_enough);
@@ -48,26 +48,14 @@ class MeshStage {
   MeshMaker maker_;
 };
 
-MeshWatch MeshStage::watch() {
-  MeshWatch watch;
-  watch.keep_going = not_interrupted;
-  watch.begins = [this](std::string_view step) {
-    stop_if_interrupted();
-    context_.progress.report("mesh", step, step == "components" ? .05 : step == "submesh" ? .1 : .9);
-  };
-  watch.progress = [this](const UmProgress& p) { return observe(p); };
-  watch.say = [this](const std::string& line) { context_.progress.say("mesh: " + line); };
-  watch.detail = [this](const std::string& line) { context_.progress.detail("mesh: " + line); };
-  return watch;
+Context MeshStage::call() const {
+  return {.progress = [this](const char* step, double part) { context_.progress.report("mesh", step, part); },
+          .cancelled = until_interrupted().cancelled};
 }
 
-bool MeshStage::observe(const UmProgress& p) {
-  const double n_rounds = static_cast<double>(context_.parameters.mesh().projection_passes) + 1;
-  const std::string_view step = p.step;
-  double rounds = 0;
-  if (step == "project") rounds = p.pass - 1 + static_cast<double>(p.sweep) / std::max(p.n_sweeps, 1);
-  if (step == "relax") rounds = n_rounds - 1 + static_cast<double>(p.pass) / std::max(p.n_passes, 1);
-  return context_.progress.report("mesh", step, .1 + .8 * rounds / n_rounds);
+MeshLines MeshStage::lines() const {
+  return {.say = [this](const std::string& line) { context_.progress.say("mesh: " + line); },
+          .detail = [this](const std::string& line) { context_.progress.detail("mesh: " + line); }};
 }
 
 /// With room on the disk for the meshes in it.
@@ -100,7 +88,7 @@ EdgeLength MeshStage::enough_for(const ThinPlaces& thin) {
   double needed = thin.h_needed();
   for (int round = 0; round < kThinRounds && choice.h > choice.least; ++round) {
     choice.h = std::max(std::min(needed, kThinStep * choice.h), choice.least);
-    const ThinPlaces left = find_thin_places(domain_, maker_.pieces_at(choice.h), choice.h, not_interrupted);
+    const ThinPlaces left = find_thin_places(domain_, maker_.pieces_at(choice.h), choice.h, until_interrupted());
     if (left.empty()) break;
     needed = left.h_needed();
   }
@@ -142,7 +130,7 @@ MeshAttempt MeshStage::best_mesh() {
   context_.progress.report("mesh", "size", 0);
   MeshAttempt best =
       maker_.best(background_.own_h() ? EdgeLength{*background_.own_h(), *background_.own_h()}
-                                      : choose_edge_length(domain_, context_.parameters, not_interrupted),
+                                      : choose_edge_length(domain_, context_.parameters, until_interrupted()),
                   [this](double h) { return background_of(h); });
   stop_if_interrupted();
   if (maker_.is_refused_as_thin(best)) refuse_thin(best);

@@ -156,15 +156,14 @@ double median(std::vector<double> v) {
   return *middle;
 }
 
-void go_on(const SsdProgress& progress, const char* step, double fraction) {
-  if (progress && !progress(step, fraction)) throw SolveCancelled(formatted("stopped during %s", step));
-}
+// The steps share the time about so: where each begins.
+constexpr double kSetup = .2, kSolve = .3, kRefine = .5;
 
 // What both ways of fitting start from.
 struct Problem {
   const OrientedPointCloud& cloud;
   const SsdParams& params;
-  const SsdProgress& progress;
+  const Context& context;
   LmeTables tables;
   Eigen::AlignedBox3d box;
   std::vector<double> area;  // a_i; empty for the paper's weights
@@ -194,9 +193,10 @@ LevelSet fit_lattice(const Problem& problem, const Hierarchy& hierarchy, std::ve
     Multigrid multigrid(op, hierarchy.n_levels);
     std::vector<double> r(op.size() + SsdOperator::kPad, 0.0);
     op.right_hand_side(r.data());
-    go_on(problem.progress, "solve", 0);
+    problem.context.report("solve", kSolve);
     const PcgReport pcg = solve_pcg(op, multigrid, r, tolerance, params.max_iterations, c, [&](double residual) {
-      go_on(problem.progress, "solve", std::clamp(std::log(residual) / std::log(tolerance), 0.0, 1.0));
+      const double done = std::clamp(std::log(residual) / std::log(tolerance), 0.0, 1.0);
+      problem.context.report("solve", kSolve + (kRefine - kSolve) * done);
     });
     report.iterations = pcg.iterations;
     report.residuals = pcg.residuals;
@@ -292,7 +292,7 @@ LevelSet fit_multilevel(const Problem& problem, SsdReport& report) {
         psi, samples[level], smoothing, params.band_tolerance, params.max_iterations,
         [&](double residual) {
           const double done = std::clamp(std::log(residual) / std::log(params.band_tolerance), 0.0, 1.0);
-          go_on(problem.progress, "refine", (level - 1 + done) * per_level);
+          problem.context.report("refine", kRefine + (1 - kRefine) * (level - 1 + done) * per_level);
         },
         band);
     if (!band.converged) {
@@ -311,7 +311,7 @@ LevelSet fit_multilevel(const Problem& problem, SsdReport& report) {
 
 }  // namespace
 
-SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const SsdProgress& progress,
+SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const Context& context,
                const NeighbourDistances* near) {
   const std::vector<std::string> wrong = problems(params);
   if (!wrong.empty()) throw std::invalid_argument(joined(wrong, "; "));
@@ -327,8 +327,8 @@ SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const S
   SsdReport report;
   report.n_points = cloud.points.size();
 
-  go_on(progress, "weights", 0);
-  Problem problem{cloud, params, progress, LmeTables(params.prior), {}, {}, 0};
+  context.report("weights", 0);
+  Problem problem{cloud, params, context, LmeTables(params.prior), {}, {}, 0};
   for (const Vec3& x : cloud.points) problem.box.extend(x);
   const double diagonal = problem.box.diagonal().norm();
   {
@@ -353,7 +353,7 @@ SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const S
     throw SolveError(formatted("spacing %.6g is larger than the cloud (diagonal %.6g): choose a smaller one",
                                report.spacing, diagonal));
   }
-  go_on(progress, "setup", 0);
+  context.report("setup", kSetup);
   LevelSet psi = params.solver == SsdSolver::Multilevel ? fit_multilevel(problem, report) : fit_full(problem, report);
   measure_fit(cloud, psi, problem.area, finest_value_length(report.spacing, params.noise), report);
   return {std::move(psi), std::move(report)};

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "common/context.h"
 #include "reconstruct/basis/lme_prior.h"
 #include "reconstruct/cloud/cloud_neighbours.h"
 #include "reconstruct/cloud/point_cloud.h"
@@ -64,13 +64,6 @@ struct SsdReport {
   double least_wall_value = 0;        ///< least psi sampled on the wall of its domain; < 0: the body has no end
 };
 
-/// Where the stage stands: "weights", "setup", "solve", "refine"; fraction in [0, 1]. Return false to stop:
-/// SolveCancelled.
-using SsdProgress = std::function<bool(const char* step, double fraction)>;
-struct SolveCancelled : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
 /// What a fit would need and may not have; what() says both, and the remedy.
 struct SolveTooLarge : std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -88,8 +81,10 @@ struct SsdFit {
 /// \throw std::length_error      a spacing that asks for more nodes than a full lattice can hold
 /// \throw SolveTooLarge          more than max_memory is needed; said before it is taken
 /// \throw SolveError             not converged, too large for the assembled solver, or a spacing beyond the cloud's
-/// size \throw SolveCancelled         `progress` said stop
-SsdFit fit_ssd(const OrientedPointCloud&, const SsdParams& = {}, const SsdProgress& = {},
+///                               size
+/// \throw Cancelled
+/// Reports the steps "weights", "setup", "solve" and "refine", which share [0, 1] about as their times do.
+SsdFit fit_ssd(const OrientedPointCloud&, const SsdParams& = {}, const Context& = {},
                const NeighbourDistances* near = nullptr);
 
 }  // namespace umtet

@@ -287,7 +287,7 @@ TEST(UniversalMesh, AFailureLeavesTheNextUpdateWhereItWas) {
   const Ball ball;
   const UmUpdate first = moving.update(ball);
   EXPECT_EQ(moving.update(Ball{Vec3(.6, 0, 0)}).mesh.status, UmStatus::DomainLeavesBackground);
-  EXPECT_EQ(moving.update(ball, {}, [](const UmProgress&) { return false; }).mesh.status, UmStatus::Cancelled);
+  EXPECT_THROW(moving.update(ball, {}, {.cancelled = [] { return true; }}), Cancelled);
   const UmUpdate again = moving.update(ball);
   expect_certified(again.mesh, ball, .15, 1);
   EXPECT_EQ(again.mesh.submesh.background_tet, first.mesh.submesh.background_tet);

@@ -231,30 +231,62 @@ TEST(UniversalMesh, AnInvertedIterateNamesItsTet) {
   EXPECT_LE(min_quality(result.submesh, result.final), 0);
 }
 
-TEST(UniversalMesh, ObserverSeesEverySweepAndCanStop) {
+TEST(UniversalMesh, TheContextSeesEverySweepAndCanCancel) {
   UmParams params = paper();
   params.paper.relaxation_iterations = 3;
   params.paper.projection_passes = 2;
+  params.paper.keep_iterates = true;
   const AnalyticDomain ball = testing::sphere();
   const BackgroundMesh background(a15(), ball.box, .3);
   std::vector<std::string> seen;
-  const UmResult whole = universal_mesh(background, ball, params, [&](const UmProgress& p) {
-    seen.push_back(std::string(p.step) + std::to_string(p.pass) + "/" + std::to_string(p.n_passes) + "." +
-                   std::to_string(p.sweep));
-    return true;
-  });
+  double last = 0;
+  std::size_t n_polls = 0;
+  const Context sees{.progress =
+                         [&](const char* step, double fraction) {
+                           seen.emplace_back(step);
+                           EXPECT_GE(fraction, last);
+                           last = fraction;
+                         },
+                     .cancelled = [&] { return ++n_polls == 0; }};
+  const UmResult whole = universal_mesh(background, ball, params, sees);
   EXPECT_EQ(whole.status, UmStatus::Success);
-  EXPECT_EQ(seen,
-            (std::vector<std::string>{"search1/1.1", "search1/1.1", "submesh1/1.1", "project1/2.0", "project1/2.1",
-                                      "project1/2.2", "project1/2.3", "project2/2.0", "project2/2.1", "project2/2.2",
-                                      "project2/2.3", "relax1/3.1", "relax2/3.1", "relax3/3.1"}));
-  for (std::size_t stop = 0; stop < seen.size(); ++stop) {
-    std::size_t calls = 0;
-    const UmResult cut = universal_mesh(background, ball, params, [&](const UmProgress&) { return calls++ != stop; });
-    EXPECT_EQ(cut.status, UmStatus::Cancelled);
-    EXPECT_EQ(calls, stop + 1);
-    EXPECT_EQ(cut.final.size(), cut.submesh.mesh.V.size());
+  EXPECT_EQ(last, 1);
+  const std::vector<std::string> steps = {"search",  "submesh", "project", "project", "project", "project", "project",
+                                          "project", "project", "project", "relax",   "relax",   "relax"};
+  EXPECT_EQ(seen, steps);
+  ASSERT_EQ(whole.iterates.size(), 2u);
+  EXPECT_EQ(whole.iterates[1], whole.projected);
+  EXPECT_NE(whole.iterates[0], whole.projected);
+  for (std::size_t stop = 0; stop < n_polls; ++stop) {
+    std::size_t polls = 0;
+    const Context cancels{.cancelled = [&] { return polls++ == stop; }};
+    EXPECT_THROW(universal_mesh(background, ball, params, cancels), Cancelled);
+    EXPECT_EQ(polls, stop + 1);
   }
+}
+
+TEST(UniversalMesh, IsItsTwoSteps) {
+  const AnalyticDomain ball = testing::sphere();
+  const BackgroundMesh background(a15(), ball.box, .3);
+  for (const UmMode mode : {UmMode::Fast, UmMode::Paper}) {
+    UmParams params;
+    params.mode = mode;
+    params.paper.relaxation_iterations = 2;
+    ChosenSubmesh chosen = choose_submesh(background, ball, params);
+    ASSERT_EQ(chosen.status, UmStatus::Success) << chosen.evidence.what;
+    const std::size_t n_tets = chosen.n_tets;
+    EXPECT_GT(chosen.submesh.mesh.V.size(), 100u);
+    const UmResult fitted = fit_submesh(background, ball, params, std::move(chosen));
+    const UmResult whole = universal_mesh(background, ball, params);
+    EXPECT_EQ(fitted.final, whole.final);
+    EXPECT_EQ(fitted.n_psi_evaluations, whole.n_psi_evaluations);
+    EXPECT_NEAR(static_cast<double>(fitted.submesh.mesh.C.size()) / static_cast<double>(n_tets), 1, .02);
+  }
+  const BackgroundMesh small(a15(), testing::cube_box(.8), .2);
+  ChosenSubmesh none = choose_submesh(small, ball);
+  EXPECT_EQ(none.status, UmStatus::DomainLeavesBackground);
+  EXPECT_EQ(none.n_tets, 0u);
+  EXPECT_EQ(fit_submesh(small, ball, {}, std::move(none)).status, UmStatus::DomainLeavesBackground);
 }
 
 TEST(UniversalMesh, BrokenParamsAreAllNamed) {

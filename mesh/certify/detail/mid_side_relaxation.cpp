@@ -156,10 +156,10 @@ std::vector<int> MidSideRelaxation::poor_at(const std::vector<int>& mid_sides, d
   return tets;
 }
 
-std::size_t MidSideRelaxation::relax(std::vector<int>& poor, const KeepGoing& keep_going) {
+std::size_t MidSideRelaxation::relax(std::vector<int>& poor, const Context& context) {
   n_psi_evaluations_ = 0;
   for (int sweep = 0; sweep < params_.sweeps && !poor.empty(); ++sweep) {
-    poll(keep_going);
+    context.poll();
     const std::vector<int> around = mid_sides_of(poor);
     bool moved = false;
     for (const int m : around) moved |= kind_[m - n_corners_] != MidSide::Fixed && improve(m);

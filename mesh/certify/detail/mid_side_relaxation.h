@@ -26,7 +26,7 @@ class MidSideRelaxation {
 
   /// Step 2. @param poor  the tets below the target; receives those that still are
   /// @return closest points asked for, in evaluations of psi
-  std::size_t relax(std::vector<int>& poor, const KeepGoing& keep_going);
+  std::size_t relax(std::vector<int>& poor, const Context& context);
 
   /// Step 3. Surface mid-sides that are moved become Fixed. @param poor  tets that may be below params.least
   void retreat(const std::vector<int>& poor);

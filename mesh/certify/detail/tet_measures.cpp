@@ -170,7 +170,7 @@ DihedralRange dihedral_range_of(const TetMesh& mesh, const Tet& t) {
 
 }  // namespace
 
-void measure_tets(const TetMesh& mesh, double h, const KeepGoing& keep_going, CertificateMemory* memory,
+void measure_tets(const TetMesh& mesh, double h, const Context& context, CertificateMemory* memory,
                   MeshCertificate& certificate) {
   // Loops write by index and sums are taken block by block: threads cannot change a result.
   const std::size_t n = mesh.C.size(), n_lowest = std::min(n, n / 100 + 2);  // what the quantiles need
@@ -179,7 +179,7 @@ void measure_tets(const TetMesh& mesh, double h, const KeepGoing& keep_going, Ce
   std::vector<TetMeasure> blocks(tets.size());
   std::vector<double> lowest;
   for (double bound = sampled_bound(tets); lowest.size() < n_lowest; bound = kInfinity) {
-    polled_parallel_for(blocks.size(), kBlocksPerPoll, keep_going, [&](std::size_t b) { blocks[b] = tets(b, bound); });
+    polled_parallel_for(blocks.size(), kBlocksPerPoll, context, [&](std::size_t b) { blocks[b] = tets(b, bound); });
     lowest.clear();
     for (const TetMeasure& block : blocks) {
       lowest.insert(lowest.end(), block.low_qualities.begin(), block.low_qualities.end());

@@ -12,8 +12,8 @@ namespace umtet::detail {
 /// them. Holds a byte a vertex, and the qualities of some hundredths of the tets.
 /// @param h       certificate.h if > 0
 /// @param memory  if not null, of what is known of the tets, and receives that
-/// \pre at least one tet, all indices in range   \throw MeshCancelled
-void measure_tets(const TetMesh& mesh, double h, const KeepGoing& keep_going, CertificateMemory* memory,
+/// \pre at least one tet, all indices in range   \throw Cancelled
+void measure_tets(const TetMesh& mesh, double h, const Context& context, CertificateMemory* memory,
                   MeshCertificate& certificate);
 
 }  // namespace umtet::detail

@@ -17,7 +17,7 @@ constexpr std::size_t kFirstOfPair = 6, kSecondOfPair = 8;
 constexpr double kMostLack = .7, kMostMoreBelowTarget = 280;
 // Where a label has been found that helps, those whose flip costs so much more are not tried: of 245 (T6, T8, a plate
 // with 18 holes, eqs. (9) and (13) at 500k tets) three would have been better than with 30, half of the tries went
-// there. With 30 the armadillo keeps a tet of Q = .8075, with 60 or without a bound its worst is .8129.
+// there. With 30 a scan keeps a tet of Q = .8075, with 60 or without a bound its worst is .8129.
 constexpr float kMostMoreCost = 60;
 
 }  // namespace

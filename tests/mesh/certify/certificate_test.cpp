@@ -83,13 +83,14 @@ TEST(Certificate, AMeshAloneIsJudgedWithoutPsi) {
 TEST(Certificate, StopsWhenItIsTold) {
   const Ball ball(4);
   std::size_t calls = 0;
-  CertificateInput input{&ball.mesh, 0, &ball.faces, ImplicitFunctionRef(kUnitBall), 0, [&] { return ++calls > 0; }};
+  CertificateInput input{&ball.mesh, 0, &ball.faces, ImplicitFunctionRef(kUnitBall), 0};
+  input.context.cancelled = [&] { return ++calls == 0; };
   certify(input);
   EXPECT_GE(calls, 2 + ball.faces.size() / kValuesPerPoll);
   for (const std::size_t stop : {std::size_t{1}, calls / 2, calls}) {
     std::size_t n = 0;
-    input.keep_going = [&] { return ++n < stop; };
-    EXPECT_THROW(certify(input), MeshCancelled) << stop;
+    input.context.cancelled = [&] { return ++n >= stop; };
+    EXPECT_THROW(certify(input), Cancelled) << stop;
     EXPECT_EQ(n, stop);
   }
 }

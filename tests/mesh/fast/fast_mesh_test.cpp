@@ -243,24 +243,24 @@ TEST(FastMesh, WhatCannotBeMeshedIsAStatusWithEvidence) {
   EXPECT_FALSE(thin.submesh.mesh.C.empty());  // to be looked at
 }
 
-TEST(FastMesh, TheObserverCanStopItAnywhere) {
+TEST(FastMesh, TheContextCanCancelItAnywhere) {
   const AnalyticDomain domain = testing::equation_9();
   const BackgroundMesh background = background_of(domain, 9000);
-  std::size_t n_calls = 0;
-  const UmResult whole = universal_mesh(background, domain, {}, [&](const UmProgress& p) {
-    EXPECT_EQ(p.n_tets > 0, std::string_view(p.step) != "search");
-    ++n_calls;
-    return true;
-  });
-  EXPECT_EQ(whole.status, UmStatus::Success);
-  ASSERT_GT(n_calls, 3u);
-  for (std::size_t stop = 0; stop < n_calls; stop += std::max<std::size_t>(1, n_calls / 7)) {
-    std::size_t calls = 0;
-    const UmResult cut = universal_mesh(background, domain, {}, [&](const UmProgress&) { return calls++ != stop; });
-    EXPECT_EQ(cut.status, UmStatus::Cancelled);
-    EXPECT_EQ(calls, stop + 1);
-    EXPECT_EQ(cut.final.size(), cut.submesh.mesh.V.size());
-    EXPECT_EQ(cut.submesh.mesh.C.empty(), cut.submesh.mesh.V.empty());
+  std::size_t n_polls = 0;
+  double last = 0;
+  const Context sees{.progress =
+                         [&](const char*, double fraction) {
+                           EXPECT_GE(fraction, last);
+                           last = fraction;
+                         },
+                     .cancelled = [&] { return ++n_polls == 0; }};
+  EXPECT_EQ(universal_mesh(background, domain, {}, sees).status, UmStatus::Success);
+  EXPECT_EQ(last, 1);
+  ASSERT_GT(n_polls, 3u);
+  for (std::size_t stop = 0; stop < n_polls; stop += std::max<std::size_t>(1, n_polls / 7)) {
+    std::size_t polls = 0;
+    EXPECT_THROW(universal_mesh(background, domain, {}, {.cancelled = [&] { return polls++ == stop; }}), Cancelled);
+    EXPECT_EQ(polls, stop + 1);
   }
 }
 

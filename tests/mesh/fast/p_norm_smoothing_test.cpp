@@ -347,7 +347,7 @@ TEST(PNormSmooth, BadParametersAndCancelling) {
   params.closest_point.tol = 0;
   EXPECT_EQ(problems(params).size(), 7u);
   EXPECT_THROW(smooth(layer, domain, params), std::invalid_argument);
-  EXPECT_THROW(smooth(layer, domain, {}, [] { return false; }), MeshCancelled);
+  EXPECT_THROW(smooth(layer, domain, {}, {.cancelled = [] { return true; }}), Cancelled);
 }
 
 }  // namespace

@@ -164,12 +164,12 @@ TEST(ZeroSet, DoesNotDependOnTheNumberOfThreads) {
 TEST(ZeroSet, AsksEveryFewThousandNodesWhetherToGoOn) {
   std::size_t calls = 0;
   const Box3 flat(Vec3(-1.5, -1.5, -0.03), Vec3(1.5, 1.5, 0.03));  // few layers of many nodes
-  const ZeroSetTopology z = zero_set_topology(kTorus, flat, 0.01, [&] { return ++calls > 0; });
+  const ZeroSetTopology z = zero_set_topology(kTorus, flat, 0.01, {.cancelled = [&] { return ++calls == 0; }});
   const double nodes = (z.n_cells[0] + 1.) * (z.n_cells[1] + 1.) * (z.n_cells[2] + 1.);
   EXPECT_GE(static_cast<double>(calls), 5 * nodes / kValuesPerPoll);  // five passes over a layer
   for (const std::size_t stop : {std::size_t{1}, calls / 2, calls}) {
     std::size_t n = 0;
-    EXPECT_THROW(zero_set_topology(kTorus, flat, 0.01, [&] { return ++n < stop; }), MeshCancelled) << stop;
+    EXPECT_THROW(zero_set_topology(kTorus, flat, 0.01, {.cancelled = [&] { return ++n >= stop; }}), Cancelled) << stop;
     EXPECT_EQ(n, stop);
   }
 }

@@ -89,10 +89,10 @@ TEST(Submesh, BothSearchesStopWhenAsked) {
   const BackgroundMesh background = background_of(ball, 60000);
   for (const int stop : {1, 2, 3}) {
     int asked = 0;
-    const KeepGoing keep_going = [&] { return ++asked < stop; };
-    EXPECT_THROW(find_submesh(background, ball, nullptr, keep_going), MeshCancelled) << stop;
+    const Context context{.cancelled = [&] { return ++asked >= stop; }};
+    EXPECT_THROW(find_submesh(background, ball, nullptr, context), Cancelled) << stop;
     asked = 0;
-    EXPECT_THROW(crawl(background, ball, ball.boundary_seeds, keep_going), MeshCancelled) << stop;
+    EXPECT_THROW(crawl(background, ball, ball.boundary_seeds, context), Cancelled) << stop;
   }
 }
 

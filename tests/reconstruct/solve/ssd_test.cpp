@@ -223,8 +223,7 @@ TEST(FitSsd, ReportsNormalsThatCannotBeRight) {
 
 TEST(FitSsd, StopsWhenTold) {
   int calls = 0;
-  EXPECT_THROW(fit_ssd(torus_cloud(500), params_with(0.4), [&](const char*, double) { return ++calls < 4; }),
-               SolveCancelled);
+  EXPECT_THROW(fit_ssd(torus_cloud(500), params_with(0.4), {.cancelled = [&] { return ++calls >= 4; }}), Cancelled);
   EXPECT_EQ(calls, 4);
 }
 
