@@ -17,6 +17,7 @@
 #include "pipeline/case/stop_document.h"
 #include "pipeline/cli/command_line.h"
 #include "pipeline/meshing/certificate_json.h"
+#include "pipeline/meshing/certificate_summary.h"
 #include "pipeline/meshing/check.h"
 #include "pipeline/output/case_diff.h"
 #include "pipeline/output/export_case.h"
@@ -71,7 +72,7 @@ Output run_stages(const CommandLine& call, Progress& progress) {
   output.document = {{"case", call.request.case_folder.string()},
                      {"stages_run", stages},
                      {"files", names(outcome.files)},
-                     {"certificate", outcome.certificate ? *outcome.certificate : Json(nullptr)}};
+                     {"certificate", outcome.certificate ? to_json(*outcome.certificate) : Json(nullptr)}};
   if (outcome.certificate) output.text = summary(*outcome.certificate);
   output.text += file_list(outcome.files);
   return output;
@@ -80,21 +81,21 @@ Output run_stages(const CommandLine& call, Progress& progress) {
 Output check(const CommandLine& call, Progress& progress) {
   set_work_at_hand("check");
   Output output;
-  const Json json = check_mesh(call.mesh, call.against, call.request.parameters, progress);
+  const MeshCheck found = check_mesh(call.mesh, call.against, call.request.parameters, progress);
   progress.clear();
-  if (json.at("verdict") != "pass") output.code = ExitCode::GateFailed;
-  output.document = {{"check", json}};
-  output.text = summary(json);
+  if (!found.verdict.passes()) output.code = ExitCode::GateFailed;
+  output.document = {{"check", to_json(found)}};
+  output.text = summary(found);
   return output;
 }
 
 Output inspect(const CommandLine& call, Progress& progress) {
   set_work_at_hand("inspect");
   Output output;
-  const Json json = inspect_cloud(call.cloud, progress);
+  const CloudInspection found = inspect_cloud(call.cloud, progress);
   progress.clear();
-  output.document = {{"inspection", json}};
-  output.text = inspection_text(json);
+  output.document = {{"inspection", to_json(found)}};
+  output.text = inspection_text(found);
   return output;
 }
 
@@ -167,11 +168,11 @@ Output view(const CommandLine& call, Progress& progress) {
 
 Output diff(const CommandLine& call, Progress& progress) {
   set_work_at_hand("diff");
-  const Json json = diff_cases({call.case_a}, {call.case_b}, progress);
+  const CaseDiff found = diff_cases({call.case_a}, {call.case_b}, progress);
   progress.clear();
   Output output;
-  output.document = {{"diff", json}};
-  output.text = diff_text(json);
+  output.document = {{"diff", to_json(found)}};
+  output.text = diff_text(found);
   return output;
 }
 

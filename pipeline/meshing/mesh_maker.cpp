@@ -27,6 +27,10 @@ constexpr int kMostMisses = 4;
 // before.
 constexpr int kFinerGrids = 3;
 
+void take(std::optional<std::string> reason, std::vector<std::string>& reasons) {
+  if (reason) reasons.push_back(std::move(*reason));
+}
+
 }  // namespace
 
 MeshMaker::MeshMaker(Domain& domain, const Parameters& parameters, MeshWatch watch)
@@ -98,20 +102,21 @@ MeshAttempt MeshMaker::attempt(const BackgroundMesh& background, double h) {
   begin("certify");  // stops here if what watches has ended the run
   if (!a.made()) return a;
   a.measured = measure(domain_, a.result, pieces, h, watch_.keep_going);
-  check_lost(domain_, a.result, a.thin, a.measured, watch_.keep_going);
-  check_deviation(parameters_.real("mesh.max_deviation"), a.measured);
+  a.measured.resolution.too_thin = in_model(a.thin, domain_.shift);
+  take(lost_reason(domain_, a.result, a.thin, watch_.keep_going), a.measured.reasons);
+  take(deviation_reason(parameters_.real("mesh.max_deviation"), a.measured.mesh), a.measured.reasons);
   curve(a);
   return a;
 }
 
 void MeshMaker::curve(MeshAttempt& a) const {
   const std::int64_t order = parameters_.integer("mesh.order");
-  a.measured["order"] = order;
-  a.measured["second_order"] = nullptr;
+  a.measured.order = order;
   if (order < 2) return;
   begin("second order");
   a.second = curved_mesh(domain_, a.result, a.h, params_.closest_point, watch_.keep_going);
-  measure_second_order(domain_, a.result, *a.second, a.h, a.measured, watch_.keep_going);
+  a.measured.second_order = measure_second_order(domain_, a.result, *a.second, a.h, watch_.keep_going);
+  for (std::string& reason : failures(*a.measured.second_order)) a.measured.reasons.push_back(std::move(reason));
 }
 
 /// The estimate behind mesh.tets knows the shape from a few thousand samples. Where it is far off, the number of tets

@@ -50,13 +50,4 @@ void write_parameters(const CasePaths& paths, const Parameters& parameters) {
   if (!fs::exists(file) || read_text(file) != text) write_text_artefact(file, text);
 }
 
-Vec3 recorded_vector(const StageRecord& record, const char* key) {
-  try {
-    const Json& v = record.numbers.at(key);
-    return {v.at(0).get<double>(), v.at(1).get<double>(), v.at(2).get<double>()};
-  } catch (const Json::exception&) {
-    throw ArtefactDamaged(std::string("the record of ") + to_string(record.stage) + " has no vector " + key);
-  }
-}
-
 }  // namespace umtet
