@@ -37,7 +37,7 @@ MeshingFailed too_thin(const MeshAttempt& best, const Vec3& shift) {
           {{"status", "TooThin"},
            {"h", best.h},
            {"h_needed", best.thin.h_needed()},
-           {"too_thin", to_json(best.thin, shift)}}};
+           {"too_thin", to_json(in_model(best.thin, shift), best.thin.h)}}};
 }
 
 }  // namespace
@@ -65,7 +65,7 @@ Reconstruction reconstruct(OrientedPointCloud cloud, const Parameters& parameter
   file.cloud = std::move(cloud);
   watch("prepare", 0);
   PreparedCloud prepared = prepare_cloud(std::move(file), "points", parameters);
-  made.notices = std::move(prepared.notices);
+  made.notices = std::move(prepared.report.notices);
   Domain& domain = made.domain;
   domain.cloud = std::move(prepared.cloud);
   domain.shift = far_origin_shift(domain.cloud);
@@ -105,8 +105,8 @@ MeshAttempt make_mesh(Domain& domain, const Parameters& parameters, const Watch&
   return best;
 }
 
-Json certificate_of(const Domain& domain, const UmResult& result, double h, const Parameters& parameters,
-                    const Watch& watch) {
+Certificate certificate_of(const Domain& domain, const UmResult& result, double h, const Parameters& parameters,
+                           const Watch& watch) {
   watch("components", 0);
   const ZeroSetChoice pieces = choose_components(domain, h, polls_of(watch));
   watch("certify", 0);

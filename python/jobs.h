@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pipeline/case/parameters.h"
+#include "pipeline/meshing/certificate_report.h"
 #include "pipeline/meshing/domain.h"
 #include "pipeline/meshing/mesh_attempts.h"
 #include "reconstruct/solve/fit_ssd.h"
@@ -46,8 +47,8 @@ Reconstruction reconstruct(OrientedPointCloud cloud, const Parameters& parameter
 MeshAttempt make_mesh(Domain& domain, const Parameters& parameters, const Watch& watch);
 
 /// What is true of a mesh of the domain: measure() with its verdict. \throw what `watch` throws
-Json certificate_of(const Domain& domain, const UmResult& result, double h, const Parameters& parameters,
-                    const Watch& watch);
+Certificate certificate_of(const Domain& domain, const UmResult& result, double h, const Parameters& parameters,
+                           const Watch& watch);
 
 /// What a status other than Success is evidence of.
 MeshingFailed failure(const UmResult& result, double h, const Vec3& shift);

@@ -6,7 +6,7 @@
 
 #include "mesh/certify/quadratic_tets.h"
 #include "mesh/universal_mesh.h"
-#include "pipeline/case/record.h"
+#include "pipeline/meshing/certificate_report.h"
 #include "pipeline/meshing/domain.h"
 
 namespace umtet::python {
@@ -17,7 +17,7 @@ struct Mesh {
   UmResult result;
   std::optional<SecondOrder> second;  ///< the same with mid-sides, if mesh.order = 2
   double h = 0;
-  Json certificate;
+  std::optional<Certificate> certificate;  ///< none where it was not asked for
 
   const std::vector<Vec3>& nodes() const { return second ? second->mesh.V : result.final; }
   /// Those on psi = 0, ascending.

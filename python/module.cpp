@@ -17,8 +17,6 @@
 #include "pipeline/case/version.h"
 #include "pipeline/meshing/background_choice.h"
 #include "pipeline/meshing/certificate_json.h"
-#include "pipeline/meshing/library_params.h"
-#include "pipeline/meshing/mesh_measures.h"
 #include "pipeline/stages/stages.h"
 #include "python/arguments.h"
 #include "python/errors.h"
@@ -50,7 +48,7 @@ Mesh mesh(const py::object& psi, const Settings& settings, std::optional<double>
   auto job = [p = std::move(p), parameters](const Watch& watch) mutable {
     MeshAttempt best = make_mesh(p.domain, parameters, watch);
     return Mesh{left_of(std::move(p.domain)), std::move(best.result), std::move(best.second), best.h,
-                verdict_on(best.measured, parameters)};
+                verdict_on(std::move(best.measured), parameters)};
   };
   if (!asks_python) return interruptible(progress, threads, std::move(job));
   const Watch watch = watch_of(progress);
@@ -98,7 +96,7 @@ py::tuple update(Moving& moving, const py::object& psi, std::optional<double> t,
   if (moving.at_work.exchange(true)) throw std::invalid_argument("this UniversalMesh is at work in another call");
   const auto done = [](std::atomic<bool>* at_work) { *at_work = false; };
   const std::unique_ptr<std::atomic<bool>, decltype(done)> guard(&moving.at_work, done);
-  Mesh made{{}, {}, {}, h, nullptr};
+  Mesh made{{}, {}, {}, h, {}};
   UmUpdate u = in_arena(p.threads, [&] {
     UmUpdate next = moving.mesher.update(p.domain.psi(), hints, context_of(watch));
     if (next.mesh.status != UmStatus::Success) throw failure(next.mesh, h, p.domain.shift);
@@ -144,10 +142,9 @@ py::object certificate(const Points& points,
   const Watch watch = watch_of(py::none());
   input.context = polls_of(watch);
   const MeshCertificate measured = in_arena(p ? p->threads : 0, [&] { return certify(input); });
-  Json json = {{"schema", 1}, {"tool", "umtet"}, {"version", kVersion}};
+  Json json = document_head(kVersion);
   json.update(to_json(measured));
-  json["reasons"] = failures(measured);
-  judge(json, parameters);
+  json.update(to_json(judge(measured, failures(measured), parameters)));
   return dict_of(json);
 }
 
@@ -239,7 +236,8 @@ void bind(py::module_& m) {
       .def_property_readonly("background_vertex", [](const Mesh& a) { return array(a.background_vertices()); })
       .def_property_readonly("background_tet", [](const Mesh& a) { return array(a.result.submesh.background_tet); })
       .def_readonly("h", &Mesh::h)
-      .def_property_readonly("certificate", [](const Mesh& a) { return dict_of(a.certificate); })
+      .def_property_readonly("certificate",
+                             [](const Mesh& a) { return dict_of(a.certificate ? to_json(*a.certificate) : Json()); })
       .def("save", [](const Mesh& a, const std::filesystem::path& file) {
         const py::gil_scoped_release no_gil;
         a.save(file);

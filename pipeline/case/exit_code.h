@@ -35,7 +35,7 @@ struct MeshingImpossible : std::runtime_error {
 struct TooThin : MeshingImpossible {
   TooThin(const std::string& message, nlohmann::ordered_json evidence)
       : MeshingImpossible(message), evidence(std::move(evidence)) {}
-  nlohmann::ordered_json evidence;  ///< too_thin: of to_json(ThinPlaces); h_enough: for all of them, or null
+  nlohmann::ordered_json evidence;  ///< too_thin: places, as in a certificate; h_enough: for all, or null
 };
 /// A mesh was made, but its certificate says no; what() has the first reason.
 struct CertificateFailed : std::runtime_error {

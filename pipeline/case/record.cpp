@@ -32,6 +32,35 @@ std::vector<RecordedFile> files_from(const Json& list) {
   return files;
 }
 
+Json to_json(const StageRun& run) {
+  Json json = {{"seconds", run.seconds},
+               {"peak_memory_MB", run.peak_memory_MB},
+               {"threads", run.threads},
+               {"host", run.host},
+               {"date", run.date}};
+  if (!run.source.empty()) json["source"] = run.source;
+  return json;
+}
+
+StageRun run_from(const Json& json) {
+  return {number_from(json.at("seconds")),
+          number_from(json.at("peak_memory_MB")),
+          json.at("threads"),
+          json.at("host"),
+          json.at("date"),
+          json.value("source", "")};
+}
+
+/// All of it but the version.
+StageRecord record_from(Stage stage, const Json& json) {
+  return {stage,
+          json.at("parameters"),
+          files_from(json.at("inputs")),
+          files_from(json.at("outputs")),
+          json.at("numbers"),
+          run_from(json.at("run"))};
+}
+
 /// The first output that is not what was written, as a clause; empty if all are.
 std::string damage(const fs::path& folder, const std::vector<RecordedFile>& outputs, FileStamps& stamps) {
   for (const RecordedFile& f : outputs) {
@@ -59,17 +88,23 @@ std::string difference(const std::string& section, const Json& before, const Jso
 
 }  // namespace
 
+std::string seal_of(const Json& document) {
+  Json open = document;
+  open["run"].erase(kSeal);
+  return checksum(open.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
 Json sealed(Json document) {
+  std::string seal = seal_of(document);
   document["run"].erase(kSeal);
-  const std::string text = document.dump(-1, ' ', false, Json::error_handler_t::replace);
-  document["run"][kSeal] = checksum(text);
+  document["run"][kSeal] = std::move(seal);
   return document;
 }
 
 bool seal_holds(const Json& document) {
   const auto run = document.find("run");
   if (run == document.end() || !run->is_object() || !run->contains(kSeal)) return false;
-  return sealed(document)["run"][kSeal] == (*run)[kSeal];
+  return seal_of(document) == (*run)[kSeal];
 }
 
 std::string file_text(const Json& document) {
@@ -88,7 +123,7 @@ void write_record(const CasePaths& paths, StageRecord record, const std::vector<
                      {"inputs", to_json(record.inputs)},
                      {"outputs", to_json(record.outputs)},
                      {"numbers", record.numbers},
-                     {"run", record.run}};
+                     {"run", to_json(record.run)}};
   write_text_artefact(paths.record(record.stage), file_text(sealed(json)));
 }
 
@@ -106,12 +141,7 @@ StageState inspect_stage(const CasePaths& paths, Stage stage, const Json& parame
     }
     if (!seal_holds(json)) return {Kind::Damaged, file.string() + " does not match its own checksum", {}};
     version = json.at("version");
-    record = {stage,
-              json.at("parameters"),
-              files_from(json.at("inputs")),
-              files_from(json.at("outputs")),
-              json.at("numbers"),
-              json.at("run")};
+    record = record_from(stage, json);
   } catch (const Json::exception&) {
     return {Kind::Damaged, file.string() + " cannot be read", {}};
   }
@@ -125,7 +155,16 @@ StageState inspect_stage(const CasePaths& paths, Stage stage, const Json& parame
   return {kind, reason, std::move(record)};
 }
 
-Json run_block(double seconds, int threads) {
+StageRecord read_record(const CasePaths& paths, Stage stage) {
+  const fs::path file = paths.record(stage);
+  try {
+    return record_from(stage, Json::parse(read_text(file)));
+  } catch (const Json::exception&) {
+    throw ArtefactDamaged(file.string() + " cannot be read");
+  }
+}
+
+StageRun run_of_stage(double seconds, int threads) {
   std::array<char, 256> host{};
   ::gethostname(host.data(), host.size() - 1);
   const std::time_t now = std::time(nullptr);
@@ -135,20 +174,8 @@ Json run_block(double seconds, int threads) {
   std::strftime(date.data(), date.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
-  return {{"seconds", seconds},
-          {"peak_memory_MB", static_cast<double>(usage.ru_maxrss) / 1024},  // Linux counts in KiB
-          {"threads", threads},
-          {"host", host.data()},
-          {"date", date.data()}};
-}
-
-Vec3 recorded_vector(const StageRecord& record, const char* key) {
-  try {
-    const Json& v = record.numbers.at(key);
-    return {v.at(0).get<double>(), v.at(1).get<double>(), v.at(2).get<double>()};
-  } catch (const Json::exception&) {
-    throw ArtefactDamaged(std::string("the record of ") + to_string(record.stage) + " has no vector " + key);
-  }
+  const double peak_MB = static_cast<double>(usage.ru_maxrss) / 1024;  // Linux counts in KiB
+  return {seconds, peak_MB, threads, host.data(), date.data(), {}};
 }
 
 }  // namespace umtet

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,10 +7,9 @@
 #include "common/vec3.h"
 #include "pipeline/case/artefact.h"
 #include "pipeline/case/case_folder.h"
+#include "pipeline/case/json_values.h"
 
 namespace umtet {
-
-using Json = nlohmann::ordered_json;
 
 /// A file that a stage read or wrote, as its record remembers it.
 struct RecordedFile {
@@ -20,17 +18,30 @@ struct RecordedFile {
   bool operator==(const RecordedFile&) const = default;
 };
 
+/// How a stage was run: different every time.
+struct StageRun {
+  double seconds = 0;
+  double peak_memory_MB = 0;  ///< of the process, until the stage ended
+  int threads = 0;
+  std::string host;
+  std::string date;    ///< UTC, as in 2026-01-31T12:00:00Z
+  std::string source;  ///< of 1-cloud: the file of the user, with its whole path; else empty
+};
+
 /// record.json: what a finished stage did. Written last, so a record that holds means that the stage is done.
 struct StageRecord {
   Stage stage = Stage::Cloud;
   Json parameters;  ///< those of its section
   std::vector<RecordedFile> inputs, outputs;
-  Json numbers;  ///< results; like all of the above, equal bytes for equal input, parameters and version
-  Json run;      ///< seconds, peak memory, host, date, threads: different every time
+  Json numbers;  ///< to_json() of its report (stage_reports.h); like all of the above, equal bytes for equal input,
+                 ///< parameters and version
+  StageRun run;
 };
 
 /// The document with the checksum of all its content in the block `run`, which is different every time as it is.
 Json sealed(Json document);
+/// The checksum that sealed() puts in.
+std::string seal_of(const Json& document);
 /// False when anything in it was changed after sealed().
 bool seal_holds(const Json& document);
 /// As the files of a case hold it. Bytes that are no UTF-8 (in the name of a file) are replaced.
@@ -58,10 +69,11 @@ struct StageState {
 StageState inspect_stage(const CasePaths& paths, Stage stage, const Json& parameters,
                          const std::optional<std::vector<RecordedFile>>& inputs);
 
-/// A vector of the numbers of a record. \throw ArtefactDamaged if it is not there
-Vec3 recorded_vector(const StageRecord&, const char* key);
+/// The record as it stands; whether its outputs are there is not asked.
+/// \throw ArtefactDamaged, std::system_error naming the file
+StageRecord read_record(const CasePaths& paths, Stage stage);
 
-/// Seconds, peak memory, host, date and threads of the stage that ends now.
-Json run_block(double seconds, int threads);
+/// Of the stage that ends now.
+StageRun run_of_stage(double seconds, int threads);
 
 }  // namespace umtet

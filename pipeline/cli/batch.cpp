@@ -16,6 +16,7 @@
 #include "pipeline/case/version.h"
 #include "pipeline/cli/batch_table.h"
 #include "pipeline/cli/child_process.h"
+#include "pipeline/meshing/certificate_json.h"
 #include "pipeline/run/time_steps.h"
 
 namespace umtet {
@@ -157,10 +158,10 @@ void Batch::start(std::size_t k) {
 void Batch::read_answer(BatchRow& row, const Json& answer) const {
   if (answer.contains("error")) row.reason = answer["error"];
   if (!answer.contains("certificate") || !answer["certificate"].is_object()) return;
-  const Json& certificate = answer["certificate"];
-  row.n_tets = certificate.at("n_tets").get<std::int64_t>();
-  row.min_quality = certificate.at("quality").at("min").get<double>();
-  if (!certificate.at("reasons").empty()) row.reason = certificate["reasons"][0];
+  const Certificate certificate = certificate_from(answer["certificate"]);
+  row.n_tets = static_cast<std::int64_t>(certificate.measured.mesh.n_tets);
+  row.min_quality = certificate.measured.mesh.quality.min;
+  if (!certificate.verdict.passes()) row.reason = certificate.verdict.reasons.front();
   // The times of a mesh that was there already are those of its making.
   const auto former = former_.find(row.name);
   if (answer.at("stages_run").empty() && former != former_.end() && former->second.exit_code == row.exit_code) {
@@ -189,6 +190,8 @@ void Batch::finish(const Running& child, const ChildEnd& end) {
       read_answer(row, Json::parse(read_text(log(row, ".json"))));
     } catch (const Json::exception&) {
       // It could not be written whole, or the process ended before; its last words are in the log.
+    } catch (const ArtefactDamaged&) {
+      // The same, of its certificate.
     } catch (const std::system_error&) {
       // There is no answer at all.
     }

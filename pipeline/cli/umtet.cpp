@@ -18,6 +18,7 @@
 #include "pipeline/case/stop_document.h"
 #include "pipeline/cli/command_line.h"
 #include "pipeline/meshing/certificate_json.h"
+#include "pipeline/meshing/certificate_summary.h"
 #include "pipeline/meshing/check.h"
 #include "pipeline/output/case_diff.h"
 #include "pipeline/output/export_case.h"
@@ -102,7 +103,7 @@ Output Execution::operator()(RunCommand& command) const {
   output.document = {{"case", request.case_folder.string()},
                      {"stages_run", stages},
                      {"files", names(outcome.files)},
-                     {"certificate", outcome.certificate ? *outcome.certificate : Json(nullptr)}};
+                     {"certificate", outcome.certificate ? to_json(*outcome.certificate) : Json(nullptr)}};
   if (outcome.certificate) output.text = summary(*outcome.certificate);
   output.text += file_list(outcome.files);
   return output;
@@ -110,16 +111,16 @@ Output Execution::operator()(RunCommand& command) const {
 
 Output Execution::operator()(const CheckCommand& command) const {
   set_work_at_hand("check");
-  const Json json = check_mesh(command.mesh, command.against, command.parameters, progress);
+  const MeshCheck found = check_mesh(command.mesh, command.against, command.parameters, progress);
   progress.clear();
-  return {json.at("verdict") == "pass" ? ExitCode::Success : ExitCode::GateFailed, summary(json), {{"check", json}}};
+  return {found.verdict.passes() ? ExitCode::Success : ExitCode::GateFailed, summary(found), {{"check", to_json(found)}}};
 }
 
 Output Execution::operator()(const InspectCommand& command) const {
   set_work_at_hand("inspect");
-  const Json json = inspect_cloud(command.cloud, progress);
+  const CloudInspection found = inspect_cloud(command.cloud, progress);
   progress.clear();
-  return {ExitCode::Success, inspection_text(json), {{"inspection", json}}};
+  return {ExitCode::Success, inspection_text(found), {{"inspection", to_json(found)}}};
 }
 
 Output Execution::operator()(EvolveCommand& command) const {
@@ -172,9 +173,9 @@ Output Execution::operator()(const ViewCommand& command) const {
 
 Output Execution::operator()(const DiffCommand& command) const {
   set_work_at_hand("diff");
-  const Json json = diff_cases({command.case_a}, {command.case_b}, progress);
+  const CaseDiff found = diff_cases({command.case_a}, {command.case_b}, progress);
   progress.clear();
-  return {ExitCode::Success, diff_text(json), {{"diff", json}}};
+  return {ExitCode::Success, diff_text(found), {{"diff", to_json(found)}}};
 }
 
 /// Limits of memory and time that this process is to keep. Those of a batch are for its scans, each a process.

@@ -1,190 +1,350 @@
 #include "pipeline/meshing/certificate_json.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-
-#include "mesh/certify/certificate.h"
-#include "pipeline/case/version.h"
+#include "pipeline/case/exit_code.h"
 
 namespace umtet {
 namespace {
 
 constexpr int kSchema = 1;
 
-/// Times of all stages that made this mesh, from their records.
-Json run_of(const CasePaths& paths, const StageRecord& mesh, const Parameters& parameters) {
+Json ratio_to(double h, const std::optional<double>& length) { return length ? Json(*length / h) : Json(nullptr); }
+
+Json mesh_blocks(const MeshCertificate& c, double coordinate_rounding_over_h) {
+  const MeshCertificate::Boundary& b = c.boundary;
+  return {{"n_tets", c.n_tets},
+          {"n_vertices", c.n_vertices},
+          {"n_positive_faces", b.equals_positive_faces ? Json(c.n_positive_faces) : Json(nullptr)},
+          {"n_wall_faces", c.n_wall_faces},
+          {"h", c.h},
+          {"volume", c.volume},
+          {"quality",
+           {{"min", c.quality.min},
+            {"p001", c.quality.p001},
+            {"p01", c.quality.p01},
+            {"mean", c.quality.mean},
+            {"dihedral_min_deg", c.quality.dihedral_min_deg},
+            {"dihedral_max_deg", c.quality.dihedral_max_deg},
+            {"n_inverted", c.quality.n_inverted}}},
+          {"boundary",
+           {{"closed_manifold", b.closed_manifold},
+            {"equals_positive_faces", json_of(b.equals_positive_faces)},
+            {"components", b.components},
+            {"euler_characteristic", b.euler_characteristic},
+            {"genus", b.genus},
+            {"n_faces", b.n_faces},
+            {"area", b.area},
+            {"max_vertex_distance_over_h", json_of(b.max_vertex_distance_over_h)},
+            {"coordinate_rounding_over_h", coordinate_rounding_over_h},
+            {"max_centroid_distance_over_h", json_of(b.max_centroid_distance_over_h)},
+            {"min_cos_normal", json_of(b.min_cos_normal)},
+            {"gap_over_volume", json_of(b.gap_over_volume)},
+            {"n_cos_below_half", b.n_cos_below_half}}}};
+}
+
+MeshCertificate mesh_from(const Json& json) {
+  MeshCertificate c;
+  c.n_tets = json.at("n_tets");
+  c.n_vertices = json.at("n_vertices");
+  c.n_positive_faces = optional_from<std::size_t>(json.at("n_positive_faces")).value_or(0);
+  c.n_wall_faces = json.at("n_wall_faces");
+  c.h = number_from(json.at("h"));
+  c.volume = number_from(json.at("volume"));
+  const Json& quality = json.at("quality");
+  c.quality = {.min = number_from(quality.at("min")),
+               .p001 = number_from(quality.at("p001")),
+               .p01 = number_from(quality.at("p01")),
+               .mean = number_from(quality.at("mean")),
+               .dihedral_min_deg = number_from(quality.at("dihedral_min_deg")),
+               .dihedral_max_deg = number_from(quality.at("dihedral_max_deg")),
+               .n_inverted = quality.at("n_inverted")};
+  const Json& boundary = json.at("boundary");
+  MeshCertificate::Boundary& b = c.boundary;
+  b.closed_manifold = boundary.at("closed_manifold");
+  b.equals_positive_faces = optional_from<bool>(boundary.at("equals_positive_faces"));
+  b.components = boundary.at("components");
+  b.euler_characteristic = boundary.at("euler_characteristic");
+  b.genus = boundary.at("genus");
+  b.n_faces = boundary.at("n_faces");
+  b.area = number_from(boundary.at("area"));
+  b.max_vertex_distance_over_h = optional_from<double>(boundary.at("max_vertex_distance_over_h"));
+  b.max_centroid_distance_over_h = optional_from<double>(boundary.at("max_centroid_distance_over_h"));
+  b.min_cos_normal = optional_from<double>(boundary.at("min_cos_normal"));
+  b.gap_over_volume = optional_from<double>(boundary.at("gap_over_volume"));
+  b.n_cos_below_half = boundary.at("n_cos_below_half");
+  return c;
+}
+
+Json to_json(const ZeroSetReport& r) {
+  return {{"level_set_spacing", json_of(r.level_set_spacing)},
+          {"components_of_zero_set", r.components_of_zero_set},
+          {"euler_characteristic_of_zero_set", r.euler_characteristic_of_zero_set},
+          {"euler_characteristic_of_kept_components", r.euler_characteristic_of_kept_components},
+          {"components_meshed", r.components_meshed},
+          {"components_dropped", r.components_dropped},
+          {"components_proved", json_of(r.components_proved)},
+          {"unsupported_area_fraction", json_of(r.unsupported_area_fraction)}};
+}
+
+ZeroSetReport zero_set_from(const Json& json) {
+  return {.level_set_spacing = optional_from<double>(json.at("level_set_spacing")),
+          .components_of_zero_set = json.at("components_of_zero_set"),
+          .euler_characteristic_of_zero_set = json.at("euler_characteristic_of_zero_set"),
+          .euler_characteristic_of_kept_components = json.at("euler_characteristic_of_kept_components"),
+          .components_meshed = json.at("components_meshed"),
+          .components_dropped = json.at("components_dropped"),
+          .components_proved = optional_from<bool>(json.at("components_proved")),
+          .unsupported_area_fraction = optional_from<double>(json.at("unsupported_area_fraction"))};
+}
+
+Json to_json(const SampleDistances& d, double h) {
+  return {{"noise", json_of(d.noise)},
+          {"noise_over_h", ratio_to(h, d.noise)},
+          {"rms_distance", d.rms},
+          {"max_distance", d.max},
+          {"p99_distance", d.p99},
+          {"rms_distance_over_h", d.rms / h},
+          {"max_distance_over_h", d.max / h},
+          {"p99_distance_over_h", d.p99 / h}};
+}
+
+SampleDistances distances_from(const Json& json) {
+  return {.noise = optional_from<double>(json.at("noise")),
+          .rms = number_from(json.at("rms_distance")),
+          .max = number_from(json.at("max_distance")),
+          .p99 = number_from(json.at("p99_distance"))};
+}
+
+std::vector<ThinPlace> thin_places_from(const Json& list) {
+  std::vector<ThinPlace> places;
+  for (const Json& json : list) {
+    const Json& box = json.at("box");
+    places.push_back({.is_gap = json.at("kind") == "gap",
+                      .box = {vector_from(box.at("min")), vector_from(box.at("max"))},
+                      .centre = vector_from(json.at("centre")),
+                      .thickness = number_from(json.at("thickness")),
+                      .area = number_from(json.at("area")),
+                      .h_needed = number_from(json.at("h_needed"))});
+  }
+  return places;
+}
+
+Json to_json(const ResolutionReport& r, double h) {
+  Json json = {{"kappa_h_max", r.kappa_h_max},
+               {"feature_size_over_h_min", r.feature_size_over_h_min},
+               {"obtuse_conditioning_angles", r.obtuse_conditioning_angles},
+               {"double_positive_faces", r.double_positive_faces}};
+  if (r.too_thin) json["too_thin"] = to_json(*r.too_thin, h);
+  return json;
+}
+
+ResolutionReport resolution_from(const Json& json) {
+  ResolutionReport r{.kappa_h_max = number_from(json.at("kappa_h_max")),
+                     .feature_size_over_h_min = number_from(json.at("feature_size_over_h_min")),
+                     .obtuse_conditioning_angles = json.at("obtuse_conditioning_angles"),
+                     .double_positive_faces = json.at("double_positive_faces"),
+                     .too_thin = {}};
+  if (json.contains("too_thin")) r.too_thin = thin_places_from(json.at("too_thin"));
+  return r;
+}
+
+SecondOrderReport second_order_from(const Json& json) {
+  SecondOrderReport r;
+  SecondOrderCertificate& c = r.certificate;
+  c.n_nodes = json.at("n_nodes");
+  c.volume = number_from(json.at("volume"));
+  c.min_scaled_jacobian_lower = number_from(json.at("min_scaled_jacobian"));
+  c.min_scaled_jacobian_upper = number_from(json.at("min_scaled_jacobian_upper"));
+  c.n_nonpositive_jacobians = json.at("n_nonpositive_jacobians");
+  c.n_torn_edges = json.at("n_torn_edges");
+  c.n_boundary_mid_sides = json.at("n_boundary_mid_sides");
+  c.n_mid_sides_off_surface = json.at("n_mid_sides_off_surface");
+  c.max_mid_side_distance_over_h = optional_from<double>(json.at("max_mid_side_distance_over_h"));
+  c.max_face_distance_over_h = optional_from<double>(json.at("max_face_distance_over_h"));
+  c.rms_face_distance_over_h = optional_from<double>(json.at("rms_face_distance_over_h"));
+  if (!json.contains("n_mid_sides_put_back")) return r;
+  r.repairs = {.n_mid_sides_put_back = json.at("n_mid_sides_put_back"),
+               .n_mid_sides_unprojected = json.at("n_mid_sides_unprojected"),
+               .n_mid_sides_slid = json.at("n_mid_sides_slid"),
+               .n_mid_sides_relaxed = json.at("n_mid_sides_relaxed")};
+  return r;
+}
+
+Json second_order_block(const std::optional<SecondOrderReport>& second) {
+  return second ? to_json(*second) : Json(nullptr);
+}
+
+/// All that is measured up to the resolution.
+Json measured_blocks(const MeshMeasures& m) {
+  Json json = {{"n_points", json_of(m.n_points)}};
+  json.update(mesh_blocks(m.mesh, m.coordinate_rounding_over_h));
+  json["domain"] = to_json(m.domain);
+  json["cloud"] = m.cloud ? to_json(*m.cloud, m.mesh.h) : Json(nullptr);
+  json["resolution"] = to_json(m.resolution, m.mesh.h);
+  return json;
+}
+
+void add_order(const MeshMeasures& m, Json& json) {
+  if (!m.order) return;
+  json["order"] = *m.order;
+  json["second_order"] = second_order_block(m.second_order);
+}
+
+/// All that is measured but the reasons.
+MeshMeasures measured_blocks_from(const Json& json) {
+  MeshMeasures m;
+  m.n_points = optional_from<std::size_t>(json.at("n_points"));
+  m.mesh = mesh_from(json);
+  m.coordinate_rounding_over_h = number_from(json.at("boundary").at("coordinate_rounding_over_h"));
+  m.domain = zero_set_from(json.at("domain"));
+  if (!json.at("cloud").is_null()) m.cloud = distances_from(json.at("cloud"));
+  m.resolution = resolution_from(json.at("resolution"));
+  if (!json.contains("order")) return m;
+  m.order = json.at("order");
+  if (!json.at("second_order").is_null()) m.second_order = second_order_from(json.at("second_order"));
+  return m;
+}
+
+Verdict verdict_from(const Json& json) {
+  const Json& gates = json.at("gates");
+  return {.min_quality_gate = optional_from<double>(gates.at("min_quality")),
+          .volume_gap_gate = number_from(gates.at("volume_gap")),
+          .reasons = json.at("reasons")};
+}
+
+Json to_json(const CertificateRun& run) {
   Json seconds = Json::object();
-  double peak = 0;
-  const auto add = [&](const StageRecord& record) {
-    seconds[section_of(record.stage)] = record.run.value("seconds", 0.);
-    peak = std::max(peak, record.run.value("peak_memory_MB", 0.));
-  };
-  Json points_per_s = nullptr;
-  if (parameters.mesh().implicit.empty()) {
-    for (const Stage stage : {Stage::Cloud, Stage::LevelSet}) {
-      const StageState state = inspect_stage(paths, stage, parameters.section(section_of(stage)), std::nullopt);
-      if (!state.record) continue;
-      add(*state.record);
-      const double t = state.record->run.value("seconds", 0.);
-      if (stage == Stage::LevelSet && t > 0) points_per_s = state.record->numbers.value("n_points", 0.) / t;
-    }
-  }
-  add(mesh);
-  const double t = mesh.run.value("seconds", 0.);
-  const Json tets_per_s = t > 0 ? Json(mesh.numbers.at("measured").at("n_tets").get<double>() / t) : Json(nullptr);
-  return {{"seconds", seconds},
-          {"points_per_s", points_per_s},
-          {"tets_per_s", tets_per_s},
-          {"peak_memory_MB", peak},
-          {"threads", mesh.run.value("threads", 0)},
-          {"host", mesh.run.value("host", "")},
-          {"date", mesh.run.value("date", "")}};
+  for (const auto& [section, t] : run.seconds) seconds[section] = t;
+  Json json = {{"seconds", seconds},
+               {"points_per_s", json_of(run.points_per_s)},
+               {"tets_per_s", json_of(run.tets_per_s)},
+               {"peak_memory_MB", run.peak_memory_MB},
+               {"threads", run.threads},
+               {"host", run.host},
+               {"date", run.date}};
+  if (!run.checksum.empty()) json["checksum"] = run.checksum;
+  return json;
 }
 
-/// What to try next when a mesh has failed.
-std::string remedy(const Json& c) {
-  const double h = c.at("h");
-  if (c.at("reasons").size() == 1 && c.at("gates").at("min_quality").is_number() &&
-      c.at("quality").at("min").get<double>() < c["gates"]["min_quality"].get<double>()) {
-    return fmt::format("another --h (this was {:.4g}), which moves the worst tets, or a lower --min-quality", h);
-  }
-  return fmt::format("a smaller --h (this was {:.4g}), which resolves more of the shape", h) +
-         (c.at("n_points").is_number() ? "; where psi itself is wrong there, a finer --spacing" : "");
-}
-
-/// A number of a block, or "-" where the certificate has null.
-std::string show(const Json& block, const char* key, const char* format) {
-  const auto it = block.find(key);
-  if (it == block.end() || !it->is_number()) return "-";
-  return fmt::format(fmt::runtime(format), it->get<double>());
-}
-
-std::string thousands(std::size_t n) {
-  std::string s = std::to_string(n);
-  for (int k = static_cast<int>(s.size()) - 3; k > 0; k -= 3) s.insert(s.begin() + k, ',');
-  return s;
-}
-
-std::string boundary_line(const Json& b) {
-  const bool closed = b.value("closed_manifold", false);
-  const int n = b.value("components", 0);
-  std::string line =
-      closed ? fmt::format("closed manifold, {} component{}, genus {}", n, n == 1 ? "" : "s", b.value("genus", 0L))
-             : fmt::format("NOT a closed manifold, {} component{}", n, n == 1 ? "" : "s");
-  if (b.contains("max_vertex_distance_over_h") && b["max_vertex_distance_over_h"].is_number()) {
-    line +=
-        fmt::format("; off psi = 0: vertices {} h, face centres {} h, {} of the volume; cos(normals) >= {}",
-                    show(b, "max_vertex_distance_over_h", "{:.1e}"), show(b, "max_centroid_distance_over_h", "{:.3f}"),
-                    show(b, "gap_over_volume", "{:.1e}"), show(b, "min_cos_normal", "{:.3f}"));
-  }
-  return line;
-}
-
-/// What is true of tets of second order; empty for others.
-std::string second_order_lines(const Json& c) {
-  if (!c.contains("second_order") || !c["second_order"].is_object()) return "";
-  const Json& s = c["second_order"];
-  std::string out =
-      fmt::format("order 2   {} nodes, volume {}; least Jacobian {} of its mean, {} not positive\n",
-                  thousands(s.at("n_nodes")), show(s, "volume", "{:.9g}"), show(s, "min_scaled_jacobian", "{:.3f}"),
-                  s.at("n_nonpositive_jacobians").get<std::size_t>());
-  if (s.at("max_mid_side_distance_over_h").is_number()) {
-    out += fmt::format("          off psi = 0: mid-sides {} h, faces {} h (rms {} h)",
-                       show(s, "max_mid_side_distance_over_h", "{:.1e}"), show(s, "max_face_distance_over_h", "{:.1e}"),
-                       show(s, "rms_face_distance_over_h", "{:.1e}"));
-    const std::size_t n = s.at("n_mid_sides_off_surface");
-    out += n > 0 ? fmt::format("; {} mid-sides are NOT on it\n", thousands(n)) : "\n";
-  }
-  return out;
-}
-
-/// Which places are thinner than the mesh can show; empty if there are none.
-std::string thin_lines(const Json& c) {
-  const Json places = c.value("/resolution/too_thin"_json_pointer, Json::array());
-  if (places.empty()) return "";
-  const Json& worst = places.front();
-  return fmt::format("thin      {} place{} thinner than h can show, the worst ({}, {:.3g}) needs h = {:.3g}\n",
-                     places.size(), places.size() == 1 ? " is" : "s are", worst.at("kind").get<std::string>(),
-                     worst.at("thickness").get<double>(), worst.at("h_needed").get<double>());
+CertificateRun run_from(const Json& json) {
+  CertificateRun run;
+  for (const auto& [section, t] : json.at("seconds").items()) run.seconds.emplace_back(section, number_from(t));
+  run.points_per_s = optional_from<double>(json.at("points_per_s"));
+  run.tets_per_s = optional_from<double>(json.at("tets_per_s"));
+  run.peak_memory_MB = number_from(json.at("peak_memory_MB"));
+  run.threads = json.at("threads");
+  run.host = json.at("host");
+  run.date = json.at("date");
+  run.checksum = json.value("checksum", "");
+  return run;
 }
 
 }  // namespace
 
-void judge(Json& measured, const Parameters& parameters) {
-  std::vector<std::string> reasons = measured.at("reasons");
-  measured.erase("reasons");  // they go behind the verdict
-  const double gate = parameters.output().min_quality, q = measured.at("quality").at("min");
-  measured["gates"] = {{"min_quality", gate > 0 ? Json(gate) : Json(nullptr)}, {"volume_gap", kMostGap}};
-  if (gate > 0 && q < gate) reasons.push_back(fmt::format("min quality {:.4f} is below the gate of {:.4f}", q, gate));
-  measured["verdict"] = reasons.empty() ? "pass" : "fail";
-  measured["reasons"] = reasons;
+Json document_head(const std::string& version) {
+  return {{"schema", kSchema}, {"tool", "umtet"}, {"version", version}};
 }
 
-Json verdict_on(const Json& measured, const Parameters& parameters) {
-  Json json = {{"schema", kSchema}, {"tool", "umtet"}, {"version", kVersion}};
-  const std::string& units = parameters.output().units;
-  json["units"] = units.empty() ? Json(nullptr) : Json(units);
-  json.update(measured);
-  const std::int64_t asked = parameters.mesh().tets;
-  json["n_tets_asked"] = asked > 0 ? Json(asked) : Json(nullptr);
-  judge(json, parameters);
-  json["remedy"] = json["reasons"].empty() ? Json(nullptr) : Json(remedy(json));
+Json to_json(const MeshCertificate& c) { return mesh_blocks(c, c.coordinate_rounding / c.h); }
+
+Json to_json(const SecondOrderReport& report) {
+  const SecondOrderCertificate& c = report.certificate;
+  Json json = {{"n_nodes", c.n_nodes},
+               {"volume", c.volume},
+               {"min_scaled_jacobian", c.min_scaled_jacobian_lower},
+               {"min_scaled_jacobian_upper", c.min_scaled_jacobian_upper},
+               {"n_nonpositive_jacobians", c.n_nonpositive_jacobians},
+               {"n_torn_edges", c.n_torn_edges},
+               {"n_boundary_mid_sides", c.n_boundary_mid_sides},
+               {"n_mid_sides_off_surface", c.n_mid_sides_off_surface},
+               {"max_mid_side_distance_over_h", json_of(c.max_mid_side_distance_over_h)},
+               {"max_face_distance_over_h", json_of(c.max_face_distance_over_h)},
+               {"rms_face_distance_over_h", json_of(c.rms_face_distance_over_h)}};
+  if (!report.repairs) return json;
+  json.update({{"n_mid_sides_put_back", report.repairs->n_mid_sides_put_back},
+               {"n_mid_sides_unprojected", report.repairs->n_mid_sides_unprojected},
+               {"n_mid_sides_slid", report.repairs->n_mid_sides_slid},
+               {"n_mid_sides_relaxed", report.repairs->n_mid_sides_relaxed}});
   return json;
 }
 
-Json certificate(const CasePaths& paths, const StageRecord& mesh, const Parameters& parameters) {
-  Json json = verdict_on(mesh.numbers.at("measured"), parameters);
-  json["run"] = run_of(paths, mesh, parameters);
-  return sealed(json);
+Json to_json(const Verdict& v) {
+  return {{"gates", {{"min_quality", json_of(v.min_quality_gate)}, {"volume_gap", v.volume_gap_gate}}},
+          {"verdict", v.word()},
+          {"reasons", v.reasons}};
 }
 
-std::string summary(const Json& c) {
-  const Json& q = c.at("quality");
-  const std::string unit = c.contains("units") && c["units"].is_string() ? " " + c["units"].get<std::string>() : "";
-  std::string out = fmt::format("verdict   {}\n", c.at("verdict").get<std::string>());
-  for (const Json& reason : c.at("reasons")) out += fmt::format("          - {}\n", reason.get<std::string>());
-  if (c.contains("remedy") && c["remedy"].is_string()) {
-    out += fmt::format("          try {}\n", c["remedy"].get<std::string>());
+Json to_json(const std::vector<ThinPlace>& places, double h) {
+  Json list = Json::array();
+  for (const ThinPlace& p : places) {
+    list.push_back({{"kind", p.is_gap ? "gap" : "body"},
+                    {"centre", json_of(p.centre)},
+                    {"box", {{"min", json_of(Vec3(p.box.min()))}, {"max", json_of(Vec3(p.box.max()))}}},
+                    {"thickness", p.thickness},
+                    {"thickness_over_h", p.thickness / h},
+                    {"area", p.area},
+                    {"h_needed", p.h_needed}});
   }
-  const bool asked = c.contains("n_tets_asked") && c["n_tets_asked"].is_number();
-  out +=
-      fmt::format("mesh      {} tets{}, {} vertices, {} boundary faces; h = {}{}, volume {}{}\n",
-                  thousands(c.at("n_tets")), asked ? fmt::format(" (asked for {})", thousands(c["n_tets_asked"])) : "",
-                  thousands(c.at("n_vertices")), thousands(c.at("boundary").at("n_faces")), show(c, "h", "{:.5g}"),
-                  unit, show(c, "volume", "{:.6g}"), unit.empty() ? "" : unit + "^3");
-  out += fmt::format("quality   mean ratio min {} | .1 % {} | 1 % {} | mean {}\n", show(q, "min", "{:.4f}"),
-                     show(q, "p001", "{:.4f}"), show(q, "p01", "{:.4f}"), show(q, "mean", "{:.4f}"));
-  out += fmt::format("          dihedral angles {} to {} degrees, {} inverted tets\n",
-                     show(q, "dihedral_min_deg", "{:.1f}"), show(q, "dihedral_max_deg", "{:.1f}"),
-                     q.at("n_inverted").get<std::size_t>());
-  out += "boundary  " + boundary_line(c.at("boundary")) + "\n" + second_order_lines(c);
-  if (c.contains("domain")) {
-    const Json& d = c["domain"];
-    const int n_pieces = d.at("components_of_zero_set").get<int>();
-    out += fmt::format("domain    psi = 0 has {} piece{}, {} dropped", n_pieces, n_pieces == 1 ? "" : "s",
-                       d.at("components_dropped").size());
-    if (d.at("unsupported_area_fraction").is_number()) {
-      out += fmt::format("; {:.2f} % of the surface without samples near it",
-                         100 * d["unsupported_area_fraction"].get<double>());
-    }
-    out += "\n";
+  return list;
+}
+
+Json to_json(const MeshMeasures& measured) {
+  Json json = measured_blocks(measured);
+  json["reasons"] = measured.reasons;
+  add_order(measured, json);
+  return json;
+}
+
+MeshMeasures measures_from(const Json& json) {
+  MeshMeasures m = measured_blocks_from(json);
+  m.reasons = json.at("reasons");
+  return m;
+}
+
+Json to_json(const MeshMeasures& measured, const Verdict& verdict) {
+  Json json = measured_blocks(measured);
+  add_order(measured, json);
+  json.update(to_json(verdict));
+  return json;
+}
+
+Json to_json(const Certificate& c) {
+  Json json = document_head(c.version);
+  json["units"] = json_of(c.units);
+  json.update(measured_blocks(c.measured));
+  add_order(c.measured, json);
+  json["n_tets_asked"] = json_of(c.n_tets_asked);
+  json.update(to_json(c.verdict));
+  json["remedy"] = json_of(c.remedy);
+  if (c.run) json["run"] = to_json(*c.run);
+  return json;
+}
+
+Certificate certificate_from(const Json& json) {
+  try {
+    Certificate c;
+    c.version = json.at("version");
+    c.units = optional_from<std::string>(json.at("units"));
+    c.measured = measured_blocks_from(json);
+    c.n_tets_asked = optional_from<std::int64_t>(json.at("n_tets_asked"));
+    c.verdict = verdict_from(json);
+    c.remedy = optional_from<std::string>(json.at("remedy"));
+    if (json.contains("run")) c.run = run_from(json.at("run"));
+    return c;
+  } catch (const Json::exception& e) {
+    throw ArtefactDamaged(std::string("not a certificate: ") + e.what());
   }
-  if (c.contains("cloud") && c["cloud"].is_object()) {
-    const Json& k = c["cloud"];
-    out += fmt::format("cloud     {} samples, noise {} h; distance to the mesh rms {} ({} h), 99 % {} h, max {} h\n",
-                       thousands(c.at("n_points")), show(k, "noise_over_h", "{:.3f}"),
-                       show(k, "rms_distance", "{:.3g}") + unit, show(k, "rms_distance_over_h", "{:.4f}"),
-                       show(k, "p99_distance_over_h", "{:.4f}"), show(k, "max_distance_over_h", "{:.4f}"));
-  }
-  out += thin_lines(c);
-  if (c.contains("run")) {
-    out += "time     ";
-    for (const auto& [stage, t] : c["run"].at("seconds").items())
-      out += fmt::format(" {} {:.2f} s,", stage, t.get<double>());
-    out += fmt::format(" peak memory {} MB\n", show(c["run"], "peak_memory_MB", "{:.0f}"));
-  }
-  return out;
+}
+
+Json to_json(const MeshCheck& check) {
+  Json json = document_head(kVersion);
+  json["mesh"] = check.file;
+  json["units"] = json_of(check.units);
+  json.update(to_json(check.mesh));
+  json["order"] = check.second_order ? 2 : 1;
+  json["second_order"] = second_order_block(check.second_order);
+  json["verdict"] = check.verdict.word();
+  json["reasons"] = check.verdict.reasons;
+  return json;
 }
 
 }  // namespace umtet

@@ -1,26 +1,38 @@
 #pragma once
 
-#include <string>
+#include "pipeline/case/json_values.h"
+#include "pipeline/meshing/certificate_report.h"
+#include "pipeline/meshing/check.h"
 
-#include "pipeline/case/case_folder.h"
-#include "pipeline/case/parameters.h"
-#include "pipeline/case/record.h"
-
+// The one place where what is known of a mesh has names in JSON. The order of the names is that of the documents.
+// docs/reference.md says what they mean.
 namespace umtet {
 
-/// What measure() returned with its gates and verdict: certificate.json but for its `run` block and its seal.
-Json verdict_on(const Json& measured, const Parameters& parameters);
+/// What a document of ours begins with: its schema, the program and a version of it.
+Json document_head(const std::string& version);
 
-/// certificate.json: the measurements in the record of 3-mesh, the gates of output.*, the verdict with every reason,
-/// and a `run` block with times. A function of the records and the parameters alone, so it can be made again at any
-/// time. \pre the stage 3-mesh is done
-Json certificate(const CasePaths& paths, const StageRecord& mesh, const Parameters& parameters);
+/// The counts, the blocks `quality` and `boundary`.
+Json to_json(const MeshCertificate& certificate);
+/// The block `second_order`.
+Json to_json(const SecondOrderReport& report);
+/// `gates`, `verdict` and `reasons`.
+Json to_json(const Verdict& verdict);
+/// A list, an object a place. @param h  the edge length that the places are too thin for
+Json to_json(const std::vector<ThinPlace>& places, double h);
 
-/// Adds `gates`, `verdict` and the reason of a broken gate to what measure() returned.
-void judge(Json& measured, const Parameters& parameters);
+/// The block `measured` of the record of 3-mesh.
+Json to_json(const MeshMeasures& measured);
+/// \throw Json::exception  something is missing
+MeshMeasures measures_from(const Json& json);
+/// The same with a verdict in place of the reasons: what `umtet evolve` says of a step.
+Json to_json(const MeshMeasures& measured, const Verdict& verdict);
 
-/// A few aligned lines for people: verdict, counts, quality, boundary, domain, cloud, time.
-/// Takes a certificate, or the shorter document of a checked mesh.
-std::string summary(const Json& certificate);
+/// certificate.json.
+Json to_json(const Certificate& certificate);
+/// \throw ArtefactDamaged  something is missing
+Certificate certificate_from(const Json& json);
+
+/// What `umtet check` answers.
+Json to_json(const MeshCheck& check);
 
 }  // namespace umtet

@@ -10,11 +10,9 @@
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
-#include "pipeline/case/version.h"
 #include "pipeline/meshing/domain.h"
 #include "pipeline/meshing/edge_length.h"
-#include "pipeline/meshing/mesh_measures.h"
-#include "pipeline/meshing/second_order.h"
+#include "pipeline/meshing/stage_reports.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -44,8 +42,7 @@ std::vector<Triangle> faces_at_walls(const TetMesh& mesh, const Box& box, double
   return walls;
 }
 
-Json check_second_order(const QuadraticTetMesh& mesh, const CertificateInput& corners, double h,
-                        std::vector<std::string>& reasons) {
+SecondOrderReport check_second_order(const QuadraticTetMesh& mesh, const CertificateInput& corners, double h) {
   SecondOrderInput input;
   input.mesh = &mesh;
   input.h = h;
@@ -53,16 +50,15 @@ Json check_second_order(const QuadraticTetMesh& mesh, const CertificateInput& co
   input.wall_faces = corners.wall_faces;
   input.coordinate_rounding = corners.coordinate_rounding;
   input.context = corners.context;
-  const SecondOrderCertificate certificate = certify_second_order(input);
-  for (const std::string& reason : failures(certificate)) reasons.push_back(reason);
+  SecondOrderReport report{certify_second_order(input), {}};
   stop_if_interrupted();
-  return to_json(certificate);
+  return report;
 }
 
 }  // namespace
 
-Json check_mesh(const fs::path& file, const std::optional<fs::path>& against, const Parameters& parameters,
-                Progress& progress) {
+MeshCheck check_mesh(const fs::path& file, const std::optional<fs::path>& against, const Parameters& parameters,
+                     Progress& progress) {
   progress.report("check", "read", 0);
   MeshFile content = read_tet_mesh(file);
   TetMesh& mesh = content.mesh;
@@ -82,7 +78,7 @@ Json check_mesh(const fs::path& file, const std::optional<fs::path>& against, co
     const StageState state = inspect_stage(CasePaths{*against}, Stage::Mesh, Json::object(), std::nullopt);
     // Without a mesh of its own the case says nothing about h: the mesh's own edge length is the unit then.
     if (state.record) {
-      input.h = state.record->numbers.at("measured").value("h", 0.);
+      input.h = mesh_report(*state.record).measured.mesh.h;
       domain->limit_detail(input.h);
     }
     input.psi = domain->psi();
@@ -96,25 +92,15 @@ Json check_mesh(const fs::path& file, const std::optional<fs::path>& against, co
   }
   stop_if_interrupted();
   progress.report("check", "certify", .3);
-  const MeshCertificate certificate = certify(input);
-  std::vector<std::string> reasons = failures(certificate);
+  MeshCheck check{file.string(), units_of(parameters), certify(input), {}, {}};
+  std::vector<std::string> reasons = failures(check.mesh);
   stop_if_interrupted();
-  Json second = nullptr;
-  if (content.quadratic) second = check_second_order(*content.quadratic, input, certificate.h, reasons);
-  const double min_quality = parameters.output().min_quality;
-  if (min_quality > 0 && certificate.quality.min < min_quality) {
-    reasons.push_back(
-        fmt::format("min quality {:.4f} is below the gate of {:.4f}", certificate.quality.min, min_quality));
+  if (content.quadratic) {
+    check.second_order = check_second_order(*content.quadratic, input, check.mesh.h);
+    for (std::string& reason : failures(*check.second_order)) reasons.push_back(std::move(reason));
   }
-  Json json = {{"schema", 1}, {"tool", "umtet"}, {"version", kVersion}, {"mesh", file.string()}};
-  const std::string& units = parameters.output().units;
-  json["units"] = units.empty() ? Json(nullptr) : Json(units);
-  json.update(to_json(certificate));
-  json["order"] = content.quadratic ? 2 : 1;
-  json["second_order"] = second;
-  json["verdict"] = reasons.empty() ? "pass" : "fail";
-  json["reasons"] = reasons;
-  return json;
+  check.verdict = judge(check.mesh, std::move(reasons), parameters);
+  return check;
 }
 
 }  // namespace umtet

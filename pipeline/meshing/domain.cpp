@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "pipeline/case/exit_code.h"
-#include "pipeline/case/record.h"
 #include "pipeline/meshing/handover.h"
+#include "pipeline/meshing/stage_reports.h"
 #include "reconstruct/io/level_set_io.h"
 #include "reconstruct/io/point_cloud_io.h"
 
@@ -62,9 +62,10 @@ Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handove
   if (!state.record) throw ArtefactDamaged(state.reason);
   Domain domain;
   domain.complement = parameters.mesh().complement;
-  domain.shift = recorded_vector(*state.record, "shift");
-  domain.cloud_spacing = state.record->numbers.value("cloud_spacing", 0.);
-  if (state.record->numbers.contains("noise")) domain.noise = state.record->numbers.at("noise").get<double>();
+  const LevelSetReport report = level_set_report(*state.record);
+  domain.shift = report.shift;
+  domain.cloud_spacing = report.fit.cloud_spacing;
+  domain.noise = report.noise;
   try {
     domain.fitted = handover && handover->psi ? std::move(*std::exchange(handover->psi, std::nullopt))
                                               : read_level_set(paths.level_set());

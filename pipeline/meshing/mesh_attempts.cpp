@@ -45,7 +45,7 @@ bool is_worse(const MeshAttempt& a, const MeshAttempt& b) {
 
 std::string MeshAttempt::complaint() const {
   if (!made()) return result.evidence.what;
-  return n_reasons() > 0 ? measured.at("reasons").at(0).get<std::string>() : "";
+  return n_reasons() > 0 ? measured.reasons.front() : "";
 }
 
 MeshAttempt best_attempt(const EdgeLength& choice, const std::function<MeshAttempt(double h)>& attempt,

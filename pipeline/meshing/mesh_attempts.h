@@ -7,7 +7,7 @@
 
 #include "mesh/certify/quadratic_tets.h"
 #include "mesh/universal_mesh.h"
-#include "pipeline/case/record.h"
+#include "pipeline/meshing/certificate_report.h"
 #include "pipeline/meshing/edge_length.h"
 #include "pipeline/meshing/too_thin.h"
 
@@ -18,11 +18,11 @@ struct MeshAttempt {
   double h = 0;  ///< edge length of the background mesh, model units
   UmResult result;
   std::optional<SecondOrder> second;  ///< the mesh with curved edges, if mesh.order = 2
-  Json measured;                      ///< of measure(); null when there is no mesh
+  MeshMeasures measured;              ///< when there is a mesh
   ThinPlaces thin;                    ///< what h is too large for
 
   bool made() const { return result.status == UmStatus::Success; }
-  std::size_t n_reasons() const { return made() ? measured.at("reasons").size() : 0; }
+  std::size_t n_reasons() const { return made() ? measured.reasons.size() : 0; }
   bool is_right() const { return made() && n_reasons() == 0; }
   /// What is wrong with it first of all; empty if nothing is.
   std::string complaint() const;

@@ -28,6 +28,10 @@ constexpr int kFinerGrids = 3;
 // Parts of an attempt, about as their times: where each begins.
 constexpr double kPieces = .05, kChoice = .1, kFit = .2, kCertificate = .9, kCurving = .95;
 
+void take(std::optional<std::string> reason, std::vector<std::string>& reasons) {
+  if (reason) reasons.push_back(std::move(*reason));
+}
+
 }  // namespace
 
 MeshMaker::MeshMaker(Domain& domain, const Parameters& parameters, Context context, MeshLines lines)
@@ -91,8 +95,9 @@ void MeshMaker::finish(const BackgroundMesh& background, ChosenSubmesh chosen, M
   context_.report("certify", kCertificate);
   if (!a.made()) return;
   a.measured = measure(domain_, a.result, pieces, a.h, context_);
-  check_lost(domain_, a.result, a.thin, a.measured, context_);
-  check_deviation(parameters_.real("mesh.max_deviation"), a.measured);
+  a.measured.resolution.too_thin = in_model(a.thin, domain_.shift);
+  take(lost_reason(domain_, a.result, a.thin, context_), a.measured.reasons);
+  take(deviation_reason(parameters_.mesh().max_deviation, a.measured.mesh), a.measured.reasons);
   curve(a);
 }
 
@@ -104,12 +109,12 @@ MeshAttempt MeshMaker::attempt(const BackgroundMesh& background, double h) {
 
 void MeshMaker::curve(MeshAttempt& a) const {
   const std::int64_t order = parameters_.mesh().order;
-  a.measured["order"] = order;
-  a.measured["second_order"] = nullptr;
+  a.measured.order = order;
   if (order < 2) return;
   context_.report("second order", kCurving);
   a.second = curved_mesh(domain_, a.result, a.h, params_.paper.closest_point, context_);
-  measure_second_order(domain_, a.result, *a.second, a.h, a.measured, context_);
+  a.measured.second_order = measure_second_order(domain_, a.result, *a.second, a.h, context_);
+  for (std::string& reason : failures(*a.measured.second_order)) a.measured.reasons.push_back(std::move(reason));
 }
 
 /// The estimate behind mesh.tets knows the shape from a few thousand samples. Where it is far off, the number of tets

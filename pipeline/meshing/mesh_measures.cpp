@@ -18,11 +18,6 @@
 namespace umtet {
 namespace {
 
-template <class T>
-Json number_or_null(const std::optional<T>& v) {
-  return v ? Json(*v) : Json(nullptr);
-}
-
 double rms(const std::vector<double>& d) {
   return std::sqrt(std::transform_reduce(d.begin(), d.end(), 0., std::plus<>(), [](double v) { return v * v; }) /
                    static_cast<double>(d.size()));
@@ -51,8 +46,9 @@ constexpr std::size_t kFewSamples = 10;
 constexpr double kSmallShare = 1e-3;
 
 /// Samples that psi, with all its detail, passes by, and the mesh does not: what has been too small for h.
-void look_for_lost_samples(const Domain& domain, const std::vector<double>& d, double h, const Context& context,
-                           std::vector<std::string>& reasons) {
+/// @param d  distances of the samples to the mesh
+std::optional<std::string> lost_samples(const Domain& domain, const std::vector<double>& d, double h,
+                                        const Context& context) {
   const std::vector<Vec3>& x = domain.cloud.points;
   std::vector<std::uint8_t> lost(x.size(), 0);
   polled_parallel_for(x.size(), kValuesPerPoll, context, [&](std::size_t i) {
@@ -62,43 +58,39 @@ void look_for_lost_samples(const Domain& domain, const std::vector<double>& d, d
     lost[i] = d[i] > h + std::abs(value) / g.norm();
   });
   const auto n = static_cast<std::size_t>(std::count(lost.begin(), lost.end(), 1));
-  if (n <= kFewSamples || static_cast<double>(n) <= kSmallShare * static_cast<double>(x.size())) return;
+  if (n <= kFewSamples || static_cast<double>(n) <= kSmallShare * static_cast<double>(x.size())) {
+    return std::nullopt;
+  }
   std::size_t farthest = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (lost[i] && (!lost[farthest] || d[i] > d[farthest])) farthest = i;
   }
   const Vec3 at = x[farthest] + domain.shift;
-  reasons.push_back(
-      fmt::format("{} samples of the surface are farther than h from the mesh, that at ({:.6g}, {:.6g}, "
-                  "{:.6g}) {:.2g} h: h is too large for what is there",
-                  n, at.x(), at.y(), at.z(), d[farthest] / h));
+  return fmt::format(
+      "{} samples of the surface are farther than h from the mesh, that at ({:.6g}, {:.6g}, "
+      "{:.6g}) {:.2g} h: h is too large for what is there",
+      n, at.x(), at.y(), at.z(), d[farthest] / h);
 }
 
-Json cloud_block(const Domain& domain, const std::vector<Vec3>& V, const std::vector<Triangle>& faces, double h,
-                 const Context& context, std::vector<std::string>& reasons) {
-  if (domain.cloud.points.empty() || faces.empty()) return nullptr;  // no face: the body fell through the background
-  std::vector<double> d = SurfaceDistance(V, faces).distances(domain.cloud.points, context);
-  if (domain.fitted) look_for_lost_samples(domain, d, h, context, reasons);
+SampleDistances distances_of_samples(const Domain& domain, std::vector<double> d) {
   std::sort(d.begin(), d.end());
-  const double r = rms(d), max = d.back(), p99 = quantile(d, .99);
-  return {{"noise", number_or_null(domain.noise)},
-          {"noise_over_h", domain.noise ? Json(*domain.noise / h) : Json(nullptr)},
-          {"rms_distance", r},
-          {"max_distance", max},
-          {"p99_distance", p99},
-          {"rms_distance_over_h", r / h},
-          {"max_distance_over_h", max / h},
-          {"p99_distance_over_h", p99 / h}};
+  return {.noise = domain.noise, .rms = rms(d), .max = d.back(), .p99 = quantile(d, .99)};
 }
 
 // Halving the spacing is worth its cost if it leaves at least this much of a refinement within the nodes allowed.
 constexpr double kWorthRepeating = .9;
 
+/// What psi = 0 has, and how the mesh differs from it, if it does.
+struct Comparison {
+  ZeroSetReport report;
+  std::optional<std::string> reason;
+};
+
 /// Does the boundary of the mesh look like the pieces of psi = 0 that are kept, and the walls of the box around a
 /// fluid, one closed piece without a hole? Where the two counts differ, the count is repeated on a grid of half the
 /// spacing, as far as its size is allowed, before the mesh is blamed.
-void compare_with_zero_set(const Domain& domain, const MeshCertificate& certificate, const ZeroSetChoice& pieces,
-                           const Context& context, Json& block, std::vector<std::string>& reasons) {
+Comparison compare_with_zero_set(const Domain& domain, const MeshCertificate& certificate, const ZeroSetChoice& pieces,
+                                 const Context& context) {
   const MeshCertificate::Boundary& boundary = certificate.boundary;
   const int of_psi = boundary.components - (domain.complement ? 1 : 0);
   const long characteristic = boundary.euler_characteristic - (domain.complement ? 2 : 0);
@@ -112,86 +104,78 @@ void compare_with_zero_set(const Domain& domain, const MeshCertificate& certific
     repeated = choose_components(domain, half, context, pieces.cells ? &*pieces.cells : nullptr);
     counted = &repeated;
   }
-  block["components_of_zero_set"] = counted->topology.components.size();
-  block["euler_characteristic_of_zero_set"] = counted->topology.euler_characteristic;
-  block["euler_characteristic_of_kept_components"] = counted->euler_characteristic;
-  block["components_meshed"] = of_psi;
-  block["components_dropped"] = counted->dropped;
-  if (!differs(*counted)) return;
+  Comparison made;
+  made.report.components_of_zero_set = counted->topology.components.size();
+  made.report.euler_characteristic_of_zero_set = counted->topology.euler_characteristic;
+  made.report.euler_characteristic_of_kept_components = counted->euler_characteristic;
+  made.report.components_meshed = of_psi;
+  made.report.components_dropped = counted->dropped;
+  if (!differs(*counted)) return made;
   const double spacing = counted->topology.spacing;
   // A count on a grid coarser than the mesh is as likely to be wrong as the mesh.
   const char* verdict = spacing > certificate.h
                             ? "which of the two is wrong is open: the grid is coarser than the mesh, "
                               "and as fine as its size is allowed to be"
                             : "h is too large for this shape";
-  reasons.push_back(
-      fmt::format("psi = 0 has {} pieces (and {} dropped ones) of Euler characteristic {} on a grid of spacing {:.3g}, "
-                  "the boundary of the mesh {}{} of {}: {}",
-                  counted->seeds.size(), counted->dropped.size(), counted->euler_characteristic, spacing, of_psi,
-                  domain.complement ? " besides the walls" : "", characteristic, verdict));
+  made.reason = fmt::format(
+      "psi = 0 has {} pieces (and {} dropped ones) of Euler characteristic {} on a grid of spacing {:.3g}, "
+      "the boundary of the mesh {}{} of {}: {}",
+      counted->seeds.size(), counted->dropped.size(), counted->euler_characteristic, spacing, of_psi,
+      domain.complement ? " besides the walls" : "", characteristic, verdict);
+  return made;
+}
+
+/// With the proof that no piece is unseen, and the share of the boundary that is a guess.
+Comparison compare_with_domain(const Domain& domain, const TetMesh& mesh, const std::vector<Triangle>& faces,
+                               const MeshCertificate& certificate, const ZeroSetChoice& pieces,
+                               const Context& context) {
+  Comparison made = compare_with_zero_set(domain, certificate, pieces, context);
+  ZeroSetReport& report = made.report;
+  if (domain.level_set) report.level_set_spacing = domain.level_set->spacing();
+  if (domain.level_set && pieces.cells) {
+    const ComponentProof proof = prove_components(*domain.level_set, domain.box, pieces.topology, *pieces.cells);
+    report.components_proved = proof.unseen.empty() && proof.n_open == 0;
+    for (const Vec3& at : proof.unseen) {
+      const Vec3 x = at + domain.shift;
+      report.components_dropped.push_back(
+          fmt::format("piece at ({:.6g}, {:.6g}, {:.6g}): smaller than an edge", x.x(), x.y(), x.z()));
+    }
+  }
+  if (domain.samples) {
+    report.unsupported_area_fraction =
+        unsupported_area_fraction(mesh.V, faces, *domain.samples, kSupportRadius * domain.cloud_spacing, context);
+  }
+  return made;
 }
 
 }  // namespace
 
-void check_deviation(double asked, Json& measured) {
-  const Json& d = measured.at("boundary").at("max_centroid_distance_over_h");
-  if (asked == 0 || !d.is_number()) return;
-  const double made = d.get<double>() * measured.at("h").get<double>();
-  if (made <= asked) return;
-  measured["reasons"].push_back(
-      fmt::format("a face centre is {:.4g} from psi = 0, more than the {:.4g} of --max-deviation", made, asked));
+std::optional<std::string> deviation_reason(double asked, const MeshCertificate& mesh) {
+  const std::optional<double>& d = mesh.boundary.max_centroid_distance_over_h;
+  if (asked == 0 || !d) return std::nullopt;
+  const double made = *d * mesh.h;
+  if (made <= asked) return std::nullopt;
+  return fmt::format("a face centre is {:.4g} from psi = 0, more than the {:.4g} of --max-deviation", made, asked);
 }
 
-bool is_only_coarse(const Json& measured) {
-  const Json& gap = measured.at("boundary").at("gap_over_volume");
-  return measured.at("reasons").size() == 1 && gap.is_number() && gap.get<double>() > kMostGap;
+bool is_only_coarse(const MeshMeasures& measured) {
+  const std::optional<double>& gap = measured.mesh.boundary.gap_over_volume;
+  return measured.reasons.size() == 1 && gap && *gap > kMostGap;
 }
 
-void check_lost(const Domain& domain, const UmResult& result, const ThinPlaces& thin, Json& measured,
-                const Context& context) {
-  measured["resolution"]["too_thin"] = to_json(thin, domain.shift);
+std::optional<std::string> lost_reason(const Domain& domain, const UmResult& result, const ThinPlaces& thin,
+                                       const Context& context) {
   const LostPoint lost = lost_of(thin, result.final, result.submesh.positive_faces, context);
-  if (lost.count == 0) return;
+  if (lost.count == 0) return std::nullopt;
   const Vec3 at = lost.where + domain.shift;
-  measured["reasons"].push_back(
-      fmt::format("the mesh lacks what is thin around ({:.6g}, {:.6g}, {:.6g}): psi = 0 is "
-                  "{:.2g} h from its boundary there",
-                  at.x(), at.y(), at.z(), lost.distance / thin.h));
+  return fmt::format(
+      "the mesh lacks what is thin around ({:.6g}, {:.6g}, {:.6g}): psi = 0 is "
+      "{:.2g} h from its boundary there",
+      at.x(), at.y(), at.z(), lost.distance / thin.h);
 }
 
-Json to_json(const MeshCertificate& c) {
-  return {{"n_tets", c.n_tets},
-          {"n_vertices", c.n_vertices},
-          {"n_positive_faces", c.boundary.equals_positive_faces ? Json(c.n_positive_faces) : Json(nullptr)},
-          {"n_wall_faces", c.n_wall_faces},
-          {"h", c.h},
-          {"volume", c.volume},
-          {"quality",
-           {{"min", c.quality.min},
-            {"p001", c.quality.p001},
-            {"p01", c.quality.p01},
-            {"mean", c.quality.mean},
-            {"dihedral_min_deg", c.quality.dihedral_min_deg},
-            {"dihedral_max_deg", c.quality.dihedral_max_deg},
-            {"n_inverted", c.quality.n_inverted}}},
-          {"boundary",
-           {{"closed_manifold", c.boundary.closed_manifold},
-            {"equals_positive_faces", number_or_null(c.boundary.equals_positive_faces)},
-            {"components", c.boundary.components},
-            {"euler_characteristic", c.boundary.euler_characteristic},
-            {"genus", c.boundary.genus},
-            {"n_faces", c.boundary.n_faces},
-            {"area", c.boundary.area},
-            {"max_vertex_distance_over_h", number_or_null(c.boundary.max_vertex_distance_over_h)},
-            {"coordinate_rounding_over_h", c.coordinate_rounding / c.h},
-            {"max_centroid_distance_over_h", number_or_null(c.boundary.max_centroid_distance_over_h)},
-            {"min_cos_normal", number_or_null(c.boundary.min_cos_normal)},
-            {"gap_over_volume", number_or_null(c.boundary.gap_over_volume)},
-            {"n_cos_below_half", c.boundary.n_cos_below_half}}}};
-}
-
-Json measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& pieces, double h,
-             const Context& context) {
+MeshMeasures measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& pieces, double h,
+                     const Context& context) {
   const TetMesh mesh{result.final, result.submesh.mesh.C};
   CertificateInput input;
   input.mesh = &mesh;
@@ -204,38 +188,30 @@ Json measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& 
   input.psi = domain.psi();
   input.coordinate_rounding = coordinate_rounding(domain);
   input.context = context;
-  const MeshCertificate certificate = certify(input);
-  std::vector<std::string> reasons = failures(certificate);
+  MeshMeasures m;
+  if (domain.level_set) m.n_points = domain.cloud.points.size();
+  m.mesh = certify(input);
+  m.coordinate_rounding_over_h = m.mesh.coordinate_rounding / m.mesh.h;
+  m.reasons = failures(m.mesh);
+  const auto blame = [&](std::optional<std::string> reason) {
+    if (reason) m.reasons.push_back(std::move(*reason));
+  };
 
-  Json json = {{"n_points", domain.level_set ? Json(domain.cloud.points.size()) : Json(nullptr)}};
-  json.update(to_json(certificate));
   const std::vector<Triangle>& faces = result.submesh.positive_faces;
-  Json block = Json::object();
-  block["level_set_spacing"] = domain.level_set ? Json(domain.level_set->spacing()) : Json(nullptr);
-  compare_with_zero_set(domain, certificate, pieces, context, block, reasons);
-  block["components_proved"] = nullptr;
-  if (domain.level_set && pieces.cells) {
-    const ComponentProof proof = prove_components(*domain.level_set, domain.box, pieces.topology, *pieces.cells);
-    block["components_proved"] = proof.unseen.empty() && proof.n_open == 0;
-    for (const Vec3& at : proof.unseen) {
-      const Vec3 x = at + domain.shift;
-      block["components_dropped"].push_back(
-          fmt::format("piece at ({:.6g}, {:.6g}, {:.6g}): smaller than an edge", x.x(), x.y(), x.z()));
-    }
+  Comparison compared = compare_with_domain(domain, mesh, faces, m.mesh, pieces, context);
+  m.domain = std::move(compared.report);
+  blame(std::move(compared.reason));
+  // No face: the body fell through the background.
+  if (!domain.cloud.points.empty() && !faces.empty()) {
+    std::vector<double> d = SurfaceDistance(mesh.V, faces).distances(domain.cloud.points, context);
+    if (domain.fitted) blame(lost_samples(domain, d, h, context));
+    m.cloud = distances_of_samples(domain, std::move(d));
   }
-  block["unsupported_area_fraction"] = nullptr;
-  if (domain.samples) {
-    block["unsupported_area_fraction"] =
-        unsupported_area_fraction(mesh.V, faces, *domain.samples, kSupportRadius * domain.cloud_spacing, context);
-  }
-  json["domain"] = std::move(block);
-  json["cloud"] = cloud_block(domain, mesh.V, faces, h, context, reasons);
-  json["resolution"] = {{"kappa_h_max", max_curvature(domain.psi(), result, h, context)},
-                        {"feature_size_over_h_min", min_feature_size(domain, result, h, context) / h},
-                        {"obtuse_conditioning_angles", result.obtuse_conditioning_angles},
-                        {"double_positive_faces", result.double_positive_faces}};
-  json["reasons"] = reasons;
-  return json;
+  m.resolution.kappa_h_max = max_curvature(domain.psi(), result, h, context);
+  m.resolution.feature_size_over_h_min = min_feature_size(domain, result, h, context) / h;
+  m.resolution.obtuse_conditioning_angles = result.obtuse_conditioning_angles;
+  m.resolution.double_positive_faces = result.double_positive_faces;
+  return m;
 }
 
 }  // namespace umtet

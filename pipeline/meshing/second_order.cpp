@@ -45,23 +45,8 @@ SecondOrder curved_mesh(const Domain& domain, const UmResult& result, double h, 
   return curved;
 }
 
-Json to_json(const SecondOrderCertificate& c) {
-  const auto or_null = [](const std::optional<double>& v) { return v ? Json(*v) : Json(nullptr); };
-  return {{"n_nodes", c.n_nodes},
-          {"volume", c.volume},
-          {"min_scaled_jacobian", c.min_scaled_jacobian_lower},
-          {"min_scaled_jacobian_upper", c.min_scaled_jacobian_upper},
-          {"n_nonpositive_jacobians", c.n_nonpositive_jacobians},
-          {"n_torn_edges", c.n_torn_edges},
-          {"n_boundary_mid_sides", c.n_boundary_mid_sides},
-          {"n_mid_sides_off_surface", c.n_mid_sides_off_surface},
-          {"max_mid_side_distance_over_h", or_null(c.max_mid_side_distance_over_h)},
-          {"max_face_distance_over_h", or_null(c.max_face_distance_over_h)},
-          {"rms_face_distance_over_h", or_null(c.rms_face_distance_over_h)}};
-}
-
-void measure_second_order(const Domain& domain, const UmResult& result, const SecondOrder& second, double h,
-                          Json& measured, const Context& context) {
+SecondOrderReport measure_second_order(const Domain& domain, const UmResult& result, const SecondOrder& second,
+                                       double h, const Context& context) {
   SecondOrderInput input;
   input.mesh = &second.mesh;
   input.h = h;
@@ -69,16 +54,10 @@ void measure_second_order(const Domain& domain, const UmResult& result, const Se
   input.wall_faces = &result.walls;
   input.coordinate_rounding = coordinate_rounding(domain);
   input.context = context;
-  const SecondOrderCertificate certificate = certify_second_order(input);
-  Json block = to_json(certificate);
-  block["n_mid_sides_put_back"] = second.off_surface.size();
-  block["n_mid_sides_unprojected"] = second.n_unprojected;
-  block["n_mid_sides_slid"] = second.n_slid;
-  block["n_mid_sides_relaxed"] = second.n_relaxed;
-  measured["second_order"] = std::move(block);
-  for (const std::string& reason : failures(certificate, second.off_surface.size())) {
-    measured["reasons"].push_back(reason);
-  }
+  return {certify_second_order(input), SecondOrderReport::Repairs{.n_mid_sides_put_back = second.off_surface.size(),
+                                                                  .n_mid_sides_unprojected = second.n_unprojected,
+                                                                  .n_mid_sides_slid = second.n_slid,
+                                                                  .n_mid_sides_relaxed = second.n_relaxed}};
 }
 
 void write_second_order(const fs::path& file, const Domain& domain, const UmResult& result, const MeshFile& corners,

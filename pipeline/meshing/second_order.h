@@ -6,7 +6,7 @@
 #include "mesh/certify/second_order_certificate.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "mesh/universal_mesh.h"
-#include "pipeline/case/record.h"
+#include "pipeline/meshing/certificate_report.h"
 #include "pipeline/meshing/domain.h"
 
 namespace umtet {
@@ -16,13 +16,9 @@ namespace umtet {
 SecondOrder curved_mesh(const Domain& domain, const UmResult& result, double h, const ClosestPointParams& params,
                         const Context& context = {});
 
-/// The block `second_order` of what is measured.
-Json to_json(const SecondOrderCertificate& certificate);
-
-/// Puts that block, with what had to be done for the Jacobians, into what measure() returned, and what is wrong into
-/// its `reasons`. \throw Cancelled
-void measure_second_order(const Domain& domain, const UmResult& result, const SecondOrder& second, double h,
-                          Json& measured, const Context& context = {});
+/// What is true of it, with what had to be done for the Jacobians. \throw Cancelled
+SecondOrderReport measure_second_order(const Domain& domain, const UmResult& result, const SecondOrder& second,
+                                       double h, const Context& context = {});
 
 /// As write_mesh() of the final mesh, with tets of 10 nodes; mid-sides have no vertex of the background (-1).
 /// @param corners  final_content() of the result

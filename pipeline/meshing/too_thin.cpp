@@ -139,8 +139,6 @@ void sort_worst_first(ThinPlaces& result) {
   for (int& p : result.place) p = rank[p];
 }
 
-Json vector(const Vec3& x) { return {x.x(), x.y(), x.z()}; }
-
 }  // namespace
 
 ThinPlaces find_thin_places(const Domain& domain, const ZeroSetChoice& pieces, double h, const Context& context) {
@@ -171,18 +169,13 @@ LostPoint lost_of(const ThinPlaces& thin, const std::vector<Vec3>& V, const std:
   return lost;
 }
 
-Json to_json(const ThinPlaces& thin, const Vec3& shift) {
-  Json list = Json::array();
-  for (const ThinPlace& p : thin.places) {
-    list.push_back({{"kind", p.is_gap ? "gap" : "body"},
-                    {"centre", vector(p.centre + shift)},
-                    {"box", {{"min", vector(p.box.min() + shift)}, {"max", vector(p.box.max() + shift)}}},
-                    {"thickness", p.thickness},
-                    {"thickness_over_h", p.thickness / thin.h},
-                    {"area", p.area},
-                    {"h_needed", p.h_needed}});
+std::vector<ThinPlace> in_model(const ThinPlaces& thin, const Vec3& shift) {
+  std::vector<ThinPlace> places = thin.places;
+  for (ThinPlace& p : places) {
+    p.centre += shift;
+    p.box = {p.box.min() + shift, p.box.max() + shift};
   }
-  return list;
+  return places;
 }
 
 std::string described(const ThinPlaces& thin, const Vec3& shift) {

@@ -6,14 +6,13 @@
 #include <vector>
 
 #include "pipeline/case/exit_code.h"
-#include "pipeline/case/record.h"
 #include "pipeline/meshing/domain.h"
 #include "pipeline/meshing/zero_set_choice.h"
 
 namespace umtet {
 
 /// A connected place where the body, or the gap outside it, is too thin for a mesh of some edge length. Lengths in
-/// model units, places in working coordinates.
+/// model units; places in working coordinates, but for those of in_model().
 struct ThinPlace {
   bool is_gap = false;
   Eigen::AlignedBox3d box;     ///< of the points of the boundary that belong to it
@@ -61,8 +60,8 @@ struct LostPoint {
 LostPoint lost_of(const ThinPlaces&, const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
                   const Context& context = {});
 
-/// One object a place: kind, centre and box in model coordinates (`shift` is added), thickness, area, h_needed.
-Json to_json(const ThinPlaces&, const Vec3& shift);
+/// The places in model coordinates: `shift` is added.
+std::vector<ThinPlace> in_model(const ThinPlaces&, const Vec3& shift);
 
 /// The first few in words, a line each, without a newline at the end.
 std::string described(const ThinPlaces&, const Vec3& shift);

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "mesh/certify/boundary_surface.h"
 #include "mesh/implicit/surface_distance.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
+#include "pipeline/meshing/stage_reports.h"
 #include "pipeline/stages/stages.h"
 #include "reconstruct/io/level_set_io.h"
 #include "reconstruct/io/point_cloud_io.h"
@@ -21,21 +23,22 @@ namespace {
 // Lines of differing numbers a stage in the text; the document has them all.
 constexpr std::size_t kListed = 8;
 
-/// Largest and root of the mean square.
-Json spread(const std::vector<double>& d) {
+using Measures = std::vector<std::pair<std::string, StageDiff::Measure>>;
+
+Spread spread(const std::vector<double>& d) {
   double max = 0, sum = 0;
   for (const double v : d) {
     max = std::max(max, v);
     sum += v * v;
   }
-  return {{"max", max}, {"rms", d.empty() ? 0 : std::sqrt(sum / static_cast<double>(d.size()))}};
+  return {max, d.empty() ? 0 : std::sqrt(sum / static_cast<double>(d.size()))};
 }
 
-/// Adds {at, a, b} for every leaf in which the two documents differ.
-void add_differences(const Json& a, const Json& b, const std::string& pointer, Json& list) {
+/// Adds every leaf in which the two documents differ.
+void add_differences(const Json& a, const Json& b, const std::string& pointer, std::vector<ValueDifference>& list) {
   if (a == b) return;
   if (!a.is_object() || !b.is_object()) {
-    list.push_back({{"at", pointer}, {"a", a}, {"b", b}});
+    list.push_back({pointer, a, b});
     return;
   }
   const auto below = [&](const std::string& key) { return pointer + "/" + key; };
@@ -47,7 +50,7 @@ void add_differences(const Json& a, const Json& b, const std::string& pointer, J
   }
 }
 
-Json cloud_difference(const CasePaths& a, const CasePaths& b) {
+Measures cloud_difference(const CasePaths& a, const CasePaths& b) {
   const OrientedPointCloud x = read_point_cloud(a.cloud()).cloud, y = read_point_cloud(b.cloud()).cloud;
   return {{"n_a", x.points.size()},
           {"n_b", y.points.size()},
@@ -55,10 +58,10 @@ Json cloud_difference(const CasePaths& a, const CasePaths& b) {
           {"b_to_a", spread(SampleDistance(x.points).distances(y.points, until_interrupted()))}};
 }
 
-Json level_set_difference(const CasePaths& a, const CasePaths& b, const StageRecord& record_a,
-                          const StageRecord& record_b) {
+Measures level_set_difference(const CasePaths& a, const CasePaths& b, const StageRecord& record_a,
+                              const StageRecord& record_b) {
   const LevelSet psi_a = read_level_set(a.level_set()), psi_b = read_level_set(b.level_set());
-  const Vec3 shift_a = recorded_vector(record_a, "shift"), shift_b = recorded_vector(record_b, "shift");
+  const Vec3 shift_a = level_set_report(record_a).shift, shift_b = level_set_report(record_b).shift;
   const std::vector<Vec3> x = read_point_cloud(a.cloud()).cloud.points;
   std::vector<double> d(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -88,20 +91,21 @@ struct Skin {
   }
 };
 
-Json mesh_difference(const CasePaths& a, const CasePaths& b) {
+Measures mesh_difference(const CasePaths& a, const CasePaths& b) {
   const Skin x(a), y(b);
-  Json json = {{"n_tets_a", x.file.mesh.C.size()},
-               {"n_tets_b", y.file.mesh.C.size()},
-               {"same_tets", x.file.mesh.C == y.file.mesh.C},
-               {"boundary_a_to_b", spread(y.distances(x.corners))},
-               {"boundary_b_to_a", spread(x.distances(y.corners))}};
-  if (!json["same_tets"]) return json;
+  const bool same_tets = x.file.mesh.C == y.file.mesh.C;
+  Measures measures = {{"n_tets_a", x.file.mesh.C.size()},
+                       {"n_tets_b", y.file.mesh.C.size()},
+                       {"same_tets", same_tets},
+                       {"boundary_a_to_b", spread(y.distances(x.corners))},
+                       {"boundary_b_to_a", spread(x.distances(y.corners))}};
+  if (!same_tets) return measures;
   std::vector<double> moves;
   for (std::size_t v = 0; v < x.file.mesh.V.size(); ++v) {
     moves.push_back((x.file.mesh.V[v] - y.file.mesh.V[v]).norm());
   }
-  json["moves"] = spread(moves);
-  return json;
+  measures.emplace_back("moves", spread(moves));
+  return measures;
 }
 
 std::optional<StageRecord> record_of(const CasePaths& paths, Stage stage) {
@@ -111,8 +115,8 @@ std::optional<StageRecord> record_of(const CasePaths& paths, Stage stage) {
   return std::move(state.record);
 }
 
-Json difference_of(Stage stage, const CasePaths& a, const CasePaths& b, const StageRecord& record_a,
-                   const StageRecord& record_b) {
+Measures difference_of(Stage stage, const CasePaths& a, const CasePaths& b, const StageRecord& record_a,
+                       const StageRecord& record_b) {
   try {
     if (stage == Stage::Cloud) return cloud_difference(a, b);
     if (stage == Stage::LevelSet) return level_set_difference(a, b, record_a, record_b);
@@ -126,75 +130,121 @@ Json difference_of(Stage stage, const CasePaths& a, const CasePaths& b, const St
   }
 }
 
-Json diff_stage(Stage stage, const CasePaths& a, const CasePaths& b) {
-  Json json = {{"stage", to_string(stage)}};
+StageDiff diff_stage(Stage stage, const CasePaths& a, const CasePaths& b) {
+  StageDiff diff;
+  diff.stage = stage;
   const std::optional<StageRecord> x = record_of(a, stage), y = record_of(b, stage);
-  json["in_a"] = x.has_value();
-  json["in_b"] = y.has_value();
-  json["same"] = x.has_value() == y.has_value() && (!x || x->outputs == y->outputs);
-  if (!x || !y) return json;
-  Json parameters = Json::array(), numbers = Json::array();
-  add_differences(x->parameters, y->parameters, "", parameters);
-  add_differences(x->numbers, y->numbers, "", numbers);
-  json["parameters"] = parameters;
-  json["numbers"] = numbers;
-  if (!json["same"]) json["difference"] = difference_of(stage, a, b, *x, *y);
+  diff.in_a = x.has_value();
+  diff.in_b = y.has_value();
+  diff.same = x.has_value() == y.has_value() && (!x || x->outputs == y->outputs);
+  if (!x || !y) return diff;
+  add_differences(x->parameters, y->parameters, "", diff.parameters);
+  add_differences(x->numbers, y->numbers, "", diff.numbers);
+  if (!diff.same) diff.difference = difference_of(stage, a, b, *x, *y);
+  return diff;
+}
+
+Json to_json(const Spread& spread) { return {{"max", spread.max}, {"rms", spread.rms}}; }
+
+Json to_json(const std::vector<ValueDifference>& differences) {
+  Json list = Json::array();
+  for (const ValueDifference& d : differences) list.push_back({{"at", d.at}, {"a", d.a}, {"b", d.b}});
+  return list;
+}
+
+Json to_json(const StageDiff& s) {
+  Json json = {{"stage", to_string(s.stage)}, {"in_a", s.in_a}, {"in_b", s.in_b}, {"same", s.same}};
+  if (!s.in_a || !s.in_b) return json;
+  json["parameters"] = to_json(s.parameters);
+  json["numbers"] = to_json(s.numbers);
+  if (!s.difference) return json;
+  Json measures = Json::object();
+  for (const auto& [name, measure] : *s.difference) {
+    measures[name] = std::visit(
+        []<class T>(const T& value) {
+          if constexpr (std::is_same_v<T, Spread>) {
+            return to_json(value);
+          } else {
+            return Json(value);
+          }
+        },
+        measure);
+  }
+  json["difference"] = std::move(measures);
   return json;
 }
 
-std::string lines_of(const Json& differences, const char* what) {
+std::string lines_of(const std::vector<ValueDifference>& differences, const char* what) {
   std::string out;
-  std::size_t n = 0;
-  for (const Json& d : differences) {
-    if (++n > kListed) continue;
-    out += fmt::format("  {} {}: {} | {}\n", what, d.at("at").get<std::string>().substr(1), d.at("a").dump(),
-                       d.at("b").dump());
+  for (std::size_t k = 0; k < std::min(kListed, differences.size()); ++k) {
+    const ValueDifference& d = differences[k];
+    out += fmt::format("  {} {}: {} | {}\n", what, d.at.substr(1), d.a.dump(), d.b.dump());
   }
-  if (n > kListed) out += fmt::format("  and {} more\n", n - kListed);
+  if (differences.size() > kListed) out += fmt::format("  and {} more\n", differences.size() - kListed);
   return out;
 }
 
-std::string shown(const Json& spread) {
-  return fmt::format("max {:.3g}, rms {:.3g}", spread.at("max").get<double>(), spread.at("rms").get<double>());
+std::string shown(const StageDiff::Measure& measure) {
+  return std::visit(
+      []<class T>(const T& value) {
+        if constexpr (std::is_same_v<T, Spread>) {
+          return fmt::format("max {:.3g}, rms {:.3g}", value.max, value.rms);
+        } else {
+          return Json(value).dump();
+        }
+      },
+      measure);
 }
 
 }  // namespace
 
-Json diff_cases(const CasePaths& a, const CasePaths& b, Progress& progress) {
+std::optional<Stage> CaseDiff::first_difference() const {
+  const auto it = std::find_if(stages.begin(), stages.end(), [](const StageDiff& s) { return !s.same; });
+  if (it == stages.end()) return std::nullopt;
+  return it->stage;
+}
+
+CaseDiff diff_cases(const CasePaths& a, const CasePaths& b, Progress& progress) {
   for (const CasePaths* paths : {&a, &b}) {
     if (!fs::exists(paths->parameters())) {
       throw UsageError(paths->root.string() + " is not a case: it has no case.toml");
     }
   }
-  Json stages = Json::array(), first = nullptr;
+  CaseDiff diff{a.root.string(), b.root.string(), {}};
   for (const Stage stage : kStages) {
     stop_if_interrupted();
     progress.report("diff", to_string(stage), (static_cast<double>(stage) - 1) / kStages.size());
-    stages.push_back(diff_stage(stage, a, b));
-    if (first.is_null() && !stages.back()["same"]) first = to_string(stage);
+    diff.stages.push_back(diff_stage(stage, a, b));
   }
-  return {{"a", a.root.string()}, {"b", b.root.string()}, {"first_difference", first}, {"stages", stages}};
+  return diff;
 }
 
-std::string diff_text(const Json& diff) {
-  const Json& first = diff.at("first_difference");
+Json to_json(const CaseDiff& diff) {
+  Json stages = Json::array();
+  for (const StageDiff& stage : diff.stages) stages.push_back(to_json(stage));
+  const std::optional<Stage> first = diff.first_difference();
+  return {{"a", diff.a},
+          {"b", diff.b},
+          {"first_difference", first ? Json(to_string(*first)) : Json(nullptr)},
+          {"stages", stages}};
+}
+
+std::string diff_text(const CaseDiff& diff) {
+  const std::optional<Stage> first = diff.first_difference();
   std::string out =
-      first.is_null() ? "the same files in all stages\n" : "first difference: " + first.get<std::string>() + "\n";
-  for (const Json& s : diff.at("stages")) {
-    const bool in_a = s.at("in_a"), in_b = s.at("in_b");
-    if (!in_a && !in_b) continue;
-    out += s.at("stage").get<std::string>() + ": ";
-    if (in_a != in_b) {
-      out += fmt::format("only in {}\n", diff.at(in_a ? "a" : "b").get<std::string>());
+      first ? std::string("first difference: ") + to_string(*first) + "\n" : "the same files in all stages\n";
+  for (const StageDiff& s : diff.stages) {
+    if (!s.in_a && !s.in_b) continue;
+    out += std::string(to_string(s.stage)) + ": ";
+    if (s.in_a != s.in_b) {
+      out += fmt::format("only in {}\n", s.in_a ? diff.a : diff.b);
       continue;
     }
-    out += s.at("same") ? "same files\n" : "differs\n";
-    out += lines_of(s.at("parameters"), "parameter");
-    if (!s.contains("difference")) continue;
-    for (const auto& [name, value] : s["difference"].items()) {
-      out += fmt::format("  {}: {}\n", name, value.is_object() ? shown(value) : value.dump());
-    }
-    out += lines_of(s.at("numbers"), "number");
+    out += s.same ? "same files\n" : "differs\n";
+    out += lines_of(s.parameters, "parameter");
+    if (!s.difference) continue;
+    for (const auto& [name, measure] : *s.difference) out += fmt::format("  {}: {}\n", name, shown(measure));
+    out += lines_of(s.numbers, "number");
   }
   return out;
 }

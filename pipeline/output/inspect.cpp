@@ -20,11 +20,9 @@ constexpr double kConsistent = .98, kVariation = 30, kShareDropped = .01, kOpen 
 // A body thinner than two edges of the default mesh folds.
 constexpr double kThin = 2.2 * kMeshEdge;
 
-Json vector(const Vec3& x) { return {x.x(), x.y(), x.z()}; }
-
 /// What may go wrong, and what to do about it.
-Json troubles(const CloudSurvey& s, const CloudFileReport& file) {
-  Json list = Json::array();
+std::vector<std::string> troubles(const CloudSurvey& s, const CloudFileReport& file) {
+  std::vector<std::string> list;
   const auto trouble = [&]<class... T>(fmt::format_string<T...> format, T&&... args) {
     list.push_back(fmt::format(format, std::forward<T>(args)...));
   };
@@ -81,12 +79,12 @@ Json troubles(const CloudSurvey& s, const CloudFileReport& file) {
 
 }  // namespace
 
-Json inspect_cloud(const fs::path& file, Progress& progress) {
+CloudInspection inspect_cloud(const fs::path& file, Progress& progress) {
   progress.report("inspect", "read", 0);
   require_regular_file(file);
   const CloudFile scan = read_scan(file);
   progress.report("inspect", "survey", .3);
-  const CloudSurvey s = [&] {
+  CloudSurvey s = [&] {
     try {
       return survey(scan.cloud);
     } catch (const TooFewPoints& e) {
@@ -95,21 +93,28 @@ Json inspect_cloud(const fs::path& file, Progress& progress) {
   }();
   std::vector<double> area = sample_areas(scan.cloud.points);
   std::nth_element(area.begin(), area.begin() + static_cast<std::ptrdiff_t>(area.size() / 2), area.end());
-  const Resolution resolution = choose_resolution(std::sqrt(area[area.size() / 2]), kMeshEdge * s.diagonal, s.noise);
-  Json json = {{"file", file.string()},
-               {"format", scan.report.format},
+  Resolution lattice = choose_resolution(std::sqrt(area[area.size() / 2]), kMeshEdge * s.diagonal, s.noise);
+  std::vector<std::string> list = troubles(s, scan.report);
+  return {file.string(), scan.report, std::move(s), std::move(lattice), std::move(list)};
+}
+
+Json to_json(const CloudInspection& inspection) {
+  const CloudSurvey& s = inspection.survey;
+  Json json = {{"file", inspection.file},
+               {"format", inspection.read.format},
                {"n_points", s.n_points},
-               {"box", {{"min", vector(s.low)}, {"max", vector(s.high)}, {"diagonal", s.diagonal}}},
+               {"box", {{"min", json_of(s.low)}, {"max", json_of(s.high)}, {"diagonal", s.diagonal}}},
                {"spacing", {{"p01", s.spacing[0]}, {"median", s.spacing[1]}, {"p99", s.spacing[2]}}},
                {"density_variation", s.density_variation}};
-  json["normals"] = {{"present", s.has_normals}};
+  Json normals = {{"present", s.has_normals}};
   if (s.has_normals) {
-    json["normals"].update({{"missing", s.n_normals_zero},
-                            {"rescaled", scan.report.n_normals_rescaled},
-                            {"consistency", s.consistency},
-                            {"outward", s.volume > 0},
-                            {"openness", s.openness}});
+    normals.update({{"missing", s.n_normals_zero},
+                    {"rescaled", inspection.read.n_normals_rescaled},
+                    {"consistency", s.consistency},
+                    {"outward", s.volume > 0},
+                    {"openness", s.openness}});
   }
+  json["normals"] = std::move(normals);
   json["noise"] = {
       {"sigma", s.noise}, {"over_spacing", s.noise_over_spacing}, {"over_diagonal", s.noise_over_diagonal}};
   json["thickness"] = s.thickness ? Json({{"p01", (*s.thickness)[0]},
@@ -117,50 +122,42 @@ Json inspect_cloud(const fs::path& file, Progress& progress) {
                                           {"median", (*s.thickness)[2]},
                                           {"share_of_samples_with_an_opposite", s.thickness_found}})
                                   : Json(nullptr);
-  json["dropped"] = {{"not_finite", scan.report.n_points_dropped + s.dropped.n_not_finite},
+  json["dropped"] = {{"not_finite", inspection.n_not_finite()},
                      {"duplicates", s.dropped.n_duplicates},
                      {"outliers", s.dropped.n_outliers},
                      {"small_components", s.dropped.n_small_components}};
   json["origin"] = {{"farthest_coordinate", s.farthest_coordinate}, {"ulp_over_spacing", s.ulp_over_spacing}};
-  json["lattice"] = {
-      {"spacing", resolution.spacing}, {"smoothing", resolution.smoothing}, {"reason", resolution.reason}};
-  json["trouble"] = troubles(s, scan.report);
+  const Resolution& lattice = inspection.lattice;
+  json["lattice"] = {{"spacing", lattice.spacing}, {"smoothing", lattice.smoothing}, {"reason", lattice.reason}};
+  json["trouble"] = inspection.troubles;
   return json;
 }
 
-std::string inspection_text(const Json& j) {
-  const auto number = [&](const char* block, const char* key) { return j.at(block).at(key).get<double>(); };
-  const Json &low = j.at("box").at("min"), &high = j.at("box").at("max");
-  std::string out = fmt::format("cloud     {}: {}, {} points\n", j.at("file").get<std::string>(),
-                                j.at("format").get<std::string>(), j.at("n_points").get<std::size_t>());
-  out += fmt::format("box       {:.6g} x {:.6g} x {:.6g}, diagonal {:.6g}\n",
-                     high[0].get<double>() - low[0].get<double>(), high[1].get<double>() - low[1].get<double>(),
-                     high[2].get<double>() - low[2].get<double>(), number("box", "diagonal"));
-  out += fmt::format("spacing   median {:.4g}, 1 % {:.4g}, 99 % {:.4g}; density varies {:.1f} : 1\n",
-                     number("spacing", "median"), number("spacing", "p01"), number("spacing", "p99"),
-                     j.at("density_variation").get<double>());
-  if (j.at("normals").at("present").get<bool>()) {
-    out += fmt::format(
-        "normals   {:.1f} % consistent, {}; {} missing, {} made unit\n", 100 * number("normals", "consistency"),
-        j.at("normals").at("outward").get<bool>() ? "outward" : "inward",
-        j.at("normals").at("missing").get<std::size_t>(), j.at("normals").at("rescaled").get<std::size_t>());
+std::string inspection_text(const CloudInspection& inspection) {
+  const CloudSurvey& s = inspection.survey;
+  std::string out = fmt::format("cloud     {}: {}, {} points\n", inspection.file, inspection.read.format, s.n_points);
+  const Vec3 size = s.high - s.low;
+  out += fmt::format("box       {:.6g} x {:.6g} x {:.6g}, diagonal {:.6g}\n", size.x(), size.y(), size.z(), s.diagonal);
+  out += fmt::format("spacing   median {:.4g}, 1 % {:.4g}, 99 % {:.4g}; density varies {:.1f} : 1\n", s.spacing[1],
+                     s.spacing[0], s.spacing[2], s.density_variation);
+  if (s.has_normals) {
+    out += fmt::format("normals   {:.1f} % consistent, {}; {} missing, {} made unit\n", 100 * s.consistency,
+                       s.volume > 0 ? "outward" : "inward", s.n_normals_zero, inspection.read.n_normals_rescaled);
   } else {
     out += "normals   none\n";
   }
-  out += fmt::format("noise     {:.3g} ({:.3g} spacings, {:.2g} of the diagonal)\n", number("noise", "sigma"),
-                     number("noise", "over_spacing"), number("noise", "over_diagonal"));
-  if (!j.at("thickness").is_null()) {
-    out += fmt::format("thickness 1 % {:.4g}, 5 % {:.4g}, median {:.4g}\n", number("thickness", "p01"),
-                       number("thickness", "p05"), number("thickness", "median"));
+  out += fmt::format("noise     {:.3g} ({:.3g} spacings, {:.2g} of the diagonal)\n", s.noise, s.noise_over_spacing,
+                     s.noise_over_diagonal);
+  if (s.thickness) {
+    const auto& [p01, p05, median] = *s.thickness;
+    out += fmt::format("thickness 1 % {:.4g}, 5 % {:.4g}, median {:.4g}\n", p01, p05, median);
   }
-  const Json& d = j.at("dropped");
   out += fmt::format("dropped   {} no numbers, {} duplicates, {} outliers, {} in small pieces\n",
-                     d.at("not_finite").get<std::size_t>(), d.at("duplicates").get<std::size_t>(),
-                     d.at("outliers").get<std::size_t>(), d.at("small_components").get<std::size_t>());
-  out += fmt::format("lattice   {:.4g}: {}\n", number("lattice", "spacing"),
-                     j.at("lattice").at("reason").get<std::string>());
-  if (j.at("trouble").empty()) out += "trouble   none seen\n";
-  for (const Json& t : j.at("trouble")) out += "trouble   " + t.get<std::string>() + "\n";
+                     inspection.n_not_finite(), s.dropped.n_duplicates, s.dropped.n_outliers,
+                     s.dropped.n_small_components);
+  out += fmt::format("lattice   {:.4g}: {}\n", inspection.lattice.spacing, inspection.lattice.reason);
+  if (inspection.troubles.empty()) out += "trouble   none seen\n";
+  for (const std::string& trouble : inspection.troubles) out += "trouble   " + trouble + "\n";
   return out;
 }
 

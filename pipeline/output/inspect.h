@@ -2,18 +2,34 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
+#include "pipeline/case/json_values.h"
 #include "pipeline/case/progress.h"
-#include "pipeline/case/record.h"
+#include "reconstruct/cloud/cloud_survey.h"
+#include "reconstruct/io/point_cloud_io.h"
+#include "reconstruct/solve/resolution.h"
 
 namespace umtet {
 
-/// What is in a cloud file: counts, box, spacing, normals, noise, thickness, and under `trouble` what is likely to go
-/// wrong, each with its remedy. Nothing is changed and nothing is written.
-/// \throw CloudRefused, std::system_error
-Json inspect_cloud(const std::filesystem::path& file, Progress& progress);
+/// What is in a cloud file.
+struct CloudInspection {
+  std::string file;  ///< as the user gave it
+  CloudFileReport read;
+  CloudSurvey survey;
+  Resolution lattice;                 ///< that a fit would choose
+  std::vector<std::string> troubles;  ///< what is likely to go wrong, each with its remedy
+
+  std::size_t n_not_finite() const { return read.n_points_dropped + survey.dropped.n_not_finite; }
+};
+
+/// Nothing is changed and nothing is written. \throw CloudRefused, std::system_error
+CloudInspection inspect_cloud(const std::filesystem::path& file, Progress& progress);
+
+/// What `umtet inspect --json` answers.
+Json to_json(const CloudInspection& inspection);
 
 /// The same in lines for people.
-std::string inspection_text(const Json& inspection);
+std::string inspection_text(const CloudInspection& inspection);
 
 }  // namespace umtet

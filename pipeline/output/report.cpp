@@ -10,11 +10,13 @@
 
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
+#include "pipeline/meshing/certificate_json.h"
 #include "pipeline/output/boundary_patches.h"
 #include "pipeline/output/detail/report_sources.h"
 #include "pipeline/output/report_page.h"
 #include "pipeline/output/report_plot.h"
 #include "pipeline/output/report_scene.h"
+#include "pipeline/meshing/stage_reports.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -90,25 +92,22 @@ std::vector<PlotCurve> quality_curves_of(const fs::path& file) {
   return curves;
 }
 
-std::string residual_plot(const Json& level_set_record) {
+std::string residual_plot(const std::vector<double>& residuals) {
   PlotCurve curve{"", "c0", {}};
-  for (const Json& r : level_set_record.at("numbers").value("residuals", Json::array()))
-    curve.points.push_back({static_cast<double>(curve.points.size()), r.get<double>()});
+  for (const double r : residuals) curve.points.push_back({static_cast<double>(curve.points.size()), r});
   return line_plot({"Fit of ψ on the coarsest lattice", "iteration", "relative residual", false, true}, {curve});
 }
 
-std::string shown_text(const Json& scene) {
-  const auto part = [&](const char* key, const char* what) {
-    const std::string shown = std::string(key) + "_shown";
-    return scene.at(key) == scene.at(shown)
-               ? fmt::format("all {} {}", scene.at(key).dump(), what)
-               : fmt::format("{} of {} {}", scene.at(shown).dump(), scene.at(key).dump(), what);
+std::string shown_text(const SceneHead& scene) {
+  const auto part = [](std::size_t shown, std::size_t all, const char* what) {
+    return shown == all ? fmt::format("all {} {}", all, what) : fmt::format("{} of {} {}", shown, all, what);
   };
-  std::string text = "In this file: " + part("n_faces", "boundary faces") + ", " + part("n_tets", "tets");
-  if (scene.at("n_points") != 0) text += ", " + part("n_points", "samples");
+  std::string text = "In this file: " + part(scene.n_faces_shown, scene.n_faces, "boundary faces") + ", " +
+                     part(scene.n_tets_shown, scene.n_tets, "tets");
+  if (scene.n_points != 0) text += ", " + part(scene.n_points_shown, scene.n_points, "samples");
   text += ".";
-  if (scene.at("n_faces") != scene.at("n_faces_shown")) text += " The surface is coarsened for the view.";
-  if (!scene.at("planes").is_null()) text += " Of the tets, the worst and those at the middle planes of the box.";
+  if (scene.n_faces != scene.n_faces_shown) text += " The surface is coarsened for the view.";
+  if (scene.planes) text += " Of the tets, the worst and those at the middle planes of the box.";
   return text +
          " Positions are rounded to 1/65535 of the box, colours to 1/255 of their range. Deviation is |ψ| / |∇ψ|.";
 }
@@ -118,8 +117,6 @@ std::string title_of(const CasePaths& paths) {
   const fs::path name = root.has_filename() ? root.filename() : root.parent_path().filename();
   return html_text(name.string());
 }
-
-Json record_of(const CasePaths& paths, Stage stage) { return Json::parse(read_text(paths.record(stage))); }
 
 /// mesh.vtu, and psi as it was meshed. \throw ArtefactDamaged, std::system_error
 Handover read_back(const CasePaths& paths, const Parameters& parameters, double h) {
@@ -139,11 +136,13 @@ struct Figures {
 };
 
 Figures figures_of(const CasePaths& paths, const Parameters& parameters, const MeshFile& mesh,
-                   const Json& certificate) {
+                   const Certificate& certificate) {
   const bool of_cloud = parameters.mesh().implicit.empty();
-  std::vector<Json> records;
-  if (of_cloud) records = {record_of(paths, Stage::Cloud), record_of(paths, Stage::LevelSet)};
-  records.push_back(record_of(paths, Stage::Mesh));
+  std::vector<StageRecord> records;
+  if (of_cloud) records = {read_record(paths, Stage::Cloud), read_record(paths, Stage::LevelSet)};
+  records.push_back(read_record(paths, Stage::Mesh));
+  SsdReport fit;
+  if (of_cloud) fit = level_set_report(records[1]).fit;
   Figures f;
   f.figures = line_plot({"Quality vectors of the three stages", "index of the vertex, worst first",
                          "least mean ratio Q around it", true, false},
@@ -151,10 +150,10 @@ Figures figures_of(const CasePaths& paths, const Parameters& parameters, const M
   f.figures += angle_plot(mesh.mesh);
   f.figures += line_plot({"Mean ratio of the tets", "mean ratio Q", "tets", false, true},
                          {{"", "c2", histogram_outline(quality_counts(mesh), 0, 1)}});
-  if (of_cloud) f.figures += residual_plot(records[1]);
+  if (of_cloud) f.figures += residual_plot(fit.residuals);
   f.tables = stage_table(records);
-  if (of_cloud) f.tables += band_table(records[1]);
-  f.tables += parameter_table(read_text(paths.parameters())) + certificate_table(certificate);
+  if (of_cloud) f.tables += band_table(fit.bands);
+  f.tables += parameter_table(read_text(paths.parameters())) + certificate_table(to_json(certificate));
   return f;
 }
 
@@ -176,15 +175,14 @@ std::string patch_settings(const Parameters& parameters) {
                                parameters.output().patch_angle, parameters.output().patch_planar));
 }
 
-std::string checksum_of(const Json& certificate) { return certificate.at("run").value("checksum", ""); }
+CertificateRun run_of(const Certificate& certificate) { return certificate.run.value_or(CertificateRun{}); }
 
 }  // namespace
 
-void write_report(const CasePaths& paths, const Parameters& parameters, const Json& certificate,
+void write_report(const CasePaths& paths, const Parameters& parameters, const Certificate& certificate,
                   const Handover& handover) {
   if (!handover.domain) {
-    return write_report(paths, parameters, certificate,
-                        read_back(paths, parameters, certificate.at("h").get<double>()));
+    return write_report(paths, parameters, certificate, read_back(paths, parameters, certificate.measured.mesh.h));
   }
   stop_if_interrupted();
   const MeshFile& mesh = handover.mesh;
@@ -195,37 +193,36 @@ void write_report(const CasePaths& paths, const Parameters& parameters, const Js
     blocks += fmt::format("<script type=\"text/plain\" id=\"block-{}\">{}</script>\n", name, text);
   }
   const Figures figures = figures_of(paths, parameters, mesh, certificate);
-  const Json& run = certificate.at("run");
-  const std::string page = filled(
-      report_page_html(),
-      {{"checksum", checksum_of(certificate)},
-       {"patch_settings", patch_settings(parameters)},
-       {"title", title_of(paths)},
-       {"css", std::string(report_page_css())},
-       {"js", std::string(report_viewer_js())},
-       {"three", std::string(report_three_js())},
-       {"verdict", certificate.at("verdict").get<std::string>()},
-       {"made", html_text(fmt::format("umtet {} · {}", certificate.value("version", ""), run.value("date", "")))},
-       {"reasons", reason_list(certificate)},
-       {"checks", check_list(certificate)},
-       {"cards", headline_cards(certificate)},
-       {"shown", shown_text(scene.head)},
-       {"figures", figures.figures},
-       {"tables", figures.tables},
-       {"certificate", script_json(certificate)},
-       {"scene", script_json(scene.head)},
-       {"blocks", blocks}});
+  const CertificateRun run = run_of(certificate);
+  const std::string page =
+      filled(report_page_html(), {{"checksum", run.checksum},
+                                  {"patch_settings", patch_settings(parameters)},
+                                  {"title", title_of(paths)},
+                                  {"css", std::string(report_page_css())},
+                                  {"js", std::string(report_viewer_js())},
+                                  {"three", std::string(report_three_js())},
+                                  {"verdict", certificate.verdict.word()},
+                                  {"made", html_text(fmt::format("umtet {} · {}", certificate.version, run.date))},
+                                  {"reasons", reason_list(certificate)},
+                                  {"checks", check_list(certificate)},
+                                  {"cards", headline_cards(certificate)},
+                                  {"shown", shown_text(scene.head)},
+                                  {"figures", figures.figures},
+                                  {"tables", figures.tables},
+                                  {"certificate", script_json(to_json(certificate))},
+                                  {"scene", script_json(to_json(scene.head))},
+                                  {"blocks", blocks}});
   write_text_artefact(paths.report(), page);
 }
 
-bool report_is_of(const CasePaths& paths, const Json& certificate, const Parameters& parameters) {
+bool report_is_of(const CasePaths& paths, const Certificate& certificate, const Parameters& parameters) {
   const auto meta = [](const char* name, const std::string& content) {
     return fmt::format("name=\"umtet-{}\" content=\"{}\"", name, content);
   };
   std::ifstream in(paths.report(), std::ios::binary);
   std::string head(kHead, '\0');
   in.read(head.data(), static_cast<std::streamsize>(head.size()));
-  return head.find(meta("certificate", checksum_of(certificate))) != std::string::npos &&
+  return head.find(meta("certificate", run_of(certificate).checksum)) != std::string::npos &&
          head.find(meta("patches", patch_settings(parameters))) != std::string::npos;
 }
 
@@ -241,11 +238,11 @@ void report_case(const CasePaths& paths) {
     const StageState state = inspect_stage(paths, stage, parameters.section(section_of(stage)), std::nullopt);
     if (!state.record) throw ArtefactDamaged(state.reason);
   }
-  const Json certificate = Json::parse(read_text(paths.certificate()), nullptr, false);
-  if (certificate.is_discarded() || !seal_holds(certificate)) {
+  const Json document = Json::parse(read_text(paths.certificate()), nullptr, false);
+  if (document.is_discarded() || !seal_holds(document)) {
     throw ArtefactDamaged(paths.certificate().string() + " does not match its own checksum; umtet run makes it again");
   }
-  write_report(paths, parameters, certificate);
+  write_report(paths, parameters, certificate_from(document));
 }
 
 }  // namespace umtet

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "pipeline/meshing/certificate_report.h"
 #include "pipeline/stages/stages.h"
 
 namespace umtet {
@@ -10,11 +11,11 @@ namespace umtet {
 /// @param certificate  as in certificate.json. \pre the stages it is about are done
 /// @param handover     what there is in memory of mesh and domain is not read
 /// \throw ArtefactDamaged, Interrupted, std::system_error
-void write_report(const CasePaths& paths, const Parameters& parameters, const Json& certificate,
+void write_report(const CasePaths& paths, const Parameters& parameters, const Certificate& certificate,
                   const Handover& handover = {});
 
 /// True when CASE/report.html was made from this certificate and shows the patches of these parameters.
-bool report_is_of(const CasePaths& paths, const Json& certificate, const Parameters& parameters);
+bool report_is_of(const CasePaths& paths, const Certificate& certificate, const Parameters& parameters);
 
 /// `umtet report`: write_report() of a case as it is on disk.
 /// \throw UsageError when there is no certificate; ArtefactDamaged, Interrupted, std::system_error

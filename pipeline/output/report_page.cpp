@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
@@ -12,26 +14,24 @@ namespace {
 
 std::string dumped(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
-const Json& at(const Json& certificate, const char* pointer) {
-  static const Json kNull = nullptr;
-  const Json::json_pointer p(pointer);
-  return certificate.contains(p) ? certificate.at(p) : kNull;
-}
-
 std::string thousands(const std::string& digits) {
   std::string s = digits;
   for (int k = static_cast<int>(s.size()) - 3; k > 0; k -= 3) s.insert(s.begin() + k, ',');
   return s;
 }
 
-/// A value of the certificate, marked with where it is from. Counts have commas, other numbers as many digits as said.
-std::string value(const Json& certificate, const char* pointer, int digits = 4) {
-  const Json& v = at(certificate, pointer);
-  const std::string text = v.is_null()              ? "–"
-                           : v.is_number_unsigned() ? thousands(dumped(v))
-                           : v.is_number_float()    ? fmt::format("{:.{}g}", v.get<double>(), digits)
-                                                    : dumped(v);
+/// A value of the certificate, marked with where certificate.json has it.
+std::string marked(const char* pointer, const std::string& text) {
   return fmt::format("<span data-certificate=\"{}\">{}</span>", pointer, text);
+}
+
+template <std::integral Count>
+std::string value(const char* pointer, Count n) {
+  return marked(pointer, n < 0 ? fmt::format("{}", n) : thousands(fmt::format("{}", n)));
+}
+
+std::string value(const char* pointer, const std::optional<double>& number, int digits = 4) {
+  return marked(pointer, number && !std::isnan(*number) ? fmt::format("{:.{}g}", *number, digits) : "–");
 }
 
 void add_leaves(const Json& json, const std::string& pointer, std::string& rows) {
@@ -80,93 +80,86 @@ std::string script_json(const Json& json) {
   return out;
 }
 
-std::string reason_list(const Json& certificate) {
-  const Json& reasons = certificate.at("reasons");
-  if (reasons.empty()) return "";
+std::string reason_list(const Certificate& certificate) {
+  if (certificate.verdict.passes()) return "";
   std::string out = "<ul class=\"reasons\">\n";
-  for (const Json& r : reasons) out += "<li>" + html_text(r.get<std::string>()) + "</li>\n";
-  const Json& remedy = at(certificate, "/remedy");
-  if (remedy.is_string()) out += "<li>Try " + html_text(remedy.get<std::string>()) + "</li>\n";
+  for (const std::string& reason : certificate.verdict.reasons) out += "<li>" + html_text(reason) + "</li>\n";
+  if (certificate.remedy) out += "<li>Try " + html_text(*certificate.remedy) + "</li>\n";
   return out + "</ul>";
 }
 
-std::string check_list(const Json& c) {
+std::string check_list(const Certificate& c) {
   std::string out;
-  const auto add = [&](const std::string& words, const Json& holds) {
-    out += fmt::format("<li class=\"{}\">{}</li>\n",
-                       holds.is_null()     ? "open"
-                       : holds.get<bool>() ? "good"
-                                           : "bad",
-                       words);
+  const auto add = [&](const std::string& words, std::optional<bool> holds) {
+    out += fmt::format("<li class=\"{}\">{}</li>\n", !holds ? "open" : *holds ? "good" : "bad", words);
   };
-  const Json& inverted = at(c, "/quality/n_inverted");
-  add("inverted tets: " + value(c, "/quality/n_inverted"), inverted == 0);
-  add("closed manifold boundary", at(c, "/boundary/closed_manifold"));
-  add("it is the surface that was to be fitted", at(c, "/boundary/equals_positive_faces"));
+  const MeshCertificate& mesh = c.measured.mesh;
+  add("inverted tets: " + value("/quality/n_inverted", mesh.quality.n_inverted), mesh.quality.n_inverted == 0);
+  add("closed manifold boundary", mesh.boundary.closed_manifold);
+  add("it is the surface that was to be fitted", mesh.boundary.equals_positive_faces);
   // What cannot be proved is open, not wrong.
-  const Json& proved = at(c, "/domain/components_proved");
-  add("all pieces of ψ = 0 proved to be seen", proved == true ? proved : Json(nullptr));
-  const Json &gap = at(c, "/boundary/gap_over_volume"), &most = at(c, "/gates/volume_gap");
-  if (gap.is_number() && most.is_number()) {
-    add(fmt::format("between faces and ψ = 0 at most {:.3g} % of the volume", 100 * most.get<double>()), gap <= most);
+  const bool proved = c.measured.domain.components_proved.value_or(false);
+  add("all pieces of ψ = 0 proved to be seen", proved ? std::optional(true) : std::nullopt);
+  if (const std::optional<double>& gap = mesh.boundary.gap_over_volume) {
+    const double most = c.verdict.volume_gap_gate;
+    add(fmt::format("between faces and ψ = 0 at most {:.3g} % of the volume", 100 * most), *gap <= most);
   }
-  const Json& gate = at(c, "/gates/min_quality");
-  if (gate.is_number()) {
-    add("min Q at least " + value(c, "/gates/min_quality", 6),
-        at(c, "/quality/min").get<double>() >= gate.get<double>());
+  if (const std::optional<double>& gate = c.verdict.min_quality_gate) {
+    add("min Q at least " + value("/gates/min_quality", gate, 6), mesh.quality.min >= *gate);
   } else {
-    add("no gate on min Q", nullptr);
+    add("no gate on min Q", std::nullopt);
   }
   return out;
 }
 
-std::string headline_cards(const Json& c) {
+std::string headline_cards(const Certificate& c) {
   std::string out;
   const auto card = [&](const std::string& big, const std::string& small) {
     out += "<div class=\"card\"><b>" + big + "</b><span>" + small + "</span></div>\n";
   };
-  const Json& unit = at(c, "/units");
-  const std::string units = unit.is_string() ? " " + html_text(unit.get<std::string>()) : "";
-  card(value(c, "/n_tets"), "tets, " + value(c, "/n_vertices") + " vertices");
-  card(value(c, "/quality/min"), "min mean ratio Q; 1&nbsp;%: " + value(c, "/quality/p01"));
-  card(value(c, "/quality/dihedral_min_deg", 3) + "–" + value(c, "/quality/dihedral_max_deg") + "°", "dihedral angles");
-  card(value(c, "/h") + units, "edge length h of the background");
-  card(value(c, "/boundary/n_faces"),
-       "boundary faces; genus " + value(c, "/boundary/genus") + ", pieces " + value(c, "/boundary/components"));
-  card(value(c, "/boundary/max_centroid_distance_over_h", 3) + " h",
-       "face centres off ψ&nbsp;=&nbsp;0; vertices " + value(c, "/boundary/max_vertex_distance_over_h", 2) + " h");
-  if (at(c, "/cloud").is_object()) {
-    card(value(c, "/cloud/p99_distance_over_h", 3) + " h",
-         "99&nbsp;% of the samples nearer; max " + value(c, "/cloud/max_distance_over_h", 3) + " h");
+  const MeshCertificate& mesh = c.measured.mesh;
+  const MeshCertificate::Quality& q = mesh.quality;
+  const MeshCertificate::Boundary& b = mesh.boundary;
+  const std::string units = c.units ? " " + html_text(*c.units) : "";
+  card(value("/n_tets", mesh.n_tets), "tets, " + value("/n_vertices", mesh.n_vertices) + " vertices");
+  card(value("/quality/min", q.min), "min mean ratio Q; 1&nbsp;%: " + value("/quality/p01", q.p01));
+  card(value("/quality/dihedral_min_deg", q.dihedral_min_deg, 3) + "–" +
+           value("/quality/dihedral_max_deg", q.dihedral_max_deg) + "°",
+       "dihedral angles");
+  card(value("/h", mesh.h) + units, "edge length h of the background");
+  card(value("/boundary/n_faces", b.n_faces), "boundary faces; genus " + value("/boundary/genus", b.genus) +
+                                                  ", pieces " + value("/boundary/components", b.components));
+  card(value("/boundary/max_centroid_distance_over_h", b.max_centroid_distance_over_h, 3) + " h",
+       "face centres off ψ&nbsp;=&nbsp;0; vertices " +
+           value("/boundary/max_vertex_distance_over_h", b.max_vertex_distance_over_h, 2) + " h");
+  if (const std::optional<SampleDistances>& cloud = c.measured.cloud) {
+    card(value("/cloud/p99_distance_over_h", cloud->p99 / mesh.h, 3) + " h",
+         "99&nbsp;% of the samples nearer; max " + value("/cloud/max_distance_over_h", cloud->max / mesh.h, 3) + " h");
   }
   return out;
 }
 
-std::string stage_table(const std::vector<Json>& records) {
+std::string stage_table(const std::vector<StageRecord>& records) {
   double total = 0;
-  for (const Json& r : records) total += r.at("run").value("seconds", 0.);
+  for (const StageRecord& r : records) total += r.run.seconds;
   std::string rows = "<tr><th>stage</th><th>seconds</th><th></th><th>peak memory, MB</th><th>threads</th></tr>\n";
-  for (const Json& r : records) {
-    const Json& run = r.at("run");
-    const double s = run.value("seconds", 0.);
+  for (const StageRecord& r : records) {
+    const double s = r.run.seconds;
     rows += fmt::format(
         "<tr><td>{}</td><td>{:.3g}</td><td class=\"bar\"><i style=\"width:{:.1f}%\"></i></td><td>{:.0f}</td>"
         "<td>{}</td></tr>\n",
-        html_text(r.at("stage").get<std::string>()), s, total > 0 ? 100 * s / total : 0,
-        run.value("peak_memory_MB", 0.), run.value("threads", 0));
+        html_text(to_string(r.stage)), s, total > 0 ? 100 * s / total : 0, r.run.peak_memory_MB, r.run.threads);
   }
   return "<div class=\"table\"><h2>time and memory of the stages</h2>\n<table>\n" + rows + "</table></div>\n";
 }
 
-std::string band_table(const Json& record) {
-  const Json bands = record.at("numbers").value("bands", Json::array());
+std::string band_table(const std::vector<BandReport>& bands) {
   if (bands.empty()) return "";
   std::string rows =
       "<tr><th>spacing</th><th>samples</th><th>nodes</th><th>iterations</th><th>relative residual</th></tr>\n";
-  for (const Json& b : bands) {
-    rows += fmt::format("<tr><td>{:.4g}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.2e}</td></tr>\n",
-                        b.at("spacing").get<double>(), dumped(b.at("n_samples")), dumped(b.at("n_nodes")),
-                        dumped(b.at("iterations")), b.at("residual").get<double>());
+  for (const BandReport& b : bands) {
+    rows += fmt::format("<tr><td>{:.4g}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.2e}</td></tr>\n", b.spacing,
+                        b.n_samples, b.n_nodes, b.iterations, b.residual);
   }
   return "<div class=\"table\"><h2>bands of finer lattices in the fit</h2>\n<table>\n" + rows + "</table></div>\n";
 }

@@ -2,8 +2,12 @@
 
 #include <map>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "pipeline/case/record.h"
+#include "pipeline/meshing/certificate_report.h"
+#include "reconstruct/solve/multilevel_fit.h"
 
 namespace umtet {
 
@@ -15,17 +19,17 @@ std::string script_json(const Json& json);
 
 /// Parts of the page, by the name of their place in report/page.html. Every number of a certificate stands in an
 /// element with `data-certificate`, its JSON pointer.
-std::string reason_list(const Json& certificate);
-std::string check_list(const Json& certificate);
-std::string headline_cards(const Json& certificate);
+std::string reason_list(const Certificate& certificate);
+std::string check_list(const Certificate& certificate);
+std::string headline_cards(const Certificate& certificate);
 
 /// Seconds and memory of the stages, with bars. @param records  of the stages that were run
-std::string stage_table(const std::vector<Json>& records);
-/// The levels of a fit by the multilevel fit; empty when there are none.
-std::string band_table(const Json& level_set_record);
+std::string stage_table(const std::vector<StageRecord>& records);
+/// The levels of a multilevel fit; empty when there are none.
+std::string band_table(const std::vector<BandReport>& bands);
 /// Every parameter, from the text of case.toml; those that somebody gave stand out.
 std::string parameter_table(const std::string& case_toml);
-/// Every value of the certificate, as it is in the file.
+/// Every value of certificate.json, as it is in the file.
 std::string certificate_table(const Json& certificate);
 
 /// The template with every {{name}} replaced. \throw std::invalid_argument naming a place without a value

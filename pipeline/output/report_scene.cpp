@@ -62,7 +62,6 @@ class SceneMaker {
   void write_bytes(const char* name, const std::vector<std::uint8_t>& bytes) {
     scene_.blocks.emplace_back(name, base64(bytes.data(), bytes.size()));
   }
-  void write_range(const char* name, double least, double most) { scene_.head["ranges"][name] = {least, most}; }
   void write_values();
   /// Numbers the vertices that are shown, in the order they are met.
   int shown(int vertex) {
@@ -95,9 +94,9 @@ void SceneMaker::take_faces(const SolverMesh& divided) {
     faces_.push_back({tet[a], tet[b], tet[c], tet[behind]});
   }
   take_patches(divided);
-  scene_.head["n_faces"] = faces_.size();
+  scene_.head.n_faces = faces_.size();
   if (faces_.size() > caps_.faces) coarsen_faces();
-  scene_.head["n_faces_shown"] = faces_.size();
+  scene_.head.n_faces_shown = faces_.size();
 }
 
 void SceneMaker::take_patches(const SolverMesh& divided) {
@@ -108,10 +107,9 @@ void SceneMaker::take_patches(const SolverMesh& divided) {
     area[divided.face_patch[f]] += geometry.area[f];
     ++n[divided.face_patch[f]];
   }
-  Json& patches = scene_.head["patches"] = Json::array();
   for (std::size_t p = 0; p < area.size(); ++p) {
     const MeshPart& part = divided.patches[p];
-    patches.push_back({{"name", part.name}, {"number", part.number}, {"n_faces", n[p]}, {"area", area[p]}});
+    scene_.head.patches.push_back({part.name, part.number, n[p], area[p]});
   }
   if (area.size() > 1) face_patch_ = divided.face_patch;
 }
@@ -161,7 +159,7 @@ void SceneMaker::take_tets() {
   std::partial_sort(tets_.begin(), tets_.begin() + static_cast<std::ptrdiff_t>(n_worst), tets_.end(),
                     [&](int a, int b) { return q[a] != q[b] ? q[a] < q[b] : a < b; });
   const double layer = longest_edge(mesh_) / 2;
-  Json planes = Json::array();
+  std::vector<int> planes;
   if (tets_.size() > caps_.tets) {
     std::vector<char> taken(tets_.size(), 0);
     tets_.resize(n_worst);
@@ -179,11 +177,11 @@ void SceneMaker::take_tets() {
       planes.push_back(axis);
     }
   }
-  scene_.head["n_tets"] = mesh_.C.size();
-  scene_.head["n_tets_shown"] = tets_.size();
-  scene_.head["n_worst"] = n_worst;
-  scene_.head["layer"] = layer;
-  scene_.head["planes"] = tets_.size() == mesh_.C.size() ? Json(nullptr) : planes;  // null: any plane
+  scene_.head.n_tets = mesh_.C.size();
+  scene_.head.n_tets_shown = tets_.size();
+  scene_.head.n_worst = n_worst;
+  scene_.head.layer = layer;
+  if (tets_.size() != mesh_.C.size()) scene_.head.planes = std::move(planes);
 }
 
 void SceneMaker::take_points() {
@@ -191,8 +189,8 @@ void SceneMaker::take_points() {
   const std::size_t step = all.size() / caps_.points + 1;
   std::vector<Vec3> points;
   for (std::size_t i = 0; i < all.size(); i += step) points.push_back(all[i] + domain_.shift);
-  scene_.head["n_points"] = all.size();
-  scene_.head["n_points_shown"] = points.size();
+  scene_.head.n_points = all.size();
+  scene_.head.n_points_shown = points.size();
   write_positions("points", points);
 }
 
@@ -207,7 +205,7 @@ void SceneMaker::write_positions(const char* name, const std::vector<Vec3>& poin
 }
 
 void SceneMaker::write_indices(const char* name, const std::vector<FacedTet>& list) {
-  if (scene_.head["index_bytes"] == 2) {
+  if (scene_.head.index_bytes == 2) {
     std::vector<std::uint16_t> ids;
     for (const FacedTet& t : list) {
       for (const int v : t) ids.push_back(static_cast<std::uint16_t>(v));
@@ -222,7 +220,7 @@ void SceneMaker::write_values() {
   const std::vector<double>& q = *field(file_.cell_data, "mean_ratio");
   const auto [least_q, most_q] = std::minmax_element(q.begin(), q.end());
   const double q0 = *least_q, q1 = *most_q;
-  write_range("quality", q0, q1);
+  scene_.head.quality = {q0, q1};
   std::vector<std::uint8_t> bytes;
   for (const int t : tets_) bytes.push_back(in_steps(q[t], q0, q1));
   write_bytes("tet_quality", bytes);
@@ -241,7 +239,7 @@ void SceneMaker::write_values() {
     deviation[f] = std::abs(value) / g.norm();
   });
   const double most = deviation.empty() ? 0 : *std::max_element(deviation.begin(), deviation.end());
-  write_range("deviation", 0, most);
+  scene_.head.deviation = {0, most};
   bytes.clear();
   for (const double d : deviation) bytes.push_back(in_steps(d, 0, most));
   write_bytes("face_deviation", bytes);
@@ -254,7 +252,7 @@ void SceneMaker::write_values() {
   if (const std::vector<double>* support = field(file_.point_data, "support")) {
     double far = 0;
     for (const double d : *support) far = std::max(far, d);
-    write_range("support", 0, far);
+    scene_.head.support = {0, far};
     bytes.clear();
     for (const int v : shown_) bytes.push_back(in_steps((*support)[v], 0, far));
     write_bytes("vertex_support", bytes);
@@ -266,9 +264,8 @@ ReportScene SceneMaker::operator()(const SolverMesh& divided) {
     throw std::invalid_argument("a scene needs tets with mean_ratio");
   }
   if (divided.n_tets() != mesh_.C.size()) throw std::invalid_argument("a scene needs the patches of its own mesh");
-  const Vec3 size = box_.sizes();
-  scene_.head = {{"box_min", {box_.min().x(), box_.min().y(), box_.min().z()}},
-                 {"box_size", {size.x(), size.y(), size.z()}}};
+  scene_.head.box_min = box_.min();
+  scene_.head.box_size = box_.sizes();
   take_faces(divided);
   take_tets();
   shown_id_.assign(mesh_.V.size(), -1);
@@ -279,7 +276,7 @@ ReportScene SceneMaker::operator()(const SolverMesh& divided) {
       for (int& v : t) v = shown(v);
     }
   }
-  scene_.head["index_bytes"] = shown_.size() <= kSteps16 + 1 ? 2 : 4;
+  scene_.head.index_bytes = shown_.size() <= kSteps16 + 1 ? 2 : 4;
   write_indices("faces", faces);
   write_indices("tets", tets);
   std::vector<Vec3> positions;
@@ -290,7 +287,32 @@ ReportScene SceneMaker::operator()(const SolverMesh& divided) {
   return std::move(scene_);
 }
 
+Json to_json(const SceneHead::Range& range) { return {range.least, range.most}; }
+
 }  // namespace
+
+Json to_json(const SceneHead& head) {
+  Json patches = Json::array();
+  for (const SceneHead::Patch& p : head.patches) {
+    patches.push_back({{"name", p.name}, {"number", p.number}, {"n_faces", p.n_faces}, {"area", p.area}});
+  }
+  Json ranges = {{"quality", to_json(head.quality)}, {"deviation", to_json(head.deviation)}};
+  if (head.support) ranges["support"] = to_json(*head.support);
+  return {{"box_min", json_of(head.box_min)},
+          {"box_size", json_of(head.box_size)},
+          {"patches", patches},
+          {"n_faces", head.n_faces},
+          {"n_faces_shown", head.n_faces_shown},
+          {"n_tets", head.n_tets},
+          {"n_tets_shown", head.n_tets_shown},
+          {"n_worst", head.n_worst},
+          {"layer", head.layer},
+          {"planes", json_of(head.planes)},
+          {"index_bytes", head.index_bytes},
+          {"ranges", ranges},
+          {"n_points", head.n_points},
+          {"n_points_shown", head.n_points_shown}};
+}
 
 ReportScene report_scene(const MeshFile& mesh, const Domain& domain, const SolverMesh& divided,
                          const ReportCaps& caps) {

@@ -1,12 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "mesh/io/solver_mesh.h"
 #include "mesh/io/tet_mesh_io.h"
-#include "pipeline/case/record.h"
+#include "pipeline/case/json_values.h"
 #include "pipeline/meshing/domain.h"
 
 namespace umtet {
@@ -19,6 +20,33 @@ struct ReportCaps {
   std::size_t worst = 500;  ///< tets that come first, ascending in quality, whatever else is left out
 };
 
+/// What the arrays of a scene mean, and how much of the mesh is in them.
+struct SceneHead {
+  Vec3 box_min = Vec3::Zero(), box_size = Vec3::Zero();  ///< of mesh and samples, model coordinates
+  struct Patch {
+    std::string name;
+    int number = 0;
+    std::size_t n_faces = 0;  ///< in the whole mesh
+    double area = 0;          ///< model units^2
+  };
+  std::vector<Patch> patches;
+  std::size_t n_faces = 0, n_faces_shown = 0;
+  std::size_t n_tets = 0, n_tets_shown = 0;
+  std::size_t n_worst = 0;  ///< so many tets come first, ascending in quality
+  double layer = 0;         ///< a tet is drawn at a cut that is no farther from its centroid, model units
+  std::optional<std::vector<int>> planes;  ///< axes across which tets are there to be cut; none: any plane will do
+  int index_bytes = 0;                     ///< of an index: 2 or 4
+  struct Range {
+    double least = 0, most = 0;
+  };
+  Range quality, deviation;      ///< of the colours; deviation in model units
+  std::optional<Range> support;  ///< distances to samples, model units; none for a formula
+  std::size_t n_points = 0, n_points_shown = 0;
+};
+
+/// As the viewer reads it.
+Json to_json(const SceneHead& head);
+
 /// What the viewer of a report draws. Little-endian arrays in base64, by name:
 ///   positions    uint16 x 3 a vertex, in 65535ths of the box
 ///   faces        4 indices each, uint16 or uint32 (head.index_bytes): a boundary face, and the vertex behind it
@@ -27,8 +55,7 @@ struct ReportCaps {
 ///   face_patch   a byte each, where there are several: index into head.patches, modulo 256
 ///   points       uint16 x 3 a sample, in 65535ths of the box
 struct ReportScene {
-  Json head;  ///< box, counts of what is there and of what is shown, ranges, planes; patches with the
-              ///< numbers and areas of their faces in the whole mesh
+  SceneHead head;
   std::vector<std::pair<std::string, std::string>> blocks;
 };
 

@@ -18,6 +18,7 @@
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/meshing/domain.h"
+#include "pipeline/meshing/stage_reports.h"
 #include "pipeline/stages/stages.h"
 
 namespace umtet {
@@ -163,7 +164,7 @@ std::vector<fs::path> write_view(const CasePaths& paths, Progress& progress) {
   const StageState state = inspect_stage(paths, Stage::Mesh, parameters.section("mesh"), std::nullopt);
   if (state.kind == StageState::Kind::Damaged) throw ArtefactDamaged(state.reason);
   if (!state.record) throw UsageError("nothing to view: " + state.reason + "; umtet mesh makes it");
-  const double h = state.record->numbers.at("measured").at("h");
+  const double h = mesh_report(*state.record).measured.mesh.h;
   Domain domain = load_domain(paths, parameters);
   domain.limit_detail(h);
   const fs::path folder = paths.view();

@@ -45,6 +45,19 @@ bool concerns_one_step(ExitCode code) {
   }
 }
 
+double least_quality(const Step& step) { return step.measured->mesh.quality.min; }
+
+/// What a program is told of a step.
+Json to_json(const Step& step) {
+  Json json = {{"t", step.at.t}, {"file", step.made() ? Json(step.file) : Json(nullptr)}, {"seconds", step.seconds}};
+  if (step.made()) {
+    json.update(to_json(*step.measured, step.verdict));
+  } else {
+    json["error"] = step.error;
+  }
+  return json;
+}
+
 class Evolution {
  public:
   Evolution(const EvolveRequest& request, Progress& progress)
@@ -190,7 +203,7 @@ UmResult Evolution::make(Step& step, Domain& domain) {
     throw MeshingImpossible(too_thin_text(a, domain.shift) + "\n  --allow-thin keeps the mesh nevertheless");
   }
   if (!a.made()) throw MeshingImpossible(failure_text(a.result, h_, domain.shift));
-  judge(a.measured, parameters_);
+  step.verdict = judge(a.measured.mesh, a.measured.reasons, parameters_);
   step.measured = std::move(a.measured);
   return std::move(a.result);
 }
@@ -210,9 +223,9 @@ void Evolution::mesh(Step& step) {
   if (result) write_mesh(request_.folder / step.file, final_content(*domain, *result));
   write_tables(request_.folder, steps_);
   if (!result) return;
-  progress_.say(fmt::format(
-      "t = {}: {} tets, min Q {:.4f}, {}", time_text(step.at.t), step.measured.at("n_tets").get<std::size_t>(),
-      step.measured.at("quality").at("min").get<double>(), step.measured.at("verdict").get<std::string>()));
+  const MeshCertificate& made = step.measured->mesh;
+  progress_.say(fmt::format("t = {}: {} tets, min Q {:.4f}, {}", time_text(step.at.t), made.n_tets, made.quality.min,
+                            step.verdict.word()));
 }
 
 EvolveOutcome Evolution::outcome() const {
@@ -221,28 +234,24 @@ EvolveOutcome Evolution::outcome() const {
   const Step* worst = nullptr;
   std::string troubles;
   for (const Step& step : steps_) {
-    Json json = {{"t", step.at.t}, {"file", step.made() ? Json(step.file) : Json(nullptr)}, {"seconds", step.seconds}};
+    result.steps.push_back(to_json(step));
     if (!step.made()) {
-      json["error"] = step.error;
       troubles += fmt::format("not made  t = {}: {}\n", time_text(step.at.t), step.error);
     } else {
-      json.update(step.measured);
       ++n_made;
-      n_passed += step.measured.at("verdict") == "pass";
-      for (const Json& reason : step.measured.at("reasons")) {
-        troubles += fmt::format("failed    t = {}: {}\n", time_text(step.at.t), reason.get<std::string>());
+      n_passed += step.verdict.passes();
+      for (const std::string& reason : step.verdict.reasons) {
+        troubles += fmt::format("failed    t = {}: {}\n", time_text(step.at.t), reason);
       }
-      const auto q = [](const Step& s) { return s.measured.at("quality").at("min").get<double>(); };
-      if (!worst || q(step) < q(*worst)) worst = &step;
+      if (!worst || least_quality(step) < least_quality(*worst)) worst = &step;
     }
-    result.steps.push_back(std::move(json));
   }
   if (n_passed < steps_.size()) result.code = ExitCode::GateFailed;
   result.text = fmt::format("steps     {} of {} made, {} of them certified, in one background of {} tets; h = {:.5g}\n",
                             n_made, steps_.size(), n_passed, background_->n_tets(), h_);
   if (worst) {
-    result.text += fmt::format("quality   worst min Q {:.4f}, at t = {}\n",
-                               worst->measured.at("quality").at("min").get<double>(), time_text(worst->at.t));
+    result.text +=
+        fmt::format("quality   worst min Q {:.4f}, at t = {}\n", least_quality(*worst), time_text(worst->at.t));
   }
   result.text += troubles;
   for (const char* name : {kSeries, "quality.csv", "quality.svg"}) result.files.push_back(request_.folder / name);

@@ -21,7 +21,7 @@ struct EvolveRequest {
 };
 
 struct EvolveOutcome {
-  Json steps = Json::array();  ///< by step: t, file (null: not made), and what measure() says, or `error`
+  Json steps = Json::array();  ///< by step: t, file (null: not made), and what is measured with its verdict, or `error`
   std::vector<std::filesystem::path> files;
   std::string text;                   ///< for people
   ExitCode code = ExitCode::Success;  ///< GateFailed when a step could not be made, or its certificate failed

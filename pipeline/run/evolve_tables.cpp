@@ -1,6 +1,7 @@
 #include "pipeline/run/evolve_tables.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "pipeline/case/artefact.h"
 #include "pipeline/output/step_plot.h"
@@ -12,15 +13,11 @@ namespace {
 std::string csv_line(const EvolveStep& step) {
   const std::string name = fmt::format("{},{},", step.file.substr(0, step.file.find('.')), time_text(step.at.t));
   if (!step.made()) return name + fmt::format(",,,,,,,none,{:.3f},{}\n", step.seconds, csv_field(step.error));
-  const Json& m = step.measured;
-  const Json &q = m.at("quality"), &b = m.at("boundary");
-  std::string reasons;
-  for (const Json& reason : m.at("reasons")) reasons += (reasons.empty() ? "" : "; ") + reason.get<std::string>();
-  return name + fmt::format("{},{:.6f},{:.6f},{:.3f},{:.3f},{},{},{},{:.3f},{}\n", m.at("n_tets").get<std::size_t>(),
-                            q.at("min").get<double>(), q.at("p01").get<double>(),
-                            q.at("dihedral_min_deg").get<double>(), q.at("dihedral_max_deg").get<double>(),
-                            b.at("components").get<int>(), b.at("genus").get<long>(),
-                            m.at("verdict").get<std::string>(), step.seconds, csv_field(reasons));
+  const MeshCertificate& m = step.measured->mesh;
+  return name + fmt::format("{},{:.6f},{:.6f},{:.3f},{:.3f},{},{},{},{:.3f},{}\n", m.n_tets, m.quality.min,
+                            m.quality.p01, m.quality.dihedral_min_deg, m.quality.dihedral_max_deg,
+                            m.boundary.components, m.boundary.genus, step.verdict.word(), step.seconds,
+                            csv_field(fmt::format("{}", fmt::join(step.verdict.reasons, "; "))));
 }
 
 }  // namespace
@@ -37,8 +34,8 @@ void write_tables(const std::filesystem::path& folder, const std::vector<EvolveS
     csv += csv_line(step);
     plot.push_back({step.at.t, step.made(), 0, 0});
     if (!step.made()) continue;
-    plot.back().min = step.measured.at("quality").at("min");
-    plot.back().p01 = step.measured.at("quality").at("p01");
+    plot.back().min = step.measured->mesh.quality.min;
+    plot.back().p01 = step.measured->mesh.quality.p01;
     pvd +=
         fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"0\" file=\"{}\"/>\n", time_text(step.at.t), step.file);
   }

@@ -2,10 +2,11 @@
 
 #include <exception>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "pipeline/case/record.h"
+#include "pipeline/meshing/certificate_report.h"
 #include "pipeline/run/time_steps.h"
 
 namespace umtet {
@@ -16,11 +17,12 @@ struct EvolveStep {
   std::string file;   ///< its name in the folder
   std::string error;  ///< why there is no mesh
   std::exception_ptr thrown;
-  Json measured;           ///< of measure() and judge(); null while there is no mesh
-  double seconds = 0;      ///< mesh and certificate; of a cloud also its level set
-  bool looked_at = false;  ///< what the background has to know of it has been taken
+  std::optional<MeshMeasures> measured;  ///< while there is a mesh
+  Verdict verdict;                       ///< on it
+  double seconds = 0;                    ///< mesh and certificate; of a cloud also its level set
+  bool looked_at = false;                ///< what the background has to know of it has been taken
 
-  bool made() const { return !measured.is_null(); }
+  bool made() const { return measured.has_value(); }
 };
 
 inline constexpr const char* kSeries = "series.pvd";

@@ -117,7 +117,7 @@ StageRecord CaseRun::ensure(Stage stage) {
   outcome_.stages_run.push_back(stage);
   state = state_of(stage);
   if (!state.record) throw ArtefactDamaged(state.reason);
-  progress_.say(fmt::format("{}: done in {:.2f} s", to_string(stage), state.record->run.value("seconds", 0.)));
+  progress_.say(fmt::format("{}: done in {:.2f} s", to_string(stage), state.record->run.seconds));
   return *state.record;
 }
 
@@ -144,8 +144,8 @@ void CaseRun::make(Stage stage) {
 
 void CaseRun::certify(const StageRecord& mesh) {
   set_work_at_hand("certificate");
-  const Json json = certificate(paths_, mesh, parameters_);
-  const std::string text = file_text(json);
+  outcome_.certificate = certificate(paths_, mesh, parameters_);
+  const std::string text = file_text(to_json(*outcome_.certificate));
   const fs::path file = paths_.certificate();
   const bool exists = fs::exists(file);
   const std::string former = exists ? read_text(file) : "";
@@ -157,8 +157,7 @@ void CaseRun::certify(const StageRecord& mesh) {
     }
     write_text_artefact(file, text);
   }
-  outcome_.certificate = json;
-  if (json.at("verdict") != "pass") outcome_.code = ExitCode::GateFailed;
+  if (!outcome_.certificate->verdict.passes()) outcome_.code = ExitCode::GateFailed;
 }
 
 /// A report is of the certificate beside it, or there is none.

@@ -10,6 +10,7 @@
 #include "pipeline/case/parameters.h"
 #include "pipeline/case/progress.h"
 #include "pipeline/case/record.h"
+#include "pipeline/meshing/certificate_report.h"
 
 namespace umtet {
 
@@ -29,7 +30,7 @@ struct RunRequest {
 
 struct RunOutcome {
   std::vector<Stage> stages_run;
-  std::optional<Json> certificate;           ///< when 3-mesh is done and was asked for
+  std::optional<Certificate> certificate;    ///< when 3-mesh is done and was asked for
   std::vector<std::filesystem::path> files;  ///< that the user may want to open
   ExitCode code = ExitCode::Success;         ///< Success, or GateFailed when the verdict is fail
 };

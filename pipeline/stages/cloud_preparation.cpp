@@ -40,7 +40,7 @@ std::vector<Vec3> read_viewpoints(const fs::path& file) {
 class Preparation {
  public:
   Preparation(CloudFile&& file, const fs::path& source, const Parameters& parameters)
-      : source_(source), parameters_(parameters), report_(file.report), cloud_(std::move(file.cloud)) {}
+      : source_(source), parameters_(parameters), file_(file.report), cloud_(std::move(file.cloud)) {}
   PreparedCloud operator()();
 
  private:
@@ -52,31 +52,31 @@ class Preparation {
   void take(const OrientationReport& r);
   template <class... T>
   void notice(fmt::format_string<T...> format, T&&... args) {
-    result_.notices.push_back(fmt::format(format, std::forward<T>(args)...));
+    result_.report.notices.push_back(fmt::format(format, std::forward<T>(args)...));
   }
+  NormalsReport& normals() { return result_.report.normals; }
   double percent(std::size_t n) const {
     return 100. * static_cast<double>(n) / static_cast<double>(cloud_.points.size());
   }
 
   const fs::path& source_;
   const Parameters& parameters_;
-  const CloudFileReport report_;
+  const CloudFileReport file_;
   OrientedPointCloud cloud_;
   Neighbourhoods near_;  ///< of the cleaned cloud
   PreparedCloud result_;
-  Json normals_ = Json::object();
 };
 
 void Preparation::clean_points() {
   CleaningParams params;
   params.outliers = !parameters_.cloud().keep_all;
   const CleaningReport r = clean(cloud_, params, &near_);
-  result_.numbers["dropped"] = {{"not_finite", report_.n_points_dropped + r.n_not_finite},
-                                {"duplicates", r.n_duplicates},
-                                {"outliers", r.n_outliers},
-                                {"small_components", r.n_small_components}};
-  if (const std::size_t n = report_.n_points_dropped + r.n_not_finite)
-    notice("dropped {} points that are no numbers", n);
+  const std::size_t n_not_finite = file_.n_points_dropped + r.n_not_finite;
+  result_.report.dropped = {.not_finite = n_not_finite,
+                            .duplicates = r.n_duplicates,
+                            .outliers = r.n_outliers,
+                            .small_components = r.n_small_components};
+  if (n_not_finite > 0) notice("dropped {} points that are no numbers", n_not_finite);
   if (r.n_duplicates > 0) notice("dropped {} duplicates", r.n_duplicates);
   if (r.n_outliers + r.n_small_components > 0) {
     notice("dropped {} outliers and {} points in {} small pieces far from the rest (--keep-all keeps them)",
@@ -89,12 +89,8 @@ void Preparation::clean_points() {
 }
 
 void Preparation::take(const OrientationReport& r) {
-  normals_["consistency"] = r.consistency;
-  normals_["consistency_after"] = r.consistency_after;
-  normals_["turned"] = r.n_turned;
-  normals_["pieces"] = r.n_components;
-  normals_["cavities"] = r.n_cavities;
-  normals_["doubtful"] = r.n_doubtful;
+  normals().consistency = r.consistency;
+  normals().orientation = r;
   if (r.n_doubtful > 0) {
     notice("which side is outside is a guess for {:.1f} % of the points (--flip or --orient-from decide)",
            percent(r.n_doubtful));
@@ -105,7 +101,7 @@ void Preparation::take(const OrientationReport& r) {
 void Preparation::fill_missing() {
   std::size_t missing = 0;
   for (const Vec3& n : cloud_.normals) missing += n.isZero(0);
-  normals_["missing"] = missing;
+  normals().missing = missing;
   if (missing == 0) return;
   const EstimatedNormals estimated = estimate_normals(cloud_.points);
   for (std::size_t i = 0; i < cloud_.normals.size(); ++i) {
@@ -117,10 +113,10 @@ void Preparation::fill_missing() {
 void Preparation::find_normals() {
   const NormalsOf how = parameters_.cloud().normals;
   if (!cloud_.normals.empty() && how != NormalsOf::Estimate) {
-    normals_["source"] = "given";
+    normals().given = true;
     fill_missing();
     if (how == NormalsOf::Given) {
-      normals_["consistency"] = consistency(cloud_, {}, &near_);
+      normals().consistency = consistency(cloud_, {}, &near_);
       return;
     }
     const OrientationReport r = repair_normals(cloud_, {}, &near_);
@@ -133,7 +129,6 @@ void Preparation::find_normals() {
     }
     return;
   }
-  normals_["source"] = "estimated";
   EstimatedNormals estimated = estimate_normals(cloud_.points);
   cloud_.normals = std::move(estimated.normals);
   const OrientationReport r = orient_normals(cloud_, {}, &near_);
@@ -164,15 +159,16 @@ void Preparation::drop_undefined() {
 
 void Preparation::orient_as_told() {
   if (const std::string& file = parameters_.cloud().orient_from; !file.empty()) {
-    normals_["turned_to_viewpoints"] = orient_from(cloud_, read_viewpoints(file));
+    normals().turned_to_viewpoints = orient_from(cloud_, read_viewpoints(file));
   }
   if (parameters_.cloud().flip) flip(cloud_);
 }
 
 PreparedCloud Preparation::operator()() {
-  result_.numbers = {{"format", report_.format},
-                     {"n_points_in_file", report_.n_points + report_.n_points_dropped},
-                     {"n_normals_rescaled", report_.n_normals_rescaled}};
+  CloudReport& report = result_.report;
+  report.format = file_.format;
+  report.n_points_in_file = file_.n_points + file_.n_points_dropped;
+  report.n_normals_rescaled = file_.n_normals_rescaled;
   sort_in_space(cloud_);
   const Vec3 shift = far_origin_shift(cloud_);  // squares of far coordinates would lose the surface
   for (Vec3& x : cloud_.points) x -= shift;
@@ -183,8 +179,8 @@ PreparedCloud Preparation::operator()() {
   if (near_.size() == cloud_.points.size()) result_.near = neighbour_distances(near_);
   for (Vec3& x : cloud_.points) x += shift;
   orient_as_told();
-  result_.numbers["normals"] = normals_;
-  result_.numbers["n_points"] = cloud_.points.size();
+  report.n_points = cloud_.points.size();
+  for (const Vec3& x : cloud_.points) report.box.extend(x);
   result_.cloud = std::move(cloud_);
   return std::move(result_);
 }

@@ -6,6 +6,7 @@
 
 #include "pipeline/case/parameters.h"
 #include "pipeline/case/record.h"
+#include "pipeline/meshing/stage_reports.h"
 #include "reconstruct/cloud/cloud_neighbours.h"
 #include "reconstruct/io/point_cloud_io.h"
 
@@ -14,9 +15,8 @@ namespace umtet {
 /// A cloud that stage one can fit, and what had to be done to the scan for it.
 struct PreparedCloud {
   OrientedPointCloud cloud;
-  NeighbourDistances near;           ///< of its points, for areas; empty where preparing did not need them
-  Json numbers;                      ///< for the record of 1-cloud
-  std::vector<std::string> notices;  ///< what was changed or guessed, for the user
+  NeighbourDistances near;  ///< of its points, for areas; empty where preparing did not need them
+  CloudReport report;
 };
 
 /// \throw CloudRefused  a device, a pipe or a folder: there is no telling where it ends

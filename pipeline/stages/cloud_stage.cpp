@@ -1,4 +1,3 @@
-#include <Eigen/Geometry>
 #include <cerrno>
 #include <chrono>
 #include <fstream>
@@ -21,10 +20,8 @@ void run_cloud_stage(const StageContext& context, const fs::path& source) {
   context.progress.report("cloud", "prepare", .2);
   PreparedCloud prepared = prepare_cloud(std::move(file), source, context.parameters);
   stop_if_interrupted();
-  for (const std::string& notice : prepared.notices) context.progress.say("cloud: " + notice);
+  for (const std::string& notice : prepared.report.notices) context.progress.say("cloud: " + notice);
 
-  Eigen::AlignedBox3d box;
-  for (const Vec3& x : prepared.cloud.points) box.extend(x);
   begin_writing(context, Stage::Cloud);
   write_artefact(context.paths.cloud(), [&](const fs::path& temporary) {
     errno = 0;  // streams do not promise to set it
@@ -33,15 +30,13 @@ void run_cloud_stage(const StageContext& context, const fs::path& source) {
     out.close();
     if (!out) throw std::system_error(errno ? errno : EIO, std::generic_category(), "stream failed");
   });
-  Json numbers = std::move(prepared.numbers);
-  numbers["box_min"] = {box.min().x(), box.min().y(), box.min().z()};
-  numbers["box_max"] = {box.max().x(), box.max().y(), box.max().z()};
-  numbers["notices"] = prepared.notices;
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  Json run = run_block(seconds.count(), context.threads);
-  run["source"] = fs::absolute(source).string();
-  write_record(context.paths, {Stage::Cloud, context.parameters.section("cloud"), inputs, {}, numbers, std::move(run)},
-               {"cloud.ply"});
+  StageRun run = run_of_stage(seconds.count(), context.threads);
+  run.source = fs::absolute(source).string();
+  write_record(
+      context.paths,
+      {Stage::Cloud, context.parameters.section("cloud"), inputs, {}, to_json(prepared.report), std::move(run)},
+      {"cloud.ply"});
   context.handover.cloud = std::move(prepared.cloud);
   context.handover.near = std::move(prepared.near);
 }

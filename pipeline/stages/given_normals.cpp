@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/case/record.h"
+#include "pipeline/meshing/stage_reports.h"
 
 namespace umtet {
 namespace {
@@ -15,9 +16,9 @@ constexpr double kLeastAgreed = .9;
 std::string doubt_about_given_normals(const CasePaths& paths) {
   const StageState state = inspect_stage(paths, Stage::Cloud, Json::object(), std::nullopt);
   if (!state.record) return "";
-  const Json normals = state.record->numbers.value("normals", Json::object());
-  const double agreed = normals.value("consistency", 1.);
-  if (normals.value("source", "") != "given" || agreed >= kLeastAgreed) return "";
+  const NormalsReport normals = cloud_report(*state.record).normals;
+  const double agreed = normals.consistency;
+  if (!normals.given || agreed >= kLeastAgreed) return "";
   return fmt::format(
       "\n  as given, {:.1f} % of the normals agree with their neighbours, as where two sides of a body are nearer to "
       "each other than its samples: no level set tells such sides apart, more samples do",

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <chrono>
+#include <optional>
 #include <utility>
 
 #include "pipeline/case/exit_code.h"
@@ -8,6 +10,7 @@
 #include "pipeline/case/memory.h"
 #include "pipeline/meshing/library_params.h"
 #include "pipeline/stages/given_normals.h"
+#include "pipeline/meshing/stage_reports.h"
 #include "pipeline/stages/stages.h"
 #include "reconstruct/cloud/cloud_neighbours.h"
 #include "reconstruct/cloud/cloud_survey.h"
@@ -30,14 +33,14 @@ OrientedPointCloud take_cloud(const StageContext& context) {
 // Clean clouds oppose by a fraction of a per cent; a tenth is a patch turned over, or every tenth normal.
 constexpr double kMostOpposed = .1;
 
-/// Distances between opposed samples; null where none face one another.
-Json thickness_percentiles(const OrientedPointCloud& cloud, const NeighbourTree& tree) {
+/// Distances between opposed samples; none where none face one another.
+std::optional<std::array<double, 3>> thickness_percentiles(const OrientedPointCloud& cloud, const NeighbourTree& tree) {
   // A ray through half a million samples takes 80 us; of 2000 rays the hundredth part is 20.
   constexpr std::size_t kRays = 2000;
   const std::vector<double> t = thicknesses(cloud, tree, kRays);
-  if (t.empty()) return nullptr;
+  if (t.empty()) return std::nullopt;
   const auto at = [&](double p) { return t[static_cast<std::size_t>(p * static_cast<double>(t.size() - 1))]; };
-  return {at(.01), at(.05), at(.5)};
+  return {{at(.01), at(.05), at(.5)}};
 }
 
 }  // namespace
@@ -64,12 +67,13 @@ void run_level_set_stage(const StageContext& context) {
   params.max_memory = allowed_bytes(context.parameters);
   context.progress.report("level-set", "noise", 0);
   const double noise = context.parameters.reconstruct().noise;
-  Json thickness;
+  LevelSetReport report;
+  report.shift = shift;
   {
     const NeighbourTree tree(cloud.points);
     params.noise = noise >= 0 ? noise : noise_along_normals(cloud, tree);
     stop_if_interrupted();
-    thickness = thickness_percentiles(cloud, tree);
+    report.thickness = thickness_percentiles(cloud, tree);
   }
   stop_if_interrupted();
   const NeighbourDistances near = std::exchange(context.handover.near, {});
@@ -93,42 +97,16 @@ void run_level_set_stage(const StageContext& context) {
   begin_writing(context, Stage::LevelSet);
   write_artefact(context.paths.level_set(),
                  [&](const fs::path& temporary) { write_level_set(temporary, fit.psi, shift); });
-  const SsdReport& r = fit.report;
-  Json bands = Json::array();
-  for (const BandReport& b : r.bands) {
-    bands.push_back({{"spacing", b.spacing},
-                     {"smoothing", b.smoothing},
-                     {"n_samples", b.n_samples},
-                     {"n_nodes", b.n_nodes},
-                     {"iterations", b.iterations},
-                     {"residual", b.residual}});
-  }
-  const Json numbers = {{"shift", {shift.x(), shift.y(), shift.z()}},
-                        {"n_points", r.n_points},
-                        {"n_nodes", r.n_nodes},
-                        {"spacing", r.spacing},
-                        {"smoothing", r.smoothing},
-                        {"noise", params.noise},
-                        {"reason", r.reason},
-                        {"cloud_spacing", r.cloud_spacing},
-                        {"thickness_percentiles_1_5_50", std::move(thickness)},
-                        {"iterations", r.iterations},
-                        {"residuals", r.residuals},
-                        {"bands", bands},
-                        {"energy_value", r.energy_value},
-                        {"energy_normal", r.energy_normal},
-                        {"energy_hessian", r.energy_hessian},
-                        {"rms_value", r.rms_value},
-                        {"n_opposed_normals", r.n_opposed_normals},
-                        {"least_wall_value", r.least_wall_value}};
+  report.noise = params.noise;
+  report.fit = std::move(fit.report);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   write_record(context.paths,
                {Stage::LevelSet,
                 context.parameters.section("reconstruct"),
                 inputs,
                 {},
-                numbers,
-                run_block(seconds.count(), context.threads)},
+                to_json(report),
+                run_of_stage(seconds.count(), context.threads)},
                {"level_set.vti"});
   for (Vec3& x : cloud.points) x += shift;
   context.handover.cloud = std::move(cloud);

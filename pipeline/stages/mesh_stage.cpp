@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 
 #include "mesh/universal_mesh.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/case/memory.h"
 #include "pipeline/meshing/background_choice.h"
+#include "pipeline/meshing/certificate_json.h"
 #include "pipeline/meshing/domain.h"
 #include "pipeline/meshing/edge_length.h"
 #include "pipeline/meshing/made_mesh.h"
@@ -15,6 +17,7 @@
 #include "pipeline/meshing/too_thin.h"
 #include "pipeline/stages/given_normals.h"
 #include "pipeline/stages/mesh_outputs.h"
+#include "pipeline/meshing/stage_reports.h"
 #include "pipeline/stages/stages.h"
 
 namespace umtet {
@@ -39,7 +42,7 @@ class MeshStage {
   MeshLines lines() const;
   BackgroundMesh background_of(double h);
   EdgeLength enough_for(const ThinPlaces& thin);
-  std::string remedy_for(const ThinPlaces& thin, Json& h_enough);
+  std::string remedy_for(const ThinPlaces& thin, std::optional<double>& h_enough);
   [[noreturn]] void refuse_thin(const MeshAttempt& best);
   [[noreturn]] void refuse(const UmResult& result, double h);
   const StageContext& context_;
@@ -95,7 +98,7 @@ EdgeLength MeshStage::enough_for(const ThinPlaces& thin) {
   return choice;
 }
 
-std::string MeshStage::remedy_for(const ThinPlaces& thin, Json& h_enough) {
+std::string MeshStage::remedy_for(const ThinPlaces& thin, std::optional<double>& h_enough) {
   if (background_.own_h()) return fmt::format("a background with edges of {:.3g} may show them", thin.h_needed());
   // A plate so thin that no place of the grid on which bodies are measured is inside it.
   if (!(domain_.size().volume > 0)) return fmt::format("h = {:.3g} may show them", thin.h_needed());
@@ -119,11 +122,12 @@ void MeshStage::refuse_thin(const MeshAttempt& best) {
   const fs::path file = folder / "too_thin.vtp";
   write_thin_places(file, thin, domain_.shift);
   std::string message = too_thin_text(best, domain_.shift) + "\n  ";
-  Json h_enough;
+  std::optional<double> h_enough;
   message += remedy_for(thin, h_enough) + "; --allow-thin keeps the mesh nevertheless\n  look at " + file.string();
   message += doubt_about_given_normals(context_.paths);
   if (keeps) message += "\n  the former mesh and its certificate have been kept";
-  throw TooThin(message, {{"too_thin", to_json(thin, domain_.shift)}, {"h_enough", h_enough}});
+  throw TooThin(message,
+                {{"too_thin", to_json(in_model(thin, domain_.shift), thin.h)}, {"h_enough", json_of(h_enough)}});
 }
 
 MeshAttempt MeshStage::best_mesh() {
@@ -147,17 +151,15 @@ void run_mesh_stage(const StageContext& context) {
   const MeshAttempt best = stage.best_mesh();
   context.progress.report("mesh", "write", .97);
   const std::vector<std::string> outputs = write_mesh_outputs(context, stage.domain(), best);
-  const Json numbers = {{"conditioning_angle_max_deg", best.result.conditioning_angle_max_deg},
-                        {"n_psi_evaluations", best.result.n_psi_evaluations},
-                        {"measured", best.measured}};
+  const MeshReport report{best.result.conditioning_angle_max_deg, best.result.n_psi_evaluations, best.measured};
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   write_record(context.paths,
                {Stage::Mesh,
                 context.parameters.section("mesh"),
                 inputs,
                 {},
-                numbers,
-                run_block(seconds.count(), context.threads)},
+                to_json(report),
+                run_of_stage(seconds.count(), context.threads)},
                outputs);
   stage.domain().limit_detail(best.h);
   context.handover.domain = std::move(stage.domain());

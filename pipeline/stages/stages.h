@@ -27,7 +27,7 @@ struct StageContext {
 void run_cloud_stage(const StageContext&, const std::filesystem::path& source);
 
 /// 2-level-set: fits psi to cloud.ply, writes level_set.vti. A cloud far from the origin is fitted in coordinates
-/// shifted by numbers.shift of the record. \throw SolveError, Interrupted, ArtefactDamaged, std::system_error
+/// shifted by LevelSetReport::shift. \throw SolveError, Interrupted, ArtefactDamaged, std::system_error
 void run_level_set_stage(const StageContext&);
 
 /// 3-mesh: meshes {psi < 0} of the level set, or of mesh.implicit when that is set; writes omega_h.vtu, projected.vtu,

@@ -25,7 +25,7 @@ class CaseFolder : public testing::Test {
   void finish_stage() {
     fs::create_directories(paths.folder(Stage::LevelSet));
     write_text_artefact(paths.level_set(), "coefficients");
-    write_record(paths, {Stage::LevelSet, parameters, inputs, {}, {{"shift", {0, 0, 0}}}, run_block(1, 2)},
+    write_record(paths, {Stage::LevelSet, parameters, inputs, {}, {{"shift", {0, 0, 0}}}, run_of_stage(1, 2)},
                  {"level_set.vti"});
   }
   Kind kind() const { return inspect_stage(paths, Stage::LevelSet, parameters, inputs).kind; }

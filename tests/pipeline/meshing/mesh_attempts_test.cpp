@@ -22,7 +22,7 @@ struct Story {
         a.result.status = outcome == kEmpty ? UmStatus::EmptyDomain : UmStatus::InvertedTet;
         a.result.evidence.what = "no mesh";
       } else {
-        a.measured["reasons"] = std::vector<std::string>(static_cast<std::size_t>(outcome), "a folded face");
+        a.measured.reasons.assign(static_cast<std::size_t>(outcome), "a folded face");
       }
       return a;
     };
@@ -68,7 +68,6 @@ TEST(BestAttempt, StopsAtTheFirstMeshWithoutReasonsAndWhereASmallerHCannotHelp) 
   const auto elsewhere = [](double h) {
     MeshAttempt a;
     a.h = 1.1 * h;
-    a.measured["reasons"] = std::vector<std::string>{};
     return a;
   };
   best_attempt({1, 1}, elsewhere, [&](const std::string& line) { said.push_back(line); });

@@ -67,9 +67,9 @@ SolverMesh sides(const MeshFile& mesh) {
 TEST(ReportScene, HoldsTheWholeMesh) {
   const MeshFile mesh = cube(3);
   const ReportScene scene = report_scene(mesh, cube_domain(), sides(mesh));
-  EXPECT_EQ(scene.head["n_faces_shown"], 108);
-  EXPECT_EQ(scene.head["n_tets_shown"], 162);
-  EXPECT_TRUE(scene.head["planes"].is_null());
+  EXPECT_EQ(scene.head.n_faces_shown, 108u);
+  EXPECT_EQ(scene.head.n_tets_shown, 162u);
+  EXPECT_FALSE(scene.head.planes.has_value());
   const std::vector<unsigned> x = words(scene, "positions"), faces = words(scene, "faces"), tets = words(scene, "tets");
   ASSERT_EQ(x.size(), 3 * mesh.mesh.V.size());
   const auto at = [&](unsigned v) -> Vec3 { return Vec3(x[3 * v], x[3 * v + 1], x[3 * v + 2]) / 65535; };
@@ -86,7 +86,7 @@ TEST(ReportScene, HoldsTheWholeMesh) {
   EXPECT_NEAR(volume, 1, 1e-4);
   EXPECT_NEAR(surface_volume, 1, 1e-4);
   // |psi| / |grad psi| of x^2 - 1 is largest at the centres of faces nearest to x = 0, and they are on it.
-  EXPECT_GT(scene.head["ranges"]["deviation"][1].get<double>(), 1);
+  EXPECT_GT(scene.head.deviation.most, 1);
 }
 
 TEST(ReportScene, FacesHaveTheirPatches) {
@@ -95,13 +95,13 @@ TEST(ReportScene, FacesHaveTheirPatches) {
   for (const std::size_t most : {972, 300}) {  // the whole surface, and a coarsened one
     caps.faces = most;
     const ReportScene scene = report_scene(mesh, cube_domain(), sides(mesh), caps);
-    const Json& patches = scene.head["patches"];
+    const std::vector<SceneHead::Patch>& patches = scene.head.patches;
     ASSERT_EQ(patches.size(), 6u);
     for (int p = 0; p < 6; ++p) {
-      EXPECT_EQ(patches[p]["name"], "side_" + std::to_string(p + 1));
-      EXPECT_EQ(patches[p]["number"], 10 * (p + 1));
-      EXPECT_EQ(patches[p]["n_faces"], 162);
-      EXPECT_NEAR(patches[p]["area"].get<double>(), 1, 1e-12);
+      EXPECT_EQ(patches[p].name, "side_" + std::to_string(p + 1));
+      EXPECT_EQ(patches[p].number, 10 * (p + 1));
+      EXPECT_EQ(patches[p].n_faces, 162u);
+      EXPECT_NEAR(patches[p].area, 1, 1e-12);
     }
     const std::vector<unsigned> x = words(scene, "positions"), faces = words(scene, "faces"),
                                 pairs = words(scene, "face_patch");
@@ -136,12 +136,13 @@ TEST(ReportScene, OfALargeMeshThereIsTheWorstAndTheMiddle) {
   caps.tets = 3000;
   caps.worst = 2;
   const ReportScene scene = report_scene(mesh, cube_domain(), sides(mesh), caps);
-  EXPECT_EQ(scene.head["n_faces"], 972);
-  EXPECT_LE(scene.head["n_faces_shown"].get<int>(), 300);
-  EXPECT_GT(scene.head["n_faces_shown"].get<int>(), 100);
-  EXPECT_EQ(scene.head["n_tets"], 4374);
-  EXPECT_LE(scene.head["n_tets_shown"].get<int>(), 3000);
-  EXPECT_FALSE(scene.head["planes"].empty());
+  EXPECT_EQ(scene.head.n_faces, 972u);
+  EXPECT_LE(scene.head.n_faces_shown, 300u);
+  EXPECT_GT(scene.head.n_faces_shown, 100u);
+  EXPECT_EQ(scene.head.n_tets, 4374u);
+  EXPECT_LE(scene.head.n_tets_shown, 3000u);
+  ASSERT_TRUE(scene.head.planes.has_value());
+  EXPECT_FALSE(scene.head.planes->empty());
   const std::vector<unsigned> q8 = words(scene, "tet_quality");  // two bytes a word, the first is the low one
   ASSERT_FALSE(q8.empty());
   EXPECT_EQ(q8[0] & 255, 0);

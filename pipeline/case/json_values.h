@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+namespace umtet {
+
+using Json = nlohmann::ordered_json;
+
+// Values in the documents that we write and read back. What these read throws Json::exception where the document has
+// something else.
+
+/// null where there is no value.
+template <class T>
+Json json_of(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+inline Json json_of(const Eigen::Vector3d& x) { return {x.x(), x.y(), x.z()}; }
+
+/// JSON has null for NaN and infinity; it is read as NaN.
+inline double number_from(const Json& json) {
+  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+}
+
+template <class T>
+std::optional<T> optional_from(const Json& json) {
+  if (json.is_null()) return std::nullopt;
+  return json.get<T>();
+}
+
+inline Eigen::Vector3d vector_from(const Json& json) {
+  return {number_from(json.at(0)), number_from(json.at(1)), number_from(json.at(2))};
+}
+
+}  // namespace umtet

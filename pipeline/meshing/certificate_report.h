@@ -1,0 +1,121 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mesh/certify/certificate.h"
+#include "mesh/certify/second_order_certificate.h"
+#include "pipeline/case/case_folder.h"
+#include "pipeline/case/parameters.h"
+#include "pipeline/case/record.h"
+#include "pipeline/case/version.h"
+#include "pipeline/meshing/too_thin.h"
+
+// What certificate.json, the record of 3-mesh and the answers of `umtet check` say about a mesh. Lengths in model units
+// unless a name says otherwise; certificate_json.h writes and reads them.
+namespace umtet {
+
+/// How the boundary of the mesh compares with psi = 0 as it was counted on a grid of its own.
+struct ZeroSetReport {
+  std::optional<double> level_set_spacing;    ///< of the finest lattice of psi; none for a formula
+  std::size_t components_of_zero_set = 0;     ///< that the count saw
+  long euler_characteristic_of_zero_set = 0;  ///< of all of them together
+  long euler_characteristic_of_kept_components = 0;
+  int components_meshed = 0;                        ///< pieces of the boundary of the mesh, without the walls of a box
+  std::vector<std::string> components_dropped;      ///< for each that is not meshed, why
+  std::optional<bool> components_proved;            ///< no piece is unseen; none where there is no proof to be had
+  std::optional<double> unsupported_area_fraction;  ///< of the boundary, far from any sample; none for a formula
+};
+
+/// Distances of the samples to the boundary of the mesh.
+struct SampleDistances {
+  std::optional<double> noise;  ///< standard deviation of the samples along the normal
+  double rms = 0, max = 0;
+  double p99 = 0;  ///< 99 % of the samples are nearer
+};
+
+/// What the mesh can resolve at its edge length.
+struct ResolutionReport {
+  double kappa_h_max = 0;              ///< largest principal curvature of psi = 0 at the boundary vertices, times h
+  double feature_size_over_h_min = 0;  ///< least distance along the normal to the opposite sheet, in h; at most 4
+  std::size_t obtuse_conditioning_angles = 0, double_positive_faces = 0;  ///< assumptions of the paper that are broken
+  /// Model coordinates, worst first; none where thin places were not looked for.
+  std::optional<std::vector<ThinPlace>> too_thin;
+};
+
+/// Tets with curved edges.
+struct SecondOrderReport {
+  SecondOrderCertificate certificate;  ///< h and coordinate_rounding are not in the documents: read back, they are 0
+  /// What making the mesh had to do for its Jacobians; not known of a file.
+  struct Repairs {
+    std::size_t n_mid_sides_put_back = 0, n_mid_sides_unprojected = 0, n_mid_sides_slid = 0, n_mid_sides_relaxed = 0;
+  };
+  std::optional<Repairs> repairs;
+};
+
+/// The reasons why it fails; mid-sides that were put back may be off psi = 0.
+std::vector<std::string> failures(const SecondOrderReport& report);
+
+/// What measure() finds out about a mesh, without a verdict.
+struct MeshMeasures {
+  std::optional<std::size_t> n_points;  ///< of the cloud; none for a formula
+  MeshCertificate mesh;  ///< read back it has what the documents have: counts that only failures() looks at are 0
+  double coordinate_rounding_over_h = 0;
+  ZeroSetReport domain;
+  std::optional<SampleDistances> cloud;  ///< none for a formula
+  ResolutionReport resolution;
+  std::optional<std::int64_t> order;  ///< 1 or 2; none where only the corners were measured
+  std::optional<SecondOrderReport> second_order;
+  std::vector<std::string> reasons;  ///< what is wrong with the mesh; in a Certificate they are those of its verdict
+};
+
+/// What a mesh is held against, and what came of it.
+struct Verdict {
+  std::optional<double> min_quality_gate;  ///< the least mean ratio that will do, if one was asked for
+  double volume_gap_gate = kMostGap;       ///< the most of gap_over_volume that will do
+  std::vector<std::string> reasons;        ///< why it fails
+
+  bool passes() const { return reasons.empty(); }
+  const char* word() const { return passes() ? "pass" : "fail"; }
+};
+
+/// Times of all stages that made a mesh.
+struct CertificateRun {
+  std::vector<std::pair<std::string, double>> seconds;  ///< by section of the parameters, in the order of the stages
+  std::optional<double> points_per_s;                   ///< of the fit; none for a formula
+  std::optional<double> tets_per_s;                     ///< of the mesher
+  double peak_memory_MB = 0;
+  int threads = 0;
+  std::string host, date;  ///< of the mesh
+  std::string checksum;    ///< seal of the certificate
+};
+
+/// certificate.json: what is true of a mesh, and whether that will do. (What is measured of the tets alone is
+/// MeshCertificate of mesh/certify/certificate.h.)
+struct Certificate {
+  std::string version = kVersion;    ///< of the program that made it
+  std::optional<std::string> units;  ///< of lengths, for the reader
+  MeshMeasures measured;
+  std::optional<std::int64_t> n_tets_asked;
+  Verdict verdict;
+  std::optional<std::string> remedy;  ///< what to try when it fails
+  std::optional<CertificateRun> run;  ///< none for a mesh that never was in a case
+};
+
+/// output.units; none where none were given.
+std::optional<std::string> units_of(const Parameters& parameters);
+
+/// The reasons of what was measured, and that of a broken gate of output.*.
+Verdict judge(const MeshCertificate& mesh, std::vector<std::string> reasons, const Parameters& parameters);
+
+/// What was measured with its gates and verdict; without `run`.
+Certificate verdict_on(MeshMeasures measured, const Parameters& parameters);
+
+/// Sealed, with times. A function of the records and the parameters alone, so it can be made again at any time.
+/// \pre the stage 3-mesh is done \throw ArtefactDamaged  a record lacks something
+Certificate certificate(const CasePaths& paths, const StageRecord& mesh, const Parameters& parameters);
+
+}  // namespace umtet

@@ -1,0 +1,126 @@
+#include "pipeline/meshing/certificate_summary.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace umtet {
+namespace {
+
+/// "-" where there is no number.
+std::string show(const std::optional<double>& value, const char* format) {
+  if (!value || std::isnan(*value)) return "-";
+  return fmt::format(fmt::runtime(format), *value);
+}
+
+std::string thousands(std::size_t n) {
+  std::string s = std::to_string(n);
+  for (int k = static_cast<int>(s.size()) - 3; k > 0; k -= 3) s.insert(s.begin() + k, ',');
+  return s;
+}
+
+std::string verdict_lines(const Verdict& verdict, const std::optional<std::string>& remedy) {
+  std::string out = fmt::format("verdict   {}\n", verdict.word());
+  for (const std::string& reason : verdict.reasons) out += fmt::format("          - {}\n", reason);
+  if (remedy) out += fmt::format("          try {}\n", *remedy);
+  return out;
+}
+
+std::string boundary_line(const MeshCertificate::Boundary& b) {
+  const int n = b.components;
+  std::string line = b.closed_manifold
+                         ? fmt::format("closed manifold, {} component{}, genus {}", n, n == 1 ? "" : "s", b.genus)
+                         : fmt::format("NOT a closed manifold, {} component{}", n, n == 1 ? "" : "s");
+  if (b.max_vertex_distance_over_h) {
+    line += fmt::format("; off psi = 0: vertices {} h, face centres {} h, {} of the volume; cos(normals) >= {}",
+                        show(b.max_vertex_distance_over_h, "{:.1e}"), show(b.max_centroid_distance_over_h, "{:.3f}"),
+                        show(b.gap_over_volume, "{:.1e}"), show(b.min_cos_normal, "{:.3f}"));
+  }
+  return line;
+}
+
+/// Counts, quality and boundary.
+std::string mesh_lines(const MeshCertificate& c, const std::string& unit, std::optional<std::int64_t> n_tets_asked) {
+  const MeshCertificate::Quality& q = c.quality;
+  const std::string asked =
+      n_tets_asked ? fmt::format(" (asked for {})", thousands(static_cast<std::size_t>(*n_tets_asked))) : "";
+  std::string out = fmt::format("mesh      {} tets{}, {} vertices, {} boundary faces; h = {}{}, volume {}{}\n",
+                                thousands(c.n_tets), asked, thousands(c.n_vertices), thousands(c.boundary.n_faces),
+                                show(c.h, "{:.5g}"), unit, show(c.volume, "{:.6g}"), unit.empty() ? "" : unit + "^3");
+  out += fmt::format("quality   mean ratio min {} | .1 % {} | 1 % {} | mean {}\n", show(q.min, "{:.4f}"),
+                     show(q.p001, "{:.4f}"), show(q.p01, "{:.4f}"), show(q.mean, "{:.4f}"));
+  out += fmt::format("          dihedral angles {} to {} degrees, {} inverted tets\n",
+                     show(q.dihedral_min_deg, "{:.1f}"), show(q.dihedral_max_deg, "{:.1f}"), q.n_inverted);
+  return out + "boundary  " + boundary_line(c.boundary) + "\n";
+}
+
+/// What is true of tets of second order; empty for others.
+std::string second_order_lines(const std::optional<SecondOrderReport>& report) {
+  if (!report) return "";
+  const SecondOrderCertificate& s = report->certificate;
+  std::string out = fmt::format("order 2   {} nodes, volume {}; least Jacobian {} of its mean, {} not positive\n",
+                                thousands(s.n_nodes), show(s.volume, "{:.9g}"),
+                                show(s.min_scaled_jacobian_lower, "{:.3f}"), s.n_nonpositive_jacobians);
+  if (s.max_mid_side_distance_over_h) {
+    out += fmt::format("          off psi = 0: mid-sides {} h, faces {} h (rms {} h)",
+                       show(s.max_mid_side_distance_over_h, "{:.1e}"), show(s.max_face_distance_over_h, "{:.1e}"),
+                       show(s.rms_face_distance_over_h, "{:.1e}"));
+    const std::size_t n = s.n_mid_sides_off_surface;
+    out += n > 0 ? fmt::format("; {} mid-sides are NOT on it\n", thousands(n)) : "\n";
+  }
+  return out;
+}
+
+std::string domain_line(const ZeroSetReport& d) {
+  const std::size_t n = d.components_of_zero_set;
+  std::string out =
+      fmt::format("domain    psi = 0 has {} piece{}, {} dropped", n, n == 1 ? "" : "s", d.components_dropped.size());
+  if (d.unsupported_area_fraction) {
+    out += fmt::format("; {:.2f} % of the surface without samples near it", 100 * *d.unsupported_area_fraction);
+  }
+  return out + "\n";
+}
+
+std::string cloud_line(const MeshMeasures& m, const std::string& unit) {
+  if (!m.cloud) return "";
+  const SampleDistances& d = *m.cloud;
+  const double h = m.mesh.h;
+  const std::optional<double> noise = d.noise ? std::optional(*d.noise / h) : std::nullopt;
+  return fmt::format("cloud     {} samples, noise {} h; distance to the mesh rms {} ({} h), 99 % {} h, max {} h\n",
+                     thousands(m.n_points.value_or(0)), show(noise, "{:.3f}"), show(d.rms, "{:.3g}") + unit,
+                     show(d.rms / h, "{:.4f}"), show(d.p99 / h, "{:.4f}"), show(d.max / h, "{:.4f}"));
+}
+
+/// Which places are thinner than the mesh can show; empty if there are none.
+std::string thin_line(const ResolutionReport& r) {
+  if (!r.too_thin || r.too_thin->empty()) return "";
+  const std::size_t n = r.too_thin->size();
+  const ThinPlace& worst = r.too_thin->front();
+  return fmt::format("thin      {} place{} thinner than h can show, the worst ({}, {:.3g}) needs h = {:.3g}\n", n,
+                     n == 1 ? " is" : "s are", worst.is_gap ? "gap" : "body", worst.thickness, worst.h_needed);
+}
+
+std::string time_line(const std::optional<CertificateRun>& run) {
+  if (!run) return "";
+  std::string out = "time     ";
+  for (const auto& [section, t] : run->seconds) out += fmt::format(" {} {:.2f} s,", section, t);
+  return out + fmt::format(" peak memory {} MB\n", show(run->peak_memory_MB, "{:.0f}"));
+}
+
+std::string suffix(const std::optional<std::string>& units) { return units ? " " + *units : ""; }
+
+}  // namespace
+
+std::string summary(const Certificate& c) {
+  const std::string unit = suffix(c.units);
+  const MeshMeasures& m = c.measured;
+  return verdict_lines(c.verdict, c.remedy) + mesh_lines(m.mesh, unit, c.n_tets_asked) +
+         second_order_lines(m.second_order) + domain_line(m.domain) + cloud_line(m, unit) + thin_line(m.resolution) +
+         time_line(c.run);
+}
+
+std::string summary(const MeshCheck& c) {
+  return verdict_lines(c.verdict, {}) + mesh_lines(c.mesh, suffix(c.units), {}) + second_order_lines(c.second_order);
+}
+
+}  // namespace umtet

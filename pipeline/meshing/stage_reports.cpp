@@ -1,0 +1,167 @@
+#include "pipeline/meshing/stage_reports.h"
+
+#include <fmt/format.h>
+
+#include "pipeline/case/exit_code.h"
+#include "pipeline/meshing/certificate_json.h"
+
+namespace umtet {
+namespace {
+
+Json to_json(const NormalsReport& n) {
+  Json json = {{"source", n.given ? "given" : "estimated"}};
+  if (n.missing) json["missing"] = *n.missing;
+  json["consistency"] = n.consistency;
+  if (const std::optional<OrientationReport>& o = n.orientation) {
+    json.update({{"consistency_after", o->consistency_after},
+                 {"turned", o->n_turned},
+                 {"pieces", o->n_components},
+                 {"cavities", o->n_cavities},
+                 {"doubtful", o->n_doubtful}});
+  }
+  if (n.turned_to_viewpoints) json["turned_to_viewpoints"] = *n.turned_to_viewpoints;
+  return json;
+}
+
+NormalsReport normals_from(const Json& json) {
+  NormalsReport n;
+  n.given = json.at("source") == "given";
+  if (json.contains("missing")) n.missing = json.at("missing");
+  n.consistency = number_from(json.at("consistency"));
+  if (json.contains("turned")) {
+    OrientationReport& o = n.orientation.emplace();
+    o.consistency = n.consistency;
+    o.consistency_after = number_from(json.at("consistency_after"));
+    o.n_turned = json.at("turned");
+    o.n_components = json.at("pieces");
+    o.n_cavities = json.at("cavities");
+    o.n_doubtful = json.at("doubtful");
+  }
+  if (json.contains("turned_to_viewpoints")) n.turned_to_viewpoints = json.at("turned_to_viewpoints");
+  return n;
+}
+
+Json to_json(const BandReport& b) {
+  return {{"spacing", b.spacing}, {"smoothing", b.smoothing},   {"n_samples", b.n_samples},
+          {"n_nodes", b.n_nodes}, {"iterations", b.iterations}, {"residual", b.residual}};
+}
+
+BandReport band_from(const Json& json) {
+  return {.spacing = number_from(json.at("spacing")),
+          .smoothing = number_from(json.at("smoothing")),
+          .n_samples = json.at("n_samples"),
+          .n_nodes = json.at("n_nodes"),
+          .iterations = json.at("iterations"),
+          .residual = number_from(json.at("residual"))};
+}
+
+CloudReport cloud_from(const Json& json) {
+  const Json& dropped = json.at("dropped");
+  return {.format = json.at("format"),
+          .n_points_in_file = json.at("n_points_in_file"),
+          .n_normals_rescaled = json.at("n_normals_rescaled"),
+          .dropped = {.not_finite = dropped.at("not_finite"),
+                      .duplicates = dropped.at("duplicates"),
+                      .outliers = dropped.at("outliers"),
+                      .small_components = dropped.at("small_components")},
+          .normals = normals_from(json.at("normals")),
+          .n_points = json.at("n_points"),
+          .box = {vector_from(json.at("box_min")), vector_from(json.at("box_max"))},
+          .notices = json.at("notices")};
+}
+
+LevelSetReport level_set_from(const Json& json) {
+  LevelSetReport r;
+  r.shift = vector_from(json.at("shift"));
+  r.noise = number_from(json.at("noise"));
+  if (const Json& t = json.at("thickness_percentiles_1_5_50"); !t.is_null()) {
+    const Eigen::Vector3d percentiles = vector_from(t);
+    r.thickness = {percentiles[0], percentiles[1], percentiles[2]};
+  }
+  SsdReport& fit = r.fit;
+  fit.n_points = json.at("n_points");
+  fit.n_nodes = json.at("n_nodes");
+  fit.spacing = number_from(json.at("spacing"));
+  fit.smoothing = number_from(json.at("smoothing"));
+  fit.reason = json.at("reason");
+  fit.cloud_spacing = number_from(json.at("cloud_spacing"));
+  fit.iterations = json.at("iterations");
+  for (const Json& residual : json.at("residuals")) fit.residuals.push_back(number_from(residual));
+  for (const Json& band : json.at("bands")) fit.bands.push_back(band_from(band));
+  fit.energy_value = number_from(json.at("energy_value"));
+  fit.energy_normal = number_from(json.at("energy_normal"));
+  fit.energy_hessian = number_from(json.at("energy_hessian"));
+  fit.rms_value = number_from(json.at("rms_value"));
+  fit.n_opposed_normals = json.at("n_opposed_normals");
+  fit.least_wall_value = number_from(json.at("least_wall_value"));
+  return r;
+}
+
+MeshReport mesh_from(const Json& json) {
+  return {.conditioning_angle_max_deg = number_from(json.at("conditioning_angle_max_deg")),
+          .n_psi_evaluations = json.at("n_psi_evaluations"),
+          .measured = measures_from(json.at("measured"))};
+}
+
+template <class Report>
+Report report_of(const StageRecord& record, Report (*from)(const Json&)) {
+  try {
+    return from(record.numbers);
+  } catch (const Json::exception& e) {
+    throw ArtefactDamaged(fmt::format("the record of {} lacks a number: {}", to_string(record.stage), e.what()));
+  }
+}
+
+}  // namespace
+
+Json to_json(const CloudReport& r) {
+  return {{"format", r.format},
+          {"n_points_in_file", r.n_points_in_file},
+          {"n_normals_rescaled", r.n_normals_rescaled},
+          {"dropped",
+           {{"not_finite", r.dropped.not_finite},
+            {"duplicates", r.dropped.duplicates},
+            {"outliers", r.dropped.outliers},
+            {"small_components", r.dropped.small_components}}},
+          {"normals", to_json(r.normals)},
+          {"n_points", r.n_points},
+          {"box_min", json_of(r.box.min())},
+          {"box_max", json_of(r.box.max())},
+          {"notices", r.notices}};
+}
+
+Json to_json(const LevelSetReport& r) {
+  const SsdReport& fit = r.fit;
+  Json bands = Json::array();
+  for (const BandReport& band : fit.bands) bands.push_back(to_json(band));
+  return {{"shift", json_of(r.shift)},
+          {"n_points", fit.n_points},
+          {"n_nodes", fit.n_nodes},
+          {"spacing", fit.spacing},
+          {"smoothing", fit.smoothing},
+          {"noise", r.noise},
+          {"reason", fit.reason},
+          {"cloud_spacing", fit.cloud_spacing},
+          {"thickness_percentiles_1_5_50", json_of(r.thickness)},
+          {"iterations", fit.iterations},
+          {"residuals", fit.residuals},
+          {"bands", bands},
+          {"energy_value", fit.energy_value},
+          {"energy_normal", fit.energy_normal},
+          {"energy_hessian", fit.energy_hessian},
+          {"rms_value", fit.rms_value},
+          {"n_opposed_normals", fit.n_opposed_normals},
+          {"least_wall_value", fit.least_wall_value}};
+}
+
+Json to_json(const MeshReport& r) {
+  return {{"conditioning_angle_max_deg", r.conditioning_angle_max_deg},
+          {"n_psi_evaluations", r.n_psi_evaluations},
+          {"measured", to_json(r.measured)}};
+}
+
+CloudReport cloud_report(const StageRecord& record) { return report_of(record, &cloud_from); }
+LevelSetReport level_set_report(const StageRecord& record) { return report_of(record, &level_set_from); }
+MeshReport mesh_report(const StageRecord& record) { return report_of(record, &mesh_from); }
+
+}  // namespace umtet

@@ -1,0 +1,98 @@
+#include "pipeline/meshing/certificate_json.h"
+
+#include <gtest/gtest.h>
+
+#include "pipeline/case/exit_code.h"
+#include "pipeline/meshing/stage_reports.h"
+
+namespace umtet {
+namespace {
+
+/// Every optional part is there.
+Certificate full_certificate() {
+  Certificate c;
+  c.units = "mm";
+  MeshMeasures& m = c.measured;
+  m.n_points = 1000;
+  m.mesh.n_tets = 12;
+  m.mesh.n_positive_faces = 8;
+  m.mesh.h = .3;
+  m.mesh.volume = 4.1887902047863905;
+  m.mesh.quality = {.1, .2, .3, .4, 5, 170, 1};
+  m.mesh.boundary.closed_manifold = true;
+  m.mesh.boundary.equals_positive_faces = false;
+  m.mesh.boundary.genus = -1;
+  m.mesh.boundary.max_vertex_distance_over_h = 1e-9;
+  m.mesh.boundary.gap_over_volume = .02;
+  m.coordinate_rounding_over_h = 1. / 3e15;
+  m.domain = {.05, 2, 4, 2, 1, {"piece"}, true, .25};
+  m.cloud = {.noise = .01, .rms = .1, .max = .7, .p99 = .5};
+  m.resolution = {.9, 1.5, 3, 4, std::vector<ThinPlace>(1)};
+  m.resolution.too_thin->front().is_gap = true;
+  m.resolution.too_thin->front().box = {Vec3(1, 2, 3), Vec3(4, 5, 6)};
+  m.resolution.too_thin->front().thickness = .1;
+  m.order = 2;
+  m.second_order = SecondOrderReport{{}, SecondOrderReport::Repairs{1, 2, 3, 4}};
+  m.second_order->certificate.min_scaled_jacobian_upper = .5;
+  c.n_tets_asked = 20;
+  c.verdict = {.2, .1, {"a folded face"}};
+  c.remedy = "a smaller --h";
+  c.run = CertificateRun{{{"cloud", .5}, {"mesh", 2}}, 100., {}, 50, 2, "host", "2026-01-31T12:00:00Z", "00"};
+  return c;
+}
+
+/// As the file holds it, read back.
+Json reread(const Json& json) { return Json::parse(json.dump()); }
+
+TEST(CertificateJson, ACertificateReadBackIsWrittenAlike) {
+  Certificate least;
+  least.measured.mesh.volume = std::numeric_limits<double>::quiet_NaN();  // null in the file
+  least.measured.mesh.h = 1;
+  for (const Certificate& c : {full_certificate(), least}) {
+    const Json json = to_json(c);
+    EXPECT_EQ(to_json(certificate_from(reread(json))).dump(2), json.dump(2));
+  }
+}
+
+TEST(CertificateJson, WhatIsMissingIsDamage) {
+  const Json json = to_json(full_certificate());
+  for (const auto& [key, value] : json.items()) {
+    Json lacking = json;
+    lacking.erase(key);
+    // of meshes whose corners alone were measured, or that never were in a case
+    const bool may_lack = key == "schema" || key == "tool" || key == "verdict" || key == "order" || key == "run";
+    if (may_lack) {
+      EXPECT_NO_THROW(certificate_from(lacking)) << key;
+    } else {
+      EXPECT_THROW(certificate_from(lacking), ArtefactDamaged) << key;
+    }
+  }
+}
+
+TEST(StageReports, AReportReadBackIsWrittenAlike) {
+  StageRecord record;
+  MeshReport mesh{170.5, 12345, full_certificate().measured};
+  mesh.measured.reasons = {"a folded face"};
+  record.numbers = reread(to_json(mesh));
+  EXPECT_EQ(to_json(mesh_report(record)).dump(2), to_json(mesh).dump(2));
+
+  CloudReport cloud;
+  cloud.box = {Vec3(0, 0, 0), Vec3(1, 1, 1)};
+  cloud.normals = {true, 3, .9, OrientationReport{.9, 1, 5}, 7};
+  cloud.notices = {"turned 5"};
+  record.numbers = reread(to_json(cloud));
+  EXPECT_EQ(to_json(cloud_report(record)).dump(2), to_json(cloud).dump(2));
+
+  LevelSetReport psi;
+  psi.shift = {1, 2, 3};
+  psi.fit.residuals = {1, .1};
+  psi.fit.bands.resize(2);
+  psi.thickness = {.1, .2, .3};
+  record.numbers = reread(to_json(psi));
+  EXPECT_EQ(to_json(level_set_report(record)).dump(2), to_json(psi).dump(2));
+  record.numbers.erase("shift");
+  EXPECT_THROW(level_set_report(record), ArtefactDamaged);
+}
+
+}  // namespace
+}  // namespace umtet
