@@ -12,7 +12,7 @@ import subprocess
 import time
 import unittest
 
-from support import PROGRAM, SLOW, Folder, ellipsoid, promised, run, write_ply
+from support import PATIENT, PROGRAM, SLOW, Folder, ellipsoid, promised, run, wait_until, write_ply
 
 KILLS = int(os.environ.get("UMTET_KILLS", "200" if SLOW else "6"))
 BURSTS = int(os.environ.get("UMTET_BURSTS", "300" if SLOW else "20"))
@@ -33,7 +33,7 @@ class Kill(unittest.TestCase):
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         time.sleep(delay)
         process.send_signal(with_signal)
-        return process.wait(timeout=60)
+        return process.wait(timeout=PATIENT)
 
     def test_reruns_end_at_the_bytes_of_an_undisturbed_run(self):
         random.seed(1)
@@ -53,7 +53,10 @@ class Kill(unittest.TestCase):
             case, tets = self.folder / f"case_{k}", 3000
             if k % 2:
                 self.assertEqual(run(*self.arguments(case, 2000)).returncode, 0)
+            start = time.monotonic()
             code = self.stopped(case, tets, how, random.uniform(0, 1.1 * seconds[tets]))
+            if code == 0:  # the machine may have become faster
+                seconds[tets] = min(seconds[tets], time.monotonic() - start)
             self.assertIn(code, (0, -how, 128 + how))
             codes[code] = codes.get(code, 0) + 1
             left = promised(case) if case.exists() else {}
@@ -66,7 +69,7 @@ class Kill(unittest.TestCase):
             self.assertFalse((case / ".next").exists())
             self.assertEqual([f for f in case.rglob(".tmp-*")], [], "temporary files are left")
         print(f"{KILLS} of {KILLS} reruns are byte-equal; exit codes of the stopped runs: {codes}")
-        self.assertGreater(sum(n for code, n in codes.items() if code != 0), KILLS // 3)
+        self.assertGreater(sum(n for code, n in codes.items() if code != 0), KILLS // 6)
 
     def test_a_second_signal_ends_at_once_and_json_has_its_document(self):
         for k in range(3):
@@ -82,7 +85,7 @@ class Kill(unittest.TestCase):
 
     def check_answer(self, process, codes):
         """One whole document on stdout, of the failure or success that the exit code says."""
-        out, said = process.communicate(timeout=300)
+        out, said = process.communicate(timeout=PATIENT)
         self.assertIn(process.returncode, codes, said)
         try:
             document = json.loads(out)
@@ -123,19 +126,12 @@ class Kill(unittest.TestCase):
                 pipe.write(4000 * " ")
             process.stderr.readline()
             if k % 2 == 0:
-                self.wait_until_blocked(process)
+                waits_in = pathlib.Path(f"/proc/{process.pid}/wchan")  # a function of the kernel
+                self.assertTrue(wait_until(lambda: "pipe" in waits_in.read_text()), "no answer is written")
             for n in range(8):
                 process.send_signal((signal.SIGINT, signal.SIGTERM)[n % 2])
                 time.sleep(.01)
             self.check_answer(process, (130, 143) if k % 2 else (0,))
-
-    def wait_until_blocked(self, process):
-        """Until the first thread waits for a reader."""
-        for _ in range(30000):
-            if "pipe" in pathlib.Path(f"/proc/{process.pid}/wchan").read_text():
-                return
-            time.sleep(.01)
-        self.fail("no answer is written")
 
 
 if __name__ == "__main__":
