@@ -50,6 +50,15 @@ bool renews_any(const CasePaths& paths) {
   return std::find(paths.renewed.begin(), paths.renewed.end(), true) != paths.renewed.end();
 }
 
+/// What a run leaves that is killed when all its stages have been moved out of CASE/.next.
+void remove_emptied_next(const CasePaths& paths) {
+  CasePaths next{paths.root};
+  next.renewed.fill(true);
+  if (std::none_of(kStages.begin(), kStages.end(), [&](Stage stage) { return fs::exists(next.record(stage)); })) {
+    fs::remove_all(paths.next());
+  }
+}
+
 bool same_mesh(const CasePaths& paths) {
   const CasePaths former{paths.root};
   return fs::exists(former.mesh()) && stamp(former.mesh()) == stamp(paths.mesh());
@@ -80,7 +89,7 @@ void refuse_foreign_folder(const CasePaths& paths) {
 }
 
 void replace_former(const StageContext& context, CasePaths& paths) {
-  if (!renews_any(paths)) return;
+  if (!renews_any(paths)) return remove_emptied_next(paths);
   fs::remove(paths.certificate());
   fs::remove(paths.report());
   remove_view(paths);
