@@ -181,7 +181,7 @@ RunOutcome CaseRun::operator()() {
   for (const Stage stage : kStages) {
     if (stage <= request_.until && (!of_formula || stage == Stage::Mesh)) records.push_back(ensure(stage));
   }
-  replace_former(context_, paths_);
+  replace_former(context_, paths_, outcome_.stages_run);
   write_parameters(paths_, parameters_);
   for (const StageRecord& record : records) {
     for (const RecordedFile& f : record.outputs) outcome_.files.push_back(paths_.folder(record.stage) / f.name);

@@ -82,6 +82,15 @@ class Damage(unittest.TestCase):
         self.assertEqual(list(case.rglob(".tmp-*")), [])
         self.assertFalse((case / ".next").exists())
 
+    def test_a_run_killed_while_it_moves_a_stage_leaves_nothing_behind_the_next_one(self):
+        case = self.folder / "moving"
+        shutil.copytree(self.plain, case)
+        (case / ".next/3-mesh").mkdir(parents=True)
+        (case / "3-mesh/record.json").rename(case / ".next/3-mesh/record.json")
+        self.assertEqual(self.call(case).returncode, 0)
+        self.assertFalse((case / ".next").exists())
+        self.assertTrue(promised(case) == self.expected)
+
     def test_records_of_another_schema_are_made_again(self):
         case = self.folder / "newer"
         shutil.copytree(self.plain, case)
