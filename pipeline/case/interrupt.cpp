@@ -1,17 +1,21 @@
 #include "pipeline/case/interrupt.h"
 
+#include <poll.h>
+#include <pthread.h>
 #include <sys/time.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <cmath>
 #include <csignal>
+#include <cstdint>
 #include <cstdlib>
-#include <cstring>
+#include <ctime>
 #include <exception>
-#include <initializer_list>
 #include <new>
+#include <string_view>
 
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/stop_document.h"
@@ -23,47 +27,104 @@ std::atomic<int> asked_by{0};
 std::atomic<const char*> work{"start"};
 std::atomic<bool> in_own_time{false};
 std::atomic<const char*> answers_to{nullptr};  ///< the command whose caller waits for a document
+std::atomic<bool> last_word_taken{false};      ///< who finds it false answers and ends the process, and nobody else
+std::atomic<bool> last_word_said{false};
+std::atomic<std::int64_t> reader_has_until{0};  ///< in us of the monotonic clock; 0: as long as it takes
+pthread_t first_thread;                         ///< where signals are answered, one after the other
 std::terminate_handler other_end = nullptr;
 // Else a signal handler may not touch them.
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<const char*>::is_always_lock_free &&
-              std::atomic<bool>::is_always_lock_free);
+              std::atomic<bool>::is_always_lock_free && std::atomic<std::int64_t>::is_always_lock_free);
 
 // Steps poll more often than this; a few library calls on large clouds take longer, and end without their say. A fifth
 // of a second is promised, and what the kernel takes back of a large process is part of it.
-constexpr long kPatienceMicroseconds = 100'000;
-
-void write_all(int file, std::initializer_list<const char*> texts) {
-  for (const char* text : texts) [[maybe_unused]] const auto written = ::write(file, text, std::strlen(text));
-}
-
-void say(const char* text) { write_all(STDERR_FILENO, {text}); }
+constexpr int kPatienceMicroseconds = 100'000;
+// After a signal no process waits longer for somebody who does not read its answer.
+constexpr int kReaderMicroseconds = 5'000'000;
 
 int code_of(int signal) { return signal == SIGALRM ? static_cast<int>(ExitCode::ResourceLimit) : 128 + signal; }
 
-/// Every file of a case is renamed into place when it is whole, so the process may end at any instruction.
-[[noreturn]] void stop_now(int signal) {
-  const char* what = signal == SIGALRM ? "out of time" : signal == SIGTERM ? "terminated" : "interrupted";
-  const char* resume = "; the case can be resumed with the same command";
-  write_all(STDERR_FILENO, {"\numtet: ", what, " in ", work.load(), resume, "\n"});
-  if (const char* command = answers_to.load()) {
-    const char* code = signal == SIGALRM ? "9" : signal == SIGTERM ? "143" : "130";
-    write_all(STDOUT_FILENO, {"{\n  \"schema\": 1,\n  \"command\": \"", command, "\",\n  \"exit_code\": ", code,
-                              ",\n  \"error\": \"", what, " in ", work.load(), resume, "\"\n}\n"});
-  }
-  ::_exit(code_of(signal));
-}
-
-extern "C" void ask_to_stop(int signal) {
-  if (asked_by.exchange(signal) != 0) stop_now(signal);
-  if (in_own_time) return;
-  const itimerval once{{0, 0}, {0, kPatienceMicroseconds}};
+void set_timer(std::int64_t microseconds) {
+  const itimerval once{{0, 0}, {microseconds / 1'000'000, microseconds % 1'000'000}};
   ::setitimer(ITIMER_REAL, &once, nullptr);
 }
 
-/// The time limit, or the end of patience.
-extern "C" void time_is_over(int) {
-  if (const int signal = asked_by.load()) stop_now(signal);
-  ask_to_stop(SIGALRM);
+std::int64_t now() {
+  timespec time{};
+  ::clock_gettime(CLOCK_MONOTONIC, &time);
+  return std::int64_t{1'000'000} * time.tv_sec + time.tv_nsec / 1000;
+}
+
+/// A few words in one piece and without an allocation: what fits into PIPE_BUF a pipe takes whole.
+class Words {
+ public:
+  Words& operator<<(std::string_view text) {
+    size_ += text.copy(text_ + size_, sizeof(text_) - size_);
+    return *this;
+  }
+  std::string_view text() const { return {text_, size_}; }
+  void write(int file) const {
+    pollfd reader{file, POLLOUT, 0};
+    int ready;
+    do ready = ::poll(&reader, 1, kReaderMicroseconds / 1000);
+    while (ready < 0 && errno == EINTR);
+    if (ready > 0) [[maybe_unused]]
+      const auto written = ::write(file, text_, size_);
+  }
+
+ private:
+  char text_[2000];
+  std::size_t size_ = 0;
+};
+
+/// What is said where nothing can be allocated or caught, to people and to programs. Every file of a case is renamed
+/// into place when it is whole, so the process may end at any instruction.
+/// @param code  the status in digits
+[[noreturn]] void end_now(const Words& error, const char* code, int status) {
+  (Words() << "\numtet: " << error.text() << "\n").write(STDERR_FILENO);
+  if (const char* command = answers_to.load()) {
+    (Words() << "{\n  \"schema\": 1,\n  \"command\": \"" << command << "\",\n  \"exit_code\": " << code
+             << ",\n  \"error\": \"" << error.text() << "\"\n}\n")
+        .write(STDOUT_FILENO);
+  }
+  ::_exit(status);
+}
+
+/// Returns where the program itself is answering: to end as it would have is sooner than to end at once.
+void stop_now(int signal) {
+  if (!last_word_taken.exchange(true)) {
+    const char* what = signal == SIGALRM ? "out of time" : signal == SIGTERM ? "terminated" : "interrupted";
+    const char* code = signal == SIGALRM ? "9" : signal == SIGTERM ? "143" : "130";
+    end_now(Words() << what << " in " << work.load() << "; the case can be resumed with the same command", code,
+            code_of(signal));
+  }
+  if (last_word_said) return;
+  std::int64_t until = 0;
+  const std::int64_t time = now();
+  if (reader_has_until.compare_exchange_strong(until, time + kReaderMicroseconds)) until = time + kReaderMicroseconds;
+  if (time >= until) ::_exit(code_of(signal));
+  set_timer(until - time);
+}
+
+/// A second signal, the time limit behind a signal, and the end of patience are all the same: at once.
+void answer(int signal) {
+  const bool is_timer = signal == SIGALRM;
+  int first = 0;
+  if (!asked_by.compare_exchange_strong(first, signal)) return stop_now(is_timer ? first : signal);
+  if (last_word_taken) return stop_now(signal);
+  if (!in_own_time) set_timer(kPatienceMicroseconds);
+}
+
+/// The kernel gives a signal to any thread, and several signals to several. Each is passed on to the first, where it
+/// waits until the one before has been answered (sa_mask), and where the program itself answers.
+extern "C" void hear(int signal) {
+  const int error = errno;
+  if (::pthread_equal(::pthread_self(), first_thread)) {
+    answer(signal);
+  } else {
+    ::pthread_kill(first_thread, signal);
+  }
+  errno = error;
 }
 
 /// nlohmann's ordered_map and libstdc++'s directory_iterator allocate in noexcept functions.
@@ -71,10 +132,11 @@ extern "C" void time_is_over(int) {
   try {
     if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
   } catch (const std::bad_alloc&) {
-    say("umtet: out of memory in ");
-    say(work.load());
-    say("\n");
-    ::_exit(static_cast<int>(ExitCode::ResourceLimit));
+    const int status = static_cast<int>(ExitCode::ResourceLimit);
+    const bool is_first = ::pthread_equal(::pthread_self(), first_thread);
+    if (is_first && last_word_taken.exchange(true)) ::_exit(status);  // it was about to end
+    if (!is_first) take_last_word();
+    end_now(Words() << "out of memory in " << work.load(), "9", status);
   } catch (...) {
   }
   if (other_end) other_end();  // says what it was
@@ -84,15 +146,14 @@ extern "C" void time_is_over(int) {
 }  // namespace
 
 void install_signal_handlers() {
+  first_thread = ::pthread_self();
   other_end = std::set_terminate(end_without_catcher);
   struct sigaction action {};
-  action.sa_handler = ask_to_stop;
+  action.sa_handler = hear;
   action.sa_flags = SA_RESTART;
   sigemptyset(&action.sa_mask);
-  ::sigaction(SIGINT, &action, nullptr);
-  ::sigaction(SIGTERM, &action, nullptr);
-  action.sa_handler = time_is_over;
-  ::sigaction(SIGALRM, &action, nullptr);
+  for (const int signal : {SIGINT, SIGTERM, SIGALRM}) sigaddset(&action.sa_mask, signal);
+  for (const int signal : {SIGINT, SIGTERM, SIGALRM}) ::sigaction(signal, &action, nullptr);
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
 }
@@ -108,6 +169,13 @@ void stop_after(double seconds) {
 void stop_in_own_time() { in_own_time = true; }
 
 void answer_stops_in_json(const char* command) { answers_to = command; }
+
+void take_last_word() {
+  if (!last_word_taken.exchange(true)) return;
+  for (;;) ::pause();  // until the other one ends the process
+}
+
+void say_no_more() { last_word_said = true; }
 
 void set_work_at_hand(const char* name) { work = name; }
 

@@ -5,9 +5,11 @@
 namespace umtet {
 
 /// From now on SIGINT and SIGTERM ask the running stage to stop. Where it does not do so within 0.1 s, and at a second
-/// signal, the process ends at once: everything in a case is whole at any time. Files that
-/// grow beyond a limit and closed pipes become errors of write() instead of signals. An allocation that fails where
-/// nothing can be caught (in noexcept functions of libraries) ends the process with exit code 9.
+/// signal, the process ends at once: everything in a case is whole at any time. All signals are answered in the thread
+/// that calls this, one after the other; the answer of the program and that of a signal exclude each other
+/// (stop_document.h). Files that grow beyond a limit and closed pipes become errors of write() instead of signals. An
+/// allocation that fails where nothing can be caught (in noexcept functions of libraries) ends the process with exit
+/// code 9.
 void install_signal_handlers();
 
 /// Asks to stop after so many seconds, as by a signal, with exit code 9.

@@ -233,22 +233,23 @@ int run_program(int argc, char** argv) {
     failure = failure_of(std::current_exception());
   }
   if (failure) {
-    complain("umtet: {}\n", failure->message);
     output.code = failure->code;
     output.text.clear();
     output.document = {{"error", failure->message}};
     output.document.update(failure->evidence);
   }
   if (json) {
-    answer_stops_in_json(nullptr);
     Json document = {{"schema", 1}, {"command", command}, {"exit_code", static_cast<int>(output.code)}};
     if (output.document.is_object()) document.update(output.document);  // --version and --help have none
     output.text = document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   }
+  take_last_word();
+  if (failure) complain("umtet: {}\n", failure->message);
   if (!print(output.text)) {
     complain("umtet: cannot write to stdout\n");
     if (output.code == ExitCode::Success) output.code = ExitCode::FileTrouble;
   }
+  say_no_more();
   return static_cast<int>(output.code);
 }
 

@@ -49,6 +49,17 @@ bool renews_any(const CasePaths& paths) {
   return std::find(paths.renewed.begin(), paths.renewed.end(), true) != paths.renewed.end();
 }
 
+/// A run that is killed while it moves leaves CASE/.next without records, or with that of a stage that has none in its
+/// place; this one has been made there anew.
+void remove_superseded(const CasePaths& paths, const std::vector<Stage>& made) {
+  CasePaths next{paths.root};
+  next.renewed.fill(true);
+  for (const Stage stage : made) fs::remove_all(next.folder(stage));
+  if (std::none_of(kStages.begin(), kStages.end(), [&](Stage stage) { return fs::exists(next.record(stage)); })) {
+    fs::remove_all(paths.next());
+  }
+}
+
 bool same_mesh(const CasePaths& paths) {
   const CasePaths former{paths.root};
   return fs::exists(former.mesh()) && paths.stamps->of(former.mesh()) == paths.stamps->of(paths.mesh());
@@ -78,8 +89,8 @@ void refuse_foreign_folder(const CasePaths& paths) {
                    " is not a case (it has no case.toml): choose another folder with -o, or move the file away");
 }
 
-void replace_former(const StageContext& context, CasePaths& paths) {
-  if (!renews_any(paths)) return;
+void replace_former(const StageContext& context, CasePaths& paths, const std::vector<Stage>& made) {
+  if (!renews_any(paths)) return remove_superseded(paths, made);
   fs::remove(paths.certificate());
   fs::remove(paths.report());
   remove_view(paths);

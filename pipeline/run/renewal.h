@@ -17,7 +17,8 @@ void refuse_foreign_folder(const CasePaths&);
 /// mesh that is replaced are withdrawn before, each stage's record is replaced last: killed on the way, stages are
 /// missing, but none claims what is not there. Then paths.renewed is empty.
 /// @param context  context.paths is `paths`
+/// @param made     stages made by this run; what CASE/.next holds of them is superseded where nothing is renewed
 /// \throw std::system_error
-void replace_former(const StageContext& context, CasePaths& paths);
+void replace_former(const StageContext& context, CasePaths& paths, const std::vector<Stage>& made);
 
 }  // namespace umtet

@@ -188,7 +188,7 @@ std::vector<Stage> CaseRun::stages() const {
 }
 
 RunOutcome CaseRun::finish(const std::vector<StageRecord>& records) {
-  replace_former(context_, paths_);
+  replace_former(context_, paths_, outcome_.stages_run);
   write_parameters(paths_, parameters_);
   for (const StageRecord& record : records) {
     for (const RecordedFile& f : record.outputs) outcome_.files.push_back(paths_.folder(record.stage) / f.name);

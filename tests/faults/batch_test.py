@@ -5,10 +5,9 @@ import os
 import pathlib
 import signal
 import subprocess
-import time
 import unittest
 
-from support import PROGRAM, SLOW, Folder, ellipsoid, run, write_ply
+from support import PATIENT, PROGRAM, SLOW, Folder, ellipsoid, run, wait_until, write_ply
 
 
 def bad_scans(folder):
@@ -108,22 +107,15 @@ class Batch(unittest.TestCase):
             write_ply(folder / "scans" / names[0], ellipsoid(3000))
             batch = subprocess.Popen([PROGRAM, "batch", "list", "-o", "out", "--tets", "200000", "--set",
                                       "mesh.mode=paper", "-q"], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-            child = None
-            for _ in range(1000):
-                found = subprocess.run(["/bin/cat", f"/proc/{batch.pid}/task/{batch.pid}/children"],
-                                       capture_output=True, text=True).stdout.split()
-                if found:
-                    child = int(found[0])
-                    break
-                time.sleep(.01)
-            time.sleep(.1)  # it may not have become the program yet
+            children = pathlib.Path(f"/proc/{batch.pid}/task/{batch.pid}/children")
+            child = int(wait_until(children.read_text).split()[0])
+            own, its = (pathlib.Path(f"/proc/{pid}/cmdline") for pid in (batch.pid, child))
+            wait_until(lambda: its.read_bytes() != own.read_bytes())  # it has become the program
             os.kill(child, signal.SIGKILL)
-            for _ in range(1000):
-                if (folder / "out/batch.csv").exists() and table(folder / "out")[0]["verdict"] != "waiting":
-                    break
-                time.sleep(.01)
+            wait_until(lambda: (folder / "out/batch.csv").exists() and
+                       table(folder / "out")[0]["verdict"] != "waiting")
             batch.send_signal(signal.SIGTERM)
-            _, said = batch.communicate(timeout=20)
+            _, said = batch.communicate(timeout=PATIENT)
             self.assertEqual(batch.returncode, 143, said)
             rows = table(folder / "out")
             self.assertEqual(rows[0]["verdict"], "crash")
@@ -138,19 +130,10 @@ class Batch(unittest.TestCase):
             batch = subprocess.Popen([PROGRAM, "batch", "list", "-o", "out", "--tets", "200000", "--set",
                                       "mesh.mode=paper", "-q"], cwd=folder, stderr=subprocess.DEVNULL)
             lock = folder / "out" / "egg 0" / ".lock"
-            for _ in range(1000):
-                if lock.exists() and lock.read_text():
-                    break
-                time.sleep(.01)
-            child = int(lock.read_text())
+            child = int(wait_until(lambda: lock.exists() and lock.read_text()))
             batch.kill()
             batch.wait()
-            for _ in range(500):
-                if not is_alive(child):
-                    break
-                time.sleep(.01)
-            else:
-                self.fail("the child goes on")
+            self.assertTrue(wait_until(lambda: not is_alive(child)), "the child goes on")
 
     def test_time_and_memory_are_limits_of_a_scan(self):
         with Folder() as folder:
@@ -161,7 +144,7 @@ class Batch(unittest.TestCase):
             row = table(folder / "out")[0]
             self.assertEqual((row["verdict"], row["exit_code"]), ("limit", "9"))
             self.assertIn("out of time in ", row["reason"])
-            self.assertLess(float(row["seconds"]), 3)
+            self.assertLess(float(row["seconds"]), 60)  # without a limit it takes minutes on any machine
             run("batch", "list", "-o", "out", "--tets", 300000, "--max-memory", .01, cwd=folder)
             row = table(folder / "out")[0]
             self.assertEqual((row["verdict"], row["exit_code"]), ("limit", "9"))

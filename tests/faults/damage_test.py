@@ -4,10 +4,9 @@ import re
 import shutil
 import subprocess
 import threading
-import time
 import unittest
 
-from support import PROGRAM, SLOW, Folder, ellipsoid, promised, run, write_ply
+from support import PATIENT, PROGRAM, SLOW, Folder, ellipsoid, promised, run, wait_until, write_ply
 
 ARTEFACTS = ("1-cloud/cloud.ply", "1-cloud/record.json", "2-level-set/level_set.vti", "2-level-set/record.json",
              "3-mesh/mesh.vtu", "3-mesh/omega_h.vtu", "3-mesh/projected.vtu", "3-mesh/quality.csv",
@@ -78,8 +77,19 @@ class Damage(unittest.TestCase):
         shutil.copytree(self.plain, case)
         for name in ("case.toml", "certificate.json", "report.html"):
             (case / f".tmp-1-{name}").write_text("begun")
+        (case / ".next/3-mesh").mkdir(parents=True)  # killed behind the last move out of it
         self.assertEqual(self.call(case).returncode, 0)
         self.assertEqual(list(case.rglob(".tmp-*")), [])
+        self.assertFalse((case / ".next").exists())
+
+    def test_a_run_killed_while_it_moves_a_stage_leaves_nothing_behind_the_next_one(self):
+        case = self.folder / "moving"
+        shutil.copytree(self.plain, case)
+        (case / ".next/3-mesh").mkdir(parents=True)
+        (case / "3-mesh/record.json").rename(case / ".next/3-mesh/record.json")
+        self.assertEqual(self.call(case).returncode, 0)
+        self.assertFalse((case / ".next").exists())
+        self.assertTrue(promised(case) == self.expected)
 
     def test_records_of_another_schema_are_made_again(self):
         case = self.folder / "newer"
@@ -134,13 +144,10 @@ class Damage(unittest.TestCase):
         process = subprocess.Popen([PROGRAM, "run", self.cloud, "-o", case, "--tets", "200000", "--set",
                                     "mesh.mode=paper", "-q"], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         level_set = case / "2-level-set/record.json"
-        for _ in range(2000):
-            if level_set.exists() or process.poll() is not None:
-                break
-            time.sleep(.01)
+        wait_until(lambda: level_set.exists() or process.poll() is not None)
         shutil.rmtree(case, ignore_errors=True)
         process.terminate()
-        _, said = process.communicate(timeout=20)
+        _, said = process.communicate(timeout=PATIENT)
         self.assertIn(process.returncode, (7, 8, 143), said)  # 8: a stage it had finished is there no more
         self.assertFalse((case / "certificate.json").exists())
 
@@ -148,7 +155,7 @@ class Damage(unittest.TestCase):
         case = self.folder / "shared"
         calls = [subprocess.Popen([PROGRAM, "run", self.cloud, "-o", case, "--tets", "700", "--progress", "none"],
                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) for _ in range(2)]
-        ends = [(c.communicate(timeout=60)[1], c.returncode) for c in calls]
+        ends = [(c.communicate(timeout=PATIENT)[1], c.returncode) for c in calls]
         self.assertIn(0, [code for _, code in ends], ends)
         for said, code in ends:
             if code != 0:

@@ -6,10 +6,13 @@ import pathlib
 import shutil
 import subprocess
 import tempfile
+import time
 
 PROGRAM = os.environ.get("UMTET_PROGRAM", "umtet")
 SHIM = os.environ.get("UMTET_FAULT_SHIM", "")
 SLOW = bool(os.environ.get("UMTET_SLOW"))
+# Seconds, for what takes one: only what hangs is found, however busy the machine is.
+PATIENT = 600
 
 
 def ellipsoid(n, axes=(1, .8, .6)):
@@ -34,7 +37,7 @@ def write_ply(path, lines, count=None):
     return path
 
 
-def run(*arguments, env=None, cwd=None, timeout=120, **options):
+def run(*arguments, env=None, cwd=None, timeout=PATIENT, **options):
     """The finished process, with texts; a crash has a negative returncode."""
     return subprocess.run([PROGRAM, *map(str, arguments)], env={**os.environ, **(env or {})}, cwd=cwd, timeout=timeout,
                           stdin=subprocess.DEVNULL, stdout=options.pop("stdout", subprocess.PIPE),
@@ -56,6 +59,14 @@ def promised(case):
             document.pop("run", None)
             content = json.dumps(document).encode()
         found[name] = content
+    return found
+
+
+def wait_until(condition):
+    """What the condition gives as soon as it is true; the last it gave where it never is."""
+    end = time.monotonic() + PATIENT
+    while not (found := condition()) and time.monotonic() < end:
+        time.sleep(.01)
     return found
 
 

@@ -1,6 +1,6 @@
 // Drives a fuzz target without libFuzzer: every seed, then mutations of it, the same at every call.
-//   fuzz_NAME FOLDER MUTATIONS    seeds, and so many mutations of each
-//   fuzz_NAME FILE ...            these inputs only, to look at a finding
+//   fuzz_NAME [FOLDER MUTATIONS] ...    seeds, and so many mutations of each
+//   fuzz_NAME FILE ...                  these inputs only, to look at a finding
 // An input that crashes the target, or takes too long, is written to crash-NAME in the current folder.
 
 #include <fcntl.h>
@@ -109,25 +109,27 @@ int main(int argc, char** argv) {
 #endif
   crash_file = "crash-" + fs::path(argv[0]).filename().string();
   for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE}) std::signal(signal, save_input);
-  if (argc != 3 || !fs::is_directory(argv[1])) {
+  if (argc % 2 == 0 || !fs::is_directory(argv[1])) {
     for (int i = 1; i < argc; ++i) {
       input = content(argv[i]);
       run();
     }
     return 0;
   }
-  std::vector<fs::path> seeds{fs::directory_iterator(argv[1]), {}};
-  std::sort(seeds.begin(), seeds.end());
-  if (seeds.empty()) return std::fprintf(stderr, "%s: no seeds\n", argv[1]), 1;
-  const int n_mutations = std::atoi(argv[2]);
-  for (const fs::path& seed : seeds) {
-    const std::string bytes = content(seed);
-    std::mt19937 random(1);
-    for (int i = 0; i <= n_mutations; ++i) {
-      input = bytes;
-      if (i > 0) mutate(input, random);
-      run();
+  for (int i = 1; i < argc; i += 2) {
+    std::vector<fs::path> seeds{fs::directory_iterator(argv[i]), {}};
+    std::sort(seeds.begin(), seeds.end());
+    if (seeds.empty()) return std::fprintf(stderr, "%s: no seeds\n", argv[i]), 1;
+    const int n_mutations = std::atoi(argv[i + 1]);
+    for (const fs::path& seed : seeds) {
+      const std::string bytes = content(seed);
+      std::mt19937 random(1);
+      for (int k = 0; k <= n_mutations; ++k) {
+        input = bytes;
+        if (k > 0) mutate(input, random);
+        run();
+      }
     }
+    std::printf("%zu seeds, %d mutations of each\n", seeds.size(), n_mutations);
   }
-  std::printf("%zu seeds, %d mutations of each\n", seeds.size(), n_mutations);
 }

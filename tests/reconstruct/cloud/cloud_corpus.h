@@ -7,13 +7,12 @@
 #include <cstdint>
 #include <cstring>
 #include <numbers>
-#include <random>
 #include <sstream>
 #include <string>
 
 #include "reconstruct/cloud/point_cloud.h"
 
-/// Pieces of cloud files, good ones; the tests put them together wrongly.
+/// Pieces of cloud files, good ones; tests/corpus puts them together wrongly.
 namespace umtet {
 
 /// Golden-spiral sphere with outward normals; coordinates need all 53 bits.
@@ -106,24 +105,10 @@ inline std::string compressed_block(std::uint32_t packed_size, std::uint32_t unp
   return bytes + packed;
 }
 
-inline std::string random_bytes(int n) {
-  std::mt19937 generator(1);
-  std::string bytes;
-  for (int i = 0; i < n; ++i) bytes += static_cast<char>(generator());
-  return bytes;
-}
-
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   return text.replace(at, from.size(), to);
-}
-
-/// Line i (from 0) of text replaced.
-inline std::string with_line(const std::string& text, int i, const std::string& line) {
-  std::size_t begin = 0;
-  for (; i > 0; --i) begin = text.find('\n', begin) + 1;
-  return text.substr(0, begin) + line + text.substr(text.find('\n', begin));
 }
 
 }  // namespace umtet

@@ -38,45 +38,5 @@ TEST_F(PointCloudIo, PcdFieldsComeInAnyOrderWithOthersAmongThem) {
   expect_cloud("fields.pcd", bytes, cloud_);
 }
 
-TEST_F(PointCloudIo, MalformedPcdIsRefusedWithTheReason) {
-  expect_refused("binary_cut.pcd", (pcd("binary") + floats_).substr(0, 1000), {"100 points", "cut short"});
-  expect_refused("points.pcd", pcd("binary", "4", "1", "4000000000", "4000000000") + floats_, {"4000000000 points"});
-  expect_refused("points_ascii.pcd", pcd("ascii", "4", "1", "4000000000", "4000000000") + text_, {"100 of 4000000000"});
-  expect_refused("points_64.pcd", pcd("binary", "4", "1", "1", "1000000000000000000") + floats_, {"POINTS"});
-  expect_refused("width.pcd", pcd("binary", "4", "1", "90") + floats_, {"POINTS 100", "WIDTH 90"});
-  expect_refused("count_negative.pcd", pcd("binary", "4", "-1") + floats_, {"COUNT", "-1"});
-  expect_refused("count_large.pcd", pcd("binary", "4", "2000000000") + floats_, {"COUNT 2000000000"});
-  expect_refused("size_zero.pcd", pcd("binary", "0") + floats_, {"SIZE", "'0'"});
-  expect_refused("type.pcd", replaced(pcd("binary"), "TYPE F", "TYPE Q") + floats_, {"'Q'"});
-  const std::string floats = by_fields<float>(cloud_), packed = lzf_literals(floats);
-  const auto n_packed = static_cast<std::uint32_t>(packed.size()), n_floats = static_cast<std::uint32_t>(floats.size());
-  const std::string header = pcd("binary_compressed");
-  expect_refused("lying.pcd", header + compressed_block(0xfffffff0, 0xfffffff0, packed), {"are left"});
-  expect_refused("unpacked.pcd", header + compressed_block(n_packed, 0xfffffff0, packed), {"4294967280"});
-  expect_refused("packed_cut.pcd", header + compressed_block(n_packed, n_floats, packed.substr(0, 700)), {"are left"});
-  expect_refused("wrong_size.pcd", header + compressed_block(n_packed, n_floats - 24, packed), {"damaged"});
-  expect_refused("damaged.pcd", header + compressed_block(n_packed, n_floats, random_bytes(static_cast<int>(n_packed))),
-                 {"cannot be unpacked"});
-  expect_refused("bomb.pcd",
-                 pcd("binary_compressed", "4", "1", "80000000", "80000000") + compressed_block(4, 1920000000, "aaaa"),
-                 {"1920000000"});
-  expect_refused("no_block.pcd", header + "abc", {"no compressed block"});
-  const std::string ascii = pcd("ascii") + text_;
-  expect_refused("ascii_cut.pcd", ascii.substr(0, ascii.size() / 2), {"line ", "cut short"});
-  expect_refused("empty.pcd", "", {"empty"});
-  expect_refused("no_points.pcd", pcd("binary", "4", "1", "0", "0"), {"0 points"});
-  expect_refused("no_points_packed.pcd", pcd("binary_compressed", "4", "1", "0", "0") + compressed_block(0, 0, ""),
-                 {"0 points"});
-  expect_refused("no_fields.pcd", replaced(pcd("binary"), "FIELDS x y z normal_x normal_y normal_z\n", "") + floats_,
-                 {"FIELDS"});
-  expect_refused("only_padding.pcd",
-                 "FIELDS _\nSIZE 4\nTYPE F\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA binary_compressed\n12345678",
-                 {"no fields"});
-  expect_refused("bare_data.pcd", "VERSION .7\nDATA\n", {"FIELDS"});
-  expect_refused("no_normals.pcd", replaced(pcd("binary"), "normal_x normal_y normal_z", "a b c") + floats_,
-                 {"no normals"});
-  expect_refused("random.pcd", random_bytes(5000), {"line 1"});
-}
-
 }  // namespace
 }  // namespace umtet

@@ -1,0 +1,362 @@
+"""The corpus: files that are wrong in one way each, and some that look wrong and are not, with what must become of them.
+
+Files of some kilobytes that were found or written by other programs are in files/, the others are made here, the same bytes at
+every call. One table for all who read them: the program and the readers (corpus_test.py), the fuzz targets (tests/fuzz), for
+which they are seeds.
+
+    cases.py FOLDER    writes what is made here to FOLDER/TARGET, TARGET that of the fuzz target
+"""
+import dataclasses
+import math
+import pathlib
+import random
+import struct
+import sys
+
+STORED = pathlib.Path(__file__).resolve().parent / "files"
+TARGETS = {".ply": "cloud_ply", ".pcd": "cloud_pcd", ".xyz": "cloud_xyz", ".pts": "cloud_xyz", ".vti": "level_set",
+           ".vtu": "mesh_vtu", ".msh": "mesh_msh", ".mesh": "mesh_mesh"}
+
+
+@dataclasses.dataclass
+class Case:
+    name: str
+    data: bytes
+    # What the refusal must say, the place among it; None: accepted. The program (exit code 3) and the readers agree, but
+    # read_point_cloud, which asks for clean points with normals, may have words of its own.
+    words: list | None
+    strict: list | None
+    is_huge: bool = False  # zeros follow the data
+
+
+N = 100
+NAMES = ("x", "y", "z", "nx", "ny", "nz")
+
+
+def spiral_sphere():
+    """N rows x y z nx ny nz of a sphere, normals outward."""
+    rows = []
+    for i in range(N):
+        z, a = 1 - (2 * i + 1) / N, math.pi * (3 - math.sqrt(5)) * i
+        r = math.sqrt(1 - z * z)
+        n = (r * math.cos(a), r * math.sin(a), z)
+        rows.append(tuple(c + .1 * u for c, u in zip((1, 2, 3), n)) + n)
+    return rows
+
+
+ROWS = spiral_sphere()
+LINES = [" ".join(repr(v) for v in row) for row in ROWS]
+TEXT = "\n".join(LINES) + "\n"
+
+
+def binary(order="<", letter="f"):
+    return b"".join(struct.pack(order + 6 * letter, *row) for row in ROWS)
+
+
+def ply(form="binary_little_endian", kind="float", count=N, more="", names=NAMES):
+    head = f"ply\nformat {form} 1.0\nelement vertex {count}\n"
+    return (head + "".join(f"property {kind} {n}\n" for n in names) + more + "end_header\n").encode()
+
+
+def pcd(data="binary", size="4", count="1", width=N, points=N, height=1):
+    return (f"# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z normal_x normal_y normal_z\n"
+            f"SIZE {' '.join([size] * 6)}\nTYPE F F F F F F\nCOUNT {count} 1 1 1 1 1\nWIDTH {width}\nHEIGHT {height}\n"
+            f"VIEWPOINT 0 0 0 1 0 0 0\nPOINTS {points}\nDATA {data}\n").encode()
+
+
+def with_line(i, line):
+    return "\n".join(LINES[:i] + [line] + LINES[i + 1:]) + "\n"
+
+
+def lzf_literals(data):
+    """LZF without back references: runs of up to 32 bytes behind their length - 1."""
+    return b"".join(bytes([len(data[i:i + 32]) - 1]) + data[i:i + 32] for i in range(0, len(data), 32))
+
+
+def ply_cases():
+    le, asc = ply() + binary(), ply("ascii") + TEXT.encode()
+    face = "element face 1\nproperty list {} int vertex_indices\n"
+    yield "ascii", asc, None
+    yield "little", le, None
+    yield "big", ply("binary_big_endian") + binary(">"), None
+    yield "double", ply(kind="double") + binary(letter="d"), None
+    yield "crlf", ply().replace(b"\n", b"\r\n") + binary(), None
+    yield "long_comment", ply(more="comment " + 200000 * "c" + "\n") + binary(), None
+    for index in (99999999, -7):
+        yield f"face_index_{index}", ply(more=face.format("uchar")) + binary() + struct.pack("<Biii", 3, 0, 1, index), None
+    yield "no_normals", ply(names=NAMES[:3]) + b"".join(struct.pack("<fff", *r[:3]) for r in ROWS), None, ["no normals", "nx, ny, nz", "CloudCompare"]
+    yield "one_nan", ply("ascii") + with_line(41, "nan inf -inf nan nan nan").encode(), None, ["point 42 ", "1 such"]
+    yield "header_cut", le[:40], ["line 3", "'elem'"]
+    yield "header_end_cut", le[:le.index(b"end_header")], ["end_header", "cut short"]
+    yield "body_cut", le[:1000], ["100", "bytes are left", "cut short"]
+    yield "body_cut_ascii", asc[:1500], ["line ", "cut short"]
+    yield "body_none", ply(), ["100", "0 bytes are left"]
+    for count in ("4000000000", "1000000000000000000", "18446744073709551615"):
+        yield f"count_{count}", ply(count=count) + binary(), [count, "2400 bytes are left"]
+        yield f"count_{count}_ascii", ply("ascii", count=count) + TEXT.encode(), [count, "line 11"]
+    for count in ("-5", "abc", "99999999999999999999", "1e2", "0x64", "", "100 100"):
+        yield f"count_{count.replace(' ', '_')}", ply(count=count) + binary(), ["line 3", count.split()[0] if count.split() else ""]
+    # 768614336404564651 * 24 bytes are 2^64 + 8: in 64 bits that is 8.
+    yield "count_wraps", ply(count="768614336404564651") + binary(), ["768614336404564651"]
+    yield "all_nan", ply() + N * 6 * struct.pack("<f", math.nan), ["100 of 100"], ["point 1 ", "100 such"]
+    yield "all_far", ply(kind="double") + N * 6 * struct.pack("<d", 1e300), ["100 of 100"], ["point 1 ", "1e50"]
+    yield "no_vertices", ply(count=0), ["0 points"]
+    yield "no_vertex_element", b"ply\nformat ascii 1.0\nelement face 0\nend_header\n", ["vertex"]
+    yield "empty", b"", ["empty"]
+    yield "only_magic", b"ply\n", ["end_header"]
+    yield "no_end_header", le.replace(b"end_header\n", b""), ["line 10"]
+    yield "list_255", ply(more=face.format("uchar")) + binary() + struct.pack("<Biii", 255, 0, 1, 2), ["face 1 of 1"]
+    yield "list_uint", ply(more=face.format("uint")) + binary() + struct.pack("<Iiii", 0xfffffff0, 0, 1, 2), ["face 1 of 1"]
+    yield "list_negative", ply(more=face.format("char")) + binary() + b"\xff", ["negative"]
+    yield "list_in_vertex", ply(more="property list uint double w\n") + binary(), ["100 x vertex"]
+    yield "list_count_float", ply(more=face.format("float")) + binary() + struct.pack("<fiii", 3, 0, 1, 2), ["line 11"]
+    yield "list_ascii", ply("ascii", more=face.format("uchar")) + TEXT.encode() + b"255 0 1 2\n", ["line 113", "list length"]
+    yield "faces_4e9", ply(more=face.format("uchar").replace(" 1\n", " 4000000000\n")) + binary(), ["face"]
+    yield "empty_elements_1e18", ply(more="element e 1000000000000000000\n") + binary(), None
+    yield "float128", ply(kind="float128") + binary(), ["line 4", "float128"]
+    yield "two_vertex", ply(more=f"element vertex {N}\n") + binary(), ["line 10"]
+    yield "two_x", ply(names=("x", "x") + NAMES[2:]) + binary(), ["x more than once"]
+    yield "no_y", ply(names=("x",) + NAMES[2:]) + binary(), ["no property y"]
+    yield "commas", ply("ascii") + TEXT.replace(".", ",").encode(), ["line 11", "decimal comma"]
+    yield "nul_in_row", ply("ascii") + TEXT.replace(" ", "\0", 1).encode(), ["line 11"]
+    yield "hex_numbers", ply("ascii") + with_line(0, "0x1p1 2 3 0 0 1").encode(), ["line 11"]
+    yield "long_token", ply("ascii") + with_line(3, 100000 * "9" + " 2 3 0 0 x").encode(), ["line 14"]
+    properties = "".join(f"property uchar p{i}\n" for i in range(10000))
+    yield "ten_thousand_properties", ply(more=properties), ["10024 bytes"]
+    yield "many_elements", ply(more="".join(f"element e{i} 0\n" for i in range(10000))) + binary(), ["too many"]
+    yield "random", random.Random(1).randbytes(5000), ["line 1"]
+    yield "random_body", ply("ascii") + random.Random(1).randbytes(5000), ["line 11"]
+    yield "zeros", bytes(1 << 20), ["line 1"]
+    yield "utf16", asc.decode().encode("utf-16"), ["line 1"]
+    yield "bom", b"\xef\xbb\xbf" + asc, ["line 1"]
+    yield "old_mac", asc.replace(b"\n", b"\r"), ["line 1"]
+    yield "format_middle_endian", asc.replace(b"ascii", b"binary_middle_endian"), ["line 2"]
+    yield "no_format", asc.replace(b"format ascii 1.0\n", b""), ["no format"]
+    yield "plane", ply("ascii") + "".join(f"{i % 10} {i // 10} 0 0 0 1\n" for i in range(N)).encode(), ["plane"]
+    yield "twelve_places", ply("ascii") + "".join(LINES[i % 12] + "\n" for i in range(N)).encode(), ["12 different places"], None
+    yield "tiny", ply(kind="double") + b"".join(struct.pack("<6d", *(1e-60 * v for v in r)) for r in ROWS), ["1e-50"]
+    yield "huge", ply(kind="double") + b"".join(struct.pack("<6d", *(1e60 * v for v in r)) for r in ROWS), ["1e50"]
+    yield "few_announced", ply(count=50) + binary(), ["after the last item"]
+    yield "long_row", ply("ascii") + with_line(2, "1 2 3 4 5 6 7").encode(), ["line 13", "too many"]
+    for label in ("1.5", "nan", "3000000000"):
+        yield f"label_{label}", (ply("ascii", more="property float label\n") +
+                                 labelled(lambda i: label if i == 4 else 1)), ["point 5", "label"]
+    yield "one_place", ply("ascii") + (N * "1 2 3 0 0 1\n").encode(), ["1 different places"]
+
+
+def pcd_cases():
+    data = struct.pack
+    fields = b"".join(struct.pack("<100f", *(row[a] for row in ROWS)) for a in range(6))
+    packed = lzf_literals(fields)
+    block = data("<II", len(packed), len(fields)) + packed
+    yield "ascii", pcd("ascii") + TEXT.encode(), None
+    yield "binary", pcd() + binary(), None
+    yield "compressed", pcd("binary_compressed") + block, None
+    yield "binary_cut", (pcd() + binary())[:1000], ["100 points", "cut short"]
+    yield "ascii_cut", (pcd("ascii") + TEXT.encode())[:4000], ["line ", "cut short"]
+    yield "points_4e9", pcd(width="4000000000", points="4000000000") + binary(), ["4000000000"]
+    yield "points_4e9_ascii", pcd("ascii", width="4000000000", points="4000000000") + TEXT.encode(), ["100 of 4000000000"]
+    # 65536 * 65536 is 0 in 32 bits; 2^32 * 2^32 is 0 in 64.
+    yield "width_height_wrap", pcd(width=65536, height=65536, points=0) + binary(), ["POINTS"]
+    yield "width_height_wrap_64", pcd(width=1 << 32, height=1 << 32, points=0) + binary(), ["line "]
+    yield "width_wrong", pcd(width=90) + binary(), ["POINTS 100", "WIDTH 90"]
+    yield "count_negative", pcd(count="-1") + binary(), ["COUNT", "-1"]
+    yield "count_zero", pcd(count="0") + binary(), ["COUNT"]
+    yield "count_2e9", pcd(count="2000000000") + binary(), ["COUNT 2000000000"]
+    yield "size_0", pcd(size="0") + binary(), ["SIZE", "'0'"]
+    yield "size_3", pcd(size="3") + binary(), ["line 5", "SIZE 3"]
+    yield "type_unknown", pcd().replace(b"TYPE F", b"TYPE Q") + binary(), ["'Q'"]
+    yield "lying_block", pcd("binary_compressed") + data("<II", 0xfffffff0, 0xfffffff0) + packed, ["are left"]
+    yield "lying_unpacked", pcd("binary_compressed") + data("<II", len(packed), 0xfffffff0) + packed, ["4294967280"]
+    yield "compressed_cut", pcd("binary_compressed") + block[:700], ["are left"]
+    yield "compressed_wrong_size", pcd("binary_compressed") + data("<II", len(packed), 2376) + packed, ["damaged"]
+    yield "compressed_random", (pcd("binary_compressed") + block[:8] +
+                                random.Random(1).randbytes(len(packed))), ["cannot be unpacked"]
+    # A back reference to before the first byte.
+    yield "compressed_back", pcd("binary_compressed") + block[:8] + b"\xff" * len(packed), ["cannot be unpacked"]
+    bomb = pcd("binary_compressed", width=80000000, points=80000000)
+    yield "compressed_bomb", bomb + data("<II", 4, 1920000000) + b"aaaa", ["1920000000"]
+    yield "no_block", pcd("binary_compressed") + b"abc", ["no compressed block"]
+    yield "points_1e18", pcd(width=1, points=10 ** 18) + binary(), ["POINTS"]
+    yield "no_points", pcd(width=0, points=0), ["0 points"]
+    yield "no_points_packed", pcd("binary_compressed", width=0, points=0) + bytes(8), ["0 points"]
+    yield "only_padding", (b"FIELDS _\nSIZE 4\nTYPE F\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA binary_compressed\n12345678"), \
+        ["no fields"]
+    yield "no_normals", pcd().replace(b"normal_x normal_y normal_z", b"a b c") + binary(), None, ["no normals"]
+    yield "empty", b"", ["empty"]
+    yield "no_fields", pcd().replace(b"FIELDS x y z normal_x normal_y normal_z\n", b"") + binary(), ["FIELDS"]
+    yield "bare_data", b"VERSION .7\nDATA\n", ["FIELDS"]
+    yield "data_unknown", pcd("binary_zipped") + binary(), ["binary_zipped"]
+    yield "data_missing", pcd()[:pcd().index(b"DATA")], ["DATA"]
+    yield "random", random.Random(2).randbytes(5000), ["line 1"]
+
+
+def labelled(label):
+    return "".join(f"{line} {label(i)}\n" for i, line in enumerate(LINES)).encode()
+
+
+def flat(point):
+    """Forty points with normals along z."""
+    return "".join(" ".join(map(str, point(i))) + " 0 0 1\n" for i in range(40)).encode()
+
+
+def xyz_cases():
+    bare = "".join(" ".join(line.split()[:3]) + "\n" for line in LINES)
+    yield "six", TEXT.encode(), None
+    yield "three", bare.encode(), None, ["line 1", "no normals"]
+    yield "empty", b"", ["empty"]
+    yield "two_columns", b"1 2\n" * N, ["line 1"]
+    yield "two_lines", b"1 2\n3 4\n", ["line 1"]
+    yield "one_point", b"1 2 3\n", ["1 points"], ["line 1", "no normals"]
+    yield "eight_columns", b"# head\n1 2 3 0 0 1 7 8\n", ["line 2", "8 columns"]
+    yield "nine_points", ("\n".join(LINES[:9]) + "\n").encode(), ["9 points", "30"], ["9 points", "10"]
+    yield "ragged", with_line(6, "1 2 3").encode(), ["line 7"]
+    yield "three_then_six", (bare + TEXT).encode(), ["line 101"], ["line 1"]
+    yield "mostly_bad", (bare + 101 * "nan 0 0\n").encode(), ["101 of 201"], ["line 1"]
+    yield "word", ("x y z\n" + TEXT).encode(), ["line 1", "'x'"], ["line 1"]
+    yield "six_words", ("x y z nx ny nz\n" + TEXT).encode(), ["line 1", "'x'"]
+    yield "commas", TEXT.replace(".", ",").encode(), ["line 1", "decimal"]
+    yield "commas_three", b"0,1 0,2 0,3\n", ["line 1", "decimal"]  # six columns if commas separated
+    yield "semicolons", b"0,1;0,2;0,3;0,0;0,0;1,0\n", ["line 1"]
+    yield "overflow", with_line(6, "1e999 0 0 0 0 1").encode(), ["line 7"]
+    yield "infinite", with_line(6, "inf 0 0 0 0 1").replace(LINES[9], "0 nan 0 0 0 1").encode(), None, ["point 7 ", "2 such"]
+    yield "beyond", with_line(6, "1e51 0 0 0 0 1").encode(), None, ["point 7 ", "1e50"]
+    yield "zero_normal", with_line(6, "0 0 0 0 -0 0").encode(), None, ["point 7 ", "zero normal"]
+    yield "one_long_line", b"1 " * 500000, ["line 1"]
+    yield "long_last_line", TEXT.encode() + (1 << 17) * b"1", ["line 101: 131072 bytes long"]
+    yield "nul", bytes(5000), ["line 1"]
+    yield "random", random.Random(3).randbytes(5000), ["line 1"]
+    yield "hundred_labels", labelled(lambda i: i), ["100 different", "64"]
+    yield "colours", "".join(line + " 12 200 17 3\n" for line in bare.splitlines()).encode(), ["no normals"]
+    yield "one_place", flat(lambda i: (1, 2, 3)), ["1 different places"]
+    yield "corners", flat(lambda i: (i & 1, i >> 1 & 1, i >> 2 & 1)), ["8 different places"]
+    yield "line", flat(lambda i: (i, 2 * i, 5)), ["one line"]
+    yield "plane", flat(lambda i: (i % 7, i // 7, i % 7 + i // 7)), ["one plane"]
+    yield "tiny", "".join(" ".join(repr(v if k > 2 else 1e-52 * v) for k, v in enumerate(r)) + "\n" for r in ROWS).encode(), \
+        ["1e-50"]
+
+
+def pts_cases():
+    yield "counted", ("101\n" + TEXT).encode(), ["101", "100"]
+    yield "leica", b"100\n" + labelled(lambda i: 1), ["intensities"]
+
+
+def las_cases():
+    yield "cloud", TEXT.encode(), [".xyz"]
+
+
+def msh_cases():
+    head = b"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
+    yield "empty", b"", ["no $MeshFormat"]
+    yield "huge", head + b"$Nodes\n4000000000\n", ["more than the file can hold"]
+    yield "negative", head + b"$Nodes\n-5\n", ["not a number"]
+    yield "word", head + b"$Nodes\n1\n1 0 zero 0\n", ["line 6"]
+    yield "version", b"$MeshFormat\n4 0 8\n$EndMeshFormat\n", ["only 2.2 and 4.1"]
+    tet = b"$EndNodes\n$Elements\n1\n1 4 2 0 0 1 %s\n$EndElements\n"
+    yield "missing", head + b"$Nodes\n1\n1 0 0 0\n" + tet % b"2 3 4", ["node 2 does not exist"]
+    yield "twice", head + b"$Nodes\n2\n1 0 0 0\n1 0 0 0\n" + tet % b"1 1 1", ["given twice"]
+
+
+def mesh_cases():
+    head = b"MeshVersionFormatted 2\nDimension 3\n"
+    yield "empty", b"", ["empty"]
+    yield "huge", head + b"Vertices\n123456789012\n", ["more than the file can hold"]
+    yield "flat", b"MeshVersionFormatted 2\nDimension 2\n", ["must be 3"]
+    yield "none", head + b"Vertices\n1\n0 0 0 0\nEnd\n", ["no tets"]
+    nodes = b"Vertices\n5\n9 9 nan 0\n0 0 0 0\n1 0 0 0\n0 %s 0 0\n0 0 1 0\nTetrahedra\n1\n2 3 4 %s 1\nEnd\n"
+    yield "unused_nan", head + nodes % (b"1", b"5"), None  # node 1 is no number, but in no tet
+    yield "node_twice", head + nodes % (b"1", b"4"), ["tet 1: it has its node 4 twice"]
+    yield "no_place", head + nodes % (b"inf", b"5"), ["node 4: a coordinate is not"]
+
+
+def vtu_cases():
+    grid = b"<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid>"
+    yield "empty", b"", ["not a VTK XML file"]
+    yield "huge", (grid + b"<Piece NumberOfPoints=\"4000000000\" NumberOfCells=\"1\"></Piece></UnstructuredGrid></VTKFile>"), \
+        ["more than the file can hold"]
+    yield "nest", grid + b"</VTKFile>", ["do not nest"]
+    yield "other", b"<VTKFile type=\"PolyData\"></VTKFile>", ["UnstructuredGrid"]
+    # What the parser behind VTK sees otherwise than a search for letters would.
+    raw = (STORED / "mesh_vtu/appended_raw.vtu").read_bytes()
+    for name, before, after, words in (
+            ("offset_in_note", b'offset="96"', b"Note=\"a offset='96'\" offset=\"97\"", ["more parts than bytes"]),
+            ("offset_as_reference", b'offset="96"', b'offset="&#57;7"', ["references to characters"]),
+            ("tag_in_attribute", b"<Cells>", b'<Cells a="b>">', ["attributes"]),
+            ("data_in_comment", b"<Cells>", b'<!-- <AppendedData encoding="raw"> --><Cells>', ["in a comment"]),
+            ("data_in_instruction", b"<Cells>", b"<?x ><AppendedData>_?><Cells>", ["in a comment"])):
+        assert before in raw
+        yield name, raw.replace(before, after, 1), words
+
+
+def stl_cases():
+    yield "what", b"solid", ["unknown extension"]
+
+
+# As ParaView and others write them. VTK divides by the size of a part before it is compressed.
+no_bytes = ["parts of 0 bytes"]
+STORED_WORDS = {
+    "appended_no_bytes.vtu": no_bytes, "parts_of_no_bytes.vtu": no_bytes, "no_parts_of_no_bytes.vtu": no_bytes,
+    "offset_without_format.vtu": no_bytes, "last_offset.vtu": ["more than the file can hold"],
+    "damaged_cell_data.vtu": ["VTK cannot read it"],  # and has no point data
+    # VTK would count offsets from the first byte behind the tag, find other headers there, and believe them: 8 GB.
+    "appended_beside_underscore.vtu": ["appended data without a beginning"],
+    "far_numbers.msh": ["tet 1: its node 3 does not exist"],
+    "band.vti": ["hash"], "unknown_type.vti": ["an array of a kind"],
+    "counted_labels.xyz": ["intensities"], "bare_crlf.ply": ["12 points"],
+}
+STORED_STRICT = {"counted_labels.xyz": ["line 2", "4 columns"], "bare_crlf.ply": ["no normals"]}
+
+
+def stored_cases():
+    for target in sorted(set(TARGETS.values())):
+        for file in sorted((STORED / target).iterdir()):
+            is_cloud = target.startswith("cloud")  # of twelve points
+            words = STORED_WORDS.get(file.name, ["12 points", "30"] if is_cloud else None)
+            yield Case(f"{target}_{file.name}", file.read_bytes(), words, STORED_STRICT.get(file.name, None if is_cloud else words))
+
+
+# What is nothing by its beginning, and how it begins.
+HUGE = [
+    ("zeros.ply", b"", ["line 1 does not end"]),
+    ("zeros.pcd", b"", ["line 1 does not end"]),
+    ("zeros.xyz", b"", ["line 1 does not end"]),
+    ("noise.ply", b"\x8fU\n", ["line 1", "'ply'"]),
+    ("no_type.ply", b"ply\nformat ascii 1.0\nelement vertex 9\nproperty real x\nend_header\n", ["line 4", "'real'"]),
+    ("no_x.ply", b"ply\nformat ascii 1.0\nelement vertex 9\nproperty float y\nend_header\n", ["property x"]),
+    ("count.ply", b"ply\nformat binary_little_endian 1.0\nelement vertex 99999999999\nproperty float x\n"
+                  b"property float y\nproperty float z\nend_header\n", ["99999999999 x vertex"], ["no normals"]),
+    ("noise.pcd", b"\x8fU\n", ["no line of a PCD header"]),
+    ("no_x.pcd", b"VERSION .7\nFIELDS y\nSIZE 4\nTYPE F\nCOUNT 1\nWIDTH 9\nHEIGHT 1\nPOINTS 9\nDATA binary\n", ["field x"]),
+    ("noise.xyz", b"1 2 3 0 0 1\nU 2\n", ["line 2"]),
+    ("zeros.vtu", b"", ["no <VTKFile"]),
+    ("zeros.msh", b"", ["no $MeshFormat"]),
+    ("zeros.mesh", b"", ["no MeshVersionFormatted"]),
+]
+
+
+def made_cases():
+    for suffix, family in ((".ply", ply_cases), (".pcd", pcd_cases), (".xyz", xyz_cases), (".pts", pts_cases),
+                           (".las", las_cases), (".msh", msh_cases), (".mesh", mesh_cases), (".vtu", vtu_cases),
+                           (".stl", stl_cases)):
+        for name, data, words, *strict in family():
+            yield Case(name + suffix, data, words, *(strict or [words]))
+
+
+def cases():
+    yield from made_cases()
+    yield from stored_cases()
+    for name, data, words, *strict in HUGE:
+        yield Case(f"huge_{name}", data, words, *(strict or [words]), is_huge=True)
+
+
+def main():
+    for case in made_cases():
+        suffix = pathlib.Path(case.name).suffix
+        if suffix in TARGETS and len(case.data) <= 20000:  # libFuzzer's -max_len, too
+            folder = pathlib.Path(sys.argv[1]) / TARGETS[suffix]
+            folder.mkdir(parents=True, exist_ok=True)
+            (folder / case.name).write_bytes(case.data)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,41 @@
+// read_corpus FILE ...: what the libraries say to files of the corpus, without the program around them. A line for
+// every file and reader: file, reader and answer with tabs between them; the answer is `accepted` or the words of a
+// refusal. corpus_test.py compares them with its table.
+
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include "mesh/io/tet_mesh_io.h"
+#include "reconstruct/io/level_set_io.h"
+#include "reconstruct/io/point_cloud_io.h"
+
+namespace {
+
+template <class Refusal, class Read>
+void answer(const std::filesystem::path& file, const char* reader, Read read) {
+  std::string text = "accepted";
+  try {
+    read(file);
+  } catch (const Refusal& refused) {
+    text = refused.what();
+  }
+  std::printf("%s\t%s\t%s\n", file.c_str(), reader, text.c_str());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::filesystem::path file = argv[i];
+    const std::string kind = file.extension();
+    if (kind == ".vtu" || kind == ".msh" || kind == ".mesh" || kind == ".stl") {
+      answer<umtet::MeshFileRefused>(file, "read_tet_mesh", umtet::read_tet_mesh);
+    } else if (kind == ".vti") {
+      answer<umtet::LevelSetRefused>(file, "read_level_set", umtet::read_level_set);
+    } else {
+      answer<umtet::CloudRefused>(file, "read_scan", umtet::read_scan);
+      answer<umtet::CloudRefused>(file, "read_point_cloud", umtet::read_point_cloud);
+    }
+  }
+}
