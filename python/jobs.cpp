@@ -16,6 +16,7 @@
 #include "pipeline/meshing/zero_set_choice.h"
 #include "pipeline/stages/cloud_preparation.h"
 #include "pipeline/stages/stages.h"
+#include "python/arguments.h"
 #include "reconstruct/cloud/cloud_survey.h"
 
 namespace umtet::python {

@@ -17,6 +17,7 @@
 #include "pipeline/case/version.h"
 #include "pipeline/meshing/background_choice.h"
 #include "pipeline/meshing/certificate_json.h"
+#include "pipeline/meshing/library_params.h"
 #include "pipeline/stages/stages.h"
 #include "python/arguments.h"
 #include "python/errors.h"
