@@ -48,8 +48,8 @@ if(UMTET_WITH_GSL)
   set(mesh_extra -DUMTET_WITH_GSL=1)
 endif()
 set(reconstruct_requires "eigen3 tbb flann")
-set(mesh_io_requires "umtet-mesh fmt hdf5-serial")
-set(mesh_io_libs "-lOpenMeshCore ${vtk}")
+set(mesh_io_requires "umtet-mesh fmt")
+set(mesh_io_libs "-lOpenMeshCore -lhdf5_serial ${vtk}")  # hdf5-serial.pc names a folder that is not searched
 set(cloud_io_requires "umtet-reconstruct fmt libxxhash")
 set(cloud_io_libs ${vtk})
 if(umtet_has_pcl)
@@ -74,8 +74,7 @@ endforeach()
 
 foreach(folder common reconstruct mesh pipeline)
   install(DIRECTORY ${folder} DESTINATION ${umtet_headers} COMPONENT development
-    FILES_MATCHING PATTERN "*.h" PATTERN "*.def" PATTERN detail EXCLUDE PATTERN examples EXCLUDE PATTERN cli EXCLUDE
-    PATTERN version.h EXCLUDE)
+    FILES_MATCHING PATTERN "*.h" PATTERN "*.def" PATTERN detail EXCLUDE PATTERN examples EXCLUDE PATTERN cli EXCLUDE)
 endforeach()
 
 configure_package_config_file(cmake/umtet-config.cmake.in ${PROJECT_BINARY_DIR}/umtet-config.cmake

@@ -3,6 +3,6 @@
 namespace umtet {
 
 /// Version of the program, part of every record: another version does its work again.
-inline constexpr const char* kVersion = UMTET_VERSION;
+extern const char* const kVersion;
 
 }  // namespace umtet
