@@ -31,10 +31,11 @@ struct Context {
     if (progress) progress(step, fraction);
     poll();
   }
-  /// For a call that is a part of this one: its [0, 1] is [begin, end] here. \pre this context lives longer
+  /// For a call that is a part of this one: its [0, 1] is [begin, end] here.
   Context part(double begin, double end) const {
     if (!progress) return {.cancelled = cancelled};
-    return {.progress = [this, begin, end](const char* step, double f) { progress(step, begin + (end - begin) * f); },
+    return {.progress = [whole = progress, begin, end](const char* step,
+                                                       double f) { whole(step, begin + (end - begin) * f); },
             .cancelled = cancelled};
   }
 };
