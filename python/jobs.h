@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "pipeline/case/parameters.h"
-#include "pipeline/meshing/certificate_report.h"
-#include "pipeline/meshing/domain.h"
+#include "pipeline/domain/domain.h"
 #include "pipeline/meshing/mesh_attempts.h"
+#include "pipeline/reports/certificate_report.h"
 #include "reconstruct/solve/fit_ssd.h"
 
 // What `umtet run` does, from memory to memory: no case folder, no signal handlers, nothing printed.

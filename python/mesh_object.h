@@ -6,8 +6,8 @@
 
 #include "mesh/certify/quadratic_tets.h"
 #include "mesh/universal_mesh.h"
-#include "pipeline/meshing/certificate_report.h"
-#include "pipeline/meshing/domain.h"
+#include "pipeline/domain/domain.h"
+#include "pipeline/reports/certificate_report.h"
 
 namespace umtet::python {
 

@@ -16,7 +16,7 @@
 #include "pipeline/case/version.h"
 #include "pipeline/cli/batch_table.h"
 #include "pipeline/cli/child_process.h"
-#include "pipeline/meshing/certificate_json.h"
+#include "pipeline/reports/certificate_json.h"
 #include "pipeline/run/time_steps.h"
 
 namespace umtet {

@@ -4,7 +4,7 @@
 
 #include "pipeline/cli/command_line.h"
 #include "pipeline/cli/detail/command_parser.h"
-#include "pipeline/meshing/background_choice.h"
+#include "pipeline/domain/background_choice.h"
 #include "pipeline/output/boundary_patches.h"
 #include "pipeline/output/export_case.h"
 

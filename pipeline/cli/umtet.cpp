@@ -17,14 +17,14 @@
 #include "pipeline/case/memory.h"
 #include "pipeline/case/stop_document.h"
 #include "pipeline/cli/command_line.h"
-#include "pipeline/meshing/certificate_json.h"
-#include "pipeline/meshing/certificate_summary.h"
 #include "pipeline/meshing/check.h"
 #include "pipeline/output/case_diff.h"
 #include "pipeline/output/export_case.h"
 #include "pipeline/output/inspect.h"
 #include "pipeline/output/report.h"
 #include "pipeline/output/view_files.h"
+#include "pipeline/reports/certificate_json.h"
+#include "pipeline/reports/certificate_summary.h"
 #include "pipeline/run/evolve.h"
 #include "pipeline/run/run.h"
 
@@ -113,7 +113,8 @@ Output Execution::operator()(const CheckCommand& command) const {
   set_work_at_hand("check");
   const MeshCheck found = check_mesh(command.mesh, command.against, command.parameters, progress);
   progress.clear();
-  return {found.verdict.passes() ? ExitCode::Success : ExitCode::GateFailed, summary(found), {{"check", to_json(found)}}};
+  return {
+      found.verdict.passes() ? ExitCode::Success : ExitCode::GateFailed, summary(found), {{"check", to_json(found)}}};
 }
 
 Output Execution::operator()(const InspectCommand& command) const {

@@ -10,9 +10,9 @@
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
-#include "pipeline/meshing/domain.h"
-#include "pipeline/meshing/edge_length.h"
-#include "pipeline/meshing/stage_reports.h"
+#include "pipeline/domain/domain.h"
+#include "pipeline/domain/edge_length.h"
+#include "pipeline/reports/stage_reports.h"
 
 namespace umtet {
 namespace fs = std::filesystem;

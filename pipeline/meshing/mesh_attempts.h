@@ -7,9 +7,9 @@
 
 #include "mesh/certify/quadratic_tets.h"
 #include "mesh/universal_mesh.h"
-#include "pipeline/meshing/certificate_report.h"
-#include "pipeline/meshing/edge_length.h"
-#include "pipeline/meshing/too_thin.h"
+#include "pipeline/domain/edge_length.h"
+#include "pipeline/domain/too_thin.h"
+#include "pipeline/reports/certificate_report.h"
 
 namespace umtet {
 

@@ -8,12 +8,12 @@
 #include <optional>
 
 #include "pipeline/case/exit_code.h"
-#include "pipeline/meshing/edge_length.h"
+#include "pipeline/domain/edge_length.h"
+#include "pipeline/domain/too_thin.h"
 #include "pipeline/meshing/library_params.h"
 #include "pipeline/meshing/made_mesh.h"
 #include "pipeline/meshing/mesh_measures.h"
 #include "pipeline/meshing/second_order.h"
-#include "pipeline/meshing/too_thin.h"
 
 namespace umtet {
 namespace {

@@ -10,9 +10,9 @@
 #include "mesh/background/background_mesh.h"
 #include "mesh/universal_mesh.h"
 #include "pipeline/case/parameters.h"
-#include "pipeline/meshing/domain.h"
+#include "pipeline/domain/domain.h"
+#include "pipeline/domain/zero_set_choice.h"
 #include "pipeline/meshing/mesh_attempts.h"
-#include "pipeline/meshing/zero_set_choice.h"
 
 namespace umtet {
 

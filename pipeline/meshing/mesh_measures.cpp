@@ -11,9 +11,9 @@
 #include "mesh/certify/quality_report.h"
 #include "mesh/implicit/surface_distance.h"
 #include "mesh/implicit/thickness.h"
-#include "pipeline/meshing/component_proof.h"
-#include "pipeline/meshing/deviation.h"
-#include "pipeline/meshing/edge_length.h"
+#include "pipeline/domain/component_proof.h"
+#include "pipeline/domain/deviation.h"
+#include "pipeline/domain/edge_length.h"
 
 namespace umtet {
 namespace {

@@ -4,10 +4,10 @@
 #include <string>
 
 #include "mesh/universal_mesh.h"
-#include "pipeline/meshing/certificate_report.h"
-#include "pipeline/meshing/domain.h"
-#include "pipeline/meshing/too_thin.h"
-#include "pipeline/meshing/zero_set_choice.h"
+#include "pipeline/domain/domain.h"
+#include "pipeline/domain/too_thin.h"
+#include "pipeline/domain/zero_set_choice.h"
+#include "pipeline/reports/certificate_report.h"
 
 namespace umtet {
 

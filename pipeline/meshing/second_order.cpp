@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "pipeline/case/artefact.h"
-#include "pipeline/meshing/edge_length.h"
+#include "pipeline/domain/edge_length.h"
 #include "pipeline/meshing/made_mesh.h"
 
 namespace umtet {

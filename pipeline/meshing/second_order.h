@@ -6,8 +6,8 @@
 #include "mesh/certify/second_order_certificate.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "mesh/universal_mesh.h"
-#include "pipeline/meshing/certificate_report.h"
-#include "pipeline/meshing/domain.h"
+#include "pipeline/domain/domain.h"
+#include "pipeline/reports/certificate_report.h"
 
 namespace umtet {
 

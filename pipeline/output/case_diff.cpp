@@ -11,7 +11,7 @@
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
-#include "pipeline/meshing/stage_reports.h"
+#include "pipeline/reports/stage_reports.h"
 #include "pipeline/stages/stages.h"
 #include "reconstruct/io/level_set_io.h"
 #include "reconstruct/io/point_cloud_io.h"

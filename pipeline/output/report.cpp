@@ -10,13 +10,13 @@
 
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
-#include "pipeline/meshing/certificate_json.h"
 #include "pipeline/output/boundary_patches.h"
 #include "pipeline/output/detail/report_sources.h"
 #include "pipeline/output/report_page.h"
 #include "pipeline/output/report_plot.h"
 #include "pipeline/output/report_scene.h"
-#include "pipeline/meshing/stage_reports.h"
+#include "pipeline/reports/certificate_json.h"
+#include "pipeline/reports/stage_reports.h"
 
 namespace umtet {
 namespace fs = std::filesystem;

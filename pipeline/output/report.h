@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pipeline/meshing/certificate_report.h"
+#include "pipeline/reports/certificate_report.h"
 #include "pipeline/stages/stages.h"
 
 namespace umtet {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pipeline/case/record.h"
-#include "pipeline/meshing/certificate_report.h"
+#include "pipeline/reports/certificate_report.h"
 #include "reconstruct/solve/multilevel_fit.h"
 
 namespace umtet {

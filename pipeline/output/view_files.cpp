@@ -17,8 +17,8 @@
 #include "common/context.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
-#include "pipeline/meshing/domain.h"
-#include "pipeline/meshing/stage_reports.h"
+#include "pipeline/domain/domain.h"
+#include "pipeline/reports/stage_reports.h"
 #include "pipeline/stages/stages.h"
 
 namespace umtet {

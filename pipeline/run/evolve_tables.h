@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/meshing/certificate_report.h"
+#include "pipeline/reports/certificate_report.h"
 #include "pipeline/run/time_steps.h"
 
 namespace umtet {

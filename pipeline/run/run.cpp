@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "pipeline/case/interrupt.h"
-#include "pipeline/meshing/certificate_json.h"
 #include "pipeline/output/report.h"
+#include "pipeline/reports/certificate_json.h"
 #include "pipeline/run/renewal.h"
 #include "pipeline/stages/cloud_preparation.h"
 #include "pipeline/stages/stages.h"

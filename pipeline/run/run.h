@@ -10,7 +10,7 @@
 #include "pipeline/case/parameters.h"
 #include "pipeline/case/progress.h"
 #include "pipeline/case/record.h"
-#include "pipeline/meshing/certificate_report.h"
+#include "pipeline/reports/certificate_report.h"
 
 namespace umtet {
 

@@ -6,7 +6,7 @@
 
 #include "pipeline/case/parameters.h"
 #include "pipeline/case/record.h"
-#include "pipeline/meshing/stage_reports.h"
+#include "pipeline/reports/stage_reports.h"
 #include "reconstruct/cloud/cloud_neighbours.h"
 #include "reconstruct/io/point_cloud_io.h"
 

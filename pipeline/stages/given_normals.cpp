@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/case/record.h"
-#include "pipeline/meshing/stage_reports.h"
+#include "pipeline/reports/stage_reports.h"
 
 namespace umtet {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/meshing/domain.h"
+#include "pipeline/domain/domain.h"
 #include "pipeline/meshing/mesh_attempts.h"
 #include "pipeline/stages/stages.h"
 

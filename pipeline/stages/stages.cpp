@@ -4,7 +4,7 @@
 
 #include "pipeline/case/artefact.h"
 #include "pipeline/case/exit_code.h"
-#include "pipeline/meshing/background_choice.h"
+#include "pipeline/domain/background_choice.h"
 
 namespace umtet {
 namespace fs = std::filesystem;

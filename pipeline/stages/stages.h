@@ -7,7 +7,7 @@
 #include "pipeline/case/parameters.h"
 #include "pipeline/case/progress.h"
 #include "pipeline/case/record.h"
-#include "pipeline/meshing/handover.h"
+#include "pipeline/domain/handover.h"
 #include "reconstruct/solve/fit_ssd.h"
 
 namespace umtet {

@@ -2,8 +2,7 @@
 
 #include <string>
 
-#include "pipeline/meshing/certificate_report.h"
-#include "pipeline/meshing/check.h"
+#include "pipeline/reports/certificate_report.h"
 
 namespace umtet {
 

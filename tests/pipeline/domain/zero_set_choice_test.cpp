@@ -1,4 +1,4 @@
-#include "pipeline/meshing/zero_set_choice.h"
+#include "pipeline/domain/zero_set_choice.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "mesh/universal_mesh.h"
-#include "pipeline/meshing/component_proof.h"
+#include "pipeline/domain/component_proof.h"
 #include "pipeline/meshing/mesh_measures.h"
 
 namespace umtet {

@@ -1,8 +1,7 @@
 #pragma once
 
 #include "pipeline/case/json_values.h"
-#include "pipeline/meshing/certificate_report.h"
-#include "pipeline/meshing/check.h"
+#include "pipeline/reports/certificate_report.h"
 
 // The one place where what is known of a mesh has names in JSON. The order of the names is that of the documents.
 // docs/reference.md says what they mean.

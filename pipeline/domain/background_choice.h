@@ -7,7 +7,7 @@
 #include "mesh/background/background_mesh.h"
 #include "mesh/background/body_size.h"
 #include "pipeline/case/parameters.h"
-#include "pipeline/meshing/domain.h"
+#include "pipeline/domain/domain.h"
 
 namespace umtet {
 

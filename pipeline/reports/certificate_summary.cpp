@@ -1,4 +1,4 @@
-#include "pipeline/meshing/certificate_summary.h"
+#include "pipeline/reports/certificate_summary.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "pipeline/meshing/component_proof.h"
+#include "pipeline/domain/component_proof.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
-#include "pipeline/meshing/domain.h"
+#include "pipeline/domain/domain.h"
 
 #include <utility>
 
 #include "pipeline/case/exit_code.h"
-#include "pipeline/meshing/handover.h"
-#include "pipeline/meshing/stage_reports.h"
+#include "pipeline/domain/handover.h"
+#include "pipeline/reports/stage_reports.h"
 #include "reconstruct/io/level_set_io.h"
 #include "reconstruct/io/point_cloud_io.h"
 

@@ -1,9 +1,9 @@
-#include "pipeline/meshing/stage_reports.h"
+#include "pipeline/reports/stage_reports.h"
 
 #include <fmt/format.h>
 
 #include "pipeline/case/exit_code.h"
-#include "pipeline/meshing/certificate_json.h"
+#include "pipeline/reports/certificate_json.h"
 
 namespace umtet {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/context.h"
-#include "pipeline/meshing/domain.h"
+#include "pipeline/domain/domain.h"
 
 namespace umtet {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mesh/implicit/zero_set.h"
-#include "pipeline/meshing/domain.h"
+#include "pipeline/domain/domain.h"
 #include "reconstruct/level_set/sign_cells.h"
 
 namespace umtet {

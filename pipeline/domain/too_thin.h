@@ -5,24 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/case/exit_code.h"
-#include "pipeline/meshing/domain.h"
-#include "pipeline/meshing/zero_set_choice.h"
+#include "pipeline/domain/domain.h"
+#include "pipeline/domain/zero_set_choice.h"
+#include "pipeline/reports/thin_place.h"
 
 namespace umtet {
 
-/// A connected place where the body, or the gap outside it, is too thin for a mesh of some edge length. Lengths in
-/// model units; places in working coordinates, but for those of in_model().
-struct ThinPlace {
-  bool is_gap = false;
-  Eigen::AlignedBox3d box;     ///< of the points of the boundary that belong to it
-  Vec3 centre = Vec3::Zero();  ///< their mean
-  double thickness = 0;        ///< the least
-  double area = 0;             ///< of the boundary that belongs to it, both sides
-  double h_needed = 0;         ///< the largest edge length at which it is not too thin any more
-};
-
-/// All of them, and the points of the boundary that they consist of.
+/// All thin places, and the points of the boundary that they consist of.
 struct ThinPlaces {
   double h = 0;                   ///< the edge length they are too thin for
   std::vector<ThinPlace> places;  ///< ascending in h_needed: worst first

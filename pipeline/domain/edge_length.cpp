@@ -1,4 +1,4 @@
-#include "pipeline/meshing/edge_length.h"
+#include "pipeline/domain/edge_length.h"
 
 #include <fmt/format.h>
 
@@ -12,8 +12,8 @@
 #include "mesh/certify/quality_report.h"
 #include "mesh/implicit/thickness.h"
 #include "pipeline/case/exit_code.h"
-#include "pipeline/meshing/background_choice.h"
-#include "pipeline/meshing/deviation.h"
+#include "pipeline/domain/background_choice.h"
+#include "pipeline/domain/deviation.h"
 #include "reconstruct/solve/resolution.h"
 
 namespace umtet {

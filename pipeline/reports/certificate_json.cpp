@@ -1,4 +1,4 @@
-#include "pipeline/meshing/certificate_json.h"
+#include "pipeline/reports/certificate_json.h"
 
 #include "pipeline/case/exit_code.h"
 

@@ -12,7 +12,7 @@
 #include "pipeline/case/parameters.h"
 #include "pipeline/case/record.h"
 #include "pipeline/case/version.h"
-#include "pipeline/meshing/too_thin.h"
+#include "pipeline/reports/thin_place.h"
 
 // What certificate.json, the record of 3-mesh and the answers of `umtet check` say about a mesh. Lengths in model units
 // unless a name says otherwise; certificate_json.h writes and reads them.
@@ -103,6 +103,15 @@ struct Certificate {
   Verdict verdict;
   std::optional<std::string> remedy;  ///< what to try when it fails
   std::optional<CertificateRun> run;  ///< none for a mesh that never was in a case
+};
+
+/// What is true of a mesh from a file: a Certificate without the parts that a mesh alone does not have.
+struct MeshCheck {
+  std::string file;                  ///< as the user gave it
+  std::optional<std::string> units;  ///< of lengths, for the reader
+  MeshCertificate mesh;
+  std::optional<SecondOrderReport> second_order;  ///< of tets with 10 nodes
+  Verdict verdict;
 };
 
 /// output.units; none where none were given.

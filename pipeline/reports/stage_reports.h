@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "pipeline/case/record.h"
-#include "pipeline/meshing/certificate_report.h"
+#include "pipeline/reports/certificate_report.h"
 #include "reconstruct/cloud/normal_orientation.h"
 #include "reconstruct/solve/fit_ssd.h"
 

@@ -1,4 +1,4 @@
-#include "pipeline/meshing/zero_set_choice.h"
+#include "pipeline/domain/zero_set_choice.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "mesh/implicit/surface_distance.h"
-#include "pipeline/meshing/component_proof.h"
+#include "pipeline/domain/component_proof.h"
 
 namespace umtet {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "common/context.h"
 #include "pipeline/case/parameters.h"
-#include "pipeline/meshing/domain.h"
+#include "pipeline/domain/domain.h"
 
 namespace umtet {
 

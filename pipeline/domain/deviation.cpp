@@ -1,11 +1,11 @@
-#include "pipeline/meshing/deviation.h"
+#include "pipeline/domain/deviation.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "pipeline/meshing/zero_set_choice.h"
+#include "pipeline/domain/zero_set_choice.h"
 
 namespace umtet {
 namespace {

@@ -1,6 +1,6 @@
 // Thin places of formulas whose thickness is known, and what they need.
 
-#include "pipeline/meshing/too_thin.h"
+#include "pipeline/domain/too_thin.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -11,7 +11,7 @@
 
 #include <numbers>
 
-#include "pipeline/meshing/deviation.h"
+#include "pipeline/domain/deviation.h"
 
 namespace umtet {
 namespace {

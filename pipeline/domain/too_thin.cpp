@@ -1,4 +1,4 @@
-#include "pipeline/meshing/too_thin.h"
+#include "pipeline/domain/too_thin.h"
 
 #include <fmt/format.h>
 

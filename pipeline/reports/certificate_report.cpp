@@ -1,12 +1,12 @@
-#include "pipeline/meshing/certificate_report.h"
+#include "pipeline/reports/certificate_report.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <utility>
 
-#include "pipeline/meshing/certificate_json.h"
-#include "pipeline/meshing/stage_reports.h"
+#include "pipeline/reports/certificate_json.h"
+#include "pipeline/reports/stage_reports.h"
 
 namespace umtet {
 namespace {

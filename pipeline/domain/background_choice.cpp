@@ -1,4 +1,4 @@
-#include "pipeline/meshing/background_choice.h"
+#include "pipeline/domain/background_choice.h"
 
 #include <fmt/format.h>
 
