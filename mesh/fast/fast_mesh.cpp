@@ -45,7 +45,7 @@ class FastRun {
         costs_of_tiling_(submesh.background_boundary == BackgroundBoundary::Wall
                              ? nullptr
                              : configuration_costs(background.tiling())),
-        classification_params_(params.labels),
+        classification_params_(params.classification),
         inside_(0) {
     if (costs_of_tiling_ && !classification_params_.costs) classification_params_.costs = &costs_of_tiling_->costs;
   }
@@ -183,9 +183,9 @@ bool FastRun::classify() {
   if (costs_of_tiling_ && last && negative_ == memory_->negative) {
     inside_ = *last;  // psi = 0 has passed over no vertex
   } else if (costs_of_tiling_) {
-    const ClassificationReport labels = classify_vertices(background_, costs_of_tiling_->links, psi_,
+    const ClassificationReport report = classify_vertices(background_, costs_of_tiling_->links, psi_,
                                                           classification_params_, inside_, context_, last, known_);
-    result_.n_psi_evaluations += labels.psi_evaluations;
+    result_.n_psi_evaluations += report.psi_evaluations;
   }
   is_classified_ = true;
   if (costs_of_tiling_) return true;
@@ -373,7 +373,7 @@ std::vector<std::string> problems(const FastParams& params) {
   if (!(params.update_margin >= 0)) {
     list.push_back("update_margin = " + std::to_string(params.update_margin) + ": must be >= 0");
   }
-  add("labels", problems(params.labels));
+  add("classification", problems(params.classification));
   add("projection", problems(params.projection));
   add("smoothing", problems(params.smoothing));
   add("repair", problems(params.repair));

@@ -43,7 +43,7 @@ ChosenSubmesh classified_submesh(const BackgroundMesh& background, ImplicitFunct
 /// What the mesh of one psi leaves to that of the next, in the same background mesh.
 struct FastMemory {
   IdSet negative{0};                                 ///< psi < 0
-  IdSet inside{0};                                   ///< as labelled
+  IdSet inside{0};                                   ///< as classified
   std::vector<std::pair<std::int64_t, Vec3>> moved;  ///< vertices off their background places, ascending
   std::size_t n_recalled = 0;                        ///< of these, how many the last mesh began with
 };

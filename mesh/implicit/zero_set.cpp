@@ -36,7 +36,7 @@ struct CutEdge {
   bool on_wall = false;
 };
 
-/// Nodes of one layer k: values, labels of inside pieces, and the ids of the cut edges that start there.
+/// Nodes of one layer k: values, numbers of inside pieces, and the ids of the cut edges that start there.
 struct Layer {
   std::vector<double> value;
   std::vector<int> inside_label;             ///< -1 outside
