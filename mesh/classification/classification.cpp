@@ -297,6 +297,7 @@ std::vector<std::string> problems(const ClassificationParams& params) {
   in("most_stretch", params.most_stretch, 1, kAny, ">= 1");
   in("least_thickness", params.least_thickness, 0, kAny, ">= 0");
   in("outside_weight", params.outside_weight, 0, kAny, ">= 0");
+  in("outside_height", params.outside_height, -kAny, kAny, "finite");
   in("inside_weight", params.inside_weight, 0, kAny, ">= 0");
   in("inside_depth", params.inside_depth, -kAny, kAny, "finite");
   in("keep", params.keep, 0, kAny, ">= 0");

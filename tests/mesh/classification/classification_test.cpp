@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <initializer_list>
+#include <limits>
 #include <set>
 
 #include "mesh/background/body_size.h"
@@ -384,7 +385,8 @@ TEST(Classification, BrokenParamsAreAllNamed) {
   params.shift = .2;
   params.reach_in = -1;
   params.outside_weight = -1;
-  EXPECT_EQ(problems(params).size(), 3u);
+  params.outside_height = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(problems(params).size(), 4u);
 }
 
 }  // namespace
