@@ -14,10 +14,10 @@
 #include "pipeline/meshing/edge_length.h"
 #include "pipeline/meshing/made_mesh.h"
 #include "pipeline/meshing/mesh_maker.h"
+#include "pipeline/meshing/stage_reports.h"
 #include "pipeline/meshing/too_thin.h"
 #include "pipeline/stages/given_normals.h"
 #include "pipeline/stages/mesh_outputs.h"
-#include "pipeline/meshing/stage_reports.h"
 #include "pipeline/stages/stages.h"
 
 namespace umtet {
@@ -81,7 +81,8 @@ void MeshStage::refuse(const UmResult& result, double h) {
   throw MeshingImpossible(message);
 }
 
-// A smaller h lets detail in that may be thinner still; at most so often, and each time at least by a tenth.
+// A smaller h lets detail of psi in that may be thinner still: h falls at most kThinRounds times, at least to kThinStep
+// of itself each time.
 constexpr int kThinRounds = 8;
 constexpr double kThinStep = .9;
 
