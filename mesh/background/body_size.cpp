@@ -87,7 +87,7 @@ CoarseMeasure measure(ImplicitFunctionRef psi, const Box& box, double steepest) 
 
 /// omega_h exceeds Omega by so many cell edges of an A15.
 double excess_layer(const Tiling& tiling, ClassificationSource source) {
-  // Seven shapes of 20k and 100k tets: .1 to .19 less in a15, .06 to .19 in the others.
+  // Outside vertices of a chosen classification are nearer to psi = 0, so the layer is thinner.
   constexpr double kLessByChoice = .15;
   return tiling.excess_layer - (source == ClassificationSource::Chosen ? kLessByChoice : 0);
 }
