@@ -27,9 +27,9 @@
 namespace umtet {
 namespace {
 
-// In place of the least gains of smoothing, if these are less, for a mesh that begins from the one before. A ball that
-// drifts a quarter cell a step: .95 of the solves of 3e-4 and least Q .832 (.834); with 1e-3 it is .92 and .828, anew
-// .833.
+// The least gain of a smoothing step in a mesh that begins from the one before, where that of the parameters is less.
+// It trades solves for quality: a mesh that begins near its solution spends most of them on small gains (mesh_bench
+// --benchmark_filter=drifting_ball).
 constexpr double kUpdateLeastGain = 6e-4;
 constexpr std::size_t kVerticesPerTask = 1 << 14;  // to compare places, a nanosecond each
 
@@ -181,7 +181,7 @@ bool FastRun::fits_background(const std::string& lost) {
 bool FastRun::classify() {
   const IdSet* last = memory_ && !memory_->moved.empty() ? &memory_->inside : nullptr;
   if (costs_of_tiling_ && last && negative_ == memory_->negative) {
-    inside_ = *last;  // psi = 0 has passed over no vertex
+    inside_ = *last;  // psi has the sign it had at every vertex
   } else if (costs_of_tiling_) {
     const ClassificationReport report = classify_vertices(background_, costs_of_tiling_->links, psi_,
                                                           classification_params_, inside_, context_, last, known_);
