@@ -41,7 +41,7 @@ CoarseMeasure sample(ImplicitFunctionRef psi, const Box& box, double steepest) {
       double* row = values.data() + static_cast<std::size_t>(n.x()) * (j + static_cast<std::size_t>(n.y()) * k);
       for (int i = 0; i < n.x();) {
         const double value = psi.value(origin + d * Vec3(i, j, k));
-        // So far along the row psi keeps its sign.
+        // Samples of the row over which psi keeps its sign: |psi| / steepest is a bound of the distance to a zero.
         const double same = std::abs(value) / (steepest * d);
         const int end = same >= 1 ? i + 1 + static_cast<int>(std::min<double>(same, n.x() - i - 1)) : i + 1;
         std::fill(row + i, row + end, value);
@@ -77,7 +77,7 @@ CoarseMeasure sample(ImplicitFunctionRef psi, const Box& box, double steepest) {
 
 /// A body in a large box is sampled again in its own.
 CoarseMeasure measure(ImplicitFunctionRef psi, const Box& box, double steepest) {
-  // Below this share of the box's side, samples are too few for 10 %.
+  // A body smaller than this share of the box's longest side has too few samples for an error of 10 %.
   constexpr double kTooSmall = .5;
   CoarseMeasure first = sample(psi, box, steepest);
   if (first.inside.isEmpty()) return first;
@@ -85,7 +85,7 @@ CoarseMeasure measure(ImplicitFunctionRef psi, const Box& box, double steepest) 
   return small ? sample(psi, first.inside, steepest) : first;
 }
 
-/// omega_h exceeds Omega by so many cell edges of an A15.
+/// Thickness of the layer by which omega_h exceeds Omega, in cell edges of an A15.
 double excess_layer(const Tiling& tiling, ClassificationSource source) {
   // Outside vertices of a chosen classification are nearer to psi = 0, so the layer is thinner.
   constexpr double kLessByChoice = .15;

@@ -27,7 +27,7 @@ constexpr int kSlides = 3;  // lengths of a tangential step that are tried on th
 // over-relaxation of linear systems the vertices then settle in fewer solves; 1 means none. The values are not
 // critical.
 constexpr double kInnerFactor = 1.4, kBoundaryFactor = 2;
-// A solve takes about a microsecond, handing a task to a thread a few.
+// A solve takes about a microsecond; to hand a task to a thread takes a few.
 constexpr std::size_t kSolvesPerTask = 32;
 constexpr std::size_t kWorthThreads = 64;
 constexpr std::size_t kSolvesPerPoll = 1 << 12;

@@ -64,7 +64,7 @@ class Sweep {
     const int low = from & to, high = from | to;
     return layer(k + (low >> 2)).cut_edge[index(i + (low & 1), j + (low >> 1 & 1))][high & ~low];
   }
-  /// Calls visit(j) for every row of a layer; rows of some microseconds are too short to ask at each.
+  /// Calls visit(j) for every row of a layer; rows take some microseconds, too few to poll at each.
   template <class F>
   void for_each_row(const F& visit);
   void evaluate(int k);

@@ -12,8 +12,7 @@ namespace {
 // The finest spacing is 1.25 S, S the distance between samples, and at least three times the noise. A finer lattice
 // follows single samples and their noise, a coarser one loses detail.
 constexpr double kSpacings = 1.25, kNoises = 3;
-// A lattice coarser than the mesh is made as fine as the mesh, but by no more than this factor: its spacing stays above
-// S.
+// A lattice coarser than the mesh is made as fine as it, but by no more than this factor: the spacing stays above S.
 constexpr double kFiner = 1.2;
 // Outside a sharp edge there are no samples, and a weak c lets psi fall below 0 there: a false piece of surface. A
 // strong c rounds detail off. The finest band only corrects a psi that has its sign by then, so c is weaker there. With
