@@ -20,8 +20,8 @@ namespace umtet {
 namespace {
 
 constexpr std::size_t kVerticesPerTask = 4096;
-constexpr double kSearchShare = .1;  // of the time of an update, about
-// Of the boundary, to see whether psi has moved: in all but one case the first of them will say so.
+constexpr double kSearchShare = .1;  // share of the time of an update, about
+// Boundary vertices that are looked at in turn to see whether psi has moved: nearly always the first of them show it.
 constexpr std::size_t kVerticesPerLook = 256;
 
 using Ids = std::vector<std::int64_t>;
@@ -135,7 +135,7 @@ const BackgroundMesh& UniversalMesh::background() const { return impl_->backgrou
 
 std::size_t UniversalMesh::Impl::search(ImplicitFunctionRef psi, const UpdateHints& hints, const Context& context) {
   context.report("search", 0);
-  // The walk begins at a boundary: there is none at first, nor after a domain that was nowhere.
+  // The walk begins at a boundary: there is none at first, nor after a domain that was empty.
   if (!walk.has_boundary() || (hints.no_zero_in && !background.is_lattice())) return walk.restart(psi, context);
   Ids more;
   if (hints.no_zero_in) ZeroCells(background, hints.no_zero_in, more);

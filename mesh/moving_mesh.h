@@ -51,7 +51,7 @@ struct UmUpdate {
 class UniversalMesh {
  public:
   /// @param params  UmMode::Fast. seeds and search are not used: the first update, and one after a domain
-  ///                that was nowhere, asks psi at every vertex
+  ///                that was empty, evaluates psi at every vertex
   /// \throw std::invalid_argument naming every broken constraint; UmMode::Paper
   explicit UniversalMesh(BackgroundMesh background, const UmParams& params = {});
   ~UniversalMesh();

@@ -8,7 +8,7 @@
 namespace umtet {
 namespace {
 
-constexpr double kSearchShare = .1;  // of the time of a mesh, about
+constexpr double kSearchShare = .1;  // share of the time of a mesh, about
 
 /// \throw std::invalid_argument naming every broken constraint. @param seeds  null: not used
 void check(const UmParams& params, const std::vector<Vec3>* seeds) {

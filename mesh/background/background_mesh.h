@@ -21,8 +21,8 @@ using Box = Eigen::AlignedBox3d;
 /// Ids ascend with x fastest, then y, then z. Immutable; one mesh serves any number of domains and threads.
 ///
 /// Or any other tet mesh, as it is stored: ids are then its vertex and tet numbers, and what speaks of cells and types
-/// does not apply. Both are one class because every question is asked a vertex or a tet at a time: which kind it is
-/// costs a branch that never changes, where a template would double all that is built on backgrounds.
+/// does not apply. Both are one class because every call is about one vertex or one tet: to tell the
+/// kinds apart costs a branch that is always predicted, where a template would double all that is built on backgrounds.
 class BackgroundMesh {
  public:
   /// Covers `box` with whole cells, as many as their pits at the walls ask for (overhang(): a quarter cell for A15);

@@ -41,7 +41,7 @@ CoarseMeasure sample(ImplicitFunctionRef psi, const Box& box, double steepest) {
       double* row = values.data() + static_cast<std::size_t>(n.x()) * (j + static_cast<std::size_t>(n.y()) * k);
       for (int i = 0; i < n.x();) {
         const double value = psi.value(origin + d * Vec3(i, j, k));
-        // So far along the row psi keeps its sign.
+        // Samples of the row over which psi keeps its sign: |psi| / steepest is a bound of the distance to a zero.
         const double same = std::abs(value) / (steepest * d);
         const int end = same >= 1 ? i + 1 + static_cast<int>(std::min<double>(same, n.x() - i - 1)) : i + 1;
         std::fill(row + i, row + end, value);
@@ -77,7 +77,7 @@ CoarseMeasure sample(ImplicitFunctionRef psi, const Box& box, double steepest) {
 
 /// A body in a large box is sampled again in its own.
 CoarseMeasure measure(ImplicitFunctionRef psi, const Box& box, double steepest) {
-  // Below this share of the box's side, samples are too few for 10 %.
+  // A body smaller than this share of the box's longest side has too few samples for an error of 10 %.
   constexpr double kTooSmall = .5;
   CoarseMeasure first = sample(psi, box, steepest);
   if (first.inside.isEmpty()) return first;
@@ -85,11 +85,11 @@ CoarseMeasure measure(ImplicitFunctionRef psi, const Box& box, double steepest) 
   return small ? sample(psi, first.inside, steepest) : first;
 }
 
-/// omega_h exceeds Omega by so many cell edges of an A15.
-double excess_layer(const Tiling& tiling, ClassificationSource labels) {
-  // Seven shapes of 20k and 100k tets: .1 to .19 less in a15, .06 to .19 in the others.
+/// Thickness of the layer by which omega_h exceeds Omega, in cell edges of an A15.
+double excess_layer(const Tiling& tiling, ClassificationSource source) {
+  // Outside vertices of a chosen classification are nearer to psi = 0, so the layer is thinner.
   constexpr double kLessByChoice = .15;
-  return tiling.excess_layer - (labels == ClassificationSource::Chosen ? kLessByChoice : 0);
+  return tiling.excess_layer - (source == ClassificationSource::Chosen ? kLessByChoice : 0);
 }
 
 void check_box(const Box& box) {
@@ -103,10 +103,10 @@ BodySize body_size(ImplicitFunctionRef psi, const Box& box, double steepest) {
   return measure(psi, box, steepest).size;
 }
 
-double expected_tets(const Tiling& tiling, const BodySize& size, double h, ClassificationSource labels) {
+double expected_tets(const Tiling& tiling, const BodySize& size, double h, ClassificationSource source) {
   if (!(h > 0)) throw std::invalid_argument("h = " + std::to_string(h) + ": must be > 0");
   const double a = h / a15().mean_edge;
-  const double volume = size.volume + excess_layer(tiling, labels) * a * size.area;  // < 0 for specks in a cube
+  const double volume = size.volume + excess_layer(tiling, source) * a * size.area;  // < 0 for specks in a cube
   return tets_per_cube(tiling) * std::max(volume, 0.) / (a * a * a);
 }
 
@@ -116,7 +116,7 @@ double expected_tets(const Tiling& tiling, ImplicitFunctionRef psi, const Box& b
 
 double expected_tets(ImplicitFunctionRef psi, const Box& box, double h) { return expected_tets(a15(), psi, box, h); }
 
-double h_for_tets(const Tiling& tiling, const BodySize& size, double n_tets, ClassificationSource labels) {
+double h_for_tets(const Tiling& tiling, const BodySize& size, double n_tets, ClassificationSource source) {
   if (!(n_tets > 0)) throw std::invalid_argument("n_tets = " + std::to_string(n_tets) + ": must be > 0");
   if (!(size.volume > 0)) {
     std::string what = "psi: not negative at any of the samples taken in the box";
@@ -128,7 +128,7 @@ double h_for_tets(const Tiling& tiling, const BodySize& size, double n_tets, Cla
   }
   // a^3 = b a + c has one positive root, which Newton's steps meet from above: it is below cbrt(c) + sqrt(max(b, 0)).
   const double per_tet = tets_per_cube(tiling) / n_tets;
-  const double b = per_tet * excess_layer(tiling, labels) * size.area, c = per_tet * size.volume;
+  const double b = per_tet * excess_layer(tiling, source) * size.area, c = per_tet * size.volume;
   double a = std::cbrt(c) + std::sqrt(std::max(b, 0.));
   for (int i = 0; i < 50; ++i) a = (2 * a * a * a + c) / (3 * a * a - b);
   return a * a15().mean_edge;
@@ -138,8 +138,8 @@ double h_for_tets(const Tiling& tiling, ImplicitFunctionRef psi, const Box& box,
   return h_for_tets(tiling, body_size(psi, box), n_tets);
 }
 
-double h_for_tets(ImplicitFunctionRef psi, const Box& box, double n_tets, ClassificationSource labels) {
-  return h_for_tets(a15(), body_size(psi, box), n_tets, labels);
+double h_for_tets(ImplicitFunctionRef psi, const Box& box, double n_tets, ClassificationSource source) {
+  return h_for_tets(a15(), body_size(psi, box), n_tets, source);
 }
 
 }  // namespace umtet

@@ -27,9 +27,9 @@ BodySize body_size(ImplicitFunctionRef psi, const Box& box, double steepest = st
 
 /// About how many tets omega_h will have at mean edge length h: 46 (volume + layer a area) / a^3 for an A15 of cell
 /// edge a, and as much more or less as the tiling has tets a volume; layer is Tiling::excess_layer, .15 less with
-/// chosen labels. 0 when no sample lies inside. \throw std::invalid_argument for h <= 0
+/// a chosen classification. 0 when no sample lies inside. \throw std::invalid_argument for h <= 0
 double expected_tets(const Tiling& tiling, const BodySize& size, double h,
-                     ClassificationSource labels = ClassificationSource::Psi);
+                     ClassificationSource source = ClassificationSource::Psi);
 /// With body_size() of psi. \throw std::invalid_argument for an empty box, too
 double expected_tets(const Tiling& tiling, ImplicitFunctionRef psi, const Box& box, double h);
 double expected_tets(ImplicitFunctionRef psi, const Box& box, double h);  ///< for A15
@@ -37,9 +37,9 @@ double expected_tets(ImplicitFunctionRef psi, const Box& box, double h);  ///< f
 /// A mean edge length h at which omega_h has about n_tets tets, by the same count.
 /// \throw std::invalid_argument for n_tets <= 0, an empty box, or when no sample lies inside
 double h_for_tets(const Tiling& tiling, const BodySize& size, double n_tets,
-                  ClassificationSource labels = ClassificationSource::Psi);
+                  ClassificationSource source = ClassificationSource::Psi);
 double h_for_tets(const Tiling& tiling, ImplicitFunctionRef psi, const Box& box, double n_tets);
 double h_for_tets(ImplicitFunctionRef psi, const Box& box, double n_tets,
-                  ClassificationSource labels = ClassificationSource::Psi);  ///< for A15
+                  ClassificationSource source = ClassificationSource::Psi);  ///< for A15
 
 }  // namespace umtet

@@ -11,7 +11,7 @@ namespace umtet {
 /// Lists ascend. About 60 bytes a tet. Immutable.
 class ExplicitMesh {
  public:
-  /// \throw std::invalid_argument naming the first offender: no tets, an index out of range, a tet that is inverted or
+  /// \throw std::invalid_argument naming the first violation: no tets, an index out of range, a tet that is inverted or
   /// flat (exact), a face of three tets or of two on the same side of it
   explicit ExplicitMesh(TetMesh mesh);
 

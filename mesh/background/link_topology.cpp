@@ -14,13 +14,14 @@
 namespace umtet {
 namespace {
 
-// States in the tables of all links: .04 s for those of slab. The cube would have 9 million, 35 MB and 1.2 s.
+// Bound of the states in the tables of all links, which are made once. The cube would have 9 million of them, 35 MB:
+// there they are computed at every look-up.
 constexpr std::size_t kMostStates = std::size_t{1} << 19;
 constexpr int kMostInTable = 16;
 
 constexpr LinkMask bit(int k) { return LinkMask{1} << k; }
 
-/// The vertices of `part` that hang together with its lowest one.
+/// The vertices of `part` that are connected with its lowest one.
 LinkMask component(const LinkTopology& link, LinkMask part) {
   LinkMask reached = part & (~part + 1), fresh = reached;
   while (fresh != 0) {

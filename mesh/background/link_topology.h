@@ -9,14 +9,14 @@
 
 namespace umtet {
 
-/// The inside labels of a vertex's link: bit k belongs to link vertex k.
+/// Which vertices of a link are inside: bit k belongs to link vertex k.
 using LinkMask = std::uint64_t;
 inline constexpr int kMaxLink = 64;
 
-/// What the inside labels of a vertex's link say about the vertex.
+/// What the classification of a vertex's link says about the vertex.
 struct LinkState {
-  /// Inside and outside part of the link are connected and not empty: the label of the vertex may change and neither
-  /// {inside} nor {outside} changes its homotopy type.
+  /// Inside and outside part of the link are connected and not empty: the vertex may be flipped, and neither {inside}
+  /// nor {outside} changes its homotopy type [KongRosenfeld1989; Bertrand1994].
   bool simple = false;
   /// For an outside vertex: the tets with an inside vertex fill a half-ball around it, whose boundary is a disc of
   /// positive faces and nothing else; no face there is positive from both sides.
@@ -36,7 +36,7 @@ struct LinkTopology {
   /// have the same number of link vertices and of triangles.
   int site = 0;
 
-  /// What a label at such a vertex counts lengths in, in h of the background.
+  /// Unit of the lengths in ClassificationParams at such a vertex, in h of the background.
   float unit = 1;
 
   LinkMask full() const { return ~LinkMask{0} >> (kMaxLink - n); }

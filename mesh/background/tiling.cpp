@@ -16,7 +16,7 @@ constexpr std::array<std::array<double, 3>, 8> kA15Points = {
     {{0, 0, 0}, {.5, .5, .5}, {.25, .5, 0}, {.75, .5, 0}, {0, .25, .5}, {0, .75, .5}, {.5, 0, .25}, {.5, 0, .75}}};
 
 // Their periodic Delaunay tets; no five points are cospherical, so the set is unique. Verified by
-// tests/mesh/tiling_test.
+// tests/mesh/background/tiling_test.cpp.
 constexpr std::array<std::array<Tiling::Corner, 4>, 46> kA15Tets = {{
     {{{0, {0, 0, 0}}, {2, {0, 0, 0}}, {3, {-1, 0, 0}}, {4, {0, 0, 0}}}},
     {{{0, {0, 1, 1}}, {2, {0, 0, 1}}, {3, {-1, 0, 1}}, {5, {0, 0, 0}}}},

@@ -24,7 +24,7 @@ struct Tiling {
   bool rings_are_optimal = false;
   std::array<double, 3> period = {1, 1, 1};  ///< edges of the cell
   /// omega_h exceeds Omega by a layer, because its tets need only one vertex inside: about this many cell edges of an
-  /// A15 of the same h where the labels are psi's. Measured on eq. (9) at 20k and 100k tets.
+  /// A15 of the same h where the sign of psi classifies. Measured on eq. (9) at 20k and 100k tets.
   double excess_layer = .27;
 };
 

@@ -11,7 +11,8 @@
 
 namespace umtet {
 
-/// So many words of a set are a block: 64 ids each, a hundred of them in the shell if it is thick.
+/// Words of a set in a block, of 64 ids each: the unit of work of a thread. About a tenth of the ids are in an active
+/// layer.
 inline constexpr std::size_t kWordsPerBlock = 16;
 
 inline std::size_t n_blocks(const IdSet& set) { return (set.n_words() + kWordsPerBlock - 1) / kWordsPerBlock; }

@@ -7,8 +7,8 @@
 
 namespace umtet {
 
-/// Some hundred ids in the order of their coming, each found again in a few ns: for parts of a mesh so small that a bit
-/// for every vertex of the background would cost more than all the rest.
+/// A few hundred ids in the order in which they were added, with a hash table. For parts of a mesh so small that an
+/// IdSet, with a bit for every vertex of the background, would cost more than all other work on them.
 class IdList {
  public:
   /// The number of an id, which is appended if it is not there.
@@ -21,14 +21,14 @@ class IdList {
     }
     return at - 1;
   }
-  /// -1 where there is none; of any number, id or not.
+  /// The number of an id, -1 where it is not there. Any argument will do, also what is no id.
   int find(std::int64_t id) const { return table_.empty() ? -1 : table_[slot(id)] - 1; }
   bool test(std::int64_t id) const { return find(id) >= 0; }
   bool test_any(std::int64_t id) const { return test(id); }
   const std::vector<std::int64_t>& ids() const { return ids_; }
 
  private:
-  /// That of the id, or the free one where it belongs.
+  /// The slot of the id, or the free one where it would be put.
   std::size_t slot(std::int64_t id) const {
     std::size_t s = static_cast<std::uint64_t>(id) * 0x9e3779b97f4a7c15U >> shift_;  // 2^64 over the golden ratio
     while (table_[s] != 0 && ids_[static_cast<std::size_t>(table_[s] - 1)] != id) s = (s + 1) & (table_.size() - 1);

@@ -19,9 +19,9 @@
 namespace umtet {
 namespace {
 
-// What a task of a fraction of a millisecond handles; of the vertices, what leaves their tets in the cache.
+// Tets a task: a fraction of a millisecond. Vertices a block: their tets fit into the cache.
 constexpr std::size_t kTetsPerPart = 1 << 14;
-constexpr std::size_t kAhead = 16;  // tets that are on the way from memory
+constexpr std::size_t kAhead = 16;  // tets that are prefetched
 constexpr int kLogVertices = 11, kVerticesPerBlock = 1 << kLogVertices;
 
 /// The two least vertices of each of some tets, and whether all indices are good.
@@ -51,7 +51,7 @@ class TetsByBlock {
     std::array<int, kTetsPerPart> a, b;
     if (!two_least(&C[first], n, n_vertices, a.data(), b.data())) return false;
     if (only) {
-      for (std::size_t k = 0; k < n; ++k) {  // one that is asked for stands for one that is not; -1: none
+      for (std::size_t k = 0; k < n; ++k) {  // a vertex of `only` takes the place of one that is not; -1: neither is
         const bool in_a = (*only)[a[k]] != 0, in_b = (*only)[b[k]] != 0;
         const int one = in_a ? a[k] : in_b ? b[k] : -1;
         b[k] = in_b ? b[k] : one;
@@ -207,12 +207,12 @@ class Link {
  private:
   static constexpr unsigned kLogSlots = 8, kSlots = 1 << kLogSlots;
 
-  /// @return whether the edge was not there in this direction. Half of the edges are new: no branch asks which.
+  /// @return whether the edge was not there in this direction. Without a branch: half of the edges are new.
   bool add(int from, int to, int tet) {
     const std::uint64_t key =
         static_cast<std::uint64_t>(std::min(from, to)) << 32 | static_cast<std::uint64_t>(std::max(from, to));
     unsigned slot = static_cast<unsigned>((key * 0x9e3779b97f4a7c15u) >> (64 - log_slots_));
-    // Neither this edge nor none: no key is 0.
+    // On to the next slot while this one holds another edge. 0 is a free slot, and no key.
     while (std::min(edge_[slot], edge_[slot] ^ key) != 0) slot = (slot + 1) & ((1u << log_slots_) - 1);
     const unsigned bit = from < to ? 1 : 2, before = seen_[slot];
     edge_[slot] = key;
@@ -230,7 +230,7 @@ class Link {
 };
 
 /// The vertices of a block whose faces all have two tets, one on either side. In the rows of a lattice the faces under
-/// a vertex are those under an earlier one with all vertices as many numbers further on: these need no table.
+/// a vertex are those under an earlier one with the same number added to all vertices: these need no hash table.
 class ClosedVertices {
  public:
   void clear() { closed_.fill(false); }
@@ -251,12 +251,12 @@ class ClosedVertices {
     return false;
   }
 
-  // A lattice has one step, and it is soon found; where there is none, searches cost next to nothing.
+  // A lattice has one step from a vertex to its copy, which is soon found. A mesh without one is searched seldom.
   static constexpr int kMostSteps = 32;
   static constexpr unsigned kOthersPerSearch = 16;
 
   std::array<bool, kVerticesPerBlock> closed_{};
-  int step_ = 1;  ///< the one that served last
+  int step_ = 1;  ///< the step from a vertex to the copy that was found last
   unsigned n_others_ = 0;
 };
 

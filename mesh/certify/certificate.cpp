@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t kFeetPerPoll = kValuesPerPoll / 8;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Runs `aside` in another thread, if there is one, while this one runs `here`.
+/// Runs `here` in this thread and `aside` beside it in another, if there is one.
 template <class Here, class Aside>
 void run_both(const Here& here, const Aside& aside) {
   tbb::task_group group;
@@ -80,7 +80,7 @@ struct FaceMeasure {
   double distance, cos_normal, area;
 };
 
-// Between a flat face and a quadric through its corners lies this much of area x distance of the centroid.
+// The volume between a flat face and a quadric through its corners is this times area x distance of the centroid.
 constexpr double kMeanOverCentroid = .75;
 
 /// The volume within a closed surface.
@@ -183,7 +183,7 @@ MeshCertificate certify_with(const CertificateInput& input, CertificateMemory* m
                       certificate);
     } else {
       const std::vector<Triangle> fitted = without(surface.triangles, walls);
-      // A small body in much fluid is missed as easily as by a mesh of its inside.
+      // Relative to the body, if that is less: else the gap around a small body in much fluid would not count.
       const double volume =
           fitted.empty() ? certificate.volume : std::min(certificate.volume, enclosed_volume(mesh, fitted));
       measure_against(*input.psi, mesh, fitted, vertices_of(fitted), volume, input.context, certificate);
@@ -192,7 +192,7 @@ MeshCertificate certify_with(const CertificateInput& input, CertificateMemory* m
   return certificate;
 }
 
-/// Of a mesh that has not changed, without walls: faces are compared and psi is asked again.
+/// Of a mesh that has not changed, without walls: faces are compared and psi is evaluated again.
 MeshCertificate certify_again(const CertificateInput& input, CertificateMemory::Whole& known,
                               const std::vector<Triangle>& surface) {
   MeshCertificate certificate = known.certificate;

@@ -66,8 +66,8 @@ struct CertificateInput {
 /// leaves is a hundred times less.
 inline constexpr double kVertexTolerance = 1e-8;
 
-/// Flat faces may miss so much of the volume, gap_over_volume: an edge of about the radius of a ball. Meshes of the
-/// eleven clouds miss at most 1.4 %.
+/// Flat faces may miss this share of the volume, gap_over_volume: a ball with an edge of about its radius misses that
+/// much. A mesh that resolves its domain misses a few per cent at most.
 inline constexpr double kMostGap = .1;
 
 /// Measures everything above. Does not judge. Not seen here: components of psi = 0 that the mesh lacks (zero_set.h

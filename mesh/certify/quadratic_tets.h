@@ -13,11 +13,11 @@ namespace umtet {
 
 struct SecondOrderParams {
   ClosestPointParams closest_point;
-  /// Mid-sides are relaxed around a tet whose min det / mean det may be below this. T4 and eq. (9) with handles an edge
-  /// thick reach .07, .13, .19 and .05, .10, .18 with .1, .2, .3, at 35, 49, 72 and 50, 57, 68 microseconds a face.
+  /// Mid-sides are relaxed around a tet whose min det / mean det may be below this. A higher target raises the least
+  /// value and the time; in bodies one edge thick the target itself is not reached.
   double target = .3;
-  /// Where it is still not proved to be above this, mid-sides go back towards their chords. Without any relaxation
-  /// these two bodies need that for 107 and 80 mid-sides, with it for none.
+  /// Where it is still not proved to be above this, mid-sides go back towards their chords, off psi = 0: a last resort
+  /// that relaxation makes rare.
   double least = .02;
   int sweeps = 30;  ///< of relaxation; >= 0
 };

@@ -19,13 +19,12 @@ namespace {
 
 // A gain below this is rounding of floats.
 constexpr float kLeastGain = 1e-3F;
-// Two neighbours whose changes, each by itself, would together cost more than this are not tried as a pair. One pair in
-// twenty that wins costs more than 150, and a whole mesh turns on some of these: with 150 smoothing leaves 111 tets
-// below .82 in the bodies of ClassificationParams, with 200 it is 53, with 300 it is 24, as with all pairs, of which
-// nine tenths are left out. A configuration that was never met costs 100 (label_quality).
+// Two neighbours whose flips, each by itself, would together cost more than this are not tried as a pair. A flip often
+// passes through configurations that are not in the table and cost 100 each (StarCostTable): a pair that wins may make
+// up for three of them. Less loses such pairs; more tries pairs that hardly ever win, and most pairs are of this kind.
 constexpr float kMostCost = 300;
 
-/// Changes labels in the band, block by block.
+/// Iterated conditional modes [Besag1986] with single and pair moves in the band, block by block.
 class Descent {
  public:
   /// @param h  of the background
@@ -44,12 +43,12 @@ class Descent {
     find_costs_of_distance();
   }
 
-  /// @param inside  receives the labels
+  /// @param inside  receives the classification
   ClassificationReport operator()(IdSet& inside, const Context& context);
 
  private:
   enum class Thin : std::uint8_t { Unknown, No, Yes };
-  /// What is to be done about a vertex since a label near it has changed.
+  /// What is to be done about a vertex since one near it was flipped.
   enum Open : std::uint8_t { kSingle = 1, kPair = 2, kGain = 4, kAll = 7 };
 
   void find_costs_of_distance();
@@ -64,7 +63,7 @@ class Descent {
   int flip_if_better(int v);
   int flip_with_neighbour(int v);
   bool is_thick(int v);
-  bool is_as_before(int v) const { return last_ && (band_.label[v] != 0) == last_->test(band_.id[v]); }
+  bool is_as_before(int v) const { return last_ && (band_.is_inside[v] != 0) == last_->test(band_.id[v]); }
   float least_gain(int v) const {
     return is_as_before(v) ? std::max(kLeastGain, static_cast<float>(params_.keep)) : kLeastGain;
   }
@@ -79,7 +78,7 @@ class Descent {
   const ClassificationParams& params_;
   const StarCostTable& costs_;
   ClassificationBand& band_;
-  const IdSet* last_;                 ///< labels of the mesh before, or null
+  const IdSet* last_;                 ///< classification of the mesh before, or null
   std::vector<float> height_, lack_;  ///< costs of distance: of an outside vertex at the boundary, of an inside one
   std::vector<float> gain_;
   std::vector<std::uint8_t> open_;  ///< Open
@@ -109,10 +108,10 @@ float Descent::find_gain(int v) const {
   const LinkTopology& link = links_[band_.type[v]];
   const std::span<const int> ring = band_.link(v);
   float gain = lack_[v] - cost_outside(v, band_.mask[v]);
-  if (!band_.label[v]) gain = -gain;
+  if (!band_.is_inside[v]) gain = -gain;
   for (int k = 0; k < link.n; ++k) {
     const int w = ring[k];
-    if (band_.label[w]) continue;  // the cost of an inside vertex does not depend on its link
+    if (band_.is_inside[w]) continue;  // the cost of an inside vertex does not depend on its link
     gain += cost_outside(w, band_.mask[w]) - cost_outside(w, band_.mask[w] ^ LinkMask{1} << link.back[k]);
   }
   return gain;
@@ -131,21 +130,21 @@ bool Descent::keeps_manifold(int v) const {
   const LinkTopology& link = links_[band_.type[v]];
   int before = 0, after = 0;
   const auto bad = [&](int w, LinkMask mask) { return mask != 0 && !links_[band_.type[w]].state(mask).manifold; };
-  if (band_.label[v]) {
+  if (band_.is_inside[v]) {
     after += bad(v, band_.mask[v]);
   } else {
     before += bad(v, band_.mask[v]);
   }
   for (int k = 0; k < link.n; ++k) {
     const int w = band_.link(v)[k];
-    if (band_.label[w]) continue;
+    if (band_.is_inside[w]) continue;
     before += bad(w, band_.mask[w]);
     after += bad(w, band_.mask[w] ^ LinkMask{1} << link.back[k]);
   }
   return after <= before;
 }
 
-/// Asks psi: the last of all questions.
+/// Evaluates psi, so it is called only where every other condition holds.
 bool Descent::is_thick(int v) {
   if (params_.least_thickness == 0) return true;
   if (thin_[v] == Thin::Unknown) {
@@ -161,12 +160,12 @@ bool Descent::is_thick(int v) {
 bool Descent::may_flip(int v) { return is_simple(v) && keeps_manifold(v) && is_thick(v); }
 
 void Descent::toggle(int v) {
-  band_.label[v] ^= 1;
+  band_.is_inside[v] ^= 1;
   const LinkTopology& link = links_[band_.type[v]];
   for (int k = 0; k < link.n; ++k) band_.mask[band_.link(v)[k]] ^= LinkMask{1} << link.back[k];
 }
 
-/// Changes the label, and opens all whose gain that changes.
+/// Flips v, and opens all vertices whose gain that changes.
 void Descent::flip(int v) {
   toggle(v);
   for (const int w : band_.link(v)) {
@@ -177,15 +176,15 @@ void Descent::flip(int v) {
   }
 }
 
-/// @return how many labels have changed
+/// @return the number of flips
 int Descent::flip_if_better(int v) {
   if (!is_simple(v) || gain_of_flip(v) <= least_gain(v) || !may_flip(v)) return 0;
   flip(v);
   return 1;
 }
 
-/// The label of v, or that of v and then that of the neighbour with which most is gained.
-/// @return how many labels have changed
+/// Flips v if that is better, else v and the neighbour with which most is gained.
+/// @return the number of flips
 int Descent::flip_with_neighbour(int v) {
   if (flip_if_better(v) == 1) return 1;
   if (!is_simple(v)) return 0;
@@ -214,7 +213,7 @@ int Descent::flip_with_neighbour(int v) {
   return 2;
 }
 
-/// @param visit  returns how many labels it has changed
+/// @param visit  returns the number of its flips
 template <class F>
 std::size_t Descent::sweep(const F& visit) {
   std::atomic<std::size_t> flips = 0;
@@ -252,11 +251,11 @@ ClassificationReport Descent::operator()(IdSet& inside, const Context& context) 
   ClassificationReport report;
   report.candidates = band_.order.size();
   report.shifted = sweep([&](int v) {
-    if (!band_.label[v] || band_.phi[v] < -params_.shift || !may_flip(v)) return 0;
+    if (!band_.is_inside[v] || band_.phi[v] < -params_.shift || !may_flip(v)) return 0;
     flip(v);
     return 1;
   });
-  // Twice: what a change costs, and whether it may be, depends on the labels around.
+  // Twice: whether a flip is allowed, and what it costs, depends on the flips around it.
   for (int pass = 0; last_ && pass < 2; ++pass) {
     report.returned += sweep([&](int v) {
       if (is_as_before(v) || gain_of_flip(v) < -params_.keep || !may_flip(v)) return 0;
@@ -264,13 +263,13 @@ ClassificationReport Descent::operator()(IdSet& inside, const Context& context) 
       return 1;
     });
   }
-  // Pairs cost ten times as much: they come when single labels have nothing more to win.
+  // A pair takes ten times the time of a single flip: pairs come when no single flip is left that wins.
   report.settled = descend(
                        kSingle, [&](int v) { return flip_if_better(v); }, context, report) &&
                    descend(
                        kPair, [&](int v) { return flip_with_neighbour(v); }, context, report);
   for (std::size_t v = 0; v < band_.size(); ++v) {
-    if (band_.label[v]) {
+    if (band_.is_inside[v]) {
       inside.insert(band_.id[v]);
     } else {
       inside.erase(band_.id[v]);
@@ -298,6 +297,7 @@ std::vector<std::string> problems(const ClassificationParams& params) {
   in("most_stretch", params.most_stretch, 1, kAny, ">= 1");
   in("least_thickness", params.least_thickness, 0, kAny, ">= 0");
   in("outside_weight", params.outside_weight, 0, kAny, ">= 0");
+  in("outside_height", params.outside_height, -kAny, kAny, "finite");
   in("inside_weight", params.inside_weight, 0, kAny, ">= 0");
   in("inside_depth", params.inside_depth, -kAny, kAny, "finite");
   in("keep", params.keep, 0, kAny, ">= 0");
@@ -307,7 +307,7 @@ std::vector<std::string> problems(const ClassificationParams& params) {
 
 bool is_thin(ImplicitFunctionRef psi, const Vec3& foot, const Vec3& normal, double thickness, double h,
              std::size_t& n_evaluations) {
-  // Steps of half an edge see all sheets that the background can resolve.
+  // In steps of half an edge no sheet that the background can resolve is missed.
   const int n_steps = static_cast<int>(std::ceil(2 * thickness));
   for (int side = -1; side <= 1; side += 2) {
     for (int s = 1; s <= n_steps; ++s) {

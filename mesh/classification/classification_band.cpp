@@ -14,9 +14,10 @@ namespace umtet {
 namespace {
 
 // Blocks of one colour are this many cells apart. No edge of a tiling is longer than half a cell along an axis, so that
-// is nine rings; changing the labels of a vertex and a neighbour reaches three, and seven are enough.
+// is nine rings; to flip a vertex and a neighbour reads and writes three rings around, and seven are enough.
 constexpr std::int64_t kBlock = 4;
-// Feet from farther away may be on another sheet, and those closer together, in h, say little about curvature.
+// For the estimate of curvature: feet of vertices farther away (in units of the vertex) may be on another sheet, and
+// between feet closer together (in h) the difference of normals is mostly rounding of psi.
 constexpr float kFarthestFoot = 1.8F;
 constexpr double kApart = .3;
 constexpr std::size_t kVerticesPerTask = 1 << 12;  // of some ten nanoseconds each
@@ -48,7 +49,7 @@ bool ClassificationBand::is_outermost(std::int64_t v) const {
   return outermost;
 }
 
-/// The vertices with a neighbour of the other label, and two rings more.
+/// The vertices with a neighbour on the other side, and two rings more.
 void ClassificationBand::gather() {
   if (known_) {
     std::vector<std::int64_t> cut;
@@ -99,11 +100,11 @@ void ClassificationBand::gather_around(std::vector<std::int64_t> front) {
   }
 }
 
-/// Label, mask and ranks of the link. Returns whether the whole link is in the band.
+/// State of the vertex, mask and ranks of its link. Returns whether the whole link is in the band.
 bool ClassificationBand::find_link(std::size_t v) {
-  label[v] = inside_.test(id[v]);
+  is_inside[v] = inside_.test(id[v]);
   mask[v] = steps_.mask(id[v], inside_);
-  // Labels beyond the range of ids are those of the background boundary: outside. Ranks are left out there.
+  // What is beyond the range of ids counts as outside, like the background boundary. Ranks are left out there.
   if (is_outermost(id[v])) return false;
   const std::vector<std::int64_t>& steps = steps_.at(id[v]);
   bool complete = true;
@@ -150,10 +151,10 @@ void ClassificationBand::find_foot(std::size_t v) {
       const double second = std::clamp(value / norm, -h, h);
       foot[v] -= second * normal[v];
       distance = (x - foot[v]).norm();
-      if (label[v]) distance = -distance;
+      if (is_inside[v]) distance = -distance;
     }
   }
-  phi[v] = static_cast<float>(std::isfinite(distance) ? distance / h : label[v] ? -far() : far());
+  phi[v] = static_cast<float>(std::isfinite(distance) ? distance / h : is_inside[v] ? -far() : far());
 }
 
 void ClassificationBand::measure(const Context& context) {
@@ -176,7 +177,7 @@ void ClassificationBand::measure(const Context& context) {
     }
   }
   ranks_.assign(first_[n], -1);
-  label.resize(n);
+  is_inside.resize(n);
   held.assign(n, 0);
   mask.resize(n);
   phi.resize(n);
@@ -187,7 +188,7 @@ void ClassificationBand::measure(const Context& context) {
     const bool complete = find_link(v);
     // A vertex without its whole link in the band is there to complete the masks of others.
     if (!complete && (mask[v] == 0 || mask[v] == links_[type[v]].full())) {
-      phi[v] = label[v] ? -far() : far();
+      phi[v] = is_inside[v] ? -far() : far();
       return;
     }
     find_foot(v);
@@ -198,9 +199,10 @@ void ClassificationBand::measure(const Context& context) {
 
 bool ClassificationBand::has_foot(int v) const { return std::abs(phi[v]) < kFarthestFoot; }
 
-/// Labels stay where a vertex on its way to the surface would draw apart those around it by more than most_stretch: a
-/// patch at depth d under a surface of curvature kappa is 1 / (1 - kappa d) times as wide up there. The curvature is
-/// the greatest between the feet of neighbours, on the side that the vertex would come from.
+/// A vertex keeps its state where projection to the surface would stretch the faces around it by more than
+/// most_stretch: lengths at depth d under a surface of curvature kappa grow by 1 / (1 - kappa d) on the way. The
+/// curvature is the greatest one estimated between the foot of the vertex and those of its neighbours, signed for the
+/// side it is on.
 void ClassificationBand::hold_where_stretched(const Context& context) {
   const double most = 1 - 1 / params_.most_stretch, apart = kApart * background_.h();
   polled_parallel_for(size(), kValuesPerPoll, context, [&](std::size_t v) {

@@ -18,7 +18,8 @@
 
 namespace umtet {
 
-/// Vertices within three edges of a change of label, and all that classify_vertices() knows about them, by rank.
+/// Vertices within three edges of an edge between inside and outside, and all that classify_vertices() knows about
+/// them, by rank.
 class ClassificationBand {
  public:
   struct Block {
@@ -38,13 +39,13 @@ class ClassificationBand {
   /// Ranks of the neighbours of v, -1 where they are not in the band.
   std::span<const int> link(std::size_t v) const { return {ranks_.data() + first_[v], first_[v + 1] - first_[v]}; }
   std::vector<std::uint16_t> type;
-  std::vector<std::uint8_t> label;
-  std::vector<std::uint8_t> movable;  ///< its label may change
-  std::vector<std::uint8_t> held;     ///< its label stays because of most_stretch
+  std::vector<std::uint8_t> is_inside;
+  std::vector<std::uint8_t> movable;  ///< it may be flipped
+  std::vector<std::uint8_t> held;     ///< it is not, because of most_stretch
   std::vector<LinkMask> mask;
   std::vector<float> phi;                    ///< signed distance in LinkTopology::unit
   std::vector<Vec3> foot, normal;            ///< on psi = 0 and there; not set at the band's edge
-  std::vector<std::uint32_t> order;          ///< movable vertices, block by block
+  std::vector<std::uint32_t> order;          ///< vertices that may be flipped, block by block
   std::array<std::vector<Block>, 8> blocks;  ///< per colour: vertices of two blocks of one are nine rings apart
   std::atomic<std::size_t> psi_evaluations{0};
 

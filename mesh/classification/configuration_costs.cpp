@@ -58,7 +58,7 @@ ConfigurationCosts costs(std::vector<LinkTopology> links, std::span<const Config
   return {std::move(links), good, std::move(costs), repair_target, repair_reach};
 }
 
-const ConfigurationCosts& prices_of_a15() {
+const ConfigurationCosts& costs_of_a15() {
   static const ConfigurationCosts made = costs(a15_links(), kA15ConfigurationQualities, kGoodInA15, .82, 3);
   return made;
 }
@@ -72,7 +72,7 @@ ConfigurationCosts costs_of_z() {
 }  // namespace
 
 const ConfigurationCosts* configuration_costs(const Tiling& tiling) {
-  if (tiling.name == a15().name) return &prices_of_a15();
+  if (tiling.name == a15().name) return &costs_of_a15();
   if (tiling.name == z_phase().name) {
     static const ConfigurationCosts made = costs_of_z();
     return &made;
@@ -90,6 +90,6 @@ const ConfigurationCosts* configuration_costs(const Tiling& tiling) {
   return nullptr;
 }
 
-const StarCostTable& a15_star_costs() { return prices_of_a15().costs; }
+const StarCostTable& a15_star_costs() { return costs_of_a15().costs; }
 
 }  // namespace umtet

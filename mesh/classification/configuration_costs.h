@@ -8,19 +8,20 @@
 
 namespace umtet {
 
-/// What the choice of labels, and their repair, need to know of a tiling.
+/// What classification and repair need to know of a tiling.
 struct ConfigurationCosts {
   std::vector<LinkTopology> links;
   double good;  ///< of StarCostTable
   StarCostTable costs;
-  double repair_target;  ///< what labels and smoothing reach on nearly every tet: no use to mend those above
+  double repair_target;  ///< mean ratio that nearly every tet has before repair, which works on those below
   int repair_reach;      ///< of RepairParams, at most
 };
 
 /// Those of a15(), z_phase(), acute_slab() and acute_cube(), made once; null for another tiling.
 ///
-/// Prices are measured (star_costs) but for Z, where a site's are those of A15 with as many neighbours: 12 and 14
-/// neighbours are the Frank-Kasper polyhedra of A15 in Z too. Z's third kind, 15 neighbours, is priced like 14.
+/// Costs are measured (tools/star_costs) but for Z, whose sites have those of the sites of A15 with as many neighbours:
+/// links of 12 and of 14 neighbours are the same Frank-Kasper polyhedra in both. Z's third kind of site, with 15
+/// neighbours, has the costs of 14.
 const ConfigurationCosts* configuration_costs(const Tiling& tiling);
 
 /// That of a15().

@@ -9,7 +9,8 @@
 
 namespace umtet {
 
-/// How well the tets around a boundary vertex can be shaped when its link is labelled so: measured, not derived.
+/// How well the tets around a boundary vertex can be shaped when its link has this configuration: measured, not
+/// derived.
 struct ConfigurationQuality {
   int site;              ///< LinkTopology::site
   int n_positive_faces;  ///< bv

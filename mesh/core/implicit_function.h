@@ -13,7 +13,7 @@ concept JointlyEvaluated = requires(const F f, const Vec3 x, Vec3* g, Mat3* H) {
   { f.evaluate(x, g, H) } -> std::convertible_to<double>;
 };
 
-/// What the mesher asks of psi: Omega = {psi < 0}, psi C2 near the boundary     [Rangarajan2018, eq. (8)]
+/// What the mesher needs of psi: Omega = {psi < 0}, psi C2 near the boundary     [Rangarajan2018, eq. (8)]
 template <class F>
 concept ImplicitFunction = JointlyEvaluated<F> || requires(const F f, const Vec3 x) {
   { f.value(x) } -> std::convertible_to<double>;

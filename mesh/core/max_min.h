@@ -33,8 +33,8 @@ inline constexpr int kPackSize = 4;
 ///   L_j(y) = l_j + s_j . y + 3 |y|^2  sum of squared edge lengths
 ///   Q_j = 12 cbrt(1/4) cbrt(f_j),     f_j = V_j |V_j| / L_j^3
 ///
-/// Qualities are compared through f, which needs no roots. Structure of arrays; the lanes that fill up the last SIMD
-/// word repeat the last tet, which changes no minimum.
+/// Qualities are compared through f, which needs no roots. Structure of arrays; the elements that fill up the last SIMD
+/// pack repeat the last tet, which changes no minimum.
 struct OneRing {
   int n = 0;          ///< tets
   double f_here = 0;  ///< min_j f_j(0)

@@ -7,7 +7,7 @@
 
 namespace umtet {
 
-/// psi at vertices of the background, where it has been evaluated already.
+/// psi and its gradient at a vertex of the background, where they have been evaluated already.
 struct PsiValue {
   std::int64_t vertex;
   double value;

@@ -14,16 +14,16 @@ namespace umtet {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Of squared lengths: their cubes, and squares of volumes, are numbers of full precision.
+// Least and greatest squared lengths whose cubes, like the squares of volumes, are normal doubles.
 constexpr double kLeast2 = 1e-80, kGreatest2 = 1e80;
 
 Pack all_packs(double a) { return Pack{a, a, a, a}; }
-/// Without a sign, of zeros too: 1 / |V| of a flat tet is positive.
+/// The absolute value; +0 of -0, so that 1 / |V| of a flat tet is +infinity.
 Pack magnitude(Pack a) {
   using Bits = std::int64_t __attribute__((vector_size(8 * kPackSize)));
   return (Pack)((Bits)a & std::numeric_limits<std::int64_t>::max());
 }
-/// @param mask  as comparisons give it: -1 or 0 a lane
+/// @param mask  result of a comparison: each element is -1 or 0
 template <class Mask>
 bool is_all(Mask mask) {
   return (mask[0] & mask[1] & mask[2] & mask[3]) != 0;
@@ -125,7 +125,7 @@ TetPack measure_tet_pack(const TetMesh& mesh, const Tet* tets, int count) {
   for (int k = 0; k < 6; ++k) {
     const Pack cotangent = cosine[k] * per_volume;  // times the edge
     const Pack square = cotangent * magnitude(cotangent) / edge2[k];
-    least = square < least ? square : least;  // what is not a number is passed over
+    least = square < least ? square : least;  // a NaN is left out
     greatest = square > greatest ? square : greatest;
   }
   result.least_cotangent = least;

@@ -18,8 +18,8 @@ struct TetPack {
   std::array<bool, kPackSize> inverted{};    ///< exact sign of the volume <= 0
 };
 
-/// Measures tets[0 .. count - 1]; the lanes beyond repeat the last of them. What is found of a tet does not depend on
-/// its lane, nor on the others. \pre 1 <= count <= kPackSize
+/// Measures tets[0 .. count - 1]; elements beyond repeat the last of them. What is found of a tet does not depend
+/// on its place in the pack, nor on the others. \pre 1 <= count <= kPackSize
 TetPack measure_tet_pack(const TetMesh& mesh, const Tet* tets, int count);
 
 }  // namespace umtet

@@ -15,9 +15,11 @@
 namespace umtet {
 namespace {
 
-constexpr std::array<double, 4> kShares = {1, .5, .25, .125};  // of a step; the first that the guard lets pass
-// Of 1, 2, 3 and never, only with 3 did every boundary vertex reach psi = 0 on tori and eq. (9) of 1000 tets, with
-// guards of .2 to .4.
+// Parts of a step that are tried, longest first. The first is taken that leaves every tet of the ring at
+// Q >= least_quality (.2), or at least at the worst Q that the ring had.
+constexpr std::array<double, 4> kShares = {1, .5, .25, .125};
+// In every third round vertices that were held back are smoothed freely first, and try another way from there. Oftener,
+// and they lose the way they have made; never, and some are held back for ever.
 constexpr int kRoundsPerDetour = 3;
 constexpr std::size_t kVerticesPerTask = 64;  // of a microsecond or two each
 constexpr std::size_t kVerticesPerPoll = 1 << 12;
@@ -30,7 +32,7 @@ struct BoundaryVertex {
   Vec3 start, foot;
 };
 
-/// Roles as they were, whatever happens.
+/// Restores the roles of the vertices at the end, also when something throws.
 class RolesOnLoan {
  public:
   explicit RolesOnLoan(std::vector<ActiveLayer::Role>& roles) : roles_(roles), kept_(roles) {}
@@ -131,7 +133,7 @@ void Projection::set_out() {
   report_.boundary = boundary_vertices_.size();
 }
 
-/// Of those who have not arrived, from where they are.
+/// Closest points of the vertices that have not arrived, from where they are.
 void Projection::find_feet() {
   report_.psi_evaluations += count_over(0, boundary_vertices_.size(), [&](std::size_t k) {
     BoundaryVertex& boundary_vertex = boundary_vertices_[k];
@@ -145,7 +147,7 @@ void Projection::find_feet() {
   });
 }
 
-/// As far as the guard allows. Returns whether the vertex arrived.
+/// As far as the bound on quality allows. Returns whether the vertex arrived.
 bool Projection::step(BoundaryVertex& boundary_vertex, double target) {
   const int i = boundary_vertex.vertex;
   if ((boundary_vertex.foot - boundary_vertex.start).norm() <= params_.closest_point.tol * layer_.h) {
@@ -179,8 +181,8 @@ void Projection::advance(double target) {
   }
 }
 
-/// Those on the surface may slide from now on. Those held back keep what they have won, and every now and then go where
-/// their rings are best instead: the way to the surface from there is another one.
+/// Vertices on the surface may slide from now on. Those held back stay where they are, and in every kRoundsPerDetour-th
+/// round are smoothed like inner ones: the way to the surface from there is another one.
 void Projection::make_room() {
   const ActiveLayer::Role held_back =
       report_.rounds % kRoundsPerDetour == 0 ? ActiveLayer::Role::Inner : ActiveLayer::Role::Fixed;

@@ -27,9 +27,9 @@
 namespace umtet {
 namespace {
 
-// In place of the least gains of smoothing, if these are less, for a mesh that begins from the one before. A ball that
-// drifts a quarter cell a step: .95 of the solves of 3e-4 and least Q .832 (.834); with 1e-3 it is .92 and .828, anew
-// .833.
+// The least gain of a smoothing step in a mesh that begins from the one before, where that of the parameters is less.
+// It trades solves for quality: a mesh that begins near its solution spends most of them on small gains (mesh_bench
+// --benchmark_filter=drifting_ball).
 constexpr double kUpdateLeastGain = 6e-4;
 constexpr std::size_t kVerticesPerTask = 1 << 14;  // to compare places, a nanosecond each
 
@@ -45,7 +45,7 @@ class FastRun {
         costs_of_tiling_(submesh.background_boundary == BackgroundBoundary::Wall
                              ? nullptr
                              : configuration_costs(background.tiling())),
-        classification_params_(params.labels),
+        classification_params_(params.classification),
         inside_(0) {
     if (costs_of_tiling_ && !classification_params_.costs) classification_params_.costs = &costs_of_tiling_->costs;
   }
@@ -181,11 +181,11 @@ bool FastRun::fits_background(const std::string& lost) {
 bool FastRun::classify() {
   const IdSet* last = memory_ && !memory_->moved.empty() ? &memory_->inside : nullptr;
   if (costs_of_tiling_ && last && negative_ == memory_->negative) {
-    inside_ = *last;  // psi = 0 has passed over no vertex
+    inside_ = *last;  // psi has the sign it had at every vertex
   } else if (costs_of_tiling_) {
-    const ClassificationReport labels = classify_vertices(background_, costs_of_tiling_->links, psi_,
+    const ClassificationReport report = classify_vertices(background_, costs_of_tiling_->links, psi_,
                                                           classification_params_, inside_, context_, last, known_);
-    result_.n_psi_evaluations += labels.psi_evaluations;
+    result_.n_psi_evaluations += report.psi_evaluations;
   }
   is_classified_ = true;
   if (costs_of_tiling_) return true;
@@ -373,7 +373,7 @@ std::vector<std::string> problems(const FastParams& params) {
   if (!(params.update_margin >= 0)) {
     list.push_back("update_margin = " + std::to_string(params.update_margin) + ": must be >= 0");
   }
-  add("labels", problems(params.labels));
+  add("classification", problems(params.classification));
   add("projection", problems(params.projection));
   add("smoothing", problems(params.smoothing));
   add("repair", problems(params.repair));

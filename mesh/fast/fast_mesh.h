@@ -20,10 +20,11 @@ namespace umtet {
 ///
 /// classification: which background vertices near psi = 0 count as inside is chosen for the shape of the tets
 /// (classification.h), where that has costs (configuration_costs.h); layer: only the boundary of omega_h and two layers
-/// behind it move (lattice_active_layer.h); projection: boundary vertices walk to psi = 0 as far as no tet inverts
-/// (backtracking_projection.h); smoothing: p-norm Newton steps where a tet is below the target (p_norm_smoothing.h);
-/// tangential relaxation: boundary vertices slide on to ridges that h does not resolve (tangential_relaxation.h);
-/// repair: vertices change between inside and outside where a tet is still below the target (repair.h).
+/// behind it move (lattice_active_layer.h); projection: boundary vertices walk to psi = 0 as far as no tet of
+/// their rings falls below Q = .2 or what it had (backtracking_projection.h); smoothing: p-norm Newton steps where a
+/// tet is below the target (p_norm_smoothing.h); tangential relaxation: boundary vertices slide on to ridges that h
+/// does not resolve (tangential_relaxation.h); repair: vertices change between inside and outside where a tet is still
+/// below the target (repair.h).
 ///
 /// The result is that of universal_mesh(): omega_h of the chosen inside vertices, with the background's ids. The same
 /// bytes for any number of threads. psi must be thread-safe. Reports the steps "project", "relax" and "repair". \pre
@@ -43,7 +44,7 @@ ChosenSubmesh classified_submesh(const BackgroundMesh& background, ImplicitFunct
 /// What the mesh of one psi leaves to that of the next, in the same background mesh.
 struct FastMemory {
   IdSet negative{0};                                 ///< psi < 0
-  IdSet inside{0};                                   ///< as labelled
+  IdSet inside{0};                                   ///< as classified
   std::vector<std::pair<std::int64_t, Vec3>> moved;  ///< vertices off their background places, ascending
   std::size_t n_recalled = 0;                        ///< of these, how many the last mesh began with
 };

@@ -12,7 +12,7 @@ namespace umtet {
 
 struct FastParams {
   int layers = 2;  ///< of vertices behind the boundary that move; >= 1. One is too few, three gain nothing: mesh_bench
-  ClassificationParams labels;
+  ClassificationParams classification;
   ProjectionParams projection;
   SmoothingParams smoothing;
   /// In place of smoothing.margin, if that is greater, for a mesh that begins from the one before; >= 0. A ball that

@@ -23,18 +23,19 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kSlides = 3;  // lengths of a tangential step that are tried on the surface
-// Over-relaxation. With 1 and 1 the 1 % quantile of Q is .002 (sphere) to .005 (T6) lower at 100k tets, after as many
-// solves; with 1.2 and 1.8, or 1.6 and 1.6, it is as with these within .001.
+// Over-relaxation: a step this many times Newton's is taken where it lowers the norm, too. As in successive
+// over-relaxation of linear systems the vertices then settle in fewer solves; 1 means none. The values are not
+// critical.
 constexpr double kInnerFactor = 1.4, kBoundaryFactor = 2;
-// A solve takes about a microsecond, handing a task to a thread a few.
+// A solve takes about a microsecond; to hand a task to a thread takes a few.
 constexpr std::size_t kSolvesPerTask = 32;
 constexpr std::size_t kWorthThreads = 64;
 constexpr std::size_t kSolvesPerPoll = 1 << 12;
 constexpr std::size_t kTetsPerTask = 1 << 12;  // some ten nanoseconds each
 
-constexpr std::size_t kAhead = 2;  // solves: a ring is asked for before it is needed; of large meshes it is far away
+constexpr std::size_t kAhead = 2;  // solves: the ring of a vertex is prefetched before it is needed
 
-/// One solve. Reads the ring, changes nothing.
+/// One check and, where it is needed, one solve. Reads the ring, changes nothing.
 class Visitor {
  public:
   Visitor(const PNormSmoother& smoother, ImplicitFunctionRef psi, const SmoothingParams& params)
@@ -179,7 +180,7 @@ PNormSmoother::PNormSmoother(ActiveLayer& layer)
     faces_of_[i] = {n_faces, layer.ring_begin[i + 1] - layer.ring_begin[i]};
     n_faces += faces_of_[i].n;
   }
-  // Not set to zero by one thread first: pages are given out where they are written.
+  // Not initialised: each thread touches first, and so gets near its own memory, the pages that it fills.
   faces_ = std::make_unique_for_overwrite<Triangle[]>(static_cast<std::size_t>(n_faces));
   const auto list_faces = [&](const tbb::blocked_range<std::size_t>& range) {
     for (std::size_t k = range.begin(); k != range.end(); ++k) {

@@ -33,7 +33,7 @@ double normal_cosine(ImplicitFunctionRef psi, const Vec3& a, const Vec3& b, cons
     value = psi.value(y, g);
     ++evaluations;
   }
-  // At sharp background boundaries the closest point may be another one, with another normal.
+  // At a sharp edge of the domain the steps above may end at a point that is not the closest one.
   if (cosine() < kSure) {
     const ClosestPoint foot = closest_point(psi, centroid, h, {});
     evaluations += static_cast<std::size_t>(foot.iterations) + 1;

@@ -17,8 +17,8 @@ namespace umtet {
 double normal_cosine(ImplicitFunctionRef psi, const Vec3& a, const Vec3& b, const Vec3& c, double h,
                      std::size_t& evaluations);
 
-/// A face with a smaller normal_cosine() is misaligned: it wants mending. Below 0 it is folded over: the certificate
-/// fails.
+/// A face with a smaller normal_cosine() is misaligned: more than 60 degrees from psi = 0, and repair works on it.
+/// Below 0 it is folded over: the certificate fails.
 inline constexpr double kMisalignedCosine = .5;
 
 /// The boundary face of a tet of omega_h, counter-clockwise seen from outside: that of its three outside vertices.
@@ -35,9 +35,9 @@ struct PatchState {
   std::size_t misaligned = 0, folded_over = 0;  ///< faces; folded over ones are misaligned, too
 
   bool is_perfect() const { return below_target == 0 && misaligned == 0; }
-  /// Neither of the five is worse; what is above the target, or above kMisalignedCosine, is good enough. Where fewer
-  /// faces are misaligned, and no more folded over, the worst of them may be misaligned more: a thin edge of a scan
-  /// goes from six misaligned faces to three, two and one, and the worst by way of cos .01 from .04 to .15.
+  /// None of the five is worse; what is above the target, or above kMisalignedCosine, is good enough. Where fewer faces
+  /// are misaligned, and no more folded over, the worst of them may be misaligned more: on the way from several
+  /// misaligned faces to none the last one often gets worse before it gets better.
   bool is_no_worse_than(const PatchState& other) const;
   /// Fewer folded over faces, or as many and fewer misaligned faces and below target tets, or as many of all and better
   /// worst ones.

@@ -20,11 +20,13 @@ namespace {
 using detail::FlipTrials;
 using detail::TetIds;
 
-// Besides max_patches: so many, and one for so many tets of the layer. A coarse perforated plate of 5092 tets is mended
-// by its 1724th patch, and until then checks no better than lenses that never are: one of 1600 tets took 3000.
+// At most kFewPatches patches are tried, and one more for every kTetsPerPatch tets of the layer (and never more than
+// max_patches). In a small mesh where h is too large for the body, most tets are bad and no flip mends them: without
+// this bound repair would take longer than all other steps.
 constexpr std::size_t kFewPatches = 600, kTetsPerPatch = 4;
-// So many tets are mended at once, while so many wait for one near them. The context is polled before each round:
-// the costliest tets take a tenth of a second each, and one thread may have to mend them all.
+// kAtOnce tets are mended at once, while at most kMostWaiting wait for one near them. The same for any number of
+// threads, as the result depends on it. The context is polled before each round: a tet may take a tenth of a second, so
+// that larger rounds would answer too late where one thread works on all of a round.
 constexpr std::size_t kAtOnce = 2, kMostWaiting = 64;
 
 /// Of a tiling, as a share of its mean edge.
@@ -46,11 +48,12 @@ double longest_edge(const Tiling& tiling, const TilingTables& tables) {
 class Repair {
  public:
   Repair(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
-         const ClassificationParams& labels, const RepairParams& params, const LatticeActiveLayer& layer, IdSet& inside)
+         const ClassificationParams& classification, const RepairParams& params, const LatticeActiveLayer& layer,
+         IdSet& inside)
       : background_(background),
         links_(links),
         psi_(psi),
-        labels_(labels),
+        classification_(classification),
         params_(params),
         layer_(layer),
         inside_(inside),
@@ -78,14 +81,14 @@ class Repair {
   const BackgroundMesh& background_;
   const std::vector<LinkTopology>& links_;
   ImplicitFunctionRef psi_;
-  const ClassificationParams& labels_;
+  const ClassificationParams& classification_;
   const RepairParams& params_;
   const LatticeActiveLayer& layer_;
   IdSet& inside_;
   const std::size_t most_patches_;
   double target_;
   detail::Positions positions_;
-  std::deque<FlipTrials> trials_;  ///< one for each tet of a round, with labels as in inside_
+  std::deque<FlipTrials> trials_;  ///< one for each tet of a round, each with a copy of inside_
   std::vector<TetIds> given_up_;
   std::set<std::int64_t> hopeless_;  ///< vertices of tets that nothing helped
   std::vector<Bad> todo_;            ///< from next_ on
@@ -100,7 +103,7 @@ class Repair {
 /// False for one that is all right, or given up.
 bool Repair::is_worth_trying(const TetIds& tet) {
   if (!trials_.front().is_bad(tet)) return false;
-  // Where nothing helped, it would not help the tets that share a vertex either: they see the same labels.
+  // Where no flip helped, none would help the tets that share a vertex either: their candidates are the same.
   const bool hopeless = std::any_of(tet.begin(), tet.end(), [&](std::int64_t v) { return hopeless_.count(v) != 0; });
   if (!hopeless && report_.tries < most_patches_) return true;
   given_up_.push_back(tet);
@@ -226,18 +229,18 @@ RepairReport Repair::operator()(const Context& context) {
   report_.bad_before = todo_.size();
   if (todo_.empty()) return std::move(report_);
   for (std::size_t k = 0; k < kAtOnce; ++k) {
-    trials_.emplace_back(background_, links_, psi_, labels_, params_, positions_, inside_);
+    trials_.emplace_back(background_, links_, psi_, classification_, params_, positions_, inside_);
   }
-  // Seen from one vertex of a tet, flips are within two edges, what moves is within reach + 2; labels and places are
-  // read one edge farther.
+  // Seen from one vertex of a tet, flips are within two edges, and what moves is within reach + 2; the classification
+  // and positions are read one edge farther.
   far_ = (2 * params_.reach + 5) * longest_edge(background_.tiling(), background_.tiling_tables()) * background_.h();
   mend(context);
   if (params_.sharper) {
     again(params_.target);
     mend(context);
   }
-  if (params_.less_asked > 0) {
-    again(params_.target - params_.less_asked);
+  if (params_.target_step > 0) {
+    again(params_.target - params_.target_step);
     mend(context);
   }
   report_.given_up = given_up_.size();
@@ -263,7 +266,7 @@ std::vector<std::string> problems(const RepairParams& params) {
   };
   if (!(params.target > 0 && params.target < 1)) add("target", std::to_string(params.target), "in (0, 1)");
   if (params.reach < 1) add("reach", std::to_string(params.reach), ">= 1");
-  if (!(params.less_asked >= 0)) add("less_asked", std::to_string(params.less_asked), ">= 0");
+  if (!(params.target_step >= 0)) add("target_step", std::to_string(params.target_step), ">= 0");
   if (params.max_tries < 0) add("max_tries", std::to_string(params.max_tries), ">= 0");
   for (const std::string& problem : problems(params.projection)) list.push_back("projection." + problem);
   for (const std::string& problem : problems(params.smoothing)) list.push_back("smoothing." + problem);
@@ -271,14 +274,14 @@ std::vector<std::string> problems(const RepairParams& params) {
 }
 
 RepairReport repair(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
-                    const ClassificationParams& labels, const RepairParams& params, const LatticeActiveLayer& layer,
-                    IdSet& inside, const Context& context) {
+                    const ClassificationParams& classification, const RepairParams& params,
+                    const LatticeActiveLayer& layer, IdSet& inside, const Context& context) {
   std::string all;
-  for (const auto& list : {problems(labels), problems(params)}) {
+  for (const auto& list : {problems(classification), problems(params)}) {
     for (const std::string& problem : list) all += (all.empty() ? "" : "; ") + problem;
   }
   if (!all.empty()) throw std::invalid_argument(all);
-  return Repair(background, links, psi, labels, params, layer, inside)(context);
+  return Repair(background, links, psi, classification, params, layer, inside)(context);
 }
 
 }  // namespace umtet

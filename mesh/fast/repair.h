@@ -28,7 +28,7 @@ struct RepairParams {
   /// What nothing mends then is tried once more against a target so much lower; >= 0, 0: it is not. Where a body is
   /// thinner than h, a tet above .82 may cost a fold next to it: of nine meshes of two scans (h in steps
   /// of .04 to .5 %) two had a folded over face with 0, and none has with .01.
-  double less_asked = .01;
+  double target_step = .01;
   bool slides = true;     ///< patches relax_tangentially() when all is mended: their smoothing has undone that
   double reach_out = .5;  ///< as ClassificationParams::reach_out: here a cost for distance is not needed, the mesh
                           ///< itself is looked at; >= 0
@@ -78,7 +78,7 @@ struct RepairReport {
 /// @param inside  receives the changes
 /// \throw std::invalid_argument naming every broken constraint, Cancelled
 RepairReport repair(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
-                    const ClassificationParams& labels, const RepairParams& params, const LatticeActiveLayer& layer,
-                    IdSet& inside, const Context& context = {});
+                    const ClassificationParams& classification, const RepairParams& params,
+                    const LatticeActiveLayer& layer, IdSet& inside, const Context& context = {});
 
 }  // namespace umtet

@@ -14,11 +14,11 @@
 namespace umtet {
 namespace {
 
-// A step reaches where the chords bend, not beyond: half of it brings psi's foot points out of reach of their edges.
+// In h: the chords are linear in a step only while the faces around stay much as they are.
 constexpr double kLongestStep = .25;
 constexpr int kTrials = 4;          // lengths of a step that are tried
-constexpr double kLeastGain = .01;  // of the sum: less is not worth a move
-constexpr double kDamping = .05;    // of the Gauss-Newton matrix, relative to its trace
+constexpr double kLeastGain = .01;  // a move has to lower the sum by this share: by 1 %
+constexpr double kDamping = .05;    // added to the diagonal of the matrix, relative to its trace
 
 /// Gamma_h^+
 std::vector<Triangle> boundary_faces(const ActiveLayer& layer, const std::vector<std::uint8_t>& inside) {
@@ -54,7 +54,9 @@ struct Chords {
   double most = 0;  ///< e in h
   double least_cosine = 1;
   Eigen::Vector2d gradient = Eigen::Vector2d::Zero();  ///< of sum / 4, tangential, per h
-  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();    ///< Gauss-Newton
+  /// Matrix of the normal equations of reweighted least squares, sum of e^2 (h grad e)(h grad e)^T: each e has the
+  /// weight e^2 that it has now, as if e^4 were e^2 times a constant.
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
 };
 
 class Visitor {
@@ -139,7 +141,8 @@ class Visitor {
   double least_f_, least_f_near_;
 };
 
-// A face that crosses a ridge misses psi = 0 by no less at its middle than a third of what its edges do.
+// A quick test of the middle of a face alone. Where e at the middles of the edges is e_1, e_2, e_3 and psi a quadratic,
+// it is 4/9 (e_1 + e_2 + e_3) at the middle of the face: more than a third of the greatest, if all have one sign.
 constexpr double kMiddleOverEdge = 1. / 3;
 
 /// Is psi = 0 farther from the face than `least`, at its middle or those of its edges?

@@ -14,11 +14,12 @@
 namespace umtet {
 namespace {
 
-// Six sweeps instead of three save smoothing a fiftieth of its visits, which is what they cost (drifting_ball).
+// More sweeps save smoothing about what they cost (mesh_bench --benchmark_filter=drifting_ball).
 constexpr int kSweeps = 3;
 // psi = 0 crosses an edge at every positive vertex, and no tiling has longer ones, in h: farther feet are elsewhere.
 constexpr double kFarthestFoot = 1.5;
-// Smoothing slides the feet anyway: what counts is that they are on psi = 0, which takes no Hessian.
+// Of ClosestPointParams, if that is less. A vertex has to be on psi = 0 to ClosestPointParams::tol; along the surface
+// smoothing moves it anyway, so .01 h will do there, which the damped iteration without Hessians reaches soon.
 constexpr double kFootTol = 1e-2;
 constexpr std::size_t kFeetPerPoll = kValuesPerPoll / 8;
 
@@ -110,7 +111,8 @@ Vec3 Start::mean_around(int v, const std::vector<Vec3>& u) const {
   return sum / (3 * (end - begin));
 }
 
-/// Once, from all of these at rest: a second sweep saves a hundredth of smoothing's visits, which it costs itself.
+/// Recalled inner vertices move as those around them do in the mean. One sweep, in ascending order: a second one saves
+/// smoothing no more than it costs.
 void Start::follow_boundary() {
   std::vector<Vec3> moved(layer_.V.size(), Vec3::Zero());
   for (const auto& [v, from] : boundary_from_) moved[v] = layer_.V[v] - from;

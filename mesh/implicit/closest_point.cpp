@@ -12,9 +12,10 @@ namespace {
 // by their magnitudes, at least this: the step stays a descent direction and of sensible length near a centre of
 // curvature.
 constexpr double kLeastStiffness = .1;
-// A step that does not shrink the residual by this factor was too long if the slide has turned round, else too short.
+// Where a step does not shrink the residual to this share, it was too long if the slide has changed its direction, and
+// too short if not.
 constexpr double kContraction = .5;
-// Steps along the surface stay within this many lengths: psi's second-order picture holds no farther.
+// Steps along the surface, in lengths: farther off, the second-order model of psi does not hold.
 constexpr double kMaxSlide = .5;
 constexpr double kLeastDamping = 1. / 64;
 constexpr double kRecovery = 1.5;
@@ -109,9 +110,9 @@ ClosestPoint damped_or_newton(ImplicitFunctionRef psi, const Vec3& x, double len
     if (result.iterations > 2) {
       const bool shrinks = residual <= kContraction * last_residual;
       if (!shrinks && f.slide.dot(last_slide) < 0) {
-        omega = std::max(.5 * omega, kLeastDamping);  // to and fro
+        omega = std::max(.5 * omega, kLeastDamping);  // oscillates
       } else if (!shrinks || omega < 1) {
-        omega = std::min(kRecovery * omega, newton ? 1. : kMostRelaxation);  // creeping, or out of the rough
+        omega = std::min(kRecovery * omega, newton ? 1. : kMostRelaxation);  // creeps, or may be a full step again
       }
     }
     last_slide = f.slide;
@@ -139,8 +140,8 @@ bool land(ImplicitFunctionRef psi, double tol, double length, Vec3& y, int& eval
 }
 
 /// Minimises |x - y|^2 over the surface with a line search: every foot accepted lies on psi = 0 and is nearer to x than
-/// the one before, so this settles where the iterations above swing or creep (curvature times distance near 1). It asks
-/// for ten times the evaluations, and is needed by one positive vertex in a thousand.
+/// the one before, so this settles where the iterations above oscillate or creep (curvature times distance near 1). It
+/// takes about ten times the evaluations and is seldom needed.
 ClosestPoint descend(ImplicitFunctionRef psi, const Vec3& x, double length, const ClosestPointParams& params) {
   ClosestPoint result{x};
   const bool newton = params.method == ClosestPointMethod::Newton && psi.has_hessian();
@@ -164,7 +165,7 @@ ClosestPoint descend(ImplicitFunctionRef psi, const Vec3& x, double length, cons
     for (; step > 1e-6 && !moved; step /= 2) {
       Vec3 trial = result.point + step * z;
       if (!land(psi, params.tol, length, trial, result.iterations)) continue;
-      // Half of what the slope promises would be asked for in the plane; the surface bends, so a little is enough.
+      // Armijo's condition with a small constant: the surface bends, so less is gained than in the tangent plane.
       moved = (x - trial).squaredNorm() <= to_x.squaredNorm() * (1 + 1e-15) - 1e-4 * step * f.slide.dot(z);
       if (moved) result.point = trial;
     }

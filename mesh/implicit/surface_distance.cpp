@@ -72,8 +72,8 @@ class NearestTriangle {
   std::size_t size() const { return full() ? 1 : 0; }
   bool full() const { return best_ < std::numeric_limits<double>::infinity(); }
   double worstDist() const { return worst2_; }
-  /// @param centroid2  squared distance to the centroid. The tree asks worstDist() once a leaf; within one, most
-  ///                   triangles are out of their own reach.
+  /// @param centroid2  squared distance to the centroid. The tree calls worstDist() once a leaf; within one, most
+  ///                   triangles are farther away than their own reach allows.
   bool addPoint(double centroid2, std::uint32_t k) {
     const CentredTriangle& t = triangles_[k];
     const double near = best_ + t.reach;

@@ -36,7 +36,7 @@ struct CutEdge {
   bool on_wall = false;
 };
 
-/// Nodes of one layer k: values, labels of inside pieces, and the ids of the cut edges that start there.
+/// Nodes of one layer k: values, numbers of inside pieces, and the ids of the cut edges that start there.
 struct Layer {
   std::vector<double> value;
   std::vector<int> inside_label;             ///< -1 outside
@@ -64,7 +64,7 @@ class Sweep {
     const int low = from & to, high = from | to;
     return layer(k + (low >> 2)).cut_edge[index(i + (low & 1), j + (low >> 1 & 1))][high & ~low];
   }
-  /// Calls visit(j) for every row of a layer; rows of some microseconds are too short to ask at each.
+  /// Calls visit(j) for every row of a layer; rows take some microseconds, too few to poll at each.
   template <class F>
   void for_each_row(const F& visit);
   void evaluate(int k);

@@ -29,7 +29,7 @@ struct ZeroSetTopology {
   std::size_t n_inside_components = 0;       ///< of {psi < 0} along the edges of the grid
   bool touches_box = false;                  ///< psi < 0 somewhere on the wall: the box does not hold the domain
   long euler_characteristic = 0;             ///< sum over components
-  double spacing = 0;                        ///< the one used, <= the one asked for
+  double spacing = 0;                        ///< the one used, <= that of the call
   std::array<int, 3> n_cells = {0, 0, 0};
   std::size_t n_not_finite = 0;  ///< nodes where psi is not a finite number; they count as outside
   std::vector<Vec3> cut_points;  ///< where psi = 0 on the cut edges (linear), component by component
@@ -56,9 +56,9 @@ using FarFromZero = std::function<bool(const Vec3& x)>;
 /// Cost: one value of psi per node (threads over rows of a slab; psi must be thread-safe), memory two slabs plus about
 /// 70 bytes per cut edge. The result does not depend on the number of threads.
 /// \throw std::invalid_argument  an empty or unbounded box, spacing <= 0
-/// @param context  asked every few thousand nodes
+/// @param context  polled every few thousand nodes
 /// @param far         where it says so psi is not evaluated: it has the sign of the node before. The result is the same
-///                    (but n_not_finite counts only nodes where psi was asked).
+///                    (but n_not_finite counts only nodes where psi was evaluated).
 /// \throw std::length_error      more than 1e9 cells along an axis, 2^31 nodes in a slab or 2^31 cut edges
 /// \throw Cancelled
 ZeroSetTopology zero_set_topology(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spacing,

@@ -19,8 +19,7 @@ namespace umtet {
 namespace {
 
 // Samples of Alg. 3 reach this far, in background edges; the paper leaves its "representative mesh size" open. A slide
-// of half an edge to a whole one inverts a tet of the ring, so the best place is hardly ever beyond half an edge:
-// samples there would be lost, and they lie closer together here.
+// of half an edge to a whole one inverts a tet of the ring, so samples beyond half an edge would be wasted.
 constexpr double kSampleReach = .5;
 constexpr std::size_t kProjectionsPerTask = 64;
 
@@ -83,7 +82,7 @@ bool Run::fail(UmStatus status, const UmEvidence& evidence) {
   return false;
 }
 
-/// @param n_rounds  done of those that cost alike: the projection passes, and the improvement of the boundary
+/// @param n_rounds  rounds that are done; projection passes and iterations at the boundary cost about the same
 void Run::report(const char* step, double n_rounds) const {
   context_.report(step, n_rounds / (params_.projection_passes + 1));
 }

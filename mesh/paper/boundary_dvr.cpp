@@ -18,7 +18,7 @@ constexpr double kLeastTangent = .02;
 
 /// d_i                                                                    Alg. 3, step 48
 /// The first tangent of a vertex is a random vector projected onto the tangent plane, as in the paper. Each next one is
-/// misaligned by the golden section of a half-turn: any few successive tangents are well spread, where independent
+/// turned by the golden section of a half-turn: any few successive tangents are well spread, where independent
 /// random ones leave some vertex without a useful direction for many iterations.
 Vec3 tangent(const Vec3& normal, std::uint64_t seed, int iteration, std::int64_t vertex) {
   const Vec3 random = random_unit_vector(seed ^ kTangentStream, 0, vertex);

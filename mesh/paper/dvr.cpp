@@ -12,7 +12,7 @@
 namespace umtet {
 namespace {
 
-// A relaxation takes about a microsecond, handing a task to a thread a few.
+// A relaxation takes about a microsecond; to hand a task to a thread takes a few.
 constexpr std::size_t kRelaxationsPerTask = 16;
 constexpr std::size_t kWorthThreads = 64;
 
@@ -85,7 +85,7 @@ void RelaxationOrder::for_each(const std::function<bool(int)>& wants, const std:
 std::size_t dvr(MovingMesh& mesh, const RelaxationOrder& relaxed, std::span<const std::int64_t> background_vertex,
                 const DvrParams& params, int first_iteration, int n_iterations) {
   std::atomic<std::size_t> n_moves = 0;
-  // Only the axes return, so a vertex that stayed can be remembered only for them.
+  // Random directions never come back, so "stays where it is" is worth remembering for the axes only.
   const bool axes = params.directions == DirectionRule::AxesInTurn;
   for (int r = first_iteration; r < first_iteration + n_iterations; ++r) {
     const int axis = axes ? r % 3 : MovingMesh::kAnyDirection;

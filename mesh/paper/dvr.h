@@ -51,8 +51,8 @@ class RelaxationOrder {
   RelaxationOrder(const MovingMesh& mesh, std::vector<int> vertices);
 
   const std::vector<int>& vertices() const { return vertices_; }  ///< ascending
-  /// Calls relax(i) for every vertex that wants(i), in an order equivalent to ascending i. Whether a vertex wants is
-  /// asked when all it depends on have moved.
+  /// Calls relax(i) for every vertex that wants(i), in an order equivalent to ascending i. wants(i) is
+  /// called when all vertices that i depends on have moved.
   void for_each(const std::function<bool(int)>& wants, const std::function<void(int)>& relax) const;
 
  private:

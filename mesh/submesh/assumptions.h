@@ -15,7 +15,7 @@ struct BrokenAssumption {
   std::vector<bool> at_vertex;  ///< per vertex of omega_h, true if it belongs to one of them; empty if there is none
 
   bool holds() const { return count == 0; }
-  /// True if one of the vertices belongs to an offender.
+  /// True if one of the vertices belongs to a face or tet that breaks it.
   bool is_broken_at(std::span<const int> vertices) const;
 };
 

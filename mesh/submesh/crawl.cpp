@@ -18,9 +18,9 @@
 namespace umtet {
 namespace {
 
-// A seed within a few h of the boundary is a handful of edges away; a walk this long has lost its way.
+// Edges of a walk from a seed. One within a few h of the boundary needs a handful; a longer walk does not arrive.
 constexpr int kMaxWalk = 200;
-// From a cut edge a positively cut tet is one of the next few dozen cut tets.
+// Cut tets that are looked at from a cut edge on: a positively cut one is among the next few dozen.
 constexpr std::size_t kMaxCutTets = 2000;
 // Of the flood, some ten nanoseconds each.
 constexpr std::size_t kSolvesPerPoll = 1 << 16;
@@ -77,7 +77,7 @@ class Crawler {
   const BackgroundMesh& background_;
   ImplicitFunctionRef psi_;
   const Context& context_;
-  IdSet known_, inside_;  ///< vertices where psi was asked, and where it was negative
+  IdSet known_, inside_;  ///< vertices where psi was evaluated, and where it was negative
   IdSet positive_;        ///< positively cut tets gathered so far
   std::vector<std::int64_t> positive_list_;
   std::vector<std::int64_t> scratch_;

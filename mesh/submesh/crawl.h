@@ -20,8 +20,8 @@ struct Crawl {
 ///
 /// From each seed a local search follows psi to a positively cut tet; from there the positive faces are gathered, each
 /// from its neighbours across edges; then the interior is flooded from the inside vertices of the positively cut tets.
-/// The flood asks psi nothing: every tet at an inside vertex is in omega_h, and a vertex that the gathering did not
-/// meet is inside.
+/// The flood evaluates psi nowhere: every tet at an inside vertex is in omega_h, and a vertex that the gathering did
+/// not meet is inside.
 ///
 /// @param seeds  at least one point within a few h of every component of the boundary, cavities included
 /// @return equal to find_submesh() bit for bit when every component has its seed and every outside vertex next to an

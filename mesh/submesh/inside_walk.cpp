@@ -56,7 +56,7 @@ std::size_t InsideWalk::restart(ImplicitFunctionRef psi, const Context& context)
 
 std::size_t InsideWalk::update(ImplicitFunctionRef psi, const std::vector<std::int64_t>& more, const Context& context) {
   std::vector<std::int64_t> changed, front;
-  PsiValues asked;
+  PsiValues evaluated;
   const auto add = [&](std::int64_t v) {
     if (seen_.test(v)) return;
     seen_.insert(v);
@@ -65,21 +65,21 @@ std::size_t InsideWalk::update(ImplicitFunctionRef psi, const std::vector<std::i
   for (const std::int64_t v : boundary_) add(v);
   for (const std::int64_t v : more) add(v);
   const auto forget = [&] {
-    for (const PsiValue& at : asked) seen_.erase(at.vertex);
+    for (const PsiValue& at : evaluated) seen_.erase(at.vertex);
     for (const std::int64_t v : front) seen_.erase(v);
   };
   try {
     while (!front.empty()) {
-      const std::size_t first = asked.size(), n = front.size();
-      for (const std::int64_t v : front) asked.push_back({v, 0, Vec3::Zero()});
+      const std::size_t first = evaluated.size(), n = front.size();
+      for (const std::int64_t v : front) evaluated.push_back({v, 0, Vec3::Zero()});
       polled_parallel_for(n, kValuesPerPoll, context, [&](std::size_t k) {
-        PsiValue& at = asked[first + k];
+        PsiValue& at = evaluated[first + k];
         at.value = psi.value(background_.position(at.vertex), at.gradient);
       });
       front.clear();
       for (std::size_t k = first; k < first + n; ++k) {
-        const std::int64_t v = asked[k].vertex;
-        if ((asked[k].value < 0) == inside_.test(v)) continue;
+        const std::int64_t v = evaluated[k].vertex;
+        if ((evaluated[k].value < 0) == inside_.test(v)) continue;
         changed.push_back(v);
         for_each_neighbour(v, add);
       }
@@ -89,16 +89,17 @@ std::size_t InsideWalk::update(ImplicitFunctionRef psi, const std::vector<std::i
     throw;
   }
   for (const std::int64_t v : changed) inside_.test(v) ? inside_.erase(v) : inside_.insert(v);
-  // Whoever is at the boundary now was there before, or has changed sides, or is a neighbour of one that has: asked.
+  // A vertex at the boundary now was there before, or has changed sides, or has a neighbour that has: psi was evaluated
+  // at all of these.
   forget();
   values_.clear();
-  for (const PsiValue& at : asked) {
+  for (const PsiValue& at : evaluated) {
     if (is_at_boundary(at.vertex)) values_.push_back(at);
   }
   std::sort(values_.begin(), values_.end(), [](const PsiValue& a, const PsiValue& b) { return a.vertex < b.vertex; });
   boundary_.clear();
   for (const PsiValue& at : values_) boundary_.push_back(at.vertex);
-  return asked.size();
+  return evaluated.size();
 }
 
 }  // namespace umtet

@@ -16,12 +16,12 @@ class InsideWalk {
  public:
   explicit InsideWalk(const BackgroundMesh& background);
 
-  /// Asks psi at every vertex of the background. @return the number of values. \throw Cancelled
+  /// Evaluates psi at every vertex of the background. @return the number of values. \throw Cancelled
   std::size_t restart(ImplicitFunctionRef psi, const Context& context = {});
-  /// Asks at the vertices with a neighbour on the other side, at `more`, and from all that have changed sides at their
-  /// neighbours, and so on: right wherever a connected set of vertices that change sides touches one of them.
-  /// When it throws, it stays as it was. @param more  ids. @return the number of values. \throw Cancelled, and
-  /// what psi throws
+  /// Evaluates psi at the vertices with a neighbour on the other side, at `more`, and at the neighbours of every vertex
+  /// that has changed sides. A change is found wherever a connected set of vertices that change sides touches a vertex
+  /// of the first two kinds. When it throws, it stays as it was. @param more  ids. @return the number of values. \throw
+  /// Cancelled, and what psi throws
   std::size_t update(ImplicitFunctionRef psi, const std::vector<std::int64_t>& more, const Context& context = {});
 
   const IdSet& inside() const { return inside_; }

@@ -70,7 +70,7 @@ IdSet inside_vertices(const BackgroundMesh& background, ImplicitFunctionRef psi,
     }
     evaluations += n;
   };
-  // A vertex's position costs as much as the cheapest psi: a thousandth of the time goes into questions.
+  // So often that a stop is prompt, and so seldom that polling takes a thousandth of the time.
   constexpr std::size_t kWordsPerPoll = 4 * kValuesPerPoll / 64;
   for (std::size_t begin = 0; begin < inside.n_words(); begin += kWordsPerPoll) {
     context.poll();

@@ -28,7 +28,7 @@ struct UmEvidence {
   std::int64_t background_vertex = -1;
   std::int64_t background_tet = -1;
   Vec3 where = Vec3::Zero();
-  std::size_t count = 0;  ///< how many offenders there are; the fields above describe the first
+  std::size_t count = 0;  ///< how many places break the rule; the fields above describe the first
   std::string what;
 };
 

@@ -48,7 +48,7 @@ ClassificationSource classification_source(const Parameters& parameters) {
 }
 
 BackgroundChoice::BackgroundChoice(const Parameters& parameters, const Domain& domain)
-    : tiling_(&a15()), labels_(classification_source(parameters)), walls_(parameters.mesh().box_walls) {
+    : tiling_(&a15()), source_(classification_source(parameters)), walls_(parameters.mesh().box_walls) {
   require_walls(parameters);
   const std::optional<fs::path> file = background_file(parameters);
   if (!file) tiling_ = &tiling_named(parameters.mesh().background);
@@ -60,7 +60,7 @@ BackgroundChoice::BackgroundChoice(const Parameters& parameters, const Domain& d
 }
 
 double BackgroundChoice::expected_tets(const Domain& domain, double h) const {
-  return umtet::expected_tets(*tiling_, domain.size(), h, labels_);
+  return umtet::expected_tets(*tiling_, domain.size(), h, source_);
 }
 
 BackgroundMesh BackgroundChoice::make(const Domain& domain, double h, std::int64_t n_tets, double allowed) const {

@@ -17,8 +17,8 @@ std::optional<std::filesystem::path> background_file(const Parameters&);
 /// \throw UsageError for mesh.box_walls with another background than a15, or mesh.complement without mesh.box_walls
 void require_walls(const Parameters&);
 
-/// Whose labels a mesh of these parameters has: fast mode chooses them in backgrounds that are a tiling and have no
-/// walls.
+/// What classifies the vertices in a mesh of these parameters: fast mode chooses in backgrounds that are a tiling and
+/// have no walls.
 ClassificationSource classification_source(const Parameters&);
 
 /// What --background and --box-walls ask for: a lattice or a box of any edge length, or a mesh that has its own.
@@ -41,7 +41,7 @@ class BackgroundChoice {
  private:
   std::optional<BackgroundMesh> given_;
   const Tiling* tiling_;  ///< that the number of tets is estimated by, for a file too
-  ClassificationSource labels_;
+  ClassificationSource source_;
   bool walls_;
 };
 

@@ -10,9 +10,9 @@
 namespace umtet {
 namespace {
 
-// See the header.
+// (|k1| + |k2|) h^2 / kFlatness is the largest distance of a face from psi = 0: see the header.
 constexpr double kFlatness = 6.8;
-// h settles in two or three rounds: each lets in at most one finer level of psi, and there are few.
+// Each round lets in at most one finer level of psi, and there are few levels.
 constexpr int kRounds = 8;
 
 /// max |k1| + |k2| over the pieces that are meshed, each curvature at most `cap`.

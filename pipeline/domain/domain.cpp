@@ -10,14 +10,14 @@
 
 namespace umtet {
 
-// The seam between the two libraries: neither includes the other.
+// Here the two libraries meet: neither includes the other.
 static_assert(JointlyEvaluated<LevelSet>);
 static_assert(JointlyEvaluated<Domain>);
 static_assert(JointlyEvaluated<Expression>);
 
 namespace {
 
-// Levels down to this many edges count.
+// Levels of psi with a smaller spacing, in edges of the mesh, are left out: faces fold over detail they cannot follow.
 constexpr double kLeastSpacing = .7;
 
 }  // namespace

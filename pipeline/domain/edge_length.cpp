@@ -19,19 +19,20 @@
 namespace umtet {
 namespace {
 
-// However flat the body is: with fewer than ten edges along it there is little left of its shape.
+// Of h, for mesh.max_deviation: with fewer than ten edges along its diagonal there is little left of a shape, however
+// flat it is.
 constexpr double kMostOfDiagonal = .1;
-// Boundary faces start to fold where the body or a gap is thinner than about two edges; one body in a hundred samples
-// may be thinner.
+// Boundary faces start to fold where the body or a gap is thinner than about two edges: h is the thickness that a share
+// kThinShare of the samples falls below, over kEdgesAcross.
 constexpr double kEdgesAcross = 2.2;
-// Labels and repair make clean meshes of 1.9 edges across, too, with more work and less room: where 2.2 ask for more
-// than this many tets, 1.9 will do (armadillo: 1.4 M instead of 2.1 M, no fold).
+// Where that makes more than kManyTets tets, fewer edges across have to do: classification and repair mend what comes
+// out wrong down to about 1.9, and (1.9 / 2.2)^3 is two thirds of the tets.
 constexpr double kLeastEdgesAcross = 1.9;
 constexpr std::int64_t kManyTets = 1'150'000;
 constexpr double kThinShare = .01;
-// A millionth of an edge: quality and folds do not feel it.
+// The most that rounding may move a vertex, in edges: far less than anything that counts in a mesh.
 constexpr double kMostRounding = 1e-6;
-// Enough for a percentile.
+// 200 of them fall below the first percentile.
 constexpr std::size_t kThicknessSamples = 20000;
 
 /// \throw MeshingImpossible when psi < 0 at none of the places where it is sampled

@@ -14,10 +14,10 @@ namespace {
 
 // Values of psi a count of pieces may cost: about ten seconds.
 constexpr double kMaxGridNodes = 5e7;
-// Fewer samples do not make a surface: stage one asks for as many.
+// Fewer samples do not make a surface: read_scan() refuses fewer, too.
 constexpr std::size_t kFewestSamples = 10;
-// Bubbles around outliers are as large as the lattice makes them; in a cloud dense against the lattice even a dozen
-// outliers in one place are few for their area.
+// A piece needs this share of the samples per area of the piece that most samples back. A false piece around outliers
+// has an area of some cells of the lattice, whatever the number of outliers: few samples for its area.
 constexpr double kLeastDensity = .02;
 
 /// For each piece the number of samples that are nearest to it and within `radius`.

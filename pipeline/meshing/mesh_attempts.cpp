@@ -9,13 +9,13 @@
 namespace umtet {
 namespace {
 
-// Whether a face folds depends on how psi = 0 falls between the vertices, too: of the scorpion, .0472 fails by one
-// fold, and .974, .979, .980, .985 and .989 of it pass. So another such h comes before twice the tets.
+// Whether a face folds depends also on how psi = 0 falls between the vertices of the background, which another h
+// changes. So one that is hardly smaller is tried before .8 h, which makes twice the tets.
 constexpr double kNearby = .985;
-// Down to .51 h, 7.5 times the tets.
+// The last of them is .51 h, with 7.5 times the tets.
 constexpr int kRefinements = 3;
 constexpr double kRefinement = .8;
-// A last h nearer to the one before than this is not worth a mesh.
+// A last h that is more than this share of the one before is not tried: it would make much the same mesh.
 constexpr double kWorthTrying = .95;
 
 bool may_improve(const MeshAttempt& a) {

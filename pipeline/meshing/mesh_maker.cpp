@@ -20,12 +20,12 @@ namespace {
 
 // Another h is tried for the number of tets that was asked for when it is missed by more than this.
 constexpr double kTetsTolerance = .1;
-// So often; then the h that missed it least is taken.
+// This often; then the h that missed it least is taken.
 constexpr int kMostMisses = 4;
-// Pieces of psi = 0 are looked for on a grid of h and, where there is none, on so many grids twice as fine as the one
-// before.
+// Pieces of psi = 0 are looked for on a grid of h and, where there is none, on this many more grids, each of half the
+// spacing.
 constexpr int kFinerGrids = 3;
-// Parts of an attempt, about as their times: where each begins.
+// Where each part of an attempt begins, as a share of its time.
 constexpr double kPieces = .05, kChoice = .1, kFit = .2, kCertificate = .9, kCurving = .95;
 
 void take(std::optional<std::string> reason, std::vector<std::string>& reasons) {

@@ -41,7 +41,7 @@ double min_feature_size(const Domain& domain, const UmResult& result, double h, 
   return t.empty() ? 0 : *std::min_element(t.begin(), t.end());
 }
 
-// So many samples, and this share of them, have to be far from the mesh before it is said to lack something.
+// At least this many samples, and this share of all, have to be far from the mesh before it is said to lack something.
 constexpr std::size_t kFewSamples = 10;
 constexpr double kSmallShare = 1e-3;
 
@@ -77,7 +77,7 @@ SampleDistances distances_of_samples(const Domain& domain, std::vector<double> d
   return {.noise = domain.noise, .rms = rms(d), .max = d.back(), .p99 = quantile(d, .99)};
 }
 
-// Halving the spacing is worth its cost if it leaves at least this much of a refinement within the nodes allowed.
+// A count is repeated only if the bound on nodes lets the new spacing be less than this share of the former one.
 constexpr double kWorthRepeating = .9;
 
 /// What psi = 0 has, and how the mesh differs from it, if it does.

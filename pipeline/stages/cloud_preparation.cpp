@@ -16,7 +16,7 @@ namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kFewestPoints = kFewestSurveyed;  // the level set asks for the noise
+constexpr std::size_t kFewestPoints = kFewestSurveyed;  // the fit needs an estimate of the noise
 
 /// Three numbers a line, '#' begins a comment.
 std::vector<Vec3> read_viewpoints(const fs::path& file) {

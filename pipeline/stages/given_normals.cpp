@@ -8,7 +8,7 @@
 namespace umtet {
 namespace {
 
-// Noise and corners leave more than this of the given normals in agreement with their neighbours.
+// Share of normals that agree with their neighbours: noise and sharp edges alone do not bring it below this.
 constexpr double kLeastAgreed = .9;
 
 }  // namespace

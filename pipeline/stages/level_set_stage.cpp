@@ -9,7 +9,11 @@
 #include "pipeline/case/interrupt.h"
 #include "pipeline/case/memory.h"
 #include "pipeline/meshing/library_params.h"
+<<<<<<< HEAD
 #include "pipeline/reports/stage_reports.h"
+=======
+#include "pipeline/meshing/stage_reports.h"
+>>>>>>> words
 #include "pipeline/stages/given_normals.h"
 #include "pipeline/stages/stages.h"
 #include "reconstruct/cloud/cloud_neighbours.h"
@@ -30,12 +34,13 @@ OrientedPointCloud take_cloud(const StageContext& context) {
   }
 }
 
-// Clean clouds oppose by a fraction of a per cent; a tenth is a patch turned over, or every tenth normal.
+// Share of normals that may point against grad psi. Noise and sharp edges oppose single ones; a tenth means that a
+// patch of them is turned over.
 constexpr double kMostOpposed = .1;
 
 /// Distances between opposed samples; none where none face one another.
 std::optional<std::array<double, 3>> thickness_percentiles(const OrientedPointCloud& cloud, const NeighbourTree& tree) {
-  // A ray through half a million samples takes 80 us; of 2000 rays the hundredth part is 20.
+  // 20 of them fall below the first percentile, and all together take a small part of a second.
   constexpr std::size_t kRays = 2000;
   const std::vector<double> t = thicknesses(cloud, tree, kRays);
   if (t.empty()) return std::nullopt;

@@ -81,7 +81,8 @@ void MeshStage::refuse(const UmResult& result, double h) {
   throw MeshingImpossible(message);
 }
 
-// A smaller h lets detail in that may be thinner still; at most so often, and each time at least by a tenth.
+// A smaller h lets detail of psi in that may be thinner still: h falls at most kThinRounds times, at least to kThinStep
+// of itself each time.
 constexpr int kThinRounds = 8;
 constexpr double kThinStep = .9;
 

@@ -23,7 +23,8 @@ constexpr std::size_t kNeighbours = Neighbourhoods::kDefault;
 // there are some 30.
 constexpr double kPlaneReach2 = 1.44;
 constexpr std::size_t kMostInPlane = 128;
-// Links of the graph of pieces: the 4th neighbour is one lattice step away, and gaps of scans are a few of them.
+// Two points are linked, in the graph whose components are the pieces, if they are nearer than kLink times the distance
+// to their 4th neighbour: one step on a square lattice. Wider gaps part pieces.
 constexpr std::size_t kSpacingNeighbour = 4;
 constexpr double kLink = 3;
 // A crowd is first looked for among every 6th point, 54 of them where it is suspicious and 18 on a surface. What has
@@ -149,7 +150,7 @@ std::vector<std::uint32_t> maybe_crowded(const Surroundings& cloud, std::size_t 
 std::vector<std::uint8_t> outliers(const Surroundings& cloud, const CleaningParams& params) {
   const std::vector<Vec3>& points = cloud.points;
   std::vector<std::uint8_t> drop(points.size(), 0);
-  if (points.size() <= 9 * kNeighbours) return drop;  // too few to speak of a density
+  if (points.size() <= 9 * kNeighbours) return drop;  // too few for a density
   const NeighbourTree& tree = *cloud.tree;
   const auto suspicious = static_cast<std::size_t>(params.suspicious_crowd * 9 * kNeighbours);
   const std::vector<std::uint32_t> open = maybe_crowded(cloud, suspicious);
@@ -227,7 +228,7 @@ std::vector<std::uint8_t> small_components(const Surroundings& cloud, const Clea
                      spacings.end());
     const double reach2 =
         params.small_component_distance * params.small_component_distance * spacings[spacings.size() / 2];
-    // Alone, or with other small_components only: does a ball around any member hold a point of something larger?
+    // Alone, or with other small components only: does a ball around any member hold a point of something larger?
     bool is_far = true;
     for (std::size_t m = 0; m < members[root].size() && is_far; ++m)
       cloud.tree->within(cloud.points[members[root][m]], reach2, [&](std::uint32_t j, double) {
@@ -278,7 +279,7 @@ CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params, Ne
   };
   if (left.has_duplicates()) report.n_duplicates = drop(later_duplicates(left.points));
   if (params.outliers) {
-    // A second look where there was something: junk beside junk looks less alone.
+    // A second pass where the first has dropped something: outliers beside each other hide one another from the first.
     for (int pass = 0; pass < 2; ++pass) {
       const std::size_t n_dropped = drop(outliers(left, params));
       if (n_dropped == 0) break;

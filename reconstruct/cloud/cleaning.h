@@ -14,7 +14,7 @@ struct CleaningParams {
   double suspicious_crowd = 3;  ///< times the points around it that its spacing speaks of: off its plane too? > 1
   double certain_crowd = 20;    ///< an outlier wherever it is; >= suspicious_crowd
   std::size_t small_component_points =
-      100;  ///< a small_component has fewer points than this, and less than a hundredth of the cloud,
+      100;  ///< a small component has fewer points than this, and less than a hundredth of the cloud,
   double small_component_distance = 10;  ///< and is this many of its own spacings from the rest; > 1
 };
 std::vector<std::string> problems(const CleaningParams&);

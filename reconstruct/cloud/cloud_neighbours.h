@@ -12,8 +12,8 @@ namespace umtet {
 struct NeighbourDistances {
   std::vector<double> nearest;      ///< d_1: to the nearest other place, model units
   std::vector<double> mean_square;  ///< (d_1^2 + ... + d_k^2) / k, model units squared
-  int k = 0;                        ///< neighbours in mean_square: as asked, or places - 1 where there are not as many
-  std::vector<int> multiplicity;    ///< how many points of the cloud share the place of this one; >= 1
+  int k = 0;  ///< neighbours in mean_square: the k of the call, or places - 1 where there are not as many
+  std::vector<int> multiplicity;  ///< how many points of the cloud share the place of this one; >= 1
 };
 
 /// Exact nearest neighbours by a k-d tree, in double. The result does not depend on the number of threads.
@@ -36,8 +36,8 @@ inline constexpr int kAreaNeighbours = 12;
 /// Around sample i, pi d_j^2 / a is j on average for white noise, j + 1/2 for a lattice and j + 0.9 for Poisson discs.
 /// a_i takes j + 1/2 for all, so that pi (d_1^2 + ... + d_k^2) = a_i k (k + 2) / 2; with k = 12 the sum over a
 /// uniformly sampled surface is 7 % below its area for white noise and 5 % above it for Poisson discs. Summing over the
-/// rings, instead of taking d_k alone, averages out the shells of regular samplings. Points at one place share its
-/// area.
+/// rings, instead of taking d_k alone, averages over the steps in which the d_j of regular samplings rise. Points at
+/// one place share its area.
 ///
 /// @note At the edge of a hole half the disc is empty and a_i is up to twice too large. On sheets thinner than
 ///       d_k the other side is counted and a_i is up to twice too small.

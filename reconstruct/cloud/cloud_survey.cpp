@@ -48,7 +48,7 @@ double spacing_around(const NeighbourTree& tree, const Vec3& x) {
 /// Residual variance around a point. `near` is a buffer.
 double local_variance(const std::vector<Vec3>& points, const NeighbourTree& tree, const Vec3& x,
                       std::vector<Neighbour>& near) {
-  // From eight times the radius of 24 neighbours on (1500 of them) a cloud is not noisy but a cloud.
+  // The radius grows by sqrt 2 up to five times, to 5.7 times that of 24 neighbours.
   constexpr double kGrowth = std::numbers::sqrt2, kDeviations = 5;
   constexpr int kRadii = 6;
   near.resize(kNoiseNeighbours);
@@ -59,7 +59,7 @@ double local_variance(const std::vector<Vec3>& points, const NeighbourTree& tree
     const double r = growth * radius;
     tree.within(x, r * r, [&](std::uint32_t j, double distance2) { near.push_back({distance2, j}); });
     const double wider = local_quadric(points, x, near).variance;
-    // Three times as much from twice the area: that is not noise but what else is there.
+    // Noise has the same variance in every ball. Three times as much in twice the area is another sheet, or a bend.
     if (variance > 0 && wider > 3 * variance) break;
     variance = wider;
     if (r * r >= kDeviations * kDeviations * variance) break;
@@ -86,7 +86,7 @@ double noise_along_normals(const std::vector<Vec3>& points, const NeighbourTree&
 }
 
 double noise_along_normals(const OrientedPointCloud& cloud, const NeighbourTree& tree, std::size_t sampled_points) {
-  constexpr std::size_t kPairs = 8;  // with each sample: their differences reach twice as far as samples are apart
+  constexpr std::size_t kPairs = 8;  // of each sample and its nearest ones, which are up to two spacings away
   constexpr double kMostOfDistance = .5, kDeviationsOfMedian = 1.4826;
   const double of_quadrics = noise_along_normals(cloud.points, tree, sampled_points);
   if (cloud.normals.empty()) return of_quadrics;
@@ -113,7 +113,8 @@ std::vector<double> thicknesses(const OrientedPointCloud& cloud, std::size_t sam
 
 std::vector<double> thicknesses(const OrientedPointCloud& cloud, const NeighbourTree& tree,
                                 std::size_t sampled_points) {
-  // Wide enough not to slip between the samples of the other side, narrow enough not to meet what is beside it.
+  // Of the tube around a ray: a narrower one slips between the samples of the other side, a wider one meets samples
+  // beside the ray.
   constexpr double kWidthOverSpacing = 1.5;
   constexpr double kOpposed = -0.3;  // 107 degrees: walls that narrow by less than 73 degrees
   const std::vector<std::uint32_t> picked = evenly_picked(tree, sampled_points);
@@ -122,7 +123,7 @@ std::vector<double> thicknesses(const OrientedPointCloud& cloud, const Neighbour
     const std::uint32_t i = picked[p];
     const Vec3& n = cloud.normals[i];
     const double spacing = spacing_around(tree, cloud.points[i]);
-    if (!(spacing > 0)) {  // so many points at one place have no thickness
+    if (!(spacing > 0)) {  // all neighbours are at the same place
       met[p] = std::numeric_limits<double>::infinity();
       return;
     }

@@ -77,9 +77,8 @@ double noise_along_normals(const std::vector<Vec3>& points, const NeighbourTree&
 
 /// The same of samples with normals n_i, which tell noise from detail as fine as the samples are apart: on a smooth
 /// surface 1/2 (n_i + n_j) . (x_j - x_i) vanishes to third order, noise is in it sqrt 2 times. The lesser of the two,
-/// as long as that above is less than half the distance to the nearest sample: beyond, neighbours are picked by their
-/// noise. The armadillo has .066 distances instead of .155, spot_ascii .024 instead of .092; noise on smooth bodies
-/// reads as above, to some hundredths.
+/// as long as that above is less than half the distance to the nearest sample: beyond, the nearest samples are those
+/// whose noise happens to be alike, and their differences say too little.
 /// @param cloud  normals unit or zero, or none: as above
 double noise_along_normals(const OrientedPointCloud& cloud, const NeighbourTree& tree,
                            std::size_t sampled_points = 5000);

@@ -14,9 +14,8 @@ struct EnclosedVolume {
   double fullness = 0;  ///< |volume| / that of the sphere of this area: 1 for a sphere, 0 for a sheet
   std::size_t n_points = 0;
 
-  /// The sign of the volume is one of a body. A hemisphere has openness 0.5; sheets, ears on their own and patches of
-  /// scans lie beyond these bounds. The scorpion, the thinnest of the scans we have, has a fullness of 0.18, an
-  /// ellipsoid of 1 : 1 : 0.02 has 0.05.
+  /// True if the sign of the volume tells inside from outside: the piece is closed enough and encloses something. A
+  /// hemisphere has openness 0.5, a sheet fullness 0; an ellipsoid of 1 : 1 : 0.02 has fullness 0.05.
   bool tells_sides() const { return openness < 0.3 && fullness > 0.02; }
 };
 

@@ -12,7 +12,7 @@
 
 namespace umtet {
 
-/// A point of the cloud and its squared distance from where one asked.
+/// A point of the cloud and its squared distance from the place of the query.
 struct Neighbour {
   double distance2;
   std::uint32_t point;
@@ -22,7 +22,7 @@ struct Neighbour {
 ///
 /// Its searches run with our result sets: its own take radii in single precision and leave the choice between equal
 /// distances to the shape of the tree. Here that is the order of point numbers. Nothing depends on the number of
-/// threads. Positions one asks from are finite and at most kLargestCoordinate, like the points. Searches may run at
+/// threads. Places of queries are finite and at most kLargestCoordinate, like the points. Searches may run at
 /// once.
 class NeighbourTree {
  public:

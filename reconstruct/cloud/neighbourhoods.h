@@ -12,7 +12,7 @@ namespace umtet {
 /// cleaning, areas, the sign graph. A point at the same place is another one, at distance 0.
 class Neighbourhoods {
  public:
-  /// What every step of the preparation asks for: a second ring.
+  /// k of every step of the preparation: about two rings of neighbours on a surface.
   static constexpr std::size_t kDefault = 12;
 
   Neighbourhoods() = default;

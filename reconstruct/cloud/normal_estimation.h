@@ -17,7 +17,7 @@ std::vector<std::string> problems(const NormalEstimationParams&);
 struct EstimatedNormals {
   std::vector<Vec3> normals;    ///< unit, signs without meaning; zero where all neighbours lie at one place
   std::size_t n_undefined = 0;  ///< zero normals
-  std::size_t n_widened = 0;    ///< points whose noise asked for a larger radius
+  std::size_t n_widened = 0;    ///< points whose noise made a larger radius necessary
 };
 
 /// Directions of the normals, from quadrics through neighbourhoods that grow with the noise met in them.

@@ -14,13 +14,13 @@
 namespace umtet {
 namespace {
 
-// Smaller pieces are small_components of noise: they are oriented, but not counted.
+// Smaller pieces are noise: they are oriented, but not counted.
 constexpr std::size_t kCountedPoints = 100;
-// Right normals have a consistency of 0.9875 in noise of 1 % of the diagonal (torus and eq. (9) of 20k points); a
-// hundredth of them turned, 0.980 without noise. Above this a few points that seem wrong may be noise, unless
-// every pair along their border says so by this cosine: on smooth places that is a wrong normal.
+// In a cloud of this consistency or more, a few points that seem wrong are likelier noise than turned normals, unless
+// every pair along their border has a weight below kSurelyWrong: on a smooth place that is a wrong normal. A clean
+// cloud with one normal in a hundred turned is below it.
 constexpr double kConsistent = 0.985, kSurelyWrong = -0.5;
-// The regions of noise had up to 4 points at that consistency, and up to 10 in noise of 2 %.
+// Regions below this are "a few points": those that noise makes look wrong are smaller.
 constexpr std::size_t kFewPoints = 20;
 
 void require(const OrientedPointCloud& cloud, const OrientationParams& params) {
@@ -87,12 +87,12 @@ class Sides {
   const std::vector<double>& areas_;
 
   double median_winding(const std::vector<std::uint32_t>& outer, const std::vector<std::uint32_t>& inner) const {
-    constexpr std::size_t kAsked = 11;  // odd; more only matter where the inner one is partly outside
+    constexpr std::size_t kPicked = 11;  // points; odd, for a median
     std::vector<double> winding;
-    for (std::size_t m = 0; m < kAsked; ++m)
-      winding.push_back(winding_number(cloud_, areas_, outer, cloud_.points[inner[m * inner.size() / kAsked]]));
-    std::nth_element(winding.begin(), winding.begin() + kAsked / 2, winding.end());
-    return winding[kAsked / 2];
+    for (std::size_t m = 0; m < kPicked; ++m)
+      winding.push_back(winding_number(cloud_, areas_, outer, cloud_.points[inner[m * inner.size() / kPicked]]));
+    std::nth_element(winding.begin(), winding.begin() + kPicked / 2, winding.end());
+    return winding[kPicked / 2];
   }
 
  public:
@@ -102,7 +102,7 @@ class Sides {
   std::vector<std::uint8_t> half_inside;
 };
 
-/// A closed body is settled; what is open or flat waits for what it hangs on.
+/// A closed body is settled by its volume; what is open or flat gets its side from the pieces it is joined to later.
 std::vector<std::int8_t> settle(const OrientedPointCloud& cloud, const Signs& signs, const std::vector<double>& areas) {
   Sides sides(cloud, signs, areas);
   sides.find_cavities(signs.component);
@@ -245,7 +245,8 @@ bool lie_on_another_sheet(const OrientedPointCloud& cloud, const Neighbourhoods&
       break;
     }
   }
-  // Around a turned patch only its rim has others near. Curvature and noise below half a spacing stay under 30 degrees.
+  // Around a turned patch only the points along its border have others near. Curvature and noise below half a spacing
+  // stay under 30 degrees.
   if (2 * slopes.size() < n_turned || slopes.empty()) return false;
   const auto middle = slopes.begin() + static_cast<std::ptrdiff_t>(slopes.size() / 2);
   std::nth_element(slopes.begin(), middle, slopes.end());

@@ -10,9 +10,9 @@ namespace umtet {
 
 struct OrientationParams {
   int neighbours = 12;  ///< of every point, over which signs are carried; in 4..64
-  /// Repair turns a region when this share of the evidence along its border is against it; in [0.5, 1). Measured for
-  /// 20k points of a torus and of eq. (9): clean wrong regions have 1; in noise of half a per cent of the diagonal most
-  /// wrong ones have above 0.8, right ones that were mistaken for wrong 0.51 to 0.86. In more noise they overlap.
+  /// Repair turns a region when this share of the evidence along its border is against it; in [0.5, 1). A wrong
+  /// region of a clean cloud has 1. Noise lowers that, and makes right regions look wrong with a little more than 0.5:
+  /// lower values turn these too, higher ones leave wrong regions as they are.
   double disagreement = 0.75;
 };
 std::vector<std::string> problems(const OrientationParams&);
@@ -32,8 +32,7 @@ struct OrientationReport {
 /// The functions below search the params.neighbours nearest of every point themselves where `near` is not given.
 
 /// Share of the evidence of neighbouring pairs (sign_graph.h) that agrees with the signs of the normals: 1 consistent,
-/// 0.5 random. Measured above 0.999 for clean scans, 0.993 with noise of half a per cent of the diagonal, 0.82 where a
-/// tenth of the points was turned.
+/// 0.5 random. Where a share p of the normals is turned, at random, it is about 1 - 2 p (1 - p): 0.82 for a tenth.
 /// \throw std::invalid_argument  as orient_normals
 double consistency(const OrientedPointCloud& cloud, const OrientationParams& params = {},
                    const Neighbourhoods* near = nullptr);

@@ -16,13 +16,14 @@ namespace umtet {
 namespace {
 
 // Enough points that the sum over a border outweighs a few misled pairs, few enough that a patch stays on one side of
-// ears and fins.
+// a fin.
 constexpr std::uint32_t kPatchPoints = 64;
-// Patches that step 3 builds its regions of. A patch of 64 can hold both a right and a wrong part of a fin: with these
-// 41 of blub's 7106 points face the wrong way instead of 265, in clusters of 20 instead of 141.
+// Sizes of the patches that step 3 builds its regions of, coarse to fine. A patch of 64 can hold both a right and a
+// wrong part of a thin fin, which only smaller ones tell apart.
 constexpr std::array<std::uint32_t, 4> kSmallPatches = {32, 16, 8, 4};
-// Pairs below kSurePair do not grow patches, and those below kSureBorder do not join bodies: across a narrow gap there
-// are many that say a little (at 0.1 a ball one spacing from a torus is joined to it; at 0.5 thin fins come apart).
+// Pairs with |weight| below kSurePair do not grow patches. Those below kSureBorder do not join bodies: across a narrow
+// gap there are many pairs of small weight, which would join two bodies; a bound that is too high takes thin fins
+// apart.
 constexpr double kSurePair = 0.5, kSurePairs = 2, kAnyPair = 1e-3, kAllPairs = 2, kSureBorder = 0.2;
 
 /// Union-find with the sign of every member relative to its root.

@@ -14,7 +14,7 @@ using namespace simd;
 
 constexpr int kEdge = LatticeBlocks::kEdge;
 
-const float kNotYet = 0;  // its address stands for a window that nobody has asked for
+const float kNotYet = 0;  // its address stands for a window that has not been made yet
 
 // Position in spacings of the coarsest lattice; on that of 2^-k times its spacing it is 2^k times as much, exactly.
 Vec3 lattice_coordinates(const Lattice& L, const Vec3& x) {

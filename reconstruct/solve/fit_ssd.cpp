@@ -39,9 +39,10 @@ namespace {
 
 constexpr std::ptrdiff_t kDenseNodes = 3000;       // more are never factored densely on the coarsest lattice
 constexpr double kMostNodes = 1e9;                 // a full lattice holds no more: about 200 bytes each
-constexpr std::ptrdiff_t kAssembledNodes = 16000;  // more are never factored at all: a minute already
+constexpr std::ptrdiff_t kAssembledNodes = 16000;  // more are never factored at all: that takes a minute
 
-// Seconds of one core, measured: a solve per node of the finest lattice; a dense Cholesky factor per node cubed.
+// Seconds of one core, about: a solve per node of the finest lattice; a dense Cholesky factor per node cubed. Only
+// their ratio counts.
 constexpr double kSolveSeconds = 4.5e-6, kFactorSeconds = 4e-11;
 
 // Halvings enough for the longest axis that can be asked for.
@@ -156,7 +157,7 @@ double median(std::vector<double> v) {
   return *middle;
 }
 
-// The steps share the time about so: where each begins.
+// Where each step begins, as a share of the time.
 constexpr double kSetup = .2, kSolve = .3, kRefine = .5;
 
 // What both ways of fitting start from.
@@ -225,11 +226,12 @@ LevelSet fit_full(const Problem& problem, SsdReport& report) {
                      problem.params.tolerance, report);
 }
 
-// Functions of a band stay clear of those that the wall of the coarsest lattice deforms.
+// Cells of the coarsest lattice around the samples: functions near its wall are deformed, and those of a band, which
+// are not, must not reach them.
 constexpr int kLeastMultilevelPadding = 5;
-// Bands take up what a coarser lattice leaves over only around samples, and only to a tenth: solved to 5e-4 there, the
-// koala's samples are .041 h from its mesh instead of .038 h. A lattice that none follow is done when psi is .0003 h
-// rms off its limit.
+// A lattice that no band follows is solved to this many times the tolerance: psi is then far nearer to its limit than
+// the samples are to psi. One with bands is solved to the tolerance itself, because bands take up what it leaves over
+// only around samples, and only down to a tenth of it (band_tolerance).
 constexpr double kLoneTolerance = 5;
 // Samples are merged in half-spacing cubes on every level.
 constexpr double kMergeCube = 0.5;
@@ -237,7 +239,7 @@ constexpr double kMergeCube = 0.5;
 constexpr double kMostArea = 4;
 
 // Bytes per node of the coarsest lattice (multigrid) and per point (cloud, areas, samples, merging); and what the level
-// set keeps of a band over what its solve takes. Measured peaks: 200 bytes a point and 150 a band node.
+// set keeps of a band over what its solve takes. About what is held at the peak.
 constexpr double kBytesPerCoarseNode = 250, kBytesPerPoint = 200, kKept = 0.6;
 
 void require_memory(const Problem& problem, const Hierarchy& hierarchy,

@@ -58,7 +58,7 @@ struct SsdReport {
   std::vector<double> residuals;               ///< of the full lattice: relative, one per iteration, the first is 1
   std::vector<BandReport> bands;               ///< the finer levels of the multilevel fit, coarse to fine
   double energy_value = 0, energy_normal = 0;  ///< the data terms of the functional at psi
-  double energy_hessian = 0;                   ///< its third term; not known for a sum of levels (0)
+  double energy_hessian = 0;                   ///< its third term; 0 for every SsdSolver::Multilevel: not computed
   double rms_value = 0;                        ///< rms of psi(x_i), model units
   std::size_t n_opposed_normals = 0;  ///< samples with n_i . grad psi(x_i) < 0: the normals disagree with one another
   double least_wall_value = 0;        ///< least psi sampled on the wall of its domain; < 0: the body has no end

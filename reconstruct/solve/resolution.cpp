@@ -9,20 +9,21 @@ namespace umtet {
 
 namespace {
 
+// The finest spacing is 1.25 S, S the distance between samples, and at least three times the noise. A finer lattice
+// follows single samples and their noise, a coarser one loses detail.
 constexpr double kSpacings = 1.25, kNoises = 3;
-// A lattice coarser than the mesh is made as fine, but by no more than this. With 1000 to 2500 samples of koala, blub,
-// spot, armadillo, scorpion and duck, psi then misses samples it has not seen by .81 to .97 of what it does otherwise
-// (duck: 1.09).
+// A lattice coarser than the mesh is made as fine as it, but by no more than this factor: the spacing stays above S.
 constexpr double kFiner = 1.2;
-// Outside a sharp edge no sample speaks, and a weak c lets psi < 0 there: beside 24 of 84 boxes of 1000 to 30,000
-// samples with .001, beside 8 with .002, 1 with .003, none with .004. What a finest band corrects is too little for
-// that, and it shows the detail: .001 costs a thousandth of h there.
+// Outside a sharp edge there are no samples, and a weak c lets psi fall below 0 there: a false piece of surface. A
+// strong c rounds detail off. The finest band only corrects a psi that has its sign by then, so c is weaker there. With
+// noise c rises with the square of noise / spacing: the data terms are sums of squares.
 constexpr double kCleanSmoothing = 0.004, kFinestSmoothing = 0.001, kNoisySmoothing = 0.2;
-// On eq. (9), 50k samples with noise of 0.5 % and 6 degrees: mean error 3.3e-4 of the diagonal with 6, 3.2e-4 with 10;
-// 20k with .2 %: 3.6e-4 and 3.1e-4. Normals estimated from the samples deserve less trust than these.
+// In the length l by which values are weighed (resolution.h): a sample that is off by the noise counts as much as a
+// normal that is off by a tenth, 6 degrees. Less follows the noise of the samples; more leaves it to the normals where
+// the surface is, and these are often estimated from the same samples.
 constexpr double kValueNoises = 10;
-// Samples of the armadillo are .029 edges of its mesh from psi = 0 instead of .035, those of spot_ascii (one lattice)
-// .031 instead of .037. A quarter gives .025, but psi of the armadillo is so rough then that tets of Q = .79 are left.
+// On the finest lattice l is this many spacings. Less brings psi = 0 nearer to the samples and makes it rougher, which
+// costs quality of the tets; more leaves samples farther off.
 constexpr double kFinestSpacings = .5;
 
 }  // namespace

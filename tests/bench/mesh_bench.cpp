@@ -219,7 +219,7 @@ struct AllIn {
 
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-/// Labels, layer, repair and certificate of {psi < 0}, psi a compiled function.
+/// Classification, layer, repair and certificate of {psi < 0}, psi a compiled function.
 AllIn mesh_and_certify(const testing::AnalyticDomain& domain, double n_tets, int threads) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   const double cpu = cpu_seconds();

@@ -1,12 +1,12 @@
-// Measures how well the tets around a boundary vertex can be shaped, for every way its link is labelled.
+// Measures how well the tets around a boundary vertex can be shaped, for every configuration of its link.
 //
 //   star_costs TILING SEED SHAPES > mesh/classification/tables/TILING.h
 //
-// Random smooth bodies are meshed without the table's help (labels of psi), with costs at random (so that
-// configurations are met that psi alone hardly makes), and with the costs found so far (so that they are met among good
-// neighbours). Each mesh is smoothed towards a target out of reach, and the worst quality around every boundary vertex
-// is booked under (site, positive faces, tets). What a configuration can reach is the 95 % quantile: the best few owe
-// it to luck with curvature, and most others suffer from a neighbour.
+// Random smooth bodies are meshed without the table's help (classified by the sign of psi), with costs at random (so
+// that configurations are met that psi alone hardly makes), and with the costs found so far (so that they are met among
+// good neighbours). Each mesh is smoothed towards a target out of reach, and the worst quality around every boundary
+// vertex is booked under (site, positive faces, tets). What a configuration can reach is the 95 % quantile: the best
+// few owe it to luck with curvature, and most others suffer from a neighbour.
 
 #include <algorithm>
 #include <cctype>
@@ -87,7 +87,7 @@ std::vector<ConfigurationQuality> qualities(Book& book) {
   return list;
 }
 
-/// Prices up to 100 at random, one for each configuration.
+/// Costs up to 100 at random, one for each configuration.
 StarCostTable random_costs(const ConfigurationCosts& costs, std::uint64_t seed) {
   std::vector<ConfigurationQuality> list;
   int n_sites = 0;

@@ -8,7 +8,8 @@
 // An acute triangulation of the cube with 246 vertices and 1201 tets. This project's own: the combinatorics come from
 // completing vertex links from a pattern of 14 triangles on each face, under the symmetry Td of the regular tet; the 36
 // free coordinates were optimised for quality with all dihedral angles below 87.3 degrees. (The mesh of 277 vertices in
-// [VanderZee2010] is another one.) Interior edges have 5 or 6 tets. Verified by tests/mesh/tiling_test.
+// [VanderZee2010] is another one.) Interior edges have 5 or 6 tets. Verified by
+// tests/mesh/background/tiling_test.cpp.
 
 namespace umtet {
 namespace {
@@ -122,15 +123,15 @@ const Tiling& acute_cube() {
     std::vector<ExactTet> block;
     for (int c = 0; c < 8; ++c) {
       const int i = c & 1, j = c >> 1 & 1, k = c >> 2;
-      // Opposite faces carry the same pattern misaligned by 90 degrees, so every other cube is misaligned.
-      const bool misaligned = (i + j + k) % 2 != 0;
+      // Opposite faces carry the same pattern turned by 90 degrees, so every other cube is turned.
+      const bool turned = (i + j + k) % 2 != 0;
       for (ExactTet tet : one) {
-        for (Vec3& p : tet) p = Vec3(i + .5, j + .5, k + .5) + (misaligned ? Vec3(-p.y(), p.x(), p.z()) : p);
+        for (Vec3& p : tet) p = Vec3(i + .5, j + .5, k + .5) + (turned ? Vec3(-p.y(), p.x(), p.z()) : p);
         block.push_back(tet);
       }
     }
     Tiling made = periodic_tiling("cube", block, Vec3::Constant(2), Vec3::Ones());
-    made.excess_layer = .09;  // small tets sit around the centres of the cubes: .05 and .12 were seen
+    made.excess_layer = .09;  // less than in the others: small tets sit around the centres of the cubes
     return made;
   }();
   return tiling;

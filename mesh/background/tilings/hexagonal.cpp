@@ -8,7 +8,7 @@
 // Tilings in layers over a plane of equilateral triangles of side 4: vertices (V), midpoints of the edges (E) and
 // centroids (C) of the triangles at different heights. Coordinates here are (x, sqrt(3) y, z), in which all points are
 // multiples of 1/2 and a turn by 60 degrees is exact. Both have that turn about the z axis, the mirror y -> -y, and a
-// mirror between layers; one tet of each orbit is given. Verified by tests/mesh/tiling_test.
+// mirror between layers; one tet of each orbit is given. Verified by tests/mesh/background/tiling_test.cpp.
 
 namespace umtet {
 namespace {

@@ -13,7 +13,7 @@ namespace umtet::detail {
 namespace {
 
 constexpr int kSteps = 4;          // of a line search, each half of the one before
-constexpr double kProgress = .99;  // of the energy, or the step is not worth taking
+constexpr double kProgress = .99;  // a step has to lower the energy to this share of it
 constexpr int kHalvings = 4;       // of the way to the chord, before the rest is taken at once
 
 /// Derivatives of the twenty coefficients by the place of local node 4 + k.

@@ -15,17 +15,17 @@ enum class MidSide : std::uint8_t {
   Fixed,    ///< of a curved edge, but not on psi = 0
 };
 
-/// Moves mid-sides until the Jacobians of all tets are as great as SecondOrderParams asks: steps 2 and 3 of
+/// Moves mid-sides until the Jacobians of all tets reach the bounds of SecondOrderParams: steps 2 and 3 of
 /// quadratic_tets(). One mid-side after the other, so threads cannot change a result.
 class MidSideRelaxation {
  public:
-  /// Nothing is copied: all but h must outlive this.
+  /// Keeps all but h by reference.
   /// @param kind  of every mid-side, by vertex less n_corners
   MidSideRelaxation(QuadraticTetMesh& mesh, std::size_t n_corners, std::vector<MidSide>& kind, ImplicitFunctionRef psi,
                     double h, const SecondOrderParams& params);
 
   /// Step 2. @param poor  the tets below the target; receives those that still are
-  /// @return closest points asked for, in evaluations of psi
+  /// @return evaluations of psi, for closest points
   std::size_t relax(std::vector<int>& poor, const Context& context);
 
   /// Step 3. Surface mid-sides that are moved become Fixed. @param poor  tets that may be below params.least

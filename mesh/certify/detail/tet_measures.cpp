@@ -17,12 +17,12 @@ namespace {
 // A tet takes some tens of nanoseconds.
 constexpr std::size_t kTetsPerBlock = 1 << 10, kBlocksPerPoll = 1 << 8;
 static_assert(kTetsPerBlock % kPackSize == 0);
-// So many blocks, evenly spread, say how low the lowest twentieth of all qualities may be.
+// The bound that the lowest twentieth of all qualities is below is estimated from this many blocks, evenly spread.
 constexpr std::size_t kSampledBlocks = 64, kSampledShare = 20;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double sum(const Pack& a) { return (a[0] + a[1]) + (a[2] + a[3]); }
-/// @param mask  as comparisons give it: -1 or 0 a lane
+/// @param mask  result of a comparison: each element is -1 or 0
 template <class Mask>
 bool is_any(const Mask& mask) {
   return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
@@ -69,7 +69,7 @@ struct TetMeasure {
   std::size_t n_inverted = 0;
   double least_cotangent = kInfinity, greatest_cotangent = -kInfinity;
   std::size_t at_least = 0, at_greatest = 0;  ///< the first tets with these
-  std::vector<double> low_qualities;          ///< those that are not above what was asked for
+  std::vector<double> low_qualities;          ///< those that are not above `low` of the call
 
   void take(double least, std::size_t at, double greatest, std::size_t at_other) {
     if (least < least_cotangent) least_cotangent = least, at_least = at;
@@ -91,7 +91,7 @@ class TetBlocks {
       : mesh_(mesh), memory_(memory), used_(used) {}
 
   std::size_t size() const { return (mesh_.C.size() + kTetsPerBlock - 1) / kTetsPerBlock; }
-  /// @param low  qualities up to it are listed
+  /// @param low  qualities up to it are listed in low_qualities
   TetMeasure operator()(std::size_t block, double low) const;
 
  private:
@@ -151,7 +151,8 @@ void TetBlocks::add(const TetPack& tets, std::size_t first, int count, TetMeasur
   }
 }
 
-/// A bound below which lie some times as many qualities as the quantiles need, by a look at some blocks.
+/// A bound below which there are about five times as many qualities as the 1 % quantile needs, estimated from some
+/// blocks.
 double sampled_bound(const TetBlocks& blocks) {
   if (blocks.size() <= kSampledBlocks) return kInfinity;
   std::vector<double> sample;

@@ -5,8 +5,8 @@
 namespace umtet::detail {
 namespace {
 
-// A flip that makes the labels around this much worse has never been kept: the cost of one configuration not met in the
-// fit and some more.
+// A flip that raises the star costs around by this much is not tried: one configuration that is not in the table costs
+// 100 (StarCostTable), and no smoothing makes up for more than one.
 constexpr float kMostCostOfFlip = 150;
 
 }  // namespace
@@ -19,9 +19,9 @@ bool FlipCandidates::in_reach(std::int64_t v, std::size_t& n_evaluations) const 
   ++n_evaluations;
   if (!(norm > 0)) return false;
   const double d = value / norm;
-  if (!(d >= -labels_.reach_in * h && d <= params_.reach_out * h)) return false;
-  return !(labels_.least_thickness > 0 &&
-           is_thin(psi_, x - d / norm * g, g / norm, labels_.least_thickness, h, n_evaluations));
+  if (!(d >= -classification_.reach_in * h && d <= params_.reach_out * h)) return false;
+  return !(classification_.least_thickness > 0 &&
+           is_thin(psi_, x - d / norm * g, g / norm, classification_.least_thickness, h, n_evaluations));
 }
 
 std::vector<FlipCandidates::Candidate> FlipCandidates::operator()(const std::array<std::int64_t, 4>& tet,
@@ -39,10 +39,10 @@ std::vector<FlipCandidates::Candidate> FlipCandidates::operator()(const std::arr
     const LinkTopology& link = links_[type];
     const LinkMask m = steps_.mask(v, inside_);
     if (!link.state(m).simple || background_.on_boundary(v) || !in_reach(v, n_evaluations)) continue;
-    const auto cost = [&](int t, LinkMask labels) {
-      return labels == 0 ? 0.F : costs_(links_[t].site, links_[t].state(labels));
+    const auto cost = [&](int t, LinkMask mask) {
+      return mask == 0 ? 0.F : costs_(links_[t].site, links_[t].state(mask));
     };
-    const auto bad = [&](int t, LinkMask labels) { return labels != 0 && !links_[t].state(labels).manifold; };
+    const auto bad = [&](int t, LinkMask mask) { return mask != 0 && !links_[t].state(mask).manifold; };
     const bool is_inside = inside_.test(v);
     float change = is_inside ? cost(type, m) : -cost(type, m);
     int spots = is_inside ? bad(type, m) : -bad(type, m);

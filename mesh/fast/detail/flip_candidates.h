@@ -13,23 +13,23 @@
 
 namespace umtet::detail {
 
-/// The labels that repair() may change, by the rules of classify_vertices().
+/// The vertices that repair() may flip, by the rules of classify_vertices().
 class FlipCandidates {
  public:
   struct Candidate {
     std::int64_t vertex;
-    float cost;  ///< by which the flip changes the cost of the labels around
+    float cost;  ///< by which the flip changes the star costs around
   };
 
-  /// Keeps what it is given by reference: `inside` as it is when asked.
+  /// Keeps what it is given by reference: `inside` is read at every call.
   FlipCandidates(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
-                 const ClassificationParams& labels, const RepairParams& params, const IdSet& inside)
+                 const ClassificationParams& classification, const RepairParams& params, const IdSet& inside)
       : background_(background),
         links_(links),
         psi_(psi),
-        labels_(labels),
+        classification_(classification),
         params_(params),
-        costs_(labels.costs ? *labels.costs : a15_star_costs()),
+        costs_(classification.costs ? *classification.costs : a15_star_costs()),
         inside_(inside),
         steps_(background) {}
 
@@ -43,7 +43,7 @@ class FlipCandidates {
   const BackgroundMesh& background_;
   const std::vector<LinkTopology>& links_;
   ImplicitFunctionRef psi_;
-  const ClassificationParams& labels_;
+  const ClassificationParams& classification_;
   const RepairParams& params_;
   const StarCostTable& costs_;
   const IdSet& inside_;

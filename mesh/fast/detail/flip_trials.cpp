@@ -9,15 +9,16 @@
 namespace umtet::detail {
 namespace {
 
-// Pairs are tried from this many of the most promising labels, with this many second ones each.
+// Pairs are tried from this many of the most promising flips, with this many second ones each: 48 trials, twice as many
+// as of single flips (RepairParams::max_tries).
 constexpr std::size_t kFirstOfPair = 6, kSecondOfPair = 8;
-// After sweep k of smoothing, how much below what it was the least Q of a patch may be, times k^2, and how many more
-// below target tets it may have, times k. Of the 617 patches that ended better among 3900 (T6 and T8 of 100k and 500k
-// tets, eqs. (9) and (13) of 500k), one had lacked more; the others are given up after two fifths of the solves.
+// A trial is given up when, after sweep k of smoothing, the least Q of its patch is lower than it was by more than
+// kMostLack / k^2, or it has kMostMoreBelowTarget / k more tets below the target. Smoothing gains most in its first
+// sweeps, so a patch that is that far behind does not catch up. Less loses patches that would end better; more smooths
+// hopeless ones to the end.
 constexpr double kMostLack = .7, kMostMoreBelowTarget = 280;
-// Where a label has been found that helps, those whose flip costs so much more are not tried: of 245 (T6, T8, a plate
-// with 18 holes, eqs. (9) and (13) at 500k tets) three would have been better than with 30, half of the tries went
-// there. With 30 a scan keeps a tet of Q = .8075, with 60 or without a bound its worst is .8129.
+// Where a flip has been found that helps, those whose star costs are so much higher are not tried. With less, the best
+// flip is missed where star costs are wrong about a patch; with more, time goes into flips that are worse.
 constexpr float kMostMoreCost = 60;
 
 }  // namespace
@@ -87,7 +88,7 @@ bool FlipTrials::smooth_while_promising(PNormSmoother& smoother, const PatchStat
   return true;
 }
 
-/// Flips these labels on a copy, shapes the patch around them and the tet, and keeps it as the best one if it is.
+/// Flips these vertices on a copy, shapes the patch around them and the tet, and keeps it if it is the best one so far.
 void FlipTrials::attempt(const TetIds& tet, std::span<const std::int64_t> flips, Start start, Best& best) {
   if (tries >= end_of_tries_) return;
   ++tries;

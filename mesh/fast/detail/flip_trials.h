@@ -41,7 +41,7 @@ class Positions {
   std::vector<Vec3> moved_to_;
 };
 
-/// What other labels would make of the patch around one tet. Changes nothing of the mesh.
+/// What flips would make of the patch around one tet, tried on copies. Changes nothing of the mesh.
 class FlipTrials {
  public:
   struct Best {
@@ -52,9 +52,9 @@ class FlipTrials {
     bool is_perfect() const { return found && state.is_perfect(); }
   };
 
-  /// Keeps what it is given by reference, but for the labels, of which it has its own.
+  /// Keeps what it is given by reference, but for `inside`, of which it has its own copy.
   FlipTrials(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
-             const ClassificationParams& labels, const RepairParams& params, const Positions& places,
+             const ClassificationParams& classification, const RepairParams& params, const Positions& places,
              const IdSet& inside)
       : background_(background),
         links_(links),
@@ -64,7 +64,7 @@ class FlipTrials {
         smoothing_(params.smoothing),
         positions_(places),
         inside_(inside),
-        candidates_(background, links, psi, labels, params, inside_) {}
+        candidates_(background, links, psi, classification, params, inside_) {}
   FlipTrials(const FlipTrials&) = delete;  // candidates_ reads inside_
   FlipTrials& operator=(const FlipTrials&) = delete;
 

@@ -18,15 +18,15 @@ using PackMap = Eigen::Map<const Pack, Eigen::Aligned32>;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-// log2 of the powers of F, in turn. 16 and 32 with a least gain of 3e-4 end within .005 of the min Q of 4, 16, 64 with
-// 1e-4, in half of the time (sphere, torus, eq. (9), T4, T6, ellipsoid 1:1:.1, 100k tets each); 16 alone loses .004
-// more.
+// log2 of the powers of F = 1 / Q^3 (but for a factor), one Newton step for each in turn: p = 16 and 32 here are the
+// norms p = 48 and 96 of 1 / Q. The lower power is the smoother function and takes the vertex near its place; the
+// higher one weighs the worst tet more. kSharperPower, a third step, is for SmoothingParams::sharper.
 constexpr int kFirstPower = 4, kLastPower = 5, kSharperPower = 7;
 static_assert(kNorm == 3 << kLastPower && kSharperNorm == 3 << kSharperPower);  // the p of 1/Q that go with them
-constexpr double kStepCap = .5;       // of h: beyond, a vertex leaves the star it had
-constexpr double kVolumeKept = .2;    // of every V, in one step: Newton's picture of 1 / V^2 holds no farther
-constexpr int kHalvings = 4;          // of a step that does not lower its sum; the queue comes back
-constexpr int kUntangleRounds = 8;    // values of sigma; the queue comes back for those that rise
+constexpr double kStepCap = .5;       // of h: farther away, a vertex leaves its star
+constexpr double kVolumeKept = .2;    // of every V, in one step: farther off, the quadratic model of 1 / V^2 is useless
+constexpr int kHalvings = 4;          // of a step that does not lower its sum; then the vertex waits for its next turn
+constexpr int kUntangleRounds = 8;    // values of sigma; a vertex whose least volume rises is enqueued again
 constexpr double kVolumeScale = .07;  // of h^3: a tenth of six times the volume of a background tet
 
 PackMap lane(const std::array<double, kMaxRing>& a, int k) { return PackMap(a.data() + k); }

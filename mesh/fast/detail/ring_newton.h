@@ -15,7 +15,7 @@ namespace umtet::detail {
 /// The p of 1/Q's norm by which places are compared, and the one where that has settled too soon.
 inline constexpr double kNorm = 96, kSharperNorm = 384;
 
-/// Fills up the last lanes with tets of F = 0 in place of copies, which would count twice in a sum. For all that
+/// Fills up the last SIMD pack with tets of F = 0 in place of copies, which would count twice in a sum. For all that
 /// follows but power_sum().
 void silence_padding(OneRing& ring);
 

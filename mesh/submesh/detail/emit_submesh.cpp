@@ -54,12 +54,12 @@ struct CellStencil {
   }
 };
 
-/// What the slabs of cells below one, each one thick in z, add to omega_h.
+/// What the slabs of cells below one add to omega_h; a slab is one cell thick in z.
 struct Slab {
   std::size_t n_tets = 0, n_positive = 0;
 };
 
-/// Two passes over the cells: how much there is of everything, then where it goes.
+/// Two passes over the cells: the first counts tets and faces, the second writes them to their places.
 class Emitter {
  public:
   Emitter(const BackgroundMesh& background, const CellStencil& stencil, const IdSet& inside)
@@ -106,7 +106,7 @@ class Emitter {
   Submesh result_;
 };
 
-/// Most rows of cells of a large background have nothing inside near them: 64 vertices a look.
+/// True if no vertex of the cells of a row is inside: so for most rows of a large background. Looks at 64 bits at once.
 bool Emitter::is_empty_row(std::int64_t j, std::int64_t k) const {
   const std::int64_t row = background_.n_types() * (background_.n_cells()[0] + 2);
   for (std::int64_t dk = -1; dk <= 1; ++dk) {

@@ -9,12 +9,12 @@
 namespace umtet {
 namespace {
 
-// Turning raises the sum each time, so it ends; the most that a scan of ours took is 8 (blub).
+// Every turn raises the sum of weight s_a s_b, so this ends by itself after a few sweeps; a bound for all the same.
 constexpr int kMostSweeps = 50;
-constexpr std::size_t kMostTogether = 64;
-constexpr double kRounding = 1e-6;  // must not turn anything for ever
-// Borders that disagree by less start no region: in noise there are many, which doubled the time of a solve for three
-// points of blub.
+constexpr std::size_t kMostTogether = 64;  // patches in a region
+constexpr double kRounding = 1e-6;         // a sum nearer to 0 than this is rounding, and would turn a group to and fro
+// A border whose sum is above -kSeed starts no region: half a pair in full disagreement. In noise there are many such
+// borders, which cost time and turn next to nothing.
 constexpr double kSeed = 0.5;
 
 /// A patch and the sum over the pairs to it: < 0, the two disagree.

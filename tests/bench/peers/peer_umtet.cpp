@@ -80,9 +80,9 @@ int run(int argc, char** argv) {
   params.mode = std::strcmp(argv[3], "paper") == 0 ? UmMode::Paper : UmMode::Fast;
   if (std::strcmp(argv[3], "crawl") == 0) params.submesh.search = SubmeshSearch::Crawl;
   const double peak_before = peak_MB(), start = cpu_seconds();
-  const ClassificationSource labels =
+  const ClassificationSource source =
       params.mode == UmMode::Fast ? ClassificationSource::Chosen : ClassificationSource::Psi;
-  const double h = h_for_tets(domain, domain.box, std::stod(argv[2]), labels);
+  const double h = h_for_tets(domain, domain.box, std::stod(argv[2]), source);
   UmResult result = universal_mesh(BackgroundMesh(a15(), domain.box, h), domain, params, {}, domain.boundary_seeds);
   const double meshed = cpu_seconds(), peak_meshed = peak_MB();
   if (result.status != UmStatus::Success) throw std::runtime_error(result.evidence.what);

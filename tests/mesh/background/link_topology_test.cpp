@@ -127,7 +127,7 @@ TEST(LinkTopology, EveryLabellingOfBothSitesIsJudgedAsByBruteForce) {
   }
 }
 
-TEST(LinkTopology, LabellingsWithoutATableAreJudgedAsByBruteForce) {
+TEST(LinkTopology, ConfigurationsWithoutATableAreJudgedAsByBruteForce) {
   for (const Tiling* tiling : {&acute_slab(), &acute_cube()}) {
     SCOPED_TRACE(tiling->name);
     const std::vector<LinkTopology> links = link_topology(*tiling, tables(*tiling));
@@ -139,7 +139,7 @@ TEST(LinkTopology, LabellingsWithoutATableAreJudgedAsByBruteForce) {
       std::size_t n_manifold = 0;
       std::uint64_t dice = 1;
       for (int k = 0; k < 60; ++k) {
-        // One half of the link, a bit frayed: random labels are hardly ever simple.
+        // One half of the link, a bit frayed: random masks are hardly ever simple.
         dice = dice * 6364136223846793005u + 1442695040888963407u;
         const Vec3 n = Vec3(double(dice >> 44), double(dice >> 24 & 0xfffff), double(dice >> 4 & 0xfffff)) / 524288. -
                        Vec3::Ones();

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <initializer_list>
+#include <limits>
 #include <set>
 
 #include "mesh/background/body_size.h"
@@ -23,16 +24,16 @@ namespace {
 
 using testing::AnalyticDomain;
 
-struct Labelled {
+struct Classified {
   IdSet plain, chosen;
   ClassificationReport report;
 };
 
-Labelled choose(const BackgroundMesh& background, const AnalyticDomain& domain,
-                const ClassificationParams& params = {}) {
+Classified choose(const BackgroundMesh& background, const AnalyticDomain& domain,
+                  const ClassificationParams& params = {}) {
   std::size_t n = 0;
   const IdSet plain = inside_vertices(background, domain, n);
-  Labelled result{plain, plain, {}};
+  Classified result{plain, plain, {}};
   result.report = classify_vertices(background, a15_links(), domain, params, result.chosen);
   return result;
 }
@@ -54,7 +55,7 @@ MeshCertificate certificate(const Submesh& submesh) {
   return certify(input);
 }
 
-/// Prices up to 655 that mean nothing.
+/// Costs up to 655 that mean nothing.
 StarCostTable dice(std::uint32_t seed = 1) {
   StarCostTable costs = a15_star_costs();
   std::uint32_t state = seed;
@@ -62,7 +63,7 @@ StarCostTable dice(std::uint32_t seed = 1) {
   return costs;
 }
 
-TEST(Labels, ChangesKeepTheEulerCharacteristicWhateverThePrices) {
+TEST(Classification, ChangesKeepTheEulerCharacteristicWhateverTheCosts) {
   std::size_t n_flips = 0;
   for (const AnalyticDomain& domain : testing::domains()) {
     SCOPED_TRACE(domain.name);
@@ -73,10 +74,10 @@ TEST(Labels, ChangesKeepTheEulerCharacteristicWhateverThePrices) {
     params.reach_out = .5;
     params.shift = .15;
     for (const ClassificationParams& p : {params, ClassificationParams{}}) {
-      const Labelled labelled = choose(background, domain, p);
-      n_flips += labelled.report.flips;
-      EXPECT_EQ(labelled.report.not_manifold, 0u);
-      const MeshCertificate c = certificate(emit_submesh(background, labelled.chosen));
+      const Classified classified = choose(background, domain, p);
+      n_flips += classified.report.flips;
+      EXPECT_EQ(classified.report.not_manifold, 0u);
+      const MeshCertificate c = certificate(emit_submesh(background, classified.chosen));
       EXPECT_TRUE(c.boundary.closed_manifold);
       EXPECT_TRUE(c.boundary.equals_positive_faces.value());
       EXPECT_EQ(c.boundary.components, domain.components);
@@ -86,7 +87,7 @@ TEST(Labels, ChangesKeepTheEulerCharacteristicWhateverThePrices) {
   EXPECT_GT(n_flips, 1000u);
 }
 
-TEST(Labels, ThoseOfAMeshBeforeStayWhereOthersAreNotBetter) {
+TEST(Classification, ThatOfAMeshBeforeStaysWhereAnotherIsNotBetter) {
   const AnalyticDomain before = testing::torus();
   const BackgroundMesh background = background_of(before, 30000);
   const AnalyticDomain after = raised(before, .05 * background.h());
@@ -106,10 +107,10 @@ TEST(Labels, ThoseOfAMeshBeforeStayWhereOthersAreNotBetter) {
   EXPECT_EQ(c.boundary.genus, before.genus);
 }
 
-TEST(Labels, AreTheSameWithWhatTheSearchHasAsked) {
+TEST(Classification, IsTheSameWithWhatTheSearchHasEvaluated) {
   const AnalyticDomain domain = testing::torus();
   const BackgroundMesh background = background_of(domain, 20000);
-  const Labelled without = choose(background, domain);
+  const Classified without = choose(background, domain);
   InsideWalk walk(background);
   walk.restart(domain);
   EXPECT_TRUE(walk.values().empty());
@@ -120,7 +121,7 @@ TEST(Labels, AreTheSameWithWhatTheSearchHasAsked) {
   EXPECT_TRUE(inside == without.chosen);
   EXPECT_GT(report.flips, 0u);
   EXPECT_EQ(report.psi_evaluations + walk.values().size(), without.report.psi_evaluations);
-  // What is said there is believed: a body half an edge smaller would have other labels.
+  // What is said there is believed: a body half an edge smaller would be classified otherwise.
   PsiValues smaller = walk.values();
   for (PsiValue& at : smaller) at.value += .5 * background.h() * at.gradient.norm();
   inside = walk.inside();
@@ -128,7 +129,7 @@ TEST(Labels, AreTheSameWithWhatTheSearchHasAsked) {
   EXPECT_FALSE(inside == without.chosen);
 }
 
-TEST(Labels, LowerThePriceOfTheBoundary) {
+TEST(Classification, LowersTheCostOfTheBoundary) {
   const AnalyticDomain domain = testing::torus();
   const BackgroundMesh background = background_of(domain, 15000);
   const auto cost = [&](const IdSet& inside) {
@@ -144,25 +145,25 @@ TEST(Labels, LowerThePriceOfTheBoundary) {
     }
     return sum;
   };
-  const Labelled labelled = choose(background, domain);
-  EXPECT_TRUE(labelled.report.settled);
-  EXPECT_LT(cost(labelled.chosen), .8 * cost(labelled.plain));
+  const Classified classified = choose(background, domain);
+  EXPECT_TRUE(classified.report.settled);
+  EXPECT_LT(cost(classified.chosen), .8 * cost(classified.plain));
 }
 
-/// Changes labels and costs them, without the descent's shortcuts.
+/// Flips vertices and computes the cost, without the descent's shortcuts.
 class Pricing {
  public:
-  /// @param last  labels of a mesh before, or null
+  /// @param last  classification of a mesh before, or null
   explicit Pricing(ClassificationBand& band, const IdSet* last = nullptr) : band_(band), last_(last) {}
 
   void take(const IdSet& inside) {
     for (int v = 0; v < static_cast<int>(band_.size()); ++v) {
-      if ((band_.label[v] != 0) != inside.test(band_.id[v])) change(v);
+      if ((band_.is_inside[v] != 0) != inside.test(band_.id[v])) change(v);
     }
   }
 
-  /// How many changes of a label (or of those of two neighbours) would lower the cost, by `keep` where they leave the
-  /// labels of last.
+  /// How many flips (of a vertex or of two neighbours) would lower the cost, by `keep` where they leave the
+  /// classification of last.
   int n_better_singles() {
     int n = 0;
     for (const std::uint32_t v : band_.order) n += is_better({static_cast<int>(v)});
@@ -182,7 +183,7 @@ class Pricing {
   static constexpr double kRounding = 2e-3;
 
   void change(int v) {
-    band_.label[v] ^= 1;
+    band_.is_inside[v] ^= 1;
     for (std::size_t k = 0; k < band_.link(v).size(); ++k) {
       if (const int w = band_.link(v)[k]; w >= 0) {
         band_.mask[w] ^= LinkMask{1} << a15_links()[band_.type[v]].back[k];
@@ -194,7 +195,7 @@ class Pricing {
 
   double cost(int v) const {
     const double phi = band_.phi[v];
-    if (band_.label[v]) {
+    if (band_.is_inside[v]) {
       return params_.inside_weight * std::pow(std::max(0., phi + params_.inside_depth), 2);
     }
     if (band_.mask[v] == 0) return 0;
@@ -205,7 +206,7 @@ class Pricing {
   bool is_better(std::initializer_list<int> vertices) {
     double least = kRounding;
     for (const int v : vertices) {
-      const bool as_before = last_ && (band_.label[v] != 0) == last_->test(band_.id[v]);
+      const bool as_before = last_ && (band_.is_inside[v] != 0) == last_->test(band_.id[v]);
       if (as_before) least = params_.keep + kRounding;
     }
     return gain(vertices) > least;
@@ -220,7 +221,7 @@ class Pricing {
       for (const int v : touched) costs += cost(v);
       return costs;
     };
-    const auto manifold = [&](int v) { return band_.label[v] || band_.mask[v] == 0 || state(v).manifold; };
+    const auto manifold = [&](int v) { return band_.is_inside[v] || band_.mask[v] == 0 || state(v).manifold; };
     const double before = sum();
     bool keeps_topology = true;
     for (const int v : vertices) {
@@ -238,24 +239,24 @@ class Pricing {
   const IdSet* last_;
 };
 
-TEST(Labels, NoChangeOfOneOrOfTwoNeighboursIsBetter) {
+TEST(Classification, NoChangeOfOneOrOfTwoNeighboursIsBetter) {
   for (const AnalyticDomain& domain : {testing::sphere(), testing::torus()}) {
     SCOPED_TRACE(domain.name);
     const BackgroundMesh background = background_of(domain, 6000);
-    const Labelled labelled = choose(background, domain);
-    ASSERT_EQ(labelled.report.thin, 0u);
+    const Classified classified = choose(background, domain);
+    ASSERT_EQ(classified.report.thin, 0u);
     const ClassificationParams params;
-    ClassificationBand band(background, a15_links(), domain, params, labelled.plain, {});
+    ClassificationBand band(background, a15_links(), domain, params, classified.plain, {});
     Pricing pricing(band);
     EXPECT_GT(pricing.n_better_singles(), 50);
     EXPECT_GT(pricing.n_better_pairs(), 50);
-    pricing.take(labelled.chosen);
+    pricing.take(classified.chosen);
     EXPECT_EQ(pricing.n_better_singles(), 0);
     EXPECT_EQ(pricing.n_better_pairs(), 0);
   }
 }
 
-TEST(Labels, NoChangeIsBetterByMoreThanKeepWhereItLeavesTheLabelsBefore) {
+TEST(Classification, NoChangeIsBetterByMoreThanKeepWhereItLeavesTheOneBefore) {
   const AnalyticDomain before = testing::torus();
   const BackgroundMesh background = background_of(before, 60000);
   const AnalyticDomain after = raised(before, .2 * background.h());
@@ -272,22 +273,22 @@ TEST(Labels, NoChangeIsBetterByMoreThanKeepWhereItLeavesTheLabelsBefore) {
   EXPECT_GT(without.n_better_singles() + without.n_better_pairs(), 0);
 }
 
-TEST(Labels, StayNearTheBoundary) {
+TEST(Classification, StaysNearTheBoundary) {
   const AnalyticDomain domain = testing::sphere();
   const BackgroundMesh background = background_of(domain, 60000);
-  const Labelled labelled = choose(background, domain);
+  const Classified classified = choose(background, domain);
   std::size_t outwards = 0;
   for (std::int64_t v = 0; v < background.n_vertices(); ++v) {
-    if (labelled.plain.test(v) == labelled.chosen.test(v)) continue;
+    if (classified.plain.test(v) == classified.chosen.test(v)) continue;
     const double d = (background.position(v).norm() - 1) / background.h();
     EXPECT_GE(d, -.9 - 1e-3);
     EXPECT_LE(d, .2 + 1e-3);
-    outwards += labelled.chosen.test(v);
+    outwards += classified.chosen.test(v);
   }
   EXPECT_GT(outwards, 0u);
 }
 
-TEST(Labels, NoneChangesWhereProjectionWouldStretchTheBoundary) {
+TEST(Classification, NoneChangesWhereProjectionWouldStretchTheBoundary) {
   // A ball of 2.5 edges and its complement in a larger one: 1.2 is met .42 edges deep, or as far outside the hollow.
   const double h = .4;
   const AnalyticDomain ball = testing::sphere();
@@ -307,9 +308,9 @@ TEST(Labels, NoneChangesWhereProjectionWouldStretchTheBoundary) {
   const auto n_far_changes = [&](const AnalyticDomain& domain, const ClassificationParams& params) {
     std::size_t n = 0;
     const BackgroundMesh background(a15(), testing::cube_box(3.7), h);
-    const Labelled labelled = choose(background, domain, params);
+    const Classified classified = choose(background, domain, params);
     for (std::int64_t v = 0; v < background.n_vertices(); ++v) {
-      n += background.position(v).norm() < 1 - .5 * h && labelled.plain.test(v) != labelled.chosen.test(v);
+      n += background.position(v).norm() < 1 - .5 * h && classified.plain.test(v) != classified.chosen.test(v);
     }
     return n;
   };
@@ -325,19 +326,20 @@ TEST(Labels, NoneChangesWhereProjectionWouldStretchTheBoundary) {
   }
 }
 
-TEST(Labels, NoneChangesWhereTheBodyOrAGapIsThin) {
+TEST(Classification, NoneChangesWhereTheBodyOrAGapIsThin) {
   const AnalyticDomain disc = testing::ellipsoid({1, 1, .08});
   const BackgroundMesh background(a15(), testing::cube_box(1.3), .09);  // 1.8 edges thick
   ClassificationParams guarded;
   guarded.least_thickness = 2;
-  const Labelled thin = choose(background, disc, guarded);
+  const Classified thin = choose(background, disc, guarded);
   EXPECT_GT(thin.report.thin, 0u);
   // At the edge of the disc the normal points into it, where it is a diameter thick.
-  const auto n_inner_changes = [](const BackgroundMesh& mesh, const Labelled& labelled) {
+  const auto n_inner_changes = [](const BackgroundMesh& mesh, const Classified& classified) {
     std::size_t n = 0;
     for (std::int64_t v = 0; v < mesh.n_vertices(); ++v) {
       const Vec3 x = mesh.position(v);
-      n += std::hypot(x.x(), x.y()) < .9 && std::abs(x.z()) < .3 && labelled.plain.test(v) != labelled.chosen.test(v);
+      n += std::hypot(x.x(), x.y()) < .9 && std::abs(x.z()) < .3 &&
+           classified.plain.test(v) != classified.chosen.test(v);
     }
     return n;
   };
@@ -364,26 +366,27 @@ TEST(Labels, NoneChangesWhereTheBodyOrAGapIsThin) {
   EXPECT_GT(n_inner_changes(around, choose(around, gap, unguarded)), 0u);
 }
 
-TEST(Labels, DoNotDependOnThreads) {
+TEST(Classification, DoesNotDependOnThreads) {
   const AnalyticDomain domain = testing::banchoff_chmutov_4();
   const BackgroundMesh background = background_of(domain, 40000);
   const auto with = [&](std::size_t n) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, n);
     return choose(background, domain);
   };
-  const Labelled one = with(1), three = with(3);
+  const Classified one = with(1), three = with(3);
   EXPECT_EQ(one.report.flips, three.report.flips);
   EXPECT_EQ(one.report.psi_evaluations, three.report.psi_evaluations);
   for (std::size_t w = 0; w < one.chosen.n_words(); ++w) ASSERT_EQ(one.chosen.word(w), three.chosen.word(w));
 }
 
-TEST(Labels, BrokenParamsAreAllNamed) {
+TEST(Classification, BrokenParamsAreAllNamed) {
   ClassificationParams params;
   EXPECT_TRUE(problems(params).empty());
   params.shift = .2;
   params.reach_in = -1;
   params.outside_weight = -1;
-  EXPECT_EQ(problems(params).size(), 3u);
+  params.outside_height = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(problems(params).size(), 4u);
 }
 
 }  // namespace

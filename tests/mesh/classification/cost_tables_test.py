@@ -1,14 +1,14 @@
 #!/usr/bin/python3
-"""The tables of what labels are worth are those that star_costs makes: a fifth of its bodies, where they met a label often.
+"""The star cost tables are those that star_costs makes: a fifth of its bodies, where they met a configuration often.
 
-usage: cost_tables_test.py LABELS_FIT SOURCES
+usage: cost_tables_test.py STAR_COSTS SOURCES
 """
 import re
 import subprocess
 import sys
 import unittest
 
-LABELS_FIT, SOURCES = sys.argv[1:3]
+STAR_COSTS, SOURCES = sys.argv[1:3]
 BODIES, OFTEN, TOLERANCE = 12, 1000, 0.015
 
 
@@ -18,17 +18,17 @@ def qualities(text):
     return {tuple(map(int, row[:3])): (float(row[3]), int(row[4])) for row in rows}
 
 
-class LabelTables(unittest.TestCase):
+class StarCostTables(unittest.TestCase):
     def check(self, tiling):
         with open(f"{SOURCES}/mesh/classification/tables/{tiling}.h") as f:
             text = f.read()
         self.assertRegex(text, f"// Made by: star_costs {tiling} 1 ")
         stored = qualities(text)
-        made = qualities(subprocess.run([LABELS_FIT, tiling, "1", str(BODIES)], check=True, capture_output=True, text=True).stdout)
-        often = {label: quality for label, (quality, seen) in made.items() if seen >= OFTEN}
+        made = qualities(subprocess.run([STAR_COSTS, tiling, "1", str(BODIES)], check=True, capture_output=True, text=True).stdout)
+        often = {configuration: quality for configuration, (quality, seen) in made.items() if seen >= OFTEN}
         self.assertGreater(len(often), 5)
-        for label, quality in often.items():
-            self.assertAlmostEqual(quality, stored[label][0], delta=TOLERANCE, msg=f"{tiling} {label}")
+        for configuration, quality in often.items():
+            self.assertAlmostEqual(quality, stored[configuration][0], delta=TOLERANCE, msg=f"{tiling} {configuration}")
 
     def test_a15(self):
         self.check("a15")

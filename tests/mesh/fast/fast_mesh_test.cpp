@@ -112,7 +112,7 @@ PatchState state_of(const UmResult& result, const AnalyticDomain& domain, double
 
 TEST(FastMesh, RepairMakesNothingWorseAndMendsPoorTetsAndFoldedFaces) {
   std::size_t mended = 0, unturned = 0, unfolded = 0;
-  // The discs are thin enough for folds, and for tets that no label mends.
+  // The discs are thin enough for folds, and for tets that no flip mends.
   const std::vector<std::pair<AnalyticDomain, double>> cases = {
       {testing::equation_9(), 9000}, {testing::ellipsoid({1, .5, .1}), 4000}, {testing::ellipsoid({1, .3, .08}), 3000}};
   for (const auto& [domain, n_tets] : cases) {
@@ -168,12 +168,12 @@ TEST(FastMesh, WhatNothingMendsIsTriedAgainOtherwise) {
   for (const Vec3& axes : {Vec3(1, .6, .12), Vec3(1, .8, .14)}) {
     const AnalyticDomain domain = testing::ellipsoid(axes);
     const BackgroundMesh background = background_of(domain, 400);
-    const auto repaired = [&](bool sharper, double less_asked) {
+    const auto repaired = [&](bool sharper, double target_step) {
       UmParams params;
       params.fast.repair.max_tries = 6;  // leaves enough to be tried again
       params.fast.repair.slides = false;
       params.fast.repair.sharper = sharper;
-      params.fast.repair.less_asked = less_asked;
+      params.fast.repair.target_step = target_step;
       return universal_mesh(background, domain, params);
     };
     const auto state = [&](const UmResult& result, double target) {
@@ -211,8 +211,8 @@ TEST(FastMesh, TetsThatAreMendedAtOnceDoNotMeet) {
   EXPECT_EQ(std::memcmp(one.final.data(), three.final.data(), one.final.size() * sizeof(Vec3)), 0);
 }
 
-// The last of its below target tets needs a pair of labels whose patch has 57 more below target tets after a sweep, and
-// none after ten: given up too early, it leaves .8187.
+// The last of its tets below the target needs a pair of flips whose patch first has more tets below the target, and
+// none after ten sweeps: a trial that is given up too early loses it.
 TEST(FastMesh, RepairWaitsForPatchesThatGetWorseFirst) {
   const AnalyticDomain domain = testing::equation_9();
   const UmResult result = universal_mesh(background_of(domain, 500000), domain);
@@ -267,9 +267,9 @@ TEST(FastMesh, TheContextCanCancelItAnywhere) {
 TEST(FastMesh, BrokenParamsAreAllNamed) {
   UmParams params;
   params.fast.layers = 0;
-  params.fast.labels.shift = 1;
+  params.fast.classification.shift = 1;
   params.fast.repair.reach = 0;
-  params.fast.repair.less_asked = -1;
+  params.fast.repair.target_step = -1;
   params.fast.update_margin = -1;
   EXPECT_EQ(problems(params).size(), 5u);
 }

@@ -197,7 +197,7 @@ TEST(PNormSmooth, WorstTetRisesToThePlateauOnTheSurface) {
     EXPECT_LT(worst_quality(layer), .6) << domain.name;
     const SmoothingReport report = smooth(layer, domain);
     EXPECT_NEAR(report.min_quality, worst_quality(layer), 1e-12) << domain.name;
-    EXPECT_GT(report.min_quality, .77) << domain.name;  // labels as they are; the paper's dvr ends at .73-.77
+    EXPECT_GT(report.min_quality, .77) << domain.name;  // classified by sign; the paper's dvr ends at .73-.77
     EXPECT_TRUE(report.settled) << domain.name;
     EXPECT_GE(report.checks, report.solves);
     EXPECT_GE(report.solves, report.moves);

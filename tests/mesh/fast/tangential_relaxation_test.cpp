@@ -64,7 +64,7 @@ std::vector<double> chords(const ActiveLayer& layer) {
   return list;
 }
 
-TEST(TangentialRelaxation, BringsFacesNearerToRidgesAtNoPriceInQuality) {
+TEST(TangentialRelaxation, BringsFacesNearerToRidgesAtNoCostInQuality) {
   const ActiveLayer& before = lens_layer();
   const ActiveLayer after = slid({});
   const std::vector<double> was = chords(before), is = chords(after);

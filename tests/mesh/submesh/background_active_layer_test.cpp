@@ -84,7 +84,7 @@ double least_quality(const Tiling& tiling) {
 }
 
 TEST(Backgrounds, FastModeMeshesEquationNineOnEach) {
-  // What it makes, minus .01. Z's labels have costs.
+  // What it makes, minus .01. Z has star costs, which classification needs.
   EXPECT_GT(least_quality(z_phase()), .81);
   EXPECT_GT(least_quality(acute_slab()), .77);
   EXPECT_GT(least_quality(acute_cube()), .615);
