@@ -10,6 +10,7 @@
 #include "mesh/classification/tables/a15.h"
 #include "mesh/classification/tables/cube.h"
 #include "mesh/classification/tables/slab.h"
+#include "mesh/core/quality_target.h"
 
 namespace umtet {
 namespace {
@@ -59,14 +60,14 @@ ConfigurationCosts costs(std::vector<LinkTopology> links, std::span<const Config
 }
 
 const ConfigurationCosts& costs_of_a15() {
-  static const ConfigurationCosts made = costs(a15_links(), kA15ConfigurationQualities, kGoodInA15, .82, 3);
+  static const ConfigurationCosts made = costs(a15_links(), kA15ConfigurationQualities, kGoodInA15, kQualityTarget, 3);
   return made;
 }
 
 ConfigurationCosts costs_of_z() {
   std::vector<LinkTopology> links = link_topology(z_phase(), tables(z_phase()));
   const std::vector<ConfigurationQuality> qualities = qualities_of_z(links);
-  return costs(std::move(links), qualities, kGoodInA15, .82, 3);
+  return costs(std::move(links), qualities, kGoodInA15, kQualityTarget, 3);
 }
 
 }  // namespace

@@ -20,6 +20,9 @@ struct FastParams {
   /// .03 it is .77 and .006, and .01 on a ball of 5k tets.
   double update_margin = .033;
   RepairParams repair;
+
+  /// Makes `quality` the mean ratio that every tet is to reach, in place of kQualityTarget; in (0, 1)
+  void set_quality_target(double quality) { smoothing.target = repair.target = quality; }
 };
 
 /// Every broken constraint, not just the first.

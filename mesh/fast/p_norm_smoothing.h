@@ -10,13 +10,14 @@
 #include "common/context.h"
 #include "mesh/core/implicit_function.h"
 #include "mesh/core/max_min.h"
+#include "mesh/core/quality_target.h"
 #include "mesh/implicit/closest_point.h"
 #include "mesh/submesh/active_layer.h"
 
 namespace umtet {
 
 struct SmoothingParams {
-  double target = .82;  ///< mean ratio every tet is to reach; in (0, 1)
+  double target = kQualityTarget;  ///< mean ratio every tet is to reach; in (0, 1)
   /// A vertex is visited while its worst tet is below target + margin; >= 0. At 100k tets .034 instead of .02 lifts the
   /// 1 % quantile of Q by .005 (T6) to .012 (sphere), for a quarter more solves; beyond .04 nothing is gained.
   double margin = .034;

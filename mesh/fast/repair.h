@@ -8,13 +8,14 @@
 
 #include "common/context.h"
 #include "mesh/classification/classification.h"
+#include "mesh/core/quality_target.h"
 #include "mesh/fast/backtracking_projection.h"
 #include "mesh/submesh/lattice_active_layer.h"
 
 namespace umtet {
 
 struct RepairParams {
-  double target = .82;  ///< tets below are mended, and misaligned faces; in (0, 1)
+  double target = kQualityTarget;  ///< tets below are mended, and misaligned faces; in (0, 1)
   int reach = 3;        ///< a patch moves the vertices within this many edges of the flip and the tet; >= 1. With 2
                         ///< some tets of two scans stay below .8
   int max_tries = 24;   ///< vertices reclassified on trial for one tet; >= 0. 0: no repair

@@ -5,13 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "mesh/core/quality_target.h"
 #include "mesh/fast/p_norm_smoothing.h"
 
 namespace umtet {
 
 struct TangentialRelaxationParams {
   double least_chord = .1;     ///< boundary faces farther than this many h from psi = 0 are worth a move; > 0
-  double least_quality = .82;  ///< no tet falls below this mean ratio, or below the worst of its ring; in (0, 1)
+  double least_quality = kQualityTarget;  ///< no tet falls below this mean ratio, or below the worst of its ring; in (0, 1)
   /// Added to least_quality around vertices without a face farther than far_chord h; both >= 0. The 1 % quantile of Q
   /// is .003 higher then (T6, 100k tets), and farthest samples are where they were.
   double near_margin = .02, far_chord = .13;

@@ -37,7 +37,7 @@ SsdParams ssd_params(const Parameters& p) {
 UmParams um_params(const Parameters& p) {
   UmParams um;
   um.mode = p.mesh().mode == MeshingMode::Paper ? UmMode::Paper : UmMode::Fast;
-  um.fast.smoothing.target = um.fast.repair.target = p.mesh().target_quality;
+  um.fast.set_quality_target(p.mesh().target_quality);
   um.paper.projection_passes = static_cast<int>(p.mesh().projection_passes);
   um.paper.relaxation_iterations = static_cast<int>(p.mesh().relaxation_iterations);
   um.paper.samples = static_cast<int>(p.mesh().samples);
