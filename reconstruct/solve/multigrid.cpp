@@ -178,7 +178,8 @@ Multigrid::Multigrid(const SsdOperator& finest, int n_levels) {
 }
 
 // Chebyshev iteration for A x = r on D^-1 A.
-// @param before  the coarse correction: from x = 0, and the residual is left in level.r. After it nobody asks for that
+// @param before  the coarse correction: from x = 0, and the residual is left in level.r. Else from level.x, and level.r
+// is not needed afterwards.
 void Multigrid::smooth(Level& level, bool before) {
   const std::ptrdiff_t n = level.op.size();
   const double high = level.lambda_max, low = high / kSmoothingRange;
