@@ -35,7 +35,7 @@ class Crawler {
         inside_(background.n_vertices()),
         positive_(background.n_tets()) {}
 
-  /// Gathers the positive faces that hang together with the one nearest to the seed.
+  /// Gathers the positive faces that are connected with the one nearest to the seed.
   bool gather(const Vec3& seed) {
     const std::int64_t start = nearest_vertex(seed);
     if (start < 0) return false;

@@ -27,7 +27,7 @@ std::atomic<int> asked_by{0};
 std::atomic<const char*> work{"start"};
 std::atomic<bool> in_own_time{false};
 std::atomic<const char*> answers_to{nullptr};  ///< the command whose caller waits for a document
-std::atomic<bool> last_word_taken{false};      ///< who finds it false answers and ends the process, and nobody else
+std::atomic<bool> last_word_taken{false};  ///< the one that finds it false answers and ends the process; no other does
 std::atomic<bool> last_word_said{false};
 std::atomic<std::int64_t> reader_has_until{0};  ///< in us of the monotonic clock; 0: as long as it takes
 pthread_t first_thread;                         ///< where signals are answered, one after the other
@@ -39,7 +39,7 @@ static_assert(std::atomic<int>::is_always_lock_free && std::atomic<const char*>:
 // Steps poll more often than this; a few library calls on large clouds take longer, and the process ends within them.
 // The promise is a fifth of a second, and the kernel needs part of it to free the memory of a large process.
 constexpr int kPatienceMicroseconds = 100'000;
-// After a signal no process waits longer for somebody who does not read its answer.
+// After a signal the process waits no longer than this for a reader of its answer that does not read.
 constexpr int kReaderMicroseconds = 5'000'000;
 
 int code_of(int signal) { return signal == SIGALRM ? static_cast<int>(ExitCode::ResourceLimit) : 128 + signal; }

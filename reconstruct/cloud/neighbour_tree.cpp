@@ -16,8 +16,8 @@ namespace umtet {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// FLANN compares what it has already summed up over the walk with the bound, so a bound of a few roundings more than
-// the distance that is meant keeps points at exactly that distance; the result sets look again.
+// FLANN compares what it has already summed up over the walk with the bound, so the bound is a few roundings
+// more than the distance, lest points at exactly that distance are lost; the result sets compare again.
 constexpr double kRounding = 1 + 1e-12;
 double rounded_up(double distance2) { return kRounding * distance2 + std::numeric_limits<double>::min(); }
 
