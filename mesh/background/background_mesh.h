@@ -20,7 +20,7 @@ using Box = Eigen::AlignedBox3d;
 /// of a cell * (cell index in the n^3 range). A15 has 8 types and 46 tets.
 /// Ids ascend with x fastest, then y, then z. Immutable; one mesh serves any number of domains and threads.
 ///
-/// Or any other tet mesh, as it is stored: ids are then its vertex and tet numbers, and what speaks of cells and types
+/// Or any other tet mesh, as it is stored: ids are then its vertex and tet numbers, and what is said of cells and types
 /// does not apply. Both are one class because every call is about one vertex or one tet: to tell the
 /// kinds apart costs a branch that is always predicted, where a template would double all that is built on backgrounds.
 class BackgroundMesh {

@@ -59,7 +59,7 @@ LinkState LinkTopology::find_state(LinkMask inside) const {
   s.simple = is_connected(*this, inside) && is_connected(*this, outside);
   if (!s.simple || twice || s.n_positive_faces == 0) return s;
   // The positive edges around the inside part must be one cycle. Outside vertices off it are deeper outside, because
-  // the outside part hangs together.
+  // the outside part is connected.
   LinkMask cycle = 0;
   bool good = true;
   for (int k = 0; k < n; ++k) {

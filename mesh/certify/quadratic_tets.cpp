@@ -59,21 +59,21 @@ std::size_t project(const std::vector<CurvedEdge>& edges, ImplicitFunctionRef ps
 }
 
 /// The tets that may have a determinant below `bar` times its mean, of those with a curved edge.
-std::vector<int> poor_tets(const QuadraticTetMesh& mesh, const std::vector<MidSide>& kind, double bar,
-                           const Context& context) {
+std::vector<int> tets_below(const QuadraticTetMesh& mesh, const std::vector<MidSide>& kind, double bar,
+                            const Context& context) {
   const std::size_t n_corners = mesh.V.size() - kind.size();
-  std::vector<char> is_poor(mesh.C.size(), 0);
+  std::vector<char> is_below(mesh.C.size(), 0);
   polled_parallel_for(mesh.C.size(), kTetsPerPoll, context, [&](std::size_t t) {
     const QuadraticTet& tet = mesh.C[t];
     const bool curved =
         std::any_of(tet.begin() + 4, tet.end(), [&](int m) { return kind[m - n_corners] == MidSide::Surface; });
-    is_poor[t] = curved && jacobian_bounds(nodes_of(mesh, tet)).scaled_lower() <= bar;
+    is_below[t] = curved && jacobian_bounds(nodes_of(mesh, tet)).scaled_lower() <= bar;
   });
-  std::vector<int> poor;
-  for (std::size_t t = 0; t < is_poor.size(); ++t) {
-    if (is_poor[t]) poor.push_back(static_cast<int>(t));
+  std::vector<int> below;
+  for (std::size_t t = 0; t < is_below.size(); ++t) {
+    if (is_below[t]) below.push_back(static_cast<int>(t));
   }
-  return poor;
+  return below;
 }
 
 }  // namespace
@@ -108,12 +108,12 @@ SecondOrder quadratic_tets(const TetMesh& mesh, const std::vector<Triangle>& cur
   result.n_psi_evaluations = project(edges, psi, h, params.closest_point, V, kind, context);
   for (const CurvedEdge& e : edges) result.n_unprojected += kind[e.mid_side - n_corners] == MidSide::Fixed;
 
-  std::vector<int> poor = poor_tets(result.mesh, kind, params.target, context);
-  if (!poor.empty()) {
+  std::vector<int> below = tets_below(result.mesh, kind, params.target, context);
+  if (!below.empty()) {
     const std::vector<Vec3> before(V.begin() + static_cast<std::ptrdiff_t>(n_corners), V.end());
     detail::MidSideRelaxation relaxation(result.mesh, n_corners, kind, psi, h, params);
-    result.n_psi_evaluations += relaxation.relax(poor, context);
-    relaxation.retreat(poor);
+    result.n_psi_evaluations += relaxation.relax(below, context);
+    relaxation.retreat(below);
     for (std::size_t m = 0; m < kind.size(); ++m) {
       const bool moved = V[n_corners + m] != before[m];
       result.n_slid += moved && kind[m] == MidSide::Surface;

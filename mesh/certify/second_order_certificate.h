@@ -48,7 +48,7 @@ struct SecondOrderInput {
 SecondOrderCertificate certify_second_order(const SecondOrderInput&);
 
 /// The reasons why it fails, empty = pass: a Jacobian that is not positive, torn edges, boundary mid-sides off psi = 0.
-/// @param n_named  so many mid-sides may be off psi = 0: they were put back for the Jacobians, and are reported
+/// @param n_named  this many mid-sides may be off psi = 0: they were put back for the Jacobians, and are reported
 std::vector<std::string> failures(const SecondOrderCertificate&, std::size_t n_named = 0);
 
 }  // namespace umtet

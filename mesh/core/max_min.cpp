@@ -22,7 +22,7 @@ using PackMap = Eigen::Map<const Pack, Eigen::Aligned32>;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kGoldenSteps = 10;  // [Rangarajan2018, Section 3.8(d)]
 
-PackMap lane(const std::array<double, kMaxRing>& a, int k) { return PackMap(a.data() + k); }
+PackMap pack(const std::array<double, kMaxRing>& a, int k) { return PackMap(a.data() + k); }
 
 void put(std::array<double, kMaxRing>& a, int k, const Pack& x) {
   Eigen::Map<Pack, Eigen::Aligned32>(a.data() + k) = x;
@@ -40,8 +40,8 @@ Probe lowest(const RingOnLine& r, double lambda) {
   alignas(32) std::array<double, kMaxRing> f;
   Pack least = Pack::Constant(kInfinity);
   for (int k = 0; k < r.n; k += kPackSize) {
-    const Pack V = lane(r.v0, k) + lane(r.v1, k) * lambda;
-    const Pack L = lane(r.l0, k) + (lane(r.l1, k) + 3 * lambda) * lambda;
+    const Pack V = pack(r.v0, k) + pack(r.v1, k) * lambda;
+    const Pack L = pack(r.l0, k) + (pack(r.l1, k) + 3 * lambda) * lambda;
     const Pack here = f_of(V, L);
     put(f, k, here);
     least = least.min(here);
@@ -250,8 +250,8 @@ double OneRing::min_f(const Vec3& y) const {
   Pack least = Pack::Constant(kInfinity);
   const double y2 = 3 * y.squaredNorm();
   for (int k = 0; k < n; k += kPackSize) {
-    const Pack V = lane(v, k) - (lane(nx, k) * y.x() + lane(ny, k) * y.y() + lane(nz, k) * y.z());
-    const Pack L = lane(l, k) + (lane(sx, k) * y.x() + lane(sy, k) * y.y() + lane(sz, k) * y.z()) + y2;
+    const Pack V = pack(v, k) - (pack(nx, k) * y.x() + pack(ny, k) * y.y() + pack(nz, k) * y.z());
+    const Pack L = pack(l, k) + (pack(sx, k) * y.x() + pack(sy, k) * y.y() + pack(sz, k) * y.z()) + y2;
     least = least.min(f_of(V, L));
   }
   return least.minCoeff();
@@ -259,10 +259,10 @@ double OneRing::min_f(const Vec3& y) const {
 
 RingOnLine::RingOnLine(const OneRing& ring, const Vec3& d) : n(ring.n) {
   for (int k = 0; k < n; k += kPackSize) {
-    put(v0, k, lane(ring.v, k));
-    put(v1, k, -(lane(ring.nx, k) * d.x() + lane(ring.ny, k) * d.y() + lane(ring.nz, k) * d.z()));
-    put(l0, k, lane(ring.l, k));
-    put(l1, k, lane(ring.sx, k) * d.x() + lane(ring.sy, k) * d.y() + lane(ring.sz, k) * d.z());
+    put(v0, k, pack(ring.v, k));
+    put(v1, k, -(pack(ring.nx, k) * d.x() + pack(ring.ny, k) * d.y() + pack(ring.nz, k) * d.z()));
+    put(l0, k, pack(ring.l, k));
+    put(l1, k, pack(ring.sx, k) * d.x() + pack(ring.sy, k) * d.y() + pack(ring.sz, k) * d.z());
   }
 }
 

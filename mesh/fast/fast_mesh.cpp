@@ -299,7 +299,7 @@ void FastRun::measure_assumptions() {
   result_.obtuse_conditioning_angles = angles.not_acute.count;
 }
 
-/// Changes vertices between inside and outside where that mends a tet.
+/// Flips vertices where that mends a tet.
 void FastRun::repair_classification() {
   if (!costs_of_tiling_) return;
   RepairParams params = params_.repair;

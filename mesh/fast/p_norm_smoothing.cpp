@@ -36,9 +36,9 @@ constexpr std::size_t kTetsPerTask = 1 << 12;  // some ten nanoseconds each
 constexpr std::size_t kAhead = 2;  // solves: the ring of a vertex is prefetched before it is needed
 
 /// One check and, where it is needed, one solve. Reads the ring, changes nothing.
-class Visitor {
+class VertexSolver {
  public:
-  Visitor(const PNormSmoother& smoother, ImplicitFunctionRef psi, const SmoothingParams& params)
+  VertexSolver(const PNormSmoother& smoother, ImplicitFunctionRef psi, const SmoothingParams& params)
       : smoother_(smoother),
         layer_(smoother.layer()),
         psi_(psi),
@@ -213,14 +213,14 @@ SmoothingReport PNormSmoother::run(ImplicitFunctionRef psi, const SmoothingParam
     for (const std::string& problem : list) all += (all.empty() ? "" : "; ") + problem;
     throw std::invalid_argument(all);
   }
-  const Visitor solve(*this, psi, params);
-  const auto visit_some = [&](const tbb::blocked_range<std::size_t>& range, Counts counts) {
+  const VertexSolver solve(*this, psi, params);
+  const auto solve_some = [&](const tbb::blocked_range<std::size_t>& range, Counts counts) {
     for (std::size_t k = range.begin(); k != range.end(); ++k) {
       const int i = todo_[k];
       if (k + kAhead < range.end()) {
         for (const Triangle& face : faces(todo_[k + kAhead])) __builtin_prefetch(&layer_.V[face[0]]);
       }
-      const Visitor::Result result = solve(i);
+      const VertexSolver::Result result = solve(i);
       ++counts.checks;
       counts.solves += result.needed;
       counts.moves += result.moved;
@@ -255,8 +255,8 @@ SmoothingReport PNormSmoother::run(ImplicitFunctionRef psi, const SmoothingParam
         context.poll();
         const tbb::blocked_range<std::size_t> some(begin, std::min(todo_.size(), begin + kSolvesPerPoll),
                                                    kSolvesPerTask);
-        sweep = sweep + (some.size() < kWorthThreads ? visit_some(some, Counts{})
-                                                     : tbb::parallel_reduce(some, Counts{}, visit_some, std::plus<>()));
+        sweep = sweep + (some.size() < kWorthThreads ? solve_some(some, Counts{})
+                                                     : tbb::parallel_reduce(some, Counts{}, solve_some, std::plus<>()));
       }
     }
     ++report.sweeps;

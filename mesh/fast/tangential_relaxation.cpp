@@ -59,10 +59,10 @@ struct Chords {
   Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
 };
 
-class Visitor {
+class VertexSolver {
  public:
-  Visitor(const PNormSmoother& smoother, ImplicitFunctionRef psi, const Fans& fans,
-          const TangentialRelaxationParams& params, const ClosestPointParams& closest_point)
+  VertexSolver(const PNormSmoother& smoother, ImplicitFunctionRef psi, const Fans& fans,
+               const TangentialRelaxationParams& params, const ClosestPointParams& closest_point)
       : smoother_(smoother),
         layer_(smoother.layer()),
         psi_(psi),
@@ -217,7 +217,7 @@ TangentialRelaxationReport relax_tangentially(PNormSmoother& smoother, const std
   const std::vector<std::vector<int>> colours = vertices_of_far_faces(layer, psi, faces, params, context, report);
   if (report.vertices == 0) return report;
   const Fans fans(faces, layer.V.size());
-  const Visitor solve(smoother, psi, fans, params, smoothing.closest_point);
+  const VertexSolver solve(smoother, psi, fans, params, smoothing.closest_point);
   smoothing.max_sweeps = params.inner_sweeps;
   std::vector<std::size_t> evaluations(layer.V.size());
   std::vector<ActiveLayer::Role> roles = layer.role;

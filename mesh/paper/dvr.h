@@ -43,8 +43,8 @@ class MovingMesh {
 };
 
 /// An order of relaxation that threads may follow and that gives the bits of the sequential one: vertex i is in level
-/// 1 + the highest level among its lower-numbered neighbours in the list, so that whoever it depends on has moved, and
-/// vertices of one level share no tet.
+/// 1 + the highest level among its lower-numbered neighbours in the list, so that all vertices it depends on have
+/// moved, and vertices of one level share no tet.
 class RelaxationOrder {
  public:
   /// @param vertices  I_R or I^+: to be relaxed in ascending order

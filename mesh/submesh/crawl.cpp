@@ -22,8 +22,8 @@ namespace {
 constexpr int kMaxWalk = 200;
 // Cut tets that are looked at from a cut edge on: a positively cut one is among the next few dozen.
 constexpr std::size_t kMaxCutTets = 2000;
-// Of the flood, some ten nanoseconds each.
-constexpr std::size_t kSolvesPerPoll = 1 << 16;
+// Of the flood: a vertex takes some ten nanoseconds.
+constexpr std::size_t kVerticesPerPoll = 1 << 16;
 
 class Crawler {
  public:
@@ -35,7 +35,7 @@ class Crawler {
         inside_(background.n_vertices()),
         positive_(background.n_tets()) {}
 
-  /// Gathers the positive faces that hang together with the one nearest to the seed.
+  /// Gathers the positive faces that are connected with the one nearest to the seed.
   bool gather(const Vec3& seed) {
     const std::int64_t start = nearest_vertex(seed);
     if (start < 0) return false;
@@ -215,7 +215,7 @@ IdSet Crawler::flood_inside() {
     for (const std::int64_t v : background_.tet(t)) visit(v);
   }
   for (std::size_t n = 0; !stack.empty(); ++n) {
-    if (n % kSolvesPerPoll == 0) context_.poll();
+    if (n % kVerticesPerPoll == 0) context_.poll();
     const std::int64_t v = stack.back();
     stack.pop_back();
     if (!background_.is_lattice() || background_.on_boundary(v)) {

@@ -25,8 +25,8 @@ std::string checksum(std::string_view text);
 /// \throw std::system_error naming the file
 FileStamp stamp(const std::filesystem::path& file);
 
-/// The stamps of the files that one run deals with: each file is read once, however often it is asked for. A file is
-/// taken for unchanged while its inode, size and time of change are what they were; it may be renamed meanwhile. Not
+/// The stamps of the files that one run deals with: each file is read once, however often its stamp is needed. A file
+/// is taken for unchanged while its inode, size and time of change are what they were; it may be renamed meanwhile. Not
 /// for several threads at a time.
 class FileStamps {
  public:

@@ -41,7 +41,7 @@ struct TooThin : MeshingImpossible {
 struct CertificateFailed : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
-/// A file of the case is not what its record says, or what its format asks for.
+/// A file of the case is not what its record says, or not of its format.
 struct ArtefactDamaged : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

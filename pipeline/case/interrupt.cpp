@@ -27,7 +27,7 @@ std::atomic<int> asked_by{0};
 std::atomic<const char*> work{"start"};
 std::atomic<bool> in_own_time{false};
 std::atomic<const char*> answers_to{nullptr};  ///< the command whose caller waits for a document
-std::atomic<bool> last_word_taken{false};      ///< who finds it false answers and ends the process, and nobody else
+std::atomic<bool> last_word_taken{false};  ///< the one that finds it false answers and ends the process; no other does
 std::atomic<bool> last_word_said{false};
 std::atomic<std::int64_t> reader_has_until{0};  ///< in us of the monotonic clock; 0: as long as it takes
 pthread_t first_thread;                         ///< where signals are answered, one after the other
@@ -36,10 +36,10 @@ std::terminate_handler other_end = nullptr;
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<const char*>::is_always_lock_free &&
               std::atomic<bool>::is_always_lock_free && std::atomic<std::int64_t>::is_always_lock_free);
 
-// Steps poll more often than this; a few library calls on large clouds take longer, and end without their say. A fifth
-// of a second is promised, and what the kernel takes back of a large process is part of it.
+// Steps poll more often than this; a few library calls on large clouds take longer, and the process ends within them.
+// The promise is a fifth of a second, and the kernel needs part of it to free the memory of a large process.
 constexpr int kPatienceMicroseconds = 100'000;
-// After a signal no process waits longer for somebody who does not read its answer.
+// After a signal the process waits no longer than this for a reader of its answer that does not read.
 constexpr int kReaderMicroseconds = 5'000'000;
 
 int code_of(int signal) { return signal == SIGALRM ? static_cast<int>(ExitCode::ResourceLimit) : 128 + signal; }
@@ -77,8 +77,8 @@ class Words {
   std::size_t size_ = 0;
 };
 
-/// What is said where nothing can be allocated or caught, to people and to programs. Every file of a case is renamed
-/// into place when it is whole, so the process may end at any instruction.
+/// Writes the message and the document of a failure where nothing can be allocated or caught, and ends. Every file of a
+/// case is renamed into place when it is whole, so the process may end at any instruction.
 /// @param code  the status in digits
 [[noreturn]] void end_now(const Words& error, const char* code, int status) {
   (Words() << "\numtet: " << error.text() << "\n").write(STDERR_FILENO);
@@ -90,7 +90,7 @@ class Words {
   ::_exit(status);
 }
 
-/// Returns where the program itself is answering: to end as it would have is sooner than to end at once.
+/// Ends the process, unless the program is writing its own answer: that may finish, within kReaderMicroseconds.
 void stop_now(int signal) {
   if (!last_word_taken.exchange(true)) {
     const char* what = signal == SIGALRM ? "out of time" : signal == SIGTERM ? "terminated" : "interrupted";
@@ -106,7 +106,7 @@ void stop_now(int signal) {
   set_timer(until - time);
 }
 
-/// A second signal, the time limit behind a signal, and the end of patience are all the same: at once.
+/// The first signal sets the request to stop and a timer. A second signal, or the timer, ends the process at once.
 void answer(int signal) {
   const bool is_timer = signal == SIGALRM;
   int first = 0;
@@ -134,12 +134,13 @@ extern "C" void hear(int signal) {
   } catch (const std::bad_alloc&) {
     const int status = static_cast<int>(ExitCode::ResourceLimit);
     const bool is_first = ::pthread_equal(::pthread_self(), first_thread);
-    if (is_first && last_word_taken.exchange(true)) ::_exit(status);  // it was about to end
+    if (is_first && last_word_taken.exchange(true))
+      ::_exit(status);  // this thread was writing the answer: no second one
     if (!is_first) take_last_word();
     end_now(Words() << "out of memory in " << work.load(), "9", status);
   } catch (...) {
   }
-  if (other_end) other_end();  // says what it was
+  if (other_end) other_end();  // the former handler prints the exception
   std::abort();
 }
 
@@ -172,7 +173,7 @@ void answer_stops_in_json(const char* command) { answers_to = command; }
 
 void take_last_word() {
   if (!last_word_taken.exchange(true)) return;
-  for (;;) ::pause();  // until the other one ends the process
+  for (;;) ::pause();  // until the thread that answers ends the process
 }
 
 void say_no_more() { last_word_said = true; }

@@ -15,14 +15,14 @@
 namespace umtet {
 namespace {
 
-// Peak of the whole run over its tets: 133 MB for a ball of 300 000, and 1 GB for two million.
+// Peak of a whole run over its tets, about.
 constexpr double kBytesPerTet = 500;
 // The searches for omega_h keep up to four bits per vertex of the background mesh, with ranks, and two per tet.
 constexpr double kBytesPerBackgroundVertex = 1, kBytesPerBackgroundTet = .25;
 
 // mesh.vtu of a ball: 5.7 MB for 98 thousand tets, 58 bytes a tet.
 constexpr double kFileBytesPerTet = 60;
-// glibc's and TBB's stacks.
+// The default of glibc and of TBB for a thread.
 constexpr double kStackBytes = 8 << 20;
 // AddressSanitizer's allocator ends the process where the system refuses it memory; what is asked for beforehand
 // (require_memory) is refused there, too.

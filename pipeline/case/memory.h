@@ -10,7 +10,7 @@ namespace umtet {
 /// Bytes that a stage may take: output.max_memory, or what the system says it can give.
 double allowed_bytes(const Parameters& parameters);
 
-/// From now on, no more than `bytes` can be allocated: what would be more is std::bad_alloc.
+/// From now on, no more than `bytes` can be allocated: beyond that there is std::bad_alloc.
 /// @param threads  whose stacks are not counted
 void limit_memory(double bytes, int threads);
 

@@ -69,7 +69,7 @@ struct StageState {
 StageState inspect_stage(const CasePaths& paths, Stage stage, const Json& parameters,
                          const std::optional<std::vector<RecordedFile>>& inputs);
 
-/// The record as it stands; whether its outputs are there is not asked.
+/// The record as it stands; whether its outputs are there is not looked at.
 /// \throw ArtefactDamaged, std::system_error naming the file
 StageRecord read_record(const CasePaths& paths, Stage stage);
 

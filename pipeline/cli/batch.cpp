@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 namespace {
 
 using namespace std::chrono_literals;
-constexpr auto kPollPeriod = 10ms;  // a scan takes tenths of a second at least
+constexpr auto kPollPeriod = 10ms;  // short beside the tenths of a second that the smallest scan takes
 // A child ends 0.1 s after its time is over, unless the system holds it.
 constexpr double kGraceSeconds = 5;
 
@@ -174,7 +174,7 @@ void Batch::finish(const Running& child, const ChildEnd& end) {
   BatchRow& row = rows_[child.row];
   row.seconds = end.seconds;
   row.peak_memory_MB = end.peak_memory_MB;
-  if (end.signal == SIGTERM) {  // before it could listen
+  if (end.signal == SIGTERM) {  // before it had a handler for it
     row.verdict = verdict_of(static_cast<int>(ExitCode::Terminated));
     row.reason = "terminated";
   } else if (end.signal != 0) {
@@ -189,9 +189,9 @@ void Batch::finish(const Running& child, const ChildEnd& end) {
     try {
       read_answer(row, Json::parse(read_text(log(row, ".json"))));
     } catch (const Json::exception&) {
-      // It could not be written whole, or the process ended before; its last words are in the log.
+      // The answer is not whole, or the process ended before it; the last line of the log says why.
     } catch (const ArtefactDamaged&) {
-      // The same, of its certificate.
+      // The same of the certificate in it.
     } catch (const std::system_error&) {
       // There is no answer at all.
     }

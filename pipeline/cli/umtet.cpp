@@ -222,7 +222,7 @@ bool print(const std::string& text) {
 }
 
 int run_program(int argc, char** argv) {
-  // A call that cannot be understood still answers in the language it asked for.
+  // A call that cannot be understood still gets a document if --json is in it.
   bool json = std::any_of(argv, argv + argc, [](const char* a) { return std::string_view(a) == "--json"; });
   if (json) answer_stops_in_json("");
   std::string command;
@@ -254,8 +254,8 @@ int run_program(int argc, char** argv) {
   return static_cast<int>(output.code);
 }
 
-/// Arrays of some megabytes come and go in every stage. What is freed is kept: given back, each page would be asked for
-/// again, a twentieth of the time of half a million samples.
+/// Arrays of some megabytes come and go in every stage. Freed memory is kept for the next one: if it were given back to
+/// the system, the kernel would have to clear every page anew.
 void keep_freed_memory() {
 #ifdef __GLIBC__
   mallopt(M_MMAP_MAX, 0);

@@ -25,7 +25,7 @@ ClassificationSource classification_source(const Parameters&);
 class BackgroundChoice {
  public:
   /// Reads the file, if it is one. Its coordinates are model coordinates.
-  /// \throw UsageError when h or a number of tets is asked of a file, or as require_walls(); MeshFileRefused,
+  /// \throw UsageError when h or a number of tets is given for a file, or as require_walls(); MeshFileRefused,
   ///        std::system_error
   BackgroundChoice(const Parameters& parameters, const Domain& domain);
 
@@ -33,7 +33,7 @@ class BackgroundChoice {
   std::optional<double> own_h() const { return given_ ? std::optional(given_->h()) : std::nullopt; }
   /// About how many tets of it are taken.
   double expected_tets(const Domain& domain, double h) const;
-  /// @param n_tets  that were asked for, or 0
+  /// @param n_tets  that are wanted, or 0
   /// @param allowed  bytes
   /// \throw ResourceLimit
   BackgroundMesh make(const Domain& domain, double h, std::int64_t n_tets, double allowed) const;

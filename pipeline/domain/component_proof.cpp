@@ -11,7 +11,7 @@
 namespace umtet {
 namespace {
 
-// Cells this many times finer decide what the first ones leave open.
+// Where the first cells leave open whether psi has a zero, cells this many times finer decide.
 constexpr double kFiner = 4;
 
 Eigen::Vector3i cube_of(const Vec3& x, const Vec3& origin, double size) {

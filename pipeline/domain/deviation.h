@@ -12,10 +12,9 @@ Eigen::Vector2d principal_curvatures(ImplicitFunctionRef psi, const Vec3& x);
 /// The largest edge length at which flat faces stay within `deviation` of psi = 0, by its curvature.
 ///
 /// The centroid of a triangle with its corners on a surface is off it by R^2 (k1 + k2) / 4 for circumradius R. With
-/// the R of the mesh's worst faces that is (|k1| + |k2|) h^2 / 6.8; measured: at most / 7.2 on spheres, ellipsoids,
-/// tori and x^4 + y^4 + z^4 = 1. Curvatures above 1 / deviation count as that: such a bump is no larger than what may
-/// be missed. psi is taken as it is cut for the h that results: h is lowered from `start` until it is fine enough for
-/// the detail that it lets in. On return domain is cut for the result.
+/// R = .77 h, a bound for the faces of a mesh, that is (|k1| + |k2|) h^2 / 6.8. Curvatures above 1 / deviation count as
+/// that: such a bump is no larger than what may be missed. psi is taken as it is cut for the h that results: h is
+/// lowered from `start` until it is fine enough for the detail that it lets in. On return domain is cut for the result.
 /// @param deviation, start  model units, > 0
 /// @return at most `start`; not above start, and `least` where even that is too coarse
 /// \throw Cancelled

@@ -42,7 +42,7 @@ struct Domain {
   /// formula may have any.
   double steepest() const { return level_set ? 2 : std::numeric_limits<double>::infinity(); }
 
-  /// Volume and area of what is meshed, measured when they are first asked for: an estimate, whatever detail is cut.
+  /// Volume and area of what is meshed, measured at the first call: an estimate, whatever detail is cut.
   const BodySize& size() const;
 
   /// Negative in the body.

@@ -17,9 +17,9 @@
 namespace umtet {
 namespace {
 
-// psi is followed in steps of this many edges, up to a little more than what counts.
+// psi is followed in steps of this many edges, to a little beyond kLeastEdgesAcross.
 constexpr double kStep = .125, kReach = kLeastEdgesAcross + 2 * kStep;
-// Positions listed in an error.
+// Places listed in an error.
 constexpr std::size_t kListed = 5;
 
 /// Points of the boundary with the area each stands for.

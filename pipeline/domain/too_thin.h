@@ -25,13 +25,13 @@ struct ThinPlaces {
 
 /// A place is too thin if it is thinner than this many edges ...
 inline constexpr double kLeastEdgesAcross = 1.25;
-/// ... on more than this much of the boundary, in h^2: a few samples of a rim or of noise do no harm.
+/// ... on more than this much of the boundary, in h^2: a few samples at a sharp edge, or of noise, do no harm.
 inline constexpr double kLeastThinArea = 0.5;
 
 /// What a mesh of edge length h cannot show, before it is made.
 ///
 /// The thickness of psi, as it is cut for h, at the cut points of the pieces that are kept. Thin points half an edge
-/// apart or less are one place. What h a place needs is asked of psi with all its detail.
+/// apart or less are one place. The h that a place needs is that of psi with all its detail.
 /// @param pieces  of choose_components(domain, h)
 /// Cost: some twenty values of psi a cut point. The result does not depend on the number of threads.
 /// \throw Cancelled

@@ -29,7 +29,7 @@ void set_support(const Domain& domain, const std::vector<Vec3>& V, const std::ve
                  std::vector<double>& support);
 
 /// Of a cloud's final mesh the distance of each boundary vertex to the nearest sample, -1 inside and at walls, as point
-/// data `support`: what is data and what is a guess. Nothing without a cloud. \throw Cancelled
+/// data `support`: where it is large, no data back the surface. Nothing without a cloud. \throw Cancelled
 void add_support(const Domain& domain, const UmResult& result, MeshFile& content);
 
 /// The final mesh, with support. \throw Cancelled

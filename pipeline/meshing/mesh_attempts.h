@@ -32,7 +32,7 @@ struct MeshAttempt {
 /// mesh at all: a few folded faces come and go with h), then at .8, .64 and .51 of it; never below choice.least, which
 /// is tried instead where it is nearer.
 ///
-/// @param say  is told why another h is tried, and which mesh is kept if it is not the last
+/// @param say  called with why another h is tried, and with which mesh is kept if it is not the last
 /// @return the best of them: a mesh before none, then the one with the fewest reasons against it, then the last
 MeshAttempt best_attempt(const EdgeLength& choice, const std::function<MeshAttempt(double h)>& attempt,
                          const std::function<void(const std::string&)>& say);

@@ -201,7 +201,7 @@ MeshMeasures measure(const Domain& domain, const UmResult& result, const ZeroSet
   Comparison compared = compare_with_domain(domain, mesh, faces, m.mesh, pieces, context);
   m.domain = std::move(compared.report);
   blame(std::move(compared.reason));
-  // No face: the body fell through the background.
+  // No face: the body lies between the vertices of the background.
   if (!domain.cloud.points.empty() && !faces.empty()) {
     std::vector<double> d = SurfaceDistance(mesh.V, faces).distances(domain.cloud.points, context);
     if (domain.fitted) blame(lost_samples(domain, d, h, context));

@@ -20,10 +20,10 @@
 namespace umtet {
 namespace {
 
-// A piece that a majority of the voters can make is below the area that so many samples stand for.
+// Samples with a wrong label that make an island: a majority of the voters. Islands smaller than their area go.
 constexpr int kIslandSamples = kVoters / 2 + 1;
-// Mean faces. A vertex with all faces around it, and these with their neighbours, is the least that shows whether a
-// part is flat or bends: with fewer, single faces of a sphere would be planes.
+// Least area of a plane, in mean faces. About as many as a vertex has around it with their neighbours, the least that
+// tells flat from round: with fewer, single faces of a sphere would be planes.
 constexpr double kLeastPlane = 20;
 
 std::string name_of(int label, const std::map<int, std::string>& names) {

@@ -29,11 +29,11 @@ struct ExportedFile {
 struct ExportFormat {
   std::string name;
   std::vector<ExportedFile> files;
-  std::optional<SurfaceFormat> skin;  ///< then each of several patches has a file of its own too
+  std::optional<SurfaceFormat> surface;  ///< then each of several patches has a file of its own too
 };
 
 const std::vector<ExportFormat>& formats_known() {
-  const auto skin = [](SurfaceFormat format) {
+  const auto surface = [](SurfaceFormat format) {
     return [format](const fs::path& p, const SolverMesh& m) { write_boundary_surface(p, m, format); };
   };
   static const std::vector<ExportFormat> formats = {
@@ -42,7 +42,7 @@ const std::vector<ExportFormat>& formats_known() {
         {"_boundary.vtu", write_boundary_vtu}},
        {}},
       {"msh", {{".msh", [](const fs::path& p, const SolverMesh& m) { write_msh41(p, m, MshEncoding::Binary); }}}, {}},
-      // Two flavours of one suffix must not overwrite each other.
+      // Both versions have the suffix .msh and must not overwrite each other.
       {"msh22",
        {{"_22.msh", [](const fs::path& p, const SolverMesh& m) { write_msh22(p, m, MshEncoding::Binary); }}},
        {}},
@@ -54,9 +54,9 @@ const std::vector<ExportFormat>& formats_known() {
         {".xdmf", [](const fs::path& p, const SolverMesh& m) { write_xdmf(p, m, "mesh.h5"); }},
         {"_boundary.xdmf", [](const fs::path& p, const SolverMesh& m) { write_boundary_xdmf(p, m, "mesh.h5"); }}},
        {}},
-      {"stl", {{".stl", skin(SurfaceFormat::Stl)}}, SurfaceFormat::Stl},
-      {"obj", {{".obj", skin(SurfaceFormat::Obj)}}, SurfaceFormat::Obj},
-      {"ply", {{".ply", skin(SurfaceFormat::Ply)}}, SurfaceFormat::Ply}};
+      {"stl", {{".stl", surface(SurfaceFormat::Stl)}}, SurfaceFormat::Stl},
+      {"obj", {{".obj", surface(SurfaceFormat::Obj)}}, SurfaceFormat::Obj},
+      {"ply", {{".ply", surface(SurfaceFormat::Ply)}}, SurfaceFormat::Ply}};
   return formats;
 }
 
@@ -66,11 +66,12 @@ std::vector<PendingFile> files_of(const ExportFormat& format, const fs::path& fo
     files.push_back(
         {folder / ("mesh" + file.ending), [&mesh, &file](const fs::path& path) { file.write(path, mesh); }});
   }
-  if (!format.skin || mesh.patches.size() < 2) return files;
+  if (!format.surface || mesh.patches.size() < 2) return files;
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
-    files.push_back(
-        {folder / ("mesh." + mesh.patches[p].name + format.files.front().ending),
-         [&mesh, p, skin = *format.skin](const fs::path& path) { write_boundary_surface(path, mesh, skin, p); }});
+    files.push_back({folder / ("mesh." + mesh.patches[p].name + format.files.front().ending),
+                     [&mesh, p, surface = *format.surface](const fs::path& path) {
+                       write_boundary_surface(path, mesh, surface, p);
+                     }});
   }
   return files;
 }
@@ -80,7 +81,7 @@ bool is_exported(const std::string& name) {
     for (const ExportedFile& file : format.files) {
       if (name == "mesh" + file.ending) return true;
     }
-    if (format.skin && name.starts_with("mesh.") && name.ends_with(format.files.front().ending)) return true;
+    if (format.surface && name.starts_with("mesh.") && name.ends_with(format.files.front().ending)) return true;
   }
   return false;
 }
@@ -100,7 +101,7 @@ OrientedPointCloud cloud_of_case(const CasePaths& paths, const StageRecord& mesh
 
 /// Patches that had other names in a former export have other files.
 void remove_former_surfaces(const ExportFormat& format, const CasePaths& paths, const std::vector<fs::path>& written) {
-  if (!format.skin) return;
+  if (!format.surface) return;
   for (const fs::path& file : exported_files(paths)) {
     const bool is_skin = file.extension() == format.files.front().ending;
     if (is_skin && std::find(written.begin(), written.end(), file) == written.end()) fs::remove(file);

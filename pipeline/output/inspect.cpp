@@ -15,9 +15,9 @@ namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
-// From here on a share or a ratio is worth a line.
+// Bounds of shares and ratios beyond which a cloud is worth a warning.
 constexpr double kConsistent = .98, kVariation = 30, kShareDropped = .01, kOpen = .05, kUlp = 1e-3, kFloatUlp = .1;
-// A body thinner than two edges of the default mesh folds.
+// A body thinner than this many edges of the default mesh: faces of the mesh fold.
 constexpr double kThin = 2.2 * kMeshEdge;
 
 /// What may go wrong, and what to do about it.

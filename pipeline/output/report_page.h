@@ -27,7 +27,7 @@ std::string headline_cards(const Certificate& certificate);
 std::string stage_table(const std::vector<StageRecord>& records);
 /// The levels of a multilevel fit; empty when there are none.
 std::string band_table(const std::vector<BandReport>& bands);
-/// Every parameter, from the text of case.toml; those that somebody gave stand out.
+/// Every parameter, from the text of case.toml; those that are not defaults stand out.
 std::string parameter_table(const std::string& case_toml);
 /// Every value of certificate.json, as it is in the file.
 std::string certificate_table(const Json& certificate);

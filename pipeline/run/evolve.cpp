@@ -29,14 +29,14 @@ namespace {
 
 using Step = EvolveStep;
 
-/// A failure that is the matter of one instant; the others may do better.
+/// A failure that concerns one instant only; others may succeed.
 bool concerns_one_step(ExitCode code) {
   switch (code) {
     case ExitCode::Usage:  // a formula that has no value at this t
     case ExitCode::InputRefused:
     case ExitCode::ReconstructionFailed:
     case ExitCode::MeshingImpossible:
-    case ExitCode::FileTrouble:  // its cloud: what we write ourselves is not written under this guard
+    case ExitCode::FileTrouble:  // its cloud: our own files are not written where this is called
     case ExitCode::ArtefactCorrupt:
     case ExitCode::ResourceLimit:
       return true;
@@ -47,7 +47,7 @@ bool concerns_one_step(ExitCode code) {
 
 double least_quality(const Step& step) { return step.measured->mesh.quality.min; }
 
-/// What a program is told of a step.
+/// A step in the answer to --json.
 Json to_json(const Step& step) {
   Json json = {{"t", step.at.t}, {"file", step.made() ? Json(step.file) : Json(nullptr)}, {"seconds", step.seconds}};
   if (step.made()) {
@@ -62,7 +62,7 @@ class Evolution {
  public:
   Evolution(const EvolveRequest& request, Progress& progress)
       : request_(request), parameters_(request.parameters), progress_(progress), of_clouds_(!request.clouds.empty()) {
-    um_params(parameters_);  // what is wrong with them is no matter of one instant
+    um_params(parameters_);  // what is wrong with them is wrong for all instants
     for (TimeStep& at : time_steps(request.times, request.skip, request.clouds)) {
       const std::string name = fmt::format("step_{:04}.vtu", steps_.size());
       Step& step = steps_.emplace_back();

@@ -4,8 +4,8 @@
 
 namespace umtet {
 
-/// Finished stages are made anew beside the former ones, in CASE/.next, and take their place when all that was asked
-/// for is done: a run that fails or is stopped leaves the case as it was, with its certificate.
+/// Finished stages are made anew beside the former ones, in CASE/.next, and take their place when all stages of the
+/// call are done: a run that fails or is stopped leaves the case as it was, with its certificate.
 
 /// True when the stage, or one made from it, is finished: then it must not be made in place.
 bool holds_results(const CasePaths&, Stage);

@@ -14,7 +14,7 @@
 
 namespace umtet {
 
-/// What the user asked of the stages.
+/// What a call wants of the stages.
 struct RunRequest {
   std::filesystem::path case_folder;
   std::filesystem::path source;  ///< the cloud; empty: the case has its own, or there is a formula
@@ -30,12 +30,12 @@ struct RunRequest {
 
 struct RunOutcome {
   std::vector<Stage> stages_run;
-  std::optional<Certificate> certificate;    ///< when 3-mesh is done and was asked for
+  std::optional<Certificate> certificate;    ///< when 3-mesh is done and part of the call
   std::vector<std::filesystem::path> files;  ///< that the user may want to open
   ExitCode code = ExitCode::Success;         ///< Success, or GateFailed when the verdict is fail
 };
 
-/// Brings a case to the state that was asked for: every stage up to `until` whose record does not match is run again,
+/// Brings a case to the state that a call wants: every stage up to `until` whose record does not match is run again,
 /// those before `from` are taken as they are while they are whole. Holds the lock of the case meanwhile.
 /// \throw everything that failure_of() knows
 RunOutcome run_case(const RunRequest& request, Progress& progress);

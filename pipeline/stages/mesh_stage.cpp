@@ -111,8 +111,8 @@ std::string MeshStage::remedy_for(const ThinPlaces& thin, std::optional<double>&
   return fmt::format("h = {:.3g} is enough, about {:.2g} tets", enough.h, background_.expected_tets(domain_, enough.h));
 }
 
-/// Names what is too thin for the mesh that came out wrong, and writes it for the eye: beside a finished mesh where
-/// there is none to be kept.
+/// Throws what is too thin for a mesh that came out wrong, and writes the thin places to too_thin.vtp: in 3-mesh, or in
+/// 3-mesh/failed where a finished mesh is to be kept.
 void MeshStage::refuse_thin(const MeshAttempt& best) {
   const ThinPlaces& thin = best.thin;
   const bool keeps = context_.paths.renews(Stage::Mesh);

@@ -32,8 +32,8 @@ void run_level_set_stage(const StageContext&);
 
 /// 3-mesh: meshes {psi < 0} of the level set, or of mesh.implicit when that is set; writes omega_h.vtu, projected.vtu,
 /// mesh.vtu and quality.csv, and puts everything a certificate needs into the record.
-/// When no mesh can be made, omega_h.vtu and projected.vtu go to 3-mesh/failed, for the eye; nothing else is touched.
-/// \throw MeshingImpossible, ResourceLimit, Interrupted, ArtefactDamaged, ExpressionError, UsageError,
+/// When no mesh can be made, omega_h.vtu and projected.vtu go to 3-mesh/failed, to be looked at; nothing else is
+/// touched. \throw MeshingImpossible, ResourceLimit, Interrupted, ArtefactDamaged, ExpressionError, UsageError,
 /// std::system_error
 void run_mesh_stage(const StageContext&);
 

@@ -14,7 +14,7 @@ using LmePackMap = Eigen::Map<const LmePack, Eigen::Aligned32>;
 
 enum JetOrder { kValue = 0, kGradient = 1, kHessian = 2 };
 
-/// f = sum c_a N_a and its derivatives, up to the order asked for.
+/// f = sum c_a N_a and its derivatives up to `order`.
 struct LatticeJet {
   double value = 0;
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();

@@ -25,7 +25,7 @@ struct LmeBasis3d {
   LmeBasis1d x, y, z;
 };
 
-/// Where a point lies among the nodes of the three axes; lanes x, y, z and one that nobody reads.
+/// Where a point lies among the nodes of the three axes; elements x, y, z and one that is not used.
 struct LmePlace {
   simd::Pack4i cell, piece, first;  ///< of the axis; of the tables; the first node that has a function there
   simd::Pack4d s;                   ///< in the piece, 0 .. 1

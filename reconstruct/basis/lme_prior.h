@@ -8,8 +8,9 @@ namespace umtet {
 /// The prior w of p_a(x) = w(x - x_a) exp(lambda . (x - x_a)) / Z, as a function of t = (x - x_a) / h on one axis; in
 /// three dimensions w is the product over the axes.
 ///
-/// CompactC2: w = exp(-(gamma - s / R^2) t^2) (1 - t^2 / R^2)^s for |t| < R, s = 4: C3 with support R, and the same
-/// curvature at t = 0 as the Gaussian. Max-ent functions inherit the smoothness of their prior.
+/// CompactC2: w = exp(-(gamma - s / R^2) t^2) (1 - t^2 / R^2)^s for |t| < R, s = 4: support R, and the same curvature
+/// at t = 0 as the Gaussian. It is C3, more than its name says; max-ent functions inherit that, and their tables
+/// (LmeTables) are C2.
 /// Gaussian: exp(-gamma t^2), cut where it falls below epsilon: the paper's, which jumps at the cut.
 ///                                                                     [ArroyoOrtiz2006; Rangarajan2018, Section 3.7]
 struct LmePrior {

@@ -66,8 +66,9 @@ std::vector<std::uint8_t> later_duplicates(const std::vector<Vec3>& points) {
   return drop;
 }
 
-/// Whether x is off the plane of the points around it by kDeviations of theirs and kSpacings of theirs.
-/// The plane and not a quadric: curvature then counts as deviation, and tips and horns of clean bodies stay.
+/// Whether x is off the plane of the points around it by kDeviations standard deviations of these points from it and by
+/// kSpacings of their spacings. The plane and not a quadric: curvature then counts as deviation, and sharp tips of
+/// clean bodies stay.
 bool is_off_plane(const std::vector<Vec3>& points, const Vec3& x, std::span<const Neighbour> around) {
   constexpr double kDeviations = 5, kSpacings = 2.5;
   const auto n = static_cast<double>(around.size());

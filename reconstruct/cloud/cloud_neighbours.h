@@ -19,7 +19,7 @@ struct NeighbourDistances {
 /// Exact nearest neighbours by a k-d tree, in double. The result does not depend on the number of threads.
 ///
 /// \throw std::invalid_argument  k < 1, a coordinate not finite, or fewer than two distinct places
-/// Cost: O(n log n + n k), measured 1.3 s of CPU for 1 M points of a torus with k = 12.
+/// Cost: O(n log n + n k) (reconstruct_bench --benchmark_filter=SampleAreas).
 NeighbourDistances neighbour_distances(const std::vector<Vec3>& points, int k);
 /// The same from neighbours that are known: of a cloud without duplicates, with k = near.k().
 NeighbourDistances neighbour_distances(const Neighbourhoods& near);

@@ -16,7 +16,7 @@ namespace umtet {
 /// A quadric, its neighbours, and some of them to spare.
 inline constexpr std::size_t kFewestSurveyed = 30;
 
-/// Fewer than kFewestSurveyed points, or so many after cleaning.
+/// Fewer than kFewestSurveyed points, as they came or after cleaning.
 struct TooFewPoints : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
@@ -64,8 +64,7 @@ struct CloudSurvey {
 
 /// \throw TooFewPoints           fewer than 30 usable points
 /// \throw std::invalid_argument  normals, but not as many as points; a problem of params
-/// Cost: measured 12 us a point of 1 M on a torus, 20 with noise of two spacings. The result does not depend on the
-/// number of threads.
+/// Cost: O(n log n), and more with noise. The result does not depend on the number of threads.
 CloudSurvey survey(const OrientedPointCloud& cloud, const SurveyParams& params = {});
 
 /// Noise along the normal: median over evenly picked points of the residual of a quadric through the points around, in

@@ -10,9 +10,8 @@ namespace umtet {
 /// own normals look to the same side (on a thin sheet the samples of the other side are near, too), or of the nearest
 /// samples whatever their normals where none of the kNearby nearest does. Of equally many votes the nearest sample's.
 ///
-/// Five, as measured on 2000 samples of a torus in two halves, away from their border: where 10 % of the labels are
-/// random, 1 voter puts 5.5 % of the area on the wrong side, 3 put .95 %, 5 .14 %, 9 none; of a strip two spacings wide
-/// 5 voters keep 96 %, as 1 does, and 9 keep 87 %.
+/// Five: where a share p of the labels is wrong, at random, one voter is wrong with probability p, three with 3 p^2 and
+/// five with 10 p^3, to leading order: 5 %, .7 % and .1 % for p = .05. More voters would take narrow strips away.
 ///
 /// @param normals  of any length; zero: no side
 /// \throw std::invalid_argument  a cloud without points, labels or normals, or not as many normals as places

@@ -17,10 +17,9 @@ inline constexpr std::size_t kQuadricCoefficients = 6;
 /// Least squares in coordinates centred on the point and scaled by the neighbourhood, so that neither the unit nor the
 /// distance from the origin costs digits.
 ///
-/// A plane alone turns by curvature times the neighbours' lopsidedness, 1 degree on a clean torus of 20k points where
-/// the graph stays below 0.1; with noise both have the same error, because slope and curvature do not mix around the
-/// middle. The plane's normal is the answer where the neighbours do not fix a graph (fewer than seven, or nearly on a
-/// conic).
+/// A plane alone is turned by curvature where the neighbours lie more to one side of the point; the graph is not. With
+/// noise both have the same error, because slope and curvature do not mix around the middle. The plane's normal is the
+/// answer where the neighbours do not fix a graph (fewer than seven, or nearly on a conic).
 ///
 /// @param near  neighbours of the point, itself among them or not; all on one place give a zero normal
 /// Does not allocate.

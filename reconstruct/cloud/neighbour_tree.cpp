@@ -16,12 +16,12 @@ namespace umtet {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// FLANN compares what it has already summed up over the walk with the bound, so a bound of a few roundings more than
-// the distance that is meant keeps points at exactly that distance; the result sets look again.
+// FLANN compares what it has already summed up over the walk with the bound, so the bound is a few roundings
+// more than the distance, lest points at exactly that distance are lost; the result sets compare again.
 constexpr double kRounding = 1 + 1e-12;
 double rounded_up(double distance2) { return kRounding * distance2 + std::numeric_limits<double>::min(); }
 
-// With k = 13 on a surface 10 to 20 points a leaf cost the same.
+// Points a leaf; the time of a search hardly depends on it.
 constexpr int kLeafSize = 16;
 // Some 100 us of searches: a task costs less than a hundredth of that.
 constexpr std::size_t kQueriesPerTask = 128;
@@ -214,9 +214,9 @@ NeighbourTree::Hit NeighbourTree::first_along(const Vec3& x, const Vec3& d, doub
   const double width2 = width * width, slack = kSlack * width;
   const double t_end = (x - index_->low).cwiseAbs().cwiseMax((index_->high - x).cwiseAbs()).norm() + width;
   for (double t = t_min; t <= t_end;) {
-    // An empty ball empties the tube for as long as it covers it. FLANN's boxes are those of its cuts and not of the
-    // points, so it looks into many for an empty ball inside a body: five times as many for a unit of length when the
-    // ball is ten times as wide. An eighth of the way gone keeps the number of balls logarithmic.
+    // Where a ball is empty, so is the part of the tube within it. Balls an eighth of the way long keep their number
+    // logarithmic. Larger ones cost more than they save: FLANN bounds cells by its cuts and not by their points, so
+    // that it visits many for an empty ball inside a body.
     const double least = 2 * width;
     double radius = std::max(least, (t - t_min) / 8);
     while (radius > least && count_within(x + t * d, radius * radius, 1) > 0) radius = std::max(least, radius / 2);

@@ -17,7 +17,7 @@ class Neighbourhoods {
 
   Neighbourhoods() = default;
   /// k is cut to size - 1. \throw std::invalid_argument  k = 0, or as NeighbourTree
-  /// Cost: 1.1 us a point with k = 12, and 12 k bytes.
+  /// Cost: a search of k neighbours, and 12 k bytes, a point.
   Neighbourhoods(const NeighbourTree& tree, std::size_t k);
   explicit Neighbourhoods(const std::vector<Vec3>& points, std::size_t k = kDefault);
 

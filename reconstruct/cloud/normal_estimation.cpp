@@ -19,7 +19,7 @@ struct ThinnedCloud {
   explicit ThinnedCloud(std::vector<Vec3> some) : points(std::move(some)), tree(points) {}
 };
 
-/// Neighbours that a step looks at: three times the first neighbourhood, with room for the ups and downs of density.
+/// Neighbours that a step looks at, at most: three times the first neighbourhood, and more where the density varies.
 constexpr std::size_t kMostInStep = 256;
 constexpr double kGrowth2 = 3;
 // Where the nearest few lie on a quadric so much better than all of them, they are one side of a fin or an edge. Noise

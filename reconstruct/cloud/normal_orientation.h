@@ -42,13 +42,13 @@ double consistency(const OrientedPointCloud& cloud, const OrientationParams& par
 ///
 /// \throw std::invalid_argument  not as many normals as points, a coordinate or normal not finite, a problem of params,
 ///        or `near` of another cloud or another number of neighbours
-/// Cost: O(n log n), measured 6 to 7 us a point of 1 M. The result does not depend on the number of threads.
+/// Cost: O(n log n). The result does not depend on the number of threads.
 OrientationReport orient_normals(OrientedPointCloud& cloud, const OrientationParams& params = {},
                                  const Neighbourhoods* near = nullptr);
 
 /// Turns over what disagrees with the rest: signs are found as by orient_normals from the given directions, which are
 /// those of a minority turned over. A cloud that is consistent, and whose bodies enclose positive volumes, is left
-/// alone bit for bit (0.5 us a point of a mesh, 1.2 of 500k at random, when no point is contested); so is a body that
+/// alone bit for bit (at a fraction of the cost, when no point is contested); so is a body that
 /// faces outward and touches another. Where volumes do not tell, the majority of the given signs does. \throw
 /// std::invalid_argument  as orient_normals
 OrientationReport repair_normals(OrientedPointCloud& cloud, const OrientationParams& params = {},

@@ -22,7 +22,7 @@ struct SignCells {
 /// functions. They are >= 0 and sum to one, so second derivatives stay below C max|e_a| / h^2 with a constant C of the
 /// prior. Value and gradient in the middle of a cube together with that bound give a range of psi that closes in with
 /// the square of the cube's edge; levels finer than the cube count with their least and greatest coefficient near it.
-/// Cubes whose range has both signs are halved down to the size asked for.
+/// Cubes whose range has both signs are halved down to `size`.
 ///
 /// @param size  the edge is the coarsest spacing / 2^k, the first at most this; > 0
 /// Cost: about a microsecond for each cube near the surface. Parallel; the result does not depend on threads.

@@ -45,7 +45,7 @@ constexpr std::ptrdiff_t kAssembledNodes = 16000;  // more are never factored at
 // their ratio counts.
 constexpr double kSolveSeconds = 4.5e-6, kFactorSeconds = 4e-11;
 
-// Halvings enough for the longest axis that can be asked for.
+// Halvings enough for the longest axis of a lattice.
 constexpr int kMostLevels = 24;
 
 struct Hierarchy {

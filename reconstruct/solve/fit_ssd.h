@@ -78,7 +78,7 @@ struct SsdFit {
 /// any order; sorted in space (morton_order.h) they are faster to look up.
 /// @param near  of the points, over kAreaNeighbours; null: searched here
 /// \throw std::invalid_argument  broken parameters, fewer than 10 points, all points at one place, `near` of other ones
-/// \throw std::length_error      a spacing that asks for more nodes than a full lattice can hold
+/// \throw std::length_error      a spacing so small that a full lattice cannot hold its nodes
 /// \throw SolveTooLarge          more than max_memory is needed; said before it is taken
 /// \throw SolveError             not converged, too large for the assembled solver, or a spacing beyond the cloud's
 ///                               size

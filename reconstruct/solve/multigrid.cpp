@@ -41,8 +41,8 @@ double dot(std::ptrdiff_t n, const double* a, const double* b) {
   return sum_of(n, [&](std::ptrdiff_t i) { return a[i] * b[i]; });
 }
 
-// Cubes in which samples are merged, in spacings: half a spacing keeps PCG at 10 iterations to 1e-5 (a whole one
-// doubles them).
+// Cubes in which samples are merged for the preconditioner, in spacings. Larger ones make it too unlike the operator,
+// and PCG takes more iterations; smaller ones merge little.
 constexpr double kMergeCube = 0.5;
 
 // y (+)= P x along one axis of an array with `stride` between neighbours on the axis and `inner` contiguous columns.
@@ -78,8 +78,8 @@ void restrict_axis(const AxisProlongation& P, const float* x, std::ptrdiff_t inn
 }
 
 // Eigenvalues of D^-1 A in [lambda_max / kSmoothingRange, lambda_max] are damped by the smoother. The range is wide
-// because coefficients that alternate in sign give almost no function: high frequencies, small eigenvalues. On a torus
-// with 10 samples a cell, degrees 2 to 6 and ranges 30 to 200 all cost the same time within 20 %.
+// because coefficients that alternate in sign give almost no function: high frequencies, small eigenvalues. A wider
+// range needs a higher degree; the time of a solve is flat around these values.
 constexpr double kSmoothingRange = 60;
 constexpr int kSmoothingDegree = 3;
 
@@ -178,7 +178,8 @@ Multigrid::Multigrid(const SsdOperator& finest, int n_levels) {
 }
 
 // Chebyshev iteration for A x = r on D^-1 A.
-// @param before  the coarse correction: from x = 0, and the residual is left in level.r. After it nobody asks for that
+// @param before  the coarse correction: from x = 0, and the residual is left in level.r. Else from level.x, and level.r
+// is not needed afterwards.
 void Multigrid::smooth(Level& level, bool before) {
   const std::ptrdiff_t n = level.op.size();
   const double high = level.lambda_max, low = high / kSmoothingRange;

@@ -30,7 +30,8 @@ const LevelSet& level_set() {
   return psi;
 }
 
-// Positions near the surface; coherent: in the order a mesher solves them, neighbours in memory one after the other.
+// Positions near the surface; coherent: in the order in which a mesher visits them, neighbours in memory one after the
+// other.
 std::vector<Vec3> places(bool coherent) {
   std::vector<Vec3> x = test::torus_cloud(100000, 3).points;
   if (!coherent) return x;

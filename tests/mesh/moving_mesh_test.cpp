@@ -179,9 +179,9 @@ TEST(UniversalMesh, ItsCertificateOverlooksNothingThatHasChanged) {
   hole.submesh.mesh.C.erase(hole.submesh.mesh.C.begin() + static_cast<std::ptrdiff_t>(middle));
   hole.submesh.background_tet.erase(hole.submesh.background_tet.begin() + static_cast<std::ptrdiff_t>(middle));
   expect_seen(hole);
-  UmResult misaligned = mesh;  // under the same id
-  std::swap(misaligned.submesh.mesh.C[middle][0], misaligned.submesh.mesh.C[middle][1]);
-  expect_seen(misaligned);
+  UmResult swapped = mesh;  // under the same id
+  std::swap(swapped.submesh.mesh.C[middle][0], swapped.submesh.mesh.C[middle][1]);
+  expect_seen(swapped);
   UmResult doubled = mesh;  // one tet under the id of another
   doubled.submesh.mesh.C[middle] = doubled.submesh.mesh.C[middle + 1];
   expect_seen(doubled);

@@ -147,7 +147,7 @@ std::vector<int> MidSideRelaxation::mid_sides_of(const std::vector<int>& tets) c
   return all;
 }
 
-std::vector<int> MidSideRelaxation::poor_at(const std::vector<int>& mid_sides, double bar) const {
+std::vector<int> MidSideRelaxation::tets_below_at(const std::vector<int>& mid_sides, double bar) const {
   std::vector<int> tets;
   for (const int m : mid_sides) tets.insert(tets.end(), tets_at(m).begin(), tets_at(m).end());
   std::sort(tets.begin(), tets.end());
@@ -156,22 +156,22 @@ std::vector<int> MidSideRelaxation::poor_at(const std::vector<int>& mid_sides, d
   return tets;
 }
 
-std::size_t MidSideRelaxation::relax(std::vector<int>& poor, const Context& context) {
+std::size_t MidSideRelaxation::relax(std::vector<int>& below, const Context& context) {
   n_psi_evaluations_ = 0;
-  for (int sweep = 0; sweep < params_.sweeps && !poor.empty(); ++sweep) {
+  for (int sweep = 0; sweep < params_.sweeps && !below.empty(); ++sweep) {
     context.poll();
-    const std::vector<int> around = mid_sides_of(poor);
+    const std::vector<int> around = mid_sides_of(below);
     bool moved = false;
     for (const int m : around) moved |= kind_[m - n_corners_] != MidSide::Fixed && improve(m);
-    poor = poor_at(around, params_.target);
+    below = tets_below_at(around, params_.target);
     if (!moved) break;
   }
   return n_psi_evaluations_;
 }
 
-void MidSideRelaxation::retreat(const std::vector<int>& poor) {
+void MidSideRelaxation::retreat(const std::vector<int>& below) {
   std::map<int, int> halvings;
-  std::vector<int> bad = poor_at(mid_sides_of(poor), params_.least);
+  std::vector<int> bad = tets_below_at(mid_sides_of(below), params_.least);
   while (!bad.empty()) {
     std::vector<int> moved;
     for (const int m : mid_sides_of(bad)) {
@@ -181,7 +181,7 @@ void MidSideRelaxation::retreat(const std::vector<int>& poor) {
       if (MidSide& kind = kind_[m - n_corners_]; kind == MidSide::Surface) kind = MidSide::Fixed;
       moved.push_back(m);
     }
-    bad = poor_at(moved, params_.least);
+    bad = tets_below_at(moved, params_.least);
   }
 }
 

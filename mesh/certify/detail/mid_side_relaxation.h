@@ -24,12 +24,12 @@ class MidSideRelaxation {
   MidSideRelaxation(QuadraticTetMesh& mesh, std::size_t n_corners, std::vector<MidSide>& kind, ImplicitFunctionRef psi,
                     double h, const SecondOrderParams& params);
 
-  /// Step 2. @param poor  the tets below the target; receives those that still are
+  /// Step 2. @param below  the tets below the target; receives those that still are
   /// @return evaluations of psi, for closest points
-  std::size_t relax(std::vector<int>& poor, const Context& context);
+  std::size_t relax(std::vector<int>& below, const Context& context);
 
-  /// Step 3. Surface mid-sides that are moved become Fixed. @param poor  tets that may be below params.least
-  void retreat(const std::vector<int>& poor);
+  /// Step 3. Surface mid-sides that are moved become Fixed. @param below  tets that may be below params.least
+  void retreat(const std::vector<int>& below);
 
  private:
   std::span<const int> tets_at(int mid_side) const;
@@ -38,7 +38,7 @@ class MidSideRelaxation {
   bool improve(int mid_side);
   std::vector<int> mid_sides_of(const std::vector<int>& tets) const;
   /// Ascending tets at these mid-sides with min det / mean det proved to be no more than `bar`.
-  std::vector<int> poor_at(const std::vector<int>& mid_sides, double bar) const;
+  std::vector<int> tets_below_at(const std::vector<int>& mid_sides, double bar) const;
 
   QuadraticTetMesh& mesh_;
   const int n_corners_;

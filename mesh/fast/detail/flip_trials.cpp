@@ -138,7 +138,8 @@ LatticeActiveLayer FlipTrials::slid(const std::vector<std::int64_t>& centres) {
   const std::vector<std::uint8_t> inside = inside_of(now, inside_);
   const PatchState before = state(now.layer, inside);
   TangentialRelaxationParams chords{.least_quality = target_};
-  // Smoothing what is behind the boundary makes room, but checks at sums: without it nothing falls below the target.
+  // Smoothing behind the boundary makes room, but it lowers sums over rings, so that a tet may fall below the target.
+  // Then the patch is relaxed without it, which keeps every tet above.
   for (const int inner_sweeps : {chords.inner_sweeps, 0}) {
     chords.inner_sweeps = inner_sweeps;
     LatticeActiveLayer cut = now;

@@ -29,7 +29,7 @@ constexpr int kHalvings = 4;          // of a step that does not lower its sum; 
 constexpr int kUntangleRounds = 8;    // values of sigma; a vertex whose least volume rises is enqueued again
 constexpr double kVolumeScale = .07;  // of h^3: a tenth of six times the volume of a background tet
 
-PackMap lane(const std::array<double, kMaxRing>& a, int k) { return PackMap(a.data() + k); }
+PackMap pack(const std::array<double, kMaxRing>& a, int k) { return PackMap(a.data() + k); }
 
 template <int log2_p, class T>
 T to_power(T x) {
@@ -38,7 +38,7 @@ T to_power(T x) {
 }
 
 Pack volumes(const OneRing& r, int k, const Vec3& y) {
-  return lane(r.v, k) - (lane(r.nx, k) * y.x() + lane(r.ny, k) * y.y() + lane(r.nz, k) * y.z());
+  return pack(r.v, k) - (pack(r.nx, k) * y.x() + pack(r.ny, k) * y.y() + pack(r.nz, k) * y.z());
 }
 
 double least_volume(const OneRing& r, const Vec3& y) {
@@ -57,7 +57,7 @@ Sum sum_of_powers(const OneRing& r, const Vec3& y, double scale) {
   Pack sum = Pack::Zero(), greatest = Pack::Zero(), least_V = Pack::Constant(kInfinity);
   for (int k = 0; k < r.n; k += kPackSize) {
     const Pack V = volumes(r, k, y);
-    const Pack L = lane(r.l, k) + (lane(r.sx, k) * y.x() + lane(r.sy, k) * y.y() + lane(r.sz, k) * y.z()) + y2;
+    const Pack L = pack(r.l, k) + (pack(r.sx, k) * y.x() + pack(r.sy, k) * y.y() + pack(r.sz, k) * y.z()) + y2;
     const Pack F = L * L * L / (V * V);
     least_V = least_V.min(V);
     greatest = greatest.max(F);
@@ -73,7 +73,7 @@ double sum_of_powers_here(const OneRing& r, double scale) {
   const double inverse = 1 / scale;
   Pack sum = Pack::Zero();
   for (int k = 0; k < r.n; k += kPackSize) {
-    const Pack V = lane(r.v, k), L = lane(r.l, k);
+    const Pack V = pack(r.v, k), L = pack(r.l, k);
     sum += to_power<log2_p>(Pack(L * L * L / (V * V) * inverse));
   }
   return sum.sum();
@@ -86,10 +86,10 @@ PowerSum power_sum_of(const OneRing& r, const Vec3& y, double scale) {
   std::array<Pack, 3> G = {Pack::Zero(), Pack::Zero(), Pack::Zero()};
   std::array<Pack, 6> M = {Pack::Zero(), Pack::Zero(), Pack::Zero(), Pack::Zero(), Pack::Zero(), Pack::Zero()};
   for (int k = 0; k < r.n; k += kPackSize) {
-    const Pack Nx = lane(r.nx, k), Ny = lane(r.ny, k), Nz = lane(r.nz, k);
-    const Pack Sx = lane(r.sx, k), Sy = lane(r.sy, k), Sz = lane(r.sz, k);
-    const Pack V = lane(r.v, k) - (Nx * y.x() + Ny * y.y() + Nz * y.z());
-    const Pack L = lane(r.l, k) + (Sx * y.x() + Sy * y.y() + Sz * y.z()) + y2;
+    const Pack Nx = pack(r.nx, k), Ny = pack(r.ny, k), Nz = pack(r.nz, k);
+    const Pack Sx = pack(r.sx, k), Sy = pack(r.sy, k), Sz = pack(r.sz, k);
+    const Pack V = pack(r.v, k) - (Nx * y.x() + Ny * y.y() + Nz * y.z());
+    const Pack L = pack(r.l, k) + (Sx * y.x() + Sy * y.y() + Sz * y.z()) + y2;
     least_V = least_V.min(V);
     const Pack iV = 1 / V, iL = 1 / L;
     const Pack w = to_power<log2_p>(Pack(L * L * L * iV * iV * inverse));
@@ -146,7 +146,7 @@ Vec3 step_of(const PowerSum& at, const Directions& directions) {
 double volume_limit(const OneRing& r, const Vec3& y, const Vec3& step) {
   Pack shrink = Pack::Zero();
   for (int k = 0; k < r.n; k += kPackSize) {
-    const Pack rate = lane(r.nx, k) * step.x() + lane(r.ny, k) * step.y() + lane(r.nz, k) * step.z();
+    const Pack rate = pack(r.nx, k) * step.x() + pack(r.ny, k) * step.y() + pack(r.nz, k) * step.z();
     shrink = shrink.max(rate / volumes(r, k, y));
   }
   return std::min(1., (1 - kVolumeKept) / shrink.maxCoeff());
@@ -236,8 +236,8 @@ std::bitset<kMaxRing> tets_below_target(const OneRing& ring, const Vec3& y, doub
   std::array<std::uint64_t, 2> below_target{};
   const double y2 = 3 * y.squaredNorm();
   for (int k = 0; k < ring.n; k += kPackSize) {
-    const Pack V0 = lane(ring.v, k), V1 = volumes(ring, k, y), L0 = lane(ring.l, k);
-    const Pack L1 = L0 + (lane(ring.sx, k) * y.x() + lane(ring.sy, k) * y.y() + lane(ring.sz, k) * y.z()) + y2;
+    const Pack V0 = pack(ring.v, k), V1 = volumes(ring, k, y), L0 = pack(ring.l, k);
+    const Pack L1 = L0 + (pack(ring.sx, k) * y.x() + pack(ring.sy, k) * y.y() + pack(ring.sz, k) * y.z()) + y2;
     const Pack f = (V0 * V0.abs() / (L0 * L0 * L0)).min(V1 * V1.abs() / (L1 * L1 * L1));
     for (int m = 0; m < kPackSize; ++m)
       below_target[k / 64] |= static_cast<std::uint64_t>(f[m] < good_f) << (k % 64 + m);

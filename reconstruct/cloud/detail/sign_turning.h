@@ -26,9 +26,10 @@ bool has_disagreement(const std::vector<SignEdge>& edges, const std::vector<std:
 void turn_groups(const SignAdjacency& adjacency, const std::vector<std::uint32_t>& group, std::uint32_t n_groups,
                  std::vector<std::int8_t>& sign);
 
-/// Fins and ears are many patches that no single one of them leaves. From every patch whose border to another is
-/// clearly in disagreement a region grows by the patch that brings the sum over its border down most, up to 64 patches,
-/// and what had the least sum is turned over if that is below zero. Cost: bounded for each patch in disagreement.
+/// A thin fin with wrong signs consists of many patches, and to turn only one of them is no gain. From every patch
+/// whose border to another is clearly in disagreement a region grows by the patch that brings the sum over its border
+/// down most, up to 64 patches, and what had the least sum is turned over if that is below zero. Cost: bounded for each
+/// patch in disagreement.
 void turn_regions(const std::vector<SignEdge>& edges, const std::vector<std::uint32_t>& patch, std::uint32_t n_patches,
                   std::vector<std::int8_t>& sign);
 

@@ -119,7 +119,8 @@ TEST(LevelSet, IsTheSumOverAllNodesOfAllLevels) {
   }
 }
 
-// Copies of coefficients for evaluation are made by who first asks in a block of cells: here by all threads at once.
+// Copies of coefficients for evaluation are made by the thread that first evaluates in a block of cells: here by all
+// threads at once.
 TEST(LevelSet, WhoAsksFirstMakesNoDifference) {
   SsdParams p;
   p.spacing = 0.08;
