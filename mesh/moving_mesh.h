@@ -33,7 +33,7 @@ struct UmUpdate {
   UmResult mesh;
   std::vector<std::int64_t> vertices_entered, vertices_left, tets_entered, tets_left;
   std::vector<std::int64_t> vertices_moved;  ///< in both meshes, at different places
-  std::size_t n_searched = 0;                ///< values of psi to find out who is inside; the first time, all vertices
+  std::size_t n_searched = 0;                ///< values of psi to classify vertices; the first time, of all vertices
   std::size_t n_recalled = 0;                ///< vertices that began where the last mesh had them
 };
 

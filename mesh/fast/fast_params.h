@@ -16,7 +16,7 @@ struct FastParams {
   ProjectionParams projection;
   SmoothingParams smoothing;
   /// In place of smoothing.margin, if that is greater, for a mesh that begins from the one before; >= 0. A ball that
-  /// drifts a quarter cell a step: .85 of the visits of .04, and 1 % quantiles of Q within .004 of meshing anew. With
+  /// drifts a quarter cell a step: .85 of the solves of .04, and 1 % quantiles of Q within .004 of meshing anew. With
   /// .03 it is .77 and .006, and .01 on a ball of 5k tets.
   double update_margin = .033;
   RepairParams repair;

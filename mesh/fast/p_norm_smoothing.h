@@ -18,7 +18,7 @@ namespace umtet {
 
 struct SmoothingParams {
   double target = kQualityTarget;  ///< mean ratio every tet is to reach; in (0, 1)
-  /// A vertex is visited while its worst tet is below target + margin; >= 0. At 100k tets .034 instead of .02 lifts the
+  /// A vertex is solved while its worst tet is below target + margin; >= 0. At 100k tets .034 instead of .02 lifts the
   /// 1 % quantile of Q by .005 (T6) to .012 (sphere), for a quarter more solves; beyond .04 nothing is gained.
   double margin = .034;
   double fine_gain = 2e-5;    ///< a relative gain of 1/Q's norm below this is no move; > 0
@@ -66,7 +66,7 @@ struct SmoothingReport {
 /// neighbours. Where some V <= 0, V + sigma takes the place of V, with sigma > -min V: the same convex problem, solved
 /// again with ever smaller sigma until all V > 0; such a solve counts if it raises min V.
 ///
-/// Vertices are visited colour by colour, those of one colour by all threads, and again when they, or a neighbour in a
+/// Vertices are solved colour by colour, those of one colour by all threads, and again when they, or a neighbour in a
 /// tet below target + margin, have moved, by least_step or more where no tet is below the target: the same bytes for
 /// any number of threads. Does not allocate inside a sweep.
 class PNormSmoother {
@@ -76,11 +76,11 @@ class PNormSmoother {
   explicit PNormSmoother(ActiveLayer& layer);
 
   /// Puts vertex i and all vertices of its ring in the queue: to be called when i was moved from outside. Vertices that
-  /// share no tet may be woken by different threads at once.
+  /// share no tet may be enqueued by different threads at once.
   void enqueue(int i);
   /// Puts every vertex in the queue that was not Fixed at construction.
   void enqueue_all();
-  /// Visits vertices in the queue until none is left, or for max_sweeps; those left stay for the next call. Roles are
+  /// Solves vertices in the queue until none is left, or for max_sweeps; those left stay for the next call. Roles are
   /// read anew: the caller may hold vertices by making them Fixed for a while, which leaves them in the queue.
   /// What it says of the layer is left to measure(), which checks at every tet.
   /// \throw std::invalid_argument naming every broken constraint of params, Cancelled

@@ -11,8 +11,9 @@
 namespace umtet {
 
 struct TangentialRelaxationParams {
-  double least_chord = .1;     ///< boundary faces farther than this many h from psi = 0 are worth a move; > 0
-  double least_quality = kQualityTarget;  ///< no tet falls below this mean ratio, or below the worst of its ring; in (0, 1)
+  double least_chord = .1;  ///< boundary faces farther than this many h from psi = 0 are worth a move; > 0
+  double least_quality =
+      kQualityTarget;  ///< no tet falls below this mean ratio, or below the worst of its ring; in (0, 1)
   /// Added to least_quality around vertices without a face farther than far_chord h; both >= 0. The 1 % quantile of Q
   /// is .003 higher then (T6, 100k tets), and farthest samples are where they were.
   double near_margin = .02, far_chord = .13;
@@ -32,13 +33,13 @@ struct TangentialRelaxationReport {
 /// Slides boundary vertices along psi = 0 to where the flat faces around them are nearer to it: on to ridges, above
 /// all, whose curvature h does not resolve.
 ///
-/// e(m) = |psi| / |grad psi| is the distance at the middles m_k of the faces around a vertex and of its edges in them.
+/// e = |psi| / |grad psi| is the distance at the middles of the faces around a vertex and of its edges in them.
 /// A solve lowers sum e^4 by one Gauss-Newton step in the tangent plane, put back on psi = 0, and halved until the sum
 /// falls, every tet of the ring keeps Q >= least_quality or more (or the worst it had) and no face is misaligned
 /// further than kMisalignedCosine. After each sweep the vertices behind the boundary are smoothed while the boundary is
 /// held.
 ///
-/// Vertices are visited colour by colour: the same bytes for any number of threads.
+/// Vertices are solved colour by colour: the same bytes for any number of threads.
 /// @param smoother  of a layer whose boundary vertices are on psi = 0
 /// @param inside    per vertex of it; boundary faces have their three vertices outside
 /// @param smoothing  of the vertices behind; max_sweeps is not used

@@ -22,10 +22,10 @@ struct Handover;
 /// What 3-mesh works on, and what a mesh is judged against: psi, where to look for it, and the samples behind it.
 /// All lengths and places are in working coordinates: model coordinates minus `shift`.
 struct Domain {
-  std::optional<Expression> formula;            ///< one of the three is there
+  std::optional<Expression> formula;            ///< one of these three is there
   std::optional<LevelSet> level_set;            ///< psi; cut where limit_detail() said
   std::optional<ImplicitFunctionRef> function;  ///< the caller's, who keeps it; with a Hessian
-  std::optional<LevelSet> fitted;               ///< the same with all its levels
+  std::optional<LevelSet> fitted;               ///< level_set with all its levels
   Box box;                                      ///< what the background mesh has to cover
   double diagonal = 0;                          ///< of the cloud's box, or of `box` for a formula
   Vec3 shift = Vec3::Zero();

@@ -12,7 +12,7 @@
 
 namespace umtet {
 
-/// A cloud that stage one can fit, and what had to be done to the scan for it.
+/// A cloud that can be fitted, and what had to be done to the scan for it.
 struct PreparedCloud {
   OrientedPointCloud cloud;
   NeighbourDistances near;  ///< of its points, for areas; empty where preparing did not need them

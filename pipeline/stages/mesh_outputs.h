@@ -10,7 +10,7 @@
 
 namespace umtet {
 
-/// The files of stage two but for its record, all in 3-mesh/, in place of those of the former run: omega_h.vtu,
+/// The files of the mesh stage but for its record, all in 3-mesh/, in place of those of the former run: omega_h.vtu,
 /// projected.vtu, mesh.vtu, quality.csv; too_thin.vtp where something is; pass_N.vtu and iterates.pvd where iterates
 /// were kept. What mesh.vtu holds is handed over to the stages to come.
 /// @return their names. \throw Cancelled, std::system_error naming the file

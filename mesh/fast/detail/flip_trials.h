@@ -76,8 +76,8 @@ class FlipTrials {
   bool is_misaligned(const TetIds& tet);
   /// In omega_h, and below the target or with a misaligned face.
   bool is_bad(const TetIds& tet);
-  /// From now on tets are below target below this mean ratio, in place of params.target. With the sharper norm, patches
-  /// are smoothed by it, at first without flips.
+  /// From now on the target is this mean ratio, in place of params.target. With the sharper norm, patches are smoothed
+  /// by it, at first without flips.
   void look_again(double target, bool sharper) {
     target_ = target;
     smoothing_.sharper = sharper;
