@@ -25,10 +25,10 @@ constexpr double kMostOfDiagonal = .1;
 // Boundary faces start to fold where the body or a gap is thinner than about two edges: h is the thickness that a share
 // kThinShare of the samples falls below, over kEdgesAcross.
 constexpr double kEdgesAcross = 2.2;
-// Where that makes more than kManyTets tets, fewer edges across have to do: classification and repair mend what comes
-// out wrong down to about 1.9, and (1.9 / 2.2)^3 is two thirds of the tets.
-constexpr double kLeastEdgesAcross = 1.9;
-constexpr std::int64_t kManyTets = 1'150'000;
+// Where that makes more than kTetsOfLargeMesh tets, fewer edges across have to do: classification and repair mend what
+// comes out wrong down to about 1.9, and (1.9 / 2.2)^3 is two thirds of the tets.
+constexpr double kFewerEdgesAcross = 1.9;
+constexpr std::int64_t kTetsOfLargeMesh = 1'150'000;
 constexpr double kThinShare = .01;
 // The most that rounding may move a vertex, in edges: far less than anything that counts in a mesh.
 constexpr double kMostRounding = 1e-6;
@@ -104,7 +104,7 @@ EdgeLength choose(Domain& domain, const Parameters& parameters, const Context& c
   if (domain.level_set) {
     const double t = thin_part(domain, kEdgesAcross * h, context);
     if (t < kEdgesAcross * h) {
-      h = std::min(h, std::clamp(h_of(domain, parameters, kManyTets), t / kEdgesAcross, t / kLeastEdgesAcross));
+      h = std::min(h, std::clamp(h_of(domain, parameters, kTetsOfLargeMesh), t / kEdgesAcross, t / kFewerEdgesAcross));
     }
   }
   return {std::max(h, least), least};

@@ -70,12 +70,12 @@ Measures level_set_difference(const CasePaths& a, const CasePaths& b, const Stag
   return {{"spacing_a", psi_a.spacing()}, {"spacing_b", psi_b.spacing()}, {"psi_at_samples_of_a", spread(d)}};
 }
 
-struct Skin {
+struct BoundarySurface {
   MeshFile file;
   std::vector<Triangle> faces;
   std::vector<Vec3> corners;
 
-  explicit Skin(const CasePaths& paths) : file(read_tet_mesh(paths.mesh())) {
+  explicit BoundarySurface(const CasePaths& paths) : file(read_tet_mesh(paths.mesh())) {
     const TetMesh& mesh = file.mesh;
     faces = boundary_faces(mesh.C, mesh.V.size()).triangles;
     std::vector<char> used(mesh.V.size(), 0);
@@ -92,7 +92,7 @@ struct Skin {
 };
 
 Measures mesh_difference(const CasePaths& a, const CasePaths& b) {
-  const Skin x(a), y(b);
+  const BoundarySurface x(a), y(b);
   const bool same_tets = x.file.mesh.C == y.file.mesh.C;
   Measures measures = {{"n_tets_a", x.file.mesh.C.size()},
                        {"n_tets_b", y.file.mesh.C.size()},

@@ -103,8 +103,8 @@ OrientedPointCloud cloud_of_case(const CasePaths& paths, const StageRecord& mesh
 void remove_former_surfaces(const ExportFormat& format, const CasePaths& paths, const std::vector<fs::path>& written) {
   if (!format.surface) return;
   for (const fs::path& file : exported_files(paths)) {
-    const bool is_skin = file.extension() == format.files.front().ending;
-    if (is_skin && std::find(written.begin(), written.end(), file) == written.end()) fs::remove(file);
+    const bool is_boundary = file.extension() == format.files.front().ending;
+    if (is_boundary && std::find(written.begin(), written.end(), file) == written.end()) fs::remove(file);
   }
 }
 
