@@ -2,11 +2,11 @@
 """Writes docs/constants.md: what every tunable number is, and why.
 
 usage: docs/constants.py            writes docs/constants.md
-       docs/constants.py --check    changes nothing; exit 1 when it is stale, or a number has no reason
+       docs/constants.py --check    changes nothing; exit 1 when it is stale, or a number has neither comment nor reason
 
-Names, values and meanings come from the sources: the fields of structs *Params, and constants k*, of the folders below. What was
-measured comes from data/constants/sensitivity.csv, other reasons from docs/constants.toml. There, too, stand the constants
-that are no decisions about results, such as sizes of tasks.
+Names, values, meanings and reasons come from the sources: the fields of structs *Params, and constants k*, of the folders below,
+with their comments. What was measured comes from data/constants/sensitivity.csv. docs/constants.toml adds citations and
+other commands, and lists the constants that are no decisions about results, such as sizes of tasks.
 """
 import argparse
 import collections
@@ -35,11 +35,13 @@ WORK = {"solves_percent", "patches", "psi_percent", "changed"}
 Number = collections.namedtuple("Number", "file name value meaning")
 
 
-def first_sentence(comment):
-    """Of a comment; the rest says why, or to whom else it applies."""
-    text = re.sub(r"\s+", " ", comment).strip()
-    end = re.search(r"(?<!eq)(?<!eqs)(?<!Alg)(?<!e\.g)[.](?= [A-Z\[0-9]|$)|: (?=[A-Z])", text)
-    return text[:end.start()] if end else text.rstrip(".")
+def one_line(comment):
+    return re.sub(r"\s+", " ", comment).strip().rstrip(".")
+
+
+def first_sentence(text):
+    end = re.search(r"(?<!eq)(?<!eqs)(?<!Alg)[.](?= [A-Z\[0-9])", text)
+    return text[:end.start()] if end else text
 
 
 def split(text):
@@ -91,7 +93,7 @@ def constants(file):
         meaning = " ".join(trailing) or comment_above(lines, i, r"(inline |static )*constexpr ")
         for name, value in declarators(statement):
             if re.match(r"k[A-Z]", name):
-                yield Number(file, name, value, first_sentence(meaning))
+                yield Number(file, name, value, one_line(meaning))
 
 
 def fields(file):
@@ -109,7 +111,7 @@ def fields(file):
             inner = None
         elif struct and inner and (match := re.match(r"    params\.(\w+) = (.*);", line)):
             above = next(k for k in range(i, 0, -1) if f" {inner}()" in lines[k])
-            yield Number(file, f"{struct}::{inner}.{match[1]}", match[2], first_sentence(comment_above(lines, above, "$^")))
+            yield Number(file, f"{struct}::{inner}.{match[1]}", match[2], one_line(comment_above(lines, above, "$^")))
         elif struct and not inner and re.match(r"  (?!//|return|using|static|struct)[\w:<>* ]+ \w+ =", line) and "(" not in line.split("//")[0]:
             code, _, trailing = line.partition("//")
             k = i + 1
@@ -120,7 +122,7 @@ def fields(file):
                 trailing, k = trailing + " " + lines[k].strip().removeprefix("///<"), k + 1
             meaning = trailing.replace("/<", "").strip() or comment_above(lines, i, "$^")
             for name, value in declarators(code.strip().rstrip(";")):
-                yield Number(file, f"{struct}::{name}", value, first_sentence(meaning))
+                yield Number(file, f"{struct}::{name}", value, one_line(meaning))
 
 
 def numbers():
@@ -209,21 +211,21 @@ def page():
         standard = float(next(iter(of_value.values()))[0]["default"])
         if re.fullmatch(r"-?[\d.e-]+F?", n.value) and float(n.value.rstrip("F")) != standard:
             problems.append(f"{name} = {n.value}, measured with {standard:g}: run {COMMAND}")
-        lines.append(f"| `{name}` | {cell(n.meaning)} | {cell(n.value)} | {as_good(of_value, standard)} | {what_others_do(of_value)} |")
-    lines += ["", "## Reasoned", "",
-              "No program in the repository varies these. The reason says what each follows from; \"not measured\" means that it could have been another number."]
+        lines.append(f"| `{name}` | {cell(first_sentence(n.meaning))} | {cell(n.value)} | {as_good(of_value, standard)} | {what_others_do(of_value)} |")
+    lines += ["", "## Chosen", "",
+              "No program varies these on many bodies. The last column names a formula, a citation or a command; where it is empty the value "
+              "is a choice that was not measured, for the reason in its meaning."]
     folder = None
     for n in known:
         if n.name in measured or f"{n.file}:{n.name}" in not_tunable:
             continue
-        reason = reasons.get(n.file, {}).get(n.name)
-        if reason is None:
-            problems.append(f"{n.file}: {n.name} has no reason in {REASONS.name}")
-            continue
+        why = reasons.get(n.file, {}).get(n.name, "")
+        if not why and not n.meaning:
+            problems.append(f"{n.file}: {n.name} has neither a comment nor a line in {REASONS.name}")
         if str(pathlib.PurePosixPath(n.file).parent) != folder:
             folder = str(pathlib.PurePosixPath(n.file).parent)
-            lines += ["", f"### {folder}", "", "| name | in | meaning | value | reason |", "|---|---|---|---|---|"]
-        lines.append(f"| `{n.name}` | `{pathlib.PurePosixPath(n.file).name}` | {cell(n.meaning)} | {cell(n.value)} | {cell(reason)} |")
+            lines += ["", f"### {folder}", "", "| name | in | value | meaning | from |", "|---|---|---|---|---|"]
+        lines.append(f"| `{n.name}` | `{pathlib.PurePosixPath(n.file).name}` | {cell(n.value)} | {cell(n.meaning)} | {cell(why)} |")
     named = {(n.file, n.name) for n in known}
     for file, of_file in reasons.items():
         problems += [f"{REASONS.name}: {file} has no {name}" for name in of_file if (file, name) not in named]
