@@ -13,36 +13,26 @@
 
 namespace umtet {
 
-/// Lengths are in LinkTopology::unit. Measured on bodies of star_costs (seeds not of the fit, 100 of 40k tets and 60 of
-/// 6k): of their 4.3 M tets smoothing alone leaves 24 below .82, in 6 bodies, and with another value what the line
-/// says.
+/// Lengths are in LinkTopology::unit; depths are inside, heights outside. docs/constants.md has what other values do.
 struct ClassificationParams {
-  /// The states start as those of {psi < 0} moved inwards by this; 0 <= shift <= .15. 0: 25 tets, .05: 19,
-  /// .15: 25; but with 0 the 1 % quantile of Q of T6 is .839 where it is .842 with .1 (as below, weight 20)
+  /// The classification starts from {psi < 0} moved inwards by this; 0 <= shift <= .15
   double shift = .1;
-  double reach_in = .9;   ///< how deep inside a state may change; >= 0
-  double reach_out = .2;  ///< how far outside; >= 0. .5: 17 tets
-  /// No state changes where projection would draw the vertices around apart by more than this factor; >= 1. A tip whose
-  /// innermost vertex is no longer inside is cut off, or folds. Samples of a scan to its mesh of 160k tets, 99 %:
-  /// .17 h, .21 h with 1.4, .33 h without limit; folded over faces of another's (2.1 M): 4, and 20 without.
+  double reach_in = .9;   ///< a vertex deeper than this keeps its class; >= 0
+  double reach_out = .2;  ///< a vertex higher than this keeps its class; >= 0
+  /// A vertex keeps its class where projection would draw the vertices around it apart by more than this factor; >= 1.
+  /// A tip whose innermost vertex became an outside one would be cut off, or fold.
   double most_stretch = 1.2;
-  /// Nor where the body or the gap outside is thinner than this; >= 0. With 2 the thin fin of a scan keeps 98 tets
-  /// below .81, with 1.5 two, and three of the clouds of data/ that are 2 h thick get boundaries that are no manifolds.
+  /// A vertex keeps its class where the body, or the gap outside, is thinner than this; >= 0, 0: it is not looked at
   double least_thickness = 1;
-  /// Cost of a boundary vertex at height d outside: outside_weight (d - outside_height)^2; >= 0. Weight 20: 22 tets,
-  /// but the 1 % quantile of Q of T6 (100k tets, the lattice in 41 places) is .842 at least, and .844 with 40; 80: 85
-  /// tets, .838. Height -.15: 129 tets, 0: 65, .2: 15
+  /// Cost of a boundary vertex at height d: outside_weight (d - outside_height)^2; outside_weight >= 0
   double outside_weight = 40, outside_height = .1;
-  /// Cost of an inside vertex at depth d < inside_depth: inside_weight (inside_depth - d)^2; >= 0. Weight 10: 17 tets,
-  /// 40: 30; depth .4: 17, .6: 37
+  /// Cost of an inside vertex at depth d < inside_depth: inside_weight (inside_depth - d)^2; inside_weight >= 0
   double inside_weight = 20, inside_depth = .5;
-  int max_sweeps = 50;  ///< >= 0
-  /// Where there is a mesh before, a state that is as it was then changes for a gain above this only; >= 0. A
-  /// ball that drifts a fiftieth of a cell a step: .0151 states a face change (.0172 with 0, .0116 with 5; psi = 0
-  /// passes over .0092 vertices), least Q .827 (.824, .828). In steps of a quarter cell they are .113 (.114, .109;
-  /// .115). Where all states begin as they were, whatever that costs, least Q is up to .04 lower.
+  int max_sweeps = 50;  ///< over the vertices whose gain may have changed, single and pair moves together; >= 0
+  /// With a classification of a mesh before, a vertex that is as it was then changes for a gain above this only; >= 0.
+  /// The greater, the fewer faces change from step to step, and the lower the least Q.
   double keep = 1;
-  /// Costs of the configurations of a link; null: those of A15, a15_star_costs().
+  /// Costs of the configurations of a link; null: those of a15()
   const StarCostTable* costs = nullptr;
 };
 

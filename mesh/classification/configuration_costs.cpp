@@ -15,9 +15,17 @@
 namespace umtet {
 namespace {
 
-// Above every quality in the table, so that all configurations have a cost and good ones are told from better ones. In
-// the bodies of ClassificationParams smoothing leaves 24 tets below .82 with .93 here, 45 with .915 and 12 with .95.
+// The quality that costs nothing: above the best in the table of A15, .894, so that every configuration has a cost and
+// good ones are told from better ones.
 constexpr double kGoodInA15 = .93;
+// The same of the slab, whose best is .901, and of the cube, .834.
+constexpr double kGoodInSlab = .936, kGoodInCube = .847;
+// In place of kQualityTarget: what smoothing reaches on nearly every tet of the slab and of the cube. No tet of the
+// cube itself is below .626.
+constexpr double kTargetInSlab = .78, kTargetInCube = .62;
+// RepairParams::reach, at most. Patches of three edges are three and ten times as large on slab and cube as in A15, and
+// mend no more there than those of two.
+constexpr int kReach = 3, kReachOnPlanes = 2;
 
 std::vector<ConfigurationQuality> qualities_of_z(const std::vector<LinkTopology>& links) {
   std::vector<ConfigurationQuality> qualities;
@@ -31,8 +39,7 @@ std::vector<ConfigurationQuality> qualities_of_z(const std::vector<LinkTopology>
   return qualities;
 }
 
-/// Edges of the cube are .5 to 3.3 h long: lengths are counted in the mean edge of each vertex. In h alone, tori and
-/// ellipsoids of 100k tets end at min Q .588 instead of .613 and .619, before repair.
+/// Edges of the cube are .5 to 3.3 h long: lengths are counted in the mean edge of each vertex.
 std::vector<LinkTopology> links_of_cube() {
   const Tiling& tiling = acute_cube();
   const TilingTables& all = tables(tiling);
@@ -60,14 +67,15 @@ ConfigurationCosts costs(std::vector<LinkTopology> links, std::span<const Config
 }
 
 const ConfigurationCosts& costs_of_a15() {
-  static const ConfigurationCosts made = costs(a15_links(), kA15ConfigurationQualities, kGoodInA15, kQualityTarget, 3);
+  static const ConfigurationCosts made =
+      costs(a15_links(), kA15ConfigurationQualities, kGoodInA15, kQualityTarget, kReach);
   return made;
 }
 
 ConfigurationCosts costs_of_z() {
   std::vector<LinkTopology> links = link_topology(z_phase(), tables(z_phase()));
   const std::vector<ConfigurationQuality> qualities = qualities_of_z(links);
-  return costs(std::move(links), qualities, kGoodInA15, kQualityTarget, 3);
+  return costs(std::move(links), qualities, kGoodInA15, kQualityTarget, kReach);
 }
 
 }  // namespace
@@ -78,14 +86,15 @@ const ConfigurationCosts* configuration_costs(const Tiling& tiling) {
     static const ConfigurationCosts made = costs_of_z();
     return &made;
   }
-  // Patches of three edges are three and ten times as large as in A15, and mend no more than those of two.
   if (tiling.name == acute_slab().name) {
     static const ConfigurationCosts made =
-        costs(link_topology(acute_slab(), tables(acute_slab())), kSlabConfigurationQualities, .936, .78, 2);
+        costs(link_topology(acute_slab(), tables(acute_slab())), kSlabConfigurationQualities, kGoodInSlab,
+              kTargetInSlab, kReachOnPlanes);
     return &made;
   }
   if (tiling.name == acute_cube().name) {
-    static const ConfigurationCosts made = costs(links_of_cube(), kCubeConfigurationQualities, .847, .62, 2);
+    static const ConfigurationCosts made =
+        costs(links_of_cube(), kCubeConfigurationQualities, kGoodInCube, kTargetInCube, kReachOnPlanes);
     return &made;
   }
   return nullptr;

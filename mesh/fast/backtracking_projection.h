@@ -12,12 +12,13 @@
 
 namespace umtet {
 
+/// docs/constants.md has what other values do.
 struct ProjectionParams {
-  int passes = 3;       ///< N_P: parts of the way, with relaxation of inner vertices after each; >= 1
+  int passes = 3;       ///< N_P: parts of the way, with smoothing of inner vertices after each; >= 1
   int max_rounds = 20;  ///< attempts in all, those of passes included; >= passes
-  double least_quality =
-      .2;          ///< a vertex goes no farther than its worst tet keeps this, or does not get worse; in (0, 1)
-  int sweeps = 3;  ///< of smoothing after each round; >= 0
+  /// Mean ratio: a step leaves every tet of the star at this or more, or not worse than its worst; in (0, 1)
+  double least_quality = .2;
+  int sweeps = 3;             ///< sweeps of smoothing after each round; >= 0
   SmoothingParams smoothing;  ///< max_sweeps is not used, sweeps is
   ClosestPointParams closest_point;
 };
@@ -44,8 +45,7 @@ struct ProjectionReport {
   SmoothingReport smoothing;        ///< what it says of the layer, too
 };
 
-/// Moves the Boundary vertices of a layer to their closest points on psi = 0.            [Rangarajan2018, Alg. 1,
-/// 23-30]
+/// Moves the Boundary vertices of a layer to their closest points on psi = 0.     [Rangarajan2018, Alg. 1, 23-30]
 ///
 /// In pass k of N_P each vertex is offered k / N_P of its way, colour by colour, and takes as much of the step (all of
 /// it, a half, a quarter, an eighth) as leaves every tet of its ring at Q >= least_quality, or not worse than its

@@ -10,14 +10,14 @@
 
 namespace umtet {
 
+/// docs/constants.md has what other values do.
 struct FastParams {
-  int layers = 2;  ///< of vertices behind the boundary that move; >= 1. One is too few, three gain nothing: mesh_bench
+  int layers = 2;  ///< layers of vertices behind the boundary that move; >= 1
   ClassificationParams classification;
   ProjectionParams projection;
   SmoothingParams smoothing;
-  /// In place of smoothing.margin, if that is greater, for a mesh that begins from the one before; >= 0. A ball that
-  /// drifts a quarter cell a step: .85 of the solves of .04, and 1 % quantiles of Q within .004 of meshing anew. With
-  /// .03 it is .77 and .006, and .01 on a ball of 5k tets.
+  /// In place of smoothing.margin, if that is greater, for a mesh that begins from the one before; >= 0. Less takes
+  /// fewer solves, and lowers the 1 % quantile of Q.
   double update_margin = .033;
   RepairParams repair;
 

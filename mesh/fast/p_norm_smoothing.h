@@ -16,18 +16,18 @@
 
 namespace umtet {
 
+/// docs/constants.md has what other values do.
 struct SmoothingParams {
   double target = kQualityTarget;  ///< mean ratio every tet is to reach; in (0, 1)
-  /// A vertex is solved while its worst tet is below target + margin; >= 0. At 100k tets .034 instead of .02 lifts the
-  /// 1 % quantile of Q by .005 (T6) to .012 (sphere), for a quarter more solves; beyond .04 nothing is gained.
+  /// A vertex is solved while its worst tet is below target + margin; >= 0
   double margin = .034;
-  double fine_gain = 2e-5;    ///< a relative gain of 1/Q's norm below this is no move; > 0
-  double least_step = .0075;  ///< of h: a shorter move enqueues no neighbour; >= 0. Without, a tenth more solves
-  /// Where a tet of the ring is below the target, it is this gain that counts, and any move enqueues its neighbours; >
-  /// 0. What smoothing wins there by small steps it takes from the tets around, and leaves a region just below the
-  /// target where there were a few bad tets (of a scan: 2200 instead of 330).
+  double fine_gain = 2e-5;    ///< relative gain in the norm of 1/Q below which a solve is no move; in (0, 1/384)
+  double least_step = .0075;  ///< of h: a shorter move enqueues no neighbour; >= 0
+  /// In place of fine_gain where a tet of the star is below the target; in (0, 1/384). There any move enqueues the
+  /// neighbours. What smoothing wins there by smaller steps it takes from the tets around, and leaves a region just
+  /// below the target where there were a few bad tets.
   double least_gain = 3e-4;
-  /// p = 384 after 96: among many tets nearly as bad, the worst still counts. Slower to settle.
+  /// A third norm, p = 384 after 96: among many tets nearly as bad, the worst still counts. Slower to settle.
   bool sharper = false;
   int max_sweeps = 60;  ///< over the vertices in the queue; >= 0
   /// A vertex that slid is off the surface by a sagitta only, where Damped settles in as many steps as Newton and needs

@@ -14,30 +14,25 @@
 
 namespace umtet {
 
+/// docs/constants.md has what other values do.
 struct RepairParams {
-  double target = kQualityTarget;  ///< tets below are mended, and misaligned faces; in (0, 1)
-  int reach = 3;       ///< a patch moves the vertices within this many edges of the flip and the tet; >= 1. With 2
-                       ///< some tets of two scans stay below .8
-  int max_tries = 24;  ///< vertices reclassified on trial for one tet; >= 0. 0: no repair
-  /// Patches for the worst tets first, a millisecond each (fewer of small meshes; what is begun is ended): more means
-  /// that h is wrong, which no classification mends. With 600 a scan keeps 93 tets below .81 at 1.4 M tets, with 3000
-  /// none.
+  double target = kQualityTarget;  ///< mean ratio: tets below it are mended, and misaligned faces; in (0, 1)
+  int reach = 3;                   ///< edges from the flip and the tet within which a patch moves vertices; >= 1
+  int max_tries = 24;              ///< vertices reclassified on trial for one tet; >= 0. 0: no repair
+  /// Patches in all, for the worst tets first; fewer in small meshes, and what is begun is ended. Where more are needed
+  /// h is too large, which no classification mends.
   std::size_t max_patches = 3000;
-  /// What nothing mends is tried again with SmoothingParams::sharper: of four meshes of a scan (h in steps of .1
-  /// %) 7 places stay below .82 in place of 22, all of them thinner than 2 h.
-  bool sharper = true;
-  /// What nothing mends then is tried once more against a target so much lower; >= 0, 0: it is not. Where a body is
-  /// thinner than h, a tet above .82 may cost a fold next to it: of nine meshes of two scans (h in steps
-  /// of .04 to .5 %) two had a folded over face with 0, and none has with .01.
-  double target_step = .01;
-  bool slides = true;     ///< patches relax_tangentially() when all is mended: their smoothing has undone that
-  double reach_out = .5;  ///< as ClassificationParams::reach_out: no cost for distance is needed here, where the
-                          ///< mesh itself is measured; >= 0
+  bool sharper = true;       ///< what nothing mends is tried again with SmoothingParams::sharper
+  double target_step = .01;  ///< what nothing mends then is tried again with a target so much lower; >= 0, 0: it is not
+  bool slides = true;        ///< patches relax_tangentially() when all is mended: their smoothing has undone that
+  /// Edges: a vertex higher than this is not flipped. More than ClassificationParams::reach_out, because here the mesh
+  /// itself is looked at and not a cost of distance; >= 0
+  double reach_out = .5;
   ProjectionParams projection;
   SmoothingParams smoothing = patch_smoothing();
 
-  /// A patch settles in a dozen sweeps or not at all, and checks at all that moves: with least_step and fine_gain as
-  /// elsewhere one mesh in twenty of a scan keeps a tet below the target that it does not keep so.
+  /// Smoothing of a patch, which settles in a dozen sweeps or not at all: gains are those that count near bad tets, and
+  /// every move enqueues.
   static SmoothingParams patch_smoothing() {
     SmoothingParams params;
     params.margin = .04;

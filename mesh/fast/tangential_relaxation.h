@@ -10,15 +10,15 @@
 
 namespace umtet {
 
+/// docs/constants.md has what other values do.
 struct TangentialRelaxationParams {
-  double least_chord = .1;  ///< boundary faces farther than this many h from psi = 0 are worth a move; > 0
+  double least_chord = .1;  ///< of h: boundary faces farther than this from psi = 0 are worth a move; > 0
   double least_quality =
-      kQualityTarget;  ///< no tet falls below this mean ratio, or below the worst of its ring; in (0, 1)
-  /// Added to least_quality around vertices without a face farther than far_chord h; both >= 0. The 1 % quantile of Q
-  /// is .003 higher then (T6, 100k tets), and farthest samples are where they were.
+      kQualityTarget;  ///< mean ratio: no tet falls below it, or below the worst of its star; in (0, 1)
+  /// Added to least_quality around vertices without a face farther than far_chord h from psi = 0; both >= 0
   double near_margin = .02, far_chord = .13;
   int sweeps = 6;        ///< over the vertices of such faces; >= 0
-  int inner_sweeps = 3;  ///< of smoothing behind the boundary after each, which makes room for the next; >= 0
+  int inner_sweeps = 3;  ///< sweeps of smoothing behind the boundary after each, to make room for the next; >= 0
 };
 
 /// Every broken constraint, not just the first.
