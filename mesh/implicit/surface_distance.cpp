@@ -200,7 +200,7 @@ std::vector<double> SampleDistance::distances(const std::vector<Vec3>& x, const 
 }
 
 double unsupported_area_fraction(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
-                                 const SampleDistance& samples, double radius, const Context& context) {
+                                 const std::vector<double>& distance, double radius) {
   std::vector<double> area(V.size(), 0);  // a third of the faces around a vertex
   double all = 0;
   for (const Triangle& f : faces) {
@@ -208,17 +208,28 @@ double unsupported_area_fraction(const std::vector<Vec3>& V, const std::vector<T
     for (const int v : f) area[v] += third;
     all += 3 * third;
   }
+  double unsupported = 0;
+  for (std::size_t v = 0; v < V.size(); ++v) {
+    if (area[v] > 0 && distance[v] > radius) unsupported += area[v];
+  }
+  return all > 0 ? unsupported / all : 0;
+}
+
+double unsupported_area_fraction(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
+                                 const SampleDistance& samples, double radius, const Context& context) {
+  std::vector<char> used(V.size(), 0);
+  for (const Triangle& f : faces) {
+    for (const int v : f) used[v] = 1;
+  }
   std::vector<int> vertices;
   std::vector<Vec3> places;
   for (std::size_t v = 0; v < V.size(); ++v) {
-    if (area[v] > 0) vertices.push_back(static_cast<int>(v)), places.push_back(V[v]);
+    if (used[v]) vertices.push_back(static_cast<int>(v)), places.push_back(V[v]);
   }
-  const std::vector<double> distance = samples.distances(places, context);
-  double unsupported = 0;
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    if (distance[i] > radius) unsupported += area[vertices[i]];
-  }
-  return all > 0 ? unsupported / all : 0;
+  const std::vector<double> found = samples.distances(places, context);
+  std::vector<double> distance(V.size(), 0);
+  for (std::size_t i = 0; i < vertices.size(); ++i) distance[vertices[i]] = found[i];
+  return unsupported_area_fraction(V, faces, distance, radius);
 }
 
 }  // namespace umtet

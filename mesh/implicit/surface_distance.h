@@ -61,5 +61,8 @@ class SampleDistance {
 /// much finer than the faces are far from wherever psi = 0 is curved. 0 for an empty surface. \throw Cancelled
 double unsupported_area_fraction(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
                                  const SampleDistance& samples, double radius, const Context& context = {});
+/// The same where the distances are known. @param distance  by vertex; of those without a face it may be anything
+double unsupported_area_fraction(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
+                                 const std::vector<double>& distance, double radius);
 
 }  // namespace umtet

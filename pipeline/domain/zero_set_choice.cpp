@@ -82,6 +82,8 @@ std::vector<std::size_t> wanted_samples(const ZeroSetTopology& topology, const s
 
 }  // namespace
 
+double support_radius(const Domain& domain) { return kSupportRadius * domain.cloud_spacing; }
+
 double counting_spacing(const Domain& domain, double h) {
   const double wanted = domain.level_set ? std::min(h, domain.level_set->spacing()) : h;
   return std::max(wanted, std::cbrt(domain.box.volume() / kMaxGridNodes));
@@ -98,7 +100,7 @@ ZeroSetChoice choose_components(const Domain& domain, double h, const Context& c
   choice.topology = zero_set_topology(domain.psi(), domain.box, spacing, context, far);
   const std::vector<ZeroSetComponent>& pieces = choice.topology.components;
   if (pieces.empty()) return choice;
-  const double radius = std::max(kSupportRadius * domain.cloud_spacing, choice.topology.spacing);
+  const double radius = std::max(support_radius(domain), choice.topology.spacing);
   std::vector<std::size_t> backing(pieces.size()), wanted(pieces.size());
   // One piece is kept if it has one sample; how many there are matters to none but several.
   if (domain.level_set && !(pieces.size() == 1 && has_sample(domain, choice.topology, radius))) {

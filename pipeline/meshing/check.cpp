@@ -10,6 +10,7 @@
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
+#include "pipeline/domain/closed_holes.h"
 #include "pipeline/domain/domain.h"
 #include "pipeline/domain/edge_length.h"
 #include "pipeline/reports/stage_reports.h"
@@ -40,6 +41,14 @@ std::vector<Triangle> faces_at_walls(const TetMesh& mesh, const Box& box, double
     }
   }
   return walls;
+}
+
+/// The boundary without the faces at walls, of which both lists have the same corners in the same order.
+std::vector<Triangle> faces_but(std::vector<Triangle> walls, const TetMesh& mesh) {
+  std::vector<Triangle> faces = boundary_faces(mesh.C, mesh.V.size()).triangles;
+  std::sort(walls.begin(), walls.end());
+  std::erase_if(faces, [&](const Triangle& f) { return std::binary_search(walls.begin(), walls.end(), f); });
+  return faces;
 }
 
 SecondOrderReport check_second_order(const QuadraticTetMesh& mesh, const CertificateInput& corners, double h) {
@@ -92,12 +101,15 @@ MeshCheck check_mesh(const fs::path& file, const std::optional<fs::path>& agains
   }
   stop_if_interrupted();
   progress.report("check", "certify", .3);
-  MeshCheck check{file.string(), units_of(parameters), certify(input), {}, {}};
+  MeshCheck check{file.string(), units_of(parameters), certify(input), {}, {}, {}};
   std::vector<std::string> reasons = failures(check.mesh);
   stop_if_interrupted();
   if (content.quadratic) {
     check.second_order = check_second_order(*content.quadratic, input, check.mesh.h);
     for (std::string& reason : failures(*check.second_order)) reasons.push_back(std::move(reason));
+  }
+  if (domain && domain->samples) {
+    check.support = support_report(*domain, mesh.V, faces_but(walls, mesh), until_interrupted());
   }
   check.verdict = judge(check.mesh, std::move(reasons), parameters);
   return check;

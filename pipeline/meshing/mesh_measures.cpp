@@ -11,6 +11,7 @@
 #include "mesh/certify/quality_report.h"
 #include "mesh/implicit/surface_distance.h"
 #include "mesh/implicit/thickness.h"
+#include "pipeline/domain/closed_holes.h"
 #include "pipeline/domain/component_proof.h"
 #include "pipeline/domain/deviation.h"
 #include "pipeline/domain/edge_length.h"
@@ -125,7 +126,7 @@ Comparison compare_with_zero_set(const Domain& domain, const MeshCertificate& ce
   return made;
 }
 
-/// With the proof that no piece is unseen, and the share of the boundary that is a guess.
+/// With the proof that no piece is unseen, and what of the boundary is a guess.
 Comparison compare_with_domain(const Domain& domain, const TetMesh& mesh, const std::vector<Triangle>& faces,
                                const MeshCertificate& certificate, const ZeroSetChoice& pieces,
                                const Context& context) {
@@ -141,10 +142,7 @@ Comparison compare_with_domain(const Domain& domain, const TetMesh& mesh, const 
           fmt::format("piece at ({:.6g}, {:.6g}, {:.6g}): smaller than an edge", x.x(), x.y(), x.z()));
     }
   }
-  if (domain.samples) {
-    report.unsupported_area_fraction =
-        unsupported_area_fraction(mesh.V, faces, *domain.samples, kSupportRadius * domain.cloud_spacing, context);
-  }
+  if (domain.samples) report.support = support_report(domain, mesh.V, faces, context);
   return made;
 }
 

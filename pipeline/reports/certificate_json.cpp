@@ -74,15 +74,64 @@ MeshCertificate mesh_from(const Json& json) {
   return c;
 }
 
+Json to_json(const ClosedHole& hole) {
+  return {{"centre", json_of(hole.centre)},
+          {"area", hole.area},
+          {"area_fraction", hole.area_fraction},
+          {"deepest", hole.deepest},
+          {"deepest_over_spacing", hole.deepest_over_spacing},
+          {"rim", {{"n", hole.n_rims}, {"length", hole.rim_length}, {"diameter", hole.rim_diameter}}}};
+}
+
+ClosedHole closed_hole_from(const Json& json) {
+  const Json& rim = json.at("rim");
+  return {.centre = vector_from(json.at("centre")),
+          .area = number_from(json.at("area")),
+          .area_fraction = number_from(json.at("area_fraction")),
+          .deepest = number_from(json.at("deepest")),
+          .deepest_over_spacing = number_from(json.at("deepest_over_spacing")),
+          .rim_length = number_from(rim.at("length")),
+          .rim_diameter = number_from(rim.at("diameter")),
+          .n_rims = rim.at("n")};
+}
+
+/// The same keys with and without a cloud.
+Json to_json(const std::optional<SupportReport>& support) {
+  if (!support) {
+    return {{"unsupported_area_fraction", nullptr},
+            {"support_radius", nullptr},
+            {"n_closed_holes", nullptr},
+            {"closed_holes", nullptr}};
+  }
+  Json holes = Json::array();
+  for (const ClosedHole& hole : support->closed_holes) holes.push_back(to_json(hole));
+  return {{"unsupported_area_fraction", support->unsupported_area_fraction},
+          {"support_radius", support->radius},
+          {"n_closed_holes", support->n_closed_holes},
+          {"closed_holes", std::move(holes)}};
+}
+
+std::optional<SupportReport> support_from(const Json& json) {
+  if (json.at("unsupported_area_fraction").is_null()) return std::nullopt;
+  SupportReport support;
+  support.unsupported_area_fraction = number_from(json.at("unsupported_area_fraction"));
+  if (!json.contains("support_radius")) return support;  // written before holes were looked for: there are none
+  support.radius = number_from(json.at("support_radius"));
+  support.n_closed_holes = json.at("n_closed_holes");
+  for (const Json& hole : json.at("closed_holes")) support.closed_holes.push_back(closed_hole_from(hole));
+  return support;
+}
+
 Json to_json(const ZeroSetReport& r) {
-  return {{"level_set_spacing", json_of(r.level_set_spacing)},
-          {"components_of_zero_set", r.components_of_zero_set},
-          {"euler_characteristic_of_zero_set", r.euler_characteristic_of_zero_set},
-          {"euler_characteristic_of_kept_components", r.euler_characteristic_of_kept_components},
-          {"components_meshed", r.components_meshed},
-          {"components_dropped", r.components_dropped},
-          {"components_proved", json_of(r.components_proved)},
-          {"unsupported_area_fraction", json_of(r.unsupported_area_fraction)}};
+  Json json = {{"level_set_spacing", json_of(r.level_set_spacing)},
+               {"components_of_zero_set", r.components_of_zero_set},
+               {"euler_characteristic_of_zero_set", r.euler_characteristic_of_zero_set},
+               {"euler_characteristic_of_kept_components", r.euler_characteristic_of_kept_components},
+               {"components_meshed", r.components_meshed},
+               {"components_dropped", r.components_dropped},
+               {"components_proved", json_of(r.components_proved)}};
+  json.update(to_json(r.support));
+  return json;
 }
 
 ZeroSetReport zero_set_from(const Json& json) {
@@ -93,7 +142,7 @@ ZeroSetReport zero_set_from(const Json& json) {
           .components_meshed = json.at("components_meshed"),
           .components_dropped = json.at("components_dropped"),
           .components_proved = optional_from<bool>(json.at("components_proved")),
-          .unsupported_area_fraction = optional_from<double>(json.at("unsupported_area_fraction"))};
+          .support = support_from(json)};
 }
 
 Json to_json(const SampleDistances& d, double h) {
@@ -342,6 +391,7 @@ Json to_json(const MeshCheck& check) {
   json.update(to_json(check.mesh));
   json["order"] = check.second_order ? 2 : 1;
   json["second_order"] = second_order_block(check.second_order);
+  json["domain"] = to_json(check.support);
   json["verdict"] = check.verdict.word();
   json["reasons"] = check.verdict.reasons;
   return json;

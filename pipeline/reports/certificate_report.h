@@ -12,6 +12,7 @@
 #include "pipeline/case/parameters.h"
 #include "pipeline/case/record.h"
 #include "pipeline/case/version.h"
+#include "pipeline/reports/closed_hole.h"
 #include "pipeline/reports/thin_place.h"
 
 // What certificate.json, the record of 3-mesh and the answers of `umtet check` say about a mesh. Lengths in model units
@@ -24,10 +25,10 @@ struct ZeroSetReport {
   std::size_t components_of_zero_set = 0;     ///< that the count saw
   long euler_characteristic_of_zero_set = 0;  ///< of all of them together
   long euler_characteristic_of_kept_components = 0;
-  int components_meshed = 0;                        ///< pieces of the boundary of the mesh, without the walls of a box
-  std::vector<std::string> components_dropped;      ///< for each that is not meshed, why
-  std::optional<bool> components_proved;            ///< no piece is unseen; none where there is no proof to be had
-  std::optional<double> unsupported_area_fraction;  ///< of the boundary, far from any sample; none for a formula
+  int components_meshed = 0;                    ///< pieces of the boundary of the mesh, without the walls of a box
+  std::vector<std::string> components_dropped;  ///< for each that is not meshed, why
+  std::optional<bool> components_proved;        ///< no piece is unseen; none where there is no proof to be had
+  std::optional<SupportReport> support;         ///< none for a formula
 };
 
 /// Distances of the samples to the boundary of the mesh.
@@ -111,6 +112,7 @@ struct MeshCheck {
   std::optional<std::string> units;  ///< of lengths, for the reader
   MeshCertificate mesh;
   std::optional<SecondOrderReport> second_order;  ///< of tets with 10 nodes
+  std::optional<SupportReport> support;           ///< by the samples of a case
   Verdict verdict;
 };
 

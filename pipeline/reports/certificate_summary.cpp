@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace umtet {
@@ -75,10 +76,23 @@ std::string domain_line(const ZeroSetReport& d) {
   const std::size_t n = d.components_of_zero_set;
   std::string out =
       fmt::format("domain    psi = 0 has {} piece{}, {} dropped", n, n == 1 ? "" : "s", d.components_dropped.size());
-  if (d.unsupported_area_fraction) {
-    out += fmt::format("; {:.2f} % of the surface without samples near it", 100 * *d.unsupported_area_fraction);
+  if (d.support) {
+    out += fmt::format("; {:.2f} % of the surface without samples near it", 100 * d.support->unsupported_area_fraction);
   }
   return out + "\n";
+}
+
+/// What was closed without samples; empty if nothing was.
+std::string holes_line(const std::optional<SupportReport>& support, const std::string& unit) {
+  if (!support || support->closed_holes.empty()) return "";
+  const std::size_t n = support->n_closed_holes;
+  double part = 0, deepest = 0;
+  for (const ClosedHole& hole : support->closed_holes) {
+    part += hole.area_fraction;
+    deepest = std::max(deepest, hole.deepest);
+  }
+  return fmt::format("holes     {} closed where no sample is: {:.3g} % of the boundary, deepest {:.3g}{} from a sample\n",
+                     n, 100 * part, deepest, unit);
 }
 
 std::string cloud_line(const MeshMeasures& m, const std::string& unit) {
@@ -115,12 +129,13 @@ std::string summary(const Certificate& c) {
   const std::string unit = suffix(c.units);
   const MeshMeasures& m = c.measured;
   return verdict_lines(c.verdict, c.remedy) + mesh_lines(m.mesh, unit, c.n_tets_asked) +
-         second_order_lines(m.second_order) + domain_line(m.domain) + cloud_line(m, unit) + thin_line(m.resolution) +
-         time_line(c.run);
+         second_order_lines(m.second_order) + domain_line(m.domain) + holes_line(m.domain.support, unit) +
+         cloud_line(m, unit) + thin_line(m.resolution) + time_line(c.run);
 }
 
 std::string summary(const MeshCheck& c) {
-  return verdict_lines(c.verdict, {}) + mesh_lines(c.mesh, suffix(c.units), {}) + second_order_lines(c.second_order);
+  return verdict_lines(c.verdict, {}) + mesh_lines(c.mesh, suffix(c.units), {}) + second_order_lines(c.second_order) +
+         holes_line(c.support, suffix(c.units));
 }
 
 }  // namespace umtet

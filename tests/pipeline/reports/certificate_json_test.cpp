@@ -25,7 +25,7 @@ Certificate full_certificate() {
   m.mesh.boundary.max_vertex_distance_over_h = 1e-9;
   m.mesh.boundary.gap_over_volume = .02;
   m.coordinate_rounding_over_h = 1. / 3e15;
-  m.domain = {.05, 2, 4, 2, 1, {"piece"}, true, .25};
+  m.domain = {.05, 2, 4, 2, 1, {"piece"}, true, SupportReport{.3, .25, 101, {{Vec3(1, 2, 3), 4, .1, 1, 10, 7, 2, 1}}}};
   m.cloud = {.noise = .01, .rms = .1, .max = .7, .p99 = .5};
   m.resolution = {.9, 1.5, 3, 4, std::vector<ThinPlace>(1)};
   m.resolution.too_thin->front().is_gap = true;
@@ -67,6 +67,15 @@ TEST(CertificateJson, WhatIsMissingIsDamage) {
       EXPECT_THROW(certificate_from(lacking), ArtefactDamaged) << key;
     }
   }
+}
+
+TEST(CertificateJson, OneFromBeforeHolesWereLookedForHasNone) {
+  Json json = to_json(full_certificate());
+  for (const char* key : {"support_radius", "n_closed_holes", "closed_holes"}) json["domain"].erase(key);
+  const std::optional<SupportReport> support = certificate_from(json).measured.domain.support;
+  ASSERT_TRUE(support);
+  EXPECT_EQ(support->unsupported_area_fraction, .25);
+  EXPECT_EQ(support->n_closed_holes, 0u);
 }
 
 TEST(StageReports, AReportReadBackIsWrittenAlike) {

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "common/vec3.h"
+
+namespace umtet {
+
+/// A connected part of the boundary that was closed without samples, up to the samples at its rim. Lengths in model
+/// units.
+struct ClosedHole {
+  Vec3 centre = Vec3::Zero();  ///< mean of its surface, model coordinates
+  double area = 0;
+  double area_fraction = 0;  ///< of the surface on psi = 0
+  double deepest = 0;        ///< largest distance of its vertices to the nearest sample
+  double deepest_over_spacing = 0;
+  double rim_length = 0;    ///< of all its rims
+  double rim_diameter = 0;  ///< largest distance between two points of its rims
+  std::size_t n_rims = 0;   ///< closed lines in which it ends; 0: a piece of the boundary that no sample is near
+};
+
+/// What of the boundary of a mesh is a guess.
+struct SupportReport {
+  double radius = 0;                     ///< farther than this from every sample the boundary is unsupported
+  double unsupported_area_fraction = 0;  ///< of the boundary
+  std::size_t n_closed_holes = 0;
+  std::vector<ClosedHole> closed_holes{};  ///< the largest of them, largest first
+};
+
+}  // namespace umtet
