@@ -10,15 +10,25 @@
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/meshing/made_mesh.h"
 #include "pipeline/meshing/second_order.h"
+#include "pipeline/output/boundary_patches.h"
 
 namespace umtet::python {
 namespace {
 
-SolverMesh for_solver(const Mesh& m, const MeshFile& content) {
+SolverMesh all_of(const Mesh& m, const MeshFile& content) {
   if (!m.second) return solver_mesh(content.mesh);
   QuadraticTetMesh curved = m.second->mesh;
   for (Vec3& x : curved.V) x += m.domain.shift;
   return solver_mesh(curved);
+}
+
+/// With the holes that the certificate names as a patch.
+SolverMesh for_solver(const Mesh& m, const MeshFile& content) {
+  SolverMesh made = all_of(m, content);
+  if (!m.certificate) return made;
+  const MarkedFaces marked = marked_faces(made, content, m.certificate->measured.domain.support);
+  take_holes(made, marked.in_holes, [](const std::string&) {});
+  return made;
 }
 
 }  // namespace

@@ -14,6 +14,8 @@
 #include "mesh/io/patches.h"
 #include "mesh/io/planar_pieces.h"
 #include "pipeline/case/exit_code.h"
+#include "pipeline/case/interrupt.h"
+#include "pipeline/domain/closed_holes.h"
 #include "pipeline/meshing/made_mesh.h"
 #include "reconstruct/cloud/label_votes.h"
 
@@ -44,7 +46,7 @@ std::vector<MeshPart> label_patches(const std::vector<int>& labels, const std::m
   return patches;
 }
 
-constexpr const char* kWalls = "walls";
+constexpr const char *kWalls = "walls", *kClosedHoles = "closed_holes";
 
 std::string lower_case(std::string name) {
   for (char& c : name) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
@@ -154,6 +156,8 @@ std::map<int, std::string> parse_label_names(const std::string& text) {
   return names;
 }
 
+namespace {
+
 std::vector<char> faces_at_walls(const SolverMesh& mesh, const MeshFile& file) {
   const auto found = file.point_data.find(kAtWall);
   if (found == file.point_data.end()) return {};
@@ -166,8 +170,25 @@ std::vector<char> faces_at_walls(const SolverMesh& mesh, const MeshFile& file) {
   return at_wall;
 }
 
-void divide_boundary(SolverMesh& mesh, const std::vector<char>& at_wall, const OrientedPointCloud& cloud,
-                     const Parameters& parameters, const Warn& warn) {
+std::vector<char> faces_in_holes(const SolverMesh& mesh, const MeshFile& file,
+                                 const std::optional<SupportReport>& support) {
+  const auto found = file.point_data.find("support");
+  if (!support || support->n_closed_holes == 0 || found == file.point_data.end()) return {};
+  const auto* distance = std::get_if<std::vector<double>>(&found->second);
+  if (!distance) return {};
+  std::vector<Triangle> faces;
+  for (std::size_t f = 0; f < mesh.n_faces(); ++f) {
+    const std::array<int, 6> face = mesh.face(f);
+    faces.push_back({face[0], face[1], face[2]});
+  }
+  const ClosedHoles holes = find_closed_holes(file.mesh.V, faces, *distance, support->radius, until_interrupted());
+  std::vector<char> in_holes(faces.size());
+  std::transform(holes.of_face.begin(), holes.of_face.end(), in_holes.begin(), [](int hole) { return hole >= 0; });
+  return in_holes;
+}
+
+void divide_but_holes(SolverMesh& mesh, const std::vector<char>& at_wall, const OrientedPointCloud& cloud,
+                      const Parameters& parameters, const Warn& warn) {
   if (!cloud.labels.empty()) return divide_by_labels(mesh, at_wall, cloud, parameters, warn);
   if (!parameters.output().label_names.empty()) {
     throw UsageError(
@@ -197,6 +218,52 @@ void divide_boundary(SolverMesh& mesh, const std::vector<char>& at_wall, const O
   }
   for (int& piece : pieces) piece = patch_of[piece];
   set_patches(mesh, std::move(pieces), std::move(patches));
+}
+
+}  // namespace
+
+void take_holes(SolverMesh& mesh, const std::vector<char>& in_holes, const Warn& warn) {
+  if (std::find(in_holes.begin(), in_holes.end(), 1) == in_holes.end()) return;
+  std::vector<int> n_left(mesh.patches.size(), 0);
+  for (std::size_t f = 0; f < in_holes.size(); ++f) n_left[mesh.face_patch[f]] += in_holes[f] ? 0 : 1;
+  int number = mesh.body.number;
+  std::vector<int> index(mesh.patches.size(), -1);
+  std::vector<MeshPart> patches;
+  for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
+    MeshPart part = mesh.patches[p];
+    number = std::max(number, part.number);
+    if (n_left[p] == 0) {
+      warn(fmt::format("no boundary face is left to {}: all are in {}", part.name, kClosedHoles));
+      continue;
+    }
+    // Of several patches none has the name of all of them.
+    if (part.name == kWholeBoundary) part.name += "_1";
+    index[p] = static_cast<int>(patches.size());
+    patches.push_back(std::move(part));
+  }
+  patches.push_back({kClosedHoles, number + 1});
+  std::vector<int> face_patch(mesh.n_faces());
+  for (std::size_t f = 0; f < face_patch.size(); ++f) {
+    face_patch[f] = in_holes[f] ? static_cast<int>(patches.size()) - 1 : index[mesh.face_patch[f]];
+  }
+  set_patches(mesh, std::move(face_patch), std::move(patches));
+}
+
+MarkedFaces marked_faces(const SolverMesh& mesh, const MeshFile& file, const std::optional<SupportReport>& support) {
+  return {faces_at_walls(mesh, file), faces_in_holes(mesh, file, support)};
+}
+
+void divide_boundary(SolverMesh& mesh, const MarkedFaces& marked, const OrientedPointCloud& cloud,
+                     const Parameters& parameters, const Warn& warn) {
+  if (!marked.in_holes.empty()) {
+    for (const auto& [label, name] : parse_label_names(parameters.output().label_names)) {
+      if (lower_case(name) != kClosedHoles) continue;
+      throw UsageError(
+          fmt::format("--label-names {}={}: the faces that no sample supports have that name", label, name));
+    }
+  }
+  divide_but_holes(mesh, marked.at_wall, cloud, parameters, warn);
+  take_holes(mesh, marked.in_holes, warn);
 }
 
 }  // namespace umtet

@@ -12,6 +12,7 @@
 #include "pipeline/case/parameters.h"
 #include "pipeline/case/record.h"
 #include "pipeline/output/boundary_patches.h"
+#include "pipeline/reports/stage_reports.h"
 #include "reconstruct/io/point_cloud_io.h"
 
 namespace umtet {
@@ -116,11 +117,11 @@ SolverMesh mesh_of_case(const CasePaths& paths, const Parameters& parameters, Pr
   try {
     MeshFile file = read_tet_mesh(paths.mesh());
     SolverMesh mesh = file.quadratic ? solver_mesh(*file.quadratic) : solver_mesh(file.mesh);
-    const std::vector<char> at_wall = faces_at_walls(mesh, file);
+    const MarkedFaces marked = marked_faces(mesh, file, mesh_report(*state.record).measured.domain.support);
     // What is read for points is read for corners.
     if (!file.quadratic) mesh.point_data = std::move(file.point_data);
     mesh.cell_data = std::move(file.cell_data);
-    divide_boundary(mesh, at_wall, cloud_of_case(paths, *state.record), parameters,
+    divide_boundary(mesh, marked, cloud_of_case(paths, *state.record), parameters,
                     [&](const std::string& text) { progress.warn("export: " + text); });
     return mesh;
   } catch (const MeshFileRefused& e) {

@@ -139,7 +139,10 @@ class Mesh:
         return self.certificate is not None and self.certificate["verdict"] == "pass"
 
     def save(self, path):
-        """Writes .vtu (with ids and quality), .msh (Gmsh), .mesh (MEDIT), or .stl (the boundary)."""
+        """Writes .vtu (with ids and quality), .msh (Gmsh), .mesh (MEDIT), or .stl (the boundary).
+
+        Where the certificate lists closed_holes, .msh and .mesh have them as the patch of that name (MEDIT: number 3).
+        """
         self._core.save(path)
 
     def __repr__(self):

@@ -70,6 +70,19 @@ class Reconstruct(unittest.TestCase):
         self.assertAlmostEqual(mesh.certificate["volume"], 4 / 3 * np.pi * .48, delta=.03)
         self.assertIsNotNone(mesh.certificate["cloud"])
 
+    def test_holes_of_a_scan_are_named(self):
+        self.assertEqual(umtet.mesh(self.psi, h=.15).certificate["domain"]["closed_holes"], [])
+        points, normals = egg(5000)
+        kept = points[:, 0] < .85
+        mesh = umtet.mesh(umtet.reconstruct(points[kept], normals[kept]), h=.06)
+        hole, = mesh.certificate["domain"]["closed_holes"]
+        self.assertGreater(hole["centre"][0], .85)
+        self.assertEqual(hole["rim"]["n"], 1)
+        with tempfile.TemporaryDirectory() as folder:
+            mesh.save(f"{folder}/egg.msh")
+            with open(f"{folder}/egg.msh", "rb") as file:
+                self.assertIn(b'"closed_holes"', file.read())
+
     def test_no_body_is_a_reconstruction_error(self):
         with self.assertRaises(umtet.ReconstructionError) as e:
             umtet.reconstruct(self.points, -self.normals, normal_source="given")
