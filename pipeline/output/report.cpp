@@ -209,6 +209,7 @@ void write_report(const CasePaths& paths, const Parameters& parameters, const Ce
                                   {"checks", check_list(certificate)},
                                   {"cards", headline_cards(certificate)},
                                   {"shown", shown_text(scene.head)},
+                                  {"holes", hole_table(certificate)},
                                   {"figures", figures.figures},
                                   {"tables", figures.tables},
                                   {"certificate", script_json(to_json(certificate))},

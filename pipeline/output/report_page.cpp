@@ -104,6 +104,11 @@ std::string check_list(const Certificate& c) {
     const double most = c.verdict.volume_gap_gate;
     add(fmt::format("between faces and ψ = 0 at most {:.3g} % of the volume", 100 * most), *gap <= most);
   }
+  if (const std::optional<SupportReport>& support = c.measured.domain.support; support && support->n_closed_holes > 0) {
+    add(fmt::format("<a href=\"#holes\">holes closed without samples: {}</a>",
+                    value("/domain/n_closed_holes", support->n_closed_holes)),
+        std::nullopt);
+  }
   if (const std::optional<double>& gate = c.verdict.min_quality_gate) {
     add("min Q at least " + value("/gates/min_quality", gate, 6), mesh.quality.min >= *gate);
   } else {
@@ -137,6 +142,34 @@ std::string headline_cards(const Certificate& c) {
          "99&nbsp;% of the samples nearer; max " + value("/cloud/max_distance_over_h", cloud->max / mesh.h, 3) + " h");
   }
   return out;
+}
+
+std::string hole_table(const Certificate& c) {
+  const std::optional<SupportReport>& support = c.measured.domain.support;
+  if (!support || support->closed_holes.empty()) return "";
+  const std::string unit = c.units ? ", " + html_text(*c.units) : "";
+  std::string rows = fmt::format(
+      "<tr><th></th><th>centre{0}</th><th>area</th><th>share of the boundary</th><th>farthest from a sample{0}</th>"
+      "<th>in spacings</th><th>width{0}</th><th>length of the rim{0}</th><th>rims</th></tr>\n",
+      unit);
+  double part = 0;
+  for (std::size_t k = 0; k < support->closed_holes.size(); ++k) {
+    const ClosedHole& hole = support->closed_holes[k];
+    part += hole.area_fraction;
+    rows += fmt::format(
+        "<tr><td><button type=\"button\" data-hole=\"{}\">show {}</button></td><td>({:.4g}, {:.4g}, {:.4g})</td>"
+        "<td>{:.3g}</td><td>{:.2g} "
+        "%</td><td>{:.3g}</td><td>{:.0f}</td><td>{:.3g}</td><td>{:.3g}</td><td>{}</td></tr>\n",
+        k, k + 1, hole.centre.x(), hole.centre.y(), hole.centre.z(), hole.area, 100 * hole.area_fraction, hole.deepest,
+        hole.deepest_over_spacing, hole.rim_diameter, hole.rim_length, hole.n_rims);
+  }
+  const std::size_t n = support->n_closed_holes, n_listed = support->closed_holes.size();
+  const std::string rest = n > n_listed ? fmt::format(" These are the largest {} of {}.", n_listed, n) : "";
+  return fmt::format(
+      "<div class=\"table\" id=\"holes\"><h2>{} of the scan closed without samples: {:.2g} % of the boundary</h2>\n"
+      "<p>No sample is near {} of the surface. The shape there is a guess: the smoothest that fits what is around. "
+      "In exported files it is the patch <code>closed_holes</code>.{}</p>\n<table>\n{}</table></div>\n",
+      n == 1 ? "1 hole" : fmt::format("{} holes", n), 100 * part, n == 1 ? "this part" : "these parts", rest, rows);
 }
 
 std::string stage_table(const std::vector<StageRecord>& records) {

@@ -9,6 +9,7 @@
 #include "common/context.h"
 #include "mesh/io/patches.h"
 #include "pipeline/case/interrupt.h"
+#include "pipeline/domain/zero_set_choice.h"
 #include "pipeline/meshing/made_mesh.h"
 #include "pipeline/output/report_page.h"
 
@@ -253,6 +254,7 @@ void SceneMaker::write_values() {
     double far = 0;
     for (const double d : *support) far = std::max(far, d);
     scene_.head.support = {0, far};
+    scene_.head.support_radius = support_radius(domain_);
     bytes.clear();
     for (const int v : shown_) bytes.push_back(in_steps((*support)[v], 0, far));
     write_bytes("vertex_support", bytes);
@@ -310,6 +312,7 @@ Json to_json(const SceneHead& head) {
           {"planes", json_of(head.planes)},
           {"index_bytes", head.index_bytes},
           {"ranges", ranges},
+          {"support_radius", head.support_radius},
           {"n_points", head.n_points},
           {"n_points_shown", head.n_points_shown}};
 }

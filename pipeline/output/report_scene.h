@@ -41,6 +41,7 @@ struct SceneHead {
   };
   Range quality, deviation;      ///< of the colours; deviation in model units
   std::optional<Range> support;  ///< distances to samples, model units; none for a formula
+  double support_radius = 0;     ///< farther than this from every sample the surface is a guess
   std::size_t n_points = 0, n_points_shown = 0;
 };
 

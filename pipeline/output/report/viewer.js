@@ -50,6 +50,16 @@
     ramp.push(a.map((c, i) => Math.round(c + (at - k) * (b[i] - c))));
   }
   const reversed = ramp.slice().reverse();
+  // Grey where there are samples, and from yellow to dark red where none supports the surface.
+  const kGuess = [[254, 196, 79], [236, 112, 20], [140, 20, 4]], kBacked = [[206, 214, 222], [120, 138, 156]];
+  const blend = (a, b, s) => a.map((c, i) => Math.round(c + s * (b[i] - c)));
+  const support = [];
+  const guessFrom = ranges.support ? Math.min(1, info.support_radius / Math.max(ranges.support[1], 1e-300)) : 1;
+  for (let v = 0; v < 256; ++v) {
+    const at = v / 255, s = 2 * (at - guessFrom) / Math.max(1 - guessFrom, 1e-9);
+    support.push(at <= guessFrom ? blend(kBacked[0], kBacked[1], at / guessFrom)
+                 : s < 1 ? blend(kGuess[0], kGuess[1], s) : blend(kGuess[1], kGuess[2], s - 1));
+  }
   const patchColours = [];
   for (let v = 0; v < 256; ++v) patchColours.push(rgb(kPatches[v % kPatches.length]));
   const plain = new Array(256).fill([226, 196, 128]);
@@ -57,12 +67,18 @@
   // Bright is good: small distances at the bright end.
   const kinds = [
     {id: "quality", name: "quality (mean ratio)", key: "quality", face: "face_quality", ramp: ramp},
-    {id: "deviation", name: "deviation of face centres", key: "deviation", face: "face_deviation", ramp: reversed},
-    {id: "support", name: "support (next sample)", key: "support", vertex: "vertex_support", ramp: reversed},
+    {id: "deviation", name: "deviation of face centres", legend: "deviation of face centres", key: "deviation", face: "face_deviation", ramp: reversed},
+    {id: "support", name: "support (next sample)", legend: "distance to the next sample", key: "support", vertex: "vertex_support", ramp: support},
     {id: "patch", name: "patch", face: "face_patch", ramp: patchColours},
     {id: "none", name: "none", ramp: plain},
   ].filter((k) => !(k.face || k.vertex) || has(k.face || k.vertex));
   for (const kind of kinds) {
+    kind.texture = once(() => {
+      const texels = new Uint8Array(kind.ramp.flatMap((c) => [...c, 255]));
+      const texture = new THREE.DataTexture(texels, 256, 1, THREE.RGBAFormat);
+      texture.needsUpdate = true;
+      return texture;
+    });
     kind.bytes = kind.face || kind.vertex ? once(() => bytes(kind.face || kind.vertex)) : () => null;
     $("colour").add(new Option(kind.name, kind.id));
   }
@@ -103,7 +119,7 @@
 
   function material(options) {
     return new THREE.ShaderMaterial(Object.assign({
-      uniforms: {edges: {value: 1}, opacity: {value: 1}},
+      uniforms: {edges: {value: 1}, opacity: {value: 1}, ramped: {value: 0}, ramp: {value: null}},
       side: THREE.DoubleSide,
       extensions: {derivatives: true},
       vertexShader: `
@@ -115,9 +131,11 @@
           gl_Position = projectionMatrix * p;
         }`,
       fragmentShader: `
-        uniform float edges, opacity;
+        uniform float edges, opacity, ramped;
+        uniform sampler2D ramp;
         varying vec3 at, colour, corner;
         void main() {
+          vec3 tint = ramped > 0.5 ? texture2D(ramp, vec2((colour.r * 255.0 + 0.5) / 256.0, 0.5)).rgb : colour;
           vec3 n = normalize(cross(dFdx(at), dFdy(at)));
           float light = 0.42 + 0.63 * abs(dot(n, normalize(vec3(0.25, 0.45, 1.0))));
           vec3 d = corner / max(fwidth(corner), 1e-9);
@@ -125,7 +143,7 @@
           // Where triangles are a few pixels wide, their edges would be all that is seen.
           float size = 1.0 / max(max(fwidth(corner.x), fwidth(corner.y)), fwidth(corner.z));
           line *= edges * 0.55 * smoothstep(2.0, 9.0, size);
-          gl_FragColor = vec4(mix(colour * light, vec3(0.05), line), opacity);
+          gl_FragColor = vec4(mix(tint * light, vec3(0.05), line), opacity);
         }`,
     }, options));
   }
@@ -188,11 +206,15 @@
     const behind = (list, k) => !cut || cut.sign * centroid(list, k, cut.axis) <= cut.at;
     const shell = new Soup(nFaces), values = kind.bytes(), grey = [150, 155, 165];
     const tint = (v) => worst ? grey : kind.ramp[v];
+    // Of vertices the value is linear on a face, not the colour: bounds between colours are where the value is.
+    const ramped = Boolean(kind.vertex) && !worst;
+    surface.material.uniforms.ramped.value = ramped ? 1 : 0;
+    if (ramped) surface.material.uniforms.ramp.value = kind.texture();
     for (let f = 0; f < nFaces; ++f) {
       if (!behind(F, f)) continue;
       const a = F[4 * f], b = F[4 * f + 1], c = F[4 * f + 2];
-      if (kind.vertex) {
-        shell.add(a, b, c, tint(values[a]), tint(values[b]), tint(values[c]));
+      if (ramped) {
+        shell.add(a, b, c, ...[a, b, c].map((v) => [values[v], 0, 0]));
       } else {
         const one = tint(values ? values[f] : 0);
         shell.add(a, b, c, one, one, one);
@@ -243,11 +265,22 @@
     };
     if (kind.face === "face_patch") return patchLegend(add);
     if (!kind.key) return;
-    add("name", $("legend")).textContent = kind.key === "quality" ? "mean ratio Q" : kind.name + ", model units";
+    add("name", $("legend")).textContent = kind.key === "quality" ? "mean ratio Q" : kind.legend + ", model units";
     add("bar", $("legend")).style.background =
-      "linear-gradient(90deg," + [0, 51, 102, 153, 204, 255].map((v) => `rgb(${kind.ramp[v].join()})`).join() + ")";
+      "linear-gradient(90deg," + Array.from({length: 52}, (_, k) => 5 * k).map((v) => `rgb(${kind.ramp[v].join()})`).join() + ")";
     const ends = add("ends", $("legend"));
     for (const v of ranges[kind.key]) ends.appendChild(document.createElement("span")).textContent = number(v);
+    if (kind.id === "support") supportLegend(add);
+  }
+
+  // Where on the bar the guess begins, in words.
+  function supportLegend(add) {
+    const far = number(info.support_radius), note = add("name", $("legend"));
+    if (guessFrom === 1) {
+      note.textContent = `no place is farther than ${far} (3 spacings) from every sample`;
+      return;
+    }
+    note.textContent = `yellow to red: a guess, farther than ${far} (3 spacings) from every sample`;
   }
 
   // The largest patches by name, with their shares of the area.
@@ -356,6 +389,38 @@
     eye.away = Math.max(0.02, Math.min(5, eye.away * Math.exp(0.001 * e.deltaY)));
     draw();
   }, {passive: false});
+  // A hole of the certificate: the camera looks at its middle from outside, so near that the hole fills a third.
+  const holes = JSON.parse($("certificate").textContent).domain.closed_holes || [];
+  function show(hole) {
+    $("colour").value = "support";
+    $("axis").value = "";
+    $("worst").checked = false;
+    build();
+    const middle = new THREE.Vector3(...hole.centre.map((c, i) => c - info.box_min[i] - info.box_size[i] / 2));
+    const wide = Math.max(hole.rim.diameter, Math.sqrt(hole.area)), normal = new THREE.Vector3(), values = bytes("vertex_support");
+    const [p, q, r] = [0, 1, 2].map(() => new THREE.Vector3());
+    for (let f = 0; f < nFaces; ++f) {
+      const corners = [F[4 * f], F[4 * f + 1], F[4 * f + 2]];
+      if (corners.some((v) => values[v] / 255 <= guessFrom)) continue;
+      p.fromArray(X, 3 * corners[0]);
+      q.fromArray(X, 3 * corners[1]).sub(p);
+      r.fromArray(X, 3 * corners[2]).sub(p);
+      if (p.distanceTo(middle) <= wide) normal.add(q.cross(r));
+    }
+    if (normal.lengthSq() === 0) normal.copy(middle);
+    normal.normalize();
+    const a = axes();
+    eye = {x: middle.x, y: middle.y, z: middle.z, turn: Math.atan2(normal.dot(a.right), normal.dot(a.front)) + 0.3,
+           lift: Math.max(-1.2, Math.min(1.2, Math.asin(normal.dot(a.up)))), away: 1};
+    eye.away = Math.max(0.02, Math.min(1, 3 * wide / (2 * kSlope) / homeDistance(a)));
+    draw();
+  }
+  for (const button of document.querySelectorAll("button[data-hole]")) {
+    button.addEventListener("click", () => {
+      show(holes[Number(button.dataset.hole)]);
+      canvas.scrollIntoView({block: "center"});
+    });
+  }
   $("home").addEventListener("click", () => {
     eye = Object.assign({x: 0, y: 0, z: 0}, kHome);
     draw();
@@ -370,8 +435,10 @@
     $("place").disabled = true;
   }
   $("worst-number").max = info.n_worst;
-  // #colour=patch&axis=0&worst=1: a view to open with.
-  for (const [id, value] of new URLSearchParams(location.hash.slice(1))) {
+  // #colour=patch&axis=0&worst=1: a view to open with; #hole=1: the first one that was closed.
+  const asked = new URLSearchParams(location.hash.slice(1)), first = holes[Number(asked.get("hole")) - 1];
+  if (first) show(first);
+  for (const [id, value] of asked) {
     const control = $(id);
     if (!control || !control.form) continue;
     if (control.type === "checkbox") control.checked = value === "1";
