@@ -145,6 +145,11 @@ tets.ClipType.Origin = {centre}
 tets.ClipType.Normal = [1.0, 0.0, 0.0]
 tets.Crinkleclip = 1
 coloured(shown(tets, "3 tets behind a cut", Representation="Surface With Edges"), "CELLS", "mean_ratio")
+support_radius = {support_radius}
+if support_radius is not None:
+    # In front of the tets: where no sample is near, up to the line at which the guess begins.
+    guessed = Clip(Input=ExtractSurface(Input=mesh), ClipType="Scalar", Scalars=["POINTS", "support"], Value=support_radius, Invert=0)
+    coloured(shown(guessed, "3 closed holes, by distance to samples"), "POINTS", "support")
 if os.path.exists(path("3-mesh/iterates.pvd")):
     iterates = PVDReader(FileName=path("3-mesh/iterates.pvd"))
     RenameSource("3 iterates", iterates)
@@ -164,7 +169,10 @@ std::vector<fs::path> write_view(const CasePaths& paths, Progress& progress) {
   const StageState state = inspect_stage(paths, Stage::Mesh, parameters.section("mesh"), std::nullopt);
   if (state.kind == StageState::Kind::Damaged) throw ArtefactDamaged(state.reason);
   if (!state.record) throw UsageError("nothing to view: " + state.reason + "; umtet mesh makes it");
-  const double h = mesh_report(*state.record).measured.mesh.h;
+  const MeshMeasures measured = mesh_report(*state.record).measured;
+  const double h = measured.mesh.h;
+  const std::optional<SupportReport>& support = measured.domain.support;
+  const bool has_holes = support && support->n_closed_holes > 0;
   Domain domain = load_domain(paths, parameters);
   domain.limit_detail(h);
   const fs::path folder = paths.view();
@@ -184,6 +192,7 @@ std::vector<fs::path> write_view(const CasePaths& paths, Progress& progress) {
       files[2],
       fmt::format(fmt::runtime(kScript), fmt::arg("case", python_text(paths.root)),
                   fmt::arg("radius", .002 * domain.diagonal),
+                  fmt::arg("support_radius", has_holes ? fmt::format("{:.17g}", support->radius) : "None"),
                   fmt::arg("centre", fmt::format("[{:.17g}, {:.17g}, {:.17g}]", centre.x(), centre.y(), centre.z()))));
   return files;
 }
