@@ -174,11 +174,17 @@ Json to_json(const StageDiff& s) {
   return json;
 }
 
+/// A list of objects, such as holes or thin places, is said by its length.
+std::string shown(const Json& value) {
+  if (!value.is_array() || value.empty() || !value.front().is_object()) return value.dump();
+  return fmt::format("[{} entr{}]", value.size(), value.size() == 1 ? "y" : "ies");
+}
+
 std::string lines_of(const std::vector<ValueDifference>& differences, const char* what) {
   std::string out;
   for (std::size_t k = 0; k < std::min(kListed, differences.size()); ++k) {
     const ValueDifference& d = differences[k];
-    out += fmt::format("  {} {}: {} | {}\n", what, d.at.substr(1), d.a.dump(), d.b.dump());
+    out += fmt::format("  {} {}: {} | {}\n", what, d.at.substr(1), shown(d.a), shown(d.b));
   }
   if (differences.size() > kListed) out += fmt::format("  and {} more\n", differences.size() - kListed);
   return out;
