@@ -50,7 +50,7 @@ std::vector<std::string> troubles(const CloudSurvey& s, const CloudFileReport& f
     if (s.openness > kOpen) {
       trouble(
           "the surface is open or sampled on one side (|sum a n| / sum a = {:.2f}): what closes it is a guess, "
-          "marked as unsupported",
+          "which the certificate and the patch closed_holes name",
           s.openness);
     }
   }

@@ -123,6 +123,26 @@ def patches_are_those_of_the_files(umtet, folder):
     assert len({colour for colour, _, _ in page.patches.values()}) == 3, page.patches
 
 
+def holes_are_shown(umtet, folder):
+    """A ball without samples around +x: its report lists the hole, and opens there."""
+    with open(folder / "open.xyz", "w") as cloud:
+        for k in range(4000):
+            z, a = 1 - (2 * k + 1) / 4000, 2.399963 * k
+            x, y = math.sqrt(1 - z * z) * math.cos(a), math.sqrt(1 - z * z) * math.sin(a)
+            if x < .8:
+                cloud.write(f"{x} {y} {z} {x} {y} {z}\n")
+    subprocess.run([umtet, "run", folder / "open.xyz", "-o", folder / "open", "--tets", "10000", "-q", "--progress", "none"],
+                   check=True, stdout=subprocess.DEVNULL)
+    report = folder / "open/report.html"
+    assert len(re.findall(r'<button type="button" data-hole="\d+">', report.read_text())) == 1
+    page, said = opened(f"file://{report}#hole=1&colour=patch", folder / "e")
+    assert not said, said
+    assert [row[1] for row in page.patches.values()] == ["boundary_1", "closed_holes"], page.patches
+    assert int(page.body["data-pixels"]) > 20_000, page.body
+    page, said = opened(f"file://{report}#hole=1", folder / "f")
+    assert not said and not page.patches, (said, page.patches)
+
+
 def main(umtet, cloud):
     if not shutil.which("chromium"):
         print("skipped: Debian's chromium is not installed")
@@ -138,10 +158,11 @@ def main(umtet, cloud):
         url = f"file://{case}/report.html"
         page, said = opened(url, f"{folder}/a")
         with ThreadPoolExecutor() as pool:  # a browser waits more than it works
-            (cut, cut_said), (bare, _), _ = pool.map(lambda f: f(), (
+            (cut, cut_said), (bare, _), _, _ = pool.map(lambda f: f(), (
                 lambda: opened(f"{url}#axis=0&edges=0", f"{folder}/b"),
                 lambda: opened(url, f"{folder}/c", "--disable-3d-apis"),
-                lambda: patches_are_those_of_the_files(umtet, pathlib.Path(folder))))
+                lambda: patches_are_those_of_the_files(umtet, pathlib.Path(folder)),
+                lambda: holes_are_shown(umtet, pathlib.Path(folder))))
         assert not said + cut_said, said + cut_said
         numbers_are_those_of(certificate, page)
         assert page.body["data-webgl"] == "drawn", page.body
