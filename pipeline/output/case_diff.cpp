@@ -91,7 +91,13 @@ struct BoundarySurface {
   }
 };
 
-Measures mesh_difference(const CasePaths& a, const CasePaths& b) {
+std::size_t n_holes(const StageRecord& record) {
+  const std::optional<SupportReport>& support = mesh_report(record).measured.domain.support;
+  return support ? support->n_closed_holes : 0;
+}
+
+Measures mesh_difference(const CasePaths& a, const CasePaths& b, const StageRecord& record_a,
+                         const StageRecord& record_b) {
   const BoundarySurface x(a), y(b);
   const bool same_tets = x.file.mesh.C == y.file.mesh.C;
   Measures measures = {{"n_tets_a", x.file.mesh.C.size()},
@@ -99,6 +105,10 @@ Measures mesh_difference(const CasePaths& a, const CasePaths& b) {
                        {"same_tets", same_tets},
                        {"boundary_a_to_b", spread(y.distances(x.corners))},
                        {"boundary_b_to_a", spread(x.distances(y.corners))}};
+  if (const std::size_t in_a = n_holes(record_a), in_b = n_holes(record_b); in_a + in_b > 0) {
+    measures.emplace_back("closed_holes_a", in_a);
+    measures.emplace_back("closed_holes_b", in_b);
+  }
   if (!same_tets) return measures;
   std::vector<double> moves;
   for (std::size_t v = 0; v < x.file.mesh.V.size(); ++v) {
@@ -120,7 +130,7 @@ Measures difference_of(Stage stage, const CasePaths& a, const CasePaths& b, cons
   try {
     if (stage == Stage::Cloud) return cloud_difference(a, b);
     if (stage == Stage::LevelSet) return level_set_difference(a, b, record_a, record_b);
-    return mesh_difference(a, b);
+    return mesh_difference(a, b, record_a, record_b);
   } catch (const CloudRefused& e) {  // these files are ours: what is wrong with them is damage
     throw ArtefactDamaged(e.what());
   } catch (const LevelSetRefused& e) {

@@ -33,8 +33,8 @@ struct StageDiff {
   /// By how much the results differ, by name; none where the files are the same:
   ///   cloud       distance of every sample to the next of the other case
   ///   level-set   |psi_a - psi_b| at the samples of A
-  ///   mesh        distance of boundary vertices to the other's boundary; if the tets are the same, moves of the
-  ///               vertices
+  ///   mesh        distance of boundary vertices to the other's boundary; numbers of holes if there are any; if the
+  ///               tets are the same, moves of the vertices
   using Measure = std::variant<Spread, double, std::size_t, bool>;
   std::optional<std::vector<std::pair<std::string, Measure>>> difference;
 };

@@ -91,8 +91,9 @@ std::string holes_line(const std::optional<SupportReport>& support, const std::s
     part += hole.area_fraction;
     deepest = std::max(deepest, hole.deepest);
   }
-  return fmt::format("holes     {} closed where no sample is: {:.3g} % of the boundary, deepest {:.3g}{} from a sample\n",
-                     n, 100 * part, deepest, unit);
+  return fmt::format(
+      "holes     {} closed where no sample is: {:.3g} % of the boundary, deepest {:.3g}{} from a sample\n", n,
+      100 * part, deepest, unit);
 }
 
 std::string cloud_line(const MeshMeasures& m, const std::string& unit) {

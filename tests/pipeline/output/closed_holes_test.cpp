@@ -116,6 +116,11 @@ TEST_F(Holes, TwoAreTwo) {
   ASSERT_EQ(holes.size(), 2u);
   EXPECT_LT(holes[0]["centre"][1], -.8) << "the larger one is the first";
   EXPECT_GT(holes[1]["centre"][0], .8);
+  write_ball_with_a_hole("one.xyz");
+  ASSERT_EQ(run("run one.xyz -o one --tets 20000 --no-report").code, 0);
+  const Json stages = Json::parse(run("diff ball one --json").out)["diff"]["stages"];
+  EXPECT_EQ(stages[2]["difference"]["closed_holes_a"], 2);
+  EXPECT_EQ(stages[2]["difference"]["closed_holes_b"], 1);
 }
 
 TEST_F(Holes, AFormulaHasNoSamplesToMiss) {
