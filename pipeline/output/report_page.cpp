@@ -158,18 +158,19 @@ std::string hole_table(const Certificate& c) {
     part += hole.area_fraction;
     rows += fmt::format(
         "<tr><td><button type=\"button\" data-hole=\"{}\">show {}</button></td><td>({:.4g}, {:.4g}, {:.4g})</td>"
-        "<td>{:.3g}</td><td>{:.2g} "
-        "%</td><td>{:.3g}</td><td>{:.0f}</td><td>{:.3g}</td><td>{:.3g}</td><td>{}</td></tr>\n",
+        "<td>{:.3g}</td><td>{:.2g} %</td><td>{:.3g}</td><td>{:.0f}</td>"
+        "<td>{:.3g}</td><td>{:.3g}</td><td>{}</td></tr>\n",
         k, k + 1, hole.centre.x(), hole.centre.y(), hole.centre.z(), hole.area, 100 * hole.area_fraction, hole.deepest,
         hole.deepest_over_spacing, hole.rim_diameter, hole.rim_length, hole.n_rims);
   }
   const std::size_t n = support->n_closed_holes, n_listed = support->closed_holes.size();
   const std::string rest = n > n_listed ? fmt::format(" These are the largest {} of {}.", n_listed, n) : "";
   return fmt::format(
-      "<div class=\"table\" id=\"holes\"><h2>{} of the scan closed without samples: {:.2g} % of the boundary</h2>\n"
-      "<p>No sample is near {} of the surface. The shape there is a guess: the smoothest that fits what is around. "
-      "In exported files it is the patch <code>closed_holes</code>.{}</p>\n<table>\n{}</table></div>\n",
-      n == 1 ? "1 hole" : fmt::format("{} holes", n), 100 * part, n == 1 ? "this part" : "these parts", rest, rows);
+      "<div class=\"table\" id=\"holes\"><h2>{} of the scan closed without samples: {}{:.2g} % of the boundary</h2>\n"
+      "<p>No sample is near {} of the surface: the shape there is a guess of the fit. In exported files it is the "
+      "patch <code>closed_holes</code>, which reaches up to the samples around.{}</p>\n<table>\n{}</table></div>\n",
+      n == 1 ? "1 hole" : fmt::format("{} holes", n), n > n_listed ? "over " : "", 100 * part,
+      n == 1 ? "this part" : "these parts", rest, rows);
 }
 
 std::string stage_table(const std::vector<StageRecord>& records) {

@@ -92,8 +92,8 @@ std::string holes_line(const std::optional<SupportReport>& support, const std::s
     deepest = std::max(deepest, hole.deepest);
   }
   return fmt::format(
-      "holes     {} closed where no sample is: {:.3g} % of the boundary, deepest {:.3g}{} from a sample\n", n,
-      100 * part, deepest, unit);
+      "holes     {} closed where no sample is: {}{:.3g} % of the boundary, deepest {:.3g}{} from a sample\n", n,
+      n > support->closed_holes.size() ? "over " : "", 100 * part, deepest, unit);
 }
 
 std::string cloud_line(const MeshMeasures& m, const std::string& unit) {
