@@ -20,6 +20,7 @@ enum class NormalsOf { Auto, Given, Estimate };
 enum class SampleWeights { Area, Paper };
 enum class MaxEntPrior { CompactC2, Gaussian };
 enum class FitSolver { Auto, Multilevel, Full, Assembled };
+enum class HoleClosing { Auto, Smooth, Flat, None };
 enum class MeshingMode { Fast, Paper };
 enum class RelaxationDirections { Random, Axes };
 enum class Projection { Newton, Damped, Paper };

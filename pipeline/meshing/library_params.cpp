@@ -24,6 +24,11 @@ SsdParams ssd_params(const Parameters& p) {
   ssd.solver = solver == FitSolver::Assembled                                          ? SsdSolver::Assembled
                : solver == FitSolver::Full || (solver == FitSolver::Auto && full_only) ? SsdSolver::Full
                                                                                        : SsdSolver::Multilevel;
+  const HoleClosing close = p.reconstruct().keep_open ? HoleClosing::None : p.reconstruct().close;
+  ssd.closing = close == HoleClosing::None     ? Closing::None
+                : close == HoleClosing::Flat   ? Closing::Flat
+                : close == HoleClosing::Smooth ? Closing::Smooth
+                                               : Closing::Auto;
   ssd.band_tolerance = p.reconstruct().band_tolerance;
   ssd.tolerance = p.reconstruct().tolerance;
   ssd.max_iterations = static_cast<int>(p.reconstruct().max_iterations);

@@ -70,6 +70,30 @@ CloudReport cloud_from(const Json& json) {
           .notices = json.at("notices")};
 }
 
+constexpr std::array kHowClosed = {"as fitted", "smooth", "flat"};  // in the order of FittedHole::How
+
+Json to_json(const FittedHole& h) {
+  return {{"centre", json_of(h.hole.centre)},
+          {"normal", json_of(h.hole.normal)},
+          {"area", h.hole.area},
+          {"depth", h.hole.depth},
+          {"rim_cosine", h.hole.rim_cosine},
+          {"closed", kHowClosed[static_cast<std::size_t>(h.how)]}};
+}
+
+FittedHole fitted_hole_from(const Json& json) {
+  FittedHole h;
+  h.hole.centre = vector_from(json.at("centre"));
+  h.hole.normal = vector_from(json.at("normal"));
+  h.hole.area = number_from(json.at("area"));
+  h.hole.depth = number_from(json.at("depth"));
+  h.hole.rim_cosine = number_from(json.at("rim_cosine"));
+  const auto* const how = std::find(kHowClosed.begin(), kHowClosed.end(), json.at("closed").get<std::string>());
+  if (how == kHowClosed.end()) throw ArtefactDamaged("a hole of the level set is closed in no known way");
+  h.how = static_cast<FittedHole::How>(how - kHowClosed.begin());
+  return h;
+}
+
 LevelSetReport level_set_from(const Json& json) {
   LevelSetReport r;
   r.shift = vector_from(json.at("shift"));
@@ -93,6 +117,7 @@ LevelSetReport level_set_from(const Json& json) {
   fit.energy_hessian = number_from(json.at("energy_hessian"));
   fit.rms_value = number_from(json.at("rms_value"));
   fit.n_opposed_normals = json.at("n_opposed_normals");
+  for (const Json& hole : json.at("holes")) fit.holes.push_back(fitted_hole_from(hole));
   fit.least_wall_value = number_from(json.at("least_wall_value"));
   return r;
 }
@@ -134,6 +159,8 @@ Json to_json(const LevelSetReport& r) {
   const SsdReport& fit = r.fit;
   Json bands = Json::array();
   for (const BandReport& band : fit.bands) bands.push_back(to_json(band));
+  Json holes = Json::array();
+  for (const FittedHole& hole : fit.holes) holes.push_back(to_json(hole));
   return {{"shift", json_of(r.shift)},
           {"n_points", fit.n_points},
           {"n_nodes", fit.n_nodes},
@@ -151,6 +178,7 @@ Json to_json(const LevelSetReport& r) {
           {"energy_hessian", fit.energy_hessian},
           {"rms_value", fit.rms_value},
           {"n_opposed_normals", fit.n_opposed_normals},
+          {"holes", holes},
           {"least_wall_value", fit.least_wall_value}};
 }
 

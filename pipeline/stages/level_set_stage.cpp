@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <optional>
@@ -42,6 +43,18 @@ std::optional<std::array<double, 3>> thickness_percentiles(const OrientedPointCl
   if (t.empty()) return std::nullopt;
   const auto at = [&](double p) { return t[static_cast<std::size_t>(p * static_cast<double>(t.size() - 1))]; };
   return {{at(.01), at(.05), at(.5)}};
+}
+
+/// Which holes of the scan were closed, and how; empty where the fit alone closes all.
+std::string described(const std::vector<FittedHole>& holes) {
+  const auto count = [&](FittedHole::How how) {
+    return std::count_if(holes.begin(), holes.end(), [how](const FittedHole& h) { return h.how == how; });
+  };
+  const auto flat = count(FittedHole::How::Flat), smooth = count(FittedHole::How::Smooth);
+  if (flat + smooth == 0) return "";
+  return fmt::format(
+      "level-set: closed where no sample is: {} hole{} flat, {} smoothly (--close chooses, --keep-open does not)", flat,
+      flat == 1 ? "" : "s", smooth);
 }
 
 }  // namespace
@@ -95,6 +108,7 @@ void run_level_set_stage(const StageContext& context) {
   } catch (const SolveError& e) {
     throw SolveError(e.what() + doubt_about_given_normals(context.paths));
   }
+  if (const std::string closed = described(fit.report.holes); !closed.empty()) context.progress.say(closed);
   begin_writing(context, Stage::LevelSet);
   write_artefact(context.paths.level_set(),
                  [&](const fs::path& temporary) { write_level_set(temporary, fit.psi, shift); });

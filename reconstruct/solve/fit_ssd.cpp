@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "common/formatted.h"
+#include "reconstruct/solve/closing.h"
 #include "reconstruct/solve/multigrid.h"
 #include "reconstruct/solve/resolution.h"
 #include "reconstruct/solve/ssd_assembled.h"
@@ -259,6 +260,25 @@ void require_memory(const Problem& problem, const Hierarchy& hierarchy,
                 hierarchy.finest.h / std::exp2(samples.size() - 1.0), need / 1e9, limit / 1e9));
 }
 
+// Those of the coarsest lattice, and of each of twice its resolution, in the units of theirs.
+std::vector<std::vector<SsdSample>> samples_of_levels(const Problem& problem, Lattice lattice, int n_bands) {
+  const double noise = problem.params.noise;
+  lattice.h = std::ldexp(lattice.h, -n_bands);
+  lattice.n = (lattice.n.array() - 1) * (1 << n_bands) + 1;
+  std::vector<std::vector<SsdSample>> samples(n_bands + 1);
+  samples[n_bands] = merge_samples(
+      make_samples(problem.cloud, problem.area, lattice, finest_value_length(lattice.h, noise)), kMergeCube);
+  for (int level = n_bands; level-- > 0;) {
+    std::vector<SsdSample> coarser = samples[level + 1];
+    coarsen(coarser);
+    const double h = std::ldexp(lattice.h, n_bands - level);
+    for (SsdSample& s : coarser) s.w_value = s.w_gradient * std::pow(h / value_length(h, noise), 2);
+    samples[level] = merge_samples(coarser, kMergeCube);
+    samples[level + 1] = resolved_samples(samples[level + 1], kMostArea);
+  }
+  return samples;
+}
+
 LevelSet fit_multilevel(const Problem& problem, SsdReport& report) {
   const SsdParams& params = problem.params;
   const int padding = std::max(params.padding, kLeastMultilevelPadding);
@@ -268,24 +288,24 @@ LevelSet fit_multilevel(const Problem& problem, SsdReport& report) {
     coarsest *= 2;
     ++n_bands;
   }
-  const Hierarchy hierarchy = choose_hierarchy(problem.box, coarsest, padding, problem.tables.width());
-  Lattice lattice = hierarchy.finest;
-  lattice.h = std::ldexp(lattice.h, -n_bands);
-  lattice.n = (lattice.n.array() - 1) * (1 << n_bands) + 1;
   std::vector<std::vector<SsdSample>> samples(n_bands + 1);
-  samples[n_bands] = merge_samples(
-      make_samples(problem.cloud, problem.area, lattice, finest_value_length(lattice.h, params.noise)), kMergeCube);
-  for (int level = n_bands; level-- > 0;) {
-    std::vector<SsdSample> coarser = samples[level + 1];
-    coarsen(coarser);
-    const double h = std::ldexp(lattice.h, n_bands - level);
-    for (SsdSample& s : coarser) s.w_value = s.w_gradient * std::pow(h / value_length(h, params.noise), 2);
-    samples[level] = merge_samples(coarser, kMergeCube);
-    samples[level + 1] = resolved_samples(samples[level + 1], kMostArea);
-  }
-  require_memory(problem, hierarchy, samples);
-  LevelSet psi = fit_lattice(problem, hierarchy, std::move(samples[0]),
-                             (n_bands > 0 ? 1 : kLoneTolerance) * params.tolerance, report);
+  const auto fit_coarsest = [&](const Eigen::AlignedBox3d& box, const ClosingPlan* closing) {
+    const Hierarchy hierarchy = choose_hierarchy(box, coarsest, padding, problem.tables.width());
+    samples = samples_of_levels(problem, hierarchy.finest, n_bands);
+    require_memory(problem, hierarchy, samples);
+    std::vector<SsdSample> all = samples[0];
+    if (closing) {
+      const std::vector<SsdSample> more = closing->samples(hierarchy.finest);
+      all.insert(all.end(), more.begin(), more.end());
+    }
+    return fit_lattice(problem, hierarchy, std::move(all), (n_bands > 0 ? 1 : kLoneTolerance) * params.tolerance,
+                       report);
+  };
+  LevelSet psi = fit_coarsest(problem.box, nullptr);
+  const ClosingPlan closing(psi, std::move(samples[0]), params.closing);
+  if (closing.is_needed()) psi = fit_coarsest(closing.box(), &closing);
+  report.holes = closing.holes();
+  samples[0] = {};
   for (int level = 1; level <= n_bands && !samples[level].empty(); ++level) {
     const double per_level = 1.0 / n_bands;
     const double smoothing = level < n_bands ? report.smoothing : problem.finest_smoothing;

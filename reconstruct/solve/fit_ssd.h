@@ -10,6 +10,7 @@
 #include "reconstruct/cloud/cloud_neighbours.h"
 #include "reconstruct/cloud/point_cloud.h"
 #include "reconstruct/level_set/level_set.h"
+#include "reconstruct/solve/closing.h"
 #include "reconstruct/solve/multilevel_fit.h"
 #include "reconstruct/solve/solve_error.h"
 
@@ -40,7 +41,8 @@ struct SsdParams {
   int max_iterations = 200;  ///< >= 1
   int coarsest_nodes =
       150000;  ///< most nodes of the full lattice of the multilevel fit: what shows every part of a body; > 0
-  double max_memory = 0;  ///< bytes that fitting may take; 0: no limit
+  Closing closing = Closing::Auto;  ///< of what no sample shows; only of SsdSolver::Multilevel
+  double max_memory = 0;            ///< bytes that fitting may take; 0: no limit
   int padding =
       5;  ///< lattice cells around the cloud's box; >= 1, and >= 4 for the mesher: projections fail at the hull
 };
@@ -61,6 +63,7 @@ struct SsdReport {
   double energy_hessian = 0;                   ///< its third term; 0 for every SsdSolver::Multilevel: not computed
   double rms_value = 0;                        ///< rms of psi(x_i), model units
   std::size_t n_opposed_normals = 0;  ///< samples with n_i . grad psi(x_i) < 0: the normals disagree with one another
+  std::vector<FittedHole> holes;      ///< of the scan, where psi was looked at for them: in SsdSolver::Multilevel
   double least_wall_value = 0;        ///< least psi sampled on the wall of its domain; < 0: the body has no end
 };
 

@@ -28,6 +28,9 @@ std::uint64_t key_of(const Eigen::Vector3d& xi, double cubes_per_cell) {
   return block << 12 | inner;
 }
 
+// What a sample counts in the mean of several: a value without a normal has no w_gradient.
+double share_of(const SsdSample& s) { return s.w_gradient > 0 ? s.w_gradient : s.w_value; }
+
 }  // namespace
 
 std::vector<SsdSample> merge_samples(const std::vector<SsdSample>& samples, double cube) {
@@ -46,20 +49,23 @@ std::vector<SsdSample> merge_samples(const std::vector<SsdSample>& samples, doub
       continue;
     }
     SsdSample mean{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+    double shares = 0;
     for (std::size_t k = i; k < end; ++k) {
       const SsdSample& s = samples[order[k].index];
-      mean.xi += s.w_gradient * s.xi;
-      mean.normal += s.w_gradient * s.normal;
+      const double share = share_of(s);
+      mean.xi += share * s.xi;
+      mean.normal += share * s.normal;
       mean.w_value += s.w_value;
       mean.w_gradient += s.w_gradient;
+      shares += share;
     }
-    mean.xi /= mean.w_gradient;
-    mean.normal /= mean.w_gradient;
+    mean.xi /= shares;
+    mean.normal /= shares;
     for (std::size_t k = i; k < end; ++k) {
       const SsdSample& s = samples[order[k].index];
-      mean.value += s.w_gradient * (s.value + s.normal.dot(mean.xi - s.xi) / 2);
+      mean.value += share_of(s) * (s.value + s.normal.dot(mean.xi - s.xi) / 2);
     }
-    mean.value /= mean.w_gradient;
+    mean.value /= shares;
     means.push_back(mean);
     i = end;
   }
