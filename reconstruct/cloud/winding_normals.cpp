@@ -1,0 +1,134 @@
+#include "reconstruct/cloud/winding_normals.h"
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "reconstruct/cloud/cloud_neighbours.h"
+#include "reconstruct/cloud/fast_winding_number.h"
+
+namespace umtet {
+namespace {
+
+// Samples that check, and that decide at first. A cloud that has no more is sparse: its parts are a few samples across,
+// and neighbours tell directions worse than the field does.
+constexpr std::size_t kChecked = 4000;
+// w jumps by one across the surface.
+constexpr double kOff = 0.25;
+// Right normals of closed surfaces have up to .04 of their samples off, by edges and thin parts; wrong ones .04 and
+// more.
+constexpr double kMostOff = 0.04;
+// Others have to be off at this share of that, at most, before given or estimated ones are overruled.
+constexpr double kBetter = 0.75;
+// Where more samples than this are off, the next attempt may do better.
+constexpr double kUnsettled = 0.1;
+// Cosine of the angle from which on an estimated direction is not believed: of the two sheets of a thin part, or noise.
+constexpr double kContradiction = 0.5;
+
+struct Attempt {
+  std::size_t n_samples;
+  WindingNormalsParams params;
+};
+// Thin parts and clean samples; noise of a spacing and more samples; noise that only few samples average out.
+constexpr std::array<Attempt, 3> kAttempts = {Attempt{kChecked, {.rounds = 10, .widest = 4, .narrowest = 1.5}},
+                                              Attempt{16000, {.rounds = 10, .widest = 4, .narrowest = 2}},
+                                              Attempt{1000, {.rounds = 15, .widest = 8, .narrowest = 2}}};
+
+/// Every m-th point, at most `most` of them.
+struct Part {
+  std::vector<Vec3> points, normals;
+  std::vector<double> areas;
+  Part(const OrientedPointCloud& cloud, std::size_t most) {
+    const std::size_t stride = (cloud.points.size() + most - 1) / most;
+    for (std::size_t i = 0; i < cloud.points.size(); i += stride) {
+      points.push_back(cloud.points[i]);
+      normals.push_back(cloud.normals[i]);
+    }
+    areas = sample_areas(points);
+  }
+};
+
+/// Outward, unit; zero where the field is.
+std::vector<Vec3> normals_of(const FastWindingNumber& w, const std::vector<Vec3>& places) {
+  std::vector<Vec3> normals;
+  w.evaluate(places, &normals);
+  for (Vec3& n : normals) n = -n.normalized();
+  return normals;
+}
+
+}  // namespace
+
+std::vector<Vec3> winding_normals(const std::vector<Vec3>& points, const std::vector<double>& areas,
+                                  const WindingNormalsParams& params) {
+  std::vector<Vec3> v(points.size(), Vec3::Zero()), step;
+  FastWindingNumber w(points, v, areas);
+  for (int round = 0; round < params.rounds; ++round) {
+    const double left = params.rounds > 1 ? 1 - round / (params.rounds - 1.) : 0;
+    w.set_softening(params.narrowest + left * (params.widest - params.narrowest));
+    w.set_normals(v);
+    std::vector<double> rest = w.evaluate(points);
+    for (double& r : rest) r = 0.5 - r;
+    w.set_charges(rest);
+    w.evaluate(points, &step);
+    w.set_normals(step);
+    const std::vector<double> change = w.evaluate(points);
+    double along = 0, change2 = 0;
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      along += areas[i] * rest[i] * change[i];
+      change2 += areas[i] * change[i] * change[i];
+    }
+    if (change2 > 0)
+      for (std::size_t i = 0; i < v.size(); ++i) v[i] += along / change2 * step[i];
+    w.set_normals(v);
+    const std::vector<Vec3> normals = normals_of(w, points);
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] = v[i].norm() * normals[i];
+  }
+  for (Vec3& n : v) n.normalize();
+  return v;
+}
+
+double off_a_half(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const std::vector<double>& areas) {
+  const FastWindingNumber w(points, normals, areas, {.softening = WindingNormalsParams{}.narrowest});
+  std::size_t n_off = 0;
+  for (const double value : w.evaluate(points)) n_off += std::abs(value - 0.5) > kOff ? 1 : 0;
+  return static_cast<double>(n_off) / static_cast<double>(points.size());
+}
+
+bool WindingReport::is_closed() const { return off_after <= kMostOff; }
+
+WindingReport orient_by_winding(OrientedPointCloud& cloud, bool directions_may_change) {
+  WindingReport report;
+  const Part checked(cloud, kChecked);
+  report.off_before = report.off_after = off_a_half(checked.points, checked.normals, checked.areas);
+  if (report.off_before <= kMostOff) return report;
+  std::vector<Vec3> best;  // of all points
+  for (const auto& [n_samples, params] : kAttempts) {
+    const Part part(cloud, n_samples);
+    const FastWindingNumber w(part.points, winding_normals(part.points, part.areas, params), part.areas,
+                              {.softening = params.narrowest});
+    const double off = off_a_half(checked.points, normals_of(w, checked.points), checked.areas);
+    if (off < (best.empty() ? kBetter * report.off_before : report.off_after)) {
+      best = normals_of(w, cloud.points);
+      report.off_after = off;
+    }
+    if (off <= kUnsettled) break;
+  }
+  if (best.empty()) return report;
+  report.taken = true;
+  const bool is_sparse = cloud.points.size() <= kChecked;
+  for (std::size_t i = 0; i < best.size(); ++i) {
+    Vec3& n = cloud.normals[i];
+    const double cosine = n.dot(best[i]);
+    if (n.isZero(0) || best[i].isZero(0)) continue;
+    report.n_turned += cosine < 0 ? 1 : 0;
+    if (directions_may_change && (is_sparse || std::abs(cosine) < kContradiction)) {
+      n = best[i];
+      ++report.n_replaced;
+    } else if (cosine < 0) {
+      n = -n;
+    }
+  }
+  return report;
+}
+
+}  // namespace umtet
