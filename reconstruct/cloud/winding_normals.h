@@ -8,13 +8,13 @@
 namespace umtet {
 
 struct WindingNormalsParams {
-  int rounds = 10;    ///< >= 1. Ten get as far as forty
-  double widest = 4;  ///< softening of the first round (fast_winding_number.h), > 0: signs spread over large parts,
-  double narrowest = 1.5;  ///< and of the last, > 0: thin walls come apart. Noise asks for 2
+  int rounds = 6;          ///< >= 1; more change little
+  double widest = 3;       ///< softening of the first round (fast_winding_number.h): sides spread over large parts; > 0
+  double narrowest = 1.5;  ///< of the last: thin walls come apart; noise asks for 2; > 0
 };
 
 /// Unit normals for which the winding number of the samples is 1/2 at all of them, from points alone. Winding number
-/// normal consistency [Liu2024]: one round is a step of steepest descent, with exact line search, of
+/// normal consistency [Lin2024]: one round is a step of steepest descent, with exact line search, of
 ///
 ///     sum_i a_i (w(x_i) - 1/2)^2        over vectors v_i in place of normals, from v = 0               [Lin2022]
 ///
@@ -27,9 +27,11 @@ struct WindingNormalsParams {
 std::vector<Vec3> winding_normals(const std::vector<Vec3>& points, const std::vector<double>& areas,
                                   const WindingNormalsParams& params = {});
 
-/// Share of samples at which the winding number is no half: off by more than a quarter. Below .04 for sides that are
-/// right, even if the surface has holes; above for those of a part that are wrong, for noise and for open surfaces.
-double off_a_half(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const std::vector<double>& areas);
+/// Share of samples at which the winding number is no half: off by more than a quarter. Below .02 where all sides are
+/// right; above where those of a part are wrong, and at thin parts, noise and the borders of open surfaces.
+/// @param softening  noise within its reach does not count
+double off_a_half(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const std::vector<double>& areas,
+                  double softening = WindingNormalsParams{}.narrowest);
 
 /// What the winding number said of a cloud's normals.
 struct WindingReport {
@@ -41,10 +43,10 @@ struct WindingReport {
   std::size_t n_replaced = 0;  ///< normals whose direction it gave, too
 };
 
-/// Checks normals by the winding number of at most 4000 samples. Where it is off a half at more than one sample in 25,
-/// winding_normals is tried, and decides over all normals if it is off at a quarter fewer: signs everywhere;
-/// directions, if these may change, on a cloud that is sparse, and where they contradict it by more than 60 degrees.
-/// Zero normals stay. A cloud that passes the check is left alone, for a few hundredths of a second.
+/// Checks normals by the winding number of at most 4000 samples. Where it is off a half at more than one sample in 50,
+/// softened by noise, too, winding_normals is tried, and decides over all normals if it is off at a quarter fewer:
+/// signs everywhere; directions, if these may change, on a cloud that is sparse, and where they contradict it by more
+/// than 60 degrees. Zero normals stay. A cloud that passes the check is left alone, for a few hundredths of a second.
 /// @param cloud  sorted in space (morton_order.h): every m-th of its points are spread evenly
 /// \throw std::invalid_argument  as FastWindingNumber; fewer than two distinct places
 WindingReport orient_by_winding(OrientedPointCloud& cloud, bool directions_may_change);
