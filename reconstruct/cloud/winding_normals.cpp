@@ -21,19 +21,19 @@ constexpr double kMostOff = 0.02, kWider = 3;
 constexpr double kClosed = 0.04;
 // Others have to be off at this share of that, at most, before given or estimated ones are overruled.
 constexpr double kBetter = 0.75;
-// Where more samples than this are off, the next attempt may do better.
+// Where more samples than this are off, the next attempt, with more of them, knows better.
 constexpr double kUnsettled = 0.1;
-// Cosine of the angle from which on an estimated direction is not believed: of the two sheets of a thin part, or noise.
-constexpr double kContradiction = 0.5;
+// Cosine of the angle from which on an estimated direction is not believed: that of a fit to both sheets of a thin
+// part.
+constexpr double kContradiction = 0.7;
 
 struct Attempt {
   std::size_t n_samples;
   WindingNormalsParams params;
 };
-// Thin parts and clean samples; noise of a spacing and more samples; noise that only few samples average out.
-constexpr std::array<Attempt, 3> kAttempts = {Attempt{kChecked, {}},
-                                              Attempt{16000, {.rounds = 10, .widest = 4, .narrowest = 2}},
-                                              Attempt{1000, {.rounds = 15, .widest = 8, .narrowest = 2}}};
+// Clean samples and parts as thin as those of so few are apart; noise of a spacing, and thinner parts.
+constexpr std::array<Attempt, 2> kAttempts = {Attempt{kChecked, {}},
+                                              Attempt{16000, {.rounds = 10, .widest = 4, .narrowest = 2}}};
 
 /// Every m-th point, at most `most` of them.
 struct Part {
@@ -100,21 +100,25 @@ bool WindingReport::is_closed() const { return off_after <= kClosed; }
 
 WindingReport orient_by_winding(OrientedPointCloud& cloud, bool directions_may_change) {
   WindingReport report;
-  const Part checked(cloud, kChecked);
-  report.off_before = report.off_after = off_a_half(checked.points, checked.normals, checked.areas);
-  if (report.off_before <= kMostOff) return report;
-  if (off_a_half(checked.points, checked.normals, checked.areas, kWider) <= kMostOff) return report;
+  {
+    const Part part(cloud, kChecked);
+    report.off_before = report.off_after = off_a_half(part.points, part.normals, part.areas);
+    if (report.off_before <= kMostOff) return report;
+    if (off_a_half(part.points, part.normals, part.areas, kWider) <= kMostOff) return report;
+  }
   std::vector<Vec3> best;  // of all points
   for (const auto& [n_samples, params] : kAttempts) {
     const Part part(cloud, n_samples);
     const FastWindingNumber w(part.points, winding_normals(part.points, part.areas, params), part.areas,
                               {.softening = params.narrowest});
-    const double off = off_a_half(checked.points, normals_of(w, checked.points), checked.areas);
-    if (off < (best.empty() ? kBetter * report.off_before : report.off_after)) {
+    const double before = off_a_half(part.points, part.normals, part.areas, params.narrowest),
+                 after = off_a_half(part.points, normals_of(w, part.points), part.areas, params.narrowest);
+    if (after < kBetter * before) {
       best = normals_of(w, cloud.points);
-      report.off_after = off;
+      report.off_before = before;
+      report.off_after = after;
     }
-    if (off <= kUnsettled) break;
+    if (after <= kUnsettled) break;
   }
   if (best.empty()) return report;
   report.taken = true;

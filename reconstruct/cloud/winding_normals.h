@@ -46,7 +46,7 @@ struct WindingReport {
 /// Checks normals by the winding number of at most 4000 samples. Where it is off a half at more than one sample in 50,
 /// softened by noise, too, winding_normals is tried, and decides over all normals if it is off at a quarter fewer:
 /// signs everywhere; directions, if these may change, on a cloud that is sparse, and where they contradict it by more
-/// than 60 degrees. Zero normals stay. A cloud that passes the check is left alone, for a few hundredths of a second.
+/// than 45 degrees. Zero normals stay. A cloud that passes the check is left alone, for a few hundredths of a second.
 /// @param cloud  sorted in space (morton_order.h): every m-th of its points are spread evenly
 /// \throw std::invalid_argument  as FastWindingNumber; fewer than two distinct places
 WindingReport orient_by_winding(OrientedPointCloud& cloud, bool directions_may_change);

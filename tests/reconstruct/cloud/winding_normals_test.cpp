@@ -134,6 +134,16 @@ TEST(OrientByWinding, ThinPlatesWithoutNormalsComeOutRight) {
   EXPECT_LE(n_wrong(cloud.normals, truth), truth.size() / 100);
 }
 
+TEST(OrientByWinding, SoDoThoseWithManySamples) {
+  OrientedPointCloud cloud = sorted(test::box_cloud({4, 4, 0.05}, 0.05));
+  const std::vector<Vec3> truth = cloud.normals;
+  ASSERT_GT(truth.size(), 12000U);
+  for (Vec3& n : cloud.normals)
+    if (n.z() < 0) n = -n;  // as of a single sheet
+  EXPECT_TRUE(orient_by_winding(cloud, true).taken);
+  EXPECT_LE(n_wrong(cloud.normals, truth), truth.size() / 100);
+}
+
 TEST(OrientByWinding, ZeroNormalsStay) {
   OrientedPointCloud cloud = sorted(test::torus_cloud(2000));
   for (std::size_t i = 0; i < cloud.normals.size(); ++i) cloud.normals[i] *= i % 3 == 0 ? 0 : i % 3 == 1 ? 1 : -1;
