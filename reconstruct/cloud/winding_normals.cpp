@@ -118,7 +118,7 @@ WindingReport orient_by_winding(OrientedPointCloud& cloud, bool directions_may_c
       report.off_before = before;
       report.off_after = after;
     }
-    if (after <= kUnsettled) break;
+    if (after <= kUnsettled || cloud.points.size() <= n_samples) break;
   }
   if (best.empty()) return report;
   report.taken = true;
