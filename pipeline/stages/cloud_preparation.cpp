@@ -52,7 +52,7 @@ class Preparation {
   void orient_as_told();
   void take(const OrientationReport& r);
   void say_doubt();
-  void ask_winding_number();
+  void ask_winding_number(const std::vector<Vec3>* as_given);
   template <class... T>
   void notice(fmt::format_string<T...> format, T&&... args) {
     result_.report.notices.push_back(fmt::format(format, std::forward<T>(args)...));
@@ -127,6 +127,7 @@ void Preparation::find_normals() {
       normals().consistency = consistency(cloud_, {}, &near_);
       return;
     }
+    const std::vector<Vec3> as_given = cloud_.normals;
     const OrientationReport r = repair_normals(cloud_, {}, &near_);
     take(r);
     say_doubt();
@@ -135,7 +136,7 @@ void Preparation::find_normals() {
           "turned {} of the given normals ({:.1f} %): they were {:.1f} % consistent, now {:.1f} % "
           "(--normals given keeps them)",
           r.n_turned, percent(r.n_turned), 100 * r.consistency, 100 * r.consistency_after);
-      ask_winding_number();
+      ask_winding_number(&as_given);
     }
     return;
   }
@@ -145,15 +146,20 @@ void Preparation::find_normals() {
   take(r);
   notice("estimated the normals and oriented them: {:.1f} % consistent, {} piece{}", 100 * r.consistency_after,
          r.n_components, r.n_components == 1 ? "" : "s");
-  if (parameters_.cloud().orient_from.empty()) ask_winding_number();
+  if (parameters_.cloud().orient_from.empty()) ask_winding_number(nullptr);
   say_doubt();
 }
 
 /// Neighbours err where two sheets are nearer to each other than to the next sample, and one error turns a whole part:
 /// the winding number sees all samples at once. Given normals that were consistent are not asked about.
-void Preparation::ask_winding_number() {
-  const WindingReport r = orient_by_winding(cloud_, !normals().given);
+void Preparation::ask_winding_number(const std::vector<Vec3>* as_given) {
+  const WindingReport r = orient_by_winding(cloud_, !normals().given, as_given);
   is_closed_ = r.is_closed();
+  if (r.restored) {
+    normals().orientation->n_turned = 0;
+    normals().orientation->consistency_after = normals().consistency;
+    notice("turned them back: the winding number of all samples is for the normals as given");
+  }
   if (!r.taken) return;
   if (is_closed_) normals().orientation->n_doubtful = 0;
   normals().turned_by_winding = r.n_turned;

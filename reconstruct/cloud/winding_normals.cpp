@@ -2,8 +2,9 @@
 
 #include <array>
 #include <cmath>
-#include <utility>
+#include <stdexcept>
 
+#include "common/formatted.h"
 #include "reconstruct/cloud/cloud_neighbours.h"
 #include "reconstruct/cloud/fast_winding_number.h"
 
@@ -35,18 +36,19 @@ struct Attempt {
 constexpr std::array<Attempt, 2> kAttempts = {Attempt{kChecked, {}},
                                               Attempt{16000, {.rounds = 10, .widest = 4, .narrowest = 2}}};
 
-/// Every m-th point, at most `most` of them.
+/// Every m-th of them, at most `most`.
+std::vector<Vec3> every_mth(const std::vector<Vec3>& all, std::size_t most) {
+  const std::size_t m = (all.size() + most - 1) / most;
+  std::vector<Vec3> some;
+  for (std::size_t i = 0; i < all.size(); i += m) some.push_back(all[i]);
+  return some;
+}
+
 struct Part {
   std::vector<Vec3> points, normals;
   std::vector<double> areas;
-  Part(const OrientedPointCloud& cloud, std::size_t most) {
-    const std::size_t stride = (cloud.points.size() + most - 1) / most;
-    for (std::size_t i = 0; i < cloud.points.size(); i += stride) {
-      points.push_back(cloud.points[i]);
-      normals.push_back(cloud.normals[i]);
-    }
-    areas = sample_areas(points);
-  }
+  Part(const OrientedPointCloud& cloud, std::size_t most)
+      : points(every_mth(cloud.points, most)), normals(every_mth(cloud.normals, most)), areas(sample_areas(points)) {}
 };
 
 /// Outward, unit; zero where the field is.
@@ -98,13 +100,25 @@ double off_a_half(const std::vector<Vec3>& points, const std::vector<Vec3>& norm
 
 bool WindingReport::is_closed() const { return off_after <= kClosed; }
 
-WindingReport orient_by_winding(OrientedPointCloud& cloud, bool directions_may_change) {
+WindingReport orient_by_winding(OrientedPointCloud& cloud, bool directions_may_change,
+                                const std::vector<Vec3>* others) {
+  if (others && others->size() != cloud.points.size())
+    throw std::invalid_argument(
+        formatted("%zu points but %zu other normals: must be equal", cloud.points.size(), others->size()));
   WindingReport report;
   {
     const Part part(cloud, kChecked);
     report.off_before = report.off_after = off_a_half(part.points, part.normals, part.areas);
     if (report.off_before <= kMostOff) return report;
     if (off_a_half(part.points, part.normals, part.areas, kWider) <= kMostOff) return report;
+    if (others) {
+      const double off = off_a_half(part.points, every_mth(*others, kChecked), part.areas);
+      if (off < report.off_before) {
+        cloud.normals = *others;
+        report.restored = true;
+        report.off_before = report.off_after = off;
+      }
+    }
   }
   std::vector<Vec3> best;  // of all points
   for (const auto& [n_samples, params] : kAttempts) {

@@ -38,6 +38,7 @@ struct WindingReport {
   double off_before = 0, off_after = 0;  ///< off_a_half of a part of the samples
   /// The samples are all round a body, and the normals point out of it.
   bool is_closed() const;
+  bool restored = false;       ///< the others were off at fewer samples than the cloud's, which they replaced
   bool taken = false;          ///< winding_normals did better, and decided
   std::size_t n_turned = 0;    ///< normals on whose side it decided otherwise
   std::size_t n_replaced = 0;  ///< normals whose direction it gave, too
@@ -47,8 +48,11 @@ struct WindingReport {
 /// softened by noise, too, winding_normals is tried, and decides over all normals if it is off at a quarter fewer:
 /// signs everywhere; directions, if these may change, on a cloud that is sparse, and where they contradict it by more
 /// than 45 degrees. Zero normals stay. A cloud that passes the check is left alone, for a few hundredths of a second.
+/// @param others  normals that the cloud had before, or null: they are taken back first if they are off at fewer
+/// samples
 /// @param cloud  sorted in space (morton_order.h): every m-th of its points are spread evenly
-/// \throw std::invalid_argument  as FastWindingNumber; fewer than two distinct places
-WindingReport orient_by_winding(OrientedPointCloud& cloud, bool directions_may_change);
+/// \throw std::invalid_argument  as FastWindingNumber; fewer than two distinct places; not as many others as points
+WindingReport orient_by_winding(OrientedPointCloud& cloud, bool directions_may_change,
+                                const std::vector<Vec3>* others = nullptr);
 
 }  // namespace umtet

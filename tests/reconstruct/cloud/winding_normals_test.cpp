@@ -144,6 +144,19 @@ TEST(OrientByWinding, SoDoThoseWithManySamples) {
   EXPECT_LE(n_wrong(cloud.normals, truth), truth.size() / 100);
 }
 
+TEST(OrientByWinding, TakesOthersBackThatAreBetter) {
+  OrientedPointCloud cloud = sorted(test::torus_cloud(8000));
+  const std::vector<Vec3> truth = cloud.normals;
+  for (std::size_t i = 0; i < truth.size(); i += 2) cloud.normals[i] = -truth[i];
+  const WindingReport report = orient_by_winding(cloud, true, &truth);
+  EXPECT_TRUE(report.restored);
+  EXPECT_FALSE(report.taken);
+  EXPECT_EQ(cloud.normals, truth);
+  const std::vector<Vec3> few(3, Vec3::UnitX());
+  cloud.normals.assign(truth.size(), Vec3::UnitX());
+  EXPECT_THROW(orient_by_winding(cloud, true, &few), std::invalid_argument);
+}
+
 TEST(OrientByWinding, ZeroNormalsStay) {
   OrientedPointCloud cloud = sorted(test::torus_cloud(2000));
   for (std::size_t i = 0; i < cloud.normals.size(); ++i) cloud.normals[i] *= i % 3 == 0 ? 0 : i % 3 == 1 ? 1 : -1;
