@@ -20,6 +20,8 @@ Json to_json(const NormalsReport& n) {
                  {"doubtful", o->n_doubtful}});
   }
   if (n.turned_to_viewpoints) json["turned_to_viewpoints"] = *n.turned_to_viewpoints;
+  if (n.turned_by_winding) json["turned_by_winding"] = *n.turned_by_winding;
+  if (n.replaced_by_winding) json["replaced_by_winding"] = *n.replaced_by_winding;
   return json;
 }
 
@@ -38,6 +40,8 @@ NormalsReport normals_from(const Json& json) {
     o.n_doubtful = json.at("doubtful");
   }
   if (json.contains("turned_to_viewpoints")) n.turned_to_viewpoints = json.at("turned_to_viewpoints");
+  if (json.contains("turned_by_winding")) n.turned_by_winding = json.at("turned_by_winding");
+  if (json.contains("replaced_by_winding")) n.replaced_by_winding = json.at("replaced_by_winding");
   return n;
 }
 

@@ -23,7 +23,9 @@ struct NormalsReport {
   double consistency = 0;              ///< share of neighbours whose signs agree, as they came; see consistency()
   /// Of normals that were turned where need be: its counts. Read back, what the record does not have is 0.
   std::optional<OrientationReport> orientation;
-  std::optional<std::size_t> turned_to_viewpoints;  ///< by cloud.orient_from
+  std::optional<std::size_t> turned_to_viewpoints;  ///< by cloud.orient_from, or the scanner position of the file
+  /// By the winding number, where it decided: normals that look to the other side, directions that it gave.
+  std::optional<std::size_t> turned_by_winding, replaced_by_winding;
 };
 
 /// Of 1-cloud.

@@ -11,6 +11,7 @@
 #include "reconstruct/cloud/morton_order.h"
 #include "reconstruct/cloud/normal_estimation.h"
 #include "reconstruct/cloud/normal_orientation.h"
+#include "reconstruct/cloud/winding_normals.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -50,6 +51,8 @@ class Preparation {
   void drop_undefined();
   void orient_as_told();
   void take(const OrientationReport& r);
+  void say_doubt();
+  void ask_winding_number(const std::vector<Vec3>* as_given);
   template <class... T>
   void notice(fmt::format_string<T...> format, T&&... args) {
     result_.report.notices.push_back(fmt::format(format, std::forward<T>(args)...));
@@ -63,7 +66,8 @@ class Preparation {
   const Parameters& parameters_;
   const CloudFileReport file_;
   OrientedPointCloud cloud_;
-  Neighbourhoods near_;  ///< of the cleaned cloud
+  Neighbourhoods near_;     ///< of the cleaned cloud
+  bool is_closed_ = false;  ///< as the winding number has it
   PreparedCloud result_;
 };
 
@@ -91,9 +95,13 @@ void Preparation::clean_points() {
 void Preparation::take(const OrientationReport& r) {
   normals().consistency = r.consistency;
   normals().orientation = r;
-  if (r.n_doubtful > 0) {
+}
+
+void Preparation::say_doubt() {
+  const std::size_t n_doubtful = normals().orientation->n_doubtful;
+  if (n_doubtful > 0) {
     notice("which side is outside is a guess for {:.1f} % of the points (--flip or --orient-from decide)",
-           percent(r.n_doubtful));
+           percent(n_doubtful));
   }
 }
 
@@ -119,13 +127,16 @@ void Preparation::find_normals() {
       normals().consistency = consistency(cloud_, {}, &near_);
       return;
     }
+    const std::vector<Vec3> as_given = cloud_.normals;
     const OrientationReport r = repair_normals(cloud_, {}, &near_);
     take(r);
+    say_doubt();
     if (r.n_turned > 0) {
       notice(
           "turned {} of the given normals ({:.1f} %): they were {:.1f} % consistent, now {:.1f} % "
           "(--normals given keeps them)",
           r.n_turned, percent(r.n_turned), 100 * r.consistency, 100 * r.consistency_after);
+      ask_winding_number(&as_given);
     }
     return;
   }
@@ -135,6 +146,27 @@ void Preparation::find_normals() {
   take(r);
   notice("estimated the normals and oriented them: {:.1f} % consistent, {} piece{}", 100 * r.consistency_after,
          r.n_components, r.n_components == 1 ? "" : "s");
+  if (parameters_.cloud().orient_from.empty()) ask_winding_number(nullptr);
+  say_doubt();
+}
+
+/// Neighbours err where two sheets are nearer to each other than to the next sample, and one error turns a whole part:
+/// the winding number sees all samples at once. Given normals that were consistent are not asked about.
+void Preparation::ask_winding_number(const std::vector<Vec3>* as_given) {
+  const WindingReport r = orient_by_winding(cloud_, !normals().given, as_given);
+  is_closed_ = r.is_closed();
+  if (r.restored) {
+    normals().orientation->n_turned = 0;
+    normals().orientation->consistency_after = normals().consistency;
+    notice("turned them back: the winding number of all samples is for the normals as given");
+  }
+  if (!r.taken) return;
+  if (is_closed_) normals().orientation->n_doubtful = 0;
+  normals().turned_by_winding = r.n_turned;
+  normals().replaced_by_winding = r.n_replaced;
+  normals().orientation->consistency_after = consistency(cloud_, {}, &near_);
+  notice("the winding number decided which side is outside: turned {} normals ({:.1f} %), took {} directions from it",
+         r.n_turned, percent(r.n_turned), r.n_replaced);
 }
 
 /// A point whose neighbours all lie at one place, or on a line, has no normal.
@@ -160,6 +192,13 @@ void Preparation::drop_undefined() {
 void Preparation::orient_as_told() {
   if (const std::string& file = parameters_.cloud().orient_from; !file.empty()) {
     normals().turned_to_viewpoints = orient_from(cloud_, read_viewpoints(file));
+  }
+  // One scanner does not see a body from all sides: a position with such a cloud is what is left of one of its scans.
+  if (file_.viewpoint && !normals().given && !is_closed_ && parameters_.cloud().orient_from.empty()) {
+    const Vec3& v = *file_.viewpoint;
+    normals().turned_to_viewpoints = orient_from(cloud_, {v});
+    notice("the normals look to the scanner at {:.6g} {:.6g} {:.6g}, the VIEWPOINT of the file (--orient-from decides)",
+           v[0], v[1], v[2]);
   }
   if (parameters_.cloud().flip) flip(cloud_);
 }

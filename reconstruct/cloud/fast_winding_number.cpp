@@ -47,7 +47,8 @@ std::vector<std::string> problems(const WindingNumberParams& params) {
 }
 
 FastWindingNumber::FastWindingNumber(const std::vector<Vec3>& points, const std::vector<Vec3>& normals,
-                                     const std::vector<double>& areas, const WindingNumberParams& params) {
+                                     const std::vector<double>& areas, const WindingNumberParams& params)
+    : beta_(params.beta) {
   if (const auto found = problems(params); !found.empty()) throw std::invalid_argument(joined(found, "; "));
   if (points.empty() || points.size() >= kMostSamples || areas.size() != points.size())
     throw std::invalid_argument(
@@ -57,12 +58,13 @@ FastWindingNumber::FastWindingNumber(const std::vector<Vec3>& points, const std:
     if (!points[i].allFinite()) throw std::invalid_argument(formatted("points[%u] is not finite", i));
     if (!(areas[i] >= 0 && std::isfinite(areas[i])))
       throw std::invalid_argument(formatted("areas[%u] = %g: must be >= 0 and finite", i, areas[i]));
-    samples_[i] = {points[i], Vec3::Zero(), areas[i], params.softening * std::sqrt(areas[i] / std::numbers::pi), i};
+    samples_[i] = {points[i], Vec3::Zero(), areas[i], 0, 0, i};
   }
   nodes_.reserve(points.size() / 2 + 1);
   grow(0, static_cast<std::uint32_t>(points.size()));
-  tbb::parallel_for(std::size_t{0}, nodes_.size(), [&](std::size_t n) { find_ball(nodes_[n], params.beta); });
-  take(normals);
+  tbb::parallel_for(std::size_t{0}, nodes_.size(), [&](std::size_t n) { find_ball(nodes_[n]); });
+  set_softening(params.softening);
+  set_normals(normals);
 }
 
 std::uint32_t FastWindingNumber::grow(std::uint32_t first, std::uint32_t last) {
@@ -88,7 +90,7 @@ std::uint32_t FastWindingNumber::grow(std::uint32_t first, std::uint32_t last) {
   return number;
 }
 
-void FastWindingNumber::find_ball(Node& node, double beta) const {
+void FastWindingNumber::find_ball(Node& node) const {
   double area = 0;
   Vec3 sum = Vec3::Zero();
   const Vec3& origin = samples_[node.first].x;
@@ -97,26 +99,40 @@ void FastWindingNumber::find_ball(Node& node, double beta) const {
     sum += samples_[i].area * (samples_[i].x - origin);
   }
   node.centre = area > 0 ? Vec3(origin + sum / area) : origin;
-  double radius2 = 0, softening = 0;
-  for (std::uint32_t i = node.first; i < node.last; ++i) {
+  double radius2 = 0;
+  for (std::uint32_t i = node.first; i < node.last; ++i)
     radius2 = std::max(radius2, (samples_[i].x - node.centre).squaredNorm());
-    softening = std::max(softening, samples_[i].softening);
+  node.radius = std::sqrt(radius2);
+}
+
+void FastWindingNumber::set_softening(double softening) {
+  if (const auto found = problems({.beta = beta_, .softening = softening}); !found.empty())
+    throw std::invalid_argument(found.front());
+  for (Sample& s : samples_) s.softening = softening * std::sqrt(s.area / std::numbers::pi);
+  for (std::size_t n = nodes_.size(); n-- > 0;) {
+    Node& node = nodes_[n];
+    double widest = 0;
+    for (std::uint32_t i = node.first; i < node.last; ++i) widest = std::max(widest, samples_[i].softening);
+    node.far = std::max(node.radius > 0 ? beta_ * node.radius : 0, node.radius + widest);
   }
-  const double radius = std::sqrt(radius2);
-  node.far = std::max(radius > 0 ? beta * radius : 0, radius + softening);
 }
 
 void FastWindingNumber::find_moments(Node& node) const {
+  node.charge = 0;
   node.dipole = Vec3::Zero();
   node.second = {};
   node.third = {};
   for (std::uint32_t i = node.first; i < node.last; ++i) {
-    const Vec3 d = samples_[i].x - node.centre, &m = samples_[i].moment;
-    node.dipole += m;
+    const double charge = samples_[i].charge;
+    const Vec3 d = samples_[i].x - node.centre;
+    node.charge += charge;
+    node.dipole += samples_[i].moment + charge * d;
+    Vec3 m = samples_[i].moment + charge / 2 * d;
     for (int a = 0; a < 3; ++a) node.second[a] += d[a] * m[a];
     node.second[3] += (d[0] * m[1] + d[1] * m[0]) / 2;
     node.second[4] += (d[0] * m[2] + d[2] * m[0]) / 2;
     node.second[5] += (d[1] * m[2] + d[2] * m[1]) / 2;
+    m = samples_[i].moment + charge / 3 * d;
     const auto symmetric = [&](int a, int b, int c) {
       return (d[a] * d[b] * m[c] + d[a] * d[c] * m[b] + d[b] * d[c] * m[a]) / 6;
     };
@@ -133,17 +149,35 @@ void FastWindingNumber::find_moments(Node& node) const {
   }
 }
 
-void FastWindingNumber::take(const std::vector<Vec3>& normals) {
+void FastWindingNumber::update_moments() {
+  tbb::parallel_for(std::size_t{0}, nodes_.size(), [&](std::size_t n) { find_moments(nodes_[n]); });
+}
+
+void FastWindingNumber::set_normals(const std::vector<Vec3>& normals) {
   if (normals.size() != samples_.size())
     throw std::invalid_argument(
         formatted("%zu points but %zu normals: must be equal", samples_.size(), normals.size()));
   for (std::size_t i = 0; i < normals.size(); ++i)
     if (!normals[i].allFinite()) throw std::invalid_argument(formatted("normals[%zu] is not finite", i));
-  for (Sample& s : samples_) s.moment = s.area * normals[s.number];
-  tbb::parallel_for(std::size_t{0}, nodes_.size(), [&](std::size_t n) { find_moments(nodes_[n]); });
+  for (Sample& s : samples_) {
+    s.moment = s.area * normals[s.number];
+    s.charge = 0;
+  }
+  update_moments();
 }
 
-void FastWindingNumber::set_normals(const std::vector<Vec3>& normals) { take(normals); }
+void FastWindingNumber::set_charges(const std::vector<double>& charges) {
+  if (charges.size() != samples_.size())
+    throw std::invalid_argument(
+        formatted("%zu points but %zu charges: must be equal", samples_.size(), charges.size()));
+  for (std::size_t i = 0; i < charges.size(); ++i)
+    if (!std::isfinite(charges[i])) throw std::invalid_argument(formatted("charges[%zu] is not finite", i));
+  for (Sample& s : samples_) {
+    s.moment = Vec3::Zero();
+    s.charge = s.area * charges[s.number];
+  }
+  update_moments();
+}
 
 double FastWindingNumber::evaluate(const Vec3& x, Vec3* gradient) const {
   double w = 0;
@@ -166,7 +200,7 @@ double FastWindingNumber::evaluate(const Vec3& x, Vec3* gradient) const {
       w += p * q3 + (trace * q3 - 3 * m * q5) + (15 * t.value * q7 - 9 * t.trace * q5);
       if (gradient) {
         const double q9 = q7 * q2;
-        slope += q3 * node.dipole - 6 * q5 * m_r + 45 * q7 * t.slope - 9 * q5 * t.trace_vector +
+        slope += node.charge * q3 * r + q3 * node.dipole - 6 * q5 * m_r + 45 * q7 * t.slope - 9 * q5 * t.trace_vector +
                  (-3 * p * q5 - 3 * trace * q5 + 15 * m * q7 - 105 * t.value * q9 + 45 * t.trace * q7) * r;
       }
     } else if (node.right > 0) {
@@ -181,7 +215,8 @@ double FastWindingNumber::evaluate(const Vec3& x, Vec3* gradient) const {
         const bool is_near = d2 < e2;
         const double g = is_near ? (5 - 3 * d2 / e2) / (2 * e2 * s.softening) : 1 / (d2 * std::sqrt(d2));
         w += p * g;
-        if (gradient) slope += g * s.moment - 3 * p * (is_near ? 1 / (e2 * e2 * s.softening) : g / d2) * d;
+        if (gradient)
+          slope += s.charge * g * d + g * s.moment - 3 * p * (is_near ? 1 / (e2 * e2 * s.softening) : g / d2) * d;
       }
     }
   }

@@ -39,6 +39,12 @@ class FastWindingNumber {
 
   /// The same samples with other normals: a tenth of the cost. \throw std::invalid_argument  as above
   void set_normals(const std::vector<Vec3>& normals);
+  /// Charges s_i in place of normals. What evaluate() then gives as gradient is - sum a_i s_i (x_i - x) g_i / (4 pi):
+  /// at the samples, the adjoint of the map from normals to w, but for whose r_i is taken. Its value means nothing.
+  /// \throw std::invalid_argument  as above
+  void set_charges(const std::vector<double>& charges);
+  /// Another softening, for the same normals. \throw std::invalid_argument  not finite, or < 0
+  void set_softening(double softening);
 
   /// w(x). Cost: O(log n). May be called from several threads. Does not depend on the number of threads.
   double operator()(const Vec3& x) const { return evaluate(x, nullptr); }
@@ -51,26 +57,28 @@ class FastWindingNumber {
 
  private:
   struct Sample {
-    Vec3 x, moment;  ///< x_i, a_i n_i
-    double area, softening;
-    std::uint32_t number;  ///< in the order of the caller
+    Vec3 x, moment;                  ///< x_i, a_i n_i
+    double area, charge, softening;  ///< a_i, a_i s_i, r_i
+    std::uint32_t number;            ///< in the order of the caller
   };
   /// Samples first .. last - 1; its left child is the next node.
   struct Node {
     std::uint32_t first = 0, last = 0, right = 0;  ///< right: the right child; 0 for a leaf
-    double far = 0;                                ///< distance of x from the centre from which the series is used
-    Vec3 centre = Vec3::Zero();                    ///< of area
-    Vec3 dipole = Vec3::Zero();                    ///< sum a n
-    std::array<double, 6> second = {};             ///< sum a sym(d n), d = x_i - centre: xx yy zz xy xz yz
-    std::array<double, 10> third = {};             ///< sum a sym(d d n) / 2: xxx yyy zzz xxy xxz xyy yyz xzz yzz xyz
+    double radius = 0, far = 0;         ///< of the samples about the centre; distance from which on the series is used
+    double charge = 0;                  ///< sum a s
+    Vec3 centre = Vec3::Zero();         ///< of area
+    Vec3 dipole = Vec3::Zero();         ///< sum a (n + s d)
+    std::array<double, 6> second = {};  ///< sum a sym(d n + s d d / 2), d = x_i - centre: xx yy zz xy xz yz
+    std::array<double, 10> third = {};  ///< sum a sym(d d n / 2 + s d d d / 6): xxx yyy zzz xxy xxz xyy yyz xzz yzz xyz
   };
+  double beta_;
   std::vector<Sample> samples_;
   std::vector<Node> nodes_;  ///< parents before children
 
   std::uint32_t grow(std::uint32_t first, std::uint32_t last);
-  void find_ball(Node& node, double beta) const;
+  void find_ball(Node& node) const;
   void find_moments(Node& node) const;
-  void take(const std::vector<Vec3>& normals);
+  void update_moments();
 };
 
 }  // namespace umtet

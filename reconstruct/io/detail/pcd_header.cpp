@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <map>
@@ -155,6 +158,21 @@ void check_size(const CloudSource& source, const PcdHeader& header) {
                                header.body + 4, packed, unpacked, header.n_points, point_bytes));
 }
 
+/// The line VIEWPOINT tx ty tz qw qx qy qz; what does not look like that tells nothing, and is no reason to refuse.
+std::optional<Vec3> scanner_position(const Entries& entries) {
+  const auto found = entries.find("VIEWPOINT");
+  if (found == entries.end() || found->second.values.size() != 7) return std::nullopt;
+  constexpr std::array<double, 7> kUnknown = {0, 0, 0, 1, 0, 0, 0};
+  std::array<double, 7> pose;
+  for (std::size_t k = 0; k < pose.size(); ++k) {
+    const std::string_view token = found->second.values[k];
+    const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), pose[k]);
+    if (error != std::errc{} || end != token.data() + token.size() || !std::isfinite(pose[k])) return std::nullopt;
+  }
+  if (pose == kUnknown) return std::nullopt;
+  return Vec3(pose[0], pose[1], pose[2]);
+}
+
 }  // namespace
 
 PcdHeader parse_pcd_header(const CloudSource& source) {
@@ -162,6 +180,7 @@ PcdHeader parse_pcd_header(const CloudSource& source) {
   const Entries entries = header_entries(source, header);
   parse_fields(source, entries, header);
   parse_point_count(source, entries, header);
+  header.viewpoint = scanner_position(entries);
   const Entry& data = required(source, entries, "DATA");
   if (data.values[0] == "ascii")
     header.data = PcdData::Ascii;

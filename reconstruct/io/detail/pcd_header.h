@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "common/vec3.h"
 #include "reconstruct/io/detail/cloud_source.h"
 
 namespace umtet::detail {
@@ -23,8 +25,9 @@ struct PcdHeader {
   std::vector<PcdField> fields;  ///< compressed files leave the padding fields "_" out, and so does this list
   std::size_t n_points = 0;
   std::size_t point_bytes = 0;
-  std::size_t body = 0;       ///< byte where the data begin
-  std::size_t body_line = 0;  ///< and its line, from 1
+  std::optional<Vec3> viewpoint;  ///< where the scanner stood; none by default (0 0 0 1 0 0 0)
+  std::size_t body = 0;           ///< byte where the data begin
+  std::size_t body_line = 0;      ///< and its line, from 1
 };
 
 /// Header of a PCD file whose binary body, if it has one, lies within the file.

@@ -89,17 +89,19 @@ CloudFile read_pcd(const CloudSource& source) {
   const CloudColumns columns = cloud_columns(source, scalar_names(header), "field");
   switch (header.data) {
     case PcdData::Ascii:
-      return {read_ascii(source, header, columns), {.format = "pcd ascii"}};
+      return {read_ascii(source, header, columns), {.format = "pcd ascii", .viewpoint = header.viewpoint}};
     case PcdData::Binary: {
       refuse_surplus(source, header.body + header.n_points * header.point_bytes);
       const auto* bytes = reinterpret_cast<const std::uint8_t*>(source.bytes.data());
-      return {decode_points(source, header, columns, bytes + header.body), {.format = "pcd binary"}};
+      return {decode_points(source, header, columns, bytes + header.body),
+              {.format = "pcd binary", .viewpoint = header.viewpoint}};
     }
     case PcdData::Compressed:
       break;
   }
   const std::vector<std::uint8_t> points = unpack(source, header);
-  return {decode_points(source, header, columns, points.data()), {.format = "pcd compressed"}};
+  return {decode_points(source, header, columns, points.data()),
+          {.format = "pcd compressed", .viewpoint = header.viewpoint}};
 }
 
 }  // namespace umtet::detail

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "mesh/io/tet_mesh_io.h"
+#include "reconstruct/io/point_cloud_io.h"
 #include "tests/pipeline/cli/program_fixture.h"
 
 namespace umtet {
@@ -31,6 +32,39 @@ TEST_F(Program, NormalsAreEstimatedWhereThereAreNone) {
               Json::parse(given.out)["certificate"]["volume"].get<double>(), 3e-3);
   // --flip turns the body inside out: there is none.
   EXPECT_EQ(run("run bare.xyz -o flipped --tets 4000 --flip").code, 4);
+}
+
+TEST_F(Program, ThinPlatesWithoutNormalsGetTheirSidesFromTheWindingNumber) {
+  constexpr int kAlong = 24;  // a plate one spacing thick: the nearest neighbours of a sample are on both sheets
+  std::ofstream out(folder / "plate.xyz");
+  for (int i = 0; i <= kAlong; ++i)
+    for (int j = 0; j <= kAlong; ++j)
+      for (const int k : {0, 1}) out << i + .1 * (j % 2) << ' ' << j + .1 * (i % 2) << ' ' << k << '\n';
+  out.close();
+  const Result r = run("reconstruct plate.xyz -o plate");
+  EXPECT_EQ(r.code, 0) << r.err;
+  EXPECT_NE(r.err.find("the winding number decided"), std::string::npos) << r.err;
+  const Json normals = record(folder / "plate/1-cloud")["numbers"]["normals"];
+  EXPECT_GT(normals["turned_by_winding"], kAlong * kAlong / 2);
+}
+
+TEST_F(Program, EstimatedNormalsLookToTheScannerThatThePcdNames) {
+  constexpr int kAlong = 20;
+  for (const int height : {-5, 5}) {
+    std::ofstream out(folder / "dish.pcd");
+    out << "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 400\nHEIGHT 1\nVIEWPOINT 0 0 "
+        << height << " 1 0 0 0\nPOINTS 400\nDATA ascii\n";
+    for (int i = 0; i < kAlong * kAlong; ++i) {
+      const double x = (i % kAlong - 9.5) / 10, y = (i / kAlong - 9.5) / 10;  // NOLINT(bugprone-integer-division)
+      out << x << ' ' << y << ' ' << .2 * (x * x + y * y) << '\n';
+    }
+    out.close();
+    const Result r = run("reconstruct dish.pcd -o dish" + std::to_string(height + 5));  // an open sheet bounds no body
+    EXPECT_NE(r.err.find("the VIEWPOINT of the file"), std::string::npos) << r.err;
+    const OrientedPointCloud cloud =
+        read_point_cloud(folder / ("dish" + std::to_string(height + 5)) / "1-cloud/cloud.ply").cloud;
+    for (const Vec3& n : cloud.normals) EXPECT_GT(n.z() * height, 0);
+  }
 }
 
 TEST_F(Program, ATurnedMinorityIsTurnedBackAndSaidSo) {

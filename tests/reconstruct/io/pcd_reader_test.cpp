@@ -22,6 +22,20 @@ TEST_F(PointCloudIo, PcdIsReadInEveryEncodingAndDoublesStayDoubles) {
       cloud_);
 }
 
+TEST_F(PointCloudIo, PcdTellsWhereTheScannerStood) {
+  const std::string header = pcd("ascii"), unknown = "VIEWPOINT 0 0 0 1 0 0 0";
+  const auto viewpoint = [&](const std::string& line) {
+    std::string bytes = header + text_;
+    bytes.replace(bytes.find(unknown), unknown.size(), line);
+    return read("viewpoint.pcd", bytes).report.viewpoint;
+  };
+  EXPECT_FALSE(viewpoint(unknown));
+  EXPECT_EQ(viewpoint("VIEWPOINT 1 -2.5 3e2 1 0 0 0"), Vec3(1, -2.5, 300));
+  EXPECT_EQ(viewpoint("VIEWPOINT 0 0 0 0 1 0 0"), Vec3(0, 0, 0));  // turned, so somebody wrote it
+  for (const char* nothing : {"VIEWPOINT", "VIEWPOINT 1 2 3", "VIEWPOINT 1 2 x 1 0 0 0", "VIEWPOINT nan 0 0 1 0 0 0"})
+    EXPECT_FALSE(viewpoint(nothing)) << nothing;
+}
+
 TEST_F(PointCloudIo, PcdFieldsComeInAnyOrderWithOthersAmongThem) {
   std::string bytes =
       "VERSION .7\nFIELDS normal_z _ x y histogram z normal_x normal_y label\nSIZE 8 1 8 8 2 8 8 8 8\n"
