@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 #include "common/formatted.h"
+#include "reconstruct/cloud/covering.h"
 #include "reconstruct/cloud/neighbour_tree.h"
 
 namespace umtet {
@@ -106,6 +107,8 @@ struct Surroundings {
     tree.emplace(points);
     near = Neighbourhoods(*tree, kNeighbours);
   }
+  Surroundings(std::vector<Vec3> some, const Neighbourhoods& theirs)
+      : points(std::move(some)), tree(points), near(theirs) {}
   bool has_duplicates() const {
     for (std::size_t i = 0; i < near.size(); ++i)
       if (near.distances2(i).front() == 0) return true;
@@ -146,6 +149,19 @@ std::vector<std::uint32_t> maybe_crowded(const Surroundings& cloud, std::size_t 
   for (std::size_t row = 0; row < order.size(); ++row)
     if (is_open[row / kTogether] != 0) rows.push_back(order[row]);
   return rows;
+}
+
+/// What `judge` finds of the cloud, or, where it lies on scan lines, of its representatives: all that one stands for go
+/// with it.
+template <class Judge>
+std::vector<std::uint8_t> judged(const Surroundings& cloud, Judge&& judge) {
+  const Covering covers = covering(cloud.points, cloud.near);
+  if (covers.is_even()) return judge(cloud);
+  const Surroundings few(picked({cloud.points, {}}, covers.chosen).points, covers.near);
+  const std::vector<std::uint8_t> of_few = judge(few);
+  std::vector<std::uint8_t> of_all(cloud.points.size());
+  for (std::size_t i = 0; i < of_all.size(); ++i) of_all[i] = of_few[covers.representative[i]];
+  return of_all;
 }
 
 std::vector<std::uint8_t> outliers(const Surroundings& cloud, const CleaningParams& params) {
@@ -282,11 +298,12 @@ CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params, Ne
   if (params.outliers) {
     // A second pass where the first has dropped something: outliers beside each other hide one another from the first.
     for (int pass = 0; pass < 2; ++pass) {
-      const std::size_t n_dropped = drop(outliers(left, params));
+      const std::size_t n_dropped = drop(judged(left, [&](const auto& cloud) { return outliers(cloud, params); }));
       if (n_dropped == 0) break;
       report.n_outliers += n_dropped;
     }
-    report.n_small_components = drop(small_components(left, params, report.n_small_component_pieces));
+    report.n_small_components = drop(judged(
+        left, [&](const auto& cloud) { return small_components(cloud, params, report.n_small_component_pieces); }));
   }
   for (std::size_t row = 0; row < kept.size(); ++row) {
     cloud.points[row] = cloud.points[kept[row]];

@@ -303,6 +303,34 @@ OrientationReport orient(OrientedPointCloud& cloud, const OrientationParams& par
   return report;
 }
 
+/// On scan lines: see the header.
+OrientationReport orient(OrientedPointCloud& cloud, const OrientationParams& params, const Neighbourhoods* near,
+                         const Covering* covering, Given given) {
+  if (!covering || covering->is_even()) return orient(cloud, params, near, given);
+  require(cloud, params);
+  OrientedPointCloud few = picked(cloud, covering->chosen);
+  OrientationReport report =
+      orient(few, params, params.neighbours == static_cast<int>(covering->near.k()) ? &covering->near : nullptr, given);
+  const double surely = given == Given::Signs ? kSurelyWrong : 0;
+  report.n_turned = report.n_undefined = 0;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    const std::uint32_t r = covering->representative[i];
+    Vec3& n = cloud.normals[i];
+    if (n.isZero(0)) {
+      ++report.n_undefined;
+      continue;
+    }
+    const double weight = covering->chosen[r] == i ? n.dot(few.normals[r])
+                                                   : pair_weight(few.points[r], few.normals[r], cloud.points[i], n);
+    if (weight >= surely) continue;
+    n = -n;
+    ++report.n_turned;
+  }
+  report.n_doubtful = report.n_doubtful * cloud.points.size() / few.points.size();
+  report.left_alone = report.n_turned == 0;
+  return report;
+}
+
 }  // namespace
 
 std::vector<std::string> problems(const OrientationParams& params) {
@@ -314,19 +342,24 @@ std::vector<std::string> problems(const OrientationParams& params) {
   return found;
 }
 
-double consistency(const OrientedPointCloud& cloud, const OrientationParams& params, const Neighbourhoods* near) {
+double consistency(const OrientedPointCloud& cloud, const OrientationParams& params, const Neighbourhoods* near,
+                   const Covering* covering) {
+  if (covering && !covering->is_even()) {
+    return consistency(picked(cloud, covering->chosen), params,
+                       params.neighbours == static_cast<int>(covering->near.k()) ? &covering->near : nullptr);
+  }
   require(cloud, params);
   return cloud.points.size() < 2 ? 1 : sign_agreement(cloud, *FoundNeighbours(cloud, params, near)).share();
 }
 
-OrientationReport orient_normals(OrientedPointCloud& cloud, const OrientationParams& params,
-                                 const Neighbourhoods* near) {
-  return orient(cloud, params, near, Given::Directions);
+OrientationReport orient_normals(OrientedPointCloud& cloud, const OrientationParams& params, const Neighbourhoods* near,
+                                 const Covering* covering) {
+  return orient(cloud, params, near, covering, Given::Directions);
 }
 
-OrientationReport repair_normals(OrientedPointCloud& cloud, const OrientationParams& params,
-                                 const Neighbourhoods* near) {
-  return orient(cloud, params, near, Given::Signs);
+OrientationReport repair_normals(OrientedPointCloud& cloud, const OrientationParams& params, const Neighbourhoods* near,
+                                 const Covering* covering) {
+  return orient(cloud, params, near, covering, Given::Signs);
 }
 
 std::size_t orient_from(OrientedPointCloud& cloud, const std::vector<Vec3>& viewpoints) {
