@@ -8,6 +8,7 @@
 #include "pipeline/case/artefact.h"
 #include "reconstruct/cloud/cleaning.h"
 #include "reconstruct/cloud/cloud_survey.h"
+#include "reconstruct/cloud/covering.h"
 #include "reconstruct/cloud/morton_order.h"
 #include "reconstruct/cloud/normal_estimation.h"
 #include "reconstruct/cloud/normal_orientation.h"
@@ -64,6 +65,7 @@ class Preparation {
   const CloudFileReport file_;
   OrientedPointCloud cloud_;
   Neighbourhoods near_;  ///< of the cleaned cloud
+  Covering covering_;    ///< of it
   PreparedCloud result_;
 };
 
@@ -103,7 +105,7 @@ void Preparation::fill_missing() {
   for (const Vec3& n : cloud_.normals) missing += n.isZero(0);
   normals().missing = missing;
   if (missing == 0) return;
-  const EstimatedNormals estimated = estimate_normals(cloud_.points);
+  const EstimatedNormals estimated = estimate_normals(cloud_.points, {}, &covering_);
   for (std::size_t i = 0; i < cloud_.normals.size(); ++i) {
     if (cloud_.normals[i].isZero(0)) cloud_.normals[i] = estimated.normals[i];
   }
@@ -116,10 +118,10 @@ void Preparation::find_normals() {
     normals().given = true;
     fill_missing();
     if (how == NormalsOf::Given) {
-      normals().consistency = consistency(cloud_, {}, &near_);
+      normals().consistency = consistency(cloud_, {}, &near_, &covering_);
       return;
     }
-    const OrientationReport r = repair_normals(cloud_, {}, &near_);
+    const OrientationReport r = repair_normals(cloud_, {}, &near_, &covering_);
     take(r);
     if (r.n_turned > 0) {
       notice(
@@ -129,9 +131,9 @@ void Preparation::find_normals() {
     }
     return;
   }
-  EstimatedNormals estimated = estimate_normals(cloud_.points);
+  EstimatedNormals estimated = estimate_normals(cloud_.points, {}, &covering_);
   cloud_.normals = std::move(estimated.normals);
-  const OrientationReport r = orient_normals(cloud_, {}, &near_);
+  const OrientationReport r = orient_normals(cloud_, {}, &near_, &covering_);
   take(r);
   notice("estimated the normals and oriented them: {:.1f} % consistent, {} piece{}", 100 * r.consistency_after,
          r.n_components, r.n_components == 1 ? "" : "s");
@@ -173,10 +175,11 @@ PreparedCloud Preparation::operator()() {
   const Vec3 shift = far_origin_shift(cloud_);  // squares of far coordinates would lose the surface
   for (Vec3& x : cloud_.points) x -= shift;
   clean_points();
+  covering_ = covering(cloud_.points, near_);
   find_normals();
   drop_undefined();
   // Differences of coordinates have the same bits with and without the shift: so do distances.
-  if (near_.size() == cloud_.points.size()) result_.near = neighbour_distances(near_);
+  if (near_.size() == cloud_.points.size()) result_.near = neighbour_distances(near_, covering_);
   for (Vec3& x : cloud_.points) x += shift;
   orient_as_told();
   report.n_points = cloud_.points.size();

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -46,12 +47,14 @@ std::vector<SsdSample> merge_samples(const std::vector<SsdSample>& samples, doub
       continue;
     }
     SsdSample mean{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+    mean.gap2 = samples[order[i].index].gap2;
     for (std::size_t k = i; k < end; ++k) {
       const SsdSample& s = samples[order[k].index];
       mean.xi += s.w_gradient * s.xi;
       mean.normal += s.w_gradient * s.normal;
       mean.w_value += s.w_value;
       mean.w_gradient += s.w_gradient;
+      mean.gap2 = std::min(mean.gap2, s.gap2);
     }
     mean.xi /= mean.w_gradient;
     mean.normal /= mean.w_gradient;
@@ -72,6 +75,7 @@ void coarsen(std::vector<SsdSample>& samples) {
     s.value /= 2;
     s.w_value /= 4;
     s.w_gradient /= 4;
+    s.gap2 /= 4;
   }
 }
 
