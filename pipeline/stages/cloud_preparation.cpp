@@ -72,7 +72,7 @@ class Preparation {
 void Preparation::clean_points() {
   CleaningParams params;
   params.outliers = !parameters_.cloud().keep_all;
-  const CleaningReport r = clean(cloud_, params, &near_);
+  const CleaningReport r = clean(cloud_, params, &near_, &covering_);
   const std::size_t n_not_finite = file_.n_points_dropped + r.n_not_finite;
   result_.report.dropped = {.not_finite = n_not_finite,
                             .duplicates = r.n_duplicates,
@@ -175,7 +175,6 @@ PreparedCloud Preparation::operator()() {
   const Vec3 shift = far_origin_shift(cloud_);  // squares of far coordinates would lose the surface
   for (Vec3& x : cloud_.points) x -= shift;
   clean_points();
-  covering_ = covering(cloud_.points, near_);
   find_normals();
   drop_undefined();
   // Differences of coordinates have the same bits with and without the shift: so do distances.

@@ -303,6 +303,20 @@ OrientationReport orient(OrientedPointCloud& cloud, const OrientationParams& par
   return report;
 }
 
+/// Sums of the weights, and of their magnitudes, of the pairs of a point with a representative and those around it.
+SignAgreement pairs_with(const OrientedPointCloud& few, const Neighbourhoods& near, std::uint32_t representative,
+                         const Vec3& x, const Vec3& n) {
+  SignAgreement sum;
+  const auto add = [&](std::uint32_t r) {
+    const double weight = pair_weight(few.points[r], few.normals[r], x, n);
+    sum.agrees += weight;
+    sum.all += std::abs(weight);
+  };
+  add(representative);
+  for (const std::uint32_t r : near.points(representative)) add(r);
+  return sum;
+}
+
 /// On scan lines: see the header.
 OrientationReport orient(OrientedPointCloud& cloud, const OrientationParams& params, const Neighbourhoods* near,
                          const Covering* covering, Given given) {
@@ -320,9 +334,12 @@ OrientationReport orient(OrientedPointCloud& cloud, const OrientationParams& par
       ++report.n_undefined;
       continue;
     }
-    const double weight = covering->chosen[r] == i ? n.dot(few.normals[r])
-                                                   : pair_weight(few.points[r], few.normals[r], cloud.points[i], n);
-    if (weight >= surely) continue;
+    bool is_wrong = n.dot(few.normals[r]) < 0;
+    if (covering->chosen[r] != i) {
+      const SignAgreement pairs = pairs_with(few, covering->near, r, cloud.points[i], n);
+      is_wrong = pairs.agrees < surely * pairs.all;
+    }
+    if (!is_wrong) continue;
     n = -n;
     ++report.n_turned;
   }

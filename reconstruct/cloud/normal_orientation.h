@@ -32,8 +32,8 @@ struct OrientationReport {
 
 /// The functions below search the params.neighbours nearest of every point themselves where `near` is not given. Where
 /// the cloud lies on scan lines (covering.h) signs are found for the representatives, and each point takes that of its
-/// own; repair turns it only where it is surely against it. Counts but n_turned are then those of the representatives,
-/// scaled.
+/// own and those around it; repair turns it only where it is surely against them. Counts but n_turned are then those of
+/// the representatives, scaled.
 
 /// Share of the evidence of neighbouring pairs (sign_graph.h) that agrees with the signs of the normals: 1 consistent,
 /// 0.5 random. Where a share p of the normals is turned, at random, it is about 1 - 2 p (1 - p): 0.82 for a tenth.

@@ -2,11 +2,11 @@
 """Clouds that are sampled unevenly: scan lines 1, 3, 10, 30 times denser along than across, and a density that falls by
 100 from one side to the other. Prints what umtet makes of them.
 
-usage: scans.py UMTET [BODY ...] [--gap=.02] [--normals=estimate] [--scans=LINES,fall,...] [--keep=FOLDER]
+usage: scans.py UMTET [BODY ...] [--gap=.02] [--normals=estimate] [--scans=LINES,fall,...] [--noise=0] [--h=EDGE] [--keep=FOLDER]
 
 Bodies are ball, torus, eq_9 and PATH.ply, a mesh that is closed (ARMADILLO=PATH.ply adds one). Lines lie in parallel planes
-`gap` diagonals apart, those across x where |n_x| <= .75, else those across y. Distances and angles are those of the
-mesh's vertices and faces to the body, not to the samples.
+`gap` diagonals apart, those across x where |n_x| <= .75, else those across y. Noise is along normals, in gaps. Distances and angles are those of the
+mesh's vertices and faces to the body, not to the samples. --h takes a finer mesh, which sees finer ripples of psi.
 """
 import json
 import os
@@ -207,9 +207,9 @@ def read_surface(path):
     return corners(reader.GetOutput())
 
 
-def run(umtet, source, case):
+def run(umtet, source, case, more):
     before = os.times()
-    code = subprocess.run([umtet, "run", source, "-o", case, "--no-report", "--progress", "none", "-q"],
+    code = subprocess.run([umtet, "run", source, "-o", case, "--no-report", "--progress", "none", "-q"] + more,
                           stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, check=False)
     after = os.times()
     cpu = after.children_user + after.children_system - before.children_user - before.children_system
@@ -261,9 +261,11 @@ def main():
             gap = gap_over_diagonal * np.linalg.norm(bounds[:, 1] - bounds[:, 0])
             for scan in scans:
                 points, normals = falling(body, gap) if scan == "fall" else scan_lines(body, gap, float(scan))
+                noise = float(options.get("noise", 0)) * gap * np.random.default_rng(7).standard_normal((len(points), 1))
+                points = points + noise * normals
                 case = os.path.join(folder, f"{body.name}_{scan}")
                 write_ply(case + ".ply", points, None if options.get("normals") == "estimate" else normals)
-                code, cpu, message = run(umtet, case + ".ply", case)
+                code, cpu, message = run(umtet, case + ".ply", case, ["--h", options["h"]] if "h" in options else [])
                 row = f"{body.name:10} {scan:>5} {len(points):7} {code:4} "
                 h = numbers(case, "certificate.json", "h")
                 if h is None:
