@@ -137,6 +137,15 @@ std::vector<double> sample_areas(const NeighbourDistances& near) {
   return areas;
 }
 
+namespace {
+
+// Samples along lines show detail that representatives do not: armadillo in lines ten times denser along than across,
+// .02 of its diagonal apart, has normals 10.3 degrees rms off with 1, 8.8 with 1.5, 8.7 with 2; with estimated normals
+// eq. (9) has 1.9, 2.1, 2.0.
+constexpr double kFinerOnLines = 1.5;
+
+}  // namespace
+
 double sample_spacing(const NeighbourDistances& near) {
   std::vector<double> areas = sample_areas(near);
   const bool each_counts =
@@ -156,7 +165,7 @@ double sample_spacing(const NeighbourDistances& near) {
   std::sort(places.begin(), places.end());
   std::size_t i = 0;
   while (i + 1 < places.size() && 2 * (below += places[i].second) <= all) ++i;
-  return std::sqrt(places[i].first);
+  return std::sqrt(places[i].first) / (near.representatives.empty() ? 1 : kFinerOnLines);
 }
 
 Vec3 far_origin_shift(const OrientedPointCloud& cloud) {

@@ -48,8 +48,8 @@ inline constexpr int kAreaNeighbours = 12;
 std::vector<double> sample_areas(const std::vector<Vec3>& points, int k = kAreaNeighbours);
 std::vector<double> sample_areas(const NeighbourDistances& near);
 
-/// The distance between samples: root of the median over places, or representatives, of the area around them (model
-/// units). On scan lines that is between the distance along them and the gap, nearer to the gap.
+/// The distance between samples: root of the median over places of the area around them (model units). On scan lines
+/// that of the representatives over 1.5, about two fifths of the gap: between gaps, samples show more along lines.
 double sample_spacing(const NeighbourDistances& near);
 
 /// What to subtract from clouds far from the origin (geo-referenced scans), where squares and differences of

@@ -63,8 +63,8 @@ TEST(Covering, TheDistanceBetweenSamplesIsLikeTheGapForAnyDensityAlongLines) {
   for (const double ratio : {6., 10., 30., 100.}) {
     const OrientedPointCloud cloud = ball(ratio);
     const double spacing = sample_spacing(covered_distances(cloud.points));
-    EXPECT_GT(spacing, .4 * kGap) << ratio;
-    EXPECT_LT(spacing, 1.2 * kGap) << ratio;
+    EXPECT_GT(spacing, .25 * kGap) << ratio;
+    EXPECT_LT(spacing, .8 * kGap) << ratio;
   }
 }
 
