@@ -8,6 +8,7 @@
 #include "pipeline/case/artefact.h"
 #include "reconstruct/cloud/cleaning.h"
 #include "reconstruct/cloud/cloud_survey.h"
+#include "reconstruct/cloud/covering.h"
 #include "reconstruct/cloud/morton_order.h"
 #include "reconstruct/cloud/normal_estimation.h"
 #include "reconstruct/cloud/normal_orientation.h"
@@ -67,6 +68,7 @@ class Preparation {
   const CloudFileReport file_;
   OrientedPointCloud cloud_;
   Neighbourhoods near_;     ///< of the cleaned cloud
+  Covering covering_;       ///< of it
   bool is_closed_ = false;  ///< as the winding number has it
   PreparedCloud result_;
 };
@@ -74,7 +76,7 @@ class Preparation {
 void Preparation::clean_points() {
   CleaningParams params;
   params.outliers = !parameters_.cloud().keep_all;
-  const CleaningReport r = clean(cloud_, params, &near_);
+  const CleaningReport r = clean(cloud_, params, &near_, &covering_);
   const std::size_t n_not_finite = file_.n_points_dropped + r.n_not_finite;
   result_.report.dropped = {.not_finite = n_not_finite,
                             .duplicates = r.n_duplicates,
@@ -111,7 +113,7 @@ void Preparation::fill_missing() {
   for (const Vec3& n : cloud_.normals) missing += n.isZero(0);
   normals().missing = missing;
   if (missing == 0) return;
-  const EstimatedNormals estimated = estimate_normals(cloud_.points);
+  const EstimatedNormals estimated = estimate_normals(cloud_.points, {}, &covering_);
   for (std::size_t i = 0; i < cloud_.normals.size(); ++i) {
     if (cloud_.normals[i].isZero(0)) cloud_.normals[i] = estimated.normals[i];
   }
@@ -124,11 +126,11 @@ void Preparation::find_normals() {
     normals().given = true;
     fill_missing();
     if (how == NormalsOf::Given) {
-      normals().consistency = consistency(cloud_, {}, &near_);
+      normals().consistency = consistency(cloud_, {}, &near_, &covering_);
       return;
     }
     const std::vector<Vec3> as_given = cloud_.normals;
-    const OrientationReport r = repair_normals(cloud_, {}, &near_);
+    const OrientationReport r = repair_normals(cloud_, {}, &near_, &covering_);
     take(r);
     say_doubt();
     if (r.n_turned > 0) {
@@ -140,9 +142,9 @@ void Preparation::find_normals() {
     }
     return;
   }
-  EstimatedNormals estimated = estimate_normals(cloud_.points);
+  EstimatedNormals estimated = estimate_normals(cloud_.points, {}, &covering_);
   cloud_.normals = std::move(estimated.normals);
-  const OrientationReport r = orient_normals(cloud_, {}, &near_);
+  const OrientationReport r = orient_normals(cloud_, {}, &near_, &covering_);
   take(r);
   notice("estimated the normals and oriented them: {:.1f} % consistent, {} piece{}", 100 * r.consistency_after,
          r.n_components, r.n_components == 1 ? "" : "s");
@@ -164,7 +166,7 @@ void Preparation::ask_winding_number(const std::vector<Vec3>* as_given) {
   if (is_closed_) normals().orientation->n_doubtful = 0;
   normals().turned_by_winding = r.n_turned;
   normals().replaced_by_winding = r.n_replaced;
-  normals().orientation->consistency_after = consistency(cloud_, {}, &near_);
+  normals().orientation->consistency_after = consistency(cloud_, {}, &near_, &covering_);
   notice("the winding number decided which side is outside: turned {} normals ({:.1f} %), took {} directions from it",
          r.n_turned, percent(r.n_turned), r.n_replaced);
 }
@@ -215,7 +217,7 @@ PreparedCloud Preparation::operator()() {
   find_normals();
   drop_undefined();
   // Differences of coordinates have the same bits with and without the shift: so do distances.
-  if (near_.size() == cloud_.points.size()) result_.near = neighbour_distances(near_);
+  if (near_.size() == cloud_.points.size()) result_.near = neighbour_distances(near_, covering_);
   for (Vec3& x : cloud_.points) x += shift;
   orient_as_told();
   report.n_points = cloud_.points.size();

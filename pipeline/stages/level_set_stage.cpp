@@ -15,6 +15,7 @@
 #include "pipeline/stages/stages.h"
 #include "reconstruct/cloud/cloud_neighbours.h"
 #include "reconstruct/cloud/cloud_survey.h"
+#include "reconstruct/cloud/covering.h"
 #include "reconstruct/io/level_set_io.h"
 #include "reconstruct/io/point_cloud_io.h"
 
@@ -83,20 +84,24 @@ void run_level_set_stage(const StageContext& context) {
   const double noise = context.parameters.reconstruct().noise;
   LevelSetReport report;
   report.shift = shift;
+  NeighbourDistances near = std::exchange(context.handover.near, {});
+  if (near.nearest.empty()) near = covered_distances(cloud.points);
   {
-    const NeighbourTree tree(cloud.points);
-    params.noise = noise >= 0 ? noise : noise_along_normals(cloud, tree);
+    const bool is_even = near.representatives.empty();
+    const OrientedPointCloud few = is_even ? OrientedPointCloud() : picked(cloud, near.representatives);
+    const OrientedPointCloud& even = is_even ? cloud : few;
+    const NeighbourTree tree(even.points);
+    params.noise = noise >= 0 ? noise : noise_along_normals(even, tree);
     stop_if_interrupted();
-    report.thickness = thickness_percentiles(cloud, tree);
+    report.thickness = thickness_percentiles(even, tree);
   }
   stop_if_interrupted();
-  const NeighbourDistances near = std::exchange(context.handover.near, {});
   SsdFit fit = [&] {
     try {
       const Context call{
           .progress = [&](const char* step, double part) { context.progress.report("level-set", step, part); },
           .cancelled = until_interrupted().cancelled};
-      return fit_ssd(cloud, params, call, near.nearest.empty() ? nullptr : &near);
+      return fit_ssd(cloud, params, call, &near);
     } catch (const SolveTooLarge& e) {
       throw ResourceLimit(e.what());
     }

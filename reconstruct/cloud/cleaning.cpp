@@ -106,6 +106,8 @@ struct Surroundings {
     tree.emplace(points);
     near = Neighbourhoods(*tree, kNeighbours);
   }
+  Surroundings(std::vector<Vec3> some, const Neighbourhoods& theirs)
+      : points(std::move(some)), tree(points), near(theirs) {}
   bool has_duplicates() const {
     for (std::size_t i = 0; i < near.size(); ++i)
       if (near.distances2(i).front() == 0) return true;
@@ -146,6 +148,18 @@ std::vector<std::uint32_t> maybe_crowded(const Surroundings& cloud, std::size_t 
   for (std::size_t row = 0; row < order.size(); ++row)
     if (is_open[row / kTogether] != 0) rows.push_back(order[row]);
   return rows;
+}
+
+/// What `judge` finds of the cloud, or, where it lies on scan lines, of its representatives: all that one stands for go
+/// with it.
+template <class Judge>
+std::vector<std::uint8_t> judged(const Surroundings& cloud, const Covering& covers, Judge&& judge) {
+  if (covers.is_even()) return judge(cloud);
+  const Surroundings few(picked({cloud.points, {}}, covers.chosen).points, covers.near);
+  const std::vector<std::uint8_t> of_few = judge(few);
+  std::vector<std::uint8_t> of_all(cloud.points.size());
+  for (std::size_t i = 0; i < of_all.size(); ++i) of_all[i] = of_few[covers.representative[i]];
+  return of_all;
 }
 
 std::vector<std::uint8_t> outliers(const Surroundings& cloud, const CleaningParams& params) {
@@ -256,7 +270,8 @@ std::vector<std::string> problems(const CleaningParams& params) {
   return found;
 }
 
-CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params, Neighbourhoods* neighbours) {
+CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params, Neighbourhoods* neighbours,
+                     Covering* covers_left) {
   if (const auto found = problems(params); !found.empty()) throw std::invalid_argument(found.front());
   const bool has_normals = !cloud.normals.empty();
   if (has_normals && cloud.normals.size() != cloud.points.size())
@@ -273,20 +288,26 @@ CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params, Ne
   report.n_not_finite = cloud.points.size() - kept.size();
 
   Surroundings left(positions(cloud, kept));
+  Covering covers;
   const auto drop = [&](const std::vector<std::uint8_t>& these) {
     const std::size_t n_dropped = keep_only(these, kept);
     if (n_dropped > 0) left = Surroundings(positions(cloud, kept));
+    if (n_dropped > 0) covers = covering(left.points, left.near);
     return n_dropped;
   };
-  if (left.has_duplicates()) report.n_duplicates = drop(later_duplicates(left.points));
+  if (!left.has_duplicates() || (report.n_duplicates = drop(later_duplicates(left.points))) == 0)
+    covers = covering(left.points, left.near);
   if (params.outliers) {
     // A second pass where the first has dropped something: outliers beside each other hide one another from the first.
     for (int pass = 0; pass < 2; ++pass) {
-      const std::size_t n_dropped = drop(outliers(left, params));
+      const std::size_t n_dropped =
+          drop(judged(left, covers, [&](const auto& some) { return outliers(some, params); }));
       if (n_dropped == 0) break;
       report.n_outliers += n_dropped;
     }
-    report.n_small_components = drop(small_components(left, params, report.n_small_component_pieces));
+    report.n_small_components = drop(judged(left, covers, [&](const auto& some) {
+      return small_components(some, params, report.n_small_component_pieces);
+    }));
   }
   for (std::size_t row = 0; row < kept.size(); ++row) {
     cloud.points[row] = cloud.points[kept[row]];
@@ -297,6 +318,7 @@ CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params, Ne
   if (has_normals) cloud.normals.resize(kept.size());
   if (has_labels) cloud.labels.resize(kept.size());
   if (neighbours) *neighbours = std::move(left.near);
+  if (covers_left) *covers_left = std::move(covers);
   return report;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "reconstruct/cloud/covering.h"
 #include "reconstruct/cloud/neighbourhoods.h"
 #include "reconstruct/cloud/point_cloud.h"
 
@@ -41,10 +42,14 @@ struct CleaningReport {
 /// takes one threshold from all distances: it drops the sparse part of clouds whose density varies, and one point far
 /// away hides all others. It does not matter how far away outliers are, nor that they are neighbours of each other.
 ///
+/// On scan lines representatives (covering.h) are judged, and what they stand for goes with them: a line is far from
+/// the next one for how near its points are to each other.
+///
 /// @param neighbours  if given: becomes the twelve nearest of what is left (empty for fewer than two points)
+/// @param covers_left  if given: becomes the covering of that
 /// \throw std::invalid_argument  normals, but not as many as points; a problem of the parameters
 /// Cost: O(n log n), a few microseconds a point. The result does not depend on the number of threads.
-CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params = {},
-                     Neighbourhoods* neighbours = nullptr);
+CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params = {}, Neighbourhoods* neighbours = nullptr,
+                     Covering* covers_left = nullptr);
 
 }  // namespace umtet

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "reconstruct/cloud/neighbour_tree.h"
 
@@ -134,6 +135,37 @@ std::vector<double> sample_areas(const NeighbourDistances& near) {
   for (std::size_t i = 0; i < areas.size(); ++i)
     areas[i] = area_per_mean_square * near.mean_square[i] / near.multiplicity[i];
   return areas;
+}
+
+namespace {
+
+// Samples along lines show detail that representatives do not: armadillo in lines ten times denser along than across,
+// .02 of its diagonal apart, has normals 10.3 degrees rms off with 1, 8.8 with 1.5, 8.7 with 2; with estimated normals
+// eq. (9) has 1.9, 2.1, 2.0.
+constexpr double kFinerOnLines = 1.5;
+
+}  // namespace
+
+double sample_spacing(const NeighbourDistances& near) {
+  std::vector<double> areas = sample_areas(near);
+  const bool each_counts =
+      std::all_of(near.multiplicity.begin(), near.multiplicity.end(), [](int m) { return m == 1; });
+  if (each_counts) {
+    const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
+    std::nth_element(areas.begin(), middle, areas.end());
+    return std::sqrt(*middle);
+  }
+  // Each of m samples at a place is 1 / m of it.
+  std::vector<std::pair<double, double>> places(areas.size());
+  double all = 0, below = 0;
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    places[i] = {areas[i] * near.multiplicity[i], 1. / near.multiplicity[i]};
+    all += places[i].second;
+  }
+  std::sort(places.begin(), places.end());
+  std::size_t i = 0;
+  while (i + 1 < places.size() && 2 * (below += places[i].second) <= all) ++i;
+  return std::sqrt(places[i].first) / (near.representatives.empty() ? 1 : kFinerOnLines);
 }
 
 Vec3 far_origin_shift(const OrientedPointCloud& cloud) {

@@ -1,5 +1,7 @@
 #include "reconstruct/cloud/normal_estimation.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -55,15 +57,15 @@ struct Estimate {
 };
 
 Estimate estimate(const std::vector<Vec3>& points, const NeighbourTree& tree, const std::vector<ThinnedCloud>& levels,
-                  const NormalEstimationParams& params, std::uint32_t i, std::span<const Neighbour> near) {
+                  const NormalEstimationParams& params, const Vec3& x, std::span<const Neighbour> near) {
   const double radius = std::sqrt(near.back().distance2);
   const double goal = params.noise_angle * std::numbers::pi / 180;
-  LocalQuadric best = local_quadric(points, points[i], near);
+  LocalQuadric best = local_quadric(points, x, near);
   if (!(radius > 0)) return {best.normal, false};
   double angle = noise_angle(best, radius, near.size());
   for (const auto& [few, least_drop] : kCloser) {
     if (angle <= goal || few >= near.size()) break;
-    const LocalQuadric closer = local_quadric(points, points[i], near.first(few));
+    const LocalQuadric closer = local_quadric(points, x, near.first(few));
     const bool is_clean = noise_angle(closer, std::sqrt(near[few - 1].distance2), few) <= goal;
     if (is_clean && closer.variance < best.variance * least_drop) return {closer.normal, false};
   }
@@ -77,7 +79,7 @@ Estimate estimate(const std::vector<Vec3>& points, const NeighbourTree& tree, co
     std::size_t n = 0;
     const auto look_up = [&](const NeighbourTree& in) {
       n = 0;
-      in.within(points[i], wider * wider, [&](std::uint32_t j, double distance2) {
+      in.within(x, wider * wider, [&](std::uint32_t j, double distance2) {
         if (n < buffer.size()) buffer[n] = {distance2, j};
         ++n;
       });
@@ -88,7 +90,7 @@ Estimate estimate(const std::vector<Vec3>& points, const NeighbourTree& tree, co
     n = std::min(n, buffer.size());
     const std::vector<Vec3>& cloud = level == 0 ? points : levels[level - 1].points;
     level = std::min(level + 1, levels.size());
-    const LocalQuadric next = local_quadric(cloud, points[i], {buffer.data(), n});
+    const LocalQuadric next = local_quadric(cloud, x, {buffer.data(), n});
     const double now = noise_angle(next, wider, std::max<std::size_t>(n, 1));
     // Noise falls like 1 / r. Where it does not, the wider neighbourhood holds something else: the other side of a
     // sheet, an edge, a bend.
@@ -112,20 +114,34 @@ std::vector<std::string> problems(const NormalEstimationParams& params) {
   return found;
 }
 
-EstimatedNormals estimate_normals(const std::vector<Vec3>& points, const NormalEstimationParams& params) {
+EstimatedNormals estimate_normals(const std::vector<Vec3>& points, const NormalEstimationParams& params,
+                                  const Covering* covering) {
   if (const auto found = problems(params); !found.empty()) throw std::invalid_argument(found.front());
   if (points.size() < 3) throw std::invalid_argument(formatted("%zu points have no normals", points.size()));
-  const NeighbourTree tree(points);
-  const std::vector<ThinnedCloud> levels = thinned(points, tree, params.largest_growth);
+  const bool is_even = !covering || covering->is_even();
+  std::vector<Vec3> few;
+  if (!is_even)
+    for (const std::uint32_t i : covering->chosen) few.push_back(points[i]);
+  const std::vector<Vec3>& cloud = is_even ? points : few;
+  const NeighbourTree tree(cloud);
+  const std::vector<ThinnedCloud> levels = thinned(cloud, tree, params.largest_growth);
   EstimatedNormals result;
   result.normals.resize(points.size());
   std::vector<std::uint8_t> widened(points.size());
-  tree.for_each_neighbourhood(static_cast<std::size_t>(params.neighbours),
-                              [&](std::uint32_t i, std::span<const Neighbour> near) {
-                                const Estimate found = estimate(points, tree, levels, params, i, near);
-                                result.normals[i] = found.normal;
-                                widened[i] = found.widened ? 1 : 0;
-                              });
+  const auto k = static_cast<std::size_t>(params.neighbours);
+  const auto visit = [&](std::uint32_t i, std::span<const Neighbour> near) {
+    const Estimate found = estimate(cloud, tree, levels, params, points[i], near);
+    result.normals[i] = found.normal;
+    widened[i] = found.widened ? 1 : 0;
+  };
+  if (is_even) {
+    tree.for_each_neighbourhood(k, visit);
+  } else {
+    tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(points.size()), [&](std::uint32_t i) {
+      std::array<Neighbour, kMostInStep> room;
+      visit(i, tree.k_nearest(points[i], std::span(room).first(k)));
+    });
+  }
   result.n_widened = static_cast<std::size_t>(std::count(widened.begin(), widened.end(), std::uint8_t{1}));
   for (const Vec3& n : result.normals) result.n_undefined += n.isZero(0) ? 1 : 0;
   return result;

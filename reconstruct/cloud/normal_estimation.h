@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "reconstruct/cloud/covering.h"
 #include "reconstruct/cloud/point_cloud.h"
 
 namespace umtet {
@@ -28,9 +29,14 @@ struct EstimatedNormals {
 ///
 /// Double throughout: PCL's points are float, so its estimation would lose scans of 1e7 from the origin and the last
 /// digits of all others.
+/// On scan lines the neighbours of a point are the representatives around it (covering.h): those on its own line have
+/// no plane.
+///
+/// @param covering  of the points; null: they are sampled evenly
 /// \throw std::invalid_argument  fewer than 3 points, a coordinate not finite, a problem of the parameters
 /// Cost: O(n log n), and several times as much with noise of spacings. The result does not depend on the number of
 /// threads.
-EstimatedNormals estimate_normals(const std::vector<Vec3>& points, const NormalEstimationParams& params = {});
+EstimatedNormals estimate_normals(const std::vector<Vec3>& points, const NormalEstimationParams& params = {},
+                                  const Covering* covering = nullptr);
 
 }  // namespace umtet

@@ -303,6 +303,51 @@ OrientationReport orient(OrientedPointCloud& cloud, const OrientationParams& par
   return report;
 }
 
+/// Sums of the weights, and of their magnitudes, of the pairs of a point with a representative and those around it.
+SignAgreement pairs_with(const OrientedPointCloud& few, const Neighbourhoods& near, std::uint32_t representative,
+                         const Vec3& x, const Vec3& n) {
+  SignAgreement sum;
+  const auto add = [&](std::uint32_t r) {
+    const double weight = pair_weight(few.points[r], few.normals[r], x, n);
+    sum.agrees += weight;
+    sum.all += std::abs(weight);
+  };
+  add(representative);
+  for (const std::uint32_t r : near.points(representative)) add(r);
+  return sum;
+}
+
+/// On scan lines: see the header.
+OrientationReport orient(OrientedPointCloud& cloud, const OrientationParams& params, const Neighbourhoods* near,
+                         const Covering* covering, Given given) {
+  if (!covering || covering->is_even()) return orient(cloud, params, near, given);
+  require(cloud, params);
+  OrientedPointCloud few = picked(cloud, covering->chosen);
+  OrientationReport report =
+      orient(few, params, params.neighbours == static_cast<int>(covering->near.k()) ? &covering->near : nullptr, given);
+  const double surely = given == Given::Signs ? kSurelyWrong : 0;
+  report.n_turned = report.n_undefined = 0;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    const std::uint32_t r = covering->representative[i];
+    Vec3& n = cloud.normals[i];
+    if (n.isZero(0)) {
+      ++report.n_undefined;
+      continue;
+    }
+    bool is_wrong = n.dot(few.normals[r]) < 0;
+    if (covering->chosen[r] != i) {
+      const SignAgreement pairs = pairs_with(few, covering->near, r, cloud.points[i], n);
+      is_wrong = pairs.agrees < surely * pairs.all;
+    }
+    if (!is_wrong) continue;
+    n = -n;
+    ++report.n_turned;
+  }
+  report.n_doubtful = report.n_doubtful * cloud.points.size() / few.points.size();
+  report.left_alone = report.n_turned == 0;
+  return report;
+}
+
 }  // namespace
 
 std::vector<std::string> problems(const OrientationParams& params) {
@@ -314,19 +359,24 @@ std::vector<std::string> problems(const OrientationParams& params) {
   return found;
 }
 
-double consistency(const OrientedPointCloud& cloud, const OrientationParams& params, const Neighbourhoods* near) {
+double consistency(const OrientedPointCloud& cloud, const OrientationParams& params, const Neighbourhoods* near,
+                   const Covering* covering) {
+  if (covering && !covering->is_even()) {
+    return consistency(picked(cloud, covering->chosen), params,
+                       params.neighbours == static_cast<int>(covering->near.k()) ? &covering->near : nullptr);
+  }
   require(cloud, params);
   return cloud.points.size() < 2 ? 1 : sign_agreement(cloud, *FoundNeighbours(cloud, params, near)).share();
 }
 
-OrientationReport orient_normals(OrientedPointCloud& cloud, const OrientationParams& params,
-                                 const Neighbourhoods* near) {
-  return orient(cloud, params, near, Given::Directions);
+OrientationReport orient_normals(OrientedPointCloud& cloud, const OrientationParams& params, const Neighbourhoods* near,
+                                 const Covering* covering) {
+  return orient(cloud, params, near, covering, Given::Directions);
 }
 
-OrientationReport repair_normals(OrientedPointCloud& cloud, const OrientationParams& params,
-                                 const Neighbourhoods* near) {
-  return orient(cloud, params, near, Given::Signs);
+OrientationReport repair_normals(OrientedPointCloud& cloud, const OrientationParams& params, const Neighbourhoods* near,
+                                 const Covering* covering) {
+  return orient(cloud, params, near, covering, Given::Signs);
 }
 
 std::size_t orient_from(OrientedPointCloud& cloud, const std::vector<Vec3>& viewpoints) {

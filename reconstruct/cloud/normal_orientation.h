@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "reconstruct/cloud/covering.h"
 #include "reconstruct/cloud/neighbourhoods.h"
 #include "reconstruct/cloud/point_cloud.h"
 
@@ -29,13 +30,16 @@ struct OrientationReport {
   bool left_alone = false;     ///< repair: nothing to turn, the same bits
 };
 
-/// The functions below search the params.neighbours nearest of every point themselves where `near` is not given.
+/// The functions below search the params.neighbours nearest of every point themselves where `near` is not given. Where
+/// the cloud lies on scan lines (covering.h) signs are found for the representatives, and each point takes that of its
+/// own and those around it; repair turns it only where it is surely against them. Counts but n_turned are then those of
+/// the representatives, scaled.
 
 /// Share of the evidence of neighbouring pairs (sign_graph.h) that agrees with the signs of the normals: 1 consistent,
 /// 0.5 random. Where a share p of the normals is turned, at random, it is about 1 - 2 p (1 - p): 0.82 for a tenth.
 /// \throw std::invalid_argument  as orient_normals
 double consistency(const OrientedPointCloud& cloud, const OrientationParams& params = {},
-                   const Neighbourhoods* near = nullptr);
+                   const Neighbourhoods* near = nullptr, const Covering* covering = nullptr);
 
 /// Gives all normals signs from nothing: neighbours agree, and every component encloses a positive volume, or a
 /// negative one where it lies inside of another. Directions stay.
@@ -44,7 +48,7 @@ double consistency(const OrientedPointCloud& cloud, const OrientationParams& par
 ///        or `near` of another cloud or another number of neighbours
 /// Cost: O(n log n). The result does not depend on the number of threads.
 OrientationReport orient_normals(OrientedPointCloud& cloud, const OrientationParams& params = {},
-                                 const Neighbourhoods* near = nullptr);
+                                 const Neighbourhoods* near = nullptr, const Covering* covering = nullptr);
 
 /// Turns over what disagrees with the rest: signs are found as by orient_normals from the given directions, which are
 /// those of a minority turned over. A cloud that is consistent, and whose bodies enclose positive volumes, is left
@@ -52,7 +56,7 @@ OrientationReport orient_normals(OrientedPointCloud& cloud, const OrientationPar
 /// faces outward and touches another. Where volumes do not tell, the majority of the given signs does. \throw
 /// std::invalid_argument  as orient_normals
 OrientationReport repair_normals(OrientedPointCloud& cloud, const OrientationParams& params = {},
-                                 const Neighbourhoods* near = nullptr);
+                                 const Neighbourhoods* near = nullptr, const Covering* covering = nullptr);
 
 /// Every normal looks to the nearest of the viewpoints. Returns how many were turned.
 /// \throw std::invalid_argument  no viewpoints, one that is not finite, or not as many normals as points

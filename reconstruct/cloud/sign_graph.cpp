@@ -169,21 +169,24 @@ class PatchGraph {
   std::vector<std::uint8_t> turned_;
 };
 
-/// See sign_graph.h; the same bits for (b, a).
+/// The same bits for (b, a).
 float pair_weight(const OrientedPointCloud& cloud, std::uint32_t a, std::uint32_t b) {
   if (a > b) std::swap(a, b);
-  const Vec3 &na = cloud.normals[a], &nb = cloud.normals[b];
-  const Vec3 d = cloud.points[b] - cloud.points[a];
-  const double d2 = d.squaredNorm(), cosine = na.dot(nb);
-  if (!(d2 > 0)) return static_cast<float>(cosine);
-  const double da = na.dot(d), db = nb.dot(d), c2 = std::min(1.0, std::max(da * da, db * db) / d2);
-  return static_cast<float>((cosine - 2 * da * db / d2) * (1 - c2) * (1 - c2));
+  return static_cast<float>(umtet::pair_weight(cloud.points[a], cloud.normals[a], cloud.points[b], cloud.normals[b]));
 }
 
 /// A pair that both have is the one's with the smaller number.
 bool owns(const Neighbourhoods& near, std::uint32_t i, std::uint32_t j) { return i < j || !near.has(j, i); }
 
 }  // namespace
+
+double pair_weight(const Vec3& x_a, const Vec3& n_a, const Vec3& x_b, const Vec3& n_b) {
+  const Vec3 d = x_b - x_a;
+  const double d2 = d.squaredNorm(), cosine = n_a.dot(n_b);
+  if (!(d2 > 0)) return cosine;
+  const double da = n_a.dot(d), db = n_b.dot(d), c2 = std::min(1.0, std::max(da * da, db * db) / d2);
+  return (cosine - 2 * da * db / d2) * (1 - c2) * (1 - c2);
+}
 
 std::vector<SignEdge> sign_graph(const OrientedPointCloud& cloud, const Neighbourhoods& near) {
   const std::size_t n = near.size();

@@ -16,11 +16,12 @@ struct SignEdge {
   float weight;
 };
 
-/// The pairs of nearest neighbours, each once, by (a, b).
-///
 /// On the circle through both points with n_a as normal, the normal at b is n_a - 2 (n_a.e) e, e = (x_b - x_a) / |x_b -
 /// x_a|: its cosine with n_b is the weight, times (1 - c^2)^2 with c = max |n.e|, because a pair that runs along its
 /// normals may as well be the two sides of a sheet, or noise.
+double pair_weight(const Vec3& x_a, const Vec3& n_a, const Vec3& x_b, const Vec3& n_b);
+
+/// The pairs of nearest neighbours, each once, by (a, b).
 std::vector<SignEdge> sign_graph(const OrientedPointCloud& cloud, const Neighbourhoods& near);
 
 /// What the pairs say about the signs as they are, without the graph being made.

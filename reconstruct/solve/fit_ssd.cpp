@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "common/formatted.h"
+#include "reconstruct/cloud/covering.h"
 #include "reconstruct/solve/closing.h"
 #include "reconstruct/solve/multigrid.h"
 #include "reconstruct/solve/resolution.h"
@@ -91,9 +92,10 @@ Hierarchy choose_hierarchy(const Eigen::AlignedBox3d& box, double h, int padding
 }
 
 // @param area  a_i; empty for the paper's weights
+// @param n_share  how many samples share the area around each
 // @param l     by which values are weighed, for weights by area
 std::vector<SsdSample> make_samples(const OrientedPointCloud& cloud, const std::vector<double>& area,
-                                    const Lattice& lattice, double l) {
+                                    const std::vector<int>& n_share, const Lattice& lattice, double l) {
   const double h = lattice.h;
   std::vector<SsdSample> samples(cloud.points.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -102,6 +104,7 @@ std::vector<SsdSample> make_samples(const OrientedPointCloud& cloud, const std::
     // With f = h F and x = h xi, both functionals divided by h² (area) or as they stand (paper):
     samples[i].w_value = area.empty() ? h * h : area[i] / (l * l);
     samples[i].w_gradient = area.empty() ? 1.0 : area[i] / (h * h);
+    samples[i].gap2 = n_share[i] * samples[i].w_gradient;
   }
   return samples;
 }
@@ -152,12 +155,6 @@ void measure_fit(const OrientedPointCloud& cloud, const LevelSet& psi, const std
   }
 }
 
-double median(std::vector<double> v) {
-  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), middle, v.end());
-  return *middle;
-}
-
 // Where each step begins, as a share of the time.
 constexpr double kSetup = .2, kSolve = .3, kRefine = .5;
 
@@ -169,6 +166,7 @@ struct Problem {
   LmeTables tables;
   Eigen::AlignedBox3d box;
   std::vector<double> area;  // a_i; empty for the paper's weights
+  std::vector<int> n_share;  // how many samples share the area around each
   double finest_smoothing;   // c in the finest band
 };
 
@@ -222,7 +220,7 @@ LevelSet fit_full(const Problem& problem, SsdReport& report) {
   const Hierarchy hierarchy =
       choose_hierarchy(problem.box, report.spacing, problem.params.padding, problem.tables.width());
   return fit_lattice(problem, hierarchy,
-                     make_samples(problem.cloud, problem.area, hierarchy.finest,
+                     make_samples(problem.cloud, problem.area, problem.n_share, hierarchy.finest,
                                   finest_value_length(hierarchy.finest.h, problem.params.noise)),
                      problem.params.tolerance, report);
 }
@@ -267,7 +265,8 @@ std::vector<std::vector<SsdSample>> samples_of_levels(const Problem& problem, La
   lattice.n = (lattice.n.array() - 1) * (1 << n_bands) + 1;
   std::vector<std::vector<SsdSample>> samples(n_bands + 1);
   samples[n_bands] = merge_samples(
-      make_samples(problem.cloud, problem.area, lattice, finest_value_length(lattice.h, noise)), kMergeCube);
+      make_samples(problem.cloud, problem.area, problem.n_share, lattice, finest_value_length(lattice.h, noise)),
+      kMergeCube);
   for (int level = n_bands; level-- > 0;) {
     std::vector<SsdSample> coarser = samples[level + 1];
     coarsen(coarser);
@@ -350,19 +349,20 @@ SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const C
   report.n_points = cloud.points.size();
 
   context.report("weights", 0);
-  Problem problem{cloud, params, context, LmeTables(params.prior), {}, {}, 0};
+  Problem problem{cloud, params, context, LmeTables(params.prior), {}, {}, {}, 0};
   for (const Vec3& x : cloud.points) problem.box.extend(x);
   const double diagonal = problem.box.diagonal().norm();
+  double between_samples = 0;
   {
-    const NeighbourDistances searched =
-        near ? NeighbourDistances{} : neighbour_distances(cloud.points, kAreaNeighbours);
+    const NeighbourDistances searched = near ? NeighbourDistances{} : covered_distances(cloud.points);
     const NeighbourDistances& found = near ? *near : searched;
     report.cloud_spacing = median_spacing(found);
     problem.area = sample_areas(found);
+    problem.n_share = found.multiplicity;
+    between_samples = sample_spacing(found);
   }
   const double edge = kMeshEdge * diagonal;
-  const Resolution chosen =
-      choose_resolution(std::sqrt(median(problem.area)), edge, params.noise, params.detail, params.smooth);
+  const Resolution chosen = choose_resolution(between_samples, edge, params.noise, params.detail, params.smooth);
   report.spacing = params.spacing > 0 ? params.spacing : chosen.spacing;
   if (params.spacing == 0 && params.solver != SsdSolver::Multilevel) {
     report.spacing = std::max(report.spacing, edge);

@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <bitset>
 #include <cmath>
 
@@ -78,7 +79,8 @@ std::vector<SsdSample> resolved_samples(const std::vector<SsdSample>& samples, d
     std::bitset<kNodes> resolved;
     std::size_t end = i;
     for (; end < samples.size() && cell_of(samples[end]) / kEdge == at; ++end) {
-      if (samples[end].w_gradient <= most_area) resolved.set(in_block(cell_of(samples[end])));
+      if (std::max(samples[end].w_gradient, samples[end].gap2) <= most_area)
+        resolved.set(in_block(cell_of(samples[end])));
     }
     for (; i < end; ++i) {
       if (resolved[in_block(cell_of(samples[i]))]) kept.push_back(samples[i]);

@@ -19,7 +19,8 @@ struct BandReport {
 };
 
 /// Samples of the cells that their own density lets a lattice resolve: those of which at least one sample stands for an
-/// area of at most `most_area` h². Elsewhere a finer lattice would only dent the surface around each sample.
+/// area, and has others around it in an area, of at most `most_area` h². Elsewhere a finer lattice would only dent the
+/// surface around each sample.
 /// @param samples  in block order (merge_samples), lattice units, w_gradient = area / h²; the order is kept
 std::vector<SsdSample> resolved_samples(const std::vector<SsdSample>& samples, double most_area);
 

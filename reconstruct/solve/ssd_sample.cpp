@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -50,6 +51,7 @@ std::vector<SsdSample> merge_samples(const std::vector<SsdSample>& samples, doub
     }
     SsdSample mean{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
     double shares = 0;
+    mean.gap2 = samples[order[i].index].gap2;
     for (std::size_t k = i; k < end; ++k) {
       const SsdSample& s = samples[order[k].index];
       const double share = share_of(s);
@@ -58,6 +60,7 @@ std::vector<SsdSample> merge_samples(const std::vector<SsdSample>& samples, doub
       mean.w_value += s.w_value;
       mean.w_gradient += s.w_gradient;
       shares += share;
+      mean.gap2 = std::min(mean.gap2, s.gap2);
     }
     mean.xi /= shares;
     mean.normal /= shares;
@@ -78,6 +81,7 @@ void coarsen(std::vector<SsdSample>& samples) {
     s.value /= 2;
     s.w_value /= 4;
     s.w_gradient /= 4;
+    s.gap2 /= 4;
   }
 }
 

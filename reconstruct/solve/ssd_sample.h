@@ -11,6 +11,8 @@ struct SsdSample {
   Eigen::Vector3d normal;  ///< n_i
   double w_value = 0, w_gradient = 0;
   double value = 0;  ///< v: zero for a sample of the surface, not quite for the mean of several
+  double gap2 = 0;   ///< area of surface around it in which others only repeat it, such as those beside it on a scan
+                     ///< line; the least of several
 };
 
 /// Weighted means of the samples that share a cube of edge `cube`, sorted by the blocks of 8 x 8 x 8 cells they lie in.

@@ -2,6 +2,7 @@
 
 // Clouds sampled from the analytic domains, and what scanners do to them.
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -112,6 +113,22 @@ inline void add_sphere(OrientedPointCloud& cloud, const Vec3& centre, double rad
     cloud.points.push_back(centre + radius * normal);
     cloud.normals.push_back(side * normal);
   }
+}
+
+/// The unit sphere in circles of latitude `gap` apart, with samples gap / ratio apart along them.
+inline OrientedPointCloud ball_in_lines(double gap, double ratio) {
+  OrientedPointCloud cloud;
+  const int n_lines = static_cast<int>(std::round(std::numbers::pi / gap));
+  for (int line = 0; line < n_lines; ++line) {
+    const double theta = std::numbers::pi * (line + .5) / n_lines;
+    const int n = std::max(3, static_cast<int>(std::round(2 * std::numbers::pi * std::sin(theta) * ratio / gap)));
+    for (int i = 0; i < n; ++i) {
+      const double angle = 2 * std::numbers::pi * (i + std::fmod(.618 * line, 1)) / n;
+      cloud.normals.emplace_back(std::sin(theta) * std::cos(angle), std::sin(theta) * std::sin(angle), std::cos(theta));
+      cloud.points.push_back(cloud.normals.back());
+    }
+  }
+  return cloud;
 }
 
 }  // namespace umtet::test

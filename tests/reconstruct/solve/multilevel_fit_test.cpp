@@ -114,6 +114,15 @@ TEST(ResolvedSamples, LeavesSparseCellsToTheCoarserLevels) {
   EXPECT_EQ(kept[1].w_value, 9);
 }
 
+TEST(ResolvedSamples, ThoseOfAScanLineAreResolvedWhenItsGapIs) {
+  std::vector<SsdSample> line;
+  for (int i = 0; i < 16; ++i)
+    line.push_back({{1.25 + .5 * (i % 2), 1.2, 1.2}, Vec3::UnitX(), .5, .5, 0, i < 8 ? 3. : 5.});
+  EXPECT_EQ(resolved_samples(line, 4).size(), 16u);
+  for (SsdSample& s : line) s.gap2 = 5;
+  EXPECT_TRUE(resolved_samples(line, 4).empty());
+}
+
 TEST(CrossGram, OnOneLatticeIsTheGramMatrix) {
   for (const int support : {2, 3, 4}) {
     LmePrior prior;

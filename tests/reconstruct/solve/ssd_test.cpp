@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <cmath>
 #include <cstring>
+#include <numbers>
 
 #include "reconstruct/cloud/cloud_survey.h"
+#include "reconstruct/cloud/morton_order.h"
 #include "reconstruct/solve/fit_ssd.h"
 #include "reconstruct/solve/resolution.h"
 #include "reconstruct/solve/ssd_assembled.h"
@@ -219,6 +222,24 @@ TEST(FitSsd, ReportsNormalsThatCannotBeRight) {
   for (std::size_t i = 0; i < cloud.normals.size(); i += 5) cloud.normals[i] *= -1;
   const SsdReport mixed = fit_ssd(cloud, params_with(0.3)).report;
   EXPECT_NEAR(static_cast<double>(mixed.n_opposed_normals), 200, 20);
+}
+
+TEST(FitSsd, ScanLinesAreFittedAsFinelyAsTheirGapsWhateverTheirDensity) {
+  constexpr double kGap = .07;
+  OrientedPointCloud surface;
+  test::add_sphere(surface, Vec3::Zero(), 1, 997);
+  for (const double ratio : {10., 30.}) {
+    OrientedPointCloud lines = test::ball_in_lines(kGap, ratio);
+    sort_in_space(lines);
+    const SsdFit fit = fit_ssd(lines);
+    EXPECT_GT(fit.report.spacing, .25 * kGap) << ratio;
+    EXPECT_LT(fit.report.spacing, 1.25 * kGap) << ratio;
+    for (const Vec3& x : surface.points) {
+      Vec3 g;
+      EXPECT_LT(std::abs(fit.psi.evaluate(x, &g, nullptr)), .01 * kGap) << ratio;
+      EXPECT_GT(g.normalized().dot(x), std::cos(1 * std::numbers::pi / 180)) << ratio;
+    }
+  }
 }
 
 TEST(FitSsd, StopsWhenTold) {
