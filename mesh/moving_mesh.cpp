@@ -21,8 +21,8 @@ namespace {
 
 constexpr std::size_t kVerticesPerTask = 4096;
 constexpr double kSearchShare = .1;  // share of the time of an update, about
-// Boundary vertices that are looked at in turn to see whether psi has moved: nearly always the first of them show it.
-constexpr std::size_t kVerticesPerLook = 256;
+// Boundary vertices that are checked together to see whether psi has moved: nearly always the first of them show it.
+constexpr std::size_t kVerticesPerCheck = 256;
 
 using Ids = std::vector<std::int64_t>;
 
@@ -156,8 +156,8 @@ bool UniversalMesh::Impl::has_stayed(ImplicitFunctionRef psi, std::size_t& n_eva
   const std::vector<int>& boundary = now.mesh.submesh.positive_vertices;
   const double tol = params.fast.projection.closest_point.tol * background.h();
   std::atomic<bool> stayed = true;
-  for (std::size_t begin = 0; begin < boundary.size() && stayed; begin += kVerticesPerLook) {
-    const std::size_t end = std::min(boundary.size(), begin + kVerticesPerLook);
+  for (std::size_t begin = 0; begin < boundary.size() && stayed; begin += kVerticesPerCheck) {
+    const std::size_t end = std::min(boundary.size(), begin + kVerticesPerCheck);
     tbb::parallel_for(begin, end, [&](std::size_t k) {
       Vec3 gradient;
       const double value = psi.value(now.mesh.final[boundary[k]], gradient);

@@ -216,7 +216,7 @@ void Repair::mend(const Context& context) {
 /// Puts what was given up on the list again, against another target.
 void Repair::again(double target) {
   target_ = target;
-  for (FlipTrials& trials : trials_) trials.look_again(target, params_.sharper);
+  for (FlipTrials& trials : trials_) trials.retry_with(target, params_.sharper);
   todo_.clear();
   next_ = 0;
   for (const TetIds& tet : given_up_) todo_.push_back({0, tet});  // in the order in which they were given up
@@ -245,7 +245,7 @@ RepairReport Repair::operator()(const Context& context) {
   }
   report_.given_up = given_up_.size();
   if (params_.slides) {
-    for (FlipTrials& trials : trials_) trials.look_again(params_.target, false);
+    for (FlipTrials& trials : trials_) trials.retry_with(params_.target, false);
     for (const std::vector<std::int64_t>& centres : kept_) {
       context.poll();
       move(trials_.front().slid(centres));

@@ -39,7 +39,7 @@ struct CutEdge {
 /// Nodes of one layer k: values, numbers of inside pieces, and the ids of the cut edges that start there.
 struct Layer {
   std::vector<double> value;
-  std::vector<int> inside_label;             ///< -1 outside
+  std::vector<int> inside_component;         ///< -1 outside
   std::vector<std::array<int, 8>> cut_edge;  ///< towards corner 1..7, -1 not cut
 };
 
@@ -68,7 +68,7 @@ class Sweep {
   template <class F>
   void for_each_row(const F& visit);
   void evaluate(int k);
-  void inside_of_psi_label(int k);
+  void find_inside_components(int k);
   void find_cut_edges(int k, Directions directions);
   void join_node(int i, int j, int k, unsigned signs);
   void join_tet(int i, int j, int k, const std::array<int, 4>& corner, unsigned signs);
@@ -106,7 +106,7 @@ Sweep::Sweep(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spa
   if (nodes > std::numeric_limits<int>::max()) throw std::length_error("spacing: too small for the box");
   for (Layer& l : layers_) {
     l.value.resize(static_cast<std::size_t>(nodes));
-    l.inside_label.resize(l.value.size());
+    l.inside_component.resize(l.value.size());
     l.cut_edge.resize(l.value.size());
   }
 }
@@ -149,24 +149,24 @@ void Sweep::evaluate(int k) {
 }
 
 /// Components of {psi < 0}: a node joins those of its seven predecessors along Kuhn edges that are inside.
-void Sweep::inside_of_psi_label(int k) {
+void Sweep::find_inside_components(int k) {
   for_each_row([&](int j) {
     for (int i = 0; i <= n_[0]; ++i) {
-      int& label = layer(k).inside_label[index(i, j)];
-      label = -1;
+      int& component = layer(k).inside_component[index(i, j)];
+      component = -1;
       if (!inside(i, j, k)) continue;
       for (int c = 1; c < 8; ++c) {
         const int pi = i - (c & 1), pj = j - (c >> 1 & 1), pk = k - (c >> 2);
         if (pi < 0 || pj < 0 || pk < 0) continue;
-        const int before = layer(pk).inside_label[index(pi, pj)];
+        const int before = layer(pk).inside_component[index(pi, pj)];
         if (before < 0) continue;
-        if (label < 0) {
-          label = before;
+        if (component < 0) {
+          component = before;
         } else {
-          inside_.unite(label, before);
+          inside_.unite(component, before);
         }
       }
-      if (label < 0) label = inside_.add();
+      if (component < 0) component = inside_.add();
     }
   });
 }
@@ -283,11 +283,11 @@ void Sweep::join_layer(int k) {
 
 ZeroSetTopology Sweep::run() {
   evaluate(0);
-  inside_of_psi_label(0);
+  find_inside_components(0);
   find_cut_edges(0, kInPlane);
   for (int k = 0; k < n_[2]; ++k) {
     evaluate(k + 1);
-    inside_of_psi_label(k + 1);
+    find_inside_components(k + 1);
     find_cut_edges(k, kUpward);
     find_cut_edges(k + 1, kInPlane);
     join_layer(k);

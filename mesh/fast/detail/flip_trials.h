@@ -78,7 +78,7 @@ class FlipTrials {
   bool is_bad(const TetIds& tet);
   /// From now on the target is this mean ratio, in place of params.target. With the sharper norm, patches are smoothed
   /// by it, at first without flips.
-  void look_again(double target, bool sharper) {
+  void retry_with(double target, bool sharper) {
     target_ = target;
     smoothing_.sharper = sharper;
   }
