@@ -101,7 +101,8 @@ SHAPES = {
     "box of many samples": (box((2, 1, .2), .025), [], (.4, .005, .02)),
     "plate thinner than its samples are apart": (box((1, 1, .004), .03), ["--h", ".03"], TOO_NEAR),
     "the same, its samples at random": (plate(.004, 4000), ["--h", ".03"], TOO_NEAR),
-    "half a sphere": (sphere(1500)[:750], [], ONE_SIDED),
+    "half a sphere": (sphere(1500)[:750], [], (2.1, .2, .02)),
+    "half a sphere, left open": (sphere(1500)[:750], ["--keep-open"], ONE_SIDED),
     "sheets nearer than samples": (np.vstack([sphere(3000), sphere(2000, .95) * [1, 1, 1, -1, -1, -1]]), ["--h", ".1"],
                                    ((5,), ["body down to", "needs h ="])),
     "h beyond the body": (sphere(500), ["--h", "50"], ((6,), ["volume_gap"])),  # a ball of 20 tets
