@@ -83,7 +83,7 @@ bool ClosingPlan::is_flat(int hole) const {
   return closing_ == Closing::Flat || (closing_ == Closing::Auto && found_.holes[hole].rim_cosine < kFlatCosine);
 }
 
-// Fills found_ and closed_. @return whether anything has to be closed
+// @return whether anything has to be closed
 bool ClosingPlan::find_holes(const LevelSet& psi) {
   const Nodes nodes{lattice_.n};
   std::vector<Vec3> places;
@@ -102,6 +102,14 @@ bool ClosingPlan::find_holes(const LevelSet& psi) {
   });
   found_ = scan_holes(surface_, *winding_, lattice_.n, far, w);
   if (!found_.places.empty()) closing_tree_.emplace(found_.places);
+  return judge(far, value, w);
+}
+
+// Says of every hole how it is closed, by the nodes where psi has the wrong sign. @return whether anything has to be
+// closed
+bool ClosingPlan::judge(const std::vector<std::uint8_t>& far, const std::vector<float>& value,
+                        const std::vector<float>& w) {
+  const Nodes nodes{lattice_.n};
   std::vector<std::size_t> n_beyond(found_.holes.size(), 0);
   bool leaks = false;  // where there is no hole: by wrong normals
   for (int k = 0; k < nodes.n[2]; ++k)

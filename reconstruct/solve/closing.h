@@ -36,10 +36,9 @@ struct FittedHole {
 /// side (by the winding number, a level that depends on the rim as for a ball). There the second fit gets
 ///
 ///  - samples of the flat closing, with normals, for holes that are closed flat;
-///  - weak values for far cells: the distance to the algebraic spheres of the samples around a hole that is closed
-///  smoothly,
-///    as far as a sphere through its rim goes, and beyond, as in all else, plus or minus the distance to the nearest
-///    sample by the winding number.
+///  - weak values for far cells, around a hole that is closed smoothly the distance to the algebraic spheres of the
+///    samples, as far as a sphere through its rim goes, and elsewhere plus or minus the distance to the nearest sample,
+///    by the winding number.
 ///
 /// Samples are merged ones of the coarsest lattice, and only that lattice hears of the above: bands follow samples.
 class ClosingPlan {
@@ -58,7 +57,7 @@ class ClosingPlan {
 
  private:
   bool find_holes(const LevelSet& psi);
-  void judge(const std::vector<float>& value, const std::vector<float>& w, const std::vector<std::uint8_t>& far);
+  bool judge(const std::vector<std::uint8_t>& far, const std::vector<float>& value, const std::vector<float>& w);
   void prepare();
   bool is_flat(int hole) const;
   std::optional<double> value_at(const Vec3& xi, double nearest) const;
