@@ -145,7 +145,7 @@ TEST(ScanClosing, ASheetHasNoBody) {
 TEST(ScanClosing, ThreadsDoNotMatter) {
   const OrientedPointCloud can = can_cloud(5000);
   const auto with_threads = [&](int n) {
-    const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism, n);
+    const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, n);
     return fit(can);
   };
   const SsdFit one = with_threads(1), three = with_threads(3);
