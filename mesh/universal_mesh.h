@@ -23,9 +23,9 @@ enum class UmMode {
 
 struct UmParams {
   UmMode mode = UmMode::Fast;
-  SubmeshParams submesh;
-  FastParams fast;    ///< of UmMode::Fast
-  PaperParams paper;  ///< of UmMode::Paper
+  SubmeshParams submesh = {};
+  FastParams fast = {};    ///< of UmMode::Fast
+  PaperParams paper = {};  ///< of UmMode::Paper
 };
 
 /// Every broken constraint, not just the first; empty when the parameters are usable.

@@ -15,9 +15,8 @@
 #include "pipeline/meshing/mesh_measures.h"
 #include "pipeline/reports/certificate_json.h"
 #include "pipeline/stages/cloud_preparation.h"
-#include "pipeline/stages/stages.h"
+#include "pipeline/stages/level_set_fit.h"
 #include "python/arguments.h"
-#include "reconstruct/cloud/cloud_survey.h"
 
 namespace umtet::python {
 namespace {
@@ -58,8 +57,6 @@ MeshingFailed failure(const UmResult& result, double h, const Vec3& shift) {
 
 Reconstruction reconstruct(OrientedPointCloud cloud, const Parameters& parameters, const Watch& watch) {
   Reconstruction made;
-  SsdParams params = ssd_params(parameters);
-  params.max_memory = allowed_bytes(parameters);
   CloudFile file;
   file.report.format = "arrays";
   file.report.n_points = cloud.points.size();
@@ -76,14 +73,10 @@ Reconstruction reconstruct(OrientedPointCloud cloud, const Parameters& parameter
     box.extend(x);
   }
   domain.diagonal = box.diagonal().norm();
-  watch("noise", 0);
-  const double noise = parameters.reconstruct().noise;
-  made.noise = params.noise =
-      noise >= 0 ? noise : noise_along_normals(domain.cloud, NeighbourTree(domain.cloud.points));
-  SsdFit fit =
-      fit_ssd(domain.cloud, params, context_of(watch), prepared.near.nearest.empty() ? nullptr : &prepared.near);
-  require_outward_normals(fit.report);
-  made.report = std::move(fit.report);
+  LevelSetFit fit = fit_level_set(domain.cloud, std::move(prepared.near), parameters, context_of(watch));
+  made.notices.insert(made.notices.end(), fit.notices.begin(), fit.notices.end());
+  made.noise = fit.report.noise;
+  made.report = std::move(fit.report.fit);
   domain.samples = std::make_shared<const SampleDistance>(domain.cloud.points);
   domain.cloud_spacing = made.report.cloud_spacing;
   domain.box = fit.psi.domain();

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "mesh/base/disjoint_sets.h"
+#include "common/disjoint_sets.h"
 
 namespace umtet {
 namespace {

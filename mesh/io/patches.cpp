@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "mesh/base/disjoint_sets.h"
+#include "common/disjoint_sets.h"
 #include "mesh/io/detail/shared_edges.h"
 
 namespace umtet {

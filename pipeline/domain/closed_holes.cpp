@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "mesh/base/disjoint_sets.h"
+#include "common/disjoint_sets.h"
 #include "mesh/implicit/surface_distance.h"
 #include "pipeline/domain/zero_set_choice.h"
 

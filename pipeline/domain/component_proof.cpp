@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "mesh/base/disjoint_sets.h"
+#include "common/disjoint_sets.h"
 
 namespace umtet {
 namespace {

@@ -30,6 +30,8 @@ constexpr double kEdgesAcross = 2.2;
 constexpr double kFewerEdgesAcross = 1.9;
 constexpr std::int64_t kTetsOfLargeMesh = 1'150'000;
 constexpr double kThinShare = .01;
+// Noise of the samples over h, at most: psi is fitted on a lattice of three times the noise, and has nothing finer.
+constexpr double kMostNoise = .3;
 // The most that rounding may move a vertex, in edges: far less than anything that counts in a mesh.
 constexpr double kMostRounding = 1e-6;
 // 200 of them fall below the first percentile.
@@ -107,7 +109,10 @@ EdgeLength choose(Domain& domain, const Parameters& parameters, const Context& c
       h = std::min(h, std::clamp(h_of(domain, parameters, kTetsOfLargeMesh), t / kEdgesAcross, t / kFewerEdgesAcross));
     }
   }
-  return {std::max(h, least), least};
+  const double of_noise = domain.noise.value_or(0) / kMostNoise;
+  h = std::max(h, least);
+  if (of_noise > h) return {of_noise, least, h};
+  return {h, least};
 }
 
 Vec3 greatest_coordinates(const Domain& domain) {

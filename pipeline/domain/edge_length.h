@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "common/context.h"
 #include "pipeline/case/parameters.h"
 #include "pipeline/domain/domain.h"
@@ -9,6 +11,7 @@ namespace umtet {
 struct EdgeLength {
   double h;      ///< model units
   double least;  ///< the h that makes about mesh.max_tets tets if the choice of h was left to us, else h
+  std::optional<double> of_thin_parts = {};  ///< where noise decided: what these alone would have asked for
 };
 
 /// The edge length of the background mesh.
@@ -16,7 +19,8 @@ struct EdgeLength {
 /// mesh.h if given; else the h that makes about mesh.tets tets; else that of h_for_deviation() for mesh.max_deviation,
 /// at most a tenth of the diagonal; else min(.015 diagonal, t / 2.2), where t is the thickness that 1 % of the samples
 /// fall below (a formula: .015 diagonal of its box); where t / 2.2 makes more than about 1.15 million tets, up to t
-/// / 1.9 instead. The last two make no more than about mesh.max_tets tets.
+/// / 1.9 instead; but never below noise / .3: where samples are as far off as a part is thick, they do not show it. The
+/// last two make no more than about mesh.max_tets tets.
 /// @param domain  where psi has to be cut to choose h, it stays cut
 /// \throw ResourceLimit      mesh.h or mesh.max_deviation asks for more than mesh.max_tets tets
 /// \throw MeshingImpossible  psi < 0 nowhere, or an h below least_h_in_file()

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <optional>
 
-#include "mesh/base/disjoint_sets.h"
+#include "common/disjoint_sets.h"
 #include "mesh/implicit/surface_distance.h"
 #include "mesh/implicit/thickness.h"
 #include "mesh/io/tet_mesh_io.h"

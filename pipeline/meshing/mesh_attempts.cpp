@@ -27,8 +27,9 @@ bool may_improve(const MeshAttempt& a) {
 /// What to try after this, in this order.
 std::vector<double> smaller(const MeshAttempt& first, const EdgeLength& choice) {
   std::vector<double> list;
-  if (first.made() && kNearby * choice.h >= choice.least) list.push_back(kNearby * choice.h);
   double h = choice.h;
+  if (choice.of_thin_parts) list.push_back(h = *choice.of_thin_parts);
+  if (first.made() && kNearby * h >= choice.least) list.push_back(kNearby * h);
   for (int k = 0; k < kRefinements; ++k) {
     const double next = std::max(kRefinement * h, choice.least);
     if (next > kWorthTrying * h) break;

@@ -18,6 +18,9 @@
 namespace umtet {
 namespace {
 
+// Noise and outliers leave hundreds.
+constexpr std::size_t kSaidPieces = 5;
+
 // Another h is tried for the number of tets that was asked for when it is missed by more than this.
 constexpr double kTetsTolerance = .1;
 // This often; then the h that missed it least is taken.
@@ -71,7 +74,9 @@ MeshAttempt MeshMaker::begin(double h) {
     lines_.detail(fmt::format("{} places are thinner than h = {:.4g} can show for certain:\n{}", a.thin.places.size(),
                               h, described(a.thin, domain_.shift)));
   }
-  for (const std::string& reason : pieces.dropped) say("left out a " + reason);
+  const std::size_t n = pieces.dropped.size(), n_said = std::min(n, kSaidPieces);
+  for (std::size_t k = 0; k < n_said; ++k) say("left out a " + pieces.dropped[k]);
+  if (n > n_said) say(fmt::format("left out {} more pieces, which the certificate lists", n - n_said));
   return a;
 }
 

@@ -4,25 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <span>
 
 #include "mesh/certify/boundary_surface.h"
-#include "mesh/certify/quality_report.h"
 #include "mesh/implicit/surface_distance.h"
 #include "mesh/implicit/thickness.h"
 #include "pipeline/domain/closed_holes.h"
 #include "pipeline/domain/component_proof.h"
 #include "pipeline/domain/deviation.h"
 #include "pipeline/domain/edge_length.h"
+#include "pipeline/domain/missed_samples.h"
 
 namespace umtet {
 namespace {
-
-double rms(const std::vector<double>& d) {
-  return std::sqrt(std::transform_reduce(d.begin(), d.end(), 0., std::plus<>(), [](double v) { return v * v; }) /
-                   static_cast<double>(d.size()));
-}
 
 /// Largest principal curvature of psi = 0 at the boundary vertices, in magnitude, times h.
 double max_curvature(ImplicitFunctionRef psi, const UmResult& result, double h, const Context& context) {
@@ -46,36 +40,53 @@ double min_feature_size(const Domain& domain, const UmResult& result, double h, 
 constexpr std::size_t kFewSamples = 10;
 constexpr double kSmallShare = 1e-3;
 
+/// Which of the places are within the radius of support of a piece that was left out: they have been judged.
+std::vector<std::uint8_t> near_dropped_pieces(const Domain& domain, const ZeroSetChoice& pieces,
+                                              const std::vector<Vec3>& places, const Context& context) {
+  const ZeroSetTopology& topology = pieces.topology;
+  std::vector<Vec3> points;
+  for (std::size_t c = 0; c < topology.components.size(); ++c) {
+    if (std::find(pieces.kept.begin(), pieces.kept.end(), c) != pieces.kept.end()) continue;
+    const auto of_piece = topology.points_of(topology.components[c]);
+    points.insert(points.end(), of_piece.begin(), of_piece.end());
+  }
+  std::vector<std::uint8_t> is_near(places.size(), 0);
+  if (points.empty()) return is_near;
+  const double radius = std::max(support_radius(domain), topology.spacing);
+  const std::vector<double> d = SampleDistance(std::move(points)).distances(places, context);
+  std::transform(d.begin(), d.end(), is_near.begin(), [&](double v) { return v <= radius ? 1 : 0; });
+  return is_near;
+}
+
 /// Samples that psi, with all its detail, passes by, and the mesh does not: what has been too small for h.
 /// @param d  distances of the samples to the mesh
-std::optional<std::string> lost_samples(const Domain& domain, const std::vector<double>& d, double h,
-                                        const Context& context) {
-  const std::vector<Vec3>& x = domain.cloud.points;
-  std::vector<std::uint8_t> lost(x.size(), 0);
+std::optional<std::string> lost_samples(const Domain& domain, const ZeroSetChoice& pieces, const std::vector<double>& d,
+                                        double h, const Context& context) {
+  std::vector<Vec3> x;
+  std::vector<double> distance;
+  for (std::size_t i = 0; i < d.size(); ++i) {
+    if (d[i] > h) x.push_back(domain.cloud.points[i]), distance.push_back(d[i]);
+  }
+  if (x.empty()) return std::nullopt;
+  std::vector<std::uint8_t> lost = near_dropped_pieces(domain, pieces, x, context);
   polled_parallel_for(x.size(), kValuesPerPoll, context, [&](std::size_t i) {
-    if (d[i] <= h) return;
     Vec3 g;
     const double value = domain.fitted->evaluate(x[i], &g, nullptr);
-    lost[i] = d[i] > h + std::abs(value) / g.norm();
+    lost[i] = lost[i] == 0 && distance[i] > h + std::abs(value) / g.norm() ? 1 : 0;
   });
   const auto n = static_cast<std::size_t>(std::count(lost.begin(), lost.end(), 1));
-  if (n <= kFewSamples || static_cast<double>(n) <= kSmallShare * static_cast<double>(x.size())) {
+  if (n <= kFewSamples || static_cast<double>(n) <= kSmallShare * static_cast<double>(d.size())) {
     return std::nullopt;
   }
   std::size_t farthest = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    if (lost[i] && (!lost[farthest] || d[i] > d[farthest])) farthest = i;
+    if (lost[i] && (!lost[farthest] || distance[i] > distance[farthest])) farthest = i;
   }
   const Vec3 at = x[farthest] + domain.shift;
   return fmt::format(
       "{} samples of the surface are farther than h from the mesh, that at ({:.6g}, {:.6g}, "
       "{:.6g}) {:.2g} h: h is too large for what is there",
-      n, at.x(), at.y(), at.z(), d[farthest] / h);
-}
-
-SampleDistances distances_of_samples(const Domain& domain, std::vector<double> d) {
-  std::sort(d.begin(), d.end());
-  return {.noise = domain.noise, .rms = rms(d), .max = d.back(), .p99 = quantile(d, .99)};
+      n, at.x(), at.y(), at.z(), distance[farthest] / h);
 }
 
 // A count is repeated only if the bound on nodes lets the new spacing be less than this share of the former one.
@@ -201,9 +212,9 @@ MeshMeasures measure(const Domain& domain, const UmResult& result, const ZeroSet
   blame(std::move(compared.reason));
   // No face: the body lies between the vertices of the background.
   if (!domain.cloud.points.empty() && !faces.empty()) {
-    std::vector<double> d = SurfaceDistance(mesh.V, faces).distances(domain.cloud.points, context);
-    if (domain.fitted) blame(lost_samples(domain, d, h, context));
-    m.cloud = distances_of_samples(domain, std::move(d));
+    const std::vector<double> d = SurfaceDistance(mesh.V, faces).distances(domain.cloud.points, context);
+    if (domain.fitted) blame(lost_samples(domain, pieces, d, h, context));
+    m.cloud = sample_distances(domain, d, h, m.mesh.h * m.mesh.boundary.max_centroid_distance_over_h.value_or(0));
   }
   m.resolution.kappa_h_max = max_curvature(domain.psi(), result, h, context);
   m.resolution.feature_size_over_h_min = min_feature_size(domain, result, h, context) / h;

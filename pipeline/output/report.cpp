@@ -210,6 +210,7 @@ void write_report(const CasePaths& paths, const Parameters& parameters, const Ce
                                   {"cards", headline_cards(certificate)},
                                   {"shown", shown_text(scene.head)},
                                   {"holes", hole_table(certificate)},
+                                  {"missed", missed_table(certificate)},
                                   {"figures", figures.figures},
                                   {"tables", figures.tables},
                                   {"certificate", script_json(to_json(certificate))},

@@ -109,6 +109,11 @@ std::string check_list(const Certificate& c) {
                     value("/domain/n_closed_holes", support->n_closed_holes)),
         std::nullopt);
   }
+  if (const std::optional<SampleDistances>& cloud = c.measured.cloud; cloud && cloud->n_missed_places > 0) {
+    add(fmt::format("<a href=\"#missed\">places where samples are off the mesh: {}</a>",
+                    value("/cloud/n_missed_places", cloud->n_missed_places)),
+        std::nullopt);
+  }
   if (const std::optional<double>& gate = c.verdict.min_quality_gate) {
     add("min Q at least " + value("/gates/min_quality", gate, 6), mesh.quality.min >= *gate);
   } else {
@@ -171,6 +176,27 @@ std::string hole_table(const Certificate& c) {
       "patch <code>closed_holes</code>, which reaches up to the samples around.{}</p>\n<table>\n{}</table></div>\n",
       n == 1 ? "1 hole" : fmt::format("{} holes", n), n > n_listed ? "over " : "", 100 * part,
       n == 1 ? "this part" : "these parts", rest, rows);
+}
+
+std::string missed_table(const Certificate& c) {
+  const std::optional<SampleDistances>& cloud = c.measured.cloud;
+  if (!cloud || cloud->missed.empty()) return "";
+  const std::string unit = c.units ? ", " + html_text(*c.units) : "";
+  std::string rows = fmt::format(
+      "<tr><th></th><th>farthest sample{0}</th><th>from the mesh{0}</th><th>in h</th><th>samples</th></tr>\n", unit);
+  for (std::size_t k = 0; k < cloud->missed.size(); ++k) {
+    const MissedPlace& p = cloud->missed[k];
+    rows += fmt::format(
+        "<tr><td>{}</td><td>({:.4g}, {:.4g}, {:.4g})</td><td>{:.3g}</td><td>{:.2g}</td><td>{}</td></tr>\n", k + 1,
+        p.farthest.x(), p.farthest.y(), p.farthest.z(), p.distance, p.distance / c.measured.mesh.h, p.n_samples);
+  }
+  const std::size_t n = cloud->n_missed_places, n_listed = cloud->missed.size();
+  const std::string rest = n > n_listed ? fmt::format(" These are the farthest {} of {}.", n_listed, n) : "";
+  return fmt::format(
+      "<div class=\"table\" id=\"missed\"><h2>Samples that are off the mesh</h2>\n<p>Neither noise nor flat faces "
+      "explain why these are farther than {:.3g} from it: detail that psi or h is too coarse for, a second sheet, "
+      "outliers.{}</p>\n<table>\n{}</table></div>\n",
+      cloud->missed_beyond, rest, rows);
 }
 
 std::string stage_table(const std::vector<StageRecord>& records) {

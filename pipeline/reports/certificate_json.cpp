@@ -146,6 +146,10 @@ ZeroSetReport zero_set_from(const Json& json) {
 }
 
 Json to_json(const SampleDistances& d, double h) {
+  Json missed = Json::array();
+  for (const MissedPlace& p : d.missed) {
+    missed.push_back({{"farthest", json_of(p.farthest)}, {"distance", p.distance}, {"n_samples", p.n_samples}});
+  }
   return {{"noise", json_of(d.noise)},
           {"noise_over_h", ratio_to(h, d.noise)},
           {"rms_distance", d.rms},
@@ -153,14 +157,26 @@ Json to_json(const SampleDistances& d, double h) {
           {"p99_distance", d.p99},
           {"rms_distance_over_h", d.rms / h},
           {"max_distance_over_h", d.max / h},
-          {"p99_distance_over_h", d.p99 / h}};
+          {"p99_distance_over_h", d.p99 / h},
+          {"missed_beyond", d.missed_beyond},
+          {"n_missed_places", d.n_missed_places},
+          {"missed_places", std::move(missed)}};
 }
 
 SampleDistances distances_from(const Json& json) {
-  return {.noise = optional_from<double>(json.at("noise")),
-          .rms = number_from(json.at("rms_distance")),
-          .max = number_from(json.at("max_distance")),
-          .p99 = number_from(json.at("p99_distance"))};
+  SampleDistances d{.noise = optional_from<double>(json.at("noise")),
+                    .rms = number_from(json.at("rms_distance")),
+                    .max = number_from(json.at("max_distance")),
+                    .p99 = number_from(json.at("p99_distance"))};
+  if (!json.contains("missed_beyond")) return d;  // written before they were looked for
+  d.missed_beyond = number_from(json.at("missed_beyond"));
+  d.n_missed_places = json.at("n_missed_places");
+  for (const Json& place : json.at("missed_places")) {
+    d.missed.push_back({.farthest = vector_from(place.at("farthest")),
+                        .distance = number_from(place.at("distance")),
+                        .n_samples = place.at("n_samples")});
+  }
+  return d;
 }
 
 std::vector<ThinPlace> thin_places_from(const Json& list) {

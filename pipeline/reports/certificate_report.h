@@ -13,6 +13,7 @@
 #include "pipeline/case/record.h"
 #include "pipeline/case/version.h"
 #include "pipeline/reports/closed_hole.h"
+#include "pipeline/reports/missed_place.h"
 #include "pipeline/reports/thin_place.h"
 
 // What certificate.json, the record of 3-mesh and the answers of `umtet check` say about a mesh. Lengths in model units
@@ -35,7 +36,10 @@ struct ZeroSetReport {
 struct SampleDistances {
   std::optional<double> noise;  ///< standard deviation of the samples along the normal
   double rms = 0, max = 0;
-  double p99 = 0;  ///< 99 % of the samples are nearer
+  double p99 = 0;            ///< 99 % of the samples are nearer
+  double missed_beyond = 0;  ///< neither noise nor flat faces explain a distance above it: missed_samples.h
+  std::size_t n_missed_places = 0;
+  std::vector<MissedPlace> missed{};  ///< the farthest of them, farthest first
 };
 
 /// What the mesh can resolve at its edge length.

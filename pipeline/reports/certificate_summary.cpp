@@ -106,6 +106,18 @@ std::string cloud_line(const MeshMeasures& m, const std::string& unit) {
                      show(d.rms / h, "{:.4f}"), show(d.p99 / h, "{:.4f}"), show(d.max / h, "{:.4f}"));
 }
 
+/// Where samples are not on the mesh; empty if they all are.
+std::string missed_line(const MeshMeasures& m, const std::string& unit) {
+  if (!m.cloud || m.cloud->missed.empty()) return "";
+  const std::size_t n = m.cloud->n_missed_places;
+  const MissedPlace& worst = m.cloud->missed.front();
+  return fmt::format(
+      "missed    {} place{} where samples are farther from the mesh than {:.3g}{}; the worst, {} samples, up to {:.2g} h "
+      "at ({:.4g}, {:.4g}, {:.4g})\n",
+      n, n == 1 ? "" : "s", m.cloud->missed_beyond, unit, thousands(worst.n_samples), worst.distance / m.mesh.h,
+      worst.farthest.x(), worst.farthest.y(), worst.farthest.z());
+}
+
 /// Which places are thinner than the mesh can show; empty if there are none.
 std::string thin_line(const ResolutionReport& r) {
   if (!r.too_thin || r.too_thin->empty()) return "";
@@ -131,7 +143,7 @@ std::string summary(const Certificate& c) {
   const MeshMeasures& m = c.measured;
   return verdict_lines(c.verdict, c.remedy) + mesh_lines(m.mesh, unit, c.n_tets_asked) +
          second_order_lines(m.second_order) + domain_line(m.domain) + holes_line(m.domain.support, unit) +
-         cloud_line(m, unit) + thin_line(m.resolution) + time_line(c.run);
+         cloud_line(m, unit) + missed_line(m, unit) + thin_line(m.resolution) + time_line(c.run);
 }
 
 std::string summary(const MeshCheck& c) {

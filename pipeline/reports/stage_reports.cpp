@@ -121,6 +121,7 @@ LevelSetReport level_set_from(const Json& json) {
   fit.energy_hessian = number_from(json.at("energy_hessian"));
   fit.rms_value = number_from(json.at("rms_value"));
   fit.n_opposed_normals = json.at("n_opposed_normals");
+  fit.n_turned_normals = json.at("n_turned_normals");
   for (const Json& hole : json.at("holes")) fit.holes.push_back(fitted_hole_from(hole));
   fit.least_wall_value = number_from(json.at("least_wall_value"));
   return r;
@@ -182,6 +183,7 @@ Json to_json(const LevelSetReport& r) {
           {"energy_hessian", fit.energy_hessian},
           {"rms_value", fit.rms_value},
           {"n_opposed_normals", fit.n_opposed_normals},
+          {"n_turned_normals", fit.n_turned_normals},
           {"holes", holes},
           {"least_wall_value", fit.least_wall_value}};
 }

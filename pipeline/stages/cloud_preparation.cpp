@@ -13,6 +13,7 @@
 #include "reconstruct/cloud/normal_estimation.h"
 #include "reconstruct/cloud/normal_orientation.h"
 #include "reconstruct/cloud/winding_normals.h"
+#include "reconstruct/cloud/winding_outliers.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -49,6 +50,9 @@ class Preparation {
   void clean_points();
   void find_normals();
   void fill_missing();
+  template <class Goes>
+  std::size_t drop_if(Goes&& goes);
+  void drop_off_surface();
   void drop_undefined();
   void orient_as_told();
   void take(const OrientationReport& r);
@@ -171,12 +175,13 @@ void Preparation::ask_winding_number(const std::vector<Vec3>* as_given) {
          r.n_turned, percent(r.n_turned), r.n_replaced);
 }
 
-/// A point whose neighbours all lie at one place, or on a line, has no normal.
-void Preparation::drop_undefined() {
+/// @return how many
+template <class Goes>
+std::size_t Preparation::drop_if(Goes&& goes) {
   std::size_t kept = 0;
   const std::size_t n = cloud_.points.size();
   for (std::size_t i = 0; i < n; ++i) {
-    if (cloud_.normals[i].isZero(0)) continue;
+    if (goes(i)) continue;
     cloud_.points[kept] = cloud_.points[i];
     if (!cloud_.labels.empty()) cloud_.labels[kept] = cloud_.labels[i];
     cloud_.normals[kept++] = cloud_.normals[i];
@@ -184,6 +189,23 @@ void Preparation::drop_undefined() {
   cloud_.points.resize(kept);
   cloud_.normals.resize(kept);
   if (!cloud_.labels.empty()) cloud_.labels.resize(kept);
+  return n - kept;
+}
+
+/// Outliers that only normals show. On scan lines nearest neighbours say nothing.
+void Preparation::drop_off_surface() {
+  if (parameters_.cloud().keep_all || !covering_.is_even()) return;
+  const std::vector<std::uint8_t> is_outlier = winding_outliers(cloud_, near_);
+  const std::size_t n = drop_if([&](std::size_t i) { return is_outlier[i] != 0; });
+  result_.report.dropped.outliers += n;
+  if (n > 0) notice("dropped {} more outliers, inside or outside of what the samples enclose (--keep-all keeps them)", n);
+}
+
+/// A point whose neighbours all lie at one place, or on a line, has no normal.
+void Preparation::drop_undefined() {
+  const std::size_t n = cloud_.points.size();
+  drop_if([&](std::size_t i) { return cloud_.normals[i].isZero(0); });
+  const std::size_t kept = cloud_.points.size();
   if (kept < n) notice("dropped {} points whose normal cannot be told", n - kept);
   if (kept < kFewestPoints) {
     throw CloudRefused(
@@ -215,6 +237,7 @@ PreparedCloud Preparation::operator()() {
   for (Vec3& x : cloud_.points) x -= shift;
   clean_points();
   find_normals();
+  drop_off_surface();
   drop_undefined();
   // Differences of coordinates have the same bits with and without the shift: so do distances.
   if (near_.size() == cloud_.points.size()) result_.near = neighbour_distances(near_, covering_);

@@ -8,7 +8,6 @@
 #include "pipeline/case/progress.h"
 #include "pipeline/case/record.h"
 #include "pipeline/domain/handover.h"
-#include "reconstruct/solve/fit_ssd.h"
 
 namespace umtet {
 
@@ -36,9 +35,6 @@ void run_level_set_stage(const StageContext&);
 /// touched. \throw MeshingImpossible, ResourceLimit, Interrupted, ArtefactDamaged, ExpressionError, UsageError,
 /// std::system_error
 void run_mesh_stage(const StageContext&);
-
-/// A fit to normals that are turned over is a level set all the same, but of no body. \throw SolveError
-void require_outward_normals(const SsdReport&);
 
 /// The files a stage reads from the case (not the user's cloud), with the stamps that the records of their stages hold;
 /// empty for the first stage and for a formula.

@@ -14,8 +14,6 @@ namespace {
 constexpr std::uint32_t kLeaf = 8;
 // A node is taken as one from this many of its radii on [Barill2018].
 constexpr double kBeta = 2;
-// A node holds half the samples of its parent.
-constexpr std::size_t kDeepest = 40;
 
 template <class Sums>
 void add(Sums& to, double weight, const Sums& more) {
@@ -35,50 +33,26 @@ AlgebraicSpheres::AlgebraicSpheres(const std::vector<Vec3>& points, const std::v
     throw std::invalid_argument(formatted("%zu points, %zu normals, %zu areas: must be as many, at least one", n,
                                           normals.size(), areas.size()));
   samples_.reserve(n);
-  for (std::size_t i = 0; i < n; ++i) {
+  for (std::uint32_t i = 0; i < n; ++i) {
     const Vec3 &x = points[i], &m = normals[i];
     const double a = areas[i];
-    samples_.push_back({x, {a, a * x.dot(m), a * x.squaredNorm(), a * x, a * m}});
+    samples_.push_back({x, {a, a * x.dot(m), a * x.squaredNorm(), a * x, a * m}, i});
   }
   nodes_.reserve(n / 2 + 1);
-  grow(0, static_cast<std::uint32_t>(n));
-}
-
-std::uint32_t AlgebraicSpheres::grow(std::uint32_t first, std::uint32_t last) {
-  const auto number = static_cast<std::uint32_t>(nodes_.size());
-  nodes_.emplace_back();
-  {
-    Node& node = nodes_.back();
-    node.first = first;
-    node.last = last;
-    for (std::uint32_t i = first; i < last; ++i) add(node.sums, 1, samples_[i].sums);
-    node.centre = node.sums.a > 0 ? Vec3(node.sums.x / node.sums.a) : samples_[first].x;
+  grow_sample_tree(samples_, nodes_, kLeaf, 0, static_cast<std::uint32_t>(n));
+  for (Node& node : nodes_) {
+    for (std::uint32_t i = node.first; i < node.last; ++i) add(node.sums, 1, samples_[i].sums);
+    node.centre = node.sums.a > 0 ? Vec3(node.sums.x / node.sums.a) : samples_[node.first].x;
     double radius2 = 0;
-    for (std::uint32_t i = first; i < last; ++i)
+    for (std::uint32_t i = node.first; i < node.last; ++i)
       radius2 = std::max(radius2, (samples_[i].x - node.centre).squaredNorm());
     node.far2 = kBeta * kBeta * radius2;
   }
-  if (last - first <= kLeaf) return number;
-  Vec3 least = samples_[first].x, most = least;
-  for (std::uint32_t i = first; i < last; ++i) {
-    least = least.cwiseMin(samples_[i].x);
-    most = most.cwiseMax(samples_[i].x);
-  }
-  Eigen::Index axis = 0;
-  (most - least).maxCoeff(&axis);
-  const std::uint32_t middle = first + (last - first) / 2;
-  const auto at = [&](std::uint32_t i) { return samples_.begin() + static_cast<std::ptrdiff_t>(i); };
-  std::nth_element(at(first), at(middle), at(last),
-                   [axis](const Sample& a, const Sample& b) { return a.x[axis] < b.x[axis]; });
-  grow(first, middle);
-  const std::uint32_t right = grow(middle, last);
-  nodes_[number].right = right;
-  return number;
 }
 
 double AlgebraicSpheres::signed_distance(const Vec3& x) const {
   Sums sum;
-  std::array<std::uint32_t, kDeepest> stack;
+  std::array<std::uint32_t, kDeepestSampleTree> stack;
   std::size_t depth = 0;
   stack[depth++] = 0;
   while (depth > 0) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "reconstruct/cloud/point_cloud.h"
+#include "reconstruct/cloud/sample_tree.h"
 
 namespace umtet {
 
@@ -35,18 +36,16 @@ class AlgebraicSpheres {
     double a = 0, xn = 0, xx = 0;             ///< sums of a, a x.n, a x.x
     Vec3 x = Vec3::Zero(), n = Vec3::Zero();  ///< of a x, a n
   };
-  struct Node {
-    std::uint32_t first = 0, last = 0,
-                  right = 0;  ///< samples first .. last - 1; the right child, 0 for a leaf; left: the next
-    double far2 = 0;          ///< squared distance of its centre from which on it counts as one
+  struct Node : SampleTreeNode {
+    double far2 = 0;  ///< squared distance of its centre from which on it counts as one
     Vec3 centre = Vec3::Zero();
     Sums sums;
   };
   struct Sample {
     Vec3 x;
     Sums sums;
+    std::uint32_t number;  ///< in the order of the caller
   };
-  std::uint32_t grow(std::uint32_t first, std::uint32_t last);
 
   std::vector<Sample> samples_;
   std::vector<Node> nodes_;

@@ -12,6 +12,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "common/disjoint_sets.h"
 #include "common/formatted.h"
 #include "reconstruct/cloud/neighbour_tree.h"
 
@@ -193,24 +194,6 @@ std::vector<std::uint8_t> outliers(const Surroundings& cloud, const CleaningPara
   return drop;
 }
 
-/// Pieces: union-find over links, with the smallest member as root.
-class Pieces {
- public:
-  explicit Pieces(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0U); }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
 std::vector<std::uint8_t> small_components(const Surroundings& cloud, const CleaningParams& params,
                                            std::size_t& n_pieces) {
   const std::size_t n = cloud.points.size();
@@ -219,22 +202,23 @@ std::vector<std::uint8_t> small_components(const Surroundings& cloud, const Clea
   if (n <= kNeighbours) return drop;
   const Neighbourhoods& near = cloud.near;
   const auto spacing2 = [&](std::uint32_t i) { return near.distances2(i)[kSpacingNeighbour - 1]; };
-  Pieces pieces(n);
+  DisjointSets pieces(n);
+  const auto piece_of = [&](std::uint32_t i) { return static_cast<std::uint32_t>(pieces.find(static_cast<int>(i))); };
   for (std::uint32_t i = 0; i < n; ++i)
     for (std::size_t m = 0; m < kNeighbours; ++m) {
       const std::uint32_t j = near.points(i)[m];
       const double reach2 = near.distances2(i)[m] / (kLink * kLink);
-      if (reach2 <= spacing2(i) || reach2 <= spacing2(j)) pieces.join(i, j);
+      if (reach2 <= spacing2(i) || reach2 <= spacing2(j)) pieces.unite(static_cast<int>(i), static_cast<int>(j));
     }
 
   std::vector<std::vector<std::uint32_t>> members(n);
   std::vector<std::uint32_t> size(n, 0);
-  for (std::uint32_t i = 0; i < n; ++i) ++size[pieces.find(i)];
+  for (std::uint32_t i = 0; i < n; ++i) ++size[piece_of(i)];
   const auto is_small = [&](std::uint32_t root) {
     return size[root] < params.small_component_points && size[root] * 100 < n;
   };
   for (std::uint32_t i = 0; i < n; ++i)
-    if (is_small(pieces.find(i))) members[pieces.find(i)].push_back(i);
+    if (is_small(piece_of(i))) members[piece_of(i)].push_back(i);
   for (std::uint32_t root = 0; root < n; ++root) {
     if (members[root].empty()) continue;
     std::vector<double> spacings;
@@ -247,7 +231,7 @@ std::vector<std::uint8_t> small_components(const Surroundings& cloud, const Clea
     bool is_far = true;
     for (std::size_t m = 0; m < members[root].size() && is_far; ++m)
       cloud.tree->within(cloud.points[members[root][m]], reach2, [&](std::uint32_t j, double) {
-        if (!is_small(pieces.find(j))) is_far = false;
+        if (!is_small(piece_of(j))) is_far = false;
       });
     if (!is_far) continue;
     ++n_pieces;

@@ -17,8 +17,6 @@ namespace {
 constexpr std::size_t kMostSamples = std::size_t{1} << 31;
 // Samples of a leaf, at most: a series costs as much as about six.
 constexpr std::uint32_t kLeaf = 8;
-// A node holds half the samples of its parent.
-constexpr std::size_t kDeepest = 40;
 
 /// sum T_ijk d_i d_j d_k of a symmetric T, and the vector T_ijk d_j d_k.
 struct Cubic {
@@ -61,33 +59,10 @@ FastWindingNumber::FastWindingNumber(const std::vector<Vec3>& points, const std:
     samples_[i] = {points[i], Vec3::Zero(), areas[i], 0, 0, i};
   }
   nodes_.reserve(points.size() / 2 + 1);
-  grow(0, static_cast<std::uint32_t>(points.size()));
+  grow_sample_tree(samples_, nodes_, kLeaf, 0, static_cast<std::uint32_t>(points.size()));
   tbb::parallel_for(std::size_t{0}, nodes_.size(), [&](std::size_t n) { find_ball(nodes_[n]); });
   set_softening(params.softening);
   set_normals(normals);
-}
-
-std::uint32_t FastWindingNumber::grow(std::uint32_t first, std::uint32_t last) {
-  const auto number = static_cast<std::uint32_t>(nodes_.size());
-  nodes_.emplace_back();
-  nodes_.back().first = first;
-  nodes_.back().last = last;
-  if (last - first <= kLeaf) return number;
-  Vec3 least = samples_[first].x, most = least;
-  for (std::uint32_t i = first; i < last; ++i) {
-    least = least.cwiseMin(samples_[i].x);
-    most = most.cwiseMax(samples_[i].x);
-  }
-  Eigen::Index axis = 0;
-  (most - least).maxCoeff(&axis);
-  const std::uint32_t middle = first + (last - first) / 2;
-  const auto at = [&](std::uint32_t i) { return samples_.begin() + static_cast<std::ptrdiff_t>(i); };
-  std::nth_element(at(first), at(middle), at(last), [axis](const Sample& a, const Sample& b) {
-    return a.x[axis] < b.x[axis] || (a.x[axis] == b.x[axis] && a.number < b.number);
-  });
-  grow(first, middle);
-  nodes_[number].right = grow(middle, last);
-  return number;
 }
 
 void FastWindingNumber::find_ball(Node& node) const {
@@ -182,7 +157,7 @@ void FastWindingNumber::set_charges(const std::vector<double>& charges) {
 double FastWindingNumber::evaluate(const Vec3& x, Vec3* gradient) const {
   double w = 0;
   Vec3 slope = Vec3::Zero();  // by the places of the samples: minus the gradient
-  std::array<std::uint32_t, kDeepest> stack;
+  std::array<std::uint32_t, kDeepestSampleTree> stack;
   std::size_t depth = 0;
   stack[depth++] = 0;
   while (depth > 0) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "reconstruct/cloud/point_cloud.h"
+#include "reconstruct/cloud/sample_tree.h"
 
 namespace umtet {
 
@@ -61,9 +62,7 @@ class FastWindingNumber {
     double area, charge, softening;  ///< a_i, a_i s_i, r_i
     std::uint32_t number;            ///< in the order of the caller
   };
-  /// Samples first .. last - 1; its left child is the next node.
-  struct Node {
-    std::uint32_t first = 0, last = 0, right = 0;  ///< right: the right child; 0 for a leaf
+  struct Node : SampleTreeNode {
     double radius = 0, far = 0;         ///< of the samples about the centre; distance from which on the series is used
     double charge = 0;                  ///< sum a s
     Vec3 centre = Vec3::Zero();         ///< of area
@@ -75,7 +74,6 @@ class FastWindingNumber {
   std::vector<Sample> samples_;
   std::vector<Node> nodes_;  ///< parents before children
 
-  std::uint32_t grow(std::uint32_t first, std::uint32_t last);
   void find_ball(Node& node) const;
   void find_moments(Node& node) const;
   void update_moments();

@@ -86,9 +86,7 @@ bool ClosingPlan::is_flat(int hole) const {
 // @return whether anything has to be closed
 bool ClosingPlan::find_holes(const LevelSet& psi) {
   const Nodes nodes{lattice_.n};
-  std::vector<Vec3> places;
-  for (const SsdSample& s : surface_) places.push_back(s.xi);
-  const std::vector<std::uint8_t> far = far_nodes(lattice_.n, places);
+  const std::vector<std::uint8_t> far = far_nodes(lattice_.n, SampleColumns(surface_).places);
   std::vector<float> value(nodes.size(), 0), w(nodes.size(), 0);
   nodes.for_each([&](int i, int j, int k, std::size_t a) {
     if (far[a]) value[a] = static_cast<float>(psi.value(lattice_.origin + lattice_.h * Vec3(i, j, k)));
@@ -160,14 +158,8 @@ void ClosingPlan::prepare() {
     }
   }
   if (all.size() > surface_.size()) winding_.emplace(all);
-  std::vector<Vec3> places, normals;
-  std::vector<double> areas;
-  for (const SsdSample& s : all) {
-    places.push_back(s.xi);
-    normals.push_back(s.normal);
-    areas.push_back(s.w_gradient);
-  }
-  spheres_.emplace(places, normals, areas);
+  const SampleColumns columns(all);
+  spheres_.emplace(columns.places, columns.normals, columns.areas);
 }
 
 // Of a far cell, in cells of the first fit; none where psi needs none.

@@ -91,12 +91,16 @@ Hierarchy choose_hierarchy(const Eigen::AlignedBox3d& box, double h, int padding
   return best;
 }
 
+// Samples with this much more noise than the cloud's are resolved by lattices of a third of it, as with noise everywhere.
+constexpr double kUnusual = 2;
+// A cell is resolved where samples have no gap of more than two spacings, root of kMostArea: noise is such a gap.
+constexpr double kGapOfNoise = 6;
+
 // @param area  a_i; empty for the paper's weights
 // @param n_share  how many samples share the area around each
-// @param l     by which values are weighed, for weights by area
 std::vector<SsdSample> make_samples(const OrientedPointCloud& cloud, const std::vector<double>& area,
-                                    const std::vector<int>& n_share, const Lattice& lattice, double l) {
-  const double h = lattice.h;
+                                    const std::vector<int>& n_share, const Lattice& lattice, const SsdParams& params) {
+  const double h = lattice.h, l = finest_value_length(h, params.noise);
   std::vector<SsdSample> samples(cloud.points.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {
     samples[i].xi = (cloud.points[i] - lattice.origin) / h;
@@ -105,6 +109,11 @@ std::vector<SsdSample> make_samples(const OrientedPointCloud& cloud, const std::
     samples[i].w_value = area.empty() ? h * h : area[i] / (l * l);
     samples[i].w_gradient = area.empty() ? 1.0 : area[i] / (h * h);
     samples[i].gap2 = n_share[i] * samples[i].w_gradient;
+    if (area.empty() || params.local_noise.empty()) continue;
+    if (const double noise = params.local_noise[i]; noise > kUnusual * params.noise) {
+      samples[i].w_value = area[i] / std::pow(finest_value_length(h, noise), 2);
+      samples[i].gap2 = std::max(samples[i].gap2, std::pow(kGapOfNoise * noise / h, 2));
+    }
   }
   return samples;
 }
@@ -220,8 +229,7 @@ LevelSet fit_full(const Problem& problem, SsdReport& report) {
   const Hierarchy hierarchy =
       choose_hierarchy(problem.box, report.spacing, problem.params.padding, problem.tables.width());
   return fit_lattice(problem, hierarchy,
-                     make_samples(problem.cloud, problem.area, problem.n_share, hierarchy.finest,
-                                  finest_value_length(hierarchy.finest.h, problem.params.noise)),
+                     make_samples(problem.cloud, problem.area, problem.n_share, hierarchy.finest, problem.params),
                      problem.params.tolerance, report);
 }
 
@@ -264,9 +272,8 @@ std::vector<std::vector<SsdSample>> samples_of_levels(const Problem& problem, La
   lattice.h = std::ldexp(lattice.h, -n_bands);
   lattice.n = (lattice.n.array() - 1) * (1 << n_bands) + 1;
   std::vector<std::vector<SsdSample>> samples(n_bands + 1);
-  samples[n_bands] = merge_samples(
-      make_samples(problem.cloud, problem.area, problem.n_share, lattice, finest_value_length(lattice.h, noise)),
-      kMergeCube);
+  samples[n_bands] =
+      merge_samples(make_samples(problem.cloud, problem.area, problem.n_share, lattice, problem.params), kMergeCube);
   for (int level = n_bands; level-- > 0;) {
     std::vector<SsdSample> coarser = samples[level + 1];
     coarsen(coarser);
@@ -345,6 +352,10 @@ SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const C
     throw std::invalid_argument(
         formatted("neighbours of %zu points, the cloud has %zu", near->nearest.size(), cloud.points.size()));
   }
+  if (!params.local_noise.empty() && params.local_noise.size() != cloud.points.size()) {
+    throw std::invalid_argument(
+        formatted("noise of %zu points, the cloud has %zu", params.local_noise.size(), cloud.points.size()));
+  }
   SsdReport report;
   report.n_points = cloud.points.size();
 
@@ -369,6 +380,7 @@ SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const C
   }
   report.smoothing = params.smoothing > 0 ? params.smoothing : chosen.smoothing;
   problem.finest_smoothing = params.smoothing > 0 ? params.smoothing : chosen.finest_smoothing;
+  report.noise_decided = chosen.noise_decides && params.spacing == 0;
   report.reason = chosen.reason;
   if (params.weights == SsdWeights::Paper) problem.area = {};
   if (report.spacing > diagonal) {

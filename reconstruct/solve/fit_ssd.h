@@ -27,6 +27,7 @@ struct SsdParams {
   double spacing = 0;  ///< of the finest lattice, model units; 0: chosen from spacing and noise of the samples
   double smoothing = 0;  ///< c of ½ Σ a (f²/l² + |∇f − n|²) + (c h / 2) ∫ H:H (SsdWeights::Area); 0: from the noise
   double noise = 0;   ///< standard deviation of the samples along the normal, model units; l: see resolution.h
+  std::vector<double> local_noise = {};  ///< of each sample (local_noise.h); empty: as above everywhere
   double detail = 1;  ///< > 0: divides the spacing that is chosen
   double smooth = 1;  ///< > 0: multiplies the smoothing that is chosen
   double alpha =
@@ -55,7 +56,8 @@ struct SsdReport {
   double spacing = 0;        ///< h used, of the finest lattice
   double smoothing = 0;      ///< c used on the full lattice
   std::string reason;        ///< why this spacing and smoothing, when they were chosen here
-  double cloud_spacing = 0;  ///< median distance to the nearest sample
+  bool noise_decided = false;  ///< without noise the spacing would be smaller
+  double cloud_spacing = 0;    ///< median distance to the nearest sample
   int iterations = 0;
   std::vector<double> residuals;               ///< of the full lattice: relative, one per iteration, the first is 1
   std::vector<BandReport> bands;               ///< the finer levels of the multilevel fit, coarse to fine
@@ -63,6 +65,7 @@ struct SsdReport {
   double energy_hessian = 0;                   ///< its third term; 0 for every SsdSolver::Multilevel: not computed
   double rms_value = 0;                        ///< rms of psi(x_i), model units
   std::size_t n_opposed_normals = 0;  ///< samples with n_i . grad psi(x_i) < 0: the normals disagree with one another
+  std::size_t n_turned_normals = 0;   ///< by earlier fits (turned_fit.h), each time one was counted
   std::vector<FittedHole> holes;      ///< of the scan, where psi was looked at for them: in SsdSolver::Multilevel
   double least_wall_value = 0;        ///< least psi sampled on the wall of its domain; < 0: the body has no end
 };

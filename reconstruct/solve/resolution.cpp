@@ -30,14 +30,14 @@ constexpr double kFinestSpacings = .5;
 
 Resolution choose_resolution(double sample_spacing, double mesh_edge, double noise, double detail, double smooth) {
   const double of_samples = std::clamp(mesh_edge, kSpacings / kFiner * sample_spacing, kSpacings * sample_spacing);
-  const bool noisy = kNoises * noise > of_samples;
   Resolution r;
-  r.spacing = (noisy ? kNoises * noise : of_samples) / detail;
+  r.noise_decides = kNoises * noise > of_samples;
+  r.spacing = (r.noise_decides ? kNoises * noise : of_samples) / detail;
   const double of_noise = kNoisySmoothing * std::pow(noise / r.spacing, 2);
   r.smoothing = smooth * (kCleanSmoothing + of_noise);
   r.finest_smoothing = smooth * (kFinestSmoothing + of_noise);
   r.reason =
-      noisy ? formatted("%.3g times the noise of %.3g", kNoises / detail, noise)
+      r.noise_decides ? formatted("%.3g times the noise of %.3g", kNoises / detail, noise)
             : formatted("%.3g times the distance of %.3g between samples", r.spacing / sample_spacing, sample_spacing);
   r.reason += formatted("; c = %.3g, %.3g in the finest band, for noise of %.3g spacings", r.smoothing,
                         r.finest_smoothing, noise / r.spacing);

@@ -9,6 +9,7 @@ struct Resolution {
   double spacing = 0;           ///< of the finest lattice, model units
   double smoothing = 0;         ///< c of the functional, on a full lattice and in bands that others follow
   double finest_smoothing = 0;  ///< c in the finest band
+  bool noise_decides = false;   ///< without noise the spacing would be smaller
   std::string reason;           ///< one sentence for the record
 };
 

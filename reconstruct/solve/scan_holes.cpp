@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <set>
 #include <unordered_map>
 
+#include "common/disjoint_sets.h"
 #include "reconstruct/cloud/neighbour_tree.h"
 
 namespace umtet {
@@ -30,43 +30,14 @@ double median(std::vector<double>& v) {
 }
 
 FastWindingNumber winding_number_of(const std::vector<SsdSample>& samples) {
-  std::vector<Vector3d> places, normals;
-  std::vector<double> areas;
-  for (const SsdSample& s : samples) {
-    places.push_back(s.xi);
-    normals.push_back(s.normal);
-    areas.push_back(s.w_gradient);
-  }
-  return {places, normals, areas};
+  const SampleColumns columns(samples);
+  return {columns.places, columns.normals, columns.areas};
 }
-
-/// Sets of numbers, the least of each as its root.
-class Groups {
- public:
-  int add() {
-    parent_.push_back(static_cast<int>(parent_.size()));
-    return parent_.back();
-  }
-  int root(int i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(int a, int b) {
-    a = root(a);
-    b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 /// Fills depth and rim_cosine.
 void measure_rims(const std::vector<SsdSample>& samples, ScanHoles& found) {
   if (found.places.empty()) return;
-  std::vector<Vector3d> places;
-  for (const SsdSample& s : samples) places.push_back(s.xi);
-  const NeighbourTree tree(places);
+  const NeighbourTree tree(SampleColumns(samples).places);
   std::set<std::pair<int, std::uint32_t>> seen;
   std::vector<int> n_rim(found.holes.size(), 0);
   for (std::size_t p = 0; p < found.places.size(); ++p) {
@@ -130,7 +101,7 @@ Vector3d ScaledWindingNumber::outward(const Vector3d& xi) const {
 ScanHoles scan_holes(const std::vector<SsdSample>& samples, const ScaledWindingNumber& number, const Vector3i& n,
                      const std::vector<std::uint8_t>& far, const std::vector<float>& w) {
   ScanHoles found;
-  Groups groups;
+  DisjointSets groups;
   std::unordered_map<std::size_t, int> in_cell;  // a cell's first place; a place is on an edge of four cells
   const std::size_t stride[3] = {1, static_cast<std::size_t>(n[0]), static_cast<std::size_t>(n[0]) * n[1]};
   const auto visit_edge = [&](const Vector3i& node, int d) {
@@ -150,7 +121,7 @@ ScanHoles scan_holes(const std::vector<SsdSample>& samples, const ScaledWindingN
         cell[(d + 2) % 3] -= v;
         if (cell.minCoeff() < 0) continue;
         const auto [first, is_new] = in_cell.emplace(cell[0] + stride[1] * cell[1] + stride[2] * cell[2], p);
-        if (!is_new) groups.join(first->second, p);
+        if (!is_new) groups.unite(first->second, p);
       }
     }
   };
@@ -165,7 +136,7 @@ ScanHoles scan_holes(const std::vector<SsdSample>& samples, const ScaledWindingN
 
   found.hole_of.assign(found.places.size(), -1);
   for (std::size_t p = 0; p < found.places.size(); ++p) {
-    const int root = groups.root(static_cast<int>(p));  // the least of its group: it has been here
+    const int root = groups.find(static_cast<int>(p));  // the least of its group: it has been here
     if (root == static_cast<int>(p)) {
       found.hole_of[p] = static_cast<int>(found.holes.size());
       found.holes.emplace_back();

@@ -34,6 +34,17 @@ double share_of(const SsdSample& s) { return s.w_gradient > 0 ? s.w_gradient : s
 
 }  // namespace
 
+SampleColumns::SampleColumns(const std::vector<SsdSample>& samples) {
+  places.reserve(samples.size());
+  normals.reserve(samples.size());
+  areas.reserve(samples.size());
+  for (const SsdSample& s : samples) {
+    places.push_back(s.xi);
+    normals.push_back(s.normal);
+    areas.push_back(s.w_gradient);
+  }
+}
+
 std::vector<SsdSample> merge_samples(const std::vector<SsdSample>& samples, double cube) {
   std::vector<Keyed> order(samples.size());
   tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {

@@ -15,6 +15,13 @@ struct SsdSample {
                      ///< line; the least of several
 };
 
+/// Samples of the surface, a column each.
+struct SampleColumns {
+  std::vector<Eigen::Vector3d> places, normals;
+  std::vector<double> areas;  ///< over h^2: w_gradient
+  explicit SampleColumns(const std::vector<SsdSample>& samples);
+};
+
 /// Weighted means of the samples that share a cube of edge `cube`, sorted by the blocks of 8 x 8 x 8 cells they lie in.
 ///
 /// The mean position of samples of a curved surface lies beside it. Its value is that of the functions that the samples

@@ -7,7 +7,7 @@ set(hidden)
 foreach(package PCL VTK HDF5 OpenMesh fmt nlohmann_json CLI11)
   list(APPEND hidden -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
 endforeach()
-set(quick -G Ninja -DCMAKE_CXX_COMPILER=${CXX} "-DCMAKE_CXX_FLAGS=${FLAGS} -O1" -DCMAKE_BUILD_TYPE=None)  # to be built soon
+set(quick -G Ninja -DCMAKE_CXX_COMPILER=${CXX} "-DCMAKE_CXX_FLAGS=${FLAGS} -O0" -DCMAKE_BUILD_TYPE=None)  # to be built soon
 execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCES} -B ${build}/umtet ${quick} ${hidden} -DUMTET_CORE_ONLY=ON
   OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${build}/umtet OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)

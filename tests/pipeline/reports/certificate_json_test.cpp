@@ -26,7 +26,8 @@ Certificate full_certificate() {
   m.mesh.boundary.gap_over_volume = .02;
   m.coordinate_rounding_over_h = 1. / 3e15;
   m.domain = {.05, 2, 4, 2, 1, {"piece"}, true, SupportReport{.3, .25, 101, {{Vec3(1, 2, 3), 4, .1, 1, 10, 7, 2, 1}}}};
-  m.cloud = {.noise = .01, .rms = .1, .max = .7, .p99 = .5};
+  m.cloud = {.noise = .01, .rms = .1, .max = .7, .p99 = .5, .missed_beyond = .2, .n_missed_places = 101};
+  m.cloud->missed = {{Vec3(3, 2, 1), .7, 20}};
   m.resolution = {.9, 1.5, 3, 4, std::vector<ThinPlace>(1)};
   m.resolution.too_thin->front().is_gap = true;
   m.resolution.too_thin->front().box = {Vec3(1, 2, 3), Vec3(4, 5, 6)};
@@ -76,6 +77,12 @@ TEST(CertificateJson, OneFromBeforeHolesWereLookedForHasNone) {
   ASSERT_TRUE(support);
   EXPECT_EQ(support->unsupported_area_fraction, .25);
   EXPECT_EQ(support->n_closed_holes, 0u);
+}
+
+TEST(CertificateJson, OneFromBeforeMissedSamplesWereLookedForHasNone) {
+  Json json = to_json(full_certificate());
+  for (const char* key : {"missed_beyond", "n_missed_places", "missed_places"}) json["cloud"].erase(key);
+  EXPECT_TRUE(certificate_from(json).measured.cloud->missed.empty());
 }
 
 TEST(StageReports, AReportReadBackIsWrittenAlike) {

@@ -1,0 +1,123 @@
+#include "pipeline/stages/level_set_fit.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "pipeline/case/memory.h"
+#include "pipeline/meshing/library_params.h"
+#include "reconstruct/cloud/cloud_survey.h"
+#include "reconstruct/cloud/covering.h"
+#include "reconstruct/cloud/local_noise.h"
+#include "reconstruct/solve/turned_fit.h"
+
+namespace umtet {
+namespace {
+
+/// Distances between opposed samples; none where none face one another.
+std::optional<std::array<double, 3>> thickness_percentiles(const OrientedPointCloud& cloud, const NeighbourTree& tree) {
+  // 20 of them fall below the first percentile, and all together take a small part of a second.
+  constexpr std::size_t kRays = 2000;
+  const std::vector<double> t = thicknesses(cloud, tree, kRays);
+  if (t.empty()) return std::nullopt;
+  const auto at = [&](double p) { return t[static_cast<std::size_t>(p * static_cast<double>(t.size() - 1))]; };
+  return {{at(.01), at(.05), at(.5)}};
+}
+
+/// Which holes of the scan were closed, and how; empty where the fit alone closes all.
+std::string described(const std::vector<FittedHole>& holes) {
+  const auto count = [&](FittedHole::How how) {
+    return std::count_if(holes.begin(), holes.end(), [how](const FittedHole& h) { return h.how == how; });
+  };
+  const auto flat = count(FittedHole::How::Flat), smooth = count(FittedHole::How::Smooth);
+  if (flat + smooth == 0) return "";
+  return fmt::format("closed where no sample is: {} hole{} flat, {} smoothly (--close chooses, --keep-open does not)",
+                     flat, flat == 1 ? "" : "s", smooth);
+}
+
+// Of normals that were turned and psi fitted again as often as that helped. Noise as large as the parts of a body leaves
+// a fifth; normals that mean nothing leave a third and more.
+constexpr double kHopeless = .3;
+
+/// local_noise(), of points that are not even that of the nearest that is.
+std::vector<double> noise_of_all(const OrientedPointCloud& cloud, const OrientedPointCloud& even,
+                                 const NeighbourTree& tree, double usual) {
+  std::vector<double> local = local_noise(even, tree, usual);
+  if (local.empty() || &even == &cloud) return local;
+  std::vector<double> all(cloud.points.size());
+  tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
+    std::array<Neighbour, 1> room;
+    all[i] = local[tree.k_nearest(cloud.points[i], room).front().point];
+  });
+  return all;
+}
+
+// Texture as fine as the samples, and two sheets near each other, look like noise to quadrics through neighbours; psi
+// fits them. Each round lets psi show more of it.
+constexpr int kNoiseRounds = 3;
+// Of the noise, what psi has to leave to be believed.
+constexpr double kLeft = .85;
+
+/// The discrepancy principle [Morozov1966]: psi leaves as much as there is noise, where noise decides its spacing.
+/// Without noise it always leaves less.
+bool leaves_less(const SsdReport& report, double noise) {
+  return report.noise_decided && report.rms_value < kLeft * noise;
+}
+// And what it may leave, unless that is little for how far apart the samples are: psi rounds edges.
+constexpr double kLeftAtMost = 1.5, kLeftOfSpacing = .15;
+bool leaves_more(const SsdReport& report, double noise) {
+  return report.rms_value > std::max(kLeftAtMost * noise, kLeftOfSpacing * report.cloud_spacing);
+}
+
+void require_body(const SsdReport& r) {
+  const double opposed = opposed_share(r);
+  const bool open = r.least_wall_value < 0;
+  if (!open && opposed <= kHopeless) return;
+  throw SolveError(fmt::format(
+      "{}: {:.1f} % of the {} normals point against its gradient; {}orient the normals consistently, outward",
+      open ? "psi < 0 reaches the wall of its box: the samples do not bound a body with outward normals"
+           : "psi was fitted, but the normals disagree with one another",
+      100 * opposed, r.n_points, open ? "check that the surface is closed, and " : ""));
+}
+
+}  // namespace
+
+LevelSetFit fit_level_set(OrientedPointCloud& cloud, NeighbourDistances near, const Parameters& parameters,
+                          const Context& context) {
+  SsdParams params = ssd_params(parameters);
+  params.max_memory = allowed_bytes(parameters);
+  context.report("noise", 0);
+  LevelSetReport report;
+  if (near.nearest.empty()) near = covered_distances(cloud.points);
+  {
+    const bool is_even = near.representatives.empty();
+    const OrientedPointCloud few = is_even ? OrientedPointCloud() : picked(cloud, near.representatives);
+    const OrientedPointCloud& even = is_even ? cloud : few;
+    const NeighbourTree tree(even.points);
+    const double noise = parameters.reconstruct().noise;
+    params.noise = noise >= 0 ? noise : noise_along_normals(even, tree);
+    if (noise < 0) params.local_noise = noise_of_all(cloud, even, tree, params.noise);
+    report.thickness = thickness_percentiles(even, tree);
+  }
+  SsdFit fit = fit_turning_opposed(cloud, params, context, &near);
+  if (parameters.reconstruct().noise < 0) {
+    for (int round = 0; round < kNoiseRounds && (leaves_less(fit.report, params.noise) || (round == 0 && leaves_more(fit.report, params.noise))); ++round) {
+      params.noise = fit.report.rms_value;
+      fit = fit_turning_opposed(cloud, params, context, &near);
+    }
+  }
+  report.noise = params.noise;
+  require_body(fit.report);
+  std::vector<std::string> notices;
+  if (const std::size_t n = fit.report.n_turned_normals; n > 0)
+    notices.push_back(fmt::format("turned {} normals that psi opposed, and fitted again", n));
+  if (std::string closed = described(fit.report.holes); !closed.empty()) notices.push_back(std::move(closed));
+  report.fit = std::move(fit.report);
+  return {std::move(fit.psi), std::move(report), std::move(notices)};
+}
+
+}  // namespace umtet

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/context.h"
+#include "pipeline/case/parameters.h"
+#include "pipeline/reports/stage_reports.h"
+#include "reconstruct/cloud/cloud_neighbours.h"
+#include "reconstruct/cloud/point_cloud.h"
+#include "reconstruct/level_set/level_set.h"
+
+namespace umtet {
+
+struct LevelSetFit {
+  LevelSet psi;
+  LevelSetReport report;             ///< all but the shift
+  std::vector<std::string> notices;  ///< what was changed or guessed, for the user
+};
+
+/// What 2-level-set computes: the noise, unless reconstruct.noise gives it, psi, and whether it bounds a body.
+/// @param cloud  near the origin; normals that psi opposes are turned over (turned_fit.h)
+/// @param near   of its points, with their covering; empty: searched here
+/// \throw SolveTooLarge  psi would not fit in the memory that is allowed
+/// \throw SolveError     no psi, or one that bounds no body: a fit to normals that are turned over is a level set all the
+///                       same
+/// \throw Cancelled
+/// Reports "noise" and the steps of fit_ssd().
+LevelSetFit fit_level_set(OrientedPointCloud& cloud, NeighbourDistances near, const Parameters& parameters,
+                          const Context& context);
+
+}  // namespace umtet
