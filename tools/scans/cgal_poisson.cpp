@@ -1,6 +1,6 @@
 // CGAL's Poisson reconstruction with the defaults of its manual, to compare with. It is compiled by hand, with Debian's
 // libcgal-dev and libeigen3-dev:
-//   g++ -std=c++17 -O3 -DNDEBUG -DCGAL_EIGEN3_ENABLED -I/usr/include/eigen3 cgal_poisson.cpp -o cgal_poisson -lgmp -lmpfr
+//   g++ -O3 -DNDEBUG -DCGAL_EIGEN3_ENABLED -I/usr/include/eigen3 cgal_poisson.cpp -o cgal_poisson -lgmp -lmpfr
 // usage: cgal_poisson CLOUD.ply MESH.ply      exit code 3: not read, 4: no surface, 7: not written
 // A cloud without normals gets those of jets, oriented along a minimum spanning tree; points that get none are dropped.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

@@ -117,10 +117,10 @@ def main():
     for low, high in ((1, 15), (15, 32), (32, 90)):
         of = [r for r in table if low <= r[2] < high]
         off = np.abs([r[4] for r in of])
-        if len(of):
-            print("%d to %d %% removed: %d clouds, exit 0: %d, right genus and pieces: %d, "
-                  "volume off by %.2f %% median, %.2f %% worst" % (low, high, len(of), sum(r[3] == 0 for r in of), sum(r[7] for r in of),
-                                     np.nanmedian(off), np.nanmax(off)))
+        if of:
+            print("%d to %d %% removed: %d clouds, exit 0: %d, right genus and pieces: %d," % (
+                low, high, len(of), sum(r[3] == 0 for r in of), sum(r[7] for r in of)),
+                "volume off by %.2f %% median, %.2f %% worst" % (np.nanmedian(off), np.nanmax(off)))
 
 
 if __name__ == "__main__":

@@ -67,9 +67,9 @@ def ours(umtet, body, points, n_true, noise, cloud, case):
 
 def theirs(program, body, cloud, file, there, back):
     done, mesh = poisson(program, cloud, file)
-    to, from_ = both_distances(body, mesh)
-    return " ".join(["  |", shown(done.code, 4), *(shown(1e4 * d.mean(), 8, ".3f") for d in (to, from_)),
-                     shown(done.cpu, 6, ".1f"), shown(there / to.mean(), 6, ".2f"), shown(back / from_.mean(), 6, ".2f")])
+    to, from_ = (d.mean() for d in both_distances(body, mesh))
+    return " ".join(["  |", shown(done.code, 4), shown(1e4 * to, 8, ".3f"), shown(1e4 * from_, 8, ".3f"),
+                     shown(done.cpu, 6, ".1f"), shown(there / to, 6, ".2f"), shown(back / from_, 6, ".2f")])
 
 
 def settings(body, options):
