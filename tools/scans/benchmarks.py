@@ -33,7 +33,7 @@ def our_cells(umtet, file, truth, folder, timeout):
     cells = [str(done.code), shown(certified(case, "boundary", "genus"), 0),
              shown(certified(case, "quality", "min"), 0, ".3f"), shown(certified(case, "n_tets"), 0), f"{done.cpu:.1f}",
              shown(certified(case, "cloud", "noise_over_h"), 0, ".3f"), *distance_cells(truth, mesh)]
-    return cells, done.error()[:120] if done.code else ""
+    return cells, done.error()[:120]
 
 
 def their_cells(program, file, truth, folder, timeout):

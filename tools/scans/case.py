@@ -18,6 +18,9 @@ class Run(NamedTuple):
     stderr: str
 
     def error(self):
+        """What umtet says of a failure; empty after exit 0."""
+        if self.code == 0:
+            return ""
         lines = self.stderr.strip().splitlines() or [""]
         return next((line for line in lines if line.startswith("umtet:")), lines[-1])
 

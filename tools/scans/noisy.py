@@ -62,7 +62,7 @@ def ours(umtet, body, points, n_true, noise, cloud, case):
            shown(certified(case, "n_tets"), 8), shown(certified(case, "boundary", "genus"), 5), shown(body.genus, 5),
            shown(certified(case, "quality", "min"), 6, ".3f"),
            *(shown(1e4 * f(d), 8, ".3f") for d in (there, back) for f in (np.mean, np.max)), shown(done.cpu, 6, ".1f")]
-    return " ".join(row) + ("" if mesh else "  " + done.error()[:100]), there.mean(), back.mean()
+    return " ".join(row) + " " + done.error()[:100], there.mean(), back.mean()
 
 
 def theirs(program, body, cloud, file, there, back):

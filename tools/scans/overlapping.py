@@ -68,7 +68,7 @@ def main():
                       shown(body.genus, 5), shown(certified(case, "boundary", "components"), 6),
                       shown(certified(case, "quality", "min"), 6, ".3f"), shown(mean, 6, ".3f"), shown(most, 6, ".3f"),
                       shown(angle, 6, ".2f"), shown(None if thin is None else len(thin), 6), shown(done.cpu, 6, ".1f"),
-                      "" if done.code == 0 else done.error()[:120], flush=True)
+                      done.error()[:120], flush=True)
 
 
 if __name__ == "__main__":
