@@ -15,7 +15,7 @@ import tempfile
 import numpy as np
 
 from bodies import Mesh
-from case import both_distances, boundary, certified, poisson, run, shown
+from case import boundary, both_distances, certified, poisson, run, shown
 from cloud_files import SUFFIXES, read_cloud, reference_of, write_ply
 from triangle_mesh import pieces_and_genus
 

@@ -21,7 +21,7 @@ import tempfile
 import numpy as np
 
 import bodies
-from case import both_distances, boundary, certified, number, poisson, run, shown
+from case import boundary, both_distances, certified, number, poisson, run, shown
 from cloud_files import write_ply
 from triangle_mesh import distances
 
@@ -46,7 +46,7 @@ def noisy(body, n, noise, outliers):
 
 
 def ours(umtet, body, points, n_true, noise, cloud, case):
-    """A row of the table, and the mean distances both ways."""
+    """A row of the table, the mean distances both ways, and what went wrong."""
     done, diagonal = run(umtet, cloud, case), body.diagonal()
     mesh = boundary(umtet, case)
     there, back = both_distances(body, mesh)
@@ -62,7 +62,7 @@ def ours(umtet, body, points, n_true, noise, cloud, case):
            shown(certified(case, "n_tets"), 8), shown(certified(case, "boundary", "genus"), 5), shown(body.genus, 5),
            shown(certified(case, "quality", "min"), 6, ".3f"),
            *(shown(1e4 * f(d), 8, ".3f") for d in (there, back) for f in (np.mean, np.max)), shown(done.cpu, 6, ".1f")]
-    return " ".join(row) + " " + done.error()[:100], there.mean(), back.mean()
+    return " ".join(row), there.mean(), back.mean(), done.error()[:120]
 
 
 def theirs(program, body, cloud, file, there, back):
@@ -100,10 +100,10 @@ def main():
                 points, normals, n_true = noisy(body, n, noise, outliers / 100)
                 case = os.path.join(folder, f"{body.name}_{n}_{percent:g}_{outliers:g}")
                 write_ply(case + ".ply", points, None if options.get("normals") == "estimate" else normals)
-                row, there, back = ours(umtet, body, points, n_true, noise, case + ".ply", case)
+                row, there, back, error = ours(umtet, body, points, n_true, noise, case + ".ply", case)
                 if program:
                     row += theirs(program, body, case + ".ply", case + "_poisson.ply", there, back)
-                print(f"{body.name:10.10} {n:6} {percent:5} {outliers:5} {row}", flush=True)
+                print(f"{body.name:10.10} {n:6} {percent:5} {outliers:5} {row} {error}", flush=True)
                 if body.name == "eq_9" and outliers == 0 and (n, percent) in PEERS:
                     print("           " + PEERS[n, percent], flush=True)
 
