@@ -15,7 +15,7 @@ import tempfile
 import numpy as np
 
 from bodies import Mesh
-from case import boundary, both_distances, certified, poisson, run, shown
+from case import boundary, both_distances, certified, poisson, reason, run, shown
 from cloud_files import SUFFIXES, read_cloud, reference_of, write_ply
 from triangle_mesh import pieces_and_genus
 
@@ -33,7 +33,7 @@ def our_cells(umtet, file, truth, folder, timeout):
     cells = [str(done.code), shown(certified(case, "boundary", "genus"), 0),
              shown(certified(case, "quality", "min"), 0, ".3f"), shown(certified(case, "n_tets"), 0), f"{done.cpu:.1f}",
              shown(certified(case, "cloud", "noise_over_h"), 0, ".3f"), *distance_cells(truth, mesh)]
-    return cells, done.error()[:120]
+    return cells, reason(done, case)
 
 
 def their_cells(program, file, truth, folder, timeout):

@@ -60,6 +60,12 @@ def certified(case, *keys):
     return number(case, "certificate.json", *keys)
 
 
+def reason(done, case):
+    """Why a run failed, in the words of the certificate or of umtet; empty after exit 0."""
+    reasons = certified(case, "reasons") if done.code else None
+    return (reasons[0] if reasons else done.error())[:120]
+
+
 def boundary(umtet, case):
     """Triangles of the mesh's boundary, or None."""
     if certified(case) is None:

@@ -10,9 +10,10 @@ white noise on the surface, their normals are exact. Noise is in percent of the 
 percent of the points, uniform in the body's box grown by a tenth. --clean adds clouds without noise, and of eq_9 one
 of ten times as many points. PROGRAM is that of cgal_poisson.cpp; its distances stand beside ours.
 
-All lengths are over the diagonal: noise, lattice and h in percent, distances in 1e-4. psi/est and psi/true are the
-rms of psi at the samples that umtet keeps over the noise; in/true is the rms distance of all true samples to the mesh
-over it. "to" is from the mesh's vertices to the truth, "from" is from points of the truth to the mesh.
+All lengths are over the diagonal: noise, lattice and h in percent, distances in 1e-4. "est." is umtet's estimate of the
+noise, "dropped" the number of points that it takes for outliers. psi/est and psi/true are the rms of psi at the others
+over the noise; in/true is the rms distance of all true samples to the mesh over it. "to" is from the mesh's vertices to
+the truth, "from" is from points of the truth to the mesh.
 """
 import os
 import sys
@@ -21,7 +22,7 @@ import tempfile
 import numpy as np
 
 import bodies
-from case import boundary, both_distances, certified, number, poisson, run, shown
+from case import boundary, both_distances, certified, number, poisson, reason, run, shown
 from cloud_files import write_ply
 from triangle_mesh import distances
 
@@ -57,12 +58,13 @@ def ours(umtet, body, points, n_true, noise, cloud, case):
         left = np.nan if mesh is None or not noise else np.sqrt(np.mean(distances(points[:n_true], mesh)**2)) / noise
         ratios = np.array([rms / estimated, rms / noise if noise else np.nan, left])
     row = [shown(done.code, 4), shown(100 * estimated / diagonal, 6, ".3f"),
+           shown(number(case, "1-cloud/record.json", "numbers", "dropped", "outliers"), 7),
            shown(100 * spacing / diagonal, 7, ".3f"), *(shown(r, 8, ".3f") for r in ratios),
            shown(100 * h / diagonal, 6, ".3f"), shown(certified(case, "cloud", "noise_over_h"), 7, ".3f"),
            shown(certified(case, "n_tets"), 8), shown(certified(case, "boundary", "genus"), 5), shown(body.genus, 5),
            shown(certified(case, "quality", "min"), 6, ".3f"),
            *(shown(1e4 * f(d), 8, ".3f") for d in (there, back) for f in (np.mean, np.max)), shown(done.cpu, 6, ".1f")]
-    return " ".join(row), there.mean(), back.mean(), done.error()[:120]
+    return " ".join(row), there.mean(), back.mean(), reason(done, case)
 
 
 def theirs(program, body, cloud, file, there, back):
@@ -88,7 +90,7 @@ def main():
     options = dict((a[2:] + "=").split("=")[:2] for a in sys.argv[1:] if a.startswith("--"))
     umtet, *names = [a for a in sys.argv[1:] if not a.startswith("--")]
     program = options.get("poisson")
-    print("body       points noise outl. exit   est. lattice  psi/est psi/true  in/true      h noise/h     tets "
+    print("body       points noise outl. exit   est. dropped lattice  psi/est psi/true  in/true      h noise/h     tets "
           "genus right  min Q  to mean      max from mean    max  CPU s" +
           ("   | CGAL's: exit, to, from, CPU s; ours / CGAL's" if program else ""))
     with tempfile.TemporaryDirectory() as temporary:

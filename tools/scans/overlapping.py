@@ -18,7 +18,7 @@ import numpy as np
 
 import bodies
 import triangle_mesh
-from case import boundary, certified, rms_angle, run, shown
+from case import boundary, certified, reason, rms_angle, run, shown
 from cloud_files import write_ply
 
 OFFSETS = (0, .5, 1, 1.5, 2, "turned")
@@ -68,7 +68,7 @@ def main():
                       shown(body.genus, 5), shown(certified(case, "boundary", "components"), 6),
                       shown(certified(case, "quality", "min"), 6, ".3f"), shown(mean, 6, ".3f"), shown(most, 6, ".3f"),
                       shown(angle, 6, ".2f"), shown(None if thin is None else len(thin), 6), shown(done.cpu, 6, ".1f"),
-                      done.error()[:120], flush=True)
+                      reason(done, case), flush=True)
 
 
 if __name__ == "__main__":
