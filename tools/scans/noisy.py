@@ -90,8 +90,8 @@ def main():
     options = dict((a[2:] + "=").split("=")[:2] for a in sys.argv[1:] if a.startswith("--"))
     umtet, *names = [a for a in sys.argv[1:] if not a.startswith("--")]
     program = options.get("poisson")
-    print("body       points noise outl. exit   est. dropped lattice  psi/est psi/true  in/true      h noise/h     tets "
-          "genus right  min Q  to mean      max from mean    max  CPU s" +
+    print("body       points noise outl. exit   est. dropped lattice  psi/est psi/true  in/true      h noise/h     "
+          "tets genus right  min Q  to mean      max from mean    max  CPU s" +
           ("   | CGAL's: exit, to, from, CPU s; ours / CGAL's" if program else ""))
     with tempfile.TemporaryDirectory() as temporary:
         folder = options.get("keep", temporary)
