@@ -3,12 +3,13 @@
 truth.
 
 usage: noisy.py UMTET [BODY ...] [--points=50000] [--noise=.1,.25,.5,1] [--outliers=0,5] [--normals=estimate]
-                [--clean] [--poisson=PROGRAM] [--keep=FOLDER]
+                [--clean] [--poisson=PROGRAM] [--timeout=150] [--keep=FOLDER]
 
 Bodies are ball, torus, eq_9, duck and PATH.ply, a mesh that is closed; eq_9 and duck if none is named. Samples are
 white noise on the surface, their normals are exact. Noise is in percent of the diagonal of the body; outliers are in
 percent of the points, uniform in the body's box grown by a tenth. --clean adds clouds without noise, and of eq_9 one
-of ten times as many points. PROGRAM is that of cgal_poisson.cpp; its distances stand beside ours.
+of ten times as many points. PROGRAM is that of cgal_poisson.cpp; its distances stand beside ours,
+if it ends within so many seconds: exit 124 is a timeout.
 
 All lengths are over the diagonal: noise, lattice and h in percent, distances in 1e-4. "est." is umtet's estimate of the
 noise, "dropped" the number of points that it takes for outliers. psi/est and psi/true are the rms of psi at the others
@@ -67,8 +68,8 @@ def ours(umtet, body, points, n_true, noise, cloud, case):
     return " ".join(row), there.mean(), back.mean(), reason(done, case)
 
 
-def theirs(program, body, cloud, file, there, back):
-    done, mesh = poisson(program, cloud, file)
+def theirs(program, timeout, body, cloud, file, there, back):
+    done, mesh = poisson(program, cloud, file, timeout)
     to, from_ = (d.mean() for d in both_distances(body, mesh))
     return " ".join(["  |", shown(done.code, 4), shown(1e4 * to, 8, ".3f"), shown(1e4 * from_, 8, ".3f"),
                      shown(done.cpu, 6, ".1f"), shown(there / to, 6, ".2f"), shown(back / from_, 6, ".2f")])
@@ -89,7 +90,7 @@ def settings(body, options):
 def main():
     options = dict((a[2:] + "=").split("=")[:2] for a in sys.argv[1:] if a.startswith("--"))
     umtet, *names = [a for a in sys.argv[1:] if not a.startswith("--")]
-    program = options.get("poisson")
+    program, timeout = options.get("poisson"), float(options.get("timeout", 150))
     print("body       points noise outl. exit   est. dropped lattice  psi/est psi/true  in/true      h noise/h     "
           "tets genus right  min Q  to mean      max from mean    max  CPU s" +
           ("   | CGAL's: exit, to, from, CPU s; ours / CGAL's" if program else ""))
@@ -104,7 +105,7 @@ def main():
                 write_ply(case + ".ply", points, None if options.get("normals") == "estimate" else normals)
                 row, there, back, error = ours(umtet, body, points, n_true, noise, case + ".ply", case)
                 if program:
-                    row += theirs(program, body, case + ".ply", case + "_poisson.ply", there, back)
+                    row += theirs(program, timeout, body, case + ".ply", case + "_poisson.ply", there, back)
                 print(f"{body.name:10.10} {n:6} {percent:5} {outliers:5} {row} {error}", flush=True)
                 if body.name == "eq_9" and outliers == 0 and (n, percent) in PEERS:
                     print("           " + PEERS[n, percent], flush=True)
