@@ -8,8 +8,8 @@ usage: noisy.py UMTET [BODY ...] [--points=50000] [--noise=.1,.25,.5,1] [--outli
 Bodies are ball, torus, eq_9, duck and PATH.ply, a mesh that is closed; eq_9 and duck if none is named. Samples are
 white noise on the surface, their normals are exact. Noise is in percent of the diagonal of the body; outliers are in
 percent of the points, uniform in the body's box grown by a tenth. --clean adds clouds without noise, and of eq_9 one
-of ten times as many points. PROGRAM is that of cgal_poisson.cpp; its distances stand beside ours,
-if it ends within so many seconds: exit 124 is a timeout.
+of ten times as many points. PROGRAM is that of cgal_poisson.cpp; its distances stand beside ours. Exit 124 is more
+seconds than its timeout.
 
 All lengths are over the diagonal: noise, lattice and h in percent, distances in 1e-4. "est." is umtet's estimate of the
 noise, "dropped" the number of points that it takes for outliers. psi/est and psi/true are the rms of psi at the others
