@@ -55,7 +55,7 @@ def main():
     print("|", " | ".join(header), "|\n" + "|---" * len(header) + "|", flush=True)
     with tempfile.TemporaryDirectory() as temporary:
         work = pathlib.Path(temporary)
-        for file in sorted(f for folder in folders for f in pathlib.Path(folder).iterdir() if f.suffix in SUFFIXES):
+        for file in (f for folder in folders for f in sorted(pathlib.Path(folder).iterdir()) if f.suffix in SUFFIXES):
             reference = reference_of(file)
             truth = Mesh(reference) if reference else None
             cells, error = our_cells(umtet, file, truth, work, timeout)
