@@ -1,0 +1,110 @@
+"""Runs umtet and CGAL's Poisson reconstruction, and reads what they leave: seconds, numbers, surfaces, distances."""
+import json
+import os
+import shutil
+import subprocess
+from typing import NamedTuple
+
+import numpy as np
+
+import triangle_mesh
+
+TIMEOUT = 124  # exit code of a run that took too long
+
+
+class Run(NamedTuple):
+    code: int
+    cpu: float  # seconds
+    stderr: str
+
+    def error(self):
+        """What umtet says of a failure; empty after exit 0."""
+        if self.code == 0:
+            return ""
+        lines = self.stderr.strip().splitlines() or [""]
+        return next((line for line in lines if line.startswith("umtet:")), lines[-1])
+
+
+def timed(command, timeout=None):
+    before = os.times()
+    try:
+        done = subprocess.run([str(word) for word in command], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                              text=True, errors="replace", timeout=timeout, check=False)
+        code, stderr = done.returncode, done.stderr
+    except subprocess.TimeoutExpired:
+        code, stderr = TIMEOUT, f"more than {timeout:g} s"
+    after = os.times()
+    cpu = after.children_user + after.children_system - before.children_user - before.children_system
+    return Run(code, cpu, stderr)
+
+
+def run(umtet, cloud, case, more=(), timeout=None):
+    """umtet run into a new folder; one that is there is deleted."""
+    shutil.rmtree(case, ignore_errors=True)
+    return timed([umtet, "run", cloud, "-o", case, "--no-report", "--progress", "none", *more], timeout)
+
+
+def number(case, file, *keys):
+    """What a JSON file of the case says; None where it says nothing."""
+    try:
+        with open(os.path.join(case, file), encoding="utf8") as f:
+            value = json.load(f)
+        for key in keys:
+            value = value[key]
+        return value
+    except (OSError, KeyError, TypeError, ValueError):
+        return None
+
+
+def certified(case, *keys):
+    return number(case, "certificate.json", *keys)
+
+
+def reason(done, case):
+    """Why a run failed, in the words of the certificate or of umtet; empty after exit 0."""
+    reasons = certified(case, "reasons") if done.code else None
+    return (reasons[0] if reasons else done.error())[:120]
+
+
+def boundary(umtet, case):
+    """Triangles of the mesh's boundary, or None."""
+    if certified(case) is None:
+        return None
+    timed([umtet, "export", case, "--format", "ply", "-q"])
+    mesh = triangle_mesh.read(os.path.join(case, "4-export", "mesh.ply"))
+    return mesh if mesh.GetNumberOfPolys() else None
+
+
+def poisson(program, cloud, file, timeout=None):
+    """The run of CGAL's Poisson reconstruction (cgal_poisson.cpp), and its triangles or None."""
+    if os.path.exists(file):
+        os.remove(file)
+    done = timed([program, cloud, file], timeout)
+    mesh = triangle_mesh.read(file) if done.code == 0 and os.path.exists(file) else None
+    return done, mesh if mesh and mesh.GetNumberOfPolys() else None
+
+
+def both_distances(body, mesh, n=50_000):
+    """Of the mesh's vertices to the body, and of n random points of the body to the mesh's triangles, over the body's
+    diagonal; none of a mesh that is None."""
+    if mesh is None:
+        return np.array([np.nan]), np.array([np.nan])
+    there = body.distance(triangle_mesh.corners(mesh)[0])
+    back = triangle_mesh.distances(body.sample(n, 9)[0], mesh)
+    return there / body.diagonal(), back / body.diagonal()
+
+
+def rms_angle(body, mesh, here=lambda x: np.ones(len(x), bool)):
+    """Degrees between the mesh's faces and the body, by area, of faces whose middle is here."""
+    middles, crosses = triangle_mesh.middles_and_crosses(mesh)
+    counted = here(middles)
+    middles, crosses = middles[counted], crosses[counted]
+    area = np.linalg.norm(crosses, axis=1)
+    cosine = np.clip(np.sum(crosses * body.foot(middles)[1], 1) / area, -1, 1)
+    return np.sqrt(np.sum(area * np.degrees(np.arccos(cosine))**2) / np.sum(area))
+
+
+def shown(value, width, form=""):
+    """A number, or - where there is none."""
+    missing = value is None or value != value
+    return f"{'-' if missing else format(value, form):>{width}}"
