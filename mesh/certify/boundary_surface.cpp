@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <numeric>
 
-#include "mesh/base/check_indices.h"
 #include "common/disjoint_sets.h"
+#include "mesh/base/check_indices.h"
 
 namespace umtet {
 namespace {

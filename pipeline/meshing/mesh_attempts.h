@@ -30,8 +30,8 @@ struct MeshAttempt {
 
 /// Runs `attempt` at choice.h and, while something is wrong that a smaller h may mend, at .985 of it (if there was a
 /// mesh at all: a few folded faces come and go with h), then at .8, .64 and .51 of it; never below choice.least, which
-/// is tried instead where it is nearer. Where noise decided h, all of these are shares of what thin parts ask for, which
-/// itself comes first.
+/// is tried instead where it is nearer. Where noise decided h, all of these are shares of what thin parts ask for,
+/// which itself comes first.
 ///
 /// @param say  called with why another h is tried, and with which mesh is kept if it is not the last
 /// @return the best of them: a mesh before none, then the one with the fewest reasons against it, then the last

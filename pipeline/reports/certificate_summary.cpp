@@ -112,7 +112,8 @@ std::string missed_line(const MeshMeasures& m, const std::string& unit) {
   const std::size_t n = m.cloud->n_missed_places;
   const MissedPlace& worst = m.cloud->missed.front();
   return fmt::format(
-      "missed    {} place{} where samples are farther from the mesh than {:.3g}{}; the worst, {} samples, up to {:.2g} h "
+      "missed    {} place{} where samples are farther from the mesh than {:.3g}{}; the worst, {} samples, up to {:.2g} "
+      "h "
       "at ({:.4g}, {:.4g}, {:.4g})\n",
       n, n == 1 ? "" : "s", m.cloud->missed_beyond, unit, thousands(worst.n_samples), worst.distance / m.mesh.h,
       worst.farthest.x(), worst.farthest.y(), worst.farthest.z());

@@ -120,6 +120,7 @@ LevelSetReport level_set_from(const Json& json) {
   fit.energy_normal = number_from(json.at("energy_normal"));
   fit.energy_hessian = number_from(json.at("energy_hessian"));
   fit.rms_value = number_from(json.at("rms_value"));
+  fit.normal_defect = number_from(json.at("normal_defect"));
   fit.n_opposed_normals = json.at("n_opposed_normals");
   fit.n_turned_normals = json.at("n_turned_normals");
   for (const Json& hole : json.at("holes")) fit.holes.push_back(fitted_hole_from(hole));
@@ -182,6 +183,7 @@ Json to_json(const LevelSetReport& r) {
           {"energy_normal", fit.energy_normal},
           {"energy_hessian", fit.energy_hessian},
           {"rms_value", fit.rms_value},
+          {"normal_defect", fit.normal_defect},
           {"n_opposed_normals", fit.n_opposed_normals},
           {"n_turned_normals", fit.n_turned_normals},
           {"holes", holes},

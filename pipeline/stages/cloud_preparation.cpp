@@ -19,6 +19,8 @@ namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
+// Share of neighbours whose signs agree in a cloud whose normals are right but for noise.
+constexpr double kConsistent = .97;
 constexpr std::size_t kFewestPoints = kFewestSurveyed;  // the fit needs an estimate of the noise
 
 /// Three numbers a line, '#' begins a comment.
@@ -157,9 +159,12 @@ void Preparation::find_normals() {
 }
 
 /// Neighbours err where two sheets are nearer to each other than to the next sample, and one error turns a whole part:
-/// the winding number sees all samples at once. Given normals that were consistent are not asked about.
+/// the winding number sees all samples at once. Given normals that were consistent are not asked about; those that are
+/// now are not overruled: noise and missing parts are no reason to.
 void Preparation::ask_winding_number(const std::vector<Vec3>* as_given) {
-  const WindingReport r = orient_by_winding(cloud_, !normals().given, as_given);
+  const bool are_consistent = normals().given && normals().orientation->consistency_after >= kConsistent;
+  const WindingReport r = orient_by_winding(
+      cloud_, {.directions_may_change = !normals().given, .others = as_given, .only_others = are_consistent});
   is_closed_ = r.is_closed();
   if (r.restored) {
     normals().orientation->n_turned = 0;
@@ -198,7 +203,8 @@ void Preparation::drop_off_surface() {
   const std::vector<std::uint8_t> is_outlier = winding_outliers(cloud_, near_);
   const std::size_t n = drop_if([&](std::size_t i) { return is_outlier[i] != 0; });
   result_.report.dropped.outliers += n;
-  if (n > 0) notice("dropped {} more outliers, inside or outside of what the samples enclose (--keep-all keeps them)", n);
+  if (n > 0)
+    notice("dropped {} more outliers, inside or outside of what the samples enclose (--keep-all keeps them)", n);
 }
 
 /// A point whose neighbours all lie at one place, or on a line, has no normal.

@@ -39,8 +39,8 @@ std::string described(const std::vector<FittedHole>& holes) {
                      flat, flat == 1 ? "" : "s", smooth);
 }
 
-// Of normals that were turned and psi fitted again as often as that helped. Noise as large as the parts of a body leaves
-// a fifth; normals that mean nothing leave a third and more.
+// Of normals that were turned and psi fitted again as often as that helped. Noise as large as the parts of a body
+// leaves a fifth; normals that mean nothing leave a third and more.
 constexpr double kHopeless = .3;
 
 /// local_noise(), of points that are not even that of the nearest that is.
@@ -71,6 +71,23 @@ bool leaves_less(const SsdReport& report, double noise) {
 constexpr double kLeftAtMost = 1.5, kLeftOfSpacing = .15;
 bool leaves_more(const SsdReport& report, double noise) {
   return report.rms_value > std::max(kLeftAtMost * noise, kLeftOfSpacing * report.cloud_spacing);
+}
+
+// |grad psi - n|^2 of samples that have a surface is below .27 with normals 30 degrees off, and below .36 with noise of
+// half the thickness of a body; of noise in a ball it is .35 and more.
+constexpr double kDoubtfulDefect = .3;
+// Of points that fill a volume.
+constexpr double kVolumeDimension = 2.5;
+
+/// No surface is there to be found.
+void refuse_volume(const OrientedPointCloud& cloud, const SsdReport& r) {
+  if (r.normal_defect < kDoubtfulDefect) return;
+  const double dimension = correlation_dimension(cloud.points);
+  if (dimension < kVolumeDimension) return;
+  throw SolveError(
+      fmt::format("the samples are no surface: their number within r grows like r^{:.2g}, and the normals are off "
+                  "the gradient of psi by {:.2g} (mean square); give samples of a surface",
+                  dimension, r.normal_defect));
 }
 
 void require_body(const SsdReport& r) {
@@ -105,13 +122,16 @@ LevelSetFit fit_level_set(OrientedPointCloud& cloud, NeighbourDistances near, co
   }
   SsdFit fit = fit_turning_opposed(cloud, params, context, &near);
   if (parameters.reconstruct().noise < 0) {
-    for (int round = 0; round < kNoiseRounds && (leaves_less(fit.report, params.noise) || (round == 0 && leaves_more(fit.report, params.noise))); ++round) {
+    for (int round = 0; round < kNoiseRounds && (leaves_less(fit.report, params.noise) ||
+                                                 (round == 0 && leaves_more(fit.report, params.noise)));
+         ++round) {
       params.noise = fit.report.rms_value;
       fit = fit_turning_opposed(cloud, params, context, &near);
     }
   }
   report.noise = params.noise;
   require_body(fit.report);
+  refuse_volume(cloud, fit.report);
   std::vector<std::string> notices;
   if (const std::size_t n = fit.report.n_turned_normals; n > 0)
     notices.push_back(fmt::format("turned {} normals that psi opposed, and fitted again", n));

@@ -33,8 +33,9 @@ void run_level_set_stage(const StageContext& context) {
   OrientedPointCloud cloud = take_cloud(context);
   const Vec3 shift = far_origin_shift(cloud);
   for (Vec3& x : cloud.points) x -= shift;
-  const Context call{.progress = [&](const char* step, double part) { context.progress.report("level-set", step, part); },
-                     .cancelled = until_interrupted().cancelled};
+  const Context call{
+      .progress = [&](const char* step, double part) { context.progress.report("level-set", step, part); },
+      .cancelled = until_interrupted().cancelled};
   LevelSetFit fit = [&] {
     try {
       return fit_level_set(cloud, std::exchange(context.handover.near, {}), context.parameters, call);

@@ -133,13 +133,13 @@ void MeshStage::refuse_thin(const MeshAttempt& best) {
 
 MeshAttempt MeshStage::best_mesh() {
   context_.progress.report("mesh", "size", 0);
-  const EdgeLength choice = background_.own_h()
-                                ? EdgeLength{*background_.own_h(), *background_.own_h()}
-                                : choose_edge_length(domain_, context_.parameters, until_interrupted());
+  const EdgeLength choice = background_.own_h() ? EdgeLength{*background_.own_h(), *background_.own_h()}
+                                                : choose_edge_length(domain_, context_.parameters, until_interrupted());
   if (choice.of_thin_parts) {
-    context_.progress.say(fmt::format(
-        "mesh: h = {:.4g}, so that the noise of the samples is {:.2g} of it: what is thinner does not show (--h decides)",
-        choice.h, *domain_.noise / choice.h));
+    context_.progress.say(
+        fmt::format("mesh: h = {:.4g}, so that the noise of the samples is {:.2g} of it: what is thinner does not show "
+                    "(--h decides)",
+                    choice.h, *domain_.noise / choice.h));
   }
   MeshAttempt best = maker_.best(choice, [this](double h) { return background_of(h); });
   stop_if_interrupted();

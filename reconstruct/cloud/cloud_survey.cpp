@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 
 #include "common/formatted.h"
@@ -105,6 +106,25 @@ double noise_along_normals(const OrientedPointCloud& cloud, const NeighbourTree&
   });
   if (of_quadrics > kMostOfDistance * percentile(nearest, .5)) return of_quadrics;
   return std::min(of_quadrics, kDeviationsOfMedian / std::numbers::sqrt2 * percentile(defect, .5));
+}
+
+double correlation_dimension(const std::vector<Vec3>& points) {
+  constexpr double kRadius = .06;        // over the diagonal
+  constexpr std::size_t kCentres = 300;  // enough for D to .05
+  const NeighbourTree tree(points);
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : points) box.extend(x);
+  const double r2 = std::pow(kRadius, 2) * box.diagonal().squaredNorm();
+  const std::vector<std::uint32_t> picked = evenly_picked(tree, kCentres);
+  std::vector<std::size_t> inner(picked.size()), outer(picked.size());
+  tbb::parallel_for(std::size_t{0}, picked.size(), [&](std::size_t p) {
+    inner[p] = tree.count_within(points[picked[p]], r2, points.size());
+    outer[p] = tree.count_within(points[picked[p]], 4 * r2, points.size());
+  });
+  const auto sum = [](const std::vector<std::size_t>& n) {
+    return static_cast<double>(std::accumulate(n.begin(), n.end(), std::size_t{0}));
+  };
+  return std::log2(sum(outer) / sum(inner));
 }
 
 std::vector<double> thicknesses(const OrientedPointCloud& cloud, std::size_t sampled_points) {

@@ -82,6 +82,11 @@ double noise_along_normals(const std::vector<Vec3>& points, const NeighbourTree&
 double noise_along_normals(const OrientedPointCloud& cloud, const NeighbourTree& tree,
                            std::size_t sampled_points = 5000);
 
+/// D where the number of samples around a sample grows like r^D, at r of 6 to 12 % of the diagonal of their box
+/// [GrassbergerProcaccia1983]: 2 of a surface whatever its noise, if that is less; 3 of points that fill a volume, some
+/// 2.8 with its boundary.
+double correlation_dimension(const std::vector<Vec3>& points);
+
 /// Distances from evenly picked samples along their inward normals to the first sample that faces the other way.
 /// @return ascending, one number for each sample that met one
 /// @param tree  of the points

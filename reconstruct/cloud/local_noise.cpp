@@ -10,9 +10,11 @@
 namespace umtet {
 namespace {
 
+// As many neighbours as areas are taken from; and samples that are looked at first.
 constexpr std::size_t kNeighbours = 12, kPicked = 5000;
 // Cosine of 26 degrees: more is an edge.
 constexpr double kAlike = .9;
+// Offsets of half a spacing are unusual; less than a hundredth of the samples are edges and creases.
 constexpr double kTimesUsual = 2, kOfReach = .2, kLeastShare = .01;
 
 struct Scatter {

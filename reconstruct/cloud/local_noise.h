@@ -12,7 +12,8 @@ namespace umtet {
 ///
 /// Standard deviation of each sample's neighbourhood along the normals: over its twelve nearest with n_i . n_j > .9,
 /// sigma_i^2 = 1/2 mean of (1/2 (n_i + n_j) . (x_j - x_i))^2, which vanishes to third order on a smooth surface and is
-/// half the offset of two sheets; then the median over them. Edges and opposite sides have other normals.
+/// half the offset of two sheets that are near, less where they are more than a spacing apart; then the median over
+/// them. Edges and opposite sides have other normals.
 ///
 /// @param cloud  of the tree; with normals, unit or zero
 /// @param usual  noise of the samples elsewhere

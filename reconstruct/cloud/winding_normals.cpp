@@ -100,8 +100,8 @@ double off_a_half(const std::vector<Vec3>& points, const std::vector<Vec3>& norm
 
 bool WindingReport::is_closed() const { return off_after <= kClosed; }
 
-WindingReport orient_by_winding(OrientedPointCloud& cloud, bool directions_may_change,
-                                const std::vector<Vec3>* others) {
+WindingReport orient_by_winding(OrientedPointCloud& cloud, const OrientByWinding& how) {
+  const std::vector<Vec3>* const others = how.others;
   if (others && others->size() != cloud.points.size())
     throw std::invalid_argument(
         formatted("%zu points but %zu other normals: must be equal", cloud.points.size(), others->size()));
@@ -120,6 +120,7 @@ WindingReport orient_by_winding(OrientedPointCloud& cloud, bool directions_may_c
       }
     }
   }
+  if (how.only_others) return report;
   std::vector<Vec3> best;  // of all points
   for (const auto& [n_samples, params] : kAttempts) {
     const Part part(cloud, n_samples);
@@ -142,7 +143,7 @@ WindingReport orient_by_winding(OrientedPointCloud& cloud, bool directions_may_c
     const double cosine = n.dot(best[i]);
     if (n.isZero(0) || best[i].isZero(0)) continue;
     report.n_turned += cosine < 0 ? 1 : 0;
-    if (directions_may_change && (is_sparse || std::abs(cosine) < kContradiction)) {
+    if (how.directions_may_change && (is_sparse || std::abs(cosine) < kContradiction)) {
       n = best[i];
       ++report.n_replaced;
     } else if (cosine < 0) {

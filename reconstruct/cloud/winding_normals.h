@@ -44,15 +44,19 @@ struct WindingReport {
   std::size_t n_replaced = 0;  ///< normals whose direction it gave, too
 };
 
+struct OrientByWinding {
+  bool directions_may_change = false;  ///< or signs alone
+  const std::vector<Vec3>* others =
+      nullptr;               ///< that the cloud had before: taken back if they are off at fewer samples
+  bool only_others = false;  ///< winding_normals is not tried
+};
+
 /// Checks normals by the winding number of at most 4000 samples. Where it is off a half at more than one sample in 50,
 /// softened by noise, too, winding_normals is tried, and decides over all normals if it is off at a quarter fewer:
 /// signs everywhere; directions, if these may change, on a cloud that is sparse, and where they contradict it by more
 /// than 45 degrees. Zero normals stay. A cloud that passes the check is left alone, for a few hundredths of a second.
-/// @param others  normals that the cloud had before, or null: they are taken back first if they are off at fewer
-/// samples
 /// @param cloud  sorted in space (morton_order.h): every m-th of its points are spread evenly
 /// \throw std::invalid_argument  as FastWindingNumber; fewer than two distinct places; not as many others as points
-WindingReport orient_by_winding(OrientedPointCloud& cloud, bool directions_may_change,
-                                const std::vector<Vec3>* others = nullptr);
+WindingReport orient_by_winding(OrientedPointCloud& cloud, const OrientByWinding& how);
 
 }  // namespace umtet

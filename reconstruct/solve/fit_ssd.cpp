@@ -91,10 +91,12 @@ Hierarchy choose_hierarchy(const Eigen::AlignedBox3d& box, double h, int padding
   return best;
 }
 
-// Samples with this much more noise than the cloud's are resolved by lattices of a third of it, as with noise everywhere.
+// Samples with this much more noise than the cloud's are told from the others.
 constexpr double kUnusual = 2;
-// A cell is resolved where samples have no gap of more than two spacings, root of kMostArea: noise is such a gap.
-constexpr double kGapOfNoise = 6;
+// A cell is resolved where samples have no gap of more than two spacings, root of kMostArea. Noise counts as a gap: 6
+// times it is a spacing of three times the noise, as where noise is the same everywhere; of two sheets, of which each
+// sample sees more of its own, half as much again.
+constexpr double kGapOfNoise = 9;
 
 // @param area  a_i; empty for the paper's weights
 // @param n_share  how many samples share the area around each
@@ -122,7 +124,7 @@ std::vector<SsdSample> make_samples(const OrientedPointCloud& cloud, const std::
 void measure_fit(const OrientedPointCloud& cloud, const LevelSet& psi, const std::vector<double>& area, double length,
                  SsdReport& report) {
   struct Sums {
-    double value2 = 0, energy_value = 0, energy_normal = 0;
+    double value2 = 0, energy_value = 0, energy_normal = 0, area = 0;
     std::size_t n_opposed = 0;
   };
   constexpr std::size_t kChunk = 4096;
@@ -137,17 +139,20 @@ void measure_fit(const OrientedPointCloud& cloud, const LevelSet& psi, const std
       sum.value2 += value * value;
       sum.energy_value += a * std::pow(value / scale, 2) / 2;
       sum.energy_normal += a * (gradient - cloud.normals[i]).squaredNorm() / 2;
+      sum.area += a;
       sum.n_opposed += gradient.dot(cloud.normals[i]) < 0;
     }
   });
-  double value2 = 0;
+  double value2 = 0, all = 0;
   for (const Sums& sum : sums) {
     value2 += sum.value2;
+    all += sum.area;
     report.energy_value += sum.energy_value;
     report.energy_normal += sum.energy_normal;
     report.n_opposed_normals += sum.n_opposed;
   }
   report.rms_value = std::sqrt(value2 / static_cast<double>(n));
+  report.normal_defect = 2 * report.energy_normal / all;
 
   constexpr int kWallSamples = 16;  // along each edge of a face
   report.least_wall_value = std::numeric_limits<double>::infinity();

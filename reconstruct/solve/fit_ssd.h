@@ -26,10 +26,10 @@ enum class SsdSolver {
 struct SsdParams {
   double spacing = 0;  ///< of the finest lattice, model units; 0: chosen from spacing and noise of the samples
   double smoothing = 0;  ///< c of ½ Σ a (f²/l² + |∇f − n|²) + (c h / 2) ∫ H:H (SsdWeights::Area); 0: from the noise
-  double noise = 0;   ///< standard deviation of the samples along the normal, model units; l: see resolution.h
+  double noise = 0;  ///< standard deviation of the samples along the normal, model units; l: see resolution.h
   std::vector<double> local_noise = {};  ///< of each sample (local_noise.h); empty: as above everywhere
-  double detail = 1;  ///< > 0: divides the spacing that is chosen
-  double smooth = 1;  ///< > 0: multiplies the smoothing that is chosen
+  double detail = 1;                     ///< > 0: divides the spacing that is chosen
+  double smooth = 1;                     ///< > 0: multiplies the smoothing that is chosen
   double alpha =
       1e-2;  ///< alpha of eq. (10), in its units; > 0 (SsdWeights::Paper); below, the duck grows spurious parts
   SsdWeights weights = SsdWeights::Area;  ///< Paper: only on a full lattice
@@ -53,9 +53,9 @@ std::vector<std::string> problems(const SsdParams&);
 
 struct SsdReport {
   std::size_t n_points = 0, n_nodes = 0;
-  double spacing = 0;        ///< h used, of the finest lattice
-  double smoothing = 0;      ///< c used on the full lattice
-  std::string reason;        ///< why this spacing and smoothing, when they were chosen here
+  double spacing = 0;          ///< h used, of the finest lattice
+  double smoothing = 0;        ///< c used on the full lattice
+  std::string reason;          ///< why this spacing and smoothing, when they were chosen here
   bool noise_decided = false;  ///< without noise the spacing would be smaller
   double cloud_spacing = 0;    ///< median distance to the nearest sample
   int iterations = 0;
@@ -64,6 +64,7 @@ struct SsdReport {
   double energy_value = 0, energy_normal = 0;  ///< the data terms of the functional at psi
   double energy_hessian = 0;                   ///< its third term; 0 for every SsdSolver::Multilevel: not computed
   double rms_value = 0;                        ///< rms of psi(x_i), model units
+  double normal_defect = 0;  ///< mean of |grad psi(x_i) - n_i|^2 by area: .27 for normals 30 degrees off, 1 without any
   std::size_t n_opposed_normals = 0;  ///< samples with n_i . grad psi(x_i) < 0: the normals disagree with one another
   std::size_t n_turned_normals = 0;   ///< by earlier fits (turned_fit.h), each time one was counted
   std::vector<FittedHole> holes;      ///< of the scan, where psi was looked at for them: in SsdSolver::Multilevel

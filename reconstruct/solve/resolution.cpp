@@ -36,9 +36,9 @@ Resolution choose_resolution(double sample_spacing, double mesh_edge, double noi
   const double of_noise = kNoisySmoothing * std::pow(noise / r.spacing, 2);
   r.smoothing = smooth * (kCleanSmoothing + of_noise);
   r.finest_smoothing = smooth * (kFinestSmoothing + of_noise);
-  r.reason =
-      r.noise_decides ? formatted("%.3g times the noise of %.3g", kNoises / detail, noise)
-            : formatted("%.3g times the distance of %.3g between samples", r.spacing / sample_spacing, sample_spacing);
+  r.reason = r.noise_decides ? formatted("%.3g times the noise of %.3g", kNoises / detail, noise)
+                             : formatted("%.3g times the distance of %.3g between samples", r.spacing / sample_spacing,
+                                         sample_spacing);
   r.reason += formatted("; c = %.3g, %.3g in the finest band, for noise of %.3g spacings", r.smoothing,
                         r.finest_smoothing, noise / r.spacing);
   return r;

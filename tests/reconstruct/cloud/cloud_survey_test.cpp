@@ -99,6 +99,16 @@ TEST(Survey, WorksWithoutNormals) {
   EXPECT_EQ(problems(params).size(), 2U);
 }
 
+TEST(Survey, SurfacesHaveTwoDimensionsAndVolumesThree) {
+  EXPECT_NEAR(correlation_dimension(test::torus_cloud(5000).points), 2, .2);
+  EXPECT_NEAR(correlation_dimension(test::with_noise(test::torus_cloud(5000), .03).points), 2, .3);
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> side(-1, 1);
+  std::vector<Vec3> box;
+  for (int i = 0; i < 5000; ++i) box.emplace_back(side(random), side(random), side(random));
+  EXPECT_GT(correlation_dimension(box), 2.6);
+}
+
 TEST(Survey, DoesNotDependOnTheNumberOfThreads) {
   const OrientedPointCloud cloud = test::with_noise(test::torus_cloud(20000), 0.005);
   const CloudSurvey many = survey(cloud);

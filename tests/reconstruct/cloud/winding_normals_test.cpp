@@ -94,7 +94,7 @@ TEST(OrientByWinding, RightNormalsAreLeftAlone) {
   for (const testing::AnalyticDomain& domain : testing::domains()) {
     OrientedPointCloud cloud = sorted(test::sampled(domain, 8000));
     const std::vector<Vec3> truth = cloud.normals;
-    const WindingReport report = orient_by_winding(cloud, true);
+    const WindingReport report = orient_by_winding(cloud, {.directions_may_change = true});
     EXPECT_FALSE(report.taken) << domain.name;
     EXPECT_LT(report.off_before, 0.04) << domain.name;
     EXPECT_EQ(cloud.normals, truth) << domain.name;
@@ -106,7 +106,7 @@ TEST(OrientByWinding, TurnsWhatIsWrongAndKeepsDirections) {
   const std::vector<Vec3> truth = cloud.normals;
   for (std::size_t i = 0; i < truth.size(); ++i)
     if (cloud.points[i].x() > 0.3) cloud.normals[i] = -truth[i];
-  const WindingReport report = orient_by_winding(cloud, false);
+  const WindingReport report = orient_by_winding(cloud, {});
   EXPECT_TRUE(report.taken);
   EXPECT_TRUE(report.is_closed());
   EXPECT_GT(report.n_turned, 2000U);
@@ -120,7 +120,7 @@ TEST(OrientByWinding, SparseCloudsWithoutNormalsComeOutRight) {
     const std::vector<Vec3> truth = cloud.normals;
     cloud.normals = estimate_normals(cloud.points).normals;
     orient_normals(cloud);
-    orient_by_winding(cloud, true);
+    orient_by_winding(cloud, {.directions_may_change = true});
     EXPECT_EQ(n_wrong(cloud.normals, truth), 0U) << n;
   }
 }
@@ -130,7 +130,7 @@ TEST(OrientByWinding, ThinPlatesWithoutNormalsComeOutRight) {
   const std::vector<Vec3> truth = cloud.normals;
   cloud.normals = estimate_normals(cloud.points).normals;
   orient_normals(cloud);
-  orient_by_winding(cloud, true);
+  orient_by_winding(cloud, {.directions_may_change = true});
   EXPECT_LE(n_wrong(cloud.normals, truth), truth.size() / 100);
 }
 
@@ -140,7 +140,7 @@ TEST(OrientByWinding, SoDoThoseWithManySamples) {
   ASSERT_GT(truth.size(), 12000U);
   for (Vec3& n : cloud.normals)
     if (n.z() < 0) n = -n;  // as of a single sheet
-  EXPECT_TRUE(orient_by_winding(cloud, true).taken);
+  EXPECT_TRUE(orient_by_winding(cloud, {.directions_may_change = true}).taken);
   EXPECT_LE(n_wrong(cloud.normals, truth), truth.size() / 100);
 }
 
@@ -148,19 +148,19 @@ TEST(OrientByWinding, TakesOthersBackThatAreBetter) {
   OrientedPointCloud cloud = sorted(test::torus_cloud(8000));
   const std::vector<Vec3> truth = cloud.normals;
   for (std::size_t i = 0; i < truth.size(); i += 2) cloud.normals[i] = -truth[i];
-  const WindingReport report = orient_by_winding(cloud, true, &truth);
+  const WindingReport report = orient_by_winding(cloud, {.directions_may_change = true, .others = &truth});
   EXPECT_TRUE(report.restored);
   EXPECT_FALSE(report.taken);
   EXPECT_EQ(cloud.normals, truth);
   const std::vector<Vec3> few(3, Vec3::UnitX());
   cloud.normals.assign(truth.size(), Vec3::UnitX());
-  EXPECT_THROW(orient_by_winding(cloud, true, &few), std::invalid_argument);
+  EXPECT_THROW(orient_by_winding(cloud, {.directions_may_change = true, .others = &few}), std::invalid_argument);
 }
 
 TEST(OrientByWinding, ZeroNormalsStay) {
   OrientedPointCloud cloud = sorted(test::torus_cloud(2000));
   for (std::size_t i = 0; i < cloud.normals.size(); ++i) cloud.normals[i] *= i % 3 == 0 ? 0 : i % 3 == 1 ? 1 : -1;
-  orient_by_winding(cloud, true);
+  orient_by_winding(cloud, {.directions_may_change = true});
   for (std::size_t i = 0; i < cloud.normals.size(); i += 3) EXPECT_TRUE(cloud.normals[i].isZero(0));
 }
 
