@@ -14,7 +14,7 @@ inline constexpr double kNoisesMissed = 3;
 /// Places that a document lists. All are counted.
 inline constexpr std::size_t kListedMisses = 100;
 
-/// Fills all but the noise of what a certificate says about the distances of the samples.
+/// What a certificate says about the distances of the samples.
 ///
 /// A sample is missed if it is farther from the mesh than its noise (kNoisesMissed times) and than the middle of any
 /// face is from psi = 0, or than h. Missed samples within the radius of support of each other are one place, if they

@@ -67,6 +67,7 @@ constexpr double kLeft = .85;
 bool leaves_less(const SsdReport& report, double noise) {
   return report.noise_decided && report.rms_value < kLeft * noise;
 }
+
 // And what it may leave, unless that is little for how far apart the samples are: psi rounds edges.
 constexpr double kLeftAtMost = 1.5, kLeftOfSpacing = .15;
 bool leaves_more(const SsdReport& report, double noise) {

@@ -22,9 +22,7 @@ struct LevelSetFit {
 /// @param cloud  near the origin; normals that psi opposes are turned over (turned_fit.h)
 /// @param near   of its points, with their covering; empty: searched here
 /// \throw SolveTooLarge  psi would not fit in the memory that is allowed
-/// \throw SolveError     no psi, or one that bounds no body: a fit to normals that are turned over is a level set all
-/// the
-///                       same
+/// \throw SolveError     no psi, or one that bounds no body, or samples that fill a volume
 /// \throw Cancelled
 /// Reports "noise" and the steps of fit_ssd().
 LevelSetFit fit_level_set(OrientedPointCloud& cloud, NeighbourDistances near, const Parameters& parameters,
