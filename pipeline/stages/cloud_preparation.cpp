@@ -59,6 +59,7 @@ class Preparation {
   void orient_as_told();
   void take(const OrientationReport& r);
   void say_doubt();
+  void look_to_origins();
   void ask_winding_number(const std::vector<Vec3>* as_given);
   template <class... T>
   void notice(fmt::format_string<T...> format, T&&... args) {
@@ -154,7 +155,13 @@ void Preparation::find_normals() {
   take(r);
   notice("estimated the normals and oriented them: {:.1f} % consistent, {} piece{}", 100 * r.consistency_after,
          r.n_components, r.n_components == 1 ? "" : "s");
-  if (parameters_.cloud().orient_from.empty()) ask_winding_number(nullptr);
+  if (parameters_.cloud().orient_from.empty()) {
+    if (cloud_.origins.empty()) {
+      ask_winding_number(nullptr);
+    } else {
+      look_to_origins();
+    }
+  }
   say_doubt();
 }
 
@@ -180,6 +187,12 @@ void Preparation::ask_winding_number(const std::vector<Vec3>* as_given) {
          r.n_turned, percent(r.n_turned), r.n_replaced);
 }
 
+void Preparation::look_to_origins() {
+  normals().turned_to_viewpoints = orient_to_origins(cloud_);
+  normals().orientation->n_doubtful = 0;
+  notice("the normals look to the scanner that saw each point, by the columns of the file (--orient-from decides)");
+}
+
 /// @return how many
 template <class Goes>
 std::size_t Preparation::drop_if(Goes&& goes) {
@@ -189,11 +202,13 @@ std::size_t Preparation::drop_if(Goes&& goes) {
     if (goes(i)) continue;
     cloud_.points[kept] = cloud_.points[i];
     if (!cloud_.labels.empty()) cloud_.labels[kept] = cloud_.labels[i];
+    if (!cloud_.origins.empty()) cloud_.origins[kept] = cloud_.origins[i];
     cloud_.normals[kept++] = cloud_.normals[i];
   }
   cloud_.points.resize(kept);
   cloud_.normals.resize(kept);
   if (!cloud_.labels.empty()) cloud_.labels.resize(kept);
+  if (!cloud_.origins.empty()) cloud_.origins.resize(kept);
   return n - kept;
 }
 
@@ -241,6 +256,7 @@ PreparedCloud Preparation::operator()() {
   sort_in_space(cloud_);
   const Vec3 shift = far_origin_shift(cloud_);  // squares of far coordinates would lose the surface
   for (Vec3& x : cloud_.points) x -= shift;
+  for (Vec3& x : cloud_.origins) x -= shift;
   clean_points();
   find_normals();
   drop_off_surface();
@@ -248,6 +264,7 @@ PreparedCloud Preparation::operator()() {
   // Differences of coordinates have the same bits with and without the shift: so do distances.
   if (near_.size() == cloud_.points.size()) result_.near = neighbour_distances(near_, covering_);
   for (Vec3& x : cloud_.points) x += shift;
+  for (Vec3& x : cloud_.origins) x += shift;
   orient_as_told();
   report.n_points = cloud_.points.size();
   for (const Vec3& x : cloud_.points) report.box.extend(x);

@@ -265,6 +265,10 @@ CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params, Ne
   if (has_labels && cloud.labels.size() != cloud.points.size())
     throw std::invalid_argument(
         formatted("%zu points but %zu labels: must be equal", cloud.points.size(), cloud.labels.size()));
+  const bool has_origins = !cloud.origins.empty();
+  if (has_origins && cloud.origins.size() != cloud.points.size())
+    throw std::invalid_argument(
+        formatted("%zu points but %zu origins: must be equal", cloud.points.size(), cloud.origins.size()));
   CleaningReport report;
   std::vector<std::uint32_t>& kept = report.kept;
   for (std::uint32_t i = 0; i < cloud.points.size(); ++i)
@@ -297,10 +301,12 @@ CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params, Ne
     cloud.points[row] = cloud.points[kept[row]];
     if (has_normals) cloud.normals[row] = cloud.normals[kept[row]];
     if (has_labels) cloud.labels[row] = cloud.labels[kept[row]];
+    if (has_origins) cloud.origins[row] = cloud.origins[kept[row]];
   }
   cloud.points.resize(kept.size());
   if (has_normals) cloud.normals.resize(kept.size());
   if (has_labels) cloud.labels.resize(kept.size());
+  if (has_origins) cloud.origins.resize(kept.size());
   if (neighbours) *neighbours = std::move(left.near);
   if (covers_left) *covers_left = std::move(covers);
   return report;

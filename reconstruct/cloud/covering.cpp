@@ -176,6 +176,7 @@ OrientedPointCloud picked(const OrientedPointCloud& cloud, const std::vector<std
   OrientedPointCloud some{picked<Vec3>(cloud.points, points), {}};
   if (!cloud.normals.empty()) some.normals = picked<Vec3>(cloud.normals, points);
   if (!cloud.labels.empty()) some.labels = picked<int>(cloud.labels, points);
+  if (!cloud.origins.empty()) some.origins = picked<Vec3>(cloud.origins, points);
   return some;
 }
 

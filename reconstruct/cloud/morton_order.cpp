@@ -74,6 +74,7 @@ void sort_in_space(OrientedPointCloud& cloud) {
   permute(order, cloud.points);
   permute(order, cloud.normals);
   permute(order, cloud.labels);
+  permute(order, cloud.origins);
 }
 
 }  // namespace umtet

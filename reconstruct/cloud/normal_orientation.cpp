@@ -397,6 +397,20 @@ std::size_t orient_from(OrientedPointCloud& cloud, const std::vector<Vec3>& view
   return n_turned;
 }
 
+std::size_t orient_to_origins(OrientedPointCloud& cloud) {
+  const std::size_t n = cloud.points.size();
+  if (cloud.origins.size() != n || cloud.normals.size() != n)
+    throw std::invalid_argument(formatted("%zu points, %zu normals, %zu origins: must be equal", n,
+                                          cloud.normals.size(), cloud.origins.size()));
+  std::size_t n_turned = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!(cloud.normals[i].dot(cloud.origins[i] - cloud.points[i]) < 0)) continue;
+    cloud.normals[i] = -cloud.normals[i];
+    ++n_turned;
+  }
+  return n_turned;
+}
+
 void flip(OrientedPointCloud& cloud) {
   for (Vec3& n : cloud.normals) n = -n;
 }

@@ -206,7 +206,8 @@ std::size_t make_unit(std::vector<Vec3>& normals) {
 void drop_unusable(const CloudSource& source, CloudFile& file) {
   OrientedPointCloud& cloud = file.cloud;
   const std::size_t n = cloud.points.size();
-  const bool has_normals = !cloud.normals.empty(), has_labels = !cloud.labels.empty();
+  const bool has_normals = !cloud.normals.empty(), has_labels = !cloud.labels.empty(),
+             has_origins = !cloud.origins.empty();
   std::size_t n_kept = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const Vec3& x = cloud.points[i];
@@ -218,6 +219,7 @@ void drop_unusable(const CloudSource& source, CloudFile& file) {
       cloud.normals[n_kept] = is_missing ? Vec3::Zero() : cloud.normals[i];
     }
     if (has_labels) cloud.labels[n_kept] = cloud.labels[i];
+    if (has_origins) cloud.origins[n_kept] = cloud.origins[i];
     ++n_kept;
   }
   file.report.n_points_dropped = n - n_kept;
@@ -228,6 +230,7 @@ void drop_unusable(const CloudSource& source, CloudFile& file) {
   cloud.points.resize(n_kept);
   if (has_normals) cloud.normals.resize(n_kept);
   if (has_labels) cloud.labels.resize(n_kept);
+  if (has_origins) cloud.origins.resize(n_kept);
 }
 
 template <class T>

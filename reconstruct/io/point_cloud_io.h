@@ -39,6 +39,8 @@ struct CloudFile {
 /// Labels, where there are any, are the property or field `label` (or `patch`), or a column of XYZ behind the others:
 /// whole numbers of 32 bits. A .pts file, or an XYZ file with more than 64 different ones, is refused there: its last
 /// column is an intensity or a colour.
+/// Where the scanner stood, where that is known of each point, are the properties or fields sx sy sz, or origin_x
+/// origin_y origin_z.
 /// Normals are made unit. At least 10 points; duplicates stay.
 ///
 /// No count of a header is believed before it was compared with the size of the file: memory stays below a small

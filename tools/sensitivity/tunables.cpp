@@ -95,12 +95,13 @@ std::vector<Tunable> of_smoothing(const std::string& of_whom, SmoothingParams& (
       of(
           of_whom + "max_sweeps", is_of_patches ? std::vector{4., 8., 30.} : std::vector{5., 10., 20., 30., 120.},
           [=](Settings & s) -> auto& { return p(s).max_sweeps; }),
-      of(
-          of_whom + "least_gain", {3e-5, 1e-4, 1e-3}, [=](Settings & s) -> auto& { return p(s).least_gain; }),
   };
-  if (!is_of_patches)
+  if (!is_of_patches) {
+    list.push_back(of(
+        of_whom + "least_gain", {3e-5, 1e-4, 1e-3}, [=](Settings & s) -> auto& { return p(s).least_gain; }));
     list.push_back(of(
         of_whom + "sharper", {1}, [=](Settings & s) -> auto& { return p(s).sharper; }));
+  }
   return list;
 }
 

@@ -44,8 +44,18 @@ CloudColumns cloud_columns(const CloudSource& source, const std::vector<std::str
     if (columns.has_labels || count(name) == 0) continue;
     if (count(name) > 1) refuse(source, fmt::format("the points have {} {} more than once", kind, name));
     columns.has_labels = true;
-    columns.at[columns.has_normals ? 6 : 3] =
+    columns.at[columns.n_before_label()] =
         static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  }
+  using Origin = std::array<std::string_view, 3>;
+  for (const Origin& origin : {Origin{"sx", "sy", "sz"}, Origin{"origin_x", "origin_y", "origin_z"}}) {
+    const bool is_there = std::all_of(origin.begin(), origin.end(), [&](auto name) { return count(name) == 1; });
+    if (columns.has_origins || !is_there) continue;
+    columns.has_origins = true;
+    for (std::size_t c = 0; c < 3; ++c) {
+      columns.at[columns.n_before_origin() + c] =
+          static_cast<std::size_t>(std::find(names.begin(), names.end(), origin[c]) - names.begin());
+    }
   }
   return columns;
 }
@@ -55,6 +65,10 @@ void append_point(const CloudSource& source, OrientedPointCloud& cloud, const st
   const auto& at = columns.at;
   cloud.points.emplace_back(values[at[0]], values[at[1]], values[at[2]]);
   if (columns.has_normals) cloud.normals.emplace_back(values[at[3]], values[at[4]], values[at[5]]);
+  if (columns.has_origins) {
+    const std::size_t* const o = at.data() + columns.n_before_origin();
+    cloud.origins.emplace_back(values[o[0]], values[o[1]], values[o[2]]);
+  }
   if (!columns.has_labels) return;
   const double label = values[columns.label()];
   if (label != std::trunc(label) || std::abs(label) > std::numeric_limits<int>::max()) {

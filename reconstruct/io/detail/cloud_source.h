@@ -27,24 +27,29 @@ struct CloudSource {
 /// A piece of a file as it may be shown on a terminal: quoted, clipped to 40 characters, unprintable bytes as '?'.
 std::string in_quotes(std::string_view text);
 
-/// Columns of x, y, z and, where there are any, of the normal and of the label.
+/// Columns of x, y, z and, where there are any, of the normal, the label and the origin, in this order, one right behind
+/// the other.
 struct CloudColumns {
-  std::array<std::size_t, 7> at{};  ///< the label comes right behind what is there of the others
+  std::array<std::size_t, 10> at{};
   bool has_normals = true;
   bool has_labels = false;
+  bool has_origins = false;
 
-  std::size_t label() const { return at[has_normals ? 6 : 3]; }
+  std::size_t n_before_label() const { return has_normals ? 6 : 3; }
+  std::size_t n_before_origin() const { return n_before_label() + (has_labels ? 1 : 0); }
+  std::size_t label() const { return at[n_before_label()]; }
   const std::size_t* begin() const { return at.data(); }
-  const std::size_t* end() const { return at.data() + (has_normals ? 6 : 3) + (has_labels ? 1 : 0); }
+  const std::size_t* end() const { return at.data() + n_before_origin() + (has_origins ? 3 : 0); }
 };
 
-/// Where x, y, z, the normal (nx ny nz or normal_x normal_y normal_z) and the label (label, else patch) are among
-/// `names`.
+/// Where x, y, z, the normal (nx ny nz or normal_x normal_y normal_z), the label (label, else patch) and the origin (sx
+/// sy sz or origin_x origin_y origin_z, if all three are there) are among `names`.
 /// \throw CloudRefused  one of them missing, unless all of the normal are and the source does not need them, or there
 /// twice; `kind` ("property", "field") is the format's word for them
 CloudColumns cloud_columns(const CloudSource& source, const std::vector<std::string>& names, std::string_view kind);
 
-/// Appends the point (x, y, z) and, where there are, the normal (nx, ny, nz) and the label found in values at columns.
+/// Appends the point (x, y, z) and, where there are, the normal (nx, ny, nz), the label and the origin found in values at
+/// columns.
 /// \throw CloudRefused  the label is not a whole number of 32 bits
 void append_point(const CloudSource& source, OrientedPointCloud& cloud, const std::vector<double>& values,
                   const CloudColumns& columns);

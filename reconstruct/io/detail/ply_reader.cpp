@@ -190,6 +190,7 @@ OrientedPointCloud read_body(const CloudSource& source, const PlyHeader& header)
     cloud.points.reserve(element.count);
     if (columns.has_normals) cloud.normals.reserve(element.count);
     if (columns.has_labels) cloud.labels.reserve(element.count);
+    if (columns.has_origins) cloud.origins.reserve(element.count);
     for (std::uint64_t item = 0; item < element.count; ++item) {
       body.read_item(element, item, values);
       append_point(source, cloud, values, columns);

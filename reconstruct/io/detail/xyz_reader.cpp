@@ -11,7 +11,7 @@
 namespace umtet::detail {
 namespace {
 
-constexpr std::array<std::size_t, 7> kColumns = {0, 1, 2, 3, 4, 5, 6};  // x y z nx ny nz label, or x y z label
+constexpr std::array<std::size_t, 10> kColumns = {0, 1, 2, 3, 4, 5, 6};  // x y z nx ny nz label, or x y z label
 // More different whole numbers in a column without a name are intensities.
 constexpr std::size_t kMostLabels = 64;
 // Of a damaged or binary file a line may be gigabytes.

@@ -1,8 +1,10 @@
 // Scans as they come: without normals, with normals turned over, with junk, too large; and what inspect says of them.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
+#include <sstream>
 
 #include "mesh/io/tet_mesh_io.h"
 #include "reconstruct/io/point_cloud_io.h"
@@ -64,6 +66,33 @@ TEST_F(Program, EstimatedNormalsLookToTheScannerThatThePcdNames) {
     const OrientedPointCloud cloud =
         read_point_cloud(folder / ("dish" + std::to_string(height + 5)) / "1-cloud/cloud.ply").cloud;
     for (const Vec3& n : cloud.normals) EXPECT_GT(n.z() * height, 0);
+  }
+}
+
+TEST_F(Program, EstimatedNormalsLookToTheOriginOfEachPoint) {
+  constexpr int kAlong = 24;  // a plate one spacing thick, each side seen by a scanner of its own
+  for (const char* names : {"sx sy sz", "origin_x origin_y origin_z"}) {
+    std::istringstream words(names);
+    std::array<std::string, 3> name;
+    words >> name[0] >> name[1] >> name[2];
+    std::ofstream out(folder / "plate.ply");
+    out << "ply\nformat ascii 1.0\nelement vertex " << 2 * kAlong * kAlong << '\n';
+    for (const char* p : {"x", "y", "z"}) out << "property float " << p << '\n';
+    for (const std::string& p : name) out << "property float " << p << '\n';
+    out << "end_header\n";
+    for (int i = 0; i < kAlong; ++i)
+      for (int j = 0; j < kAlong; ++j)
+        for (const int k : {0, 1})
+          out << i + .1 * (j % 2) << ' ' << j + .1 * (i % 2) << ' ' << k << " 9 9 " << (k == 0 ? -40 : 40) << '\n';
+    out.close();
+    const Result r = run("reconstruct plate.ply -o plate --force");
+    EXPECT_EQ(r.code, 0) << r.err;
+    EXPECT_NE(r.err.find("the scanner that saw each point"), std::string::npos) << r.err;
+    const OrientedPointCloud cloud = read_point_cloud(folder / "plate/1-cloud/cloud.ply").cloud;
+    for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+      const bool is_top = cloud.points[i].z() > .5;
+      EXPECT_GT(cloud.normals[i].dot(Vec3(9, 9, is_top ? 40 : -40) - cloud.points[i]), 0);
+    }
   }
 }
 
