@@ -156,11 +156,8 @@ void Preparation::find_normals() {
   notice("estimated the normals and oriented them: {:.1f} % consistent, {} piece{}", 100 * r.consistency_after,
          r.n_components, r.n_components == 1 ? "" : "s");
   if (parameters_.cloud().orient_from.empty()) {
-    if (cloud_.origins.empty()) {
-      ask_winding_number(nullptr);
-    } else {
-      look_to_origins();
-    }
+    ask_winding_number(nullptr);
+    if (!cloud_.origins.empty()) look_to_origins();  // directions are those of before
   }
   say_doubt();
 }
