@@ -12,8 +12,8 @@
 #include "reconstruct/cloud/morton_order.h"
 #include "reconstruct/cloud/normal_estimation.h"
 #include "reconstruct/cloud/normal_orientation.h"
-#include "reconstruct/cloud/winding_normals.h"
-#include "reconstruct/cloud/winding_outliers.h"
+#include "reconstruct/winding/winding_normals.h"
+#include "reconstruct/winding/winding_outliers.h"
 
 namespace umtet {
 namespace fs = std::filesystem;

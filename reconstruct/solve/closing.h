@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "reconstruct/cloud/algebraic_spheres.h"
 #include "reconstruct/cloud/neighbour_tree.h"
 #include "reconstruct/level_set/level_set.h"
+#include "reconstruct/solve/algebraic_spheres.h"
 #include "reconstruct/solve/scan_holes.h"
 
 namespace umtet {

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "reconstruct/cloud/fast_winding_number.h"
 #include "reconstruct/solve/ssd_sample.h"
+#include "reconstruct/winding/fast_winding_number.h"
 
 namespace umtet {
 

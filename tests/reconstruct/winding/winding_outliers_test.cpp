@@ -1,4 +1,4 @@
-#include "reconstruct/cloud/winding_outliers.h"
+#include "reconstruct/winding/winding_outliers.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "reconstruct/cloud/fast_winding_number.h"
+#include "reconstruct/winding/fast_winding_number.h"
 
 #include <oneapi/tbb/parallel_for.h>
 

@@ -1,4 +1,4 @@
-#include "reconstruct/cloud/winding_normals.h"
+#include "reconstruct/winding/winding_normals.h"
 
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>

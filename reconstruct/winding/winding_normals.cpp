@@ -1,4 +1,4 @@
-#include "reconstruct/cloud/winding_normals.h"
+#include "reconstruct/winding/winding_normals.h"
 
 #include <array>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "common/formatted.h"
 #include "reconstruct/cloud/cloud_neighbours.h"
-#include "reconstruct/cloud/fast_winding_number.h"
+#include "reconstruct/winding/fast_winding_number.h"
 
 namespace umtet {
 namespace {

@@ -1,4 +1,4 @@
-#include "reconstruct/cloud/algebraic_spheres.h"
+#include "reconstruct/solve/algebraic_spheres.h"
 
 #include <gtest/gtest.h>
 

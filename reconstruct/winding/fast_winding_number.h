@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "reconstruct/cloud/point_cloud.h"
-#include "reconstruct/cloud/sample_tree.h"
+#include "reconstruct/winding/sample_tree.h"
 
 namespace umtet {
 

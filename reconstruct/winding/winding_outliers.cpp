@@ -1,4 +1,4 @@
-#include "reconstruct/cloud/winding_outliers.h"
+#include "reconstruct/winding/winding_outliers.h"
 
 #include <oneapi/tbb/parallel_for.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "reconstruct/cloud/cloud_neighbours.h"
-#include "reconstruct/cloud/fast_winding_number.h"
+#include "reconstruct/winding/fast_winding_number.h"
 
 namespace umtet {
 namespace {
