@@ -68,10 +68,11 @@ bool leaves_less(const SsdReport& report, double noise) {
   return report.noise_decided && report.rms_value < kLeft * noise;
 }
 
-// And what it may leave, unless that is little for how far apart the samples are: psi rounds edges.
-constexpr double kLeftAtMost = 1.5, kLeftOfSpacing = .15;
+// And what it may leave, unless that is little for its lattice, as psi rounds edges: more is a contradiction of samples,
+// such as two sheets.
+constexpr double kLeftAtMost = 1.5, kLeftOfSpacing = .12;  // of the lattice's
 bool leaves_more(const SsdReport& report, double noise) {
-  return report.rms_value > std::max(kLeftAtMost * noise, kLeftOfSpacing * report.cloud_spacing);
+  return report.rms_value > std::max(kLeftAtMost * noise, kLeftOfSpacing * report.spacing);
 }
 
 // |grad psi - n|^2 of samples that have a surface is below .27 with normals 30 degrees off, and below .36 with noise of
