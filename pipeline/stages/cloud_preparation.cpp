@@ -12,6 +12,7 @@
 #include "reconstruct/cloud/morton_order.h"
 #include "reconstruct/cloud/normal_estimation.h"
 #include "reconstruct/cloud/normal_orientation.h"
+#include "reconstruct/cloud/scanner_positions.h"
 #include "reconstruct/winding/winding_normals.h"
 #include "reconstruct/winding/winding_outliers.h"
 

@@ -7,6 +7,7 @@
 
 #include "reconstruct/cloud/detail/sign_turning.h"
 #include "reconstruct/cloud/normal_estimation.h"
+#include "reconstruct/cloud/scanner_positions.h"
 #include "reconstruct/cloud/sign_graph.h"
 #include "reconstruct/io/point_cloud_io.h"
 #include "tests/support/clouds.h"
