@@ -14,6 +14,7 @@
 #include "mesh/certify/certificate_memory.h"
 #include "mesh/certify/detail/tet_measures.h"
 #include "mesh/core/sort_faces.h"
+#include "mesh/embedding/self_intersections.h"
 #include "mesh/implicit/foot_point.h"
 
 namespace umtet {
@@ -165,6 +166,11 @@ MeshCertificate certify_with(const CertificateInput& input, CertificateMemory* m
   boundary.n_nonmanifold_edges = topology.n_nonmanifold_edges;
   boundary.n_nonmanifold_vertices = topology.n_nonmanifold_vertices;
   boundary.closed_manifold = topology.closed_manifold && surface.n_overused == 0 && surface.n_same_side == 0;
+  boundary.n_self_intersections = self_intersections(mesh.V, surface.triangles, input.context).size();
+  if (boundary.closed_manifold && boundary.n_self_intersections == 0) {
+    boundary.n_wrongly_nested =
+        wrongly_nested(mesh.V, surface.triangles, topology.component, topology.components.size(), input.context).size();
+  }
   boundary.components = static_cast<int>(topology.components.size());
   boundary.euler_characteristic = topology.euler_characteristic;
   boundary.genus = topology.genus;
@@ -238,31 +244,44 @@ MeshCertificate certify(const CertificateInput& input, const std::vector<std::in
   return certificate;
 }
 
-std::vector<std::string> failures(const MeshCertificate& certificate) {
+namespace {
+
+void count(std::size_t n, const char* what, std::vector<std::string>& reasons) {
+  if (n > 0) reasons.push_back(std::to_string(n) + " " + what);
+}
+
+}  // namespace
+
+std::vector<std::string> invalidities(const MeshCertificate& certificate) {
   std::vector<std::string> reasons;
-  const auto count = [&](std::size_t n, const char* what) {
-    if (n > 0) reasons.push_back(std::to_string(n) + " " + what);
-  };
   const MeshCertificate::Boundary& b = certificate.boundary;
-  count(certificate.quality.n_inverted, "tets are inverted or flat (exact sign of the volume)");
-  count(b.n_overused_faces, "faces belong to more than two tets");
-  count(b.n_same_side_faces, "faces have both their tets on the same side");
-  count(b.n_nonmanifold_edges, "boundary edges do not have exactly two boundary faces");
-  count(b.n_nonmanifold_vertices, "boundary vertices join more than one fan of boundary faces");
+  count(certificate.quality.n_inverted, "tets are inverted or flat (exact sign of the volume)", reasons);
+  count(b.n_overused_faces, "faces belong to more than two tets", reasons);
+  count(b.n_same_side_faces, "faces have both their tets on the same side", reasons);
+  count(b.n_nonmanifold_edges, "boundary edges do not have exactly two boundary faces", reasons);
+  count(b.n_nonmanifold_vertices, "boundary vertices join more than one fan of boundary faces", reasons);
   if (!b.closed_manifold) reasons.emplace_back("the boundary is not a closed 2-manifold");
+  count(b.n_self_intersections, "pairs of boundary faces pass through each other", reasons);
+  count(b.n_wrongly_nested, "pieces of the boundary are within a body, or around nothing", reasons);
   if (b.equals_positive_faces == false) {
     reasons.push_back(
         "the boundary (" + std::to_string(b.n_faces) + " faces) is not the set of positive faces (" +
         std::to_string(certificate.n_positive_faces) + ")" +
         (certificate.n_wall_faces > 0 ? " and wall faces (" + std::to_string(certificate.n_wall_faces) + ")" : ""));
   }
-  count(b.n_moved_wall_vertices, "vertices of the walls have left their places");
+  count(b.n_moved_wall_vertices, "vertices of the walls have left their places", reasons);
+  return reasons;
+}
+
+std::vector<std::string> failures(const MeshCertificate& certificate) {
+  std::vector<std::string> reasons = invalidities(certificate);
+  const MeshCertificate::Boundary& b = certificate.boundary;
   const double tolerance = kVertexTolerance + certificate.coordinate_rounding / certificate.h;
   if (b.max_vertex_distance_over_h && !(*b.max_vertex_distance_over_h <= tolerance)) {
     reasons.push_back(formatted("a boundary vertex is %.3g h from psi = 0, more than rounding explains",
                                 *b.max_vertex_distance_over_h));
   }
-  count(b.n_unprojected_faces, "boundary faces have no point of psi = 0 near their centroid");
+  count(b.n_unprojected_faces, "boundary faces have no point of psi = 0 near their centroid", reasons);
   if (b.min_cos_normal && !(*b.min_cos_normal > 0)) {
     reasons.push_back(
         formatted("the boundary is folded: cos(face normal, grad psi) is down to %.3g", *b.min_cos_normal));

@@ -31,6 +31,10 @@ struct MeshCertificate {
     std::size_t n_same_side_faces = 0;  ///< faces with two tets on one side: overlap or inversion
     std::size_t n_nonmanifold_edges = 0, n_nonmanifold_vertices = 0;
     bool closed_manifold = false;
+    /// Pairs of faces that meet elsewhere than in what they share, by exact predicates (self_intersections.h).
+    std::size_t n_self_intersections = 0;
+    /// Of closed_manifold without self-intersections: components within a body, or cavities without one.
+    std::size_t n_wrongly_nested = 0;
     std::optional<bool> equals_positive_faces;  ///< and wall faces; together, as a set
     std::size_t n_moved_wall_vertices = 0;      ///< not at CertificateInput::background_V, to the bit
     int components = 0;
@@ -46,6 +50,12 @@ struct MeshCertificate {
     std::size_t n_cos_below_half = 0;     ///< faces with cos < .5
     std::size_t n_unprojected_faces = 0;  ///< faces whose centroid found no point of psi = 0
   } boundary;
+  /// Tets positive, boundary a closed manifold that does not meet itself, one within the other as those of a solid: the
+  /// mesh is embedded, no two tets overlap (docs/method.md, Section 9).
+  bool is_embedded() const {
+    return quality.n_inverted == 0 && boundary.closed_manifold && boundary.n_self_intersections == 0 &&
+           boundary.n_wrongly_nested == 0;
+  }
   double h = 0;                    ///< edge length the ratios refer to
   double coordinate_rounding = 0;  ///< CertificateInput::coordinate_rounding
 };
@@ -71,7 +81,7 @@ inline constexpr double kVertexTolerance = 1e-8;
 inline constexpr double kMostGap = .1;
 
 /// Measures everything above. Does not judge. Not seen here: components of psi = 0 that the mesh lacks (zero_set.h
-/// counts them), and distant parts of the boundary that pass through each other.
+/// counts them).
 ///
 /// Cost: O(n log n); threads over tets and faces, result independent of them.
 /// psi must be thread-safe.
@@ -89,8 +99,11 @@ class CertificateMemory;
 MeshCertificate certify(const CertificateInput&, const std::vector<std::int64_t>& vertex_id,
                         const std::vector<std::int64_t>& tet_id, CertificateMemory& memory);
 
-/// The reasons why a certificate fails, empty = pass: inverted tets, boundary not a closed manifold or not the positive
-/// and wall faces, a wall that has moved, a vertex farther than kVertexTolerance h from psi = 0, a face without a point
+/// The reasons why a mesh is not valid, empty = it is: tets inverted, boundary not a closed manifold, or through itself,
+/// or not the positive and wall faces, a wall that has moved.
+std::vector<std::string> invalidities(const MeshCertificate&);
+
+/// The reasons why a certificate fails, empty = pass: invalidities(), and what of a valid mesh is not psi = 0: a vertex farther than kVertexTolerance h from psi = 0, a face without a point
 /// of psi = 0 near it, a face with cos <= 0 (folded), faces that miss more than kMostGap of the volume.
 std::vector<std::string> failures(const MeshCertificate&);
 

@@ -273,7 +273,8 @@ ClassificationReport Descent::operator()(IdSet& inside, const Context& context) 
       inside.insert(band_.id[v]);
     } else {
       inside.erase(band_.id[v]);
-      report.not_manifold += band_.mask[v] != 0 && !links_[band_.type[v]].state(band_.mask[v]).manifold;
+      const bool is_bad = band_.mask[v] != 0 && !links_[band_.type[v]].state(band_.mask[v]).manifold;
+      if (is_bad) report.not_manifold.push_back(band_.id[v]);
     }
     report.thin += thin_[v] == Thin::Yes;
     report.stretched += band_.held[v];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -46,7 +47,7 @@ struct ClassificationReport {
   std::size_t flips = 0;         ///< states changed by the descent
   std::size_t stretched = 0;     ///< vertices near the boundary that kept theirs because of most_stretch
   std::size_t thin = 0;          ///< candidates that kept their state because of least_thickness
-  std::size_t not_manifold = 0;  ///< outside vertices at the boundary of omega_h where it is no manifold
+  std::vector<std::int64_t> not_manifold;  ///< outside vertices where the boundary of omega_h is none; ascending
   int sweeps = 0;
   bool settled = false;  ///< the descent ended because it found nothing more to change, not by max_sweeps
   std::size_t psi_evaluations = 0;

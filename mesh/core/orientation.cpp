@@ -65,6 +65,9 @@ int orientation_sign(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
     if (det < -kFilterBound * permanent) return -1;
   }
   if (!a.allFinite() || !b.allFinite() || !c.allFinite() || !d.allFinite()) return 0;
+  for (int k = 0; k < 3; ++k) {
+    if (a[k] == b[k] && a[k] == c[k] && a[k] == d[k]) return 0;  // on the flat wall of a box
+  }
   return exact_sign({&a, &b, &c, &d});
 }
 

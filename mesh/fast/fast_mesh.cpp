@@ -1,7 +1,5 @@
 #include "mesh/fast/fast_mesh.h"
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/parallel_invoke.h>
 
 #include <algorithm>
@@ -10,16 +8,15 @@
 #include <string>
 #include <utility>
 
-#include "mesh/base/violations.h"
 #include "mesh/classification/classification.h"
 #include "mesh/classification/configuration_costs.h"
-#include "mesh/core/tet_quality.h"
+#include "mesh/classification/manifold_boundary.h"
+#include "mesh/fast/step_back.h"
 #include "mesh/fast/tangential_relaxation.h"
 #include "mesh/fast/warm_start.h"
 #include "mesh/submesh/assemble_submesh.h"
 #include "mesh/submesh/assumptions.h"
 #include "mesh/submesh/background_active_layer.h"
-#include "mesh/submesh/double_faces.h"
 #include "mesh/submesh/lattice_active_layer.h"
 #include "mesh/submesh/nothing_inside.h"
 #include "mesh/submesh/walls.h"
@@ -31,7 +28,6 @@ namespace {
 // It trades solves for quality: a mesh that begins near its solution spends most of them on small gains (mesh_bench
 // --benchmark_filter=drifting_ball).
 constexpr double kUpdateLeastGain = 6e-4;
-constexpr std::size_t kVerticesPerTask = 1 << 14;  // to compare places, a nanosecond each
 
 class FastRun {
  public:
@@ -64,6 +60,7 @@ class FastRun {
             .submesh = std::move(result_.submesh),
             .is_whole = is_whole,
             .walls = std::move(result_.walls),
+            .manifold_flips = std::move(result_.manifold_flips),
             .n_tets = result_.status == UmStatus::Success ? n_tets_ : 0,
             .n_psi_evaluations = result_.n_psi_evaluations};
   }
@@ -72,7 +69,6 @@ class FastRun {
     is_classified_ = chosen.status == UmStatus::Success;
     is_complete_ = chosen.is_whole;
     result_ = result_of(std::move(chosen));
-    if (is_complete_) count_double_faces();
     if (is_classified_) fit();
     return finished();
   }
@@ -82,7 +78,8 @@ class FastRun {
     negative_ = inside_;
     memory_ = &memory;
     memory.n_recalled = 0;
-    const bool made = fits_background("") && classify() && fit();
+    const bool made = fits_background("") && classify();
+    if (made) fit();
     UmResult result = finished();
     if (made) {
       remember(memory);
@@ -110,11 +107,9 @@ class FastRun {
   bool classify();
   bool check_walls();
   void complete();
-  void count_double_faces();
-  bool relax(std::vector<Vec3>& projected);
-  bool fit();
-  bool all_arrived(const ProjectionReport& projection);
-  bool none_inverted();
+  void relax(std::vector<Vec3>& projected);
+  void fit();
+  bool make_manifold(const std::vector<std::int64_t>& bad);
   std::vector<Vec3> coordinates(const std::vector<Vec3>& layer_V) const;
   void repair_classification();
   void measure_assumptions();
@@ -135,7 +130,6 @@ class FastRun {
   std::vector<std::pair<std::int64_t, Vec3>> moved_;  ///< by repair, ascending
   bool is_classified_ = false, is_complete_ = false;  ///< inside_ has been chosen, omega_h made of it
   std::size_t n_tets_ = 0;                            ///< of omega_h, as far as it is known
-  BrokenAssumption double_faces_;
 };
 
 bool FastRun::find_inside(const std::vector<Vec3>& seeds) {
@@ -186,11 +180,26 @@ bool FastRun::classify() {
     const ClassificationReport report = classify_vertices(background_, costs_of_tiling_->links, psi_,
                                                           classification_params_, inside_, context_, last, known_);
     result_.n_psi_evaluations += report.psi_evaluations;
+    if (!make_manifold(report.not_manifold)) return false;
+  } else if (!make_manifold(vertices_not_manifold(background_, {}, inside_))) {
+    return false;
   }
   is_classified_ = true;
   if (costs_of_tiling_) return true;
   complete();
   return submesh_params_.background_boundary != BackgroundBoundary::Wall || check_walls();
+}
+
+bool FastRun::make_manifold(const std::vector<std::int64_t>& bad) {
+  static const std::vector<LinkTopology> no_links;
+  ManifoldReport report =
+      umtet::make_manifold(background_, costs_of_tiling_ ? costs_of_tiling_->links : no_links, psi_,
+                           classification_params_, submesh_params_.background_boundary == BackgroundBoundary::Wall, bad,
+                           inside_, context_);
+  result_.n_psi_evaluations += report.psi_evaluations;
+  result_.manifold_flips = std::move(report.flips);
+  if (bad.empty() || !inside_.is_empty_around(0, background_.n_vertices())) return true;
+  return fail(UmStatus::EmptyDomain, {.what = "no body is left that h can show"});
 }
 
 bool FastRun::check_walls() {
@@ -204,35 +213,8 @@ void FastRun::complete() {
   if (is_complete_) return;
   result_.submesh = {};  // before the tets need their memory
   result_.submesh = emit_submesh(background_, inside_);
-  if (submesh_params_.background_boundary == BackgroundBoundary::Wall)
-    part_double_faces(background_, psi_, inside_, result_.submesh);
   n_tets_ = result_.submesh.mesh.C.size();
-  count_double_faces();
   is_complete_ = true;
-}
-
-void FastRun::count_double_faces() {
-  double_faces_ = double_positive_faces(result_.submesh);
-  result_.double_positive_faces = double_faces_.count;
-}
-
-bool FastRun::all_arrived(const ProjectionReport& projection) {
-  if (projection.not_arrived.empty()) return true;
-  complete();
-  const NotArrived& first = projection.not_arrived.front();
-  const std::int64_t id = layer_.background_vertex[first.vertex];
-  const auto& ids = result_.submesh.background_vertex;
-  const int local = static_cast<int>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
-  const bool is_double = double_faces_.is_broken_at({&local, 1});
-  result_.final = coordinates(layer_.layer.V);
-  return fail(is_double ? UmStatus::DoublePositiveFace : UmStatus::ProjectionDiverged,
-              {.background_vertex = id,
-               .where = layer_.layer.V[first.vertex],
-               .count = projection.not_arrived.size(),
-               .what = std::string(first.reason == NotArrived::Reason::NoFoot
-                                       ? "the closest point of a positive vertex was not found"
-                                       : "a positive vertex cannot reach the boundary without inverting a tet") +
-                       (is_double ? ", at a face shared by two positively cut tets" : "")});
 }
 
 /// The vertices of omega_h with those of the layer at V, and the repaired ones where repair has put them.
@@ -265,29 +247,6 @@ void FastRun::remember(FastMemory& memory) {
   memory.inside = std::move(inside_);
 }
 
-bool FastRun::none_inverted() {
-  const auto& C = result_.submesh.mesh.C;
-  const auto& V = result_.final;
-  std::vector<char> has_moved(V.size());  // the background's own tets are positive
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, V.size(), kVerticesPerTask), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) has_moved[i] = V[i] != result_.submesh.mesh.V[i];
-  });
-  const Violations inverted = find_violations(C.size(), [&](std::size_t k) {
-    const Tet& t = C[k];
-    return (has_moved[t[0]] | has_moved[t[1]] | has_moved[t[2]] | has_moved[t[3]]) != 0 &&
-           !(volume6(V[t[0]], V[t[1]], V[t[2]], V[t[3]]) > 0);
-  });
-  if (inverted.count == 0) return true;
-  const Tet& tet = C[inverted.first];
-  const bool is_double = double_faces_.is_broken_at(tet);
-  return fail(is_double ? UmStatus::DoublePositiveFace : UmStatus::InvertedTet,
-              {.background_tet = result_.submesh.background_tet[inverted.first],
-               .where = .25 * (V[tet[0]] + V[tet[1]] + V[tet[2]] + V[tet[3]]),
-               .count = inverted.count,
-               .what = std::string("a tet stays inverted") +
-                       (is_double ? ", at a face shared by two positively cut tets" : "")});
-}
-
 void FastRun::measure_assumptions() {
   // How far a vertex has come stands for its distance to the boundary: it only says which vertex of a face is nearest.
   std::vector<double> distance;
@@ -312,12 +271,13 @@ void FastRun::repair_classification() {
   moved_ = std::move(repaired.moved);
 }
 
-/// Boundary vertices go to psi = 0, and the layer is relaxed. @param projected  receives the places between the two
-bool FastRun::relax(std::vector<Vec3>& projected) {
+/// Boundary vertices go to psi = 0, as far as no tet inverts, and the layer is relaxed.
+/// @param projected  receives the places between the two
+void FastRun::relax(std::vector<Vec3>& projected) {
   layer_ = costs_of_tiling_ ? lattice_active_layer(background_, costs_of_tiling_->links, inside_, params_.layers)
                             : background_active_layer(background_, inside_, params_.layers);
   SmoothingParams smoothing_params = params_.smoothing;
-  bool is_on_surface = false;
+  bool is_on_surface = false, is_short = false;
   if (memory_ && !memory_->moved.empty()) {
     smoothing_params.margin = std::min(smoothing_params.margin, params_.update_margin);
     smoothing_params.least_gain = std::max(smoothing_params.least_gain, kUpdateLeastGain);
@@ -332,7 +292,7 @@ bool FastRun::relax(std::vector<Vec3>& projected) {
   if (!is_on_surface) {
     const ProjectionReport projection = project(smoother, psi_, params_.projection, context_);
     result_.n_psi_evaluations += projection.psi_evaluations;
-    if (!all_arrived(projection)) return false;
+    is_short = !projection.not_arrived.empty();
   }
   projected = layer_.layer.V;
   context_.report("relax", .3);
@@ -345,21 +305,23 @@ bool FastRun::relax(std::vector<Vec3>& projected) {
     result_.n_psi_evaluations +=
         relax_tangentially(smoother, inside, psi_, chords, smoothing_params, context_).psi_evaluations;
   }
-  return true;
+  // Smoothing may have made room for vertices that a tet held back.
+  if (is_short) result_.n_psi_evaluations += project(smoother, psi_, params_.projection, context_).psi_evaluations;
 }
 
-bool FastRun::fit() {
+void FastRun::fit() {
   context_.report("project", 0);
   std::vector<Vec3> projected;
-  if (!relax(projected)) return false;
+  relax(projected);
   context_.report("repair", .7);
   repair_classification();
   complete();
   tbb::parallel_invoke([&] { result_.final = coordinates(layer_.layer.V); },
                        [&] { result_.projected = coordinates(projected); });
+  result_.n_stepped_back =
+      step_back(result_.submesh, result_.walls, background_.h(), result_.final, context_).vertices.size();
   measure_assumptions();
   context_.report("repair", 1);
-  return none_inverted();
 }
 
 }  // namespace

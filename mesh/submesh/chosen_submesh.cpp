@@ -42,6 +42,7 @@ UmResult result_of(ChosenSubmesh&& chosen) {
   result.evidence = std::move(chosen.evidence);
   result.submesh = std::move(chosen.submesh);
   result.walls = std::move(chosen.walls);
+  result.manifold_flips = std::move(chosen.manifold_flips);
   result.n_psi_evaluations = chosen.n_psi_evaluations;
   return result;
 }

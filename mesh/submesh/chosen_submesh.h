@@ -21,6 +21,7 @@ struct ChosenSubmesh {
   Submesh submesh;              ///< omega_h: whole, or its vertices only
   bool is_whole = false;        ///< `submesh` has its tets and faces
   std::vector<Triangle> walls;  ///< BackgroundBoundary::Wall: as UmResult::walls
+  std::vector<ManifoldFlip> manifold_flips;
   std::size_t n_tets = 0;       ///< of omega_h, and of every mesh made from it; 0 when status != Success
   std::size_t n_psi_evaluations = 0;
 };

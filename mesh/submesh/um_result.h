@@ -32,6 +32,15 @@ struct UmEvidence {
   std::string what;
 };
 
+/// A background vertex whose class was changed so that the boundary of omega_h is a manifold there: a bridge is filled
+/// or a web is cut.
+struct ManifoldFlip {
+  std::int64_t background_vertex;
+  Vec3 where;
+  bool is_filled;   ///< inside now; else it has been removed
+  double distance;  ///< signed, from psi = 0 to the vertex, model units
+};
+
 struct UmResult {
   UmStatus status = UmStatus::Success;
   UmEvidence evidence;  ///< filled when status != Success
@@ -40,6 +49,8 @@ struct UmResult {
       walls;  ///< BackgroundBoundary::Wall: the faces of omega_h on the background boundary, local vertex ids, outward
   std::vector<Vec3> projected;  ///< vertex coordinates after step 30, same numbering
   std::vector<Vec3> final;      ///< vertex coordinates of T^{Omega_h} (step 35), same numbering
+  std::vector<ManifoldFlip> manifold_flips;  ///< UmMode::Fast; ascending in background_vertex
+  std::size_t n_stepped_back = 0;  ///< UmMode::Fast: vertices that are off psi = 0 so that the mesh is embedded
   double conditioning_angle_max_deg = 0;
   std::size_t obtuse_conditioning_angles = 0;
   std::size_t double_positive_faces = 0;

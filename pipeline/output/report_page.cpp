@@ -96,6 +96,7 @@ std::string check_list(const Certificate& c) {
   const MeshCertificate& mesh = c.measured.mesh;
   add("inverted tets: " + value("/quality/n_inverted", mesh.quality.n_inverted), mesh.quality.n_inverted == 0);
   add("closed manifold boundary", mesh.boundary.closed_manifold);
+  add("boundary free of self-intersections", mesh.boundary.n_self_intersections == 0);
   add("it is the surface that was to be fitted", mesh.boundary.equals_positive_faces);
   // What cannot be proved is open, not wrong.
   const bool proved = c.measured.domain.components_proved.value_or(false);

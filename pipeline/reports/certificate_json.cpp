@@ -27,6 +27,9 @@ Json mesh_blocks(const MeshCertificate& c, double coordinate_rounding_over_h) {
             {"n_inverted", c.quality.n_inverted}}},
           {"boundary",
            {{"closed_manifold", b.closed_manifold},
+            {"self_intersections", b.n_self_intersections},
+            {"wrongly_nested", b.n_wrongly_nested},
+            {"embedded", c.is_embedded()},
             {"equals_positive_faces", json_of(b.equals_positive_faces)},
             {"components", b.components},
             {"euler_characteristic", b.euler_characteristic},
@@ -60,6 +63,8 @@ MeshCertificate mesh_from(const Json& json) {
   const Json& boundary = json.at("boundary");
   MeshCertificate::Boundary& b = c.boundary;
   b.closed_manifold = boundary.at("closed_manifold");
+  b.n_self_intersections = boundary.at("self_intersections");
+  b.n_wrongly_nested = boundary.at("wrongly_nested");
   b.equals_positive_faces = optional_from<bool>(boundary.at("equals_positive_faces"));
   b.components = boundary.at("components");
   b.euler_characteristic = boundary.at("euler_characteristic");

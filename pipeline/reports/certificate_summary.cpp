@@ -32,6 +32,7 @@ std::string boundary_line(const MeshCertificate::Boundary& b) {
   std::string line = b.closed_manifold
                          ? fmt::format("closed manifold, {} component{}, genus {}", n, n == 1 ? "" : "s", b.genus)
                          : fmt::format("NOT a closed manifold, {} component{}", n, n == 1 ? "" : "s");
+  line += b.n_self_intersections > 0 ? ", NOT free of self-intersections" : ", no self-intersections";
   if (b.max_vertex_distance_over_h) {
     line += fmt::format("; off psi = 0: vertices {} h, face centres {} h, {} of the volume; cos(normals) >= {}",
                         show(b.max_vertex_distance_over_h, "{:.1e}"), show(b.max_centroid_distance_over_h, "{:.3f}"),

@@ -192,7 +192,7 @@ Measured fit(const Subject& subject, const Settings& settings, std::vector<Vec3>
   for (const auto& [id, x] : repaired.moved) put(id, x);
   measure_tets(submesh, V, settings.fast.smoothing.target, m);
   measure_faces(subject, psi, submesh, V, m);
-  m[kNotManifold] = kPerHundredThousand * share(classified.not_manifold, submesh.positive_vertices.size());
+  m[kNotManifold] = kPerHundredThousand * share(classified.not_manifold.size(), submesh.positive_vertices.size());
   m[kSolves] = static_cast<double>(projection.smoothing.solves + smoothing.solves);
   m[kPatches] = kPerHundredThousand * share(repaired.tries, tets_at_boundary(submesh));
   m[kPsi] = static_cast<double>(evaluations + repaired.psi_evaluations);

@@ -233,14 +233,18 @@ TEST(FastMesh, WhatCannotBeMeshedIsAStatusWithEvidence) {
   EXPECT_TRUE(small.on_boundary(out.evidence.background_vertex));
   EXPECT_EQ(out.final.size(), out.submesh.mesh.V.size());
 
+}
+
+TEST(FastMesh, WhatIsTooThinIsAValidMeshWithVerticesShortOfPsi) {
   const AnalyticDomain disc = testing::ellipsoid({1, 1, .01});  // a tenth of an edge thick
-  const UmResult thin = universal_mesh(BackgroundMesh(a15(), testing::cube_box(1.3), .2), disc);
-  EXPECT_EQ(thin.status, UmStatus::ProjectionDiverged);
-  EXPECT_FALSE(thin.evidence.what.empty());
-  EXPECT_GE(thin.evidence.background_vertex, 0);
-  EXPECT_GT(thin.evidence.count, 0u);
-  EXPECT_EQ(thin.final.size(), thin.submesh.mesh.V.size());
-  EXPECT_FALSE(thin.submesh.mesh.C.empty());  // to be looked at
+  const BackgroundMesh background(a15(), testing::cube_box(1.3), .2);
+  const UmResult thin = universal_mesh(background, disc);
+  ASSERT_EQ(thin.status, UmStatus::Success) << thin.evidence.what;
+  const MeshCertificate c = testing::certificate_of(thin, disc, background.h());
+  EXPECT_EQ(c.quality.n_inverted, 0u);
+  EXPECT_TRUE(c.boundary.closed_manifold);
+  EXPECT_GT(c.boundary.max_vertex_distance_over_h, kVertexTolerance);
+  EXPECT_LT(c.boundary.max_vertex_distance_over_h, .5);
 }
 
 TEST(FastMesh, TheContextCanCancelItAnywhere) {
