@@ -38,7 +38,7 @@ class BoundaryStates {
   }
 
  private:
-  // Of StarCostTable, where there is none.
+  // As in a StarCostTable: worse than all the rings that a flip can spoil.
   static constexpr double kCostOfNoManifold = 1000;
   bool has_state(std::int64_t v) const { return steps_ && !background_.on_boundary(v); }
 

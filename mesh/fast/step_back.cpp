@@ -16,14 +16,17 @@
 namespace umtet {
 namespace {
 
-// Of h, inwards. Pairs of faces that pierce each other do so by less than their sagitta, and one or two such steps free
-// most of them.
+// Of h, inwards. Faces that pierce each other do so by less than their sagitta, and one or two such steps free most.
 constexpr double kStep = .05;
-constexpr int kInwardSteps = 8, kParts = 4;
-// The guard of the projection (ProjectionParams::least_quality).
+// Steps after which it is no sagitta any more.
+constexpr int kInwardSteps = 8;
+// A vertex goes back to the background in so many parts: in one, it would lose more than it has to.
+constexpr int kParts = 4;
+// The guard of the projection: ProjectionParams::least_quality.
 constexpr double kLeastQuality = .2;
+// Parts of a step that are tried, longest first.
 constexpr std::array<double, 3> kShares = {1, .5, .25};
-constexpr std::size_t kTetsPerTask = 1 << 14;
+constexpr std::size_t kVerticesPerTask = 1 << 14;  // to compare places, a nanosecond each
 
 class StepBack {
  public:
@@ -77,7 +80,7 @@ void StepBack::find(const Context& context) {
   pairs_ = self_intersections(V_, faces_, context);
   const std::vector<Tet>& C = submesh_.mesh.C;
   std::vector<char> has_moved(V_.size());  // the background's own tets are positive
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, V_.size(), kTetsPerTask), [&](const auto& range) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, V_.size(), kVerticesPerTask), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) has_moved[i] = V_[i] != submesh_.mesh.V[i];
   });
   std::vector<char> is_inverted(C.size());
