@@ -32,8 +32,7 @@ EdgeLength edge_length(Domain& domain, const BackgroundChoice& background, const
 }
 
 MeshingFailed too_thin(const MeshAttempt& best, const Vec3& shift) {
-  return {fmt::format("{}\n  h = {:.3g} may show them; allow_thin=True keeps the mesh nevertheless",
-                      too_thin_text(best, shift), best.thin.h_needed()),
+  return {fmt::format("{}\n  h = {:.3g} may show them", too_thin_text(best, shift), best.thin.h_needed()),
           {{"status", "TooThin"},
            {"h", best.h},
            {"h_needed", best.thin.h_needed()},
@@ -94,7 +93,7 @@ MeshAttempt make_mesh(Domain& domain, const Parameters& parameters, const Watch&
   MeshAttempt best = maker.best(edge_length(domain, background, parameters, watch), [&](double h) {
     return background.make(domain, h, n_tets, allowed_bytes(parameters));
   });
-  if (maker.is_refused_as_thin(best)) throw too_thin(best, domain.shift);
+  if (best.fell_through()) throw too_thin(best, domain.shift);
   if (!best.made()) throw failure(best.result, best.h, domain.shift);
   return best;
 }

@@ -42,7 +42,7 @@ Reconstruction reconstruct(OrientedPointCloud cloud, const Parameters& parameter
 /// Meshes {psi < 0} and measures the mesh, with smaller h where the choice of h is left to us and the mesh asks for it.
 /// The vertices are in working coordinates (Domain::shift); a mesh whose certificate fails is returned all the same.
 /// With mesh.order = 2 it has `second`, and the certificate is about that, too.
-/// \throw MeshingFailed (also for what is too thin, unless mesh.allow_thin), MeshingImpossible, ResourceLimit,
+/// \throw MeshingFailed (also for what is too thin to have a vertex inside), MeshingImpossible, ResourceLimit,
 ///        UsageError, and what `watch` throws
 MeshAttempt make_mesh(Domain& domain, const Parameters& parameters, const Watch& watch);
 

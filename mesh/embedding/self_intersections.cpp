@@ -27,11 +27,10 @@ template <class F>
 void for_each_polled(std::size_t n, const Context& context, const F& f) {
   for (std::size_t begin = 0; begin < n; begin += kLeavesPerPoll) {
     context.poll();
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(begin, std::min(n, begin + kLeavesPerPoll), kLeavesPerTask),
-        [&](const auto& range) {
-          for (std::size_t k = range.begin(); k != range.end(); ++k) f(k);
-        });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, std::min(n, begin + kLeavesPerPoll), kLeavesPerTask),
+                      [&](const auto& range) {
+                        for (std::size_t k = range.begin(); k != range.end(); ++k) f(k);
+                      });
   }
 }
 

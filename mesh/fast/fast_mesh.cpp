@@ -192,10 +192,9 @@ bool FastRun::classify() {
 
 bool FastRun::make_manifold(const std::vector<std::int64_t>& bad) {
   static const std::vector<LinkTopology> no_links;
-  ManifoldReport report =
-      umtet::make_manifold(background_, costs_of_tiling_ ? costs_of_tiling_->links : no_links, psi_,
-                           classification_params_, submesh_params_.background_boundary == BackgroundBoundary::Wall, bad,
-                           inside_, context_);
+  ManifoldReport report = umtet::make_manifold(
+      background_, costs_of_tiling_ ? costs_of_tiling_->links : no_links, psi_, classification_params_,
+      submesh_params_.background_boundary == BackgroundBoundary::Wall, bad, inside_, context_);
   result_.n_psi_evaluations += report.psi_evaluations;
   result_.manifold_flips = std::move(report.flips);
   if (bad.empty() || !inside_.is_empty_around(0, background_.n_vertices())) return true;

@@ -51,9 +51,9 @@ class StepBack {
  private:
   /// How far a vertex has gone back.
   struct Record {
-    int steps = 0;  ///< inwards, and those that were refused
-    int parts = 0;  ///< of the way to its place in the background
-    Vec3 from;      ///< where that way begins
+    int steps = 0;             ///< inwards, and those that were refused
+    int parts = 0;             ///< of the way to its place in the background
+    Vec3 from;                 ///< where that way begins
     std::vector<int> ring{};   ///< tets
     std::vector<int> faces{};  ///< positive ones
   };

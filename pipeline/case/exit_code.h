@@ -31,7 +31,7 @@ struct UsageError : std::runtime_error {
 struct MeshingImpossible : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
-/// The same, because the domain is too thin for this h somewhere.
+/// The same, because the domain is thinner than this h can show.
 struct TooThin : MeshingImpossible {
   TooThin(const std::string& message, nlohmann::ordered_json evidence)
       : MeshingImpossible(message), evidence(std::move(evidence)) {}

@@ -33,6 +33,9 @@ bool is_as_written(std::string_view text) {
   return line < text.size() && text.substr(0, line) == checksum(text.substr(line + 1));
 }
 
+/// A parameter of 0.9.0 that is no more: files that have it are read as if they had not.
+bool is_former(const std::string& key) { return key == "mesh.allow_thin"; }
+
 /// The shortest decimal that reads back as the same double, always recognisable as a TOML float.
 std::string decimal(double v) {
   std::string s = fmt::format("{}", v);
@@ -78,6 +81,7 @@ void Parameters::load(const std::filesystem::path& file, ParamSource source) {
     if (!node.is_table()) throw UsageError(at(node) + name + ": expected a section such as [mesh]");
     for (const auto& [key, entry] : *node.as_table()) {
       try {
+        if (is_former(name + "." + std::string(key.str()))) continue;
         const ParamField& f = detail::field(name + "." + std::string(key.str()));
         ParamValue value;
         if (f.preset.index() == 0 && entry.is_boolean()) {

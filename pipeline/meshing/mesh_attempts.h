@@ -24,6 +24,8 @@ struct MeshAttempt {
   bool made() const { return result.status == UmStatus::Success; }
   std::size_t n_reasons() const { return made() ? measured.reasons.size() : 0; }
   bool is_right() const { return made() && n_reasons() == 0; }
+  /// There is no mesh, and what is too thin for h says why.
+  bool fell_through() const { return !made() && !thin.empty(); }
   /// What is wrong with it first of all; empty if nothing is.
   std::string complaint() const;
 };

@@ -154,11 +154,6 @@ MeshAttempt MeshMaker::best(const EdgeLength& choice, const std::function<Backgr
       [this](const std::string& line) { say(line); });
 }
 
-bool MeshMaker::is_refused_as_thin(const MeshAttempt& a) const {
-  if (a.thin.empty() || parameters_.mesh().allow_thin || a.is_right()) return false;
-  return !a.made() || !is_only_coarse(a.measured);
-}
-
 std::string too_thin_text(const MeshAttempt& a, const Vec3& shift) {
   const std::size_t n = a.thin.places.size();
   return fmt::format("h = {:.4g} is too large: {}; {} place{} thinner than it can show\n{}", a.h, a.complaint(), n,

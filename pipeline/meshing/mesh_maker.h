@@ -42,10 +42,6 @@ class MeshMaker {
   /// The pieces of psi = 0, psi cut for h: kept until another h is asked for. \throw Cancelled
   const ZeroSetChoice& pieces_at(double h);
 
-  /// Whether the mesh is not right (or none), something is too thin for its h, and mesh.allow_thin does not say to keep
-  /// it. One that is right but for the size of its faces is kept, to be looked at.
-  bool is_refused_as_thin(const MeshAttempt& attempt) const;
-
  private:
   MeshAttempt begin(double h);
   ChosenSubmesh choose(const BackgroundMesh& background, double h);
@@ -65,8 +61,8 @@ class MeshMaker {
   std::optional<std::pair<double, ZeroSetChoice>> pieces_;  ///< of psi cut for the h beside them
 };
 
-/// What is refused, and the first of the thin places; some lines, without a newline at the end. Coordinates are those
-/// of the model: `shift` is added. \pre !attempt.thin.empty()
+/// What is wrong, and the first of the thin places; some lines, without a newline at the end. Coordinates are those of
+/// the model: `shift` is added. \pre !attempt.thin.empty()
 std::string too_thin_text(const MeshAttempt& attempt, const Vec3& shift);
 
 }  // namespace umtet

@@ -167,11 +167,6 @@ std::optional<std::string> deviation_reason(double asked, const MeshCertificate&
   return fmt::format("a face centre is {:.4g} from psi = 0, more than the {:.4g} of --max-deviation", made, asked);
 }
 
-bool is_only_coarse(const MeshMeasures& measured) {
-  const std::optional<double>& gap = measured.mesh.boundary.gap_over_volume;
-  return measured.reasons.size() == 1 && gap && *gap > kMostGap;
-}
-
 std::optional<std::string> lost_reason(const Domain& domain, const UmResult& result, const ThinPlaces& thin,
                                        const Context& context) {
   const LostPoint lost = lost_of(thin, result.final, result.submesh.positive_faces, context);

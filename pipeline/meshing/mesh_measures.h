@@ -25,8 +25,4 @@ std::optional<std::string> deviation_reason(double asked, const MeshCertificate&
 std::optional<std::string> lost_reason(const Domain& domain, const UmResult& result, const ThinPlaces& thin,
                                        const Context& context = {});
 
-/// Of a measured mesh: right but for the size of its faces (kMostGap). It is kept to be looked at, thin places or not,
-/// and the certificate says no.
-bool is_only_coarse(const MeshMeasures& measured);
-
 }  // namespace umtet

@@ -63,8 +63,7 @@ std::vector<std::string> troubles(const CloudSurvey& s, const CloudFileReport& f
   }
   if (s.thickness && (*s.thickness)[0] < kThin * s.diagonal) {
     trouble(
-        "1 % of the body is thinner than {:.3g}: the mesh needs --h {:.2g} or smaller there, or --allow-thin to go on "
-        "without",
+        "1 % of the body is thinner than {:.3g}: the mesh needs --h {:.2g} or smaller to show it",
         (*s.thickness)[0], (*s.thickness)[0] / 2.2);
   }
   if (s.ulp_over_spacing > kUlp) {

@@ -45,7 +45,10 @@ std::string remedy_for(const Certificate& c) {
   if (c.verdict.reasons.size() == 1 && gate && c.measured.mesh.quality.min < *gate) {
     return fmt::format("another --h (this was {:.4g}), which moves the worst tets, or a lower --min-quality", h);
   }
-  return fmt::format("a smaller --h (this was {:.4g}), which resolves more of the shape", h) +
+  const std::optional<std::vector<ThinPlace>>& thin = c.measured.resolution.too_thin;
+  const std::string enough =
+      thin && !thin->empty() ? fmt::format(": {:.3g} shows what is thinnest", thin->front().h_needed) : "";
+  return fmt::format("a smaller --h (this was {:.4g}), which resolves more of the shape", h) + enough +
          (c.measured.n_points ? "; where psi itself is wrong there, a finer --spacing" : "");
 }
 

@@ -199,9 +199,7 @@ UmResult Evolution::make(Step& step, Domain& domain) {
   MeshMaker maker(domain, parameters_, call, {.say = [this](const std::string& line) { progress_.say(line); }});
   MeshAttempt a = maker.attempt(*background_, h_);
   stop_if_interrupted();
-  if (maker.is_refused_as_thin(a)) {
-    throw MeshingImpossible(too_thin_text(a, domain.shift) + "\n  --allow-thin keeps the mesh nevertheless");
-  }
+  if (a.fell_through()) throw MeshingImpossible(too_thin_text(a, domain.shift));
   if (!a.made()) throw MeshingImpossible(failure_text(a.result, h_, domain.shift));
   step.verdict = judge(a.measured.mesh, a.measured.reasons, parameters_);
   step.measured = std::move(a.measured);

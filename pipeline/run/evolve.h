@@ -36,7 +36,7 @@ struct EvolveOutcome {
 /// kept in FOLDER/clouds/step_0000 ..., cases that another run takes up. Former steps in FOLDER are removed first.
 ///
 /// An instant with a cloud that cannot be used, or a mesh that cannot be made, is named with its reason; the others are
-/// made. So is one whose mesh came out wrong where the body is thin for h, unless mesh.allow_thin.
+/// made.
 /// \throw UsageError (also for a folder with other files), and what failed when no instant has a psi; everything else
 ///        that failure_of() knows and that is no fault of one instant
 EvolveOutcome evolve(const EvolveRequest& request, Progress& progress);

@@ -32,7 +32,7 @@ class MeshStage {
         background_(context.parameters, domain_),
         maker_(domain_, context.parameters, call(), lines()) {}
 
-  /// Of the best h. \throw MeshingImpossible when there is none, or it came out wrong where the body is thin
+  /// Of the best h. \throw MeshingImpossible when there is none
   MeshAttempt best_mesh();
 
   Domain& domain() { return domain_; }
@@ -111,7 +111,7 @@ std::string MeshStage::remedy_for(const ThinPlaces& thin, std::optional<double>&
   return fmt::format("h = {:.3g} is enough, about {:.2g} tets", enough.h, background_.expected_tets(domain_, enough.h));
 }
 
-/// Throws what is too thin for a mesh that came out wrong, and writes the thin places to too_thin.vtp: in 3-mesh, or in
+/// Throws what is too thin for any mesh, and writes the thin places to too_thin.vtp: in 3-mesh, or in
 /// 3-mesh/failed where a finished mesh is to be kept.
 void MeshStage::refuse_thin(const MeshAttempt& best) {
   const ThinPlaces& thin = best.thin;
@@ -124,7 +124,7 @@ void MeshStage::refuse_thin(const MeshAttempt& best) {
   write_thin_places(file, thin, domain_.shift);
   std::string message = too_thin_text(best, domain_.shift) + "\n  ";
   std::optional<double> h_enough;
-  message += remedy_for(thin, h_enough) + "; --allow-thin keeps the mesh nevertheless\n  look at " + file.string();
+  message += remedy_for(thin, h_enough) + "\n  look at " + file.string();
   message += doubt_about_given_normals(context_.paths);
   if (keeps) message += "\n  the former mesh and its certificate have been kept";
   throw TooThin(message,
@@ -143,8 +143,11 @@ MeshAttempt MeshStage::best_mesh() {
   }
   MeshAttempt best = maker_.best(choice, [this](double h) { return background_of(h); });
   stop_if_interrupted();
-  if (maker_.is_refused_as_thin(best)) refuse_thin(best);
+  if (best.fell_through()) refuse_thin(best);
   if (!best.made()) refuse(best.result, best.h);
+  if (!best.is_right() && !best.thin.empty()) {
+    context_.progress.warn("mesh: " + too_thin_text(best, domain_.shift) + doubt_about_given_normals(context_.paths));
+  }
   return best;
 }
 

@@ -44,7 +44,7 @@ for _name in ("implicit", "keep_iterates"):  # of the program
 for _name in ("file", "orient_from"):
     _KEYS["cloud"].pop(_name, None)
 _OUTPUT = ("units", "max_memory", "min_quality")
-_NOT_OF_A_MOVING_MESH = ("tets", "max_tets", "max_deviation", "allow_thin", "order")
+_NOT_OF_A_MOVING_MESH = ("tets", "max_tets", "max_deviation", "order")
 
 
 def _text(value):
@@ -155,11 +155,11 @@ def mesh(psi, *, box=None, t=None, progress=None, threads=0, **parameters):
     box: around the domain, with room of two edges; a LevelSet has its own. t: what t stands for in a formula. One of
     h, tets and max_deviation, or none (h from size and thickness). order=2: tets of 10 nodes with curved boundary, every
     Jacobian proved positive in the certificate. Other parameters: background="z", mode="paper",
-    max_tets, allow_thin, min_quality, target_quality, seed, ...; complement=True with box_walls=True: {psi > 0} up to
+    max_tets, min_quality, target_quality, seed, ...; complement=True with box_walls=True: {psi > 0} up to
     the flat walls of the box, the fluid around the body.
 
-    Returns a Mesh, the best of up to five where the choice of h is left to umtet. MeshingError: there is none, or the
-    domain is too thin for h; evidence says where, and which h may do.
+    Returns a Mesh, the best of up to five where the choice of h is left to umtet. MeshingError: there is none;
+    evidence says where, and which h may do. Mesh.certified says whether what is there is right.
     """
     parameters["box"] = _box(box)
     return Mesh(_core.mesh(psi, _settings(("mesh",), parameters), t, progress, threads))

@@ -91,7 +91,7 @@ def measure(file, samples):
 
 
 ONE_SIDED = ((4,), ["reaches the wall", "the surface is closed"])
-TOO_NEAR = ((4, 5), ["two sides of a body are nearer to each other than its samples"])
+TOO_NEAR = ((4, 6), ["two sides of a body are nearer to each other than its samples"])
 # Cloud, arguments, and what must come of it: volume, how far it may be off, and how far the farthest sample may be from
 # the mesh; or exit codes and words of the reason.
 SHAPES = {
@@ -104,7 +104,7 @@ SHAPES = {
     "half a sphere": (sphere(1500)[:750], [], (2.1, .2, .02)),
     "half a sphere, left open": (sphere(1500)[:750], ["--keep-open"], ONE_SIDED),
     "sheets nearer than samples": (np.vstack([sphere(3000), sphere(2000, .95) * [1, 1, 1, -1, -1, -1]]), ["--h", ".1"],
-                                   ((5,), ["body down to", "needs h ="])),
+                                   ((6,), ["body down to", "needs h ="])),
     "h beyond the body": (sphere(500), ["--h", "50"], ((6,), ["volume_gap"])),  # a ball of 20 tets
     "h too small": (sphere(500), ["--h", "1e-12"], ((9,), ["more than 2000000 tets"])),
     "plane": (plane(0), [], ((3,), ["one plane"])),

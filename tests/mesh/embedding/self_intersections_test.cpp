@@ -32,9 +32,9 @@ bool meet(const Triangle& f, const Triangle& g, const std::vector<Vec3>& V) {
 }
 
 TEST(SelfIntersections, PairsThatShareNothing) {
-  const std::vector<Vec3> V = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0},  {1, 1, -1}, {1, 1, 1}, {9, 9, 1}, {1, 1, 0},
-                               {2, 1, 0}, {1, 2, 0}, {5, 0, 0},  {6, 0, 0},  {5, 1, 0}, {4, 0, 0}, {5, 0, 1},
-                               {5, 0, -1}, {2, 2, 0}, {3, 3, 0}, {3, 2, 5}};
+  const std::vector<Vec3> V = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0},  {1, 1, -1}, {1, 1, 1}, {9, 9, 1},
+                               {1, 1, 0}, {2, 1, 0}, {1, 2, 0},  {5, 0, 0},  {6, 0, 0}, {5, 1, 0},
+                               {4, 0, 0}, {5, 0, 1}, {5, 0, -1}, {2, 2, 0},  {3, 3, 0}, {3, 2, 5}};
   const Triangle base = {0, 1, 2};
   EXPECT_TRUE(meet(base, {3, 4, 5}, V));     // an edge goes through
   EXPECT_FALSE(meet(base, {4, 5, 17}, V));   // above
@@ -80,7 +80,8 @@ TEST(SelfIntersections, TheTreeFindsAllPairs) {
         if (snapped) x = (x * 8).array().round() / 8;
         V.push_back(x);
       }
-      if ((V[3 * k + 1] - V[3 * k]).cross(V[3 * k + 2] - V[3 * k]).norm() > 0) faces.push_back({3 * k, 3 * k + 1, 3 * k + 2});
+      if ((V[3 * k + 1] - V[3 * k]).cross(V[3 * k + 2] - V[3 * k]).norm() > 0)
+        faces.push_back({3 * k, 3 * k + 1, 3 * k + 2});
     }
     Pairs expected;
     for (int f = 0; f < static_cast<int>(faces.size()); ++f) {

@@ -99,6 +99,13 @@ TEST(Parameters, UnknownKeysNameTheNearest) {
       << message;
 }
 
+TEST(Parameters, FilesOfFormerVersionsAreRead) {
+  Parameters p;
+  const TomlFile file("[mesh]\nallow_thin = true\nsamples = 3\n");
+  p.load(file.path, ParamSource::File);
+  EXPECT_EQ(p.mesh().samples, 3);
+}
+
 TEST(Parameters, ValuesOutOfTypeOrRangeAreRefused) {
   for (const char* assignment :
        {"mesh.samples=0", "mesh.samples=2.5", "mesh.samples=", "mesh.samples=3x", "mesh.h=-1", "mesh.h=nan",

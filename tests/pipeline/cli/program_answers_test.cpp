@@ -129,7 +129,7 @@ TEST_F(Program, ABodyMeshedFarTooCoarselyIsNoSuccess) {
 TEST_F(Program, OneReasonToFailIsExitSixWithARemedy) {
   // A lens much thinner at its rim than h.
   const Result r = run(
-      "mesh --implicit 'x^2+y^2+(z/0.15)^2-1' --box=-1.6,-1.6,-.9,1.6,1.6,.9 --h .2 --mode paper --allow-thin -o lens");
+      "mesh --implicit 'x^2+y^2+(z/0.15)^2-1' --box=-1.6,-1.6,-.9,1.6,1.6,.9 --h .2 --mode paper -o lens");
   EXPECT_EQ(r.code, 6) << r.err;
   EXPECT_NE(r.out.find("verdict   fail"), std::string::npos) << r.out;
   EXPECT_NE(r.out.find("try a smaller --h"), std::string::npos) << r.out;

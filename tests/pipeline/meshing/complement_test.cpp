@@ -85,13 +85,13 @@ TEST_F(Program, ComplementNeedsWallsAndRoom) {
   EXPECT_NE(tight.err.find("give a larger --box"), std::string::npos) << tight.err;
 }
 
-TEST_F(Program, ABodyThatFallsThroughTheBackgroundIsNoMesh) {
+TEST_F(Program, ABodyThatFallsThroughTheBackgroundIsNoSuccess) {
   const std::string call = "run egg.ply --complement --box-walls --box=-4,-4,-4,4,4,4 -o egg --h ";
   const Result large = run(call + "9");
   EXPECT_EQ(large.code, 6) << large.out << large.err;
   EXPECT_TRUE(Json::parse(content(folder / "egg/certificate.json")).at("cloud").is_null());
   const Result thin = run(call + "3");
-  EXPECT_EQ(thin.code, 5) << thin.out << thin.err;
+  EXPECT_EQ(thin.code, 6) << thin.out << thin.err;
   EXPECT_NE(thin.err.find("1 place is thinner"), std::string::npos) << thin.err;
 }
 
