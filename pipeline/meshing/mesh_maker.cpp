@@ -96,6 +96,13 @@ void MeshMaker::finish(const BackgroundMesh& background, ChosenSubmesh chosen, M
   const ZeroSetChoice& pieces = pieces_at(a.h);
   a.result =
       fit_submesh(background, domain_.psi(), params_for(pieces), std::move(chosen), context_.part(kFit, kCertificate));
+  const std::size_t n_flips = a.result.manifold_flips.size(), n_back = a.result.n_stepped_back;
+  if (n_flips + n_back > 0 && lines_.detail) {
+    lines_.detail(
+        fmt::format("{} vertices changed sides, so that the boundary is a manifold; {} went back from psi = "
+                    "0, so that it does not meet itself",
+                    n_flips, n_back));
+  }
   round_to_file(a.result, domain_.shift);
   context_.report("certify", kCertificate);
   if (!a.made()) return;
