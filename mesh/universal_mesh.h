@@ -33,10 +33,12 @@ std::vector<std::string> problems(const UmParams&);
 
 /// A boundary-fitting mesh of {psi < 0}: Algorithm 1 of the paper, or what goes beyond it (fast_mesh.h).
 ///
-/// Foreseen failures are statuses with evidence; the arrays of the result then hold the last iterate. A double positive
-/// face or an obtuse conditioning angle breaks an assumption of the algorithm but need not break the mesh: both are
-/// counted in the result, and become the status only when a projection diverges or a tet inverts right there. With
-/// double positive faces the boundary of the mesh is not the set of positive faces, which a certificate will say.
+/// Foreseen failures are statuses with evidence; the arrays of the result then hold the last iterate. In UmMode::Fast
+/// there is a mesh wherever psi has an inside that h can show and that stays off the background boundary. In
+/// UmMode::Paper a double positive face or an obtuse conditioning angle breaks an assumption of the algorithm but need
+/// not break the mesh: both are counted in the result, and become the status only when a projection diverges or a tet
+/// inverts right there. With double positive faces the boundary of the mesh is not the set of positive faces, which a
+/// certificate will say.
 /// Around a body in a box: psi is a Complement (implicit_function.h), the background boundary a wall; walls are flat in
 /// an a15_box().
 /// @param seeds  for SubmeshSearch::Crawl: at least one point near every component of the boundary
