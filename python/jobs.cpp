@@ -13,7 +13,7 @@
 #include "pipeline/meshing/library_params.h"
 #include "pipeline/meshing/mesh_maker.h"
 #include "pipeline/meshing/mesh_measures.h"
-#include "pipeline/reports/certificate_json.h"
+#include "pipeline/reports/place_json.h"
 #include "pipeline/stages/cloud_preparation.h"
 #include "pipeline/stages/level_set_fit.h"
 #include "python/arguments.h"
@@ -103,7 +103,7 @@ Certificate certificate_of(const Domain& domain, const UmResult& result, double 
   watch("components", 0);
   const ZeroSetChoice pieces = choose_components(domain, h, polls_of(watch));
   watch("certify", 0);
-  return verdict_on(measure(domain, result, pieces, h, polls_of(watch)), parameters);
+  return verdict_on(measure(domain, result, pieces, h, {}, polls_of(watch)).measures, parameters);
 }
 
 }  // namespace umtet::python

@@ -17,7 +17,9 @@
 #include "pipeline/case/version.h"
 #include "pipeline/domain/background_choice.h"
 #include "pipeline/meshing/library_params.h"
+#include "pipeline/meshing/mesh_measures.h"
 #include "pipeline/reports/certificate_json.h"
+#include "pipeline/reports/place_json.h"
 #include "pipeline/stages/stages.h"
 #include "python/arguments.h"
 #include "python/errors.h"
@@ -142,10 +144,14 @@ py::object certificate(const Points& points,
   }
   const Watch watch = watch_of(py::none());
   input.context = polls_of(watch);
-  const MeshCertificate measured = in_arena(p ? p->threads : 0, [&] { return certify(input); });
+  const MeshMeasures measured = in_arena(
+      p ? p->threads : 0, [&] { return measures_of(certify(input), p ? &p->domain : nullptr, input.context); });
   Json json = document_head(kVersion);
-  json.update(to_json(measured));
-  json.update(to_json(judge(measured, failures(measured), parameters)));
+  json.update(to_json(measured.mesh));
+  json["valid"] = measured.is_valid;
+  json["faithful"] = p ? Json(measured.is_faithful) : Json(nullptr);
+  json["places"] = p ? to_json(measured.places) : Json(nullptr);
+  json.update(to_json(judge(measured, parameters)));
   return dict_of(json);
 }
 

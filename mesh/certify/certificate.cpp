@@ -94,7 +94,12 @@ double enclosed_volume(const TetMesh& mesh, const std::vector<Triangle>& faces) 
   return std::abs(six) / 6;
 }
 
-/// Fills the distances and normals of the boundary.
+/// How far from psi = 0 a vertex may be, in h.
+double vertex_tolerance(const MeshCertificate& certificate) {
+  return kVertexTolerance + certificate.coordinate_rounding / certificate.h;
+}
+
+/// Fills the distances, normals and faults of the boundary.
 /// @param volume  that the faces are to stand for
 void measure_against(ImplicitFunctionRef psi, const TetMesh& mesh, const std::vector<Triangle>& faces,
                      const std::vector<int>& vertices, double volume, const Context& context,
@@ -134,6 +139,23 @@ void measure_against(ImplicitFunctionRef psi, const TetMesh& mesh, const std::ve
   boundary.max_centroid_distance_over_h = max_centroid / h;
   boundary.min_cos_normal = min_cos;
   boundary.gap_over_volume = gap / volume;
+
+  boundary.faults.clear();
+  const double tolerance = vertex_tolerance(certificate);
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    if (vertex_distance[i] / h <= tolerance) continue;
+    boundary.faults.push_back({BoundaryFault::Kind::Off, mesh.V[vertices[i]], vertex_distance[i]});
+  }
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const FaceMeasure& f = face[i];
+    if (f.found && f.cos_normal > 0) continue;
+    const Vec3 centroid = (mesh.V[faces[i][0]] + mesh.V[faces[i][1]] + mesh.V[faces[i][2]]) / 3.0;
+    if (f.found) {
+      boundary.faults.push_back({BoundaryFault::Kind::Folded, centroid, f.distance});
+    } else {
+      boundary.faults.push_back({BoundaryFault::Kind::Off, centroid, h});
+    }
+  }
 }
 
 /// @param memory  if not null, matched with the mesh
@@ -212,6 +234,7 @@ MeshCertificate certify_again(const CertificateInput& input, CertificateMemory::
   boundary.max_centroid_distance_over_h.reset();
   boundary.min_cos_normal.reset();
   boundary.gap_over_volume.reset();
+  boundary.faults.clear();
   boundary.n_cos_below_half = boundary.n_unprojected_faces = 0;
   if (input.psi) {
     if (known.surface_vertices.empty()) known.surface_vertices = vertices_of(surface);
@@ -273,11 +296,19 @@ std::vector<std::string> invalidities(const MeshCertificate& certificate) {
   return reasons;
 }
 
+std::vector<std::string> coarseness(const MeshCertificate& certificate) {
+  const std::optional<double>& gap = certificate.boundary.gap_over_volume;
+  if (!gap || *gap <= kMostGap) return {};
+  return {
+      formatted("volume_gap: between the flat faces and psi = 0 lies %.3g %% of the volume of the mesh, or of the "
+                "body in it, more than %.3g %%: h is too large for this shape",
+                100 * *gap, 100 * kMostGap)};
+}
+
 std::vector<std::string> failures(const MeshCertificate& certificate) {
   std::vector<std::string> reasons = invalidities(certificate);
   const MeshCertificate::Boundary& b = certificate.boundary;
-  const double tolerance = kVertexTolerance + certificate.coordinate_rounding / certificate.h;
-  if (b.max_vertex_distance_over_h && !(*b.max_vertex_distance_over_h <= tolerance)) {
+  if (b.max_vertex_distance_over_h && !(*b.max_vertex_distance_over_h <= vertex_tolerance(certificate))) {
     reasons.push_back(formatted("a boundary vertex is %.3g h from psi = 0, more than rounding explains",
                                 *b.max_vertex_distance_over_h));
   }
@@ -286,12 +317,7 @@ std::vector<std::string> failures(const MeshCertificate& certificate) {
     reasons.push_back(
         formatted("the boundary is folded: cos(face normal, grad psi) is down to %.3g", *b.min_cos_normal));
   }
-  if (b.gap_over_volume && !(*b.gap_over_volume <= kMostGap)) {
-    reasons.push_back(
-        formatted("volume_gap: between the flat faces and psi = 0 lies %.3g %% of the volume of the mesh, or of the "
-                  "body in it, more than %.3g %%: h is too large for this shape",
-                  100 * *b.gap_over_volume, 100 * kMostGap));
-  }
+  for (std::string& reason : coarseness(certificate)) reasons.push_back(std::move(reason));
   return reasons;
 }
 

@@ -12,6 +12,17 @@
 
 namespace umtet {
 
+/// A vertex or a face of a boundary that is not on psi = 0, or that lies on it the wrong way round.
+struct BoundaryFault {
+  enum class Kind : std::uint8_t {
+    Off,     ///< a vertex farther than kVertexTolerance h, or a face without a point of psi = 0 near its centroid
+    Folded,  ///< a face whose normal has no part along grad psi: cos <= 0
+  };
+  Kind kind;
+  Vec3 where;       ///< the vertex, or the centroid
+  double distance;  ///< from psi = 0, model units; of a face without such a point h, which is the least it can be
+};
+
 /// What is true of a tet mesh, measured without trust in how it was made. Lengths are in model units, ratios in h.
 struct MeshCertificate {
   std::size_t n_tets = 0;
@@ -49,6 +60,7 @@ struct MeshCertificate {
     std::optional<double> gap_over_volume;
     std::size_t n_cos_below_half = 0;     ///< faces with cos < .5
     std::size_t n_unprojected_faces = 0;  ///< faces whose centroid found no point of psi = 0
+    std::vector<BoundaryFault> faults{};  ///< vertices before faces, in their order
   } boundary;
   /// Tets positive, boundary a closed manifold that does not meet itself, one within the other as those of a solid: the
   /// mesh is embedded, no two tets overlap (docs/method.md, Section 9).
@@ -99,12 +111,16 @@ class CertificateMemory;
 MeshCertificate certify(const CertificateInput&, const std::vector<std::int64_t>& vertex_id,
                         const std::vector<std::int64_t>& tet_id, CertificateMemory& memory);
 
-/// The reasons why a mesh is not valid, empty = it is: tets inverted, boundary not a closed manifold, or through itself,
-/// or not the positive and wall faces, a wall that has moved.
+/// The reasons why a mesh is not valid, empty = it is: tets inverted, boundary not a closed manifold, or through
+/// itself, or not the positive and wall faces, a wall that has moved.
 std::vector<std::string> invalidities(const MeshCertificate&);
 
-/// The reasons why a certificate fails, empty = pass: invalidities(), and what of a valid mesh is not psi = 0: a vertex farther than kVertexTolerance h from psi = 0, a face without a point
-/// of psi = 0 near it, a face with cos <= 0 (folded), faces that miss more than kMostGap of the volume.
+/// Empty, or the reason why h is too large for the shape as a whole: flat faces miss more than kMostGap of the volume.
+std::vector<std::string> coarseness(const MeshCertificate&);
+
+/// The reasons why a certificate fails, empty = pass: invalidities(), coarseness(), and the faults of the boundary:
+/// a vertex farther than kVertexTolerance h from psi = 0, a face without a point of psi = 0 near it, a face that is
+/// folded over.
 std::vector<std::string> failures(const MeshCertificate&);
 
 }  // namespace umtet

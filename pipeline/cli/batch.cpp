@@ -148,7 +148,6 @@ void Batch::start(std::size_t k) {
   if (request_.timeout > 0)
     call.arguments.insert(call.arguments.end(), {"--timeout", fmt::format("{}", request_.timeout)});
   if (request_.force) call.arguments.emplace_back("--force");
-  if (request_.strict) call.arguments.emplace_back("--strict");
   call.arguments.insert(call.arguments.end(),
                         {"--json", "--progress", "none", "--threads", fmt::format("{}", request_.threads), "-o",
                          (request_.folder / row.name).string(), "--set", "cloud.file=" + scans_[k].string()});

@@ -16,12 +16,12 @@ struct BatchRequest {
   std::filesystem::path list;  ///< of listed_clouds()
   std::filesystem::path folder;
   Parameters parameters;
-  std::vector<std::string> formats;    ///< exported from every mesh
-  int jobs = 1;                        ///< scans at a time
-  int threads = 1;                     ///< of every scan
-  double timeout = 0;                  ///< seconds for a scan; 0: any
-  bool resume = false;                 ///< scans that failed by themselves are not tried again
-  bool force = false, strict = false;  ///< of `umtet run`
+  std::vector<std::string> formats;  ///< exported from every mesh
+  int jobs = 1;                      ///< scans at a time
+  int threads = 1;                   ///< of every scan
+  double timeout = 0;                ///< seconds for a scan; 0: any
+  bool resume = false;               ///< scans that failed by themselves are not tried again
+  bool force = false;                ///< of `umtet run`
 };
 
 struct BatchOutcome {

@@ -80,7 +80,7 @@ CommandParser::CommandParser() {
   add_stage_flags(reconstruct);
   reconstruct.add_option("CLOUD", in_.input, "oriented points; or a case, to fit again with other parameters");
   add_parameter_flags(reconstruct, {"cloud", "reconstruct", "output"},
-                      {keys::output::units, keys::output::min_quality, keys::output::label_names,
+                      {keys::output::units, keys::output::min_quality, keys::output::accept, keys::output::label_names,
                        keys::output::label_min_area, keys::output::patch_angle, keys::output::patch_planar});
 
   CLI::App& mesh = add_command("mesh", make_mesh, "Stage two only: from the level set of CASE, or from a formula");
@@ -99,7 +99,7 @@ CommandParser::CommandParser() {
   evolve.add_option("--t", in_.times, "FROM:STEP:TO, the times; --implicit may have t in it");
   evolve.add_option("--skip", in_.skip, "times to leave out: --skip 3.1,3.4");
   add_parameter_flags(evolve, {"cloud", "reconstruct", "mesh", "output"},
-                      {keys::mesh::keep_iterates, keys::mesh::order, keys::output::label_names,
+                      {keys::mesh::keep_iterates, keys::mesh::order, keys::mesh::effort, keys::output::label_names,
                        keys::output::label_min_area, keys::output::patch_angle, keys::output::patch_planar});
 
   add_batch();
@@ -119,7 +119,9 @@ CommandParser::CommandParser() {
   CLI::App& exports = add_command("export", make_export, "Files for solvers and viewers, in CASE/4-export");
   exports.add_option("CASE", in_.input, "a case with a mesh")->required();
   add_formats(exports, "--format").required();
-  add_parameter_flags(exports, {"output"}, {keys::output::units, keys::output::max_memory, keys::output::min_quality});
+  add_parameter_flags(exports, {"output"},
+                      {keys::output::units, keys::output::max_memory, keys::output::min_quality, keys::output::strict,
+                       keys::output::accept});
 
   CLI::App& report =
       add_command("report", make_report, "CASE/report.html: certificate, mesh and curves on one page, offline");
@@ -145,7 +147,6 @@ void CommandParser::add_batch() {
       ->check(CLI::Range(1, 1024, "1 to 1024"));
   batch.add_flag("--resume", in_.resume, "scans whose input or mesh was refused are not tried again");
   batch.add_flag("--force", in_.force, "run all stages although their records match");
-  batch.add_flag("--strict", in_.strict, "a damaged artefact is exit 8 of its scan instead of being made again");
   add_formats(batch, "--export");
   add_parameter_flags(batch, {"cloud", "reconstruct", "mesh", "output"}, {keys::mesh::implicit});
 }
@@ -202,7 +203,6 @@ void CommandParser::add_stage_flags(CLI::App& command) {
   add_timeout(command, "seconds that the run may take; then exit 9, resumable");
   command.add_option("-o", in_.output, "the folder of the case");
   command.add_flag("--force", in_.force, "run the stages although their records match");
-  command.add_flag("--strict", in_.strict, "stop with exit 8 at a damaged artefact instead of making it again");
 }
 
 void CommandParser::add_parameter_flags(CLI::App& command, const std::vector<std::string>& sections,

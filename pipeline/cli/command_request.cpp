@@ -7,6 +7,7 @@
 #include "pipeline/domain/background_choice.h"
 #include "pipeline/output/boundary_patches.h"
 #include "pipeline/output/export_case.h"
+#include "pipeline/reports/mesh_place.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -43,6 +44,7 @@ void read_parameters(const CommandInputs& in, const F& runs, Parameters& paramet
     }
   }
   if (!in.config.empty()) parameters.load(in.config, ParamSource::File);
+  parse_accepted_places(parameters.output().accept);
 }
 
 /// The cloud that was named: to be read, and to be found again from another folder.
@@ -58,7 +60,6 @@ Command make_stages(const CLI::App& app, const CommandInputs& in, Stage first, S
   request.parameters = flag_parameters(app, in);
   Parameters& parameters = request.parameters;
   request.force = in.force;
-  request.strict = in.strict;
   request.report = !in.no_report;
   request.from = in.from.empty() ? first : parse_stage(in.from);
   request.until = in.until.empty() ? last : parse_stage(in.until);
@@ -68,6 +69,8 @@ Command make_stages(const CLI::App& app, const CommandInputs& in, Stage first, S
 
   read_parameters(
       in, [&](Stage stage) { return stage >= request.from && stage <= request.until; }, parameters);
+  // How a case is judged stays with it; whether damage stops a run is asked of each.
+  request.strict = parameters.output().strict && parameters.source(keys::output::strict) >= ParamSource::Set;
   if (input_is_case) {
     if (parameters.source(keys::mesh::implicit) == ParamSource::Flag)
       throw UsageError("--implicit goes with -o, without CASE");
@@ -145,7 +148,6 @@ Command make_batch(const CLI::App& app, const CommandInputs& in) {
   request.jobs = in.jobs;
   request.resume = in.resume;
   request.force = in.force;
-  request.strict = in.strict;
   require_walls(request.parameters);
   return BatchCommand{std::move(request)};
 }

@@ -3,16 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <numeric>
 #include <optional>
 
-#include "common/disjoint_sets.h"
-#include "mesh/implicit/surface_distance.h"
 #include "mesh/implicit/thickness.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/artefact.h"
+#include "pipeline/domain/clusters.h"
 
 namespace umtet {
 namespace {
@@ -37,32 +35,6 @@ Samples samples_of(const ZeroSetChoice& pieces) {
     s.area.insert(s.area.end(), points.size(), piece.area / static_cast<double>(points.size()));
   }
   return s;
-}
-
-/// Sets of points: those in one cube of edge `size`, or in cubes that touch, are together. Returns one number a point,
-/// the least index in its set.
-std::vector<int> clusters(const std::vector<Vec3>& x, double size) {
-  using Key = std::array<std::int64_t, 3>;
-  std::vector<std::pair<Key, int>> cubes;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const Eigen::Array3d q = (x[i] / size).array().floor();
-    cubes.push_back(
-        {{static_cast<std::int64_t>(q[0]), static_cast<std::int64_t>(q[1]), static_cast<std::int64_t>(q[2])},
-         static_cast<int>(i)});
-  }
-  std::sort(cubes.begin(), cubes.end());
-  DisjointSets sets(x.size());
-  for (const auto& [key, i] : cubes) {
-    for (int n = 0; n < 27; ++n) {
-      const Key next = {key[0] + n % 3 - 1, key[1] + n / 3 % 3 - 1, key[2] + n / 9 - 1};
-      // The first point of a cube stands for all of them: each is joined to its own cube's first.
-      const auto at = std::lower_bound(cubes.begin(), cubes.end(), std::pair(next, 0));
-      if (at != cubes.end() && at->first == next) sets.unite(i, at->second);
-    }
-  }
-  std::vector<int> set(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) set[i] = sets.find(static_cast<int>(i));
-  return set;
 }
 
 /// The largest h at which less than kLeastThinArea h^2 is thinner than kLeastEdgesAcross h.
@@ -96,17 +68,12 @@ void collect(const Domain& domain, const Samples& samples, bool is_gap, const Co
       with_detail[i] = std::min(with_detail[i], is_gap ? d[i].gap : d[i].body);
     }
   }
-  const std::vector<int> set = clusters(thin.points, h / 2);
-  std::vector<int> order(set.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return set[a] < set[b]; });
-  for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+  for (const std::vector<int>& members : members_of(clusters(thin.points, h / 2))) {
     ThinPlace place;
     place.is_gap = is_gap;
     place.thickness = kReach * h;
     std::vector<std::pair<double, double>> spectrum;
-    for (; end < order.size() && set[order[end]] == set[order[begin]]; ++end) {
-      const int i = order[end];
+    for (const int i : members) {
       place.area += thin.area[i];
       place.box.extend(thin.points[i]);
       place.centre += thin.points[i];
@@ -114,11 +81,11 @@ void collect(const Domain& domain, const Samples& samples, bool is_gap, const Co
       spectrum.push_back({with_detail[i], thin.area[i]});
     }
     if (place.area < kLeastThinArea * h * h) continue;
-    place.centre /= static_cast<double>(end - begin);
+    place.centre /= static_cast<double>(members.size());
     place.h_needed = needed(std::move(spectrum));
-    for (std::size_t k = begin; k < end; ++k) {
-      result.points.push_back(thin.points[order[k]]);
-      result.thickness.push_back(thin.thickness[order[k]]);
+    for (const int i : members) {
+      result.points.push_back(thin.points[i]);
+      result.thickness.push_back(thin.thickness[i]);
       result.place.push_back(static_cast<int>(result.places.size()));
     }
     result.places.push_back(place);
@@ -155,18 +122,6 @@ ThinPlaces find_thin_places(const Domain& domain, const ZeroSetChoice& pieces, d
   }
   sort_worst_first(result);
   return result;
-}
-
-LostPoint lost_of(const ThinPlaces& thin, const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
-                  const Context& context) {
-  LostPoint lost;
-  if (thin.empty() || faces.empty()) return lost;
-  const std::vector<double> d = SurfaceDistance(V, faces).distances(thin.points, context);
-  const auto farthest = std::max_element(d.begin(), d.end());
-  lost.where = thin.points[static_cast<std::size_t>(farthest - d.begin())];
-  lost.distance = *farthest;
-  lost.count = static_cast<std::size_t>(std::count_if(d.begin(), d.end(), [&](double t) { return t > thin.h; }));
-  return lost;
 }
 
 std::vector<ThinPlace> in_model(const ThinPlaces& thin, const Vec3& shift) {

@@ -7,6 +7,7 @@
 
 #include "pipeline/domain/domain.h"
 #include "pipeline/domain/zero_set_choice.h"
+#include "pipeline/reports/mesh_place.h"
 #include "pipeline/reports/thin_place.h"
 
 namespace umtet {
@@ -23,9 +24,8 @@ struct ThinPlaces {
   double h_needed() const { return places.front().h_needed; }  ///< for all of them. \pre !empty()
 };
 
-/// A place is too thin if it is thinner than this many edges ...
-inline constexpr double kLeastEdgesAcross = 1.25;
-/// ... on more than this much of the boundary, in h^2: a few samples at a sharp edge, or of noise, do no harm.
+/// A place is too thin if it is thinner than kLeastEdgesAcross on more than this much of the boundary, in h^2: a few
+/// samples at a sharp edge, or of noise, do no harm.
 inline constexpr double kLeastThinArea = 0.5;
 
 /// What a mesh of edge length h cannot show, before it is made.
@@ -36,18 +36,6 @@ inline constexpr double kLeastThinArea = 0.5;
 /// Cost: some twenty values of psi a cut point. The result does not depend on the number of threads.
 /// \throw Cancelled
 ThinPlaces find_thin_places(const Domain& domain, const ZeroSetChoice& pieces, double h, const Context& context = {});
-
-/// A point of a thin place that a mesh does not show, the farthest of them.
-struct LostPoint {
-  Vec3 where = Vec3::Zero();
-  double distance = 0;    ///< to the boundary of the mesh
-  std::size_t count = 0;  ///< points of thin places farther than h from it; 0: nothing is lost
-};
-
-/// Body or gap that is thinner than an edge can be skipped without a trace in topology or normals: this finds it.
-/// @param faces  the boundary of the mesh. \throw Cancelled
-LostPoint lost_of(const ThinPlaces&, const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
-                  const Context& context = {});
 
 /// The places in model coordinates: `shift` is added.
 std::vector<ThinPlace> in_model(const ThinPlaces&, const Vec3& shift);

@@ -13,6 +13,7 @@
 #include "pipeline/domain/closed_holes.h"
 #include "pipeline/domain/domain.h"
 #include "pipeline/domain/edge_length.h"
+#include "pipeline/meshing/mesh_measures.h"
 #include "pipeline/reports/stage_reports.h"
 
 namespace umtet {
@@ -101,17 +102,22 @@ MeshCheck check_mesh(const fs::path& file, const std::optional<fs::path>& agains
   }
   stop_if_interrupted();
   progress.report("check", "certify", .3);
-  MeshCheck check{file.string(), units_of(parameters), certify(input), {}, {}, {}};
-  std::vector<std::string> reasons = failures(check.mesh);
+  MeshCheck check;
+  check.file = file.string();
+  check.units = units_of(parameters);
+  check.mesh = certify(input);
   stop_if_interrupted();
+  MeshMeasures measured = measures_of(check.mesh, domain ? &*domain : nullptr, until_interrupted());
   if (content.quadratic) {
     check.second_order = check_second_order(*content.quadratic, input, check.mesh.h);
-    for (std::string& reason : failures(*check.second_order)) reasons.push_back(std::move(reason));
+    for (std::string& reason : failures(*check.second_order)) measured.reasons.push_back(std::move(reason));
   }
+  check.is_valid = measured.is_valid;
+  if (domain) check.places = measured.places;
   if (domain && domain->samples) {
     check.support = support_report(*domain, mesh.V, faces_but(walls, mesh), until_interrupted());
   }
-  check.verdict = judge(check.mesh, std::move(reasons), parameters);
+  check.verdict = judge(measured, parameters);
   return check;
 }
 

@@ -31,10 +31,6 @@ constexpr int kFinerGrids = 3;
 // Where each part of an attempt begins, as a share of its time.
 constexpr double kPieces = .05, kChoice = .1, kFit = .2, kCertificate = .9, kCurving = .95;
 
-void take(std::optional<std::string> reason, std::vector<std::string>& reasons) {
-  if (reason) reasons.push_back(std::move(*reason));
-}
-
 }  // namespace
 
 MeshMaker::MeshMaker(Domain& domain, const Parameters& parameters, Context context, MeshLines lines)
@@ -106,11 +102,13 @@ void MeshMaker::finish(const BackgroundMesh& background, ChosenSubmesh chosen, M
   round_to_file(a.result, domain_.shift);
   context_.report("certify", kCertificate);
   if (!a.made()) return;
-  a.measured = measure(domain_, a.result, pieces, a.h, context_);
-  a.measured.resolution.too_thin = in_model(a.thin, domain_.shift);
-  take(lost_reason(domain_, a.result, a.thin, context_), a.measured.reasons);
-  take(deviation_reason(parameters_.mesh().max_deviation, a.measured.mesh), a.measured.reasons);
+  Measurement made = measure(domain_, a.result, pieces, a.h, {&a.thin, parameters_.mesh().max_deviation}, context_);
+  a.measured = std::move(made.measures);
+  a.places = std::move(made.places);
   curve(a);
+  a.measured.is_faithful = a.measured.reasons.empty() && a.measured.places.empty();
+  // Not as output.* asks for: how a mesh is judged does not decide how it is made.
+  a.reasons = judge_shape(a.measured).reasons;
 }
 
 MeshAttempt MeshMaker::attempt(const BackgroundMesh& background, double h) {
@@ -157,7 +155,7 @@ MeshAttempt MeshMaker::attempt_for_tets(double h, const std::function<Background
 
 MeshAttempt MeshMaker::best(const EdgeLength& choice, const std::function<BackgroundMesh(double h)>& background) {
   return best_attempt(
-      choice, [&](double h) { return attempt_for_tets(h, background); },
+      choice, parameters_.mesh().effort, [&](double h) { return attempt_for_tets(h, background); },
       [this](const std::string& line) { say(line); });
 }
 

@@ -14,6 +14,7 @@
 #include "pipeline/domain/deviation.h"
 #include "pipeline/domain/edge_length.h"
 #include "pipeline/domain/missed_samples.h"
+#include "pipeline/meshing/mesh_places.h"
 
 namespace umtet {
 namespace {
@@ -58,16 +59,17 @@ std::vector<std::uint8_t> near_dropped_pieces(const Domain& domain, const ZeroSe
   return is_near;
 }
 
-/// Samples that psi, with all its detail, passes by, and the mesh does not: what has been too small for h.
+/// Samples that psi, with all its detail, passes by, and the mesh does not: what has been too small for h. Empty where
+/// they are few.
 /// @param d  distances of the samples to the mesh
-std::optional<std::string> lost_samples(const Domain& domain, const ZeroSetChoice& pieces, const std::vector<double>& d,
-                                        double h, const Context& context) {
+std::vector<Difference> lost_samples(const Domain& domain, const ZeroSetChoice& pieces, const std::vector<double>& d,
+                                     double h, const Context& context) {
   std::vector<Vec3> x;
   std::vector<double> distance;
   for (std::size_t i = 0; i < d.size(); ++i) {
     if (d[i] > h) x.push_back(domain.cloud.points[i]), distance.push_back(d[i]);
   }
-  if (x.empty()) return std::nullopt;
+  if (x.empty()) return {};
   std::vector<std::uint8_t> lost = near_dropped_pieces(domain, pieces, x, context);
   polled_parallel_for(x.size(), kValuesPerPoll, context, [&](std::size_t i) {
     Vec3 g;
@@ -75,34 +77,28 @@ std::optional<std::string> lost_samples(const Domain& domain, const ZeroSetChoic
     lost[i] = lost[i] == 0 && distance[i] > h + std::abs(value) / g.norm() ? 1 : 0;
   });
   const auto n = static_cast<std::size_t>(std::count(lost.begin(), lost.end(), 1));
-  if (n <= kFewSamples || static_cast<double>(n) <= kSmallShare * static_cast<double>(d.size())) {
-    return std::nullopt;
-  }
-  std::size_t farthest = 0;
+  if (n <= kFewSamples || static_cast<double>(n) <= kSmallShare * static_cast<double>(d.size())) return {};
+  std::vector<Difference> all;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    if (lost[i] && (!lost[farthest] || distance[i] > distance[farthest])) farthest = i;
+    if (lost[i]) all.push_back({PlaceKind::Missed, x[i], distance[i]});
   }
-  const Vec3 at = x[farthest] + domain.shift;
-  return fmt::format(
-      "{} samples of the surface are farther than h from the mesh, that at ({:.6g}, {:.6g}, "
-      "{:.6g}) {:.2g} h: h is too large for what is there",
-      n, at.x(), at.y(), at.z(), distance[farthest] / h);
+  return all;
 }
 
 // A count is repeated only if the bound on nodes lets the new spacing be less than this share of the former one.
 constexpr double kWorthRepeating = .9;
 
-/// What psi = 0 has, and how the mesh differs from it, if it does.
+/// What psi = 0 has, and where the mesh differs from it, if it does.
 struct Comparison {
   ZeroSetReport report;
-  std::optional<std::string> reason;
+  std::optional<MeshPlace> place;
 };
 
 /// Does the boundary of the mesh look like the pieces of psi = 0 that are kept, and the walls of the box around a
 /// fluid, one closed piece without a hole? Where the two counts differ, the count is repeated on a grid of half the
-/// spacing, as far as its size is allowed, before the mesh is blamed.
+/// spacing, as far as its size is allowed. A count on a grid coarser than the mesh says nothing against the mesh.
 Comparison compare_with_zero_set(const Domain& domain, const MeshCertificate& certificate, const ZeroSetChoice& pieces,
-                                 const Context& context) {
+                                 const SurfaceDistance* surface, const Context& context) {
   const MeshCertificate::Boundary& boundary = certificate.boundary;
   const int of_psi = boundary.components - (domain.complement ? 1 : 0);
   const long characteristic = boundary.euler_characteristic - (domain.complement ? 2 : 0);
@@ -117,31 +113,32 @@ Comparison compare_with_zero_set(const Domain& domain, const MeshCertificate& ce
     counted = &repeated;
   }
   Comparison made;
-  made.report.components_of_zero_set = counted->topology.components.size();
-  made.report.euler_characteristic_of_zero_set = counted->topology.euler_characteristic;
-  made.report.euler_characteristic_of_kept_components = counted->euler_characteristic;
-  made.report.components_meshed = of_psi;
-  made.report.components_dropped = counted->dropped;
+  ZeroSetReport& report = made.report;
+  report.counting_spacing = counted->topology.spacing;
+  report.components_of_zero_set = counted->topology.components.size();
+  report.euler_characteristic_of_zero_set = counted->topology.euler_characteristic;
+  report.components_kept = counted->seeds.size();
+  report.euler_characteristic_of_kept_components = counted->euler_characteristic;
+  report.components_meshed = of_psi;
+  report.euler_characteristic_meshed = characteristic;
+  report.components_dropped = counted->dropped;
   if (!differs(*counted)) return made;
-  const double spacing = counted->topology.spacing;
-  // A count on a grid coarser than the mesh is as likely to be wrong as the mesh.
-  const char* verdict = spacing > certificate.h
-                            ? "which of the two is wrong is open: the grid is coarser than the mesh, "
-                              "and as fine as its size is allowed to be"
-                            : "h is too large for this shape";
-  made.reason = fmt::format(
-      "psi = 0 has {} pieces (and {} dropped ones) of Euler characteristic {} on a grid of spacing {:.3g}, "
-      "the boundary of the mesh {}{} of {}: {}",
-      counted->seeds.size(), counted->dropped.size(), counted->euler_characteristic, spacing, of_psi,
-      domain.complement ? " besides the walls" : "", characteristic, verdict);
+  const auto n_pieces = static_cast<std::size_t>(std::abs(static_cast<int>(counted->seeds.size()) - of_psi));
+  const auto n_handles = static_cast<std::size_t>(std::abs(counted->euler_characteristic - characteristic) / 2);
+  const std::size_t n = std::max<std::size_t>(1, n_pieces + n_handles);
+  MeshPlace place{.kind = PlaceKind::Topology, .n = n};
+  if (surface) place = topology_place(domain, *counted, *surface, certificate.h, n, context);
+  report.topology = counted->topology.spacing > certificate.h ? TopologyProof::NotProved : TopologyProof::Differs;
+  report.topology_at = place.where;
+  if (report.topology == TopologyProof::Differs) made.place = place;
   return made;
 }
 
 /// With the proof that no piece is unseen, and what of the boundary is a guess.
 Comparison compare_with_domain(const Domain& domain, const TetMesh& mesh, const std::vector<Triangle>& faces,
                                const MeshCertificate& certificate, const ZeroSetChoice& pieces,
-                               const Context& context) {
-  Comparison made = compare_with_zero_set(domain, certificate, pieces, context);
+                               const SurfaceDistance* surface, const Context& context) {
+  Comparison made = compare_with_zero_set(domain, certificate, pieces, surface, context);
   ZeroSetReport& report = made.report;
   if (domain.level_set) report.level_set_spacing = domain.level_set->spacing();
   if (domain.level_set && pieces.cells) {
@@ -157,8 +154,7 @@ Comparison compare_with_domain(const Domain& domain, const TetMesh& mesh, const 
   return made;
 }
 
-}  // namespace
-
+/// The largest distance asked for with mesh.max_deviation is a promise: a mesh that breaks it gets a reason.
 std::optional<std::string> deviation_reason(double asked, const MeshCertificate& mesh) {
   const std::optional<double>& d = mesh.boundary.max_centroid_distance_over_h;
   if (asked == 0 || !d) return std::nullopt;
@@ -167,19 +163,17 @@ std::optional<std::string> deviation_reason(double asked, const MeshCertificate&
   return fmt::format("a face centre is {:.4g} from psi = 0, more than the {:.4g} of --max-deviation", made, asked);
 }
 
-std::optional<std::string> lost_reason(const Domain& domain, const UmResult& result, const ThinPlaces& thin,
-                                       const Context& context) {
-  const LostPoint lost = lost_of(thin, result.final, result.submesh.positive_faces, context);
-  if (lost.count == 0) return std::nullopt;
-  const Vec3 at = lost.where + domain.shift;
-  return fmt::format(
-      "the mesh lacks what is thin around ({:.6g}, {:.6g}, {:.6g}): psi = 0 is "
-      "{:.2g} h from its boundary there",
-      at.x(), at.y(), at.z(), lost.distance / thin.h);
+/// Those that the certificate of the tets has.
+void set_reasons(MeshMeasures& m) {
+  m.reasons = invalidities(m.mesh);
+  m.is_valid = m.reasons.empty();
+  for (std::string& reason : coarseness(m.mesh)) m.reasons.push_back(std::move(reason));
 }
 
-MeshMeasures measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& pieces, double h,
-                     const Context& context) {
+}  // namespace
+
+Measurement measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& pieces, double h,
+                    const MeasureParams& params, const Context& context) {
   const TetMesh mesh{result.final, result.submesh.mesh.C};
   CertificateInput input;
   input.mesh = &mesh;
@@ -192,29 +186,53 @@ MeshMeasures measure(const Domain& domain, const UmResult& result, const ZeroSet
   input.psi = domain.psi();
   input.coordinate_rounding = coordinate_rounding(domain);
   input.context = context;
-  MeshMeasures m;
+  Measurement made;
+  MeshMeasures& m = made.measures;
   if (domain.level_set) m.n_points = domain.cloud.points.size();
   m.mesh = certify(input);
   m.coordinate_rounding_over_h = m.mesh.coordinate_rounding / m.mesh.h;
-  m.reasons = failures(m.mesh);
-  const auto blame = [&](std::optional<std::string> reason) {
-    if (reason) m.reasons.push_back(std::move(*reason));
-  };
+  set_reasons(m);
+  if (auto reason = deviation_reason(params.max_deviation, m.mesh)) m.reasons.push_back(std::move(*reason));
 
   const std::vector<Triangle>& faces = result.submesh.positive_faces;
-  Comparison compared = compare_with_domain(domain, mesh, faces, m.mesh, pieces, context);
-  m.domain = std::move(compared.report);
-  blame(std::move(compared.reason));
   // No face: the body lies between the vertices of the background.
-  if (!domain.cloud.points.empty() && !faces.empty()) {
-    const std::vector<double> d = SurfaceDistance(mesh.V, faces).distances(domain.cloud.points, context);
-    if (domain.fitted) blame(lost_samples(domain, pieces, d, h, context));
+  std::optional<SurfaceDistance> surface;
+  if (!faces.empty()) surface.emplace(mesh.V, faces);
+  Comparison compared =
+      compare_with_domain(domain, mesh, faces, m.mesh, pieces, surface ? &*surface : nullptr, context);
+  m.domain = std::move(compared.report);
+  std::vector<Difference> differences = differences_of(m.mesh);
+  const auto add = [&](const std::vector<Difference>& more) {
+    differences.insert(differences.end(), more.begin(), more.end());
+  };
+  add(differences_of(result.manifold_flips));
+  if (surface && params.thin) add(lost_of(*params.thin, *surface, context));
+  if (surface && !domain.cloud.points.empty()) {
+    const std::vector<double> d = surface->distances(domain.cloud.points, context);
+    if (domain.fitted) add(lost_samples(domain, pieces, d, h, context));
     m.cloud = sample_distances(domain, d, h, m.mesh.h * m.mesh.boundary.max_centroid_distance_over_h.value_or(0));
   }
+  made.places = places_of(domain, differences, h, context);
+  if (compared.place) made.places.push_back(*compared.place);
+  m.places = report_on(made.places);
   m.resolution.kappa_h_max = max_curvature(domain.psi(), result, h, context);
   m.resolution.feature_size_over_h_min = min_feature_size(domain, result, h, context) / h;
   m.resolution.obtuse_conditioning_angles = result.obtuse_conditioning_angles;
   m.resolution.double_positive_faces = result.double_positive_faces;
+  if (params.thin) m.resolution.too_thin = in_model(*params.thin, domain.shift);
+  m.is_faithful = m.reasons.empty() && m.places.empty();
+  return made;
+}
+
+MeshMeasures measures_of(MeshCertificate certificate, const Domain* domain, const Context& context) {
+  MeshMeasures m;
+  m.mesh = std::move(certificate);
+  set_reasons(m);
+  if (domain) {
+    std::vector<MeshPlace> places = places_of(*domain, differences_of(m.mesh), m.mesh.h, context);
+    m.places = report_on(places);
+  }
+  m.is_faithful = m.reasons.empty() && m.places.empty();
   return m;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <optional>
-#include <string>
+#include <vector>
 
 #include "mesh/universal_mesh.h"
 #include "pipeline/domain/domain.h"
@@ -11,18 +10,24 @@
 
 namespace umtet {
 
-/// What is true of the corners of a mesh, and what is wrong with it; not whether thin places are lost, nor how far off
-/// psi = 0 it may be: ask below. \throw Cancelled
-MeshMeasures measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& pieces, double h,
-                     const Context& context = {});
+/// What is true of the corners of a mesh, and everywhere that it is not faithful to psi = 0.
+struct Measurement {
+  MeshMeasures measures;
+  std::vector<MeshPlace> places;  ///< all of them, in the order of measures.places.listed
+};
 
-/// The distance asked for with mesh.max_deviation is a promise: a mesh that breaks it gets a reason.
-/// @param asked  model units; 0: any will do
-std::optional<std::string> deviation_reason(double asked, const MeshCertificate& mesh);
+/// What else a mesh is held against.
+struct MeasureParams {
+  const ThinPlaces* thin = nullptr;  ///< of psi as it was meshed; null: not looked for
+  double max_deviation = 0;          ///< of face centres from psi = 0, model units: more is a reason; 0: any will do
+};
 
-/// Body or gap that is thin for h may be missing from the mesh as a whole, without a trace in topology or normals: that
-/// gets a reason too. \throw Cancelled
-std::optional<std::string> lost_reason(const Domain& domain, const UmResult& result, const ThinPlaces& thin,
-                                       const Context& context = {});
+/// @param h  that the mesh was made with. \throw Cancelled
+Measurement measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& pieces, double h,
+                    const MeasureParams& params = {}, const Context& context = {});
+
+/// What the certificate of a mesh says that was made elsewhere.
+/// @param domain  of the psi that it was certified with; null: without
+MeshMeasures measures_of(MeshCertificate certificate, const Domain* domain, const Context& context = {});
 
 }  // namespace umtet

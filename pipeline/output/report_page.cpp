@@ -81,9 +81,11 @@ std::string script_json(const Json& json) {
 }
 
 std::string reason_list(const Certificate& certificate) {
-  if (certificate.verdict.passes()) return "";
+  const std::vector<std::string>& accepted = certificate.verdict.accepted;
+  if (certificate.verdict.passes() && accepted.empty()) return "";
   std::string out = "<ul class=\"reasons\">\n";
   for (const std::string& reason : certificate.verdict.reasons) out += "<li>" + html_text(reason) + "</li>\n";
+  for (const std::string& what : accepted) out += "<li>Accepted: " + html_text(what) + "</li>\n";
   if (certificate.remedy) out += "<li>Try " + html_text(*certificate.remedy) + "</li>\n";
   return out + "</ul>";
 }
@@ -114,6 +116,15 @@ std::string check_list(const Certificate& c) {
     add(fmt::format("<a href=\"#missed\">places where samples are off the mesh: {}</a>",
                     value("/cloud/n_missed_places", cloud->n_missed_places)),
         std::nullopt);
+  }
+  const PlaceReport& places = c.measured.places;
+  if (const std::size_t n = places.n(); n > 0) {
+    add(fmt::format("<a href=\"#places\">places where it is not faithful to ψ = 0: {}</a>", value("/places/n", n)),
+        std::all_of(places.kinds.begin(), places.kinds.end(), [](const auto& k) { return k.n == k.n_small; })
+            ? std::optional<bool>()
+            : false);
+  } else {
+    add("faithful to ψ = 0 everywhere", c.measured.is_faithful);
   }
   if (const std::optional<double>& gate = c.verdict.min_quality_gate) {
     add("min Q at least " + value("/gates/min_quality", gate, 6), mesh.quality.min >= *gate);
@@ -148,56 +159,6 @@ std::string headline_cards(const Certificate& c) {
          "99&nbsp;% of the samples nearer; max " + value("/cloud/max_distance_over_h", cloud->max / mesh.h, 3) + " h");
   }
   return out;
-}
-
-std::string hole_table(const Certificate& c) {
-  const std::optional<SupportReport>& support = c.measured.domain.support;
-  if (!support || support->closed_holes.empty()) return "";
-  const std::string unit = c.units ? ", " + html_text(*c.units) : "";
-  std::string rows = fmt::format(
-      "<tr><th></th><th>centre{0}</th><th>area</th><th>share of the boundary</th><th>farthest from a sample{0}</th>"
-      "<th>in spacings</th><th>width{0}</th><th>length of the rim{0}</th><th>rims</th></tr>\n",
-      unit);
-  double part = 0;
-  for (std::size_t k = 0; k < support->closed_holes.size(); ++k) {
-    const ClosedHole& hole = support->closed_holes[k];
-    part += hole.area_fraction;
-    rows += fmt::format(
-        "<tr><td><button type=\"button\" data-hole=\"{}\">show {}</button></td><td>({:.4g}, {:.4g}, {:.4g})</td>"
-        "<td>{:.3g}</td><td>{:.2g} %</td><td>{:.3g}</td><td>{:.0f}</td>"
-        "<td>{:.3g}</td><td>{:.3g}</td><td>{}</td></tr>\n",
-        k, k + 1, hole.centre.x(), hole.centre.y(), hole.centre.z(), hole.area, 100 * hole.area_fraction, hole.deepest,
-        hole.deepest_over_spacing, hole.rim_diameter, hole.rim_length, hole.n_rims);
-  }
-  const std::size_t n = support->n_closed_holes, n_listed = support->closed_holes.size();
-  const std::string rest = n > n_listed ? fmt::format(" These are the largest {} of {}.", n_listed, n) : "";
-  return fmt::format(
-      "<div class=\"table\" id=\"holes\"><h2>{} of the scan closed without samples: {}{:.2g} % of the boundary</h2>\n"
-      "<p>No sample is near {} of the surface: the shape there is a guess of the fit. In exported files it is the "
-      "patch <code>closed_holes</code>, which reaches up to the samples around.{}</p>\n<table>\n{}</table></div>\n",
-      n == 1 ? "1 hole" : fmt::format("{} holes", n), n > n_listed ? "over " : "", 100 * part,
-      n == 1 ? "this part" : "these parts", rest, rows);
-}
-
-std::string missed_table(const Certificate& c) {
-  const std::optional<SampleDistances>& cloud = c.measured.cloud;
-  if (!cloud || cloud->missed.empty()) return "";
-  const std::string unit = c.units ? ", " + html_text(*c.units) : "";
-  std::string rows = fmt::format(
-      "<tr><th></th><th>farthest sample{0}</th><th>from the mesh{0}</th><th>in h</th><th>samples</th></tr>\n", unit);
-  for (std::size_t k = 0; k < cloud->missed.size(); ++k) {
-    const MissedPlace& p = cloud->missed[k];
-    rows += fmt::format(
-        "<tr><td>{}</td><td>({:.4g}, {:.4g}, {:.4g})</td><td>{:.3g}</td><td>{:.2g}</td><td>{}</td></tr>\n", k + 1,
-        p.farthest.x(), p.farthest.y(), p.farthest.z(), p.distance, p.distance / c.measured.mesh.h, p.n_samples);
-  }
-  const std::size_t n = cloud->n_missed_places, n_listed = cloud->missed.size();
-  const std::string rest = n > n_listed ? fmt::format(" These are the farthest {} of {}.", n_listed, n) : "";
-  return fmt::format(
-      "<div class=\"table\" id=\"missed\"><h2>Samples that are off the mesh</h2>\n<p>Neither noise nor flat faces "
-      "explain why these are farther than {:.3g} from it: detail that psi or h is too coarse for, a second sheet, "
-      "outliers.{}</p>\n<table>\n{}</table></div>\n",
-      cloud->missed_beyond, rest, rows);
 }
 
 std::string stage_table(const std::vector<StageRecord>& records) {

@@ -23,12 +23,6 @@ std::string reason_list(const Certificate& certificate);
 std::string check_list(const Certificate& certificate);
 std::string headline_cards(const Certificate& certificate);
 
-/// The holes that were closed, with a button each for the viewer to show it; empty when there are none.
-std::string hole_table(const Certificate& certificate);
-
-/// The places where samples are off the mesh; empty when there are none.
-std::string missed_table(const Certificate& certificate);
-
 /// Seconds and memory of the stages, with bars. @param records  of the stages that were run
 std::string stage_table(const std::vector<StageRecord>& records);
 /// The levels of a multilevel fit; empty when there are none.

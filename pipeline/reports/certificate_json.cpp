@@ -1,6 +1,9 @@
 #include "pipeline/reports/certificate_json.h"
 
+#include <array>
+
 #include "pipeline/case/exit_code.h"
+#include "pipeline/reports/place_json.h"
 
 namespace umtet {
 namespace {
@@ -79,27 +82,6 @@ MeshCertificate mesh_from(const Json& json) {
   return c;
 }
 
-Json to_json(const ClosedHole& hole) {
-  return {{"centre", json_of(hole.centre)},
-          {"area", hole.area},
-          {"area_fraction", hole.area_fraction},
-          {"deepest", hole.deepest},
-          {"deepest_over_spacing", hole.deepest_over_spacing},
-          {"rim", {{"n", hole.n_rims}, {"length", hole.rim_length}, {"diameter", hole.rim_diameter}}}};
-}
-
-ClosedHole closed_hole_from(const Json& json) {
-  const Json& rim = json.at("rim");
-  return {.centre = vector_from(json.at("centre")),
-          .area = number_from(json.at("area")),
-          .area_fraction = number_from(json.at("area_fraction")),
-          .deepest = number_from(json.at("deepest")),
-          .deepest_over_spacing = number_from(json.at("deepest_over_spacing")),
-          .rim_length = number_from(rim.at("length")),
-          .rim_diameter = number_from(rim.at("diameter")),
-          .n_rims = rim.at("n")};
-}
-
 /// The same keys with and without a cloud.
 Json to_json(const std::optional<SupportReport>& support) {
   if (!support) {
@@ -108,12 +90,10 @@ Json to_json(const std::optional<SupportReport>& support) {
             {"n_closed_holes", nullptr},
             {"closed_holes", nullptr}};
   }
-  Json holes = Json::array();
-  for (const ClosedHole& hole : support->closed_holes) holes.push_back(to_json(hole));
   return {{"unsupported_area_fraction", support->unsupported_area_fraction},
           {"support_radius", support->radius},
           {"n_closed_holes", support->n_closed_holes},
-          {"closed_holes", std::move(holes)}};
+          {"closed_holes", to_json(support->closed_holes)}};
 }
 
 std::optional<SupportReport> support_from(const Json& json) {
@@ -123,16 +103,32 @@ std::optional<SupportReport> support_from(const Json& json) {
   if (!json.contains("support_radius")) return support;  // written before holes were looked for: there are none
   support.radius = number_from(json.at("support_radius"));
   support.n_closed_holes = json.at("n_closed_holes");
-  for (const Json& hole : json.at("closed_holes")) support.closed_holes.push_back(closed_hole_from(hole));
+  support.closed_holes = closed_holes_from(json.at("closed_holes"));
   return support;
+}
+
+constexpr std::array<const char*, 3> kTopologyWords = {"same", "differs", "not proved"};
+
+const char* word_of(TopologyProof proof) { return kTopologyWords.at(static_cast<std::size_t>(proof)); }
+
+TopologyProof topology_of(const std::string& word) {
+  for (const TopologyProof proof : {TopologyProof::Same, TopologyProof::Differs}) {
+    if (word == word_of(proof)) return proof;
+  }
+  return TopologyProof::NotProved;
 }
 
 Json to_json(const ZeroSetReport& r) {
   Json json = {{"level_set_spacing", json_of(r.level_set_spacing)},
                {"components_of_zero_set", r.components_of_zero_set},
                {"euler_characteristic_of_zero_set", r.euler_characteristic_of_zero_set},
+               {"components_kept", r.components_kept},
                {"euler_characteristic_of_kept_components", r.euler_characteristic_of_kept_components},
                {"components_meshed", r.components_meshed},
+               {"euler_characteristic_meshed", r.euler_characteristic_meshed},
+               {"counting_spacing", r.counting_spacing},
+               {"topology", word_of(r.topology)},
+               {"topology_at", r.topology_at ? json_of(*r.topology_at) : Json(nullptr)},
                {"components_dropped", r.components_dropped},
                {"components_proved", json_of(r.components_proved)}};
   json.update(to_json(r.support));
@@ -140,21 +136,23 @@ Json to_json(const ZeroSetReport& r) {
 }
 
 ZeroSetReport zero_set_from(const Json& json) {
+  const Json& at = json.at("topology_at");
   return {.level_set_spacing = optional_from<double>(json.at("level_set_spacing")),
           .components_of_zero_set = json.at("components_of_zero_set"),
           .euler_characteristic_of_zero_set = json.at("euler_characteristic_of_zero_set"),
           .euler_characteristic_of_kept_components = json.at("euler_characteristic_of_kept_components"),
+          .components_kept = json.at("components_kept"),
           .components_meshed = json.at("components_meshed"),
+          .euler_characteristic_meshed = json.at("euler_characteristic_meshed"),
+          .counting_spacing = number_from(json.at("counting_spacing")),
+          .topology = topology_of(json.at("topology")),
+          .topology_at = at.is_null() ? std::nullopt : std::optional(vector_from(at)),
           .components_dropped = json.at("components_dropped"),
           .components_proved = optional_from<bool>(json.at("components_proved")),
           .support = support_from(json)};
 }
 
 Json to_json(const SampleDistances& d, double h) {
-  Json missed = Json::array();
-  for (const MissedPlace& p : d.missed) {
-    missed.push_back({{"farthest", json_of(p.farthest)}, {"distance", p.distance}, {"n_samples", p.n_samples}});
-  }
   return {{"noise", json_of(d.noise)},
           {"noise_over_h", ratio_to(h, d.noise)},
           {"rms_distance", d.rms},
@@ -165,7 +163,7 @@ Json to_json(const SampleDistances& d, double h) {
           {"p99_distance_over_h", d.p99 / h},
           {"missed_beyond", d.missed_beyond},
           {"n_missed_places", d.n_missed_places},
-          {"missed_places", std::move(missed)}};
+          {"missed_places", to_json(d.missed)}};
 }
 
 SampleDistances distances_from(const Json& json) {
@@ -176,26 +174,8 @@ SampleDistances distances_from(const Json& json) {
   if (!json.contains("missed_beyond")) return d;  // written before they were looked for
   d.missed_beyond = number_from(json.at("missed_beyond"));
   d.n_missed_places = json.at("n_missed_places");
-  for (const Json& place : json.at("missed_places")) {
-    d.missed.push_back({.farthest = vector_from(place.at("farthest")),
-                        .distance = number_from(place.at("distance")),
-                        .n_samples = place.at("n_samples")});
-  }
+  d.missed = missed_places_from(json.at("missed_places"));
   return d;
-}
-
-std::vector<ThinPlace> thin_places_from(const Json& list) {
-  std::vector<ThinPlace> places;
-  for (const Json& json : list) {
-    const Json& box = json.at("box");
-    places.push_back({.is_gap = json.at("kind") == "gap",
-                      .box = {vector_from(box.at("min")), vector_from(box.at("max"))},
-                      .centre = vector_from(json.at("centre")),
-                      .thickness = number_from(json.at("thickness")),
-                      .area = number_from(json.at("area")),
-                      .h_needed = number_from(json.at("h_needed"))});
-  }
-  return places;
 }
 
 Json to_json(const ResolutionReport& r, double h) {
@@ -250,6 +230,9 @@ Json measured_blocks(const MeshMeasures& m) {
   json["domain"] = to_json(m.domain);
   json["cloud"] = m.cloud ? to_json(*m.cloud, m.mesh.h) : Json(nullptr);
   json["resolution"] = to_json(m.resolution, m.mesh.h);
+  json["valid"] = m.is_valid;
+  json["faithful"] = m.is_faithful;
+  json["places"] = to_json(m.places);
   return json;
 }
 
@@ -268,6 +251,9 @@ MeshMeasures measured_blocks_from(const Json& json) {
   m.domain = zero_set_from(json.at("domain"));
   if (!json.at("cloud").is_null()) m.cloud = distances_from(json.at("cloud"));
   m.resolution = resolution_from(json.at("resolution"));
+  m.is_valid = json.at("valid");
+  m.is_faithful = json.at("faithful");
+  m.places = places_from(json.at("places"));
   if (!json.contains("order")) return m;
   m.order = json.at("order");
   if (!json.at("second_order").is_null()) m.second_order = second_order_from(json.at("second_order"));
@@ -278,6 +264,9 @@ Verdict verdict_from(const Json& json) {
   const Json& gates = json.at("gates");
   return {.min_quality_gate = optional_from<double>(gates.at("min_quality")),
           .volume_gap_gate = number_from(gates.at("volume_gap")),
+          .strict = gates.at("strict"),
+          .accept = gates.at("accept"),
+          .accepted = json.at("accepted"),
           .reasons = json.at("reasons")};
 }
 
@@ -338,23 +327,14 @@ Json to_json(const SecondOrderReport& report) {
 }
 
 Json to_json(const Verdict& v) {
-  return {{"gates", {{"min_quality", json_of(v.min_quality_gate)}, {"volume_gap", v.volume_gap_gate}}},
+  return {{"gates",
+           {{"min_quality", json_of(v.min_quality_gate)},
+            {"volume_gap", v.volume_gap_gate},
+            {"strict", v.strict},
+            {"accept", v.accept}}},
           {"verdict", v.word()},
+          {"accepted", v.accepted},
           {"reasons", v.reasons}};
-}
-
-Json to_json(const std::vector<ThinPlace>& places, double h) {
-  Json list = Json::array();
-  for (const ThinPlace& p : places) {
-    list.push_back({{"kind", p.is_gap ? "gap" : "body"},
-                    {"centre", json_of(p.centre)},
-                    {"box", {{"min", json_of(Vec3(p.box.min()))}, {"max", json_of(Vec3(p.box.max()))}}},
-                    {"thickness", p.thickness},
-                    {"thickness_over_h", p.thickness / h},
-                    {"area", p.area},
-                    {"h_needed", p.h_needed}});
-  }
-  return list;
 }
 
 Json to_json(const MeshMeasures& measured) {
@@ -413,7 +393,10 @@ Json to_json(const MeshCheck& check) {
   json["order"] = check.second_order ? 2 : 1;
   json["second_order"] = second_order_block(check.second_order);
   json["domain"] = to_json(check.support);
+  json["valid"] = check.is_valid;
+  json["places"] = check.places ? to_json(*check.places) : Json(nullptr);
   json["verdict"] = check.verdict.word();
+  json["accepted"] = check.verdict.accepted;
   json["reasons"] = check.verdict.reasons;
   return json;
 }

@@ -14,10 +14,8 @@ Json document_head(const std::string& version);
 Json to_json(const MeshCertificate& certificate);
 /// The block `second_order`.
 Json to_json(const SecondOrderReport& report);
-/// `gates`, `verdict` and `reasons`.
+/// `gates`, `verdict`, `accepted` and `reasons`.
 Json to_json(const Verdict& verdict);
-/// A list, an object a place. @param h  the edge length that the places are too thin for
-Json to_json(const std::vector<ThinPlace>& places, double h);
 
 /// The block `measured` of the record of 3-mesh.
 Json to_json(const MeshMeasures& measured);

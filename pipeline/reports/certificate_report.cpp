@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "pipeline/reports/certificate_json.h"
 #include "pipeline/reports/stage_reports.h"
@@ -52,20 +53,73 @@ std::string remedy_for(const Certificate& c) {
          (c.measured.n_points ? "; where psi itself is wrong there, a finer --spacing" : "");
 }
 
+/// The places of a kind in words.
+std::string said_of(const PlaceReport::OfKind& k, const ZeroSetReport& domain, bool strict) {
+  const MeshPlace& worst = k.worst;
+  const std::size_t n = strict ? k.n : k.n - k.n_small;
+  const std::string places = n == 1 ? "1 place" : fmt::format("{} places", n);
+  const std::string at = fmt::format("({:.6g}, {:.6g}, {:.6g})", worst.where.x(), worst.where.y(), worst.where.z());
+  const double off = worst.off_over_h;
+  switch (k.kind) {
+    case PlaceKind::Folded:
+      return fmt::format("the boundary is folded over at {}, the worst, of {} faces at {}, {:.2g} h off psi = 0",
+                         places, worst.n, at, off);
+    case PlaceKind::Off:
+      return fmt::format("the boundary is off psi = 0 at {}, the worst at {} by {:.2g} h", places, at, off);
+    case PlaceKind::Filled:
+      return fmt::format("a gap is filled, for the boundary to be a manifold, at {}, the worst at {}, {:.2g} h deep",
+                         places, at, off);
+    case PlaceKind::Cut:
+      return fmt::format("body is cut away, for the boundary to be a manifold, at {}, the worst at {}, {:.2g} h deep",
+                         places, at, off);
+    case PlaceKind::Thin:
+      return fmt::format("the mesh lacks what is thin at {}: psi = 0 is {:.2g} h from its boundary at {}", places, off,
+                         at);
+    case PlaceKind::Topology:
+      return fmt::format(
+          "psi = 0 has {} pieces (and {} dropped ones) of Euler characteristic {} on a grid of spacing {:.3g}, the "
+          "boundary of the mesh {} of {}: h is too large for this shape, most of all at {}",
+          domain.components_kept, domain.components_dropped.size(), domain.euler_characteristic_of_kept_components,
+          domain.counting_spacing, domain.components_meshed, domain.euler_characteristic_meshed, at);
+    case PlaceKind::Missed:
+      return fmt::format(
+          "samples of the surface are farther than h from the mesh at {}, the worst, {} samples at {}, {:.2g} h: h is "
+          "too large for what is there",
+          places, worst.n, at, off);
+  }
+  return "";
+}
+
 }  // namespace
 
 std::vector<std::string> failures(const SecondOrderReport& report) {
   return failures(report.certificate, report.repairs ? report.repairs->n_mid_sides_put_back : 0);
 }
 
-Verdict judge(const MeshCertificate& mesh, std::vector<std::string> reasons, const Parameters& parameters) {
+Verdict judge_shape(const MeshMeasures& measured, bool strict, const std::string& accept) {
   Verdict verdict;
-  verdict.reasons = std::move(reasons);
+  verdict.reasons = measured.reasons;
+  verdict.strict = strict;
+  verdict.accept = accept;
+  const std::vector<AcceptedPlaces> accepted = parse_accepted_places(accept);
+  for (const PlaceReport::OfKind& k : measured.places.kinds) {
+    if (k.n == k.n_small && !strict) continue;
+    const bool is_accepted = std::any_of(accepted.begin(), accepted.end(), [&](const AcceptedPlaces& a) {
+      return a.kind == k.kind && (!a.most_off_over_h || k.max_off_over_h <= *a.most_off_over_h);
+    });
+    (is_accepted ? verdict.accepted : verdict.reasons).push_back(said_of(k, measured.domain, strict));
+  }
+  return verdict;
+}
+
+Verdict judge(const MeshMeasures& measured, const Parameters& parameters) {
+  Verdict verdict = judge_shape(measured, parameters.output().strict, parameters.output().accept);
   const double gate = parameters.output().min_quality;
   if (!(gate > 0)) return verdict;
   verdict.min_quality_gate = gate;
-  if (mesh.quality.min < gate) {
-    verdict.reasons.push_back(fmt::format("min quality {:.4f} is below the gate of {:.4f}", mesh.quality.min, gate));
+  const double least = measured.mesh.quality.min;
+  if (least < gate) {
+    verdict.reasons.push_back(fmt::format("min quality {:.4f} is below the gate of {:.4f}", least, gate));
   }
   return verdict;
 }
@@ -74,7 +128,7 @@ Certificate verdict_on(MeshMeasures measured, const Parameters& parameters) {
   Certificate c;
   c.units = units_of(parameters);
   if (const std::int64_t asked = parameters.mesh().tets; asked > 0) c.n_tets_asked = asked;
-  c.verdict = judge(measured.mesh, std::exchange(measured.reasons, {}), parameters);
+  c.verdict = judge(measured, parameters);
   c.measured = std::move(measured);
   if (!c.verdict.passes()) c.remedy = remedy_for(c);
   return c;

@@ -13,6 +13,7 @@
 #include "pipeline/case/record.h"
 #include "pipeline/case/version.h"
 #include "pipeline/reports/closed_hole.h"
+#include "pipeline/reports/mesh_place.h"
 #include "pipeline/reports/missed_place.h"
 #include "pipeline/reports/thin_place.h"
 
@@ -20,13 +21,25 @@
 // unless a name says otherwise; certificate_json.h writes and reads them.
 namespace umtet {
 
+/// Whether the boundary of a mesh has the pieces and the Euler characteristic of psi = 0.
+enum class TopologyProof {
+  Same,
+  Differs,
+  NotProved,  ///< the counts differ, and the grid of that of psi = 0 is coarser than the mesh: either may be wrong
+};
+
 /// How the boundary of the mesh compares with psi = 0 as it was counted on a grid of its own.
 struct ZeroSetReport {
   std::optional<double> level_set_spacing;    ///< of the finest lattice of psi; none for a formula
   std::size_t components_of_zero_set = 0;     ///< that the count saw
   long euler_characteristic_of_zero_set = 0;  ///< of all of them together
   long euler_characteristic_of_kept_components = 0;
-  int components_meshed = 0;                    ///< pieces of the boundary of the mesh, without the walls of a box
+  std::size_t components_kept = 0;       ///< those that were to be meshed
+  int components_meshed = 0;             ///< pieces of the boundary of the mesh, without the walls of a box
+  long euler_characteristic_meshed = 0;  ///< of them
+  double counting_spacing = 0;           ///< of the grid, model units
+  TopologyProof topology = TopologyProof::Same;
+  std::optional<Vec3> topology_at;  ///< where to look for the difference, if there is one; model coordinates
   std::vector<std::string> components_dropped;  ///< for each that is not meshed, why
   std::optional<bool> components_proved;        ///< no piece is unseen; none where there is no proof to be had
   std::optional<SupportReport> support;         ///< none for a formula
@@ -74,13 +87,20 @@ struct MeshMeasures {
   ResolutionReport resolution;
   std::optional<std::int64_t> order;  ///< 1 or 2; none where only the corners were measured
   std::optional<SecondOrderReport> second_order;
-  std::vector<std::string> reasons;  ///< what is wrong with the mesh; in a Certificate they are those of its verdict
+  bool is_valid = true;  ///< tets positive, boundary the closed manifold that it is to be, and not through itself
+  /// Valid, and psi = 0 as far as h can show it: on it, not folded, nothing lost, of its topology, near the samples.
+  bool is_faithful = true;
+  PlaceReport places;                ///< where it is not faithful
+  std::vector<std::string> reasons;  ///< what is wrong with it besides
 };
 
 /// What a mesh is held against, and what came of it.
 struct Verdict {
   std::optional<double> min_quality_gate;  ///< the least mean ratio that will do, if one was asked for
   double volume_gap_gate = kMostGap;       ///< the most of gap_over_volume that will do
+  bool strict = false;                     ///< small places will not do
+  std::string accept;                      ///< the kinds of places that will, as the user gave them
+  std::vector<std::string> accepted;       ///< what for that reason is none of `reasons`
   std::vector<std::string> reasons;        ///< why it fails
 
   bool passes() const { return reasons.empty(); }
@@ -117,14 +137,19 @@ struct MeshCheck {
   MeshCertificate mesh;
   std::optional<SecondOrderReport> second_order;  ///< of tets with 10 nodes
   std::optional<SupportReport> support;           ///< by the samples of a case
+  bool is_valid = true;
+  std::optional<PlaceReport> places;  ///< none without a case to compare with
   Verdict verdict;
 };
 
 /// output.units; none where none were given.
 std::optional<std::string> units_of(const Parameters& parameters);
 
-/// The reasons of what was measured, and that of a broken gate of output.*.
-Verdict judge(const MeshCertificate& mesh, std::vector<std::string> reasons, const Parameters& parameters);
+/// The reasons of what was measured: its own, one for each kind of places that are neither small nor accepted
+/// (output.strict, output.accept), and that of a broken output.min_quality.
+Verdict judge(const MeshMeasures& measured, const Parameters& parameters);
+/// The same without the gate on quality. @param accept  as output.accept has it
+Verdict judge_shape(const MeshMeasures& measured, bool strict = false, const std::string& accept = "");
 
 /// What was measured with its gates and verdict; without `run`.
 Certificate verdict_on(MeshMeasures measured, const Parameters& parameters);

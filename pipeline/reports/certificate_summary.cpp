@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 namespace umtet {
 namespace {
@@ -20,8 +22,12 @@ std::string thousands(std::size_t n) {
   return s;
 }
 
-std::string verdict_lines(const Verdict& verdict, const std::optional<std::string>& remedy) {
-  std::string out = fmt::format("verdict   {}\n", verdict.word());
+/// @param faithful  none where there is no psi to compare with
+std::string verdict_lines(const Verdict& verdict, bool valid, std::optional<bool> faithful,
+                          const std::optional<std::string>& remedy) {
+  const char* to_psi = !faithful ? "" : *faithful ? ", faithful" : ", not faithful";
+  std::string out = fmt::format("verdict   {} ({}{})\n", verdict.word(), valid ? "valid" : "NOT valid", to_psi);
+  for (const std::string& what : verdict.accepted) out += fmt::format("          accepted: {}\n", what);
   for (const std::string& reason : verdict.reasons) out += fmt::format("          - {}\n", reason);
   if (remedy) out += fmt::format("          try {}\n", *remedy);
   return out;
@@ -129,6 +135,20 @@ std::string thin_line(const ResolutionReport& r) {
                      n == 1 ? " is" : "s are", worst.is_gap ? "gap" : "body", worst.thickness, worst.h_needed);
 }
 
+/// Where the mesh is not faithful to psi = 0; empty where it is.
+std::string places_line(const PlaceReport& places) {
+  if (places.empty()) return "";
+  std::vector<std::string> kinds;
+  for (const PlaceReport::OfKind& k : places.kinds) {
+    kinds.push_back(fmt::format("{} {} (up to {:.2g} h)", k.n, to_string(k.kind), k.max_off_over_h));
+  }
+  const std::size_t n = places.n();
+  std::size_t n_small = 0;
+  for (const PlaceReport::OfKind& k : places.kinds) n_small += k.n_small;
+  return fmt::format("places    {} where the mesh is not faithful to psi = 0, {} of them finer than h can show: {}\n",
+                     n, n_small, fmt::join(kinds, ", "));
+}
+
 std::string time_line(const std::optional<CertificateRun>& run) {
   if (!run) return "";
   std::string out = "time     ";
@@ -143,14 +163,17 @@ std::string suffix(const std::optional<std::string>& units) { return units ? " "
 std::string summary(const Certificate& c) {
   const std::string unit = suffix(c.units);
   const MeshMeasures& m = c.measured;
-  return verdict_lines(c.verdict, c.remedy) + mesh_lines(m.mesh, unit, c.n_tets_asked) +
+  return verdict_lines(c.verdict, m.is_valid, m.is_faithful, c.remedy) + mesh_lines(m.mesh, unit, c.n_tets_asked) +
          second_order_lines(m.second_order) + domain_line(m.domain) + holes_line(m.domain.support, unit) +
-         cloud_line(m, unit) + missed_line(m, unit) + thin_line(m.resolution) + time_line(c.run);
+         cloud_line(m, unit) + missed_line(m, unit) + thin_line(m.resolution) + places_line(m.places) +
+         time_line(c.run);
 }
 
 std::string summary(const MeshCheck& c) {
-  return verdict_lines(c.verdict, {}) + mesh_lines(c.mesh, suffix(c.units), {}) + second_order_lines(c.second_order) +
-         holes_line(c.support, suffix(c.units));
+  const std::optional<bool> faithful = c.places ? std::optional(c.verdict.passes() && c.places->empty()) : std::nullopt;
+  return verdict_lines(c.verdict, c.is_valid, faithful, {}) + mesh_lines(c.mesh, suffix(c.units), {}) +
+         second_order_lines(c.second_order) + holes_line(c.support, suffix(c.units)) +
+         (c.places ? places_line(*c.places) : "");
 }
 
 }  // namespace umtet

@@ -201,7 +201,7 @@ UmResult Evolution::make(Step& step, Domain& domain) {
   stop_if_interrupted();
   if (a.fell_through()) throw MeshingImpossible(too_thin_text(a, domain.shift));
   if (!a.made()) throw MeshingImpossible(failure_text(a.result, h_, domain.shift));
-  step.verdict = judge(a.measured.mesh, a.measured.reasons, parameters_);
+  step.verdict = judge(a.measured, parameters_);
   step.measured = std::move(a.measured);
   return std::move(a.result);
 }

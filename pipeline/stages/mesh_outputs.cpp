@@ -10,6 +10,7 @@
 #include "mesh/io/quality_csv.h"
 #include "pipeline/case/artefact.h"
 #include "pipeline/meshing/made_mesh.h"
+#include "pipeline/meshing/mesh_places.h"
 #include "pipeline/meshing/second_order.h"
 
 namespace umtet {
@@ -92,6 +93,10 @@ std::vector<std::string> write_mesh_outputs(const StageContext& context, const D
   if (!best.thin.empty()) {
     write_thin_places(folder / "too_thin.vtp", best.thin, domain.shift);
     names.emplace_back("too_thin.vtp");
+  }
+  if (!best.places.empty()) {
+    write_places(folder / "places.vtp", best.places);
+    names.emplace_back("places.vtp");
   }
   return names;
 }

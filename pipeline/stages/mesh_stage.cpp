@@ -14,7 +14,7 @@
 #include "pipeline/domain/too_thin.h"
 #include "pipeline/meshing/made_mesh.h"
 #include "pipeline/meshing/mesh_maker.h"
-#include "pipeline/reports/certificate_json.h"
+#include "pipeline/reports/place_json.h"
 #include "pipeline/reports/stage_reports.h"
 #include "pipeline/stages/given_normals.h"
 #include "pipeline/stages/mesh_outputs.h"

@@ -43,8 +43,8 @@ for _name in ("implicit", "keep_iterates"):  # of the program
     _KEYS["mesh"].pop(_name, None)
 for _name in ("file", "orient_from"):
     _KEYS["cloud"].pop(_name, None)
-_OUTPUT = ("units", "max_memory", "min_quality")
-_NOT_OF_A_MOVING_MESH = ("tets", "max_tets", "max_deviation", "order")
+_OUTPUT = ("units", "max_memory", "min_quality", "strict", "accept")
+_NOT_OF_A_MOVING_MESH = ("tets", "max_tets", "max_deviation", "effort", "order")
 
 
 def _text(value):

@@ -389,19 +389,18 @@
     eye.away = Math.max(0.02, Math.min(5, eye.away * Math.exp(0.001 * e.deltaY)));
     draw();
   }, {passive: false});
-  // A hole of the certificate: the camera looks at its middle from outside, so near that the hole fills a third.
-  const holes = JSON.parse($("certificate").textContent).domain.closed_holes || [];
-  function show(hole) {
-    $("colour").value = "support";
+  // A place of the surface: the camera looks at it from outside, so near that it fills a third. Its faces are those of
+  // which no corner is left out.
+  function lookAt(where, wide, isLeftOut) {
     $("axis").value = "";
     $("worst").checked = false;
     build();
-    const middle = new THREE.Vector3(...hole.centre.map((c, i) => c - info.box_min[i] - info.box_size[i] / 2));
-    const wide = Math.max(hole.rim.diameter, Math.sqrt(hole.area)), normal = new THREE.Vector3(), values = bytes("vertex_support");
+    const middle = new THREE.Vector3(...where.map((c, i) => c - info.box_min[i] - info.box_size[i] / 2));
+    const normal = new THREE.Vector3();
     const [p, q, r] = [0, 1, 2].map(() => new THREE.Vector3());
     for (let f = 0; f < nFaces; ++f) {
       const corners = [F[4 * f], F[4 * f + 1], F[4 * f + 2]];
-      if (corners.some((v) => values[v] / 255 <= guessFrom)) continue;
+      if (corners.some(isLeftOut)) continue;
       p.fromArray(X, 3 * corners[0]);
       q.fromArray(X, 3 * corners[1]).sub(p);
       r.fromArray(X, 3 * corners[2]).sub(p);
@@ -415,11 +414,23 @@
     eye.away = Math.max(0.02, Math.min(1, 3 * wide / (2 * kSlope) / homeDistance(a)));
     draw();
   }
-  for (const button of document.querySelectorAll("button[data-hole]")) {
-    button.addEventListener("click", () => {
-      show(holes[Number(button.dataset.hole)]);
-      canvas.scrollIntoView({block: "center"});
-    });
+  const certificate = JSON.parse($("certificate").textContent);
+  const holes = certificate.domain.closed_holes || [], spots = certificate.places.listed;
+  function showHole(hole) {
+    const values = bytes("vertex_support");
+    $("colour").value = "support";
+    lookAt(hole.centre, Math.max(hole.rim.diameter, Math.sqrt(hole.area)), (v) => values[v] / 255 <= guessFrom);
+  }
+  function showPlace(place) {
+    lookAt(place.where, 4 * certificate.h, () => false);
+  }
+  for (const [kind, list, show] of [["hole", holes, showHole], ["place", spots, showPlace]]) {
+    for (const button of document.querySelectorAll(`button[data-${kind}]`)) {
+      button.addEventListener("click", () => {
+        show(list[Number(button.dataset[kind])]);
+        canvas.scrollIntoView({block: "center"});
+      });
+    }
   }
   $("home").addEventListener("click", () => {
     eye = Object.assign({x: 0, y: 0, z: 0}, kHome);
@@ -435,9 +446,11 @@
     $("place").disabled = true;
   }
   $("worst-number").max = info.n_worst;
-  // #colour=patch&axis=0&worst=1: a view to open with; #hole=1: the first one that was closed.
-  const asked = new URLSearchParams(location.hash.slice(1)), first = holes[Number(asked.get("hole")) - 1];
-  if (first) show(first);
+  // #colour=patch&axis=0&worst=1: a view to open with; #hole=1: the first one that was closed; #spot=1: the first place.
+  const asked = new URLSearchParams(location.hash.slice(1));
+  const hole = holes[Number(asked.get("hole")) - 1], spot = spots[Number(asked.get("spot")) - 1];
+  if (hole) showHole(hole);
+  if (spot) showPlace(spot);
   for (const [id, value] of asked) {
     const control = $(id);
     if (!control || !control.form) continue;

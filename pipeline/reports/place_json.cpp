@@ -1,0 +1,140 @@
+#include "pipeline/reports/place_json.h"
+
+#include <stdexcept>
+#include <string>
+
+#include "pipeline/case/exit_code.h"
+
+namespace umtet {
+namespace {
+
+Json json_of_place(const MeshPlace& place) {
+  return {{"kind", to_string(place.kind)},
+          {"where", json_of(place.where)},
+          {"off_over_h", place.off_over_h},
+          {"feature_over_h", json_of(place.feature_over_h)},
+          {"h_needed", json_of(place.h_needed)},
+          {"small", is_small(place)},
+          {"n", place.n}};
+}
+
+PlaceKind kind_from(const Json& json) {
+  const std::string word = json.at("kind");
+  const std::optional<PlaceKind> kind = place_kind_of(word);
+  if (!kind) throw ArtefactDamaged("'" + word + "' is no kind of place");
+  return *kind;
+}
+
+MeshPlace place_from(const Json& json) {
+  return {.kind = kind_from(json),
+          .where = vector_from(json.at("where")),
+          .off_over_h = number_from(json.at("off_over_h")),
+          .feature_over_h = optional_from<double>(json.at("feature_over_h")),
+          .h_needed = optional_from<double>(json.at("h_needed")),
+          .n = json.at("n")};
+}
+
+}  // namespace
+
+Json to_json(const std::vector<ClosedHole>& holes) {
+  Json list = Json::array();
+  for (const ClosedHole& hole : holes) {
+    list.push_back({{"centre", json_of(hole.centre)},
+                    {"area", hole.area},
+                    {"area_fraction", hole.area_fraction},
+                    {"deepest", hole.deepest},
+                    {"deepest_over_spacing", hole.deepest_over_spacing},
+                    {"rim", {{"n", hole.n_rims}, {"length", hole.rim_length}, {"diameter", hole.rim_diameter}}}});
+  }
+  return list;
+}
+
+std::vector<ClosedHole> closed_holes_from(const Json& list) {
+  std::vector<ClosedHole> holes;
+  for (const Json& json : list) {
+    const Json& rim = json.at("rim");
+    holes.push_back({.centre = vector_from(json.at("centre")),
+                     .area = number_from(json.at("area")),
+                     .area_fraction = number_from(json.at("area_fraction")),
+                     .deepest = number_from(json.at("deepest")),
+                     .deepest_over_spacing = number_from(json.at("deepest_over_spacing")),
+                     .rim_length = number_from(rim.at("length")),
+                     .rim_diameter = number_from(rim.at("diameter")),
+                     .n_rims = rim.at("n")});
+  }
+  return holes;
+}
+
+Json to_json(const std::vector<MissedPlace>& places) {
+  Json list = Json::array();
+  for (const MissedPlace& p : places) {
+    list.push_back({{"farthest", json_of(p.farthest)}, {"distance", p.distance}, {"n_samples", p.n_samples}});
+  }
+  return list;
+}
+
+std::vector<MissedPlace> missed_places_from(const Json& list) {
+  std::vector<MissedPlace> places;
+  for (const Json& json : list) {
+    places.push_back({.farthest = vector_from(json.at("farthest")),
+                      .distance = number_from(json.at("distance")),
+                      .n_samples = json.at("n_samples")});
+  }
+  return places;
+}
+
+Json to_json(const std::vector<ThinPlace>& places, double h) {
+  Json list = Json::array();
+  for (const ThinPlace& p : places) {
+    list.push_back({{"kind", p.is_gap ? "gap" : "body"},
+                    {"centre", json_of(p.centre)},
+                    {"box", {{"min", json_of(Vec3(p.box.min()))}, {"max", json_of(Vec3(p.box.max()))}}},
+                    {"thickness", p.thickness},
+                    {"thickness_over_h", p.thickness / h},
+                    {"area", p.area},
+                    {"h_needed", p.h_needed}});
+  }
+  return list;
+}
+
+std::vector<ThinPlace> thin_places_from(const Json& list) {
+  std::vector<ThinPlace> places;
+  for (const Json& json : list) {
+    const Json& box = json.at("box");
+    places.push_back({.is_gap = json.at("kind") == "gap",
+                      .box = {vector_from(box.at("min")), vector_from(box.at("max"))},
+                      .centre = vector_from(json.at("centre")),
+                      .thickness = number_from(json.at("thickness")),
+                      .area = number_from(json.at("area")),
+                      .h_needed = number_from(json.at("h_needed"))});
+  }
+  return places;
+}
+
+Json to_json(const PlaceReport& report) {
+  Json kinds = Json::array(), list = Json::array();
+  for (const PlaceReport::OfKind& k : report.kinds) {
+    kinds.push_back({{"kind", to_string(k.kind)},
+                     {"n", k.n},
+                     {"n_small", k.n_small},
+                     {"max_off_over_h", k.max_off_over_h},
+                     {"worst", json_of_place(k.worst)}});
+  }
+  for (const MeshPlace& place : report.listed) list.push_back(json_of_place(place));
+  return {{"n", report.n()}, {"kinds", std::move(kinds)}, {"listed", std::move(list)}};
+}
+
+PlaceReport places_from(const Json& json) {
+  PlaceReport report;
+  for (const Json& k : json.at("kinds")) {
+    report.kinds.push_back({.kind = kind_from(k),
+                            .n = k.at("n"),
+                            .n_small = k.at("n_small"),
+                            .worst = place_from(k.at("worst")),
+                            .max_off_over_h = number_from(k.at("max_off_over_h"))});
+  }
+  for (const Json& place : json.at("listed")) report.listed.push_back(place_from(place));
+  return report;
+}
+
+}  // namespace umtet

@@ -1,0 +1,76 @@
+// Places of formulas whose features are known.
+
+#include "pipeline/meshing/mesh_places.h"
+
+#include <gtest/gtest.h>
+
+#include "pipeline/domain/clusters.h"
+
+namespace umtet {
+namespace {
+
+Domain domain_of(const std::string& formula, const Vec3& corner) {
+  Domain domain;
+  domain.formula.emplace(formula);
+  domain.box = Box(-corner, corner);
+  domain.diagonal = domain.box.diagonal().norm();
+  return domain;
+}
+
+// Two unit balls .1 apart.
+const char* const kTwins = "((x-1.05)^2+y^2+z^2-1)*((x+1.05)^2+y^2+z^2-1)";
+
+TEST(Clusters, JoinWhatIsNear) {
+  const std::vector<Vec3> x = {{0, 0, 0}, {5, 0, 0}, {1.9, 0, 0}, {5, .5, 0}};
+  const std::vector<int> set = clusters(x, 1);
+  EXPECT_EQ(set, (std::vector<int>{0, 1, 0, 1}));
+  EXPECT_EQ(members_of(set), (std::vector<std::vector<int>>{{0, 2}, {1, 3}}));
+}
+
+TEST(MeshPlaces, HaveTheFeatureOfPsiAndTheHThatShowsIt) {
+  Domain twins = domain_of(kTwins, {2.6, 1.4, 1.4});
+  twins.shift = Vec3(10, 0, 0);
+  const std::vector<Difference> differences = {{PlaceKind::Folded, Vec3(.05, 0, 0), .01},
+                                               {PlaceKind::Folded, Vec3(-.05, 0, 0), .02},
+                                               {PlaceKind::Off, Vec3(.05, 0, 0), .03},
+                                               {PlaceKind::Folded, Vec3(2.05, 0, 0), .01}};
+  const std::vector<MeshPlace> places = places_of(twins, differences, .2);
+  ASSERT_EQ(places.size(), 3u);
+  EXPECT_EQ(places[0].kind, PlaceKind::Folded);
+  EXPECT_EQ(places[0].n, 2u);
+  EXPECT_NEAR(places[0].off_over_h, .1, 1e-12);
+  EXPECT_NEAR((places[0].where - Vec3(9.95, 0, 0)).norm(), 0, 1e-12);
+  ASSERT_TRUE(places[0].feature_over_h);
+  EXPECT_NEAR(*places[0].feature_over_h, .5, .02);  // the gap of .1
+  EXPECT_NEAR(*places[0].h_needed, .1 / kLeastEdgesAcross, .005);
+  EXPECT_TRUE(is_small(places[0]));
+  EXPECT_FALSE(places[1].feature_over_h);  // a ball of radius 5 h, far from the other: nothing is fine there
+  EXPECT_FALSE(is_small(places[1]));
+  EXPECT_EQ(places[2].kind, PlaceKind::Off);
+}
+
+TEST(MeshPlaces, AreSmallWhereCurvatureIsFinerThanH) {
+  // At its ends the spindle has radius of curvature .2^2 / 1 = .04, and is thinner than that on the way there.
+  const Domain spindle = domain_of("x^2+(y/0.2)^2+(z/0.2)^2-1", {1.2, .4, .4});
+  const std::vector<Difference> at_end = {{PlaceKind::Off, Vec3(1, 0, 0), .01}};
+  const std::vector<MeshPlace> places = places_of(spindle, at_end, .1);
+  ASSERT_TRUE(places[0].feature_over_h);
+  EXPECT_NEAR(*places[0].feature_over_h, .8, .01);  // 2 x .04 / .1
+  EXPECT_FALSE(places_of(spindle, at_end, .03)[0].feature_over_h);
+}
+
+TEST(MeshPlaces, ATopologyThatDiffersIsWherePsiIsThin) {
+  const Domain twins = domain_of(kTwins, {2.6, 1.4, 1.4});
+  const ZeroSetChoice counted = choose_components(twins, .1);
+  // A boundary that is far from all of it but for one point of the gap.
+  const std::vector<Vec3> V = {{0, .1, 0}, {0, -.1, .1}, {0, -.1, -.1}};
+  const MeshPlace place = topology_place(twins, counted, SurfaceDistance(V, {{0, 1, 2}}), .2, 3);
+  EXPECT_EQ(place.n, 3u);
+  EXPECT_LT(std::abs(place.where.x()), .2);
+  ASSERT_TRUE(place.feature_over_h);
+  EXPECT_LT(*place.feature_over_h, kLeastEdgesAcross);
+  EXPECT_GT(place.off_over_h, 9);  // the far ends of the balls have no boundary near them
+}
+
+}  // namespace
+}  // namespace umtet
