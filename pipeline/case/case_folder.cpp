@@ -54,7 +54,8 @@ const char* section_of(Stage stage) { return stage == Stage::LevelSet ? "reconst
 bool is_artefact(Stage stage, const std::string& name) {
   if (stage == Stage::Cloud) return name == "cloud.ply";
   if (stage == Stage::LevelSet) return name == "level_set.vti";
-  for (const char* mesh : {"omega_h.vtu", "projected.vtu", "mesh.vtu", "quality.csv", "too_thin.vtp", "iterates.pvd"}) {
+  for (const char* mesh :
+       {"omega_h.vtu", "projected.vtu", "mesh.vtu", "quality.csv", "too_thin.vtp", "places.vtp", "iterates.pvd"}) {
     if (name == mesh) return true;
   }
   constexpr std::string_view kPass = "pass_", kSuffix = ".vtu";

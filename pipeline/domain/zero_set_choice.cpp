@@ -89,6 +89,15 @@ double counting_spacing(const Domain& domain, double h) {
   return std::max(wanted, std::cbrt(domain.box.volume() / kMaxGridNodes));
 }
 
+std::vector<Vec3> kept_points(const ZeroSetChoice& pieces) {
+  std::vector<Vec3> points;
+  for (const std::size_t c : pieces.kept) {
+    const auto of_piece = pieces.topology.points_of(pieces.topology.components[c]);
+    points.insert(points.end(), of_piece.begin(), of_piece.end());
+  }
+  return points;
+}
+
 ZeroSetChoice choose_components(const Domain& domain, double h, const Context& context, const SignCells* cells) {
   ZeroSetChoice choice;
   const double spacing = counting_spacing(domain, h);

@@ -20,6 +20,9 @@ struct ZeroSetChoice {
   std::vector<std::string> dropped;  ///< for each of the others, why
 };
 
+/// Where psi = 0 cuts the edges of the grid, of all pieces that are kept.
+std::vector<Vec3> kept_points(const ZeroSetChoice& pieces);
+
 /// A patch of surface this many sample spacings from any sample is a guess of the fit.
 inline constexpr double kSupportRadius = 3;
 

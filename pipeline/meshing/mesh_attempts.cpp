@@ -20,9 +20,10 @@ constexpr double kRefinement = .8;
 // A last h that is more than this share of the one before is not tried: it would make much the same mesh.
 constexpr double kWorthTrying = .95;
 
-/// What was filled or cut for a manifold boundary is as good as h can show, if it is small. Folds come and go with h.
+/// What small places lack of thin parts, or was filled or cut for a manifold boundary, is as good as h can show. Folds
+/// come and go with h.
 bool is_settled(const PlaceReport::OfKind& k) {
-  return k.n == k.n_small && (k.kind == PlaceKind::Filled || k.kind == PlaceKind::Cut);
+  return k.n == k.n_small && (k.kind == PlaceKind::Filled || k.kind == PlaceKind::Cut || k.kind == PlaceKind::Thin);
 }
 
 bool may_improve(const MeshAttempt& a) {

@@ -205,7 +205,7 @@ Measurement measure(const Domain& domain, const UmResult& result, const ZeroSetC
   const auto add = [&](const std::vector<Difference>& more) {
     differences.insert(differences.end(), more.begin(), more.end());
   };
-  add(differences_of(result.manifold_flips));
+  if (surface) add(flips_that_show(result.manifold_flips, kept_points(pieces), *surface, h, context));
   if (surface && params.thin) add(lost_of(*params.thin, *surface, context));
   if (surface && !domain.cloud.points.empty()) {
     const std::vector<double> d = surface->distances(domain.cloud.points, context);

@@ -1,6 +1,7 @@
 #include "pipeline/meshing/mesh_places.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "mesh/implicit/thickness.h"
@@ -8,6 +9,7 @@
 #include "pipeline/case/artefact.h"
 #include "pipeline/domain/clusters.h"
 #include "pipeline/domain/deviation.h"
+#include "reconstruct/cloud/neighbour_tree.h"
 
 namespace umtet {
 namespace {
@@ -15,6 +17,9 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // psi is followed in steps of this many edges, as far as kReach edges: what is larger explains nothing.
 constexpr double kStep = .125, kReach = 2;
+// The middle of a face with edges of h is this many h from the sphere through its corners whose diameter is
+// kLeastEdgesAcross h: r - sqrt(r^2 - 1/3).
+const double kFlat = kLeastEdgesAcross / 2 - std::sqrt(kLeastEdgesAcross * kLeastEdgesAcross / 4 - 1. / 3);
 // Newton's steps from a vertex that has stopped short to psi = 0, where its curvature counts.
 constexpr int kStepsToZero = 4;
 
@@ -57,30 +62,35 @@ std::vector<Difference> differences_of(const MeshCertificate& certificate) {
   return all;
 }
 
-std::vector<Difference> differences_of(const std::vector<ManifoldFlip>& flips) {
-  std::vector<Difference> all;
-  for (const ManifoldFlip& flip : flips) {
-    all.push_back({flip.is_filled ? PlaceKind::Filled : PlaceKind::Cut, flip.where, std::abs(flip.distance)});
-  }
-  return all;
-}
-
 std::vector<Difference> lost_of(const ThinPlaces& thin, const SurfaceDistance& boundary, const Context& context) {
   std::vector<Difference> lost;
   const std::vector<double> d = boundary.distances(thin.points, context);
   for (std::size_t i = 0; i < d.size(); ++i) {
-    if (d[i] > thin.h) lost.push_back({PlaceKind::Thin, thin.points[i], d[i]});
+    if (d[i] > kSmallOff * thin.h) lost.push_back({PlaceKind::Thin, thin.points[i], d[i]});
   }
   return lost;
 }
 
+std::vector<Difference> flips_that_show(const std::vector<ManifoldFlip>& flips, const std::vector<Vec3>& psi_points,
+                                        const SurfaceDistance& boundary, double h, const Context& context) {
+  std::vector<Difference> all;
+  if (flips.empty() || psi_points.empty()) return all;
+  const NeighbourTree tree(psi_points);
+  for (const ManifoldFlip& flip : flips) {
+    context.poll();
+    Difference farthest{flip.is_filled ? PlaceKind::Filled : PlaceKind::Cut, flip.where, 0};
+    tree.within(flip.where, h * h, [&](std::uint32_t i, double) {
+      const double d = boundary.distance(psi_points[i]);
+      if (d > farthest.off) farthest.where = psi_points[i], farthest.off = d;
+    });
+    if (farthest.off > kFlat * h) all.push_back(farthest);
+  }
+  return all;
+}
+
 MeshPlace topology_place(const Domain& domain, const ZeroSetChoice& counted, const SurfaceDistance& boundary, double h,
                          std::size_t n, const Context& context) {
-  std::vector<Vec3> points;
-  for (const std::size_t c : counted.kept) {
-    const auto of_piece = counted.topology.points_of(counted.topology.components[c]);
-    points.insert(points.end(), of_piece.begin(), of_piece.end());
-  }
+  const std::vector<Vec3> points = kept_points(counted);
   MeshPlace place;
   place.kind = PlaceKind::Topology;
   place.n = n;

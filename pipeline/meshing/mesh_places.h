@@ -24,12 +24,16 @@ struct Difference {
 /// Faces that are folded, vertices and faces that are off.
 std::vector<Difference> differences_of(const MeshCertificate& certificate);
 
-/// Vertices of the background that changed sides for a manifold boundary.
-std::vector<Difference> differences_of(const std::vector<ManifoldFlip>& flips);
-
-/// Points of thin places farther than h from the boundary of the mesh: body or gap thinner than an edge can be skipped
+/// Points of thin places farther than kSmallOff h from the boundary of the mesh: body or gap thinner than an edge can be skipped
 /// without a trace in topology or normals. \throw Cancelled
 std::vector<Difference> lost_of(const ThinPlaces& thin, const SurfaceDistance& boundary, const Context& context = {});
+
+/// Vertices of the background that changed sides for a manifold boundary and left a trace: psi = 0 within an edge of
+/// them is farther from the boundary of the mesh than flat faces explain where it is as sharply curved as h can just
+/// show. Elsewhere projection has brought the boundary to psi = 0 all the same.
+/// @param psi_points  of psi = 0, about an edge apart or less \throw Cancelled
+std::vector<Difference> flips_that_show(const std::vector<ManifoldFlip>& flips, const std::vector<Vec3>& psi_points,
+                                        const SurfaceDistance& boundary, double h, const Context& context = {});
 
 /// Where to look when psi = 0 and the boundary of a mesh are not alike: at the thin point of psi = 0 that is farthest
 /// from it. What has come or gone is no larger than the largest of such distances, which is `off`. Without a thin point

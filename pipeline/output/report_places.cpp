@@ -102,9 +102,10 @@ std::string place_table(const Certificate& c) {
   const std::string rest = n > n_listed ? fmt::format(" These are the worst {} of {}.", n_listed, n) : "";
   return fmt::format(
       "<div class=\"table\" id=\"places\"><h2>Where the mesh is not faithful to ψ = 0</h2>\n<p>A place is small where "
-      "it is at most {} h off, and ψ = 0 is finer there than {} h, which this h cannot show.{}</p>\n<table>\n{}</table>"
+      "it is at most {} h off, or {} h of a thin part is lost, and ψ = 0 is finer there than {} h, which this h cannot "
+      "show.{}</p>\n<table>\n{}</table>"
       "</div>\n",
-      kSmallOff, kLeastEdgesAcross, rest, rows);
+      kSmallOff, kSmallLoss, kLeastEdgesAcross, rest, rows);
 }
 
 }  // namespace umtet

@@ -30,7 +30,8 @@ std::optional<PlaceKind> place_kind_of(const std::string& word) {
 }
 
 bool is_small(const MeshPlace& place) {
-  return place.off_over_h <= kSmallOff && place.feature_over_h && *place.feature_over_h < kLeastEdgesAcross;
+  const double most = place.kind == PlaceKind::Thin ? kSmallLoss : kSmallOff;
+  return place.off_over_h <= most && place.feature_over_h && *place.feature_over_h < kLeastEdgesAcross;
 }
 
 std::size_t PlaceReport::n() const {

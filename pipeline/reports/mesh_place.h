@@ -40,10 +40,13 @@ struct MeshPlace {
 /// A mesh of edge length h shows what is this many edges thick; thinner parts may be missing from it.
 inline constexpr double kLeastEdgesAcross = 1.25;
 
-/// The mesh may be this far off, in h, at a small place.
+/// The mesh may be this far off, in h, at a small place ...
 inline constexpr double kSmallOff = .5;
+/// ... and the end of a thin part may be missing as far as that: samples may be as far off, too.
+inline constexpr double kSmallLoss = 1;
 
-/// At most kSmallOff h off, and psi = 0 is finer there than h can show: no mesh of this h can be asked for more.
+/// At most kSmallOff h off, or kSmallLoss of what is thin, and psi = 0 is finer there than h can show: no mesh of this
+/// h can be asked for more.
 bool is_small(const MeshPlace& place);
 
 /// The places of a mesh, as a document has them.

@@ -15,6 +15,8 @@ MeshPlace place(PlaceKind kind, double off, std::optional<double> feature = .5) 
 TEST(MeshPlace, IsSmallWhereItIsNearAndFinerThanHCanShow) {
   EXPECT_TRUE(is_small(place(PlaceKind::Folded, .5, 1.2)));
   EXPECT_FALSE(is_small(place(PlaceKind::Folded, .51, 1.2)));
+  EXPECT_TRUE(is_small(place(PlaceKind::Thin, 1, 1.2)));
+  EXPECT_FALSE(is_small(place(PlaceKind::Thin, 1.01, 1.2)));
   EXPECT_FALSE(is_small(place(PlaceKind::Folded, 0, 1.25)));
   EXPECT_FALSE(is_small(place(PlaceKind::Folded, 0, std::nullopt)));  // nothing explains it
 }
