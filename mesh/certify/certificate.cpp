@@ -79,6 +79,7 @@ std::vector<int> vertices_of(const std::vector<Triangle>& faces) {
 struct FaceMeasure {
   bool found;
   double distance, cos_normal, area;
+  Vec3 foot;  ///< of the centroid
 };
 
 // The volume between a flat face and a quadric through its corners is this times area x distance of the centroid.
@@ -116,11 +117,12 @@ void measure_against(ImplicitFunctionRef psi, const TetMesh& mesh, const std::ve
   std::vector<FaceMeasure> face(faces.size());
   polled_parallel_for(faces.size(), kFeetPerPoll, context, [&](std::size_t i) {
     const Vec3 &a = mesh.V[faces[i][0]], &b = mesh.V[faces[i][1]], &c = mesh.V[faces[i][2]];
-    const Foot foot = foot_point(psi, (a + b + c) / 3.0, h);
+    const Vec3 centroid = (a + b + c) / 3.0;
+    const Foot foot = foot_point(psi, centroid, h);
     const Vec3 n = (b - a).cross(c - a);
     const double length = n.norm();
     const double cosine = length > 0 ? n.dot(foot.normal) / length : -1.0;  // no area: no normal
-    face[i] = {foot.found, foot.distance, cosine, length / 2};
+    face[i] = {foot.found, foot.distance, cosine, length / 2, foot.point};
   });
 
   double max_vertex = 0, max_centroid = 0, min_cos = 1, gap = 0;
@@ -141,6 +143,7 @@ void measure_against(ImplicitFunctionRef psi, const TetMesh& mesh, const std::ve
   boundary.gap_over_volume = gap / volume;
 
   boundary.faults.clear();
+  boundary.far_feet.clear();
   const double tolerance = vertex_tolerance(certificate);
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     if (vertex_distance[i] / h <= tolerance) continue;
@@ -148,8 +151,11 @@ void measure_against(ImplicitFunctionRef psi, const TetMesh& mesh, const std::ve
   }
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const FaceMeasure& f = face[i];
-    if (f.found && f.cos_normal > 0) continue;
+    const bool is_far = f.found && f.distance > kFarFace * h;
+    if (f.found && f.cos_normal > 0 && !is_far) continue;
     const Vec3 centroid = (mesh.V[faces[i][0]] + mesh.V[faces[i][1]] + mesh.V[faces[i][2]]) / 3.0;
+    if (is_far) boundary.far_feet.push_back(f.foot);
+    if (f.found && f.cos_normal > 0) continue;
     if (f.found) {
       boundary.faults.push_back({BoundaryFault::Kind::Folded, centroid, f.distance});
     } else {
@@ -235,6 +241,7 @@ MeshCertificate certify_again(const CertificateInput& input, CertificateMemory::
   boundary.min_cos_normal.reset();
   boundary.gap_over_volume.reset();
   boundary.faults.clear();
+  boundary.far_feet.clear();
   boundary.n_cos_below_half = boundary.n_unprojected_faces = 0;
   if (input.psi) {
     if (known.surface_vertices.empty()) known.surface_vertices = vertices_of(surface);

@@ -61,6 +61,9 @@ struct MeshCertificate {
     std::size_t n_cos_below_half = 0;     ///< faces with cos < .5
     std::size_t n_unprojected_faces = 0;  ///< faces whose centroid found no point of psi = 0
     std::vector<BoundaryFault> faults{};  ///< vertices before faces, in their order
+    /// Points of psi = 0 nearest to the centroids of faces farther than kFarFace h from it: faces that cut a corner
+    /// off.
+    std::vector<Vec3> far_feet{};
   } boundary;
   /// Tets positive, boundary a closed manifold that does not meet itself, one within the other as those of a solid: the
   /// mesh is embedded, no two tets overlap (docs/method.md, Section 9).
@@ -87,6 +90,10 @@ struct CertificateInput {
 /// A boundary vertex may be this far from psi = 0, in h, besides the rounding of its coordinates: what the projection
 /// leaves is a hundred times less.
 inline constexpr double kVertexTolerance = 1e-8;
+
+/// The centroid of a face with edges of h is 1 - sqrt(2/3) = .18 h from the sphere of radius h through its corners: one
+/// that is this many h from psi = 0 has something sharper under it.
+inline constexpr double kFarFace = .25;
 
 /// Flat faces may miss this share of the volume, gap_over_volume: a ball with an edge of about its radius misses that
 /// much. A mesh that resolves its domain misses a few per cent at most.

@@ -54,6 +54,7 @@ Foot foot_point(ImplicitFunctionRef psi, const Vec3& x, double h) {
   }
   foot.found = true;
   foot.distance = distance;
+  foot.point = y;
   foot.normal = g.normalized();
   return foot;
 }

@@ -10,6 +10,7 @@ namespace umtet {
 struct Foot {
   bool found = false;
   double distance = std::numeric_limits<double>::infinity();
+  Vec3 point = Vec3::Zero();
   Vec3 normal = Vec3::Zero();  ///< grad psi / |grad psi| there
 };
 

@@ -28,13 +28,28 @@ double max_curvature(ImplicitFunctionRef psi, const UmResult& result, double h, 
   return kappa.empty() ? 0 : h * *std::max_element(kappa.begin(), kappa.end());
 }
 
-/// Least distance from a boundary vertex along the normal to the opposite sheet, inside or outside; looked for up to
-/// four edges, beyond which it does not matter.
-double min_feature_size(const Domain& domain, const UmResult& result, double h, const Context& context) {
+/// Boundary vertices by how thin it is there.
+struct VertexThickness {
+  double least = 0;  ///< model units
+  Vec3 where = Vec3::Zero();
+  std::vector<Vec3> thin;  ///< those where it is less than kLeastEdgesAcross h
+};
+
+/// Distances from boundary vertices along the normal to the opposite sheet, inside or outside; looked for up to four
+/// edges, beyond which they do not matter.
+VertexThickness vertex_thickness(const Domain& domain, const UmResult& result, double h, const Context& context) {
   std::vector<Vec3> points;
   for (const int i : result.submesh.positive_vertices) points.push_back(result.final[i]);
   const std::vector<double> t = thickness(domain.psi(), points, h / 4, 4 * h, context, domain.steepest());
-  return t.empty() ? 0 : *std::min_element(t.begin(), t.end());
+  VertexThickness made;
+  if (t.empty()) return made;
+  const auto least = std::min_element(t.begin(), t.end());
+  made.least = *least;
+  made.where = points[static_cast<std::size_t>(least - t.begin())];
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    if (t[i] < kLeastEdgesAcross * h) made.thin.push_back(points[i]);
+  }
+  return made;
 }
 
 // At least this many samples, and this share of all, have to be far from the mesh before it is said to lack something.
@@ -96,9 +111,11 @@ struct Comparison {
 
 /// Does the boundary of the mesh look like the pieces of psi = 0 that are kept, and the walls of the box around a
 /// fluid, one closed piece without a hole? Where the two counts differ, the count is repeated on a grid of half the
-/// spacing, as far as its size is allowed. A count on a grid coarser than the mesh says nothing against the mesh.
+/// spacing, as far as its size is allowed. A count on a grid coarser than the mesh says nothing against the mesh, and
+/// one coarser than body or gap are thin nothing for it.
 Comparison compare_with_zero_set(const Domain& domain, const MeshCertificate& certificate, const ZeroSetChoice& pieces,
-                                 const SurfaceDistance* surface, const Context& context) {
+                                 const VertexThickness& thickness, const SurfaceDistance* surface,
+                                 const Context& context) {
   const MeshCertificate::Boundary& boundary = certificate.boundary;
   const int of_psi = boundary.components - (domain.complement ? 1 : 0);
   const long characteristic = boundary.euler_characteristic - (domain.complement ? 2 : 0);
@@ -122,7 +139,14 @@ Comparison compare_with_zero_set(const Domain& domain, const MeshCertificate& ce
   report.components_meshed = of_psi;
   report.euler_characteristic_meshed = characteristic;
   report.components_dropped = counted->dropped;
-  if (!differs(*counted)) return made;
+  if (!differs(*counted)) {
+    // The longest edges of the grid are the diagonals of its cubes.
+    if (thickness.least < std::sqrt(3.) * counted->topology.spacing) {
+      report.topology = TopologyProof::NotProved;
+      report.topology_at = thickness.where + domain.shift;
+    }
+    return made;
+  }
   const auto n_pieces = static_cast<std::size_t>(std::abs(static_cast<int>(counted->seeds.size()) - of_psi));
   const auto n_handles = static_cast<std::size_t>(std::abs(counted->euler_characteristic - characteristic) / 2);
   const std::size_t n = std::max<std::size_t>(1, n_pieces + n_handles);
@@ -137,8 +161,9 @@ Comparison compare_with_zero_set(const Domain& domain, const MeshCertificate& ce
 /// With the proof that no piece is unseen, and what of the boundary is a guess.
 Comparison compare_with_domain(const Domain& domain, const TetMesh& mesh, const std::vector<Triangle>& faces,
                                const MeshCertificate& certificate, const ZeroSetChoice& pieces,
-                               const SurfaceDistance* surface, const Context& context) {
-  Comparison made = compare_with_zero_set(domain, certificate, pieces, surface, context);
+                               const VertexThickness& thickness, const SurfaceDistance* surface,
+                               const Context& context) {
+  Comparison made = compare_with_zero_set(domain, certificate, pieces, thickness, surface, context);
   ZeroSetReport& report = made.report;
   if (domain.level_set) report.level_set_spacing = domain.level_set->spacing();
   if (domain.level_set && pieces.cells) {
@@ -198,15 +223,21 @@ Measurement measure(const Domain& domain, const UmResult& result, const ZeroSetC
   // No face: the body lies between the vertices of the background.
   std::optional<SurfaceDistance> surface;
   if (!faces.empty()) surface.emplace(mesh.V, faces);
+  const VertexThickness thickness = vertex_thickness(domain, result, h, context);
   Comparison compared =
-      compare_with_domain(domain, mesh, faces, m.mesh, pieces, surface ? &*surface : nullptr, context);
+      compare_with_domain(domain, mesh, faces, m.mesh, pieces, thickness, surface ? &*surface : nullptr, context);
   m.domain = std::move(compared.report);
   std::vector<Difference> differences = differences_of(m.mesh);
   const auto add = [&](const std::vector<Difference>& more) {
     differences.insert(differences.end(), more.begin(), more.end());
   };
-  if (surface) add(flips_that_show(result.manifold_flips, kept_points(pieces), *surface, h, context));
-  if (surface && params.thin) add(lost_of(*params.thin, *surface, context));
+  if (surface) {
+    const std::vector<Vec3> psi_points = kept_points(pieces);
+    add(flips_that_show(result.manifold_flips, psi_points, *surface, h, context));
+    std::vector<Vec3> starts = thickness.thin;
+    starts.insert(starts.end(), m.mesh.boundary.far_feet.begin(), m.mesh.boundary.far_feet.end());
+    add(lost_parts(domain, psi_points, starts, *surface, h, context));
+  }
   if (surface && !domain.cloud.points.empty()) {
     const std::vector<double> d = surface->distances(domain.cloud.points, context);
     if (domain.fitted) add(lost_samples(domain, pieces, d, h, context));
@@ -216,7 +247,7 @@ Measurement measure(const Domain& domain, const UmResult& result, const ZeroSetC
   if (compared.place) made.places.push_back(*compared.place);
   m.places = report_on(made.places);
   m.resolution.kappa_h_max = max_curvature(domain.psi(), result, h, context);
-  m.resolution.feature_size_over_h_min = min_feature_size(domain, result, h, context) / h;
+  m.resolution.feature_size_over_h_min = thickness.least / h;
   m.resolution.obtuse_conditioning_angles = result.obtuse_conditioning_angles;
   m.resolution.double_positive_faces = result.double_positive_faces;
   if (params.thin) m.resolution.too_thin = in_model(*params.thin, domain.shift);

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "mesh/implicit/foot_point.h"
 #include "mesh/implicit/thickness.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/artefact.h"
 #include "pipeline/domain/clusters.h"
 #include "pipeline/domain/deviation.h"
+#include "pipeline/meshing/lost_ends.h"
 #include "reconstruct/cloud/neighbour_tree.h"
 
 namespace umtet {
@@ -20,25 +22,14 @@ constexpr double kStep = .125, kReach = 2;
 // The middle of a face with edges of h is this many h from the sphere through its corners whose diameter is
 // kLeastEdgesAcross h: r - sqrt(r^2 - 1/3).
 const double kFlat = kLeastEdgesAcross / 2 - std::sqrt(kLeastEdgesAcross * kLeastEdgesAcross / 4 - 1. / 3);
-// Newton's steps from a vertex that has stopped short to psi = 0, where its curvature counts.
-constexpr int kStepsToZero = 4;
-
-Vec3 near_zero(ImplicitFunctionRef psi, Vec3 x) {
-  for (int k = 0; k < kStepsToZero; ++k) {
-    Vec3 g;
-    const double value = psi.value(x, g);
-    if (!(g.squaredNorm() > 0)) break;
-    x -= value / g.squaredNorm() * g;
-  }
-  return x;
-}
-
 /// How small psi = 0 is near each point, model units; infinite beyond kReach h.
 std::vector<double> features(const Domain& domain, const std::vector<Vec3>& points, double h, const Context& context) {
   const ImplicitFunctionRef psi = domain.body();
   std::vector<double> f = thickness(psi, points, kStep * h, kReach * h, context, domain.steepest());
-  polled_parallel_for(points.size(), kValuesPerPoll / kStepsToZero, context, [&](std::size_t i) {
-    const double k = principal_curvatures(psi, near_zero(psi, points[i]))[0];
+  polled_parallel_for(points.size(), kValuesPerPoll / 8, context, [&](std::size_t i) {
+    // A vertex that has stopped short of psi = 0 is not where its curvature counts.
+    const Foot foot = foot_point(psi, points[i], h);
+    const double k = principal_curvatures(psi, foot.found ? foot.point : points[i])[0];
     if (k > 0) f[i] = std::min(f[i], 2 / k);
     if (!(f[i] < kReach * h)) f[i] = kInfinity;
   });
@@ -62,11 +53,23 @@ std::vector<Difference> differences_of(const MeshCertificate& certificate) {
   return all;
 }
 
-std::vector<Difference> lost_of(const ThinPlaces& thin, const SurfaceDistance& boundary, const Context& context) {
+std::vector<Difference> lost_parts(const Domain& domain, const std::vector<Vec3>& psi_points,
+                                   const std::vector<Vec3>& starts, const SurfaceDistance& boundary, double h,
+                                   const Context& context) {
   std::vector<Difference> lost;
-  const std::vector<double> d = boundary.distances(thin.points, context);
+  const double beyond = kSmallOff * h;
+  const std::vector<double> d = boundary.distances(psi_points, context);
   for (std::size_t i = 0; i < d.size(); ++i) {
-    if (d[i] > kSmallOff * thin.h) lost.push_back({PlaceKind::Thin, thin.points[i], d[i]});
+    if (d[i] <= beyond) continue;
+    // The grid takes psi for linear.
+    const Foot foot = foot_point(domain.body(), psi_points[i], h);
+    if (!foot.found) continue;
+    if (const double off = boundary.distance(foot.point); off > beyond) {
+      lost.push_back({PlaceKind::Thin, foot.point, off});
+    }
+  }
+  for (const LostPoint& point : lost_ends(domain, starts, boundary, h, beyond, context)) {
+    lost.push_back({PlaceKind::Thin, point.where, point.distance});
   }
   return lost;
 }
@@ -130,14 +133,17 @@ std::vector<MeshPlace> places_of(const Domain& domain, const std::vector<Differe
       place.kind = kind;
       place.n = members.size();
       double least = kInfinity, farthest = -1;
+      Box box;
       for (const int k : members) {
         const std::size_t i = of_kind[static_cast<std::size_t>(k)];
         least = std::min(least, feature[i]);
+        box.extend(points[i]);
         if (differences[i].off <= farthest) continue;
         farthest = differences[i].off;
         place.where = points[i] + domain.shift;
       }
       place.off_over_h = farthest / h;
+      place.size_over_h = box.diagonal().norm() / h;
       set_feature(least, h, place);
       places.push_back(place);
     }
@@ -147,20 +153,26 @@ std::vector<MeshPlace> places_of(const Domain& domain, const std::vector<Differe
 
 void write_places(const std::filesystem::path& file, const std::vector<MeshPlace>& places) {
   std::vector<Vec3> points;
-  std::vector<double> off, feature;
+  std::vector<double> off, size, feature;
   std::vector<std::uint8_t> kind, small;
   std::vector<std::int64_t> n;
   for (const MeshPlace& place : places) {
     points.push_back(place.where);
     kind.push_back(static_cast<std::uint8_t>(place.kind));
     off.push_back(place.off_over_h);
+    size.push_back(place.size_over_h);
     feature.push_back(place.feature_over_h.value_or(0));
     small.push_back(is_small(place) ? 1 : 0);
     n.push_back(static_cast<std::int64_t>(place.n));
   }
   write_artefact(file, [&](const std::filesystem::path& temporary) {
     write_vtp(temporary, points,
-              {{"kind", kind}, {"off_over_h", off}, {"feature_over_h", feature}, {"small", small}, {"n", n}});
+              {{"kind", kind},
+               {"off_over_h", off},
+               {"size_over_h", size},
+               {"feature_over_h", feature},
+               {"small", small},
+               {"n", n}});
   });
 }
 

@@ -7,7 +7,6 @@
 #include "mesh/implicit/surface_distance.h"
 #include "mesh/submesh/um_result.h"
 #include "pipeline/domain/domain.h"
-#include "pipeline/domain/too_thin.h"
 #include "pipeline/domain/zero_set_choice.h"
 #include "pipeline/reports/mesh_place.h"
 
@@ -24,9 +23,12 @@ struct Difference {
 /// Faces that are folded, vertices and faces that are off.
 std::vector<Difference> differences_of(const MeshCertificate& certificate);
 
-/// Points of thin places farther than kSmallOff h from the boundary of the mesh: body or gap thinner than an edge can be skipped
-/// without a trace in topology or normals. \throw Cancelled
-std::vector<Difference> lost_of(const ThinPlaces& thin, const SurfaceDistance& boundary, const Context& context = {});
+/// Points of psi = 0 farther than kSmallOff h from the boundary of the mesh: body or gap thinner than an edge can be
+/// skipped without a trace in topology or normals. Those of a grid, and those of lost_ends().
+/// @param psi_points, starts  see there \throw Cancelled
+std::vector<Difference> lost_parts(const Domain& domain, const std::vector<Vec3>& psi_points,
+                                   const std::vector<Vec3>& starts, const SurfaceDistance& boundary, double h,
+                                   const Context& context = {});
 
 /// Vertices of the background that changed sides for a manifold boundary and left a trace: psi = 0 within an edge of
 /// them is farther from the boundary of the mesh than flat faces explain where it is as sharply curved as h can just
@@ -49,8 +51,8 @@ MeshPlace topology_place(const Domain& domain, const ZeroSetChoice& counted, con
 std::vector<MeshPlace> places_of(const Domain& domain, const std::vector<Difference>& differences, double h,
                                  const Context& context = {});
 
-/// A point a place with `kind` (the number of its PlaceKind), `off_over_h`, `feature_over_h` (0: none), `small` (0/1)
-/// and `n`; complete or not at all. \throw std::system_error naming the file
+/// A point a place with `kind` (the number of its PlaceKind), `off_over_h`, `size_over_h`, `feature_over_h` (0: none),
+/// `small` (0/1) and `n`; complete or not at all. \throw std::system_error naming the file
 void write_places(const std::filesystem::path& file, const std::vector<MeshPlace>& places);
 
 }  // namespace umtet

@@ -86,7 +86,8 @@ std::string place_table(const Certificate& c) {
   if (places.empty()) return "";
   const std::string unit = c.units ? ", " + html_text(*c.units) : "";
   std::string rows = fmt::format(
-      "<tr><th></th><th>what</th><th>where{0}</th><th>off, h</th><th>feature of ψ = 0, h</th><th>shown by h{0}</th>"
+      "<tr><th></th><th>what</th><th>where{0}</th><th>off, h</th><th>size, h</th><th>feature of ψ = 0, h</th><th>shown "
+      "by h{0}</th>"
       "<th>of</th><th></th></tr>\n",
       unit);
   const auto number = [](const std::optional<double>& x) { return x ? fmt::format("{:.3g}", *x) : std::string("–"); };
@@ -94,9 +95,10 @@ std::string place_table(const Certificate& c) {
     const MeshPlace& p = places.listed[k];
     rows += fmt::format(
         "<tr><td><button type=\"button\" data-place=\"{}\">show {}</button></td><td>{}</td>"
-        "<td>({:.4g}, {:.4g}, {:.4g})</td><td>{:.2g}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-        k, k + 1, said_of(p.kind), p.where.x(), p.where.y(), p.where.z(), p.off_over_h, number(p.feature_over_h),
-        number(p.h_needed), p.n, is_small(p) ? "small" : "");
+        "<td>({:.4g}, {:.4g}, "
+        "{:.4g})</td><td>{:.2g}</td><td>{:.2g}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+        k, k + 1, said_of(p.kind), p.where.x(), p.where.y(), p.where.z(), p.off_over_h, p.size_over_h,
+        number(p.feature_over_h), number(p.h_needed), p.n, is_small(p) ? "small" : "");
   }
   const std::size_t n = places.n(), n_listed = places.listed.size();
   const std::string rest = n > n_listed ? fmt::format(" These are the worst {} of {}.", n_listed, n) : "";

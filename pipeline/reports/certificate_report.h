@@ -25,7 +25,9 @@ namespace umtet {
 enum class TopologyProof {
   Same,
   Differs,
-  NotProved,  ///< the counts differ, and the grid of that of psi = 0 is coarser than the mesh: either may be wrong
+  /// The counts differ, and the grid of that of psi = 0 is coarser than the mesh; or they are the same, and psi = 0 is
+  /// thinner somewhere than that grid can see.
+  NotProved,
 };
 
 /// How the boundary of the mesh compares with psi = 0 as it was counted on a grid of its own.

@@ -30,6 +30,7 @@ struct MeshPlace {
   PlaceKind kind = PlaceKind::Off;
   Vec3 where = Vec3::Zero();  ///< where it is farthest off; model coordinates
   double off_over_h = 0;      ///< between psi = 0 and the boundary of the mesh
+  double size_over_h = 0;     ///< diagonal of the box around all of it
   /// How small psi = 0 is there: the least of the distance to the other sheet, through the body or through the gap, and
   /// the smallest diameter of curvature. None where neither is below two edges.
   std::optional<double> feature_over_h{};

@@ -12,6 +12,7 @@ Json json_of_place(const MeshPlace& place) {
   return {{"kind", to_string(place.kind)},
           {"where", json_of(place.where)},
           {"off_over_h", place.off_over_h},
+          {"size_over_h", place.size_over_h},
           {"feature_over_h", json_of(place.feature_over_h)},
           {"h_needed", json_of(place.h_needed)},
           {"small", is_small(place)},
@@ -29,6 +30,7 @@ MeshPlace place_from(const Json& json) {
   return {.kind = kind_from(json),
           .where = vector_from(json.at("where")),
           .off_over_h = number_from(json.at("off_over_h")),
+          .size_over_h = number_from(json.at("size_over_h")),
           .feature_over_h = optional_from<double>(json.at("feature_over_h")),
           .h_needed = optional_from<double>(json.at("h_needed")),
           .n = json.at("n")};

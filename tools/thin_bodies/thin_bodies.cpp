@@ -1,6 +1,6 @@
 // What becomes of thin bodies and gaps whose truth is known.
 //
-//   thin_bodies [--bodies N] [--seed N] [--threads N] [--list] > data/thin_bodies.csv
+//   thin_bodies [--bodies N] [--seed N] [--list] > data/thin_bodies.csv
 //
 // N bodies (2000) of the families of bodies.h, .1 to 3 h thick, in random places and rotations, are meshed at h = 1 as
 // `umtet mesh --h` does, and judged. A line of the table is a family and a range of thickness:
@@ -11,22 +11,17 @@
 //   none        no mesh: no vertex of the background is inside
 //   not_valid   meshes that are not valid
 //   unreported  meshes that are wrong where they say nothing. Wrong is a point of psi = 0 farther than h / 2 from the
-//               boundary, or a face farther than h / 2 from psi = 0, more than 2.5 h from any place; or other pieces or
-//               another genus than the body's without a place of kind topology
+//               boundary, or a face farther than h / 2 from psi = 0, outside of all places by more than 2.5 h; or
+//               pieces or a genus that are not the body's and are said to be
 //
 // Points of psi = 0 are found along rays, faces by the distance to these points: code apart from that of the
 // certificate. --list: a line a body instead. The same bytes for any number of threads.
 
-#include <oneapi/tbb/task_arena.h>
-
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "mesh/background/background_mesh.h"
@@ -42,14 +37,15 @@ namespace {
 // Ranges of thickness, h.
 constexpr double kBounds[] = {.1, .25, .5, .75, 1, 1.25, 1.5, 2, 2.5, 3};
 constexpr int kRanges = static_cast<int>(std::size(kBounds)) - 1;
-// Points of psi = 0 are that far apart where they are sparse: what is added to kSmallOff.
+// What is added to kSmallOff: points of psi = 0 are that far apart where they are sparse ...
 constexpr double kSparse = .2;
-// From a wrong point to the place that reports it, h.
+// ... and the mesher looks for them in steps.
+constexpr double kSteps = .05;
+// From a wrong point to the place that reports it, h; besides the size of the place.
 constexpr double kNear = 2.5;
 
 struct Request {
-  std::size_t bodies = 2000, threads = std::thread::hardware_concurrency();
-  std::uint64_t seed = 0;
+  std::size_t bodies = 2000, seed = 0;
   bool lists = false;
 };
 
@@ -64,7 +60,8 @@ struct Outcome {
 };
 
 bool is_near_a_place(const Vec3& x, const std::vector<MeshPlace>& places) {
-  return std::any_of(places.begin(), places.end(), [&](const MeshPlace& p) { return (p.where - x).norm() <= kNear; });
+  return std::any_of(places.begin(), places.end(),
+                     [&](const MeshPlace& p) { return (p.where - x).norm() <= p.size_over_h + kNear; });
 }
 
 Outcome outcome_of(const Body& body) {
@@ -84,16 +81,14 @@ Outcome outcome_of(const Body& body) {
   o.n_places = a.places.size();
   const MeshCertificate::Boundary& boundary = a.measured.mesh.boundary;
   o.same_topology = boundary.components == body.n_pieces && boundary.euler_characteristic == 2L * body.n_pieces;
-  const auto& kinds = a.measured.places.kinds;
-  o.reports_topology =
-      std::any_of(kinds.begin(), kinds.end(), [](const auto& k) { return k.kind == PlaceKind::Topology; });
+  o.reports_topology = a.measured.domain.topology != TopologyProof::Same;
   const std::vector<Triangle>& faces = a.result.submesh.positive_faces;
   const auto look = [&](const Vec3& x, double off, double tolerance, double& largest) {
     largest = std::max(largest, off);
     if (off > kSmallOff + tolerance && !is_near_a_place(x, a.places)) ++o.n_unreported;
   };
   const std::vector<double> lost = SurfaceDistance(a.result.final, faces).distances(body.surface);
-  for (std::size_t i = 0; i < lost.size(); ++i) look(body.surface[i], lost[i], .01, o.lost);
+  for (std::size_t i = 0; i < lost.size(); ++i) look(body.surface[i], lost[i], kSteps, o.lost);
   std::vector<Vec3> centroids;
   for (const Triangle& f : faces) {
     centroids.emplace_back((a.result.final[f[0]] + a.result.final[f[1]] + a.result.final[f[2]]) / 3.);
@@ -119,39 +114,24 @@ Request parse(int argc, char** argv) {
       request.lists = true;
       continue;
     }
-    std::size_t* n = flag == "--bodies" ? &request.bodies : flag == "--threads" ? &request.threads : nullptr;
-    if ((!n && flag != "--seed") || i + 1 == argc) {
-      std::fprintf(stderr, "usage: thin_bodies [--bodies N] [--seed N] [--threads N] [--list]\n");
+    if ((flag != "--bodies" && flag != "--seed") || i + 1 == argc) {
+      std::fprintf(stderr, "usage: thin_bodies [--bodies N] [--seed N] [--list]\n");
       std::exit(2);
     }
-    const std::size_t value = number(flag.c_str(), argv[++i]);
-    if (n) {
-      *n = value;
-    } else {
-      request.seed = value;
-    }
+    (flag == "--bodies" ? request.bodies : request.seed) = number(flag.c_str(), argv[++i]);
   }
   return request;
 }
 
 /// Families and ranges take turns.
 std::vector<Outcome> outcomes(const Request& request) {
-  std::vector<Outcome> all(request.bodies);
-  std::atomic<std::size_t> next = 0;
-  const auto work = [&] {
-    tbb::task_arena(1).execute([&] {
-      for (std::size_t k = next++; k < all.size(); k = next++) {
-        const std::size_t range = k / families().size() % kRanges;
-        all[k] = outcome_of(random_body(families()[k % families().size()], kBounds[range], kBounds[range + 1],
-                                        1'000'000 * (request.seed + 1) + k));
-        std::fprintf(stderr, "\r%zu of %zu ", k + 1, all.size());
-      }
-    });
-  };
-  std::vector<std::jthread> threads;
-  for (std::size_t k = 1; k < request.threads; ++k) threads.emplace_back(work);
-  work();
-  threads.clear();
+  std::vector<Outcome> all;
+  for (std::size_t k = 0; k < request.bodies; ++k) {
+    const std::size_t range = k / families().size() % kRanges;
+    all.push_back(outcome_of(random_body(families()[k % families().size()], kBounds[range], kBounds[range + 1],
+                                         1'000'000 * (request.seed + 1) + k)));
+    std::fprintf(stderr, "\r%zu of %zu ", k + 1, request.bodies);
+  }
   std::fprintf(stderr, "\n");
   return all;
 }

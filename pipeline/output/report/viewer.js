@@ -422,7 +422,7 @@
     lookAt(hole.centre, Math.max(hole.rim.diameter, Math.sqrt(hole.area)), (v) => values[v] / 255 <= guessFrom);
   }
   function showPlace(place) {
-    lookAt(place.where, 4 * certificate.h, () => false);
+    lookAt(place.where, (4 + place.size_over_h) * certificate.h, () => false);
   }
   for (const [kind, list, show] of [["hole", holes, showHole], ["place", spots, showPlace]]) {
     for (const button of document.querySelectorAll(`button[data-${kind}]`)) {
