@@ -91,9 +91,9 @@ struct CertificateInput {
 /// leaves is a hundred times less.
 inline constexpr double kVertexTolerance = 1e-8;
 
-/// The centroid of a face with edges of h is 1 - sqrt(2/3) = .18 h from the sphere of radius h through its corners: one
-/// that is this many h from psi = 0 has something sharper under it.
-inline constexpr double kFarFace = .25;
+/// The centroid of a face with edges of h is r - sqrt(r^2 - h^2 / 3) from a sphere of radius r through its corners, .15
+/// h for r = 1.2 h: under one that is farther, psi = 0 is sharper than that.
+inline constexpr double kFarFace = .15;
 
 /// Flat faces may miss this share of the volume, gap_over_volume: a ball with an edge of about its radius misses that
 /// much. A mesh that resolves its domain misses a few per cent at most.

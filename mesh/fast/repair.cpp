@@ -24,6 +24,9 @@ using detail::TetIds;
 // max_patches). In a small mesh where h is too large for the body, most tets are bad and no flip mends them: without
 // this bound repair would take longer than all other steps.
 constexpr std::size_t kFewPatches = 600, kTetsPerPatch = 4;
+// Where h shows the body a tet is mended by three to eight patches. Where it does not, fifty to a hundred are tried for
+// one that helps: kFewPatches and this many for each that did are enough to tell.
+constexpr std::size_t kPatchesPerSuccess = 16;
 // kAtOnce tets are mended at once, while at most kMostWaiting wait for one near them. The same for any number of
 // threads, as the result depends on it. The context is polled before each round: a tet may take a tenth of a second, so
 // that larger rounds would answer too late where one thread works on all of a round.
@@ -85,6 +88,7 @@ class Repair {
   const RepairParams& params_;
   const LatticeActiveLayer& layer_;
   IdSet& inside_;
+  std::size_t most_patches() const { return std::min(most_patches_, kFewPatches + kPatchesPerSuccess * kept_.size()); }
   const std::size_t most_patches_;
   double target_;
   detail::Positions positions_;
@@ -105,7 +109,7 @@ bool Repair::is_worth_trying(const TetIds& tet) {
   if (!trials_.front().is_bad(tet)) return false;
   // Where no flip helped, none would help the tets that share a vertex either: their candidates are the same.
   const bool hopeless = std::any_of(tet.begin(), tet.end(), [&](std::int64_t v) { return hopeless_.count(v) != 0; });
-  if (!hopeless && report_.tries < most_patches_) return true;
+  if (!hopeless && report_.tries < most_patches()) return true;
   given_up_.push_back(tet);
   return false;
 }
@@ -194,7 +198,7 @@ void Repair::mend(const Context& context) {
   std::vector<FlipTrials::Best> best(kAtOnce);
   while (choose_round()) {
     context.poll();
-    const std::size_t most_tries = most_patches_ - report_.tries;
+    const std::size_t most_tries = most_patches() - report_.tries;
     tbb::parallel_for(
         std::size_t{0}, round_.size(), [&](std::size_t k) { best[k] = trials_[k](round_[k], most_tries); },
         tbb::simple_partitioner());

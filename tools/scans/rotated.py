@@ -8,6 +8,7 @@ line a body: exit codes, pieces and genus, and the least and the greatest of min
 distance of face centres (formulas) or of 99 % of the samples (clouds), in h.
 """
 import argparse
+import collections
 import json
 import os
 import re
@@ -50,11 +51,11 @@ def spread(values, digits=3):
 
 
 def table_line(name, results):
-    codes = sorted({code for code, _ in results})
+    codes = collections.Counter(code for code, _ in results)
     made = [c for _, c in results if c]
     shapes = sorted({(c["boundary"]["components"], c["boundary"]["genus"]) for c in made})
     off = [c["cloud"]["p99_distance_over_h"] if c["cloud"] else c["boundary"]["max_centroid_distance_over_h"] for c in made]
-    print(f"| {name} | {', '.join(map(str, codes))} | {', '.join(f'{n}, genus {g}' for n, g in shapes)} | "
+    print(f"| {name} | {', '.join(f'{code}: {n}' for code, n in sorted(codes.items()))} | {', '.join(f'{n}, genus {g}' for n, g in shapes)} | "
           f"{spread([c['n_tets'] / 1000 for c in made], 0)} k | {spread([c['quality']['min'] for c in made])} | "
           f"{spread([c['quality']['p01'] for c in made], 4)} | {spread(off)} |", flush=True)
 
@@ -66,7 +67,7 @@ def main():
     parser.add_argument("--rotations", type=int, default=30)
     parser.add_argument("--seed", type=int, default=1)
     a = parser.parse_args()
-    print("| body | exit codes | pieces | tets | min Q | 1 % of Q | off, h |\n|---|---|---|---|---|---|---|")
+    print("| body | exit code: poses | pieces | tets | min Q | 1 % of Q | off, h |\n|---|---|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as folder:
         case = os.path.join(folder, "case")
         for name, (formula, half, size) in (("eq. (9)", EQUATION_9), ("T6", T6)):

@@ -1,6 +1,6 @@
 // What becomes of thin bodies and gaps whose truth is known.
 //
-//   thin_bodies [--bodies N] [--seed N] [--list] > data/thin_bodies.csv
+//   thin_bodies [--bodies N] [--seed N] [--only FAMILY] [--list] > data/thin_bodies.csv
 //
 // N bodies (2000) of the families of bodies.h, .1 to 3 h thick, in random places and rotations, are meshed at h = 1 as
 // `umtet mesh --h` does, and judged. A line of the table is a family and a range of thickness:
@@ -15,7 +15,8 @@
 //               pieces or a genus that are not the body's and are said to be
 //
 // Points of psi = 0 are found along rays, faces by the distance to these points: code apart from that of the
-// certificate. --list: a line a body instead. The same bytes for any number of threads.
+// certificate. --only: the bodies of this family alone. --list: a line a body instead. The same bytes for any number of
+// threads.
 
 #include <algorithm>
 #include <cmath>
@@ -46,6 +47,7 @@ constexpr double kNear = 2.5;
 
 struct Request {
   std::size_t bodies = 2000, seed = 0;
+  std::string only = {};
   bool lists = false;
 };
 
@@ -114,8 +116,12 @@ Request parse(int argc, char** argv) {
       request.lists = true;
       continue;
     }
+    if (flag == "--only" && i + 1 < argc) {
+      request.only = argv[++i];
+      continue;
+    }
     if ((flag != "--bodies" && flag != "--seed") || i + 1 == argc) {
-      std::fprintf(stderr, "usage: thin_bodies [--bodies N] [--seed N] [--list]\n");
+      std::fprintf(stderr, "usage: thin_bodies [--bodies N] [--seed N] [--only FAMILY] [--list]\n");
       std::exit(2);
     }
     (flag == "--bodies" ? request.bodies : request.seed) = number(flag.c_str(), argv[++i]);
@@ -127,9 +133,11 @@ Request parse(int argc, char** argv) {
 std::vector<Outcome> outcomes(const Request& request) {
   std::vector<Outcome> all;
   for (std::size_t k = 0; k < request.bodies; ++k) {
+    const std::string& family = families()[k % families().size()];
+    if (!request.only.empty() && family != request.only) continue;
     const std::size_t range = k / families().size() % kRanges;
-    all.push_back(outcome_of(random_body(families()[k % families().size()], kBounds[range], kBounds[range + 1],
-                                         1'000'000 * (request.seed + 1) + k)));
+    all.push_back(
+        outcome_of(random_body(family, kBounds[range], kBounds[range + 1], 1'000'000 * (request.seed + 1) + k)));
     std::fprintf(stderr, "\r%zu of %zu ", k + 1, request.bodies);
   }
   std::fprintf(stderr, "\n");
@@ -159,6 +167,7 @@ void print_table(const std::vector<Outcome>& all) {
         not_valid += o.made && !o.valid;
         unreported += o.unreported();
       }
+      if (n == 0) continue;
       std::printf("%s,%g,%g,%d,%d,%d,%d,%d,%d,%d\n", family.c_str(), kBounds[r], kBounds[r + 1], n, passes, faithful,
                   fails, none, not_valid, unreported);
     }

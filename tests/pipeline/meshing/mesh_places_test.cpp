@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/domain/clusters.h"
+#include "pipeline/meshing/lost_ends.h"
 
 namespace umtet {
 namespace {
@@ -70,6 +71,37 @@ TEST(MeshPlaces, ATopologyThatDiffersIsWherePsiIsThin) {
   ASSERT_TRUE(place.feature_over_h);
   EXPECT_LT(*place.feature_over_h, kLeastEdgesAcross);
   EXPECT_GT(place.off_over_h, 9);  // the far ends of the balls have no boundary near them
+}
+
+TEST(LostEnds, AWireIsFollowedToItsEndFromWhereTheMeshEnds) {
+  // 6 long and .1 thick: a mesh of edge length 1 has hardly anything of it.
+  const Domain wire = domain_of("(x/3)^2+(y/0.05)^2+(z/0.05)^2-1", {4, 1, 1});
+  const std::vector<Vec3> V = {{.5, .1, 0}, {.5, -.1, .1}, {.5, -.1, -.1}};
+  const SurfaceDistance boundary(V, {{0, 1, 2}});
+  const std::vector<LostPoint> lost = lost_ends(wire, {Vec3(.5, 0, .05)}, boundary, 1, .5);
+  ASSERT_FALSE(lost.empty());
+  double left = 0, right = 0;
+  for (const LostPoint& p : lost) {
+    EXPECT_GT(p.distance, .5);
+    EXPECT_LT(std::abs(wire.value(p.where)), 1e-6);
+    left = std::min(left, p.where.x());
+    right = std::max(right, p.where.x());
+  }
+  EXPECT_LT(left, -2.9);
+  EXPECT_GT(right, 2.9);
+}
+
+TEST(LostEnds, WhereTheBoundaryIsOnPsiThereAreNone) {
+  const Domain ball = domain_of("x^2+y^2+z^2-1", {2, 2, 2});
+  // An octahedron: between its faces and the ball lies at most 1 - 1 / sqrt(3) = .42.
+  const std::vector<Vec3> V = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  std::vector<Triangle> faces;
+  for (const int x : {0, 1}) {
+    for (const int y : {2, 3}) {
+      for (const int z : {4, 5}) faces.push_back({x, y, z});
+    }
+  }
+  EXPECT_TRUE(lost_ends(ball, V, SurfaceDistance(V, faces), 1, .5).empty());
 }
 
 }  // namespace

@@ -143,6 +143,21 @@ def holes_are_shown(umtet, folder):
     assert not said and not page.patches, (said, page.patches)
 
 
+def places_are_shown(umtet, folder):
+    """A lens too thin for h: its report lists where the mesh is wrong, and opens at such a place, nearer than the whole."""
+    done = subprocess.run([umtet, "mesh", "--implicit", "x^2+y^2+(z/0.12)^2-1", "--box=-1.6,-1.6,-.9,1.6,1.6,.9", "--h", ".3",
+                           "-o", folder / "lens", "-q", "--progress", "none"], stdout=subprocess.DEVNULL, check=False)
+    assert done.returncode == 6, done
+    report = folder / "lens/report.html"
+    places = json.loads((folder / "lens/certificate.json").read_text())["places"]
+    assert places["n"] > 0
+    assert len(re.findall(r'<button type="button" data-place="\d+">', report.read_text())) == len(places["listed"])
+    page, said = opened(f"file://{report}", folder / "g")
+    near, said_near = opened(f"file://{report}#spot=1", folder / "h")
+    assert not said + said_near, said + said_near
+    assert near.body["data-pixels"] != page.body["data-pixels"], page.body
+
+
 def main(umtet, cloud):
     if not shutil.which("chromium"):
         print("skipped: Debian's chromium is not installed")
@@ -158,11 +173,12 @@ def main(umtet, cloud):
         url = f"file://{case}/report.html"
         page, said = opened(url, f"{folder}/a")
         with ThreadPoolExecutor() as pool:  # a browser waits more than it works
-            (cut, cut_said), (bare, _), _, _ = pool.map(lambda f: f(), (
+            (cut, cut_said), (bare, _), _, _, _ = pool.map(lambda f: f(), (
                 lambda: opened(f"{url}#axis=0&edges=0", f"{folder}/b"),
                 lambda: opened(url, f"{folder}/c", "--disable-3d-apis"),
                 lambda: patches_are_those_of_the_files(umtet, pathlib.Path(folder)),
-                lambda: holes_are_shown(umtet, pathlib.Path(folder))))
+                lambda: holes_are_shown(umtet, pathlib.Path(folder)),
+                lambda: places_are_shown(umtet, pathlib.Path(folder))))
         assert not said + cut_said, said + cut_said
         numbers_are_those_of(certificate, page)
         assert page.body["data-webgl"] == "drawn", page.body
