@@ -37,6 +37,8 @@ class BackgroundMesh {
   /// Of no points and no name for another mesh.
   const Tiling& tiling() const { return tiling_; }
   double h() const { return h_; }
+  /// Mean length of the edges at this vertex, model units; of a lattice h(), whichever vertex.
+  double h(std::int64_t vertex) const { return explicit_ ? explicit_->mean_edge(static_cast<int>(vertex)) : h_; }
   Box box() const;  ///< the block of cells, or the bounding box
   std::int64_t n_vertices()
       const;  ///< size of the id range, vertices without a tet at the background boundary included

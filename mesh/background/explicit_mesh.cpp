@@ -71,6 +71,7 @@ void ExplicitMesh::find_neighbors() {
 
 void ExplicitMesh::find_links() {
   link_begin_.assign(1, 0);
+  mean_edge_at_.resize(mesh_.V.size());
   double sum = 0;
   std::vector<int> link;
   for (int v = 0; v < static_cast<int>(mesh_.V.size()); ++v) {
@@ -79,7 +80,10 @@ void ExplicitMesh::find_links() {
     std::sort(link.begin(), link.end());
     link.erase(std::unique(link.begin(), link.end()), link.end());
     std::erase(link, v);
-    for (const int w : link) sum += (mesh_.V[w] - mesh_.V[v]).norm();
+    double sum_at = 0;
+    for (const int w : link) sum_at += (mesh_.V[w] - mesh_.V[v]).norm();
+    mean_edge_at_[v] = link.empty() ? 0 : sum_at / static_cast<double>(link.size());
+    sum += sum_at;
     link_.insert(link_.end(), link.begin(), link.end());
     link_begin_.push_back(link_.size());
   }

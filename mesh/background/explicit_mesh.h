@@ -17,6 +17,8 @@ class ExplicitMesh {
 
   const TetMesh& mesh() const { return mesh_; }
   double mean_edge() const { return mean_edge_; }
+  /// Of the edges at a vertex; 0 without any.
+  double mean_edge(int vertex) const { return mean_edge_at_[vertex]; }
   /// The tets at a vertex.
   std::span<const int> star(int vertex) const { return list(star_begin_, star_, vertex); }
   /// The vertices it shares an edge with.
@@ -39,6 +41,7 @@ class ExplicitMesh {
 
   TetMesh mesh_;
   double mean_edge_ = 0;
+  std::vector<double> mean_edge_at_;
   std::vector<std::size_t> star_begin_, link_begin_;
   std::vector<int> star_, link_, neighbor_;
   std::vector<bool> on_boundary_;
