@@ -81,9 +81,12 @@ void ExplicitMesh::find_links() {
     link.erase(std::unique(link.begin(), link.end()), link.end());
     std::erase(link, v);
     double sum_at = 0;
-    for (const int w : link) sum_at += (mesh_.V[w] - mesh_.V[v]).norm();
+    for (const int w : link) {
+      const double length = (mesh_.V[w] - mesh_.V[v]).norm();
+      sum += length;
+      sum_at += length;
+    }
     mean_edge_at_[v] = link.empty() ? 0 : sum_at / static_cast<double>(link.size());
-    sum += sum_at;
     link_.insert(link_.end(), link.begin(), link.end());
     link_begin_.push_back(link_.size());
   }
