@@ -1,0 +1,100 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "mesh/background/linear_octree.h"
+#include "mesh/base/id_set.h"
+#include "mesh/core/tet_mesh.h"
+
+namespace umtet {
+
+/// What a GradedMesh is made for. The functions are called by several threads at once.
+struct Grading {
+  Eigen::AlignedBox3d box;  ///< is covered
+  double finest = 0;        ///< mean edge length of the smallest tets, model units
+  /// The least mean edge length that is wanted in the cube of this centre and half width.
+  std::function<double(const Vec3& centre, double half_width)> size;
+  double tolerance = 1;  ///< leaves split while their mean edge length exceeds that times the size
+  /// Whether a cube meets the region of interest; leaves beyond it are left out. Empty: all are kept.
+  std::function<bool(const Vec3& centre, double half_width)> wanted = {};
+};
+
+/// A universal mesh whose tets grow and shrink: BCC tets on an octree in which leaves that touch differ by one level at
+/// most, as in isosurface stuffing [Labelle2007].
+///
+/// Within a region of one size the tets are those of two interleaved cubic lattices, corners and centres of leaves: Q =
+/// .9524, dihedral angles of 60 and 90 degrees. Between two sizes they are halves and quarters of such tets and halves
+/// of the pyramids over the small faces (tet_slots.h): Q >= .756, 45 to 120 degrees. At the background boundary they
+/// are halved at the faces of leaves, which makes it flat.
+///
+/// Only leaves are stored (linear_octree.h); vertices and tets are dense ids in the order of the leaves, and everything
+/// else is computed. Ids change with the grading; key() and tet_key() do not, in any grading of the same root cube.
+/// Immutable, for any number of threads, and the same whatever their number.
+class GradedMesh {
+ public:
+  /// The root cube is centred at the box, its width that of the smallest leaves times a power of two.
+  /// \throw std::invalid_argument for an empty box, finest <= 0, tolerance <= 0, no size or one that is not > 0, more
+  ///        than kMaxOctreeLevel levels, or more than 2^31 - 1 vertices
+  explicit GradedMesh(const Grading& grading);
+
+  std::int64_t n_vertices() const { return octree_.n_vertices(); }
+  std::int64_t n_tets() const { return n_tets_; }
+  std::int64_t n_leaves() const { return n_leaves_; }
+  Eigen::AlignedBox3d box() const { return box_; }  ///< of the vertices
+  /// Mean edge length of the smallest tets.
+  double finest() const { return finest_; }
+
+  Vec3 position(std::int64_t vertex) const;
+  /// Morton key of the vertex in the root cube.
+  std::uint64_t key(std::int64_t vertex) const;
+  /// The vertex of this key, or -1.
+  std::int64_t vertex_of(std::uint64_t key) const;
+  /// 64 (cube_key() of the leaf) + slot.
+  std::uint64_t tet_key(std::int64_t tet) const;
+  std::array<std::int64_t, 4> tet(std::int64_t tet) const;
+  /// Appends the tets at a vertex, ascending.
+  void star(std::int64_t vertex, std::vector<std::int64_t>& tets) const;
+  /// Appends the vertices that share an edge with it, ascending.
+  void link(std::int64_t vertex, std::vector<std::int64_t>& vertices) const;
+  /// The tet behind the face opposite to local vertex `face`, or -1.
+  std::int64_t neighbor(std::int64_t tet, int face) const;
+
+ private:
+  /// Leaves around a vertex with bits of their slots.
+  struct Star {
+    int n = 0;
+    std::array<std::pair<int, std::uint64_t>, 32> parts;
+    void add(int leaf, std::uint64_t slots) {
+      if (slots != 0) parts[static_cast<std::size_t>(n++)] = {leaf, slots};
+    }
+    void sort();
+  };
+  int cell_of_vertex(std::int64_t vertex) const;
+  int cell_of_tet(std::int64_t tet) const;
+  std::int64_t vertex_id(const LinearOctree::VertexPlace& place) const;
+  std::int64_t centre_id(int leaf) const { return vertex_id({leaf, 7}); }
+  std::int64_t tet_id(int leaf, int slot) const;
+  std::int64_t tet_at_edge(int leaf, int face, int e, int half) const;
+  std::int64_t tet_around_edge(int leaf, int face, int e, int half, bool split) const;
+  void find_slots(int leaf);
+  Star star_of(std::int64_t vertex) const;
+  void add_star_of_centre(int leaf, Star& star) const;
+  void add_star_of_point(const GridPoint& p, Star& star) const;
+
+  double finest_ = 0, unit_ = 0;
+  Vec3 origin_;
+  Eigen::AlignedBox3d box_;
+  LinearOctree octree_;
+  std::int64_t n_leaves_ = 0, n_tets_ = 0;
+  IdSet first_vertices_{0};             ///< of the cells
+  std::vector<std::int32_t> tet_cell_;  ///< of every 16th tet
+};
+
+/// The same mesh, stored. \throw std::invalid_argument for more than 2^31 - 1 tets
+TetMesh to_tet_mesh(const GradedMesh& mesh);
+
+}  // namespace umtet

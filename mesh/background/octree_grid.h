@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+
+namespace umtet {
+
+/// Integer coordinates in the root cube of an octree, which is 2^kRootBits wide whatever the depth of the tree. A leaf
+/// of level l is 2^(kRootBits - l) wide; those of the last level are 2, so that their centres are grid points too.
+using GridPoint = std::array<std::int32_t, 3>;
+
+inline constexpr int kMaxOctreeLevel = 17;
+inline constexpr int kRootBits = kMaxOctreeLevel + 1;
+inline constexpr std::int32_t kRootWidth = 1 << kRootBits;
+
+/// Bit i of a coordinate becomes bit 3 i.
+inline std::uint64_t spread_bits(std::uint64_t x) {
+  x = (x | x << 32) & 0x001f00000000ffff;
+  x = (x | x << 16) & 0x001f0000ff0000ff;
+  x = (x | x << 8) & 0x100f00f00f00f00f;
+  x = (x | x << 4) & 0x10c30c30c30c30c3;
+  return (x | x << 2) & 0x1249249249249249;
+}
+
+inline std::int32_t collected_bits(std::uint64_t x) {
+  x &= 0x1249249249249249;
+  x = (x | x >> 2) & 0x10c30c30c30c30c3;
+  x = (x | x >> 4) & 0x100f00f00f00f00f;
+  x = (x | x >> 8) & 0x001f0000ff0000ff;
+  x = (x | x >> 16) & 0x001f00000000ffff;
+  return static_cast<std::int32_t>((x | x >> 32) & 0x1fffff);
+}
+
+/// Morton key: the bits of x, y and z in turn, x lowest. A cube of the octree is an interval of keys: its lower corner
+/// has the least, its centre is the corner of its last child.
+inline std::uint64_t morton_key(const GridPoint& p) {
+  return spread_bits(static_cast<std::uint64_t>(p[0])) | spread_bits(static_cast<std::uint64_t>(p[1])) << 1 |
+         spread_bits(static_cast<std::uint64_t>(p[2])) << 2;
+}
+inline GridPoint grid_point(std::uint64_t key) {
+  return {collected_bits(key), collected_bits(key >> 1), collected_bits(key >> 2)};
+}
+
+/// True for a point of the closed root cube.
+inline bool is_in_root(const GridPoint& p) {
+  for (const std::int32_t x : p) {
+    if (x < 0 || x > kRootWidth) return false;
+  }
+  return true;
+}
+
+/// Where half the width of a cube of this level stands in a key: three bits, one an axis.
+inline int half_width_shift(int level) { return 3 * (kRootBits - 1 - level); }
+inline std::int32_t width(int level) { return kRootWidth >> level; }
+
+/// The key of a cube's centre names the cube: no cube of another level has the same. Its lowest bit says the level.
+inline std::uint64_t cube_key(std::uint64_t corner, int level) {
+  return corner | std::uint64_t{7} << half_width_shift(level);
+}
+inline int cube_level(std::uint64_t cube) { return kRootBits - 1 - std::countr_zero(cube) / 3; }
+inline std::uint64_t cube_corner(std::uint64_t cube) { return cube & ~(std::uint64_t{7} << std::countr_zero(cube)); }
+
+}  // namespace umtet
