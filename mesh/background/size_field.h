@@ -28,8 +28,8 @@ std::vector<std::string> problems(const SizeFieldParams&);
 /// gradient-limiting equation dh/dt + |grad h| = min(|grad h|, grade) of [Persson2006] tends to. f is limited in the
 /// same way, by sources at the lower ends of its steep places (steep_ends()).
 ///
-/// Sources that others make superfluous are left out, and nearly superfluous ones, too: the field is nowhere more than
-/// 5 % above the formula.
+/// Sources that others make superfluous are left out, and nearly superfluous ones, too. All answers are within 5 % of
+/// the formula.
 /// Queries are thread-safe and do not allocate; the result does not depend on the number of threads.
 class SizeField {
  public:
@@ -40,8 +40,8 @@ class SizeField {
             const Context& context = {});
 
   double at(const Vec3& x) const;
-  /// The least in a cube. Of the sources: never above it, at most 2 % below. Of f, whose slope is not known: the least
-  /// at the middle and the corners, where grade holds at most 1.12 grade half_width above.
+  /// The least in a cube. f, whose slope is not known, counts with its least at the middle and the corners: where it is
+  /// as flat as `grade` that is at most 1.12 grade half_width above.
   double least_in(const Vec3& centre, double half_width) const;
 
   const SizeFieldParams& params() const { return params_; }

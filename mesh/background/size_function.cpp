@@ -17,8 +17,8 @@ constexpr int kCubes = 64;
 constexpr double kSeen = .8;
 // How far off the end of a steep place is, in h there: the field is wrong by sqrt(3) / 2 grade times that.
 constexpr double kWidest = .5;
-// The corner that a cone starts from, by the value of the tree there.
-constexpr double kSame = 1 + 1e-9;
+// Of h at a corner: with more it is far from all cones, with less it is limited by another one; a tree answers to 5 %.
+constexpr double kSame = 1 + 1e-9, kLimited = .95;
 
 /// A cube with the values at its corners; corner k is at the low end of axis a where bit a of k is 0.
 struct Cube {
@@ -76,13 +76,13 @@ class Sampling {
     std::vector<SizeSource> ends = tree_.sources();
     for (const Cube& c : cubes) {
       for (int a = 0; a < 8; ++a) {
-        const auto is_steep = [&](int b) {
-          return c.h[b] - c.h[a] > kSeen * grade_ * (c.corner(b) - c.corner(a)).norm();
-        };
-        if (is_steep(a ^ 1) || is_steep(a ^ 2) || is_steep(a ^ 4) || is_steep(a ^ 3) || is_steep(a ^ 5) ||
-            is_steep(a ^ 6) || is_steep(a ^ 7)) {
-          ends.push_back({c.corner(a), c.h[a]});
+        bool is_low = true, is_steep = false;  // none of the others limits it; it limits one of them
+        for (int b = 0; b < 8; ++b) {
+          const double grown = grade_ * (c.corner(b) - c.corner(a)).norm();
+          is_steep |= c.h[b] - c.h[a] > kSeen * grown;
+          is_low &= c.h[a] - c.h[b] <= grown;
         }
+        if (is_steep && is_low) ends.push_back({c.corner(a), c.h[a]});
       }
     }
     tree_ = SourceTree(undominated(std::move(ends), grade_, context_), grade_);
@@ -95,8 +95,8 @@ class Sampling {
       const Cube& c = cubes[i];
       if (c.width <= kWidest * *std::min_element(c.h.begin(), c.h.end())) return;
       for (int v = 0; v < 8 && is_end[i] == 0; ++v) {
-        const double infinite = std::numeric_limits<double>::infinity(), at = tree_.at(c.corner(v), 0, infinite);
-        is_end[i] = at < infinite && at <= kSame * c.h[v] && c.h[v] <= kSame * at ? 1 : 0;
+        const double at = tree_.at(c.corner(v), h_min_, kSame * c.h[v]);
+        is_end[i] = at >= kLimited * c.h[v] && at <= c.h[v] ? 1 : 0;
       }
     });
     std::vector<Cube> ends;

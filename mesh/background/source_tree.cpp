@@ -19,8 +19,14 @@ constexpr std::size_t kMostInLeaf = 8;
 constexpr std::size_t kWorthThreads = 1 << 13;
 // A walk keeps one node of each depth; a tree of 2^40 leaves does not fit in memory.
 constexpr std::size_t kDeepest = 48;
-// A cube's least is not looked for further where it cannot be less by more than this share.
-constexpr double kSlack = .02;
+// The least is not looked for further where it cannot be less by more than this share. Half of it takes half as long
+// again, and a mesh meets sizes to a factor of two.
+constexpr double kSlack = .05;
+
+/// Between the point or cube [low, high] and a box.
+double distance(const Vec3& low, const Vec3& high, const Eigen::AlignedBox3d& box) {
+  return (box.min() - high).cwiseMax(low - box.max()).cwiseMax(0).norm();
+}
 
 bool comes_before(const Vec3& a, const Vec3& b) {
   return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
@@ -78,10 +84,10 @@ double SourceTree::bound(const Node& node, double distance) const {
   return std::max(node.h, node.a + grade_ * distance);
 }
 
-/// Best first; what cannot be below (1 - slack) of the least so far is not looked into, but counted with its bound.
+/// The lower bounds decide the order. What cannot be below (1 - kSlack) of the least so far is not looked into, but
+/// counted with its bound.
 template <class NodeBound, class SourceValue>
-double SourceTree::least(const NodeBound& of_node, const SourceValue& of_source, double least, double most,
-                         double slack) const {
+double SourceTree::least(const NodeBound& of_node, const SourceValue& of_source, double least, double most) const {
   if (nodes_.empty()) return most;
   struct Entry {
     std::size_t node;
@@ -93,7 +99,7 @@ double SourceTree::least(const NodeBound& of_node, const SourceValue& of_source,
   stack[n++] = {0, of_node(nodes_[0])};
   while (n > 0) {
     const Entry e = stack[--n];
-    if (e.bound >= (1 - slack) * best || best <= least) {
+    if (e.bound >= (1 - kSlack) * best || best <= least) {
       lowest_left_out = std::min(lowest_left_out, e.bound);
       continue;
     }
@@ -107,22 +113,22 @@ double SourceTree::least(const NodeBound& of_node, const SourceValue& of_source,
     stack[n++] = far;
     stack[n++] = near;
   }
-  return slack > 0 ? std::min(best, lowest_left_out) : best;
+  return std::min(best, lowest_left_out);
 }
 
 double SourceTree::at(const Vec3& x, double least, double most) const {
-  return this->least([&](const Node& node) { return bound(node, std::sqrt(node.box.squaredExteriorDistance(x))); },
+  return this->least([&](const Node& node) { return bound(node, distance(x, x, node.box)); },
                      [&](const SizeSource& s) { return std::max(s.h, a_of(s) + grade_ * (s.x - x).norm()); }, least,
-                     most, 0);
+                     most);
 }
 
 double SourceTree::least_in(const Vec3& centre, double half_width, double least, double most) const {
-  const Box cube(centre - Vec3::Constant(half_width), centre + Vec3::Constant(half_width));
-  return this->least([&](const Node& node) { return bound(node, std::sqrt(cube.squaredExteriorDistance(node.box))); },
+  const Vec3 low = centre - Vec3::Constant(half_width), high = centre + Vec3::Constant(half_width);
+  return this->least([&](const Node& node) { return bound(node, distance(low, high, node.box)); },
                      [&](const SizeSource& s) {
-                       return std::max(s.h, a_of(s) + grade_ * std::sqrt(cube.squaredExteriorDistance(s.x)));
+                       return std::max(s.h, a_of(s) + grade_ * (s.x - high).cwiseMax(low - s.x).cwiseMax(0).norm());
                      },
-                     least, most, kSlack);
+                     least, most);
 }
 
 bool SourceTree::is_dominated(std::size_t k) const {
@@ -134,7 +140,7 @@ bool SourceTree::is_dominated(std::size_t k) const {
   while (n > 0) {
     const std::size_t node = stack[--n];
     const Node& box = nodes_[node];
-    if (box.h > own.h || box.a + grade_ * std::sqrt(box.box.squaredExteriorDistance(own.x)) > a) continue;
+    if (box.h > own.h || box.a + grade_ * distance(own.x, own.x, box.box) > a) continue;
     if (node < first_leaf_) {
       stack[n++] = 2 * node + 2;
       stack[n++] = 2 * node + 1;

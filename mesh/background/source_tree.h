@@ -29,9 +29,10 @@ class SourceTree {
 
   /// In the order of the leaves.
   const std::vector<SizeSource>& sources() const { return sources_; }
-  /// The least of the sources at x and `most`. What is not less than `least` need not be told apart from it.
+  /// The least of the sources at x, and `most`: never above it, and at most 5 % below.
+  /// @param least  that all of them have
   double at(const Vec3& x, double least, double most) const;
-  /// The least of the sources in a cube, and `most`: never above it, and at most 2 % below.
+  /// The same of the least in a cube.
   double least_in(const Vec3& centre, double half_width, double least, double most) const;
   /// Whether another source asks for no more than this one, wherever x is: h_i <= h_k and a_i + grade |x_i - x_k| <=
   /// a_k. Of two that are the same the first one stays.
@@ -50,7 +51,7 @@ class SourceTree {
   double bound(const Node& node, double distance) const;
   void split(std::size_t node, std::size_t begin, std::size_t end);
   template <class NodeBound, class SourceValue>
-  double least(const NodeBound& of_node, const SourceValue& of_source, double least, double most, double slack) const;
+  double least(const NodeBound& of_node, const SourceValue& of_source, double least, double most) const;
 
   double grade_ = 1;
   std::vector<SizeSource> sources_;
