@@ -102,7 +102,8 @@ void MeshMaker::finish(const BackgroundMesh& background, ChosenSubmesh chosen, M
   round_to_file(a.result, domain_.shift);
   context_.report("certify", kCertificate);
   if (!a.made()) return;
-  Measurement made = measure(domain_, a.result, pieces, a.h, {&a.thin, parameters_.mesh().max_deviation}, context_);
+  Measurement made = measure(domain_, a.result, pieces, mesh_edge(background, a.result),
+                             {&a.thin, parameters_.mesh().max_deviation}, context_);
   a.measured = std::move(made.measures);
   a.places = std::move(made.places);
   curve(a);
