@@ -106,8 +106,8 @@ std::string key_of(const LinkTopology& link) {
   return key;
 }
 
-void Lister::find_types(const std::vector<std::size_t>& begin, const std::vector<int>& vertices,
-                        std::vector<int>& type, std::vector<LinkTopology>& topologies) const {
+void Lister::find_types(const std::vector<std::size_t>& begin, const std::vector<int>& vertices, std::vector<int>& type,
+                        std::vector<LinkTopology>& topologies) const {
   struct OfTask {
     std::unordered_map<std::string, int> number;
     std::vector<const std::string*> keys;
@@ -143,7 +143,8 @@ void Lister::find_types(const std::vector<std::size_t>& begin, const std::vector
       link.back = {};
       for (int k = 0; k < link.n; ++k) link.back[k] = number_of(link_of(ring[k]), v);
       const double octaves = std::log2(background_.h(v) / background_.h());
-      link.unit = link.n == 0 ? 1 : static_cast<float>(std::exp2(std::round(octaves * kStepsPerOctave) / kStepsPerOctave));
+      link.unit =
+          link.n == 0 ? 1 : static_cast<float>(std::exp2(std::round(octaves * kStepsPerOctave) / kStepsPerOctave));
       const auto [at, is_new] = own.number.try_emplace(key_of(link), static_cast<int>(own.topologies.size()));
       if (is_new) {
         own.keys.push_back(&at->first);
@@ -182,8 +183,7 @@ void Lister::find_types(const std::vector<std::size_t>& begin, const std::vector
     link.site = link.n;
     link.adjacent.assign(static_cast<std::size_t>(link.n), 0);
     for (const auto& t : link.triangles) {
-      for (int a = 0; a < 3; ++a)
-        link.adjacent[t[a]] |= LinkMask{1} << t[(a + 1) % 3] | LinkMask{1} << t[(a + 2) % 3];
+      for (int a = 0; a < 3; ++a) link.adjacent[t[a]] |= LinkMask{1} << t[(a + 1) % 3] | LinkMask{1} << t[(a + 2) % 3];
     }
     if (link.n > kMostInTable || link.n == 0 || uses[k] * kStatesPerVertex < std::size_t{1} << link.n) return;
     link.states.resize(std::size_t{1} << link.n);

@@ -141,7 +141,8 @@ void measure_against(ImplicitFunctionRef psi, const TetMesh& mesh, const std::ve
 
   boundary.max_centroid_distance = 0;
   double max_vertex = 0, max_centroid = 0, min_cos = 1, gap = 0;
-  for (std::size_t i = 0; i < vertices.size(); ++i) max_vertex = std::max(max_vertex, vertex_distance[i] / h(vertices[i]));
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    max_vertex = std::max(max_vertex, vertex_distance[i] / h(vertices[i]));
   for (std::size_t i = 0; i < face.size(); ++i) {
     const FaceMeasure& f = face[i];
     if (!f.found) {
@@ -262,8 +263,8 @@ MeshCertificate certify_again(const CertificateInput& input, CertificateMemory::
   boundary.n_cos_below_half = boundary.n_unprojected_faces = 0;
   if (input.psi) {
     if (known.surface_vertices.empty()) known.surface_vertices = vertices_of(surface);
-    measure_against(*input.psi, *input.mesh, surface, known.surface_vertices, certificate.volume, input.local_h, input.context,
-                    certificate);
+    measure_against(*input.psi, *input.mesh, surface, known.surface_vertices, certificate.volume, input.local_h,
+                    input.context, certificate);
   }
   return certificate;
 }
@@ -332,7 +333,8 @@ std::vector<std::string> coarseness(const MeshCertificate& certificate) {
 std::vector<std::string> failures(const MeshCertificate& certificate) {
   std::vector<std::string> reasons = invalidities(certificate);
   const MeshCertificate::Boundary& b = certificate.boundary;
-  if (b.max_vertex_distance_over_h && !(*b.max_vertex_distance_over_h <= vertex_tolerance(certificate, certificate.h))) {
+  if (b.max_vertex_distance_over_h &&
+      !(*b.max_vertex_distance_over_h <= vertex_tolerance(certificate, certificate.h))) {
     reasons.push_back(formatted("a boundary vertex is %.3g h from psi = 0, more than rounding explains",
                                 *b.max_vertex_distance_over_h));
   }

@@ -80,7 +80,8 @@ struct MeshCertificate {
 struct CertificateInput {
   const TetMesh* mesh = nullptr;
   double h = 0;  ///< <= 0: the mean over tets of the root mean square edge length is used
-  /// Optional, by vertex, > 0: the edge length that ratios at this vertex, and at faces with it, refer to, instead of h.
+  /// Optional, by vertex, > 0: the edge length that ratios at this vertex, and at faces with it, refer to, instead of
+  /// h.
   const std::vector<double>* local_h = nullptr;
   const std::vector<Triangle>* positive_faces = nullptr;  ///< optional: compared with the boundary as a set
   std::optional<ImplicitFunctionRef> psi;                 ///< optional: distances and normals

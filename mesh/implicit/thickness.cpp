@@ -46,9 +46,8 @@ std::vector<double> least_of(const std::vector<SheetDistances>& distances) {
 std::vector<SheetDistances> sheet_distances(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double step,
                                             double limit, const Context& context, double steepest) {
   std::vector<SheetDistances> out(points.size());
-  polled_parallel_for(points.size(), kValuesPerPoll, context, [&](std::size_t i) {
-    out[i] = sheet_distances_at(psi, points[i], step, limit, steepest);
-  });
+  polled_parallel_for(points.size(), kValuesPerPoll, context,
+                      [&](std::size_t i) { out[i] = sheet_distances_at(psi, points[i], step, limit, steepest); });
   return out;
 }
 

@@ -40,8 +40,8 @@ std::vector<double> thickness(ImplicitFunctionRef psi, const std::vector<Vec3>& 
                               const Context& context = {}, double steepest = std::numeric_limits<double>::infinity());
 
 /// The same, with a step and a limit for each point, as above.
-std::vector<double> thickness(ImplicitFunctionRef psi, const std::vector<Vec3>& points, const std::vector<double>& scale,
-                              double step, double limit, const Context& context = {},
+std::vector<double> thickness(ImplicitFunctionRef psi, const std::vector<Vec3>& points,
+                              const std::vector<double>& scale, double step, double limit, const Context& context = {},
                               double steepest = std::numeric_limits<double>::infinity());
 
 }  // namespace umtet

@@ -126,8 +126,8 @@ struct Comparison {
 /// spacing, as far as its size is allowed. A count on a grid coarser than the mesh says nothing against the mesh, and
 /// one coarser than body or gap are thin nothing for it.
 Comparison compare_with_zero_set(const Domain& domain, const MeshCertificate& certificate, const ZeroSetChoice& pieces,
-                                 const VertexThickness& thickness, const SurfaceDistance* surface,
-                                 const MeshEdge& h, const Context& context) {
+                                 const VertexThickness& thickness, const SurfaceDistance* surface, const MeshEdge& h,
+                                 const Context& context) {
   const MeshCertificate::Boundary& boundary = certificate.boundary;
   const int of_psi = boundary.components - (domain.complement ? 1 : 0);
   const long characteristic = boundary.euler_characteristic - (domain.complement ? 2 : 0);
@@ -173,8 +173,8 @@ Comparison compare_with_zero_set(const Domain& domain, const MeshCertificate& ce
 /// With the proof that no piece is unseen, and what of the boundary is a guess.
 Comparison compare_with_domain(const Domain& domain, const TetMesh& mesh, const std::vector<Triangle>& faces,
                                const MeshCertificate& certificate, const ZeroSetChoice& pieces,
-                               const VertexThickness& thickness, const SurfaceDistance* surface,
-                               const MeshEdge& h, const Context& context) {
+                               const VertexThickness& thickness, const SurfaceDistance* surface, const MeshEdge& h,
+                               const Context& context) {
   Comparison made = compare_with_zero_set(domain, certificate, pieces, thickness, surface, h, context);
   ZeroSetReport& report = made.report;
   if (domain.level_set) report.level_set_spacing = domain.level_set->spacing();

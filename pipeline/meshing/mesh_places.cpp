@@ -94,8 +94,8 @@ std::vector<Difference> flips_that_show(const std::vector<ManifoldFlip>& flips, 
   return all;
 }
 
-MeshPlace topology_place(const Domain& domain, const ZeroSetChoice& counted, const SurfaceDistance& boundary, const MeshEdge& h,
-                         std::size_t n, const Context& context) {
+MeshPlace topology_place(const Domain& domain, const ZeroSetChoice& counted, const SurfaceDistance& boundary,
+                         const MeshEdge& h, std::size_t n, const Context& context) {
   const std::vector<Vec3> points = kept_points(counted);
   MeshPlace place;
   place.kind = PlaceKind::Topology;
