@@ -7,11 +7,11 @@
 #include <span>
 
 #include "mesh/certify/boundary_surface.h"
+#include "mesh/implicit/curvature.h"
 #include "mesh/implicit/surface_distance.h"
 #include "mesh/implicit/thickness.h"
 #include "pipeline/domain/closed_holes.h"
 #include "pipeline/domain/component_proof.h"
-#include "pipeline/domain/deviation.h"
 #include "pipeline/domain/edge_length.h"
 #include "pipeline/domain/missed_samples.h"
 #include "pipeline/meshing/mesh_places.h"
