@@ -14,7 +14,8 @@ constexpr double kMaxTets = 1099511627776.0;  // 2^40
 }  // namespace
 
 BackgroundMesh::BackgroundMesh(const Tiling& tiling, const Box& box, double h)
-    : tiling_(tiling),
+    : is_lattice_(true),
+      tiling_(tiling),
       tables_(tables(tiling)),
       h_(h),
       unit_(h / tiling.mean_edge),
@@ -34,7 +35,8 @@ BackgroundMesh::BackgroundMesh(const Tiling& tiling, const Box& box, double h)
 }
 
 BackgroundMesh::BackgroundMesh(TetMesh mesh)
-    : explicit_(std::make_shared<const ExplicitMesh>(std::move(mesh))),
+    : is_lattice_(false),
+      explicit_(std::make_shared<const ExplicitMesh>(std::move(mesh))),
       h_(explicit_->mean_edge()),
       unit_(1),
       origin_(Vec3::Zero()),
@@ -42,7 +44,18 @@ BackgroundMesh::BackgroundMesh(TetMesh mesh)
       n_types_(0),
       n_cell_tets_(0) {}
 
+BackgroundMesh::BackgroundMesh(GradedMesh mesh)
+    : is_lattice_(false),
+      graded_(std::make_shared<const GradedMesh>(std::move(mesh))),
+      h_(graded_->finest()),
+      unit_(1),
+      origin_(Vec3::Zero()),
+      n_{},
+      n_types_(0),
+      n_cell_tets_(0) {}
+
 Box BackgroundMesh::box() const {
+  if (graded_) return graded_->box();
   if (explicit_) {
     Box box;
     for (const Vec3& x : explicit_->mesh().V) box.extend(x);
@@ -54,12 +67,12 @@ Box BackgroundMesh::box() const {
 }
 
 std::int64_t BackgroundMesh::n_vertices() const {
-  if (explicit_) return static_cast<std::int64_t>(explicit_->mesh().V.size());
+  if (!is_lattice_) return graded_ ? graded_->n_vertices() : static_cast<std::int64_t>(explicit_->mesh().V.size());
   return n_types_ * (n_[0] + 2) * (n_[1] + 2) * (n_[2] + 2);
 }
 
 std::int64_t BackgroundMesh::n_tets() const {
-  if (explicit_) return static_cast<std::int64_t>(explicit_->mesh().C.size());
+  if (!is_lattice_) return graded_ ? graded_->n_tets() : static_cast<std::int64_t>(explicit_->mesh().C.size());
   return n_cell_tets_ * n_[0] * n_[1] * n_[2];
 }
 
@@ -90,7 +103,7 @@ std::int64_t BackgroundMesh::tet_id(int tet, const Cell& cell, const std::array<
 }
 
 Vec3 BackgroundMesh::position(std::int64_t vertex) const {
-  if (explicit_) return explicit_->mesh().V[vertex];
+  if (!is_lattice_) return graded_ ? graded_->position(vertex) : explicit_->mesh().V[vertex];
   const VertexAddress v = vertex_address(vertex);
   const auto& p = tiling_.points[v.type];
   const auto& period = tiling_.period;
@@ -101,7 +114,8 @@ Vec3 BackgroundMesh::position(std::int64_t vertex) const {
 }
 
 std::array<std::int64_t, 4> BackgroundMesh::tet(std::int64_t tet) const {
-  if (explicit_) {
+  if (!is_lattice_) {
+    if (graded_) return graded_->tet(tet);
     const Tet& corners = explicit_->mesh().C[tet];
     return {corners[0], corners[1], corners[2], corners[3]};
   }
@@ -117,7 +131,8 @@ std::array<std::int64_t, 4> BackgroundMesh::tet(std::int64_t tet) const {
 }
 
 void BackgroundMesh::star(std::int64_t vertex, std::vector<std::int64_t>& tets) const {
-  if (explicit_) {
+  if (!is_lattice_) {
+    if (graded_) return graded_->star(vertex, tets);
     const auto star = explicit_->star(static_cast<int>(vertex));
     tets.insert(tets.end(), star.begin(), star.end());
     return;
@@ -129,7 +144,8 @@ void BackgroundMesh::star(std::int64_t vertex, std::vector<std::int64_t>& tets) 
 }
 
 void BackgroundMesh::link(std::int64_t vertex, std::vector<std::int64_t>& vertices) const {
-  if (explicit_) {
+  if (!is_lattice_) {
+    if (graded_) return graded_->link(vertex, vertices);
     const auto link = explicit_->link(static_cast<int>(vertex));
     vertices.insert(vertices.end(), link.begin(), link.end());
     return;
@@ -157,7 +173,7 @@ void BackgroundMesh::link(std::int64_t vertex, std::vector<std::int64_t>& vertic
 }
 
 bool BackgroundMesh::on_boundary(std::int64_t vertex) const {
-  if (explicit_) return explicit_->on_boundary(static_cast<int>(vertex));
+  if (!is_lattice_) return graded_ ? graded_->on_boundary(vertex) : explicit_->on_boundary(static_cast<int>(vertex));
   const VertexAddress v = vertex_address(vertex);
   if (is_deep(v.cell)) return false;
   for (const auto& corner : tables_.star[v.type]) {
@@ -167,13 +183,13 @@ bool BackgroundMesh::on_boundary(std::int64_t vertex) const {
 }
 
 bool BackgroundMesh::is_off_boundary(std::int64_t first, std::int64_t last) const {
-  if (explicit_) return false;
+  if (!is_lattice_) return false;
   const Cell a = cell(first), b = cell(last);
   return is_deep(a) && is_deep(b) && a[1] == b[1] && a[2] == b[2];
 }
 
 bool BackgroundMesh::has_tets(std::int64_t vertex) const {
-  if (explicit_) return !explicit_->star(static_cast<int>(vertex)).empty();
+  if (!is_lattice_) return graded_ || !explicit_->star(static_cast<int>(vertex)).empty();
   const VertexAddress v = vertex_address(vertex);
   if (is_deep(v.cell)) return true;
   for (const auto& corner : tables_.star[v.type]) {
@@ -183,7 +199,7 @@ bool BackgroundMesh::has_tets(std::int64_t vertex) const {
 }
 
 std::int64_t BackgroundMesh::neighbor(std::int64_t tet, int face) const {
-  if (explicit_) return explicit_->neighbor(static_cast<int>(tet), face);
+  if (!is_lattice_) return graded_ ? graded_->neighbor(tet, face) : explicit_->neighbor(static_cast<int>(tet), face);
   const std::int64_t c = tet / n_cell_tets_, row = c / n_[0];
   const Cell cell = {c % n_[0], row % n_[1], row / n_[1]};
   const auto& next = tables_.neighbor[tet % n_cell_tets_][face];
@@ -191,7 +207,7 @@ std::int64_t BackgroundMesh::neighbor(std::int64_t tet, int face) const {
 }
 
 std::int64_t BackgroundMesh::tet_near(const Vec3& x) const {
-  if (explicit_) return explicit_->tet_near(x);
+  if (!is_lattice_) return graded_ ? graded_->tet_at(x) : explicit_->tet_near(x);
   Cell cell;
   for (int a = 0; a < 3; ++a) {
     const double c = std::floor((x[a] - origin_[a]) / (unit_ * tiling_.period[a]));

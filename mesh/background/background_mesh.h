@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mesh/background/explicit_mesh.h"
+#include "mesh/background/graded_mesh.h"
 #include "mesh/background/tiling.h"
 #include "mesh/core/tet_mesh.h"
 
@@ -20,8 +21,8 @@ using Box = Eigen::AlignedBox3d;
 /// of a cell * (cell index in the n^3 range). A15 has 8 types and 46 tets.
 /// Ids ascend with x fastest, then y, then z. Immutable; one mesh serves any number of domains and threads.
 ///
-/// Or any other tet mesh, as it is stored: ids are then its vertex and tet numbers, and what is said of cells and types
-/// does not apply. Both are one class because every call is about one vertex or one tet: to tell the
+/// Or a graded mesh, or any other tet mesh as it is stored: ids are then its vertex and tet numbers, and what is said
+/// of cells and types does not apply. All are one class because every call is about one vertex or one tet: to tell the
 /// kinds apart costs a branch that is always predicted, where a template would double all that is built on backgrounds.
 class BackgroundMesh {
  public:
@@ -32,13 +33,18 @@ class BackgroundMesh {
   BackgroundMesh(const Tiling& tiling, const Box& box, double h);
   /// The mesh as it is; h is its mean edge length. \throw std::invalid_argument for what ExplicitMesh refuses
   explicit BackgroundMesh(TetMesh mesh);
+  /// h is the mean edge length of its smallest tets.
+  explicit BackgroundMesh(GradedMesh mesh);
 
-  bool is_lattice() const { return !explicit_; }
+  bool is_lattice() const { return is_lattice_; }
   /// Of no points and no name for another mesh.
   const Tiling& tiling() const { return tiling_; }
   double h() const { return h_; }
   /// Mean length of the edges at this vertex, model units; of a lattice h(), whichever vertex.
-  double h(std::int64_t vertex) const { return explicit_ ? explicit_->mean_edge(static_cast<int>(vertex)) : h_; }
+  double h(std::int64_t vertex) const {
+    if (is_lattice_) return h_;
+    return graded_ ? graded_->mean_edge(vertex) : explicit_->mean_edge(static_cast<int>(vertex));
+  }
   Box box() const;  ///< the block of cells, or the bounding box
   std::int64_t n_vertices()
       const;  ///< size of the id range, vertices without a tet at the background boundary included
@@ -59,9 +65,17 @@ class BackgroundMesh {
   bool has_tets(std::int64_t vertex) const;
   /// The tet behind the face opposite to local vertex `face`, or -1 at the background boundary.
   std::int64_t neighbor(std::int64_t tet, int face) const;
-  /// Some tet whose cell contains x (a place to start a local search), or -1 outside the box. In an other mesh one at
-  /// the nearest vertex, by looking at all.
+  /// Some tet whose cell contains x (a place to start a local search), or -1 outside the box. In a graded mesh the one
+  /// that contains x; in a stored one one at the nearest vertex, by looking at all.
   std::int64_t tet_near(const Vec3& x) const;
+  /// Names that outlast the mesh: those of a graded mesh are the same in any grading of its root cube
+  /// (GradedMesh::key()), elsewhere they are the ids.
+  std::int64_t key_of_vertex(std::int64_t vertex) const {
+    return graded_ ? static_cast<std::int64_t>(graded_->key(vertex)) : vertex;
+  }
+  std::int64_t key_of_tet(std::int64_t tet) const {
+    return graded_ ? static_cast<std::int64_t>(graded_->tet_key(tet)) : tet;
+  }
 
   // From here on: of a lattice.
   using Cell = std::array<std::int64_t, 3>;
@@ -89,7 +103,9 @@ class BackgroundMesh {
   bool holds(const Cell& cell, const std::array<int, 3>& offset) const;
   std::int64_t tet_id(int tet, const Cell& cell, const std::array<int, 3>& offset) const;
 
-  std::shared_ptr<const ExplicitMesh> explicit_;  ///< null for a lattice
+  bool is_lattice_;
+  std::shared_ptr<const ExplicitMesh> explicit_;  ///< null for a lattice and a graded mesh
+  std::shared_ptr<const GradedMesh> graded_;      ///< null for all others
   Tiling tiling_;
   TilingTables tables_;
   double h_, unit_;  ///< unit_: of the tiling's lengths, in model units

@@ -11,6 +11,7 @@
 
 #include "mesh/background/balanced_octree.h"
 #include "mesh/background/tet_slots.h"
+#include "mesh/core/tet_quality.h"
 
 namespace umtet {
 namespace {
@@ -20,6 +21,9 @@ const double kMeanEdge = (6 + 8 * std::sqrt(.75)) / 14;
 
 // Vertex numbers of a mesh that is cut out of this one are int; a leaf has two vertices at least.
 constexpr std::size_t kMaxLeaves = std::size_t{1} << 30;
+
+// A leaf has at most 6 x 8 tets on either side of its faces.
+constexpr int kMaxSteps = 96;
 
 constexpr int kTetsPerSample = 16;  ///< about those of a leaf, so that a search is a step or two
 
@@ -166,7 +170,11 @@ Vec3 GradedMesh::position(std::int64_t vertex) const {
 std::array<std::int64_t, 4> GradedMesh::tet(std::int64_t tet) const {
   const int leaf = cell_of_tet(tet);
   const OctreeCell& cell = octree_.cell(leaf);
-  const int slot = tet_slots::select(cell.slots, static_cast<int>(tet - cell.first_tet));
+  return corners(leaf, tet_slots::select(cell.slots, static_cast<int>(tet - cell.first_tet)));
+}
+
+std::array<std::int64_t, 4> GradedMesh::corners(int leaf, int slot) const {
+  const OctreeCell& cell = octree_.cell(leaf);
   const int f = slot / tet_slots::kPerFace, rest = slot % tet_slots::kPerFace, behind = cell.neighbor[f];
   const auto vertex = [&](const CubeCode& code) { return vertex_id(octree_.place(leaf, code)); };
   if (cell.coarse >> f & 1) {
@@ -274,35 +282,106 @@ void GradedMesh::add_star_of_centre(int leaf, Star& star) const {
   }
 }
 
-void GradedMesh::add_star_of_point(const GridPoint& p, Star& star) const {
-  std::array<int, 8> around;
-  int n = 0;
+GradedMesh::Around GradedMesh::around(std::int64_t vertex) const {
+  Around around;
+  const int c = cell_of_vertex(vertex);
+  const OctreeCell& cell = octree_.cell(c);
+  // Eight leaves of one size, the vertex the lower corner of the last: over faces.
+  if (cell.is_leaf() && vertex == std::int64_t{cell.first_vertex}) {
+    around.leaves[7] = {c, 0};
+    int o = 6;
+    for (; o >= 0; --o) {
+      const int a = std::countr_one(static_cast<unsigned>(o));
+      const int leaf = octree_.cell(around.leaves[static_cast<std::size_t>(o | 1 << a)].first).neighbor[2 * a];
+      if (leaf < 0 || octree_.cell(leaf).level != cell.level) break;
+      around.leaves[static_cast<std::size_t>(o)] = {leaf, code_index({o & 1 ? 0 : 2, o & 2 ? 0 : 2, o & 4 ? 0 : 2})};
+    }
+    if (o < 0) {
+      around.n = 8;
+      around.of_one_size = true;
+      return around;
+    }
+  }
+  const GridPoint p = grid_point(key(vertex));
   for (int o = 0; o < 8; ++o) {
-    const int leaf = octree_.locate(GridPoint{p[0] - (o & 1), p[1] - (o >> 1 & 1), p[2] - (o >> 2 & 1)});
-    if (leaf < 0 || !octree_.cell(leaf).is_leaf() ||
-        std::find(around.begin(), around.begin() + n, leaf) != around.begin() + n)
+    const int leaf = octree_.locate_from(c, {p[0] - (o & 1), p[1] - (o >> 1 & 1), p[2] - (o >> 2 & 1)});
+    if (leaf < 0 || !octree_.cell(leaf).is_leaf()) {
+      around.is_complete = false;
       continue;
-    around[static_cast<std::size_t>(n++)] = leaf;
+    }
+    const auto end = around.leaves.begin() + around.n;
+    if (std::find_if(around.leaves.begin(), end, [&](const auto& l) { return l.first == leaf; }) != end) continue;
     const GridPoint corner = octree_.point(leaf, {0, 0, 0});
     const int half = width(octree_.cell(leaf).level) / 2;
-    const CubeCode code = {(p[0] - corner[0]) / half, (p[1] - corner[1]) / half, (p[2] - corner[2]) / half};
-    star.add(leaf, tet_slots::at(octree_.cell(leaf), code_index(code)));
+    around.leaves[static_cast<std::size_t>(around.n++)] = {
+        leaf, code_index({(p[0] - corner[0]) / half, (p[1] - corner[1]) / half, (p[2] - corner[2]) / half})};
   }
+  return around;
+}
+
+void GradedMesh::add_star_of_point(const Around& around, Star& star) const {
+  for (int k = 0; k < around.n; ++k) {
+    const auto& [leaf, code] = around.leaves[static_cast<std::size_t>(k)];
+    star.add(leaf, tet_slots::at(octree_.cell(leaf), code));
+  }
+}
+
+bool GradedMesh::is_centre(std::int64_t vertex) const {
+  const OctreeCell& cell = octree_.cell(cell_of_vertex(vertex));
+  return cell.is_leaf() && vertex + 1 == std::int64_t{cell.first_vertex} + std::popcount(cell.vertices);
 }
 
 GradedMesh::Star GradedMesh::star_of(std::int64_t vertex) const {
   Star star;
-  const int c = cell_of_vertex(vertex);
-  const OctreeCell& cell = octree_.cell(c);
-  const int bit =
-      cell.is_leaf() ? tet_slots::select(cell.vertices, static_cast<int>(vertex - std::int64_t{cell.first_vertex})) : 0;
-  if (bit == 7) {
-    add_star_of_centre(c, star);
+  if (is_centre(vertex)) {
+    add_star_of_centre(cell_of_vertex(vertex), star);
   } else {
-    add_star_of_point(grid_point(key(vertex)), star);
+    add_star_of_point(around(vertex), star);
   }
   star.sort();
   return star;
+}
+
+bool GradedMesh::on_boundary(std::int64_t vertex) const { return !is_centre(vertex) && !around(vertex).is_complete; }
+
+double GradedMesh::mean_edge(std::int64_t vertex) const {
+  if (is_regular(vertex)) return unit_ * kMeanEdge * width(octree_.cell(cell_of_vertex(vertex)).level);
+  Link others;
+  const int n = link_of(vertex, others);
+  const GridPoint p = grid_point(key(vertex));
+  double sum = 0;
+  for (int k = 0; k < n; ++k) {
+    const GridPoint q = grid_point(key(others[static_cast<std::size_t>(k)]));
+    sum += Vec3(q[0] - p[0], q[1] - p[1], q[2] - p[2]).norm();
+  }
+  return unit_ * sum / n;
+}
+
+std::int64_t GradedMesh::tet_at(const Vec3& x) const {
+  if (!box_.contains(x)) return -1;
+  GridPoint p;
+  for (int a = 0; a < 3; ++a) {
+    p[a] = std::clamp(static_cast<std::int32_t>((x[a] - origin_[a]) / unit_), 0, kRootWidth - 1);
+  }
+  const int leaf = octree_.locate(p);
+  if (leaf < 0 || !octree_.cell(leaf).is_leaf()) return -1;
+  Star star;
+  add_star_of_centre(leaf, star);
+  std::int64_t at = tet_id(star.parts[0].first, std::countr_zero(star.parts[0].second));
+  // A walk towards x. It cannot be long; the bound is for rounding that could send it round.
+  for (int steps = 0; steps < kMaxSteps; ++steps) {
+    const auto corners = tet(at);
+    std::int64_t next = -1;
+    for (int k = 0; k < 4 && next < 0; ++k) {
+      const auto& f = kTetFace[k];
+      if (volume6(position(corners[f[0]]), position(corners[f[1]]), position(corners[f[2]]), x) > 0) {
+        next = neighbor(at, k);
+      }
+    }
+    if (next < 0) break;
+    at = next;
+  }
+  return at;
 }
 
 void GradedMesh::star(std::int64_t vertex, std::vector<std::int64_t>& tets) const {
@@ -314,19 +393,75 @@ void GradedMesh::star(std::int64_t vertex, std::vector<std::int64_t>& tets) cons
   }
 }
 
-void GradedMesh::link(std::int64_t vertex, std::vector<std::int64_t>& vertices) const {
-  const Star star = star_of(vertex);
-  const auto begin = static_cast<std::ptrdiff_t>(vertices.size());
-  for (int k = 0; k < star.n; ++k) {
-    const auto& [leaf, bits] = star.parts[static_cast<std::size_t>(k)];
-    for (std::uint64_t slots = bits; slots != 0; slots &= slots - 1) {
-      for (const std::int64_t v : tet(tet_id(leaf, std::countr_zero(slots)))) {
-        if (v != vertex) vertices.push_back(v);
+bool GradedMesh::is_regular_centre(int leaf) const {
+  const OctreeCell& cell = octree_.cell(leaf);
+  std::uint64_t slots = cell.slots;
+  for (int f = 0; f < 6; ++f) {
+    const int behind = cell.neighbor[f];
+    if (behind < 0 || octree_.cell(behind).level != cell.level) return false;
+    if (f % 2 == 0) slots |= octree_.cell(behind).slots & tet_slots::kFace << (tet_slots::kPerFace * (f ^ 1));
+  }
+  return (slots & tet_slots::kOdd) == 0;
+}
+
+bool GradedMesh::is_regular_point(const Around& around) const {
+  if (!around.of_one_size) return false;
+  std::uint64_t slots = 0;
+  for (const auto& [leaf, code] : around.leaves) slots |= tet_slots::at(octree_.cell(leaf), code);
+  return (slots & tet_slots::kOdd) == 0;
+}
+
+bool GradedMesh::is_regular(std::int64_t vertex) const {
+  return is_centre(vertex) ? is_regular_centre(cell_of_vertex(vertex)) : is_regular_point(around(vertex));
+}
+
+int GradedMesh::link_of(std::int64_t vertex, Link& link) const {
+  int n = 0;
+  const auto add = [&](std::int64_t v) { link[static_cast<std::size_t>(n++)] = v; };
+  const auto add_place = [&](int leaf, const CubeCode& code) { add(vertex_id(octree_.place(leaf, code))); };
+  const auto add_star = [&](const Star& star) {
+    for (int k = 0; k < star.n; ++k) {
+      const auto& [leaf, bits] = star.parts[static_cast<std::size_t>(k)];
+      for (std::uint64_t slots = bits; slots != 0; slots &= slots - 1) {
+        for (const std::int64_t v : corners(leaf, std::countr_zero(slots))) {
+          if (v != vertex) add(v);
+        }
       }
     }
+  };
+  Star star;
+  if (is_centre(vertex)) {
+    const int leaf = cell_of_vertex(vertex);
+    if (is_regular_centre(leaf)) {
+      for (const std::int32_t behind : octree_.cell(leaf).neighbor) add(centre_id(behind));
+      for (int o = 0; o < 8; ++o) add_place(leaf, {2 * (o & 1), o & 2, (o & 4) / 2});
+    } else {
+      add_star_of_centre(leaf, star);
+      add_star(star);
+    }
+  } else {
+    const Around leaves = around(vertex);
+    if (is_regular_point(leaves)) {
+      for (const auto& [leaf, code] : leaves.leaves) add(centre_id(leaf));
+      for (int a = 0; a < 3; ++a) {
+        CubeCode upper = {0, 0, 0};
+        upper[a] = 2;
+        add_place(leaves.leaves[7].first, upper);
+        add_place(leaves.leaves[static_cast<std::size_t>(7 - (1 << a))].first, {0, 0, 0});
+      }
+    } else {
+      add_star_of_point(leaves, star);
+      add_star(star);
+    }
   }
-  std::sort(vertices.begin() + begin, vertices.end());
-  vertices.erase(std::unique(vertices.begin() + begin, vertices.end()), vertices.end());
+  std::sort(link.begin(), link.begin() + n);
+  return static_cast<int>(std::unique(link.begin(), link.begin() + n) - link.begin());
+}
+
+void GradedMesh::link(std::int64_t vertex, std::vector<std::int64_t>& vertices) const {
+  Link link;
+  const int n = link_of(vertex, link);
+  vertices.insert(vertices.end(), link.begin(), link.begin() + n);
 }
 
 TetMesh to_tet_mesh(const GradedMesh& mesh) {

@@ -62,8 +62,20 @@ class GradedMesh {
   void link(std::int64_t vertex, std::vector<std::int64_t>& vertices) const;
   /// The tet behind the face opposite to local vertex `face`, or -1.
   std::int64_t neighbor(std::int64_t tet, int face) const;
+  /// Mean length of the edges at a vertex, model units.
+  double mean_edge(std::int64_t vertex) const;
+  bool on_boundary(std::int64_t vertex) const;
+  /// The tet that contains x, or -1 outside of all leaves.
+  std::int64_t tet_at(const Vec3& x) const;
 
  private:
+  /// The leaves around a vertex that is no centre, and where it is in them.
+  struct Around {
+    int n = 0;
+    std::array<std::pair<int, int>, 8> leaves;  ///< with code_index()
+    bool of_one_size = false;                   ///< eight, by octant
+    bool is_complete = true;                    ///< no leaf is missing
+  };
   /// Leaves around a vertex with bits of their slots.
   struct Star {
     int n = 0;
@@ -73,6 +85,7 @@ class GradedMesh {
     }
     void sort();
   };
+  bool is_centre(std::int64_t vertex) const;
   int cell_of_vertex(std::int64_t vertex) const;
   int cell_of_tet(std::int64_t tet) const;
   std::int64_t vertex_id(const LinearOctree::VertexPlace& place) const;
@@ -81,9 +94,17 @@ class GradedMesh {
   std::int64_t tet_at_edge(int leaf, int face, int e, int half) const;
   std::int64_t tet_around_edge(int leaf, int face, int e, int half, bool split) const;
   void find_slots(int leaf);
+  std::array<std::int64_t, 4> corners(int leaf, int slot) const;
   Star star_of(std::int64_t vertex) const;
   void add_star_of_centre(int leaf, Star& star) const;
-  void add_star_of_point(const GridPoint& p, Star& star) const;
+  void add_star_of_point(const Around& around, Star& star) const;
+  Around around(std::int64_t vertex) const;
+  bool is_regular_centre(int leaf) const;
+  bool is_regular_point(const Around& around) const;
+  /// Whether all tets at a vertex are BCC tets of one size.
+  bool is_regular(std::int64_t vertex) const;
+  using Link = std::array<std::int64_t, 192>;  ///< three vertices of each of at most 48 tets, and more
+  int link_of(std::int64_t vertex, Link& link) const;
 
   double finest_ = 0, unit_ = 0;
   Vec3 origin_;

@@ -36,8 +36,24 @@ GridPoint LinearOctree::point(int leaf, const CubeCode& code) const {
   return p;
 }
 
-LinearOctree::VertexPlace LinearOctree::place(std::uint64_t key) const {
-  const int c = locate(key);
+int LinearOctree::locate_from(int c, const GridPoint& p) const {
+  // A step an axis, and one more an axis among four small leaves.
+  for (int steps = 0; steps < 7 && cell(c).is_leaf(); ++steps) {
+    const GridPoint corner = point(c, {0, 0, 0});
+    const std::int32_t w = width(cell(c).level);
+    int face = -1;
+    for (int a = 0; a < 3; ++a) {
+      if (p[a] < corner[a]) face = 2 * a;
+      if (p[a] >= corner[a] + w) face = 2 * a + 1;
+    }
+    if (face < 0) return c;
+    if (cell(c).neighbor[face] < 0) break;
+    c = cell(c).neighbor[face];
+  }
+  return locate(p);
+}
+
+LinearOctree::VertexPlace LinearOctree::place_in(int c, std::uint64_t key) const {
   if (c < 0) return {-1, 0};
   if (!cell(c).is_leaf()) return {c, 0};
   const int shift = half_width_shift(cell(c).level);
@@ -46,17 +62,20 @@ LinearOctree::VertexPlace LinearOctree::place(std::uint64_t key) const {
   return {c, static_cast<int>(offset)};
 }
 
-LinearOctree::VertexPlace LinearOctree::place(int leaf, CubeCode code) const {
-  int c = leaf;
-  CubeCode rest = code;
+LinearOctree::VertexPlace LinearOctree::place(int leaf, const CubeCode& code) const {
+  // Over neighbours of one size where there are.
+  int c = leaf, bit = 0;
   for (int a = 0; a < 3; ++a) {
-    if (rest[a] != 2) continue;
-    const int next = cell(c).neighbor[2 * a + 1];
-    if (next < 0 || cell(next).level != cell(leaf).level) return place(morton_key(point(leaf, code)));
-    c = next;
-    rest[a] = 0;
+    if (code[a] == 2) {
+      c = cell(c).neighbor[2 * a + 1];
+      if (c < 0 || cell(c).level != cell(leaf).level) {
+        const GridPoint p = point(leaf, code);
+        return place_in(locate_from(leaf, p), morton_key(p));
+      }
+    } else {
+      bit += code[a] << a;
+    }
   }
-  const int bit = rest[0] + 2 * rest[1] + 4 * rest[2];
   return cell(c).vertices >> bit & 1 ? VertexPlace{c, bit} : VertexPlace{-1, 0};
 }
 

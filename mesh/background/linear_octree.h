@@ -53,21 +53,23 @@ class LinearOctree {
   /// The leaf or point whose half-open cube this key is in, or -1.
   int locate(std::uint64_t key) const;
   int locate(const GridPoint& p) const { return is_in_root(p) ? locate(morton_key(p)) : -1; }
+  /// The same for a place near a cell: over faces, by searching only where these lead to no leaf.
+  int locate_from(int c, const GridPoint& p) const;
   /// Of a leaf.
   GridPoint point(int leaf, const CubeCode& code) const;
   /// A place as cell and bit of its vertices, or {-1, 0} where no vertex is.
   struct VertexPlace {
     int cell, bit;
   };
-  VertexPlace place(std::uint64_t key) const;
-  /// Faster than by its key: over neighbours of one size where there are.
-  VertexPlace place(int leaf, CubeCode code) const;
+  VertexPlace place(std::uint64_t key) const { return place_in(locate(key), key); }
+  VertexPlace place(int leaf, const CubeCode& code) const;
   /// Whether the mid-point of the edge between two faces of a leaf is a vertex.
   bool is_edge_split(int leaf, int face, int other_face) const;
   /// Of the four leaves behind a face, the one at the given sides of the other two axes (a + 1, a + 2 modulo 3).
   int small_leaf(int leaf, int face, bool upper_u, bool upper_v) const;
 
  private:
+  VertexPlace place_in(int c, std::uint64_t key) const;
   std::uint64_t end_key(int c) const;
   void find_neighbors();
   void add_points();

@@ -13,15 +13,18 @@ namespace umtet {
 /// gives in the outermost layer of cells is said at BackgroundMesh::id_step().
 class LinkSteps {
  public:
-  /// @param background  kept by reference; steps are those of a lattice, any other mesh has none
-  explicit LinkSteps(const BackgroundMesh& background) : background_(background), steps_(background.n_types()) {
+  LinkSteps() = default;  ///< of no lattice
+  /// Those of a lattice; any other mesh has none.
+  explicit LinkSteps(const BackgroundMesh& background) : steps_(background.n_types()) {
     for (int type = 0; type < background.n_types(); ++type) {
       for (const Tiling::Corner& c : background.tiling_tables().link[type])
         steps_[type].push_back(background.id_step(type, c));
     }
   }
 
-  const std::vector<std::int64_t>& at(std::int64_t v) const { return steps_[background_.type(v)]; }
+  /// As BackgroundMesh::type().
+  int type(std::int64_t v) const { return static_cast<int>(v % static_cast<std::int64_t>(steps_.size())); }
+  const std::vector<std::int64_t>& at(std::int64_t v) const { return steps_[type(v)]; }
 
   /// Bit k: link vertex k is inside. Inside vertices are off the background boundary, so that a step that leaves the
   /// range of ids, or leads to a wrong one in the outermost layer of cells, finds none of them.
@@ -33,7 +36,6 @@ class LinkSteps {
   }
 
  private:
-  const BackgroundMesh& background_;
   std::vector<std::vector<std::int64_t>> steps_;  ///< per vertex type
 };
 

@@ -112,6 +112,7 @@ LinkTopology topology(const Tiling& tiling, const TilingTables& tables, int type
     const auto& f = kTetFace[own];
     link.triangles.push_back({corners[f[0]], corners[f[1]], corners[f[2]]});
   }
+  link.adjacent.assign(static_cast<std::size_t>(link.n), 0);
   for (const auto& t : link.triangles) {
     for (int a = 0; a < 3; ++a) link.adjacent[t[a]] |= bit(t[(a + 1) % 3]) | bit(t[(a + 2) % 3]);
   }

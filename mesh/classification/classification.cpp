@@ -28,7 +28,7 @@ constexpr float kMostCost = 300;
 class Descent {
  public:
   /// @param h  of the background
-  Descent(double h, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi, const ClassificationParams& params,
+  Descent(double h, const VertexLinks& links, ImplicitFunctionRef psi, const ClassificationParams& params,
           ClassificationBand& band, const IdSet* last)
       : h_(h),
         links_(links),
@@ -56,7 +56,7 @@ class Descent {
   float find_gain(int v) const;
   float gain_of_flip(int v);
   bool may_flip(int v);
-  bool is_simple(int v) const { return links_[band_.type[v]].state(band_.mask[v]).simple; }
+  bool is_simple(int v) const { return links_.of_type(band_.type[v]).state(band_.mask[v]).simple; }
   bool keeps_manifold(int v) const;
   void toggle(int v);
   void flip(int v);
@@ -73,7 +73,7 @@ class Descent {
   bool descend(Open what, const F& visit, const Context& context, ClassificationReport& report);
 
   double h_;
-  const std::vector<LinkTopology>& links_;
+  const VertexLinks& links_;
   ImplicitFunctionRef psi_;
   const ClassificationParams& params_;
   const StarCostTable& costs_;
@@ -100,12 +100,12 @@ void Descent::find_costs_of_distance() {
 /// What vertex v adds to the cost while it is outside; an inside one adds lack_.
 inline float Descent::cost_outside(int v, LinkMask mask) const {
   if (mask == 0) return 0;
-  const LinkTopology& link = links_[band_.type[v]];
+  const LinkTopology& link = links_.of_type(band_.type[v]);
   return costs_(link.site, link.state(mask)) + height_[v];
 }
 
 float Descent::find_gain(int v) const {
-  const LinkTopology& link = links_[band_.type[v]];
+  const LinkTopology& link = links_.of_type(band_.type[v]);
   const std::span<const int> ring = band_.link(v);
   float gain = lack_[v] - cost_outside(v, band_.mask[v]);
   if (!band_.is_inside[v]) gain = -gain;
@@ -127,9 +127,9 @@ float Descent::gain_of_flip(int v) {
 
 /// True if no outside vertex of the ring leaves the manifold boundary it has, or gets a bad one it did not have.
 bool Descent::keeps_manifold(int v) const {
-  const LinkTopology& link = links_[band_.type[v]];
+  const LinkTopology& link = links_.of_type(band_.type[v]);
   int before = 0, after = 0;
-  const auto bad = [&](int w, LinkMask mask) { return mask != 0 && !links_[band_.type[w]].state(mask).manifold; };
+  const auto bad = [&](int w, LinkMask mask) { return mask != 0 && !links_.of_type(band_.type[w]).state(mask).manifold; };
   if (band_.is_inside[v]) {
     after += bad(v, band_.mask[v]);
   } else {
@@ -149,7 +149,7 @@ bool Descent::is_thick(int v) {
   if (params_.least_thickness == 0) return true;
   if (thin_[v] == Thin::Unknown) {
     std::size_t n = 0;
-    const double unit = links_[band_.type[v]].unit * h_;
+    const double unit = links_.of_type(band_.type[v]).unit * h_;
     const bool thin = umtet::is_thin(psi_, band_.foot[v], band_.normal[v], params_.least_thickness, unit, n);
     thin_[v] = thin ? Thin::Yes : Thin::No;
     band_.psi_evaluations.fetch_add(n, std::memory_order_relaxed);
@@ -161,7 +161,7 @@ bool Descent::may_flip(int v) { return is_simple(v) && keeps_manifold(v) && is_t
 
 void Descent::toggle(int v) {
   band_.is_inside[v] ^= 1;
-  const LinkTopology& link = links_[band_.type[v]];
+  const LinkTopology& link = links_.of_type(band_.type[v]);
   for (int k = 0; k < link.n; ++k) band_.mask[band_.link(v)[k]] ^= LinkMask{1} << link.back[k];
 }
 
@@ -273,7 +273,7 @@ ClassificationReport Descent::operator()(IdSet& inside, const Context& context) 
       inside.insert(band_.id[v]);
     } else {
       inside.erase(band_.id[v]);
-      const bool is_bad = band_.mask[v] != 0 && !links_[band_.type[v]].state(band_.mask[v]).manifold;
+      const bool is_bad = band_.mask[v] != 0 && !links_.of_type(band_.type[v]).state(band_.mask[v]).manifold;
       if (is_bad) report.not_manifold.push_back(band_.id[v]);
     }
     report.thin += thin_[v] == Thin::Yes;
@@ -320,7 +320,7 @@ bool is_thin(ImplicitFunctionRef psi, const Vec3& foot, const Vec3& normal, doub
   return false;
 }
 
-ClassificationReport classify_vertices(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
+ClassificationReport classify_vertices(const BackgroundMesh& background, const VertexLinks& links,
                                        ImplicitFunctionRef psi, const ClassificationParams& params, IdSet& inside,
                                        const Context& context, const IdSet* last, const PsiValues* known) {
   std::string all;

@@ -7,6 +7,7 @@
 
 #include "common/context.h"
 #include "mesh/background/background_mesh.h"
+#include "mesh/background/vertex_links.h"
 #include "mesh/base/id_set.h"
 #include "mesh/classification/star_cost_table.h"
 #include "mesh/core/implicit_function.h"
@@ -69,14 +70,14 @@ bool is_thin(ImplicitFunctionRef psi, const Vec3& foot, const Vec3& normal, doub
 ///     outside_height)^2
 ///   + sum over inside vertices near the boundary of inside_weight max(0, inside_depth - depth)^2
 ///
-/// with distances from psi / |grad psi|, corrected at the foot, in the unit of each vertex. Blocks of 4^3 cells in
-/// eight colours: the same states for any number of threads.
+/// with distances from psi / |grad psi|, corrected at the foot, in the unit of each vertex. In a lattice by blocks of 4^3
+/// cells in eight colours, in other backgrounds one vertex after the other: the same states for any number of threads.
 ///
 /// @param inside  the vertices with psi < 0 on entry; none of them, nor a neighbour, on the background boundary
 /// @param last    inside vertices of the mesh before, or null: a state that costs at most `keep` more begins as there
 /// @param known   psi at all vertices with a neighbour on the other side, or null
 /// \throw std::invalid_argument naming every broken constraint of params, Cancelled
-ClassificationReport classify_vertices(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
+ClassificationReport classify_vertices(const BackgroundMesh& background, const VertexLinks& links,
                                        ImplicitFunctionRef psi, const ClassificationParams& params, IdSet& inside,
                                        const Context& context = {}, const IdSet* last = nullptr,
                                        const PsiValues* known = nullptr);

@@ -24,7 +24,7 @@ constexpr std::size_t kVerticesPerTask = 1 << 12;  // of some ten nanoseconds ea
 
 }  // namespace
 
-ClassificationBand::ClassificationBand(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
+ClassificationBand::ClassificationBand(const BackgroundMesh& background, const VertexLinks& links,
                                        ImplicitFunctionRef psi, const ClassificationParams& params, const IdSet& inside,
                                        const Context& context, const PsiValues* known)
     : background_(background),
@@ -33,7 +33,6 @@ ClassificationBand::ClassificationBand(const BackgroundMesh& background, const s
       params_(params),
       inside_(inside),
       known_(known),
-      steps_(background),
       band_(background.n_vertices()) {
   gather();
   measure(context);
@@ -43,6 +42,7 @@ ClassificationBand::ClassificationBand(const BackgroundMesh& background, const s
 
 /// In the outermost layer of cells, where a step along an edge may leave the range of ids.
 bool ClassificationBand::is_outermost(std::int64_t v) const {
+  if (!background_.is_lattice()) return false;  // links are listed
   const auto cell = background_.cell(v);
   bool outermost = false;
   for (int a = 0; a < 3; ++a) outermost |= cell[a] < 0 || cell[a] >= background_.n_cells()[a];
@@ -58,11 +58,11 @@ void ClassificationBand::gather() {
   } else {
     for_each_in_blocks(inside_, [&](std::size_t, std::int64_t v) {
       bool is_cut = false;
-      for (const std::int64_t step : steps_.at(v)) {
-        if (inside_.test(v + step)) continue;
+      links_.for_each(v, [&](std::int64_t w) {
+        if (inside_.test(w)) return;
         is_cut = true;
-        band_.insert_shared(v + step);
-      }
+        band_.insert_shared(w);
+      });
       if (is_cut) band_.insert_shared(v);
     });
     IdSet front = band_;
@@ -70,9 +70,9 @@ void ClassificationBand::gather() {
       IdSet next(background_.n_vertices());
       for_each_in_blocks(front, [&](std::size_t, std::int64_t v) {
         if (is_outermost(v)) return;  // too far out for a neighbour to change
-        for (const std::int64_t step : steps_.at(v)) {
-          if (!band_.test(v + step)) next.insert_shared(v + step);
-        }
+        links_.for_each(v, [&](std::int64_t w) {
+          if (!band_.test(w)) next.insert_shared(w);
+        });
       });
       for (std::size_t w = 0; w < next.n_words(); ++w) band_.set_word(w, band_.word(w) | next.word(w));
       front = std::move(next);
@@ -90,11 +90,11 @@ void ClassificationBand::gather_around(std::vector<std::int64_t> front) {
     next.clear();
     for (const std::int64_t v : front) {
       if (is_outermost(v)) continue;
-      for (const std::int64_t step : steps_.at(v)) {
-        if (band_.test(v + step)) continue;
-        band_.insert(v + step);
-        next.push_back(v + step);
-      }
+      links_.for_each(v, [&](std::int64_t w) {
+        if (band_.test(w)) return;
+        band_.insert(w);
+        next.push_back(w);
+      });
     }
     front.swap(next);
   }
@@ -103,19 +103,19 @@ void ClassificationBand::gather_around(std::vector<std::int64_t> front) {
 /// State of the vertex, mask and ranks of its link. Returns whether the whole link is in the band.
 bool ClassificationBand::find_link(std::size_t v) {
   is_inside[v] = inside_.test(id[v]);
-  mask[v] = steps_.mask(id[v], inside_);
+  mask[v] = links_.mask(id[v], inside_);
   // What is beyond the range of ids counts as outside, like the background boundary. Ranks are left out there.
   if (is_outermost(id[v])) return false;
-  const std::vector<std::int64_t>& steps = steps_.at(id[v]);
   bool complete = true;
-  for (std::size_t k = 0; k < steps.size(); ++k) {
-    const std::int64_t w = id[v] + steps[k];
+  std::size_t k = first_[v];
+  links_.for_each(id[v], [&](std::int64_t w) {
     if (band_.test(w)) {
-      ranks_[first_[v] + k] = band_.rank(w);
+      ranks_[k] = band_.rank(w);
     } else {
       complete = false;
     }
-  }
+    ++k;
+  });
   return complete;
 }
 
@@ -162,12 +162,12 @@ void ClassificationBand::measure(const Context& context) {
   type.resize(n);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, kVerticesPerTask), [&](const auto& range) {
     for (std::size_t v = range.begin(); v != range.end(); ++v) {
-      type[v] = static_cast<std::uint16_t>(background_.type(id[v]));
+      type[v] = links_.type(id[v]);
     }
   });
   first_.assign(n + 1, 0);
   for (std::size_t v = 0; v < n; ++v) {
-    first_[v + 1] = first_[v] + static_cast<std::size_t>(links_[type[v]].n);
+    first_[v + 1] = first_[v] + static_cast<std::size_t>(links_.of_type(type[v]).n);
   }
   if (known_) {
     known_at_.assign(n, -1);
@@ -187,7 +187,7 @@ void ClassificationBand::measure(const Context& context) {
   polled_parallel_for(n, kValuesPerPoll, context, [&](std::size_t v) {
     const bool complete = find_link(v);
     // A vertex without its whole link in the band is there to complete the masks of others.
-    if (!complete && (mask[v] == 0 || mask[v] == links_[type[v]].full())) {
+    if (!complete && (mask[v] == 0 || mask[v] == links_.of_type(type[v]).full())) {
       phi[v] = is_inside[v] ? -far() : far();
       return;
     }
@@ -204,11 +204,12 @@ bool ClassificationBand::has_foot(int v) const { return std::abs(phi[v]) < kFart
 /// curvature is the greatest one estimated between the foot of the vertex and those of its neighbours, signed for the
 /// side it is on.
 void ClassificationBand::hold_where_stretched(const Context& context) {
-  const double most = 1 - 1 / params_.most_stretch, apart = kApart * background_.h();
+  const double most = 1 - 1 / params_.most_stretch;
   polled_parallel_for(size(), kValuesPerPoll, context, [&](std::size_t v) {
     if (!movable[v]) return;
+    const double apart = kApart * background_.h(id[v]);
     double kappa = 0;
-    for (int k = 0; k < links_[type[v]].n; ++k) {
+    for (int k = 0; k < links_.of_type(type[v]).n; ++k) {
       const int w = link(v)[static_cast<std::size_t>(k)];
       if (!has_foot(w)) continue;
       const Vec3 between = foot[w] - foot[v];
@@ -221,6 +222,13 @@ void ClassificationBand::hold_where_stretched(const Context& context) {
 
 /// Blocks of kBlock^3 cells.
 void ClassificationBand::make_blocks() {
+  if (!background_.is_lattice()) {
+    for (std::uint32_t v = 0; v < size(); ++v) {
+      if (movable[v]) order.push_back(v);
+    }
+    blocks[0].push_back({0, static_cast<std::uint32_t>(order.size())});
+    return;
+  }
   const auto& n = background_.n_cells();
   const std::int64_t nx = (n[0] + 2) / kBlock + 1, ny = (n[1] + 2) / kBlock + 1, nz = (n[2] + 2) / kBlock + 1;
   std::vector<std::uint32_t> block(size());

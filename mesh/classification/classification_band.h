@@ -9,8 +9,8 @@
 
 #include "common/context.h"
 #include "mesh/background/background_mesh.h"
-#include "mesh/background/link_steps.h"
 #include "mesh/background/link_topology.h"
+#include "mesh/background/vertex_links.h"
 #include "mesh/base/id_set.h"
 #include "mesh/classification/classification.h"
 #include "mesh/core/implicit_function.h"
@@ -29,7 +29,7 @@ class ClassificationBand {
   /// @param inside  the vertices with psi < 0
   /// @param known   psi at all vertices with a neighbour on the other side, or null
   /// \throw Cancelled
-  ClassificationBand(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
+  ClassificationBand(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
                      const ClassificationParams& params, const IdSet& inside, const Context& context,
                      const PsiValues* known = nullptr);
 
@@ -38,7 +38,7 @@ class ClassificationBand {
   std::vector<std::int64_t> id;  ///< ascending
   /// Ranks of the neighbours of v, -1 where they are not in the band.
   std::span<const int> link(std::size_t v) const { return {ranks_.data() + first_[v], first_[v + 1] - first_[v]}; }
-  std::vector<std::uint16_t> type;
+  std::vector<int> type;
   std::vector<std::uint8_t> is_inside;
   std::vector<std::uint8_t> movable;  ///< it may be flipped
   std::vector<std::uint8_t> held;     ///< it is not, because of most_stretch
@@ -46,7 +46,8 @@ class ClassificationBand {
   std::vector<float> phi;                    ///< signed distance in LinkTopology::unit
   std::vector<Vec3> foot, normal;            ///< on psi = 0 and there; not set at the band's edge
   std::vector<std::uint32_t> order;          ///< vertices that may be flipped, block by block
-  std::array<std::vector<Block>, 8> blocks;  ///< per colour: vertices of two blocks of one are nine rings apart
+  /// Per colour: vertices of two blocks of one are nine rings apart. All in one block where there are no cells.
+  std::array<std::vector<Block>, 8> blocks;
   std::atomic<std::size_t> psi_evaluations{0};
 
  private:
@@ -60,17 +61,16 @@ class ClassificationBand {
   void hold_where_stretched(const Context& context);
   void make_blocks();
   bool is_outermost(std::int64_t id) const;
-  double unit(std::size_t v) const { return links_[type[v]].unit * background_.h(); }
+  double unit(std::size_t v) const { return links_.of_type(type[v]).unit * background_.h(); }
   /// Farther than any vertex that may change, in units.
   float far() const { return static_cast<float>(params_.reach_in + params_.reach_out + 1); }
 
   const BackgroundMesh& background_;
-  const std::vector<LinkTopology>& links_;
+  const VertexLinks& links_;
   ImplicitFunctionRef psi_;
   const ClassificationParams& params_;
   const IdSet& inside_;
   const PsiValues* known_;
-  LinkSteps steps_;
   IdSet band_;
   std::vector<int> known_at_;       ///< where in known_ a vertex is, or -1; empty without
   std::vector<std::size_t> first_;  ///< into ranks_

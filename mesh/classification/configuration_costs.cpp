@@ -26,6 +26,8 @@ constexpr double kTargetInSlab = .78, kTargetInCube = .62;
 // RepairParams::reach, at most. Patches of three edges are three and ten times as large on slab and cube as in A15, and
 // mend no more there than those of two.
 constexpr int kReach = 3, kReachOnPlanes = 2;
+constexpr double kTargetInListed = .77;
+constexpr int kReachInListed = 2;
 
 std::vector<ConfigurationQuality> qualities_of_z(const std::vector<LinkTopology>& links) {
   std::vector<ConfigurationQuality> qualities;
@@ -98,6 +100,20 @@ const ConfigurationCosts* configuration_costs(const Tiling& tiling) {
     return &made;
   }
   return nullptr;
+}
+
+std::optional<BackgroundCosts> background_costs(const BackgroundMesh& background,
+                                                std::shared_ptr<const VertexLinks> links) {
+  if (background.is_lattice()) {
+    const ConfigurationCosts* of_tiling = configuration_costs(background.tiling());
+    if (!of_tiling) return std::nullopt;
+    if (!links) links = std::make_shared<const VertexLinks>(background, of_tiling->links);
+    return BackgroundCosts{std::move(links), of_tiling->costs, of_tiling->repair_target, of_tiling->repair_reach};
+  }
+  if (!links) links = VertexLinks::listed(background);
+  if (!links) return std::nullopt;
+  StarCostTable costs(links->topologies(), {}, 1);
+  return BackgroundCosts{std::move(links), std::move(costs), kTargetInListed, kReachInListed};
 }
 
 const StarCostTable& a15_star_costs() { return costs_of_a15().costs; }

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <vector>
 
+#include "mesh/background/background_mesh.h"
 #include "mesh/background/link_topology.h"
 #include "mesh/background/tiling.h"
+#include "mesh/background/vertex_links.h"
 #include "mesh/classification/star_cost_table.h"
 
 namespace umtet {
@@ -23,6 +27,20 @@ struct ConfigurationCosts {
 /// links of 12 and of 14 neighbours are the same Frank-Kasper polyhedra in both. Z's third kind of site, with 15
 /// neighbours, has the costs of 14.
 const ConfigurationCosts* configuration_costs(const Tiling& tiling);
+
+/// What they need to know of a background mesh.
+struct BackgroundCosts {
+  std::shared_ptr<const VertexLinks> links;
+  StarCostTable costs;
+  double repair_target;
+  int repair_reach;
+};
+
+/// Of a lattice the configuration_costs() of its tiling; of any other mesh its links, and one cost for all manifold
+/// configurations: then distances decide, and what that leaves repair mends. None for a tiling without costs, and for a mesh with a vertex that has more than kMaxLink neighbours.
+/// @param links  what an earlier call for this background gave, or null
+std::optional<BackgroundCosts> background_costs(const BackgroundMesh& background,
+                                                std::shared_ptr<const VertexLinks> links = nullptr);
 
 /// That of a15().
 const StarCostTable& a15_star_costs();

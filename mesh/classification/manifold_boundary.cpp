@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <set>
 #include <unordered_map>
 
-#include "mesh/background/link_steps.h"
 #include "mesh/submesh/half_ball.h"
 
 namespace umtet {
@@ -16,22 +14,20 @@ namespace {
 /// Of every vertex: whether the boundary is a manifold there, and what its configuration costs.
 class BoundaryStates {
  public:
-  BoundaryStates(const BackgroundMesh& background, const std::vector<LinkTopology>& links)
-      : background_(background), links_(links), half_ball_(background) {
-    if (!links.empty()) steps_.emplace(background);
-  }
+  BoundaryStates(const BackgroundMesh& background, const VertexLinks* links)
+      : background_(background), links_(links), half_ball_(background) {}
 
   /// @param v  an outside vertex
   bool is_manifold(std::int64_t v, const IdSet& inside) {
     if (!has_state(v)) return half_ball_(v, inside);
-    const LinkMask mask = steps_->mask(v, inside);
-    return mask == 0 || links_[background_.type(v)].state(mask).manifold;
+    const LinkMask mask = links_->mask(v, inside);
+    return mask == 0 || links_->at(v).state(mask).manifold;
   }
   /// 0 where no tet of omega_h is. @param costs  of the links, or null
   double cost(std::int64_t v, const IdSet& inside, const StarCostTable* costs) {
     if (costs && has_state(v)) {
-      const LinkMask mask = steps_->mask(v, inside);
-      const LinkTopology& link = links_[background_.type(v)];
+      const LinkMask mask = links_->mask(v, inside);
+      const LinkTopology& link = links_->at(v);
       return mask == 0 ? 0 : (*costs)(link.site, link.state(mask));
     }
     return is_manifold(v, inside) ? 0 : kCostOfNoManifold;
@@ -40,22 +36,21 @@ class BoundaryStates {
  private:
   // As in a StarCostTable: worse than all the rings that a flip can spoil.
   static constexpr double kCostOfNoManifold = 1000;
-  bool has_state(std::int64_t v) const { return steps_ && !background_.on_boundary(v); }
+  bool has_state(std::int64_t v) const { return links_ && !background_.on_boundary(v); }
 
   const BackgroundMesh& background_;
-  const std::vector<LinkTopology>& links_;
-  std::optional<LinkSteps> steps_;
+  const VertexLinks* links_;
   HalfBall half_ball_;
 };
 
 class Mending {
  public:
-  Mending(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
+  Mending(const BackgroundMesh& background, const VertexLinks* links, ImplicitFunctionRef psi,
           const ClassificationParams& params, bool has_walls, IdSet& inside)
       : background_(background),
         psi_(psi),
         params_(params),
-        costs_(links.empty() ? nullptr : params.costs),
+        costs_(links ? params.costs : nullptr),
         has_walls_(has_walls),
         inside_(inside),
         states_(background, links) {}
@@ -105,7 +100,7 @@ double Mending::distance(std::int64_t v) {
   if (is_new) {
     Vec3 g;
     const double value = psi_.value(background_.position(v), g);
-    const double d = value / (g.norm() * background_.h());
+    const double d = value / (g.norm() * background_.h(v));
     // Where psi has no gradient, or no value: far.
     at->second = std::isfinite(d) ? d : std::copysign(params_.reach_in + params_.reach_out + 1, value);
     ++report_.psi_evaluations;
@@ -199,7 +194,7 @@ ManifoldReport Mending::operator()(const std::vector<std::int64_t>& bad, const C
   }
   for (const auto& [v, was_inside] : was_inside_) {
     if (inside_.test(v) == was_inside) continue;
-    report_.flips.push_back({v, background_.position(v), !was_inside, distance(v) * background_.h()});
+    report_.flips.push_back({v, background_.position(v), !was_inside, distance(v) * background_.h(v)});
   }
   std::sort(report_.flips.begin(), report_.flips.end(),
             [](const ManifoldFlip& a, const ManifoldFlip& b) { return a.background_vertex < b.background_vertex; });
@@ -209,7 +204,7 @@ ManifoldReport Mending::operator()(const std::vector<std::int64_t>& bad, const C
 }  // namespace
 
 std::vector<std::int64_t> vertices_not_manifold(const BackgroundMesh& background,
-                                                const std::vector<LinkTopology>& links, const IdSet& inside) {
+                                                const VertexLinks* links, const IdSet& inside) {
   IdSet seen(background.n_vertices());
   BoundaryStates states(background, links);
   std::vector<std::int64_t> link, bad;
@@ -226,7 +221,7 @@ std::vector<std::int64_t> vertices_not_manifold(const BackgroundMesh& background
   return bad;
 }
 
-ManifoldReport make_manifold(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
+ManifoldReport make_manifold(const BackgroundMesh& background, const VertexLinks* links,
                              ImplicitFunctionRef psi, const ClassificationParams& params, bool has_walls,
                              const std::vector<std::int64_t>& bad, IdSet& inside, const Context& context) {
   if (bad.empty()) return {};

@@ -6,7 +6,7 @@
 
 #include "common/context.h"
 #include "mesh/background/background_mesh.h"
-#include "mesh/background/link_topology.h"
+#include "mesh/background/vertex_links.h"
 #include "mesh/base/id_set.h"
 #include "mesh/classification/classification.h"
 #include "mesh/core/implicit_function.h"
@@ -22,9 +22,9 @@ struct ManifoldReport {
 };
 
 /// The outside vertices where the boundary of omega_h is no manifold, ascending. Cost: linear in the background.
-/// @param links  of a lattice, or empty
+/// @param links  of the background, or null
 std::vector<std::int64_t> vertices_not_manifold(const BackgroundMesh& background,
-                                                const std::vector<LinkTopology>& links, const IdSet& inside);
+                                                const VertexLinks* links, const IdSet& inside);
 
 /// Makes the boundary of omega_h a closed 2-manifold, and so omega_h a 3-manifold with boundary, by changing which
 /// vertices count as inside; it always ends.
@@ -38,12 +38,12 @@ std::vector<std::int64_t> vertices_not_manifold(const BackgroundMesh& background
 /// ends, and it ends only where no vertex is bad.
 ///
 /// One bad vertex after the other, the least id first: the same for any number of threads.
-/// @param links        of a lattice, or empty: then links are read off the stars
+/// @param links        of the background, or null: then links are read off the stars
 /// @param has_walls    vertices on the background boundary may be inside; else none is, nor becomes it
 /// @param bad          vertices_not_manifold()
 /// @param inside       receives the changes; may become empty
 /// \throw Cancelled
-ManifoldReport make_manifold(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
+ManifoldReport make_manifold(const BackgroundMesh& background, const VertexLinks* links,
                              ImplicitFunctionRef psi, const ClassificationParams& params, bool has_walls,
                              const std::vector<std::int64_t>& bad, IdSet& inside, const Context& context = {});
 

@@ -17,7 +17,7 @@ StarCostTable::StarCostTable(const std::vector<LinkTopology>& links, std::span<c
   for (const LinkTopology& link : links) {
     const auto site = static_cast<std::size_t>(link.site);
     if (site >= of_site_.size()) of_site_.resize(site + 1);
-    of_site_[site].row = link.triangles.size() + 1;
+    of_site_[site].row = std::max(of_site_[site].row, link.triangles.size() + 1);
     of_site_[site].cost.assign(of_site_[site].row * of_site_[site].row, kUnknown);
   }
   for (const ConfigurationQuality& q : qualities) {

@@ -140,7 +140,7 @@ void Projection::find_feet() {
     if (boundary_vertex.arrived) return std::size_t{0};
     boundary_vertex.t = 0;
     boundary_vertex.start = layer_.V[boundary_vertex.vertex];
-    const ClosestPoint foot = closest_point(psi_, boundary_vertex.start, layer_.h, params_.closest_point);
+    const ClosestPoint foot = closest_point(psi_, boundary_vertex.start, layer_.h_at(boundary_vertex.vertex), params_.closest_point);
     boundary_vertex.has_foot = foot.converged;
     boundary_vertex.foot = foot.point;
     return static_cast<std::size_t>(foot.iterations);
@@ -150,7 +150,7 @@ void Projection::find_feet() {
 /// As far as the bound on quality allows. Returns whether the vertex arrived.
 bool Projection::step(BoundaryVertex& boundary_vertex, double target) {
   const int i = boundary_vertex.vertex;
-  if ((boundary_vertex.foot - boundary_vertex.start).norm() <= params_.closest_point.tol * layer_.h) {
+  if ((boundary_vertex.foot - boundary_vertex.start).norm() <= params_.closest_point.tol * layer_.h_at(i)) {
     return boundary_vertex.arrived = true;  // a warm start has brought it there
   }
   const Vec3 x = layer_.V[i];

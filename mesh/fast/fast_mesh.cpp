@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -32,18 +34,18 @@ constexpr double kUpdateLeastGain = 6e-4;
 class FastRun {
  public:
   FastRun(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
-          const FastParams& params, const Context& context)
+          const FastParams& params, const Context& context, std::shared_ptr<const VertexLinks> links = nullptr)
       : background_(background),
         psi_(psi),
         submesh_params_(submesh),
         params_(params),
         context_(context),
-        costs_of_tiling_(submesh.background_boundary == BackgroundBoundary::Wall
-                             ? nullptr
-                             : configuration_costs(background.tiling())),
+        costs_(submesh.background_boundary == BackgroundBoundary::Wall
+                   ? std::nullopt
+                   : background_costs(background, std::move(links))),
         classification_params_(params.classification),
         inside_(0) {
-    if (costs_of_tiling_ && !classification_params_.costs) classification_params_.costs = &costs_of_tiling_->costs;
+    if (costs_ && !classification_params_.costs) classification_params_.costs = &costs_->costs;
   }
 
   ChosenSubmesh choose(const std::vector<Vec3>& seeds) {
@@ -61,6 +63,7 @@ class FastRun {
             .is_whole = is_whole,
             .walls = std::move(result_.walls),
             .manifold_flips = std::move(result_.manifold_flips),
+            .links = costs_ ? costs_->links : nullptr,
             .n_tets = result_.status == UmStatus::Success ? n_tets_ : 0,
             .n_psi_evaluations = result_.n_psi_evaluations};
   }
@@ -77,6 +80,7 @@ class FastRun {
     inside_ = std::move(inside);
     negative_ = inside_;
     memory_ = &memory;
+    memory.links = costs_ ? costs_->links : nullptr;
     memory.n_recalled = 0;
     const bool made = fits_background("") && classify();
     if (made) fit();
@@ -119,7 +123,7 @@ class FastRun {
   const SubmeshParams& submesh_params_;
   const FastParams& params_;
   const Context& context_;
-  const ConfigurationCosts* costs_of_tiling_;   ///< null: inside is where psi < 0
+  std::optional<BackgroundCosts> costs_;        ///< none: inside is where psi < 0
   ClassificationParams classification_params_;  ///< with the costs
   UmResult result_;
   IdSet inside_;
@@ -174,26 +178,25 @@ bool FastRun::fits_background(const std::string& lost) {
 
 bool FastRun::classify() {
   const IdSet* last = memory_ && !memory_->moved.empty() ? &memory_->inside : nullptr;
-  if (costs_of_tiling_ && last && negative_ == memory_->negative) {
+  if (costs_ && last && negative_ == memory_->negative) {
     inside_ = *last;  // psi has the sign it had at every vertex
-  } else if (costs_of_tiling_) {
-    const ClassificationReport report = classify_vertices(background_, costs_of_tiling_->links, psi_,
+  } else if (costs_) {
+    const ClassificationReport report = classify_vertices(background_, *costs_->links, psi_,
                                                           classification_params_, inside_, context_, last, known_);
     result_.n_psi_evaluations += report.psi_evaluations;
     if (!make_manifold(report.not_manifold)) return false;
-  } else if (!make_manifold(vertices_not_manifold(background_, {}, inside_))) {
+  } else if (!make_manifold(vertices_not_manifold(background_, nullptr, inside_))) {
     return false;
   }
   is_classified_ = true;
-  if (costs_of_tiling_) return true;
+  if (costs_) return true;
   complete();
   return submesh_params_.background_boundary != BackgroundBoundary::Wall || check_walls();
 }
 
 bool FastRun::make_manifold(const std::vector<std::int64_t>& bad) {
-  static const std::vector<LinkTopology> no_links;
   ManifoldReport report = umtet::make_manifold(
-      background_, costs_of_tiling_ ? costs_of_tiling_->links : no_links, psi_, classification_params_,
+      background_, costs_ ? costs_->links.get() : nullptr, psi_, classification_params_,
       submesh_params_.background_boundary == BackgroundBoundary::Wall, bad, inside_, context_);
   result_.n_psi_evaluations += report.psi_evaluations;
   result_.manifold_flips = std::move(report.flips);
@@ -259,13 +262,13 @@ void FastRun::measure_assumptions() {
 
 /// Flips vertices where that mends a tet.
 void FastRun::repair_classification() {
-  if (!costs_of_tiling_) return;
+  if (!costs_) return;
   RepairParams params = params_.repair;
-  params.target = std::min(params.target, costs_of_tiling_->repair_target);
-  params.reach = std::min(params.reach, costs_of_tiling_->repair_reach);
+  params.target = std::min(params.target, costs_->repair_target);
+  params.reach = std::min(params.reach, costs_->repair_reach);
   params.slides = params.slides && !memory_;
   RepairReport repaired =
-      repair(background_, costs_of_tiling_->links, psi_, classification_params_, params, layer_, inside_, context_);
+      repair(background_, *costs_->links, psi_, classification_params_, params, layer_, inside_, context_);
   result_.n_psi_evaluations += repaired.psi_evaluations;
   moved_ = std::move(repaired.moved);
 }
@@ -273,7 +276,7 @@ void FastRun::repair_classification() {
 /// Boundary vertices go to psi = 0, as far as no tet inverts, and the layer is relaxed.
 /// @param projected  receives the places between the two
 void FastRun::relax(std::vector<Vec3>& projected) {
-  layer_ = costs_of_tiling_ ? lattice_active_layer(background_, costs_of_tiling_->links, inside_, params_.layers)
+  layer_ = costs_ ? lattice_active_layer(background_, *costs_->links, inside_, params_.layers)
                             : background_active_layer(background_, inside_, params_.layers);
   SmoothingParams smoothing_params = params_.smoothing;
   bool is_on_surface = false, is_short = false;
@@ -317,8 +320,9 @@ void FastRun::fit() {
   complete();
   tbb::parallel_invoke([&] { result_.final = coordinates(layer_.layer.V); },
                        [&] { result_.projected = coordinates(projected); });
+  const auto h_at = [&](int v) { return background_.h(result_.submesh.background_vertex[v]); };
   result_.n_stepped_back =
-      step_back(result_.submesh, result_.walls, background_.h(), result_.final, context_).vertices.size();
+      step_back(result_.submesh, result_.walls, h_at, result_.final, context_).vertices.size();
   measure_assumptions();
   context_.report("repair", 1);
 }
@@ -349,13 +353,13 @@ ChosenSubmesh classified_submesh(const BackgroundMesh& background, ImplicitFunct
 
 UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
                    const FastParams& params, ChosenSubmesh chosen, const Context& context) {
-  return FastRun(background, psi, submesh, params, context).fit(std::move(chosen));
+  return FastRun(background, psi, submesh, params, context, std::move(chosen.links)).fit(std::move(chosen));
 }
 
 UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
                    const FastParams& params, const Context& context, IdSet inside, FastMemory& memory,
                    const PsiValues& known) {
-  return FastRun(background, psi, submesh, params, context)(std::move(inside), memory, known);
+  return FastRun(background, psi, submesh, params, context, memory.links)(std::move(inside), memory, known);
 }
 
 }  // namespace umtet

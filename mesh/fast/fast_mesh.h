@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "common/context.h"
 #include "mesh/background/background_mesh.h"
+#include "mesh/background/vertex_links.h"
 #include "mesh/base/id_set.h"
 #include "mesh/core/implicit_function.h"
 #include "mesh/core/psi_values.h"
@@ -52,6 +54,7 @@ struct FastMemory {
   IdSet inside{0};                                   ///< as classified
   std::vector<std::pair<std::int64_t, Vec3>> moved;  ///< vertices off their background places, ascending
   std::size_t n_recalled = 0;                        ///< of these, how many the last mesh began with
+  std::shared_ptr<const VertexLinks> links;          ///< of the background
 };
 
 /// The same from known inside vertices, those with psi < 0. The classification stays as

@@ -64,13 +64,13 @@ class VertexSolver {
     result.needed = true;
     detail::silence_padding(ring);
     result.good = ring.f_here >= target_f_;
-    const detail::Bar bar(ring, layer_.h, result.good ? fine_gain_ : least_gain_, sharper_);
+    const detail::Bar bar(ring, layer_.h_at(i), result.good ? fine_gain_ : least_gain_, sharper_);
     if (layer_.role[i] == ActiveLayer::Role::Inner) {
-      const detail::Displacement best = detail::best_displacement(ring, bar, layer_.h, {});
+      const detail::Displacement best = detail::best_displacement(ring, bar, layer_.h_at(i), {});
       result.moved = best.passed(ring, bar);
       result.place = layer_.V[i] + over_relaxed(ring, bar, best.y, kInnerFactor);
     } else {
-      slide(ring, bar, layer_.V[i], result);
+      slide(i, ring, bar, result);
     }
     if (result.moved) result.below_target = detail::tets_below_target(ring, result.place - layer_.V[i], good_f_);
     return result;
@@ -82,7 +82,9 @@ class VertexSolver {
   }
 
   /// Along the tangent plane, and back to the surface.
-  void slide(const OneRing& ring, const detail::Bar& bar, const Vec3& x, Result& result) const {
+  void slide(int i, const OneRing& ring, const detail::Bar& bar, Result& result) const {
+    const Vec3& x = layer_.V[i];
+    const double h = layer_.h_at(i);
     Vec3 gradient;
     psi_.value(x, gradient);
     ++result.psi_evaluations;
@@ -91,11 +93,11 @@ class VertexSolver {
     detail::Directions tangent{true, {}};
     tangent.tangents.col(0) = gradient.unitOrthogonal();
     tangent.tangents.col(1) = (gradient / norm).cross(tangent.tangents.col(0));
-    const detail::Displacement best = detail::best_displacement(ring, bar, layer_.h, tangent);
+    const detail::Displacement best = detail::best_displacement(ring, bar, h, tangent);
     if (!best.passed(ring, bar)) return;
     Vec3 y = over_relaxed(ring, bar, best.y, kBoundaryFactor);
     for (int trial = 0; trial < kSlides && (trial == 0 || bar.passed(ring, y)); ++trial, y *= .5) {
-      const ClosestPoint foot = closest_point(psi_, x + y, layer_.h, closest_point_);
+      const ClosestPoint foot = closest_point(psi_, x + y, h, closest_point_);
       result.psi_evaluations += static_cast<std::size_t>(foot.iterations);
       if (!foot.converged || !bar.passed(ring, foot.point - x)) continue;
       result.moved = true;
@@ -228,7 +230,7 @@ SmoothingReport PNormSmoother::run(ImplicitFunctionRef psi, const SmoothingParam
       if (!result.moved) continue;
       const double step = (result.place - layer_.V[i]).norm();
       layer_.V[i] = result.place;
-      if (result.good && step < params.least_step * layer_.h) continue;
+      if (result.good && step < params.least_step * layer_.h_at(i)) continue;
       // A tet that was above the target and still is gives its vertices no reason to move.
       if (result.below_target.none()) continue;
       std::atomic_ref(queued_[i]).store(1, std::memory_order_relaxed);

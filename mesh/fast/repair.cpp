@@ -50,7 +50,7 @@ double longest_edge(const Tiling& tiling, const TilingTables& tables) {
 
 class Repair {
  public:
-  Repair(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
+  Repair(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
          const ClassificationParams& classification, const RepairParams& params, const LatticeActiveLayer& layer,
          IdSet& inside)
       : background_(background),
@@ -72,7 +72,14 @@ class Repair {
     TetIds tet;
   };
 
+  /// What is done for two tets farther apart than half the sum of their `far` does not meet.
+  struct Range {
+    Vec3 at;
+    double far;
+  };
+
   bool is_worth_trying(const TetIds& tet);
+  Range range_of(const TetIds& tet) const;
   void mend(const Context& context);
   void again(double target);
   bool choose_round();
@@ -82,7 +89,7 @@ class Repair {
   void count();
 
   const BackgroundMesh& background_;
-  const std::vector<LinkTopology>& links_;
+  const VertexLinks& links_;
   ImplicitFunctionRef psi_;
   const ClassificationParams& classification_;
   const RepairParams& params_;
@@ -100,7 +107,7 @@ class Repair {
   std::vector<TetIds> waiting_;                  ///< before todo_
   std::vector<std::vector<std::int64_t>> kept_;  ///< centres of the patches
   std::vector<TetIds> round_;  ///< far from each other: what is done for one does not touch the others
-  double far_ = 0;             ///< model units
+  double far_of_lattice_ = 0;  ///< model units
   RepairReport report_;
 };
 
@@ -114,16 +121,36 @@ bool Repair::is_worth_trying(const TetIds& tet) {
   return false;
 }
 
+/// Seen from one vertex of a tet, flips are within two edges, and what moves is within reach + 2; the classification and
+/// positions are read one edge farther: by one of the two that are compared.
+Repair::Range Repair::range_of(const TetIds& tet) const {
+  const Vec3 at = background_.position(tet[0]);
+  if (background_.is_lattice()) return {at, far_of_lattice_};
+  IdList ball;
+  ball.add(tet[0]);
+  std::size_t fresh = 0;
+  for (int ring = 0; ring < params_.reach + 3; ++ring) {
+    for (const std::size_t end = ball.ids().size(); fresh < end; ++fresh) {
+      links_.for_each(ball.ids()[fresh], [&](std::int64_t w) { ball.add(w); });
+    }
+  }
+  double farthest = 0;
+  for (const std::int64_t v : ball.ids()) farthest = std::max(farthest, (background_.position(v) - at).norm());
+  return {at, 2 * farthest};
+}
+
 /// The next tets in their order, but for those near one that comes before them: these wait.
 bool Repair::choose_round() {
   round_.clear();
   std::vector<TetIds> held;
-  std::vector<Vec3> before;
+  std::vector<Range> before;
   std::size_t w = 0;
   while (round_.size() < kAtOnce && held.size() < kMostWaiting && (w < waiting_.size() || next_ < todo_.size())) {
     const TetIds tet = w < waiting_.size() ? waiting_[w++] : todo_[next_++].tet;
-    const Vec3 at = background_.position(tet[0]);
-    const bool near = std::any_of(before.begin(), before.end(), [&](const Vec3& x) { return (x - at).norm() <= far_; });
+    const Range range = range_of(tet);
+    const bool near = std::any_of(before.begin(), before.end(), [&](const Range& other) {
+      return (other.at - range.at).norm() <= .5 * (other.far + range.far);
+    });
     if (near) {
       held.push_back(tet);
     } else if (is_worth_trying(tet)) {
@@ -131,7 +158,7 @@ bool Repair::choose_round() {
     } else {
       continue;
     }
-    before.push_back(at);
+    before.push_back(range);
   }
   held.insert(held.end(), waiting_.begin() + static_cast<std::ptrdiff_t>(w), waiting_.end());
   waiting_ = std::move(held);
@@ -178,7 +205,7 @@ void Repair::look(const LatticeActiveLayer& cut) {
     Triangle f;
     if (!positive_face(t, inside, f)) return;
     std::size_t n = 0;
-    const double cosine = normal_cosine(psi_, V[f[0]], V[f[1]], V[f[2]], cut.layer.h, n);
+    const double cosine = normal_cosine(psi_, V[f[0]], V[f[1]], V[f[2]], cut.layer.h_at(f[0]), n);
     evaluations.fetch_add(n, std::memory_order_relaxed);
     if (cosine < kMisalignedCosine) badness[k] = std::min(badness[k], cosine);
   });
@@ -235,9 +262,10 @@ RepairReport Repair::operator()(const Context& context) {
   for (std::size_t k = 0; k < kAtOnce; ++k) {
     trials_.emplace_back(background_, links_, psi_, classification_, params_, positions_, inside_);
   }
-  // Seen from one vertex of a tet, flips are within two edges, and what moves is within reach + 2; the classification
-  // and positions are read one edge farther.
-  far_ = (2 * params_.reach + 5) * longest_edge(background_.tiling(), background_.tiling_tables()) * background_.h();
+  if (background_.is_lattice()) {
+    const double longest = longest_edge(background_.tiling(), background_.tiling_tables()) * background_.h();
+    far_of_lattice_ = (2 * params_.reach + 5) * longest;
+  }
   mend(context);
   if (params_.sharper) {
     again(params_.target);
@@ -277,7 +305,7 @@ std::vector<std::string> problems(const RepairParams& params) {
   return list;
 }
 
-RepairReport repair(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
+RepairReport repair(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
                     const ClassificationParams& classification, const RepairParams& params,
                     const LatticeActiveLayer& layer, IdSet& inside, const Context& context) {
   std::string all;

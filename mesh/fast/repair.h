@@ -74,7 +74,7 @@ struct RepairReport {
 /// @param layer   smoothed; its coordinates stay as they are, `moved` says what has changed since
 /// @param inside  receives the changes
 /// \throw std::invalid_argument naming every broken constraint, Cancelled
-RepairReport repair(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
+RepairReport repair(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
                     const ClassificationParams& classification, const RepairParams& params,
                     const LatticeActiveLayer& layer, IdSet& inside, const Context& context = {});
 

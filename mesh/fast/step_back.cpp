@@ -30,7 +30,8 @@ constexpr std::size_t kVerticesPerTask = 1 << 14;  // to compare places, a nanos
 
 class StepBack {
  public:
-  StepBack(const Submesh& submesh, const std::vector<Triangle>& walls, double h, std::vector<Vec3>& V)
+  StepBack(const Submesh& submesh, const std::vector<Triangle>& walls, const std::function<double(int)>& h,
+           std::vector<Vec3>& V)
       : submesh_(submesh), h_(h), V_(V), faces_(submesh.positive_faces) {
     faces_.insert(faces_.end(), walls.begin(), walls.end());
   }
@@ -67,7 +68,7 @@ class StepBack {
   bool return_part(int v, Record& record);
 
   const Submesh& submesh_;
-  const double h_;
+  const std::function<double(int)>& h_;
   std::vector<Vec3>& V_;
   std::vector<Triangle> faces_;
   std::vector<std::array<int, 2>> pairs_;
@@ -136,9 +137,10 @@ double StepBack::least_quality(const std::vector<int>& ring) const {
 bool StepBack::step_inwards(int v, Record& record) {
   ++record.steps;
   const Vec3 here = V_[v], n = normal(record);
+  const double h = h_(v);
   const double least = std::min(kLeastQuality, least_quality(record.ring));
   for (const double share : kShares) {
-    V_[v] = here - share * kStep * h_ * n;
+    V_[v] = here - share * kStep * h * n;
     if (least_quality(record.ring) >= least) return true;
   }
   V_[v] = here;
@@ -178,8 +180,8 @@ bool StepBack::move() {
 
 }  // namespace
 
-StepBackReport step_back(const Submesh& submesh, const std::vector<Triangle>& walls, double h, std::vector<Vec3>& V,
-                         const Context& context) {
+StepBackReport step_back(const Submesh& submesh, const std::vector<Triangle>& walls,
+                         const std::function<double(int)>& h, std::vector<Vec3>& V, const Context& context) {
   return StepBack(submesh, walls, h, V)(context);
 }
 

@@ -75,6 +75,7 @@ class VertexSolver {
   /// @return true if `place` is better
   bool operator()(int i, Vec3& place, std::size_t& evaluations) const {
     const Vec3 x = layer_.V[i];
+    const double h = layer_.h_at(i);
     Vec3 g;
     psi_.value(x, g);
     ++evaluations;
@@ -85,17 +86,17 @@ class VertexSolver {
     if (!(now.most >= params_.least_chord)) return false;
     const double damping = kDamping * now.normal.trace();
     if (!(damping > 0)) return false;
-    Eigen::Vector2d step = -(now.normal + damping * Eigen::Matrix2d::Identity()).inverse() * now.gradient * layer_.h;
+    Eigen::Vector2d step = -(now.normal + damping * Eigen::Matrix2d::Identity()).inverse() * now.gradient * h;
     const double length = step.norm();
     if (!std::isfinite(length)) return false;
-    if (length > kLongestStep * layer_.h) step *= kLongestStep * layer_.h / length;
+    if (length > kLongestStep * h) step *= kLongestStep * h / length;
     const OneRing ring = smoother_.ring(i);
     const double bar = std::min(now.most < params_.far_chord ? least_f_near_ : least_f_, ring.f_here);
     const double least_cosine = std::min(now.least_cosine, kMisalignedCosine);
     for (int trial = 0; trial < kTrials; ++trial, step *= .5) {
       const Vec3 y = tangents * step;
       if (ring.min_f(y) < bar) continue;
-      const ClosestPoint foot = closest_point(psi_, x + y, layer_.h, closest_point_);
+      const ClosestPoint foot = closest_point(psi_, x + y, h, closest_point_);
       evaluations += static_cast<std::size_t>(foot.iterations);
       if (!foot.converged || ring.min_f(foot.point - x) < bar) continue;
       const Chords then = chords(i, foot.point, nullptr, evaluations);
@@ -109,9 +110,10 @@ class VertexSolver {
  private:
   Chords chords(int i, const Vec3& x, const Eigen::Matrix<double, 3, 2>* tangents, std::size_t& evaluations) const {
     Chords c;
+    const double h = layer_.h_at(i);
     const auto look = [&](const Vec3& m, double share) {
       Vec3 g;
-      const double value = psi_.value(m, g), norm = g.norm(), e = value / (norm * layer_.h);
+      const double value = psi_.value(m, g), norm = g.norm(), e = value / (norm * h);
       ++evaluations;
       c.sum += e * e * e * e;
       c.most = std::max(c.most, std::abs(e));
@@ -167,7 +169,8 @@ std::vector<std::vector<int>> vertices_of_far_faces(const ActiveLayer& layer, Im
   std::vector<int> evaluations(faces.size(), 0);
   polled_parallel_for(faces.size(), kValuesPerPoll, context, [&](std::size_t k) {
     const Triangle& f = faces[k];
-    far[k] = is_far(psi, layer.V[f[0]], layer.V[f[1]], layer.V[f[2]], params.least_chord * layer.h, evaluations[k]);
+    far[k] = is_far(psi, layer.V[f[0]], layer.V[f[1]], layer.V[f[2]], params.least_chord * layer.h_at(f[0]),
+                    evaluations[k]);
   });
   std::vector<std::uint8_t> chosen(layer.V.size(), 0);
   for (std::size_t k = 0; k < faces.size(); ++k) {

@@ -88,9 +88,10 @@ std::size_t Start::go_to_feet(ImplicitFunctionRef psi, const Context& context) {
   params.foot_tol = std::max(params.foot_tol, kFootTol);
   polled_parallel_for(boundary.size(), kFeetPerPoll, context, [&](std::size_t k) {
     Vec3& x = layer_.V[boundary[k]];
-    const ClosestPoint foot = closest_point(psi, x, layer_.h, params);
+    const double h = layer_.h_at(boundary[k]);
+    const ClosestPoint foot = closest_point(psi, x, h, params);
     evaluations.fetch_add(static_cast<std::size_t>(foot.iterations), std::memory_order_relaxed);
-    if (foot.converged && (foot.point - x).norm() <= kFarthestFoot * layer_.h) {
+    if (foot.converged && (foot.point - x).norm() <= kFarthestFoot * h) {
       x = foot.point;
     } else {
       lost.fetch_add(1, std::memory_order_relaxed);

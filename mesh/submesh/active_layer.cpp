@@ -39,4 +39,21 @@ void list_rings(ActiveLayer& layer) {
   });
 }
 
+void colour_greedily(ActiveLayer& layer) {
+  layer.colour.assign(layer.V.size(), -1);
+  std::vector<int> taken_by;  // per colour, the last vertex that found it taken
+  for (int v = 0; v < static_cast<int>(layer.V.size()); ++v) {
+    for (int r = layer.ring_begin[v]; r < layer.ring_begin[v + 1]; ++r) {
+      for (const int w : layer.C[layer.ring[r]]) {
+        const int colour = layer.colour[w];
+        if (colour < 0) continue;
+        if (colour >= static_cast<int>(taken_by.size())) taken_by.resize(colour + 1, -1);
+        taken_by[colour] = v;
+      }
+    }
+    layer.colour[v] = static_cast<int>(std::find_if(taken_by.begin(), taken_by.end(), [&](int w) { return w != v; }) -
+                                       taken_by.begin());
+  }
+}
+
 }  // namespace umtet

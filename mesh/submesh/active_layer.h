@@ -21,9 +21,15 @@ struct ActiveLayer {
   std::vector<int> colour;            ///< per vertex: vertices of one colour share no tet. Small numbers, from 0
   std::vector<int> ring_begin, ring;  ///< the tets of vertex v: ring[ring_begin[v]] .. ring[ring_begin[v + 1] - 1]
   double h = 0;                       ///< mean edge length of the background mesh, model units
+  std::vector<double> local_h;        ///< per vertex, the same of the edges at it; empty: h everywhere
+
+  double h_at(int v) const { return local_h.empty() ? h : local_h[v]; }
 };
 
 /// Fills in ring_begin and ring, ascending, from V and C.
 void list_rings(ActiveLayer& layer);
+
+/// Each vertex, in ascending order, takes the least colour that no lower vertex of its ring has.
+void colour_greedily(ActiveLayer& layer);
 
 }  // namespace umtet

@@ -58,24 +58,6 @@ std::vector<TetIds> moving_tets(const BackgroundMesh& background, const IdSet& i
   return tets;
 }
 
-/// Each vertex, in ascending order, takes the least colour that no lower vertex of its ring has.
-void colour_greedily(ActiveLayer& layer) {
-  layer.colour.assign(layer.V.size(), -1);
-  std::vector<int> taken_by;  // per colour, the last vertex that found it taken
-  for (int v = 0; v < static_cast<int>(layer.V.size()); ++v) {
-    for (int r = layer.ring_begin[v]; r < layer.ring_begin[v + 1]; ++r) {
-      for (const int w : layer.C[layer.ring[r]]) {
-        const int colour = layer.colour[w];
-        if (colour < 0) continue;
-        if (colour >= static_cast<int>(taken_by.size())) taken_by.resize(colour + 1, -1);
-        taken_by[colour] = v;
-      }
-    }
-    layer.colour[v] = static_cast<int>(std::find_if(taken_by.begin(), taken_by.end(), [&](int w) { return w != v; }) -
-                                       taken_by.begin());
-  }
-}
-
 }  // namespace
 
 LatticeActiveLayer background_active_layer(const BackgroundMesh& background, const IdSet& inside, int layers) {
@@ -104,6 +86,7 @@ LatticeActiveLayer background_active_layer(const BackgroundMesh& background, con
   for (const TetIds& tet : tets) {
     layer.C.push_back({used.rank(tet[0]), used.rank(tet[1]), used.rank(tet[2]), used.rank(tet[3])});
   }
+  if (!background.is_lattice()) set_local_sizes(background, result);
   list_rings(layer);
   colour_greedily(layer);
   return result;

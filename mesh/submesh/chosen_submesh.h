@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "common/context.h"
 #include "mesh/background/background_mesh.h"
+#include "mesh/background/vertex_links.h"
 #include "mesh/base/id_set.h"
 #include "mesh/core/implicit_function.h"
 #include "mesh/submesh/submesh_params.h"
@@ -22,6 +24,7 @@ struct ChosenSubmesh {
   bool is_whole = false;        ///< `submesh` has its tets and faces
   std::vector<Triangle> walls;  ///< BackgroundBoundary::Wall: as UmResult::walls
   std::vector<ManifoldFlip> manifold_flips;
+  std::shared_ptr<const VertexLinks> links;  ///< of the background, where choosing took them; or null
   std::size_t n_tets = 0;       ///< of omega_h, and of every mesh made from it; 0 when status != Success
   std::size_t n_psi_evaluations = 0;
 };

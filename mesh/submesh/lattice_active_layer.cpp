@@ -1,5 +1,8 @@
 #include "mesh/submesh/lattice_active_layer.h"
 
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -7,20 +10,20 @@
 #include <stdexcept>
 #include <utility>
 
-#include "mesh/background/link_steps.h"
 #include "mesh/base/id_blocks.h"
 #include "mesh/base/id_list.h"
 
 namespace umtet {
 namespace {
 
+constexpr std::size_t kVerticesPerTask = 1 << 14;  // a nanosecond each
+
 class Builder {
  public:
-  Builder(const BackgroundMesh& background, const std::vector<LinkTopology>& links, const IdSet& inside)
-      : background_(background), links_(links), inside_(inside), steps_(background) {}
+  Builder(const BackgroundMesh& background, const VertexLinks& links, const IdSet& inside)
+      : background_(background), links_(links), inside_(inside) {}
 
-  const std::vector<std::int64_t>& steps(std::int64_t v) const { return steps_.at(v); }
-  LinkMask mask(std::int64_t v) const { return steps_.mask(v, inside_); }
+  LinkMask mask(std::int64_t v) const { return links_.mask(v, inside_); }
   /// A vertex of omega_h, if v is an id at all.
   bool in_omega_h(std::int64_t v) const { return inside_.test_any(v) || mask(v) != 0; }
 
@@ -30,6 +33,7 @@ class Builder {
 
  private:
   std::vector<int> type_colours() const;
+  void set_sizes_and_colours(LatticeActiveLayer& made) const;
   template <class Movable, class F>
   void tets_at(std::int64_t v, const Movable& movable, const F& f) const;
   template <class F>
@@ -38,9 +42,8 @@ class Builder {
   ActiveLayer::Role role(std::int64_t v, const Movable& movable) const;
 
   const BackgroundMesh& background_;
-  const std::vector<LinkTopology>& links_;
+  const VertexLinks& links_;
   const IdSet& inside_;
-  LinkSteps steps_;
 };
 
 std::vector<int> Builder::type_colours() const {
@@ -59,16 +62,18 @@ std::vector<int> Builder::type_colours() const {
 /// f(v, a, b, c) for the tets of omega_h at v that have no movable vertex below it.
 template <class Movable, class F>
 void Builder::tets_at(std::int64_t v, const Movable& movable, const F& f) const {
-  const LinkTopology& link = links_[background_.type(v)];
-  const auto& step = steps(v);
+  const LinkTopology& link = links_.at(v);
   const LinkMask in = inside_.test(v) ? ~LinkMask{0} : mask(v);
   LinkMask lower = 0;
-  for (int k = 0; k < link.n; ++k) {
-    lower |= static_cast<LinkMask>(step[k] < 0 && movable.test_any(v + step[k])) << k;
-  }
+  std::array<std::int64_t, kMaxLink> ring;
+  int k = 0;
+  links_.for_each(v, [&](std::int64_t w) {
+    lower |= static_cast<LinkMask>(w < v && movable.test_any(w)) << k;
+    ring[k++] = w;
+  });
   for (const auto& t : link.triangles) {
     const LinkMask corners = LinkMask{1} << t[0] | LinkMask{1} << t[1] | LinkMask{1} << t[2];
-    if ((in & corners) != 0 && (lower & corners) == 0) f(v, v + step[t[0]], v + step[t[1]], v + step[t[2]]);
+    if ((in & corners) != 0 && (lower & corners) == 0) f(v, ring[t[0]], ring[t[1]], ring[t[2]]);
   }
 }
 
@@ -76,7 +81,7 @@ void Builder::tets_at(std::int64_t v, const Movable& movable, const F& f) const 
 template <class F>
 void Builder::ring_vertices(std::int64_t v, const F& f) const {
   f(v);
-  const LinkTopology& link = links_[background_.type(v)];
+  const LinkTopology& link = links_.at(v);
   LinkMask near = link.full();
   if (!inside_.test(v)) {
     // The ring of an outside vertex is that of its link triangles with an inside vertex.
@@ -86,13 +91,13 @@ void Builder::ring_vertices(std::int64_t v, const F& f) const {
       if ((in & corners) != 0) near |= corners;
     }
   }
-  for (; near != 0; near &= near - 1) f(v + steps(v)[std::countr_zero(near)]);
+  for (; near != 0; near &= near - 1) f(links_.neighbour(v, std::countr_zero(near)));
 }
 
 template <class Movable>
 ActiveLayer::Role Builder::role(std::int64_t v, const Movable& movable) const {
   if (!movable.test(v)) return ActiveLayer::Role::Fixed;
-  const bool positive = !inside_.test(v) && links_[background_.type(v)].state(mask(v)).n_positive_faces > 0;
+  const bool positive = !inside_.test(v) && links_.at(v).state(mask(v)).n_positive_faces > 0;
   return positive ? ActiveLayer::Role::Boundary : ActiveLayer::Role::Inner;
 }
 
@@ -111,15 +116,12 @@ LatticeActiveLayer Builder::build(const IdSet& movable) const {
   layer.h = background_.h();
   result.background_vertex.resize(n_vertices);
   layer.V.resize(n_vertices);
-  layer.colour.resize(n_vertices);
   layer.role.resize(n_vertices);
   layer.C.resize(begin.back());
-  const std::vector<int> colours = type_colours();
   for_each_in_blocks(used, [&](std::size_t, std::int64_t v) {
     const int at = used.rank(v);
     result.background_vertex[at] = v;
     layer.V[at] = background_.position(v);
-    layer.colour[at] = colours[background_.type(v)];
     layer.role[at] = role(v, movable);
   });
   for_each_in_blocks(movable, [&](std::size_t b, std::int64_t at) {
@@ -128,6 +130,7 @@ LatticeActiveLayer Builder::build(const IdSet& movable) const {
     });
   });
   list_rings(layer);
+  set_sizes_and_colours(result);
   return result;
 }
 
@@ -143,39 +146,61 @@ LatticeActiveLayer Builder::build(const IdList& movable) const {
   result.background_vertex = used.ids();
   std::sort(result.background_vertex.begin(), result.background_vertex.end());
   layer.h = background_.h();
-  const std::vector<int> colours = type_colours();
   std::vector<int> rank(used.ids().size());
   for (const std::int64_t v : result.background_vertex) {
     rank[static_cast<std::size_t>(used.find(v))] = static_cast<int>(layer.V.size());
     layer.V.push_back(background_.position(v));
-    layer.colour.push_back(colours[background_.type(v)]);
     layer.role.push_back(role(v, movable));
   }
   for (Tet& t : layer.C) {
     for (int& v : t) v = rank[v];
   }
   list_rings(layer);
+  set_sizes_and_colours(result);
   return result;
+}
+
+/// Colours are those of the vertex types, or greedy ones outside of lattices.
+void Builder::set_sizes_and_colours(LatticeActiveLayer& made) const {
+  ActiveLayer& layer = made.layer;
+  if (!links_.is_lattice()) {
+    set_local_sizes(background_, made);
+    colour_greedily(layer);
+    return;
+  }
+  const std::vector<int> colours = type_colours();
+  layer.colour.resize(layer.V.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, layer.V.size(), kVerticesPerTask), [&](const auto& range) {
+    for (std::size_t v = range.begin(); v != range.end(); ++v) {
+      layer.colour[v] = colours[background_.type(made.background_vertex[v])];
+    }
+  });
 }
 
 }  // namespace
 
-LatticeActiveLayer lattice_active_layer(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
+void set_local_sizes(const BackgroundMesh& background, LatticeActiveLayer& made) {
+  made.layer.local_h.clear();
+  made.layer.local_h.reserve(made.background_vertex.size());
+  for (const std::int64_t v : made.background_vertex) made.layer.local_h.push_back(background.h(v));
+}
+
+LatticeActiveLayer lattice_active_layer(const BackgroundMesh& background, const VertexLinks& links,
                                         const IdSet& inside, int layers) {
   const Builder builder(background, links, inside);
   IdSet movable(background.n_vertices());
   for_each_in_blocks(inside, [&](std::size_t, std::int64_t v) {
-    for (const std::int64_t step : builder.steps(v)) {
-      if (!inside.test(v + step)) movable.insert_shared(v + step);
-    }
+    links.for_each(v, [&](std::int64_t w) {
+      if (!inside.test(w)) movable.insert_shared(w);
+    });
   });
   IdSet front = movable;
   for (int layer = 0; layer < layers; ++layer) {
     IdSet next(background.n_vertices());
     for_each_in_blocks(front, [&](std::size_t, std::int64_t v) {
-      for (const std::int64_t step : builder.steps(v)) {
-        if (inside.test_any(v + step) && !movable.test(v + step)) next.insert_shared(v + step);
-      }
+      links.for_each(v, [&](std::int64_t w) {
+        if (inside.test_any(w) && !movable.test(w)) next.insert_shared(w);
+      });
     });
     for (std::size_t w = 0; w < next.n_words(); ++w) movable.set_word(w, movable.word(w) | next.word(w));
     front = std::move(next);
@@ -190,7 +215,7 @@ std::vector<std::uint8_t> inside_of(const LatticeActiveLayer& layer, const IdSet
   return list;
 }
 
-LatticeActiveLayer lattice_patch(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
+LatticeActiveLayer lattice_patch(const BackgroundMesh& background, const VertexLinks& links,
                                  const IdSet& inside, const std::vector<std::int64_t>& centres, int reach) {
   const Builder builder(background, links, inside);
   IdList ball;
@@ -199,10 +224,10 @@ LatticeActiveLayer lattice_patch(const BackgroundMesh& background, const std::ve
   for (int ring = 0; ring < reach; ++ring) {
     for (const std::size_t end = ball.ids().size(); fresh < end; ++fresh) {
       const std::int64_t v = ball.ids()[fresh];
-      for (const std::int64_t step : builder.steps(v)) {
-        // Steps from the outermost cells may lead out of the range of ids.
-        if (v + step >= 0 && v + step < background.n_vertices()) ball.add(v + step);
-      }
+      links.for_each(v, [&](std::int64_t w) {
+        // Steps from the outermost cells of a lattice may lead out of the range of ids.
+        if (w >= 0 && w < background.n_vertices()) ball.add(w);
+      });
     }
   }
   std::vector<std::int64_t> ids = ball.ids();

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mesh/background/background_mesh.h"
-#include "mesh/background/link_topology.h"
+#include "mesh/background/vertex_links.h"
 #include "mesh/base/id_set.h"
 #include "mesh/submesh/active_layer.h"
 #include "mesh/submesh/submesh.h"
@@ -21,18 +21,22 @@ struct LatticeActiveLayer {
 /// Cuts the layer of the tets with an inside vertex out of the background mesh: positive vertices, `layers` layers of
 /// other vertices behind them, and the rings of all these.
 ///
-/// Every vertex that moves has its whole ring in the layer. Colours are those of a colouring of the vertex types.
+/// Every vertex that moves has its whole ring in the layer. Colours are those of a colouring of the
+/// vertex types, or, outside of lattices, greedy ones.
 /// Cost: linear in the layer, plus a scan of the bits of the background's vertices.
 /// @param inside  none of its vertices on the background boundary
 /// \throw std::invalid_argument if a vertex type of the tiling is its own neighbour (types then do not colour it)
-LatticeActiveLayer lattice_active_layer(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
+LatticeActiveLayer lattice_active_layer(const BackgroundMesh& background, const VertexLinks& links,
                                         const IdSet& inside, int layers = 2);
 
 /// The same for the vertices of omega_h within `reach` edges of one of `centres`, whatever their distance from the
 /// boundary: these move. Every tet of omega_h with a vertex that near to a centre is in the patch.
 /// \pre the centres have ids
-LatticeActiveLayer lattice_patch(const BackgroundMesh& background, const std::vector<LinkTopology>& links,
+LatticeActiveLayer lattice_patch(const BackgroundMesh& background, const VertexLinks& links,
                                  const IdSet& inside, const std::vector<std::int64_t>& centres, int reach);
+
+/// Sets ActiveLayer::local_h from the background.
+void set_local_sizes(const BackgroundMesh& background, LatticeActiveLayer& made);
 
 /// Per vertex of the layer: whether it is in the set.
 std::vector<std::uint8_t> inside_of(const LatticeActiveLayer& layer, const IdSet& inside);

@@ -160,10 +160,11 @@ Measured fit(const Subject& subject, const Settings& settings, std::vector<Vec3>
   const ConfigurationCosts& of_tiling = *configuration_costs(background.tiling());
   std::optional<StarCostTable> costs;
   const ClassificationParams classification = classification_of(settings, of_tiling, costs);
+  const VertexLinks links(background, of_tiling.links);
   IdSet inside = subject.negative;
-  const ClassificationReport classified = classify_vertices(background, of_tiling.links, psi, classification, inside);
+  const ClassificationReport classified = classify_vertices(background, links, psi, classification, inside);
   std::size_t evaluations = classified.psi_evaluations;
-  LatticeActiveLayer cut = lattice_active_layer(background, of_tiling.links, inside, settings.fast.layers);
+  LatticeActiveLayer cut = lattice_active_layer(background, links, inside, settings.fast.layers);
   PNormSmoother smoother(cut.layer);
   const ProjectionReport projection = project(smoother, psi, settings.fast.projection);
   if (!projection.not_arrived.empty()) return failed();
@@ -179,7 +180,7 @@ Measured fit(const Subject& subject, const Settings& settings, std::vector<Vec3>
   RepairParams repair_params = settings.fast.repair;
   repair_params.target = std::min(repair_params.target, of_tiling.repair_target);
   repair_params.reach = std::min(repair_params.reach, of_tiling.repair_reach);
-  const RepairReport repaired = repair(background, of_tiling.links, psi, classification, repair_params, cut, inside);
+  const RepairReport repaired = repair(background, links, psi, classification, repair_params, cut, inside);
 
   const Submesh submesh = emit_submesh(background, inside);
   std::vector<Vec3> V = submesh.mesh.V;

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "mesh/background/body_size.h"
-#include "mesh/background/link_steps.h"
+#include "mesh/background/vertex_links.h"
 #include "mesh/classification/classification.h"
 #include "mesh/classification/configuration_costs.h"
 #include "mesh/core/tet_quality.h"
@@ -45,7 +45,7 @@ void measure(const star_costs::RandomShape& shape, const Tiling& tiling, const S
   const double h = h_for_tets(tiling, shape, shape.box(), kTets);
   const Box padded(shape.box().min() - Vec3::Constant(2 * h), shape.box().max() + Vec3::Constant(2 * h));
   const BackgroundMesh background(tiling, padded, h);
-  const auto& links = configuration_costs(tiling)->links;
+  const VertexLinks links(background, configuration_costs(tiling)->links);
   std::size_t evaluations = 0;
   IdSet inside = inside_vertices(background, shape, evaluations);
   if (costs) {
@@ -60,18 +60,17 @@ void measure(const star_costs::RandomShape& shape, const Tiling& tiling, const S
   smoothing.target = kOutOfReach;
   smoothing.margin = 0;
   smooth(cut.layer, shape, smoothing);
-  const LinkSteps steps(background);
   for (std::size_t v = 0; v < cut.layer.V.size(); ++v) {
     if (cut.layer.role[v] != ActiveLayer::Role::Boundary) continue;
     const std::int64_t id = cut.background_vertex[v];
-    const int type = background.type(id);
-    const LinkState& state = links[type].state(steps.mask(id, inside));
+    const LinkTopology& link = links.at(id);
+    const LinkState state = link.state(links.mask(id, inside));
     if (!state.manifold) continue;
     double worst = 1;
     for (int r = cut.layer.ring_begin[v]; r < cut.layer.ring_begin[v + 1]; ++r) {
       worst = std::min(worst, mean_ratio({cut.layer.V, {}}, cut.layer.C[cut.layer.ring[r]]));
     }
-    book[{links[type].site, state.n_positive_faces, state.n_tets}].push_back(static_cast<float>(worst));
+    book[{link.site, state.n_positive_faces, state.n_tets}].push_back(static_cast<float>(worst));
   }
 }
 

@@ -13,7 +13,7 @@ constexpr float kMostCostOfFlip = 150;
 
 bool FlipCandidates::in_reach(std::int64_t v, std::size_t& n_evaluations) const {
   const Vec3 x = background_.position(v);
-  const double h = links_[background_.type(v)].unit * background_.h();
+  const double h = links_.at(v).unit * background_.h();
   Vec3 g;
   const double value = psi_.value(x, g), norm = g.norm();
   ++n_evaluations;
@@ -28,29 +28,28 @@ std::vector<FlipCandidates::Candidate> FlipCandidates::operator()(const std::arr
                                                                   std::size_t& n_evaluations) const {
   std::vector<std::int64_t> near(tet.begin(), tet.end());
   for (const std::int64_t v : tet) {
-    for (const std::int64_t step : steps_.at(v)) near.push_back(v + step);
+    links_.for_each(v, [&](std::int64_t w) { near.push_back(w); });
   }
   std::sort(near.begin(), near.end());
   near.erase(std::unique(near.begin(), near.end()), near.end());
   std::vector<Candidate> list;
   for (const std::int64_t v : near) {
     if (v < 0 || v >= background_.n_vertices()) continue;  // beside a tet at the background boundary
-    const int type = background_.type(v);
-    const LinkTopology& link = links_[type];
-    const LinkMask m = steps_.mask(v, inside_);
+    const LinkTopology& link = links_.at(v);
+    const LinkMask m = links_.mask(v, inside_);
     if (!link.state(m).simple || background_.on_boundary(v) || !in_reach(v, n_evaluations)) continue;
-    const auto cost = [&](int t, LinkMask mask) {
-      return mask == 0 ? 0.F : costs_(links_[t].site, links_[t].state(mask));
+    const auto cost = [&](const LinkTopology& of, LinkMask mask) {
+      return mask == 0 ? 0.F : costs_(of.site, of.state(mask));
     };
-    const auto bad = [&](int t, LinkMask mask) { return mask != 0 && !links_[t].state(mask).manifold; };
+    const auto bad = [](const LinkTopology& of, LinkMask mask) { return mask != 0 && !of.state(mask).manifold; };
     const bool is_inside = inside_.test(v);
-    float change = is_inside ? cost(type, m) : -cost(type, m);
-    int spots = is_inside ? bad(type, m) : -bad(type, m);
+    float change = is_inside ? cost(link, m) : -cost(link, m);
+    int spots = is_inside ? bad(link, m) : -bad(link, m);
     for (int k = 0; k < link.n; ++k) {
-      const std::int64_t w = v + steps_.at(v)[k];
+      const std::int64_t w = links_.neighbour(v, k);
       if (inside_.test(w)) continue;
-      const int t = background_.type(w);
-      const LinkMask now = steps_.mask(w, inside_), then = now ^ LinkMask { 1 } << link.back[k];
+      const LinkTopology& t = links_.at(w);
+      const LinkMask now = links_.mask(w, inside_), then = now ^ LinkMask { 1 } << link.back[k];
       change += cost(t, then) - cost(t, now);
       spots += bad(t, then) - bad(t, now);
     }

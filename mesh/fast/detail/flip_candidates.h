@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh/background/link_steps.h"
+#include "mesh/background/vertex_links.h"
 #include "mesh/classification/classification.h"
 #include "mesh/classification/configuration_costs.h"
 #include "mesh/core/implicit_function.h"
@@ -22,7 +22,7 @@ class FlipCandidates {
   };
 
   /// Keeps what it is given by reference: `inside` is read at every call.
-  FlipCandidates(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
+  FlipCandidates(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
                  const ClassificationParams& classification, const RepairParams& params, const IdSet& inside)
       : background_(background),
         links_(links),
@@ -30,8 +30,7 @@ class FlipCandidates {
         classification_(classification),
         params_(params),
         costs_(classification.costs ? *classification.costs : a15_star_costs()),
-        inside_(inside),
-        steps_(background) {}
+        inside_(inside) {}
 
   /// Those of a tet's vertices and their neighbours, the most promising first, max_tries at most.
   /// @param n_evaluations  receives the number of values of psi
@@ -41,13 +40,12 @@ class FlipCandidates {
   bool in_reach(std::int64_t v, std::size_t& n_evaluations) const;
 
   const BackgroundMesh& background_;
-  const std::vector<LinkTopology>& links_;
+  const VertexLinks& links_;
   ImplicitFunctionRef psi_;
   const ClassificationParams& classification_;
   const RepairParams& params_;
   const StarCostTable& costs_;
   const IdSet& inside_;
-  LinkSteps steps_;
 };
 
 }  // namespace umtet::detail

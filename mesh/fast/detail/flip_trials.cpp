@@ -47,7 +47,7 @@ bool FlipTrials::is_misaligned(const TetIds& tet) {
   Triangle f;
   if (!positive_face({0, 1, 2, 3}, inside, f)) return false;
   return normal_cosine(psi_, positions_.of(tet[f[0]]), positions_.of(tet[f[1]]), positions_.of(tet[f[2]]),
-                       background_.h(), psi_evaluations) < kMisalignedCosine;
+                       background_.h(tet[f[0]]), psi_evaluations) < kMisalignedCosine;
 }
 
 bool FlipTrials::is_bad(const TetIds& tet) {

@@ -53,7 +53,7 @@ class FlipTrials {
   };
 
   /// Keeps what it is given by reference, but for `inside`, of which it has its own copy.
-  FlipTrials(const BackgroundMesh& background, const std::vector<LinkTopology>& links, ImplicitFunctionRef psi,
+  FlipTrials(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
              const ClassificationParams& classification, const RepairParams& params, const Positions& places,
              const IdSet& inside)
       : background_(background),
@@ -98,7 +98,7 @@ class FlipTrials {
   void try_flips(const TetIds& tet, Start start, Best& best);
 
   const BackgroundMesh& background_;
-  const std::vector<LinkTopology>& links_;
+  const VertexLinks& links_;
   ImplicitFunctionRef psi_;
   const RepairParams& params_;
   double target_;

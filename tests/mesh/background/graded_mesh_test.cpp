@@ -4,9 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
+#include <vector>
 
+#include "mesh/background/background_mesh.h"
 #include "mesh/background/explicit_mesh.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/submesh/crawl.h"
+#include "mesh/submesh/submesh.h"
+#include "tests/support/domains.h"
 #include "tests/support/gradings.h"
 
 namespace umtet {
@@ -83,10 +89,58 @@ TEST(GradedMesh, KnowsWhoMeetsWhomAsAStoredMeshDoes) {
       const auto link = stored.link(v);
       ASSERT_TRUE(std::equal(list.begin(), list.end(), link.begin(), link.end())) << v;
       ASSERT_EQ(graded.vertex_of(graded.key(v)), v);
+      ASSERT_EQ(graded.on_boundary(v), stored.on_boundary(v));
+      ASSERT_NEAR(graded.mean_edge(v), stored.mean_edge(v), 1e-12);
     }
     for (int t = 0; t < graded.n_tets(); ++t) {
       for (int k = 0; k < 4; ++k) ASSERT_EQ(graded.neighbor(t, k), stored.neighbor(t, k)) << t << " " << k;
     }
+  }
+}
+
+TEST(GradedMesh, FindsTheTetOfAPoint) {
+  std::mt19937_64 random(0);
+  for (const Grading& g : gradings()) {
+    const GradedMesh graded(g);
+    std::uniform_real_distribution<> part(0, 1);
+    for (int i = 0; i < 2000; ++i) {
+      const Vec3 x =
+          graded.box().min() + graded.box().sizes().cwiseProduct(Vec3(part(random), part(random), part(random)));
+      const std::int64_t t = graded.tet_at(x);
+      if (t < 0) {
+        ASSERT_TRUE(g.wanted);
+        continue;
+      }
+      const auto c = graded.tet(t);
+      for (const auto& f : kTetFace) {
+        ASSERT_LT(volume6(graded.position(c[f[0]]), graded.position(c[f[1]]), graded.position(c[f[2]]), x), 1e-12);
+      }
+    }
+    EXPECT_EQ(graded.tet_at(graded.box().max() + Vec3(.1, 0, 0)), -1);
+    EXPECT_GE(graded.tet_at(graded.box().max()), g.wanted ? -1 : 0);
+    EXPECT_GE(graded.tet_at(graded.box().min()), g.wanted ? -1 : 0);
+  }
+}
+
+TEST(GradedMesh, AsABackgroundIsTheMeshItLists) {
+  const auto domain = testing::torus();
+  Grading g;
+  g.box = domain.box;
+  g.finest = .12;
+  g.size = [](const Vec3& x, double half_width) { return .12 + .3 * std::max(0., x[0] - half_width); };
+  const BackgroundMesh graded{GradedMesh(g)}, stored(to_tet_mesh(GradedMesh(g)));
+  EXPECT_FALSE(graded.is_lattice());
+  EXPECT_EQ(graded.h(), .12);
+  const Submesh expected = find_submesh(stored, domain);
+  for (const Submesh& found : {find_submesh(graded, domain), crawl(graded, domain, domain.boundary_seeds).submesh}) {
+    EXPECT_EQ(found.mesh.C, expected.mesh.C);
+    EXPECT_EQ(found.mesh.V, expected.mesh.V);
+    EXPECT_EQ(found.background_tet, expected.background_tet);
+    EXPECT_EQ(found.positive_faces, expected.positive_faces);
+  }
+  for (std::int64_t v = 0; v < graded.n_vertices(); ++v) {
+    ASSERT_NEAR(graded.h(v), stored.h(v), 1e-12);
+    ASSERT_EQ(graded.on_boundary(v), stored.on_boundary(v));
   }
 }
 

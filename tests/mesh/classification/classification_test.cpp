@@ -34,7 +34,7 @@ Classified choose(const BackgroundMesh& background, const AnalyticDomain& domain
   std::size_t n = 0;
   const IdSet plain = inside_vertices(background, domain, n);
   Classified result{plain, plain, {}};
-  result.report = classify_vertices(background, a15_links(), domain, params, result.chosen);
+  result.report = classify_vertices(background, VertexLinks(background, a15_links()), domain, params, result.chosen);
   return result;
 }
 
@@ -99,7 +99,7 @@ TEST(Classification, ThatOfAMeshBeforeStaysWhereAnotherIsNotBetter) {
   };
   std::size_t n = 0;
   IdSet kept = inside_vertices(background, after, n);
-  const ClassificationReport report = classify_vertices(background, a15_links(), after, {}, kept, {}, &last);
+  const ClassificationReport report = classify_vertices(background, VertexLinks(background, a15_links()), after, {}, kept, {}, &last);
   EXPECT_GT(report.returned, 0u);
   EXPECT_LT(changes(kept), .8 * changes(choose(background, after).chosen));
   const MeshCertificate c = certificate(emit_submesh(background, kept));
@@ -117,7 +117,7 @@ TEST(Classification, IsTheSameWithWhatTheSearchHasEvaluated) {
   walk.update(domain, {});
   IdSet inside = walk.inside();
   const ClassificationReport report =
-      classify_vertices(background, a15_links(), domain, {}, inside, {}, nullptr, &walk.values());
+      classify_vertices(background, VertexLinks(background, a15_links()), domain, {}, inside, {}, nullptr, &walk.values());
   EXPECT_TRUE(inside == without.chosen);
   EXPECT_GT(report.flips, 0u);
   EXPECT_EQ(report.psi_evaluations + walk.values().size(), without.report.psi_evaluations);
@@ -125,7 +125,7 @@ TEST(Classification, IsTheSameWithWhatTheSearchHasEvaluated) {
   PsiValues smaller = walk.values();
   for (PsiValue& at : smaller) at.value += .5 * background.h() * at.gradient.norm();
   inside = walk.inside();
-  classify_vertices(background, a15_links(), domain, {}, inside, {}, nullptr, &smaller);
+  classify_vertices(background, VertexLinks(background, a15_links()), domain, {}, inside, {}, nullptr, &smaller);
   EXPECT_FALSE(inside == without.chosen);
 }
 
@@ -246,7 +246,8 @@ TEST(Classification, NoChangeOfOneOrOfTwoNeighboursIsBetter) {
     const Classified classified = choose(background, domain);
     ASSERT_EQ(classified.report.thin, 0u);
     const ClassificationParams params;
-    ClassificationBand band(background, a15_links(), domain, params, classified.plain, {});
+    const VertexLinks links(background, a15_links());
+    ClassificationBand band(background, links, domain, params, classified.plain, {});
     Pricing pricing(band);
     EXPECT_GT(pricing.n_better_singles(), 50);
     EXPECT_GT(pricing.n_better_pairs(), 50);
@@ -264,8 +265,9 @@ TEST(Classification, NoChangeIsBetterByMoreThanKeepWhereItLeavesTheOneBefore) {
   const ClassificationParams params;
   const IdSet plain = choose(background, after).plain;
   IdSet inside = plain;
-  classify_vertices(background, a15_links(), after, params, inside, {}, &last);
-  ClassificationBand band(background, a15_links(), after, params, plain, {});
+  classify_vertices(background, VertexLinks(background, a15_links()), after, params, inside, {}, &last);
+  const VertexLinks links(background, a15_links());
+    ClassificationBand band(background, links, after, params, plain, {});
   Pricing with_keep(band, &last), without(band);
   with_keep.take(inside);
   EXPECT_EQ(with_keep.n_better_singles(), 0);

@@ -26,7 +26,7 @@ using Labels = std::function<bool(std::int64_t v, const Vec3& x, std::mt19937& r
 struct Place {
   std::string name;
   BackgroundMesh background;
-  std::vector<LinkTopology> links;
+  std::shared_ptr<const VertexLinks> links;  ///< null: those of the stars
   bool has_walls = false;
 };
 
@@ -36,13 +36,15 @@ std::vector<Place> places() {
   std::vector<Place> list;
   for (const std::string_view name : tiling_names()) {
     const Tiling& tiling = tiling_named(name);
-    list.push_back({std::string(name), BackgroundMesh(tiling, kBox, name == "a15" ? .75 : .9),
-                    configuration_costs(tiling)->links});
+    BackgroundMesh background(tiling, kBox, name == "a15" ? .75 : .9);
+    auto links = std::make_shared<const VertexLinks>(background, configuration_costs(tiling)->links);
+    list.push_back({std::string(name), std::move(background), std::move(links)});
   }
   const TetMesh box = testing::box_tets(kBox.min(), kBox.max(), {4, 4, 3});
-  list.push_back({"stored", BackgroundMesh(box), {}});
-  list.push_back({"stored, walls", BackgroundMesh(box), {}, true});
-  list.push_back({"a15 in a box, walls", BackgroundMesh(a15_box(kBox, .9)), {}, true});
+  list.push_back({"stored, by stars", BackgroundMesh(box), nullptr});
+  list.push_back({"stored", BackgroundMesh(box), VertexLinks::listed(BackgroundMesh(box))});
+  list.push_back({"stored, walls", BackgroundMesh(box), nullptr, true});
+  list.push_back({"a15 in a box, walls", BackgroundMesh(a15_box(kBox, .9)), nullptr, true});
   return list;
 }
 
@@ -60,8 +62,8 @@ ManifoldReport check(const Place& place, IdSet& inside, bool& is_empty) {
   const auto psi = testing::sphere();
   ClassificationParams params;
   if (const ConfigurationCosts* costs = configuration_costs(place.background.tiling())) params.costs = &costs->costs;
-  const std::vector<std::int64_t> bad = vertices_not_manifold(place.background, place.links, inside);
-  const ManifoldReport report = make_manifold(place.background, place.links, psi, params, place.has_walls, bad, inside);
+  const std::vector<std::int64_t> bad = vertices_not_manifold(place.background, place.links.get(), inside);
+  const ManifoldReport report = make_manifold(place.background, place.links.get(), psi, params, place.has_walls, bad, inside);
   is_empty = inside.is_empty_around(0, place.background.n_vertices());
   if (is_empty) return report;
   const Submesh omega_h = emit_submesh(place.background, inside);
@@ -117,7 +119,7 @@ TEST(ManifoldBoundary, ComesOfAnyClassificationOfAnyBackground) {
       bool is_empty = false;
       const ManifoldReport report = check(place, inside, is_empty);
       n_bad += report.n_bad, n_flips += report.flips.size(), n_empty += is_empty;
-      EXPECT_TRUE(vertices_not_manifold(place.background, place.links, inside).empty());
+      EXPECT_TRUE(vertices_not_manifold(place.background, place.links.get(), inside).empty());
     }
     EXPECT_GT(n_bad, 1000u);
     EXPECT_LT(n_flips, n_bad);
@@ -132,8 +134,8 @@ TEST(ManifoldBoundary, LinksOfALatticeFindAllThatStarsFind) {
     if (place.links.empty()) continue;
     for (int k = 0; k < 20; ++k) {
       const IdSet inside = labelled(place, labels_of(k % 5, random), random);
-      const auto by_links = vertices_not_manifold(place.background, place.links, inside);
-      const auto by_stars = vertices_not_manifold(place.background, {}, inside);
+      const auto by_links = vertices_not_manifold(place.background, place.links.get(), inside);
+      const auto by_stars = vertices_not_manifold(place.background, nullptr, inside);
       EXPECT_TRUE(std::includes(by_links.begin(), by_links.end(), by_stars.begin(), by_stars.end())) << place.name;
       EXPECT_LT(by_links.size(), 1.25 * static_cast<double>(by_stars.size()) + 10) << place.name;
     }
@@ -145,11 +147,12 @@ TEST(ManifoldBoundary, StaysAsItIsWhereItIsOne) {
   const BackgroundMesh background(a15(), domain.box, .15);
   std::size_t n = 0;
   IdSet inside = inside_vertices(background, domain, n);
-  classify_vertices(background, a15_links(), domain, {}, inside);
+  const VertexLinks links(background, a15_links());
+  classify_vertices(background, links, domain, {}, inside);
   const IdSet before = inside;
-  const std::vector<std::int64_t> bad = vertices_not_manifold(background, a15_links(), inside);
+  const std::vector<std::int64_t> bad = vertices_not_manifold(background, &links, inside);
   EXPECT_TRUE(bad.empty());
-  EXPECT_TRUE(make_manifold(background, a15_links(), domain, {}, false, bad, inside).flips.empty());
+  EXPECT_TRUE(make_manifold(background, &links, domain, {}, false, bad, inside).flips.empty());
   EXPECT_EQ(inside, before);
 }
 

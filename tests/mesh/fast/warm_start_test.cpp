@@ -33,8 +33,8 @@ struct Begun {
     std::size_t n = 0;
     fast_mesh(background, Ball{}, {}, {}, {}, inside_vertices(background, Ball{}, n), memory);
     inside = inside_vertices(background, Ball{c}, n);
-    classify_vertices(background, a15_links(), Ball{c}, {}, inside, {}, &memory.inside);
-    layer = lattice_active_layer(background, a15_links(), inside);
+    classify_vertices(background, VertexLinks(background, a15_links()), Ball{c}, {}, inside, {}, &memory.inside);
+    layer = lattice_active_layer(background, VertexLinks(background, a15_links()), inside);
     start = warm_start(background, Ball{c}, inside, memory, {}, layer);
   }
 };

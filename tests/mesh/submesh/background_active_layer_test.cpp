@@ -58,7 +58,7 @@ TEST(BackgroundShell, IsTheShellOfTheLattice) {
   const BackgroundMesh background = background_of(a15(), domain, 20000);
   std::size_t n = 0;
   const IdSet inside = inside_vertices(background, domain, n);
-  const LatticeActiveLayer lattice = lattice_active_layer(background, a15_links(), inside),
+  const LatticeActiveLayer lattice = lattice_active_layer(background, VertexLinks(background, a15_links()), inside),
                            any = background_active_layer(background, inside);
   EXPECT_EQ(any.background_vertex, lattice.background_vertex);
   EXPECT_EQ(any.layer.role, lattice.layer.role);
