@@ -15,6 +15,7 @@
 #include "pipeline/domain/edge_length.h"
 #include "pipeline/domain/missed_samples.h"
 #include "pipeline/meshing/mesh_places.h"
+#include "pipeline/meshing/mesh_sizes.h"
 
 namespace umtet {
 namespace {
@@ -251,6 +252,7 @@ Measurement measure(const Domain& domain, const UmResult& result, const ZeroSetC
   m.resolution.obtuse_conditioning_angles = result.obtuse_conditioning_angles;
   m.resolution.double_positive_faces = result.double_positive_faces;
   if (params.thin) m.resolution.too_thin = in_model(*params.thin, domain.shift);
+  if (params.sizes) m.sizes = sizes_report(mesh, faces, asked_sizes(*params.sizes, mesh.V, context));
   m.is_faithful = m.reasons.empty() && m.places.empty();
   return made;
 }
