@@ -1,5 +1,6 @@
 #include "mesh/background/graded_size.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
@@ -14,12 +15,22 @@ const double kMeanEdge = (6 + 8 * std::sqrt(.75)) / 14;
 // Balance and the layer outside add this share to what leaves inside have, for bodies of 40,000 to 600,000 tets.
 constexpr double kMore = 1.25;
 
+// Sizes fall over a cube by up to .87 grade times its width; a source in a corner has edges at most this much longer
+// than it asks for, times kSizeTolerance.
+constexpr double kAboveLeast = 1.2;
+
 struct Cube {
   Vec3 centre;
   double half;
 };
 
 }  // namespace
+
+double cube_size(const SizeField& sizes, const Vec3& centre, double half_width) {
+  const double most = kAboveLeast * sizes.least_in(centre, half_width);
+  // Where the cube is split anyway its middle does not matter.
+  return kMeanEdge * 2 * half_width > kSizeTolerance * most ? most : std::min(most, sizes.at(centre));
+}
 
 double expected_graded_tets(const SizeField& sizes, double finest, ImplicitFunctionRef psi, const Box& box,
                             double steepest, const Context& context) {
@@ -38,7 +49,7 @@ double expected_graded_tets(const SizeField& sizes, double finest, ImplicitFunct
       const double value = psi.value(x);
       const bool meets_box = ((x - box.center()).cwiseAbs() - .5 * box.sizes()).maxCoeff() < half;
       if (!meets_box || value > steepest * std::sqrt(3.) * half) return;
-      if (width > least && kMeanEdge * width > sizes.least_in(x, half)) {
+      if (width > least && kMeanEdge * width > kSizeTolerance * cube_size(sizes, x, half)) {
         what[i] = Split;
       } else if (value < 0) {
         what[i] = Leaf;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <numbers>
 
 #include "common/context.h"
 #include "mesh/background/background_mesh.h"
@@ -8,6 +9,13 @@
 #include "mesh/core/implicit_function.h"
 
 namespace umtet {
+
+/// Leaves of a graded mesh are split while their mean edge length exceeds this times cube_size(): edges are from
+/// 1 / sqrt(2) to sqrt(2) of the size where it varies slowly.
+inline constexpr double kSizeTolerance = std::numbers::sqrt2;
+
+/// The size of a cube: that in its middle, but at most 1.2 times the least in it.
+double cube_size(const SizeField& sizes, const Vec3& centre, double half_width);
 
 /// About how many tets of a GradedMesh of these sizes are taken for {psi < 0}: 12 a leaf whose centre is inside, before
 /// the octree is balanced, and a share for balance and for the layer by which omega_h exceeds the domain.

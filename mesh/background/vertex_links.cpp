@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <bit>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 #include <span>
 #include <string>
@@ -22,168 +22,222 @@ namespace {
 // same order wherever the mesh looks the same, whatever rounding or optimisation has done to the places.
 constexpr double kParts = 8;
 // Edge lengths of one type differ by a 64th of an octave at most, one percent.
-constexpr double kStepsPerOctave = 64;
+constexpr float kStepsPerOctave = 64;
 // A type with so many vertices for each state that its masks may have gets a table of them: then few of them are
 // computed in vain.
 constexpr std::size_t kStatesPerVertex = 4;
 constexpr int kMostInTable = 16;
 constexpr std::int64_t kVerticesPerTask = 1 << 10;  // of a microsecond or two each
 
-class Lister {
- public:
-  explicit Lister(const BackgroundMesh& background)
-      : background_(background),
-        n_(background.n_vertices()),
-        n_tasks_(static_cast<std::size_t>((n_ + kVerticesPerTask - 1) / kVerticesPerTask)) {}
-
-  /// Returns false where a link is too large.
-  bool list_vertices(std::vector<std::size_t>& begin, std::vector<int>& vertices) const;
-  void find_types(const std::vector<std::size_t>& begin, const std::vector<int>& vertices, std::vector<int>& type,
-                  std::vector<LinkTopology>& topologies) const;
-
- private:
-  template <class F>
-  void for_each_task(const F& f) const {
-    tbb::parallel_for(std::size_t{0}, n_tasks_, [&](std::size_t task) {
-      const std::int64_t first = static_cast<std::int64_t>(task) * kVerticesPerTask;
-      f(task, first, std::min(n_, first + kVerticesPerTask));
-    });
-  }
-
-  const BackgroundMesh& background_;
-  const std::int64_t n_;
-  const std::size_t n_tasks_;
-};
-
-bool Lister::list_vertices(std::vector<std::size_t>& begin, std::vector<int>& vertices) const {
-  struct Neighbour {
-    std::array<std::int64_t, 3> place;  ///< z, y, x
-    std::int64_t id;
-    auto operator<=>(const Neighbour&) const = default;
-  };
-  std::vector<std::vector<int>> of_task(n_tasks_);
-  begin.assign(static_cast<std::size_t>(n_) + 1, 0);
-  std::atomic<bool> fits = true;
-  for_each_task([&](std::size_t task, std::int64_t first, std::int64_t last) {
-    std::vector<std::int64_t> link;
-    std::vector<Neighbour> ordered;
-    for (std::int64_t v = first; v < last; ++v) {
-      link.clear();
-      background_.link(v, link);
-      if (link.size() > kMaxLink) fits = false;
-      const Vec3 x = background_.position(v);
-      const double part = background_.h(v) / kParts;
-      ordered.clear();
-      for (const std::int64_t w : link) {
-        const Vec3 d = (background_.position(w) - x) / part;
-        ordered.push_back({{std::llround(d[2]), std::llround(d[1]), std::llround(d[0])}, w});
-      }
-      std::sort(ordered.begin(), ordered.end());
-      for (const Neighbour& w : ordered) of_task[task].push_back(static_cast<int>(w.id));
-      begin[static_cast<std::size_t>(v) + 1] = ordered.size();
-    }
-  });
-  if (!fits) return false;
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  vertices.resize(begin.back());
-  for_each_task([&](std::size_t task, std::int64_t first, std::int64_t) {
-    std::copy(of_task[task].begin(), of_task[task].end(),
-              vertices.begin() + static_cast<std::ptrdiff_t>(begin[static_cast<std::size_t>(first)]));
-  });
-  return true;
-}
+using TriangleOfLink = std::array<std::uint8_t, 3>;
 
 std::uint8_t number_of(std::span<const int> link, std::int64_t w) {
   return static_cast<std::uint8_t>(std::find(link.begin(), link.end(), w) - link.begin());
 }
 
+float rounded(float unit) { return std::exp2(std::round(std::log2(unit) * kStepsPerOctave) / kStepsPerOctave); }
+
 /// As a key: the bytes of what makes a type.
 std::string key_of(const LinkTopology& link) {
   std::string key(sizeof(float), '\0');
-  std::copy_n(reinterpret_cast<const char*>(&link.unit), sizeof(float), key.begin());
+  std::memcpy(key.data(), &link.unit, sizeof(float));
   key.append(link.back.begin(), link.back.begin() + link.n);
-  for (const auto& t : link.triangles) key.append(t.begin(), t.end());
+  for (const TriangleOfLink& t : link.triangles) key.append(t.begin(), t.end());
   return key;
 }
 
-void Lister::find_types(const std::vector<std::size_t>& begin, const std::vector<int>& vertices,
-                        std::vector<int>& type, std::vector<LinkTopology>& topologies) const {
-  struct OfTask {
+/// Link and triangles of one vertex after the other, in their order; keeps its memory.
+class Links {
+ public:
+  explicit Links(const BackgroundMesh& background) : background_(background) {}
+
+  void read(std::int64_t v);
+  std::size_t n() const { return ordered_.size(); }
+  std::int64_t vertex(std::size_t k) const { return ordered_[k].id; }
+  const std::vector<TriangleOfLink>& triangles() const { return triangles_; }
+  double mean_edge() const { return mean_edge_; }
+
+ private:
+  struct Neighbour {
+    std::array<std::int64_t, 3> place;  ///< z, y, x
+    std::int64_t id;
+    auto operator<=>(const Neighbour&) const = default;
+  };
+  const BackgroundMesh& background_;
+  std::vector<std::int64_t> star_;
+  std::vector<std::array<std::int64_t, 3>> opposite_;
+  std::vector<std::int64_t> ids_;
+  std::vector<Vec3> edges_;
+  double mean_edge_ = 0;
+  std::vector<Neighbour> ordered_;
+  std::vector<TriangleOfLink> triangles_;
+};
+
+void Links::read(std::int64_t v) {
+  star_.clear();
+  opposite_.clear();
+  ids_.clear();
+  ordered_.clear();
+  triangles_.clear();
+  background_.star(v, star_);
+  for (const std::int64_t t : star_) {
+    const auto tet = background_.tet(t);
+    const auto& f = kTetFace[static_cast<std::size_t>(std::find(tet.begin(), tet.end(), v) - tet.begin())];
+    opposite_.push_back({tet[f[0]], tet[f[1]], tet[f[2]]});
+    ids_.insert(ids_.end(), opposite_.back().begin(), opposite_.back().end());
+  }
+  std::sort(ids_.begin(), ids_.end());
+  ids_.erase(std::unique(ids_.begin(), ids_.end()), ids_.end());
+  const Vec3 x = background_.position(v);
+  edges_.clear();
+  double sum = 0;
+  for (const std::int64_t w : ids_) {
+    edges_.push_back(background_.position(w) - x);
+    sum += edges_.back().norm();
+  }
+  mean_edge_ = ids_.empty() ? 0 : sum / static_cast<double>(ids_.size());
+  for (std::size_t k = 0; k < ids_.size(); ++k) {
+    const Vec3 d = edges_[k] * (kParts / mean_edge_);
+    ordered_.push_back({{std::llround(d[2]), std::llround(d[1]), std::llround(d[0])}, ids_[k]});
+  }
+  std::sort(ordered_.begin(), ordered_.end());
+  if (ordered_.size() > kMaxLink) return;
+  const auto number = [&](std::int64_t w) {
+    const auto at = std::find_if(ordered_.begin(), ordered_.end(), [&](const Neighbour& n) { return n.id == w; });
+    return static_cast<std::uint8_t>(at - ordered_.begin());
+  };
+  for (const auto& o : opposite_) {
+    // In a cycle from the least: tets are listed by their ids, which says nothing of the shape of a link.
+    TriangleOfLink made = {number(o[0]), number(o[1]), number(o[2])};
+    while (made[0] > made[1] || made[0] > made[2]) made = {made[1], made[2], made[0]};
+    triangles_.push_back(made);
+  }
+  std::sort(triangles_.begin(), triangles_.end());
+}
+
+class Lister {
+ public:
+  explicit Lister(const BackgroundMesh& background)
+      : background_(background),
+        n_(background.n_vertices()),
+        parts_(static_cast<std::size_t>((n_ + kVerticesPerTask - 1) / kVerticesPerTask)) {}
+
+  /// Returns false where a link is too large.
+  bool list_vertices(std::vector<std::size_t>& begin, std::vector<int>& vertices);
+  void find_types(const std::vector<std::size_t>& begin, const std::vector<int>& vertices, std::vector<int>& type,
+                  std::vector<LinkTopology>& topologies);
+
+ private:
+  /// What one task has found of its vertices.
+  struct Part {
+    std::vector<int> vertices;
+    std::vector<TriangleOfLink> triangles;
+    std::vector<std::uint16_t> n_triangles;  ///< of each vertex
+    std::vector<float> unit;                 ///< of each vertex
     std::unordered_map<std::string, int> number;
-    std::vector<const std::string*> keys;
+    std::vector<const std::string*> keys;  ///< of the types that it met
     std::vector<LinkTopology> topologies;
     std::vector<std::size_t> uses;
+    std::vector<int> renumbered;
   };
+  template <class F>
+  void for_each_part(const F& f) {
+    tbb::parallel_for(std::size_t{0}, parts_.size(), [&](std::size_t k) {
+      const std::int64_t first = static_cast<std::int64_t>(k) * kVerticesPerTask;
+      f(parts_[k], first, std::min(n_, first + kVerticesPerTask));
+    });
+  }
+  void number_types(std::vector<LinkTopology>& topologies, std::vector<std::size_t>& uses);
+
+  const BackgroundMesh& background_;
+  const std::int64_t n_;
+  std::vector<Part> parts_;
+};
+
+bool Lister::list_vertices(std::vector<std::size_t>& begin, std::vector<int>& vertices) {
+  begin.assign(static_cast<std::size_t>(n_) + 1, 0);
+  std::atomic<bool> fits = true;
+  for_each_part([&](Part& part, std::int64_t first, std::int64_t last) {
+    Links links(background_);
+    for (std::int64_t v = first; v < last; ++v) {
+      links.read(v);
+      if (links.n() > kMaxLink) fits = false;
+      for (std::size_t k = 0; k < links.n(); ++k) part.vertices.push_back(static_cast<int>(links.vertex(k)));
+      part.triangles.insert(part.triangles.end(), links.triangles().begin(), links.triangles().end());
+      part.n_triangles.push_back(static_cast<std::uint16_t>(links.triangles().size()));
+      part.unit.push_back(links.n() == 0 ? 1.F : rounded(static_cast<float>(links.mean_edge() / background_.h())));
+      begin[static_cast<std::size_t>(v) + 1] = links.n();
+    }
+  });
+  if (!fits) return false;
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  vertices.resize(begin.back());
+  for_each_part([&](Part& part, std::int64_t first, std::int64_t) {
+    std::copy(part.vertices.begin(), part.vertices.end(),
+              vertices.begin() + static_cast<std::ptrdiff_t>(begin[static_cast<std::size_t>(first)]));
+  });
+  return true;
+}
+
+/// Part by part, so that threads do not matter.
+void Lister::number_types(std::vector<LinkTopology>& topologies, std::vector<std::size_t>& uses) {
+  std::unordered_map<std::string, int> number;
+  for (Part& part : parts_) {
+    for (std::size_t k = 0; k < part.topologies.size(); ++k) {
+      const auto [at, is_new] = number.try_emplace(*part.keys[k], static_cast<int>(topologies.size()));
+      if (is_new) {
+        topologies.push_back(std::move(part.topologies[k]));
+        uses.push_back(0);
+      }
+      uses[static_cast<std::size_t>(at->second)] += part.uses[k];
+      part.renumbered.push_back(at->second);
+    }
+  }
+}
+
+void Lister::find_types(const std::vector<std::size_t>& begin, const std::vector<int>& vertices, std::vector<int>& type,
+                        std::vector<LinkTopology>& topologies) {
   const auto link_of = [&](std::int64_t v) {
     const auto at = static_cast<std::size_t>(v);
     return std::span(vertices.data() + begin[at], begin[at + 1] - begin[at]);
   };
-  std::vector<OfTask> of_task(n_tasks_);
   type.resize(static_cast<std::size_t>(n_));
-  for_each_task([&](std::size_t task, std::int64_t first, std::int64_t last) {
-    OfTask& own = of_task[task];
-    std::vector<std::int64_t> star;
+  for_each_part([&](Part& part, std::int64_t first, std::int64_t last) {
     LinkTopology link;
+    auto triangle = part.triangles.begin();
     for (std::int64_t v = first; v < last; ++v) {
       const std::span<const int> ring = link_of(v);
+      const auto n_triangles = part.n_triangles[static_cast<std::size_t>(v - first)];
       link.n = static_cast<int>(ring.size());
-      link.triangles.clear();
-      star.clear();
-      background_.star(v, star);
-      for (const std::int64_t t : star) {
-        const auto tet = background_.tet(t);
-        const auto corner = static_cast<std::size_t>(std::find(tet.begin(), tet.end(), v) - tet.begin());
-        const auto& f = kTetFace[corner];
-        link.triangles.push_back({number_of(ring, tet[f[0]]), number_of(ring, tet[f[1]]), number_of(ring, tet[f[2]])});
-        // In a cycle from the least: tets are listed by their ids, which says nothing of the shape of a link.
-        auto& made = link.triangles.back();
-        while (made[0] > made[1] || made[0] > made[2]) made = {made[1], made[2], made[0]};
-      }
-      std::sort(link.triangles.begin(), link.triangles.end());
+      link.triangles.assign(triangle, triangle + n_triangles);
+      triangle += n_triangles;
       link.back = {};
       for (int k = 0; k < link.n; ++k) link.back[k] = number_of(link_of(ring[k]), v);
-      const double octaves = std::log2(background_.h(v) / background_.h());
-      link.unit = link.n == 0 ? 1 : static_cast<float>(std::exp2(std::round(octaves * kStepsPerOctave) / kStepsPerOctave));
-      const auto [at, is_new] = own.number.try_emplace(key_of(link), static_cast<int>(own.topologies.size()));
+      link.unit = part.unit[static_cast<std::size_t>(v - first)];
+      const auto [at, is_new] = part.number.try_emplace(key_of(link), static_cast<int>(part.topologies.size()));
       if (is_new) {
-        own.keys.push_back(&at->first);
-        own.topologies.push_back(link);
-        own.uses.push_back(0);
+        part.keys.push_back(&at->first);
+        part.topologies.push_back(link);
+        part.uses.push_back(0);
       }
       type[static_cast<std::size_t>(v)] = at->second;
-      ++own.uses[static_cast<std::size_t>(at->second)];
+      ++part.uses[static_cast<std::size_t>(at->second)];
     }
   });
-  // Numbered task by task, so that threads do not matter.
-  std::unordered_map<std::string, int> number;
   std::vector<std::size_t> uses;
-  std::vector<std::vector<int>> renumbered(n_tasks_);
-  for (std::size_t task = 0; task < n_tasks_; ++task) {
-    OfTask& own = of_task[task];
-    for (std::size_t k = 0; k < own.topologies.size(); ++k) {
-      const auto [at, is_new] = number.try_emplace(*own.keys[k], static_cast<int>(topologies.size()));
-      if (is_new) {
-        topologies.push_back(std::move(own.topologies[k]));
-        uses.push_back(0);
-      }
-      uses[static_cast<std::size_t>(at->second)] += own.uses[k];
-      renumbered[task].push_back(at->second);
-    }
-    own = {};
-  }
-  for_each_task([&](std::size_t task, std::int64_t first, std::int64_t last) {
+  number_types(topologies, uses);
+  for_each_part([&](Part& part, std::int64_t first, std::int64_t last) {
     for (std::int64_t v = first; v < last; ++v) {
       int& own = type[static_cast<std::size_t>(v)];
-      own = renumbered[task][static_cast<std::size_t>(own)];
+      own = part.renumbered[static_cast<std::size_t>(own)];
     }
   });
   tbb::parallel_for(std::size_t{0}, topologies.size(), [&](std::size_t k) {
     LinkTopology& link = topologies[k];
     link.site = link.n;
     link.adjacent.assign(static_cast<std::size_t>(link.n), 0);
-    for (const auto& t : link.triangles) {
-      for (int a = 0; a < 3; ++a)
-        link.adjacent[t[a]] |= LinkMask{1} << t[(a + 1) % 3] | LinkMask{1} << t[(a + 2) % 3];
+    for (const TriangleOfLink& t : link.triangles) {
+      for (int a = 0; a < 3; ++a) link.adjacent[t[a]] |= LinkMask{1} << t[(a + 1) % 3] | LinkMask{1} << t[(a + 2) % 3];
     }
     if (link.n > kMostInTable || link.n == 0 || uses[k] * kStatesPerVertex < std::size_t{1} << link.n) return;
     link.states.resize(std::size_t{1} << link.n);
@@ -198,7 +252,7 @@ VertexLinks::VertexLinks(const BackgroundMesh& lattice, const std::vector<LinkTo
 
 std::shared_ptr<const VertexLinks> VertexLinks::listed(const BackgroundMesh& background) {
   Listed made;
-  const Lister lister(background);
+  Lister lister(background);
   if (!lister.list_vertices(made.begin, made.vertices)) return nullptr;
   lister.find_types(made.begin, made.vertices, made.type, made.topologies);
   return std::shared_ptr<const VertexLinks>(new VertexLinks(std::move(made)));

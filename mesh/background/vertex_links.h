@@ -14,8 +14,8 @@ namespace umtet {
 /// The link of every vertex of a background mesh: who is there, and what it looks like as bit masks.
 ///
 /// In a lattice a vertex is of one of a few types, and nothing is stored per vertex. The links of any other background
-/// are listed: some 70 bytes a vertex. Vertices whose links look the same, in the same order and at the same edge length
-/// within a percent, are of one type there; in regular parts of a mesh that is one type for each edge length.
+/// are listed: some 70 bytes a vertex. Vertices whose links look the same, in the same order and at the same edge
+/// length within a percent, are of one type there; in regular parts of a mesh that is one type for each edge length.
 class VertexLinks {
  public:
   /// Of a lattice. @param of_types  one per vertex type; kept by reference

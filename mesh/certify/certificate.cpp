@@ -96,16 +96,30 @@ double enclosed_volume(const TetMesh& mesh, const std::vector<Triangle>& faces) 
 }
 
 /// How far from psi = 0 a vertex may be, in h.
-double vertex_tolerance(const MeshCertificate& certificate) {
-  return kVertexTolerance + certificate.coordinate_rounding / certificate.h;
+double vertex_tolerance(const MeshCertificate& certificate, double h) {
+  return kVertexTolerance + certificate.coordinate_rounding / h;
 }
+
+/// The edge length of each vertex and face.
+class EdgeOf {
+ public:
+  EdgeOf(double h, const std::vector<double>* local) : h_(h), local_(local) {}
+  double operator()(int v) const { return local_ ? (*local_)[static_cast<std::size_t>(v)] : h_; }
+  double operator()(const Triangle& f) const {
+    return local_ ? ((*this)(f[0]) + (*this)(f[1]) + (*this)(f[2])) / 3 : h_;
+  }
+
+ private:
+  double h_;
+  const std::vector<double>* local_;
+};
 
 /// Fills the distances, normals and faults of the boundary.
 /// @param volume  that the faces are to stand for
 void measure_against(ImplicitFunctionRef psi, const TetMesh& mesh, const std::vector<Triangle>& faces,
-                     const std::vector<int>& vertices, double volume, const Context& context,
-                     MeshCertificate& certificate) {
-  const double h = certificate.h;
+                     const std::vector<int>& vertices, double volume, const std::vector<double>* local_h,
+                     const Context& context, MeshCertificate& certificate) {
+  const EdgeOf h(certificate.h, local_h);
   MeshCertificate::Boundary& boundary = certificate.boundary;
   std::vector<double> vertex_distance(vertices.size());
   polled_parallel_for(vertices.size(), kValuesPerPoll, context, [&](std::size_t i) {
@@ -118,40 +132,44 @@ void measure_against(ImplicitFunctionRef psi, const TetMesh& mesh, const std::ve
   polled_parallel_for(faces.size(), kFeetPerPoll, context, [&](std::size_t i) {
     const Vec3 &a = mesh.V[faces[i][0]], &b = mesh.V[faces[i][1]], &c = mesh.V[faces[i][2]];
     const Vec3 centroid = (a + b + c) / 3.0;
-    const Foot foot = foot_point(psi, centroid, h);
+    const Foot foot = foot_point(psi, centroid, h(faces[i]));
     const Vec3 n = (b - a).cross(c - a);
     const double length = n.norm();
     const double cosine = length > 0 ? n.dot(foot.normal) / length : -1.0;  // no area: no normal
     face[i] = {foot.found, foot.distance, cosine, length / 2, foot.point};
   });
 
+  boundary.max_centroid_distance = 0;
   double max_vertex = 0, max_centroid = 0, min_cos = 1, gap = 0;
-  for (const double d : vertex_distance) max_vertex = std::max(max_vertex, d);
-  for (const FaceMeasure& f : face) {
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    max_vertex = std::max(max_vertex, vertex_distance[i] / h(vertices[i]));
+  for (std::size_t i = 0; i < face.size(); ++i) {
+    const FaceMeasure& f = face[i];
     if (!f.found) {
       ++boundary.n_unprojected_faces;
       continue;
     }
-    max_centroid = std::max(max_centroid, f.distance);
+    max_centroid = std::max(max_centroid, f.distance / h(faces[i]));
+    boundary.max_centroid_distance = std::max(boundary.max_centroid_distance, f.distance);
     gap += kMeanOverCentroid * f.area * f.distance;
     min_cos = std::min(min_cos, f.cos_normal);
     boundary.n_cos_below_half += f.cos_normal < 0.5;
   }
-  boundary.max_vertex_distance_over_h = max_vertex / h;
-  boundary.max_centroid_distance_over_h = max_centroid / h;
+  boundary.max_vertex_distance_over_h = max_vertex;
+  boundary.max_centroid_distance_over_h = max_centroid;
   boundary.min_cos_normal = min_cos;
   boundary.gap_over_volume = gap / volume;
 
   boundary.faults.clear();
   boundary.far_feet.clear();
-  const double tolerance = vertex_tolerance(certificate);
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    if (vertex_distance[i] / h <= tolerance) continue;
+    const double h_here = h(vertices[i]);
+    if (vertex_distance[i] / h_here <= vertex_tolerance(certificate, h_here)) continue;
     boundary.faults.push_back({BoundaryFault::Kind::Off, mesh.V[vertices[i]], vertex_distance[i]});
   }
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const FaceMeasure& f = face[i];
-    const bool is_far = f.found && f.distance > kFarFace * h;
+    const bool is_far = f.found && f.distance > kFarFace * h(faces[i]);
     if (f.found && f.cos_normal > 0 && !is_far) continue;
     const Vec3 centroid = (mesh.V[faces[i][0]] + mesh.V[faces[i][1]] + mesh.V[faces[i][2]]) / 3.0;
     if (is_far) boundary.far_feet.push_back(f.foot);
@@ -159,7 +177,7 @@ void measure_against(ImplicitFunctionRef psi, const TetMesh& mesh, const std::ve
     if (f.found) {
       boundary.faults.push_back({BoundaryFault::Kind::Folded, centroid, f.distance});
     } else {
-      boundary.faults.push_back({BoundaryFault::Kind::Off, centroid, h});
+      boundary.faults.push_back({BoundaryFault::Kind::Off, centroid, h(faces[i])});
     }
   }
 }
@@ -213,14 +231,14 @@ MeshCertificate certify_with(const CertificateInput& input, CertificateMemory* m
   for (const int i : at_walls) boundary.n_moved_wall_vertices += mesh.V[i] != (*input.background_V)[i];
   if (input.psi) {
     if (walls.empty()) {
-      measure_against(*input.psi, mesh, surface.triangles, topology.vertices, certificate.volume, input.context,
-                      certificate);
+      measure_against(*input.psi, mesh, surface.triangles, topology.vertices, certificate.volume, input.local_h,
+                      input.context, certificate);
     } else {
       const std::vector<Triangle> fitted = without(surface.triangles, walls);
       // Relative to the body, if that is less: else the gap around a small body in much fluid would not count.
       const double volume =
           fitted.empty() ? certificate.volume : std::min(certificate.volume, enclosed_volume(mesh, fitted));
-      measure_against(*input.psi, mesh, fitted, vertices_of(fitted), volume, input.context, certificate);
+      measure_against(*input.psi, mesh, fitted, vertices_of(fitted), volume, input.local_h, input.context, certificate);
     }
   }
   return certificate;
@@ -245,8 +263,8 @@ MeshCertificate certify_again(const CertificateInput& input, CertificateMemory::
   boundary.n_cos_below_half = boundary.n_unprojected_faces = 0;
   if (input.psi) {
     if (known.surface_vertices.empty()) known.surface_vertices = vertices_of(surface);
-    measure_against(*input.psi, *input.mesh, surface, known.surface_vertices, certificate.volume, input.context,
-                    certificate);
+    measure_against(*input.psi, *input.mesh, surface, known.surface_vertices, certificate.volume, input.local_h,
+                    input.context, certificate);
   }
   return certificate;
 }
@@ -315,7 +333,8 @@ std::vector<std::string> coarseness(const MeshCertificate& certificate) {
 std::vector<std::string> failures(const MeshCertificate& certificate) {
   std::vector<std::string> reasons = invalidities(certificate);
   const MeshCertificate::Boundary& b = certificate.boundary;
-  if (b.max_vertex_distance_over_h && !(*b.max_vertex_distance_over_h <= vertex_tolerance(certificate))) {
+  if (b.max_vertex_distance_over_h &&
+      !(*b.max_vertex_distance_over_h <= vertex_tolerance(certificate, certificate.h))) {
     reasons.push_back(formatted("a boundary vertex is %.3g h from psi = 0, more than rounding explains",
                                 *b.max_vertex_distance_over_h));
   }

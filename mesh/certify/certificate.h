@@ -54,6 +54,7 @@ struct MeshCertificate {
     double area = 0;
     std::optional<double> max_vertex_distance_over_h;    ///< |psi| / |grad psi| at boundary vertices
     std::optional<double> max_centroid_distance_over_h;  ///< from face centroids to their closest points
+    double max_centroid_distance = 0;                    ///< the same, model units
     std::optional<double> min_cos_normal;                ///< cos(face normal, grad psi) at projected centroids
     /// Volume between the flat faces and psi = 0, both sides counted, over the volume of the mesh or, where that is
     /// less, of the body that it has walls around.
@@ -71,7 +72,7 @@ struct MeshCertificate {
     return quality.n_inverted == 0 && boundary.closed_manifold && boundary.n_self_intersections == 0 &&
            boundary.n_wrongly_nested == 0;
   }
-  double h = 0;                    ///< edge length the ratios refer to
+  double h = 0;                    ///< edge length the ratios refer to where CertificateInput::local_h is not given
   double coordinate_rounding = 0;  ///< CertificateInput::coordinate_rounding
 };
 
@@ -79,6 +80,9 @@ struct MeshCertificate {
 struct CertificateInput {
   const TetMesh* mesh = nullptr;
   double h = 0;  ///< <= 0: the mean over tets of the root mean square edge length is used
+  /// Optional, by vertex, > 0: the edge length that ratios at this vertex, and at faces with it, refer to, instead of
+  /// h.
+  const std::vector<double>* local_h = nullptr;
   const std::vector<Triangle>* positive_faces = nullptr;  ///< optional: compared with the boundary as a set
   std::optional<ImplicitFunctionRef> psi;                 ///< optional: distances and normals
   double coordinate_rounding = 0;  ///< how far the file's rounding of coordinates may move a vertex, model units

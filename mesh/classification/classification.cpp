@@ -129,7 +129,9 @@ float Descent::gain_of_flip(int v) {
 bool Descent::keeps_manifold(int v) const {
   const LinkTopology& link = links_.of_type(band_.type[v]);
   int before = 0, after = 0;
-  const auto bad = [&](int w, LinkMask mask) { return mask != 0 && !links_.of_type(band_.type[w]).state(mask).manifold; };
+  const auto bad = [&](int w, LinkMask mask) {
+    return mask != 0 && !links_.of_type(band_.type[w]).state(mask).manifold;
+  };
   if (band_.is_inside[v]) {
     after += bad(v, band_.mask[v]);
   } else {

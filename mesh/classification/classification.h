@@ -42,12 +42,12 @@ struct ClassificationParams {
 std::vector<std::string> problems(const ClassificationParams&);
 
 struct ClassificationReport {
-  std::size_t candidates = 0;    ///< vertices whose state might change
-  std::size_t shifted = 0;       ///< states changed by the shift
-  std::size_t returned = 0;      ///< states changed to those of the mesh before
-  std::size_t flips = 0;         ///< states changed by the descent
-  std::size_t stretched = 0;     ///< vertices near the boundary that kept theirs because of most_stretch
-  std::size_t thin = 0;          ///< candidates that kept their state because of least_thickness
+  std::size_t candidates = 0;              ///< vertices whose state might change
+  std::size_t shifted = 0;                 ///< states changed by the shift
+  std::size_t returned = 0;                ///< states changed to those of the mesh before
+  std::size_t flips = 0;                   ///< states changed by the descent
+  std::size_t stretched = 0;               ///< vertices near the boundary that kept theirs because of most_stretch
+  std::size_t thin = 0;                    ///< candidates that kept their state because of least_thickness
   std::vector<std::int64_t> not_manifold;  ///< outside vertices where the boundary of omega_h is none; ascending
   int sweeps = 0;
   bool settled = false;  ///< the descent ended because it found nothing more to change, not by max_sweeps
@@ -70,8 +70,9 @@ bool is_thin(ImplicitFunctionRef psi, const Vec3& foot, const Vec3& normal, doub
 ///     outside_height)^2
 ///   + sum over inside vertices near the boundary of inside_weight max(0, inside_depth - depth)^2
 ///
-/// with distances from psi / |grad psi|, corrected at the foot, in the unit of each vertex. In a lattice by blocks of 4^3
-/// cells in eight colours, in other backgrounds one vertex after the other: the same states for any number of threads.
+/// with distances from psi / |grad psi|, corrected at the foot, in the unit of each vertex. In a lattice by blocks of
+/// 4^3 cells in eight colours, in other backgrounds one vertex after the other: the same states for any number of
+/// threads.
 ///
 /// @param inside  the vertices with psi < 0 on entry; none of them, nor a neighbour, on the background boundary
 /// @param last    inside vertices of the mesh before, or null: a state that costs at most `keep` more begins as there

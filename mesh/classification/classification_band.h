@@ -43,9 +43,9 @@ class ClassificationBand {
   std::vector<std::uint8_t> movable;  ///< it may be flipped
   std::vector<std::uint8_t> held;     ///< it is not, because of most_stretch
   std::vector<LinkMask> mask;
-  std::vector<float> phi;                    ///< signed distance in LinkTopology::unit
-  std::vector<Vec3> foot, normal;            ///< on psi = 0 and there; not set at the band's edge
-  std::vector<std::uint32_t> order;          ///< vertices that may be flipped, block by block
+  std::vector<float> phi;            ///< signed distance in LinkTopology::unit
+  std::vector<Vec3> foot, normal;    ///< on psi = 0 and there; not set at the band's edge
+  std::vector<std::uint32_t> order;  ///< vertices that may be flipped, block by block
   /// Per colour: vertices of two blocks of one are nine rings apart. All in one block where there are no cells.
   std::array<std::vector<Block>, 8> blocks;
   std::atomic<std::size_t> psi_evaluations{0};

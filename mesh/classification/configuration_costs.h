@@ -37,7 +37,8 @@ struct BackgroundCosts {
 };
 
 /// Of a lattice the configuration_costs() of its tiling; of any other mesh its links, and one cost for all manifold
-/// configurations: then distances decide, and what that leaves repair mends. None for a tiling without costs, and for a mesh with a vertex that has more than kMaxLink neighbours.
+/// configurations: then distances decide, and what that leaves repair mends. None for a tiling without costs, and for a
+/// mesh with a vertex that has more than kMaxLink neighbours.
 /// @param links  what an earlier call for this background gave, or null
 std::optional<BackgroundCosts> background_costs(const BackgroundMesh& background,
                                                 std::shared_ptr<const VertexLinks> links = nullptr);

@@ -203,8 +203,8 @@ ManifoldReport Mending::operator()(const std::vector<std::int64_t>& bad, const C
 
 }  // namespace
 
-std::vector<std::int64_t> vertices_not_manifold(const BackgroundMesh& background,
-                                                const VertexLinks* links, const IdSet& inside) {
+std::vector<std::int64_t> vertices_not_manifold(const BackgroundMesh& background, const VertexLinks* links,
+                                                const IdSet& inside) {
   IdSet seen(background.n_vertices());
   BoundaryStates states(background, links);
   std::vector<std::int64_t> link, bad;
@@ -221,9 +221,9 @@ std::vector<std::int64_t> vertices_not_manifold(const BackgroundMesh& background
   return bad;
 }
 
-ManifoldReport make_manifold(const BackgroundMesh& background, const VertexLinks* links,
-                             ImplicitFunctionRef psi, const ClassificationParams& params, bool has_walls,
-                             const std::vector<std::int64_t>& bad, IdSet& inside, const Context& context) {
+ManifoldReport make_manifold(const BackgroundMesh& background, const VertexLinks* links, ImplicitFunctionRef psi,
+                             const ClassificationParams& params, bool has_walls, const std::vector<std::int64_t>& bad,
+                             IdSet& inside, const Context& context) {
   if (bad.empty()) return {};
   return Mending(background, links, psi, params, has_walls, inside)(bad, context);
 }

@@ -23,8 +23,8 @@ struct ManifoldReport {
 
 /// The outside vertices where the boundary of omega_h is no manifold, ascending. Cost: linear in the background.
 /// @param links  of the background, or null
-std::vector<std::int64_t> vertices_not_manifold(const BackgroundMesh& background,
-                                                const VertexLinks* links, const IdSet& inside);
+std::vector<std::int64_t> vertices_not_manifold(const BackgroundMesh& background, const VertexLinks* links,
+                                                const IdSet& inside);
 
 /// Makes the boundary of omega_h a closed 2-manifold, and so omega_h a 3-manifold with boundary, by changing which
 /// vertices count as inside; it always ends.
@@ -43,8 +43,8 @@ std::vector<std::int64_t> vertices_not_manifold(const BackgroundMesh& background
 /// @param bad          vertices_not_manifold()
 /// @param inside       receives the changes; may become empty
 /// \throw Cancelled
-ManifoldReport make_manifold(const BackgroundMesh& background, const VertexLinks* links,
-                             ImplicitFunctionRef psi, const ClassificationParams& params, bool has_walls,
-                             const std::vector<std::int64_t>& bad, IdSet& inside, const Context& context = {});
+ManifoldReport make_manifold(const BackgroundMesh& background, const VertexLinks* links, ImplicitFunctionRef psi,
+                             const ClassificationParams& params, bool has_walls, const std::vector<std::int64_t>& bad,
+                             IdSet& inside, const Context& context = {});
 
 }  // namespace umtet

@@ -140,7 +140,8 @@ void Projection::find_feet() {
     if (boundary_vertex.arrived) return std::size_t{0};
     boundary_vertex.t = 0;
     boundary_vertex.start = layer_.V[boundary_vertex.vertex];
-    const ClosestPoint foot = closest_point(psi_, boundary_vertex.start, layer_.h_at(boundary_vertex.vertex), params_.closest_point);
+    const ClosestPoint foot =
+        closest_point(psi_, boundary_vertex.start, layer_.h_at(boundary_vertex.vertex), params_.closest_point);
     boundary_vertex.has_foot = foot.converged;
     boundary_vertex.foot = foot.point;
     return static_cast<std::size_t>(foot.iterations);

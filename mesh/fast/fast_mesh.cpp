@@ -181,8 +181,8 @@ bool FastRun::classify() {
   if (costs_ && last && negative_ == memory_->negative) {
     inside_ = *last;  // psi has the sign it had at every vertex
   } else if (costs_) {
-    const ClassificationReport report = classify_vertices(background_, *costs_->links, psi_,
-                                                          classification_params_, inside_, context_, last, known_);
+    const ClassificationReport report =
+        classify_vertices(background_, *costs_->links, psi_, classification_params_, inside_, context_, last, known_);
     result_.n_psi_evaluations += report.psi_evaluations;
     if (!make_manifold(report.not_manifold)) return false;
   } else if (!make_manifold(vertices_not_manifold(background_, nullptr, inside_))) {
@@ -195,9 +195,9 @@ bool FastRun::classify() {
 }
 
 bool FastRun::make_manifold(const std::vector<std::int64_t>& bad) {
-  ManifoldReport report = umtet::make_manifold(
-      background_, costs_ ? costs_->links.get() : nullptr, psi_, classification_params_,
-      submesh_params_.background_boundary == BackgroundBoundary::Wall, bad, inside_, context_);
+  ManifoldReport report =
+      umtet::make_manifold(background_, costs_ ? costs_->links.get() : nullptr, psi_, classification_params_,
+                           submesh_params_.background_boundary == BackgroundBoundary::Wall, bad, inside_, context_);
   result_.n_psi_evaluations += report.psi_evaluations;
   result_.manifold_flips = std::move(report.flips);
   if (bad.empty() || !inside_.is_empty_around(0, background_.n_vertices())) return true;
@@ -277,7 +277,7 @@ void FastRun::repair_classification() {
 /// @param projected  receives the places between the two
 void FastRun::relax(std::vector<Vec3>& projected) {
   layer_ = costs_ ? lattice_active_layer(background_, *costs_->links, inside_, params_.layers)
-                            : background_active_layer(background_, inside_, params_.layers);
+                  : background_active_layer(background_, inside_, params_.layers);
   SmoothingParams smoothing_params = params_.smoothing;
   bool is_on_surface = false, is_short = false;
   if (memory_ && !memory_->moved.empty()) {
@@ -321,8 +321,7 @@ void FastRun::fit() {
   tbb::parallel_invoke([&] { result_.final = coordinates(layer_.layer.V); },
                        [&] { result_.projected = coordinates(projected); });
   const auto h_at = [&](int v) { return background_.h(result_.submesh.background_vertex[v]); };
-  result_.n_stepped_back =
-      step_back(result_.submesh, result_.walls, h_at, result_.final, context_).vertices.size();
+  result_.n_stepped_back = step_back(result_.submesh, result_.walls, h_at, result_.final, context_).vertices.size();
   measure_assumptions();
   context_.report("repair", 1);
 }

@@ -28,9 +28,9 @@ namespace umtet {
 /// does not resolve (tangential_relaxation.h); repair: vertices change between inside and outside where a tet is still
 /// below the target (repair.h).
 ///
-/// It always ends in a mesh, unless psi has no inside in the background or reaches its boundary: the boundary of omega_h
-/// is a manifold by the choice of its tets (manifold_boundary.h), no tet is let invert on the way, and where the
-/// boundary meets itself in the end, vertices go back (step_back.h). Vertices may then be off psi = 0, which a
+/// It always ends in a mesh, unless psi has no inside in the background or reaches its boundary: the boundary of
+/// omega_h is a manifold by the choice of its tets (manifold_boundary.h), no tet is let invert on the way, and where
+/// the boundary meets itself in the end, vertices go back (step_back.h). Vertices may then be off psi = 0, which a
 /// certificate says.
 ///
 /// The result is that of universal_mesh(): omega_h of the chosen inside vertices, with the background's ids. The same

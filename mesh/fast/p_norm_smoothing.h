@@ -56,10 +56,11 @@ struct SmoothingReport {
 ///
 /// 1/Q is proportional to L / V^(2/3), convex in the place of one vertex while V > 0, and so is the p-norm of the 1/Q
 /// of its ring. A solve makes a Newton step on that norm for p = 48 and one for p = 96, through F = Q^-3 = L^3 / (432
-/// V^2) and its powers 16 and 32, so that it takes no roots. A step is at most .5 h long, h that of the vertex, leaves every V a fifth of its
-/// value or more, and is halved until the sum of the powers falls. A solve counts if it lowers sum F^32 over the ring:
-/// that sum over the whole layer falls monotonically, and no solve leaves its ring with less than n^(-1/96) of the
-/// worst quality it had, n tets: 3.4 % at 28. With `sharper`, a third step and the sum are those of F^128, p = 384.
+/// V^2) and its powers 16 and 32, so that it takes no roots. A step is at most .5 h long, h that of the vertex, leaves
+/// every V a fifth of its value or more, and is halved until the sum of the powers falls. A solve counts if it lowers
+/// sum F^32 over the ring: that sum over the whole layer falls monotonically, and no solve leaves its ring with less
+/// than n^(-1/96) of the worst quality it had, n tets: 3.4 % at 28. With `sharper`, a third step and the sum are those
+/// of F^128, p = 384.
 ///
 /// A boundary vertex takes the steps in its tangent plane and is then put back on psi = 0; the solve counts by the sum
 /// there. Steps are over-relaxed, where that lowers the sum, too: alone, a vertex goes less far than with its

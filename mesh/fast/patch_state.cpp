@@ -91,7 +91,8 @@ PatchState patch_state(const ActiveLayer& layer, const std::vector<std::uint8_t>
   Triangle f;
   for (const Tet& t : layer.C) {
     if (!positive_face(t, inside, f)) continue;
-    const double cosine = normal_cosine(psi, layer.V[f[0]], layer.V[f[1]], layer.V[f[2]], layer.h_at(f[0]), evaluations);
+    const double cosine =
+        normal_cosine(psi, layer.V[f[0]], layer.V[f[1]], layer.V[f[2]], layer.h_at(f[0]), evaluations);
     s.least_cosine = std::min(s.least_cosine, cosine);
     s.misaligned += cosine < kMisalignedCosine;
     s.folded_over += cosine < 0;

@@ -9,6 +9,7 @@
 #include <deque>
 #include <set>
 #include <stdexcept>
+#include <unordered_map>
 
 #include "mesh/core/max_min.h"
 #include "mesh/core/tet_quality.h"
@@ -79,7 +80,7 @@ class Repair {
   };
 
   bool is_worth_trying(const TetIds& tet);
-  Range range_of(const TetIds& tet) const;
+  Range range_of(const TetIds& tet);
   void mend(const Context& context);
   void again(double target);
   bool choose_round();
@@ -108,6 +109,7 @@ class Repair {
   std::vector<std::vector<std::int64_t>> kept_;  ///< centres of the patches
   std::vector<TetIds> round_;  ///< far from each other: what is done for one does not touch the others
   double far_of_lattice_ = 0;  ///< model units
+  std::unordered_map<std::int64_t, Range> ranges_;  ///< of first vertices, outside of lattices
   RepairReport report_;
 };
 
@@ -121,11 +123,13 @@ bool Repair::is_worth_trying(const TetIds& tet) {
   return false;
 }
 
-/// Seen from one vertex of a tet, flips are within two edges, and what moves is within reach + 2; the classification and
-/// positions are read one edge farther: by one of the two that are compared.
-Repair::Range Repair::range_of(const TetIds& tet) const {
+/// Seen from one vertex of a tet, flips are within two edges, and what moves is within reach + 2; the classification
+/// and positions are read one edge farther: by one of the two that are compared.
+Repair::Range Repair::range_of(const TetIds& tet) {
   const Vec3 at = background_.position(tet[0]);
   if (background_.is_lattice()) return {at, far_of_lattice_};
+  const auto [known, is_new] = ranges_.try_emplace(tet[0], Range{at, 0});
+  if (!is_new) return known->second;
   IdList ball;
   ball.add(tet[0]);
   std::size_t fresh = 0;
@@ -136,7 +140,8 @@ Repair::Range Repair::range_of(const TetIds& tet) const {
   }
   double farthest = 0;
   for (const std::int64_t v : ball.ids()) farthest = std::max(farthest, (background_.position(v) - at).norm());
-  return {at, 2 * farthest};
+  known->second.far = 2 * farthest;
+  return known->second;
 }
 
 /// The next tets in their order, but for those near one that comes before them: these wait.

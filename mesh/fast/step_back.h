@@ -20,11 +20,11 @@ struct StepBackReport {
 /// the boundary meet (self_intersections.h).
 ///
 /// Sheets of the boundary nearer to each other than the sagitta of their faces may pierce each other. The vertices of
-/// such faces step .05 h (their own) inwards, along their normals, round by round, as long as no tet of their rings falls below
-/// Q = .2 or what it had. Where that does not help, and where a tet is not positive, they go a quarter of their way
-/// back to where the background mesh has them, each round. In the background mesh all tets are positive and no faces
-/// meet: so in each round that finds something, a vertex that is not there yet goes nearer to it, and this ends.
-/// Nothing is changed, and the cost is that of the two tests, where nothing is wrong.
+/// such faces step .05 h (their own) inwards, along their normals, round by round, as long as no tet of their rings
+/// falls below Q = .2 or what it had. Where that does not help, and where a tet is not positive, they go a quarter of
+/// their way back to where the background mesh has them, each round. In the background mesh all tets are positive and
+/// no faces meet: so in each round that finds something, a vertex that is not there yet goes nearer to it, and this
+/// ends. Nothing is changed, and the cost is that of the two tests, where nothing is wrong.
 /// @param walls  boundary faces that no vertex of moves
 /// @param h      edge length of the background at a vertex, model units
 /// @param V      receives the places, numbered as submesh.mesh.V

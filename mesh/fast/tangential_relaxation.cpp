@@ -169,8 +169,8 @@ std::vector<std::vector<int>> vertices_of_far_faces(const ActiveLayer& layer, Im
   std::vector<int> evaluations(faces.size(), 0);
   polled_parallel_for(faces.size(), kValuesPerPoll, context, [&](std::size_t k) {
     const Triangle& f = faces[k];
-    far[k] = is_far(psi, layer.V[f[0]], layer.V[f[1]], layer.V[f[2]], params.least_chord * layer.h_at(f[0]),
-                    evaluations[k]);
+    far[k] =
+        is_far(psi, layer.V[f[0]], layer.V[f[1]], layer.V[f[2]], params.least_chord * layer.h_at(f[0]), evaluations[k]);
   });
   std::vector<std::uint8_t> chosen(layer.V.size(), 0);
   for (std::size_t k = 0; k < faces.size(); ++k) {

@@ -20,6 +20,25 @@ double first_return(ImplicitFunctionRef psi, const Vec3& x, const Vec3& d, doubl
   }
 }
 
+SheetDistances sheet_distances_at(ImplicitFunctionRef psi, Vec3 x, double step, double limit, double steepest) {
+  Vec3 g;
+  double value = psi.value(x, g);
+  for (int it = 0; it < 8 && std::abs(value) > 1e-6 * step * g.norm(); ++it) {
+    const Vec3 move = -value / std::max(g.squaredNorm(), 1e-300) * g;
+    x += move * std::min(1.0, step / std::max(move.norm(), 1e-300));
+    value = psi.value(x, g);
+  }
+  const double slope = g.norm();
+  if (!(slope > 0) || std::abs(value) > 1e-3 * step * slope) return {limit, limit};
+  return sheet_distances_from(psi, x, g / slope, {step, limit, steepest});
+}
+
+std::vector<double> least_of(const std::vector<SheetDistances>& distances) {
+  std::vector<double> out;
+  for (const SheetDistances& d : distances) out.push_back(std::min(d.body, d.gap));
+  return out;
+}
+
 }  // namespace
 
 SheetDistances sheet_distances_from(ImplicitFunctionRef psi, const Vec3& x, const Vec3& n, const SheetSearch& search) {
@@ -28,29 +47,31 @@ SheetDistances sheet_distances_from(ImplicitFunctionRef psi, const Vec3& x, cons
 
 std::vector<SheetDistances> sheet_distances(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double step,
                                             double limit, const Context& context, double steepest) {
-  std::vector<SheetDistances> out(points.size(), {limit, limit});
+  std::vector<SheetDistances> out(points.size());
+  polled_parallel_for(points.size(), kValuesPerPoll, context,
+                      [&](std::size_t i) { out[i] = sheet_distances_at(psi, points[i], step, limit, steepest); });
+  return out;
+}
+
+std::vector<SheetDistances> sheet_distances(ImplicitFunctionRef psi, const std::vector<Vec3>& points,
+                                            const std::vector<double>& scale, double step, double limit,
+                                            const Context& context, double steepest) {
+  std::vector<SheetDistances> out(points.size());
   polled_parallel_for(points.size(), kValuesPerPoll, context, [&](std::size_t i) {
-    Vec3 x = points[i], g;
-    double value = psi.value(x, g);
-    for (int it = 0; it < 8 && std::abs(value) > 1e-6 * step * g.norm(); ++it) {
-      const Vec3 move = -value / std::max(g.squaredNorm(), 1e-300) * g;
-      x += move * std::min(1.0, step / std::max(move.norm(), 1e-300));
-      value = psi.value(x, g);
-    }
-    const double slope = g.norm();
-    if (!(slope > 0) || std::abs(value) > 1e-3 * step * slope) return;
-    out[i] = sheet_distances_from(psi, x, g / slope, {step, limit, steepest});
+    out[i] = sheet_distances_at(psi, points[i], step * scale[i], limit * scale[i], steepest);
   });
   return out;
 }
 
 std::vector<double> thickness(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double step, double limit,
                               const Context& context, double steepest) {
-  std::vector<double> out;
-  for (const SheetDistances& d : sheet_distances(psi, points, step, limit, context, steepest)) {
-    out.push_back(std::min(d.body, d.gap));
-  }
-  return out;
+  return least_of(sheet_distances(psi, points, step, limit, context, steepest));
+}
+
+std::vector<double> thickness(ImplicitFunctionRef psi, const std::vector<Vec3>& points,
+                              const std::vector<double>& scale, double step, double limit, const Context& context,
+                              double steepest) {
+  return least_of(sheet_distances(psi, points, scale, step, limit, context, steepest));
 }
 
 }  // namespace umtet

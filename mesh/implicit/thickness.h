@@ -28,6 +28,12 @@ std::vector<SheetDistances> sheet_distances(ImplicitFunctionRef psi, const std::
                                             double limit, const Context& context = {},
                                             double steepest = std::numeric_limits<double>::infinity());
 
+/// The same, with a step and a limit for each point: `step` and `limit` times its scale, a length in model units.
+std::vector<SheetDistances> sheet_distances(ImplicitFunctionRef psi, const std::vector<Vec3>& points,
+                                            const std::vector<double>& scale, double step, double limit,
+                                            const Context& context = {},
+                                            double steepest = std::numeric_limits<double>::infinity());
+
 /// How far it is from each point of the boundary, along the normal, to the sheet on the other side: through the body,
 /// or through the gap outside, whichever is shorter. What is thinner than about two background edges cannot be meshed
 /// well.
@@ -42,5 +48,10 @@ std::vector<SheetDistances> sheet_distances(ImplicitFunctionRef psi, const std::
 /// points; the result does not depend on them. \throw Cancelled
 std::vector<double> thickness(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double step, double limit,
                               const Context& context = {}, double steepest = std::numeric_limits<double>::infinity());
+
+/// The same, with a step and a limit for each point, as above.
+std::vector<double> thickness(ImplicitFunctionRef psi, const std::vector<Vec3>& points,
+                              const std::vector<double>& scale, double step, double limit, const Context& context = {},
+                              double steepest = std::numeric_limits<double>::infinity());
 
 }  // namespace umtet

@@ -25,7 +25,7 @@ struct ChosenSubmesh {
   std::vector<Triangle> walls;  ///< BackgroundBoundary::Wall: as UmResult::walls
   std::vector<ManifoldFlip> manifold_flips;
   std::shared_ptr<const VertexLinks> links;  ///< of the background, where choosing took them; or null
-  std::size_t n_tets = 0;       ///< of omega_h, and of every mesh made from it; 0 when status != Success
+  std::size_t n_tets = 0;                    ///< of omega_h, and of every mesh made from it; 0 when status != Success
   std::size_t n_psi_evaluations = 0;
 };
 

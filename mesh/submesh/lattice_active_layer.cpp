@@ -185,8 +185,8 @@ void set_local_sizes(const BackgroundMesh& background, LatticeActiveLayer& made)
   for (const std::int64_t v : made.background_vertex) made.layer.local_h.push_back(background.h(v));
 }
 
-LatticeActiveLayer lattice_active_layer(const BackgroundMesh& background, const VertexLinks& links,
-                                        const IdSet& inside, int layers) {
+LatticeActiveLayer lattice_active_layer(const BackgroundMesh& background, const VertexLinks& links, const IdSet& inside,
+                                        int layers) {
   const Builder builder(background, links, inside);
   IdSet movable(background.n_vertices());
   for_each_in_blocks(inside, [&](std::size_t, std::int64_t v) {
@@ -215,8 +215,8 @@ std::vector<std::uint8_t> inside_of(const LatticeActiveLayer& layer, const IdSet
   return list;
 }
 
-LatticeActiveLayer lattice_patch(const BackgroundMesh& background, const VertexLinks& links,
-                                 const IdSet& inside, const std::vector<std::int64_t>& centres, int reach) {
+LatticeActiveLayer lattice_patch(const BackgroundMesh& background, const VertexLinks& links, const IdSet& inside,
+                                 const std::vector<std::int64_t>& centres, int reach) {
   const Builder builder(background, links, inside);
   IdList ball;
   for (const std::int64_t v : centres) ball.add(v);

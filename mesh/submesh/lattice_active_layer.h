@@ -26,14 +26,14 @@ struct LatticeActiveLayer {
 /// Cost: linear in the layer, plus a scan of the bits of the background's vertices.
 /// @param inside  none of its vertices on the background boundary
 /// \throw std::invalid_argument if a vertex type of the tiling is its own neighbour (types then do not colour it)
-LatticeActiveLayer lattice_active_layer(const BackgroundMesh& background, const VertexLinks& links,
-                                        const IdSet& inside, int layers = 2);
+LatticeActiveLayer lattice_active_layer(const BackgroundMesh& background, const VertexLinks& links, const IdSet& inside,
+                                        int layers = 2);
 
 /// The same for the vertices of omega_h within `reach` edges of one of `centres`, whatever their distance from the
 /// boundary: these move. Every tet of omega_h with a vertex that near to a centre is in the patch.
 /// \pre the centres have ids
-LatticeActiveLayer lattice_patch(const BackgroundMesh& background, const VertexLinks& links,
-                                 const IdSet& inside, const std::vector<std::int64_t>& centres, int reach);
+LatticeActiveLayer lattice_patch(const BackgroundMesh& background, const VertexLinks& links, const IdSet& inside,
+                                 const std::vector<std::int64_t>& centres, int reach);
 
 /// Sets ActiveLayer::local_h from the background.
 void set_local_sizes(const BackgroundMesh& background, LatticeActiveLayer& made);

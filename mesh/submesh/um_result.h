@@ -47,8 +47,8 @@ struct UmResult {
   Submesh submesh;      ///< omega_h with background coordinates (step 22)
   std::vector<Triangle>
       walls;  ///< BackgroundBoundary::Wall: the faces of omega_h on the background boundary, local vertex ids, outward
-  std::vector<Vec3> projected;  ///< vertex coordinates after step 30, same numbering
-  std::vector<Vec3> final;      ///< vertex coordinates of T^{Omega_h} (step 35), same numbering
+  std::vector<Vec3> projected;               ///< vertex coordinates after step 30, same numbering
+  std::vector<Vec3> final;                   ///< vertex coordinates of T^{Omega_h} (step 35), same numbering
   std::vector<ManifoldFlip> manifold_flips;  ///< UmMode::Fast; ascending in background_vertex
   std::size_t n_stepped_back = 0;  ///< UmMode::Fast: vertices that are off psi = 0 so that the mesh is embedded
   double conditioning_angle_max_deg = 0;

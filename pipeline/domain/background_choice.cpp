@@ -122,8 +122,8 @@ BackgroundMesh BackgroundChoice::graded(const Domain& domain, double h) const {
   const ImplicitFunctionRef psi = domain.psi();
   const double steepest = graded_->n_domains() > 1 ? std::numeric_limits<double>::infinity() : domain.steepest();
   const auto sizes = sizes_for(h);
-  Grading grading{.box = domain.box, .finest = h};
-  grading.size = [&](const Vec3& x, double half) { return sizes->least_in(x, half); };
+  Grading grading{.box = domain.box, .finest = h, .tolerance = kSizeTolerance};
+  grading.size = [&](const Vec3& x, double half) { return cube_size(*sizes, x, half); };
   grading.wanted = [&](const Vec3& x, double half) {
     const bool meets_box = ((x - domain.box.center()).cwiseAbs() - .5 * domain.box.sizes()).maxCoeff() < half;
     return meets_box && !(psi.value(x) > steepest * (std::sqrt(3.) + 2 * kWidthsOff) * half);

@@ -107,7 +107,10 @@ void GradedSizes::add(Domain& domain, const Context& context) {
   s.grade = p.grade;
   s.constant_layer = p.constant_layer;
   s.steepest = domain.steepest();
-  s.deviation = p.max_deviation;
+  // Edges may be kSizeTolerance as long as the size: what may not be exceeded asks for as much less.
+  s.edges_across *= kSizeTolerance;
+  s.max_turn /= kSizeTolerance;
+  s.deviation = p.max_deviation / (kSizeTolerance * kSizeTolerance);
   if (p.grade_inside) s.edges_across = s.max_turn = 0;
   domain.limit_detail(s.h_min);
   const ZeroSetChoice pieces = choose_components(domain, std::min(s.h, kMeshEdge * domain.diagonal), context);

@@ -18,12 +18,13 @@ double rms(const std::vector<double>& d) {
                    static_cast<double>(d.size()));
 }
 
-/// Of the samples farther than `beyond`, in working coordinates; the farthest first.
-std::vector<MissedPlace> missed_places(const Domain& domain, const std::vector<double>& d, double beyond) {
+/// Of the samples farther than `beyond` of each, in working coordinates; the farthest first.
+std::vector<MissedPlace> missed_places(const Domain& domain, const std::vector<double>& d,
+                                       const std::vector<double>& beyond) {
   std::vector<Vec3> points;
   std::vector<double> distance;
   for (std::size_t i = 0; i < d.size(); ++i) {
-    if (d[i] <= beyond) continue;
+    if (d[i] <= beyond[i]) continue;
     points.push_back(domain.cloud.points[i]);
     distance.push_back(d[i]);
   }
@@ -54,7 +55,8 @@ std::vector<MissedPlace> missed_places(const Domain& domain, const std::vector<d
 
 }  // namespace
 
-SampleDistances sample_distances(const Domain& domain, const std::vector<double>& d, double h, double flatness) {
+SampleDistances sample_distances(const Domain& domain, const std::vector<double>& d, const MeshEdge& h,
+                                 double flatness_over_h) {
   SampleDistances s;
   std::vector<double> sorted = d;
   std::sort(sorted.begin(), sorted.end());
@@ -62,13 +64,26 @@ SampleDistances sample_distances(const Domain& domain, const std::vector<double>
   s.rms = rms(sorted);
   s.max = sorted.back();
   s.p99 = quantile(sorted, .99);
-  const double explained = std::max(kNoisesMissed * domain.noise.value_or(0), flatness);
-  s.missed_beyond = std::min(explained, h);
-  s.missed = missed_places(domain, d, s.missed_beyond);
-  if (s.missed.empty() && (s.rms > explained || s.p99 > h)) {
+  const std::vector<double> h_at = h.at(domain.cloud.points);
+  const double of_noise = kNoisesMissed * domain.noise.value_or(0);
+  std::vector<double> beyond(d.size()), over_h(d.size());
+  double explained2 = 0;
+  for (std::size_t i = 0; i < d.size(); ++i) {
+    const double explained = std::max(of_noise, flatness_over_h * h_at[i]);
+    beyond[i] = std::min(explained, h_at[i]);
+    over_h[i] = d[i] / h_at[i];
+    explained2 += explained * explained;
+  }
+  std::sort(over_h.begin(), over_h.end());
+  s.missed_beyond = std::min(std::max(of_noise, flatness_over_h * h.least()), h.least());
+  s.missed = missed_places(domain, d, beyond);
+  const double explained_rms = h.is_uniform() ? std::max(of_noise, flatness_over_h * h.least())
+                                              : std::sqrt(explained2 / static_cast<double>(d.size()));
+  if (s.missed.empty() && (s.rms > explained_rms || quantile(over_h, .99) > 1)) {
     const auto farthest = std::max_element(d.begin(), d.end()) - d.begin();
-    const auto n = std::count_if(d.begin(), d.end(), [&](double v) { return v > s.missed_beyond; });
-    s.missed = {{domain.cloud.points[farthest], d[farthest], static_cast<std::size_t>(n)}};
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < d.size(); ++i) n += d[i] > beyond[i];
+    s.missed = {{domain.cloud.points[farthest], d[farthest], n}};
   }
   s.n_missed_places = s.missed.size();
   if (s.missed.size() > kListedMisses) s.missed.resize(kListedMisses);

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "pipeline/domain/domain.h"
+#include "pipeline/domain/mesh_edge.h"
 #include "pipeline/reports/certificate_report.h"
 
 namespace umtet {
@@ -22,9 +23,10 @@ inline constexpr std::size_t kListedMisses = 100;
 /// sample is a place in any case.
 ///
 /// @param d        of each sample of the domain to the boundary of the mesh
-/// @param flatness largest distance of a face's middle from psi = 0, model units
+/// @param flatness_over_h  largest distance of a face's middle from psi = 0, in h
 /// @return the farthest place first
 /// Cost: O(n log n) in the number of missed samples.
-SampleDistances sample_distances(const Domain& domain, const std::vector<double>& d, double h, double flatness);
+SampleDistances sample_distances(const Domain& domain, const std::vector<double>& d, const MeshEdge& h,
+                                 double flatness_over_h);
 
 }  // namespace umtet

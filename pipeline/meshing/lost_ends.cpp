@@ -59,17 +59,18 @@ void walk(ImplicitFunctionRef psi, const SurfaceDistance& boundary, Vec3 x, Vec3
 }  // namespace
 
 std::vector<LostPoint> lost_ends(const Domain& domain, const std::vector<Vec3>& starts, const SurfaceDistance& boundary,
-                                 double h, double beyond, const Context& context) {
+                                 const MeshEdge& h, double beyond, const Context& context) {
   const ImplicitFunctionRef psi = domain.body();
   std::vector<std::vector<LostPoint>> of_start(starts.size());
   polled_parallel_for(starts.size(), kValuesPerPoll / (16 * kWalks), context, [&](std::size_t i) {
     const Vec3& x = starts[i];
+    const double h_at = h.at(x);
     const Vec3 n = psi.gradient(x).normalized();
     if (!n.allFinite()) return;
     const Vec3 u = n.unitOrthogonal(), v = n.cross(u);
     for (int k = 0; k < kWalks; ++k) {
       const double angle = 2 * std::numbers::pi * k / kWalks;
-      walk(psi, boundary, x, std::cos(angle) * u + std::sin(angle) * v, h, beyond, of_start[i]);
+      walk(psi, boundary, x, std::cos(angle) * u + std::sin(angle) * v, h_at, beyond * h_at, of_start[i]);
     }
   });
   std::vector<LostPoint> lost;

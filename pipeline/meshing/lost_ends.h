@@ -5,6 +5,7 @@
 #include "common/context.h"
 #include "mesh/implicit/surface_distance.h"
 #include "pipeline/domain/domain.h"
+#include "pipeline/domain/mesh_edge.h"
 
 namespace umtet {
 
@@ -22,10 +23,12 @@ struct LostPoint {
 /// away from the boundary. At each step they turn to where it is farther.
 /// @param starts  points of psi = 0 on the boundary or near it: vertices where body or gap are thinner than
 ///                kLeastEdgesAcross h, MeshCertificate::Boundary::far_feet
+/// @param h       that of a start serves all its walks
+/// @param beyond  in h
 /// @return the points of the walks that are farther than `beyond` from the boundary
 /// Cost: eight steps a start where nothing is lost. The result does not depend on the number of threads.
 /// \throw Cancelled
 std::vector<LostPoint> lost_ends(const Domain& domain, const std::vector<Vec3>& starts, const SurfaceDistance& boundary,
-                                 double h, double beyond, const Context& context = {});
+                                 const MeshEdge& h, double beyond, const Context& context = {});
 
 }  // namespace umtet

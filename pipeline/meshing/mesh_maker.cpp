@@ -103,8 +103,8 @@ void MeshMaker::finish(const SizedBackground& background, ChosenSubmesh chosen, 
   context_.report("certify", kCertificate);
   if (!a.made()) return;
   a.sizes = background.sizes;
-  Measurement made =
-      measure(domain_, a.result, pieces, a.h, {&a.thin, parameters_.mesh().max_deviation, a.sizes.get()}, context_);
+  Measurement made = measure(domain_, a.result, pieces, mesh_edge(background.mesh, a.result),
+                             {&a.thin, parameters_.mesh().max_deviation, a.sizes.get()}, context_);
   a.measured = std::move(made.measures);
   a.places = std::move(made.places);
   curve(a);

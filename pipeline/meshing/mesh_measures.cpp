@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "mesh/certify/boundary_surface.h"
 #include "mesh/implicit/curvature.h"
@@ -21,34 +22,43 @@ namespace umtet {
 namespace {
 
 /// Largest principal curvature of psi = 0 at the boundary vertices, in magnitude, times h.
-double max_curvature(ImplicitFunctionRef psi, const UmResult& result, double h, const Context& context) {
+double max_curvature(ImplicitFunctionRef psi, const UmResult& result, const MeshEdge& h, const Context& context) {
   const std::vector<int>& I = result.submesh.positive_vertices;
-  std::vector<double> kappa(I.size());
-  polled_parallel_for(I.size(), kValuesPerPoll, context,
-                      [&](std::size_t k) { kappa[k] = principal_curvatures(psi, result.final[I[k]])[0]; });
-  return kappa.empty() ? 0 : h * *std::max_element(kappa.begin(), kappa.end());
+  std::vector<double> kappa_h(I.size());
+  polled_parallel_for(I.size(), kValuesPerPoll, context, [&](std::size_t k) {
+    const Vec3& x = result.final[I[k]];
+    kappa_h[k] = h.at(x) * principal_curvatures(psi, x)[0];
+  });
+  return kappa_h.empty() ? 0 : *std::max_element(kappa_h.begin(), kappa_h.end());
 }
 
 /// Boundary vertices by how thin it is there.
 struct VertexThickness {
-  double least = 0;  ///< model units
+  double least = 0;         ///< model units
+  double least_over_h = 0;  ///< of any vertex, in the h of its place
   Vec3 where = Vec3::Zero();
   std::vector<Vec3> thin;  ///< those where it is less than kLeastEdgesAcross h
 };
 
-/// Distances from boundary vertices along the normal to the opposite sheet, inside or outside; looked for up to four
-/// edges, beyond which they do not matter.
-VertexThickness vertex_thickness(const Domain& domain, const UmResult& result, double h, const Context& context) {
+// In edges: sheets farther than this do not matter.
+constexpr double kFarthestSheet = 4;
+
+/// Distances from boundary vertices along the normal to the opposite sheet, inside or outside, up to kFarthestSheet.
+VertexThickness vertex_thickness(const Domain& domain, const UmResult& result, const MeshEdge& h,
+                                 const Context& context) {
   std::vector<Vec3> points;
   for (const int i : result.submesh.positive_vertices) points.push_back(result.final[i]);
-  const std::vector<double> t = thickness(domain.psi(), points, h / 4, 4 * h, context, domain.steepest());
+  const std::vector<double> h_at = h.at(points);
+  const std::vector<double> t = thickness(domain.psi(), points, h_at, .25, kFarthestSheet, context, domain.steepest());
   VertexThickness made;
   if (t.empty()) return made;
   const auto least = std::min_element(t.begin(), t.end());
   made.least = *least;
   made.where = points[static_cast<std::size_t>(least - t.begin())];
+  made.least_over_h = kFarthestSheet;
   for (std::size_t i = 0; i < t.size(); ++i) {
-    if (t[i] < kLeastEdgesAcross * h) made.thin.push_back(points[i]);
+    made.least_over_h = std::min(made.least_over_h, t[i] / h_at[i]);
+    if (t[i] < kLeastEdgesAcross * h_at[i]) made.thin.push_back(points[i]);
   }
   return made;
 }
@@ -79,18 +89,20 @@ std::vector<std::uint8_t> near_dropped_pieces(const Domain& domain, const ZeroSe
 /// they are few.
 /// @param d  distances of the samples to the mesh
 std::vector<Difference> lost_samples(const Domain& domain, const ZeroSetChoice& pieces, const std::vector<double>& d,
-                                     double h, const Context& context) {
+                                     const MeshEdge& h, const Context& context) {
   std::vector<Vec3> x;
-  std::vector<double> distance;
+  std::vector<double> distance, h_of;
   for (std::size_t i = 0; i < d.size(); ++i) {
-    if (d[i] > h) x.push_back(domain.cloud.points[i]), distance.push_back(d[i]);
+    if (d[i] <= h.least()) continue;
+    const double h_at = h.at(domain.cloud.points[i]);
+    if (d[i] > h_at) x.push_back(domain.cloud.points[i]), distance.push_back(d[i]), h_of.push_back(h_at);
   }
   if (x.empty()) return {};
   std::vector<std::uint8_t> lost = near_dropped_pieces(domain, pieces, x, context);
   polled_parallel_for(x.size(), kValuesPerPoll, context, [&](std::size_t i) {
     Vec3 g;
     const double value = domain.fitted->evaluate(x[i], &g, nullptr);
-    lost[i] = lost[i] == 0 && distance[i] > h + std::abs(value) / g.norm() ? 1 : 0;
+    lost[i] = lost[i] == 0 && distance[i] > h_of[i] + std::abs(value) / g.norm() ? 1 : 0;
   });
   const auto n = static_cast<std::size_t>(std::count(lost.begin(), lost.end(), 1));
   if (n <= kFewSamples || static_cast<double>(n) <= kSmallShare * static_cast<double>(d.size())) return {};
@@ -115,7 +127,7 @@ struct Comparison {
 /// spacing, as far as its size is allowed. A count on a grid coarser than the mesh says nothing against the mesh, and
 /// one coarser than body or gap are thin nothing for it.
 Comparison compare_with_zero_set(const Domain& domain, const MeshCertificate& certificate, const ZeroSetChoice& pieces,
-                                 const VertexThickness& thickness, const SurfaceDistance* surface,
+                                 const VertexThickness& thickness, const SurfaceDistance* surface, const MeshEdge& h,
                                  const Context& context) {
   const MeshCertificate::Boundary& boundary = certificate.boundary;
   const int of_psi = boundary.components - (domain.complement ? 1 : 0);
@@ -152,8 +164,8 @@ Comparison compare_with_zero_set(const Domain& domain, const MeshCertificate& ce
   const auto n_handles = static_cast<std::size_t>(std::abs(counted->euler_characteristic - characteristic) / 2);
   const std::size_t n = std::max<std::size_t>(1, n_pieces + n_handles);
   MeshPlace place{.kind = PlaceKind::Topology, .n = n};
-  if (surface) place = topology_place(domain, *counted, *surface, certificate.h, n, context);
-  report.topology = counted->topology.spacing > certificate.h ? TopologyProof::NotProved : TopologyProof::Differs;
+  if (surface) place = topology_place(domain, *counted, *surface, h, n, context);
+  report.topology = counted->topology.spacing > h.least() ? TopologyProof::NotProved : TopologyProof::Differs;
   report.topology_at = place.where;
   if (report.topology == TopologyProof::Differs) made.place = place;
   return made;
@@ -162,9 +174,9 @@ Comparison compare_with_zero_set(const Domain& domain, const MeshCertificate& ce
 /// With the proof that no piece is unseen, and what of the boundary is a guess.
 Comparison compare_with_domain(const Domain& domain, const TetMesh& mesh, const std::vector<Triangle>& faces,
                                const MeshCertificate& certificate, const ZeroSetChoice& pieces,
-                               const VertexThickness& thickness, const SurfaceDistance* surface,
+                               const VertexThickness& thickness, const SurfaceDistance* surface, const MeshEdge& h,
                                const Context& context) {
-  Comparison made = compare_with_zero_set(domain, certificate, pieces, thickness, surface, context);
+  Comparison made = compare_with_zero_set(domain, certificate, pieces, thickness, surface, h, context);
   ZeroSetReport& report = made.report;
   if (domain.level_set) report.level_set_spacing = domain.level_set->spacing();
   if (domain.level_set && pieces.cells) {
@@ -182,9 +194,8 @@ Comparison compare_with_domain(const Domain& domain, const TetMesh& mesh, const 
 
 /// The largest distance asked for with mesh.max_deviation is a promise: a mesh that breaks it gets a reason.
 std::optional<std::string> deviation_reason(double asked, const MeshCertificate& mesh) {
-  const std::optional<double>& d = mesh.boundary.max_centroid_distance_over_h;
-  if (asked == 0 || !d) return std::nullopt;
-  const double made = *d * mesh.h;
+  if (asked == 0 || !mesh.boundary.max_centroid_distance_over_h) return std::nullopt;
+  const double made = mesh.boundary.max_centroid_distance;
   if (made <= asked) return std::nullopt;
   return fmt::format("a face centre is {:.4g} from psi = 0, more than the {:.4g} of --max-deviation", made, asked);
 }
@@ -198,12 +209,30 @@ void set_reasons(MeshMeasures& m) {
 
 }  // namespace
 
-Measurement measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& pieces, double h,
+MeshEdge mesh_edge(const BackgroundMesh& background, const UmResult& result) {
+  const std::vector<int>& I = result.submesh.positive_vertices;
+  if (background.is_lattice() || I.empty()) return background.h();
+  std::vector<Vec3> vertices;
+  std::vector<double> h;
+  for (const int i : I) {
+    vertices.push_back(result.final[i]);
+    h.push_back(background.h(result.submesh.background_vertex[i]));
+  }
+  return {vertices, std::move(h)};
+}
+
+Measurement measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& pieces, const MeshEdge& h,
                     const MeasureParams& params, const Context& context) {
   const TetMesh mesh{result.final, result.submesh.mesh.C};
   CertificateInput input;
   input.mesh = &mesh;
-  input.h = h;
+  input.h = h.least();
+  std::vector<double> local_h;
+  if (!h.is_uniform()) {
+    local_h.assign(mesh.V.size(), h.least());
+    for (const int i : result.submesh.positive_vertices) local_h[i] = h.at(mesh.V[i]);
+    input.local_h = &local_h;
+  }
   input.positive_faces = &result.submesh.positive_faces;
   if (!result.walls.empty()) {
     input.wall_faces = &result.walls;
@@ -226,7 +255,7 @@ Measurement measure(const Domain& domain, const UmResult& result, const ZeroSetC
   if (!faces.empty()) surface.emplace(mesh.V, faces);
   const VertexThickness thickness = vertex_thickness(domain, result, h, context);
   Comparison compared =
-      compare_with_domain(domain, mesh, faces, m.mesh, pieces, thickness, surface ? &*surface : nullptr, context);
+      compare_with_domain(domain, mesh, faces, m.mesh, pieces, thickness, surface ? &*surface : nullptr, h, context);
   m.domain = std::move(compared.report);
   std::vector<Difference> differences = differences_of(m.mesh);
   const auto add = [&](const std::vector<Difference>& more) {
@@ -242,13 +271,13 @@ Measurement measure(const Domain& domain, const UmResult& result, const ZeroSetC
   if (surface && !domain.cloud.points.empty()) {
     const std::vector<double> d = surface->distances(domain.cloud.points, context);
     if (domain.fitted) add(lost_samples(domain, pieces, d, h, context));
-    m.cloud = sample_distances(domain, d, h, m.mesh.h * m.mesh.boundary.max_centroid_distance_over_h.value_or(0));
+    m.cloud = sample_distances(domain, d, h, m.mesh.boundary.max_centroid_distance_over_h.value_or(0));
   }
   made.places = places_of(domain, differences, h, context);
   if (compared.place) made.places.push_back(*compared.place);
   m.places = report_on(made.places);
   m.resolution.kappa_h_max = max_curvature(domain.psi(), result, h, context);
-  m.resolution.feature_size_over_h_min = thickness.least / h;
+  m.resolution.feature_size_over_h_min = thickness.least_over_h;
   m.resolution.obtuse_conditioning_angles = result.obtuse_conditioning_angles;
   m.resolution.double_positive_faces = result.double_positive_faces;
   if (params.thin) m.resolution.too_thin = in_model(*params.thin, domain.shift);

@@ -5,6 +5,7 @@
 #include "mesh/background/size_field.h"
 #include "mesh/universal_mesh.h"
 #include "pipeline/domain/domain.h"
+#include "pipeline/domain/mesh_edge.h"
 #include "pipeline/domain/too_thin.h"
 #include "pipeline/domain/zero_set_choice.h"
 #include "pipeline/reports/certificate_report.h"
@@ -24,8 +25,11 @@ struct MeasureParams {
   const SizeField* sizes = nullptr;  ///< that a graded mesh was made for
 };
 
+/// The edge length that a mesh was made with: in a background that is no lattice, at each vertex of the boundary.
+MeshEdge mesh_edge(const BackgroundMesh& background, const UmResult& result);
+
 /// @param h  that the mesh was made with. \throw Cancelled
-Measurement measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& pieces, double h,
+Measurement measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& pieces, const MeshEdge& h,
                     const MeasureParams& params = {}, const Context& context = {});
 
 /// What the certificate of a mesh says that was made elsewhere.

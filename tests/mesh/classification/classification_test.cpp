@@ -99,7 +99,8 @@ TEST(Classification, ThatOfAMeshBeforeStaysWhereAnotherIsNotBetter) {
   };
   std::size_t n = 0;
   IdSet kept = inside_vertices(background, after, n);
-  const ClassificationReport report = classify_vertices(background, VertexLinks(background, a15_links()), after, {}, kept, {}, &last);
+  const ClassificationReport report =
+      classify_vertices(background, VertexLinks(background, a15_links()), after, {}, kept, {}, &last);
   EXPECT_GT(report.returned, 0u);
   EXPECT_LT(changes(kept), .8 * changes(choose(background, after).chosen));
   const MeshCertificate c = certificate(emit_submesh(background, kept));
@@ -116,8 +117,8 @@ TEST(Classification, IsTheSameWithWhatTheSearchHasEvaluated) {
   EXPECT_TRUE(walk.values().empty());
   walk.update(domain, {});
   IdSet inside = walk.inside();
-  const ClassificationReport report =
-      classify_vertices(background, VertexLinks(background, a15_links()), domain, {}, inside, {}, nullptr, &walk.values());
+  const ClassificationReport report = classify_vertices(background, VertexLinks(background, a15_links()), domain, {},
+                                                        inside, {}, nullptr, &walk.values());
   EXPECT_TRUE(inside == without.chosen);
   EXPECT_GT(report.flips, 0u);
   EXPECT_EQ(report.psi_evaluations + walk.values().size(), without.report.psi_evaluations);
@@ -267,7 +268,7 @@ TEST(Classification, NoChangeIsBetterByMoreThanKeepWhereItLeavesTheOneBefore) {
   IdSet inside = plain;
   classify_vertices(background, VertexLinks(background, a15_links()), after, params, inside, {}, &last);
   const VertexLinks links(background, a15_links());
-    ClassificationBand band(background, links, after, params, plain, {});
+  ClassificationBand band(background, links, after, params, plain, {});
   Pricing with_keep(band, &last), without(band);
   with_keep.take(inside);
   EXPECT_EQ(with_keep.n_better_singles(), 0);

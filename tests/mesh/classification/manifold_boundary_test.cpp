@@ -63,7 +63,8 @@ ManifoldReport check(const Place& place, IdSet& inside, bool& is_empty) {
   ClassificationParams params;
   if (const ConfigurationCosts* costs = configuration_costs(place.background.tiling())) params.costs = &costs->costs;
   const std::vector<std::int64_t> bad = vertices_not_manifold(place.background, place.links.get(), inside);
-  const ManifoldReport report = make_manifold(place.background, place.links.get(), psi, params, place.has_walls, bad, inside);
+  const ManifoldReport report =
+      make_manifold(place.background, place.links.get(), psi, params, place.has_walls, bad, inside);
   is_empty = inside.is_empty_around(0, place.background.n_vertices());
   if (is_empty) return report;
   const Submesh omega_h = emit_submesh(place.background, inside);

@@ -49,7 +49,8 @@ class StepBack : public ::testing::Test {
 
 TEST_F(StepBack, LeavesAnEmbeddedMeshAsItIs) {
   ASSERT_EQ(made.status, UmStatus::Success);
-  const StepBackReport report = step_back(made.submesh, {}, [](int) { return kH; }, V);
+  const StepBackReport report = step_back(
+      made.submesh, {}, [](int) { return kH; }, V);
   EXPECT_EQ(report.n_pairs + report.n_inverted, 0u);
   EXPECT_TRUE(report.vertices.empty());
   EXPECT_EQ(V, made.final);
@@ -63,7 +64,8 @@ TEST_F(StepBack, FreesSheetsThatPierceEachOther) {
   ASSERT_EQ(n_inverted(made.submesh, V), 0u);
   ASSERT_FALSE(self_intersections(V, made.submesh.positive_faces).empty());
   const std::vector<Vec3> before = V;
-  const StepBackReport report = step_back(made.submesh, {}, [](int) { return kH; }, V);
+  const StepBackReport report = step_back(
+      made.submesh, {}, [](int) { return kH; }, V);
   EXPECT_GT(report.n_pairs, 0u);
   EXPECT_EQ(report.n_inverted, 0u);
   EXPECT_TRUE(self_intersections(V, made.submesh.positive_faces).empty());
@@ -83,7 +85,8 @@ TEST_F(StepBack, PutsTornTetsBackAsFarAsTheBackground) {
   const int v = made.submesh.positive_vertices.front();
   V[v] += Vec3(0, 0, 3 * kH);
   ASSERT_GT(n_inverted(made.submesh, V), 0u);
-  const StepBackReport report = step_back(made.submesh, {}, [](int) { return kH; }, V);
+  const StepBackReport report = step_back(
+      made.submesh, {}, [](int) { return kH; }, V);
   EXPECT_GT(report.n_inverted, 0u);
   EXPECT_EQ(n_inverted(made.submesh, V), 0u);
   EXPECT_TRUE(self_intersections(V, made.submesh.positive_faces).empty());

@@ -106,7 +106,8 @@ TEST(LatticeActiveLayer, RingsAreCompleteAndColoursProper) {
     const Cut cut(domain);
     std::size_t last = 0;
     for (const int layers : {1, 2, 100}) {
-      const LatticeActiveLayer part = lattice_active_layer(cut.background, VertexLinks(cut.background, a15_links()), cut.inside, layers);
+      const LatticeActiveLayer part =
+          lattice_active_layer(cut.background, VertexLinks(cut.background, a15_links()), cut.inside, layers);
       check(cut, part);
       const auto n_boundary = std::count(part.layer.role.begin(), part.layer.role.end(), ActiveLayer::Role::Boundary);
       EXPECT_EQ(static_cast<std::size_t>(n_boundary), cut.submesh.positive_vertices.size());
@@ -121,7 +122,8 @@ TEST(LatticeActiveLayer, APatchHoldsEveryTetNearItsCentres) {
   const Cut cut(testing::torus());
   for (const std::size_t k : {0u, 100u, 333u}) {
     const std::int64_t centre = cut.submesh.background_vertex[cut.submesh.positive_vertices[k]];
-    const LatticeActiveLayer part = lattice_patch(cut.background, VertexLinks(cut.background, a15_links()), cut.inside, {centre}, 2);
+    const LatticeActiveLayer part =
+        lattice_patch(cut.background, VertexLinks(cut.background, a15_links()), cut.inside, {centre}, 2);
     check(cut, part);
     std::set<std::int64_t> ball = {centre};
     for (int ring = 0; ring < 2; ++ring) {

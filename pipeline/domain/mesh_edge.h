@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "common/vec3.h"
+#include "reconstruct/cloud/neighbour_tree.h"
+
+namespace umtet {
+
+/// The edge length h of a mesh at a place: the same everywhere, or that of the background at the nearest vertex of the
+/// boundary.
+class MeshEdge {
+ public:
+  MeshEdge(double h) : least_(h) {}  // NOLINT(google-explicit-constructor): a number is an edge length
+  /// @param h  of each vertex, model units. \throw std::invalid_argument  no vertices
+  MeshEdge(const std::vector<Vec3>& vertices, std::vector<double> h);
+
+  bool is_uniform() const { return !tree_; }
+  double at(const Vec3& x) const;
+  double least() const { return least_; }
+  /// at() of each point.
+  std::vector<double> at(const std::vector<Vec3>& points) const;
+
+ private:
+  double least_;
+  std::shared_ptr<const NeighbourTree> tree_;
+  std::vector<double> of_vertex_;
+};
+
+}  // namespace umtet
