@@ -23,12 +23,11 @@ namespace {
 
 // Foretelling the number of tets takes a million values of psi, whatever h is: some ten seconds of a Python callable.
 // Where h is given it is left out, and memory is asked for as many as are allowed.
-EdgeLength edge_length(Domain& domain, const BackgroundChoice& background, const Parameters& parameters,
-                       const Watch& watch) {
-  if (background.own_h()) return {*background.own_h(), *background.own_h()};
+EdgeLength edge_length(Domain& domain, BackgroundChoice& background, const Parameters& parameters, const Watch& watch) {
   const double h = parameters.mesh().h;
-  if (domain.function && h >= least_h_in_file(domain) && h > 0) return {h, h};
-  return choose_edge_length(domain, parameters, polls_of(watch));
+  const bool is_given = h >= least_h_in_file(domain) && h > 0 && !is_graded(parameters) && !background.own_h();
+  if (domain.function && is_given) return {h, h};
+  return background.edge_length(domain, polls_of(watch));
 }
 
 MeshingFailed too_thin(const MeshAttempt& best, const Vec3& shift) {
@@ -87,7 +86,7 @@ Reconstruction reconstruct(OrientedPointCloud cloud, const Parameters& parameter
 MeshAttempt make_mesh(Domain& domain, const Parameters& parameters, const Watch& watch) {
   watch("size", 0);
   domain.complement = parameters.mesh().complement;
-  const BackgroundChoice background(parameters, domain);
+  BackgroundChoice background(parameters, domain);
   MeshMaker maker(domain, parameters, context_of(watch));
   const std::int64_t n_tets = domain.function ? parameters.mesh().max_tets : parameters.mesh().tets;
   MeshAttempt best = maker.best(edge_length(domain, background, parameters, watch), [&](double h) {

@@ -8,13 +8,12 @@ namespace umtet {
 namespace {
 
 // The distance from x along d at which psi, of sign `side` behind the start, changes sign again; or limit.
-double first_return(ImplicitFunctionRef psi, const Vec3& x, const Vec3& d, double side, double step, double limit,
-                    double steepest) {
-  double before = step / 2, value = side * psi.value(x + before * d);
-  if (!(value > 0)) return limit;  // psi does not take the sign of this side: grazing, or not a simple zero
+double first_return(ImplicitFunctionRef psi, const Vec3& x, const Vec3& d, double side, const SheetSearch& search) {
+  double before = search.step / 2, value = side * psi.value(x + before * d);
+  if (!(value > 0)) return search.limit;  // psi does not take the sign of this side: grazing, or not a simple zero
   while (true) {
-    const double t = before + std::max(step, value / steepest);
-    if (!(t < limit)) return limit;
+    const double t = before + std::max({search.step, value / search.steepest, search.growth * before});
+    if (!(t < search.limit)) return search.limit;
     const double next = side * psi.value(x + t * d);
     if (next <= 0) return before + (t - before) * value / (value - next);  // linear in between
     before = t, value = next;
@@ -31,8 +30,7 @@ SheetDistances sheet_distances_at(ImplicitFunctionRef psi, Vec3 x, double step, 
   }
   const double slope = g.norm();
   if (!(slope > 0) || std::abs(value) > 1e-3 * step * slope) return {limit, limit};
-  const Vec3 n = g / slope;
-  return {first_return(psi, x, -n, -1, step, limit, steepest), first_return(psi, x, n, 1, step, limit, steepest)};
+  return sheet_distances_from(psi, x, g / slope, {step, limit, steepest});
 }
 
 std::vector<double> least_of(const std::vector<SheetDistances>& distances) {
@@ -42,6 +40,10 @@ std::vector<double> least_of(const std::vector<SheetDistances>& distances) {
 }
 
 }  // namespace
+
+SheetDistances sheet_distances_from(ImplicitFunctionRef psi, const Vec3& x, const Vec3& n, const SheetSearch& search) {
+  return {first_return(psi, x, -n, -1, search), first_return(psi, x, n, 1, search)};
+}
 
 std::vector<SheetDistances> sheet_distances(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double step,
                                             double limit, const Context& context, double steepest) {

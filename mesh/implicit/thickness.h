@@ -13,6 +13,16 @@ struct SheetDistances {
   double body, gap;  ///< through the body, and through the gap outside; model units
 };
 
+/// How psi is followed along the normal; see thickness().
+struct SheetSearch {
+  double step, limit;  ///< model units
+  double steepest = std::numeric_limits<double>::infinity();
+  double growth = 0;  ///< steps are at least this share of the way so far: a wall may be stepped over that is thinner
+};
+
+/// Both distances of x, a point of psi = 0 with the unit normal n.
+SheetDistances sheet_distances_from(ImplicitFunctionRef psi, const Vec3& x, const Vec3& n, const SheetSearch& search);
+
 /// Both distances of each point; see thickness() for the parameters, the cost and the points that have none.
 std::vector<SheetDistances> sheet_distances(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double step,
                                             double limit, const Context& context = {},

@@ -97,6 +97,7 @@ Command make_stages(const CLI::App& app, const CommandInputs& in, Stage first, S
     }
   }
   require_walls(parameters);
+  require_graded(parameters);
   return RunCommand{std::move(request), in.formats};
 }
 
@@ -132,6 +133,7 @@ Command make_evolve(const CLI::App& app, const CommandInputs& in) {
   request.times = in.times;
   request.skip = in.skip;
   require_walls(request.parameters);
+  require_graded(request.parameters);
   return EvolveCommand{std::move(request)};
 }
 

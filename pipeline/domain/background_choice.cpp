@@ -3,10 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
 #include "mesh/background/a15_box.h"
+#include "mesh/background/graded_mesh.h"
+#include "mesh/background/graded_size.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/memory.h"
@@ -30,7 +34,7 @@ BackgroundMesh read_background(const fs::path& file, const Vec3& shift) {
 std::optional<fs::path> background_file(const Parameters& parameters) {
   const std::string& name = parameters.mesh().background;
   const auto names = tiling_names();
-  if (std::find(names.begin(), names.end(), name) != names.end()) return std::nullopt;
+  if (is_graded(parameters) || std::find(names.begin(), names.end(), name) != names.end()) return std::nullopt;
   return name;
 }
 
@@ -42,14 +46,22 @@ void require_walls(const Parameters& parameters) {
 }
 
 ClassificationSource classification_source(const Parameters& parameters) {
-  const bool chosen =
-      parameters.mesh().mode == MeshingMode::Fast && !parameters.mesh().box_walls && !background_file(parameters);
+  const bool is_tiling = !is_graded(parameters) && !background_file(parameters);
+  const bool chosen = parameters.mesh().mode == MeshingMode::Fast && !parameters.mesh().box_walls && is_tiling;
   return chosen ? ClassificationSource::Chosen : ClassificationSource::Psi;
 }
 
 BackgroundChoice::BackgroundChoice(const Parameters& parameters, const Domain& domain)
-    : tiling_(&a15()), source_(classification_source(parameters)), walls_(parameters.mesh().box_walls) {
+    : parameters_(parameters),
+      tiling_(&a15()),
+      source_(classification_source(parameters)),
+      walls_(parameters.mesh().box_walls) {
   require_walls(parameters);
+  require_graded(parameters);
+  if (is_graded(parameters)) {
+    graded_.emplace(parameters, domain.shift);
+    return;
+  }
   const std::optional<fs::path> file = background_file(parameters);
   if (!file) tiling_ = &tiling_named(parameters.mesh().background);
   if (!file) return;
@@ -59,21 +71,78 @@ BackgroundChoice::BackgroundChoice(const Parameters& parameters, const Domain& d
   given_.emplace(read_background(*file, domain.shift));
 }
 
-double BackgroundChoice::expected_tets(const Domain& domain, double h) const {
-  return umtet::expected_tets(*tiling_, domain.size(), h, source_);
+EdgeLength BackgroundChoice::edge_length(Domain& domain, const Context& context) {
+  if (given_) return {given_->h(), given_->h()};
+  if (!graded_) return choose_edge_length(domain, parameters_, context);
+  graded_->add(domain, context);
+  sizes_ = nullptr;
+  const MeshParameters& p = parameters_.mesh();
+  if (p.tets > 0) {
+    const double h = h_of_graded_tets(*graded_, domain, static_cast<double>(p.tets), context);
+    return representable({h, h}, domain);
+  }
+  const double h = graded_->finest(), n = expected_tets(domain, h);
+  if (n <= static_cast<double>(p.max_tets)) {
+    return representable({h, p.h > 0 ? h : h * h_ratio_of_tets(n / static_cast<double>(p.max_tets))}, domain);
+  }
+  const double least = h_of_graded_tets(*graded_, domain, static_cast<double>(p.max_tets), context);
+  if (p.h > 0 || p.max_deviation > 0 || !p.size.empty() || !p.size_at.empty()) {
+    throw ResourceLimit(
+        fmt::format("these sizes, {:.4g} where they are least, make about {:.2g} tets: raise --max-tets "
+                    "{}, or ask for sizes that are {:.2g} times as large",
+                    h, n, p.max_tets, least / h));
+  }
+  return representable({least, least}, domain);
 }
 
-BackgroundMesh BackgroundChoice::make(const Domain& domain, double h, std::int64_t n_tets, double allowed) const {
+std::shared_ptr<const SizeField> BackgroundChoice::sizes_for(double h) const {
+  if (!sizes_ || sizes_h_ != h) {
+    sizes_ = std::make_shared<const SizeField>(graded_->field(h));
+    sizes_h_ = h;
+  }
+  return sizes_;
+}
+
+double BackgroundChoice::expected_tets(const Domain& domain, double h) const {
+  if (!graded_) return umtet::expected_tets(*tiling_, domain.size(), h, source_);
+  return expected_graded_tets(*sizes_for(h), h, domain.psi(), domain.box, domain.steepest());
+}
+
+double BackgroundChoice::least_h(const Domain& domain) const {
+  if (!graded_) return least_h_of_max_tets(domain, parameters_);
+  const double h = graded_->finest();
+  return h * h_ratio_of_tets(expected_tets(domain, h) / static_cast<double>(parameters_.mesh().max_tets));
+}
+
+/// Of the cubes that meet the box and, as far as the slope of psi is known, are near the body; several bodies are not
+/// asked for.
+BackgroundMesh BackgroundChoice::graded(const Domain& domain, double h) const {
+  // Beside the body there have to be two edges and more; a cube has edges of its width.
+  constexpr double kWidthsOff = 3;
+  const ImplicitFunctionRef psi = domain.psi();
+  const double steepest = graded_->n_domains() > 1 ? std::numeric_limits<double>::infinity() : domain.steepest();
+  const auto sizes = sizes_for(h);
+  Grading grading{.box = domain.box, .finest = h, .tolerance = kSizeTolerance};
+  grading.size = [&](const Vec3& x, double half) { return cube_size(*sizes, x, half); };
+  grading.wanted = [&](const Vec3& x, double half) {
+    const bool meets_box = ((x - domain.box.center()).cwiseAbs() - .5 * domain.box.sizes()).maxCoeff() < half;
+    return meets_box && !(psi.value(x) > steepest * (std::sqrt(3.) + 2 * kWidthsOff) * half);
+  };
+  return BackgroundMesh(GradedMesh(grading));
+}
+
+SizedBackground BackgroundChoice::make(const Domain& domain, double h, std::int64_t n_tets, double allowed) const {
   const auto expected = [&](const BackgroundMesh& background) {
     const double n = n_tets > 0 ? static_cast<double>(n_tets) : expected_tets(domain, h);
     return std::min(n, static_cast<double>(background.n_tets()));
   };
   try {
-    BackgroundMesh background = given_   ? *given_
-                                : walls_ ? BackgroundMesh(a15_box(domain.box, h))
-                                         : BackgroundMesh(*tiling_, domain.box, h);
+    BackgroundMesh background = given_    ? *given_
+                                : graded_ ? graded(domain, h)
+                                : walls_  ? BackgroundMesh(a15_box(domain.box, h))
+                                          : BackgroundMesh(*tiling_, domain.box, h);
     require_memory(background, expected(background), allowed);
-    return background;
+    return {std::move(background), graded_ ? sizes_for(h) : nullptr};
   } catch (const std::invalid_argument& e) {  // h and the box have been checked: their tets are too many to count
     throw ResourceLimit(fmt::format("h = {:.4g}: no background mesh: {}", h, e.what()));
   }

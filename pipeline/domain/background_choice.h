@@ -2,16 +2,19 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 
 #include "mesh/background/background_mesh.h"
 #include "mesh/background/body_size.h"
 #include "pipeline/case/parameters.h"
 #include "pipeline/domain/domain.h"
+#include "pipeline/domain/edge_length.h"
+#include "pipeline/domain/graded_sizes.h"
 
 namespace umtet {
 
-/// The mesh file that mesh.background names, if it is no tiling.
+/// The mesh file that mesh.background names, if it is no tiling and not graded.
 std::optional<std::filesystem::path> background_file(const Parameters&);
 
 /// \throw UsageError for mesh.box_walls with another background than a15, or mesh.complement without mesh.box_walls
@@ -21,25 +24,45 @@ void require_walls(const Parameters&);
 /// have no walls.
 ClassificationSource classification_source(const Parameters&);
 
-/// What --background and --box-walls ask for: a lattice or a box of any edge length, or a mesh that has its own.
+/// A background mesh, and the sizes that it was made for if it is graded.
+struct SizedBackground {
+  BackgroundMesh mesh;
+  std::shared_ptr<const SizeField> sizes = nullptr;
+};
+
+/// What --background and --box-walls ask for: a lattice or a box of any edge length, a graded mesh of any edge length
+/// at its finest place, or a mesh that has its own.
 class BackgroundChoice {
  public:
-  /// Reads the file, if it is one. Its coordinates are model coordinates.
-  /// \throw UsageError when h or a number of tets is given for a file, or as require_walls(); MeshFileRefused,
-  ///        std::system_error
+  /// Reads the file, if it is one, or that of sizes. Coordinates in it are model coordinates.
+  /// \throw UsageError when h or a number of tets is given for a file, or as require_walls() and GradedSizes;
+  ///        MeshFileRefused, std::system_error
   BackgroundChoice(const Parameters& parameters, const Domain& domain);
 
   /// That of the file.
   std::optional<double> own_h() const { return given_ ? std::optional(given_->h()) : std::nullopt; }
+  /// That of the file, of the sizes that this domain and all former ones ask for, or choose_edge_length().
+  /// \throw as choose_edge_length() and GradedSizes::add()
+  EdgeLength edge_length(Domain& domain, const Context& context = {});
   /// About how many tets of it are taken.
   double expected_tets(const Domain& domain, double h) const;
+  /// The h at which about mesh.max_tets tets are made. \throw MeshingImpossible  psi < 0 nowhere
+  double least_h(const Domain& domain) const;
   /// @param n_tets  that are wanted, or 0
   /// @param allowed  bytes
-  /// \throw ResourceLimit
-  BackgroundMesh make(const Domain& domain, double h, std::int64_t n_tets, double allowed) const;
+  /// \throw ResourceLimit \pre edge_length() has been called if it is graded
+  SizedBackground make(const Domain& domain, double h, std::int64_t n_tets, double allowed) const;
 
  private:
+  /// The sizes for an h, kept for the next call.
+  std::shared_ptr<const SizeField> sizes_for(double h) const;
+  BackgroundMesh graded(const Domain& domain, double h) const;
+
+  const Parameters& parameters_;
   std::optional<BackgroundMesh> given_;
+  std::optional<GradedSizes> graded_;
+  mutable std::shared_ptr<const SizeField> sizes_;
+  mutable double sizes_h_ = 0;
   const Tiling* tiling_;  ///< that the number of tets is estimated by, for a file too
   ClassificationSource source_;
   bool walls_;

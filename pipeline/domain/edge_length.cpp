@@ -19,9 +19,6 @@
 namespace umtet {
 namespace {
 
-// Of h, for mesh.max_deviation: with fewer than ten edges along its diagonal there is little left of a shape, however
-// flat it is.
-constexpr double kMostOfDiagonal = .1;
 // Boundary faces start to fold where the body or a gap is thinner than about two edges: h is the thickness that a share
 // kThinShare of the samples falls below, over kEdgesAcross.
 constexpr double kEdgesAcross = 2.2;
@@ -109,7 +106,7 @@ EdgeLength choose(Domain& domain, const Parameters& parameters, const Context& c
       h = std::min(h, std::clamp(h_of(domain, parameters, kTetsOfLargeMesh), t / kEdgesAcross, t / kFewerEdgesAcross));
     }
   }
-  const double of_noise = domain.noise.value_or(0) / kMostNoise;
+  const double of_noise = noise_edge(domain);
   h = std::max(h, least);
   if (of_noise > h) return {of_noise, least, h};
   return {h, least};
@@ -134,8 +131,13 @@ double least_h_of_max_tets(const Domain& domain, const Parameters& parameters) {
 
 double least_h_in_file(const Domain& domain) { return coordinate_rounding(domain) / kMostRounding; }
 
+double noise_edge(const Domain& domain) { return domain.noise.value_or(0) / kMostNoise; }
+
 EdgeLength choose_edge_length(Domain& domain, const Parameters& parameters, const Context& context) {
-  EdgeLength choice = choose(domain, parameters, context);
+  return representable(choose(domain, parameters, context), domain);
+}
+
+EdgeLength representable(EdgeLength choice, const Domain& domain) {
   const double least = least_h_in_file(domain);
   if (choice.h < least) {
     const double far = greatest_coordinates(domain).maxCoeff();

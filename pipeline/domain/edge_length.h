@@ -8,6 +8,10 @@
 
 namespace umtet {
 
+/// Of h, for mesh.max_deviation: with fewer than ten edges along its diagonal there is little left of a shape, however
+/// flat it is.
+inline constexpr double kMostOfDiagonal = .1;
+
 struct EdgeLength {
   double h;      ///< model units
   double least;  ///< the h that makes about mesh.max_tets tets if the choice of h was left to us, else h
@@ -28,6 +32,12 @@ EdgeLength choose_edge_length(Domain& domain, const Parameters& parameters, cons
 
 /// The h at which about mesh.max_tets tets are made. \throw MeshingImpossible  psi < 0 nowhere
 double least_h_of_max_tets(const Domain& domain, const Parameters& parameters);
+
+/// The h of which the noise of the samples is as much as it may be: .3; 0 without noise.
+double noise_edge(const Domain& domain);
+
+/// The choice with least_h_in_file() as the least. \throw MeshingImpossible  its h is below that
+EdgeLength representable(EdgeLength choice, const Domain& domain);
 
 /// A file holds model coordinates rounded to double: far from the origin that alone moves a vertex off psi = 0, by up
 /// to this much (model units).

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "mesh/background/size_field.h"
 #include "mesh/certify/quadratic_tets.h"
 #include "mesh/universal_mesh.h"
 #include "pipeline/domain/edge_length.h"
@@ -17,11 +19,12 @@ namespace umtet {
 struct MeshAttempt {
   double h = 0;  ///< edge length of the background mesh, model units
   UmResult result;
-  std::optional<SecondOrder> second;  ///< the mesh with curved edges, if mesh.order = 2
-  MeshMeasures measured;              ///< when there is a mesh
-  std::vector<MeshPlace> places;      ///< where it is not faithful to psi = 0
-  std::vector<std::string> reasons;   ///< why it will not do, by judge_shape()
-  ThinPlaces thin;                    ///< what h is too large for
+  std::optional<SecondOrder> second;       ///< the mesh with curved edges, if mesh.order = 2
+  MeshMeasures measured;                   ///< when there is a mesh
+  std::vector<MeshPlace> places;           ///< where it is not faithful to psi = 0
+  std::vector<std::string> reasons;        ///< why it will not do, by judge_shape()
+  ThinPlaces thin;                         ///< what h is too large for
+  std::shared_ptr<const SizeField> sizes;  ///< that a graded background was made for
 
   bool made() const { return result.status == UmStatus::Success; }
   bool is_right() const { return made() && reasons.empty(); }

@@ -88,10 +88,10 @@ ChosenSubmesh MeshMaker::choose(const BackgroundMesh& background, double h) {
   return choose_submesh(background, domain_.psi(), params_for(pieces), context_.part(kChoice, kFit), pieces.seeds);
 }
 
-void MeshMaker::finish(const BackgroundMesh& background, ChosenSubmesh chosen, MeshAttempt& a) {
+void MeshMaker::finish(const SizedBackground& background, ChosenSubmesh chosen, MeshAttempt& a) {
   const ZeroSetChoice& pieces = pieces_at(a.h);
-  a.result =
-      fit_submesh(background, domain_.psi(), params_for(pieces), std::move(chosen), context_.part(kFit, kCertificate));
+  a.result = fit_submesh(background.mesh, domain_.psi(), params_for(pieces), std::move(chosen),
+                         context_.part(kFit, kCertificate));
   const std::size_t n_flips = a.result.manifold_flips.size(), n_back = a.result.n_stepped_back;
   if (n_flips + n_back > 0 && lines_.detail) {
     lines_.detail(
@@ -102,8 +102,9 @@ void MeshMaker::finish(const BackgroundMesh& background, ChosenSubmesh chosen, M
   round_to_file(a.result, domain_.shift);
   context_.report("certify", kCertificate);
   if (!a.made()) return;
-  Measurement made = measure(domain_, a.result, pieces, mesh_edge(background, a.result),
-                             {&a.thin, parameters_.mesh().max_deviation}, context_);
+  a.sizes = background.sizes;
+  Measurement made = measure(domain_, a.result, pieces, mesh_edge(background.mesh, a.result),
+                             {&a.thin, parameters_.mesh().max_deviation, a.sizes.get()}, context_);
   a.measured = std::move(made.measures);
   a.places = std::move(made.places);
   curve(a);
@@ -112,9 +113,9 @@ void MeshMaker::finish(const BackgroundMesh& background, ChosenSubmesh chosen, M
   a.reasons = judge_shape(a.measured).reasons;
 }
 
-MeshAttempt MeshMaker::attempt(const BackgroundMesh& background, double h) {
+MeshAttempt MeshMaker::attempt(const SizedBackground& background, double h) {
   MeshAttempt a = begin(h);
-  finish(background, choose(background, h), a);
+  finish(background, choose(background.mesh, h), a);
   return a;
 }
 
@@ -130,15 +131,15 @@ void MeshMaker::curve(MeshAttempt& a) const {
 
 /// The estimate behind mesh.tets knows the shape from a few thousand samples. Where it is far off, the number of tets
 /// at one h gives the next, before anything is moved. Few tets jump with h, to either side of the number asked for.
-MeshAttempt MeshMaker::attempt_for_tets(double h, const std::function<BackgroundMesh(double h)>& background) {
+MeshAttempt MeshMaker::attempt_for_tets(double h, const std::function<SizedBackground(double h)>& background) {
   const auto asked = static_cast<double>(parameters_.mesh().tets);
   if (asked == 0) return attempt(background(h), h);
   double nearest = h, least_miss = std::numeric_limits<double>::infinity();
   std::optional<double> makes_more, makes_less;
   for (int n_misses = 0;;) {
-    const BackgroundMesh made = background(h);
+    const SizedBackground made = background(h);
     MeshAttempt a = begin(h);
-    ChosenSubmesh chosen = choose(made, h);
+    ChosenSubmesh chosen = choose(made.mesh, h);
     const double ratio = static_cast<double>(chosen.n_tets) / asked;
     if (chosen.status != UmStatus::Success || n_misses == kMostMisses || std::abs(ratio - 1) <= kTetsTolerance) {
       finish(made, std::move(chosen), a);
@@ -154,7 +155,7 @@ MeshAttempt MeshMaker::attempt_for_tets(double h, const std::function<Background
   }
 }
 
-MeshAttempt MeshMaker::best(const EdgeLength& choice, const std::function<BackgroundMesh(double h)>& background) {
+MeshAttempt MeshMaker::best(const EdgeLength& choice, const std::function<SizedBackground(double h)>& background) {
   return best_attempt(
       choice, parameters_.mesh().effort, [&](double h) { return attempt_for_tets(h, background); },
       [this](const std::string& line) { say(line); });

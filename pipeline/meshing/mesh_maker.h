@@ -10,6 +10,7 @@
 #include "mesh/background/background_mesh.h"
 #include "mesh/universal_mesh.h"
 #include "pipeline/case/parameters.h"
+#include "pipeline/domain/background_choice.h"
 #include "pipeline/domain/domain.h"
 #include "pipeline/domain/zero_set_choice.h"
 #include "pipeline/meshing/mesh_attempts.h"
@@ -33,11 +34,11 @@ class MeshMaker {
 
   /// psi, cut for h, meshed in this background. A mesh whose certificate fails is a result; so is none.
   /// \throw MeshingImpossible  no sample is near psi = 0; Cancelled
-  MeshAttempt attempt(const BackgroundMesh& background, double h);
+  MeshAttempt attempt(const SizedBackground& background, double h);
 
   /// The best_attempt() from this h on, each in a background of its own. Where mesh.tets asks for a number that h
   /// misses by more than a tenth, which shows before anything is moved, another h takes its place.
-  MeshAttempt best(const EdgeLength& choice, const std::function<BackgroundMesh(double h)>& background);
+  MeshAttempt best(const EdgeLength& choice, const std::function<SizedBackground(double h)>& background);
 
   /// The pieces of psi = 0, psi cut for h: kept until another h is asked for. \throw Cancelled
   const ZeroSetChoice& pieces_at(double h);
@@ -45,9 +46,9 @@ class MeshMaker {
  private:
   MeshAttempt begin(double h);
   ChosenSubmesh choose(const BackgroundMesh& background, double h);
-  void finish(const BackgroundMesh& background, ChosenSubmesh chosen, MeshAttempt& a);
+  void finish(const SizedBackground& background, ChosenSubmesh chosen, MeshAttempt& a);
   UmParams params_for(const ZeroSetChoice& pieces) const;
-  MeshAttempt attempt_for_tets(double h, const std::function<BackgroundMesh(double h)>& background);
+  MeshAttempt attempt_for_tets(double h, const std::function<SizedBackground(double h)>& background);
   void curve(MeshAttempt& a) const;
   void say(const std::string& line) const {
     if (lines_.say) lines_.say(line);

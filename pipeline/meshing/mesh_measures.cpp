@@ -8,14 +8,15 @@
 #include <utility>
 
 #include "mesh/certify/boundary_surface.h"
+#include "mesh/implicit/curvature.h"
 #include "mesh/implicit/surface_distance.h"
 #include "mesh/implicit/thickness.h"
 #include "pipeline/domain/closed_holes.h"
 #include "pipeline/domain/component_proof.h"
-#include "pipeline/domain/deviation.h"
 #include "pipeline/domain/edge_length.h"
 #include "pipeline/domain/missed_samples.h"
 #include "pipeline/meshing/mesh_places.h"
+#include "pipeline/meshing/mesh_sizes.h"
 
 namespace umtet {
 namespace {
@@ -280,6 +281,7 @@ Measurement measure(const Domain& domain, const UmResult& result, const ZeroSetC
   m.resolution.obtuse_conditioning_angles = result.obtuse_conditioning_angles;
   m.resolution.double_positive_faces = result.double_positive_faces;
   if (params.thin) m.resolution.too_thin = in_model(*params.thin, domain.shift);
+  if (params.sizes) m.sizes = sizes_report(mesh, faces, asked_sizes(*params.sizes, mesh.V, context));
   m.is_faithful = m.reasons.empty() && m.places.empty();
   return made;
 }

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "mesh/background/size_field.h"
 #include "mesh/universal_mesh.h"
 #include "pipeline/domain/domain.h"
 #include "pipeline/domain/mesh_edge.h"
@@ -21,6 +22,7 @@ struct Measurement {
 struct MeasureParams {
   const ThinPlaces* thin = nullptr;  ///< of psi as it was meshed; null: not looked for
   double max_deviation = 0;          ///< of face centres from psi = 0, model units: more is a reason; 0: any will do
+  const SizeField* sizes = nullptr;  ///< that a graded mesh was made for
 };
 
 /// The edge length that a mesh was made with: in a background that is no lattice, at each vertex of the boundary.

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "mesh/implicit/curvature.h"
 #include "mesh/implicit/foot_point.h"
 #include "mesh/implicit/thickness.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/artefact.h"
 #include "pipeline/domain/clusters.h"
-#include "pipeline/domain/deviation.h"
 #include "pipeline/meshing/lost_ends.h"
 #include "reconstruct/cloud/neighbour_tree.h"
 

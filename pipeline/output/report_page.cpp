@@ -148,7 +148,14 @@ std::string headline_cards(const Certificate& c) {
   card(value("/quality/dihedral_min_deg", q.dihedral_min_deg, 3) + "–" +
            value("/quality/dihedral_max_deg", q.dihedral_max_deg) + "°",
        "dihedral angles");
-  card(value("/h", mesh.h) + units, "edge length h of the background");
+  if (const std::optional<SizesReport>& sizes = c.measured.sizes) {
+    card(value("/sizes/shortest_boundary_edge", sizes->shortest_boundary_edge, 3) + "–" +
+             value("/sizes/longest_boundary_edge", sizes->longest_boundary_edge, 3) + units,
+         "edges of the boundary; of all, half are shorter than " + value("/sizes/edge_over_asked/p50", sizes->p50, 3) +
+             " of the size asked for");
+  } else {
+    card(value("/h", mesh.h) + units, "edge length h of the background");
+  }
   card(value("/boundary/n_faces", b.n_faces), "boundary faces; genus " + value("/boundary/genus", b.genus) +
                                                   ", pieces " + value("/boundary/components", b.components));
   card(value("/boundary/max_centroid_distance_over_h", b.max_centroid_distance_over_h, 3) + " h",

@@ -250,6 +250,13 @@ void SceneMaker::write_values() {
     for (const int p : face_patch_) bytes.push_back(static_cast<std::uint8_t>(p % 256));
     write_bytes("face_patch", bytes);
   }
+  if (const std::vector<double>* length = field(file_.point_data, "edge_length")) {
+    const auto [least, most] = std::minmax_element(length->begin(), length->end());
+    scene_.head.edge_length = {*least, *most};
+    bytes.clear();
+    for (const int v : shown_) bytes.push_back(in_steps((*length)[v], *least, *most));
+    write_bytes("vertex_edge_length", bytes);
+  }
   if (const std::vector<double>* support = field(file_.point_data, "support")) {
     double far = 0;
     for (const double d : *support) far = std::max(far, d);
@@ -299,6 +306,7 @@ Json to_json(const SceneHead& head) {
     patches.push_back({{"name", p.name}, {"number", p.number}, {"n_faces", p.n_faces}, {"area", p.area}});
   }
   Json ranges = {{"quality", to_json(head.quality)}, {"deviation", to_json(head.deviation)}};
+  if (head.edge_length) ranges["edge_length"] = to_json(*head.edge_length);
   if (head.support) ranges["support"] = to_json(*head.support);
   return {{"box_min", json_of(head.box_min)},
           {"box_size", json_of(head.box_size)},

@@ -39,9 +39,10 @@ struct SceneHead {
   struct Range {
     double least = 0, most = 0;
   };
-  Range quality, deviation;      ///< of the colours; deviation in model units
-  std::optional<Range> support;  ///< distances to samples, model units; none for a formula
-  double support_radius = 0;     ///< farther than this from every sample the surface is a guess
+  Range quality, deviation;          ///< of the colours; deviation in model units
+  std::optional<Range> edge_length;  ///< at vertices, model units; none of a mesh with one h
+  std::optional<Range> support;      ///< distances to samples, model units; none for a formula
+  double support_radius = 0;         ///< farther than this from every sample the surface is a guess
   std::size_t n_points = 0, n_points_shown = 0;
 };
 
@@ -52,15 +53,16 @@ Json to_json(const SceneHead& head);
 ///   positions    uint16 x 3 a vertex, in 65535ths of the box
 ///   faces        4 indices each, uint16 or uint32 (head.index_bytes): a boundary face, and the vertex behind it
 ///   tets         4 indices each: the worst ones first
-///   tet_quality, face_quality, face_deviation, vertex_support   a byte each, in 255ths of head.ranges
-///   face_patch   a byte each, where there are several: index into head.patches, modulo 256
-///   points       uint16 x 3 a sample, in 65535ths of the box
+///   tet_quality, face_quality, face_deviation, vertex_support, vertex_edge_length   a byte each, in 255ths of
+///   head.ranges face_patch   a byte each, where there are several: index into head.patches, modulo 256 points uint16 x
+///   3 a sample, in 65535ths of the box
 struct ReportScene {
   SceneHead head;
   std::vector<std::pair<std::string, std::string>> blocks;
 };
 
-/// @param mesh      as in mesh.vtu: model coordinates, with `mean_ratio` and, of a cloud, `support`
+/// @param mesh      as in mesh.vtu: model coordinates, with `mean_ratio` and, of a cloud, `support`, of a graded mesh
+/// `edge_length`
 /// @param domain    psi as it was meshed: deviations are |psi| / |grad psi| at the centres of faces
 /// @param divided   solver_mesh() of it, its boundary in patches
 /// \throw Cancelled, std::invalid_argument without tets, or with another number of them in `divided`

@@ -197,6 +197,25 @@ ResolutionReport resolution_from(const Json& json) {
   return r;
 }
 
+Json to_json(const SizesReport& s) {
+  return {{"least_asked", s.least_asked},
+          {"greatest_asked", s.greatest_asked},
+          {"edge_over_asked", {{"p01", s.p01}, {"p50", s.p50}, {"p99", s.p99}}},
+          {"shortest_boundary_edge", s.shortest_boundary_edge},
+          {"longest_boundary_edge", s.longest_boundary_edge}};
+}
+
+SizesReport sizes_from(const Json& json) {
+  const Json& ratio = json.at("edge_over_asked");
+  return {.least_asked = number_from(json.at("least_asked")),
+          .greatest_asked = number_from(json.at("greatest_asked")),
+          .p01 = number_from(ratio.at("p01")),
+          .p50 = number_from(ratio.at("p50")),
+          .p99 = number_from(ratio.at("p99")),
+          .shortest_boundary_edge = number_from(json.at("shortest_boundary_edge")),
+          .longest_boundary_edge = number_from(json.at("longest_boundary_edge"))};
+}
+
 SecondOrderReport second_order_from(const Json& json) {
   SecondOrderReport r;
   SecondOrderCertificate& c = r.certificate;
@@ -230,6 +249,7 @@ Json measured_blocks(const MeshMeasures& m) {
   json["domain"] = to_json(m.domain);
   json["cloud"] = m.cloud ? to_json(*m.cloud, m.mesh.h) : Json(nullptr);
   json["resolution"] = to_json(m.resolution, m.mesh.h);
+  if (m.sizes) json["sizes"] = to_json(*m.sizes);
   json["valid"] = m.is_valid;
   json["faithful"] = m.is_faithful;
   json["places"] = to_json(m.places);
@@ -251,6 +271,7 @@ MeshMeasures measured_blocks_from(const Json& json) {
   m.domain = zero_set_from(json.at("domain"));
   if (!json.at("cloud").is_null()) m.cloud = distances_from(json.at("cloud"));
   m.resolution = resolution_from(json.at("resolution"));
+  if (json.contains("sizes")) m.sizes = sizes_from(json.at("sizes"));
   m.is_valid = json.at("valid");
   m.is_faithful = json.at("faithful");
   m.places = places_from(json.at("places"));

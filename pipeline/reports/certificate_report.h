@@ -66,6 +66,13 @@ struct ResolutionReport {
   std::optional<std::vector<ThinPlace>> too_thin;
 };
 
+/// The edges of a graded mesh beside the sizes that it was made for.
+struct SizesReport {
+  double least_asked = 0, greatest_asked = 0;  ///< at the vertices
+  double p01 = 0, p50 = 0, p99 = 0;            ///< of length of an edge / mean size at its ends
+  double shortest_boundary_edge = 0, longest_boundary_edge = 0;
+};
+
 /// Tets with curved edges.
 struct SecondOrderReport {
   SecondOrderCertificate certificate;  ///< h and coordinate_rounding are not in the documents: read back, they are 0
@@ -87,6 +94,7 @@ struct MeshMeasures {
   ZeroSetReport domain;
   std::optional<SampleDistances> cloud;  ///< none for a formula
   ResolutionReport resolution;
+  std::optional<SizesReport> sizes;   ///< none where the mesh has one h
   std::optional<std::int64_t> order;  ///< 1 or 2; none where only the corners were measured
   std::optional<SecondOrderReport> second_order;
   bool is_valid = true;  ///< tets positive, boundary the closed manifold that it is to be, and not through itself

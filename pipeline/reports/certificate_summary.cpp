@@ -62,6 +62,16 @@ std::string mesh_lines(const MeshCertificate& c, const std::string& unit, std::o
   return out + "boundary  " + boundary_line(c.boundary) + "\n";
 }
 
+/// What the edges of a graded mesh are beside the sizes that were asked for; empty for others.
+std::string sizes_line(const std::optional<SizesReport>& s, const std::string& unit) {
+  if (!s) return "";
+  return fmt::format(
+      "sizes     {:.4g} to {:.4g}{} asked for; edges over that: 1 % {:.2f} | 50 % {:.2f} | 99 % {:.2f}; boundary edges "
+      "{:.4g} to {:.4g}\n",
+      s->least_asked, s->greatest_asked, unit, s->p01, s->p50, s->p99, s->shortest_boundary_edge,
+      s->longest_boundary_edge);
+}
+
 /// What is true of tets of second order; empty for others.
 std::string second_order_lines(const std::optional<SecondOrderReport>& report) {
   if (!report) return "";
@@ -164,9 +174,9 @@ std::string summary(const Certificate& c) {
   const std::string unit = suffix(c.units);
   const MeshMeasures& m = c.measured;
   return verdict_lines(c.verdict, m.is_valid, m.is_faithful, c.remedy) + mesh_lines(m.mesh, unit, c.n_tets_asked) +
-         second_order_lines(m.second_order) + domain_line(m.domain) + holes_line(m.domain.support, unit) +
-         cloud_line(m, unit) + missed_line(m, unit) + thin_line(m.resolution) + places_line(m.places) +
-         time_line(c.run);
+         sizes_line(m.sizes, unit) + second_order_lines(m.second_order) + domain_line(m.domain) +
+         holes_line(m.domain.support, unit) + cloud_line(m, unit) + missed_line(m, unit) + thin_line(m.resolution) +
+         places_line(m.places) + time_line(c.run);
 }
 
 std::string summary(const MeshCheck& c) {

@@ -98,7 +98,8 @@ class Evolution {
   std::vector<Step> steps_;
   std::optional<Domain> first_;  ///< of the first instant that has one, its box that of all
   double h_ = 0;
-  std::optional<BackgroundMesh> background_;
+  std::optional<BackgroundChoice> choice_;
+  std::optional<SizedBackground> background_;
   const std::shared_ptr<FileStamps> stamps_ = std::make_shared<FileStamps>();
 };
 
@@ -164,9 +165,12 @@ void Evolution::look_at(Step& step) {
                     "are shifted, not alike: move all clouds nearer to the origin",
                     d.x(), d.y(), d.z()));
   }
+  if (!choice_) choice_.emplace(parameters_, domain);
   const bool counts = !first_ || parameters_.mesh().tets == 0;
-  if (counts) {
-    const double h = choose_edge_length(domain, parameters_, until_interrupted()).h;
+  if (is_graded(parameters_)) {
+    h_ = choice_->edge_length(domain, until_interrupted()).h;  // of all instants so far
+  } else if (counts) {
+    const double h = choice_->edge_length(domain, until_interrupted()).h;
     h_ = first_ ? std::min(h_, h) : h;
   }
   if (first_) {
@@ -178,18 +182,17 @@ void Evolution::look_at(Step& step) {
 
 void Evolution::choose_background() {
   // A formula has one box at all times; with h given, too, the others can wait until it is their turn.
-  const bool one_tells_all = !of_clouds_ && (parameters_.mesh().h > 0 || parameters_.mesh().tets > 0);
+  const bool one_tells_all =
+      !of_clouds_ && !is_graded(parameters_) && (parameters_.mesh().h > 0 || parameters_.mesh().tets > 0);
   for (Step& step : steps_) {
     stop_if_interrupted();
     guarded(step, [&] { look_at(step); });
     if (first_ && one_tells_all) break;
   }
   if (!first_) std::rethrow_exception(steps_.front().thrown);
-  const BackgroundChoice choice(parameters_, *first_);
-  if (choice.own_h()) h_ = *choice.own_h();
   first_->limit_detail(h_);
-  background_ = choice.make(*first_, h_, parameters_.mesh().tets, allowed_bytes(parameters_));
-  progress_.say(fmt::format("one background of {} tets, h = {:.6g}", background_->n_tets(), h_));
+  background_ = choice_->make(*first_, h_, parameters_.mesh().tets, allowed_bytes(parameters_));
+  progress_.say(fmt::format("one background of {} tets, h = {:.6g}", background_->mesh.n_tets(), h_));
 }
 
 /// As umtet mesh does at a given h.
@@ -246,7 +249,7 @@ EvolveOutcome Evolution::outcome() const {
   }
   if (n_passed < steps_.size()) result.code = ExitCode::GateFailed;
   result.text = fmt::format("steps     {} of {} made, {} of them certified, in one background of {} tets; h = {:.5g}\n",
-                            n_made, steps_.size(), n_passed, background_->n_tets(), h_);
+                            n_made, steps_.size(), n_passed, background_->mesh.n_tets(), h_);
   if (worst) {
     result.text +=
         fmt::format("quality   worst min Q {:.4f}, at t = {}\n", least_quality(*worst), time_text(worst->at.t));

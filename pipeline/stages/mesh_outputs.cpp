@@ -9,8 +9,10 @@
 #include "mesh/certify/quality_report.h"
 #include "mesh/io/quality_csv.h"
 #include "pipeline/case/artefact.h"
+#include "pipeline/case/interrupt.h"
 #include "pipeline/meshing/made_mesh.h"
 #include "pipeline/meshing/mesh_places.h"
+#include "pipeline/meshing/mesh_sizes.h"
 #include "pipeline/meshing/second_order.h"
 
 namespace umtet {
@@ -76,6 +78,10 @@ std::vector<std::string> write_mesh_outputs(const StageContext& context, const D
   move_to(domain, result.final, content);
   curves.add("final", content);
   add_support(domain, result, content);
+  if (best.sizes) {
+    content.point_data["h"] = asked_sizes(*best.sizes, result.final, until_interrupted());
+    content.point_data["edge_length"] = mean_edges({result.final, result.submesh.mesh.C});
+  }
   if (best.second) {
     names.emplace_back("mesh.vtu");
     write_second_order(folder / "mesh.vtu", domain, result, content, *best.second);

@@ -40,7 +40,7 @@ class MeshStage {
  private:
   Context call() const;
   MeshLines lines() const;
-  BackgroundMesh background_of(double h);
+  SizedBackground background_of(double h);
   EdgeLength enough_for(const ThinPlaces& thin);
   std::string remedy_for(const ThinPlaces& thin, std::optional<double>& h_enough);
   [[noreturn]] void refuse_thin(const MeshAttempt& best);
@@ -62,10 +62,10 @@ MeshLines MeshStage::lines() const {
 }
 
 /// With room on the disk for the meshes in it.
-BackgroundMesh MeshStage::background_of(double h) {
+SizedBackground MeshStage::background_of(double h) {
   stop_if_interrupted();
   const Parameters& p = context_.parameters;
-  BackgroundMesh made = background_.make(domain_, h, p.mesh().tets, allowed_bytes(p));
+  SizedBackground made = background_.make(domain_, h, p.mesh().tets, allowed_bytes(p));
   const double n_iterates = p.mesh().keep_iterates ? static_cast<double>(p.mesh().projection_passes) : 0;
   require_disk(context_.paths.root, (3 + n_iterates) * background_.expected_tets(domain_, h));
   return made;
@@ -88,7 +88,7 @@ constexpr double kThinStep = .9;
 
 /// An h at which nothing is thin any more, as far as --max-tets allows.
 EdgeLength MeshStage::enough_for(const ThinPlaces& thin) {
-  EdgeLength choice{thin.h, least_h_of_max_tets(domain_, context_.parameters)};
+  EdgeLength choice{thin.h, background_.least_h(domain_)};
   double needed = thin.h_needed();
   for (int round = 0; round < kThinRounds && choice.h > choice.least; ++round) {
     choice.h = std::max(std::min(needed, kThinStep * choice.h), choice.least);
@@ -133,8 +133,7 @@ void MeshStage::refuse_thin(const MeshAttempt& best) {
 
 MeshAttempt MeshStage::best_mesh() {
   context_.progress.report("mesh", "size", 0);
-  const EdgeLength choice = background_.own_h() ? EdgeLength{*background_.own_h(), *background_.own_h()}
-                                                : choose_edge_length(domain_, context_.parameters, until_interrupted());
+  const EdgeLength choice = background_.edge_length(domain_, until_interrupted());
   if (choice.of_thin_parts) {
     context_.progress.say(
         fmt::format("mesh: h = {:.4g}, so that the noise of the samples is {:.2g} of it: what is thinner does not show "

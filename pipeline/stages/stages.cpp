@@ -5,6 +5,7 @@
 #include "pipeline/case/artefact.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/domain/background_choice.h"
+#include "pipeline/domain/size_file.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -13,6 +14,9 @@ std::vector<RecordedFile> recorded_inputs(const CasePaths& paths, Stage stage, c
   std::vector<RecordedFile> inputs;
   if (stage == Stage::Mesh) {
     if (const auto file = background_file(parameters)) inputs.push_back({file->string(), paths.stamps->of(*file)});
+    if (const std::string& file = parameters.mesh().size; is_size_file(file)) {
+      inputs.push_back({file, paths.stamps->of(file)});
+    }
   }
   const bool formula = stage == Stage::Mesh && !parameters.mesh().implicit.empty();
   if (stage == Stage::Cloud || formula) return inputs;

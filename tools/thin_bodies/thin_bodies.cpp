@@ -74,7 +74,7 @@ Outcome outcome_of(const Body& body) {
   domain.diagonal = body.box.diagonal().norm();
   const Parameters parameters;
   MeshMaker maker(domain, parameters, {});
-  const MeshAttempt a = maker.attempt(BackgroundMesh(a15(), body.box, 1), 1);
+  const MeshAttempt a = maker.attempt({BackgroundMesh(a15(), body.box, 1)}, 1);
   o.made = a.made();
   if (!o.made) return o;
   o.passes = a.is_right();

@@ -69,6 +69,7 @@
     {id: "quality", name: "quality (mean ratio)", key: "quality", face: "face_quality", ramp: ramp},
     {id: "deviation", name: "deviation of face centres", legend: "deviation of face centres", key: "deviation", face: "face_deviation", ramp: reversed},
     {id: "support", name: "support (next sample)", legend: "distance to the next sample", key: "support", vertex: "vertex_support", ramp: support},
+    {id: "size", name: "edge length", legend: "mean edge length", key: "edge_length", vertex: "vertex_edge_length", ramp: ramp},
     {id: "patch", name: "patch", face: "face_patch", ramp: patchColours},
     {id: "none", name: "none", ramp: plain},
   ].filter((k) => !(k.face || k.vertex) || has(k.face || k.vertex));

@@ -11,6 +11,7 @@
 
 #include <numbers>
 
+#include "mesh/implicit/curvature.h"
 #include "pipeline/domain/deviation.h"
 
 namespace umtet {

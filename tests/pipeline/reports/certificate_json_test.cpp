@@ -44,6 +44,7 @@ Certificate full_certificate() {
   m.resolution.too_thin->front().is_gap = true;
   m.resolution.too_thin->front().box = {Vec3(1, 2, 3), Vec3(4, 5, 6)};
   m.resolution.too_thin->front().thickness = .1;
+  m.sizes = {.1, .4, .5, .75, 1.2, .08, .5};
   m.order = 2;
   m.second_order = SecondOrderReport{{}, SecondOrderReport::Repairs{1, 2, 3, 4}};
   m.second_order->certificate.min_scaled_jacobian_upper = .5;
@@ -77,8 +78,9 @@ TEST(CertificateJson, WhatIsMissingIsDamage) {
   for (const auto& [key, value] : json.items()) {
     Json lacking = json;
     lacking.erase(key);
-    // of meshes whose corners alone were measured, or that never were in a case
-    const bool may_lack = key == "schema" || key == "tool" || key == "verdict" || key == "order" || key == "run";
+    // of meshes whose corners alone were measured, that never were in a case, or that have one h
+    const bool may_lack =
+        key == "schema" || key == "sizes" || key == "tool" || key == "verdict" || key == "order" || key == "run";
     if (may_lack) {
       EXPECT_NO_THROW(certificate_from(lacking)) << key;
     } else {

@@ -1,0 +1,201 @@
+#include "pipeline/domain/graded_sizes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <memory>
+#include <sstream>
+
+#include "mesh/background/graded_size.h"
+#include "mesh/background/surface_sizes.h"
+#include "pipeline/case/exit_code.h"
+#include "pipeline/domain/edge_length.h"
+#include "pipeline/domain/size_file.h"
+#include "pipeline/domain/zero_set_choice.h"
+#include "reconstruct/solve/resolution.h"
+
+namespace umtet {
+namespace {
+
+// Sizes fall to this share of h where nothing else says how far: edges that differ by 16 on the boundary.
+constexpr double kLeastOfH = 1. / 16;
+// Places along the longer side of the box at which sizes inside are looked at for the least.
+constexpr int kInside = 32;
+// Of the number of tets with h: between that of a surface and that of a body.
+constexpr double kPower = 2.5;
+// The estimate of the number of tets is as good as this.
+constexpr double kGoodEnough = .05;
+constexpr int kMostRounds = 6;
+
+}  // namespace
+
+bool is_graded(const Parameters& p) { return p.mesh().background == "graded"; }
+
+void require_graded(const Parameters& parameters) {
+  const MeshParameters& p = parameters.mesh();
+  if (is_graded(parameters)) {
+    if (p.h_max > 0 && p.h_min > p.h_max) {
+      throw UsageError(fmt::format("--h-min {} is above --h-max {}", p.h_min, p.h_max));
+    }
+    if (p.h > 0 && p.h_min > p.h) throw UsageError(fmt::format("--h-min {} is above --h {}", p.h_min, p.h));
+    if (p.grade_inside && !(p.max_deviation == 0 && p.size_at.empty() && p.size.empty())) {
+      throw UsageError(
+          "--grade-inside keeps --h on all of the boundary: without --max-deviation, --size and --size-at");
+    }
+    parse_label_sizes(p.size_at);
+    return;
+  }
+  const auto refuse = [](bool is_given, const char* flag) {
+    if (is_given) throw UsageError(fmt::format("{} is for --background graded", flag));
+  };
+  refuse(!p.size.empty(), "--size");
+  refuse(!p.size_at.empty(), "--size-at");
+  refuse(p.h_min > 0, "--h-min");
+  refuse(p.h_max > 0, "--h-max");
+  refuse(p.grade_inside, "--grade-inside");
+  refuse(parameters.source(keys::mesh::grade) >= ParamSource::Set, "--grade");
+}
+
+std::map<int, double> parse_label_sizes(const std::string& text) {
+  std::map<int, double> factors;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, ',');) {
+    const char* const end = part.data() + part.size();
+    int label = 0;
+    double factor = 0;
+    const auto [at, bad_label] = std::from_chars(part.data(), end, label);
+    const bool has_label = bad_label == std::errc() && at != end && *at == '=';
+    const auto [stop, bad_factor] = has_label ? std::from_chars(at + 1, end, factor) : std::from_chars_result{at, {}};
+    if (!has_label || bad_factor != std::errc() || stop != end || !(factor > 0 && factor <= 1)) {
+      throw UsageError(
+          fmt::format("mesh.size_at = {}: must be LABEL=FACTOR,... with numbers of labels, and factors of h "
+                      "in (0, 1]",
+                      text));
+    }
+    factors[label] = factor;
+  }
+  return factors;
+}
+
+GradedSizes::GradedSizes(const Parameters& parameters, const Vec3& shift) : parameters_(parameters) {
+  const std::string& size = parameters.mesh().size;
+  if (is_size_file(size)) {
+    asked_ = read_sizes(size);
+    for (SizeSource& s : asked_) s.x -= shift;
+  } else if (!size.empty()) {
+    try {
+      const auto formula = std::make_shared<const Expression>(size);
+      formula_ = [formula, shift](const Vec3& x) { return formula->value(x + shift); };
+    } catch (const ExpressionError& e) {
+      throw UsageError(
+          fmt::format("--size is neither a .vtu, .csv, .xyz or .txt file nor a formula of x, y and z: {}", e.what()));
+    }
+  }
+}
+
+void GradedSizes::add(Domain& domain, const Context& context) {
+  const MeshParameters& p = parameters_.mesh();
+  const double largest = p.h_max > 0 ? p.h_max : std::numeric_limits<double>::infinity();
+  const double of_noise = noise_edge(domain);
+  SurfaceSizeParams s;
+  s.h = p.h > 0 ? p.h : std::max(of_noise, (p.max_deviation > 0 ? kMostOfDiagonal : kMeshEdge) * domain.diagonal);
+  s.h = std::min(s.h, largest);
+  s.h_min = p.h_min > 0 ? p.h_min : std::max(kLeastOfH * s.h, of_noise);
+  s.h_min = std::min(s.h_min, s.h);
+  s.grade = p.grade;
+  s.constant_layer = p.constant_layer;
+  s.steepest = domain.steepest();
+  // Edges may be kSizeTolerance as long as the size: what may not be exceeded asks for as much less.
+  s.edges_across *= kSizeTolerance;
+  s.max_turn /= kSizeTolerance;
+  s.deviation = p.max_deviation / (kSizeTolerance * kSizeTolerance);
+  if (p.grade_inside) s.edges_across = s.max_turn = 0;
+  domain.limit_detail(s.h_min);
+  const ZeroSetChoice pieces = choose_components(domain, std::min(s.h, kMeshEdge * domain.diagonal), context);
+  const std::vector<Vec3> points = kept_points(pieces);
+  if (points.empty()) {
+    throw MeshingImpossible(
+        "no edge length can be chosen: psi = 0 is nowhere in the box; give a --box around the place where psi < 0, or "
+        "a "
+        "smaller --h");
+  }
+  const std::vector<SizeSource> on_surface =
+      surface_sizes(domain.psi(), points, std::max(pieces.topology.spacing, s.h), s, context);
+  sources_.insert(sources_.end(), on_surface.begin(), on_surface.end());
+  const std::map<int, double> of_label = parse_label_sizes(p.size_at);
+  if (!of_label.empty() && domain.cloud.labels.empty()) {
+    throw UsageError("--size-at " + p.size_at + ": the points have no labels");
+  }
+  for (std::size_t i = 0; i < domain.cloud.labels.size(); ++i) {
+    const auto at = of_label.find(domain.cloud.labels[i]);
+    if (at == of_label.end()) continue;
+    const double h = std::max(s.h_min, at->second * s.h);
+    sources_.push_back({domain.cloud.points[i], h, std::max(p.constant_layer * h, 2 * domain.cloud_spacing)});
+  }
+  box_.extend(domain.box);
+  ++n_domains_;
+  h_min_ = h_min_ > 0 ? std::min(h_min_, s.h_min) : s.h_min;
+  find_finest(domain, context);
+}
+
+/// With what the user asks for: at the sources, and on a lattice inside.
+void GradedSizes::find_finest(const Domain& domain, const Context& context) {
+  const auto less = [](const SizeSource& a, const SizeSource& b) { return a.h < b.h; };
+  finest_ = std::min_element(sources_.begin(), sources_.end(), less)->h;
+  if (asked_.empty() && !formula_) return;
+  const SizeField sizes = field(finest_, context);
+  std::vector<double> least(sources_.size());
+  polled_parallel_for(sources_.size(), kValuesPerPoll, context,
+                      [&](std::size_t i) { least[i] = sizes.at(sources_[i].x); });
+  const double half = domain.box.sizes().maxCoeff() / (2 * kInside);
+  const ImplicitFunctionRef psi = domain.psi();
+  std::vector<double> inside(kInside * kInside * kInside, finest_);
+  polled_parallel_for(inside.size(), kValuesPerPoll, context, [&](std::size_t i) {
+    const auto at = static_cast<int>(i);
+    const Vec3 step(at % kInside, at / kInside % kInside, at / (kInside * kInside));
+    const Vec3 x = domain.box.min() + half * (2 * step + Vec3::Ones());
+    if ((x.array() < domain.box.max().array()).all() && psi.value(x) < 0) inside[i] = sizes.least_in(x, half);
+  });
+  least.insert(least.end(), inside.begin(), inside.end());
+  finest_ = *std::min_element(least.begin(), least.end());
+}
+
+SizeField GradedSizes::field(double h, const Context& context) const {
+  const double factor = h / finest_, h_max = parameters_.mesh().h_max;
+  std::vector<SizeSource> all = asked_;
+  all.insert(all.end(), sources_.begin(), sources_.end());
+  for (SizeSource& s : all) s.h *= factor, s.radius *= factor;
+  SizeFieldParams params{.grade = parameters_.mesh().grade, .h_min = factor * h_min_};
+  // The floor is for what thickness and curvature ask for; who asks for less by a file or a formula means it.
+  if (parameters_.mesh().h_min == 0) {
+    for (const SizeSource& s : asked_) params.h_min = std::min(params.h_min, factor * s.h);
+    if (formula_) params.h_min *= kLeastOfH;
+  }
+  if (h_max > 0) params.h_max = std::max(params.h_min, factor * h_max);
+  std::optional<SizeFunction> f;
+  if (formula_) f = SizeFunction{[formula = formula_, factor](const Vec3& x) { return factor * formula(x); }, box_};
+  return {std::move(all), params, std::move(f), context};
+}
+
+double h_ratio_of_tets(double n) { return std::pow(n, 1 / kPower); }
+
+double h_of_graded_tets(const GradedSizes& sizes, const Domain& domain, double n_tets, const Context& context) {
+  double h = sizes.finest();
+  for (int round = 0; round < kMostRounds; ++round) {
+    const double n =
+        expected_graded_tets(sizes.field(h, context), h, domain.psi(), domain.box, domain.steepest(), context);
+    if (!(n > 0)) {
+      throw MeshingImpossible(
+          "no edge length can be chosen: psi is not negative at any of the places looked at in the box; give --h, or a "
+          "--box around the place where psi < 0");
+    }
+    const double ratio = n / n_tets;
+    if (std::abs(ratio - 1) < kGoodEnough) break;
+    h *= h_ratio_of_tets(ratio);
+  }
+  return h;
+}
+
+}  // namespace umtet

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/context.h"
+#include "mesh/background/size_field.h"
+#include "pipeline/case/parameters.h"
+#include "pipeline/domain/domain.h"
+
+namespace umtet {
+
+/// mesh.background asks for a graded mesh.
+bool is_graded(const Parameters&);
+
+/// \throw UsageError where sizes are given for a background that has its own, or sizes that contradict each other
+void require_graded(const Parameters&);
+
+/// Factors of h by label: "1=.5,2=.25" of mesh.size_at. \throw UsageError
+std::map<int, double> parse_label_sizes(const std::string& text);
+
+/// The edge lengths that a graded background is made for: what the boundary of one or more domains needs, and what the
+/// user asks for. They are known up to a factor, for a number of tets or for another attempt; h is always that of the
+/// smallest edges.
+class GradedSizes {
+ public:
+  /// Reads mesh.size. @param shift  of the domains to come
+  /// \throw UsageError for a formula that is none; MeshFileRefused, std::system_error
+  GradedSizes(const Parameters& parameters, const Vec3& shift);
+
+  /// Takes in what psi = 0 of this domain asks for: mesh.h (or a tenth of the diagonal where mesh.max_deviation
+  /// decides, else .015 of it), less by thickness, by the turn of the normal, by mesh.max_deviation and by
+  /// mesh.size_at; with mesh.grade_inside mesh.h alone. Not below mesh.h_min, or a sixteenth of h and what noise / .3
+  /// allows. psi is looked at with all the detail that sizes of h_min show; on return it is cut there. \throw
+  /// MeshingImpossible  psi = 0 nowhere in the box; UsageError; Cancelled
+  void add(Domain& domain, const Context& context = {});
+
+  int n_domains() const { return n_domains_; }  ///< that were taken in
+  /// The h of the sizes as they are: the least on the boundary, and inside. \pre add() has been called
+  double finest() const { return finest_; }
+  /// All sizes times h / finest(); `grade` is kept. \throw Cancelled
+  SizeField field(double h, const Context& context = {}) const;
+
+ private:
+  void find_finest(const Domain& domain, const Context& context);
+
+  const Parameters& parameters_;
+  std::vector<SizeSource> asked_;               ///< by the user
+  std::function<double(const Vec3&)> formula_;  ///< the user's, or none
+  std::vector<SizeSource> sources_;             ///< of psi = 0
+  Box box_;
+  double h_min_ = 0, finest_ = 0;
+  int n_domains_ = 0;
+};
+
+/// By what about h changes if there are to be 1 / n as many tets.
+double h_ratio_of_tets(double n);
+
+/// The h at which about n tets are taken, by the estimate of the library. \throw MeshingImpossible  psi < 0 nowhere
+double h_of_graded_tets(const GradedSizes& sizes, const Domain& domain, double n_tets, const Context& context = {});
+
+}  // namespace umtet
