@@ -19,9 +19,6 @@ namespace {
 /// Mean edge length of BCC tets in leaves of width 1: six edges of 1 and eight of sqrt(3) / 2 meet at a vertex.
 const double kMeanEdge = (6 + 8 * std::sqrt(.75)) / 14;
 
-// Vertex numbers of a mesh that is cut out of this one are int; a leaf has two vertices at least.
-constexpr std::size_t kMaxLeaves = std::size_t{1} << 30;
-
 // A leaf has at most 6 x 8 tets on either side of its faces.
 constexpr int kMaxSteps = 96;
 
@@ -59,7 +56,7 @@ std::vector<std::uint64_t> leaves_of(const Grading& g, const RootCube& root) {
     const GridPoint p = grid_point(cube);
     return root.origin + unit * Vec3(p[0], p[1], p[2]);
   };
-  OctreeRules rules{.max_level = root.max_level, .splits = {}, .wanted = {}, .max_leaves = kMaxLeaves};
+  OctreeRules rules{.max_level = root.max_level, .splits = {}, .wanted = {}, .max_leaves = g.max_leaves};
   rules.splits = [&](std::uint64_t cube) {
     const double half = half_width(cube), size = g.size(centre(cube), half);
     if (!(size > 0)) throw std::invalid_argument("size = " + std::to_string(size) + ": must be > 0");
@@ -82,7 +79,7 @@ GradedMesh::GradedMesh(const Grading& grading)
   const RootCube root = root_cube(grading);
   origin_ = root.origin;
   unit_ = root.width / kRootWidth;
-  if (octree_.n_vertices() > static_cast<std::uint32_t>(std::numeric_limits<int>::max())) {
+  if (octree_.n_vertices() > std::numeric_limits<int>::max()) {  // a mesh cut out of this one has vertex numbers of int
     throw std::invalid_argument("finest = " + std::to_string(finest_) +
                                 ", with these sizes: more than 2^31 - 1 vertices");
   }
@@ -104,6 +101,29 @@ GradedMesh::GradedMesh(const Grading& grading)
     }
   }
   first_vertices_.index();
+  offsets_ = smooth_transitions(*this, transition_vertices(), grading.transition_sweeps);
+}
+
+std::uint64_t GradedMesh::transition_slots(const OctreeCell& leaf) {
+  const std::uint64_t between = leaf.slots & tet_slots::of_faces(leaf.coarse);
+  const std::uint64_t halves = leaf.slots & ~between & tet_slots::kOdd;
+  return between | halves | halves >> 1;
+}
+
+bool GradedMesh::is_transition(std::int64_t tet) const {
+  const OctreeCell& cell = octree_.cell(cell_of_tet(tet));
+  return (transition_slots(cell) >> tet_slots::select(cell.slots, static_cast<int>(tet - cell.first_tet)) & 1) != 0;
+}
+
+IdSet GradedMesh::transition_vertices() const {
+  IdSet vertices(n_vertices());
+  tbb::parallel_for(0, octree_.n_cells(), [&](int leaf) {
+    for (std::uint64_t slots = octree_.cell(leaf).slots & tet_slots::of_faces(octree_.cell(leaf).coarse); slots != 0;
+         slots &= slots - 1) {
+      for (const std::int64_t v : corners(leaf, std::countr_zero(slots))) vertices.insert_shared(v);
+    }
+  });
+  return vertices;
 }
 
 void GradedMesh::find_slots(int leaf) {
@@ -164,7 +184,10 @@ std::uint64_t GradedMesh::tet_key(std::int64_t tet) const {
 
 Vec3 GradedMesh::position(std::int64_t vertex) const {
   const GridPoint p = grid_point(key(vertex));
-  return origin_ + unit_ * Vec3(p[0], p[1], p[2]);
+  if (!offsets_.has(vertex)) return origin_ + unit_ * Vec3(p[0], p[1], p[2]);
+  const auto& by = offsets_.by[static_cast<std::size_t>(offsets_.moved.rank(vertex))];
+  return origin_ + unit_ * Vec3(p[0] + static_cast<double>(by[0]), p[1] + static_cast<double>(by[1]),
+                                p[2] + static_cast<double>(by[2]));
 }
 
 std::array<std::int64_t, 4> GradedMesh::tet(std::int64_t tet) const {

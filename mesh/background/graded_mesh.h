@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesh/background/linear_octree.h"
+#include "mesh/background/transition_smoothing.h"
 #include "mesh/base/id_set.h"
 #include "mesh/core/tet_mesh.h"
 
@@ -21,6 +22,8 @@ struct Grading {
   double tolerance = 1;  ///< leaves split while their mean edge length exceeds that times the size
   /// Whether a cube meets the region of interest; leaves beyond it are left out. Empty: all are kept.
   std::function<bool(const Vec3& centre, double half_width)> wanted = {};
+  std::size_t max_leaves = std::size_t{1} << 26;  ///< about 60 bytes each, and a dozen tets
+  int transition_sweeps = 8;  ///< smooth_transitions(); 0: vertices are corners and centres of leaves
 };
 
 /// A universal mesh whose tets grow and shrink: BCC tets on an octree in which leaves that touch differ by one level at
@@ -38,7 +41,7 @@ class GradedMesh {
  public:
   /// The root cube is centred at the box, its width that of the smallest leaves times a power of two.
   /// \throw std::invalid_argument for an empty box, finest <= 0, tolerance <= 0, no size or one that is not > 0, more
-  ///        than kMaxOctreeLevel levels, or more than 2^31 - 1 vertices
+  ///        than kMaxOctreeLevel levels or max_leaves, or 2^31 vertices
   explicit GradedMesh(const Grading& grading);
 
   std::int64_t n_vertices() const { return octree_.n_vertices(); }
@@ -65,6 +68,9 @@ class GradedMesh {
   /// Mean length of the edges at a vertex, model units.
   double mean_edge(std::int64_t vertex) const;
   bool on_boundary(std::int64_t vertex) const;
+  /// Whether a tet is none of BCC: between two sizes, or a half.
+  bool is_transition(std::int64_t tet) const;
+  std::int64_t n_moved() const { return static_cast<std::int64_t>(offsets_.by.size()); }
   /// The tet that contains x, or -1 outside of all leaves.
   std::int64_t tet_at(const Vec3& x) const;
 
@@ -94,6 +100,8 @@ class GradedMesh {
   std::int64_t tet_at_edge(int leaf, int face, int e, int half) const;
   std::int64_t tet_around_edge(int leaf, int face, int e, int half, bool split) const;
   void find_slots(int leaf);
+  IdSet transition_vertices() const;
+  static std::uint64_t transition_slots(const OctreeCell& leaf);
   std::array<std::int64_t, 4> corners(int leaf, int slot) const;
   Star star_of(std::int64_t vertex) const;
   void add_star_of_centre(int leaf, Star& star) const;
@@ -113,6 +121,7 @@ class GradedMesh {
   std::int64_t n_leaves_ = 0, n_tets_ = 0;
   IdSet first_vertices_{0};             ///< of the cells
   std::vector<std::int32_t> tet_cell_;  ///< of every 16th tet
+  VertexOffsets offsets_;
 };
 
 /// The same mesh, stored. \throw std::invalid_argument for more than 2^31 - 1 tets

@@ -182,12 +182,10 @@ void LinearOctree::find_vertices() {
     }
     own.vertices = static_cast<std::uint8_t>(vertices);
   });
-  std::uint64_t n = 0;
   for (OctreeCell& cell : cells_) {
-    cell.first_vertex = static_cast<std::uint32_t>(n);
-    n += static_cast<std::uint64_t>(std::popcount(cell.vertices));
+    cell.first_vertex = static_cast<std::uint32_t>(n_vertices_);
+    n_vertices_ += std::popcount(cell.vertices);
   }
-  n_vertices_ = static_cast<std::uint32_t>(n);
 }
 
 }  // namespace umtet

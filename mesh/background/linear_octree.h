@@ -49,7 +49,7 @@ class LinearOctree {
   OctreeCell& cell(int c) { return cells_[static_cast<std::size_t>(c)]; }
   /// Of its lower corner, or the point.
   std::uint64_t corner_key(int c) const { return keys_[static_cast<std::size_t>(c)]; }
-  std::uint32_t n_vertices() const { return n_vertices_; }
+  std::int64_t n_vertices() const { return n_vertices_; }
   /// The leaf or point whose half-open cube this key is in, or -1.
   int locate(std::uint64_t key) const;
   int locate(const GridPoint& p) const { return is_in_root(p) ? locate(morton_key(p)) : -1; }
@@ -77,7 +77,7 @@ class LinearOctree {
 
   std::vector<std::uint64_t> keys_;
   std::vector<OctreeCell> cells_;
-  std::uint32_t n_vertices_ = 0;
+  std::int64_t n_vertices_ = 0;
 };
 
 }  // namespace umtet
