@@ -24,7 +24,8 @@ struct ExpressionError : std::runtime_error {
 /// be C2.
 ///
 /// muParser reads the text, GiNaC differentiates it exactly (decimal numbers are kept as fractions), muParser evaluates
-/// psi, its gradient and its Hessian. Thread-safe: every thread gets its own evaluators at its first call.
+/// psi, its gradient and its Hessian. Each reading of a text is the same function to the last bit. Thread-safe: every
+/// thread gets its own evaluators at its first call.
 /// Where the formula has no real value (log of a negative number) the result is NaN.
 /// Licence: GiNaC is GPL-2+, so a program that links this file is GPL as a whole.
 class Expression {

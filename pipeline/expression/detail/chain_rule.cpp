@@ -47,6 +47,9 @@ class Writer {
  private:
   const std::string& key(const GiNaC::ex& e);
   std::vector<GiNaC::ex> operands(const GiNaC::ex& e);
+  bool begins_with_minus(const GiNaC::ex& sum);
+  GiNaC::ex with_signs(const GiNaC::ex& e);
+  GiNaC::ex factor(const GiNaC::ex& e);
   std::string keep(const std::string& text);
   std::string number(const GiNaC::ex& e);
   std::string write(const GiNaC::ex& e);
@@ -62,6 +65,7 @@ class Writer {
   Assignments result_;
   std::unordered_map<std::string, std::string> names_;  ///< text -> name
   std::map<GiNaC::ex, std::string, GiNaC::ex_is_less> keys_;
+  std::map<std::string, std::pair<GiNaC::realsymbol, GiNaC::ex>> sums_;  ///< key -> the symbol of that name, the sum
 };
 
 /// e written out. Operands of sums and products are in the order of their keys: GiNaC's order depends on addresses, and
@@ -88,6 +92,58 @@ std::vector<GiNaC::ex> Writer::operands(const GiNaC::ex& e) {
     std::sort(all.begin(), all.end(), [this](const GiNaC::ex& a, const GiNaC::ex& b) { return key(a) < key(b); });
   }
   return all;
+}
+
+/// Whether the term of least key, signs and numbers apart, is negative.
+bool Writer::begins_with_minus(const GiNaC::ex& sum) {
+  std::string least;
+  bool is_negative = false;
+  for (const GiNaC::ex& term : sum) {
+    if (GiNaC::is_a<GiNaC::numeric>(term)) continue;
+    GiNaC::numeric coefficient(1);
+    if (GiNaC::is_a<GiNaC::mul>(term)) {
+      for (const GiNaC::ex& factor : term) {
+        if (GiNaC::is_a<GiNaC::numeric>(factor)) coefficient = GiNaC::ex_to<GiNaC::numeric>(factor);
+      }
+    }
+    const std::string& name = key(term / coefficient);
+    if (!least.empty() && least < name) continue;
+    least = name;
+    is_negative = coefficient.is_negative();
+  }
+  return is_negative;
+}
+
+/// e, in which sums that are factors or bases of whole powers are symbols. From those GiNaC takes out the sign of their
+/// first term; which one that is depends on addresses, and on how many symbols there were before. Here it is the term
+/// of least key.
+GiNaC::ex Writer::with_signs(const GiNaC::ex& e) {
+  if (is_number(e)) return e;
+  if (GiNaC::is_a<GiNaC::function>(e)) {
+    return GiNaC::function(GiNaC::ex_to<GiNaC::function>(e).get_serial(), with_signs(e.op(0)));
+  }
+  if (GiNaC::is_a<GiNaC::power>(e)) {
+    const bool is_whole = e.op(1).info(GiNaC::info_flags::integer);
+    // GiNaC writes (1/u)^1.5 as u^-1.5, but not (-1/v)^1.5, which is the same where v is -u.
+    if (!is_whole && e.op(1).info(GiNaC::info_flags::positive)) {
+      const GiNaC::ex u = -1 / e.op(0);
+      if (GiNaC::is_a<GiNaC::add>(u)) return GiNaC::pow(-with_signs(u), -e.op(1));
+    }
+    return GiNaC::pow(is_whole ? factor(e.op(0)) : with_signs(e.op(0)), with_signs(e.op(1)));
+  }
+  if (!GiNaC::is_a<GiNaC::add>(e) && !GiNaC::is_a<GiNaC::mul>(e)) return e;
+  GiNaC::exvector parts;
+  for (const GiNaC::ex& part : e) parts.push_back(GiNaC::is_a<GiNaC::add>(e) ? with_signs(part) : factor(part));
+  return GiNaC::is_a<GiNaC::add>(e) ? GiNaC::ex(GiNaC::add(parts)) : GiNaC::ex(GiNaC::mul(parts));
+}
+
+GiNaC::ex Writer::factor(const GiNaC::ex& e) {
+  if (is_number(e) || !GiNaC::is_a<GiNaC::add>(e)) return with_signs(e);
+  GiNaC::ex s = with_signs(e);
+  const int sign = begins_with_minus(s) ? -1 : 1;
+  s = sign * s;
+  const std::string name = key(s);
+  return sign * sums_.try_emplace(name, GiNaC::realsymbol(name), s).first->second.first;
 }
 
 /// A name for `text`, unless it is one, or digits.
@@ -223,6 +279,7 @@ Term Writer::term(const GiNaC::ex& e) {
   }
   if (GiNaC::is_a<GiNaC::symbol>(e)) {
     t.value = key(e);
+    if (const auto s = sums_.find(t.value); s != sums_.end()) return kept(sum(operands(s->second.second)));
     if (order_ > 0) t.gradient[static_cast<std::size_t>(t.value[0] - 'x')] = "1";
     return t;
   }
@@ -234,7 +291,7 @@ Term Writer::term(const GiNaC::ex& e) {
 }
 
 Assignments Writer::write_all(const GiNaC::ex& psi) {
-  const Term t = term(psi);
+  const Term t = term(with_signs(psi));
   result_.results = {t.value};
   if (order_ > 0) result_.results.insert(result_.results.end(), t.gradient.begin(), t.gradient.end());
   if (order_ > 1) result_.results.insert(result_.results.end(), t.hessian.begin(), t.hessian.end());

@@ -192,6 +192,31 @@ TEST(Expression, TimeIsTheDecimalNumberItLooksLike) {
   EXPECT_THROW(Expression("1/t+x", 0.), ExpressionError);
 }
 
+TEST(Expression, EveryReadingOfATextIsTheSameFunction) {
+  // Where sums with terms of both signs are factors or bases: GiNaC's order of terms differs from reading to reading.
+  for (const char* text :
+       {"((.6*(x-.3)-.8*y+1/7*z-1.1)^2+(.8*(x-.3)+.6*y-z/3)^2-1)*((.3*x-.7*z+y/9)^3-(y-.1*x)^2+.9)",
+        "(x-.1*y)*(z-x/3)*(y-.7*z)-(.1*x-.2*y+.4)^5", "((x-.3*y)^2*(z-.7)-(y-z/3)^3)^-2*(x-z*(y-.9*x))-.1",
+        "sin((x-.3*y)*(y-z/7))/(x-1.7*y-.1*z)^2-exp((z-.3*x)^3)", "((x-.3*y)*sqrt(x-y/7)-(x-.3*y)^2)^3+(x-z/9)^y"}) {
+    const Expression first(text);
+    for (int n = 0; n < 50; ++n) {
+      const Expression again(text);
+      for (int k = 0; k < 20; ++k) {
+        const Vec3 x(3 + std::sin(k), std::cos(2. * k), std::sin(3. * k));
+        Vec3 g, same_g;
+        Mat3 H, same_H;
+        ASSERT_EQ(first.value(x), again.value(x)) << text;
+        first.evaluate(x, &g, nullptr);
+        again.evaluate(x, &same_g, nullptr);
+        ASSERT_EQ(g, same_g) << text;
+        ASSERT_EQ(first.evaluate(x, &g, &H), again.evaluate(x, &same_g, &same_H)) << text;
+        ASSERT_EQ(H, same_H) << text;
+        ASSERT_EQ(g, same_g) << text;
+      }
+    }
+  }
+}
+
 TEST(Expression, ThreadsSeeTheSameFunction) {
   const Expression psi("sin(3*x)*exp(y*z)+x^3-.1");
   const int n = 20000;
