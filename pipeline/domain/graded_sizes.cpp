@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <sstream>
 
 #include "mesh/background/graded_size.h"
@@ -57,6 +58,7 @@ void require_graded(const Parameters& parameters) {
   refuse(p.h_min > 0, "--h-min");
   refuse(p.h_max > 0, "--h-max");
   refuse(p.grade_inside, "--grade-inside");
+  refuse(parameters.source(keys::mesh::max_turn) >= ParamSource::Set, "--max-turn");
   refuse(parameters.source(keys::mesh::grade) >= ParamSource::Set, "--grade");
 }
 
@@ -111,7 +113,8 @@ void GradedSizes::add(Domain& domain, const Context& context) {
   s.steepest = domain.steepest();
   // Edges may be kSizeTolerance as long as the size: what may not be exceeded asks for as much less.
   s.edges_across *= kSizeTolerance;
-  s.max_turn /= kSizeTolerance;
+  s.max_turn = p.max_turn * std::numbers::pi / 180 / kSizeTolerance;
+  if (parameters_.source(keys::mesh::max_turn) >= ParamSource::Set) s.least_by_turn = s.h_min / s.h;
   s.deviation = p.max_deviation / (kSizeTolerance * kSizeTolerance);
   if (p.grade_inside) s.edges_across = s.max_turn = 0;
   domain.limit_detail(s.h_min);
