@@ -75,6 +75,8 @@ class Sampling {
   void add_lower_ends(const std::vector<Cube>& cubes) {
     std::vector<SizeSource> ends = tree_.sources();
     for (const Cube& c : cubes) {
+      const auto [least, most] = std::minmax_element(c.h.begin(), c.h.end());
+      if (*most - *least <= kSeen * grade_ * c.width) continue;
       for (int a = 0; a < 8; ++a) {
         bool is_low = true, is_steep = false;  // none of the others limits it; it limits one of them
         for (int b = 0; b < 8; ++b) {

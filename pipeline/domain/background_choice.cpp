@@ -58,7 +58,7 @@ BackgroundChoice::BackgroundChoice(const Parameters& parameters, const Domain& d
       walls_(parameters.mesh().box_walls) {
   require_walls(parameters);
   require_graded(parameters);
-  if (is_graded(parameters)) {
+  if (umtet::is_graded(parameters)) {
     graded_.emplace(parameters, domain.shift);
     return;
   }
@@ -93,6 +93,11 @@ EdgeLength BackgroundChoice::edge_length(Domain& domain, const Context& context)
                     h, n, p.max_tets, least / h));
   }
   return representable({least, least}, domain);
+}
+
+std::optional<double> BackgroundChoice::refine(const std::vector<SizeSource>& wanted, double h) {
+  sizes_ = nullptr;
+  return graded_->refine(wanted, h);
 }
 
 std::shared_ptr<const SizeField> BackgroundChoice::sizes_for(double h) const {

@@ -44,6 +44,9 @@ class BackgroundChoice {
   /// That of the file, of the sizes that this domain and all former ones ask for, or choose_edge_length().
   /// \throw as choose_edge_length() and GradedSizes::add()
   EdgeLength edge_length(Domain& domain, const Context& context = {});
+  /// Of a graded mesh: GradedSizes::refine().
+  std::optional<double> refine(const std::vector<SizeSource>& wanted, double h);
+  bool is_graded() const { return graded_.has_value(); }
   /// About how many tets of it are taken.
   double expected_tets(const Domain& domain, double h) const;
   /// The h at which about mesh.max_tets tets are made. \throw MeshingImpossible  psi < 0 nowhere

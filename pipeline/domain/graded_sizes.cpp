@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <sstream>
 
 #include "mesh/background/graded_size.h"
@@ -21,11 +22,13 @@ namespace {
 
 // Sizes fall to this share of h where nothing else says how far: edges that differ by 16 on the boundary.
 constexpr double kLeastOfH = 1. / 16;
+// Where a mesh failed they may fall to this share of that floor.
+constexpr double kLeastOfFloor = 1. / 4;
 // Places along the longer side of the box at which sizes inside are looked at for the least.
 constexpr int kInside = 32;
 // Of the number of tets with h: between that of a surface and that of a body.
 constexpr double kPower = 2.5;
-// The estimate of the number of tets is as good as this.
+// The estimate of the number of tets is good to 10 %; with the power above it gets there in three rounds.
 constexpr double kGoodEnough = .05;
 constexpr int kMostRounds = 6;
 
@@ -55,6 +58,7 @@ void require_graded(const Parameters& parameters) {
   refuse(p.h_min > 0, "--h-min");
   refuse(p.h_max > 0, "--h-max");
   refuse(p.grade_inside, "--grade-inside");
+  refuse(parameters.source(keys::mesh::max_turn) >= ParamSource::Set, "--max-turn");
   refuse(parameters.source(keys::mesh::grade) >= ParamSource::Set, "--grade");
 }
 
@@ -109,7 +113,8 @@ void GradedSizes::add(Domain& domain, const Context& context) {
   s.steepest = domain.steepest();
   // Edges may be kSizeTolerance as long as the size: what may not be exceeded asks for as much less.
   s.edges_across *= kSizeTolerance;
-  s.max_turn /= kSizeTolerance;
+  s.max_turn = p.max_turn * std::numbers::pi / 180 / kSizeTolerance;
+  if (parameters_.source(keys::mesh::max_turn) >= ParamSource::Set) s.least_by_turn = s.h_min / s.h;
   s.deviation = p.max_deviation / (kSizeTolerance * kSizeTolerance);
   if (p.grade_inside) s.edges_across = s.max_turn = 0;
   domain.limit_detail(s.h_min);
@@ -160,6 +165,23 @@ void GradedSizes::find_finest(const Domain& domain, const Context& context) {
   });
   least.insert(least.end(), inside.begin(), inside.end());
   finest_ = *std::min_element(least.begin(), least.end());
+}
+
+std::optional<double> GradedSizes::refine(const std::vector<SizeSource>& wanted, double h) {
+  const double factor = h / finest_, given = parameters_.mesh().h_min;
+  const double floor = given > 0 ? given : kLeastOfFloor * h_min_;
+  const std::size_t n = asked_.size();
+  double least = finest_;
+  for (SizeSource s : wanted) {
+    s.h /= factor, s.radius /= factor;
+    if (s.h < floor) continue;
+    asked_.push_back(s);
+    least = std::min(least, s.h);
+  }
+  if (asked_.size() == n) return std::nullopt;
+  // In halves, so that the cubes elsewhere stay what they were.
+  while (finest_ > kSizeTolerance * least) finest_ /= 2;
+  return factor * finest_;
 }
 
 SizeField GradedSizes::field(double h, const Context& context) const {

@@ -38,6 +38,11 @@ class GradedSizes {
   /// MeshingImpossible  psi = 0 nowhere in the box; UsageError; Cancelled
   void add(Domain& domain, const Context& context = {});
 
+  /// Asks for less where a mesh failed, with all sizes times h / finest(): where that is not below mesh.h_min, or a
+  /// quarter of the floor without it. Such sources are no more than asked for.
+  /// @return h with the same factor, of what is the finest then; none where nothing may be finer
+  std::optional<double> refine(const std::vector<SizeSource>& wanted, double h);
+
   int n_domains() const { return n_domains_; }  ///< that were taken in
   /// The h of the sizes as they are: the least on the boundary, and inside. \pre add() has been called
   double finest() const { return finest_; }
@@ -48,7 +53,7 @@ class GradedSizes {
   void find_finest(const Domain& domain, const Context& context);
 
   const Parameters& parameters_;
-  std::vector<SizeSource> asked_;               ///< by the user
+  std::vector<SizeSource> asked_;               ///< by the user, and where a mesh failed
   std::function<double(const Vec3&)> formula_;  ///< the user's, or none
   std::vector<SizeSource> sources_;             ///< of psi = 0
   Box box_;

@@ -20,16 +20,17 @@ namespace {
 
 // Points along an edge of a mesh that asks for sizes far smaller than its own tets: 165 in a tet.
 constexpr int kMostPerEdge = 8;
-constexpr std::array<const char*, 4> kEndings = {".vtu", ".csv", ".xyz", ".txt"};
+
+constexpr std::array<const char*, 4> endings = {".vtu", ".csv", ".xyz", ".txt"};
 
 std::vector<std::string_view> words_of(std::string_view line) {
-  constexpr std::string_view kBetween = " ,;\t\r";
+  constexpr std::string_view between = " ,;\t\r";
   std::vector<std::string_view> words;
   line = line.substr(0, line.find('#'));
   while (true) {
-    const std::size_t begin = line.find_first_not_of(kBetween);
+    const std::size_t begin = line.find_first_not_of(between);
     if (begin == line.npos) return words;
-    const std::size_t end = std::min(line.find_first_of(kBetween, begin), line.size());
+    const std::size_t end = std::min(line.find_first_of(between, begin), line.size());
     words.push_back(line.substr(begin, end - begin));
     line.remove_prefix(end);
   }
@@ -52,11 +53,11 @@ SizeSource checked(const fs::path& file, const std::string& place, const Vec3& x
 using Columns = std::array<std::size_t, 4>;
 
 std::optional<Columns> columns_of(const std::vector<std::string_view>& names) {
-  constexpr std::array<std::array<std::string_view, 2>, 4> kNames = {
+  constexpr std::array<std::array<std::string_view, 2>, 4> names_of = {
       {{"x", "X"}, {"y", "Y"}, {"z", "Z"}, {"size", "h"}}};
   Columns columns{};
   for (std::size_t k = 0; k < 4; ++k) {
-    const auto at = std::find_first_of(names.begin(), names.end(), kNames[k].begin(), kNames[k].end());
+    const auto at = std::find_first_of(names.begin(), names.end(), names_of[k].begin(), names_of[k].end());
     if (at == names.end()) return std::nullopt;
     columns[k] = static_cast<std::size_t>(at - names.begin());
   }
@@ -135,7 +136,7 @@ std::vector<SizeSource> read_mesh_sizes(const fs::path& file) {
 
 bool is_size_file(const std::string& text) {
   const std::string ending = fs::path(text).extension();
-  return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
+  return std::find(endings.begin(), endings.end(), ending) != endings.end();
 }
 
 std::vector<SizeSource> read_sizes(const fs::path& file) {

@@ -20,11 +20,16 @@ constexpr double kRefinement = .8;
 // A last h that is more than this share of the one before is not tried: it would make much the same mesh.
 constexpr double kWorthTrying = .95;
 
+// Attempts with smaller edges where the one before failed.
+constexpr int kMostRefinements = 4;
+
 /// What small places lack of thin parts, or was filled or cut for a manifold boundary, is as good as h can show. Folds
 /// come and go with h.
-bool is_settled(const PlaceReport::OfKind& k) {
-  return k.n == k.n_small && (k.kind == PlaceKind::Filled || k.kind == PlaceKind::Cut || k.kind == PlaceKind::Thin);
+bool is_as_good_as_h(PlaceKind kind) {
+  return kind == PlaceKind::Filled || kind == PlaceKind::Cut || kind == PlaceKind::Thin;
 }
+
+bool is_settled(const PlaceReport::OfKind& k) { return k.n == k.n_small && is_as_good_as_h(k.kind); }
 
 bool may_improve(const MeshAttempt& a) {
   if (a.made()) {
@@ -88,6 +93,48 @@ MeshAttempt best_attempt(const EdgeLength& choice, double effort, const std::fun
   }
   if (!keeps_last) say(fmt::format("h = {:.4g} will not do either ({}); keeping h = {:.4g}", h, why, best.h));
   return best;
+}
+
+MeshAttempt refined_attempt(double h, double effort, const std::function<MeshAttempt(double h)>& attempt,
+                            const std::function<std::optional<double>(const MeshAttempt&)>& refine,
+                            const std::function<void(const std::string&)>& say) {
+  MeshAttempt last = attempt(h), best;
+  const auto tets_of = [](const MeshAttempt& a) { return static_cast<double>(a.result.submesh.mesh.C.size()); };
+  double allowed = effort * tets_of(last);
+  bool has_best = false;
+  for (int round = 0;; ++round) {
+    allowed -= tets_of(last);
+    std::optional<double> next;
+    const bool may_try = round < kMostRefinements && may_improve(last) && allowed >= tets_of(last);
+    if (may_try) next = refine(last);
+    const std::string why = last.complaint();
+    if (!has_best || !is_worse(last, best)) {
+      best = std::move(last);
+      has_best = true;
+    } else if (!next) {
+      say(fmt::format("smaller edges will not do either ({}); keeping those of {} tets", why, tets_of(best)));
+    }
+    if (!next) return best;
+    say(fmt::format("the mesh will not do ({}); trying smaller edges where it failed", why));
+    last = attempt(*next);
+  }
+}
+
+std::vector<SizeSource> finer_where_it_failed(const MeshAttempt& a, const Vec3& shift) {
+  // So far around a place edges are smaller, in those that were asked for there: tets at it have neighbours.
+  constexpr double kAround = 2;
+  std::vector<SizeSource> finer;
+  const auto add = [&](const Vec3& x, double size) {
+    const double asked = a.sizes->at(x);
+    finer.push_back({x, asked / 2, size / 2 + kAround * asked});
+  };
+  if (!a.made()) add(a.result.evidence.where, 0);
+  for (const MeshPlace& place : a.places) {
+    if (is_small(place) && is_as_good_as_h(place.kind)) continue;
+    const Vec3 x = place.where - shift;
+    add(x, place.size_over_h * a.sizes->at(x));
+  }
+  return finer;
 }
 
 }  // namespace umtet

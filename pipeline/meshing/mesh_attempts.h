@@ -47,4 +47,18 @@ struct MeshAttempt {
 MeshAttempt best_attempt(const EdgeLength& choice, double effort, const std::function<MeshAttempt(double h)>& attempt,
                          const std::function<void(const std::string&)>& say);
 
+/// Runs `attempt` at h and, while the mesh is not faithful to psi = 0, with smaller edges where it is not, at most four
+/// times.
+///
+/// @param refine  asks for them, and returns the h of all that is asked for then; none where nothing may be finer
+/// @param effort  ends it where all attempts together have made more than this many times the tets of the first
+/// @return as best_attempt()
+MeshAttempt refined_attempt(double h, double effort, const std::function<MeshAttempt(double h)>& attempt,
+                            const std::function<std::optional<double>(const MeshAttempt&)>& refine,
+                            const std::function<void(const std::string&)>& say);
+
+/// Where an attempt failed, with half the size that was asked for there: the places that smaller edges may mend or, of
+/// one that made no mesh, where it ended. In working coordinates. \pre attempt.sizes
+std::vector<SizeSource> finer_where_it_failed(const MeshAttempt& attempt, const Vec3& shift);
+
 }  // namespace umtet

@@ -99,10 +99,10 @@ void MeshMaker::finish(const SizedBackground& background, ChosenSubmesh chosen, 
                     "0, so that it does not meet itself",
                     n_flips, n_back));
   }
+  a.sizes = background.sizes;
   round_to_file(a.result, domain_.shift);
   context_.report("certify", kCertificate);
   if (!a.made()) return;
-  a.sizes = background.sizes;
   Measurement made = measure(domain_, a.result, pieces, mesh_edge(background.mesh, a.result),
                              {&a.thin, parameters_.mesh().max_deviation, a.sizes.get()}, context_);
   a.measured = std::move(made.measures);
@@ -155,10 +155,13 @@ MeshAttempt MeshMaker::attempt_for_tets(double h, const std::function<SizedBackg
   }
 }
 
-MeshAttempt MeshMaker::best(const EdgeLength& choice, const std::function<SizedBackground(double h)>& background) {
-  return best_attempt(
-      choice, parameters_.mesh().effort, [&](double h) { return attempt_for_tets(h, background); },
-      [this](const std::string& line) { say(line); });
+MeshAttempt MeshMaker::best(const EdgeLength& choice, const std::function<SizedBackground(double h)>& background,
+                            const std::function<std::optional<double>(const MeshAttempt&)>& refine) {
+  const auto attempt = [&](double h) { return attempt_for_tets(h, background); };
+  const auto say_it = [this](const std::string& line) { say(line); };
+  const double effort = parameters_.mesh().effort;
+  return refine ? refined_attempt(choice.h, effort, attempt, refine, say_it)
+                : best_attempt(choice, effort, attempt, say_it);
 }
 
 std::string too_thin_text(const MeshAttempt& a, const Vec3& shift) {

@@ -38,7 +38,9 @@ class MeshMaker {
 
   /// The best_attempt() from this h on, each in a background of its own. Where mesh.tets asks for a number that h
   /// misses by more than a tenth, which shows before anything is moved, another h takes its place.
-  MeshAttempt best(const EdgeLength& choice, const std::function<SizedBackground(double h)>& background);
+  /// @param refine  where sizes vary, for refined_attempt() instead
+  MeshAttempt best(const EdgeLength& choice, const std::function<SizedBackground(double h)>& background,
+                   const std::function<std::optional<double>(const MeshAttempt&)>& refine = {});
 
   /// The pieces of psi = 0, psi cut for h: kept until another h is asked for. \throw Cancelled
   const ZeroSetChoice& pieces_at(double h);

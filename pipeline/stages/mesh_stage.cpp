@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <optional>
 
 #include "mesh/universal_mesh.h"
@@ -140,7 +141,12 @@ MeshAttempt MeshStage::best_mesh() {
                     "(--h decides)",
                     choice.h, *domain_.noise / choice.h));
   }
-  MeshAttempt best = maker_.best(choice, [this](double h) { return background_of(h); });
+  std::function<std::optional<double>(const MeshAttempt&)> refine;
+  if (background_.is_graded()) {
+    refine = [this](const MeshAttempt& a) { return background_.refine(finer_where_it_failed(a, domain_.shift), a.h); };
+  }
+  MeshAttempt best = maker_.best(
+      choice, [this](double h) { return background_of(h); }, refine);
   stop_if_interrupted();
   if (best.fell_through()) refuse_thin(best);
   if (!best.made()) refuse(best.result, best.h);

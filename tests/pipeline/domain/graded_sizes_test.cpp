@@ -103,7 +103,7 @@ TEST(GradedSizes, OfLabelsAreFactorsOfH) {
 
 TEST(GradedSizes, AreForGradedBackgroundsOnly) {
   for (const char* given : {"mesh.size=.1*x", "mesh.size_at=1=.5", "mesh.h_min=.1", "mesh.h_max=.1", "mesh.grade=.2",
-                            "mesh.grade_inside=true"}) {
+                            "mesh.grade_inside=true", "mesh.max_turn=20"}) {
     Parameters p;
     p.set(given);
     EXPECT_THROW(require_graded(p), UsageError) << given;
