@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "mesh/background/graded_mesh.h"
+#include "mesh/background/octree_tets.h"
 #include "mesh/base/id_blocks.h"
 #include "mesh/core/tet_quality.h"
 
@@ -68,7 +68,7 @@ struct Patch {
   std::vector<double> longest_step;  ///< per moving vertex
 };
 
-Patch patch_of(const GradedMesh& mesh, const IdSet& moving) {
+Patch patch_of(const OctreeTets& mesh, const IdSet& moving) {
   Patch patch;
   moving.for_each([&](std::int64_t v) { patch.moving.push_back(v); });
   const std::size_t n = patch.moving.size();
@@ -142,7 +142,7 @@ Vec3 step(const Patch& patch, const std::vector<TetTerms>& tets, std::size_t i, 
 
 }  // namespace
 
-VertexOffsets smooth_transitions(const GradedMesh& mesh, IdSet moving, int n_sweeps) {
+VertexOffsets smooth_transitions(const OctreeTets& mesh, IdSet moving, int n_sweeps) {
   for_each_in_blocks(moving, [&](std::size_t, std::int64_t v) {
     if (mesh.on_boundary(v)) moving.erase(v);
   });

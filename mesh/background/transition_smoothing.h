@@ -3,11 +3,10 @@
 #include <array>
 #include <vector>
 
+#include "mesh/background/octree_tets.h"
 #include "mesh/base/id_set.h"
 
 namespace umtet {
-
-class GradedMesh;
 
 /// Vertices that are not where the octree has them, and by how much, in units of the octree's grid.
 struct VertexOffsets {
@@ -33,6 +32,6 @@ struct VertexOffsets {
 ///
 /// @param mesh    as the octree has it
 /// @param moving  the vertices that may move
-VertexOffsets smooth_transitions(const GradedMesh& mesh, IdSet moving, int n_sweeps);
+VertexOffsets smooth_transitions(const OctreeTets& mesh, IdSet moving, int n_sweeps);
 
 }  // namespace umtet
