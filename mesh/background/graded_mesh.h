@@ -30,7 +30,8 @@ struct Grading {
 ///
 /// Within a region of one size the tets are those of two interleaved cubic lattices, corners and centres of leaves: Q =
 /// .9524, dihedral angles of 60 and 90 degrees. Between two sizes they are halves and quarters of such tets and halves
-/// of the pyramids over the small faces (tet_slots.h): Q >= .756, 45 to 120 degrees. At the background boundary they
+/// of the pyramids over the small faces (tet_slots.h): Q >= .756, 45 to 120 degrees, and better once
+/// smoothed (transition_smoothing.h). At the background boundary they
 /// are halved at the faces of leaves, which makes it flat.
 ///
 /// Only leaves are stored (linear_octree.h); vertices and tets are dense ids in the order of the leaves, and everything
