@@ -126,10 +126,22 @@ int OctreeTets::link_of(std::int64_t vertex, Link& link) const {
   const auto add_place = [&](int leaf, const CubeCode& code) { add(vertex_id(octree_.place(leaf, code))); };
   const auto add_star = [&](const Star& star) {
     for (int k = 0; k < star.n; ++k) {
-      const auto& [leaf, bits] = star.parts[static_cast<std::size_t>(k)];
-      for (std::uint64_t slots = bits; slots != 0; slots &= slots - 1) {
-        for (const std::int64_t v : corners(leaf, std::countr_zero(slots))) {
-          if (v != vertex) add(v);
+      const auto& [leaf, slots] = star.parts[static_cast<std::size_t>(k)];
+      const OctreeCell& cell = octree_.cell(leaf);
+      for (std::uint32_t codes = tet_slots::places(cell, slots); codes != 0; codes &= codes - 1) {
+        const int code = std::countr_zero(codes);
+        add_place(leaf, {code % 3, code / 3 % 3, code / 9});
+      }
+      const std::uint64_t large = slots & tet_slots::of_faces(cell.coarse) & tet_slots::kLargeSide;
+      if (slots != large) add(centre_id(leaf));
+      for (int f = 0; f < 6; ++f) {
+        const std::uint64_t at_face = tet_slots::kFace << (tet_slots::kPerFace * f);
+        const bool is_coarse = (cell.coarse >> f & 1) != 0;
+        if (((is_coarse ? large : slots) & at_face) == 0) continue;
+        if (cell.neighbor[f] < 0) {
+          add_place(leaf, tet_slots::centre(f));
+        } else {
+          add(centre_id(cell.neighbor[f]));
         }
       }
     }
@@ -160,7 +172,8 @@ int OctreeTets::link_of(std::int64_t vertex, Link& link) const {
     }
   }
   std::sort(link.begin(), link.begin() + n);
-  return static_cast<int>(std::unique(link.begin(), link.begin() + n) - link.begin());
+  const auto end = std::unique(link.begin(), link.begin() + n);
+  return static_cast<int>(std::remove(link.begin(), end, vertex) - link.begin());
 }
 
 void OctreeTets::link(std::int64_t vertex, std::vector<std::int64_t>& vertices) const {

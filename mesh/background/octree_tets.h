@@ -64,7 +64,8 @@ class OctreeTets {
     }
     void sort();
   };
-  using Link = std::array<std::int64_t, 192>;  ///< three vertices of each of at most 48 tets, and more
+  /// With repetitions: of a centre up to 33 of its own leaf and 5 of each of 24 small ones; of a point less.
+  using Link = std::array<std::int64_t, 192>;
 
   void find_slots(int leaf);
   int cell_of_vertex(std::int64_t vertex) const;
