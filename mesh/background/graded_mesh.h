@@ -15,11 +15,12 @@ namespace umtet {
 /// What a GradedMesh is made for. The functions are called by several threads at once.
 struct Grading {
   Eigen::AlignedBox3d box;  ///< is covered
-  double finest = 0;        ///< mean edge length of the smallest tets, model units
+  double finest = 0;        ///< mean edge length of the smallest tets, model units; half of it has the same root cube
   /// The least mean edge length that is wanted in the cube of this centre and half width.
   std::function<double(const Vec3& centre, double half_width)> size;
   double tolerance = 1;  ///< leaves split while their mean edge length exceeds that times the size
-  /// Whether a cube meets the region of interest; leaves beyond it are left out. Empty: all are kept.
+  /// Whether a cube meets the region of interest. The eight children of one that does not are left out, and the
+  /// background has a boundary there. Empty: all are kept.
   std::function<bool(const Vec3& centre, double half_width)> wanted = {};
   std::size_t max_leaves = std::size_t{1} << 26;  ///< about 60 bytes each, and a dozen tets
   int transition_sweeps = 8;  ///< smooth_transitions(); 0: vertices are corners and centres of leaves

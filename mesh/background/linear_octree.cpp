@@ -49,20 +49,22 @@ GridPoint LinearOctree::point(int leaf, const CubeCode& code) const {
 }
 
 int LinearOctree::locate_from(int c, const GridPoint& p) const {
+  if (!is_in_root(p)) return -1;
+  const std::uint64_t key = morton_key(p);
   // A step an axis, and one more an axis among four small leaves.
   for (int steps = 0; steps < 7 && cell(c).is_leaf(); ++steps) {
-    const GridPoint corner = point(c, {0, 0, 0});
+    if (corner_key(c) <= key && key < end_key(c)) return c;
+    const GridPoint corner = grid_point(corner_key(c));
     const std::int32_t w = width(cell(c).level);
     int face = -1;
     for (int a = 0; a < 3; ++a) {
       if (p[a] < corner[a]) face = 2 * a;
       if (p[a] >= corner[a] + w) face = 2 * a + 1;
     }
-    if (face < 0) return c;
     if (cell(c).neighbor[face] < 0) break;
     c = cell(c).neighbor[face];
   }
-  return locate(p);
+  return locate(key);
 }
 
 LinearOctree::VertexPlace LinearOctree::place_in(int c, std::uint64_t key) const {

@@ -49,14 +49,13 @@ TetTerms terms(const std::array<Vec3, 4>& x, double scale, int k) {
   TetTerms out;
   out.weight = static_cast<float>(power(ratio * ratio * ratio * s * s * s / (det * det), k));
   const Vec3 sum = e + f + g;  // from the first corner, four times the centroid
-  const auto set = [&](std::size_t i, const Vec3& det_gradient, const Vec3& from_first) {
-    const Vec3 l = 2 / (3 * det) * det_gradient - 2 / s * (4 * from_first - sum);
-    for (int a = 0; a < 3; ++a) out.log_gradient[i][static_cast<std::size_t>(a)] = static_cast<float>(l[a]);
-  };
-  set(0, -(normal[0] + normal[1] + normal[2]), Vec3::Zero());
-  set(1, normal[0], e);
-  set(2, normal[1], f);
-  set(3, normal[2], g);
+  const std::array<Vec3, 4> det_gradient = {-(normal[0] + normal[1] + normal[2]), normal[0], normal[1], normal[2]};
+  const std::array<Vec3, 4> from_first = {Vec3::Zero(), e, f, g};
+  const double by_det = 2 / (3 * det), by_s = 2 / s;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vec3 l = by_det * det_gradient[i] - by_s * (4 * from_first[i] - sum);
+    out.log_gradient[i] = {static_cast<float>(l[0]), static_cast<float>(l[1]), static_cast<float>(l[2])};
+  }
   return out;
 }
 
