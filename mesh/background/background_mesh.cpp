@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "mesh/background/graded_mesh.h"
+
 namespace umtet {
 namespace {
 
@@ -215,6 +217,18 @@ std::int64_t BackgroundMesh::tet_near(const Vec3& x) const {
     cell[a] = static_cast<std::int64_t>(c);
   }
   return tet_id(0, cell, {0, 0, 0});
+}
+
+std::int64_t BackgroundMesh::key_of_vertex(std::int64_t vertex) const {
+  return graded_ ? static_cast<std::int64_t>(graded_->key(vertex)) : vertex;
+}
+
+std::int64_t BackgroundMesh::key_of_tet(std::int64_t tet) const {
+  return graded_ ? static_cast<std::int64_t>(graded_->tet_key(tet)) : tet;
+}
+
+double BackgroundMesh::mean_edge(std::int64_t vertex) const {
+  return graded_ ? graded_->mean_edge(vertex) : explicit_->mean_edge(static_cast<int>(vertex));
 }
 
 }  // namespace umtet

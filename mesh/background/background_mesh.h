@@ -6,11 +6,12 @@
 #include <vector>
 
 #include "mesh/background/explicit_mesh.h"
-#include "mesh/background/graded_mesh.h"
 #include "mesh/background/tiling.h"
 #include "mesh/core/tet_mesh.h"
 
 namespace umtet {
+
+class GradedMesh;
 
 using Box = Eigen::AlignedBox3d;
 
@@ -41,10 +42,7 @@ class BackgroundMesh {
   const Tiling& tiling() const { return tiling_; }
   double h() const { return h_; }
   /// Mean length of the edges at this vertex, model units; of a lattice h(), whichever vertex.
-  double h(std::int64_t vertex) const {
-    if (is_lattice_) return h_;
-    return graded_ ? graded_->mean_edge(vertex) : explicit_->mean_edge(static_cast<int>(vertex));
-  }
+  double h(std::int64_t vertex) const { return is_lattice_ ? h_ : mean_edge(vertex); }
   Box box() const;  ///< the block of cells, or the bounding box
   std::int64_t n_vertices()
       const;  ///< size of the id range, vertices without a tet at the background boundary included
@@ -70,12 +68,8 @@ class BackgroundMesh {
   std::int64_t tet_near(const Vec3& x) const;
   /// Names that outlast the mesh: those of a graded mesh are the same in any grading of its root cube
   /// (GradedMesh::key()), elsewhere they are the ids.
-  std::int64_t key_of_vertex(std::int64_t vertex) const {
-    return graded_ ? static_cast<std::int64_t>(graded_->key(vertex)) : vertex;
-  }
-  std::int64_t key_of_tet(std::int64_t tet) const {
-    return graded_ ? static_cast<std::int64_t>(graded_->tet_key(tet)) : tet;
-  }
+  std::int64_t key_of_vertex(std::int64_t vertex) const;
+  std::int64_t key_of_tet(std::int64_t tet) const;
 
   // From here on: of a lattice.
   using Cell = std::array<std::int64_t, 3>;
@@ -98,6 +92,7 @@ class BackgroundMesh {
     int type;
     Cell cell;
   };
+  double mean_edge(std::int64_t vertex) const;
   VertexAddress vertex_address(std::int64_t vertex) const;
   bool is_deep(const Cell& cell) const;
   bool holds(const Cell& cell, const std::array<int, 3>& offset) const;

@@ -6,9 +6,8 @@
 #include <functional>
 #include <vector>
 
-#include "mesh/background/linear_octree.h"
+#include "mesh/background/octree_tets.h"
 #include "mesh/background/transition_smoothing.h"
-#include "mesh/base/id_set.h"
 #include "mesh/core/tet_mesh.h"
 
 namespace umtet {
@@ -16,11 +15,12 @@ namespace umtet {
 /// What a GradedMesh is made for. The functions are called by several threads at once.
 struct Grading {
   Eigen::AlignedBox3d box;  ///< is covered
-  double finest = 0;        ///< mean edge length of the smallest tets, model units
+  double finest = 0;        ///< mean edge length of the smallest tets, model units; half of it has the same root cube
   /// The least mean edge length that is wanted in the cube of this centre and half width.
   std::function<double(const Vec3& centre, double half_width)> size;
   double tolerance = 1;  ///< leaves split while their mean edge length exceeds that times the size
-  /// Whether a cube meets the region of interest; leaves beyond it are left out. Empty: all are kept.
+  /// Whether a cube meets the region of interest. The eight children of one that does not are left out, and the
+  /// background has a boundary there. Empty: all are kept.
   std::function<bool(const Vec3& centre, double half_width)> wanted = {};
   std::size_t max_leaves = std::size_t{1} << 26;  ///< about 60 bytes each, and a dozen tets
   int transition_sweeps = 8;  ///< smooth_transitions(); 0: vertices are corners and centres of leaves
@@ -31,7 +31,8 @@ struct Grading {
 ///
 /// Within a region of one size the tets are those of two interleaved cubic lattices, corners and centres of leaves: Q =
 /// .9524, dihedral angles of 60 and 90 degrees. Between two sizes they are halves and quarters of such tets and halves
-/// of the pyramids over the small faces (tet_slots.h): Q >= .756, 45 to 120 degrees. At the background boundary they
+/// of the pyramids over the small faces (tet_slots.h): Q >= .756, 45 to 120 degrees, and better once
+/// smoothed (transition_smoothing.h). At the background boundary they
 /// are halved at the faces of leaves, which makes it flat.
 ///
 /// Only leaves are stored (linear_octree.h); vertices and tets are dense ids in the order of the leaves, and everything
@@ -44,83 +45,41 @@ class GradedMesh {
   ///        than kMaxOctreeLevel levels or max_leaves, or 2^31 vertices
   explicit GradedMesh(const Grading& grading);
 
-  std::int64_t n_vertices() const { return octree_.n_vertices(); }
-  std::int64_t n_tets() const { return n_tets_; }
-  std::int64_t n_leaves() const { return n_leaves_; }
-  Eigen::AlignedBox3d box() const { return box_; }  ///< of the vertices
+  std::int64_t n_vertices() const { return tets_.n_vertices(); }
+  std::int64_t n_tets() const { return tets_.n_tets(); }
+  std::int64_t n_leaves() const { return tets_.n_leaves(); }
+  Eigen::AlignedBox3d box() const;  ///< of the vertices
   /// Mean edge length of the smallest tets.
   double finest() const { return finest_; }
+  std::size_t n_bytes() const;                                                            ///< of memory that is kept
+  std::int64_t n_moved() const { return static_cast<std::int64_t>(offsets_.by.size()); }  ///< by smooth_transitions()
 
   Vec3 position(std::int64_t vertex) const;
   /// Morton key of the vertex in the root cube.
-  std::uint64_t key(std::int64_t vertex) const;
+  std::uint64_t key(std::int64_t vertex) const { return tets_.key(vertex); }
   /// The vertex of this key, or -1.
-  std::int64_t vertex_of(std::uint64_t key) const;
+  std::int64_t vertex_of(std::uint64_t key) const { return tets_.vertex_of(key); }
   /// 64 (cube_key() of the leaf) + slot.
-  std::uint64_t tet_key(std::int64_t tet) const;
-  std::array<std::int64_t, 4> tet(std::int64_t tet) const;
+  std::uint64_t tet_key(std::int64_t tet) const { return tets_.tet_key(tet); }
+  std::array<std::int64_t, 4> tet(std::int64_t tet) const { return tets_.tet(tet); }
   /// Appends the tets at a vertex, ascending.
-  void star(std::int64_t vertex, std::vector<std::int64_t>& tets) const;
+  void star(std::int64_t vertex, std::vector<std::int64_t>& tets) const { tets_.star(vertex, tets); }
   /// Appends the vertices that share an edge with it, ascending.
-  void link(std::int64_t vertex, std::vector<std::int64_t>& vertices) const;
+  void link(std::int64_t vertex, std::vector<std::int64_t>& vertices) const { tets_.link(vertex, vertices); }
   /// The tet behind the face opposite to local vertex `face`, or -1.
-  std::int64_t neighbor(std::int64_t tet, int face) const;
-  /// Mean length of the edges at a vertex, model units.
-  double mean_edge(std::int64_t vertex) const;
-  bool on_boundary(std::int64_t vertex) const;
+  std::int64_t neighbor(std::int64_t tet, int face) const { return tets_.neighbor(tet, face); }
+  /// Mean length of the edges at a vertex before transitions are smoothed, model units.
+  double mean_edge(std::int64_t vertex) const { return unit_ * tets_.mean_edge(vertex); }
+  bool on_boundary(std::int64_t vertex) const { return tets_.on_boundary(vertex); }
   /// Whether a tet is none of BCC: between two sizes, or a half.
-  bool is_transition(std::int64_t tet) const;
-  std::int64_t n_moved() const { return static_cast<std::int64_t>(offsets_.by.size()); }
+  bool is_transition(std::int64_t tet) const { return tets_.is_transition(tet); }
   /// The tet that contains x, or -1 outside of all leaves.
   std::int64_t tet_at(const Vec3& x) const;
 
  private:
-  /// The leaves around a vertex that is no centre, and where it is in them.
-  struct Around {
-    int n = 0;
-    std::array<std::pair<int, int>, 8> leaves;  ///< with code_index()
-    bool of_one_size = false;                   ///< eight, by octant
-    bool is_complete = true;                    ///< no leaf is missing
-  };
-  /// Leaves around a vertex with bits of their slots.
-  struct Star {
-    int n = 0;
-    std::array<std::pair<int, std::uint64_t>, 32> parts;
-    void add(int leaf, std::uint64_t slots) {
-      if (slots != 0) parts[static_cast<std::size_t>(n++)] = {leaf, slots};
-    }
-    void sort();
-  };
-  bool is_centre(std::int64_t vertex) const;
-  int cell_of_vertex(std::int64_t vertex) const;
-  int cell_of_tet(std::int64_t tet) const;
-  std::int64_t vertex_id(const LinearOctree::VertexPlace& place) const;
-  std::int64_t centre_id(int leaf) const { return vertex_id({leaf, 7}); }
-  std::int64_t tet_id(int leaf, int slot) const;
-  std::int64_t tet_at_edge(int leaf, int face, int e, int half) const;
-  std::int64_t tet_around_edge(int leaf, int face, int e, int half, bool split) const;
-  void find_slots(int leaf);
-  IdSet transition_vertices() const;
-  static std::uint64_t transition_slots(const OctreeCell& leaf);
-  std::array<std::int64_t, 4> corners(int leaf, int slot) const;
-  Star star_of(std::int64_t vertex) const;
-  void add_star_of_centre(int leaf, Star& star) const;
-  void add_star_of_point(const Around& around, Star& star) const;
-  Around around(std::int64_t vertex) const;
-  bool is_regular_centre(int leaf) const;
-  bool is_regular_point(const Around& around) const;
-  /// Whether all tets at a vertex are BCC tets of one size.
-  bool is_regular(std::int64_t vertex) const;
-  using Link = std::array<std::int64_t, 192>;  ///< three vertices of each of at most 48 tets, and more
-  int link_of(std::int64_t vertex, Link& link) const;
-
   double finest_ = 0, unit_ = 0;
   Vec3 origin_;
-  Eigen::AlignedBox3d box_;
-  LinearOctree octree_;
-  std::int64_t n_leaves_ = 0, n_tets_ = 0;
-  IdSet first_vertices_{0};             ///< of the cells
-  std::vector<std::int32_t> tet_cell_;  ///< of every 16th tet
+  OctreeTets tets_;
   VertexOffsets offsets_;
 };
 

@@ -24,9 +24,21 @@ std::uint64_t LinearOctree::end_key(int c) const {
   return keys_[static_cast<std::size_t>(c)] + (cell.is_leaf() ? std::uint64_t{8} << half_width_shift(cell.level) : 1);
 }
 
-int LinearOctree::locate(std::uint64_t key) const {
-  const int c = static_cast<int>(std::upper_bound(keys_.begin(), keys_.end(), key) - keys_.begin()) - 1;
+/// Among the cells begin .. end - 1.
+int LinearOctree::locate(std::uint64_t key, std::size_t begin, std::size_t end) const {
+  const auto first = keys_.begin() + static_cast<std::ptrdiff_t>(begin);
+  const auto after = std::upper_bound(first, keys_.begin() + static_cast<std::ptrdiff_t>(end), key);
+  const int c = static_cast<int>(after - keys_.begin()) - 1;
   return c >= 0 && key < end_key(c) ? c : -1;
+}
+
+/// By steps of doubled length from cell c: most neighbours are near in Morton order.
+int LinearOctree::locate_near(std::size_t c, std::uint64_t key) const {
+  std::size_t begin = c, end = c + 1;
+  for (std::size_t step = 8; begin > 0 && keys_[begin] > key; step *= 8) begin = begin > step ? begin - step : 0;
+  for (std::size_t step = 8; end < keys_.size() && keys_[end] <= key; step *= 8)
+    end = std::min(keys_.size(), end + step);
+  return locate(key, begin, end);
 }
 
 GridPoint LinearOctree::point(int leaf, const CubeCode& code) const {
@@ -37,20 +49,22 @@ GridPoint LinearOctree::point(int leaf, const CubeCode& code) const {
 }
 
 int LinearOctree::locate_from(int c, const GridPoint& p) const {
+  if (!is_in_root(p)) return -1;
+  const std::uint64_t key = morton_key(p);
   // A step an axis, and one more an axis among four small leaves.
   for (int steps = 0; steps < 7 && cell(c).is_leaf(); ++steps) {
-    const GridPoint corner = point(c, {0, 0, 0});
+    if (corner_key(c) <= key && key < end_key(c)) return c;
+    const GridPoint corner = grid_point(corner_key(c));
     const std::int32_t w = width(cell(c).level);
     int face = -1;
     for (int a = 0; a < 3; ++a) {
       if (p[a] < corner[a]) face = 2 * a;
       if (p[a] >= corner[a] + w) face = 2 * a + 1;
     }
-    if (face < 0) return c;
     if (cell(c).neighbor[face] < 0) break;
     c = cell(c).neighbor[face];
   }
-  return locate(p);
+  return locate(key);
 }
 
 LinearOctree::VertexPlace LinearOctree::place_in(int c, std::uint64_t key) const {
@@ -113,7 +127,7 @@ void LinearOctree::find_neighbors() {
       // The lower corner of the neighbour's face: of four small ones it is at the one with the least coordinates.
       GridPoint p = grid_point(keys_[i]);
       p[f / 2] += f % 2 == 0 ? -1 : width(cell.level);
-      cell.neighbor[f] = p[f / 2] < kRootWidth ? locate(p) : -1;
+      cell.neighbor[f] = is_in_root(p) && p[f / 2] < kRootWidth ? locate_near(i, morton_key(p)) : -1;
       if (cell.neighbor[f] >= 0 && cells_[static_cast<std::size_t>(cell.neighbor[f])].level < cell.level) {
         cell.coarse = static_cast<std::uint8_t>(cell.coarse | 1 << f);
       }

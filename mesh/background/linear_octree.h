@@ -51,7 +51,7 @@ class LinearOctree {
   std::uint64_t corner_key(int c) const { return keys_[static_cast<std::size_t>(c)]; }
   std::int64_t n_vertices() const { return n_vertices_; }
   /// The leaf or point whose half-open cube this key is in, or -1.
-  int locate(std::uint64_t key) const;
+  int locate(std::uint64_t key) const { return locate(key, 0, keys_.size()); }
   int locate(const GridPoint& p) const { return is_in_root(p) ? locate(morton_key(p)) : -1; }
   /// The same for a place near a cell: over faces, by searching only where these lead to no leaf.
   int locate_from(int c, const GridPoint& p) const;
@@ -70,6 +70,8 @@ class LinearOctree {
 
  private:
   VertexPlace place_in(int c, std::uint64_t key) const;
+  int locate(std::uint64_t key, std::size_t begin, std::size_t end) const;
+  int locate_near(std::size_t c, std::uint64_t key) const;
   std::uint64_t end_key(int c) const;
   void find_neighbors();
   void add_points();

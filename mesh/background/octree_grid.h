@@ -1,5 +1,9 @@
 #pragma once
 
+#ifdef __BMI2__
+#include <immintrin.h>
+#endif
+
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -14,22 +18,32 @@ inline constexpr int kMaxOctreeLevel = 17;
 inline constexpr int kRootBits = kMaxOctreeLevel + 1;
 inline constexpr std::int32_t kRootWidth = 1 << kRootBits;
 
+inline constexpr std::uint64_t kEveryThirdBit = 0x1249249249249249;
+
 /// Bit i of a coordinate becomes bit 3 i.
 inline std::uint64_t spread_bits(std::uint64_t x) {
+#ifdef __BMI2__
+  return _pdep_u64(x, kEveryThirdBit);
+#else
   x = (x | x << 32) & 0x001f00000000ffff;
   x = (x | x << 16) & 0x001f0000ff0000ff;
   x = (x | x << 8) & 0x100f00f00f00f00f;
   x = (x | x << 4) & 0x10c30c30c30c30c3;
-  return (x | x << 2) & 0x1249249249249249;
+  return (x | x << 2) & kEveryThirdBit;
+#endif
 }
 
 inline std::int32_t collected_bits(std::uint64_t x) {
-  x &= 0x1249249249249249;
+#ifdef __BMI2__
+  return static_cast<std::int32_t>(_pext_u64(x, kEveryThirdBit));
+#else
+  x &= kEveryThirdBit;
   x = (x | x >> 2) & 0x10c30c30c30c30c3;
   x = (x | x >> 4) & 0x100f00f00f00f00f;
   x = (x | x >> 8) & 0x001f0000ff0000ff;
   x = (x | x >> 16) & 0x001f00000000ffff;
   return static_cast<std::int32_t>((x | x >> 32) & 0x1fffff);
+#endif
 }
 
 /// Morton key: the bits of x, y and z in turn, x lowest. A cube of the octree is an interval of keys: its lower corner

@@ -15,9 +15,14 @@ struct Tables {
   // where it is the end; of both where it is the mid-point; of all where it is the centre of the face.
   std::array<std::uint64_t, 27> begins{}, ends_whole{}, ends_half{}, always{};
   std::array<std::array<std::uint64_t, 27>, 8> between_sizes{};  ///< by octant and code
+  // By slot, bits by code: the beginning and the end of the edge, or of its half; by octant and slot, three corners.
+  std::array<std::uint32_t, kCount> whole{}, half{};
+  std::array<std::array<std::uint32_t, kCount>, 8> triangle{};
 
   constexpr Tables();
 };
+
+constexpr std::uint32_t place(const CubeCode& code) { return std::uint32_t{1} << code_index(code); }
 
 constexpr std::uint64_t bit(int face, int slot) { return std::uint64_t{1} << (kPerFace * face + slot); }
 
@@ -54,6 +59,10 @@ constexpr Tables::Tables() {
           if (g != f && mid_point[g][d] == mid_point[f][e]) other[f][e] = {g, d, corner[g][d] != corner[f][e]};
         }
       }
+      const std::uint32_t middle = place(mid_point[f][e]);
+      whole[kPerFace * f + 2 * e] = place(corner[f][e]) | place(corner[f][(e + 1) % 4]);
+      half[kPerFace * f + 2 * e] = place(corner[f][e]) | middle;
+      half[kPerFace * f + 2 * e + 1] = middle | place(corner[f][(e + 1) % 4]);
       begins[code_index(corner[f][e])] |= bit(f, 2 * e);
       ends_whole[code_index(corner[f][(e + 1) % 4])] |= bit(f, 2 * e);
       ends_half[code_index(corner[f][(e + 1) % 4])] |= bit(f, 2 * e + 1);
@@ -63,6 +72,12 @@ constexpr Tables::Tables() {
     for (int octant = 0; octant < 8; ++octant) {
       const int i = parent_centre[f][octant];
       const std::uint64_t first = bit(f, 0) | bit(f, 2), second = bit(f, 1) | bit(f, 3);
+      for (int tri = 0; tri < 2; ++tri) {
+        for (int side = 0; side < 2; ++side) {
+          triangle[octant][kPerFace * f + 2 * side + tri] =
+              place(corner[f][i]) | place(corner[f][(i + 1 + tri) % 4]) | place(corner[f][(i + 2 + tri) % 4]);
+        }
+      }
       between_sizes[octant][code_index(corner[f][i])] |= first | second;
       between_sizes[octant][code_index(corner[f][(i + 1) % 4])] |= first;
       between_sizes[octant][code_index(corner[f][(i + 2) % 4])] |= first | second;
@@ -87,6 +102,19 @@ std::uint64_t at(const OctreeCell& leaf, int code) {
   const std::uint64_t edges = kTables.begins[code] | kTables.ends_half[code] | kTables.always[code] |
                               (kTables.ends_whole[code] & ~(leaf.slots >> 1));
   return leaf.slots & ((edges & ~between) | (kTables.between_sizes[leaf.octant][code] & between));
+}
+
+std::uint32_t places(const OctreeCell& leaf, std::uint64_t slots) {
+  const std::uint64_t between = of_faces(leaf.coarse);
+  const std::uint64_t halves = (leaf.slots & kOdd) | (leaf.slots & kOdd) >> 1;
+  std::uint32_t found = 0;
+  for (; slots != 0; slots &= slots - 1) {
+    const auto slot = static_cast<std::size_t>(std::countr_zero(slots));
+    found |= between >> slot & 1  ? kTables.triangle[leaf.octant][slot]
+             : halves >> slot & 1 ? kTables.half[slot]
+                                  : kTables.whole[slot];
+  }
+  return found;
 }
 
 }  // namespace umtet::tet_slots

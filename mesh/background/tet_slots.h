@@ -48,6 +48,10 @@ int parent_centre(int face, int octant);
 /// Those of a leaf's tets that have the vertex at a code (not its centre) as a corner.
 std::uint64_t at(const OctreeCell& leaf, int code_index);
 
+/// The places of a leaf, bits by code_index(), where corners of some of its tets are; centres of leaves are not
+/// counted.
+std::uint32_t places(const OctreeCell& leaf, std::uint64_t slots);
+
 /// Number of bits below a bit of a set.
 inline int rank(std::uint64_t slots, int slot) { return std::popcount(slots & ((std::uint64_t{1} << slot) - 1)); }
 /// The bit that has this rank.

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "mesh/background/graded_mesh.h"
+#include "mesh/background/octree_tets.h"
 #include "mesh/base/id_blocks.h"
 #include "mesh/core/tet_quality.h"
 
@@ -21,7 +21,10 @@ namespace {
 constexpr double kFirstExponent = 8, kLastExponent = 43;
 constexpr double kOmega = .6, kMomentum = .4, kLambda = .05;
 constexpr double kLongestStep = .05;  // edges
-constexpr double kScale = .77;        // weights are those of Q / kScale: neither too small nor too great for float
+// Weights are those of Q / kScale: neither too small nor too great for float. Tets at the background boundary, half of
+// whose corners cannot move, would take all the weight and spoil those behind them; they count as soon as they get
+// worse.
+constexpr double kScale = .77, kScaleAtBoundary = .73;
 
 /// What a tet says to its corners.
 struct TetTerms {
@@ -38,22 +41,21 @@ double power(double x, int k) {
 }
 
 /// Q^3 = factor^3 det^2 / S^3 for a positive determinant and the sum of squared edge lengths S.
-TetTerms terms(const std::array<Vec3, 4>& x, int k) {
+TetTerms terms(const std::array<Vec3, 4>& x, double scale, int k) {
   const Vec3 e = x[1] - x[0], f = x[2] - x[0], g = x[3] - x[0];
   const std::array<Vec3, 3> normal = {f.cross(g), g.cross(e), e.cross(f)};
   const double det = e.dot(normal[0]), s = sum_of_squared_edges(x[0], x[1], x[2], x[3]);
-  constexpr double kCube = kScale * kScale * kScale / (kMeanRatioFactor * kMeanRatioFactor * kMeanRatioFactor);
+  const double ratio = scale / kMeanRatioFactor;
   TetTerms out;
-  out.weight = static_cast<float>(power(kCube * s * s * s / (det * det), k));
+  out.weight = static_cast<float>(power(ratio * ratio * ratio * s * s * s / (det * det), k));
   const Vec3 sum = e + f + g;  // from the first corner, four times the centroid
-  const auto set = [&](std::size_t i, const Vec3& det_gradient, const Vec3& from_first) {
-    const Vec3 l = 2 / (3 * det) * det_gradient - 2 / s * (4 * from_first - sum);
-    for (int a = 0; a < 3; ++a) out.log_gradient[i][static_cast<std::size_t>(a)] = static_cast<float>(l[a]);
-  };
-  set(0, -(normal[0] + normal[1] + normal[2]), Vec3::Zero());
-  set(1, normal[0], e);
-  set(2, normal[1], f);
-  set(3, normal[2], g);
+  const std::array<Vec3, 4> det_gradient = {-(normal[0] + normal[1] + normal[2]), normal[0], normal[1], normal[2]};
+  const std::array<Vec3, 4> from_first = {Vec3::Zero(), e, f, g};
+  const double by_det = 2 / (3 * det), by_s = 2 / s;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vec3 l = by_det * det_gradient[i] - by_s * (4 * from_first[i] - sum);
+    out.log_gradient[i] = {static_cast<float>(l[0]), static_cast<float>(l[1]), static_cast<float>(l[2])};
+  }
   return out;
 }
 
@@ -62,13 +64,14 @@ struct Patch {
   std::vector<std::int64_t> moving;
   std::vector<Vec3> x;  ///< of all vertices of the tets
   std::vector<std::array<std::int32_t, 4>> tets;
+  std::vector<double> scale;         ///< of their weights
   std::vector<std::size_t> begin;    ///< per moving vertex, into uses
   std::vector<std::uint32_t> uses;   ///< 4 tet + corner
   std::vector<std::int32_t> at;      ///< per moving vertex, into x
   std::vector<double> longest_step;  ///< per moving vertex
 };
 
-Patch patch_of(const GradedMesh& mesh, const IdSet& moving) {
+Patch patch_of(const OctreeTets& mesh, const IdSet& moving) {
   Patch patch;
   moving.for_each([&](std::int64_t v) { patch.moving.push_back(v); });
   const std::size_t n = patch.moving.size();
@@ -92,9 +95,18 @@ Patch patch_of(const GradedMesh& mesh, const IdSet& moving) {
     for (std::size_t k = 0; k < 4; ++k)
       patch.tets[static_cast<std::size_t>(tets.rank(t))][k] = vertices.rank(corners[k]);
   });
+  IdSet on_boundary(static_cast<std::int64_t>(patch.x.size()));
   for_each_in_blocks(vertices, [&](std::size_t, std::int64_t v) {
+    if (mesh.on_boundary(v)) on_boundary.insert_shared(vertices.rank(v));
     const GridPoint p = grid_point(mesh.key(v));
     patch.x[static_cast<std::size_t>(vertices.rank(v))] = Vec3(p[0], p[1], p[2]);
+  });
+  patch.scale.resize(patch.tets.size());
+  tbb::parallel_for(std::size_t{0}, patch.tets.size(), [&](std::size_t t) {
+    const auto& corners = patch.tets[t];
+    const bool at_boundary =
+        std::any_of(corners.begin(), corners.end(), [&](std::int32_t v) { return on_boundary.test(v); });
+    patch.scale[t] = at_boundary ? kScaleAtBoundary : kScale;
   });
   patch.uses.resize(patch.begin.back());
   patch.at.resize(n);
@@ -142,7 +154,7 @@ Vec3 step(const Patch& patch, const std::vector<TetTerms>& tets, std::size_t i, 
 
 }  // namespace
 
-VertexOffsets smooth_transitions(const GradedMesh& mesh, IdSet moving, int n_sweeps) {
+VertexOffsets smooth_transitions(const OctreeTets& mesh, IdSet moving, int n_sweeps) {
   for_each_in_blocks(moving, [&](std::size_t, std::int64_t v) {
     if (mesh.on_boundary(v)) moving.erase(v);
   });
@@ -159,7 +171,7 @@ VertexOffsets smooth_transitions(const GradedMesh& mesh, IdSet moving, int n_swe
     tbb::parallel_for(std::size_t{0}, tets.size(), [&](std::size_t t) {
       std::array<Vec3, 4> x;
       for (std::size_t c = 0; c < 4; ++c) x[c] = patch.x[static_cast<std::size_t>(patch.tets[t][c])];
-      tets[t] = terms(x, k);
+      tets[t] = terms(x, patch.scale[t], k);
     });
     tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
       moves[i] = kMomentum * moves[i] + step(patch, tets, i, k);

@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "mesh/background/body_size.h"
+#include "mesh/background/graded_mesh.h"
 #include "mesh/certify/boundary_surface.h"
 #include "mesh/certify/certificate.h"
 #include "mesh/core/tet_quality.h"
@@ -27,6 +28,7 @@
 #include "reconstruct/solve/fit_ssd.h"
 #include "tests/support/bench_domains.h"
 #include "tests/support/certified.h"
+#include "tests/support/gradings.h"
 
 using namespace umtet;
 
@@ -385,6 +387,56 @@ BENCHMARK(drifting_ball)
     ->ArgsProduct({{100, 1000, 8000}, {250}, {0, 1}})
     ->ArgsProduct({{1000}, {20, 0}, {0, 1}})
     ->Unit(benchmark::kSecond)
+    ->Iterations(1);
+
+/// A background that is fine at eight points: what building it and asking it costs on one core, in microseconds of CPU,
+/// how much memory it keeps, and the worst tet that has no corner at the background boundary.
+void graded_background(benchmark::State& state) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  Grading grading = testing::spots(0, .004, 1e-2 * static_cast<double>(state.range(0)), 8);
+  grading.transition_sweeps = static_cast<int>(state.range(1));
+  double build = 0, stars = 0, links = 0;
+  std::optional<GradedMesh> mesh;
+  for (auto _ : state) {
+    double cpu = cpu_seconds();
+    mesh.emplace(grading);
+    build = cpu_seconds() - cpu;
+    std::vector<std::int64_t> list;
+    cpu = cpu_seconds();
+    for (std::int64_t v = 0; v < mesh->n_vertices(); ++v) list.clear(), mesh->star(v, list);
+    stars = cpu_seconds() - cpu;
+    cpu = cpu_seconds();
+    for (std::int64_t v = 0; v < mesh->n_vertices(); ++v) list.clear(), mesh->link(v, list);
+    links = cpu_seconds() - cpu;
+  }
+  const auto n_tets = static_cast<double>(mesh->n_tets()), n_vertices = static_cast<double>(mesh->n_vertices());
+  double least_q = 1, n_transitions = 0;
+  DihedralRange angles{180, 0};
+  for (std::int64_t t = 0; t < mesh->n_tets(); ++t) {
+    n_transitions += mesh->is_transition(t) ? 1 : 0;
+    const auto v = mesh->tet(t);
+    if (std::any_of(v.begin(), v.end(), [&](std::int64_t i) { return mesh->on_boundary(i); })) continue;
+    const Vec3 a = mesh->position(v[0]), b = mesh->position(v[1]), c = mesh->position(v[2]), d = mesh->position(v[3]);
+    const DihedralRange own = dihedral_range(a, b, c, d);
+    least_q = std::min(least_q, mean_ratio(a, b, c, d));
+    angles = {std::min(angles.min_deg, own.min_deg), std::max(angles.max_deg, own.max_deg)};
+  }
+  state.counters["tets"] = n_tets;
+  state.counters["transitions"] = n_transitions / n_tets;
+  state.counters["build_us_per_leaf"] = 1e6 * build / static_cast<double>(mesh->n_leaves());
+  state.counters["build_us_per_tet"] = 1e6 * build / n_tets;
+  state.counters["star_us"] = 1e6 * stars / n_vertices;
+  state.counters["link_us"] = 1e6 * links / n_vertices;
+  state.counters["bytes_per_tet"] = static_cast<double>(mesh->n_bytes()) / n_tets;
+  state.counters["bytes_per_vertex"] = static_cast<double>(mesh->n_bytes()) / n_vertices;
+  state.counters["least_Q"] = least_q;
+  state.counters["least_deg"] = angles.min_deg;
+  state.counters["greatest_deg"] = angles.max_deg;
+}
+BENCHMARK(graded_background)
+    ->ArgNames({"growth_percent", "sweeps"})
+    ->ArgsProduct({{15, 40}, {0, 8}})
+    ->Unit(benchmark::kMillisecond)
     ->Iterations(1);
 
 }  // namespace

@@ -47,7 +47,7 @@ void is_conforming(const Grading& g) {
     volume += volume6(mesh.V[t[0]], mesh.V[t[1]], mesh.V[t[2]], mesh.V[t[3]]) / 6;
     q_min = std::min(q_min, mean_ratio(mesh, t));
   }
-  EXPECT_GT(q_min, g.transition_sweeps == 0 ? .7559 : .75);
+  EXPECT_GT(q_min, g.transition_sweeps == 0 ? .7559 : .73);
   if (g.wanted) return;
   EXPECT_NEAR(volume / graded.box().volume(), 1, 1e-10);
   for (std::size_t v = 0; v < mesh.V.size(); ++v) {
@@ -63,7 +63,7 @@ TEST(GradedMesh, IsAConformingMeshThatFillsItsRoot) {
   }
 }
 
-/// The worst tets are as good as smooth_transitions() says, away from the background boundary, which cannot move.
+/// The worst tets are as good as smooth_transitions() says, but at the background boundary, which cannot move.
 TEST(GradedMesh, TransitionsAreSmoothed) {
   std::vector<Grading> all = {testing::spots(1, .006, .4), testing::spots(2, .01, .8)};
   for (std::uint64_t seed = 0; seed < 4; ++seed)
@@ -74,16 +74,9 @@ TEST(GradedMesh, TransitionsAreSmoothed) {
       g.transition_sweeps = sweeps;
       const GradedMesh graded(g);
       const TetMesh mesh = to_tet_mesh(graded);
-      std::vector<bool> is_at_boundary(mesh.V.size());
-      for (const Tet& t : mesh.C) {
-        if (std::any_of(t.begin(), t.end(), [&](int v) { return graded.on_boundary(v); })) {
-          for (const int v : t) is_at_boundary[static_cast<std::size_t>(v)] = true;
-        }
-      }
       double q_min = 1, least = 180, greatest = 0;
       for (const Tet& t : mesh.C) {
-        if (std::any_of(t.begin(), t.end(), [&](int v) { return is_at_boundary[static_cast<std::size_t>(v)]; }))
-          continue;
+        if (std::any_of(t.begin(), t.end(), [&](int v) { return graded.on_boundary(v); })) continue;
         q_min = std::min(q_min, mean_ratio(mesh, t));
         const DihedralRange angles = dihedral_range(mesh.V[t[0]], mesh.V[t[1]], mesh.V[t[2]], mesh.V[t[3]]);
         least = std::min(least, angles.min_deg);
@@ -95,7 +88,7 @@ TEST(GradedMesh, TransitionsAreSmoothed) {
         EXPECT_NEAR(greatest, 120, 1e-6);
       } else {
         EXPECT_NEAR(before, .7560, 1e-3);
-        EXPECT_GT(q_min, .774);
+        EXPECT_GT(q_min, .776);
         EXPECT_GT(least, 34);
         EXPECT_LT(greatest, 120);
       }
