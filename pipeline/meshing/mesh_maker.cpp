@@ -31,6 +31,9 @@ constexpr int kFinerGrids = 3;
 // Where each part of an attempt begins, as a share of its time.
 constexpr double kPieces = .05, kChoice = .1, kFit = .2, kCertificate = .9, kCurving = .95;
 
+/// Whether a search for this h would find the same cells.
+bool are_cells_for(double h, const SignCells& cells) { return cells.size <= h / 2 && h / 2 < 2 * cells.size; }
+
 }  // namespace
 
 MeshMaker::MeshMaker(Domain& domain, const Parameters& parameters, Context context, MeshLines lines)
@@ -44,9 +47,16 @@ const ZeroSetChoice& MeshMaker::pieces_at(double h) {
   domain_.limit_detail(h);
   if (!pieces_ || pieces_->first != h) {
     context_.report("components", kPieces);
+    const int n_levels = domain_.level_set ? domain_.level_set->n_levels() : 0;
+    std::optional<SignCells> known;
+    if (pieces_ && n_levels == n_levels_) known = std::move(pieces_->second.cells);
+    n_levels_ = n_levels;
     // A body thinner than the grid may have no node inside.
     for (int halvings = 0; halvings <= kFinerGrids; ++halvings) {
-      pieces_.emplace(h, choose_components(domain_, std::ldexp(h, -halvings), context_));
+      const double spacing = std::ldexp(h, -halvings);
+      const bool is_known = known && are_cells_for(spacing, *known);
+      pieces_.emplace(h, choose_components(domain_, spacing, context_, is_known ? &*known : nullptr));
+      if (is_known) pieces_->second.cells = std::move(known);
       if (!pieces_->second.topology.components.empty()) break;
     }
   }

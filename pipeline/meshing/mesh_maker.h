@@ -62,6 +62,7 @@ class MeshMaker {
   const MeshLines lines_;
   const UmParams params_;
   std::optional<std::pair<double, ZeroSetChoice>> pieces_;  ///< of psi cut for the h beside them
+  int n_levels_ = 0;                                        ///< of psi then; 0: a formula
 };
 
 /// What is wrong, and the first of the thin places; some lines, without a newline at the end. Coordinates are those of

@@ -147,9 +147,13 @@ void Search::split(int depth, const Eigen::Vector3i& cell, double bend, std::vec
   const Vec3 low = L.origin + edge * cell.cast<double>(), middle = low + Vec3::Constant(edge / 2);
   double value = 0;
   Vec3 gradient = Vec3::Zero(), g;
-  for (int level = 0; level <= std::min(depth, psi_.n_levels() - 1); ++level) {
-    value += psi_.evaluate_level(level, middle, &g, nullptr);
-    gradient += g;
+  if (depth + 1 >= psi_.n_levels()) {
+    value = psi_.evaluate(middle, &gradient, nullptr);
+  } else {
+    for (int level = 0; level <= depth; ++level) {
+      value += psi_.evaluate_level(level, middle, &g, nullptr);
+      gradient += g;
+    }
   }
   const Range finer = finer_levels(depth, low, low + Vec3::Constant(edge));
   const double half_diagonal2 = 0.75 * edge * edge;

@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 
 #include <string>
+#include <vector>
 
 namespace umtet {
 namespace {
@@ -36,6 +37,27 @@ TEST(MeshMaker, TwoBallsThatNearlyTouchHaveTheSameBytesInEveryRun) {
     }
     EXPECT_EQ(first.reasons, again.reasons);
     EXPECT_EQ(first.places.size(), again.places.size());
+  }
+}
+
+TEST(MeshMaker, CellsOfAnEarlierHAreThoseOfASearch) {
+  const Lattice lattice{.origin = Vec3::Constant(-2), .h = .2, .n = Eigen::Vector3i::Constant(21)};
+  std::vector<double> values;
+  for (int node = 0; node < 21 * 21 * 21; ++node) {
+    values.push_back((Vec3::Constant(-2) + .2 * Vec3(node % 21, node / 21 % 21, node / 441)).norm() - 1);
+  }
+  Domain domain;
+  domain.level_set.emplace(LmePrior{}, LevelSetLevel{lattice, values});
+  domain.box = Box(Vec3::Constant(-1.9), Vec3::Constant(1.9));
+  domain.cloud.points = domain.cloud.normals = {{1, 0, 0}};
+  domain.cloud_spacing = .1;
+  const Parameters parameters;
+  MeshMaker maker(domain, parameters, {});
+  for (const double h : {.3, .29, .22, .19, .25}) {  // cubes of .1, .1, .1, .05, .1
+    const SignCells cells = maker.pieces_at(h).cells.value(), found = sign_cells(*domain.level_set, h / 2);
+    EXPECT_EQ(cells.size, found.size) << h;
+    EXPECT_EQ(cells.cells, found.cells) << h;
+    EXPECT_FALSE(cells.cells.empty());
   }
 }
 
