@@ -80,15 +80,15 @@ struct MeshCertificate {
 struct CertificateInput {
   const TetMesh* mesh = nullptr;
   double h = 0;  ///< <= 0: the mean over tets of the root mean square edge length is used
-  /// Optional, by vertex, > 0: the edge length that ratios at this vertex, and at faces with it, refer to, instead of
-  /// h.
-  const std::vector<double>* local_h = nullptr;
   const std::vector<Triangle>* positive_faces = nullptr;  ///< optional: compared with the boundary as a set
   std::optional<ImplicitFunctionRef> psi;                 ///< optional: distances and normals
   double coordinate_rounding = 0;  ///< how far the file's rounding of coordinates may move a vertex, model units
   Context context = {};
   const std::vector<Triangle>* wall_faces = nullptr;  ///< optional: boundary that is not of psi = 0
   const std::vector<Vec3>* background_V = nullptr;  ///< by vertex: where those of the walls are to be; with wall_faces
+  /// Optional, by vertex, > 0: the edge length that ratios at this vertex, and at faces with it, refer to, instead of
+  /// h.
+  const std::vector<double>* local_h = nullptr;
 };
 
 /// A boundary vertex may be this far from psi = 0, in h, besides the rounding of its coordinates: what the projection
