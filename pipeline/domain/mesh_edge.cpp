@@ -13,8 +13,8 @@ constexpr std::size_t kPointsPerTask = 1 << 10;  // a microsecond each
 
 }  // namespace
 
-MeshEdge::MeshEdge(const std::vector<Vec3>& vertices, std::vector<double> h)
-    : least_(0), tree_(std::make_shared<const NeighbourTree>(vertices)), of_vertex_(std::move(h)) {
+MeshEdge::MeshEdge(double nominal, const std::vector<Vec3>& vertices, std::vector<double> h)
+    : nominal_(nominal), least_(0), tree_(std::make_shared<const NeighbourTree>(vertices)), of_vertex_(std::move(h)) {
   least_ = *std::min_element(of_vertex_.begin(), of_vertex_.end());
 }
 

@@ -12,18 +12,20 @@ namespace umtet {
 /// boundary.
 class MeshEdge {
  public:
-  MeshEdge(double h) : least_(h) {}  // NOLINT(google-explicit-constructor): a number is an edge length
-  /// @param h  of each vertex, model units. \throw std::invalid_argument  no vertices
-  MeshEdge(const std::vector<Vec3>& vertices, std::vector<double> h);
+  MeshEdge(double h) : nominal_(h), least_(h) {}  // NOLINT(google-explicit-constructor): a number is an edge length
+  /// @param nominal  what the mesh is said to have
+  /// @param h        of each vertex, model units. \throw std::invalid_argument  no vertices
+  MeshEdge(double nominal, const std::vector<Vec3>& vertices, std::vector<double> h);
 
   bool is_uniform() const { return !tree_; }
   double at(const Vec3& x) const;
+  double nominal() const { return nominal_; }
   double least() const { return least_; }
   /// at() of each point.
   std::vector<double> at(const std::vector<Vec3>& points) const;
 
  private:
-  double least_;
+  double nominal_, least_;
   std::shared_ptr<const NeighbourTree> tree_;
   std::vector<double> of_vertex_;
 };

@@ -113,7 +113,7 @@ void MeshMaker::finish(const SizedBackground& background, ChosenSubmesh chosen, 
   round_to_file(a.result, domain_.shift);
   context_.report("certify", kCertificate);
   if (!a.made()) return;
-  Measurement made = measure(domain_, a.result, pieces, mesh_edge(background.mesh, a.result),
+  Measurement made = measure(domain_, a.result, pieces, mesh_edge(background.mesh, a.result, a.h),
                              {&a.thin, parameters_.mesh().max_deviation, a.sizes.get()}, context_);
   a.measured = std::move(made.measures);
   a.places = std::move(made.places);

@@ -209,16 +209,17 @@ void set_reasons(MeshMeasures& m) {
 
 }  // namespace
 
-MeshEdge mesh_edge(const BackgroundMesh& background, const UmResult& result) {
+MeshEdge mesh_edge(const BackgroundMesh& background, const UmResult& result, double h) {
   const std::vector<int>& I = result.submesh.positive_vertices;
-  if (background.is_lattice() || I.empty()) return background.h();
+  // The box with walls is a lattice but for its outermost tets.
+  if (background.is_lattice() || !result.walls.empty() || I.empty()) return h;
   std::vector<Vec3> vertices;
-  std::vector<double> h;
+  std::vector<double> h_of;
   for (const int i : I) {
     vertices.push_back(result.final[i]);
-    h.push_back(background.h(result.submesh.background_vertex[i]));
+    h_of.push_back(background.h(result.submesh.background_vertex[i]));
   }
-  return {vertices, std::move(h)};
+  return {h, vertices, std::move(h_of)};
 }
 
 Measurement measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& pieces, const MeshEdge& h,
@@ -226,10 +227,10 @@ Measurement measure(const Domain& domain, const UmResult& result, const ZeroSetC
   const TetMesh mesh{result.final, result.submesh.mesh.C};
   CertificateInput input;
   input.mesh = &mesh;
-  input.h = h.least();
+  input.h = h.nominal();
   std::vector<double> local_h;
   if (!h.is_uniform()) {
-    local_h.assign(mesh.V.size(), h.least());
+    local_h.assign(mesh.V.size(), h.nominal());
     for (const int i : result.submesh.positive_vertices) local_h[i] = h.at(mesh.V[i]);
     input.local_h = &local_h;
   }

@@ -26,7 +26,8 @@ struct MeasureParams {
 };
 
 /// The edge length that a mesh was made with: in a background that is no lattice, at each vertex of the boundary.
-MeshEdge mesh_edge(const BackgroundMesh& background, const UmResult& result);
+/// @param h  that the background was asked to have
+MeshEdge mesh_edge(const BackgroundMesh& background, const UmResult& result, double h);
 
 /// @param h  that the mesh was made with. \throw Cancelled
 Measurement measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& pieces, const MeshEdge& h,

@@ -23,7 +23,7 @@ TEST(MeshMaker, TwoBallsThatNearlyTouchHaveTheSameBytesInEveryRun) {
     domain.box = Box(Vec3::Constant(-5.5), Vec3::Constant(5.5));
     domain.diagonal = domain.box.diagonal().norm();
     const Parameters parameters;
-    return MeshMaker(domain, parameters, {}).attempt(BackgroundMesh(a15(), domain.box, 1), 1);
+    return MeshMaker(domain, parameters, {}).attempt({BackgroundMesh(a15(), domain.box, 1)}, 1);
   };
   const MeshAttempt first = mesh();
   ASSERT_TRUE(first.made());
