@@ -25,12 +25,12 @@ struct LinkState {
   std::uint8_t n_tets = 0;            ///< nt: link triangles with an inside vertex
 };
 
-/// The link of a vertex, a triangulated sphere (on the background boundary a disc), as bit masks: that of all vertices of
-/// a type.
+/// The link of a vertex, a triangulated sphere (on the background boundary a disc), as bit masks: that of all vertices
+/// of a type.
 struct LinkTopology {
-  int n = 0;                                           ///< vertices; in a tiling in the order of TilingTables::link
-  std::vector<LinkMask> adjacent;                      ///< per link vertex: those that share an edge of the link with it
-  std::array<std::uint8_t, kMaxLink> back{};           ///< the number of the vertex itself in the link of k
+  int n = 0;                                  ///< vertices; in a tiling in the order of TilingTables::link
+  std::vector<LinkMask> adjacent;             ///< per link vertex: those that share an edge of the link with it
+  std::array<std::uint8_t, kMaxLink> back{};  ///< the number of the vertex itself in the link of k
   std::vector<std::array<std::uint8_t, 3>> triangles;  ///< with the vertex in front: positively oriented tets
   std::vector<LinkState> states;                       ///< one per mask; empty where they would be too many
   /// Vertex types with the same table of states up to the order of the link share this number: sites of one symmetry

@@ -36,15 +36,16 @@ std::vector<Difference> lost_parts(const Domain& domain, const std::vector<Vec3>
 /// show. Elsewhere projection has brought the boundary to psi = 0 all the same.
 /// @param psi_points  of psi = 0, about an edge apart or less \throw Cancelled
 std::vector<Difference> flips_that_show(const std::vector<ManifoldFlip>& flips, const std::vector<Vec3>& psi_points,
-                                        const SurfaceDistance& boundary, const MeshEdge& h, const Context& context = {});
+                                        const SurfaceDistance& boundary, const MeshEdge& h,
+                                        const Context& context = {});
 
 /// Where to look when psi = 0 and the boundary of a mesh are not alike: at the thin point of psi = 0 that is farthest
 /// from it. What has come or gone is no larger than the largest of such distances, which is `off`. Without a thin point
 /// there is no feature to explain it, and the place is the farthest point of all.
 /// @param counted  the pieces of psi = 0 as they were counted, at a spacing <= h
 /// @param n        by how many pieces and handles the two differ \throw Cancelled
-MeshPlace topology_place(const Domain& domain, const ZeroSetChoice& counted, const SurfaceDistance& boundary, const MeshEdge& h,
-                         std::size_t n, const Context& context = {});
+MeshPlace topology_place(const Domain& domain, const ZeroSetChoice& counted, const SurfaceDistance& boundary,
+                         const MeshEdge& h, std::size_t n, const Context& context = {});
 
 /// Differences of a kind that are within an edge or two of each other are one place.
 ///

@@ -46,7 +46,7 @@ IdSet random_half(const BackgroundMesh& background) {
 }
 
 TEST(VertexLinks, ListedOnesSayTheSameAsThoseOfTheLattice) {
-  const BackgroundMesh lattice(a15(), kBox, .4), same = stored(lattice);
+  const BackgroundMesh lattice(a15(), kBox, .25), same = stored(lattice);
   const VertexLinks expected(lattice, a15_links());
   const auto links = VertexLinks::listed(same);
   ASSERT_TRUE(links);
@@ -77,11 +77,13 @@ TEST(VertexLinks, BackLeadsBack) {
   ASSERT_TRUE(links);
   for (std::int64_t v = 0; v < background.n_vertices(); ++v) {
     const LinkTopology& link = links->at(v);
+    double sum = 0;
     for (int k = 0; k < link.n; ++k) {
       const std::int64_t w = links->neighbour(v, k);
+      sum += (background.position(w) - background.position(v)).norm();
       ASSERT_EQ(links->neighbour(w, link.back[k]), v);
     }
-    EXPECT_NEAR(link.unit * background.h() / background.h(v), 1, .01);
+    EXPECT_NEAR(link.unit * background.h() / (sum / link.n), 1, .01);
   }
 }
 
@@ -95,9 +97,6 @@ TEST(VertexLinks, VerticesThatLookAlikeAreOfOneType) {
     uses[static_cast<std::size_t>(links->type(v))] += !bcc.on_boundary(v);
   // Off the boundary all have 14 neighbours in the same places; those next to it differ by what is behind them.
   EXPECT_GT(*std::max_element(uses.begin(), uses.end()), static_cast<std::size_t>(bcc.n_vertices()) / 2);
-  const BackgroundMesh background = graded();
-  EXPECT_LT(VertexLinks::listed(background)->topologies().size(),
-            static_cast<std::size_t>(background.n_vertices()) / 2);
 }
 
 TEST(VertexLinks, DoNotDependOnTheNumberOfThreads) {

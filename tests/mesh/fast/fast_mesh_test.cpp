@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "mesh/background/body_size.h"
+#include "mesh/background/graded_mesh.h"
 #include "mesh/core/tet_quality.h"
 #include "mesh/fast/patch_state.h"
 #include "tests/support/bench_domains.h"
@@ -58,6 +59,51 @@ TEST(FastMesh, WorstTetIsAboveTheTargetAndTheCertificatePasses) {
       EXPECT_NEAR(c.volume / *domain.volume, 1, .005);
     }
   }
+}
+
+/// Fine at (0, 0, 1), `growth` times as coarse from a distance of 1.5 on, and coarser away from psi = 0.
+BackgroundMesh fine_at_a_pole(const AnalyticDomain& domain, double finest, double growth) {
+  Grading grading{.box = domain.box, .finest = finest, .size = [=, &domain](const Vec3& centre, double half_width) {
+                    const double reach = std::sqrt(3.) * half_width;
+                    const double d = std::max(0., (centre - Vec3(0, 0, 1)).norm() - reach - .1);
+                    const double on_surface = finest * std::min(1 + (growth - 1) * d / 1.5, growth);
+                    const double depth = std::max(0., std::abs(centre.norm() - 1) - reach);
+                    return on_surface + .5 * std::max(0., depth - 3 * on_surface);
+                  }};
+  return BackgroundMesh(GradedMesh(grading));
+}
+
+TEST(FastMesh, GradedBackgroundsGiveEmbeddedMeshesOfGoodTets) {
+  const AnalyticDomain domain = testing::sphere();
+  for (const double growth : {1., 4., 8.}) {
+    SCOPED_TRACE(growth);
+    const BackgroundMesh background = fine_at_a_pole(domain, .06, growth);
+    const UmResult result = universal_mesh(background, domain);
+    ASSERT_EQ(result.status, UmStatus::Success) << result.evidence.what;
+    const MeshCertificate c = testing::certificate_of(result, domain, background.h());
+    EXPECT_TRUE(invalidities(c).empty()) << invalidities(c).front();
+    EXPECT_TRUE(c.is_embedded());
+    EXPECT_EQ(c.boundary.genus, 0);
+    EXPECT_EQ(result.n_stepped_back, 0u);
+    EXPECT_LE(*c.boundary.max_vertex_distance_over_h, 1e-8);
+    EXPECT_GT(*c.boundary.min_cos_normal, .85);
+    // BCC with one size, and with sizes that change along the surface.
+    EXPECT_GE(c.quality.min, growth == 1 ? .77 : .71);
+    EXPECT_GE(c.quality.p01, .76);
+    EXPECT_GE(c.quality.dihedral_min_deg, 28);
+    EXPECT_LE(c.quality.dihedral_max_deg, 127);
+  }
+}
+
+TEST(FastMesh, OnAGradedBackgroundDoesNotDependOnThreads) {
+  const AnalyticDomain domain = testing::sphere();
+  const auto mesh = [&] { return universal_mesh(fine_at_a_pole(domain, .08, 4), domain); };
+  const UmResult many = mesh();
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+  const UmResult one = mesh();
+  EXPECT_EQ(many.submesh.background_vertex, one.submesh.background_vertex);
+  EXPECT_EQ(many.submesh.mesh.C, one.submesh.mesh.C);
+  EXPECT_EQ(many.final, one.final);
 }
 
 TEST(FastMesh, OnlyTheShellMoves) {

@@ -42,7 +42,7 @@ TEST_F(Program, UsageErrorsNameThePlaceAndTheRemedy) {
       {"run egg.ply -o a --set mesh.sampels=1", "did you mean mesh.samples?"},
       {"run egg.ply -o a --tets 10 --h 1", "exclude each other"},
       {"run egg.ply -o a --mode quick", "fast, paper only"},
-      {"run egg.ply -o a --background bcc", "must be a15, z, slab, cube or"},
+      {"run egg.ply -o a --background bcc", "must be a15, z, slab, cube, graded or"},
       {"run egg.ply -o a --from mehs", "did you mean mesh?"},
       {"run egg.ply", "-o CASE"},
       {"rum egg.ply -o a", "did you mean run?"},

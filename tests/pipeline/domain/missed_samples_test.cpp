@@ -19,7 +19,7 @@ struct Row {
     domain.shift = Vec3(0, 100, 0);
   }
   void move(int first, int last, double distance) { std::fill(d.begin() + first, d.begin() + last, distance); }
-  SampleDistances measured(double h, double flatness) const { return sample_distances(domain, d, h, flatness); }
+  SampleDistances measured(double h, double flatness) const { return sample_distances(domain, d, h, flatness / h); }
 };
 
 TEST(MissedSamples, NoiseIsNone) {
