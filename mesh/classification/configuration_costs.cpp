@@ -26,9 +26,8 @@ constexpr double kTargetInSlab = .78, kTargetInCube = .62;
 // RepairParams::reach, at most. Patches of three edges are three and ten times as large on slab and cube as in A15, and
 // mend no more there than those of two.
 constexpr int kReach = 3, kReachOnPlanes = 2;
-// In graded and stored backgrounds. Where tets of two sizes meet at the boundary, hardly one tet in a thousand is below
-// this before repair, and a higher target spends repair's patches on what no flip mends (mesh_bench
-// --benchmark_filter=graded).
+// Of graded and stored backgrounds: BCC transitions begin at Q = .78 (docs/method.md, Section 13), and what is below
+// this where they meet the boundary is seldom mended by a flip. Not measured on many bodies.
 constexpr double kTargetInListed = .76;
 constexpr int kReachInListed = 3;
 

@@ -124,8 +124,6 @@ TEST(SwimmerProgram, WhatItCannotDoHasItsExitCode) {
   const std::string folder = (std::filesystem::path(::testing::TempDir()) / "umtet_swimmer_thin").string();
   // In so coarse a channel vertices stay off the body, which is thinner than an edge.
   EXPECT_EQ(run("-o " + folder + " --tets 10000 --t0 0 --steps 1"), static_cast<int>(ExitCode::GateFailed));
-  // Edges of 1 fold over the crease between bulge and body: a mesh, but not a good one.
-  EXPECT_EQ(run("-o " + folder + " --tets 40000 --t0 -5 --steps 1"), static_cast<int>(ExitCode::GateFailed));
   std::filesystem::remove_all(folder);
 }
 
