@@ -63,7 +63,7 @@ TEST(FastMesh, WorstTetIsAboveTheTargetAndTheCertificatePasses) {
 
 /// Fine at (0, 0, 1), `growth` times as coarse from a distance of 1.5 on, and coarser away from psi = 0.
 BackgroundMesh fine_at_a_pole(const AnalyticDomain& domain, double finest, double growth) {
-  Grading grading{.box = domain.box, .finest = finest, .size = [=, &domain](const Vec3& centre, double half_width) {
+  Grading grading{.box = domain.box, .finest = finest, .size = [=](const Vec3& centre, double half_width) {
                     const double reach = std::sqrt(3.) * half_width;
                     const double d = std::max(0., (centre - Vec3(0, 0, 1)).norm() - reach - .1);
                     const double on_surface = finest * std::min(1 + (growth - 1) * d / 1.5, growth);
