@@ -102,7 +102,7 @@ class SurfaceSizes {
       n.cwiseAbs().maxCoeff(&axis);
       order[i] = {{spacing, cell.x(), cell.y(), cell.z(), n[axis] > 0 ? axis : axis + 3}, i};
     });
-    tbb::parallel_sort(order);
+    tbb::parallel_sort(order.begin(), order.end());
     std::vector<OnSurface> left;
     for (std::size_t k = 0; k < order.size(); ++k) {
       if (k == 0 || order[k].first != order[k - 1].first) left.push_back(feet[order[k].second]);

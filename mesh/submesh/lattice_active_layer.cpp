@@ -164,7 +164,8 @@ LatticeActiveLayer Builder::build(const IdList& movable) const {
 void Builder::set_sizes_and_colours(LatticeActiveLayer& made) const {
   ActiveLayer& layer = made.layer;
   if (!links_.is_lattice()) {
-    set_local_sizes(background_, made);
+    layer.local_h.reserve(layer.V.size());
+    for (const std::int64_t v : made.background_vertex) layer.local_h.push_back(links_.at(v).unit * background_.h());
     colour_greedily(layer);
     return;
   }

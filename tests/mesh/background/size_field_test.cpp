@@ -160,7 +160,7 @@ TEST(SizeField, OfAFunctionWithoutAValueIsTheGreatestSizeThere) {
 TEST(SizeField, IsTheSameForEveryNumberOfThreads) {
   const auto f = [](const Vec3& x) { return x.norm() < .3 ? .02 : .5; };
   const auto make = [&](std::size_t n_threads) {
-    const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism, n_threads);
+    const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, n_threads);
     return SizeField(some_sources(50000, true), {.grade = .3, .h_min = .002, .h_max = .4},
                      SizeFunction{f, Box(Vec3::Constant(-1), Vec3::Constant(1))});
   };

@@ -111,7 +111,7 @@ TEST(SurfaceSizes, KeepFlatFacesNear) {
 
 TEST(SurfaceSizes, AreTheSameForEveryNumberOfThreads) {
   const auto make = [&](std::size_t n_threads) {
-    const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism, n_threads);
+    const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, n_threads);
     return sizes_of(lens(.08), .05, {.h = .1, .h_min = .004});
   };
   const auto one = make(1), four = make(4);

@@ -91,7 +91,7 @@ TEST(SelfIntersections, TheTreeFindsAllPairs) {
     }
     EXPECT_GT(expected.size(), 100u);
     EXPECT_EQ(self_intersections(V, faces), expected);
-    const oneapi::tbb::global_control one(oneapi::tbb::global_control::max_allowed_parallelism, 1);
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     EXPECT_EQ(self_intersections(V, faces), expected);
   }
 }
