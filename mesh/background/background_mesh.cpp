@@ -227,6 +227,10 @@ std::int64_t BackgroundMesh::key_of_tet(std::int64_t tet) const {
   return graded_ ? static_cast<std::int64_t>(graded_->tet_key(tet)) : tet;
 }
 
+bool BackgroundMesh::bcc_link(std::int64_t vertex, BccLink& vertices) const {
+  return graded_ && graded_->bcc_link(vertex, vertices);
+}
+
 double BackgroundMesh::mean_edge(std::int64_t vertex) const {
   return graded_ ? graded_->mean_edge(vertex) : explicit_->mean_edge(static_cast<int>(vertex));
 }

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
+#include "mesh/background/bcc_link.h"
 #include "mesh/background/explicit_mesh.h"
 #include "mesh/background/tiling.h"
 #include "mesh/core/tet_mesh.h"
@@ -54,6 +56,8 @@ class BackgroundMesh {
   void star(std::int64_t vertex, std::vector<std::int64_t>& tets) const;
   /// Appends the vertices that share an edge with `vertex`, ascending.
   void link(std::int64_t vertex, std::vector<std::int64_t>& vertices) const;
+  /// GradedMesh::bcc_link(); false in any other mesh.
+  bool bcc_link(std::int64_t vertex, BccLink& vertices) const;
   /// True if some tet of the tiling at `vertex` is missing from the mesh, or if it is on the boundary of an other mesh.
   bool on_boundary(std::int64_t vertex) const;
   /// True only if no vertex from `first` to `last` is on the background boundary: at the cost of two of them, true of

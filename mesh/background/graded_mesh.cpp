@@ -96,6 +96,11 @@ Vec3 GradedMesh::position(std::int64_t vertex) const {
                                 p[2] + static_cast<double>(by[2]));
 }
 
+bool GradedMesh::bcc_link(std::int64_t vertex, BccLink& vertices) const {
+  if (offsets_.has(vertex) || !tets_.bcc_link(vertex, vertices)) return false;
+  return std::none_of(vertices.begin(), vertices.end(), [&](std::int64_t w) { return offsets_.has(w); });
+}
+
 std::int64_t GradedMesh::tet_at(const Vec3& x) const {
   if (!box().contains(x)) return -1;
   GridPoint p;

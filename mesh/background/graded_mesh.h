@@ -66,6 +66,9 @@ class GradedMesh {
   void star(std::int64_t vertex, std::vector<std::int64_t>& tets) const { tets_.star(vertex, tets); }
   /// Appends the vertices that share an edge with it, ascending.
   void link(std::int64_t vertex, std::vector<std::int64_t>& vertices) const { tets_.link(vertex, vertices); }
+  /// The same by z, then y, then x of their places around the vertex; false, and nothing, where not all tets at it are
+  /// BCC tets of one size as the octree has them.
+  bool bcc_link(std::int64_t vertex, BccLink& vertices) const;
   /// The tet behind the face opposite to local vertex `face`, or -1.
   std::int64_t neighbor(std::int64_t tet, int face) const { return tets_.neighbor(tet, face); }
   /// Mean length of the edges at a vertex before transitions are smoothed, model units.

@@ -120,6 +120,30 @@ bool OctreeTets::is_regular(std::int64_t vertex) const {
   return is_centre(vertex) ? is_regular_centre(cell_of_vertex(vertex)) : is_regular_point(around(vertex));
 }
 
+bool OctreeTets::bcc_link(std::int64_t vertex, BccLink& vertices) const {
+  std::array<std::int64_t, 6> axis;  // below and above along x, y and z
+  std::array<std::int64_t, 8> octant;
+  if (is_centre(vertex)) {
+    const int leaf = cell_of_vertex(vertex);
+    if (!is_regular_centre(leaf)) return false;
+    for (int f = 0; f < 6; ++f) axis[f] = centre_id(octree_.cell(leaf).neighbor[f]);
+    for (int o = 0; o < 8; ++o) octant[o] = vertex_id(octree_.place(leaf, {2 * (o & 1), o & 2, (o & 4) / 2}));
+  } else {
+    const Around leaves = around(vertex);
+    if (!is_regular_point(leaves)) return false;
+    for (int o = 0; o < 8; ++o) octant[o] = centre_id(leaves.leaves[o].first);
+    for (int a = 0; a < 3; ++a) {
+      CubeCode upper = {0, 0, 0};
+      upper[a] = 2;
+      axis[2 * a] = vertex_id(octree_.place(leaves.leaves[7 - (1 << a)].first, {0, 0, 0}));
+      axis[2 * a + 1] = vertex_id(octree_.place(leaves.leaves[7].first, upper));
+    }
+  }
+  vertices = {axis[4], octant[0], octant[1], octant[2], octant[3], axis[2],   axis[0],
+              axis[1], axis[3],   octant[4], octant[5], octant[6], octant[7], axis[5]};
+  return true;
+}
+
 int OctreeTets::link_of(std::int64_t vertex, Link& link) const {
   int n = 0;
   const auto add = [&](std::int64_t v) { link[static_cast<std::size_t>(n++)] = v; };

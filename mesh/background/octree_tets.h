@@ -1,18 +1,15 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
+#include "mesh/background/bcc_link.h"
 #include "mesh/background/linear_octree.h"
 #include "mesh/base/id_set.h"
 
 namespace umtet {
-
-/// Mean edge length of BCC tets in leaves of width 1: six edges of 1 and eight of sqrt(3) / 2 meet at a vertex.
-inline const double kBccMeanEdge = (6 + 8 * std::sqrt(.75)) / 14;
 
 /// The tets on the leaves of an octree (tet_slots.h), and who meets whom, in the octree's grid.
 ///
@@ -36,6 +33,9 @@ class OctreeTets {
   std::array<std::int64_t, 4> tet(std::int64_t tet) const;
   void star(std::int64_t vertex, std::vector<std::int64_t>& tets) const;
   void link(std::int64_t vertex, std::vector<std::int64_t>& vertices) const;
+  /// Those of link(), in the order of their places around the vertex: by z, then y, then x. False, and nothing, where
+  /// some tet at the vertex is none of BCC or of another size.
+  bool bcc_link(std::int64_t vertex, BccLink& vertices) const;
   std::int64_t neighbor(std::int64_t tet, int face) const;
   bool on_boundary(std::int64_t vertex) const;
   /// Mean length of the edges at a vertex.

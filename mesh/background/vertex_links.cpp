@@ -35,6 +35,26 @@ std::uint8_t number_of(std::span<const int> link, std::int64_t w) {
   return static_cast<std::uint8_t>(std::find(link.begin(), link.end(), w) - link.begin());
 }
 
+/// Those of a BccLink, as Links puts them in order.
+std::vector<TriangleOfLink> bcc_triangles() {
+  const auto number = [](int octant) { return static_cast<std::uint8_t>(octant + (octant < 4 ? 1 : 5)); };
+  constexpr std::array<std::uint8_t, 6> kOnAxis = {6, 7, 5, 8, 0, 13};
+  std::vector<TriangleOfLink> triangles;
+  for (int f = 0; f < 6; ++f) {
+    const int a = f / 2, u = 1 << (a + 1) % 3, v = 1 << (a + 2) % 3, at = f % 2 << a;
+    // Around the face, counter-clockwise as seen from the upper side of the axis.
+    const std::array<int, 4> corners = {at, at | u, at | u | v, at | v};
+    for (std::size_t e = 0; e < 4; ++e) {
+      const std::uint8_t p = number(corners[e]), q = number(corners[(e + 1) % 4]);
+      TriangleOfLink made = {kOnAxis[static_cast<std::size_t>(f)], f % 2 == 1 ? p : q, f % 2 == 1 ? q : p};
+      while (made[0] > made[1] || made[0] > made[2]) made = {made[1], made[2], made[0]};
+      triangles.push_back(made);
+    }
+  }
+  std::sort(triangles.begin(), triangles.end());
+  return triangles;
+}
+
 float rounded(float unit) { return std::exp2(std::round(std::log2(unit) * kStepsPerOctave) / kStepsPerOctave); }
 
 /// As a key: the bytes of what makes a type.
@@ -120,6 +140,7 @@ class Lister {
   explicit Lister(const BackgroundMesh& background)
       : background_(background),
         n_(background.n_vertices()),
+        is_bcc_(static_cast<std::size_t>(n_), 0),
         parts_(static_cast<std::size_t>((n_ + kVerticesPerTask - 1) / kVerticesPerTask)) {}
 
   /// Returns false where a link is too large.
@@ -131,11 +152,12 @@ class Lister {
   /// What one task has found of its vertices.
   struct Part {
     std::vector<int> vertices;
-    std::vector<TriangleOfLink> triangles;
+    std::vector<TriangleOfLink> triangles;   ///< but for those of BccLinks
     std::vector<std::uint16_t> n_triangles;  ///< of each vertex
     std::vector<float> unit;                 ///< of each vertex
     std::unordered_map<std::string, int> number;
-    std::vector<const std::string*> keys;  ///< of the types that it met
+    std::vector<std::pair<float, int>> number_of_bcc;  ///< by unit, of those among their like
+    std::vector<const std::string*> keys;              ///< of the types that it met
     std::vector<LinkTopology> topologies;
     std::vector<std::size_t> uses;
     std::vector<int> renumbered;
@@ -148,11 +170,27 @@ class Lister {
     });
   }
   void number_types(std::vector<LinkTopology>& topologies, std::vector<std::size_t>& uses);
+  bool list_bcc(std::int64_t v, Part& part);
+  static int type_number(const LinkTopology& link, Part& part);
 
   const BackgroundMesh& background_;
   const std::int64_t n_;
+  std::vector<std::uint8_t> is_bcc_;  ///< whether the link of a vertex is a BccLink
+  const std::vector<TriangleOfLink> bcc_triangles_ = bcc_triangles();
   std::vector<Part> parts_;
 };
+
+/// Returns false where the link of the vertex is none.
+bool Lister::list_bcc(std::int64_t v, Part& part) {
+  BccLink link;
+  if (!background_.bcc_link(v, link)) return false;
+  is_bcc_[static_cast<std::size_t>(v)] = 1;
+  part.vertices.insert(part.vertices.end(), link.begin(), link.end());
+  const double width = (background_.position(link.back()) - background_.position(v)).norm();
+  part.unit.push_back(rounded(static_cast<float>(kBccMeanEdge * width / background_.h())));
+  part.n_triangles.push_back(0);
+  return true;
+}
 
 bool Lister::list_vertices(std::vector<std::size_t>& begin, std::vector<int>& vertices) {
   begin.assign(static_cast<std::size_t>(n_) + 1, 0);
@@ -160,6 +198,10 @@ bool Lister::list_vertices(std::vector<std::size_t>& begin, std::vector<int>& ve
   for_each_part([&](Part& part, std::int64_t first, std::int64_t last) {
     Links links(background_);
     for (std::int64_t v = first; v < last; ++v) {
+      if (list_bcc(v, part)) {
+        begin[static_cast<std::size_t>(v) + 1] = std::tuple_size_v<BccLink>;
+        continue;
+      }
       links.read(v);
       if (links.n() > kMaxLink) fits = false;
       for (std::size_t k = 0; k < links.n(); ++k) part.vertices.push_back(static_cast<int>(links.vertex(k)));
@@ -195,6 +237,16 @@ void Lister::number_types(std::vector<LinkTopology>& topologies, std::vector<std
   }
 }
 
+int Lister::type_number(const LinkTopology& link, Part& part) {
+  const auto [at, is_new] = part.number.try_emplace(key_of(link), static_cast<int>(part.topologies.size()));
+  if (is_new) {
+    part.keys.push_back(&at->first);
+    part.topologies.push_back(link);
+    part.uses.push_back(0);
+  }
+  return at->second;
+}
+
 void Lister::find_types(const std::vector<std::size_t>& begin, const std::vector<int>& vertices, std::vector<int>& type,
                         std::vector<LinkTopology>& topologies) {
   const auto link_of = [&](std::int64_t v) {
@@ -207,21 +259,32 @@ void Lister::find_types(const std::vector<std::size_t>& begin, const std::vector
     auto triangle = part.triangles.begin();
     for (std::int64_t v = first; v < last; ++v) {
       const std::span<const int> ring = link_of(v);
-      const auto n_triangles = part.n_triangles[static_cast<std::size_t>(v - first)];
+      const auto at = static_cast<std::size_t>(v - first);
+      const bool is_bcc = is_bcc_[static_cast<std::size_t>(v)] != 0;
+      const bool among_bcc = is_bcc && std::all_of(ring.begin(), ring.end(), [&](int w) { return is_bcc_[w] != 0; });
+      int& own = type[static_cast<std::size_t>(v)];
+      if (among_bcc) {
+        const auto known = std::find_if(part.number_of_bcc.begin(), part.number_of_bcc.end(),
+                                        [&](const auto& n) { return n.first == part.unit[at]; });
+        if (known != part.number_of_bcc.end()) {
+          own = known->second;
+          ++part.uses[static_cast<std::size_t>(own)];
+          continue;
+        }
+      }
       link.n = static_cast<int>(ring.size());
-      link.triangles.assign(triangle, triangle + n_triangles);
-      triangle += n_triangles;
+      if (is_bcc) {
+        link.triangles = bcc_triangles_;
+      } else {
+        link.triangles.assign(triangle, triangle + part.n_triangles[at]);
+        triangle += part.n_triangles[at];
+      }
       link.back = {};
       for (int k = 0; k < link.n; ++k) link.back[k] = number_of(link_of(ring[k]), v);
-      link.unit = part.unit[static_cast<std::size_t>(v - first)];
-      const auto [at, is_new] = part.number.try_emplace(key_of(link), static_cast<int>(part.topologies.size()));
-      if (is_new) {
-        part.keys.push_back(&at->first);
-        part.topologies.push_back(link);
-        part.uses.push_back(0);
-      }
-      type[static_cast<std::size_t>(v)] = at->second;
-      ++part.uses[static_cast<std::size_t>(at->second)];
+      link.unit = part.unit[at];
+      own = type_number(link, part);
+      if (among_bcc) part.number_of_bcc.emplace_back(link.unit, own);
+      ++part.uses[static_cast<std::size_t>(own)];
     }
   });
   std::vector<std::size_t> uses;

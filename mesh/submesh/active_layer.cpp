@@ -43,6 +43,7 @@ void colour_greedily(ActiveLayer& layer) {
   layer.colour.assign(layer.V.size(), -1);
   std::vector<int> taken_by;  // per colour, the last vertex that found it taken
   for (int v = 0; v < static_cast<int>(layer.V.size()); ++v) {
+    if (layer.role[v] == ActiveLayer::Role::Fixed) continue;
     for (int r = layer.ring_begin[v]; r < layer.ring_begin[v + 1]; ++r) {
       for (const int w : layer.C[layer.ring[r]]) {
         const int colour = layer.colour[w];

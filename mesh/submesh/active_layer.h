@@ -16,9 +16,10 @@ struct ActiveLayer {
     Boundary  ///< a positive vertex: projected onto psi = 0, relaxes in its tangent plane
   };
   std::vector<Vec3> V;
-  std::vector<Tet> C;                 ///< indices into V, positively oriented in the background mesh
-  std::vector<Role> role;             ///< per vertex
-  std::vector<int> colour;            ///< per vertex: vertices of one colour share no tet. Small numbers, from 0
+  std::vector<Tet> C;      ///< indices into V, positively oriented in the background mesh
+  std::vector<Role> role;  ///< per vertex
+  /// Per vertex: those of one colour share no tet. Small numbers from 0, and -1 or any for Fixed ones.
+  std::vector<int> colour;
   std::vector<int> ring_begin, ring;  ///< the tets of vertex v: ring[ring_begin[v]] .. ring[ring_begin[v + 1] - 1]
   double h = 0;                       ///< mean edge length of the background mesh, model units
   std::vector<double> local_h;        ///< per vertex, the same of the edges at it; empty: h everywhere
@@ -29,7 +30,7 @@ struct ActiveLayer {
 /// Fills in ring_begin and ring, ascending, from V and C.
 void list_rings(ActiveLayer& layer);
 
-/// Each vertex, in ascending order, takes the least colour that no lower vertex of its ring has.
+/// Each vertex that is not Fixed, in ascending order, takes the least colour that no lower vertex of its ring has.
 void colour_greedily(ActiveLayer& layer);
 
 }  // namespace umtet

@@ -78,6 +78,7 @@ LatticeActiveLayer background_active_layer(const BackgroundMesh& background, con
   used.for_each([&](std::int64_t v) {
     result.background_vertex.push_back(v);
     layer.V.push_back(background.position(v));
+    if (!background.is_lattice()) layer.local_h.push_back(background.h(v));
     layer.role.push_back(!movable.test(v)   ? ActiveLayer::Role::Fixed
                          : positive.test(v) ? ActiveLayer::Role::Boundary
                                             : ActiveLayer::Role::Inner);
@@ -86,7 +87,6 @@ LatticeActiveLayer background_active_layer(const BackgroundMesh& background, con
   for (const TetIds& tet : tets) {
     layer.C.push_back({used.rank(tet[0]), used.rank(tet[1]), used.rank(tet[2]), used.rank(tet[3])});
   }
-  if (!background.is_lattice()) set_local_sizes(background, result);
   list_rings(layer);
   colour_greedily(layer);
   return result;

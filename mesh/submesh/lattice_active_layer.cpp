@@ -180,12 +180,6 @@ void Builder::set_sizes_and_colours(LatticeActiveLayer& made) const {
 
 }  // namespace
 
-void set_local_sizes(const BackgroundMesh& background, LatticeActiveLayer& made) {
-  made.layer.local_h.clear();
-  made.layer.local_h.reserve(made.background_vertex.size());
-  for (const std::int64_t v : made.background_vertex) made.layer.local_h.push_back(background.h(v));
-}
-
 LatticeActiveLayer lattice_active_layer(const BackgroundMesh& background, const VertexLinks& links, const IdSet& inside,
                                         int layers) {
   const Builder builder(background, links, inside);

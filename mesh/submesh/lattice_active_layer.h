@@ -35,9 +35,6 @@ LatticeActiveLayer lattice_active_layer(const BackgroundMesh& background, const 
 LatticeActiveLayer lattice_patch(const BackgroundMesh& background, const VertexLinks& links, const IdSet& inside,
                                  const std::vector<std::int64_t>& centres, int reach);
 
-/// Sets ActiveLayer::local_h from the background.
-void set_local_sizes(const BackgroundMesh& background, LatticeActiveLayer& made);
-
 /// Per vertex of the layer: whether it is in the set.
 std::vector<std::uint8_t> inside_of(const LatticeActiveLayer& layer, const IdSet& inside);
 

@@ -192,7 +192,9 @@ TEST(GradedMesh, CoversAllCubesThatAreWanted) {
     const TetMesh mesh = to_tet_mesh(graded);
     const ExplicitMesh stored(mesh);
     for (std::size_t v = 0; v < mesh.V.size(); ++v) {
-      if (stored.on_boundary(static_cast<int>(v))) EXPECT_GT((mesh.V[v] - ball).norm(), .5);
+      if (stored.on_boundary(static_cast<int>(v))) {
+        EXPECT_GT((mesh.V[v] - ball).norm(), .5);
+      }
     }
   }
 }

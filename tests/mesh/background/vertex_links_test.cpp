@@ -9,6 +9,7 @@
 
 #include "mesh/background/graded_mesh.h"
 #include "mesh/core/tet_mesh.h"
+#include "mesh/core/tet_quality.h"
 
 namespace umtet {
 namespace {
@@ -83,6 +84,19 @@ TEST(VertexLinks, BackLeadsBack) {
       sum += (background.position(w) - background.position(v)).norm();
       ASSERT_EQ(links->neighbour(w, link.back[k]), v);
     }
+    std::vector<std::int64_t> star, same;
+    background.star(v, star);
+    ASSERT_EQ(link.triangles.size(), star.size());
+    background.link(v, same);
+    std::vector<std::int64_t> ring;
+    for (int k = 0; k < link.n; ++k) ring.push_back(links->neighbour(v, k));
+    for (const auto& t : link.triangles) {
+      EXPECT_GT(volume6(background.position(v), background.position(ring[t[0]]), background.position(ring[t[1]]),
+                        background.position(ring[t[2]])),
+                0);
+    }
+    std::sort(ring.begin(), ring.end());
+    EXPECT_EQ(ring, same);
     EXPECT_NEAR(link.unit * background.h() / (sum / link.n), 1, .01);
   }
 }
