@@ -80,7 +80,7 @@ struct Moving {
   }
   BackgroundMesh background() const {
     if (parameters.mesh().box_walls) return BackgroundMesh(a15_box(box, parameters.mesh().h));
-    return {tiling_named(parameters.mesh().background), box, parameters.mesh().h};
+    return {tiling_of(parameters), box, parameters.mesh().h};
   }
 };
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "mesh/background/graded_mesh.h"
+#include "mesh/octree/graded_mesh.h"
 
 namespace umtet {
 namespace {

@@ -6,10 +6,10 @@
 #include <memory>
 #include <vector>
 
-#include "mesh/background/bcc_link.h"
 #include "mesh/background/explicit_mesh.h"
 #include "mesh/background/tiling.h"
 #include "mesh/core/tet_mesh.h"
+#include "mesh/octree/bcc_link.h"
 
 namespace umtet {
 

@@ -36,9 +36,9 @@ struct BackgroundCosts {
   int repair_reach;
 };
 
-/// Of a lattice the configuration_costs() of its tiling; of any other mesh its links, and one cost for all manifold
-/// configurations: then distances decide, and what that leaves repair mends. None for a tiling without costs, and for a
-/// mesh with a vertex that has more than kMaxLink neighbours.
+/// Of a lattice the configuration_costs() of its tiling; of any other mesh its links, and costs by how many faces and
+/// tets share the angles at a vertex. None for a tiling without costs, and for a mesh with a vertex that has more than
+/// kMaxLink neighbours.
 /// @param links  what an earlier call for this background gave, or null
 std::optional<BackgroundCosts> background_costs(const BackgroundMesh& background,
                                                 std::shared_ptr<const VertexLinks> links = nullptr);

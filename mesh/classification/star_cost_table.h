@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,8 @@ class StarCostTable {
  public:
   /// @param good  a quality that costs nothing, above all in the list: see configuration_costs.cpp
   StarCostTable(const std::vector<LinkTopology>& links, std::span<const ConfigurationQuality> qualities, double good);
+  /// Of every manifold configuration cost(bv, nt), whatever the site.
+  StarCostTable(const std::vector<LinkTopology>& links, const std::function<float(int, int)>& cost);
 
   float operator()(int site, const LinkState& s) const {
     const OfSite& of = of_site_[static_cast<std::size_t>(site)];
@@ -40,6 +43,8 @@ class StarCostTable {
     std::size_t row = 0;      ///< triangles of the link, and one more
     std::vector<float> cost;  ///< by positive faces, then by tets
   };
+  void make_rows(const std::vector<LinkTopology>& links);
+
   std::vector<OfSite> of_site_;
   float not_manifold_;
 };

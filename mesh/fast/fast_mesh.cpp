@@ -18,9 +18,9 @@
 #include "mesh/fast/warm_start.h"
 #include "mesh/submesh/assemble_submesh.h"
 #include "mesh/submesh/assumptions.h"
-#include "mesh/submesh/background_active_layer.h"
-#include "mesh/submesh/lattice_active_layer.h"
+#include "mesh/submesh/linked_active_layer.h"
 #include "mesh/submesh/nothing_inside.h"
+#include "mesh/submesh/walled_active_layer.h"
 #include "mesh/submesh/walls.h"
 
 namespace umtet {
@@ -130,7 +130,7 @@ class FastRun {
   IdSet negative_{0};             ///< of update: psi < 0
   FastMemory* memory_ = nullptr;  ///< of the psi before
   const PsiValues* known_ = nullptr;
-  LatticeActiveLayer layer_;
+  BackgroundLayer layer_;
   std::vector<std::pair<std::int64_t, Vec3>> moved_;  ///< by repair, ascending
   bool is_classified_ = false, is_complete_ = false;  ///< inside_ has been chosen, omega_h made of it
   std::size_t n_tets_ = 0;                            ///< of omega_h, as far as it is known
@@ -151,7 +151,7 @@ bool FastRun::find_inside(const std::vector<Vec3>& seeds) {
 }
 
 bool FastRun::fits_background(const std::string& lost) {
-  UmEvidence background_boundary{.what = "the domain reaches the background_boundary of the background mesh"};
+  UmEvidence background_boundary{.what = "the domain reaches the boundary of the background mesh"};
   bool empty = true;
   for (std::size_t w = 0; w < inside_.n_words(); ++w) {
     const auto first = static_cast<std::int64_t>(64 * w);
@@ -276,8 +276,8 @@ void FastRun::repair_classification() {
 /// Boundary vertices go to psi = 0, as far as no tet inverts, and the layer is relaxed.
 /// @param projected  receives the places between the two
 void FastRun::relax(std::vector<Vec3>& projected) {
-  layer_ = costs_ ? lattice_active_layer(background_, *costs_->links, inside_, params_.layers)
-                  : background_active_layer(background_, inside_, params_.layers);
+  layer_ = costs_ ? linked_active_layer(background_, *costs_->links, inside_, params_.layers)
+                  : walled_active_layer(background_, inside_, params_.layers);
   SmoothingParams smoothing_params = params_.smoothing;
   bool is_on_surface = false, is_short = false;
   if (memory_ && !memory_->moved.empty()) {

@@ -22,7 +22,7 @@ namespace umtet {
 ///
 /// classification: which background vertices near psi = 0 count as inside is chosen for the shape of the tets
 /// (classification.h), where that has costs (configuration_costs.h); layer: only the boundary of omega_h and two layers
-/// behind it move (lattice_active_layer.h); projection: boundary vertices walk to psi = 0 as far as no tet of
+/// behind it move (linked_active_layer.h); projection: boundary vertices walk to psi = 0 as far as no tet of
 /// their rings falls below Q = .2 or what it had (backtracking_projection.h); smoothing: p-norm Newton steps where a
 /// tet is below the target (p_norm_smoothing.h); tangential relaxation: boundary vertices slide on to ridges that h
 /// does not resolve (tangential_relaxation.h); repair: vertices change between inside and outside where a tet is still

@@ -52,7 +52,7 @@ double longest_edge(const Tiling& tiling, const TilingTables& tables) {
 class Repair {
  public:
   Repair(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
-         const ClassificationParams& classification, const RepairParams& params, const LatticeActiveLayer& layer,
+         const ClassificationParams& classification, const RepairParams& params, const BackgroundLayer& layer,
          IdSet& inside)
       : background_(background),
         links_(links),
@@ -85,8 +85,8 @@ class Repair {
   void again(double target);
   bool choose_round();
   void keep(const TetIds& tet, const FlipTrials::Best& best);
-  void move(const LatticeActiveLayer& patch);
-  void look(const LatticeActiveLayer& cut);
+  void move(const BackgroundLayer& patch);
+  void look(const BackgroundLayer& cut);
   void count();
 
   const BackgroundMesh& background_;
@@ -94,7 +94,7 @@ class Repair {
   ImplicitFunctionRef psi_;
   const ClassificationParams& classification_;
   const RepairParams& params_;
-  const LatticeActiveLayer& layer_;
+  const BackgroundLayer& layer_;
   IdSet& inside_;
   std::size_t most_patches() const { return std::min(most_patches_, kFewPatches + kPatchesPerSuccess * kept_.size()); }
   const std::size_t most_patches_;
@@ -170,7 +170,7 @@ bool Repair::choose_round() {
   return !round_.empty();
 }
 
-void Repair::move(const LatticeActiveLayer& patch) {
+void Repair::move(const BackgroundLayer& patch) {
   for (std::size_t v = 0; v < patch.layer.V.size(); ++v) {
     if (patch.layer.role[v] != ActiveLayer::Role::Fixed) positions_.move(patch.background_vertex[v], patch.layer.V[v]);
   }
@@ -194,7 +194,7 @@ void Repair::count() {
 }
 
 /// Puts the tets of a layer that are below the target, or have a misaligned face, on the list, the worst first.
-void Repair::look(const LatticeActiveLayer& cut) {
+void Repair::look(const BackgroundLayer& cut) {
   const std::vector<Vec3>& V = cut.layer.V;
   const std::vector<Tet>& C = cut.layer.C;
   const std::vector<std::uint8_t> inside = inside_of(cut, inside_);
@@ -312,7 +312,7 @@ std::vector<std::string> problems(const RepairParams& params) {
 
 RepairReport repair(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
                     const ClassificationParams& classification, const RepairParams& params,
-                    const LatticeActiveLayer& layer, IdSet& inside, const Context& context) {
+                    const BackgroundLayer& layer, IdSet& inside, const Context& context) {
   std::string all;
   for (const auto& list : {problems(classification), problems(params)}) {
     for (const std::string& problem : list) all += (all.empty() ? "" : "; ") + problem;

@@ -10,7 +10,7 @@
 #include "mesh/classification/classification.h"
 #include "mesh/core/quality_target.h"
 #include "mesh/fast/backtracking_projection.h"
-#include "mesh/submesh/lattice_active_layer.h"
+#include "mesh/submesh/linked_active_layer.h"
 
 namespace umtet {
 
@@ -76,6 +76,6 @@ struct RepairReport {
 /// \throw std::invalid_argument naming every broken constraint, Cancelled
 RepairReport repair(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
                     const ClassificationParams& classification, const RepairParams& params,
-                    const LatticeActiveLayer& layer, IdSet& inside, const Context& context = {});
+                    const BackgroundLayer& layer, IdSet& inside, const Context& context = {});
 
 }  // namespace umtet

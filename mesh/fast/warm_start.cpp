@@ -25,7 +25,7 @@ constexpr std::size_t kFeetPerPoll = kValuesPerPoll / 8;
 
 class Start {
  public:
-  Start(LatticeActiveLayer& layer, const ProjectionParams& projection)
+  Start(BackgroundLayer& layer, const ProjectionParams& projection)
       : ids_(layer.background_vertex),
         layer_(layer.layer),
         projection_(projection),
@@ -163,7 +163,7 @@ void Start::go_back_where_flat() {
 }  // namespace
 
 WarmStart warm_start(const BackgroundMesh& background, ImplicitFunctionRef psi, const IdSet& inside,
-                     const FastMemory& memory, const ProjectionParams& projection, LatticeActiveLayer& layer,
+                     const FastMemory& memory, const ProjectionParams& projection, BackgroundLayer& layer,
                      const Context& context) {
   Start start(layer, projection);
   WarmStart result;

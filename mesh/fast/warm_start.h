@@ -8,7 +8,7 @@
 #include "mesh/core/implicit_function.h"
 #include "mesh/fast/backtracking_projection.h"
 #include "mesh/fast/fast_mesh.h"
-#include "mesh/submesh/lattice_active_layer.h"
+#include "mesh/submesh/linked_active_layer.h"
 
 namespace umtet {
 
@@ -31,7 +31,7 @@ struct WarmStart {
 /// @param inside  the inside vertices of this mesh
 /// \throw Cancelled
 WarmStart warm_start(const BackgroundMesh& background, ImplicitFunctionRef psi, const IdSet& inside,
-                     const FastMemory& memory, const ProjectionParams& projection, LatticeActiveLayer& layer,
+                     const FastMemory& memory, const ProjectionParams& projection, BackgroundLayer& layer,
                      const Context& context = {});
 
 }  // namespace umtet

@@ -31,7 +31,7 @@ void look_at_background_boundary(const BackgroundMesh& background, const Submesh
   chosen.evidence = {.background_vertex = submesh.background_vertex[found.first],
                      .where = submesh.mesh.V[found.first],
                      .count = found.count,
-                     .what = "the domain reaches the background_boundary of the background mesh"};
+                     .what = "the domain reaches the boundary of the background mesh"};
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 #include "mesh/background/link_steps.h"
 #include "mesh/base/id_set.h"
 #include "mesh/submesh/assemble_submesh.h"
-#include "mesh/submesh/lattice_active_layer.h"
+#include "mesh/submesh/linked_active_layer.h"
 
 namespace umtet {
 namespace {

@@ -63,6 +63,7 @@ void check_background(const std::string& name) {
   const auto tilings = tiling_names();
   std::vector<std::string> names(tilings.begin(), tilings.end());
   names.emplace_back("graded");
+  names.emplace_back("auto");
   const std::string ending = std::filesystem::path(name).extension();
   const bool is_file = ending == ".vtu" || ending == ".msh" || ending == ".mesh";
   if (is_file || std::find(names.begin(), names.end(), name) != names.end()) return;

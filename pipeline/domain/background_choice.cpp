@@ -9,11 +9,12 @@
 #include <string>
 
 #include "mesh/background/a15_box.h"
-#include "mesh/background/graded_mesh.h"
-#include "mesh/background/graded_size.h"
 #include "mesh/io/tet_mesh_io.h"
+#include "mesh/octree/graded_mesh.h"
+#include "mesh/sizes/graded_size.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/memory.h"
+#include "reconstruct/solve/resolution.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -31,16 +32,24 @@ BackgroundMesh read_background(const fs::path& file, const Vec3& shift) {
 
 }  // namespace
 
+const Tiling& tiling_of(const Parameters& parameters) {
+  const std::string& name = parameters.mesh().background;
+  return name == "auto" ? a15() : tiling_named(name);
+}
+
 std::optional<fs::path> background_file(const Parameters& parameters) {
   const std::string& name = parameters.mesh().background;
   const auto names = tiling_names();
-  if (is_graded(parameters) || std::find(names.begin(), names.end(), name) != names.end()) return std::nullopt;
+  const bool is_named = name == "auto" || is_graded(parameters);
+  if (is_named || std::find(names.begin(), names.end(), name) != names.end()) return std::nullopt;
   return name;
 }
 
 void require_walls(const Parameters& parameters) {
   const bool walls = parameters.mesh().box_walls;
-  if (walls && parameters.mesh().background != "a15") throw UsageError("--box-walls is for --background a15");
+  const std::string& name = parameters.mesh().background;
+  const bool is_a15 = name == "a15" || (name == "auto" && !is_graded(parameters));
+  if (walls && !is_a15) throw UsageError("--box-walls is for --background a15");
   if (walls || !parameters.mesh().complement) return;
   throw UsageError("--complement needs --box-walls: what is around the body ends at the flat walls of --box");
 }
@@ -53,6 +62,7 @@ ClassificationSource classification_source(const Parameters& parameters) {
 
 BackgroundChoice::BackgroundChoice(const Parameters& parameters, const Domain& domain)
     : parameters_(parameters),
+      is_open_(parameters.mesh().background == "auto" && !umtet::is_graded(parameters)),
       tiling_(&a15()),
       source_(classification_source(parameters)),
       walls_(parameters.mesh().box_walls) {
@@ -63,7 +73,7 @@ BackgroundChoice::BackgroundChoice(const Parameters& parameters, const Domain& d
     return;
   }
   const std::optional<fs::path> file = background_file(parameters);
-  if (!file) tiling_ = &tiling_named(parameters.mesh().background);
+  if (!file) tiling_ = &tiling_of(parameters);
   if (!file) return;
   if (parameters.mesh().h > 0 || parameters.mesh().tets > 0) {
     throw UsageError("--h and --tets: " + file->string() + " has its own edge lengths");
@@ -71,11 +81,42 @@ BackgroundChoice::BackgroundChoice(const Parameters& parameters, const Domain& d
   given_.emplace(read_background(*file, domain.shift));
 }
 
+bool BackgroundChoice::may_be_graded(const Domain& domain) const {
+  const MeshParameters& p = parameters_.mesh();
+  return is_open_ && domain.level_set && p.mode == MeshingMode::Fast && !walls_ && p.h == 0 && p.max_deviation == 0;
+}
+
+/// @param needed  the h that thin parts need
+void BackgroundChoice::grade_if_worth_it(Domain& domain, double needed, const Context& context) {
+  // A graded mesh of the same body has as short edges where it is thin, and is lower in quality: that has to pay.
+  constexpr double kWorthIt = 2;
+  const double least = std::cbrt(1 / kWorthIt) * kMeshEdge * domain.diagonal;  // sizes are no larger than h by default
+  if (needed > least) return;
+  const double uniform = umtet::expected_tets(*tiling_, domain.size(), needed, source_);
+  GradedSizes sizes(parameters_, domain.shift);
+  sizes.add(domain, context);
+  const double h = sizes.finest();
+  const double graded =
+      expected_graded_tets(sizes.field(h, context), h, domain.psi(), domain.box, domain.steepest(), context);
+  if (uniform <= kWorthIt * graded) return;
+  graded_.emplace(std::move(sizes));
+  uniform_tets_ = uniform;
+}
+
 EdgeLength BackgroundChoice::edge_length(Domain& domain, const Context& context) {
   if (given_) return {given_->h(), given_->h()};
-  if (!graded_) return choose_edge_length(domain, parameters_, context);
+  if (!graded_) {
+    const EdgeLength uniform = choose_edge_length(domain, parameters_, context);
+    if (may_be_graded(domain)) grade_if_worth_it(domain, uniform.needed, context);
+    is_open_ = false;
+    return graded_ ? graded_edge_length(domain, context) : uniform;
+  }
   graded_->add(domain, context);
   sizes_ = nullptr;
+  return graded_edge_length(domain, context);
+}
+
+EdgeLength BackgroundChoice::graded_edge_length(const Domain& domain, const Context& context) const {
   const MeshParameters& p = parameters_.mesh();
   if (p.tets > 0) {
     const double h = h_of_graded_tets(*graded_, domain, static_cast<double>(p.tets), context);

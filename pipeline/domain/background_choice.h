@@ -6,13 +6,16 @@
 #include <optional>
 
 #include "mesh/background/background_mesh.h"
-#include "mesh/background/body_size.h"
+#include "mesh/sizes/body_size.h"
 #include "pipeline/case/parameters.h"
 #include "pipeline/domain/domain.h"
 #include "pipeline/domain/edge_length.h"
 #include "pipeline/domain/graded_sizes.h"
 
 namespace umtet {
+
+/// The tiling that mesh.background names; a15() where it leaves the choice to us. \throw std::invalid_argument  a file
+const Tiling& tiling_of(const Parameters&);
 
 /// The mesh file that mesh.background names, if it is no tiling and not graded.
 std::optional<std::filesystem::path> background_file(const Parameters&);
@@ -41,9 +44,13 @@ class BackgroundChoice {
 
   /// That of the file.
   std::optional<double> own_h() const { return given_ ? std::optional(given_->h()) : std::nullopt; }
-  /// That of the file, of the sizes that this domain and all former ones ask for, or choose_edge_length().
+  /// That of the file, of the sizes that this domain and all former ones ask for, or choose_edge_length(). Where
+  /// mesh.background is auto and neither --h nor --max-deviation is given, the first domain decides, if it is a level
+  /// set of samples: a graded mesh where that takes less than half the tets of the one h that its thin parts need.
   /// \throw as choose_edge_length() and GradedSizes::add()
   EdgeLength edge_length(Domain& domain, const Context& context = {});
+  /// About how many tets the h for thin parts would have made, where the mesh is graded because of that; else 0.
+  double uniform_tets() const { return uniform_tets_; }
   /// Of a graded mesh: GradedSizes::refine().
   std::optional<double> refine(const std::vector<SizeSource>& wanted, double h);
   bool is_graded() const { return graded_.has_value(); }
@@ -57,6 +64,9 @@ class BackgroundChoice {
   SizedBackground make(const Domain& domain, double h, std::int64_t n_tets, double allowed) const;
 
  private:
+  bool may_be_graded(const Domain& domain) const;
+  void grade_if_worth_it(Domain& domain, double needed, const Context& context);
+  EdgeLength graded_edge_length(const Domain& domain, const Context& context) const;
   /// The sizes for an h, kept for the next call.
   std::shared_ptr<const SizeField> sizes_for(double h) const;
   BackgroundMesh graded(const Domain& domain, double h) const;
@@ -66,6 +76,8 @@ class BackgroundChoice {
   std::optional<GradedSizes> graded_;
   mutable std::shared_ptr<const SizeField> sizes_;
   mutable double sizes_h_ = 0;
+  bool is_open_;  ///< mesh.background is auto, and has not been decided
+  double uniform_tets_ = 0;
   const Tiling* tiling_;  ///< that the number of tets is estimated by, for a file too
   ClassificationSource source_;
   bool walls_;

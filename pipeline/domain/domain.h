@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "mesh/background/background_mesh.h"
-#include "mesh/background/body_size.h"
 #include "mesh/core/implicit_function.h"
 #include "mesh/implicit/surface_distance.h"
+#include "mesh/sizes/body_size.h"
 #include "pipeline/case/case_folder.h"
 #include "pipeline/case/parameters.h"
 #include "pipeline/expression/expression.h"

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "mesh/background/body_size.h"
 #include "mesh/certify/quality_report.h"
 #include "mesh/implicit/thickness.h"
+#include "mesh/sizes/body_size.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/domain/background_choice.h"
 #include "pipeline/domain/deviation.h"
@@ -37,7 +37,7 @@ constexpr std::size_t kThicknessSamples = 20000;
 /// \throw MeshingImpossible when psi < 0 at none of the places where it is sampled
 double h_of(const Domain& domain, const Parameters& parameters, std::int64_t n_tets) {
   try {
-    return h_for_tets(tiling_named(parameters.mesh().background), domain.size(), static_cast<double>(n_tets),
+    return h_for_tets(tiling_of(parameters), domain.size(), static_cast<double>(n_tets),
                       classification_source(parameters));
   } catch (const std::invalid_argument& e) {
     throw MeshingImpossible(std::string("no edge length can be chosen: ") + e.what() +
@@ -86,30 +86,27 @@ EdgeLength by_deviation(Domain& domain, const Parameters& parameters, double dev
 
 /// The choice, without regard to how it will be written.
 EdgeLength choose(Domain& domain, const Parameters& parameters, const Context& context) {
-  if (const std::int64_t n = parameters.mesh().tets) {
-    const double h = h_of(domain, parameters, n);
-    return {h, h};
+  const MeshParameters& p = parameters.mesh();
+  if (p.tets == 0 && p.h > 0) {
+    refuse_too_many(domain, parameters, p.h);
+    return {p.h, p.h};
   }
-  const std::int64_t max_tets = parameters.mesh().max_tets;
-  if (const double h = parameters.mesh().h; h > 0) {
-    refuse_too_many(domain, parameters, h);
-    return {h, h};
+  if (p.tets == 0 && p.max_deviation > 0) return by_deviation(domain, parameters, p.max_deviation, context);
+  const double of_size = kMeshEdge * domain.diagonal, limit = kEdgesAcross * of_size;
+  const double t = domain.level_set ? thin_part(domain, limit, context) : limit;
+  const double of_noise = noise_edge(domain), needed = std::max(std::min(of_size, t / kEdgesAcross), of_noise);
+  if (p.tets > 0) {
+    const double h = h_of(domain, parameters, p.tets);
+    return {h, h, {}, needed};
   }
-  if (const double deviation = parameters.mesh().max_deviation; deviation > 0) {
-    return by_deviation(domain, parameters, deviation, context);
+  const double least = h_of(domain, parameters, p.max_tets);
+  double h = of_size;
+  if (t < limit) {
+    h = std::min(h, std::clamp(h_of(domain, parameters, kTetsOfLargeMesh), t / kEdgesAcross, t / kFewerEdgesAcross));
   }
-  const double least = h_of(domain, parameters, max_tets);
-  double h = kMeshEdge * domain.diagonal;
-  if (domain.level_set) {
-    const double t = thin_part(domain, kEdgesAcross * h, context);
-    if (t < kEdgesAcross * h) {
-      h = std::min(h, std::clamp(h_of(domain, parameters, kTetsOfLargeMesh), t / kEdgesAcross, t / kFewerEdgesAcross));
-    }
-  }
-  const double of_noise = noise_edge(domain);
   h = std::max(h, least);
-  if (of_noise > h) return {of_noise, least, h};
-  return {h, least};
+  if (of_noise > h) return {of_noise, least, h, needed};
+  return {h, least, {}, needed};
 }
 
 Vec3 greatest_coordinates(const Domain& domain) {

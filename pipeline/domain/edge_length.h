@@ -16,6 +16,7 @@ struct EdgeLength {
   double h;      ///< model units
   double least;  ///< the h that makes about mesh.max_tets tets if the choice of h was left to us, else h
   std::optional<double> of_thin_parts = {};  ///< where noise decided: what these alone would have asked for
+  double needed = h;  ///< that noise allows and that gives thin parts 2.2 edges, however many tets that makes
 };
 
 /// The edge length of the background mesh.

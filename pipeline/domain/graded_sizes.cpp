@@ -9,8 +9,8 @@
 #include <numbers>
 #include <sstream>
 
-#include "mesh/background/graded_size.h"
-#include "mesh/background/surface_sizes.h"
+#include "mesh/sizes/graded_size.h"
+#include "mesh/sizes/surface_sizes.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/domain/edge_length.h"
 #include "pipeline/domain/size_file.h"
@@ -32,34 +32,44 @@ constexpr double kPower = 2.5;
 constexpr double kGoodEnough = .05;
 constexpr int kMostRounds = 6;
 
+/// The flags of sizes that are given.
+std::vector<std::string> given_sizes(const Parameters& parameters) {
+  const MeshParameters& p = parameters.mesh();
+  std::vector<std::string> flags;
+  const auto note = [&](bool is_given, const char* flag) {
+    if (is_given) flags.emplace_back(flag);
+  };
+  note(!p.size.empty(), "--size");
+  note(!p.size_at.empty(), "--size-at");
+  note(p.h_min > 0, "--h-min");
+  note(p.h_max > 0, "--h-max");
+  note(p.grade_inside, "--grade-inside");
+  note(parameters.source(keys::mesh::max_turn) >= ParamSource::Set, "--max-turn");
+  note(parameters.source(keys::mesh::grade) >= ParamSource::Set, "--grade");
+  return flags;
+}
+
 }  // namespace
 
-bool is_graded(const Parameters& p) { return p.mesh().background == "graded"; }
+bool is_graded(const Parameters& p) {
+  return p.mesh().background == "graded" || (p.mesh().background == "auto" && !given_sizes(p).empty());
+}
 
 void require_graded(const Parameters& parameters) {
   const MeshParameters& p = parameters.mesh();
-  if (is_graded(parameters)) {
-    if (p.h_max > 0 && p.h_min > p.h_max) {
-      throw UsageError(fmt::format("--h-min {} is above --h-max {}", p.h_min, p.h_max));
-    }
-    if (p.h > 0 && p.h_min > p.h) throw UsageError(fmt::format("--h-min {} is above --h {}", p.h_min, p.h));
-    if (p.grade_inside && !(p.max_deviation == 0 && p.size_at.empty() && p.size.empty())) {
-      throw UsageError(
-          "--grade-inside keeps --h on all of the boundary: without --max-deviation, --size and --size-at");
-    }
-    parse_label_sizes(p.size_at);
+  if (!is_graded(parameters)) {
+    const std::vector<std::string> flags = given_sizes(parameters);
+    if (!flags.empty()) throw UsageError(fmt::format("{} is for --background graded", flags.front()));
     return;
   }
-  const auto refuse = [](bool is_given, const char* flag) {
-    if (is_given) throw UsageError(fmt::format("{} is for --background graded", flag));
-  };
-  refuse(!p.size.empty(), "--size");
-  refuse(!p.size_at.empty(), "--size-at");
-  refuse(p.h_min > 0, "--h-min");
-  refuse(p.h_max > 0, "--h-max");
-  refuse(p.grade_inside, "--grade-inside");
-  refuse(parameters.source(keys::mesh::max_turn) >= ParamSource::Set, "--max-turn");
-  refuse(parameters.source(keys::mesh::grade) >= ParamSource::Set, "--grade");
+  if (p.h_max > 0 && p.h_min > p.h_max) {
+    throw UsageError(fmt::format("--h-min {} is above --h-max {}", p.h_min, p.h_max));
+  }
+  if (p.h > 0 && p.h_min > p.h) throw UsageError(fmt::format("--h-min {} is above --h {}", p.h_min, p.h));
+  if (p.grade_inside && !(p.max_deviation == 0 && p.size_at.empty() && p.size.empty())) {
+    throw UsageError("--grade-inside keeps --h on all of the boundary: without --max-deviation, --size and --size-at");
+  }
+  parse_label_sizes(p.size_at);
 }
 
 std::map<int, double> parse_label_sizes(const std::string& text) {

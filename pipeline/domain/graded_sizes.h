@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "common/context.h"
-#include "mesh/background/size_field.h"
+#include "mesh/sizes/size_field.h"
 #include "pipeline/case/parameters.h"
 #include "pipeline/domain/domain.h"
 
 namespace umtet {
 
-/// mesh.background asks for a graded mesh.
+/// mesh.background asks for a graded mesh: by its name or, where it is auto, because sizes are given.
 bool is_graded(const Parameters&);
 
 /// \throw UsageError where sizes are given for a background that has its own, or sizes that contradict each other

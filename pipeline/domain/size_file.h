@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "mesh/background/source_tree.h"
+#include "mesh/sizes/source_tree.h"
 
 namespace umtet {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "mesh/background/size_field.h"
 #include "mesh/certify/quadratic_tets.h"
+#include "mesh/sizes/size_field.h"
 #include "mesh/universal_mesh.h"
 #include "pipeline/domain/edge_length.h"
 #include "pipeline/domain/too_thin.h"

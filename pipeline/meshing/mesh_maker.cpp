@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "mesh/sizes/graded_size.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/domain/edge_length.h"
 #include "pipeline/domain/too_thin.h"
@@ -28,6 +29,9 @@ constexpr int kMostMisses = 4;
 // Pieces of psi = 0 are looked for on a grid of h and, where there is none, on this many more grids, each of half the
 // spacing.
 constexpr int kFinerGrids = 3;
+// Of a graded mesh the grid's diagonals are as long as the thinnest part that its shortest edges show: 2.2 edges that
+// may be kSizeTolerance of their size.
+const double kGridOfFinest = 2.2 * kSizeTolerance / std::sqrt(3.);
 // Where each part of an attempt begins, as a share of its time.
 constexpr double kPieces = .05, kChoice = .1, kFit = .2, kCertificate = .9, kCurving = .95;
 
@@ -53,7 +57,7 @@ const ZeroSetChoice& MeshMaker::pieces_at(double h) {
     n_levels_ = n_levels;
     // A body thinner than the grid may have no node inside.
     for (int halvings = 0; halvings <= kFinerGrids; ++halvings) {
-      const double spacing = std::ldexp(h, -halvings);
+      const double spacing = std::ldexp(is_graded_ ? kGridOfFinest * h : h, -halvings);
       const bool is_known = known && are_cells_for(spacing, *known);
       pieces_.emplace(h, choose_components(domain_, spacing, context_, is_known ? &*known : nullptr));
       if (is_known) pieces_->second.cells = std::move(known);
@@ -170,6 +174,7 @@ MeshAttempt MeshMaker::best(const EdgeLength& choice, const std::function<SizedB
   const auto attempt = [&](double h) { return attempt_for_tets(h, background); };
   const auto say_it = [this](const std::string& line) { say(line); };
   const double effort = parameters_.mesh().effort;
+  is_graded_ = refine != nullptr;
   return refine ? refined_attempt(choice.h, effort, attempt, refine, say_it)
                 : best_attempt(choice, effort, attempt, say_it);
 }

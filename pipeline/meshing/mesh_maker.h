@@ -63,6 +63,7 @@ class MeshMaker {
   const UmParams params_;
   std::optional<std::pair<double, ZeroSetChoice>> pieces_;  ///< of psi cut for the h beside them
   int n_levels_ = 0;                                        ///< of psi then; 0: a formula
+  bool is_graded_ = false;                                  ///< h is that of the shortest edges
 };
 
 /// What is wrong, and the first of the thin places; some lines, without a newline at the end. Coordinates are those of

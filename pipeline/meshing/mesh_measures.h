@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "mesh/background/size_field.h"
+#include "mesh/sizes/size_field.h"
 #include "mesh/universal_mesh.h"
 #include "pipeline/domain/domain.h"
 #include "pipeline/domain/mesh_edge.h"

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "common/context.h"
-#include "mesh/background/size_field.h"
 #include "mesh/core/tet_mesh.h"
+#include "mesh/sizes/size_field.h"
 #include "pipeline/reports/certificate_report.h"
 
 namespace umtet {

@@ -62,7 +62,10 @@ class Evolution {
  public:
   Evolution(const EvolveRequest& request, Progress& progress)
       : request_(request), parameters_(request.parameters), progress_(progress), of_clouds_(!request.clouds.empty()) {
-    um_params(parameters_);  // what is wrong with them is wrong for all instants
+    um_params(parameters_);                         // what is wrong with them is wrong for all instants
+    if (parameters_.mesh().background == "auto") {  // for all instants, which no single one decides
+      parameters_.set(keys::mesh::background, is_graded(parameters_) ? "graded" : "a15", ParamSource::Flag, "evolve");
+    }
     for (TimeStep& at : time_steps(request.times, request.skip, request.clouds)) {
       const std::string name = fmt::format("step_{:04}.vtu", steps_.size());
       Step& step = steps_.emplace_back();

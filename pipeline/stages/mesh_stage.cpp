@@ -141,6 +141,12 @@ MeshAttempt MeshStage::best_mesh() {
                     "(--h decides)",
                     choice.h, *domain_.noise / choice.h));
   }
+  if (const double n = background_.uniform_tets(); n > 0) {
+    context_.progress.say(
+        fmt::format("mesh: graded, with edges from {:.4g} on: one h for the thin parts of this body would make about "
+                    "{:.2g} tets, not {:.2g} (--background a15: one h)",
+                    choice.h, n, background_.expected_tets(domain_, choice.h)));
+  }
   std::function<std::optional<double>(const MeshAttempt&)> refine;
   if (background_.is_graded()) {
     refine = [this](const MeshAttempt& a) { return background_.refine(finer_where_it_failed(a, domain_.shift), a.h); };

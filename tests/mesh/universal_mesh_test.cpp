@@ -8,8 +8,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "mesh/background/body_size.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/sizes/body_size.h"
 #include "mesh/submesh/assumptions.h"
 #include "tests/support/domains.h"
 

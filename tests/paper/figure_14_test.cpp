@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <vector>
 
-#include "mesh/background/body_size.h"
 #include "mesh/certify/boundary_surface.h"
+#include "mesh/sizes/body_size.h"
 #include "mesh/universal_mesh.h"
 #include "tests/support/certified.h"
 #include "tests/support/domains.h"

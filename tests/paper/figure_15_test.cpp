@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string>
 
-#include "mesh/background/body_size.h"
+#include "mesh/sizes/body_size.h"
 #include "mesh/universal_mesh.h"
 #include "tests/support/certified.h"
 #include "tests/support/domains.h"

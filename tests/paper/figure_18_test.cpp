@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <ctime>
 
-#include "mesh/background/body_size.h"
+#include "mesh/sizes/body_size.h"
 #include "mesh/universal_mesh.h"
 #include "tests/support/bench_domains.h"
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "mesh/background/body_size.h"
 #include "mesh/certify/quality_report.h"
+#include "mesh/sizes/body_size.h"
 #include "mesh/universal_mesh.h"
 #include "reconstruct/io/point_cloud_io.h"
 #include "reconstruct/solve/fit_ssd.h"

@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "mesh/background/body_size.h"
+#include "mesh/sizes/body_size.h"
 #include "mesh/universal_mesh.h"
 #include "tests/support/bench_domains.h"
 #include "tests/support/certified.h"

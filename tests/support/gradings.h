@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "mesh/background/graded_mesh.h"
+#include "mesh/octree/graded_mesh.h"
 
 namespace umtet::testing {
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "mesh/background/body_size.h"
 #include "mesh/core/tet_quality.h"
 #include "mesh/implicit/closest_point.h"
+#include "mesh/sizes/body_size.h"
 #include "mesh/submesh/active_layer.h"
 #include "mesh/submesh/submesh.h"
 #include "tests/support/domains.h"

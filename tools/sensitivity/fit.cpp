@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "mesh/background/body_size.h"
 #include "mesh/classification/configuration_costs.h"
 #include "mesh/classification/tables/a15.h"
 #include "mesh/core/tet_quality.h"
@@ -12,8 +11,9 @@
 #include "mesh/fast/patch_state.h"
 #include "mesh/implicit/closest_point.h"
 #include "mesh/implicit/surface_distance.h"
+#include "mesh/sizes/body_size.h"
 #include "mesh/submesh/assemble_submesh.h"
-#include "mesh/submesh/lattice_active_layer.h"
+#include "mesh/submesh/linked_active_layer.h"
 #include "tools/star_costs/random.h"
 
 namespace umtet::sensitivity {
@@ -164,7 +164,7 @@ Measured fit(const Subject& subject, const Settings& settings, std::vector<Vec3>
   IdSet inside = subject.negative;
   const ClassificationReport classified = classify_vertices(background, links, psi, classification, inside);
   std::size_t evaluations = classified.psi_evaluations;
-  LatticeActiveLayer cut = lattice_active_layer(background, links, inside, settings.fast.layers);
+  BackgroundLayer cut = linked_active_layer(background, links, inside, settings.fast.layers);
   PNormSmoother smoother(cut.layer);
   const ProjectionReport projection = project(smoother, psi, settings.fast.projection);
   if (!projection.not_arrived.empty()) return failed();

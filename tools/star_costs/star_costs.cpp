@@ -17,14 +17,14 @@
 #include <tuple>
 #include <vector>
 
-#include "mesh/background/body_size.h"
 #include "mesh/background/vertex_links.h"
 #include "mesh/classification/classification.h"
 #include "mesh/classification/configuration_costs.h"
 #include "mesh/core/tet_quality.h"
 #include "mesh/fast/backtracking_projection.h"
+#include "mesh/sizes/body_size.h"
 #include "mesh/submesh/assemble_submesh.h"
-#include "mesh/submesh/lattice_active_layer.h"
+#include "mesh/submesh/linked_active_layer.h"
 #include "tools/star_costs/random_shape.h"
 
 using namespace umtet;
@@ -53,7 +53,7 @@ void measure(const star_costs::RandomShape& shape, const Tiling& tiling, const S
     params.costs = costs;
     classify_vertices(background, links, shape, params, inside);
   }
-  LatticeActiveLayer cut = lattice_active_layer(background, links, inside);
+  BackgroundLayer cut = linked_active_layer(background, links, inside);
   const ProjectionReport projection = project(cut.layer, shape);
   if (!projection.not_arrived.empty()) return;
   SmoothingParams smoothing;

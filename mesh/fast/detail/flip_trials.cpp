@@ -59,8 +59,8 @@ bool FlipTrials::is_bad(const TetIds& tet) {
          is_misaligned(tet);
 }
 
-LatticeActiveLayer FlipTrials::patch(const std::vector<std::int64_t>& centres, Start start) const {
-  LatticeActiveLayer cut = lattice_patch(background_, links_, inside_, centres, params_.reach);
+BackgroundLayer FlipTrials::patch(const std::vector<std::int64_t>& centres, Start start) const {
+  BackgroundLayer cut = active_patch(background_, links_, inside_, centres, params_.reach);
   for (std::size_t v = 0, from = 0; v < cut.layer.V.size(); ++v) {
     if (start == Start::Here || cut.layer.role[v] == ActiveLayer::Role::Fixed)
       cut.layer.V[v] = positions_.of(cut.background_vertex[v], from);
@@ -95,14 +95,14 @@ void FlipTrials::attempt(const TetIds& tet, std::span<const std::int64_t> flips,
   std::vector<std::int64_t> centres(tet.begin(), tet.end());
   centres.insert(centres.end(), flips.begin(), flips.end());
   for (const std::int64_t v : flips) flip(v);
-  LatticeActiveLayer trial = patch(centres, start);
+  BackgroundLayer trial = patch(centres, start);
   const std::vector<std::uint8_t> inside = inside_of(trial, inside_);
   for (const std::int64_t v : flips) flip(v);
   PNormSmoother smoother(trial.layer);
   const ProjectionReport projection = project(smoother, psi_, params_.projection);
   psi_evaluations += projection.psi_evaluations;
   if (!projection.not_arrived.empty()) return;
-  const LatticeActiveLayer now = patch(centres, Start::Here);
+  const BackgroundLayer now = patch(centres, Start::Here);
   const PatchState before = state(now.layer, inside_of(now, inside_));
   smoother.enqueue_all();
   if (!smooth_while_promising(smoother, before)) return;
@@ -133,8 +133,8 @@ void FlipTrials::try_flips(const TetIds& tet, Start start, Best& best) {
   }
 }
 
-LatticeActiveLayer FlipTrials::slid(const std::vector<std::int64_t>& centres) {
-  LatticeActiveLayer now = patch(centres, Start::Here);
+BackgroundLayer FlipTrials::slid(const std::vector<std::int64_t>& centres) {
+  BackgroundLayer now = patch(centres, Start::Here);
   const std::vector<std::uint8_t> inside = inside_of(now, inside_);
   const PatchState before = state(now.layer, inside);
   TangentialRelaxationParams chords{.least_quality = target_};
@@ -142,7 +142,7 @@ LatticeActiveLayer FlipTrials::slid(const std::vector<std::int64_t>& centres) {
   // Then the patch is relaxed without it, which keeps every tet above.
   for (const int inner_sweeps : {chords.inner_sweeps, 0}) {
     chords.inner_sweeps = inner_sweeps;
-    LatticeActiveLayer cut = now;
+    BackgroundLayer cut = now;
     PNormSmoother smoother(cut.layer);
     psi_evaluations += relax_tangentially(smoother, inside, psi_, chords, params_.smoothing).psi_evaluations;
     if (state(cut.layer, inside).is_no_worse_than(before)) return cut;

@@ -12,7 +12,7 @@
 #include "mesh/fast/p_norm_smoothing.h"
 #include "mesh/fast/patch_state.h"
 #include "mesh/fast/repair.h"
-#include "mesh/submesh/lattice_active_layer.h"
+#include "mesh/submesh/linked_active_layer.h"
 
 namespace umtet::detail {
 
@@ -22,8 +22,7 @@ using TetIds = std::array<std::int64_t, 4>;
 class Positions {
  public:
   /// Keeps both by reference.
-  Positions(const BackgroundMesh& background, const LatticeActiveLayer& layer)
-      : background_(background), layer_(layer) {}
+  Positions(const BackgroundMesh& background, const BackgroundLayer& layer) : background_(background), layer_(layer) {}
 
   Vec3 of(std::int64_t v) const {
     std::size_t from = 0;
@@ -36,7 +35,7 @@ class Positions {
 
  private:
   const BackgroundMesh& background_;
-  const LatticeActiveLayer& layer_;
+  const BackgroundLayer& layer_;
   IdList moved_;
   std::vector<Vec3> moved_to_;
 };
@@ -45,7 +44,7 @@ class Positions {
 class FlipTrials {
  public:
   struct Best {
-    LatticeActiveLayer layer;
+    BackgroundLayer layer;
     PatchState state;
     std::vector<std::int64_t> flips;
     bool found = false;  ///< something betters the patch
@@ -72,7 +71,7 @@ class FlipTrials {
   /// @param most_tries  patches
   Best operator()(const TetIds& tet, std::size_t most_tries);
   /// The patch around these vertices after relax_tangentially(), or as it is if that would make it worse.
-  LatticeActiveLayer slid(const std::vector<std::int64_t>& centres);
+  BackgroundLayer slid(const std::vector<std::int64_t>& centres);
   bool is_misaligned(const TetIds& tet);
   /// In omega_h, and below the target or with a misaligned face.
   bool is_bad(const TetIds& tet);
@@ -91,7 +90,7 @@ class FlipTrials {
   /// Where a patch's vertices start from: where they are, or (a fold stays a fold under small steps) the lattice.
   enum class Start { Here, Lattice };
 
-  LatticeActiveLayer patch(const std::vector<std::int64_t>& centres, Start start) const;
+  BackgroundLayer patch(const std::vector<std::int64_t>& centres, Start start) const;
   PatchState state(const ActiveLayer& layer, const std::vector<std::uint8_t>& inside);
   void attempt(const TetIds& tet, std::span<const std::int64_t> flips, Start start, Best& best);
   bool smooth_while_promising(PNormSmoother& smoother, const PatchState& before);

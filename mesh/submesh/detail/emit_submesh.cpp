@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "mesh/submesh/assemble_submesh.h"
-#include "mesh/submesh/lattice_active_layer.h"
+#include "mesh/submesh/linked_active_layer.h"
 
 namespace umtet {
 namespace {

@@ -14,10 +14,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "mesh/background/body_size.h"
 #include "mesh/certify/boundary_surface.h"
 #include "mesh/certify/certificate.h"
 #include "mesh/io/solver_files.h"
+#include "mesh/sizes/body_size.h"
 #include "mesh/universal_mesh.h"
 #include "tests/support/bench_domains.h"
 

@@ -12,11 +12,11 @@
 #include <string_view>
 #include <vector>
 
-#include "mesh/background/body_size.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/sizes/body_size.h"
 #include "mesh/submesh/assemble_submesh.h"
 #include "mesh/submesh/crawl.h"
-#include "mesh/submesh/lattice_active_layer.h"
+#include "mesh/submesh/linked_active_layer.h"
 #include "tests/support/domains.h"
 
 namespace umtet {

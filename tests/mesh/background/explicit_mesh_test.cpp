@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "mesh/background/a15_box.h"
-#include "mesh/background/body_size.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/sizes/body_size.h"
 #include "mesh/submesh/crawl.h"
 #include "mesh/universal_mesh.h"
 #include "tests/support/domains.h"

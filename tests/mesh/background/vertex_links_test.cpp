@@ -7,9 +7,9 @@
 #include <random>
 #include <vector>
 
-#include "mesh/background/graded_mesh.h"
 #include "mesh/core/tet_mesh.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/octree/graded_mesh.h"
 
 namespace umtet {
 namespace {

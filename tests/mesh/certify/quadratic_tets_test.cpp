@@ -8,9 +8,9 @@
 #include <cstring>
 #include <numbers>
 
-#include "mesh/background/body_size.h"
 #include "mesh/certify/jacobian_bounds.h"
 #include "mesh/certify/second_order_certificate.h"
+#include "mesh/sizes/body_size.h"
 #include "mesh/universal_mesh.h"
 #include "tests/support/domains.h"
 

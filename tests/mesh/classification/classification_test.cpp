@@ -10,13 +10,13 @@
 #include <limits>
 #include <set>
 
-#include "mesh/background/body_size.h"
 #include "mesh/certify/certificate.h"
 #include "mesh/classification/classification_band.h"
 #include "mesh/classification/configuration_costs.h"
+#include "mesh/sizes/body_size.h"
 #include "mesh/submesh/assemble_submesh.h"
 #include "mesh/submesh/inside_walk.h"
-#include "mesh/submesh/lattice_active_layer.h"
+#include "mesh/submesh/linked_active_layer.h"
 #include "tests/support/domains.h"
 
 namespace umtet {

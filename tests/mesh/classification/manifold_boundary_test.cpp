@@ -12,7 +12,7 @@
 #include "mesh/certify/boundary_surface.h"
 #include "mesh/classification/configuration_costs.h"
 #include "mesh/submesh/assemble_submesh.h"
-#include "mesh/submesh/lattice_active_layer.h"
+#include "mesh/submesh/linked_active_layer.h"
 #include "mesh/universal_mesh.h"
 #include "tests/support/box_tets.h"
 #include "tests/support/domains.h"

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cstring>
 
-#include "mesh/background/body_size.h"
-#include "mesh/background/graded_mesh.h"
 #include "mesh/core/tet_quality.h"
 #include "mesh/fast/patch_state.h"
+#include "mesh/octree/graded_mesh.h"
+#include "mesh/sizes/body_size.h"
 #include "tests/support/bench_domains.h"
 #include "tests/support/certified.h"
 #include "tests/support/domains.h"

@@ -25,7 +25,7 @@ struct Begun {
   BackgroundMesh background{a15(), testing::cube_box(1.6), .15};
   FastMemory memory;
   IdSet inside{0};
-  LatticeActiveLayer layer;
+  BackgroundLayer layer;
   WarmStart start;
 
   /// From the mesh of the ball at 0 to one that has moved by c.
@@ -34,7 +34,7 @@ struct Begun {
     fast_mesh(background, Ball{}, {}, {}, {}, inside_vertices(background, Ball{}, n), memory);
     inside = inside_vertices(background, Ball{c}, n);
     classify_vertices(background, VertexLinks(background, a15_links()), Ball{c}, {}, inside, {}, &memory.inside);
-    layer = lattice_active_layer(background, VertexLinks(background, a15_links()), inside);
+    layer = linked_active_layer(background, VertexLinks(background, a15_links()), inside);
     start = warm_start(background, Ball{c}, inside, memory, {}, layer);
   }
 };

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "mesh/background/body_size.h"
 #include "mesh/core/tet_quality.h"
 #include "mesh/paper/boundary_dvr.h"
+#include "mesh/sizes/body_size.h"
 #include "mesh/submesh/submesh.h"
 #include "tests/support/domains.h"
 

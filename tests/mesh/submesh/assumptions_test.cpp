@@ -5,9 +5,9 @@
 #include <array>
 #include <stdexcept>
 
-#include "mesh/background/body_size.h"
 #include "mesh/core/tet_quality.h"
 #include "mesh/implicit/closest_point.h"
+#include "mesh/sizes/body_size.h"
 #include "tests/support/domains.h"
 
 namespace umtet {

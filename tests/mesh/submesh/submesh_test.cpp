@@ -7,7 +7,7 @@
 #include <iterator>
 #include <map>
 
-#include "mesh/background/body_size.h"
+#include "mesh/sizes/body_size.h"
 #include "mesh/submesh/crawl.h"
 #include "tests/support/domains.h"
 

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "mesh/background/graded_size.h"
+#include "mesh/sizes/graded_size.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/domain/background_choice.h"
 
