@@ -88,7 +88,7 @@ bool BackgroundChoice::may_be_graded(const Domain& domain) const {
 
 /// @param needed  the h that thin parts need
 void BackgroundChoice::grade_if_worth_it(Domain& domain, double needed, const Context& context) {
-  // A graded mesh of the same body has as short edges where it is thin, and is lower in quality: that has to pay.
+  // Graded tets are of lower quality, so they have to be fewer by this factor.
   constexpr double kWorthIt = 2;
   const double least = std::cbrt(1 / kWorthIt) * kMeshEdge * domain.diagonal;  // sizes are no larger than h by default
   if (needed > least) return;

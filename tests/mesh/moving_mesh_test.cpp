@@ -13,6 +13,7 @@
 #include "mesh/certify/certificate.h"
 #include "mesh/certify/certificate_memory.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/octree/graded_mesh.h"
 #include "mesh/submesh/inside_walk.h"
 #include "tests/support/certified.h"
 #include "tests/support/domains.h"
@@ -327,6 +328,27 @@ TEST(UniversalMesh, EveryBackgroundWillDo) {
       const Ball psi{Vec3(.04, 0, 0) * k};
       expect_certified(moving.update(psi).mesh, psi, background.h(), 1);
     }
+  }
+}
+
+TEST(UniversalMesh, AGradedBackgroundWillDo) {
+  // Fine where the top of the ball comes by.
+  const Grading grading{.box = domains::cube_box(1.5), .finest = .05, .size = [](const Vec3& x, double half) {
+                          return .05 + .1 * std::max(0., (x - Vec3(0, 0, 1)).norm() - 2 * half - .3);
+                        }};
+  const BackgroundMesh background{GradedMesh(grading)};
+  UniversalMesh moving(background);
+  Submesh last;
+  for (int k = 0; k < 5; ++k) {
+    SCOPED_TRACE(k);
+    const Ball psi{Vec3(.03, .01, .02) * k};
+    const UmUpdate& update = moving.update(psi);
+    expect_certified(update.mesh, psi, background.h(), 1);
+    EXPECT_GT(least_quality(update.mesh), .68);
+    const Submesh& now = update.mesh.submesh;
+    EXPECT_EQ(changed_by(last.background_vertex, update.vertices_entered, update.vertices_left), now.background_vertex);
+    EXPECT_EQ(update.n_recalled > 0, k > 0);
+    last = now;
   }
 }
 

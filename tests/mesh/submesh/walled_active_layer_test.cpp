@@ -38,10 +38,10 @@ TEST(WalledActiveLayer, HoldsTheRingsOfWhatMovesAndColoursShareNoTet) {
       const std::int64_t id = part.background_vertex[v];
       ASSERT_EQ(layer.V[v], background.position(id));
       EXPECT_EQ(layer.role[v] == ActiveLayer::Role::Boundary, positive.erase(id) == 1);
+      if (layer.role[v] == ActiveLayer::Role::Fixed) continue;
       for (int r = layer.ring_begin[v]; r < layer.ring_begin[v + 1]; ++r) {
         for (const int w : layer.C[layer.ring[r]]) ASSERT_TRUE(w == v || layer.colour[w] != layer.colour[v]);
       }
-      if (layer.role[v] == ActiveLayer::Role::Fixed) continue;
       star.clear();
       background.star(id, star);
       const auto in_omega_h = std::count_if(star.begin(), star.end(), [&](std::int64_t t) {

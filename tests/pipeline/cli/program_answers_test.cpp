@@ -1,5 +1,8 @@
 // The built program, from outside: exit codes, messages and help.
 
+#include <cmath>
+#include <numbers>
+
 #include "tests/pipeline/cli/program_fixture.h"
 
 namespace umtet {
@@ -42,7 +45,7 @@ TEST_F(Program, UsageErrorsNameThePlaceAndTheRemedy) {
       {"run egg.ply -o a --set mesh.sampels=1", "did you mean mesh.samples?"},
       {"run egg.ply -o a --tets 10 --h 1", "exclude each other"},
       {"run egg.ply -o a --mode quick", "fast, paper only"},
-      {"run egg.ply -o a --background bcc", "must be a15, z, slab, cube, graded or"},
+      {"run egg.ply -o a --background bcc", "must be a15, z, slab, cube, graded, auto or"},
       {"run egg.ply -o a --from mehs", "did you mean mesh?"},
       {"run egg.ply", "-o CASE"},
       {"rum egg.ply -o a", "did you mean run?"},
@@ -128,8 +131,8 @@ TEST_F(Program, ABodyMeshedFarTooCoarselyIsNoSuccess) {
 
 TEST_F(Program, OneReasonToFailIsExitSixWithARemedy) {
   // A lens much thinner at its rim than h.
-  const Result r = run(
-      "mesh --implicit 'x^2+y^2+(z/0.15)^2-1' --box=-1.6,-1.6,-.9,1.6,1.6,.9 --h .2 --mode paper -o lens");
+  const Result r =
+      run("mesh --implicit 'x^2+y^2+(z/0.15)^2-1' --box=-1.6,-1.6,-.9,1.6,1.6,.9 --h .2 --mode paper -o lens");
   EXPECT_EQ(r.code, 6) << r.err;
   EXPECT_NE(r.out.find("verdict   fail"), std::string::npos) << r.out;
   EXPECT_NE(r.out.find("try a smaller --h"), std::string::npos) << r.out;
@@ -218,6 +221,48 @@ TEST_F(Program, AnswersInJsonAlsoWhenItFails) {
     EXPECT_EQ(document["exit_code"], r.code);
     EXPECT_TRUE(document.contains("error"));
   }
+}
+
+/// Two balls of radius .4 at x = -.8 and .8, and a rod of radius .02 between them: points with normals.
+void write_dumbbell(const fs::path& file) {
+  constexpr int kOnBall = 20000, kAround = 20;
+  constexpr double kRadius = .4, kRod = .02, kAt = .8, kStep = .006, pi = std::numbers::pi;
+  std::ofstream out(file);
+  for (const double side : {-1., 1.}) {
+    for (int i = 0; i < kOnBall; ++i) {  // on a spiral
+      const double z = 1 - (2 * i + 1.) / kOnBall, r = std::sqrt(1 - z * z), t = pi * (1 + std::sqrt(5.)) * i;
+      const double x = r * std::cos(t), y = r * std::sin(t);
+      if (x * side < 0 && std::hypot(y, z) * kRadius < kRod) continue;
+      out << side * kAt + kRadius * x << ' ' << kRadius * y << ' ' << kRadius * z << ' ' << x << ' ' << y << ' ' << z
+          << '\n';
+    }
+  }
+  const double end = kAt - std::sqrt(kRadius * kRadius - kRod * kRod);
+  int ring = 0;
+  for (double x = -end; x < end; x += kStep, ++ring) {
+    for (int i = 0; i < kAround; ++i) {
+      const double t = 2 * pi * (i + .5 * (ring % 2)) / kAround, y = std::cos(t), z = std::sin(t);
+      out << x << ' ' << kRod * y << ' ' << kRod * z << " 0 " << y << ' ' << z << '\n';
+    }
+  }
+}
+
+TEST_F(Program, AThinPartIsGradedWhereThatTakesLessThanHalfTheTets) {
+  write_dumbbell(folder / "dumbbell.xyz");
+  const Result r = run("run dumbbell.xyz -o dumbbell --no-report --json");
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_NE(r.err.find("mesh: graded, with edges from"), std::string::npos) << r.err;
+  const Json certificate = Json::parse(std::ifstream(folder / "dumbbell/certificate.json"));
+  EXPECT_EQ(certificate["boundary"]["genus"], 0);
+  EXPECT_EQ(certificate["boundary"]["components"], 1);
+  EXPECT_LT(certificate["n_tets"], 200000);  // with one h: 800,000
+  EXPECT_GT(certificate["quality"]["min"], .7);
+  // Whoever asks for one h, or for a mesh of another kind, gets it; so does a body without thin parts.
+  const Result tets = run("mesh dumbbell --background a15 --tets 20000 --no-report");
+  EXPECT_EQ(tets.err.find("graded"), std::string::npos) << tets.err;
+  const Result egg = run("run egg.ply -o egg --no-report");
+  EXPECT_EQ(egg.code, 0) << egg.err;
+  EXPECT_EQ(egg.err.find("graded"), std::string::npos) << egg.err;
 }
 
 }  // namespace

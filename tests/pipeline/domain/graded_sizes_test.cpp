@@ -103,10 +103,15 @@ TEST(GradedSizes, OfLabelsAreFactorsOfH) {
 }
 
 TEST(GradedSizes, AreForGradedBackgroundsOnly) {
+  EXPECT_FALSE(is_graded(Parameters()));
   for (const char* given : {"mesh.size=.1*x", "mesh.size_at=1=.5", "mesh.h_min=.1", "mesh.h_max=.1", "mesh.grade=.2",
                             "mesh.grade_inside=true", "mesh.max_turn=20"}) {
     Parameters p;
     p.set(given);
+    EXPECT_TRUE(is_graded(p)) << given;  // auto: nothing else takes sizes
+    EXPECT_NO_THROW(require_graded(p)) << given;
+    p.set("mesh.background=a15");
+    EXPECT_FALSE(is_graded(p)) << given;
     EXPECT_THROW(require_graded(p), UsageError) << given;
     EXPECT_NO_THROW(require_graded(graded({given}))) << given;
   }

@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace umtet {
@@ -101,6 +105,66 @@ TEST(BestAttempt, EndsWhereTheEffortIsSpent) {
   EXPECT_EQ(Story({1, 1, 1}, 0, 5).tried.size(), 3u);
   EXPECT_EQ(Story({1, 1, 1, 1}, 0, 8).tried.size(), 4u);
   EXPECT_EQ(Story({1, 1, 1, 1, 1}, 0, 16).tried.size(), 5u);
+}
+
+/// Attempts on graded meshes: reasons and tets of each; every refinement halves h, until h_min.
+struct Refinements {
+  Refinements(const std::vector<std::pair<int, int>>& outcomes, double h_min, double effort = kAnyEffort) {
+    const auto attempt = [&](double h) {
+      const auto [n_reasons, n_tets] = outcomes.at(tried.size());
+      tried.push_back(h);
+      MeshAttempt a;
+      a.h = h;
+      if (n_reasons < 0) a.result.status = UmStatus::InvertedTet;
+      a.reasons.assign(static_cast<std::size_t>(std::max(0, n_reasons)), "a hole");
+      a.result.submesh.mesh.C.resize(static_cast<std::size_t>(n_tets));
+      return a;
+    };
+    const auto refine = [&](const MeshAttempt& a) { return a.h > h_min ? std::optional(a.h / 2) : std::nullopt; };
+    kept = refined_attempt(1, effort, attempt, refine, [&](const std::string& line) { said.push_back(line); });
+  }
+  std::vector<double> tried;
+  std::vector<std::string> said;
+  MeshAttempt kept;
+};
+
+TEST(RefinedAttempt, EndsWithTheFirstFaithfulMesh) {
+  EXPECT_EQ(Refinements({{0, 100}}, 0).tried.size(), 1u);
+  const Refinements r({{2, 100}, {kInverted, 0}, {0, 130}}, 0);
+  EXPECT_EQ(r.tried, (std::vector<double>{1, .5, .25}));
+  EXPECT_TRUE(r.kept.is_right());
+  EXPECT_EQ(r.said.size(), 2u);
+}
+
+TEST(RefinedAttempt, KeepsTheBestWhereNothingMayBeFiner) {
+  const Refinements r({{2, 100}, {1, 110}, {3, 120}}, .25);
+  EXPECT_EQ(r.tried.size(), 3u);
+  EXPECT_EQ(r.kept.h, .5);
+  EXPECT_NE(r.said.back().find("keeping those of 110 tets"), std::string::npos) << r.said.back();
+  EXPECT_EQ(Refinements({{1, 100}, {1, 110}, {1, 120}, {1, 130}, {1, 140}}, 0).tried.size(), 5u);  // four refinements
+}
+
+TEST(RefinedAttempt, EndsWhereAllHaveMadeMoreTetsThanEffortAllows) {
+  EXPECT_EQ(Refinements({{1, 100}, {1, 150}, {1, 0}}, 0, 3).tried.size(), 2u);
+  EXPECT_EQ(Refinements({{1, 100}}, 0, 1).tried.size(), 1u);
+}
+
+TEST(FinerWhereItFailed, HalvesTheSizesOfWhatSmallerEdgesMayMend) {
+  MeshAttempt a;
+  a.sizes = std::make_shared<const SizeField>(std::vector<SizeSource>{{Vec3::Zero(), .2, 10}}, SizeFieldParams{.h_min = .01});
+  a.places = {{.kind = PlaceKind::Folded, .where = Vec3(1, 0, 5), .size_over_h = 3},
+              {.kind = PlaceKind::Cut, .where = Vec3(2, 0, 5)}};
+  const std::vector<SizeSource> finer = finer_where_it_failed(a, Vec3(0, 0, 5));
+  ASSERT_EQ(finer.size(), 1u);  // the cut is as good as h can show
+  EXPECT_EQ(finer[0].x, Vec3(1, 0, 0));
+  EXPECT_NEAR(finer[0].h, .1, 1e-12);
+  EXPECT_NEAR(finer[0].radius, .5 * 3 * .2 + 2 * .2, 1e-12);
+  a.result.status = UmStatus::InvertedTet;
+  a.result.evidence.where = Vec3(0, 1, 0);
+  a.places.clear();
+  const std::vector<SizeSource> where_it_ended = finer_where_it_failed(a, Vec3(0, 0, 5));
+  ASSERT_EQ(where_it_ended.size(), 1u);
+  EXPECT_EQ(where_it_ended[0].x, Vec3(0, 1, 0));
 }
 
 }  // namespace
