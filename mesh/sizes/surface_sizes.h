@@ -21,7 +21,7 @@ struct SurfaceSizeParams {
   /// By its turn alone no edge is shorter than this share of h: a sharp edge turns at once, whatever the edge length.
   double least_by_turn = .25;
   double deviation = 0;       ///< of flat faces from psi = 0, by its curvature; 0: any. Needs Hessians
-  double constant_layer = 1;  ///< radius of the sources, in their h
+  double constant_layer = 2;  ///< radius of the sources, in their h
   double steepest = std::numeric_limits<double>::infinity();  ///< a bound of |grad psi|
 };
 

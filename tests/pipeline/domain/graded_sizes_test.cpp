@@ -36,7 +36,7 @@ TEST(GradedSizes, OfAThickBodyAreHOnTheBoundaryAndGrowInside) {
   EXPECT_EQ(sizes.finest(), .1);
   const SizeField field = sizes.field(.1);
   EXPECT_NEAR(field.at({1, 0, 0}), .1, .005);
-  EXPECT_NEAR(field.at({0, 0, 0}), .1 + .3 * .9, .02);
+  EXPECT_NEAR(field.at({0, 0, 0}), .1 + .3 * .8, .02);
 }
 
 TEST(GradedSizes, KeepTheirGradeAtAnotherH) {

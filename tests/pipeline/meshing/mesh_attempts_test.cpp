@@ -151,9 +151,10 @@ TEST(RefinedAttempt, EndsWhereAllHaveMadeMoreTetsThanEffortAllows) {
 
 TEST(FinerWhereItFailed, HalvesTheSizesOfWhatSmallerEdgesMayMend) {
   MeshAttempt a;
-  a.sizes = std::make_shared<const SizeField>(std::vector<SizeSource>{{Vec3::Zero(), .2, 10}}, SizeFieldParams{.h_min = .01});
+  a.sizes =
+      std::make_shared<const SizeField>(std::vector<SizeSource>{{Vec3::Zero(), .2, 10}}, SizeFieldParams{.h_min = .01});
   a.places = {{.kind = PlaceKind::Folded, .where = Vec3(1, 0, 5), .size_over_h = 3},
-              {.kind = PlaceKind::Cut, .where = Vec3(2, 0, 5)}};
+              {.kind = PlaceKind::Cut, .where = Vec3(2, 0, 5), .feature_over_h = .5}};
   const std::vector<SizeSource> finer = finer_where_it_failed(a, Vec3(0, 0, 5));
   ASSERT_EQ(finer.size(), 1u);  // the cut is as good as h can show
   EXPECT_EQ(finer[0].x, Vec3(1, 0, 0));
