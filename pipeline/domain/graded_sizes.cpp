@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <sstream>
 
 #include "mesh/sizes/graded_size.h"
 #include "mesh/sizes/surface_sizes.h"
 #include "pipeline/case/exit_code.h"
+#include "pipeline/case/label_names.h"
 #include "pipeline/domain/edge_length.h"
 #include "pipeline/domain/size_file.h"
 #include "pipeline/domain/zero_set_choice.h"
@@ -31,6 +30,10 @@ constexpr double kPower = 2.5;
 // The estimate of the number of tets is good to 10 %; with the power above it gets there in three rounds.
 constexpr double kGoodEnough = .05;
 constexpr int kMostRounds = 6;
+
+std::map<int, double> label_sizes(const Parameters& p) {
+  return parse_label_sizes(p.mesh().size_at, parse_label_names(p.output().label_names));
+}
 
 /// The flags of sizes that are given.
 std::vector<std::string> given_sizes(const Parameters& parameters) {
@@ -69,28 +72,7 @@ void require_graded(const Parameters& parameters) {
   if (p.grade_inside && !(p.max_deviation == 0 && p.size_at.empty() && p.size.empty())) {
     throw UsageError("--grade-inside keeps --h on all of the boundary: without --max-deviation, --size and --size-at");
   }
-  parse_label_sizes(p.size_at);
-}
-
-std::map<int, double> parse_label_sizes(const std::string& text) {
-  std::map<int, double> factors;
-  std::istringstream in(text);
-  for (std::string part; std::getline(in, part, ',');) {
-    const char* const end = part.data() + part.size();
-    int label = 0;
-    double factor = 0;
-    const auto [at, bad_label] = std::from_chars(part.data(), end, label);
-    const bool has_label = bad_label == std::errc() && at != end && *at == '=';
-    const auto [stop, bad_factor] = has_label ? std::from_chars(at + 1, end, factor) : std::from_chars_result{at, {}};
-    if (!has_label || bad_factor != std::errc() || stop != end || !(factor > 0 && factor <= 1)) {
-      throw UsageError(
-          fmt::format("mesh.size_at = {}: must be LABEL=FACTOR,... with numbers of labels, and factors of h "
-                      "in (0, 1]",
-                      text));
-    }
-    factors[label] = factor;
-  }
-  return factors;
+  label_sizes(parameters);
 }
 
 GradedSizes::GradedSizes(const Parameters& parameters, const Vec3& shift) : parameters_(parameters) {
@@ -139,7 +121,7 @@ void GradedSizes::add(Domain& domain, const Context& context) {
   const std::vector<SizeSource> on_surface =
       surface_sizes(domain.psi(), points, std::max(pieces.topology.spacing, s.h), s, context);
   sources_.insert(sources_.end(), on_surface.begin(), on_surface.end());
-  const std::map<int, double> of_label = parse_label_sizes(p.size_at);
+  const std::map<int, double> of_label = label_sizes(parameters_);
   if (!of_label.empty() && domain.cloud.labels.empty()) {
     throw UsageError("--size-at " + p.size_at + ": the points have no labels");
   }

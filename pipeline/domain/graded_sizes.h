@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,9 +17,6 @@ bool is_graded(const Parameters&);
 
 /// \throw UsageError where sizes are given for a background that has its own, or sizes that contradict each other
 void require_graded(const Parameters&);
-
-/// Factors of h by label: "1=.5,2=.25" of mesh.size_at. \throw UsageError
-std::map<int, double> parse_label_sizes(const std::string& text);
 
 /// The edge lengths that a graded background is made for: what the boundary of one or more domains needs, and what the
 /// user asks for. They are known up to a factor, for a number of tets or for another attempt; h is always that of the

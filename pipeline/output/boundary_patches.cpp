@@ -4,12 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdint>
 #include <limits>
 #include <numeric>
-#include <set>
-#include <sstream>
 
 #include "mesh/io/patches.h"
 #include "mesh/io/planar_pieces.h"
@@ -47,11 +44,6 @@ std::vector<MeshPart> label_patches(const std::vector<int>& labels, const std::m
 }
 
 constexpr const char *kWalls = "walls", *kClosedHoles = "closed_holes";
-
-std::string lower_case(std::string name) {
-  for (char& c : name) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return name;
-}
 
 bool has_walls(const std::vector<char>& at_wall) {
   return std::find(at_wall.begin(), at_wall.end(), 1) != at_wall.end();
@@ -133,30 +125,6 @@ void divide_by_labels(SolverMesh& mesh, const std::vector<char>& at_wall, const 
   }
   set_patches(mesh, std::move(labels), std::move(patches));
 }
-
-}  // namespace
-
-std::map<int, std::string> parse_label_names(const std::string& text) {
-  std::map<int, std::string> names;
-  std::set<std::string> taken = {"body", kWholeBoundary};
-  std::istringstream items(text);
-  for (std::string item; std::getline(items, item, ',');) {
-    const auto refuse = [&](const std::string& what) {
-      throw UsageError(fmt::format("--label-names '{}': {}; give LABEL=NAME,LABEL=NAME", item, what));
-    };
-    int label = 0;
-    const std::size_t equals = std::min(item.find('='), item.size());
-    const auto [end, error] = std::from_chars(item.data(), item.data() + equals, label);
-    if (error != std::errc() || end != item.data() + equals || equals == item.size()) refuse("not LABEL=NAME");
-    const std::string name = item.substr(equals + 1);
-    if (const std::string problem = problem_of_name(name); !problem.empty()) refuse("the name " + problem);
-    if (!taken.insert(lower_case(name)).second) refuse("that name is taken (case aside)");
-    if (!names.emplace(label, name).second) refuse("that label has a name already");
-  }
-  return names;
-}
-
-namespace {
 
 std::vector<char> faces_at_walls(const SolverMesh& mesh, const MeshFile& file) {
   const auto found = file.point_data.find(kAtWall);

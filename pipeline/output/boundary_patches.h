@@ -8,15 +8,12 @@
 
 #include "mesh/io/solver_mesh.h"
 #include "mesh/io/tet_mesh_io.h"
+#include "pipeline/case/label_names.h"
 #include "pipeline/case/parameters.h"
 #include "pipeline/reports/closed_hole.h"
 #include "reconstruct/cloud/point_cloud.h"
 
 namespace umtet {
-
-/// "1=feet,2=head" of output.label_names. \throw UsageError  not of that form, a label or a name twice (case aside), or
-/// a name that a format cannot keep
-std::map<int, std::string> parse_label_names(const std::string& text);
 
 /// What the user should know of patches that did not come out as asked for.
 using Warn = std::function<void(const std::string&)>;

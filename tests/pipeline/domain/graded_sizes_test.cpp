@@ -8,6 +8,7 @@
 
 #include "mesh/sizes/graded_size.h"
 #include "pipeline/case/exit_code.h"
+#include "pipeline/case/label_names.h"
 #include "pipeline/domain/background_choice.h"
 
 namespace umtet {
@@ -85,12 +86,12 @@ TEST(GradedSizes, ShiftedCoordinatesAreThoseOfTheModel) {
 }
 
 TEST(GradedSizes, OfLabelsAreFactorsOfH) {
-  EXPECT_EQ(parse_label_sizes("1=.5,-2=.25"), (std::map<int, double>{{1, .5}, {-2, .25}}));
-  for (const char* bad : {"1", "1=", "a=.5", "1=0", "1=2", "1=.5;2=.5", "1=.5,"}) {
-    if (std::string(bad) == "1=.5,") continue;  // an empty end says nothing
-    EXPECT_THROW(parse_label_sizes(bad), UsageError) << bad;
+  const std::map<int, std::string> names = {{7, "feet"}};
+  EXPECT_EQ(parse_label_sizes("1=.5,feet=.3,-2=.25", names), (std::map<int, double>{{1, .5}, {7, .3}, {-2, .25}}));
+  for (const char* bad : {"1", "1=", "a=.5", "1=0", "1=2", "1=.5;2=.5", "feet=.5,7=.5"}) {
+    EXPECT_THROW(parse_label_sizes(bad, names), UsageError) << bad;
   }
-  const Parameters p = graded({"mesh.h=.1", "mesh.size_at=3=.5"});
+  const Parameters p = graded({"mesh.h=.1", "mesh.size_at=head=.5", "output.label_names=3=head"});
   GradedSizes sizes(p, Vec3::Zero());
   Domain domain = ball();
   EXPECT_THROW(sizes.add(domain), UsageError);  // no labels

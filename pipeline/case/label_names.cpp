@@ -1,0 +1,78 @@
+#include "pipeline/case/label_names.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <set>
+#include <sstream>
+
+#include "mesh/io/solver_mesh.h"
+#include "pipeline/case/exit_code.h"
+
+namespace umtet {
+namespace {
+
+/// All of a text as a number, or none.
+template <class Number>
+std::optional<Number> number_of(std::string_view text) {
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
+}
+
+std::optional<int> label_of(const std::string& text, const std::map<int, std::string>& names) {
+  if (const std::optional<int> label = number_of<int>(text)) return label;
+  const auto at = std::find_if(names.begin(), names.end(), [&](const auto& n) { return n.second == text; });
+  return at == names.end() ? std::nullopt : std::optional(at->first);
+}
+
+}  // namespace
+
+std::string lower_case(std::string name) {
+  for (char& c : name) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return name;
+}
+
+std::map<int, std::string> parse_label_names(const std::string& text) {
+  std::map<int, std::string> names;
+  std::set<std::string> taken = {"body", kWholeBoundary};
+  std::istringstream items(text);
+  for (std::string item; std::getline(items, item, ',');) {
+    const auto refuse = [&](const std::string& what) {
+      throw UsageError(fmt::format("--label-names '{}': {}; give LABEL=NAME,LABEL=NAME", item, what));
+    };
+    const std::size_t equals = std::min(item.find('='), item.size());
+    const std::optional<int> label = number_of<int>(std::string_view(item).substr(0, equals));
+    if (!label || equals == item.size()) refuse("not LABEL=NAME");
+    const std::string name = item.substr(equals + 1);
+    if (const std::string problem = problem_of_name(name); !problem.empty()) refuse("the name " + problem);
+    if (!taken.insert(lower_case(name)).second) refuse("that name is taken (case aside)");
+    if (!names.emplace(*label, name).second) refuse("that label has a name already");
+  }
+  return names;
+}
+
+std::map<int, double> parse_label_sizes(const std::string& text, const std::map<int, std::string>& names) {
+  std::map<int, double> factors;
+  std::istringstream items(text);
+  for (std::string item; std::getline(items, item, ',');) {
+    const auto refuse = [&](const std::string& what) {
+      throw UsageError(
+          fmt::format("--size-at '{}': {}; give LABEL=FACTOR,LABEL=FACTOR with factors of h in (0, 1], and labels as "
+                      "numbers or as --label-names names them",
+                      item, what));
+    };
+    const std::size_t equals = std::min(item.find('='), item.size());
+    if (equals == item.size()) refuse("not LABEL=FACTOR");
+    const std::optional<int> label = label_of(item.substr(0, equals), names);
+    if (!label) refuse("no label has that name");
+    const std::optional<double> factor = number_of<double>(std::string_view(item).substr(equals + 1));
+    if (!factor || !(*factor > 0 && *factor <= 1)) refuse("not a factor");
+    if (!factors.emplace(*label, *factor).second) refuse("that label has a factor already");
+  }
+  return factors;
+}
+
+}  // namespace umtet
