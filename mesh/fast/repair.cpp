@@ -26,7 +26,8 @@ using detail::TetIds;
 // this bound repair would take longer than all other steps.
 constexpr std::size_t kFewPatches = 600, kTetsPerPatch = 4;
 // Where h shows the body a tet is mended by three to eight patches. Where it does not, fifty to a hundred are tried for
-// one that helps: kFewPatches and this many for each that did are enough to tell.
+// one that helps: kFewPatches and this many for each that did are enough to tell. As many as kFewPatches more are for
+// the worst tets of what is left, against lower targets.
 constexpr std::size_t kPatchesPerSuccess = 16;
 // kAtOnce tets are mended at once, while at most kMostWaiting wait for one near them. The same for any number of
 // threads, as the result depends on it. The context is polled before each round: a tet may take a tenth of a second, so
@@ -96,8 +97,11 @@ class Repair {
   const RepairParams& params_;
   const BackgroundLayer& layer_;
   IdSet& inside_;
-  std::size_t most_patches() const { return std::min(most_patches_, kFewPatches + kPatchesPerSuccess * kept_.size()); }
+  std::size_t most_patches() const {
+    return for_lower_targets_ + std::min(most_patches_, kFewPatches + kPatchesPerSuccess * kept_.size());
+  }
   const std::size_t most_patches_;
+  std::size_t for_lower_targets_ = 0;  ///< beyond that
   double target_;
   detail::Positions positions_;
   std::deque<FlipTrials> trials_;  ///< one for each tet of a round, each with a copy of inside_
@@ -276,11 +280,14 @@ RepairReport Repair::operator()(const Context& context) {
     again(params_.target);
     mend(context);
   }
-  if (params_.target_step > 0) {
-    again(params_.target - params_.target_step);
+  report_.given_up = given_up_.size();
+  // A flip may raise the worst tet and leave more of them below the target: it counts once the target is below these.
+  for_lower_targets_ = kFewPatches;
+  for (double target = params_.target; params_.target_step > 0 && !given_up_.empty() && target > 0;) {
+    target -= params_.target_step;
+    again(target);
     mend(context);
   }
-  report_.given_up = given_up_.size();
   if (params_.slides) {
     for (FlipTrials& trials : trials_) trials.retry_with(params_.target, false);
     for (const std::vector<std::int64_t>& centres : kept_) {
