@@ -80,6 +80,9 @@ class Repair {
     double far;
   };
 
+  double quality(const TetIds& tet) const {
+    return mean_ratio(positions_.of(tet[0]), positions_.of(tet[1]), positions_.of(tet[2]), positions_.of(tet[3]));
+  }
   bool is_worth_trying(const TetIds& tet);
   Range range_of(const TetIds& tet);
   void mend(const Context& context);
@@ -281,12 +284,21 @@ RepairReport Repair::operator()(const Context& context) {
     mend(context);
   }
   report_.given_up = given_up_.size();
-  // A flip may raise the worst tet and leave more of them below the target: it counts once the target is below these.
-  for_lower_targets_ = kFewPatches;
-  for (double target = params_.target; params_.target_step > 0 && !given_up_.empty() && target > 0;) {
-    target -= params_.target_step;
+  double target = params_.target - params_.target_step;
+  if (params_.target_step > 0) {
     again(target);
     mend(context);
+  }
+  // A flip may raise the worst tet and leave more of them below the target: it counts once the target is below these.
+  // In a lattice that gains little for as much time again.
+  if (params_.target_step > 0 && !background_.is_lattice()) {
+    for_lower_targets_ = kFewPatches;
+    while (target -= params_.target_step, target > 0) {
+      std::erase_if(given_up_, [&](const TetIds& tet) { return quality(tet) >= target; });  // misaligned as it may be
+      if (given_up_.empty()) break;
+      again(target);
+      mend(context);
+    }
   }
   if (params_.slides) {
     for (FlipTrials& trials : trials_) trials.retry_with(params_.target, false);

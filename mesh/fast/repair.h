@@ -23,8 +23,8 @@ struct RepairParams {
   /// h is too large, which no classification mends.
   std::size_t max_patches = 3000;
   bool sharper = true;  ///< what nothing mends is tried again with SmoothingParams::sharper
-  /// What nothing mends then is tried again with a target so much lower, and again while tets are below; >= 0, 0: it is
-  /// not
+  /// What nothing mends then is tried again with a target so much lower, outside of lattices again and again while tets
+  /// are below; >= 0, 0: it is not
   double target_step = .01;
   bool slides = true;  ///< patches relax_tangentially() when all is mended: their smoothing has undone that
   /// Edges: a vertex higher than this is not flipped. More than ClassificationParams::reach_out, because here the mesh

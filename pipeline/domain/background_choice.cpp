@@ -86,13 +86,15 @@ bool BackgroundChoice::may_be_graded(const Domain& domain) const {
   return is_open_ && domain.level_set && p.mode == MeshingMode::Fast && !walls_ && p.h == 0 && p.max_deviation == 0;
 }
 
-/// @param needed  the h that thin parts need
-void BackgroundChoice::grade_if_worth_it(Domain& domain, double needed, const Context& context) {
+/// @param one  the choice of one h
+void BackgroundChoice::grade_if_worth_it(Domain& domain, const EdgeLength& one, const Context& context) {
   // Graded tets are of lower quality, so they have to be fewer by this factor.
   constexpr double kWorthIt = 2;
   const double least = std::cbrt(1 / kWorthIt) * kMeshEdge * domain.diagonal;  // sizes are no larger than h by default
-  if (needed > least) return;
-  const double uniform = umtet::expected_tets(*tiling_, domain.size(), needed, source_);
+  // To find sizes takes as long as a small mesh. Graded faces are smaller than in proportion, by a quarter and more.
+  constexpr double kFewFaces = 1. / 3;
+  if (one.needed > least || one.graded_faces > kFewFaces) return;
+  const double uniform = umtet::expected_tets(*tiling_, domain.size(), one.needed, source_);
   GradedSizes sizes(parameters_, domain.shift);
   sizes.add(domain, context);
   const double h = sizes.finest();
@@ -107,7 +109,7 @@ EdgeLength BackgroundChoice::edge_length(Domain& domain, const Context& context)
   if (given_) return {given_->h(), given_->h()};
   if (!graded_) {
     const EdgeLength uniform = choose_edge_length(domain, parameters_, context);
-    if (may_be_graded(domain)) grade_if_worth_it(domain, uniform.needed, context);
+    if (may_be_graded(domain)) grade_if_worth_it(domain, uniform, context);
     is_open_ = false;
     return graded_ ? graded_edge_length(domain, context) : uniform;
   }

@@ -65,7 +65,7 @@ class BackgroundChoice {
 
  private:
   bool may_be_graded(const Domain& domain) const;
-  void grade_if_worth_it(Domain& domain, double needed, const Context& context);
+  void grade_if_worth_it(Domain& domain, const EdgeLength& one, const Context& context);
   EdgeLength graded_edge_length(const Domain& domain, const Context& context) const;
   /// The sizes for an h, kept for the next call.
   std::shared_ptr<const SizeField> sizes_for(double h) const;

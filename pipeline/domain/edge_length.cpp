@@ -60,8 +60,12 @@ void refuse_too_many(const Domain& domain, const Parameters& parameters, double 
                                   max_tets, least));
 }
 
-/// The thickness that a hundredth of the samples fall below, at most `limit`.
-double thin_part(const Domain& domain, double limit, const Context& context) {
+struct ThinPart {
+  double thickness;  ///< that a hundredth of the samples fall below, at most the limit
+  double faces = 1;  ///< mean of (that / thickness)^2: about the share of faces that edges in proportion would make
+};
+
+ThinPart thin_part(const Domain& domain, double limit, const Context& context) {
   const std::vector<Vec3>& all = domain.cloud.points;
   std::vector<Vec3> samples;  // evenly, as the cloud is sorted in space
   for (std::size_t i = 0; i < all.size(); i += all.size() / kThicknessSamples + 1) samples.push_back(all[i]);
@@ -69,7 +73,10 @@ double thin_part(const Domain& domain, double limit, const Context& context) {
   std::vector<double> t =
       thickness(domain.psi(), samples, .25 * domain.level_set->spacing(), limit, context, domain.steepest());
   std::sort(t.begin(), t.end());
-  return quantile(t, kThinShare);
+  const double thin = quantile(t, kThinShare);
+  double faces = 0;
+  for (const double x : t) faces += std::pow(thin / std::max(x, thin), 2) / static_cast<double>(t.size());
+  return {thin, faces};
 }
 
 /// By curvature. \throw ResourceLimit
@@ -93,11 +100,12 @@ EdgeLength choose(Domain& domain, const Parameters& parameters, const Context& c
   }
   if (p.tets == 0 && p.max_deviation > 0) return by_deviation(domain, parameters, p.max_deviation, context);
   const double of_size = kMeshEdge * domain.diagonal, limit = kEdgesAcross * of_size;
-  const double t = domain.level_set ? thin_part(domain, limit, context) : limit;
+  const ThinPart thin = domain.level_set ? thin_part(domain, limit, context) : ThinPart{limit};
+  const double t = thin.thickness;
   const double of_noise = noise_edge(domain), needed = std::max(std::min(of_size, t / kEdgesAcross), of_noise);
   if (p.tets > 0) {
     const double h = h_of(domain, parameters, p.tets);
-    return {h, h, {}, needed};
+    return {h, h, {}, needed, thin.faces};
   }
   const double least = h_of(domain, parameters, p.max_tets);
   double h = of_size;
@@ -105,8 +113,8 @@ EdgeLength choose(Domain& domain, const Parameters& parameters, const Context& c
     h = std::min(h, std::clamp(h_of(domain, parameters, kTetsOfLargeMesh), t / kEdgesAcross, t / kFewerEdgesAcross));
   }
   h = std::max(h, least);
-  if (of_noise > h) return {of_noise, least, h, needed};
-  return {h, least, {}, needed};
+  if (of_noise > h) return {of_noise, least, h, needed, thin.faces};
+  return {h, least, {}, needed, thin.faces};
 }
 
 Vec3 greatest_coordinates(const Domain& domain) {
