@@ -26,8 +26,8 @@ using detail::TetIds;
 // this bound repair would take longer than all other steps.
 constexpr std::size_t kFewPatches = 600, kTetsPerPatch = 4;
 // Where h shows the body a tet is mended by three to eight patches. Where it does not, fifty to a hundred are tried for
-// one that helps: kFewPatches and this many for each that did are enough to tell. As many as kFewPatches more are for
-// the worst tets of what is left, against lower targets.
+// one that helps: kFewPatches and this many for each that did are enough to tell. Outside of lattices as many as
+// kFewPatches more are for the worst tets of what is left, against lower targets.
 constexpr std::size_t kPatchesPerSuccess = 16;
 // kAtOnce tets are mended at once, while at most kMostWaiting wait for one near them. The same for any number of
 // threads, as the result depends on it. The context is polled before each round: a tet may take a tenth of a second, so
