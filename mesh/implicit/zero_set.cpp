@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/disjoint_sets.h"
+#include "mesh/implicit/cut_edges.h"
 
 namespace umtet {
 namespace {
@@ -28,18 +29,9 @@ constexpr std::array<std::pair<int, int>, 6> kTets = {{{1, 3}, {1, 5}, {2, 3}, {
 // At nodes without a cut edge, which is where psi is not evaluated, only the sign counts.
 constexpr double kFarValue = 1;
 
-/// What is known of a cut edge; sums of a component gather in its members until the end.
-struct CutEdge {
-  Vec3 point;
-  double area = 0;
-  std::int32_t faces_minus_edges = 0;  ///< cut tets - cut triangles counted here
-  bool on_wall = false;
-};
-
-/// Nodes of one layer k: values, numbers of inside pieces, and the ids of the cut edges that start there.
+/// Nodes of one layer k: values, and the ids of the cut edges that start there.
 struct Layer {
   std::vector<double> value;
-  std::vector<int> inside_component;         ///< -1 outside
   std::vector<std::array<int, 8>> cut_edge;  ///< towards corner 1..7, -1 not cut
 };
 
@@ -68,12 +60,10 @@ class Sweep {
   template <class F>
   void for_each_row(const F& visit);
   void evaluate(int k);
-  void find_inside_components(int k);
   void find_cut_edges(int k, Directions directions);
   void join_node(int i, int j, int k, unsigned signs);
   void join_tet(int i, int j, int k, const std::array<int, 4>& corner, unsigned signs);
   void join_layer(int k);
-  void gather(ZeroSetTopology& result);
 
   ImplicitFunctionRef psi_;
   Eigen::AlignedBox3d box_;
@@ -83,9 +73,8 @@ class Sweep {
   std::array<double, 3> h_{};
   std::array<Layer, 2> layers_;
   std::vector<CutEdge> edges_;
-  DisjointSets surface_, inside_;
+  DisjointSets surface_;
   std::size_t n_not_finite_ = 0;
-  bool touches_box_ = false;
 };
 
 Sweep::Sweep(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spacing, const Context& context,
@@ -106,7 +95,6 @@ Sweep::Sweep(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spa
   if (nodes > std::numeric_limits<int>::max()) throw std::length_error("spacing: too small for the box");
   for (Layer& l : layers_) {
     l.value.resize(static_cast<std::size_t>(nodes));
-    l.inside_component.resize(l.value.size());
     l.cut_edge.resize(l.value.size());
   }
 }
@@ -142,31 +130,6 @@ void Sweep::evaluate(int k) {
         ++n_not_finite_;
         v = std::numeric_limits<double>::max();
       }
-      const bool wall = i == 0 || j == 0 || k == 0 || i == n_[0] || j == n_[1] || k == n_[2];
-      touches_box_ |= wall && v < 0;
-    }
-  });
-}
-
-/// Components of {psi < 0}: a node joins those of its seven predecessors along Kuhn edges that are inside.
-void Sweep::find_inside_components(int k) {
-  for_each_row([&](int j) {
-    for (int i = 0; i <= n_[0]; ++i) {
-      int& component = layer(k).inside_component[index(i, j)];
-      component = -1;
-      if (!inside(i, j, k)) continue;
-      for (int c = 1; c < 8; ++c) {
-        const int pi = i - (c & 1), pj = j - (c >> 1 & 1), pk = k - (c >> 2);
-        if (pi < 0 || pj < 0 || pk < 0) continue;
-        const int before = layer(pk).inside_component[index(pi, pj)];
-        if (before < 0) continue;
-        if (component < 0) {
-          component = before;
-        } else {
-          inside_.unite(component, before);
-        }
-      }
-      if (component < 0) component = inside_.add();
     }
   });
 }
@@ -216,9 +179,11 @@ void Sweep::join_tet(int i, int j, int k, const std::array<int, 4>& corner, unsi
   for (int m = 1; m + 1 < n; ++m) {
     area += 0.5 * (edges_[ring[m]].point - origin).cross(edges_[ring[m + 1]].point - origin).norm();
   }
-  for (int m = 1; m < n; ++m) surface_.unite(ring[0], ring[m]);
-  edges_[ring[0]].area += area;
-  ++edges_[ring[0]].faces_minus_edges;
+  for (int m = 0; m < n; ++m) {
+    surface_.unite(ring[0], ring[m]);
+    edges_[ring[m]].area += area / n;
+  }
+  edges_[ring[0]].faces_minus_edges2 += 2;
 }
 
 /// The triangles and tets that start at a node; `signs` bit c: corner c is inside.
@@ -230,41 +195,10 @@ void Sweep::join_node(int i, int j, int k, unsigned signs) {
     // The node that differs from the other two is an end of a cut edge.
     const int odd = sa == sb ? 0 : s0 == sb ? a : b;
     const int other = odd == 0 ? a : 0;
-    --edges_[cut_edge(i, j, k, odd, other)].faces_minus_edges;
+    edges_[cut_edge(i, j, k, odd, other)].faces_minus_edges2 -= 2;
   }
   if (!exists(i, j, k, 7)) return;
   for (const auto& [a, b] : kTets) join_tet(i, j, k, {0, a, b, 7}, signs);
-}
-
-void Sweep::gather(ZeroSetTopology& result) {
-  std::vector<ZeroSetComponent>& components = result.components;
-  std::vector<int> piece(edges_.size());
-  for (std::size_t e = 0; e < edges_.size(); ++e) {
-    const int root = surface_.find(static_cast<int>(e));  // <= e
-    if (root == static_cast<int>(e)) {
-      piece[e] = static_cast<int>(components.size());
-      components.emplace_back().seed = edges_[e].point;
-    } else {
-      piece[e] = piece[root];
-    }
-    ZeroSetComponent& c = components[piece[e]];
-    ++c.n_cut_edges;
-    c.euler_characteristic += 1 + edges_[e].faces_minus_edges;
-    c.area += edges_[e].area;
-    c.box.extend(edges_[e].point);
-    if (edges_[e].on_wall) c.closed = false;
-  }
-  std::vector<std::size_t> next(components.size());
-  std::size_t n_points = 0;
-  for (std::size_t n = 0; n < components.size(); ++n) {
-    ZeroSetComponent& c = components[n];
-    c.genus = (2 - c.euler_characteristic) / 2;
-    result.euler_characteristic += c.euler_characteristic;
-    next[n] = c.first_cut_point = std::exchange(n_points, n_points + c.n_cut_edges);
-  }
-  result.cut_points.resize(edges_.size());
-  for (std::size_t e = 0; e < edges_.size(); ++e) result.cut_points[next[piece[e]]++] = edges_[e].point;
-  std::stable_sort(components.begin(), components.end(), [](const auto& x, const auto& y) { return x.area > y.area; });
 }
 
 void Sweep::join_layer(int k) {
@@ -283,26 +217,18 @@ void Sweep::join_layer(int k) {
 
 ZeroSetTopology Sweep::run() {
   evaluate(0);
-  find_inside_components(0);
   find_cut_edges(0, kInPlane);
   for (int k = 0; k < n_[2]; ++k) {
     evaluate(k + 1);
-    find_inside_components(k + 1);
     find_cut_edges(k, kUpward);
     find_cut_edges(k + 1, kInPlane);
     join_layer(k);
   }
   join_layer(n_[2]);  // the triangles that lie in the top wall
 
-  ZeroSetTopology result;
-  result.n_cells = n_;
+  ZeroSetTopology result = topology_of(edges_, surface_);
   result.spacing = *std::max_element(h_.begin(), h_.end());
-  result.touches_box = touches_box_;
   result.n_not_finite = n_not_finite_;
-  gather(result);
-  for (std::size_t i = 0; i < inside_.size(); ++i) {
-    result.n_inside_components += inside_.find(static_cast<int>(i)) == static_cast<int>(i);
-  }
   return result;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <array>
 #include <cstddef>
 #include <functional>
 #include <span>
@@ -26,16 +25,17 @@ struct ZeroSetComponent {
 
 struct ZeroSetTopology {
   std::vector<ZeroSetComponent> components;  ///< descending in area
-  std::size_t n_inside_components = 0;       ///< of {psi < 0} along the edges of the grid
-  bool touches_box = false;                  ///< psi < 0 somewhere on the wall: the box does not hold the domain
   long euler_characteristic = 0;             ///< sum over components
   double spacing = 0;                        ///< the one used, <= that of the call
-  std::array<int, 3> n_cells = {0, 0, 0};
-  std::size_t n_not_finite = 0;  ///< nodes where psi is not a finite number; they count as outside
-  std::vector<Vec3> cut_points;  ///< where psi = 0 on the cut edges (linear), component by component
+  std::size_t n_not_finite = 0;              ///< nodes where psi is not a finite number; they count as outside
+  std::vector<Vec3> cut_points;              ///< where psi = 0 on the cut edges (linear), component by component
+  std::vector<double> cut_areas;             ///< of the surface, what each of them stands for
 
   std::span<const Vec3> points_of(const ZeroSetComponent& c) const {
     return {cut_points.data() + c.first_cut_point, c.n_cut_edges};
+  }
+  std::span<const double> areas_of(const ZeroSetComponent& c) const {
+    return {cut_areas.data() + c.first_cut_point, c.n_cut_edges};
   }
 };
 
