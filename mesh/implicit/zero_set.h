@@ -2,11 +2,11 @@
 
 #include <Eigen/Geometry>
 #include <cstddef>
-#include <functional>
 #include <span>
 #include <vector>
 
 #include "common/context.h"
+#include "mesh/core/far_from_zero.h"
 #include "mesh/core/implicit_function.h"
 
 namespace umtet {
@@ -39,9 +39,6 @@ struct ZeroSetTopology {
   }
 };
 
-/// True only where psi has no zero within `spacing` of x along every axis. Thread-safe.
-using FarFromZero = std::function<bool(const Vec3& x)>;
-
 /// Topology of {psi = 0} in a box, counted on a grid that knows nothing of the mesher.
 ///
 /// Cubes of edge `spacing` (reduced per axis so that they fill the box) are cut into six tets each (Kuhn); psi is
@@ -57,8 +54,8 @@ using FarFromZero = std::function<bool(const Vec3& x)>;
 /// 70 bytes per cut edge. The result does not depend on the number of threads.
 /// \throw std::invalid_argument  an empty or unbounded box, spacing <= 0
 /// @param context  polled every few thousand nodes
-/// @param far         where it says so psi is not evaluated: it has the sign of the node before. The result is the same
-///                    (but n_not_finite counts only nodes where psi was evaluated).
+/// @param far         to `spacing`: where it says so psi is not evaluated, but has the sign of the node before. The
+///                    result is the same (but n_not_finite counts only nodes where psi was evaluated).
 /// \throw std::length_error      more than 1e9 cells along an axis, 2^31 nodes in a slab or 2^31 cut edges
 /// \throw Cancelled
 ZeroSetTopology zero_set_topology(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spacing,

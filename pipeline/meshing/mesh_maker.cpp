@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 
 #include "pipeline/case/exit_code.h"
+#include "pipeline/domain/component_proof.h"
 #include "pipeline/domain/edge_length.h"
 #include "pipeline/domain/too_thin.h"
 #include "pipeline/meshing/library_params.h"
@@ -76,6 +78,16 @@ UmParams MeshMaker::params_for(const ZeroSetChoice& pieces) const {
   return params;
 }
 
+/// From cell to cell of a lattice, psi has the sign that it had where there can be no zero between.
+KnownSigns MeshMaker::known_signs(const BackgroundMesh& background, const ZeroSetChoice& pieces) const {
+  if (!pieces.cells || !background.is_lattice()) return {};
+  const auto& n = background.n_cells();
+  const double reach = (background.box().sizes().array() / Eigen::Array3d(n[0], n[1], n[2])).maxCoeff();
+  const auto map =
+      std::make_shared<const ZeroFreeMap>(*pieces.cells, domain_.box.intersection(domain_.level_set->domain()), reach);
+  return {[map](const Vec3& x) { return (*map)(x); }, reach};
+}
+
 /// psi cut for h, and what h is too large for.
 MeshAttempt MeshMaker::begin(const SizedBackground& background, double h) {
   MeshAttempt a;
@@ -101,7 +113,9 @@ ChosenSubmesh MeshMaker::choose(const BackgroundMesh& background, const ZeroSetC
     lines_.detail(fmt::format("h = {:.6g}, background of {} tets, psi = 0 in {} pieces", background.h(),
                               background.n_tets(), pieces.topology.components.size()));
   }
-  return choose_submesh(background, domain_.psi(), params_for(pieces), context_.part(kChoice, kFit), pieces.seeds);
+  UmParams params = params_for(pieces);
+  params.submesh.known = known_signs(background, pieces);
+  return choose_submesh(background, domain_.psi(), params, context_.part(kChoice, kFit), pieces.seeds);
 }
 
 void MeshMaker::finish(const SizedBackground& background, ChosenSubmesh chosen, MeshAttempt& a) {

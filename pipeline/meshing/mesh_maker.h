@@ -51,6 +51,7 @@ class MeshMaker {
   ChosenSubmesh choose(const BackgroundMesh& background, const ZeroSetChoice& pieces);
   void finish(const SizedBackground& background, ChosenSubmesh chosen, MeshAttempt& a);
   UmParams params_for(const ZeroSetChoice& pieces) const;
+  KnownSigns known_signs(const BackgroundMesh& background, const ZeroSetChoice& pieces) const;
   MeshAttempt attempt_for_tets(double h, const std::function<SizedBackground(double h)>& background);
   void curve(MeshAttempt& a) const;
   void say(const std::string& line) const {
