@@ -177,7 +177,7 @@ void graded_growth(benchmark::State& state) {
 }
 BENCHMARK(graded_growth)
     ->ArgNames({"h_1e-4"})
-    ->ArgsProduct({{290, 145, 72, 36}})
+    ->ArgsProduct({{440, 210, 100, 62}})
     ->Unit(benchmark::kMillisecond)
     ->Iterations(1);
 
