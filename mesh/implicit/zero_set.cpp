@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/disjoint_sets.h"
+#include "mesh/core/asking_psi.h"
 
 namespace umtet {
 namespace {
@@ -68,6 +69,7 @@ class Sweep {
   template <class F>
   void for_each_row(const F& visit);
   void evaluate(int k);
+  void evaluate_by_threads(int k);
   void find_inside_components(int k);
   void find_cut_edges(int k, Directions directions);
   void join_node(int i, int j, int k, unsigned signs);
@@ -120,7 +122,7 @@ void Sweep::for_each_row(const F& visit) {
   }
 }
 
-void Sweep::evaluate(int k) {
+void Sweep::evaluate_by_threads(int k) {
   std::vector<double>& value = layer(k).value;
   // Stretches of a row, because a node that is far from any zero takes its sign from the one before.
   constexpr std::size_t kStretch = 64;
@@ -135,6 +137,17 @@ void Sweep::evaluate(int k) {
       value[j * row + i] = !known ? psi_.value(x) : before < 0 ? -kFarValue : kFarValue;
     }
   });
+}
+
+void Sweep::evaluate(int k) {
+  std::vector<double>& value = layer(k).value;
+  const std::size_t row = static_cast<std::size_t>(n_[0]) + 1;
+  if (psi_.side_by_side() && !far_) {
+    const auto point = [&](std::size_t at) { return node(static_cast<int>(at % row), static_cast<int>(at / row), k); };
+    take_in_blocks(psi_, value.size(), context_, point, [&](std::size_t at, double psi) { value[at] = psi; });
+  } else {
+    evaluate_by_threads(k);
+  }
   for_each_row([&](int j) {
     for (int i = 0; i <= n_[0]; ++i) {
       double& v = value[index(i, j)];
