@@ -17,9 +17,12 @@ std::vector<RecordedFile> recorded_inputs(const CasePaths& paths, Stage stage, c
     if (const std::string& file = parameters.mesh().size; is_size_file(file)) {
       inputs.push_back({file, paths.stamps->of(file)});
     }
+    if (const std::string& file = parameters.mesh().level_set; !file.empty()) {
+      inputs.push_back({file, paths.stamps->of(file)});
+    }
   }
-  const bool formula = stage == Stage::Mesh && !parameters.mesh().implicit.empty();
-  if (stage == Stage::Cloud || formula) return inputs;
+  const bool is_alone = stage == Stage::Mesh && has_own_psi(parameters.mesh());
+  if (stage == Stage::Cloud || is_alone) return inputs;
   for (const Stage source : {Stage::Cloud, Stage::LevelSet}) {
     if (source >= stage) break;
     const StageState state = inspect_stage(paths, source, parameters.section(section_of(source)), std::nullopt);
