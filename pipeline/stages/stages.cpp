@@ -6,6 +6,7 @@
 #include "pipeline/case/exit_code.h"
 #include "pipeline/domain/background_choice.h"
 #include "pipeline/domain/size_file.h"
+#include "reconstruct/io/grid_io.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -18,6 +19,7 @@ std::vector<RecordedFile> recorded_inputs(const CasePaths& paths, Stage stage, c
       inputs.push_back({file, paths.stamps->of(file)});
     }
     if (const std::string& file = parameters.mesh().level_set; !file.empty()) {
+      check_grid_head(file);  // gigabytes that are no grid are not read for their checksum
       inputs.push_back({file, paths.stamps->of(file)});
     }
   }

@@ -29,4 +29,12 @@ Grid read_grid(const std::filesystem::path& file, double max_nodes) {
   return grid;
 }
 
+void check_grid_head(const std::filesystem::path& file, double max_nodes) {
+  detail::GridSource source(file, max_nodes, detail::GridSource::Part::Head);
+  try {
+    read_by_head(source);
+  } catch (const detail::EndOfHead&) {
+  }
+}
+
 }  // namespace umtet

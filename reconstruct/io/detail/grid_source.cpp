@@ -19,7 +19,7 @@
 namespace umtet::detail {
 namespace {
 
-constexpr std::size_t kPiece = 1 << 20;  // bytes that are read at once
+constexpr std::size_t kPiece = 1 << 16;  // bytes that are read at once
 constexpr double kMostOfGzip = 1032;     // bytes that one byte of gzip can stand for
 
 template <class T>
@@ -111,24 +111,23 @@ void append_numbers(std::string_view bytes, NumberType type, bool swap, std::vec
   }
 }
 
-GridSource::GridSource(const std::filesystem::path& file, double max_nodes)
-    : name_(file.string()), max_nodes_(max_nodes) {
-  const auto trouble = [&] {
-    return std::system_error(errno ? errno : EIO, std::generic_category(), name_ + ": cannot be opened");
-  };
-  descriptor_ = ::open(name_.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor_ < 0) throw trouble();
+GridSource::GridSource(const std::filesystem::path& file, double max_nodes, Part part)
+    : name_(file.string()), max_nodes_(max_nodes), part_(part) {
+  const int descriptor = ::open(name_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a pipe does not keep us waiting
   struct stat status = {};
-  if (::fstat(descriptor_, &status) != 0 || S_ISDIR(status.st_mode)) {
-    if (S_ISDIR(status.st_mode)) errno = EISDIR;
-    const std::system_error error = trouble();
-    ::close(descriptor_);
-    throw error;
+  if (descriptor < 0 || ::fstat(descriptor, &status) != 0) {
+    const int error = errno;
+    if (descriptor >= 0) ::close(descriptor);
+    throw std::system_error(error, std::generic_category(), name_ + ": cannot be opened");
+  }
+  if (!S_ISREG(status.st_mode)) {
+    ::close(descriptor);
+    throw GridRefused(name_ + ": not a regular file; give the file of the grid");
   }
   file_size_ = static_cast<double>(status.st_size);
-  gzip_ = ::gzdopen(descriptor_, "rb");
+  gzip_ = ::gzdopen(descriptor, "rb");
   if (!gzip_) {
-    ::close(descriptor_);
+    ::close(descriptor);
     throw std::bad_alloc();
   }
 }
@@ -192,7 +191,10 @@ std::string GridSource::until(char stop, std::uint64_t most) {
     taken.append(buffer_, next_, end - next_);
     taken_ += end - next_;
     next_ = end;
-    if (taken.size() > most) refuse(fmt::format("more than {} bytes before '{}'", most, stop));
+    if (taken.size() > most) {
+      refuse(fmt::format("more than {} bytes before {}", most,
+                         stop == '\n' ? "the line ends" : std::string{'\'', stop, '\''}));
+    }
     if (next_ == buffer_.size()) continue;
     ++next_, ++taken_;
     return taken;
@@ -261,6 +263,7 @@ void GridSource::require_nodes(const std::vector<std::int64_t>& counts, double b
     refuse(
         fmt::format("{:.4g} nodes, and at most {:.4g} are allowed: take every second one, or a part", n, max_nodes_));
   }
+  if (part_ == Part::Head) throw EndOfHead();
 }
 
 std::vector<double> GridSource::take_numbers(std::uint64_t n, NumberType type, bool swap) {

@@ -29,12 +29,17 @@ std::optional<NumberType> number_type(std::string_view name);
 /// The numbers of some bytes, appended. @param swap  the bytes of each are the wrong way round
 void append_numbers(std::string_view bytes, NumberType type, bool swap, std::vector<double>& out);
 
+/// Thrown in place of reading on where only the head of a file is wanted.
+struct EndOfHead {};
+
 /// The bytes of a file, unpacked if it is one of gzip, from the front to the back.
 class GridSource {
  public:
+  enum class Part { Whole, Head };
   /// @param max_nodes  a grid may have
-  /// \throw std::system_error
-  GridSource(const std::filesystem::path& file, double max_nodes);
+  /// @param part  Head: require_nodes() throws EndOfHead after its checks
+  /// \throw GridRefused  not a regular file \throw std::system_error
+  GridSource(const std::filesystem::path& file, double max_nodes, Part part = Part::Whole);
   ~GridSource();
   GridSource(const GridSource&) = delete;
   GridSource& operator=(const GridSource&) = delete;
@@ -75,9 +80,9 @@ class GridSource {
   double most_bytes() const;
 
   std::string name_;
-  int descriptor_ = -1;
   void* gzip_ = nullptr;  ///< gzFile
   double file_size_ = 0, max_nodes_ = 0;
+  Part part_;
   std::string buffer_;  ///< read, but not taken yet, from next_ on
   std::size_t next_ = 0;
   std::uint64_t taken_ = 0;

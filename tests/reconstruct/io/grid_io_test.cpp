@@ -63,5 +63,15 @@ TEST(GridIo, MoreNodesThanAllowedAreRefusedBeforeMemoryIsTaken) {
 
 TEST(GridIo, AFileThatIsNotThereIsFileTrouble) {
   EXPECT_THROW(read_grid(kFiles / "none.nrrd"), std::system_error);
-  EXPECT_THROW(read_grid(kFiles), std::system_error);
+  EXPECT_THROW(read_grid(kFiles), GridRefused);  // a folder
+}
+
+TEST(GridIo, AHeadIsEnoughToTellWhatCannotBeRead) {
+  for (const auto& folder : {"grid_vti", "grid_vtk", "grid_nifti", "grid_nrrd"}) {
+    for (const auto& file : std::filesystem::directory_iterator(kFiles / folder)) {
+      EXPECT_NO_THROW(check_grid_head(file.path()));
+      EXPECT_THROW(check_grid_head(file.path(), 300), GridRefused);
+    }
+  }
+  EXPECT_THROW(check_grid_head(kFiles / "cloud_xyz/six.xyz"), GridRefused);
 }
