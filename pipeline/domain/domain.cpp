@@ -63,8 +63,8 @@ void Domain::values(std::span<const Vec3> x, double* out) const {
 ImplicitFunctionRef Domain::psi() const { return complement ? ImplicitFunctionRef(*this) : body(); }
 
 Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handover* handover) {
-  if (!parameters.mesh().implicit.empty()) return formula_domain(parameters);
   if (!parameters.mesh().level_set.empty()) return grid_domain(parameters);
+  if (!parameters.mesh().implicit.empty()) return formula_domain(parameters);
   const StageState state = inspect_stage(paths, Stage::LevelSet, parameters.section("reconstruct"), std::nullopt);
   if (!state.record) throw ArtefactDamaged(state.reason);
   Domain domain;
