@@ -132,6 +132,7 @@ void MeshStage::refuse_thin(const MeshAttempt& best) {
 }
 
 MeshAttempt MeshStage::best_mesh() {
+  for (const std::string& notice : domain_.notices) context_.progress.say("mesh: " + notice);
   context_.progress.report("mesh", "size", 0);
   const EdgeLength choice = background_.edge_length(domain_, until_interrupted());
   if (choice.of_thin_parts) {

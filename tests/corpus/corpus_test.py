@@ -80,7 +80,7 @@ def main():
             if case.is_huge:
                 os.truncate(file, HUGE_BYTES)
             # The readers are asked below: of meshes, and of clouds in a whole run, some files are enough here.
-            some, is_cloud = case.is_huge or n % 4 == 0, file.suffix not in (*MESHES, ".vti")
+            some, is_cloud = case.is_huge or n % 4 == 0, file.suffix not in (*MESHES, *cases.GRIDS, ".vti")
             calls = []
             if is_cloud:
                 calls.append(["inspect", str(file)])
@@ -88,6 +88,8 @@ def main():
                 calls.append(["run", str(file), "-o", str(folder / "case")])
             if file.suffix in MESHES and some:
                 calls.append(["check", str(file)])
+            if file.suffix in cases.GRIDS and some and case.words is not None:
+                calls.append(["mesh", "--level-set", str(file), "-o", str(folder / "case")])
             for arguments in calls:
                 answer = call(program, arguments, limited)
                 slowest, largest = max(slowest, answer[2]), max(largest, answer[3])
