@@ -9,6 +9,7 @@
 #include "mesh/io/tet_mesh_io.h"
 #include "reconstruct/io/level_set_io.h"
 #include "reconstruct/io/point_cloud_io.h"
+#include "reconstruct/io/triangle_mesh_io.h"
 
 namespace {
 
@@ -29,10 +30,12 @@ int main(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::filesystem::path file = argv[i];
     const std::string kind = file.extension();
-    if (kind == ".vtu" || kind == ".msh" || kind == ".mesh" || kind == ".stl") {
+    if (kind == ".vtu" || kind == ".msh" || kind == ".mesh" || kind == ".tets") {
       answer<umtet::MeshFileRefused>(file, "read_tet_mesh", umtet::read_tet_mesh);
     } else if (kind == ".vti") {
       answer<umtet::LevelSetRefused>(file, "read_level_set", umtet::read_level_set);
+    } else if (umtet::holds_triangles(file)) {
+      answer<umtet::CloudRefused>(file, "read_triangles", umtet::read_triangles);
     } else {
       answer<umtet::CloudRefused>(file, "read_scan", umtet::read_scan);
       answer<umtet::CloudRefused>(file, "read_point_cloud", umtet::read_point_cloud);
