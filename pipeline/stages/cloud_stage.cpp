@@ -18,7 +18,7 @@ void run_cloud_stage(const StageContext& context, const fs::path& source) {
   context.progress.report("cloud", "read", 0);
   // Stamped before they are parsed: if a file changes meanwhile, the next run sees other bytes and reads it again.
   const std::vector<RecordedFile> inputs = source_inputs(source, context.parameters, *context.paths.stamps);
-  ScanSource scan = read_source(source, context.parameters);
+  ScanSource scan = read_source(source, context.parameters, {.cancelled = until_interrupted().cancelled});
   context.progress.report("cloud", "prepare", .2);
   PreparedCloud prepared = prepare_cloud(std::move(scan.cloud), source, context.parameters);
   if (scan.triangles) add_triangles(*scan.triangles, prepared.report);

@@ -59,7 +59,7 @@ bool is_of_triangles(const fs::path& source, const Parameters& parameters) {
   return holds_triangles(source, parameters.cloud().as_points ? PlyFaces::Ignored : PlyFaces::Surface);
 }
 
-ScanSource read_source(const fs::path& source, const Parameters& parameters) {
+ScanSource read_source(const fs::path& source, const Parameters& parameters, const Context& context) {
   if (!is_of_triangles(source, parameters)) return {read_scan(source), {}};
   TriangleFile file = read_triangles(source);
   const NormalsOf how = parameters.cloud().normals;
@@ -67,7 +67,7 @@ ScanSource read_source(const fs::path& source, const Parameters& parameters) {
   BodySamples body = [&] {
     try {
       return sample_body(std::move(file.mesh),
-                         {.spacing = parameters.cloud().sample_spacing, .turn = how != NormalsOf::Given});
+                         {.spacing = parameters.cloud().sample_spacing, .turn = how != NormalsOf::Given}, context);
     } catch (const std::invalid_argument& e) {
       throw CloudRefused(fmt::format("{}: {}", source.string(), e.what()));
     }

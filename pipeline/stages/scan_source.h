@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/context.h"
 #include "pipeline/case/parameters.h"
 #include "pipeline/reports/stage_reports.h"
 #include "reconstruct/io/point_cloud_io.h"
@@ -30,8 +31,8 @@ bool is_of_triangles(const std::filesystem::path& source, const Parameters& para
 
 /// Reads points as they are, and samples triangles: at most cloud.sample_spacing apart, without normals for
 /// cloud.normals = estimate, on the side that triangles look to for cloud.normals = given.
-/// \throw CloudRefused  as the readers, or triangles that do not bound a body; std::system_error
-ScanSource read_source(const std::filesystem::path& source, const Parameters& parameters);
+/// \throw CloudRefused  as the readers, or triangles that do not bound a body; std::system_error; Cancelled
+ScanSource read_source(const std::filesystem::path& source, const Parameters& parameters, const Context& context = {});
 
 /// Puts what is known of the triangles into the report of their samples, notices first.
 void add_triangles(const SampledTriangles& triangles, CloudReport& report);

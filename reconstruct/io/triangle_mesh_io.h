@@ -32,8 +32,9 @@ inline constexpr std::size_t kMostGroups = 64;
 enum class PlyFaces { Surface, Ignored };
 
 /// Is a file one of triangles: STL, OBJ or OFF by its extension, OFF or PLY by its first line? A PLY is one if it has
-/// at least a quarter as many faces as vertices; with fewer its points are the scan. Reads the beginning only. \throw
-/// std::system_error  the file cannot be opened or read; names it
+/// at least a quarter as many faces as vertices; with fewer its points are the scan. Reads the beginning only.
+///
+/// \throw std::system_error  the file cannot be opened or read; names it
 bool holds_triangles(const std::filesystem::path& file, PlyFaces faces = PlyFaces::Surface);
 
 /// Reads STL (ascii, binary), OBJ, OFF (ascii) and PLY with faces. Double precision throughout.

@@ -48,7 +48,8 @@ enum class Share : std::uint8_t { None, Some, All };
 
 /// By its samples; triangles without one by their centre.
 std::vector<Share> shares_on_boundary(const TriangleMesh& mesh, const TriangleSamples& samples,
-                                      const std::vector<Place>& place, const TriangleWinding& w) {
+                                      const std::vector<Place>& place, const TriangleWinding& w,
+                                      const Context& context) {
   std::vector<std::uint32_t> n(mesh.F.size(), 0), n_on(mesh.F.size(), 0);
   for (std::size_t i = 0; i < place.size(); ++i) {
     ++n[samples.faces[i]];
@@ -65,7 +66,7 @@ std::vector<Share> shares_on_boundary(const TriangleMesh& mesh, const TriangleSa
   std::vector<Share> share(n.size());
   for (std::size_t f = 0; f < n.size(); ++f)
     share[f] = n_on[f] == n[f] ? Share::All : n_on[f] > 0 ? Share::Some : Share::None;
-  const std::vector<double> at = w(before(mesh, centres, without));
+  const std::vector<double> at = w(before(mesh, centres, without), context);
   for (std::size_t i = 0; i < without.size(); ++i)
     share[without[i]] = place_of(at[i]) == Place::Boundary ? Share::All : Share::None;
   return share;
@@ -111,22 +112,22 @@ double default_spacing(const TriangleMesh& mesh) {
   return std::max(spacing, std::sqrt(area / kMostSamples));
 }
 
-BodySamples sample_body(TriangleMesh mesh, const BodySampleParams& params) {
+BodySamples sample_body(TriangleMesh mesh, const BodySampleParams& params, const Context& context) {
   if (const auto found = problems(params); !found.empty()) throw std::invalid_argument(found.front());
   BodySamples made;
   TriangleReport& report = made.report;
   report.n_triangles = mesh.F.size();
   report.dropped = drop_useless_faces(mesh);
   if (mesh.F.empty()) throw std::invalid_argument("no triangle has an area");
-  if (params.turn) report.sides = orient_outward(mesh);
+  if (params.turn) report.sides = orient_outward(mesh, context);
   report.spacing = default_spacing(mesh);
   if (params.spacing > 0) report.spacing = std::min(report.spacing, params.spacing);
   if (const double n = area_of(mesh) / (report.spacing * report.spacing); n > kTooMany)
     throw std::invalid_argument(
         formatted("%.3g samples %.3g apart are too many: at most %.0g", n, report.spacing, kTooMany));
-  const TriangleSamples samples = sample_triangles(mesh, report.spacing);
+  const TriangleSamples samples = sample_triangles(mesh, report.spacing, 0, context);
   const TriangleWinding w(mesh);
-  const std::vector<double> w_before = w(before(mesh, samples.points, samples.faces));
+  const std::vector<double> w_before = w(before(mesh, samples.points, samples.faces), context);
   std::vector<Place> place(samples.points.size());
   std::transform(w_before.begin(), w_before.end(), place.begin(), place_of);
   report.n_samples = samples.points.size();
@@ -141,7 +142,7 @@ BodySamples sample_body(TriangleMesh mesh, const BodySampleParams& params) {
     if (!mesh.labels.empty()) made.cloud.labels.push_back(mesh.labels[samples.faces[i]]);
   }
   report.unsure = static_cast<double>(n_unsure) / static_cast<double>(place.size());
-  made.boundary = on_boundary(mesh, shares_on_boundary(mesh, samples, place, w));
+  made.boundary = on_boundary(mesh, shares_on_boundary(mesh, samples, place, w, context));
   return made;
 }
 

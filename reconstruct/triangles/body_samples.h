@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "common/context.h"
 #include "reconstruct/cloud/point_cloud.h"
 #include "reconstruct/triangles/face_patches.h"
 #include "reconstruct/triangles/face_sides.h"
@@ -40,13 +41,15 @@ struct BodySamples {
 /// Samples of the boundary of {w > 1/2}, w the winding number of all triangles (triangle_winding.h) once they look
 /// outward (face_sides.h). Spread as sample_triangles() does; normals are those of the triangles.
 ///
-/// A sample stays if w falls from one to zero along its normal, within a quarter before it: where a part is missing w
-/// falls from less, but still by one. Before an inner wall, which has the body on both sides, it is 1/2 and more.
+/// A sample stays where w is near zero just before it, at most .3: then it falls to that from behind it, by one. Where
+/// a part is missing it falls from less than one, and lower. Before an inner wall, which has the body on both sides, it
+/// is about 1/2, and inside of an overlap 1.
 ///
-/// \throw std::invalid_argument  a problem of params; no triangle has an area; a spacing that asks for 20 million
-/// samples and more Cost: O(n log n), some ten microseconds a sample. The result does not depend on the number of
-/// threads.
-BodySamples sample_body(TriangleMesh mesh, const BodySampleParams& params = {});
+/// \throw std::invalid_argument  a problem of params; no triangle has an area; more than 20 million samples
+/// \throw Cancelled
+///
+/// Cost: O(n log n), some ten microseconds a sample. The result does not depend on the number of threads.
+BodySamples sample_body(TriangleMesh mesh, const BodySampleParams& params = {}, const Context& context = {});
 
 /// The spacing that is chosen: .006 of the diagonal, or as many samples as the triangles have corners if that is
 /// finer; at most a million samples.

@@ -1,7 +1,5 @@
 #include "reconstruct/triangles/face_sides.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -16,10 +14,12 @@ namespace {
 // Triangles of a patch that are asked, evenly picked.
 constexpr std::size_t kAsked = 16;
 // An open patch sees the others from both sides at half its width, and not farther than this share of the diagonal.
-constexpr double kWidth = .5, kFarthest = .02;
-// The winding number of the others rises by one from outside to inside; half of that would be sure.
-constexpr double kClearlyWrong = -.1;
+constexpr double kWidth = .5, kFarthest = .05;
+// Across a small gap the winding number of the others changes by one, across one as wide as the body by little; less
+// than this is what a tree and the rims of other gaps are worth.
+constexpr double kClearlyWrong = -.03;
 constexpr int kRounds = 8;
+constexpr std::size_t kPatchesPerPoll = 64;
 // Of the volume of a sphere with the area: less is that of a sheet, and says nothing.
 constexpr double kClearlyNegative = -.02;
 
@@ -30,7 +30,8 @@ struct Patch {
 
 class Sides {
  public:
-  explicit Sides(TriangleMesh& mesh) : mesh_(mesh), found_(find_patches(mesh)), was_(mesh.F), patches_(found_.size()) {
+  Sides(TriangleMesh& mesh, const Context& context)
+      : mesh_(mesh), context_(context), found_(find_patches(mesh)), was_(mesh.F), patches_(found_.size()) {
     for (std::size_t f = 0; f < mesh.F.size(); ++f)
       if (found_.is_turned[f]) turn_face(mesh, f);
     diagonal_ = diagonal_of(mesh);
@@ -98,6 +99,7 @@ class Sides {
   double fall_along_normals(const Patch& patch, const TriangleWinding& w) const;
 
   TriangleMesh& mesh_;
+  const Context& context_;
   const FacePatches found_;
   const std::vector<Triangle> was_;
   std::vector<Patch> patches_;
@@ -118,8 +120,8 @@ void Sides::orient_closed() {
   if (patches_.size() == 1) return;
   const TriangleWinding w(mesh_);
   std::vector<std::uint8_t> is_inside(closed.size());
-  tbb::parallel_for(std::size_t{0}, closed.size(),
-                    [&](std::size_t i) { is_inside[i] = is_inside_others(patches_[closed[i]], w) ? 1 : 0; });
+  polled_parallel_for(closed.size(), kPatchesPerPoll, context_,
+                      [&](std::size_t i) { is_inside[i] = is_inside_others(patches_[closed[i]], w) ? 1 : 0; });
   for (std::size_t i = 0; i < closed.size(); ++i) {
     Patch& patch = patches_[closed[i]];
     if (is_inside[i])
@@ -155,7 +157,7 @@ void Sides::orient_open() {
   for (int round = 0; round < kRounds && patches_.size() > 1; ++round) {
     const TriangleWinding w(mesh_);
     std::vector<std::uint8_t> is_wrong(open.size());
-    tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
+    polled_parallel_for(open.size(), kPatchesPerPoll, context_, [&](std::size_t i) {
       is_wrong[i] = fall_along_normals(patches_[open[i]], w) < kClearlyWrong ? 1 : 0;
     });
     if (std::count(is_wrong.begin(), is_wrong.end(), 1) == 0) break;
@@ -170,9 +172,9 @@ void Sides::orient_open() {
 
 }  // namespace
 
-FaceSidesReport orient_outward(TriangleMesh& mesh) {
+FaceSidesReport orient_outward(TriangleMesh& mesh, const Context& context) {
   if (mesh.F.empty()) return {};
-  return Sides(mesh)();
+  return Sides(mesh, context)();
 }
 
 }  // namespace umtet

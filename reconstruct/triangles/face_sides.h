@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "common/context.h"
 #include "reconstruct/triangles/triangle_mesh.h"
 
 namespace umtet {
@@ -27,7 +28,7 @@ struct FaceSidesReport {
 /// 3. An open patch is turned if the winding number of all others rises along its normals. Rounds, until none is. If
 ///    there is no closed patch, and what they enclose together is negative, all is turned at the end.
 ///
-/// \pre every triangle has an area. Does not depend on threads. Cost: O(n log n)
-FaceSidesReport orient_outward(TriangleMesh& mesh);
+/// \pre every triangle has an area. Does not depend on threads. \throw Cancelled. Cost: O(n log n)
+FaceSidesReport orient_outward(TriangleMesh& mesh, const Context& context = {});
 
 }  // namespace umtet

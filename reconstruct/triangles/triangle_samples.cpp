@@ -75,7 +75,7 @@ class DartBoard {
 
 }  // namespace
 
-TriangleSamples sample_triangles(const TriangleMesh& mesh, double spacing, std::uint64_t seed) {
+TriangleSamples sample_triangles(const TriangleMesh& mesh, double spacing, std::uint64_t seed, const Context& context) {
   std::vector<double> up_to;  // area of this triangle and those before
   up_to.reserve(mesh.F.size());
   double area = 0;
@@ -92,6 +92,7 @@ TriangleSamples sample_triangles(const TriangleMesh& mesh, double spacing, std::
   DartBoard board(low, kRadius * spacing);
   TriangleSamples made;
   for (std::uint64_t dart = 0; dart < static_cast<std::uint64_t>(n_darts); ++dart) {
+    if (dart % kValuesPerPoll == 0) context.poll();
     const double at = area * uniform(seed, 3 * dart);
     const auto f = std::min<std::size_t>(
         static_cast<std::size_t>(std::upper_bound(up_to.begin(), up_to.end(), at) - up_to.begin()), up_to.size() - 1);

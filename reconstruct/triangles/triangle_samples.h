@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/context.h"
 #include "reconstruct/triangles/triangle_mesh.h"
 
 namespace umtet {
@@ -18,8 +19,9 @@ struct TriangleSamples {
 ///
 /// @param spacing  of samples: their number is about area / spacing^2
 /// @param seed     of the darts; the same bytes at every call
-/// \throw std::invalid_argument  no area, spacing not > 0, or more than 2^31 darts
+/// \throw std::invalid_argument  no area, spacing not > 0, or more than 2^31 darts; Cancelled
 /// Cost: some darts a sample, a microsecond a dart.
-TriangleSamples sample_triangles(const TriangleMesh& mesh, double spacing, std::uint64_t seed = 0);
+TriangleSamples sample_triangles(const TriangleMesh& mesh, double spacing, std::uint64_t seed = 0,
+                                 const Context& context = {});
 
 }  // namespace umtet

@@ -91,9 +91,9 @@ double TriangleWinding::operator()(const Vec3& x) const {
   return near + far / (4 * std::numbers::pi);
 }
 
-std::vector<double> TriangleWinding::operator()(const std::vector<Vec3>& places) const {
+std::vector<double> TriangleWinding::operator()(const std::vector<Vec3>& places, const Context& context) const {
   std::vector<double> w(places.size());
-  tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) { w[i] = (*this)(places[i]); });
+  polled_parallel_for(places.size(), kValuesPerPoll, context, [&](std::size_t i) { w[i] = (*this)(places[i]); });
   return w;
 }
 

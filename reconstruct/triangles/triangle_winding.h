@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/context.h"
 #include "reconstruct/triangles/triangle_mesh.h"
 #include "reconstruct/winding/sample_tree.h"
 
@@ -29,8 +30,8 @@ class TriangleWinding {
 
   /// w(x). Cost: O(log n) and the triangles nearby. Thread-safe.
   double operator()(const Vec3& x) const;
-  /// At many places, from all threads. Does not depend on their number.
-  std::vector<double> operator()(const std::vector<Vec3>& places) const;
+  /// At many places, from all threads. Does not depend on their number. \throw Cancelled
+  std::vector<double> operator()(const std::vector<Vec3>& places, const Context& context = {}) const;
 
  private:
   struct Corners {

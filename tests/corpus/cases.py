@@ -486,7 +486,7 @@ def stored_cases():
         for file in sorted((STORED / target).iterdir()):
             is_cloud = target.startswith("cloud")  # of twelve points
             words = STORED_WORDS.get(file.name, ["12 points", "30"] if is_cloud else None)
-            yield Case(f"{target}_{file.name}", file.read_bytes(), words, STORED_STRICT.get(file.name, None if is_cloud else words))
+            yield Case(f"{target}_{file.name}", file.read_bytes(), words, STORED_STRICT.get(file.name, None if is_cloud else words), target=target)
 
 
 # What is nothing by its beginning, and how it begins.

@@ -84,7 +84,7 @@ def main():
             some, is_cloud = case.is_huge or n % 4 == 0, file.suffix not in (*MESHES, ".vti")
             calls = []
             # Of triangles that are accepted samples are taken, which takes longer.
-            if is_cloud and not (case.words is None and (case.target or file.suffix in TRIANGLES)):
+            if is_cloud and not (case.words is None and ((case.target or "").startswith("triangles") or file.suffix in TRIANGLES)):
                 calls.append(["inspect", str(file)])
             if is_cloud and some and case.words is not None:
                 calls.append(["run", str(file), "-o", str(folder / "case")])

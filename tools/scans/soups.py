@@ -5,9 +5,8 @@ usage: soups.py UMTET [MESH.ply ...] [--timeout=150]
 
 Bodies are a torus of 10,000 triangles, a cube of 12 and the files. Each is given as binary STL: as it is; with a tenth
 of its triangles turned over; with a twentieth removed; with all corners moved on their own by up to 1e-4 diagonals; with
-a copy of itself beside it, a fifth of the diagonal away, as one soup; with an inner wall; inside of a shell of twice its
-size that looks outward, and inward. Distances are in 1e-4 of the diagonal of the STL, mesh to triangles / triangles to
-mesh, rms and largest.
+a copy of itself a sixth of the diagonal away, as one soup; with an inner wall; inside of a box, looking outward and
+inward. h is 1.5 % of the diagonal. Distances are in 1e-4 of it, mesh to triangles / triangles to mesh, rms and largest.
 """
 import pathlib
 import sys
@@ -52,7 +51,8 @@ def wall(t):
 
 def variants(t, wall_here):
     random = np.random.default_rng(1)
-    d, centre = diagonal(t), (t.reshape(-1, 3).min(0) + t.reshape(-1, 3).max(0)) / 2
+    low, high = t.reshape(-1, 3).min(0), t.reshape(-1, 3).max(0)
+    d, centre = np.linalg.norm(high - low), (low + high) / 2
     yield "clean", t
     turned = t.copy()
     some = random.random(len(t)) < .1
@@ -63,7 +63,7 @@ def variants(t, wall_here):
     yield "all three", (turned + random.uniform(-1e-4, 1e-4, t.shape) * d)[random.random(len(t)) >= .05]
     yield "with a copy", np.concatenate([t, t + np.array([.02, .03, .17]) * d])
     yield "inner wall", np.concatenate([t, wall_here])
-    big = centre + 2 * (t - centre)
+    big = centre + 1.5 * (high - low) * (cube() - .5)
     yield "in a shell", np.concatenate([t, big])
     yield "as a cavity", np.concatenate([t[:, ::-1], big])
 
@@ -88,7 +88,8 @@ def main():
             for soup, t in variants(body, wall_here):
                 write_stl(folder / "soup.stl", t)
                 case = folder / "case"
-                done = run(umtet, folder / "soup.stl", case, timeout=float(options.get("timeout", 150)))
+                done = run(umtet, folder / "soup.stl", case, ["--h", str(.015 * diagonal(t))],
+                           timeout=float(options.get("timeout", 150)))
                 told = number(case, "1-cloud/record.json", "numbers", "triangles") or {}
                 d = certified(case, "triangles") or {}
                 unit = 1e4 / diagonal(t)

@@ -141,6 +141,18 @@ TEST(BodySamples, DoNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(few.boundary.F, many.boundary.F);
 }
 
+TEST(BodySamples, CanBeCancelledOnTheWay) {
+  int polls = 0;
+  const Context counting{.cancelled = [&] { return ++polls, false; }};
+  sample_body(torus(), {}, counting);
+  const int all = polls;
+  EXPECT_GT(all, 20);
+  for (const int after : {1, all / 2, all}) {
+    polls = 0;
+    EXPECT_THROW(sample_body(torus(), {}, {.cancelled = [&] { return ++polls == after; }}), Cancelled);
+  }
+}
+
 TEST(BodySamples, TheSpacingFollowsSizeAndDetail) {
   EXPECT_NEAR(default_spacing(cube()), .006 * std::sqrt(3.), 1e-12);
   EXPECT_LT(default_spacing(torus(480, 240)), .5 * default_spacing(torus()));

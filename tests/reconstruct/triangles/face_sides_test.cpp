@@ -106,6 +106,27 @@ TEST(FaceSides, TrianglesThatShareNothingFollowTheFieldOfTheOthers) {
   EXPECT_EQ(mesh.F, right.F);
 }
 
+TEST(FaceSides, APatchThatEndsInTJunctionsFollowsTheOthers) {
+  // The top is a fan around its middle, with corners amid its edges that its neighbours do not have.
+  TriangleMesh right = cube();
+  std::erase_if(right.F,
+                [&](const Triangle& f) { return right.V[f[0]].z() + right.V[f[1]].z() + right.V[f[2]].z() == 3; });
+  ASSERT_EQ(right.F.size(), 10U);
+  const auto n = static_cast<int>(right.V.size());
+  right.V.emplace_back(.5, .5, 1);
+  for (const auto& [x, y] : std::initializer_list<std::pair<double, double>>{
+           {0, 0}, {.5, 0}, {1, 0}, {1, .5}, {1, 1}, {.5, 1}, {0, 1}, {0, .5}})
+    right.V.emplace_back(x, y, 1);
+  for (int k = 0; k < 8; ++k) right.F.push_back({n, n + 1 + k, n + 1 + (k + 1) % 8});
+  TriangleMesh mesh = right;
+  for (std::size_t f = 10; f < 18; ++f) turn_face(mesh, f);
+  const FaceSidesReport report = orient_outward(mesh);
+  EXPECT_EQ(report.n_patches, 2U);
+  EXPECT_EQ(report.n_open_edges, 4U + 8U);
+  EXPECT_EQ(report.n_turned, 8U);
+  for (std::size_t f = 0; f < 18; ++f) EXPECT_GT(mesh.area_vector(f).dot(right.area_vector(f)), 0) << f;
+}
+
 TEST(FaceSides, ShellsInsideOfOthersAreCavitiesOrSolidAsTheyLook) {
   const TriangleMesh shell = moved(cube(), Vec3::Constant(-1), 3);
   TriangleMesh cavity = together(shell, inside_out(cube())), solid = together(shell, cube());
