@@ -33,14 +33,12 @@ constexpr int kReachInListed = 3;
 
 /// Around a vertex of a flat boundary bv faces share 360 degrees and nt tets a half-space: five or six equilateral
 /// triangles, and 2 pi / .551 = 11.4 regular tets. In A15, too, five and six faces are best, and few tets do no harm
-/// (tables/a15.h). With these
-/// weights nine bodies have 419 bad tets of 1e4 at the boundary, with half the first one 347, without any 617
-/// (mesh_bench
-/// --benchmark_filter=graded_costs).
+/// (tables/a15.h). With these weights nine bodies have 347 bad tets of 1e4 at the boundary, with twice the first one
+/// 419, without any 617 (graded_bench --benchmark_filter=graded_costs).
 float cost_by_angles(int n_positive_faces, int n_tets) {
   const float faces = static_cast<float>(n_positive_faces) - 5.5F,
               tets = std::max(0.F, static_cast<float>(n_tets) - 13);
-  return 2 * faces * faces + .2F * tets * tets;
+  return faces * faces + .2F * tets * tets;
 }
 
 std::vector<ConfigurationQuality> qualities_of_z(const std::vector<LinkTopology>& links) {

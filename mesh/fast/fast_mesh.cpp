@@ -140,7 +140,7 @@ bool FastRun::find_inside(const std::vector<Vec3>& seeds) {
   std::string lost;
   context_.report("search", 0);
   if (submesh_params_.search == SubmeshSearch::FullLoop) {
-    inside_ = inside_vertices(background_, psi_, result_.n_psi_evaluations, context_);
+    inside_ = inside_vertices(background_, psi_, result_.n_psi_evaluations, context_, submesh_params_.known);
   } else {
     CrawledVertices found = crawl_inside(background_, psi_, seeds, context_);
     inside_ = std::move(found.inside);

@@ -84,7 +84,8 @@ class Repair {
     return mean_ratio(positions_.of(tet[0]), positions_.of(tet[1]), positions_.of(tet[2]), positions_.of(tet[3]));
   }
   bool is_worth_trying(const TetIds& tet);
-  Range range_of(const TetIds& tet);
+  void find_ranges();
+  Range range_of(std::int64_t vertex) const;
   void mend(const Context& context);
   void again(double target);
   bool choose_round();
@@ -116,7 +117,7 @@ class Repair {
   std::vector<std::vector<std::int64_t>> kept_;  ///< centres of the patches
   std::vector<TetIds> round_;  ///< far from each other: what is done for one does not touch the others
   double far_of_lattice_ = 0;  ///< model units
-  std::unordered_map<std::int64_t, Range> ranges_;  ///< of first vertices, outside of lattices
+  std::unordered_map<std::int64_t, Range> ranges_;  ///< of first vertices
   RepairReport report_;
 };
 
@@ -132,34 +133,47 @@ bool Repair::is_worth_trying(const TetIds& tet) {
 
 /// Seen from one vertex of a tet, flips are within two edges, and what moves is within reach + 2; the classification
 /// and positions are read one edge farther: by one of the two that are compared.
-Repair::Range Repair::range_of(const TetIds& tet) {
-  const Vec3 at = background_.position(tet[0]);
+Repair::Range Repair::range_of(std::int64_t vertex) const {
+  const Vec3 at = background_.position(vertex);
   if (background_.is_lattice()) return {at, far_of_lattice_};
-  const auto [known, is_new] = ranges_.try_emplace(tet[0], Range{at, 0});
-  if (!is_new) return known->second;
   IdList ball;
-  ball.add(tet[0]);
+  ball.add(vertex);
   std::size_t fresh = 0;
   for (int ring = 0; ring < params_.reach + 3; ++ring) {
     for (const std::size_t end = ball.ids().size(); fresh < end; ++fresh) {
       links_.for_each(ball.ids()[fresh], [&](std::int64_t w) { ball.add(w); });
     }
   }
-  double farthest = 0;
-  for (const std::int64_t v : ball.ids()) farthest = std::max(farthest, (background_.position(v) - at).norm());
-  known->second.far = 2 * farthest;
-  return known->second;
+  double farthest2 = 0;
+  for (const std::int64_t v : ball.ids()) farthest2 = std::max(farthest2, (background_.position(v) - at).squaredNorm());
+  return {at, 2 * std::sqrt(farthest2)};
+}
+
+/// Of the tets that the next round may look at. Outside of lattices that is worth several threads.
+void Repair::find_ranges() {
+  if (background_.is_lattice()) return;
+  std::vector<std::int64_t> vertices;
+  const auto add = [&](const TetIds& tet) {
+    if (ranges_.try_emplace(tet[0]).second) vertices.push_back(tet[0]);
+  };
+  for (const TetIds& tet : waiting_) add(tet);
+  for (std::size_t k = next_; k < std::min(todo_.size(), next_ + kAtOnce + kMostWaiting); ++k) add(todo_[k].tet);
+  tbb::parallel_for(std::size_t{0}, vertices.size(),
+                    [&](std::size_t k) { ranges_.at(vertices[k]) = range_of(vertices[k]); });
 }
 
 /// The next tets in their order, but for those near one that comes before them: these wait.
 bool Repair::choose_round() {
+  find_ranges();
   round_.clear();
   std::vector<TetIds> held;
   std::vector<Range> before;
   std::size_t w = 0;
   while (round_.size() < kAtOnce && held.size() < kMostWaiting && (w < waiting_.size() || next_ < todo_.size())) {
     const TetIds tet = w < waiting_.size() ? waiting_[w++] : todo_[next_++].tet;
-    const Range range = range_of(tet);
+    const auto [known, is_new] = ranges_.try_emplace(tet[0]);
+    if (is_new) known->second = range_of(tet[0]);
+    const Range range = known->second;
     const bool near = std::any_of(before.begin(), before.end(), [&](const Range& other) {
       return (other.at - range.at).norm() <= .5 * (other.far + range.far);
     });

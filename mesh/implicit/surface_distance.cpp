@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <deque>
 #include <limits>
 #include <nanoflann.hpp>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -93,6 +95,15 @@ class NearestTriangle {
   double reach_, best_, worst2_;
 };
 
+// The longest triangles, those of half that, and so on; the last class has all that are shorter.
+constexpr int kSizeClasses = 8;
+
+std::uint8_t class_of(double reach, double greatest) {
+  std::uint8_t k = 0;
+  while (k + 1 < kSizeClasses && 2 * reach < greatest) reach *= 2, ++k;
+  return k;
+}
+
 /// out[i] = f(i): which thread runs one cannot change a result.
 template <typename F>
 std::vector<double> map_indices(std::size_t n, const Context& context, F&& f) {
@@ -103,21 +114,42 @@ std::vector<double> map_indices(std::size_t n, const Context& context, F&& f) {
 
 }  // namespace
 
-struct SurfaceDistance::Index {
+/// Triangles of about one size.
+struct SizeClass {
   std::vector<CentredTriangle> triangles;
   std::vector<Vec3> centroids;
-  double reach = 0;     ///< the greatest of all
-  double rounding = 0;  ///< more than what a distance may be off by
+  double reach = 0;  ///< the greatest of all
   PointSet set{centroids};
   std::unique_ptr<KdTree> tree;
+
+  void build() {
+    for (const CentredTriangle& t : triangles) reach = std::max(reach, t.reach);
+    tree = std::make_unique<KdTree>(3, set, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize));
+  }
+  /// The distance to the nearest, or `bound` if all are farther.
+  double distance(const Vec3& x, double bound) const {
+    NearestTriangle nearest(x, triangles, reach, bound);
+    tree->findNeighbors(nearest, x.data(), nanoflann::SearchParams());
+    return nearest.distance();
+  }
+};
+
+struct SurfaceDistance::Index {
+  std::deque<SizeClass> classes;  ///< the largest number of triangles first
+  double rounding = 0;            ///< more than what a distance may be off by
+
+  double distance(const Vec3& x, double bound = std::numeric_limits<double>::infinity()) const {
+    for (const SizeClass& c : classes) bound = c.distance(x, bound);
+    return bound;
+  }
 };
 
 SurfaceDistance::SurfaceDistance(const std::vector<Vec3>& V, const std::vector<Triangle>& faces)
     : index_(std::make_unique<Index>()) {
   if (faces.empty()) throw std::invalid_argument("distance to a surface without faces");
-  index_->triangles.reserve(faces.size());
-  index_->centroids.reserve(faces.size());
-  double magnitude = 0;
+  std::vector<CentredTriangle> triangles;
+  std::vector<Vec3> centroids;
+  double magnitude = 0, greatest = 0;
   for (const Triangle& f : faces) {
     for (const int v : f) {
       if (v < 0 || static_cast<std::size_t>(v) >= V.size()) {
@@ -130,26 +162,37 @@ SurfaceDistance::SurfaceDistance(const std::vector<Vec3>& V, const std::vector<T
     const Vec3 m = (t[0] + t[1] + t[2]) / 3.0;
     double reach = 0;
     for (const Vec3& corner : t) reach = std::max(reach, (corner - m).norm());
-    index_->triangles.push_back({t, reach});
-    index_->centroids.push_back(m);
+    triangles.push_back({t, reach});
+    centroids.push_back(m);
+    greatest = std::max(greatest, reach);
   }
   index_->rounding = 1e-13 * magnitude;
-  for (CentredTriangle& t : index_->triangles) {
-    t.reach += 1e-14 * (t.reach + magnitude);  // centroids are rounded: a few units in the last place
-    index_->reach = std::max(index_->reach, t.reach);
+  std::array<std::size_t, kSizeClasses> n{};
+  std::vector<std::uint8_t> size_class(triangles.size());
+  for (std::size_t k = 0; k < triangles.size(); ++k) {
+    ++n[size_class[k] = class_of(triangles[k].reach, greatest)];
+    triangles[k].reach += 1e-14 * (triangles[k].reach + magnitude);  // centroids are rounded: a few last places
   }
-  index_->tree = std::make_unique<KdTree>(3, index_->set, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize));
+  std::array<int, kSizeClasses> order{};
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return n[a] > n[b]; });
+  for (const int which : order) {
+    if (n[which] == 0) break;
+    SizeClass& c = index_->classes.emplace_back();
+    for (std::size_t k = 0; k < triangles.size(); ++k) {
+      if (size_class[k] != which) continue;
+      c.triangles.push_back(triangles[k]);
+      c.centroids.push_back(centroids[k]);
+    }
+    c.build();
+  }
 }
 
 SurfaceDistance::~SurfaceDistance() = default;
 SurfaceDistance::SurfaceDistance(SurfaceDistance&&) noexcept = default;
 SurfaceDistance& SurfaceDistance::operator=(SurfaceDistance&&) noexcept = default;
 
-double SurfaceDistance::distance(const Vec3& x) const {
-  NearestTriangle nearest(x, index_->triangles, index_->reach);
-  index_->tree->findNeighbors(nearest, x.data(), nanoflann::SearchParams());
-  return nearest.distance();
-}
+double SurfaceDistance::distance(const Vec3& x) const { return index_->distance(x); }
 
 std::vector<double> SurfaceDistance::distances(const std::vector<Vec3>& x, const Context& context) const {
   // Chunks are what a thread works through: where points follow each other in space, one bounds the next.
@@ -160,10 +203,7 @@ std::vector<double> SurfaceDistance::distances(const std::vector<Vec3>& x, const
     double bound = std::numeric_limits<double>::infinity();
     for (std::size_t i = c * kChunk; i < std::min(x.size(), (c + 1) * kChunk); ++i) {
       if (i > c * kChunk) bound = out[i - 1] + (x[i] - x[i - 1]).norm();
-      bound = bound * kRoundedUp + index_->rounding;
-      NearestTriangle nearest(x[i], index_->triangles, index_->reach, bound);
-      index_->tree->findNeighbors(nearest, x[i].data(), nanoflann::SearchParams());
-      out[i] = nearest.distance();
+      out[i] = index_->distance(x[i], bound * kRoundedUp + index_->rounding);
     }
   });
   return out;

@@ -18,7 +18,8 @@ double point_triangle_distance(const Vec3& x, const Vec3& a, const Vec3& b, cons
 ///
 /// A kd-tree over centroids with one provable rule: no point of triangle k is nearer to x than |x - m_k| - r, where
 /// m_k is its centroid and r the greatest centroid-corner distance of all. The search therefore ends only when every
-/// remaining centroid is farther than (best distance so far) + r.
+/// remaining centroid is farther than (best distance so far) + r. Triangles whose r differ by two and more have trees
+/// of their own.
 /// Keeps its own copy of the triangles. Immutable; queries are thread-safe.
 class SurfaceDistance {
  public:

@@ -1,13 +1,12 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <array>
 #include <cstddef>
-#include <functional>
 #include <span>
 #include <vector>
 
 #include "common/context.h"
+#include "mesh/core/far_from_zero.h"
 #include "mesh/core/implicit_function.h"
 
 namespace umtet {
@@ -26,21 +25,19 @@ struct ZeroSetComponent {
 
 struct ZeroSetTopology {
   std::vector<ZeroSetComponent> components;  ///< descending in area
-  std::size_t n_inside_components = 0;       ///< of {psi < 0} along the edges of the grid
-  bool touches_box = false;                  ///< psi < 0 somewhere on the wall: the box does not hold the domain
   long euler_characteristic = 0;             ///< sum over components
   double spacing = 0;                        ///< the one used, <= that of the call
-  std::array<int, 3> n_cells = {0, 0, 0};
-  std::size_t n_not_finite = 0;  ///< nodes where psi is not a finite number; they count as outside
-  std::vector<Vec3> cut_points;  ///< where psi = 0 on the cut edges (linear), component by component
+  std::size_t n_not_finite = 0;              ///< nodes where psi is not a finite number; they count as outside
+  std::vector<Vec3> cut_points;              ///< where psi = 0 on the cut edges (linear), component by component
+  std::vector<double> cut_areas;             ///< of the surface, what each of them stands for
 
   std::span<const Vec3> points_of(const ZeroSetComponent& c) const {
     return {cut_points.data() + c.first_cut_point, c.n_cut_edges};
   }
+  std::span<const double> areas_of(const ZeroSetComponent& c) const {
+    return {cut_areas.data() + c.first_cut_point, c.n_cut_edges};
+  }
 };
-
-/// True only where psi has no zero within `spacing` of x along every axis. Thread-safe.
-using FarFromZero = std::function<bool(const Vec3& x)>;
 
 /// Topology of {psi = 0} in a box, counted on a grid that knows nothing of the mesher.
 ///
@@ -57,8 +54,8 @@ using FarFromZero = std::function<bool(const Vec3& x)>;
 /// 70 bytes per cut edge. The result does not depend on the number of threads.
 /// \throw std::invalid_argument  an empty or unbounded box, spacing <= 0
 /// @param context  polled every few thousand nodes
-/// @param far         where it says so psi is not evaluated: it has the sign of the node before. The result is the same
-///                    (but n_not_finite counts only nodes where psi was evaluated).
+/// @param far         to `spacing`: where it says so psi is not evaluated, but has the sign of the node before. The
+///                    result is the same (but n_not_finite counts only nodes where psi was evaluated).
 /// \throw std::length_error      more than 1e9 cells along an axis, 2^31 nodes in a slab or 2^31 cut edges
 /// \throw Cancelled
 ZeroSetTopology zero_set_topology(ImplicitFunctionRef psi, const Eigen::AlignedBox3d& box, double spacing,

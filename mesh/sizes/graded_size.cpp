@@ -9,15 +9,10 @@
 namespace umtet {
 namespace {
 
-// BCC tets of cubes of width 1: twelve in each, six edges of 1 and eight of sqrt(3) / 2 at a vertex.
+// BCC tets: of a cube.
 constexpr double kTetsPerLeaf = 12;
-const double kMeanEdge = (6 + 8 * std::sqrt(.75)) / 14;
 // Balance and the layer outside add this share to what leaves inside have, for bodies of 40,000 to 600,000 tets.
 constexpr double kMore = 1.25;
-
-// Sizes fall over a cube by up to .87 grade times its width; a source in a corner has edges at most this much longer
-// than it asks for, times kSizeTolerance.
-constexpr double kAboveLeast = 1.2;
 
 struct Cube {
   Vec3 centre;
@@ -27,18 +22,18 @@ struct Cube {
 }  // namespace
 
 double cube_size(const SizeField& sizes, const Vec3& centre, double half_width) {
-  const double most = kAboveLeast * sizes.least_in(centre, half_width);
+  const double most = kMostAboveLeast * sizes.least_in(centre, half_width);
   // Where the cube is split anyway its middle does not matter.
-  return kMeanEdge * 2 * half_width > kSizeTolerance * most ? most : std::min(most, sizes.at(centre));
+  return kBccMeanEdge * 2 * half_width > kSizeTolerance * most ? most : std::min(most, sizes.at(centre));
 }
 
 double expected_graded_tets(const SizeField& sizes, double finest, ImplicitFunctionRef psi, const Box& box,
                             double steepest, const Context& context) {
   if (box.isEmpty() || !box.sizes().allFinite()) throw std::invalid_argument("box: must be finite and not empty");
   if (!(finest > 0)) throw std::invalid_argument("finest = " + std::to_string(finest) + ": must be > 0");
-  double width = finest / kMeanEdge;
+  double width = finest / kBccMeanEdge;
   while (width < box.sizes().maxCoeff()) width *= 2;
-  const double least = 1.5 * finest / kMeanEdge;  // wider cubes may be split
+  const double least = 1.5 * finest / kBccMeanEdge;  // wider cubes may be split
   std::vector<Cube> cubes = {{box.center(), width / 2}};
   std::size_t n_inside = 0;
   for (; !cubes.empty(); width /= 2) {
@@ -49,7 +44,7 @@ double expected_graded_tets(const SizeField& sizes, double finest, ImplicitFunct
       const double value = psi.value(x);
       const bool meets_box = ((x - box.center()).cwiseAbs() - .5 * box.sizes()).maxCoeff() < half;
       if (!meets_box || value > steepest * std::sqrt(3.) * half) return;
-      if (width > least && kMeanEdge * width > kSizeTolerance * cube_size(sizes, x, half)) {
+      if (width > least && kBccMeanEdge * width > kSizeTolerance * cube_size(sizes, x, half)) {
         what[i] = Split;
       } else if (value < 0) {
         what[i] = Leaf;

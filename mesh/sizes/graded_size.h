@@ -14,7 +14,11 @@ namespace umtet {
 /// 1 / sqrt(2) to sqrt(2) of the size where it varies slowly.
 inline constexpr double kSizeTolerance = std::numbers::sqrt2;
 
-/// The size of a cube: that in its middle, but at most 1.2 times the least in it.
+/// Sizes fall over a cube by up to .87 grade times its width; a source in a corner has edges at most this much longer
+/// than it asks for, times kSizeTolerance.
+inline constexpr double kMostAboveLeast = 1.2;
+
+/// The size of a cube: that in its middle, but at most kMostAboveLeast times the least in it.
 double cube_size(const SizeField& sizes, const Vec3& centre, double half_width);
 
 /// About how many tets of a GradedMesh of these sizes are taken for {psi < 0}: 12 a leaf whose centre is inside, before

@@ -6,6 +6,7 @@
 #include "common/context.h"
 #include "mesh/background/background_mesh.h"
 #include "mesh/base/id_set.h"
+#include "mesh/core/far_from_zero.h"
 #include "mesh/core/implicit_function.h"
 #include "mesh/submesh/submesh.h"
 
@@ -21,9 +22,10 @@ Submesh assemble_submesh(const BackgroundMesh& background, std::vector<std::int6
 
 /// The background vertices with psi < 0.                                   Alg. 1, step 7
 /// @param n_evaluations  receives the number of values of psi
+/// @param known          spares those of vertices within its reach of the one before
 /// \throw Cancelled
 IdSet inside_vertices(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t& n_evaluations,
-                      const Context& context = {});
+                      const Context& context = {}, const KnownSigns& known = {});
 
 struct CrawledVertices {
   IdSet inside;

@@ -58,7 +58,7 @@ ChosenSubmesh submesh_by_sign(const BackgroundMesh& background, ImplicitFunction
   std::string lost;
   context.report("search", 0);
   if (params.search == SubmeshSearch::FullLoop) {
-    chosen.submesh = find_submesh(background, psi, &chosen.n_psi_evaluations, context);
+    chosen.submesh = find_submesh(background, psi, &chosen.n_psi_evaluations, context, params.known);
   } else {
     Crawl found = crawl(background, psi, seeds, context);
     chosen.submesh = std::move(found.submesh);

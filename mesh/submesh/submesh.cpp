@@ -52,7 +52,7 @@ std::vector<std::int64_t> cut_or_inside_tets(const BackgroundMesh& background, c
 }
 
 IdSet inside_vertices(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t& n_evaluations,
-                      const Context& context) {
+                      const Context& context, const KnownSigns& known) {
   IdSet inside(background.n_vertices());
   std::atomic<std::size_t> evaluations = 0;
   const auto evaluate = [&](const tbb::blocked_range<std::size_t>& words) {
@@ -61,10 +61,18 @@ IdSet inside_vertices(const BackgroundMesh& background, ImplicitFunctionRef psi,
       std::uint64_t bits = 0;
       const std::int64_t first = static_cast<std::int64_t>(w * 64);
       const std::int64_t last = std::min(first + 64, background.n_vertices());
+      Vec3 before = Vec3::Constant(std::numeric_limits<double>::infinity());
+      bool is_inside = false;
       for (std::int64_t v = first; v < last; ++v) {
         if (!background.has_tets(v)) continue;
-        ++n;
-        if (psi.value(background.position(v)) < 0) bits |= std::uint64_t{1} << (v - first);
+        const Vec3 x = background.position(v);
+        const bool is_near = known.far && (x - before).cwiseAbs().maxCoeff() <= known.reach;
+        if (!is_near || !known.far(x)) {
+          ++n;
+          is_inside = psi.value(x) < 0;
+        }
+        before = x;
+        if (is_inside) bits |= std::uint64_t{1} << (v - first);
       }
       inside.set_word(w, bits);
     }
@@ -122,9 +130,9 @@ Submesh assemble_submesh(const BackgroundMesh& background, std::vector<std::int6
 }
 
 Submesh find_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t* n_psi_evaluations,
-                     const Context& context) {
+                     const Context& context, const KnownSigns& known) {
   std::size_t n = 0;
-  const IdSet inside = inside_vertices(background, psi, n, context);
+  const IdSet inside = inside_vertices(background, psi, n, context, known);
   if (n_psi_evaluations) *n_psi_evaluations = n;
   context.poll();
   return assemble_submesh(background, cut_or_inside_tets(background, inside), inside);

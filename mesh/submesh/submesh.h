@@ -6,6 +6,7 @@
 
 #include "common/context.h"
 #include "mesh/background/background_mesh.h"
+#include "mesh/core/far_from_zero.h"
 #include "mesh/core/implicit_function.h"
 #include "mesh/core/tet_mesh.h"
 
@@ -30,8 +31,10 @@ inline bool is_positively_cut(unsigned inside) { return inside == 1 || inside ==
 /// Algorithm 1, steps 1-22: evaluates psi at every vertex of the background mesh.
 /// Cost: one value of psi per background vertex. A vertex with psi = 0 counts as outside.
 /// @param n_psi_evaluations  if not null, receives that number
+/// @param known              spares some of them
 /// \throw std::length_error if omega_h has more than 2^31 - 1 tets or vertices; Cancelled
 Submesh find_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi,
-                     std::size_t* n_psi_evaluations = nullptr, const Context& context = {});
+                     std::size_t* n_psi_evaluations = nullptr, const Context& context = {},
+                     const KnownSigns& known = {});
 
 }  // namespace umtet

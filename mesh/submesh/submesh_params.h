@@ -1,5 +1,7 @@
 #pragma once
 
+#include "mesh/core/far_from_zero.h"
+
 namespace umtet {
 
 /// What becomes of a domain that reaches the background boundary.
@@ -16,6 +18,7 @@ enum class SubmeshSearch { FullLoop, Crawl };  ///< Alg. 1, steps 1-22, or Secti
 struct SubmeshParams {
   SubmeshSearch search = SubmeshSearch::FullLoop;
   BackgroundBoundary background_boundary = BackgroundBoundary::Refuse;
+  KnownSigns known = {};  ///< of psi: of SubmeshSearch::FullLoop, spares values and changes nothing
 };
 
 }  // namespace umtet

@@ -170,7 +170,7 @@ BackgroundMesh BackgroundChoice::graded(const Domain& domain, double h) const {
   const ImplicitFunctionRef psi = domain.psi();
   const double steepest = graded_->n_domains() > 1 ? std::numeric_limits<double>::infinity() : domain.steepest();
   const auto sizes = sizes_for(h);
-  Grading grading{.box = domain.box, .finest = h, .tolerance = kSizeTolerance};
+  Grading grading{.box = domain.box, .finest = h, .size = {}, .tolerance = kSizeTolerance};
   grading.size = [&](const Vec3& x, double half) { return cube_size(*sizes, x, half); };
   grading.wanted = [&](const Vec3& x, double half) {
     const bool meets_box = ((x - domain.box.center()).cwiseAbs() - .5 * domain.box.sizes()).maxCoeff() < half;

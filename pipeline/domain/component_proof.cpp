@@ -1,5 +1,7 @@
 #include "pipeline/domain/component_proof.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -125,22 +127,38 @@ ZeroFreeMap::ZeroFreeMap(const SignCells& cells, const Eigen::AlignedBox3d& box,
       size_(std::ceil(reach / cells.size) * cells.size) {
   first_ = cube_of(box.min(), origin_, size_).array();
   n_ = (cube_of(box.max(), origin_, size_).array() - first_ + 1).max(0);
-  near_.assign(static_cast<std::size_t>(n_[0]) * n_[1] * n_[2], false);
-  Eigen::Vector3i last = Eigen::Vector3i::Constant(std::numeric_limits<int>::min());
+  near_.assign(static_cast<std::size_t>(n_[0]) * n_[1] * n_[2], 0);
+  // Cubes that hold a cell may lie one beyond those of the box.
+  const Eigen::Array3i n = n_ + 2;
+  const auto at = [&](int i, int j, int k) {
+    return i + static_cast<std::size_t>(n[0]) * (j + static_cast<std::size_t>(n[1]) * k);
+  };
+  std::vector<std::uint8_t> holds(at(0, 0, n[2]), 0), in_row(holds.size(), 0);
   for (const Eigen::Vector3i& cell : cells.cells) {
-    const Eigen::Vector3i cube =
-        cube_of(origin_ + cells.size * (cell.cast<double>() + Vec3::Constant(.5)), origin_, size_);
-    if (cube == last) continue;
-    last = cube;
-    for_each_neighbour(cube, [&](const Eigen::Vector3i& next) {
-      const Eigen::Array3i at = next.array() - first_;
-      if ((at >= 0).all() && (at < n_).all()) near_[index(at)] = true;
-    });
+    const Eigen::Array3i cube =
+        cube_of(origin_ + cells.size * (cell.cast<double>() + Vec3::Constant(.5)), origin_, size_).array() - first_ + 1;
+    if ((cube >= 0).all() && (cube < n).all()) holds[at(cube[0], cube[1], cube[2])] = 1;
   }
+  // The cubes around them, along one axis after the other.
+  tbb::parallel_for(0, n[2], [&](int k) {
+    for (int j = 0; j < n[1]; ++j) {
+      for (int i = 1; i + 1 < n[0]; ++i)
+        in_row[at(i, j, k)] = holds[at(i - 1, j, k)] | holds[at(i, j, k)] | holds[at(i + 1, j, k)];
+    }
+  });
+  tbb::parallel_for(0, n_[2], [&](int k) {
+    for (int j = 0; j < n_[1]; ++j) {
+      for (int q = 0; q < 9; ++q) {
+        const std::uint8_t* row = &in_row[at(1, j + q % 3, k + q / 3)];
+        std::uint8_t* near = &near_[index({0, j, k})];
+        for (int i = 0; i < n_[0]; ++i) near[i] |= row[i];
+      }
+    }
+  });
 }
 
 bool ZeroFreeMap::operator()(const Vec3& x) const {
-  return inner_.contains(x) && !near_[index(cube_of(x, origin_, size_).array() - first_)];
+  return inner_.contains(x) && near_[index(cube_of(x, origin_, size_).array() - first_)] == 0;
 }
 
 ComponentProof prove_components(const LevelSet& psi, const Eigen::AlignedBox3d& box, const ZeroSetTopology& counted,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "mesh/implicit/zero_set.h"
@@ -8,7 +9,7 @@
 
 namespace umtet {
 
-/// Where sign cells leave no room for a zero: one bit for each cube of a box whose edge is the reach or more.
+/// Where sign cells leave no room for a zero: one byte for each cube of a box whose edge is the reach or more.
 class ZeroFreeMap {
  public:
   /// @param box    places outside count as near a zero; within psi's domain
@@ -25,7 +26,7 @@ class ZeroFreeMap {
   Vec3 origin_;
   double size_;
   Eigen::Array3i first_, n_;  ///< of the cubes that cover the box
-  std::vector<bool> near_;
+  std::vector<std::uint8_t> near_;
 };
 
 /// What the sign bounds of a level set say about a count of its pieces on a grid.

@@ -29,10 +29,10 @@ struct Samples {
 Samples samples_of(const ZeroSetChoice& pieces) {
   Samples s;
   for (const std::size_t c : pieces.kept) {
-    const ZeroSetComponent& piece = pieces.topology.components[c];
-    const auto points = pieces.topology.points_of(piece);
+    const auto points = pieces.topology.points_of(pieces.topology.components[c]);
+    const auto areas = pieces.topology.areas_of(pieces.topology.components[c]);
     s.points.insert(s.points.end(), points.begin(), points.end());
-    s.area.insert(s.area.end(), points.size(), piece.area / static_cast<double>(points.size()));
+    s.area.insert(s.area.end(), areas.begin(), areas.end());
   }
   return s;
 }

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "mesh/implicit/surface_distance.h"
+#include "mesh/sizes/graded_zero_set.h"
 #include "pipeline/domain/component_proof.h"
 
 namespace umtet {
@@ -80,6 +81,31 @@ std::vector<std::size_t> wanted_samples(const ZeroSetTopology& topology, const s
   return wanted;
 }
 
+/// Decides which pieces of choice.topology are meshed.
+void choose_among(const Domain& domain, ZeroSetChoice& choice, const Context& context) {
+  const std::vector<ZeroSetComponent>& pieces = choice.topology.components;
+  if (pieces.empty()) return;
+  const double radius = std::max(support_radius(domain), choice.topology.spacing);
+  std::vector<std::size_t> backing(pieces.size()), wanted(pieces.size());
+  // One piece is kept if it has one sample; how many there are matters to none but several.
+  if (domain.level_set && !(pieces.size() == 1 && has_sample(domain, choice.topology, radius))) {
+    backing = backing_samples(domain, choice.topology, radius, context);
+    wanted = wanted_samples(choice.topology, backing);
+  }
+  for (std::size_t c = 0; c < pieces.size(); ++c) {
+    if (backing[c] >= wanted[c]) {
+      choice.kept.push_back(c);
+      choice.seeds.push_back(pieces[c].seed);
+      choice.euler_characteristic += pieces[c].euler_characteristic;
+      continue;
+    }
+    const Vec3 at = pieces[c].seed + domain.shift;
+    choice.dropped.push_back(
+        fmt::format("piece of area {:.3g} at ({:.6g}, {:.6g}, {:.6g}): {} of at least {} samples within {:.3g} of it",
+                    pieces[c].area, at.x(), at.y(), at.z(), backing[c], wanted[c], radius));
+  }
+}
+
 }  // namespace
 
 double support_radius(const Domain& domain) { return kSupportRadius * domain.cloud_spacing; }
@@ -107,27 +133,19 @@ ZeroSetChoice choose_components(const Domain& domain, double h, const Context& c
     far = ZeroFreeMap(*cells, domain.box.intersection(domain.level_set->domain()), spacing);
   }
   choice.topology = zero_set_topology(domain.psi(), domain.box, spacing, context, far);
-  const std::vector<ZeroSetComponent>& pieces = choice.topology.components;
-  if (pieces.empty()) return choice;
-  const double radius = std::max(support_radius(domain), choice.topology.spacing);
-  std::vector<std::size_t> backing(pieces.size()), wanted(pieces.size());
-  // One piece is kept if it has one sample; how many there are matters to none but several.
-  if (domain.level_set && !(pieces.size() == 1 && has_sample(domain, choice.topology, radius))) {
-    backing = backing_samples(domain, choice.topology, radius, context);
-    wanted = wanted_samples(choice.topology, backing);
+  choose_among(domain, choice, context);
+  return choice;
+}
+
+ZeroSetChoice choose_components(const Domain& domain, const SizeField& sizes, double finest, double share,
+                                const Context& context, const SignCells* cells) {
+  ZeroSetChoice choice;
+  choice.share = share;
+  choice.topology = graded_zero_set(domain.psi(), domain.box, sizes, share, finest, domain.steepest(), context);
+  if (domain.level_set && !cells && choice.topology.spacing > 0) {
+    choice.cells.emplace(sign_cells(*domain.level_set, choice.topology.spacing / 2));
   }
-  for (std::size_t c = 0; c < pieces.size(); ++c) {
-    if (backing[c] >= wanted[c]) {
-      choice.kept.push_back(c);
-      choice.seeds.push_back(pieces[c].seed);
-      choice.euler_characteristic += pieces[c].euler_characteristic;
-      continue;
-    }
-    const Vec3 at = pieces[c].seed + domain.shift;
-    choice.dropped.push_back(
-        fmt::format("piece of area {:.3g} at ({:.6g}, {:.6g}, {:.6g}): {} of at least {} samples within {:.3g} of it",
-                    pieces[c].area, at.x(), at.y(), at.z(), backing[c], wanted[c], radius));
-  }
+  choose_among(domain, choice, context);
   return choice;
 }
 

@@ -5,14 +5,16 @@
 #include <vector>
 
 #include "mesh/implicit/zero_set.h"
+#include "mesh/sizes/size_field.h"
 #include "pipeline/domain/domain.h"
 #include "reconstruct/level_set/sign_cells.h"
 
 namespace umtet {
 
-/// The pieces of psi = 0, counted on a grid of its own, and which of them are meshed.
+/// The pieces of psi = 0, counted on a grid or a graded mesh of its own, and which of them are meshed.
 struct ZeroSetChoice {
   ZeroSetTopology topology;
+  double share = 0;                  ///< of the sizes that a graded mesh has; 0: a grid
   std::vector<std::size_t> kept;     ///< which of topology.components are meshed
   std::optional<SignCells> cells;    ///< of a level set, edge h / 2 or less, if searched: they hold every zero
   std::vector<Vec3> seeds;           ///< one point of each piece that is kept
@@ -48,5 +50,11 @@ double counting_spacing(const Domain& domain, double h);
 /// the grid \throw Cancelled
 ZeroSetChoice choose_components(const Domain& domain, double h, const Context& context = {},
                                 const SignCells* cells = nullptr);
+
+/// The same for a mesh of these sizes: counted by graded_zero_set() at this share of them.
+/// @param finest  the least of the sizes
+/// @param cells   have edges of half the longest on which it was counted / sqrt(3)
+ZeroSetChoice choose_components(const Domain& domain, const SizeField& sizes, double finest, double share,
+                                const Context& context = {}, const SignCells* cells = nullptr);
 
 }  // namespace umtet

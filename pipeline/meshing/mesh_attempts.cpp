@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -40,25 +41,48 @@ bool may_improve(const MeshAttempt& a) {
          a.result.status != UmStatus::DomainLeavesBackground;
 }
 
-/// What to try after this, in this order.
-std::vector<double> smaller(const MeshAttempt& first, const EdgeLength& choice, double effort) {
-  std::vector<double> list;
-  double h = choice.h;
-  if (choice.of_thin_parts) list.push_back(h = *choice.of_thin_parts);
-  const double unit = h;
-  double spent = 1;
-  const auto may_try = [&](double next) {
-    spent += std::pow(unit / next, 3);
-    return spent <= effort;
-  };
-  if (first.made() && kNearby * h >= choice.least && may_try(kNearby * h)) list.push_back(kNearby * h);
-  for (int k = 0; k < kRefinements; ++k) {
-    const double next = std::max(kRefinement * h, choice.least);
-    if (next > kWorthTrying * h || !may_try(next)) break;
-    list.push_back(h = next);
-  }
-  return list;
+/// Another h may fold nothing; what is missing or too thin is as thin at an h that is hardly smaller.
+bool may_improve_nearby(const MeshAttempt& a) {
+  const auto& kinds = a.measured.places.kinds;
+  return a.made() && std::all_of(kinds.begin(), kinds.end(), [](const PlaceReport::OfKind& k) {
+           return is_settled(k) || k.kind == PlaceKind::Folded || k.kind == PlaceKind::Off;
+         });
 }
+
+/// The edge lengths to try, one after the other.
+class SmallerEdges {
+ public:
+  SmallerEdges(const EdgeLength& choice, double effort) : choice_(choice), effort_(effort), h_(choice.h), unit_(h_) {}
+
+  /// What to try after this.
+  std::optional<double> next(const MeshAttempt& last) {
+    if (choice_.of_thin_parts && !is_begun_) {
+      is_begun_ = true;
+      return h_ = unit_ = *choice_.of_thin_parts;
+    }
+    const double nearby = kNearby * h_;
+    if (n_smaller_ == 0 && !was_nearby_ && may_improve_nearby(last) && nearby >= choice_.least && may_try(nearby)) {
+      was_nearby_ = true;
+      return nearby;
+    }
+    const double smaller = std::max(kRefinement * h_, choice_.least);
+    if (n_smaller_ == kRefinements || smaller > kWorthTrying * h_ || !may_try(smaller)) return std::nullopt;
+    ++n_smaller_;
+    return h_ = smaller;
+  }
+
+ private:
+  bool may_try(double h) {
+    spent_ += std::pow(unit_ / h, 3);
+    return spent_ <= effort_;
+  }
+
+  const EdgeLength& choice_;
+  const double effort_;
+  double h_, unit_, spent_ = 1;
+  int n_smaller_ = 0;
+  bool is_begun_ = false, was_nearby_ = false;
+};
 
 bool is_worse(const MeshAttempt& a, const MeshAttempt& b) {
   const auto rank = [](const MeshAttempt& x) { return std::tuple(!x.made(), x.reasons.size(), x.places.size()); };
@@ -77,16 +101,17 @@ std::string MeshAttempt::complaint() const {
 
 MeshAttempt best_attempt(const EdgeLength& choice, double effort, const std::function<MeshAttempt(double h)>& attempt,
                          const std::function<void(const std::string&)>& say) {
+  SmallerEdges smaller(choice, effort);
   MeshAttempt best = attempt(choice.h);
-  bool go_on = may_improve(best), keeps_last = true;
+  bool keeps_last = true;
   double h = choice.h;
   std::string why = best.complaint();
-  for (const double next_h : smaller(best, choice, effort)) {
-    if (!go_on) break;
-    say(fmt::format("h = {:.4g} will not do ({}); trying {:.4g}", h, why, next_h));
-    h = next_h;
+  std::optional<double> next_h = may_improve(best) ? smaller.next(best) : std::nullopt;
+  while (next_h) {
+    say(fmt::format("h = {:.4g} will not do ({}); trying {:.4g}", h, why, *next_h));
+    h = *next_h;
     MeshAttempt next = attempt(h);
-    go_on = may_improve(next);
+    next_h = may_improve(next) ? smaller.next(next) : std::nullopt;
     why = next.complaint();
     keeps_last = !is_worse(next, best);
     if (keeps_last) best = std::move(next);

@@ -34,10 +34,10 @@ struct MeshAttempt {
   std::string complaint() const;
 };
 
-/// Runs `attempt` at choice.h and, while the mesh is not faithful to psi = 0, at .985 of it (if there was a mesh at
-/// all: a few folded faces come and go with h), then at .8, .64 and .51 of it; never below choice.least, which is tried
-/// instead where it is nearer. Where noise decided h, all of these are shares of what thin parts ask for, which itself
-/// comes first.
+/// Runs `attempt` at choice.h and, while the mesh is not faithful to psi = 0, at .985 of it (if nothing but folded
+/// faces and vertices off psi = 0 is wrong, which come and go with h), then at .8, .64 and .51 of it; never below
+/// choice.least, which is tried instead where it is nearer. Where noise decided h, all of these are shares of what thin
+/// parts ask for, which itself comes first.
 ///
 /// @param effort  the last of these are left out where all attempts together would make more than this many times the
 ///                tets of the first (of thin parts), as h alone says: the result does not depend on the machine

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <utility>
 
-#include "mesh/sizes/graded_size.h"
 #include "pipeline/case/exit_code.h"
+#include "pipeline/domain/component_proof.h"
 #include "pipeline/domain/edge_length.h"
 #include "pipeline/domain/too_thin.h"
 #include "pipeline/meshing/library_params.h"
@@ -29,9 +31,9 @@ constexpr int kMostMisses = 4;
 // Pieces of psi = 0 are looked for on a grid of h and, where there is none, on this many more grids, each of half the
 // spacing.
 constexpr int kFinerGrids = 3;
-// Of a graded mesh the grid's diagonals are as long as the thinnest part that its shortest edges show: 2.2 edges that
-// may be kSizeTolerance of their size.
-const double kGridOfFinest = 2.2 * kSizeTolerance / std::sqrt(3.);
+// Of a graded mesh they are counted at this share of its sizes: edges are then no longer than sqrt(3) of the size, as
+// on a grid, and those of another octree than its own.
+constexpr double kShareOfSizes = .8;
 // Where each part of an attempt begins, as a share of its time.
 constexpr double kPieces = .05, kChoice = .1, kFit = .2, kCertificate = .9, kCurving = .95;
 
@@ -47,7 +49,7 @@ MeshMaker::MeshMaker(Domain& domain, const Parameters& parameters, Context conte
       lines_(std::move(lines)),
       params_(um_params(parameters)) {}
 
-const ZeroSetChoice& MeshMaker::pieces_at(double h) {
+const ZeroSetChoice& MeshMaker::pieces_at(double h, const SizeField* sizes) {
   domain_.limit_detail(h);
   if (!pieces_ || pieces_->first != h) {
     context_.report("components", kPieces);
@@ -57,10 +59,12 @@ const ZeroSetChoice& MeshMaker::pieces_at(double h) {
     n_levels_ = n_levels;
     // A body thinner than the grid may have no node inside.
     for (int halvings = 0; halvings <= kFinerGrids; ++halvings) {
-      const double spacing = std::ldexp(is_graded_ ? kGridOfFinest * h : h, -halvings);
-      const bool is_known = known && are_cells_for(spacing, *known);
-      pieces_.emplace(h, choose_components(domain_, spacing, context_, is_known ? &*known : nullptr));
-      if (is_known) pieces_->second.cells = std::move(known);
+      const double finer = std::ldexp(1., -halvings);
+      const bool is_known = known && (sizes || are_cells_for(finer * h, *known));
+      const SignCells* cells = is_known ? &*known : nullptr;
+      pieces_.emplace(h, sizes ? choose_components(domain_, *sizes, h, finer * kShareOfSizes, context_, cells)
+                               : choose_components(domain_, finer * h, context_, cells));
+      if (is_known) pieces_->second.cells = std::exchange(known, std::nullopt);
       if (!pieces_->second.topology.components.empty()) break;
     }
   }
@@ -74,11 +78,22 @@ UmParams MeshMaker::params_for(const ZeroSetChoice& pieces) const {
   return params;
 }
 
+/// From cell to cell of a lattice, psi has the sign that it had where there can be no zero between.
+KnownSigns MeshMaker::known_signs(const BackgroundMesh& background, const ZeroSetChoice& pieces) const {
+  if (!pieces.cells || !background.is_lattice()) return {};
+  const auto& n = background.n_cells();
+  const double reach = (background.box().sizes().array() / Eigen::Array3d(n[0], n[1], n[2])).maxCoeff();
+  const auto map =
+      std::make_shared<const ZeroFreeMap>(*pieces.cells, domain_.box.intersection(domain_.level_set->domain()), reach);
+  return {[map](const Vec3& x) { return (*map)(x); }, reach};
+}
+
 /// psi cut for h, and what h is too large for.
-MeshAttempt MeshMaker::begin(double h) {
+MeshAttempt MeshMaker::begin(const SizedBackground& background, double h) {
   MeshAttempt a;
   a.h = h;
-  const ZeroSetChoice& pieces = pieces_at(h);
+  a.sizes = background.sizes;
+  const ZeroSetChoice& pieces = pieces_at(h, a.sizes.get());
   a.thin = find_thin_places(domain_, pieces, h, context_);
   if (!a.thin.empty() && lines_.detail) {
     lines_.detail(fmt::format("{} places are thinner than h = {:.4g} can show for certain:\n{}", a.thin.places.size(),
@@ -90,8 +105,7 @@ MeshAttempt MeshMaker::begin(double h) {
   return a;
 }
 
-ChosenSubmesh MeshMaker::choose(const BackgroundMesh& background, double h) {
-  const ZeroSetChoice& pieces = pieces_at(h);
+ChosenSubmesh MeshMaker::choose(const BackgroundMesh& background, const ZeroSetChoice& pieces) {
   if (pieces.seeds.empty() && !pieces.dropped.empty()) {
     throw MeshingImpossible("psi = 0 is nowhere near the samples:\n  no " + pieces.dropped.front());
   }
@@ -99,11 +113,13 @@ ChosenSubmesh MeshMaker::choose(const BackgroundMesh& background, double h) {
     lines_.detail(fmt::format("h = {:.6g}, background of {} tets, psi = 0 in {} pieces", background.h(),
                               background.n_tets(), pieces.topology.components.size()));
   }
-  return choose_submesh(background, domain_.psi(), params_for(pieces), context_.part(kChoice, kFit), pieces.seeds);
+  UmParams params = params_for(pieces);
+  params.submesh.known = known_signs(background, pieces);
+  return choose_submesh(background, domain_.psi(), params, context_.part(kChoice, kFit), pieces.seeds);
 }
 
 void MeshMaker::finish(const SizedBackground& background, ChosenSubmesh chosen, MeshAttempt& a) {
-  const ZeroSetChoice& pieces = pieces_at(a.h);
+  const ZeroSetChoice& pieces = pieces_at(a.h, a.sizes.get());
   a.result = fit_submesh(background.mesh, domain_.psi(), params_for(pieces), std::move(chosen),
                          context_.part(kFit, kCertificate));
   const std::size_t n_flips = a.result.manifold_flips.size(), n_back = a.result.n_stepped_back;
@@ -113,7 +129,6 @@ void MeshMaker::finish(const SizedBackground& background, ChosenSubmesh chosen, 
                     "0, so that it does not meet itself",
                     n_flips, n_back));
   }
-  a.sizes = background.sizes;
   round_to_file(a.result, domain_.shift);
   context_.report("certify", kCertificate);
   if (!a.made()) return;
@@ -128,8 +143,8 @@ void MeshMaker::finish(const SizedBackground& background, ChosenSubmesh chosen, 
 }
 
 MeshAttempt MeshMaker::attempt(const SizedBackground& background, double h) {
-  MeshAttempt a = begin(h);
-  finish(background, choose(background.mesh, h), a);
+  MeshAttempt a = begin(background, h);
+  finish(background, choose(background.mesh, pieces_at(h, a.sizes.get())), a);
   return a;
 }
 
@@ -152,8 +167,8 @@ MeshAttempt MeshMaker::attempt_for_tets(double h, const std::function<SizedBackg
   std::optional<double> makes_more, makes_less;
   for (int n_misses = 0;;) {
     const SizedBackground made = background(h);
-    MeshAttempt a = begin(h);
-    ChosenSubmesh chosen = choose(made.mesh, h);
+    MeshAttempt a = begin(made, h);
+    ChosenSubmesh chosen = choose(made.mesh, pieces_at(h, a.sizes.get()));
     const double ratio = static_cast<double>(chosen.n_tets) / asked;
     if (chosen.status != UmStatus::Success || n_misses == kMostMisses || std::abs(ratio - 1) <= kTetsTolerance) {
       finish(made, std::move(chosen), a);
@@ -174,7 +189,6 @@ MeshAttempt MeshMaker::best(const EdgeLength& choice, const std::function<SizedB
   const auto attempt = [&](double h) { return attempt_for_tets(h, background); };
   const auto say_it = [this](const std::string& line) { say(line); };
   const double effort = parameters_.mesh().effort;
-  is_graded_ = refine != nullptr;
   return refine ? refined_attempt(choice.h, effort, attempt, refine, say_it)
                 : best_attempt(choice, effort, attempt, say_it);
 }

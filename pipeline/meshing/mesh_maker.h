@@ -42,14 +42,16 @@ class MeshMaker {
   MeshAttempt best(const EdgeLength& choice, const std::function<SizedBackground(double h)>& background,
                    const std::function<std::optional<double>(const MeshAttempt&)>& refine = {});
 
-  /// The pieces of psi = 0, psi cut for h: kept until another h is asked for. \throw Cancelled
-  const ZeroSetChoice& pieces_at(double h);
+  /// The pieces of psi = 0, psi cut for h: kept until another h is asked for.
+  /// @param sizes  for a graded mesh, of which h is the least. \throw Cancelled
+  const ZeroSetChoice& pieces_at(double h, const SizeField* sizes = nullptr);
 
  private:
-  MeshAttempt begin(double h);
-  ChosenSubmesh choose(const BackgroundMesh& background, double h);
+  MeshAttempt begin(const SizedBackground& background, double h);
+  ChosenSubmesh choose(const BackgroundMesh& background, const ZeroSetChoice& pieces);
   void finish(const SizedBackground& background, ChosenSubmesh chosen, MeshAttempt& a);
   UmParams params_for(const ZeroSetChoice& pieces) const;
+  KnownSigns known_signs(const BackgroundMesh& background, const ZeroSetChoice& pieces) const;
   MeshAttempt attempt_for_tets(double h, const std::function<SizedBackground(double h)>& background);
   void curve(MeshAttempt& a) const;
   void say(const std::string& line) const {
@@ -63,7 +65,6 @@ class MeshMaker {
   const UmParams params_;
   std::optional<std::pair<double, ZeroSetChoice>> pieces_;  ///< of psi cut for the h beside them
   int n_levels_ = 0;                                        ///< of psi then; 0: a formula
-  bool is_graded_ = false;                                  ///< h is that of the shortest edges
 };
 
 /// What is wrong, and the first of the thin places; some lines, without a newline at the end. Coordinates are those of

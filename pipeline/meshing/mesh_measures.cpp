@@ -11,6 +11,7 @@
 #include "mesh/implicit/curvature.h"
 #include "mesh/implicit/surface_distance.h"
 #include "mesh/implicit/thickness.h"
+#include "mesh/sizes/graded_zero_set.h"
 #include "pipeline/domain/closed_holes.h"
 #include "pipeline/domain/component_proof.h"
 #include "pipeline/domain/edge_length.h"
@@ -33,35 +34,46 @@ double max_curvature(ImplicitFunctionRef psi, const UmResult& result, const Mesh
   return kappa_h.empty() ? 0 : *std::max_element(kappa_h.begin(), kappa_h.end());
 }
 
-/// Boundary vertices by how thin it is there.
-struct VertexThickness {
-  double least = 0;         ///< model units
-  double least_over_h = 0;  ///< of any vertex, in the h of its place
-  Vec3 where = Vec3::Zero();
-  std::vector<Vec3> thin;  ///< those where it is less than kLeastEdgesAcross h
-};
-
 // In edges: sheets farther than this do not matter.
 constexpr double kFarthestSheet = 4;
 
-/// Distances from boundary vertices along the normal to the opposite sheet, inside or outside, up to kFarthestSheet.
+/// Boundary vertices and how thin it is there: the distance along the normal to the opposite sheet, inside or outside,
+/// up to kFarthestSheet.
+struct VertexThickness {
+  std::vector<Vec3> vertices;
+  std::vector<double> thickness;  ///< model units
+  double least_over_h = 0;        ///< of any vertex, in the h of its place
+  std::vector<Vec3> thin;         ///< those where it is less than kLeastEdgesAcross h
+};
+
 VertexThickness vertex_thickness(const Domain& domain, const UmResult& result, const MeshEdge& h,
                                  const Context& context) {
-  std::vector<Vec3> points;
-  for (const int i : result.submesh.positive_vertices) points.push_back(result.final[i]);
-  const std::vector<double> h_at = h.at(points);
-  const std::vector<double> t = thickness(domain.psi(), points, h_at, .25, kFarthestSheet, context, domain.steepest());
   VertexThickness made;
-  if (t.empty()) return made;
-  const auto least = std::min_element(t.begin(), t.end());
-  made.least = *least;
-  made.where = points[static_cast<std::size_t>(least - t.begin())];
+  for (const int i : result.submesh.positive_vertices) made.vertices.push_back(result.final[i]);
+  if (made.vertices.empty()) return made;
+  const std::vector<double> h_at = h.at(made.vertices);
+  made.thickness = thickness(domain.psi(), made.vertices, h_at, .25, kFarthestSheet, context, domain.steepest());
   made.least_over_h = kFarthestSheet;
-  for (std::size_t i = 0; i < t.size(); ++i) {
-    made.least_over_h = std::min(made.least_over_h, t[i] / h_at[i]);
-    if (t[i] < kLeastEdgesAcross * h_at[i]) made.thin.push_back(points[i]);
+  for (std::size_t i = 0; i < made.vertices.size(); ++i) {
+    made.least_over_h = std::min(made.least_over_h, made.thickness[i] / h_at[i]);
+    if (made.thickness[i] < kLeastEdgesAcross * h_at[i]) made.thin.push_back(made.vertices[i]);
   }
   return made;
+}
+
+/// Where it is thinner than the longest edges on which psi = 0 was counted there, the diagonals of a grid's cubes: the
+/// worst place, if there is one.
+/// @param sizes  of a graded mesh
+std::optional<Vec3> unseen_thickness(const VertexThickness& thickness, const ZeroSetChoice& counted,
+                                     const SizeField* sizes) {
+  std::optional<Vec3> worst;
+  double least = 1;
+  for (std::size_t i = 0; i < thickness.vertices.size(); ++i) {
+    const double edge = sizes ? kLongestCountedEdge * counted.share * sizes->at(thickness.vertices[i])
+                              : std::sqrt(3.) * counted.topology.spacing;
+    if (thickness.thickness[i] < least * edge) least = thickness.thickness[i] / edge, worst = thickness.vertices[i];
+  }
+  return worst;
 }
 
 // At least this many samples, and this share of all, have to be far from the mesh before it is said to lack something.
@@ -114,8 +126,10 @@ std::vector<Difference> lost_samples(const Domain& domain, const ZeroSetChoice& 
   return all;
 }
 
-// A count is repeated only if the bound on nodes lets the new spacing be less than this share of the former one.
+// A count is repeated only if the bound on nodes lets the new spacing be less than this share of the former one; on a
+// graded mesh, where it makes four times as many, if there are fewer than this many edges.
 constexpr double kWorthRepeating = .9;
+constexpr std::size_t kMostRepeated = 10'000'000;
 
 /// What psi = 0 has, and where the mesh differs from it, if it does.
 struct Comparison {
@@ -123,29 +137,47 @@ struct Comparison {
   std::optional<MeshPlace> place;
 };
 
+/// What compare_with_zero_set() looks at besides the mesh and the pieces.
+struct ComparisonParams {
+  const VertexThickness& thickness;
+  const SurfaceDistance* surface;  ///< null: the mesh has no boundary
+  const MeshEdge& h;
+  const SizeField* sizes;  ///< of a graded mesh, or null
+};
+
+/// Another count, on edges half as long, if it is worth it.
+std::optional<ZeroSetChoice> finer_count(const Domain& domain, const ZeroSetChoice& pieces,
+                                         const ComparisonParams& params, const Context& context) {
+  const SignCells* cells = pieces.cells ? &*pieces.cells : nullptr;
+  if (params.sizes) {
+    if (pieces.topology.cut_points.size() > kMostRepeated) return std::nullopt;
+    return choose_components(domain, *params.sizes, params.h.nominal(), pieces.share / 2, context, cells);
+  }
+  const double half = pieces.topology.spacing / 2;
+  if (counting_spacing(domain, half) >= kWorthRepeating * pieces.topology.spacing) return std::nullopt;
+  return choose_components(domain, half, context, cells);
+}
+
 /// Does the boundary of the mesh look like the pieces of psi = 0 that are kept, and the walls of the box around a
-/// fluid, one closed piece without a hole? Where the two counts differ, the count is repeated on a grid of half the
-/// spacing, as far as its size is allowed. A count on a grid coarser than the mesh says nothing against the mesh, and
-/// one coarser than body or gap are thin nothing for it.
+/// fluid, one closed piece without a hole? Where the two counts differ, the count is repeated on edges half as long, as
+/// far as its size is allowed. A count on a grid coarser than the mesh says nothing against the mesh, and one coarser
+/// than body or gap are thin nothing for it.
 Comparison compare_with_zero_set(const Domain& domain, const MeshCertificate& certificate, const ZeroSetChoice& pieces,
-                                 const VertexThickness& thickness, const SurfaceDistance* surface, const MeshEdge& h,
-                                 const Context& context) {
+                                 const ComparisonParams& params, const Context& context) {
   const MeshCertificate::Boundary& boundary = certificate.boundary;
   const int of_psi = boundary.components - (domain.complement ? 1 : 0);
   const long characteristic = boundary.euler_characteristic - (domain.complement ? 2 : 0);
   const auto differs = [&](const ZeroSetChoice& c) {
     return static_cast<int>(c.seeds.size()) != of_psi || c.euler_characteristic != characteristic;
   };
-  ZeroSetChoice repeated;
-  const ZeroSetChoice* counted = &pieces;
-  const double half = pieces.topology.spacing / 2;
-  if (differs(pieces) && counting_spacing(domain, half) < kWorthRepeating * pieces.topology.spacing) {
-    repeated = choose_components(domain, half, context, pieces.cells ? &*pieces.cells : nullptr);
-    counted = &repeated;
-  }
+  const std::optional<ZeroSetChoice> repeated =
+      differs(pieces) ? finer_count(domain, pieces, params, context) : std::nullopt;
+  const ZeroSetChoice* counted = repeated ? &*repeated : &pieces;
   Comparison made;
   ZeroSetReport& report = made.report;
-  report.counting_spacing = counted->topology.spacing;
+  report.counting_spacing = counted->share > 0
+                                ? kLongestCountedEdge / std::sqrt(3.) * counted->share * params.h.nominal()
+                                : counted->topology.spacing;
   report.components_of_zero_set = counted->topology.components.size();
   report.euler_characteristic_of_zero_set = counted->topology.euler_characteristic;
   report.components_kept = counted->seeds.size();
@@ -154,10 +186,9 @@ Comparison compare_with_zero_set(const Domain& domain, const MeshCertificate& ce
   report.euler_characteristic_meshed = characteristic;
   report.components_dropped = counted->dropped;
   if (!differs(*counted)) {
-    // The longest edges of the grid are the diagonals of its cubes.
-    if (thickness.least < std::sqrt(3.) * counted->topology.spacing) {
+    if (const auto where = unseen_thickness(params.thickness, *counted, params.sizes)) {
       report.topology = TopologyProof::NotProved;
-      report.topology_at = thickness.where + domain.shift;
+      report.topology_at = *where + domain.shift;
     }
     return made;
   }
@@ -165,8 +196,9 @@ Comparison compare_with_zero_set(const Domain& domain, const MeshCertificate& ce
   const auto n_handles = static_cast<std::size_t>(std::abs(counted->euler_characteristic - characteristic) / 2);
   const std::size_t n = std::max<std::size_t>(1, n_pieces + n_handles);
   MeshPlace place{.kind = PlaceKind::Topology, .n = n};
-  if (surface) place = topology_place(domain, *counted, *surface, h, n, context);
-  report.topology = counted->topology.spacing > h.least() ? TopologyProof::NotProved : TopologyProof::Differs;
+  if (params.surface) place = topology_place(domain, *counted, *params.surface, params.h, n, context);
+  const bool is_coarser = counted->share == 0 && counted->topology.spacing > params.h.least();
+  report.topology = is_coarser ? TopologyProof::NotProved : TopologyProof::Differs;
   report.topology_at = place.where;
   if (report.topology == TopologyProof::Differs) made.place = place;
   return made;
@@ -175,9 +207,8 @@ Comparison compare_with_zero_set(const Domain& domain, const MeshCertificate& ce
 /// With the proof that no piece is unseen, and what of the boundary is a guess.
 Comparison compare_with_domain(const Domain& domain, const TetMesh& mesh, const std::vector<Triangle>& faces,
                                const MeshCertificate& certificate, const ZeroSetChoice& pieces,
-                               const VertexThickness& thickness, const SurfaceDistance* surface, const MeshEdge& h,
-                               const Context& context) {
-  Comparison made = compare_with_zero_set(domain, certificate, pieces, thickness, surface, h, context);
+                               const ComparisonParams& params, const Context& context) {
+  Comparison made = compare_with_zero_set(domain, certificate, pieces, params, context);
   ZeroSetReport& report = made.report;
   if (domain.level_set) report.level_set_spacing = domain.level_set->spacing();
   if (domain.level_set && pieces.cells) {
@@ -256,8 +287,8 @@ Measurement measure(const Domain& domain, const UmResult& result, const ZeroSetC
   std::optional<SurfaceDistance> surface;
   if (!faces.empty()) surface.emplace(mesh.V, faces);
   const VertexThickness thickness = vertex_thickness(domain, result, h, context);
-  Comparison compared =
-      compare_with_domain(domain, mesh, faces, m.mesh, pieces, thickness, surface ? &*surface : nullptr, h, context);
+  Comparison compared = compare_with_domain(domain, mesh, faces, m.mesh, pieces,
+                                            {thickness, surface ? &*surface : nullptr, h, params.sizes}, context);
   m.domain = std::move(compared.report);
   std::vector<Difference> differences = differences_of(m.mesh);
   const auto add = [&](const std::vector<Difference>& more) {

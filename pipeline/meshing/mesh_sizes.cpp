@@ -1,39 +1,54 @@
 #include "pipeline/meshing/mesh_sizes.h"
 
+#include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/parallel_sort.h>
 
 #include <algorithm>
-#include <array>
-#include <utility>
+#include <cstddef>
+#include <numeric>
 
 #include "mesh/certify/quality_report.h"
 
 namespace umtet {
 namespace {
 
-using Edge = std::array<int, 2>;
-
-Edge edge_of(int i, int j) { return {std::min(i, j), std::max(i, j)}; }
-
-/// Each edge once, ascending.
-std::vector<Edge> once(std::vector<Edge> edges) {
-  tbb::parallel_sort(edges);
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  return edges;
-}
-
-std::vector<Edge> edges_of(const TetMesh& mesh) {
-  std::vector<Edge> edges;
-  edges.reserve(6 * mesh.C.size());
-  for (const Tet& t : mesh.C) {
-    for (int a = 0; a < 4; ++a) {
-      for (int b = 0; b < a; ++b) edges.push_back(edge_of(t[a], t[b]));
+/// The upper ends of the edges of each vertex to a higher one, ascending, as often as there are tets around them.
+class UpperEnds {
+ public:
+  explicit UpperEnds(const TetMesh& mesh) : begin_(mesh.V.size() + 1, 0) {
+    const auto for_each = [&](const auto& f) {
+      for (const Tet& t : mesh.C) {
+        for (int a = 0; a < 4; ++a) {
+          for (int b = 0; b < a; ++b) f(std::min(t[a], t[b]), std::max(t[a], t[b]));
+        }
+      }
+    };
+    for_each([&](int low, int) { ++begin_[low + 1]; });
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    upper_.resize(begin_.back());
+    std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
+    for_each([&](int low, int high) { upper_[next[low]++] = high; });
+    tbb::parallel_for(std::size_t{0}, mesh.V.size(), [&](std::size_t v) {
+      std::sort(upper_.begin() + static_cast<std::ptrdiff_t>(begin_[v]),
+                upper_.begin() + static_cast<std::ptrdiff_t>(begin_[v + 1]));
+    });
+  }
+  /// Calls f(low, high) once for every edge, ascending.
+  template <class F>
+  void for_each_edge(const F& f) const {
+    for (std::size_t v = 0; v + 1 < begin_.size(); ++v) {
+      for (std::size_t k = begin_[v]; k < begin_[v + 1]; ++k) {
+        if (k == begin_[v] || upper_[k] != upper_[k - 1]) f(static_cast<int>(v), upper_[k]);
+      }
     }
   }
-  return once(std::move(edges));
-}
 
-double length(const TetMesh& mesh, const Edge& e) { return (mesh.V[e[0]] - mesh.V[e[1]]).norm(); }
+ private:
+  std::vector<std::size_t> begin_;
+  std::vector<int> upper_;
+};
+
+double length(const TetMesh& mesh, int i, int j) { return (mesh.V[i] - mesh.V[j]).norm(); }
 
 }  // namespace
 
@@ -46,10 +61,10 @@ std::vector<double> asked_sizes(const SizeField& sizes, const std::vector<Vec3>&
 std::vector<double> mean_edges(const TetMesh& mesh) {
   std::vector<double> sum(mesh.V.size());
   std::vector<int> n(mesh.V.size());
-  for (const Edge& e : edges_of(mesh)) {
-    const double l = length(mesh, e);
-    for (const int i : e) sum[i] += l, ++n[i];
-  }
+  UpperEnds(mesh).for_each_edge([&](int i, int j) {
+    const double l = length(mesh, i, j);
+    for (const int v : {i, j}) sum[v] += l, ++n[v];
+  });
   for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = n[i] > 0 ? sum[i] / n[i] : 0;
   return sum;
 }
@@ -60,14 +75,15 @@ SizesReport sizes_report(const TetMesh& mesh, const std::vector<Triangle>& bound
   report.least_asked = *least;
   report.greatest_asked = *greatest;
   std::vector<double> ratio;
-  for (const Edge& e : edges_of(mesh)) ratio.push_back(length(mesh, e) / (.5 * (asked[e[0]] + asked[e[1]])));
+  UpperEnds(mesh).for_each_edge(
+      [&](int i, int j) { ratio.push_back(length(mesh, i, j) / (.5 * (asked[i] + asked[j]))); });
   tbb::parallel_sort(ratio);
   report.p01 = quantile(ratio, .01);
   report.p50 = quantile(ratio, .5);
   report.p99 = quantile(ratio, .99);
   std::vector<double> lengths;
   for (const Triangle& f : boundary) {
-    for (int k = 0; k < 3; ++k) lengths.push_back(length(mesh, edge_of(f[k], f[(k + 1) % 3])));
+    for (int k = 0; k < 3; ++k) lengths.push_back(length(mesh, f[k], f[(k + 1) % 3]));
   }
   if (lengths.empty()) return report;
   const auto [shortest, longest] = std::minmax_element(lengths.begin(), lengths.end());

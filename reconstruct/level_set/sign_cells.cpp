@@ -156,14 +156,22 @@ void Search::split(int depth, const Eigen::Vector3i& cell, double bend, std::vec
     }
   }
   const Range finer = finer_levels(depth, low, low + Vec3::Constant(edge));
-  const double half_diagonal2 = 0.75 * edge * edge;
-  const double slack = gradient.cwiseAbs().sum() * edge / 2 + bend * half_diagonal2 / 2;
-  if (value - slack + finer.low > 0 || value + slack + finer.high < 0) return;
+  const double curved = bend * 0.75 * edge * edge / 2;  // half a diagonal off the middle
+  // psi differs from its linearisation by `curved` at most, in the cube and so in each eighth of it.
+  const auto has_zero = [&](double linear, double half_edge) {
+    const double slack = gradient.cwiseAbs().sum() * half_edge + curved;
+    return linear - slack + finer.low <= 0 && linear + slack + finer.high >= 0;
+  };
+  if (!has_zero(value, edge / 2)) return;
   if (depth == depth_) {
     found.push_back(cell);
     return;
   }
-  for (int q = 0; q < 8; ++q) split(depth + 1, 2 * cell + Eigen::Vector3i(q & 1, q >> 1 & 1, q >> 2), bend, found);
+  for (int q = 0; q < 8; ++q) {
+    const Eigen::Vector3i octant(q & 1, q >> 1 & 1, q >> 2);
+    const Vec3 off = edge / 4 * (2 * octant.cast<double>() - Vec3::Ones());
+    if (has_zero(value + gradient.dot(off), edge / 4)) split(depth + 1, 2 * cell + octant, bend, found);
+  }
 }
 
 void Search::search(int depth, const Eigen::Vector3i& cell, std::vector<Eigen::Vector3i>& found) const {

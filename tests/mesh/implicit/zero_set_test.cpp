@@ -62,7 +62,6 @@ TEST(ZeroSet, WhatIsKnownToBeFarFromAZeroNeedsNoValue) {
       ring, box, kSpacing, {}, [](const Vec3& x) { return std::abs(Counted::distance(x)) > 1.7321 * kSpacing; });
   EXPECT_LT(n_values, n_nodes / 4);
   EXPECT_EQ(some.euler_characteristic, all.euler_characteristic);
-  EXPECT_EQ(some.n_inside_components, all.n_inside_components);
   EXPECT_EQ(some.cut_points, all.cut_points);
 }
 
@@ -73,8 +72,6 @@ TEST(ZeroSet, SphereAndTorusHaveTheirTopologyAreaAndSeeds) {
   EXPECT_EQ(s.euler_characteristic, 2);
   EXPECT_EQ(s.components[0].genus, 0);
   EXPECT_TRUE(s.components[0].closed);
-  EXPECT_EQ(s.n_inside_components, 1u);
-  EXPECT_FALSE(s.touches_box);
   EXPECT_LE(s.spacing, 0.1);
   // The linear interpolant is off by up to spacing^2 |psi''| / 8 = .0025 in radius, so .5 % in area.
   EXPECT_NEAR(s.components[0].area, 4 * std::numbers::pi, 0.01 * 4 * std::numbers::pi);
@@ -110,7 +107,6 @@ TEST(ZeroSet, SeparatePiecesAndShellsAreToldApart) {
       [](const Vec3& x) { return std::min((x - Vec3(0.6, 0, 0)).norm() - 0.5, (x + Vec3(0.6, 0, 0)).norm() - 0.3); }};
   const ZeroSetTopology two = zero_set_topology(balls, cube(1.3), 0.07);
   ASSERT_EQ(two.components.size(), 2u);
-  EXPECT_EQ(two.n_inside_components, 2u);
   EXPECT_EQ(two.euler_characteristic, 4);
   EXPECT_GT(two.components[0].area, two.components[1].area);
   EXPECT_GT(two.components[0].seed.x(), 0);
@@ -125,21 +121,17 @@ TEST(ZeroSet, SeparatePiecesAndShellsAreToldApart) {
   const Values shell{[](const Vec3& x) { return std::abs(x.norm() - 0.8) - 0.2; }};
   const ZeroSetTopology walls = zero_set_topology(shell, cube(1.3), 0.07);
   EXPECT_EQ(walls.components.size(), 2u);
-  EXPECT_EQ(walls.n_inside_components, 1u) << "one body with a cavity";
 }
 
 TEST(ZeroSet, ADomainThatLeavesTheBoxIsReported) {
   const ZeroSetTopology cut = zero_set_topology(kTorus, Box3(Vec3(-1.2, -1.5, -1), Vec3(1.5, 1.5, 1)), 0.1);
-  EXPECT_TRUE(cut.touches_box);
   ASSERT_EQ(cut.components.size(), 1u);
   EXPECT_FALSE(cut.components[0].closed);
   // A torus without a disk on one side of it: chi drops by one.
   EXPECT_EQ(cut.components[0].euler_characteristic, -1);
 
   const ZeroSetTopology filled = zero_set_topology(Values{[](const Vec3&) { return -1.0; }}, cube(1), 0.5);
-  EXPECT_TRUE(filled.touches_box);
   EXPECT_EQ(filled.components.size(), 0u);
-  EXPECT_EQ(filled.n_inside_components, 1u);
 }
 
 TEST(ZeroSet, ValuesThatAreNoNumbersCountAsOutside) {
@@ -165,8 +157,8 @@ TEST(ZeroSet, AsksEveryFewThousandNodesWhetherToGoOn) {
   std::size_t calls = 0;
   const Box3 flat(Vec3(-1.5, -1.5, -0.03), Vec3(1.5, 1.5, 0.03));  // few layers of many nodes
   const ZeroSetTopology z = zero_set_topology(kTorus, flat, 0.01, {.cancelled = [&] { return ++calls == 0; }});
-  const double nodes = (z.n_cells[0] + 1.) * (z.n_cells[1] + 1.) * (z.n_cells[2] + 1.);
-  EXPECT_GE(static_cast<double>(calls), 5 * nodes / kValuesPerPoll);  // five passes over a layer
+  const Vec3 n = (flat.sizes() / z.spacing).array().round() + 1;
+  EXPECT_GE(static_cast<double>(calls), 4 * n.prod() / kValuesPerPoll);  // four passes over a layer
   for (const std::size_t stop : {std::size_t{1}, calls / 2, calls}) {
     std::size_t n = 0;
     EXPECT_THROW(zero_set_topology(kTorus, flat, 0.01, {.cancelled = [&] { return ++n >= stop; }}), Cancelled) << stop;

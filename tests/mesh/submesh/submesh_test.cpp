@@ -4,6 +4,7 @@
 #include <oneapi/tbb/global_control.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <map>
 
@@ -28,6 +29,26 @@ void expect_equal(const Submesh& a, const Submesh& b) {
   EXPECT_EQ(a.positive_faces, b.positive_faces);
   EXPECT_EQ(a.positive_tets, b.positive_tets);
   EXPECT_EQ(a.positive_vertices, b.positive_vertices);
+}
+
+TEST(Submesh, SignsThatAreKnownSpareValuesAndChangeNothing) {
+  // |grad psi| is at most `steepest` in the box: no zero within reach along the axes where |psi| is above that.
+  std::size_t n_all_asked = 0, n_asked = 0;
+  for (const AnalyticDomain& domain : testing::domains()) {
+    const BackgroundMesh background = background_of(domain, 20000);
+    const double reach = background.box().sizes().x() / static_cast<double>(background.n_cells()[0]) * (1 + 1e-9);
+    double steepest = 0;
+    for (std::int64_t v = 0; v < background.n_vertices(); ++v) {
+      steepest = std::max(steepest, domain.gradient(background.position(v)).norm());
+    }
+    const KnownSigns known{[&](const Vec3& x) { return std::abs(domain.value(x)) > 2 * steepest * reach; }, reach};
+    std::size_t n_all = 0, n_some = 0;
+    const Submesh all = find_submesh(background, domain, &n_all);
+    const Submesh some = find_submesh(background, domain, &n_some, {}, known);
+    expect_equal(all, some);
+    n_all_asked += n_all, n_asked += n_some;
+  }
+  EXPECT_LT(n_asked, n_all_asked);
 }
 
 TEST(Submesh, IsTheSetOfTetsWithAVertexInside) {

@@ -53,7 +53,6 @@ TEST(ChooseComponents, SignCellsSpareValuesAndChangeNothing) {
   const ZeroSetChoice c = choose_components(d, .1);
   const ZeroSetTopology all = zero_set_topology(d.psi(), d.box, counting_spacing(d, .1));
   EXPECT_EQ(c.topology.cut_points, all.cut_points);
-  EXPECT_EQ(c.topology.n_inside_components, all.n_inside_components);
   EXPECT_EQ(c.topology.euler_characteristic, all.euler_characteristic);
   const ZeroFreeMap far(*c.cells, d.box, .1);
   int n_far = 0;

@@ -15,6 +15,8 @@ namespace {
 constexpr int kInverted = -1, kEmpty = -2;
 // Meshes without reasons, with a place each that is small.
 constexpr int kFold = 100, kCut = 101;
+// A mesh that lacks a part that is not small.
+constexpr int kThin = 102;
 constexpr double kAnyEffort = 1000;
 
 /// What is kept when the k-th attempt ends as outcomes[k]: a number of reasons, or one of those above.
@@ -32,6 +34,10 @@ struct Story {
         const PlaceKind kind = outcome == kFold ? PlaceKind::Folded : PlaceKind::Cut;
         a.places = {{.kind = kind, .off_over_h = .1, .feature_over_h = .5}};
         a.measured.places = report_on(a.places);
+      } else if (outcome == kThin) {
+        a.places = {{.kind = PlaceKind::Thin, .off_over_h = 2, .feature_over_h = 2}};
+        a.measured.places = report_on(a.places);
+        a.reasons = {"the mesh lacks what is thin"};
       } else {
         a.reasons.assign(static_cast<std::size_t>(outcome), "a hole");
       }
@@ -66,6 +72,12 @@ TEST(BestAttempt, AFoldIsTriedWithHardlyMoreTetsFirst) {
   EXPECT_EQ(Story({kInverted, 0}).tried, (std::vector<double>{1, .8}));  // no mesh at all is no accident
   EXPECT_EQ(Story({1, 1}, .97).tried, (std::vector<double>{1, .985}));
   EXPECT_EQ(Story({1}, .99).tried.size(), 1u);
+}
+
+TEST(BestAttempt, WhatIsThinIsNotTriedWithHardlyMoreTets) {
+  EXPECT_EQ(Story({kThin, 0}).tried, (std::vector<double>{1, .8}));
+  EXPECT_EQ(Story({kFold, kThin, 0}).tried, (std::vector<double>{1, .985, .8}));
+  EXPECT_EQ(Story({kThin, kFold, 0}).tried.size(), 3u) << "from .8 it goes on to .64";
 }
 
 TEST(BestAttempt, StopsAtTheFirstMeshWithoutReasonsAndWhereASmallerHCannotHelp) {
