@@ -11,9 +11,7 @@
 namespace umtet {
 namespace {
 
-// Edges so many times as long as the median are cut, as long as the pieces are not more than so many times the
-// triangles, and some.
-constexpr double kLarge = 4;
+// Pieces of large triangles are not more than so many times the triangles and faces, and some.
 constexpr std::size_t kPieces = 4, kPiecesAnyway = 100000;
 
 double edge2(const TriangleMesh& mesh, const Triangle& t, int k) {
@@ -82,18 +80,9 @@ TriangleMesh whole(const TriangleMesh& mesh) {
 
 }  // namespace
 
-TriangleMesh with_large_ones_cut(const TriangleMesh& mesh) {
-  std::vector<double> longest2;
-  for (const Triangle& t : mesh.F) longest2.push_back(edge2(mesh, t, longest_edge(mesh, t)));
-  const auto middle = longest2.begin() + static_cast<std::ptrdiff_t>(longest2.size() / 2);
-  std::nth_element(longest2.begin(), middle, longest2.end());
-  return cut(mesh, kLarge * kLarge * *middle, kPieces * mesh.F.size() + kPiecesAnyway);
-}
-
 std::shared_ptr<const GivenTriangles> given_triangles(TriangleMesh mesh, const Vec3& shift) {
   for (Vec3& x : mesh.V) x -= shift;
-  const TriangleMesh pieces = with_large_ones_cut(mesh);
-  SurfaceDistance distance(pieces.V, pieces.F);
+  SurfaceDistance distance(mesh.V, mesh.F);
   return std::make_shared<const GivenTriangles>(GivenTriangles{std::move(mesh), std::move(distance)});
 }
 

@@ -23,10 +23,6 @@ struct GivenTriangles {
 /// \throw std::invalid_argument  no triangles
 std::shared_ptr<const GivenTriangles> given_triangles(TriangleMesh mesh, const Vec3& shift);
 
-/// Triangles much larger than most, in pieces: a search by centres would look at all where one is large. The surface is
-/// the same.
-TriangleMesh with_large_ones_cut(const TriangleMesh& mesh);
-
 /// Distances between the boundary of a mesh and the given triangles, both ways: of vertices and centres of its faces,
 /// and of the samples and of corners and centres of those triangles that bound the body with all of themselves. These
 /// are cut into pieces of the size of the faces.
