@@ -43,7 +43,7 @@ bool holds_triangles(const std::filesystem::path& file, PlyFaces faces = PlyFace
 /// indices, lines that go on behind a backslash; lines, curves and texture coordinates are stepped over, materials are
 /// names: no other file is opened. OFF: also with colours, normals, texture coordinates. PLY: as read_scan(), and the
 /// list vertex_indices or vertex_index.
-/// Polygons are cut into triangles inside of them, concave ones too.
+/// Polygons are cut into triangles inside of them, concave ones too. Vertices that no face uses are left out.
 ///
 /// Labels are 1, 2 ... in the order in which they come: solids of STL; of OBJ the groups (g), else the materials
 /// (usemtl), else the objects (o), whichever there are several of. PLY: property `label` (or `patch`) of the faces, as

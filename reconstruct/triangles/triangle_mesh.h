@@ -13,7 +13,7 @@ using Triangle = std::array<int, 3>;  ///< vertex indices, counter-clockwise see
 
 /// A surface as CAD programs and scanners export it: any triangles, which need not fit one another.
 struct TriangleMesh {
-  std::vector<Vec3> V;           ///< model units
+  std::vector<Vec3> V;           ///< finite; model units
   std::vector<Triangle> F;       ///< into V
   std::vector<int> labels = {};  ///< which part of the surface a triangle is of; or empty
 

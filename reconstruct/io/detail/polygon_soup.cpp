@@ -126,11 +126,16 @@ TriangleFile triangles_of(const CloudSource& source, PolygonSoup soup, std::stri
       if (!soup.labels.empty()) mesh.labels.push_back(soup.labels[p]);
     }
   }
-  std::vector<Vec3> used;
-  for (std::size_t v = 0; v < is_used.size(); ++v)
-    if (is_used[v]) used.push_back(soup.V[v]);
-  check_extent(source, used, 4);
-  mesh.V = std::move(soup.V);
+  // Vertices that no face uses may be anywhere, and may be no numbers.
+  std::vector<int> number(soup.V.size(), -1);
+  for (std::size_t v = 0; v < is_used.size(); ++v) {
+    if (!is_used[v]) continue;
+    number[v] = static_cast<int>(mesh.V.size());
+    mesh.V.push_back(soup.V[v]);
+  }
+  for (Triangle& f : mesh.F)
+    for (int& v : f) v = number[v];
+  check_extent(source, mesh.V, 4);
   return file;
 }
 

@@ -111,6 +111,14 @@ TEST_F(TriangleMeshIo, ObjIsReadWithEveryKindOfIndex) {
   expect_mesh("coloured.obj", all_replaced(v, '\n', " 1 .5 .5\n") + faces(kBody, "f ", 1), kBody);
 }
 
+TEST_F(TriangleMeshIo, VerticesThatNoFaceUsesAreLeftOut) {
+  const TriangleFile file =
+      triangles("unused.obj", "v nan inf 1e300\n" + vertices(kBody, "v ") + "v 1e40 0 0\n" + faces(kBody, "f ", 2));
+  EXPECT_EQ(file.mesh.V, kBody.V);
+  EXPECT_EQ(file.mesh.F, kBody.F);
+  EXPECT_EQ(file.report.n_vertices, kBody.V.size() + 2);
+}
+
 TEST_F(TriangleMeshIo, GroupsOfObjAreLabelsElseMaterialsElseObjects) {
   const std::string v = vertices(test::cube(), "v "), a = "f 1 2 4 3\n", b = "f 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\n",
                     c = "f 1 3 7 5\nf 2 6 8 4\n";
