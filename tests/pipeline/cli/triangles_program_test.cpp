@@ -49,7 +49,7 @@ TEST_F(TrianglesProgram, SoupsEndCertifiedWithTheGenusOfTheBody) {
     EXPECT_EQ(c["boundary"]["components"], 1);
     // The facets of the torus are .005 off it, the middles of flat faces of the mesh h^2 kappa / 8.
     EXPECT_LT(c["triangles"]["rms_distance"], .12 * .05);
-    if (name != "overlap") EXPECT_LT(c["triangles"]["max_distance"], .12 * .3);
+    if (name != "overlap") EXPECT_LT(c["triangles"]["max_distance"], .12 * .6);  // over a gap
     EXPECT_LT(c["triangles"]["rms_distance_back"], .12 * (name == "overlap" ? .2 : .05));
     if (name == "turned" || name == "all") EXPECT_NE(r.err.find("look outward"), std::string::npos) << r.err;
     if (name == "overlap") EXPECT_NE(r.err.find("inside of the body"), std::string::npos) << r.err;
@@ -98,8 +98,8 @@ TEST_F(TrianglesProgram, AFinerMeshHasFinerSamples) {
   ASSERT_EQ(run("run torus.stl -o own --sample-spacing .01 --until cloud").code, 0);
   EXPECT_LE(triangles_of("coarse")["sample_spacing"], .15 / 2.5);
   EXPECT_NEAR(triangles_of("own")["sample_spacing"], .01, 1e-12);
-  ASSERT_EQ(run("run torus.stl -o coarse --h .04 --no-report").code, 0);
-  EXPECT_NEAR(triangles_of("coarse")["sample_spacing"], .04 / 2.5, 1e-12);
+  ASSERT_EQ(run("run torus.stl -o coarse --h .055 --no-report").code, 0);
+  EXPECT_NEAR(triangles_of("coarse")["sample_spacing"], .055 / 2.5, 1e-12);
 }
 
 TEST_F(TrianglesProgram, InspectSaysWhatWouldBeMended) {
@@ -107,7 +107,7 @@ TEST_F(TrianglesProgram, InspectSaysWhatWouldBeMended) {
   const Result r = run("inspect soup.stl");
   EXPECT_EQ(r.code, 0) << r.err;
   EXPECT_NE(r.out.find("turned"), std::string::npos) << r.out;
-  const Json json = Json::parse(run("inspect soup.stl --json").out);
+  const Json json = Json::parse(run("inspect soup.stl --json").out)["inspection"];
   EXPECT_GT(json["triangles"]["n_turned"], 0);
   EXPECT_EQ(json["triangles"]["n_triangles"], 2 * 48 * 24);
 }
