@@ -52,7 +52,7 @@ void remove_view(const CasePaths& paths) {
 const char* section_of(Stage stage) { return stage == Stage::LevelSet ? "reconstruct" : to_string(stage); }
 
 bool is_artefact(Stage stage, const std::string& name) {
-  if (stage == Stage::Cloud) return name == "cloud.ply";
+  if (stage == Stage::Cloud) return name == "cloud.ply" || name == "triangles.ply";
   if (stage == Stage::LevelSet) return name == "level_set.vti";
   for (const char* mesh :
        {"omega_h.vtu", "projected.vtu", "mesh.vtu", "quality.csv", "too_thin.vtp", "places.vtp", "iterates.pvd"}) {

@@ -36,6 +36,8 @@ struct CasePaths {
   std::filesystem::path folder(Stage) const;  ///< 1-cloud, 2-level-set, 3-mesh
   std::filesystem::path record(Stage stage) const { return folder(stage) / "record.json"; }
   std::filesystem::path cloud() const { return folder(Stage::Cloud) / "cloud.ply"; }
+  /// What bounds the body where triangles were given; else it is not there.
+  std::filesystem::path triangles() const { return folder(Stage::Cloud) / "triangles.ply"; }
   std::filesystem::path level_set() const { return folder(Stage::LevelSet) / "level_set.vti"; }
   std::filesystem::path mesh() const { return folder(Stage::Mesh) / "mesh.vtu"; }
   /// What is left of a mesh that could not be made; never in next(), for it is there to be looked at.

@@ -54,6 +54,24 @@ std::map<int, std::string> parse_label_names(const std::string& text) {
   return names;
 }
 
+void add_names_of_file(const std::vector<std::string>& of_file, std::map<int, std::string>& names) {
+  constexpr std::size_t kLongest = 40;
+  std::set<std::string> taken = {"body", kWholeBoundary, "walls", "closed_holes"};
+  for (const auto& [label, name] : names) taken.insert(lower_case(name));
+  for (std::size_t i = 0; i < of_file.size(); ++i) {
+    const int label = static_cast<int>(i) + 1;
+    if (names.contains(label)) continue;
+    std::string name = of_file[i].substr(0, kLongest);
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return !problem_of_name(std::string("a") + c).empty(); }, '_');
+    if (!problem_of_name(name).empty()) name = name.empty() ? fmt::format("patch_{}", label) : "patch_" + name;
+    if (!problem_of_name(name).empty()) name = fmt::format("patch_{}", label);
+    const std::string base = name;
+    for (int k = label; !taken.insert(lower_case(name)).second; ++k) name = fmt::format("{}_{}", base, k);
+    names.emplace(label, name);
+  }
+}
+
 std::map<int, double> parse_label_sizes(const std::string& text, const std::map<int, std::string>& names) {
   std::map<int, double> factors;
   std::istringstream items(text);

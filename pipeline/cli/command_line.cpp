@@ -74,7 +74,7 @@ CommandParser::CommandParser() {
 
   CLI::App& run = add_command("run", make_run, "All stages; those whose record matches are not run again");
   add_stage_flags(run);
-  run.add_option("CLOUD", in_.input, "oriented points: .ply, .pcd, .xyz; or a case, to resume it");
+  run.add_option("CLOUD", in_.input, "points: .ply, .pcd, .xyz; triangles: .stl, .obj, .off, .ply; or a case, to resume it");
   run.add_option("--from", in_.from, "first stage that may run: cloud, level-set, mesh (default cloud)");
   run.add_option("--until", in_.until, "last stage to run (default mesh)");
   add_formats(run, "--export");
@@ -83,7 +83,7 @@ CommandParser::CommandParser() {
 
   CLI::App& reconstruct = add_command("reconstruct", make_reconstruct, "Stage one only: the level set");
   add_stage_flags(reconstruct);
-  reconstruct.add_option("CLOUD", in_.input, "oriented points; or a case, to fit again with other parameters");
+  reconstruct.add_option("CLOUD", in_.input, "points or triangles; or a case, to fit again with other parameters");
   add_parameter_flags(reconstruct, {"cloud", "reconstruct", "output"},
                       {keys::output::units, keys::output::min_quality, keys::output::accept, keys::output::label_names,
                        keys::output::label_min_area, keys::output::patch_angle, keys::output::patch_planar});
@@ -113,7 +113,7 @@ CommandParser::CommandParser() {
 
   CLI::App& inspect =
       add_command("inspect", make_inspect, "What is in a cloud, and what is likely to go wrong with it");
-  inspect.add_option("CLOUD", in_.input, "points: .ply, .pcd, .xyz")->required();
+  inspect.add_option("CLOUD", in_.input, "points: .ply, .pcd, .xyz; triangles: .stl, .obj, .off, .ply")->required();
 
   CLI::App& check = add_command("check", make_check, "Validity and quality of any tet mesh; exit 6 when it fails");
   check.add_option("MESH", in_.input, ".vtu, .msh or .mesh")->required();

@@ -1,5 +1,6 @@
 #include "pipeline/domain/domain.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "pipeline/case/exit_code.h"
@@ -7,6 +8,7 @@
 #include "pipeline/reports/stage_reports.h"
 #include "reconstruct/io/level_set_io.h"
 #include "reconstruct/io/point_cloud_io.h"
+#include "reconstruct/io/triangle_mesh_io.h"
 
 namespace umtet {
 
@@ -20,6 +22,14 @@ namespace {
 
 // Levels of psi with a smaller spacing, in edges of the mesh, are left out: faces fold over detail they cannot follow.
 constexpr double kLeastSpacing = .7;
+
+bool cloud_of_triangles(const CasePaths& paths) {
+  const StageState state = inspect_stage(paths, Stage::Cloud, Json::object(), std::nullopt);
+  if (!state.record) return false;
+  const std::vector<RecordedFile>& outputs = state.record->outputs;
+  const std::string name = paths.triangles().filename().string();
+  return std::any_of(outputs.begin(), outputs.end(), [&](const RecordedFile& f) { return f.name == name; });
+}
 
 }  // namespace
 
@@ -79,7 +89,12 @@ Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handove
     domain.level_set = domain.fitted;
     domain.cloud = handover && handover->cloud ? std::move(*std::exchange(handover->cloud, std::nullopt))
                                                : read_point_cloud(paths.cloud()).cloud;
-  } catch (const CloudRefused& e) {  // both files are ours: what is wrong with them is damage
+    if (handover && handover->triangles) {
+      domain.triangles = given_triangles(std::move(*std::exchange(handover->triangles, std::nullopt)), domain.shift);
+    } else if (cloud_of_triangles(paths)) {
+      domain.triangles = given_triangles(read_triangles(paths.triangles()).mesh, domain.shift);
+    }
+  } catch (const CloudRefused& e) {  // all files are ours: what is wrong with them is damage
     throw ArtefactDamaged(e.what());
   } catch (const LevelSetRefused& e) {
     throw ArtefactDamaged(e.what());

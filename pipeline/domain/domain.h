@@ -14,6 +14,7 @@
 #include "mesh/sizes/body_size.h"
 #include "pipeline/case/case_folder.h"
 #include "pipeline/case/parameters.h"
+#include "pipeline/domain/given_triangles.h"
 #include "pipeline/expression/expression.h"
 #include "reconstruct/cloud/point_cloud.h"
 #include "reconstruct/level_set/grid_fit.h"
@@ -34,10 +35,11 @@ struct Domain {
   Box box;                                      ///< what the background mesh has to cover
   double diagonal = 0;                          ///< of the cloud's box, or of `box` for a formula
   Vec3 shift = Vec3::Zero();
-  std::vector<std::string> notices;               ///< of how psi was made, for the user
-  OrientedPointCloud cloud;                       ///< empty for a formula
-  std::shared_ptr<const SampleDistance> samples;  ///< of the cloud's points; none for a formula
-  double cloud_spacing = 0;                       ///< median distance between neighbouring samples, 0 for a formula
+  std::vector<std::string> notices;                 ///< of how psi was made, for the user
+  OrientedPointCloud cloud;                         ///< empty for a formula
+  std::shared_ptr<const SampleDistance> samples;    ///< of the cloud's points; none for a formula
+  std::shared_ptr<const GivenTriangles> triangles;  ///< that bound the body; none of a cloud or a formula
+  double cloud_spacing = 0;                         ///< median distance between neighbouring samples, 0 for a formula
   std::optional<double> noise;  ///< standard deviation of the samples along the normal, as the fit took it, model units
   bool complement = false;      ///< mesh.complement: it is {psi > 0} in the box that is meshed, the fluid around a body
 

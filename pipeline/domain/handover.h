@@ -7,6 +7,7 @@
 #include "reconstruct/cloud/cloud_neighbours.h"
 #include "reconstruct/cloud/point_cloud.h"
 #include "reconstruct/level_set/level_set.h"
+#include "reconstruct/triangles/triangle_mesh.h"
 
 namespace umtet {
 
@@ -14,6 +15,7 @@ namespace umtet {
 /// be read back. Empty where a stage had been done before.
 struct Handover {
   std::optional<OrientedPointCloud> cloud;  ///< cloud.ply
+  std::optional<TriangleMesh> triangles;    ///< triangles.ply
   NeighbourDistances near;                  ///< of its points, or empty
   std::optional<LevelSet> psi;              ///< level_set.vti
   std::optional<Domain> domain;             ///< what was meshed, psi cut for h

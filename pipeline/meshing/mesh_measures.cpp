@@ -16,6 +16,7 @@
 #include "pipeline/domain/closed_holes.h"
 #include "pipeline/domain/component_proof.h"
 #include "pipeline/domain/edge_length.h"
+#include "pipeline/domain/given_triangles.h"
 #include "pipeline/domain/missed_samples.h"
 #include "pipeline/meshing/mesh_places.h"
 #include "pipeline/meshing/mesh_sizes.h"
@@ -306,6 +307,7 @@ Measurement measure(const Domain& domain, const UmResult& result, const ZeroSetC
     if (domain.fitted) add(lost_samples(domain, pieces, d, h, context));
     m.cloud = sample_distances(domain, d, h, m.mesh.boundary.max_centroid_distance_over_h.value_or(0));
   }
+  if (surface && domain.triangles) m.triangles = triangle_distances(domain, mesh.V, faces, *surface, context);
   made.places = places_of(domain, differences, h, context);
   if (compared.place) made.places.push_back(*compared.place);
   m.places = report_on(made.places);

@@ -81,8 +81,8 @@ std::vector<int> distinct(std::vector<int> labels) {
 }
 
 void divide_by_labels(SolverMesh& mesh, const std::vector<char>& at_wall, const OrientedPointCloud& cloud,
-                      const Parameters& parameters, const Warn& warn) {
-  const std::map<int, std::string> names = parse_label_names(parameters.output().label_names);
+                      const Parameters& parameters, const std::vector<std::string>& names_of_file, const Warn& warn) {
+  std::map<int, std::string> names = parse_label_names(parameters.output().label_names);
   const std::vector<int> in_cloud = distinct(cloud.labels);
   for (const auto& [label, name] : names) {
     if (has_walls(at_wall) && lower_case(name) == kWalls) {
@@ -93,6 +93,7 @@ void divide_by_labels(SolverMesh& mesh, const std::vector<char>& at_wall, const 
     throw UsageError(fmt::format("--label-names {}={}: no point has that label; there are {}", label, name,
                                  fmt::join(in_cloud, ", ")));
   }
+  add_names_of_file(names_of_file, names);
   const FaceGeometry faces = face_geometry(mesh);
   const auto is_wall = [&](std::size_t f) { return !at_wall.empty() && at_wall[f]; };
   std::vector<int> labels = vote_labels(cloud, faces.centroid, faces.normal);
@@ -156,8 +157,8 @@ std::vector<char> faces_in_holes(const SolverMesh& mesh, const MeshFile& file,
 }
 
 void divide_but_holes(SolverMesh& mesh, const std::vector<char>& at_wall, const OrientedPointCloud& cloud,
-                      const Parameters& parameters, const Warn& warn) {
-  if (!cloud.labels.empty()) return divide_by_labels(mesh, at_wall, cloud, parameters, warn);
+                      const Parameters& parameters, const std::vector<std::string>& names_of_file, const Warn& warn) {
+  if (!cloud.labels.empty()) return divide_by_labels(mesh, at_wall, cloud, parameters, names_of_file, warn);
   if (!parameters.output().label_names.empty()) {
     throw UsageError(
         "--label-names: the points have no labels (PLY property label, PCD field label, or a last column)");
@@ -222,7 +223,7 @@ MarkedFaces marked_faces(const SolverMesh& mesh, const MeshFile& file, const std
 }
 
 void divide_boundary(SolverMesh& mesh, const MarkedFaces& marked, const OrientedPointCloud& cloud,
-                     const Parameters& parameters, const Warn& warn) {
+                     const Parameters& parameters, const Warn& warn, const std::vector<std::string>& names_of_file) {
   if (!marked.in_holes.empty()) {
     for (const auto& [label, name] : parse_label_names(parameters.output().label_names)) {
       if (lower_case(name) != kClosedHoles) continue;
@@ -230,7 +231,7 @@ void divide_boundary(SolverMesh& mesh, const MarkedFaces& marked, const Oriented
           fmt::format("--label-names {}={}: the faces that no sample supports have that name", label, name));
     }
   }
-  divide_but_holes(mesh, marked.at_wall, cloud, parameters, warn);
+  divide_but_holes(mesh, marked.at_wall, cloud, parameters, names_of_file, warn);
   take_holes(mesh, marked.in_holes, warn);
 }
 

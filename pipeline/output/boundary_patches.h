@@ -42,7 +42,9 @@ void take_holes(SolverMesh& mesh, const std::vector<char>& in_holes, const Warn&
 /// Then take_holes().
 /// \throw UsageError  as parse_label_names(), or a name for a label that the cloud does not have, or that of the walls
 /// or holes
+/// @param names_of_file  of label 1, 2 ..., where output.label_names has none
 void divide_boundary(SolverMesh& mesh, const MarkedFaces& marked, const OrientedPointCloud& cloud,
-                     const Parameters& parameters, const Warn& warn);
+                     const Parameters& parameters, const Warn& warn,
+                     const std::vector<std::string>& names_of_file = {});
 
 }  // namespace umtet

@@ -123,8 +123,9 @@ SolverMesh mesh_of_case(const CasePaths& paths, const Parameters& parameters, Pr
     // What is read for points is read for corners.
     if (!file.quadratic) mesh.point_data = std::move(file.point_data);
     mesh.cell_data = std::move(file.cell_data);
-    divide_boundary(mesh, marked, cloud_of_case(paths, *state.record), parameters,
-                    [&](const std::string& text) { progress.warn("export: " + text); });
+    divide_boundary(
+        mesh, marked, cloud_of_case(paths, *state.record), parameters,
+        [&](const std::string& text) { progress.warn("export: " + text); }, label_names_of_file(paths));
     return mesh;
   } catch (const MeshFileRefused& e) {
     throw ArtefactDamaged(e.what());

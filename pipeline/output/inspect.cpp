@@ -62,9 +62,8 @@ std::vector<std::string> troubles(const CloudSurvey& s, const CloudFileReport& f
             s.noise_over_spacing);
   }
   if (s.thickness && (*s.thickness)[0] < kThin * s.diagonal) {
-    trouble(
-        "1 % of the body is thinner than {:.3g}: the mesh needs --h {:.2g} or smaller to show it",
-        (*s.thickness)[0], (*s.thickness)[0] / 2.2);
+    trouble("1 % of the body is thinner than {:.3g}: the mesh needs --h {:.2g} or smaller to show it",
+            (*s.thickness)[0], (*s.thickness)[0] / 2.2);
   }
   if (s.ulp_over_spacing > kUlp) {
     trouble("coordinates of {:.3g} leave {:.1g} of the spacing to rounding: move the cloud nearer to the origin",
@@ -81,7 +80,8 @@ std::vector<std::string> troubles(const CloudSurvey& s, const CloudFileReport& f
 CloudInspection inspect_cloud(const fs::path& file, Progress& progress) {
   progress.report("inspect", "read", 0);
   require_regular_file(file);
-  const CloudFile scan = read_scan(file);
+  const ScanSource source = read_source(file, Parameters());
+  const CloudFile& scan = source.cloud;
   progress.report("inspect", "survey", .3);
   CloudSurvey s = [&] {
     try {
@@ -94,7 +94,7 @@ CloudInspection inspect_cloud(const fs::path& file, Progress& progress) {
   std::nth_element(area.begin(), area.begin() + static_cast<std::ptrdiff_t>(area.size() / 2), area.end());
   Resolution lattice = choose_resolution(std::sqrt(area[area.size() / 2]), kMeshEdge * s.diagonal, s.noise);
   std::vector<std::string> list = troubles(s, scan.report);
-  return {file.string(), scan.report, std::move(s), std::move(lattice), std::move(list)};
+  return {file.string(), scan.report, source.triangles, std::move(s), std::move(lattice), std::move(list)};
 }
 
 Json to_json(const CloudInspection& inspection) {
@@ -105,6 +105,10 @@ Json to_json(const CloudInspection& inspection) {
                {"box", {{"min", json_of(s.low)}, {"max", json_of(s.high)}, {"diagonal", s.diagonal}}},
                {"spacing", {{"p01", s.spacing[0]}, {"median", s.spacing[1]}, {"p99", s.spacing[2]}}},
                {"density_variation", s.density_variation}};
+  if (inspection.triangles) {
+    json["triangles"] = to_json(inspection.triangles->report);
+    json["triangles"]["notices"] = inspection.triangles->notices;
+  }
   Json normals = {{"present", s.has_normals}};
   if (s.has_normals) {
     normals.update({{"missing", s.n_normals_zero},
@@ -134,7 +138,13 @@ Json to_json(const CloudInspection& inspection) {
 
 std::string inspection_text(const CloudInspection& inspection) {
   const CloudSurvey& s = inspection.survey;
-  std::string out = fmt::format("cloud     {}: {}, {} points\n", inspection.file, inspection.read.format, s.n_points);
+  std::string out = fmt::format("cloud     {}: {}, {} {}\n", inspection.file, inspection.read.format, s.n_points,
+                                inspection.triangles ? "samples of its triangles" : "points");
+  if (inspection.triangles) {
+    for (const std::string& notice : inspection.triangles->notices) out += "triangles " + notice + "\n";
+    for (std::size_t i = 0; i < inspection.triangles->report.label_names.size(); ++i)
+      out += fmt::format("label     {} = {}\n", i + 1, inspection.triangles->report.label_names[i]);
+  }
   const Vec3 size = s.high - s.low;
   out += fmt::format("box       {:.6g} x {:.6g} x {:.6g}, diagonal {:.6g}\n", size.x(), size.y(), size.z(), s.diagonal);
   out += fmt::format("spacing   median {:.4g}, 1 % {:.4g}, 99 % {:.4g}; density varies {:.1f} : 1\n", s.spacing[1],

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "pipeline/case/json_values.h"
 #include "pipeline/case/progress.h"
+#include "pipeline/stages/scan_source.h"
 #include "reconstruct/cloud/cloud_survey.h"
 #include "reconstruct/io/point_cloud_io.h"
 #include "reconstruct/solve/resolution.h"
@@ -16,6 +18,7 @@ namespace umtet {
 struct CloudInspection {
   std::string file;  ///< as the user gave it
   CloudFileReport read;
+  std::optional<SampledTriangles> triangles;  ///< none of a cloud; then the survey is of its samples
   CloudSurvey survey;
   Resolution lattice;                 ///< that a fit would choose
   std::vector<std::string> troubles;  ///< what is likely to go wrong, each with its remedy

@@ -159,12 +159,14 @@ Figures figures_of(const CasePaths& paths, const Parameters& parameters, const M
 }
 
 /// The mesh with the patches that exported files have.
-SolverMesh divided(const MeshFile& mesh, const Domain& domain, const Parameters& parameters,
+SolverMesh divided(const CasePaths& paths, const MeshFile& mesh, const Domain& domain, const Parameters& parameters,
                    const std::optional<SupportReport>& support) {
   SolverMesh made = solver_mesh(mesh.mesh);
   for (Vec3& x : made.nodes) x -= domain.shift;
   try {
-    divide_boundary(made, marked_faces(made, mesh, support), domain.cloud, parameters, [](const std::string&) {});
+    divide_boundary(
+        made, marked_faces(made, mesh, support), domain.cloud, parameters, [](const std::string&) {},
+        label_names_of_file(paths));
   } catch (const UsageError&) {
     // Names for labels that are not there: an export refuses them, here all faces stay one patch.
   }
@@ -189,7 +191,8 @@ void write_report(const CasePaths& paths, const Parameters& parameters, const Ce
   stop_if_interrupted();
   const MeshFile& mesh = handover.mesh;
   const std::optional<SupportReport>& support = certificate.measured.domain.support;
-  const ReportScene scene = report_scene(mesh, *handover.domain, divided(mesh, *handover.domain, parameters, support));
+  const ReportScene scene =
+      report_scene(mesh, *handover.domain, divided(paths, mesh, *handover.domain, parameters, support));
   stop_if_interrupted();
   std::string blocks;
   for (const auto& [name, text] : scene.blocks) {

@@ -178,6 +178,32 @@ SampleDistances distances_from(const Json& json) {
   return d;
 }
 
+Json to_json(const TriangleDistances& d, double h) {
+  return {{"n_triangles", d.n_triangles},
+          {"rms_distance", d.rms},
+          {"p99_distance", d.p99},
+          {"max_distance", d.max},
+          {"max_distance_over_h", d.max / h},
+          {"farthest", json_of(d.farthest)},
+          {"rms_distance_back", d.rms_back},
+          {"p99_distance_back", d.p99_back},
+          {"max_distance_back", d.max_back},
+          {"max_distance_back_over_h", d.max_back / h},
+          {"farthest_back", json_of(d.farthest_back)}};
+}
+
+TriangleDistances triangle_distances_from(const Json& json) {
+  return {.n_triangles = json.at("n_triangles"),
+          .rms = number_from(json.at("rms_distance")),
+          .p99 = number_from(json.at("p99_distance")),
+          .max = number_from(json.at("max_distance")),
+          .farthest = vector_from(json.at("farthest")),
+          .rms_back = number_from(json.at("rms_distance_back")),
+          .p99_back = number_from(json.at("p99_distance_back")),
+          .max_back = number_from(json.at("max_distance_back")),
+          .farthest_back = vector_from(json.at("farthest_back"))};
+}
+
 Json to_json(const ResolutionReport& r, double h) {
   Json json = {{"kappa_h_max", r.kappa_h_max},
                {"feature_size_over_h_min", r.feature_size_over_h_min},
@@ -248,6 +274,7 @@ Json measured_blocks(const MeshMeasures& m) {
   json.update(mesh_blocks(m.mesh, m.coordinate_rounding_over_h));
   json["domain"] = to_json(m.domain);
   json["cloud"] = m.cloud ? to_json(*m.cloud, m.mesh.h) : Json(nullptr);
+  if (m.triangles) json["triangles"] = to_json(*m.triangles, m.mesh.h);
   json["resolution"] = to_json(m.resolution, m.mesh.h);
   if (m.sizes) json["sizes"] = to_json(*m.sizes);
   json["valid"] = m.is_valid;
@@ -270,6 +297,7 @@ MeshMeasures measured_blocks_from(const Json& json) {
   m.coordinate_rounding_over_h = number_from(json.at("boundary").at("coordinate_rounding_over_h"));
   m.domain = zero_set_from(json.at("domain"));
   if (!json.at("cloud").is_null()) m.cloud = distances_from(json.at("cloud"));
+  if (json.contains("triangles")) m.triangles = triangle_distances_from(json.at("triangles"));
   m.resolution = resolution_from(json.at("resolution"));
   if (json.contains("sizes")) m.sizes = sizes_from(json.at("sizes"));
   m.is_valid = json.at("valid");

@@ -57,6 +57,15 @@ struct SampleDistances {
   std::vector<MissedPlace> missed{};  ///< the farthest of them, farthest first
 };
 
+/// Distances between the boundary of the mesh and the triangles that were given, as far as these bound the body.
+struct TriangleDistances {
+  std::size_t n_triangles = 0;
+  double rms = 0, p99 = 0, max = 0;                 ///< of vertices and centres of boundary faces to the triangles
+  Vec3 farthest = Vec3::Zero();                     ///< where that is; model coordinates
+  double rms_back = 0, p99_back = 0, max_back = 0;  ///< of samples, corners and centres of triangles to the mesh
+  Vec3 farthest_back = Vec3::Zero();
+};
+
 /// What the mesh can resolve at its edge length.
 struct ResolutionReport {
   double kappa_h_max = 0;              ///< largest principal curvature of psi = 0 at the boundary vertices, times h
@@ -92,7 +101,8 @@ struct MeshMeasures {
   MeshCertificate mesh;  ///< read back it has what the documents have: counts that only failures() looks at are 0
   double coordinate_rounding_over_h = 0;
   ZeroSetReport domain;
-  std::optional<SampleDistances> cloud;  ///< none for a formula
+  std::optional<SampleDistances> cloud;        ///< none for a formula
+  std::optional<TriangleDistances> triangles;  ///< none where none were given
   ResolutionReport resolution;
   std::optional<SizesReport> sizes;   ///< none where the mesh has one h
   std::optional<std::int64_t> order;  ///< 1 or 2; none where only the corners were measured

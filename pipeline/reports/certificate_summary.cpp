@@ -123,6 +123,17 @@ std::string cloud_line(const MeshMeasures& m, const std::string& unit) {
                      show(d.rms / h, "{:.4f}"), show(d.p99 / h, "{:.4f}"), show(d.max / h, "{:.4f}"));
 }
 
+/// How far the mesh is from the triangles that were given, and they from it; empty if none were.
+std::string triangles_line(const MeshMeasures& m, const std::string& unit) {
+  if (!m.triangles) return "";
+  const TriangleDistances& d = *m.triangles;
+  const double h = m.mesh.h;
+  return fmt::format(
+      "triangles {} bound the body; mesh to them rms {} ({} h), max {} h; they to the mesh rms {} ({} h), max {} h\n",
+      thousands(d.n_triangles), show(d.rms, "{:.3g}") + unit, show(d.rms / h, "{:.4f}"), show(d.max / h, "{:.3f}"),
+      show(d.rms_back, "{:.3g}") + unit, show(d.rms_back / h, "{:.4f}"), show(d.max_back / h, "{:.3f}"));
+}
+
 /// Where samples are not on the mesh; empty if they all are.
 std::string missed_line(const MeshMeasures& m, const std::string& unit) {
   if (!m.cloud || m.cloud->missed.empty()) return "";
@@ -175,8 +186,8 @@ std::string summary(const Certificate& c) {
   const MeshMeasures& m = c.measured;
   return verdict_lines(c.verdict, m.is_valid, m.is_faithful, c.remedy) + mesh_lines(m.mesh, unit, c.n_tets_asked) +
          sizes_line(m.sizes, unit) + second_order_lines(m.second_order) + domain_line(m.domain) +
-         holes_line(m.domain.support, unit) + cloud_line(m, unit) + missed_line(m, unit) + thin_line(m.resolution) +
-         places_line(m.places) + time_line(c.run);
+         holes_line(m.domain.support, unit) + cloud_line(m, unit) + triangles_line(m, unit) + missed_line(m, unit) +
+         thin_line(m.resolution) + places_line(m.places) + time_line(c.run);
 }
 
 std::string summary(const MeshCheck& c) {

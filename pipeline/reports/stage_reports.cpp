@@ -45,6 +45,33 @@ NormalsReport normals_from(const Json& json) {
   return n;
 }
 
+TrianglesReport triangles_from(const Json& json) {
+  TrianglesReport t;
+  t.n_vertices = json.at("n_vertices");
+  t.n_faces = json.at("n_faces");
+  t.n_polygons = json.at("n_polygons");
+  TriangleReport& b = t.body;
+  b.n_triangles = json.at("n_triangles");
+  b.dropped = {.n_degenerate = json.at("n_degenerate"), .n_duplicates = json.at("n_duplicates")};
+  b.sides = {.n_open_edges = json.at("n_open_edges"),
+             .n_branching_edges = json.at("n_branching_edges"),
+             .n_one_sided_edges = json.at("n_one_sided_edges"),
+             .weld_distance = number_from(json.at("weld_distance")),
+             .n_patches = json.at("n_patches"),
+             .n_closed_patches = json.at("n_closed_patches"),
+             .n_turned = json.at("n_turned"),
+             .n_cavities = json.at("n_cavities"),
+             .n_inner_shells = json.at("n_inner_shells")};
+  b.spacing = number_from(json.at("sample_spacing"));
+  b.n_samples = json.at("n_samples");
+  b.n_inside = json.at("n_samples_inside");
+  b.n_inside_out = json.at("n_samples_inside_out");
+  b.unsure = number_from(json.at("unsure"));
+  t.n_boundary = json.at("n_boundary");
+  t.label_names = json.at("label_names");
+  return t;
+}
+
 Json to_json(const BandReport& b) {
   return {{"spacing", b.spacing}, {"smoothing", b.smoothing},   {"n_samples", b.n_samples},
           {"n_nodes", b.n_nodes}, {"iterations", b.iterations}, {"residual", b.residual}};
@@ -69,6 +96,7 @@ CloudReport cloud_from(const Json& json) {
                       .outliers = dropped.at("outliers"),
                       .small_components = dropped.at("small_components")},
           .normals = normals_from(json.at("normals")),
+          .triangles = json.contains("triangles") ? std::optional(triangles_from(json.at("triangles"))) : std::nullopt,
           .n_points = json.at("n_points"),
           .box = {vector_from(json.at("box_min")), vector_from(json.at("box_max"))},
           .notices = json.at("notices")};
@@ -145,20 +173,49 @@ Report report_of(const StageRecord& record, Report (*from)(const Json&)) {
 
 }  // namespace
 
+Json to_json(const TrianglesReport& t) {
+  const TriangleReport& b = t.body;
+  const FaceSidesReport& s = b.sides;
+  return {{"n_vertices", t.n_vertices},
+          {"n_faces", t.n_faces},
+          {"n_polygons", t.n_polygons},
+          {"n_triangles", b.n_triangles},
+          {"n_degenerate", b.dropped.n_degenerate},
+          {"n_duplicates", b.dropped.n_duplicates},
+          {"n_open_edges", s.n_open_edges},
+          {"n_branching_edges", s.n_branching_edges},
+          {"n_one_sided_edges", s.n_one_sided_edges},
+          {"weld_distance", s.weld_distance},
+          {"n_patches", s.n_patches},
+          {"n_closed_patches", s.n_closed_patches},
+          {"n_turned", s.n_turned},
+          {"n_cavities", s.n_cavities},
+          {"n_inner_shells", s.n_inner_shells},
+          {"sample_spacing", b.spacing},
+          {"n_samples", b.n_samples},
+          {"n_samples_inside", b.n_inside},
+          {"n_samples_inside_out", b.n_inside_out},
+          {"unsure", b.unsure},
+          {"n_boundary", t.n_boundary},
+          {"label_names", t.label_names}};
+}
+
 Json to_json(const CloudReport& r) {
-  return {{"format", r.format},
-          {"n_points_in_file", r.n_points_in_file},
-          {"n_normals_rescaled", r.n_normals_rescaled},
-          {"dropped",
-           {{"not_finite", r.dropped.not_finite},
-            {"duplicates", r.dropped.duplicates},
-            {"outliers", r.dropped.outliers},
-            {"small_components", r.dropped.small_components}}},
-          {"normals", to_json(r.normals)},
-          {"n_points", r.n_points},
-          {"box_min", json_of(r.box.min())},
-          {"box_max", json_of(r.box.max())},
-          {"notices", r.notices}};
+  Json json = {{"format", r.format},
+               {"n_points_in_file", r.n_points_in_file},
+               {"n_normals_rescaled", r.n_normals_rescaled},
+               {"dropped",
+                {{"not_finite", r.dropped.not_finite},
+                 {"duplicates", r.dropped.duplicates},
+                 {"outliers", r.dropped.outliers},
+                 {"small_components", r.dropped.small_components}}},
+               {"normals", to_json(r.normals)},
+               {"n_points", r.n_points},
+               {"box_min", json_of(r.box.min())},
+               {"box_max", json_of(r.box.max())},
+               {"notices", r.notices}};
+  if (r.triangles) json["triangles"] = to_json(*r.triangles);
+  return json;
 }
 
 Json to_json(const LevelSetReport& r) {
@@ -199,5 +256,12 @@ Json to_json(const MeshReport& r) {
 CloudReport cloud_report(const StageRecord& record) { return report_of(record, &cloud_from); }
 LevelSetReport level_set_report(const StageRecord& record) { return report_of(record, &level_set_from); }
 MeshReport mesh_report(const StageRecord& record) { return report_of(record, &mesh_from); }
+
+std::vector<std::string> label_names_of_file(const CasePaths& paths) {
+  const StageState state = inspect_stage(paths, Stage::Cloud, Json::object(), std::nullopt);
+  if (!state.record) return {};
+  const std::optional<TrianglesReport> triangles = cloud_report(*state.record).triangles;
+  return triangles ? triangles->label_names : std::vector<std::string>();
+}
 
 }  // namespace umtet

@@ -11,6 +11,7 @@
 #include "pipeline/reports/certificate_report.h"
 #include "reconstruct/cloud/normal_orientation.h"
 #include "reconstruct/solve/fit_ssd.h"
+#include "reconstruct/triangles/body_samples.h"
 
 // What the stages find out: `numbers` of their records. Lengths in model units. The functions below are the only place
 // where these have names in JSON.
@@ -28,6 +29,14 @@ struct NormalsReport {
   std::optional<std::size_t> turned_by_winding, replaced_by_winding;
 };
 
+/// Of triangles that were sampled.
+struct TrianglesReport {
+  std::size_t n_vertices = 0, n_faces = 0, n_polygons = 0;  ///< as the file counts them
+  TriangleReport body;
+  std::size_t n_boundary = 0;            ///< of triangles.ply
+  std::vector<std::string> label_names;  ///< of label 1, 2 ..., as the file has them
+};
+
 /// Of 1-cloud.
 struct CloudReport {
   std::string format;  ///< of the file, as CloudFileReport has it
@@ -36,9 +45,10 @@ struct CloudReport {
     std::size_t not_finite = 0, duplicates = 0, outliers = 0, small_components = 0;
   } dropped;  ///< points
   NormalsReport normals;
-  std::size_t n_points = 0;          ///< that are left
-  Eigen::AlignedBox3d box;           ///< of them
-  std::vector<std::string> notices;  ///< what was changed or guessed, for the user
+  std::optional<TrianglesReport> triangles;  ///< none of a cloud
+  std::size_t n_points = 0;                  ///< that are left
+  Eigen::AlignedBox3d box;                   ///< of them
+  std::vector<std::string> notices;          ///< what was changed or guessed, for the user
 };
 
 /// Of 2-level-set.
@@ -57,6 +67,7 @@ struct MeshReport {
   MeshMeasures measured;
 };
 
+Json to_json(const TrianglesReport& report);
 Json to_json(const CloudReport& report);
 Json to_json(const LevelSetReport& report);
 Json to_json(const MeshReport& report);
@@ -65,5 +76,8 @@ Json to_json(const MeshReport& report);
 CloudReport cloud_report(const StageRecord& record);
 LevelSetReport level_set_report(const StageRecord& record);
 MeshReport mesh_report(const StageRecord& record);
+
+/// Names of label 1, 2 ... in the file of triangles that a case is made from; none of a cloud or a formula.
+std::vector<std::string> label_names_of_file(const CasePaths& paths);
 
 }  // namespace umtet

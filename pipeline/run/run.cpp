@@ -9,6 +9,7 @@
 #include "pipeline/reports/certificate_json.h"
 #include "pipeline/run/renewal.h"
 #include "pipeline/stages/cloud_preparation.h"
+#include "pipeline/stages/scan_source.h"
 #include "pipeline/stages/stages.h"
 
 namespace umtet {
@@ -36,6 +37,7 @@ class CaseRun {
 
  private:
   void take_former_parameters();
+  void sample_for_h();
   StageState state_of(Stage stage) const;
   bool must_run(Stage stage, const StageState& state) const;
   void make(Stage stage);
@@ -70,6 +72,20 @@ void CaseRun::take_former_parameters() {
     if (is_kept(stage)) parameters_.copy_section(section_of(stage), former);
   }
   if (request_.until < Stage::Mesh && fs::exists(paths_.certificate())) parameters_.copy_section("output", former);
+}
+
+// Samples for each h that was asked for, along an edge: what a mesh of such edges can show.
+constexpr double kSamplesAnEdge = 2.5;
+
+/// Triangles are sampled as finely as the mesh needs, unless the user said how. That is a parameter like all others, so
+/// that another h makes other samples.
+void CaseRun::sample_for_h() {
+  if (request_.from != Stage::Cloud || request_.until != Stage::Mesh || !parameters_.mesh().implicit.empty()) return;
+  const fs::path source = request_.source.empty() ? fs::path(parameters_.cloud().file) : request_.source;
+  if (parameters_.source(keys::cloud::sample_spacing) > ParamSource::Case || !(parameters_.mesh().h > 0)) return;
+  if (!fs::is_regular_file(source) || !is_of_triangles(source, parameters_)) return;
+  parameters_.set(keys::cloud::sample_spacing, fmt::format("{}", parameters_.mesh().h / kSamplesAnEdge),
+                  ParamSource::Case, "for --h");
 }
 
 StageState CaseRun::state_of(Stage stage) const {
@@ -176,6 +192,7 @@ void CaseRun::begin() {
   refuse_foreign_folder(paths_);
   remove_stale_temporaries(paths_.root);  // of a run that was killed when its stages were done
   take_former_parameters();
+  sample_for_h();
 }
 
 std::vector<Stage> CaseRun::stages() const {

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "pipeline/case/artefact.h"
+#include "pipeline/stages/scan_source.h"
 #include "reconstruct/cloud/cleaning.h"
 #include "reconstruct/cloud/cloud_survey.h"
 #include "reconstruct/cloud/covering.h"
@@ -13,6 +14,7 @@
 #include "reconstruct/cloud/normal_estimation.h"
 #include "reconstruct/cloud/normal_orientation.h"
 #include "reconstruct/cloud/scanner_positions.h"
+#include "reconstruct/io/triangle_mesh_io.h"
 #include "reconstruct/winding/winding_normals.h"
 #include "reconstruct/winding/winding_outliers.h"
 
@@ -83,7 +85,7 @@ class Preparation {
 
 void Preparation::clean_points() {
   CleaningParams params;
-  params.outliers = !parameters_.cloud().keep_all;
+  params.outliers = !parameters_.cloud().keep_all && !file_.of_triangles;
   const CleaningReport r = clean(cloud_, params, &near_, &covering_);
   const std::size_t n_not_finite = file_.n_points_dropped + r.n_not_finite;
   result_.report.dropped = {.not_finite = n_not_finite,
@@ -133,7 +135,7 @@ void Preparation::find_normals() {
   if (!cloud_.normals.empty() && how != NormalsOf::Estimate) {
     normals().given = true;
     fill_missing();
-    if (how == NormalsOf::Given) {
+    if (how == NormalsOf::Given || file_.of_triangles) {
       normals().consistency = consistency(cloud_, {}, &near_, &covering_);
       return;
     }
@@ -212,7 +214,7 @@ std::size_t Preparation::drop_if(Goes&& goes) {
 
 /// Outliers that only normals show. On scan lines nearest neighbours say nothing.
 void Preparation::drop_off_surface() {
-  if (parameters_.cloud().keep_all || !covering_.is_even()) return;
+  if (parameters_.cloud().keep_all || file_.of_triangles || !covering_.is_even()) return;
   const std::vector<std::uint8_t> is_outlier = winding_outliers(cloud_, near_);
   const std::size_t n = drop_if([&](std::size_t i) { return is_outlier[i] != 0; });
   result_.report.dropped.outliers += n;
@@ -286,7 +288,8 @@ std::vector<RecordedFile> source_inputs(const fs::path& source, const Parameters
     return RecordedFile{name, stamps.of(file)};
   };
   require_regular_file(source);
-  check_scan_head(source);  // gigabytes that are no cloud are not read for their checksum
+  // Gigabytes that are no scan are not read for their checksum.
+  is_of_triangles(source, parameters) ? check_triangles_head(source) : check_scan_head(source);
   std::vector<RecordedFile> inputs = {input("source", source)};
   const std::string& viewpoints = parameters.cloud().orient_from;
   if (!viewpoints.empty() && is_too_large_a_text(viewpoints))

@@ -5,8 +5,10 @@
 
 #include "pipeline/case/interrupt.h"
 #include "pipeline/stages/cloud_preparation.h"
+#include "pipeline/stages/scan_source.h"
 #include "pipeline/stages/stages.h"
 #include "reconstruct/io/point_cloud_io.h"
+#include "reconstruct/io/triangle_mesh_io.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -16,9 +18,10 @@ void run_cloud_stage(const StageContext& context, const fs::path& source) {
   context.progress.report("cloud", "read", 0);
   // Stamped before they are parsed: if a file changes meanwhile, the next run sees other bytes and reads it again.
   const std::vector<RecordedFile> inputs = source_inputs(source, context.parameters, *context.paths.stamps);
-  CloudFile file = read_scan(source);
+  ScanSource scan = read_source(source, context.parameters, {.cancelled = until_interrupted().cancelled});
   context.progress.report("cloud", "prepare", .2);
-  PreparedCloud prepared = prepare_cloud(std::move(file), source, context.parameters);
+  PreparedCloud prepared = prepare_cloud(std::move(scan.cloud), source, context.parameters);
+  if (scan.triangles) add_triangles(*scan.triangles, prepared.report);
   stop_if_interrupted();
   for (const std::string& notice : prepared.report.notices) context.progress.say("cloud: " + notice);
 
@@ -30,15 +33,27 @@ void run_cloud_stage(const StageContext& context, const fs::path& source) {
     out.close();
     if (!out) throw std::system_error(errno ? errno : EIO, std::generic_category(), "stream failed");
   });
+  std::vector<std::string> outputs = {"cloud.ply"};
+  if (scan.triangles) {
+    write_artefact(context.paths.triangles(), [&](const fs::path& temporary) {
+      errno = 0;
+      std::ofstream out(temporary, std::ios::binary);
+      write_ply(out, scan.triangles->boundary);
+      out.close();
+      if (!out) throw std::system_error(errno ? errno : EIO, std::generic_category(), "stream failed");
+    });
+    outputs.push_back("triangles.ply");
+  }
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   StageRun run = run_of_stage(seconds.count(), context.threads);
   run.source = fs::absolute(source).string();
   write_record(
       context.paths,
       {Stage::Cloud, context.parameters.section("cloud"), inputs, {}, to_json(prepared.report), std::move(run)},
-      {"cloud.ply"});
+      outputs);
   context.handover.cloud = std::move(prepared.cloud);
   context.handover.near = std::move(prepared.near);
+  if (scan.triangles) context.handover.triangles = std::move(scan.triangles->boundary);
 }
 
 }  // namespace umtet

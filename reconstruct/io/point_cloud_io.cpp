@@ -2,95 +2,33 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cctype>
-#include <cerrno>
 #include <cmath>
-#include <fstream>
 #include <ostream>
-#include <set>
-#include <system_error>
 
 #include "reconstruct/cloud/cloud_survey.h"
 #include "reconstruct/io/detail/cloud_source.h"
+#include "reconstruct/io/detail/extent.h"
+#include "reconstruct/io/detail/file_bytes.h"
+#include "reconstruct/io/detail/little_endian.h"
 
 namespace umtet {
 namespace {
 
+using detail::check_extent;
 using detail::CloudSource;
+using detail::FileBytes;
 using detail::refuse;
 
 constexpr std::size_t kFewestPoints = 10;  // of a surface; what surveys a scan needs more
-// Sixth powers of lengths, products of volumes, must stay normal doubles; no unit makes a body so large or so small.
-constexpr double kFarthest = 1e50, kSmallest = 1e-50;
-
-/// Headers and rows of numbers have short lines.
-void refuse_endless_line(const CloudSource& head) {
-  const std::string_view begin = head.bytes.substr(0, 1 << 16);
-  if (begin.size() < 1 << 16) return;
-  if (begin.find('\n') != std::string_view::npos || begin.find('\r') != std::string_view::npos) return;
-  refuse(head, fmt::format("line 1 does not end in the first {} bytes: this is no PLY, PCD or text with a point a line",
-                           begin.size()));
-}
-
-/// Reads a file in two steps: a beginning, which tells most of what is no cloud before gigabytes are read, and the
-/// rest.
-class CloudBytes {
- public:
-  /// \throw std::system_error  the file cannot be opened; names it
-  explicit CloudBytes(const std::filesystem::path& file) : file_(file) {
-    if (std::filesystem::is_directory(file)) fail(EISDIR);
-    errno = 0;
-    in_.open(file, std::ios::binary);
-    if (!in_) fail(errno);
-    read(kHead);
-    std::error_code unknown;  // of a pipe
-    const std::uintmax_t size = std::filesystem::file_size(file, unknown);
-    if (!unknown && size > bytes_.size()) n_left_ = size - bytes_.size();
-  }
-  /// What has been read so far.
-  CloudSource source(bool needs_normals) const {
-    return {.name = file_.string(), .bytes = bytes_, .needs_normals = needs_normals, .bytes_left_out = n_left_};
-  }
-  void read_rest() {
-    bytes_.reserve(bytes_.size() + n_left_ + kHead);  // it grows by a whole step before it is cut
-    while (read(kHead)) {
-    }
-    n_left_ = 0;
-  }
-
- private:
-  static constexpr std::size_t kHead = 1 << 20;  // real headers have some hundred bytes, with comments some thousand
-
-  [[noreturn]] void fail(int error) const {
-    throw std::system_error(error != 0 ? error : EIO, std::generic_category(), file_.string());
-  }
-  bool read(std::size_t n) {
-    const std::size_t before = bytes_.size();
-    bytes_.resize(before + n);
-    in_.read(bytes_.data() + before, static_cast<std::streamsize>(n));
-    bytes_.resize(before + static_cast<std::size_t>(in_.gcount()));
-    if (in_.bad()) fail(errno);
-    return in_.gcount() > 0;
-  }
-
-  std::filesystem::path file_;
-  std::ifstream in_;
-  std::string bytes_;
-  std::size_t n_left_ = 0;
-};
 
 enum class Format { Ply, Pcd, Xyz };
 
 /// What the content says, else what the extension says.
 Format format_of(const CloudSource& source, const std::filesystem::path& file) {
   if (source.bytes.empty()) refuse(source, "the file is empty");
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = detail::lower_extension(file);
   const auto starts_with = [&](std::string_view text) { return source.bytes.starts_with(text); };
   if (starts_with("ply\n") || starts_with("ply\r\n")) return Format::Ply;
   if (starts_with("# .PCD") || starts_with("VERSION ")) return Format::Pcd;
@@ -98,12 +36,12 @@ Format format_of(const CloudSource& source, const std::filesystem::path& file) {
   if (extension == ".pcd") return Format::Pcd;
   if (extension == ".xyz" || extension == ".txt" || extension == ".pts") return Format::Xyz;
   refuse(source,
-         "neither PLY nor PCD by its first line, and the extension is none of .xyz .txt .pts: convert it to one "
-         "of these");
+         "neither PLY, PCD nor OFF by its first line, and the extension is none of .xyz .txt .pts .stl .obj .off: "
+         "convert it to one of these");
 }
 
 void check_head(const CloudSource& head, const std::filesystem::path& file) {
-  refuse_endless_line(head);
+  detail::refuse_endless_line(head);
   if (head.bytes_left_out == 0) return;  // then the reader itself is as fast
   switch (format_of(head, file)) {
     case Format::Ply:
@@ -141,34 +79,6 @@ void refuse_points(const CloudSource& source, std::size_t n, Predicate bad, std:
                                what, count));
 }
 
-// A body needs samples in three dimensions, and more than a handful of places.
-void check_extent(const CloudSource& source, const std::vector<Vec3>& points, std::size_t fewest) {
-  constexpr double kFlat = 1e-6;  // rounding of single precision makes a plane 1e-7 of its extent thick
-  std::set<std::array<double, 3>> places;
-  for (std::size_t i = 0; i < points.size() && places.size() < fewest; ++i)
-    places.insert({points[i][0], points[i][1], points[i][2]});
-  if (places.size() < fewest) {
-    refuse(source, fmt::format("{} points at only {} different places: a surface needs at least {}", points.size(),
-                               places.size(), fewest));
-  }
-  Vec3 mean = Vec3::Zero();
-  for (const Vec3& x : points) mean += x / static_cast<double>(points.size());
-  double scale = 0;
-  for (const Vec3& x : points) scale = std::max(scale, (x - mean).cwiseAbs().maxCoeff());
-  if (scale < kSmallest)
-    refuse(source,
-           fmt::format("the points are within {:.3g} of each other, less than 1e-50: give them in a smaller unit",
-                       2 * scale));
-  Mat3 spread = Mat3::Zero();
-  for (const Vec3& x : points) spread += (x - mean) / scale * ((x - mean) / scale).transpose();
-  const Vec3 extent =
-      Eigen::SelfAdjointEigenSolver<Mat3>(spread, Eigen::EigenvaluesOnly).eigenvalues().cwiseMax(0).cwiseSqrt();
-  if (extent[0] < kFlat * extent[2]) {
-    refuse(source, fmt::format("all points lie on one {}: they do not bound a body",
-                               extent[1] < kFlat * extent[2] ? "line" : "plane"));
-  }
-}
-
 void check_numbers(const CloudSource& source, const OrientedPointCloud& cloud) {
   const std::size_t n = cloud.points.size();
   if (n < kFewestPoints) refuse(source, fmt::format("{} points: a surface needs at least {}", n, kFewestPoints));
@@ -176,7 +86,7 @@ void check_numbers(const CloudSource& source, const OrientedPointCloud& cloud) {
       source, n, [&](std::size_t i) { return !cloud.points[i].allFinite(); },
       "has a coordinate that is NaN or infinite");
   refuse_points(
-      source, n, [&](std::size_t i) { return cloud.points[i].cwiseAbs().maxCoeff() > kFarthest; },
+      source, n, [&](std::size_t i) { return cloud.points[i].cwiseAbs().maxCoeff() > detail::kFarthest; },
       "has a coordinate beyond 1e50");
   refuse_points(
       source, n, [&](std::size_t i) { return !cloud.normals[i].allFinite(); }, "has a normal that is NaN or infinite");
@@ -211,7 +121,7 @@ void drop_unusable(const CloudSource& source, CloudFile& file) {
   std::size_t n_kept = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const Vec3& x = cloud.points[i];
-    if (!x.allFinite() || x.cwiseAbs().maxCoeff() > kFarthest) continue;
+    if (!x.allFinite() || x.cwiseAbs().maxCoeff() > detail::kFarthest) continue;
     cloud.points[n_kept] = x;
     if (has_normals) {
       const bool is_missing = !cloud.normals[i].allFinite() || cloud.normals[i].isZero(0);
@@ -233,17 +143,10 @@ void drop_unusable(const CloudSource& source, CloudFile& file) {
   if (has_origins) cloud.origins.resize(n_kept);
 }
 
-template <class T>
-void put(char*& at, T value) {
-  auto bytes = std::bit_cast<std::array<char, sizeof(T)>>(value);
-  if constexpr (std::endian::native == std::endian::big) std::reverse(bytes.begin(), bytes.end());
-  at = std::copy(bytes.begin(), bytes.end(), at);
-}
-
 }  // namespace
 
 CloudFile read_point_cloud(const std::filesystem::path& file) {
-  CloudBytes bytes(file);
+  FileBytes bytes(file);
   check_head(bytes.source(true), file);
   bytes.read_rest();
   const CloudSource source = bytes.source(true);
@@ -254,10 +157,10 @@ CloudFile read_point_cloud(const std::filesystem::path& file) {
   return result;
 }
 
-void check_scan_head(const std::filesystem::path& file) { check_head(CloudBytes(file).source(false), file); }
+void check_scan_head(const std::filesystem::path& file) { check_head(FileBytes(file).source(false), file); }
 
 CloudFile read_scan(const std::filesystem::path& file) {
-  CloudBytes bytes(file);
+  FileBytes bytes(file);
   check_head(bytes.source(false), file);
   bytes.read_rest();
   const CloudSource source = bytes.source(false);
@@ -287,8 +190,8 @@ void write_ply(std::ostream& out, const OrientedPointCloud& cloud) {
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     char* at = row.data();
     for (const Vec3* v : {&cloud.points[i], &cloud.normals[i]})
-      for (int axis = 0; axis < 3; ++axis) put(at, (*v)[axis]);
-    if (has_labels) put(at, std::int32_t{cloud.labels[i]});
+      for (int axis = 0; axis < 3; ++axis) detail::put(at, (*v)[axis]);
+    if (has_labels) detail::put(at, std::int32_t{cloud.labels[i]});
     out.write(row.data(), at - row.data());
   }
 }

@@ -22,6 +22,7 @@ struct CloudFileReport {
   std::size_t n_normals_rescaled = 0;  ///< normals that were not unit to 1e-3 and have been made so
   std::size_t n_points_dropped = 0;    ///< read_scan: coordinates NaN, infinite or beyond 1e50
   std::size_t n_normals_missing = 0;   ///< read_scan: zero, NaN or infinite; they are zero in the cloud
+  bool of_triangles = false;           ///< samples of triangles: their normals are sure, and there is no outlier
   std::optional<Vec3> viewpoint = {};  ///< where the scanner stood: VIEWPOINT of a .pcd, unless it is 0 0 0 1 0 0 0
 };
 

@@ -17,7 +17,8 @@ import sys
 import zlib
 
 STORED = pathlib.Path(__file__).resolve().parent / "files"
-TARGETS = {".ply": "cloud_ply", ".pcd": "cloud_pcd", ".xyz": "cloud_xyz", ".pts": "cloud_xyz", ".vti": "level_set",
+TARGETS = {".stl": "triangles_stl", ".obj": "triangles_obj", ".off": "triangles_off",
+           ".ply": "cloud_ply", ".pcd": "cloud_pcd", ".xyz": "cloud_xyz", ".pts": "cloud_xyz", ".vti": "level_set",
            ".vtu": "mesh_vtu", ".msh": "mesh_msh", ".mesh": "mesh_mesh",
            ".nrrd": "grid_nrrd", ".nii": "grid_nifti", ".vtk": "grid_vtk",
            ".grid": "grid_vti"}  # ImageData, which has any name here: .vti is that of our own level sets
@@ -33,6 +34,7 @@ class Case:
     words: list | None
     strict: list | None
     is_huge: bool = False  # zeros follow the data
+    target: str = None  # of fuzzing, where the suffix does not tell
 
 
 N = 100
@@ -467,7 +469,181 @@ def image_cases():
 
 
 def stl_cases():
+def other_cases():
     yield "what", b"solid", ["unknown extension"]
+
+
+# Eight corners and the two triangles of each side of a cube; read_triangles() may accept what bounds no body.
+CORNERS = [(i, j, k) for i in (0, 1) for j in (0, 1) for k in (0, 1)]
+QUADS = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+TRIANGLES = [t for a, b, c, d in QUADS for t in ((a, b, c), (a, c, d))]
+
+
+def stl_facet(a, b, c):
+    lines = "".join(f"vertex {' '.join(map(str, x))}\n" for x in (a, b, c))
+    return f"facet normal 0 0 0\nouter loop\n{lines}endloop\nendfacet\n"
+
+
+def stl_text(triangles=TRIANGLES, name="cube"):
+    return f"solid {name}\n" + "".join(stl_facet(*(CORNERS[v] for v in t)) for t in triangles) + f"endsolid {name}\n"
+
+
+def stl_binary(count=12, begin=b""):
+    records = b"".join(struct.pack("<12fH", 0, 0, 0, *(c for v in t for c in CORNERS[v]), 0) for t in TRIANGLES)
+    return begin.ljust(80, b"\0") + struct.pack("<I", count) + records
+
+
+def stl_cases():
+    text, binary = stl_text(), stl_binary()
+    yield "ascii", text.encode(), None
+    yield "binary", binary, None
+    yield "binary_solid", stl_binary(begin=b"solid by an exporter"), None
+    yield "two_solids", (stl_text() + stl_text(name="again")).encode(), None
+    yield "upper_case", text.upper().encode(), None
+    yield "no_bytes", b"", ["empty"]
+    yield "binary_cut", binary[:300], ["byte 80", "12 triangles", "cut short"]
+    yield "header_cut", binary[:60], ["60 bytes"]
+    yield "header_only", binary[:80], ["80 bytes"]
+    for count in (13, 1 << 31, (1 << 32) - 1):
+        yield f"count_{count}", stl_binary(count), [f"{count} triangles", "600 bytes follow"]
+    yield "count_0", stl_binary(0), ["0 triangles"]
+    yield "count_11", stl_binary(11), ["after the last item"]
+    for name, number in (("nan", "nan"), ("inf", "-inf"), ("far", "1e60")):
+        yield name, text.replace("vertex 0 0 1", f"vertex 0 {number} 1", 1).encode(), ["face 1 of 12", "NaN"]
+    yield "nan_binary", binary[:96] + struct.pack("<f", math.nan) + binary[100:], ["face 1 of 12", "NaN"]
+    yield "word", text.replace("vertex 0 0 1", "vertex 0 zero 1", 1).encode(), ["line 5", "'zero'"]
+    yield "commas", text.replace("vertex 0 0 1", "vertex 0,5 0 1", 1).encode(), ["line 5", "decimal comma"]
+    yield "two_numbers", text.replace("vertex 0 0 1", "vertex 0 0", 1).encode(), ["line 5", "2 values"]
+    yield "two_corners", text.replace("vertex 0 0 1\n", "", 1).encode(), ["line 6", "2 vertices"]
+    yield "ascii_cut", text[:text.index("facet normal", 700)].encode(), ["cut short"]
+    yield "cut_in_word", text[:700].encode(), ["line "]
+    yield "no_end", text.replace("endsolid cube\n", "").encode(), ["before 'endsolid'"]
+    yield "no_loop", text.replace("outer loop\n", "", 1).encode(), ["line 3", "'outer loop'"]
+    yield "trailing", (text + "what\n").encode(), ["'what'", "'solid'"]
+    yield "no_facets", b"solid nothing\nendsolid\n", ["no faces"]
+    yield "one_facet", stl_text(TRIANGLES[:1]).encode(), ["3 different places"]
+    yield "flat", stl_text(TRIANGLES[:2]).encode(), ["one plane"]
+    yield "one_place", ("solid\n" + 9 * stl_facet((1, 2, 3), (1, 2, 3), (1, 2, 3)) + "endsolid\n").encode(), ["1 different places"]
+    # Corners in three dimensions, but no triangle has an area.
+    yield "no_area", ("solid\n" + "".join(stl_facet(x, x, y) for x in CORNERS for y in CORNERS) + "endsolid\n").encode(), \
+        ["no triangle has an area"], None
+    yield "random", random.Random(5).randbytes(5000), ["byte 80"]
+    yield "random_text", b"solid " + random.Random(6).randbytes(5000), ["line "]
+    yield "zeros", bytes(5000), ["0 triangles"]
+    yield "long_line", b"solid " + (1 << 17) * b"a", ["line 1", "'endsolid'"]
+
+
+def obj_text(vertices=CORNERS, faces=TRIANGLES, more=""):
+    return ("".join(f"v {x} {y} {z}\n" for x, y, z in vertices) + more +
+            "".join(f"f {' '.join(str(v + 1) for v in f)}\n" for f in faces)).encode()
+
+
+def obj_cases():
+    good = obj_text()
+    yield "triangles", good, None
+    yield "quads", obj_text(faces=QUADS), None
+    yield "negative", "".join(f"v {x} {y} {z}\n" for x, y, z in CORNERS).encode() + \
+        "".join(f"f {' '.join(str(v - 8) for v in f)}\n" for f in QUADS).encode(), None
+    # Nothing that a file names is opened.
+    yield "hostile_names", obj_text(more="mtllib ../../../../etc/passwd /dev/zero\nusemtl " + 3000 * "../" + "\ng \x1b[31m\no " +
+                                    9999 * "%s" + "\nmtllib\nusemtl\ng\nmaplib /dev/random\ncall rm -rf\n".replace("call rm -rf\n", "")), None
+    yield "calls_a_program", obj_text(more="call ../evil.obj\n"), ["line 9", "'call'"]
+    yield "no_bytes", b"", ["empty"]
+    yield "no_faces", obj_text(faces=[]), ["no faces"]
+    yield "no_vertices", obj_text(vertices=[]), ["face 1 of 12", "0 vertices"]
+    for index in ("0", "1.5", "x", "", "99999999999999999999", "-99999999999999999999", "0x1"):
+        yield f"index_{index}", good + f"f 1 2 {index}/1\n".encode(), ["line 21"]
+    for index in (9, 1 << 31, (1 << 63) - 1):
+        yield f"index_{index}", good + f"f 1 2 {index}\n".encode(), ["face 13 of 13", f"vertex {index - 1} ", "8 vertices"]
+    yield "index_back", good + b"f 1 2 -9\n", ["line 21", "'-9'", "8 vertices"]
+    yield "two_corners", good + b"f 1 2\n", ["line 21", "2 corners"]
+    yield "many_corners", good + b"f" + 501 * b" 1" + b"\n", ["face 13 of 13", "501 corners"]
+    yield "two_numbers", b"v 1 2\n" + good, ["line 1", "2 values"]
+    yield "word", good.replace(b"v 0 0 1", b"v 0 o 1"), ["line 2", "'o'"]
+    yield "nan", good.replace(b"v 0 0 1", b"v 0 nan 1"), ["face 1 of 12", "NaN"]
+    yield "unused_nan", good + b"v nan inf nan\n", None
+    yield "cut", good[:len(good) - 5], ["line 20"]
+    yield "statement", good + b"faces 1 2 3\n", ["line 21", "'faces'"]
+    yield "flat", obj_text(faces=TRIANGLES[:2]), ["one plane"]
+    yield "no_area", obj_text(faces=[(i, i, j) for i in range(8) for j in range(8)]), ["no triangle has an area"], None
+    yield "endless_continuation", good + 40000 * b"f \\\n", ["bytes long"]
+    yield "continued_at_the_end", good + b"f 1 2 4 \\", None
+    yield "long_line", good + b"f" + 99999 * b" 1" + b"\n", ["bytes long"]
+    yield "random", random.Random(7).randbytes(5000), ["line 1"]
+    yield "zeros", bytes(5000), ["line 1"]
+
+
+def off_text(counts="8 12 0", vertices=CORNERS, faces=TRIANGLES, first="OFF"):
+    return (f"{first}\n{counts}\n" + "".join(f"{x} {y} {z}\n" for x, y, z in vertices) +
+            "".join(f"{len(f)} {' '.join(map(str, f))}\n" for f in faces)).encode()
+
+
+def off_cases():
+    good = off_text()
+    roomy = good.replace(b"0 0 1\n", b"0.00000000000000000000000000000 0 1\n", 1)  # counts that are off by one could be
+    yield "triangles", good, None
+    yield "quads", off_text("8 6 12", faces=QUADS), None
+    yield "no_bytes", b"", ["empty"]
+    yield "only_magic", b"OFF\n", ["ends before the numbers"]
+    yield "binary", b"OFF BINARY\n" + bytes(100), ["binary OFF"]
+    yield "four_dimensions", off_text(first="4OFF"), ["'4OFF'"]
+    for counts in ("4000000000 12 0", "8 2147483648 0", "18446744073709551615 18446744073709551615 0"):
+        yield f"counts_{counts.replace(' ', '_')}", off_text(counts), ["line 2", counts.split()[1] + " faces", "bytes are left"]
+    for counts in ("-8 12 0", "8", "8 x 0", "8 12 0 7", "99999999999999999999 1 0"):
+        yield f"counts_{counts.replace(' ', '_')}", off_text(counts), ["line 2"]
+    yield "few_announced", off_text("8 11 0"), ["line 22", "behind the last of 11 faces"]
+    yield "many_announced", roomy.replace(b"8 12", b"9 12"), ["ends before the last face"]
+    yield "no_faces", off_text("8 0 0", faces=[]), ["no faces"]
+    yield "no_vertices", off_text("0 12 0", vertices=[]), ["line 3", "one of 0 vertices"]
+    yield "cut", roomy[:len(roomy) - 10], ["line 21"]
+    yield "cut_to_size", good[:len(good) - 10], ["line 2", "bytes are left"]
+    for index in ("8", "-1", "1.5", "x", "2147483648", "99999999999999999999"):
+        yield f"index_{index}", good.replace(b"3 0 1 3", f"3 0 1 {index}".encode()), ["line 11", f"'{index}'"]
+    for n in ("4", "4000000000", "18446744073709551615", "-3", "x"):
+        yield f"corners_{n}", good.replace(b"3 0 1 3", f"{n} 0 1 3".encode()), ["line 11", f"'{n}'"]
+    yield "two_corners", roomy.replace(b"3 0 1 3", b"2 0 1"), ["face 1 of 12", "2 corners"]
+    yield "nan", good.replace(b"0 0 1\n", b"0 0 nan\n", 1), ["face 1 of 12", "NaN"]
+    yield "word", good.replace(b"0 0 1\n", b"0 0 o\n", 1), ["line 4", "'o'"]
+    yield "flat", off_text("8 2 0", faces=TRIANGLES[:2]), ["one plane"]
+    yield "random", random.Random(8).randbytes(5000), ["line 1"]
+    yield "zeros", bytes(5000), ["line 1"]
+
+
+def faces_ply(count=12, form="ascii", lists="list uchar int vertex_indices"):
+    head = f"ply\nformat {form} 1.0\nelement vertex 8\n" + "".join(f"property float {a}\n" for a in "xyz")
+    return f"{head}element face {count}\nproperty {lists}\nend_header\n".encode()
+
+
+def face_cases():
+    """PLY whose faces are the surface."""
+    v = "".join(f"{x} {y} {z}\n" for x, y, z in CORNERS).encode()
+    f = "".join(f"3 {a} {b} {c}\n" for a, b, c in TRIANGLES).encode()
+    b = b"".join(struct.pack("<3f", *x) for x in CORNERS)
+    bf = b"".join(struct.pack("<B3i", 3, *t) for t in TRIANGLES)
+    little = "binary_little_endian"
+    yield "faces_ascii", faces_ply() + v + f, None
+    yield "faces_binary", faces_ply(form=little) + b + bf, None
+    for count in (1 << 31, 4000000000, (1 << 64) - 1):
+        yield f"faces_count_{count}", faces_ply(count, little) + b + bf, [f"{count} x face", "bytes are left"]
+        yield f"faces_count_{count}_ascii", faces_ply(count) + v + f, [f"{count} x face", "bytes are left"]
+    yield "faces_13", faces_ply(13, little) + b + bf, ["face"]
+    yield "faces_11", faces_ply(11, little) + b + bf, ["after the last item"]
+    yield "faces_cut", (faces_ply(form=little) + b + bf)[:-5], ["face 12 of 12", "cut short"]
+    yield "faces_cut_ascii", faces_ply() + v + f[:-10], ["line "]
+    for index in (8, -1, 2147483647):
+        yield f"faces_index_{index}", faces_ply(form=little) + b + bf[:-4] + struct.pack("<i", index), \
+            ["face 12 of 12", f"vertex {index} ", "8 vertices"]
+    yield "faces_index_nan", faces_ply(lists="list uchar float vertex_indices") + v + f.replace(b"3 0 1 3", b"3 0 1 nan"), \
+        ["face 1 of 12", "nan"]
+    yield "faces_list_255", faces_ply(form=little) + b + b"\xff" + bf[1:], ["face 1 of 12"]
+    yield "faces_list_2", faces_ply() + v + f.replace(b"3 0 1 3", b"2 0 1"), ["face 1 of 12", "2 corners"]
+    yield "faces_list_501", faces_ply(lists="list uint int vertex_index") + v + f.replace(b"3 0 1 3", b"501" + 501 * b" 1"), \
+        ["face 1 of 12", "501 values"]
+    yield "faces_nan", faces_ply() + v.replace(b"0 0 1", b"0 0 nan") + f, ["face 1 of 12", "NaN"]
+    yield "faces_no_y", faces_ply().replace(b"float y", b"float u") + v + f, ["no property y"]
+    yield "faces_label", faces_ply(lists="list uchar int vertex_indices\nproperty float label") + v + \
+        f.replace(b"\n", b" 1.5\n"), ["face 1 of 12", "label"]
+    yield "faces_flat", faces_ply(2) + v + f[:16], ["one plane"]
 
 
 # As ParaView and others write them. VTK divides by the size of a part before it is compressed.
@@ -486,11 +662,11 @@ STORED_STRICT = {"counted_labels.xyz": ["line 2", "4 columns"], "bare_crlf.ply":
 
 
 def stored_cases():
-    for target in sorted(set(TARGETS.values())):
+    for target in sorted({*TARGETS.values(), "triangles_ply"}):
         for file in sorted((STORED / target).iterdir()):
             is_cloud = target.startswith("cloud")  # of twelve points
             words = STORED_WORDS.get(file.name, ["12 points", "30"] if is_cloud else None)
-            yield Case(f"{target}_{file.name}", file.read_bytes(), words, STORED_STRICT.get(file.name, None if is_cloud else words))
+            yield Case(f"{target}_{file.name}", file.read_bytes(), words, STORED_STRICT.get(file.name, None if is_cloud else words), target=target)
 
 
 # What is nothing by its beginning, and how it begins.
@@ -506,6 +682,16 @@ HUGE = [
     ("noise.pcd", b"\x8fU\n", ["no line of a PCD header"]),
     ("no_x.pcd", b"VERSION .7\nFIELDS y\nSIZE 4\nTYPE F\nCOUNT 1\nWIDTH 9\nHEIGHT 1\nPOINTS 9\nDATA binary\n", ["field x"]),
     ("noise.xyz", b"1 2 3 0 0 1\nU 2\n", ["line 2"]),
+    ("zeros.stl", b"", ["0 triangles"]),
+    ("zeros.obj", b"", ["line 1 does not end"]),
+    ("zeros.off", b"", ["line 1 does not end"]),
+    ("count.stl", bytes(80) + b"\x01", ["1 triangles", "the count is wrong"]),
+    ("solid.stl", b"solid\nfacet normal 0 0 1\nouter\n", ["line 3", "'outer'"]),
+    ("noise.obj", b"v 1 2 3\nU\n", ["line 2", "'U'"]),
+    ("count.off", b"OFF\n99999999999 1 0\n", ["line 2", "99999999999 vertices"]),
+    ("faces.ply", b"ply\nformat binary_little_endian 1.0\nelement vertex 99999999999\nproperty float x\nproperty float y\n"
+                  b"property float z\nelement face 99999999999\nproperty list uchar int vertex_index\nend_header\n",
+     ["99999999999 x vertex"]),
     ("zeros.vtu", b"", ["no <VTKFile"]),
     ("zeros.msh", b"", ["no $MeshFormat"]),
     ("zeros.mesh", b"", ["no MeshVersionFormatted"]),
@@ -518,10 +704,14 @@ HUGE = [
 
 
 def made_cases():
+    for name, data, words, *strict in face_cases():
+        yield Case(name + ".ply", data, words, *(strict or [words]), target="triangles_ply")
     for suffix, family in ((".ply", ply_cases), (".pcd", pcd_cases), (".xyz", xyz_cases), (".pts", pts_cases),
                            (".las", las_cases), (".msh", msh_cases), (".mesh", mesh_cases), (".vtu", vtu_cases),
                            (".stl", stl_cases), (".nrrd", nrrd_cases), (".nii", nifti_cases), (".vtk", vtk_cases),
                            (".grid", image_cases)):
+                           (".stl", stl_cases), (".obj", obj_cases), (".off", off_cases),
+                           (".tets", other_cases)):
         for name, data, words, *strict in family():
             yield Case(name + suffix, data, words, *(strict or [words]))
 
@@ -536,8 +726,9 @@ def cases():
 def main():
     for case in made_cases():
         suffix = pathlib.Path(case.name).suffix
-        if suffix in TARGETS and len(case.data) <= 20000:  # libFuzzer's -max_len, too
-            folder = pathlib.Path(sys.argv[1]) / TARGETS[suffix]
+        target = case.target or TARGETS.get(suffix)
+        if target and len(case.data) <= 20000:  # libFuzzer's -max_len, too
+            folder = pathlib.Path(sys.argv[1]) / target
             folder.mkdir(parents=True, exist_ok=True)
             (folder / case.name).write_bytes(case.data)
 

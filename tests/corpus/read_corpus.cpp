@@ -10,6 +10,7 @@
 #include "reconstruct/io/grid_io.h"
 #include "reconstruct/io/level_set_io.h"
 #include "reconstruct/io/point_cloud_io.h"
+#include "reconstruct/io/triangle_mesh_io.h"
 
 namespace {
 
@@ -30,12 +31,14 @@ int main(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::filesystem::path file = argv[i];
     const std::string kind = file.extension();
-    if (kind == ".vtu" || kind == ".msh" || kind == ".mesh" || kind == ".stl") {
+    if (kind == ".vtu" || kind == ".msh" || kind == ".mesh" || kind == ".tets") {
       answer<umtet::MeshFileRefused>(file, "read_tet_mesh", umtet::read_tet_mesh);
     } else if (kind == ".vti") {
       answer<umtet::LevelSetRefused>(file, "read_level_set", umtet::read_level_set);
     } else if (kind == ".nrrd" || kind == ".nii" || kind == ".vtk" || kind == ".grid") {
       answer<umtet::GridRefused>(file, "read_grid", [](const auto& path) { return umtet::read_grid(path); });
+    } else if (umtet::holds_triangles(file)) {
+      answer<umtet::CloudRefused>(file, "read_triangles", umtet::read_triangles);
     } else {
       answer<umtet::CloudRefused>(file, "read_scan", umtet::read_scan);
       answer<umtet::CloudRefused>(file, "read_point_cloud", umtet::read_point_cloud);

@@ -40,9 +40,10 @@ class Reference(unittest.TestCase):
         self.assertEqual(sorted(set(found) - self.words), [], f"{where}: not in docs/reference.md")
 
     def test_documents_and_fields_are_named(self):
-        duck, lens = str(self.at / "duck"), str(self.at / "lens")
+        duck, lens, cube = str(self.at / "duck"), str(self.at / "lens"), str(self.at / "cube")
         calls = (["run", str(REPOSITORY / "data/clouds/duck.ply"), "-o", duck, "--h", ".12", "--order", "2"],
-                 ["mesh", "--implicit", "x^2+y^2+(z/0.2)^2-1", "--box=-1.9,-1.9,-1.2,1.9,1.9,1.2", "--h", ".2", "-o", lens])
+                 ["mesh", "--implicit", "x^2+y^2+(z/0.2)^2-1", "--box=-1.9,-1.9,-1.2,1.9,1.9,1.2", "--h", ".2", "-o", lens],
+                 ["run", str(REPOSITORY / "tests/corpus/files/triangles_obj/cube.obj"), "-o", cube, "--h", ".08"])
         for call in calls:
             document = json.loads(run(*call, "--json"))
             self.expect(keys(document, {"seconds"}), "--json")

@@ -1,0 +1,124 @@
+#include "pipeline/domain/given_triangles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "mesh/certify/quality_report.h"
+#include "pipeline/domain/domain.h"
+
+namespace umtet {
+namespace {
+
+// Pieces of large triangles are not more than so many times the triangles and faces, and some.
+constexpr std::size_t kPieces = 4, kPiecesAnyway = 100000;
+
+double edge2(const TriangleMesh& mesh, const Triangle& t, int k) {
+  return (mesh.V[t[k]] - mesh.V[t[(k + 1) % 3]]).squaredNorm();
+}
+
+int longest_edge(const TriangleMesh& mesh, const Triangle& t) {
+  int longest = 0;
+  for (int k = 1; k < 3; ++k)
+    if (edge2(mesh, t, k) > edge2(mesh, t, longest)) longest = k;
+  return longest;
+}
+
+struct Spread {
+  double rms = 0, p99 = 0, max = 0;
+  Vec3 farthest = Vec3::Zero();
+};
+
+Spread spread_of(const std::vector<Vec3>& x, std::vector<double> d) {
+  const auto farthest = std::max_element(d.begin(), d.end()) - d.begin();
+  Spread s{.max = d[farthest], .farthest = x[farthest]};
+  std::sort(d.begin(), d.end());
+  s.rms = std::sqrt(std::transform_reduce(d.begin(), d.end(), 0., std::plus<>(), [](double v) { return v * v; }) /
+                    static_cast<double>(d.size()));
+  s.p99 = quantile(d, .99);
+  return s;
+}
+
+/// Cuts the longest edge of what is longer than sqrt(most2) until nothing is, or there are so many.
+TriangleMesh cut(const TriangleMesh& mesh, double most2, std::size_t most_pieces) {
+  TriangleMesh pieces{mesh.V, {}, {}};
+  for (std::vector<Triangle> left = mesh.F; !left.empty();) {
+    const Triangle t = left.back();
+    left.pop_back();
+    const int k = longest_edge(pieces, t);
+    if (!(edge2(pieces, t, k) > most2) || pieces.F.size() + left.size() >= most_pieces) {
+      pieces.F.push_back(t);
+      continue;
+    }
+    const int a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3], middle = static_cast<int>(pieces.V.size());
+    pieces.V.push_back((pieces.V[a] + pieces.V[b]) / 2);
+    left.push_back({a, middle, c});
+    left.push_back({middle, b, c});
+  }
+  return pieces;
+}
+
+/// Those of which no part is inside of the body, with their vertices.
+TriangleMesh whole(const TriangleMesh& mesh) {
+  TriangleMesh some;
+  std::vector<int> number(mesh.V.size(), -1);
+  for (std::size_t f = 0; f < mesh.F.size(); ++f) {
+    if (!mesh.labels.empty() && mesh.labels[f] == 0) continue;
+    Triangle t = mesh.F[f];
+    for (int& v : t) {
+      if (number[v] < 0) {
+        number[v] = static_cast<int>(some.V.size());
+        some.V.push_back(mesh.V[v]);
+      }
+      v = number[v];
+    }
+    some.F.push_back(t);
+  }
+  return some;
+}
+
+}  // namespace
+
+std::shared_ptr<const GivenTriangles> given_triangles(TriangleMesh mesh, const Vec3& shift) {
+  for (Vec3& x : mesh.V) x -= shift;
+  SurfaceDistance distance(mesh.V, mesh.F);
+  return std::make_shared<const GivenTriangles>(GivenTriangles{std::move(mesh), std::move(distance)});
+}
+
+TriangleDistances triangle_distances(const Domain& domain, const std::vector<Vec3>& V,
+                                     const std::vector<Triangle>& faces, const SurfaceDistance& surface,
+                                     const Context& context) {
+  const GivenTriangles& given = *domain.triangles;
+  std::vector<std::uint8_t> is_used(V.size(), 0);
+  std::vector<Vec3> x;
+  double edge2_sum = 0;
+  for (const Triangle& f : faces) {
+    x.push_back((V[f[0]] + V[f[1]] + V[f[2]]) / 3);
+    edge2_sum += (V[f[0]] - V[f[1]]).squaredNorm();
+    for (const int v : f) is_used[v] = 1;
+  }
+  for (std::size_t v = 0; v < V.size(); ++v)
+    if (is_used[v]) x.push_back(V[v]);
+  const Spread there = spread_of(x, given.distance.distances(x, context));
+
+  // Pieces not larger than the faces.
+  const double edge2 = edge2_sum / static_cast<double>(faces.size());
+  const TriangleMesh pieces =
+      cut(whole(given.mesh), edge2, kPieces * (given.mesh.F.size() + faces.size()) + kPiecesAnyway);
+  std::vector<Vec3> y = domain.cloud.points;
+  y.insert(y.end(), pieces.V.begin(), pieces.V.end());
+  for (std::size_t f = 0; f < pieces.F.size(); ++f) y.push_back(pieces.centroid(f));
+  const Spread back = spread_of(y, surface.distances(y, context));
+  return {.n_triangles = given.mesh.F.size(),
+          .rms = there.rms,
+          .p99 = there.p99,
+          .max = there.max,
+          .farthest = there.farthest + domain.shift,
+          .rms_back = back.rms,
+          .p99_back = back.p99,
+          .max_back = back.max,
+          .farthest_back = back.farthest + domain.shift};
+}
+
+}  // namespace umtet

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "reconstruct/io/detail/cloud_source.h"
+#include "reconstruct/io/detail/ply_header.h"
+#include "reconstruct/io/detail/text_rows.h"
+
+namespace umtet::detail {
+
+/// Takes the content of one list of an item.
+struct PlyList {
+  std::size_t property = 0;  ///< which property of the element it is
+  std::size_t most = 0;      ///< values; longer lists are refused
+  std::vector<double> values;
+};
+
+/// Reads items one after the other; values get one number per property (a list gives its length, its content is
+/// stepped over unless it is the `wanted` one).
+class BinaryBody {
+ public:
+  BinaryBody(const CloudSource& source, const PlyHeader& header);
+
+  /// The least an item takes.
+  static std::size_t bytes_per_item(const PlyElement& element);
+  std::size_t bytes_left() const { return source_.size() - at_; }
+  std::string place() const;
+  void read_item(const PlyElement& element, std::uint64_t item, std::vector<double>& values, PlyList* wanted = nullptr);
+  void finish() { refuse_surplus(source_, at_); }
+
+ private:
+  const char* take(std::size_t n, const PlyElement& element, std::uint64_t item);
+
+  const CloudSource& source_;
+  std::size_t at_;
+  bool swap_;
+};
+
+/// The same for text: one item per line.
+class AsciiBody {
+ public:
+  AsciiBody(const CloudSource& source, const PlyHeader& header)
+      : source_(source), lines_(source.bytes, header.body, header.body_line) {}
+
+  static std::size_t bytes_per_item(const PlyElement& element) { return 2 * element.properties.size(); }
+  /// The last line may lack its end.
+  std::size_t bytes_left() const { return source_.size() - lines_.offset() + 1; }
+  std::string place() const;
+  void read_item(const PlyElement& element, std::uint64_t item, std::vector<double>& values, PlyList* wanted = nullptr);
+  void finish() { refuse_surplus(source_, lines_.offset()); }
+
+ private:
+  [[noreturn]] void wrong_length(const PlyElement& element, std::uint64_t item, std::string_view what);
+
+  const CloudSource& source_;
+  LineReader lines_;
+  std::vector<std::string_view> tokens_;
+};
+
+/// "vertex 3 of 8".
+std::string place_of(const PlyElement& element, std::uint64_t item);
+
+/// Before memory is asked for. \throw CloudRefused  the header announces more than the file can hold
+template <class Body>
+void check_count(const CloudSource& source, const Body& body, const PlyElement& element);
+
+}  // namespace umtet::detail

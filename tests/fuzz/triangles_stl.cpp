@@ -1,0 +1,6 @@
+#include "tests/fuzz/read_triangles.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const umtet::fuzz::InputFile file(".stl");
+  return umtet::fuzz::read_triangle_file(file, data, size);
+}

@@ -1,0 +1,93 @@
+#pragma once
+
+// Closed surfaces of triangles, and what is done to them.
+
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <random>
+
+#include "reconstruct/triangles/face_patches.h"
+#include "reconstruct/triangles/triangle_mesh.h"
+
+namespace umtet::test {
+
+/// [0, 1]^3, outward.
+inline TriangleMesh cube() {
+  TriangleMesh mesh;
+  for (int i = 0; i < 8; ++i) mesh.V.emplace_back(i >> 2 & 1, i >> 1 & 1, i & 1);
+  for (const auto& [a, b, c, d] : std::initializer_list<std::array<int, 4>>{
+           {0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}}) {
+    mesh.F.push_back({a, b, c});
+    mesh.F.push_back({a, c, d});
+  }
+  return mesh;
+}
+
+/// Around z, of radii 1 and .4; 2 n m triangles.
+inline TriangleMesh torus(int n = 48, int m = 24) {
+  TriangleMesh mesh;
+  const double pi = std::numbers::pi;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < m; ++j) {
+      const double u = 2 * pi * i / n, v = 2 * pi * j / m, r = 1 + .4 * std::cos(v);
+      mesh.V.emplace_back(r * std::cos(u), r * std::sin(u), .4 * std::sin(v));
+    }
+  const auto at = [&](int i, int j) { return i % n * m + j % m; };
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < m; ++j) {
+      mesh.F.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      mesh.F.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  return mesh;
+}
+
+inline TriangleMesh moved(TriangleMesh mesh, const Vec3& by, double scale = 1) {
+  for (Vec3& x : mesh.V) x = scale * x + by;
+  return mesh;
+}
+
+inline TriangleMesh together(TriangleMesh a, const TriangleMesh& b) {
+  const auto n = static_cast<int>(a.V.size());
+  a.V.insert(a.V.end(), b.V.begin(), b.V.end());
+  for (const Triangle& f : b.F) a.F.push_back({f[0] + n, f[1] + n, f[2] + n});
+  return a;
+}
+
+inline TriangleMesh inside_out(TriangleMesh mesh) {
+  for (std::size_t f = 0; f < mesh.F.size(); ++f) turn_face(mesh, f);
+  return mesh;
+}
+
+/// Every triangle has corners of its own, off their places by up to `off` along each axis.
+inline TriangleMesh split(const TriangleMesh& mesh, double off) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> jitter(-off, off);
+  TriangleMesh soup;
+  for (const Triangle& f : mesh.F) {
+    const auto n = static_cast<int>(soup.V.size());
+    for (const int v : f) soup.V.push_back(mesh.V[v] + Vec3(jitter(random), jitter(random), jitter(random)));
+    soup.F.push_back({n, n + 1, n + 2});
+  }
+  return soup;
+}
+
+/// About a share p of them turned.
+inline TriangleMesh some_turned(TriangleMesh mesh, double p) {
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> dice(0, 1);
+  for (std::size_t f = 0; f < mesh.F.size(); ++f)
+    if (dice(random) < p) turn_face(mesh, f);
+  return mesh;
+}
+
+inline TriangleMesh some_removed(const TriangleMesh& mesh, double p) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> dice(0, 1);
+  TriangleMesh rest{mesh.V, {}, {}};
+  for (const Triangle& f : mesh.F)
+    if (dice(random) >= p) rest.F.push_back(f);
+  return rest;
+}
+
+}  // namespace umtet::test
