@@ -51,7 +51,7 @@ set(reconstruct_requires "eigen3 tbb")
 set(reconstruct_libs "-lflann_cpp -llz4")  # flann.pc names HDF5, which only its own files use
 set(mesh_io_requires "umtet-mesh fmt")
 set(mesh_io_libs "-lOpenMeshCore -lhdf5_serial ${vtk}")  # hdf5-serial.pc names a folder that the linker does not search
-set(cloud_io_requires "umtet-reconstruct fmt libxxhash")
+set(cloud_io_requires "umtet-reconstruct fmt libxxhash zlib")
 set(cloud_io_libs ${vtk})
 if(umtet_has_pcl)
   string(PREPEND cloud_io_libs "-lpcl_io -lpcl_common ")

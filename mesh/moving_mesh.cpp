@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "mesh/certify/certificate_memory.h"
+#include "mesh/core/asking_psi.h"
 #include "mesh/fast/fast_mesh.h"
 #include "mesh/submesh/inside_walk.h"
 
@@ -158,9 +159,9 @@ bool UniversalMesh::Impl::has_stayed(ImplicitFunctionRef psi, std::size_t& n_eva
   std::atomic<bool> stayed = true;
   for (std::size_t begin = 0; begin < boundary.size() && stayed; begin += kVerticesPerCheck) {
     const std::size_t end = std::min(boundary.size(), begin + kVerticesPerCheck);
-    tbb::parallel_for(begin, end, [&](std::size_t k) {
+    for_each_asking(psi, end - begin, end - begin, {}, [&](std::size_t k) {
       Vec3 gradient;
-      const double value = psi.value(now.mesh.final[boundary[k]], gradient);
+      const double value = psi.value(now.mesh.final[boundary[begin + k]], gradient);
       if (!(std::abs(value) <= tol * gradient.norm())) stayed.store(false, std::memory_order_relaxed);
     });
     n_evaluations += end - begin;

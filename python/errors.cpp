@@ -11,6 +11,7 @@
 #include "pipeline/expression/expression.h"
 #include "python/arguments.h"
 #include "python/jobs.h"
+#include "reconstruct/io/grid_io.h"
 #include "reconstruct/io/point_cloud_io.h"
 #include "reconstruct/solve/solve_error.h"
 
@@ -58,6 +59,8 @@ void register_errors(py::module_& m) {
       raise(reconstruction, e.what(), {{"status", "SolveError"}});
     } catch (const SolveTooLarge& e) {
       raise(reconstruction, e.what(), {{"status", "SolveTooLarge"}});
+    } catch (const GridRefused& e) {
+      PyErr_SetString(PyExc_ValueError, e.what());
     } catch (const CloudRefused& e) {
       raise(reconstruction, e.what(), {{"status", "CloudRefused"}});
     } catch (const Cancelled& e) {

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace umtet::python {
 namespace py = pybind11;
@@ -17,103 +18,171 @@ using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 // Central differences err by step^2 and by eps / step: least at the cube root of eps; second ones at the fourth root.
 constexpr double kStep = 6e-6, kWideStep = 1.2e-4;
 
-Array array_of(const py::handle& result, py::ssize_t size, const char* what) {
-  Array a = Array::ensure(result);
+/// The numbers of a result.
+void read_numbers(const py::handle& result, std::size_t size, const char* what, std::vector<double>& out) {
+  const Array a = Array::ensure(result);
   if (!a || result.is_none()) {  // numpy makes a NaN of None
     PyErr_Clear();
     throw std::invalid_argument(std::string("psi: its ") + what + " are no array of numbers");
   }
-  if (a.size() != size) {
+  if (static_cast<std::size_t>(a.size()) != size) {
     throw std::invalid_argument(std::string("psi: its ") + what + " are " + std::to_string(a.size()) +
                                 " numbers, not " + std::to_string(size) + ": it is called with points (n, 3)");
   }
-  return a;
+  out.insert(out.end(), a.data(), a.data() + size);
 }
+
+/// New ones: the callable may keep them.
+Array array_of(std::span<const Vec3> x) {
+  Array points({static_cast<py::ssize_t>(x.size()), py::ssize_t{3}});
+  double* p = points.mutable_data();
+  for (const Vec3& at : x) p = std::copy_n(at.data(), 3, p);
+  return points;
+}
+Array array_of(const Vec3& x) { return Array(py::ssize_t{3}, x.data()); }
+
+/// How many derivatives a result has beside values.
+int order_of(const py::object& result) {
+  const int order = py::isinstance<py::tuple>(result) ? static_cast<int>(py::len(result)) - 1 : 0;
+  if (order < 0 || order > 2) throw std::invalid_argument("psi: a tuple of 1 to 3 arrays is wanted");
+  return order;
+}
+
+int wanted_of(const Question& question) { return question.hessian ? 2 : question.gradient ? 1 : 0; }
+
+// Of values alone: the centre; six neighbours for the gradient; six wider ones and twelve on the diagonals for the
+// Hessian. Of gradients: the centre and six neighbours.
+constexpr std::array<std::size_t, 3> kPointsByValues = {1, 7, 25};
+constexpr std::size_t kPointsByGradients = 7;
+constexpr std::array<std::pair<int, int>, 3> kPairs = {{{0, 1}, {0, 2}, {1, 2}}};
 
 }  // namespace
 
 struct Function::Answer {
-  Array values;
-  std::optional<Array> gradients, hessians;
+  std::vector<double> values, gradients, hessians;
 };
 
 Function::Function(py::object callable, const Vec3& probe, double length)
     : callable_(std::move(callable)), step_(kStep * length), wide_step_(kWideStep * length) {
-  Array point({py::ssize_t{1}, py::ssize_t{3}});
-  std::copy_n(probe.data(), 3, point.mutable_data());
-  const py::object result = callable_(point);
-  if (py::isinstance<py::tuple>(result)) {
-    order_ = static_cast<int>(py::len(result)) - 1;
-    if (order_ < 0 || order_ > 2) throw std::invalid_argument("psi: a tuple of 1 to 3 arrays is wanted");
+  try {
+    try_at(probe);
+  } catch (py::error_already_set& e) {
+    if (!e.matches(PyExc_Exception) || !takes_points(probe)) throw;
+  } catch (const std::invalid_argument&) {
+    if (!takes_points(probe)) throw;
   }
-  call(&probe, 1);
+  fibers_ = std::make_unique<Fibers>([this](std::span<Question* const> questions) { answer(questions); });
 }
 
-Function::Answer Function::call(const Vec3* x, py::ssize_t n) const {
-  Array points({n, py::ssize_t{3}});  // a new one: the callable may keep it
-  double* p = points.mutable_data();
-  for (py::ssize_t k = 0; k < n; ++k) p = std::copy_n(x[k].data(), 3, p);
-  const py::object result = callable_(points);
-  const bool is_tuple = py::isinstance<py::tuple>(result);
-  if (order_ != (is_tuple ? static_cast<int>(py::len(result)) - 1 : 0)) {
-    throw std::invalid_argument("psi: it returns now more arrays, now fewer");
+/// At two points: nothing that is made for one point (3,) gives two values of them.
+void Function::try_at(const Vec3& x) {
+  const std::array<Vec3, 2> points = {x, x + Vec3::Constant(step_)};
+  order_ = order_of(callable_(takes_blocks_ ? array_of(points) : array_of(x)));
+  call(points, order_);
+}
+
+bool Function::takes_points(const Vec3& x) {
+  takes_blocks_ = false;
+  try {
+    try_at(x);
+  } catch (const std::exception&) {
+    return false;  // what was wrong with the block is what the user is told
   }
-  if (!is_tuple) return {array_of(result, n, "values"), std::nullopt, std::nullopt};
-  const auto parts = py::reinterpret_borrow<py::tuple>(result);
-  Answer answer{array_of(parts[0], n, "values"), std::nullopt, std::nullopt};
-  if (order_ > 0) answer.gradients = array_of(parts[1], 3 * n, "gradients");
-  if (order_ > 1) answer.hessians = array_of(parts[2], 9 * n, "Hessians");
+  return true;
+}
+
+Function::Answer Function::call(std::span<const Vec3> x, int wanted) const {
+  Answer answer;
+  const auto ask = [&](const Array& points, std::size_t n) {
+    const py::object result = callable_(points);
+    if (order_ != order_of(result)) throw std::invalid_argument("psi: it returns now more arrays, now fewer");
+    if (!py::isinstance<py::tuple>(result)) return read_numbers(result, n, "values", answer.values);
+    const auto parts = py::reinterpret_borrow<py::tuple>(result);
+    read_numbers(parts[0], n, "values", answer.values);
+    if (wanted > 0) read_numbers(parts[1], 3 * n, "gradients", answer.gradients);
+    if (wanted > 1) read_numbers(parts[2], 9 * n, "Hessians", answer.hessians);
+  };
+  if (takes_blocks_) {
+    ask(array_of(x), x.size());
+  } else {
+    for (const Vec3& at : x) ask(array_of(at), 1);
+  }
   return answer;
 }
 
 double Function::evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const {
-  const py::gil_scoped_acquire gil;
-  const int wanted = hessian ? 2 : gradient ? 1 : 0;
-  if (wanted > order_) return order_ == 1 ? by_gradients(x, gradient, hessian) : by_values(x, gradient, hessian);
-  const Answer answer = call(&x, 1);
-  if (gradient) *gradient = Eigen::Map<const Vec3>(answer.gradients->data());
-  if (hessian) *hessian = Eigen::Map<const Mat3>(answer.hessians->data());
-  return *answer.values.data();
-}
-
-double Function::by_gradients(const Vec3& x, Vec3* gradient, Mat3* hessian) const {
-  std::array<Vec3, 7> points;
-  points.fill(x);
-  for (int i = 0; i < 3; ++i) {
-    points[1 + i][i] += step_;
-    points[4 + i][i] -= step_;
+  Question question{x, 0, gradient, hessian};
+  if (fibers_->is_inside()) {
+    fibers_->ask(question);
+  } else {
+    answer(std::array{&question});
   }
-  const Answer answer = call(points.data(), 7);
-  const Eigen::Map<const Eigen::Matrix<double, 3, 7>> g(answer.gradients->data());
-  if (gradient) *gradient = g.col(0);
-  Mat3 H;
-  for (int i = 0; i < 3; ++i) H.col(i) = (g.col(1 + i) - g.col(4 + i)) / (points[1 + i][i] - points[4 + i][i]);
-  *hessian = (H + H.transpose()) / 2;
-  return *answer.values.data();
+  return question.value;
 }
 
-double Function::by_values(const Vec3& x, Vec3* gradient, Mat3* hessian) const {
-  // The centre, six neighbours for the gradient; six wider ones and twelve on the diagonals for the Hessian.
-  constexpr std::array<std::pair<int, int>, 3> kPairs = {{{0, 1}, {0, 2}, {1, 2}}};
-  std::array<Vec3, 25> points;
-  points.fill(x);
-  const double d = step_, w = wide_step_;
+void Function::values(std::span<const Vec3> x, double* out) const {
+  const py::gil_scoped_acquire gil;
+  const Answer answer = call(x, 0);
+  std::copy(answer.values.begin(), answer.values.end(), out);
+}
+
+/// All that they need in one call.
+void Function::answer(std::span<Question* const> questions) const {
+  std::vector<Vec3> points;
+  std::vector<std::size_t> first;
+  int wanted = 0;
+  for (const Question* question : questions) {
+    first.push_back(points.size());
+    add_points(*question, points);
+    wanted = std::max(wanted, wanted_of(*question));
+  }
+  const py::gil_scoped_acquire gil;
+  const Answer answer = call(points, std::min(wanted, order_));
+  for (std::size_t k = 0; k < questions.size(); ++k) read(answer, points, first[k], *questions[k]);
+}
+
+void Function::add_points(const Question& question, std::vector<Vec3>& points) const {
+  const int wanted = wanted_of(question);
+  const std::size_t n = wanted <= order_ ? 1 : order_ == 1 ? kPointsByGradients : kPointsByValues[wanted];
+  points.resize(points.size() + n, question.x);
+  Vec3* const at = points.data() + points.size() - n;
+  if (n == 1) return;
   for (int i = 0; i < 3; ++i) {
-    points[1 + i][i] += d;
-    points[4 + i][i] -= d;
-    points[7 + i][i] += w;
-    points[10 + i][i] -= w;
+    at[1 + i][i] += step_;
+    at[4 + i][i] -= step_;
+  }
+  if (n < kPointsByValues[2]) return;
+  for (int i = 0; i < 3; ++i) {
+    at[7 + i][i] += wide_step_;
+    at[10 + i][i] -= wide_step_;
     for (int k = 0; k < 4; ++k) {
-      points[13 + 4 * i + k][kPairs[i].first] += k & 1 ? w : -w;
-      points[13 + 4 * i + k][kPairs[i].second] += k & 2 ? w : -w;
+      at[13 + 4 * i + k][kPairs[i].first] += k & 1 ? wide_step_ : -wide_step_;
+      at[13 + 4 * i + k][kPairs[i].second] += k & 2 ? wide_step_ : -wide_step_;
     }
   }
-  const Answer answer = call(points.data(), hessian ? 25 : 7);
-  const double* f = answer.values.data();
-  if (gradient) {
-    for (int i = 0; i < 3; ++i) (*gradient)[i] = (f[1 + i] - f[4 + i]) / (points[1 + i][i] - points[4 + i][i]);
+}
+
+/// @param first  the question's first point
+void Function::read(const Answer& answer, std::span<const Vec3> points, std::size_t first, Question& question) const {
+  const double* const f = answer.values.data() + first;
+  const Vec3* const at = points.data() + first;
+  question.value = *f;
+  Vec3* const gradient = question.gradient;
+  Mat3* const hessian = question.hessian;
+  if (gradient && order_ > 0) *gradient = Eigen::Map<const Vec3>(answer.gradients.data() + 3 * first);
+  if (gradient && order_ == 0) {
+    for (int i = 0; i < 3; ++i) (*gradient)[i] = (f[1 + i] - f[4 + i]) / (at[1 + i][i] - at[4 + i][i]);
   }
-  if (hessian) {
+  if (!hessian) return;
+  if (order_ == 2) {
+    *hessian = Eigen::Map<const Mat3>(answer.hessians.data() + 9 * first);
+  } else if (order_ == 1) {
+    const Eigen::Map<const Eigen::Matrix<double, 3, 7>> g(answer.gradients.data() + 3 * first);
+    Mat3 H;
+    for (int i = 0; i < 3; ++i) H.col(i) = (g.col(1 + i) - g.col(4 + i)) / (at[1 + i][i] - at[4 + i][i]);
+    *hessian = (H + H.transpose()) / 2;
+  } else {
+    const double w = wide_step_;
     for (int i = 0; i < 3; ++i) {
       const auto [a, b] = kPairs[i];
       const double* mixed = f + 13 + 4 * i;
@@ -121,7 +190,6 @@ double Function::by_values(const Vec3& x, Vec3* gradient, Mat3* hessian) const {
       (*hessian)(a, b) = (*hessian)(b, a) = (mixed[0] - mixed[1] - mixed[2] + mixed[3]) / (4 * w * w);
     }
   }
-  return f[0];
 }
 
 }  // namespace umtet::python

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
 #include <utility>
 
 #include "pipeline/case/memory.h"
@@ -91,11 +90,7 @@ MeshAttempt make_mesh(Domain& domain, const Parameters& parameters, const Watch&
   MeshMaker maker(domain, parameters, context_of(watch));
   const std::int64_t n_tets = domain.function ? parameters.mesh().max_tets : parameters.mesh().tets;
   const auto make = [&](double h) { return background.make(domain, h, n_tets, allowed_bytes(parameters)); };
-  std::function<std::optional<double>(const MeshAttempt&)> refine;
-  if (background.is_graded()) {
-    refine = [&](const MeshAttempt& a) { return background.refine(finer_where_it_failed(a, domain.shift), a.h); };
-  }
-  MeshAttempt best = maker.best(edge_length(domain, background, parameters, watch), make, refine);
+  MeshAttempt best = maker.best(background, edge_length(domain, background, parameters, watch), make);
   if (best.fell_through()) throw too_thin(best, domain.shift);
   if (!best.made()) throw failure(best.result, best.h, domain.shift);
   return best;

@@ -1,6 +1,7 @@
 #include "python/mesh_object.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <stdexcept>
 #include <utility>
@@ -61,6 +62,21 @@ std::vector<QuadraticTriangle> Mesh::curved_boundary() const {
     faces.push_back({a, b, c, mid(a, b), mid(b, c), mid(c, a)});
   }
   return faces;
+}
+
+std::vector<std::pair<std::string, std::vector<int>>> Mesh::patches(const Parameters& parameters) const {
+  const MeshFile content = final_content(domain, result);
+  SolverMesh made = all_of(*this, content);
+  const auto support = certificate ? certificate->measured.domain.support : std::nullopt;
+  divide_boundary(made, marked_faces(made, content, support), domain.cloud, parameters, [](const std::string&) {});
+  std::vector<std::pair<std::string, std::vector<int>>> named;
+  for (const MeshPart& patch : made.patches) named.emplace_back(patch.name, std::vector<int>());
+  for (std::size_t f = 0; f < made.n_faces(); ++f) {
+    const std::array<int, 6> face = made.face(f);
+    std::vector<int>& nodes = named[static_cast<std::size_t>(made.face_patch[f])].second;
+    nodes.insert(nodes.end(), face.begin(), face.begin() + made.nodes_per_face());
+  }
+  return named;
 }
 
 void Mesh::save(const std::filesystem::path& file) const {

@@ -2,10 +2,13 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "mesh/certify/quadratic_tets.h"
 #include "mesh/universal_mesh.h"
+#include "pipeline/case/parameters.h"
 #include "pipeline/domain/domain.h"
 #include "pipeline/reports/certificate_report.h"
 
@@ -26,6 +29,9 @@ struct Mesh {
   std::vector<std::int64_t> background_vertices() const;
   /// The faces on psi = 0, counter-clockwise from outside. \pre second
   std::vector<QuadraticTriangle> curved_boundary() const;
+  /// Nodes of the boundary faces by patch, 3 or 6 a face, as `umtet export` divides them (divide_boundary()).
+  /// \throw UsageError
+  std::vector<std::pair<std::string, std::vector<int>>> patches(const Parameters& parameters) const;
   /// \throw std::invalid_argument for a suffix that is not known; std::system_error naming the file
   void save(const std::filesystem::path& file) const;
 };

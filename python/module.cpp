@@ -40,13 +40,15 @@ Domain left_of(Domain&& domain) {
   left.shift = domain.shift;
   left.cloud = std::move(domain.cloud);
   left.samples = std::move(domain.samples);
+  left.notices = std::move(domain.notices);
   return left;
 }
 
 Mesh mesh(const py::object& psi, const Settings& settings, std::optional<double> t, const py::object& progress,
           int threads) {
   const Parameters parameters = parameters_of(settings);
-  Psi p = psi_of(psi, box_of(parameters), t, threads);
+  const bool of_grid = psi.is_none() && !parameters.mesh().level_set.empty();
+  Psi p = of_grid ? Psi{nullptr, grid_domain(parameters), threads} : psi_of(psi, box_of(parameters), t, threads);
   const bool asks_python = p.function != nullptr;
   auto job = [p = std::move(p), parameters](const Watch& watch) mutable {
     MeshAttempt best = make_mesh(p.domain, parameters, watch);
@@ -205,7 +207,15 @@ void bind(py::module_& m) {
   }));
   m.attr("__version__") = kVersion;
   py::class_<Reconstruction>(m, "LevelSet")
-      .def("_evaluate", &evaluate)
+      .def(
+          "value", [](const Reconstruction& r, const Points& points) { return evaluate(r, points, 0); },
+          py::arg("points"), "psi at points (n, 3): (n,). Model units, negative inside.")
+      .def(
+          "gradient", [](const Reconstruction& r, const Points& points) { return evaluate(r, points, 1); },
+          py::arg("points"), "Its gradients (n, 3).")
+      .def(
+          "hessian", [](const Reconstruction& r, const Points& points) { return evaluate(r, points, 2); },
+          py::arg("points"), "Its Hessians (n, 3, 3).")
       .def_property_readonly("box",
                              [](const Reconstruction& r) {
                                const Box box = r.domain.fitted->domain();
@@ -243,8 +253,18 @@ void bind(py::module_& m) {
       .def_property_readonly("background_vertex", [](const Mesh& a) { return array(a.background_vertices()); })
       .def_property_readonly("background_tet", [](const Mesh& a) { return array(a.result.submesh.background_tet); })
       .def_readonly("h", &Mesh::h)
+      .def_property_readonly("notices", [](const Mesh& a) { return a.domain.notices; })
       .def_property_readonly("certificate",
                              [](const Mesh& a) { return dict_of(a.certificate ? to_json(*a.certificate) : Json()); })
+      .def("patches",
+           [](const Mesh& a, const Settings& settings) {
+             py::dict patches;
+             for (const auto& [name, faces] : a.patches(parameters_of(settings))) {
+               const py::ssize_t k = a.second ? 6 : 3;
+               patches[py::str(name)] = array(faces).reshape({py::ssize_t{-1}, k});
+             }
+             return patches;
+           })
       .def("save", [](const Mesh& a, const std::filesystem::path& file) {
         const py::gil_scoped_release no_gil;
         a.save(file);

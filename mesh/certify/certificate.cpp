@@ -13,6 +13,7 @@
 #include "mesh/certify/boundary_surface.h"
 #include "mesh/certify/certificate_memory.h"
 #include "mesh/certify/detail/tet_measures.h"
+#include "mesh/core/asking_psi.h"
 #include "mesh/core/sort_faces.h"
 #include "mesh/embedding/self_intersections.h"
 #include "mesh/implicit/foot_point.h"
@@ -122,14 +123,14 @@ void measure_against(ImplicitFunctionRef psi, const TetMesh& mesh, const std::ve
   const EdgeOf h(certificate.h, local_h);
   MeshCertificate::Boundary& boundary = certificate.boundary;
   std::vector<double> vertex_distance(vertices.size());
-  polled_parallel_for(vertices.size(), kValuesPerPoll, context, [&](std::size_t i) {
+  for_each_asking(psi, vertices.size(), kValuesPerPoll, context, [&](std::size_t i) {
     Vec3 g;
     const double value = psi.value(mesh.V[vertices[i]], g);
     const double d = value == 0 ? 0 : std::abs(value) / g.norm();
     vertex_distance[i] = std::isnan(d) ? kInfinity : d;
   });
   std::vector<FaceMeasure> face(faces.size());
-  polled_parallel_for(faces.size(), kFeetPerPoll, context, [&](std::size_t i) {
+  for_each_asking(psi, faces.size(), kFeetPerPoll, context, [&](std::size_t i) {
     const Vec3 &a = mesh.V[faces[i][0]], &b = mesh.V[faces[i][1]], &c = mesh.V[faces[i][2]];
     const Vec3 centroid = (a + b + c) / 3.0;
     const Foot foot = foot_point(psi, centroid, h(faces[i]));

@@ -7,6 +7,7 @@
 #include "mesh/certify/detail/mid_side_numbers.h"
 #include "mesh/certify/detail/mid_side_relaxation.h"
 #include "mesh/certify/jacobian_bounds.h"
+#include "mesh/core/asking_psi.h"
 
 namespace umtet {
 namespace {
@@ -47,7 +48,7 @@ std::size_t project(const std::vector<CurvedEdge>& edges, ImplicitFunctionRef ps
                     const Context& context) {
   const std::size_t n_corners = V.size() - kind.size();
   std::vector<int> evaluations(edges.size());
-  polled_parallel_for(edges.size(), kValuesPerPoll / 8, context, [&](std::size_t i) {
+  for_each_asking(psi, edges.size(), kValuesPerPoll / 8, context, [&](std::size_t i) {
     const auto& [m, a, b] = edges[i];
     const ClosestPoint foot = closest_point(psi, V[m], h, params);
     const bool found = foot.converged && (foot.point - V[m]).norm() <= kMostSag * (V[b] - V[a]).norm();

@@ -11,6 +11,7 @@
 #include "mesh/certify/certificate.h"
 #include "mesh/certify/detail/mid_side_numbers.h"
 #include "mesh/certify/jacobian_bounds.h"
+#include "mesh/core/asking_psi.h"
 #include "mesh/implicit/closest_point.h"
 
 namespace umtet {
@@ -112,10 +113,10 @@ void measure_distances(const SecondOrderInput& input, const std::vector<Quadrati
   const ImplicitFunctionRef psi = *input.psi;
   std::vector<double> at_node(nodes.size());
   std::vector<std::array<double, 4>> at_face(faces.size());
-  polled_parallel_for(nodes.size(), kValuesPerPoll, input.context,
-                      [&](std::size_t i) { at_node[i] = distance(psi, input.mesh->V[nodes[i]]); });
-  polled_parallel_for(faces.size(), kValuesPerPoll / 4, input.context,
-                      [&](std::size_t i) { at_face[i] = face_distances(psi, *input.mesh, faces[i], input.h); });
+  for_each_asking(psi, nodes.size(), kValuesPerPoll, input.context,
+                  [&](std::size_t i) { at_node[i] = distance(psi, input.mesh->V[nodes[i]]); });
+  for_each_asking(psi, faces.size(), kValuesPerPoll / 4, input.context,
+                  [&](std::size_t i) { at_face[i] = face_distances(psi, *input.mesh, faces[i], input.h); });
   const double tolerance = kVertexTolerance * input.h + input.coordinate_rounding;
   double greatest = 0, greatest_at_face = 0, squares = 0;
   for (const double d : at_node) {

@@ -1,7 +1,5 @@
 #include "mesh/classification/classification.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -13,6 +11,7 @@
 
 #include "mesh/classification/classification_band.h"
 #include "mesh/classification/configuration_costs.h"
+#include "mesh/core/asking_psi.h"
 
 namespace umtet {
 namespace {
@@ -220,7 +219,7 @@ template <class F>
 std::size_t Descent::sweep(const F& visit) {
   std::atomic<std::size_t> flips = 0;
   for (const auto& blocks : band_.blocks) {
-    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+    for_each_asking(psi_, blocks.size(), blocks.size(), {}, [&](std::size_t b) {
       std::size_t n = 0;
       for (std::uint32_t k = blocks[b].begin; k < blocks[b].end; ++k) {
         n += static_cast<std::size_t>(visit(static_cast<int>(band_.order[k])));

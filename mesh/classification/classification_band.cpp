@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "mesh/base/id_blocks.h"
+#include "mesh/core/asking_psi.h"
 
 namespace umtet {
 namespace {
@@ -184,7 +185,7 @@ void ClassificationBand::measure(const Context& context) {
   foot.resize(n);
   normal.resize(n);
   movable.assign(n, 0);
-  polled_parallel_for(n, kValuesPerPoll, context, [&](std::size_t v) {
+  for_each_asking(psi_, n, kValuesPerPoll, context, [&](std::size_t v) {
     const bool complete = find_link(v);
     // A vertex without its whole link in the band is there to complete the masks of others.
     if (!complete && (mask[v] == 0 || mask[v] == links_.of_type(type[v]).full())) {

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <concepts>
+#include <cstddef>
+#include <functional>
+#include <span>
 
 #include "common/vec3.h"
 
@@ -25,13 +28,35 @@ concept TwiceDifferentiable = JointlyEvaluated<F> ||(ImplicitFunction<F>&& requi
   { f.hessian(x) } -> std::convertible_to<Mat3>;
 });
 
-/// Non-owning view of any ImplicitFunction: two words, one indirect call per evaluation. The function must outlive it.
+/// Runs calls that ask psi side by side in one thread: a call that has asked waits until all others have asked, too, or
+/// are done. Then one block of points answers them all.
+class SideBySide {
+ public:
+  /// f(i) for every i < n, in any order. \pre none of them waits for another. \throw what f or psi throws
+  virtual void for_each(std::size_t n, const std::function<void(std::size_t)>& f) const = 0;
+
+ protected:
+  ~SideBySide() = default;
+};
+
+/// A psi for which a call costs so much that it is to be asked in blocks. values(): out[i] = psi(x[i]), the same
+/// numbers as one by one. side_by_side(): may be null, which is no blocks after all.
+template <class F>
+concept AskedInBlocks = requires(const F f, std::span<const Vec3> x, double* out) {
+  f.values(x, out);
+  { f.side_by_side() } -> std::convertible_to<const SideBySide*>;
+};
+
+/// Non-owning view of any ImplicitFunction: one indirect call per evaluation. The function must outlive it.
 /// Thread-safe when the function's const members are.
 class ImplicitFunctionRef {
  public:
   template <ImplicitFunction F>
   requires(!std::same_as<F, ImplicitFunctionRef>) ImplicitFunctionRef(const F& f)
-      : object_(&f), call_(&call<F>), has_hessian_(TwiceDifferentiable<F>) {}
+      : object_(&f), call_(&call<F>), has_hessian_(TwiceDifferentiable<F>) {
+    if constexpr (AskedInBlocks<F>) side_by_side_ = f.side_by_side();
+    if (side_by_side_) values_ = &values_of<F>;
+  }
 
   double value(const Vec3& x) const { return call_(object_, x, nullptr, nullptr); }
   double value(const Vec3& x, Vec3& gradient) const { return call_(object_, x, &gradient, nullptr); }
@@ -51,6 +76,14 @@ class ImplicitFunctionRef {
   }
   bool has_hessian() const { return has_hessian_; }
 
+  /// out[i] = value(x[i]); one call of the function if it is asked in blocks.
+  void values(std::span<const Vec3> x, double* out) const {
+    if (values_) return values_(object_, x, out);
+    for (const Vec3& at : x) *out++ = value(at);
+  }
+  /// Null for a function that is not asked in blocks: loops over points then use threads (mesh/core/asking_psi.h).
+  const SideBySide* side_by_side() const { return side_by_side_; }
+
  private:
   template <class F>
   static double call(const void* object, const Vec3& x, Vec3* g, Mat3* H) {
@@ -66,8 +99,15 @@ class ImplicitFunctionRef {
     }
   }
 
+  template <class F>
+  static void values_of(const void* object, std::span<const Vec3> x, double* out) {
+    if constexpr (AskedInBlocks<F>) static_cast<const F*>(object)->values(x, out);
+  }
+
   const void* object_;
   double (*call_)(const void*, const Vec3&, Vec3*, Mat3*);
+  void (*values_)(const void*, std::span<const Vec3>, double*) = nullptr;
+  const SideBySide* side_by_side_ = nullptr;
   bool has_hessian_;
 };
 
@@ -85,6 +125,11 @@ class Complement {
     if (H) *H = -*H;
     return -value;
   }
+  void values(std::span<const Vec3> x, double* out) const {
+    ImplicitFunctionRef(psi_).values(x, out);
+    for (std::size_t i = 0; i < x.size(); ++i) out[i] = -out[i];
+  }
+  const SideBySide* side_by_side() const { return ImplicitFunctionRef(psi_).side_by_side(); }
 
  private:
   const F& psi_;

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mesh/core/asking_psi.h"
 #include "mesh/core/max_min.h"
 
 namespace umtet {
@@ -96,10 +97,14 @@ class Projection {
   ProjectionReport report_;
 };
 
-/// Sum of the integers f(k), threads over k.
+/// Sum of the integers f(k), threads over k, or psi asked in blocks.
 template <class F>
 std::size_t Projection::count_over(std::size_t begin, std::size_t end, const F& f) {
   std::size_t total = 0;
+  if (psi_.side_by_side()) {
+    for_each_asking(psi_, end - begin, kVerticesPerPoll, context_, [&](std::size_t k) { total += f(begin + k); });
+    return total;
+  }
   for (; begin < end; begin += kVerticesPerPoll) {
     context_.poll();
     const tbb::blocked_range<std::size_t> some(begin, std::min(end, begin + kVerticesPerPoll), kVerticesPerTask);

@@ -216,31 +216,42 @@ SmoothingReport PNormSmoother::run(ImplicitFunctionRef psi, const SmoothingParam
     throw std::invalid_argument(all);
   }
   const VertexSolver solve(*this, psi, params);
+  const auto solve_one = [&](int i, Counts& counts) {
+    const VertexSolver::Result result = solve(i);
+    ++counts.checks;
+    counts.solves += result.needed;
+    counts.moves += result.moved;
+    counts.psi_evaluations += result.psi_evaluations;
+    if (!result.moved) return;
+    const double step = (result.place - layer_.V[i]).norm();
+    layer_.V[i] = result.place;
+    if (result.good && step < params.least_step * layer_.h_at(i)) return;
+    // A tet that was above the target and still is gives its vertices no reason to move.
+    if (result.below_target.none()) return;
+    std::atomic_ref(queued_[i]).store(1, std::memory_order_relaxed);
+    const std::span<const Triangle> ring = faces(i);
+    for (std::size_t j = 0; j < ring.size(); ++j) {
+      if (!result.below_target[j]) continue;
+      for (const int v : ring[j]) std::atomic_ref(queued_[v]).store(1, std::memory_order_relaxed);
+    }
+  };
   const auto solve_some = [&](const tbb::blocked_range<std::size_t>& range, Counts counts) {
     for (std::size_t k = range.begin(); k != range.end(); ++k) {
-      const int i = todo_[k];
       if (k + kAhead < range.end()) {
         for (const Triangle& face : faces(todo_[k + kAhead])) __builtin_prefetch(&layer_.V[face[0]]);
       }
-      const VertexSolver::Result result = solve(i);
-      ++counts.checks;
-      counts.solves += result.needed;
-      counts.moves += result.moved;
-      counts.psi_evaluations += result.psi_evaluations;
-      if (!result.moved) continue;
-      const double step = (result.place - layer_.V[i]).norm();
-      layer_.V[i] = result.place;
-      if (result.good && step < params.least_step * layer_.h_at(i)) continue;
-      // A tet that was above the target and still is gives its vertices no reason to move.
-      if (result.below_target.none()) continue;
-      std::atomic_ref(queued_[i]).store(1, std::memory_order_relaxed);
-      const std::span<const Triangle> ring = faces(i);
-      for (std::size_t j = 0; j < ring.size(); ++j) {
-        if (!result.below_target[j]) continue;
-        for (const int v : ring[j]) std::atomic_ref(queued_[v]).store(1, std::memory_order_relaxed);
-      }
+      solve_one(todo_[k], counts);
     }
     return counts;
+  };
+  const auto solve_all = [&](const tbb::blocked_range<std::size_t>& range) {
+    Counts counts;
+    if (const SideBySide* side_by_side = psi.side_by_side()) {
+      side_by_side->for_each(range.size(), [&](std::size_t k) { solve_one(todo_[range.begin() + k], counts); });
+      return counts;
+    }
+    return range.size() < kWorthThreads ? solve_some(range, counts)
+                                        : tbb::parallel_reduce(range, counts, solve_some, std::plus<>());
   };
   SmoothingReport report;
   while (report.sweeps < params.max_sweeps && !report.settled) {
@@ -257,8 +268,7 @@ SmoothingReport PNormSmoother::run(ImplicitFunctionRef psi, const SmoothingParam
         context.poll();
         const tbb::blocked_range<std::size_t> some(begin, std::min(todo_.size(), begin + kSolvesPerPoll),
                                                    kSolvesPerTask);
-        sweep = sweep + (some.size() < kWorthThreads ? solve_some(some, Counts{})
-                                                     : tbb::parallel_reduce(some, Counts{}, solve_some, std::plus<>()));
+        sweep = sweep + solve_all(some);
       }
     }
     ++report.sweeps;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <vector>
 
 #include "mesh/core/max_min.h"
 #include "mesh/core/tet_quality.h"
@@ -88,11 +89,22 @@ PatchState tet_state(const ActiveLayer& layer, double target) {
 PatchState patch_state(const ActiveLayer& layer, const std::vector<std::uint8_t>& inside, ImplicitFunctionRef psi,
                        double target, std::size_t& evaluations) {
   PatchState s = tet_state(layer, target);
-  Triangle f;
+  std::vector<Triangle> faces;
+  Triangle face;
   for (const Tet& t : layer.C) {
-    if (!positive_face(t, inside, f)) continue;
-    const double cosine =
-        normal_cosine(psi, layer.V[f[0]], layer.V[f[1]], layer.V[f[2]], layer.h_at(f[0]), evaluations);
+    if (positive_face(t, inside, face)) faces.push_back(face);
+  }
+  std::vector<double> cosines(faces.size());
+  const auto measure = [&](std::size_t k) {
+    const Triangle& f = faces[k];
+    cosines[k] = normal_cosine(psi, layer.V[f[0]], layer.V[f[1]], layer.V[f[2]], layer.h_at(f[0]), evaluations);
+  };
+  if (const SideBySide* side_by_side = psi.side_by_side()) {
+    side_by_side->for_each(faces.size(), measure);
+  } else {
+    for (std::size_t k = 0; k < faces.size(); ++k) measure(k);
+  }
+  for (const double cosine : cosines) {
     s.least_cosine = std::min(s.least_cosine, cosine);
     s.misaligned += cosine < kMisalignedCosine;
     s.folded_over += cosine < 0;

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <unordered_map>
 
+#include "mesh/core/asking_psi.h"
 #include "mesh/core/max_min.h"
 #include "mesh/core/tet_quality.h"
 #include "mesh/fast/detail/flip_trials.h"
@@ -223,7 +224,7 @@ void Repair::look(const BackgroundLayer& cut) {
   std::atomic<std::size_t> evaluations = 0;
   // Nearly all tets are above the target, which takes no root to see.
   const double enough = (1 + 1e-12) * f_of_quality(target_);
-  tbb::parallel_for(std::size_t{0}, C.size(), [&](std::size_t k) {
+  for_each_asking(psi_, C.size(), C.size(), {}, [&](std::size_t k) {
     const Tet& t = C[k];
     const Vec3 &p = V[t[0]], &q = V[t[1]], &r = V[t[2]], &s = V[t[3]];
     const double six = volume6(p, q, r, s), L = sum_of_squared_edges(p, q, r, s);

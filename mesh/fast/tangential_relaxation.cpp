@@ -1,7 +1,5 @@
 #include "mesh/fast/tangential_relaxation.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "mesh/core/asking_psi.h"
 #include "mesh/fast/patch_state.h"
 
 namespace umtet {
@@ -167,7 +166,7 @@ std::vector<std::vector<int>> vertices_of_far_faces(const ActiveLayer& layer, Im
                                                     TangentialRelaxationReport& report) {
   std::vector<std::uint8_t> far(faces.size(), 0);
   std::vector<int> evaluations(faces.size(), 0);
-  polled_parallel_for(faces.size(), kValuesPerPoll, context, [&](std::size_t k) {
+  for_each_asking(psi, faces.size(), kValuesPerPoll, context, [&](std::size_t k) {
     const Triangle& f = faces[k];
     far[k] =
         is_far(psi, layer.V[f[0]], layer.V[f[1]], layer.V[f[2]], params.least_chord * layer.h_at(f[0]), evaluations[k]);
@@ -228,7 +227,7 @@ TangentialRelaxationReport relax_tangentially(PNormSmoother& smoother, const std
     std::size_t moves = 0;
     for (const std::vector<int>& colour : colours) {
       std::vector<std::uint8_t> moved(colour.size(), 0);
-      polled_parallel_for(colour.size(), kValuesPerPoll / 64, context, [&](std::size_t k) {
+      for_each_asking(psi, colour.size(), kValuesPerPoll / 64, context, [&](std::size_t k) {
         const int i = colour[k];
         Vec3 place;
         moved[k] = solve(i, place, evaluations[i]);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "mesh/core/asking_psi.h"
 #include "mesh/core/max_min.h"
 #include "mesh/core/tet_quality.h"
 #include "mesh/implicit/closest_point.h"
@@ -86,7 +87,7 @@ std::size_t Start::go_to_feet(ImplicitFunctionRef psi, const Context& context) {
   ClosestPointParams params = projection_.closest_point;
   params.method = ClosestPointMethod::Damped;
   params.foot_tol = std::max(params.foot_tol, kFootTol);
-  polled_parallel_for(boundary.size(), kFeetPerPoll, context, [&](std::size_t k) {
+  for_each_asking(psi, boundary.size(), kFeetPerPoll, context, [&](std::size_t k) {
     Vec3& x = layer_.V[boundary[k]];
     const double h = layer_.h_at(boundary[k]);
     const ClosestPoint foot = closest_point(psi, x, h, params);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/core/asking_psi.h"
+
 namespace umtet {
 
 namespace {
@@ -48,8 +50,8 @@ SheetDistances sheet_distances_from(ImplicitFunctionRef psi, const Vec3& x, cons
 std::vector<SheetDistances> sheet_distances(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double step,
                                             double limit, const Context& context, double steepest) {
   std::vector<SheetDistances> out(points.size());
-  polled_parallel_for(points.size(), kValuesPerPoll, context,
-                      [&](std::size_t i) { out[i] = sheet_distances_at(psi, points[i], step, limit, steepest); });
+  for_each_asking(psi, points.size(), kValuesPerPoll, context,
+                  [&](std::size_t i) { out[i] = sheet_distances_at(psi, points[i], step, limit, steepest); });
   return out;
 }
 
@@ -57,7 +59,7 @@ std::vector<SheetDistances> sheet_distances(ImplicitFunctionRef psi, const std::
                                             const std::vector<double>& scale, double step, double limit,
                                             const Context& context, double steepest) {
   std::vector<SheetDistances> out(points.size());
-  polled_parallel_for(points.size(), kValuesPerPoll, context, [&](std::size_t i) {
+  for_each_asking(psi, points.size(), kValuesPerPoll, context, [&](std::size_t i) {
     out[i] = sheet_distances_at(psi, points[i], step * scale[i], limit * scale[i], steepest);
   });
   return out;

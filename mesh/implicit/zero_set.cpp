@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "common/disjoint_sets.h"
+#include "mesh/core/asking_psi.h"
 #include "mesh/implicit/cut_edges.h"
 
 namespace umtet {
@@ -139,6 +140,11 @@ void Sweep::for_each_node(int k, int last_k, const F& visit) {
 void Sweep::evaluate(int k) {
   std::vector<double>& value = layer(k).value;
   const std::size_t row = static_cast<std::size_t>(n_[0]) + 1;
+  const bool in_blocks = psi_.side_by_side() && !far_;
+  if (in_blocks) {
+    const auto point = [&](std::size_t at) { return node(static_cast<int>(at % row), static_cast<int>(at / row), k); };
+    take_in_blocks(psi_, value.size(), context_, point, [&](std::size_t at, double psi) { value[at] = psi; });
+  }
   std::atomic<std::size_t> n_not_finite = 0;
   polled_parallel_for(per_row_ * (n_[1] + 1), kValuesPerPoll / kStretch, context_, [&](std::size_t s) {
     const int j = static_cast<int>(s / per_row_);
@@ -149,7 +155,8 @@ void Sweep::evaluate(int k) {
       const Vec3 x = node(static_cast<int>(i), j, k);
       // A node that is far from any zero takes its sign from the one before.
       const bool known = far_ && std::isfinite(before) && far_(x);
-      const double v = before = !known ? psi_.value(x) : before < 0 ? -kFarValue : kFarValue;
+      const double asked = known ? 0 : in_blocks ? value[j * row + i] : psi_.value(x);
+      const double v = before = !known ? asked : before < 0 ? -kFarValue : kFarValue;
       if (!std::isfinite(v)) ++n_not_finite;
       value[j * row + i] = std::isfinite(v) ? v : std::numeric_limits<double>::max();
       signs |= v < 0 && std::isfinite(v) ? Inside : Outside;

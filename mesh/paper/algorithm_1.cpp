@@ -1,8 +1,5 @@
 #include "mesh/paper/algorithm_1.h"
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_for.h>
-
 #include <cmath>
 #include <optional>
 #include <span>
@@ -10,6 +7,7 @@
 #include <utility>
 
 #include "mesh/base/violations.h"
+#include "mesh/core/asking_psi.h"
 #include "mesh/core/tet_quality.h"
 #include "mesh/paper/boundary_dvr.h"
 #include "mesh/paper/dvr.h"
@@ -21,7 +19,6 @@ namespace {
 // Samples of Alg. 3 reach this far, in background edges; the paper leaves its "representative mesh size" open. A slide
 // of half an edge to a whole one inverts a tet of the ring, so samples beyond half an edge would be wasted.
 constexpr double kSampleReach = .5;
-constexpr std::size_t kProjectionsPerTask = 64;
 
 /// Algorithm 1, steps 23-35; a member per group of steps. Each returns false when the run is over, with status and
 /// evidence set.
@@ -113,10 +110,8 @@ bool Run::fail_at(UmStatus status, UmEvidence evidence, std::span<const int> ver
 bool Run::find_feet() {
   const auto& positive = submesh().positive_vertices;
   feet_.resize(positive.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positive.size(), kProjectionsPerTask), [&](const auto& range) {
-    for (std::size_t k = range.begin(); k != range.end(); ++k) {
-      feet_[k] = closest_point(psi_, mesh_->V[positive[k]], background_.h(), params_.closest_point);
-    }
+  for_each_asking(psi_, positive.size(), positive.size(), {}, [&](std::size_t k) {
+    feet_[k] = closest_point(psi_, mesh_->V[positive[k]], background_.h(), params_.closest_point);
   });
   for (const ClosestPoint& foot : feet_) result_.n_psi_evaluations += static_cast<std::size_t>(foot.iterations);
   const Violations lost = find_violations(feet_.size(), [&](std::size_t k) { return !feet_[k].converged; });

@@ -65,7 +65,7 @@ std::size_t boundary_dvr(MovingMesh& mesh, const RelaxationOrder& boundary,
     const std::size_t n = relax_on_boundary(mesh, i, background_vertex[i], psi, params, iteration);
     n_evaluations.fetch_add(n, std::memory_order_relaxed);
   };
-  boundary.for_each([](int) { return true; }, relax);
+  boundary.for_each([](int) { return true; }, relax, psi.side_by_side());
   return n_evaluations;
 }
 

@@ -65,12 +65,17 @@ RelaxationOrder::RelaxationOrder(const MovingMesh& mesh, std::vector<int> vertic
   for (const int i : vertices_) by_level_[next[level[i] - 1]++] = i;
 }
 
-void RelaxationOrder::for_each(const std::function<bool(int)>& wants, const std::function<void(int)>& relax) const {
+void RelaxationOrder::for_each(const std::function<bool(int)>& wants, const std::function<void(int)>& relax,
+                               const SideBySide* side_by_side) const {
   std::vector<int> todo;
   for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
     todo.clear();
     for (std::size_t k = levels_[l]; k < levels_[l + 1]; ++k) {
       if (wants(by_level_[k])) todo.push_back(by_level_[k]);
+    }
+    if (side_by_side) {
+      side_by_side->for_each(todo.size(), [&](std::size_t k) { relax(todo[k]); });
+      continue;
     }
     if (todo.size() < kWorthThreads) {
       for (const int i : todo) relax(i);

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "mesh/core/implicit_function.h"
 #include "mesh/core/max_min.h"
 #include "mesh/core/tet_mesh.h"
 #include "mesh/paper/relaxation_direction.h"
@@ -53,7 +54,9 @@ class RelaxationOrder {
   const std::vector<int>& vertices() const { return vertices_; }  ///< ascending
   /// Calls relax(i) for every vertex that wants(i), in an order equivalent to ascending i. wants(i) is
   /// called when all vertices that i depends on have moved.
-  void for_each(const std::function<bool(int)>& wants, const std::function<void(int)>& relax) const;
+  /// @param side_by_side  of the psi that relax(i) asks, if it is asked in blocks
+  void for_each(const std::function<bool(int)>& wants, const std::function<void(int)>& relax,
+                const SideBySide* side_by_side = nullptr) const;
 
  private:
   std::vector<int> vertices_;

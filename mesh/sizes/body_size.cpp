@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/formatted.h"
+#include "mesh/core/asking_psi.h"
 
 namespace umtet {
 namespace {
@@ -36,7 +37,7 @@ CoarseMeasure sample(ImplicitFunctionRef psi, const Box& box, double steepest) {
   const Eigen::Array3i n = (box.sizes().array() / d).ceil().cast<int>().max(1) + 1;
   std::vector<double> values(static_cast<std::size_t>(n.prod()));
   const Vec3 origin = box.center() - .5 * d * (n - 1).cast<double>().matrix();
-  tbb::parallel_for(0, n.z(), [&](int k) {
+  const auto take_row = [&](int k) {
     for (int j = 0; j < n.y(); ++j) {
       double* row = values.data() + static_cast<std::size_t>(n.x()) * (j + static_cast<std::size_t>(n.y()) * k);
       for (int i = 0; i < n.x();) {
@@ -48,7 +49,16 @@ CoarseMeasure sample(ImplicitFunctionRef psi, const Box& box, double steepest) {
         i = end;
       }
     }
-  });
+  };
+  if (psi.side_by_side() && !std::isfinite(steepest)) {
+    const auto point = [&](std::size_t at) {
+      const auto i = static_cast<int>(at);
+      return Vec3(origin + d * Vec3(i % n.x(), i / n.x() % n.y(), i / (n.x() * n.y())));
+    };
+    take_in_blocks(psi, values.size(), {}, point, [&](std::size_t at, double value) { values[at] = value; });
+  } else {
+    tbb::parallel_for(0, n.z(), take_row);
+  }
   BodySize size;
   double inside = 0, crossings = 0;
   Box found;

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "mesh/core/asking_psi.h"
+
 namespace umtet {
 namespace {
 
@@ -39,7 +41,7 @@ double expected_graded_tets(const SizeField& sizes, double finest, ImplicitFunct
   for (; !cubes.empty(); width /= 2) {
     enum : std::uint8_t { Out, Leaf, Split };
     std::vector<std::uint8_t> what(cubes.size(), Out);
-    polled_parallel_for(cubes.size(), kValuesPerPoll, context, [&](std::size_t i) {
+    for_each_asking(psi, cubes.size(), kValuesPerPoll, context, [&](std::size_t i) {
       const auto& [x, half] = cubes[i];
       const double value = psi.value(x);
       const bool meets_box = ((x - box.center()).cwiseAbs() - .5 * box.sizes()).maxCoeff() < half;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "mesh/core/asking_psi.h"
 #include "mesh/implicit/cut_tets.h"
 #include "mesh/octree/graded_mesh.h"
 
@@ -18,8 +19,12 @@ constexpr std::size_t kPart = 1 << 12;
 CutTets cut_tets(const GradedMesh& mesh, ImplicitFunctionRef psi, const Context& context) {
   const auto n_vertices = static_cast<std::size_t>(mesh.n_vertices());
   std::vector<double> value(n_vertices);
-  polled_parallel_for(n_vertices, kValuesPerPoll * 16, context,
-                      [&](std::size_t v) { value[v] = psi.value(mesh.position(static_cast<std::int64_t>(v))); });
+  const auto at = [&](std::size_t v) { return mesh.position(static_cast<std::int64_t>(v)); };
+  if (psi.side_by_side()) {
+    take_in_blocks(psi, n_vertices, context, at, [&](std::size_t v, double psi_v) { value[v] = psi_v; });
+  } else {
+    polled_parallel_for(n_vertices, kValuesPerPoll * 16, context, [&](std::size_t v) { value[v] = psi.value(at(v)); });
+  }
   const auto n_tets = static_cast<std::size_t>(mesh.n_tets());
   std::vector<std::vector<std::array<std::int64_t, 4>>> of_part((n_tets + kPart - 1) / kPart);
   polled_parallel_for(of_part.size(), 64, context, [&](std::size_t part) {
@@ -35,14 +40,14 @@ CutTets cut_tets(const GradedMesh& mesh, ImplicitFunctionRef psi, const Context&
     for (const auto& tet : tets) {
       Tet& corners = cut.tets.emplace_back();
       for (std::size_t k = 0; k < 4; ++k) {
-        int& at = number[static_cast<std::size_t>(tet[k])];
-        if (at < 0) {
-          at = static_cast<int>(cut.x.size());
+        int& id = number[static_cast<std::size_t>(tet[k])];
+        if (id < 0) {
+          id = static_cast<int>(cut.x.size());
           cut.x.push_back(mesh.position(tet[k]));
           cut.psi.push_back(value[static_cast<std::size_t>(tet[k])]);
           cut.on_boundary.push_back(mesh.on_boundary(tet[k]) ? 1 : 0);
         }
-        corners[k] = at;
+        corners[k] = id;
       }
     }
   }

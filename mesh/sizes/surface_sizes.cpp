@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "common/formatted.h"
+#include "mesh/core/asking_psi.h"
 #include "mesh/implicit/curvature.h"
 #include "mesh/implicit/thickness.h"
 
@@ -67,8 +68,8 @@ class SurfaceSizes {
   /// Those points that reach psi = 0 within their spacing, in their order.
   std::vector<OnSurface> on_surface(const std::vector<Place>& places) const {
     std::vector<std::optional<OnSurface>> found(places.size());
-    polled_parallel_for(places.size(), kValuesPerPoll / 4, context_,
-                        [&](std::size_t i) { found[i] = foot(places[i]); });
+    for_each_asking(psi_, places.size(), kValuesPerPoll / 4, context_,
+                    [&](std::size_t i) { found[i] = foot(places[i]); });
     std::vector<OnSurface> feet;
     for (const std::optional<OnSurface>& f : found) {
       if (f) feet.push_back(*f);
@@ -135,7 +136,7 @@ class SurfaceSizes {
 
   std::vector<double> sizes(const std::vector<OnSurface>& feet) const {
     std::vector<double> h(feet.size());
-    polled_parallel_for(feet.size(), kValuesPerPoll / 16, context_, [&](std::size_t i) {
+    for_each_asking(psi_, feet.size(), kValuesPerPoll / 16, context_, [&](std::size_t i) {
       h[i] = std::max(p_.h_min, std::min({p_.h, of_thickness(feet[i]), of_deviation(feet[i])}));
       h[i] = std::max(p_.h_min, of_turn(feet[i], h[i]));
     });

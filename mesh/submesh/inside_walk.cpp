@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mesh/core/asking_psi.h"
 #include "mesh/submesh/assemble_submesh.h"
 
 namespace umtet {
@@ -72,7 +73,7 @@ std::size_t InsideWalk::update(ImplicitFunctionRef psi, const std::vector<std::i
     while (!front.empty()) {
       const std::size_t first = evaluated.size(), n = front.size();
       for (const std::int64_t v : front) evaluated.push_back({v, 0, Vec3::Zero()});
-      polled_parallel_for(n, kValuesPerPoll, context, [&](std::size_t k) {
+      for_each_asking(psi, n, kValuesPerPoll, context, [&](std::size_t k) {
         PsiValue& at = evaluated[first + k];
         at.value = psi.value(background_.position(at.vertex), at.gradient);
       });

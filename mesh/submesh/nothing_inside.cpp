@@ -12,6 +12,11 @@ struct NotFinite {
   ImplicitFunctionRef psi;
   double value(const Vec3& x) const { return std::isfinite(psi.value(x)) ? 1 : -1; }
   Vec3 gradient(const Vec3&) const { return Vec3::Zero(); }
+  void values(std::span<const Vec3> x, double* out) const {
+    psi.values(x, out);
+    for (std::size_t i = 0; i < x.size(); ++i) out[i] = std::isfinite(out[i]) ? 1 : -1;
+  }
+  const SideBySide* side_by_side() const { return psi.side_by_side(); }
 };
 
 }  // namespace

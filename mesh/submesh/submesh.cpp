@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "mesh/base/id_set.h"
+#include "mesh/core/asking_psi.h"
 #include "mesh/submesh/assemble_submesh.h"
 
 namespace umtet {
@@ -27,6 +28,29 @@ unsigned inside_mask(const std::array<std::int64_t, 4>& tet, const IdSet& inside
   unsigned mask = 0;
   for (unsigned k = 0; k < 4; ++k) mask |= static_cast<unsigned>(inside.test(tet[k])) << k;
   return mask;
+}
+
+/// Inserts the vertices where psi < 0, a psi that is asked in blocks. @return evaluations
+std::size_t insert_in_blocks(const BackgroundMesh& background, ImplicitFunctionRef psi, IdSet& inside,
+                             const Context& context) {
+  std::vector<std::int64_t> asked;
+  const auto ask = [&] {
+    take_in_blocks(
+        psi, asked.size(), context, [&](std::size_t i) { return background.position(asked[i]); },
+        [&](std::size_t i, double value) {
+          if (value < 0) inside.insert(asked[i]);
+        });
+    asked.clear();
+  };
+  std::size_t n = 0;
+  for (std::int64_t v = 0; v < background.n_vertices(); ++v) {
+    if (!background.has_tets(v)) continue;
+    ++n;
+    asked.push_back(v);
+    if (asked.size() == kPointsPerBlock) ask();
+  }
+  ask();
+  return n;
 }
 
 }  // namespace
@@ -54,6 +78,10 @@ std::vector<std::int64_t> cut_or_inside_tets(const BackgroundMesh& background, c
 IdSet inside_vertices(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t& n_evaluations,
                       const Context& context, const KnownSigns& known) {
   IdSet inside(background.n_vertices());
+  if (psi.side_by_side()) {
+    n_evaluations = insert_in_blocks(background, psi, inside, context);
+    return inside;
+  }
   std::atomic<std::size_t> evaluations = 0;
   const auto evaluate = [&](const tbb::blocked_range<std::size_t>& words) {
     std::size_t n = 0;

@@ -11,6 +11,7 @@
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/expression/expression.h"
+#include "reconstruct/io/grid_io.h"
 #include "reconstruct/io/point_cloud_io.h"
 #include "reconstruct/solve/fit_ssd.h"
 
@@ -64,6 +65,8 @@ Failure failure_of(const std::exception_ptr& error) {
   } catch (const ExpressionError& e) {
     return {ExitCode::Usage, e.what()};
   } catch (const CloudRefused& e) {
+    return {ExitCode::InputRefused, e.what()};
+  } catch (const GridRefused& e) {
     return {ExitCode::InputRefused, e.what()};
   } catch (const MeshFileRefused& e) {
     return {ExitCode::InputRefused, e.what()};

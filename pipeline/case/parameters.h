@@ -70,6 +70,9 @@ namespace keys {
 #include "pipeline/case/parameters.def"
 }  // namespace keys
 
+/// True where a formula or a grid is psi: there is no cloud, and nothing to be fitted to one.
+inline bool has_own_psi(const MeshParameters& mesh) { return !mesh.implicit.empty() || !mesh.level_set.empty(); }
+
 /// One parameter as configuration files, the command line, records and the help need it. The fields that a line of
 /// parameters.def names come first.
 struct ParamField {

@@ -20,6 +20,7 @@ constexpr const char* kExamples =
   umtet mesh duck --h 0.02                   another mesh size; the level set is not fitted again
   umtet mesh duck --max-deviation 0.001      flat faces at most so far from the surface
   umtet mesh --implicit 'x^2+y^2+z^2-1' --box=-1.2,-1.2,-1.2,1.2,1.2,1.2 --tets 100000 -o ball
+  umtet mesh --level-set sdf.vti -o part     a level set that another program computed; a segmentation: mask.nii.gz
   umtet mesh duck --complement --box-walls --box=-2,-1.5,-2,4,2,2 --h .08    the fluid around it, in a box
   umtet evolve --implicit '(x-t)^2+y^2+z^2-1' --box=-2,-2,-2,4,2,2 --h .1 --t 0:0.5:2 -o moving
   umtet batch LIST -o scans --jobs 2         many scans; one table of verdicts, reasons and times
@@ -30,6 +31,10 @@ constexpr const char* kExamples =
   umtet view duck                            then: paraview --script=duck/5-view/view.py
   umtet diff duck other                      which stage is the first to differ, and by how much
 )";
+
+/// What a scan does not have: psi comes from it.
+const std::vector<std::string> kOwnPsi = {keys::mesh::implicit, keys::mesh::level_set, keys::mesh::level,
+                                          keys::mesh::part, keys::mesh::part_smooth};
 
 constexpr const char* kExitCodes = R"(
 Exit codes: 0 all well | 1 a bug of ours | 2 usage | 3 input refused | 4 reconstruction failed
@@ -74,7 +79,7 @@ CommandParser::CommandParser() {
   run.add_option("--until", in_.until, "last stage to run (default mesh)");
   add_formats(run, "--export");
   run.add_flag("--no-report", in_.no_report, "do not make report.html");
-  add_parameter_flags(run, {"cloud", "reconstruct", "mesh", "output"}, {keys::mesh::implicit});
+  add_parameter_flags(run, {"cloud", "reconstruct", "mesh", "output"}, kOwnPsi);
 
   CLI::App& reconstruct = add_command("reconstruct", make_reconstruct, "Stage one only: the level set");
   add_stage_flags(reconstruct);
@@ -83,7 +88,8 @@ CommandParser::CommandParser() {
                       {keys::output::units, keys::output::min_quality, keys::output::accept, keys::output::label_names,
                        keys::output::label_min_area, keys::output::patch_angle, keys::output::patch_planar});
 
-  CLI::App& mesh = add_command("mesh", make_mesh, "Stage two only: from the level set of CASE, or from a formula");
+  CLI::App& mesh =
+      add_command("mesh", make_mesh, "Stage two only: from the level set of CASE, from a formula, or from a grid");
   add_stage_flags(mesh);
   mesh.add_option("CASE", in_.input, "a case with a level set");
   add_formats(mesh, "--export");
@@ -99,7 +105,8 @@ CommandParser::CommandParser() {
   evolve.add_option("--t", in_.times, "FROM:STEP:TO, the times; --implicit may have t in it");
   evolve.add_option("--skip", in_.skip, "times to leave out: --skip 3.1,3.4");
   add_parameter_flags(evolve, {"cloud", "reconstruct", "mesh", "output"},
-                      {keys::mesh::keep_iterates, keys::mesh::order, keys::mesh::effort, keys::output::label_names,
+                      {keys::mesh::level_set, keys::mesh::level, keys::mesh::part, keys::mesh::part_smooth,
+                       keys::mesh::keep_iterates, keys::mesh::order, keys::mesh::effort, keys::output::label_names,
                        keys::output::label_min_area, keys::output::patch_angle, keys::output::patch_planar});
 
   add_batch();
@@ -148,7 +155,7 @@ void CommandParser::add_batch() {
   batch.add_flag("--resume", in_.resume, "scans whose input or mesh was refused are not tried again");
   batch.add_flag("--force", in_.force, "run all stages although their records match");
   add_formats(batch, "--export");
-  add_parameter_flags(batch, {"cloud", "reconstruct", "mesh", "output"}, {keys::mesh::implicit});
+  add_parameter_flags(batch, {"cloud", "reconstruct", "mesh", "output"}, kOwnPsi);
 }
 
 CLI::Option& CommandParser::add_formats(CLI::App& command, const char* flag) {

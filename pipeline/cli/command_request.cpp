@@ -74,6 +74,8 @@ Command make_stages(const CLI::App& app, const CommandInputs& in, Stage first, S
   if (input_is_case) {
     if (parameters.source(keys::mesh::implicit) == ParamSource::Flag)
       throw UsageError("--implicit goes with -o, without CASE");
+    if (parameters.source(keys::mesh::level_set) == ParamSource::Flag)
+      throw UsageError("--level-set goes with -o, without CASE");
     if (!in.output.empty() && fs::path(in.output) != fs::path(in.input)) {
       throw UsageError("-o " + in.output + ": the case is " + in.input + " already");
     }
@@ -87,8 +89,8 @@ Command make_stages(const CLI::App& app, const CommandInputs& in, Stage first, S
     if (in.output.empty()) throw UsageError(name + ": -o CASE is missing");
     request.case_folder = in.output;
     if (first == Stage::Mesh) {
-      if (parameters.mesh().implicit.empty())
-        throw UsageError("mesh: give a CASE, or --implicit EXPR with --box and -o");
+      if (!has_own_psi(parameters.mesh()))
+        throw UsageError("mesh: give a CASE, or --implicit EXPR with --box and -o, or --level-set GRID with -o");
     } else {
       if (!in.input.empty()) parameters.set(keys::cloud::file, in.input, ParamSource::Flag, "command line");
       if (parameters.cloud().file.empty() && request.from == Stage::Cloud)
@@ -125,6 +127,7 @@ Command make_evolve(const CLI::App& app, const CommandInputs& in) {
   read_parameters(
       in, [&](Stage stage) { return of_clouds || stage == Stage::Mesh; }, request.parameters);
   const bool formula = !request.parameters.mesh().implicit.empty();
+  if (!request.parameters.mesh().level_set.empty()) throw UsageError("evolve: mesh.level_set does not move");
   if (formula == of_clouds) throw UsageError("evolve: give --implicit EXPR with --box, or --clouds LIST");
   if (request.parameters.mesh().order != 1) throw UsageError("evolve: mesh.order must be 1");
   if (in.output.empty()) throw UsageError("evolve: -o FOLDER is missing");
@@ -143,7 +146,7 @@ Command make_batch(const CLI::App& app, const CommandInputs& in) {
   read_parameters(
       in, [](Stage) { return true; }, request.parameters);
   if (in.output.empty()) throw UsageError("batch: -o FOLDER is missing");
-  if (!request.parameters.mesh().implicit.empty()) throw UsageError("batch: mesh.implicit is no scan");
+  if (has_own_psi(request.parameters.mesh())) throw UsageError("batch: mesh.implicit or mesh.level_set is no scan");
   request.list = in.input;
   request.folder = in.output;
   request.formats = in.formats;

@@ -62,7 +62,7 @@ ClassificationSource classification_source(const Parameters& parameters) {
 
 BackgroundChoice::BackgroundChoice(const Parameters& parameters, const Domain& domain)
     : parameters_(parameters),
-      is_open_(parameters.mesh().background == "auto" && !umtet::is_graded(parameters)),
+      is_ours_(parameters.mesh().background == "auto" && !umtet::is_graded(parameters)),
       tiling_(&a15()),
       source_(classification_source(parameters)),
       walls_(parameters.mesh().box_walls) {
@@ -83,7 +83,7 @@ BackgroundChoice::BackgroundChoice(const Parameters& parameters, const Domain& d
 
 bool BackgroundChoice::may_be_graded(const Domain& domain) const {
   const MeshParameters& p = parameters_.mesh();
-  return is_open_ && domain.level_set && p.mode == MeshingMode::Fast && !walls_ && p.h == 0 && p.max_deviation == 0;
+  return is_ours_ && domain.level_set && p.mode == MeshingMode::Fast && !walls_ && p.h == 0 && p.max_deviation == 0;
 }
 
 /// @param one  the choice of one h
@@ -109,11 +109,20 @@ EdgeLength BackgroundChoice::edge_length(Domain& domain, const Context& context)
   if (given_) return {given_->h(), given_->h()};
   if (!graded_) {
     const EdgeLength uniform = choose_edge_length(domain, parameters_, context);
-    if (may_be_graded(domain)) grade_if_worth_it(domain, uniform, context);
-    is_open_ = false;
+    if (!is_decided_ && may_be_graded(domain)) grade_if_worth_it(domain, uniform, context);
+    is_decided_ = true;
     return graded_ ? graded_edge_length(domain, context) : uniform;
   }
   graded_->add(domain, context);
+  sizes_ = nullptr;
+  return graded_edge_length(domain, context);
+}
+
+std::optional<EdgeLength> BackgroundChoice::grade(Domain& domain, const Context& context) {
+  if (graded_ || !may_be_graded(domain)) return std::nullopt;
+  GradedSizes sizes(parameters_, domain.shift);
+  sizes.add(domain, context);
+  graded_.emplace(std::move(sizes));
   sizes_ = nullptr;
   return graded_edge_length(domain, context);
 }

@@ -49,6 +49,11 @@ class BackgroundChoice {
   /// set of samples: a graded mesh where that takes less than half the tets of the one h that its thin parts need.
   /// \throw as choose_edge_length() and GradedSizes::add()
   EdgeLength edge_length(Domain& domain, const Context& context = {});
+  /// Where the choice is ours and one h has not shown all of this domain: takes the sizes that it asks for.
+  /// @return none where the choice is not ours, as above. \throw as edge_length()
+  std::optional<EdgeLength> grade(Domain& domain, const Context& context = {});
+  /// Takes that back.
+  void drop_grading() { graded_.reset(), sizes_ = nullptr; }
   /// About how many tets the h for thin parts would have made, where the mesh is graded because of that; else 0.
   double uniform_tets() const { return uniform_tets_; }
   /// Of a graded mesh: GradedSizes::refine().
@@ -76,7 +81,8 @@ class BackgroundChoice {
   std::optional<GradedSizes> graded_;
   mutable std::shared_ptr<const SizeField> sizes_;
   mutable double sizes_h_ = 0;
-  bool is_open_;  ///< mesh.background is auto, and has not been decided
+  const bool is_ours_;       ///< mesh.background is auto, and no sizes are given
+  bool is_decided_ = false;  ///< by the first domain
   double uniform_tets_ = 0;
   const Tiling* tiling_;  ///< that the number of tets is estimated by, for a file too
   ClassificationSource source_;

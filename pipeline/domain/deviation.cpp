@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "mesh/core/asking_psi.h"
 #include "mesh/implicit/curvature.h"
 #include "pipeline/domain/zero_set_choice.h"
 
@@ -17,7 +18,7 @@ constexpr int kRounds = 8;
 double least_edge(const Domain& domain, double h, double deviation, const Context& context) {
   const std::vector<Vec3> x = kept_points(choose_components(domain, h, context));
   std::vector<double> edge(x.size());
-  polled_parallel_for(x.size(), kValuesPerPoll, context, [&](std::size_t i) {
+  for_each_asking(domain.psi(), x.size(), kValuesPerPoll, context, [&](std::size_t i) {
     edge[i] = edge_of_deviation(principal_curvatures(domain.psi(), x[i]), deviation);
   });
   return edge.empty() ? std::numeric_limits<double>::infinity() : *std::min_element(edge.begin(), edge.end());

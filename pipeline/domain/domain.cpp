@@ -14,6 +14,7 @@ namespace umtet {
 
 // Here the two libraries meet: neither includes the other.
 static_assert(JointlyEvaluated<LevelSet>);
+static_assert(JointlyEvaluated<GridLevelSet>);
 static_assert(JointlyEvaluated<Domain>);
 static_assert(JointlyEvaluated<Expression>);
 
@@ -64,9 +65,15 @@ double Domain::evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const {
   return sign * value;
 }
 
+void Domain::values(std::span<const Vec3> x, double* out) const {
+  body().values(x, out);
+  for (std::size_t i = 0; complement && i < x.size(); ++i) out[i] = -out[i];
+}
+
 ImplicitFunctionRef Domain::psi() const { return complement ? ImplicitFunctionRef(*this) : body(); }
 
 Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handover* handover) {
+  if (!parameters.mesh().level_set.empty()) return grid_domain(parameters);
   if (!parameters.mesh().implicit.empty()) return formula_domain(parameters);
   const StageState state = inspect_stage(paths, Stage::LevelSet, parameters.section("reconstruct"), std::nullopt);
   if (!state.record) throw ArtefactDamaged(state.reason);

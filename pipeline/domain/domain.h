@@ -3,7 +3,10 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "mesh/background/background_mesh.h"
 #include "mesh/core/implicit_function.h"
@@ -14,6 +17,7 @@
 #include "pipeline/domain/given_triangles.h"
 #include "pipeline/expression/expression.h"
 #include "reconstruct/cloud/point_cloud.h"
+#include "reconstruct/level_set/grid_fit.h"
 #include "reconstruct/level_set/level_set.h"
 
 namespace umtet {
@@ -23,13 +27,15 @@ struct Handover;
 /// What 3-mesh works on, and what a mesh is judged against: psi, where to look for it, and the samples behind it.
 /// All lengths and places are in working coordinates: model coordinates minus `shift`.
 struct Domain {
-  std::optional<Expression> formula;            ///< one of these three is there
+  std::optional<Expression> formula;  ///< one of these four is there
+  std::shared_ptr<const GridLevelSet> grid;
   std::optional<LevelSet> level_set;            ///< psi; cut where limit_detail() said
   std::optional<ImplicitFunctionRef> function;  ///< the caller's, who keeps it; with a Hessian
   std::optional<LevelSet> fitted;               ///< level_set with all its levels
   Box box;                                      ///< what the background mesh has to cover
   double diagonal = 0;                          ///< of the cloud's box, or of `box` for a formula
   Vec3 shift = Vec3::Zero();
+  std::vector<std::string> notices;                 ///< of how psi was made, for the user
   OrientedPointCloud cloud;                         ///< empty for a formula
   std::shared_ptr<const SampleDistance> samples;    ///< of the cloud's points; none for a formula
   std::shared_ptr<const GivenTriangles> triangles;  ///< that bound the body; none of a cloud or a formula
@@ -50,6 +56,7 @@ struct Domain {
   /// Negative in the body.
   ImplicitFunctionRef body() const {
     if (function) return *function;
+    if (grid) return *grid;
     return formula ? ImplicitFunctionRef(*formula) : ImplicitFunctionRef(*level_set);
   }
   /// Negative in what is meshed. Valid while this domain stays where it is.
@@ -57,6 +64,8 @@ struct Domain {
   /// The same: a domain is an ImplicitFunction. `gradient` and `hessian` may be null.
   double evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const;
   double value(const Vec3& x) const { return evaluate(x, nullptr, nullptr); }
+  void values(std::span<const Vec3> x, double* out) const;
+  const SideBySide* side_by_side() const { return body().side_by_side(); }
 
  private:
   mutable std::optional<std::pair<Box, BodySize>> size_;  ///< of psi in that box
@@ -66,9 +75,14 @@ struct Domain {
 /// \throw UsageError (a formula without a box), ExpressionError
 Domain formula_domain(const Parameters&, std::optional<double> t = std::nullopt);
 
-/// The formula of mesh.implicit, or the level set and the cloud of the case.
+/// The grid of mesh.level_set, in mesh.box or where it has values.
+/// \throw GridRefused, UsageError, ResourceLimit, std::system_error
+Domain grid_domain(const Parameters&);
+
+/// The formula of mesh.implicit or the grid of mesh.level_set, or the level set and the cloud of the case.
 /// @param handover  what there is of them in memory is taken from there, and not read
-/// \throw UsageError (a formula without a box), ExpressionError, ArtefactDamaged, std::system_error
+/// \throw UsageError (a formula without a box), ExpressionError, GridRefused, ResourceLimit, ArtefactDamaged,
+///        std::system_error
 Domain load_domain(const CasePaths&, const Parameters&, Handover* handover = nullptr);
 
 }  // namespace umtet

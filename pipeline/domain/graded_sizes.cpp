@@ -7,6 +7,7 @@
 #include <memory>
 #include <numbers>
 
+#include "mesh/core/asking_psi.h"
 #include "mesh/sizes/graded_size.h"
 #include "mesh/sizes/surface_sizes.h"
 #include "pipeline/case/exit_code.h"
@@ -149,7 +150,7 @@ void GradedSizes::find_finest(const Domain& domain, const Context& context) {
   const double half = domain.box.sizes().maxCoeff() / (2 * kInside);
   const ImplicitFunctionRef psi = domain.psi();
   std::vector<double> inside(kInside * kInside * kInside, finest_);
-  polled_parallel_for(inside.size(), kValuesPerPoll, context, [&](std::size_t i) {
+  for_each_asking(psi, inside.size(), kValuesPerPoll, context, [&](std::size_t i) {
     const auto at = static_cast<int>(i);
     const Vec3 step(at % kInside, at / kInside % kInside, at / (kInside * kInside));
     const Vec3 x = domain.box.min() + half * (2 * step + Vec3::Ones());

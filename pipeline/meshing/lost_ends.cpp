@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/core/asking_psi.h"
 #include "mesh/implicit/foot_point.h"
 
 namespace umtet {
@@ -62,7 +63,7 @@ std::vector<LostPoint> lost_ends(const Domain& domain, const std::vector<Vec3>& 
                                  const MeshEdge& h, double beyond, const Context& context) {
   const ImplicitFunctionRef psi = domain.body();
   std::vector<std::vector<LostPoint>> of_start(starts.size());
-  polled_parallel_for(starts.size(), kValuesPerPoll / (16 * kWalks), context, [&](std::size_t i) {
+  for_each_asking(psi, starts.size(), kValuesPerPoll / (16 * kWalks), context, [&](std::size_t i) {
     const Vec3& x = starts[i];
     const double h_at = h.at(x);
     const Vec3 n = psi.gradient(x).normalized();

@@ -160,13 +160,13 @@ void MeshMaker::curve(MeshAttempt& a) const {
 
 /// The estimate behind mesh.tets knows the shape from a few thousand samples. Where it is far off, the number of tets
 /// at one h gives the next, before anything is moved. Few tets jump with h, to either side of the number asked for.
-MeshAttempt MeshMaker::attempt_for_tets(double h, const std::function<SizedBackground(double h)>& background) {
+MeshAttempt MeshMaker::attempt_for_tets(double h, const MakeBackground& make) {
   const auto asked = static_cast<double>(parameters_.mesh().tets);
-  if (asked == 0) return attempt(background(h), h);
+  if (asked == 0) return attempt(make(h), h);
   double nearest = h, least_miss = std::numeric_limits<double>::infinity();
   std::optional<double> makes_more, makes_less;
   for (int n_misses = 0;;) {
-    const SizedBackground made = background(h);
+    const SizedBackground made = make(h);
     MeshAttempt a = begin(made, h);
     ChosenSubmesh chosen = choose(made.mesh, pieces_at(h, a.sizes.get()));
     const double ratio = static_cast<double>(chosen.n_tets) / asked;
@@ -184,13 +184,36 @@ MeshAttempt MeshMaker::attempt_for_tets(double h, const std::function<SizedBackg
   }
 }
 
-MeshAttempt MeshMaker::best(const EdgeLength& choice, const std::function<SizedBackground(double h)>& background,
-                            const std::function<std::optional<double>(const MeshAttempt&)>& refine) {
-  const auto attempt = [&](double h) { return attempt_for_tets(h, background); };
-  const auto say_it = [this](const std::string& line) { say(line); };
+MeshAttempt MeshMaker::graded(BackgroundChoice& backgrounds, double h, const MakeBackground& make) {
+  return refined_attempt(
+      h, parameters_.mesh().effort, [&](double h_of) { return attempt_for_tets(h_of, make); },
+      [&](const MeshAttempt& a) { return backgrounds.refine(finer_where_it_failed(a, domain_.shift), a.h); },
+      [this](const std::string& line) { say(line); });
+}
+
+MeshAttempt MeshMaker::best(BackgroundChoice& backgrounds, const EdgeLength& choice, const MakeBackground& make) {
+  if (backgrounds.is_graded()) return graded(backgrounds, choice.h, make);
   const double effort = parameters_.mesh().effort;
-  return refine ? refined_attempt(choice.h, effort, attempt, refine, say_it)
-                : best_attempt(choice, effort, attempt, say_it);
+  MeshAttempt of_one_h = best_attempt(
+      choice, effort, [&](double h) { return attempt_for_tets(h, make); },
+      [this](const std::string& line) { say(line); });
+  if (of_one_h.is_right()) return of_one_h;
+  const double allowed = effort * backgrounds.expected_tets(domain_, choice.h);
+  try {
+    const std::optional<EdgeLength> sizes = backgrounds.grade(domain_, context_);
+    if (sizes && backgrounds.expected_tets(domain_, sizes->h) <= allowed) {
+      say(fmt::format("no one h does ({}); trying edges that follow the body", of_one_h.complaint()));
+      MeshAttempt of_sizes = graded(backgrounds, sizes->h, make);
+      if (of_sizes.is_right() || (of_sizes.made() && !of_one_h.made())) return of_sizes;
+      say(fmt::format("they will not do either ({}); keeping h = {:.4g}", of_sizes.complaint(), of_one_h.h));
+    }
+  } catch (const MeshingImpossible& e) {
+    say(std::string("edges that follow the body are not possible: ") + e.what());
+  } catch (const ResourceLimit& e) {
+    say(std::string("edges that follow the body are not possible: ") + e.what());
+  }
+  backgrounds.drop_grading();
+  return of_one_h;
 }
 
 std::string too_thin_text(const MeshAttempt& a, const Vec3& shift) {

@@ -23,6 +23,8 @@ struct MeshLines {
   std::function<void(const std::string& line)> detail = {};  ///< what explains a result
 };
 
+using MakeBackground = std::function<SizedBackground(double h)>;
+
 /// Meshes a domain and measures what came out, as the section `mesh` of the parameters says: the one way that leads to
 /// the meshes of `umtet mesh`, `umtet evolve` and Python's umtet.mesh.
 class MeshMaker {
@@ -36,11 +38,13 @@ class MeshMaker {
   /// \throw MeshingImpossible  no sample is near psi = 0; Cancelled
   MeshAttempt attempt(const SizedBackground& background, double h);
 
-  /// The best_attempt() from this h on, each in a background of its own. Where mesh.tets asks for a number that h
-  /// misses by more than a tenth, which shows before anything is moved, another h takes its place.
-  /// @param refine  where sizes vary, for refined_attempt() instead
-  MeshAttempt best(const EdgeLength& choice, const std::function<SizedBackground(double h)>& background,
-                   const std::function<std::optional<double>(const MeshAttempt&)>& refine = {});
+  /// The best_attempt() from this h on, each in a background of its own; where sizes vary, the refined_attempt(). Where
+  /// the choice between the two is ours and one h does not do, sizes that vary are tried after all, if they make no
+  /// more than mesh.effort times the tets of that h. Where mesh.tets asks for a number that h misses by more than a
+  /// tenth, which shows before anything is moved, another h takes its place.
+  /// @param choice  of `backgrounds`
+  /// @param make    backgrounds.make(), and what else is to happen before an attempt
+  MeshAttempt best(BackgroundChoice& backgrounds, const EdgeLength& choice, const MakeBackground& make);
 
   /// The pieces of psi = 0, psi cut for h: kept until another h is asked for.
   /// @param sizes  for a graded mesh, of which h is the least. \throw Cancelled
@@ -52,7 +56,8 @@ class MeshMaker {
   void finish(const SizedBackground& background, ChosenSubmesh chosen, MeshAttempt& a);
   UmParams params_for(const ZeroSetChoice& pieces) const;
   KnownSigns known_signs(const BackgroundMesh& background, const ZeroSetChoice& pieces) const;
-  MeshAttempt attempt_for_tets(double h, const std::function<SizedBackground(double h)>& background);
+  MeshAttempt attempt_for_tets(double h, const MakeBackground& make);
+  MeshAttempt graded(BackgroundChoice& backgrounds, double h, const MakeBackground& make);
   void curve(MeshAttempt& a) const;
   void say(const std::string& line) const {
     if (lines_.say) lines_.say(line);

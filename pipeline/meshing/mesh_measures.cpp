@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "mesh/certify/boundary_surface.h"
+#include "mesh/core/asking_psi.h"
 #include "mesh/implicit/curvature.h"
 #include "mesh/implicit/surface_distance.h"
 #include "mesh/implicit/thickness.h"
@@ -27,7 +28,7 @@ namespace {
 double max_curvature(ImplicitFunctionRef psi, const UmResult& result, const MeshEdge& h, const Context& context) {
   const std::vector<int>& I = result.submesh.positive_vertices;
   std::vector<double> kappa_h(I.size());
-  polled_parallel_for(I.size(), kValuesPerPoll, context, [&](std::size_t k) {
+  for_each_asking(psi, I.size(), kValuesPerPoll, context, [&](std::size_t k) {
     const Vec3& x = result.final[I[k]];
     kappa_h[k] = h.at(x) * principal_curvatures(psi, x)[0];
   });

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "mesh/core/asking_psi.h"
 #include "mesh/implicit/curvature.h"
 #include "mesh/implicit/foot_point.h"
 #include "mesh/implicit/thickness.h"
@@ -27,7 +28,7 @@ std::vector<double> features(const Domain& domain, const std::vector<Vec3>& poin
                              const Context& context) {
   const ImplicitFunctionRef psi = domain.body();
   std::vector<double> f = thickness(psi, points, h, kStep, kReach, context, domain.steepest());
-  polled_parallel_for(points.size(), kValuesPerPoll / 8, context, [&](std::size_t i) {
+  for_each_asking(psi, points.size(), kValuesPerPoll / 8, context, [&](std::size_t i) {
     // A vertex that has stopped short of psi = 0 is not where its curvature counts.
     const Foot foot = foot_point(psi, points[i], h[i]);
     const double k = principal_curvatures(psi, foot.found ? foot.point : points[i])[0];

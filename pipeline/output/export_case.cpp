@@ -87,9 +87,11 @@ bool is_exported(const std::string& name) {
   return false;
 }
 
-/// The cloud that the mesh was made of; empty for a formula, and where 1-cloud has been taken away.
+/// The cloud that the mesh was made of; empty for a formula or a grid, and where 1-cloud has been taken away.
 OrientedPointCloud cloud_of_case(const CasePaths& paths, const StageRecord& mesh) {
-  if (!mesh.parameters.value("implicit", "").empty()) return {};
+  for (const char* key : {"implicit", "level_set"}) {
+    if (!mesh.parameters.value(key, "").empty()) return {};
+  }
   const StageState state = inspect_stage(paths, Stage::Cloud, Json::object(), std::nullopt);
   if (state.kind == StageState::Kind::Damaged) throw ArtefactDamaged(state.reason);
   if (!state.record) return {};

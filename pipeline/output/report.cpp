@@ -138,7 +138,7 @@ struct Figures {
 
 Figures figures_of(const CasePaths& paths, const Parameters& parameters, const MeshFile& mesh,
                    const Certificate& certificate) {
-  const bool of_cloud = parameters.mesh().implicit.empty();
+  const bool of_cloud = !has_own_psi(parameters.mesh());
   std::vector<StageRecord> records;
   if (of_cloud) records = {read_record(paths, Stage::Cloud), read_record(paths, Stage::LevelSet)};
   records.push_back(read_record(paths, Stage::Mesh));
@@ -241,9 +241,9 @@ void report_case(const CasePaths& paths) {
   }
   Parameters parameters;
   parameters.load(paths.parameters(), ParamSource::Case);
-  const bool formula = !parameters.mesh().implicit.empty();
+  const bool is_alone = has_own_psi(parameters.mesh());
   for (const Stage stage : kStages) {
-    if (formula && stage != Stage::Mesh) continue;
+    if (is_alone && stage != Stage::Mesh) continue;
     const StageState state = inspect_stage(paths, stage, parameters.section(section_of(stage)), std::nullopt);
     if (!state.record) throw ArtefactDamaged(state.reason);
   }

@@ -20,7 +20,7 @@ CertificateRun run_of(const CasePaths& paths, const StageRecord& mesh, std::size
     run.seconds.emplace_back(section_of(record.stage), record.run.seconds);
     run.peak_memory_MB = std::max(run.peak_memory_MB, record.run.peak_memory_MB);
   };
-  if (parameters.mesh().implicit.empty()) {
+  if (!has_own_psi(parameters.mesh())) {
     for (const Stage stage : {Stage::Cloud, Stage::LevelSet}) {
       const StageState state = inspect_stage(paths, stage, parameters.section(section_of(stage)), std::nullopt);
       if (!state.record) continue;

@@ -196,10 +196,10 @@ void CaseRun::begin() {
 }
 
 std::vector<Stage> CaseRun::stages() const {
-  const bool of_formula = request_.until == Stage::Mesh && !parameters_.mesh().implicit.empty();
+  const bool is_alone = request_.until == Stage::Mesh && has_own_psi(parameters_.mesh());
   std::vector<Stage> list;
   for (const Stage stage : kStages) {
-    if (stage <= request_.until && (!of_formula || stage == Stage::Mesh)) list.push_back(stage);
+    if (stage <= request_.until && (!is_alone || stage == Stage::Mesh)) list.push_back(stage);
   }
   return list;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <functional>
 #include <optional>
 
 #include "mesh/universal_mesh.h"
@@ -133,6 +132,7 @@ void MeshStage::refuse_thin(const MeshAttempt& best) {
 }
 
 MeshAttempt MeshStage::best_mesh() {
+  for (const std::string& notice : domain_.notices) context_.progress.say("mesh: " + notice);
   context_.progress.report("mesh", "size", 0);
   const EdgeLength choice = background_.edge_length(domain_, until_interrupted());
   if (choice.of_thin_parts) {
@@ -147,12 +147,7 @@ MeshAttempt MeshStage::best_mesh() {
                     "{:.2g} tets, not {:.2g} (--background a15: one h)",
                     choice.h, n, background_.expected_tets(domain_, choice.h)));
   }
-  std::function<std::optional<double>(const MeshAttempt&)> refine;
-  if (background_.is_graded()) {
-    refine = [this](const MeshAttempt& a) { return background_.refine(finer_where_it_failed(a, domain_.shift), a.h); };
-  }
-  MeshAttempt best = maker_.best(
-      choice, [this](double h) { return background_of(h); }, refine);
+  MeshAttempt best = maker_.best(background_, choice, [this](double h) { return background_of(h); });
   stop_if_interrupted();
   if (best.fell_through()) refuse_thin(best);
   if (!best.made()) refuse(best.result, best.h);

@@ -6,6 +6,7 @@
 #include "pipeline/case/exit_code.h"
 #include "pipeline/domain/background_choice.h"
 #include "pipeline/domain/size_file.h"
+#include "reconstruct/io/grid_io.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -17,9 +18,13 @@ std::vector<RecordedFile> recorded_inputs(const CasePaths& paths, Stage stage, c
     if (const std::string& file = parameters.mesh().size; is_size_file(file)) {
       inputs.push_back({file, paths.stamps->of(file)});
     }
+    if (const std::string& file = parameters.mesh().level_set; !file.empty()) {
+      check_grid_head(file);  // gigabytes that are no grid are not read for their checksum
+      inputs.push_back({file, paths.stamps->of(file)});
+    }
   }
-  const bool formula = stage == Stage::Mesh && !parameters.mesh().implicit.empty();
-  if (stage == Stage::Cloud || formula) return inputs;
+  const bool is_alone = stage == Stage::Mesh && has_own_psi(parameters.mesh());
+  if (stage == Stage::Cloud || is_alone) return inputs;
   for (const Stage source : {Stage::Cloud, Stage::LevelSet}) {
     if (source >= stage) break;
     const StageState state = inspect_stage(paths, source, parameters.section(section_of(source)), std::nullopt);

@@ -6,16 +6,23 @@ which they are seeds.
 
     cases.py FOLDER    writes what is made here to FOLDER/TARGET, TARGET that of the fuzz target
 """
+import base64
 import dataclasses
+import gzip
 import math
 import pathlib
 import random
 import struct
 import sys
+import zlib
 
 STORED = pathlib.Path(__file__).resolve().parent / "files"
-TARGETS = {".stl": "triangles_stl", ".obj": "triangles_obj", ".off": "triangles_off", ".ply": "cloud_ply", ".pcd": "cloud_pcd", ".xyz": "cloud_xyz", ".pts": "cloud_xyz", ".vti": "level_set",
-           ".vtu": "mesh_vtu", ".msh": "mesh_msh", ".mesh": "mesh_mesh"}
+TARGETS = {".stl": "triangles_stl", ".obj": "triangles_obj", ".off": "triangles_off",
+           ".ply": "cloud_ply", ".pcd": "cloud_pcd", ".xyz": "cloud_xyz", ".pts": "cloud_xyz", ".vti": "level_set",
+           ".vtu": "mesh_vtu", ".msh": "mesh_msh", ".mesh": "mesh_mesh",
+           ".nrrd": "grid_nrrd", ".nii": "grid_nifti", ".vtk": "grid_vtk",
+           ".grid": "grid_vti"}  # ImageData, which has any name here: .vti is that of our own level sets
+GRIDS = (".nrrd", ".nii", ".vtk", ".grid")
 
 
 @dataclasses.dataclass
@@ -289,6 +296,179 @@ def vtu_cases():
         yield name, raw.replace(before, after, 1), words
 
 
+# A ball in 7 x 6 x 8 nodes.
+GRID_N = (7, 6, 8)
+GRID = [math.dist((i, j, k), (3, 2.5, 3.5)) - 2 for k in range(8) for j in range(6) for i in range(7)]
+FLOATS, DOUBLES = struct.pack(f"<{len(GRID)}f", *GRID), struct.pack(f"<{len(GRID)}d", *GRID)
+MASK = bytes(v < 0 for v in GRID)
+
+
+def nrrd(data=FLOATS, **fields):
+    head = {"type": "float", "dimension": 3, "sizes": "7 6 8", "encoding": "raw", "endian": "little", "spacings": ".1 .1 .2"}
+    head.update({name.replace("_", " "): value for name, value in fields.items()})
+    lines = "".join(f"{name}: {value}\n" for name, value in head.items() if value is not None)
+    return b"NRRD0004\n# a ball\n" + lines.encode() + b"\n" + data
+
+
+def nrrd_cases():
+    text = " ".join(map(repr, GRID)).encode()
+    yield "raw", nrrd(), None
+    yield "ascii", nrrd(text, encoding="ascii"), None
+    yield "gzip", nrrd(gzip.compress(FLOATS, mtime=0), encoding="gzip"), None
+    yield "whole_gzip", gzip.compress(nrrd(), mtime=0), None
+    yield "directions", nrrd(spacings=None, space_directions="(0,.1,0) (.1,0,0) (0,0,.2)", space_origin="(1,2,3)"), None
+    yield "mask", nrrd(MASK, type="unsigned char", endian=None), None
+    yield "empty", b"", ["neither VTK"]
+    yield "cut", nrrd()[:600], ["no room"]
+    yield "gzip_cut", nrrd(gzip.compress(FLOATS, mtime=0)[:200], encoding="gzip"), ["the file is cut"]
+    yield "gzip_damaged", nrrd(gzip.compress(FLOATS, mtime=0)[:99] + 300 * b"x", encoding="gzip"), ["gzip"]
+    yield "no_gzip", nrrd(encoding="gzip"), ["said to be of gzip"]
+    yield "head_cut", b"NRRD0004\ntype: float\n", ["the file is cut"]
+    yield "sizes_2e9", nrrd(sizes="2000000000 2000000000 2"), ["no room"]
+    yield "sizes_negative", nrrd(sizes="-7 6 8"), ["a number of nodes that is none"]
+    yield "sizes_wrap", nrrd(sizes="4294967296 4294967296 1"), ["a number of nodes that is none"]
+    yield "sizes_word", nrrd(sizes="7 six 8"), ["'six' is not a whole number"]
+    yield "sizes_two", nrrd(sizes="7 6"), ["sizes: three"]
+    yield "dimension", nrrd(dimension=4), ["dimension: 3"]
+    yield "type", nrrd(type="block"), ["'block'"]
+    yield "no_type", nrrd(type=None), ["'type' is missing"]
+    yield "encoding", nrrd(encoding="bzip2"), ["'bzip2'"]
+    yield "detached", nrrd(data_file="../../../../etc/passwd"), ["'data file' is not read"]
+    yield "endian", nrrd(endian="middle"), ["endian"]
+    yield "no_line", nrrd(b"", type=None).replace(b"dimension:", b"dimension"), ["FIELD: VALUE"]
+    yield "vector", nrrd(space_directions="(0,.1) (.1,0,0) (0,0,.2)"), ["three numbers"]
+    yield "flat", nrrd(space_directions="(0,.1,0) (0,.1,0) (0,0,.2)"), ["span space"]
+    yield "spacing_nan", nrrd(spacings="nan 1 1"), ["span space"]
+    yield "few", nrrd(sizes="7 6 1"), ["7 x 6 x 1", "at least 6"]
+    yield "nan", nrrd(struct.pack("<f", math.nan) + FLOATS[4:]), ["value (0, 0, 0) is not finite"]
+    yield "word", nrrd(b"a" + text, encoding="ascii"), ["is not a number"]
+    yield "words_cut", nrrd(text[:500], encoding="ascii"), ["no room"]
+
+
+def nifti(data=FLOATS, dim=(3, 7, 6, 8, 1, 1, 1, 1), datatype=16, offset=352., slope=0., sform=1, qform=0, magic=b"n+1\0", order="<",
+          row=(.1, 0, 0, -1)):
+    head = bytearray(348)
+    struct.pack_into(order + "i", head, 0, 348)
+    struct.pack_into(order + "8h", head, 40, *dim)
+    struct.pack_into(order + "hh", head, 70, datatype, 32)
+    struct.pack_into(order + "8f", head, 76, 1, .1, .1, .2, 0, 0, 0, 0)
+    struct.pack_into(order + "fff", head, 108, offset, slope, 0)
+    struct.pack_into(order + "hh", head, 252, qform, sform)
+    struct.pack_into(order + "6f", head, 256, 0, 0, .7071068, 1, 2, 3)
+    struct.pack_into(order + "12f", head, 280, *row, 0, .1, 0, -1, 0, 0, .2, -1)
+    head[344:348] = magic
+    return bytes(head) + bytes(4) + data
+
+
+def nifti_cases():
+    yield "sform", nifti(), None
+    yield "qform", nifti(sform=0, qform=1), None
+    yield "sizes", nifti(sform=0), None
+    yield "big", nifti(struct.pack(f">{len(GRID)}f", *GRID), order=">"), None
+    yield "scaled", nifti(slope=2.), None
+    yield "mask", nifti(MASK, datatype=2), None
+    yield "gzip", gzip.compress(nifti(), mtime=0), None
+    yield "head_cut", nifti()[:300], ["neither VTK"]
+    yield "cut", nifti()[:900], ["no room"]
+    yield "gzip_cut", gzip.compress(nifti(), mtime=0)[:-100], ["the file is cut"]
+    yield "pair", nifti(magic=b"ni1\0"), [".hdr and .img"]
+    yield "second", b"\x1c\x02\0\0n+2\0" + bytes(600), ["NIfTI-2"]
+    yield "dim", nifti(dim=(2, 7, 6, 1, 1, 1, 1, 1)), ["2 dimensions"]
+    yield "dim_negative", nifti(dim=(3, -7, 6, 8, 1, 1, 1, 1)), ["a number of nodes that is none"]
+    yield "dim_huge", nifti(dim=(3, 32767, 32767, 32767, 1, 1, 1, 1)), ["no room"]
+    yield "times", nifti(dim=(4, 7, 6, 8, 9, 1, 1, 1)), ["more than one number a voxel"]
+    yield "type", nifti(datatype=128), ["data type 128"]
+    yield "offset", nifti(offset=12.), ["vox_offset"]
+    yield "offset_nan", nifti(offset=math.nan), ["vox_offset"]
+    yield "offset_far", nifti(offset=1e8), ["the file is cut"]
+    yield "flat", nifti(row=(0, .1, 0, 0)), ["span space"]
+
+
+def vtk(data=None, form="BINARY", dimensions="7 6 8", more="SCALARS psi float 1\nLOOKUP_TABLE default\n", of="POINT_DATA 336"):
+    if data is None:
+        data = struct.pack(f">{len(GRID)}f", *GRID)
+    return (f"# vtk DataFile Version 3.0\na ball\n{form}\nDATASET STRUCTURED_POINTS\nDIMENSIONS {dimensions}\nSPACING .1 .1 .2\n"
+            f"ORIGIN 0 0 0\n{of}\n{more}").encode() + data
+
+
+def vtk_cases():
+    text = "\n".join(map(repr, GRID)).encode()
+    yield "binary", vtk(), None
+    yield "ascii", vtk(text, "ASCII"), None
+    yield "field", vtk(more="FIELD FieldData 1\npsi 1 336 float\n"), None
+    yield "cells", vtk(of="CELL_DATA 336", dimensions="8 7 9"), None
+    yield "gzip", gzip.compress(vtk(), mtime=0), None
+    yield "head_cut", vtk()[:80], ["the file is cut"]
+    yield "cut", vtk()[:900], ["no room"]
+    yield "text_cut", vtk(text[:2000], "ASCII"), ["the file is cut"]
+    yield "form", vtk(form="TERNARY"), ["'TERNARY'"]
+    yield "dataset", vtk().replace(b"STRUCTURED_POINTS", b"POLYDATA"), ["STRUCTURED_POINTS"]
+    yield "dimensions", vtk(dimensions="7 6"), ["a line that is cut"]
+    yield "dimensions_huge", vtk(dimensions="2000000000 2000000000 2000000000"), ["no room"]
+    yield "no_dimensions", vtk().replace(b"DIMENSIONS", b"MEASURES"), ["DIMENSIONS are missing"]
+    yield "vectors", vtk(more="SCALARS psi float 3\nLOOKUP_TABLE default\n"), ["one number a node"]
+    yield "table", vtk(text, "ASCII", more="SCALARS psi float 1\n"), ["LOOKUP_TABLE"]
+    yield "type", vtk(more="SCALARS psi quad 1\nLOOKUP_TABLE default\n"), ["'quad'"]
+    yield "no_numbers", vtk(b"\n" * 2000, more=""), ["no numbers"]
+    yield "endless_line", vtk(b"1" * 100000, more=""), ["more than 65536 bytes"]
+    yield "word", vtk(b"inf one " + text, "ASCII"), ["'one' is not a number"]
+    yield "infinite", vtk(b"inf " + text, "ASCII"), ["not finite"]
+
+
+def image(array='type="Float64" format="appended" offset="0"', inline="", appended=None, compressor="", extent="0 6 0 5 0 7",
+          of="PointData", encoding="raw", more=""):
+    if appended is None:
+        appended = struct.pack("<Q", len(DOUBLES)) + DOUBLES
+    return (f'<?xml version="1.0"?>\n<VTKFile type="ImageData" version="1.0" byte_order="LittleEndian" header_type="UInt64"{compressor}>\n'
+            f'<ImageData WholeExtent="{extent}" Origin="0 0 0" Spacing=".1 .1 .2">\n<Piece Extent="{extent}">\n<{of} Scalars="psi">\n{more}'
+            f'<DataArray Name="psi" {array}>{inline}</DataArray>\n</{of}>\n</Piece>\n</ImageData>\n<AppendedData encoding="{encoding}">\n_'
+            ).encode() + appended + b"\n</AppendedData>\n</VTKFile>\n"
+
+
+def packed(piece=1000):
+    """Blocks of zlib."""
+    blocks = [zlib.compress(DOUBLES[at:at + piece]) for at in range(0, len(DOUBLES), piece)]
+    head = struct.pack(f"<{3 + len(blocks)}Q", len(blocks), piece, len(DOUBLES) % piece, *map(len, blocks))
+    return head, b"".join(blocks)
+
+
+def image_cases():
+    zlib_ = ' compressor="vtkZLibDataCompressor"'
+    head, blocks = packed()
+    of_64 = base64.b64encode(struct.pack("<Q", len(DOUBLES)) + DOUBLES).decode()
+    packed_64 = base64.b64encode(head) + base64.b64encode(blocks)
+    yield "raw", image(), None
+    yield "ascii", image('type="Float32" format="ascii"', " ".join(map(repr, GRID))), None
+    yield "base64", image('type="Float64" format="binary"', "\n" + of_64 + "\n"), None
+    yield "appended_base64", image(appended=of_64.encode(), encoding="base64"), None
+    yield "packed", image(appended=head + blocks, compressor=zlib_), None
+    yield "packed_base64", image(appended=packed_64, compressor=zlib_, encoding="base64"), None
+    yield "cells", image(extent="0 7 0 6 0 8", of="CellData"), None
+    yield "second", image(more='<DataArray type="Float32" Name="n" NumberOfComponents="3" format="ascii">1 2 3</DataArray>\n'), None
+    yield "gzip", gzip.compress(image(), mtime=0), None
+    yield "other", b'<VTKFile type="PolyData"></VTKFile>', ["'PolyData'"]
+    yield "no_array", image().replace(b"DataArray", b"Array"), ["no array"]
+    yield "cut", image()[:1500], ["no room"]
+    yield "packed_cut", image(appended=(head + blocks)[:900], compressor=zlib_)[:-40], ["the file is cut"]
+    yield "packed_damaged", image(appended=head + bytes(len(blocks)), compressor=zlib_), ["damaged zlib"]
+    yield "packed_lies", image(appended=struct.pack("<4Q", 1, 1 << 40, 0, 10), compressor=zlib_), ["not as long as its nodes"]
+    yield "packed_huge", image(appended=struct.pack("<4Q", 2 ** 63, 2 ** 63, 0, 10), compressor=zlib_), ["a count that is none"]
+    yield "lz4", image(compressor=' compressor="vtkLZ4DataCompressor"'), ["'vtkLZ4DataCompressor'"]
+    yield "count", image(appended=struct.pack("<Q", 1 << 60) + DOUBLES), ["a count that is none"]
+    yield "count_less", image(appended=struct.pack("<Q", 80) + DOUBLES), ["not as long as its nodes"]
+    yield "offset_far", image('type="Float64" format="appended" offset="999999999"'), ["the file is cut"]
+    yield "offset_negative", image('type="Float64" format="appended" offset="-8"'), ["offset"]
+    yield "extent_huge", image(extent="0 999999999 0 999999999 0 999999999"), ["no room"]
+    yield "extent_negative", image(extent="0 -5 0 5 0 5"), ["extent"]
+    yield "extent_cut", image(extent="0 5 0 5"), ["six numbers"]
+    yield "type", image('type="Float16" format="ascii"'), ["'Float16'"]
+    yield "format", image('type="Float32" format="morse"'), ["'morse'"]
+    yield "no_base64", image('type="Float64" format="binary"', "?" * 8000), ["not base64"]
+    yield "tag", b'<VTKFile type="ImageData" what>' + bytes(50), ["a tag that cannot be read"]
+    yield "endless_tag", b"<VTKFile " + b"x" * 100000, ["more than 65536 bytes"]
+
+
+def stl_cases():
 def other_cases():
     yield "what", b"solid", ["unknown extension"]
 
@@ -515,6 +695,11 @@ HUGE = [
     ("zeros.vtu", b"", ["no <VTKFile"]),
     ("zeros.msh", b"", ["no $MeshFormat"]),
     ("zeros.mesh", b"", ["no MeshVersionFormatted"]),
+    ("zeros.nrrd", b"", ["neither VTK"]),
+    ("count.nrrd", nrrd(b"", sizes="2000 2000 2000"), ["nodes, and at most"]),
+    ("count.nii", nifti(b"", dim=(3, 2000, 2000, 2000, 1, 1, 1, 1)), ["nodes, and at most"]),
+    ("line.vtk", b"# vtk DataFile Version 3.0\n", ["more than 65536 bytes"]),
+    ("tag.grid", b'<VTKFile type="ImageData">', ["more than 65536 bytes"]),
 ]
 
 
@@ -523,6 +708,8 @@ def made_cases():
         yield Case(name + ".ply", data, words, *(strict or [words]), target="triangles_ply")
     for suffix, family in ((".ply", ply_cases), (".pcd", pcd_cases), (".xyz", xyz_cases), (".pts", pts_cases),
                            (".las", las_cases), (".msh", msh_cases), (".mesh", mesh_cases), (".vtu", vtu_cases),
+                           (".stl", stl_cases), (".nrrd", nrrd_cases), (".nii", nifti_cases), (".vtk", vtk_cases),
+                           (".grid", image_cases)):
                            (".stl", stl_cases), (".obj", obj_cases), (".off", off_cases),
                            (".tets", other_cases)):
         for name, data, words, *strict in family():

@@ -81,7 +81,7 @@ def main():
             if case.is_huge:
                 os.truncate(file, HUGE_BYTES)
             # The readers are asked below: of meshes, and of clouds in a whole run, some files are enough here.
-            some, is_cloud = case.is_huge or n % 4 == 0, file.suffix not in (*MESHES, ".vti")
+            some, is_cloud = case.is_huge or n % 4 == 0, file.suffix not in (*MESHES, *cases.GRIDS, ".vti")
             calls = []
             # Of triangles that are accepted samples are taken, which takes longer.
             if is_cloud and not (case.words is None and ((case.target or "").startswith("triangles") or file.suffix in TRIANGLES)):
@@ -90,6 +90,8 @@ def main():
                 calls.append(["run", str(file), "-o", str(folder / "case")])
             if file.suffix in MESHES and some:
                 calls.append(["check", str(file)])
+            if file.suffix in cases.GRIDS and some and case.words is not None:
+                calls.append(["mesh", "--level-set", str(file), "-o", str(folder / "case")])
             for arguments in calls:
                 answer = call(program, arguments, limited)
                 slowest, largest = max(slowest, answer[2]), max(largest, answer[3])

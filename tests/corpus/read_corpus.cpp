@@ -7,6 +7,7 @@
 #include <string>
 
 #include "mesh/io/tet_mesh_io.h"
+#include "reconstruct/io/grid_io.h"
 #include "reconstruct/io/level_set_io.h"
 #include "reconstruct/io/point_cloud_io.h"
 #include "reconstruct/io/triangle_mesh_io.h"
@@ -34,6 +35,8 @@ int main(int argc, char** argv) {
       answer<umtet::MeshFileRefused>(file, "read_tet_mesh", umtet::read_tet_mesh);
     } else if (kind == ".vti") {
       answer<umtet::LevelSetRefused>(file, "read_level_set", umtet::read_level_set);
+    } else if (kind == ".nrrd" || kind == ".nii" || kind == ".vtk" || kind == ".grid") {
+      answer<umtet::GridRefused>(file, "read_grid", [](const auto& path) { return umtet::read_grid(path); });
     } else if (umtet::holds_triangles(file)) {
       answer<umtet::CloudRefused>(file, "read_triangles", umtet::read_triangles);
     } else {

@@ -1,12 +1,18 @@
 #!/usr/bin/python3
 """The Python module, from outside. PYTHONPATH has the folder of umtet/; usage: umtet_test.py"""
 import doctest
+import importlib.util
 import json
 import os
+import pathlib
+import shutil
 import signal
+import subprocess
+import sys
 import tempfile
 import threading
 import time
+import types
 import unittest
 
 import numpy as np
@@ -141,6 +147,49 @@ class MeshTest(unittest.TestCase):
         np.testing.assert_allclose(formula.points, called.points, atol=1e-8)
         self.assertTrue(called.certified)
 
+    def test_blocks_make_the_mesh_that_points_make(self):
+        # The same arithmetic, so that each value has the same bits.
+        def torus(x, y, z):
+            r = np.sqrt(x * x + y * y)
+            return (r - 1) * (r - 1) + z * z - .16
+
+        box = (-1.7, -1.7, -.7, 1.7, 1.7, .7)
+        for parameters in ({"h": .25}, {"h": .3, "order": 2}, {"h": .35, "mode": "paper"}, {"max_deviation": .05}, {"tets": 2000},
+                           {"h": .3, "size": ".3+.1*x", "background": "graded"}):
+            by_block = umtet.mesh(lambda x: torus(x[:, 0], x[:, 1], x[:, 2]), box=box, **parameters)
+            by_point = umtet.mesh(lambda x: torus(x[0], x[1], x[2]), box=box, **parameters)
+            self.assertEqual(by_block.points.tobytes(), by_point.points.tobytes(), parameters)
+            np.testing.assert_array_equal(by_block.tets, by_point.tets)
+            self.assertEqual(by_block.certificate["resolution"], by_point.certificate["resolution"])
+            self.assertTrue(by_block.certified, by_block.certificate["reasons"])
+        moving = [umtet.UniversalMesh((-1, -1, -1, 2, 1, 1), h=.2) for _ in range(2)]
+        for t in (0, .1, .2):
+            blocks, points = (m.update(psi, certify=True).mesh for m, psi in zip(moving, (
+                lambda x: (x[:, 0] - t) * (x[:, 0] - t) + x[:, 1] * x[:, 1] + x[:, 2] * x[:, 2] - .3,
+                lambda x: (x[0] - t) * (x[0] - t) + x[1] * x[1] + x[2] * x[2] - .3)))
+            self.assertEqual(blocks.points.tobytes(), points.points.tobytes())
+
+    def test_blocks_are_large(self):
+        sizes = []
+
+        def psi(x):
+            sizes.append(len(x))
+            return (x**2).sum(1) - 1
+
+        umtet.mesh(psi, box=BOX, h=.1)
+        self.assertGreater(sum(sizes), 500000)
+        self.assertLess(len(sizes), sum(sizes) / 500)
+
+    def test_a_callable_may_take_one_point(self):
+        block = umtet.mesh(ball, box=BOX, h=.4)
+        for psi in (lambda p: p @ p - 1, lambda p: sum(c * c for c in p) - 1, lambda p: (p @ p - 1, 2 * p),
+                    lambda p: (float(p @ p - 1), list(2 * p), 2 * np.eye(3))):
+            m = umtet.mesh(psi, box=BOX, h=.4)
+            np.testing.assert_array_equal(m.tets, block.tets)
+            np.testing.assert_allclose(m.points, block.points, atol=1e-7)
+        with self.assertRaisesRegex(ZeroDivisionError, "by zero"):
+            umtet.mesh(lambda p: 1 / 0, box=BOX, h=.4)
+
     def test_missing_derivatives_are_made(self):
         whole = umtet.mesh(ball, box=BOX, h=.3)
         for psi in (lambda x: ball(x)[:2], lambda x: ball(x)[0]):
@@ -250,17 +299,35 @@ class Failures(unittest.TestCase):
             umtet.mesh("x^2+y^2+z^2-t", box=BOX, h=.2, t=np.nan)
 
     def test_what_psi_raises_comes_out(self):
-        calls = []
+        # In a block of values, and in the middle of searches that wait for each other.
+        for last in (5, 100, 200):
+            calls = []
 
-        def psi(x):
-            calls.append(len(x))
-            if len(calls) > 1000:
-                raise KeyError("of psi")
-            return (x**2).sum(1) - 1
+            def psi(x):
+                calls.append(len(x))
+                if len(calls) > last:
+                    raise KeyError("of psi")
+                return (x**2).sum(1) - 1
 
-        with self.assertRaisesRegex(KeyError, "of psi"):
-            umtet.mesh(psi, box=BOX, h=.2)
-        self.assertEqual(len(calls), 1001)
+            with self.assertRaisesRegex(KeyError, "of psi"):
+                umtet.mesh(psi, box=BOX, h=.2)
+            self.assertEqual(len(calls), last + 1)
+
+    def test_a_grid_of_a_file_is_meshed_and_bad_ones_are_value_errors(self):
+        grid = np.stack(np.meshgrid(*3 * [np.linspace(-1.3, 1.3, 24)], indexing="ij"), -1)
+        head = ("NRRD0004\ntype: uchar\ndimension: 3\nsizes: 24 24 24\nencoding: raw\n"
+                f"spacings: {3 * (str(2.6 / 23) + ' ')}\n\n").encode()
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "ball.nrrd")
+            path.write_bytes(head + (np.linalg.norm(grid, axis=-1) < 1).astype(np.uint8).tobytes(order="F"))
+            m = umtet.mesh(path, h=.25)
+            self.assertTrue(m.certified, m.certificate["reasons"])
+            self.assertIn("made smooth", m.notices[0])
+            with self.assertRaisesRegex(ValueError, "no voxel is inside"):
+                umtet.mesh(path, part=7, h=.25)
+            path.write_bytes(head)
+            with self.assertRaisesRegex(ValueError, "no room"):
+                umtet.mesh(path, h=.25)
 
     def test_progress_stops(self):
         steps = []
@@ -356,7 +423,7 @@ class Moving(unittest.TestCase):
 
         def psi(x):
             calls.append(len(x))
-            if len(calls) == 10:
+            if len(calls) == 4:
                 moving.update(BALL)
             return (x**2).sum(1) - 1
 
@@ -386,7 +453,183 @@ class Certificate(unittest.TestCase):
             umtet.certificate(m.points, m.tets + .3)
 
 
+class OtherPackages(unittest.TestCase):
+    """By their attributes, and by the packages that Debian has."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.mesh = umtet.mesh(BALL, box=BOX, h=.3)
+        cls.points, cls.normals = egg()
+        # A closed surface of triangles in the order that Qhull has them, turned outward.
+        try:
+            from scipy.spatial import ConvexHull
+        except ImportError as e:
+            raise unittest.SkipTest(str(e))
+        t = ConvexHull(cls.points).simplices
+        a, b, c = (cls.points[t[:, k]] for k in range(3))
+        turned = np.einsum("ij,ij->i", np.cross(b - a, c - a), a + b + c) < 0
+        t[turned] = t[turned][:, ::-1]
+        cls.triangles = t
+
+    def psi_is_the_egg(self, thing, **arguments):
+        psi = umtet.reconstruct(thing, **arguments)
+        self.assertLess(abs(psi.value(self.points)).max(), .01)
+
+    def test_clouds(self):
+        x, n = self.points, self.normals
+        self.psi_is_the_egg(types.SimpleNamespace(points=x, normals=n))  # Open3D
+        self.psi_is_the_egg(types.SimpleNamespace(points=x, normals=[]))
+        self.psi_is_the_egg(types.SimpleNamespace(points=x, point_data={"Normals": n}, faces=[]))  # pyvista
+        self.psi_is_the_egg(types.SimpleNamespace(points=x), normals=n)
+
+    def test_surface_meshes(self):
+        x, t = self.points, self.triangles
+        self.psi_is_the_egg(types.SimpleNamespace(vertices=x, triangles=t, vertex_normals=[]))  # Open3D
+        self.psi_is_the_egg(types.SimpleNamespace(vertices=x, faces=t))  # trimesh
+        self.psi_is_the_egg(types.SimpleNamespace(points=x, faces=np.c_[np.full(len(t), 3), t].ravel()))  # pyvista
+        self.psi_is_the_egg(types.SimpleNamespace(points=x, cells_dict={"triangle": t}))  # meshio
+        with self.assertRaisesRegex(ValueError, "triangulate"):
+            umtet.reconstruct(types.SimpleNamespace(points=x, faces=[4, 0, 1, 2, 3]))
+
+    def test_to_and_from_meshio(self):
+        try:
+            import meshio
+        except ImportError as e:
+            self.skipTest(str(e))
+        m = self.mesh.to_meshio()
+        np.testing.assert_array_equal(m.cells_dict["tetra"], self.mesh.tets)
+        self.assertEqual(set(m.cell_sets), set(self.mesh.patches()))
+        self.assertEqual(len(m.cell_sets_dict["boundary"]["triangle"]), len(self.mesh.boundary))
+        self.assertEqual(umtet.certificate(m, psi=BALL, h=.3)["quality"], self.mesh.certificate["quality"])
+        with tempfile.TemporaryDirectory() as folder:
+            meshio.write_points_cells(f"{folder}/ball.vtk", m.points, m.cells)
+            read = meshio.read(f"{folder}/ball.vtk")
+        np.testing.assert_array_equal(read.points, self.mesh.points)
+        curved = umtet.mesh(BALL, box=BOX, h=.4, order=2).to_meshio()
+        self.assertEqual([b.type for b in curved.cells], ["tetra10", "triangle6"])
+
+    def test_to_vtk_and_pyvista(self):
+        try:
+            import vtkmodules.vtkCommonDataModel  # noqa: F401
+        except ImportError as e:
+            self.skipTest(str(e))
+        for mesh in (self.mesh, umtet.mesh(BALL, box=BOX, h=.4, order=2)):
+            grid = mesh.to_vtk()
+            self.assertEqual(grid.GetNumberOfCells(), len(mesh.tets))
+            self.assertEqual([grid.GetCell(7).GetPointId(k) for k in range(mesh.tets.shape[1])], mesh.tets[7].tolist())
+            self.assertEqual(grid.GetPoint(9), tuple(mesh.points[9]))
+            self.assertEqual(grid.GetPointData().GetArray("background_vertex").GetValue(3), mesh.background_vertex[3])
+        given = []
+        sys.modules["pyvista"] = types.SimpleNamespace(wrap=lambda grid: given.append(grid) or "wrapped")
+        self.addCleanup(sys.modules.pop, "pyvista")
+        self.assertEqual(self.mesh.to_pyvista(), "wrapped")
+        self.assertEqual(given[0].GetNumberOfCells(), len(self.mesh.tets))
+
+    def test_patches_have_names(self):
+        whole = self.mesh.patches()
+        self.assertEqual([len(f) for f in whole.values()], [len(self.mesh.boundary)])
+        self.assertEqual(sorted(map(sorted, next(iter(whole.values())).tolist())), sorted(map(sorted, self.mesh.boundary.tolist())))
+        drum = umtet.mesh("(x^2+y^2)^4+z^8-1", box=BOX, h=.12).patches(patch_planar=4)
+        self.assertEqual(set(drum), {"plane_1", "plane_2", "rest"})
+        box = (-2, -2, -2, 2, 2, 2)
+        around = umtet.mesh(BALL, box=box, h=.3, complement=True, box_walls=True)
+        self.assertEqual(len(around.patches()["walls"]), len(around.walls))
+        self.assertEqual(len(around.cells_dict["triangle"]), len(around.walls) + len(around.boundary))
+        with self.assertRaisesRegex(TypeError, "patch_angel"):
+            self.mesh.patches(patch_angel=30)
+
+    def test_no_tets_are_a_type_error(self):
+        with self.assertRaisesRegex(TypeError, "tets"):
+            umtet.certificate(types.SimpleNamespace(points=self.points))
+
+
+USER = """
+import numpy as np
+import numpy.typing as npt
+import umtet
+
+def ball(x: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    return np.asarray((x**2).sum(1) - 1)
+
+mesh: umtet.Mesh = umtet.mesh(ball, box=(-2, -2, -2, 2, 2, 2), h=.2, order=2, progress=lambda step, part: part < .5)
+n: int = len(mesh.tets) + len(mesh.patches(patch_angle=30)["boundary"])
+psi: umtet.LevelSet = umtet.reconstruct(mesh.points, spacing=.1)
+values: npt.NDArray[np.float64] = psi.value(mesh.points)
+"""
+
+
+class Types(unittest.TestCase):
+    """mypy, of the hints, of what is behind them, and of a user's program; as Debian has it."""
+
+    def mypy(self, *arguments, cwd):
+        folder = os.path.dirname(os.path.dirname(umtet.__file__))
+        return subprocess.run(["/usr/bin/python3", "-m", *arguments], cwd=cwd, capture_output=True, text=True,
+                              env={**os.environ, "MYPYPATH": folder, "PYTHONPATH": folder})
+
+    def setUp(self):
+        if importlib.util.find_spec("mypy") is None:
+            self.skipTest("no mypy")
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def test_the_package_is_strict(self):
+        made = self.mypy("mypy", "--strict", "-p", "umtet", cwd=self.folder)
+        self.assertEqual(made.returncode, 0, made.stdout)
+
+    def test_the_stub_is_what_is_there(self):
+        with open(f"{self.folder}/of_pybind", "w") as file:  # its metaclass, and objects that Python cannot make
+            file.write("".join(f"umtet._core.{name}(.__init__)?\n" for name in ("LevelSet", "Mesh", "Moving")))
+        made = self.mypy("mypy.stubtest", "--allowlist", "of_pybind", "umtet._core", cwd=self.folder)
+        self.assertEqual(made.returncode, 0, made.stdout)
+
+    def test_a_program_of_a_user(self):
+        with open(f"{self.folder}/user.py", "w") as file:
+            file.write(USER)
+        made = self.mypy("mypy", "--strict", "user.py", cwd=self.folder)
+        self.assertEqual(made.returncode, 0, made.stdout)
+        with open(f"{self.folder}/user.py", "a") as file:
+            file.write("umtet.mesh(3)\nmesh.tetrahedra\n")
+        made = self.mypy("mypy", "--strict", "user.py", cwd=self.folder)
+        self.assertIn("Found 2 errors", made.stdout)
+
+
+class Wheel(unittest.TestCase):
+    def test_pip_makes_one_that_a_fresh_venv_imports(self):
+        source, build = os.environ.get("UMTET_SOURCE"), os.environ.get("UMTET_BUILD")
+        missing = [m for m in ("pip", "setuptools", "wheel", "venv") if importlib.util.find_spec(m) is None]
+        if not source or missing:
+            self.skipTest(f"no {missing or 'sources'}")
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run(["/usr/bin/python3", "-m", "venv", "--system-site-packages", f"{folder}/venv"], check=True)
+            # The sources are copied, so that nothing is left in them.
+            for name in ("python", "pyproject.toml", "setup.py", "CMakeLists.txt", "LICENSE"):
+                copy = shutil.copytree if os.path.isdir(f"{source}/{name}") else shutil.copy
+                copy(f"{source}/{name}", f"{folder}/umtet/{name}" if copy is shutil.copytree else f"{folder}/umtet/")
+            environment = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"}
+            made = subprocess.run([f"{folder}/venv/bin/pip", "install", "--no-build-isolation", "--no-deps", "--no-index", "."],
+                                  cwd=f"{folder}/umtet", capture_output=True, text=True, env=environment)
+            self.assertEqual(made.returncode, 0, made.stdout + made.stderr)
+            program = ("import umtet; m = umtet.mesh('x^2+y^2+z^2-1', box=(-2,-2,-2,2,2,2), h=.5); "
+                       "print(umtet.__file__, m.certified)")
+            said = subprocess.run([f"{folder}/venv/bin/python", "-c", program], cwd=folder, capture_output=True, text=True,
+                                  env=environment)
+            self.assertEqual(said.stdout.split(), [said.stdout.split()[0], "True"], said.stderr)
+            self.assertTrue(said.stdout.startswith(f"{folder}/venv/"), said.stdout)
+            self.assertTrue(os.path.exists(os.path.dirname(said.stdout.split()[0]) + "/py.typed"))
+
+
 class Documentation(unittest.TestCase):
+    def test_the_example_makes_a_certified_mesh(self):
+        if "UMTET_SOURCE" not in os.environ:
+            self.skipTest("no sources")
+        with tempfile.TemporaryDirectory() as folder:
+            # A picture needs a display.
+            program = f"import runpy; runpy.run_path({os.environ['UMTET_SOURCE']!r} + '/examples/python/gyroid.py')"
+            said = subprocess.run([sys.executable, "-c", program, folder], capture_output=True, text=True, cwd=folder)
+            self.assertIn("certified: True", said.stdout, said.stderr)
+            self.assertEqual(sorted(os.listdir(folder)), ["gyroid.msh", "gyroid.vtu"])
+
     def test_the_examples_of_the_readme(self):
         with tempfile.TemporaryDirectory() as folder:
             here = os.getcwd()

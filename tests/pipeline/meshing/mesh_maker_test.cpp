@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -58,6 +60,56 @@ TEST(MeshMaker, CellsOfAnEarlierHAreThoseOfASearch) {
     EXPECT_EQ(cells.size, found.size) << h;
     EXPECT_EQ(cells.cells, found.cells) << h;
     EXPECT_FALSE(cells.cells.empty());
+  }
+}
+
+/// Two balls of .5 and a rod of .15 between them.
+double dumbbell(const Vec3& x) {
+  const double balls = std::min((x - Vec3(.8, 0, 0)).norm(), (x + Vec3(.8, 0, 0)).norm()) - .5;
+  return std::min(balls, std::max(std::hypot(x[1], x[2]) - .15, std::abs(x[0]) - .8));
+}
+
+Domain dumbbell_domain() {
+  const Eigen::Vector3i n(61, 33, 33);
+  const Lattice lattice{.origin = Vec3(-1.5, -.8, -.8), .h = .05, .n = n};
+  std::vector<double> values;
+  for (int k = 0; k < n[2]; ++k) {
+    for (int j = 0; j < n[1]; ++j) {
+      for (int i = 0; i < n[0]; ++i) values.push_back(dumbbell(lattice.origin + lattice.h * Vec3(i, j, k)));
+    }
+  }
+  Domain domain;
+  domain.level_set.emplace(LmePrior{}, LevelSetLevel{lattice, values});
+  domain.fitted = domain.level_set;
+  domain.box = domain.level_set->domain();
+  domain.diagonal = 3;
+  domain.cloud.points = domain.cloud.normals = {{1.3, 0, 0}};
+  domain.cloud_spacing = .1;
+  return domain;
+}
+
+TEST(MeshMaker, WhereNoOneEdgeLengthDoesEdgesFollowTheBody) {
+  for (const char* background : {"auto", "a15"}) {
+    Domain domain = dumbbell_domain();
+    Parameters parameters;
+    parameters.set(std::string("mesh.background=") + background);
+    BackgroundChoice backgrounds(parameters, domain);
+    const EdgeLength choice = backgrounds.edge_length(domain);
+    ASSERT_FALSE(backgrounds.is_graded());
+    // Lattices in which the rod gets lost.
+    const auto make = [&](double h) {
+      return backgrounds.is_graded() ? backgrounds.make(domain, h, 0, 1e12)
+                                     : SizedBackground{BackgroundMesh(a15(), domain.box, 8 * h)};
+    };
+    std::vector<std::string> said;
+    MeshMaker maker(domain, parameters, {}, {.say = [&](const std::string& line) { said.push_back(line); }});
+    const MeshAttempt best = maker.best(backgrounds, choice, make);
+    ASSERT_TRUE(best.made());
+    const bool may_be_graded = std::string(background) == "auto";
+    EXPECT_EQ(best.is_right(), may_be_graded);
+    EXPECT_EQ(best.sizes != nullptr, may_be_graded);
+    EXPECT_EQ(backgrounds.is_graded(), may_be_graded);
+    EXPECT_EQ(said.back().find("no one h does") != std::string::npos, may_be_graded) << said.back();
   }
 }
 
