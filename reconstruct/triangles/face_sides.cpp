@@ -154,11 +154,15 @@ void Sides::orient_open() {
     area += patches_[p].area;
   }
   if (open.empty()) return;
+  // Two patches that contradict each other would both be turned, again and again.
+  std::size_t largest = 0;
+  for (std::size_t p = 1; p < patches_.size(); ++p)
+    if (patches_[p].area > patches_[largest].area) largest = p;
   for (int round = 0; round < kRounds && patches_.size() > 1; ++round) {
     const TriangleWinding w(mesh_);
     std::vector<std::uint8_t> is_wrong(open.size());
     polled_parallel_for(open.size(), kPatchesPerPoll, context_, [&](std::size_t i) {
-      is_wrong[i] = fall_along_normals(patches_[open[i]], w) < kClearlyWrong ? 1 : 0;
+      is_wrong[i] = open[i] != largest && fall_along_normals(patches_[open[i]], w) < kClearlyWrong ? 1 : 0;
     });
     if (std::count(is_wrong.begin(), is_wrong.end(), 1) == 0) break;
     for (std::size_t i = 0; i < open.size(); ++i)

@@ -25,7 +25,8 @@ struct FaceSidesReport {
 /// 1. Triangles that look to the other side than most of their patch (face_patches.h) are turned.
 /// 2. A closed patch that encloses a negative volume is turned, unless it is inside of another: then it is a cavity. If
 ///    that is the largest, all is turned.
-/// 3. An open patch is turned if the winding number of all others rises along its normals. Rounds, until none is. If
+/// 3. An open patch is turned if the winding number of all others rises along its normals. Rounds, until none is; the
+///    largest patch stays. If
 ///    there is no closed patch, and what they enclose together is negative, all is turned at the end.
 ///
 /// \pre every triangle has an area. Does not depend on threads. \throw Cancelled. Cost: O(n log n)

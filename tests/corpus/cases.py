@@ -468,7 +468,6 @@ def image_cases():
     yield "endless_tag", b"<VTKFile " + b"x" * 100000, ["more than 65536 bytes"]
 
 
-def stl_cases():
 def other_cases():
     yield "what", b"solid", ["unknown extension"]
 
@@ -708,8 +707,7 @@ def made_cases():
         yield Case(name + ".ply", data, words, *(strict or [words]), target="triangles_ply")
     for suffix, family in ((".ply", ply_cases), (".pcd", pcd_cases), (".xyz", xyz_cases), (".pts", pts_cases),
                            (".las", las_cases), (".msh", msh_cases), (".mesh", mesh_cases), (".vtu", vtu_cases),
-                           (".stl", stl_cases), (".nrrd", nrrd_cases), (".nii", nifti_cases), (".vtk", vtk_cases),
-                           (".grid", image_cases)):
+                           (".nrrd", nrrd_cases), (".nii", nifti_cases), (".vtk", vtk_cases), (".grid", image_cases),
                            (".stl", stl_cases), (".obj", obj_cases), (".off", off_cases),
                            (".tets", other_cases)):
         for name, data, words, *strict in family():
