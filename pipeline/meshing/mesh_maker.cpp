@@ -187,7 +187,11 @@ MeshAttempt MeshMaker::attempt_for_tets(double h, const MakeBackground& make) {
 MeshAttempt MeshMaker::graded(BackgroundChoice& backgrounds, double h, const MakeBackground& make) {
   return refined_attempt(
       h, parameters_.mesh().effort, [&](double h_of) { return attempt_for_tets(h_of, make); },
-      [&](const MeshAttempt& a) { return backgrounds.refine(finer_where_it_failed(a, domain_.shift), a.h); },
+      [&](const MeshAttempt& a) -> std::optional<double> {
+        const std::optional<double> finer = backgrounds.refine(finer_where_it_failed(a, domain_.shift), a.h);
+        const auto most = static_cast<double>(parameters_.mesh().max_tets);
+        return finer && backgrounds.expected_tets(domain_, *finer) <= most ? finer : std::nullopt;
+      },
       [this](const std::string& line) { say(line); });
 }
 
