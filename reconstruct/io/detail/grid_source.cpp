@@ -281,16 +281,18 @@ std::vector<double> GridSource::take_words(std::uint64_t n) {
   std::string word;
   while (numbers.size() < n) {
     const bool ended = next_ == buffer_.size() && !more();
-    const char c = ended ? ' ' : buffer_[next_++];
-    taken_ += ended ? 0 : 1;
-    if (!is_blank(c)) {
+    const char c = ended ? ' ' : buffer_[next_];
+    const bool is_tag = c == '<';  // ends the last number of XML, and is not taken
+    if (!ended && !is_tag) ++next_, ++taken_;
+    if (!is_blank(c) && !is_tag) {
       word.push_back(c);
       if (word.size() > kLongestLine) refuse("a number of more than 64 kB");
       continue;
     }
     if (!word.empty()) numbers.push_back(number_of(*this, word));
     word.clear();
-    if (ended && numbers.size() < n) refuse(fmt::format("the file is cut: {} numbers are missing", n - numbers.size()));
+    if ((ended || is_tag) && numbers.size() < n)
+      refuse(fmt::format("the file is cut: {} numbers are missing", n - numbers.size()));
   }
   return numbers;
 }
