@@ -52,7 +52,7 @@ std::vector<std::uint64_t> edges_of(const CutTets& cut) {
     const Ring ring = ring_of(cut, tet);
     edges.insert(edges.end(), ring.edge.begin(), ring.edge.begin() + ring.n);
   }
-  tbb::parallel_sort(edges);
+  tbb::parallel_sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   if (edges.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
     throw std::length_error("the zero set has more than 2^31 cut edges");
