@@ -11,8 +11,12 @@
 #include <tuple>
 #include <utility>
 
+#include "tests/support/values.h"
+
 namespace umtet {
 namespace {
+
+using testing::Values;
 
 /// The signed distance to a ring, with its number of values.
 struct Counted {
@@ -28,16 +32,6 @@ struct Counted {
 using Box3 = Eigen::AlignedBox3d;
 
 Box3 cube(double half) { return {Vec3::Constant(-half), Vec3::Constant(half)}; }
-
-/// Any callable as an implicit function; the zero set needs values only.
-template <typename F>
-struct Values {
-  F f;
-  double value(const Vec3& x) const { return f(x); }
-  Vec3 gradient(const Vec3&) const { return Vec3::Zero(); }
-};
-template <typename F>
-Values(F) -> Values<F>;
 
 double chebyshev(int n, double x) {
   double before = 1, now = x;

@@ -8,19 +8,12 @@
 #include <numeric>
 
 #include "mesh/implicit/cut_tets.h"
+#include "tests/support/values.h"
 
 namespace umtet {
 namespace {
 
-/// Any callable as an implicit function; the zero set needs values only.
-template <typename F>
-struct Values {
-  F f;
-  double value(const Vec3& x) const { return f(x); }
-  Vec3 gradient(const Vec3&) const { return Vec3::Zero(); }
-};
-template <typename F>
-Values(F) -> Values<F>;
+using testing::Values;
 
 Box cube(double half) { return {Vec3::Constant(-half), Vec3::Constant(half)}; }
 
