@@ -9,10 +9,19 @@ namespace umtet {
 
 namespace {
 
+// A sheet may be nearer than the first step; this often it is halved before psi is taken to be grazing there, or to
+// have no simple zero.
+constexpr int kHalvings = 8;
+
 // The distance from x along d at which psi, of sign `side` behind the start, changes sign again; or limit.
 double first_return(ImplicitFunctionRef psi, const Vec3& x, const Vec3& d, double side, const SheetSearch& search) {
-  double before = search.step / 2, value = side * psi.value(x + before * d);
-  if (!(value > 0)) return search.limit;  // psi does not take the sign of this side: grazing, or not a simple zero
+  double before = search.step / 2, value = side * psi.value(x + before * d), beyond = value;
+  for (int k = 0; k < kHalvings && !(value > 0); ++k) {
+    before /= 2, beyond = value;
+    value = side * psi.value(x + before * d);
+  }
+  if (!(value > 0)) return search.limit;
+  if (!(beyond > 0)) return before + before * value / (value - beyond);
   while (true) {
     const double t = before + std::max({search.step, value / search.steepest, search.growth * before});
     if (!(t < search.limit)) return search.limit;

@@ -38,9 +38,11 @@ std::vector<SheetDistances> sheet_distances(ImplicitFunctionRef psi, const std::
 /// or through the gap outside, whichever is shorter. What is thinner than about two background edges cannot be meshed
 /// well.
 ///
-/// Each x is first moved onto {psi = 0} along grad psi; then psi is followed along -n and +n until its sign returns.
+/// Each x is first moved onto {psi = 0} along grad psi; then psi is followed along -n and +n until its sign returns,
+/// from step / 2 on, or from less where the other sheet is nearer.
 /// @param points  near the boundary, within `step` or so (samples of it)
-/// @param step    how finely psi is followed, model units: a wall or gap thinner than this may be stepped over; > 0
+/// @param step    how finely psi is followed, model units: a wall or gap behind the first, thinner than this, may be
+///                stepped over; > 0
 /// @param limit   distances are looked for up to here, model units; farther sheets count as `limit`
 /// @return one distance per point; `limit` where grad psi vanishes or the point does not reach the boundary
 /// @param steepest  a bound of |grad psi|: steps are as long as it allows where psi is far from zero

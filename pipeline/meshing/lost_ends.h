@@ -6,14 +6,9 @@
 #include "mesh/implicit/surface_distance.h"
 #include "pipeline/domain/domain.h"
 #include "pipeline/domain/mesh_edge.h"
+#include "pipeline/meshing/lost_surface.h"
 
 namespace umtet {
-
-/// A point of psi = 0, and how far it is from the boundary of a mesh, model units.
-struct LostPoint {
-  Vec3 where;
-  double distance;
-};
 
 /// Where psi = 0 goes on beyond the boundary of a mesh: the end of a blade, a spike or a wire that is too thin to have
 /// vertices of the background inside, or a sharp edge. No grid sees all of them, but they begin where the mesh ends;

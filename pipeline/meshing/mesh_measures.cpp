@@ -62,17 +62,35 @@ VertexThickness vertex_thickness(const Domain& domain, const UmResult& result, c
   return made;
 }
 
+/// Points of psi = 0 and how thin it is there, model units.
+struct PointThickness {
+  std::vector<Vec3> points;
+  std::vector<double> thickness;
+};
+
+/// Of the boundary vertices, and of what the mesh has lost of psi = 0: there it may be thin where no vertex is.
+PointThickness with_lost_parts(const VertexThickness& vertices, const std::vector<Difference>& lost,
+                               const Domain& domain, const MeshEdge& h, const Context& context) {
+  PointThickness all;
+  for (const Difference& d : lost) all.points.push_back(d.where);
+  all.thickness =
+      thickness(domain.psi(), all.points, h.at(all.points), .25, kFarthestSheet, context, domain.steepest());
+  all.points.insert(all.points.end(), vertices.vertices.begin(), vertices.vertices.end());
+  all.thickness.insert(all.thickness.end(), vertices.thickness.begin(), vertices.thickness.end());
+  return all;
+}
+
 /// Where it is thinner than the longest edges on which psi = 0 was counted there, the diagonals of a grid's cubes: the
 /// worst place, if there is one.
 /// @param sizes  of a graded mesh
-std::optional<Vec3> unseen_thickness(const VertexThickness& thickness, const ZeroSetChoice& counted,
+std::optional<Vec3> unseen_thickness(const PointThickness& thickness, const ZeroSetChoice& counted,
                                      const SizeField* sizes) {
   std::optional<Vec3> worst;
   double least = 1;
-  for (std::size_t i = 0; i < thickness.vertices.size(); ++i) {
-    const double edge = sizes ? kLongestCountedEdge * counted.share * sizes->at(thickness.vertices[i])
+  for (std::size_t i = 0; i < thickness.points.size(); ++i) {
+    const double edge = sizes ? kLongestCountedEdge * counted.share * sizes->at(thickness.points[i])
                               : std::sqrt(3.) * counted.topology.spacing;
-    if (thickness.thickness[i] < least * edge) least = thickness.thickness[i] / edge, worst = thickness.vertices[i];
+    if (thickness.thickness[i] < least * edge) least = thickness.thickness[i] / edge, worst = thickness.points[i];
   }
   return worst;
 }
@@ -140,7 +158,7 @@ struct Comparison {
 
 /// What compare_with_zero_set() looks at besides the mesh and the pieces.
 struct ComparisonParams {
-  const VertexThickness& thickness;
+  const PointThickness& thickness;
   const SurfaceDistance* surface;  ///< null: the mesh has no boundary
   const MeshEdge& h;
   const SizeField* sizes;  ///< of a graded mesh, or null
@@ -288,20 +306,24 @@ Measurement measure(const Domain& domain, const UmResult& result, const ZeroSetC
   std::optional<SurfaceDistance> surface;
   if (!faces.empty()) surface.emplace(mesh.V, faces);
   const VertexThickness thickness = vertex_thickness(domain, result, h, context);
+  std::vector<Vec3> psi_points;
+  std::vector<Difference> lost;
+  if (surface) {
+    psi_points = kept_points(pieces);
+    std::vector<Vec3> starts = thickness.thin;
+    starts.insert(starts.end(), m.mesh.boundary.far_feet.begin(), m.mesh.boundary.far_feet.end());
+    lost = lost_parts(domain, psi_points, starts, *surface, h, context);
+  }
+  const PointThickness everywhere = with_lost_parts(thickness, lost, domain, h, context);
   Comparison compared = compare_with_domain(domain, mesh, faces, m.mesh, pieces,
-                                            {thickness, surface ? &*surface : nullptr, h, params.sizes}, context);
+                                            {everywhere, surface ? &*surface : nullptr, h, params.sizes}, context);
   m.domain = std::move(compared.report);
   std::vector<Difference> differences = differences_of(m.mesh);
   const auto add = [&](const std::vector<Difference>& more) {
     differences.insert(differences.end(), more.begin(), more.end());
   };
-  if (surface) {
-    const std::vector<Vec3> psi_points = kept_points(pieces);
-    add(flips_that_show(result.manifold_flips, psi_points, *surface, h, context));
-    std::vector<Vec3> starts = thickness.thin;
-    starts.insert(starts.end(), m.mesh.boundary.far_feet.begin(), m.mesh.boundary.far_feet.end());
-    add(lost_parts(domain, psi_points, starts, *surface, h, context));
-  }
+  if (surface) add(flips_that_show(result.manifold_flips, psi_points, *surface, h, context));
+  add(lost);
   if (surface && !domain.cloud.points.empty()) {
     const std::vector<double> d = surface->distances(domain.cloud.points, context);
     if (domain.fitted) add(lost_samples(domain, pieces, d, h, context));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "mesh/core/asking_psi.h"
 #include "mesh/implicit/curvature.h"
@@ -12,6 +13,7 @@
 #include "pipeline/case/artefact.h"
 #include "pipeline/domain/clusters.h"
 #include "pipeline/meshing/lost_ends.h"
+#include "pipeline/meshing/lost_surface.h"
 #include "reconstruct/cloud/neighbour_tree.h"
 
 namespace umtet {
@@ -58,7 +60,7 @@ std::vector<Difference> differences_of(const MeshCertificate& certificate) {
 std::vector<Difference> lost_parts(const Domain& domain, const std::vector<Vec3>& psi_points,
                                    const std::vector<Vec3>& starts, const SurfaceDistance& boundary, const MeshEdge& h,
                                    const Context& context) {
-  std::vector<Difference> lost;
+  std::vector<LostPoint> seeds = lost_ends(domain, starts, boundary, h, kSmallOff, context);
   const std::vector<double> d = boundary.distances(psi_points, context);
   for (std::size_t i = 0; i < d.size(); ++i) {
     if (d[i] <= kSmallOff * h.least()) continue;
@@ -68,10 +70,11 @@ std::vector<Difference> lost_parts(const Domain& domain, const std::vector<Vec3>
     const Foot foot = foot_point(domain.body(), psi_points[i], h_at);
     if (!foot.found) continue;
     if (const double off = boundary.distance(foot.point); off > beyond) {
-      lost.push_back({PlaceKind::Thin, foot.point, off});
+      seeds.push_back({foot.point, off});
     }
   }
-  for (const LostPoint& point : lost_ends(domain, starts, boundary, h, kSmallOff, context)) {
+  std::vector<Difference> lost;
+  for (const LostPoint& point : lost_surface(domain, std::move(seeds), boundary, h, kSmallOff, context)) {
     lost.push_back({PlaceKind::Thin, point.where, point.distance});
   }
   return lost;

@@ -25,7 +25,8 @@ struct Difference {
 std::vector<Difference> differences_of(const MeshCertificate& certificate);
 
 /// Points of psi = 0 farther than kSmallOff h from the boundary of the mesh: body or gap thinner than an edge can be
-/// skipped without a trace in topology or normals. Those of a grid, and those of lost_ends().
+/// skipped without a trace in topology or normals. Those of a grid and of lost_ends(), and lost_surface() from there
+/// on.
 /// @param psi_points, starts  see there \throw Cancelled
 std::vector<Difference> lost_parts(const Domain& domain, const std::vector<Vec3>& psi_points,
                                    const std::vector<Vec3>& starts, const SurfaceDistance& boundary, const MeshEdge& h,

@@ -37,6 +37,13 @@ TEST(Thickness, IsTheShorterOfWallAndGap) {
     EXPECT_NEAR(t, 0.1, 1e-9);
 }
 
+TEST(Thickness, WhatIsThinnerThanTheFirstStepIsFoundBelowIt) {
+  const ActiveLayer leaf{1.0, 1.004}, slit{0.002, 1.0};
+  for (const double t : thickness(ImplicitFunctionRef(leaf), sphere_points(1.004), 0.1, 1)) EXPECT_NEAR(t, 0.004, 1e-9);
+  for (const double t : thickness(ImplicitFunctionRef(slit), sphere_points(0.002), 0.1, .8))
+    EXPECT_NEAR(t, 0.004, 1e-9);
+}
+
 TEST(Thickness, StepsAreLongFarFromZeroWhereTheSlopeIsKnown) {
   struct Counted {
     ActiveLayer shell;

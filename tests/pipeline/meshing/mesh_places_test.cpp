@@ -6,6 +6,7 @@
 
 #include "pipeline/domain/clusters.h"
 #include "pipeline/meshing/lost_ends.h"
+#include "pipeline/meshing/lost_surface.h"
 
 namespace umtet {
 namespace {
@@ -102,6 +103,46 @@ TEST(LostEnds, WhereTheBoundaryIsOnPsiThereAreNone) {
     }
   }
   EXPECT_TRUE(lost_ends(ball, V, SurfaceDistance(V, faces), 1, .5).empty());
+}
+
+TEST(LostSurface, APlateIsFollowedToItsRimFromOnePointOfIt) {
+  // 6 x 4 x .1, and a triangle in its middle.
+  const Domain plate = domain_of("(x/3)^4+(y/2)^4+(z/0.05)^4-1", {4, 3, 1});
+  const SurfaceDistance boundary({{.5, .1, 0}, {.5, -.1, .1}, {.5, -.1, -.1}}, {{0, 1, 2}});
+  const std::vector<LostPoint> lost =
+      lost_surface(plate, {{{0, 1, .05 * std::pow(1 - 1. / 16, .25)}, 1}}, boundary, 1, .5);
+  for (const LostPoint& p : lost) {
+    EXPECT_GT(p.distance, .5);
+    EXPECT_LT(std::abs(plate.value(p.where)), 1e-6);
+  }
+  // No point of either face that is lost is farther than two cubes from one that was found.
+  for (double x = -2.5; x <= 2.5; x += .25) {
+    for (double y = -1.5; y <= 1.5; y += .25) {
+      for (const double z : {-.05, .05}) {
+        const Vec3 at(x, y, z);
+        if (boundary.distance(at) < .6) continue;
+        double least = 10;
+        for (const LostPoint& p : lost) least = std::min(least, (p.where - at).norm());
+        EXPECT_LT(least, 1) << at.transpose();
+      }
+    }
+  }
+}
+
+TEST(LostSurface, ItEndsWhereTheBoundaryIsNear) {
+  const Domain ball = domain_of("x^2+y^2+z^2-1", {2, 2, 2});
+  // A triangle by one pole: what is lost lies more than .5 from it.
+  const SurfaceDistance boundary({{1, 0, 0}, {1, .1, 0}, {1, 0, .1}}, {{0, 1, 2}});
+  const std::vector<LostPoint> lost = lost_surface(ball, {{{0, 0, 1}, 1}}, boundary, .2, 2.5);
+  ASSERT_GT(lost.size(), 500u);  // 4 pi / .1^2 is 1257
+  double farthest = -1, nearest = 2;
+  for (const LostPoint& p : lost) {
+    farthest = std::max(farthest, -p.where.x());
+    nearest = std::min(nearest, p.distance);
+  }
+  EXPECT_GT(farthest, .99);
+  EXPECT_GT(nearest, .5);
+  EXPECT_LT(nearest, .6);
 }
 
 }  // namespace
