@@ -24,12 +24,11 @@ constexpr double kGoodInSlab = .936, kGoodInCube = .847;
 // cube itself is below .626.
 constexpr double kTargetInSlab = .78, kTargetInCube = .62;
 // RepairParams::reach, at most. Patches of three edges are three and ten times as large on slab and cube as in A15, and
-// mend no more there than those of two.
-constexpr int kReach = 3, kReachOnPlanes = 2;
+// mend no more there than those of two; nor do they outside of lattices, where they are three times as large.
+constexpr int kReach = 3, kReachOnPlanes = 2, kReachInListed = 2;
 // Of graded and stored backgrounds: BCC transitions begin at Q = .78 (docs/method.md, Section 13), and what is below
 // this where they meet the boundary is seldom mended by a flip. Not measured on many bodies.
 constexpr double kTargetInListed = .76;
-constexpr int kReachInListed = 3;
 
 /// Around a vertex of a flat boundary bv faces share 360 degrees and nt tets a half-space: five or six equilateral
 /// triangles, and 2 pi / .551 = 11.4 regular tets. In A15, too, five and six faces are best, and few tets do no harm

@@ -23,8 +23,8 @@ struct RepairParams {
   /// h is too large, which no classification mends.
   std::size_t max_patches = 3000;
   bool sharper = true;  ///< what nothing mends is tried again with SmoothingParams::sharper
-  /// What nothing mends then is tried again with a target so much lower, outside of lattices again and again while tets
-  /// are below; >= 0, 0: it is not
+  /// What nothing mends then is tried again with a target so much lower. Outside of lattices targets rise by so much
+  /// from the worst tet on. >= 0, 0: there is one target
   double target_step = .01;
   bool slides = true;  ///< patches relax_tangentially() when all is mended: their smoothing has undone that
   /// Edges: a vertex higher than this is not flipped. More than ClassificationParams::reach_out, because here the mesh
@@ -70,7 +70,8 @@ struct RepairReport {
 /// new spot where the boundary is no manifold, and not where the body or the gap is thin. So topology stays.
 ///
 /// What nothing helps is tried with a sharper norm, at first with the states it has; then against a target lower by
-/// target_step.
+/// target_step. Outside of lattices, where many tets are below the target, it rises from the worst tet on, and what the
+/// few most promising flips do not help is tried in full at last, the sharper norm with it.
 ///
 /// Tets far from each other are mended at once, two at most, with the bytes of one after the other.
 /// @param layer   smoothed; its coordinates stay as they are, `moved` says what has changed since

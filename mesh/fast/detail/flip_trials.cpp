@@ -113,7 +113,8 @@ void FlipTrials::attempt(const TetIds& tet, std::span<const std::int64_t> flips,
 }
 
 void FlipTrials::try_flips(const TetIds& tet, Start start, Best& best) {
-  const std::vector<FlipCandidates::Candidate> singles = candidates_(tet, psi_evaluations);
+  std::vector<FlipCandidates::Candidate> singles = candidates_(tet, psi_evaluations);
+  if (singles.size() > effort_.most_singles) singles.resize(effort_.most_singles);
   float most_cost = std::numeric_limits<float>::infinity();
   for (const auto& c : singles) {
     if (c.cost > most_cost) break;
@@ -121,6 +122,7 @@ void FlipTrials::try_flips(const TetIds& tet, Start start, Best& best) {
     if (best.is_perfect()) return;
     if (best.found) most_cost = std::min(most_cost, c.cost + kMostMoreCost);
   }
+  if (!effort_.pairs) return;
   // Pairs cost as many patches as all singles do, and are for where none of these helps.
   for (std::size_t a = 0; a < std::min(singles.size(), kFirstOfPair) && !best.found; ++a) {
     flip(singles[a].vertex);
@@ -157,7 +159,7 @@ FlipTrials::Best FlipTrials::operator()(const TetIds& tet, std::size_t most_trie
     attempt(tet, {}, Start::Lattice, best);
     if (!best.is_perfect()) try_flips(tet, Start::Lattice, best);
   }
-  if (!best.found && smoothing_.sharper) attempt(tet, {}, Start::Here, best);
+  if (!best.found && effort_.sharper) attempt(tet, {}, Start::Here, best);
   if (!best.found) try_flips(tet, Start::Here, best);
   return best;
 }

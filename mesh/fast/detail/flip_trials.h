@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -40,6 +41,13 @@ class Positions {
   std::vector<Vec3> moved_to_;
 };
 
+/// What is tried for one tet.
+struct FlipEffort {
+  bool sharper = false;  ///< patches are smoothed by the sharper norm, at first without flips
+  std::size_t most_singles = std::numeric_limits<std::size_t>::max();  ///< candidates, the most promising ones
+  bool pairs = true;                                                   ///< where no single flip helps
+};
+
 /// What flips would make of the patch around one tet, tried on copies. Changes nothing of the mesh.
 class FlipTrials {
  public:
@@ -75,11 +83,11 @@ class FlipTrials {
   bool is_misaligned(const TetIds& tet);
   /// In omega_h, and below the target or with a misaligned face.
   bool is_bad(const TetIds& tet);
-  /// From now on the target is this mean ratio, in place of params.target. With the sharper norm, patches are smoothed
-  /// by it, at first without flips.
-  void retry_with(double target, bool sharper) {
+  /// From now on the target is this mean ratio, in place of params.target.
+  void retry_with(double target, const FlipEffort& effort) {
     target_ = target;
-    smoothing_.sharper = sharper;
+    effort_ = effort;
+    smoothing_.sharper = effort.sharper;
   }
   void flip(std::int64_t v) { inside_.test(v) ? inside_.erase(v) : inside_.insert(v); }
 
@@ -101,6 +109,7 @@ class FlipTrials {
   ImplicitFunctionRef psi_;
   const RepairParams& params_;
   double target_;
+  FlipEffort effort_;
   SmoothingParams smoothing_;
   const Positions& positions_;
   IdSet inside_;
