@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <iterator>
 #include <utility>
 
 #include "mesh/certify/quality_report.h"
+#include "mesh/io/mesh_part.h"
 #include "mesh/io/quality_csv.h"
 #include "pipeline/case/artefact.h"
 #include "pipeline/case/interrupt.h"
@@ -51,6 +53,20 @@ class QualityCurves {
   std::vector<QualityCurve> of_mesh_, of_boundary_;
 };
 
+/// Those with a vertex that moves once they are chosen.
+std::vector<std::size_t> moving_tets(const UmResult& result) {
+  const std::vector<Vec3>& chosen = result.submesh.mesh.V;
+  std::vector<std::uint8_t> moves(chosen.size());
+  for (std::size_t v = 0; v < moves.size(); ++v)
+    moves[v] = chosen[v] != result.projected[v] || chosen[v] != result.final[v];
+  std::vector<std::size_t> tets;
+  const std::vector<Tet>& C = result.submesh.mesh.C;
+  for (std::size_t t = 0; t < C.size(); ++t) {
+    if (moves[C[t][0]] || moves[C[t][1]] || moves[C[t][2]] || moves[C[t][3]]) tets.push_back(t);
+  }
+  return tets;
+}
+
 }  // namespace
 
 std::vector<std::string> write_mesh_outputs(const StageContext& context, const Domain& domain,
@@ -66,14 +82,22 @@ std::vector<std::string> write_mesh_outputs(const StageContext& context, const D
     names.push_back(name);
     write_mesh(folder / name, content);
   };
-  write("omega_h.vtu");
+  // What does not move is stored once, in mesh.vtu. All meshes of a series have to have the same tets.
+  const bool is_series = context.parameters.mesh().keep_iterates;
+  const std::vector<std::size_t> moving = is_series ? std::vector<std::size_t>() : moving_tets(result);
+  const auto write_moving = [&](const std::string& name) {
+    if (moving.empty()) return write(name);
+    names.push_back(name);
+    write_mesh(folder / name, part_of(content, moving));
+  };
+  write_moving("omega_h.vtu");
   curves.add("omega_h", content);
   for (std::size_t k = 0; k < result.iterates.size(); ++k) {
     move_to(domain, result.iterates[k], content);
     write(fmt::format("pass_{}.vtu", k + 1));
   }
   move_to(domain, result.projected, content);
-  write("projected.vtu");
+  write_moving("projected.vtu");
   curves.add("projected", content);
   move_to(domain, result.final, content);
   curves.add("final", content);
@@ -89,7 +113,7 @@ std::vector<std::string> write_mesh_outputs(const StageContext& context, const D
     write("mesh.vtu");
   }
   context.handover.mesh = std::move(content);
-  if (context.parameters.mesh().keep_iterates) {
+  if (is_series) {
     write_text_artefact(folder / "iterates.pvd", series_of(names));
     names.emplace_back("iterates.pvd");
   }

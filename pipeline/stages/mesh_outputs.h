@@ -12,7 +12,8 @@ namespace umtet {
 
 /// The files of the mesh stage but for its record, all in 3-mesh/, in place of those of the former run: omega_h.vtu,
 /// projected.vtu, mesh.vtu, quality.csv; too_thin.vtp and places.vtp where there are such places; pass_N.vtu and
-/// iterates.pvd where iterates were kept. What mesh.vtu holds is handed over to the stages to come.
+/// iterates.pvd where iterates were kept. Unless they were, omega_h.vtu and projected.vtu hold the tets with a vertex
+/// that moves: the others are those of mesh.vtu. What mesh.vtu holds is handed over to the stages to come.
 /// @return their names. \throw Cancelled, std::system_error naming the file
 std::vector<std::string> write_mesh_outputs(const StageContext& context, const Domain& domain, const MeshAttempt& best);
 

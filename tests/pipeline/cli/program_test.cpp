@@ -1,5 +1,6 @@
 // The built program, from outside: what a run makes, and that it is the same when made again.
 
+#include "mesh/io/tet_mesh_io.h"
 #include "tests/pipeline/cli/program_fixture.h"
 
 namespace umtet {
@@ -23,6 +24,29 @@ TEST_F(Program, FormulaBecomesACertifiedMesh) {
     EXPECT_GT(fs::file_size(folder / "ball/3-mesh" / f), 0u) << f;
   }
   EXPECT_FALSE(fs::exists(folder / "ball/1-cloud"));
+}
+
+TEST_F(Program, WhatDoesNotMoveIsStoredOnce) {
+  using Ids = std::vector<std::int64_t>;
+  const std::string made = "mesh --implicit 'x^2+y^2+z^2-1' --box=-1.3,-1.3,-1.3,1.3,1.3,1.3 --h .1 -o ";
+  ASSERT_EQ(run(made + "shells").code, 0);
+  ASSERT_EQ(run(made + "series --keep-iterates").code, 0);
+  EXPECT_EQ(content(folder / "shells/3-mesh/mesh.vtu"), content(folder / "series/3-mesh/mesh.vtu"));
+  const auto read = [&](const char* file) { return read_tet_mesh(folder / file); };
+  const MeshFile mesh = read("shells/3-mesh/mesh.vtu");
+  for (const std::string state : {"omega_h.vtu", "projected.vtu"}) {
+    const MeshFile shell = read(("shells/3-mesh/" + state).c_str()), whole = read(("series/3-mesh/" + state).c_str());
+    EXPECT_EQ(whole.mesh.C, mesh.mesh.C);
+    EXPECT_LT(shell.mesh.C.size(), .7 * static_cast<double>(mesh.mesh.C.size()));
+    // The shell and the interior of mesh.vtu together are the whole.
+    const auto& in_shell = std::get<Ids>(shell.point_data.at("background_vertex"));
+    const auto& in_whole = std::get<Ids>(whole.point_data.at("background_vertex"));
+    for (std::size_t v = 0, s = 0; v < in_whole.size(); ++v) {
+      while (s < in_shell.size() && in_shell[s] < in_whole[v]) ++s;
+      const bool moves = s < in_shell.size() && in_shell[s] == in_whole[v];
+      EXPECT_EQ(whole.mesh.V[v], moves ? shell.mesh.V[s] : mesh.mesh.V[v]);
+    }
+  }
 }
 
 TEST_F(Program, CloudBecomesACertifiedMeshOnceAndThenThereIsNothingToDo) {
@@ -176,7 +200,8 @@ TEST_F(Program, EveryTilingIsABackground) {
 TEST_F(Program, AnyTetMeshIsABackground) {
   const std::string ball = "mesh --implicit 'x^2+y^2+z^2-1' --box=-1.3,-1.3,-1.3,1.3,1.3,1.3 ";
   // omega_h of a larger ball serves the unit ball, and a box with walls does.
-  EXPECT_EQ(run("mesh --implicit 'x^2+y^2+z^2-2' --box=-1.6,-1.6,-1.6,1.6,1.6,1.6 --h .15 -o large").code, 0);
+  EXPECT_EQ(
+      run("mesh --implicit 'x^2+y^2+z^2-2' --box=-1.6,-1.6,-1.6,1.6,1.6,1.6 --h .15 --keep-iterates -o large").code, 0);
   for (const std::string background : {"--background large/3-mesh/omega_h.vtu", "--h .15 --box-walls"}) {
     const Result r = run(ball + background + " --mode paper -o unit");
     EXPECT_EQ(r.code, 0) << background << r.out << r.err;
