@@ -3,17 +3,13 @@
 #include "pipeline/case/json_values.h"
 #include "pipeline/reports/certificate_report.h"
 
-// The one place where what is known of a mesh has names in JSON. The order of the names is that of the documents.
-// docs/reference.md says what they mean.
+// Certificates and records in JSON, of the blocks of mesh_json.h, comparison_json.h and place_json.h. The order of the
+// names is that of the documents. docs/reference.md says what they mean.
 namespace umtet {
 
 /// What a document of ours begins with: its schema, the program and a version of it.
 Json document_head(const std::string& version);
 
-/// The counts, the blocks `quality` and `boundary`.
-Json to_json(const MeshCertificate& certificate);
-/// The block `second_order`.
-Json to_json(const SecondOrderReport& report);
 /// `gates`, `verdict`, `accepted` and `reasons`.
 Json to_json(const Verdict& verdict);
 

@@ -1,0 +1,174 @@
+#include "pipeline/reports/comparison_json.h"
+
+#include <array>
+#include <string>
+
+#include "pipeline/reports/place_json.h"
+
+namespace umtet {
+namespace {
+
+Json ratio_to(double h, const std::optional<double>& length) { return length ? Json(*length / h) : Json(nullptr); }
+
+std::optional<SupportReport> support_from(const Json& json) {
+  if (json.at("unsupported_area_fraction").is_null()) return std::nullopt;
+  SupportReport support;
+  support.unsupported_area_fraction = number_from(json.at("unsupported_area_fraction"));
+  if (!json.contains("support_radius")) return support;  // written before holes were looked for: there are none
+  support.radius = number_from(json.at("support_radius"));
+  support.n_closed_holes = json.at("n_closed_holes");
+  support.closed_holes = closed_holes_from(json.at("closed_holes"));
+  return support;
+}
+
+constexpr std::array<const char*, 3> kTopologyWords = {"same", "differs", "not proved"};
+
+const char* word_of(TopologyProof proof) { return kTopologyWords.at(static_cast<std::size_t>(proof)); }
+
+TopologyProof topology_of(const std::string& word) {
+  for (const TopologyProof proof : {TopologyProof::Same, TopologyProof::Differs}) {
+    if (word == word_of(proof)) return proof;
+  }
+  return TopologyProof::NotProved;
+}
+
+}  // namespace
+
+Json to_json(const std::optional<SupportReport>& support) {
+  if (!support) {
+    return {{"unsupported_area_fraction", nullptr},
+            {"support_radius", nullptr},
+            {"n_closed_holes", nullptr},
+            {"closed_holes", nullptr}};
+  }
+  return {{"unsupported_area_fraction", support->unsupported_area_fraction},
+          {"support_radius", support->radius},
+          {"n_closed_holes", support->n_closed_holes},
+          {"closed_holes", to_json(support->closed_holes)}};
+}
+
+Json to_json(const ZeroSetReport& r) {
+  Json json = {{"level_set_spacing", json_of(r.level_set_spacing)},
+               {"components_of_zero_set", r.components_of_zero_set},
+               {"euler_characteristic_of_zero_set", r.euler_characteristic_of_zero_set},
+               {"components_kept", r.components_kept},
+               {"euler_characteristic_of_kept_components", r.euler_characteristic_of_kept_components},
+               {"components_meshed", r.components_meshed},
+               {"euler_characteristic_meshed", r.euler_characteristic_meshed},
+               {"counting_spacing", r.counting_spacing},
+               {"topology", word_of(r.topology)},
+               {"topology_at", r.topology_at ? json_of(*r.topology_at) : Json(nullptr)},
+               {"components_dropped", r.components_dropped},
+               {"components_proved", json_of(r.components_proved)}};
+  json.update(to_json(r.support));
+  return json;
+}
+
+ZeroSetReport zero_set_from(const Json& json) {
+  const Json& at = json.at("topology_at");
+  return {.level_set_spacing = optional_from<double>(json.at("level_set_spacing")),
+          .components_of_zero_set = json.at("components_of_zero_set"),
+          .euler_characteristic_of_zero_set = json.at("euler_characteristic_of_zero_set"),
+          .euler_characteristic_of_kept_components = json.at("euler_characteristic_of_kept_components"),
+          .components_kept = json.at("components_kept"),
+          .components_meshed = json.at("components_meshed"),
+          .euler_characteristic_meshed = json.at("euler_characteristic_meshed"),
+          .counting_spacing = number_from(json.at("counting_spacing")),
+          .topology = topology_of(json.at("topology")),
+          .topology_at = at.is_null() ? std::nullopt : std::optional(vector_from(at)),
+          .components_dropped = json.at("components_dropped"),
+          .components_proved = optional_from<bool>(json.at("components_proved")),
+          .support = support_from(json)};
+}
+
+Json to_json(const SampleDistances& d, double h) {
+  return {{"noise", json_of(d.noise)},
+          {"noise_over_h", ratio_to(h, d.noise)},
+          {"rms_distance", d.rms},
+          {"max_distance", d.max},
+          {"p99_distance", d.p99},
+          {"rms_distance_over_h", d.rms / h},
+          {"max_distance_over_h", d.max / h},
+          {"p99_distance_over_h", d.p99 / h},
+          {"missed_beyond", d.missed_beyond},
+          {"n_missed_places", d.n_missed_places},
+          {"missed_places", to_json(d.missed)}};
+}
+
+SampleDistances distances_from(const Json& json) {
+  SampleDistances d{.noise = optional_from<double>(json.at("noise")),
+                    .rms = number_from(json.at("rms_distance")),
+                    .max = number_from(json.at("max_distance")),
+                    .p99 = number_from(json.at("p99_distance"))};
+  if (!json.contains("missed_beyond")) return d;  // written before they were looked for
+  d.missed_beyond = number_from(json.at("missed_beyond"));
+  d.n_missed_places = json.at("n_missed_places");
+  d.missed = missed_places_from(json.at("missed_places"));
+  return d;
+}
+
+Json to_json(const TriangleDistances& d, double h) {
+  return {{"n_triangles", d.n_triangles},
+          {"rms_distance", d.rms},
+          {"p99_distance", d.p99},
+          {"max_distance", d.max},
+          {"max_distance_over_h", d.max / h},
+          {"farthest", json_of(d.farthest)},
+          {"rms_distance_back", d.rms_back},
+          {"p99_distance_back", d.p99_back},
+          {"max_distance_back", d.max_back},
+          {"max_distance_back_over_h", d.max_back / h},
+          {"farthest_back", json_of(d.farthest_back)}};
+}
+
+TriangleDistances triangle_distances_from(const Json& json) {
+  return {.n_triangles = json.at("n_triangles"),
+          .rms = number_from(json.at("rms_distance")),
+          .p99 = number_from(json.at("p99_distance")),
+          .max = number_from(json.at("max_distance")),
+          .farthest = vector_from(json.at("farthest")),
+          .rms_back = number_from(json.at("rms_distance_back")),
+          .p99_back = number_from(json.at("p99_distance_back")),
+          .max_back = number_from(json.at("max_distance_back")),
+          .farthest_back = vector_from(json.at("farthest_back"))};
+}
+
+Json to_json(const ResolutionReport& r, double h) {
+  Json json = {{"kappa_h_max", r.kappa_h_max},
+               {"feature_size_over_h_min", r.feature_size_over_h_min},
+               {"obtuse_conditioning_angles", r.obtuse_conditioning_angles},
+               {"double_positive_faces", r.double_positive_faces}};
+  if (r.too_thin) json["too_thin"] = to_json(*r.too_thin, h);
+  return json;
+}
+
+ResolutionReport resolution_from(const Json& json) {
+  ResolutionReport r{.kappa_h_max = number_from(json.at("kappa_h_max")),
+                     .feature_size_over_h_min = number_from(json.at("feature_size_over_h_min")),
+                     .obtuse_conditioning_angles = json.at("obtuse_conditioning_angles"),
+                     .double_positive_faces = json.at("double_positive_faces"),
+                     .too_thin = {}};
+  if (json.contains("too_thin")) r.too_thin = thin_places_from(json.at("too_thin"));
+  return r;
+}
+
+Json to_json(const SizesReport& s) {
+  return {{"least_asked", s.least_asked},
+          {"greatest_asked", s.greatest_asked},
+          {"edge_over_asked", {{"p01", s.p01}, {"p50", s.p50}, {"p99", s.p99}}},
+          {"shortest_boundary_edge", s.shortest_boundary_edge},
+          {"longest_boundary_edge", s.longest_boundary_edge}};
+}
+
+SizesReport sizes_from(const Json& json) {
+  const Json& ratio = json.at("edge_over_asked");
+  return {.least_asked = number_from(json.at("least_asked")),
+          .greatest_asked = number_from(json.at("greatest_asked")),
+          .p01 = number_from(ratio.at("p01")),
+          .p50 = number_from(ratio.at("p50")),
+          .p99 = number_from(ratio.at("p99")),
+          .shortest_boundary_edge = number_from(json.at("shortest_boundary_edge")),
+          .longest_boundary_edge = number_from(json.at("longest_boundary_edge"))};
+}
+
+}  // namespace umtet
