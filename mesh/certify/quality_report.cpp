@@ -2,6 +2,7 @@
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
@@ -48,7 +49,7 @@ QualityVectors quality_vectors(const std::vector<Tet>& C, const std::vector<doub
   }
   for (std::vector<double>* values : {&q.all, &q.boundary}) {
     std::erase(*values, kNoTet);
-    std::sort(values->begin(), values->end());
+    tbb::parallel_sort(values->begin(), values->end());
   }
   return q;
 }
