@@ -3,24 +3,23 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
-#include <cmath>
 #include <deque>
 #include <set>
 #include <stdexcept>
-#include <unordered_map>
 
 #include "mesh/core/asking_psi.h"
 #include "mesh/core/max_min.h"
 #include "mesh/core/tet_quality.h"
 #include "mesh/fast/detail/flip_trials.h"
+#include "mesh/fast/detail/patch_ranges.h"
 
 namespace umtet {
 namespace {
 
 using detail::FlipEffort;
 using detail::FlipTrials;
+using detail::PatchRanges;
 using detail::TetIds;
 
 // At most kFewPatches patches are tried, and one more for every kTetsPerPatch tets of the layer (and never more than
@@ -41,22 +40,6 @@ constexpr FlipEffort kFewFlips{.most_singles = 6, .pairs = false};
 // that larger rounds would answer too late where one thread works on all of a round.
 constexpr std::size_t kAtOnce = 2, kMostWaiting = 64;
 
-/// Of a tiling, as a share of its mean edge.
-double longest_edge(const Tiling& tiling, const TilingTables& tables) {
-  double longest2 = 0;
-  for (std::size_t type = 0; type < tiling.points.size(); ++type) {
-    for (const Tiling::Corner& c : tables.link[type]) {
-      double d2 = 0;
-      for (int k = 0; k < 3; ++k) {
-        const double d = tiling.points[c.type][k] + c.offset[k] * tiling.period[k] - tiling.points[type][k];
-        d2 += d * d;
-      }
-      longest2 = std::max(longest2, d2);
-    }
-  }
-  return std::sqrt(longest2) / tiling.mean_edge;
-}
-
 class Repair {
  public:
   Repair(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
@@ -71,7 +54,8 @@ class Repair {
         inside_(inside),
         pass_{std::min(params.max_patches, kFewPatches + layer.layer.C.size() / kTetsPerPatch)},
         target_(params.target),
-        positions_(background, layer) {}
+        positions_(background, layer),
+        ranges_(background, links, params.reach) {}
 
   RepairReport operator()(const Context& context);
 
@@ -80,12 +64,7 @@ class Repair {
     double badness;  ///< the cosine of its face if that is misaligned, else Q: folded over ones are the worst
     TetIds tet;
   };
-
-  /// What is done for two tets farther apart than half the sum of their `far` does not meet.
-  struct Range {
-    Vec3 at;
-    double far;
-  };
+  static bool is_worse(const Bad& a, const Bad& b) { return a.badness < b.badness; }
 
   /// What a pass over bad tets may cost, and where it began.
   struct Pass {
@@ -101,12 +80,11 @@ class Repair {
   }
   bool is_worth_trying(const TetIds& tet);
   void find_ranges();
-  Range range_of(std::int64_t vertex) const;
   void mend(const Context& context);
   void again(double target);
-  void mend_rising(const FlipEffort& effort, std::size_t most_patches, const Context& context);
-  void retry_with(double target, const FlipEffort& effort);
   void mend_lattice(const Context& context);
+  void mend_rising(const FlipEffort& effort, std::size_t most, const Context& context);
+  void retry_with(double target, const FlipEffort& effort);
   bool choose_round();
   void keep(const TetIds& tet, const FlipTrials::Best& best);
   void move(const BackgroundLayer& patch);
@@ -136,8 +114,7 @@ class Repair {
   std::vector<TetIds> waiting_;                  ///< before todo_
   std::vector<std::vector<std::int64_t>> kept_;  ///< centres of the patches
   std::vector<TetIds> round_;  ///< far from each other: what is done for one does not touch the others
-  double far_of_lattice_ = 0;  ///< model units
-  std::unordered_map<std::int64_t, Range> ranges_;  ///< of first vertices
+  PatchRanges ranges_;         ///< of first vertices
   RepairReport report_;
 };
 
@@ -151,35 +128,14 @@ bool Repair::is_worth_trying(const TetIds& tet) {
   return false;
 }
 
-/// Seen from one vertex of a tet, flips are within two edges, and what moves is within reach + 2; the classification
-/// and positions are read one edge farther: by one of the two that are compared.
-Repair::Range Repair::range_of(std::int64_t vertex) const {
-  const Vec3 at = background_.position(vertex);
-  if (background_.is_lattice()) return {at, far_of_lattice_};
-  IdList ball;
-  ball.add(vertex);
-  std::size_t fresh = 0;
-  for (int ring = 0; ring < params_.reach + 3; ++ring) {
-    for (const std::size_t end = ball.ids().size(); fresh < end; ++fresh) {
-      links_.for_each(ball.ids()[fresh], [&](std::int64_t w) { ball.add(w); });
-    }
-  }
-  double farthest2 = 0;
-  for (const std::int64_t v : ball.ids()) farthest2 = std::max(farthest2, (background_.position(v) - at).squaredNorm());
-  return {at, 2 * std::sqrt(farthest2)};
-}
-
 /// Of the tets that the next round may look at. Outside of lattices that is worth several threads.
 void Repair::find_ranges() {
-  if (background_.is_lattice()) return;
   std::vector<std::int64_t> vertices;
-  const auto add = [&](const TetIds& tet) {
-    if (ranges_.try_emplace(tet[0]).second) vertices.push_back(tet[0]);
-  };
-  for (const TetIds& tet : waiting_) add(tet);
-  for (std::size_t k = next_; k < std::min(todo_.size(), next_ + kAtOnce + kMostWaiting); ++k) add(todo_[k].tet);
-  tbb::parallel_for(std::size_t{0}, vertices.size(),
-                    [&](std::size_t k) { ranges_.at(vertices[k]) = range_of(vertices[k]); });
+  for (const TetIds& tet : waiting_) vertices.push_back(tet[0]);
+  for (std::size_t k = next_; k < std::min(todo_.size(), next_ + kAtOnce + kMostWaiting); ++k) {
+    vertices.push_back(todo_[k].tet[0]);
+  }
+  ranges_.find(vertices);
 }
 
 /// The next tets in their order, but for those near one that comes before them: these wait.
@@ -187,17 +143,12 @@ bool Repair::choose_round() {
   find_ranges();
   round_.clear();
   std::vector<TetIds> held;
-  std::vector<Range> before;
+  std::vector<PatchRanges::Range> before;
   std::size_t w = 0;
   while (round_.size() < kAtOnce && held.size() < kMostWaiting && (w < waiting_.size() || next_ < todo_.size())) {
     const TetIds tet = w < waiting_.size() ? waiting_[w++] : todo_[next_++].tet;
-    const auto [known, is_new] = ranges_.try_emplace(tet[0]);
-    if (is_new) known->second = range_of(tet[0]);
-    const Range range = known->second;
-    const bool near = std::any_of(before.begin(), before.end(), [&](const Range& other) {
-      return (other.at - range.at).norm() <= .5 * (other.far + range.far);
-    });
-    if (near) {
+    const PatchRanges::Range range = ranges_.of(tet[0]);
+    if (std::any_of(before.begin(), before.end(), [&](const auto& other) { return range.meets(other); })) {
       held.push_back(tet);
     } else if (is_worth_trying(tet)) {
       round_.push_back(tet);
@@ -234,8 +185,6 @@ void Repair::count() {
   for (const FlipTrials& trials : trials_) report_.tries += trials.tries;
 }
 
-bool is_worse(const auto& a, const auto& b) { return a.badness < b.badness; }
-
 /// Puts the tets of a layer that are below the target, or have a misaligned face, on the list, the worst first.
 void Repair::look(const BackgroundLayer& cut) {
   const std::vector<Vec3>& V = cut.layer.V;
@@ -265,7 +214,7 @@ void Repair::look(const BackgroundLayer& cut) {
     if (!(badness[k] < params_.target)) continue;
     (badness[k] < target_ ? todo_ : later_).push_back({badness[k], {id[t[0]], id[t[1]], id[t[2]], id[t[3]]}});
   }
-  std::stable_sort(todo_.begin() + static_cast<std::ptrdiff_t>(first), todo_.end(), is_worse<Bad, Bad>);
+  std::stable_sort(todo_.begin() + static_cast<std::ptrdiff_t>(first), todo_.end(), is_worse);
 }
 
 /// What is on the list, round by round.
@@ -308,8 +257,6 @@ void Repair::again(double target) {
 }
 
 void Repair::mend_lattice(const Context& context) {
-  const double longest = longest_edge(background_.tiling(), background_.tiling_tables()) * background_.h();
-  far_of_lattice_ = (2 * params_.reach + 5) * longest;
   mend(context);
   if (params_.sharper) {
     again(params_.target);
@@ -324,16 +271,17 @@ void Repair::mend_lattice(const Context& context) {
   }
 }
 
-/// What is on the list and below a target that rises to params_.target, by target_step.
-void Repair::mend_rising(const FlipEffort& effort, std::size_t most_patches, const Context& context) {
-  pass_ = {most_patches, report_.tries, kept_.size()};
+/// What is on the list and below a target that rises to params_.target, by target_step, in at most so many patches.
+void Repair::mend_rising(const FlipEffort& effort, std::size_t most, const Context& context) {
+  pass_ = {most, report_.tries, kept_.size()};
   later_ = std::move(todo_);
   const double step = params_.target_step > 0 ? params_.target_step : params_.target;
-  for (auto k = static_cast<int>(params_.target / step) - 1; k >= 0 && report_.tries < Repair::most_patches(); --k) {
+  for (auto k = static_cast<int>(params_.target / step) - 1; k >= 0 && report_.tries < most_patches(); --k) {
     retry_with(params_.target - k * step, effort);
-    std::stable_sort(later_.begin(), later_.end(), is_worse<Bad, Bad>);
-    const auto end =
-        std::partition_point(later_.begin(), later_.end(), [&](const Bad& b) { return b.badness < target_; });
+    const auto is_below = [&](const Bad& b) { return b.badness < target_; };
+    if (std::none_of(later_.begin(), later_.end(), is_below)) continue;
+    std::stable_sort(later_.begin(), later_.end(), is_worse);
+    const auto end = std::partition_point(later_.begin(), later_.end(), is_below);
     todo_.assign(later_.begin(), end);
     later_.erase(later_.begin(), end);
     next_ = 0;
