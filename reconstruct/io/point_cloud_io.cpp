@@ -25,6 +25,15 @@ constexpr std::size_t kFewestPoints = 10;  // of a surface; what surveys a scan 
 
 enum class Format { Ply, Pcd, Xyz };
 
+/// Formats of surveys. No library of Debian reads them; other programs turn them into one that is read.
+void refuse_survey_formats(const CloudSource& source, const std::string& extension) {
+  const bool is_las = source.bytes.starts_with("LASF") || extension == ".las" || extension == ".laz";
+  if (!is_las && !source.bytes.starts_with("ASTM-E57") && extension != ".e57") return;
+  refuse(source, fmt::format("{0} is not read: 'pdal translate FILE{1} FILE.ply' makes it a PLY, and so does "
+                             "'cloudcompare -SILENT -O FILE{1} -C_EXPORT_FMT PLY -SAVE_CLOUDS'",
+                             is_las ? "LAS or LAZ" : "E57", is_las ? ".laz" : ".e57"));
+}
+
 /// What the content says, else what the extension says.
 Format format_of(const CloudSource& source, const std::filesystem::path& file) {
   if (source.bytes.empty()) refuse(source, "the file is empty");
@@ -35,6 +44,7 @@ Format format_of(const CloudSource& source, const std::filesystem::path& file) {
   if (extension == ".ply") return Format::Ply;
   if (extension == ".pcd") return Format::Pcd;
   if (extension == ".xyz" || extension == ".txt" || extension == ".pts") return Format::Xyz;
+  refuse_survey_formats(source, extension);
   refuse(source,
          "neither PLY, PCD nor OFF by its first line, and the extension is none of .xyz .txt .pts .stl .obj .off: "
          "convert it to one of these");

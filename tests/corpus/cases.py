@@ -250,7 +250,17 @@ def pts_cases():
 
 
 def las_cases():
-    yield "cloud", TEXT.encode(), [".xyz"]
+    yield "cloud", TEXT.encode(), ["LAS", "pdal translate"]
+    yield "header", b"LASF" + bytes(371), ["LAS", "cloudcompare"]
+
+
+def e57_cases():
+    yield "header", b"ASTM-E57" + bytes(40), ["E57", "pdal translate"]
+
+
+def unknown_cases():
+    yield "cloud", TEXT.encode(), ["none of .xyz"]
+    yield "las", b"LASF" + bytes(371), ["LAS", "pdal translate"]
 
 
 def msh_cases():
@@ -706,7 +716,7 @@ def made_cases():
     for name, data, words, *strict in face_cases():
         yield Case(name + ".ply", data, words, *(strict or [words]), target="triangles_ply")
     for suffix, family in ((".ply", ply_cases), (".pcd", pcd_cases), (".xyz", xyz_cases), (".pts", pts_cases),
-                           (".las", las_cases), (".msh", msh_cases), (".mesh", mesh_cases), (".vtu", vtu_cases),
+                           (".las", las_cases), (".e57", e57_cases), (".points", unknown_cases), (".msh", msh_cases), (".mesh", mesh_cases), (".vtu", vtu_cases),
                            (".nrrd", nrrd_cases), (".nii", nifti_cases), (".vtk", vtk_cases), (".grid", image_cases),
                            (".stl", stl_cases), (".obj", obj_cases), (".off", off_cases),
                            (".tets", other_cases)):
