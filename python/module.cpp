@@ -19,6 +19,7 @@
 #include "pipeline/meshing/library_params.h"
 #include "pipeline/meshing/mesh_measures.h"
 #include "pipeline/reports/certificate_json.h"
+#include "pipeline/reports/mesh_json.h"
 #include "pipeline/reports/place_json.h"
 #include "pipeline/stages/stages.h"
 #include "python/arguments.h"
