@@ -25,13 +25,15 @@ constexpr std::size_t kFewestPoints = 10;  // of a surface; what surveys a scan 
 
 enum class Format { Ply, Pcd, Xyz };
 
-/// Formats of surveys. No library of Debian reads them; other programs turn them into one that is read.
+/// Formats of surveys. No library of Debian reads them, nor does Debian's build of CloudCompare; other programs turn
+/// them into one that is read.
 void refuse_survey_formats(const CloudSource& source, const std::string& extension) {
   const bool is_las = source.bytes.starts_with("LASF") || extension == ".las" || extension == ".laz";
   if (!is_las && !source.bytes.starts_with("ASTM-E57") && extension != ".e57") return;
-  refuse(source, fmt::format("{0} is not read: 'pdal translate FILE{1} FILE.ply' makes it a PLY, and so does "
-                             "'cloudcompare -SILENT -O FILE{1} -C_EXPORT_FMT PLY -SAVE_CLOUDS'",
-                             is_las ? "LAS or LAZ" : "E57", is_las ? ".laz" : ".e57"));
+  refuse(source,
+         fmt::format("{} is not read: make it a PLY with 'CloudCompare -SILENT -O FILE -C_EXPORT_FMT PLY "
+                     "-SAVE_CLOUDS' (the build of cloudcompare.org){}",
+                     is_las ? "LAS or LAZ" : "E57", is_las ? " or 'pdal translate FILE FILE.ply' (pdal.io)" : ""));
 }
 
 /// What the content says, else what the extension says.

@@ -251,11 +251,11 @@ def pts_cases():
 
 def las_cases():
     yield "cloud", TEXT.encode(), ["LAS", "pdal translate"]
-    yield "header", b"LASF" + bytes(371), ["LAS", "cloudcompare"]
+    yield "header", b"LASF" + bytes(371), ["LAS", "CloudCompare"]
 
 
 def e57_cases():
-    yield "header", b"ASTM-E57" + bytes(40), ["E57", "pdal translate"]
+    yield "header", b"ASTM-E57" + bytes(40), ["E57", "CloudCompare"]
 
 
 def unknown_cases():
