@@ -34,7 +34,11 @@ std::vector<std::string> troubles(const CloudSurvey& s, const CloudFileReport& f
     trouble("{} points ({:.1f} %) are far from any surface: they are dropped; --keep-all keeps them", junk,
             100 * static_cast<double>(junk) / n);
   }
-  if (!s.has_normals) {
+  if (s.has_lines_of_sight) {
+    trouble(
+        "the normals are none, they do not stand on the surface of the points: true ones are estimated; "
+        "--normals given keeps them");
+  } else if (!s.has_normals) {
     trouble(
         "no normals: they are estimated and oriented; check the result, or give the scanner's place with "
         "--orient-from");
@@ -109,7 +113,7 @@ Json to_json(const CloudInspection& inspection) {
     json["triangles"] = to_json(inspection.triangles->report);
     json["triangles"]["notices"] = inspection.triangles->notices;
   }
-  Json normals = {{"present", s.has_normals}};
+  Json normals = {{"present", s.has_normals}, {"lines_of_sight", s.has_lines_of_sight}};
   if (s.has_normals) {
     normals.update({{"missing", s.n_normals_zero},
                     {"rescaled", inspection.read.n_normals_rescaled},
@@ -153,7 +157,7 @@ std::string inspection_text(const CloudInspection& inspection) {
     out += fmt::format("normals   {:.1f} % consistent, {}; {} missing, {} made unit\n", 100 * s.consistency,
                        s.volume > 0 ? "outward" : "inward", s.n_normals_zero, inspection.read.n_normals_rescaled);
   } else {
-    out += "normals   none\n";
+    out += fmt::format("normals   none{}\n", s.has_lines_of_sight ? "; what is called so may be lines of sight" : "");
   }
   out += fmt::format("noise     {:.3g} ({:.3g} spacings, {:.2g} of the diagonal)\n", s.noise, s.noise_over_spacing,
                      s.noise_over_diagonal);

@@ -10,6 +10,7 @@
 #include "reconstruct/cloud/cleaning.h"
 #include "reconstruct/cloud/cloud_survey.h"
 #include "reconstruct/cloud/covering.h"
+#include "reconstruct/cloud/lines_of_sight.h"
 #include "reconstruct/cloud/morton_order.h"
 #include "reconstruct/cloud/normal_estimation.h"
 #include "reconstruct/cloud/normal_orientation.h"
@@ -24,6 +25,9 @@ namespace {
 
 // Share of neighbours whose signs agree in a cloud whose normals are right but for noise.
 constexpr double kConsistent = .97;
+// Share of normals that may look away from what is taken for their scanners: a direction that is the same everywhere,
+// or none, has half of them.
+constexpr double kMostAway = .25;
 constexpr std::size_t kFewestPoints = kFewestSurveyed;  // the fit needs an estimate of the noise
 
 /// Three numbers a line, '#' begins a comment.
@@ -55,6 +59,7 @@ class Preparation {
   void clean_points();
   void find_normals();
   void fill_missing();
+  void part_with_lines_of_sight();
   template <class Goes>
   std::size_t drop_if(Goes&& goes);
   void drop_off_surface();
@@ -77,9 +82,10 @@ class Preparation {
   const Parameters& parameters_;
   const CloudFileReport file_;
   OrientedPointCloud cloud_;
-  Neighbourhoods near_;     ///< of the cleaned cloud
-  Covering covering_;       ///< of it
-  bool is_closed_ = false;  ///< as the winding number has it
+  Neighbourhoods near_;              ///< of the cleaned cloud
+  Covering covering_;                ///< of it
+  bool is_closed_ = false;           ///< as the winding number has it
+  bool sights_are_guessed_ = false;  ///< the origins are what the file has as normals
   PreparedCloud result_;
 };
 
@@ -130,7 +136,22 @@ void Preparation::fill_missing() {
   notice("estimated {} normals that were missing", missing);
 }
 
+/// What was given as normals may say where the scanners stood; it does not say how the surface lies.
+void Preparation::part_with_lines_of_sight() {
+  if (cloud_.normals.empty() || file_.of_triangles || parameters_.cloud().normals != NormalsOf::Auto) return;
+  if (!are_lines_of_sight(cloud_, near_, covering_)) return;
+  notice(
+      "the normals of the file are none: they do not stand on the surface of its points (--normals given keeps them)");
+  if (cloud_.origins.empty()) {
+    cloud_.origins = cloud_.points;
+    for (std::size_t i = 0; i < cloud_.points.size(); ++i) cloud_.origins[i] += cloud_.normals[i];
+    sights_are_guessed_ = true;
+  }
+  cloud_.normals.clear();
+}
+
 void Preparation::find_normals() {
+  part_with_lines_of_sight();
   const NormalsOf how = parameters_.cloud().normals;
   if (!cloud_.normals.empty() && how != NormalsOf::Estimate) {
     normals().given = true;
@@ -160,7 +181,7 @@ void Preparation::find_normals() {
          r.n_components, r.n_components == 1 ? "" : "s");
   if (parameters_.cloud().orient_from.empty()) {
     ask_winding_number(nullptr);
-    if (!cloud_.origins.empty()) look_to_origins();  // directions are those of before
+    look_to_origins();
   }
   say_doubt();
 }
@@ -187,10 +208,17 @@ void Preparation::ask_winding_number(const std::vector<Vec3>* as_given) {
          r.n_turned, percent(r.n_turned), r.n_replaced);
 }
 
+/// Lines of sight that are guessed to be such do not overrule the winding number, which gives directions and sides.
 void Preparation::look_to_origins() {
+  if (cloud_.origins.empty()) return;
+  if (sights_are_guessed_) {
+    const double away = share_looking_away(cloud_);
+    if (normals().replaced_by_winding || std::min(away, 1 - away) > kMostAway) return;
+  }
   normals().turned_to_viewpoints = orient_to_origins(cloud_);
   normals().orientation->n_doubtful = 0;
-  notice("the normals look to the scanner that saw each point, by the columns of the file (--orient-from decides)");
+  notice("the normals look to the scanner that saw each point, by the {} of the file (--orient-from decides)",
+         sights_are_guessed_ ? "normals" : "columns");
 }
 
 /// @return how many

@@ -14,6 +14,7 @@
 #include "common/formatted.h"
 #include "reconstruct/cloud/cloud_neighbours.h"
 #include "reconstruct/cloud/enclosed_volume.h"
+#include "reconstruct/cloud/lines_of_sight.h"
 #include "reconstruct/cloud/local_quadric.h"
 #include "reconstruct/cloud/neighbour_tree.h"
 
@@ -171,7 +172,9 @@ CloudSurvey survey(const OrientedPointCloud& original, const SurveyParams& param
   CloudSurvey result;
   result.n_points = original.points.size();
   OrientedPointCloud cloud = original;
-  result.dropped = clean(cloud, params.cleaning);
+  Neighbourhoods around;
+  Covering covering;
+  result.dropped = clean(cloud, params.cleaning, &around, &covering);
   const std::size_t n = cloud.points.size();
   if (n < kFewestSurveyed)
     throw TooFewPoints(formatted("%zu usable points: a survey needs at least %zu", n, kFewestSurveyed));
@@ -203,6 +206,11 @@ CloudSurvey survey(const OrientedPointCloud& original, const SurveyParams& param
         normal.stableNormalize();
       }
     }
+    result.has_lines_of_sight = are_lines_of_sight(cloud, around, covering);
+    result.has_normals = !result.has_lines_of_sight;
+    if (!result.has_normals) cloud.normals.clear();
+  }
+  if (result.has_normals) {
     result.consistency = consistency(cloud, params.orientation);
     const EnclosedVolume body = enclosed_volumes(cloud, areas, std::vector<std::uint32_t>(n, 0), 1).front();
     result.volume = body.volume;

@@ -45,6 +45,7 @@ struct CloudSurvey {
       1;  ///< ratio of the 99th to the 1st percentile of area behind a sample; 2.5 for white noise
 
   bool has_normals = false;
+  bool has_lines_of_sight = false;  ///< in the place of normals, see lines_of_sight.h; then it has none
   std::size_t n_normals_zero = 0, n_normals_not_unit = 0;  ///< not unit: to 1e-3
   double consistency = 0;                                  ///< of the signs of given normals, see normal_orientation.h
   double openness = 0;                                     ///< |sum a n| / sum a of given normals: 0 closed

@@ -50,6 +50,28 @@ TEST_F(Program, ThinPlatesWithoutNormalsGetTheirSidesFromTheWindingNumber) {
   EXPECT_GT(normals["turned_by_winding"], kAlong * kAlong / 2);
 }
 
+TEST_F(Program, DirectionsToTheScannerAreNoNormals) {
+  // Of a ball that is seen from four sides, and a direction that is the same everywhere: neither says how it lies.
+  for (const bool is_same : {false, true}) {
+    write_cloud("sight.ply", [&](const double(&x)[6]) {
+      const Eigen::Vector3d at(x[0], x[1], x[2]), from(x[0] > 0 ? 3 : -3, x[1] > 0 ? 3 : -3, .5);
+      const Eigen::Vector3d sight = is_same ? Eigen::Vector3d(0, 0, 1) : Eigen::Vector3d(from - at);
+      std::ostringstream line;
+      line << at.transpose() << ' ' << sight.transpose();
+      return line.str();
+    });
+    const Result r = run("run sight.ply -o sight --force --tets 4000 --json");
+    ASSERT_EQ(r.code, 0) << r.err;
+    EXPECT_NE(r.err.find("the normals of the file are none"), std::string::npos) << r.err;
+    EXPECT_EQ(r.err.find("look to the scanner") != std::string::npos, !is_same) << r.err;
+    EXPECT_EQ(record(folder / "sight/1-cloud")["numbers"]["normals"]["source"], "estimated");
+    const Result given = run("run egg.ply -o egg --tets 4000 --json");
+    EXPECT_NEAR(Json::parse(r.out)["certificate"]["volume"].get<double>(),
+                Json::parse(given.out)["certificate"]["volume"].get<double>(), 3e-3);
+  }
+  EXPECT_NE(run("inspect sight.ply").out.find("may be lines of sight"), std::string::npos);
+}
+
 TEST_F(Program, EstimatedNormalsLookToTheScannerThatThePcdNames) {
   constexpr int kAlong = 20;
   for (const int height : {-5, 5}) {
