@@ -79,6 +79,8 @@ TEST_F(ScanFields, ATemperatureReachesTheBoundaryAndNothingElse) {
   EXPECT_NE(content(folder / "ball/4-export/mesh.msh").find("\"scan_temperature\""), std::string::npos);
   EXPECT_NE(content(folder / "ball/4-export/mesh_boundary.xdmf").find("scan_rgb"), std::string::npos);
   EXPECT_EQ(content(folder / "ball/4-export/mesh.inp").find("scan_"), std::string::npos);
+  const std::string page = content(folder / "ball/report.html");
+  EXPECT_NE(page.find("block-vertex_field_1"), std::string::npos);
   const Result inspected = run("inspect ball.ply");
   EXPECT_NE(inspected.out.find("fields    rgb, temperature\n"), std::string::npos) << inspected.out;
 }
