@@ -14,7 +14,7 @@ namespace umtet {
 
 enum class MshEncoding { Ascii, Binary };
 
-/// Gmsh 2.2: the body and every patch are physical groups; faces come before tets.
+/// Gmsh 2.2: the body and every patch are physical groups; faces come before tets. Boundary data are $NodeData.
 void write_msh22(const std::filesystem::path& path, const SolverMesh& mesh, MshEncoding encoding);
 
 /// Gmsh 4.1: the same, with $Entities: one volume, bounded by a surface for every patch.

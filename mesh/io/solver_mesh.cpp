@@ -171,6 +171,7 @@ void require_consistent(const SolverMesh& mesh) {
     });
   };
   require(sized(mesh.point_data, mesh.nodes.size()), "point data: one value a node");
+  require(sized(mesh.boundary_data, mesh.nodes.size()), "boundary data: one value a node");
   require(sized(mesh.cell_data, mesh.n_tets()), "cell data: one value a tet");
 }
 

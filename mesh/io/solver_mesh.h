@@ -33,6 +33,8 @@ struct SolverMesh {
   MeshPart body{"body", 1};
   std::map<std::string, FieldValues> point_data;  ///< one value a node; formats that cannot hold it leave it out
   std::map<std::string, FieldValues> cell_data;   ///< one value a tet; the same
+  /// One value a node, NaN where none is known: what may become a boundary condition. As point_data, and in .msh too.
+  std::map<std::string, FieldValues> boundary_data;
 
   std::size_t n_tets() const { return tets.size() / static_cast<std::size_t>(nodes_per_tet); }
   std::size_t n_faces() const { return face_tet.size(); }

@@ -89,12 +89,23 @@ void take_mid_sides(const std::filesystem::path& path, MeshFile& file, const std
   }
   QuadraticTetMesh& quadratic = file.quadratic.emplace();
   std::vector<int> new_index(mesh.V.size(), -1);
+  std::vector<std::size_t> nodes;
   for (const Role wanted : {Corner, MidSide}) {
     for (std::size_t v = 0; v < role.size(); ++v) {
       if (role[v] != wanted) continue;
-      new_index[v] = static_cast<int>(quadratic.V.size());
-      quadratic.V.push_back(mesh.V[v]);
+      new_index[v] = static_cast<int>(nodes.size());
+      nodes.push_back(v);
     }
+  }
+  const auto of_nodes = [&](const auto& values) {
+    std::decay_t<decltype(values)> some;
+    some.reserve(nodes.size());
+    for (const std::size_t v : nodes) some.push_back(values[v]);
+    return some;
+  };
+  quadratic.V = of_nodes(mesh.V);
+  for (const auto& [name, any] : file.point_data) {
+    file.quadratic_data[name] = std::visit([&](const auto& values) -> FieldValues { return of_nodes(values); }, any);
   }
   quadratic.C.resize(mesh.C.size());
   for (std::size_t t = 0; t < mesh.C.size(); ++t) {

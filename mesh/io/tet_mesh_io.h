@@ -15,8 +15,9 @@
 
 namespace umtet {
 
-/// One number per vertex or per tet.
-using FieldValues = std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::uint8_t>>;
+/// One number, or three, per vertex or per tet.
+using FieldValues =
+    std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::uint8_t>, std::vector<Vec3>>;
 
 /// A tet mesh with named data.
 struct MeshFile {
@@ -27,6 +28,7 @@ struct MeshFile {
   /// As read, where all tets have ten nodes; `mesh` holds their corners, which are its first
   /// vertices.
   std::optional<QuadraticTetMesh> quadratic = std::nullopt;
+  std::map<std::string, FieldValues> quadratic_data = {};  ///< one value per quadratic->V
 };
 
 /// A file that is not what its name says or contradicts itself; what() holds the path, the place and the reason.
@@ -47,9 +49,9 @@ MeshFile with_standard_data(TetMesh mesh, std::vector<std::int64_t> background_v
 /// where every tet has ten; vertices without a tet are dropped, the others keep their order (.msh: ascending node
 /// number). Orientation is kept, inverted tets included; a tet with a corner twice, a vertex that is not finite and a
 /// mid-side that is a corner elsewhere are refused by number. From .vtu also data with one component comes along:
-/// floats as double, unsigned bytes as they are, other integers as 64 bits. Every count is compared with the size of
-/// the file before memory is asked for. \throw std::system_error when the file cannot be read, MeshFileRefused for its
-/// content
+/// floats as double, unsigned bytes as they are, other integers as 64 bits; and floats with three. Every count is
+/// compared with the size of the file before memory is asked for. \throw std::system_error when the file cannot be
+/// read, MeshFileRefused for its content
 MeshFile read_tet_mesh(const std::filesystem::path& path);
 
 /// VTK XML, inline base64 blocks with 64-bit headers, double coordinates, 32-bit connectivity where that is enough.

@@ -5,6 +5,7 @@
 #include "mesh/certify/quality_report.h"
 #include "pipeline/case/artefact.h"
 #include "pipeline/case/interrupt.h"
+#include "pipeline/meshing/sample_fields.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -67,6 +68,7 @@ void add_support(const Domain& domain, const UmResult& result, MeshFile& content
   std::vector<double> support(result.final.size(), -1);
   set_support(domain, result.final, result.submesh.positive_vertices, support);
   content.point_data["support"] = std::move(support);
+  set_sample_fields(domain, result.final, result.submesh.positive_vertices, content.point_data);
 }
 
 MeshFile final_content(const Domain& domain, const UmResult& result) {

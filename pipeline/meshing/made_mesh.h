@@ -29,7 +29,8 @@ void set_support(const Domain& domain, const std::vector<Vec3>& V, const std::ve
                  std::vector<double>& support);
 
 /// Of a cloud's final mesh the distance of each boundary vertex to the nearest sample, -1 inside and at walls, as point
-/// data `support`: where it is large, no data back the surface. Nothing without a cloud. \throw Cancelled
+/// data `support`: where it is large, no data back the surface. And what else the samples carry, by
+/// set_sample_fields(). Nothing without a cloud. \throw Cancelled
 void add_support(const Domain& domain, const UmResult& result, MeshFile& content);
 
 /// The final mesh, with support. \throw Cancelled

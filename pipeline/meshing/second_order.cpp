@@ -7,6 +7,7 @@
 #include "pipeline/case/artefact.h"
 #include "pipeline/domain/edge_length.h"
 #include "pipeline/meshing/made_mesh.h"
+#include "pipeline/meshing/sample_fields.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -66,10 +67,13 @@ void write_second_order(const fs::path& file, const Domain& domain, const UmResu
   for (Vec3& x : mesh.V) x += domain.shift;
   std::map<std::string, FieldValues> point_data = corners.point_data;
   for (auto& [name, any] : point_data) {
+    if (is_of_scan(name)) continue;
     std::visit(
         [&](auto& values) {
           using Value = typename std::decay_t<decltype(values)>::value_type;
-          values.resize(mesh.V.size(), std::is_signed_v<Value> ? Value(-1) : Value(0));
+          if constexpr (std::is_arithmetic_v<Value>) {
+            values.resize(mesh.V.size(), std::is_signed_v<Value> ? Value(-1) : Value(0));
+          }
         },
         any);
   }
@@ -82,6 +86,7 @@ void write_second_order(const fs::path& file, const Domain& domain, const UmResu
   if (const auto support = point_data.find("support"); support != point_data.end()) {
     set_support(domain, second.mesh.V, second.boundary_mid_sides, std::get<std::vector<double>>(support->second));
   }
+  set_sample_fields(domain, second.mesh.V, second.boundary_mid_sides, point_data);
   write_artefact(file, [&](const fs::path& temporary) { write_vtu(temporary, mesh, point_data, corners.cell_data); });
 }
 

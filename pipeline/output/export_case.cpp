@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
+#include <map>
 #include <optional>
 
 #include "mesh/io/solver_files.h"
@@ -11,6 +13,7 @@
 #include "pipeline/case/interrupt.h"
 #include "pipeline/case/parameters.h"
 #include "pipeline/case/record.h"
+#include "pipeline/meshing/sample_fields.h"
 #include "pipeline/output/boundary_patches.h"
 #include "pipeline/reports/stage_reports.h"
 #include "reconstruct/io/point_cloud_io.h"
@@ -120,7 +123,13 @@ SolverMesh mesh_of_case(const CasePaths& paths, const Parameters& parameters, Pr
     MeshFile file = read_tet_mesh(paths.mesh());
     SolverMesh mesh = file.quadratic ? solver_mesh(*file.quadratic) : solver_mesh(file.mesh);
     const MarkedFaces marked = marked_faces(mesh, file, mesh_report(*state.record).measured.domain.support);
-    // What is read for points is read for corners.
+    std::map<std::string, FieldValues>& of_nodes = file.quadratic ? file.quadratic_data : file.point_data;
+    for (auto it = of_nodes.begin(); it != of_nodes.end();) {
+      const auto next = std::next(it);
+      if (is_of_scan(it->first)) mesh.boundary_data.insert(of_nodes.extract(it));
+      it = next;
+    }
+    // What else is read for points is read for corners.
     if (!file.quadratic) mesh.point_data = std::move(file.point_data);
     mesh.cell_data = std::move(file.cell_data);
     divide_boundary(

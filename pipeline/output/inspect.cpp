@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "pipeline/stages/cloud_preparation.h"
+#include "reconstruct/cloud/cloud_arrays.h"
 #include "reconstruct/cloud/cloud_neighbours.h"
 #include "reconstruct/cloud/cloud_survey.h"
 #include "reconstruct/io/point_cloud_io.h"
@@ -34,6 +35,7 @@ std::vector<std::string> troubles(const CloudSurvey& s, const CloudFileReport& f
     trouble("{} points ({:.1f} %) are far from any surface: they are dropped; --keep-all keeps them", junk,
             100 * static_cast<double>(junk) / n);
   }
+  if (const std::string left_out = fields_left_out(file); !left_out.empty()) list.push_back(left_out);
   if (s.has_lines_of_sight) {
     trouble(
         "the normals are none, they do not stand on the surface of the points: true ones are estimated; "
@@ -98,7 +100,8 @@ CloudInspection inspect_cloud(const fs::path& file, Progress& progress) {
   std::nth_element(area.begin(), area.begin() + static_cast<std::ptrdiff_t>(area.size() / 2), area.end());
   Resolution lattice = choose_resolution(std::sqrt(area[area.size() / 2]), kMeshEdge * s.diagonal, s.noise);
   std::vector<std::string> list = troubles(s, scan.report);
-  return {file.string(), scan.report, source.triangles, std::move(s), std::move(lattice), std::move(list)};
+  return {file.string(), scan.report,        field_names(scan.cloud), source.triangles,
+          std::move(s),  std::move(lattice), std::move(list)};
 }
 
 Json to_json(const CloudInspection& inspection) {
@@ -113,6 +116,7 @@ Json to_json(const CloudInspection& inspection) {
     json["triangles"] = to_json(inspection.triangles->report);
     json["triangles"]["notices"] = inspection.triangles->notices;
   }
+  if (!inspection.fields.empty()) json["fields"] = inspection.fields;
   Json normals = {{"present", s.has_normals}, {"lines_of_sight", s.has_lines_of_sight}};
   if (s.has_normals) {
     normals.update({{"missing", s.n_normals_zero},
@@ -159,6 +163,7 @@ std::string inspection_text(const CloudInspection& inspection) {
   } else {
     out += fmt::format("normals   none{}\n", s.has_lines_of_sight ? "; what is called so may be lines of sight" : "");
   }
+  if (!inspection.fields.empty()) out += fmt::format("fields    {}\n", fmt::join(inspection.fields, ", "));
   out += fmt::format("noise     {:.3g} ({:.3g} spacings, {:.2g} of the diagonal)\n", s.noise, s.noise_over_spacing,
                      s.noise_over_diagonal);
   if (s.thickness) {

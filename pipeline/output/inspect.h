@@ -18,6 +18,7 @@ namespace umtet {
 struct CloudInspection {
   std::string file;  ///< as the user gave it
   CloudFileReport read;
+  std::vector<std::string> fields;            ///< what the points carry: field_names()
   std::optional<SampledTriangles> triangles;  ///< none of a cloud; then the survey is of its samples
   CloudSurvey survey;
   Resolution lattice;                 ///< that a fit would choose

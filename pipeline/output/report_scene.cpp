@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <unordered_map>
@@ -11,12 +12,14 @@
 #include "pipeline/case/interrupt.h"
 #include "pipeline/domain/zero_set_choice.h"
 #include "pipeline/meshing/made_mesh.h"
+#include "pipeline/meshing/sample_fields.h"
 #include "pipeline/output/report_page.h"
 
 namespace umtet {
 namespace {
 
 constexpr double kSteps16 = 65535, kSteps8 = 255;
+constexpr std::uint8_t kNoValue = 255;
 constexpr std::size_t kValuesPerPoll = 100'000;
 
 /// A face and the vertex of its tet behind it.
@@ -25,6 +28,13 @@ using FacedTet = std::array<int, 4>;
 std::uint8_t in_steps(double value, double least, double most) {
   if (!(most > least)) return 0;
   return static_cast<std::uint8_t>(std::lround(kSteps8 * std::clamp((value - least) / (most - least), 0., 1.)));
+}
+
+/// The same with room for what is not known.
+std::uint8_t in_known_steps(double value, double least, double most) {
+  if (std::isnan(value)) return kNoValue;
+  if (!(most > least)) return 0;
+  return static_cast<std::uint8_t>(std::lround((kNoValue - 1) * std::clamp((value - least) / (most - least), 0., 1.)));
 }
 
 template <class Value = double>
@@ -64,6 +74,13 @@ class SceneMaker {
     scene_.blocks.emplace_back(name, base64(bytes.data(), bytes.size()));
   }
   void write_values();
+  void write_fields();
+  void write_field(const std::string& name, const std::vector<double>& values);
+  void write_field(const std::string& name, const std::vector<Vec3>& colours);
+  void add_field(SceneHead::Field field, const std::vector<std::uint8_t>& bytes) {
+    write_bytes(("vertex_field_" + std::to_string(scene_.head.fields.size())).c_str(), bytes);
+    scene_.head.fields.push_back(std::move(field));
+  }
   /// Numbers the vertices that are shown, in the order they are met.
   int shown(int vertex) {
     int& id = shown_id_[vertex];
@@ -266,6 +283,35 @@ void SceneMaker::write_values() {
     for (const int v : shown_) bytes.push_back(in_steps((*support)[v], 0, far));
     write_bytes("vertex_support", bytes);
   }
+  write_fields();
+}
+
+void SceneMaker::write_fields() {
+  for (const auto& [name, any] : file_.point_data) {
+    if (!is_of_scan(name)) continue;
+    if (const auto* values = std::get_if<std::vector<double>>(&any)) write_field(name, *values);
+    if (const auto* colours = std::get_if<std::vector<Vec3>>(&any)) write_field(name, *colours);
+  }
+}
+
+void SceneMaker::write_field(const std::string& name, const std::vector<double>& values) {
+  SceneHead::Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const int v : shown_) {
+    if (std::isnan(values[v])) continue;
+    range = {std::min(range.least, values[v]), std::max(range.most, values[v])};
+  }
+  if (range.least > range.most) return;  // no sample is near
+  std::vector<std::uint8_t> bytes;
+  for (const int v : shown_) bytes.push_back(in_known_steps(values[v], range.least, range.most));
+  add_field({name, range}, bytes);
+}
+
+void SceneMaker::write_field(const std::string& name, const std::vector<Vec3>& colours) {
+  std::vector<std::uint8_t> bytes;
+  for (const int v : shown_) {
+    for (const double c : colours[v]) bytes.push_back(in_known_steps(c, 0, 1));
+  }
+  add_field({name, {0, 1}, true}, bytes);
 }
 
 ReportScene SceneMaker::operator()(const SolverMesh& divided) {
@@ -308,6 +354,10 @@ Json to_json(const SceneHead& head) {
   Json ranges = {{"quality", to_json(head.quality)}, {"deviation", to_json(head.deviation)}};
   if (head.edge_length) ranges["edge_length"] = to_json(*head.edge_length);
   if (head.support) ranges["support"] = to_json(*head.support);
+  Json fields = Json::array();
+  for (const SceneHead::Field& f : head.fields) {
+    fields.push_back({{"name", f.name}, {"range", to_json(f.range)}, {"of_colours", f.of_colours}});
+  }
   return {{"box_min", json_of(head.box_min)},
           {"box_size", json_of(head.box_size)},
           {"patches", patches},
@@ -321,6 +371,7 @@ Json to_json(const SceneHead& head) {
           {"index_bytes", head.index_bytes},
           {"ranges", ranges},
           {"support_radius", head.support_radius},
+          {"fields", fields},
           {"n_points", head.n_points},
           {"n_points_shown", head.n_points_shown}};
 }

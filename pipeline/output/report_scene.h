@@ -43,6 +43,12 @@ struct SceneHead {
   std::optional<Range> edge_length;  ///< at vertices, model units; none of a mesh with one h
   std::optional<Range> support;      ///< distances to samples, model units; none for a formula
   double support_radius = 0;         ///< farther than this from every sample the surface is a guess
+  struct Field {
+    std::string name;  ///< in the mesh
+    Range range;       ///< of the values that are known; of colours 0 and 1
+    bool of_colours = false;
+  };
+  std::vector<Field> fields;  ///< at vertices, what the samples carry
   std::size_t n_points = 0, n_points_shown = 0;
 };
 
@@ -56,6 +62,7 @@ Json to_json(const SceneHead& head);
 ///   tet_quality, face_quality, face_deviation, vertex_support, vertex_edge_length   a byte each, in 255ths of
 ///   head.ranges face_patch   a byte each, where there are several: index into head.patches, modulo 256 points uint16 x
 ///   3 a sample, in 65535ths of the box
+///   vertex_field_N   of head.fields[N] a byte each, or three of colours, in 254ths of the range; 255: no value
 struct ReportScene {
   SceneHead head;
   std::vector<std::pair<std::string, std::string>> blocks;

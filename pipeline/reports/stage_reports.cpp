@@ -98,6 +98,7 @@ CloudReport cloud_from(const Json& json) {
           .normals = normals_from(json.at("normals")),
           .triangles = json.contains("triangles") ? std::optional(triangles_from(json.at("triangles"))) : std::nullopt,
           .n_points = json.at("n_points"),
+          .fields = json.value("fields", std::vector<std::string>()),
           .box = {vector_from(json.at("box_min")), vector_from(json.at("box_max"))},
           .notices = json.at("notices")};
 }
@@ -215,6 +216,7 @@ Json to_json(const CloudReport& r) {
                {"box_max", json_of(r.box.max())},
                {"notices", r.notices}};
   if (r.triangles) json["triangles"] = to_json(*r.triangles);
+  if (!r.fields.empty()) json["fields"] = r.fields;
   return json;
 }
 

@@ -47,6 +47,7 @@ struct CloudReport {
   NormalsReport normals;
   std::optional<TrianglesReport> triangles;  ///< none of a cloud
   std::size_t n_points = 0;                  ///< that are left
+  std::vector<std::string> fields = {};      ///< what they carry: field_names()
   Eigen::AlignedBox3d box;                   ///< of them
   std::vector<std::string> notices;          ///< what was changed or guessed, for the user
 };

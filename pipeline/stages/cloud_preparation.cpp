@@ -8,6 +8,7 @@
 #include "pipeline/case/artefact.h"
 #include "pipeline/stages/scan_source.h"
 #include "reconstruct/cloud/cleaning.h"
+#include "reconstruct/cloud/cloud_arrays.h"
 #include "reconstruct/cloud/cloud_survey.h"
 #include "reconstruct/cloud/covering.h"
 #include "reconstruct/cloud/lines_of_sight.h"
@@ -56,6 +57,7 @@ class Preparation {
   PreparedCloud operator()();
 
  private:
+  void tell_fields();
   void clean_points();
   void find_normals();
   void fill_missing();
@@ -88,6 +90,13 @@ class Preparation {
   bool sights_are_guessed_ = false;  ///< the origins are what the file has as normals
   PreparedCloud result_;
 };
+
+void Preparation::tell_fields() {
+  result_.report.fields = field_names(cloud_);
+  if (!result_.report.fields.empty())
+    notice("the mesh gets what the samples carry: {}", fmt::join(result_.report.fields, ", "));
+  if (const std::string left_out = fields_left_out(file_); !left_out.empty()) notice("{}", left_out);
+}
 
 void Preparation::clean_points() {
   CleaningParams params;
@@ -224,20 +233,13 @@ void Preparation::look_to_origins() {
 /// @return how many
 template <class Goes>
 std::size_t Preparation::drop_if(Goes&& goes) {
-  std::size_t kept = 0;
+  std::vector<std::uint32_t> kept;
   const std::size_t n = cloud_.points.size();
   for (std::size_t i = 0; i < n; ++i) {
-    if (goes(i)) continue;
-    cloud_.points[kept] = cloud_.points[i];
-    if (!cloud_.labels.empty()) cloud_.labels[kept] = cloud_.labels[i];
-    if (!cloud_.origins.empty()) cloud_.origins[kept] = cloud_.origins[i];
-    cloud_.normals[kept++] = cloud_.normals[i];
+    if (!goes(i)) kept.push_back(static_cast<std::uint32_t>(i));
   }
-  cloud_.points.resize(kept);
-  cloud_.normals.resize(kept);
-  if (!cloud_.labels.empty()) cloud_.labels.resize(kept);
-  if (!cloud_.origins.empty()) cloud_.origins.resize(kept);
-  return n - kept;
+  keep_samples(cloud_, kept);
+  return n - kept.size();
 }
 
 /// Outliers that only normals show. On scan lines nearest neighbours say nothing.
@@ -281,6 +283,7 @@ PreparedCloud Preparation::operator()() {
   report.format = file_.format;
   report.n_points_in_file = file_.n_points + file_.n_points_dropped;
   report.n_normals_rescaled = file_.n_normals_rescaled;
+  tell_fields();
   sort_in_space(cloud_);
   const Vec3 shift = far_origin_shift(cloud_);  // squares of far coordinates would lose the surface
   for (Vec3& x : cloud_.points) x -= shift;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "reconstruct/cloud/cloud_survey.h"
@@ -92,6 +93,16 @@ ScanSource read_source(const fs::path& source, const Parameters& parameters, con
   t.boundary = std::move(body.boundary);
   t.notices = notices_of(t.report, file.report);
   return scan;
+}
+
+std::string fields_left_out(const CloudFileReport& file) {
+  constexpr std::size_t kListed = 8;
+  const std::vector<std::string>& names = file.fields_left_out;
+  if (names.empty()) return {};
+  const std::vector<std::string> listed(names.begin(), names.begin() + std::min(names.size(), kListed));
+  return fmt::format("left out {} field{} ({}{}): {} are kept, and one of each name", names.size(),
+                     names.size() == 1 ? "" : "s", fmt::join(listed, ", "), names.size() > kListed ? " ..." : "",
+                     kMostFields);
 }
 
 void add_triangles(const SampledTriangles& triangles, CloudReport& report) {

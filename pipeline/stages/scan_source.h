@@ -34,6 +34,9 @@ bool is_of_triangles(const std::filesystem::path& source, const Parameters& para
 /// \throw CloudRefused  as the readers, or triangles that do not bound a body; std::system_error; Cancelled
 ScanSource read_source(const std::filesystem::path& source, const Parameters& parameters, const Context& context = {});
 
+/// Which columns of numbers were not taken along, and why; empty if all were.
+std::string fields_left_out(const CloudFileReport& file);
+
 /// Puts what is known of the triangles into the report of their samples, notices first.
 void add_triangles(const SampledTriangles& triangles, CloudReport& report);
 

@@ -14,6 +14,7 @@
 
 #include "common/disjoint_sets.h"
 #include "common/formatted.h"
+#include "reconstruct/cloud/cloud_arrays.h"
 #include "reconstruct/cloud/neighbour_tree.h"
 
 namespace umtet {
@@ -257,18 +258,7 @@ std::vector<std::string> problems(const CleaningParams& params) {
 CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params, Neighbourhoods* neighbours,
                      Covering* covers_left) {
   if (const auto found = problems(params); !found.empty()) throw std::invalid_argument(found.front());
-  const bool has_normals = !cloud.normals.empty();
-  if (has_normals && cloud.normals.size() != cloud.points.size())
-    throw std::invalid_argument(
-        formatted("%zu points but %zu normals: must be equal", cloud.points.size(), cloud.normals.size()));
-  const bool has_labels = !cloud.labels.empty();
-  if (has_labels && cloud.labels.size() != cloud.points.size())
-    throw std::invalid_argument(
-        formatted("%zu points but %zu labels: must be equal", cloud.points.size(), cloud.labels.size()));
-  const bool has_origins = !cloud.origins.empty();
-  if (has_origins && cloud.origins.size() != cloud.points.size())
-    throw std::invalid_argument(
-        formatted("%zu points but %zu origins: must be equal", cloud.points.size(), cloud.origins.size()));
+  require_equal_lengths(cloud);
   CleaningReport report;
   std::vector<std::uint32_t>& kept = report.kept;
   for (std::uint32_t i = 0; i < cloud.points.size(); ++i)
@@ -297,16 +287,7 @@ CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params, Ne
       return small_components(some, params, report.n_small_component_pieces);
     }));
   }
-  for (std::size_t row = 0; row < kept.size(); ++row) {
-    cloud.points[row] = cloud.points[kept[row]];
-    if (has_normals) cloud.normals[row] = cloud.normals[kept[row]];
-    if (has_labels) cloud.labels[row] = cloud.labels[kept[row]];
-    if (has_origins) cloud.origins[row] = cloud.origins[kept[row]];
-  }
-  cloud.points.resize(kept.size());
-  if (has_normals) cloud.normals.resize(kept.size());
-  if (has_labels) cloud.labels.resize(kept.size());
-  if (has_origins) cloud.origins.resize(kept.size());
+  keep_samples(cloud, kept);
   if (neighbours) *neighbours = std::move(left.near);
   if (covers_left) *covers_left = std::move(covers);
   return report;

@@ -47,7 +47,7 @@ struct CleaningReport {
 ///
 /// @param neighbours  if given: becomes the twelve nearest of what is left (empty for fewer than two points)
 /// @param covers_left  if given: becomes the covering of that
-/// \throw std::invalid_argument  normals, labels or origins, but not as many as points; a problem of the parameters
+/// \throw std::invalid_argument  an array that has not as many entries as there are points; a problem of the parameters
 /// Cost: O(n log n), a few microseconds a point. The result does not depend on the number of threads.
 CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params = {}, Neighbourhoods* neighbours = nullptr,
                      Covering* covers_left = nullptr);

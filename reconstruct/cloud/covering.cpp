@@ -10,6 +10,7 @@
 #include <span>
 #include <utility>
 
+#include "reconstruct/cloud/cloud_arrays.h"
 #include "reconstruct/cloud/neighbour_tree.h"
 
 namespace umtet {
@@ -173,10 +174,8 @@ Covering covering(const std::vector<Vec3>& points, const Neighbourhoods& near) {
 }
 
 OrientedPointCloud picked(const OrientedPointCloud& cloud, const std::vector<std::uint32_t>& points) {
-  OrientedPointCloud some{picked<Vec3>(cloud.points, points), {}};
-  if (!cloud.normals.empty()) some.normals = picked<Vec3>(cloud.normals, points);
-  if (!cloud.labels.empty()) some.labels = picked<int>(cloud.labels, points);
-  if (!cloud.origins.empty()) some.origins = picked<Vec3>(cloud.origins, points);
+  OrientedPointCloud some = cloud;
+  keep_samples(some, points);
   return some;
 }
 

@@ -37,7 +37,7 @@ struct Covering {
 /// not depend on the number of threads.
 Covering covering(const std::vector<Vec3>& points, const Neighbourhoods& near);
 
-/// These points with their normals and labels.
+/// These points with all that is known of them. @param points  ascending
 OrientedPointCloud picked(const OrientedPointCloud& cloud, const std::vector<std::uint32_t>& points);
 
 /// Neighbours for sample_areas and sample_spacing: `nearest` as it is, `mean_square` that of the representative, which

@@ -9,6 +9,8 @@
 #include <limits>
 #include <utility>
 
+#include "reconstruct/cloud/cloud_arrays.h"
+
 namespace umtet {
 namespace {
 
@@ -23,7 +25,6 @@ std::uint64_t spread_bits(std::uint64_t v) {
 
 template <class T>
 void permute(const std::vector<std::uint32_t>& order, std::vector<T>& values) {
-  if (values.empty()) return;
   std::vector<T> sorted;
   sorted.reserve(order.size());
   for (const std::uint32_t i : order) sorted.push_back(values[i]);
@@ -71,10 +72,7 @@ std::vector<std::uint32_t> morton_order(const std::vector<Vec3>& points) {
 
 void sort_in_space(OrientedPointCloud& cloud) {
   const std::vector<std::uint32_t> order = morton_order(cloud.points);
-  permute(order, cloud.points);
-  permute(order, cloud.normals);
-  permute(order, cloud.labels);
-  permute(order, cloud.origins);
+  for_each_array(cloud, [&order](auto& array, const std::string&) { permute(order, array); });
 }
 
 }  // namespace umtet

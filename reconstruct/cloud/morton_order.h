@@ -14,7 +14,7 @@ std::vector<std::uint32_t> morton_order(const std::vector<Vec3>& points);
 
 /// Puts a cloud in that order. What is made from it then does not depend on the order in which the points came, and
 /// neighbours in space are neighbours in memory, which makes everything after it faster.
-/// Normals and labels may be missing.
+/// All but the points may be missing.
 void sort_in_space(OrientedPointCloud& cloud);
 
 }  // namespace umtet

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstdint>
 #include <ostream>
+#include <vector>
 
+#include "reconstruct/cloud/cloud_arrays.h"
 #include "reconstruct/cloud/cloud_survey.h"
 #include "reconstruct/io/detail/cloud_source.h"
 #include "reconstruct/io/detail/extent.h"
@@ -128,31 +130,22 @@ std::size_t make_unit(std::vector<Vec3>& normals) {
 void drop_unusable(const CloudSource& source, CloudFile& file) {
   OrientedPointCloud& cloud = file.cloud;
   const std::size_t n = cloud.points.size();
-  const bool has_normals = !cloud.normals.empty(), has_labels = !cloud.labels.empty(),
-             has_origins = !cloud.origins.empty();
-  std::size_t n_kept = 0;
+  std::vector<std::uint32_t> kept;
   for (std::size_t i = 0; i < n; ++i) {
     const Vec3& x = cloud.points[i];
-    if (!x.allFinite() || x.cwiseAbs().maxCoeff() > detail::kFarthest) continue;
-    cloud.points[n_kept] = x;
-    if (has_normals) {
-      const bool is_missing = !cloud.normals[i].allFinite() || cloud.normals[i].isZero(0);
-      if (is_missing) ++file.report.n_normals_missing;
-      cloud.normals[n_kept] = is_missing ? Vec3::Zero() : cloud.normals[i];
-    }
-    if (has_labels) cloud.labels[n_kept] = cloud.labels[i];
-    if (has_origins) cloud.origins[n_kept] = cloud.origins[i];
-    ++n_kept;
+    if (x.allFinite() && x.cwiseAbs().maxCoeff() <= detail::kFarthest) kept.push_back(static_cast<std::uint32_t>(i));
   }
-  file.report.n_points_dropped = n - n_kept;
+  file.report.n_points_dropped = n - kept.size();
   if (2 * file.report.n_points_dropped > n)
     refuse(source, fmt::format("{} of {} points have coordinates that are NaN, infinite or beyond 1e50: that is no "
                                "cloud with a few bad points, export it again",
                                file.report.n_points_dropped, n));
-  cloud.points.resize(n_kept);
-  if (has_normals) cloud.normals.resize(n_kept);
-  if (has_labels) cloud.labels.resize(n_kept);
-  if (has_origins) cloud.origins.resize(n_kept);
+  if (kept.size() < n) keep_samples(cloud, kept);
+  for (Vec3& normal : cloud.normals) {
+    if (normal.allFinite() && !normal.isZero(0)) continue;
+    ++file.report.n_normals_missing;
+    normal = Vec3::Zero();
+  }
 }
 
 }  // namespace
@@ -190,20 +183,22 @@ void write_ply(std::ostream& out, const OrientedPointCloud& cloud) {
   if (cloud.points.size() != cloud.normals.size())
     throw std::invalid_argument(
         fmt::format("{} points but {} normals: must be equal", cloud.points.size(), cloud.normals.size()));
-  const bool has_labels = !cloud.labels.empty();
-  if (has_labels && cloud.labels.size() != cloud.points.size())
-    throw std::invalid_argument(
-        fmt::format("{} points but {} labels: must be equal", cloud.points.size(), cloud.labels.size()));
+  require_equal_lengths(cloud);
   out << "ply\nformat binary_little_endian 1.0\nelement vertex " << cloud.points.size() << '\n';
   for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) out << "property double " << name << '\n';
-  if (has_labels) out << "property int label\n";
+  if (!cloud.labels.empty()) out << "property int label\n";
+  if (!cloud.colours.empty()) out << "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  for (const SampleField& field : cloud.fields) out << "property double " << field.name << '\n';
   out << "end_header\n";
-  std::array<char, 6 * sizeof(double) + sizeof(std::int32_t)> row;
+  std::vector<char> row((6 + cloud.fields.size()) * sizeof(double) + sizeof(std::int32_t) + sizeof(Colour));
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     char* at = row.data();
     for (const Vec3* v : {&cloud.points[i], &cloud.normals[i]})
       for (int axis = 0; axis < 3; ++axis) detail::put(at, (*v)[axis]);
-    if (has_labels) detail::put(at, std::int32_t{cloud.labels[i]});
+    if (!cloud.labels.empty()) detail::put(at, std::int32_t{cloud.labels[i]});
+    if (!cloud.colours.empty())
+      for (const std::uint8_t c : cloud.colours[i]) detail::put(at, c);
+    for (const SampleField& field : cloud.fields) detail::put(at, field.values[i]);
     out.write(row.data(), at - row.data());
   }
 }

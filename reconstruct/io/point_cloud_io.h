@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "reconstruct/cloud/point_cloud.h"
 
@@ -15,6 +16,9 @@ struct CloudRefused : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// More of them are left out.
+inline constexpr std::size_t kMostFields = 16;
+
 /// What was found in a cloud file besides the points.
 struct CloudFileReport {
   std::string format;  ///< "ply ascii", "ply binary little endian", "pcd compressed", "xyz" ...
@@ -24,6 +28,7 @@ struct CloudFileReport {
   std::size_t n_normals_missing = 0;   ///< read_scan: zero, NaN or infinite; they are zero in the cloud
   bool of_triangles = false;           ///< samples of triangles: their normals are sure, and there is no outlier
   std::optional<Vec3> viewpoint = {};  ///< where the scanner stood: VIEWPOINT of a .pcd, unless it is 0 0 0 1 0 0 0
+  std::vector<std::string> fields_left_out = {};  ///< beyond the first kMostFields, or of a name that is there twice
 };
 
 struct CloudFile {
@@ -42,7 +47,10 @@ struct CloudFile {
 /// column is an intensity or a colour.
 /// Where the scanner stood, where that is known of each point, are the properties or fields sx sy sz, or origin_x
 /// origin_y origin_z.
-/// Normals are made unit. At least 10 points; duplicates stay.
+/// Colours are red, green and blue, bytes or 0..1 in floating point, or rgb or rgba of PCD, four bytes in a number.
+/// Every other property, field or column of one number a point that has a name is a field of the samples, up to
+/// kMostFields. The columns of XYZ have names if a comment before them has one for each, x, y and z among them; r g b
+/// are colours there. Normals are made unit. At least 10 points; duplicates stay.
 ///
 /// No count of a header is believed before it was compared with the size of the file: memory stays below a small
 /// multiple of it.
@@ -65,9 +73,10 @@ CloudFile read_scan(const std::filesystem::path& file);
 /// be: at once, however large the file is. \throw CloudRefused, std::system_error  as read_scan()
 void check_scan_head(const std::filesystem::path& file);
 
-/// Binary little-endian PLY, double x y z nx ny nz and, where there are labels, int label; read_point_cloud gives the
-/// same bits back. The caller owns the stream and checks it.
-/// \throw std::invalid_argument  not as many normals as points, or labels, where there are any
+/// Binary little-endian PLY, double x y z nx ny nz and, where there are any, int label, uchar red green blue and the
+/// fields as double; read_point_cloud gives the same bits back. Origins are not written. The caller owns the stream and
+/// checks it.
+/// \throw std::invalid_argument  not as many normals as points, or of what else there is
 void write_ply(std::ostream&, const OrientedPointCloud&);
 
 }  // namespace umtet

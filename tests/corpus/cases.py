@@ -150,6 +150,19 @@ def ply_cases():
         yield f"label_{label}", (ply("ascii", more="property float label\n") +
                                  labelled(lambda i: label if i == 4 else 1)), ["point 5", "label"]
     yield "one_place", ply("ascii") + (N * "1 2 3 0 0 1\n").encode(), ["1 different places"]
+    rgb, many = "".join(f"property uchar {c}\n" for c in ("red", "green", "blue")), 3000
+    rows = [struct.pack("<6f", *row) for row in ROWS]
+    yield "fields_many", (ply(more=rgb + "".join(f"property uchar f{i}\n" for i in range(many))) +
+                          b"".join(row + bytes(3 + many) for row in rows)), None
+    yield "fields_cut", ply(more=rgb + "property double t\n") + 99 * bytes(35), ["100 x vertex", "cut short"]
+    for count in ("4000000000", "18446744073709551615"):
+        yield f"fields_{count}", ply(count=count, more=rgb + "property double t\n") + binary(), [count, "cut short"]
+    wild = ("1e308 -1e308 nan 1e308 0", "inf -inf 1e300 -inf 0", "-1 256 1e-320 nan 0")
+    yield "fields_wild", (ply("ascii", more="".join(f"property double {c}\n" for c in ("red", "green", "blue", "t", "t"))) +
+                          labelled(lambda i: wild[i % 3])), None
+    yield "fields_word", ply("ascii", more="property float t\n") + labelled(lambda i: "hot"), ["line 12", "'hot'"]
+    yield "fields_names", (ply("ascii", more="property float \xff<x>\nproperty float normal@x\nproperty float x/y\n") +
+                           labelled(lambda i: "1 2 3")), None
 
 
 def pcd_cases():
@@ -194,6 +207,17 @@ def pcd_cases():
     yield "empty", b"", ["empty"]
     yield "no_fields", pcd().replace(b"FIELDS x y z normal_x normal_y normal_z\n", b"") + binary(), ["FIELDS"]
     yield "bare_data", b"VERSION .7\nDATA\n", ["FIELDS"]
+    def more(data, names, sizes, types, counts, **head):
+        lines = pcd(data, **head).decode().split("\n")
+        return "\n".join(line + {"FIELDS": f" {names}", "SIZE": f" {sizes}", "TYPE": f" {types}",
+                                 "COUNT": f" {counts}"}.get(line.split(" ")[0], "") for line in lines).encode()
+    nan = b"".join(struct.pack("<6fI", *row, 0xffffffff) for row in ROWS)
+    yield "rgb", more("binary", "rgb", 4, "F", 1) + nan, None
+    yield "rgb_points_4e9", more("binary", "rgb", 4, "F", 1, width="4000000000", points="4000000000") + nan, ["4000000000"]
+    yield "rgb_of_8_bytes", more("ascii", "rgb", 8, "F", 1) + labelled(lambda i: "1e300"), None
+    yield "rgb_wild", (more("ascii", "rgb t", "4 8", "F F", "1 1") +
+                       labelled(lambda i: ("nan inf", "-1e300 1e999", "hot 4294967296", "-nan -0")[i % 4])), None
+    yield "field_count_2e9", more("binary", "t", 8, "F", "2000000000") + nan, ["COUNT 2000000000"]
     yield "data_unknown", pcd("binary_zipped") + binary(), ["binary_zipped"]
     yield "data_missing", pcd()[:pcd().index(b"DATA")], ["DATA"]
     yield "random", random.Random(2).randbytes(5000), ["line 1"]
@@ -236,6 +260,9 @@ def xyz_cases():
     yield "random", random.Random(3).randbytes(5000), ["line 1"]
     yield "hundred_labels", labelled(lambda i: i), ["100 different", "64"]
     yield "colours", "".join(line + " 12 200 17 3\n" for line in bare.splitlines()).encode(), ["no normals"]
+    yield "named", b"//X Y Z Nx Ny Nz R G B Heat\n" + labelled(lambda i: "1 2 999 -7.5"), None
+    yield "named_twice", b"# x y z x y z\n" + TEXT.encode(), ["column x more than once"]
+    yield "names_without_end", b"# x y z " + 30000 * b"t " + b"\n" + TEXT.encode(), None
     yield "one_place", flat(lambda i: (1, 2, 3)), ["1 different places"]
     yield "corners", flat(lambda i: (i & 1, i >> 1 & 1, i >> 2 & 1)), ["8 different places"]
     yield "line", flat(lambda i: (i, 2 * i, 5)), ["one line"]

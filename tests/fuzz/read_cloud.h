@@ -1,13 +1,31 @@
 #pragma once
 
 #include <cstdlib>
+#include <sstream>
+#include <string>
 
+#include "reconstruct/cloud/cloud_arrays.h"
 #include "reconstruct/io/point_cloud_io.h"
 #include "tests/fuzz/input_file.h"
 
 namespace umtet::fuzz {
 
-/// A cloud of finite numbers with unit normals, no more points than the file has bytes, or a refusal.
+/// Whether a file of ours of it has what it has.
+inline bool is_read_back(const OrientedPointCloud& cloud) {
+  static const InputFile again(".again.ply");
+  std::ostringstream out;
+  write_ply(out, cloud);
+  const std::string bytes = out.str();
+  try {
+    const std::filesystem::path& path = again.write(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+    return field_names(read_point_cloud(path).cloud) == field_names(cloud);
+  } catch (const CloudRefused&) {
+    return false;
+  }
+}
+
+/// A cloud of finite numbers with unit normals, no more points than the file has bytes, or a refusal. Of names only
+/// what our own files can hold.
 inline int read_cloud(const InputFile& file, const std::uint8_t* data, std::size_t size) {
   const std::filesystem::path& path = file.write(data, size);
   for (const auto read : {read_scan, read_point_cloud}) {
@@ -15,10 +33,12 @@ inline int read_cloud(const InputFile& file, const std::uint8_t* data, std::size
       const OrientedPointCloud cloud = read(path).cloud;
       // LZF packs at most 264 bytes into 3, and a point has at least three.
       require(cloud.points.size() <= 30 * size);
-      require(cloud.normals.empty() || cloud.normals.size() == cloud.points.size());
-      require(cloud.labels.empty() || cloud.labels.size() == cloud.points.size());
+      for_each_array(cloud,
+                     [&](const auto& array, const std::string&) { require(array.size() == cloud.points.size()); });
+      require(cloud.fields.size() <= kMostFields);
       for (const Vec3& x : cloud.points) require(x.allFinite());
       for (const Vec3& n : cloud.normals) require(n.isZero(0) || std::abs(n.norm() - 1) < 1e-12);
+      if (read == read_point_cloud) require(is_read_back(cloud));
     } catch (const CloudRefused&) {
     }
   }

@@ -1,5 +1,6 @@
 """What meshio finds in mesh files, a JSON document a file: numbers of nodes, tets and faces, the area of every patch by
-its number, names with their numbers, sizes of node sets, and whether every middle lies in the middle of its edge."""
+its number, names with their numbers, sizes of node sets, how many numbers of floating point data are known and their sum, and whether
+every middle lies in the middle of its edge."""
 
 import contextlib
 import io
@@ -35,9 +36,13 @@ def read_back(path):
             found["middles"] &= bool(np.allclose(middle, (x[ids[:, p]] + x[ids[:, q]]) / 2, rtol=0, atol=1e-9))
     found["names"] = {k: int(np.ravel(v)[0]) for k, v in mesh.field_data.items()}
     found["node_sets"] = {k: len(v) for k, v in mesh.point_sets.items()}
+    found["floats"] = {}
     for name, values in mesh.point_data.items():
         if values.dtype == np.uint8:
             found["node_sets"][name] = int(values.sum())
+        elif values.dtype == np.float64:
+            known = values[~np.isnan(values)]
+            found["floats"][name] = {"known": len(known), "sum": float(known.sum())}
     return found
 
 

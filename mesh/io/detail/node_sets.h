@@ -4,9 +4,10 @@
 
 namespace umtet::detail {
 
-/// The point data with 0/1 under the name of every patch and of all of them; data of the same name give way.
+/// All data of nodes, with 0/1 under the name of every patch and of all of them; data of the same name give way.
 inline std::map<std::string, FieldValues> with_node_sets(const SolverMesh& mesh) {
   std::map<std::string, FieldValues> arrays = mesh.point_data;
+  arrays.insert(mesh.boundary_data.begin(), mesh.boundary_data.end());
   const auto add = [&](const std::string& name, const std::vector<int>& nodes) {
     std::vector<std::uint8_t> is_in(mesh.nodes.size(), 0);
     for (const int i : nodes) is_in[i] = 1;

@@ -32,6 +32,8 @@ constexpr const char* kVtkType<std::int32_t> = "Int32";
 template <>
 constexpr const char* kVtkType<std::uint8_t> = "UInt8";
 
+constexpr const char* kThreeComponents = " NumberOfComponents=\"3\"";
+
 std::string escaped(const std::string& name) {
   std::string text;
   for (const char c : name) {
@@ -136,7 +138,12 @@ void VtkXmlWriter::data(const char* section, const Arrays& arrays) {
     std::visit(
         [&, &name = name](const auto& values) {
           using Value = typename std::decay_t<decltype(values)>::value_type;
-          array<Value>(name, values.size(), [&] { put(values.data(), values.size()); });
+          const auto fill = [&] { put(values.data(), values.size()); };
+          if constexpr (std::is_same_v<Value, Vec3>) {
+            array<double>(name, 3 * values.size(), fill, kThreeComponents);
+          } else {
+            array<Value>(name, values.size(), fill);
+          }
         },
         any);
   }
@@ -169,7 +176,7 @@ void VtkXmlWriter::end(const char* type) {
 void VtkXmlWriter::coordinates(const std::vector<Vec3>& V) {
   file_.text("<Points>\n");
   array<double>(
-      "Points", 3 * V.size(), [&] { put(V.data(), V.size()); }, " NumberOfComponents=\"3\"");
+      "Points", 3 * V.size(), [&] { put(V.data(), V.size()); }, kThreeComponents);
   file_.text("</Points>\n");
 }
 

@@ -102,10 +102,15 @@ class BoundedReader : public vtkXMLUnstructuredGridReader {
   }
 };
 
-/// The values of an array with one component, for the kept cells (`keep` null: for all).
+/// The values of an array with one component, or three of floats, for the kept cells (`keep` null: for all).
 FieldValues from_vtk(vtkDataArray* array, const std::vector<vtkIdType>* keep) {
   const auto n = keep ? keep->size() : static_cast<std::size_t>(array->GetNumberOfTuples());
   const auto source = [&](std::size_t i) { return keep ? (*keep)[i] : static_cast<vtkIdType>(i); };
+  if (array->GetNumberOfComponents() == 3) {
+    std::vector<Vec3> values(n);
+    for (std::size_t i = 0; i < n; ++i) array->GetTuple(source(i), values[i].data());
+    return values;
+  }
   const int type = array->GetDataType();
   if (type == VTK_FLOAT || type == VTK_DOUBLE) {
     std::vector<double> values(n);
@@ -128,7 +133,9 @@ void take_data(vtkFieldData* from, vtkIdType n, const std::vector<vtkIdType>* ke
                std::map<std::string, FieldValues>& to) {
   for (int a = 0; a < from->GetNumberOfArrays(); ++a) {
     vtkDataArray* array = from->GetArray(a);  // null for arrays of strings
-    if (!array || !array->GetName() || array->GetNumberOfComponents() != 1 || array->GetNumberOfTuples() != n) continue;
+    if (!array || !array->GetName() || array->GetNumberOfTuples() != n) continue;
+    const bool is_float = array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
+    if (array->GetNumberOfComponents() != 1 && !(is_float && array->GetNumberOfComponents() == 3)) continue;
     to.emplace(array->GetName(), from_vtk(array, keep));
   }
 }

@@ -34,6 +34,8 @@ class QuietHdf5 {
   void* data_ = nullptr;
 };
 
+static_assert(sizeof(Vec3) == 3 * sizeof(double));
+
 template <class T>
 T checked(T result, const char* what) {
   if (result < 0) throw std::runtime_error(std::string("HDF5: ") + what + " failed");
@@ -85,7 +87,16 @@ class Hdf5Image {
     if (rows > 0) checked(H5Dwrite(set, memory_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values), "H5Dwrite");
   }
   void put(const std::string& name, const FieldValues& any) {
-    std::visit([&](const auto& values) { put(name, values.data(), values.size()); }, any);
+    std::visit(
+        [&](const auto& values) {
+          using Value = typename std::decay_t<decltype(values)>::value_type;
+          if constexpr (std::is_same_v<Value, Vec3>) {
+            put(name, reinterpret_cast<const double*>(values.data()), values.size(), 3);
+          } else {
+            put(name, values.data(), values.size());
+          }
+        },
+        any);
   }
 
   std::string bytes() {
@@ -124,9 +135,10 @@ class XdmfWriter {
   }
   template <class T>
   void attribute(const std::string& name, const char* center, const std::string& dataset, std::size_t n) {
-    file_.text("<Attribute Name=\"").text(name).text("\" AttributeType=\"Scalar\" Center=\"").text(center);
-    file_.text("\">\n");
-    item<T>(dataset, n, 0);
+    constexpr bool kIsVector = std::is_same_v<T, Vec3>;
+    file_.text("<Attribute Name=\"").text(name).text("\" AttributeType=\"").text(kIsVector ? "Vector" : "Scalar");
+    file_.text("\" Center=\"").text(center).text("\">\n");
+    item<std::conditional_t<kIsVector, double, T>>(dataset, n, kIsVector ? 3 : 0);
     file_.text("</Attribute>\n");
   }
   void attributes(const std::map<std::string, FieldValues>& data, const char* center, const std::string& group) {
@@ -175,7 +187,6 @@ void write_hdf5(const std::filesystem::path& path, const SolverMesh& mesh) {
   {
     const QuietHdf5 quiet;
     Hdf5Image image;
-    static_assert(sizeof(Vec3) == 3 * sizeof(double));
     image.put("nodes", reinterpret_cast<const double*>(mesh.nodes.data()), mesh.nodes.size(), 3);
     image.put("tets", mesh.tets.data(), mesh.n_tets(), static_cast<std::size_t>(mesh.nodes_per_tet));
     const std::vector<int> faces = mesh.faces();
@@ -207,6 +218,7 @@ void write_boundary_xdmf(const std::filesystem::path& path, const SolverMesh& me
   out.grid("boundary", linear ? "Triangle" : "Triangle_6", "faces", mesh.n_faces(), mesh.nodes_per_face());
   out.names(mesh.patches);
   out.attribute<std::int64_t>("patch", "Cell", "patch", mesh.n_faces());
+  out.attributes(mesh.boundary_data, "Node", "point_data/");
   out.end();
 }
 

@@ -64,6 +64,13 @@
   for (let v = 0; v < 256; ++v) patchColours.push(rgb(kPatches[v % kPatches.length]));
   const plain = new Array(256).fill([226, 196, 128]);
 
+  // What the samples carry: viridis up to 254, and grey where it is not known.
+  const kNoValue = 255, kUnknown = [150, 155, 165];
+  const known = ramp.map((c, v) => v === kNoValue ? kUnknown : ramp[Math.round(v * 255 / 254)]);
+  const fields = info.fields.map((f, k) => ({
+    id: "field_" + k, name: f.name, legend: f.name, field: f, vertex: "vertex_field_" + k, ramp: f.of_colours ? null : known,
+  }));
+
   // Bright is good: small distances at the bright end.
   const kinds = [
     {id: "quality", name: "quality (mean ratio)", key: "quality", face: "face_quality", ramp: ramp},
@@ -71,6 +78,7 @@
     {id: "support", name: "support (next sample)", legend: "distance to the next sample", key: "support", vertex: "vertex_support", ramp: support},
     {id: "size", name: "edge length", legend: "mean edge length", key: "edge_length", vertex: "vertex_edge_length", ramp: ramp},
     {id: "patch", name: "patch", face: "face_patch", ramp: patchColours},
+    ...fields,
     {id: "none", name: "none", ramp: plain},
   ].filter((k) => !(k.face || k.vertex) || has(k.face || k.vertex));
   for (const kind of kinds) {
@@ -206,16 +214,23 @@
     const kind = kinds.find((k) => k.id === $("colour").value), cut = plane(), worst = $("worst").checked;
     const behind = (list, k) => !cut || cut.sign * centroid(list, k, cut.axis) <= cut.at;
     const shell = new Soup(nFaces), values = kind.bytes(), grey = [150, 155, 165];
-    const tint = (v) => worst ? grey : kind.ramp[v];
+    const tint = (v) => worst || !kind.ramp ? grey : kind.ramp[v];
     // Of vertices the value is linear on a face, not the colour: bounds between colours are where the value is.
-    const ramped = Boolean(kind.vertex) && !worst;
+    const ramped = Boolean(kind.vertex && kind.ramp) && !worst;
+    // A face with a corner of no value has none.
+    const unknown = (corners) => kind.field && corners.some((v) => values[v * (kind.ramp ? 1 : 3)] === kNoValue);
+    const coloured = (v) => [0, 1, 2].map((k) => Math.round(values[3 * v + k] * 255 / 254));
     surface.material.uniforms.ramped.value = ramped ? 1 : 0;
     if (ramped) surface.material.uniforms.ramp.value = kind.texture();
     for (let f = 0; f < nFaces; ++f) {
       if (!behind(F, f)) continue;
       const a = F[4 * f], b = F[4 * f + 1], c = F[4 * f + 2];
       if (ramped) {
-        shell.add(a, b, c, ...[a, b, c].map((v) => [values[v], 0, 0]));
+        const none = unknown([a, b, c]);
+        shell.add(a, b, c, ...[a, b, c].map((v) => [none ? kNoValue : values[v], 0, 0]));
+      } else if (kind.field && !worst) {
+        const none = unknown([a, b, c]);
+        shell.add(a, b, c, ...[a, b, c].map((v) => none ? kUnknown : coloured(v)));
       } else {
         const one = tint(values ? values[f] : 0);
         shell.add(a, b, c, one, one, one);
@@ -265,12 +280,14 @@
       return parent.appendChild(e);
     };
     if (kind.face === "face_patch") return patchLegend(add);
-    if (!kind.key) return;
-    add("name", $("legend")).textContent = kind.key === "quality" ? "mean ratio Q" : kind.legend + ", model units";
+    if (!kind.key && !kind.field) return;
+    add("name", $("legend")).textContent =
+      kind.key === "quality" ? "mean ratio Q" : kind.legend + (kind.field ? "; grey: no value" : ", model units");
+    if (!kind.ramp) return;
     add("bar", $("legend")).style.background =
-      "linear-gradient(90deg," + Array.from({length: 52}, (_, k) => 5 * k).map((v) => `rgb(${kind.ramp[v].join()})`).join() + ")";
+      "linear-gradient(90deg," + Array.from({length: 52}, (_, k) => 5 * k).map((v) => `rgb(${kind.ramp[Math.min(v, kNoValue - 1)].join()})`).join() + ")";
     const ends = add("ends", $("legend"));
-    for (const v of ranges[kind.key]) ends.appendChild(document.createElement("span")).textContent = number(v);
+    for (const v of kind.field ? kind.field.range : ranges[kind.key]) ends.appendChild(document.createElement("span")).textContent = number(v);
     if (kind.id === "support") supportLegend(add);
   }
 

@@ -57,7 +57,16 @@ CloudColumns cloud_columns(const CloudSource& source, const std::vector<std::str
           static_cast<std::size_t>(std::find(names.begin(), names.end(), origin[c]) - names.begin());
     }
   }
+  columns.fields = field_columns(names);
   return columns;
+}
+
+void begin_cloud(OrientedPointCloud& cloud, const CloudColumns& columns, std::size_t n) {
+  cloud.points.reserve(n);
+  if (columns.has_normals) cloud.normals.reserve(n);
+  if (columns.has_labels) cloud.labels.reserve(n);
+  if (columns.has_origins) cloud.origins.reserve(n);
+  begin_fields(cloud, columns.fields, n);
 }
 
 void append_point(const CloudSource& source, OrientedPointCloud& cloud, const std::vector<double>& values,
@@ -69,6 +78,7 @@ void append_point(const CloudSource& source, OrientedPointCloud& cloud, const st
     const std::size_t* const o = at.data() + columns.n_before_origin();
     cloud.origins.emplace_back(values[o[0]], values[o[1]], values[o[2]]);
   }
+  append_fields(cloud, columns.fields, values);
   if (!columns.has_labels) return;
   const double label = values[columns.label()];
   if (label != std::trunc(label) || std::abs(label) > std::numeric_limits<int>::max()) {

@@ -1,6 +1,10 @@
 #include <fmt/format.h>
 
+#include <bit>
+#include <cmath>
+#include <cstdint>
 #include <cstring>
+#include <limits>
 
 #include "reconstruct/io/detail/cloud_source.h"
 #include "reconstruct/io/detail/pcd_header.h"
@@ -10,11 +14,36 @@
 namespace umtet::detail {
 namespace {
 
+/// A colour in the four bytes of a number: blue, green, red, alpha.
+bool is_packed_colour(const PcdField& field) {
+  return (field.name == "rgb" || field.name == "rgba") && field.size == 4 && field.count == 1;
+}
+
 /// One name per field; fields with several values per point are no coordinates.
 std::vector<std::string> scalar_names(const PcdHeader& header) {
   std::vector<std::string> names;
-  for (const PcdField& field : header.fields) names.push_back(field.count == 1 ? field.name : "several " + field.name);
+  for (const PcdField& field : header.fields) {
+    names.push_back(is_packed_colour(field) ? std::string(kPackedColour)
+                    : field.count == 1      ? field.name
+                                            : "several " + field.name);
+  }
   return names;
+}
+
+CloudColumns columns_of(const CloudSource& source, const PcdHeader& header) {
+  CloudColumns columns = cloud_columns(source, scalar_names(header), "field");
+  // Colours in floating point are 0..1; of packed ones the bytes are taken.
+  if (columns.fields.colour.size() == 3 && header.fields[columns.fields.colour.front()].kind == 'F')
+    columns.fields.bytes_per_unit = 255;
+  return columns;
+}
+
+/// As text it is the whole number, whatever its type, or the number in floating point that has these bytes: below 1 or
+/// above 1e9 for every alpha that is in use.
+double packed_colour(double number) {
+  const double magnitude = std::abs(number);
+  if (number >= 1 && number <= std::numeric_limits<std::uint32_t>::max() && number == std::trunc(number)) return number;
+  return magnitude < std::numeric_limits<float>::max() ? std::bit_cast<std::uint32_t>(static_cast<float>(number)) : 0;
 }
 
 double decode(const PcdField& field, const std::uint8_t* bytes) {
@@ -29,6 +58,7 @@ double decode(const PcdField& field, const std::uint8_t* bytes) {
     case 2:
       return is_signed ? as(std::int16_t{}) : as(std::uint16_t{});
     case 4:
+      if (is_packed_colour(field)) return as(std::uint32_t{});  // as a float some colours would be NaN
       return field.kind == 'F' ? as(float{}) : is_signed ? as(std::int32_t{}) : as(std::uint32_t{});
     default:
       return field.kind == 'F' ? as(double{}) : is_signed ? as(std::int64_t{}) : as(std::uint64_t{});
@@ -39,11 +69,12 @@ double decode(const PcdField& field, const std::uint8_t* bytes) {
 OrientedPointCloud decode_points(const CloudSource& source, const PcdHeader& header, const CloudColumns& columns,
                                  const std::uint8_t* body) {
   OrientedPointCloud cloud;
-  cloud.points.reserve(header.n_points);
-  if (columns.has_normals) cloud.normals.reserve(header.n_points);
+  begin_cloud(cloud, columns, header.n_points);
+  std::vector<std::size_t> wanted = columns.fields.wanted();
+  wanted.insert(wanted.end(), columns.begin(), columns.end());
   std::vector<double> values(header.fields.size());
   for (std::size_t i = 0; i < header.n_points; ++i) {
-    for (const std::size_t c : columns)
+    for (const std::size_t c : wanted)
       values[c] = decode(header.fields[c], body + i * header.point_bytes + header.fields[c].offset);
     append_point(source, cloud, values, columns);
   }
@@ -59,6 +90,8 @@ OrientedPointCloud read_ascii(const CloudSource& source, const PcdHeader& header
     n_tokens += field.count;
   }
   OrientedPointCloud cloud;
+  begin_cloud(cloud, columns, 0);  // how many lines there are is not known
+  const std::vector<std::size_t> of_fields = columns.fields.wanted();
   LineReader lines(source.bytes, header.body, header.body_line);
   std::string_view line;
   std::vector<std::string_view> tokens;
@@ -74,6 +107,10 @@ OrientedPointCloud read_ascii(const CloudSource& source, const PcdHeader& header
                          "export it again",
                          lines.line(), tokens.size(), i + 1, header.n_points, n_tokens));
     for (const std::size_t c : columns) values[c] = parse_number(source, lines.line(), tokens[first_token[c]]);
+    for (const std::size_t c : of_fields) {
+      const double number = number_or_nan(tokens[first_token[c]]);
+      values[c] = is_packed_colour(header.fields[c]) ? packed_colour(number) : number;
+    }
     append_point(source, cloud, values, columns);
   }
   refuse_surplus(source, lines.offset());
@@ -82,26 +119,30 @@ OrientedPointCloud read_ascii(const CloudSource& source, const PcdHeader& header
 
 }  // namespace
 
-void check_pcd_head(const CloudSource& head) { cloud_columns(head, scalar_names(parse_pcd_header(head)), "field"); }
+void check_pcd_head(const CloudSource& head) { columns_of(head, parse_pcd_header(head)); }
 
 CloudFile read_pcd(const CloudSource& source) {
   const PcdHeader header = parse_pcd_header(source);
-  const CloudColumns columns = cloud_columns(source, scalar_names(header), "field");
+  const CloudColumns columns = columns_of(source, header);
+  CloudFile file;
+  file.report.viewpoint = header.viewpoint;
+  file.report.fields_left_out = columns.fields.left_out;
   switch (header.data) {
     case PcdData::Ascii:
-      return {read_ascii(source, header, columns), {.format = "pcd ascii", .viewpoint = header.viewpoint}};
-    case PcdData::Binary: {
-      refuse_surplus(source, header.body + header.n_points * header.point_bytes);
-      const auto* bytes = reinterpret_cast<const std::uint8_t*>(source.bytes.data());
-      return {decode_points(source, header, columns, bytes + header.body),
-              {.format = "pcd binary", .viewpoint = header.viewpoint}};
-    }
-    case PcdData::Compressed:
+      file.report.format = "pcd ascii";
+      file.cloud = read_ascii(source, header, columns);
       break;
+    case PcdData::Binary:
+      file.report.format = "pcd binary";
+      refuse_surplus(source, header.body + header.n_points * header.point_bytes);
+      file.cloud = decode_points(source, header, columns,
+                                 reinterpret_cast<const std::uint8_t*>(source.bytes.data()) + header.body);
+      break;
+    case PcdData::Compressed:
+      file.report.format = "pcd compressed";
+      file.cloud = decode_points(source, header, columns, unpack(source, header).data());
   }
-  const std::vector<std::uint8_t> points = unpack(source, header);
-  return {decode_points(source, header, columns, points.data()),
-          {.format = "pcd compressed", .viewpoint = header.viewpoint}};
+  return file;
 }
 
 }  // namespace umtet::detail

@@ -2,6 +2,9 @@
 // stored as double (what Open3D writes) as zeros and reports success, and it aborts on a vertex count it cannot
 // allocate; OpenMesh 9 takes a cut ascii body for a whole one; VTK 9.1 crashes on wrong list lengths.
 
+#include <algorithm>
+#include <utility>
+
 #include "reconstruct/io/detail/cloud_source.h"
 #include "reconstruct/io/detail/ply_body.h"
 #include "reconstruct/io/detail/ply_header.h"
@@ -9,12 +12,21 @@
 namespace umtet::detail {
 namespace {
 
+/// Colours in floating point are 0..1, in 16 bits 0..65535.
+double bytes_per_unit(PlyType type) {
+  if (type == PlyType::Float32 || type == PlyType::Float64) return 255;
+  return type == PlyType::UInt16 ? 255. / 65535 : 1;
+}
+
 CloudColumns vertex_columns(const CloudSource& source, const PlyHeader& header) {
+  const auto vertex = std::find_if(header.elements.begin(), header.elements.end(),
+                                   [](const PlyElement& element) { return element.name == "vertex"; });
   std::vector<std::string> names;
-  for (const PlyElement& element : header.elements)
-    if (element.name == "vertex")
-      for (const PlyProperty& p : element.properties) names.push_back(p.is_list ? "list " + p.name : p.name);
-  return cloud_columns(source, names, "property");
+  for (const PlyProperty& p : vertex->properties) names.push_back(p.is_list ? "list " + p.name : p.name);
+  CloudColumns columns = cloud_columns(source, names, "property");
+  if (!columns.fields.colour.empty())
+    columns.fields.bytes_per_unit = bytes_per_unit(vertex->properties[columns.fields.colour.front()].type);
+  return columns;
 }
 
 /// The first element that takes bytes begins where the header ends.
@@ -25,7 +37,7 @@ void check_first_count(const CloudSource& head, const PlyHeader& header) {
 }
 
 template <class Body>
-OrientedPointCloud read_body(const CloudSource& source, const PlyHeader& header) {
+CloudFile read_body(const CloudSource& source, const PlyHeader& header, const char* format) {
   OrientedPointCloud cloud;
   Body body(source, header);
   const CloudColumns columns = vertex_columns(source, header);
@@ -38,17 +50,14 @@ OrientedPointCloud read_body(const CloudSource& source, const PlyHeader& header)
       for (std::uint64_t item = 0; item < element.count; ++item) body.read_item(element, item, values);
       continue;
     }
-    cloud.points.reserve(element.count);
-    if (columns.has_normals) cloud.normals.reserve(element.count);
-    if (columns.has_labels) cloud.labels.reserve(element.count);
-    if (columns.has_origins) cloud.origins.reserve(element.count);
+    begin_cloud(cloud, columns, element.count);
     for (std::uint64_t item = 0; item < element.count; ++item) {
       body.read_item(element, item, values);
       append_point(source, cloud, values, columns);
     }
   }
   body.finish();
-  return cloud;
+  return {std::move(cloud), {.format = format, .fields_left_out = columns.fields.left_out}};
 }
 
 }  // namespace
@@ -66,13 +75,13 @@ CloudFile read_ply(const CloudSource& source) {
   const PlyHeader header = parse_ply_header(source);
   switch (header.format) {
     case PlyFormat::Ascii:
-      return {read_body<AsciiBody>(source, header), {.format = "ply ascii"}};
+      return read_body<AsciiBody>(source, header, "ply ascii");
     case PlyFormat::BinaryLittleEndian:
-      return {read_body<BinaryBody>(source, header), {.format = "ply binary little endian"}};
+      return read_body<BinaryBody>(source, header, "ply binary little endian");
     case PlyFormat::BinaryBigEndian:
       break;
   }
-  return {read_body<BinaryBody>(source, header), {.format = "ply binary big endian"}};
+  return read_body<BinaryBody>(source, header, "ply binary big endian");
 }
 
 }  // namespace umtet::detail

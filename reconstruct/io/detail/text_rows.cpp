@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <limits>
 
 namespace umtet::detail {
 
@@ -37,6 +38,13 @@ std::optional<std::uint64_t> parse_count(std::string_view token) {
   const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), count);
   if (error != std::errc() || end != token.data() + token.size()) return std::nullopt;
   return count;
+}
+
+double number_or_nan(std::string_view token) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), number);
+  const bool is_number = error == std::errc() && end == token.data() + token.size();
+  return is_number ? number : std::numeric_limits<double>::quiet_NaN();
 }
 
 double parse_number(const CloudSource& source, std::size_t line, std::string_view token) {

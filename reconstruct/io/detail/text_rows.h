@@ -41,4 +41,7 @@ std::optional<std::uint64_t> parse_count(std::string_view token);
 /// \throw CloudRefused  names the line, and the decimal comma if that is what it is
 double parse_number(const CloudSource& source, std::size_t line, std::string_view token);
 
+/// The same of something that a cloud can be read without: NaN for what is no number.
+double number_or_nan(std::string_view token);
+
 }  // namespace umtet::detail

@@ -68,36 +68,79 @@ void check_labels(const CloudSource& source, const OrientedPointCloud& cloud, bo
     refuse(source, fmt::format("seven columns, but the fourth to sixth are no normals: {}", remedy));
 }
 
-/// Appends a point for every row. Returns the number of points of the first line: .pts files start with it.
-std::optional<std::uint64_t> read_rows(const CloudSource& source, OrientedPointCloud& cloud) {
+/// The names of columns that a comment gives, "//X Y Z R G B Scalar_field Nx Ny Nz"; none unless x, y and z are among
+/// them. Those that say what a column is are in lower case.
+std::vector<std::string> names_in(std::string_view line) {
+  std::vector<std::string_view> tokens;
+  split(line.substr(std::min(line.find_first_not_of("#/"), line.size())), " \t,", tokens);
+  std::vector<std::string> names;
+  for (const std::string_view token : tokens) {
+    std::string lower(token);
+    std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+    const auto is_one_of = [&](const auto&... names) { return ((lower == names) || ...); };
+    if (is_one_of("r", "red")) {
+      names.emplace_back("red");
+    } else if (is_one_of("g", "green")) {
+      names.emplace_back("green");
+    } else if (is_one_of("b", "blue")) {
+      names.emplace_back("blue");
+    } else {
+      names.push_back(is_reserved(lower) ? lower : std::string(token));
+    }
+  }
+  const auto is_there = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
+  return is_there("x") && is_there("y") && is_there("z") ? names : std::vector<std::string>();
+}
+
+struct Rows {
+  CloudColumns columns{kColumns};
+  bool have_names = false;
+  std::optional<std::uint64_t> announced;  ///< the number of points of the first line: .pts files start with it
+};
+
+CloudColumns columns_by_number(std::size_t n) {
+  CloudColumns columns{kColumns};
+  columns.has_normals = n >= 6;
+  columns.has_labels = n % 3 == 1;
+  return columns;
+}
+
+/// Appends a point for every row.
+Rows read_rows(const CloudSource& source, OrientedPointCloud& cloud) {
   LineReader lines(source.bytes);
   std::string_view line;
   std::vector<std::string_view> tokens;
   std::vector<double> row;
-  CloudColumns columns{kColumns};
-  std::optional<std::uint64_t> announced;
+  std::vector<std::string> names;
+  Rows rows;
   bool first = true;
   while (lines.next_filled(line)) {
     if (line.size() > kLongestLine)
       refuse(source,
              fmt::format("line {}: {} bytes long: this is no text with a point a line", lines.line(), line.size()));
     split(line, " \t", tokens);
-    if (tokens.front().starts_with('#') || tokens.front().starts_with("//")) continue;
+    const bool is_comment = tokens.front().starts_with('#') || tokens.front().starts_with("//");
+    if (is_comment && row.empty()) {
+      if (std::vector<std::string> found = names_in(line); !found.empty()) names = std::move(found);
+    }
+    if (is_comment) continue;
     const bool may_announce = std::exchange(first, false) && tokens.size() == 1;
-    if (may_announce && (announced = parse_count(tokens.front()))) continue;
+    if (may_announce && (rows.announced = parse_count(tokens.front()))) continue;
     refuse_decimal_commas(source, lines.line(), tokens);
     split(line, " \t,", tokens);
     const std::size_t n = tokens.size();
-    const bool fits = n == 6 || n == 7 || ((n == 3 || n == 4) && !source.needs_normals);
-    if (!fits || (!row.empty() && tokens.size() != row.size()))
-      refuse_columns(source, lines.line(), tokens.size(), fits ? row.size() : 0);
-    row.resize(tokens.size());
-    columns.has_normals = row.size() >= 6;
-    columns.has_labels = row.size() % 3 == 1;
+    const bool fits = names.size() == n || n == 6 || n == 7 || ((n == 3 || n == 4) && !source.needs_normals);
+    if (!fits || (!row.empty() && n != row.size())) refuse_columns(source, lines.line(), n, fits ? row.size() : 0);
+    if (row.empty()) {
+      rows.have_names = names.size() == n;
+      rows.columns = rows.have_names ? cloud_columns(source, names, "column") : columns_by_number(n);
+      begin_cloud(cloud, rows.columns, 0);  // how many rows there are is not known
+      row.resize(n);
+    }
     for (std::size_t c = 0; c < row.size(); ++c) row[c] = parse_number(source, lines.line(), tokens[c]);
-    append_point(source, cloud, row, columns);
+    append_point(source, cloud, row, rows.columns);
   }
-  return announced;
+  return rows;
 }
 
 }  // namespace
@@ -112,11 +155,13 @@ void check_xyz_head(const CloudSource& head) {
 CloudFile read_xyz(const CloudSource& source) {
   CloudFile file;
   file.report.format = "xyz";
-  const std::optional<std::uint64_t> announced = read_rows(source, file.cloud);
+  const Rows rows = read_rows(source, file.cloud);
+  const std::optional<std::uint64_t>& announced = rows.announced;
+  file.report.fields_left_out = rows.columns.fields.left_out;
   if (announced && *announced != file.cloud.points.size())
     refuse(source, fmt::format("the first line announces {} points, {} follow: the file is cut short or was edited",
                                *announced, file.cloud.points.size()));
-  check_labels(source, file.cloud, announced.has_value());
+  if (!rows.have_names) check_labels(source, file.cloud, announced.has_value());
   return file;
 }
 

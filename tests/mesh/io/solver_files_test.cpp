@@ -50,6 +50,17 @@ SolverMesh block(int n = 3) {
   return mesh;
 }
 
+/// Boundary data of one component and of three, of some nodes.
+void add_boundary_data(SolverMesh& mesh) {
+  std::vector<double> heat(mesh.nodes.size(), std::nan(""));
+  std::vector<Vec3> colour(mesh.nodes.size(), Vec3::Constant(std::nan("")));
+  for (const int i : boundary_nodes(mesh)) {
+    heat[i] = 20 + mesh.nodes[i].x();
+    colour[i] = mesh.nodes[i];
+  }
+  mesh.boundary_data = {{"heat", heat}, {"colour", colour}};
+}
+
 /// One tet of ten nodes, its four faces in two patches.
 SolverMesh quadratic() {
   std::vector<Vec3> x = {{0, 0, 0}, {1.25, 0, 0}, {.5, 1.5, 0}, {.25, .5, 1.75}};
@@ -160,9 +171,44 @@ TEST(SolverFiles, MeshioFindsWhatWasWritten) {
   }
 }
 
+TEST(SolverFiles, BoundaryDataAreFoundWhereAFormatHoldsThem) {
+  if (!test::succeeds(std::string(test::kPython) + " -c 'import meshio, h5py'")) GTEST_SKIP() << "no meshio";
+  for (SolverMesh mesh : {block(), quadratic()}) {
+    const Scratch scratch;
+    std::map<std::string, std::string> without;
+    for (const Format& format : formats()) {
+      format.write(scratch.folder / format.file, mesh);
+      without[format.file] = bytes_of(scratch.folder / format.file);
+    }
+    add_boundary_data(mesh);
+    std::vector<fs::path> files;
+    for (const Format& format : formats()) {
+      format.write(scratch.folder / format.file, mesh);
+      const bool holds = has(format.file, {"vtu", "msh", "xdmf", "h5"});
+      EXPECT_EQ(bytes_of(scratch.folder / format.file) != without.at(format.file), holds) << format.file;
+      if (holds && format.file != "a.h5") files.push_back(scratch.folder / format.file);
+    }
+    double sum = 0, sum_colour = 0;
+    for (const int i : boundary_nodes(mesh)) {
+      sum += 20 + mesh.nodes[i].x();
+      sum_colour += mesh.nodes[i].sum();
+    }
+    for (const auto& [name, json] : read_back(files)) {
+      SCOPED_TRACE(name + ": " + json.dump());
+      EXPECT_EQ(json["floats"]["heat"]["known"], boundary_nodes(mesh).size());
+      EXPECT_NEAR(json["floats"]["heat"]["sum"].get<double>(), sum, 1e-12 * sum);
+      EXPECT_EQ(json["floats"]["colour"]["known"], 3 * boundary_nodes(mesh).size());
+      EXPECT_NEAR(json["floats"]["colour"]["sum"].get<double>(), sum_colour, 1e-12 * sum_colour);
+    }
+    mesh.boundary_data["heat"] = std::vector<double>(3);
+    EXPECT_THROW(write_msh22(scratch.folder / "a.msh", mesh, MshEncoding::Ascii), std::invalid_argument);
+  }
+}
+
 TEST(SolverFiles, GmshFindsWhatWasWritten) {
   if (!test::succeeds("gmsh --version")) GTEST_SKIP() << "gmsh is not installed";
-  for (const SolverMesh& mesh : {block(), quadratic()}) {
+  for (SolverMesh mesh : {block(), quadratic()}) {
+    add_boundary_data(mesh);
     const Scratch scratch;
     std::vector<fs::path> files;
     for (const Format& format : formats()) {

@@ -131,7 +131,7 @@ TEST(TetMeshIo, MeshesOfSecondOrderReadBackBitEqual) {
   std::vector<double> id(mesh.V.size()), of_tets(mesh.C.size(), 3.);
   std::iota(id.begin(), id.end(), 0.);
   const fs::path path = scratch("second.vtu");
-  write_vtu(path, mesh, {{"id", id}}, {{"three", of_tets}});
+  write_vtu(path, mesh, {{"id", id}, {"place", mesh.V}}, {{"three", of_tets}});
   const MeshFile file = read_tet_mesh(path);
   EXPECT_TRUE(bit_equal(file.mesh.V, shape.mesh.V));
   EXPECT_EQ(file.mesh.C, shape.mesh.C);
@@ -139,6 +139,9 @@ TEST(TetMeshIo, MeshesOfSecondOrderReadBackBitEqual) {
   EXPECT_TRUE(bit_equal(file.quadratic->V, mesh.V));
   EXPECT_EQ(file.quadratic->C, mesh.C);
   EXPECT_EQ(file.n_unused_vertices, 0u);
+  EXPECT_EQ(std::get<std::vector<double>>(file.quadratic_data.at("id")), id);
+  EXPECT_TRUE(bit_equal(std::get<std::vector<Vec3>>(file.quadratic_data.at("place")), mesh.V));
+  EXPECT_TRUE(bit_equal(std::get<std::vector<Vec3>>(file.point_data.at("place")), shape.mesh.V));
   id.resize(shape.mesh.V.size());
   EXPECT_EQ(std::get<std::vector<double>>(file.point_data.at("id")), id);
   EXPECT_EQ(std::get<std::vector<double>>(file.cell_data.at("three")), of_tets);

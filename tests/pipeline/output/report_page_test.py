@@ -25,7 +25,7 @@ class Marked(HTMLParser):
 
     def __init__(self, page):
         super().__init__()
-        self.texts, self.body, self.at, self.patches, self.row = [], {}, None, {}, None
+        self.texts, self.body, self.at, self.patches, self.row, self.page = [], {}, None, {}, None, page
         self.feed(page)
 
     def handle_starttag(self, tag, attributes):
@@ -143,6 +143,24 @@ def holes_are_shown(umtet, folder):
     assert not said and not page.patches, (said, page.patches)
 
 
+def what_samples_carry_is_a_colour(umtet, folder):
+    """Half a ball with temperatures and colours, the other half without samples."""
+    with open(folder / "warm.xyz", "w") as cloud:
+        cloud.write("# x y z nx ny nz r g b heat\n")
+        for k in range(4000):
+            z, a = 1 - (2 * k + 1) / 4000, 2.399963 * k
+            x, y = math.sqrt(1 - z * z) * math.cos(a), math.sqrt(1 - z * z) * math.sin(a)
+            if x < .3:
+                cloud.write(f"{x} {y} {z} {x} {y} {z} {128 + int(100 * y)} 40 {128 + int(100 * z)} {20 + 10 * z}\n")
+    subprocess.run([umtet, "run", folder / "warm.xyz", "-o", folder / "warm", "--tets", "10000", "-q", "--progress", "none"],
+                   check=True, stdout=subprocess.DEVNULL)
+    for k, legend in enumerate(("scan_heat; grey: no value", "scan_rgb; grey: no value")):
+        page, said = opened(f"file://{folder}/warm/report.html#colour=field_{k}", folder / f"field_{k}")
+        assert not said, said
+        assert page.body["data-webgl"] == "drawn" and int(page.body["data-pixels"]) > 20_000, page.body
+        assert legend in page.page
+
+
 def places_are_shown(umtet, folder):
     """A lens too thin for h: its report lists where the mesh is wrong, and opens at such a place, nearer than the whole."""
     done = subprocess.run([umtet, "mesh", "--implicit", "x^2+y^2+(z/0.12)^2-1", "--box=-1.6,-1.6,-.9,1.6,1.6,.9", "--h", ".3",
@@ -173,11 +191,12 @@ def main(umtet, cloud):
         url = f"file://{case}/report.html"
         page, said = opened(url, f"{folder}/a")
         with ThreadPoolExecutor() as pool:  # a browser waits more than it works
-            (cut, cut_said), (bare, _), _, _, _ = pool.map(lambda f: f(), (
+            (cut, cut_said), (bare, _), *_ = pool.map(lambda f: f(), (
                 lambda: opened(f"{url}#axis=0&edges=0", f"{folder}/b"),
                 lambda: opened(url, f"{folder}/c", "--disable-3d-apis"),
                 lambda: patches_are_those_of_the_files(umtet, pathlib.Path(folder)),
                 lambda: holes_are_shown(umtet, pathlib.Path(folder)),
+                lambda: what_samples_carry_is_a_colour(umtet, pathlib.Path(folder)),
                 lambda: places_are_shown(umtet, pathlib.Path(folder))))
         assert not said + cut_said, said + cut_said
         numbers_are_those_of(certificate, page)

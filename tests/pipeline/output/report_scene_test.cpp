@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <set>
 #include <sstream>
@@ -123,6 +124,40 @@ TEST(ReportScene, FacesHaveTheirPatches) {
       all.insert(found.begin(), found.end());
     }
     EXPECT_EQ(all.size(), 6u);
+  }
+}
+
+TEST(ReportScene, WhatSamplesCarryHasAByteForNoValue) {
+  MeshFile mesh = cube(3);
+  const std::size_t n = mesh.mesh.V.size();
+  std::vector<double> heat(n, std::nan("")), none = heat;
+  std::vector<Vec3> rgb(n, Vec3::Constant(std::nan("")));
+  for (std::size_t v = 0; v < n; ++v) {
+    const double x = mesh.mesh.V[v].x();
+    if (x < .1 || x > .9) heat[v] = 20 + 10 * std::round(x);
+    if (x < .1) rgb[v] = Vec3(0, .5, 1);
+  }
+  mesh.point_data["scan_heat"] = heat;
+  mesh.point_data["scan_none"] = none;
+  mesh.point_data["scan_rgb"] = rgb;
+  mesh.point_data["heat"] = heat;  // not of the scan
+  const ReportScene scene = report_scene(mesh, cube_domain(), sides(mesh));
+  ASSERT_EQ(scene.head.fields.size(), 2u);
+  EXPECT_EQ(scene.head.fields[0].name, "scan_heat");
+  EXPECT_EQ(scene.head.fields[0].range.least, 20);
+  EXPECT_EQ(scene.head.fields[0].range.most, 30);
+  EXPECT_TRUE(scene.head.fields[1].of_colours);
+  std::map<std::string, std::vector<std::uint8_t>> blocks;
+  for (const auto& [name, text] : scene.blocks) blocks[name] = decoded(text);
+  const std::vector<unsigned> places = words(scene, "positions");
+  ASSERT_EQ(blocks.at("vertex_field_0").size(), places.size() / 3);
+  ASSERT_EQ(blocks.at("vertex_field_1").size(), places.size());
+  for (std::size_t v = 0; v < places.size() / 3; ++v) {
+    const unsigned x = places[3 * v];
+    EXPECT_EQ(blocks["vertex_field_0"][v], x == 0 ? 0 : x == 65535 ? 254 : 255);
+    const std::vector<int> colour(blocks["vertex_field_1"].begin() + 3 * v,
+                                  blocks["vertex_field_1"].begin() + 3 * v + 3);
+    EXPECT_EQ(colour, x == 0 ? (std::vector<int>{0, 127, 254}) : (std::vector<int>{255, 255, 255}));
   }
 }
 
