@@ -41,19 +41,6 @@ Watch watch_of(const py::object& progress) {
   };
 }
 
-Context polls_of(const Watch& watch) {
-  return {.cancelled = [&watch] {
-    watch(nullptr, 0);
-    return false;
-  }};
-}
-
-Context context_of(const Watch& watch) {
-  Context context = polls_of(watch);
-  context.progress = [&watch](const char* step, double fraction) { watch(step, fraction); };
-  return context;
-}
-
 Watch watch_in_thread(const py::object& progress, std::shared_ptr<std::atomic<bool>> stopped) {
   using Clock = std::chrono::steady_clock;
   return [progress = py::handle(progress), stopped = std::move(stopped), step = std::string(),

@@ -16,6 +16,7 @@
 #include "mesh/moving_mesh.h"
 #include "pipeline/case/version.h"
 #include "pipeline/domain/background_choice.h"
+#include "pipeline/memory/mesh_object.h"
 #include "pipeline/meshing/library_params.h"
 #include "pipeline/meshing/mesh_measures.h"
 #include "pipeline/reports/certificate_json.h"
@@ -25,7 +26,6 @@
 #include "python/arguments.h"
 #include "python/errors.h"
 #include "python/interruptible.h"
-#include "python/mesh_object.h"
 #include "reconstruct/io/level_set_io.h"
 
 namespace py = pybind11;
@@ -45,16 +45,16 @@ Domain left_of(Domain&& domain) {
   return left;
 }
 
-Mesh mesh(const py::object& psi, const Settings& settings, std::optional<double> t, const py::object& progress,
-          int threads) {
+MeshObject mesh(const py::object& psi, const Settings& settings, std::optional<double> t, const py::object& progress,
+                int threads) {
   const Parameters parameters = parameters_of(settings);
   const bool of_grid = psi.is_none() && !parameters.mesh().level_set.empty();
   Psi p = of_grid ? Psi{nullptr, grid_domain(parameters), threads} : psi_of(psi, box_of(parameters), t, threads);
   const bool asks_python = p.function != nullptr;
   auto job = [p = std::move(p), parameters](const Watch& watch) mutable {
     MeshAttempt best = make_mesh(p.domain, parameters, watch);
-    return Mesh{left_of(std::move(p.domain)), std::move(best.result), std::move(best.second), best.h,
-                verdict_on(std::move(best.measured), parameters)};
+    return MeshObject{left_of(std::move(p.domain)), std::move(best.result), std::move(best.second), best.h,
+                      verdict_on(std::move(best.measured), parameters)};
   };
   if (!asks_python) return interruptible(progress, threads, std::move(job));
   const Watch watch = watch_of(progress);
@@ -102,7 +102,7 @@ py::tuple update(Moving& moving, const py::object& psi, std::optional<double> t,
   if (moving.at_work.exchange(true)) throw std::invalid_argument("this UniversalMesh is at work in another call");
   const auto done = [](std::atomic<bool>* at_work) { *at_work = false; };
   const std::unique_ptr<std::atomic<bool>, decltype(done)> guard(&moving.at_work, done);
-  Mesh made{{}, {}, {}, h, {}};
+  MeshObject made{{}, {}, {}, h, {}};
   UmUpdate u = in_arena(p.threads, [&] {
     UmUpdate next = moving.mesher.update(p.domain.psi(), hints, context_of(watch));
     if (next.mesh.status != UmStatus::Success) throw failure(next.mesh, h, p.domain.shift);
@@ -242,23 +242,26 @@ void bind(py::module_& m) {
       .def("save", [](const Reconstruction& r, const std::filesystem::path& file) {
         write_level_set(file, *r.domain.fitted, r.domain.shift);
       });
-  py::class_<Mesh>(m, "Mesh")
-      .def_property_readonly("points", [](const Mesh& a) { return array(a.nodes(), a.domain.shift); })
+  py::class_<MeshObject>(m, "Mesh")
+      .def_property_readonly("points", [](const MeshObject& a) { return array(a.nodes(), a.domain.shift); })
       .def_property_readonly(
-          "tets", [](const Mesh& a) { return a.second ? array(a.second->mesh.C) : array(a.result.submesh.mesh.C); })
+          "tets",
+          [](const MeshObject& a) { return a.second ? array(a.second->mesh.C) : array(a.result.submesh.mesh.C); })
+      .def_property_readonly("boundary",
+                             [](const MeshObject& a) {
+                               return a.second ? array(a.curved_boundary()) : array(a.result.submesh.positive_faces);
+                             })
+      .def_property_readonly("walls", [](const MeshObject& a) { return array(a.result.walls); })
+      .def_property_readonly("boundary_vertices", [](const MeshObject& a) { return array(a.boundary_nodes()); })
+      .def_property_readonly("background_vertex", [](const MeshObject& a) { return array(a.background_vertices()); })
+      .def_property_readonly("background_tet",
+                             [](const MeshObject& a) { return array(a.result.submesh.background_tet); })
+      .def_readonly("h", &MeshObject::h)
+      .def_property_readonly("notices", [](const MeshObject& a) { return a.domain.notices; })
       .def_property_readonly(
-          "boundary",
-          [](const Mesh& a) { return a.second ? array(a.curved_boundary()) : array(a.result.submesh.positive_faces); })
-      .def_property_readonly("walls", [](const Mesh& a) { return array(a.result.walls); })
-      .def_property_readonly("boundary_vertices", [](const Mesh& a) { return array(a.boundary_nodes()); })
-      .def_property_readonly("background_vertex", [](const Mesh& a) { return array(a.background_vertices()); })
-      .def_property_readonly("background_tet", [](const Mesh& a) { return array(a.result.submesh.background_tet); })
-      .def_readonly("h", &Mesh::h)
-      .def_property_readonly("notices", [](const Mesh& a) { return a.domain.notices; })
-      .def_property_readonly("certificate",
-                             [](const Mesh& a) { return dict_of(a.certificate ? to_json(*a.certificate) : Json()); })
+          "certificate", [](const MeshObject& a) { return dict_of(a.certificate ? to_json(*a.certificate) : Json()); })
       .def("patches",
-           [](const Mesh& a, const Settings& settings) {
+           [](const MeshObject& a, const Settings& settings) {
              py::dict patches;
              for (const auto& [name, faces] : a.patches(parameters_of(settings))) {
                const py::ssize_t k = a.second ? 6 : 3;
@@ -266,7 +269,7 @@ void bind(py::module_& m) {
              }
              return patches;
            })
-      .def("save", [](const Mesh& a, const std::filesystem::path& file) {
+      .def("save", [](const MeshObject& a, const std::filesystem::path& file) {
         const py::gil_scoped_release no_gil;
         a.save(file);
       });

@@ -1,23 +1,18 @@
 #pragma once
 
-#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "pipeline/case/parameters.h"
 #include "pipeline/domain/domain.h"
+#include "pipeline/memory/watch.h"
 #include "pipeline/meshing/mesh_attempts.h"
 #include "pipeline/reports/certificate_report.h"
 #include "reconstruct/solve/fit_ssd.h"
 
 // What `umtet run` does, from memory to memory: no case folder, no signal handlers, nothing printed.
-namespace umtet::python {
-
-/// Called by the thread that called the job, every few milliseconds of work. It stops the job by throwing.
-/// @param step  null: still in the step that was named last
-/// @param fraction  of the step, in [0, 1]
-using Watch = std::function<void(const char* step, double fraction)>;
+namespace umtet {
 
 /// No mesh of this domain at this h. The evidence is a status, places and lengths.
 struct MeshingFailed : std::runtime_error {
@@ -53,4 +48,4 @@ Certificate certificate_of(const Domain& domain, const UmResult& result, double 
 /// What a status other than Success is evidence of.
 MeshingFailed failure(const UmResult& result, double h, const Vec3& shift);
 
-}  // namespace umtet::python
+}  // namespace umtet

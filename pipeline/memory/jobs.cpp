@@ -1,4 +1,4 @@
-#include "python/jobs.h"
+#include "pipeline/memory/jobs.h"
 
 #include <fmt/format.h>
 
@@ -16,12 +16,11 @@
 #include "pipeline/reports/place_json.h"
 #include "pipeline/stages/cloud_preparation.h"
 #include "pipeline/stages/level_set_fit.h"
-#include "python/arguments.h"
 
-namespace umtet::python {
+namespace umtet {
 namespace {
 
-// Foretelling the number of tets takes a million values of psi, whatever h is: some ten seconds of a Python callable.
+// Foretelling the number of tets takes a million values of psi, whatever h is: some ten seconds of one of Python.
 // Where h is given it is left out, and memory is asked for as many as are allowed.
 EdgeLength edge_length(Domain& domain, BackgroundChoice& background, const Parameters& parameters, const Watch& watch) {
   const double h = parameters.mesh().h;
@@ -104,4 +103,4 @@ Certificate certificate_of(const Domain& domain, const UmResult& result, double 
   return verdict_on(measure(domain, result, pieces, h, {}, polls_of(watch)).measures, parameters);
 }
 
-}  // namespace umtet::python
+}  // namespace umtet

@@ -12,10 +12,10 @@
 #include "pipeline/domain/domain.h"
 #include "pipeline/reports/certificate_report.h"
 
-namespace umtet::python {
+namespace umtet {
 
 /// A mesh with what it takes to write and to judge it.
-struct Mesh {
+struct MeshObject {
   Domain domain;  ///< its shift and samples; no psi
   UmResult result;
   std::optional<SecondOrder> second;  ///< the same with mid-sides, if mesh.order = 2
@@ -36,4 +36,4 @@ struct Mesh {
   void save(const std::filesystem::path& file) const;
 };
 
-}  // namespace umtet::python
+}  // namespace umtet
