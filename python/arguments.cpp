@@ -76,19 +76,14 @@ py::object dict_of(const Json& json) { return py::module_::import("json").attr("
 
 Psi psi_of(const py::object& psi, const std::optional<Box>& box, std::optional<double> t, int threads) {
   if (t && !std::isfinite(*t)) throw std::invalid_argument("t: a finite number is wanted");
-  Psi out{nullptr, {}, threads};
-  Domain& domain = out.domain;
   if (py::isinstance<Reconstruction>(psi)) {
-    const Domain& fitted = psi.cast<const Reconstruction&>().domain;
-    domain.fitted = domain.level_set = fitted.fitted;
-    domain.shift = fitted.shift;
-    domain.cloud = fitted.cloud;
-    domain.samples = fitted.samples;
-    domain.cloud_spacing = fitted.cloud_spacing;
-    domain.diagonal = fitted.diagonal;
-    domain.box = box ? Box(box->min() - domain.shift, box->max() - domain.shift) : fitted.box;
+    Psi out{nullptr, domain_of(psi.cast<const Reconstruction&>()), threads};
+    Domain& domain = out.domain;
+    if (box) domain.box = Box(box->min() - domain.shift, box->max() - domain.shift);
     return out;
   }
+  Psi out{nullptr, {}, threads};
+  Domain& domain = out.domain;
   if (!box) throw std::invalid_argument("box is missing: (x0, y0, z0, x1, y1, z1) around the domain");
   domain.box = *box;
   domain.diagonal = box->diagonal().norm();

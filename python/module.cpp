@@ -16,6 +16,7 @@
 #include "mesh/moving_mesh.h"
 #include "pipeline/case/version.h"
 #include "pipeline/domain/background_choice.h"
+#include "pipeline/memory/given_cloud.h"
 #include "pipeline/memory/mesh_object.h"
 #include "pipeline/meshing/library_params.h"
 #include "pipeline/meshing/mesh_measures.h"
@@ -166,23 +167,17 @@ Reconstruction reconstruct_arrays(const Points& points, const std::optional<Poin
   if (normals && cloud.normals.size() != cloud.points.size()) {
     throw std::invalid_argument("normals: as many as points are wanted, or None");
   }
-  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
-    // as for files: squares stay finite
-    if (!(cloud.points[i].cwiseAbs().maxCoeff() <= 1e50)) {
-      throw std::invalid_argument("points[" + std::to_string(i) + "] is not finite, or beyond 1e50");
-    }
-  }
-  for (Vec3& n : cloud.normals) n = n.allFinite() && n.norm() > 0 ? Vec3(n.normalized()) : Vec3(Vec3::Zero());
+  CloudFile file = given_cloud(std::move(cloud));
   const Parameters parameters = parameters_of(settings);
-  return interruptible(progress, threads, [cloud = std::move(cloud), parameters](const Watch& watch) mutable {
-    return reconstruct(std::move(cloud), parameters, watch);
+  return interruptible(progress, threads, [file = std::move(file), parameters](const Watch& watch) mutable {
+    return reconstruct(std::move(file), parameters, watch);
   });
 }
 
 /// psi, its gradients (order 1) or Hessians (order 2) at points, without the GIL.
 py::array_t<double> evaluate(const Reconstruction& r, const Points& points, int order) {
   std::vector<Vec3> x = vectors(points, "points");
-  const LevelSet& psi = *r.domain.fitted;
+  const LevelSet& psi = r.psi;
   const auto n = static_cast<py::ssize_t>(x.size());
   std::vector<py::ssize_t> shape = {n};
   for (int k = 0; k < order; ++k) shape.push_back(3);
@@ -190,7 +185,7 @@ py::array_t<double> evaluate(const Reconstruction& r, const Points& points, int 
   double* p = out.mutable_data();
   const py::gil_scoped_release no_gil;
   tbb::parallel_for(std::size_t{0}, x.size(), [&](std::size_t i) {
-    const Vec3 y = x[i] - r.domain.shift;
+    const Vec3 y = x[i] - r.report.shift;
     if (order == 0) p[i] = psi.value(y);
     if (order == 1) Eigen::Map<Vec3>(p + 3 * i) = psi.gradient(y);
     if (order == 2) Eigen::Map<Mat3>(p + 9 * i) = psi.hessian(y);
@@ -219,28 +214,27 @@ void bind(py::module_& m) {
           py::arg("points"), "Its Hessians (n, 3, 3).")
       .def_property_readonly("box",
                              [](const Reconstruction& r) {
-                               const Box box = r.domain.fitted->domain();
-                               return array(std::vector<Vec3>{box.min(), box.max()}, r.domain.shift);
+                               const Box box = r.psi.domain();
+                               return array(std::vector<Vec3>{box.min(), box.max()}, r.report.shift);
                              })
-      .def_property_readonly("points",
-                             [](const Reconstruction& r) { return array(r.domain.cloud.points, r.domain.shift); })
-      .def_property_readonly("normals",
-                             [](const Reconstruction& r) { return array(r.domain.cloud.normals, Vec3::Zero()); })
+      .def_property_readonly("points", [](const Reconstruction& r) { return array(r.cloud.points, Vec3::Zero()); })
+      .def_property_readonly("normals", [](const Reconstruction& r) { return array(r.cloud.normals, Vec3::Zero()); })
       .def_property_readonly("report",
                              [](const Reconstruction& r) {
-                               return dict_of({{"n_points", r.report.n_points},
-                                               {"n_nodes", r.report.n_nodes},
-                                               {"spacing", r.report.spacing},
-                                               {"smoothing", r.report.smoothing},
-                                               {"noise", r.noise},
-                                               {"reason", r.report.reason},
-                                               {"cloud_spacing", r.report.cloud_spacing},
-                                               {"rms_value", r.report.rms_value},
-                                               {"n_opposed_normals", r.report.n_opposed_normals},
+                               const SsdReport& fit = r.report.fit;
+                               return dict_of({{"n_points", fit.n_points},
+                                               {"n_nodes", fit.n_nodes},
+                                               {"spacing", fit.spacing},
+                                               {"smoothing", fit.smoothing},
+                                               {"noise", r.report.noise},
+                                               {"reason", fit.reason},
+                                               {"cloud_spacing", fit.cloud_spacing},
+                                               {"rms_value", fit.rms_value},
+                                               {"n_opposed_normals", fit.n_opposed_normals},
                                                {"notices", r.notices}});
                              })
       .def("save", [](const Reconstruction& r, const std::filesystem::path& file) {
-        write_level_set(file, *r.domain.fitted, r.domain.shift);
+        write_level_set(file, r.psi, r.report.shift);
       });
   py::class_<MeshObject>(m, "Mesh")
       .def_property_readonly("points", [](const MeshObject& a) { return array(a.nodes(), a.domain.shift); })

@@ -9,7 +9,8 @@
 #include "pipeline/memory/watch.h"
 #include "pipeline/meshing/mesh_attempts.h"
 #include "pipeline/reports/certificate_report.h"
-#include "reconstruct/solve/fit_ssd.h"
+#include "pipeline/reports/stage_reports.h"
+#include "reconstruct/io/point_cloud_io.h"
 
 // What `umtet run` does, from memory to memory: no case folder, no signal handlers, nothing printed.
 namespace umtet {
@@ -23,16 +24,19 @@ struct MeshingFailed : std::runtime_error {
 
 /// psi of a cloud with its samples, and how it was made.
 struct Reconstruction {
-  Domain domain;
-  SsdReport report;
-  double noise = 0;                  ///< along the normals, model units
+  LevelSet psi;              ///< near the origin, as the report's shift says
+  OrientedPointCloud cloud;  ///< the samples, model coordinates
+  LevelSetReport report;
   std::vector<std::string> notices;  ///< what was changed or guessed, for the user
 };
 
 /// Cleans the cloud, orients its normals and fits psi, as the sections `cloud` and `reconstruct` of the parameters say.
-/// @param cloud  model coordinates; a zero normal is a missing one, none at all are estimated
+/// @param file  of given_cloud(); a zero normal is a missing one, none at all are estimated
 /// \throw UsageError, CloudRefused, SolveError, SolveTooLarge, and what `watch` throws
-Reconstruction reconstruct(OrientedPointCloud cloud, const Parameters& parameters, const Watch& watch);
+Reconstruction reconstruct(CloudFile file, const Parameters& parameters, const Watch& watch);
+
+/// What make_mesh() takes.
+Domain domain_of(const Reconstruction& reconstruction);
 
 /// Meshes {psi < 0} and measures the mesh, with smaller h where the choice of h is left to us and the mesh asks for it.
 /// The vertices are in working coordinates (Domain::shift); a mesh whose certificate fails is returned all the same.
