@@ -13,8 +13,6 @@ if(UMTET_ARCH MATCHES "v3|v4|native")
 endif()
 set(umtet_definitions EIGEN_MAX_ALIGN_BYTES=${umtet_alignment} EIGEN_MAX_STATIC_ALIGN_BYTES=${umtet_alignment})
 
-get_directory_property(umtet_has_pcl DIRECTORY reconstruct DEFINITION PCL_FOUND)
-
 # A component is an archive, what it links (umtet-config.cmake finds it), and its file of targets. Whoever asks for the
 # mesher alone needs none of the libraries behind the files.
 foreach(component IN LISTS umtet_components)
@@ -51,11 +49,8 @@ set(reconstruct_requires "eigen3 tbb")
 set(reconstruct_libs "-lflann_cpp -llz4")  # flann.pc names HDF5, which only its own files use
 set(mesh_io_requires "umtet-mesh fmt")
 set(mesh_io_libs "-lOpenMeshCore -lhdf5_serial ${vtk}")  # hdf5-serial.pc names a folder that the linker does not search
-set(cloud_io_requires "umtet-reconstruct fmt libxxhash zlib")
+set(cloud_io_requires "umtet-reconstruct fmt libxxhash liblzf zlib")
 set(cloud_io_libs ${vtk})
-if(umtet_has_pcl)
-  string(PREPEND cloud_io_libs "-lpcl_io -lpcl_common ")
-endif()
 set(pipeline_requires "umtet-mesh_io umtet-cloud_io nlohmann_json tomlplusplus muparser ginac")
 set(pipeline_libs ${vtk})
 list(JOIN umtet_definitions " -D" pc_definitions)
