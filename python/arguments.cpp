@@ -77,10 +77,7 @@ py::object dict_of(const Json& json) { return py::module_::import("json").attr("
 Psi psi_of(const py::object& psi, const std::optional<Box>& box, std::optional<double> t, int threads) {
   if (t && !std::isfinite(*t)) throw std::invalid_argument("t: a finite number is wanted");
   if (py::isinstance<Reconstruction>(psi)) {
-    Psi out{nullptr, domain_of(psi.cast<const Reconstruction&>()), threads};
-    Domain& domain = out.domain;
-    if (box) domain.box = Box(box->min() - domain.shift, box->max() - domain.shift);
-    return out;
+    return {nullptr, domain_of(psi.cast<const Reconstruction&>(), box), threads};
   }
   Psi out{nullptr, {}, threads};
   Domain& domain = out.domain;

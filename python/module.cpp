@@ -36,16 +36,6 @@ namespace {
 
 std::optional<Box> box_of(const Parameters& parameters) { return parse_box(parameters.mesh().box); }
 
-/// Without what refers to a callable.
-Domain left_of(Domain&& domain) {
-  Domain left;
-  left.shift = domain.shift;
-  left.cloud = std::move(domain.cloud);
-  left.samples = std::move(domain.samples);
-  left.notices = std::move(domain.notices);
-  return left;
-}
-
 MeshObject mesh(const py::object& psi, const Settings& settings, std::optional<double> t, const py::object& progress,
                 int threads) {
   const Parameters parameters = parameters_of(settings);
@@ -54,8 +44,7 @@ MeshObject mesh(const py::object& psi, const Settings& settings, std::optional<d
   const bool asks_python = p.function != nullptr;
   auto job = [p = std::move(p), parameters](const Watch& watch) mutable {
     MeshAttempt best = make_mesh(p.domain, parameters, watch);
-    return MeshObject{left_of(std::move(p.domain)), std::move(best.result), std::move(best.second), best.h,
-                      verdict_on(std::move(best.measured), parameters)};
+    return mesh_object(std::move(p.domain), std::move(best), parameters);
   };
   if (!asks_python) return interruptible(progress, threads, std::move(job));
   const Watch watch = watch_of(progress);
@@ -111,7 +100,7 @@ py::tuple update(Moving& moving, const py::object& psi, std::optional<double> t,
     return next;
   });
   made.result = std::move(u.mesh);
-  made.domain = left_of(std::move(p.domain));
+  made.domain = without_psi(std::move(p.domain));
   py::dict changes;
   changes["vertices_entered"] = array(u.vertices_entered);
   changes["vertices_left"] = array(u.vertices_left);

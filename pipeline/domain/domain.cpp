@@ -84,7 +84,8 @@ Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handove
                                              : read_level_set(paths.level_set());
     OrientedPointCloud cloud = handover && handover->cloud ? std::move(*std::exchange(handover->cloud, std::nullopt))
                                                            : read_point_cloud(paths.cloud()).cloud;
-    domain = fitted_domain(std::move(psi), std::move(cloud), level_set_report(*state.record));
+    domain = fitted_domain(std::move(psi), std::move(cloud), level_set_report(*state.record),
+                           parse_box(parameters.mesh().box));
     if (handover && handover->triangles) {
       domain.triangles = given_triangles(std::move(*std::exchange(handover->triangles, std::nullopt)), domain.shift);
     } else if (cloud_of_triangles(paths)) {
@@ -96,9 +97,6 @@ Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handove
     throw ArtefactDamaged(e.what());
   }
   domain.complement = parameters.mesh().complement;
-  if (const std::optional<Box> box = parse_box(parameters.mesh().box)) {
-    domain.box = Box(box->min() - domain.shift, box->max() - domain.shift);
-  }
   return domain;
 }
 

@@ -5,7 +5,8 @@
 
 namespace umtet {
 
-Domain fitted_domain(LevelSet psi, OrientedPointCloud cloud, const LevelSetReport& report) {
+Domain fitted_domain(LevelSet psi, OrientedPointCloud cloud, const LevelSetReport& report,
+                     const std::optional<Box>& box) {
   Domain domain;
   domain.shift = report.shift;
   domain.cloud_spacing = report.fit.cloud_spacing;
@@ -20,7 +21,7 @@ Domain fitted_domain(LevelSet psi, OrientedPointCloud cloud, const LevelSetRepor
   }
   if (!domain.cloud.points.empty()) domain.samples = std::make_shared<const SampleDistance>(domain.cloud.points);
   domain.diagonal = cloud_box.diagonal().norm();
-  domain.box = domain.level_set->domain();
+  domain.box = box ? Box(box->min() - domain.shift, box->max() - domain.shift) : domain.level_set->domain();
   return domain;
 }
 

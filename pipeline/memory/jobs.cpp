@@ -62,7 +62,9 @@ Reconstruction reconstruct(CloudFile file, const Parameters& parameters, const W
   return {std::move(fit.psi), std::move(prepared.cloud), std::move(fit.report), std::move(notices)};
 }
 
-Domain domain_of(const Reconstruction& r) { return fitted_domain(r.psi, r.cloud, r.report); }
+Domain domain_of(const Reconstruction& r, const std::optional<Box>& box) {
+  return fitted_domain(r.psi, r.cloud, r.report, box);
+}
 
 MeshAttempt make_mesh(Domain& domain, const Parameters& parameters, const Watch& watch) {
   watch("size", 0);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -35,8 +36,8 @@ struct Reconstruction {
 /// \throw UsageError, CloudRefused, SolveError, SolveTooLarge, and what `watch` throws
 Reconstruction reconstruct(CloudFile file, const Parameters& parameters, const Watch& watch);
 
-/// What make_mesh() takes.
-Domain domain_of(const Reconstruction& reconstruction);
+/// What make_mesh() takes. @param box  what the background mesh has to cover, model coordinates; none: that of psi
+Domain domain_of(const Reconstruction& reconstruction, const std::optional<Box>& box);
 
 /// Meshes {psi < 0} and measures the mesh, with smaller h where the choice of h is left to us and the mesh asks for it.
 /// The vertices are in working coordinates (Domain::shift); a mesh whose certificate fails is returned all the same.

@@ -34,6 +34,20 @@ SolverMesh for_solver(const MeshObject& m, const MeshFile& content) {
 
 }  // namespace
 
+Domain without_psi(Domain&& domain) {
+  Domain left;
+  left.shift = domain.shift;
+  left.cloud = std::move(domain.cloud);
+  left.samples = std::move(domain.samples);
+  left.notices = std::move(domain.notices);
+  return left;
+}
+
+MeshObject mesh_object(Domain&& domain, MeshAttempt&& made, const Parameters& parameters) {
+  return {without_psi(std::move(domain)), std::move(made.result), std::move(made.second), made.h,
+          verdict_on(std::move(made.measured), parameters)};
+}
+
 std::vector<int> MeshObject::boundary_nodes() const {
   std::vector<int> nodes = result.submesh.positive_vertices;
   if (second) nodes.insert(nodes.end(), second->boundary_mid_sides.begin(), second->boundary_mid_sides.end());

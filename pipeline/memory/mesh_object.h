@@ -10,6 +10,7 @@
 #include "mesh/universal_mesh.h"
 #include "pipeline/case/parameters.h"
 #include "pipeline/domain/domain.h"
+#include "pipeline/meshing/mesh_attempts.h"
 #include "pipeline/reports/certificate_report.h"
 
 namespace umtet {
@@ -35,5 +36,11 @@ struct MeshObject {
   /// \throw std::invalid_argument for a suffix that is not known; std::system_error naming the file
   void save(const std::filesystem::path& file) const;
 };
+
+/// What a mesh object keeps of the domain.
+Domain without_psi(Domain&& domain);
+
+/// Of make_mesh() and the same domain.
+MeshObject mesh_object(Domain&& domain, MeshAttempt&& made, const Parameters& parameters);
 
 }  // namespace umtet
