@@ -1,5 +1,5 @@
 # What `cmake --install` puts where: the program, its documents, and the libraries for find_package(umtet) and
-# pkg-config. Packed as Debian would: program, development, python (python/CMakeLists.txt).
+# pkg-config. Packed as Debian would: program, development, python (python/CMakeLists.txt), pcl (pcl/CMakeLists.txt).
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # tests and benchmarks are not packed: cpack need not build them
@@ -79,7 +79,8 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/umtet-config-version.cmak
 install(FILES ${PROJECT_BINARY_DIR}/umtet-config.cmake ${PROJECT_BINARY_DIR}/umtet-config-version.cmake
   DESTINATION ${umtet_cmake} COMPONENT development)
 
-install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libumtet-dev COMPONENT development)
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libumtet-dev COMPONENT development
+  PATTERN pcl EXCLUDE)
 if(UMTET_CORE_ONLY)
   return()
 endif()
