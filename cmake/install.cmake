@@ -1,5 +1,5 @@
 # What `cmake --install` puts where: the program, its documents, and the libraries for find_package(umtet) and
-# pkg-config. Packed as Debian would: program, development, python (python/CMakeLists.txt).
+# pkg-config. Packed as Debian would: program, development, python (python/CMakeLists.txt), pcl (pcl/CMakeLists.txt).
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # tests and benchmarks are not packed: cpack need not build them
@@ -12,8 +12,6 @@ if(UMTET_ARCH MATCHES "v3|v4|native")
   set(umtet_alignment 32)
 endif()
 set(umtet_definitions EIGEN_MAX_ALIGN_BYTES=${umtet_alignment} EIGEN_MAX_STATIC_ALIGN_BYTES=${umtet_alignment})
-
-get_directory_property(umtet_has_pcl DIRECTORY reconstruct DEFINITION PCL_FOUND)
 
 # A component is an archive, what it links (umtet-config.cmake finds it), and its file of targets. Whoever asks for the
 # mesher alone needs none of the libraries behind the files.
@@ -51,11 +49,8 @@ set(reconstruct_requires "eigen3 tbb")
 set(reconstruct_libs "-lflann_cpp -llz4")  # flann.pc names HDF5, which only its own files use
 set(mesh_io_requires "umtet-mesh fmt")
 set(mesh_io_libs "-lOpenMeshCore -lhdf5_serial ${vtk}")  # hdf5-serial.pc names a folder that the linker does not search
-set(cloud_io_requires "umtet-reconstruct fmt libxxhash zlib")
+set(cloud_io_requires "umtet-reconstruct fmt libxxhash liblzf zlib")
 set(cloud_io_libs ${vtk})
-if(umtet_has_pcl)
-  string(PREPEND cloud_io_libs "-lpcl_io -lpcl_common ")
-endif()
 set(pipeline_requires "umtet-mesh_io umtet-cloud_io nlohmann_json tomlplusplus muparser ginac")
 set(pipeline_libs ${vtk})
 list(JOIN umtet_definitions " -D" pc_definitions)
@@ -84,7 +79,8 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/umtet-config-version.cmak
 install(FILES ${PROJECT_BINARY_DIR}/umtet-config.cmake ${PROJECT_BINARY_DIR}/umtet-config-version.cmake
   DESTINATION ${umtet_cmake} COMPONENT development)
 
-install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libumtet-dev COMPONENT development)
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libumtet-dev COMPONENT development
+  PATTERN pcl EXCLUDE)
 if(UMTET_CORE_ONLY)
   return()
 endif()

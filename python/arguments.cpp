@@ -41,19 +41,6 @@ Watch watch_of(const py::object& progress) {
   };
 }
 
-Context polls_of(const Watch& watch) {
-  return {.cancelled = [&watch] {
-    watch(nullptr, 0);
-    return false;
-  }};
-}
-
-Context context_of(const Watch& watch) {
-  Context context = polls_of(watch);
-  context.progress = [&watch](const char* step, double fraction) { watch(step, fraction); };
-  return context;
-}
-
 Watch watch_in_thread(const py::object& progress, std::shared_ptr<std::atomic<bool>> stopped) {
   using Clock = std::chrono::steady_clock;
   return [progress = py::handle(progress), stopped = std::move(stopped), step = std::string(),
@@ -89,19 +76,11 @@ py::object dict_of(const Json& json) { return py::module_::import("json").attr("
 
 Psi psi_of(const py::object& psi, const std::optional<Box>& box, std::optional<double> t, int threads) {
   if (t && !std::isfinite(*t)) throw std::invalid_argument("t: a finite number is wanted");
+  if (py::isinstance<Reconstruction>(psi)) {
+    return {nullptr, domain_of(psi.cast<const Reconstruction&>(), box), threads};
+  }
   Psi out{nullptr, {}, threads};
   Domain& domain = out.domain;
-  if (py::isinstance<Reconstruction>(psi)) {
-    const Domain& fitted = psi.cast<const Reconstruction&>().domain;
-    domain.fitted = domain.level_set = fitted.fitted;
-    domain.shift = fitted.shift;
-    domain.cloud = fitted.cloud;
-    domain.samples = fitted.samples;
-    domain.cloud_spacing = fitted.cloud_spacing;
-    domain.diagonal = fitted.diagonal;
-    domain.box = box ? Box(box->min() - domain.shift, box->max() - domain.shift) : fitted.box;
-    return out;
-  }
   if (!box) throw std::invalid_argument("box is missing: (x0, y0, z0, x1, y1, z1) around the domain");
   domain.box = *box;
   domain.diagonal = box->diagonal().norm();

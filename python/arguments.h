@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "pipeline/memory/jobs.h"
 #include "python/function.h"
-#include "python/jobs.h"
 
 // What Python gives, as the libraries want it, and back.
 namespace umtet::python {
@@ -28,11 +28,6 @@ Parameters parameters_of(const Settings& settings);
 /// Asks for Ctrl-C and tells the callback, both at most every 20 ms.
 /// @param progress  a callable (step, fraction), or None; it must outlive the watch
 Watch watch_of(const pybind11::object& progress);
-
-/// A call of a library that the watch follows and, where it throws, ends; it must outlive the context.
-Context context_of(const Watch& watch);
-/// The same of a call that is a part of one whose steps are told otherwise.
-Context polls_of(const Watch& watch);
 
 /// Runs f without the GIL. @param threads  0: as many as the machine has
 template <class F>

@@ -1,6 +1,5 @@
 #include "python/errors.h"
 
-#include <algorithm>
 #include <exception>
 #include <string>
 #include <system_error>
@@ -9,8 +8,9 @@
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/parameters.h"
 #include "pipeline/expression/expression.h"
+#include "pipeline/memory/jobs.h"
+#include "pipeline/memory/without_flags.h"
 #include "python/arguments.h"
-#include "python/jobs.h"
 #include "reconstruct/io/grid_io.h"
 #include "reconstruct/io/point_cloud_io.h"
 #include "reconstruct/solve/solve_error.h"
@@ -20,17 +20,9 @@ namespace py = pybind11;
 namespace umtet::python {
 namespace {
 
-/// A message of the pipeline, which names flags of the program, with keyword arguments in their place.
-std::string in_python(std::string message) {
-  for (std::size_t at = 0; (at = message.find("--", at)) != std::string::npos;) {
-    const std::size_t end = message.find_first_not_of("abcdefghijklmnopqrstuvwxyz-", at);
-    const std::string flag = message.substr(at, end - at);
-    const auto& fields = params_fields();
-    const auto field = std::find_if(fields.begin(), fields.end(), [&](const ParamField& f) { return f.flag == flag; });
-    if (field != fields.end()) message.replace(at, flag.size(), field->key.substr(field->key.find('.') + 1));
-    at += 2;
-  }
-  return message;
+/// With keyword arguments in the place of flags.
+std::string in_python(const std::string& message) {
+  return without_flags(message, [](const ParamField& field) { return field.key.substr(field.key.find('.') + 1); });
 }
 
 /// Raises `type` with an attribute `evidence`.

@@ -16,6 +16,8 @@
 #include "mesh/moving_mesh.h"
 #include "pipeline/case/version.h"
 #include "pipeline/domain/background_choice.h"
+#include "pipeline/memory/given_cloud.h"
+#include "pipeline/memory/mesh_object.h"
 #include "pipeline/meshing/library_params.h"
 #include "pipeline/meshing/mesh_measures.h"
 #include "pipeline/reports/certificate_json.h"
@@ -25,7 +27,6 @@
 #include "python/arguments.h"
 #include "python/errors.h"
 #include "python/interruptible.h"
-#include "python/mesh_object.h"
 #include "reconstruct/io/level_set_io.h"
 
 namespace py = pybind11;
@@ -35,26 +36,15 @@ namespace {
 
 std::optional<Box> box_of(const Parameters& parameters) { return parse_box(parameters.mesh().box); }
 
-/// Without what refers to a callable.
-Domain left_of(Domain&& domain) {
-  Domain left;
-  left.shift = domain.shift;
-  left.cloud = std::move(domain.cloud);
-  left.samples = std::move(domain.samples);
-  left.notices = std::move(domain.notices);
-  return left;
-}
-
-Mesh mesh(const py::object& psi, const Settings& settings, std::optional<double> t, const py::object& progress,
-          int threads) {
+MeshObject mesh(const py::object& psi, const Settings& settings, std::optional<double> t, const py::object& progress,
+                int threads) {
   const Parameters parameters = parameters_of(settings);
   const bool of_grid = psi.is_none() && !parameters.mesh().level_set.empty();
   Psi p = of_grid ? Psi{nullptr, grid_domain(parameters), threads} : psi_of(psi, box_of(parameters), t, threads);
   const bool asks_python = p.function != nullptr;
   auto job = [p = std::move(p), parameters](const Watch& watch) mutable {
     MeshAttempt best = make_mesh(p.domain, parameters, watch);
-    return Mesh{left_of(std::move(p.domain)), std::move(best.result), std::move(best.second), best.h,
-                verdict_on(std::move(best.measured), parameters)};
+    return mesh_object(std::move(p.domain), std::move(best), parameters);
   };
   if (!asks_python) return interruptible(progress, threads, std::move(job));
   const Watch watch = watch_of(progress);
@@ -102,7 +92,7 @@ py::tuple update(Moving& moving, const py::object& psi, std::optional<double> t,
   if (moving.at_work.exchange(true)) throw std::invalid_argument("this UniversalMesh is at work in another call");
   const auto done = [](std::atomic<bool>* at_work) { *at_work = false; };
   const std::unique_ptr<std::atomic<bool>, decltype(done)> guard(&moving.at_work, done);
-  Mesh made{{}, {}, {}, h, {}};
+  MeshObject made{{}, {}, {}, h, {}};
   UmUpdate u = in_arena(p.threads, [&] {
     UmUpdate next = moving.mesher.update(p.domain.psi(), hints, context_of(watch));
     if (next.mesh.status != UmStatus::Success) throw failure(next.mesh, h, p.domain.shift);
@@ -110,7 +100,7 @@ py::tuple update(Moving& moving, const py::object& psi, std::optional<double> t,
     return next;
   });
   made.result = std::move(u.mesh);
-  made.domain = left_of(std::move(p.domain));
+  made.domain = without_psi(std::move(p.domain));
   py::dict changes;
   changes["vertices_entered"] = array(u.vertices_entered);
   changes["vertices_left"] = array(u.vertices_left);
@@ -166,23 +156,17 @@ Reconstruction reconstruct_arrays(const Points& points, const std::optional<Poin
   if (normals && cloud.normals.size() != cloud.points.size()) {
     throw std::invalid_argument("normals: as many as points are wanted, or None");
   }
-  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
-    // as for files: squares stay finite
-    if (!(cloud.points[i].cwiseAbs().maxCoeff() <= 1e50)) {
-      throw std::invalid_argument("points[" + std::to_string(i) + "] is not finite, or beyond 1e50");
-    }
-  }
-  for (Vec3& n : cloud.normals) n = n.allFinite() && n.norm() > 0 ? Vec3(n.normalized()) : Vec3(Vec3::Zero());
+  CloudFile file = given_cloud(std::move(cloud));
   const Parameters parameters = parameters_of(settings);
-  return interruptible(progress, threads, [cloud = std::move(cloud), parameters](const Watch& watch) mutable {
-    return reconstruct(std::move(cloud), parameters, watch);
+  return interruptible(progress, threads, [file = std::move(file), parameters](const Watch& watch) mutable {
+    return reconstruct(std::move(file), parameters, watch);
   });
 }
 
 /// psi, its gradients (order 1) or Hessians (order 2) at points, without the GIL.
 py::array_t<double> evaluate(const Reconstruction& r, const Points& points, int order) {
   std::vector<Vec3> x = vectors(points, "points");
-  const LevelSet& psi = *r.domain.fitted;
+  const LevelSet& psi = r.psi;
   const auto n = static_cast<py::ssize_t>(x.size());
   std::vector<py::ssize_t> shape = {n};
   for (int k = 0; k < order; ++k) shape.push_back(3);
@@ -190,7 +174,7 @@ py::array_t<double> evaluate(const Reconstruction& r, const Points& points, int 
   double* p = out.mutable_data();
   const py::gil_scoped_release no_gil;
   tbb::parallel_for(std::size_t{0}, x.size(), [&](std::size_t i) {
-    const Vec3 y = x[i] - r.domain.shift;
+    const Vec3 y = x[i] - r.report.shift;
     if (order == 0) p[i] = psi.value(y);
     if (order == 1) Eigen::Map<Vec3>(p + 3 * i) = psi.gradient(y);
     if (order == 2) Eigen::Map<Mat3>(p + 9 * i) = psi.hessian(y);
@@ -219,46 +203,48 @@ void bind(py::module_& m) {
           py::arg("points"), "Its Hessians (n, 3, 3).")
       .def_property_readonly("box",
                              [](const Reconstruction& r) {
-                               const Box box = r.domain.fitted->domain();
-                               return array(std::vector<Vec3>{box.min(), box.max()}, r.domain.shift);
+                               const Box box = r.psi.domain();
+                               return array(std::vector<Vec3>{box.min(), box.max()}, r.report.shift);
                              })
-      .def_property_readonly("points",
-                             [](const Reconstruction& r) { return array(r.domain.cloud.points, r.domain.shift); })
-      .def_property_readonly("normals",
-                             [](const Reconstruction& r) { return array(r.domain.cloud.normals, Vec3::Zero()); })
+      .def_property_readonly("points", [](const Reconstruction& r) { return array(r.cloud.points, Vec3::Zero()); })
+      .def_property_readonly("normals", [](const Reconstruction& r) { return array(r.cloud.normals, Vec3::Zero()); })
       .def_property_readonly("report",
                              [](const Reconstruction& r) {
-                               return dict_of({{"n_points", r.report.n_points},
-                                               {"n_nodes", r.report.n_nodes},
-                                               {"spacing", r.report.spacing},
-                                               {"smoothing", r.report.smoothing},
-                                               {"noise", r.noise},
-                                               {"reason", r.report.reason},
-                                               {"cloud_spacing", r.report.cloud_spacing},
-                                               {"rms_value", r.report.rms_value},
-                                               {"n_opposed_normals", r.report.n_opposed_normals},
+                               const SsdReport& fit = r.report.fit;
+                               return dict_of({{"n_points", fit.n_points},
+                                               {"n_nodes", fit.n_nodes},
+                                               {"spacing", fit.spacing},
+                                               {"smoothing", fit.smoothing},
+                                               {"noise", r.report.noise},
+                                               {"reason", fit.reason},
+                                               {"cloud_spacing", fit.cloud_spacing},
+                                               {"rms_value", fit.rms_value},
+                                               {"n_opposed_normals", fit.n_opposed_normals},
                                                {"notices", r.notices}});
                              })
       .def("save", [](const Reconstruction& r, const std::filesystem::path& file) {
-        write_level_set(file, *r.domain.fitted, r.domain.shift);
+        write_level_set(file, r.psi, r.report.shift);
       });
-  py::class_<Mesh>(m, "Mesh")
-      .def_property_readonly("points", [](const Mesh& a) { return array(a.nodes(), a.domain.shift); })
+  py::class_<MeshObject>(m, "Mesh")
+      .def_property_readonly("points", [](const MeshObject& a) { return array(a.nodes(), a.domain.shift); })
       .def_property_readonly(
-          "tets", [](const Mesh& a) { return a.second ? array(a.second->mesh.C) : array(a.result.submesh.mesh.C); })
+          "tets",
+          [](const MeshObject& a) { return a.second ? array(a.second->mesh.C) : array(a.result.submesh.mesh.C); })
+      .def_property_readonly("boundary",
+                             [](const MeshObject& a) {
+                               return a.second ? array(a.curved_boundary()) : array(a.result.submesh.positive_faces);
+                             })
+      .def_property_readonly("walls", [](const MeshObject& a) { return array(a.result.walls); })
+      .def_property_readonly("boundary_vertices", [](const MeshObject& a) { return array(a.boundary_nodes()); })
+      .def_property_readonly("background_vertex", [](const MeshObject& a) { return array(a.background_vertices()); })
+      .def_property_readonly("background_tet",
+                             [](const MeshObject& a) { return array(a.result.submesh.background_tet); })
+      .def_readonly("h", &MeshObject::h)
+      .def_property_readonly("notices", [](const MeshObject& a) { return a.domain.notices; })
       .def_property_readonly(
-          "boundary",
-          [](const Mesh& a) { return a.second ? array(a.curved_boundary()) : array(a.result.submesh.positive_faces); })
-      .def_property_readonly("walls", [](const Mesh& a) { return array(a.result.walls); })
-      .def_property_readonly("boundary_vertices", [](const Mesh& a) { return array(a.boundary_nodes()); })
-      .def_property_readonly("background_vertex", [](const Mesh& a) { return array(a.background_vertices()); })
-      .def_property_readonly("background_tet", [](const Mesh& a) { return array(a.result.submesh.background_tet); })
-      .def_readonly("h", &Mesh::h)
-      .def_property_readonly("notices", [](const Mesh& a) { return a.domain.notices; })
-      .def_property_readonly("certificate",
-                             [](const Mesh& a) { return dict_of(a.certificate ? to_json(*a.certificate) : Json()); })
+          "certificate", [](const MeshObject& a) { return dict_of(a.certificate ? to_json(*a.certificate) : Json()); })
       .def("patches",
-           [](const Mesh& a, const Settings& settings) {
+           [](const MeshObject& a, const Settings& settings) {
              py::dict patches;
              for (const auto& [name, faces] : a.patches(parameters_of(settings))) {
                const py::ssize_t k = a.second ? 6 : 3;
@@ -266,7 +252,7 @@ void bind(py::module_& m) {
              }
              return patches;
            })
-      .def("save", [](const Mesh& a, const std::filesystem::path& file) {
+      .def("save", [](const MeshObject& a, const std::filesystem::path& file) {
         const py::gil_scoped_release no_gil;
         a.save(file);
       });

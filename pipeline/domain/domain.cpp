@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "pipeline/case/exit_code.h"
+#include "pipeline/domain/fitted_domain.h"
 #include "pipeline/domain/handover.h"
 #include "pipeline/reports/stage_reports.h"
 #include "reconstruct/io/level_set_io.h"
@@ -78,17 +79,13 @@ Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handove
   const StageState state = inspect_stage(paths, Stage::LevelSet, parameters.section("reconstruct"), std::nullopt);
   if (!state.record) throw ArtefactDamaged(state.reason);
   Domain domain;
-  domain.complement = parameters.mesh().complement;
-  const LevelSetReport report = level_set_report(*state.record);
-  domain.shift = report.shift;
-  domain.cloud_spacing = report.fit.cloud_spacing;
-  domain.noise = report.noise;
   try {
-    domain.fitted = handover && handover->psi ? std::move(*std::exchange(handover->psi, std::nullopt))
-                                              : read_level_set(paths.level_set());
-    domain.level_set = domain.fitted;
-    domain.cloud = handover && handover->cloud ? std::move(*std::exchange(handover->cloud, std::nullopt))
-                                               : read_point_cloud(paths.cloud()).cloud;
+    LevelSet psi = handover && handover->psi ? std::move(*std::exchange(handover->psi, std::nullopt))
+                                             : read_level_set(paths.level_set());
+    OrientedPointCloud cloud = handover && handover->cloud ? std::move(*std::exchange(handover->cloud, std::nullopt))
+                                                           : read_point_cloud(paths.cloud()).cloud;
+    domain = fitted_domain(std::move(psi), std::move(cloud), level_set_report(*state.record),
+                           parse_box(parameters.mesh().box));
     if (handover && handover->triangles) {
       domain.triangles = given_triangles(std::move(*std::exchange(handover->triangles, std::nullopt)), domain.shift);
     } else if (cloud_of_triangles(paths)) {
@@ -99,17 +96,7 @@ Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handove
   } catch (const LevelSetRefused& e) {
     throw ArtefactDamaged(e.what());
   }
-  Box cloud_box;
-  for (Vec3& x : domain.cloud.points) {
-    x -= domain.shift;
-    cloud_box.extend(x);
-  }
-  if (!domain.cloud.points.empty()) domain.samples = std::make_shared<const SampleDistance>(domain.cloud.points);
-  domain.diagonal = cloud_box.diagonal().norm();
-  domain.box = domain.level_set->domain();
-  if (const std::optional<Box> box = parse_box(parameters.mesh().box)) {
-    domain.box = Box(box->min() - domain.shift, box->max() - domain.shift);
-  }
+  domain.complement = parameters.mesh().complement;
   return domain;
 }
 

@@ -10,6 +10,7 @@
 
 #include "pipeline/case/memory.h"
 #include "pipeline/meshing/library_params.h"
+#include "reconstruct/cloud/cloud_neighbours.h"
 #include "reconstruct/cloud/cloud_survey.h"
 #include "reconstruct/cloud/covering.h"
 #include "reconstruct/cloud/local_noise.h"
@@ -68,8 +69,8 @@ bool leaves_less(const SsdReport& report, double noise) {
   return report.noise_decided && report.rms_value < kLeft * noise;
 }
 
-// And what it may leave, unless that is little for its lattice, as psi rounds edges: more is a contradiction of samples,
-// such as two sheets.
+// And what it may leave, unless that is little for its lattice, as psi rounds edges: more is a contradiction of
+// samples, such as two sheets.
 constexpr double kLeftAtMost = 1.5, kLeftOfSpacing = .12;  // of the lattice's
 bool leaves_more(const SsdReport& report, double noise) {
   return report.rms_value > std::max(kLeftAtMost * noise, kLeftOfSpacing * report.spacing);
@@ -103,10 +104,9 @@ void require_body(const SsdReport& r) {
       100 * opposed, r.n_points, open ? "check that the surface is closed, and " : ""));
 }
 
-}  // namespace
-
-LevelSetFit fit_level_set(OrientedPointCloud& cloud, NeighbourDistances near, const Parameters& parameters,
-                          const Context& context) {
+/// @param cloud  near the origin
+LevelSetFit fit_near_origin(OrientedPointCloud& cloud, NeighbourDistances near, const Parameters& parameters,
+                            const Context& context) {
   SsdParams params = ssd_params(parameters);
   params.max_memory = allowed_bytes(parameters);
   context.report("noise", 0);
@@ -140,6 +140,18 @@ LevelSetFit fit_level_set(OrientedPointCloud& cloud, NeighbourDistances near, co
   if (std::string closed = described(fit.report.holes); !closed.empty()) notices.push_back(std::move(closed));
   report.fit = std::move(fit.report);
   return {std::move(fit.psi), std::move(report), std::move(notices)};
+}
+
+}  // namespace
+
+LevelSetFit fit_level_set(OrientedPointCloud& cloud, NeighbourDistances near, const Parameters& parameters,
+                          const Context& context) {
+  const Vec3 shift = far_origin_shift(cloud);
+  for (Vec3& x : cloud.points) x -= shift;
+  LevelSetFit fit = fit_near_origin(cloud, std::move(near), parameters, context);
+  for (Vec3& x : cloud.points) x += shift;
+  fit.report.shift = shift;
+  return fit;
 }
 
 }  // namespace umtet

@@ -14,12 +14,13 @@ namespace umtet {
 
 struct LevelSetFit {
   LevelSet psi;
-  LevelSetReport report;             ///< all but the shift
+  LevelSetReport report;
   std::vector<std::string> notices;  ///< what was changed or guessed, for the user
 };
 
 /// What 2-level-set computes: the noise, unless reconstruct.noise gives it, psi, and whether it bounds a body.
-/// @param cloud  near the origin; normals that psi opposes are turned over (turned_fit.h)
+/// @param cloud  model coordinates, which it has again afterwards; normals that psi opposes are turned over
+/// (turned_fit.h)
 /// @param near   of its points, with their covering; empty: searched here
 /// \throw SolveTooLarge  psi would not fit in the memory that is allowed
 /// \throw SolveError     no psi, or one that bounds no body, or samples that fill a volume

@@ -31,8 +31,6 @@ void run_level_set_stage(const StageContext& context) {
   const auto start = std::chrono::steady_clock::now();
   const std::vector<RecordedFile> inputs = recorded_inputs(context.paths, Stage::LevelSet, context.parameters);
   OrientedPointCloud cloud = take_cloud(context);
-  const Vec3 shift = far_origin_shift(cloud);
-  for (Vec3& x : cloud.points) x -= shift;
   const Context call{
       .progress = [&](const char* step, double part) { context.progress.report("level-set", step, part); },
       .cancelled = until_interrupted().cancelled};
@@ -46,10 +44,9 @@ void run_level_set_stage(const StageContext& context) {
     }
   }();
   for (const std::string& notice : fit.notices) context.progress.say("level-set: " + notice);
-  fit.report.shift = shift;
   begin_writing(context, Stage::LevelSet);
   write_artefact(context.paths.level_set(),
-                 [&](const fs::path& temporary) { write_level_set(temporary, fit.psi, shift); });
+                 [&](const fs::path& temporary) { write_level_set(temporary, fit.psi, fit.report.shift); });
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   write_record(context.paths,
                {Stage::LevelSet,
@@ -59,7 +56,6 @@ void run_level_set_stage(const StageContext& context) {
                 to_json(fit.report),
                 run_of_stage(seconds.count(), context.threads)},
                {"level_set.vti"});
-  for (Vec3& x : cloud.points) x += shift;
   context.handover.cloud = std::move(cloud);
   context.handover.psi = std::move(fit.psi);
 }

@@ -55,6 +55,22 @@ class Reconstruct(unittest.TestCase):
             np.testing.assert_allclose(self.psi.hessian(x)[:, i],
                                        (self.psi.gradient(x + e) - self.psi.gradient(x - e)) / 2 / d, atol=1e-5)
 
+    def test_a_noisy_cloud_makes_the_mesh_that_its_file_makes(self):
+        if "UMTET_PROGRAM" not in os.environ:
+            self.skipTest("no program")
+        points, normals = egg(4000)
+        points = points * (1 + .05 * np.random.default_rng(1).standard_normal(4000))[:, None]
+        for far in (0, 1e5):
+            mesh = umtet.mesh(umtet.reconstruct(points + far, normals))
+            with tempfile.TemporaryDirectory() as folder:
+                np.savetxt(f"{folder}/egg.xyz", np.c_[points + far, normals], fmt="%.17g")
+                subprocess.run([os.environ["UMTET_PROGRAM"], "run", f"{folder}/egg.xyz", "-o", f"{folder}/egg", "-q"],
+                               check=True, capture_output=True)
+                mesh.save(f"{folder}/ours.vtu")
+                with open(f"{folder}/egg/3-mesh/mesh.vtu", "rb") as theirs, open(f"{folder}/ours.vtu", "rb") as ours:
+                    self.assertTrue(ours.read() == theirs.read(), far)
+            self.assertGreater(mesh.h, .1)  # noise decides it
+
     def test_far_from_the_origin_nothing_changes(self):
         far = np.array([1e6, -2e6, 3e6])
         psi = umtet.reconstruct(self.points + far, self.normals)

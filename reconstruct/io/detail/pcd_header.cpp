@@ -105,7 +105,7 @@ void parse_point_count(const CloudSource& source, const Entries& entries, PcdHea
   const auto value = [&](std::string_view keyword) {
     const Entry& entry = required(source, entries, keyword);
     const std::optional<std::uint64_t> number = parse_count(entry.values[0]);
-    // PCL counts points in 32 bits.
+    // PCL, which wrote the file, counts points in 32 bits.
     if (!number || *number > std::numeric_limits<std::uint32_t>::max())
       refuse(source, fmt::format("line {}: {} {}: expected a whole number from 0 to 4294967295", entry.line, keyword,
                                  in_quotes(entry.values[0])));
@@ -148,7 +148,7 @@ void check_size(const CloudSource& source, const PcdHeader& header) {
     refuse(source, fmt::format("byte {}: a compressed block of {} bytes is announced but {} are left: the file is cut "
                                "short, export it again",
                                header.body, packed, left - 8));
-  // Three bytes of LZF stand for at most 264; PCL indexes the unpacked bytes with an int.
+  // Three bytes of LZF stand for at most 264; PCL indexes the unpacked bytes with an int, so it wrote no more.
   constexpr std::uint64_t kLargestRatio = 88, kLargestBlock = std::numeric_limits<std::int32_t>::max();
   const bool fits = header.n_points <= kLargestBlock / point_bytes && unpacked == header.n_points * point_bytes &&
                     unpacked <= kLargestRatio * packed;

@@ -10,12 +10,13 @@
 #include "mesh/universal_mesh.h"
 #include "pipeline/case/parameters.h"
 #include "pipeline/domain/domain.h"
+#include "pipeline/meshing/mesh_attempts.h"
 #include "pipeline/reports/certificate_report.h"
 
-namespace umtet::python {
+namespace umtet {
 
 /// A mesh with what it takes to write and to judge it.
-struct Mesh {
+struct MeshObject {
   Domain domain;  ///< its shift and samples; no psi
   UmResult result;
   std::optional<SecondOrder> second;  ///< the same with mid-sides, if mesh.order = 2
@@ -36,4 +37,10 @@ struct Mesh {
   void save(const std::filesystem::path& file) const;
 };
 
-}  // namespace umtet::python
+/// What a mesh object keeps of the domain.
+Domain without_psi(Domain&& domain);
+
+/// Of make_mesh() and the same domain.
+MeshObject mesh_object(Domain&& domain, MeshAttempt&& made, const Parameters& parameters);
+
+}  // namespace umtet

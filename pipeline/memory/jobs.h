@@ -1,23 +1,20 @@
 #pragma once
 
-#include <functional>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "pipeline/case/parameters.h"
 #include "pipeline/domain/domain.h"
+#include "pipeline/memory/watch.h"
 #include "pipeline/meshing/mesh_attempts.h"
 #include "pipeline/reports/certificate_report.h"
-#include "reconstruct/solve/fit_ssd.h"
+#include "pipeline/reports/stage_reports.h"
+#include "reconstruct/io/point_cloud_io.h"
 
 // What `umtet run` does, from memory to memory: no case folder, no signal handlers, nothing printed.
-namespace umtet::python {
-
-/// Called by the thread that called the job, every few milliseconds of work. It stops the job by throwing.
-/// @param step  null: still in the step that was named last
-/// @param fraction  of the step, in [0, 1]
-using Watch = std::function<void(const char* step, double fraction)>;
+namespace umtet {
 
 /// No mesh of this domain at this h. The evidence is a status, places and lengths.
 struct MeshingFailed : std::runtime_error {
@@ -28,16 +25,19 @@ struct MeshingFailed : std::runtime_error {
 
 /// psi of a cloud with its samples, and how it was made.
 struct Reconstruction {
-  Domain domain;
-  SsdReport report;
-  double noise = 0;                  ///< along the normals, model units
+  LevelSet psi;              ///< near the origin, as the report's shift says
+  OrientedPointCloud cloud;  ///< the samples, model coordinates
+  LevelSetReport report;
   std::vector<std::string> notices;  ///< what was changed or guessed, for the user
 };
 
 /// Cleans the cloud, orients its normals and fits psi, as the sections `cloud` and `reconstruct` of the parameters say.
-/// @param cloud  model coordinates; a zero normal is a missing one, none at all are estimated
+/// @param file  of given_cloud(); a zero normal is a missing one, none at all are estimated
 /// \throw UsageError, CloudRefused, SolveError, SolveTooLarge, and what `watch` throws
-Reconstruction reconstruct(OrientedPointCloud cloud, const Parameters& parameters, const Watch& watch);
+Reconstruction reconstruct(CloudFile file, const Parameters& parameters, const Watch& watch);
+
+/// What make_mesh() takes. @param box  what the background mesh has to cover, model coordinates; none: that of psi
+Domain domain_of(const Reconstruction& reconstruction, const std::optional<Box>& box);
 
 /// Meshes {psi < 0} and measures the mesh, with smaller h where the choice of h is left to us and the mesh asks for it.
 /// The vertices are in working coordinates (Domain::shift); a mesh whose certificate fails is returned all the same.
@@ -53,4 +53,4 @@ Certificate certificate_of(const Domain& domain, const UmResult& result, double 
 /// What a status other than Success is evidence of.
 MeshingFailed failure(const UmResult& result, double h, const Vec3& shift);
 
-}  // namespace umtet::python
+}  // namespace umtet

@@ -1,4 +1,4 @@
-#include "python/jobs.h"
+#include "pipeline/memory/jobs.h"
 
 #include <fmt/format.h>
 
@@ -8,6 +8,7 @@
 #include "pipeline/case/memory.h"
 #include "pipeline/domain/background_choice.h"
 #include "pipeline/domain/edge_length.h"
+#include "pipeline/domain/fitted_domain.h"
 #include "pipeline/domain/too_thin.h"
 #include "pipeline/domain/zero_set_choice.h"
 #include "pipeline/meshing/library_params.h"
@@ -16,12 +17,11 @@
 #include "pipeline/reports/place_json.h"
 #include "pipeline/stages/cloud_preparation.h"
 #include "pipeline/stages/level_set_fit.h"
-#include "python/arguments.h"
 
-namespace umtet::python {
+namespace umtet {
 namespace {
 
-// Foretelling the number of tets takes a million values of psi, whatever h is: some ten seconds of a Python callable.
+// Foretelling the number of tets takes a million values of psi, whatever h is: some ten seconds of one of Python.
 // Where h is given it is left out, and memory is asked for as many as are allowed.
 EdgeLength edge_length(Domain& domain, BackgroundChoice& background, const Parameters& parameters, const Watch& watch) {
   const double h = parameters.mesh().h;
@@ -53,34 +53,17 @@ MeshingFailed failure(const UmResult& result, double h, const Vec3& shift) {
            {"count", e.count}}};
 }
 
-Reconstruction reconstruct(OrientedPointCloud cloud, const Parameters& parameters, const Watch& watch) {
-  Reconstruction made;
-  CloudFile file;
-  file.report.format = "arrays";
-  file.report.n_points = cloud.points.size();
-  file.cloud = std::move(cloud);
+Reconstruction reconstruct(CloudFile file, const Parameters& parameters, const Watch& watch) {
   watch("prepare", 0);
   PreparedCloud prepared = prepare_cloud(std::move(file), "points", parameters);
-  made.notices = std::move(prepared.report.notices);
-  Domain& domain = made.domain;
-  domain.cloud = std::move(prepared.cloud);
-  domain.shift = far_origin_shift(domain.cloud);
-  Box box;
-  for (Vec3& x : domain.cloud.points) {
-    x -= domain.shift;
-    box.extend(x);
-  }
-  domain.diagonal = box.diagonal().norm();
-  LevelSetFit fit = fit_level_set(domain.cloud, std::move(prepared.near), parameters, context_of(watch));
-  made.notices.insert(made.notices.end(), fit.notices.begin(), fit.notices.end());
-  made.noise = fit.report.noise;
-  made.report = std::move(fit.report.fit);
-  domain.samples = std::make_shared<const SampleDistance>(domain.cloud.points);
-  domain.cloud_spacing = made.report.cloud_spacing;
-  domain.box = fit.psi.domain();
-  domain.fitted = fit.psi;
-  domain.level_set = std::move(fit.psi);
-  return made;
+  LevelSetFit fit = fit_level_set(prepared.cloud, std::move(prepared.near), parameters, context_of(watch));
+  std::vector<std::string> notices = std::move(prepared.report.notices);
+  notices.insert(notices.end(), fit.notices.begin(), fit.notices.end());
+  return {std::move(fit.psi), std::move(prepared.cloud), std::move(fit.report), std::move(notices)};
+}
+
+Domain domain_of(const Reconstruction& r, const std::optional<Box>& box) {
+  return fitted_domain(r.psi, r.cloud, r.report, box);
 }
 
 MeshAttempt make_mesh(Domain& domain, const Parameters& parameters, const Watch& watch) {
@@ -104,4 +87,4 @@ Certificate certificate_of(const Domain& domain, const UmResult& result, double 
   return verdict_on(measure(domain, result, pieces, h, {}, polls_of(watch)).measures, parameters);
 }
 
-}  // namespace umtet::python
+}  // namespace umtet

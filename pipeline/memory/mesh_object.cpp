@@ -1,4 +1,4 @@
-#include "python/mesh_object.h"
+#include "pipeline/memory/mesh_object.h"
 
 #include <algorithm>
 #include <array>
@@ -13,10 +13,10 @@
 #include "pipeline/meshing/second_order.h"
 #include "pipeline/output/boundary_patches.h"
 
-namespace umtet::python {
+namespace umtet {
 namespace {
 
-SolverMesh all_of(const Mesh& m, const MeshFile& content) {
+SolverMesh all_of(const MeshObject& m, const MeshFile& content) {
   if (!m.second) return solver_mesh(content.mesh);
   QuadraticTetMesh curved = m.second->mesh;
   for (Vec3& x : curved.V) x += m.domain.shift;
@@ -24,7 +24,7 @@ SolverMesh all_of(const Mesh& m, const MeshFile& content) {
 }
 
 /// With the holes that the certificate names as a patch.
-SolverMesh for_solver(const Mesh& m, const MeshFile& content) {
+SolverMesh for_solver(const MeshObject& m, const MeshFile& content) {
   SolverMesh made = all_of(m, content);
   if (!m.certificate) return made;
   const MarkedFaces marked = marked_faces(made, content, m.certificate->measured.domain.support);
@@ -34,19 +34,33 @@ SolverMesh for_solver(const Mesh& m, const MeshFile& content) {
 
 }  // namespace
 
-std::vector<int> Mesh::boundary_nodes() const {
+Domain without_psi(Domain&& domain) {
+  Domain left;
+  left.shift = domain.shift;
+  left.cloud = std::move(domain.cloud);
+  left.samples = std::move(domain.samples);
+  left.notices = std::move(domain.notices);
+  return left;
+}
+
+MeshObject mesh_object(Domain&& domain, MeshAttempt&& made, const Parameters& parameters) {
+  return {without_psi(std::move(domain)), std::move(made.result), std::move(made.second), made.h,
+          verdict_on(std::move(made.measured), parameters)};
+}
+
+std::vector<int> MeshObject::boundary_nodes() const {
   std::vector<int> nodes = result.submesh.positive_vertices;
   if (second) nodes.insert(nodes.end(), second->boundary_mid_sides.begin(), second->boundary_mid_sides.end());
   return nodes;
 }
 
-std::vector<std::int64_t> Mesh::background_vertices() const {
+std::vector<std::int64_t> MeshObject::background_vertices() const {
   std::vector<std::int64_t> ids(result.submesh.background_vertex.begin(), result.submesh.background_vertex.end());
   ids.resize(nodes().size(), -1);
   return ids;
 }
 
-std::vector<QuadraticTriangle> Mesh::curved_boundary() const {
+std::vector<QuadraticTriangle> MeshObject::curved_boundary() const {
   const std::vector<int>& mid_sides = second->boundary_mid_sides;
   std::map<std::pair<int, int>, int> between;  // corners, the lesser first
   for (const QuadraticTet& t : second->mesh.C) {
@@ -64,7 +78,7 @@ std::vector<QuadraticTriangle> Mesh::curved_boundary() const {
   return faces;
 }
 
-std::vector<std::pair<std::string, std::vector<int>>> Mesh::patches(const Parameters& parameters) const {
+std::vector<std::pair<std::string, std::vector<int>>> MeshObject::patches(const Parameters& parameters) const {
   const MeshFile content = final_content(domain, result);
   SolverMesh made = all_of(*this, content);
   const auto support = certificate ? certificate->measured.domain.support : std::nullopt;
@@ -79,7 +93,7 @@ std::vector<std::pair<std::string, std::vector<int>>> Mesh::patches(const Parame
   return named;
 }
 
-void Mesh::save(const std::filesystem::path& file) const {
+void MeshObject::save(const std::filesystem::path& file) const {
   const std::string suffix = file.extension();
   const MeshFile content = final_content(domain, result);
   if (suffix == ".vtu" && second) return write_second_order(file, domain, result, content, *second);
@@ -92,4 +106,4 @@ void Mesh::save(const std::filesystem::path& file) const {
   throw std::invalid_argument(file.string() + ": .vtu, .msh, .mesh or .stl is wanted");
 }
 
-}  // namespace umtet::python
+}  // namespace umtet

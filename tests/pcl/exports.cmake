@@ -1,0 +1,15 @@
+# What umtet_pcl exports is its interface and nothing of the libraries inside, whose names others may have, too.
+execute_process(COMMAND nm -D -C --defined-only ${LIBRARY} OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
+if(NOT symbols MATCHES "umtet::mesh_cloud\\(" OR NOT symbols MATCHES "umtet::CloudMesh::save\\(")
+  message(FATAL_ERROR "the interface is not exported:\n${symbols}")
+endif()
+string(REGEX REPLACE "\n$" "" symbols "${symbols}")
+string(REPLACE ";" "," symbols "${symbols}")
+string(REPLACE "\n" ";" symbols "${symbols}")
+list(FILTER symbols EXCLUDE REGEX "umtet::(mesh_cloud\\(|CloudMesh::save\\(|CloudMeshError)")
+list(FILTER symbols EXCLUDE REGEX "^[0-9a-f]+ [VWu] .*std::")  # templates of std of standard and plain types
+list(LENGTH symbols n)
+if(n GREATER 0)
+  list(JOIN symbols "\n" symbols)
+  message(FATAL_ERROR "these are exported, too:\n${symbols}")
+endif()
