@@ -38,12 +38,14 @@ CloudColumns columns_of(const CloudSource& source, const PcdHeader& header) {
   return columns;
 }
 
-/// As text it is the whole number, whatever its type, or the number in floating point that has these bytes: below 1 or
-/// above 1e9 for every alpha that is in use.
+/// As text it is the whole number, whatever its type, or the number in floating point that has these bytes. That is
+/// below 1, negative or beyond 32 bits unless alpha is 63 to 79, which nobody writes.
 double packed_colour(double number) {
-  const double magnitude = std::abs(number);
-  if (number >= 1 && number <= std::numeric_limits<std::uint32_t>::max() && number == std::trunc(number)) return number;
-  return magnitude < std::numeric_limits<float>::max() ? std::bit_cast<std::uint32_t>(static_cast<float>(number)) : 0;
+  const bool is_whole =
+      number >= 1 && number <= std::numeric_limits<std::uint32_t>::max() && number == std::trunc(number);
+  if (is_whole) return number;
+  const auto bytes = static_cast<float>(number);
+  return std::isfinite(bytes) ? std::bit_cast<std::uint32_t>(bytes) : 0;
 }
 
 double decode(const PcdField& field, const std::uint8_t* bytes) {
