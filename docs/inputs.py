@@ -4,7 +4,8 @@
 usage: PYTHONPATH=build/release/python xvfb-run -a docs/inputs.py UMTET [PICTURE]
 
 Makes an STL of a duck, a PCD of two views of it, an array of numpy and a NIfTI mask, runs the commands of
-docs/using.md, and prints one line for each. Needs Debian's python3-vtk9, python3-pil, fonts-dejavu-core, xvfb and libgl1-mesa-dri.
+docs/using.md, and prints one line for each. Needs Debian's python3-vtk9, python3-pil, fonts-dejavu-core, xvfb and
+libgl1-mesa-dri.
 """
 import json
 import pathlib
