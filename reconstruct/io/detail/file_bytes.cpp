@@ -27,6 +27,7 @@ FileBytes::FileBytes(const std::filesystem::path& file) : file_(file) {
 }
 
 void FileBytes::read_rest() {
+  if (in_.eof()) return;
   bytes_.reserve(bytes_.size() + n_left_ + kHead);  // it grows by a whole step before it is cut
   while (read(kHead)) {
   }
