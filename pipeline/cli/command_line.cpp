@@ -114,6 +114,10 @@ CommandParser::CommandParser() {
   CLI::App& inspect =
       add_command("inspect", make_inspect, "What is in a cloud, and what is likely to go wrong with it");
   inspect.add_option("CLOUD", in_.input, "points: .ply, .pcd, .xyz; triangles: .stl, .obj, .off, .ply")->required();
+  add_parameter_sources(inspect);
+  for (const ParamField& f : params_fields()) {  // those that the prediction follows
+    if (f.key == keys::mesh::h || f.key == keys::mesh::tets || f.key == keys::mesh::max_tets) add_value(inspect, f);
+  }
 
   CLI::App& check = add_command("check", make_check, "Validity and quality of any tet mesh; exit 6 when it fails");
   check.add_option("MESH", in_.input, ".vtu, .msh or .mesh")->required();
@@ -214,6 +218,10 @@ void CommandParser::add_stage_flags(CLI::App& command) {
 
 void CommandParser::add_parameter_flags(CLI::App& command, const std::vector<std::string>& sections,
                                         const std::vector<std::string>& except) {
+void CommandParser::add_value(CLI::App& command, const ParamField& field) {
+  command.add_option(field.flag, in_.values[field.key], described(field))->type_name(type_of(field));
+}
+
   const auto holds = [](const std::vector<std::string>& list, const std::string& s) {
     return std::find(list.begin(), list.end(), s) != list.end();
   };
@@ -222,7 +230,7 @@ void CommandParser::add_parameter_flags(CLI::App& command, const std::vector<std
     if (std::holds_alternative<bool>(f.preset)) {
       command.add_flag(f.flag, in_.switches[f.key], f.help);
     } else {
-      command.add_option(f.flag, in_.values[f.key], described(f))->type_name(type_of(f));
+      add_value(command, f);
     }
   }
 }

@@ -34,6 +34,7 @@ struct BatchCommand {
 
 struct InspectCommand {
   std::filesystem::path cloud;
+  Parameters parameters;  ///< of the run that is predicted
 };
 
 struct CheckCommand {

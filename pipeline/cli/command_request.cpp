@@ -157,7 +157,12 @@ Command make_batch(const CLI::App& app, const CommandInputs& in) {
   return BatchCommand{std::move(request)};
 }
 
-Command make_inspect(const CLI::App&, const CommandInputs& in) { return InspectCommand{in.input}; }
+Command make_inspect(const CLI::App& app, const CommandInputs& in) {
+  InspectCommand command{in.input, flag_parameters(app, in)};
+  read_parameters(
+      in, [](Stage) { return true; }, command.parameters);
+  return command;
+}
 
 Command make_check(const CLI::App& app, const CommandInputs& in) {
   CheckCommand command{in.input, {}, flag_parameters(app, in)};

@@ -119,7 +119,7 @@ Output Execution::operator()(const CheckCommand& command) const {
 
 Output Execution::operator()(const InspectCommand& command) const {
   set_work_at_hand("inspect");
-  const CloudInspection found = inspect_cloud(command.cloud, progress);
+  const CloudInspection found = inspect_cloud(command.cloud, command.parameters, progress);
   progress.clear();
   return {ExitCode::Success, inspection_text(found), {{"inspection", to_json(found)}}};
 }

@@ -25,10 +25,7 @@ constexpr double kEdgesAcross = 2.2;
 // Where that makes more than kTetsOfLargeMesh tets, fewer edges across have to do: classification and repair mend what
 // comes out wrong down to about 1.9, and (1.9 / 2.2)^3 is two thirds of the tets.
 constexpr double kFewerEdgesAcross = 1.9;
-constexpr std::int64_t kTetsOfLargeMesh = 1'150'000;
 constexpr double kThinShare = .01;
-// Noise of the samples over h, at most: psi is fitted on a lattice of three times the noise, and has nothing finer.
-constexpr double kMostNoise = .3;
 // The most that rounding may move a vertex, in edges: far less than anything that counts in a mesh.
 constexpr double kMostRounding = 1e-6;
 // 200 of them fall below the first percentile.
@@ -108,10 +105,7 @@ EdgeLength choose(Domain& domain, const Parameters& parameters, const Context& c
     return {h, h, {}, needed, thin.faces};
   }
   const double least = h_of(domain, parameters, p.max_tets);
-  double h = of_size;
-  if (t < limit) {
-    h = std::min(h, std::clamp(h_of(domain, parameters, kTetsOfLargeMesh), t / kEdgesAcross, t / kFewerEdgesAcross));
-  }
+  double h = edge_length_by(of_size, t, [&] { return h_of(domain, parameters, kTetsOfLargeMesh); });
   h = std::max(h, least);
   if (of_noise > h) return {of_noise, least, h, needed, thin.faces};
   return {h, least, {}, needed, thin.faces};
@@ -122,6 +116,11 @@ Vec3 greatest_coordinates(const Domain& domain) {
 }
 
 }  // namespace
+
+double edge_length_by(double of_size, double thin, const std::function<double()>& of_large) {
+  if (!(thin < kEdgesAcross * of_size)) return of_size;
+  return std::min(of_size, std::clamp(of_large(), thin / kEdgesAcross, thin / kFewerEdgesAcross));
+}
 
 double coordinate_rounding(const Domain& domain) {
   // Half a unit in the last place on every axis.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "common/context.h"
@@ -31,6 +33,17 @@ struct EdgeLength {
 /// \throw ResourceLimit      mesh.h or mesh.max_deviation asks for more than mesh.max_tets tets
 /// \throw MeshingImpossible  psi < 0 nowhere, or an h below least_h_in_file()
 EdgeLength choose_edge_length(Domain& domain, const Parameters& parameters, const Context& context = {});
+
+/// The default h of a body, as far as neither noise nor mesh.max_tets decides: see choose_edge_length().
+/// @param of_size   .015 diagonal
+/// @param thin      thickness that 1 % of the samples fall below
+/// @param of_large  the h of about kTetsOfLargeMesh tets; called where there are thin parts
+double edge_length_by(double of_size, double thin, const std::function<double()>& of_large);
+
+/// So many tets are a large mesh, in which fewer edges across a thin part have to do.
+inline constexpr std::int64_t kTetsOfLargeMesh = 1'150'000;
+/// Noise of the samples over h, at most: psi is fitted on a lattice of three times the noise, and has nothing finer.
+inline constexpr double kMostNoise = .3;
 
 /// The h at which about mesh.max_tets tets are made. \throw MeshingImpossible  psi < 0 nowhere
 double least_h_of_max_tets(const Domain& domain, const Parameters& parameters);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "pipeline/stages/cloud_preparation.h"
 #include "reconstruct/cloud/cloud_arrays.h"
@@ -83,10 +84,10 @@ std::vector<std::string> troubles(const CloudSurvey& s, const CloudFileReport& f
 
 }  // namespace
 
-CloudInspection inspect_cloud(const fs::path& file, Progress& progress) {
+CloudInspection inspect_cloud(const fs::path& file, const Parameters& parameters, Progress& progress) {
   progress.report("inspect", "read", 0);
   require_regular_file(file);
-  const ScanSource source = read_source(file, Parameters());
+  const ScanSource source = read_source(file, parameters);
   const CloudFile& scan = source.cloud;
   progress.report("inspect", "survey", .3);
   CloudSurvey s = [&] {
@@ -99,9 +100,10 @@ CloudInspection inspect_cloud(const fs::path& file, Progress& progress) {
   std::vector<double> area = sample_areas(scan.cloud.points);
   std::nth_element(area.begin(), area.begin() + static_cast<std::ptrdiff_t>(area.size() / 2), area.end());
   Resolution lattice = choose_resolution(std::sqrt(area[area.size() / 2]), kMeshEdge * s.diagonal, s.noise);
+  RunPrediction prediction = predict_run(s, std::accumulate(area.begin(), area.end(), 0.), parameters);
   std::vector<std::string> list = troubles(s, scan.report);
-  return {file.string(), scan.report,        field_names(scan.cloud), source.triangles,
-          std::move(s),  std::move(lattice), std::move(list)};
+  return {file.string(),      scan.report, field_names(scan.cloud), source.triangles, std::move(s),
+          std::move(lattice), prediction,  std::move(list)};
 }
 
 Json to_json(const CloudInspection& inspection) {
@@ -140,6 +142,7 @@ Json to_json(const CloudInspection& inspection) {
   json["origin"] = {{"farthest_coordinate", s.farthest_coordinate}, {"ulp_over_spacing", s.ulp_over_spacing}};
   const Resolution& lattice = inspection.lattice;
   json["lattice"] = {{"spacing", lattice.spacing}, {"smoothing", lattice.smoothing}, {"reason", lattice.reason}};
+  json["prediction"] = to_json(inspection.prediction);
   json["trouble"] = inspection.troubles;
   return json;
 }
@@ -174,6 +177,10 @@ std::string inspection_text(const CloudInspection& inspection) {
                      inspection.n_not_finite(), s.dropped.n_duplicates, s.dropped.n_outliers,
                      s.dropped.n_small_components);
   out += fmt::format("lattice   {:.4g}: {}\n", inspection.lattice.spacing, inspection.lattice.reason);
+  const RunPrediction& run = inspection.prediction;
+  out += fmt::format(
+      "a run    about {:.2g} tets at h = {:.3g}: {:.2g} s of one thread, {:.0f} MB; at most {:.2g} s, {:.0f} MB\n",
+      run.expected.n_tets, run.h, run.expected.seconds, run.expected.memory_MB, run.most.seconds, run.most.memory_MB);
   if (inspection.troubles.empty()) out += "trouble   none seen\n";
   for (const std::string& trouble : inspection.troubles) out += "trouble   " + trouble + "\n";
   return out;

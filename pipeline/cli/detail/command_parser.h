@@ -52,6 +52,7 @@ class CommandParser {
   void add_stage_flags(CLI::App& command);
   void add_timeout(CLI::App& command, const char* help);
   void add_batch();
+  void add_value(CLI::App& command, const ParamField& field);
   void add_parameter_flags(CLI::App& command, const std::vector<std::string>& sections,
                            const std::vector<std::string>& except = {});
   void check_command(int argc, const char* const* argv) const;

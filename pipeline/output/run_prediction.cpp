@@ -1,0 +1,91 @@
+#include "pipeline/output/run_prediction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "mesh/sizes/body_size.h"
+#include "pipeline/domain/background_choice.h"
+#include "pipeline/domain/edge_length.h"
+#include "reconstruct/solve/resolution.h"
+
+namespace umtet {
+namespace {
+
+// Of whole runs on one thread: the clouds of data/clouds, and ellipsoids of 0.05 to 1 M points with 0.1 to 4 M tets
+// (tests/bench/ellipsoid_cloud.py). tests/examples/cluster_test.py holds the first to them.
+constexpr double kSecondsPerPoint = 14e-6, kSecondsPerTet = 3.5e-6, kSecondsOfStart = .2;
+constexpr double kBytesPerPoint = 700, kBytesOfStart = 45e6;
+// The share of memory by which a run is allowed to begin (pipeline/case/memory.cpp).
+constexpr double kBytesPerTet = 500;
+
+RunCost cost(double n_points, double n_tets) {
+  return {n_tets, kSecondsOfStart + kSecondsPerPoint * n_points + kSecondsPerTet * n_tets,
+          (kBytesOfStart + kBytesPerPoint * n_points + kBytesPerTet * n_tets) / 1e6};
+}
+
+/// As large as it can be.
+BodySize body_of(const CloudSurvey& survey, double area) {
+  const double ball = std::pow(area, 1.5) / (6 * std::sqrt(std::numbers::pi));
+  const double box = (survey.high - survey.low).prod();
+  const double most = box > 0 ? std::min(ball, box) : ball;
+  const double given = std::abs(survey.volume);
+  return {.volume = survey.has_normals && survey.consistency >= SurveyParams().consistent && given > 0
+                        ? std::min(given, most)
+                        : most,
+          .area = area};
+}
+
+/// What h is not chosen by: --h and --tets come first, curvature and the walls of a box are not known.
+bool is_known(const Parameters& parameters) {
+  const MeshParameters& p = parameters.mesh();
+  return !background_file(parameters) && !p.complement && (p.max_deviation == 0 || p.h > 0 || p.tets > 0);
+}
+
+}  // namespace
+
+RunPrediction predict_run(const CloudSurvey& survey, double area, const Parameters& parameters) {
+  const MeshParameters& p = parameters.mesh();
+  const BodySize body = body_of(survey, area);
+  const ClassificationSource source = classification_source(parameters);
+  const Tiling& tiling = is_known(parameters) && p.background != "graded" ? tiling_of(parameters) : a15();
+  const auto max_tets = static_cast<double>(p.max_tets);
+  const auto h_of = [&](double n) { return h_for_tets(tiling, body, n, source); };
+  RunPrediction run;
+  if (!is_known(parameters)) {
+    run.h = h_of(max_tets);
+  } else if (p.tets > 0) {
+    run.h = h_of(static_cast<double>(p.tets));
+  } else if (p.h > 0) {
+    run.h = p.h;
+  } else {
+    const double thin = survey.thickness ? (*survey.thickness)[0] : std::numeric_limits<double>::infinity();
+    run.h =
+        edge_length_by(kMeshEdge * survey.diagonal, thin, [&] { return h_of(static_cast<double>(kTetsOfLargeMesh)); });
+    run.h = std::max({run.h, h_of(max_tets), survey.noise / kMostNoise});
+  }
+  const double n_tets = std::max(1., expected_tets(tiling, body, run.h, source));
+  const auto n_points = static_cast<double>(survey.n_points);
+  run.expected = cost(n_points, n_tets);
+  // All meshes together have p.effort times the tets of the first; none has more than mesh.max_tets.
+  const double all = std::max(1., p.effort) * n_tets;
+  run.most = cost(n_points, all);
+  run.most.n_tets = std::min(all, std::max(n_tets, max_tets));
+  run.most.memory_MB = cost(n_points, run.most.n_tets).memory_MB;
+  return run;
+}
+
+namespace {
+
+Json to_json(const RunCost& cost) {
+  return {{"n_tets", std::round(cost.n_tets)}, {"seconds", cost.seconds}, {"memory_MB", cost.memory_MB}};
+}
+
+}  // namespace
+
+Json to_json(const RunPrediction& prediction) {
+  return {{"h", prediction.h}, {"expected", to_json(prediction.expected)}, {"most", to_json(prediction.most)}};
+}
+
+}  // namespace umtet

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "pipeline/case/json_values.h"
+#include "pipeline/case/parameters.h"
+#include "reconstruct/cloud/cloud_survey.h"
+
+namespace umtet {
+
+/// What a run takes to make this many tets.
+struct RunCost {
+  double n_tets = 0;
+  double seconds = 0;    ///< of one thread, on the machine of docs/performance.md
+  double memory_MB = 0;  ///< peak of the process
+};
+
+/// What `umtet run` of a cloud is likely to take: for a scheduler that has to know before.
+struct RunPrediction {
+  double h = 0;      ///< mean edge length of the background, model units
+  RunCost expected;  ///< of one mesh
+  RunCost most;      ///< if it is not faithful and made again, as mesh.effort allows
+};
+
+/// By the rule of choose_edge_length(), with the thickness of the samples in place of that of psi, and by the volume
+/// and area behind the samples: as if the surface were closed. Where normals do not say the volume it is that of the
+/// ball of this area, or of the box if that is less: no body of the area has more. A mesh whose sizes vary has fewer
+/// tets. For mesh.max_deviation, a background in a file and the fluid in a box it is mesh.max_tets, since nothing is
+/// known of these.
+/// @param area  of all samples together
+RunPrediction predict_run(const CloudSurvey& survey, double area, const Parameters& parameters);
+
+Json to_json(const RunPrediction& prediction);
+
+}  // namespace umtet
