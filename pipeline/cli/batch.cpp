@@ -70,6 +70,7 @@ class Batch {
   Batch(const BatchRequest& request, Progress& progress)
       : request_(request), progress_(progress), settings_(assignments(request.parameters)) {}
   BatchOutcome operator()();
+  BatchOutcome collect();
 
  private:
   struct Running {
@@ -78,6 +79,9 @@ class Batch {
     bool killed = false;
   };
 
+  void require_own_folder() const;
+  void name_rows();
+  void collect_row(BatchRow& row) const;
   void list_scans();
   bool is_settled(const BatchRow& former) const;
   void start(std::size_t row);
@@ -107,17 +111,26 @@ bool Batch::is_settled(const BatchRow& former) const {
          code == ExitCode::MeshingImpossible || code == ExitCode::GateFailed;
 }
 
-void Batch::list_scans() {
+/// All of them wait.
+void Batch::name_rows() {
   scans_ = listed_clouds(request_.list);
   const std::vector<std::string> names = case_names(scans_);
-  for (BatchRow& row : read_batch(request_.folder)) former_[row.name] = std::move(row);
-  const std::string settings = fmt::format("{} {}", kVersion, fmt::join(settings_, " "));
   for (std::size_t k = 0; k < scans_.size(); ++k) {
-    stop_if_interrupted();
     BatchRow row;
     row.scan = scans_[k].string();
     row.name = names[k];
     row.verdict = kWaiting;
+    rows_.push_back(std::move(row));
+  }
+}
+
+void Batch::list_scans() {
+  name_rows();
+  for (BatchRow& row : read_batch(request_.folder)) former_[row.name] = std::move(row);
+  const std::string settings = fmt::format("{} {}", kVersion, fmt::join(settings_, " "));
+  for (std::size_t k = 0; k < scans_.size(); ++k) {
+    stop_if_interrupted();
+    BatchRow& row = rows_[k];
     try {
       row.key = checksum(stamp(scans_[k]).xxh3 + " " + settings);
     } catch (const std::system_error&) {
@@ -133,7 +146,6 @@ void Batch::list_scans() {
     } else {
       waiting_.push_back(k);
     }
-    rows_.push_back(std::move(row));
   }
   std::reverse(waiting_.begin(), waiting_.end());
 }
@@ -166,6 +178,27 @@ void Batch::read_answer(BatchRow& row, const Json& answer) const {
   if (answer.at("stages_run").empty() && former != former_.end() && former->second.exit_code == row.exit_code) {
     row.seconds = former->second.seconds;
     row.peak_memory_MB = former->second.peak_memory_MB;
+  }
+}
+
+/// \pre the row waits
+void Batch::collect_row(BatchRow& row) const {
+  try {
+    const Json answer = Json::parse(read_text(log(row, ".json")));
+    row.exit_code = answer.at("exit_code");
+    row.verdict = verdict_of(row.exit_code);
+    read_answer(row, answer);
+    if (!answer.contains("certificate") || !answer["certificate"].is_object()) return;
+    if (const Certificate certificate = certificate_from(answer["certificate"]); certificate.run) {
+      for (const auto& [stage, seconds] : certificate.run->seconds) row.seconds += seconds;
+      row.peak_memory_MB = certificate.run->peak_memory_MB;
+    }
+  } catch (const Json::exception&) {
+    row.reason = "its answer is not whole: it runs, or was ended by force";
+  } catch (const ArtefactDamaged&) {
+    row.reason = "its answer holds a certificate that is damaged";
+  } catch (const std::system_error&) {
+    // No answer at all: it has not been run.
   }
 }
 
@@ -271,8 +304,7 @@ BatchOutcome Batch::outcome() const {
   return result;
 }
 
-BatchOutcome Batch::operator()() {
-  const CaseLock lock(request_.folder);
+void Batch::require_own_folder() const {
   if (fs::exists(CasePaths{request_.folder}.parameters())) {
     throw UsageError(request_.folder.string() + " is a case: choose another folder for the cases of the batch");
   }
@@ -281,6 +313,28 @@ BatchOutcome Batch::operator()() {
     throw UsageError(files.front().string() +
                      " is in the way, and no batch of ours has made it: choose another folder");
   }
+}
+
+BatchOutcome Batch::collect() {
+  if (!fs::is_directory(request_.folder / "logs"))
+    throw UsageError(request_.folder.string() + ": no scan has left an answer in logs/ there");
+  const CaseLock lock(request_.folder);
+  require_own_folder();
+  set_work_at_hand("batch");
+  name_rows();
+  for (BatchRow& row : rows_) {
+    stop_if_interrupted();
+    collect_row(row);
+    progress_.report("batch", "collect", static_cast<double>(++n_done_) / static_cast<double>(rows_.size()));
+  }
+  remove_stale_temporaries(request_.folder);
+  write_batch(request_.folder, rows_);
+  return outcome();
+}
+
+BatchOutcome Batch::operator()() {
+  const CaseLock lock(request_.folder);
+  require_own_folder();
   stop_in_own_time();  // not before the scans have
   set_work_at_hand("batch");
   list_scans();
@@ -293,5 +347,9 @@ BatchOutcome Batch::operator()() {
 }  // namespace
 
 BatchOutcome run_batch(const BatchRequest& request, Progress& progress) { return Batch(request, progress)(); }
+
+BatchOutcome collect_batch(const BatchRequest& request, Progress& progress) {
+  return Batch(request, progress).collect();
+}
 
 }  // namespace umtet

@@ -11,7 +11,7 @@
 
 namespace umtet {
 
-/// Many scans by the same parameters.
+/// Many scans by the same parameters, on this machine.
 struct BatchRequest {
   std::filesystem::path list;  ///< of listed_clouds()
   std::filesystem::path folder;
@@ -22,6 +22,7 @@ struct BatchRequest {
   double timeout = 0;                ///< seconds for a scan; 0: any
   bool resume = false;               ///< scans that failed by themselves are not tried again
   bool force = false;                ///< of `umtet run`
+  bool collect = false;              ///< nothing is run, see collect_batch()
 };
 
 struct BatchOutcome {
@@ -38,5 +39,11 @@ struct BatchOutcome {
 /// \throw UsageError (also for a folder that is a case, or has a batch.csv that is none of ours), Interrupted when the
 ///        scans that ran have stopped, std::system_error when a table cannot be written
 BatchOutcome run_batch(const BatchRequest& request, Progress& progress);
+
+/// The tables of what other machines have made in the folder: of every scan FOLDER/logs/NAME.json has what
+/// `umtet run SCAN -o FOLDER/NAME --json` printed, and FOLDER/logs/NAME.log what it said. A scan without an answer that
+/// is whole waits. Seconds and memory are those of the records of the cases. Nothing is run, and no scan is read.
+/// \throw as run_batch()
+BatchOutcome collect_batch(const BatchRequest& request, Progress& progress);
 
 }  // namespace umtet

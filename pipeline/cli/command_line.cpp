@@ -148,8 +148,8 @@ CommandParser::CommandParser() {
 }
 
 void CommandParser::add_batch() {
-  CLI::App& batch =
-      add_command("batch", make_batch, "Many scans by the same parameters, each in a process of its own; one table");
+  CLI::App& batch = add_command(
+      "batch", make_batch, "Many scans by the same parameters on one machine, each in a process of its own; one table");
   add_parameter_sources(batch);
   add_timeout(batch, "seconds that a scan may take; then it is a row with exit code 9");
   batch.add_option("LIST", in_.input, "a text file with the path of a cloud a line")->required();
@@ -157,6 +157,8 @@ void CommandParser::add_batch() {
   batch.add_option("--jobs", in_.jobs, "scans at a time; they share the threads (default 1)")
       ->check(CLI::Range(1, 1024, "1 to 1024"));
   batch.add_flag("--resume", in_.resume, "scans whose input or mesh was refused are not tried again");
+  batch.add_flag("--collect", in_.collect,
+                 "run nothing: tables of what other machines have left in the folder (examples/cluster)");
   batch.add_flag("--force", in_.force, "run all stages although their records match");
   add_formats(batch, "--export");
   add_parameter_flags(batch, {"cloud", "reconstruct", "mesh", "output"}, kOwnPsi);
@@ -216,12 +218,12 @@ void CommandParser::add_stage_flags(CLI::App& command) {
   command.add_flag("--force", in_.force, "run the stages although their records match");
 }
 
-void CommandParser::add_parameter_flags(CLI::App& command, const std::vector<std::string>& sections,
-                                        const std::vector<std::string>& except) {
 void CommandParser::add_value(CLI::App& command, const ParamField& field) {
   command.add_option(field.flag, in_.values[field.key], described(field))->type_name(type_of(field));
 }
 
+void CommandParser::add_parameter_flags(CLI::App& command, const std::vector<std::string>& sections,
+                                        const std::vector<std::string>& except) {
   const auto holds = [](const std::vector<std::string>& list, const std::string& s) {
     return std::find(list.begin(), list.end(), s) != list.end();
   };

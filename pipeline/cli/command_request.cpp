@@ -152,6 +152,8 @@ Command make_batch(const CLI::App& app, const CommandInputs& in) {
   request.formats = in.formats;
   request.jobs = in.jobs;
   request.resume = in.resume;
+  request.collect = in.collect;
+  if (in.collect && (in.force || in.resume)) throw UsageError("batch: --collect runs nothing: no --force, no --resume");
   request.force = in.force;
   require_walls(request.parameters);
   return BatchCommand{std::move(request)};

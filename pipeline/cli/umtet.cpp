@@ -137,7 +137,8 @@ Output Execution::operator()(EvolveCommand& command) const {
 Output Execution::operator()(BatchCommand& command) const {
   command.request.timeout = options.timeout;
   command.request.threads = std::max(1, options.threads / command.request.jobs);
-  const BatchOutcome outcome = run_batch(command.request, progress);
+  const BatchOutcome outcome =
+      command.request.collect ? collect_batch(command.request, progress) : run_batch(command.request, progress);
   progress.clear();
   return {outcome.code,
           outcome.text + file_list(outcome.files),

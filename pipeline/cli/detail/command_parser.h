@@ -17,7 +17,7 @@ struct CommandInputs {
   std::map<std::string, std::string> values;  ///< by key
   std::map<std::string, bool> switches;       ///< by key
   int jobs = 1;
-  bool force = false, resume = false, no_report = false, quiet = false, verbose = false;
+  bool force = false, resume = false, collect = false, no_report = false, quiet = false, verbose = false;
 };
 
 /// Makes a command of what was read.
