@@ -36,6 +36,17 @@ BackgroundMesh::BackgroundMesh(const Tiling& tiling, const Box& box, double h)
   origin_ = box.center() - (.5 * unit_ * n * period).matrix();
 }
 
+BackgroundMesh BackgroundMesh::part(const Cell& first, const Cell& n) const {
+  if (!is_lattice_) throw std::invalid_argument("part: of a lattice only");
+  BackgroundMesh made = *this;
+  for (int a = 0; a < 3; ++a) {
+    if (first[a] < 0 || n[a] < 1 || n[a] > n_[a] - first[a]) throw std::invalid_argument("part: cells out of range");
+    made.first_[a] = first_[a] + first[a];
+    made.n_[a] = n[a];
+  }
+  return made;
+}
+
 BackgroundMesh::BackgroundMesh(TetMesh mesh)
     : is_lattice_(false),
       explicit_(std::make_shared<const ExplicitMesh>(std::move(mesh))),
@@ -63,9 +74,12 @@ Box BackgroundMesh::box() const {
     for (const Vec3& x : explicit_->mesh().V) box.extend(x);
     return box;
   }
-  Vec3 size;
-  for (int a = 0; a < 3; ++a) size[a] = unit_ * (static_cast<double>(n_[a]) * tiling_.period[a]);
-  return Box(origin_, origin_ + size);
+  Vec3 low, size;
+  for (int a = 0; a < 3; ++a) {
+    low[a] = origin_[a] + unit_ * (static_cast<double>(first_[a]) * tiling_.period[a]);
+    size[a] = unit_ * (static_cast<double>(n_[a]) * tiling_.period[a]);
+  }
+  return Box(low, low + size);
 }
 
 std::int64_t BackgroundMesh::n_vertices() const {
@@ -110,9 +124,9 @@ Vec3 BackgroundMesh::position(std::int64_t vertex) const {
   const auto& p = tiling_.points[v.type];
   const auto& period = tiling_.period;
   // The numbers in brackets are exact for dyadic points and periods.
-  return origin_ + unit_ * Vec3(static_cast<double>(v.cell[0]) * period[0] + p[0],
-                                static_cast<double>(v.cell[1]) * period[1] + p[1],
-                                static_cast<double>(v.cell[2]) * period[2] + p[2]);
+  return origin_ + unit_ * Vec3(static_cast<double>(v.cell[0] + first_[0]) * period[0] + p[0],
+                                static_cast<double>(v.cell[1] + first_[1]) * period[1] + p[1],
+                                static_cast<double>(v.cell[2] + first_[2]) * period[2] + p[2]);
 }
 
 std::array<std::int64_t, 4> BackgroundMesh::tet(std::int64_t tet) const {
@@ -212,7 +226,7 @@ std::int64_t BackgroundMesh::tet_near(const Vec3& x) const {
   if (!is_lattice_) return graded_ ? graded_->tet_at(x) : explicit_->tet_near(x);
   Cell cell;
   for (int a = 0; a < 3; ++a) {
-    const double c = std::floor((x[a] - origin_[a]) / (unit_ * tiling_.period[a]));
+    const double c = std::floor((x[a] - origin_[a]) / (unit_ * tiling_.period[a])) - static_cast<double>(first_[a]);
     if (!(c >= 0 && c < static_cast<double>(n_[a]))) return -1;
     cell[a] = static_cast<std::int64_t>(c);
   }

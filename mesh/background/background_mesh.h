@@ -90,6 +90,11 @@ class BackgroundMesh {
     return to.type - from + n_types_ * (to.offset[0] + (n_[0] + 2) * (to.offset[1] + (n_[1] + 2) * to.offset[2]));
   }
   std::int64_t vertex_id(int type, const Cell& cell) const;
+  /// The cells first .. first + n - 1 as a lattice of their own, for a process that needs no others. Ids are its own
+  /// and ascend as those of the whole do; positions are those of the whole, to the bit. It ends where its cells end:
+  /// vertices there are on its background boundary. \throw std::invalid_argument for cells that are not in this one
+  BackgroundMesh part(const Cell& first, const Cell& n) const;
+  const Cell& first_cell() const { return first_; }  ///< in the whole lattice; 0 of one that is no part
 
  private:
   struct VertexAddress {
@@ -109,7 +114,8 @@ class BackgroundMesh {
   TilingTables tables_;
   double h_, unit_;  ///< unit_: of the tiling's lengths, in model units
   Vec3 origin_;
-  Cell n_;  ///< cells in x, y, z
+  Cell n_;           ///< cells in x, y, z
+  Cell first_ = {};  ///< of a part: the place of its cell (0, 0, 0)
   int n_types_, n_cell_tets_;
 };
 

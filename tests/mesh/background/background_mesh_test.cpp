@@ -173,5 +173,33 @@ TEST_P(OnEveryTiling, TheNumberOfTetsAskedForIsMade) {
   }
 }
 
+TEST_P(OnEveryTiling, APartHasThePlacesOfTheWholeAndItsOrder) {
+  const BackgroundMesh whole(tiling(), Box(Vec3::Zero(), Vec3(1, 1.4, 1.2)), .06);
+  const BackgroundMesh::Cell& n = whole.n_cells();
+  const BackgroundMesh::Cell first = {n[0] / 3, n[1] / 4, n[2] / 2};
+  const BackgroundMesh part = whole.part(first, {n[0] - first[0], n[1] / 2, std::max<std::int64_t>(1, n[2] / 3)});
+  std::int64_t last = -1;
+  for (std::int64_t v = 0; v < part.n_vertices(); ++v) {
+    BackgroundMesh::Cell cell = part.cell(v);
+    for (int a = 0; a < 3; ++a) cell[a] += part.first_cell()[a];
+    const std::int64_t there = whole.vertex_id(part.type(v), cell);
+    ASSERT_EQ(part.position(v), whole.position(there));
+    ASSERT_GT(there, last);
+    last = there;
+  }
+  for (std::int64_t t = 0; t < part.n_tets(); t += 7) {
+    Vec3 middle = Vec3::Zero();
+    for (const std::int64_t v : part.tet(t)) middle += .25 * part.position(v);
+    const std::int64_t near = part.tet_near(middle);
+    if (near < 0) continue;  // a tet of an outermost cell may look out of it
+    ASSERT_EQ(part.position(part.tet(near)[0]), whole.position(whole.tet(whole.tet_near(middle))[0]));
+    ASSERT_TRUE(part.box().contains(middle));
+  }
+  // A part of a part is one of the whole.
+  const BackgroundMesh deeper = part.part({1, 0, 0}, {1, 1, 1});
+  EXPECT_EQ(deeper.first_cell()[0], first[0] + 1);
+  EXPECT_THROW(part.part({0, 0, 0}, {n[0] + 1, 1, 1}), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace umtet
