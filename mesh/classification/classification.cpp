@@ -28,7 +28,7 @@ class Descent {
  public:
   /// @param h  of the background
   Descent(double h, const VertexLinks& links, ImplicitFunctionRef psi, const ClassificationParams& params,
-          ClassificationBand& band, const IdSet* last)
+          ClassificationBand& band, const IdSet* last, ClassificationPart* part)
       : h_(h),
         links_(links),
         psi_(psi),
@@ -36,10 +36,14 @@ class Descent {
         costs_(params.costs ? *params.costs : a15_star_costs()),
         band_(band),
         last_(last),
+        part_(part),
         gain_(band.size()),
         open_(band.size(), kAll),
         thin_(band.size(), Thin::Unknown) {
     find_costs_of_distance();
+    for (std::size_t v = 0; part_ && v < band_.size(); ++v) {
+      if (part_->shares(band_.id[v])) shared_.push_back({static_cast<int>(v), state_of(static_cast<int>(v))});
+    }
   }
 
   /// @param inside  receives the classification
@@ -66,10 +70,22 @@ class Descent {
   float least_gain(int v) const {
     return is_as_before(v) ? std::max(kLeastGain, static_cast<float>(params_.keep)) : kLeastGain;
   }
+  void set_state(const VertexState& state);
+  void exchange();
+  std::size_t sum(std::size_t n) const { return part_ ? part_->sum(n) : n; }
   template <class F>
   std::size_t sweep(const F& visit);
   template <class F>
   bool descend(Open what, const F& visit, const Context& context, ClassificationReport& report);
+
+  /// A vertex that another process knows, and its state as it was passed on last.
+  struct Shared {
+    int v;
+    VertexState state;
+  };
+  VertexState state_of(int v) const {
+    return {band_.id[v], band_.is_inside[v], static_cast<std::uint8_t>(open_[v] & (kSingle | kPair))};
+  }
 
   double h_;
   const VertexLinks& links_;
@@ -78,10 +94,12 @@ class Descent {
   const StarCostTable& costs_;
   ClassificationBand& band_;
   const IdSet* last_;                 ///< classification of the mesh before, or null
+  ClassificationPart* part_;          ///< or null: there is one process
   std::vector<float> height_, lack_;  ///< costs of distance: of an outside vertex at the boundary, of an inside one
   std::vector<float> gain_;
   std::vector<std::uint8_t> open_;  ///< Open
   std::vector<Thin> thin_;
+  std::vector<Shared> shared_;  ///< ascending
 };
 
 void Descent::find_costs_of_distance() {
@@ -214,6 +232,38 @@ int Descent::flip_with_neighbour(int v) {
   return 2;
 }
 
+/// What another process has made of a vertex.
+void Descent::set_state(const VertexState& state) {
+  const int v = band_.find(state.vertex);
+  if (v < 0) return;
+  if (band_.is_inside[v] != state.is_inside) {
+    band_.is_inside[v] = state.is_inside;
+    const LinkTopology& link = links_.of_type(band_.type[v]);
+    for (int k = 0; k < link.n; ++k) {
+      const int w = band_.link(v)[k];
+      if (w < 0) continue;  // at the rim of what is known
+      band_.mask[w] ^= LinkMask{1} << link.back[k];
+      open_[w] |= kGain;
+      for (const int u : band_.link(w)) {
+        if (u >= 0) open_[u] |= kGain;
+      }
+    }
+  }
+  open_[v] = static_cast<std::uint8_t>(state.open | kGain);
+}
+
+void Descent::exchange() {
+  std::vector<VertexState> changed;
+  for (Shared& s : shared_) {
+    const VertexState now = state_of(s.v);
+    if (now.is_inside != s.state.is_inside || now.open != s.state.open) changed.push_back(s.state = now);
+  }
+  const std::vector<VertexState> received = part_->exchange(changed);
+  for (const VertexState& state : received) set_state(state);
+  if (received.empty()) return;
+  for (Shared& s : shared_) s.state = state_of(s.v);
+}
+
 /// @param visit  returns the number of its flips
 template <class F>
 std::size_t Descent::sweep(const F& visit) {
@@ -226,8 +276,9 @@ std::size_t Descent::sweep(const F& visit) {
       }
       if (n != 0) flips.fetch_add(n, std::memory_order_relaxed);
     });
+    if (part_) exchange();
   }
-  return flips;
+  return sum(flips);
 }
 
 /// Sweeps over the vertices with `what` to be done until nothing changes.
@@ -250,7 +301,7 @@ bool Descent::descend(Open what, const F& visit, const Context& context, Classif
 
 ClassificationReport Descent::operator()(IdSet& inside, const Context& context) {
   ClassificationReport report;
-  report.candidates = band_.order.size();
+  report.candidates = sum(band_.order.size());
   report.shifted = sweep([&](int v) {
     if (!band_.is_inside[v] || band_.phi[v] < -params_.shift || !may_flip(v)) return 0;
     flip(v);
@@ -274,7 +325,8 @@ ClassificationReport Descent::operator()(IdSet& inside, const Context& context) 
       inside.insert(band_.id[v]);
     } else {
       inside.erase(band_.id[v]);
-      const bool is_bad = band_.mask[v] != 0 && !links_.of_type(band_.type[v]).state(band_.mask[v]).manifold;
+      const bool is_bad = (!part_ || part_->owns(band_.id[v])) && band_.mask[v] != 0 &&
+                          !links_.of_type(band_.type[v]).state(band_.mask[v]).manifold;
       if (is_bad) report.not_manifold.push_back(band_.id[v]);
     }
     report.thin += thin_[v] == Thin::Yes;
@@ -323,12 +375,13 @@ bool is_thin(ImplicitFunctionRef psi, const Vec3& foot, const Vec3& normal, doub
 
 ClassificationReport classify_vertices(const BackgroundMesh& background, const VertexLinks& links,
                                        ImplicitFunctionRef psi, const ClassificationParams& params, IdSet& inside,
-                                       const Context& context, const IdSet* last, const PsiValues* known) {
+                                       const Context& context, const IdSet* last, const PsiValues* known,
+                                       ClassificationPart* part) {
   std::string all;
   for (const std::string& problem : problems(params)) all += (all.empty() ? "" : "; ") + problem;
   if (!all.empty()) throw std::invalid_argument(all);
-  ClassificationBand band(background, links, psi, params, inside, context, known);
-  return Descent(background.h(), links, psi, params, band, last)(inside, context);
+  ClassificationBand band(background, links, psi, params, inside, context, known, part);
+  return Descent(background.h(), links, psi, params, band, last, part)(inside, context);
 }
 
 }  // namespace umtet

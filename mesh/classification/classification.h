@@ -9,6 +9,7 @@
 #include "mesh/background/background_mesh.h"
 #include "mesh/background/vertex_links.h"
 #include "mesh/base/id_set.h"
+#include "mesh/classification/classification_part.h"
 #include "mesh/classification/star_cost_table.h"
 #include "mesh/core/implicit_function.h"
 #include "mesh/core/psi_values.h"
@@ -77,10 +78,13 @@ bool is_thin(ImplicitFunctionRef psi, const Vec3& foot, const Vec3& normal, doub
 /// @param inside  the vertices with psi < 0 on entry; none of them, nor a neighbour, on the background boundary
 /// @param last    inside vertices of the mesh before, or null: a state that costs at most `keep` more begins as there
 /// @param known   psi at all vertices with a neighbour on the other side, or null
+/// @param part    of a lattice, where other processes classify the rest, or null. `inside` is then right within five
+///                rings of own vertices; of the report, candidates and flips are those
+///                of all, the rest is about this part
 /// \throw std::invalid_argument naming every broken constraint of params, Cancelled
 ClassificationReport classify_vertices(const BackgroundMesh& background, const VertexLinks& links,
                                        ImplicitFunctionRef psi, const ClassificationParams& params, IdSet& inside,
                                        const Context& context = {}, const IdSet* last = nullptr,
-                                       const PsiValues* known = nullptr);
+                                       const PsiValues* known = nullptr, ClassificationPart* part = nullptr);
 
 }  // namespace umtet

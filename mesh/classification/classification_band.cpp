@@ -27,13 +27,14 @@ constexpr std::size_t kVerticesPerTask = 1 << 12;  // of some ten nanoseconds ea
 
 ClassificationBand::ClassificationBand(const BackgroundMesh& background, const VertexLinks& links,
                                        ImplicitFunctionRef psi, const ClassificationParams& params, const IdSet& inside,
-                                       const Context& context, const PsiValues* known)
+                                       const Context& context, const PsiValues* known, const ClassificationPart* part)
     : background_(background),
       links_(links),
       psi_(psi),
       params_(params),
       inside_(inside),
       known_(known),
+      part_(part),
       band_(background.n_vertices()) {
   gather();
   measure(context);
@@ -58,9 +59,10 @@ void ClassificationBand::gather() {
     gather_around(std::move(cut));
   } else {
     for_each_in_blocks(inside_, [&](std::size_t, std::int64_t v) {
+      if (part_ && !part_->knows(v)) return;
       bool is_cut = false;
       links_.for_each(v, [&](std::int64_t w) {
-        if (inside_.test(w)) return;
+        if (inside_.test(w) || (part_ && !part_->knows(w))) return;
         is_cut = true;
         band_.insert_shared(w);
       });
@@ -235,18 +237,18 @@ void ClassificationBand::make_blocks() {
   std::vector<std::uint32_t> block(size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, size(), kVerticesPerTask), [&](const auto& range) {
     for (std::size_t v = range.begin(); v != range.end(); ++v) {
-      if (!movable[v]) continue;
+      if (!is_visited(v)) continue;
       const auto cell = background_.cell(id[v]);
       const std::int64_t i = (cell[0] + 1) / kBlock, j = (cell[1] + 1) / kBlock, k = (cell[2] + 1) / kBlock;
       block[v] = static_cast<std::uint32_t>(i + nx * (j + ny * k));
     }
   });
   std::vector<std::uint32_t> end(static_cast<std::size_t>(nx * ny * nz) + 1, 0);
-  for (std::size_t v = 0; v < size(); ++v) end[block[v] + 1] += movable[v];
+  for (std::size_t v = 0; v < size(); ++v) end[block[v] + 1] += is_visited(v);
   std::partial_sum(end.begin(), end.end(), end.begin());
   order.resize(end.back());
   for (std::uint32_t v = 0; v < size(); ++v) {
-    if (movable[v]) order[end[block[v]]++] = v;
+    if (is_visited(v)) order[end[block[v]]++] = v;
   }
   std::uint32_t begin = 0;
   for (std::size_t b = 0; b + 1 < end.size(); begin = end[b++]) {

@@ -28,16 +28,19 @@ class ClassificationBand {
 
   /// @param inside  the vertices with psi < 0
   /// @param known   psi at all vertices with a neighbour on the other side, or null
+  /// @param part    of the vertices, or null: all
   /// \throw Cancelled
   ClassificationBand(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
                      const ClassificationParams& params, const IdSet& inside, const Context& context,
-                     const PsiValues* known = nullptr);
+                     const PsiValues* known = nullptr, const ClassificationPart* part = nullptr);
 
   std::size_t size() const { return id.size(); }
 
   std::vector<std::int64_t> id;  ///< ascending
   /// Ranks of the neighbours of v, -1 where they are not in the band.
   std::span<const int> link(std::size_t v) const { return {ranks_.data() + first_[v], first_[v + 1] - first_[v]}; }
+  /// The rank of a vertex, -1 where it is not in the band.
+  int find(std::int64_t v) const { return band_.test_any(v) ? band_.rank(v) : -1; }
   std::vector<int> type;
   std::vector<std::uint8_t> is_inside;
   std::vector<std::uint8_t> movable;  ///< it may be flipped
@@ -61,6 +64,7 @@ class ClassificationBand {
   void hold_where_stretched(const Context& context);
   void make_blocks();
   bool is_outermost(std::int64_t id) const;
+  bool is_visited(std::size_t v) const { return movable[v] != 0 && (!part_ || part_->owns(id[v])); }
   double unit(std::size_t v) const { return links_.of_type(type[v]).unit * background_.h(); }
   /// Farther than any vertex that may change, in units.
   float far() const { return static_cast<float>(params_.reach_in + params_.reach_out + 1); }
@@ -71,6 +75,7 @@ class ClassificationBand {
   const ClassificationParams& params_;
   const IdSet& inside_;
   const PsiValues* known_;
+  const ClassificationPart* part_;
   IdSet band_;
   std::vector<int> known_at_;       ///< where in known_ a vertex is, or -1; empty without
   std::vector<std::size_t> first_;  ///< into ranks_

@@ -61,10 +61,10 @@ class Projection {
 
   ProjectionReport operator()() {
     find_feet();
-    while (report_.rounds < params_.max_rounds && n_arrived_ < boundary_vertices_.size()) {
+    while (report_.rounds < params_.max_rounds && !all_arrived()) {
       ++report_.rounds;
       advance(std::min(1., static_cast<double>(report_.rounds) / params_.passes));
-      if (n_arrived_ == boundary_vertices_.size()) break;
+      if (all_arrived()) break;
       const bool last_pass_is_over = report_.rounds >= params_.passes;
       if (last_pass_is_over) make_room();
       relax(params_.sweeps);
@@ -74,6 +74,7 @@ class Projection {
   }
 
  private:
+  bool all_arrived() const { return smoother_.sum(boundary_vertices_.size() - n_arrived_) == 0; }
   template <class F>
   std::size_t count_over(std::size_t begin, std::size_t end, const F& f);
   void set_out();
@@ -179,11 +180,14 @@ bool Projection::step(BoundaryVertex& boundary_vertex, double target) {
 }
 
 void Projection::advance(double target) {
-  for (std::size_t c = 0; c + 1 < colour_begin_.size(); ++c) {
-    n_arrived_ += count_over(colour_begin_[c], colour_begin_[c + 1], [&](std::size_t k) -> std::size_t {
-      BoundaryVertex& boundary_vertex = boundary_vertices_[k];
-      return boundary_vertex.has_foot && !boundary_vertex.arrived && step(boundary_vertex, target) ? 1 : 0;
-    });
+  for (int colour = 0; colour < smoother_.n_colours(); ++colour) {
+    const auto c = static_cast<std::size_t>(colour);
+    if (c + 1 < colour_begin_.size())
+      n_arrived_ += count_over(colour_begin_[c], colour_begin_[c + 1], [&](std::size_t k) -> std::size_t {
+        BoundaryVertex& boundary_vertex = boundary_vertices_[k];
+        return boundary_vertex.has_foot && !boundary_vertex.arrived && step(boundary_vertex, target) ? 1 : 0;
+      });
+    smoother_.pass_on(colour);
   }
 }
 

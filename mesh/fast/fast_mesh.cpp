@@ -13,8 +13,8 @@
 #include "mesh/classification/classification.h"
 #include "mesh/classification/configuration_costs.h"
 #include "mesh/classification/manifold_boundary.h"
+#include "mesh/fast/fitted_layer.h"
 #include "mesh/fast/step_back.h"
-#include "mesh/fast/tangential_relaxation.h"
 #include "mesh/fast/warm_start.h"
 #include "mesh/submesh/assemble_submesh.h"
 #include "mesh/submesh/assumptions.h"
@@ -278,37 +278,23 @@ void FastRun::repair_classification() {
 void FastRun::relax(std::vector<Vec3>& projected) {
   layer_ = costs_ ? linked_active_layer(background_, *costs_->links, inside_, params_.layers)
                   : walled_active_layer(background_, inside_, params_.layers);
-  SmoothingParams smoothing_params = params_.smoothing;
-  bool is_on_surface = false, is_short = false;
+  LayerFit fit{.smoothing = params_.smoothing};
   if (memory_ && !memory_->moved.empty()) {
-    smoothing_params.margin = std::min(smoothing_params.margin, params_.update_margin);
-    smoothing_params.least_gain = std::max(smoothing_params.least_gain, kUpdateLeastGain);
-    smoothing_params.fine_gain = std::max(smoothing_params.fine_gain, kUpdateLeastGain);
+    fit.smoothing.margin = std::min(fit.smoothing.margin, params_.update_margin);
+    fit.smoothing.least_gain = std::max(fit.smoothing.least_gain, kUpdateLeastGain);
+    fit.smoothing.fine_gain = std::max(fit.smoothing.fine_gain, kUpdateLeastGain);
     const WarmStart start = warm_start(background_, psi_, inside_, *memory_, params_.projection, layer_, context_);
     result_.n_psi_evaluations += start.psi_evaluations;
     memory_->n_recalled = start.n_recalled;
-    is_on_surface = start.is_on_surface;
+    fit.is_on_surface = start.is_on_surface;
   }
+  const std::vector<std::uint8_t> inside = memory_ ? std::vector<std::uint8_t>() : inside_of(layer_, inside_);
+  if (!memory_) fit.inside = &inside;
   PNormSmoother smoother(layer_.layer);
   layer_.layer.ring = {};  // the smoother has listed their faces, and omega_h will need the memory
-  if (!is_on_surface) {
-    const ProjectionReport projection = project(smoother, psi_, params_.projection, context_);
-    result_.n_psi_evaluations += projection.psi_evaluations;
-    is_short = !projection.not_arrived.empty();
-  }
-  projected = layer_.layer.V;
-  context_.report("relax", .3);
-  smoother.enqueue_all();
-  const SmoothingReport smoothing = smoother.run(psi_, smoothing_params, context_);
-  result_.n_psi_evaluations += smoothing.psi_evaluations;
-  if (!memory_) {  // psi at every face: half the cost of an update
-    const TangentialRelaxationParams chords{.least_quality = params_.smoothing.target};
-    const std::vector<std::uint8_t> inside = inside_of(layer_, inside_);
-    result_.n_psi_evaluations +=
-        relax_tangentially(smoother, inside, psi_, chords, smoothing_params, context_).psi_evaluations;
-  }
-  // Smoothing may have made room for vertices that a tet held back.
-  if (is_short) result_.n_psi_evaluations += project(smoother, psi_, params_.projection, context_).psi_evaluations;
+  FittedLayer made = fit_layer(smoother, psi_, params_, fit, context_);
+  result_.n_psi_evaluations += made.psi_evaluations;
+  projected = std::move(made.projected);
 }
 
 void FastRun::fit() {

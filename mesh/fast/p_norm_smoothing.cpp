@@ -256,9 +256,11 @@ SmoothingReport PNormSmoother::run(ImplicitFunctionRef psi, const SmoothingParam
   SmoothingReport report;
   while (report.sweeps < params.max_sweeps && !report.settled) {
     Counts sweep;
-    for (std::size_t c = 0; c + 1 < colour_begin_.size(); ++c) {
+    for (int colour = 0; colour < n_colours(); ++colour) {
       todo_.clear();
-      for (std::size_t k = colour_begin_[c]; k < colour_begin_[c + 1]; ++k) {
+      const auto c = static_cast<std::size_t>(colour);
+      const bool has_any = c + 1 < colour_begin_.size();
+      for (std::size_t k = has_any ? colour_begin_[c] : 0; has_any && k < colour_begin_[c + 1]; ++k) {
         const int i = by_colour_[k];
         if (queued_[i] == 0 || is_fixed(layer_, i)) continue;
         queued_[i] = 0;
@@ -270,13 +272,14 @@ SmoothingReport PNormSmoother::run(ImplicitFunctionRef psi, const SmoothingParam
                                                    kSolvesPerTask);
         sweep = sweep + solve_all(some);
       }
+      pass_on(colour);
     }
     ++report.sweeps;
     report.checks += sweep.checks;
     report.solves += sweep.solves;
     report.moves += sweep.moves;
     report.psi_evaluations += sweep.psi_evaluations;
-    report.settled = sweep.moves == 0;
+    report.settled = sum(sweep.moves) == 0;
   }
   return report;
 }

@@ -11,6 +11,7 @@
 #include "mesh/core/implicit_function.h"
 #include "mesh/core/max_min.h"
 #include "mesh/core/quality_target.h"
+#include "mesh/fast/layer_exchange.h"
 #include "mesh/implicit/closest_point.h"
 #include "mesh/submesh/active_layer.h"
 
@@ -76,6 +77,17 @@ class PNormSmoother {
   /// \throw std::invalid_argument for a vertex with more than kMaxRing tets, unless Fixed
   explicit PNormSmoother(ActiveLayer& layer);
 
+  /// The layer is a part of one that several processes move: they call what follows together. Of reports, what was
+  /// moved last decides for all whether a layer has settled; counts are those of the part.
+  void share(LayerExchange& exchange) { exchange_ = &exchange; }
+  int n_colours() const { return exchange_ ? exchange_->n_colours() : static_cast<int>(colour_begin_.size()) - 1; }
+  /// Vertices of this colour have been moved and enqueued: passes that on if the layer is shared.
+  void pass_on(int colour) {
+    if (exchange_) exchange_->after(colour, layer_.V, queued_);
+  }
+  /// Over all processes that share the layer.
+  std::size_t sum(std::size_t n) const { return exchange_ ? exchange_->sum(n) : n; }
+
   /// Puts vertex i and all vertices of its ring in the queue: to be called when i was moved from outside. Vertices that
   /// share no tet may be enqueued by different threads at once.
   void enqueue(int i);
@@ -104,6 +116,7 @@ class PNormSmoother {
   };
 
   ActiveLayer& layer_;
+  LayerExchange* exchange_ = nullptr;      ///< or null: there is one process
   std::vector<Range> faces_of_;            ///< per vertex, in faces_
   std::unique_ptr<Triangle[]> faces_;      ///< opposite to a vertex in the tets of its ring; of those not Fixed, in the
                                            ///< order of by_colour_, in which sweeps read them

@@ -217,7 +217,7 @@ TangentialRelaxationReport relax_tangentially(PNormSmoother& smoother, const std
   const std::vector<Triangle> faces = boundary_faces(layer, inside);
   TangentialRelaxationReport report;
   const std::vector<std::vector<int>> colours = vertices_of_far_faces(layer, psi, faces, params, context, report);
-  if (report.vertices == 0) return report;
+  if (smoother.sum(report.vertices) == 0) return report;
   const Fans fans(faces, layer.V.size());
   const VertexSolver solve(smoother, psi, fans, params, smoothing.closest_point);
   smoothing.max_sweeps = params.inner_sweeps;
@@ -225,7 +225,8 @@ TangentialRelaxationReport relax_tangentially(PNormSmoother& smoother, const std
   std::vector<ActiveLayer::Role> roles = layer.role;
   for (int sweep = 0; sweep < params.sweeps; ++sweep) {
     std::size_t moves = 0;
-    for (const std::vector<int>& colour : colours) {
+    for (int c = 0; c < smoother.n_colours(); ++c) {
+      const std::vector<int> none, &colour = static_cast<std::size_t>(c) < colours.size() ? colours[c] : none;
       std::vector<std::uint8_t> moved(colour.size(), 0);
       for_each_asking(psi, colour.size(), kValuesPerPoll / 64, context, [&](std::size_t k) {
         const int i = colour[k];
@@ -236,9 +237,10 @@ TangentialRelaxationReport relax_tangentially(PNormSmoother& smoother, const std
         smoother.enqueue(i);
       });
       moves += static_cast<std::size_t>(std::count(moved.begin(), moved.end(), 1));
+      smoother.pass_on(c);
     }
     report.moves += moves;
-    if (moves == 0) break;
+    if (smoother.sum(moves) == 0) break;
     for (ActiveLayer::Role& role : layer.role)
       role = role == ActiveLayer::Role::Boundary ? ActiveLayer::Role::Fixed : role;
     smoother.run(psi, smoothing, context);

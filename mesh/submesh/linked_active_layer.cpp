@@ -27,7 +27,8 @@ class Builder {
   /// A vertex of omega_h, if v is an id at all.
   bool in_omega_h(std::int64_t v) const { return inside_.test_any(v) || mask(v) != 0; }
 
-  BackgroundLayer build(const IdSet& movable) const;
+  /// @param own  of the movable ones those that move here
+  BackgroundLayer build(const IdSet& movable, const IdSet& own) const;
   /// @param movable  ascending
   BackgroundLayer build(const IdList& movable) const;
 
@@ -101,12 +102,15 @@ ActiveLayer::Role Builder::role(std::int64_t v, const Movable& movable) const {
   return positive ? ActiveLayer::Role::Boundary : ActiveLayer::Role::Inner;
 }
 
-BackgroundLayer Builder::build(const IdSet& movable) const {
+BackgroundLayer Builder::build(const IdSet& movable, const IdSet& own) const {
   IdSet used(background_.n_vertices());
   std::vector<std::size_t> begin(n_blocks(movable) + 1, 0);  // of the tets
+  const bool all_own = &own == &movable;
+  const auto has_own = [&](auto... corners) { return all_own || (own.test_any(corners) || ...); };
+  for_each_in_blocks(
+      own, [&](std::size_t, std::int64_t v) { ring_vertices(v, [&](std::int64_t w) { used.insert_shared(w); }); });
   for_each_in_blocks(movable, [&](std::size_t b, std::int64_t v) {
-    ring_vertices(v, [&](std::int64_t w) { used.insert_shared(w); });
-    tets_at(v, movable, [&](auto...) { ++begin[b + 1]; });
+    tets_at(v, movable, [&](auto... corners) { begin[b + 1] += has_own(corners...); });
   });
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
   const std::size_t n_vertices = used.index();
@@ -122,11 +126,11 @@ BackgroundLayer Builder::build(const IdSet& movable) const {
     const int at = used.rank(v);
     result.background_vertex[at] = v;
     layer.V[at] = background_.position(v);
-    layer.role[at] = role(v, movable);
+    layer.role[at] = role(v, own);
   });
   for_each_in_blocks(movable, [&](std::size_t b, std::int64_t at) {
     tets_at(at, movable, [&](std::int64_t v, std::int64_t x, std::int64_t y, std::int64_t z) {
-      layer.C[begin[b]++] = {used.rank(v), used.rank(x), used.rank(y), used.rank(z)};
+      if (has_own(v, x, y, z)) layer.C[begin[b]++] = {used.rank(v), used.rank(x), used.rank(y), used.rank(z)};
     });
   });
   list_rings(layer);
@@ -180,9 +184,7 @@ void Builder::set_sizes_and_colours(BackgroundLayer& made) const {
 
 }  // namespace
 
-BackgroundLayer linked_active_layer(const BackgroundMesh& background, const VertexLinks& links, const IdSet& inside,
-                                    int layers) {
-  const Builder builder(background, links, inside);
+IdSet movable_vertices(const BackgroundMesh& background, const VertexLinks& links, const IdSet& inside, int layers) {
   IdSet movable(background.n_vertices());
   for_each_in_blocks(inside, [&](std::size_t, std::int64_t v) {
     links.for_each(v, [&](std::int64_t w) {
@@ -200,7 +202,18 @@ BackgroundLayer linked_active_layer(const BackgroundMesh& background, const Vert
     for (std::size_t w = 0; w < next.n_words(); ++w) movable.set_word(w, movable.word(w) | next.word(w));
     front = std::move(next);
   }
-  return builder.build(movable);
+  return movable;
+}
+
+BackgroundLayer layer_part(const BackgroundMesh& background, const VertexLinks& links, const IdSet& inside,
+                           const IdSet& movable, const IdSet& own) {
+  return Builder(background, links, inside).build(movable, own);
+}
+
+BackgroundLayer linked_active_layer(const BackgroundMesh& background, const VertexLinks& links, const IdSet& inside,
+                                    int layers) {
+  const IdSet movable = movable_vertices(background, links, inside, layers);
+  return layer_part(background, links, inside, movable, movable);
 }
 
 std::vector<std::uint8_t> inside_of(const BackgroundLayer& layer, const IdSet& inside) {

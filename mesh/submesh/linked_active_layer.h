@@ -29,6 +29,16 @@ struct BackgroundLayer {
 BackgroundLayer linked_active_layer(const BackgroundMesh& background, const VertexLinks& links, const IdSet& inside,
                                     int layers = 2);
 
+/// The first of its two steps: the vertices that move.
+IdSet movable_vertices(const BackgroundMesh& background, const VertexLinks& links, const IdSet& inside, int layers = 2);
+
+/// The second, for a process that moves some of them: the tets with one of those, in the order that they have in the
+/// whole layer. The others are Fixed.
+/// @param movable  all that move, at least those in a tet with an own one
+/// @param own      those that move here
+BackgroundLayer layer_part(const BackgroundMesh& background, const VertexLinks& links, const IdSet& inside,
+                           const IdSet& movable, const IdSet& own);
+
 /// The same for the vertices of omega_h within `reach` edges of one of `centres`, whatever their distance from the
 /// boundary: these move. Every tet of omega_h with a vertex that near to a centre is in the patch.
 /// \pre the centres have ids

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <memory>
 #include <set>
 
+#include "mesh/classification/configuration_costs.h"
 #include "mesh/core/tet_quality.h"
 #include "mesh/sizes/body_size.h"
 #include "mesh/submesh/assemble_submesh.h"
@@ -136,6 +139,51 @@ TEST(LinkedActiveLayer, APatchHoldsEveryTetNearItsCentres) {
       n += std::any_of(t.begin(), t.end(), [&](int v) { return ball.count(cut.submesh.background_vertex[v]) != 0; });
     }
     EXPECT_EQ(part.layer.C.size(), n);
+  }
+}
+
+TEST(LayerPart, TwoPartsHaveTheTetsOfTheWholeLayerInItsOrder) {
+  for (const AnalyticDomain& domain : testing::domains()) {
+    SCOPED_TRACE(domain.name);
+    const Cut cut(domain);
+    const std::shared_ptr<const VertexLinks> kept = background_costs(cut.background)->links;
+    const VertexLinks& links = *kept;
+    const BackgroundLayer whole = linked_active_layer(cut.background, links, cut.inside);
+    const IdSet movable = movable_vertices(cut.background, links, cut.inside);
+    std::size_t n_movable = 0;
+    movable.for_each([&](std::int64_t) { ++n_movable; });
+    using Ids = std::array<std::int64_t, 4>;
+    const auto ids = [](const BackgroundLayer& layer) {
+      std::vector<Ids> list;
+      for (const Tet& t : layer.layer.C) {
+        Ids own{};
+        for (std::size_t k = 0; k < 4; ++k) own[k] = layer.background_vertex[t[k]];
+        list.push_back(own);
+      }
+      return list;
+    };
+    std::size_t n_own = 0;
+    for (const int half : {0, 1}) {
+      IdSet own(cut.background.n_vertices());
+      movable.for_each([&](std::int64_t v) {
+        if ((cut.background.position(v).x() < .1) == (half == 0)) own.insert(v);
+      });
+      const BackgroundLayer part = layer_part(cut.background, links, cut.inside, movable, own);
+      std::vector<Ids> expected = ids(whole);
+      std::erase_if(expected, [&](const Ids& t) {
+        return std::none_of(t.begin(), t.end(), [&](std::int64_t v) { return own.test(v); });
+      });
+      EXPECT_EQ(ids(part), expected);
+      for (std::size_t v = 0; v < part.layer.role.size(); ++v) {
+        const auto at = std::lower_bound(whole.background_vertex.begin(), whole.background_vertex.end(),
+                                         part.background_vertex[v]) -
+                        whole.background_vertex.begin();
+        const bool is_own = own.test(part.background_vertex[v]);
+        n_own += is_own;
+        EXPECT_EQ(part.layer.role[v], is_own ? whole.layer.role[at] : ActiveLayer::Role::Fixed);
+      }
+    }
+    EXPECT_EQ(n_own, n_movable);
   }
 }
 
