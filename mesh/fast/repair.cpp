@@ -44,15 +44,17 @@ class Repair {
  public:
   Repair(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
          const ClassificationParams& classification, const RepairParams& params, const BackgroundLayer& layer,
-         IdSet& inside)
+         RemoteLayer* remote, IdSet& inside)
       : background_(background),
         links_(links),
         psi_(psi),
         classification_(classification),
         params_(params),
         layer_(layer),
+        remote_(remote),
         inside_(inside),
-        pass_{std::min(params.max_patches, kFewPatches + layer.layer.C.size() / kTetsPerPatch)},
+        pass_{std::min(params.max_patches,
+                       kFewPatches + (remote ? remote->n_tets() : layer.layer.C.size()) / kTetsPerPatch)},
         target_(params.target),
         positions_(background, layer),
         ranges_(background, links, params.reach) {}
@@ -60,10 +62,7 @@ class Repair {
   RepairReport operator()(const Context& context);
 
  private:
-  struct Bad {
-    double badness;  ///< the cosine of its face if that is misaligned, else Q: folded over ones are the worst
-    TetIds tet;
-  };
+  using Bad = BadTet;
   static bool is_worse(const Bad& a, const Bad& b) { return a.badness < b.badness; }
 
   /// What a pass over bad tets may cost, and where it began.
@@ -86,9 +85,11 @@ class Repair {
   void mend_rising(const FlipEffort& effort, std::size_t most, const Context& context);
   void retry_with(double target, const FlipEffort& effort);
   bool choose_round();
+  void know(const std::vector<LayerVertex>& vertices);
   void keep(const TetIds& tet, const FlipTrials::Best& best);
   void move(const BackgroundLayer& patch);
   void look(const BackgroundLayer& cut);
+  void begin();
   void count();
 
   const BackgroundMesh& background_;
@@ -97,6 +98,7 @@ class Repair {
   const ClassificationParams& classification_;
   const RepairParams& params_;
   const BackgroundLayer& layer_;
+  RemoteLayer* remote_;  ///< in place of layer_, which is empty then; or null
   IdSet& inside_;
   std::size_t most_patches() const {
     const std::size_t worth_it = kFewPatches + kPatchesPerSuccess * (kept_.size() - pass_.kept);
@@ -113,6 +115,8 @@ class Repair {
   std::vector<Bad> later_;                       ///< not below target_, but below params_.target
   std::vector<TetIds> waiting_;                  ///< before todo_
   std::vector<std::vector<std::int64_t>> kept_;  ///< centres of the patches
+  IdList moved_;                                 ///< vertices that patches have moved
+  std::set<std::int64_t> flipped_;               ///< vertices with another state
   std::vector<TetIds> round_;  ///< far from each other: what is done for one does not touch the others
   PatchRanges ranges_;         ///< of first vertices
   RepairReport report_;
@@ -151,6 +155,7 @@ bool Repair::choose_round() {
     if (std::any_of(before.begin(), before.end(), [&](const auto& other) { return range.meets(other); })) {
       held.push_back(tet);
     } else if (is_worth_trying(tet)) {
+      if (remote_) know(remote_->around(tet[0]));
       round_.push_back(tet);
     } else {
       continue;
@@ -164,7 +169,19 @@ bool Repair::choose_round() {
 
 void Repair::move(const BackgroundLayer& patch) {
   for (std::size_t v = 0; v < patch.layer.V.size(); ++v) {
-    if (patch.layer.role[v] != ActiveLayer::Role::Fixed) positions_.move(patch.background_vertex[v], patch.layer.V[v]);
+    if (patch.layer.role[v] == ActiveLayer::Role::Fixed) continue;
+    positions_.move(patch.background_vertex[v], patch.layer.V[v]);
+    moved_.add(patch.background_vertex[v]);
+  }
+}
+
+/// Vertices of a layer elsewhere, none of which has been changed here.
+void Repair::know(const std::vector<LayerVertex>& vertices) {
+  for (const LayerVertex& v : vertices) {
+    if (!positions_.has_moved(v.vertex)) positions_.move(v.vertex, v.place);
+    if (!v.is_inside || inside_.test(v.vertex)) continue;
+    inside_.insert(v.vertex);
+    for (FlipTrials& trials : trials_) trials.flip(v.vertex);
   }
 }
 
@@ -172,6 +189,7 @@ void Repair::keep(const TetIds& tet, const FlipTrials::Best& best) {
   for (const std::int64_t v : best.flips) {
     inside_.test(v) ? inside_.erase(v) : inside_.insert(v);
     for (FlipTrials& trials : trials_) trials.flip(v);
+    if (!flipped_.insert(v).second) flipped_.erase(v);
   }
   move(best.layer);
   kept_.emplace_back(tet.begin(), tet.end());
@@ -187,34 +205,17 @@ void Repair::count() {
 
 /// Puts the tets of a layer that are below the target, or have a misaligned face, on the list, the worst first.
 void Repair::look(const BackgroundLayer& cut) {
-  const std::vector<Vec3>& V = cut.layer.V;
-  const std::vector<Tet>& C = cut.layer.C;
-  const std::vector<std::uint8_t> inside = inside_of(cut, inside_);
-  std::vector<double> badness(C.size(), 1);
-  std::atomic<std::size_t> evaluations = 0;
-  // Nearly all tets are above the target, which takes no root to see.
-  const double enough = (1 + 1e-12) * f_of_quality(params_.target);
-  for_each_asking(psi_, C.size(), C.size(), {}, [&](std::size_t k) {
-    const Tet& t = C[k];
-    const Vec3 &p = V[t[0]], &q = V[t[1]], &r = V[t[2]], &s = V[t[3]];
-    const double six = volume6(p, q, r, s), L = sum_of_squared_edges(p, q, r, s);
-    if (!(six * std::abs(six) >= enough * (L * L * L))) badness[k] = mean_ratio(p, q, r, s);
-    Triangle f;
-    if (!positive_face(t, inside, f)) return;
-    std::size_t n = 0;
-    const double cosine = normal_cosine(psi_, V[f[0]], V[f[1]], V[f[2]], cut.layer.h_at(f[0]), n);
-    evaluations.fetch_add(n, std::memory_order_relaxed);
-    if (cosine < kMisalignedCosine) badness[k] = std::min(badness[k], cosine);
-  });
-  report_.psi_evaluations += evaluations;
   const std::size_t first = todo_.size();
-  const auto& id = cut.background_vertex;
-  for (std::size_t k = 0; k < C.size(); ++k) {
-    const Tet& t = C[k];
-    if (!(badness[k] < params_.target)) continue;
-    (badness[k] < target_ ? todo_ : later_).push_back({badness[k], {id[t[0]], id[t[1]], id[t[2]], id[t[3]]}});
-  }
+  for (const BadTet& bad : bad_tets(cut, inside_, psi_, params_, report_.psi_evaluations))
+    (bad.badness < target_ ? todo_ : later_).push_back(bad);
   std::stable_sort(todo_.begin() + static_cast<std::ptrdiff_t>(first), todo_.end(), is_worse);
+}
+
+void Repair::begin() {
+  if (!remote_) return look(layer_);
+  know(remote_->corners());
+  todo_ = remote_->bad();
+  std::stable_sort(todo_.begin(), todo_.end(), is_worse);
 }
 
 /// What is on the list, round by round.
@@ -290,7 +291,7 @@ void Repair::mend_rising(const FlipEffort& effort, std::size_t most, const Conte
 }
 
 RepairReport Repair::operator()(const Context& context) {
-  if (params_.max_tries > 0) look(layer_);
+  if (params_.max_tries > 0) begin();
   report_.bad_before = todo_.size();
   if (todo_.empty()) return std::move(report_);
   for (std::size_t k = 0; k < kAtOnce; ++k) {
@@ -315,7 +316,8 @@ RepairReport Repair::operator()(const Context& context) {
     }
   }
   for (const FlipTrials& trials : trials_) report_.psi_evaluations += trials.psi_evaluations;
-  for (const std::int64_t v : positions_.moved()) report_.moved.emplace_back(v, positions_.of(v));
+  for (const std::int64_t v : moved_.ids()) report_.moved.emplace_back(v, positions_.of(v));
+  report_.flipped.assign(flipped_.begin(), flipped_.end());
   std::sort(report_.moved.begin(), report_.moved.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   return std::move(report_);
 }
@@ -336,15 +338,63 @@ std::vector<std::string> problems(const RepairParams& params) {
   return list;
 }
 
-RepairReport repair(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
-                    const ClassificationParams& classification, const RepairParams& params,
-                    const BackgroundLayer& layer, IdSet& inside, const Context& context) {
+std::vector<BadTet> bad_tets(const BackgroundLayer& layer, const IdSet& inside_set, ImplicitFunctionRef psi,
+                             const RepairParams& params, std::size_t& n_evaluations) {
+  const std::vector<Vec3>& V = layer.layer.V;
+  const std::vector<Tet>& C = layer.layer.C;
+  const std::vector<std::uint8_t> inside = inside_of(layer, inside_set);
+  std::vector<double> badness(C.size(), 1);
+  std::atomic<std::size_t> evaluations = 0;
+  // Nearly all tets are above the target, which takes no root to see.
+  const double enough = (1 + 1e-12) * f_of_quality(params.target);
+  for_each_asking(psi, C.size(), C.size(), {}, [&](std::size_t k) {
+    const Tet& t = C[k];
+    const Vec3 &p = V[t[0]], &q = V[t[1]], &r = V[t[2]], &s = V[t[3]];
+    const double six = volume6(p, q, r, s), L = sum_of_squared_edges(p, q, r, s);
+    if (!(six * std::abs(six) >= enough * (L * L * L))) badness[k] = mean_ratio(p, q, r, s);
+    Triangle f;
+    if (!positive_face(t, inside, f)) return;
+    std::size_t n = 0;
+    const double cosine = normal_cosine(psi, V[f[0]], V[f[1]], V[f[2]], layer.layer.h_at(f[0]), n);
+    evaluations.fetch_add(n, std::memory_order_relaxed);
+    if (cosine < kMisalignedCosine) badness[k] = std::min(badness[k], cosine);
+  });
+  n_evaluations += evaluations;
+  const auto& id = layer.background_vertex;
+  std::vector<BadTet> bad;
+  for (std::size_t k = 0; k < C.size(); ++k) {
+    const Tet& t = C[k];
+    if (badness[k] < params.target) bad.push_back({badness[k], {id[t[0]], id[t[1]], id[t[2]], id[t[3]]}});
+  }
+  return bad;
+}
+
+namespace {
+
+/// \throw std::invalid_argument
+void check(const ClassificationParams& classification, const RepairParams& params) {
   std::string all;
   for (const auto& list : {problems(classification), problems(params)}) {
     for (const std::string& problem : list) all += (all.empty() ? "" : "; ") + problem;
   }
   if (!all.empty()) throw std::invalid_argument(all);
-  return Repair(background, links, psi, classification, params, layer, inside)(context);
+}
+
+}  // namespace
+
+RepairReport repair(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
+                    const ClassificationParams& classification, const RepairParams& params,
+                    const BackgroundLayer& layer, IdSet& inside, const Context& context) {
+  check(classification, params);
+  return Repair(background, links, psi, classification, params, layer, nullptr, inside)(context);
+}
+
+RepairReport repair(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
+                    const ClassificationParams& classification, const RepairParams& params, RemoteLayer& layer,
+                    IdSet& inside, const Context& context) {
+  check(classification, params);
+  const BackgroundLayer none;
+  return Repair(background, links, psi, classification, params, none, &layer, inside)(context);
 }
 
 }  // namespace umtet

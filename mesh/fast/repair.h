@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -55,6 +56,7 @@ struct RepairReport {
   std::size_t given_up = 0;    ///< tets for which nothing helped
   std::size_t psi_evaluations = 0;
   std::vector<std::pair<std::int64_t, Vec3>> moved;  ///< background vertices with a new place, ascending
+  std::vector<std::int64_t> flipped;                 ///< background vertices with another state, ascending
 };
 
 /// Mends tets below the target, and boundary faces misaligned away from psi = 0 (patch_state.h), by changing which
@@ -80,5 +82,45 @@ struct RepairReport {
 RepairReport repair(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
                     const ClassificationParams& classification, const RepairParams& params,
                     const BackgroundLayer& layer, IdSet& inside, const Context& context = {});
+
+/// A tet of a layer that repair has to look at.
+struct BadTet {
+  double badness;  ///< the cosine of its face if that is misaligned, else Q: folded over ones are the worst
+  std::array<std::int64_t, 4> tet;
+};
+
+/// The tets of a layer that are below the target or have a misaligned face, in its order: what repair() begins with.
+/// @param n_evaluations  is raised by the number of values of psi
+std::vector<BadTet> bad_tets(const BackgroundLayer& layer, const IdSet& inside, ImplicitFunctionRef psi,
+                             const RepairParams& params, std::size_t& n_evaluations);
+
+/// A vertex before repair.
+struct LayerVertex {
+  std::int64_t vertex;
+  bool is_inside;
+  Vec3 place;
+};
+
+/// A layer that other processes have, and this one repairs: no more than max_patches places of it.
+class RemoteLayer {
+ public:
+  /// bad_tets() of all of it, in the order of the whole layer.
+  virtual const std::vector<BadTet>& bad() const = 0;
+  /// Their corners.
+  virtual const std::vector<LayerVertex>& corners() const = 0;
+  virtual std::size_t n_tets() const = 0;
+  /// What is within `reach` + 3 edges of a vertex, and perhaps more: vertices that are inside, or not where the
+  /// background has them. Each is given once; so is what repair has changed since never given again.
+  virtual std::vector<LayerVertex> around(std::int64_t vertex) = 0;
+
+ protected:
+  ~RemoteLayer() = default;
+};
+
+/// The same for a layer elsewhere: what is done for a tet depends on what is within reach + 3 edges of its first vertex,
+/// and that is asked for before. @param inside  empty; receives what has been asked for, with the changes
+RepairReport repair(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
+                    const ClassificationParams& classification, const RepairParams& params, RemoteLayer& layer,
+                    IdSet& inside, const Context& context = {});
 
 }  // namespace umtet

@@ -32,7 +32,7 @@ class Positions {
   /// @param from  where in the layer to look; receives where it was found, for the next greater one
   Vec3 of(std::int64_t v, std::size_t& from) const;
   void move(std::int64_t v, const Vec3& x);
-  const std::vector<std::int64_t>& moved() const { return moved_.ids(); }
+  bool has_moved(std::int64_t v) const { return moved_.test(v); }
 
  private:
   const BackgroundMesh& background_;
