@@ -6,8 +6,11 @@
 #include <string>
 #include <utility>
 
+#include "distributed/collect.h"
 #include "distributed/lattice_part.h"
 #include "distributed/part_classification.h"
+#include "distributed/part_embedding.h"
+#include "distributed/part_manifold.h"
 #include "distributed/part_repair.h"
 #include "distributed/partition.h"
 #include "distributed/shared_layer.h"
@@ -19,12 +22,6 @@
 
 namespace umtet {
 namespace {
-
-int rank_in(MPI_Comm comm) {
-  int rank = 0;
-  MPI_Comm_rank(comm, &rank);
-  return rank;
-}
 
 class PartRun {
  public:
@@ -47,6 +44,7 @@ class PartRun {
       fit();
       repair();
       emit();
+      embed();
     }
     result_.traffic = ranks_.traffic();
     return std::move(result_);
@@ -61,9 +59,13 @@ class PartRun {
   void find_inside();
   bool fits_background();
   bool classify();
+  std::size_t count_inside();
   void fit();
   void repair();
   void emit();
+  void fetch_places();
+  void embed();
+  void move(const std::vector<std::pair<std::int64_t, Vec3>>& moved);
   void list_tets(IdSet& used);
   Vec3 place(std::int64_t v) const;
 
@@ -77,7 +79,8 @@ class PartRun {
   ClassificationParams classification_;  ///< with the costs
   IdSet inside_;                         ///< of known vertices
   BackgroundLayer layer_;
-  std::vector<std::pair<std::int64_t, Vec3>> moved_;  ///< by repair, ascending, known ones
+  std::vector<std::pair<std::int64_t, Vec3>> places_;  ///< of own vertices that are not where the background has them
+  std::vector<std::int64_t> vertex_;                   ///< those of the result, by ids of the part
   DistributedMesh result_;
 };
 
@@ -88,13 +91,11 @@ void PartRun::find_inside() {
 }
 
 bool PartRun::fits_background() {
-  std::size_t n_inside = 0, n_on_boundary = 0;
+  if (count_inside() == 0) return fail(PartsStatus::EmptyDomain, 0);
+  std::size_t n_on_boundary = 0;
   part_.own().for_each([&](std::int64_t v) {
-    if (!inside_.test(v)) return;
-    ++n_inside;
-    n_on_boundary += part_.whole().on_boundary(part_.to_whole(v));
+    if (inside_.test(v)) n_on_boundary += part_.whole().on_boundary(part_.to_whole(v));
   });
-  if (ranks_.sum(n_inside) == 0) return fail(PartsStatus::EmptyDomain, 0);
   n_on_boundary = ranks_.sum(n_on_boundary);
   return n_on_boundary == 0 || fail(PartsStatus::DomainLeavesBackground, n_on_boundary);
 }
@@ -103,8 +104,15 @@ bool PartRun::classify() {
   PartClassification others(part_, ranks_);
   const ClassificationReport report =
       classify_vertices(part_.lattice(), *costs_.links, psi_, classification_, inside_, {}, nullptr, nullptr, &others);
-  const std::size_t n_bad = ranks_.sum(report.not_manifold.size());
-  return n_bad == 0 || fail(PartsStatus::NotManifold, n_bad);
+  result_.manifold_flips =
+      make_parts_manifold(comm_, part_, partition_, psi_, classification_, report.not_manifold, inside_);
+  return result_.manifold_flips.empty() || count_inside() > 0 || fail(PartsStatus::EmptyDomain, 0);
+}
+
+std::size_t PartRun::count_inside() {
+  std::size_t n = 0;
+  part_.own().for_each([&](std::int64_t v) { n += inside_.test(v); });
+  return ranks_.sum(n);
 }
 
 void PartRun::fit() {
@@ -129,22 +137,35 @@ void PartRun::repair() {
     const std::int64_t v = part_.from_whole(there);
     if (v >= 0) inside_.test(v) ? inside_.erase(v) : inside_.insert(v);
   }
-  for (const auto& [there, x] : made.moved) {
-    const std::int64_t v = part_.from_whole(there);
-    if (v >= 0) moved_.emplace_back(v, x);
-  }
+  places_ = places_of(layer_);
+  layer_ = {};
+  move(made.moved);
   result_.n_gets = made.n_gets;
   result_.bytes_got = made.bytes;
 }
 
+/// Own vertices, by ids of the whole.
+void PartRun::move(const std::vector<std::pair<std::int64_t, Vec3>>& moved) {
+  std::vector<std::pair<std::int64_t, Vec3>> both;
+  for (const auto& [there, x] : moved) {
+    const std::int64_t v = part_.from_whole(there);
+    if (v >= 0 && part_.own().test(v)) both.emplace_back(v, x);
+  }
+  const auto is_less = [](const auto& a, const auto& b) { return a.first < b.first; };
+  const std::size_t n = both.size();
+  for (const auto& place : places_) {
+    const auto end = both.begin() + static_cast<std::ptrdiff_t>(n);
+    if (!std::binary_search(both.begin(), end, place, is_less)) both.push_back(place);
+  }
+  std::sort(both.begin(), both.end(), is_less);
+  places_ = std::move(both);
+}
+
 /// Where an own vertex is.
 Vec3 PartRun::place(std::int64_t v) const {
-  const auto moved =
-      std::lower_bound(moved_.begin(), moved_.end(), v, [](const auto& a, std::int64_t id) { return a.first < id; });
-  if (moved != moved_.end() && moved->first == v) return moved->second;
-  const auto& ids = layer_.background_vertex;
-  const auto found = std::lower_bound(ids.begin(), ids.end(), v);
-  return found != ids.end() && *found == v ? layer_.layer.V[found - ids.begin()] : part_.lattice().position(v);
+  const auto found =
+      std::lower_bound(places_.begin(), places_.end(), v, [](const auto& a, std::int64_t id) { return a.first < id; });
+  return found != places_.end() && found->first == v ? found->second : part_.lattice().position(v);
 }
 
 /// The tets of own cells with a vertex inside, by ids of lattice().
@@ -183,18 +204,28 @@ void PartRun::list_tets(IdSet& used) {
 void PartRun::emit() {
   IdSet used(part_.lattice().n_vertices());
   list_tets(used);
-  // Places of vertices of others are asked for, and the others answer.
-  std::vector<Neighbourhood::Bytes> asked(ranks_.ranks().size()), answers(asked.size());
-  std::vector<std::vector<std::size_t>> theirs(asked.size());
   used.for_each([&](std::int64_t v) {
+    vertex_.push_back(v);
     result_.background_vertex.push_back(part_.to_whole(v));
     result_.owner.push_back(part_.owner(v));
-    result_.mesh.V.push_back(place(v));
-    if (part_.own().test(v)) return;
-    const std::size_t neighbour = ranks_.number(part_.owner(v));
-    put(asked[neighbour], result_.background_vertex.back());
-    theirs[neighbour].push_back(result_.mesh.V.size() - 1);
   });
+  result_.mesh.V.resize(vertex_.size());
+  fetch_places();
+}
+
+/// Places of vertices of others are asked for, and the others answer.
+void PartRun::fetch_places() {
+  std::vector<Neighbourhood::Bytes> asked(ranks_.ranks().size()), answers(asked.size());
+  std::vector<std::vector<std::size_t>> theirs(asked.size());
+  for (std::size_t k = 0; k < vertex_.size(); ++k) {
+    if (part_.own().test(vertex_[k])) {
+      result_.mesh.V[k] = place(vertex_[k]);
+      continue;
+    }
+    const std::size_t neighbour = ranks_.number(result_.owner[k]);
+    put(asked[neighbour], result_.background_vertex[k]);
+    theirs[neighbour].push_back(k);
+  }
   const std::vector<Neighbourhood::Bytes> wanted = ranks_.exchange(asked);
   for (std::size_t k = 0; k < wanted.size(); ++k) {
     for (std::size_t at = 0; at < wanted[k].size();) {
@@ -211,6 +242,15 @@ void PartRun::emit() {
   }
 }
 
+/// Vertices go back where the mesh meets itself.
+void PartRun::embed() {
+  const auto moved = step_parts_back(comm_, part_, partition_, ranks_, {result_.mesh, vertex_, inside_, places_});
+  result_.n_stepped_back = moved.size();
+  if (moved.empty()) return;
+  move(moved);
+  fetch_places();
+}
+
 }  // namespace
 
 const char* to_string(PartsStatus status) {
@@ -221,8 +261,6 @@ const char* to_string(PartsStatus status) {
       return "empty domain";
     case PartsStatus::DomainLeavesBackground:
       return "domain leaves background";
-    case PartsStatus::NotManifold:
-      return "boundary not a manifold";
   }
   return "";
 }

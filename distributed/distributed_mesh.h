@@ -11,14 +11,14 @@
 #include "mesh/core/implicit_function.h"
 #include "mesh/core/tet_mesh.h"
 #include "mesh/fast/fast_params.h"
+#include "mesh/submesh/um_result.h"
 
 namespace umtet {
 
 enum class PartsStatus {
   Success,
-  EmptyDomain,             ///< psi < 0 at no background vertex
+  EmptyDomain,             ///< psi < 0 at no background vertex, or no body is left that h can show
   DomainLeavesBackground,  ///< psi < 0 at a vertex on the background boundary
-  NotManifold,  ///< the boundary of omega_h is no manifold at a vertex, which one process mends (manifold_boundary.h)
 };
 const char* to_string(PartsStatus);
 
@@ -29,14 +29,16 @@ struct DistributedMesh {
   std::vector<std::int64_t> background_tet;     ///< ids in the background, ascending; each tet is on one rank
   TetMesh mesh;                                 ///< its tets, and all their vertices
   std::vector<std::int64_t> background_vertex;  ///< of each vertex, ascending
+  std::vector<ManifoldFlip> manifold_flips;     ///< UmResult::manifold_flips, of all ranks
+  std::size_t n_stepped_back = 0;               ///< UmResult::n_stepped_back, of all ranks
   std::vector<int> owner;                       ///< of each vertex, a rank
   Traffic traffic;                              ///< but for repair
   std::size_t n_gets = 0, bytes_got = 0;        ///< what repair has read of other ranks; of rank 0, which does it
 };
 
-/// The mesh that fast_mesh() makes of {psi < 0}, but for step_back(), byte for byte and for any number of ranks and
-/// threads: chosen inside vertices, projection, smoothing, tangential relaxation, repair. Each rank holds the blocks
-/// that it has and those next to them. README.md says what depends on what.
+/// The mesh that fast_mesh() makes of {psi < 0}, byte for byte and for any number of ranks and threads: chosen inside
+/// vertices, projection, smoothing, tangential relaxation, repair, and no face through another. Each rank holds the
+/// blocks that it has and those next to them. README.md says what depends on what.
 ///
 /// Collective; all ranks pass the same arguments. psi must be thread-safe.
 /// @param background  a lattice over a tiling that has costs (configuration_costs.h)

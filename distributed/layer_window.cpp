@@ -4,16 +4,12 @@
 #include <bit>
 #include <utility>
 
+#include "distributed/collect.h"
+
 namespace umtet {
 namespace {
 
 constexpr std::int64_t kCells = BlockCurve::kCells;
-
-int rank_in(MPI_Comm comm) {
-  int rank = 0;
-  MPI_Comm_rank(comm, &rank);
-  return rank;
-}
 
 /// Among the cells of its block.
 std::int64_t number_in_block(const BackgroundMesh::Cell& cell) {
@@ -47,11 +43,11 @@ void LayerWindow::close(Open<T>& open) const {
 }
 
 LayerWindow::LayerWindow(MPI_Comm comm, const LatticePart& part, const Partition& partition, const IdSet& inside,
-                         const BackgroundLayer& layer)
+                         const Places& places)
     : comm_(comm), part_(part), partition_(partition), rank_(rank_in(comm)) {
   std::vector<std::uint64_t> headers;
   std::vector<Entry> entries;
-  list_own(inside, layer, headers, entries);
+  list_own(inside, places, headers, entries);
   headers_ = opened(std::move(headers));
   entries_ = opened(std::move(entries));
 }
@@ -61,7 +57,7 @@ LayerWindow::~LayerWindow() {
   close(entries_);
 }
 
-void LayerWindow::list_own(const IdSet& inside, const BackgroundLayer& layer, std::vector<std::uint64_t>& headers,
+void LayerWindow::list_own(const IdSet& inside, const Places& places, std::vector<std::uint64_t>& headers,
                            std::vector<Entry>& entries) const {
   const std::uint64_t begin = partition_.begin(rank_);
   headers.assign((partition_.end(rank_) - begin) * n_words(), 0);
@@ -74,11 +70,7 @@ void LayerWindow::list_own(const IdSet& inside, const BackgroundLayer& layer, st
     const BackgroundMesh::Cell cell = part_.whole().cell(there);
     header_of(cell)[2 + part_.whole().type(there)] |= std::uint64_t{1} << number_in_block(cell);
   });
-  for (std::size_t v = 0; v < layer.layer.V.size(); ++v) {
-    if (layer.layer.role[v] == ActiveLayer::Role::Fixed) continue;
-    const Vec3& x = layer.layer.V[v];
-    entries.push_back({part_.to_whole(layer.background_vertex[v]), {x[0], x[1], x[2]}});
-  }
+  for (const auto& [v, x] : places) entries.push_back({part_.to_whole(v), {x[0], x[1], x[2]}});
   const auto block_of = [&](const Entry& e) {
     return BlockCurve::place(BlockCurve::block_of(part_.whole().cell(e.vertex)));
   };
@@ -156,6 +148,36 @@ std::vector<LayerVertex> LayerWindow::get(const std::vector<BlockCurve::Block>& 
   const Entry* at = entries.data();
   for (std::size_t k = 0; k < blocks.size(); at += pieces[k++].n) add(blocks[k], &headers[k * n_words()], at, list);
   return list;
+}
+
+template <class F>
+void BlocksAround::for_each_block(std::int64_t vertex, const F& f) const {
+  const BackgroundMesh::Cell cell = whole_.cell(vertex);
+  BackgroundMesh::Cell low = cell, high = cell;
+  for (int a = 0; a < 3; ++a) {
+    low[a] = std::max<std::int64_t>(-1, cell[a] - cells_);
+    high[a] = std::min(whole_.n_cells()[a], cell[a] + cells_);
+  }
+  const BlockCurve::Block first = BlockCurve::block_of(low), last = BlockCurve::block_of(high);
+  for (std::int64_t k = first[2]; k <= last[2]; ++k) {
+    for (std::int64_t j = first[1]; j <= last[1]; ++j) {
+      for (std::int64_t i = first[0]; i <= last[0]; ++i) f(BlockCurve::Block{i, j, k});
+    }
+  }
+}
+
+std::vector<LayerVertex> BlocksAround::operator()(std::int64_t vertex) {
+  std::vector<BlockCurve::Block> blocks;
+  for_each_block(vertex, [&](const BlockCurve::Block& block) {
+    if (given_.insert(BlockCurve::place(block)).second) blocks.push_back(block);
+  });
+  return window_.get(blocks);
+}
+
+bool BlocksAround::has_given(std::int64_t vertex) const {
+  bool all = true;
+  for_each_block(vertex, [&](const BlockCurve::Block& block) { all &= given_.count(BlockCurve::place(block)) != 0; });
+  return all;
 }
 
 }  // namespace umtet

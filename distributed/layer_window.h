@@ -3,6 +3,8 @@
 #include <mpi.h>
 
 #include <cstdint>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "distributed/lattice_part.h"
@@ -10,16 +12,17 @@
 #include "distributed/partition.h"
 #include "mesh/base/id_set.h"
 #include "mesh/fast/repair.h"
-#include "mesh/submesh/linked_active_layer.h"
 
 namespace umtet {
 
 /// States and places of the vertices of all ranks, block by block, open to any of them by MPI's one-sided access.
 class LayerWindow {
  public:
-  /// Collective; copies what own blocks hold. @param layer  of own vertices
+  using Places = std::vector<std::pair<std::int64_t, Vec3>>;
+
+  /// Collective; copies what own blocks hold. @param places  of own vertices that are not where the background has them
   LayerWindow(MPI_Comm comm, const LatticePart& part, const Partition& partition, const IdSet& inside,
-              const BackgroundLayer& layer);
+              const Places& places);
   ~LayerWindow();  ///< collective
   LayerWindow(const LayerWindow&) = delete;
   LayerWindow& operator=(const LayerWindow&) = delete;
@@ -51,7 +54,7 @@ class LayerWindow {
     int rank;
     std::size_t first, n;
   };
-  void list_own(const IdSet& inside, const BackgroundLayer& layer, std::vector<std::uint64_t>& headers,
+  void list_own(const IdSet& inside, const Places& places, std::vector<std::uint64_t>& headers,
                 std::vector<Entry>& entries) const;
   template <class T>
   Open<T> opened(std::vector<T> list) const;
@@ -69,6 +72,27 @@ class LayerWindow {
   Open<std::uint64_t> headers_;  ///< by place on the own piece of the curve
   Open<Entry> entries_;
   std::size_t n_gets_ = 0, bytes_ = 0;
+};
+
+/// What is around vertices of the whole lattice, each block once.
+class BlocksAround {
+ public:
+  /// @param edges  that a reader looks around a vertex
+  BlocksAround(const BackgroundMesh& whole, LayerWindow& window, int edges)
+      : whole_(whole), window_(window), cells_((edges + 1) / 2) {}
+  /// All within so many edges of a vertex, and what else is in the blocks, but for blocks that were given before.
+  std::vector<LayerVertex> operator()(std::int64_t vertex);
+  /// All within so many edges of it has been given.
+  bool has_given(std::int64_t vertex) const;
+
+ private:
+  template <class F>
+  void for_each_block(std::int64_t vertex, const F& f) const;
+
+  const BackgroundMesh& whole_;
+  LayerWindow& window_;
+  std::int64_t cells_;             ///< no edge of a lattice is longer than half a cell along an axis
+  std::set<std::uint64_t> given_;  ///< places of blocks
 };
 
 }  // namespace umtet

@@ -1,44 +1,14 @@
 #include "distributed/part_repair.h"
 
 #include <algorithm>
-#include <set>
+#include <utility>
 
+#include "distributed/collect.h"
 #include "distributed/layer_window.h"
 #include "mesh/classification/configuration_costs.h"
 
 namespace umtet {
 namespace {
-
-int rank_in(MPI_Comm comm) {
-  int rank = 0;
-  MPI_Comm_rank(comm, &rank);
-  return rank;
-}
-
-/// What all ranks have, in their order; on rank 0. T has no pointers.
-template <class T>
-std::vector<T> gathered(MPI_Comm comm, const std::vector<T>& own) {
-  int n_ranks = 1, n = static_cast<int>(own.size() * sizeof(T)), all = 0;
-  MPI_Comm_size(comm, &n_ranks);
-  std::vector<int> counts(static_cast<std::size_t>(n_ranks), 0), begins;
-  MPI_Gather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, comm);
-  for (const int c : counts) {
-    begins.push_back(all);
-    all += c;
-  }
-  std::vector<T> result(static_cast<std::size_t>(all) / sizeof(T));
-  MPI_Gatherv(own.data(), n, MPI_BYTE, result.data(), counts.data(), begins.data(), MPI_BYTE, 0, comm);
-  return result;
-}
-
-/// What rank 0 has becomes what all have. T has no pointers.
-template <class T>
-void broadcast(MPI_Comm comm, std::vector<T>& list) {
-  int n = static_cast<int>(list.size());
-  MPI_Bcast(&n, 1, MPI_INT, 0, comm);
-  list.resize(static_cast<std::size_t>(n));
-  MPI_Bcast(list.data(), static_cast<int>(list.size() * sizeof(T)), MPI_BYTE, 0, comm);
-}
 
 /// A bad tet with all that is_bad() asks of it.
 struct SentTet {
@@ -78,8 +48,8 @@ std::vector<SentTet> own_bad_tets(const LatticePart& part, ImplicitFunctionRef p
 class GatheredLayer final : public RemoteLayer {
  public:
   /// @param tets  of all ranks, those of one first corner in their order
-  GatheredLayer(const BackgroundMesh& whole, LayerWindow& window, std::vector<SentTet> tets, std::size_t n_tets)
-      : whole_(whole), curve_(whole), window_(window), n_tets_(n_tets) {
+  GatheredLayer(BlocksAround blocks, std::vector<SentTet> tets, std::size_t n_tets)
+      : blocks_(std::move(blocks)), n_tets_(n_tets) {
     std::stable_sort(tets.begin(), tets.end(),
                      [](const SentTet& a, const SentTet& b) { return a.corner[0] < b.corner[0]; });
     for (const SentTet& t : tets) {
@@ -91,41 +61,25 @@ class GatheredLayer final : public RemoteLayer {
   const std::vector<BadTet>& bad() const override { return bad_; }
   const std::vector<LayerVertex>& corners() const override { return corners_; }
   std::size_t n_tets() const override { return n_tets_; }
-  std::vector<LayerVertex> around(std::int64_t vertex) override;
-  /// Edges of a lattice are at most half a cell long along an axis.
-  void reach(int edges) { cells_ = (edges + 1) / 2; }
+  std::vector<LayerVertex> around(std::int64_t vertex) override { return blocks_(vertex); }
 
  private:
-  const BackgroundMesh& whole_;
-  const BlockCurve curve_;
-  LayerWindow& window_;
+  BlocksAround blocks_;
   std::vector<BadTet> bad_;
   std::vector<LayerVertex> corners_;
   std::size_t n_tets_;
-  std::int64_t cells_ = 0;
-  std::set<std::uint64_t> given_;  ///< places of blocks
 };
 
-std::vector<LayerVertex> GatheredLayer::around(std::int64_t vertex) {
-  const BackgroundMesh::Cell cell = whole_.cell(vertex);
-  BackgroundMesh::Cell low = cell, high = cell;
-  for (int a = 0; a < 3; ++a) {
-    low[a] = std::max<std::int64_t>(-1, cell[a] - cells_);
-    high[a] = std::min(whole_.n_cells()[a], cell[a] + cells_);
-  }
-  const BlockCurve::Block first = BlockCurve::block_of(low), last = BlockCurve::block_of(high);
-  std::vector<BlockCurve::Block> blocks;
-  for (std::int64_t k = first[2]; k <= last[2]; ++k) {
-    for (std::int64_t j = first[1]; j <= last[1]; ++j) {
-      for (std::int64_t i = first[0]; i <= last[0]; ++i) {
-        if (given_.insert(BlockCurve::place({i, j, k})).second) blocks.push_back({i, j, k});
-      }
-    }
-  }
-  return window_.get(blocks);
-}
-
 }  // namespace
+
+std::vector<std::pair<std::int64_t, Vec3>> places_of(const BackgroundLayer& layer) {
+  std::vector<std::pair<std::int64_t, Vec3>> places;
+  for (std::size_t v = 0; v < layer.layer.V.size(); ++v) {
+    if (layer.layer.role[v] != ActiveLayer::Role::Fixed)
+      places.emplace_back(layer.background_vertex[v], layer.layer.V[v]);
+  }
+  return places;
+}
 
 PartRepair repair_parts(MPI_Comm comm, const LatticePart& part, const Partition& partition, ImplicitFunctionRef psi,
                         const ClassificationParams& classification, const RepairParams& params,
@@ -138,10 +92,9 @@ PartRepair repair_parts(MPI_Comm comm, const LatticePart& part, const Partition&
   std::vector<SentTet> bad = gathered(comm, own_bad_tets(part, psi, params, layer, inside));
   std::vector<Moved> moved;
   {
-    LayerWindow window(comm, part, partition, inside, layer);
+    LayerWindow window(comm, part, partition, inside, places_of(layer));
     if (rank_in(comm) == 0) {
-      GatheredLayer remote(part.whole(), window, std::move(bad), all_tets);
-      remote.reach(params.reach + 3);
+      GatheredLayer remote({part.whole(), window, params.reach + 3}, std::move(bad), all_tets);
       IdSet states(part.whole().n_vertices());
       const RepairReport report =
           repair(part.whole(), *background_costs(part.whole())->links, psi, classification, params, remote, states);

@@ -21,6 +21,9 @@ struct PartRepair {
   std::size_t n_gets = 0, bytes = 0;  ///< that rank 0 has read of others, and 0 elsewhere
 };
 
+/// Where a layer has the vertices that move, ascending.
+std::vector<std::pair<std::int64_t, Vec3>> places_of(const BackgroundLayer& layer);
+
 /// repair() of the layer that all ranks have together. How many patches it tries is bounded, whatever the size of the
 /// mesh, and which ones depends on how many were tried before: so rank 0 does it, and reads the blocks around bad tets
 /// from those that have them. It holds a bit for each vertex of the background.

@@ -55,7 +55,8 @@ class Mending {
         inside_(inside),
         states_(background, links) {}
 
-  ManifoldReport operator()(const std::vector<std::int64_t>& bad, const Context& context);
+  ManifoldReport operator()(const std::vector<std::int64_t>& bad, const Context& context,
+                            const std::function<void(std::int64_t)>& read);
 
  private:
   /// What has been done to a vertex. What is Removed stays outside.
@@ -180,12 +181,14 @@ void Mending::mend_one_way(std::int64_t v) {
   }
 }
 
-ManifoldReport Mending::operator()(const std::vector<std::int64_t>& bad, const Context& context) {
+ManifoldReport Mending::operator()(const std::vector<std::int64_t>& bad, const Context& context,
+                                   const std::function<void(std::int64_t)>& read) {
   bad_.insert(bad.begin(), bad.end());
   report_.n_bad = bad_.size();
   while (!bad_.empty()) {
     context.poll();
     const std::int64_t v = *bad_.begin();
+    if (read) read(v);
     if (const std::int64_t best = best_flip(v); best >= 0) {
       flip(best, Change::Flipped);
     } else {
@@ -223,9 +226,10 @@ std::vector<std::int64_t> vertices_not_manifold(const BackgroundMesh& background
 
 ManifoldReport make_manifold(const BackgroundMesh& background, const VertexLinks* links, ImplicitFunctionRef psi,
                              const ClassificationParams& params, bool has_walls, const std::vector<std::int64_t>& bad,
-                             IdSet& inside, const Context& context) {
+                             IdSet& inside, const Context& context,
+                             const std::function<void(std::int64_t)>& read) {
   if (bad.empty()) return {};
-  return Mending(background, links, psi, params, has_walls, inside)(bad, context);
+  return Mending(background, links, psi, params, has_walls, inside)(bad, context, read);
 }
 
 }  // namespace umtet

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "common/context.h"
@@ -37,14 +38,21 @@ std::vector<std::int64_t> vertices_not_manifold(const BackgroundMesh& background
 /// inside neighbours are removed for good, which leaves it without a tet. No vertex is filled or removed twice, so this
 /// ends, and it ends only where no vertex is bad.
 ///
-/// One bad vertex after the other, the least id first: the same for any number of threads.
+/// One bad vertex after the other, the least id first: the same for any number of threads. What is done for one depends
+/// on what is within kManifoldReach edges.
 /// @param links        of the background, or null: then links are read off the stars
 /// @param has_walls    vertices on the background boundary may be inside; else none is, nor becomes it
 /// @param bad          vertices_not_manifold()
 /// @param inside       receives the changes; may become empty
+/// @param read         where others have the classification, or nothing: called before a bad vertex is looked at; puts
+///                     what is within kManifoldReach edges into `inside`, if it has not before
 /// \throw Cancelled
 ManifoldReport make_manifold(const BackgroundMesh& background, const VertexLinks* links, ImplicitFunctionRef psi,
                              const ClassificationParams& params, bool has_walls, const std::vector<std::int64_t>& bad,
-                             IdSet& inside, const Context& context = {});
+                             IdSet& inside, const Context& context = {},
+                             const std::function<void(std::int64_t vertex)>& read = {});
+
+/// Costs of a flip next to a bad vertex are those of its neighbours, which depend on theirs; and one to spare.
+inline constexpr int kManifoldReach = 4;
 
 }  // namespace umtet

@@ -42,11 +42,10 @@ FastParams without_repair() {
   return params;
 }
 
-/// That of one process. No vertex may have stepped back.
+/// That of one process.
 WholeMesh made_by_one(const BackgroundMesh& background, const AnalyticDomain& domain, const FastParams& params) {
   const UmResult made = universal_mesh(background, domain, {.fast = params});
   EXPECT_EQ(made.status, UmStatus::Success) << made.evidence.what;
-  EXPECT_EQ(made.n_stepped_back, 0U);
   WholeMesh mesh;
   const auto& id = made.submesh.background_vertex;
   for (std::size_t t = 0; t < made.submesh.mesh.C.size(); ++t) {
@@ -89,19 +88,22 @@ WholeMesh gathered_mesh(const DistributedMesh& part) {
   return mesh;
 }
 
-void expect_same(const BackgroundMesh& background, const AnalyticDomain& domain, const FastParams& params = {}) {
+/// @return the part of this rank
+DistributedMesh expect_same(const BackgroundMesh& background, const AnalyticDomain& domain,
+                            const FastParams& params = {}) {
   SCOPED_TRACE(domain.name);
   const DistributedMesh part = distributed_mesh(MPI_COMM_WORLD, background, domain, params);
-  ASSERT_EQ(part.status, PartsStatus::Success) << to_string(part.status) << " " << part.n_places;
+  EXPECT_EQ(part.status, PartsStatus::Success) << to_string(part.status) << " " << part.n_places;
   const WholeMesh mesh = gathered_mesh(part);
-  if (rank() != 0) return;
+  if (rank() != 0) return part;
   const WholeMesh one = made_by_one(background, domain, params);
   EXPECT_EQ(mesh.tets.size(), one.tets.size());
   EXPECT_TRUE(mesh.tets == one.tets);
-  ASSERT_EQ(mesh.places.size(), one.places.size());
+  EXPECT_EQ(mesh.places.size(), one.places.size());
   std::size_t n_elsewhere = 0;
-  for (auto a = mesh.places.begin(), b = one.places.begin(); a != mesh.places.end(); ++a, ++b) n_elsewhere += *a != *b;
+  for (const auto& [v, x] : mesh.places) n_elsewhere += !one.places.contains(v) || one.places.at(v) != x;
   EXPECT_EQ(n_elsewhere, 0U);
+  return part;
 }
 
 BackgroundMesh lattice_for(const AnalyticDomain& domain, double n_tets) {
@@ -142,6 +144,57 @@ TEST(DistributedMesh, IsThatOfOneProcessWhereHBarelyShowsTheBody) {
     for (const AnalyticDomain& domain : {testing::torus(1, .3), testing::ellipsoid({1, .4, .2})})
       expect_same(lattice_for(domain, n_tets), domain);
   }
+}
+
+/// Two unit balls with a gap between them, at x = middle.
+AnalyticDomain two_balls(double gap, double middle = 0) {
+  const Vec3 c(1 + gap / 2, 0, 0), m(middle, 0, 0);
+  AnalyticDomain domain = testing::sphere();
+  domain.name = "two balls";
+  domain.box = Box(Vec3(-2.6, -1.5, -1.5), Vec3(2.6, 1.5, 1.5));
+  domain.psi = [c, m](const Vec3& x, Vec3* g, Mat3* H) {
+    const Vec3 d = x - m - (x.x() > m.x() ? c : -c);
+    if (g) *g = 2 * d;
+    if (H) *H = 2 * Mat3::Identity();
+    return d.squaredNorm() - 1;
+  };
+  return domain;
+}
+
+TEST(DistributedMesh, MendsABoundaryThatIsNoManifoldAsOneProcessDoes) {
+  for (const double thickness : {.3, .5, .9, 1.1}) {
+    const AnalyticDomain plate = testing::ellipsoid({1, .8, .5 * thickness * .1});
+    const Vec3 more = Vec3::Constant(.3);
+    const BackgroundMesh background(a15(), Box(plate.box.min() - more, plate.box.max() + more), .1);
+    EXPECT_FALSE(expect_same(background, plate, without_repair()).manifold_flips.empty());
+  }
+}
+
+TEST(DistributedMesh, FacesThatMeetStepBackAsInOneProcess) {
+  for (const double gap : {.1, .25, .5, .75, 1., 1.25}) {
+    const AnalyticDomain balls = two_balls(gap * .1);
+    EXPECT_GT(expect_same({a15(), balls.box, .1}, balls, without_repair()).n_stepped_back, 10U);
+  }
+}
+
+TEST(DistributedMesh, FacesOfTwoRanksThatMeetStepBack) {
+  // Half of the curve ends at the beginning of block 8 along x: of two and of four ranks, others have each ball.
+  const double h = .13;
+  const BackgroundMesh background(a15(), Box(Vec3(-57 * h, -1.5, -1.5), Vec3(57 * h, 1.5, 1.5)), h);
+  const double border = background.position(background.vertex_id(0, {31, 0, 0})).x();
+  for (const double off : {-.01, 0., .01}) {
+    for (const double gap : {.2, .3, .4}) {
+      const AnalyticDomain balls = two_balls(gap * h, border + off * h);
+      EXPECT_GT(expect_same(background, balls, without_repair()).n_stepped_back, 5U);
+    }
+  }
+}
+
+TEST(DistributedMesh, AllThatOneProcessMendsIsMended) {
+  const AnalyticDomain balls = two_balls(.75 * .1);
+  const DistributedMesh made = expect_same({a15(), balls.box, .1}, balls);
+  EXPECT_FALSE(made.manifold_flips.empty());
+  EXPECT_GT(made.n_stepped_back, 0U);
 }
 
 TEST(DistributedMesh, IsThatOfOneProcessOnEveryTilingWithCosts) {
