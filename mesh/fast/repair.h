@@ -73,7 +73,7 @@ struct RepairReport {
 /// target_step. Outside of lattices, where many tets are below the target, it rises from the worst tet on, and what the
 /// few most promising flips do not help is tried in full at last, the sharper norm with it.
 ///
-/// Tets far from each other are mended at once, two at most, with the bytes of one after the other.
+/// Tets far from each other are mended at once. The same bytes for any number of threads.
 /// @param layer   smoothed; its coordinates stay as they are, `moved` says what has changed since
 /// @param inside  receives the changes
 /// \throw std::invalid_argument naming every broken constraint, Cancelled
