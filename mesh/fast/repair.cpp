@@ -47,7 +47,7 @@ class Repair {
  public:
   Repair(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
          const ClassificationParams& classification, const RepairParams& params, const BackgroundLayer& layer,
-         IdSet& inside)
+         IdSet& inside, const std::vector<KeptVertex>& kept)
       : background_(background),
         links_(links),
         psi_(psi),
@@ -57,7 +57,7 @@ class Repair {
         inside_(inside),
         pass_{std::min(params.max_patches, kFewPatches + layer.layer.C.size() / kTetsPerPatch)},
         target_(params.target),
-        positions_(background, layer),
+        positions_(background, layer, kept),
         trials_(background, links, psi, classification, params, positions_, inside),
         ranges_(background, links, params.reach) {}
 
@@ -369,13 +369,14 @@ std::vector<std::string> problems(const RepairParams& params) {
 
 RepairReport repair(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
                     const ClassificationParams& classification, const RepairParams& params,
-                    const BackgroundLayer& layer, IdSet& inside, const Context& context) {
+                    const BackgroundLayer& layer, IdSet& inside, const Context& context,
+                    const std::vector<KeptVertex>& kept) {
   std::string all;
   for (const auto& list : {problems(classification), problems(params)}) {
     for (const std::string& problem : list) all += (all.empty() ? "" : "; ") + problem;
   }
   if (!all.empty()) throw std::invalid_argument(all);
-  return Repair(background, links, psi, classification, params, layer, inside)(context);
+  return Repair(background, links, psi, classification, params, layer, inside, kept)(context);
 }
 
 }  // namespace umtet

@@ -10,6 +10,7 @@
 #include "mesh/classification/classification.h"
 #include "mesh/core/quality_target.h"
 #include "mesh/fast/backtracking_projection.h"
+#include "mesh/submesh/chosen_submesh.h"
 #include "mesh/submesh/linked_active_layer.h"
 
 namespace umtet {
@@ -75,10 +76,12 @@ struct RepairReport {
 ///
 /// Tets far from each other are mended at once. The same bytes for any number of threads.
 /// @param layer   smoothed; its coordinates stay as they are, `moved` says what has changed since
+/// @param kept    vertices that are not where the background has them although they are not in the layer; ascending
 /// @param inside  receives the changes
 /// \throw std::invalid_argument naming every broken constraint, Cancelled
 RepairReport repair(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
                     const ClassificationParams& classification, const RepairParams& params,
-                    const BackgroundLayer& layer, IdSet& inside, const Context& context = {});
+                    const BackgroundLayer& layer, IdSet& inside, const Context& context = {},
+                    const std::vector<KeptVertex>& kept = {});
 
 }  // namespace umtet

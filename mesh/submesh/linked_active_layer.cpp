@@ -181,7 +181,7 @@ void Builder::set_sizes_and_colours(BackgroundLayer& made) const {
 }  // namespace
 
 BackgroundLayer linked_active_layer(const BackgroundMesh& background, const VertexLinks& links, const IdSet& inside,
-                                    int layers) {
+                                    int layers, const IdSet* among) {
   const Builder builder(background, links, inside);
   IdSet movable(background.n_vertices());
   for_each_in_blocks(inside, [&](std::size_t, std::int64_t v) {
@@ -200,6 +200,7 @@ BackgroundLayer linked_active_layer(const BackgroundMesh& background, const Vert
     for (std::size_t w = 0; w < next.n_words(); ++w) movable.set_word(w, movable.word(w) | next.word(w));
     front = std::move(next);
   }
+  for (std::size_t w = 0; among && w < movable.n_words(); ++w) movable.set_word(w, movable.word(w) & among->word(w));
   return builder.build(movable);
 }
 

@@ -173,15 +173,15 @@ void GradedSizes::find_finest(const Domain& domain, const Context& context) {
 std::optional<double> GradedSizes::refine(const std::vector<SizeSource>& wanted, double h) {
   const double factor = h / finest_, given = parameters_.mesh().h_min;
   const double floor = given > 0 ? given : kLeastOfFloor * h_min_;
-  const std::size_t n = asked_.size();
+  const std::size_t n = finer_.size();
   double least = finest_;
   for (SizeSource s : wanted) {
     s.h /= factor, s.radius /= factor;
     if (s.h < floor) continue;
-    asked_.push_back(s);
+    finer_.push_back(s);
     least = std::min(least, s.h);
   }
-  if (asked_.size() == n) return std::nullopt;
+  if (finer_.size() == n) return std::nullopt;
   // In halves, so that the cubes elsewhere stay what they were.
   while (finest_ > kSizeTolerance * least) finest_ /= 2;
   return factor * finest_;
@@ -201,7 +201,11 @@ SizeField GradedSizes::field(double h, const Context& context) const {
   if (h_max > 0) params.h_max = std::max(params.h_min, factor * h_max);
   std::optional<SizeFunction> f;
   if (formula_) f = SizeFunction{[formula = formula_, factor](const Vec3& x) { return factor * formula(x); }, box_};
-  return {std::move(all), params, std::move(f), context};
+  const SizeField sizes(std::move(all), params, std::move(f), context);
+  if (finer_.empty()) return sizes;
+  std::vector<SizeSource> finer = finer_;
+  for (SizeSource& s : finer) s.h *= factor, s.radius *= factor;
+  return sizes.refined(std::move(finer));
 }
 
 double h_ratio_of_tets(double n) { return std::pow(n, 1 / kPower); }

@@ -52,7 +52,8 @@ class GradedSizes {
   void find_finest(const Domain& domain, const Context& context);
 
   const Parameters& parameters_;
-  std::vector<SizeSource> asked_;               ///< by the user, and where a mesh failed
+  std::vector<SizeSource> asked_;               ///< by the user
+  std::vector<SizeSource> finer_;               ///< where a mesh failed
   std::function<double(const Vec3&)> formula_;  ///< the user's, or none
   std::vector<SizeSource> sources_;             ///< of psi = 0
   Box box_;
