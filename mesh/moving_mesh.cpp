@@ -122,7 +122,7 @@ struct UniversalMesh::Impl {
 
 UniversalMesh::UniversalMesh(BackgroundMesh background, const UmParams& params) {
   std::vector<std::string> broken = problems(params);
-  if (params.mode != UmMode::Fast) broken.push_back("mode = Paper: must be Fast");
+  if (params.mode != UmMode::Fast) broken.emplace_back("mode = Paper: must be Fast");
   std::string all;
   for (const std::string& problem : broken) all += (all.empty() ? "" : "; ") + problem;
   if (!all.empty()) throw std::invalid_argument(all);

@@ -38,6 +38,13 @@ ChosenSubmesh choose_submesh(const BackgroundMesh& background, ImplicitFunctionR
   return submesh_by_sign(background, psi, params.submesh, context, seeds);
 }
 
+ChosenSubmesh choose_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
+                             const FormerMesh& former, const Context& context) {
+  check(params, nullptr);
+  if (params.mode != UmMode::Fast) throw std::invalid_argument("mode = Paper: a former mesh is for Fast");
+  return classified_submesh(background, psi, params.submesh, params.fast, former, context);
+}
+
 UmResult fit_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
                      ChosenSubmesh chosen, const Context& context) {
   check(params, nullptr);

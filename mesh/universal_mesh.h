@@ -7,6 +7,7 @@
 #include "mesh/background/background_mesh.h"
 #include "mesh/core/implicit_function.h"
 #include "mesh/fast/fast_params.h"
+#include "mesh/fast/former_mesh.h"
 #include "mesh/paper/algorithm_1.h"
 #include "mesh/submesh/chosen_submesh.h"
 #include "mesh/submesh/submesh_params.h"
@@ -51,6 +52,13 @@ UmResult universal_mesh(const BackgroundMesh& background, ImplicitFunctionRef ps
 /// \throw std::invalid_argument naming every broken constraint of params; Cancelled
 ChosenSubmesh choose_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params = {},
                              const Context& context = {}, const std::vector<Vec3>& seeds = {});
+
+/// The same where a mesh in another background has been made that differs at some places only, an octree that has been
+/// refined there: away from them the mesh stays as it is, to the bit.
+/// @param former  of the same psi and params, UmMode::Fast without walls, and without pieces that were left out
+/// \throw std::invalid_argument naming every broken constraint of params; UmMode::Paper; Cancelled
+ChosenSubmesh choose_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
+                             const FormerMesh& former, const Context& context = {});
 
 /// The second: their vertices move until the boundary is on psi = 0 and the tets are well shaped.
 /// Reports "project", "relax" and, in UmMode::Fast, "repair".

@@ -74,6 +74,8 @@ class BackgroundMesh {
   /// (GradedMesh::key()), elsewhere they are the ids.
   std::int64_t key_of_vertex(std::int64_t vertex) const;
   std::int64_t key_of_tet(std::int64_t tet) const;
+  /// The vertex of this key, or -1.
+  std::int64_t vertex_of_key(std::int64_t key) const;
 
   // From here on: of a lattice.
   using Cell = std::array<std::int64_t, 3>;

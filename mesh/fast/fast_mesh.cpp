@@ -54,6 +54,9 @@ class FastRun {
       result_.submesh = std::move(outline.submesh);
       n_tets_ = outline.n_tets;
     }
+    return chosen_submesh();
+  }
+  ChosenSubmesh chosen_submesh() {
     context_.report("submesh", 1);
     const bool is_whole = is_complete_ || result_.status != UmStatus::Success;
     return {.status = result_.status,
@@ -65,9 +68,33 @@ class FastRun {
             .manifold_flips = std::move(result_.manifold_flips),
             .links = costs_ ? costs_->links : nullptr,
             .n_tets = result_.status == UmStatus::Success ? n_tets_ : 0,
-            .n_psi_evaluations = result_.n_psi_evaluations};
+            .n_psi_evaluations = result_.n_psi_evaluations,
+            .kept = {}};
+  }
+  /// As choose(), with what stays of a former mesh.
+  ChosenSubmesh choose(const FormerMesh& former) {
+    context_.report("search", 0);
+    const FormerStates states = former_states(background_, *costs_->links, psi_, former, context_);
+    result_.n_psi_evaluations += states.psi_evaluations;
+    inside_ = states.inside;
+    known_ = &states.cut;
+    if (fits_background("") && classify()) {
+      SubmeshOutline outline = outline_submesh(background_, inside_);
+      result_.submesh = std::move(outline.submesh);
+      n_tets_ = outline.n_tets;
+    }
+    known_ = nullptr;
+    std::vector<KeptVertex> kept;
+    if (is_classified_) {
+      kept = kept_vertices(background_, *costs_->links, former, states, inside_);
+      keep_flips(former, states);
+    }
+    ChosenSubmesh chosen = chosen_submesh();
+    chosen.kept = std::move(kept);
+    return chosen;
   }
   UmResult fit(ChosenSubmesh chosen) {
+    kept_ = std::move(chosen.kept);
     inside_ = std::move(chosen.inside);
     is_classified_ = chosen.status == UmStatus::Success;
     is_complete_ = chosen.is_whole;
@@ -106,6 +133,7 @@ class FastRun {
     return false;
   }
   bool find_inside(const std::vector<Vec3>& seeds);
+  void keep_flips(const FormerMesh& former, const FormerStates& states);
   bool fits_background(const std::string& lost);
   void remember(FastMemory& memory);
   bool classify();
@@ -114,7 +142,7 @@ class FastRun {
   void relax(std::vector<Vec3>& projected);
   void fit();
   bool make_manifold(const std::vector<std::int64_t>& bad);
-  std::vector<Vec3> coordinates(const std::vector<Vec3>& layer_V) const;
+  std::vector<Vec3> coordinates(const std::vector<Vec3>& layer_V, Vec3 KeptVertex::*kept) const;
   void repair_classification();
   void measure_assumptions();
 
@@ -132,6 +160,7 @@ class FastRun {
   const PsiValues* known_ = nullptr;
   BackgroundLayer layer_;
   std::vector<std::pair<std::int64_t, Vec3>> moved_;  ///< by repair, ascending
+  std::vector<KeptVertex> kept_;                      ///< of a former mesh, ascending
   bool is_classified_ = false, is_complete_ = false;  ///< inside_ has been chosen, omega_h made of it
   std::size_t n_tets_ = 0;                            ///< of omega_h, as far as it is known
 };
@@ -204,6 +233,19 @@ bool FastRun::make_manifold(const std::vector<std::int64_t>& bad) {
   return fail(UmStatus::EmptyDomain, {.what = "no body is left that h can show"});
 }
 
+/// Where the former mesh was made a manifold, and has stayed as it was.
+void FastRun::keep_flips(const FormerMesh& former, const FormerStates& states) {
+  for (ManifoldFlip flip : former.mesh.manifold_flips) {
+    const std::int64_t key = former.background.key_of_vertex(flip.background_vertex);
+    flip.background_vertex = background_.vertex_of_key(key);
+    const bool stays = flip.background_vertex >= 0 && states.same.test(flip.background_vertex) &&
+                       inside_.test(flip.background_vertex) == flip.is_filled;
+    if (stays) result_.manifold_flips.push_back(flip);
+  }
+  std::sort(result_.manifold_flips.begin(), result_.manifold_flips.end(),
+            [](const auto& a, const auto& b) { return a.background_vertex < b.background_vertex; });
+}
+
 bool FastRun::check_walls() {
   result_.walls = wall_faces(background_, result_.submesh);
   const UmEvidence near = boundary_near_walls(background_, result_.submesh);
@@ -220,13 +262,16 @@ void FastRun::complete() {
 }
 
 /// The vertices of omega_h with those of the layer at V, and the repaired ones where repair has put them.
-std::vector<Vec3> FastRun::coordinates(const std::vector<Vec3>& layer_V) const {
+/// @param kept  which place of the vertices that a former mesh has left
+std::vector<Vec3> FastRun::coordinates(const std::vector<Vec3>& layer_V, Vec3 KeptVertex::*kept) const {
   std::vector<Vec3> V = result_.submesh.mesh.V;
   const auto& ids = result_.submesh.background_vertex;
   const auto put = [&, at = ids.begin()](std::int64_t id, const Vec3& x) mutable {
     while (at != ids.end() && *at < id) ++at;
     if (at != ids.end() && *at == id) V[at - ids.begin()] = x;
   };
+  auto put_kept = put;
+  for (const KeptVertex& k : kept_) put_kept(k.vertex, k.*kept);
   auto put_layer = put;
   for (std::size_t v = 0; v < layer_V.size(); ++v) put_layer(layer_.background_vertex[v], layer_V[v]);
   auto put_moved = put;
@@ -268,7 +313,7 @@ void FastRun::repair_classification() {
   params.reach = std::min(params.reach, costs_->repair_reach);
   params.slides = params.slides && !memory_;
   RepairReport repaired =
-      repair(background_, *costs_->links, psi_, classification_params_, params, layer_, inside_, context_);
+      repair(background_, *costs_->links, psi_, classification_params_, params, layer_, inside_, context_, kept_);
   result_.n_psi_evaluations += repaired.psi_evaluations;
   moved_ = std::move(repaired.moved);
 }
@@ -276,8 +321,14 @@ void FastRun::repair_classification() {
 /// Boundary vertices go to psi = 0, as far as no tet inverts, and the layer is relaxed.
 /// @param projected  receives the places between the two
 void FastRun::relax(std::vector<Vec3>& projected) {
-  layer_ = costs_ ? linked_active_layer(background_, *costs_->links, inside_, params_.layers)
-                  : walled_active_layer(background_, inside_, params_.layers);
+  if (!kept_.empty()) {
+    const IdSet loose = loose_vertices(background_, *costs_->links, inside_, kept_);
+    layer_ = linked_active_layer(background_, *costs_->links, inside_, params_.layers, &loose);
+    begin_where_kept(kept_, params_.projection, layer_);
+  } else {
+    layer_ = costs_ ? linked_active_layer(background_, *costs_->links, inside_, params_.layers)
+                    : walled_active_layer(background_, inside_, params_.layers);
+  }
   LayerFit fit{.smoothing = params_.smoothing};
   if (memory_ && !memory_->moved.empty()) {
     fit.smoothing.margin = std::min(fit.smoothing.margin, params_.update_margin);
@@ -304,8 +355,8 @@ void FastRun::fit() {
   context_.report("repair", .7);
   repair_classification();
   complete();
-  tbb::parallel_invoke([&] { result_.final = coordinates(layer_.layer.V); },
-                       [&] { result_.projected = coordinates(projected); });
+  tbb::parallel_invoke([&] { result_.final = coordinates(layer_.layer.V, &KeptVertex::final); },
+                       [&] { result_.projected = coordinates(projected, &KeptVertex::projected); });
   const auto h_at = [&](int v) { return background_.h(result_.submesh.background_vertex[v]); };
   result_.n_stepped_back = step_back(result_.submesh, result_.walls, h_at, result_.final, context_).vertices.size();
   measure_assumptions();
@@ -334,6 +385,12 @@ ChosenSubmesh classified_submesh(const BackgroundMesh& background, ImplicitFunct
                                  const SubmeshParams& submesh, const FastParams& params, const Context& context,
                                  const std::vector<Vec3>& seeds) {
   return FastRun(background, psi, submesh, params, context).choose(seeds);
+}
+
+ChosenSubmesh classified_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi,
+                                 const SubmeshParams& submesh, const FastParams& params, const FormerMesh& former,
+                                 const Context& context) {
+  return FastRun(background, psi, submesh, params, context).choose(former);
 }
 
 UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,

@@ -12,6 +12,7 @@
 #include "mesh/core/implicit_function.h"
 #include "mesh/core/psi_values.h"
 #include "mesh/fast/fast_params.h"
+#include "mesh/fast/former_mesh.h"
 #include "mesh/submesh/chosen_submesh.h"
 #include "mesh/submesh/submesh_params.h"
 #include "mesh/submesh/um_result.h"
@@ -47,6 +48,12 @@ UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, co
 ChosenSubmesh classified_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi,
                                  const SubmeshParams& submesh, const FastParams& params, const Context& context = {},
                                  const std::vector<Vec3>& seeds = {});
+
+/// The same where a mesh in a background that differs at some places only has been made: what is not near these stays
+/// as it is, its classification and its places. \pre no walls; psi and params are those of that mesh. \throw Cancelled
+ChosenSubmesh classified_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi,
+                                 const SubmeshParams& submesh, const FastParams& params, const FormerMesh& former,
+                                 const Context& context = {});
 
 /// What the mesh of one psi leaves to that of the next, in the same background mesh.
 struct FastMemory {

@@ -4,15 +4,17 @@
 
 #include <algorithm>
 #include <atomic>
-#include <deque>
+#include <numeric>
 #include <set>
 #include <stdexcept>
+#include <thread>
 
 #include "mesh/core/asking_psi.h"
 #include "mesh/core/max_min.h"
 #include "mesh/core/tet_quality.h"
 #include "mesh/fast/detail/flip_trials.h"
 #include "mesh/fast/detail/patch_ranges.h"
+#include "mesh/fast/detail/trial_pool.h"
 
 namespace umtet {
 namespace {
@@ -21,6 +23,7 @@ using detail::FlipEffort;
 using detail::FlipTrials;
 using detail::PatchRanges;
 using detail::TetIds;
+using detail::TrialPool;
 
 // At most kFewPatches patches are tried, and one more for every kTetsPerPatch tets of the layer (and never more than
 // max_patches). In a small mesh where h is too large for the body, most tets are bad and no flip mends them: without
@@ -35,16 +38,16 @@ constexpr std::size_t kPatchesPerSuccess = 16;
 // `graded_bench` show what others give.
 constexpr std::size_t kRisingPatches = 1500;
 constexpr FlipEffort kFewFlips{.most_singles = 6, .pairs = false};
-// kAtOnce tets are mended at once, while at most kMostWaiting wait for one near them. The same for any number of
-// threads, as the result depends on it. The context is polled before each round: a tet may take a tenth of a second, so
-// that larger rounds would answer too late where one thread works on all of a round.
-constexpr std::size_t kAtOnce = 2, kMostWaiting = 64;
+// Tets that are mended at once, while at most kMostWaiting wait for one near them: two for each of sixteen cores. The
+// same for any number of threads, as the result depends on it. Where few patches may still be tried they are fewer: a
+// tet takes up to kPatchesPerTet.
+constexpr std::size_t kAtOnce = 32, kMostWaiting = 256, kPatchesPerTet = 72;
 
 class Repair {
  public:
   Repair(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
          const ClassificationParams& classification, const RepairParams& params, const BackgroundLayer& layer,
-         RemoteLayer* remote, IdSet& inside)
+         RemoteLayer* remote, IdSet& inside, const std::vector<KeptVertex>& kept)
       : background_(background),
         links_(links),
         psi_(psi),
@@ -56,7 +59,8 @@ class Repair {
         pass_{std::min(params.max_patches,
                        kFewPatches + (remote ? remote->n_tets() : layer.layer.C.size()) / kTetsPerPatch)},
         target_(params.target),
-        positions_(background, layer),
+        positions_(background, layer, kept),
+        trials_(background, links, psi, classification, params, positions_, inside),
         ranges_(background, links, params.reach) {}
 
   RepairReport operator()(const Context& context);
@@ -73,13 +77,14 @@ class Repair {
 
   /// Misaligned ones before all others.
   Bad judged(const TetIds& tet) {
-    if (trials_.front().is_misaligned(tet)) return {-1, tet};
+    if (trials_.first().is_misaligned(tet)) return {-1, tet};
     return {mean_ratio(positions_.of(tet[0]), positions_.of(tet[1]), positions_.of(tet[2]), positions_.of(tet[3])),
             tet};
   }
   bool is_worth_trying(const TetIds& tet);
   void find_ranges();
   void mend(const Context& context);
+  void slide(const Context& context);
   void again(double target);
   void mend_lattice(const Context& context);
   void mend_rising(const FlipEffort& effort, std::size_t most, const Context& context);
@@ -90,7 +95,6 @@ class Repair {
   void move(const BackgroundLayer& patch);
   void look(const BackgroundLayer& cut);
   void begin();
-  void count();
 
   const BackgroundMesh& background_;
   const VertexLinks& links_;
@@ -107,7 +111,7 @@ class Repair {
   Pass pass_;
   double target_;
   detail::Positions positions_;
-  std::deque<FlipTrials> trials_;  ///< one for each tet of a round, each with a copy of inside_
+  TrialPool trials_;
   std::vector<TetIds> given_up_;
   std::set<std::int64_t> hopeless_;  ///< vertices of tets that nothing helped
   std::vector<Bad> todo_;            ///< from next_ on
@@ -124,7 +128,7 @@ class Repair {
 
 /// False for one that is all right, or given up.
 bool Repair::is_worth_trying(const TetIds& tet) {
-  if (!trials_.front().is_bad(tet)) return false;
+  if (!trials_.first().is_bad(tet)) return false;
   // Where no flip helped, none would help the tets that share a vertex either: their candidates are the same.
   const bool hopeless = std::any_of(tet.begin(), tet.end(), [&](std::int64_t v) { return hopeless_.count(v) != 0; });
   if (!hopeless && report_.tries < most_patches()) return true;
@@ -148,11 +152,13 @@ bool Repair::choose_round() {
   round_.clear();
   std::vector<TetIds> held;
   std::vector<PatchRanges::Range> before;
+  const std::size_t left = most_patches() - std::min(report_.tries, most_patches());
+  const std::size_t most = std::clamp<std::size_t>(left / kPatchesPerTet, 2, kAtOnce);
   std::size_t w = 0;
-  while (round_.size() < kAtOnce && held.size() < kMostWaiting && (w < waiting_.size() || next_ < todo_.size())) {
+  while (round_.size() < most && held.size() < kMostWaiting && (w < waiting_.size() || next_ < todo_.size())) {
     const TetIds tet = w < waiting_.size() ? waiting_[w++] : todo_[next_++].tet;
     const PatchRanges::Range range = ranges_.of(tet[0]);
-    if (std::any_of(before.begin(), before.end(), [&](const auto& other) { return range.meets(other); })) {
+    if (range.meets_any(before)) {
       held.push_back(tet);
     } else if (is_worth_trying(tet)) {
       if (remote_) know(remote_->around(tet[0]));
@@ -181,14 +187,14 @@ void Repair::know(const std::vector<LayerVertex>& vertices) {
     if (!positions_.has_moved(v.vertex)) positions_.move(v.vertex, v.place);
     if (!v.is_inside || inside_.test(v.vertex)) continue;
     inside_.insert(v.vertex);
-    for (FlipTrials& trials : trials_) trials.flip(v.vertex);
+    trials_.flip(v.vertex);
   }
 }
 
 void Repair::keep(const TetIds& tet, const FlipTrials::Best& best) {
   for (const std::int64_t v : best.flips) {
     inside_.test(v) ? inside_.erase(v) : inside_.insert(v);
-    for (FlipTrials& trials : trials_) trials.flip(v);
+    trials_.flip(v);
     if (!flipped_.insert(v).second) flipped_.erase(v);
   }
   move(best.layer);
@@ -196,11 +202,6 @@ void Repair::keep(const TetIds& tet, const FlipTrials::Best& best) {
   kept_.back().insert(kept_.back().end(), best.flips.begin(), best.flips.end());
   report_.flips += best.flips.size();
   look(best.layer);  // the patch may have bad tets that were not bad before; max_patches ends this
-}
-
-void Repair::count() {
-  report_.tries = 0;
-  for (const FlipTrials& trials : trials_) report_.tries += trials.tries;
 }
 
 /// Puts the tets of a layer that are below the target, or have a misaligned face, on the list, the worst first.
@@ -218,16 +219,29 @@ void Repair::begin() {
   std::stable_sort(todo_.begin(), todo_.end(), is_worse);
 }
 
+/// f(k) for each k < n, by all threads. The context is polled before each that the calling thread does: a tet may take
+/// a tenth of a second.
+template <class F>
+void at_once(std::size_t n, const Context& context, const F& f) {
+  const std::thread::id caller = std::this_thread::get_id();
+  tbb::parallel_for(
+      std::size_t{0}, n,
+      [&](std::size_t k) {
+        if (std::this_thread::get_id() == caller) context.poll();
+        f(k);
+      },
+      tbb::simple_partitioner());
+}
+
 /// What is on the list, round by round.
 void Repair::mend(const Context& context) {
   std::vector<FlipTrials::Best> best(kAtOnce);
   while (choose_round()) {
-    context.poll();
     const std::size_t most_tries = most_patches() - report_.tries;
-    tbb::parallel_for(
-        std::size_t{0}, round_.size(), [&](std::size_t k) { best[k] = trials_[k](round_[k], most_tries); },
-        tbb::simple_partitioner());
-    count();
+    at_once(round_.size(), context, [&](std::size_t k) {
+      best[k] = trials_.with_one([&](FlipTrials& trials) { return trials(round_[k], most_tries); });
+    });
+    report_.tries = trials_.tries();
     std::vector<TetIds> again;
     for (std::size_t k = 0; k < round_.size(); ++k) {
       if (best[k].found) {
@@ -242,9 +256,32 @@ void Repair::mend(const Context& context) {
   }
 }
 
+/// The patches that were kept, in their order but for those near one that comes before them.
+void Repair::slide(const Context& context) {
+  std::vector<std::size_t> left(kept_.size());
+  std::iota(left.begin(), left.end(), std::size_t{0});
+  std::vector<BackgroundLayer> slid(kAtOnce);
+  while (!left.empty()) {
+    std::vector<std::size_t> round, held;
+    std::vector<PatchRanges::Range> before;
+    std::size_t next = 0;
+    for (; next < left.size() && round.size() < kAtOnce && held.size() < kMostWaiting; ++next) {
+      const PatchRanges::Range range = ranges_.of(kept_[left[next]].front());
+      (range.meets_any(before) ? held : round).push_back(left[next]);
+      before.push_back(range);
+    }
+    at_once(round.size(), context, [&](std::size_t k) {
+      slid[k] = trials_.with_one([&](FlipTrials& trials) { return trials.slid(kept_[round[k]]); });
+    });
+    for (std::size_t k = 0; k < round.size(); ++k) move(slid[k]);
+    held.insert(held.end(), left.begin() + static_cast<std::ptrdiff_t>(next), left.end());
+    left = std::move(held);
+  }
+}
+
 void Repair::retry_with(double target, const FlipEffort& effort) {
   target_ = target;
-  for (FlipTrials& trials : trials_) trials.retry_with(target, effort);
+  trials_.retry_with(target, effort);
 }
 
 /// Puts what was given up on the list again, against another target.
@@ -294,9 +331,6 @@ RepairReport Repair::operator()(const Context& context) {
   if (params_.max_tries > 0) begin();
   report_.bad_before = todo_.size();
   if (todo_.empty()) return std::move(report_);
-  for (std::size_t k = 0; k < kAtOnce; ++k) {
-    trials_.emplace_back(background_, links_, psi_, classification_, params_, positions_, inside_);
-  }
   if (background_.is_lattice()) {
     mend_lattice(context);
   } else {
@@ -310,12 +344,9 @@ RepairReport Repair::operator()(const Context& context) {
   }
   if (params_.slides) {
     retry_with(params_.target, {});
-    for (const std::vector<std::int64_t>& centres : kept_) {
-      context.poll();
-      move(trials_.front().slid(centres));
-    }
+    slide(context);
   }
-  for (const FlipTrials& trials : trials_) report_.psi_evaluations += trials.psi_evaluations;
+  report_.psi_evaluations += trials_.psi_evaluations();
   for (const std::int64_t v : moved_.ids()) report_.moved.emplace_back(v, positions_.of(v));
   report_.flipped.assign(flipped_.begin(), flipped_.end());
   std::sort(report_.moved.begin(), report_.moved.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -384,9 +415,10 @@ void check(const ClassificationParams& classification, const RepairParams& param
 
 RepairReport repair(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
                     const ClassificationParams& classification, const RepairParams& params,
-                    const BackgroundLayer& layer, IdSet& inside, const Context& context) {
+                    const BackgroundLayer& layer, IdSet& inside, const Context& context,
+                    const std::vector<KeptVertex>& kept) {
   check(classification, params);
-  return Repair(background, links, psi, classification, params, layer, nullptr, inside)(context);
+  return Repair(background, links, psi, classification, params, layer, nullptr, inside, kept)(context);
 }
 
 RepairReport repair(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
@@ -394,7 +426,7 @@ RepairReport repair(const BackgroundMesh& background, const VertexLinks& links, 
                     IdSet& inside, const Context& context) {
   check(classification, params);
   const BackgroundLayer none;
-  return Repair(background, links, psi, classification, params, none, &layer, inside)(context);
+  return Repair(background, links, psi, classification, params, none, &layer, inside, {})(context);
 }
 
 }  // namespace umtet

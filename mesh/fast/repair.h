@@ -11,6 +11,7 @@
 #include "mesh/classification/classification.h"
 #include "mesh/core/quality_target.h"
 #include "mesh/fast/backtracking_projection.h"
+#include "mesh/submesh/chosen_submesh.h"
 #include "mesh/submesh/linked_active_layer.h"
 
 namespace umtet {
@@ -75,13 +76,15 @@ struct RepairReport {
 /// target_step. Outside of lattices, where many tets are below the target, it rises from the worst tet on, and what the
 /// few most promising flips do not help is tried in full at last, the sharper norm with it.
 ///
-/// Tets far from each other are mended at once, two at most, with the bytes of one after the other.
+/// Tets far from each other are mended at once. The same bytes for any number of threads.
 /// @param layer   smoothed; its coordinates stay as they are, `moved` says what has changed since
+/// @param kept    vertices that are not where the background has them although they are not in the layer; ascending
 /// @param inside  receives the changes
 /// \throw std::invalid_argument naming every broken constraint, Cancelled
 RepairReport repair(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
                     const ClassificationParams& classification, const RepairParams& params,
-                    const BackgroundLayer& layer, IdSet& inside, const Context& context = {});
+                    const BackgroundLayer& layer, IdSet& inside, const Context& context = {},
+                    const std::vector<KeptVertex>& kept = {});
 
 /// A tet of a layer that repair has to look at.
 struct BadTet {

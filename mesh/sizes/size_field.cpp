@@ -56,7 +56,20 @@ double SizeField::of_function(const Vec3& x) const {
   return std::isnan(h) ? params_.h_max : std::clamp(h, params_.h_min, params_.h_max);
 }
 
-double SizeField::at(const Vec3& x) const { return tree_.at(x, params_.h_min, f_ ? of_function(x) : params_.h_max); }
+SizeField SizeField::refined(std::vector<SizeSource> more) const {
+  check(more, params_);
+  SizeField field = *this;
+  for (const SizeSource& s : more) field.least_of_more_ = std::min(field.least_of_more_, s.h);
+  const std::vector<SizeSource>& before = more_.sources();
+  more.insert(more.end(), before.begin(), before.end());
+  field.more_ = SourceTree(std::move(more), params_.grade);
+  return field;
+}
+
+double SizeField::at(const Vec3& x) const {
+  const double most = tree_.at(x, params_.h_min, f_ ? of_function(x) : params_.h_max);
+  return more_.sources().empty() ? most : more_.at(x, least_of_more_, most);
+}
 
 double SizeField::least_in(const Vec3& centre, double half_width) const {
   double most = params_.h_max;
@@ -67,7 +80,8 @@ double SizeField::least_in(const Vec3& centre, double half_width) const {
       most = std::min(most, of_function(centre + half_width * corner));
     }
   }
-  return tree_.least_in(centre, half_width, params_.h_min, most);
+  most = tree_.least_in(centre, half_width, params_.h_min, most);
+  return more_.sources().empty() ? most : more_.least_in(centre, half_width, least_of_more_, most);
 }
 
 }  // namespace umtet

@@ -39,13 +39,18 @@ class SizeField {
   SizeField(std::vector<SizeSource> sources, const SizeFieldParams& params, std::optional<SizeFunction> f = {},
             const Context& context = {});
 
+  /// The least of this field and of the cones of some more sources, which may be below h_min. Where they ask for at
+  /// least 5 % more the field stays as it is, to the bit, and with it the octree made for it.
+  /// \throw std::invalid_argument  as above
+  SizeField refined(std::vector<SizeSource> more) const;
+
   double at(const Vec3& x) const;
   /// The least in a cube. f, whose slope is not known, counts with its least at the middle and the corners: where it is
   /// as flat as `grade` that is at most 1.12 grade half_width above.
   double least_in(const Vec3& centre, double half_width) const;
 
   const SizeFieldParams& params() const { return params_; }
-  /// Those that are left.
+  /// Those that are left, without those of refined().
   const std::vector<SizeSource>& sources() const { return tree_.sources(); }
 
  private:
@@ -53,7 +58,8 @@ class SizeField {
 
   SizeFieldParams params_;
   std::optional<SizeFunction> f_;
-  SourceTree tree_;
+  SourceTree tree_, more_;
+  double least_of_more_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace umtet

@@ -51,7 +51,8 @@ class SurfaceSizes {
   SurfaceSizes(ImplicitFunctionRef psi, const SurfaceSizeParams& params, const Context& context)
       : psi_(psi), p_(params), context_(context) {}
 
-  std::vector<SizeSource> of(std::vector<Place> places) {
+  std::vector<SizeSource> of(std::vector<Place> places,
+                             const std::function<bool(const std::vector<SizeSource>&)>& enough) {
     std::vector<SizeSource> sources;
     std::vector<OnSurface> open;  // so far they are near enough to each other
     while (!places.empty()) {
@@ -60,6 +61,7 @@ class SurfaceSizes {
       for (std::size_t i = 0; i < feet.size(); ++i) sources.push_back({feet[i].x, h[i], p_.constant_layer * h[i]});
       open.insert(open.end(), feet.begin(), feet.end());
       places = between(sources, open);
+      if (enough && places.size() > sources.size() && enough(sources)) break;
     }
     return sources;
   }
@@ -190,13 +192,14 @@ std::vector<std::string> problems(const SurfaceSizeParams& p) {
 }
 
 std::vector<SizeSource> surface_sizes(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double spacing,
-                                      const SurfaceSizeParams& params, const Context& context) {
+                                      const SurfaceSizeParams& params, const Context& context,
+                                      const std::function<bool(const std::vector<SizeSource>&)>& enough) {
   std::vector<std::string> all = problems(params);
   if (!(spacing > 0)) all.push_back(formatted("spacing = %g: must be > 0", spacing));
   if (!all.empty()) throw std::invalid_argument(joined(all, "; "));
   std::vector<Place> places;
   for (const Vec3& x : points) places.push_back({x, spacing});
-  return SurfaceSizes(psi, params, context).of(std::move(places));
+  return SurfaceSizes(psi, params, context).of(std::move(places), enough);
 }
 
 }  // namespace umtet

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -41,9 +42,12 @@ std::vector<std::string> problems(const SurfaceSizeParams&);
 ///
 /// @param points   of psi = 0, or within `spacing` of it: on all of the surface, no farther apart than `spacing`. Those
 ///                 that do not reach it are left out
+/// @param enough   asked before more points are put between others than there have been so far, with their sources:
+///                 true ends it with these. May be empty
 /// Cost: some forty values of psi a point. Threads over points; the result does not depend on them.
 /// \throw std::invalid_argument  problems(), or a spacing that is not > 0; Cancelled
 std::vector<SizeSource> surface_sizes(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double spacing,
-                                      const SurfaceSizeParams& params, const Context& context = {});
+                                      const SurfaceSizeParams& params, const Context& context = {},
+                                      const std::function<bool(const std::vector<SizeSource>&)>& enough = {});
 
 }  // namespace umtet

@@ -15,6 +15,12 @@
 
 namespace umtet {
 
+/// A vertex that is where a mesh in another background had it.
+struct KeptVertex {
+  std::int64_t vertex;    ///< of the background
+  Vec3 projected, final;  ///< as UmResult has them
+};
+
 /// Which tets of the background mesh become the mesh, before any vertex has moved.
 struct ChosenSubmesh {
   UmStatus status = UmStatus::Success;
@@ -27,6 +33,7 @@ struct ChosenSubmesh {
   std::shared_ptr<const VertexLinks> links;  ///< of the background, where choosing took them; or null
   std::size_t n_tets = 0;                    ///< of omega_h, and of every mesh made from it; 0 when status != Success
   std::size_t n_psi_evaluations = 0;
+  std::vector<KeptVertex> kept;  ///< ascending; empty: all begin at their places in the background
 };
 
 /// What a result of these choices begins with; moves from `chosen`.

@@ -211,8 +211,9 @@ BackgroundLayer layer_part(const BackgroundMesh& background, const VertexLinks& 
 }
 
 BackgroundLayer linked_active_layer(const BackgroundMesh& background, const VertexLinks& links, const IdSet& inside,
-                                    int layers) {
-  const IdSet movable = movable_vertices(background, links, inside, layers);
+                                    int layers, const IdSet* among) {
+  IdSet movable = movable_vertices(background, links, inside, layers);
+  for (std::size_t w = 0; among && w < movable.n_words(); ++w) movable.set_word(w, movable.word(w) & among->word(w));
   return layer_part(background, links, inside, movable, movable);
 }
 

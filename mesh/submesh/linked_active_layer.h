@@ -25,9 +25,10 @@ struct BackgroundLayer {
 /// vertex types, or, outside of lattices, greedy ones.
 /// Cost: linear in the layer, plus a scan of the bits of the background's vertices.
 /// @param inside  none of its vertices on the background boundary
+/// @param among   only these may move; null: all
 /// \throw std::invalid_argument if a vertex type of the tiling is its own neighbour (types then do not colour it)
 BackgroundLayer linked_active_layer(const BackgroundMesh& background, const VertexLinks& links, const IdSet& inside,
-                                    int layers = 2);
+                                    int layers = 2, const IdSet* among = nullptr);
 
 /// The first of its two steps: the vertices that move.
 IdSet movable_vertices(const BackgroundMesh& background, const VertexLinks& links, const IdSet& inside, int layers = 2);

@@ -96,7 +96,7 @@ void BackgroundChoice::grade_if_worth_it(Domain& domain, const EdgeLength& one, 
   if (one.needed > least || one.graded_faces > kFewFaces) return;
   const double uniform = umtet::expected_tets(*tiling_, domain.size(), one.needed, source_);
   GradedSizes sizes(parameters_, domain.shift);
-  sizes.add(domain, context);
+  if (!sizes.add(domain, context, uniform / kWorthIt)) return;
   const double h = sizes.finest();
   const double graded =
       expected_graded_tets(sizes.field(h, context), h, domain.psi(), domain.box, domain.steepest(), context);

@@ -53,6 +53,8 @@ std::vector<std::string> given_sizes(const Parameters& parameters) {
   return flags;
 }
 
+bool has_less_h(const SizeSource& a, const SizeSource& b) { return a.h < b.h; }
+
 }  // namespace
 
 bool is_graded(const Parameters& p) {
@@ -92,7 +94,7 @@ GradedSizes::GradedSizes(const Parameters& parameters, const Vec3& shift) : para
   }
 }
 
-void GradedSizes::add(Domain& domain, const Context& context) {
+bool GradedSizes::add(Domain& domain, const Context& context, double most_tets) {
   const MeshParameters& p = parameters_.mesh();
   const double largest = p.h_max > 0 ? p.h_max : std::numeric_limits<double>::infinity();
   const double of_noise = noise_edge(domain);
@@ -119,8 +121,16 @@ void GradedSizes::add(Domain& domain, const Context& context) {
         "a "
         "smaller --h");
   }
+  bool too_many = false;
+  const auto make_too_many = [&](const std::vector<SizeSource>& sources) {
+    if (!std::isfinite(most_tets)) return false;
+    const double h = std::min_element(sources.begin(), sources.end(), has_less_h)->h;
+    const SizeField sizes(sources, {.grade = s.grade, .h_min = s.h_min}, {}, context);
+    return too_many = expected_graded_tets(sizes, h, domain.psi(), domain.box, domain.steepest(), context) > most_tets;
+  };
   const std::vector<SizeSource> on_surface =
-      surface_sizes(domain.psi(), points, std::max(pieces.topology.spacing, s.h), s, context);
+      surface_sizes(domain.psi(), points, std::max(pieces.topology.spacing, s.h), s, context, make_too_many);
+  if (too_many) return false;
   sources_.insert(sources_.end(), on_surface.begin(), on_surface.end());
   const std::map<int, double> of_label = label_sizes(parameters_);
   if (!of_label.empty() && domain.cloud.labels.empty()) {
@@ -136,12 +146,12 @@ void GradedSizes::add(Domain& domain, const Context& context) {
   ++n_domains_;
   h_min_ = h_min_ > 0 ? std::min(h_min_, s.h_min) : s.h_min;
   find_finest(domain, context);
+  return true;
 }
 
 /// With what the user asks for: at the sources, and on a lattice inside.
 void GradedSizes::find_finest(const Domain& domain, const Context& context) {
-  const auto less = [](const SizeSource& a, const SizeSource& b) { return a.h < b.h; };
-  finest_ = std::min_element(sources_.begin(), sources_.end(), less)->h;
+  finest_ = std::min_element(sources_.begin(), sources_.end(), has_less_h)->h;
   if (asked_.empty() && !formula_) return;
   const SizeField sizes = field(finest_, context);
   std::vector<double> least(sources_.size());
@@ -163,15 +173,15 @@ void GradedSizes::find_finest(const Domain& domain, const Context& context) {
 std::optional<double> GradedSizes::refine(const std::vector<SizeSource>& wanted, double h) {
   const double factor = h / finest_, given = parameters_.mesh().h_min;
   const double floor = given > 0 ? given : kLeastOfFloor * h_min_;
-  const std::size_t n = asked_.size();
+  const std::size_t n = finer_.size();
   double least = finest_;
   for (SizeSource s : wanted) {
     s.h /= factor, s.radius /= factor;
     if (s.h < floor) continue;
-    asked_.push_back(s);
+    finer_.push_back(s);
     least = std::min(least, s.h);
   }
-  if (asked_.size() == n) return std::nullopt;
+  if (finer_.size() == n) return std::nullopt;
   // In halves, so that the cubes elsewhere stay what they were.
   while (finest_ > kSizeTolerance * least) finest_ /= 2;
   return factor * finest_;
@@ -191,7 +201,11 @@ SizeField GradedSizes::field(double h, const Context& context) const {
   if (h_max > 0) params.h_max = std::max(params.h_min, factor * h_max);
   std::optional<SizeFunction> f;
   if (formula_) f = SizeFunction{[formula = formula_, factor](const Vec3& x) { return factor * formula(x); }, box_};
-  return {std::move(all), params, std::move(f), context};
+  const SizeField sizes(std::move(all), params, std::move(f), context);
+  if (finer_.empty()) return sizes;
+  std::vector<SizeSource> finer = finer_;
+  for (SizeSource& s : finer) s.h *= factor, s.radius *= factor;
+  return sizes.refined(std::move(finer));
 }
 
 double h_ratio_of_tets(double n) { return std::pow(n, 1 / kPower); }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,9 +31,11 @@ class GradedSizes {
   /// Takes in what psi = 0 of this domain asks for: mesh.h (or a tenth of the diagonal where mesh.max_deviation
   /// decides, else .015 of it), less by thickness, by the turn of the normal, by mesh.max_deviation and by
   /// mesh.size_at; with mesh.grade_inside mesh.h alone. Not below mesh.h_min, or a sixteenth of h and what noise / .3
-  /// allows. psi is looked at with all the detail that sizes of h_min show; on return it is cut there. \throw
-  /// MeshingImpossible  psi = 0 nowhere in the box; UsageError; Cancelled
-  void add(Domain& domain, const Context& context = {});
+  /// allows. psi is looked at with all the detail that sizes of h_min show; on return it is cut there.
+  /// @param most_tets  where some of the sizes already make more tets, the others are not looked for
+  /// @return false then, and nothing was taken in
+  /// \throw MeshingImpossible  psi = 0 nowhere in the box; UsageError; Cancelled
+  bool add(Domain& domain, const Context& context = {}, double most_tets = std::numeric_limits<double>::infinity());
 
   /// Asks for less where a mesh failed, with all sizes times h / finest(): where that is not below mesh.h_min, or a
   /// quarter of the floor without it. Such sources are no more than asked for.
@@ -49,7 +52,8 @@ class GradedSizes {
   void find_finest(const Domain& domain, const Context& context);
 
   const Parameters& parameters_;
-  std::vector<SizeSource> asked_;               ///< by the user, and where a mesh failed
+  std::vector<SizeSource> asked_;               ///< by the user
+  std::vector<SizeSource> finer_;               ///< where a mesh failed
   std::function<double(const Vec3&)> formula_;  ///< the user's, or none
   std::vector<SizeSource> sources_;             ///< of psi = 0
   Box box_;

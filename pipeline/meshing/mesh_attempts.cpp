@@ -120,10 +120,11 @@ MeshAttempt best_attempt(const EdgeLength& choice, double effort, const std::fun
   return best;
 }
 
-MeshAttempt refined_attempt(double h, double effort, const std::function<MeshAttempt(double h)>& attempt,
+MeshAttempt refined_attempt(double h, double effort,
+                            const std::function<MeshAttempt(double h, const MeshAttempt* former)>& attempt,
                             const std::function<std::optional<double>(const MeshAttempt&)>& refine,
                             const std::function<void(const std::string&)>& say) {
-  MeshAttempt last = attempt(h), best;
+  MeshAttempt last = attempt(h, nullptr), best;
   const auto tets_of = [](const MeshAttempt& a) { return static_cast<double>(a.result.submesh.mesh.C.size()); };
   double allowed = effort * tets_of(last);
   bool has_best = false;
@@ -141,7 +142,7 @@ MeshAttempt refined_attempt(double h, double effort, const std::function<MeshAtt
     }
     if (!next) return best;
     say(fmt::format("the mesh will not do ({}); trying smaller edges where it failed", why));
-    last = attempt(*next);
+    last = attempt(*next, &best);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/background/background_mesh.h"
 #include "mesh/certify/quadratic_tets.h"
 #include "mesh/sizes/size_field.h"
 #include "mesh/universal_mesh.h"
@@ -19,12 +20,14 @@ namespace umtet {
 struct MeshAttempt {
   double h = 0;  ///< edge length of the background mesh, model units
   UmResult result;
-  std::optional<SecondOrder> second;       ///< the mesh with curved edges, if mesh.order = 2
-  MeshMeasures measured;                   ///< when there is a mesh
-  std::vector<MeshPlace> places;           ///< where it is not faithful to psi = 0
-  std::vector<std::string> reasons;        ///< why it will not do, by judge_shape()
-  ThinPlaces thin;                         ///< what h is too large for
-  std::shared_ptr<const SizeField> sizes;  ///< that a graded background was made for
+  std::optional<SecondOrder> second;              ///< the mesh with curved edges, if mesh.order = 2
+  MeshMeasures measured;                          ///< when there is a mesh
+  std::vector<MeshPlace> places;                  ///< where it is not faithful to psi = 0
+  std::vector<std::string> reasons;               ///< why it will not do, by judge_shape()
+  ThinPlaces thin;                                ///< what h is too large for
+  std::shared_ptr<const SizeField> sizes;         ///< that a graded background was made for
+  std::optional<BackgroundMesh> background = {};  ///< that one
+  int n_levels = 0;                               ///< of psi then; 0: a formula
 
   bool made() const { return result.status == UmStatus::Success; }
   bool is_right() const { return made() && reasons.empty(); }
@@ -50,10 +53,12 @@ MeshAttempt best_attempt(const EdgeLength& choice, double effort, const std::fun
 /// Runs `attempt` at h and, while the mesh is not faithful to psi = 0, with smaller edges where it is not, at most four
 /// times.
 ///
+/// @param attempt  is also given the best of the attempts before, or null: it may leave as it is what did not fail
 /// @param refine  asks for them, and returns the h of all that is asked for then; none where nothing may be finer
 /// @param effort  ends it where all attempts together have made more than this many times the tets of the first
 /// @return as best_attempt()
-MeshAttempt refined_attempt(double h, double effort, const std::function<MeshAttempt(double h)>& attempt,
+MeshAttempt refined_attempt(double h, double effort,
+                            const std::function<MeshAttempt(double h, const MeshAttempt* former)>& attempt,
                             const std::function<std::optional<double>(const MeshAttempt&)>& refine,
                             const std::function<void(const std::string&)>& say);
 

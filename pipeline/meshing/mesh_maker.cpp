@@ -93,7 +93,9 @@ MeshAttempt MeshMaker::begin(const SizedBackground& background, double h) {
   MeshAttempt a;
   a.h = h;
   a.sizes = background.sizes;
+  if (a.sizes) a.background = background.mesh;
   const ZeroSetChoice& pieces = pieces_at(h, a.sizes.get());
+  a.n_levels = n_levels_;
   a.thin = find_thin_places(domain_, pieces, h, context_);
   if (!a.thin.empty() && lines_.detail) {
     lines_.detail(fmt::format("{} places are thinner than h = {:.4g} can show for certain:\n{}", a.thin.places.size(),
@@ -105,7 +107,14 @@ MeshAttempt MeshMaker::begin(const SizedBackground& background, double h) {
   return a;
 }
 
-ChosenSubmesh MeshMaker::choose(const BackgroundMesh& background, const ZeroSetChoice& pieces) {
+/// Of the same psi, all of which is meshed.
+bool MeshMaker::may_keep(const MeshAttempt& former, const ZeroSetChoice& pieces) const {
+  return params_.mode == UmMode::Fast && former.made() && former.background && former.n_levels == n_levels_ &&
+         pieces.dropped.empty();
+}
+
+ChosenSubmesh MeshMaker::choose(const BackgroundMesh& background, const ZeroSetChoice& pieces,
+                                const MeshAttempt* former) {
   if (pieces.seeds.empty() && !pieces.dropped.empty()) {
     throw MeshingImpossible("psi = 0 is nowhere near the samples:\n  no " + pieces.dropped.front());
   }
@@ -114,6 +123,10 @@ ChosenSubmesh MeshMaker::choose(const BackgroundMesh& background, const ZeroSetC
                               background.n_tets(), pieces.topology.components.size()));
   }
   UmParams params = params_for(pieces);
+  if (former && may_keep(*former, pieces)) {
+    return choose_submesh(background, domain_.psi(), params, {*former->background, former->result},
+                          context_.part(kChoice, kFit));
+  }
   params.submesh.known = known_signs(background, pieces);
   return choose_submesh(background, domain_.psi(), params, context_.part(kChoice, kFit), pieces.seeds);
 }
@@ -142,9 +155,9 @@ void MeshMaker::finish(const SizedBackground& background, ChosenSubmesh chosen, 
   a.reasons = judge_shape(a.measured).reasons;
 }
 
-MeshAttempt MeshMaker::attempt(const SizedBackground& background, double h) {
+MeshAttempt MeshMaker::attempt(const SizedBackground& background, double h, const MeshAttempt* former) {
   MeshAttempt a = begin(background, h);
-  finish(background, choose(background.mesh, pieces_at(h, a.sizes.get())), a);
+  finish(background, choose(background.mesh, pieces_at(h, a.sizes.get()), former), a);
   return a;
 }
 
@@ -160,9 +173,9 @@ void MeshMaker::curve(MeshAttempt& a) const {
 
 /// The estimate behind mesh.tets knows the shape from a few thousand samples. Where it is far off, the number of tets
 /// at one h gives the next, before anything is moved. Few tets jump with h, to either side of the number asked for.
-MeshAttempt MeshMaker::attempt_for_tets(double h, const MakeBackground& make) {
+MeshAttempt MeshMaker::attempt_for_tets(double h, const MakeBackground& make, const MeshAttempt* former) {
   const auto asked = static_cast<double>(parameters_.mesh().tets);
-  if (asked == 0) return attempt(make(h), h);
+  if (asked == 0) return attempt(make(h), h, former);
   double nearest = h, least_miss = std::numeric_limits<double>::infinity();
   std::optional<double> makes_more, makes_less;
   for (int n_misses = 0;;) {
@@ -186,7 +199,8 @@ MeshAttempt MeshMaker::attempt_for_tets(double h, const MakeBackground& make) {
 
 MeshAttempt MeshMaker::graded(BackgroundChoice& backgrounds, double h, const MakeBackground& make) {
   return refined_attempt(
-      h, parameters_.mesh().effort, [&](double h_of) { return attempt_for_tets(h_of, make); },
+      h, parameters_.mesh().effort,
+      [&](double h_of, const MeshAttempt* former) { return attempt_for_tets(h_of, make, former); },
       [&](const MeshAttempt& a) -> std::optional<double> {
         const std::optional<double> finer = backgrounds.refine(finer_where_it_failed(a, domain_.shift), a.h);
         const auto most = static_cast<double>(parameters_.mesh().max_tets);

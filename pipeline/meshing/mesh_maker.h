@@ -36,7 +36,7 @@ class MeshMaker {
 
   /// psi, cut for h, meshed in this background. A mesh whose certificate fails is a result; so is none.
   /// \throw MeshingImpossible  no sample is near psi = 0; Cancelled
-  MeshAttempt attempt(const SizedBackground& background, double h);
+  MeshAttempt attempt(const SizedBackground& background, double h) { return attempt(background, h, nullptr); }
 
   /// The best_attempt() from this h on, each in a background of its own; where sizes vary, the refined_attempt(). Where
   /// the choice between the two is ours and one h does not do, sizes that vary are tried after all, if they make no
@@ -52,11 +52,14 @@ class MeshMaker {
 
  private:
   MeshAttempt begin(const SizedBackground& background, double h);
-  ChosenSubmesh choose(const BackgroundMesh& background, const ZeroSetChoice& pieces);
+  ChosenSubmesh choose(const BackgroundMesh& background, const ZeroSetChoice& pieces,
+                       const MeshAttempt* former = nullptr);
   void finish(const SizedBackground& background, ChosenSubmesh chosen, MeshAttempt& a);
   UmParams params_for(const ZeroSetChoice& pieces) const;
   KnownSigns known_signs(const BackgroundMesh& background, const ZeroSetChoice& pieces) const;
-  MeshAttempt attempt_for_tets(double h, const MakeBackground& make);
+  bool may_keep(const MeshAttempt& former, const ZeroSetChoice& pieces) const;
+  MeshAttempt attempt(const SizedBackground& background, double h, const MeshAttempt* former);
+  MeshAttempt attempt_for_tets(double h, const MakeBackground& make, const MeshAttempt* former = nullptr);
   MeshAttempt graded(BackgroundChoice& backgrounds, double h, const MakeBackground& make);
   void curve(MeshAttempt& a) const;
   void say(const std::string& line) const {

@@ -32,7 +32,10 @@ Vec3 Positions::of(std::int64_t v, std::size_t& from) const {
   const auto begin = ids.begin() + static_cast<std::ptrdiff_t>(from),
              end = ids.begin() + static_cast<std::ptrdiff_t>(std::min(from + step, ids.size()));
   from = static_cast<std::size_t>(std::lower_bound(begin, end, v) - ids.begin());
-  return from < ids.size() && ids[from] == v ? layer_.layer.V[from] : background_.position(v);
+  if (from < ids.size() && ids[from] == v) return layer_.layer.V[from];
+  const auto is_before = [](const KeptVertex& k, std::int64_t id) { return k.vertex < id; };
+  const auto kept = std::lower_bound(kept_.begin(), kept_.end(), v, is_before);
+  return kept != kept_.end() && kept->vertex == v ? kept->final : background_.position(v);
 }
 
 void Positions::move(std::int64_t v, const Vec3& x) {

@@ -19,11 +19,12 @@ namespace umtet::detail {
 
 using TetIds = std::array<std::int64_t, 4>;
 
-/// Where the vertices of a mesh under repair are: moved, or in the layer, or in the background mesh.
+/// Where the vertices of a mesh under repair are: moved, or in the layer, or kept, or in the background mesh.
 class Positions {
  public:
-  /// Keeps both by reference.
-  Positions(const BackgroundMesh& background, const BackgroundLayer& layer) : background_(background), layer_(layer) {}
+  /// Keeps all by reference. @param kept  ascending
+  Positions(const BackgroundMesh& background, const BackgroundLayer& layer, const std::vector<KeptVertex>& kept)
+      : background_(background), layer_(layer), kept_(kept) {}
 
   Vec3 of(std::int64_t v) const {
     std::size_t from = 0;
@@ -37,6 +38,7 @@ class Positions {
  private:
   const BackgroundMesh& background_;
   const BackgroundLayer& layer_;
+  const std::vector<KeptVertex>& kept_;
   IdList moved_;
   std::vector<Vec3> moved_to_;
 };

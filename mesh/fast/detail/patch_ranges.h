@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <unordered_map>
 #include <vector>
@@ -17,6 +18,9 @@ class PatchRanges {
     Vec3 at;
     double far;  ///< model units
     bool meets(const Range& other) const { return (other.at - at).norm() <= .5 * (other.far + far); }
+    bool meets_any(const std::vector<Range>& others) const {
+      return std::any_of(others.begin(), others.end(), [&](const Range& other) { return meets(other); });
+    }
   };
 
   /// Keeps both by reference.

@@ -264,7 +264,11 @@ TEST(GradedMesh, AsABackgroundIsTheMeshItLists) {
     EXPECT_EQ(found.background_tet, expected.background_tet);
     EXPECT_EQ(found.positive_faces, expected.positive_faces);
   }
+  EXPECT_EQ(graded.vertex_of_key(-1), -1);
+  EXPECT_EQ(stored.vertex_of_key(stored.n_vertices()), -1);
   for (std::int64_t v = 0; v < graded.n_vertices(); ++v) {
+    ASSERT_EQ(graded.vertex_of_key(graded.key_of_vertex(v)), v);
+    ASSERT_EQ(stored.vertex_of_key(stored.key_of_vertex(v)), v);
     ASSERT_NEAR(graded.h(v), stored.h(v), 1e-12);
     ASSERT_EQ(graded.on_boundary(v), stored.on_boundary(v));
   }

@@ -157,6 +157,29 @@ TEST(SizeField, OfAFunctionWithoutAValueIsTheGreatestSizeThere) {
   EXPECT_NEAR(field.at({.25, 0, 0}), .5, 1e-12);
 }
 
+TEST(SizeField, RefinedIsTheSameWhereTheNewSourcesAskForMore) {
+  std::vector<SizeSource> sources;
+  for (int i = 0; i < 200; ++i) sources.push_back({Vec3(std::cos(i), std::sin(i), .01 * i), .1, .05});
+  const SizeField field(sources, {.grade = .3, .h_min = .05, .h_max = 1});
+  const Vec3 spot(1, 0, 0);
+  const SizeField finer = field.refined({{spot, .02, .1}});
+  EXPECT_EQ(finer.at(spot), .02);
+  EXPECT_EQ(finer.least_in(spot, .05), .02);
+  const SizeField finest = finer.refined({{-spot, .03, .1}});
+  EXPECT_EQ(finest.at(spot), .02);
+  EXPECT_EQ(finest.at(-spot), .03);
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3 x(2 * std::sin(7. * i), 2 * std::sin(11. * i), 2 * std::sin(13. * i));
+    const double of_spot = .02 + .3 * std::max(0., (x - spot).norm() - .1);
+    if (of_spot > 1.06 * field.at(x)) {
+      EXPECT_EQ(finer.at(x), field.at(x));
+    } else {
+      EXPECT_LE(finer.at(x), (1 + 1e-12) * std::min(field.at(x), of_spot));
+    }
+  }
+  EXPECT_THROW(field.refined({{spot, -1, 0}}), std::invalid_argument);
+}
+
 TEST(SizeField, IsTheSameForEveryNumberOfThreads) {
   const auto f = [](const Vec3& x) { return x.norm() < .3 ? .02 : .5; };
   const auto make = [&](std::size_t n_threads) {

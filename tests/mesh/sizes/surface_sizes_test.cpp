@@ -52,6 +52,27 @@ TEST(SurfaceSizes, LieOnPsiAndAreNoFartherApartThanTheyAreLarge) {
   }
 }
 
+TEST(SurfaceSizes, EndWhereSomeAreEnough) {
+  const AnalyticDomain body = lens(.1);
+  const std::vector<Vec3> points = zero_set_topology(body, body.box, .05).cut_points;
+  const SurfaceSizeParams params{.h = .1, .h_min = .004};
+  const std::vector<SizeSource> all = surface_sizes(body, points, .05, params);
+  std::vector<std::size_t> asked;
+  const auto ends_at = [&](std::size_t n) {
+    asked.clear();
+    return surface_sizes(body, points, .05, params, {}, [&](const std::vector<SizeSource>& sources) {
+      asked.push_back(sources.size());
+      return sources.size() >= n;
+    });
+  };
+  const std::vector<SizeSource> first = ends_at(1);
+  ASSERT_EQ(asked.size(), 1u);
+  EXPECT_EQ(first.size(), asked.front());
+  EXPECT_LT(2 * first.size(), all.size());
+  for (std::size_t i = 0; i < first.size(); ++i) EXPECT_EQ(first[i].x, all[i].x);
+  EXPECT_EQ(ends_at(all.size() + 1).size(), all.size());
+}
+
 TEST(SurfaceSizes, PutEnoughEdgesAcrossAThinBody) {
   // t = 2 c sqrt(1 - x^2 - y^2) along z, a little less along the normal.
   const double c = .05;

@@ -40,6 +40,20 @@ TEST(GradedSizes, OfAThickBodyAreHOnTheBoundaryAndGrowInside) {
   EXPECT_NEAR(field.at({0, 0, 0}), .1 + .3 * .8, .02);
 }
 
+/// A lens a tenth as thick as it is wide: sizes fall towards its rim.
+TEST(GradedSizes, AreNotLookedForWhereTheyMakeTooManyTets) {
+  const Parameters p = graded({"mesh.h=.1"});
+  Domain domain = ball();
+  domain.formula.emplace("x^2+y^2+100*z^2-1");
+  GradedSizes sizes(p, Vec3::Zero());
+  EXPECT_FALSE(sizes.add(domain, {}, 100));
+  EXPECT_EQ(sizes.n_domains(), 0);
+  EXPECT_TRUE(sizes.add(domain, {}, 1e6));
+  EXPECT_EQ(sizes.n_domains(), 1);
+  const double h = sizes.finest();
+  EXPECT_GT(expected_graded_tets(sizes.field(h), h, domain.psi(), domain.box, domain.steepest()), 100);
+}
+
 TEST(GradedSizes, KeepTheirGradeAtAnotherH) {
   const Parameters p = graded({"mesh.h=.1", "mesh.constant_layer=0"});
   GradedSizes sizes(p, Vec3::Zero());

@@ -122,7 +122,8 @@ TEST(BestAttempt, EndsWhereTheEffortIsSpent) {
 /// Attempts on graded meshes: reasons and tets of each; every refinement halves h, until h_min.
 struct Refinements {
   Refinements(const std::vector<std::pair<int, int>>& outcomes, double h_min, double effort = kAnyEffort) {
-    const auto attempt = [&](double h) {
+    const auto attempt = [&](double h, const MeshAttempt* former) {
+      formers.push_back(former ? former->h : 0);
       const auto [n_reasons, n_tets] = outcomes.at(tried.size());
       tried.push_back(h);
       MeshAttempt a;
@@ -135,7 +136,7 @@ struct Refinements {
     const auto refine = [&](const MeshAttempt& a) { return a.h > h_min ? std::optional(a.h / 2) : std::nullopt; };
     kept = refined_attempt(1, effort, attempt, refine, [&](const std::string& line) { said.push_back(line); });
   }
-  std::vector<double> tried;
+  std::vector<double> tried, formers;  ///< 0: none
   std::vector<std::string> said;
   MeshAttempt kept;
 };
@@ -153,6 +154,7 @@ TEST(RefinedAttempt, KeepsTheBestWhereNothingMayBeFiner) {
   EXPECT_EQ(r.tried.size(), 3u);
   EXPECT_EQ(r.kept.h, .5);
   EXPECT_NE(r.said.back().find("keeping those of 110 tets"), std::string::npos) << r.said.back();
+  EXPECT_EQ(r.formers, (std::vector<double>{0, 1, .5}));
   EXPECT_EQ(Refinements({{1, 100}, {1, 110}, {1, 120}, {1, 130}, {1, 140}}, 0).tried.size(), 5u);  // four refinements
 }
 
