@@ -79,6 +79,21 @@ CloudFile parse(const CloudSource& source, const std::filesystem::path& file) {
   return detail::read_xyz(source);
 }
 
+bool is_in_blocks(const CloudSource& head, const std::filesystem::path& file) {
+  const Format format = format_of(head, file);
+  return (format == Format::Ply && detail::is_in_blocks_ply(head)) ||
+         (format == Format::Pcd && detail::is_in_blocks_pcd(head));
+}
+
+/// Block by block where that can be: gigabytes of bytes are not held beside what they mean.
+CloudFile parse(FileBytes& bytes, const std::filesystem::path& file, bool needs_normals) {
+  check_head(bytes.source(needs_normals), file);
+  const CloudSource head = bytes.source(needs_normals);
+  if (head.bytes_left_out > 0 && is_in_blocks(head, file)) return parse(bytes.in_blocks(needs_normals), file);
+  bytes.read_rest();
+  return parse(bytes.source(needs_normals), file);
+}
+
 /// Counts the points for which bad(i) holds; names the first.
 template <class Predicate>
 void refuse_points(const CloudSource& source, std::size_t n, Predicate bad, std::string_view what) {
@@ -152,10 +167,8 @@ void drop_unusable(const CloudSource& source, CloudFile& file) {
 
 CloudFile read_point_cloud(const std::filesystem::path& file) {
   FileBytes bytes(file);
-  check_head(bytes.source(true), file);
-  bytes.read_rest();
-  const CloudSource source = bytes.source(true);
-  CloudFile result = parse(source, file);
+  CloudFile result = parse(bytes, file, true);
+  const CloudSource source = bytes.source(true);  // names the file
   check_numbers(source, result.cloud);
   result.report.n_points = result.cloud.points.size();
   result.report.n_normals_rescaled = make_unit(result.cloud.normals);
@@ -166,10 +179,8 @@ void check_scan_head(const std::filesystem::path& file) { check_head(FileBytes(f
 
 CloudFile read_scan(const std::filesystem::path& file) {
   FileBytes bytes(file);
-  check_head(bytes.source(false), file);
-  bytes.read_rest();
-  const CloudSource source = bytes.source(false);
-  CloudFile result = parse(source, file);
+  CloudFile result = parse(bytes, file, false);
+  const CloudSource source = bytes.source(false);  // names the file
   result.report.n_points = result.cloud.points.size();
   drop_unusable(source, result);
   if (result.cloud.points.size() < kFewestSurveyed)
