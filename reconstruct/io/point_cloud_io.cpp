@@ -121,6 +121,12 @@ void check_numbers(const CloudSource& source, const OrientedPointCloud& cloud) {
       source, n, [&](std::size_t i) { return !cloud.normals[i].allFinite(); }, "has a normal that is NaN or infinite");
   refuse_points(
       source, n, [&](std::size_t i) { return cloud.normals[i].isZero(0); }, "has a zero normal");
+  refuse_points(
+      source, cloud.counts.size(), [&](std::size_t i) { return cloud.counts[i] < 1; }, "is merged of none");
+  refuse_points(
+      source, cloud.spreads.size(),
+      [&](std::size_t i) { return !(cloud.spreads[i] >= 0 && cloud.spreads[i] <= detail::kFarthest); },
+      "has a spread that is none");
   check_extent(source, cloud.points, kFewestPoints);
 }
 
@@ -181,6 +187,7 @@ CloudFile read_scan(const std::filesystem::path& file) {
   FileBytes bytes(file);
   CloudFile result = parse(bytes, file, false);
   const CloudSource source = bytes.source(false);  // names the file
+  result.cloud.counts = {}, result.cloud.spreads = {};
   result.report.n_points = result.cloud.points.size();
   drop_unusable(source, result);
   if (result.cloud.points.size() < kFewestSurveyed)
@@ -199,9 +206,11 @@ void write_ply(std::ostream& out, const OrientedPointCloud& cloud) {
   for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) out << "property double " << name << '\n';
   if (!cloud.labels.empty()) out << "property int label\n";
   if (!cloud.colours.empty()) out << "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  if (!cloud.counts.empty()) out << "property int " << detail::kCount << '\n';
+  if (!cloud.spreads.empty()) out << "property double " << detail::kSpread << '\n';
   for (const SampleField& field : cloud.fields) out << "property double " << field.name << '\n';
   out << "end_header\n";
-  std::vector<char> row((6 + cloud.fields.size()) * sizeof(double) + sizeof(std::int32_t) + sizeof(Colour));
+  std::vector<char> row((7 + cloud.fields.size()) * sizeof(double) + 2 * sizeof(std::int32_t) + sizeof(Colour));
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     char* at = row.data();
     for (const Vec3* v : {&cloud.points[i], &cloud.normals[i]})
@@ -209,6 +218,8 @@ void write_ply(std::ostream& out, const OrientedPointCloud& cloud) {
     if (!cloud.labels.empty()) detail::put(at, std::int32_t{cloud.labels[i]});
     if (!cloud.colours.empty())
       for (const std::uint8_t c : cloud.colours[i]) detail::put(at, c);
+    if (!cloud.counts.empty()) detail::put(at, std::int32_t{cloud.counts[i]});
+    if (!cloud.spreads.empty()) detail::put(at, cloud.spreads[i]);
     for (const SampleField& field : cloud.fields) detail::put(at, field.values[i]);
     out.write(row.data(), at - row.data());
   }
