@@ -295,12 +295,28 @@ std::vector<std::vector<SsdSample>> samples_of_levels(const Problem& problem, La
   return samples;
 }
 
+double n_coarsest_nodes(const Problem& problem, double spacing) {
+  const int padding = std::max(problem.params.padding, kLeastMultilevelPadding);
+  return (problem.box.sizes() / spacing + Vec3::Constant(2 * padding)).prod();
+}
+
+// SsdParams::finest, or less where a full lattice may be finer.
+double finest_of_use(const Problem& problem) {
+  constexpr int kHalvings = 50;
+  double low = 0, high = problem.params.finest;
+  for (int k = 0; k < kHalvings && high > 0; ++k) {
+    const double middle = low + (high - low) / 2;
+    (n_coarsest_nodes(problem, middle) > problem.params.coarsest_nodes ? low : high) = middle;
+  }
+  return high;
+}
+
 LevelSet fit_multilevel(const Problem& problem, SsdReport& report) {
   const SsdParams& params = problem.params;
   const int padding = std::max(params.padding, kLeastMultilevelPadding);
   int n_bands = 0;
   double coarsest = report.spacing;
-  while ((problem.box.sizes() / coarsest + Vec3::Constant(2 * padding)).prod() > params.coarsest_nodes) {
+  while (n_coarsest_nodes(problem, coarsest) > params.coarsest_nodes) {
     coarsest *= 2;
     ++n_bands;
   }
@@ -384,7 +400,7 @@ SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const C
   }
   const double edge = kMeshEdge * diagonal;
   const Resolution chosen =
-      choose_resolution(between_samples, edge, params.noise, params.detail, params.smooth, params.finest);
+      choose_resolution(between_samples, edge, params.noise, params.detail, params.smooth, finest_of_use(problem));
   report.spacing = params.spacing > 0 ? params.spacing : chosen.spacing;
   if (params.spacing == 0 && params.solver != SsdSolver::Multilevel) {
     report.spacing = std::max(report.spacing, edge);

@@ -29,8 +29,9 @@ struct SsdParams {
   double noise = 0;  ///< standard deviation of the samples along the normal, model units; l: see resolution.h
   std::vector<double> local_noise = {};  ///< of each sample (local_noise.h); empty: as above everywhere
   double detail = 1;                     ///< > 0: divides the spacing that is chosen
-  double finest = 0;                     ///< no lattice of a smaller spacing is of use, model units; >= 0
-  double smooth = 1;                     ///< > 0: multiplies the smoothing that is chosen
+  double finest =
+      0;  ///< no lattice of a smaller spacing is of use, model units, but a full one of coarsest_nodes; >= 0
+  double smooth = 1;  ///< > 0: multiplies the smoothing that is chosen
   double alpha =
       1e-2;  ///< alpha of eq. (10), in its units; > 0 (SsdWeights::Paper); below, the duck grows spurious parts
   SsdWeights weights = SsdWeights::Area;  ///< Paper: only on a full lattice

@@ -43,10 +43,10 @@ TEST_F(DenseClouds, MakeTheMeshOfAllTheirSamplesFromFewer) {
   dense.fields = {{"height", {}}};
   for (const Vec3& x : dense.points) dense.fields[0].values.push_back(x[2]);
   write("dense.ply", dense);
-  const Result r = run("run dense.ply -o few --tets 20000 --no-report");
+  const Result r = run("run dense.ply -o few --tets 300000 --no-report");
   ASSERT_EQ(r.code, 0) << r.err;
   EXPECT_NE(r.err.find("merged 450000 points"), std::string::npos) << r.err;
-  ASSERT_EQ(run("run dense.ply -o all --tets 20000 --no-report --set cloud.merge=false").code, 0);
+  ASSERT_EQ(run("run dense.ply -o all --tets 300000 --no-report --set cloud.merge=false").code, 0);
   const Json merged = record(folder / "few/1-cloud")["numbers"]["merged"];
   EXPECT_EQ(merged["n_points"], kDense);
   EXPECT_LT(merged["n_samples"], kDense / 3);

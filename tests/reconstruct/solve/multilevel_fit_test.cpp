@@ -386,6 +386,11 @@ TEST(MultilevelFit, NoLatticeIsFinerThanTheFinestOfUse) {
   const SsdFit few = fit_ssd(cloud, p);
   EXPECT_DOUBLE_EQ(few.report.spacing, p.finest);
   EXPECT_LT(few.report.n_nodes, all.report.n_nodes / 4);
+  p.coarsest_nodes = 150000;
+  const SsdFit full = fit_ssd(cloud, p);
+  EXPECT_TRUE(full.report.bands.empty());
+  EXPECT_LT(full.report.spacing, p.finest) << "a full lattice may be finer";
+  EXPECT_GT(full.report.spacing, all.report.spacing);
   p.finest = all.report.spacing / 2;
   EXPECT_EQ(fit_ssd(cloud, p).report.spacing, all.report.spacing) << "samples show nothing finer";
   p.finest = -1;
