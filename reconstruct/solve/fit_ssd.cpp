@@ -302,7 +302,7 @@ double n_coarsest_nodes(const Problem& problem, double spacing) {
 
 // SsdParams::finest, or less where a full lattice may be finer.
 double finest_of_use(const Problem& problem) {
-  constexpr int kHalvings = 50;
+  constexpr int kHalvings = 50;  // the digits of a double
   double low = 0, high = problem.params.finest;
   for (int k = 0; k < kHalvings && high > 0; ++k) {
     const double middle = low + (high - low) / 2;
