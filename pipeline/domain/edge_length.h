@@ -12,6 +12,12 @@ namespace umtet {
 /// flat it is.
 inline constexpr double kMostOfDiagonal = .1;
 
+/// Boundary faces start to fold where the body or a gap is thinner than about two edges: h is the thickness that a
+/// share of the samples falls below, over this.
+inline constexpr double kEdgesAcross = 2.2;
+/// Noise of the samples over h, at most: psi is fitted on a lattice of three times the noise, and has nothing finer.
+inline constexpr double kMostNoise = .3;
+
 struct EdgeLength {
   double h;      ///< model units
   double least;  ///< the h that makes about mesh.max_tets tets if the choice of h was left to us, else h
