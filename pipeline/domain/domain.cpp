@@ -6,6 +6,7 @@
 #include "pipeline/case/exit_code.h"
 #include "pipeline/domain/fitted_domain.h"
 #include "pipeline/domain/handover.h"
+#include "pipeline/domain/wanted_detail.h"
 #include "pipeline/reports/stage_reports.h"
 #include "reconstruct/io/level_set_io.h"
 #include "reconstruct/io/point_cloud_io.h"
@@ -20,9 +21,6 @@ static_assert(JointlyEvaluated<Domain>);
 static_assert(JointlyEvaluated<Expression>);
 
 namespace {
-
-// Levels of psi with a smaller spacing, in edges of the mesh, are left out: faces fold over detail they cannot follow.
-constexpr double kLeastSpacing = .7;
 
 bool cloud_of_triangles(const CasePaths& paths) {
   const StageState state = inspect_stage(paths, Stage::Cloud, Json::object(), std::nullopt);

@@ -19,13 +19,10 @@
 namespace umtet {
 namespace {
 
-// Boundary faces start to fold where the body or a gap is thinner than about two edges: h is the thickness that a share
-// kThinShare of the samples falls below, over kEdgesAcross.
-constexpr double kEdgesAcross = 2.2;
 // Where that makes more than kTetsOfLargeMesh tets, fewer edges across have to do: classification and repair mend what
 // comes out wrong down to about 1.9, and (1.9 / 2.2)^3 is two thirds of the tets.
 constexpr double kFewerEdgesAcross = 1.9;
-constexpr double kThinShare = .01;
+constexpr double kThinShare = .01;  // that is thinner than what h is chosen for
 // The most that rounding may move a vertex, in edges: far less than anything that counts in a mesh.
 constexpr double kMostRounding = 1e-6;
 // 200 of them fall below the first percentile.

@@ -14,6 +14,12 @@ namespace umtet {
 /// flat it is.
 inline constexpr double kMostOfDiagonal = .1;
 
+/// Boundary faces start to fold where the body or a gap is thinner than about two edges: h is the thickness that a
+/// share of the samples falls below, over this.
+inline constexpr double kEdgesAcross = 2.2;
+/// Noise of the samples over h, at most: psi is fitted on a lattice of three times the noise, and has nothing finer.
+inline constexpr double kMostNoise = .3;
+
 struct EdgeLength {
   double h;      ///< model units
   double least;  ///< the h that makes about mesh.max_tets tets if the choice of h was left to us, else h
@@ -42,8 +48,6 @@ double edge_length_by(double of_size, double thin, const std::function<double()>
 
 /// So many tets are a large mesh, in which fewer edges across a thin part have to do.
 inline constexpr std::int64_t kTetsOfLargeMesh = 1'150'000;
-/// Noise of the samples over h, at most: psi is fitted on a lattice of three times the noise, and has nothing finer.
-inline constexpr double kMostNoise = .3;
 
 /// The h at which about mesh.max_tets tets are made. \throw MeshingImpossible  psi < 0 nowhere
 double least_h_of_max_tets(const Domain& domain, const Parameters& parameters);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <utility>
 
 #include "common/disjoint_sets.h"
 #include "mesh/certify/quality_report.h"
@@ -16,6 +17,28 @@ namespace {
 double rms(const std::vector<double>& d) {
   return std::sqrt(std::transform_reduce(d.begin(), d.end(), 0., std::plus<>(), [](double v) { return v * v; }) /
                    static_cast<double>(d.size()));
+}
+
+/// Each value as often as it counts.
+double rms(const std::vector<double>& d, const std::vector<int>& counts) {
+  double sum = 0, n = 0;
+  for (std::size_t i = 0; i < d.size(); ++i) {
+    sum += counts[i] * d[i] * d[i];
+    n += counts[i];
+  }
+  return std::sqrt(sum / n);
+}
+
+double counted_quantile(const std::vector<double>& d, const std::vector<int>& counts, double p) {
+  std::vector<std::pair<double, int>> rows(d.size());
+  for (std::size_t i = 0; i < d.size(); ++i) rows[i] = {d[i], counts[i]};
+  std::sort(rows.begin(), rows.end());
+  const double wanted = p * std::accumulate(counts.begin(), counts.end(), 0.);
+  double below = 0;
+  for (const auto& [value, count] : rows) {
+    if ((below += count) >= wanted) return value;
+  }
+  return rows.back().first;
 }
 
 /// Of the samples farther than `beyond` of each, in working coordinates; the farthest first.
@@ -55,15 +78,22 @@ std::vector<MissedPlace> missed_places(const Domain& domain, const std::vector<d
 
 }  // namespace
 
+std::vector<double> before_merging(const OrientedPointCloud& cloud, std::vector<double> d) {
+  for (std::size_t i = 0; i < cloud.spreads.size(); ++i) d[i] = std::hypot(d[i], cloud.spreads[i]);
+  return d;
+}
+
 SampleDistances sample_distances(const Domain& domain, const std::vector<double>& d, const MeshEdge& h,
                                  double flatness_over_h) {
   SampleDistances s;
   std::vector<double> sorted = d;
   std::sort(sorted.begin(), sorted.end());
   s.noise = domain.noise;
-  s.rms = rms(sorted);
+  const std::vector<int>& counts = domain.cloud.counts;
+  if (!counts.empty()) s.n_merged = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+  s.rms = counts.empty() ? rms(sorted) : rms(d, counts);
   s.max = sorted.back();
-  s.p99 = quantile(sorted, .99);
+  s.p99 = counts.empty() ? quantile(sorted, .99) : counted_quantile(d, counts, .99);
   const std::vector<double> h_at = h.at(domain.cloud.points);
   const double of_noise = kNoisesMissed * domain.noise.value_or(0);
   std::vector<double> beyond(d.size()), over_h(d.size());

@@ -8,6 +8,10 @@
 
 namespace umtet {
 
+/// Distances of merged samples as the rms over those they were merged of: sqrt(d^2 + spread^2). Others stay as they
+/// are.
+std::vector<double> before_merging(const OrientedPointCloud& cloud, std::vector<double> d);
+
 /// Single samples of noise are off by any distance; so many beside one another are not.
 inline constexpr std::size_t kFewestMissed = 10;
 /// Of the noise of a sample: one in 400 is farther off.

@@ -327,7 +327,8 @@ Measurement measure(const Domain& domain, const UmResult& result, const ZeroSetC
   if (surface && !domain.cloud.points.empty()) {
     const std::vector<double> d = surface->distances(domain.cloud.points, context);
     if (domain.fitted) add(lost_samples(domain, pieces, d, h, context));
-    m.cloud = sample_distances(domain, d, h, m.mesh.boundary.max_centroid_distance_over_h.value_or(0));
+    m.cloud = sample_distances(domain, before_merging(domain.cloud, d), h,
+                               m.mesh.boundary.max_centroid_distance_over_h.value_or(0));
   }
   if (surface && domain.triangles) m.triangles = triangle_distances(domain, mesh.V, faces, *surface, context);
   made.places = places_of(domain, differences, h, context);

@@ -47,12 +47,14 @@ struct ZeroSetReport {
   std::optional<SupportReport> support;         ///< none for a formula
 };
 
-/// Distances of the samples to the boundary of the mesh.
+/// Distances of the samples to the boundary of the mesh. That of a merged sample is the rms over those that it was
+/// merged of: the root of the squares of its own and of their spread.
 struct SampleDistances {
   std::optional<double> noise;  ///< standard deviation of the samples along the normal
   double rms = 0, max = 0;
   double p99 = 0;            ///< 99 % of the samples are nearer
   double missed_beyond = 0;  ///< neither noise nor flat faces explain a distance above it: missed_samples.h
+  std::optional<std::size_t> n_merged = {};  ///< how many samples the cloud has been merged of
   std::size_t n_missed_places = 0;
   std::vector<MissedPlace> missed{};  ///< the farthest of them, farthest first
 };

@@ -118,8 +118,9 @@ std::string cloud_line(const MeshMeasures& m, const std::string& unit) {
   const SampleDistances& d = *m.cloud;
   const double h = m.mesh.h;
   const std::optional<double> noise = d.noise ? std::optional(*d.noise / h) : std::nullopt;
-  return fmt::format("cloud     {} samples, noise {} h; distance to the mesh rms {} ({} h), 99 % {} h, max {} h\n",
-                     thousands(m.n_points.value_or(0)), show(noise, "{:.3f}"), show(d.rms, "{:.3g}") + unit,
+  const std::string merged = d.n_merged ? fmt::format(", means of {}", thousands(*d.n_merged)) : "";
+  return fmt::format("cloud     {} samples{}, noise {} h; distance to the mesh rms {} ({} h), 99 % {} h, max {} h\n",
+                     thousands(m.n_points.value_or(0)), merged, show(noise, "{:.3f}"), show(d.rms, "{:.3g}") + unit,
                      show(d.rms / h, "{:.4f}"), show(d.p99 / h, "{:.4f}"), show(d.max / h, "{:.4f}"));
 }
 

@@ -82,17 +82,19 @@ ZeroSetReport zero_set_from(const Json& json) {
 }
 
 Json to_json(const SampleDistances& d, double h) {
-  return {{"noise", json_of(d.noise)},
-          {"noise_over_h", ratio_to(h, d.noise)},
-          {"rms_distance", d.rms},
-          {"max_distance", d.max},
-          {"p99_distance", d.p99},
-          {"rms_distance_over_h", d.rms / h},
-          {"max_distance_over_h", d.max / h},
-          {"p99_distance_over_h", d.p99 / h},
-          {"missed_beyond", d.missed_beyond},
-          {"n_missed_places", d.n_missed_places},
-          {"missed_places", to_json(d.missed)}};
+  Json json = {{"noise", json_of(d.noise)},
+               {"noise_over_h", ratio_to(h, d.noise)},
+               {"rms_distance", d.rms},
+               {"max_distance", d.max},
+               {"p99_distance", d.p99},
+               {"rms_distance_over_h", d.rms / h},
+               {"max_distance_over_h", d.max / h},
+               {"p99_distance_over_h", d.p99 / h},
+               {"missed_beyond", d.missed_beyond},
+               {"n_missed_places", d.n_missed_places},
+               {"missed_places", to_json(d.missed)}};
+  if (d.n_merged) json["n_merged"] = *d.n_merged;
+  return json;
 }
 
 SampleDistances distances_from(const Json& json) {
@@ -100,6 +102,7 @@ SampleDistances distances_from(const Json& json) {
                     .rms = number_from(json.at("rms_distance")),
                     .max = number_from(json.at("max_distance")),
                     .p99 = number_from(json.at("p99_distance"))};
+  if (json.contains("n_merged")) d.n_merged = json.at("n_merged");
   if (!json.contains("missed_beyond")) return d;  // written before they were looked for
   d.missed_beyond = number_from(json.at("missed_beyond"));
   d.n_missed_places = json.at("n_missed_places");

@@ -86,6 +86,13 @@ BandReport band_from(const Json& json) {
           .residual = number_from(json.at("residual"))};
 }
 
+MergedReport merged_from(const Json& json) {
+  return {.n_points = json.at("n_points"),
+          .n_samples = json.at("n_samples"),
+          .cell = number_from(json.at("cell")),
+          .wanted = json.at("wanted")};
+}
+
 CloudReport cloud_from(const Json& json) {
   const Json& dropped = json.at("dropped");
   return {.format = json.at("format"),
@@ -99,6 +106,7 @@ CloudReport cloud_from(const Json& json) {
           .triangles = json.contains("triangles") ? std::optional(triangles_from(json.at("triangles"))) : std::nullopt,
           .n_points = json.at("n_points"),
           .fields = json.value("fields", std::vector<std::string>()),
+          .merged = json.contains("merged") ? std::optional(merged_from(json.at("merged"))) : std::nullopt,
           .box = {vector_from(json.at("box_min")), vector_from(json.at("box_max"))},
           .notices = json.at("notices")};
 }
@@ -154,6 +162,7 @@ LevelSetReport level_set_from(const Json& json) {
   fit.n_turned_normals = json.at("n_turned_normals");
   for (const Json& hole : json.at("holes")) fit.holes.push_back(fitted_hole_from(hole));
   fit.least_wall_value = number_from(json.at("least_wall_value"));
+  if (json.contains("wanted")) r.wanted = json.at("wanted");
   return r;
 }
 
@@ -217,6 +226,9 @@ Json to_json(const CloudReport& r) {
                {"notices", r.notices}};
   if (r.triangles) json["triangles"] = to_json(*r.triangles);
   if (!r.fields.empty()) json["fields"] = r.fields;
+  if (const std::optional<MergedReport>& m = r.merged) {
+    json["merged"] = {{"n_points", m->n_points}, {"n_samples", m->n_samples}, {"cell", m->cell}, {"wanted", m->wanted}};
+  }
   return json;
 }
 
@@ -226,27 +238,29 @@ Json to_json(const LevelSetReport& r) {
   for (const BandReport& band : fit.bands) bands.push_back(to_json(band));
   Json holes = Json::array();
   for (const FittedHole& hole : fit.holes) holes.push_back(to_json(hole));
-  return {{"shift", json_of(r.shift)},
-          {"n_points", fit.n_points},
-          {"n_nodes", fit.n_nodes},
-          {"spacing", fit.spacing},
-          {"smoothing", fit.smoothing},
-          {"noise", r.noise},
-          {"reason", fit.reason},
-          {"cloud_spacing", fit.cloud_spacing},
-          {"thickness_percentiles_1_5_50", json_of(r.thickness)},
-          {"iterations", fit.iterations},
-          {"residuals", fit.residuals},
-          {"bands", bands},
-          {"energy_value", fit.energy_value},
-          {"energy_normal", fit.energy_normal},
-          {"energy_hessian", fit.energy_hessian},
-          {"rms_value", fit.rms_value},
-          {"normal_defect", fit.normal_defect},
-          {"n_opposed_normals", fit.n_opposed_normals},
-          {"n_turned_normals", fit.n_turned_normals},
-          {"holes", holes},
-          {"least_wall_value", fit.least_wall_value}};
+  Json json = {{"shift", json_of(r.shift)},
+               {"n_points", fit.n_points},
+               {"n_nodes", fit.n_nodes},
+               {"spacing", fit.spacing},
+               {"smoothing", fit.smoothing},
+               {"noise", r.noise},
+               {"reason", fit.reason},
+               {"cloud_spacing", fit.cloud_spacing},
+               {"thickness_percentiles_1_5_50", json_of(r.thickness)},
+               {"iterations", fit.iterations},
+               {"residuals", fit.residuals},
+               {"bands", bands},
+               {"energy_value", fit.energy_value},
+               {"energy_normal", fit.energy_normal},
+               {"energy_hessian", fit.energy_hessian},
+               {"rms_value", fit.rms_value},
+               {"normal_defect", fit.normal_defect},
+               {"n_opposed_normals", fit.n_opposed_normals},
+               {"n_turned_normals", fit.n_turned_normals},
+               {"holes", holes},
+               {"least_wall_value", fit.least_wall_value}};
+  if (r.wanted) json["wanted"] = *r.wanted;
+  return json;
 }
 
 Json to_json(const MeshReport& r) {

@@ -37,6 +37,13 @@ struct TrianglesReport {
   std::vector<std::string> label_names;  ///< of label 1, 2 ..., as the file has them
 };
 
+/// Samples that became one a cell (merged_samples.h).
+struct MergedReport {
+  std::size_t n_points = 0, n_samples = 0;  ///< before and after
+  double cell = 0;                          ///< its edge, model units
+  Json wanted;                              ///< what mesh they were merged for: wanted_mesh()
+};
+
 /// Of 1-cloud.
 struct CloudReport {
   std::string format;  ///< of the file, as CloudFileReport has it
@@ -48,6 +55,7 @@ struct CloudReport {
   std::optional<TrianglesReport> triangles;  ///< none of a cloud
   std::size_t n_points = 0;                  ///< that are left
   std::vector<std::string> fields = {};      ///< what they carry: field_names()
+  std::optional<MergedReport> merged = {};   ///< none where samples are what they were
   Eigen::AlignedBox3d box;                   ///< of them
   std::vector<std::string> notices;          ///< what was changed or guessed, for the user
 };
@@ -59,6 +67,7 @@ struct LevelSetReport {
   double noise = 0;                                ///< of the samples along the normal, as the fit took it
   std::optional<std::array<double, 3>> thickness;  ///< 1, 5 and 50 % of the distances between opposed samples; none
                                                    ///< where none face one another
+  std::optional<Json> wanted = {};  ///< wanted_mesh(), where finer lattices were left out because it shows none
 };
 
 /// Of 3-mesh.

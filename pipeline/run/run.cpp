@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "pipeline/case/interrupt.h"
+#include "pipeline/domain/wanted_detail.h"
 #include "pipeline/output/report.h"
 #include "pipeline/reports/certificate_json.h"
 #include "pipeline/run/renewal.h"
@@ -39,6 +40,7 @@ class CaseRun {
   void take_former_parameters();
   void sample_for_h();
   StageState state_of(Stage stage) const;
+  bool is_fine_enough(Stage stage, const StageRecord& record) const;
   bool must_run(Stage stage, const StageState& state) const;
   void make(Stage stage);
   void certify(const StageRecord& mesh);
@@ -99,6 +101,18 @@ StageState CaseRun::state_of(Stage stage) const {
   return inspect_stage(paths_, stage, parameters_.section(section_of(stage)), inputs);
 }
 
+/// Where samples are dense, the first stages keep no more than the mesh that was asked for can show.
+bool CaseRun::is_fine_enough(Stage stage, const StageRecord& record) const {
+  if (stage == Stage::Mesh || request_.until != Stage::Mesh) return true;
+  std::optional<Json> wanted;
+  if (stage == Stage::LevelSet) {
+    wanted = level_set_report(record).wanted;
+  } else if (const std::optional<MergedReport> merged = cloud_report(record).merged) {
+    wanted = merged->wanted;
+  }
+  return !wanted || *wanted == wanted_mesh(parameters_);
+}
+
 bool CaseRun::must_run(Stage stage, const StageState& state) const {
   using Kind = StageState::Kind;
   const std::string name = to_string(stage);
@@ -111,9 +125,15 @@ bool CaseRun::must_run(Stage stage, const StageState& state) const {
     if (state.kind == Kind::Missing) {
       throw UsageError(state.reason + ": the stage " + name + " has to be run first (umtet run, umtet reconstruct)");
     }
+    if (!is_fine_enough(stage, *state.record))
+      progress_.warn(name + ": made as fine as another mesh needs (umtet run makes it again)");
     return false;
   }
   if (state.kind == Kind::Changed) progress_.say(name + ": " + state.reason);
+  if (state.kind == Kind::Done && !is_fine_enough(stage, *state.record)) {
+    progress_.say(name + ": made as fine as another mesh needs");
+    return true;
+  }
   return request_.force || state.kind != Kind::Done;
 }
 
@@ -124,7 +144,7 @@ StageRecord CaseRun::ensure(Stage stage) {
   if (holds_results(paths_, stage)) {
     paths_.renews(stage) = true;
     if (!request_.force) state = state_of(stage);
-    if (!request_.force && state.kind == StageState::Kind::Done) {
+    if (!request_.force && state.kind == StageState::Kind::Done && is_fine_enough(stage, *state.record)) {
       progress_.say(std::string(to_string(stage)) + ": done by an earlier run that was not finished");
       return *state.record;
     }

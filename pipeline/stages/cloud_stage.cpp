@@ -4,7 +4,7 @@
 #include <system_error>
 
 #include "pipeline/case/interrupt.h"
-#include "pipeline/stages/cloud_preparation.h"
+#include "pipeline/stages/sample_merging.h"
 #include "pipeline/stages/scan_source.h"
 #include "pipeline/stages/stages.h"
 #include "reconstruct/io/point_cloud_io.h"
@@ -20,7 +20,7 @@ void run_cloud_stage(const StageContext& context, const fs::path& source) {
   const std::vector<RecordedFile> inputs = source_inputs(source, context.parameters, *context.paths.stamps);
   ScanSource scan = read_source(source, context.parameters, {.cancelled = until_interrupted().cancelled});
   context.progress.report("cloud", "prepare", .2);
-  PreparedCloud prepared = prepare_cloud(std::move(scan.cloud), source, context.parameters);
+  PreparedCloud prepared = prepare_merged(std::move(scan.cloud), source, context.parameters);
   if (scan.triangles) add_triangles(*scan.triangles, prepared.report);
   stop_if_interrupted();
   for (const std::string& notice : prepared.report.notices) context.progress.say("cloud: " + notice);

@@ -9,11 +9,14 @@
 #include <utility>
 
 #include "pipeline/case/memory.h"
+#include "pipeline/domain/wanted_detail.h"
 #include "pipeline/meshing/library_params.h"
 #include "reconstruct/cloud/cloud_neighbours.h"
 #include "reconstruct/cloud/cloud_survey.h"
 #include "reconstruct/cloud/covering.h"
+#include "reconstruct/cloud/enclosed_volume.h"
 #include "reconstruct/cloud/local_noise.h"
+#include "reconstruct/cloud/merged_samples.h"
 #include "reconstruct/solve/turned_fit.h"
 
 namespace umtet {
@@ -72,7 +75,8 @@ bool leaves_less(const SsdReport& report, double noise) {
 // And what it may leave, unless that is little for its lattice, as psi rounds edges: more is a contradiction of
 // samples, such as two sheets.
 constexpr double kLeftAtMost = 1.5, kLeftOfSpacing = .12;  // of the lattice's
-bool leaves_more(const SsdReport& report, double noise) {
+bool leaves_more(const SsdReport& report, double noise, double finest) {
+  if (report.spacing <= finest) return false;  // that is detail which is not wanted
   return report.rms_value > std::max(kLeftAtMost * noise, kLeftOfSpacing * report.spacing);
 }
 
@@ -104,6 +108,21 @@ void require_body(const SsdReport& r) {
       100 * opposed, r.n_points, open ? "check that the surface is closed, and " : ""));
 }
 
+/// Of samples that were merged for a mesh: no lattice that it has no use for.
+void leave_out_finer(const OrientedPointCloud& cloud, const NeighbourDistances& near, const Parameters& parameters,
+                     SsdParams& params, LevelSetReport& report) {
+  if (params.spacing > 0) return;
+  const std::vector<std::uint32_t> one(cloud.points.size(), 0);
+  const EnclosedVolume body = enclosed_volumes(cloud, sample_areas(near), one, 1).front();
+  ScanSize scan{.volume = body.volume, .area = body.area, .noise = params.noise};
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : cloud.points) box.extend(x);
+  scan.diagonal = box.diagonal().norm();
+  if (report.thickness) scan.thickness = report.thickness->front();
+  params.finest = finest_lattice(parameters, scan);
+  if (params.finest > 0) report.wanted = wanted_mesh(parameters);
+}
+
 /// @param cloud  near the origin
 LevelSetFit fit_near_origin(OrientedPointCloud& cloud, NeighbourDistances near, const Parameters& parameters,
                             const Context& context) {
@@ -111,21 +130,23 @@ LevelSetFit fit_near_origin(OrientedPointCloud& cloud, NeighbourDistances near, 
   params.max_memory = allowed_bytes(parameters);
   context.report("noise", 0);
   LevelSetReport report;
-  if (near.nearest.empty()) near = covered_distances(cloud.points);
+  if (near.nearest.empty()) near = covered_distances(cloud.points, cloud.counts);
   {
     const bool is_even = near.representatives.empty();
     const OrientedPointCloud few = is_even ? OrientedPointCloud() : picked(cloud, near.representatives);
     const OrientedPointCloud& even = is_even ? cloud : few;
     const NeighbourTree tree(even.points);
     const double noise = parameters.reconstruct().noise;
-    params.noise = noise >= 0 ? noise : noise_along_normals(even, tree);
-    if (noise < 0) params.local_noise = noise_of_all(cloud, even, tree, params.noise);
+    const double of_samples = noise >= 0 ? noise : noise_along_normals(even, tree);
+    if (noise < 0) params.local_noise = noise_of_all(cloud, even, tree, of_samples);
+    params.noise = noise >= 0 || cloud.counts.empty() ? of_samples : noise_before_merging(even, tree);
     report.thickness = thickness_percentiles(even, tree);
   }
+  if (!cloud.counts.empty()) leave_out_finer(cloud, near, parameters, params, report);
   SsdFit fit = fit_turning_opposed(cloud, params, context, &near);
   if (parameters.reconstruct().noise < 0) {
     for (int round = 0; round < kNoiseRounds && (leaves_less(fit.report, params.noise) ||
-                                                 (round == 0 && leaves_more(fit.report, params.noise)));
+                                                 (round == 0 && leaves_more(fit.report, params.noise, params.finest)));
          ++round) {
       params.noise = fit.report.rms_value;
       fit = fit_turning_opposed(cloud, params, context, &near);

@@ -21,6 +21,8 @@ void for_each_array(Cloud& cloud, Visit&& visit) {
   if_there(cloud.labels, "labels");
   if_there(cloud.origins, "origins");
   if_there(cloud.colours, "colours");
+  if_there(cloud.counts, "counts");
+  if_there(cloud.spreads, "spreads");
   for (auto& field : cloud.fields) visit(field.values, "values of " + field.name);
 }
 

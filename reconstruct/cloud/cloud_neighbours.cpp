@@ -134,6 +134,7 @@ std::vector<double> sample_areas(const NeighbourDistances& near) {
   std::vector<double> areas(near.nearest.size());
   for (std::size_t i = 0; i < areas.size(); ++i)
     areas[i] = area_per_mean_square * near.mean_square[i] / near.multiplicity[i];
+  for (std::size_t i = 0; i < near.weights.size(); ++i) areas[i] *= near.weights[i];
   return areas;
 }
 
@@ -148,6 +149,7 @@ constexpr double kFinerOnLines = 1.5;
 
 double sample_spacing(const NeighbourDistances& near) {
   std::vector<double> areas = sample_areas(near);
+  for (std::size_t i = 0; i < near.weights.size(); ++i) areas[i] /= near.weights[i];
   const bool each_counts =
       std::all_of(near.multiplicity.begin(), near.multiplicity.end(), [](int m) { return m == 1; });
   if (each_counts) {

@@ -17,6 +17,7 @@ struct NeighbourDistances {
   std::vector<int> multiplicity;  ///< how many points of the cloud share the place of this one, or the area of its
                                   ///< representative (covering.h); >= 1
   std::vector<std::uint32_t> representatives = {};  ///< those of a cloud on scan lines, ascending; empty: all points
+  std::vector<double> weights = {};  ///< of merged samples, what each counts for its area (relative_counts()); empty: 1
 };
 
 /// Exact nearest neighbours by a k-d tree, in double. The result does not depend on the number of threads.

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "reconstruct/cloud/cloud_arrays.h"
+#include "reconstruct/cloud/merged_samples.h"
 #include "reconstruct/cloud/neighbour_tree.h"
 
 namespace umtet {
@@ -179,8 +180,10 @@ OrientedPointCloud picked(const OrientedPointCloud& cloud, const std::vector<std
   return some;
 }
 
-NeighbourDistances neighbour_distances(const Neighbourhoods& near, const Covering& covering) {
+NeighbourDistances neighbour_distances(const Neighbourhoods& near, const Covering& covering,
+                                       const std::vector<int>& counts) {
   NeighbourDistances result = neighbour_distances(near);
+  if (!counts.empty()) result.weights = relative_counts(counts, near);
   if (covering.is_even()) return result;
   const NeighbourDistances few = neighbour_distances(covering.near);
   for (std::size_t i = 0; i < near.size(); ++i) {
@@ -193,12 +196,12 @@ NeighbourDistances neighbour_distances(const Neighbourhoods& near, const Coverin
   return result;
 }
 
-NeighbourDistances covered_distances(const std::vector<Vec3>& points) {
+NeighbourDistances covered_distances(const std::vector<Vec3>& points, const std::vector<int>& counts) {
   if (points.size() < 2) return neighbour_distances(points, kAreaNeighbours);  // throws
   const Neighbourhoods near(points, kAreaNeighbours);
   for (std::size_t i = 0; i < near.size(); ++i)
     if (near.distances2(i).front() == 0) return neighbour_distances(points, kAreaNeighbours);
-  return neighbour_distances(near, covering(points, near));
+  return neighbour_distances(near, covering(points, near), counts);
 }
 
 }  // namespace umtet

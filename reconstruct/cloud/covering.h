@@ -43,9 +43,11 @@ OrientedPointCloud picked(const OrientedPointCloud& cloud, const std::vector<std
 /// Neighbours for sample_areas and sample_spacing: `nearest` as it is, `mean_square` that of the representative, which
 /// shares its area among the points that it stands for.
 /// @param near  of all points
-NeighbourDistances neighbour_distances(const Neighbourhoods& near, const Covering& covering);
+/// @param counts  of samples that were merged; empty: none was
+NeighbourDistances neighbour_distances(const Neighbourhoods& near, const Covering& covering,
+                                       const std::vector<int>& counts = {});
 /// The same, searched: of a cloud with duplicates that of its places, as if these were sampled evenly.
 /// \throw std::invalid_argument  as neighbour_distances(points, kAreaNeighbours)
-NeighbourDistances covered_distances(const std::vector<Vec3>& points);
+NeighbourDistances covered_distances(const std::vector<Vec3>& points, const std::vector<int>& counts = {});
 
 }  // namespace umtet

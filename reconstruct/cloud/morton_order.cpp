@@ -14,15 +14,6 @@
 namespace umtet {
 namespace {
 
-/// The lowest 21 bits of v, two zeros between each of them.
-std::uint64_t spread_bits(std::uint64_t v) {
-  v = (v | v << 32) & 0x001f00000000ffff;
-  v = (v | v << 16) & 0x001f0000ff0000ff;
-  v = (v | v << 8) & 0x100f00f00f00f00f;
-  v = (v | v << 4) & 0x10c30c30c30c30c3;
-  return (v | v << 2) & 0x1249249249249249;
-}
-
 template <class T>
 void permute(const std::vector<std::uint32_t>& order, std::vector<T>& values) {
   std::vector<T> sorted;
@@ -32,6 +23,14 @@ void permute(const std::vector<std::uint32_t>& order, std::vector<T>& values) {
 }
 
 }  // namespace
+
+std::uint64_t spread_bits(std::uint64_t v) {
+  v = (v | v << 32) & 0x001f00000000ffff;
+  v = (v | v << 16) & 0x001f0000ff0000ff;
+  v = (v | v << 8) & 0x100f00f00f00f00f;
+  v = (v | v << 4) & 0x10c30c30c30c30c3;
+  return (v | v << 2) & 0x1249249249249249;
+}
 
 std::vector<std::uint32_t> morton_order(const std::vector<Vec3>& points) {
   constexpr double kCells = (1 << 21) - 1;

@@ -27,6 +27,8 @@ struct OrientedPointCloud {
   std::vector<Vec3> origins = {};        ///< where the scanner stood that saw a sample; or empty
   std::vector<Colour> colours = {};      ///< or empty
   std::vector<SampleField> fields = {};  ///< of different names
+  std::vector<int> counts = {};          ///< how many samples each of these was merged of (merged_samples.h); or empty
+  std::vector<double> spreads = {};      ///< their standard deviation along n_i, model units; or empty
 };
 
 }  // namespace umtet

@@ -79,6 +79,21 @@ CloudFile parse(const CloudSource& source, const std::filesystem::path& file) {
   return detail::read_xyz(source);
 }
 
+bool is_in_blocks(const CloudSource& head, const std::filesystem::path& file) {
+  const Format format = format_of(head, file);
+  return (format == Format::Ply && detail::is_in_blocks_ply(head)) ||
+         (format == Format::Pcd && detail::is_in_blocks_pcd(head));
+}
+
+/// Block by block where that can be: gigabytes of bytes are not held beside what they mean.
+CloudFile parse(FileBytes& bytes, const std::filesystem::path& file, bool needs_normals) {
+  check_head(bytes.source(needs_normals), file);
+  const CloudSource head = bytes.source(needs_normals);
+  if (head.bytes_left_out > 0 && is_in_blocks(head, file)) return parse(bytes.in_blocks(needs_normals), file);
+  bytes.read_rest();
+  return parse(bytes.source(needs_normals), file);
+}
+
 /// Counts the points for which bad(i) holds; names the first.
 template <class Predicate>
 void refuse_points(const CloudSource& source, std::size_t n, Predicate bad, std::string_view what) {
@@ -106,6 +121,12 @@ void check_numbers(const CloudSource& source, const OrientedPointCloud& cloud) {
       source, n, [&](std::size_t i) { return !cloud.normals[i].allFinite(); }, "has a normal that is NaN or infinite");
   refuse_points(
       source, n, [&](std::size_t i) { return cloud.normals[i].isZero(0); }, "has a zero normal");
+  refuse_points(
+      source, cloud.counts.size(), [&](std::size_t i) { return cloud.counts[i] < 1; }, "is merged of none");
+  refuse_points(
+      source, cloud.spreads.size(),
+      [&](std::size_t i) { return !(cloud.spreads[i] >= 0 && cloud.spreads[i] <= detail::kFarthest); },
+      "has a spread that is none");
   check_extent(source, cloud.points, kFewestPoints);
 }
 
@@ -152,10 +173,8 @@ void drop_unusable(const CloudSource& source, CloudFile& file) {
 
 CloudFile read_point_cloud(const std::filesystem::path& file) {
   FileBytes bytes(file);
-  check_head(bytes.source(true), file);
-  bytes.read_rest();
-  const CloudSource source = bytes.source(true);
-  CloudFile result = parse(source, file);
+  CloudFile result = parse(bytes, file, true);
+  const CloudSource source = bytes.source(true);  // names the file
   check_numbers(source, result.cloud);
   result.report.n_points = result.cloud.points.size();
   result.report.n_normals_rescaled = make_unit(result.cloud.normals);
@@ -166,10 +185,9 @@ void check_scan_head(const std::filesystem::path& file) { check_head(FileBytes(f
 
 CloudFile read_scan(const std::filesystem::path& file) {
   FileBytes bytes(file);
-  check_head(bytes.source(false), file);
-  bytes.read_rest();
-  const CloudSource source = bytes.source(false);
-  CloudFile result = parse(source, file);
+  CloudFile result = parse(bytes, file, false);
+  const CloudSource source = bytes.source(false);  // names the file
+  result.cloud.counts = {}, result.cloud.spreads = {};
   result.report.n_points = result.cloud.points.size();
   drop_unusable(source, result);
   if (result.cloud.points.size() < kFewestSurveyed)
@@ -188,9 +206,11 @@ void write_ply(std::ostream& out, const OrientedPointCloud& cloud) {
   for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) out << "property double " << name << '\n';
   if (!cloud.labels.empty()) out << "property int label\n";
   if (!cloud.colours.empty()) out << "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  if (!cloud.counts.empty()) out << "property int " << detail::kCount << '\n';
+  if (!cloud.spreads.empty()) out << "property double " << detail::kSpread << '\n';
   for (const SampleField& field : cloud.fields) out << "property double " << field.name << '\n';
   out << "end_header\n";
-  std::vector<char> row((6 + cloud.fields.size()) * sizeof(double) + sizeof(std::int32_t) + sizeof(Colour));
+  std::vector<char> row((7 + cloud.fields.size()) * sizeof(double) + 2 * sizeof(std::int32_t) + sizeof(Colour));
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     char* at = row.data();
     for (const Vec3* v : {&cloud.points[i], &cloud.normals[i]})
@@ -198,6 +218,8 @@ void write_ply(std::ostream& out, const OrientedPointCloud& cloud) {
     if (!cloud.labels.empty()) detail::put(at, std::int32_t{cloud.labels[i]});
     if (!cloud.colours.empty())
       for (const std::uint8_t c : cloud.colours[i]) detail::put(at, c);
+    if (!cloud.counts.empty()) detail::put(at, std::int32_t{cloud.counts[i]});
+    if (!cloud.spreads.empty()) detail::put(at, cloud.spreads[i]);
     for (const SampleField& field : cloud.fields) detail::put(at, field.values[i]);
     out.write(row.data(), at - row.data());
   }

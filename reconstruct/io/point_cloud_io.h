@@ -61,7 +61,8 @@ struct CloudFile {
 CloudFile read_point_cloud(const std::filesystem::path& file);
 
 /// Reads the same files for clean(), estimate_normals() and survey(): points without normals give a cloud with none,
-/// unusable normals become zero, and points that are no numbers are dropped and counted.
+/// unusable normals become zero, and points that are no numbers are dropped and counted. Counts and spreads are left
+/// out: to a scan, merged samples are samples.
 ///
 /// \throw CloudRefused         malformed, empty, more than half of the points unusable, or not as many different ones
 /// as
@@ -73,10 +74,10 @@ CloudFile read_scan(const std::filesystem::path& file);
 /// be: at once, however large the file is. \throw CloudRefused, std::system_error  as read_scan()
 void check_scan_head(const std::filesystem::path& file);
 
-/// Binary little-endian PLY, double x y z nx ny nz and, where there are any, int label, uchar red green blue and the
-/// fields as double; read_point_cloud gives the same bits back. Origins are not written. The caller owns the stream and
-/// checks it.
-/// \throw std::invalid_argument  not as many normals as points, or of what else there is
+/// Binary little-endian PLY, double x y z nx ny nz and, where there are any, int label, uchar red green blue, int
+/// umtet_count, double umtet_spread and the fields as double; read_point_cloud gives the same bits back. Origins are
+/// not written. The caller owns the stream and checks it. \throw std::invalid_argument  not as many normals as points,
+/// or of what else there is
 void write_ply(std::ostream&, const OrientedPointCloud&);
 
 }  // namespace umtet

@@ -23,6 +23,7 @@ std::vector<std::string> problems(const SsdParams& params) {
   if (!(params.smoothing >= 0 && std::isfinite(params.smoothing))) p.push_back("smoothing must be >= 0 (0: automatic)");
   if (!(params.noise >= 0 && std::isfinite(params.noise))) p.push_back("noise must be >= 0");
   if (!(params.detail > 0 && std::isfinite(params.detail))) p.push_back("detail must be > 0");
+  if (!(params.finest >= 0 && std::isfinite(params.finest))) p.push_back("finest must be >= 0");
   if (!(params.smooth > 0 && std::isfinite(params.smooth))) p.push_back("smooth must be > 0");
   if (!(params.alpha > 0)) p.push_back("alpha must be > 0");
   if (!(params.tolerance > 0 && params.tolerance < 1)) p.push_back("tolerance must be in (0, 1)");
@@ -124,7 +125,7 @@ std::vector<SsdSample> make_samples(const OrientedPointCloud& cloud, const std::
 void measure_fit(const OrientedPointCloud& cloud, const LevelSet& psi, const std::vector<double>& area, double length,
                  SsdReport& report) {
   struct Sums {
-    double value2 = 0, energy_value = 0, energy_normal = 0, area = 0;
+    double value2 = 0, n = 0, energy_value = 0, energy_normal = 0, area = 0;
     std::size_t n_opposed = 0;
   };
   constexpr std::size_t kChunk = 4096;
@@ -136,22 +137,26 @@ void measure_fit(const OrientedPointCloud& cloud, const LevelSet& psi, const std
       const double a = area.empty() ? 1 : area[i], scale = area.empty() ? 1 : length;
       Vec3 gradient;
       const double value = psi.evaluate(cloud.points[i], &gradient, nullptr);
-      sum.value2 += value * value;
+      const double count = cloud.counts.empty() ? 1 : cloud.counts[i];
+      const double spread = cloud.spreads.empty() ? 0 : cloud.spreads[i];
+      sum.value2 += count * (value * value + spread * spread);
+      sum.n += count;
       sum.energy_value += a * std::pow(value / scale, 2) / 2;
       sum.energy_normal += a * (gradient - cloud.normals[i]).squaredNorm() / 2;
       sum.area += a;
       sum.n_opposed += gradient.dot(cloud.normals[i]) < 0;
     }
   });
-  double value2 = 0, all = 0;
+  double value2 = 0, all = 0, all_counted = 0;
   for (const Sums& sum : sums) {
     value2 += sum.value2;
     all += sum.area;
+    all_counted += sum.n;
     report.energy_value += sum.energy_value;
     report.energy_normal += sum.energy_normal;
     report.n_opposed_normals += sum.n_opposed;
   }
-  report.rms_value = std::sqrt(value2 / static_cast<double>(n));
+  report.rms_value = std::sqrt(value2 / all_counted);
   report.normal_defect = 2 * report.energy_normal / all;
 
   constexpr int kWallSamples = 16;  // along each edge of a face
@@ -290,12 +295,28 @@ std::vector<std::vector<SsdSample>> samples_of_levels(const Problem& problem, La
   return samples;
 }
 
+double n_coarsest_nodes(const Problem& problem, double spacing) {
+  const int padding = std::max(problem.params.padding, kLeastMultilevelPadding);
+  return (problem.box.sizes() / spacing + Vec3::Constant(2 * padding)).prod();
+}
+
+// SsdParams::finest, or less where a full lattice may be finer.
+double finest_of_use(const Problem& problem) {
+  constexpr int kHalvings = 50;  // the digits of a double
+  double low = 0, high = problem.params.finest;
+  for (int k = 0; k < kHalvings && high > 0; ++k) {
+    const double middle = low + (high - low) / 2;
+    (n_coarsest_nodes(problem, middle) > problem.params.coarsest_nodes ? low : high) = middle;
+  }
+  return high;
+}
+
 LevelSet fit_multilevel(const Problem& problem, SsdReport& report) {
   const SsdParams& params = problem.params;
   const int padding = std::max(params.padding, kLeastMultilevelPadding);
   int n_bands = 0;
   double coarsest = report.spacing;
-  while ((problem.box.sizes() / coarsest + Vec3::Constant(2 * padding)).prod() > params.coarsest_nodes) {
+  while (n_coarsest_nodes(problem, coarsest) > params.coarsest_nodes) {
     coarsest *= 2;
     ++n_bands;
   }
@@ -370,7 +391,7 @@ SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const C
   const double diagonal = problem.box.diagonal().norm();
   double between_samples = 0;
   {
-    const NeighbourDistances searched = near ? NeighbourDistances{} : covered_distances(cloud.points);
+    const NeighbourDistances searched = near ? NeighbourDistances{} : covered_distances(cloud.points, cloud.counts);
     const NeighbourDistances& found = near ? *near : searched;
     report.cloud_spacing = median_spacing(found);
     problem.area = sample_areas(found);
@@ -378,7 +399,8 @@ SsdFit fit_ssd(const OrientedPointCloud& cloud, const SsdParams& params, const C
     between_samples = sample_spacing(found);
   }
   const double edge = kMeshEdge * diagonal;
-  const Resolution chosen = choose_resolution(between_samples, edge, params.noise, params.detail, params.smooth);
+  const Resolution chosen =
+      choose_resolution(between_samples, edge, params.noise, params.detail, params.smooth, finest_of_use(problem));
   report.spacing = params.spacing > 0 ? params.spacing : chosen.spacing;
   if (params.spacing == 0 && params.solver != SsdSolver::Multilevel) {
     report.spacing = std::max(report.spacing, edge);

@@ -29,7 +29,9 @@ struct SsdParams {
   double noise = 0;  ///< standard deviation of the samples along the normal, model units; l: see resolution.h
   std::vector<double> local_noise = {};  ///< of each sample (local_noise.h); empty: as above everywhere
   double detail = 1;                     ///< > 0: divides the spacing that is chosen
-  double smooth = 1;                     ///< > 0: multiplies the smoothing that is chosen
+  double finest =
+      0;  ///< no lattice of a smaller spacing is of use, model units, but a full one of coarsest_nodes; >= 0
+  double smooth = 1;  ///< > 0: multiplies the smoothing that is chosen
   double alpha =
       1e-2;  ///< alpha of eq. (10), in its units; > 0 (SsdWeights::Paper); below, the duck grows spurious parts
   SsdWeights weights = SsdWeights::Area;  ///< Paper: only on a full lattice
@@ -63,7 +65,7 @@ struct SsdReport {
   std::vector<BandReport> bands;               ///< the finer levels of the multilevel fit, coarse to fine
   double energy_value = 0, energy_normal = 0;  ///< the data terms of the functional at psi
   double energy_hessian = 0;                   ///< its third term; 0 for every SsdSolver::Multilevel: not computed
-  double rms_value = 0;                        ///< rms of psi(x_i), model units
+  double rms_value = 0;  ///< rms of psi(x_i), model units; of merged samples before they were merged, by their spread
   double normal_defect = 0;  ///< mean of |grad psi(x_i) - n_i|^2 by area: .27 for normals 30 degrees off, 1 without any
   std::size_t n_opposed_normals = 0;  ///< samples with n_i . grad psi(x_i) < 0: the normals disagree with one another
   std::size_t n_turned_normals = 0;   ///< by earlier fits (turned_fit.h), each time one was counted

@@ -28,8 +28,10 @@ constexpr double kFinestSpacings = .5;
 
 }  // namespace
 
-Resolution choose_resolution(double sample_spacing, double mesh_edge, double noise, double detail, double smooth) {
-  const double of_samples = std::clamp(mesh_edge, kSpacings / kFiner * sample_spacing, kSpacings * sample_spacing);
+Resolution choose_resolution(double sample_spacing, double mesh_edge, double noise, double detail, double smooth,
+                             double least) {
+  const double of_samples =
+      std::max(least, std::clamp(mesh_edge, kSpacings / kFiner * sample_spacing, kSpacings * sample_spacing));
   Resolution r;
   r.noise_decides = kNoises * noise > of_samples;
   r.spacing = (r.noise_decides ? kNoises * noise : of_samples) / detail;

@@ -25,8 +25,9 @@ struct Resolution {
 /// @param noise   standard deviation of the samples along the normal, model units; >= 0
 /// @param detail  > 0: divides the spacing
 /// @param smooth  > 0: multiplies c
+/// @param least  no spacing of less is of use, model units; >= 0
 Resolution choose_resolution(double sample_spacing, double mesh_edge, double noise, double detail = 1,
-                             double smooth = 1);
+                             double smooth = 1, double least = 0);
 
 /// Edge of the default mesh of a body without thin parts, over its diagonal: 50k to 150k tets. No full lattice need be
 /// finer.

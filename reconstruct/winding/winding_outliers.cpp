@@ -16,6 +16,9 @@ constexpr double kOff = .4;
 // Of the distance to the fourth: in white noise on a surface it is 2.5 times the median at one sample in 10^7.
 constexpr std::size_t kFourth = 3;
 constexpr double kApart = 2.5, kApartFromAll = 4;
+// Of merged samples those of cells that noise reaches with its tails have their fourth neighbour 1.2 to 1.7 medians
+// away.
+constexpr double kApartFromCells = 2;
 // Of which the winding number is taken: its error is that of areas of single samples, and falls with their number.
 constexpr std::size_t kMostSources = 30000;
 constexpr double kSoftening = .5;
@@ -26,16 +29,20 @@ double median_of(std::vector<double> v) {
   return *middle;
 }
 
-std::vector<std::uint32_t> samples_apart(const Neighbourhoods& near) {
+/// @param counts  of merged samples: before, n of them were at distances 1 / sqrt n of those between their means
+std::vector<std::uint32_t> samples_apart(const Neighbourhoods& near, const std::vector<int>& counts) {
   if (near.k() <= kFourth) return {};
   std::vector<double> d2(near.size());
   for (std::size_t i = 0; i < d2.size(); ++i) d2[i] = near.distances2(i)[kFourth];
+  const double of_cells = counts.empty() ? 0 : kApartFromCells * kApartFromCells * median_of(d2);
+  for (std::size_t i = 0; i < counts.size(); ++i) d2[i] /= counts[i];
   const double of_all = kApartFromAll * kApartFromAll * median_of(d2);
   std::vector<std::uint8_t> is_apart(d2.size());
   tbb::parallel_for(std::size_t{0}, d2.size(), [&](std::size_t i) {
     std::vector<double> around;
     for (const std::uint32_t j : near.points(i)) around.push_back(d2[j]);
-    is_apart[i] = d2[i] > of_all || d2[i] > kApart * kApart * median_of(std::move(around)) ? 1 : 0;
+    const bool is_sparse = d2[i] > of_all || d2[i] > kApart * kApart * median_of(std::move(around));
+    is_apart[i] = is_sparse && near.distances2(i)[kFourth] > of_cells ? 1 : 0;
   });
   std::vector<std::uint32_t> apart;
   for (std::uint32_t i = 0; i < is_apart.size(); ++i)
@@ -59,7 +66,7 @@ FastWindingNumber winding_number_without(const OrientedPointCloud& cloud, const 
 
 std::vector<std::uint8_t> winding_outliers(const OrientedPointCloud& cloud, const Neighbourhoods& near) {
   std::vector<std::uint8_t> is_outlier(cloud.points.size(), 0);
-  const std::vector<std::uint32_t> apart = samples_apart(near);
+  const std::vector<std::uint32_t> apart = samples_apart(near, cloud.counts);
   if (apart.empty() || 2 * apart.size() > cloud.points.size()) return is_outlier;
   const FastWindingNumber w = winding_number_without(cloud, apart);
   tbb::parallel_for(std::size_t{0}, apart.size(), [&](std::size_t k) {

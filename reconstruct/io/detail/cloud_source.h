@@ -11,13 +11,17 @@
 
 namespace umtet::detail {
 
-/// A cloud file in memory, and its name for messages. The bytes outlive every reader.
+class FileBytes;
+
+/// A cloud file in memory, or its beginning, and its name for messages. The bytes outlive every reader.
 struct CloudSource {
   std::string name;
   std::string_view bytes;
   bool needs_normals = true;  ///< false: points without normals make a cloud without normals
   /// Of the file, behind `bytes`. The readers need all of it, check_ply_head() and the like do not.
   std::size_t bytes_left_out = 0;
+  FileBytes* rest =
+      nullptr;  ///< what reads them block by block (ByteWindow); null: there are none, or all are in memory
 
   std::size_t size() const { return bytes.size() + bytes_left_out; }  ///< of the file
 };
@@ -60,6 +64,8 @@ void append_point(const CloudSource& source, OrientedPointCloud& cloud, const st
 
 /// \throw CloudRefused  anything but blanks and NUL padding from `offset` on: then a count of the header is wrong
 void refuse_surplus(const CloudSource& source, std::size_t offset);
+/// The same of some bytes of the file. @param offset  where they begin
+void refuse_surplus(const CloudSource& source, std::string_view bytes, std::size_t offset);
 
 /// What the beginning of a file is enough for: its header and, of binary files, counts against the size of the file; of
 /// XYZ the rows that are there. Headers are shorter than this beginning.
@@ -67,6 +73,10 @@ void refuse_surplus(const CloudSource& source, std::size_t offset);
 void check_ply_head(const CloudSource& head);
 void check_pcd_head(const CloudSource& head);
 void check_xyz_head(const CloudSource& head);
+
+/// Whether the points are stored as numbers one after the other, so that a block of them can be read at a time.
+bool is_in_blocks_ply(const CloudSource& head);
+bool is_in_blocks_pcd(const CloudSource& head);
 
 /// One reader per format. They check the shape of the file; what the numbers are is checked by read_point_cloud.
 /// \throw CloudRefused

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 
 #include "reconstruct/io/point_cloud_io.h"
 
@@ -14,9 +15,10 @@ namespace {
 constexpr std::size_t kLongestName = 40;
 constexpr std::array<std::string_view, 3> kColours = {"red", "green", "blue"};
 // Of PCL's points vp_ is where the scanner stood, and "_" is padding.
-constexpr std::string_view kReserved[] = {"x",        "y",     "z",     "nx",   "ny",  "nz",   "normal_x", "normal_y",
-                                          "normal_z", "label", "patch", "sx",   "sy",  "sz",   "origin_x", "origin_y",
-                                          "origin_z", "vp_x",  "vp_y",  "vp_z", "rgb", "rgba", "_"};
+constexpr std::string_view kReserved[] = {"x",        "y",        "z",        "nx",    "ny",   "nz",   "normal_x",
+                                          "normal_y", "normal_z", "label",    "patch", "sx",   "sy",   "sz",
+                                          "origin_x", "origin_y", "origin_z", "vp_x",  "vp_y", "vp_z", "rgb",
+                                          "rgba",     "_",        kCount,     kSpread};
 
 /// Without the C locale.
 bool is_kept(char c) {
@@ -49,6 +51,8 @@ FieldColumns field_columns(const std::vector<std::string>& names) {
   const std::array<std::size_t, 3> rgb = {place(kColours[0]), place(kColours[1]), place(kColours[2])};
   const bool has_rgb = std::all_of(rgb.begin(), rgb.end(), [&](std::size_t at) { return at < names.size(); });
   if (has_rgb) columns.colour = {rgb.begin(), rgb.end()};
+  const std::array<std::size_t, 2> merged = {place(kCount), place(kSpread)};
+  if (std::max(merged[0], merged[1]) < names.size()) columns.merged = {merged.begin(), merged.end()};
   const auto is_of_colour = [&](const std::string& name) {
     return (has_rgb && std::find(kColours.begin(), kColours.end(), name) != kColours.end()) ||
            (!columns.colour.empty() && name == "alpha");
@@ -70,12 +74,14 @@ FieldColumns field_columns(const std::vector<std::string>& names) {
 
 std::vector<std::size_t> FieldColumns::wanted() const {
   std::vector<std::size_t> list = colour;
+  list.insert(list.end(), merged.begin(), merged.end());
   for (const Scalar& scalar : scalars) list.push_back(scalar.at);
   return list;
 }
 
 void begin_fields(OrientedPointCloud& cloud, const FieldColumns& columns, std::size_t n) {
   if (!columns.colour.empty()) cloud.colours.reserve(n);
+  if (!columns.merged.empty()) cloud.counts.reserve(n), cloud.spreads.reserve(n);
   for (const FieldColumns::Scalar& scalar : columns.scalars) {
     cloud.fields.push_back({scalar.name, {}});
     cloud.fields.back().values.reserve(n);
@@ -85,6 +91,11 @@ void begin_fields(OrientedPointCloud& cloud, const FieldColumns& columns, std::s
 void append_fields(OrientedPointCloud& cloud, const FieldColumns& columns, const std::vector<double>& values) {
   for (std::size_t f = 0; f < columns.scalars.size(); ++f) {
     cloud.fields[f].values.push_back(values[columns.scalars[f].at]);
+  }
+  if (!columns.merged.empty()) {
+    const double count = values[columns.merged[0]];
+    cloud.counts.push_back(count >= 1 && count <= std::numeric_limits<int>::max() ? static_cast<int>(count) : 0);
+    cloud.spreads.push_back(values[columns.merged[1]]);
   }
   if (columns.colour.size() == 1) {
     const auto packed = static_cast<std::uint32_t>(values[columns.colour[0]]);

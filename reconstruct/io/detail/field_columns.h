@@ -18,6 +18,7 @@ struct FieldColumns {
   std::vector<Scalar> scalars;
   std::vector<std::size_t> colour;    ///< of red, green and blue, or one of all three, packed; empty: no colours
   double bytes_per_unit = 1;          ///< a colour's value times this is 0..255
+  std::vector<std::size_t> merged;    ///< of count and spread, where both are there: kCount, kSpread; or empty
   std::vector<std::string> left_out;  ///< names of scalars beyond kMostFields, and of those that are there twice
 
   /// All that append_fields() looks at.
@@ -26,6 +27,9 @@ struct FieldColumns {
 
 /// The name that a reader gives to a column 0x00rrggbb.
 inline constexpr std::string_view kPackedColour = "packed rgb";
+
+/// Columns of a cloud that we have merged (merged_samples.h).
+inline constexpr std::string_view kCount = "umtet_count", kSpread = "umtet_spread";
 
 /// Whether a name means something else than a scalar field.
 bool is_reserved(std::string_view name);
@@ -38,7 +42,7 @@ FieldColumns field_columns(const std::vector<std::string>& names);
 /// Names the fields of an empty cloud, and reserves memory for n points.
 void begin_fields(OrientedPointCloud& cloud, const FieldColumns& columns, std::size_t n);
 
-/// What the columns hold for the next point. A colour that is no number is black.
+/// What the columns hold for the next point. A colour that is no number is black, a count that is none is 0.
 void append_fields(OrientedPointCloud& cloud, const FieldColumns& columns, const std::vector<double>& values);
 
 }  // namespace umtet::detail

@@ -20,7 +20,7 @@ FileBytes::FileBytes(const std::filesystem::path& file) : file_(file) {
   errno = 0;
   in_.open(file, std::ios::binary);
   if (!in_) fail(errno);
-  read(kHead);
+  read(kHead, bytes_);
   std::error_code unknown;  // of a pipe
   const std::uintmax_t size = std::filesystem::file_size(file, unknown);
   if (!unknown && size > bytes_.size()) n_left_ = size - bytes_.size();
@@ -29,7 +29,7 @@ FileBytes::FileBytes(const std::filesystem::path& file) : file_(file) {
 void FileBytes::read_rest() {
   if (in_.eof()) return;
   bytes_.reserve(bytes_.size() + n_left_ + kHead);  // it grows by a whole step before it is cut
-  while (read(kHead)) {
+  while (read(kHead, bytes_)) {
   }
   n_left_ = 0;
 }
@@ -38,11 +38,25 @@ void FileBytes::fail(int error) const {
   throw std::system_error(error != 0 ? error : EIO, std::generic_category(), file_.string());
 }
 
-bool FileBytes::read(std::size_t n) {
-  const std::size_t before = bytes_.size();
-  bytes_.resize(before + n);
-  in_.read(bytes_.data() + before, static_cast<std::streamsize>(n));
-  bytes_.resize(before + static_cast<std::size_t>(in_.gcount()));
+std::string_view FileBytes::from(std::size_t at, std::size_t n) {
+  if (block_begin_ == 0) {
+    block_ = bytes_;
+    block_.erase(0, at);
+  } else {
+    block_.erase(0, at - block_begin_);
+  }
+  block_begin_ = at;
+  while (block_.size() < n && read(std::max(kHead, n - block_.size()), block_)) {
+  }
+  return block_;
+}
+
+bool FileBytes::read(std::size_t n, std::string& bytes) {
+  if (in_.eof()) return false;
+  const std::size_t before = bytes.size();
+  bytes.resize(before + n);
+  in_.read(bytes.data() + before, static_cast<std::streamsize>(n));
+  bytes.resize(before + static_cast<std::size_t>(in_.gcount()));
   if (in_.bad()) fail(errno);
   return in_.gcount() > 0;
 }

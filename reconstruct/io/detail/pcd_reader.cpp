@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "reconstruct/io/detail/byte_window.h"
 #include "reconstruct/io/detail/cloud_source.h"
 #include "reconstruct/io/detail/pcd_header.h"
 #include "reconstruct/io/detail/pcd_unpack.h"
@@ -67,19 +68,31 @@ double decode(const PcdField& field, const std::uint8_t* bytes) {
   }
 }
 
-/// @param body  n_points * point_bytes bytes, little endian as all PCD
+/// @param bytes_of  a point's, point_bytes of them, little endian as all PCD
+template <class BytesOf>
 OrientedPointCloud decode_points(const CloudSource& source, const PcdHeader& header, const CloudColumns& columns,
-                                 const std::uint8_t* body) {
+                                 BytesOf&& bytes_of) {
   OrientedPointCloud cloud;
   begin_cloud(cloud, columns, header.n_points);
   std::vector<std::size_t> wanted = columns.fields.wanted();
   wanted.insert(wanted.end(), columns.begin(), columns.end());
   std::vector<double> values(header.fields.size());
   for (std::size_t i = 0; i < header.n_points; ++i) {
-    for (const std::size_t c : wanted)
-      values[c] = decode(header.fields[c], body + i * header.point_bytes + header.fields[c].offset);
+    const std::uint8_t* const bytes = bytes_of(i);
+    for (const std::size_t c : wanted) values[c] = decode(header.fields[c], bytes + header.fields[c].offset);
     append_point(source, cloud, values, columns);
   }
+  return cloud;
+}
+
+OrientedPointCloud read_binary(const CloudSource& source, const PcdHeader& header, const CloudColumns& columns) {
+  ByteWindow bytes(source, header.body);
+  OrientedPointCloud cloud = decode_points(source, header, columns, [&](std::size_t i) {
+    if (const char* const point = bytes.take(header.point_bytes)) return reinterpret_cast<const std::uint8_t*>(point);
+    refuse(source, fmt::format("byte {}: the file ends inside point {} of {}: it is cut short, export it again",
+                               bytes.at(), i + 1, header.n_points));
+  });
+  bytes.refuse_surplus();
   return cloud;
 }
 
@@ -123,6 +136,8 @@ OrientedPointCloud read_ascii(const CloudSource& source, const PcdHeader& header
 
 void check_pcd_head(const CloudSource& head) { columns_of(head, parse_pcd_header(head)); }
 
+bool is_in_blocks_pcd(const CloudSource& head) { return parse_pcd_header(head).data == PcdData::Binary; }
+
 CloudFile read_pcd(const CloudSource& source) {
   const PcdHeader header = parse_pcd_header(source);
   const CloudColumns columns = columns_of(source, header);
@@ -136,13 +151,13 @@ CloudFile read_pcd(const CloudSource& source) {
       break;
     case PcdData::Binary:
       file.report.format = "pcd binary";
-      refuse_surplus(source, header.body + header.n_points * header.point_bytes);
-      file.cloud = decode_points(source, header, columns,
-                                 reinterpret_cast<const std::uint8_t*>(source.bytes.data()) + header.body);
+      file.cloud = read_binary(source, header, columns);
       break;
     case PcdData::Compressed:
       file.report.format = "pcd compressed";
-      file.cloud = decode_points(source, header, columns, unpack(source, header).data());
+      const std::vector<std::uint8_t> body = unpack(source, header);
+      file.cloud =
+          decode_points(source, header, columns, [&](std::size_t i) { return body.data() + i * header.point_bytes; });
   }
   return file;
 }

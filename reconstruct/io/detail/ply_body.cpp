@@ -56,7 +56,7 @@ std::string place_of(const PlyElement& element, std::uint64_t item) {
 
 BinaryBody::BinaryBody(const CloudSource& source, const PlyHeader& header)
     : source_(source),
-      at_(header.body),
+      bytes_(source, header.body),
       swap_((header.format == PlyFormat::BinaryBigEndian) != (std::endian::native == std::endian::big)) {}
 
 std::size_t BinaryBody::bytes_per_item(const PlyElement& element) {
@@ -65,7 +65,7 @@ std::size_t BinaryBody::bytes_per_item(const PlyElement& element) {
   return bytes;
 }
 
-std::string BinaryBody::place() const { return fmt::format("byte {}", at_); }
+std::string BinaryBody::place() const { return fmt::format("byte {}", bytes_.at()); }
 
 void BinaryBody::read_item(const PlyElement& element, std::uint64_t item, std::vector<double>& values,
                            PlyList* wanted) {
@@ -90,13 +90,9 @@ void BinaryBody::read_item(const PlyElement& element, std::uint64_t item, std::v
 }
 
 const char* BinaryBody::take(std::size_t n, const PlyElement& element, std::uint64_t item) {
-  if (n > bytes_left())
-    refuse(source_, fmt::format("{}: the file ends inside {}: it is cut short or a list length is wrong, export it "
-                                "again",
-                                place(), place_of(element, item)));
-  const char* bytes = source_.bytes.data() + at_;
-  at_ += n;
-  return bytes;
+  if (const char* const bytes = bytes_.take(n)) return bytes;
+  refuse(source_, fmt::format("{}: the file ends inside {}: it is cut short or a list length is wrong, export it again",
+                              place(), place_of(element, item)));
 }
 
 std::string AsciiBody::place() const { return fmt::format("line {}", lines_.line() + 1); }

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "reconstruct/io/detail/byte_window.h"
 #include "reconstruct/io/detail/cloud_source.h"
 #include "reconstruct/io/detail/ply_header.h"
 #include "reconstruct/io/detail/text_rows.h"
@@ -27,16 +28,16 @@ class BinaryBody {
 
   /// The least an item takes.
   static std::size_t bytes_per_item(const PlyElement& element);
-  std::size_t bytes_left() const { return source_.size() - at_; }
+  std::size_t bytes_left() const { return bytes_.bytes_left(); }
   std::string place() const;
   void read_item(const PlyElement& element, std::uint64_t item, std::vector<double>& values, PlyList* wanted = nullptr);
-  void finish() { refuse_surplus(source_, at_); }
+  void finish() { bytes_.refuse_surplus(); }
 
  private:
   const char* take(std::size_t n, const PlyElement& element, std::uint64_t item);
 
   const CloudSource& source_;
-  std::size_t at_;
+  ByteWindow bytes_;
   bool swap_;
 };
 

@@ -71,6 +71,8 @@ void check_ply_head(const CloudSource& head) {
     check_first_count<BinaryBody>(head, header);
 }
 
+bool is_in_blocks_ply(const CloudSource& head) { return parse_ply_header(head).format != PlyFormat::Ascii; }
+
 CloudFile read_ply(const CloudSource& source) {
   const PlyHeader header = parse_ply_header(source);
   switch (header.format) {

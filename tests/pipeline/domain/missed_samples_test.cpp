@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace umtet {
 namespace {
@@ -59,6 +60,22 @@ TEST(MissedSamples, NothingExplainsMoreThanH) {
   const SampleDistances s = row.measured(1, .01);
   ASSERT_EQ(s.n_missed_places, 1u) << "99 % are not within h, and no ten are beside one another";
   EXPECT_EQ(s.missed[0].n_samples, 20u);
+}
+
+TEST(MissedSamples, MergedOnesCountAsOftenAsTheSamplesTheyStandFor) {
+  Row row;
+  row.move(0, 20, .4);
+  row.domain.cloud.counts.assign(1000, 1);
+  row.domain.cloud.spreads.assign(1000, .3);
+  std::fill_n(row.domain.cloud.counts.begin(), 20, 49);
+  EXPECT_EQ(before_merging(row.domain.cloud, {std::vector<double>(1000, .4)})[5], .5);
+  const SampleDistances s = row.measured(2, .01);
+  EXPECT_EQ(s.n_merged, 980u + 20 * 49);
+  EXPECT_NEAR(s.rms, .4 / std::sqrt(2), 1e-12) << "half of the samples are off";
+  EXPECT_EQ(s.p99, .4);
+  std::fill_n(row.domain.cloud.counts.begin(), 1000, 100);
+  std::fill_n(row.domain.cloud.counts.begin(), 20, 1);
+  EXPECT_EQ(row.measured(2, .01).p99, 0) << "20 of 98,020 are";
 }
 
 TEST(MissedSamples, AFewAreListedAndAllAreCounted) {

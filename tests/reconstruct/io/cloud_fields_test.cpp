@@ -221,6 +221,28 @@ TEST_F(CloudFields, WrittenCloudsKeepTheirFieldsBitByBit) {
   EXPECT_THROW(write_ply(out, cloud), std::invalid_argument);
 }
 
+TEST_F(CloudFields, WrittenCloudsKeepWhatTheyWereMergedOf) {
+  OrientedPointCloud cloud = cloud_;
+  for (std::size_t i = 0; i < 100; ++i) {
+    cloud.counts.push_back(static_cast<int>(1 + 1000 * i));
+    cloud.spreads.push_back(std::sqrt(static_cast<double>(i)));
+  }
+  for (std::size_t f = 0; f < kMostFields; ++f) cloud.fields.push_back({fmt::format("f{}", f), cloud.spreads});
+  std::ostringstream out, again;
+  write_ply(out, cloud);
+  const CloudFile file = read("ours.ply", out.str());
+  EXPECT_EQ(file.cloud.counts, cloud.counts);
+  EXPECT_EQ(file.cloud.spreads, cloud.spreads);
+  EXPECT_EQ(file.cloud.fields.size(), kMostFields) << "they are no fields";
+  write_ply(again, file.cloud);
+  EXPECT_EQ(out.str(), again.str());
+  EXPECT_TRUE(read_scan(write("scan.ply", out.str())).cloud.counts.empty()) << "to a scan they are samples";
+  cloud.counts[7] = 0;
+  std::ostringstream none;
+  write_ply(none, cloud);
+  EXPECT_THROW(read("none.ply", none.str()), CloudRefused);
+}
+
 TEST_F(CloudFields, PointsThatAreNoNumbersGoWithTheirs) {
   const std::string header = ply("ascii", "float", "101", "property float temperature\n");
   const CloudFile file = read_scan(write("spoiled.ply", header + "nan 0 0 0 0 1 77\n" + rows([](std::size_t i) {

@@ -146,5 +146,49 @@ TEST(PointCloudIoScans, RealCloudsHaveTheirPoints) {
   EXPECT_THROW(read_point_cloud(data / "cat_no_normals.xyz"), CloudRefused);
 }
 
+/// A refusal's text.
+std::string refusal(const std::function<void()>& reads) {
+  try {
+    reads();
+  } catch (const CloudRefused& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST_F(PointCloudIo, FilesOfSeveralBlocksAreReadAsTheyAre) {
+  // 2.9 MB: a beginning of a megabyte and two blocks, of which borders of points are none.
+  const OrientedPointCloud large = spiral_sphere(60001);
+  const std::string rows = binary_rows<double>(large), n = "60001";
+  const std::string header = ply("binary_little_endian", "double", n);
+  expect_cloud("large.ply", header + rows, large);
+  expect_cloud("big_endian.ply", ply("binary_big_endian", "double", n) + binary_rows<double>(large, true), large);
+  expect_cloud("padded.ply", header + rows + std::string(3 << 20, '\n'), large);
+
+  const std::string cut = refusal([&] { read("cut.ply", header + rows.substr(0, rows.size() - 20)); });
+  EXPECT_NE(cut.find("60001"), std::string::npos) << cut;
+  const std::string surplus = refusal([&] { read("more.ply", header + rows + std::string(2 << 20, ' ') + "x"); });
+  EXPECT_NE(surplus.find(fmt::format("byte {}: data go on", header.size() + rows.size() + (2 << 20))),
+            std::string::npos)
+      << surplus;
+
+  // Lists of any length before and behind the points, one of them longer than a block.
+  const std::string head = header.substr(0, header.find("element")) +
+                           "element first 1\nproperty list int uchar some\n" + header.substr(header.find("element"));
+  std::string list;
+  put(list, std::int32_t{5 << 20});
+  list += std::string(5 << 20, 'a');
+  expect_cloud("list.ply", head + list + rows, large);
+}
+
+TEST_F(PointCloudIo, PcdOfSeveralBlocksIsReadAsItIs) {
+  const OrientedPointCloud large = spiral_sphere(60001);
+  const std::string header = pcd("binary", "8", "1", "60001", "60001");
+  const std::string rows = binary_rows<double>(large);
+  expect_cloud("large.pcd", header + rows, large);
+  EXPECT_THROW(read("cut.pcd", header + rows.substr(0, rows.size() - 20)), CloudRefused);
+  EXPECT_THROW(read("more.pcd", header + rows + std::string(2 << 20, ' ') + "x"), CloudRefused);
+}
+
 }  // namespace
 }  // namespace umtet

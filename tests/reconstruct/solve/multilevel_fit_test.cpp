@@ -377,6 +377,36 @@ TEST(MultilevelFit, DenseHalfIsRefinedAndSparseHalfIsNotDented) {
   EXPECT_LT(sparse, 0.05 * fit.report.spacing);
 }
 
+TEST(MultilevelFit, NoLatticeIsFinerThanTheFinestOfUse) {
+  const OrientedPointCloud cloud = torus_cloud(20000);
+  SsdParams p;
+  p.coarsest_nodes = 8000;
+  const SsdFit all = fit_ssd(cloud, p);
+  p.finest = 3 * all.report.spacing;
+  const SsdFit few = fit_ssd(cloud, p);
+  EXPECT_DOUBLE_EQ(few.report.spacing, p.finest);
+  EXPECT_LT(few.report.n_nodes, all.report.n_nodes / 4);
+  p.coarsest_nodes = 150000;
+  const SsdFit full = fit_ssd(cloud, p);
+  EXPECT_TRUE(full.report.bands.empty());
+  EXPECT_LT(full.report.spacing, p.finest) << "a full lattice may be finer";
+  EXPECT_GT(full.report.spacing, all.report.spacing);
+  p.finest = all.report.spacing / 2;
+  EXPECT_EQ(fit_ssd(cloud, p).report.spacing, all.report.spacing) << "samples show nothing finer";
+  p.finest = -1;
+  EXPECT_THROW(fit_ssd(cloud, p), std::invalid_argument);
+}
+
+TEST(MultilevelFit, ResidualsOfMergedSamplesAreThoseOfTheSamples) {
+  OrientedPointCloud cloud = torus_cloud(8000);
+  SsdParams p;
+  p.spacing = .08;
+  const double before = fit_ssd(cloud, p).report.rms_value;
+  cloud.counts.assign(8000, 5);
+  cloud.spreads.assign(8000, .01);
+  EXPECT_NEAR(fit_ssd(cloud, p).report.rms_value, std::hypot(before, .01), 1e-5);
+}
+
 TEST(MultilevelFit, FinestLatticeTakesSamplesAtTheirWordWithOrWithoutCoarserOnes) {
   const OrientedPointCloud cloud = torus_cloud(1500);
   SsdParams p;

@@ -38,6 +38,32 @@ TEST(WindingOutliers, ThoseOfAVolumeGoAndTheSurfaceStays) {
   EXPECT_EQ(n_wrong, 0u);
 }
 
+TEST(WindingOutliers, AreFoundAmongMergedSamplesByWhatTheseStandFor) {
+  OrientedPointCloud cloud = torus_cloud(20000);
+  cloud.counts.assign(20000, 30);
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> side(-1.6, 1.6);
+  for (int i = 0; i < 3000; ++i) {  // a fifth as near to each other as the samples of the surface now
+    cloud.points.emplace_back(side(random), side(random), side(random) / 3);
+    cloud.normals.push_back(Vec3(side(random), side(random), side(random)).normalized());
+    cloud.counts.push_back(1);
+  }
+  const auto share_found = [](OrientedPointCloud& some) {
+    const std::vector<std::uint8_t> is_outlier = outliers_of(some);
+    std::size_t n_far = 0, n_found = 0;
+    for (std::size_t i = 0; i < is_outlier.size(); ++i) {
+      const bool is_far = std::abs(torus_distance(some.points[i])) > .12;
+      n_far += is_far ? 1 : 0;
+      n_found += is_far && is_outlier[i] != 0 ? 1 : 0;
+    }
+    return static_cast<double>(n_found) / static_cast<double>(n_far);
+  };
+  OrientedPointCloud unknown = cloud;
+  unknown.counts = {};
+  EXPECT_GT(share_found(cloud), .97);
+  EXPECT_LT(share_found(unknown), .9);
+}
+
 TEST(WindingOutliers, BodiesOfAnyDensityHaveNone) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> unit(0, 1);
