@@ -309,7 +309,8 @@ void FastRun::measure_assumptions() {
 void FastRun::repair_classification() {
   if (!costs_) return;
   RepairParams params = params_.repair;
-  params.target = std::min(params.target, costs_->repair_target);
+  params.target += costs_->repair_target - kQualityTarget;
+  if (!background_.is_lattice()) params.lift = 0;
   params.reach = std::min(params.reach, costs_->repair_reach);
   params.slides = params.slides && !memory_;
   RepairReport repaired =
