@@ -46,7 +46,6 @@ if(UMTET_WITH_GSL)
   set(mesh_extra -DUMTET_WITH_GSL=1)
 endif()
 set(reconstruct_requires "eigen3 tbb")
-set(reconstruct_libs "-lflann_cpp -llz4")  # flann.pc names HDF5, which only its own files use
 set(mesh_io_requires "umtet-mesh fmt")
 set(mesh_io_libs "-lOpenMeshCore -lhdf5_serial ${vtk}")  # hdf5-serial.pc names a folder that the linker does not search
 set(cloud_io_requires "umtet-reconstruct fmt libxxhash liblzf zlib")

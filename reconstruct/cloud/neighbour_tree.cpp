@@ -6,37 +6,36 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <flann/flann.hpp>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
+#include "common/first_touch.h"
+#include "reconstruct/cloud/detail/kd_tree.h"
 #include "reconstruct/cloud/morton_order.h"
 
 namespace umtet {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// FLANN compares what it has already summed up over the walk with the bound, so the bound is a few roundings
-// more than the distance, lest points at exactly that distance are lost; the result sets compare again.
+// The tree compares what it has summed up over the walk with the bound, so the bound is a few roundings more than the
+// distance, lest points at exactly that distance are lost; what is found is compared again.
 constexpr double kRounding = 1 + 1e-12;
 double rounded_up(double distance2) { return kRounding * distance2 + std::numeric_limits<double>::min(); }
 
-// Points a leaf; the time of a search hardly depends on it.
-constexpr int kLeafSize = 16;
 // Some 100 us of searches: a task costs less than a hundredth of that.
 constexpr std::size_t kQueriesPerTask = 128;
 
 /// The nearest few so far, in order. They are rows of the tree until the end: looking up every candidate's number would
 /// cost a cache line each, and only equal distances ask for it.
-class NearestFew final : public flann::ResultSet<double> {
+class NearestFew {
  public:
   /// @param bound2  at least the squared distance of the last one there will be room for
-  NearestFew(const std::uint32_t* order, std::span<Neighbour> room, double bound2 = kInfinity)
-      : order_(order), room_(room), bound_(bound2) {}
-  bool full() const override { return size_ == room_.size(); }
-  double worstDist() const override { return bound_; }
-  void addPoint(double distance2, std::size_t row) override {
-    const Neighbour found{distance2, static_cast<std::uint32_t>(row)};
+  NearestFew(const std::vector<std::uint32_t>& numbers, std::span<Neighbour> room, double bound2 = kInfinity)
+      : numbers_(numbers.data()), room_(room), bound_(bound2) {}
+  double bound() const { return bound_; }
+  void add(double distance2, std::uint32_t row) {
+    const Neighbour found{distance2, row};
     if (size_ < room_.size())
       ++size_;
     else if (!is_before(found, room_[size_ - 1]))
@@ -52,44 +51,43 @@ class NearestFew final : public flann::ResultSet<double> {
   }
   /// Ends the search: points instead of rows.
   std::span<const Neighbour> points() {
-    for (Neighbour& found : room_.first(size_)) found.point = order_[found.point];
+    for (Neighbour& found : room_.first(size_)) found.point = numbers_[found.point];
     return room_.first(size_);
   }
 
  private:
   bool is_before(const Neighbour& a, const Neighbour& b) const {
-    return a.distance2 < b.distance2 || (a.distance2 == b.distance2 && order_[a.point] < order_[b.point]);
+    return a.distance2 < b.distance2 || (a.distance2 == b.distance2 && numbers_[a.point] < numbers_[b.point]);
   }
-  const std::uint32_t* order_;
+  const std::uint32_t* numbers_;
   std::span<Neighbour> room_;
   std::size_t size_ = 0;
   double bound_;
 };
 
 /// Hands on what is in a ball.
-class Ball final : public flann::ResultSet<double> {
+class Ball {
  public:
-  Ball(const std::vector<std::uint32_t>& order, double radius2, const std::function<void(std::uint32_t, double)>& visit)
-      : order_(order), radius2_(radius2), bound_(rounded_up(radius2)), visit_(visit) {}
-  bool full() const override { return true; }
-  double worstDist() const override { return bound_; }
-  void addPoint(double distance2, std::size_t row) override {
-    if (distance2 <= radius2_) visit_(order_[row], distance2);
+  Ball(const std::vector<std::uint32_t>& numbers, double radius2,
+       const std::function<void(std::uint32_t, double)>& visit)
+      : numbers_(numbers), radius2_(radius2), bound_(rounded_up(radius2)), visit_(visit) {}
+  double bound() const { return bound_; }
+  void add(double distance2, std::uint32_t row) {
+    if (distance2 <= radius2_) visit_(numbers_[row], distance2);
   }
 
  private:
-  const std::vector<std::uint32_t>& order_;
+  const std::vector<std::uint32_t>& numbers_;
   double radius2_, bound_;
   const std::function<void(std::uint32_t, double)>& visit_;
 };
 
 /// Counts what is in a ball up to a limit, and ends the search there: no box is nearer than -1.
-class Count final : public flann::ResultSet<double> {
+class Count {
  public:
   Count(double radius2, std::size_t limit) : radius2_(radius2), bound_(rounded_up(radius2)), limit_(limit) {}
-  bool full() const override { return count_ >= limit_; }
-  double worstDist() const override { return full() ? -1 : bound_; }
-  void addPoint(double distance2, std::size_t) override { count_ += distance2 <= radius2_ ? 1 : 0; }
+  double bound() const { return count_ >= limit_ ? -1 : bound_; }
+  void add(double distance2, std::uint32_t) { count_ += distance2 <= radius2_ ? 1 : 0; }
   std::size_t count() const { return std::min(count_, limit_); }
 
  private:
@@ -97,38 +95,30 @@ class Count final : public flann::ResultSet<double> {
   std::size_t limit_, count_ = 0;
 };
 
+void require_place(const Vec3& x, std::size_t number) {
+  if (!x.allFinite()) throw std::invalid_argument("points[" + std::to_string(number) + "] is not finite");
+  if (x.cwiseAbs().maxCoeff() > NeighbourTree::kLargestCoordinate)
+    throw std::invalid_argument("coordinates beyond 1e153: squared distances overflow");
+}
+
 }  // namespace
 
-struct NeighbourTree::Index {
-  Vec3 low, high;
-  std::vector<Vec3> rows;  // the points along the curve; FLANN keeps pointers into them
-  flann::KDTreeSingleIndex<flann::L2_3D<double>> tree;
-
-  Index(const Vec3& lowest, const Vec3& highest, std::vector<Vec3> sorted)
-      : low(lowest),
-        high(highest),
-        rows(std::move(sorted)),
-        tree(flann::Matrix<double>(rows.front().data(), rows.size(), 3), flann::KDTreeSingleIndexParams(kLeafSize)) {
-    tree.buildIndex();
-  }
-  void search(flann::ResultSet<double>& found, const Vec3& x) const {
-    tree.findNeighbors(found, x.data(), flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED, 0.0F));
-  }
+struct NeighbourTree::Index : detail::KdTree {
+  using KdTree::KdTree;
 };
 
 /// Finds the first accepted point of a piece of the tube around a ray, in a ball that contains the piece.
-class NeighbourTree::TubePiece final : public flann::ResultSet<double> {
+class NeighbourTree::TubePiece {
  public:
   TubePiece(const NeighbourTree& tree, const Vec3& x, const Vec3& d, const std::array<double, 2>& from_to,
             double width2, double reach2, const std::function<bool(std::uint32_t)>& accept)
       : tree_(tree), x_(x), d_(d), from_to_(from_to), width2_(width2), reach2_(reach2), accept_(accept) {}
-  bool full() const override { return true; }
-  double worstDist() const override { return reach2_; }
-  void addPoint(double, std::size_t row) override {
-    const Vec3 r = tree_.index_->rows[row] - x_;
+  double bound() const { return reach2_; }
+  void add(double, std::uint32_t row) {
+    const Vec3 r = tree_.index_->points()[row] - x_;
     const double t = r.dot(d_);
     if (t < from_to_[0] || t > from_to_[1] || t > hit_.t || (r - t * d_).squaredNorm() > width2_) return;
-    const std::uint32_t point = tree_.order_[row];
+    const std::uint32_t point = tree_.index_->numbers()[row];
     if ((t < hit_.t || point < hit_.point) && accept_(point)) hit_ = {t, point};
   }
   const Hit& hit() const { return hit_; }
@@ -145,20 +135,12 @@ class NeighbourTree::TubePiece final : public flann::ResultSet<double> {
 NeighbourTree::NeighbourTree(const std::vector<Vec3>& points) {
   if (points.empty()) throw std::invalid_argument("a cloud without points has no neighbours");
   if (points.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-    throw std::invalid_argument(std::to_string(points.size()) + " points: more than FLANN can number");
-  Vec3 low = points.front(), high = low;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!points[i].allFinite()) throw std::invalid_argument("points[" + std::to_string(i) + "] is not finite");
-    low = low.cwiseMin(points[i]);
-    high = high.cwiseMax(points[i]);
-  }
-  if (low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff() > kLargestCoordinate)
-    throw std::invalid_argument("coordinates beyond 1e153: squared distances overflow");
+    throw std::invalid_argument(std::to_string(points.size()) + " points: must be below 2^31");
+  for (std::size_t i = 0; i < points.size(); ++i) require_place(points[i], i);
   order_ = morton_order(points);
-  std::vector<Vec3> rows;
-  rows.reserve(points.size());
-  for (const std::uint32_t i : order_) rows.push_back(points[i]);
-  index_ = std::make_unique<Index>(low, high, std::move(rows));
+  std::vector<Vec3> rows = touched<Vec3>(points.size());
+  tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t row) { rows[row] = points[order_[row]]; });
+  index_ = std::make_unique<Index>(std::move(rows), order_);
 }
 
 NeighbourTree::~NeighbourTree() = default;
@@ -167,8 +149,8 @@ NeighbourTree& NeighbourTree::operator=(NeighbourTree&&) noexcept = default;
 
 std::span<const Neighbour> NeighbourTree::k_nearest(const Vec3& x, std::span<Neighbour> room) const {
   if (room.empty()) return room;
-  NearestFew nearest(order_.data(), room);
-  index_->search(nearest, x);
+  NearestFew nearest(index_->numbers(), room);
+  index_->search(x, nearest);
   return nearest.points();
 }
 
@@ -180,28 +162,28 @@ void NeighbourTree::for_each_neighbourhood(
                       std::vector<Neighbour> room(std::min(k, size()));
                       std::vector<std::uint32_t> former;  // rows of what the point before has found: as many as wanted
                       for (std::size_t row = rows.begin(); row != rows.end(); ++row) {
-                        const Vec3& x = index_->rows[row];
+                        const Vec3& x = index_->points()[row];
                         double bound2 = former.empty() ? kInfinity : 0;
                         for (const std::uint32_t near : former) {
-                          bound2 = std::max(bound2, (x - index_->rows[near]).squaredNorm());
+                          bound2 = std::max(bound2, (x - index_->points()[near]).squaredNorm());
                         }
-                        NearestFew nearest(order_.data(), room, rounded_up(bound2));
-                        index_->search(nearest, x);
+                        NearestFew nearest(index_->numbers(), room, rounded_up(bound2));
+                        index_->search(x, nearest);
                         nearest.rows(former);
-                        visit(order_[row], nearest.points());
+                        visit(index_->numbers()[row], nearest.points());
                       }
                     });
 }
 
 void NeighbourTree::visit_ball(const Vec3& x, double radius2,
                                const std::function<void(std::uint32_t, double)>& visit) const {
-  Ball ball(order_, radius2, visit);
-  index_->search(ball, x);
+  Ball ball(index_->numbers(), radius2, visit);
+  index_->search(x, ball);
 }
 
 std::size_t NeighbourTree::count_within(const Vec3& x, double radius2, std::size_t limit) const {
   Count count(radius2, limit);
-  index_->search(count, x);
+  index_->search(x, count);
   return count.count();
 }
 
@@ -212,10 +194,10 @@ NeighbourTree::Hit NeighbourTree::first_along(const Vec3& x, const Vec3& d, doub
   // Positions on the ray are rounded: this share of the width covers it as long as coordinates hold six digits of that.
   constexpr double kSlack = 1e-6;
   const double width2 = width * width, slack = kSlack * width;
-  const double t_end = (x - index_->low).cwiseAbs().cwiseMax((index_->high - x).cwiseAbs()).norm() + width;
+  const double t_end = (x - index_->low()).cwiseAbs().cwiseMax((index_->high() - x).cwiseAbs()).norm() + width;
   for (double t = t_min; t <= t_end;) {
     // Where a ball is empty, so is the part of the tube within it. Balls an eighth of the way long keep their number
-    // logarithmic. Larger ones cost more than they save: FLANN bounds cells by its cuts and not by their points, so
+    // logarithmic. Larger ones cost more than they save: the tree bounds cells by its cuts and not by their points, so
     // that it visits many for an empty ball inside a body.
     const double least = 2 * width;
     double radius = std::max(least, (t - t_min) / 8);
@@ -228,7 +210,7 @@ NeighbourTree::Hit NeighbourTree::first_along(const Vec3& x, const Vec3& d, doub
     const double next = std::max(t + 2 * width, std::nextafter(t, kInfinity));
     const double reach2 = 2 * (width + slack) * (width + slack);
     TubePiece piece(*this, x, d, {t_min, next}, width2, reach2, accept);
-    index_->search(piece, x + (t + width) * d);
+    index_->search(x + (t + width) * d, piece);
     if (piece.hit().t <= next) return piece.hit();
     t = next;
   }

@@ -18,12 +18,10 @@ struct Neighbour {
   std::uint32_t point;
 };
 
-/// Nearest neighbours, balls and rays of a cloud, exactly, in double: FLANN's k-d tree (KDTreeSingleIndex).
+/// Nearest neighbours, balls and rays of a cloud, exactly, in double, by a k-d tree.
 ///
-/// Its searches run with our result sets: its own take radii in single precision and leave the choice between equal
-/// distances to the shape of the tree. Here that is the order of point numbers. Nothing depends on the number of
-/// threads. Places of queries are finite and at most kLargestCoordinate, like the points. Searches may run at
-/// once.
+/// Equal distances are in the order of point numbers. Nothing depends on the number of threads, which share the
+/// building. Places of queries are finite and at most kLargestCoordinate, like the points. Searches may run at once.
 class NeighbourTree {
  public:
   /// Squared distances stay finite up to here.
@@ -71,7 +69,7 @@ class NeighbourTree {
  private:
   void visit_ball(const Vec3& x, double radius2, const std::function<void(std::uint32_t, double)>& visit) const;
 
-  struct Index;  // these keep FLANN out of this header
+  struct Index;  // these keep the tree out of this header
   class TubePiece;
   std::vector<std::uint32_t> order_;
   std::unique_ptr<Index> index_;

@@ -23,7 +23,7 @@ std::vector<Vec3> clumps(int n) {
   return points;
 }
 
-// Sizes around the 16 points of a leaf of FLANN's tree, and k around all of them.
+// Sizes around the 16 points of a leaf, and k around all of them.
 TEST(NeighbourTree, FindsWhatAllPairsFind) {
   for (const int n : {1, 5, 15, 16, 17, 100, 700}) {
     const std::vector<Vec3> points = clumps(n);

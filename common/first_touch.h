@@ -1,0 +1,34 @@
+#pragma once
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace umtet {
+
+/// An empty vector with room for n values, of whose memory every page has been touched by one of the threads. The first
+/// touch of a page costs more than what is then written to it, and a vector that grows is filled by one thread.
+template <class T>
+std::vector<T> reserved(std::size_t n) {
+  constexpr std::size_t kPage = 4096, kPagesPerTask = 64;
+  std::vector<T> room;
+  room.reserve(n);
+  auto* const begin = reinterpret_cast<unsigned char*>(room.data());
+  const std::size_t n_pages = n * sizeof(T) / kPage;
+  tbb::parallel_for(std::size_t{0}, (n_pages + kPagesPerTask - 1) / kPagesPerTask, [&](std::size_t task) {
+    for (std::size_t page = task * kPagesPerTask; page < n_pages && page < (task + 1) * kPagesPerTask; ++page)
+      *static_cast<volatile unsigned char*>(begin + page * kPage) = 0;
+  });
+  return room;
+}
+
+/// n values, of memory touched like that.
+template <class T>
+std::vector<T> touched(std::size_t n) {
+  std::vector<T> values = reserved<T>(n);
+  values.resize(n);
+  return values;
+}
+
+}  // namespace umtet
