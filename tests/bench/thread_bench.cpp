@@ -67,9 +67,9 @@ void mesh(const testing::AnalyticDomain& domain, ImplicitFunctionRef psi, double
                               if (part < 1 && std::string(step) != "submesh") phases.begin(step);
                             },
                         .cancelled = {}};
-  const UmResult result = universal_mesh(background, psi, {}, context);
+  UmResult result = universal_mesh(background, psi, {}, context);
   phases.begin("certificate");
-  const TetMesh made{result.final, result.submesh.mesh.C};
+  const TetMesh made{std::move(result.final), std::move(result.submesh.mesh.C)};
   CertificateInput input;
   input.mesh = &made;
   input.h = background.h();
