@@ -9,6 +9,7 @@
 #include <span>
 
 #include "common/first_touch.h"
+#include "common/indices_where.h"
 #include "reconstruct/basis/lattice_blocks.h"
 
 namespace umtet {
@@ -36,14 +37,7 @@ std::uint64_t key_of(const Eigen::Vector3d& xi, double cubes_per_cell) {
 /// 0, the i at which something begins, and n. @param begins  of 1 .. n - 1
 template <class Begins>
 std::vector<std::size_t> run_begins(std::size_t n, Begins&& begins) {
-  constexpr std::size_t kChunk = 1 << 14;
-  std::vector<std::vector<std::size_t>> found((n + kChunk - 1) / kChunk);
-  tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t c) {
-    for (std::size_t i = c * kChunk; i < std::min(n, (c + 1) * kChunk); ++i)
-      if (i == 0 || begins(i)) found[c].push_back(i);
-  });
-  std::vector<std::size_t> all;
-  for (const std::vector<std::size_t>& some : found) all.insert(all.end(), some.begin(), some.end());
+  std::vector<std::size_t> all = indices_where<std::size_t>(n, [&](std::size_t i) { return i == 0 || begins(i); });
   all.push_back(n);
   return all;
 }

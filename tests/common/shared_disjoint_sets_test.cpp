@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <random>
+#include <span>
 #include <vector>
 
 #include "common/disjoint_sets.h"
@@ -34,6 +35,8 @@ TEST(FirstTouch, GivesRoomAndZeros) {
     EXPECT_TRUE(room.empty());
     EXPECT_GE(room.capacity(), n);
     EXPECT_EQ(touched<double>(n), std::vector<double>(n, 0.));
+    const std::vector<double> ones(n, 1.);
+    EXPECT_EQ(copied(std::span<const double>(ones)), ones);
   }
 }
 
