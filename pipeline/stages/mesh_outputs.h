@@ -14,6 +14,7 @@ namespace umtet {
 /// projected.vtu, mesh.vtu, quality.csv; too_thin.vtp and places.vtp where there are such places; pass_N.vtu and
 /// iterates.pvd where iterates were kept. Unless they were, omega_h.vtu and projected.vtu hold the tets with a vertex
 /// that moves: the others are those of mesh.vtu. What mesh.vtu holds is handed over to the stages to come.
+/// @param best  gives its tets, their ids and the chosen vertices away
 /// @return their names. \throw Cancelled, std::system_error naming the file
 std::vector<std::string> write_mesh_outputs(const StageContext& context, const Domain& domain, MeshAttempt& best);
 
