@@ -5,23 +5,38 @@
 #include <oneapi/tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
+#include "common/first_touch.h"
 #include "mesh/core/tet_packs.h"
 
 namespace umtet {
 namespace {
 
 // A fraction of a millisecond.
-constexpr std::size_t kGroupsPerTask = 1 << 11;
+constexpr std::size_t kGroupsPerTask = 1 << 11, kTetsPerTask = 1 << 14;
+
+/// The least of all that threads come with, in whatever order.
+void lower(double& least, double value) {
+  const std::atomic_ref<double> shared(least);
+  double before = shared.load(std::memory_order_relaxed);
+  while (value < before && !shared.compare_exchange_weak(before, value, std::memory_order_relaxed)) {
+  }
+}
 
 }  // namespace
 
 std::vector<double> mean_ratios(const TetMesh& mesh) {
+  std::vector<double> Q = touched<double>(mesh.C.size());
+  measure_mean_ratios(mesh, Q);
+  return Q;
+}
+
+void measure_mean_ratios(const TetMesh& mesh, std::vector<double>& Q) {
   const std::size_t n = mesh.C.size();
-  std::vector<double> Q(n);
   const auto measure = [&](const tbb::blocked_range<std::size_t>& groups) {
     for (std::size_t first = groups.begin() * kPackSize; first < std::min(n, groups.end() * kPackSize);
          first += kPackSize) {
@@ -31,7 +46,6 @@ std::vector<double> mean_ratios(const TetMesh& mesh) {
     }
   };
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (n + kPackSize - 1) / kPackSize, kGroupsPerTask), measure);
-  return Q;
 }
 
 QualityVectors quality_vectors(const std::vector<Tet>& C, const std::vector<double>& Q,
@@ -41,12 +55,14 @@ QualityVectors quality_vectors(const std::vector<Tet>& C, const std::vector<doub
   for (const int v : positive_vertices) is_positive[v] = 1;
   constexpr double kNoTet = std::numeric_limits<double>::infinity();
   QualityVectors q = {std::vector<double>(n_vertices, kNoTet), std::vector<double>(n_vertices, kNoTet)};
-  for (std::size_t k = 0; k < C.size(); ++k) {
-    const Tet& t = C[k];
-    for (const int v : t) q.all[v] = std::min(q.all[v], Q[k]);
-    if ((is_positive[t[0]] | is_positive[t[1]] | is_positive[t[2]] | is_positive[t[3]]) == 0) continue;
-    for (const int v : t) q.boundary[v] = std::min(q.boundary[v], Q[k]);
-  }
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, C.size(), kTetsPerTask), [&](const auto& tets) {
+    for (std::size_t k = tets.begin(); k != tets.end(); ++k) {
+      const Tet& t = C[k];
+      for (const int v : t) lower(q.all[v], Q[k]);
+      if ((is_positive[t[0]] | is_positive[t[1]] | is_positive[t[2]] | is_positive[t[3]]) == 0) continue;
+      for (const int v : t) lower(q.boundary[v], Q[k]);
+    }
+  });
   for (std::vector<double>* values : {&q.all, &q.boundary}) {
     std::erase(*values, kNoTet);
     tbb::parallel_sort(values->begin(), values->end());

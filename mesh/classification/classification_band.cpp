@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "common/first_touch.h"
 #include "mesh/base/id_blocks.h"
 #include "mesh/core/asking_psi.h"
 
@@ -179,13 +180,14 @@ void ClassificationBand::measure(const Context& context) {
       (*known_)[k].vertex <= id[v] ? ++k : ++v;
     }
   }
-  ranks_.assign(first_[n], -1);
+  ranks_ = reserved<int>(first_[n]);
+  ranks_.resize(first_[n], -1);
   is_inside.resize(n);
   held.assign(n, 0);
-  mask.resize(n);
+  mask = touched<LinkMask>(n);
   phi.resize(n);
-  foot.resize(n);
-  normal.resize(n);
+  foot = touched<Vec3>(n);
+  normal = touched<Vec3>(n);
   movable.assign(n, 0);
   for_each_asking(psi_, n, kValuesPerPoll, context, [&](std::size_t v) {
     const bool complete = find_link(v);

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "common/first_touch.h"
 #include "mesh/certify/boundary_surface.h"
 
 namespace umtet {
@@ -30,10 +31,30 @@ std::string lower(std::string s) {
 
 template <std::size_t N>
 std::vector<int> flat(const std::vector<std::array<int, N>>& C) {
-  std::vector<int> ids;
-  ids.reserve(N * C.size());
-  for (const auto& t : C) ids.insert(ids.end(), t.begin(), t.end());
-  return ids;
+  static_assert(sizeof(std::array<int, N>) == N * sizeof(int));
+  return C.empty() ? std::vector<int>() : copied(std::span<const int>(C.front().data(), N * C.size()));
+}
+
+/// @param corners  of the tets
+SolverMesh divided(std::vector<Vec3> nodes, int nodes_per_tet, std::vector<int> tets, const std::vector<Tet>& corners) {
+  BoundaryFaces boundary = boundary_faces(corners, nodes.size());
+  SolverMesh mesh;
+  mesh.nodes = std::move(nodes);
+  mesh.nodes_per_tet = nodes_per_tet;
+  mesh.tets = std::move(tets);
+  mesh.face_tet = std::move(boundary.tets);
+  mesh.face_opposite.reserve(mesh.n_faces());
+  for (std::size_t f = 0; f < mesh.n_faces(); ++f) {
+    const Triangle& triangle = boundary.triangles[f];
+    const Tet& tet = corners[static_cast<std::size_t>(mesh.face_tet[f])];
+    const auto off = std::find_if(tet.begin(), tet.end(), [&](int v) {
+      return std::find(triangle.begin(), triangle.end(), v) == triangle.end();
+    });
+    mesh.face_opposite.push_back(static_cast<std::uint8_t>(off - tet.begin()));
+  }
+  mesh.face_patch.assign(mesh.n_faces(), 0);
+  mesh.patches = {{"boundary", 2}};
+  return mesh;
 }
 
 }  // namespace
@@ -73,28 +94,12 @@ SolverMesh solver_mesh(std::vector<Vec3> nodes, int nodes_per_tet, std::vector<i
   }
   std::vector<Tet> corners(tets.size() / stride);
   for (std::size_t t = 0; t < corners.size(); ++t) std::copy_n(tets.begin() + t * stride, 4, corners[t].begin());
-  BoundaryFaces boundary = boundary_faces(corners, nodes.size());
-
-  SolverMesh mesh;
-  mesh.nodes = std::move(nodes);
-  mesh.nodes_per_tet = nodes_per_tet;
-  mesh.tets = std::move(tets);
-  mesh.face_tet = std::move(boundary.tets);
-  mesh.face_opposite.reserve(mesh.n_faces());
-  for (std::size_t f = 0; f < mesh.n_faces(); ++f) {
-    const Triangle& triangle = boundary.triangles[f];
-    const Tet& tet = corners[static_cast<std::size_t>(mesh.face_tet[f])];
-    const auto off = std::find_if(tet.begin(), tet.end(), [&](int v) {
-      return std::find(triangle.begin(), triangle.end(), v) == triangle.end();
-    });
-    mesh.face_opposite.push_back(static_cast<std::uint8_t>(off - tet.begin()));
-  }
-  mesh.face_patch.assign(mesh.n_faces(), 0);
-  mesh.patches = {{"boundary", 2}};
-  return mesh;
+  return divided(std::move(nodes), nodes_per_tet, std::move(tets), corners);
 }
 
-SolverMesh solver_mesh(const TetMesh& mesh) { return solver_mesh(mesh.V, 4, flat(mesh.C)); }
+SolverMesh solver_mesh(const TetMesh& mesh) {
+  return divided(copied(std::span<const Vec3>(mesh.V)), 4, flat(mesh.C), mesh.C);
+}
 SolverMesh solver_mesh(const QuadraticTetMesh& mesh) { return solver_mesh(mesh.V, 10, flat(mesh.C)); }
 
 std::string problem_of_name(const std::string& name) {

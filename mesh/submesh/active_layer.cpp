@@ -4,13 +4,17 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 #include <utility>
+
+#include "common/first_touch.h"
 
 namespace umtet {
 namespace {
 
 // Tets of one part are counted and listed by one thread: each part needs a counter a vertex. Patches have one part.
 constexpr std::size_t kTetsPerPart = 1 << 16, kMostParts = 8;
+constexpr std::size_t kVerticesPerBlock = 1 << 13;
 
 }  // namespace
 
@@ -28,12 +32,25 @@ void list_rings(ActiveLayer& layer) {
     for_each_corner(part, [&](int, int v) { ++next[part][v]; });
   });
   layer.ring_begin.assign(n_vertices + 1, 0);
-  int sum = 0;
-  for (std::size_t v = 0; v < n_vertices; ++v) {
-    for (std::vector<int>& n : next) sum += std::exchange(n[v], sum);
-    layer.ring_begin[v + 1] = sum;
-  }
-  layer.ring.resize(4 * n_tets);
+  std::vector<int> begin((n_vertices + kVerticesPerBlock - 1) / kVerticesPerBlock + 1, 0);  // of the rings of a block
+  const auto for_each_in_block = [&](std::size_t block, const auto& f) {
+    for (std::size_t v = block * kVerticesPerBlock; v < std::min(n_vertices, (block + 1) * kVerticesPerBlock); ++v)
+      f(v);
+  };
+  tbb::parallel_for(std::size_t{1}, begin.size(), [&](std::size_t end) {
+    for_each_in_block(end - 1, [&](std::size_t v) {
+      for (const std::vector<int>& n : next) begin[end] += n[v];
+    });
+  });
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  tbb::parallel_for(std::size_t{1}, begin.size(), [&](std::size_t end) {
+    int sum = begin[end - 1];
+    for_each_in_block(end - 1, [&](std::size_t v) {
+      for (std::vector<int>& n : next) sum += std::exchange(n[v], sum);
+      layer.ring_begin[v + 1] = sum;
+    });
+  });
+  layer.ring = touched<int>(4 * n_tets);
   tbb::parallel_for(std::size_t{0}, n_parts, [&](std::size_t part) {
     for_each_corner(part, [&](int t, int v) { layer.ring[next[part][v]++] = t; });
   });

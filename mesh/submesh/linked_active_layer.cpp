@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "common/first_touch.h"
 #include "mesh/base/id_blocks.h"
 #include "mesh/base/id_list.h"
 
@@ -118,10 +119,10 @@ BackgroundLayer Builder::build(const IdSet& movable, const IdSet& own) const {
   BackgroundLayer result;
   ActiveLayer& layer = result.layer;
   layer.h = background_.h();
-  result.background_vertex.resize(n_vertices);
-  layer.V.resize(n_vertices);
+  result.background_vertex = touched<std::int64_t>(n_vertices);
+  layer.V = touched<Vec3>(n_vertices);
   layer.role.resize(n_vertices);
-  layer.C.resize(begin.back());
+  layer.C = touched<Tet>(begin.back());
   for_each_in_blocks(used, [&](std::size_t, std::int64_t v) {
     const int at = used.rank(v);
     result.background_vertex[at] = v;

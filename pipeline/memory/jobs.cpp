@@ -84,7 +84,8 @@ Certificate certificate_of(const Domain& domain, const UmResult& result, double 
   watch("components", 0);
   const ZeroSetChoice pieces = choose_components(domain, h, polls_of(watch));
   watch("certify", 0);
-  return verdict_on(measure(domain, result, pieces, h, {}, polls_of(watch)).measures, parameters);
+  const TetMesh mesh{result.final, result.submesh.mesh.C};
+  return verdict_on(measure(domain, mesh, result, pieces, h, {}, polls_of(watch)).measures, parameters);
 }
 
 }  // namespace umtet

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "mesh/certify/quality_report.h"
 #include "pipeline/case/artefact.h"
 #include "pipeline/case/interrupt.h"
@@ -26,6 +28,21 @@ const char* remedy(UmStatus status) {
   }
 }
 
+/// @param mesh  in working coordinates
+MeshFile content_of(const Domain& domain, TetMesh mesh, std::vector<std::int64_t> background_vertex,
+                    std::vector<std::int64_t> background_tet, const std::vector<Triangle>& walls) {
+  for (Vec3& x : mesh.V) x += domain.shift;
+  MeshFile content = with_standard_data(std::move(mesh), std::move(background_vertex), std::move(background_tet));
+  if (!walls.empty()) {
+    std::vector<std::uint8_t> wall(content.mesh.V.size(), 0);
+    for (const Triangle& f : walls) {
+      for (const int i : f) wall[i] = 1;
+    }
+    content.point_data[kAtWall] = std::move(wall);
+  }
+  return content;
+}
+
 }  // namespace
 
 void round_to_file(UmResult& result, const Vec3& shift) {
@@ -44,23 +61,19 @@ void set_support(const Domain& domain, const std::vector<Vec3>& V, const std::ve
 }
 
 MeshFile mesh_content(const Domain& domain, const UmResult& result, const std::vector<Vec3>& V) {
-  TetMesh mesh{V, result.submesh.mesh.C};
-  for (Vec3& x : mesh.V) x += domain.shift;
-  MeshFile content =
-      with_standard_data(std::move(mesh), result.submesh.background_vertex, result.submesh.background_tet);
-  if (!result.walls.empty()) {
-    std::vector<std::uint8_t> wall(V.size(), 0);
-    for (const Triangle& f : result.walls) {
-      for (const int i : f) wall[i] = 1;
-    }
-    content.point_data[kAtWall] = std::move(wall);
-  }
-  return content;
+  const Submesh& made = result.submesh;
+  return content_of(domain, {V, made.mesh.C}, made.background_vertex, made.background_tet, result.walls);
+}
+
+MeshFile taken_content(const Domain& domain, UmResult& result) {
+  Submesh& made = result.submesh;
+  return content_of(domain, std::move(made.mesh), std::move(made.background_vertex), std::move(made.background_tet),
+                    result.walls);
 }
 
 void move_to(const Domain& domain, const std::vector<Vec3>& V, MeshFile& content) {
   for (std::size_t i = 0; i < V.size(); ++i) content.mesh.V[i] = V[i] + domain.shift;
-  content.cell_data["mean_ratio"] = mean_ratios(content.mesh);
+  measure_mean_ratios(content.mesh, std::get<std::vector<double>>(content.cell_data.at("mean_ratio")));
 }
 
 void add_support(const Domain& domain, const UmResult& result, MeshFile& content) {

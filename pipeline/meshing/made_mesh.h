@@ -21,6 +21,9 @@ inline constexpr const char* kAtWall = "wall";
 /// What the file of omega_h with its vertices at V holds: model coordinates, ids of the background, walls.
 MeshFile mesh_content(const Domain& domain, const UmResult& result, const std::vector<Vec3>& V);
 
+/// The same of the chosen mesh, which takes tets, places and ids out of the result.
+MeshFile taken_content(const Domain& domain, UmResult& result);
+
 /// The same mesh at another stage, its vertices at V. \pre as many as it has, and no support yet
 void move_to(const Domain& domain, const std::vector<Vec3>& V, MeshFile& content);
 

@@ -145,8 +145,12 @@ void MeshMaker::finish(const SizedBackground& background, ChosenSubmesh chosen, 
   round_to_file(a.result, domain_.shift);
   context_.report("certify", kCertificate);
   if (!a.made()) return;
-  Measurement made = measure(domain_, a.result, pieces, mesh_edge(background.mesh, a.result, a.h),
-                             {&a.thin, parameters_.mesh().max_deviation, a.sizes.get()}, context_);
+  const MeshEdge h = mesh_edge(background.mesh, a.result, a.h);
+  TetMesh mesh{std::move(a.result.final), std::move(a.result.submesh.mesh.C)};  // lent: there is no copy of all tets
+  Measurement made =
+      measure(domain_, mesh, a.result, pieces, h, {&a.thin, parameters_.mesh().max_deviation, a.sizes.get()}, context_);
+  a.result.final = std::move(mesh.V);
+  a.result.submesh.mesh.C = std::move(mesh.C);
   a.measured = std::move(made.measures);
   a.places = std::move(made.places);
   curve(a);

@@ -25,11 +25,11 @@ namespace umtet {
 namespace {
 
 /// Largest principal curvature of psi = 0 at the boundary vertices, in magnitude, times h.
-double max_curvature(ImplicitFunctionRef psi, const UmResult& result, const MeshEdge& h, const Context& context) {
-  const std::vector<int>& I = result.submesh.positive_vertices;
+double max_curvature(ImplicitFunctionRef psi, const TetMesh& mesh, const std::vector<int>& I, const MeshEdge& h,
+                     const Context& context) {
   std::vector<double> kappa_h(I.size());
   for_each_asking(psi, I.size(), kValuesPerPoll, context, [&](std::size_t k) {
-    const Vec3& x = result.final[I[k]];
+    const Vec3& x = mesh.V[I[k]];
     kappa_h[k] = h.at(x) * principal_curvatures(psi, x)[0];
   });
   return kappa_h.empty() ? 0 : *std::max_element(kappa_h.begin(), kappa_h.end());
@@ -47,10 +47,10 @@ struct VertexThickness {
   std::vector<Vec3> thin;         ///< those where it is less than kLeastEdgesAcross h
 };
 
-VertexThickness vertex_thickness(const Domain& domain, const UmResult& result, const MeshEdge& h,
-                                 const Context& context) {
+VertexThickness vertex_thickness(const Domain& domain, const TetMesh& mesh, const std::vector<int>& boundary,
+                                 const MeshEdge& h, const Context& context) {
   VertexThickness made;
-  for (const int i : result.submesh.positive_vertices) made.vertices.push_back(result.final[i]);
+  for (const int i : boundary) made.vertices.push_back(mesh.V[i]);
   if (made.vertices.empty()) return made;
   const std::vector<double> h_at = h.at(made.vertices);
   made.thickness = thickness(domain.psi(), made.vertices, h_at, .25, kFarthestSheet, context, domain.steepest());
@@ -273,16 +273,16 @@ MeshEdge mesh_edge(const BackgroundMesh& background, const UmResult& result, dou
   return {h, vertices, std::move(h_of)};
 }
 
-Measurement measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& pieces, const MeshEdge& h,
-                    const MeasureParams& params, const Context& context) {
-  const TetMesh mesh{result.final, result.submesh.mesh.C};
+Measurement measure(const Domain& domain, const TetMesh& mesh, const UmResult& result, const ZeroSetChoice& pieces,
+                    const MeshEdge& h, const MeasureParams& params, const Context& context) {
+  const std::vector<int>& boundary_vertices = result.submesh.positive_vertices;
   CertificateInput input;
   input.mesh = &mesh;
   input.h = h.nominal();
   std::vector<double> local_h;
   if (!h.is_uniform()) {
     local_h.assign(mesh.V.size(), h.nominal());
-    for (const int i : result.submesh.positive_vertices) local_h[i] = h.at(mesh.V[i]);
+    for (const int i : boundary_vertices) local_h[i] = h.at(mesh.V[i]);
     input.local_h = &local_h;
   }
   input.positive_faces = &result.submesh.positive_faces;
@@ -305,7 +305,7 @@ Measurement measure(const Domain& domain, const UmResult& result, const ZeroSetC
   // No face: the body lies between the vertices of the background.
   std::optional<SurfaceDistance> surface;
   if (!faces.empty()) surface.emplace(mesh.V, faces);
-  const VertexThickness thickness = vertex_thickness(domain, result, h, context);
+  const VertexThickness thickness = vertex_thickness(domain, mesh, boundary_vertices, h, context);
   std::vector<Vec3> psi_points;
   std::vector<Difference> lost;
   if (surface) {
@@ -334,7 +334,7 @@ Measurement measure(const Domain& domain, const UmResult& result, const ZeroSetC
   made.places = places_of(domain, differences, h, context);
   if (compared.place) made.places.push_back(*compared.place);
   m.places = report_on(made.places);
-  m.resolution.kappa_h_max = max_curvature(domain.psi(), result, h, context);
+  m.resolution.kappa_h_max = max_curvature(domain.psi(), mesh, boundary_vertices, h, context);
   m.resolution.feature_size_over_h_min = thickness.least_over_h;
   m.resolution.obtuse_conditioning_angles = result.obtuse_conditioning_angles;
   m.resolution.double_positive_faces = result.double_positive_faces;

@@ -29,9 +29,11 @@ struct MeasureParams {
 /// @param h  that the background was asked to have
 MeshEdge mesh_edge(const BackgroundMesh& background, const UmResult& result, double h);
 
+/// @param mesh    the tets of the result, with its final vertices
+/// @param result  all else of it
 /// @param h  that the mesh was made with. \throw Cancelled
-Measurement measure(const Domain& domain, const UmResult& result, const ZeroSetChoice& pieces, const MeshEdge& h,
-                    const MeasureParams& params = {}, const Context& context = {});
+Measurement measure(const Domain& domain, const TetMesh& mesh, const UmResult& result, const ZeroSetChoice& pieces,
+                    const MeshEdge& h, const MeasureParams& params = {}, const Context& context = {});
 
 /// What the certificate of a mesh says that was made elsewhere.
 /// @param domain  of the psi that it was certified with; null: without

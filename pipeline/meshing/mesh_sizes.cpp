@@ -15,9 +15,9 @@ namespace {
 /// The upper ends of the edges of each vertex to a higher one, ascending, as often as there are tets around them.
 class UpperEnds {
  public:
-  explicit UpperEnds(const TetMesh& mesh) : begin_(mesh.V.size() + 1, 0) {
+  UpperEnds(std::size_t n_vertices, const std::vector<Tet>& C) : begin_(n_vertices + 1, 0) {
     const auto for_each = [&](const auto& f) {
-      for (const Tet& t : mesh.C) {
+      for (const Tet& t : C) {
         for (int a = 0; a < 4; ++a) {
           for (int b = 0; b < a; ++b) f(std::min(t[a], t[b]), std::max(t[a], t[b]));
         }
@@ -28,7 +28,7 @@ class UpperEnds {
     upper_.resize(begin_.back());
     std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
     for_each([&](int low, int high) { upper_[next[low]++] = high; });
-    tbb::parallel_for(std::size_t{0}, mesh.V.size(), [&](std::size_t v) {
+    tbb::parallel_for(std::size_t{0}, n_vertices, [&](std::size_t v) {
       std::sort(upper_.begin() + static_cast<std::ptrdiff_t>(begin_[v]),
                 upper_.begin() + static_cast<std::ptrdiff_t>(begin_[v + 1]));
     });
@@ -48,7 +48,7 @@ class UpperEnds {
   std::vector<int> upper_;
 };
 
-double length(const TetMesh& mesh, int i, int j) { return (mesh.V[i] - mesh.V[j]).norm(); }
+double length(const std::vector<Vec3>& V, int i, int j) { return (V[i] - V[j]).norm(); }
 
 }  // namespace
 
@@ -58,11 +58,11 @@ std::vector<double> asked_sizes(const SizeField& sizes, const std::vector<Vec3>&
   return asked;
 }
 
-std::vector<double> mean_edges(const TetMesh& mesh) {
-  std::vector<double> sum(mesh.V.size());
-  std::vector<int> n(mesh.V.size());
-  UpperEnds(mesh).for_each_edge([&](int i, int j) {
-    const double l = length(mesh, i, j);
+std::vector<double> mean_edges(const std::vector<Vec3>& V, const std::vector<Tet>& C) {
+  std::vector<double> sum(V.size());
+  std::vector<int> n(V.size());
+  UpperEnds(V.size(), C).for_each_edge([&](int i, int j) {
+    const double l = length(V, i, j);
     for (const int v : {i, j}) sum[v] += l, ++n[v];
   });
   for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = n[i] > 0 ? sum[i] / n[i] : 0;
@@ -75,15 +75,16 @@ SizesReport sizes_report(const TetMesh& mesh, const std::vector<Triangle>& bound
   report.least_asked = *least;
   report.greatest_asked = *greatest;
   std::vector<double> ratio;
-  UpperEnds(mesh).for_each_edge(
-      [&](int i, int j) { ratio.push_back(length(mesh, i, j) / (.5 * (asked[i] + asked[j]))); });
+  UpperEnds(mesh.V.size(), mesh.C).for_each_edge([&](int i, int j) {
+    ratio.push_back(length(mesh.V, i, j) / (.5 * (asked[i] + asked[j])));
+  });
   tbb::parallel_sort(ratio);
   report.p01 = quantile(ratio, .01);
   report.p50 = quantile(ratio, .5);
   report.p99 = quantile(ratio, .99);
   std::vector<double> lengths;
   for (const Triangle& f : boundary) {
-    for (int k = 0; k < 3; ++k) lengths.push_back(length(mesh, f[k], f[(k + 1) % 3]));
+    for (int k = 0; k < 3; ++k) lengths.push_back(length(mesh.V, f[k], f[(k + 1) % 3]));
   }
   if (lengths.empty()) return report;
   const auto [shortest, longest] = std::minmax_element(lengths.begin(), lengths.end());

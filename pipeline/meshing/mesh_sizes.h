@@ -13,7 +13,7 @@ namespace umtet {
 std::vector<double> asked_sizes(const SizeField& sizes, const std::vector<Vec3>& points, const Context& context = {});
 
 /// Mean length of the edges at each vertex; 0 where there are none.
-std::vector<double> mean_edges(const TetMesh& mesh);
+std::vector<double> mean_edges(const std::vector<Vec3>& V, const std::vector<Tet>& C);
 
 /// @param boundary  its faces  @param asked  of each vertex. \pre the mesh has a tet
 SizesReport sizes_report(const TetMesh& mesh, const std::vector<Triangle>& boundary, const std::vector<double>& asked);

@@ -1,5 +1,8 @@
 #include "pipeline/output/report_scene.h"
 
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_reduce.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,11 +11,13 @@
 #include <unordered_map>
 
 #include "common/context.h"
+#include "common/indices_where.h"
 #include "mesh/io/patches.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/domain/zero_set_choice.h"
 #include "pipeline/meshing/made_mesh.h"
 #include "pipeline/meshing/sample_fields.h"
+#include "pipeline/output/detail/worst_tets.h"
 #include "pipeline/output/report_page.h"
 
 namespace umtet {
@@ -44,13 +49,19 @@ const std::vector<Value>* field(const std::map<std::string, FieldValues>& data, 
 }
 
 double longest_edge(const TetMesh& mesh) {
-  double l2 = 0;
-  for (const Tet& t : mesh.C) {
-    for (int i = 0; i < 3; ++i) {
-      for (int j = i + 1; j < 4; ++j) l2 = std::max(l2, (mesh.V[t[i]] - mesh.V[t[j]]).squaredNorm());
-    }
-  }
-  return std::sqrt(l2);
+  const double longest2 = tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, mesh.C.size()), 0.,
+      [&](const tbb::blocked_range<std::size_t>& tets, double l2) {
+        for (std::size_t k = tets.begin(); k != tets.end(); ++k) {
+          const Tet& t = mesh.C[k];
+          for (int i = 0; i < 3; ++i) {
+            for (int j = i + 1; j < 4; ++j) l2 = std::max(l2, (mesh.V[t[i]] - mesh.V[t[j]]).squaredNorm());
+          }
+        }
+        return l2;
+      },
+      [](double a, double b) { return std::max(a, b); });
+  return std::sqrt(longest2);
 }
 
 class SceneMaker {
@@ -171,24 +182,22 @@ void SceneMaker::coarsen_faces() {
 /// side; centroids of neighbours are at most half the longest edge apart.
 void SceneMaker::take_tets() {
   const std::vector<double>& q = *field(file_.cell_data, "mean_ratio");
-  tets_.resize(mesh_.C.size());
-  std::iota(tets_.begin(), tets_.end(), 0);
-  const std::size_t n_worst = std::min(caps_.worst, tets_.size());
-  std::partial_sort(tets_.begin(), tets_.begin() + static_cast<std::ptrdiff_t>(n_worst), tets_.end(),
-                    [&](int a, int b) { return q[a] != q[b] ? q[a] < q[b] : a < b; });
+  const std::size_t n = mesh_.C.size(), n_worst = std::min(caps_.worst, n);
   const double layer = longest_edge(mesh_) / 2;
   std::vector<int> planes;
-  if (tets_.size() > caps_.tets) {
-    std::vector<char> taken(tets_.size(), 0);
-    tets_.resize(n_worst);
+  if (n <= caps_.tets) {
+    tets_ = detail::worst_first(q, n_worst);
+  } else {
+    tets_ = detail::worst_of(q, n_worst);
+    std::vector<char> taken(n, 0);
     for (const int t : tets_) taken[t] = 1;
     for (int axis = 0; axis < 3; ++axis) {
-      std::vector<int> more;
-      for (std::size_t t = 0; t < mesh_.C.size(); ++t) {
+      const double middle = box_.center()[axis];
+      const std::vector<int> more = indices_where<int>(n, [&](std::size_t t) {
         double sum = 0;
         for (const int v : mesh_.C[t]) sum += mesh_.V[v][axis];
-        if (!taken[t] && std::abs(sum / 4 - box_.center()[axis]) <= layer) more.push_back(static_cast<int>(t));
-      }
+        return !taken[t] && std::abs(sum / 4 - middle) <= layer;
+      });
       if (tets_.size() + more.size() > caps_.tets) continue;
       for (const int t : more) taken[t] = 1;
       tets_.insert(tets_.end(), more.begin(), more.end());

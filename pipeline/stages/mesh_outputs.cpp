@@ -1,12 +1,14 @@
 #include "pipeline/stages/mesh_outputs.h"
 
 #include <fmt/format.h>
+#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
 #include <utility>
 
+#include "common/indices_where.h"
 #include "mesh/certify/quality_report.h"
 #include "mesh/io/mesh_part.h"
 #include "mesh/io/quality_csv.h"
@@ -57,34 +59,31 @@ class QualityCurves {
 std::vector<std::size_t> moving_tets(const UmResult& result) {
   const std::vector<Vec3>& chosen = result.submesh.mesh.V;
   std::vector<std::uint8_t> moves(chosen.size());
-  for (std::size_t v = 0; v < moves.size(); ++v)
+  tbb::parallel_for(std::size_t{0}, moves.size(), [&](std::size_t v) {
     moves[v] = chosen[v] != result.projected[v] || chosen[v] != result.final[v];
-  std::vector<std::size_t> tets;
+  });
   const std::vector<Tet>& C = result.submesh.mesh.C;
-  for (std::size_t t = 0; t < C.size(); ++t) {
-    if (moves[C[t][0]] || moves[C[t][1]] || moves[C[t][2]] || moves[C[t][3]]) tets.push_back(t);
-  }
-  return tets;
+  return indices_where<std::size_t>(
+      C.size(), [&](std::size_t t) { return moves[C[t][0]] || moves[C[t][1]] || moves[C[t][2]] || moves[C[t][3]]; });
 }
 
 }  // namespace
 
-std::vector<std::string> write_mesh_outputs(const StageContext& context, const Domain& domain,
-                                            const MeshAttempt& best) {
+std::vector<std::string> write_mesh_outputs(const StageContext& context, const Domain& domain, MeshAttempt& best) {
   begin_writing(context, Stage::Mesh);
   fs::remove_all(context.paths.failed());
   const fs::path folder = context.paths.folder(Stage::Mesh);
-  const UmResult& result = best.result;
+  UmResult& result = best.result;
   std::vector<std::string> names;
   QualityCurves curves(result);
-  MeshFile content = mesh_content(domain, result, result.submesh.mesh.V);
+  // What does not move is stored once, in mesh.vtu. All meshes of a series have to have the same tets.
+  const bool is_series = context.parameters.mesh().keep_iterates;
+  const std::vector<std::size_t> moving = is_series ? std::vector<std::size_t>() : moving_tets(result);
+  MeshFile content = taken_content(domain, result);
   const auto write = [&](const std::string& name) {
     names.push_back(name);
     write_mesh(folder / name, content);
   };
-  // What does not move is stored once, in mesh.vtu. All meshes of a series have to have the same tets.
-  const bool is_series = context.parameters.mesh().keep_iterates;
-  const std::vector<std::size_t> moving = is_series ? std::vector<std::size_t>() : moving_tets(result);
   const auto write_moving = [&](const std::string& name) {
     if (moving.empty()) return write(name);
     names.push_back(name);
@@ -104,7 +103,7 @@ std::vector<std::string> write_mesh_outputs(const StageContext& context, const D
   add_support(domain, result, content);
   if (best.sizes) {
     content.point_data["h"] = asked_sizes(*best.sizes, result.final, until_interrupted());
-    content.point_data["edge_length"] = mean_edges({result.final, result.submesh.mesh.C});
+    content.point_data["edge_length"] = mean_edges(result.final, content.mesh.C);
   }
   if (best.second) {
     names.emplace_back("mesh.vtu");

@@ -14,8 +14,9 @@ namespace umtet {
 /// projected.vtu, mesh.vtu, quality.csv; too_thin.vtp and places.vtp where there are such places; pass_N.vtu and
 /// iterates.pvd where iterates were kept. Unless they were, omega_h.vtu and projected.vtu hold the tets with a vertex
 /// that moves: the others are those of mesh.vtu. What mesh.vtu holds is handed over to the stages to come.
+/// @param best  gives its tets, their ids and the chosen vertices away
 /// @return their names. \throw Cancelled, std::system_error naming the file
-std::vector<std::string> write_mesh_outputs(const StageContext& context, const Domain& domain, const MeshAttempt& best);
+std::vector<std::string> write_mesh_outputs(const StageContext& context, const Domain& domain, MeshAttempt& best);
 
 /// What is left of a mesh that is none, or is not right, into 3-mesh/failed/, emptied before: omega_h.vtu and, as
 /// projected.vtu, the last iterate. @return that folder. \throw std::system_error naming the file

@@ -7,13 +7,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
 
-#include "common/disjoint_sets.h"
+#include "common/first_touch.h"
 #include "common/formatted.h"
+#include "common/shared_disjoint_sets.h"
 #include "reconstruct/cloud/cloud_arrays.h"
 #include "reconstruct/cloud/neighbour_tree.h"
 
@@ -47,9 +49,8 @@ std::size_t keep_only(const std::vector<std::uint8_t>& drop, std::vector<std::ui
 }
 
 std::vector<Vec3> positions(const OrientedPointCloud& cloud, const std::vector<std::uint32_t>& kept) {
-  std::vector<Vec3> points;
-  points.reserve(kept.size());
-  for (const std::uint32_t i : kept) points.push_back(cloud.points[i]);
+  std::vector<Vec3> points = touched<Vec3>(kept.size());
+  tbb::parallel_for(std::size_t{0}, kept.size(), [&](std::size_t row) { points[row] = cloud.points[kept[row]]; });
   return points;
 }
 
@@ -203,40 +204,40 @@ std::vector<std::uint8_t> small_components(const Surroundings& cloud, const Clea
   if (n <= kNeighbours) return drop;
   const Neighbourhoods& near = cloud.near;
   const auto spacing2 = [&](std::uint32_t i) { return near.distances2(i)[kSpacingNeighbour - 1]; };
-  DisjointSets pieces(n);
-  const auto piece_of = [&](std::uint32_t i) { return static_cast<std::uint32_t>(pieces.find(static_cast<int>(i))); };
-  for (std::uint32_t i = 0; i < n; ++i)
+  SharedDisjointSets pieces(n);
+  tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(n), [&](std::uint32_t i) {
     for (std::size_t m = 0; m < kNeighbours; ++m) {
       const std::uint32_t j = near.points(i)[m];
       const double reach2 = near.distances2(i)[m] / (kLink * kLink);
-      if (reach2 <= spacing2(i) || reach2 <= spacing2(j)) pieces.unite(static_cast<int>(i), static_cast<int>(j));
+      if (reach2 <= spacing2(i) || reach2 <= spacing2(j)) pieces.unite(i, j);
     }
-
-  std::vector<std::vector<std::uint32_t>> members(n);
-  std::vector<std::uint32_t> size(n, 0);
-  for (std::uint32_t i = 0; i < n; ++i) ++size[piece_of(i)];
+  });
+  std::vector<std::uint32_t> piece_of(n), size(n, 0);
+  tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(n),
+                    [&](std::uint32_t i) { piece_of[i] = pieces.find(i); });
+  for (const std::uint32_t root : piece_of) ++size[root];
   const auto is_small = [&](std::uint32_t root) {
     return size[root] < params.small_component_points && size[root] * 100 < n;
   };
+  std::map<std::uint32_t, std::vector<std::uint32_t>> small;  // by roots
   for (std::uint32_t i = 0; i < n; ++i)
-    if (is_small(piece_of(i))) members[piece_of(i)].push_back(i);
-  for (std::uint32_t root = 0; root < n; ++root) {
-    if (members[root].empty()) continue;
+    if (is_small(piece_of[i])) small[piece_of[i]].push_back(i);
+  for (const auto& [root, members] : small) {
     std::vector<double> spacings;
-    for (const std::uint32_t i : members[root]) spacings.push_back(spacing2(i));
+    for (const std::uint32_t i : members) spacings.push_back(spacing2(i));
     std::nth_element(spacings.begin(), spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2),
                      spacings.end());
     const double reach2 =
         params.small_component_distance * params.small_component_distance * spacings[spacings.size() / 2];
     // Alone, or with other small components only: does a ball around any member hold a point of something larger?
     bool is_far = true;
-    for (std::size_t m = 0; m < members[root].size() && is_far; ++m)
-      cloud.tree->within(cloud.points[members[root][m]], reach2, [&](std::uint32_t j, double) {
-        if (!is_small(piece_of(j))) is_far = false;
+    for (std::size_t m = 0; m < members.size() && is_far; ++m)
+      cloud.tree->within(cloud.points[members[m]], reach2, [&](std::uint32_t j, double) {
+        if (!is_small(piece_of[j])) is_far = false;
       });
     if (!is_far) continue;
     ++n_pieces;
-    for (const std::uint32_t i : members[root]) drop[i] = 1;
+    for (const std::uint32_t i : members) drop[i] = 1;
   }
   return drop;
 }

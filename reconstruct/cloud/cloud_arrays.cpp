@@ -22,6 +22,7 @@ std::vector<std::string> field_names(const OrientedPointCloud& cloud) {
 }
 
 void keep_samples(OrientedPointCloud& cloud, const std::vector<std::uint32_t>& rows) {
+  if (rows.size() == cloud.points.size()) return;
   for_each_array(cloud, [&rows](auto& array, const std::string&) {
     for (std::size_t k = 0; k < rows.size(); ++k) array[k] = array[rows[k]];
     array.resize(rows.size());

@@ -1,5 +1,6 @@
 #include "reconstruct/cloud/cloud_neighbours.h"
 
+#include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/parallel_sort.h>
 
 #include <algorithm>
@@ -108,11 +109,11 @@ NeighbourDistances neighbour_distances(const Neighbourhoods& near) {
   const std::size_t n = near.size();
   NeighbourDistances result{std::vector<double>(n), std::vector<double>(n), static_cast<int>(near.k()),
                             std::vector<int>(n, 1)};
-  for (std::size_t i = 0; i < n; ++i) {
+  tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
     const std::span<const double> d2 = near.distances2(i);
     result.nearest[i] = std::sqrt(d2.front());
     result.mean_square[i] = std::accumulate(d2.begin(), d2.end(), 0.) / result.k;
-  }
+  });
   return result;
 }
 

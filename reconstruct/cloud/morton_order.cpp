@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "common/first_touch.h"
 #include "reconstruct/cloud/cloud_arrays.h"
 
 namespace umtet {
@@ -16,9 +17,8 @@ namespace {
 
 template <class T>
 void permute(const std::vector<std::uint32_t>& order, std::vector<T>& values) {
-  std::vector<T> sorted;
-  sorted.reserve(order.size());
-  for (const std::uint32_t i : order) sorted.push_back(values[i]);
+  std::vector<T> sorted = touched<T>(order.size());
+  tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t row) { sorted[row] = values[order[row]]; });
   values = std::move(sorted);
 }
 
@@ -45,7 +45,7 @@ std::vector<std::uint32_t> morton_order(const std::vector<Vec3>& points) {
     std::uint64_t code;
     std::uint32_t point;
   };
-  std::vector<Key> keys(points.size());
+  std::vector<Key> keys = touched<Key>(points.size());
   tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
     std::uint64_t code = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -63,9 +63,8 @@ std::vector<std::uint32_t> morton_order(const std::vector<Vec3>& points) {
     }
     return a.point < b.point;
   });
-  std::vector<std::uint32_t> order;
-  order.reserve(points.size());
-  for (const Key& key : keys) order.push_back(key.point);
+  std::vector<std::uint32_t> order = touched<std::uint32_t>(points.size());
+  tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t row) { order[row] = keys[row].point; });
   return order;
 }
 

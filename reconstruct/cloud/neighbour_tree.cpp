@@ -3,6 +3,7 @@
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "common/first_touch.h"
 #include "reconstruct/cloud/morton_order.h"
 
 namespace umtet {
@@ -23,19 +25,32 @@ double rounded_up(double distance2) { return kRounding * distance2 + std::numeri
 
 // Points a leaf; the time of a search hardly depends on it.
 constexpr int kLeafSize = 16;
+// FLANN builds a tree on one thread. So there are some, of stretches of Morton's curve, which are compact: as many as
+// threads can build at once, none so small that looking at its box costs more than it saves.
+constexpr std::size_t kMostPieces = 16, kLeastPerPiece = 1 << 15;
 // Some 100 us of searches: a task costs less than a hundredth of that.
 constexpr std::size_t kQueriesPerTask = 128;
 
+/// What FLANN calls a result set, of rows of all pieces.
+class RowResult : public flann::ResultSet<double> {
+ public:
+  std::size_t first_row = 0;  ///< of the piece that is searched
+  void addPoint(double distance2, std::size_t row) final { add(distance2, first_row + row); }
+
+ private:
+  virtual void add(double distance2, std::size_t row) = 0;
+};
+
 /// The nearest few so far, in order. They are rows of the tree until the end: looking up every candidate's number would
 /// cost a cache line each, and only equal distances ask for it.
-class NearestFew final : public flann::ResultSet<double> {
+class NearestFew final : public RowResult {
  public:
   /// @param bound2  at least the squared distance of the last one there will be room for
   NearestFew(const std::uint32_t* order, std::span<Neighbour> room, double bound2 = kInfinity)
       : order_(order), room_(room), bound_(bound2) {}
   bool full() const override { return size_ == room_.size(); }
   double worstDist() const override { return bound_; }
-  void addPoint(double distance2, std::size_t row) override {
+  void add(double distance2, std::size_t row) override {
     const Neighbour found{distance2, static_cast<std::uint32_t>(row)};
     if (size_ < room_.size())
       ++size_;
@@ -67,13 +82,13 @@ class NearestFew final : public flann::ResultSet<double> {
 };
 
 /// Hands on what is in a ball.
-class Ball final : public flann::ResultSet<double> {
+class Ball final : public RowResult {
  public:
   Ball(const std::vector<std::uint32_t>& order, double radius2, const std::function<void(std::uint32_t, double)>& visit)
       : order_(order), radius2_(radius2), bound_(rounded_up(radius2)), visit_(visit) {}
   bool full() const override { return true; }
   double worstDist() const override { return bound_; }
-  void addPoint(double distance2, std::size_t row) override {
+  void add(double distance2, std::size_t row) override {
     if (distance2 <= radius2_) visit_(order_[row], distance2);
   }
 
@@ -84,12 +99,12 @@ class Ball final : public flann::ResultSet<double> {
 };
 
 /// Counts what is in a ball up to a limit, and ends the search there: no box is nearer than -1.
-class Count final : public flann::ResultSet<double> {
+class Count final : public RowResult {
  public:
   Count(double radius2, std::size_t limit) : radius2_(radius2), bound_(rounded_up(radius2)), limit_(limit) {}
   bool full() const override { return count_ >= limit_; }
   double worstDist() const override { return full() ? -1 : bound_; }
-  void addPoint(double distance2, std::size_t) override { count_ += distance2 <= radius2_ ? 1 : 0; }
+  void add(double distance2, std::size_t) override { count_ += distance2 <= radius2_ ? 1 : 0; }
   std::size_t count() const { return std::min(count_, limit_); }
 
  private:
@@ -97,34 +112,72 @@ class Count final : public flann::ResultSet<double> {
   std::size_t limit_, count_ = 0;
 };
 
+void require_place(const Vec3& x, std::size_t number) {
+  if (!x.allFinite()) throw std::invalid_argument("points[" + std::to_string(number) + "] is not finite");
+  if (x.cwiseAbs().maxCoeff() > NeighbourTree::kLargestCoordinate)
+    throw std::invalid_argument("coordinates beyond 1e153: squared distances overflow");
+}
+
 }  // namespace
 
 struct NeighbourTree::Index {
-  Vec3 low, high;
-  std::vector<Vec3> rows;  // the points along the curve; FLANN keeps pointers into them
-  flann::KDTreeSingleIndex<flann::L2_3D<double>> tree;
+  struct Piece {
+    std::size_t first_row;
+    Eigen::AlignedBox3d box;
+    flann::KDTreeSingleIndex<flann::L2_3D<double>> tree;
 
-  Index(const Vec3& lowest, const Vec3& highest, std::vector<Vec3> sorted)
-      : low(lowest),
-        high(highest),
-        rows(std::move(sorted)),
-        tree(flann::Matrix<double>(rows.front().data(), rows.size(), 3), flann::KDTreeSingleIndexParams(kLeafSize)) {
-    tree.buildIndex();
+    Piece(std::vector<Vec3>& rows, std::size_t first, std::size_t end)
+        : first_row(first),
+          tree(flann::Matrix<double>(rows[first].data(), end - first, 3), flann::KDTreeSingleIndexParams(kLeafSize)) {
+      for (std::size_t row = first; row < end; ++row) box.extend(rows[row]);
+      tree.buildIndex();
+    }
+  };
+  Eigen::AlignedBox3d box;
+  std::vector<Vec3> rows;  // the points along the curve; FLANN keeps pointers into them
+  std::vector<std::unique_ptr<Piece>> pieces;
+
+  explicit Index(std::vector<Vec3> sorted) : rows(std::move(sorted)) {
+    const std::size_t n = std::clamp<std::size_t>(rows.size() / kLeastPerPiece, 1, kMostPieces);
+    pieces.resize(n);
+    tbb::parallel_for(
+        std::size_t{0}, n,
+        [&](std::size_t p) {
+          pieces[p] = std::make_unique<Piece>(rows, p * rows.size() / n, (p + 1) * rows.size() / n);
+        },
+        tbb::simple_partitioner());
+    for (const auto& piece : pieces) box.extend(piece->box);
   }
-  void search(flann::ResultSet<double>& found, const Vec3& x) const {
-    tree.findNeighbors(found, x.data(), flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED, 0.0F));
+  /// The nearest piece first: what it has bounds the search of the others.
+  void search(RowResult& found, const Vec3& x) const {
+    std::array<double, kMostPieces> distance2;
+    std::size_t nearest = 0;
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
+      distance2[p] = pieces[p]->box.squaredExteriorDistance(x);
+      if (distance2[p] < distance2[nearest]) nearest = p;
+    }
+    search(*pieces[nearest], found, x);
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
+      if (p != nearest && distance2[p] <= found.worstDist()) search(*pieces[p], found, x);
+    }
+  }
+
+ private:
+  static void search(const Piece& piece, RowResult& found, const Vec3& x) {
+    found.first_row = piece.first_row;
+    piece.tree.findNeighbors(found, x.data(), flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED, 0.0F));
   }
 };
 
 /// Finds the first accepted point of a piece of the tube around a ray, in a ball that contains the piece.
-class NeighbourTree::TubePiece final : public flann::ResultSet<double> {
+class NeighbourTree::TubePiece final : public RowResult {
  public:
   TubePiece(const NeighbourTree& tree, const Vec3& x, const Vec3& d, const std::array<double, 2>& from_to,
             double width2, double reach2, const std::function<bool(std::uint32_t)>& accept)
       : tree_(tree), x_(x), d_(d), from_to_(from_to), width2_(width2), reach2_(reach2), accept_(accept) {}
   bool full() const override { return true; }
   double worstDist() const override { return reach2_; }
-  void addPoint(double, std::size_t row) override {
+  void add(double, std::size_t row) override {
     const Vec3 r = tree_.index_->rows[row] - x_;
     const double t = r.dot(d_);
     if (t < from_to_[0] || t > from_to_[1] || t > hit_.t || (r - t * d_).squaredNorm() > width2_) return;
@@ -146,19 +199,11 @@ NeighbourTree::NeighbourTree(const std::vector<Vec3>& points) {
   if (points.empty()) throw std::invalid_argument("a cloud without points has no neighbours");
   if (points.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
     throw std::invalid_argument(std::to_string(points.size()) + " points: more than FLANN can number");
-  Vec3 low = points.front(), high = low;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!points[i].allFinite()) throw std::invalid_argument("points[" + std::to_string(i) + "] is not finite");
-    low = low.cwiseMin(points[i]);
-    high = high.cwiseMax(points[i]);
-  }
-  if (low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff() > kLargestCoordinate)
-    throw std::invalid_argument("coordinates beyond 1e153: squared distances overflow");
+  for (std::size_t i = 0; i < points.size(); ++i) require_place(points[i], i);
   order_ = morton_order(points);
-  std::vector<Vec3> rows;
-  rows.reserve(points.size());
-  for (const std::uint32_t i : order_) rows.push_back(points[i]);
-  index_ = std::make_unique<Index>(low, high, std::move(rows));
+  std::vector<Vec3> rows = touched<Vec3>(points.size());
+  tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t row) { rows[row] = points[order_[row]]; });
+  index_ = std::make_unique<Index>(std::move(rows));
 }
 
 NeighbourTree::~NeighbourTree() = default;
@@ -212,7 +257,7 @@ NeighbourTree::Hit NeighbourTree::first_along(const Vec3& x, const Vec3& d, doub
   // Positions on the ray are rounded: this share of the width covers it as long as coordinates hold six digits of that.
   constexpr double kSlack = 1e-6;
   const double width2 = width * width, slack = kSlack * width;
-  const double t_end = (x - index_->low).cwiseAbs().cwiseMax((index_->high - x).cwiseAbs()).norm() + width;
+  const double t_end = (x - index_->box.min()).cwiseAbs().cwiseMax((index_->box.max() - x).cwiseAbs()).norm() + width;
   for (double t = t_min; t <= t_end;) {
     // Where a ball is empty, so is the part of the tube within it. Balls an eighth of the way long keep their number
     // logarithmic. Larger ones cost more than they save: FLANN bounds cells by its cuts and not by their points, so

@@ -3,10 +3,15 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "common/first_touch.h"
+
 namespace umtet {
 
 Neighbourhoods::Neighbourhoods(const NeighbourTree& tree, std::size_t k)
-    : n_(tree.size()), k_(std::min(k, tree.size() - 1)), points_(n_ * k_), distances2_(n_ * k_) {
+    : n_(tree.size()),
+      k_(std::min(k, tree.size() - 1)),
+      points_(touched<std::uint32_t>(n_ * k_)),
+      distances2_(touched<double>(n_ * k_)) {
   if (k == 0) throw std::invalid_argument("k = 0 neighbours: must be >= 1");
   tree.for_each_neighbourhood(k_ + 1, [&](std::uint32_t i, std::span<const Neighbour> near) {
     std::size_t at = i * k_;

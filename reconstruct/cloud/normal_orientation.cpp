@@ -1,5 +1,7 @@
 #include "reconstruct/cloud/normal_orientation.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -183,10 +185,10 @@ void keep_undisputed(const OrientedPointCloud& cloud, const std::vector<double>&
 std::vector<double> areas_behind(const Neighbourhoods& near) {
   std::vector<double> areas(near.size());
   const auto k = static_cast<double>(near.k());
-  for (std::size_t i = 0; i < areas.size(); ++i) {
+  tbb::parallel_for(std::size_t{0}, areas.size(), [&](std::size_t i) {
     const std::span<const double> distances2 = near.distances2(i);
     areas[i] = 2 * std::numbers::pi / (k * (k + 2)) * std::accumulate(distances2.begin(), distances2.end(), 0.0);
-  }
+  });
   return areas;
 }
 

@@ -10,6 +10,7 @@
 #include <queue>
 #include <unordered_map>
 
+#include "common/shared_disjoint_sets.h"
 #include "reconstruct/cloud/detail/sign_turning.h"
 
 namespace umtet {
@@ -244,21 +245,16 @@ SignAgreement sign_agreement(const OrientedPointCloud& cloud, const Neighbourhoo
 std::vector<std::uint32_t> agreeing_components(const OrientedPointCloud& cloud, const Neighbourhoods& near,
                                                std::uint32_t& n_components) {
   const std::size_t n = near.size();
-  std::vector<std::uint32_t> parent(n);
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto root = [&](std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  for (std::uint32_t i = 0; i < n; ++i)
-    for (const std::uint32_t j : near.points(i)) {
-      const std::uint32_t a = root(i), b = root(j);
-      if (a == b || pair_weight(cloud, i, j) < kSureBorder) continue;
-      parent[std::max(a, b)] = std::min(a, b);
-    }
-  n_components = 0;
+  SharedDisjointSets sets(n);
+  tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(n), [&](std::uint32_t i) {
+    for (const std::uint32_t j : near.points(i))
+      if (sets.find(i) != sets.find(j) && pair_weight(cloud, i, j) >= kSureBorder) sets.unite(i, j);
+  });
   std::vector<std::uint32_t> component(n);
-  for (std::uint32_t i = 0; i < n; ++i) component[i] = root(i) == i ? n_components++ : component[root(i)];
+  tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(n),
+                    [&](std::uint32_t i) { component[i] = sets.find(i); });
+  n_components = 0;
+  for (std::uint32_t i = 0; i < n; ++i) component[i] = component[i] == i ? n_components++ : component[component[i]];
   return component;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/first_touch.h"
 #include "common/formatted.h"
 #include "reconstruct/cloud/covering.h"
 #include "reconstruct/solve/closing.h"
@@ -104,20 +105,20 @@ constexpr double kGapOfNoise = 9;
 std::vector<SsdSample> make_samples(const OrientedPointCloud& cloud, const std::vector<double>& area,
                                     const std::vector<int>& n_share, const Lattice& lattice, const SsdParams& params) {
   const double h = lattice.h, l = finest_value_length(h, params.noise);
-  std::vector<SsdSample> samples(cloud.points.size());
-  for (std::size_t i = 0; i < samples.size(); ++i) {
+  std::vector<SsdSample> samples = touched<SsdSample>(cloud.points.size());
+  tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
     samples[i].xi = (cloud.points[i] - lattice.origin) / h;
     samples[i].normal = cloud.normals[i];
     // With f = h F and x = h xi, both functionals divided by h² (area) or as they stand (paper):
     samples[i].w_value = area.empty() ? h * h : area[i] / (l * l);
     samples[i].w_gradient = area.empty() ? 1.0 : area[i] / (h * h);
     samples[i].gap2 = n_share[i] * samples[i].w_gradient;
-    if (area.empty() || params.local_noise.empty()) continue;
+    if (area.empty() || params.local_noise.empty()) return;
     if (const double noise = params.local_noise[i]; noise > kUnusual * params.noise) {
       samples[i].w_value = area[i] / std::pow(finest_value_length(h, noise), 2);
       samples[i].gap2 = std::max(samples[i].gap2, std::pow(kGapOfNoise * noise / h, 2));
     }
-  }
+  });
   return samples;
 }
 
@@ -285,10 +286,11 @@ std::vector<std::vector<SsdSample>> samples_of_levels(const Problem& problem, La
   samples[n_bands] =
       merge_samples(make_samples(problem.cloud, problem.area, problem.n_share, lattice, problem.params), kMergeCube);
   for (int level = n_bands; level-- > 0;) {
-    std::vector<SsdSample> coarser = samples[level + 1];
-    coarsen(coarser);
+    std::vector<SsdSample> coarser = coarsened(samples[level + 1]);
     const double h = std::ldexp(lattice.h, n_bands - level);
-    for (SsdSample& s : coarser) s.w_value = s.w_gradient * std::pow(h / value_length(h, noise), 2);
+    const double per_gradient = std::pow(h / value_length(h, noise), 2);
+    tbb::parallel_for(std::size_t{0}, coarser.size(),
+                      [&](std::size_t i) { coarser[i].w_value = coarser[i].w_gradient * per_gradient; });
     samples[level] = merge_samples(coarser, kMergeCube);
     samples[level + 1] = resolved_samples(samples[level + 1], kMostArea);
   }

@@ -45,33 +45,44 @@ double dot(std::ptrdiff_t n, const double* a, const double* b) {
 // and PCG takes more iterations; smaller ones merge little.
 constexpr double kMergeCube = 0.5;
 
-// y (+)= P x along one axis of an array with `stride` between neighbours on the axis and `inner` contiguous columns.
+// f(o, begin, end) for columns begin .. end - 1 of each of `outer` planes of `inner` columns.
+template <class F>
+void for_columns(std::ptrdiff_t inner, std::ptrdiff_t outer, F&& f) {
+  constexpr std::ptrdiff_t kColumns = 1 << 9;
+  const std::ptrdiff_t parts = (inner + kColumns - 1) / kColumns;
+  tbb::parallel_for(std::ptrdiff_t{0}, outer * parts, [&](std::ptrdiff_t task) {
+    const std::ptrdiff_t begin = task % parts * kColumns;
+    f(task / parts, begin, std::min(inner, begin + kColumns));
+  });
+}
+
+// y = P x along one axis of an array with `stride` between neighbours on the axis and `inner` contiguous columns.
 void prolong_axis(const AxisProlongation& P, const float* x, std::ptrdiff_t inner, std::ptrdiff_t outer, float* y) {
-  tbb::parallel_for(std::ptrdiff_t{0}, outer, [&](std::ptrdiff_t o) {
+  for_columns(inner, outer, [&](std::ptrdiff_t o, std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (int i = 0; i < P.n_fine; ++i) {
       float* out = y + (o * P.n_fine + i) * inner;
-      std::fill(out, out + inner, 0.f);
+      std::fill(out + begin, out + end, 0.f);
       for (int a = 0; a < P.width; ++a) {
         const float w = P.weight[static_cast<std::size_t>(i) * P.width + a];
         if (w == 0) continue;
         const float* in = x + (o * P.n_coarse + P.first[i] + a) * inner;
-        for (std::ptrdiff_t q = 0; q < inner; ++q) out[q] += w * in[q];
+        for (std::ptrdiff_t q = begin; q < end; ++q) out[q] += w * in[q];
       }
     }
   });
 }
 
 void restrict_axis(const AxisProlongation& P, const float* x, std::ptrdiff_t inner, std::ptrdiff_t outer, float* y) {
-  tbb::parallel_for(std::ptrdiff_t{0}, outer, [&](std::ptrdiff_t o) {
+  for_columns(inner, outer, [&](std::ptrdiff_t o, std::ptrdiff_t begin, std::ptrdiff_t end) {
     float* out = y + o * P.n_coarse * inner;
-    std::fill(out, out + P.n_coarse * inner, 0.f);
+    for (int i = 0; i < P.n_coarse; ++i) std::fill(out + i * inner + begin, out + i * inner + end, 0.f);
     for (int i = 0; i < P.n_fine; ++i) {
       const float* in = x + (o * P.n_fine + i) * inner;
       for (int a = 0; a < P.width; ++a) {
         const float w = P.weight[static_cast<std::size_t>(i) * P.width + a];
         if (w == 0) continue;
         float* to = out + (P.first[i] + a) * inner;
-        for (std::ptrdiff_t q = 0; q < inner; ++q) to[q] += w * in[q];
+        for (std::ptrdiff_t q = begin; q < end; ++q) to[q] += w * in[q];
       }
     }
   });
@@ -92,10 +103,12 @@ double largest_eigenvalue(const SsdOperator& op, const std::vector<float>& inver
   constexpr double kMargin = 1.1;
   const std::ptrdiff_t n = op.size();
   const float* D = inverse_diagonal.data();
-  for (std::ptrdiff_t i = 0; i < n; ++i) {
-    x[i] = static_cast<float>((static_cast<std::size_t>(i) * 2654435761U) % 2048) / 1024 - 1;
-    v[i] = 0;
-  }
+  for_chunks(n, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t i = begin; i < end; ++i) {
+      x[i] = static_cast<float>((static_cast<std::size_t>(i) * 2654435761U) % 2048) / 1024 - 1;
+      v[i] = 0;
+    }
+  });
   std::vector<double> alpha, beta;
   double b = 0;
   for (int step = 0; step < kSteps; ++step) {
@@ -103,15 +116,19 @@ double largest_eigenvalue(const SsdOperator& op, const std::vector<float>& inver
     if (!(norm > 0)) break;
     if (step > 0) beta.push_back(b = norm);
     // v, x: the vector before, times -b, and this one
-    for (std::ptrdiff_t i = 0; i < n; ++i) {
-      const auto now = static_cast<float>(x[i] / norm);
-      x[i] = static_cast<float>(-b * v[i]);
-      v[i] = now;
-    }
+    for_chunks(n, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      for (std::ptrdiff_t i = begin; i < end; ++i) {
+        const auto now = static_cast<float>(x[i] / norm);
+        x[i] = static_cast<float>(-b * v[i]);
+        v[i] = now;
+      }
+    });
     op.apply(v, Av, workspace);
     const double a = sum_of(n, [&](std::ptrdiff_t i) { return double(v[i]) * Av[i]; });
     alpha.push_back(a);
-    for (std::ptrdiff_t i = 0; i < n; ++i) x[i] += D[i] * Av[i] - static_cast<float>(a) * v[i];
+    for_chunks(n, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      for (std::ptrdiff_t i = begin; i < end; ++i) x[i] += D[i] * Av[i] - static_cast<float>(a) * v[i];
+    });
   }
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> T;
   const Eigen::Map<const Eigen::VectorXd> diagonal(alpha.data(), static_cast<Eigen::Index>(alpha.size()));
@@ -146,10 +163,10 @@ Multigrid::Multigrid(const SsdOperator& finest, int n_levels) {
       kappa /= 2;
     }
     if (coarser) {
-      for (SsdSample& s : samples) {
-        s.xi /= 2;
-        s.w_gradient /= 4;
-      }
+      tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
+        samples[i].xi /= 2;
+        samples[i].w_gradient /= 4;
+      });
     }
     std::vector<SsdSample> means = merge_samples(samples, kMergeCube);
     if (coarser || means.size() < samples.size() / 2) samples = std::move(means);
@@ -166,7 +183,9 @@ Multigrid::Multigrid(const SsdOperator& finest, int n_levels) {
     std::vector<double> diagonal(size);
     level.op.diagonal(diagonal.data());
     level.inverse_diagonal.resize(size);
-    for (std::size_t i = 0; i < size; ++i) level.inverse_diagonal[i] = static_cast<float>(1 / diagonal[i]);
+    for_chunks(level.op.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      for (std::ptrdiff_t i = begin; i < end; ++i) level.inverse_diagonal[i] = static_cast<float>(1 / diagonal[i]);
+    });
     level.lambda_max = largest_eigenvalue(level.op, level.inverse_diagonal, level.x.data(), level.d.data(),
                                           level.Ad.data(), workspace_);
   }
@@ -253,9 +272,13 @@ void Multigrid::apply(const double* r, double* z) {
     std::fill(z, z + n, 0.0);
     return;
   }
-  for (std::ptrdiff_t i = 0; i < n; ++i) level.r[i] = static_cast<float>(r[i] / norm);
+  for_chunks(n, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t i = begin; i < end; ++i) level.r[i] = static_cast<float>(r[i] / norm);
+  });
   cycle(0);
-  for (std::ptrdiff_t i = 0; i < n; ++i) z[i] = norm * level.x[i];
+  for_chunks(n, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t i = begin; i < end; ++i) z[i] = norm * level.x[i];
+  });
 }
 
 PcgReport solve_pcg(const SsdOperator& A, Multigrid& M, const std::vector<double>& b, double tolerance,

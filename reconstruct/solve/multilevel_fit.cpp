@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <bitset>
 #include <cmath>
+#include <numeric>
 
+#include "common/first_touch.h"
 #include "reconstruct/solve/ssd_band.h"
 
 namespace umtet {
@@ -37,7 +39,7 @@ std::vector<float> solve(const SsdBand& band, std::vector<float> r, double toler
                          const std::function<void(double)>& go_on, BandReport& report) {
   const int n = band.blocks().size();
   const std::vector<float>& D = band.inverse_diagonal();
-  std::vector<float> x(r.size(), 0.f), p(r.size()), Ap(r.size());
+  std::vector<float> x = touched<float>(r.size()), p = touched<float>(r.size()), Ap = touched<float>(r.size());
   std::vector<double> partial;
   double rz = sum_over_blocks(n, partial, [&](int b) {
     block(p, b) = block(D, b) * block(r, b);
@@ -66,26 +68,29 @@ std::vector<float> solve(const SsdBand& band, std::vector<float> r, double toler
   return x;
 }
 
-Eigen::Vector3i cell_of(const SsdSample& s) { return s.xi.array().floor().cast<int>(); }
-
 }  // namespace
 
 std::vector<SsdSample> resolved_samples(const std::vector<SsdSample>& samples, double most_area) {
-  std::vector<SsdSample> kept;
-  kept.reserve(samples.size());
   const auto in_block = [](const Eigen::Vector3i& c) { return c[0] % 8 + 8 * (c[1] % 8) + 64 * (c[2] % 8); };
-  for (std::size_t i = 0; i < samples.size();) {
-    const Eigen::Vector3i at = cell_of(samples[i]) / kEdge;
-    std::bitset<kNodes> resolved;
-    std::size_t end = i;
-    for (; end < samples.size() && cell_of(samples[end]) / kEdge == at; ++end) {
-      if (std::max(samples[end].w_gradient, samples[end].gap2) <= most_area)
-        resolved.set(in_block(cell_of(samples[end])));
+  const std::vector<std::size_t> runs = block_runs(samples);
+  const std::size_t n_runs = runs.size() - 1;
+  std::vector<std::bitset<kNodes>> resolved(n_runs);
+  std::vector<std::size_t> first(n_runs + 1, 0);  // of those that are kept
+  tbb::parallel_for(std::size_t{0}, n_runs, [&](std::size_t run) {
+    for (std::size_t i = runs[run]; i < runs[run + 1]; ++i) {
+      const SsdSample& s = samples[i];
+      if (std::max(s.w_gradient, s.gap2) <= most_area) resolved[run].set(in_block(cell_of(s)));
     }
-    for (; i < end; ++i) {
-      if (resolved[in_block(cell_of(samples[i]))]) kept.push_back(samples[i]);
-    }
-  }
+    for (std::size_t i = runs[run]; i < runs[run + 1]; ++i)
+      first[run + 1] += resolved[run][in_block(cell_of(samples[i]))] ? 1 : 0;
+  });
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<SsdSample> kept = touched<SsdSample>(first.back());
+  tbb::parallel_for(std::size_t{0}, n_runs, [&](std::size_t run) {
+    std::size_t at = first[run];
+    for (std::size_t i = runs[run]; i < runs[run + 1]; ++i)
+      if (resolved[run][in_block(cell_of(samples[i]))]) kept[at++] = samples[i];
+  });
   return kept;
 }
 
@@ -98,7 +103,9 @@ LevelSet refine(const LevelSet& psi, const std::vector<SsdSample>& samples, doub
   std::vector<float> r;
   band.residual(psi, r);
   LevelSetBand result{band.blocks(), solve(band, std::move(r), tolerance, max_iterations, go_on, report)};
-  for (float& c : result.coefficients) c = static_cast<float>(fine.h * c);
+  tbb::parallel_for(0, result.blocks.size(), [&](int b) {
+    for (float& c : block(result.coefficients, b)) c = static_cast<float>(fine.h * c);
+  });
   return psi.with_band(std::move(result));
 }
 

@@ -1,9 +1,12 @@
 #include "reconstruct/solve/ssd_band.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <cmath>
+#include <numeric>
 
+#include "common/first_touch.h"
 #include "reconstruct/basis/contract.h"
 #include "reconstruct/basis/cross_gram.h"
 #include "reconstruct/solve/detail/sample_basis.h"
@@ -24,10 +27,8 @@ using detail::float_pack;
 template <int W>
 using Basis = detail::SampleBasis<W>;
 
-Eigen::Vector3i cell_of(const SsdSample& s) { return s.xi.array().floor().cast<int>(); }
-
 void sort_and_unite(std::vector<Eigen::Vector3i>& blocks) {
-  std::sort(blocks.begin(), blocks.end(), [](const auto& a, const auto& b) {
+  tbb::parallel_sort(blocks.begin(), blocks.end(), [](const auto& a, const auto& b) {
     return std::array{a[2], a[1], a[0]} < std::array{b[2], b[1], b[0]};
   });
   blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
@@ -35,26 +36,28 @@ void sort_and_unite(std::vector<Eigen::Vector3i>& blocks) {
 
 // The node blocks that the functions of the samples' cells belong to.
 std::vector<Eigen::Vector3i> touched_blocks(const std::vector<SsdSample>& samples, int half_width) {
-  std::vector<Eigen::Vector3i> touched;
   const int reach = 2 * half_width - 1;  // the window of cell c ends in block (c + reach) / 8: its own or the next
-  for (std::size_t i = 0; i < samples.size();) {
-    const Eigen::Vector3i block = cell_of(samples[i]) / kEdge;
-    unsigned ends = 0;  // a bit for each of the eight blocks in which a window ends
-    for (; i < samples.size(); ++i) {
-      const Eigen::Vector3i cell = cell_of(samples[i]);
-      if (cell / kEdge != block) break;
-      const Eigen::Vector3i next = (cell.array() + reach) / kEdge - block.array();
-      ends |= 1U << (next[0] | next[1] << 1 | next[2] << 2);
+  const std::vector<std::size_t> runs = block_runs(samples);
+  std::vector<unsigned> ends(runs.size() - 1, 0);  // a bit for each of the eight blocks in which a window ends
+  tbb::parallel_for(std::size_t{0}, ends.size(), [&](std::size_t run) {
+    const Eigen::Vector3i block = cell_of(samples[runs[run]]) / kEdge;
+    for (std::size_t i = runs[run]; i < runs[run + 1]; ++i) {
+      const Eigen::Vector3i next = (cell_of(samples[i]).array() + reach) / kEdge - block.array();
+      ends[run] |= 1U << (next[0] | next[1] << 1 | next[2] << 2);
     }
+  });
+  std::vector<Eigen::Vector3i> reached;
+  for (std::size_t run = 0; run < ends.size(); ++run) {
+    const Eigen::Vector3i block = cell_of(samples[runs[run]]) / kEdge;
     for (int q = 0; q < 8; ++q)
       for (int end = q; end < 8; ++end) {
-        if ((ends >> end & 1) == 0 || (q & end) != q) continue;
-        touched.push_back(block + Eigen::Vector3i(q & 1, q >> 1 & 1, q >> 2));
+        if ((ends[run] >> end & 1) == 0 || (q & end) != q) continue;
+        reached.push_back(block + Eigen::Vector3i(q & 1, q >> 1 & 1, q >> 2));
         break;
       }
   }
-  sort_and_unite(touched);
-  return touched;
+  sort_and_unite(reached);
+  return reached;
 }
 
 // Functions of W nodes an axis reach no farther into the upper blocks: rows y and planes z that are of use.
@@ -103,19 +106,22 @@ SsdBand::SsdBand(const LmeTables& tables, const Lattice& lattice, double kappa, 
       samples_(&samples),
       blocks_(lattice, tables.half_width(), touched_blocks(samples, tables.half_width())) {
   neighbours_.resize(blocks_.size());
-  for (int b = 0; b < blocks_.size(); ++b) neighbours_[b] = blocks_.neighbours(b);
-  for (std::size_t i = 0; i < samples.size();) {
-    CellBlock cells;
-    cells.block = cell_of(samples[i]) / kEdge;
-    cells.begin = i;
-    while (i < samples.size() && cell_of(samples[i]) / kEdge == cells.block) ++i;
-    cells.end = i;
+  tbb::parallel_for(0, blocks_.size(), [&](int b) { neighbours_[b] = blocks_.neighbours(b); });
+  const std::vector<std::size_t> runs = block_runs(samples);
+  cell_blocks_.resize(runs.size() - 1);
+  tbb::parallel_for(std::size_t{0}, cell_blocks_.size(), [&](std::size_t run) {
+    CellBlock& cells = cell_blocks_[run];
+    cells.begin = runs[run];
+    cells.end = runs[run + 1];
+    cells.block = cell_of(samples[cells.begin]) / kEdge;
     for (int q = 0; q < 8; ++q) {
       cells.nodes[q] = blocks_.at(cells.block + Eigen::Vector3i(q & 1, q >> 1 & 1, q >> 2));
     }
-    const int colour = (cells.block[0] & 1) | (cells.block[1] & 1) << 1 | (cells.block[2] & 1) << 2;
-    colours_[colour].push_back(static_cast<int>(cell_blocks_.size()));
-    cell_blocks_.push_back(cells);
+  });
+  for (std::size_t run = 0; run < cell_blocks_.size(); ++run) {
+    const Eigen::Vector3i& block = cell_blocks_[run].block;
+    const int colour = (block[0] & 1) | (block[1] & 1) << 1 | (block[2] & 1) << 2;
+    colours_[colour].push_back(static_cast<int>(run));
   }
   detail::dispatch_width(tables.width(), [&](auto W) { tabulate<W.value>(); });
   invert_diagonal();
@@ -138,8 +144,8 @@ void SsdBand::for_each_cell_block(F&& f) const {
 template <int W>
 void SsdBand::tabulate() {
   constexpr int kStride = Basis<W>::kStride;
-  bases_.resize(samples_->size() * kStride);
-  window_.resize(samples_->size());
+  bases_ = std::make_unique_for_overwrite<float[]>(samples_->size() * kStride);
+  window_ = touched<std::uint16_t>(samples_->size());
   tbb::parallel_for(std::size_t{0}, cell_blocks_.size(), [&](std::size_t c) {
     const CellBlock& cells = cell_blocks_[c];
     const Eigen::Vector3i corner = kEdge * cells.block - Eigen::Vector3i::Constant(blocks_.shift());
@@ -147,7 +153,7 @@ void SsdBand::tabulate() {
       const SsdSample& s = (*samples_)[i];
       LmeBasis3d B;
       evaluate_lme_3d<false>(*tables_, blocks_.lattice().n, s.xi, B);
-      Basis<W>::store(B, s, bases_.data() + i * kStride);
+      Basis<W>::store(B, s, bases_.get() + i * kStride);
       const Eigen::Vector3i first = Eigen::Vector3i(B.x.first, B.y.first, B.z.first) - corner;
       window_[i] = static_cast<std::uint16_t>((first[2] * kWindow + first[1]) * kWindow + first[0]);
     }
@@ -164,7 +170,7 @@ void SsdBand::apply_data(const float* p, float* y) const {
     std::fill(in + kUsed, in + kUsed + 8, 0.f);
     std::fill(out, out + kUsed + 8, 0.f);
     for (std::size_t i = cells.begin; i < cells.end; ++i) {
-      detail::add_sample<W>({bases_.data() + i * Basis<W>::kStride}, in + window_[i], out + window_[i], kRow, kPlane);
+      detail::add_sample<W>({bases_.get() + i * Basis<W>::kStride}, in + window_[i], out + window_[i], kRow, kPlane);
     }
     add_window<W>(cells.nodes, out, y);
   });
@@ -263,13 +269,13 @@ void SsdBand::apply(const float* p, float* y) const {
 
 void SsdBand::invert_diagonal() {
   std::vector<float>& d = inverse_diagonal_;
-  d.assign(size(), 0.f);
+  d = touched<float>(size());
   detail::dispatch_width(tables_->width(), [&](auto width) {
     constexpr int W = width.value;
     for_each_cell_block([&](const CellBlock& cells) {
       alignas(32) float out[kWindowNodes + 8] = {};
       for (std::size_t i = cells.begin; i < cells.end; ++i) {
-        const Basis<W> B{bases_.data() + i * Basis<W>::kStride};
+        const Basis<W> B{bases_.get() + i * Basis<W>::kStride};
         const Lanes N2 = B.xN().square(), d2 = B.xdN().square();
         for (int k = 0; k < W; ++k)
           for (int j = 0; j < W; ++j) {
@@ -284,10 +290,16 @@ void SsdBand::invert_diagonal() {
   const CrossGram gram(*tables_, 0);
   const double m = gram.m(0), s = gram.s(0), b = gram.b(0);
   const auto energy = static_cast<float>(kappa_ * (3 * b * m * m + 6 * s * s * m));
-  for (float& v : d) {  // a node is active where a sample weighs something on it
-    n_active_ += v > 0;
-    v = v > 0 ? 1 / (v + energy) : 0;
-  }
+  std::vector<int> n_active(blocks_.size(), 0);
+  tbb::parallel_for(0, blocks_.size(), [&](int block) {
+    float* const of_block = d.data() + static_cast<std::size_t>(block) * kNodes;
+    for (int a = 0; a < kNodes; ++a) {
+      float& v = of_block[a];
+      n_active[block] += v > 0;  // a node is active where a sample weighs something on it
+      v = v > 0 ? 1 / (v + energy) : 0;
+    }
+  });
+  n_active_ = std::accumulate(n_active.begin(), n_active.end(), n_active_);
 }
 
 // r = -kappa int H(N) : H(f): f level by level, in units of this lattice.
@@ -334,7 +346,7 @@ void SsdBand::add_misfit(const LevelSet& f, std::vector<float>& r) const {
       Vec3 gradient;
       const double value = f.evaluate(L.origin + L.h * s.xi, &gradient, nullptr) / L.h;
       const Eigen::Vector3f g = (s.w_gradient * (s.normal - gradient)).cast<float>();
-      detail::scatter_sample<W>({bases_.data() + i * Basis<W>::kStride},
+      detail::scatter_sample<W>({bases_.get() + i * Basis<W>::kStride},
                                 static_cast<float>(s.w_value * (s.value - value)), g[0], g[1], g[2], out + window_[i],
                                 kRow, kPlane);
     }
@@ -343,12 +355,15 @@ void SsdBand::add_misfit(const LevelSet& f, std::vector<float>& r) const {
 }
 
 void SsdBand::residual(const LevelSet& f, std::vector<float>& r) const {
-  r.assign(size(), 0.f);
+  r = touched<float>(size());
   subtract_energy(f, r);
   detail::dispatch_width(tables_->width(), [&](auto W) { add_misfit<W.value>(f, r); });
-  for (std::size_t a = 0; a < r.size(); ++a) {
-    if (inverse_diagonal_[a] == 0) r[a] = 0;
-  }
+  tbb::parallel_for(0, blocks_.size(), [&](int block) {
+    const std::size_t begin = static_cast<std::size_t>(block) * kNodes;
+    for (std::size_t a = begin; a < begin + kNodes; ++a) {
+      if (inverse_diagonal_[a] == 0) r[a] = 0;
+    }
+  });
 }
 
 }  // namespace umtet

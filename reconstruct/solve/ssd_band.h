@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "reconstruct/basis/lattice_blocks.h"
@@ -68,7 +69,7 @@ class SsdBand {
   std::vector<CellBlock> cell_blocks_;
   std::array<std::vector<int>, 8> colours_;
   std::vector<std::array<int, 27>> neighbours_;
-  std::vector<float> bases_;           // per sample: N, N' in x (8 lanes each), y and z (W each), weights
+  std::unique_ptr<float[]> bases_;     // per sample: N, N' in x (8 lanes each), y and z (W each), weights
   std::vector<std::uint16_t> window_;  // first node of a sample in the 16^3 nodes of its cell block
   std::vector<float> inverse_diagonal_;
   std::size_t n_active_ = 0;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "common/first_touch.h"
 #include "reconstruct/basis/contract.h"
 #include "reconstruct/solve/detail/sample_basis.h"
 
@@ -53,11 +54,12 @@ SsdOperator::SsdOperator(const LmeTables& tables, const Eigen::Vector3i& n, doub
   };
   // Sorted by (cell, position in the input): one order, whatever the sorting threads do.
   std::vector<std::pair<std::int64_t, std::uint32_t>> order(samples_.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = {key(samples_[i]), static_cast<std::uint32_t>(i)};
+  tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t i) {
+    order[i] = {key(samples_[i]), static_cast<std::uint32_t>(i)};
+  });
   tbb::parallel_sort(order.begin(), order.end());
-  std::vector<SsdSample> sorted;
-  sorted.reserve(order.size());
-  for (const auto& [cell, i] : order) sorted.push_back(samples_[i]);
+  std::vector<SsdSample> sorted = touched<SsdSample>(order.size());
+  tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t row) { sorted[row] = samples_[order[row].second]; });
   samples_ = std::move(sorted);
   const int n_slabs = (n_[2] - 1 + kSlabLayers - 1) / kSlabLayers;
   slab_begin_.assign(n_slabs + 1, samples_.size());
@@ -96,12 +98,12 @@ void SsdOperator::apply(const double* c, double* y, std::vector<double>& workspa
 void SsdOperator::tabulate() {
   dispatch_width(tables_->width(), [&](auto W) {
     using Basis = SampleBasis<W.value>;
-    bases_.resize(samples_.size() * Basis::kStride);
+    bases_ = std::make_unique_for_overwrite<float[]>(samples_.size() * Basis::kStride);
     first_.resize(samples_.size());
     tbb::parallel_for(std::size_t{0}, samples_.size(), [&](std::size_t i) {
       LmeBasis3d B;
       evaluate_lme_3d<false>(*tables_, n_, samples_[i].xi, B);
-      Basis::store(B, samples_[i], bases_.data() + i * Basis::kStride);
+      Basis::store(B, samples_[i], bases_.get() + i * Basis::kStride);
       first_[i] =
           B.x.first + static_cast<std::ptrdiff_t>(n_[0]) * (B.y.first + static_cast<std::ptrdiff_t>(n_[1]) * B.z.first);
     });
@@ -114,7 +116,7 @@ void SsdOperator::apply(const float* c, float* y, std::vector<float>& workspace)
   dispatch_width(tables_->width(), [&](auto W) {
     using Basis = SampleBasis<W.value>;
     for_each_slab([&](std::size_t i, int) {
-      add_sample(Basis{bases_.data() + i * Basis::kStride}, c + first_[i], y + first_[i], nx, nxy);
+      add_sample(Basis{bases_.get() + i * Basis::kStride}, c + first_[i], y + first_[i], nx, nxy);
     });
   });
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "reconstruct/basis/gram.h"
@@ -49,7 +50,7 @@ class SsdOperator {
   HessianEnergy energy_;
   std::vector<SsdSample> samples_;
   std::vector<std::size_t> slab_begin_;  // samples of slab s: slab_begin_[s] .. slab_begin_[s + 1]
-  std::vector<float> bases_;             // of tabulate(): detail::SampleBasis of each sample,
+  std::unique_ptr<float[]> bases_;       // of tabulate(): detail::SampleBasis of each sample,
   std::vector<std::ptrdiff_t> first_;    // and its first node
 };
 

@@ -6,6 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
+
+#include "common/first_touch.h"
+#include "common/indices_where.h"
+#include "reconstruct/basis/lattice_blocks.h"
 
 namespace umtet {
 
@@ -29,8 +34,41 @@ std::uint64_t key_of(const Eigen::Vector3d& xi, double cubes_per_cell) {
   return block << 12 | inner;
 }
 
+/// 0, the i at which something begins, and n. @param begins  of 1 .. n - 1
+template <class Begins>
+std::vector<std::size_t> run_begins(std::size_t n, Begins&& begins) {
+  std::vector<std::size_t> all = indices_where<std::size_t>(n, [&](std::size_t i) { return i == 0 || begins(i); });
+  all.push_back(n);
+  return all;
+}
+
 // What a sample counts in the mean of several: a value without a normal has no w_gradient.
 double share_of(const SsdSample& s) { return s.w_gradient > 0 ? s.w_gradient : s.w_value; }
+
+SsdSample mean_of(const std::vector<SsdSample>& samples, std::span<const Keyed> some) {
+  if (some.size() == 1) return samples[some.front().index];
+  SsdSample mean{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  double shares = 0;
+  mean.gap2 = samples[some.front().index].gap2;
+  for (const Keyed& one : some) {
+    const SsdSample& s = samples[one.index];
+    const double share = share_of(s);
+    mean.xi += share * s.xi;
+    mean.normal += share * s.normal;
+    mean.w_value += s.w_value;
+    mean.w_gradient += s.w_gradient;
+    shares += share;
+    mean.gap2 = std::min(mean.gap2, s.gap2);
+  }
+  mean.xi /= shares;
+  mean.normal /= shares;
+  for (const Keyed& one : some) {
+    const SsdSample& s = samples[one.index];
+    mean.value += share_of(s) * (s.value + s.normal.dot(mean.xi - s.xi) / 2);
+  }
+  mean.value /= shares;
+  return mean;
+}
 
 }  // namespace
 
@@ -46,54 +84,37 @@ SampleColumns::SampleColumns(const std::vector<SsdSample>& samples) {
 }
 
 std::vector<SsdSample> merge_samples(const std::vector<SsdSample>& samples, double cube) {
-  std::vector<Keyed> order(samples.size());
+  std::vector<Keyed> order = touched<Keyed>(samples.size());
   tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
     order[i] = {key_of(samples[i].xi, 1 / cube), static_cast<std::uint32_t>(i)};
   });
   tbb::parallel_sort(order.begin(), order.end());
-  std::vector<SsdSample> means;
-  means.reserve(order.size());  // memory that is not written costs nothing
-  for (std::size_t i = 0; i < order.size();) {
-    std::size_t end = i + 1;
-    while (end < order.size() && order[end].key == order[i].key) ++end;
-    if (end == i + 1) {
-      means.push_back(samples[order[i++].index]);
-      continue;
-    }
-    SsdSample mean{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-    double shares = 0;
-    mean.gap2 = samples[order[i].index].gap2;
-    for (std::size_t k = i; k < end; ++k) {
-      const SsdSample& s = samples[order[k].index];
-      const double share = share_of(s);
-      mean.xi += share * s.xi;
-      mean.normal += share * s.normal;
-      mean.w_value += s.w_value;
-      mean.w_gradient += s.w_gradient;
-      shares += share;
-      mean.gap2 = std::min(mean.gap2, s.gap2);
-    }
-    mean.xi /= shares;
-    mean.normal /= shares;
-    for (std::size_t k = i; k < end; ++k) {
-      const SsdSample& s = samples[order[k].index];
-      mean.value += share_of(s) * (s.value + s.normal.dot(mean.xi - s.xi) / 2);
-    }
-    mean.value /= shares;
-    means.push_back(mean);
-    i = end;
-  }
+  const std::vector<std::size_t> cubes =
+      run_begins(order.size(), [&](std::size_t i) { return order[i].key != order[i - 1].key; });
+  std::vector<SsdSample> means = touched<SsdSample>(cubes.size() - 1);
+  tbb::parallel_for(std::size_t{0}, means.size(), [&](std::size_t c) {
+    means[c] = mean_of(samples, std::span(order).subspan(cubes[c], cubes[c + 1] - cubes[c]));
+  });
   return means;
 }
 
-void coarsen(std::vector<SsdSample>& samples) {
-  for (SsdSample& s : samples) {
+std::vector<std::size_t> block_runs(const std::vector<SsdSample>& samples) {
+  const auto block_of = [&](std::size_t i) -> Eigen::Vector3i { return cell_of(samples[i]) / LatticeBlocks::kEdge; };
+  return run_begins(samples.size(), [&](std::size_t i) { return block_of(i) != block_of(i - 1); });
+}
+
+std::vector<SsdSample> coarsened(const std::vector<SsdSample>& samples) {
+  std::vector<SsdSample> coarser = touched<SsdSample>(samples.size());
+  tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
+    SsdSample& s = coarser[i];
+    s = samples[i];
     s.xi /= 2;
     s.value /= 2;
     s.w_value /= 4;
     s.w_gradient /= 4;
     s.gap2 /= 4;
-  }
+  });
+  return coarser;
 }
 
 }  // namespace umtet

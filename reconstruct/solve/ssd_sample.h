@@ -30,7 +30,14 @@ struct SampleColumns {
 /// @param cube  in lattice spacings: 1 or ½
 std::vector<SsdSample> merge_samples(const std::vector<SsdSample>& samples, double cube);
 
+/// Where each run of samples of one block of 8 x 8 x 8 cells begins, and how many samples there are.
+/// @param samples  in block order
+std::vector<std::size_t> block_runs(const std::vector<SsdSample>& samples);
+
+/// The cell, of which a sample's coordinates are the lower ones and more.
+inline Eigen::Vector3i cell_of(const SsdSample& s) { return s.xi.array().floor().cast<int>(); }
+
 /// The samples as those of the lattice of twice the spacing, for coefficients in units of that spacing.
-void coarsen(std::vector<SsdSample>& samples);
+std::vector<SsdSample> coarsened(const std::vector<SsdSample>& samples);
 
 }  // namespace umtet

@@ -67,18 +67,19 @@ void mesh(const testing::AnalyticDomain& domain, ImplicitFunctionRef psi, double
                               if (part < 1 && std::string(step) != "submesh") phases.begin(step);
                             },
                         .cancelled = {}};
-  const UmResult result = universal_mesh(background, psi, {}, context);
+  UmResult result = universal_mesh(background, psi, {}, context);
   phases.begin("certificate");
-  const TetMesh made{result.final, result.submesh.mesh.C};
+  const MeshFile made{
+      .mesh = {std::move(result.final), std::move(result.submesh.mesh.C)}, .point_data = {}, .cell_data = {}};
   CertificateInput input;
-  input.mesh = &made;
+  input.mesh = &made.mesh;
   input.h = background.h();
   input.positive_faces = &result.submesh.positive_faces;
   input.psi = psi;
   certify(input);
   const auto file = std::filesystem::temp_directory_path() / ("threads_" + std::to_string(getpid()) + ".vtu");
   phases.begin("write");
-  write_vtu(file, {.mesh = made, .point_data = {}, .cell_data = {}});
+  write_vtu(file, made);
   phases.end();
   std::filesystem::remove(file);
 }

@@ -1,5 +1,7 @@
 #include "mesh/certify/detail/tet_measures.h"
 
+#include <oneapi/tbb/parallel_sort.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -190,7 +192,8 @@ void measure_tets(const TetMesh& mesh, double h, const Context& context, Certifi
   for (const TetMeasure& block : blocks) all.add(block);
 
   MeshCertificate::Quality& quality = certificate.quality;
-  std::partial_sort(lowest.begin(), lowest.begin() + static_cast<std::ptrdiff_t>(n_lowest), lowest.end());
+  std::nth_element(lowest.begin(), lowest.begin() + static_cast<std::ptrdiff_t>(n_lowest - 1), lowest.end());
+  tbb::parallel_sort(lowest.begin(), lowest.begin() + static_cast<std::ptrdiff_t>(n_lowest));
   quality.min = lowest.front();
   quality.p001 = quantile(lowest, n, .001);
   quality.p01 = quantile(lowest, n, .01);

@@ -1,17 +1,22 @@
-#include <vtkBase64Utilities.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
 #include <vtkCellType.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstring>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <variant>
 
 #include "mesh/io/checked_file.h"
+#include "mesh/io/detail/base64.h"
 #include "mesh/io/detail/node_sets.h"
 #include "mesh/io/solver_files.h"
 #include "mesh/io/tet_mesh_io.h"
@@ -53,9 +58,9 @@ struct Cells {
   std::size_t size() const { return ids.size() / n_nodes; }
 };
 
-/// Inline base64 blocks, encoded piece by piece on their way to the file. VTK's own writer takes a copy of the mesh and
-/// makes the whole text in memory, twice, four times the size of the file in all, because on a full disk VTK 9.1 calls
-/// a cut file a success or crashes.
+/// Inline base64 blocks, encoded piece by piece by all threads while one of them writes what is done. VTK's own writer
+/// takes a copy of the mesh and makes the whole text in memory, twice, four times the size of the file in all, because
+/// on a full disk VTK 9.1 calls a cut file a success or crashes.
 class VtkXmlWriter {
  public:
   explicit VtkXmlWriter(const std::filesystem::path& path) : file_(path) {}
@@ -64,7 +69,10 @@ class VtkXmlWriter {
   void points(const std::vector<Vec3>& V, const Arrays& point_data);
 
  private:
-  static constexpr std::size_t kPiece = 3 << 14;  ///< bytes encoded at once: whole groups of three
+  /// Bytes that a task encodes: whole groups of three, and whole values behind the eight bytes of their number.
+  static constexpr std::size_t kPiece = 3 << 14;
+  static constexpr std::size_t kPieces = 64;  ///< to a round: 4 MB of text, of which two are held
+  static constexpr std::size_t kPieceText = kPiece / 3 * 4;
 
   void begin(const char* type, std::size_t n_points, const char* counted, std::size_t n_cells,
              const std::vector<MeshPart>& numbers = {});
@@ -73,62 +81,66 @@ class VtkXmlWriter {
   template <class Index>
   void connect(const Cells& cells);
   void data(const char* section, const Arrays& arrays);
-  /// A DataArray of n values, which `fill` puts.
+  /// A DataArray of n values. @param fill  (first, n, to) writes n values from the first on, from several threads
   template <class T, class Fill>
   void array(const std::string& name, std::size_t n, const Fill& fill, const char* attributes = "");
   template <class T>
-  void put(const T* values, std::size_t n);
-  void encode();
+  void array(const std::string& name, std::span<const T> values, const char* attributes = "");
 
   CheckedFile file_;
-  std::vector<unsigned char> raw_ = std::vector<unsigned char>(kPiece);
-  std::vector<unsigned char> text_ = std::vector<unsigned char>(kPiece / 3 * 4);
-  std::size_t n_raw_ = 0;
+  std::array<std::string, 2> text_;  ///< what is written, and what is encoded meanwhile
 };
-
-void VtkXmlWriter::encode() {
-  const auto n = vtkBase64Utilities::Encode(raw_.data(), static_cast<unsigned long>(n_raw_), text_.data());
-  file_.text({reinterpret_cast<const char*>(text_.data()), n});
-  n_raw_ = 0;
-}
-
-template <class T>
-void VtkXmlWriter::put(const T* values, std::size_t n) {
-  const auto* from = reinterpret_cast<const unsigned char*>(values);
-  for (std::size_t left = n * sizeof(T); left > 0;) {
-    const std::size_t some = std::min(left, kPiece - n_raw_);
-    std::copy_n(from, some, raw_.begin() + static_cast<std::ptrdiff_t>(n_raw_));
-    n_raw_ += some;
-    from += some;
-    left -= some;
-    if (n_raw_ == kPiece) encode();
-  }
-}
 
 template <class T, class Fill>
 void VtkXmlWriter::array(const std::string& name, std::size_t n, const Fill& fill, const char* attributes) {
   file_.text("<DataArray type=\"").text(kVtkType<T>).text("\" Name=\"").text(escaped(name)).text("\"");
   file_.text(attributes).text(" format=\"binary\">\n");
   const std::uint64_t n_bytes = n * sizeof(T);
-  put(&n_bytes, 1);
-  fill();
-  encode();
+  const std::size_t n_all = sizeof n_bytes + n_bytes, n_pieces = (n_all + kPiece - 1) / kPiece;
+  const auto encode = [&](std::size_t piece, char* text) {
+    alignas(T) std::array<unsigned char, kPiece> raw;
+    const std::size_t begin = piece * kPiece, size = std::min(kPiece, n_all - begin),
+                      n_head = piece == 0 ? sizeof n_bytes : 0;
+    if (piece == 0) std::memcpy(raw.data(), &n_bytes, n_head);
+    const std::size_t first = piece == 0 ? 0 : (begin - sizeof n_bytes) / sizeof(T);
+    fill(first, (size - n_head) / sizeof(T), reinterpret_cast<T*>(raw.data() + n_head));
+    detail::encode_base64({raw.data(), size}, text);
+  };
+  const auto encode_round = [&](std::size_t first, std::string& text) {
+    const std::size_t last = std::min(n_pieces, first + kPieces);
+    text.resize(first < last ? detail::base64_length(std::min(n_all, last * kPiece) - first * kPiece) : 0);
+    tbb::parallel_for(first, std::max(first, last),
+                      [&](std::size_t piece) { encode(piece, text.data() + (piece - first) * kPieceText); });
+  };
+  encode_round(0, text_[0]);
+  for (std::size_t first = 0; first < n_pieces; first += kPieces) {
+    tbb::parallel_invoke([&] { file_.text(text_[0]); }, [&] { encode_round(first + kPieces, text_[1]); });
+    std::swap(text_[0], text_[1]);
+  }
   file_.text("\n</DataArray>\n");
+}
+
+template <class T>
+void VtkXmlWriter::array(const std::string& name, std::span<const T> values, const char* attributes) {
+  array<T>(
+      name, values.size(),
+      [&](std::size_t first, std::size_t n, T* to) {
+        std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(first), n, to);
+      },
+      attributes);
+}
+
+std::span<const double> components(const std::vector<Vec3>& V) {
+  return V.empty() ? std::span<const double>() : std::span{V.front().data(), 3 * V.size()};
 }
 
 template <class Index>
 void VtkXmlWriter::connect(const Cells& cells) {
-  array<Index>("connectivity", cells.ids.size(), [&] {
-    for (const int id : cells.ids) {
-      const Index node = id;
-      put(&node, 1);
-    }
+  array<Index>("connectivity", cells.ids.size(), [&](std::size_t first, std::size_t n, Index* to) {
+    std::copy_n(cells.ids.begin() + static_cast<std::ptrdiff_t>(first), n, to);
   });
-  array<Index>("offsets", cells.size(), [&] {
-    for (std::size_t t = 1; t <= cells.size(); ++t) {
-      const auto end = static_cast<Index>(cells.n_nodes * t);
-      put(&end, 1);
-    }
+  array<Index>("offsets", cells.size(), [&](std::size_t first, std::size_t n, Index* to) {
+    for (std::size_t k = 0; k < n; ++k) to[k] = static_cast<Index>(cells.n_nodes * (first + k + 1));
   });
 }
 
@@ -138,11 +150,10 @@ void VtkXmlWriter::data(const char* section, const Arrays& arrays) {
     std::visit(
         [&, &name = name](const auto& values) {
           using Value = typename std::decay_t<decltype(values)>::value_type;
-          const auto fill = [&] { put(values.data(), values.size()); };
           if constexpr (std::is_same_v<Value, Vec3>) {
-            array<double>(name, 3 * values.size(), fill, kThreeComponents);
+            array(name, components(values), kThreeComponents);
           } else {
-            array<Value>(name, values.size(), fill);
+            array(name, std::span<const Value>(values));
           }
         },
         any);
@@ -159,8 +170,7 @@ void VtkXmlWriter::begin(const char* type, std::size_t n_points, const char* cou
     file_.text("<FieldData>\n");
     for (const MeshPart& part : numbers) {
       const std::int64_t number = part.number;
-      array<std::int64_t>(
-          part.name, 1, [&] { put(&number, 1); }, " NumberOfTuples=\"1\"");
+      array(part.name, std::span(&number, 1), " NumberOfTuples=\"1\"");
     }
     file_.text("</FieldData>\n");
   }
@@ -175,8 +185,7 @@ void VtkXmlWriter::end(const char* type) {
 
 void VtkXmlWriter::coordinates(const std::vector<Vec3>& V) {
   file_.text("<Points>\n");
-  array<double>(
-      "Points", 3 * V.size(), [&] { put(V.data(), V.size()); }, kThreeComponents);
+  array("Points", components(V), kThreeComponents);
   file_.text("</Points>\n");
 }
 
@@ -192,8 +201,8 @@ void VtkXmlWriter::mesh(const std::vector<Vec3>& V, const Cells& cells, const Ar
   } else {
     connect<std::int64_t>(cells);
   }
-  const std::vector<std::uint8_t> types(cells.size(), cells.type);
-  array<std::uint8_t>("types", types.size(), [&] { put(types.data(), types.size()); });
+  array<std::uint8_t>("types", cells.size(),
+                      [&](std::size_t, std::size_t n, std::uint8_t* to) { std::fill_n(to, n, cells.type); });
   file_.text("</Cells>\n");
   end("UnstructuredGrid");
 }
@@ -203,11 +212,13 @@ void VtkXmlWriter::points(const std::vector<Vec3>& V, const Arrays& point_data) 
   data("PointData", point_data);
   coordinates(V);
   file_.text("<Verts>\n");
-  const auto count_from = [&](std::int64_t first) {
-    for (std::int64_t i = first; i < first + static_cast<std::int64_t>(V.size()); ++i) put(&i, 1);
+  const auto count_from = [](std::int64_t begin) {
+    return [begin](std::size_t first, std::size_t n, std::int64_t* to) {
+      std::iota(to, to + n, begin + static_cast<std::int64_t>(first));
+    };
   };
-  array<std::int64_t>("connectivity", V.size(), [&] { count_from(0); });
-  array<std::int64_t>("offsets", V.size(), [&] { count_from(1); });
+  array<std::int64_t>("connectivity", V.size(), count_from(0));
+  array<std::int64_t>("offsets", V.size(), count_from(1));
   file_.text("</Verts>\n");
   end("PolyData");
 }

@@ -1,6 +1,5 @@
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/parallel_invoke.h>
 
 #include <array>
 #include <atomic>
@@ -10,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/first_touch.h"
 #include "mesh/submesh/assemble_submesh.h"
 #include "mesh/submesh/linked_active_layer.h"
 
@@ -72,13 +72,11 @@ class Emitter {
 
   Submesh operator()() {
     count();
-    tbb::parallel_invoke([&] { result_.mesh.C.resize(begin_.back().n_tets); },
-                         [&] {
-                           result_.background_tet.resize(begin_.back().n_tets);
-                           result_.positive_faces.resize(begin_.back().n_positive);
-                           result_.positive_tets.resize(begin_.back().n_positive);
-                           emit_vertices();
-                         });
+    result_.mesh.C = touched<Tet>(begin_.back().n_tets);
+    result_.background_tet = touched<std::int64_t>(begin_.back().n_tets);
+    result_.positive_faces.resize(begin_.back().n_positive);
+    result_.positive_tets.resize(begin_.back().n_positive);
+    emit_vertices();
     emit_tets();
     return std::move(result_);
   }
@@ -165,8 +163,8 @@ void Emitter::count() {
 
 void Emitter::emit_vertices() {
   const std::size_t n_vertices = used_.index(), n_positive_vertices = positive_.index();
-  result_.background_vertex.resize(n_vertices);
-  result_.mesh.V.resize(n_vertices);
+  result_.background_vertex = touched<std::int64_t>(n_vertices);
+  result_.mesh.V = touched<Vec3>(n_vertices);
   result_.positive_vertices.resize(n_positive_vertices);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, used_.n_words(), kWordsPerTask), [&](const auto& words) {
     for (std::size_t w = words.begin(); w != words.end(); ++w) {

@@ -144,7 +144,7 @@ MeshMeasures measured(const Domain& d, const Domain& judge, double h) {
   const BackgroundMesh background(a15(), d.box, h);
   const UmResult result = universal_mesh(background, d.psi(), params, {}, choose_components(d, h).seeds);
   EXPECT_EQ(result.status, UmStatus::Success) << result.evidence.what;
-  return measure(judge, result, choose_components(judge, h), h).measures;
+  return measure(judge, {result.final, result.submesh.mesh.C}, result, choose_components(judge, h), h).measures;
 }
 
 std::string text_of(const std::vector<std::string>& reasons) {

@@ -13,7 +13,7 @@ namespace {
 const TetMesh kCorner{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}};
 
 TEST(MeshSizes, MeanEdgesAreOfEachVertex) {
-  const std::vector<double> mean = mean_edges(kCorner);
+  const std::vector<double> mean = mean_edges(kCorner.V, kCorner.C);
   EXPECT_DOUBLE_EQ(mean[0], 1);
   for (int i = 1; i < 4; ++i) EXPECT_DOUBLE_EQ(mean[i], (1 + 2 * std::sqrt(2.)) / 3);
 }
