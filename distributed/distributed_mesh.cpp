@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -63,6 +64,7 @@ class PartRun {
   void fit();
   void repair();
   void emit();
+  void list_positive_faces();
   void fetch_places();
   void embed();
   void move(const std::vector<std::pair<std::int64_t, Vec3>>& moved);
@@ -210,7 +212,20 @@ void PartRun::emit() {
     result_.owner.push_back(part_.owner(v));
   });
   result_.mesh.V.resize(vertex_.size());
+  list_positive_faces();
   fetch_places();
+}
+
+void PartRun::list_positive_faces() {
+  for (std::size_t t = 0; t < result_.mesh.C.size(); ++t) {
+    const Tet& tet = result_.mesh.C[t];
+    unsigned mask = 0;
+    for (unsigned k = 0; k < 4; ++k) mask |= static_cast<unsigned>(inside_.test(vertex_[tet[k]])) << k;
+    if (!is_positively_cut(mask)) continue;
+    const auto& face = kTetFace[std::countr_zero(mask)];
+    result_.positive_faces.push_back({tet[face[0]], tet[face[1]], tet[face[2]]});
+    result_.positive_tets.push_back(static_cast<int>(t));
+  }
 }
 
 /// Places of vertices of others are asked for, and the others answer.

@@ -32,6 +32,8 @@ struct DistributedMesh {
   std::vector<ManifoldFlip> manifold_flips;     ///< UmResult::manifold_flips, of all ranks
   std::size_t n_stepped_back = 0;               ///< UmResult::n_stepped_back, of all ranks
   std::vector<int> owner;                       ///< of each vertex, a rank
+  std::vector<Triangle> positive_faces;         ///< Submesh::positive_faces of its tets
+  std::vector<int> positive_tets;               ///< Submesh::positive_tets
   Traffic traffic;                              ///< but for repair
   std::size_t n_gets = 0, bytes_got = 0;        ///< what repair has read of other ranks; of rank 0, which does it
 };

@@ -54,12 +54,20 @@ QualityVectors quality_vectors(const std::vector<Tet>& C, const std::vector<doub
   return q;
 }
 
-double quantile(const std::vector<double>& lowest, std::size_t n, double p) {
-  if (lowest.empty()) return std::numeric_limits<double>::quiet_NaN();
+QuantilePlace quantile_place(std::size_t n, double p) {
   const double at = p * static_cast<double>(n - 1);
   const auto below = static_cast<std::size_t>(at);
-  const std::size_t above = std::min(below + 1, n - 1);
-  return lowest[below] + (at - static_cast<double>(below)) * (lowest[above] - lowest[below]);
+  return {below, std::min(below + 1, n - 1), at - static_cast<double>(below)};
+}
+
+double QuantilePlace::of(double value_below, double value_above) const {
+  return value_below + part * (value_above - value_below);
+}
+
+double quantile(const std::vector<double>& lowest, std::size_t n, double p) {
+  if (lowest.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const QuantilePlace place = quantile_place(n, p);
+  return place.of(lowest[place.below], lowest[place.above]);
 }
 
 double quantile(const std::vector<double>& ascending, double p) { return quantile(ascending, ascending.size(), p); }

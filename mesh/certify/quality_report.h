@@ -24,6 +24,16 @@ struct QualityVectors {
 QualityVectors quality_vectors(const std::vector<Tet>& C, const std::vector<double>& Q,
                                const std::vector<int>& positive_vertices, std::size_t n_vertices);
 
+/// Between which of n ascending values a quantile lies, and how far from the one to the other.
+struct QuantilePlace {
+  std::size_t below, above;
+  double part;
+
+  double of(double value_below, double value_above) const;
+};
+/// \pre n > 0
+QuantilePlace quantile_place(std::size_t n, double p);
+
 /// Quantile p in [0, 1] of ascending values, linear between neighbours (numpy's default). NaN without values.
 double quantile(const std::vector<double>& ascending, double p);
 /// The same of n values of which only the lowest are given, at least as many as the quantile needs: p (n - 1) + 2 or n.
