@@ -76,7 +76,7 @@ std::unordered_map<std::int64_t, int> counters_of(MPI_Comm comm, const std::set<
   int n_ranks = 1;
   MPI_Comm_size(comm, &n_ranks);
   const auto n = static_cast<std::size_t>(n_ranks);
-  // Who knows a cube is arithmetic; the factor spreads neighbours [Knuth1998, Section 6.4].
+  // Who knows a cube is arithmetic; the factor, 2^64 over the golden ratio, spreads neighbours.
   const auto knower = [&](std::int64_t cube) {
     return static_cast<std::size_t>((static_cast<std::uint64_t>(cube) * 0x9e3779b97f4a7c15u >> 32) % n);
   };

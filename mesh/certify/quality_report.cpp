@@ -19,20 +19,21 @@ constexpr std::size_t kGroupsPerTask = 1 << 11;
 
 }  // namespace
 
-std::vector<double> mean_ratios(const TetMesh& mesh) {
-  const std::size_t n = mesh.C.size();
+std::vector<double> mean_ratios(const TetMesh& mesh, std::size_t first, std::size_t end) {
+  const std::size_t n = end - first;
   std::vector<double> Q(n);
   const auto measure = [&](const tbb::blocked_range<std::size_t>& groups) {
-    for (std::size_t first = groups.begin() * kPackSize; first < std::min(n, groups.end() * kPackSize);
-         first += kPackSize) {
-      const int count = static_cast<int>(std::min<std::size_t>(kPackSize, n - first));
-      const TetPack tets = measure_tet_pack(mesh, &mesh.C[first], count);
-      for (int m = 0; m < count; ++m) Q[first + m] = tets.quality[m];
+    for (std::size_t at = groups.begin() * kPackSize; at < std::min(n, groups.end() * kPackSize); at += kPackSize) {
+      const int count = static_cast<int>(std::min<std::size_t>(kPackSize, n - at));
+      const TetPack tets = measure_tet_pack(mesh, &mesh.C[first + at], count);
+      for (int m = 0; m < count; ++m) Q[at + m] = tets.quality[m];
     }
   };
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (n + kPackSize - 1) / kPackSize, kGroupsPerTask), measure);
   return Q;
 }
+
+std::vector<double> mean_ratios(const TetMesh& mesh) { return mean_ratios(mesh, 0, mesh.C.size()); }
 
 QualityVectors quality_vectors(const std::vector<Tet>& C, const std::vector<double>& Q,
                                const std::vector<int>& positive_vertices, std::size_t n_vertices) {

@@ -10,6 +10,8 @@ namespace umtet {
 /// Q of every tet, eq. (6), to the bit as certificates find it; -1 where it is not a number (not finite, or all in one
 /// point). By all threads. \pre indices of C are in range
 std::vector<double> mean_ratios(const TetMesh& mesh);
+/// Of tets first .. end - 1.
+std::vector<double> mean_ratios(const TetMesh& mesh, std::size_t first, std::size_t end);
 
 /// Quality vectors Q(S) = asc(q_1, ..., q_alpha), q_i = min Q(K) over the tets K at vertex i
 ///                                                                              [Rangarajan2018, Section 3.3]
