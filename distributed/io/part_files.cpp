@@ -108,7 +108,7 @@ void write_tets(MPI_Comm comm, const DistributedMesh& mesh, const StandardData& 
 /// What went wrong on any rank, on all. Collective.
 void throw_first(MPI_Comm comm, int error, const fs::path& file) {
   MPI_Allreduce(MPI_IN_PLACE, &error, 1, MPI_INT, MPI_MAX, comm);
-  if (error != 0) throw std::system_error(error, std::generic_category(), "cannot write " + file.string());
+  if (error != 0) throw KnownToAll(error, std::generic_category(), "cannot write " + file.string());
 }
 
 std::string list_of(const std::vector<fs::path>& pieces) {
@@ -135,8 +135,29 @@ std::string list_of(const std::vector<fs::path>& pieces) {
 
 }  // namespace
 
-void write_whole_vtu(MPI_Comm comm, const fs::path& path, const DistributedMesh& mesh) {
-  const StandardData data = standard_data(comm, mesh);
+DistributedMesh some_of(const DistributedMesh& mesh, const std::vector<std::size_t>& tets) {
+  DistributedMesh some;
+  std::vector<int> number(mesh.mesh.V.size(), -1);
+  for (const std::size_t t : tets) {
+    some.background_tet.push_back(mesh.background_tet[t]);
+    some.mesh.C.push_back(mesh.mesh.C[t]);
+    for (const int v : mesh.mesh.C[t]) number[v] = 0;
+  }
+  for (std::size_t v = 0; v < number.size(); ++v) {
+    if (number[v] < 0) continue;
+    number[v] = static_cast<int>(some.mesh.V.size());
+    some.mesh.V.push_back(mesh.mesh.V[v]);
+    some.background_vertex.push_back(mesh.background_vertex[v]);
+    some.owner.push_back(mesh.owner[v]);
+  }
+  for (Tet& t : some.mesh.C)
+    for (int& v : t) v = number[v];
+  return some;
+}
+
+void write_whole_vtu(MPI_Comm comm, const fs::path& path, const DistributedMesh& mesh,
+                     const std::vector<std::uint8_t>* on_boundary) {
+  const StandardData data = standard_data(comm, mesh, on_boundary);
   std::uint64_t n[2] = {data.owners.ids().size(), mesh.mesh.C.size()};
   MPI_Allreduce(MPI_IN_PLACE, n, 2, MPI_UINT64_T, MPI_SUM, comm);
   const VtuShape shape = vtu_shape(n[0], n[1], {{"background_vertex", Field::Int64}, {"boundary", Field::UInt8}},

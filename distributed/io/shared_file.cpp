@@ -68,7 +68,7 @@ void SharedFile::close(std::uint64_t size) {
     note(MPI_File_close(&file_));
     MPI_Allreduce(&error_, &first, 1, MPI_INT, MPI_MAX, comm_);
   }
-  if (first != 0) throw std::system_error(first, std::generic_category(), "cannot write " + path_.string());
+  if (first != 0) throw KnownToAll(first, std::generic_category(), "cannot write " + path_.string());
 }
 
 }  // namespace umtet

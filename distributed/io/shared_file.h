@@ -5,8 +5,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <string_view>
+#include <system_error>
 
 namespace umtet {
+
+/// Trouble with a file that all ranks throw together.
+struct KnownToAll : std::system_error {
+  using std::system_error::system_error;
+};
 
 /// A file that all ranks write, each where it says. What goes wrong on one is known to all at the end.
 class SharedFile {
@@ -19,7 +25,7 @@ class SharedFile {
 
   /// Not collective. Nothing is written any more once something went wrong.
   void write(std::uint64_t at, std::string_view text);
-  /// Collective. The file is then this long. \throw std::system_error naming the file, on all ranks
+  /// Collective. The file is then this long. \throw KnownToAll naming the file
   void close(std::uint64_t size);
 
  private:

@@ -19,6 +19,11 @@ struct StandardData {
 };
 
 /// Collective.
-StandardData standard_data(MPI_Comm comm, const DistributedMesh& mesh);
+/// @param boundary  of the vertices of the own mesh, where it is known; null: by counting faces
+StandardData standard_data(MPI_Comm comm, const DistributedMesh& mesh,
+                           const std::vector<std::uint8_t>* boundary = nullptr);
+
+/// Of the vertices of the own mesh, whether they are on the boundary of that of all ranks. Collective.
+std::vector<std::uint8_t> on_boundary(MPI_Comm comm, const DistributedMesh& mesh);
 
 }  // namespace umtet
