@@ -11,6 +11,7 @@ namespace umtet {
 namespace {
 
 constexpr double kNoTet = std::numeric_limits<double>::infinity();
+constexpr std::size_t kTetsAtOnce = 1 << 16;  // half a megabyte of Q
 
 /// The least Q at each vertex that is owned, ascending, those without a tet left out.
 std::vector<double> least_at_owned(const VertexOwners& owners, const std::vector<double>& least) {
@@ -24,8 +25,8 @@ std::vector<double> least_at_owned(const VertexOwners& owners, const std::vector
 
 }  // namespace
 
-QualitySamples quality_samples(MPI_Comm comm, const DistributedMesh& mesh,
-                               const std::vector<std::pair<std::string, const std::vector<Vec3>*>>& stages) {
+QualitySamples quality_samples(MPI_Comm comm, DistributedMesh& mesh,
+                               const std::vector<std::pair<std::string, std::vector<Vec3>*>>& stages) {
   const VertexOwners owners(comm, mesh);
   // A vertex may be positive by a tet of another rank.
   std::vector<char> is_positive(mesh.mesh.V.size(), 0), owned(owners.ids().size(), 0);
@@ -37,13 +38,18 @@ QualitySamples quality_samples(MPI_Comm comm, const DistributedMesh& mesh,
   std::vector<std::vector<double>> vectors;
   for (const bool of_boundary : {false, true}) {
     for (const auto& [name, V] : stages) {
-      const std::vector<double> Q = mean_ratios({*V, mesh.mesh.C});
+      V->swap(mesh.mesh.V);
       std::vector<double> least(mesh.mesh.V.size(), kNoTet);
-      for (std::size_t t = 0; t < Q.size(); ++t) {
-        const Tet& tet = mesh.mesh.C[t];
-        if (of_boundary && std::none_of(tet.begin(), tet.end(), [&](int v) { return is_positive[v]; })) continue;
-        for (const int v : tet) least[v] = std::min(least[v], Q[t]);
+      for (std::size_t first = 0; first < mesh.mesh.C.size(); first += kTetsAtOnce) {
+        const std::size_t end = std::min(mesh.mesh.C.size(), first + kTetsAtOnce);
+        const std::vector<double> Q = mean_ratios(mesh.mesh, first, end);
+        for (std::size_t t = first; t < end; ++t) {
+          const Tet& tet = mesh.mesh.C[t];
+          if (of_boundary && std::none_of(tet.begin(), tet.end(), [&](int v) { return is_positive[v]; })) continue;
+          for (const int v : tet) least[v] = std::min(least[v], Q[t - first]);
+        }
       }
+      V->swap(mesh.mesh.V);
       names.push_back((of_boundary ? "boundary_" : "") + name);
       vectors.push_back(least_at_owned(owners, least));
     }

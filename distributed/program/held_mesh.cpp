@@ -83,9 +83,11 @@ void HeldMesh::gather_boundary(UmResult& result) const {
 void HeldMesh::measure_assumptions(UmResult& result) const {
   Submesh own;
   for (const std::int64_t v : mesh_.background_vertex) own.mesh.V.push_back(background_.position(v));
-  own.mesh.C = mesh_.mesh.C;
   own.positive_faces = mesh_.positive_faces;
-  own.positive_tets = mesh_.positive_tets;
+  for (const int t : mesh_.positive_tets) {
+    own.positive_tets.push_back(static_cast<int>(own.mesh.C.size()));
+    own.mesh.C.push_back(mesh_.mesh.C[t]);
+  }
   for (const Triangle& f : own.positive_faces)
     own.positive_vertices.insert(own.positive_vertices.end(), f.begin(), f.end());
   std::sort(own.positive_vertices.begin(), own.positive_vertices.end());
@@ -125,19 +127,20 @@ void HeldMesh::write(const fs::path& file, MeshState state, bool moving_alone) {
     }
     if (state == MeshState::Chosen) V = before;
   }
+  if (!knows_boundary_) boundary_ = on_boundary(comm_, mesh_);
+  knows_boundary_ = true;
   for (Vec3& x : V) x += places_.shift;
   V.swap(mesh_.mesh.V);  // until it is written
   try {
     if (sum(comm_, moving.size()) == 0) {
-      write_whole_vtu(comm_, file, mesh_);
+      write_whole_vtu(comm_, file, mesh_, &boundary_);
     } else {
-      const std::vector<std::uint8_t> boundary = on_boundary(comm_, mesh_);
       const DistributedMesh some = some_of(mesh_, moving);
       std::vector<std::uint8_t> of_some;
       std::size_t v = 0;
       for (const std::int64_t id : some.background_vertex) {
         while (mesh_.background_vertex[v] != id) ++v;
-        of_some.push_back(boundary[v]);
+        of_some.push_back(boundary_[v]);
       }
       write_whole_vtu(comm_, file, some, &of_some);
     }
@@ -148,7 +151,7 @@ void HeldMesh::write(const fs::path& file, MeshState state, bool moving_alone) {
   V.swap(mesh_.mesh.V);
 }
 
-void HeldMesh::write_quality(const fs::path& file) const {
+void HeldMesh::write_quality(const fs::path& file) {
   std::vector<Vec3> before = chosen(), between = mesh_.projected, last = mesh_.mesh.V;
   for (auto* V : {&before, &between, &last}) {
     for (Vec3& x : *V) x += places_.shift;

@@ -2,8 +2,9 @@
 
 #include <mpi.h>
 
+#include <cstdint>
 #include <filesystem>
-#include <optional>
+#include <vector>
 
 #include "distributed/distributed_mesh.h"
 #include "distributed/io/part_files.h"
@@ -25,7 +26,7 @@ class HeldMesh {
   /// MeshInParts::write(). \throw KnownToAll
   void write(const std::filesystem::path& file, MeshState state, bool moving_alone);
   /// MeshInParts::write_quality(). \throw KnownToAll
-  void write_quality(const std::filesystem::path& file) const;
+  void write_quality(const std::filesystem::path& file);
 
  private:
   std::vector<Vec3> chosen() const;
@@ -36,6 +37,8 @@ class HeldMesh {
   const BackgroundMesh background_;
   const RoundedPlaces places_;
   DistributedMesh mesh_;
+  bool knows_boundary_ = false;
+  std::vector<std::uint8_t> boundary_;  ///< on_boundary(), once it is needed
 };
 
 }  // namespace umtet

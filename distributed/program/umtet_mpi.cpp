@@ -5,6 +5,7 @@
 #include <tbb/info.h>
 
 #include <algorithm>
+#include <csignal>
 #include <memory>
 #include <utility>
 #include <variant>
@@ -36,6 +37,7 @@ RanksOfProgram ranks_of(MPI_Comm comm, PartMesher* mesher) {
 
 /// Rank 0 says what is wrong with a call; the others need it only where nothing is.
 int run_other_rank(int argc, char** argv, int n_here) {
+  set_work_at_hand("mesh");
   std::unique_ptr<tbb::global_control> threads;
   return serve(MPI_COMM_WORLD, [&] {
     const CommandLine call = parse_command_line(argc, argv);
@@ -54,6 +56,7 @@ int run_other_rank(int argc, char** argv, int n_here) {
 int main(int argc, char** argv) {
   using namespace umtet;
   keep_freed_memory();
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on files is an error of write()
   int provided = 0;
   MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
   const bool speaks = rank_of(MPI_COMM_WORLD) == 0;

@@ -11,6 +11,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 UMTET, UMTET_MPI, MPIEXEC, N = sys.argv[1:5]
@@ -31,6 +32,16 @@ def run(command, folder, arguments):
 
 def of_ranks(folder, arguments):
     return run([MPIEXEC, "-n", N, "--oversubscribe", UMTET_MPI], folder, arguments)
+
+
+def with_a_rank(trouble, folder, arguments):
+    """The last rank has trouble: a command of the shell that becomes the program."""
+    script = f'if [ "$OMPI_COMM_WORLD_RANK" = {int(N) - 1} ]; then {trouble}; fi; exec "$@"'
+    return run([MPIEXEC, "-n", N, "--oversubscribe", "sh", "-c", script, "sh", UMTET_MPI], folder, arguments)
+
+
+def files_of(folder):
+    return {f.relative_to(folder).as_posix() for f in folder.rglob("*") if f.is_file()}
 
 
 def words(text, folder):
@@ -90,6 +101,27 @@ class Program(unittest.TestCase):
         again = of_ranks(self.folder / "case", arguments)
         self.assertEqual(again.returncode, 0)
         self.assertIn("nothing to do", again.stderr)
+
+    def test_a_rank_that_cannot_write_ends_all_with_one_reason(self):
+        # 10 MB: MPI has files of its own.
+        made = with_a_rank("ulimit -f 20000", self.folder / "case", CALLS["torus"][:-1] + [".03"])
+        self.assertEqual(made.returncode, 7, made.stderr)
+        self.assertEqual(made.stderr.count("umtet: "), 1, made.stderr)
+        self.assertIn("omega_h.vtu", made.stderr)
+        self.assertLessEqual(files_of(self.folder / "case"), {".lock", "case.toml"})
+
+    def test_a_rank_that_is_killed_ends_all_and_the_next_run_is_whole(self):
+        case, arguments = self.folder / "case", CALLS["torus"][:-1] + [".03"]
+        start = time.monotonic()
+        made = with_a_rank("( sleep .7; kill -9 $$ ) &", case, arguments)
+        self.assertLess(time.monotonic() - start, 10)
+        self.assertNotEqual(made.returncode, 0)
+        self.assertNotIn("3-mesh/record.json", files_of(case))
+        self.assertEqual(of_ranks(case, arguments).returncode, 0)
+        self.assertEqual(run([UMTET], self.folder / "one", arguments).returncode, 0)
+        for name in ("omega_h.vtu", "mesh.vtu"):
+            self.assertTrue((case / "3-mesh" / name).read_bytes() == (self.folder / "one/3-mesh" / name).read_bytes())
+        self.assertFalse([f for f in files_of(case) if ".tmp" in f])
 
     def test_refuses_what_is_for_one_process(self):
         ball = ["--implicit", "x^2+y^2+z^2-1", "--box=-1.4,-1.4,-1.4,1.4,1.4,1.4", "--h", ".2"]
