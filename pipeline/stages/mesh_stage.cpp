@@ -65,7 +65,7 @@ MeshLines MeshStage::lines() const {
 SizedBackground MeshStage::background_of(double h) {
   stop_if_interrupted();
   const Parameters& p = context_.parameters;
-  SizedBackground made = background_.make(domain_, h, p.mesh().tets, allowed_bytes(p));
+  SizedBackground made = background_.make(domain_, h, p.mesh().tets, allowed_bytes(p), call());
   const double n_iterates = p.mesh().keep_iterates ? static_cast<double>(p.mesh().projection_passes) : 0;
   require_disk(context_.paths.root, (3 + n_iterates) * background_.expected_tets(domain_, h));
   return made;
