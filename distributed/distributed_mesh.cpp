@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -22,6 +23,20 @@
 
 namespace umtet {
 namespace {
+
+/// Where vertices are that have left the background, ascending.
+using Places = std::vector<std::pair<std::int64_t, Vec3>>;
+
+/// Those of `later` take the place of earlier ones.
+Places replaced(const Places& earlier, Places later) {
+  const auto is_less = [](const auto& a, const auto& b) { return a.first < b.first; };
+  const auto n = static_cast<std::ptrdiff_t>(later.size());
+  for (const auto& place : earlier) {
+    if (!std::binary_search(later.begin(), later.begin() + n, place, is_less)) later.push_back(place);
+  }
+  std::sort(later.begin(), later.end(), is_less);
+  return later;
+}
 
 class PartRun {
  public:
@@ -63,11 +78,14 @@ class PartRun {
   void fit();
   void repair();
   void emit();
-  void fetch_places();
+  void list_positive_faces();
+  template <class F>
+  void for_each_tet(const F& f) const;
+  void fetch(const Places& of_own, std::vector<Vec3>& V);
   void embed();
-  void move(const std::vector<std::pair<std::int64_t, Vec3>>& moved);
+  Places own_of(const Places& moved) const;
   void list_tets(IdSet& used);
-  Vec3 place(std::int64_t v) const;
+  Vec3 place(const Places& of_own, std::int64_t v) const;
 
   ImplicitFunctionRef psi_;
   const FastParams& params_;
@@ -79,8 +97,8 @@ class PartRun {
   ClassificationParams classification_;  ///< with the costs
   IdSet inside_;                         ///< of known vertices
   BackgroundLayer layer_;
-  std::vector<std::pair<std::int64_t, Vec3>> places_;  ///< of own vertices that are not where the background has them
-  std::vector<std::int64_t> vertex_;                   ///< those of the result, by ids of the part
+  Places places_, projected_;         ///< of own vertices that are not where the background has them: at last, between
+  std::vector<std::int64_t> vertex_;  ///< those of the result, by ids of the part
   DistributedMesh result_;
 };
 
@@ -106,7 +124,11 @@ bool PartRun::classify() {
       classify_vertices(part_.lattice(), *costs_.links, psi_, classification_, inside_, {}, nullptr, nullptr, &others);
   result_.manifold_flips =
       make_parts_manifold(comm_, part_, partition_, psi_, classification_, report.not_manifold, inside_);
-  return result_.manifold_flips.empty() || count_inside() > 0 || fail(PartsStatus::EmptyDomain, 0);
+  if (!result_.manifold_flips.empty() && count_inside() == 0) return fail(PartsStatus::EmptyDomain, 0);
+  std::size_t n_tets = 0;
+  for_each_tet([&](std::int64_t, const auto&, std::int64_t) { ++n_tets; });
+  result_.n_chosen_tets = ranks_.sum(n_tets);
+  return true;
 }
 
 std::size_t PartRun::count_inside() {
@@ -125,7 +147,10 @@ void PartRun::fit() {
   layer_.layer.ring = {};  // the smoother has listed their faces
   smoother.share(shared);
   const std::vector<std::uint8_t> inside = inside_of(layer_, inside_);
-  fit_layer(smoother, psi_, params_, {.smoothing = params_.smoothing, .inside = &inside});
+  FittedLayer made = fit_layer(smoother, psi_, params_, {.smoothing = params_.smoothing, .inside = &inside});
+  std::swap(layer_.layer.V, made.projected);
+  projected_ = places_of(layer_);
+  std::swap(layer_.layer.V, made.projected);
 }
 
 void PartRun::repair() {
@@ -137,64 +162,61 @@ void PartRun::repair() {
     const std::int64_t v = part_.from_whole(there);
     if (v >= 0) inside_.test(v) ? inside_.erase(v) : inside_.insert(v);
   }
-  places_ = places_of(layer_);
+  places_ = replaced(places_of(layer_), own_of(made.moved));
+  projected_ = replaced(projected_, own_of(made.moved));
   layer_ = {};
-  move(made.moved);
   result_.n_gets = made.n_gets;
   result_.bytes_got = made.bytes;
 }
 
-/// Own vertices, by ids of the whole.
-void PartRun::move(const std::vector<std::pair<std::int64_t, Vec3>>& moved) {
-  std::vector<std::pair<std::int64_t, Vec3>> both;
+/// The own ones among places by ids of the whole.
+Places PartRun::own_of(const Places& moved) const {
+  Places own;
   for (const auto& [there, x] : moved) {
     const std::int64_t v = part_.from_whole(there);
-    if (v >= 0 && part_.own().test(v)) both.emplace_back(v, x);
+    if (v >= 0 && part_.own().test(v)) own.emplace_back(v, x);
   }
-  const auto is_less = [](const auto& a, const auto& b) { return a.first < b.first; };
-  const std::size_t n = both.size();
-  for (const auto& place : places_) {
-    const auto end = both.begin() + static_cast<std::ptrdiff_t>(n);
-    if (!std::binary_search(both.begin(), end, place, is_less)) both.push_back(place);
-  }
-  std::sort(both.begin(), both.end(), is_less);
-  places_ = std::move(both);
+  return own;
 }
 
 /// Where an own vertex is.
-Vec3 PartRun::place(std::int64_t v) const {
+Vec3 PartRun::place(const Places& of_own, std::int64_t v) const {
   const auto found =
-      std::lower_bound(places_.begin(), places_.end(), v, [](const auto& a, std::int64_t id) { return a.first < id; });
-  return found != places_.end() && found->first == v ? found->second : part_.lattice().position(v);
+      std::lower_bound(of_own.begin(), of_own.end(), v, [](const auto& a, std::int64_t id) { return a.first < id; });
+  return found != of_own.end() && found->first == v ? found->second : part_.lattice().position(v);
 }
 
-/// The tets of own cells with a vertex inside, by ids of lattice().
-void PartRun::list_tets(IdSet& used) {
+/// f(vertex of type 0 of the cell, steps from there to the corners, id in the whole) for the tets of own cells with a
+/// vertex inside.
+template <class F>
+void PartRun::for_each_tet(const F& f) const {
   const BackgroundMesh& lattice = part_.lattice();
   const auto& tets = lattice.tiling().tets;
   std::vector<std::array<std::int64_t, 4>> steps(tets.size());
   for (std::size_t t = 0; t < tets.size(); ++t) {
     for (std::size_t k = 0; k < 4; ++k) steps[t][k] = lattice.id_step(0, tets[t][k]);
   }
-  const auto for_each = [&](const auto& f) {
-    part_.for_each_own_cell([&](const BackgroundMesh::Cell& cell, std::int64_t number) {
-      const std::int64_t first = lattice.vertex_id(0, cell);
-      for (std::size_t t = 0; t < steps.size(); ++t) {
-        bool any = false;
-        for (const std::int64_t step : steps[t]) any |= inside_.test(first + step);
-        if (any) f(first, steps[t], static_cast<std::int64_t>(t + steps.size() * static_cast<std::size_t>(number)));
-      }
-    });
-  };
+  part_.for_each_own_cell([&](const BackgroundMesh::Cell& cell, std::int64_t number) {
+    const std::int64_t first = lattice.vertex_id(0, cell);
+    for (std::size_t t = 0; t < steps.size(); ++t) {
+      bool any = false;
+      for (const std::int64_t step : steps[t]) any |= inside_.test(first + step);
+      if (any) f(first, steps[t], static_cast<std::int64_t>(t + steps.size() * static_cast<std::size_t>(number)));
+    }
+  });
+}
+
+/// By ids of lattice().
+void PartRun::list_tets(IdSet& used) {
   std::size_t n = 0;
-  for_each([&](std::int64_t first, const auto& corners, std::int64_t) {
+  for_each_tet([&](std::int64_t first, const auto& corners, std::int64_t) {
     ++n;
     for (const std::int64_t step : corners) used.insert(first + step);
   });
   used.index();
   result_.mesh.C.reserve(n);
   result_.background_tet.reserve(n);
-  for_each([&](std::int64_t first, const auto& corners, std::int64_t id) {
+  for_each_tet([&](std::int64_t first, const auto& corners, std::int64_t id) {
     result_.mesh.C.push_back({used.rank(first + corners[0]), used.rank(first + corners[1]),
                               used.rank(first + corners[2]), used.rank(first + corners[3])});
     result_.background_tet.push_back(id);
@@ -209,17 +231,31 @@ void PartRun::emit() {
     result_.background_vertex.push_back(part_.to_whole(v));
     result_.owner.push_back(part_.owner(v));
   });
-  result_.mesh.V.resize(vertex_.size());
-  fetch_places();
+  list_positive_faces();
+  fetch(places_, result_.mesh.V);
+  fetch(projected_, result_.projected);
+}
+
+void PartRun::list_positive_faces() {
+  for (std::size_t t = 0; t < result_.mesh.C.size(); ++t) {
+    const Tet& tet = result_.mesh.C[t];
+    unsigned mask = 0;
+    for (unsigned k = 0; k < 4; ++k) mask |= static_cast<unsigned>(inside_.test(vertex_[tet[k]])) << k;
+    if (!is_positively_cut(mask)) continue;
+    const auto& face = kTetFace[std::countr_zero(mask)];
+    result_.positive_faces.push_back({tet[face[0]], tet[face[1]], tet[face[2]]});
+    result_.positive_tets.push_back(static_cast<int>(t));
+  }
 }
 
 /// Places of vertices of others are asked for, and the others answer.
-void PartRun::fetch_places() {
+void PartRun::fetch(const Places& of_own, std::vector<Vec3>& V) {
+  V.resize(vertex_.size());
   std::vector<Neighbourhood::Bytes> asked(ranks_.ranks().size()), answers(asked.size());
   std::vector<std::vector<std::size_t>> theirs(asked.size());
   for (std::size_t k = 0; k < vertex_.size(); ++k) {
     if (part_.own().test(vertex_[k])) {
-      result_.mesh.V[k] = place(vertex_[k]);
+      V[k] = place(of_own, vertex_[k]);
       continue;
     }
     const std::size_t neighbour = ranks_.number(result_.owner[k]);
@@ -229,7 +265,7 @@ void PartRun::fetch_places() {
   const std::vector<Neighbourhood::Bytes> wanted = ranks_.exchange(asked);
   for (std::size_t k = 0; k < wanted.size(); ++k) {
     for (std::size_t at = 0; at < wanted[k].size();) {
-      const Vec3 x = place(part_.from_whole(take<std::int64_t>(wanted[k], at)));
+      const Vec3 x = place(of_own, part_.from_whole(take<std::int64_t>(wanted[k], at)));
       for (int a = 0; a < 3; ++a) put(answers[k], x[a]);
     }
   }
@@ -237,7 +273,7 @@ void PartRun::fetch_places() {
   for (std::size_t k = 0; k < places.size(); ++k) {
     std::size_t at = 0;
     for (const std::size_t v : theirs[k]) {
-      for (int a = 0; a < 3; ++a) result_.mesh.V[v][a] = take<double>(places[k], at);
+      for (int a = 0; a < 3; ++a) V[v][a] = take<double>(places[k], at);
     }
   }
 }
@@ -247,8 +283,8 @@ void PartRun::embed() {
   const auto moved = step_parts_back(comm_, part_, partition_, ranks_, {result_.mesh, vertex_, inside_, places_});
   result_.n_stepped_back = moved.size();
   if (moved.empty()) return;
-  move(moved);
-  fetch_places();
+  places_ = replaced(places_, own_of(moved));
+  fetch(places_, result_.mesh.V);
 }
 
 }  // namespace

@@ -28,10 +28,14 @@ struct DistributedMesh {
   std::size_t n_places = 0;                     ///< vertices that break the rule, of all ranks
   std::vector<std::int64_t> background_tet;     ///< ids in the background, ascending; each tet is on one rank
   TetMesh mesh;                                 ///< its tets, and all their vertices
+  std::vector<Vec3> projected;                  ///< UmResult::projected
   std::vector<std::int64_t> background_vertex;  ///< of each vertex, ascending
   std::vector<ManifoldFlip> manifold_flips;     ///< UmResult::manifold_flips, of all ranks
+  std::size_t n_chosen_tets = 0;                ///< ChosenSubmesh::n_tets, of all ranks
   std::size_t n_stepped_back = 0;               ///< UmResult::n_stepped_back, of all ranks
   std::vector<int> owner;                       ///< of each vertex, a rank
+  std::vector<Triangle> positive_faces;         ///< Submesh::positive_faces of its tets
+  std::vector<int> positive_tets;               ///< Submesh::positive_tets
   Traffic traffic;                              ///< but for repair
   std::size_t n_gets = 0, bytes_got = 0;        ///< what repair has read of other ranks; of rank 0, which does it
 };

@@ -142,12 +142,14 @@ void count_components(const std::vector<Vec3>& V, const std::vector<Triangle>& f
     const Vec3 &a = V[f[0]], &b = V[f[1]], &c = V[f[2]];
     SurfaceComponent& part = s.components[s.component[i] = number[pieces.find(f[0])]];
     ++part.n_faces;
-    part.area += 0.5 * (b - a).cross(c - a).norm();
+    part.area += face_area(a, b, c);
     part.volume += (a - V[0]).dot((b - V[0]).cross(c - V[0])) / 6.0;  // from V[0]: no cancellation far from the origin
   }
 }
 
 }  // namespace
+
+double face_area(const Vec3& a, const Vec3& b, const Vec3& c) { return 0.5 * (b - a).cross(c - a).norm(); }
 
 SurfaceTopology surface_topology(const std::vector<Vec3>& V, const std::vector<Triangle>& faces) {
   check_indices(faces, V.size(), "face");

@@ -46,6 +46,8 @@ struct SurfaceTopology {
   bool closed_manifold = false;
 };
 
+double face_area(const Vec3& a, const Vec3& b, const Vec3& c);
+
 /// \throw std::invalid_argument for an index out of range or a face with a repeated vertex
 SurfaceTopology surface_topology(const std::vector<Vec3>& V, const std::vector<Triangle>& faces);
 

@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "common/formatted.h"
@@ -13,17 +12,16 @@
 #include "mesh/certify/boundary_surface.h"
 #include "mesh/certify/certificate_memory.h"
 #include "mesh/certify/detail/tet_measures.h"
+#include "mesh/certify/surface_measures.h"
 #include "mesh/core/asking_psi.h"
 #include "mesh/core/sort_faces.h"
 #include "mesh/embedding/self_intersections.h"
-#include "mesh/implicit/foot_point.h"
 
 namespace umtet {
 namespace {
 
 // A foot point takes half a dozen values of psi.
 constexpr std::size_t kFeetPerPoll = kValuesPerPoll / 8;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Runs `here` in this thread and `aside` beside it in another, if there is one.
 template <class Here, class Aside>
@@ -77,15 +75,6 @@ std::vector<int> vertices_of(const std::vector<Triangle>& faces) {
   return all;
 }
 
-struct FaceMeasure {
-  bool found;
-  double distance, cos_normal, area;
-  Vec3 foot;  ///< of the centroid
-};
-
-// The volume between a flat face and a quadric through its corners is this times area x distance of the centroid.
-constexpr double kMeanOverCentroid = .75;
-
 /// The volume within a closed surface.
 double enclosed_volume(const TetMesh& mesh, const std::vector<Triangle>& faces) {
   double six = 0;
@@ -94,11 +83,6 @@ double enclosed_volume(const TetMesh& mesh, const std::vector<Triangle>& faces) 
     six += (mesh.V[f[0]] - from).dot((mesh.V[f[1]] - from).cross(mesh.V[f[2]] - from));
   }
   return std::abs(six) / 6;
-}
-
-/// How far from psi = 0 a vertex may be, in h.
-double vertex_tolerance(const MeshCertificate& certificate, double h) {
-  return kVertexTolerance + certificate.coordinate_rounding / h;
 }
 
 /// The edge length of each vertex and face.
@@ -122,65 +106,26 @@ void measure_against(ImplicitFunctionRef psi, const TetMesh& mesh, const std::ve
                      const Context& context, MeshCertificate& certificate) {
   const EdgeOf h(certificate.h, local_h);
   MeshCertificate::Boundary& boundary = certificate.boundary;
-  std::vector<double> vertex_distance(vertices.size());
-  for_each_asking(psi, vertices.size(), kValuesPerPoll, context, [&](std::size_t i) {
-    Vec3 g;
-    const double value = psi.value(mesh.V[vertices[i]], g);
-    const double d = value == 0 ? 0 : std::abs(value) / g.norm();
-    vertex_distance[i] = std::isnan(d) ? kInfinity : d;
-  });
+  std::vector<double> distance(vertices.size());
+  for_each_asking(psi, vertices.size(), kValuesPerPoll, context,
+                  [&](std::size_t i) { distance[i] = vertex_distance(psi, mesh.V[vertices[i]]); });
   std::vector<FaceMeasure> face(faces.size());
   for_each_asking(psi, faces.size(), kFeetPerPoll, context, [&](std::size_t i) {
-    const Vec3 &a = mesh.V[faces[i][0]], &b = mesh.V[faces[i][1]], &c = mesh.V[faces[i][2]];
-    const Vec3 centroid = (a + b + c) / 3.0;
-    const Foot foot = foot_point(psi, centroid, h(faces[i]));
-    const Vec3 n = (b - a).cross(c - a);
-    const double length = n.norm();
-    const double cosine = length > 0 ? n.dot(foot.normal) / length : -1.0;  // no area: no normal
-    face[i] = {foot.found, foot.distance, cosine, length / 2, foot.point};
+    const Triangle& f = faces[i];
+    face[i] = measure_face(psi, mesh.V[f[0]], mesh.V[f[1]], mesh.V[f[2]], h(f));
   });
 
-  boundary.max_centroid_distance = 0;
-  double max_vertex = 0, max_centroid = 0, min_cos = 1, gap = 0;
-  for (std::size_t i = 0; i < vertices.size(); ++i)
-    max_vertex = std::max(max_vertex, vertex_distance[i] / h(vertices[i]));
-  for (std::size_t i = 0; i < face.size(); ++i) {
-    const FaceMeasure& f = face[i];
-    if (!f.found) {
-      ++boundary.n_unprojected_faces;
-      continue;
-    }
-    max_centroid = std::max(max_centroid, f.distance / h(faces[i]));
-    boundary.max_centroid_distance = std::max(boundary.max_centroid_distance, f.distance);
-    gap += kMeanOverCentroid * f.area * f.distance;
-    min_cos = std::min(min_cos, f.cos_normal);
-    boundary.n_cos_below_half += f.cos_normal < 0.5;
-  }
-  boundary.max_vertex_distance_over_h = max_vertex;
-  boundary.max_centroid_distance_over_h = max_centroid;
-  boundary.min_cos_normal = min_cos;
-  boundary.gap_over_volume = gap / volume;
-
-  boundary.faults.clear();
-  boundary.far_feet.clear();
+  begin_distances(boundary);
+  double gap = 0;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const double h_here = h(vertices[i]);
-    if (vertex_distance[i] / h_here <= vertex_tolerance(certificate, h_here)) continue;
-    boundary.faults.push_back({BoundaryFault::Kind::Off, mesh.V[vertices[i]], vertex_distance[i]});
+    const Vec3& x = mesh.V[vertices[i]];
+    add_vertex(x, distance[i], h(vertices[i]), certificate.coordinate_rounding, boundary);
   }
   for (std::size_t i = 0; i < faces.size(); ++i) {
-    const FaceMeasure& f = face[i];
-    const bool is_far = f.found && f.distance > kFarFace * h(faces[i]);
-    if (f.found && f.cos_normal > 0 && !is_far) continue;
-    const Vec3 centroid = (mesh.V[faces[i][0]] + mesh.V[faces[i][1]] + mesh.V[faces[i][2]]) / 3.0;
-    if (is_far) boundary.far_feet.push_back(f.foot);
-    if (f.found && f.cos_normal > 0) continue;
-    if (f.found) {
-      boundary.faults.push_back({BoundaryFault::Kind::Folded, centroid, f.distance});
-    } else {
-      boundary.faults.push_back({BoundaryFault::Kind::Off, centroid, h(faces[i])});
-    }
+    add_face(face[i], h(faces[i]), boundary);
+    if (face[i].found) add_gap(face[i], gap);
   }
+  boundary.gap_over_volume = gap / volume;
 }
 
 /// @param memory  if not null, matched with the mesh
@@ -335,7 +280,7 @@ std::vector<std::string> failures(const MeshCertificate& certificate) {
   std::vector<std::string> reasons = invalidities(certificate);
   const MeshCertificate::Boundary& b = certificate.boundary;
   if (b.max_vertex_distance_over_h &&
-      !(*b.max_vertex_distance_over_h <= vertex_tolerance(certificate, certificate.h))) {
+      !(*b.max_vertex_distance_over_h <= vertex_tolerance(certificate.coordinate_rounding, certificate.h))) {
     reasons.push_back(formatted("a boundary vertex is %.3g h from psi = 0, more than rounding explains",
                                 *b.max_vertex_distance_over_h));
   }

@@ -29,23 +29,22 @@ void lower(double& least, double value) {
 
 }  // namespace
 
+void measure_mean_ratios(const TetMesh& mesh, std::vector<double>& Q, std::size_t first) {
+  const std::size_t n = Q.size();
+  const auto measure = [&](const tbb::blocked_range<std::size_t>& groups) {
+    for (std::size_t at = groups.begin() * kPackSize; at < std::min(n, groups.end() * kPackSize); at += kPackSize) {
+      const int count = static_cast<int>(std::min<std::size_t>(kPackSize, n - at));
+      const TetPack tets = measure_tet_pack(mesh, &mesh.C[first + at], count);
+      for (int m = 0; m < count; ++m) Q[at + m] = tets.quality[m];
+    }
+  };
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (n + kPackSize - 1) / kPackSize, kGroupsPerTask), measure);
+}
+
 std::vector<double> mean_ratios(const TetMesh& mesh) {
   std::vector<double> Q = touched<double>(mesh.C.size());
   measure_mean_ratios(mesh, Q);
   return Q;
-}
-
-void measure_mean_ratios(const TetMesh& mesh, std::vector<double>& Q) {
-  const std::size_t n = mesh.C.size();
-  const auto measure = [&](const tbb::blocked_range<std::size_t>& groups) {
-    for (std::size_t first = groups.begin() * kPackSize; first < std::min(n, groups.end() * kPackSize);
-         first += kPackSize) {
-      const int count = static_cast<int>(std::min<std::size_t>(kPackSize, n - first));
-      const TetPack tets = measure_tet_pack(mesh, &mesh.C[first], count);
-      for (int m = 0; m < count; ++m) Q[first + m] = tets.quality[m];
-    }
-  };
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (n + kPackSize - 1) / kPackSize, kGroupsPerTask), measure);
 }
 
 QualityVectors quality_vectors(const std::vector<Tet>& C, const std::vector<double>& Q,
@@ -70,12 +69,20 @@ QualityVectors quality_vectors(const std::vector<Tet>& C, const std::vector<doub
   return q;
 }
 
-double quantile(const std::vector<double>& lowest, std::size_t n, double p) {
-  if (lowest.empty()) return std::numeric_limits<double>::quiet_NaN();
+QuantilePlace quantile_place(std::size_t n, double p) {
   const double at = p * static_cast<double>(n - 1);
   const auto below = static_cast<std::size_t>(at);
-  const std::size_t above = std::min(below + 1, n - 1);
-  return lowest[below] + (at - static_cast<double>(below)) * (lowest[above] - lowest[below]);
+  return {below, std::min(below + 1, n - 1), at - static_cast<double>(below)};
+}
+
+double QuantilePlace::of(double value_below, double value_above) const {
+  return value_below + part * (value_above - value_below);
+}
+
+double quantile(const std::vector<double>& lowest, std::size_t n, double p) {
+  if (lowest.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const QuantilePlace place = quantile_place(n, p);
+  return place.of(lowest[place.below], lowest[place.above]);
 }
 
 double quantile(const std::vector<double>& ascending, double p) { return quantile(ascending, ascending.size(), p); }

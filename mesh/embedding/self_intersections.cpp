@@ -81,23 +81,6 @@ int crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x) {
   return orientation_sign(a, b, c, x) == -facing ? facing : 0;
 }
 
-/// Signed volume within a component: its sign, or 0 where that is rounding.
-std::vector<int> volume_signs(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
-                              const std::vector<int>& component, const std::vector<int>& first) {
-  std::vector<double> sum(first.size(), 0), magnitude(first.size(), 0);
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    const Vec3& from = V[faces[first[component[i]]][0]];
-    const double six = (V[faces[i][0]] - from).dot((V[faces[i][1]] - from).cross(V[faces[i][2]] - from));
-    sum[component[i]] += six;
-    magnitude[component[i]] += std::abs(six);
-  }
-  std::vector<int> signs;
-  for (std::size_t c = 0; c < sum.size(); ++c) {
-    signs.push_back(std::abs(sum[c]) <= kVolumeRounding * magnitude[c] ? 0 : sum[c] > 0 ? 1 : -1);
-  }
-  return signs;
-}
-
 }  // namespace
 
 std::vector<Pair> self_intersections(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
@@ -110,18 +93,22 @@ std::vector<Pair> self_intersections(const std::vector<Vec3>& V, const std::vect
   return gathered(found);
 }
 
-std::vector<int> wrongly_nested(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
-                                const std::vector<int>& component, std::size_t n_components, const Context& context) {
+void EnclosedVolume::add(const Vec3& from, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double six = (a - from).dot((b - from).cross(c - from));
+  sum += six;
+  magnitude += std::abs(six);
+}
+
+int EnclosedVolume::sign() const { return std::abs(sum) <= kVolumeRounding * magnitude ? 0 : sum > 0 ? 1 : -1; }
+
+std::vector<int> windings(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
+                          const std::vector<int>& component, const std::vector<Vec3>& points, const Context& context) {
   check_indices(faces, V.size(), "face");
-  if (faces.empty()) return {};
-  std::vector<int> first(n_components, -1);
-  for (std::size_t i = faces.size(); i-- > 0;) first[component[i]] = static_cast<int>(i);
-  const std::vector<int> sign = volume_signs(V, faces, component, first);
-  std::vector<char> is_wrong(n_components, 0);
+  std::vector<int> winding(points.size(), 0);
+  if (faces.empty()) return winding;
   const TriangleTree tree(V, faces);
-  for_each_polled(n_components, context, [&](std::size_t c) {
-    const Vec3& x = V[faces[first[c]][0]];
-    int winding = 0;
+  for_each_polled(points.size(), context, [&](std::size_t c) {
+    const Vec3& x = points[c];
     tree.for_leaves(
         0,
         [&](const TriangleTree::Box& box) {
@@ -132,16 +119,35 @@ std::vector<int> wrongly_nested(const std::vector<Vec3>& V, const std::vector<Tr
           for (int k = tree.leaf(leaf).begin; k < tree.leaf(leaf).end; ++k) {
             const int f = tree.order()[k];
             if (component[f] == static_cast<int>(c)) continue;
-            winding += crossing(V[faces[f][0]], V[faces[f][1]], V[faces[f][2]], x);
+            winding[c] += crossing(V[faces[f][0]], V[faces[f][1]], V[faces[f][2]], x);
           }
         });
-    // The other surfaces around the outer side of this one; it adds 0 there if it is the outside of a body, and -1 if
-    // it is the wall of a cavity.
-    is_wrong[c] = sign[c] == 0 || winding != (sign[c] > 0 ? 0 : 1);
   });
+  return winding;
+}
+
+bool is_wrongly_nested(const EnclosedVolume& volume, int winding) {
+  // The other surfaces around the outer side of this one; it adds 0 there if it is the outside of a body, and -1 if
+  // it is the wall of a cavity.
+  const int sign = volume.sign();
+  return sign == 0 || winding != (sign > 0 ? 0 : 1);
+}
+
+std::vector<int> wrongly_nested(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
+                                const std::vector<int>& component, std::size_t n_components, const Context& context) {
+  check_indices(faces, V.size(), "face");
+  if (faces.empty()) return {};
+  std::vector<int> first(n_components, -1);
+  for (std::size_t i = faces.size(); i-- > 0;) first[component[i]] = static_cast<int>(i);
+  std::vector<Vec3> corners;
+  for (const int i : first) corners.push_back(V[faces[i][0]]);
+  std::vector<EnclosedVolume> volume(n_components);
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    volume[component[i]].add(corners[component[i]], V[faces[i][0]], V[faces[i][1]], V[faces[i][2]]);
+  const std::vector<int> winding = windings(V, faces, component, corners, context);
   std::vector<int> wrong;
   for (std::size_t c = 0; c < n_components; ++c) {
-    if (is_wrong[c] != 0) wrong.push_back(static_cast<int>(c));
+    if (is_wrongly_nested(volume[c], winding[c])) wrong.push_back(static_cast<int>(c));
   }
   return wrong;
 }

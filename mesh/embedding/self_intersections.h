@@ -27,4 +27,21 @@ std::vector<int> wrongly_nested(const std::vector<Vec3>& V, const std::vector<Tr
                                 const std::vector<int>& component, std::size_t n_components,
                                 const Context& context = {});
 
+// Its parts, for a surface that nobody has as a whole.
+
+/// Six times the signed volume within a component, and of what magnitudes it is the sum.
+struct EnclosedVolume {
+  double sum = 0, magnitude = 0;
+
+  /// @param from  a corner of the first face of the component
+  void add(const Vec3& from, const Vec3& a, const Vec3& b, const Vec3& c);
+  int sign() const;  ///< 0 where that is rounding
+};
+/// For the c-th point the winding number around it of all of these faces but those of component c, where it begins.
+std::vector<int> windings(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
+                          const std::vector<int>& component, const std::vector<Vec3>& points,
+                          const Context& context = {});
+/// @param winding  around a corner of the component, of all others
+bool is_wrongly_nested(const EnclosedVolume& volume, int winding);
+
 }  // namespace umtet

@@ -19,4 +19,16 @@ struct QualityCurve {
 /// \throw std::system_error naming the path when writing fails
 void write_quality_csv(const std::filesystem::path& path, const std::vector<QualityCurve>& curves);
 
+/// The indices of its lines, ascending, of curves of these lengths.
+std::vector<std::size_t> quality_csv_indices(const std::vector<std::size_t>& lengths);
+
+/// A curve of which only these are known: values[i] at the i-th of the indices that are not behind its end.
+struct SampledCurve {
+  std::string name;
+  std::vector<double> values;
+};
+/// The same file. @param indices  quality_csv_indices()
+void write_quality_csv(const std::filesystem::path& path, const std::vector<std::size_t>& indices,
+                       const std::vector<SampledCurve>& curves);
+
 }  // namespace umtet

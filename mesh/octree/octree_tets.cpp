@@ -21,7 +21,7 @@ std::uint64_t transition_slots(const OctreeCell& leaf) {
 }  // namespace
 
 OctreeTets::OctreeTets(const std::vector<std::uint64_t>& cubes)
-    : octree_(cubes), n_leaves_(static_cast<std::int64_t>(cubes.size())), first_vertices_(octree_.n_vertices()) {
+    : octree_(cubes), n_leaves_(static_cast<std::int64_t>(cubes.size())), first_vertices_(octree_.n_vertices() + 1) {
   tbb::parallel_for(0, octree_.n_cells(), [&](int c) {
     if (octree_.cell(c).is_leaf()) find_slots(c);
   });

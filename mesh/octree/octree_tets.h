@@ -96,7 +96,7 @@ class OctreeTets {
   LinearOctree octree_;
   std::int64_t n_leaves_ = 0, n_tets_ = 0;
   GridPoint lowest_ = {kRootWidth, kRootWidth, kRootWidth}, highest_ = {0, 0, 0};
-  IdSet first_vertices_;                ///< of the cells
+  IdSet first_vertices_;                ///< of the cells, and room for the rank of what comes after the last vertex
   std::vector<std::int32_t> tet_cell_;  ///< of every 16th tet
 };
 

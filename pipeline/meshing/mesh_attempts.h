@@ -12,6 +12,7 @@
 #include "mesh/universal_mesh.h"
 #include "pipeline/domain/edge_length.h"
 #include "pipeline/domain/too_thin.h"
+#include "pipeline/meshing/part_mesher.h"
 #include "pipeline/reports/certificate_report.h"
 
 namespace umtet {
@@ -28,6 +29,8 @@ struct MeshAttempt {
   std::shared_ptr<const SizeField> sizes;         ///< that a graded background was made for
   std::optional<BackgroundMesh> background = {};  ///< that one
   int n_levels = 0;                               ///< of psi then; 0: a formula
+  /// Of a mesh that several processes have, which `result` has the boundary of.
+  std::shared_ptr<const MeshInParts> parts = nullptr;
 
   bool made() const { return result.status == UmStatus::Success; }
   bool is_right() const { return made() && reasons.empty(); }

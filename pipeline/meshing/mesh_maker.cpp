@@ -42,12 +42,13 @@ bool are_cells_for(double h, const SignCells& cells) { return cells.size <= h / 
 
 }  // namespace
 
-MeshMaker::MeshMaker(Domain& domain, const Parameters& parameters, Context context, MeshLines lines)
+MeshMaker::MeshMaker(Domain& domain, const Parameters& parameters, Context context, MeshLines lines, PartMesher* ranks)
     : domain_(domain),
       parameters_(parameters),
       context_(std::move(context)),
       lines_(std::move(lines)),
-      params_(um_params(parameters)) {}
+      params_(um_params(parameters)),
+      ranks_(ranks) {}
 
 const ZeroSetChoice& MeshMaker::pieces_at(double h, const SizeField* sizes) {
   domain_.limit_detail(h);
@@ -131,10 +132,34 @@ ChosenSubmesh MeshMaker::choose(const BackgroundMesh& background, const ZeroSetC
   return choose_submesh(background, domain_.psi(), params, context_.part(kChoice, kFit), pieces.seeds);
 }
 
-void MeshMaker::finish(const SizedBackground& background, ChosenSubmesh chosen, MeshAttempt& a) {
+MeshMaker::Begun MeshMaker::choose(const SizedBackground& background, double h, const MeshAttempt* former) {
+  Begun begun{begin(background, h), {}};
+  const ZeroSetChoice& pieces = pieces_at(h, begun.attempt.sizes.get());
+  if (ranks_) {
+    context_.report("project", kChoice);
+    begun.made =
+        ranks_->make(background.mesh, domain_.psi(), params_.fast, {h, domain_.shift, coordinate_rounding(domain_)});
+  }
+  if (!begun.made) begun.chosen = choose(background.mesh, pieces, former);
+  return begun;
+}
+
+void MeshMaker::fit(const SizedBackground& background, ChosenSubmesh chosen, MeshAttempt& a) {
   const ZeroSetChoice& pieces = pieces_at(a.h, a.sizes.get());
   a.result = fit_submesh(background.mesh, domain_.psi(), params_for(pieces), std::move(chosen),
                          context_.part(kFit, kCertificate));
+  round_to_file(a.result, domain_.shift);
+}
+
+MeshAttempt MeshMaker::finish(const SizedBackground& background, Begun begun) {
+  MeshAttempt a = std::move(begun.attempt);
+  const ZeroSetChoice& pieces = pieces_at(a.h, a.sizes.get());
+  if (begun.made) {
+    a.result = std::move(begun.made->result);
+    a.parts = std::move(begun.made->mesh);
+  } else {
+    fit(background, std::move(begun.chosen), a);
+  }
   const std::size_t n_flips = a.result.manifold_flips.size(), n_back = a.result.n_stepped_back;
   if (n_flips + n_back > 0 && lines_.detail) {
     lines_.detail(
@@ -142,13 +167,13 @@ void MeshMaker::finish(const SizedBackground& background, ChosenSubmesh chosen, 
                     "0, so that it does not meet itself",
                     n_flips, n_back));
   }
-  round_to_file(a.result, domain_.shift);
   context_.report("certify", kCertificate);
-  if (!a.made()) return;
+  if (!a.made()) return a;
   const MeshEdge h = mesh_edge(background.mesh, a.result, a.h);
   TetMesh mesh{std::move(a.result.final), std::move(a.result.submesh.mesh.C)};  // lent: there is no copy of all tets
-  Measurement made =
-      measure(domain_, mesh, a.result, pieces, h, {&a.thin, parameters_.mesh().max_deviation, a.sizes.get()}, context_);
+  const MeshCertificate* of_parts = begun.made ? &begun.made->certificate : nullptr;
+  Measurement made = measure(domain_, mesh, a.result, pieces, h,
+                             {&a.thin, parameters_.mesh().max_deviation, a.sizes.get(), of_parts}, context_);
   a.result.final = std::move(mesh.V);
   a.result.submesh.mesh.C = std::move(mesh.C);
   a.measured = std::move(made.measures);
@@ -157,12 +182,11 @@ void MeshMaker::finish(const SizedBackground& background, ChosenSubmesh chosen, 
   a.measured.is_faithful = a.measured.reasons.empty() && a.measured.places.empty();
   // Not as output.* asks for: how a mesh is judged does not decide how it is made.
   a.reasons = judge_shape(a.measured).reasons;
+  return a;
 }
 
 MeshAttempt MeshMaker::attempt(const SizedBackground& background, double h, const MeshAttempt* former) {
-  MeshAttempt a = begin(background, h);
-  finish(background, choose(background.mesh, pieces_at(h, a.sizes.get()), former), a);
-  return a;
+  return finish(background, choose(background, h, former));
 }
 
 void MeshMaker::curve(MeshAttempt& a) const {
@@ -184,13 +208,10 @@ MeshAttempt MeshMaker::attempt_for_tets(double h, const MakeBackground& make, co
   std::optional<double> makes_more, makes_less;
   for (int n_misses = 0;;) {
     const SizedBackground made = make(h);
-    MeshAttempt a = begin(made, h);
-    ChosenSubmesh chosen = choose(made.mesh, pieces_at(h, a.sizes.get()));
-    const double ratio = static_cast<double>(chosen.n_tets) / asked;
-    if (chosen.status != UmStatus::Success || n_misses == kMostMisses || std::abs(ratio - 1) <= kTetsTolerance) {
-      finish(made, std::move(chosen), a);
-      return a;
-    }
+    Begun begun = choose(made, h, nullptr);
+    const double ratio = static_cast<double>(begun.n_tets()) / asked;
+    if (!begun.is_possible() || n_misses == kMostMisses || std::abs(ratio - 1) <= kTetsTolerance)
+      return finish(made, std::move(begun));
     if (const double miss = std::abs(std::log(ratio)); miss < least_miss) nearest = h, least_miss = miss;
     (ratio > 1 ? makes_more : makes_less) = h;
     const double better = ++n_misses == kMostMisses  ? nearest

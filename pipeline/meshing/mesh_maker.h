@@ -14,6 +14,7 @@
 #include "pipeline/domain/domain.h"
 #include "pipeline/domain/zero_set_choice.h"
 #include "pipeline/meshing/mesh_attempts.h"
+#include "pipeline/meshing/part_mesher.h"
 
 namespace umtet {
 
@@ -31,8 +32,10 @@ class MeshMaker {
  public:
   /// The domain and the parameters stay where they are. The context is told of "components", the steps of
   /// choose_submesh() and fit_submesh(), "certify" and "second order"; fractions are those of one attempt.
+  /// @param ranks  make the mesh, where several processes do; null: this one does
   /// \throw UsageError as um_params()
-  MeshMaker(Domain& domain, const Parameters& parameters, Context context, MeshLines lines = {});
+  MeshMaker(Domain& domain, const Parameters& parameters, Context context, MeshLines lines = {},
+            PartMesher* ranks = nullptr);
 
   /// psi, cut for h, meshed in this background. A mesh whose certificate fails is a result; so is none.
   /// \throw MeshingImpossible  no sample is near psi = 0; Cancelled
@@ -51,10 +54,21 @@ class MeshMaker {
   const ZeroSetChoice& pieces_at(double h, const SizeField* sizes = nullptr);
 
  private:
+  /// An attempt, and which tets it is about or, where several processes make it, what it has become.
+  struct Begun {
+    MeshAttempt attempt;
+    ChosenSubmesh chosen;
+    std::optional<MadeInParts> made = {};
+
+    bool is_possible() const { return made || chosen.status == UmStatus::Success; }
+    std::size_t n_tets() const { return made ? made->n_chosen_tets : chosen.n_tets; }
+  };
   MeshAttempt begin(const SizedBackground& background, double h);
+  Begun choose(const SizedBackground& background, double h, const MeshAttempt* former);
   ChosenSubmesh choose(const BackgroundMesh& background, const ZeroSetChoice& pieces,
                        const MeshAttempt* former = nullptr);
-  void finish(const SizedBackground& background, ChosenSubmesh chosen, MeshAttempt& a);
+  MeshAttempt finish(const SizedBackground& background, Begun begun);
+  void fit(const SizedBackground& background, ChosenSubmesh chosen, MeshAttempt& a);
   UmParams params_for(const ZeroSetChoice& pieces) const;
   KnownSigns known_signs(const BackgroundMesh& background, const ZeroSetChoice& pieces) const;
   bool may_keep(const MeshAttempt& former, const ZeroSetChoice& pieces) const;
@@ -71,6 +85,7 @@ class MeshMaker {
   const Context context_;
   const MeshLines lines_;
   const UmParams params_;
+  PartMesher* const ranks_;
   std::optional<std::pair<double, ZeroSetChoice>> pieces_;  ///< of psi cut for the h beside them
   int n_levels_ = 0;                                        ///< of psi then; 0: a formula
 };

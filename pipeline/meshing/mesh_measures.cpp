@@ -296,7 +296,7 @@ Measurement measure(const Domain& domain, const TetMesh& mesh, const UmResult& r
   Measurement made;
   MeshMeasures& m = made.measures;
   if (domain.level_set) m.n_points = domain.cloud.points.size();
-  m.mesh = certify(input);
+  m.mesh = params.certificate ? *params.certificate : certify(input);
   m.coordinate_rounding_over_h = m.mesh.coordinate_rounding / m.mesh.h;
   set_reasons(m);
   if (auto reason = deviation_reason(params.max_deviation, m.mesh)) m.reasons.push_back(std::move(*reason));

@@ -23,6 +23,8 @@ struct MeasureParams {
   const ThinPlaces* thin = nullptr;  ///< of psi as it was meshed; null: not looked for
   double max_deviation = 0;          ///< of face centres from psi = 0, model units: more is a reason; 0: any will do
   const SizeField* sizes = nullptr;  ///< that a graded mesh was made for
+  /// Of the whole mesh, where the result has its boundary only; null: it is made of the result.
+  const MeshCertificate* certificate = nullptr;
 };
 
 /// The edge length that a mesh was made with: in a background that is no lattice, at each vertex of the boundary.

@@ -24,7 +24,7 @@ class CaseRun {
         progress_(progress),
         paths_{request.case_folder, {}, request.stamps},
         parameters_(request.parameters),
-        context_{paths_, parameters_, progress, request.threads, handover_} {}
+        context_{paths_, parameters_, progress, request.threads, handover_, request.ranks} {}
 
   /// Looks at what there is, and refuses a folder that is none of ours.
   void begin();

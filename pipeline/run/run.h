@@ -10,6 +10,7 @@
 #include "pipeline/case/parameters.h"
 #include "pipeline/case/progress.h"
 #include "pipeline/case/record.h"
+#include "pipeline/meshing/part_mesher.h"
 #include "pipeline/reports/certificate_report.h"
 
 namespace umtet {
@@ -24,6 +25,7 @@ struct RunRequest {
   bool strict = false;  ///< a damaged artefact is an error instead of a reason to make it again
   bool report = true;   ///< make report.html beside a certificate
   int threads = 1;
+  PartMesher* ranks = nullptr;  ///< who make the mesh, where several processes do
   /// Of the files that are known by now; after the run those of the case, too.
   std::shared_ptr<FileStamps> stamps = std::make_shared<FileStamps>();
 };

@@ -67,12 +67,22 @@ std::vector<std::size_t> moving_tets(const UmResult& result) {
       C.size(), [&](std::size_t t) { return moves[C[t][0]] || moves[C[t][1]] || moves[C[t][2]] || moves[C[t][3]]; });
 }
 
-}  // namespace
+/// The files of meshes and of their qualities, of a mesh that nobody has as a whole.
+std::vector<std::string> write_parts(const fs::path& folder, const MeshInParts& parts) {
+  const auto write = [&](const std::string& name, MeshState state) {
+    write_artefact(folder / name,
+                   [&](const fs::path& temporary) { parts.write(temporary, state, state != MeshState::Final); });
+  };
+  write("omega_h.vtu", MeshState::Chosen);
+  write("projected.vtu", MeshState::Projected);
+  write("mesh.vtu", MeshState::Final);
+  write_artefact(folder / "quality.csv", [&](const fs::path& temporary) { parts.write_quality(temporary); });
+  return {"omega_h.vtu", "projected.vtu", "mesh.vtu", "quality.csv"};
+}
 
-std::vector<std::string> write_mesh_outputs(const StageContext& context, const Domain& domain, MeshAttempt& best) {
-  begin_writing(context, Stage::Mesh);
-  fs::remove_all(context.paths.failed());
-  const fs::path folder = context.paths.folder(Stage::Mesh);
+/// The same of a mesh that is here; its tets are lent to the files.
+std::vector<std::string> write_whole(const StageContext& context, const fs::path& folder, const Domain& domain,
+                                     MeshAttempt& best) {
   UmResult& result = best.result;
   std::vector<std::string> names;
   QualityCurves curves(result);
@@ -119,6 +129,17 @@ std::vector<std::string> write_mesh_outputs(const StageContext& context, const D
   write_artefact(folder / "quality.csv",
                  [all = std::move(curves).all()](const fs::path& temporary) { write_quality_csv(temporary, all); });
   names.emplace_back("quality.csv");
+  return names;
+}
+
+}  // namespace
+
+std::vector<std::string> write_mesh_outputs(const StageContext& context, const Domain& domain, MeshAttempt& best) {
+  begin_writing(context, Stage::Mesh);
+  fs::remove_all(context.paths.failed());
+  const fs::path folder = context.paths.folder(Stage::Mesh);
+  std::vector<std::string> names =
+      best.parts ? write_parts(folder, *best.parts) : write_whole(context, folder, domain, best);
   if (!best.thin.empty()) {
     write_thin_places(folder / "too_thin.vtp", best.thin, domain.shift);
     names.emplace_back("too_thin.vtp");

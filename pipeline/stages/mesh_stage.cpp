@@ -34,7 +34,7 @@ class MeshStage {
       : context_(context),
         domain_(load_domain(context.paths, context.parameters, &context.handover)),
         background_(context.parameters, domain_),
-        maker_(domain_, context.parameters, call(), lines()) {}
+        maker_(domain_, context.parameters, call(), lines(), context.ranks) {}
 
   /// Of the best h. \throw MeshingImpossible when there is none
   MeshAttempt best_mesh();
@@ -181,6 +181,7 @@ void run_mesh_stage(const StageContext& context) {
                 to_json(report),
                 run_of_stage(seconds.count(), context.threads)},
                outputs);
+  if (best.parts) return;  // nobody has the mesh
   stage.domain().limit_detail(best.h);
   context.handover.domain = std::move(stage.domain());
 }

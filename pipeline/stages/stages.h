@@ -8,6 +8,7 @@
 #include "pipeline/case/progress.h"
 #include "pipeline/case/record.h"
 #include "pipeline/domain/handover.h"
+#include "pipeline/meshing/part_mesher.h"
 
 namespace umtet {
 
@@ -19,6 +20,7 @@ struct StageContext {
   Progress& progress;
   int threads;
   Handover& handover;
+  PartMesher* ranks = nullptr;  ///< who make the mesh, where several processes do
 };
 
 /// 1-cloud: reads the user's file, checks it, writes cloud.ply (double precision, original coordinates).

@@ -10,6 +10,7 @@
 
 #include "mesh/certify/certificate_memory.h"
 #include "mesh/certify/quality_report.h"
+#include "mesh/certify/tet_sums.h"
 #include "mesh/core/tet_packs.h"
 #include "mesh/core/tet_quality.h"
 
@@ -17,8 +18,8 @@ namespace umtet::detail {
 namespace {
 
 // A tet takes some tens of nanoseconds.
-constexpr std::size_t kTetsPerBlock = 1 << 10, kBlocksPerPoll = 1 << 8;
-static_assert(kTetsPerBlock % kPackSize == 0);
+constexpr std::size_t kBlocksPerPoll = 1 << 8;
+static_assert(kTetsPerSum % kPackSize == 0 && kPackSize == 4);  // the lanes of block_sums()
 // The bound that the lowest twentieth of all qualities is below is estimated from this many blocks, evenly spread.
 constexpr std::size_t kSampledBlocks = 64, kSampledShare = 20;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -67,7 +68,7 @@ void remember(const TetPack& tets, std::size_t first, int count, CertificateMemo
 
 /// Sums and extremes over a block of tets.
 struct TetMeasure {
-  double volume6 = 0, rms_edges = 0, qualities = 0;
+  TetSums sums;
   std::size_t n_inverted = 0;
   double least_cotangent = kInfinity, greatest_cotangent = -kInfinity;
   std::size_t at_least = 0, at_greatest = 0;  ///< the first tets with these
@@ -78,9 +79,7 @@ struct TetMeasure {
     if (greatest > greatest_cotangent) greatest_cotangent = greatest, at_greatest = at_other;
   }
   void add(const TetMeasure& next) {
-    volume6 += next.volume6;
-    rms_edges += next.rms_edges;
-    qualities += next.qualities;
+    sums.add(next.sums);
     n_inverted += next.n_inverted;
     take(next.least_cotangent, next.at_least, next.greatest_cotangent, next.at_greatest);
   }
@@ -92,7 +91,7 @@ class TetBlocks {
   TetBlocks(const TetMesh& mesh, CertificateMemory* memory, std::vector<char>& used)
       : mesh_(mesh), memory_(memory), used_(used) {}
 
-  std::size_t size() const { return (mesh_.C.size() + kTetsPerBlock - 1) / kTetsPerBlock; }
+  std::size_t size() const { return (mesh_.C.size() + kTetsPerSum - 1) / kTetsPerSum; }
   /// @param low  qualities up to it are listed in low_qualities
   TetMeasure operator()(std::size_t block, double low) const;
 
@@ -107,10 +106,10 @@ class TetBlocks {
 TetMeasure TetBlocks::operator()(std::size_t block, double low) const {
   TetMeasure measure;
   Pack volume6{}, rms_edges{}, qualities{};
-  std::array<double, kTetsPerBlock> low_qualities;
+  std::array<double, kTetsPerSum> low_qualities;
   std::size_t n_low = 0;
-  const std::size_t end = std::min(mesh_.C.size(), (block + 1) * kTetsPerBlock);
-  for (std::size_t first = block * kTetsPerBlock; first < end; first += kPackSize) {
+  const std::size_t end = std::min(mesh_.C.size(), (block + 1) * kTetsPerSum);
+  for (std::size_t first = block * kTetsPerSum; first < end; first += kPackSize) {
     const int count = static_cast<int>(std::min<std::size_t>(kPackSize, end - first));
     const TetPack tets = packs_of(mesh_, first, count, memory_);
     if (memory_) remember(tets, first, count, *memory_);
@@ -132,9 +131,7 @@ TetMeasure TetBlocks::operator()(std::size_t block, double low) const {
     }
     add(tets, first, count, measure);
   }
-  measure.volume6 = sum(volume6);
-  measure.rms_edges = sum(rms_edges);
-  measure.qualities = sum(qualities);
+  measure.sums = {sum(volume6), sum(rms_edges), sum(qualities)};
   measure.low_qualities.assign(low_qualities.begin(), low_qualities.begin() + static_cast<std::ptrdiff_t>(n_low));
   return measure;
 }
@@ -197,14 +194,14 @@ void measure_tets(const TetMesh& mesh, double h, const Context& context, Certifi
   quality.min = lowest.front();
   quality.p001 = quantile(lowest, n, .001);
   quality.p01 = quantile(lowest, n, .01);
-  quality.mean = all.qualities / static_cast<double>(n);
+  quality.mean = all.sums.qualities / static_cast<double>(n);
   quality.dihedral_min_deg = dihedral_range_of(mesh, mesh.C[all.at_greatest]).min_deg;
   quality.dihedral_max_deg = dihedral_range_of(mesh, mesh.C[all.at_least]).max_deg;
   quality.n_inverted = all.n_inverted;
-  certificate.volume = all.volume6 / 6;
+  certificate.volume = all.sums.volume6 / 6;
   certificate.n_tets = n;
   certificate.n_vertices = static_cast<std::size_t>(std::count(used.begin(), used.end(), 1));
-  certificate.h = h > 0 ? h : all.rms_edges / static_cast<double>(n);
+  certificate.h = h > 0 ? h : all.sums.rms_edges / static_cast<double>(n);
 }
 
 }  // namespace umtet::detail

@@ -18,6 +18,7 @@
 #include "mesh/io/checked_file.h"
 #include "mesh/io/detail/base64.h"
 #include "mesh/io/detail/node_sets.h"
+#include "mesh/io/detail/vtk_xml_text.h"
 #include "mesh/io/solver_files.h"
 #include "mesh/io/tet_mesh_io.h"
 
@@ -26,26 +27,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little && sizeof(Vec3) == 3 * sizeof(double));
 
-template <typename T>
-constexpr const char* kVtkType = nullptr;
-template <>
-constexpr const char* kVtkType<double> = "Float64";
-template <>
-constexpr const char* kVtkType<std::int64_t> = "Int64";
-template <>
-constexpr const char* kVtkType<std::int32_t> = "Int32";
-template <>
-constexpr const char* kVtkType<std::uint8_t> = "UInt8";
-
-constexpr const char* kThreeComponents = " NumberOfComponents=\"3\"";
-
-std::string escaped(const std::string& name) {
-  std::string text;
-  for (const char c : name) {
-    text += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
-  }
-  return text;
-}
+using detail::kThreeComponents;
+using detail::kVtkType;
 
 using Arrays = std::map<std::string, FieldValues>;
 
@@ -93,8 +76,7 @@ class VtkXmlWriter {
 
 template <class T, class Fill>
 void VtkXmlWriter::array(const std::string& name, std::size_t n, const Fill& fill, const char* attributes) {
-  file_.text("<DataArray type=\"").text(kVtkType<T>).text("\" Name=\"").text(escaped(name)).text("\"");
-  file_.text(attributes).text(" format=\"binary\">\n");
+  file_.text(detail::array_begin(kVtkType<T>, name, attributes));
   const std::uint64_t n_bytes = n * sizeof(T);
   const std::size_t n_all = sizeof n_bytes + n_bytes, n_pieces = (n_all + kPiece - 1) / kPiece;
   const auto encode = [&](std::size_t piece, char* text) {
@@ -117,7 +99,7 @@ void VtkXmlWriter::array(const std::string& name, std::size_t n, const Fill& fil
     tbb::parallel_invoke([&] { file_.text(text_[0]); }, [&] { encode_round(first + kPieces, text_[1]); });
     std::swap(text_[0], text_[1]);
   }
-  file_.text("\n</DataArray>\n");
+  file_.text(detail::kArrayEnd);
 }
 
 template <class T>
@@ -163,9 +145,7 @@ void VtkXmlWriter::data(const char* section, const Arrays& arrays) {
 
 void VtkXmlWriter::begin(const char* type, std::size_t n_points, const char* counted, std::size_t n_cells,
                          const std::vector<MeshPart>& numbers) {
-  file_.text("<?xml version=\"1.0\"?>\n<VTKFile type=\"").text(type);
-  file_.text("\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<").text(type);
-  file_.text(">\n");
+  file_.text(detail::file_begin(type));
   if (!numbers.empty()) {
     file_.text("<FieldData>\n");
     for (const MeshPart& part : numbers) {
@@ -174,12 +154,11 @@ void VtkXmlWriter::begin(const char* type, std::size_t n_points, const char* cou
     }
     file_.text("</FieldData>\n");
   }
-  file_.text("<Piece NumberOfPoints=\"").number(n_points).text("\" ").text(counted).text("=\"").number(n_cells);
-  file_.text("\">\n");
+  file_.text(detail::piece_begin(n_points, counted, n_cells));
 }
 
 void VtkXmlWriter::end(const char* type) {
-  file_.text("</Piece>\n</").text(type).text(">\n</VTKFile>\n");
+  file_.text(detail::file_end(type));
   file_.close();
 }
 

@@ -1,0 +1,51 @@
+#include "distributed/id_order.h"
+
+#include "distributed/selection.h"
+
+namespace umtet {
+
+IdOrder::IdOrder(MPI_Comm comm, const std::vector<std::int64_t>& ids, std::size_t piece)
+    : comm_(comm), ids_(ids), piece_(piece) {
+  int rank = 0, n_ranks = 1;
+  MPI_Comm_rank(comm, &rank);
+  MPI_Comm_size(comm, &n_ranks);
+  rank_ = static_cast<std::size_t>(rank);
+  n_ranks_ = static_cast<std::size_t>(n_ranks);
+  std::uint64_t n = ids.size();
+  MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPI_UINT64_T, MPI_SUM, comm);
+  n_ = n;
+  const std::size_t n_rounds = (n_ + piece * n_ranks_ - 1) / (piece * n_ranks_);
+  std::vector<std::uint64_t> before;
+  for (std::size_t p = 0; p <= n_rounds * n_ranks_; ++p) before.push_back(std::min(n_, p * piece));
+  for (const std::int64_t bound : bounds_of(comm, ids, before))
+    begin_.push_back(static_cast<std::size_t>(std::lower_bound(ids.begin(), ids.end(), bound) - ids.begin()));
+}
+
+std::vector<std::int64_t> IdOrder::numbers() const {
+  struct Named {
+    std::int64_t id;
+    std::size_t from, place;  ///< a rank, and a place in its message
+  };
+  std::vector<std::int64_t> numbers;
+  numbers.reserve(ids_.size());
+  for (std::size_t round = 0; round < n_rounds(); ++round) {
+    std::vector<std::vector<std::int64_t>> out(n_ranks_), answers(n_ranks_);
+    for (std::size_t r = 0; r < n_ranks_; ++r) {
+      const auto* const first = ids_.data() + begin_[round * n_ranks_ + r];
+      out[r].assign(first, ids_.data() + begin_[round * n_ranks_ + r + 1]);
+    }
+    std::vector<Named> all;
+    const auto in = all_to_all(comm_, out);
+    for (std::size_t r = 0; r < n_ranks_; ++r) {
+      answers[r].resize(in[r].size());
+      for (std::size_t k = 0; k < in[r].size(); ++k) all.push_back({in[r][k], r, k});
+    }
+    std::sort(all.begin(), all.end(), [](const Named& a, const Named& b) { return a.id < b.id; });
+    for (std::size_t k = 0; k < all.size(); ++k)
+      answers[all[k].from][all[k].place] = static_cast<std::int64_t>(first(round) + k);
+    for (const auto& some : all_to_all(comm_, answers)) numbers.insert(numbers.end(), some.begin(), some.end());
+  }
+  return numbers;
+}
+
+}  // namespace umtet

@@ -1,0 +1,282 @@
+#include "pipeline/cli/program.h"
+
+#include <fmt/format.h>
+#include <malloc.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <variant>
+
+#include "pipeline/case/exit_code.h"
+#include "pipeline/case/interrupt.h"
+#include "pipeline/case/memory.h"
+#include "pipeline/case/stop_document.h"
+#include "pipeline/cli/command_line.h"
+#include "pipeline/meshing/check.h"
+#include "pipeline/meshing/part_mesher.h"
+#include "pipeline/output/case_diff.h"
+#include "pipeline/output/export_case.h"
+#include "pipeline/output/inspect.h"
+#include "pipeline/output/report.h"
+#include "pipeline/output/view_files.h"
+#include "pipeline/reports/certificate_json.h"
+#include "pipeline/reports/certificate_summary.h"
+#include "pipeline/run/evolve.h"
+#include "pipeline/run/run.h"
+
+namespace umtet {
+namespace {
+
+/// What goes to stdout: lines for people, or one document for programs.
+struct Output {
+  ExitCode code = ExitCode::Success;
+  std::string text;
+  Json document = Json::object();
+};
+
+std::string file_list(const std::vector<std::filesystem::path>& files) {
+  std::string out;
+  for (const auto& file : files) out += (out.empty() ? "files     " : "          ") + file.string() + "\n";
+  return out;
+}
+
+Json names(const std::vector<std::filesystem::path>& files) {
+  Json list = Json::array();
+  for (const auto& file : files) list.push_back(file.string());
+  return list;
+}
+
+Output output_of_files(const std::vector<std::filesystem::path>& files) {
+  return {ExitCode::Success, file_list(files), {{"files", names(files)}}};
+}
+
+std::vector<std::filesystem::path> exports_of(const CasePaths& paths, const std::vector<std::string>& formats,
+                                              const Parameters& parameters, Progress& progress) {
+  set_work_at_hand("export");
+  const CaseLock lock(paths.root);
+  return export_case(paths, formats, parameters, progress);
+}
+
+void require_case(const std::filesystem::path& folder) {
+  if (!std::filesystem::exists(folder)) throw UsageError(folder.string() + ": there is no such case");
+}
+
+/// Does the work of a command and says what goes to stdout.
+struct Execution {
+  const CommonOptions& options;
+  Progress& progress;
+  const RanksOfProgram& ranks;
+
+  Output operator()(const TextAnswer& command) const { return {ExitCode::Success, command.text, {}}; }
+  Output operator()(RunCommand& command) const;
+  Output operator()(EvolveCommand& command) const;
+  Output operator()(BatchCommand& command) const;
+  Output operator()(const InspectCommand& command) const;
+  Output operator()(const CheckCommand& command) const;
+  Output operator()(const ExportCommand& command) const;
+  Output operator()(const ReportCommand& command) const;
+  Output operator()(const ViewCommand& command) const;
+  Output operator()(const DiffCommand& command) const;
+};
+
+Output Execution::operator()(RunCommand& command) const {
+  RunRequest& request = command.request;
+  request.threads = options.threads;
+  if (for_one_process(request.parameters).empty()) request.ranks = ranks.mesher;
+  RunOutcome outcome = run_case(request, progress);
+  if (!command.formats.empty()) {
+    const CasePaths paths{request.case_folder, {}, request.stamps};
+    for (auto& file : exports_of(paths, command.formats, request.parameters, progress)) {
+      outcome.files.push_back(std::move(file));
+    }
+  }
+  progress.clear();
+  if (outcome.stages_run.empty()) {
+    progress.say(fmt::format("nothing to do: {} is up to date", request.case_folder.string()));
+  }
+  Json stages = Json::array();
+  for (const Stage stage : outcome.stages_run) stages.push_back(to_string(stage));
+  Output output;
+  output.code = outcome.code;
+  output.document = {{"case", request.case_folder.string()},
+                     {"stages_run", stages},
+                     {"files", names(outcome.files)},
+                     {"certificate", outcome.certificate ? to_json(*outcome.certificate) : Json(nullptr)}};
+  if (outcome.certificate) output.text = summary(*outcome.certificate);
+  output.text += file_list(outcome.files);
+  return output;
+}
+
+Output Execution::operator()(const CheckCommand& command) const {
+  set_work_at_hand("check");
+  const MeshCheck found = check_mesh(command.mesh, command.against, command.parameters, progress);
+  progress.clear();
+  return {
+      found.verdict.passes() ? ExitCode::Success : ExitCode::GateFailed, summary(found), {{"check", to_json(found)}}};
+}
+
+Output Execution::operator()(const InspectCommand& command) const {
+  set_work_at_hand("inspect");
+  const CloudInspection found = inspect_cloud(command.cloud, command.parameters, progress);
+  progress.clear();
+  return {ExitCode::Success, inspection_text(found), {{"inspection", to_json(found)}}};
+}
+
+Output Execution::operator()(EvolveCommand& command) const {
+  set_work_at_hand("evolve");
+  command.request.threads = options.threads;
+  const EvolveOutcome outcome = evolve(command.request, progress);
+  progress.clear();
+  return {outcome.code,
+          outcome.text + file_list(outcome.files),
+          {{"steps", outcome.steps}, {"files", names(outcome.files)}}};
+}
+
+Output Execution::operator()(BatchCommand& command) const {
+  command.request.timeout = options.timeout;
+  command.request.threads = std::max(1, options.threads / command.request.jobs);
+  const BatchOutcome outcome =
+      command.request.collect ? collect_batch(command.request, progress) : run_batch(command.request, progress);
+  progress.clear();
+  return {outcome.code,
+          outcome.text + file_list(outcome.files),
+          {{"scans", outcome.rows}, {"files", names(outcome.files)}}};
+}
+
+Output Execution::operator()(const ExportCommand& command) const {
+  require_case(command.case_folder);
+  const auto files = exports_of({command.case_folder}, command.formats, command.parameters, progress);
+  progress.clear();
+  return output_of_files(files);
+}
+
+Output Execution::operator()(const ReportCommand& command) const {
+  set_work_at_hand("report");
+  require_case(command.case_folder);
+  const CasePaths paths{command.case_folder};
+  const CaseLock lock(paths.root);
+  progress.report("report", "write", .5);
+  report_case(paths);
+  progress.clear();
+  return output_of_files({paths.report()});
+}
+
+Output Execution::operator()(const ViewCommand& command) const {
+  set_work_at_hand("view");
+  require_case(command.case_folder);
+  const CasePaths paths{command.case_folder};
+  const CaseLock lock(paths.root);
+  const std::vector<std::filesystem::path> files = write_view(paths, progress);
+  progress.clear();
+  return output_of_files(files);
+}
+
+Output Execution::operator()(const DiffCommand& command) const {
+  set_work_at_hand("diff");
+  const CaseDiff found = diff_cases({command.case_a}, {command.case_b}, progress);
+  progress.clear();
+  return {ExitCode::Success, diff_text(found), {{"diff", to_json(found)}}};
+}
+
+/// Limits of memory and time that this process is to keep. Those of a batch are for its scans, each a process.
+void keep_limits(const Command& command, const CommonOptions& options) {
+  if (std::holds_alternative<BatchCommand>(command)) return;
+  const OutputParameters limits = std::visit(
+      [](const auto& c) {
+        if constexpr (requires { c.parameters; }) return c.parameters.output();
+        if constexpr (requires { c.request; }) return c.request.parameters.output();
+        return OutputParameters{};
+      },
+      command);
+  if (limits.max_memory > 0) limit_memory(1e9 * limits.max_memory, options.threads);
+  if (options.timeout > 0) stop_after(options.timeout);
+}
+
+/// Of several processes. \throw UsageError for what one process does
+void require_ranks(const Command& command) {
+  const auto* run = std::get_if<RunCommand>(&command);
+  if (!run) throw UsageError("one process does that: without mpirun");
+  const std::string reason = for_one_process(run->request.parameters);
+  if (!reason.empty())
+    throw UsageError(reason +
+                     " is for one process: several of them mesh a formula or a grid, in a lattice without walls");
+}
+
+/// @param json  is set as soon as the call is understood, for the document of a failure
+Output execute(int argc, char** argv, const RanksOfProgram& ranks, bool& json, std::string& name) {
+  CommandLine call = parse_command_line(argc, argv);
+  CommonOptions& options = call.options;
+  Progress progress(options.progress, options.verbosity);
+  const Execution execution{options, progress, ranks};
+  if (const auto* answer = std::get_if<TextAnswer>(&call.command)) return execution(*answer);
+  json = options.json;
+  name = call.name;
+  if (json) answer_stops_in_json(name.c_str());
+  if (ranks.n > 1) require_ranks(call.command);
+  if (options.threads == 0) options.threads = std::max(1, tbb::info::default_concurrency() / ranks.n_here);
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(options.threads));
+  keep_limits(call.command, options);
+  return std::visit(execution, call.command);
+}
+
+/// To stderr, if it can be written; where it cannot, the exit code has to do. (fmt::print would throw.)
+template <class... T>
+void complain(fmt::format_string<T...> format, T&&... args) {
+  const std::string text = fmt::format(format, std::forward<T>(args)...);
+  std::fwrite(text.data(), 1, text.size(), stderr);
+}
+
+bool print(const std::string& text) {
+  return std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv, const RanksOfProgram& ranks) {
+  // A call that cannot be understood still gets a document if --json is in it.
+  bool json = std::any_of(argv, argv + argc, [](const char* a) { return std::string_view(a) == "--json"; });
+  if (json) answer_stops_in_json("");
+  std::string command;
+  Output output;
+  std::optional<Failure> failure;
+  try {
+    output = execute(argc, argv, ranks, json, command);
+  } catch (...) {
+    failure = failure_of(std::current_exception());
+  }
+  if (failure) {
+    output.code = failure->code;
+    output.text.clear();
+    output.document = {{"error", failure->message}};
+    output.document.update(failure->evidence);
+  }
+  if (json) {
+    Json document = {{"schema", 1}, {"command", command}, {"exit_code", static_cast<int>(output.code)}};
+    if (output.document.is_object()) document.update(output.document);  // --version and --help have none
+    output.text = document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  }
+  take_last_word();
+  if (failure) complain("umtet: {}\n", failure->message);
+  if (!print(output.text)) {
+    complain("umtet: cannot write to stdout\n");
+    if (output.code == ExitCode::Success) output.code = ExitCode::FileTrouble;
+  }
+  say_no_more();
+  return static_cast<int>(output.code);
+}
+
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_MAX, 0);
+  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+  mallopt(M_TOP_PAD, 16 << 20);
+#endif
+}
+
+}  // namespace umtet
