@@ -130,7 +130,7 @@ void PartRun::fit() {
 
 void PartRun::repair() {
   RepairParams params = params_.repair;
-  params.target = std::min(params.target, costs_.repair_target);
+  params.target += costs_.repair_target - kQualityTarget;
   params.reach = std::min(params.reach, costs_.repair_reach);
   const PartRepair made = repair_parts(comm_, part_, partition_, psi_, classification_, params, layer_, inside_);
   for (const std::int64_t there : made.flipped) {

@@ -30,7 +30,7 @@ std::vector<SentTet> own_bad_tets(const LatticePart& part, ImplicitFunctionRef p
   std::size_t n_evaluations = 0;
   const auto& ids = layer.background_vertex;
   std::vector<SentTet> list;
-  for (const BadTet& bad : bad_tets(layer, inside, psi, params, n_evaluations)) {
+  for (const BadTet& bad : bad_tets(layer, inside, psi, params.target + params.lift, n_evaluations)) {
     if (!part.own().test(bad.tet[0])) continue;
     SentTet sent{};
     sent.badness = bad.badness;

@@ -94,8 +94,8 @@ def figure_15(data, umtet):
         for place, background in enumerate(by_paper):
             case = data / "figure_15" / f"{background}_{mode}"
             if not (case / "certificate.json").exists():
-                subprocess.run([umtet, "mesh", "--implicit", drawn_figures.EQUATION_9, "--box=-2.1,-2.1,-1.05,2.1,2.1,1.05", "--tets", "100000",
-                                "--background", background, "--mode", mode, "-o", case], check=True)
+                drawn_figures.run(umtet, "mesh", "--implicit", drawn_figures.EQUATION_9, "--box=-2.1,-2.1,-1.05,2.1,2.1,1.05", "--tets",
+                                  "100000", "--background", background, "--mode", mode, "-o", case)
             q = json.loads((case / "certificate.json").read_text())["quality"]["min"]
             axis.bar(place + .27 * k, q, .25, color=colour, label=f"--mode {mode}" if place == 0 else None)
             axis.text(place + .27 * k, q, f"{q:.3f}", ha="center", va="bottom", fontsize=7)

@@ -43,4 +43,16 @@ void take_in_blocks(ImplicitFunctionRef psi, std::size_t n, const Context& conte
   }
 }
 
+/// psi(point(i)) for every i < n: by all threads, or in blocks. \throw Cancelled
+template <class Point>
+std::vector<double> values_at(ImplicitFunctionRef psi, std::size_t n, const Context& context, const Point& point) {
+  std::vector<double> value(n);
+  if (psi.side_by_side()) {
+    take_in_blocks(psi, n, context, point, [&](std::size_t i, double psi_i) { value[i] = psi_i; });
+  } else {
+    polled_parallel_for(n, kValuesPerPoll * 16, context, [&](std::size_t i) { value[i] = psi.value(point(i)); });
+  }
+  return value;
+}
+
 }  // namespace umtet

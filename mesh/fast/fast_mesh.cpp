@@ -309,7 +309,8 @@ void FastRun::measure_assumptions() {
 void FastRun::repair_classification() {
   if (!costs_) return;
   RepairParams params = params_.repair;
-  params.target = std::min(params.target, costs_->repair_target);
+  params.target += costs_->repair_target - kQualityTarget;
+  if (!background_.is_lattice()) params.lift = 0;
   params.reach = std::min(params.reach, costs_->repair_reach);
   params.slides = params.slides && !memory_;
   RepairReport repaired =
@@ -364,22 +365,6 @@ void FastRun::fit() {
 }
 
 }  // namespace
-
-std::vector<std::string> problems(const FastParams& params) {
-  std::vector<std::string> list;
-  if (params.layers < 1) list.push_back("layers = " + std::to_string(params.layers) + ": must be >= 1");
-  const auto add = [&](const char* name, const std::vector<std::string>& more) {
-    for (const std::string& problem : more) list.push_back(std::string(name) + "." + problem);
-  };
-  if (!(params.update_margin >= 0)) {
-    list.push_back("update_margin = " + std::to_string(params.update_margin) + ": must be >= 0");
-  }
-  add("classification", problems(params.classification));
-  add("projection", problems(params.projection));
-  add("smoothing", problems(params.smoothing));
-  add("repair", problems(params.repair));
-  return list;
-}
 
 ChosenSubmesh classified_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi,
                                  const SubmeshParams& submesh, const FastParams& params, const Context& context,

@@ -21,8 +21,10 @@ struct FastParams {
   double update_margin = .033;
   RepairParams repair;
 
-  /// Makes `quality` the mean ratio that every tet is to reach, in place of kQualityTarget; in (0, 1)
-  void set_quality_target(double quality) { smoothing.target = repair.target = quality; }
+  /// The mean ratio that every tet is to reach in the end, on lattices of A15 and Z.
+  double quality_target() const { return repair.target + repair.lift; }
+  /// Makes `quality` that. In (repair.lift, 1); more than the default takes more time, and not all tets may reach it.
+  void set_quality_target(double quality) { smoothing.target = repair.target = quality - repair.lift; }
 };
 
 /// Every broken constraint, not just the first.

@@ -4,12 +4,11 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "mesh/base/id_blocks.h"
 #include "mesh/core/asking_psi.h"
-#include "mesh/core/tet_quality.h"
+#include "mesh/fast/detail/flat_tets.h"
 
 namespace umtet {
 namespace {
@@ -152,24 +151,10 @@ void begin_where_kept(const std::vector<KeptVertex>& kept, const ProjectionParam
     V[v] = k->final;
     moves[v] = layer.layer.role[v] != ActiveLayer::Role::Fixed ? 1 : 0;
   }
-  const double least_f = f_of_quality(projection.least_quality);
-  const auto is_flat = [&](const Tet& t) {
-    const double six = volume6(V[t[0]], V[t[1]], V[t[2]], V[t[3]]);
-    const double L = sum_of_squared_edges(V[t[0]], V[t[1]], V[t[2]], V[t[3]]);
-    return !(six * std::abs(six) >= least_f * (L * L * L));
-  };
-  const auto goes_back = [&](int v) { return moves[v] != 0 && V[v] != background_V[v]; };
-  for (bool again = true; again;) {  // a vertex that goes back may leave a tet flat that was not
-    again = false;
-    for (const Tet& t : layer.layer.C) {
-      if (!is_flat(t)) continue;
-      for (const int v : t) {
-        if (!goes_back(v)) continue;
-        V[v] = background_V[v];
-        again = true;
-      }
-    }
-  }
+  const auto has_left = [&](int v) { return moves[v] != 0 && V[v] != background_V[v]; };
+  detail::go_back_where_flat(layer.layer, projection.least_quality, has_left, [&](int v) {
+    if (has_left(v)) V[v] = background_V[v];
+  });
 }
 
 }  // namespace umtet

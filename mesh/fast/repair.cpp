@@ -3,14 +3,11 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
-#include <atomic>
 #include <numeric>
 #include <set>
 #include <stdexcept>
 #include <thread>
 
-#include "mesh/core/asking_psi.h"
-#include "mesh/core/max_min.h"
 #include "mesh/core/tet_quality.h"
 #include "mesh/fast/detail/flip_trials.h"
 #include "mesh/fast/detail/patch_ranges.h"
@@ -32,6 +29,9 @@ constexpr std::size_t kFewPatches = 600, kTetsPerPatch = 4;
 // Where h shows the body a tet is mended by three to eight patches. Where it does not, fifty to a hundred are tried for
 // one that helps: kFewPatches and this many for each that did are enough to tell.
 constexpr std::size_t kPatchesPerSuccess = 16;
+// Tets that are lifted take the most promising flips alone, in at most kLiftPatches patches. A body that h shows needs
+// fewer; whether h does, kFewLiftPatches and so many for each that helped tell.
+constexpr std::size_t kLiftPatches = 500, kFewLiftPatches = 100, kLiftPatchesPerSuccess = 4;
 // Outside of lattices one tet in forty may be below the target, and a patch never without one. So targets rise from the
 // worst tet on, and there are few candidates a tet: four of five flips that help are among the first six. That takes up
 // to kRisingPatches; what is left is tried once more by all candidates, up to kFewPatches. `graded_bodies.py` and
@@ -71,8 +71,8 @@ class Repair {
 
   /// What a pass over bad tets may cost, and where it began.
   struct Pass {
-    std::size_t most_patches;
-    std::size_t tries = 0, kept = 0;
+    std::size_t most_patches, few = kFewPatches, per_success = kPatchesPerSuccess;
+    std::size_t tries = 0, kept = 0;  ///< before it
   };
 
   /// Misaligned ones before all others.
@@ -87,6 +87,7 @@ class Repair {
   void slide(const Context& context);
   void again(double target);
   void mend_lattice(const Context& context);
+  void lift(const Context& context);
   void mend_rising(const FlipEffort& effort, std::size_t most, const Context& context);
   void retry_with(double target, const FlipEffort& effort);
   bool choose_round();
@@ -105,7 +106,7 @@ class Repair {
   RemoteLayer* remote_;  ///< in place of layer_, which is empty then; or null
   IdSet& inside_;
   std::size_t most_patches() const {
-    const std::size_t worth_it = kFewPatches + kPatchesPerSuccess * (kept_.size() - pass_.kept);
+    const std::size_t worth_it = pass_.few + pass_.per_success * (kept_.size() - pass_.kept);
     return pass_.tries + std::min(pass_.most_patches, worth_it);
   }
   Pass pass_;
@@ -116,7 +117,7 @@ class Repair {
   std::set<std::int64_t> hopeless_;  ///< vertices of tets that nothing helped
   std::vector<Bad> todo_;            ///< from next_ on
   std::size_t next_ = 0;
-  std::vector<Bad> later_;                       ///< not below target_, but below params_.target
+  std::vector<Bad> later_;                       ///< not below target_, but below another that comes
   std::vector<TetIds> waiting_;                  ///< before todo_
   std::vector<std::vector<std::int64_t>> kept_;  ///< centres of the patches
   IdList moved_;                                 ///< vertices that patches have moved
@@ -207,7 +208,7 @@ void Repair::keep(const TetIds& tet, const FlipTrials::Best& best) {
 /// Puts the tets of a layer that are below the target, or have a misaligned face, on the list, the worst first.
 void Repair::look(const BackgroundLayer& cut) {
   const std::size_t first = todo_.size();
-  for (const BadTet& bad : bad_tets(cut, inside_, psi_, params_, report_.psi_evaluations))
+  for (const BadTet& bad : bad_tets(cut, inside_, psi_, params_.target + params_.lift, report_.psi_evaluations))
     (bad.badness < target_ ? todo_ : later_).push_back(bad);
   std::stable_sort(todo_.begin() + static_cast<std::ptrdiff_t>(first), todo_.end(), is_worse);
 }
@@ -215,7 +216,7 @@ void Repair::look(const BackgroundLayer& cut) {
 void Repair::begin() {
   if (!remote_) return look(layer_);
   know(remote_->corners());
-  todo_ = remote_->bad();
+  for (const Bad& bad : remote_->bad()) (bad.badness < target_ ? todo_ : later_).push_back(bad);
   std::stable_sort(todo_.begin(), todo_.end(), is_worse);
 }
 
@@ -309,9 +310,25 @@ void Repair::mend_lattice(const Context& context) {
   }
 }
 
+/// What is above the target by less than params_.lift.
+void Repair::lift(const Context& context) {
+  retry_with(params_.target + params_.lift, kFewFlips);
+  pass_ = {std::min(pass_.most_patches, kLiftPatches), kFewLiftPatches, kLiftPatchesPerSuccess, report_.tries,
+           kept_.size()};
+  todo_ = std::move(later_);
+  std::stable_sort(todo_.begin(), todo_.end(), is_worse);
+  next_ = 0;
+  given_up_.clear();
+  mend(context);
+  if (params_.sharper) {
+    again(params_.target + params_.lift);
+    mend(context);
+  }
+}
+
 /// What is on the list and below a target that rises to params_.target, by target_step, in at most so many patches.
 void Repair::mend_rising(const FlipEffort& effort, std::size_t most, const Context& context) {
-  pass_ = {most, report_.tries, kept_.size()};
+  pass_ = {.most_patches = most, .tries = report_.tries, .kept = kept_.size()};
   later_ = std::move(todo_);
   const double step = params_.target_step > 0 ? params_.target_step : params_.target;
   for (auto k = static_cast<int>(params_.target / step) - 1; k >= 0 && report_.tries < most_patches(); --k) {
@@ -330,9 +347,10 @@ void Repair::mend_rising(const FlipEffort& effort, std::size_t most, const Conte
 RepairReport Repair::operator()(const Context& context) {
   if (params_.max_tries > 0) begin();
   report_.bad_before = todo_.size();
-  if (todo_.empty()) return std::move(report_);
+  if (todo_.empty() && later_.empty()) return std::move(report_);
   if (background_.is_lattice()) {
-    mend_lattice(context);
+    if (!todo_.empty()) mend_lattice(context);
+    if (params_.lift > 0) lift(context);
   } else {
     mend_rising(kFewFlips, std::min(pass_.most_patches, kRisingPatches), context);
     report_.given_up = given_up_.size();
@@ -343,7 +361,7 @@ RepairReport Repair::operator()(const Context& context) {
     mend_rising({.sharper = params_.sharper}, kFewPatches, context);
   }
   if (params_.slides) {
-    retry_with(params_.target, {});
+    retry_with(params_.target + params_.lift, {});
     slide(context);
   }
   report_.psi_evaluations += trials_.psi_evaluations();
@@ -362,42 +380,12 @@ std::vector<std::string> problems(const RepairParams& params) {
   };
   if (!(params.target > 0 && params.target < 1)) add("target", std::to_string(params.target), "in (0, 1)");
   if (params.reach < 1) add("reach", std::to_string(params.reach), ">= 1");
+  if (!(params.lift >= 0)) add("lift", std::to_string(params.lift), ">= 0");
   if (!(params.target_step >= 0)) add("target_step", std::to_string(params.target_step), ">= 0");
   if (params.max_tries < 0) add("max_tries", std::to_string(params.max_tries), ">= 0");
   for (const std::string& problem : problems(params.projection)) list.push_back("projection." + problem);
   for (const std::string& problem : problems(params.smoothing)) list.push_back("smoothing." + problem);
   return list;
-}
-
-std::vector<BadTet> bad_tets(const BackgroundLayer& layer, const IdSet& inside_set, ImplicitFunctionRef psi,
-                             const RepairParams& params, std::size_t& n_evaluations) {
-  const std::vector<Vec3>& V = layer.layer.V;
-  const std::vector<Tet>& C = layer.layer.C;
-  const std::vector<std::uint8_t> inside = inside_of(layer, inside_set);
-  std::vector<double> badness(C.size(), 1);
-  std::atomic<std::size_t> evaluations = 0;
-  // Nearly all tets are above the target, which takes no root to see.
-  const double enough = (1 + 1e-12) * f_of_quality(params.target);
-  for_each_asking(psi, C.size(), C.size(), {}, [&](std::size_t k) {
-    const Tet& t = C[k];
-    const Vec3 &p = V[t[0]], &q = V[t[1]], &r = V[t[2]], &s = V[t[3]];
-    const double six = volume6(p, q, r, s), L = sum_of_squared_edges(p, q, r, s);
-    if (!(six * std::abs(six) >= enough * (L * L * L))) badness[k] = mean_ratio(p, q, r, s);
-    Triangle f;
-    if (!positive_face(t, inside, f)) return;
-    std::size_t n = 0;
-    const double cosine = normal_cosine(psi, V[f[0]], V[f[1]], V[f[2]], layer.layer.h_at(f[0]), n);
-    evaluations.fetch_add(n, std::memory_order_relaxed);
-    if (cosine < kMisalignedCosine) badness[k] = std::min(badness[k], cosine);
-  });
-  n_evaluations += evaluations;
-  const auto& id = layer.background_vertex;
-  std::vector<BadTet> bad;
-  for (std::size_t k = 0; k < C.size(); ++k) {
-    const Tet& t = C[k];
-    if (badness[k] < params.target) bad.push_back({badness[k], {id[t[0]], id[t[1]], id[t[2]], id[t[3]]}});
-  }
-  return bad;
 }
 
 namespace {

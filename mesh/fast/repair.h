@@ -11,6 +11,7 @@
 #include "mesh/classification/classification.h"
 #include "mesh/core/quality_target.h"
 #include "mesh/fast/backtracking_projection.h"
+#include "mesh/fast/bad_tets.h"
 #include "mesh/submesh/chosen_submesh.h"
 #include "mesh/submesh/linked_active_layer.h"
 
@@ -28,6 +29,9 @@ struct RepairParams {
   /// What nothing mends then is tried again with a target so much lower. Outside of lattices targets rise by so much
   /// from the worst tet on. >= 0, 0: there is one target
   double target_step = .01;
+  /// On lattices, when all is mended: tets that are above the target by less than this are mended up to it, in few
+  /// patches. >= 0, 0: they stay as they are
+  double lift = .01;
   bool slides = true;  ///< patches relax_tangentially() when all is mended: their smoothing has undone that
   /// Edges: a vertex higher than this is not flipped. More than ClassificationParams::reach_out, because here the mesh
   /// itself is looked at and not a cost of distance; >= 0
@@ -73,8 +77,9 @@ struct RepairReport {
 /// new spot where the boundary is no manifold, and not where the body or the gap is thin. So topology stays.
 ///
 /// What nothing helps is tried with a sharper norm, at first with the states it has; then against a target lower by
-/// target_step. Outside of lattices, where many tets are below the target, it rises from the worst tet on, and what the
-/// few most promising flips do not help is tried in full at last, the sharper norm with it.
+/// target_step; at last tets above the target by less than lift are mended up to it. Outside of lattices, where many
+/// tets are below the target, it rises from the worst tet on, and what the few most promising flips do not help is
+/// tried in full at last, the sharper norm with it.
 ///
 /// Tets far from each other are mended at once. The same bytes for any number of threads.
 /// @param layer   smoothed; its coordinates stay as they are, `moved` says what has changed since
@@ -86,17 +91,6 @@ RepairReport repair(const BackgroundMesh& background, const VertexLinks& links, 
                     const BackgroundLayer& layer, IdSet& inside, const Context& context = {},
                     const std::vector<KeptVertex>& kept = {});
 
-/// A tet of a layer that repair has to look at.
-struct BadTet {
-  double badness;  ///< the cosine of its face if that is misaligned, else Q: folded over ones are the worst
-  std::array<std::int64_t, 4> tet;
-};
-
-/// The tets of a layer that are below the target or have a misaligned face, in its order: what repair() begins with.
-/// @param n_evaluations  is raised by the number of values of psi
-std::vector<BadTet> bad_tets(const BackgroundLayer& layer, const IdSet& inside, ImplicitFunctionRef psi,
-                             const RepairParams& params, std::size_t& n_evaluations);
-
 /// A vertex before repair.
 struct LayerVertex {
   std::int64_t vertex;
@@ -107,7 +101,7 @@ struct LayerVertex {
 /// A layer that other processes have, and this one repairs: no more than max_patches places of it.
 class RemoteLayer {
  public:
-  /// bad_tets() of all of it, in the order of the whole layer.
+  /// bad_tets() of all of it, those up to target + lift, in the order of the whole layer.
   virtual const std::vector<BadTet>& bad() const = 0;
   /// Their corners.
   virtual const std::vector<LayerVertex>& corners() const = 0;
@@ -120,8 +114,8 @@ class RemoteLayer {
   ~RemoteLayer() = default;
 };
 
-/// The same for a layer elsewhere: what is done for a tet depends on what is within reach + 3 edges of its first vertex,
-/// and that is asked for before. @param inside  empty; receives what has been asked for, with the changes
+/// The same for a layer elsewhere: what is done for a tet depends on what is within reach + 3 edges of its first
+/// vertex, and that is asked for before. @param inside  empty; receives what has been asked for, with the changes
 RepairReport repair(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
                     const ClassificationParams& classification, const RepairParams& params, RemoteLayer& layer,
                     IdSet& inside, const Context& context = {});

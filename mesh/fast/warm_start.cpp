@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <utility>
 
 #include "mesh/core/asking_psi.h"
-#include "mesh/core/max_min.h"
-#include "mesh/core/tet_quality.h"
+#include "mesh/fast/detail/flat_tets.h"
 #include "mesh/implicit/closest_point.h"
 
 namespace umtet {
@@ -139,26 +137,13 @@ void Start::draw_along() {
 }
 
 void Start::go_back_where_flat() {
-  const double least_f = f_of_quality(projection_.least_quality);
-  const auto is_flat = [&](const Tet& t) {
-    const Vec3 &a = layer_.V[t[0]], &b = layer_.V[t[1]], &c = layer_.V[t[2]], &d = layer_.V[t[3]];
-    const double V = volume6(a, b, c, d), L = sum_of_squared_edges(a, b, c, d);
-    return !(V * std::abs(V) >= least_f * (L * L * L));
-  };
-  const auto has_left = [&](int v) { return layer_.V[v] != background_V_[v]; };
-  // A vertex that goes back may leave a tet flat that was not.
-  for (bool again = true; again;) {
-    again = false;
-    for (const Tet& t : layer_.C) {
-      if (!is_flat(t) || std::none_of(t.begin(), t.end(), has_left)) continue;
-      again = true;
-      for (const int v : t) {
+  detail::go_back_where_flat(
+      layer_, projection_.least_quality, [&](int v) { return layer_.V[v] != background_V_[v]; },
+      [&](int v) {
         layer_.V[v] = background_V_[v];
         recalled_[v] = 0;
         is_on_surface_ &= layer_.role[v] != ActiveLayer::Role::Boundary;
-      }
-    }
-  }
+      });
 }
 
 }  // namespace

@@ -77,6 +77,12 @@ GradedMesh::GradedMesh(const Grading& grading)
   offsets_ = smooth_transitions(tets_, tets_.transition_vertices(), grading.transition_sweeps);
 }
 
+GradedMesh GradedMesh::around(const IdSet& vertices, int rings, int transition_sweeps) const {
+  GradedMesh some(finest_, unit_, origin_, OctreeTets(tets_.leaves_at(tets_.with_rings(vertices, rings))));
+  some.offsets_ = smooth_transitions(some.tets_, some.tets_.transition_vertices(), transition_sweeps);
+  return some;
+}
+
 Eigen::AlignedBox3d GradedMesh::box() const {
   const GridPoint &low = tets_.lowest(), &high = tets_.highest();
   return {Vec3(origin_ + unit_ * Vec3(low[0], low[1], low[2])),

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "mesh/core/tet_mesh.h"
@@ -45,6 +46,12 @@ class GradedMesh {
   ///        than kMaxOctreeLevel levels or max_leaves, or 2^31 vertices
   explicit GradedMesh(const Grading& grading);
 
+  /// The same with those leaves alone that are around these vertices and vertices within `rings` edges of them, and with
+  /// siblings of these. Vertices and tets keep their keys. The boundary is beyond all these vertices, and if rings > 0
+  /// the tets at those given are the same.
+  /// @param transition_sweeps  as in Grading
+  GradedMesh around(const IdSet& vertices, int rings, int transition_sweeps = 8) const;
+
   std::int64_t n_vertices() const { return tets_.n_vertices(); }
   std::int64_t n_tets() const { return tets_.n_tets(); }
   std::int64_t n_leaves() const { return tets_.n_leaves(); }
@@ -80,6 +87,9 @@ class GradedMesh {
   std::int64_t tet_at(const Vec3& x) const;
 
  private:
+  GradedMesh(double finest, double unit, Vec3 origin, OctreeTets tets)
+      : finest_(finest), unit_(unit), origin_(std::move(origin)), tets_(std::move(tets)) {}
+
   double finest_ = 0, unit_ = 0;
   Vec3 origin_;
   OctreeTets tets_;

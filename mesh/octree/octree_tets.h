@@ -38,6 +38,11 @@ class OctreeTets {
   bool bcc_link(std::int64_t vertex, BccLink& vertices) const;
   std::int64_t neighbor(std::int64_t tet, int face) const;
   bool on_boundary(std::int64_t vertex) const;
+  /// These vertices and those within `rings` edges of them.
+  IdSet with_rings(const IdSet& vertices, int rings) const;
+  /// Sorted keys of the leaves around these vertices, and of siblings of these: of an octree in which tets are on all
+  /// sides of each. They are other tets only where the edge of a leaf is no longer split.
+  std::vector<std::uint64_t> leaves_at(const IdSet& vertices) const;
   /// Mean length of the edges at a vertex.
   double mean_edge(std::int64_t vertex) const;
   /// Some tet with the centre of the leaf that a point is in, or -1.
@@ -81,6 +86,7 @@ class OctreeTets {
   Star star_of(std::int64_t vertex) const;
   void add_star_of_centre(int leaf, Star& star) const;
   void add_star_of_point(const Around& around, Star& star) const;
+  std::uint64_t parent(int leaf) const;
   bool is_regular_centre(int leaf) const;
   bool is_regular_point(const Around& around) const;
   /// Whether all tets at a vertex are BCC tets of one size.

@@ -18,13 +18,8 @@ constexpr std::size_t kPart = 1 << 12;
 
 CutTets cut_tets(const GradedMesh& mesh, ImplicitFunctionRef psi, const Context& context) {
   const auto n_vertices = static_cast<std::size_t>(mesh.n_vertices());
-  std::vector<double> value(n_vertices);
-  const auto at = [&](std::size_t v) { return mesh.position(static_cast<std::int64_t>(v)); };
-  if (psi.side_by_side()) {
-    take_in_blocks(psi, n_vertices, context, at, [&](std::size_t v, double psi_v) { value[v] = psi_v; });
-  } else {
-    polled_parallel_for(n_vertices, kValuesPerPoll * 16, context, [&](std::size_t v) { value[v] = psi.value(at(v)); });
-  }
+  const std::vector<double> value =
+      values_at(psi, n_vertices, context, [&](std::size_t v) { return mesh.position(static_cast<std::int64_t>(v)); });
   const auto n_tets = static_cast<std::size_t>(mesh.n_tets());
   std::vector<std::vector<std::array<std::int64_t, 4>>> of_part((n_tets + kPart - 1) / kPart);
   polled_parallel_for(of_part.size(), 64, context, [&](std::size_t part) {

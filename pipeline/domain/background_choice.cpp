@@ -7,8 +7,11 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "mesh/background/a15_box.h"
+#include "mesh/base/id_set.h"
+#include "mesh/core/asking_psi.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "mesh/octree/graded_mesh.h"
 #include "mesh/sizes/graded_size.h"
@@ -171,13 +174,17 @@ double BackgroundChoice::least_h(const Domain& domain) const {
   return h * h_ratio_of_tets(expected_tets(domain, h) / static_cast<double>(parameters_.mesh().max_tets));
 }
 
-/// Of the cubes that meet the box and, as far as the slope of psi is known, are near the body; several bodies are not
-/// asked for.
-BackgroundMesh BackgroundChoice::graded(const Domain& domain, double h) const {
-  // Beside the body there have to be two edges and more; a cube has edges of its width.
+/// Of cubes that meet the box. Where one body alone has been asked for: first without those that the slope of psi shows
+/// to be far from it, then with those alone that are some edges from a vertex in it.
+BackgroundMesh BackgroundChoice::graded(const Domain& domain, double h, const Context& context) const {
+  // Tets with a vertex inside end at those one edge from it. These may be taken to be inside, too, as long as all their
+  // tets are there.
+  constexpr int kRings = 1;
+  // Two edges and more; a cube has edges of its width.
   constexpr double kWidthsOff = 3;
   const ImplicitFunctionRef psi = domain.psi();
-  const double steepest = graded_->n_domains() > 1 ? std::numeric_limits<double>::infinity() : domain.steepest();
+  const bool is_alone = graded_->n_domains() == 1;
+  const double steepest = is_alone ? domain.steepest() : std::numeric_limits<double>::infinity();
   const auto sizes = sizes_for(h);
   Grading grading{.box = domain.box, .finest = h, .size = {}, .tolerance = kSizeTolerance};
   grading.size = [&](const Vec3& x, double half) { return cube_size(*sizes, x, half); };
@@ -185,17 +192,29 @@ BackgroundMesh BackgroundChoice::graded(const Domain& domain, double h) const {
     const bool meets_box = ((x - domain.box.center()).cwiseAbs() - .5 * domain.box.sizes()).maxCoeff() < half;
     return meets_box && !(psi.value(x) > steepest * (std::sqrt(3.) + 2 * kWidthsOff) * half);
   };
-  return BackgroundMesh(GradedMesh(grading));
+  if (!is_alone) return BackgroundMesh(GradedMesh(grading));
+  const int sweeps = std::exchange(grading.transition_sweeps, 0);
+  const GradedMesh all(grading);
+  const std::vector<double> value =
+      values_at(psi, static_cast<std::size_t>(all.n_vertices()), context,
+                [&](std::size_t v) { return all.position(static_cast<std::int64_t>(v)); });
+  IdSet inside(all.n_vertices());
+  for (std::size_t v = 0; v < value.size(); ++v) {
+    if (value[v] < 0) inside.insert(static_cast<std::int64_t>(v));
+  }
+  if (inside.is_empty_around(0, all.n_vertices())) return BackgroundMesh(all);
+  return BackgroundMesh(all.around(inside, kRings, sweeps));
 }
 
-SizedBackground BackgroundChoice::make(const Domain& domain, double h, std::int64_t n_tets, double allowed) const {
+SizedBackground BackgroundChoice::make(const Domain& domain, double h, std::int64_t n_tets, double allowed,
+                                       const Context& context) const {
   const auto expected = [&](const BackgroundMesh& background) {
     const double n = n_tets > 0 ? static_cast<double>(n_tets) : expected_tets(domain, h);
     return std::min(n, static_cast<double>(background.n_tets()));
   };
   try {
     BackgroundMesh background = given_    ? *given_
-                                : graded_ ? graded(domain, h)
+                                : graded_ ? graded(domain, h, context)
                                 : walls_  ? BackgroundMesh(a15_box(domain.box, h))
                                           : BackgroundMesh(*tiling_, domain.box, h);
     require_memory(background, expected(background), allowed);

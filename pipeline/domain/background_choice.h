@@ -66,7 +66,8 @@ class BackgroundChoice {
   /// @param n_tets  that are wanted, or 0
   /// @param allowed  bytes
   /// \throw ResourceLimit \pre edge_length() has been called if it is graded
-  SizedBackground make(const Domain& domain, double h, std::int64_t n_tets, double allowed) const;
+  SizedBackground make(const Domain& domain, double h, std::int64_t n_tets, double allowed,
+                       const Context& context = {}) const;
 
  private:
   bool may_be_graded(const Domain& domain) const;
@@ -74,7 +75,7 @@ class BackgroundChoice {
   EdgeLength graded_edge_length(const Domain& domain, const Context& context) const;
   /// The sizes for an h, kept for the next call.
   std::shared_ptr<const SizeField> sizes_for(double h) const;
-  BackgroundMesh graded(const Domain& domain, double h) const;
+  BackgroundMesh graded(const Domain& domain, double h, const Context& context) const;
 
   const Parameters& parameters_;
   std::optional<BackgroundMesh> given_;

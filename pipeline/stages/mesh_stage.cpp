@@ -69,7 +69,7 @@ MeshLines MeshStage::lines() const {
 SizedBackground MeshStage::background_of(double h) {
   stop_if_interrupted();
   const Parameters& p = context_.parameters;
-  SizedBackground made = background_.make(domain_, h, p.mesh().tets, allowed_bytes(p));
+  SizedBackground made = background_.make(domain_, h, p.mesh().tets, allowed_bytes(p), call());
   const double n = background_.expected_tets(domain_, h), n_moving = kMovingTets * domain_.size().area / (h * h);
   require_disk(context_.paths.root, p.mesh().keep_iterates ? n * static_cast<double>(3 + p.mesh().projection_passes)
                                                            : n + 2 * std::min(n, n_moving));

@@ -61,7 +61,7 @@ TEST(LeastQuality, DoesNotDependOnWhereTheLatticeLies) {
     const MeshCertificate c = domains::certificate_of(r, domain, h);
     for (const std::string& reason : failures(c)) ADD_FAILURE() << reason;
     EXPECT_EQ(c.boundary.genus, domain.genus);
-    EXPECT_GE(c.quality.min, .82);
+    EXPECT_GE(c.quality.min, .83);
     EXPECT_GE(c.quality.p01, .84);
     EXPECT_GE(c.quality.dihedral_min_deg, 35);
     EXPECT_LE(c.quality.dihedral_max_deg, 116);

@@ -76,7 +76,7 @@ Tunable good_in_a15() {
 Tunable quality_target() {
   return {"kQualityTarget",
           {.8, .81, .83, .84},
-          [](Settings& s, double value) { s.fast.set_quality_target(value); },
+          [](Settings& s, double value) { s.fast.smoothing.target = s.fast.repair.target = value; },
           [](const Settings& s) { return s.fast.smoothing.target; }};
 }
 
@@ -151,6 +151,8 @@ std::vector<Tunable> of_repair() {
           "RepairParams::max_patches", {100, 300, 1000}, [=](Settings & s) -> auto& { return p(s).max_patches; }),
       of(
           "RepairParams::sharper", {0}, [=](Settings & s) -> auto& { return p(s).sharper; }),
+      of(
+          "RepairParams::lift", {0, .005, .02}, [=](Settings & s) -> auto& { return p(s).lift; }),
       of(
           "RepairParams::target_step", {0, .005, .02}, [=](Settings & s) -> auto& { return p(s).target_step; }),
       of(

@@ -44,7 +44,7 @@ TEST(FastMesh, WorstTetIsAboveTheTargetAndTheCertificatePasses) {
     const BackgroundMesh background = background_of(domain, 50000);
     const UmResult result = universal_mesh(background, domain);
     ASSERT_EQ(result.status, UmStatus::Success) << result.evidence.what;
-    EXPECT_GE(quality(result, result.final).least, .82);
+    EXPECT_GE(quality(result, result.final).least, .83);
     EXPECT_GT(quality(result, result.projected).least, 0);
     const MeshCertificate c = testing::certificate_of(result, domain, background.h());
     EXPECT_TRUE(failures(c).empty()) << failures(c).front();
@@ -250,7 +250,7 @@ TEST(FastMesh, TetsThatAreMendedAtOnceDoNotMeet) {
   const UmResult one = with(1), three = with(3);
   ASSERT_EQ(one.status, UmStatus::Success) << one.evidence.what;
   EXPECT_TRUE(failures(testing::certificate_of(one, domain, background.h())).empty());
-  EXPECT_GE(quality(one, one.final).least, .82);
+  EXPECT_GE(quality(one, one.final).least, .83);
   EXPECT_EQ(one.n_psi_evaluations, three.n_psi_evaluations);
   EXPECT_EQ(one.submesh.background_tet, three.submesh.background_tet);
   ASSERT_EQ(one.final.size(), three.final.size());
@@ -263,7 +263,22 @@ TEST(FastMesh, RepairWaitsForPatchesThatGetWorseFirst) {
   const AnalyticDomain domain = testing::equation_9();
   const UmResult result = universal_mesh(background_of(domain, 500000), domain);
   ASSERT_EQ(result.status, UmStatus::Success) << result.evidence.what;
-  EXPECT_GE(quality(result, result.final).least, .82);
+  EXPECT_GE(quality(result, result.final).least, .83);
+}
+
+TEST(FastMesh, WhatIsAboveTheTargetIsLiftedWhereItMay) {
+  const AnalyticDomain domain = testing::banchoff_chmutov_6();
+  const BackgroundMesh background = background_of(domain, 50000);
+  UmParams params;
+  params.fast.repair.lift = 0;
+  const UmResult low = universal_mesh(background, domain, params), lifted = universal_mesh(background, domain);
+  EXPECT_LT(quality(low, low.final).least, .825);
+  EXPECT_GE(quality(lifted, lifted.final).least, .83);
+  EXPECT_EQ(testing::certificate_of(lifted, domain, background.h()).boundary.genus, domain.genus);
+  // Where h hardly shows the body few patches are tried: what is not lifted stays above the target.
+  const BackgroundMesh coarse = background_of(domain, 20000);
+  const UmResult some = universal_mesh(coarse, domain);
+  EXPECT_GE(quality(some, some.final).least, .82);
 }
 
 TEST(FastMesh, WhatCannotBeMeshedIsAStatusWithEvidence) {

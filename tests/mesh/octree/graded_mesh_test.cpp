@@ -11,6 +11,7 @@
 
 #include "mesh/background/background_mesh.h"
 #include "mesh/background/explicit_mesh.h"
+#include "mesh/base/id_set.h"
 #include "mesh/core/tet_quality.h"
 #include "mesh/submesh/crawl.h"
 #include "mesh/submesh/submesh.h"
@@ -199,9 +200,53 @@ TEST(GradedMesh, CoversAllCubesThatAreWanted) {
   }
 }
 
-TEST(GradedMesh, KnowsWhoMeetsWhomAsAStoredMeshDoes) {
+IdSet vertices_in_ball(const GradedMesh& mesh, double radius) {
+  IdSet in(mesh.n_vertices());
+  for (std::int64_t v = 0; v < mesh.n_vertices(); ++v) {
+    if ((mesh.position(v) - mesh.position(mesh.n_vertices() / 2)).norm() < radius) in.insert(v);
+  }
+  return in;
+}
+
+TEST(GradedMesh, AroundVerticesHasTheirTets) {
+  std::int64_t n_left = 0, n_all = 0;
   for (const Grading& g : gradings()) {
-    const GradedMesh graded(g);
+    const GradedMesh all(g);
+    for (const int rings : {0, 1, 3}) {
+      const IdSet given = vertices_in_ball(all, .3);
+      IdSet near = given;
+      const GradedMesh some = all.around(given, rings, 0);
+      n_left += some.n_tets(), n_all += all.n_tets();
+      std::vector<std::int64_t> link;
+      for (int ring = 0; ring < rings; ++ring) {
+        link.clear();
+        near.for_each([&](std::int64_t v) { all.link(v, link); });
+        for (const std::int64_t w : link) near.insert(w);
+      }
+      near.for_each([&](std::int64_t v) {
+        const std::int64_t same = some.vertex_of(all.key(v));
+        ASSERT_GE(same, 0);
+        ASSERT_EQ(some.position(same), all.position(v));
+        ASSERT_EQ(some.on_boundary(same), all.on_boundary(v));
+        if (!given.test(v) || rings == 0) return;
+        std::vector<std::int64_t> expected, star;
+        all.star(v, expected);
+        some.star(same, star);
+        ASSERT_EQ(star.size(), expected.size());
+        for (std::size_t t = 0; t < star.size(); ++t) ASSERT_EQ(some.tet_key(star[t]), all.tet_key(expected[t]));
+      });
+    }
+  }
+  EXPECT_LT(n_left, n_all / 2);
+}
+
+TEST(GradedMesh, KnowsWhoMeetsWhomAsAStoredMeshDoes) {
+  std::vector<GradedMesh> all;
+  for (const Grading& g : gradings()) {
+    all.emplace_back(g);
+    all.push_back(all.back().around(vertices_in_ball(all.back(), .3), 1, 0));
+  }
+  for (const GradedMesh& graded : all) {
     const ExplicitMesh stored(to_tet_mesh(graded));
     std::vector<std::int64_t> list;
     for (int v = 0; v < graded.n_vertices(); ++v) {
