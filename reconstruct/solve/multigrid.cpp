@@ -48,7 +48,7 @@ constexpr double kMergeCube = 0.5;
 // f(o, begin, end) for columns begin .. end - 1 of each of `outer` planes of `inner` columns.
 template <class F>
 void for_columns(std::ptrdiff_t inner, std::ptrdiff_t outer, F&& f) {
-  constexpr std::ptrdiff_t kColumns = 1 << 9;
+  constexpr std::ptrdiff_t kColumns = 1 << 9;  // of a task: some microseconds of each of its rows
   const std::ptrdiff_t parts = (inner + kColumns - 1) / kColumns;
   tbb::parallel_for(std::ptrdiff_t{0}, outer * parts, [&](std::ptrdiff_t task) {
     const std::ptrdiff_t begin = task % parts * kColumns;
