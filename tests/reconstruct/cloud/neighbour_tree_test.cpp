@@ -88,6 +88,30 @@ TEST(NeighbourTree, EqualDistancesComeByPointNumber) {
   });
 }
 
+// Large clouds have several trees.
+TEST(NeighbourTree, FindsWhatAllPairsFindInLargeClouds) {
+  const std::vector<Vec3> points = clumps(150000);
+  const NeighbourTree tree(points);
+  std::vector<Neighbour> room(9);
+  for (std::size_t i = 0; i < points.size(); i += 4999) {
+    const Vec3 x = points[i] + Vec3(.1, -.05, .02);
+    std::vector<std::pair<double, std::uint32_t>> all;
+    for (std::uint32_t j = 0; j < points.size(); ++j) all.emplace_back((points[j] - x).squaredNorm(), j);
+    std::partial_sort(all.begin(), all.begin() + 9, all.end());
+    const std::span<const Neighbour> near = tree.k_nearest(x, room);
+    ASSERT_EQ(near.size(), 9U);
+    for (std::size_t m = 0; m < near.size(); ++m) {
+      EXPECT_NEAR(near[m].distance2, all[m].first, 1e-12 * all[m].first);
+      EXPECT_NEAR((points[near[m].point] - x).squaredNorm(), all[m].first, 1e-12 * all[m].first);
+    }
+    const double radius2 = 1.5 * all[8].first;
+    const auto expected = static_cast<std::size_t>(
+        std::count_if(all.begin(), all.end(), [&](const auto& a) { return a.first <= radius2; }));
+    EXPECT_EQ(tree.count_within(x, radius2, points.size()), expected);
+    EXPECT_EQ(tree.count_within(x, radius2, 3), 3U);
+  }
+}
+
 TEST(NeighbourTree, NearInTheOrderIsNearInSpace) {
   std::vector<Vec3> points = clumps(3000);
   points.pop_back();  // the one far away
