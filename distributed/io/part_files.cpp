@@ -80,7 +80,8 @@ void write_tets(MPI_Comm comm, const DistributedMesh& mesh, const StandardData& 
                       {&shape.arrays[2], &shape.arrays[3], &shape.arrays[5], &shape.arrays[6], &shape.arrays[7]});
   for (std::size_t round = 0; round < order.n_rounds(); ++round) {
     const std::size_t begin = order.begin(round);
-    const std::vector<double> Q = mean_ratios(mesh.mesh, begin, order.begin(round + 1));
+    std::vector<double> Q(order.begin(round + 1) - begin);
+    measure_mean_ratios(mesh.mesh, Q, begin);
     const auto piece = order.piece<OrderedTet>(round, [&](std::size_t t) {
       OrderedTet tet{mesh.background_tet[t], {}, Q[t - begin]};
       for (std::size_t k = 0; k < 4; ++k) tet.corner[k] = data.own_number[mesh.mesh.C[t][k]];

@@ -42,7 +42,8 @@ QualitySamples quality_samples(MPI_Comm comm, DistributedMesh& mesh,
       std::vector<double> least(mesh.mesh.V.size(), kNoTet);
       for (std::size_t first = 0; first < mesh.mesh.C.size(); first += kTetsAtOnce) {
         const std::size_t end = std::min(mesh.mesh.C.size(), first + kTetsAtOnce);
-        const std::vector<double> Q = mean_ratios(mesh.mesh, first, end);
+        std::vector<double> Q(end - first);
+        measure_mean_ratios(mesh.mesh, Q, first);
         for (std::size_t t = first; t < end; ++t) {
           const Tet& tet = mesh.mesh.C[t];
           if (of_boundary && std::none_of(tet.begin(), tet.end(), [&](int v) { return is_positive[v]; })) continue;
