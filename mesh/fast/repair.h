@@ -98,7 +98,8 @@ struct LayerVertex {
   Vec3 place;
 };
 
-/// A layer that other processes have, and this one repairs: no more than max_patches places of it.
+/// A layer that other processes have, and this one repairs: no more than max_patches places of it, and a few that
+/// are lifted.
 class RemoteLayer {
  public:
   /// bad_tets() of all of it, those up to target + lift, in the order of the whole layer.

@@ -9,7 +9,7 @@ libraries, where CPU times of a rented one vary by a factor of two. FILE (phases
 and the spread, (greatest - least) / median, of RUNS runs. A phase costs more if it is beyond 1 + SPREADS spreads, and
 1 + LEAST, in each of three runs; one that is not is not asked again.
 
---write stores what this tree costs. Exit 1: a phase costs more, it is named.
+--write stores what this tree costs; with --only the phases that do not match keep what is stored. Exit 1: a phase costs more, it is named.
 """
 import argparse
 import json
@@ -23,6 +23,7 @@ RUNS = 3
 SPREADS = 3
 CACHES = ("--I1=32768,8,64", "--D1=32768,8,64", "--LL=8388608,16,64")  # and not those of the machine at hand
 LEAST = .05
+EVERY = ".*"
 
 
 def costs(program, only):
@@ -75,10 +76,12 @@ def main():
     parser.add_argument("program")
     parser.add_argument("--reference", type=pathlib.Path, default=pathlib.Path(__file__).with_name("phases.json"))
     parser.add_argument("--write", action="store_true")
-    parser.add_argument("--only", default=".*", help="phases whose names match")
+    parser.add_argument("--only", default=EVERY, help="phases whose names match")
     options = parser.parse_args()
     if options.write:
-        options.reference.write_text(json.dumps(measured(options.program, options.only), indent=1) + "\n")
+        keeps = options.only != EVERY and options.reference.exists()
+        others = json.loads(options.reference.read_text()) if keeps else {}
+        options.reference.write_text(json.dumps({**others, **measured(options.program, options.only)}, indent=1) + "\n")
         return 0
     stored = json.loads(options.reference.read_text())
     found = dearer_phases(options.program, options.only, stored)
