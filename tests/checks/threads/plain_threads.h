@@ -26,9 +26,11 @@ namespace plain {
 
 inline std::atomic<std::size_t> limit{4};  ///< more than this machine may have: races are looked for, not speed
 inline thread_local bool in_task = false;
+inline thread_local const std::atomic<bool>* ends = nullptr;  ///< of the call whose task this thread runs
 
-/// run(k) for every k < n. Each thread has its share beforehand: on a busy machine the first would take all of it, and
-/// what one thread does is no race. \throw what a task has thrown, when all have ended
+/// run(k) for every k < n, by threads of which the calling one is the first. Each has its share beforehand: on a busy
+/// machine the first would take all of it, and what one thread does is no race. What has not begun when a task throws
+/// is left undone. \throw what the first of these threads has thrown, when all have ended
 template <class F>
 void run_all(std::size_t n, const F& run) {
   const std::size_t n_threads = in_task ? 1 : std::min(n, limit.load());
@@ -36,24 +38,31 @@ void run_all(std::size_t n, const F& run) {
     for (std::size_t k = 0; k < n; ++k) run(k);
     return;
   }
+  std::atomic<bool> end{false};
   std::vector<std::exception_ptr> errors(n_threads);
+  const auto share = [&](std::size_t t) {
+    in_task = true;
+    ends = &end;
+    try {
+      for (std::size_t k = t; k < n && !end; k += n_threads) run(k);
+    } catch (...) {
+      errors[t] = std::current_exception();
+      end = true;
+    }
+    in_task = false;
+    ends = nullptr;
+  };
   std::vector<std::thread> threads;
-  for (std::size_t t = 0; t < n_threads; ++t) {
-    threads.emplace_back([&, t] {
-      in_task = true;
-      try {
-        for (std::size_t k = t; k < n; k += n_threads) run(k);
-      } catch (...) {
-        errors[t] = std::current_exception();
-      }
-    });
-  }
+  for (std::size_t t = 1; t < n_threads; ++t) threads.emplace_back(share, t);
+  share(0);
   for (std::thread& thread : threads) thread.join();
   for (const std::exception_ptr& error : errors)
     if (error) std::rethrow_exception(error);
 }
 
 }  // namespace plain
+
+inline bool is_current_task_group_canceling() { return plain::ends != nullptr && *plain::ends; }
 
 template <class T>
 class blocked_range {
