@@ -1,7 +1,7 @@
 #include "reconstruct/io/grid_io.h"
 
 #include "common/formatted.h"
-#include "reconstruct/io/detail/grid_source.h"
+#include "reconstruct/io/detail/grids/grid_source.h"
 
 namespace umtet {
 namespace {

@@ -19,8 +19,8 @@
 #include <fstream>
 #include <system_error>
 
-#include "reconstruct/io/detail/vti_precheck.h"
-#include "reconstruct/io/detail/vti_writer.h"
+#include "reconstruct/io/detail/grids/vti_precheck.h"
+#include "reconstruct/io/detail/grids/vti_writer.h"
 
 namespace umtet {
 

@@ -10,7 +10,8 @@
 
 #include "reconstruct/cloud/cloud_arrays.h"
 #include "reconstruct/cloud/cloud_survey.h"
-#include "reconstruct/io/detail/cloud_source.h"
+#include "reconstruct/io/detail/clouds/cloud_readers.h"
+#include "reconstruct/io/detail/clouds/field_columns.h"
 #include "reconstruct/io/detail/extent.h"
 #include "reconstruct/io/detail/file_bytes.h"
 #include "reconstruct/io/detail/little_endian.h"
@@ -130,19 +131,14 @@ void check_numbers(const CloudSource& source, const OrientedPointCloud& cloud) {
   check_extent(source, cloud.points, kFewestPoints);
 }
 
-/// Returns how many normals were not unit to 1e-3. Normals unit to rounding stay as they are, so that a written cloud
-/// is read back bit by bit.
+/// Returns how many normals were not unit to 1e-3.
 std::size_t make_unit(std::vector<Vec3>& normals) {
-  constexpr double kRounding = 1e-14, kWorthTelling = 1e-3;
+  constexpr double kWorthTelling = 1e-3;
   std::size_t n_rescaled = 0;
   for (Vec3& n : normals) {
     if (n.isZero(0)) continue;  // only read_scan lets them pass
-    const double length = n.stableNorm();
-    if (std::abs(length - 1) > kWorthTelling) ++n_rescaled;
-    if (std::abs(length - 1) <= kRounding) continue;
-    // First to the order of 1: the squares of very short and very long normals are no doubles.
-    n /= n.cwiseAbs().maxCoeff();
-    n /= n.norm();
+    if (std::abs(n.stableNorm() - 1) > kWorthTelling) ++n_rescaled;
+    n = unit_normal(n);
   }
   return n_rescaled;
 }

@@ -7,9 +7,10 @@
 #include <optional>
 #include <ostream>
 
+#include "reconstruct/io/detail/clouds/cloud_readers.h"
 #include "reconstruct/io/detail/file_bytes.h"
 #include "reconstruct/io/detail/little_endian.h"
-#include "reconstruct/io/detail/polygon_soup.h"
+#include "reconstruct/io/detail/triangles/polygon_soup.h"
 
 namespace umtet {
 namespace {

@@ -1,4 +1,4 @@
-#include "reconstruct/io/detail/ply_header.h"
+#include "reconstruct/io/detail/clouds/ply_header.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "reconstruct/io/detail/pcd_header.h"
+#include "reconstruct/io/detail/clouds/pcd_header.h"
 
 #include <fmt/format.h>
 

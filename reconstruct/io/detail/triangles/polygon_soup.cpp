@@ -1,4 +1,4 @@
-#include "reconstruct/io/detail/polygon_soup.h"
+#include "reconstruct/io/detail/triangles/polygon_soup.h"
 
 #include <fmt/format.h>
 

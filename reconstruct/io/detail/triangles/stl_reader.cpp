@@ -6,8 +6,8 @@
 #include <cstring>
 
 #include "reconstruct/io/detail/file_bytes.h"
-#include "reconstruct/io/detail/polygon_soup.h"
 #include "reconstruct/io/detail/text_rows.h"
+#include "reconstruct/io/detail/triangles/polygon_soup.h"
 
 namespace umtet::detail {
 namespace {

@@ -1,7 +1,7 @@
 // The header has been checked: how many bytes are packed, and how many they become. liblzf writes no byte beyond those
 // and reads none beyond the block; how the fields lie in it is ours.
 
-#include "reconstruct/io/detail/pcd_unpack.h"
+#include "reconstruct/io/detail/clouds/pcd_unpack.h"
 
 #include <fmt/format.h>
 #include <lzf.h>

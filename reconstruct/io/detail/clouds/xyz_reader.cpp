@@ -5,7 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "reconstruct/io/detail/cloud_source.h"
+#include "reconstruct/io/detail/clouds/cloud_columns.h"
+#include "reconstruct/io/detail/clouds/cloud_readers.h"
 #include "reconstruct/io/detail/text_rows.h"
 
 namespace umtet::detail {

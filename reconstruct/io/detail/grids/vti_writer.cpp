@@ -1,4 +1,4 @@
-#include "reconstruct/io/detail/vti_writer.h"
+#include "reconstruct/io/detail/grids/vti_writer.h"
 
 #include <fmt/format.h>
 #include <vtkBase64Utilities.h>

@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "reconstruct/io/detail/cloud_source.h"
-#include "reconstruct/io/detail/ply_body.h"
-#include "reconstruct/io/detail/ply_header.h"
+#include "reconstruct/io/detail/clouds/cloud_columns.h"
+#include "reconstruct/io/detail/clouds/cloud_readers.h"
+#include "reconstruct/io/detail/clouds/ply_body.h"
+#include "reconstruct/io/detail/clouds/ply_header.h"
 
 namespace umtet::detail {
 namespace {

@@ -1,4 +1,4 @@
-#include "reconstruct/io/detail/vti_precheck.h"
+#include "reconstruct/io/detail/grids/vti_precheck.h"
 
 #include <fmt/format.h>
 

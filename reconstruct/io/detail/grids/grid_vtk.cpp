@@ -1,7 +1,7 @@
 // VTK's legacy files of structured points (VTK User's Guide, "Simple Legacy Formats"); binary numbers are big-endian.
 #include <bit>
 
-#include "reconstruct/io/detail/grid_source.h"
+#include "reconstruct/io/detail/grids/grid_source.h"
 
 namespace umtet::detail {
 namespace {

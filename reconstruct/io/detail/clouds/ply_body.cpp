@@ -1,4 +1,4 @@
-#include "reconstruct/io/detail/ply_body.h"
+#include "reconstruct/io/detail/clouds/ply_body.h"
 
 #include <fmt/format.h>
 

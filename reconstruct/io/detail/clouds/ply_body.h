@@ -8,7 +8,7 @@
 
 #include "reconstruct/io/detail/byte_window.h"
 #include "reconstruct/io/detail/cloud_source.h"
-#include "reconstruct/io/detail/ply_header.h"
+#include "reconstruct/io/detail/clouds/ply_header.h"
 #include "reconstruct/io/detail/text_rows.h"
 
 namespace umtet::detail {

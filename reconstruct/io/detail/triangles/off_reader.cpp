@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "reconstruct/io/detail/polygon_soup.h"
 #include "reconstruct/io/detail/text_rows.h"
+#include "reconstruct/io/detail/triangles/polygon_soup.h"
 
 namespace umtet::detail {
 namespace {

@@ -7,9 +7,10 @@
 #include <limits>
 
 #include "reconstruct/io/detail/byte_window.h"
-#include "reconstruct/io/detail/cloud_source.h"
-#include "reconstruct/io/detail/pcd_header.h"
-#include "reconstruct/io/detail/pcd_unpack.h"
+#include "reconstruct/io/detail/clouds/cloud_columns.h"
+#include "reconstruct/io/detail/clouds/cloud_readers.h"
+#include "reconstruct/io/detail/clouds/pcd_header.h"
+#include "reconstruct/io/detail/clouds/pcd_unpack.h"
 #include "reconstruct/io/detail/text_rows.h"
 
 namespace umtet::detail {

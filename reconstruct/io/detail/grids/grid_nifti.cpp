@@ -8,7 +8,7 @@
 #include <cstring>
 #include <limits>
 
-#include "reconstruct/io/detail/grid_source.h"
+#include "reconstruct/io/detail/grids/grid_source.h"
 
 namespace umtet::detail {
 namespace {

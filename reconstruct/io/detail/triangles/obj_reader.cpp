@@ -4,8 +4,8 @@
 #include <charconv>
 #include <iterator>
 
-#include "reconstruct/io/detail/polygon_soup.h"
 #include "reconstruct/io/detail/text_rows.h"
+#include "reconstruct/io/detail/triangles/polygon_soup.h"
 
 namespace umtet::detail {
 namespace {

@@ -1,4 +1,4 @@
-#include "reconstruct/io/detail/grid_source.h"
+#include "reconstruct/io/detail/grids/grid_source.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

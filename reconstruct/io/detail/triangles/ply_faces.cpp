@@ -5,9 +5,9 @@
 #include <limits>
 #include <optional>
 
-#include "reconstruct/io/detail/ply_body.h"
-#include "reconstruct/io/detail/ply_header.h"
-#include "reconstruct/io/detail/polygon_soup.h"
+#include "reconstruct/io/detail/clouds/ply_body.h"
+#include "reconstruct/io/detail/clouds/ply_header.h"
+#include "reconstruct/io/detail/triangles/polygon_soup.h"
 
 namespace umtet::detail {
 namespace {

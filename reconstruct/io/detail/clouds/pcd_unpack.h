@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "reconstruct/io/detail/pcd_header.h"
+#include "reconstruct/io/detail/clouds/pcd_header.h"
 
 namespace umtet::detail {
 

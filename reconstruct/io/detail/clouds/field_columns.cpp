@@ -1,4 +1,4 @@
-#include "reconstruct/io/detail/field_columns.h"
+#include "reconstruct/io/detail/clouds/field_columns.h"
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,7 @@
 #include <bit>
 #include <map>
 
-#include "reconstruct/io/detail/grid_source.h"
+#include "reconstruct/io/detail/grids/grid_source.h"
 
 namespace umtet::detail {
 namespace {
