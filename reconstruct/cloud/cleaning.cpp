@@ -113,7 +113,7 @@ struct Surroundings {
       : points(std::move(some)), tree(points), near(theirs) {}
   bool has_duplicates() const {
     for (std::size_t i = 0; i < near.size(); ++i)
-      if (near.distances2(i).front() == 0) return true;
+      if (near.distance2(points, i, 0) == 0) return true;
     return false;
   }
 };
@@ -142,7 +142,8 @@ std::vector<std::uint32_t> maybe_crowded(const Surroundings& cloud, std::size_t 
     centre += cloud.points[group[0]];
     double radius = 0;
     for (const std::uint32_t i : group) {
-      radius = std::max(radius, (cloud.points[i] - centre).norm() + 3 * std::sqrt(cloud.near.distances2(i).back()));
+      radius = std::max(radius,
+                        (cloud.points[i] - centre).norm() + 3 * std::sqrt(cloud.near.last_distance2(cloud.points, i)));
     }
     constexpr double kRoundedUp = 1 + 1e-9;
     is_open[g] = cloud.tree->count_within(centre, radius * radius * kRoundedUp, crowd) >= crowd ? 1 : 0;
@@ -179,7 +180,7 @@ std::vector<std::uint8_t> outliers(const Surroundings& cloud, const CleaningPara
   tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t row) {
     const std::uint32_t i = open[row];
     const Vec3& x = points[i];
-    const double reach2 = cloud.near.distances2(i).back();
+    const double reach2 = cloud.near.last_distance2(points, i);
     if (few.count_within(x, 9 * reach2, worth_counting) < worth_counting) return;
     if (tree.count_within(x, 9 * reach2, suspicious) < suspicious) return;
     if (tree.count_within(x, 9 * reach2, certain) >= certain) {
@@ -203,12 +204,12 @@ std::vector<std::uint8_t> small_components(const Surroundings& cloud, const Clea
   n_pieces = 0;
   if (n <= kNeighbours) return drop;
   const Neighbourhoods& near = cloud.near;
-  const auto spacing2 = [&](std::uint32_t i) { return near.distances2(i)[kSpacingNeighbour - 1]; };
+  const auto spacing2 = [&](std::uint32_t i) { return near.distance2(cloud.points, i, kSpacingNeighbour - 1); };
   SharedDisjointSets pieces(n);
   tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(n), [&](std::uint32_t i) {
     for (std::size_t m = 0; m < kNeighbours; ++m) {
       const std::uint32_t j = near.points(i)[m];
-      const double reach2 = near.distances2(i)[m] / (kLink * kLink);
+      const double reach2 = near.distance2(cloud.points, i, m) / (kLink * kLink);
       if (reach2 <= spacing2(i) || reach2 <= spacing2(j)) pieces.unite(i, j);
     }
   });

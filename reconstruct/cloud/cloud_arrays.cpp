@@ -1,5 +1,6 @@
 #include "reconstruct/cloud/cloud_arrays.h"
 
+#include <cmath>
 #include <stdexcept>
 
 #include "common/formatted.h"
@@ -27,6 +28,13 @@ void keep_samples(OrientedPointCloud& cloud, const std::vector<std::uint32_t>& r
     for (std::size_t k = 0; k < rows.size(); ++k) array[k] = array[rows[k]];
     array.resize(rows.size());
   });
+}
+
+Vec3 unit_normal(Vec3 n) {
+  constexpr double kRounding = 1e-14;  // of three squares, a root and a quotient, a few times
+  if (std::abs(n.stableNorm() - 1) <= kRounding) return n;
+  n /= n.cwiseAbs().maxCoeff();  // the squares of very short and very long normals are no doubles
+  return n / n.norm();
 }
 
 }  // namespace umtet

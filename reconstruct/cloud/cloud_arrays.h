@@ -35,4 +35,24 @@ std::vector<std::string> field_names(const OrientedPointCloud& cloud);
 /// Leaves these samples. @param rows  ascending
 void keep_samples(OrientedPointCloud& cloud, const std::vector<std::uint32_t>& rows);
 
+/// A normal of length 1. One that is unit to rounding stays what it is, so that a written cloud is read back bit by
+/// bit.
+/// @param n  finite, not zero
+Vec3 unit_normal(Vec3 n);
+
+/// Every m-th of the rows 0 .. size - 1; where a row stands for several samples, the rows of every m-th of these.
+/// @param m      >= 1
+/// @param count  count(row), of samples that the row stands for
+template <class Count>
+std::vector<std::size_t> every_mth(std::size_t m, std::size_t size, Count&& count) {
+  std::vector<std::size_t> rows;
+  std::size_t passed = 0;
+  for (std::size_t row = 0; row < size; ++row) {
+    const std::size_t next = (passed + m - 1) / m * m;
+    passed += count(row);
+    if (next < passed) rows.push_back(row);
+  }
+  return rows;
+}
+
 }  // namespace umtet

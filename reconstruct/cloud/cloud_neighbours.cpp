@@ -105,14 +105,13 @@ NeighbourDistances neighbour_distances(const std::vector<Vec3>& points, int k) {
   return result;
 }
 
-NeighbourDistances neighbour_distances(const Neighbourhoods& near) {
+NeighbourDistances neighbour_distances(const std::vector<Vec3>& points, const Neighbourhoods& near) {
   const std::size_t n = near.size();
   NeighbourDistances result{std::vector<double>(n), std::vector<double>(n), static_cast<int>(near.k()),
                             std::vector<int>(n, 1)};
   tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
-    const std::span<const double> d2 = near.distances2(i);
-    result.nearest[i] = std::sqrt(d2.front());
-    result.mean_square[i] = std::accumulate(d2.begin(), d2.end(), 0.) / result.k;
+    result.nearest[i] = std::sqrt(near.distance2(points, i, 0));
+    result.mean_square[i] = near.sum_of_distances2(points, i) / result.k;
   });
   return result;
 }

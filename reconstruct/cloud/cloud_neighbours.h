@@ -26,7 +26,7 @@ struct NeighbourDistances {
 /// Cost: O(n log n + n k) (reconstruct_bench --benchmark_filter=SampleAreas).
 NeighbourDistances neighbour_distances(const std::vector<Vec3>& points, int k);
 /// The same from neighbours that are known: of a cloud without duplicates, with k = near.k().
-NeighbourDistances neighbour_distances(const Neighbourhoods& near);
+NeighbourDistances neighbour_distances(const std::vector<Vec3>& points, const Neighbourhoods& near);
 
 /// Median over the points of the distance to the nearest other place (model units).
 /// \throw std::invalid_argument  as neighbour_distances

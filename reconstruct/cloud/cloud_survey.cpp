@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 #include "common/formatted.h"
+#include "reconstruct/cloud/cloud_arrays.h"
 #include "reconstruct/cloud/cloud_neighbours.h"
 #include "reconstruct/cloud/enclosed_volume.h"
 #include "reconstruct/cloud/lines_of_sight.h"
@@ -31,10 +32,16 @@ double percentile(std::vector<double>& values, double share) {
 }
 
 /// Every m-th point along the tree's curve: evenly over the surface, and no seed to remember.
-std::vector<std::uint32_t> evenly_picked(const NeighbourTree& tree, std::size_t n_picked) {
+/// @param counts  of merged samples; else empty
+std::vector<std::uint32_t> evenly_picked(const NeighbourTree& tree, std::size_t n_picked,
+                                         const std::vector<int>& counts = {}) {
+  const auto count = [&](std::size_t row) {
+    return counts.empty() ? 1 : static_cast<std::size_t>(counts[tree.order()[row]]);
+  };
+  const std::size_t n = counts.empty() ? tree.size() : std::accumulate(counts.begin(), counts.end(), std::size_t{0});
   std::vector<std::uint32_t> picked;
-  const std::size_t stride = std::max<std::size_t>(1, tree.size() / n_picked);
-  for (std::size_t row = 0; row < tree.size(); row += stride) picked.push_back(tree.order()[row]);
+  for (const std::size_t row : every_mth(std::max<std::size_t>(1, n / n_picked), tree.size(), count))
+    picked.push_back(tree.order()[row]);
   return picked;
 }
 
@@ -138,8 +145,7 @@ std::vector<double> thicknesses(const OrientedPointCloud& cloud, const Neighbour
   // Of the tube around a ray: a narrower one slips between the samples of the other side, a wider one meets samples
   // beside the ray.
   constexpr double kWidthOverSpacing = 1.5;
-  constexpr double kOpposed = -0.3;  // 107 degrees: walls that narrow by less than 73 degrees
-  const std::vector<std::uint32_t> picked = evenly_picked(tree, sampled_points);
+  const std::vector<std::uint32_t> picked = evenly_picked(tree, sampled_points, cloud.counts);
   std::vector<double> met(picked.size());
   tbb::parallel_for(std::size_t{0}, picked.size(), [&](std::size_t p) {
     const std::uint32_t i = picked[p];
@@ -156,6 +162,20 @@ std::vector<double> thicknesses(const OrientedPointCloud& cloud, const Neighbour
   std::erase_if(met, [](double t) { return !std::isfinite(t); });
   std::sort(met.begin(), met.end());
   return met;
+}
+
+std::vector<Vec3> near_other_sheets(const OrientedPointCloud& cloud, const NeighbourTree& tree, double reach) {
+  std::vector<std::uint8_t> is_near(cloud.points.size());
+  tbb::parallel_for(std::size_t{0}, is_near.size(), [&](std::size_t row) {
+    const std::uint32_t i = tree.order()[row];
+    tree.within(cloud.points[i], reach * reach, [&](std::uint32_t j, double) {
+      if (cloud.normals[i].dot(cloud.normals[j]) < kOpposed) is_near[i] = 1;
+    });
+  });
+  std::vector<Vec3> places;
+  for (std::size_t i = 0; i < is_near.size(); ++i)
+    if (is_near[i] != 0) places.push_back(cloud.points[i]);
+  return places;
 }
 
 std::vector<std::string> problems(const SurveyParams& params) {

@@ -88,11 +88,19 @@ double noise_along_normals(const OrientedPointCloud& cloud, const NeighbourTree&
 /// 2.8 with its boundary.
 double correlation_dimension(const std::vector<Vec3>& points);
 
+/// Cosine of 107 degrees: a sample whose normal turns that far from another's is of another sheet. Walls that narrow by
+/// less than 73 degrees face each other so.
+inline constexpr double kOpposed = -.3;
+
 /// Distances from evenly picked samples along their inward normals to the first sample that faces the other way.
 /// @return ascending, one number for each sample that met one
 /// @param tree  of the points
 std::vector<double> thicknesses(const OrientedPointCloud& cloud, std::size_t sampled_points = 5000);
 std::vector<double> thicknesses(const OrientedPointCloud& cloud, const NeighbourTree& tree,
                                 std::size_t sampled_points = 5000);
+
+/// The samples that have another within `reach` whose normal is more than 107 degrees from theirs: of parts and gaps
+/// that are thinner, and of edges of less than 73 degrees. @param tree  of the points of the cloud, which has normals
+std::vector<Vec3> near_other_sheets(const OrientedPointCloud& cloud, const NeighbourTree& tree, double reach);
 
 }  // namespace umtet

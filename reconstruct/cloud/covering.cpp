@@ -78,14 +78,15 @@ std::vector<std::uint8_t> on_lines(const std::vector<Vec3>& points, const Neighb
 }
 
 /// Of every point the one that is left for it, which may be itself.
-std::vector<std::uint32_t> thinned(const Neighbourhoods& near, const std::vector<std::uint8_t>& on_line) {
+std::vector<std::uint32_t> thinned(const std::vector<Vec3>& points, const Neighbourhoods& near,
+                                   const std::vector<std::uint8_t>& on_line) {
   std::vector<std::uint32_t> left(near.size(), kNone);
   for (std::uint32_t i = 0; i < left.size(); ++i) {
     if (left[i] != kNone) continue;
     left[i] = i;
     if (on_line[i] == 0) continue;
-    const double reach2 = kReach * kReach * near.distances2(i).back();
-    for (std::size_t m = 0; m < near.k() && near.distances2(i)[m] <= reach2; ++m) {
+    const double reach2 = kReach * kReach * near.last_distance2(points, i);
+    for (std::size_t m = 0; m < near.k() && near.distance2(points, i, m) <= reach2; ++m) {
       const std::uint32_t j = near.points(i)[m];
       if (left[j] == kNone && on_line[j] != 0) left[j] = i;
     }
@@ -151,7 +152,7 @@ Covering covering(const std::vector<Vec3>& points, const Neighbourhoods& near) {
     const Neighbourhoods& around = is_first ? near : result.near;
     std::vector<std::uint8_t> lines = on_lines(now, around, !is_first);
     if (is_first && !lines.empty()) lines = on_lines(now, around, true);
-    const std::vector<std::uint32_t> left = lines.empty() ? thinned_noisy(now, !is_first) : thinned(around, lines);
+    const std::vector<std::uint32_t> left = lines.empty() ? thinned_noisy(now, !is_first) : thinned(now, around, lines);
 
     std::vector<std::uint32_t> rows, row_of(now.size());
     for (std::uint32_t i = 0; i < left.size(); ++i) {
@@ -180,12 +181,12 @@ OrientedPointCloud picked(const OrientedPointCloud& cloud, const std::vector<std
   return some;
 }
 
-NeighbourDistances neighbour_distances(const Neighbourhoods& near, const Covering& covering,
-                                       const std::vector<int>& counts) {
-  NeighbourDistances result = neighbour_distances(near);
+NeighbourDistances neighbour_distances(const std::vector<Vec3>& points, const Neighbourhoods& near,
+                                       const Covering& covering, const std::vector<int>& counts) {
+  NeighbourDistances result = neighbour_distances(points, near);
   if (!counts.empty()) result.weights = relative_counts(counts, near);
   if (covering.is_even()) return result;
-  const NeighbourDistances few = neighbour_distances(covering.near);
+  const NeighbourDistances few = neighbour_distances(picked(points, covering.chosen), covering.near);
   for (std::size_t i = 0; i < near.size(); ++i) {
     const std::uint32_t r = covering.representative[i];
     result.mean_square[i] = few.mean_square[r];
@@ -200,8 +201,8 @@ NeighbourDistances covered_distances(const std::vector<Vec3>& points, const std:
   if (points.size() < 2) return neighbour_distances(points, kAreaNeighbours);  // throws
   const Neighbourhoods near(points, kAreaNeighbours);
   for (std::size_t i = 0; i < near.size(); ++i)
-    if (near.distances2(i).front() == 0) return neighbour_distances(points, kAreaNeighbours);
-  return neighbour_distances(near, covering(points, near), counts);
+    if (near.distance2(points, i, 0) == 0) return neighbour_distances(points, kAreaNeighbours);
+  return neighbour_distances(points, near, covering(points, near), counts);
 }
 
 }  // namespace umtet

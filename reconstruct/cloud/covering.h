@@ -44,8 +44,8 @@ OrientedPointCloud picked(const OrientedPointCloud& cloud, const std::vector<std
 /// shares its area among the points that it stands for.
 /// @param near  of all points
 /// @param counts  of samples that were merged; empty: none was
-NeighbourDistances neighbour_distances(const Neighbourhoods& near, const Covering& covering,
-                                       const std::vector<int>& counts = {});
+NeighbourDistances neighbour_distances(const std::vector<Vec3>& points, const Neighbourhoods& near,
+                                       const Covering& covering, const std::vector<int>& counts = {});
 /// The same, searched: of a cloud with duplicates that of its places, as if these were sampled evenly.
 /// \throw std::invalid_argument  as neighbour_distances(points, kAreaNeighbours)
 NeighbourDistances covered_distances(const std::vector<Vec3>& points, const std::vector<int>& counts = {});

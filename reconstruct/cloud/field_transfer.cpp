@@ -8,6 +8,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "common/polled_loops.h"
 #include "reconstruct/cloud/cloud_arrays.h"
 #include "reconstruct/cloud/neighbour_tree.h"
 

@@ -32,9 +32,11 @@ bool are_lines_of_sight(const OrientedPointCloud& cloud, const Neighbourhoods& n
   std::vector<double> angles;
   std::size_t n_probes = 0;
   for (std::size_t row = 0; row < among.size(); row += stride, ++n_probes) {
-    for (std::size_t k = 0; k < among.k(); ++k)
-      neighbours[k] = {among.distances2(row)[k], static_cast<std::uint32_t>(point(among.points(row)[k]))};
     const std::size_t i = point(row);
+    for (std::size_t k = 0; k < among.k(); ++k) {
+      const std::size_t j = point(among.points(row)[k]);
+      neighbours[k] = {squared_distance(cloud.points[i], cloud.points[j]), static_cast<std::uint32_t>(j)};
+    }
     const LocalQuadric quadric = local_quadric(cloud.points, cloud.points[i], neighbours);
     const double radius = std::sqrt(neighbours.back().distance2);
     const double doubt = 2 * std::sqrt(quadric.variance / static_cast<double>(neighbours.size()));

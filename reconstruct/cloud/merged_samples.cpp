@@ -216,7 +216,8 @@ SampleCells cells_for(const std::vector<Vec3>& points, const CoreBox& core, doub
   return cells;
 }
 
-MergedSamples merged_samples(const OrientedPointCloud& cloud, const SampleCells& cells) {
+MergedSamples merged_samples(const OrientedPointCloud& cloud, const SampleCells& cells,
+                             const std::function<bool(const Vec3&)>& stays) {
   require_equal_lengths(cloud);
   struct Part {
     OrientedPointCloud cloud;
@@ -233,6 +234,14 @@ MergedSamples merged_samples(const OrientedPointCloud& cloud, const SampleCells&
       cells.for_each_point(cell, [&](std::uint32_t i) { members.push_back(i); });
       sort_by_place(members, cloud.points);
       found.clear();
+      if (stays && stays(cloud.points[members.front()])) {
+        for (const std::uint32_t i : members) {
+          Sums one(cloud, i);
+          one.add(i);
+          one.append_to(part.cloud);
+        }
+        continue;
+      }
       for (const std::uint32_t i : members) {
         const auto sums = std::find_if(found.begin(), found.end(), [i](const Sums& s) { return s.takes(i); });
         (sums == found.end() ? found.emplace_back(cloud, i) : *sums).add(i);

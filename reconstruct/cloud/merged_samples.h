@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "reconstruct/cloud/neighbour_tree.h"
@@ -73,8 +74,11 @@ struct MergedSamples {
 /// normals v = 0, and s^2 is the least variance over all directions, of n - 3 degrees of freedom. Origins, colours and
 /// fields are means; of a field that of the samples where it was measured. Normals that are zero do not count.
 /// @param cells  of its points
+/// @param stays  whether the samples of a cell stay what they are, with a count of one: called with the place of one of
+///               them, from several threads at once; empty: nowhere
 /// Does not depend on the order of the samples, nor on the number of threads.
-MergedSamples merged_samples(const OrientedPointCloud& cloud, const SampleCells& cells);
+MergedSamples merged_samples(const OrientedPointCloud& cloud, const SampleCells& cells,
+                             const std::function<bool(const Vec3& x)>& stays = {});
 
 /// How much each merged sample weighs against those around it: its count over the mean count of itself and its
 /// neighbours. Density cancels; what is left is the share of a cell that the surface passes through, and how much less

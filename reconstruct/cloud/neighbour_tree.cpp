@@ -17,6 +17,7 @@
 namespace umtet {
 namespace {
 
+using Distance = flann::L2_3D<double>;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // FLANN compares what it has already summed up over the walk with the bound, so the bound is a few roundings
 // more than the distance, lest points at exactly that distance are lost; the result sets compare again.
@@ -120,11 +121,13 @@ void require_place(const Vec3& x, std::size_t number) {
 
 }  // namespace
 
+double squared_distance(const Vec3& a, const Vec3& b) { return Distance()(a.data(), b.data(), 3); }
+
 struct NeighbourTree::Index {
   struct Piece {
     std::size_t first_row;
     Eigen::AlignedBox3d box;
-    flann::KDTreeSingleIndex<flann::L2_3D<double>> tree;
+    flann::KDTreeSingleIndex<Distance> tree;
 
     Piece(std::vector<Vec3>& rows, std::size_t first, std::size_t end)
         : first_row(first),

@@ -18,6 +18,9 @@ struct Neighbour {
   std::uint32_t point;
 };
 
+/// Between two points, as the searches of NeighbourTree have it, to the bit.
+double squared_distance(const Vec3& a, const Vec3& b);
+
 /// Nearest neighbours, balls and rays of a cloud, exactly, in double: FLANN's k-d tree (KDTreeSingleIndex).
 ///
 /// Its searches run with our result sets: its own take radii in single precision and leave the choice between equal

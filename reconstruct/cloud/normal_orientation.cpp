@@ -182,12 +182,11 @@ void keep_undisputed(const OrientedPointCloud& cloud, const std::vector<double>&
 }
 
 /// a_i as sample_areas has them where no two points share a place. Areas of duplicates may be 0: they have no say.
-std::vector<double> areas_behind(const Neighbourhoods& near) {
+std::vector<double> areas_behind(const std::vector<Vec3>& points, const Neighbourhoods& near) {
   std::vector<double> areas(near.size());
   const auto k = static_cast<double>(near.k());
   tbb::parallel_for(std::size_t{0}, areas.size(), [&](std::size_t i) {
-    const std::span<const double> distances2 = near.distances2(i);
-    areas[i] = 2 * std::numbers::pi / (k * (k + 2)) * std::accumulate(distances2.begin(), distances2.end(), 0.0);
+    areas[i] = 2 * std::numbers::pi / (k * (k + 2)) * near.sum_of_distances2(points, i);
   });
   return areas;
 }
@@ -266,7 +265,7 @@ OrientationReport orient(OrientedPointCloud& cloud, const OrientationParams& par
   const std::size_t n = cloud.points.size();
   if (n < 2) return report;
   const FoundNeighbours near(cloud, params, known);
-  const std::vector<double> areas = areas_behind(*near);
+  const std::vector<double> areas = areas_behind(cloud.points, *near);
   if (given == Given::Signs) {
     const SignAgreement agreement = sign_agreement(cloud, *near);
     report.consistency = report.consistency_after = agreement.share();

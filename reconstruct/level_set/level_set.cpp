@@ -44,10 +44,25 @@ bool find_window(const Band& band, Term<float>& term) {
   return true;
 }
 
+// The same of coefficients that are copied to `room`, W^3 of them: no others.
+template <int W, class Band>
+bool copy_term(const Band& band, float* room, Term<float>& term) {
+  if (!band.has(term.place.cell >> 3)) return false;
+  const Pack4i at = term.place.first;
+  band.data.blocks.copy_window(band.data.coefficients.data(), {at[0], at[1], at[2]}, {W, W, W}, W, room);
+  term.first = room;
+  return true;
+}
+
 // Levels that are evaluated side by side. Place, functions and sum of one level are a chain of operations, each of
 // which needs the one before; the processor overlaps the chains of several levels (reconstruct_bench
 // --benchmark_filter=EvaluatePsi).
 constexpr int kAtOnce = 4;
+
+/// The first node whose function counts in a cell, as LmeTables::locate() has it.
+Eigen::Vector3i first_node(const Eigen::Vector3i& cell, const Eigen::Vector3i& n, int half_width) {
+  return (cell.array() - half_width + 1).cwiseMax(0).min(n.array() - 2 * half_width);
+}
 
 }  // namespace
 
@@ -77,16 +92,28 @@ LevelSet::Band::Band(LevelSetBand&& band, int half_width) : data(std::move(band)
     }
 }
 
-LevelSet::Band::~Band() {
-  for (const std::atomic<const float*>& window : windows) {
-    if (window != &kNotYet) delete[] window.load();
+LevelSet::Band::~Band() { forget(); }
+
+void LevelSet::Band::forget() const {
+  for (std::atomic<const float*>& window : windows) {
+    const float* made = window.load();
+    if (made == nullptr || made == &kNotYet) continue;
+    delete[] made;
+    window = &kNotYet;
   }
+}
+
+inline std::size_t LevelSet::Band::index(const Pack4i& block) const {
+  return block[0] + static_cast<std::size_t>(n[0]) * (block[1] + static_cast<std::size_t>(n[1]) * block[2]);
+}
+
+inline bool LevelSet::Band::has(const Pack4i& block) const {
+  return windows[index(block)].load(std::memory_order_relaxed) != nullptr;
 }
 
 // Null where the band has nothing to add.
 inline const float* LevelSet::Band::window(const Pack4i& block) const {
-  const std::size_t index =
-      block[0] + static_cast<std::size_t>(n[0]) * (block[1] + static_cast<std::size_t>(n[1]) * block[2]);
+  const std::size_t index = this->index(block);
   const float* made = windows[index].load(std::memory_order_acquire);
   return made == &kNotYet ? make_window(index) : made;
 }
@@ -131,11 +158,36 @@ LevelSet LevelSet::band_limited(double spacing) const {
   return limited;
 }
 
-template <int W, int order>
+void LevelSet::forget_below(double spacing) const {
+  for (const std::shared_ptr<const Band>& band : bands_) {
+    if (band->data.blocks.lattice().h < spacing) band->forget();
+  }
+}
+
+CoefficientWindow<double> LevelSet::coarsest_window(const Eigen::Vector3i& cell) const {
+  const Lattice& L = coarsest_->lattice;
+  const Eigen::Vector3i at = first_node(cell, L.n, tables_->half_width());
+  const std::ptrdiff_t nx = L.n[0], ny = L.n[1];
+  return {coarsest_->coefficients.data() + L.index(at[0], at[1], at[2]), nx, nx * ny};
+}
+
+CoefficientWindow<float> LevelSet::band_window(int level, const Eigen::Vector3i& cell) const {
+  const Band& band = *bands_[level - 1];
+  const int R = tables_->half_width(), edge = band.edge;
+  const Eigen::Vector3i block = cell / kEdge;
+  const float* window = band.window(Pack4i{block[0], block[1], block[2], 0});
+  if (window == nullptr) return {nullptr, 0, 0};
+  const Eigen::Vector3i at =
+      first_node(cell, band.data.blocks.lattice().n, R) - kEdge * block + Eigen::Vector3i::Constant(R - 1);
+  return {window + at[0] + edge * (at[1] + edge * at[2]), edge, static_cast<std::ptrdiff_t>(edge) * edge};
+}
+
+template <int W, int order, bool apart>
 LatticeJet LevelSet::sum_levels(const Vec3& x, int first, int end) const {
   constexpr auto kOrder = static_cast<JetOrder>(order);
   const Vec3 xi = lattice_coordinates(coarsest_->lattice, x);
-  constexpr int edge = kEdge + W - 1;
+  constexpr int row = apart ? W : kEdge + W - 1;  // of the coefficients of a term
+  float room[kAtOnce][apart ? W * W * W : 1];
   const LmeTables& tables = *tables_;
   const double scale = 1 / coarsest_->lattice.h;
   JetPacks<kOrder> sum;
@@ -156,7 +208,11 @@ LatticeJet LevelSet::sum_levels(const Vec3& x, int first, int end) const {
       term.n = &band.data.blocks.lattice().n;
       term.xi = finer * xi, term.scale = finer * scale;
       term.place = tables.locate(*term.n, term.xi);
-      n += find_window<edge>(band, term);
+      if constexpr (apart) {
+        n += copy_term<W>(band, room[n], term);
+      } else {
+        n += find_window<row>(band, term);
+      }
     }
     if (first == 0) tables.evaluate_at<order>(coarsest.place, coarsest_->lattice.n, xi, scale, coarsest.B);
     for (int i = 0; i < n; ++i) {
@@ -169,31 +225,33 @@ LatticeJet LevelSet::sum_levels(const Vec3& x, int first, int end) const {
       first = 1;
     }
     for (int i = 0; i < n; ++i) {
-      contract<W, kOrder>(terms[i].B, terms[i].first, std::integral_constant<int, edge>{},
-                          std::integral_constant<int, edge * edge>{}, sum);
+      contract<W, kOrder>(terms[i].B, terms[i].first, std::integral_constant<int, row>{},
+                          std::integral_constant<int, row * row>{}, sum);
     }
     if (level == end) break;
   }
   return sum.sum();
 }
 
-LatticeJet LevelSet::sum_levels(const Vec3& x, int first, int end, Vec3* gradient, Mat3* hessian) const {
-  return dispatch_width(tables_->width(), [&](auto W) {
-    if (hessian) return sum_levels<W.value, kHessian>(x, first, end);
-    if (gradient) return sum_levels<W.value, kGradient>(x, first, end);
-    return sum_levels<W.value, kValue>(x, first, end);
-  });
+LatticeJet LevelSet::sum_levels(const Vec3& x, int first, int end, bool apart, Vec3* gradient, Mat3* hessian) const {
+  const auto sum = [&](auto W, auto is_apart) {
+    if (hessian) return sum_levels<W.value, kHessian, is_apart.value>(x, first, end);
+    if (gradient) return sum_levels<W.value, kGradient, is_apart.value>(x, first, end);
+    return sum_levels<W.value, kValue, is_apart.value>(x, first, end);
+  };
+  return dispatch_width(tables_->width(),
+                        [&](auto W) { return apart ? sum(W, std::true_type{}) : sum(W, std::false_type{}); });
 }
 
 double LevelSet::evaluate_level(int level, const Vec3& x, Vec3* gradient, Mat3* hessian) const {
-  const LatticeJet f = sum_levels(x, level, level + 1, gradient, hessian);
+  const LatticeJet f = sum_levels(x, level, level + 1, false, gradient, hessian);
   if (gradient) *gradient = f.gradient;
   if (hessian) *hessian = f.hessian;
   return f.value;
 }
 
-double LevelSet::evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const {
-  LatticeJet f = sum_levels(x, 0, n_levels(), gradient, hessian);
+double LevelSet::evaluate(const Vec3& x, bool apart, Vec3* gradient, Mat3* hessian) const {
+  LatticeJet f = sum_levels(x, 0, n_levels(), apart, gradient, hessian);
   if (const double outside2 = domain_.squaredExteriorDistance(x); outside2 > 0) {
     const double outside = std::sqrt(outside2);
     const Vec3 away = x - x.cwiseMax(domain_.min()).cwiseMin(domain_.max());

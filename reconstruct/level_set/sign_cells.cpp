@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
+
+#include "reconstruct/basis/contract.h"
 
 namespace umtet {
 
@@ -14,6 +17,28 @@ namespace {
 struct Range {
   double low = 0, high = 0;
 };
+
+// What is left of the coefficients of a window when an affine function is taken away: least and greatest.
+// @param corner  the affine function at the first node
+// @param g       its change from node to node
+template <int W, class T>
+Range rest_of(const CoefficientWindow<T>& window, double corner, const Vec3& g) {
+  // One lane for each column: no operation waits for the one before.
+  std::array<double, W> low, high;
+  low.fill(std::numeric_limits<double>::infinity());
+  high.fill(-std::numeric_limits<double>::infinity());
+  for (int z = 0; z < W; ++z)
+    for (int y = 0; y < W; ++y) {
+      const T* c = window.first + window.row * y + window.layer * z;
+      const double row = corner + g[1] * y + g[2] * z;
+      for (int x = 0; x < W; ++x) {
+        const double rest = static_cast<double>(c[x]) - (row + g[0] * x);
+        low[x] = rest < low[x] ? rest : low[x];
+        high[x] = rest > high[x] ? rest : high[x];
+      }
+    }
+  return {*std::min_element(low.begin(), low.end()), *std::max_element(high.begin(), high.end())};
+}
 
 // sup |sum e_a H(N_a)| / max|e_a|, in lattice units: the row sums of a matrix with entries S'' = sum |N''| on the
 // diagonal and S' S' off it.
@@ -42,7 +67,12 @@ class Search {
  private:
   void split(int depth, const Eigen::Vector3i& cell, double bend, std::vector<Eigen::Vector3i>& found) const;
   bool has_one_sign(const Eigen::Vector3i& cell) const;
-  double bend_of(int level, const Eigen::Vector3i& cell) const;
+  // One level in one of its cells: its value and gradient in the middle, and C max|e_a| / h^2.
+  struct LevelInCell {
+    double value = 0, bend = 0;
+    Vec3 gradient = Vec3::Zero();
+  };
+  LevelInCell level_in_cell(int level, const Eigen::Vector3i& cell) const;
   Range finer_levels(int depth, const Vec3& low, const Vec3& high) const;
 
   const LevelSet& psi_;
@@ -68,32 +98,23 @@ Search::Search(const LevelSet& psi, int depth)
   }
 }
 
-// C max|e_a| / h^2 of one level in one of its cells.
-double Search::bend_of(int level, const Eigen::Vector3i& cell) const {
+Search::LevelInCell Search::level_in_cell(int level, const Eigen::Vector3i& cell) const {
   const Lattice& L = psi_.lattice(level);
-  const int width = 2 * R_;
-  double window[8 * 8 * 8];
-  const Eigen::Vector3i first = (cell.array() - R_ + 1).cwiseMax(0).min(L.n.array() - width);
-  const bool any = level == 0 ? copy_window(psi_.coarsest(), first, width, window)
-                              : psi_.band(level).blocks.copy_window(psi_.band(level).coefficients.data(), first,
-                                                                    {width, width, width}, width, window);
-  if (!any) return 0;
+  CoefficientWindow<float> of_band{};
+  if (level > 0) of_band = psi_.band_window(level, cell);
+  LevelInCell result;
+  if (level > 0 && of_band.first == nullptr) return result;
   const Vec3 middle = cell.cast<double>() + Vec3::Constant(0.5);
-  Vec3 g;
-  const double v = psi_.evaluate_level(level, L.origin + L.h * middle, &g, nullptr);
-  g *= L.h;
-  Range e{1e300, -1e300};
-  const double* c = window;
-  for (int z = 0; z < width; ++z)
-    for (int y = 0; y < width; ++y) {
-      const double row = v + g.dot(Vec3(first[0], first[1] + y, first[2] + z) - middle);
-      for (int x = 0; x < width; ++x) {
-        const double rest = *c++ - (row + g[0] * x);
-        e.low = std::min(e.low, rest), e.high = std::max(e.high, rest);
-      }
-    }
+  result.value = psi_.evaluate_level(level, L.origin + L.h * middle, &result.gradient, nullptr);
+  const Vec3 g = L.h * result.gradient;
+  const Eigen::Vector3i first = (cell.array() - R_ + 1).cwiseMax(0).min(L.n.array() - 2 * R_);
+  const double corner = result.value + g.dot(first.cast<double>() - middle);
+  const Range e = simd::dispatch_width(2 * R_, [&](auto W) {
+    return level == 0 ? rest_of<W.value>(psi_.coarsest_window(cell), corner, g) : rest_of<W.value>(of_band, corner, g);
+  });
   const bool wall = (cell.array() < R_ - 1).any() || (cell.array() > L.n.array() - 1 - R_).any();
-  return (wall ? at_walls_ : inside_) * (e.high - e.low) / 2 / (L.h * L.h);
+  result.bend = (wall ? at_walls_ : inside_) * (e.high - e.low) / 2 / (L.h * L.h);
+  return result;
 }
 
 // The sum of all levels finer than a cube of `depth` in that cube.
@@ -124,16 +145,10 @@ Range Search::finer_levels(int depth, const Vec3& low, const Vec3& high) const {
 // A cell of the coarsest lattice far from any zero: a sum of functions that are >= 0 and sum to one lies between the
 // least and the greatest coefficient. Most cells end here, before their second derivatives are looked at.
 bool Search::has_one_sign(const Eigen::Vector3i& cell) const {
-  const Lattice& L = psi_.coarsest().lattice;
-  const int width = 2 * R_;
-  const Eigen::Vector3i first = (cell.array() - R_ + 1).cwiseMax(0).min(L.n.array() - width);
-  Range c{1e300, -1e300};
-  for (int z = 0; z < width; ++z)
-    for (int y = 0; y < width; ++y) {
-      const double* row = psi_.coarsest().coefficients.data() + L.index(first[0], first[1] + y, first[2] + z);
-      for (int x = 0; x < width; ++x) c.low = std::min(c.low, row[x]), c.high = std::max(c.high, row[x]);
-    }
+  const Range c = simd::dispatch_width(
+      2 * R_, [&](auto W) { return rest_of<W.value>(psi_.coarsest_window(cell), 0, Vec3::Zero()); });
   if (c.low <= 0 && c.high >= 0) return false;
+  const Lattice& L = psi_.coarsest().lattice;
   const Vec3 low = L.origin + L.h * cell.cast<double>();
   const Range finer = finer_levels(0, low, low + Vec3::Constant(L.h));
   return c.low + finer.low > 0 || c.high + finer.high < 0;
@@ -143,17 +158,20 @@ bool Search::has_one_sign(const Eigen::Vector3i& cell) const {
 void Search::split(int depth, const Eigen::Vector3i& cell, double bend, std::vector<Eigen::Vector3i>& found) const {
   const Lattice& L = psi_.coarsest().lattice;
   const double edge = std::ldexp(L.h, -depth);
-  if (depth < psi_.n_levels()) bend += bend_of(depth, cell);
+  const LevelInCell finest = depth < psi_.n_levels() ? level_in_cell(depth, cell) : LevelInCell();
+  bend += finest.bend;
   const Vec3 low = L.origin + edge * cell.cast<double>(), middle = low + Vec3::Constant(edge / 2);
   double value = 0;
   Vec3 gradient = Vec3::Zero(), g;
   if (depth + 1 >= psi_.n_levels()) {
     value = psi_.evaluate(middle, &gradient, nullptr);
   } else {
-    for (int level = 0; level <= depth; ++level) {
+    for (int level = 0; level < depth; ++level) {
       value += psi_.evaluate_level(level, middle, &g, nullptr);
       gradient += g;
     }
+    value += finest.value;
+    gradient += finest.gradient;
   }
   const Range finer = finer_levels(depth, low, low + Vec3::Constant(edge));
   const double curved = bend * 0.75 * edge * edge / 2;  // half a diagonal off the middle
@@ -179,7 +197,7 @@ void Search::search(int depth, const Eigen::Vector3i& cell, std::vector<Eigen::V
   double bend = 0;
   for (int level = 0; level < std::min(depth, psi_.n_levels()); ++level) {
     const int up = depth - level;
-    bend += bend_of(level, {cell[0] >> up, cell[1] >> up, cell[2] >> up});
+    bend += level_in_cell(level, {cell[0] >> up, cell[1] >> up, cell[2] >> up}).bend;
   }
   split(depth, cell, bend, found);
 }

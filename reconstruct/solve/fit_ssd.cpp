@@ -11,6 +11,7 @@
 #include "common/formatted.h"
 #include "reconstruct/cloud/covering.h"
 #include "reconstruct/solve/closing.h"
+#include "reconstruct/solve/fit_measures.h"
 #include "reconstruct/solve/multigrid.h"
 #include "reconstruct/solve/resolution.h"
 #include "reconstruct/solve/ssd_assembled.h"
@@ -20,21 +21,23 @@ namespace umtet {
 
 std::vector<std::string> problems(const SsdParams& params) {
   std::vector<std::string> p = problems(params.prior);
-  if (!(params.spacing >= 0 && std::isfinite(params.spacing))) p.push_back("spacing must be >= 0 (0: automatic)");
-  if (!(params.smoothing >= 0 && std::isfinite(params.smoothing))) p.push_back("smoothing must be >= 0 (0: automatic)");
-  if (!(params.noise >= 0 && std::isfinite(params.noise))) p.push_back("noise must be >= 0");
-  if (!(params.detail > 0 && std::isfinite(params.detail))) p.push_back("detail must be > 0");
-  if (!(params.finest >= 0 && std::isfinite(params.finest))) p.push_back("finest must be >= 0");
-  if (!(params.smooth > 0 && std::isfinite(params.smooth))) p.push_back("smooth must be > 0");
-  if (!(params.alpha > 0)) p.push_back("alpha must be > 0");
-  if (!(params.tolerance > 0 && params.tolerance < 1)) p.push_back("tolerance must be in (0, 1)");
-  if (params.max_iterations < 1) p.push_back("max_iterations must be >= 1");
-  if (!(params.band_tolerance > 0 && params.band_tolerance < 1)) p.push_back("band_tolerance must be in (0, 1)");
-  if (params.coarsest_nodes < 1) p.push_back("coarsest_nodes must be >= 1");
-  if (params.padding < 1) p.push_back("padding must be >= 1");
+  if (!(params.spacing >= 0 && std::isfinite(params.spacing))) p.emplace_back("spacing must be >= 0 (0: automatic)");
+  if (!(params.smoothing >= 0 && std::isfinite(params.smoothing)))
+    p.emplace_back("smoothing must be >= 0 (0: automatic)");
+  if (!(params.noise >= 0 && std::isfinite(params.noise))) p.emplace_back("noise must be >= 0");
+  if (!(params.detail > 0 && std::isfinite(params.detail))) p.emplace_back("detail must be > 0");
+  if (!(params.finest >= 0 && std::isfinite(params.finest))) p.emplace_back("finest must be >= 0");
+  if (!(params.smooth > 0 && std::isfinite(params.smooth))) p.emplace_back("smooth must be > 0");
+  if (!(params.alpha > 0)) p.emplace_back("alpha must be > 0");
+  if (!(params.tolerance > 0 && params.tolerance < 1)) p.emplace_back("tolerance must be in (0, 1)");
+  if (params.max_iterations < 1) p.emplace_back("max_iterations must be >= 1");
+  if (!(params.band_tolerance > 0 && params.band_tolerance < 1)) p.emplace_back("band_tolerance must be in (0, 1)");
+  if (params.coarsest_nodes < 1) p.emplace_back("coarsest_nodes must be >= 1");
+  if (params.padding < 1) p.emplace_back("padding must be >= 1");
   if (params.solver == SsdSolver::Multilevel) {
-    if (params.weights == SsdWeights::Paper) p.push_back("weights = paper needs solver = full or assembled");
-    if (params.prior.kind == LmePrior::Kind::Gaussian) p.push_back("prior = gaussian needs solver = full or assembled");
+    if (params.weights == SsdWeights::Paper) p.emplace_back("weights = paper needs solver = full or assembled");
+    if (params.prior.kind == LmePrior::Kind::Gaussian)
+      p.emplace_back("prior = gaussian needs solver = full or assembled");
   }
   return p;
 }
@@ -100,84 +103,6 @@ constexpr double kUnusual = 2;
 // sample sees more of its own, half as much again.
 constexpr double kGapOfNoise = 9;
 
-// @param area  a_i; empty for the paper's weights
-// @param n_share  how many samples share the area around each
-std::vector<SsdSample> make_samples(const OrientedPointCloud& cloud, const std::vector<double>& area,
-                                    const std::vector<int>& n_share, const Lattice& lattice, const SsdParams& params) {
-  const double h = lattice.h, l = finest_value_length(h, params.noise);
-  std::vector<SsdSample> samples = touched<SsdSample>(cloud.points.size());
-  tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
-    samples[i].xi = (cloud.points[i] - lattice.origin) / h;
-    samples[i].normal = cloud.normals[i];
-    // With f = h F and x = h xi, both functionals divided by h² (area) or as they stand (paper):
-    samples[i].w_value = area.empty() ? h * h : area[i] / (l * l);
-    samples[i].w_gradient = area.empty() ? 1.0 : area[i] / (h * h);
-    samples[i].gap2 = n_share[i] * samples[i].w_gradient;
-    if (area.empty() || params.local_noise.empty()) return;
-    if (const double noise = params.local_noise[i]; noise > kUnusual * params.noise) {
-      samples[i].w_value = area[i] / std::pow(finest_value_length(h, noise), 2);
-      samples[i].gap2 = std::max(samples[i].gap2, std::pow(kGapOfNoise * noise / h, 2));
-    }
-  });
-  return samples;
-}
-
-// @param length  by which values are weighed
-void measure_fit(const OrientedPointCloud& cloud, const LevelSet& psi, const std::vector<double>& area, double length,
-                 SsdReport& report) {
-  struct Sums {
-    double value2 = 0, n = 0, energy_value = 0, energy_normal = 0, area = 0;
-    std::size_t n_opposed = 0;
-  };
-  constexpr std::size_t kChunk = 4096;
-  const std::size_t n = cloud.points.size();
-  std::vector<Sums> sums((n + kChunk - 1) / kChunk);
-  tbb::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t chunk) {
-    Sums& sum = sums[chunk];
-    for (std::size_t i = chunk * kChunk; i < std::min(n, (chunk + 1) * kChunk); ++i) {
-      const double a = area.empty() ? 1 : area[i], scale = area.empty() ? 1 : length;
-      Vec3 gradient;
-      const double value = psi.evaluate(cloud.points[i], &gradient, nullptr);
-      const double count = cloud.counts.empty() ? 1 : cloud.counts[i];
-      const double spread = cloud.spreads.empty() ? 0 : cloud.spreads[i];
-      sum.value2 += count * (value * value + spread * spread);
-      sum.n += count;
-      sum.energy_value += a * std::pow(value / scale, 2) / 2;
-      sum.energy_normal += a * (gradient - cloud.normals[i]).squaredNorm() / 2;
-      sum.area += a;
-      sum.n_opposed += gradient.dot(cloud.normals[i]) < 0;
-    }
-  });
-  double value2 = 0, all = 0, all_counted = 0;
-  for (const Sums& sum : sums) {
-    value2 += sum.value2;
-    all += sum.area;
-    all_counted += sum.n;
-    report.energy_value += sum.energy_value;
-    report.energy_normal += sum.energy_normal;
-    report.n_opposed_normals += sum.n_opposed;
-  }
-  report.rms_value = std::sqrt(value2 / all_counted);
-  report.normal_defect = 2 * report.energy_normal / all;
-
-  constexpr int kWallSamples = 16;  // along each edge of a face
-  report.least_wall_value = std::numeric_limits<double>::infinity();
-  const Eigen::AlignedBox3d& box = psi.domain();
-  for (int face = 0; face < 6; ++face) {
-    for (int s = 0; s < kWallSamples * kWallSamples; ++s) {
-      const int row = s / kWallSamples, column = s % kWallSamples;
-      Vec3 t;  // position in the box, 0 .. 1 on each axis
-      t[face / 2] = face % 2;
-      t[(face / 2 + 1) % 3] = (column + 0.5) / kWallSamples;
-      t[(face / 2 + 2) % 3] = (row + 0.5) / kWallSamples;
-      report.least_wall_value = std::min(report.least_wall_value, psi.value(box.min() + t.cwiseProduct(box.sizes())));
-    }
-  }
-}
-
-// Where each step begins, as a share of the time.
-constexpr double kSetup = .2, kSolve = .3, kRefine = .5;
-
 // What both ways of fitting start from.
 struct Problem {
   const OrientedPointCloud& cloud;
@@ -189,6 +114,28 @@ struct Problem {
   std::vector<int> n_share;  // how many samples share the area around each
   double finest_smoothing;   // c in the finest band
 };
+
+SsdSample sample_of(const Problem& problem, const Lattice& lattice, std::size_t i) {
+  const std::vector<double>& area = problem.area;
+  const SsdParams& params = problem.params;
+  const double h = lattice.h, l = finest_value_length(h, params.noise);
+  SsdSample s;
+  s.xi = (problem.cloud.points[i] - lattice.origin) / h;
+  s.normal = problem.cloud.normals[i];
+  // With f = h F and x = h xi, both functionals divided by h² (area) or as they stand (paper):
+  s.w_value = area.empty() ? h * h : area[i] / (l * l);
+  s.w_gradient = area.empty() ? 1.0 : area[i] / (h * h);
+  s.gap2 = problem.n_share[i] * s.w_gradient;
+  if (area.empty() || params.local_noise.empty()) return s;
+  if (const double noise = params.local_noise[i]; noise > kUnusual * params.noise) {
+    s.w_value = area[i] / std::pow(finest_value_length(h, noise), 2);
+    s.gap2 = std::max(s.gap2, std::pow(kGapOfNoise * noise / h, 2));
+  }
+  return s;
+}
+
+// Where each step begins, as a share of the time.
+constexpr double kSetup = .2, kSolve = .3, kRefine = .5;
 
 // The level set on all nodes of one lattice.
 // @param samples  in the units of that lattice
@@ -239,9 +186,10 @@ LevelSet fit_lattice(const Problem& problem, const Hierarchy& hierarchy, std::ve
 LevelSet fit_full(const Problem& problem, SsdReport& report) {
   const Hierarchy hierarchy =
       choose_hierarchy(problem.box, report.spacing, problem.params.padding, problem.tables.width());
-  return fit_lattice(problem, hierarchy,
-                     make_samples(problem.cloud, problem.area, problem.n_share, hierarchy.finest, problem.params),
-                     problem.params.tolerance, report);
+  std::vector<SsdSample> samples = touched<SsdSample>(problem.cloud.points.size());
+  tbb::parallel_for(std::size_t{0}, samples.size(),
+                    [&](std::size_t i) { samples[i] = sample_of(problem, hierarchy.finest, i); });
+  return fit_lattice(problem, hierarchy, std::move(samples), problem.params.tolerance, report);
 }
 
 // Cells of the coarsest lattice around the samples: functions near its wall are deformed, and those of a band, which
@@ -260,41 +208,67 @@ constexpr double kMostArea = 4;
 // set keeps of a band over what its solve takes. About what is held at the peak.
 constexpr double kBytesPerCoarseNode = 250, kBytesPerPoint = 200, kKept = 0.6;
 
-void require_memory(const Problem& problem, const Hierarchy& hierarchy,
-                    const std::vector<std::vector<SsdSample>>& samples) {
+// The samples of the coarsest lattice, and of each of twice its resolution, in the units of theirs.
+struct LevelSamples {
+  std::vector<std::vector<SsdSample>> here;  // but for those that SsdParams::bands has taken
+  std::vector<std::size_t> n;
+  std::vector<double> bytes;  // of bands: SsdBand::expected_bytes(), where there is a limit
+};
+
+void require_memory(const Problem& problem, const Hierarchy& hierarchy, const LevelSamples& samples) {
   const double limit = problem.params.max_memory;
   if (limit == 0) return;
   double need = kBytesPerPoint * static_cast<double>(problem.cloud.points.size()) +
                 kBytesPerCoarseNode * static_cast<double>(hierarchy.finest.size());
-  for (std::size_t level = 1; level < samples.size(); ++level) {
-    const double bytes = SsdBand::expected_bytes(samples[level], problem.tables.half_width());
-    need += level + 1 < samples.size() ? kKept * bytes : (1 + kKept) * bytes;
+  const std::size_t n_levels = samples.bytes.size();
+  for (std::size_t level = 1; level < n_levels; ++level) {
+    need += level + 1 < n_levels ? kKept * samples.bytes[level] : (1 + kKept) * samples.bytes[level];
   }
   if (need <= limit) return;
   throw SolveTooLarge(
       formatted("a finest spacing of %.4g needs %.3g GB of memory, %.3g GB are allowed: choose a "
                 "larger spacing (--detail below 1), or allow more",
-                hierarchy.finest.h / std::exp2(samples.size() - 1.0), need / 1e9, limit / 1e9));
+                hierarchy.finest.h / std::exp2(n_levels - 1.0), need / 1e9, limit / 1e9));
 }
 
-// Those of the coarsest lattice, and of each of twice its resolution, in the units of theirs.
-std::vector<std::vector<SsdSample>> samples_of_levels(const Problem& problem, Lattice lattice, int n_bands) {
-  const double noise = problem.params.noise;
-  lattice.h = std::ldexp(lattice.h, -n_bands);
-  lattice.n = (lattice.n.array() - 1) * (1 << n_bands) + 1;
-  std::vector<std::vector<SsdSample>> samples(n_bands + 1);
-  samples[n_bands] =
-      merge_samples(make_samples(problem.cloud, problem.area, problem.n_share, lattice, problem.params), kMergeCube);
-  for (int level = n_bands; level-- > 0;) {
-    std::vector<SsdSample> coarser = coarsened(samples[level + 1]);
-    const double h = std::ldexp(lattice.h, n_bands - level);
-    const double per_gradient = std::pow(h / value_length(h, noise), 2);
-    tbb::parallel_for(std::size_t{0}, coarser.size(),
-                      [&](std::size_t i) { coarser[i].w_value = coarser[i].w_gradient * per_gradient; });
-    samples[level] = merge_samples(coarser, kMergeCube);
-    samples[level + 1] = resolved_samples(samples[level + 1], kMostArea);
+Lattice refined(Lattice lattice, int times) {
+  lattice.h = std::ldexp(lattice.h, -times);
+  lattice.n = (lattice.n.array() - 1) * (1 << times) + 1;
+  return lattice;
+}
+
+LevelSamples samples_of_levels(const Problem& problem, const Lattice& coarsest, int n_bands) {
+  const SsdParams& params = problem.params;
+  const int half_width = problem.tables.half_width();
+  const auto n_levels = static_cast<std::size_t>(n_bands) + 1;
+  LevelSamples made{std::vector<std::vector<SsdSample>>(n_levels), std::vector<std::size_t>(n_levels, 0),
+                    std::vector<double>(n_levels, 0)};
+  const auto take = [&](int level, std::vector<SsdSample> samples) {
+    made.n[level] = samples.size();
+    if (params.max_memory > 0) made.bytes[level] = SsdBand::expected_bytes(samples, half_width);
+    if (!params.bands) {
+      made.here[level] = std::move(samples);
+    } else if (!samples.empty()) {
+      params.bands->take(level, refined(coarsest, level), half_width, std::move(samples));
+    }
+  };
+  const Lattice finest = refined(coarsest, n_bands);
+  std::vector<SsdSample> samples = merge_samples(
+      problem.cloud.points.size(), [&](std::size_t i) { return sample_of(problem, finest, i); }, kMergeCube);
+  for (int level = n_bands; level > 0; --level) {
+    const double h = std::ldexp(finest.h, n_bands - level + 1);
+    const double per_gradient = std::pow(h / value_length(h, params.noise), 2);
+    const auto coarser = [&](std::size_t i) {
+      SsdSample s = coarsened(samples[i]);
+      s.w_value = s.w_gradient * per_gradient;
+      return s;
+    };
+    std::vector<SsdSample> next = merge_samples(samples.size(), coarser, kMergeCube);
+    take(level, resolved_samples(std::move(samples), kMostArea));
+    samples = std::move(next);
   }
-  return samples;
+  made.here[0] = std::move(samples);
+  return made;
 }
 
 double n_coarsest_nodes(const Problem& problem, double spacing) {
@@ -322,12 +296,12 @@ LevelSet fit_multilevel(const Problem& problem, SsdReport& report) {
     coarsest *= 2;
     ++n_bands;
   }
-  std::vector<std::vector<SsdSample>> samples(n_bands + 1);
+  LevelSamples samples;
   const auto fit_coarsest = [&](const Eigen::AlignedBox3d& box, const ClosingPlan* closing) {
     const Hierarchy hierarchy = choose_hierarchy(box, coarsest, padding, problem.tables.width());
     samples = samples_of_levels(problem, hierarchy.finest, n_bands);
     require_memory(problem, hierarchy, samples);
-    std::vector<SsdSample> all = samples[0];
+    std::vector<SsdSample> all = samples.here[0];
     if (closing) {
       const std::vector<SsdSample> more = closing->samples(hierarchy.finest);
       all.insert(all.end(), more.begin(), more.end());
@@ -336,28 +310,28 @@ LevelSet fit_multilevel(const Problem& problem, SsdReport& report) {
                        report);
   };
   LevelSet psi = fit_coarsest(problem.box, nullptr);
-  const ClosingPlan closing(psi, std::move(samples[0]), params.closing);
+  const ClosingPlan closing(psi, std::move(samples.here[0]), params.closing);
   if (closing.is_needed()) psi = fit_coarsest(closing.box(), &closing);
   report.holes = closing.holes();
-  samples[0] = {};
-  for (int level = 1; level <= n_bands && !samples[level].empty(); ++level) {
+  samples.here[0] = {};
+  for (int level = 1; level <= n_bands && samples.n[level] > 0; ++level) {
     const double per_level = 1.0 / n_bands;
     const double smoothing = level < n_bands ? report.smoothing : problem.finest_smoothing;
     BandReport band;
-    psi = refine(
-        psi, samples[level], smoothing, params.band_tolerance, params.max_iterations,
-        [&](double residual) {
-          const double done = std::clamp(std::log(residual) / std::log(params.band_tolerance), 0.0, 1.0);
-          problem.context.report("refine", kRefine + (1 - kRefine) * (level - 1 + done) * per_level);
-        },
-        band);
+    const auto go_on = [&](double residual) {
+      const double done = std::clamp(std::log(residual) / std::log(params.band_tolerance), 0.0, 1.0);
+      problem.context.report("refine", kRefine + (1 - kRefine) * (level - 1 + done) * per_level);
+    };
+    psi = params.bands
+              ? params.bands->refine(psi, smoothing, params.band_tolerance, params.max_iterations, go_on, band)
+              : refine(psi, samples.here[level], smoothing, params.band_tolerance, params.max_iterations, go_on, band);
     if (!band.converged) {
       throw SolveError(
           formatted("band of %zu nodes, smoothing %.3g: relative residual %.2e after %d iterations, "
                     "wanted %.1e",
                     band.n_nodes, smoothing, band.residual, band.iterations, params.band_tolerance));
     }
-    samples[level] = {};
+    samples.here[level] = {};
     report.n_nodes += band.n_nodes;
     report.bands.push_back(band);
   }

@@ -48,6 +48,7 @@ struct SsdParams {
   double max_memory = 0;            ///< bytes that fitting may take; 0: no limit
   int padding =
       5;  ///< lattice cells around the cloud's box; >= 1, and >= 4 for the mesher: projections fail at the hull
+  BandRefiner* bands = nullptr;  ///< makes those of SsdSolver::Multilevel; null: refine()
 };
 
 /// Every broken constraint, not just the first; empty when the parameters are usable.

@@ -3,8 +3,11 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <utility>
 
 #include "common/first_touch.h"
 #include "reconstruct/basis/contract.h"
@@ -34,8 +37,10 @@ void sort_and_unite(std::vector<Eigen::Vector3i>& blocks) {
   blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
 }
 
+}  // namespace
+
 // The node blocks that the functions of the samples' cells belong to.
-std::vector<Eigen::Vector3i> touched_blocks(const std::vector<SsdSample>& samples, int half_width) {
+std::vector<Eigen::Vector3i> SsdBand::blocks_of(const std::vector<SsdSample>& samples, int half_width) {
   const int reach = 2 * half_width - 1;  // the window of cell c ends in block (c + reach) / 8: its own or the next
   const std::vector<std::size_t> runs = block_runs(samples);
   std::vector<unsigned> ends(runs.size() - 1, 0);  // a bit for each of the eight blocks in which a window ends
@@ -59,6 +64,8 @@ std::vector<Eigen::Vector3i> touched_blocks(const std::vector<SsdSample>& sample
   sort_and_unite(reached);
   return reached;
 }
+
+namespace {
 
 // Functions of W nodes an axis reach no farther into the upper blocks: rows y and planes z that are of use.
 template <int W>
@@ -101,10 +108,16 @@ void add_window(const std::array<int, 8>& nodes, const T* window, T* values) {
 }  // namespace
 
 SsdBand::SsdBand(const LmeTables& tables, const Lattice& lattice, double kappa, const std::vector<SsdSample>& samples)
+    : SsdBand(tables, LatticeBlocks(lattice, tables.half_width(), blocks_of(samples, tables.half_width())), kappa,
+              samples, {0, std::numeric_limits<int>::max()}) {}
+
+SsdBand::SsdBand(const LmeTables& tables, LatticeBlocks blocks, double kappa, const std::vector<SsdSample>& samples,
+                 std::array<int, 2> own)
     : tables_(&tables),
       kappa_(kappa),
       samples_(&samples),
-      blocks_(lattice, tables.half_width(), touched_blocks(samples, tables.half_width())) {
+      blocks_(std::move(blocks)),
+      own_{own[0], std::min(own[1], blocks_.size())} {
   neighbours_.resize(blocks_.size());
   tbb::parallel_for(0, blocks_.size(), [&](int b) { neighbours_[b] = blocks_.neighbours(b); });
   const std::vector<std::size_t> runs = block_runs(samples);
@@ -115,7 +128,9 @@ SsdBand::SsdBand(const LmeTables& tables, const Lattice& lattice, double kappa, 
     cells.end = runs[run + 1];
     cells.block = cell_of(samples[cells.begin]) / kEdge;
     for (int q = 0; q < 8; ++q) {
-      cells.nodes[q] = blocks_.at(cells.block + Eigen::Vector3i(q & 1, q >> 1 & 1, q >> 2));
+      const int b = blocks_.at(cells.block + Eigen::Vector3i(q & 1, q >> 1 & 1, q >> 2));
+      cells.nodes[q] = b;
+      cells.own_nodes[q] = b >= own_[0] && b < own_[1] ? b : -1;
     }
   });
   for (std::size_t run = 0; run < cell_blocks_.size(); ++run) {
@@ -129,7 +144,7 @@ SsdBand::SsdBand(const LmeTables& tables, const Lattice& lattice, double kappa, 
 
 double SsdBand::expected_bytes(const std::vector<SsdSample>& samples, int half_width) {
   constexpr double kPerNode = 5 * sizeof(float) + 16, kPerSample = 180;
-  return kNodes * kPerNode * static_cast<double>(touched_blocks(samples, half_width).size()) +
+  return kNodes * kPerNode * static_cast<double>(blocks_of(samples, half_width).size()) +
          kPerSample * static_cast<double>(samples.size());
 }
 
@@ -172,7 +187,7 @@ void SsdBand::apply_data(const float* p, float* y) const {
     for (std::size_t i = cells.begin; i < cells.end; ++i) {
       detail::add_sample<W>({bases_.get() + i * Basis<W>::kStride}, in + window_[i], out + window_[i], kRow, kPlane);
     }
-    add_window<W>(cells.nodes, out, y);
+    add_window<W>(cells.own_nodes, out, y);
   });
 }
 
@@ -185,7 +200,7 @@ void SsdBand::apply_energy(const float* p, float* y) const {
   for (int o = 0; o <= kHalf; ++o) {
     m[o] = static_cast<float>(gram.m(o)), s[o] = static_cast<float>(gram.s(o)), b[o] = static_cast<float>(gram.b(o));
   }
-  tbb::parallel_for(0, blocks_.size(), [&](int block) {
+  tbb::parallel_for(own_[0], own_[1], [&](int block) {
     const std::array<int, 27>& near = neighbours_[block];
     alignas(32) float with_m[kAround][kNodes / kEdge], with_b[kAround][kNodes / kEdge], with_s[kAround][kNodes / kEdge];
     for (int z = 0; z < kAround; ++z) {
@@ -284,14 +299,14 @@ void SsdBand::invert_diagonal() {
                 B.w_value() * yz * yz * N2 + B.w_gradient() * (yz * yz * d2 + (dyz * dyz + ydz * ydz) * N2);
           }
       }
-      add_window<W>(cells.nodes, out, d.data());
+      add_window<W>(cells.own_nodes, out, d.data());
     });
   });
   const CrossGram gram(*tables_, 0);
   const double m = gram.m(0), s = gram.s(0), b = gram.b(0);
   const auto energy = static_cast<float>(kappa_ * (3 * b * m * m + 6 * s * s * m));
   std::vector<int> n_active(blocks_.size(), 0);
-  tbb::parallel_for(0, blocks_.size(), [&](int block) {
+  tbb::parallel_for(own_[0], own_[1], [&](int block) {
     float* const of_block = d.data() + static_cast<std::size_t>(block) * kNodes;
     for (int a = 0; a < kNodes; ++a) {
       float& v = of_block[a];
@@ -312,7 +327,7 @@ void SsdBand::subtract_energy(const LevelSet& f, std::vector<float>& r) const {
     widest = std::max<std::size_t>(widest, grams.back().window_size());
   }
   const auto scale = static_cast<float>(-kappa_ / L.h);
-  tbb::parallel_for(0, blocks_.size(), [&](int block) {
+  tbb::parallel_for(own_[0], own_[1], [&](int block) {
     thread_local std::vector<float> window;
     thread_local std::vector<double> coarsest;
     window.resize(widest * widest * widest), coarsest.resize(window.size());
@@ -350,7 +365,7 @@ void SsdBand::add_misfit(const LevelSet& f, std::vector<float>& r) const {
                                 static_cast<float>(s.w_value * (s.value - value)), g[0], g[1], g[2], out + window_[i],
                                 kRow, kPlane);
     }
-    add_window<W>(cells.nodes, out, r.data());
+    add_window<W>(cells.own_nodes, out, r.data());
   });
 }
 
@@ -358,7 +373,7 @@ void SsdBand::residual(const LevelSet& f, std::vector<float>& r) const {
   r = touched<float>(size());
   subtract_energy(f, r);
   detail::dispatch_width(tables_->width(), [&](auto W) { add_misfit<W.value>(f, r); });
-  tbb::parallel_for(0, blocks_.size(), [&](int block) {
+  tbb::parallel_for(own_[0], own_[1], [&](int block) {
     const std::size_t begin = static_cast<std::size_t>(block) * kNodes;
     for (std::size_t a = begin; a < begin + kNodes; ++a) {
       if (inverse_diagonal_[a] == 0) r[a] = 0;

@@ -24,18 +24,29 @@ class SsdBand {
  public:
   /// @param samples  of the cells to refine, in block order (merge_samples), lattice units; kept by reference
   SsdBand(const LmeTables& tables, const Lattice& lattice, double kappa, const std::vector<SsdSample>& samples);
+  /// A part of a band: the system at some of its blocks, the own ones.
+  /// @param samples  all in cells whose functions belong to an own block, in block order
+  /// @param blocks   the own ones and those next to them, as far as the band has them
+  /// @param own      which of them: first, first + 1, ..., end - 1
+  SsdBand(const LmeTables& tables, LatticeBlocks blocks, double kappa, const std::vector<SsdSample>& samples,
+          std::array<int, 2> own);
 
+  /// The blocks of a band of these samples.
+  static std::vector<Eigen::Vector3i> blocks_of(const std::vector<SsdSample>& samples, int half_width);
   const LatticeBlocks& blocks() const { return blocks_; }
   /// Values of one array: LatticeBlocks::kNodes a block.
   std::size_t size() const { return static_cast<std::size_t>(blocks_.size()) * LatticeBlocks::kNodes; }
+  /// In own blocks.
   std::size_t n_active() const { return n_active_; }
+  int first_own() const { return own_[0]; }
+  int end_own() const { return own_[1]; }
 
-  /// y = A p, where p is zero on nodes that are not active.
+  /// y = A p in own blocks, where p is zero on nodes that are not active.
   void apply(const float* p, float* y) const;
   /// 1 / diag(A) on active nodes, 0 on the others: a step along it leaves them out.
   const std::vector<float>& inverse_diagonal() const { return inverse_diagonal_; }
 
-  /// r; zero on nodes that are not active.
+  /// r in own blocks; zero on nodes that are not active, and in other blocks.
   /// @param f  the sum of the coarser levels
   void residual(const LevelSet& f, std::vector<float>& r) const;
 
@@ -45,7 +56,8 @@ class SsdBand {
 
  private:
   struct CellBlock {
-    std::array<int, 8> nodes;  // blocks b and b + 1 of each axis, x fastest; -1: no active node there
+    std::array<int, 8> nodes;      // blocks b and b + 1 of each axis, x fastest; -1: no active node there
+    std::array<int, 8> own_nodes;  // the same; -1 also for blocks that are not own
     Eigen::Vector3i block;
     std::size_t begin, end;  // its samples
   };
@@ -67,6 +79,7 @@ class SsdBand {
   const std::vector<SsdSample>* samples_;
   LatticeBlocks blocks_;
   std::vector<CellBlock> cell_blocks_;
+  std::array<int, 2> own_;
   std::array<std::vector<int>, 8> colours_;
   std::vector<std::array<int, 27>> neighbours_;
   std::unique_ptr<float[]> bases_;     // per sample: N, N' in x (8 lanes each), y and z (W each), weights

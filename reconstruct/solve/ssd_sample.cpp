@@ -45,13 +45,15 @@ std::vector<std::size_t> run_begins(std::size_t n, Begins&& begins) {
 // What a sample counts in the mean of several: a value without a normal has no w_gradient.
 double share_of(const SsdSample& s) { return s.w_gradient > 0 ? s.w_gradient : s.w_value; }
 
-SsdSample mean_of(const std::vector<SsdSample>& samples, std::span<const Keyed> some) {
-  if (some.size() == 1) return samples[some.front().index];
+/// @param sample  of an index
+template <class Sample>
+SsdSample mean_of(const Sample& sample, std::span<const Keyed> some) {
+  if (some.size() == 1) return sample(some.front().index);
   SsdSample mean{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   double shares = 0;
-  mean.gap2 = samples[some.front().index].gap2;
+  mean.gap2 = sample(some.front().index).gap2;
   for (const Keyed& one : some) {
-    const SsdSample& s = samples[one.index];
+    const SsdSample& s = sample(one.index);
     const double share = share_of(s);
     mean.xi += share * s.xi;
     mean.normal += share * s.normal;
@@ -63,11 +65,27 @@ SsdSample mean_of(const std::vector<SsdSample>& samples, std::span<const Keyed> 
   mean.xi /= shares;
   mean.normal /= shares;
   for (const Keyed& one : some) {
-    const SsdSample& s = samples[one.index];
+    const SsdSample& s = sample(one.index);
     mean.value += share_of(s) * (s.value + s.normal.dot(mean.xi - s.xi) / 2);
   }
   mean.value /= shares;
   return mean;
+}
+
+template <class Sample>
+std::vector<SsdSample> merged(std::size_t n, const Sample& sample, double cube) {
+  std::vector<Keyed> order = touched<Keyed>(n);
+  tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
+    order[i] = {key_of(sample(i).xi, 1 / cube), static_cast<std::uint32_t>(i)};
+  });
+  tbb::parallel_sort(order.begin(), order.end());
+  const std::vector<std::size_t> cubes =
+      run_begins(order.size(), [&](std::size_t i) { return order[i].key != order[i - 1].key; });
+  std::vector<SsdSample> means = touched<SsdSample>(cubes.size() - 1);
+  tbb::parallel_for(std::size_t{0}, means.size(), [&](std::size_t c) {
+    means[c] = mean_of(sample, std::span(order).subspan(cubes[c], cubes[c + 1] - cubes[c]));
+  });
+  return means;
 }
 
 }  // namespace
@@ -84,18 +102,12 @@ SampleColumns::SampleColumns(const std::vector<SsdSample>& samples) {
 }
 
 std::vector<SsdSample> merge_samples(const std::vector<SsdSample>& samples, double cube) {
-  std::vector<Keyed> order = touched<Keyed>(samples.size());
-  tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
-    order[i] = {key_of(samples[i].xi, 1 / cube), static_cast<std::uint32_t>(i)};
-  });
-  tbb::parallel_sort(order.begin(), order.end());
-  const std::vector<std::size_t> cubes =
-      run_begins(order.size(), [&](std::size_t i) { return order[i].key != order[i - 1].key; });
-  std::vector<SsdSample> means = touched<SsdSample>(cubes.size() - 1);
-  tbb::parallel_for(std::size_t{0}, means.size(), [&](std::size_t c) {
-    means[c] = mean_of(samples, std::span(order).subspan(cubes[c], cubes[c + 1] - cubes[c]));
-  });
-  return means;
+  return merged(
+      samples.size(), [&](std::size_t i) -> const SsdSample& { return samples[i]; }, cube);
+}
+
+std::vector<SsdSample> merge_samples(std::size_t n, const std::function<SsdSample(std::size_t)>& sample, double cube) {
+  return merged(n, sample, cube);
 }
 
 std::vector<std::size_t> block_runs(const std::vector<SsdSample>& samples) {
@@ -103,18 +115,13 @@ std::vector<std::size_t> block_runs(const std::vector<SsdSample>& samples) {
   return run_begins(samples.size(), [&](std::size_t i) { return block_of(i) != block_of(i - 1); });
 }
 
-std::vector<SsdSample> coarsened(const std::vector<SsdSample>& samples) {
-  std::vector<SsdSample> coarser = touched<SsdSample>(samples.size());
-  tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
-    SsdSample& s = coarser[i];
-    s = samples[i];
-    s.xi /= 2;
-    s.value /= 2;
-    s.w_value /= 4;
-    s.w_gradient /= 4;
-    s.gap2 /= 4;
-  });
-  return coarser;
+SsdSample coarsened(SsdSample s) {
+  s.xi /= 2;
+  s.value /= 2;
+  s.w_value /= 4;
+  s.w_gradient /= 4;
+  s.gap2 /= 4;
+  return s;
 }
 
 }  // namespace umtet

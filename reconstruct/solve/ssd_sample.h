@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace umtet {
@@ -30,6 +32,9 @@ struct SampleColumns {
 /// @param cube  in lattice spacings: 1 or ½
 std::vector<SsdSample> merge_samples(const std::vector<SsdSample>& samples, double cube);
 
+/// The same of n samples that are made when they are asked for, by several threads and more than once each.
+std::vector<SsdSample> merge_samples(std::size_t n, const std::function<SsdSample(std::size_t)>& sample, double cube);
+
 /// Where each run of samples of one block of 8 x 8 x 8 cells begins, and how many samples there are.
 /// @param samples  in block order
 std::vector<std::size_t> block_runs(const std::vector<SsdSample>& samples);
@@ -37,7 +42,7 @@ std::vector<std::size_t> block_runs(const std::vector<SsdSample>& samples);
 /// The cell, of which a sample's coordinates are the lower ones and more.
 inline Eigen::Vector3i cell_of(const SsdSample& s) { return s.xi.array().floor().cast<int>(); }
 
-/// The samples as those of the lattice of twice the spacing, for coefficients in units of that spacing.
-std::vector<SsdSample> coarsened(const std::vector<SsdSample>& samples);
+/// The sample as one of the lattice of twice the spacing, for coefficients in units of that spacing.
+SsdSample coarsened(SsdSample sample);
 
 }  // namespace umtet

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "common/polled_loops.h"
 #include "reconstruct/triangles/face_patches.h"
 #include "reconstruct/triangles/triangle_winding.h"
 

@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "common/formatted.h"
+#include "common/polled_loops.h"
 
 namespace umtet {
 namespace {

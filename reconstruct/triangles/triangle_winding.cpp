@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "common/formatted.h"
+#include "common/polled_loops.h"
 
 namespace umtet {
 namespace {

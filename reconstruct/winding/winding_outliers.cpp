@@ -30,10 +30,11 @@ double median_of(std::vector<double> v) {
 }
 
 /// @param counts  of merged samples: before, n of them were at distances 1 / sqrt n of those between their means
-std::vector<std::uint32_t> samples_apart(const Neighbourhoods& near, const std::vector<int>& counts) {
+std::vector<std::uint32_t> samples_apart(const std::vector<Vec3>& points, const Neighbourhoods& near,
+                                         const std::vector<int>& counts) {
   if (near.k() <= kFourth) return {};
   std::vector<double> d2(near.size());
-  for (std::size_t i = 0; i < d2.size(); ++i) d2[i] = near.distances2(i)[kFourth];
+  for (std::size_t i = 0; i < d2.size(); ++i) d2[i] = near.distance2(points, i, kFourth);
   const double of_cells = counts.empty() ? 0 : kApartFromCells * kApartFromCells * median_of(d2);
   for (std::size_t i = 0; i < counts.size(); ++i) d2[i] /= counts[i];
   const double of_all = kApartFromAll * kApartFromAll * median_of(d2);
@@ -42,7 +43,7 @@ std::vector<std::uint32_t> samples_apart(const Neighbourhoods& near, const std::
     std::vector<double> around;
     for (const std::uint32_t j : near.points(i)) around.push_back(d2[j]);
     const bool is_sparse = d2[i] > of_all || d2[i] > kApart * kApart * median_of(std::move(around));
-    is_apart[i] = is_sparse && near.distances2(i)[kFourth] > of_cells ? 1 : 0;
+    is_apart[i] = is_sparse && near.distance2(points, i, kFourth) > of_cells ? 1 : 0;
   });
   std::vector<std::uint32_t> apart;
   for (std::uint32_t i = 0; i < is_apart.size(); ++i)
@@ -66,7 +67,7 @@ FastWindingNumber winding_number_without(const OrientedPointCloud& cloud, const 
 
 std::vector<std::uint8_t> winding_outliers(const OrientedPointCloud& cloud, const Neighbourhoods& near) {
   std::vector<std::uint8_t> is_outlier(cloud.points.size(), 0);
-  const std::vector<std::uint32_t> apart = samples_apart(near, cloud.counts);
+  const std::vector<std::uint32_t> apart = samples_apart(cloud.points, near, cloud.counts);
   if (apart.empty() || 2 * apart.size() > cloud.points.size()) return is_outlier;
   const FastWindingNumber w = winding_number_without(cloud, apart);
   tbb::parallel_for(std::size_t{0}, apart.size(), [&](std::size_t k) {

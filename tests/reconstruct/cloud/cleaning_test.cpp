@@ -39,7 +39,7 @@ TEST(Clean, DropsWhatIsNoNumberAndWhatIsThereTwice) {
   Neighbourhoods near;  // of what is left
   clean(again, {}, &near);
   EXPECT_EQ(near.size(), 2000U);
-  EXPECT_GT(near.distances2(0).front(), 0);
+  EXPECT_GT(near.distance2(again.points, 0, 0), 0);
   ASSERT_EQ(report.kept.size(), 2000U);
   EXPECT_EQ(report.kept[6], 6U);
   EXPECT_EQ(report.kept[7], 8U);

@@ -77,7 +77,7 @@ TEST(NeighbourDistances, OfNeighboursThatAreKnownAreTheSameBits) {
   for (Vec3& x : points) x = (x + Vec3::Constant(16)) - Vec3::Constant(16);
   const NeighbourDistances rounded = neighbour_distances(points, kAreaNeighbours);
   for (Vec3& x : points) x += Vec3::Constant(16);
-  const NeighbourDistances known = neighbour_distances(Neighbourhoods(points, kAreaNeighbours));
+  const NeighbourDistances known = neighbour_distances(points, Neighbourhoods(points, kAreaNeighbours));
   EXPECT_NE(searched.mean_square, rounded.mean_square);
   EXPECT_EQ(known.k, rounded.k);
   EXPECT_EQ(known.nearest, rounded.nearest);

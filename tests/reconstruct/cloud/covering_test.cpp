@@ -96,7 +96,7 @@ TEST(Covering, SearchedDistancesAreThoseOfKnownNeighbours) {
   for (const double ratio : {1., 20.}) {
     const OrientedPointCloud cloud = ball(ratio);
     const Neighbourhoods near(cloud.points);
-    const NeighbourDistances known = neighbour_distances(near, covering(cloud.points, near)),
+    const NeighbourDistances known = neighbour_distances(cloud.points, near, covering(cloud.points, near)),
                              searched = covered_distances(cloud.points);
     EXPECT_EQ(known.mean_square, searched.mean_square);
     EXPECT_EQ(known.multiplicity, searched.multiplicity);

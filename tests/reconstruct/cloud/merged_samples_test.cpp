@@ -47,6 +47,25 @@ TEST(MergedSamples, CountEverySampleOnce) {
   EXPECT_EQ(merged.spreads.size(), merged.points.size());
 }
 
+TEST(MergedSamples, StayWhatTheyAreWhereTheyAreToldTo) {
+  const OrientedPointCloud cloud = torus_cloud(50000);
+  const OrientedPointCloud merged =
+      merged_samples(cloud, SampleCells(cloud.points, kCell, core_box(cloud.points).middle), [](const Vec3& x) {
+        return x[0] > 0;
+      }).cloud;
+  std::size_t n_single = 0;
+  for (std::size_t i = 0; i < merged.points.size(); ++i) {
+    if (merged.points[i][0] < kCell) continue;
+    EXPECT_EQ(merged.counts[i], 1);
+    EXPECT_EQ(merged.spreads[i], 0);
+    ++n_single;
+  }
+  EXPECT_EQ(n_single, static_cast<std::size_t>(std::count_if(cloud.points.begin(), cloud.points.end(),
+                                                             [](const Vec3& x) { return x[0] >= kCell; })));
+  EXPECT_EQ(std::accumulate(merged.counts.begin(), merged.counts.end(), std::size_t{0}), cloud.points.size());
+  EXPECT_LT(merged.points.size(), n_single + 5000);
+}
+
 TEST(MergedSamples, LieOnACurvedSurfaceToThirdOrder) {
   const auto farthest = [](const OrientedPointCloud& cloud) {
     double d = 0;
@@ -168,7 +187,7 @@ TEST(RelativeCounts, MakeAreasOfCellsAsLargeAsTheSurfaceInThem) {
   const OrientedPointCloud cloud = torus_cloud(200000);
   const OrientedPointCloud merged = merged_in(cloud, kCell).cloud;
   const Neighbourhoods near(merged.points);
-  NeighbourDistances distances = neighbour_distances(near);
+  NeighbourDistances distances = neighbour_distances(merged.points, near);
   const double whole = 4 * std::numbers::pi * std::numbers::pi * kTorusR * kTorusr;
   const auto error = [&](const std::vector<double>& areas) {
     double sum = 0;

@@ -40,6 +40,7 @@ TEST(NeighbourTree, FindsWhatAllPairsFind) {
         for (std::size_t m = 0; m < near.size(); ++m) {
           EXPECT_NEAR(near[m].distance2, all[m], 1e-14 * all[m]);
           EXPECT_NEAR(near[m].distance2, (points[near[m].point] - points[i]).squaredNorm(), 1e-14 * all[m]);
+          EXPECT_EQ(near[m].distance2, squared_distance(points[i], points[near[m].point]));
           ids.push_back(near[m].point);
         }
         std::sort(ids.begin(), ids.end());
@@ -63,7 +64,7 @@ TEST(Neighbourhoods, AreTheNearestOthers) {
       std::sort(all.begin(), all.end());
       EXPECT_FALSE(near.has(i, i));
       for (std::size_t m = 0; m < near.k(); ++m) {
-        EXPECT_NEAR(near.distances2(i)[m], all[m], 1e-14 * all[m]);
+        EXPECT_NEAR(near.distance2(points, i, m), all[m], 1e-14 * all[m]);
         EXPECT_TRUE(near.has(i, near.points(i)[m]));
       }
     }

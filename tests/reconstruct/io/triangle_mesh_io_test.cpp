@@ -4,7 +4,7 @@
 
 #include <numeric>
 
-#include "reconstruct/io/detail/polygon_soup.h"
+#include "reconstruct/io/detail/triangles/polygon_soup.h"
 #include "tests/reconstruct/io/point_cloud_io_fixture.h"
 #include "tests/reconstruct/triangles/solids.h"
 

@@ -119,6 +119,45 @@ TEST(LevelSet, IsTheSumOverAllNodesOfAllLevels) {
   }
 }
 
+TEST(LevelSet, WhatIsForgottenIsMadeAgain) {
+  SsdParams p;
+  p.spacing = 0.08;
+  p.coarsest_nodes = 8000;
+  const LevelSet psi = fit_ssd(torus_cloud(8000), p).psi;
+  ASSERT_GE(psi.n_levels(), 2);
+  const std::vector<Vec3> points = torus_cloud(500, 8).points;
+  std::vector<double> before;
+  for (const Vec3& x : points) before.push_back(psi.value(x));
+  for (const double spacing : {psi.spacing(), 1.01 * psi.spacing(), 10.}) {
+    psi.forget_below(spacing);
+    for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(psi.value(points[i]), before[i]);
+  }
+}
+
+TEST(LevelSet, PlacesThatAreApartHaveTheSameBits) {
+  SsdParams p;
+  p.spacing = 0.08;
+  p.coarsest_nodes = 8000;
+  for (const int support : {2, 3, 4}) {
+    p.prior.support = support;
+    const LevelSet psi = fit_ssd(torus_cloud(8000), p).psi;
+    ASSERT_GE(psi.n_levels(), 2);
+    const LevelSetApart apart(psi);
+    std::vector<Vec3> places = torus_cloud(500, 8).points;
+    for (const double t : {-2., -.1, .3, .999, 1., 1.2})
+      places.push_back(psi.domain().min() + t * psi.domain().sizes());
+    for (const Vec3& x : places) {
+      Vec3 g, h;
+      Mat3 G, H;
+      EXPECT_EQ(apart.value(x), psi.value(x));
+      EXPECT_EQ(apart.evaluate(x, &g, nullptr), psi.evaluate(x, &h, nullptr));
+      EXPECT_EQ(g, h);
+      EXPECT_EQ(apart.evaluate(x, &g, &G), psi.evaluate(x, &h, &H));
+      EXPECT_EQ(G, H);
+    }
+  }
+}
+
 // Copies of coefficients for evaluation are made by the thread that first evaluates in a block of cells: here by all
 // threads at once.
 TEST(LevelSet, WhoAsksFirstMakesNoDifference) {

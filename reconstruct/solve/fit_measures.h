@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "reconstruct/cloud/point_cloud.h"
+#include "reconstruct/level_set/level_set.h"
+#include "reconstruct/solve/fit_ssd.h"
+
+namespace umtet {
+
+/// Fills in what a report says of the level set that was fitted: the data terms of the functional, rms_value,
+/// normal_defect, n_opposed_normals and least_wall_value. Nobody else may evaluate psi meanwhile.
+/// @param area    a_i; empty for the paper's weights, which are 1
+/// @param length  by which values are weighed, model units
+void measure_fit(const OrientedPointCloud& cloud, const LevelSet& psi, const std::vector<double>& area, double length,
+                 SsdReport& report);
+
+}  // namespace umtet
