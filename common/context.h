@@ -1,9 +1,5 @@
 #pragma once
 
-#include <tbb/parallel_for.h>
-
-#include <algorithm>
-#include <cstddef>
 #include <functional>
 #include <stdexcept>
 
@@ -39,18 +35,5 @@ struct Context {
             .cancelled = cancelled};
   }
 };
-
-/// f(i) for every i < n, threads over i. Polls before every `per_poll` of them. \throw Cancelled
-template <class F>
-void polled_parallel_for(std::size_t n, std::size_t per_poll, const Context& context, const F& f) {
-  for (std::size_t begin = 0; begin < n; begin += per_poll) {
-    context.poll();
-    tbb::parallel_for(begin, std::min(n, begin + per_poll), f);
-  }
-}
-
-/// Calls of psi, or of something that costs a few of them, between two polls: a hundredth of a second for a psi that
-/// takes ten microseconds a value, and still a thousand times the cost of a poll.
-inline constexpr std::size_t kValuesPerPoll = 1 << 12;
 
 }  // namespace umtet

@@ -22,6 +22,7 @@ constexpr float kLeastGain = 1e-3F;
 // passes through configurations that are not in the table and cost 100 each (StarCostTable): a pair that wins may make
 // up for three of them. Less loses such pairs; more tries pairs that hardly ever win, and most pairs are of this kind.
 constexpr float kMostCost = 300;
+constexpr std::size_t kBlocksPerTask = 4;  // of a hundred vertices each
 
 /// Iterated conditional modes [Besag1986] with single and pair moves in the band, block by block.
 class Descent {
@@ -100,6 +101,7 @@ class Descent {
   std::vector<std::uint8_t> open_;  ///< Open
   std::vector<Thin> thin_;
   std::vector<Shared> shared_;  ///< ascending
+  std::atomic<std::size_t> psi_evaluations_{0};
 };
 
 void Descent::find_costs_of_distance() {
@@ -171,7 +173,7 @@ bool Descent::is_thick(int v) {
     const double unit = links_.of_type(band_.type[v]).unit * h_;
     const bool thin = umtet::is_thin(psi_, band_.foot[v], band_.normal[v], params_.least_thickness, unit, n);
     thin_[v] = thin ? Thin::Yes : Thin::No;
-    band_.psi_evaluations.fetch_add(n, std::memory_order_relaxed);
+    psi_evaluations_.fetch_add(n, std::memory_order_relaxed);
   }
   return thin_[v] == Thin::No;
 }
@@ -267,14 +269,12 @@ void Descent::exchange() {
 /// @param visit  returns the number of its flips
 template <class F>
 std::size_t Descent::sweep(const F& visit) {
-  std::atomic<std::size_t> flips = 0;
+  std::size_t flips = 0;
   for (const auto& blocks : band_.blocks) {
-    for_each_asking(psi_, blocks.size(), blocks.size(), {}, [&](std::size_t b) {
-      std::size_t n = 0;
+    flips += sum_asking<std::size_t>(psi_, 0, blocks.size(), kBlocksPerTask, {}, [&](std::size_t b, std::size_t& n) {
       for (std::uint32_t k = blocks[b].begin; k < blocks[b].end; ++k) {
         n += static_cast<std::size_t>(visit(static_cast<int>(band_.order[k])));
       }
-      if (n != 0) flips.fetch_add(n, std::memory_order_relaxed);
     });
     if (part_) exchange();
   }
@@ -332,7 +332,7 @@ ClassificationReport Descent::operator()(IdSet& inside, const Context& context) 
     report.thin += thin_[v] == Thin::Yes;
     report.stretched += band_.held[v];
   }
-  report.psi_evaluations = band_.psi_evaluations;
+  report.psi_evaluations = band_.psi_evaluations + psi_evaluations_;
   return report;
 }
 

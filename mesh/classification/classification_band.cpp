@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/first_touch.h"
+#include "common/polled_loops.h"
 #include "mesh/base/id_blocks.h"
 #include "mesh/core/asking_psi.h"
 
@@ -23,6 +24,7 @@ constexpr std::int64_t kBlock = 4;
 constexpr float kFarthestFoot = 1.8F;
 constexpr double kApart = .3;
 constexpr std::size_t kVerticesPerTask = 1 << 12;  // of some ten nanoseconds each
+constexpr std::size_t kFeetPerTask = 1 << 8;       // of two values of psi each
 
 }  // namespace
 
@@ -124,22 +126,22 @@ bool ClassificationBand::find_link(std::size_t v) {
 }
 
 /// psi at vertex v, which is at x.
-double ClassificationBand::value_at(std::size_t v, const Vec3& x, Vec3& gradient) {
+double ClassificationBand::value_at(std::size_t v, const Vec3& x, Vec3& gradient, std::size_t& n_evaluations) {
   if (known_ && known_at_[v] >= 0) {
     const PsiValue& at = (*known_)[known_at_[v]];
     gradient = at.gradient;
     return at.value;
   }
-  psi_evaluations.fetch_add(1, std::memory_order_relaxed);
+  ++n_evaluations;
   return psi_.value(x, gradient);
 }
 
 /// Foot, normal and distance.
-void ClassificationBand::find_foot(std::size_t v) {
+void ClassificationBand::find_foot(std::size_t v, std::size_t& n_evaluations) {
   const Vec3 x = background_.position(id[v]);
   const double h = unit(v), most = far() * h;
   Vec3 g;
-  double value = value_at(v, x, g), norm = g.norm();
+  double value = value_at(v, x, g, n_evaluations), norm = g.norm();
   const double first = std::clamp(norm > 0 ? value / norm : most, -most, most);
   double distance = first;
   foot[v] = x;
@@ -149,7 +151,7 @@ void ClassificationBand::find_foot(std::size_t v) {
     foot[v] = x - first * normal[v];
     value = psi_.value(foot[v], g);
     norm = g.norm();
-    psi_evaluations.fetch_add(1, std::memory_order_relaxed);
+    ++n_evaluations;
     if (norm > 0) {
       normal[v] = g / norm;
       const double second = std::clamp(value / norm, -h, h);
@@ -189,14 +191,14 @@ void ClassificationBand::measure(const Context& context) {
   foot = touched<Vec3>(n);
   normal = touched<Vec3>(n);
   movable.assign(n, 0);
-  for_each_asking(psi_, n, kValuesPerPoll, context, [&](std::size_t v) {
+  psi_evaluations = sum_asking<std::size_t>(psi_, 0, n, kFeetPerTask, context, [&](std::size_t v, std::size_t& sum) {
     const bool complete = find_link(v);
     // A vertex without its whole link in the band is there to complete the masks of others.
     if (!complete && (mask[v] == 0 || mask[v] == links_.of_type(type[v]).full())) {
       phi[v] = is_inside[v] ? -far() : far();
       return;
     }
-    find_foot(v);
+    find_foot(v, sum);
     movable[v] =
         complete && phi[v] >= -params_.reach_in && phi[v] <= params_.reach_out && !background_.on_boundary(id[v]);
   });

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -51,14 +50,14 @@ class ClassificationBand {
   std::vector<std::uint32_t> order;  ///< vertices that may be flipped, block by block
   /// Per colour: vertices of two blocks of one are nine rings apart. All in one block where there are no cells.
   std::array<std::vector<Block>, 8> blocks;
-  std::atomic<std::size_t> psi_evaluations{0};
+  std::size_t psi_evaluations = 0;
 
  private:
   void gather();
   void gather_around(std::vector<std::int64_t> front);
   bool find_link(std::size_t v);
-  double value_at(std::size_t v, const Vec3& x, Vec3& gradient);
-  void find_foot(std::size_t v);
+  double value_at(std::size_t v, const Vec3& x, Vec3& gradient, std::size_t& n_evaluations);
+  void find_foot(std::size_t v, std::size_t& n_evaluations);
   void measure(const Context& context);
   bool has_foot(int v) const;
   void hold_where_stretched(const Context& context);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/context.h"
+#include "common/polled_loops.h"
 #include "mesh/core/implicit_function.h"
 
 // Loops whose bodies ask psi: by all threads, or in blocks if psi wants that. The results are the same.
@@ -26,6 +27,17 @@ void for_each_asking(ImplicitFunctionRef psi, std::size_t n, std::size_t per_pol
     context.poll();
     side_by_side->for_each(std::min(piece, n - begin), [&](std::size_t i) { f(begin + i); });
   }
+}
+
+/// The sum of what f(i, sum) adds for every begin <= i < end, like that; of integers, whose order does not matter.
+/// @param per_task  values that a thread takes at least
+template <class T, class F>
+T sum_asking(ImplicitFunctionRef psi, std::size_t begin, std::size_t end, std::size_t per_task, const Context& context,
+             const F& f) {
+  if (!psi.side_by_side()) return polled_parallel_sum<T>(begin, end, per_task, kValuesPerPoll, context, f);
+  T sum{};
+  for_each_asking(psi, end - begin, kValuesPerPoll, context, [&](std::size_t i) { f(begin + i, sum); });
+  return sum;
 }
 
 /// take(i, psi(point(i))) for every i < n in ascending order, of a psi that is asked in blocks. \throw Cancelled

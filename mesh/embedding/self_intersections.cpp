@@ -1,13 +1,11 @@
 #include "mesh/embedding/self_intersections.h"
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_for.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "common/polled_loops.h"
 #include "mesh/base/check_indices.h"
 #include "mesh/core/orientation.h"
 #include "mesh/embedding/triangle_intersection.h"
@@ -18,21 +16,9 @@ namespace {
 
 using Pair = std::array<int, 2>;
 
-constexpr std::size_t kLeavesPerPoll = 1 << 14, kLeavesPerTask = 64;
+constexpr std::size_t kLeavesPerPoll = 1 << 12;
 // A sum of n terms is off by n eps of their magnitudes at most: below this share of them its sign says nothing.
 constexpr double kVolumeRounding = 1e-9;
-
-/// Calls f(k) for k in 0 .. n - 1 with threads, and polls.
-template <class F>
-void for_each_polled(std::size_t n, const Context& context, const F& f) {
-  for (std::size_t begin = 0; begin < n; begin += kLeavesPerPoll) {
-    context.poll();
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, std::min(n, begin + kLeavesPerPoll), kLeavesPerTask),
-                      [&](const auto& range) {
-                        for (std::size_t k = range.begin(); k != range.end(); ++k) f(k);
-                      });
-  }
-}
 
 std::vector<Pair> gathered(const std::vector<std::vector<Pair>>& found) {
   std::vector<Pair> all;
@@ -89,7 +75,8 @@ std::vector<Pair> self_intersections(const std::vector<Vec3>& V, const std::vect
   if (faces.empty()) return {};
   const TriangleTree tree(V, faces);
   std::vector<std::vector<Pair>> found(tree.n_leaves());
-  for_each_polled(tree.n_leaves(), context, [&](std::size_t k) { pairs_of_leaf(tree, V, faces, k, found[k]); });
+  polled_parallel_for(tree.n_leaves(), kLeavesPerPoll, context,
+                      [&](std::size_t k) { pairs_of_leaf(tree, V, faces, k, found[k]); });
   return gathered(found);
 }
 
@@ -107,7 +94,7 @@ std::vector<int> windings(const std::vector<Vec3>& V, const std::vector<Triangle
   std::vector<int> winding(points.size(), 0);
   if (faces.empty()) return winding;
   const TriangleTree tree(V, faces);
-  for_each_polled(points.size(), context, [&](std::size_t c) {
+  polled_parallel_for(points.size(), kLeavesPerPoll, context, [&](std::size_t c) {
     const Vec3& x = points[c];
     tree.for_leaves(
         0,

@@ -12,6 +12,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "common/polled_loops.h"
+
 namespace umtet {
 namespace {
 
@@ -213,30 +215,53 @@ double point_triangle_distance(const Vec3& x, const Vec3& a, const Vec3& b, cons
   return std::sqrt(triangle_distance2(x, a, b, c));
 }
 
-struct SampleDistance::Index {
-  std::vector<Vec3> samples;
-  PointSet set{samples};
-  std::unique_ptr<KdTree> tree;
+namespace {
+
+/// A tree of samples that stay where they are.
+struct SampleTree {
+  PointSet set;
+  KdTree tree;
+
+  explicit SampleTree(const std::vector<Vec3>& samples)
+      : set{checked(samples)}, tree(3, set, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize)) {}
+  std::vector<double> distances(const std::vector<Vec3>& x, const Context& context) const {
+    return map_indices(x.size(), context, [&](std::size_t i) {
+      std::uint32_t nearest = 0;
+      double distance2 = 0;
+      tree.knnSearch(x[i].data(), 1, &nearest, &distance2);
+      return std::sqrt(distance2);
+    });
+  }
+
+ private:
+  static const std::vector<Vec3>& checked(const std::vector<Vec3>& samples) {
+    if (samples.empty()) throw std::invalid_argument("distance to a cloud without samples");
+    check_finite(samples, "sample");
+    return samples;
+  }
 };
 
-SampleDistance::SampleDistance(std::vector<Vec3> samples) : index_(std::make_unique<Index>()) {
-  if (samples.empty()) throw std::invalid_argument("distance to a cloud without samples");
-  check_finite(samples, "sample");
-  index_->samples = std::move(samples);
-  index_->tree = std::make_unique<KdTree>(3, index_->set, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize));
-}
+}  // namespace
+
+struct SampleDistance::Index {
+  std::vector<Vec3> samples;
+  SampleTree tree;
+  explicit Index(std::vector<Vec3> of) : samples(std::move(of)), tree(samples) {}
+};
+
+SampleDistance::SampleDistance(std::vector<Vec3> samples) : index_(std::make_unique<Index>(std::move(samples))) {}
 
 SampleDistance::~SampleDistance() = default;
 SampleDistance::SampleDistance(SampleDistance&&) noexcept = default;
 SampleDistance& SampleDistance::operator=(SampleDistance&&) noexcept = default;
 
 std::vector<double> SampleDistance::distances(const std::vector<Vec3>& x, const Context& context) const {
-  return map_indices(x.size(), context, [&](std::size_t i) {
-    std::uint32_t nearest = 0;
-    double distance2 = 0;
-    index_->tree->knnSearch(x[i].data(), 1, &nearest, &distance2);
-    return std::sqrt(distance2);
-  });
+  return index_->tree.distances(x, context);
+}
+
+std::vector<double> distances_to_samples(const std::vector<Vec3>& samples, const std::vector<Vec3>& x,
+                                         const Context& context) {
+  return SampleTree(samples).distances(x, context);
 }
 
 double unsupported_area_fraction(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,

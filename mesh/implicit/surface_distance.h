@@ -57,6 +57,11 @@ class SampleDistance {
   std::unique_ptr<Index> index_;
 };
 
+/// The same for one call, of samples that are not copied; the tree is gone afterwards.
+/// \throw std::invalid_argument without samples or for one that is not finite; Cancelled
+std::vector<double> distances_to_samples(const std::vector<Vec3>& samples, const std::vector<Vec3>& x,
+                                         const Context& context = {});
+
 /// Share of the surface that no data backs: what belongs to vertices (a third of the faces around each) that are
 /// farther than `radius` (three sample spacings, say) from every sample. Not faces by their centroids, which samples
 /// much finer than the faces are far from wherever psi = 0 is curved. 0 for an empty surface. \throw Cancelled

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/polled_loops.h"
 #include "mesh/core/asking_psi.h"
 
 namespace umtet {

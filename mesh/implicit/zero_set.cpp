@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "common/disjoint_sets.h"
+#include "common/polled_loops.h"
 #include "mesh/core/asking_psi.h"
 #include "mesh/implicit/cut_edges.h"
 

@@ -135,28 +135,29 @@ void LinearOctree::find_neighbors() {
   });
 }
 
-/// Upper corners and upper face centres that lie in no leaf.
-void LinearOctree::add_points() {
-  std::uint64_t volume = 0;  // in widths of half a unit of the last level
-  for (int c = 0; c < n_cells(); ++c) volume += end_key(c) - corner_key(c);
-  const bool is_complete = volume == std::uint64_t{1} << (3 * kRootBits);
-  std::vector<std::uint64_t> points;
-  const auto add = [&](const GridPoint& p) {
-    const std::uint64_t key = morton_key(p);
-    if (locate(key) < 0) points.push_back(key);
+/// Upper corners and upper face centres of a leaf that lie in no leaf.
+void LinearOctree::find_points(int leaf, std::vector<std::uint64_t>& points) const {
+  const auto add = [&](const CubeCode& code) {
+    const GridPoint p = point(leaf, code);
+    if (locate_from(leaf, p) < 0) points.push_back(morton_key(p));
   };
-  for (int c = 0; c < n_cells(); ++c) {
-    const auto& neighbor = cell(c).neighbor;
-    if (is_complete && neighbor[1] >= 0 && neighbor[3] >= 0 && neighbor[5] >= 0) continue;
-    for (int corner = 1; corner < 8; ++corner) {
-      add(point(c, {2 * (corner & 1), 2 * (corner >> 1 & 1), 2 * (corner >> 2 & 1)}));
-    }
-    for (int a = 0; a < 3; ++a) {
-      CubeCode centre = {1, 1, 1};
-      centre[a] = 2;
-      if (neighbor[2 * a + 1] < 0) add(point(c, centre));
-    }
+  for (int corner = 1; corner < 8; ++corner) add({2 * (corner & 1), 2 * (corner >> 1 & 1), 2 * (corner >> 2 & 1)});
+  for (int a = 0; a < 3; ++a) {
+    CubeCode centre = {1, 1, 1};
+    centre[a] = 2;
+    if (cell(leaf).neighbor[2 * a + 1] < 0) add(centre);
   }
+}
+
+void LinearOctree::add_points() {
+  constexpr std::size_t kLeavesPerTask = 1 << 12;
+  std::vector<std::vector<std::uint64_t>> of_task((cells_.size() + kLeavesPerTask - 1) / kLeavesPerTask);
+  tbb::parallel_for(std::size_t{0}, of_task.size(), [&](std::size_t task) {
+    const std::size_t end = std::min(cells_.size(), (task + 1) * kLeavesPerTask);
+    for (std::size_t c = task * kLeavesPerTask; c < end; ++c) find_points(static_cast<int>(c), of_task[task]);
+  });
+  std::vector<std::uint64_t> points;
+  for (const auto& some : of_task) points.insert(points.end(), some.begin(), some.end());
   std::sort(points.begin(), points.end());
   points.erase(std::unique(points.begin(), points.end()), points.end());
 

@@ -74,6 +74,7 @@ class LinearOctree {
   int locate_near(std::size_t c, std::uint64_t key) const;
   std::uint64_t end_key(int c) const;
   void find_neighbors();
+  void find_points(int leaf, std::vector<std::uint64_t>& points) const;
   void add_points();
   void find_vertices();
 

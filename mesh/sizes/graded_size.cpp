@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "common/polled_loops.h"
 #include "mesh/core/asking_psi.h"
 
 namespace umtet {

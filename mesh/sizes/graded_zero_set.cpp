@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/polled_loops.h"
 #include "mesh/core/asking_psi.h"
 #include "mesh/implicit/cut_tets.h"
 #include "mesh/octree/graded_mesh.h"

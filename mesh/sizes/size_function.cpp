@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <stdexcept>
 
+#include "common/polled_loops.h"
+
 namespace umtet {
 namespace {
 

@@ -11,6 +11,8 @@
 #include <tuple>
 #include <utility>
 
+#include "common/polled_loops.h"
+
 namespace umtet {
 namespace {
 

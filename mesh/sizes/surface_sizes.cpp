@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "common/formatted.h"
+#include "common/polled_loops.h"
 #include "mesh/core/asking_psi.h"
 #include "mesh/implicit/curvature.h"
 #include "mesh/implicit/thickness.h"

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/polled_loops.h"
 #include "mesh/background/link_steps.h"
 #include "mesh/base/id_set.h"
 #include "mesh/submesh/assemble_submesh.h"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/polled_loops.h"
 #include "mesh/core/asking_psi.h"
 #include "mesh/submesh/assemble_submesh.h"
 

@@ -1,11 +1,9 @@
 #include "mesh/submesh/submesh.h"
 
-#include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -13,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "common/polled_loops.h"
 #include "mesh/base/id_set.h"
 #include "mesh/core/asking_psi.h"
 #include "mesh/submesh/assemble_submesh.h"
@@ -22,6 +21,7 @@ namespace {
 
 // 64 vertices share a word: 16 words are a thousand evaluations of psi, enough to hide the cost of a task.
 constexpr std::size_t kWordsPerTask = 16;
+constexpr std::size_t kWordsPerPoll = kValuesPerPoll / 64;
 constexpr std::int64_t kTetsPerBlock = 1 << 16;
 
 unsigned inside_mask(const std::array<std::int64_t, 4>& tet, const IdSet& inside) {
@@ -82,38 +82,26 @@ IdSet inside_vertices(const BackgroundMesh& background, ImplicitFunctionRef psi,
     n_evaluations = insert_in_blocks(background, psi, inside, context);
     return inside;
   }
-  std::atomic<std::size_t> evaluations = 0;
-  const auto evaluate = [&](const tbb::blocked_range<std::size_t>& words) {
-    std::size_t n = 0;
-    for (std::size_t w = words.begin(); w != words.end(); ++w) {
-      std::uint64_t bits = 0;
-      const std::int64_t first = static_cast<std::int64_t>(w * 64);
-      const std::int64_t last = std::min(first + 64, background.n_vertices());
-      Vec3 before = Vec3::Constant(std::numeric_limits<double>::infinity());
-      bool is_inside = false;
-      for (std::int64_t v = first; v < last; ++v) {
-        if (!background.has_tets(v)) continue;
-        const Vec3 x = background.position(v);
-        const bool is_near = known.far && (x - before).cwiseAbs().maxCoeff() <= known.reach;
-        if (!is_near || !known.far(x)) {
-          ++n;
-          is_inside = psi.value(x) < 0;
+  n_evaluations = polled_parallel_sum<std::size_t>(
+      0, inside.n_words(), kWordsPerTask, kWordsPerPoll, context, [&](std::size_t w, std::size_t& n) {
+        std::uint64_t bits = 0;
+        const std::int64_t first = static_cast<std::int64_t>(w * 64);
+        const std::int64_t last = std::min(first + 64, background.n_vertices());
+        Vec3 before = Vec3::Constant(std::numeric_limits<double>::infinity());
+        bool is_inside = false;
+        for (std::int64_t v = first; v < last; ++v) {
+          if (!background.has_tets(v)) continue;
+          const Vec3 x = background.position(v);
+          const bool is_near = known.far && (x - before).cwiseAbs().maxCoeff() <= known.reach;
+          if (!is_near || !known.far(x)) {
+            ++n;
+            is_inside = psi.value(x) < 0;
+          }
+          before = x;
+          if (is_inside) bits |= std::uint64_t{1} << (v - first);
         }
-        before = x;
-        if (is_inside) bits |= std::uint64_t{1} << (v - first);
-      }
-      inside.set_word(w, bits);
-    }
-    evaluations += n;
-  };
-  // So often that a stop is prompt, and so seldom that polling takes a thousandth of the time.
-  constexpr std::size_t kWordsPerPoll = 4 * kValuesPerPoll / 64;
-  for (std::size_t begin = 0; begin < inside.n_words(); begin += kWordsPerPoll) {
-    context.poll();
-    const std::size_t end = std::min(inside.n_words(), begin + kWordsPerPoll);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, kWordsPerTask), evaluate);
-  }
-  n_evaluations = evaluations;
+        inside.set_word(w, bits);
+      });
   return inside;
 }
 
