@@ -1,11 +1,7 @@
 #include "mesh/fast/backtracking_projection.h"
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_reduce.h>
-
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -23,7 +19,6 @@ constexpr std::array<double, 4> kShares = {1, .5, .25, .125};
 // and they lose the way they have made; never, and some are held back for ever.
 constexpr int kRoundsPerDetour = 3;
 constexpr std::size_t kVerticesPerTask = 64;  // of a microsecond or two each
-constexpr std::size_t kVerticesPerPoll = 1 << 12;
 
 /// A Boundary vertex under way.
 struct BoundaryVertex {
@@ -75,8 +70,6 @@ class Projection {
 
  private:
   bool all_arrived() const { return smoother_.sum(boundary_vertices_.size() - n_arrived_) == 0; }
-  template <class F>
-  std::size_t count_over(std::size_t begin, std::size_t end, const F& f);
   void set_out();
   void find_feet();
   void make_room();
@@ -97,28 +90,6 @@ class Projection {
   std::size_t n_arrived_ = 0;
   ProjectionReport report_;
 };
-
-/// Sum of the integers f(k), threads over k, or psi asked in blocks.
-template <class F>
-std::size_t Projection::count_over(std::size_t begin, std::size_t end, const F& f) {
-  std::size_t total = 0;
-  if (psi_.side_by_side()) {
-    for_each_asking(psi_, end - begin, kVerticesPerPoll, context_, [&](std::size_t k) { total += f(begin + k); });
-    return total;
-  }
-  for (; begin < end; begin += kVerticesPerPoll) {
-    context_.poll();
-    const tbb::blocked_range<std::size_t> some(begin, std::min(end, begin + kVerticesPerPoll), kVerticesPerTask);
-    total += tbb::parallel_reduce(
-        some, std::size_t{0},
-        [&](const auto& range, std::size_t sum) {
-          for (std::size_t k = range.begin(); k != range.end(); ++k) sum += f(k);
-          return sum;
-        },
-        std::plus<>());
-  }
-  return total;
-}
 
 void Projection::set_out() {
   colour_begin_.assign(1, 0);
@@ -141,17 +112,19 @@ void Projection::set_out() {
 
 /// Closest points of the vertices that have not arrived, from where they are.
 void Projection::find_feet() {
-  report_.psi_evaluations += count_over(0, boundary_vertices_.size(), [&](std::size_t k) {
-    BoundaryVertex& boundary_vertex = boundary_vertices_[k];
-    if (boundary_vertex.arrived) return std::size_t{0};
-    boundary_vertex.t = 0;
-    boundary_vertex.start = layer_.V[boundary_vertex.vertex];
-    const ClosestPoint foot =
-        closest_point(psi_, boundary_vertex.start, layer_.h_at(boundary_vertex.vertex), params_.closest_point);
-    boundary_vertex.has_foot = foot.converged;
-    boundary_vertex.foot = foot.point;
-    return static_cast<std::size_t>(foot.iterations);
-  });
+  const std::size_t n = boundary_vertices_.size();
+  report_.psi_evaluations +=
+      sum_asking<std::size_t>(psi_, 0, n, kVerticesPerTask, context_, [&](std::size_t k, std::size_t& sum) {
+        BoundaryVertex& boundary_vertex = boundary_vertices_[k];
+        if (boundary_vertex.arrived) return;
+        boundary_vertex.t = 0;
+        boundary_vertex.start = layer_.V[boundary_vertex.vertex];
+        const ClosestPoint foot =
+            closest_point(psi_, boundary_vertex.start, layer_.h_at(boundary_vertex.vertex), params_.closest_point);
+        boundary_vertex.has_foot = foot.converged;
+        boundary_vertex.foot = foot.point;
+        sum += static_cast<std::size_t>(foot.iterations);
+      });
 }
 
 /// As far as the bound on quality allows. Returns whether the vertex arrived.
@@ -182,11 +155,14 @@ bool Projection::step(BoundaryVertex& boundary_vertex, double target) {
 void Projection::advance(double target) {
   for (int colour = 0; colour < smoother_.n_colours(); ++colour) {
     const auto c = static_cast<std::size_t>(colour);
-    if (c + 1 < colour_begin_.size())
-      n_arrived_ += count_over(colour_begin_[c], colour_begin_[c + 1], [&](std::size_t k) -> std::size_t {
-        BoundaryVertex& boundary_vertex = boundary_vertices_[k];
-        return boundary_vertex.has_foot && !boundary_vertex.arrived && step(boundary_vertex, target) ? 1 : 0;
-      });
+    const auto advance_one = [&](std::size_t k, std::size_t& n_arrived) {
+      BoundaryVertex& boundary_vertex = boundary_vertices_[k];
+      n_arrived += boundary_vertex.has_foot && !boundary_vertex.arrived && step(boundary_vertex, target);
+    };
+    if (c + 1 < colour_begin_.size()) {
+      n_arrived_ += sum_asking<std::size_t>(psi_, colour_begin_[c], colour_begin_[c + 1], kVerticesPerTask, context_,
+                                            advance_one);
+    }
     smoother_.pass_on(colour);
   }
 }

@@ -1,7 +1,6 @@
 #include "mesh/fast/bad_tets.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "mesh/core/asking_psi.h"
@@ -10,6 +9,11 @@
 #include "mesh/fast/patch_state.h"
 
 namespace umtet {
+namespace {
+
+constexpr std::size_t kTetsPerTask = 1 << 10;  // of ten nanoseconds each, at the boundary of a hundred
+
+}  // namespace
 
 std::vector<BadTet> bad_tets(const BackgroundLayer& layer, const IdSet& inside_set, ImplicitFunctionRef psi,
                              double target, std::size_t& n_evaluations) {
@@ -17,22 +21,18 @@ std::vector<BadTet> bad_tets(const BackgroundLayer& layer, const IdSet& inside_s
   const std::vector<Tet>& C = layer.layer.C;
   const std::vector<std::uint8_t> inside = inside_of(layer, inside_set);
   std::vector<double> badness(C.size(), 1);
-  std::atomic<std::size_t> evaluations = 0;
   // Nearly all tets are above the target, which takes no root to see.
   const double enough = (1 + 1e-12) * f_of_quality(target);
-  for_each_asking(psi, C.size(), C.size(), {}, [&](std::size_t k) {
+  n_evaluations += sum_asking<std::size_t>(psi, 0, C.size(), kTetsPerTask, {}, [&](std::size_t k, std::size_t& n) {
     const Tet& t = C[k];
     const Vec3 &p = V[t[0]], &q = V[t[1]], &r = V[t[2]], &s = V[t[3]];
     const double six = volume6(p, q, r, s), L = sum_of_squared_edges(p, q, r, s);
     if (!(six * std::abs(six) >= enough * (L * L * L))) badness[k] = mean_ratio(p, q, r, s);
     Triangle f;
     if (!positive_face(t, inside, f)) return;
-    std::size_t n = 0;
     const double cosine = normal_cosine(psi, V[f[0]], V[f[1]], V[f[2]], layer.layer.h_at(f[0]), n);
-    evaluations.fetch_add(n, std::memory_order_relaxed);
     if (cosine < kMisalignedCosine) badness[k] = std::min(badness[k], cosine);
   });
-  n_evaluations += evaluations;
   const auto& id = layer.background_vertex;
   std::vector<BadTet> bad;
   for (std::size_t k = 0; k < C.size(); ++k) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/polled_loops.h"
 #include "mesh/base/id_blocks.h"
 #include "mesh/core/asking_psi.h"
 #include "mesh/fast/detail/flat_tets.h"

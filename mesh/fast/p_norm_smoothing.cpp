@@ -10,11 +10,12 @@
 #include <atomic>
 #include <bitset>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <stdexcept>
 #include <string>
 
+#include "common/polled_loops.h"
+#include "mesh/core/asking_psi.h"
 #include "mesh/core/tet_quality.h"
 #include "mesh/fast/detail/ring_newton.h"
 
@@ -29,7 +30,7 @@ constexpr int kSlides = 3;  // lengths of a tangential step that are tried on th
 constexpr double kInnerFactor = 1.4, kBoundaryFactor = 2;
 // A solve takes about a microsecond; to hand a task to a thread takes a few.
 constexpr std::size_t kSolvesPerTask = 32;
-constexpr std::size_t kWorthThreads = 64;
+constexpr std::size_t kWorthThreads = 256;
 constexpr std::size_t kSolvesPerPoll = 1 << 12;
 constexpr std::size_t kTetsPerTask = 1 << 12;  // some ten nanoseconds each
 
@@ -46,8 +47,7 @@ class VertexSolver {
         good_f_(f_of_quality(params.target + params.margin)),
         target_f_(f_of_quality(params.target)),
         least_gain_(params.least_gain),
-        fine_gain_(params.fine_gain),
-        sharper_(params.sharper) {}
+        fine_gain_(params.fine_gain) {}
 
   struct Result {
     bool needed = false, moved = false;
@@ -64,7 +64,7 @@ class VertexSolver {
     result.needed = true;
     detail::silence_padding(ring);
     result.good = ring.f_here >= target_f_;
-    const detail::Bar bar(ring, layer_.h_at(i), result.good ? fine_gain_ : least_gain_, sharper_);
+    const detail::Bar bar(ring, layer_.h_at(i), result.good ? fine_gain_ : least_gain_);
     if (layer_.role[i] == ActiveLayer::Role::Inner) {
       const detail::Displacement best = detail::best_displacement(ring, bar, layer_.h_at(i), {});
       result.moved = best.passed(ring, bar);
@@ -111,7 +111,6 @@ class VertexSolver {
   ImplicitFunctionRef psi_;
   const ClosestPointParams& closest_point_;
   double good_f_, target_f_, least_gain_, fine_gain_;
-  bool sharper_;
 };
 
 struct Counts {
@@ -133,10 +132,10 @@ std::vector<std::string> problems(const SmoothingParams& params) {
   };
   if (!(params.target > 0 && params.target < 1)) refuse("target", params.target, "> 0 and < 1");
   if (!(params.margin >= 0)) refuse("margin", params.margin, ">= 0");
-  if (!(params.least_gain > 0 && params.least_gain < 1 / detail::kSharperNorm))
-    refuse("least_gain", params.least_gain, "> 0 and < 1 / 384");
-  if (!(params.fine_gain > 0 && params.fine_gain < 1 / detail::kSharperNorm))
-    refuse("fine_gain", params.fine_gain, "> 0 and < 1 / 384");
+  if (!(params.least_gain > 0 && params.least_gain < 1 / detail::kNorm))
+    refuse("least_gain", params.least_gain, "> 0 and < 1 / 96");
+  if (!(params.fine_gain > 0 && params.fine_gain < 1 / detail::kNorm))
+    refuse("fine_gain", params.fine_gain, "> 0 and < 1 / 96");
   if (!(params.least_step >= 0)) refuse("least_step", params.least_step, ">= 0");
   if (params.max_sweeps < 0) refuse("max_sweeps", params.max_sweeps, ">= 0");
   return list;
@@ -176,7 +175,6 @@ PNormSmoother::PNormSmoother(ActiveLayer& layer)
   for (std::size_t i = 0; i < layer.V.size(); ++i) {
     if (queued_[i] != 0) by_colour_[next[layer.colour[i]]++] = static_cast<int>(i);
   }
-  if (!count.empty()) todo_.reserve(*std::max_element(count.begin(), count.end()));
   int n_faces = 0;
   for (const int i : by_colour_) {
     faces_of_[i] = {n_faces, layer.ring_begin[i + 1] - layer.ring_begin[i]};
@@ -201,6 +199,8 @@ void PNormSmoother::enqueue_all() {
   for (const int i : by_colour_) queued_[i] = 1;
 }
 
+void PNormSmoother::dequeue_all() { std::fill(queued_.begin(), queued_.end(), 0); }
+
 void PNormSmoother::enqueue(int i) {
   // Vertices that share no tet may share a neighbour: both then write the same, so relaxed stores will do.
   std::atomic_ref(queued_[i]).store(1, std::memory_order_relaxed);
@@ -209,15 +209,46 @@ void PNormSmoother::enqueue(int i) {
   }
 }
 
-SmoothingReport PNormSmoother::run(ImplicitFunctionRef psi, const SmoothingParams& params, const Context& context) {
-  if (const auto list = problems(params); !list.empty()) {
-    std::string all;
-    for (const std::string& problem : list) all += (all.empty() ? "" : "; ") + problem;
-    throw std::invalid_argument(all);
+/// What a sweep does to the vertices of one colour.
+class PNormSmoother::ColourSweep {
+ public:
+  ColourSweep(PNormSmoother& smoother, ImplicitFunctionRef psi, const SmoothingParams& params, const Context& context)
+      : smoother_(smoother),
+        layer_(smoother.layer_),
+        psi_(psi),
+        solve_(smoother, psi, params),
+        least_step_(params.least_step),
+        context_(context) {}
+
+  /// Solves those in the queue among by_colour_[begin .. end - 1].
+  Counts operator()(std::size_t begin, std::size_t end) {
+    if (psi_.side_by_side()) return side_by_side(begin, end);
+    const auto solve = [this](std::size_t k, Counts& counts) { solve_if_queued(k, counts); };
+    if (end - begin >= kWorthThreads)
+      return polled_parallel_sum<Counts>(begin, end, kSolvesPerTask, kSolvesPerPoll, context_, solve);
+    Counts counts;
+    for (std::size_t k = begin; k != end; ++k) solve(k, counts);
+    return counts;
   }
-  const VertexSolver solve(*this, psi, params);
-  const auto solve_one = [&](int i, Counts& counts) {
-    const VertexSolver::Result result = solve(i);
+
+ private:
+  /// Threads solve vertices that share no tet but may share a neighbour, which both then put in the queue.
+  std::atomic_ref<unsigned char> flag(int i) const { return std::atomic_ref(smoother_.queued_[i]); }
+  bool is_queued(int i) const { return flag(i).load(std::memory_order_relaxed) != 0 && !is_fixed(layer_, i); }
+
+  void solve_if_queued(std::size_t k, Counts& counts) {
+    const std::vector<int>& vertices = smoother_.by_colour_;
+    const int i = vertices[k];
+    if (!is_queued(i)) return;
+    if (k + kAhead < vertices.size() && is_queued(vertices[k + kAhead])) {
+      for (const Triangle& face : smoother_.faces(vertices[k + kAhead])) __builtin_prefetch(&layer_.V[face[0]]);
+    }
+    solve(i, counts);
+  }
+
+  void solve(int i, Counts& counts) {
+    flag(i).store(0, std::memory_order_relaxed);
+    const VertexSolver::Result result = solve_(i);
     ++counts.checks;
     counts.solves += result.needed;
     counts.moves += result.moved;
@@ -225,53 +256,49 @@ SmoothingReport PNormSmoother::run(ImplicitFunctionRef psi, const SmoothingParam
     if (!result.moved) return;
     const double step = (result.place - layer_.V[i]).norm();
     layer_.V[i] = result.place;
-    if (result.good && step < params.least_step * layer_.h_at(i)) return;
+    if (result.good && step < least_step_ * layer_.h_at(i)) return;
     // A tet that was above the target and still is gives its vertices no reason to move.
     if (result.below_target.none()) return;
-    std::atomic_ref(queued_[i]).store(1, std::memory_order_relaxed);
-    const std::span<const Triangle> ring = faces(i);
+    flag(i).store(1, std::memory_order_relaxed);
+    const std::span<const Triangle> ring = smoother_.faces(i);
     for (std::size_t j = 0; j < ring.size(); ++j) {
       if (!result.below_target[j]) continue;
-      for (const int v : ring[j]) std::atomic_ref(queued_[v]).store(1, std::memory_order_relaxed);
+      for (const int v : ring[j]) flag(v).store(1, std::memory_order_relaxed);
     }
-  };
-  const auto solve_some = [&](const tbb::blocked_range<std::size_t>& range, Counts counts) {
-    for (std::size_t k = range.begin(); k != range.end(); ++k) {
-      if (k + kAhead < range.end()) {
-        for (const Triangle& face : faces(todo_[k + kAhead])) __builtin_prefetch(&layer_.V[face[0]]);
-      }
-      solve_one(todo_[k], counts);
+  }
+
+  Counts side_by_side(std::size_t begin, std::size_t end) {
+    std::vector<int> todo;
+    for (std::size_t k = begin; k != end; ++k) {
+      if (is_queued(smoother_.by_colour_[k])) todo.push_back(smoother_.by_colour_[k]);
     }
-    return counts;
-  };
-  const auto solve_all = [&](const tbb::blocked_range<std::size_t>& range) {
     Counts counts;
-    if (const SideBySide* side_by_side = psi.side_by_side()) {
-      side_by_side->for_each(range.size(), [&](std::size_t k) { solve_one(todo_[range.begin() + k], counts); });
-      return counts;
-    }
-    return range.size() < kWorthThreads ? solve_some(range, counts)
-                                        : tbb::parallel_reduce(range, counts, solve_some, std::plus<>());
-  };
+    for_each_asking(psi_, todo.size(), kSolvesPerPoll, context_, [&](std::size_t k) { solve(todo[k], counts); });
+    return counts;
+  }
+
+  PNormSmoother& smoother_;
+  ActiveLayer& layer_;
+  ImplicitFunctionRef psi_;
+  const VertexSolver solve_;
+  double least_step_;
+  const Context& context_;
+};
+
+SmoothingReport PNormSmoother::run(ImplicitFunctionRef psi, const SmoothingParams& params, const Context& context) {
+  if (const auto list = problems(params); !list.empty()) {
+    std::string all;
+    for (const std::string& problem : list) all += (all.empty() ? "" : "; ") + problem;
+    throw std::invalid_argument(all);
+  }
+  ColourSweep sweep_colour(*this, psi, params, context);
   SmoothingReport report;
   while (report.sweeps < params.max_sweeps && !report.settled) {
+    context.poll();
     Counts sweep;
     for (int colour = 0; colour < n_colours(); ++colour) {
-      todo_.clear();
       const auto c = static_cast<std::size_t>(colour);
-      const bool has_any = c + 1 < colour_begin_.size();
-      for (std::size_t k = has_any ? colour_begin_[c] : 0; has_any && k < colour_begin_[c + 1]; ++k) {
-        const int i = by_colour_[k];
-        if (queued_[i] == 0 || is_fixed(layer_, i)) continue;
-        queued_[i] = 0;
-        todo_.push_back(i);
-      }
-      for (std::size_t begin = 0; begin < todo_.size(); begin += kSolvesPerPoll) {
-        context.poll();
-        const tbb::blocked_range<std::size_t> some(begin, std::min(todo_.size(), begin + kSolvesPerPoll),
-                                                   kSolvesPerTask);
-        sweep = sweep + solve_all(some);
-      }
+      if (c + 1 < colour_begin_.size()) sweep = sweep + sweep_colour(colour_begin_[c], colour_begin_[c + 1]);
       pass_on(colour);
     }
     ++report.sweeps;

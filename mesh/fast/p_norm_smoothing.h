@@ -22,14 +22,12 @@ struct SmoothingParams {
   double target = kQualityTarget;  ///< mean ratio every tet is to reach; in (0, 1)
   /// A vertex is solved while its worst tet is below target + margin; >= 0
   double margin = .034;
-  double fine_gain = 2e-5;    ///< relative gain in the norm of 1/Q below which a solve is no move; in (0, 1/384)
+  double fine_gain = 2e-5;    ///< relative gain in the norm of 1/Q below which a solve is no move; in (0, 1/96)
   double least_step = .0075;  ///< of h: a shorter move enqueues no neighbour; >= 0
-  /// In place of fine_gain where a tet of the star is below the target; in (0, 1/384). There any move enqueues the
+  /// In place of fine_gain where a tet of the star is below the target; in (0, 1/96). There any move enqueues the
   /// neighbours. What smoothing wins there by smaller steps it takes from the tets around, and leaves a region just
   /// below the target where there were a few bad tets.
   double least_gain = 3e-4;
-  /// A third norm, p = 384 after 96: among many tets nearly as bad, the worst still counts. Slower to settle.
-  bool sharper = false;
   int max_sweeps = 60;  ///< over the vertices in the queue; >= 0
   /// A vertex that slid is off the surface by a sagitta only, where Damped settles in as many steps as Newton and needs
   /// no Hessian.
@@ -60,8 +58,7 @@ struct SmoothingReport {
 /// V^2) and its powers 16 and 32, so that it takes no roots. A step is at most .5 h long, h that of the vertex, leaves
 /// every V a fifth of its value or more, and is halved until the sum of the powers falls. A solve counts if it lowers
 /// sum F^32 over the ring: that sum over the whole layer falls monotonically, and no solve leaves its ring with less
-/// than n^(-1/96) of the worst quality it had, n tets: 3.4 % at 28. With `sharper`, a third step and the sum are those
-/// of F^128, p = 384.
+/// than n^(-1/96) of the worst quality it had, n tets: 3.4 % at 28.
 ///
 /// A boundary vertex takes the steps in its tangent plane and is then put back on psi = 0; the solve counts by the sum
 /// there. Steps are over-relaxed, where that lowers the sum, too: alone, a vertex goes less far than with its
@@ -93,6 +90,8 @@ class PNormSmoother {
   void enqueue(int i);
   /// Puts every vertex in the queue that was not Fixed at construction.
   void enqueue_all();
+  /// Empties the queue.
+  void dequeue_all();
   /// Solves vertices in the queue until none is left, or for max_sweeps; those left stay for the next call. Roles are
   /// read anew: the caller may hold vertices by making them Fixed for a while, which leaves them in the queue.
   /// What it says of the layer is left to measure(), which checks at every tet.
@@ -108,6 +107,8 @@ class PNormSmoother {
   OneRing ring(int i) const { return OneRing(layer_.V[i], layer_.V, faces(i)); }
 
  private:
+  class ColourSweep;
+
   std::span<const Triangle> faces(int i) const {
     return {faces_.get() + faces_of_[i].begin, static_cast<std::size_t>(faces_of_[i].n)};
   }
@@ -123,7 +124,6 @@ class PNormSmoother {
   std::vector<int> by_colour_;             ///< vertices, ascending within a colour
   std::vector<std::size_t> colour_begin_;  ///< into by_colour_
   std::vector<unsigned char> queued_;      ///< per vertex
-  std::vector<int> todo_;                  ///< of one colour
 };
 
 /// PNormSmoother for one call.

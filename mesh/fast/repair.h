@@ -25,12 +25,13 @@ struct RepairParams {
   /// Patches in all, for the worst tets first; fewer in small meshes, and what is begun is ended. Where more are needed
   /// h is too large, which no classification mends.
   std::size_t max_patches = 3000;
-  bool sharper = true;  ///< what nothing mends is tried again with SmoothingParams::sharper
-  /// What nothing mends then is tried again with a target so much lower. Outside of lattices targets rise by so much
-  /// from the worst tet on. >= 0, 0: there is one target
+  /// What the first pass leaves, and what is above the target by less than lift, is raised by smooth_all_vertices().
+  bool all_vertices = true;
+  /// Outside of lattices targets rise by so much from the worst tet on; where all vertices of a patch move at once they
+  /// rise by a quarter of it in all backgrounds. >= 0, 0: there is one target
   double target_step = .01;
-  /// On lattices, when all is mended: tets that are above the target by less than this are mended up to it, in few
-  /// patches. >= 0, 0: they stay as they are
+  /// Tets that are above the target by less than this are raised up to it, in few patches. >= 0, 0: they stay as they
+  /// are
   double lift = .01;
   bool slides = true;  ///< patches relax_tangentially() when all is mended: their smoothing has undone that
   /// Edges: a vertex higher than this is not flipped. More than ClassificationParams::reach_out, because here the mesh
@@ -76,10 +77,9 @@ struct RepairReport {
 /// of these gets better. A state changes only where classify_vertices() might change it: at simple vertices, without a
 /// new spot where the boundary is no manifold, and not where the body or the gap is thin. So topology stays.
 ///
-/// What nothing helps is tried with a sharper norm, at first with the states it has; then against a target lower by
-/// target_step; at last tets above the target by less than lift are mended up to it. Outside of lattices, where many
-/// tets are below the target, it rises from the worst tet on, and what the few most promising flips do not help is
-/// tried in full at last, the sharper norm with it.
+/// What nothing helps, and tets above the target by less than lift, are then raised by smooth_all_vertices(), without a
+/// flip and after that with any, against targets that rise from the worst tet on. Outside of lattices, where many tets
+/// are below the target, it rises in the first pass, too, which tries the few most promising flips.
 ///
 /// Tets far from each other are mended at once. The same bytes for any number of threads.
 /// @param layer   smoothed; its coordinates stay as they are, `moved` says what has changed since

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "common/polled_loops.h"
 #include "mesh/core/asking_psi.h"
 #include "mesh/fast/patch_state.h"
 

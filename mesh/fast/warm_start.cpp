@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "common/polled_loops.h"
 #include "mesh/core/asking_psi.h"
 #include "mesh/fast/detail/flat_tets.h"
 #include "mesh/implicit/closest_point.h"
@@ -20,7 +21,7 @@ constexpr double kFarthestFoot = 1.5;
 // Of ClosestPointParams, if that is less. A vertex has to be on psi = 0 to ClosestPointParams::tol; along the surface
 // smoothing moves it anyway, so .01 h will do there, which the damped iteration without Hessians reaches soon.
 constexpr double kFootTol = 1e-2;
-constexpr std::size_t kFeetPerPoll = kValuesPerPoll / 8;
+constexpr std::size_t kFeetPerTask = 64;  // of a microsecond or two each
 
 class Start {
  public:
@@ -81,23 +82,24 @@ std::size_t Start::go_to_feet(ImplicitFunctionRef psi, const Context& context) {
     boundary.push_back(static_cast<int>(v));
     if (recalled_[v] != 0) boundary_from_.emplace_back(v, layer_.V[v]);
   }
-  std::atomic<std::size_t> evaluations = 0, lost = 0;
+  std::atomic<bool> all_found = true;
   ClosestPointParams params = projection_.closest_point;
   params.method = ClosestPointMethod::Damped;
   params.foot_tol = std::max(params.foot_tol, kFootTol);
-  for_each_asking(psi, boundary.size(), kFeetPerPoll, context, [&](std::size_t k) {
-    Vec3& x = layer_.V[boundary[k]];
-    const double h = layer_.h_at(boundary[k]);
-    const ClosestPoint foot = closest_point(psi, x, h, params);
-    evaluations.fetch_add(static_cast<std::size_t>(foot.iterations), std::memory_order_relaxed);
-    if (foot.converged && (foot.point - x).norm() <= kFarthestFoot * h) {
-      x = foot.point;
-    } else {
-      lost.fetch_add(1, std::memory_order_relaxed);
-    }
-  });
-  is_on_surface_ = lost == 0;
-  return evaluations;
+  const std::size_t n_evaluations =
+      sum_asking<std::size_t>(psi, 0, boundary.size(), kFeetPerTask, context, [&](std::size_t k, std::size_t& n) {
+        Vec3& x = layer_.V[boundary[k]];
+        const double h = layer_.h_at(boundary[k]);
+        const ClosestPoint foot = closest_point(psi, x, h, params);
+        n += static_cast<std::size_t>(foot.iterations);
+        if (foot.converged && (foot.point - x).norm() <= kFarthestFoot * h) {
+          x = foot.point;
+        } else {
+          all_found.store(false, std::memory_order_relaxed);
+        }
+      });
+  is_on_surface_ = all_found;
+  return n_evaluations;
 }
 
 /// The mean of u over the other vertices of the tets at v.

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "mesh/core/tet_quality.h"
+#include "mesh/fast/all_vertex_smoothing.h"
 #include "mesh/fast/tangential_relaxation.h"
 
 namespace umtet::detail {
@@ -20,6 +21,21 @@ constexpr double kMostLack = .7, kMostMoreBelowTarget = 280;
 // Where a flip has been found that helps, those whose star costs are so much higher are not tried. With less, the best
 // flip is missed where star costs are wrong about a patch; with more, time goes into flips that are worse.
 constexpr float kMostMoreCost = 60;
+// Sweeps before all vertices are moved at once, which then goes on. That the patch is promising is judged after so many
+// only: what one vertex at a time cannot raise all of them together may.
+constexpr int kSweepsBefore = 6;
+// All vertices are moved until the least Q is so far above the target: a patch that just gets there falls below it when
+// the next one is smoothed.
+constexpr double kRoom = .004;
+
+/// Puts these vertices and those around them in the queue.
+/// @param centres  in the background
+void enqueue_around(PNormSmoother& smoother, const BackgroundLayer& cut, const std::vector<std::int64_t>& centres) {
+  for (std::size_t v = 0; v < cut.layer.V.size(); ++v) {
+    const bool is_centre = std::find(centres.begin(), centres.end(), cut.background_vertex[v]) != centres.end();
+    if (is_centre && cut.layer.role[v] != ActiveLayer::Role::Fixed) smoother.enqueue(static_cast<int>(v));
+  }
+}
 
 }  // namespace
 
@@ -63,7 +79,7 @@ bool FlipTrials::is_bad(const TetIds& tet) {
 }
 
 BackgroundLayer FlipTrials::patch(const std::vector<std::int64_t>& centres, Start start) const {
-  BackgroundLayer cut = active_patch(background_, links_, inside_, centres, params_.reach);
+  BackgroundLayer cut = active_patch(background_, links_, inside_, centres, params_.reach + effort_.more_reach);
   for (std::size_t v = 0, from = 0; v < cut.layer.V.size(); ++v) {
     if (start == Start::Here || cut.layer.role[v] == ActiveLayer::Role::Fixed)
       cut.layer.V[v] = positions_.of(cut.background_vertex[v], from);
@@ -77,9 +93,11 @@ PatchState FlipTrials::state(const ActiveLayer& layer, const std::vector<std::ui
 
 /// Returns whether the patch may still become better than it was; what it lacks is looked at after every sweep.
 bool FlipTrials::smooth_while_promising(PNormSmoother& smoother, const PatchState& before) {
-  SmoothingParams one_sweep = smoothing_;
+  SmoothingParams one_sweep = params_.smoothing;
   one_sweep.max_sweeps = 1;
-  for (int sweep = 1; sweep <= smoothing_.max_sweeps; ++sweep) {
+  const int most =
+      effort_.all_vertices ? std::min(kSweepsBefore, params_.smoothing.max_sweeps) : params_.smoothing.max_sweeps;
+  for (int sweep = 1; sweep <= most; ++sweep) {
     const SmoothingReport report = smoother.run(psi_, one_sweep);
     psi_evaluations += report.psi_evaluations;
     if (report.settled) break;
@@ -102,14 +120,22 @@ void FlipTrials::attempt(const TetIds& tet, std::span<const std::int64_t> flips,
   const std::vector<std::uint8_t> inside = inside_of(trial, inside_);
   for (const std::int64_t v : flips) flip(v);
   PNormSmoother smoother(trial.layer);
+  // What is far from the flips is where smoothing has left it: moves there begin next to those near by. In a lattice,
+  // whose bad tets are few and just below the target, there is something to move everywhere.
+  const bool moves_all = start == Start::Lattice || background_.is_lattice();
+  if (!moves_all) smoother.dequeue_all(), enqueue_around(smoother, trial, centres);
   const ProjectionReport projection = project(smoother, psi_, params_.projection);
   psi_evaluations += projection.psi_evaluations;
   if (!projection.not_arrived.empty()) return;
   const BackgroundLayer now = patch(centres, Start::Here);
   const PatchState before = state(now.layer, inside_of(now, inside_));
-  smoother.enqueue_all();
+  moves_all ? smoother.enqueue_all() : enqueue_around(smoother, trial, centres);
   if (!smooth_while_promising(smoother, before)) return;
-  const PatchState after = state(trial.layer, inside);
+  PatchState after = state(trial.layer, inside);
+  if (effort_.all_vertices && after.misaligned == 0 && after.below_target > 0) {
+    psi_evaluations += smooth_all_vertices(trial.layer, psi_, target_ + kRoom).psi_evaluations;
+    after = state(trial.layer, inside);
+  }
   if (!after.is_no_worse_than(before) || !after.is_better_than(before)) return;
   if (!best.found || after.is_better_than(best.state))
     best = {std::move(trial), after, {flips.begin(), flips.end()}, true};
@@ -162,7 +188,7 @@ FlipTrials::Best FlipTrials::operator()(const TetIds& tet, std::size_t most_trie
     attempt(tet, {}, Start::Lattice, best);
     if (!best.is_perfect()) try_flips(tet, Start::Lattice, best);
   }
-  if (!best.found && effort_.sharper) attempt(tet, {}, Start::Here, best);
+  if (!best.found && effort_.all_vertices) attempt(tet, {}, Start::Here, best);
   if (!best.found) try_flips(tet, Start::Here, best);
   return best;
 }

@@ -45,9 +45,11 @@ class Positions {
 
 /// What is tried for one tet.
 struct FlipEffort {
-  bool sharper = false;  ///< patches are smoothed by the sharper norm, at first without flips
+  /// Patches that smoothing leaves below the target are given to smooth_all_vertices(), at first without flips.
+  bool all_vertices = false;
   std::size_t most_singles = std::numeric_limits<std::size_t>::max();  ///< candidates, the most promising ones
   bool pairs = true;                                                   ///< where no single flip helps
+  int more_reach = 0;  ///< edges beyond RepairParams::reach within which a patch moves vertices
 };
 
 /// What flips would make of the patch around one tet, tried on copies. Changes nothing of the mesh.
@@ -70,7 +72,6 @@ class FlipTrials {
         psi_(psi),
         params_(params),
         target_(params.target),
-        smoothing_(params.smoothing),
         positions_(places),
         inside_(inside),
         candidates_(background, links, psi, classification, params, inside_) {}
@@ -89,7 +90,6 @@ class FlipTrials {
   void retry_with(double target, const FlipEffort& effort) {
     target_ = target;
     effort_ = effort;
-    smoothing_.sharper = effort.sharper;
   }
   void flip(std::int64_t v) { inside_.test(v) ? inside_.erase(v) : inside_.insert(v); }
 
@@ -112,7 +112,6 @@ class FlipTrials {
   const RepairParams& params_;
   double target_;
   FlipEffort effort_;
-  SmoothingParams smoothing_;
   const Positions& positions_;
   IdSet inside_;
   FlipCandidates candidates_;

@@ -20,10 +20,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 // log2 of the powers of F = 1 / Q^3 (but for a factor), one Newton step for each in turn: p = 16 and 32 here are the
 // norms p = 48 and 96 of 1 / Q. The lower power is the smoother function and takes the vertex near its place; the
-// higher one weighs the worst tet more. kSharperPower, a third step, is for SmoothingParams::sharper.
-constexpr int kFirstPower = 4, kLastPower = 5, kSharperPower = 7;
-static_assert(kNorm == 3 << kLastPower && kSharperNorm == 3 << kSharperPower);  // the p of 1/Q that go with them
-constexpr double kStepCap = .5;       // of h: farther away, a vertex leaves its star
+// higher one weighs the worst tet more.
+constexpr int kFirstPower = 4, kLastPower = 5;
+static_assert(kNorm == 3 << kLastPower);  // the p of 1/Q that goes with it
+constexpr double kStepCap = .5;           // of h: farther away, a vertex leaves its star
 constexpr double kVolumeKept = .2;    // of every V, in one step: farther off, the quadratic model of 1 / V^2 is useless
 constexpr int kHalvings = 4;          // of a step that does not lower its sum; then the vertex waits for its next turn
 constexpr int kUntangleRounds = 8;    // values of sigma; a vertex whose least volume rises is enqueued again
@@ -175,15 +175,12 @@ double newton_step(const OneRing& ring, double h, const Directions& directions, 
 
 /// From y, a Newton step for each power. Returns where they end, with the last sum in the scale of max_F.
 /// \pre every V > 0 at y
-Displacement newton(const OneRing& ring, Vec3 y, double h, const Directions& directions, double max_F, bool sharper) {
+Displacement newton(const OneRing& ring, Vec3 y, double h, const Directions& directions, double max_F) {
   const double scale = max_F;
   newton_step<kFirstPower>(ring, h, directions, y, max_F);
-  double ratio = max_F / scale;
+  const double ratio = max_F / scale;
   const double sum = newton_step<kLastPower>(ring, h, directions, y, max_F);
-  if (!sharper) return {y, sum * to_power<kLastPower>(ratio)};
-  ratio = max_F / scale;
-  const double sharper_sum = newton_step<kSharperPower>(ring, h, directions, y, max_F);
-  return {y, sharper_sum * to_power<kSharperPower>(ratio)};
+  return {y, sum * to_power<kLastPower>(ratio)};
 }
 
 /// From y, moves until every V > 0 or min V rises no more.
@@ -195,7 +192,7 @@ Vec3 untangle(const OneRing& ring, Vec3 y, double h, const Directions& direction
     if (least > 0) break;
     const double sigma = unit - least;
     for (int j = 0; j < ring.n; ++j) shifted.v[j] = ring.v[j] + sigma;
-    const Vec3 next = newton(shifted, y, h, directions, sum_of_powers<0>(shifted, y, 1).max_F, false).y;
+    const Vec3 next = newton(shifted, y, h, directions, sum_of_powers<0>(shifted, y, 1).max_F).y;
     if (!(least_volume(ring, next) > least)) break;
     y = next;
   }
@@ -208,10 +205,10 @@ void silence_padding(OneRing& r) {
   for (int j = r.n; j % kPackSize != 0; ++j) r.v[j] = kInfinity, r.nx[j] = r.ny[j] = r.nz[j] = 0;
 }
 
-Bar::Bar(const OneRing& ring, double h, double gain, bool sharper) : sharper(sharper), scale(1 / ring.f_here) {
+Bar::Bar(const OneRing& ring, double h, double gain) : scale(1 / ring.f_here) {
   if (ring.f_here > 0) {
-    sum = sharper ? sum_of_powers_here<kSharperPower>(ring, scale) : sum_of_powers_here<kLastPower>(ring, scale);
-    least_gain = (sharper ? kSharperNorm : kNorm) * gain;
+    sum = sum_of_powers_here<kLastPower>(ring, scale);
+    least_gain = kNorm * gain;
   } else {
     least_volume = detail::least_volume(ring, Vec3::Zero());
     least_gain = kVolumeScale * h * h * h * gain;
@@ -220,15 +217,14 @@ Bar::Bar(const OneRing& ring, double h, double gain, bool sharper) : sharper(sha
 
 bool Bar::passed(const OneRing& ring, const Vec3& y) const {
   if (tangled()) return detail::least_volume(ring, y) > least_volume + least_gain;
-  return passed(sharper ? sum_of_powers<kSharperPower>(ring, y, scale).sum
-                        : sum_of_powers<kLastPower>(ring, y, scale).sum);
+  return passed(sum_of_powers<kLastPower>(ring, y, scale).sum);
 }
 
 Displacement best_displacement(const OneRing& ring, const Bar& bar, double h, const Directions& directions) {
-  if (!bar.tangled()) return newton(ring, Vec3::Zero(), h, directions, bar.scale, bar.sharper);
+  if (!bar.tangled()) return newton(ring, Vec3::Zero(), h, directions, bar.scale);
   const Vec3 y = untangle(ring, Vec3::Zero(), h, directions);
   const double max_F = sum_of_powers<0>(ring, y, 1).max_F;
-  return {std::isfinite(max_F) ? newton(ring, y, h, directions, max_F, bar.sharper).y : y, kNaN};
+  return {std::isfinite(max_F) ? newton(ring, y, h, directions, max_F).y : y, kNaN};
 }
 
 std::bitset<kMaxRing> tets_below_target(const OneRing& ring, const Vec3& y, double good_f) {
@@ -251,8 +247,7 @@ PowerSum power_sum(const OneRing& ring, const Vec3& y, int log2_p, double scale)
   scale *= kMeanRatioFactor * kMeanRatioFactor * kMeanRatioFactor;
   if (log2_p == kFirstPower) return power_sum_of<kFirstPower>(silenced, y, scale);
   if (log2_p == kLastPower) return power_sum_of<kLastPower>(silenced, y, scale);
-  if (log2_p == kSharperPower) return power_sum_of<kSharperPower>(silenced, y, scale);
-  throw std::invalid_argument("power_sum: log2_p = " + std::to_string(log2_p) + ": must be 4, 5 or 7");
+  throw std::invalid_argument("power_sum: log2_p = " + std::to_string(log2_p) + ": must be 4 or 5");
 }
 
 }  // namespace umtet::detail

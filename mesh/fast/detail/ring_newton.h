@@ -12,8 +12,8 @@ namespace umtet::detail {
 // What PNormSmoother does to one ring: the p-norm of its 1/Q, Newton steps on it, and what a step is judged by. F is
 // Q^-3 of a tet, without the factor 1 / 432 except in power_sum(): scales take it out again.
 
-/// The p of 1/Q's norm by which places are compared, and the one where that has settled too soon.
-inline constexpr double kNorm = 96, kSharperNorm = 384;
+/// The p of 1/Q's norm by which places are compared.
+inline constexpr double kNorm = 96;
 
 /// Fills up the last SIMD pack with tets of F = 0 in place of copies, which would count twice in a sum. For all that
 /// follows but power_sum().
@@ -27,13 +27,12 @@ struct Directions {
 
 /// What a place has to be better than: the ring at y = 0.
 struct Bar {
-  bool sharper;                                          ///< p is kSharperNorm
   double scale;                                          ///< of F: its greatest value
   double sum = std::numeric_limits<double>::infinity();  ///< of (F / scale)^p for the last p, where all V > 0
   double least_volume = 0;                               ///< min V where it is not
   double least_gain = 0;  ///< relative, of the norm or of min V in units of a background tet's
 
-  Bar(const OneRing& ring, double h, double gain, bool sharper);
+  Bar(const OneRing& ring, double h, double gain);
   bool tangled() const { return sum == std::numeric_limits<double>::infinity(); }
   bool passed(const OneRing& ring, const Vec3& y) const;
   bool passed(double sum_there) const { return sum_there < sum * (1 - least_gain); }

@@ -57,7 +57,7 @@ TEST(PNormSmooth, DerivativesAreThoseOfTheSum) {
     ActiveLayer layer = background_star(type);
     for (Vec3& x : layer.V) x += random_vector(random, .05);
     const OneRing ring = PNormSmoother(layer).ring(0);
-    for (const int log2_p : {4, 5, 7}) {
+    for (const int log2_p : {4, 5}) {
       const double p = 1 << log2_p, d = 1e-5;
       const Vec3 y = random_vector(random, .05);
       const detail::PowerSum at_y = detail::power_sum(ring, y, log2_p, 1.5);
@@ -206,20 +206,6 @@ TEST(PNormSmooth, WorstTetRisesToThePlateauOnTheSurface) {
       if (layer.role[i] != Role::Boundary) continue;
       ASSERT_LE(off_surface(domain, layer.V[i]), 1e-10 * layer.h) << domain.name << " vertex " << i;
     }
-  }
-}
-
-TEST(PNormSmooth, SharperNormRaisesTheWorstTetFurther) {
-  SmoothingParams sharper;
-  sharper.sharper = true;
-  for (const testing::AnalyticDomain& domain : {testing::sphere(), testing::torus(), testing::equation_9()}) {
-    SCOPED_TRACE(domain.name);
-    ActiveLayer layer = omega_h_shell(domain, 10000);
-    EXPECT_TRUE(project(layer, domain).not_arrived.empty());
-    const double settled = smooth(layer, domain).min_quality;
-    const double raised = smooth(layer, domain, sharper).min_quality;
-    EXPECT_NEAR(raised, worst_quality(layer), 1e-12);
-    EXPECT_GT(raised, settled + .001);
   }
 }
 
