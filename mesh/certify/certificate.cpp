@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "common/formatted.h"
+#include "common/polled_loops.h"
 #include "mesh/base/check_indices.h"
 #include "mesh/certify/boundary_surface.h"
 #include "mesh/certify/certificate_memory.h"

@@ -3,51 +3,30 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "common/formatted.h"
+#include "common/polled_loops.h"
 #include "mesh/certify/boundary_surface.h"
 #include "mesh/certify/certificate.h"
-#include "mesh/certify/detail/mid_side_numbers.h"
 #include "mesh/certify/jacobian_bounds.h"
+#include "mesh/certify/mid_side_numbers.h"
+#include "mesh/certify/second_order_measures.h"
 #include "mesh/core/asking_psi.h"
-#include "mesh/implicit/closest_point.h"
 
 namespace umtet {
 namespace {
 
-constexpr std::size_t kTetsPerBlock = 1 << 9, kBlocksPerPoll = 1 << 7;
-constexpr double kSmall = .01;  // of h: slope and closest point agree to a few per cent of it
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// Sums and extremes over a block of tets.
-struct JacobianMeasure {
-  double volume = 0, lower = kInfinity, upper = kInfinity;
-  std::size_t n_nonpositive = 0;
-
-  void add(const JacobianBounds& b) {
-    volume += b.mean / 6;
-    n_nonpositive += !b.positive();
-    lower = std::min(lower, b.scaled_lower());
-    upper = std::min(upper, b.mean > 0 ? b.upper / b.mean : -1);
-  }
-  void add(const JacobianMeasure& next) {
-    volume += next.volume;
-    n_nonpositive += next.n_nonpositive;
-    lower = std::min(lower, next.lower);
-    upper = std::min(upper, next.upper);
-  }
-};
+constexpr std::size_t kBlocksPerPoll = 1 << 7;
 
 void measure_jacobians(const SecondOrderInput& input, SecondOrderCertificate& certificate) {
   // Sums are taken block by block: threads cannot change a result.
   const QuadraticTetMesh& mesh = *input.mesh;
-  const std::size_t n = mesh.C.size(), n_blocks = (n + kTetsPerBlock - 1) / kTetsPerBlock;
+  const std::size_t n = mesh.C.size(), n_blocks = (n + kCurvedTetsPerSum - 1) / kCurvedTetsPerSum;
   std::vector<JacobianMeasure> blocks(n_blocks);
   polled_parallel_for(n_blocks, kBlocksPerPoll, input.context, [&](std::size_t b) {
-    const std::size_t end = std::min(n, (b + 1) * kTetsPerBlock);
-    for (std::size_t t = b * kTetsPerBlock; t < end; ++t) blocks[b].add(jacobian_bounds(nodes_of(mesh, mesh.C[t])));
+    const std::size_t end = std::min(n, (b + 1) * kCurvedTetsPerSum);
+    for (std::size_t t = b * kCurvedTetsPerSum; t < end; ++t) blocks[b].add(jacobian_bounds(nodes_of(mesh, mesh.C[t])));
   });
   JacobianMeasure all;
   for (const JacobianMeasure& block : blocks) all.add(block);
@@ -58,7 +37,7 @@ void measure_jacobians(const SecondOrderInput& input, SecondOrderCertificate& ce
 }
 
 /// The mid-side of every edge, by number; counts the edges that have several.
-std::vector<int> mid_sides(const QuadraticTetMesh& mesh, const detail::MidSideNumbers& number, std::size_t& n_torn) {
+std::vector<int> mid_sides(const QuadraticTetMesh& mesh, const MidSideNumbers& number, std::size_t& n_torn) {
   std::vector<int> of_edge(number.n_edges(), -1);
   std::vector<char> torn(number.n_edges(), 0);
   for (const QuadraticTet& tet : mesh.C) {
@@ -76,47 +55,18 @@ std::vector<int> mid_sides(const QuadraticTetMesh& mesh, const detail::MidSideNu
   return of_edge;
 }
 
-double distance(ImplicitFunctionRef psi, const Vec3& x) {
-  Vec3 g;
-  const double value = psi.value(x, g);
-  const double d = value == 0 ? 0 : std::abs(value) / g.norm();
-  return std::isnan(d) ? kInfinity : d;
-}
-
-/// The same, but where it is not small against h the distance to a closest point: what psi's slope says is off then by
-/// its curvature, and without bounds where the gradient nearly vanishes.
-double far_distance(ImplicitFunctionRef psi, const Vec3& x, double h) {
-  const double d = distance(psi, x);
-  if (d <= kSmall * h) return d;
-  const ClosestPoint foot = closest_point(psi, x, h, {});
-  return foot.converged ? (foot.point - x).norm() : d;
-}
-
-/// Distances at the centroid of a curved face and half-way from there to its corners.
-std::array<double, 4> face_distances(ImplicitFunctionRef psi, const QuadraticTetMesh& mesh,
-                                     const QuadraticTriangle& face, double h) {
-  std::array<double, 4> d{};
-  for (int s = 0; s < 4; ++s) {
-    Vec3 l = Vec3::Constant(s == 3 ? 1. / 3 : 1. / 6);
-    if (s < 3) l[s] = 2. / 3;
-    Vec3 x = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) {
-      x += l[k] * (2 * l[k] - 1) * mesh.V[face[k]] + 4 * l[k] * l[(k + 1) % 3] * mesh.V[face[3 + k]];
-    }
-    d[s] = far_distance(psi, x, h);
-  }
-  return d;
-}
-
 void measure_distances(const SecondOrderInput& input, const std::vector<QuadraticTriangle>& faces,
                        const std::vector<int>& nodes, SecondOrderCertificate& certificate) {
   const ImplicitFunctionRef psi = *input.psi;
   std::vector<double> at_node(nodes.size());
   std::vector<std::array<double, 4>> at_face(faces.size());
   for_each_asking(psi, nodes.size(), kValuesPerPoll, input.context,
-                  [&](std::size_t i) { at_node[i] = distance(psi, input.mesh->V[nodes[i]]); });
-  for_each_asking(psi, faces.size(), kValuesPerPoll / 4, input.context,
-                  [&](std::size_t i) { at_face[i] = face_distances(psi, *input.mesh, faces[i], input.h); });
+                  [&](std::size_t i) { at_node[i] = slope_distance(psi, input.mesh->V[nodes[i]]); });
+  for_each_asking(psi, faces.size(), kValuesPerPoll / 4, input.context, [&](std::size_t i) {
+    std::array<Vec3, 6> x;
+    for (std::size_t k = 0; k < 6; ++k) x[k] = input.mesh->V[faces[i][k]];
+    at_face[i] = curved_face_distances(psi, x, input.h);
+  });
   const double tolerance = kVertexTolerance * input.h + input.coordinate_rounding;
   double greatest = 0, greatest_at_face = 0, squares = 0;
   for (const double d : at_node) {
@@ -169,7 +119,7 @@ SecondOrderCertificate certify_second_order(const SecondOrderInput& input) {
   certificate.n_nodes = static_cast<std::size_t>(std::count(used.begin(), used.end(), 1));
   measure_jacobians(input, certificate);
   input.context.poll();
-  const detail::MidSideNumbers number(C, mesh.V.size());
+  const MidSideNumbers number(C, mesh.V.size());
   const std::vector<int> of_edge = mid_sides(mesh, number, certificate.n_torn_edges);
   input.context.poll();
 

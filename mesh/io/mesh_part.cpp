@@ -1,25 +1,22 @@
 #include "mesh/io/mesh_part.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <map>
 #include <string>
 #include <variant>
 
+#include "common/first_touch.h"
+
 namespace umtet {
 namespace {
-
-template <class T>
-std::vector<T> chosen(const std::vector<T>& all, const std::vector<std::size_t>& which) {
-  std::vector<T> some;
-  some.reserve(which.size());
-  for (const std::size_t i : which) some.push_back(all[i]);
-  return some;
-}
 
 std::map<std::string, FieldValues> chosen(const std::map<std::string, FieldValues>& data,
                                           const std::vector<std::size_t>& which) {
   std::map<std::string, FieldValues> some;
   for (const auto& [name, values] : data) {
-    some[name] = std::visit([&](const auto& all) -> FieldValues { return chosen(all, which); }, values);
+    const auto of = [&]<class T>(const std::vector<T>& all) -> FieldValues { return gathered<T>(all, which); };
+    some[name] = std::visit(of, values);
   }
   return some;
 }
@@ -28,7 +25,7 @@ std::map<std::string, FieldValues> chosen(const std::map<std::string, FieldValue
 
 MeshFile part_of(const MeshFile& whole, const std::vector<std::size_t>& tets) {
   MeshFile part;
-  part.mesh.C = chosen(whole.mesh.C, tets);
+  part.mesh.C = gathered<Tet>(whole.mesh.C, tets);
   std::vector<int> number(whole.mesh.V.size(), -1);
   for (const Tet& t : part.mesh.C) {
     for (const int v : t) number[v] = 0;
@@ -39,10 +36,10 @@ MeshFile part_of(const MeshFile& whole, const std::vector<std::size_t>& tets) {
     number[v] = static_cast<int>(vertices.size());
     vertices.push_back(v);
   }
-  for (Tet& t : part.mesh.C) {
-    for (int& v : t) v = number[v];
-  }
-  part.mesh.V = chosen(whole.mesh.V, vertices);
+  tbb::parallel_for(std::size_t{0}, part.mesh.C.size(), [&](std::size_t k) {
+    for (int& v : part.mesh.C[k]) v = number[v];
+  });
+  part.mesh.V = gathered<Vec3>(whole.mesh.V, vertices);
   part.point_data = chosen(whole.point_data, vertices);
   part.cell_data = chosen(whole.cell_data, tets);
   return part;

@@ -38,6 +38,14 @@ void write_vtu(const std::filesystem::path& path, const SolverMesh& mesh);
 /// The faces, with the same nodes; cell data `patch`, and field data NAME = number for every patch.
 void write_boundary_vtu(const std::filesystem::path& path, const SolverMesh& mesh);
 
+/// A parallel VTK file of one piece: the tets of write_vtu() with `global_vertex`, `owner` and `global_tet`, as several
+/// processes write them of a part each.
+void write_vtu_piece(const std::filesystem::path& path, const SolverMesh& mesh);
+/// @param piece  the name of the file of write_vtu_piece(), in the same folder
+void write_pvtu(const std::filesystem::path& path, const SolverMesh& mesh, const std::string& piece);
+/// The whole mesh as the one part of write_msh41_piece(). \throw std::invalid_argument for tets of 10 nodes
+void write_msh41_piece(const std::filesystem::path& path, const SolverMesh& mesh);
+
 /// HDF5: /nodes, /tets, /faces, /patch (of faces), /point_data/NAME and /cell_data/NAME; node sets as in write_vtu().
 /// The file is made in memory first, so that every write can be checked: twice its size.
 void write_hdf5(const std::filesystem::path& path, const SolverMesh& mesh);

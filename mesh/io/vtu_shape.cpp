@@ -32,6 +32,9 @@ class ShapeOfVtu {
         case VtuField::Type::UInt8:
           array(detail::kVtkType<std::uint8_t>, f.name, n);
           break;
+        case VtuField::Type::ThreeFloat64:
+          array(detail::kVtkType<double>, f.name, 24 * n, detail::kThreeComponents);
+          break;
       }
     }
     text("</" + section + ">\n");
@@ -57,9 +60,9 @@ class ShapeOfVtu {
 }  // namespace
 
 VtuShape vtu_shape(std::size_t n_points, std::size_t n_tets, const std::vector<VtuField>& point_fields,
-                   const std::vector<VtuField>& cell_fields) {
+                   const std::vector<VtuField>& cell_fields, std::size_t nodes_per_tet) {
   constexpr const char* kGrid = "UnstructuredGrid";
-  const bool is_wide = 4 * n_tets > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
+  const bool is_wide = nodes_per_tet * n_tets > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
   const char* const id = is_wide ? detail::kVtkType<std::int64_t> : detail::kVtkType<std::int32_t>;
   const std::size_t n_id = is_wide ? 8 : 4;
   ShapeOfVtu file;
@@ -69,7 +72,7 @@ VtuShape vtu_shape(std::size_t n_points, std::size_t n_tets, const std::vector<V
   file.text("<Points>\n");
   file.array(detail::kVtkType<double>, "Points", 24 * n_points, detail::kThreeComponents);
   file.text("</Points>\n<Cells>\n");
-  file.array(id, "connectivity", n_id * 4 * n_tets);
+  file.array(id, "connectivity", n_id * nodes_per_tet * n_tets);
   file.array(id, "offsets", n_id * n_tets);
   file.array(detail::kVtkType<std::uint8_t>, "types", n_tets);
   file.text("</Cells>\n" + detail::file_end(kGrid));

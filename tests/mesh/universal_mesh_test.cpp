@@ -232,6 +232,8 @@ TEST(UniversalMesh, AnInvertedIterateNamesItsTet) {
 }
 
 TEST(UniversalMesh, TheContextSeesEverySweepAndCanCancel) {
+  // The number of polls is that of the calling thread's share of the work.
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   UmParams params = paper();
   params.paper.relaxation_iterations = 3;
   params.paper.projection_passes = 2;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "common/polled_loops.h"
 #include "mesh/certify/certificate_memory.h"
 #include "mesh/certify/quality_report.h"
 #include "mesh/certify/tet_sums.h"

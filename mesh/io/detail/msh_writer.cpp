@@ -4,12 +4,10 @@
 #include <cstdint>
 #include <limits>
 #include <stdexcept>
-#include <string>
-#include <type_traits>
-#include <variant>
 #include <vector>
 
 #include "mesh/io/checked_file.h"
+#include "mesh/io/detail/msh_node_data.h"
 #include "mesh/io/solver_files.h"
 
 namespace umtet {
@@ -50,8 +48,6 @@ class MshWriter {
   void block41(int dimension, int entity, int third, std::size_t n);
   void elements41();
   void boundary_data();
-  template <class Value>
-  void node_data(const std::string& name, const std::vector<Value>& values);
 
   const SolverMesh& mesh_;
   bool binary_;
@@ -125,31 +121,9 @@ void MshWriter::version22() {
   file_.close();
 }
 
-/// The same in both versions. One real number, the time, and three whole ones: the step, components, nodes. Those of no
-/// value are there, too: meshio wants all nodes, in their order.
-template <class Value>
-void MshWriter::node_data(const std::string& name, const std::vector<Value>& values) {
-  constexpr std::size_t kComponents = std::is_same_v<Value, Vec3> ? 3 : 1;
-  const auto component = [&](std::size_t i, std::size_t k) {
-    if constexpr (kComponents == 3) {
-      return values[i][static_cast<Eigen::Index>(k)];
-    } else {
-      return static_cast<double>(values[i]);
-    }
-  };
-  file_.text("$NodeData\n1\n\"").text(name).text("\"\n1\n0\n3\n0\n").number(kComponents).text("\n");
-  file_.number(values.size()).text("\n");
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    put(static_cast<std::int32_t>(i) + 1, " ");
-    for (std::size_t k = 0; k < kComponents; ++k) put(component(i, k), k + 1 < kComponents ? " " : "\n");
-  }
-  file_.text(binary_ ? "\n$EndNodeData\n" : "$EndNodeData\n");
-}
-
+/// The same in both versions.
 void MshWriter::boundary_data() {
-  for (const auto& [name, any] : mesh_.boundary_data) {
-    std::visit([&, &name = name](const auto& values) { node_data(name, values); }, any);
-  }
+  for (const auto& [name, values] : mesh_.boundary_data) write_node_data(file_, {name, values}, binary_);
 }
 
 void MshWriter::entities41() {

@@ -19,6 +19,7 @@
 #include "mesh/io/detail/base64.h"
 #include "mesh/io/detail/node_sets.h"
 #include "mesh/io/detail/vtk_xml_text.h"
+#include "mesh/io/pvtu.h"
 #include "mesh/io/solver_files.h"
 #include "mesh/io/tet_mesh_io.h"
 
@@ -215,6 +216,17 @@ void check_sizes(const Arrays& arrays, std::size_t n) {
   }
 }
 
+std::pair<Arrays, Arrays> data_of_one_piece(const SolverMesh& mesh) {
+  std::vector<std::int64_t> vertices(mesh.nodes.size()), tets(mesh.n_tets());
+  std::iota(vertices.begin(), vertices.end(), 0);
+  std::iota(tets.begin(), tets.end(), 0);
+  std::pair<Arrays, Arrays> data{detail::with_node_sets(mesh), mesh.cell_data};
+  data.first.insert_or_assign("owner", std::vector<std::int64_t>(vertices.size(), 0));
+  data.first.insert_or_assign("global_vertex", std::move(vertices));
+  data.second.insert_or_assign("global_tet", std::move(tets));
+  return data;
+}
+
 }  // namespace
 
 void write_vtu(const std::filesystem::path& path, const MeshFile& file) {
@@ -236,6 +248,20 @@ void write_vtu(const std::filesystem::path& path, const SolverMesh& mesh) {
   const Cells tets{mesh.tets, static_cast<std::size_t>(mesh.nodes_per_tet),
                    static_cast<std::uint8_t>(linear ? VTK_TETRA : VTK_QUADRATIC_TETRA)};
   VtkXmlWriter(path).mesh(mesh.nodes, tets, detail::with_node_sets(mesh), mesh.cell_data);
+}
+
+void write_vtu_piece(const std::filesystem::path& path, const SolverMesh& mesh) {
+  require_consistent(mesh);
+  const bool linear = mesh.nodes_per_tet == 4;
+  const Cells tets{mesh.tets, static_cast<std::size_t>(mesh.nodes_per_tet),
+                   static_cast<std::uint8_t>(linear ? VTK_TETRA : VTK_QUADRATIC_TETRA)};
+  const auto [of_nodes, of_tets] = data_of_one_piece(mesh);
+  VtkXmlWriter(path).mesh(mesh.nodes, tets, of_nodes, of_tets);
+}
+
+void write_pvtu(const std::filesystem::path& path, const SolverMesh& mesh, const std::string& piece) {
+  const auto [of_nodes, of_tets] = data_of_one_piece(mesh);
+  CheckedFile(path).text(pvtu_text(of_nodes, of_tets, {piece})).close();
 }
 
 void write_boundary_vtu(const std::filesystem::path& path, const SolverMesh& mesh) {

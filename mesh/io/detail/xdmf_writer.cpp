@@ -1,89 +1,49 @@
-#include <hdf5.h>
-
-#include <mutex>
-#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <variant>
 
 #include "mesh/io/checked_file.h"
+#include "mesh/io/detail/hdf5_handle.h"
 #include "mesh/io/detail/node_sets.h"
+#include "mesh/io/hdf5_shape.h"
 #include "mesh/io/solver_files.h"
 
 namespace umtet {
 namespace {
 
-/// Debian's HDF5 is not for several threads, and reports on stderr; what goes wrong is told by its return values.
-class QuietHdf5 {
- public:
-  QuietHdf5() : lock_(mutex()) {
-    H5Eget_auto2(H5E_DEFAULT, &report_, &data_);
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  }
-  ~QuietHdf5() { H5Eset_auto2(H5E_DEFAULT, report_, data_); }
-  QuietHdf5(const QuietHdf5&) = delete;
-  QuietHdf5& operator=(const QuietHdf5&) = delete;
-
- private:
-  static std::mutex& mutex() {
-    static std::mutex m;
-    return m;
-  }
-  std::lock_guard<std::mutex> lock_;
-  H5E_auto2_t report_ = nullptr;
-  void* data_ = nullptr;
-};
-
 static_assert(sizeof(Vec3) == 3 * sizeof(double));
 
-template <class T>
-T checked(T result, const char* what) {
-  if (result < 0) throw std::runtime_error(std::string("HDF5: ") + what + " failed");
-  return result;
-}
+using detail::checked;
+using detail::Handle;
+using detail::memory_type;
+using detail::QuietHdf5;
 
-/// An object of HDF5 with the function that closes it.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t), const char* what) : id_(checked(id, what)), close_(close) {}
-  ~Handle() { close_(id_); }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  operator hid_t() const { return id_; }
+/// How datasets are made.
+struct DatasetProperties {
+  Handle make{H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "H5Pcreate"};
+  Handle link{H5Pcreate(H5P_LINK_CREATE), H5Pclose, "H5Pcreate"};
 
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
+  DatasetProperties() {
+    checked(H5Pset_obj_track_times(make, false), "H5Pset_obj_track_times");  // equal bytes for equal meshes
+    checked(H5Pset_create_intermediate_group(link, 1), "H5Pset_create_intermediate_group");
+  }
 };
-
-template <class T>
-hid_t memory_type() {
-  if constexpr (std::is_same_v<T, double>) return H5T_NATIVE_DOUBLE;
-  if constexpr (std::is_same_v<T, int>) return H5T_NATIVE_INT;
-  if constexpr (std::is_same_v<T, std::int64_t>) return H5T_NATIVE_INT64;
-  return H5T_NATIVE_UINT8;
-}
 
 /// A file in memory, written by CheckedFile in the end: HDF5 writes late, so that a full disk would show at its close
 /// or at the end of the program.
 class Hdf5Image {
  public:
-  Hdf5Image()
-      : access_(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "H5Pcreate"),
-        make_(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "H5Pcreate"),
-        link_(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "H5Pcreate"),
-        file_(create(), H5Fclose, "H5Fcreate") {
-    checked(H5Pset_obj_track_times(make_, false), "H5Pset_obj_track_times");  // equal bytes for equal meshes
-    checked(H5Pset_create_intermediate_group(link_, 1), "H5Pset_create_intermediate_group");
-  }
+  Hdf5Image() : access_(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "H5Pcreate"), file_(create(), H5Fclose, "H5Fcreate") {}
 
   /// @param columns  0: a list
   template <class T>
   void put(const std::string& name, const T* values, std::size_t rows, std::size_t columns = 0) {
     const hsize_t size[2] = {rows, columns};
     const Handle space(H5Screate_simple(columns == 0 ? 1 : 2, size, nullptr), H5Sclose, "H5Screate_simple");
-    const Handle set(H5Dcreate2(file_, name.c_str(), memory_type<T>(), space, link_, make_, H5P_DEFAULT), H5Dclose,
-                     "H5Dcreate");
+    const Handle set(
+        H5Dcreate2(file_, name.c_str(), memory_type<T>(), space, properties_.link, properties_.make, H5P_DEFAULT),
+        H5Dclose, "H5Dcreate");
     if (rows > 0) checked(H5Dwrite(set, memory_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values), "H5Dwrite");
   }
   void put(const std::string& name, const FieldValues& any) {
@@ -115,22 +75,24 @@ class Hdf5Image {
     return H5Fcreate("in memory", H5F_ACC_TRUNC, H5P_DEFAULT, access_);
   }
 
-  Handle access_, make_, link_, file_;
+  DatasetProperties properties_;
+  Handle access_, file_;
 };
 
 /// One grid: its cells are the dataset `cells` of the HDF5 file.
 class XdmfWriter {
  public:
-  XdmfWriter(const std::filesystem::path& path, const SolverMesh& mesh, std::string hdf5)
-      : mesh_(mesh), hdf5_(std::move(hdf5)), file_(path) {}
+  XdmfWriter(const std::filesystem::path& path, std::size_t n_nodes, std::string hdf5)
+      : n_nodes_(n_nodes), hdf5_(std::move(hdf5)), file_(path) {}
 
+  template <class Index = int>
   void grid(const char* name, const char* topology, const char* cells, std::size_t n_cells, int n_nodes) {
     file_.text("<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain><Grid Name=\"").text(name);
     file_.text("\" GridType=\"Uniform\">\n<Geometry GeometryType=\"XYZ\">\n");
-    item<double>("nodes", mesh_.nodes.size(), 3);
+    item<double>("nodes", n_nodes_, 3);
     file_.text("</Geometry>\n<Topology TopologyType=\"").text(topology);
     file_.text("\" NumberOfElements=\"").number(n_cells).text("\">\n");
-    item<int>(cells, n_cells, n_nodes);
+    item<Index>(cells, n_cells, n_nodes);
     file_.text("</Topology>\n");
   }
   template <class T>
@@ -174,7 +136,7 @@ class XdmfWriter {
     file_.text("\" Format=\"HDF\">").text(hdf5_).text(":/").text(dataset).text("</DataItem>\n");
   }
 
-  const SolverMesh& mesh_;
+  std::size_t n_nodes_;
   std::string hdf5_;
   CheckedFile file_;
 };
@@ -204,7 +166,7 @@ void write_hdf5(const std::filesystem::path& path, const SolverMesh& mesh) {
 void write_xdmf(const std::filesystem::path& path, const SolverMesh& mesh, const std::string& hdf5) {
   require_consistent(mesh);
   const bool linear = mesh.nodes_per_tet == 4;
-  XdmfWriter out(path, mesh, hdf5);
+  XdmfWriter out(path, mesh.nodes.size(), hdf5);
   out.grid("mesh", linear ? "Tetrahedron" : "Tetrahedron_10", "tets", mesh.n_tets(), mesh.nodes_per_tet);
   out.attributes(detail::with_node_sets(mesh), "Node", "point_data/");
   out.attributes(mesh.cell_data, "Cell", "cell_data/");
@@ -214,11 +176,57 @@ void write_xdmf(const std::filesystem::path& path, const SolverMesh& mesh, const
 void write_boundary_xdmf(const std::filesystem::path& path, const SolverMesh& mesh, const std::string& hdf5) {
   require_consistent(mesh);
   const bool linear = mesh.nodes_per_tet == 4;
-  XdmfWriter out(path, mesh, hdf5);
+  XdmfWriter out(path, mesh.nodes.size(), hdf5);
   out.grid("boundary", linear ? "Triangle" : "Triangle_6", "faces", mesh.n_faces(), mesh.nodes_per_face());
   out.names(mesh.patches);
   out.attribute<std::int64_t>("patch", "Cell", "patch", mesh.n_faces());
   out.attributes(mesh.boundary_data, "Node", "point_data/");
+  out.end();
+}
+
+std::vector<std::uint64_t> make_hdf5(const std::filesystem::path& path, const std::vector<Hdf5Array>& arrays) {
+  const QuietHdf5 quiet;
+  std::vector<std::uint64_t> begins;
+  DatasetProperties properties;
+  checked(H5Pset_alloc_time(properties.make, H5D_ALLOC_TIME_EARLY), "H5Pset_alloc_time");
+  checked(H5Pset_fill_time(properties.make, H5D_FILL_TIME_NEVER), "H5Pset_fill_time");
+  const Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose, "H5Fcreate");
+  for (const Hdf5Array& array : arrays) {
+    const hid_t type = std::visit([](auto value) { return memory_type<decltype(value)>(); }, array.type);
+    const hsize_t size[2] = {array.rows, array.columns};
+    const Handle space(H5Screate_simple(array.columns == 0 ? 1 : 2, size, nullptr), H5Sclose, "H5Screate_simple");
+    const Handle set(H5Dcreate2(file, array.name.c_str(), type, space, properties.link, properties.make, H5P_DEFAULT),
+                     H5Dclose, "H5Dcreate");
+    begins.push_back(H5Dget_offset(set));
+  }
+  checked(H5Fflush(file, H5F_SCOPE_GLOBAL), "H5Fflush");
+  return begins;
+}
+
+void write_xdmf(const std::filesystem::path& path, const XdmfShape& shape, const std::string& hdf5) {
+  XdmfWriter out(path, shape.n_nodes, hdf5);
+  if (shape.has_wide_ids()) {
+    out.grid<std::int64_t>("mesh", "Tetrahedron", "tets", shape.n_tets, 4);
+  } else {
+    out.grid("mesh", "Tetrahedron", "tets", shape.n_tets, 4);
+  }
+  out.attribute<std::int64_t>("background_vertex", "Node", "point_data/background_vertex", shape.n_nodes);
+  for (const std::string& set : shape.node_sets())
+    out.attribute<std::uint8_t>(set, "Node", "point_data/" + set, shape.n_nodes);
+  out.attribute<std::int64_t>("background_tet", "Cell", "cell_data/background_tet", shape.n_tets);
+  out.attribute<double>("mean_ratio", "Cell", "cell_data/mean_ratio", shape.n_tets);
+  out.end();
+}
+
+void write_boundary_xdmf(const std::filesystem::path& path, const XdmfShape& shape, const std::string& hdf5) {
+  XdmfWriter out(path, shape.n_nodes, hdf5);
+  if (shape.has_wide_ids()) {
+    out.grid<std::int64_t>("boundary", "Triangle", "faces", shape.n_faces, 3);
+  } else {
+    out.grid("boundary", "Triangle", "faces", shape.n_faces, 3);
+  }
+  out.names(shape.patches);
+  out.attribute<std::int64_t>("patch", "Cell", "patch", shape.n_faces);
   out.end();
 }
 

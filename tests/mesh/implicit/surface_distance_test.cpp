@@ -95,6 +95,7 @@ TEST(SurfaceDistance, SamplesOnOneHalfLeaveTheOtherUnsupported) {
   const std::vector<double> d = SampleDistance(samples).distances({{0, 0, -1}, {0, 0, 3}});
   EXPECT_DOUBLE_EQ(d[0], std::sqrt(2.0));
   EXPECT_DOUBLE_EQ(d[1], 2);
+  EXPECT_EQ(distances_to_samples(samples, {{0, 0, -1}, {0, 0, 3}}), d);
 }
 
 TEST(SurfaceDistance, RefusesWhatHasNoDistance) {
@@ -103,6 +104,7 @@ TEST(SurfaceDistance, RefusesWhatHasNoDistance) {
   EXPECT_THROW(SurfaceDistance(V, {{0, 1, 3}}), std::invalid_argument);
   EXPECT_THROW(SurfaceDistance(V, {{0, 1, 2}}), std::invalid_argument);
   EXPECT_THROW(SampleDistance({}), std::invalid_argument);
+  EXPECT_THROW(distances_to_samples({}, V), std::invalid_argument);
 }
 
 }  // namespace

@@ -30,7 +30,8 @@ std::string text_of(const std::vector<T>& values) {
 TEST(VtuShape, SaysWhereWriteVtuPutsEverything) {
   const auto sphere = testing::sphere();
   const Submesh submesh = find_submesh({a15(), Box(Vec3::Constant(-1.6), Vec3::Constant(1.6)), .5}, sphere);
-  const MeshFile mesh = with_standard_data(submesh.mesh, submesh.background_vertex, submesh.background_tet);
+  MeshFile mesh = with_standard_data(submesh.mesh, submesh.background_vertex, submesh.background_tet);
+  mesh.point_data["place"] = mesh.mesh.V;
   std::vector<double> places, quality = std::get<std::vector<double>>(mesh.cell_data.at("mean_ratio"));
   for (const Vec3& x : mesh.mesh.V) places.insert(places.end(), x.data(), x.data() + 3);
   std::vector<std::int32_t> corners, ends;
@@ -44,12 +45,15 @@ TEST(VtuShape, SaysWhereWriteVtuPutsEverything) {
       {"background_tet", text_of(submesh.background_tet)},
       {"mean_ratio", text_of(quality)},
       {"Points", text_of(places)},
+      {"place", text_of(places)},
       {"connectivity", text_of(corners)},
       {"offsets", text_of(ends)},
       {"types", text_of(std::vector<std::uint8_t>(ends.size(), 10))}};
   const VtuShape shape =
       vtu_shape(mesh.mesh.V.size(), mesh.mesh.C.size(),
-                {{"background_vertex", VtuField::Type::Int64}, {"boundary", VtuField::Type::UInt8}},
+                {{"background_vertex", VtuField::Type::Int64},
+                 {"boundary", VtuField::Type::UInt8},
+                 {"place", VtuField::Type::ThreeFloat64}},
                 {{"background_tet", VtuField::Type::Int64}, {"mean_ratio", VtuField::Type::Float64}});
   EXPECT_FALSE(shape.has_wide_ids);
   std::string made(shape.texts.back().first + shape.texts.back().second.size(), ' ');

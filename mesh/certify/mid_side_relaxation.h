@@ -4,16 +4,10 @@
 #include <span>
 #include <vector>
 
+#include "mesh/certify/mid_side_projection.h"
 #include "mesh/certify/quadratic_tets.h"
 
-namespace umtet::detail {
-
-/// What a mid-side may do.
-enum class MidSide : std::uint8_t {
-  Free,     ///< inside the body, or on an edge of it that is not to be curved
-  Surface,  ///< on psi = 0, along which it may slide
-  Fixed,    ///< of a curved edge, but not on psi = 0
-};
+namespace umtet {
 
 /// Moves mid-sides until the Jacobians of all tets reach the bounds of SecondOrderParams: steps 2 and 3 of
 /// quadratic_tets(). One mid-side after the other, so threads cannot change a result.
@@ -21,8 +15,9 @@ class MidSideRelaxation {
  public:
   /// Keeps all but h by reference.
   /// @param kind  of every mid-side, by vertex less n_corners
+  /// @param at_rim  of each tet of a part of a mesh, 1 where other tets at one of its edges are not in it; null: none
   MidSideRelaxation(QuadraticTetMesh& mesh, std::size_t n_corners, std::vector<MidSide>& kind, ImplicitFunctionRef psi,
-                    double h, const SecondOrderParams& params);
+                    double h, const SecondOrderParams& params, const std::vector<char>* at_rim = nullptr);
 
   /// Step 2. @param below  the tets below the target; receives those that still are
   /// @return evaluations of psi, for closest points
@@ -31,12 +26,15 @@ class MidSideRelaxation {
   /// Step 3. Surface mid-sides that are moved become Fixed. @param below  tets that may be below params.least
   void retreat(const std::vector<int>& below);
 
+  /// Mid-sides of a tet at the rim were to be moved: in the whole mesh they may have become others.
+  bool has_met_rim() const { return has_met_rim_; }
+
  private:
   std::span<const int> tets_at(int mid_side) const;
   Vec3 chord_middle(int mid_side) const;
   double energy(int mid_side) const;
   bool improve(int mid_side);
-  std::vector<int> mid_sides_of(const std::vector<int>& tets) const;
+  std::vector<int> mid_sides_of(const std::vector<int>& tets);
   /// Ascending tets at these mid-sides with min det / mean det proved to be no more than `bar`.
   std::vector<int> tets_below_at(const std::vector<int>& mid_sides, double bar) const;
 
@@ -46,9 +44,11 @@ class MidSideRelaxation {
   ImplicitFunctionRef psi_;
   const double h_;
   const SecondOrderParams& params_;
+  const std::vector<char>* const at_rim_;
+  bool has_met_rim_ = false;
   std::size_t n_psi_evaluations_ = 0;
   std::vector<std::size_t> begin_;  ///< by mid-side: where its tets begin
   std::vector<int> tets_;
 };
 
-}  // namespace umtet::detail
+}  // namespace umtet

@@ -1,4 +1,4 @@
-#include "mesh/certify/detail/mid_side_relaxation.h"
+#include "mesh/certify/mid_side_relaxation.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -9,7 +9,7 @@
 #include "mesh/certify/jacobian_bounds.h"
 #include "mesh/core/tet_quality.h"
 
-namespace umtet::detail {
+namespace umtet {
 namespace {
 
 constexpr int kSteps = 4;          // of a line search, each half of the one before
@@ -45,13 +45,15 @@ double straight_jacobian(const QuadraticNodes& x) { return std::abs(volume6(x[0]
 }  // namespace
 
 MidSideRelaxation::MidSideRelaxation(QuadraticTetMesh& mesh, std::size_t n_corners, std::vector<MidSide>& kind,
-                                     ImplicitFunctionRef psi, double h, const SecondOrderParams& params)
+                                     ImplicitFunctionRef psi, double h, const SecondOrderParams& params,
+                                     const std::vector<char>* at_rim)
     : mesh_(mesh),
       n_corners_(static_cast<int>(n_corners)),
       kind_(kind),
       psi_(psi),
       h_(h),
       params_(params),
+      at_rim_(at_rim),
       begin_(kind.size() + 2, 0),
       tets_(6 * mesh.C.size()) {
   const auto for_uses = [&](const auto& f) {
@@ -139,9 +141,12 @@ bool MidSideRelaxation::improve(int mid_side) {
   return false;
 }
 
-std::vector<int> MidSideRelaxation::mid_sides_of(const std::vector<int>& tets) const {
+std::vector<int> MidSideRelaxation::mid_sides_of(const std::vector<int>& tets) {
   std::vector<int> all;
-  for (const int t : tets) all.insert(all.end(), mesh_.C[t].begin() + 4, mesh_.C[t].end());
+  for (const int t : tets) {
+    all.insert(all.end(), mesh_.C[t].begin() + 4, mesh_.C[t].end());
+    has_met_rim_ |= at_rim_ && (*at_rim_)[t];
+  }
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
@@ -185,4 +190,4 @@ void MidSideRelaxation::retreat(const std::vector<int>& below) {
   }
 }
 
-}  // namespace umtet::detail
+}  // namespace umtet

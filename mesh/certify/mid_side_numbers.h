@@ -4,7 +4,7 @@
 
 #include "mesh/core/quadratic_tet_mesh.h"
 
-namespace umtet::detail {
+namespace umtet {
 
 /// The edges of a tet mesh, numbered: ascending in their lower vertex, then in the other.
 class MidSideNumbers {
@@ -25,4 +25,4 @@ class MidSideNumbers {
   std::vector<int> higher_;  ///< by edge: the higher vertex
 };
 
-}  // namespace umtet::detail
+}  // namespace umtet

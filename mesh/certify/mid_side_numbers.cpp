@@ -1,4 +1,4 @@
-#include "mesh/certify/detail/mid_side_numbers.h"
+#include "mesh/certify/mid_side_numbers.h"
 
 #include <oneapi/tbb/parallel_for.h>
 
@@ -10,7 +10,7 @@
 
 #include "mesh/base/check_indices.h"
 
-namespace umtet::detail {
+namespace umtet {
 
 MidSideNumbers::MidSideNumbers(const std::vector<Tet>& C, std::size_t n_vertices) : first_(n_vertices + 1, 0) {
   check_indices(C, n_vertices, "tet");
@@ -68,4 +68,4 @@ QuadraticTetMesh MidSideNumbers::straight_mesh(const TetMesh& mesh) const {
   return result;
 }
 
-}  // namespace umtet::detail
+}  // namespace umtet

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "mesh/io/checked_file.h"
+#include "mesh/io/tet_mesh_io.h"
+
+namespace umtet {
+
+/// A field of a .msh of Gmsh, 2.2 or 4.1.
+struct MshNodeData {
+  const std::string& name;
+  const FieldValues& values;                ///< by node
+  std::span<const std::int64_t> node = {};  ///< their numbers from 0, of these and perhaps more; empty: 0 1 2 ...
+  int part = 0;                             ///< from 1, of a file in parts; 0: of a whole mesh
+};
+
+/// Writes $NodeData. Nodes without a value, NaN, are there, too: meshio wants all nodes, in their order.
+void write_node_data(CheckedFile& file, const MshNodeData& data, bool is_binary);
+
+}  // namespace umtet

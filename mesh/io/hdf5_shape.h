@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "mesh/io/solver_mesh.h"
+
+// The files of write_hdf5() and write_xdmf() for those who write a part of the arrays each.
+namespace umtet {
+
+struct Hdf5Array {
+  std::string name;
+  std::variant<double, int, std::int64_t, std::uint8_t> type;  ///< of its values
+  std::size_t rows, columns = 0;                               ///< 0: a list
+};
+
+/// Makes a file in which these arrays have their room, each in one piece, but no values yet: with them it is what HDF5
+/// would have written. @return where each begins, in bytes \throw std::runtime_error for what HDF5 cannot write
+std::vector<std::uint64_t> make_hdf5(const std::filesystem::path& path, const std::vector<Hdf5Array>& arrays);
+
+/// What is in such a file of tets with standard data.
+struct XdmfShape {
+  std::size_t n_nodes = 0, n_tets = 0, n_faces = 0;
+  std::vector<MeshPart> patches;
+
+  /// Node numbers are of 64 bits, not of 32.
+  bool has_wide_ids() const { return n_nodes > static_cast<std::size_t>(std::numeric_limits<int>::max()); }
+  /// Names of 0/1 arrays of nodes: all of the boundary, and the patches if they are several.
+  std::vector<std::string> node_sets() const {
+    std::vector<std::string> names = {kWholeBoundary};
+    for (const MeshPart& patch : patches)
+      if (patches.size() > 1) names.push_back(patch.name);
+    return names;
+  }
+};
+
+/// write_xdmf() and write_boundary_xdmf() (solver_files.h) of a file of this shape.
+void write_xdmf(const std::filesystem::path& path, const XdmfShape& shape, const std::string& hdf5);
+void write_boundary_xdmf(const std::filesystem::path& path, const XdmfShape& shape, const std::string& hdf5);
+
+}  // namespace umtet
