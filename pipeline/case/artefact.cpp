@@ -1,10 +1,12 @@
 #include "pipeline/case/artefact.h"
 
 #include <fcntl.h>
+#include <oneapi/tbb/parallel_for.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <memory>
@@ -155,16 +157,30 @@ FileStamp stamp(const fs::path& file) {
   return result;
 }
 
-FileStamp FileStamps::of(const fs::path& file) {
-  // What it was before it is read: changed meanwhile, it is another the next time.
-  struct stat status {};
-  const bool exists = ::stat(file.c_str(), &status) == 0;
-  const Identity now = {status.st_dev, status.st_ino, static_cast<std::uintmax_t>(status.st_size),
-                        status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
-  if (const auto known = known_.find(now); exists && known != known_.end()) return known->second;
-  FileStamp read = stamp(file);
-  ++n_read_[file];
-  return known_[now] = std::move(read);
+std::vector<FileStamp> FileStamps::of(const std::vector<fs::path>& files) {
+  std::vector<FileStamp> stamps(files.size());
+  std::vector<Identity> identities(files.size());
+  std::vector<std::size_t> unknown;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    // What it was before it is read: changed meanwhile, it is another the next time.
+    struct stat status {};
+    const bool exists = ::stat(files[i].c_str(), &status) == 0;
+    identities[i] = {status.st_dev, status.st_ino, static_cast<std::uintmax_t>(status.st_size), status.st_mtim.tv_sec,
+                     status.st_mtim.tv_nsec};
+    const auto known = known_.find(identities[i]);
+    if (exists && known != known_.end()) {
+      stamps[i] = known->second;
+    } else {
+      unknown.push_back(i);
+    }
+  }
+  tbb::parallel_for(std::size_t{0}, unknown.size(),
+                    [&](std::size_t k) { stamps[unknown[k]] = stamp(files[unknown[k]]); });
+  for (const std::size_t i : unknown) {
+    ++n_read_[files[i]];
+    known_[identities[i]] = stamps[i];
+  }
+  return stamps;
 }
 
 void write_artefact(const fs::path& file, const std::function<void(const fs::path&)>& writer) {
@@ -181,6 +197,34 @@ void write_artefacts(const std::vector<PendingFile>& files) {
   for (const PendingFile& file : files) sync_folder_of(file.path);
 }
 
+std::vector<fs::path> write_artefacts_in(const fs::path& folder, const std::function<void(const fs::path&)>& writer) {
+  const fs::path temporary = folder / (std::string(kTemporaryPrefix) + std::to_string(::getpid()));
+  const auto remove = [](const fs::path* f) {
+    std::error_code ignored;
+    fs::remove_all(*f, ignored);
+  };
+  const std::unique_ptr<const fs::path, decltype(remove)> guard(&temporary, remove);
+  fs::remove_all(temporary);
+  fs::create_directories(temporary);
+  writer(temporary);
+  std::vector<fs::path> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(temporary)) names.push_back(entry.path().filename());
+  std::sort(names.rbegin(), names.rend());
+  for (const fs::path& name : names) {
+    Descriptor written(temporary / name, O_RDONLY, folder / name);
+    written.sync();
+    written.close();
+  }
+  std::vector<fs::path> files;
+  for (const fs::path& name : names) {
+    files.push_back(folder / name);
+    if (::rename((temporary / name).c_str(), files.back().c_str()) != 0)
+      fail(errno, files.back(), "cannot rename the temporary file");
+  }
+  if (!files.empty()) sync_folder_of(files.front());
+  return files;
+}
+
 void write_text_artefact(const fs::path& file, std::string_view text) {
   write_artefact(file, [&](const fs::path& temporary) {
     Descriptor out(temporary, O_WRONLY | O_CREAT | O_TRUNC, file);
@@ -192,7 +236,7 @@ void write_text_artefact(const fs::path& file, std::string_view text) {
 void remove_stale_temporaries(const fs::path& folder) {
   std::error_code missing;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, missing)) {
-    if (entry.path().filename().string().starts_with(kTemporaryPrefix)) fs::remove(entry.path());
+    if (entry.path().filename().string().starts_with(kTemporaryPrefix)) fs::remove_all(entry.path());
   }
 }
 

@@ -112,9 +112,11 @@ std::string file_text(const Json& document) {
 }
 
 void write_record(const CasePaths& paths, StageRecord record, const std::vector<std::string>& output_names) {
-  for (const std::string& name : output_names) {
-    record.outputs.push_back({name, paths.stamps->of(paths.folder(record.stage) / name)});
-  }
+  std::vector<fs::path> files;
+  files.reserve(output_names.size());
+  for (const std::string& name : output_names) files.push_back(paths.folder(record.stage) / name);
+  const std::vector<FileStamp> stamps = paths.stamps->of(files);
+  for (std::size_t k = 0; k < files.size(); ++k) record.outputs.push_back({output_names[k], stamps[k]});
   const Json json = {{"schema", kSchema},
                      {"tool", "umtet"},
                      {"version", kVersion},

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <variant>
@@ -56,10 +57,11 @@ Output output_of_files(const std::vector<std::filesystem::path>& files) {
 }
 
 std::vector<std::filesystem::path> exports_of(const CasePaths& paths, const std::vector<std::string>& formats,
-                                              const Parameters& parameters, Progress& progress) {
+                                              const Parameters& parameters, Progress& progress,
+                                              const MeshWithBoundary* parts = nullptr) {
   set_work_at_hand("export");
   const CaseLock lock(paths.root);
-  return export_case(paths, formats, parameters, progress);
+  return export_case(paths, formats, parameters, progress, parts);
 }
 
 void require_case(const std::filesystem::path& folder) {
@@ -82,16 +84,19 @@ struct Execution {
   Output operator()(const ReportCommand& command) const;
   Output operator()(const ViewCommand& command) const;
   Output operator()(const DiffCommand& command) const;
+  std::shared_ptr<const MeshWithBoundary> parts_of(const ExportCommand& command) const;
 };
 
 Output Execution::operator()(RunCommand& command) const {
   RunRequest& request = command.request;
   request.threads = options.threads;
   if (for_one_process(request.parameters).empty()) request.ranks = ranks.mesher;
+  request.keeps_parts = takes_parts(command.formats);
+  request.needs_parts = is_in_pieces(command.formats);
   RunOutcome outcome = run_case(request, progress);
   if (!command.formats.empty()) {
     const CasePaths paths{request.case_folder, {}, request.stamps};
-    for (auto& file : exports_of(paths, command.formats, request.parameters, progress)) {
+    for (auto& file : exports_of(paths, command.formats, request.parameters, progress, outcome.parts.get())) {
       outcome.files.push_back(std::move(file));
     }
   }
@@ -130,6 +135,7 @@ Output Execution::operator()(const InspectCommand& command) const {
 Output Execution::operator()(EvolveCommand& command) const {
   set_work_at_hand("evolve");
   command.request.threads = options.threads;
+  if (for_one_process(command.request.parameters).empty()) command.request.ranks = ranks.mesher;
   const EvolveOutcome outcome = evolve(command.request, progress);
   progress.clear();
   return {outcome.code,
@@ -148,9 +154,29 @@ Output Execution::operator()(BatchCommand& command) const {
           {{"scans", outcome.rows}, {"files", names(outcome.files)}}};
 }
 
+/// What the processes have of the mesh of a case: they make it once more, by its own parameters. None where one process
+/// makes it.
+std::shared_ptr<const MeshWithBoundary> Execution::parts_of(const ExportCommand& command) const {
+  RunRequest request;
+  request.case_folder = command.case_folder;
+  const CasePaths paths{command.case_folder};
+  if (!std::filesystem::exists(paths.parameters())) return nullptr;
+  request.parameters.load(paths.parameters(), ParamSource::Case);
+  if (!for_one_process(request.parameters).empty()) return nullptr;
+  request.from = Stage::Mesh;
+  request.report = std::filesystem::exists(paths.report());
+  request.threads = options.threads;
+  request.ranks = ranks.mesher;
+  request.keeps_parts = request.needs_parts = true;
+  return run_case(request, progress).parts;
+}
+
 Output Execution::operator()(const ExportCommand& command) const {
   require_case(command.case_folder);
-  const auto files = exports_of({command.case_folder}, command.formats, command.parameters, progress);
+  require_formats(command.formats);
+  std::shared_ptr<const MeshWithBoundary> parts;
+  if (ranks.n > 1 && is_in_pieces(command.formats)) parts = parts_of(command);
+  const auto files = exports_of({command.case_folder}, command.formats, command.parameters, progress, parts.get());
   progress.clear();
   return output_of_files(files);
 }
@@ -200,11 +226,12 @@ void keep_limits(const Command& command, const CommonOptions& options) {
 /// Of several processes. \throw UsageError for what one process does
 void require_ranks(const Command& command) {
   const auto* run = std::get_if<RunCommand>(&command);
-  if (!run) throw UsageError("one process does that: without mpirun");
-  const std::string reason = for_one_process(run->request.parameters);
-  if (!reason.empty())
-    throw UsageError(reason +
-                     " is for one process: several of them mesh a formula or a grid, in a lattice without walls");
+  const auto* evolve = std::get_if<EvolveCommand>(&command);
+  if (std::holds_alternative<ExportCommand>(command)) return;
+  if (!run && !evolve) throw UsageError("one process does that: without mpirun");
+  if (run && run->request.until < Stage::Mesh) return;
+  const std::string reason = for_one_process(run ? run->request.parameters : evolve->request.parameters);
+  if (!reason.empty()) throw UsageError(reason + " is for one process: several of them mesh a lattice without walls");
 }
 
 /// @param json  is set as soon as the call is understood, for the document of a failure
@@ -218,7 +245,9 @@ Output execute(int argc, char** argv, const RanksOfProgram& ranks, bool& json, s
   name = call.name;
   if (json) answer_stops_in_json(name.c_str());
   if (ranks.n > 1) require_ranks(call.command);
-  if (options.threads == 0) options.threads = std::max(1, tbb::info::default_concurrency() / ranks.n_here);
+  const int all = tbb::info::default_concurrency();
+  if (ranks.mesher) ranks.mesher->set_threads(options.threads > 0 ? options.threads : std::max(1, all / ranks.n_here));
+  if (options.threads == 0) options.threads = all;
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(options.threads));
   keep_limits(call.command, options);

@@ -101,10 +101,11 @@ void BackgroundChoice::grade_if_worth_it(Domain& domain, const EdgeLength& one, 
   GradedSizes sizes(parameters_, domain.shift);
   if (!sizes.add(domain, context, uniform / kWorthIt)) return;
   const double h = sizes.finest();
-  const double graded =
-      expected_graded_tets(sizes.field(h, context), h, domain.psi(), domain.box, domain.steepest(), context);
-  if (uniform <= kWorthIt * graded) return;
+  Known graded{h, std::make_shared<const SizeField>(sizes.field(h, context)), {}};
+  graded.n_tets = expected_graded_tets(*graded.sizes, h, domain.psi(), domain.box, domain.steepest(), context);
+  if (uniform <= kWorthIt * *graded.n_tets) return;
   graded_.emplace(std::move(sizes));
+  known_ = std::move(graded);
   uniform_tets_ = uniform;
 }
 
@@ -117,7 +118,7 @@ EdgeLength BackgroundChoice::edge_length(Domain& domain, const Context& context)
     return graded_ ? graded_edge_length(domain, context) : uniform;
   }
   graded_->add(domain, context);
-  sizes_ = nullptr;
+  known_.reset();
   return graded_edge_length(domain, context);
 }
 
@@ -126,7 +127,7 @@ std::optional<EdgeLength> BackgroundChoice::grade(Domain& domain, const Context&
   GradedSizes sizes(parameters_, domain.shift);
   sizes.add(domain, context);
   graded_.emplace(std::move(sizes));
-  sizes_ = nullptr;
+  known_.reset();
   return graded_edge_length(domain, context);
 }
 
@@ -151,21 +152,20 @@ EdgeLength BackgroundChoice::graded_edge_length(const Domain& domain, const Cont
 }
 
 std::optional<double> BackgroundChoice::refine(const std::vector<SizeSource>& wanted, double h) {
-  sizes_ = nullptr;
+  known_.reset();
   return graded_->refine(wanted, h);
 }
 
-std::shared_ptr<const SizeField> BackgroundChoice::sizes_for(double h) const {
-  if (!sizes_ || sizes_h_ != h) {
-    sizes_ = std::make_shared<const SizeField>(graded_->field(h));
-    sizes_h_ = h;
-  }
-  return sizes_;
+const std::shared_ptr<const SizeField>& BackgroundChoice::sizes_for(double h) const {
+  if (!known_ || known_->h != h) known_ = {h, std::make_shared<const SizeField>(graded_->field(h)), {}};
+  return known_->sizes;
 }
 
 double BackgroundChoice::expected_tets(const Domain& domain, double h) const {
   if (!graded_) return umtet::expected_tets(*tiling_, domain.size(), h, source_);
-  return expected_graded_tets(*sizes_for(h), h, domain.psi(), domain.box, domain.steepest());
+  const SizeField& sizes = *sizes_for(h);
+  if (!known_->n_tets) known_->n_tets = expected_graded_tets(sizes, h, domain.psi(), domain.box, domain.steepest());
+  return *known_->n_tets;
 }
 
 double BackgroundChoice::least_h(const Domain& domain) const {
@@ -218,7 +218,7 @@ SizedBackground BackgroundChoice::make(const Domain& domain, double h, std::int6
                                 : walls_  ? BackgroundMesh(a15_box(domain.box, h))
                                           : BackgroundMesh(*tiling_, domain.box, h);
     require_memory(background, expected(background), allowed);
-    return {std::move(background), graded_ ? sizes_for(h) : nullptr};
+    return {std::move(background), domain.box, graded_ ? sizes_for(h) : nullptr};
   } catch (const std::invalid_argument& e) {  // h and the box have been checked: their tets are too many to count
     throw ResourceLimit(fmt::format("h = {:.4g}: no background mesh: {}", h, e.what()));
   }

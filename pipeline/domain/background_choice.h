@@ -27,9 +27,10 @@ void require_walls(const Parameters&);
 /// have no walls.
 ClassificationSource classification_source(const Parameters&);
 
-/// A background mesh, and the sizes that it was made for if it is graded.
+/// A background mesh, the box that it was asked to cover, and the sizes that it was made for if it is graded.
 struct SizedBackground {
   BackgroundMesh mesh;
+  Box box = {};
   std::shared_ptr<const SizeField> sizes = nullptr;
 };
 
@@ -53,7 +54,7 @@ class BackgroundChoice {
   /// @return none where the choice is not ours, as above. \throw as edge_length()
   std::optional<EdgeLength> grade(Domain& domain, const Context& context = {});
   /// Takes that back.
-  void drop_grading() { graded_.reset(), sizes_ = nullptr; }
+  void drop_grading() { graded_.reset(), known_.reset(); }
   /// About how many tets the h for thin parts would have made, where the mesh is graded because of that; else 0.
   double uniform_tets() const { return uniform_tets_; }
   /// Of a graded mesh: GradedSizes::refine().
@@ -74,14 +75,19 @@ class BackgroundChoice {
   void grade_if_worth_it(Domain& domain, const EdgeLength& one, const Context& context);
   EdgeLength graded_edge_length(const Domain& domain, const Context& context) const;
   /// The sizes for an h, kept for the next call.
-  std::shared_ptr<const SizeField> sizes_for(double h) const;
+  const std::shared_ptr<const SizeField>& sizes_for(double h) const;
   BackgroundMesh graded(const Domain& domain, double h, const Context& context) const;
 
   const Parameters& parameters_;
   std::optional<BackgroundMesh> given_;
   std::optional<GradedSizes> graded_;
-  mutable std::shared_ptr<const SizeField> sizes_;
-  mutable double sizes_h_ = 0;
+  /// What has been asked of graded_ last.
+  struct Known {
+    double h;
+    std::shared_ptr<const SizeField> sizes;
+    std::optional<double> n_tets;  ///< expected, of the domain that was asked for
+  };
+  mutable std::optional<Known> known_;
   const bool is_ours_;       ///< mesh.background is auto, and no sizes are given
   bool is_decided_ = false;  ///< by the first domain
   double uniform_tets_ = 0;

@@ -229,7 +229,7 @@ SupportReport support_report(const Domain& domain, const std::vector<Vec3>& V, c
   for (std::size_t v = 0; v < V.size(); ++v) {
     if (support[v] == 0) vertices.push_back(static_cast<int>(v)), places.push_back(V[v]);
   }
-  const std::vector<double> distance = domain.samples->distances(places, context);
+  const std::vector<double> distance = distances_to_samples(domain.cloud.points, places, context);
   for (std::size_t k = 0; k < vertices.size(); ++k) support[vertices[k]] = distance[k];
   SupportReport report;
   report.radius = support_radius(domain);

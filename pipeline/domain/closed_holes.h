@@ -39,7 +39,7 @@ ClosedHoles find_closed_holes(const std::vector<Vec3>& V, const std::vector<Tria
 /// Of the surface of a mesh of the domain: what its certificate says. Centres in model coordinates.
 /// @param V      working coordinates
 /// @param faces  on psi = 0
-/// \pre domain.samples \throw Cancelled
+/// \pre domain.has_samples() \throw Cancelled
 SupportReport support_report(const Domain& domain, const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
                              const Context& context = {});
 

@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "common/polled_loops.h"
 #include "mesh/core/asking_psi.h"
 #include "mesh/implicit/curvature.h"
 #include "pipeline/domain/zero_set_choice.h"

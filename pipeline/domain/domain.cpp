@@ -16,11 +16,21 @@ namespace umtet {
 
 // Here the two libraries meet: neither includes the other.
 static_assert(JointlyEvaluated<LevelSet>);
+static_assert(JointlyEvaluated<LevelSetApart>);
 static_assert(JointlyEvaluated<GridLevelSet>);
 static_assert(JointlyEvaluated<Domain>);
 static_assert(JointlyEvaluated<Expression>);
 
 namespace {
+
+/// The file of a case has the same bits.
+LevelSet level_set_of(const std::filesystem::path& file) {
+  try {
+    return read_level_set(file);
+  } catch (const LevelSetRefused& e) {  // the file is ours: what is wrong with it is damage
+    throw ArtefactDamaged(e.what());
+  }
+}
 
 bool cloud_of_triangles(const CasePaths& paths) {
   const StageState state = inspect_stage(paths, Stage::Cloud, Json::object(), std::nullopt);
@@ -49,7 +59,8 @@ void Domain::limit_detail(double h) {
 
 const BodySize& Domain::size() const {
   const bool known = size_ && size_->first.min() == box.min() && size_->first.max() == box.max();
-  if (!known) size_.emplace(box, body_size(psi(), box, steepest()));
+  if (!known)
+    size_.emplace(box, with_psi_apart([&](ImplicitFunctionRef psi) { return body_size(psi, box, steepest()); }));
   return size_->second;
 }
 
@@ -79,19 +90,18 @@ Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handove
   Domain domain;
   try {
     LevelSet psi = handover && handover->psi ? std::move(*std::exchange(handover->psi, std::nullopt))
-                                             : read_level_set(paths.level_set());
+                                             : level_set_of(paths.level_set());
     OrientedPointCloud cloud = handover && handover->cloud ? std::move(*std::exchange(handover->cloud, std::nullopt))
                                                            : read_point_cloud(paths.cloud()).cloud;
     domain = fitted_domain(std::move(psi), std::move(cloud), level_set_report(*state.record),
                            parse_box(parameters.mesh().box));
+    domain.fitted = FittedLevelSet(*domain.level_set, [file = paths.level_set()] { return level_set_of(file); });
     if (handover && handover->triangles) {
       domain.triangles = given_triangles(std::move(*std::exchange(handover->triangles, std::nullopt)), domain.shift);
     } else if (cloud_of_triangles(paths)) {
       domain.triangles = given_triangles(read_triangles(paths.triangles()).mesh, domain.shift);
     }
   } catch (const CloudRefused& e) {  // all files are ours: what is wrong with them is damage
-    throw ArtefactDamaged(e.what());
-  } catch (const LevelSetRefused& e) {
     throw ArtefactDamaged(e.what());
   }
   domain.complement = parameters.mesh().complement;

@@ -10,10 +10,10 @@
 
 #include "mesh/background/background_mesh.h"
 #include "mesh/core/implicit_function.h"
-#include "mesh/implicit/surface_distance.h"
 #include "mesh/sizes/body_size.h"
 #include "pipeline/case/case_folder.h"
 #include "pipeline/case/parameters.h"
+#include "pipeline/domain/fitted_level_set.h"
 #include "pipeline/domain/given_triangles.h"
 #include "pipeline/expression/expression.h"
 #include "reconstruct/cloud/point_cloud.h"
@@ -31,13 +31,12 @@ struct Domain {
   std::shared_ptr<const GridLevelSet> grid;
   std::optional<LevelSet> level_set;            ///< psi; cut where limit_detail() said
   std::optional<ImplicitFunctionRef> function;  ///< the caller's, who keeps it; with a Hessian
-  std::optional<LevelSet> fitted;               ///< level_set with all its levels
+  std::optional<FittedLevelSet> fitted;         ///< level_set with all its levels
   Box box;                                      ///< what the background mesh has to cover
   double diagonal = 0;                          ///< of the cloud's box, or of `box` for a formula
   Vec3 shift = Vec3::Zero();
   std::vector<std::string> notices;                 ///< of how psi was made, for the user
   OrientedPointCloud cloud;                         ///< empty for a formula
-  std::shared_ptr<const SampleDistance> samples;    ///< of the cloud's points; none for a formula
   std::shared_ptr<const GivenTriangles> triangles;  ///< that bound the body; none of a cloud or a formula
   double cloud_spacing = 0;                         ///< median distance between neighbouring samples, 0 for a formula
   std::optional<double> noise;  ///< standard deviation of the samples along the normal, as the fit took it, model units
@@ -50,6 +49,8 @@ struct Domain {
   /// formula may have any.
   double steepest() const { return level_set ? 2 : std::numeric_limits<double>::infinity(); }
 
+  bool has_samples() const { return !cloud.points.empty(); }
+
   /// Volume and area of what is meshed, measured at the first call: an estimate, whatever detail is cut.
   const BodySize& size() const;
 
@@ -58,6 +59,13 @@ struct Domain {
     if (function) return *function;
     if (grid) return *grid;
     return formula ? ImplicitFunctionRef(*formula) : ImplicitFunctionRef(*level_set);
+  }
+  /// f(psi): psi() for places that are far apart (LevelSetApart).
+  template <class F>
+  auto with_psi_apart(const F& f) const {
+    if (function || grid || formula || complement) return f(psi());
+    const LevelSetApart apart(*level_set);
+    return f(ImplicitFunctionRef(apart));
   }
   /// Negative in what is meshed. Valid while this domain stays where it is.
   ImplicitFunctionRef psi() const;

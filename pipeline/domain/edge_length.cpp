@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "pipeline/case/exit_code.h"
 #include "pipeline/domain/background_choice.h"
 #include "pipeline/domain/deviation.h"
+#include "reconstruct/cloud/cloud_arrays.h"
 #include "reconstruct/solve/resolution.h"
 
 namespace umtet {
@@ -61,11 +63,17 @@ struct ThinPart {
 
 ThinPart thin_part(const Domain& domain, double limit, const Context& context) {
   const std::vector<Vec3>& all = domain.cloud.points;
+  const std::vector<int>& counts = domain.cloud.counts;
+  const std::size_t n = counts.empty() ? all.size() : std::accumulate(counts.begin(), counts.end(), std::size_t{0});
   std::vector<Vec3> samples;  // evenly, as the cloud is sorted in space
-  for (std::size_t i = 0; i < all.size(); i += all.size() / kThicknessSamples + 1) samples.push_back(all[i]);
+  for (const std::size_t i : every_mth(n / kThicknessSamples + 1, all.size(), [&](std::size_t row) {
+         return counts.empty() ? 1 : static_cast<std::size_t>(counts[row]);
+       }))
+    samples.push_back(all[i]);
   // psi has no sheets much closer together than its lattice.
-  std::vector<double> t =
-      thickness(domain.psi(), samples, .25 * domain.level_set->spacing(), limit, context, domain.steepest());
+  std::vector<double> t = domain.with_psi_apart([&](ImplicitFunctionRef psi) {
+    return thickness(psi, samples, .25 * domain.level_set->spacing(), limit, context, domain.steepest());
+  });
   std::sort(t.begin(), t.end());
   const double thin = quantile(t, kThinShare);
   double faces = 0;

@@ -1,6 +1,5 @@
 #include "pipeline/domain/fitted_domain.h"
 
-#include <memory>
 #include <utility>
 
 namespace umtet {
@@ -11,15 +10,13 @@ Domain fitted_domain(LevelSet psi, OrientedPointCloud cloud, const LevelSetRepor
   domain.shift = report.shift;
   domain.cloud_spacing = report.fit.cloud_spacing;
   domain.noise = report.noise;
-  domain.fitted = std::move(psi);
-  domain.level_set = domain.fitted;
+  domain.fitted = domain.level_set = std::move(psi);
   domain.cloud = std::move(cloud);
   Box cloud_box;
   for (Vec3& x : domain.cloud.points) {
     x -= domain.shift;
     cloud_box.extend(x);
   }
-  if (!domain.cloud.points.empty()) domain.samples = std::make_shared<const SampleDistance>(domain.cloud.points);
   domain.diagonal = cloud_box.diagonal().norm();
   domain.box = box ? Box(box->min() - domain.shift, box->max() - domain.shift) : domain.level_set->domain();
   return domain;

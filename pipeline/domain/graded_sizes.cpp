@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <numbers>
 
+#include "common/polled_loops.h"
 #include "mesh/core/asking_psi.h"
 #include "mesh/sizes/graded_size.h"
 #include "mesh/sizes/surface_sizes.h"
@@ -55,6 +57,29 @@ std::vector<std::string> given_sizes(const Parameters& parameters) {
 
 bool has_less_h(const SizeSource& a, const SizeSource& b) { return a.h < b.h; }
 
+/// Half the spacing of the lattice on which sizes inside are looked at.
+double half_spacing(const Domain& domain) { return domain.box.sizes().maxCoeff() / (2 * kInside); }
+
+/// Its places where psi < 0.
+std::vector<Vec3> places_inside(const Domain& domain, const Context& context) {
+  const double half = half_spacing(domain);
+  const ImplicitFunctionRef psi = domain.psi();
+  std::vector<std::uint8_t> is_inside(kInside * kInside * kInside, 0);
+  const auto place = [&](std::size_t i) -> Vec3 {
+    const auto at = static_cast<int>(i);
+    const Eigen::Vector3i step(at % kInside, at / kInside % kInside, at / (kInside * kInside));
+    return domain.box.min() + half * (2 * step.cast<double>() + Vec3::Ones());
+  };
+  for_each_asking(psi, is_inside.size(), kValuesPerPoll, context, [&](std::size_t i) {
+    const Vec3 x = place(i);
+    is_inside[i] = (x.array() < domain.box.max().array()).all() && psi.value(x) < 0;
+  });
+  std::vector<Vec3> places;
+  for (std::size_t i = 0; i < is_inside.size(); ++i)
+    if (is_inside[i]) places.push_back(place(i));
+  return places;
+}
+
 }  // namespace
 
 bool is_graded(const Parameters& p) {
@@ -78,7 +103,7 @@ void require_graded(const Parameters& parameters) {
   label_sizes(parameters);
 }
 
-GradedSizes::GradedSizes(const Parameters& parameters, const Vec3& shift) : parameters_(parameters) {
+GradedSizes::GradedSizes(const Parameters& parameters, const Vec3& shift) : parameters_(parameters), shift_(shift) {
   const std::string& size = parameters.mesh().size;
   if (is_size_file(size)) {
     asked_ = read_sizes(size);
@@ -149,25 +174,41 @@ bool GradedSizes::add(Domain& domain, const Context& context, double most_tets) 
   return true;
 }
 
+/// A formula that is no length in the body asks for tets without end, unless mesh.h_min says how far it is raised.
+void GradedSizes::require_lengths(const std::vector<Vec3>& inside) const {
+  if (!formula_ || parameters_.mesh().h_min > 0) return;
+  std::optional<Vec3> worst;
+  double least = 0;
+  const auto look = [&](const Vec3& x) {
+    const double h = formula_(x);
+    if (h > 0 || (worst && !(h < least))) return;
+    worst = x;
+    least = h;
+  };
+  for (const SizeSource& s : sources_) look(s.x);
+  for (const Vec3& x : inside) look(x);
+  if (!worst) return;
+  const Vec3 at = *worst + shift_;
+  throw UsageError(fmt::format(
+      "--size {} is {:.4g} at ({:.4g}, {:.4g}, {:.4g}), which is in the body: edge lengths are above 0. --h-min raises "
+      "what is less",
+      parameters_.mesh().size, least, at.x(), at.y(), at.z()));
+}
+
 /// With what the user asks for: at the sources, and on a lattice inside.
 void GradedSizes::find_finest(const Domain& domain, const Context& context) {
   finest_ = std::min_element(sources_.begin(), sources_.end(), has_less_h)->h;
   if (asked_.empty() && !formula_) return;
+  const std::vector<Vec3> inside = places_inside(domain, context);
+  require_lengths(inside);
   const SizeField sizes = field(finest_, context);
-  std::vector<double> least(sources_.size());
-  polled_parallel_for(sources_.size(), kValuesPerPoll, context,
-                      [&](std::size_t i) { least[i] = sizes.at(sources_[i].x); });
-  const double half = domain.box.sizes().maxCoeff() / (2 * kInside);
-  const ImplicitFunctionRef psi = domain.psi();
-  std::vector<double> inside(kInside * kInside * kInside, finest_);
-  for_each_asking(psi, inside.size(), kValuesPerPoll, context, [&](std::size_t i) {
-    const auto at = static_cast<int>(i);
-    const Vec3 step(at % kInside, at / kInside % kInside, at / (kInside * kInside));
-    const Vec3 x = domain.box.min() + half * (2 * step + Vec3::Ones());
-    if ((x.array() < domain.box.max().array()).all() && psi.value(x) < 0) inside[i] = sizes.least_in(x, half);
+  std::vector<double> least(sources_.size() + inside.size());
+  const double half = half_spacing(domain);
+  polled_parallel_for(least.size(), kValuesPerPoll, context, [&](std::size_t i) {
+    const std::size_t n = sources_.size();
+    least[i] = i < n ? sizes.at(sources_[i].x) : sizes.least_in(inside[i - n], half);
   });
-  least.insert(least.end(), inside.begin(), inside.end());
-  finest_ = *std::min_element(least.begin(), least.end());
+  finest_ = std::min(finest_, *std::min_element(least.begin(), least.end()));
 }
 
 std::optional<double> GradedSizes::refine(const std::vector<SizeSource>& wanted, double h) {
@@ -201,7 +242,7 @@ SizeField GradedSizes::field(double h, const Context& context) const {
   if (h_max > 0) params.h_max = std::max(params.h_min, factor * h_max);
   std::optional<SizeFunction> f;
   if (formula_) f = SizeFunction{[formula = formula_, factor](const Vec3& x) { return factor * formula(x); }, box_};
-  const SizeField sizes(std::move(all), params, std::move(f), context);
+  SizeField sizes(std::move(all), params, std::move(f), context);
   if (finer_.empty()) return sizes;
   std::vector<SizeSource> finer = finer_;
   for (SizeSource& s : finer) s.h *= factor, s.radius *= factor;

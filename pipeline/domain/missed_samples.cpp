@@ -94,14 +94,13 @@ SampleDistances sample_distances(const Domain& domain, const std::vector<double>
   s.rms = counts.empty() ? rms(sorted) : rms(d, counts);
   s.max = sorted.back();
   s.p99 = counts.empty() ? quantile(sorted, .99) : counted_quantile(d, counts, .99);
-  const std::vector<double> h_at = h.at(domain.cloud.points);
   const double of_noise = kNoisesMissed * domain.noise.value_or(0);
-  std::vector<double> beyond(d.size()), over_h(d.size());
+  std::vector<double> beyond = h.at(domain.cloud.points), over_h = std::move(sorted);
   double explained2 = 0;
   for (std::size_t i = 0; i < d.size(); ++i) {
-    const double explained = std::max(of_noise, flatness_over_h * h_at[i]);
-    beyond[i] = std::min(explained, h_at[i]);
-    over_h[i] = d[i] / h_at[i];
+    const double h_at = beyond[i], explained = std::max(of_noise, flatness_over_h * h_at);
+    beyond[i] = std::min(explained, h_at);
+    over_h[i] = d[i] / h_at;
     explained2 += explained * explained;
   }
   std::sort(over_h.begin(), over_h.end());

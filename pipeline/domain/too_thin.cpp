@@ -63,7 +63,8 @@ void collect(const Domain& domain, const Samples& samples, bool is_gap, const Co
   // Detail that is cut away at this h is there again at a smaller one.
   std::vector<double> with_detail = thin.thickness;
   if (domain.fitted) {
-    const auto d = sheet_distances(*domain.fitted, thin.points, kStep * h, kReach * h, context, domain.steepest());
+    const auto d =
+        sheet_distances(domain.fitted->whole(), thin.points, kStep * h, kReach * h, context, domain.steepest());
     for (std::size_t i = 0; i < d.size(); ++i) {
       with_detail[i] = std::min(with_detail[i], is_gap ? d[i].gap : d[i].body);
     }

@@ -27,6 +27,13 @@ bool is_uniform(const Parameters& p) {
   return is_tiling && mesh.size.empty() && mesh.size_at.empty() && mesh.max_deviation == 0;
 }
 
+/// Half the spacing of the finest lattice that a mesh of edge h uses.
+double cell_of(const Parameters& parameters, double h) {
+  const ReconstructParameters& fit = parameters.reconstruct();
+  const double lattice = fit.spacing > 0 ? std::min(fit.spacing, kLeastSpacing * h) : kLeastSpacing * h;
+  return kCellOfLattice * lattice / std::max(1., fit.detail);
+}
+
 }  // namespace
 
 Json wanted_mesh(const Parameters& parameters) {
@@ -42,8 +49,7 @@ Json wanted_mesh(const Parameters& parameters) {
 
 double largest_cell(const Parameters& parameters, double diagonal) {
   if (!parameters.cloud().merge || !is_uniform(parameters)) return 0;
-  const ReconstructParameters& fit = parameters.reconstruct();
-  if (fit.weights == SampleWeights::Paper) return 0;
+  if (parameters.reconstruct().weights == SampleWeights::Paper) return 0;
   const MeshParameters& mesh = parameters.mesh();
   double h = kLeastAttempt * kMeshEdge * diagonal;
   if (mesh.tets > 0) {
@@ -51,8 +57,12 @@ double largest_cell(const Parameters& parameters, double diagonal) {
   } else if (mesh.h > 0) {
     h = mesh.h;
   }
-  const double lattice = fit.spacing > 0 ? std::min(fit.spacing, kLeastSpacing * h) : kLeastSpacing * h;
-  return kCellOfLattice * lattice / std::max(1., fit.detail);
+  return cell_of(parameters, h);
+}
+
+double cell_where_thin(const Parameters& parameters, double largest, double thickness) {
+  if (parameters.mesh().tets > 0 || parameters.mesh().h > 0) return largest;
+  return std::min(largest, cell_of(parameters, thickness / kEdgesAcross));
 }
 
 double finest_lattice(const Parameters& parameters, const ScanSize& scan) {

@@ -22,6 +22,12 @@ Json wanted_mesh(const Parameters& parameters);
 /// @param diagonal  of the cloud, model units
 double largest_cell(const Parameters& parameters, double diagonal);
 
+/// The edge of cells for a body with thin parts: that of the h that these lead to, a 2.2th of their thickness, if h is
+/// left to us.
+/// @param largest    largest_cell()
+/// @param thickness  that 1 % of the samples fall below, model units
+double cell_where_thin(const Parameters& parameters, double largest, double thickness);
+
 /// What merged samples say of the body.
 struct ScanSize {
   double diagonal = 0, volume = 0, area = 0;  ///< model units, their squares and cubes

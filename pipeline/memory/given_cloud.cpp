@@ -2,24 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <stdexcept>
 #include <utility>
+
+#include "reconstruct/cloud/cloud_arrays.h"
 
 namespace umtet {
 namespace {
 
 // Squares stay finite: the limit of files.
 constexpr double kFarthest = 1e50;
-// Normals that are unit to rounding keep their bits, as those of files do.
-constexpr double kRounding = 1e-14;
-
-Vec3 unit(Vec3 n) {
-  if (!n.allFinite() || n.isZero(0)) return Vec3::Zero();
-  if (std::abs(n.stableNorm() - 1) <= kRounding) return n;
-  n /= n.cwiseAbs().maxCoeff();  // the squares of very short and very long normals are no doubles
-  return n / n.norm();
-}
 
 void require_length(const char* name, std::size_t n, std::size_t n_points) {
   if (n == 0 || n == n_points) return;
@@ -37,7 +29,7 @@ CloudFile given_cloud(OrientedPointCloud cloud) {
     if (cloud.points[i].cwiseAbs().maxCoeff() <= kFarthest && cloud.points[i].allFinite()) continue;
     throw std::invalid_argument(fmt::format("points[{}] is not finite, or beyond 1e50", i));
   }
-  for (Vec3& normal : cloud.normals) normal = unit(normal);
+  for (Vec3& n : cloud.normals) n = n.allFinite() && !n.isZero(0) ? unit_normal(n) : Vec3::Zero();
   CloudFile file;
   file.report.format = "arrays";
   file.report.n_points = n;

@@ -66,13 +66,14 @@ Domain domain_of(const Reconstruction& r, const std::optional<Box>& box) {
   return fitted_domain(r.psi, r.cloud, r.report, box);
 }
 
-MeshAttempt make_mesh(Domain& domain, const Parameters& parameters, const Watch& watch) {
+MeshAttempt make_mesh(Domain& domain, const Parameters& parameters, const Watch& watch, PartMesher* ranks) {
   watch("size", 0);
   domain.complement = parameters.mesh().complement;
   BackgroundChoice background(parameters, domain);
-  MeshMaker maker(domain, parameters, context_of(watch));
+  MeshMaker maker(domain, parameters, context_of(watch), {}, ranks);
   const std::int64_t n_tets = domain.function ? parameters.mesh().max_tets : parameters.mesh().tets;
-  const auto make = [&](double h) { return background.make(domain, h, n_tets, allowed_bytes(parameters)); };
+  const double allowed = ranks ? ranks->allowed_bytes(parameters) : allowed_bytes(parameters);
+  const auto make = [&](double h) { return background.make(domain, h, n_tets, allowed); };
   MeshAttempt best = maker.best(background, edge_length(domain, background, parameters, watch), make);
   if (best.fell_through()) throw too_thin(best, domain.shift);
   if (!best.made()) throw failure(best.result, best.h, domain.shift);

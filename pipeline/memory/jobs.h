@@ -42,9 +42,10 @@ Domain domain_of(const Reconstruction& reconstruction, const std::optional<Box>&
 /// Meshes {psi < 0} and measures the mesh, with smaller h where the choice of h is left to us and the mesh asks for it.
 /// The vertices are in working coordinates (Domain::shift); a mesh whose certificate fails is returned all the same.
 /// With mesh.order = 2 it has `second`, and the certificate is about that, too.
+/// @param ranks  make the mesh, where several processes do; the result then has `parts`
 /// \throw MeshingFailed (also for what is too thin to have a vertex inside), MeshingImpossible, ResourceLimit,
 ///        UsageError, and what `watch` throws
-MeshAttempt make_mesh(Domain& domain, const Parameters& parameters, const Watch& watch);
+MeshAttempt make_mesh(Domain& domain, const Parameters& parameters, const Watch& watch, PartMesher* ranks = nullptr);
 
 /// What is true of a mesh of the domain: measure() with its verdict. \throw what `watch` throws
 Certificate certificate_of(const Domain& domain, const UmResult& result, double h, const Parameters& parameters,

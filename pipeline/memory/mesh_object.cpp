@@ -38,7 +38,6 @@ Domain without_psi(Domain&& domain) {
   Domain left;
   left.shift = domain.shift;
   left.cloud = std::move(domain.cloud);
-  left.samples = std::move(domain.samples);
   left.notices = std::move(domain.notices);
   return left;
 }

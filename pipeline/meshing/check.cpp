@@ -114,7 +114,7 @@ MeshCheck check_mesh(const fs::path& file, const std::optional<fs::path>& agains
   }
   check.is_valid = measured.is_valid;
   if (domain) check.places = measured.places;
-  if (domain && domain->samples) {
+  if (domain && domain->has_samples()) {
     check.support = support_report(*domain, mesh.V, faces_but(walls, mesh), until_interrupted());
   }
   check.verdict = judge(measured, parameters);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/polled_loops.h"
 #include "mesh/core/asking_psi.h"
 #include "mesh/implicit/foot_point.h"
 

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <set>
 
+#include "common/polled_loops.h"
 #include "mesh/core/asking_psi.h"
 #include "mesh/implicit/foot_point.h"
 

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <numeric>
 #include <utility>
 
 #include "mesh/certify/quality_report.h"
+#include "mesh/implicit/surface_distance.h"
 #include "pipeline/case/artefact.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/meshing/sample_fields.h"
@@ -12,6 +14,8 @@
 namespace umtet {
 namespace fs = std::filesystem;
 namespace {
+
+constexpr double kNoSupport = -1;  // of vertices that are not on the boundary
 
 const char* remedy(UmStatus status) {
   switch (status) {
@@ -56,7 +60,7 @@ void set_support(const Domain& domain, const std::vector<Vec3>& V, const std::ve
   std::vector<Vec3> x;
   x.reserve(vertices.size());
   for (const int i : vertices) x.push_back(V[i]);
-  const std::vector<double> d = domain.samples->distances(x, until_interrupted());
+  const std::vector<double> d = distances_to_samples(domain.cloud.points, x, until_interrupted());
   for (std::size_t k = 0; k < d.size(); ++k) support[vertices[k]] = d[k];
 }
 
@@ -77,11 +81,25 @@ void move_to(const Domain& domain, const std::vector<Vec3>& V, MeshFile& content
 }
 
 void add_support(const Domain& domain, const UmResult& result, MeshFile& content) {
-  if (!domain.samples) return;
-  std::vector<double> support(result.final.size(), -1);
+  if (!domain.has_samples()) return;
+  std::vector<double> support(result.final.size(), kNoSupport);
   set_support(domain, result.final, result.submesh.positive_vertices, support);
   content.point_data["support"] = std::move(support);
   set_sample_fields(domain, result.final, result.submesh.positive_vertices, content.point_data);
+}
+
+BoundaryData boundary_data(const Domain& domain, const UmResult& result, const std::vector<Vec3>& mid_sides) {
+  MeshFile content;
+  UmResult boundary;  // all of it, and nothing else
+  boundary.final = result.final;
+  boundary.final.insert(boundary.final.end(), mid_sides.begin(), mid_sides.end());
+  boundary.submesh.positive_vertices.resize(boundary.final.size());
+  std::iota(boundary.submesh.positive_vertices.begin(), boundary.submesh.positive_vertices.end(), 0);
+  add_support(domain, boundary, content);
+  BoundaryData data{result.submesh.background_vertex, {}};
+  for (auto& [name, values] : content.point_data)
+    data.arrays.push_back({name, std::move(values), name == "support" ? kNoSupport : kNoSample});
+  return data;
 }
 
 MeshFile final_content(const Domain& domain, const UmResult& result) {

@@ -7,6 +7,7 @@
 #include "mesh/io/tet_mesh_io.h"
 #include "mesh/universal_mesh.h"
 #include "pipeline/domain/domain.h"
+#include "pipeline/meshing/part_mesher.h"
 
 namespace umtet {
 
@@ -35,6 +36,10 @@ void set_support(const Domain& domain, const std::vector<Vec3>& V, const std::ve
 /// data `support`: where it is large, no data back the surface. And what else the samples carry, by
 /// set_sample_fields(). Nothing without a cloud. \throw Cancelled
 void add_support(const Domain& domain, const UmResult& result, MeshFile& content);
+
+/// What add_support() adds, of a mesh that several processes have, and of mid-sides on its boundary.
+/// @param result  of its boundary alone
+BoundaryData boundary_data(const Domain& domain, const UmResult& result, const std::vector<Vec3>& mid_sides = {});
 
 /// The final mesh, with support. \throw Cancelled
 MeshFile final_content(const Domain& domain, const UmResult& result);

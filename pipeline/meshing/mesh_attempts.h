@@ -31,6 +31,7 @@ struct MeshAttempt {
   int n_levels = 0;                               ///< of psi then; 0: a formula
   /// Of a mesh that several processes have, which `result` has the boundary of.
   std::shared_ptr<const MeshInParts> parts = nullptr;
+  std::vector<Vec3> mid_sides = {};  ///< of it, if mesh.order = 2: those of boundary edges
 
   bool made() const { return result.status == UmStatus::Success; }
   bool is_right() const { return made() && reasons.empty(); }

@@ -116,9 +116,6 @@ bool MeshMaker::may_keep(const MeshAttempt& former, const ZeroSetChoice& pieces)
 
 ChosenSubmesh MeshMaker::choose(const BackgroundMesh& background, const ZeroSetChoice& pieces,
                                 const MeshAttempt* former) {
-  if (pieces.seeds.empty() && !pieces.dropped.empty()) {
-    throw MeshingImpossible("psi = 0 is nowhere near the samples:\n  no " + pieces.dropped.front());
-  }
   if (lines_.detail) {
     lines_.detail(fmt::format("h = {:.6g}, background of {} tets, psi = 0 in {} pieces", background.h(),
                               background.n_tets(), pieces.topology.components.size()));
@@ -132,14 +129,27 @@ ChosenSubmesh MeshMaker::choose(const BackgroundMesh& background, const ZeroSetC
   return choose_submesh(background, domain_.psi(), params, context_.part(kChoice, kFit), pieces.seeds);
 }
 
+/// None where one process has to.
+std::optional<MadeInParts> MeshMaker::made_by_ranks(const SizedBackground& background, const ZeroSetChoice& pieces,
+                                                    double h) {
+  if (!background.mesh.is_lattice()) {
+    if (ranks_->n() > 1 && !has_said_alone_) say("one process makes this mesh: its background is no lattice");
+    has_said_alone_ = true;
+    return std::nullopt;
+  }
+  context_.report("project", kChoice);
+  return ranks_->make(background.mesh, background.box, domain_, params_.fast,
+                      pieces.dropped.empty() ? std::vector<Vec3>() : pieces.seeds,
+                      {h, domain_.shift, coordinate_rounding(domain_)});
+}
+
 MeshMaker::Begun MeshMaker::choose(const SizedBackground& background, double h, const MeshAttempt* former) {
   Begun begun{begin(background, h), {}};
   const ZeroSetChoice& pieces = pieces_at(h, begun.attempt.sizes.get());
-  if (ranks_) {
-    context_.report("project", kChoice);
-    begun.made =
-        ranks_->make(background.mesh, domain_.psi(), params_.fast, {h, domain_.shift, coordinate_rounding(domain_)});
+  if (pieces.seeds.empty() && !pieces.dropped.empty()) {
+    throw MeshingImpossible("psi = 0 is nowhere near the samples:\n  no " + pieces.dropped.front());
   }
+  if (ranks_) begun.made = made_by_ranks(background, pieces, h);
   if (!begun.made) begun.chosen = choose(background.mesh, pieces, former);
   return begun;
 }
@@ -194,8 +204,14 @@ void MeshMaker::curve(MeshAttempt& a) const {
   a.measured.order = order;
   if (order < 2) return;
   context_.report("second order", kCurving);
-  a.second = curved_mesh(domain_, a.result, a.h, params_.paper.closest_point, context_);
-  a.measured.second_order = measure_second_order(domain_, a.result, *a.second, a.h, context_);
+  if (a.parts) {
+    CurvedInParts curved = a.parts->curve(domain_, params_.paper.closest_point);
+    a.measured.second_order = curved.report;
+    a.mid_sides = std::move(curved.mid_sides);
+  } else {
+    a.second = curved_mesh(domain_, a.result, a.h, params_.paper.closest_point, context_);
+    a.measured.second_order = measure_second_order(domain_, a.result, *a.second, a.h, context_);
+  }
   for (std::string& reason : failures(*a.measured.second_order)) a.measured.reasons.push_back(std::move(reason));
 }
 

@@ -67,6 +67,7 @@ class MeshMaker {
   Begun choose(const SizedBackground& background, double h, const MeshAttempt* former);
   ChosenSubmesh choose(const BackgroundMesh& background, const ZeroSetChoice& pieces,
                        const MeshAttempt* former = nullptr);
+  std::optional<MadeInParts> made_by_ranks(const SizedBackground& background, const ZeroSetChoice& pieces, double h);
   MeshAttempt finish(const SizedBackground& background, Begun begun);
   void fit(const SizedBackground& background, ChosenSubmesh chosen, MeshAttempt& a);
   UmParams params_for(const ZeroSetChoice& pieces) const;
@@ -88,6 +89,7 @@ class MeshMaker {
   PartMesher* const ranks_;
   std::optional<std::pair<double, ZeroSetChoice>> pieces_;  ///< of psi cut for the h beside them
   int n_levels_ = 0;                                        ///< of psi then; 0: a formula
+  bool has_said_alone_ = false;
 };
 
 /// What is wrong, and the first of the thin places; some lines, without a newline at the end. Coordinates are those of

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "common/polled_loops.h"
 #include "mesh/certify/boundary_surface.h"
 #include "mesh/core/asking_psi.h"
 #include "mesh/implicit/curvature.h"
@@ -131,9 +132,10 @@ std::vector<Difference> lost_samples(const Domain& domain, const ZeroSetChoice& 
   }
   if (x.empty()) return {};
   std::vector<std::uint8_t> lost = near_dropped_pieces(domain, pieces, x, context);
+  const LevelSet& psi = domain.fitted->whole();
   polled_parallel_for(x.size(), kValuesPerPoll, context, [&](std::size_t i) {
     Vec3 g;
-    const double value = domain.fitted->evaluate(x[i], &g, nullptr);
+    const double value = psi.evaluate(x[i], &g, nullptr);
     lost[i] = lost[i] == 0 && distance[i] > h_of[i] + std::abs(value) / g.norm() ? 1 : 0;
   });
   const auto n = static_cast<std::size_t>(std::count(lost.begin(), lost.end(), 1));
@@ -239,7 +241,7 @@ Comparison compare_with_domain(const Domain& domain, const TetMesh& mesh, const 
           fmt::format("piece at ({:.6g}, {:.6g}, {:.6g}): smaller than an edge", x.x(), x.y(), x.z()));
     }
   }
-  if (domain.samples) report.support = support_report(domain, mesh.V, faces, context);
+  if (domain.has_samples()) report.support = support_report(domain, mesh.V, faces, context);
   return made;
 }
 
@@ -325,9 +327,9 @@ Measurement measure(const Domain& domain, const TetMesh& mesh, const UmResult& r
   if (surface) add(flips_that_show(result.manifold_flips, psi_points, *surface, h, context));
   add(lost);
   if (surface && !domain.cloud.points.empty()) {
-    const std::vector<double> d = surface->distances(domain.cloud.points, context);
+    std::vector<double> d = surface->distances(domain.cloud.points, context);
     if (domain.fitted) add(lost_samples(domain, pieces, d, h, context));
-    m.cloud = sample_distances(domain, before_merging(domain.cloud, d), h,
+    m.cloud = sample_distances(domain, before_merging(domain.cloud, std::move(d)), h,
                                m.mesh.boundary.max_centroid_distance_over_h.value_or(0));
   }
   if (surface && domain.triangles) m.triangles = triangle_distances(domain, mesh.V, faces, *surface, context);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "common/polled_loops.h"
 #include "mesh/core/asking_psi.h"
 #include "mesh/implicit/curvature.h"
 #include "mesh/implicit/foot_point.h"

@@ -1,12 +1,13 @@
 #include "pipeline/meshing/mesh_sizes.h"
 
 #include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <numeric>
 
+#include "common/polled_loops.h"
 #include "mesh/certify/quality_report.h"
 
 namespace umtet {
@@ -50,6 +51,23 @@ class UpperEnds {
 
 double length(const std::vector<Vec3>& V, int i, int j) { return (V[i] - V[j]).norm(); }
 
+/// quantile() for each p, which ascend, of values in any order, and which leaves them in another. To sort all of them
+/// for three numbers would cost as much as the rest of the report.
+template <std::size_t N>
+std::array<double, N> quantiles(std::vector<double>& values, const std::array<double, N>& p) {
+  std::array<double, N> found;
+  auto from = values.begin();
+  for (std::size_t k = 0; k < N; ++k) {
+    const QuantilePlace place = quantile_place(values.size(), p[k]);
+    const auto below = values.begin() + static_cast<std::ptrdiff_t>(place.below);
+    std::nth_element(from, below, values.end());
+    const double above = place.above == place.below ? *below : *std::min_element(below + 1, values.end());
+    found[k] = place.of(*below, above);
+    from = below;
+  }
+  return found;
+}
+
 }  // namespace
 
 std::vector<double> asked_sizes(const SizeField& sizes, const std::vector<Vec3>& points, const Context& context) {
@@ -78,10 +96,10 @@ SizesReport sizes_report(const TetMesh& mesh, const std::vector<Triangle>& bound
   UpperEnds(mesh.V.size(), mesh.C).for_each_edge([&](int i, int j) {
     ratio.push_back(length(mesh.V, i, j) / (.5 * (asked[i] + asked[j])));
   });
-  tbb::parallel_sort(ratio);
-  report.p01 = quantile(ratio, .01);
-  report.p50 = quantile(ratio, .5);
-  report.p99 = quantile(ratio, .99);
+  const auto [p01, p50, p99] = quantiles<3>(ratio, {.01, .5, .99});
+  report.p01 = p01;
+  report.p50 = p50;
+  report.p99 = p99;
   std::vector<double> lengths;
   for (const Triangle& f : boundary) {
     for (int k = 0; k < 3; ++k) lengths.push_back(length(mesh.V, f[k], f[(k + 1) % 3]));

@@ -8,11 +8,9 @@ namespace umtet {
 
 std::string for_one_process(const Parameters& parameters) {
   const MeshParameters& mesh = parameters.mesh();
-  if (!has_own_psi(mesh)) return "a mesh of samples";
   if (mesh.mode != MeshingMode::Fast) return "--mode paper";
   if (mesh.box_walls || mesh.complement) return "a mesh with walls";
   if (mesh.keep_iterates) return "--keep-iterates";
-  if (mesh.order > 1) return "--order 2";
   if (background_file(parameters) || is_graded(parameters)) return "a background that is no lattice";
   if (!configuration_costs(tiling_of(parameters))) return "a background whose tiling has no costs";
   return "";

@@ -1,16 +1,12 @@
 #include "pipeline/meshing/sample_fields.h"
 
-#include <limits>
-
-#include "common/context.h"
+#include "common/polled_loops.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/domain/zero_set_choice.h"
 #include "reconstruct/cloud/field_transfer.h"
 
 namespace umtet {
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// One value each of `vertices` into an array of n.
 template <class Value>
@@ -41,9 +37,9 @@ void set_sample_fields(const Domain& domain, const std::vector<Vec3>& V, const s
   const auto array = [&](const std::string& name) -> FieldValues& {
     return point_data[std::string(kScanPrefix) + name];
   };
-  for (const SampleField& field : found.fields) put(field.values, vertices, V.size(), kNone, array(field.name));
+  for (const SampleField& field : found.fields) put(field.values, vertices, V.size(), kNoSample, array(field.name));
   if (!found.colours.empty()) {
-    put<Vec3>(found.colours, vertices, V.size(), Vec3::Constant(kNone), point_data[kScanColours]);
+    put<Vec3>(found.colours, vertices, V.size(), Vec3::Constant(kNoSample), point_data[kScanColours]);
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <map>
 #include <string>
 #include <string_view>
@@ -15,6 +16,8 @@ namespace umtet {
 inline constexpr std::string_view kScanPrefix = "scan_";
 /// Of red, green and blue.
 inline constexpr const char* kScanColours = "scan_rgb";
+/// Of vertices that no sample is near.
+inline constexpr double kNoSample = std::numeric_limits<double>::quiet_NaN();
 
 bool is_of_scan(std::string_view name);
 

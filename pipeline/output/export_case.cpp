@@ -15,6 +15,7 @@
 #include "pipeline/case/record.h"
 #include "pipeline/meshing/sample_fields.h"
 #include "pipeline/output/boundary_patches.h"
+#include "pipeline/output/part_patches.h"
 #include "pipeline/reports/stage_reports.h"
 #include "reconstruct/io/point_cloud_io.h"
 
@@ -33,7 +34,8 @@ struct ExportedFile {
 struct ExportFormat {
   std::string name;
   std::vector<ExportedFile> files;
-  std::optional<SurfaceFormat> surface;  ///< then each of several patches has a file of its own too
+  std::optional<SurfaceFormat> surface = {};  ///< then each of several patches has a file of its own too
+  std::optional<PieceFormat> pieces = {};     ///< then `files` are those of one process
 };
 
 const std::vector<ExportFormat>& formats_known() {
@@ -57,10 +59,20 @@ const std::vector<ExportFormat>& formats_known() {
        {{".h5", write_hdf5},
         {".xdmf", [](const fs::path& p, const SolverMesh& m) { write_xdmf(p, m, "mesh.h5"); }},
         {"_boundary.xdmf", [](const fs::path& p, const SolverMesh& m) { write_boundary_xdmf(p, m, "mesh.h5"); }}},
-       {}},
+       {},
+       PieceFormat::Xdmf},
       {"stl", {{".stl", surface(SurfaceFormat::Stl)}}, SurfaceFormat::Stl},
       {"obj", {{".obj", surface(SurfaceFormat::Obj)}}, SurfaceFormat::Obj},
-      {"ply", {{".ply", surface(SurfaceFormat::Ply)}}, SurfaceFormat::Ply}};
+      {"ply", {{".ply", surface(SurfaceFormat::Ply)}}, SurfaceFormat::Ply},
+      {"pvtu",
+       {{"_0.vtu", write_vtu_piece},
+        {".pvtu", [](const fs::path& p, const SolverMesh& m) { write_pvtu(p, m, "mesh_0.vtu"); }}},
+       {},
+       PieceFormat::Pvtu},
+      {"pmsh",
+       {{"_part_1.msh", [](const fs::path& p, const SolverMesh& m) { write_msh41_piece(p, m); }}},
+       {},
+       PieceFormat::Msh}};
   return formats;
 }
 
@@ -80,8 +92,22 @@ std::vector<PendingFile> files_of(const ExportFormat& format, const fs::path& fo
   return files;
 }
 
+/// How files of pieces begin and end; there is a number between.
+std::pair<std::string, std::string> around_number(PieceFormat format) {
+  return format == PieceFormat::Pvtu ? std::pair("mesh_", ".vtu") : std::pair("mesh_part_", ".msh");
+}
+
+bool is_piece(const std::string& name, PieceFormat format) {
+  if (format == PieceFormat::Xdmf) return false;
+  const auto [begin, end] = around_number(format);
+  if (!name.starts_with(begin) || !name.ends_with(end) || name.size() <= begin.size() + end.size()) return false;
+  return std::all_of(name.begin() + static_cast<std::ptrdiff_t>(begin.size()),
+                     name.end() - static_cast<std::ptrdiff_t>(end.size()), [](char c) { return c >= '0' && c <= '9'; });
+}
+
 bool is_exported(const std::string& name) {
   for (const ExportFormat& format : formats_known()) {
+    if (format.pieces && is_piece(name, *format.pieces)) return true;
     for (const ExportedFile& file : format.files) {
       if (name == "mesh" + file.ending) return true;
     }
@@ -105,24 +131,73 @@ OrientedPointCloud cloud_of_case(const CasePaths& paths, const StageRecord& mesh
   }
 }
 
-/// Patches that had other names in a former export have other files.
-void remove_former_surfaces(const ExportFormat& format, const CasePaths& paths, const std::vector<fs::path>& written) {
-  if (!format.surface) return;
+/// Patches that had other names in a former export have other files, and there may have been more pieces.
+void remove_former(const ExportFormat& format, const CasePaths& paths, const std::vector<fs::path>& written) {
   for (const fs::path& file : exported_files(paths)) {
-    const bool is_boundary = file.extension() == format.files.front().ending;
-    if (is_boundary && std::find(written.begin(), written.end(), file) == written.end()) fs::remove(file);
+    const bool is_boundary = format.surface && file.extension() == format.files.front().ending;
+    const bool is_of_pieces = format.pieces && is_piece(file.filename(), *format.pieces);
+    if ((is_boundary || is_of_pieces) && std::find(written.begin(), written.end(), file) == written.end())
+      fs::remove(file);
   }
 }
 
-SolverMesh mesh_of_case(const CasePaths& paths, const Parameters& parameters, Progress& progress) {
+/// Connected pieces of the boundary, as processes know them. Other patches, and what samples carry, are found in the
+/// whole mesh.
+bool has_simple_patches(const Parameters& parameters) {
+  return has_own_psi(parameters.mesh()) && parameters.output().patch_angle == 0 &&
+         parameters.output().patch_planar == 0 && parameters.output().label_names.empty();
+}
+
+const ExportFormat& format_of(const std::string& name) {
+  return *std::find_if(formats_known().begin(), formats_known().end(),
+                       [&](const ExportFormat& f) { return f.name == name; });
+}
+
+/// The files of one format; they take their places when all of them are written.
+std::vector<fs::path> write_format(const ExportFormat& format, const fs::path& folder, const SolverMesh& mesh) {
+  const std::vector<PendingFile> files = files_of(format, folder, mesh);
+  write_artefacts(files);
+  std::vector<fs::path> written;
+  written.reserve(files.size());
+  for (const PendingFile& file : files) written.push_back(file.path);
+  return written;
+}
+
+std::vector<fs::path> write_pieces(PieceFormat format, const fs::path& folder, const MeshInParts& parts,
+                                   const PieceData* data) {
+  const char* name = format == PieceFormat::Pvtu   ? "mesh.pvtu"
+                     : format == PieceFormat::Xdmf ? "mesh.xdmf"
+                                                   : "mesh_part.msh";
+  return write_artefacts_in(folder,
+                            [&](const fs::path& temporary) { parts.write_pieces(temporary / name, format, data); });
+}
+
+/// \throw UsageError, ArtefactDamaged
+StageRecord mesh_record(const CasePaths& paths) {
   // Parameters do not matter here: whatever made the mesh, it must be whole.
   const StageState state = inspect_stage(paths, Stage::Mesh, Json::object(), std::nullopt);
   if (state.kind == StageState::Kind::Damaged) throw ArtefactDamaged(state.reason);
   if (!state.record) throw UsageError("nothing to export: " + state.reason + "; umtet mesh makes it");
+  return *state.record;
+}
+
+Warn warn_of(Progress& progress) {
+  return [&](const std::string& text) { progress.warn("export: " + text); };
+}
+
+PieceData data_of_pieces(const CasePaths& paths, const MeshWithBoundary& mesh, const Parameters& parameters,
+                         Progress& progress) {
+  const StageRecord record = mesh_record(paths);
+  return piece_data(mesh, cloud_of_case(paths, record), mesh_report(record).measured.domain.support, parameters,
+                    warn_of(progress), label_names_of_file(paths));
+}
+
+SolverMesh mesh_of_case(const CasePaths& paths, const Parameters& parameters, Progress& progress) {
+  const StageRecord record = mesh_record(paths);
   try {
     MeshFile file = read_tet_mesh(paths.mesh());
     SolverMesh mesh = file.quadratic ? solver_mesh(*file.quadratic) : solver_mesh(file.mesh);
-    const MarkedFaces marked = marked_faces(mesh, file, mesh_report(*state.record).measured.domain.support);
+    const MarkedFaces marked = marked_faces(mesh, file, mesh_report(record).measured.domain.support);
     std::map<std::string, FieldValues>& of_nodes = file.quadratic ? file.quadratic_data : file.point_data;
     for (auto it = of_nodes.begin(); it != of_nodes.end();) {
       const auto next = std::next(it);
@@ -132,9 +207,8 @@ SolverMesh mesh_of_case(const CasePaths& paths, const Parameters& parameters, Pr
     // What else is read for points is read for corners.
     if (!file.quadratic) mesh.point_data = std::move(file.point_data);
     mesh.cell_data = std::move(file.cell_data);
-    divide_boundary(
-        mesh, marked, cloud_of_case(paths, *state.record), parameters,
-        [&](const std::string& text) { progress.warn("export: " + text); }, label_names_of_file(paths));
+    divide_boundary(mesh, marked, cloud_of_case(paths, record), parameters, warn_of(progress),
+                    label_names_of_file(paths));
     return mesh;
   } catch (const MeshFileRefused& e) {
     throw ArtefactDamaged(e.what());
@@ -162,6 +236,17 @@ void require_formats(const std::vector<std::string>& formats) {
   }
 }
 
+bool takes_parts(const std::vector<std::string>& formats) {
+  return std::any_of(formats.begin(), formats.end(),
+                     [](const auto& name) { return format_of(name).pieces.has_value(); });
+}
+
+bool is_in_pieces(const std::vector<std::string>& formats) {
+  return std::any_of(formats.begin(), formats.end(), [](const auto& name) {
+    return format_of(name).pieces && *format_of(name).pieces != PieceFormat::Xdmf;
+  });
+}
+
 std::vector<fs::path> exported_files(const CasePaths& paths) {
   std::vector<fs::path> files;
   std::error_code missing;
@@ -173,13 +258,27 @@ std::vector<fs::path> exported_files(const CasePaths& paths) {
 }
 
 std::vector<fs::path> export_case(const CasePaths& paths, const std::vector<std::string>& formats,
-                                  const Parameters& parameters, Progress& progress) {
+                                  const Parameters& parameters, Progress& progress, const MeshWithBoundary* parts) {
   require_formats(formats);
-  progress.report("export", "read", 0);
-  const SolverMesh mesh = mesh_of_case(paths, parameters, progress);
-  progress.detail(fmt::format("export: {} tets, {} boundary faces in {} patches", mesh.n_tets(), mesh.n_faces(),
-                              mesh.patches.size()));
-  if (mesh.nodes_per_tet == 10 && std::find(formats.begin(), formats.end(), "mesh") != formats.end()) {
+  std::optional<SolverMesh> mesh;
+  const auto whole = [&]() -> const SolverMesh& {
+    if (mesh) return *mesh;
+    progress.report("export", "read", 0);
+    mesh = mesh_of_case(paths, parameters, progress);
+    progress.detail(fmt::format("export: {} tets, {} boundary faces in {} patches", mesh->n_tets(), mesh->n_faces(),
+                                mesh->patches.size()));
+    return *mesh;
+  };
+  std::optional<PieceData> of_pieces;
+  const auto data = [&]() -> const PieceData* {
+    if (has_simple_patches(parameters)) return nullptr;
+    if (!of_pieces) of_pieces = data_of_pieces(paths, *parts, parameters, progress);
+    return &*of_pieces;
+  };
+  const auto has = [&](const char* name) { return std::find(formats.begin(), formats.end(), name) != formats.end(); };
+  const bool is_curved = parts ? parameters.mesh().order > 1 : has("pmsh") && whole().nodes_per_tet == 10;
+  if (is_curved && has("pmsh")) throw UsageError("pmsh has tets of 4 nodes (--order 1)");
+  if (has("mesh") && whole().nodes_per_tet == 10) {
     progress.warn("export: FreeFEM finds no tets in mesh.mesh: it reads those of 4 nodes (--order 1)");
   }
   fs::create_directories(paths.exports());
@@ -188,12 +287,14 @@ std::vector<fs::path> export_case(const CasePaths& paths, const std::vector<std:
   for (std::size_t i = 0; i < formats.size(); ++i) {
     stop_if_interrupted();
     progress.report("export", formats[i], static_cast<double>(i + 1) / static_cast<double>(formats.size() + 1));
-    const auto format = std::find_if(formats_known().begin(), formats_known().end(),
-                                     [&](const ExportFormat& f) { return f.name == formats[i]; });
-    const std::vector<PendingFile> files = files_of(*format, paths.exports(), mesh);
-    write_artefacts(files);
-    for (const PendingFile& file : files) written.push_back(file.path);
-    remove_former_surfaces(*format, paths, written);
+    const ExportFormat& format = format_of(formats[i]);
+    const bool is_of_parts = parts && format.pieces &&
+                             (format.pieces != PieceFormat::Xdmf || (!is_curved && has_simple_patches(parameters)));
+    const std::vector<fs::path> files = is_of_parts
+                                            ? write_pieces(*format.pieces, paths.exports(), *parts->mesh, data())
+                                            : write_format(format, paths.exports(), whole());
+    written.insert(written.end(), files.begin(), files.end());
+    remove_former(format, paths, written);
   }
   return written;
 }

@@ -1,6 +1,7 @@
 #include "pipeline/output/report.h"
 
 #include <fmt/format.h>
+#include <oneapi/tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <array>
@@ -191,14 +192,18 @@ void write_report(const CasePaths& paths, const Parameters& parameters, const Ce
   stop_if_interrupted();
   const MeshFile& mesh = handover.mesh;
   const std::optional<SupportReport>& support = certificate.measured.domain.support;
-  const ReportScene scene =
-      report_scene(mesh, *handover.domain, divided(paths, mesh, *handover.domain, parameters, support));
+  ReportScene scene;
+  Figures figures;
+  tbb::parallel_invoke(
+      [&] {
+        scene = report_scene(mesh, *handover.domain, divided(paths, mesh, *handover.domain, parameters, support));
+      },
+      [&] { figures = figures_of(paths, parameters, mesh, certificate); });
   stop_if_interrupted();
   std::string blocks;
   for (const auto& [name, text] : scene.blocks) {
     blocks += fmt::format("<script type=\"text/plain\" id=\"block-{}\">{}</script>\n", name, text);
   }
-  const Figures figures = figures_of(paths, parameters, mesh, certificate);
   const CertificateRun run = run_of(certificate);
   const std::string page =
       filled(report_page_html(), {{"checksum", run.checksum},

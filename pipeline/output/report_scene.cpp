@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <unordered_map>
 
-#include "common/context.h"
 #include "common/indices_where.h"
+#include "common/polled_loops.h"
 #include "mesh/io/patches.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/domain/zero_set_choice.h"

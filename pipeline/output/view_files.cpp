@@ -14,7 +14,7 @@
 
 #include <cmath>
 
-#include "common/context.h"
+#include "common/polled_loops.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/domain/domain.h"

@@ -17,6 +17,7 @@
 #include "pipeline/meshing/library_params.h"
 #include "pipeline/meshing/made_mesh.h"
 #include "pipeline/meshing/mesh_maker.h"
+#include "pipeline/meshing/part_mesher.h"
 #include "pipeline/reports/certificate_json.h"
 #include "pipeline/run/evolve_tables.h"
 #include "pipeline/run/run.h"
@@ -85,7 +86,8 @@ class Evolution {
   void look_at(Step& step);
   void choose_background();
   void mesh(Step& step);
-  UmResult make(Step& step, Domain& domain);
+  MeshAttempt make(Step& step, Domain& domain);
+  void write(const Step& step, const Domain& domain, const MeshAttempt& made) const;
   EvolveOutcome outcome() const;
   template <class F>
   void guarded(Step& step, const F& f);
@@ -112,6 +114,8 @@ void Evolution::guarded(Step& step, const F& f) {
   const auto start = std::chrono::steady_clock::now();
   try {
     f();
+  } catch (const CallsDiffer&) {
+    throw;  // so they would at each step
   } catch (...) {
     const Failure failure = failure_of(std::current_exception());
     if (!concerns_one_step(failure.code)) throw;
@@ -158,6 +162,7 @@ void Evolution::look_at(Step& step) {
     run.parameters.set(keys::cloud::file, step.at.cloud.string(), ParamSource::Flag, "--clouds");
     run.until = Stage::LevelSet;
     run.threads = request_.threads;
+    run.ranks = request_.ranks;
     run_case(run, progress_);
   }
   Domain domain = domain_of(step);
@@ -194,22 +199,33 @@ void Evolution::choose_background() {
   }
   if (!first_) std::rethrow_exception(steps_.front().thrown);
   first_->limit_detail(h_);
-  background_ = choice_->make(*first_, h_, parameters_.mesh().tets, allowed_bytes(parameters_));
+  const double allowed = request_.ranks ? request_.ranks->allowed_bytes(parameters_) : allowed_bytes(parameters_);
+  background_ = choice_->make(*first_, h_, parameters_.mesh().tets, allowed);
   progress_.say(fmt::format("one background of {} tets, h = {:.6g}", background_->mesh.n_tets(), h_));
 }
 
 /// As umtet mesh does at a given h.
-UmResult Evolution::make(Step& step, Domain& domain) {
+MeshAttempt Evolution::make(Step& step, Domain& domain) {
   const Context call{.progress = [&](const char* at, double part) { report(step, at, part); },
                      .cancelled = until_interrupted().cancelled};
-  MeshMaker maker(domain, parameters_, call, {.say = [this](const std::string& line) { progress_.say(line); }});
+  if (request_.ranks) request_.ranks->forget_domain(of_clouds_ ? std::nullopt : std::optional(step.at.t));
+  MeshMaker maker(domain, parameters_, call, {.say = [this](const std::string& line) { progress_.say(line); }},
+                  request_.ranks);
   MeshAttempt a = maker.attempt(*background_, h_);
   stop_if_interrupted();
   if (a.fell_through()) throw MeshingImpossible(too_thin_text(a, domain.shift));
   if (!a.made()) throw MeshingImpossible(failure_text(a.result, h_, domain.shift));
   step.verdict = judge(a.measured, parameters_);
   step.measured = std::move(a.measured);
-  return std::move(a.result);
+  return a;
+}
+
+void Evolution::write(const Step& step, const Domain& domain, const MeshAttempt& made) const {
+  const fs::path file = request_.folder / step.file;
+  if (!made.parts) return write_mesh(file, final_content(domain, made.result));
+  write_artefact(file, [&](const fs::path& temporary) {
+    made.parts->write(temporary, MeshState::Final, false, boundary_data(domain, made.result));
+  });
 }
 
 void Evolution::mesh(Step& step) {
@@ -217,19 +233,19 @@ void Evolution::mesh(Step& step) {
   if (!step.error.empty()) return;
   report(step, "mesh", 0);
   std::optional<Domain> domain;
-  std::optional<UmResult> result;
+  std::optional<MeshAttempt> made;
   guarded(step, [&] {
     if (!step.looked_at) look_at(step);
     domain.emplace(domain_of(step));
-    result = make(step, *domain);
+    made = make(step, *domain);
   });
   stop_if_interrupted();
-  if (result) write_mesh(request_.folder / step.file, final_content(*domain, *result));
+  if (made) write(step, *domain, *made);
   write_tables(request_.folder, steps_);
-  if (!result) return;
-  const MeshCertificate& made = step.measured->mesh;
-  progress_.say(fmt::format("t = {}: {} tets, min Q {:.4f}, {}", time_text(step.at.t), made.n_tets, made.quality.min,
-                            step.verdict.word()));
+  if (!made) return;
+  const MeshCertificate& certificate = step.measured->mesh;
+  progress_.say(fmt::format("t = {}: {} tets, min Q {:.4f}, {}", time_text(step.at.t), certificate.n_tets,
+                            certificate.quality.min, step.verdict.word()));
 }
 
 EvolveOutcome Evolution::outcome() const {

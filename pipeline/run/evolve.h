@@ -8,6 +8,7 @@
 #include "pipeline/case/parameters.h"
 #include "pipeline/case/progress.h"
 #include "pipeline/case/record.h"
+#include "pipeline/meshing/part_mesher.h"
 
 namespace umtet {
 
@@ -18,6 +19,7 @@ struct EvolveRequest {
   std::string times, skip;       ///< of time_steps()
   Parameters parameters;
   int threads = 1;
+  PartMesher* ranks = nullptr;  ///< who make the meshes, where several processes do
 };
 
 struct EvolveOutcome {

@@ -134,6 +134,10 @@ bool CaseRun::must_run(Stage stage, const StageState& state) const {
     progress_.say(name + ": made as fine as another mesh needs");
     return true;
   }
+  if (state.kind == Kind::Done && stage == Stage::Mesh && request_.ranks && request_.needs_parts) {
+    progress_.say("mesh: made again, for files that each process writes a part of");
+    return true;
+  }
   return request_.force || state.kind != Kind::Done;
 }
 
@@ -143,8 +147,9 @@ StageRecord CaseRun::ensure(Stage stage) {
   if (!must_run(stage, state)) return *state.record;
   if (holds_results(paths_, stage)) {
     paths_.renews(stage) = true;
-    if (!request_.force) state = state_of(stage);
-    if (!request_.force && state.kind == StageState::Kind::Done && is_fine_enough(stage, *state.record)) {
+    const bool is_new = request_.force || (stage == Stage::Mesh && request_.ranks && request_.needs_parts);
+    if (!is_new) state = state_of(stage);
+    if (!is_new && state.kind == StageState::Kind::Done && is_fine_enough(stage, *state.record)) {
       progress_.say(std::string(to_string(stage)) + ": done by an earlier run that was not finished");
       return *state.record;
     }
@@ -225,6 +230,8 @@ std::vector<Stage> CaseRun::stages() const {
 }
 
 RunOutcome CaseRun::finish(const std::vector<StageRecord>& records) {
+  if (request_.keeps_parts) outcome_.parts = handover_.parts;
+  handover_.parts.reset();
   replace_former(context_, paths_, outcome_.stages_run);
   write_parameters(paths_, parameters_);
   for (const StageRecord& record : records) {

@@ -26,15 +26,18 @@ struct RunRequest {
   bool report = true;   ///< make report.html beside a certificate
   int threads = 1;
   PartMesher* ranks = nullptr;  ///< who make the mesh, where several processes do
+  bool keeps_parts = false;     ///< what each of `ranks` has of it is wanted afterwards
+  bool needs_parts = false;     ///< so much that the mesh is made although it is done
   /// Of the files that are known by now; after the run those of the case, too.
   std::shared_ptr<FileStamps> stamps = std::make_shared<FileStamps>();
 };
 
 struct RunOutcome {
   std::vector<Stage> stages_run;
-  std::optional<Certificate> certificate;    ///< when 3-mesh is done and part of the call
-  std::vector<std::filesystem::path> files;  ///< that the user may want to open
-  ExitCode code = ExitCode::Success;         ///< Success, or GateFailed when the verdict is fail
+  std::optional<Certificate> certificate;         ///< when 3-mesh is done and part of the call
+  std::vector<std::filesystem::path> files;       ///< that the user may want to open
+  std::shared_ptr<const MeshWithBoundary> parts;  ///< where they were to be kept
+  ExitCode code = ExitCode::Success;              ///< Success, or GateFailed when the verdict is fail
 };
 
 /// Brings a case to the state that a call wants: every stage up to `until` whose record does not match is run again,

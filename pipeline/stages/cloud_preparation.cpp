@@ -293,7 +293,8 @@ PreparedCloud Preparation::operator()() {
   drop_off_surface();
   drop_undefined();
   // Differences of coordinates have the same bits with and without the shift: so do distances.
-  if (near_.size() == cloud_.points.size()) result_.near = neighbour_distances(near_, covering_, cloud_.counts);
+  if (near_.size() == cloud_.points.size())
+    result_.near = neighbour_distances(cloud_.points, near_, covering_, cloud_.counts);
   for (Vec3& x : cloud_.points) x += shift;
   for (Vec3& x : cloud_.origins) x += shift;
   orient_as_told();

@@ -125,8 +125,9 @@ void leave_out_finer(const OrientedPointCloud& cloud, const NeighbourDistances& 
 
 /// @param cloud  near the origin
 LevelSetFit fit_near_origin(OrientedPointCloud& cloud, NeighbourDistances near, const Parameters& parameters,
-                            const Context& context) {
+                            const Context& context, BandRefiner* bands) {
   SsdParams params = ssd_params(parameters);
+  params.bands = bands;
   params.max_memory = allowed_bytes(parameters);
   context.report("noise", 0);
   LevelSetReport report;
@@ -166,10 +167,10 @@ LevelSetFit fit_near_origin(OrientedPointCloud& cloud, NeighbourDistances near, 
 }  // namespace
 
 LevelSetFit fit_level_set(OrientedPointCloud& cloud, NeighbourDistances near, const Parameters& parameters,
-                          const Context& context) {
+                          const Context& context, BandRefiner* bands) {
   const Vec3 shift = far_origin_shift(cloud);
   for (Vec3& x : cloud.points) x -= shift;
-  LevelSetFit fit = fit_near_origin(cloud, std::move(near), parameters, context);
+  LevelSetFit fit = fit_near_origin(cloud, std::move(near), parameters, context, bands);
   for (Vec3& x : cloud.points) x += shift;
   fit.report.shift = shift;
   return fit;

@@ -9,6 +9,7 @@
 #include "reconstruct/cloud/cloud_neighbours.h"
 #include "reconstruct/cloud/point_cloud.h"
 #include "reconstruct/level_set/level_set.h"
+#include "reconstruct/solve/multilevel_fit.h"
 
 namespace umtet {
 
@@ -22,11 +23,12 @@ struct LevelSetFit {
 /// @param cloud  model coordinates, which it has again afterwards; normals that psi opposes are turned over
 /// (turned_fit.h)
 /// @param near   of its points, with their covering; empty: searched here
+/// @param bands  makes the bands of the fit; null: this process does
 /// \throw SolveTooLarge  psi would not fit in the memory that is allowed
 /// \throw SolveError     no psi, or one that bounds no body, or samples that fill a volume
 /// \throw Cancelled
 /// Reports "noise" and the steps of fit_ssd().
 LevelSetFit fit_level_set(OrientedPointCloud& cloud, NeighbourDistances near, const Parameters& parameters,
-                          const Context& context);
+                          const Context& context, BandRefiner* bands = nullptr);
 
 }  // namespace umtet

@@ -36,7 +36,8 @@ void run_level_set_stage(const StageContext& context) {
       .cancelled = until_interrupted().cancelled};
   LevelSetFit fit = [&] {
     try {
-      return fit_level_set(cloud, std::exchange(context.handover.near, {}), context.parameters, call);
+      return fit_level_set(cloud, std::exchange(context.handover.near, {}), context.parameters, call,
+                           context.ranks ? context.ranks->bands() : nullptr);
     } catch (const SolveTooLarge& e) {
       throw ResourceLimit(e.what());
     } catch (const SolveError& e) {

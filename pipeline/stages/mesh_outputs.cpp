@@ -68,15 +68,24 @@ std::vector<std::size_t> moving_tets(const UmResult& result) {
 }
 
 /// The files of meshes and of their qualities, of a mesh that nobody has as a whole.
-std::vector<std::string> write_parts(const fs::path& folder, const MeshInParts& parts) {
+std::vector<std::string> write_parts(const StageContext& context, const fs::path& folder, const Domain& domain,
+                                     const MeshAttempt& best) {
+  MeshWithBoundary handed{best.parts, best.result.final, best.result.submesh.positive_faces,
+                          boundary_data(domain, best.result, best.mid_sides)};
+  for (Vec3& x : handed.V) x += domain.shift;
+  const BoundaryData& of_boundary = handed.data;
+  const MeshInParts& parts = *best.parts;
   const auto write = [&](const std::string& name, MeshState state) {
-    write_artefact(folder / name,
-                   [&](const fs::path& temporary) { parts.write(temporary, state, state != MeshState::Final); });
+    const bool is_final = state == MeshState::Final;
+    write_artefact(folder / name, [&](const fs::path& temporary) {
+      parts.write(temporary, state, !is_final, is_final ? of_boundary : BoundaryData());
+    });
   };
   write("omega_h.vtu", MeshState::Chosen);
   write("projected.vtu", MeshState::Projected);
   write("mesh.vtu", MeshState::Final);
   write_artefact(folder / "quality.csv", [&](const fs::path& temporary) { parts.write_quality(temporary); });
+  context.handover.parts = std::make_shared<const MeshWithBoundary>(std::move(handed));
   return {"omega_h.vtu", "projected.vtu", "mesh.vtu", "quality.csv"};
 }
 
@@ -139,7 +148,7 @@ std::vector<std::string> write_mesh_outputs(const StageContext& context, const D
   fs::remove_all(context.paths.failed());
   const fs::path folder = context.paths.folder(Stage::Mesh);
   std::vector<std::string> names =
-      best.parts ? write_parts(folder, *best.parts) : write_whole(context, folder, domain, best);
+      best.parts ? write_parts(context, folder, domain, best) : write_whole(context, folder, domain, best);
   if (!best.thin.empty()) {
     write_thin_places(folder / "too_thin.vtp", best.thin, domain.shift);
     names.emplace_back("too_thin.vtp");

@@ -12,6 +12,7 @@
 #include "pipeline/domain/domain.h"
 #include "pipeline/domain/edge_length.h"
 #include "pipeline/domain/too_thin.h"
+#include "pipeline/domain/wanted_detail.h"
 #include "pipeline/meshing/made_mesh.h"
 #include "pipeline/meshing/mesh_maker.h"
 #include "pipeline/reports/place_json.h"
@@ -69,7 +70,8 @@ MeshLines MeshStage::lines() const {
 SizedBackground MeshStage::background_of(double h) {
   stop_if_interrupted();
   const Parameters& p = context_.parameters;
-  SizedBackground made = background_.make(domain_, h, p.mesh().tets, allowed_bytes(p), call());
+  const double allowed = context_.ranks ? context_.ranks->allowed_bytes(p) : allowed_bytes(p);
+  SizedBackground made = background_.make(domain_, h, p.mesh().tets, allowed, call());
   const double n = background_.expected_tets(domain_, h), n_moving = kMovingTets * domain_.size().area / (h * h);
   require_disk(context_.paths.root, p.mesh().keep_iterates ? n * static_cast<double>(3 + p.mesh().projection_passes)
                                                            : n + 2 * std::min(n, n_moving));
@@ -140,6 +142,8 @@ MeshAttempt MeshStage::best_mesh() {
   for (const std::string& notice : domain_.notices) context_.progress.say("mesh: " + notice);
   context_.progress.report("mesh", "size", 0);
   const EdgeLength choice = background_.edge_length(domain_, until_interrupted());
+  // The fit and the choice have looked at all levels.
+  if (domain_.fitted) domain_.fitted->put_aside_below(kLeastSpacing * choice.h);
   if (choice.of_thin_parts) {
     context_.progress.say(
         fmt::format("mesh: h = {:.4g}, so that the noise of the samples is {:.2g} of it: what is thinner does not show "

@@ -93,6 +93,23 @@ TEST_F(Artefact, FilesThatBelongTogetherAppearTogether) {
   EXPECT_EQ(n_files(), 2u);
 }
 
+TEST_F(Artefact, FilesThatTheirWriterAloneKnowsAppearTogether) {
+  const auto write = [&](bool fails) {
+    return write_artefacts_in(folder, [&](const fs::path& temporary) {
+      std::ofstream(temporary / "a") << "new";
+      if (fails) throw std::runtime_error("no more");
+      std::ofstream(temporary / "b") << "new";
+    });
+  };
+  std::ofstream(folder / "a") << "old";
+  EXPECT_THROW(write(true), std::runtime_error);
+  EXPECT_EQ(read_text(folder / "a"), "old");
+  EXPECT_EQ(n_files(), 1u);
+  EXPECT_EQ(write(false), (std::vector<fs::path>{folder / "b", folder / "a"}));
+  EXPECT_EQ(read_text(folder / "a"), "new");
+  EXPECT_EQ(n_files(), 2u);
+}
+
 TEST_F(Artefact, AMissingFolderIsNamed) {
   try {
     write_text_artefact(folder / "no" / "a.txt", "x");
@@ -118,6 +135,8 @@ TEST_F(Artefact, StampIsXxh3OfTheBytes) {
 TEST_F(Artefact, StaleTemporariesGoAndOtherFilesStay) {
   write_text_artefact(file, "x");
   std::ofstream(folder / ".tmp-1-mesh.vtu") << "cut";
+  fs::create_directory(folder / ".tmp-2");
+  std::ofstream(folder / ".tmp-2" / "mesh_0.vtu") << "cut";
   remove_stale_temporaries(folder);
   remove_stale_temporaries(folder / "none");
   EXPECT_EQ(n_files(), 1u);

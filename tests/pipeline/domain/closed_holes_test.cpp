@@ -186,7 +186,7 @@ TEST(SupportReport, ListsTheLargestAndCountsAll) {
   Domain domain;
   domain.shift = Vec3(10, 0, 0);
   domain.cloud_spacing = even_spacing(400000);
-  domain.samples = std::make_shared<const SampleDistance>(samples);
+  domain.cloud.points = samples;
   const SupportReport report = support_report(domain, sphere.V, sphere.faces);
   EXPECT_DOUBLE_EQ(report.radius, kSupportRadius * domain.cloud_spacing);
   EXPECT_EQ(report.n_closed_holes, 128u);

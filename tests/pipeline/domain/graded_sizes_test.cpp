@@ -90,6 +90,31 @@ TEST(GradedSizes, AreNotBelowTheFloorNorAboveTheCeiling) {
   }
 }
 
+/// What add() says against a formula, for a ball moved by 1000; empty if nothing.
+std::string complaint_about(const std::string& size, const std::vector<std::string>& more = {}) {
+  Parameters p = graded({"mesh.h=.2", "mesh.size=" + size});
+  for (const std::string& assignment : more) p.set(assignment);
+  GradedSizes sizes(p, Vec3(1000, 0, 0));
+  Domain domain = ball();
+  try {
+    sizes.add(domain);
+  } catch (const UsageError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(GradedSizes, AFormulaThatIsNoLengthInTheBodyIsRefusedWithAPlace) {
+  const std::string said = complaint_about("x-1000");
+  EXPECT_NE(said.find("--size x-1000 is -"), std::string::npos) << said;
+  EXPECT_NE(said.find("at (999"), std::string::npos) << said;
+  EXPECT_NE(complaint_about(".5-(x-1000)^2-y^2-z^2"), "");  // on the boundary alone
+  EXPECT_NE(complaint_about("(x-1000)^2+y^2+z^2-.3"), "");  // inside alone
+  EXPECT_NE(complaint_about("sqrt(x-1000)").find("nan"), std::string::npos);
+  EXPECT_EQ(complaint_about(".1*(x-1000)+.13"), "");            // above 0 in the body, not in all of the box
+  EXPECT_EQ(complaint_about("x-1000", {"mesh.h_min=.1"}), "");  // raised
+}
+
 TEST(GradedSizes, ShiftedCoordinatesAreThoseOfTheModel) {
   const Vec3 shift(1000, 0, 0);
   const Parameters p = graded({"mesh.h=.2", "mesh.size=0.02+0.1*sqrt((x-1000)^2+y^2+(z-1)^2)"});

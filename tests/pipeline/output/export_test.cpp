@@ -15,7 +15,7 @@
 namespace umtet {
 namespace {
 
-const std::string kAllFormats = "vtu,msh,msh22,mesh,inp,bdf,xdmf,stl,obj,ply";
+const std::string kAllFormats = "vtu,msh,msh22,mesh,inp,bdf,xdmf,stl,obj,ply,pvtu,pmsh";
 
 std::set<std::string> names_in(const fs::path& folder) {
   std::set<std::string> names;
@@ -76,11 +76,11 @@ TEST_F(Export, LabelsOfPointsBecomeSetsOfEveryFile) {
   const Result r = run("run labelled.ply -o egg --tets 3000 --label-names 4=Feet,2=top --json --export " + kAllFormats);
   ASSERT_EQ(r.code, 0) << r.err;
   const fs::path out = folder / "egg/4-export";
-  const std::set<std::string> expected = {"mesh.vtu",     "mesh_boundary.vtu",  "mesh.msh",     "mesh_22.msh",
-                                          "mesh.mesh",    "mesh.inp",           "mesh.bdf",     "mesh.h5",
-                                          "mesh.xdmf",    "mesh_boundary.xdmf", "mesh.stl",     "mesh.obj",
-                                          "mesh.ply",     "mesh.Feet.stl",      "mesh.top.stl", "mesh.Feet.obj",
-                                          "mesh.top.obj", "mesh.Feet.ply",      "mesh.top.ply"};
+  const std::set<std::string> expected = {
+      "mesh.vtu",     "mesh_boundary.vtu", "mesh.msh",     "mesh_22.msh",        "mesh.mesh",    "mesh.inp",
+      "mesh.bdf",     "mesh.h5",           "mesh.xdmf",    "mesh_boundary.xdmf", "mesh.stl",     "mesh.obj",
+      "mesh.ply",     "mesh.Feet.stl",     "mesh.top.stl", "mesh.Feet.obj",      "mesh.top.obj", "mesh.Feet.ply",
+      "mesh.top.ply", "mesh.pvtu",         "mesh_0.vtu",   "mesh_part_1.msh"};
   EXPECT_EQ(names_in(out), expected);
   const Inp inp(out / "mesh.inp");
   for (const int i : inp.node_set.at("Feet")) EXPECT_LT(inp.node.at(i).z(), .3);
@@ -90,9 +90,9 @@ TEST_F(Export, LabelsOfPointsBecomeSetsOfEveryFile) {
   // Another program finds the same sets under the same names in all files.
   if (!test::succeeds(std::string(test::kPython) + " -c 'import meshio, h5py'")) GTEST_SKIP() << "no meshio";
   std::string command = std::string(test::kPython) + " " UMTET_SOURCE_DIR "/tests/support/read_back.py";
-  const std::vector<const char*> files = {"mesh.msh", "mesh_22.msh",       "mesh.mesh",
-                                          "mesh.bdf", "mesh_boundary.vtu", "mesh_boundary.xdmf",
-                                          "mesh.inp", "mesh.vtu",          "mesh.xdmf"};
+  const std::vector<const char*> files = {"mesh.msh",          "mesh_22.msh",        "mesh.mesh", "mesh.bdf",
+                                          "mesh_boundary.vtu", "mesh_boundary.xdmf", "mesh.inp",  "mesh.vtu",
+                                          "mesh.xdmf",         "mesh_0.vtu"};
   for (const char* file : files) command.append(" ").append((out / file).string());
   std::istringstream lines(test::shell(command));
   std::string line;
@@ -171,7 +171,7 @@ TEST_F(Export, WithoutLabelsPiecesAndAnglesMakePatches) {
   for (const int i : inp.node_set.at("boundary_2")) EXPECT_NEAR(inp.node.at(i).norm(), .5, 1e-6);
   EXPECT_EQ(run("export shell --format inp --label-names 1=a").code, 2);
   // A die: at this h faces across its edges meet at more than 35 degrees, faces of a side at less.
-  ASSERT_EQ(run("mesh --implicit 'x^40+y^40+z^40-1' --box=-1.9,-1.9,-1.9,1.9,1.9,1.9 --h .3 -o die --export inp "
+  ASSERT_EQ(run("mesh --implicit 'x^40+y^40+z^40-1' --box=-1.9,-1.9,-1.9,1.9,1.9,1.9 --h .25 -o die --export inp "
                 "--patch-angle 35")
                 .code,
             0);
@@ -219,8 +219,9 @@ TEST_F(Export, ADiskThatIsFullAtAnyPointLeavesNoFileAndAValidCase) {
   for (const std::string& name : names_in(folder / "ball/4-export"))
     size[name] = fs::file_size(folder / "ball/4-export" / name);
   const std::map<std::string, std::string> largest = {
-      {"vtu", "mesh.vtu"}, {"msh", "mesh.msh"}, {"msh22", "mesh_22.msh"}, {"mesh", "mesh.mesh"}, {"inp", "mesh.inp"},
-      {"bdf", "mesh.bdf"}, {"xdmf", "mesh.h5"}, {"stl", "mesh.stl"},      {"obj", "mesh.obj"},   {"ply", "mesh.ply"}};
+      {"vtu", "mesh.vtu"}, {"msh", "mesh.msh"}, {"msh22", "mesh_22.msh"}, {"mesh", "mesh.mesh"},
+      {"inp", "mesh.inp"}, {"bdf", "mesh.bdf"}, {"xdmf", "mesh.h5"},      {"stl", "mesh.stl"},
+      {"obj", "mesh.obj"}, {"ply", "mesh.ply"}, {"pvtu", "mesh_0.vtu"},   {"pmsh", "mesh_part_1.msh"}};
   for (const auto& [format, file] : largest) {
     for (const double part : {0., .5, 1.}) {
       fs::remove_all(folder / "ball/4-export");

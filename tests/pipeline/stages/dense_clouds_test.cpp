@@ -85,7 +85,7 @@ TEST_F(DenseClouds, AreMergedAgainForAFinerMesh) {
   ASSERT_EQ(finer.code, 0) << finer.err;
   EXPECT_NE(finer.err.find("made as fine as another mesh needs"), std::string::npos) << finer.err;
   const Json numbers = record(folder / "case/1-cloud")["numbers"];
-  if (numbers.contains("merged")) EXPECT_LE(numbers["merged"]["cell"], cell);
+  EXPECT_LE(numbers.value("/merged/cell"_json_pointer, 0.), cell);
   EXPECT_LT(record(folder / "case/2-level-set")["numbers"]["spacing"], .8 * .035);
 }
 
@@ -115,9 +115,36 @@ TEST_F(DenseClouds, OfThinBodiesAreLeftAsTheyAre) {
   EXPECT_EQ(r.err.find("merged"), std::string::npos) << r.err;
 }
 
+TEST_F(DenseClouds, KeepTheirSamplesWhereSheetsAreNearEachOther) {
+  // A plate above the egg, with a twentieth of all samples.
+  constexpr double kHeight = .9, kThickness = .008;
+  constexpr int kPlate = 60'000;
+  OrientedPointCloud dense = egg(1'000'000);
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int i = 0; i < kPlate; ++i) {
+    const bool up = i % 2 == 0;
+    dense.points.emplace_back(.5 * unit(random), .5 * unit(random), up ? kHeight + kThickness : kHeight);
+    dense.normals.emplace_back(0, 0, up ? 1 : -1);
+  }
+  write("plate_and_egg.ply", dense);
+  const Result r = run("run plate_and_egg.ply -o case --h .04 --no-report");
+  EXPECT_EQ(r.code, 6) << "h does not show the plate. " << r.err;
+  EXPECT_NE(r.err.find("merged 1060000 points"), std::string::npos) << r.err;
+  const OrientedPointCloud kept = read_point_cloud(folder / "case/1-cloud/cloud.ply").cloud;
+  std::size_t n_plate = 0;
+  for (std::size_t i = 0; i < kept.points.size(); ++i) {
+    if (kept.points[i][2] < .5 * (.6 + kHeight)) continue;
+    ++n_plate;
+    ASSERT_EQ(kept.counts[i], 1) << "at " << kept.points[i].transpose();
+  }
+  EXPECT_GT(n_plate, .99 * kPlate);
+  EXPECT_LT(kept.points.size() - n_plate, 300'000u) << "the egg is merged";
+}
+
 TEST_F(DenseClouds, ThatAreHardlyDenserAreLeftAsTheyAre) {
-  write("sparse.ply", egg(kDense));
-  const Result r = run("reconstruct sparse.ply -o sparse");  // two in a cell of .0026 diagonals
+  write("sparse.ply", egg(kDense / 2));
+  const Result r = run("reconstruct sparse.ply -o sparse");  // less than two in a cell of .0026 diagonals
   EXPECT_EQ(r.code, 0) << r.err;
   EXPECT_EQ(r.err.find("merged"), std::string::npos) << r.err;
 }
