@@ -2,7 +2,9 @@
 
 #include <mpi.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <stdexcept>
 #include <vector>
@@ -17,10 +19,10 @@ inline int rank_in(MPI_Comm comm) {
 }
 
 /// What all ranks have, in their order; on rank 0, and nothing elsewhere. Collective. T has no pointers.
-/// \throw std::length_error on rank 0 above 2 GB
+/// \throw std::length_error on rank 0 above 2^31 - 1 members
 template <class T>
 std::vector<T> gathered(MPI_Comm comm, const std::vector<T>& own) {
-  int n_ranks = 1, n = static_cast<int>(own.size() * sizeof(T));
+  int n_ranks = 1, n = static_cast<int>(own.size());
   MPI_Comm_size(comm, &n_ranks);
   std::vector<int> counts(static_cast<std::size_t>(n_ranks), 0), begins;
   MPI_Gather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, comm);
@@ -29,20 +31,34 @@ std::vector<T> gathered(MPI_Comm comm, const std::vector<T>& own) {
     begins.push_back(static_cast<int>(all));
     all += static_cast<std::size_t>(c);
     if (all > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-      throw std::length_error("a list of more than 2 GB");
+      throw std::length_error("a list of more than 2^31 - 1 members");
   }
-  std::vector<T> result(all / sizeof(T));
-  MPI_Gatherv(own.data(), n, MPI_BYTE, result.data(), counts.data(), begins.data(), MPI_BYTE, 0, comm);
+  std::vector<T> result(all);
+  MPI_Datatype type;
+  MPI_Type_contiguous(static_cast<int>(sizeof(T)), MPI_BYTE, &type);
+  MPI_Type_commit(&type);
+  MPI_Gatherv(own.data(), n, type, result.data(), counts.data(), begins.data(), type, 0, comm);
+  MPI_Type_free(&type);
   return result;
 }
 
-/// What rank 0 has becomes what all have. Collective. T has no pointers.
+/// What rank 0 has becomes the list of the others, of any length. Collective. T has no pointers.
+/// @param own  of rank 0
+template <class T>
+void broadcast(MPI_Comm comm, const std::vector<T>& own, std::vector<T>& list) {
+  constexpr std::size_t kAtOnce = 1 << 30;  // MPI counts by int
+  std::uint64_t n = own.size();
+  MPI_Bcast(&n, 1, MPI_UINT64_T, 0, comm);
+  if (rank_in(comm) != 0) list.resize(n);
+  const auto* from = reinterpret_cast<const std::byte*>(rank_in(comm) == 0 ? own.data() : list.data());
+  for (std::size_t at = 0, all = n * sizeof(T); at < all; at += kAtOnce)
+    MPI_Bcast(const_cast<std::byte*>(from + at), static_cast<int>(std::min(kAtOnce, all - at)), MPI_BYTE, 0, comm);
+}
+
+/// What rank 0 has becomes what all have.
 template <class T>
 void broadcast(MPI_Comm comm, std::vector<T>& list) {
-  int n = static_cast<int>(list.size());
-  MPI_Bcast(&n, 1, MPI_INT, 0, comm);
-  list.resize(static_cast<std::size_t>(n));
-  MPI_Bcast(list.data(), static_cast<int>(list.size() * sizeof(T)), MPI_BYTE, 0, comm);
+  broadcast(comm, list, list);
 }
 
 }  // namespace umtet

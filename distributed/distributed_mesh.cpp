@@ -10,10 +10,12 @@
 #include "distributed/collect.h"
 #include "distributed/lattice_part.h"
 #include "distributed/part_classification.h"
+#include "distributed/part_crawl.h"
 #include "distributed/part_embedding.h"
 #include "distributed/part_manifold.h"
 #include "distributed/part_repair.h"
 #include "distributed/partition.h"
+#include "distributed/phase.h"
 #include "distributed/shared_layer.h"
 #include "mesh/base/id_blocks.h"
 #include "mesh/classification/classification.h"
@@ -40,11 +42,13 @@ Places replaced(const Places& earlier, Places later) {
 
 class PartRun {
  public:
-  PartRun(MPI_Comm comm, const BackgroundMesh& background, ImplicitFunctionRef psi, const FastParams& params)
+  PartRun(MPI_Comm comm, const BackgroundMesh& background, ImplicitFunctionRef psi, const FastParams& params,
+          const std::vector<Vec3>& seeds, double held)
       : psi_(psi),
         params_(params),
+        seeds_(seeds),
         comm_(comm),
-        partition_(balanced_partition(comm, background, psi)),
+        partition_(balanced_partition(comm, background, psi, held)),
         part_(background, partition_, rank_in(comm)),
         ranks_(comm, part_.neighbours()),
         costs_(*background_costs(part_.lattice())),
@@ -61,6 +65,7 @@ class PartRun {
       emit();
       embed();
     }
+    result_.n_psi_evaluations = ranks_.sum(result_.n_psi_evaluations);
     result_.traffic = ranks_.traffic();
     return std::move(result_);
   }
@@ -89,6 +94,7 @@ class PartRun {
 
   ImplicitFunctionRef psi_;
   const FastParams& params_;
+  const std::vector<Vec3>& seeds_;
   MPI_Comm comm_;
   const Partition partition_;
   const LatticePart part_;
@@ -103,9 +109,15 @@ class PartRun {
 };
 
 void PartRun::find_inside() {
+  begin_phase("signs");
+  if (!seeds_.empty()) {
+    inside_ = crawl_part(comm_, part_, psi_, seeds_);
+    return;
+  }
   for_each_in_blocks(part_.known(), [&](std::size_t, std::int64_t v) {
     if (part_.lattice().has_tets(v) && psi_.value(part_.lattice().position(v)) < 0) inside_.insert_shared(v);
   });
+  part_.known().for_each([&](std::int64_t v) { result_.n_psi_evaluations += part_.lattice().has_tets(v); });
 }
 
 bool PartRun::fits_background() {
@@ -119,11 +131,13 @@ bool PartRun::fits_background() {
 }
 
 bool PartRun::classify() {
+  begin_phase("classify");
   PartClassification others(part_, ranks_);
   const ClassificationReport report =
       classify_vertices(part_.lattice(), *costs_.links, psi_, classification_, inside_, {}, nullptr, nullptr, &others);
-  result_.manifold_flips =
-      make_parts_manifold(comm_, part_, partition_, psi_, classification_, report.not_manifold, inside_);
+  result_.manifold_flips = make_parts_manifold(comm_, part_, partition_, psi_, classification_, report.not_manifold,
+                                               inside_, result_.n_psi_evaluations);
+  result_.n_psi_evaluations += report.psi_evaluations;
   if (!result_.manifold_flips.empty() && count_inside() == 0) return fail(PartsStatus::EmptyDomain, 0);
   std::size_t n_tets = 0;
   for_each_tet([&](std::int64_t, const auto&, std::int64_t) { ++n_tets; });
@@ -138,6 +152,7 @@ std::size_t PartRun::count_inside() {
 }
 
 void PartRun::fit() {
+  begin_phase("project");
   const IdSet movable = movable_vertices(part_.lattice(), *costs_.links, inside_, params_.layers);
   IdSet own = movable;
   for (std::size_t w = 0; w < own.n_words(); ++w) own.set_word(w, own.word(w) & part_.own().word(w));
@@ -148,12 +163,14 @@ void PartRun::fit() {
   smoother.share(shared);
   const std::vector<std::uint8_t> inside = inside_of(layer_, inside_);
   FittedLayer made = fit_layer(smoother, psi_, params_, {.smoothing = params_.smoothing, .inside = &inside});
+  result_.n_psi_evaluations += made.psi_evaluations;
   std::swap(layer_.layer.V, made.projected);
   projected_ = places_of(layer_);
   std::swap(layer_.layer.V, made.projected);
 }
 
 void PartRun::repair() {
+  begin_phase("repair");
   RepairParams params = params_.repair;
   params.target += costs_.repair_target - kQualityTarget;
   params.reach = std::min(params.reach, costs_.repair_reach);
@@ -167,6 +184,7 @@ void PartRun::repair() {
   layer_ = {};
   result_.n_gets = made.n_gets;
   result_.bytes_got = made.bytes;
+  result_.n_psi_evaluations += made.psi_evaluations;
 }
 
 /// The own ones among places by ids of the whole.
@@ -224,6 +242,7 @@ void PartRun::list_tets(IdSet& used) {
 }
 
 void PartRun::emit() {
+  begin_phase("emit");
   IdSet used(part_.lattice().n_vertices());
   list_tets(used);
   used.for_each([&](std::int64_t v) {
@@ -280,6 +299,7 @@ void PartRun::fetch(const Places& of_own, std::vector<Vec3>& V) {
 
 /// Vertices go back where the mesh meets itself.
 void PartRun::embed() {
+  begin_phase("embed");
   const auto moved = step_parts_back(comm_, part_, partition_, ranks_, {result_.mesh, vertex_, inside_, places_});
   result_.n_stepped_back = moved.size();
   if (moved.empty()) return;
@@ -302,13 +322,14 @@ const char* to_string(PartsStatus status) {
 }
 
 DistributedMesh distributed_mesh(MPI_Comm comm, const BackgroundMesh& background, ImplicitFunctionRef psi,
-                                 const FastParams& params) {
+                                 const FastParams& params, const std::vector<Vec3>& seeds, double held) {
   std::string all;
   for (const std::string& problem : problems(params)) all += (all.empty() ? "" : "; ") + problem;
   if (!all.empty()) throw std::invalid_argument(all);
   if (!background.is_lattice()) throw std::invalid_argument("background: must be a lattice");
   if (!configuration_costs(background.tiling())) throw std::invalid_argument("background: its tiling has no costs");
-  return PartRun(comm, background, psi, params)();
+  begin_phase("partition");
+  return PartRun(comm, background, psi, params, seeds, held)();
 }
 
 }  // namespace umtet

@@ -36,6 +36,7 @@ struct DistributedMesh {
   std::vector<int> owner;                       ///< of each vertex, a rank
   std::vector<Triangle> positive_faces;         ///< Submesh::positive_faces of its tets
   std::vector<int> positive_tets;               ///< Submesh::positive_tets
+  std::size_t n_psi_evaluations = 0;            ///< of all ranks, which look at what is between them more than once
   Traffic traffic;                              ///< but for repair
   std::size_t n_gets = 0, bytes_got = 0;        ///< what repair has read of other ranks; of rank 0, which does it
 };
@@ -46,8 +47,10 @@ struct DistributedMesh {
 ///
 /// Collective; all ranks pass the same arguments. psi must be thread-safe.
 /// @param background  a lattice over a tiling that has costs (configuration_costs.h)
+/// @param seeds       where there are any, of SubmeshSearch::Crawl: pieces of psi = 0 without one are not meshed
+/// @param held        bytes that rank 0 holds besides, which has so much less of the mesh; read there
 /// \throw std::invalid_argument for another background, or naming every broken constraint of params
 DistributedMesh distributed_mesh(MPI_Comm comm, const BackgroundMesh& background, ImplicitFunctionRef psi,
-                                 const FastParams& params = {});
+                                 const FastParams& params = {}, const std::vector<Vec3>& seeds = {}, double held = 0);
 
 }  // namespace umtet

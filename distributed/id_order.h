@@ -48,7 +48,9 @@ class IdOrder {
     return all;
   }
   /// How many ids of all ranks are less than each of the own ones. Collective.
-  std::vector<std::int64_t> numbers() const;
+  std::vector<std::int64_t> numbers() const { return sums_before(std::vector<std::int64_t>(ids_.size(), 1)); }
+  /// Of all ids that are less than each of the own ones the sum of their values. Collective. @param values  of own ones
+  std::vector<std::int64_t> sums_before(const std::vector<std::int64_t>& values) const;
 
  private:
   MPI_Comm comm_;

@@ -7,11 +7,13 @@
 #include <utility>
 #include <vector>
 
+#include "common/polled_loops.h"
 #include "distributed/collect.h"
 #include "distributed/id_order.h"
 #include "distributed/part_boundary.h"
 #include "distributed/part_meetings.h"
 #include "distributed/part_tets.h"
+#include "distributed/phase.h"
 #include "distributed/piece_chain.h"
 #include "distributed/vertex_owners.h"
 #include "mesh/certify/boundary_surface.h"
@@ -258,6 +260,7 @@ MeshCertificate PartCertificate::operator()(double h, double coordinate_rounding
 
 MeshCertificate certify_parts(MPI_Comm comm, const DistributedMesh& mesh, double h,
                               std::optional<ImplicitFunctionRef> psi, double coordinate_rounding) {
+  begin_phase("certify");
   std::uint64_t n_tets = mesh.mesh.C.size();
   MPI_Allreduce(MPI_IN_PLACE, &n_tets, 1, MPI_UINT64_T, MPI_SUM, comm);
   if (n_tets == 0) throw std::invalid_argument("certify: a mesh with tets is needed");

@@ -22,7 +22,8 @@ struct SentFlip {
 
 std::vector<ManifoldFlip> make_parts_manifold(MPI_Comm comm, const LatticePart& part, const Partition& partition,
                                               ImplicitFunctionRef psi, const ClassificationParams& params,
-                                              const std::vector<std::int64_t>& bad, IdSet& inside) {
+                                              const std::vector<std::int64_t>& bad, IdSet& inside,
+                                              std::size_t& n_psi_evaluations) {
   std::vector<std::int64_t> all;
   for (const std::int64_t v : bad) all.push_back(part.to_whole(v));
   all = gathered(comm, all);
@@ -41,6 +42,7 @@ std::vector<ManifoldFlip> make_parts_manifold(MPI_Comm comm, const LatticePart& 
       const auto costs = background_costs(part.whole());
       const ManifoldReport report =
           make_manifold(part.whole(), costs->links.get(), psi, params, false, all, states, {}, read);
+      n_psi_evaluations += report.psi_evaluations;
       for (const ManifoldFlip& f : report.flips) flips.push_back({f.background_vertex, f.is_filled, f.distance});
     }
     MPI_Barrier(comm);  // the window is open until rank 0 has done

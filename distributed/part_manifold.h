@@ -19,9 +19,11 @@ namespace umtet {
 ///
 /// Collective. @param bad  own outside vertices where the boundary is no manifold
 /// @param inside  of known vertices; receives the changes
+/// @param n_psi_evaluations  on rank 0 theirs are added
 /// @return what is otherwise than it was, by ids of the whole, ascending; the same on all ranks
 std::vector<ManifoldFlip> make_parts_manifold(MPI_Comm comm, const LatticePart& part, const Partition& partition,
                                               ImplicitFunctionRef psi, const ClassificationParams& params,
-                                              const std::vector<std::int64_t>& bad, IdSet& inside);
+                                              const std::vector<std::int64_t>& bad, IdSet& inside,
+                                              std::size_t& n_psi_evaluations);
 
 }  // namespace umtet

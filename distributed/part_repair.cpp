@@ -99,6 +99,7 @@ PartRepair repair_parts(MPI_Comm comm, const LatticePart& part, const Partition&
       const RepairReport report =
           repair(part.whole(), *background_costs(part.whole())->links, psi, classification, params, remote, states);
       made.flipped = report.flipped;
+      made.psi_evaluations = report.psi_evaluations;
       for (const auto& [v, x] : report.moved) moved.push_back({v, {x[0], x[1], x[2]}});
       made.n_gets = window.n_gets();
       made.bytes = window.bytes();

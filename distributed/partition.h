@@ -27,6 +27,7 @@ class Partition {
 /// Pieces of about equal work. psi at the corners of a block says whether the boundary is in it, all of it is inside or
 /// nothing is; what that misses costs balance and nothing else. Each rank looks at its share of the curve. The same for
 /// the same number of ranks. Collective.
-Partition balanced_partition(MPI_Comm comm, const BackgroundMesh& lattice, ImplicitFunctionRef psi);
+/// @param held  bytes that rank 0 holds besides its part, which is so much smaller (first_share()); read there
+Partition balanced_partition(MPI_Comm comm, const BackgroundMesh& lattice, ImplicitFunctionRef psi, double held = 0);
 
 }  // namespace umtet

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "distributed/all_to_all.h"
 #include "distributed/distributed_mesh.h"
+#include "distributed/owner_exchange.h"
 
 namespace umtet {
 
@@ -17,7 +17,7 @@ namespace umtet {
 class VertexOwners {
  public:
   /// Collective.
-  VertexOwners(MPI_Comm comm, const DistributedMesh& mesh);
+  VertexOwners(MPI_Comm comm, const DistributedMesh& mesh) : VertexOwners(comm, mesh, {}) {}
 
   /// Those that are owned, by ids in the background, ascending.
   const std::vector<std::int64_t>& ids() const { return ids_; }
@@ -27,40 +27,23 @@ class VertexOwners {
   /// Of each vertex of the mesh whether ranks besides this one have tets with it.
   const std::vector<char>& shared() const { return shared_; }
 
-  /// What owners know of vertices, for all who have them. Collective.
-  /// @param of_owned  by place in ids()
-  /// @return by vertex of the mesh
+  /// Between vertices of the mesh and places in ids().
+  const OwnerExchange& exchange() const { return exchange_; }
+  /// Its tell() and ask(). Collective.
   template <class T>
   std::vector<T> tell(const std::vector<T>& of_owned) const {
-    std::vector<std::vector<T>> out(wanted_.size());
-    for (std::size_t r = 0; r < out.size(); ++r)
-      for (const std::size_t k : wanted_[r]) out[r].push_back(of_owned[k]);
-    std::vector<T> told(n_vertices_);
-    const auto in = all_to_all(comm_, out);
-    for (std::size_t r = 0; r < in.size(); ++r)
-      for (std::size_t k = 0; k < in[r].size(); ++k) told[asked_[r][k]] = in[r][k];
-    return told;
+    return exchange_.tell(of_owned);
   }
-  /// What all who have vertices know of them, for owners: take(place in ids(), value), once for each who has it.
-  /// Collective.
-  /// @param value  of a vertex of the mesh, without pointers
   template <class Value, class Take>
   void ask(const Value& value, const Take& take) const {
-    using T = decltype(value(std::size_t{0}));
-    std::vector<std::vector<T>> out(asked_.size());
-    for (std::size_t r = 0; r < out.size(); ++r)
-      for (const std::size_t v : asked_[r]) out[r].push_back(value(v));
-    const auto in = all_to_all(comm_, out);
-    for (std::size_t r = 0; r < in.size(); ++r)
-      for (std::size_t k = 0; k < in[r].size(); ++k) take(wanted_[r][k], in[r][k]);
+    exchange_.ask(value, take);
   }
 
  private:
-  MPI_Comm comm_;
-  std::size_t n_vertices_;
+  VertexOwners(MPI_Comm comm, const DistributedMesh& mesh, std::vector<int> n_users);
+
   std::vector<std::int64_t> ids_;
-  std::vector<std::vector<std::size_t>> asked_;   ///< by rank: vertices of the mesh that it owns
-  std::vector<std::vector<std::size_t>> wanted_;  ///< by rank: places in ids() of what it has
+  OwnerExchange exchange_;
   std::vector<char> shared_;
 };
 

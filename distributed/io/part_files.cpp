@@ -1,140 +1,79 @@
 #include "distributed/io/part_files.h"
 
-#include <array>
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "distributed/collect.h"
-#include "distributed/id_order.h"
-#include "distributed/io/shared_arrays.h"
-#include "distributed/io/shared_file.h"
+#include "distributed/ghost_tets.h"
+#include "distributed/io/ordered_vtu.h"
 #include "distributed/io/standard_data.h"
+#include "distributed/io/write_together.h"
+#include "distributed/solver_part.h"
 #include "mesh/certify/quality_report.h"
 #include "mesh/io/checked_file.h"
+#include "mesh/io/msh_piece.h"
+#include "mesh/io/pvtu.h"
 #include "mesh/io/tet_mesh_io.h"
-#include "mesh/io/vtu_shape.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kPerPiece = 1 << 16;  // some megabytes
-constexpr std::uint8_t kTetra = 10;         // VTK_TETRA
-using Field = VtuField::Type;
-
-struct OrderedVertex {
-  std::int64_t id;
-  double place[3];
-  std::uint8_t boundary;
-};
-
-struct OrderedTet {
-  std::int64_t id;
-  std::int64_t corner[4];  ///< numbers in the whole mesh
-  double quality;
-};
-
-/// Places of vertices that are owned.
-std::vector<Vec3> places_of_owned(const VertexOwners& owners, const DistributedMesh& mesh) {
-  std::vector<Vec3> V(owners.ids().size());
-  owners.ask(
-      [&](std::size_t v) {
-        return std::array{mesh.mesh.V[v].x(), mesh.mesh.V[v].y(), mesh.mesh.V[v].z()};
-      },
-      [&](std::size_t k, const std::array<double, 3>& x) { V[k] = Vec3(x[0], x[1], x[2]); });
-  return V;
+std::vector<int> ranks_with(MPI_Comm comm, bool has_one) {
+  std::vector<int> ranks = gathered(comm, std::vector<int>(has_one ? 1 : 0, rank_in(comm)));
+  broadcast(comm, ranks);
+  return ranks;
 }
 
-void write_vertices(MPI_Comm comm, const DistributedMesh& mesh, const StandardData& data, const VtuShape& shape,
-                    SharedFile& file) {
-  const std::vector<std::int64_t>& ids = data.owners.ids();
-  const std::vector<Vec3> V = places_of_owned(data.owners, mesh);
-  const IdOrder order(comm, ids, kPerPiece);
-  SharedArrays arrays(comm, file, {&shape.arrays[0], &shape.arrays[1], &shape.arrays[4]});
-  for (std::size_t round = 0; round < order.n_rounds(); ++round) {
-    const auto piece = order.piece<OrderedVertex>(round, [&](std::size_t k) {
-      return OrderedVertex{ids[k], {V[k].x(), V[k].y(), V[k].z()}, data.boundary[k]};
-    });
-    std::vector<std::int64_t> id;
-    std::vector<std::uint8_t> boundary;
-    std::vector<double> places;
-    for (const OrderedVertex& v : piece) {
-      id.push_back(v.id);
-      boundary.push_back(v.boundary);
-      places.insert(places.end(), v.place, v.place + 3);
+/// 0/1 at the vertices of each patch, as `umtet export` has them.
+void add_node_sets(const SolverPart& part, const VertexOwners& owners, std::map<std::string, FieldValues>& data) {
+  for (std::size_t p = 0; p < part.patches.size(); ++p) {
+    if (part.patches[p] == kWholeBoundary) continue;  // `boundary` is there for all
+    std::vector<std::uint8_t> is_in(part.owner.size(), 0), owned(owners.ids().size(), 0);
+    for (std::size_t f = 0; f < part.boundary.size(); ++f) {
+      if (part.patch[f] != static_cast<int>(p)) continue;
+      for (const int v : part.boundary[f]) is_in[v] = 1;
     }
-    const std::size_t first = order.first(round);
-    arrays.put(0, 8 * first, id);
-    arrays.put(1, first, boundary);
-    arrays.put(2, 24 * first, places);
-    arrays.write();
+    owners.ask([&](std::size_t v) { return is_in[v]; }, [&](std::size_t k, std::uint8_t x) { owned[k] |= x; });
+    data[part.patches[p]] = owners.tell(owned);
   }
 }
 
-template <class Index>
-void write_tets(MPI_Comm comm, const DistributedMesh& mesh, const StandardData& data, const VtuShape& shape,
-                SharedFile& file) {
-  const IdOrder order(comm, mesh.background_tet, kPerPiece);
-  SharedArrays arrays(comm, file,
-                      {&shape.arrays[2], &shape.arrays[3], &shape.arrays[5], &shape.arrays[6], &shape.arrays[7]});
-  for (std::size_t round = 0; round < order.n_rounds(); ++round) {
-    const std::size_t begin = order.begin(round);
-    std::vector<double> Q(order.begin(round + 1) - begin);
-    measure_mean_ratios(mesh.mesh, Q, begin);
-    const auto piece = order.piece<OrderedTet>(round, [&](std::size_t t) {
-      OrderedTet tet{mesh.background_tet[t], {}, Q[t - begin]};
-      for (std::size_t k = 0; k < 4; ++k) tet.corner[k] = data.own_number[mesh.mesh.C[t][k]];
-      return tet;
-    });
-    std::vector<std::int64_t> id;
-    std::vector<double> quality;
-    std::vector<Index> corners, ends;
-    const std::size_t first = order.first(round);
-    for (const OrderedTet& t : piece) {
-      id.push_back(t.id);
-      quality.push_back(t.quality);
-      for (const std::int64_t v : t.corner) corners.push_back(static_cast<Index>(v));
-      ends.push_back(static_cast<Index>(4 * (first + id.size())));
+/// Of the vertices of the own mesh, also of those of which another rank alone knows the values.
+void add_values(const VertexOwners& owners, const VertexValues& values, std::map<std::string, FieldValues>& data) {
+  for (const VertexValues::Array& array : values.arrays) {
+    if (array.n_components == 3) {
+      std::vector<Vec3> of_mesh;
+      for (const auto& x : owners.tell(values_of_owned<3>(owners, values, array)))
+        of_mesh.emplace_back(x[0], x[1], x[2]);
+      data[array.name] = std::move(of_mesh);
+    } else {
+      std::vector<double> of_mesh;
+      for (const auto& x : owners.tell(values_of_owned<1>(owners, values, array))) of_mesh.push_back(x[0]);
+      data[array.name] = std::move(of_mesh);
     }
-    arrays.put(0, 8 * first, id);
-    arrays.put(1, 8 * first, quality);
-    arrays.put(2, sizeof(Index) * 4 * first, corners);
-    arrays.put(3, sizeof(Index) * first, ends);
-    arrays.put(4, first, std::vector<std::uint8_t>(piece.size(), kTetra));
-    arrays.write();
   }
-}
-
-/// What went wrong on any rank, on all. Collective.
-void throw_first(MPI_Comm comm, int error, const fs::path& file) {
-  MPI_Allreduce(MPI_IN_PLACE, &error, 1, MPI_INT, MPI_MAX, comm);
-  if (error != 0) throw KnownToAll(error, std::generic_category(), "cannot write " + file.string());
-}
-
-std::string list_of(const std::vector<fs::path>& pieces) {
-  std::string text =
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
-      "header_type=\"UInt64\">\n<PUnstructuredGrid GhostLevel=\"0\">\n<PPointData>\n";
-  const auto array = [&](const std::string& type, const std::string& name, const std::string& more = "") {
-    text += "<PDataArray type=\"" + type + "\" Name=\"" + name + "\"" + more + "/>\n";
-  };
-  array("Int64", "background_vertex");
-  array("UInt8", "boundary");
-  array("Int64", "global_vertex");
-  array("Int64", "owner");
-  text += "</PPointData>\n<PCellData>\n";
-  array("Int64", "background_tet");
-  array("Int64", "global_tet");
-  array("Float64", "mean_ratio");
-  text += "</PCellData>\n<PPoints>\n";
-  array("Float64", "Points", " NumberOfComponents=\"3\"");
-  text += "</PPoints>\n";
-  for (const fs::path& piece : pieces) text += "<Piece Source=\"" + piece.filename().string() + "\"/>\n";
-  return text + "</PUnstructuredGrid>\n</VTKFile>\n";
 }
 
 }  // namespace
+
+std::vector<MeshPart> divide_part(SolverPart& part, const PieceExtras& extras) {
+  std::vector<MeshPart> patches = extras.patches;
+  if (!patches.empty()) {
+    part.patches.clear();
+    for (const MeshPart& patch : patches) part.patches.push_back(patch.name);
+    part.patch = extras.patch_of(part.global_face);
+    return patches;
+  }
+  for (std::size_t p = 0; p < part.patches.size(); ++p) patches.push_back({part.patches[p], static_cast<int>(p) + 2});
+  return patches;
+}
 
 DistributedMesh some_of(const DistributedMesh& mesh, const std::vector<std::size_t>& tets) {
   DistributedMesh some;
@@ -157,60 +96,107 @@ DistributedMesh some_of(const DistributedMesh& mesh, const std::vector<std::size
 }
 
 void write_whole_vtu(MPI_Comm comm, const fs::path& path, const DistributedMesh& mesh,
-                     const std::vector<std::uint8_t>* on_boundary) {
+                     const std::vector<std::uint8_t>* on_boundary, const VertexValues& more) {
   const StandardData data = standard_data(comm, mesh, on_boundary);
-  std::uint64_t n[2] = {data.owners.ids().size(), mesh.mesh.C.size()};
-  MPI_Allreduce(MPI_IN_PLACE, n, 2, MPI_UINT64_T, MPI_SUM, comm);
-  const VtuShape shape = vtu_shape(n[0], n[1], {{"background_vertex", Field::Int64}, {"boundary", Field::UInt8}},
-                                   {{"background_tet", Field::Int64}, {"mean_ratio", Field::Float64}});
-  SharedFile file(comm, path);
-  if (rank_in(comm) == 0) {
-    for (const auto& [at, text] : shape.texts) file.write(at, text);
-  }
-  write_vertices(comm, mesh, data, shape, file);
-  if (shape.has_wide_ids) {
-    write_tets<std::int64_t>(comm, mesh, data, shape, file);
-  } else {
-    write_tets<std::int32_t>(comm, mesh, data, shape, file);
-  }
-  file.close(shape.texts.back().first + shape.texts.back().second.size());
+  const std::vector<Vec3> places = places_of_owned(data.owners, mesh.mesh);
+  const auto values = [&](std::size_t a) {
+    const VertexValues::Array& array = more.arrays[a];
+    return array.n_components == 3 ? flat(values_of_owned<3>(data.owners, more, array))
+                                   : flat(values_of_owned<1>(data.owners, more, array));
+  };
+  const auto corner = [&](std::size_t t, std::size_t k) { return data.own_number[mesh.mesh.C[t][k]]; };
+  write_ordered_vtu(comm, path,
+                    {.ids = data.owners.ids(),
+                     .first_mid_side = std::numeric_limits<std::int64_t>::max(),
+                     .places = places,
+                     .boundary = data.boundary,
+                     .fields = more,
+                     .values = values,
+                     .mesh = mesh,
+                     .nodes_per_tet = 4,
+                     .node = corner});
 }
 
-std::vector<fs::path> write_pvtu(MPI_Comm comm, const fs::path& pvtu, const DistributedMesh& mesh) {
+std::vector<fs::path> write_pvtu(MPI_Comm comm, const fs::path& pvtu, const DistributedMesh& mesh,
+                                 const PieceExtras& extras) {
   const StandardData data = standard_data(comm, mesh);
-  const auto name_of = [&](int rank) {
-    return pvtu.parent_path() / (pvtu.stem().string() + "_" + std::to_string(rank) + ".vtu");
-  };
-  std::vector<std::uint8_t> boundary = data.owners.tell(data.boundary);
+  SolverPart part = solver_part(comm, mesh, data.owners);
+  divide_part(part, extras);
   MeshFile piece;
   piece.mesh = mesh.mesh;
   piece.point_data = {{"background_vertex", mesh.background_vertex},
-                      {"boundary", std::move(boundary)},
-                      {"global_vertex", data.own_number},
-                      {"owner", std::vector<std::int64_t>(mesh.owner.begin(), mesh.owner.end())}};
-  piece.cell_data = {{"background_tet", mesh.background_tet},
-                     {"global_tet", IdOrder(comm, mesh.background_tet, kPerPiece).numbers()},
-                     {"mean_ratio", mean_ratios(mesh.mesh)}};
-  int error = 0;
-  const fs::path own = name_of(rank_in(comm));
-  try {
-    if (!mesh.mesh.C.empty()) write_vtu(own, piece);
-  } catch (const std::system_error& e) {
-    error = e.code().value();
+                      {"boundary", data.owners.tell(data.boundary)},
+                      {"global_vertex", part.global_vertex},
+                      {"owner", std::vector<std::int64_t>(part.owner.begin(), part.owner.end())}};
+  piece.cell_data = {
+      {"background_tet", mesh.background_tet}, {"global_tet", part.global_tet}, {"mean_ratio", mean_ratios(mesh.mesh)}};
+  add_values(data.owners, extras.values, piece.point_data);
+  add_node_sets(part, data.owners, piece.point_data);
+  return write_pvtu(comm, pvtu, !mesh.mesh.C.empty(), piece.point_data, piece.cell_data,
+                    [&](const fs::path& own) { write_vtu(own, piece); });
+}
+
+std::vector<fs::path> write_pvtu(MPI_Comm comm, const fs::path& pvtu, bool has_piece,
+                                 const std::map<std::string, FieldValues>& point_data,
+                                 const std::map<std::string, FieldValues>& cell_data,
+                                 const std::function<void(const fs::path&)>& write) {
+  const auto name_of = [&](int rank) { return pvtu.stem().string() + "_" + std::to_string(rank) + ".vtu"; };
+  const fs::path own = pvtu.parent_path() / name_of(rank_in(comm));
+  write_together(comm, own, has_piece, [&] { write(own); });
+  std::vector<std::string> pieces;
+  for (const int rank : ranks_with(comm, has_piece)) pieces.push_back(name_of(rank));
+  write_together(comm, pvtu, rank_in(comm) == 0,
+                 [&] { CheckedFile(pvtu).text(pvtu_text(point_data, cell_data, pieces)).close(); });
+  std::vector<fs::path> files = {pvtu};
+  for (const std::string& name : pieces) files.push_back(pvtu.parent_path() / name);
+  return files;
+}
+
+std::vector<fs::path> write_msh_pieces(MPI_Comm comm, const fs::path& msh, const DistributedMesh& mesh,
+                                       const PieceExtras& extras) {
+  const VertexOwners owners(comm, mesh);
+  SolverPart part = solver_part(comm, mesh, owners);
+  const std::vector<int> ranks = ranks_with(comm, !mesh.mesh.C.empty());
+  const auto part_of = [&](int rank) {
+    return static_cast<int>(std::lower_bound(ranks.begin(), ranks.end(), rank) - ranks.begin());
+  };
+  const auto name_of = [&](int number) {
+    return msh.parent_path() / (msh.stem().string() + "_" + std::to_string(number + 1) + ".msh");
+  };
+  MshPiece piece;
+  piece.part = part_of(rank_in(comm));
+  piece.n_parts = static_cast<int>(ranks.size());
+  piece.patches = divide_part(part, extras);
+  piece.body.number = extras.body_number;
+  piece.n_faces = part.n_faces;
+  piece.nodes = mesh.mesh.V;
+  piece.node_number = part.global_vertex;
+  piece.tets = mesh.mesh.C;
+  piece.tet_number = part.global_tet;
+  piece.faces = part.boundary;
+  piece.face_number = part.global_face;
+  piece.face_patch = part.patch;
+  add_values(owners, extras.values, piece.boundary_data);
+  std::map<std::int64_t, int> node;  // by numbers in the whole mesh: own ones that others have, and those of ghosts
+  for (const int v : part.sharers.vertex) node[part.global_vertex[v]] = v;
+  for (const GhostTet& ghost : ghost_tets(comm, mesh, part)) {
+    Tet& tet = piece.ghosts.emplace_back();
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto [at, is_new] = node.try_emplace(ghost.corner[k], static_cast<int>(piece.nodes.size()));
+      tet[k] = at->second;
+      if (!is_new) continue;
+      piece.nodes.emplace_back(ghost.place[k][0], ghost.place[k][1], ghost.place[k][2]);
+      piece.node_number.push_back(ghost.corner[k]);
+    }
+    piece.ghost_number.push_back(ghost.tet);
+    piece.ghost_part.push_back(part_of(ghost.rank));
   }
-  throw_first(comm, error, own);
-  std::vector<int> with_tets = gathered(comm, std::vector<int>(mesh.mesh.C.empty() ? 0 : 1, rank_in(comm)));
-  broadcast(comm, with_tets);
-  std::vector<fs::path> pieces;
-  for (const int rank : with_tets) pieces.push_back(name_of(rank));
-  try {
-    if (rank_in(comm) == 0) CheckedFile(pvtu).text(list_of(pieces)).close();
-  } catch (const std::system_error& e) {
-    error = e.code().value();
-  }
-  throw_first(comm, error, pvtu);
-  pieces.insert(pieces.begin(), pvtu);
-  return pieces;
+  const fs::path own = name_of(piece.part);
+  write_together(comm, own, !mesh.mesh.C.empty(), [&] { write_msh41_piece(own, piece); });
+  std::vector<fs::path> files;
+  files.reserve(static_cast<std::size_t>(piece.n_parts));
+  for (int p = 0; p < piece.n_parts; ++p) files.push_back(name_of(p));
+  return files;
 }
 
 }  // namespace umtet

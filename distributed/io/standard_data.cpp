@@ -1,5 +1,7 @@
 #include "distributed/io/standard_data.h"
 
+#include <array>
+
 #include "distributed/id_order.h"
 #include "distributed/part_boundary.h"
 
@@ -36,6 +38,16 @@ StandardData standard_data(MPI_Comm comm, const DistributedMesh& mesh, const std
 std::vector<std::uint8_t> on_boundary(MPI_Comm comm, const DistributedMesh& mesh) {
   const VertexOwners owners(comm, mesh);
   return owners.tell(owned_on_boundary(comm, mesh, owners));
+}
+
+std::vector<Vec3> places_of_owned(const VertexOwners& owners, const TetMesh& mesh) {
+  std::vector<Vec3> places(owners.ids().size());
+  owners.ask(
+      [&](std::size_t v) {
+        return std::array{mesh.V[v].x(), mesh.V[v].y(), mesh.V[v].z()};
+      },
+      [&](std::size_t k, const std::array<double, 3>& x) { places[k] = Vec3(x[0], x[1], x[2]); });
+  return places;
 }
 
 }  // namespace umtet

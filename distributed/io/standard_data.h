@@ -26,4 +26,7 @@ StandardData standard_data(MPI_Comm comm, const DistributedMesh& mesh,
 /// Of the vertices of the own mesh, whether they are on the boundary of that of all ranks. Collective.
 std::vector<std::uint8_t> on_boundary(MPI_Comm comm, const DistributedMesh& mesh);
 
+/// Of vertices that are owned, where they are. Collective.
+std::vector<Vec3> places_of_owned(const VertexOwners& owners, const TetMesh& mesh);
+
 }  // namespace umtet

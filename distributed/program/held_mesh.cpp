@@ -1,19 +1,26 @@
 #include "distributed/program/held_mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <memory>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "distributed/collect.h"
+#include "distributed/io/curved_files.h"
 #include "distributed/io/part_quality.h"
 #include "distributed/io/shared_file.h"
 #include "distributed/io/standard_data.h"
+#include "distributed/io/whole_xdmf.h"
 #include "distributed/part_boundary.h"
 #include "distributed/part_certificate.h"
+#include "distributed/phase.h"
+#include "distributed/program/boundary_values.h"
 #include "mesh/io/quality_csv.h"
 #include "mesh/submesh/assumptions.h"
+#include "pipeline/meshing/sample_fields.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -35,8 +42,11 @@ std::size_t sum(MPI_Comm comm, std::size_t n) {
 }  // namespace
 
 HeldMesh::HeldMesh(MPI_Comm comm, const BackgroundMesh& background, ImplicitFunctionRef psi, const FastParams& params,
-                   const RoundedPlaces& places)
-    : comm_(comm), background_(background), places_(places), mesh_(distributed_mesh(comm, background, psi, params)) {
+                   const std::vector<Vec3>& seeds, const RoundedPlaces& places, double held)
+    : comm_(comm),
+      background_(background),
+      places_(places),
+      mesh_(distributed_mesh(comm, background, psi, params, seeds, held)) {
   for (auto* V : {&mesh_.mesh.V, &mesh_.projected}) {
     for (Vec3& x : *V) x = (x + places_.shift) - places_.shift;
   }
@@ -52,6 +62,7 @@ std::vector<Vec3> HeldMesh::chosen() const {
 
 /// Faces in the order of their tets, and their vertices in that of their ids, as in the whole mesh.
 void HeldMesh::gather_boundary(UmResult& result) const {
+  begin_phase("boundary");
   std::vector<SentFace> faces;
   for (std::size_t f = 0; f < mesh_.positive_faces.size(); ++f) {
     const Triangle& t = mesh_.positive_faces[f];
@@ -108,12 +119,83 @@ MadeInParts HeldMesh::summary(ImplicitFunctionRef psi) const {
   made.certificate = certify_parts(comm_, mesh_, places_.h, psi, places_.rounding);
   made.result.manifold_flips = mesh_.manifold_flips;
   made.result.n_stepped_back = mesh_.n_stepped_back;
+  made.result.n_psi_evaluations = mesh_.n_psi_evaluations;
   gather_boundary(made.result);
   measure_assumptions(made.result);
   return made;
 }
 
-void HeldMesh::write(const fs::path& file, MeshState state, bool moving_alone) {
+CurvedInParts HeldMesh::curve(ImplicitFunctionRef psi, const ClosestPointParams& params) {
+  begin_phase("curve");
+  const VertexOwners owners(comm_, mesh_);
+  SecondOrderParams second;
+  second.closest_point = params;
+  PartEdges edges(comm_, mesh_, owners);
+  CurvedParts parts = curved_parts(comm_, mesh_, edges, psi, places_.h, second);
+  for (std::size_t i = mesh_.mesh.V.size(); i < parts.mesh.V.size(); ++i) {
+    Vec3& x = parts.mesh.V[i];
+    x = (x + places_.shift) - places_.shift;
+  }
+  curved_.emplace(Curved{std::move(edges), std::move(parts), {}, {}});
+  CurvedInParts made;
+  const CurvedParts& curved = curved_->parts;
+  made.report = {certify_curved_parts(comm_, mesh_, owners, curved_->edges, curved, psi, places_.h, places_.rounding),
+                 SecondOrderReport::Repairs{.n_mid_sides_put_back = curved.n_off_surface,
+                                            .n_mid_sides_unprojected = curved.n_unprojected,
+                                            .n_mid_sides_slid = curved.n_slid,
+                                            .n_mid_sides_relaxed = curved.n_relaxed}};
+  gather_mid_sides(made.mid_sides);
+  return made;
+}
+
+/// Those of boundary edges to rank 0, from one rank after the other.
+void HeldMesh::gather_mid_sides(std::vector<Vec3>& mid_sides) {
+  struct Said {
+    char is_curved;
+    std::array<double, 3> place;
+  };
+  std::vector<char> is_curved(curved_->edges.owned().size(), 0);
+  std::vector<std::array<double, 3>> owned(is_curved.size()), sent;
+  curved_->edges.exchange().ask(
+      [&](std::size_t e) {
+        const Vec3& x = curved_->parts.mesh.V[mesh_.mesh.V.size() + e];
+        return Said{curved_->parts.is_curved[e], {x.x(), x.y(), x.z()}};
+      },
+      [&](std::size_t k, const Said& said) {
+        is_curved[k] = said.is_curved;
+        owned[k] = said.place;
+      });
+  for (std::size_t k = 0; k < owned.size(); ++k) {
+    if (!is_curved[k]) continue;
+    curved_->on_boundary.push_back(k);
+    sent.push_back(owned[k]);
+  }
+  curved_->n_of_rank = gathered(comm_, std::vector<std::size_t>{sent.size()});
+  for (const auto& x : gathered(comm_, sent)) mid_sides.emplace_back(x[0], x[1], x[2]);
+}
+
+CurvedPiece HeldMesh::curved_piece() const { return {mesh_, curved_->edges, curved_->parts, places_.shift}; }
+
+void HeldMesh::write_curved(const fs::path& file, const BoundaryData& data) {
+  write_whole_vtu(comm_, file, curved_piece(), boundary_, shared_values(comm_, mesh_, data), mid_side_values(data));
+}
+
+MidSideValues HeldMesh::mid_side_values(const BoundaryData& data) const {
+  return shared_mid_side_values(comm_, curved_->on_boundary, curved_->n_of_rank, data);
+}
+
+/// While the mesh has these places, moved to where the model is.
+template <class Write>
+auto HeldMesh::with_places(std::vector<Vec3>& V, const Write& write) {
+  for (Vec3& x : V) x += places_.shift;
+  V.swap(mesh_.mesh.V);
+  const auto swap_back = [&](DistributedMesh* mesh) { V.swap(mesh->mesh.V); };
+  const std::unique_ptr<DistributedMesh, decltype(swap_back)> guard(&mesh_, swap_back);
+  return write();
+}
+
+void HeldMesh::write(const fs::path& file, MeshState state, bool moving_alone, const BoundaryData& data) {
+  begin_phase("files");
   std::vector<Vec3> V = state == MeshState::Projected ? mesh_.projected : mesh_.mesh.V;
   std::vector<std::size_t> moving;
   if (moving_alone || state == MeshState::Chosen) {
@@ -129,29 +211,46 @@ void HeldMesh::write(const fs::path& file, MeshState state, bool moving_alone) {
   }
   if (!knows_boundary_) boundary_ = on_boundary(comm_, mesh_);
   knows_boundary_ = true;
-  for (Vec3& x : V) x += places_.shift;
-  V.swap(mesh_.mesh.V);  // until it is written
-  try {
-    if (sum(comm_, moving.size()) == 0) {
-      write_whole_vtu(comm_, file, mesh_, &boundary_);
-    } else {
-      const DistributedMesh some = some_of(mesh_, moving);
-      std::vector<std::uint8_t> of_some;
-      std::size_t v = 0;
-      for (const std::int64_t id : some.background_vertex) {
-        while (mesh_.background_vertex[v] != id) ++v;
-        of_some.push_back(boundary_[v]);
-      }
-      write_whole_vtu(comm_, file, some, &of_some);
+  with_places(V, [&] {
+    if (curved_ && state == MeshState::Final) return write_curved(file, data);
+    if (sum(comm_, moving.size()) == 0)
+      return write_whole_vtu(comm_, file, mesh_, &boundary_, shared_values(comm_, mesh_, data));
+    const DistributedMesh some = some_of(mesh_, moving);
+    std::vector<std::uint8_t> of_some;
+    std::size_t v = 0;
+    for (const std::int64_t id : some.background_vertex) {
+      while (mesh_.background_vertex[v] != id) ++v;
+      of_some.push_back(boundary_[v]);
     }
-  } catch (...) {
-    V.swap(mesh_.mesh.V);
-    throw;
-  }
-  V.swap(mesh_.mesh.V);
+    write_whole_vtu(comm_, file, some, &of_some);
+  });
+}
+
+std::vector<fs::path> HeldMesh::write_pieces(const fs::path& file, PieceFormat format, const PieceData* data) {
+  begin_phase("pieces");
+  std::vector<Vec3> V = mesh_.mesh.V;
+  return with_places(V, [&] {
+    if (format == PieceFormat::Xdmf) return write_whole_xdmf(comm_, file, mesh_);
+    PieceExtras extras = data ? piece_extras(comm_, mesh_, *data) : PieceExtras();
+    if (format == PieceFormat::Msh) {
+      std::erase_if(extras.values.arrays, [](const VertexValues::Array& a) { return !is_of_scan(a.name); });
+      return write_msh_pieces(comm_, file, mesh_, extras);
+    }
+    if (!curved_) return write_pvtu(comm_, file, mesh_, extras);
+    const MidSideValues of_mid_sides = data ? mid_side_values(data->of_vertices) : MidSideValues();
+    return write_curved_pvtu(comm_, file, curved_piece(), extras, of_mid_sides);
+  });
+}
+
+TakenMesh HeldMesh::release() && {
+  for (Vec3& x : mesh_.mesh.V) x += places_.shift;
+  if (!curved_) return {std::move(mesh_), std::nullopt};
+  for (Vec3& x : curved_->parts.mesh.V) x += places_.shift;
+  return {std::move(mesh_), TakenMesh::Curved{std::move(curved_->edges), std::move(curved_->parts)}};
 }
 
 void HeldMesh::write_quality(const fs::path& file) {
+  begin_phase("files");
   std::vector<Vec3> before = chosen(), between = mesh_.projected, last = mesh_.mesh.V;
   for (auto* V : {&before, &between, &last}) {
     for (Vec3& x : *V) x += places_.shift;

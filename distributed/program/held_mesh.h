@@ -4,39 +4,75 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "distributed/distributed_mesh.h"
+#include "distributed/io/curved_files.h"
 #include "distributed/io/part_files.h"
+#include "distributed/part_second_order.h"
 #include "mesh/background/background_mesh.h"
 #include "pipeline/meshing/part_mesher.h"
 
 namespace umtet {
 
+/// A rank's part with the places of the model, for who calls it in memory.
+struct TakenMesh {
+  DistributedMesh mesh;
+  /// Of second order.
+  struct Curved {
+    PartEdges edges;
+    CurvedParts parts;
+  };
+  std::optional<Curved> curved;
+};
+
 /// A rank's part of a mesh of all ranks, as files will hold it, and what all do with theirs. All functions are
 /// collective.
 class HeldMesh {
  public:
+  /// @param held  of distributed_mesh()
   HeldMesh(MPI_Comm comm, const BackgroundMesh& background, ImplicitFunctionRef psi, const FastParams& params,
-           const RoundedPlaces& places);
+           const std::vector<Vec3>& seeds, const RoundedPlaces& places, double held = 0);
 
   bool is_made() const { return mesh_.status == PartsStatus::Success; }
   /// All but the handle: the boundary is on rank 0, what is said of the whole on all ranks. \pre is_made()
   MadeInParts summary(ImplicitFunctionRef psi) const;
-  /// MeshInParts::write(). \throw KnownToAll
-  void write(const std::filesystem::path& file, MeshState state, bool moving_alone);
+  /// MeshInParts::curve(); mid-sides are on rank 0. \pre is_made()
+  CurvedInParts curve(ImplicitFunctionRef psi, const ClosestPointParams& params);
+  /// MeshInParts::write(). @param data  read on rank 0 \throw KnownToAll
+  void write(const std::filesystem::path& file, MeshState state, bool moving_alone, const BoundaryData& data);
   /// MeshInParts::write_quality(). \throw KnownToAll
   void write_quality(const std::filesystem::path& file);
+  /// MeshInParts::write_pieces(). @param data  read on rank 0; null on all ranks or on none \throw KnownToAll
+  std::vector<std::filesystem::path> write_pieces(const std::filesystem::path& file, PieceFormat format,
+                                                  const PieceData* data);
+  /// The part itself; of second order after curve().
+  TakenMesh release() &&;
 
  private:
   std::vector<Vec3> chosen() const;
+  template <class Write>
+  auto with_places(std::vector<Vec3>& V, const Write& write);
+  /// Of second order.
+  struct Curved {
+    PartEdges edges;
+    CurvedParts parts;
+    std::vector<std::size_t> on_boundary;  ///< of the edges that are owned, those there
+    std::vector<std::size_t> n_of_rank;    ///< on rank 0, how many of these each has
+  };
   void gather_boundary(UmResult& result) const;
+  void gather_mid_sides(std::vector<Vec3>& mid_sides);
+  CurvedPiece curved_piece() const;
+  MidSideValues mid_side_values(const BoundaryData& data) const;
+  void write_curved(const std::filesystem::path& file, const BoundaryData& data);
   void measure_assumptions(UmResult& result) const;
 
   MPI_Comm comm_;
   const BackgroundMesh background_;
   const RoundedPlaces places_;
   DistributedMesh mesh_;
+  std::optional<Curved> curved_;
   bool knows_boundary_ = false;
   std::vector<std::uint8_t> boundary_;  ///< on_boundary(), once it is needed
 };

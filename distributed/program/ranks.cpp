@@ -1,132 +1,84 @@
 #include "distributed/program/ranks.h"
 
+#include <tbb/global_control.h>
+
 #include <algorithm>
-#include <cstdio>
-#include <exception>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
-#include "distributed/collect.h"
-#include "distributed/io/shared_file.h"
-#include "pipeline/case/exit_code.h"
-#include "pipeline/domain/background_choice.h"
-#include "pipeline/meshing/library_params.h"
+#include "distributed/phase.h"
+#include "distributed/program/besides_mesh.h"
+#include "distributed/program/freed_memory.h"
+#include "distributed/program/rank_command.h"
+#include "distributed/program/same_call.h"
+#include "distributed/program/shared_level_set.h"
+#include "distributed/program/together.h"
+#include "pipeline/case/memory.h"
+#include "pipeline/domain/domain.h"
 
 namespace umtet {
 namespace {
 
-enum class Order : std::int64_t { Make, Write, WriteQuality, Drop, End };
+// Phases of what rank 0 does alone: with psi, with the boundary, and behind files that all write.
+constexpr const char *kPsi = "alone_psi", *kMeasures = "alone_measures", *kFiles = "alone_files";
 
-/// What rank 0 says.
-struct Command {
-  Order order = Order::End;
-  std::int64_t mesh = 0;   ///< its number; of the end the exit code
-  std::int64_t state = 0;  ///< a MeshState
-  std::int64_t moving_alone = 0;
-  double lattice_h = 0, h = 0, shift[3] = {}, rounding = 0;
-
-  RoundedPlaces places() const { return {h, Vec3(shift[0], shift[1], shift[2]), rounding}; }
+struct NextPhase {
+  const char* name;
+  ~NextPhase() { begin_phase(name); }
 };
 
-/// @param text  a file
-void say(MPI_Comm comm, Command& command, std::string& text) {
-  MPI_Bcast(&command, sizeof command, MPI_BYTE, 0, comm);
-  std::vector<char> bytes(text.begin(), text.end());
-  broadcast(comm, bytes);
-  text.assign(bytes.begin(), bytes.end());
-}
-
-/// What goes wrong on one rank, while others wait for it, ends all: with its reason and its exit code.
-template <class F>
-auto together(MPI_Comm comm, const F& work) {
-  try {
-    return work();
-  } catch (const KnownToAll&) {
-    throw;
-  } catch (...) {
-    const Failure failure = failure_of(std::current_exception());
-    std::fprintf(stderr, "umtet: rank %d: %s\n", rank_in(comm), failure.message.c_str());
-    std::fflush(stderr);
-    MPI_Abort(comm, static_cast<int>(failure.code));
-    throw;  // not reached
-  }
-}
-
-/// A rank other than 0.
-class Server {
- public:
-  Server(MPI_Comm comm, const std::function<RankInput()>& input) : comm_(comm), input_(input) {}
-
-  int operator()() {
-    for (;;) {
-      Command command;
-      std::string file;
-      say(comm_, command, file);
-      if (command.order == Order::End) return static_cast<int>(command.mesh);
-      try {
-        together(comm_, [&] { obey(command, file); });
-      } catch (const KnownToAll&) {
-        // Rank 0 says it.
-      }
-    }
-  }
-
- private:
-  void obey(const Command& command, const std::string& file);
-
-  MPI_Comm comm_;
-  const std::function<RankInput()>& input_;
-  std::optional<RankInput> have_;
-  std::optional<UmParams> params_;
-  std::map<std::int64_t, HeldMesh> held_;
-};
-
-void Server::obey(const Command& command, const std::string& file) {
-  if (command.order == Order::Make) {
-    if (!have_) {
-      have_.emplace(input_());
-      params_ = um_params(have_->parameters);
-    }
-    have_->domain.limit_detail(command.lattice_h);
-    const BackgroundMesh background(tiling_of(have_->parameters), have_->domain.box, command.lattice_h);
-    const ImplicitFunctionRef psi = have_->domain.psi();
-    const auto at = held_.try_emplace(command.mesh, comm_, background, psi, params_->fast, command.places()).first;
-    if (at->second.is_made()) at->second.summary(psi);
-    return;
-  }
-  const auto at = held_.find(command.mesh);
-  if (command.order == Order::Write)
-    at->second.write(file, static_cast<MeshState>(command.state), command.moving_alone != 0);
-  if (command.order == Order::WriteQuality) at->second.write_quality(file);
-  if (command.order == Order::Drop) held_.erase(at);
+/// Whether the levels that both have are the same: the same coefficients in memory.
+bool begin_alike(const LevelSet& a, const LevelSet& b) {
+  bool same = &a.coarsest() == &b.coarsest();
+  for (int level = 1; same && level < std::min(a.n_levels(), b.n_levels()); ++level)
+    same = &a.band(level) == &b.band(level);
+  return same;
 }
 
 }  // namespace
+
+/// What rank 0 does while all others do. @param then  the phase of what it does alone behind that
+template <class F>
+auto Ranks::with_all(const char* then, const F& work) const {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads_));
+  const NextPhase next{then};
+  return together(comm_, work);
+}
 
 class Ranks::Handle final : public MeshInParts {
  public:
   Handle(Ranks& ranks, std::int64_t mesh) : ranks_(ranks), mesh_(mesh) {}
   Handle(const Handle&) = delete;
   Handle& operator=(const Handle&) = delete;
+  std::int64_t number() const { return mesh_; }
   ~Handle() override {
-    Command command{Order::Drop, mesh_};
-    std::string no_file;
-    say(ranks_.comm_, command, no_file);
+    say(ranks_.comm_, {RankOrder::Drop, mesh_});
     ranks_.held_.erase(mesh_);
   }
-  void write(const std::filesystem::path& file, MeshState state, bool moving_alone) const override {
-    Command command{Order::Write, mesh_, static_cast<std::int64_t>(state), moving_alone ? 1 : 0};
-    std::string name = file.string();
-    say(ranks_.comm_, command, name);
-    together(ranks_.comm_, [&] { ranks_.held_.at(mesh_).write(file, state, moving_alone); });
+  CurvedInParts curve(const Domain& domain, const ClosestPointParams& params) const override {
+    say(ranks_.comm_, {RankOrder::Curve, mesh_});
+    const ImplicitFunctionRef psi = domain.psi();
+    return ranks_.with_all(kMeasures, [&] { return ranks_.held_.at(mesh_).curve(psi, params); });
+  }
+  void write(const std::filesystem::path& file, MeshState state, bool moving_alone,
+             const BoundaryData& data) const override {
+    say(ranks_.comm_, {RankOrder::Write, mesh_, static_cast<std::int64_t>(state), moving_alone ? 1 : 0},
+        {file.string()});
+    ranks_.with_all(kFiles, [&] { ranks_.held_.at(mesh_).write(file, state, moving_alone, data); });
   }
   void write_quality(const std::filesystem::path& file) const override {
-    Command command{Order::WriteQuality, mesh_};
-    std::string name = file.string();
-    say(ranks_.comm_, command, name);
-    together(ranks_.comm_, [&] { ranks_.held_.at(mesh_).write_quality(file); });
+    say(ranks_.comm_, {RankOrder::WriteQuality, mesh_}, {file.string()});
+    ranks_.with_all(kFiles, [&] { ranks_.held_.at(mesh_).write_quality(file); });
+  }
+  std::vector<std::filesystem::path> write_pieces(const std::filesystem::path& file, PieceFormat format,
+                                                  const PieceData* data) const override {
+    RankCommand command{RankOrder::WritePieces, mesh_, static_cast<std::int64_t>(format)};
+    command.has_data = data ? 1 : 0;
+    say(ranks_.comm_, command, {file.string()});
+    return ranks_.with_all(kFiles, [&] { return ranks_.held_.at(mesh_).write_pieces(file, format, data); });
   }
 
  private:
@@ -134,28 +86,107 @@ class Ranks::Handle final : public MeshInParts {
   std::int64_t mesh_;
 };
 
-std::optional<MadeInParts> Ranks::make(const BackgroundMesh& background, ImplicitFunctionRef psi,
-                                       const FastParams& params, const RoundedPlaces& places) {
-  Command command{Order::Make, next_++, 0, 0, background.h(), places.h, {}, places.rounding};
-  std::copy_n(places.shift.data(), 3, command.shift);
-  std::string no_file;
-  say(comm_, command, no_file);
-  return together(comm_, [&]() -> std::optional<MadeInParts> {
-    const auto at = held_.try_emplace(command.mesh, comm_, background, psi, params, places).first;
+int Ranks::n() const {
+  int n = 1;
+  MPI_Comm_size(comm_, &n);
+  return n;
+}
+
+/// Bands that an h does not show are on rank 0 alone: where they are needed after all, psi is sent again. The last band
+/// of a fit is not kept here to be recognised: what begins with the levels that it was made for has no other.
+void Ranks::share(const LevelSet& psi) {
+  const bool is_there = shared_ && psi.n_levels() <= n_shared_ && begin_alike(*shared_, psi);
+  if (is_there && psi.n_levels() == n_shared_) return;
+  RankCommand command{is_there ? RankOrder::CutLevelSet : RankOrder::LevelSet};
+  command.spacing = psi.spacing();
+  say(comm_, command);
+  shared_ = is_there ? psi : with_all(kPsi, [&] { return shared_level_set(comm_, psi); });
+  n_shared_ = psi.n_levels();
+}
+
+void Ranks::take(int level, const Lattice& lattice, int half_width, std::vector<SsdSample> samples) {
+  say(comm_, {RankOrder::TakeSamples, 0, level});
+  bands_.insert_or_assign(level,
+                          with_all(kPsi, [&] { return band_part(comm_, lattice, half_width, std::move(samples)); }));
+}
+
+LevelSet Ranks::refine(const LevelSet& psi, double kappa, double tolerance, int max_iterations,
+                       const std::function<void(double)>& go_on, BandReport& report) {
+  share(psi);
+  RankCommand command{RankOrder::Refine};
+  command.kappa = kappa;
+  command.tolerance = tolerance;
+  command.max_iterations = max_iterations;
+  say(comm_, command);
+  BandPart part = std::move(bands_.extract(psi.n_levels()).mapped());
+  LevelSet finer =
+      with_all(kPsi, [&] { return refine_parts(comm_, psi, std::move(part), command.refine_params(), go_on, report); });
+  n_shared_ = finer.n_levels();
+  return finer;
+}
+
+void Ranks::tell(const Domain& domain) {
+  RankCommand command{RankOrder::Domain};
+  command.is_fitted = domain.fitted.has_value();
+  command.has_t = t_.has_value();
+  command.t = t_.value_or(0);
+  command.set_box(domain.box);
+  say(comm_, command);
+  const std::string difference = with_all(kPsi, [&] { return difference_of_calls(comm_, call_()); });
+  if (!difference.empty()) throw CallsDiffer(difference);
+}
+
+void Ranks::forget_domain(std::optional<double> t) {
+  has_told_ = false;
+  t_ = t;
+}
+
+std::optional<MadeInParts> Ranks::make(const BackgroundMesh& background, const Box& box, const Domain& domain,
+                                       const FastParams& params, const std::vector<Vec3>& seeds,
+                                       const RoundedPlaces& places) {
+  if (domain.fitted) share(*domain.level_set);
+  if (!std::exchange(has_told_, true)) tell(domain);
+  RankCommand command{RankOrder::Make, next_++};
+  command.lattice_h = background.h();
+  command.set_box(box);
+  command.set_places(places);
+  say(comm_, command, {{}, seeds});
+  const ImplicitFunctionRef psi = domain.psi();
+  return with_all(kMeasures, [&]() -> std::optional<MadeInParts> {
+    const double held = bytes_besides_mesh(domain, places.h);
+    const auto at = held_.try_emplace(command.mesh, comm_, background, psi, params, seeds, places, held).first;
     auto handle = std::make_shared<const Handle>(*this, command.mesh);
     if (!at->second.is_made()) return std::nullopt;
     MadeInParts made = at->second.summary(psi);
     made.mesh = std::move(handle);
+    give_back_freed_memory();
     return made;
   });
 }
 
-void Ranks::end(int code) {
-  Command command{Order::End, code};
-  std::string no_file;
-  say(comm_, command, no_file);
+double Ranks::allowed_bytes(const Parameters& parameters) const {
+  give_back_freed_memory();  // which counts
+  int n = 1;
+  MPI_Comm_size(comm_, &n);
+  const double of_one = parameters.output().max_memory > 0 ? 1 : 1. / n_here_;  // what a machine can give is shared
+  return of_one * n * umtet::allowed_bytes(parameters);
 }
 
-int serve(MPI_Comm comm, const std::function<RankInput()>& input) { return Server(comm, input)(); }
+TakenMesh Ranks::take(const MeshInParts& mesh) {
+  const std::int64_t number = dynamic_cast<const Handle&>(mesh).number();
+  say(comm_, {RankOrder::Take, number});
+  return std::move(held_.at(number)).release();
+}
+
+void Ranks::end(int code) { say(comm_, {RankOrder::End, code}); }
+
+int n_ranks_here(MPI_Comm comm) {
+  int n = 1;
+  MPI_Comm here = MPI_COMM_NULL;
+  MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
+  MPI_Comm_size(here, &n);
+  MPI_Comm_free(&here);
+  return n;
+}
 
 }  // namespace umtet

@@ -1,17 +1,25 @@
-// The program of several processes: mpirun -n N umtet_mpi mesh --implicit EXPR ...
+// The program of several processes: mpirun -n N umtet_mpi run CLOUD ...
 
 #include <mpi.h>
+#include <sys/resource.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
+#include <cstdio>
+#include <fstream>
 #include <memory>
 #include <utility>
 #include <variant>
 
+#include "distributed/program/rank_signals.h"
 #include "distributed/program/ranks.h"
+#include "distributed/program/serve.h"
+#include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
+#include "pipeline/case/memory.h"
 #include "pipeline/cli/command_line.h"
 #include "pipeline/cli/program.h"
 
@@ -24,15 +32,28 @@ int rank_of(MPI_Comm comm) {
   return rank;
 }
 
-/// Ranks, of all and of those on this machine.
-RanksOfProgram ranks_of(MPI_Comm comm, PartMesher* mesher) {
-  RanksOfProgram ranks{mesher};
-  MPI_Comm here = MPI_COMM_NULL;
-  MPI_Comm_size(comm, &ranks.n);
-  MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
-  MPI_Comm_size(here, &ranks.n_here);
-  MPI_Comm_free(&here);
-  return ranks;
+// What Open MPI 4.1 maps when it starts, 220 MB here (VmPeak before and after MPI_Init_thread()), and what a mesh
+// takes. Where it cannot map all of that it waits for ever, or crashes.
+constexpr double kLeastAddresses = 3.2e8;
+
+/// Under a limit of addresses (ulimit -v) that is too low for MPI.
+bool has_addresses() {
+  rlimit limit{};
+  double pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || pages == 0) return true;
+  const auto most = static_cast<double>(limit.rlim_cur);
+  if (most - pages * static_cast<double>(::sysconf(_SC_PAGESIZE)) > kLeastAddresses) return true;
+  std::fprintf(stderr, "umtet: %.0f MB of addresses (ulimit -v) are not enough for MPI and a mesh\n", most / 1e6);
+  return false;
+}
+
+/// Those of a mesh, of a call that several processes take. \throw UsageError as parse_command_line()
+Parameters parameters_of(int argc, char** argv) {
+  Command command = parse_command_line(argc, argv).command;
+  if (auto* evolve = std::get_if<EvolveCommand>(&command)) return std::move(evolve->request.parameters);
+  if (auto* of_case = std::get_if<ExportCommand>(&command)) return std::move(of_case->parameters);
+  return std::move(std::get<RunCommand>(command).request.parameters);
 }
 
 /// Rank 0 says what is wrong with a call; the others need it only where nothing is.
@@ -45,8 +66,9 @@ int run_other_rank(int argc, char** argv, int n_here) {
         call.options.threads > 0 ? call.options.threads : std::max(1, tbb::info::default_concurrency() / n_here);
     threads = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                     static_cast<std::size_t>(n));
-    const auto& request = std::get<RunCommand>(call.command).request;
-    return RankInput{request.parameters, load_domain(CasePaths{request.case_folder}, request.parameters)};
+    Parameters parameters = parameters_of(argc, argv);
+    if (const double most = parameters.output().max_memory; most > 0) limit_memory(1e9 * most, n);
+    return parameters;
   });
 }
 
@@ -56,13 +78,18 @@ int run_other_rank(int argc, char** argv, int n_here) {
 int main(int argc, char** argv) {
   using namespace umtet;
   keep_freed_memory();
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit on files is an error of write()
+  std::signal(SIGXFSZ, SIG_IGN);                                           // a limit on files is an error of write()
+  if (!has_addresses()) return static_cast<int>(ExitCode::ResourceLimit);  // which ends the other processes, too
   int provided = 0;
   MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
   const bool speaks = rank_of(MPI_COMM_WORLD) == 0;
+  RanksOfProgram ranks;
+  ranks.n_here = n_ranks_here(MPI_COMM_WORLD);
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks.n);
+  Ranks mesher(MPI_COMM_WORLD, ranks.n_here, [&] { return parameters_of(argc, argv).section("mesh"); });
+  ranks.mesher = &mesher;
   if (speaks) install_signal_handlers();
-  Ranks mesher(MPI_COMM_WORLD);
-  const RanksOfProgram ranks = ranks_of(MPI_COMM_WORLD, &mesher);
+  if (ranks.n > 1) share_signals(rank_of(MPI_COMM_WORLD));
   int code = 0;
   if (speaks) {
     code = run_program(argc, argv, ranks);

@@ -2,6 +2,7 @@
 
     reconstruct(points, normals)  -> LevelSet     a C2 level set psi of a point cloud
     mesh(psi, ...)                -> Mesh         a boundary-fitting mesh of {psi < 0}, with its certificate
+    mesh(psi, ..., comm=comm)     -> MeshPart     what this process has of one mesh of all processes of comm (mpi4py)
     UniversalMesh(box, h).update(psi) -> Update   the same for a domain that moves, in one background mesh
     certificate(points, tets)     -> dict         what is true of any tet mesh
 
@@ -21,7 +22,7 @@ is not possible; their `evidence` is a dict with status, places and lengths. A m
 look at `mesh.certified`.
 """
 import os
-from typing import Any, Callable, Optional, Union
+from typing import Any, Callable, Optional, Union, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -30,18 +31,19 @@ from . import _core
 from ._arrays import cloud_of, tets_of
 from ._core import Cancelled, LevelSet, MeshingError, ReconstructionError
 from ._mesh import Mesh, Update
+from ._parts import Communicator, MeshPart, mesh_of_all
 from ._settings import box_of, settings
 
 __version__ = _core.__version__
 __all__ = [
-    "Cancelled", "LevelSet", "Mesh", "MeshingError", "ReconstructionError", "UniversalMesh", "Update", "certificate",
+    "Cancelled", "LevelSet", "Mesh", "MeshPart", "MeshingError", "ReconstructionError", "UniversalMesh", "Update", "certificate",
     "mesh", "reconstruct"
 ]
 
 Psi = Union[LevelSet, str, "os.PathLike[str]", Callable[[npt.NDArray[np.float64]], Any]]
 Progress = Callable[[str, float], Any]
 
-for _public in (Cancelled, MeshingError, ReconstructionError, Mesh, Update):
+for _public in (Cancelled, MeshingError, ReconstructionError, Mesh, MeshPart, Update):
     _public.__module__ = "umtet"  # as they are printed
 
 _NOT_OF_A_MOVING_MESH = ("tets", "max_tets", "max_deviation", "effort", "order")
@@ -67,8 +69,20 @@ def reconstruct(points: Any, normals: Optional[npt.ArrayLike] = None, *, normal_
     return _core.reconstruct(x, n, settings(("cloud", "reconstruct"), parameters), progress, threads)
 
 
+@overload
 def mesh(psi: Psi, *, box: Optional[npt.ArrayLike] = None, t: Optional[float] = None, progress: Optional[Progress] = None,
-         threads: int = 0, **parameters: Any) -> Mesh:
+         threads: int = 0, comm: None = None, **parameters: Any) -> Mesh:
+    ...
+
+
+@overload
+def mesh(psi: Psi, *, box: Optional[npt.ArrayLike] = None, t: Optional[float] = None, progress: Optional[Progress] = None,
+         threads: int = 0, comm: Communicator, **parameters: Any) -> MeshPart:
+    ...
+
+
+def mesh(psi: Psi, *, box: Optional[npt.ArrayLike] = None, t: Optional[float] = None, progress: Optional[Progress] = None,
+         threads: int = 0, comm: Optional[Communicator] = None, **parameters: Any) -> Union[Mesh, MeshPart]:
     """Meshes {psi < 0}, as `umtet mesh` does.
 
     psi: a LevelSet, a formula, a callable, or the pathlib.Path of a grid as `umtet mesh --level-set` reads it (level, part,
@@ -81,11 +95,20 @@ def mesh(psi: Psi, *, box: Optional[npt.ArrayLike] = None, t: Optional[float] = 
 
     Returns a Mesh, the best of up to five where the choice of h is left to umtet. MeshingError: there is none;
     evidence says where, and which h may do. Mesh.certified says whether what is there is right.
+
+    comm: a communicator of mpi4py. All its processes call with the same arguments, make the mesh of one process together
+    and get a MeshPart each; of a formula, a callable, a grid or the LevelSet of the first, in fast mode, one h, without
+    walls, of either order. threads are those of each process (0: a share of its machine). progress is called in the
+    first. What psi raises ends all (MPI_Abort).
     """
     parameters["box"] = box_of(box)
+    given: Any = psi
     if isinstance(psi, os.PathLike):
-        return Mesh(_core.mesh(None, settings(("mesh",), {**parameters, "level_set": psi}), t, progress, threads))
-    return Mesh(_core.mesh(psi, settings(("mesh",), parameters), t, progress, threads))
+        given, parameters["level_set"] = None, psi
+    made = settings(("mesh",), parameters)
+    if comm is not None:
+        return mesh_of_all(comm, given, made, t, progress, threads)
+    return Mesh(_core.mesh(given, made, t, progress, threads))
 
 
 class UniversalMesh:

@@ -43,8 +43,11 @@ FastParams without_repair() {
 }
 
 /// That of one process.
-WholeMesh made_by_one(const BackgroundMesh& background, const AnalyticDomain& domain, const FastParams& params) {
-  const UmResult made = universal_mesh(background, domain, {.fast = params});
+WholeMesh made_by_one(const BackgroundMesh& background, const AnalyticDomain& domain, const FastParams& params,
+                      const std::vector<Vec3>& seeds = {}) {
+  UmParams all{.fast = params};
+  if (!seeds.empty()) all.submesh.search = SubmeshSearch::Crawl;
+  const UmResult made = universal_mesh(background, domain, all, {}, seeds);
   EXPECT_EQ(made.status, UmStatus::Success) << made.evidence.what;
   WholeMesh mesh;
   const auto& id = made.submesh.background_vertex;
@@ -90,13 +93,13 @@ WholeMesh gathered_mesh(const DistributedMesh& part) {
 
 /// @return the part of this rank
 DistributedMesh expect_same(const BackgroundMesh& background, const AnalyticDomain& domain,
-                            const FastParams& params = {}) {
+                            const FastParams& params = {}, const std::vector<Vec3>& seeds = {}) {
   SCOPED_TRACE(domain.name);
-  const DistributedMesh part = distributed_mesh(MPI_COMM_WORLD, background, domain, params);
+  const DistributedMesh part = distributed_mesh(MPI_COMM_WORLD, background, domain, params, seeds);
   EXPECT_EQ(part.status, PartsStatus::Success) << to_string(part.status) << " " << part.n_places;
   const WholeMesh mesh = gathered_mesh(part);
   if (rank() != 0) return part;
-  const WholeMesh one = made_by_one(background, domain, params);
+  const WholeMesh one = made_by_one(background, domain, params, seeds);
   EXPECT_EQ(mesh.tets.size(), one.tets.size());
   EXPECT_TRUE(mesh.tets == one.tets);
   EXPECT_EQ(mesh.places.size(), one.places.size());
@@ -190,8 +193,30 @@ TEST(DistributedMesh, FacesOfTwoRanksThatMeetStepBack) {
   }
 }
 
+TEST(DistributedMesh, PiecesWithoutASeedAreLeftOut) {
+  const AnalyticDomain balls = two_balls(.4);
+  const BackgroundMesh background(a15(), balls.box, .1);
+  const std::size_t n_both = expect_same(background, balls).n_chosen_tets;
+  const std::size_t n = expect_same(background, balls, {}, {Vec3(-.2, 0, 0)}).n_chosen_tets;
+  EXPECT_NEAR(static_cast<double>(n), .5 * static_cast<double>(n_both), .02 * static_cast<double>(n_both));
+}
+
+TEST(DistributedMesh, ACavityWithoutASeedIsFilled) {
+  AnalyticDomain shell = testing::sphere();
+  shell.name = "shell";
+  shell.psi = [](const Vec3& x, Vec3* g, Mat3* H) {  // between radii .5 and 1
+    const double r2 = x.squaredNorm();
+    if (g) *g = (4 * r2 - 2.5) * x;
+    if (H) *H = (4 * r2 - 2.5) * Mat3::Identity() + 8 * x * x.transpose();
+    return (r2 - 1) * (r2 - .25);
+  };
+  const BackgroundMesh background(a15(), testing::cube_box(1.5), .12);
+  const std::size_t n_with = expect_same(background, shell, {}, {Vec3(1, 0, 0), Vec3(.5, 0, 0)}).n_chosen_tets;
+  EXPECT_GT(expect_same(background, shell, {}, {Vec3(1, 0, 0)}).n_chosen_tets, n_with + 1000);
+}
+
 TEST(DistributedMesh, AllThatOneProcessMendsIsMended) {
-  const AnalyticDomain balls = two_balls(.75 * .1);
+  const AnalyticDomain balls = two_balls(.2 * .1);
   const DistributedMesh made = expect_same({a15(), balls.box, .1}, balls);
   EXPECT_FALSE(made.manifold_flips.empty());
   EXPECT_GT(made.n_stepped_back, 0U);

@@ -58,6 +58,17 @@ TEST(IdOrder, NumbersCountWhatIsLess) {
   for (std::size_t k = 0; k < ids.size(); ++k) EXPECT_EQ(numbers[k], ids[k] / 7);
 }
 
+TEST(IdOrder, SumsAreThoseOfWhatIsLess) {
+  const std::vector<std::int64_t> ids = dealt(777);
+  std::vector<std::int64_t> values;
+  for (const std::int64_t id : ids) values.push_back(id / 7 % 5);
+  const std::vector<std::int64_t> sums = IdOrder(MPI_COMM_WORLD, ids, 16).sums_before(values);
+  std::vector<std::int64_t> expected = {0};
+  for (std::int64_t k = 0; k < 777; ++k) expected.push_back(expected.back() + k % 5);
+  ASSERT_EQ(sums.size(), ids.size());
+  for (std::size_t k = 0; k < ids.size(); ++k) EXPECT_EQ(sums[k], expected[static_cast<std::size_t>(ids[k] / 7)]);
+}
+
 TEST(PieceChain, AddsInTheOrderOfPieces) {
   // Sums of these depend on their order.
   const auto term = [](std::int64_t id) { return 1. / static_cast<double>(id % 91 + 1) * (id % 3 == 0 ? 1e9 : 1.); };

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -11,6 +12,8 @@
 #include <string>
 #include <system_error>
 
+#include "distributed/collect.h"
+#include "distributed/ghost_tets.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "mesh/universal_mesh.h"
 #include "tests/distributed/ranks.h"
@@ -72,6 +75,33 @@ TEST_F(PartFiles, TheWholeFileIsThatOfOneProcess) {
   }
 }
 
+TEST_F(PartFiles, ValuesOfSomeVerticesAreInTheFileOfOneProcess) {
+  const AnalyticDomain domain = testing::torus();
+  for (const double h : {.31, .1}) {
+    const BackgroundMesh background = lattice_for(domain, h);
+    const DistributedMesh part = distributed_mesh(MPI_COMM_WORLD, background, domain);
+    // Of vertices with positive faces here; others may have them without.
+    VertexValues values{{{"scan_rgb", 3, -2, {}}, {"support", 1, -1, {}}}, std::vector<char>(part.mesh.V.size(), 0)};
+    for (const Triangle& f : part.positive_faces)
+      for (const int v : f) values.has[v] = 1;
+    for (const Vec3& x : part.mesh.V) {
+      values.arrays[0].values.insert(values.arrays[0].values.end(), x.begin(), x.end());
+      values.arrays[1].values.push_back(x.norm());
+    }
+    write_whole_vtu(MPI_COMM_WORLD, folder_ / "parts.vtu", part, nullptr, values);
+    if (rank() != 0) continue;
+    const UmResult one = universal_mesh(background, domain, {});
+    MeshFile whole = whole_mesh(background, domain);
+    std::vector<Vec3> places(whole.mesh.V.size(), Vec3::Constant(-2));
+    std::vector<double> norms(whole.mesh.V.size(), -1);
+    for (const int v : one.submesh.positive_vertices) places[v] = whole.mesh.V[v], norms[v] = whole.mesh.V[v].norm();
+    whole.point_data["scan_rgb"] = places;
+    whole.point_data["support"] = norms;
+    write_vtu(folder_ / "one.vtu", whole);
+    EXPECT_TRUE(bytes_of(folder_ / "parts.vtu") == bytes_of(folder_ / "one.vtu"));
+  }
+}
+
 TEST_F(PartFiles, ALongerFileThatWasThereIsCut) {
   const AnalyticDomain domain = testing::sphere();
   const BackgroundMesh background = lattice_for(domain, .4);
@@ -121,11 +151,35 @@ TEST_F(PartFiles, PiecesAreTheWholeTogether) {
   EXPECT_EQ(owners.size(), whole.mesh.V.size());
 }
 
+TEST_F(PartFiles, PartsForGmshAreTheWholeTogether) {
+  AnalyticDomain domain = testing::torus();
+  domain.box = Box(domain.box.min(), domain.box.max() + Vec3::Constant(4));  // leaves ranks without tets
+  const BackgroundMesh background = lattice_for(domain, .15);
+  const DistributedMesh part = distributed_mesh(MPI_COMM_WORLD, background, domain);
+  const std::vector<fs::path> files = write_msh_pieces(MPI_COMM_WORLD, folder_ / "part.msh", part);
+  const std::size_t n_ghosts = ghost_tets(MPI_COMM_WORLD, part, solver_part(MPI_COMM_WORLD, part)).size();
+  std::vector<std::size_t> sizes;
+  if (!part.mesh.C.empty()) sizes.push_back(part.mesh.C.size() + n_ghosts);
+  sizes = gathered(MPI_COMM_WORLD, sizes);
+  if (rank() != 0) return;
+  const MeshFile whole = whole_mesh(background, domain);
+  ASSERT_EQ(files.size(), sizes.size());
+  std::set<std::array<double, 3>> places;
+  for (std::size_t f = 0; f < files.size(); ++f) {
+    EXPECT_EQ(files[f].filename(), "part_" + std::to_string(f + 1) + ".msh");
+    const MeshFile piece = read_tet_mesh(files[f]);  // ghosts among its tets
+    EXPECT_EQ(piece.mesh.C.size(), sizes[f]);
+    for (const Vec3& x : piece.mesh.V) places.insert({x.x(), x.y(), x.z()});
+  }
+  EXPECT_EQ(places.size(), whole.mesh.V.size());
+}
+
 TEST_F(PartFiles, AFileThatCannotBeWrittenIsKnownToAll) {
   const AnalyticDomain domain = testing::sphere();
   const DistributedMesh part = distributed_mesh(MPI_COMM_WORLD, lattice_for(domain, .4), domain);
   EXPECT_THROW(write_whole_vtu(MPI_COMM_WORLD, folder_ / "nowhere" / "mesh.vtu", part), std::system_error);
   EXPECT_THROW(write_pvtu(MPI_COMM_WORLD, folder_ / "nowhere" / "mesh.pvtu", part), std::system_error);
+  EXPECT_THROW(write_msh_pieces(MPI_COMM_WORLD, folder_ / "nowhere" / "mesh.msh", part), std::system_error);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "distributed/first_share.h"
 #include "tests/distributed/ranks.h"
 #include "tests/support/domains.h"
 
@@ -34,6 +35,34 @@ TEST(Partition, APieceWithTheBoundaryIsShorter) {
   if (testing::n_ranks() == 1) return;
   const auto n = static_cast<std::uint64_t>(testing::n_ranks());
   EXPECT_LT(partition.end(0) - partition.begin(0), BlockCurve(lattice).length() / n / 2);
+}
+
+TEST(FirstShare, LetsAllRanksHoldTheSameUntilTheOthersWouldWaitForEachOther) {
+  for (const int n : {2, 4, 64}) {
+    EXPECT_DOUBLE_EQ(first_share(n, 0, 1e9), 1. / n);
+    const double share = first_share(n, .5e9 / n, 1e9);
+    EXPECT_NEAR(.5e9 / n + share * 1e9, (1 - share) / (n - 1) * 1e9, 1) << n;
+    EXPECT_DOUBLE_EQ(first_share(n, 1e12, 1e9), .25 / n);
+    for (int rank = 1; rank < n; ++rank)
+      EXPECT_NEAR(share_before(rank + 1, n, share) - share_before(rank, n, share), (1 - share) / (n - 1), 1e-12);
+    EXPECT_EQ(share_before(0, n, share), 0);
+    EXPECT_EQ(share_before(1, n, share), share);
+    EXPECT_EQ(share_before(n, n, share), 1);
+  }
+  EXPECT_EQ(first_share(1, 1e9, 1e9), 1);
+  EXPECT_EQ(share_before(1, 1, 1), 1);
+}
+
+TEST(Partition, WhatRank0HoldsBesidesMakesItsPieceShorter) {
+  const auto domain = testing::torus();
+  const BackgroundMesh lattice(a15(), domain.box, .05);
+  const auto length = [&](const Partition& p, int rank) { return static_cast<double>(p.end(rank) - p.begin(rank)); };
+  // Only what rank 0 says counts.
+  const Partition equal = balanced_partition(MPI_COMM_WORLD, lattice, domain, testing::rank() == 0 ? 0 : 1e12),
+                  less = balanced_partition(MPI_COMM_WORLD, lattice, domain, testing::rank() == 0 ? 1e12 : 0);
+  if (testing::n_ranks() == 1) return;
+  EXPECT_LT(length(less, 0), .6 * length(equal, 0));
+  EXPECT_EQ(less.end(testing::n_ranks() - 1), equal.end(testing::n_ranks() - 1));
 }
 
 TEST(Partition, ABlockHasTheOwnerOfAPieceThatIsNotEmpty) {

@@ -47,11 +47,11 @@ def run(*arguments, env=None, cwd=None, timeout=PATIENT, **options):
 def promised(case):
     """Every file of a case that a second run must give again byte by byte, documents without their block `run`, and not the report, which shows that block.
 
-    Not those under the names of temporary files, which a killed run may leave and the next one removes."""
+    Not those under the names of temporary files and folders, which a killed run may leave and the next one removes."""
     found = {}
     for file in sorted(pathlib.Path(case).rglob("*")):
         name = str(file.relative_to(case))
-        if not file.is_file() or file.name in (".lock", "case.toml", "report.html") or file.name.startswith(".tmp-") or name.startswith((".next", "3-mesh/failed")):
+        if not file.is_file() or file.name in (".lock", "case.toml", "report.html") or "/.tmp-" in "/" + name or name.startswith((".next", "3-mesh/failed")):
             continue
         content = file.read_bytes()
         if file.suffix == ".json":

@@ -366,8 +366,8 @@ class Failures(unittest.TestCase):
 
     def test_ctrl_c_within_a_fifth_of_a_second(self):
         cloud = egg(100000)
-        for after, job in ((.5, lambda: umtet.mesh(BALL, box=BOX, h=.03)), (.5, lambda: umtet.mesh(ball, box=BOX, h=.03)),
-                           (.1, lambda: umtet.reconstruct(*cloud))):
+        for after, job in ((.5, lambda: umtet.mesh(BALL, box=BOX, h=.02, max_tets=10**7)),
+                           (.5, lambda: umtet.mesh(ball, box=BOX, h=.03)), (.1, lambda: umtet.reconstruct(*cloud))):
             pressed = []
 
             def press():
@@ -573,6 +573,15 @@ n: int = len(mesh.tets) + len(mesh.patches(patch_angle=30)["boundary"])
 psi: umtet.LevelSet = umtet.reconstruct(mesh.points, spacing=.1)
 values: npt.NDArray[np.float64] = psi.value(mesh.points)
 """
+
+
+class Processes(unittest.TestCase):
+    """umtet.mesh(comm=...); tests/distributed/python_test.py has what it makes."""
+
+    @unittest.skipIf(importlib.util.find_spec("umtet._distributed"), "built with MPI")
+    def test_a_module_without_mpi_says_so(self):
+        with self.assertRaisesRegex(ImportError, "built without MPI"):
+            umtet.mesh(BALL, box=BOX, h=.3, comm=object())
 
 
 class Types(unittest.TestCase):

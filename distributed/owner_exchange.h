@@ -1,0 +1,70 @@
+#pragma once
+
+#include <mpi.h>
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "distributed/all_to_all.h"
+
+namespace umtet {
+
+/// What is on several ranks, vertices or edges of a mesh, between those who have it and the one rank that owns each.
+class OwnerExchange {
+ public:
+  /// @param n_owned  how many items this rank owns, of whomever
+  /// @param asked   by rank: own items that it owns
+  /// @param wanted  by rank: what this rank owns of the items that it has, in the order in which it has them
+  OwnerExchange(MPI_Comm comm, std::size_t n_items, std::size_t n_owned, std::vector<std::vector<std::size_t>> asked,
+                std::vector<std::vector<std::size_t>> wanted)
+      : comm_(comm), n_items_(n_items), n_owned_(n_owned), asked_(std::move(asked)), wanted_(std::move(wanted)) {}
+
+  std::size_t n_items() const { return n_items_; }
+  std::size_t n_owned() const { return n_owned_; }
+
+  /// What owners know, for all who have the items. Collective.
+  /// @param of_owned  by number of what is owned   @return by item
+  template <class T>
+  std::vector<T> tell(const std::vector<T>& of_owned) const {
+    std::vector<std::vector<T>> out(wanted_.size());
+    for (std::size_t r = 0; r < out.size(); ++r)
+      for (const std::size_t k : wanted_[r]) out[r].push_back(of_owned[k]);
+    std::vector<T> told(n_items_);
+    const auto in = all_to_all(comm_, out);
+    for (std::size_t r = 0; r < in.size(); ++r)
+      for (std::size_t k = 0; k < in[r].size(); ++k) told[asked_[r][k]] = in[r][k];
+    return told;
+  }
+  /// What all who have items know of them, for owners: take(number, value), once for each who has it. Collective.
+  /// @param value  of an item, without pointers
+  template <class Value, class Take>
+  void ask(const Value& value, const Take& take) const {
+    using T = decltype(value(std::size_t{0}));
+    std::vector<std::vector<T>> out(asked_.size());
+    for (std::size_t r = 0; r < out.size(); ++r)
+      for (const std::size_t v : asked_[r]) out[r].push_back(value(v));
+    const auto in = all_to_all(comm_, out);
+    for (std::size_t r = 0; r < in.size(); ++r)
+      for (std::size_t k = 0; k < in[r].size(); ++k) take(wanted_[r][k], in[r][k]);
+  }
+
+  /// What two of the same ranks exchange, by one: items and owned ones of the second come behind those of the first.
+  friend OwnerExchange joined(const OwnerExchange& first, const OwnerExchange& second) {
+    OwnerExchange both = first;
+    both.n_items_ += second.n_items_;
+    both.n_owned_ += second.n_owned_;
+    for (std::size_t r = 0; r < both.asked_.size(); ++r) {
+      for (const std::size_t item : second.asked_[r]) both.asked_[r].push_back(first.n_items_ + item);
+      for (const std::size_t k : second.wanted_[r]) both.wanted_[r].push_back(first.n_owned_ + k);
+    }
+    return both;
+  }
+
+ private:
+  MPI_Comm comm_;
+  std::size_t n_items_, n_owned_;
+  std::vector<std::vector<std::size_t>> asked_, wanted_;
+};
+
+}  // namespace umtet

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <mpi.h>
+
+#include <string>
+
+#include "pipeline/case/json_values.h"
+
+namespace umtet {
+
+/// Whether all ranks are to make the same mesh. Collective.
+/// @param mine  the parameters of this rank, by name
+/// @return the first difference to rank 0, as a sentence, the same on all ranks; empty if there is none
+std::string difference_of_calls(MPI_Comm comm, const Json& mine);
+
+}  // namespace umtet

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <mpi.h>
+
+#include <optional>
+
+#include "reconstruct/level_set/level_set.h"
+
+namespace umtet {
+
+/// The level set of rank 0, bit by bit, on all ranks. Collective.
+/// @param own  read on rank 0
+/// @return the same on all ranks; on rank 0 it shares the coefficients of `own`
+LevelSet shared_level_set(MPI_Comm comm, const std::optional<LevelSet>& own);
+
+}  // namespace umtet

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <mpi.h>
+
+#include <cstdio>
+#include <exception>
+
+#include "distributed/collect.h"
+#include "distributed/io/shared_file.h"
+#include "pipeline/case/exit_code.h"
+
+namespace umtet {
+
+/// What work() returns, which all ranks do at once. What goes wrong on one of them, while others wait for it, ends all:
+/// with its reason and its exit code. \throw KnownToAll, as work() does
+template <class F>
+auto together(MPI_Comm comm, const F& work) {
+  try {
+    return work();
+  } catch (const KnownToAll&) {
+    throw;
+  } catch (...) {
+    const Failure failure = failure_of(std::current_exception());
+    std::fprintf(stderr, "umtet: rank %d: %s\n", rank_in(comm), failure.message.c_str());
+    std::fflush(stderr);
+    MPI_Abort(comm, static_cast<int>(failure.code));
+    throw;  // not reached
+  }
+}
+
+}  // namespace umtet
