@@ -99,8 +99,6 @@ std::vector<Tunable> of_smoothing(const std::string& of_whom, SmoothingParams& (
   if (!is_of_patches) {
     list.push_back(of(
         of_whom + "least_gain", {3e-5, 1e-4, 1e-3}, [=](Settings & s) -> auto& { return p(s).least_gain; }));
-    list.push_back(of(
-        of_whom + "sharper", {1}, [=](Settings & s) -> auto& { return p(s).sharper; }));
   }
   return list;
 }
@@ -150,7 +148,7 @@ std::vector<Tunable> of_repair() {
       of(
           "RepairParams::max_patches", {100, 300, 1000}, [=](Settings & s) -> auto& { return p(s).max_patches; }),
       of(
-          "RepairParams::sharper", {0}, [=](Settings & s) -> auto& { return p(s).sharper; }),
+          "RepairParams::all_vertices", {0}, [=](Settings & s) -> auto& { return p(s).all_vertices; }),
       of(
           "RepairParams::lift", {0, .005, .02}, [=](Settings & s) -> auto& { return p(s).lift; }),
       of(
