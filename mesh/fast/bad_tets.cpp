@@ -31,7 +31,7 @@ std::vector<BadTet> bad_tets(const BackgroundLayer& layer, const IdSet& inside_s
     Triangle f;
     if (!positive_face(t, inside, f)) return;
     const double cosine = normal_cosine(psi, V[f[0]], V[f[1]], V[f[2]], layer.layer.h_at(f[0]), n);
-    if (cosine < kMisalignedCosine) badness[k] = std::min(badness[k], cosine);
+    if (cosine < kMisalignedCosine) badness[k] = cosine - 1;
   });
   const auto& id = layer.background_vertex;
   std::vector<BadTet> bad;

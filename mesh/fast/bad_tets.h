@@ -13,7 +13,7 @@ namespace umtet {
 
 /// A tet of a layer that repair() has to look at.
 struct BadTet {
-  double badness;  ///< the cosine of its face if that is misaligned, else Q: folded over ones are the worst
+  double badness;  ///< Q; below 0, the cosine of its face less 1, if that is misaligned: folded over ones are the worst
   std::array<std::int64_t, 4> tet;
 };
 

@@ -22,13 +22,13 @@ struct RepairParams {
   double target = kQualityTarget;  ///< mean ratio: tets below it are mended, and misaligned faces; in (0, 1)
   int reach = 3;                   ///< edges from the flip and the tet within which a patch moves vertices; >= 1
   int max_tries = 24;              ///< vertices reclassified on trial for one tet; >= 0. 0: no repair
-  /// Patches in all, for the worst tets first; fewer in small meshes, and what is begun is ended. Where more are needed
-  /// h is too large, which no classification mends.
+  /// Patches of one pass, of which there are up to five, for the worst tets first; fewer in small meshes, and what is
+  /// begun is ended. Where more are needed h is too large, which no classification mends.
   std::size_t max_patches = 3000;
   /// What the first pass leaves, and what is above the target by less than lift, is raised by smooth_all_vertices().
   bool all_vertices = true;
   /// Outside of lattices targets rise by so much from the worst tet on; where all vertices of a patch move at once they
-  /// rise by a quarter of it in all backgrounds. >= 0, 0: there is one target
+  /// rise by a quarter of it in all backgrounds. 0: there is one target; else in [.001, target]
   double target_step = .01;
   /// Tets that are above the target by less than this are raised up to it, in few patches. >= 0, 0: they stay as they
   /// are
@@ -56,10 +56,7 @@ struct RepairParams {
 std::vector<std::string> problems(const RepairParams&);
 
 struct RepairReport {
-  std::size_t bad_before = 0;  ///< tets below the target or with a misaligned face
-  std::size_t tries = 0;       ///< patches shaped on a copy
-  std::size_t flips = 0;       ///< states changed
-  std::size_t given_up = 0;    ///< tets for which nothing helped
+  std::size_t tries = 0;  ///< patches shaped on a copy
   std::size_t psi_evaluations = 0;
   std::vector<std::pair<std::int64_t, Vec3>> moved;  ///< background vertices with a new place, ascending
   std::vector<std::int64_t> flipped;                 ///< background vertices with another state, ascending
@@ -98,8 +95,8 @@ struct LayerVertex {
   Vec3 place;
 };
 
-/// A layer that other processes have, and this one repairs: no more than max_patches places of it, and a few that
-/// are lifted.
+/// A layer in a lattice that other processes have, and this one repairs: some thousand places of it, however large it
+/// is.
 class RemoteLayer {
  public:
   /// bad_tets() of all of it, those up to target + lift, in the order of the whole layer.

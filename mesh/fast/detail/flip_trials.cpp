@@ -109,6 +109,14 @@ bool FlipTrials::smooth_while_promising(PNormSmoother& smoother, const PatchStat
   return true;
 }
 
+/// Tets below params.target, which may not be the target now.
+std::ptrdiff_t FlipTrials::more_below_target(const ActiveLayer& after, const ActiveLayer& before) const {
+  const auto n = [&](const ActiveLayer& layer) {
+    return static_cast<std::ptrdiff_t>(tet_state(layer, params_.target).below_target);
+  };
+  return n(after) - n(before);
+}
+
 /// Flips these vertices on a copy, shapes the patch around them and the tet, and keeps it if it is the best one so far.
 void FlipTrials::attempt(const TetIds& tet, std::span<const std::int64_t> flips, Start start, Best& best) {
   if (tries >= end_of_tries_) return;
@@ -137,11 +145,13 @@ void FlipTrials::attempt(const TetIds& tet, std::span<const std::int64_t> flips,
     after = state(trial.layer, inside);
   }
   if (!after.is_no_worse_than(before) || !after.is_better_than(before)) return;
-  if (!best.found || after.is_better_than(best.state))
-    best = {std::move(trial), after, {flips.begin(), flips.end()}, true};
+  if (best.found && !after.is_better_than(best.state)) return;
+  const std::ptrdiff_t more = more_below_target(trial.layer, now.layer);
+  best = {std::move(trial), after, {flips.begin(), flips.end()}, more, true};
 }
 
 void FlipTrials::try_flips(const TetIds& tet, Start start, Best& best) {
+  if (effort_.most_singles == 0) return;
   std::vector<FlipCandidates::Candidate> singles = candidates_(tet, psi_evaluations);
   if (singles.size() > effort_.most_singles) singles.resize(effort_.most_singles);
   float most_cost = std::numeric_limits<float>::infinity();
@@ -176,7 +186,7 @@ BackgroundLayer FlipTrials::slid(const std::vector<std::int64_t>& centres) {
     BackgroundLayer cut = now;
     PNormSmoother smoother(cut.layer);
     psi_evaluations += relax_tangentially(smoother, inside, psi_, chords, params_.smoothing).psi_evaluations;
-    if (state(cut.layer, inside).is_no_worse_than(before)) return cut;
+    if (state(cut.layer, inside).is_no_worse_than(before) && more_below_target(cut.layer, now.layer) <= 0) return cut;
   }
   return now;
 }

@@ -45,7 +45,8 @@ class Positions {
 
 /// What is tried for one tet.
 struct FlipEffort {
-  /// Patches that smoothing leaves below the target are given to smooth_all_vertices(), at first without flips.
+  /// Patches without misaligned faces that smoothing leaves below the target are given to smooth_all_vertices(), at
+  /// first without flips.
   bool all_vertices = false;
   std::size_t most_singles = std::numeric_limits<std::size_t>::max();  ///< candidates, the most promising ones
   bool pairs = true;                                                   ///< where no single flip helps
@@ -59,7 +60,8 @@ class FlipTrials {
     BackgroundLayer layer;
     PatchState state;
     std::vector<std::int64_t> flips;
-    bool found = false;  ///< something betters the patch
+    std::ptrdiff_t more_below_target = 0;  ///< tets below RepairParams::target, than before
+    bool found = false;                    ///< something betters the patch
     bool is_perfect() const { return found && state.is_perfect(); }
   };
 
@@ -102,6 +104,7 @@ class FlipTrials {
 
   BackgroundLayer patch(const std::vector<std::int64_t>& centres, Start start) const;
   PatchState state(const ActiveLayer& layer, const std::vector<std::uint8_t>& inside);
+  std::ptrdiff_t more_below_target(const ActiveLayer& after, const ActiveLayer& before) const;
   void attempt(const TetIds& tet, std::span<const std::int64_t> flips, Start start, Best& best);
   bool smooth_while_promising(PNormSmoother& smoother, const PatchState& before);
   void try_flips(const TetIds& tet, Start start, Best& best);
