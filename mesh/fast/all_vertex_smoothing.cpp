@@ -22,7 +22,7 @@ constexpr int kLog2Powers[] = {5, 7, 9};
 constexpr int kMostSteps = 60;  // for each p: patches of repair settle in 20 to 40
 // Relative gain of ||1/Q||_p by a step below which the next p has its turn.
 constexpr double kLeastGain = 1e-5;
-// Longest move of a vertex in a step, in edges: farther off, the pairs of L-BFGS say nothing. And of the first step,
+// Longest move of a vertex along an axis in a step, in edges: farther off, the pairs of L-BFGS say nothing. And of the first step,
 // whose length no pair suggests.
 constexpr double kLongestMove = .2, kFirstMove = .02;
 // Of the decrease that the slope promises, what a step has to bring [NocedalWright2006, Section 3.1], and how often it

@@ -27,7 +27,8 @@ struct AllVertexReport {
 ///               least Q that were met, or stays as it is: where a tet is not positive, or a Boundary vertex does not
 ///               get to psi = 0
 /// @param goal   mean ratio at which it stops; the first places that reach it will do
-/// Cost: .1 us a tet and evaluation, of which there are some 100. One thread.
+/// Cost: 40 ns a tet and evaluation, of which there are some 100 (`mesh_bench --benchmark_filter=all_vertices`). One
+/// thread.
 AllVertexReport smooth_all_vertices(ActiveLayer& layer, ImplicitFunctionRef psi, double goal);
 
 }  // namespace umtet

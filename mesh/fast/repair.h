@@ -74,6 +74,9 @@ struct RepairReport {
 /// of these gets better. A state changes only where classify_vertices() might change it: at simple vertices, without a
 /// new spot where the boundary is no manifold, and not where the body or the gap is thin. So topology stays.
 ///
+/// Where targets rise, the rule is that of the target at the time; but never are more tets of the whole mesh below the
+/// last one than before.
+///
 /// What nothing helps, and tets above the target by less than lift, are then raised by smooth_all_vertices(), without a
 /// flip and after that with any, against targets that rise from the worst tet on. Outside of lattices, where many tets
 /// are below the target, it rises in the first pass, too, which tries the few most promising flips.

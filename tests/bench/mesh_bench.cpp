@@ -20,6 +20,9 @@
 #include "mesh/certify/boundary_surface.h"
 #include "mesh/certify/certificate.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/fast/all_vertex_smoothing.h"
+#include "mesh/fast/backtracking_projection.h"
+#include "mesh/fast/p_norm_smoothing.h"
 #include "mesh/moving_mesh.h"
 #include "mesh/paper/dvr.h"
 #include "mesh/sizes/body_size.h"
@@ -28,6 +31,7 @@
 #include "reconstruct/solve/fit_ssd.h"
 #include "tests/support/bench_domains.h"
 #include "tests/support/certified.h"
+#include "tests/support/omega_h_shell.h"
 
 using namespace umtet;
 
@@ -107,6 +111,27 @@ void dvr_sweeps(benchmark::State& state) {
   state.SetItemsProcessed(r * static_cast<std::int64_t>(data.interior.size()));
 }
 BENCHMARK(dvr_sweeps)->ArgName("threads")->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// All vertices at once, from where one at a time has ended, as in a patch of repair. `s_per_tet` is of one evaluation
+/// of the norm.
+void all_vertices(benchmark::State& state) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const testing::AnalyticDomain domain = testing::torus();
+  ActiveLayer settled = testing::omega_h_shell(domain, 2000);
+  project(settled, domain);
+  smooth(settled, domain, {});
+  AllVertexReport report;
+  for (auto _ : state) {
+    ActiveLayer layer = settled;
+    report = smooth_all_vertices(layer, domain, 1);
+  }
+  state.counters["evaluations"] = report.evaluations;
+  state.counters["tets"] = static_cast<double>(settled.C.size());
+  state.counters["s_per_tet"] =
+      benchmark::Counter(static_cast<double>(settled.C.size()) * report.evaluations,
+                         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(all_vertices)->Unit(benchmark::kMillisecond);
 
 void search_full_loop(benchmark::State& state) {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
