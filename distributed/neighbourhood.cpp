@@ -35,7 +35,9 @@ Neighbourhood::Neighbourhood(MPI_Comm comm, std::vector<int> ranks) : comm_(comm
                                  MPI_INFO_NULL, 0, &graph_);
 }
 
-Neighbourhood::~Neighbourhood() { MPI_Comm_free(&graph_); }
+Neighbourhood::~Neighbourhood() {
+  if (!unwinding_) MPI_Comm_free(&graph_);
+}
 
 std::size_t Neighbourhood::number(int rank) const {
   return static_cast<std::size_t>(std::lower_bound(ranks_.begin(), ranks_.end(), rank) - ranks_.begin());

@@ -152,16 +152,18 @@ std::optional<MadeInParts> Ranks::make(const BackgroundMesh& background, const B
   command.set_places(places);
   say(comm_, command, {{}, seeds});
   const ImplicitFunctionRef psi = domain.psi();
-  return with_all(kMeasures, [&]() -> std::optional<MadeInParts> {
+  std::optional<MadeInParts> made = with_all(kMeasures, [&]() -> std::optional<MadeInParts> {
     const double held = bytes_besides_mesh(domain, places.h);
     const auto at = held_.try_emplace(command.mesh, comm_, background, psi, params, seeds, places, held).first;
-    auto handle = std::make_shared<const Handle>(*this, command.mesh);
     if (!at->second.is_made()) return std::nullopt;
-    MadeInParts made = at->second.summary(psi);
-    made.mesh = std::move(handle);
+    MadeInParts summary = at->second.summary(psi);
     give_back_freed_memory();
-    return made;
+    return summary;
   });
+  // Behind what all do: its end tells them to drop the mesh, also where there is none.
+  auto handle = std::make_shared<const Handle>(*this, command.mesh);
+  if (made) made->mesh = std::move(handle);
+  return made;
 }
 
 double Ranks::allowed_bytes(const Parameters& parameters) const {

@@ -1,6 +1,6 @@
 """`mpirun -n N umtet_mpi` where something goes wrong in one process: one reason, the exit code of one process, no hang.
 
-usage: faults_test.py UMTET_MPI MPIEXEC N
+usage: faults_test.py UMTET_MPI THROWING_RANK MPIEXEC N
 """
 import json
 import os
@@ -13,7 +13,7 @@ import tempfile
 import time
 import unittest
 
-UMTET_MPI, MPIEXEC, N = sys.argv[1], sys.argv[2], int(sys.argv[3])
+UMTET_MPI, THROWING_RANK, MPIEXEC, N = *sys.argv[1:4], int(sys.argv[4])
 BALL = ["--implicit", "x^2+y^2+z^2-1", "--box=-1.2,-1.2,-1.2,1.2,1.2,1.2", "--threads", "1", "--no-report", "--progress", "none"]
 # Some six seconds of one process: a signal comes after one of them, and mpirun may take two before it ends what it started.
 LONG = [*BALL, "--h", ".019", "--max-tets", "1e7"]
@@ -116,6 +116,18 @@ class Faults(unittest.TestCase):
                 made = self.run_with(LONG, limit)
                 self.assertEqual(made.returncode, 9, made.stderr)
                 self.assertEqual(len(said(made.stderr)), 1, made.stderr)
+
+    def test_a_rank_that_throws_ends_all_with_its_reason(self):
+        calls = [(["file", str(self.folder / "file")], 9, "out of memory in mesh")]
+        if N > 1:
+            calls.append((["window"], 1, "psi throws beside an open window"))
+        for call, code, reason in calls:
+            with self.subTest(call[0]):
+                made = subprocess.run([MPIEXEC, "-n", str(N), "--oversubscribe", THROWING_RANK, *call], capture_output=True, text=True,
+                                      timeout=20)
+                self.assertEqual(made.returncode, code, made.stderr)
+                self.assertEqual(len(said(made.stderr)), 1, made.stderr)
+                self.assertIn(reason, made.stderr)
 
     def test_max_memory_is_of_each_process(self):
         # About a million tets take some 500 MB in one process.
