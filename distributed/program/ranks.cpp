@@ -3,6 +3,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <string>
@@ -119,9 +120,21 @@ LevelSet Ranks::refine(const LevelSet& psi, double kappa, double tolerance, int 
   command.max_iterations = max_iterations;
   say(comm_, command);
   BandPart part = std::move(bands_.extract(psi.n_levels()).mapped());
-  LevelSet finer =
-      with_all(kPsi, [&] { return refine_parts(comm_, psi, std::move(part), command.refine_params(), go_on, report); });
+  // What it throws, a signal above all, does not end all at once: it is answered as in one process, when the others
+  // wait no more.
+  std::exception_ptr thrown;
+  const auto go_on_together = [&](double residual) {
+    if (thrown) return;
+    try {
+      go_on(residual);
+    } catch (...) {
+      thrown = std::current_exception();
+    }
+  };
+  LevelSet finer = with_all(
+      kPsi, [&] { return refine_parts(comm_, psi, std::move(part), command.refine_params(), go_on_together, report); });
   n_shared_ = finer.n_levels();
+  if (thrown) std::rethrow_exception(thrown);
   return finer;
 }
 
