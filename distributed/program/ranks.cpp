@@ -181,15 +181,14 @@ std::optional<MadeInParts> Ranks::make(const BackgroundMesh& background, const B
 
 double Ranks::allowed_bytes(const Parameters& parameters) const {
   give_back_freed_memory();  // which counts
-  int n = 1;
-  MPI_Comm_size(comm_, &n);
+
   const double of_one = parameters.output().max_memory > 0 ? 1 : 1. / n_here_;  // what a machine can give is shared
-  return of_one * n * umtet::allowed_bytes(parameters);
+  return of_one * n() * umtet::allowed_bytes(parameters);
 }
 
-TakenMesh Ranks::take(const MeshInParts& mesh) {
+TakenMesh Ranks::release(const MeshInParts& mesh) {
   const std::int64_t number = dynamic_cast<const Handle&>(mesh).number();
-  say(comm_, {RankOrder::Take, number});
+  say(comm_, {RankOrder::Release, number});
   return std::move(held_.at(number)).release();
 }
 

@@ -103,7 +103,7 @@ MeshPart make(MPI_Comm comm, const Request& request, const py::object& progress)
       MeshAttempt best = make_mesh(psi.domain, *parameters, watch, &ranks);
       if (!best.parts)
         throw UsageError("--background a15 is wanted: where edges follow the body, one process makes the mesh");
-      made.taken = ranks.take(*best.parts);
+      made.taken = ranks.release(*best.parts);
       made.h = best.h;
       made.certificate = to_json(verdict_on(std::move(best.measured), *parameters)).dump();
     });
