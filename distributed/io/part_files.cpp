@@ -146,8 +146,9 @@ std::vector<fs::path> write_pvtu(MPI_Comm comm, const fs::path& pvtu, bool has_p
   for (const int rank : ranks_with(comm, has_piece)) pieces.push_back(name_of(rank));
   write_together(comm, pvtu, rank_in(comm) == 0,
                  [&] { CheckedFile(pvtu).text(pvtu_text(point_data, cell_data, pieces)).close(); });
-  std::vector<fs::path> files = {pvtu};
+  std::vector<fs::path> files;
   for (const std::string& name : pieces) files.push_back(pvtu.parent_path() / name);
+  files.push_back(pvtu);
   return files;
 }
 
