@@ -47,7 +47,7 @@ std::vector<T> copied(std::span<const T> values) {
 
 /// values[which[k]] for every k, by all threads.
 template <class T>
-std::vector<T> gathered(std::span<const T> values, std::span<const std::size_t> which) {
+std::vector<T> picked(std::span<const T> values, std::span<const std::size_t> which) {
   std::vector<T> some = touched<T>(which.size());
   tbb::parallel_for(std::size_t{0}, which.size(), [&](std::size_t k) { some[k] = values[which[k]]; });
   return some;

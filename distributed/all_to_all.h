@@ -3,9 +3,9 @@
 #include <mpi.h>
 
 #include <cstddef>
-#include <limits>
-#include <stdexcept>
 #include <vector>
+
+#include "distributed/mpi_count.h"
 
 namespace umtet {
 
@@ -22,13 +22,12 @@ std::vector<std::vector<T>> all_to_all(MPI_Comm comm, const std::vector<std::vec
     for (const int c : layout.count) {
       layout.begin.push_back(static_cast<int>(n));
       n += static_cast<std::size_t>(c);
-      if (n > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-        throw std::length_error("an exchange of more than 2^31 - 1 members");
+      mpi_count(n);
     }
     layout.all.reserve(n);
     return n;
   };
-  for (const auto& list : out) sent.count.push_back(static_cast<int>(list.size()));
+  for (const auto& list : out) sent.count.push_back(mpi_count(list.size()));
   lay_out(sent);
   for (const auto& list : out) sent.all.insert(sent.all.end(), list.begin(), list.end());
   received.count.resize(out.size());

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
-#include <stdexcept>
 #include <vector>
 
-// Lists that go to rank 0 or come from it: short ones, of what is rare in a mesh.
+#include "distributed/mpi_count.h"
+
+// Lists that go to rank 0 or come from it: short ones, of what is rare in a mesh; and what all have together.
 namespace umtet {
 
 inline int rank_in(MPI_Comm comm) {
@@ -18,11 +18,19 @@ inline int rank_in(MPI_Comm comm) {
   return rank;
 }
 
+/// Of what all ranks count. Collective.
+inline std::size_t sum(MPI_Comm comm, std::size_t n) {
+  std::uint64_t all = n;
+  MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_UINT64_T, MPI_SUM, comm);
+  return all;
+}
+
 /// What all ranks have, in their order; on rank 0, and nothing elsewhere. Collective. T has no pointers.
-/// \throw std::length_error on rank 0 above 2^31 - 1 members
+/// \throw std::length_error on rank 0 above 2^31 - 1 members, and on one that has as many
 template <class T>
 std::vector<T> gathered(MPI_Comm comm, const std::vector<T>& own) {
-  int n_ranks = 1, n = static_cast<int>(own.size());
+  constexpr const char* kTooMany = "a list of more than 2^31 - 1 members";
+  int n_ranks = 1, n = mpi_count(own.size(), kTooMany);
   MPI_Comm_size(comm, &n_ranks);
   std::vector<int> counts(static_cast<std::size_t>(n_ranks), 0), begins;
   MPI_Gather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, comm);
@@ -30,8 +38,7 @@ std::vector<T> gathered(MPI_Comm comm, const std::vector<T>& own) {
   for (const int c : counts) {
     begins.push_back(static_cast<int>(all));
     all += static_cast<std::size_t>(c);
-    if (all > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-      throw std::length_error("a list of more than 2^31 - 1 members");
+    mpi_count(all, kTooMany);
   }
   std::vector<T> result(all);
   MPI_Datatype type;

@@ -111,7 +111,7 @@ class PartRun {
 void PartRun::find_inside() {
   begin_phase("signs");
   if (!seeds_.empty()) {
-    inside_ = crawl_part(comm_, part_, psi_, seeds_);
+    inside_ = crawl_part(comm_, part_, psi_, seeds_, result_.n_psi_evaluations);
     return;
   }
   for_each_in_blocks(part_.known(), [&](std::size_t, std::int64_t v) {

@@ -53,6 +53,7 @@ LayerWindow::LayerWindow(MPI_Comm comm, const LatticePart& part, const Partition
 }
 
 LayerWindow::~LayerWindow() {
+  if (unwinding_) return;
   close(headers_);
   close(entries_);
 }

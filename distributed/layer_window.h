@@ -10,6 +10,7 @@
 #include "distributed/lattice_part.h"
 #include "distributed/neighbourhood.h"
 #include "distributed/partition.h"
+#include "distributed/unwinding.h"
 #include "mesh/base/id_set.h"
 #include "mesh/fast/repair.h"
 
@@ -23,7 +24,7 @@ class LayerWindow {
   /// Collective; copies what own blocks hold. @param places  of own vertices that are not where the background has them
   LayerWindow(MPI_Comm comm, const LatticePart& part, const Partition& partition, const IdSet& inside,
               const Places& places);
-  ~LayerWindow();  ///< collective
+  ~LayerWindow();  ///< collective, unless something is thrown
   LayerWindow(const LayerWindow&) = delete;
   LayerWindow& operator=(const LayerWindow&) = delete;
 
@@ -72,6 +73,7 @@ class LayerWindow {
   Open<std::uint64_t> headers_;  ///< by place on the own piece of the curve
   Open<Entry> entries_;
   std::size_t n_gets_ = 0, bytes_ = 0;
+  const Unwinding unwinding_;
 };
 
 /// What is around vertices of the whole lattice, each block once.

@@ -1,12 +1,14 @@
 #include "distributed/neighbourhood.h"
 
 #include <algorithm>
-#include <limits>
-#include <stdexcept>
 #include <utility>
+
+#include "distributed/mpi_count.h"
 
 namespace umtet {
 namespace {
+
+constexpr const char* kTooMuch = "an exchange of more than 2 GB";
 
 struct Layout {
   std::vector<int> count, begin;
@@ -19,10 +21,9 @@ Layout laid_out(const std::vector<Neighbourhood::Bytes>& messages) {
   std::size_t n = 0;
   for (const auto& message : messages) {
     all.begin.push_back(static_cast<int>(n));
-    all.count.push_back(static_cast<int>(message.size()));
+    all.count.push_back(mpi_count(message.size(), kTooMuch));
     n += message.size();
-    if (n > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-      throw std::length_error("an exchange of more than 2 GB");
+    mpi_count(n, kTooMuch);
   }
   return all;
 }
@@ -35,7 +36,9 @@ Neighbourhood::Neighbourhood(MPI_Comm comm, std::vector<int> ranks) : comm_(comm
                                  MPI_INFO_NULL, 0, &graph_);
 }
 
-Neighbourhood::~Neighbourhood() { MPI_Comm_free(&graph_); }
+Neighbourhood::~Neighbourhood() {
+  if (!unwinding_) MPI_Comm_free(&graph_);
+}
 
 std::size_t Neighbourhood::number(int rank) const {
   return static_cast<std::size_t>(std::lower_bound(ranks_.begin(), ranks_.end(), rank) - ranks_.begin());
@@ -43,7 +46,7 @@ std::size_t Neighbourhood::number(int rank) const {
 
 std::vector<Neighbourhood::Bytes> Neighbourhood::exchange(const std::vector<Bytes>& out) {
   std::vector<int> there, here(out.size());
-  for (const Bytes& message : out) there.push_back(static_cast<int>(message.size()));
+  for (const Bytes& message : out) there.push_back(mpi_count(message.size(), kTooMuch));
   MPI_Neighbor_alltoall(there.data(), 1, MPI_INT, here.data(), 1, MPI_INT, graph_);
   std::vector<Bytes> in;
   for (const int n : here) in.emplace_back(static_cast<std::size_t>(n));

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <vector>
 
+#include "distributed/unwinding.h"
+
 namespace umtet {
 
 /// What a rank has sent.
@@ -24,7 +26,7 @@ class Neighbourhood {
 
   /// @param ranks  ascending, without this one; each of them names this one, too
   Neighbourhood(MPI_Comm comm, std::vector<int> ranks);
-  ~Neighbourhood();
+  ~Neighbourhood();  ///< collective, unless something is thrown
   Neighbourhood(const Neighbourhood&) = delete;
   Neighbourhood& operator=(const Neighbourhood&) = delete;
 
@@ -46,6 +48,7 @@ class Neighbourhood {
   MPI_Comm graph_;
   std::vector<int> ranks_;
   Traffic traffic_;
+  const Unwinding unwinding_;
 };
 
 /// Appends the bytes of a value that has no pointers.

@@ -49,6 +49,20 @@ class OwnerExchange {
       for (std::size_t k = 0; k < in[r].size(); ++k) take(wanted_[r][k], in[r][k]);
   }
 
+  /// Whether any who has it says so, of what is owned: by number of that. Collective.
+  /// @param of_items  0 or 1
+  template <class T>
+  std::vector<T> any_of_owned(const std::vector<T>& of_items) const {
+    std::vector<T> owned(n_owned_, 0);
+    ask([&](std::size_t item) { return of_items[item]; }, [&](std::size_t k, T is_so) { owned[k] |= is_so; });
+    return owned;
+  }
+  /// The same for all who have the items: by item. Collective.
+  template <class T>
+  std::vector<T> any(const std::vector<T>& of_items) const {
+    return tell(any_of_owned(of_items));
+  }
+
   /// What two of the same ranks exchange, by one: items and owned ones of the second come behind those of the first.
   friend OwnerExchange joined(const OwnerExchange& first, const OwnerExchange& second) {
     OwnerExchange both = first;

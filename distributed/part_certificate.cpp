@@ -122,7 +122,6 @@ class PartCertificate {
   MeshCertificate operator()(double h, double coordinate_rounding);
 
  private:
-  std::size_t sum(std::size_t n) const;
   void compare_with_positive_faces();
   void measure_faces(OwnDistances* distances);
   void measure_vertices(OwnDistances& distances) const;
@@ -136,12 +135,6 @@ class PartCertificate {
   std::vector<EnclosedVolume> volumes_;  ///< of the pieces of the boundary
   MeshCertificate certificate_;
 };
-
-std::size_t PartCertificate::sum(std::size_t n) const {
-  std::uint64_t all = n;
-  MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_UINT64_T, MPI_SUM, comm_);
-  return all;
-}
 
 /// As sets of triples. A face of the boundary has one tet, and each tet is on one rank: the sets are the same if they
 /// are on each rank.
@@ -158,8 +151,8 @@ void PartCertificate::compare_with_positive_faces() {
   }
   std::sort(positive.begin(), positive.end());
   for (std::size_t f = 0; f < boundary_.id.size(); ++f) single.push_back(face(boundary_.id[f], boundary_.triangles[f]));
-  certificate_.boundary.equals_positive_faces = sum(positive == single ? 0 : 1) == 0;
-  certificate_.n_positive_faces = sum(positive.size());
+  certificate_.boundary.equals_positive_faces = sum(comm_, positive == single ? 0 : 1) == 0;
+  certificate_.n_positive_faces = sum(comm_, positive.size());
 }
 
 /// Areas and volumes, and distances if there is a psi, in the order of the faces.
@@ -227,11 +220,11 @@ void PartCertificate::measure_vertices(OwnDistances& distances) const {
 MeshCertificate PartCertificate::operator()(double h, double coordinate_rounding) {
   certificate_.coordinate_rounding = coordinate_rounding;
   measure_tets_of_parts(comm_, mesh_, h, certificate_);
-  certificate_.n_vertices = sum(owners_.ids().size());
+  certificate_.n_vertices = sum(comm_, owners_.ids().size());
   boundary_ = boundary_of_parts(comm_, mesh_, owners_);
   topology_ = topology_of_parts(comm_, mesh_, owners_, boundary_);
   MeshCertificate::Boundary& b = certificate_.boundary;
-  b.n_faces = sum(boundary_.id.size());
+  b.n_faces = sum(comm_, boundary_.id.size());
   b.n_overused_faces = boundary_.n_overused;
   b.n_same_side_faces = boundary_.n_same_side;
   b.n_nonmanifold_edges = topology_.n_nonmanifold_edges;

@@ -3,16 +3,22 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "distributed/collect.h"
 #include "mesh/submesh/assemble_submesh.h"
 
 namespace umtet {
 
-IdSet crawl_part(MPI_Comm comm, const LatticePart& part, ImplicitFunctionRef psi, const std::vector<Vec3>& seeds) {
+IdSet crawl_part(MPI_Comm comm, const LatticePart& part, ImplicitFunctionRef psi, const std::vector<Vec3>& seeds,
+                 std::size_t& n_psi_evaluations) {
   constexpr std::int64_t kWords = 1 << 17;  // a megabyte
   std::optional<IdSet> all;
-  if (rank_in(comm) == 0) all = crawl_inside(part.whole(), psi, seeds).inside;
+  if (rank_in(comm) == 0) {
+    CrawledVertices crawled = crawl_inside(part.whole(), psi, seeds);
+    n_psi_evaluations += crawled.n_psi_evaluations;
+    all = std::move(crawled.inside);
+  }
   const std::int64_t n_words = (part.whole().n_vertices() + 63) / 64;
   std::vector<std::uint64_t> words;
   std::int64_t begin = 0, end = 0;  // of these words in the whole

@@ -2,6 +2,7 @@
 
 #include <mpi.h>
 
+#include <cstddef>
 #include <vector>
 
 #include "distributed/lattice_part.h"
@@ -14,6 +15,8 @@ namespace umtet {
 /// one process does: along psi = 0, and through what is behind it by bits. They are told to the others a megabyte at a
 /// time. Collective.
 /// @param seeds  read on rank 0
-IdSet crawl_part(MPI_Comm comm, const LatticePart& part, ImplicitFunctionRef psi, const std::vector<Vec3>& seeds);
+/// @param n_psi_evaluations  on rank 0 its own are added
+IdSet crawl_part(MPI_Comm comm, const LatticePart& part, ImplicitFunctionRef psi, const std::vector<Vec3>& seeds,
+                 std::size_t& n_psi_evaluations);
 
 }  // namespace umtet

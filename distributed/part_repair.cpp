@@ -26,8 +26,7 @@ struct Moved {
 /// Of the tets whose first corner is own: each tet of the whole layer is of one rank, and those with one first corner
 /// are in their order. (The first is the least that moves.)
 std::vector<SentTet> own_bad_tets(const LatticePart& part, ImplicitFunctionRef psi, const RepairParams& params,
-                                  const BackgroundLayer& layer, const IdSet& inside) {
-  std::size_t n_evaluations = 0;
+                                  const BackgroundLayer& layer, const IdSet& inside, std::size_t& n_evaluations) {
   const auto& ids = layer.background_vertex;
   std::vector<SentTet> list;
   for (const BadTet& bad : bad_tets(layer, inside, psi, params.target + params.lift, n_evaluations)) {
@@ -89,7 +88,7 @@ PartRepair repair_parts(MPI_Comm comm, const LatticePart& part, const Partition&
   unsigned long long n_tets = 0, all_tets = 0;
   for (const Tet& t : layer.layer.C) n_tets += part.own().test(layer.background_vertex[t[0]]);
   MPI_Reduce(&n_tets, &all_tets, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM, 0, comm);
-  std::vector<SentTet> bad = gathered(comm, own_bad_tets(part, psi, params, layer, inside));
+  std::vector<SentTet> bad = gathered(comm, own_bad_tets(part, psi, params, layer, inside, made.psi_evaluations));
   std::vector<Moved> moved;
   {
     LayerWindow window(comm, part, partition, inside, places_of(layer));
@@ -99,7 +98,7 @@ PartRepair repair_parts(MPI_Comm comm, const LatticePart& part, const Partition&
       const RepairReport report =
           repair(part.whole(), *background_costs(part.whole())->links, psi, classification, params, remote, states);
       made.flipped = report.flipped;
-      made.psi_evaluations = report.psi_evaluations;
+      made.psi_evaluations += report.psi_evaluations;
       for (const auto& [v, x] : report.moved) moved.push_back({v, {x[0], x[1], x[2]}});
       made.n_gets = window.n_gets();
       made.bytes = window.bytes();

@@ -19,7 +19,7 @@ struct PartRepair {
   std::vector<std::int64_t> flipped;
   std::vector<std::pair<std::int64_t, Vec3>> moved;
   std::size_t n_gets = 0, bytes = 0;  ///< that rank 0 has read of others, and 0 elsewhere
-  std::size_t psi_evaluations = 0;    ///< of rank 0, and 0 elsewhere
+  std::size_t psi_evaluations = 0;    ///< of this rank: most are of rank 0
 };
 
 /// Where a layer has the vertices that move, ascending.

@@ -36,7 +36,6 @@ class Curving {
   std::vector<SentTet> not_sent_at(const std::vector<PartEdges::Ids>& edges);
   void put(const std::vector<MovedMidSide>& moved);
   int own_edge(const PartEdges::Ids& edge) const;
-  std::size_t sum(std::size_t n) const;
 
   MPI_Comm comm_;
   const DistributedMesh& mesh_;
@@ -50,19 +49,12 @@ class Curving {
   CurvedParts made_;
 };
 
-std::size_t Curving::sum(std::size_t n) const {
-  std::uint64_t all = n;
-  MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_UINT64_T, MPI_SUM, comm_);
-  return all;
-}
-
 void Curving::find_curved() {
-  std::vector<char> own(edges_.ends().size(), 0), owned(edges_.owned().size(), 0);
+  std::vector<char> own(edges_.ends().size(), 0);
   for (const Triangle& f : mesh_.positive_faces) {
     for (int k = 0; k < 3; ++k) own[edges_.number()(f[k], f[(k + 1) % 3])] = 1;
   }
-  edges_.exchange().ask([&](std::size_t e) { return own[e]; }, [&](std::size_t k, char is) { owned[k] |= is; });
-  made_.is_curved = edges_.exchange().tell(owned);
+  made_.is_curved = edges_.exchange().any(own);
 }
 
 void Curving::project() {
@@ -76,10 +68,10 @@ void Curving::project() {
 
 /// Of all ranks.
 std::size_t Curving::n_fixed() const {
-  std::vector<char> is_fixed(edges_.owned().size(), 0);
-  edges_.exchange().ask([&](std::size_t e) { return static_cast<char>(kind_[e] == MidSide::Fixed); },
-                        [&](std::size_t k, char is) { is_fixed[k] |= is; });
-  return sum(static_cast<std::size_t>(std::count(is_fixed.begin(), is_fixed.end(), 1)));
+  std::vector<char> own(kind_.size());
+  for (std::size_t e = 0; e < own.size(); ++e) own[e] = kind_[e] == MidSide::Fixed;
+  const std::vector<char> is_fixed = edges_.exchange().any_of_owned(own);
+  return sum(comm_, static_cast<std::size_t>(std::count(is_fixed.begin(), is_fixed.end(), 1)));
 }
 
 SentTet Curving::sent(std::size_t tet) const {
@@ -160,8 +152,8 @@ void Curving::relax(const std::vector<int>& below) {
   }
   broadcast(comm_, relaxed.moved);
   put(relaxed.moved);
-  made_.n_slid = sum(relaxed.n_slid);
-  made_.n_relaxed = sum(relaxed.n_relaxed);
+  made_.n_slid = sum(comm_, relaxed.n_slid);
+  made_.n_relaxed = sum(comm_, relaxed.n_relaxed);
 }
 
 CurvedParts Curving::operator()() {
@@ -170,7 +162,7 @@ CurvedParts Curving::operator()() {
   project();
   made_.n_unprojected = n_fixed();
   const std::vector<int> below = tets_below(made_.mesh, kind_, params_.target);
-  if (sum(below.size()) > 0) relax(below);
+  if (sum(comm_, below.size()) > 0) relax(below);
   made_.n_off_surface = n_fixed();
   return std::move(made_);
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/polled_loops.h"
+#include "distributed/collect.h"
 #include "distributed/id_order.h"
 #include "distributed/part_boundary.h"
 #include "distributed/part_second_order.h"
@@ -45,7 +46,7 @@ class CurvedCertificate {
   SecondOrderCertificate operator()(std::size_t n_owned_vertices, double h, double coordinate_rounding) {
     made_.h = h;
     made_.coordinate_rounding = coordinate_rounding;
-    made_.n_nodes = sum(n_owned_vertices) + static_cast<std::size_t>(edges_.n_all());
+    made_.n_nodes = sum(comm_, n_owned_vertices) + static_cast<std::size_t>(edges_.n_all());
     measure_jacobians();
     measure_mid_sides();
     measure_faces();
@@ -53,11 +54,6 @@ class CurvedCertificate {
   }
 
  private:
-  std::size_t sum(std::size_t n) const {
-    std::uint64_t all = n;
-    MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_UINT64_T, MPI_SUM, comm_);
-    return all;
-  }
   double greatest(double x) const {
     MPI_Allreduce(MPI_IN_PLACE, &x, 1, MPI_DOUBLE, MPI_MAX, comm_);
     return x;
@@ -98,7 +94,7 @@ void CurvedCertificate::measure_jacobians() {
     });
   }
   made_.volume = sums.end()[0];
-  made_.n_nonpositive_jacobians = sum(own.n_nonpositive);
+  made_.n_nonpositive_jacobians = sum(comm_, own.n_nonpositive);
   made_.min_scaled_jacobian_lower = -greatest(-own.lower);
   made_.min_scaled_jacobian_upper = -greatest(-own.upper);
 }
@@ -140,9 +136,9 @@ void CurvedCertificate::measure_mid_sides() {
     most = std::max(most, d);
     n_off += d > tolerance;
   }
-  made_.n_torn_edges = sum(static_cast<std::size_t>(std::count(is_torn.begin(), is_torn.end(), 1)));
-  made_.n_boundary_mid_sides = sum(on.size());
-  made_.n_mid_sides_off_surface = sum(n_off);
+  made_.n_torn_edges = sum(comm_, static_cast<std::size_t>(std::count(is_torn.begin(), is_torn.end(), 1)));
+  made_.n_boundary_mid_sides = sum(comm_, on.size());
+  made_.n_mid_sides_off_surface = sum(comm_, n_off);
   made_.max_mid_side_distance_over_h = greatest(most) / made_.h;
 }
 

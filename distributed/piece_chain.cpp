@@ -8,7 +8,9 @@ PieceChain::PieceChain(MPI_Comm comm, std::size_t n_values) : values_(n_values, 
   MPI_Comm_size(comm_, &n_ranks_);
 }
 
-PieceChain::~PieceChain() { MPI_Comm_free(&comm_); }
+PieceChain::~PieceChain() {
+  if (!unwinding_) MPI_Comm_free(&comm_);
+}
 
 void PieceChain::receive() {
   if (n_ranks_ == 1 || (rank_ == 0 && !is_begun_)) return;

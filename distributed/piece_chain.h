@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "distributed/unwinding.h"
+
 namespace umtet {
 
 /// Doubles that go from piece to piece in the order of an IdOrder: what is added to them is added in that order, as one
@@ -13,7 +15,7 @@ class PieceChain {
  public:
   /// Collective. All are 0 at first.
   PieceChain(MPI_Comm comm, std::size_t n_values);
-  ~PieceChain();  ///< collective
+  ~PieceChain();  ///< collective, unless something is thrown
   PieceChain(const PieceChain&) = delete;
   PieceChain& operator=(const PieceChain&) = delete;
 
@@ -36,6 +38,7 @@ class PieceChain {
   bool is_begun_ = false;  ///< of rank 0: it has passed them on
   std::vector<double> values_, sent_;
   MPI_Request request_ = MPI_REQUEST_NULL;
+  const Unwinding unwinding_;
 };
 
 }  // namespace umtet

@@ -9,7 +9,7 @@
 #include "distributed/owner_exchange.h"
 
 // Who else has what a rank has, and how solvers number it. The items are vertices, or nodes of second order. All
-// functions are collective.
+// functions but first_ranks() are collective.
 namespace umtet {
 
 /// Items of a rank that other ranks have tets with, too.

@@ -49,11 +49,10 @@ std::vector<int> places_by_area(MPI_Comm comm, const DistributedMesh& mesh, cons
 
 std::vector<int> vertices_on(const std::vector<Triangle>& boundary, std::size_t n_vertices,
                              const VertexOwners& owners) {
-  std::vector<std::uint8_t> is_on(n_vertices, 0), owned(owners.ids().size(), 0);
+  std::vector<std::uint8_t> is_on(n_vertices, 0);
   for (const Triangle& f : boundary)
     for (const int v : f) is_on[v] = 1;
-  owners.ask([&](std::size_t v) { return is_on[v]; }, [&](std::size_t k, std::uint8_t is_so) { owned[k] |= is_so; });
-  is_on = owners.tell(owned);
+  is_on = owners.exchange().any(is_on);
   std::vector<int> vertices;
   for (std::size_t v = 0; v < n_vertices; ++v)
     if (is_on[v]) vertices.push_back(static_cast<int>(v));

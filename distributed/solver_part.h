@@ -24,8 +24,8 @@ struct SolverPart {
   Sharers sharers;
   std::vector<Triangle> boundary;         ///< faces of own tets on the boundary of the whole mesh, outward
   std::vector<std::int64_t> global_face;  ///< of each of these, its number among those of all ranks
+  std::vector<int> patch;                 ///< of each of these faces; index into patches
   std::vector<int> boundary_vertices;     ///< own ones on it, ascending, also those without an own face there
-  std::vector<int> patch;                 ///< of each of these; index into patches
   std::vector<std::string>
       patches;  ///< names, of all ranks: `boundary`, or `boundary_1` ... by area as in `umtet export`
 };

@@ -4,6 +4,7 @@
 
 #include "distributed/all_to_all.h"
 #include "distributed/fit/band_cut.h"
+#include "distributed/mpi_count.h"
 
 namespace umtet {
 namespace {
@@ -32,6 +33,7 @@ BandNeighbours::BandNeighbours(MPI_Comm comm, const std::vector<int>& known, con
     const auto &in = wanted[static_cast<std::size_t>(r)], &out = asked[static_cast<std::size_t>(r)];
     if (in.empty() && out.empty()) continue;
     neighbours_.push_back({r, numbers(out), numbers(in), {}, {}});
+    for (const std::size_t n : {out.size(), in.size()}) mpi_count(n * kNodes);
     neighbours_.back().out.resize(out.size() * kNodes);
     neighbours_.back().in.resize(in.size() * kNodes);
   }
@@ -60,12 +62,6 @@ void BandNeighbours::fill(float* values) {
     for (std::size_t i = 0; i < n.received.size(); ++i)
       std::copy_n(n.in.data() + kNodes * i, kNodes, values + kNodes * static_cast<std::size_t>(n.received[i]));
   }
-}
-
-std::size_t BandNeighbours::bytes() const {
-  std::size_t n = 0;
-  for (const Neighbour& neighbour : neighbours_) n += neighbour.out.size() * sizeof(float);
-  return n;
 }
 
 }  // namespace umtet

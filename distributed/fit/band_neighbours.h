@@ -2,7 +2,6 @@
 
 #include <mpi.h>
 
-#include <cstddef>
 #include <vector>
 
 #include "reconstruct/solve/multilevel_fit.h"
@@ -12,7 +11,7 @@ namespace umtet {
 /// The other parts of a band, by MPI. Calls are collective.
 class BandNeighbours final : public OtherParts {
  public:
-  /// Collective.
+  /// Collective. \throw std::length_error above 2^31 - 1 values between two ranks
   /// @param known  blocks of this part, by their numbers in the whole band, ascending
   /// @param begin  by cut_band()
   BandNeighbours(MPI_Comm comm, const std::vector<int>& known, const std::vector<int>& begin);
@@ -20,9 +19,6 @@ class BandNeighbours final : public OtherParts {
   /// From rank to rank, each of which goes on with the sum of those before: what one process adds up, to the bit.
   double sum(const std::vector<double>& of_blocks) override;
   void fill(float* values) override;
-
-  /// That a fill() sends.
-  std::size_t bytes() const;
 
  private:
   /// Blocks between this rank and another, by their numbers in the part.

@@ -84,13 +84,12 @@ void add_node_sets(const SolverPart& part, const CurvedSolverPart& curved, const
   std::vector<std::string> names = part.patches;
   names.emplace_back(kWholeBoundary);
   for (std::size_t p = 0; p < names.size(); ++p) {
-    std::vector<std::uint8_t> is_in(nodes.n_items(), 0), owned(nodes.n_owned(), 0);
+    std::vector<std::uint8_t> is_in(nodes.n_items(), 0);
     for (std::size_t f = 0; f < curved.boundary.size(); ++f) {
       if (p < part.patches.size() && part.patch[f] != static_cast<int>(p)) continue;
       for (const int node : curved.boundary[f]) is_in[node] = 1;
     }
-    nodes.ask([&](std::size_t v) { return is_in[v]; }, [&](std::size_t k, std::uint8_t x) { owned[k] |= x; });
-    data[names[p]] = nodes.tell(owned);
+    data[names[p]] = nodes.any(is_in);
   }
 }
 

@@ -35,13 +35,12 @@ std::vector<int> ranks_with(MPI_Comm comm, bool has_one) {
 void add_node_sets(const SolverPart& part, const VertexOwners& owners, std::map<std::string, FieldValues>& data) {
   for (std::size_t p = 0; p < part.patches.size(); ++p) {
     if (part.patches[p] == kWholeBoundary) continue;  // `boundary` is there for all
-    std::vector<std::uint8_t> is_in(part.owner.size(), 0), owned(owners.ids().size(), 0);
+    std::vector<std::uint8_t> is_in(part.owner.size(), 0);
     for (std::size_t f = 0; f < part.boundary.size(); ++f) {
       if (part.patch[f] != static_cast<int>(p)) continue;
       for (const int v : part.boundary[f]) is_in[v] = 1;
     }
-    owners.ask([&](std::size_t v) { return is_in[v]; }, [&](std::size_t k, std::uint8_t x) { owned[k] |= x; });
-    data[part.patches[p]] = owners.tell(owned);
+    data[part.patches[p]] = owners.exchange().any(is_in);
   }
 }
 
@@ -147,8 +146,9 @@ std::vector<fs::path> write_pvtu(MPI_Comm comm, const fs::path& pvtu, bool has_p
   for (const int rank : ranks_with(comm, has_piece)) pieces.push_back(name_of(rank));
   write_together(comm, pvtu, rank_in(comm) == 0,
                  [&] { CheckedFile(pvtu).text(pvtu_text(point_data, cell_data, pieces)).close(); });
-  std::vector<fs::path> files = {pvtu};
+  std::vector<fs::path> files;
   for (const std::string& name : pieces) files.push_back(pvtu.parent_path() / name);
+  files.push_back(pvtu);
   return files;
 }
 

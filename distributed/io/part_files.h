@@ -42,7 +42,7 @@ struct PieceExtras {
 /// Each rank its own tets as a piece, NAME_RANK.vtu, and a NAME.pvtu that lists those with tets. Besides the standard
 /// data, vertices have `global_vertex` and tets `global_tet`, their numbers in the whole mesh; vertices have `owner`,
 /// the first rank that has them, and 0/1 under the name of each patch but one that is the whole boundary.
-/// @return the files, the same on all ranks, the .pvtu first \throw KnownToAll naming a file
+/// @return the files, the same on all ranks, the .pvtu last \throw KnownToAll naming a file
 std::vector<std::filesystem::path> write_pvtu(MPI_Comm comm, const std::filesystem::path& pvtu,
                                               const DistributedMesh& mesh, const PieceExtras& extras = {});
 

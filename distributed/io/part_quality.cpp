@@ -29,11 +29,10 @@ QualitySamples quality_samples(MPI_Comm comm, DistributedMesh& mesh,
                                const std::vector<std::pair<std::string, std::vector<Vec3>*>>& stages) {
   const VertexOwners owners(comm, mesh);
   // A vertex may be positive by a tet of another rank.
-  std::vector<char> is_positive(mesh.mesh.V.size(), 0), owned(owners.ids().size(), 0);
+  std::vector<char> is_positive(mesh.mesh.V.size(), 0);
   for (const Triangle& f : mesh.positive_faces)
     for (const int v : f) is_positive[v] = 1;
-  owners.ask([&](std::size_t v) { return is_positive[v]; }, [&](std::size_t k, char p) { owned[k] |= p; });
-  is_positive = owners.tell(owned);
+  is_positive = owners.exchange().any(is_positive);
   std::vector<std::string> names;
   std::vector<std::vector<double>> vectors;
   for (const bool of_boundary : {false, true}) {

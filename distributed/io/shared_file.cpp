@@ -37,7 +37,7 @@ SharedFile::SharedFile(MPI_Comm comm, std::filesystem::path file) : comm_(comm),
 }
 
 SharedFile::~SharedFile() {
-  if (file_ != MPI_FILE_NULL) MPI_File_close(&file_);
+  if (file_ != MPI_FILE_NULL && !unwinding_) MPI_File_close(&file_);
 }
 
 void SharedFile::note(int error) {

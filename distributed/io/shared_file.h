@@ -7,6 +7,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "distributed/unwinding.h"
+
 namespace umtet {
 
 /// Trouble with a file that all ranks throw together.
@@ -19,7 +21,7 @@ class SharedFile {
  public:
   /// Collective.
   SharedFile(MPI_Comm comm, std::filesystem::path file);
-  ~SharedFile();  ///< collective
+  ~SharedFile();  ///< collective, unless something is thrown
   SharedFile(const SharedFile&) = delete;
   SharedFile& operator=(const SharedFile&) = delete;
 
@@ -35,6 +37,7 @@ class SharedFile {
   std::filesystem::path path_;
   MPI_File file_ = MPI_FILE_NULL;
   int error_ = 0;  ///< of errno
+  const Unwinding unwinding_;
 };
 
 }  // namespace umtet

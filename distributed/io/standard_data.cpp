@@ -10,26 +10,19 @@ namespace {
 
 constexpr std::size_t kVerticesPerPiece = 1 << 16;  // half a megabyte
 
-/// Of vertices that are owned, what any who has them says.
-std::vector<std::uint8_t> any_of(const VertexOwners& owners, const std::vector<std::uint8_t>& of_vertices) {
-  std::vector<std::uint8_t> owned(owners.ids().size(), 0);
-  owners.ask([&](std::size_t v) { return of_vertices[v]; },
-             [&](std::size_t k, std::uint8_t is_so) { owned[k] |= is_so; });
-  return owned;
-}
-
 std::vector<std::uint8_t> owned_on_boundary(MPI_Comm comm, const DistributedMesh& mesh, const VertexOwners& owners) {
   std::vector<std::uint8_t> on(mesh.mesh.V.size(), 0);
   for (const Triangle& f : boundary_of_parts(comm, mesh, owners).triangles)
     for (const int v : f) on[v] = 1;
-  return any_of(owners, on);
+  return owners.exchange().any_of_owned(on);
 }
 
 }  // namespace
 
 StandardData standard_data(MPI_Comm comm, const DistributedMesh& mesh, const std::vector<std::uint8_t>* boundary) {
   StandardData data{VertexOwners(comm, mesh), {}, {}, {}};
-  data.boundary = boundary ? any_of(data.owners, *boundary) : owned_on_boundary(comm, mesh, data.owners);
+  data.boundary =
+      boundary ? data.owners.exchange().any_of_owned(*boundary) : owned_on_boundary(comm, mesh, data.owners);
   data.number = IdOrder(comm, data.owners.ids(), kVerticesPerPiece).numbers();
   data.own_number = data.owners.tell(data.number);
   return data;

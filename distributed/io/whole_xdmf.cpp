@@ -35,6 +35,8 @@ class Arrays {
       try {
         begin_ = make_hdf5(file, arrays);
         size_ = fs::file_size(file);
+      } catch (const std::system_error&) {
+        throw;
       } catch (const std::runtime_error&) {  // HDF5 does not say why
         throw std::system_error(std::make_error_code(std::errc::io_error));
       }
@@ -125,12 +127,12 @@ void Writer::write_vertices(Arrays& arrays) const {
 void Writer::write_sets(Arrays& arrays) const {
   const std::vector<std::int64_t>& ids = data_.owners.ids();
   for (std::size_t p = 0; p < part_.patches.size(); ++p) {
-    std::vector<std::uint8_t> is_in(mesh_.mesh.V.size(), 0), owned(ids.size(), 0);
+    std::vector<std::uint8_t> is_in(mesh_.mesh.V.size(), 0);
     for (std::size_t f = 0; f < part_.boundary.size(); ++f) {
       if (part_.patch[f] != static_cast<int>(p)) continue;
       for (const int v : part_.boundary[f]) is_in[v] = 1;
     }
-    data_.owners.ask([&](std::size_t v) { return is_in[v]; }, [&](std::size_t k, std::uint8_t x) { owned[k] |= x; });
+    const std::vector<std::uint8_t> owned = data_.owners.exchange().any_of_owned(is_in);
     put_values<1>(comm_, ids, owned, [&](std::size_t first, const std::vector<std::uint8_t>& values) {
       arrays.put(kBoundary + 1 + p, first, values);
     });

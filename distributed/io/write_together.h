@@ -9,7 +9,8 @@
 
 namespace umtet {
 
-/// What one rank writes, and whether all have. What goes wrong on any rank all throw. Collective.
+/// What one rank writes, and whether all have. A std::system_error of any rank all throw, as KnownToAll; what else
+/// write() throws is for together(). Collective.
 template <class Write>
 void write_together(MPI_Comm comm, const std::filesystem::path& file, bool does, const Write& write) {
   int error = 0;

@@ -4,16 +4,15 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "distributed/collect.h"
 #include "distributed/io/curved_files.h"
 #include "distributed/io/part_quality.h"
-#include "distributed/io/shared_file.h"
 #include "distributed/io/standard_data.h"
 #include "distributed/io/whole_xdmf.h"
+#include "distributed/io/write_together.h"
 #include "distributed/part_boundary.h"
 #include "distributed/part_certificate.h"
 #include "distributed/phase.h"
@@ -32,12 +31,6 @@ struct SentFace {
   std::int64_t corner[3];
   double place[3][3];
 };
-
-std::size_t sum(MPI_Comm comm, std::size_t n) {
-  std::uint64_t all = n;
-  MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_UINT64_T, MPI_SUM, comm);
-  return all;
-}
 
 }  // namespace
 
@@ -257,14 +250,7 @@ void HeldMesh::write_quality(const fs::path& file) {
   }
   const QualitySamples made =
       quality_samples(comm_, mesh_, {{"omega_h", &before}, {"projected", &between}, {"final", &last}});
-  int error = 0;
-  try {
-    if (rank_in(comm_) == 0) write_quality_csv(file, made.indices, made.curves);
-  } catch (const std::system_error& e) {
-    error = e.code().value();
-  }
-  MPI_Allreduce(MPI_IN_PLACE, &error, 1, MPI_INT, MPI_MAX, comm_);
-  if (error != 0) throw KnownToAll(error, std::generic_category(), "cannot write " + file.string());
+  write_together(comm_, file, rank_in(comm_) == 0, [&] { write_quality_csv(file, made.indices, made.curves); });
 }
 
 }  // namespace umtet

@@ -20,7 +20,6 @@ void pass_on(MPI_Comm comm, Heard& heard) {
   while (MPI_Test(&request, &has_come, MPI_STATUS_IGNORE) == MPI_SUCCESS && !has_come) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  MPI_Wait(&request, MPI_STATUS_IGNORE);  // at once: it has come
   std::string& file = heard.attached.file;
   std::vector<char> characters(file.begin(), file.end());
   broadcast(comm, characters);

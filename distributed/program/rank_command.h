@@ -25,7 +25,7 @@ enum class RankOrder : std::int64_t {
   Write,
   WriteQuality,
   WritePieces,
-  Take,
+  Release,
   Drop,
   End
 };

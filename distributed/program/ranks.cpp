@@ -3,6 +3,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <string>
@@ -119,9 +120,21 @@ LevelSet Ranks::refine(const LevelSet& psi, double kappa, double tolerance, int 
   command.max_iterations = max_iterations;
   say(comm_, command);
   BandPart part = std::move(bands_.extract(psi.n_levels()).mapped());
-  LevelSet finer =
-      with_all(kPsi, [&] { return refine_parts(comm_, psi, std::move(part), command.refine_params(), go_on, report); });
+  // What it throws, a signal above all, does not end all at once: it is answered as in one process, when the others
+  // wait no more.
+  std::exception_ptr thrown;
+  const auto go_on_together = [&](double residual) {
+    if (thrown) return;
+    try {
+      go_on(residual);
+    } catch (...) {
+      thrown = std::current_exception();
+    }
+  };
+  LevelSet finer = with_all(
+      kPsi, [&] { return refine_parts(comm_, psi, std::move(part), command.refine_params(), go_on_together, report); });
   n_shared_ = finer.n_levels();
+  if (thrown) std::rethrow_exception(thrown);
   return finer;
 }
 
@@ -152,29 +165,30 @@ std::optional<MadeInParts> Ranks::make(const BackgroundMesh& background, const B
   command.set_places(places);
   say(comm_, command, {{}, seeds});
   const ImplicitFunctionRef psi = domain.psi();
-  return with_all(kMeasures, [&]() -> std::optional<MadeInParts> {
+  std::optional<MadeInParts> made = with_all(kMeasures, [&]() -> std::optional<MadeInParts> {
     const double held = bytes_besides_mesh(domain, places.h);
     const auto at = held_.try_emplace(command.mesh, comm_, background, psi, params, seeds, places, held).first;
-    auto handle = std::make_shared<const Handle>(*this, command.mesh);
     if (!at->second.is_made()) return std::nullopt;
-    MadeInParts made = at->second.summary(psi);
-    made.mesh = std::move(handle);
+    MadeInParts summary = at->second.summary(psi);
     give_back_freed_memory();
-    return made;
+    return summary;
   });
+  // Behind what all do: its end tells them to drop the mesh, also where there is none.
+  auto handle = std::make_shared<const Handle>(*this, command.mesh);
+  if (made) made->mesh = std::move(handle);
+  return made;
 }
 
 double Ranks::allowed_bytes(const Parameters& parameters) const {
   give_back_freed_memory();  // which counts
-  int n = 1;
-  MPI_Comm_size(comm_, &n);
+
   const double of_one = parameters.output().max_memory > 0 ? 1 : 1. / n_here_;  // what a machine can give is shared
-  return of_one * n * umtet::allowed_bytes(parameters);
+  return of_one * n() * umtet::allowed_bytes(parameters);
 }
 
-TakenMesh Ranks::take(const MeshInParts& mesh) {
+TakenMesh Ranks::release(const MeshInParts& mesh) {
   const std::int64_t number = dynamic_cast<const Handle&>(mesh).number();
-  say(comm_, {RankOrder::Take, number});
+  say(comm_, {RankOrder::Release, number});
   return std::move(held_.at(number)).release();
 }
 

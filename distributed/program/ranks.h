@@ -28,7 +28,7 @@ class Ranks final : public PartMesher, public BandRefiner {
   void end(int code);
   /// What this rank has of a mesh that make() made, with the places of the model; the others have theirs from serve().
   /// Collective, once a mesh.
-  TakenMesh take(const MeshInParts& mesh);
+  TakenMesh release(const MeshInParts& mesh);
 
   double allowed_bytes(const Parameters& parameters) const override;
   /// \throw UsageError where the others were called for another mesh

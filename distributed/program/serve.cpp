@@ -87,7 +87,7 @@ void Server::obey(const RankCommand& command, const Attached& attached) {
       at->second.write_pieces(attached.file, static_cast<PieceFormat>(command.state),
                               command.has_data ? &none : nullptr);
       return;
-    case RankOrder::Take:
+    case RankOrder::Release:
       taken_->emplace(std::move(at->second).release());
       return;
     case RankOrder::Drop:

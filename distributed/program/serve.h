@@ -15,7 +15,7 @@ namespace umtet {
 /// code
 /// @param parameters  is called before the first work
 /// @param domain  of a psi that is not fitted to samples; null: load_domain()
-/// @param taken  what this rank has of what Ranks::take() took
+/// @param taken  what this rank has of what Ranks::release() gives away
 int serve(MPI_Comm comm, const std::function<Parameters()>& parameters, const std::function<Domain()>& domain = {},
           std::optional<TakenMesh>* taken = nullptr);
 

@@ -25,7 +25,7 @@ std::vector<CurvedEdge> edges_of_faces(const std::vector<Triangle>& faces, const
   for (const Triangle& f : faces) {
     for (int k = 0; k < 3; ++k) {
       const int a = std::min(f[k], f[(k + 1) % 3]), b = std::max(f[k], f[(k + 1) % 3]), e = number(a, b);
-      if (e < 0) throw std::invalid_argument("quadratic_tets: a face with an edge that no tet has");
+      if (e < 0) throw std::invalid_argument("a face with an edge that no tet has");
       all.push_back({static_cast<int>(n_corners) + e, a, b});
     }
   }

@@ -33,6 +33,7 @@ std::vector<CurvedEdge> edges_of_faces(const std::vector<Triangle>& faces, const
 
 /// Mid-sides of these edges go to their closest points on psi = 0, and are Surface; those that find none near stay, and
 /// are Fixed. Each by itself.
+/// @param h     edge length that the tolerances of params are relative to, model units, > 0
 /// @param V     nodes, corners first
 /// @param kind  of every mid-side
 /// @return evaluations of psi, at most \throw Cancelled

@@ -1,6 +1,5 @@
 #include "mesh/certify/quadratic_tets.h"
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "mesh/certify/mid_side_numbers.h"

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <utility>
 
-#include "common/polled_loops.h"
 #include "mesh/core/asking_psi.h"
 #include "mesh/fast/detail/flat_tets.h"
 #include "mesh/implicit/closest_point.h"

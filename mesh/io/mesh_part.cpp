@@ -15,7 +15,7 @@ std::map<std::string, FieldValues> chosen(const std::map<std::string, FieldValue
                                           const std::vector<std::size_t>& which) {
   std::map<std::string, FieldValues> some;
   for (const auto& [name, values] : data) {
-    const auto of = [&]<class T>(const std::vector<T>& all) -> FieldValues { return gathered<T>(all, which); };
+    const auto of = [&]<class T>(const std::vector<T>& all) -> FieldValues { return picked<T>(all, which); };
     some[name] = std::visit(of, values);
   }
   return some;
@@ -25,7 +25,7 @@ std::map<std::string, FieldValues> chosen(const std::map<std::string, FieldValue
 
 MeshFile part_of(const MeshFile& whole, const std::vector<std::size_t>& tets) {
   MeshFile part;
-  part.mesh.C = gathered<Tet>(whole.mesh.C, tets);
+  part.mesh.C = picked<Tet>(whole.mesh.C, tets);
   std::vector<int> number(whole.mesh.V.size(), -1);
   for (const Tet& t : part.mesh.C) {
     for (const int v : t) number[v] = 0;
@@ -39,7 +39,7 @@ MeshFile part_of(const MeshFile& whole, const std::vector<std::size_t>& tets) {
   tbb::parallel_for(std::size_t{0}, part.mesh.C.size(), [&](std::size_t k) {
     for (int& v : part.mesh.C[k]) v = number[v];
   });
-  part.mesh.V = gathered<Vec3>(whole.mesh.V, vertices);
+  part.mesh.V = picked<Vec3>(whole.mesh.V, vertices);
   part.point_data = chosen(whole.point_data, vertices);
   part.cell_data = chosen(whole.cell_data, tets);
   return part;

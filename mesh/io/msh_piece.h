@@ -34,7 +34,8 @@ struct MshPiece {
 
 /// Gmsh 4.1, binary: the entities of write_msh41(), for each of them one of this part in $PartitionedEntities,
 /// $GhostElements, and boundary data as $NodeData of this part. All files together are the mesh.
-/// \throw std::system_error naming the path
+/// \throw std::system_error naming the path; std::invalid_argument where a node with boundary data is beyond the 2^31 -
+/// 1 that $NodeData has numbers for
 void write_msh41_piece(const std::filesystem::path& path, const MshPiece& piece);
 
 }  // namespace umtet

@@ -6,9 +6,9 @@
 #include <unistd.h>
 #include <xxhash.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <exception>
 #include <memory>
 #include <system_error>
 #include <vector>
@@ -174,8 +174,16 @@ std::vector<FileStamp> FileStamps::of(const std::vector<fs::path>& files) {
       unknown.push_back(i);
     }
   }
-  tbb::parallel_for(std::size_t{0}, unknown.size(),
-                    [&](std::size_t k) { stamps[unknown[k]] = stamp(files[unknown[k]]); });
+  std::vector<std::exception_ptr> thrown(unknown.size());
+  tbb::parallel_for(std::size_t{0}, unknown.size(), [&](std::size_t k) {
+    try {
+      stamps[unknown[k]] = stamp(files[unknown[k]]);
+    } catch (...) {
+      thrown[k] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& error : thrown)  // of several the first, whatever threads do
+    if (error) std::rethrow_exception(error);
   for (const std::size_t i : unknown) {
     ++n_read_[files[i]];
     known_[identities[i]] = stamps[i];
@@ -197,7 +205,8 @@ void write_artefacts(const std::vector<PendingFile>& files) {
   for (const PendingFile& file : files) sync_folder_of(file.path);
 }
 
-std::vector<fs::path> write_artefacts_in(const fs::path& folder, const std::function<void(const fs::path&)>& writer) {
+std::vector<fs::path> write_artefacts_in(const fs::path& folder,
+                                         const std::function<std::vector<fs::path>(const fs::path&)>& writer) {
   const fs::path temporary = folder / (std::string(kTemporaryPrefix) + std::to_string(::getpid()));
   const auto remove = [](const fs::path* f) {
     std::error_code ignored;
@@ -206,19 +215,16 @@ std::vector<fs::path> write_artefacts_in(const fs::path& folder, const std::func
   const std::unique_ptr<const fs::path, decltype(remove)> guard(&temporary, remove);
   fs::remove_all(temporary);
   fs::create_directories(temporary);
-  writer(temporary);
-  std::vector<fs::path> names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(temporary)) names.push_back(entry.path().filename());
-  std::sort(names.rbegin(), names.rend());
-  for (const fs::path& name : names) {
-    Descriptor written(temporary / name, O_RDONLY, folder / name);
+  const std::vector<fs::path> made = writer(temporary);
+  for (const fs::path& file : made) {
+    Descriptor written(file, O_RDONLY, folder / file.filename());
     written.sync();
     written.close();
   }
   std::vector<fs::path> files;
-  for (const fs::path& name : names) {
-    files.push_back(folder / name);
-    if (::rename((temporary / name).c_str(), files.back().c_str()) != 0)
+  for (const fs::path& file : made) {
+    files.push_back(folder / file.filename());
+    if (::rename(file.c_str(), files.back().c_str()) != 0)
       fail(errno, files.back(), "cannot rename the temporary file");
   }
   if (!files.empty()) sync_folder_of(files.front());

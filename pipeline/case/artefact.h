@@ -32,7 +32,7 @@ class FileStamps {
  public:
   /// \throw as stamp()
   FileStamp of(const std::filesystem::path& file) { return of(std::vector{file}).front(); }
-  /// Those of several files, which are read at once by all threads. \throw as stamp()
+  /// Those of several files, which are read at once by all threads. \throw as stamp(), of the first
   std::vector<FileStamp> of(const std::vector<std::filesystem::path>& files);
   /// How often a file was read, by the path at which it was.
   const std::map<std::filesystem::path, int>& n_read() const { return n_read_; }
@@ -64,10 +64,11 @@ struct PendingFile {
 /// The same for files that belong together: none takes its place before all of them are written and flushed.
 void write_artefacts(const std::vector<PendingFile>& files);
 
-/// The same for files that only their writer knows: it fills a temporary folder, all files of which then take their
-/// places in `folder`, the last by name first. @return the files there
+/// The same for files that only their writer knows: it fills a temporary folder, and returns the files there in the
+/// order in which they take their places in `folder`: data before what refers to it. @return the files in `folder`
 std::vector<std::filesystem::path> write_artefacts_in(
-    const std::filesystem::path& folder, const std::function<void(const std::filesystem::path& temporary)>& writer);
+    const std::filesystem::path& folder,
+    const std::function<std::vector<std::filesystem::path>(const std::filesystem::path& temporary)>& writer);
 
 /// The same for text held in memory; every write is checked.
 void write_text_artefact(const std::filesystem::path& file, std::string_view text);

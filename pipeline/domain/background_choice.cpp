@@ -164,8 +164,10 @@ const std::shared_ptr<const SizeField>& BackgroundChoice::sizes_for(double h) co
 double BackgroundChoice::expected_tets(const Domain& domain, double h) const {
   if (!graded_) return umtet::expected_tets(*tiling_, domain.size(), h, source_);
   const SizeField& sizes = *sizes_for(h);
-  if (!known_->n_tets) known_->n_tets = expected_graded_tets(sizes, h, domain.psi(), domain.box, domain.steepest());
-  return *known_->n_tets;
+  if (known_->n_tets) return *known_->n_tets;
+  const double n = expected_graded_tets(sizes, h, domain.psi(), domain.box, domain.steepest());
+  if (graded_->n_domains() == 1) known_->n_tets = n;  // the sizes of several are asked for each of them
+  return n;
 }
 
 double BackgroundChoice::least_h(const Domain& domain) const {

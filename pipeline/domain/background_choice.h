@@ -85,7 +85,7 @@ class BackgroundChoice {
   struct Known {
     double h;
     std::shared_ptr<const SizeField> sizes;
-    std::optional<double> n_tets;  ///< expected, of the domain that was asked for
+    std::optional<double> n_tets;  ///< expected, where there is one domain
   };
   mutable std::optional<Known> known_;
   const bool is_ours_;       ///< mesh.background is auto, and no sizes are given

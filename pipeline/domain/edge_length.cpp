@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <span>
 #include <vector>
 
@@ -64,11 +63,10 @@ struct ThinPart {
 ThinPart thin_part(const Domain& domain, double limit, const Context& context) {
   const std::vector<Vec3>& all = domain.cloud.points;
   const std::vector<int>& counts = domain.cloud.counts;
-  const std::size_t n = counts.empty() ? all.size() : std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+  const std::size_t n = sum_of_counts(counts, all.size());
   std::vector<Vec3> samples;  // evenly, as the cloud is sorted in space
-  for (const std::size_t i : every_mth(n / kThicknessSamples + 1, all.size(), [&](std::size_t row) {
-         return counts.empty() ? 1 : static_cast<std::size_t>(counts[row]);
-       }))
+  for (const std::size_t i :
+       every_mth(n / kThicknessSamples + 1, all.size(), [&](std::size_t row) { return count_of(counts, row); }))
     samples.push_back(all[i]);
   // psi has no sheets much closer together than its lattice.
   std::vector<double> t = domain.with_psi_apart([&](ImplicitFunctionRef psi) {

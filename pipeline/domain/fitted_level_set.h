@@ -21,8 +21,8 @@ class FittedLevelSet {
   LevelSet band_limited(double spacing) const;
   /// What is in memory.
   const LevelSet& held() const { return held_; }
-  /// Levels of a smaller spacing are put aside, or keep at least nothing of their evaluations. Nobody may evaluate this
-  /// level set, or a copy of it, meanwhile.
+  /// Levels of a smaller spacing are put aside. Where they could not be had again, what evaluations have made of them
+  /// is freed. Nobody may evaluate this level set, or a copy of it, meanwhile.
   void put_aside_below(double spacing);
 
  private:

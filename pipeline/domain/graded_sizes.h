@@ -34,9 +34,8 @@ class GradedSizes {
   /// allows. psi is looked at with all the detail that sizes of h_min show; on return it is cut there.
   /// @param most_tets  where some of the sizes already make more tets, the others are not looked for
   /// @return false then, and nothing was taken in
-  /// \throw MeshingImpossible  psi = 0 nowhere in the box; UsageError, also for a formula that is not above 0 on psi =
-  /// 0
-  ///        or inside, if there is no mesh.h_min; Cancelled
+  /// \throw MeshingImpossible  psi = 0 nowhere in the box; UsageError, also for a formula that is not above 0 on
+  ///        psi = 0 or inside, if there is no mesh.h_min; Cancelled
   bool add(Domain& domain, const Context& context = {}, double most_tets = std::numeric_limits<double>::infinity());
 
   /// Asks for less where a mesh failed, with all sizes times h / finest(): where that is not below mesh.h_min, or a

@@ -65,8 +65,7 @@ class MeshMaker {
   };
   MeshAttempt begin(const SizedBackground& background, double h);
   Begun choose(const SizedBackground& background, double h, const MeshAttempt* former);
-  ChosenSubmesh choose(const BackgroundMesh& background, const ZeroSetChoice& pieces,
-                       const MeshAttempt* former = nullptr);
+  ChosenSubmesh choose(const BackgroundMesh& background, const ZeroSetChoice& pieces, const MeshAttempt* former);
   std::optional<MadeInParts> made_by_ranks(const SizedBackground& background, const ZeroSetChoice& pieces, double h);
   MeshAttempt finish(const SizedBackground& background, Begun begun);
   void fit(const SizedBackground& background, ChosenSubmesh chosen, MeshAttempt& a);

@@ -84,7 +84,7 @@ class MeshInParts {
   virtual void write_quality(const std::filesystem::path& file) const = 0;
   /// Of the final state, all named after this file.
   /// @param data  null: patches are connected pieces of the boundary. PieceFormat::Xdmf has no other
-  /// @return what was written \throw std::system_error naming a file
+  /// @return what was written, data before what refers to it \throw std::system_error naming a file
   virtual std::vector<std::filesystem::path> write_pieces(const std::filesystem::path& file, PieceFormat format,
                                                           const PieceData* data) const = 0;
 };

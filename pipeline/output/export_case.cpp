@@ -168,8 +168,8 @@ std::vector<fs::path> write_pieces(PieceFormat format, const fs::path& folder, c
   const char* name = format == PieceFormat::Pvtu   ? "mesh.pvtu"
                      : format == PieceFormat::Xdmf ? "mesh.xdmf"
                                                    : "mesh_part.msh";
-  return write_artefacts_in(folder,
-                            [&](const fs::path& temporary) { parts.write_pieces(temporary / name, format, data); });
+  return write_artefacts_in(
+      folder, [&](const fs::path& temporary) { return parts.write_pieces(temporary / name, format, data); });
 }
 
 /// \throw UsageError, ArtefactDamaged

@@ -41,6 +41,7 @@ class CaseRun {
   void sample_for_h();
   StageState state_of(Stage stage) const;
   bool is_fine_enough(Stage stage, const StageRecord& record) const;
+  bool lacks_parts(Stage stage, const StageState& state) const;
   bool must_run(Stage stage, const StageState& state) const;
   void make(Stage stage);
   void certify(const StageRecord& mesh);
@@ -113,6 +114,11 @@ bool CaseRun::is_fine_enough(Stage stage, const StageRecord& record) const {
   return !wanted || *wanted == wanted_mesh(parameters_);
 }
 
+/// A mesh is done, but what each process has of it is not there. That of one process, which has sizes, never had parts.
+bool CaseRun::lacks_parts(Stage stage, const StageState& state) const {
+  return stage == Stage::Mesh && request_.ranks && request_.needs_parts && !mesh_report(*state.record).measured.sizes;
+}
+
 bool CaseRun::must_run(Stage stage, const StageState& state) const {
   using Kind = StageState::Kind;
   const std::string name = to_string(stage);
@@ -134,7 +140,7 @@ bool CaseRun::must_run(Stage stage, const StageState& state) const {
     progress_.say(name + ": made as fine as another mesh needs");
     return true;
   }
-  if (state.kind == Kind::Done && stage == Stage::Mesh && request_.ranks && request_.needs_parts) {
+  if (state.kind == Kind::Done && lacks_parts(stage, state)) {
     progress_.say("mesh: made again, for files that each process writes a part of");
     return true;
   }
@@ -147,9 +153,9 @@ StageRecord CaseRun::ensure(Stage stage) {
   if (!must_run(stage, state)) return *state.record;
   if (holds_results(paths_, stage)) {
     paths_.renews(stage) = true;
-    const bool is_new = request_.force || (stage == Stage::Mesh && request_.ranks && request_.needs_parts);
-    if (!is_new) state = state_of(stage);
-    if (!is_new && state.kind == StageState::Kind::Done && is_fine_enough(stage, *state.record)) {
+    if (!request_.force) state = state_of(stage);
+    if (!request_.force && state.kind == StageState::Kind::Done && is_fine_enough(stage, *state.record) &&
+        !lacks_parts(stage, state)) {
       progress_.say(std::string(to_string(stage)) + ": done by an earlier run that was not finished");
       return *state.record;
     }

@@ -19,6 +19,7 @@
 #include "distributed/curved_solver_part.h"
 #include "distributed/program/ranks.h"
 #include "distributed/program/serve.h"
+#include "distributed/program/together.h"
 #include "distributed/solver_part.h"
 #include "distributed/vertex_owners.h"
 #include "pipeline/case/exit_code.h"
@@ -102,7 +103,7 @@ MeshPart make(MPI_Comm comm, const Request& request, const py::object& progress)
       MeshAttempt best = make_mesh(psi.domain, *parameters, watch, &ranks);
       if (!best.parts)
         throw UsageError("--background a15 is wanted: where edges follow the body, one process makes the mesh");
-      made.taken = ranks.take(*best.parts);
+      made.taken = ranks.release(*best.parts);
       made.h = best.h;
       made.certificate = to_json(verdict_on(std::move(best.measured), *parameters)).dump();
     });
@@ -152,11 +153,13 @@ std::optional<MeshPart> mesh(int number, const py::object& psi, const Settings& 
     if (!made) return std::nullopt;
   }
   const py::gil_scoped_release no_gil;
-  add_numbers(comm, *made);
-  MPI_Bcast(&made->h, 1, MPI_DOUBLE, 0, comm);
-  std::vector<char> text(made->certificate.begin(), made->certificate.end());
-  broadcast(comm, text);
-  made->certificate.assign(text.begin(), text.end());
+  together(comm, [&] {
+    add_numbers(comm, *made);
+    MPI_Bcast(&made->h, 1, MPI_DOUBLE, 0, comm);
+    std::vector<char> text(made->certificate.begin(), made->certificate.end());
+    broadcast(comm, text);
+    made->certificate.assign(text.begin(), text.end());
+  });
   return made;
 }
 

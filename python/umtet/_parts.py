@@ -32,10 +32,11 @@ class MeshPart:
     whole mesh, counter-clockwise from outside; patches, the same by name: boundary, or boundary_1, boundary_2 ... where it
     is several pieces, the same names in all processes. boundary_vertices: points on it, also those whose faces are others'.
 
-    global_vertex (n,), global_tet (m,), global_face (k,): numbers in the whole mesh: places in points, tets and boundary of
-    what umtet.mesh() makes in one process. owner (n,): the process that owns a vertex, the first that has it. solver_vertex (n,): its number where each process counts
-    those that it owns, one process after the other, in the order of points. shared: of each other process the vertices
-    that it has, too, in one order on both sides. background_vertex, background_tet: ids in the background.
+    global_vertex (n,), global_tet (m,), global_face (k,): numbers in the whole mesh: places in points, tets and
+    boundary of what umtet.mesh() makes in one process. owner (n,): the process that owns a vertex, the first that has
+    it. solver_vertex (n,): its number where each process counts those that it owns, one process after the other, in the
+    order of points. shared: of each other process the vertices that it has, too, in one order on both sides.
+    background_vertex, background_tet: ids in the background.
 
     Of mesh(order=2): tets (m, 10) and boundary (k, 6), patches among them, have the nodes in the order that Mesh has them.
     points are these nodes, corners before mid-sides, and what is said of vertices is said of nodes: global_vertex, owner,

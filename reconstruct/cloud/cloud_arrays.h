@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,15 @@ void keep_samples(OrientedPointCloud& cloud, const std::vector<std::uint32_t>& r
 /// bit.
 /// @param n  finite, not zero
 Vec3 unit_normal(Vec3 n);
+
+/// How many points a sample stands for. @param counts  OrientedPointCloud::counts
+inline std::size_t count_of(const std::vector<int>& counts, std::size_t sample) {
+  return counts.empty() ? 1 : static_cast<std::size_t>(counts[sample]);
+}
+/// How many all of them stand for.
+inline std::size_t sum_of_counts(const std::vector<int>& counts, std::size_t n_samples) {
+  return counts.empty() ? n_samples : std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+}
 
 /// Every m-th of the rows 0 .. size - 1; where a row stands for several samples, the rows of every m-th of these.
 /// @param m      >= 1

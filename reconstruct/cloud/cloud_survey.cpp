@@ -35,10 +35,8 @@ double percentile(std::vector<double>& values, double share) {
 /// @param counts  of merged samples; else empty
 std::vector<std::uint32_t> evenly_picked(const NeighbourTree& tree, std::size_t n_picked,
                                          const std::vector<int>& counts = {}) {
-  const auto count = [&](std::size_t row) {
-    return counts.empty() ? 1 : static_cast<std::size_t>(counts[tree.order()[row]]);
-  };
-  const std::size_t n = counts.empty() ? tree.size() : std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+  const auto count = [&](std::size_t row) { return count_of(counts, tree.order()[row]); };
+  const std::size_t n = sum_of_counts(counts, tree.size());
   std::vector<std::uint32_t> picked;
   for (const std::size_t row : every_mth(std::max<std::size_t>(1, n / n_picked), tree.size(), count))
     picked.push_back(tree.order()[row]);

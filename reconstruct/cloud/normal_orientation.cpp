@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
-#include <span>
 #include <stdexcept>
 
 #include "common/formatted.h"

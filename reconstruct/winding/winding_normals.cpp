@@ -36,8 +36,8 @@ struct Attempt {
 constexpr std::array<Attempt, 2> kAttempts = {Attempt{kChecked, {}},
                                               Attempt{16000, {.rounds = 10, .widest = 4, .narrowest = 2}}};
 
-/// Every m-th of them, at most `most`.
-std::vector<Vec3> every_mth(const std::vector<Vec3>& all, std::size_t most) {
+/// Every m-th of them: `most`, or fewer.
+std::vector<Vec3> at_most(const std::vector<Vec3>& all, std::size_t most) {
   const std::size_t m = (all.size() + most - 1) / most;
   std::vector<Vec3> some;
   for (std::size_t i = 0; i < all.size(); i += m) some.push_back(all[i]);
@@ -48,7 +48,7 @@ struct Part {
   std::vector<Vec3> points, normals;
   std::vector<double> areas;
   Part(const OrientedPointCloud& cloud, std::size_t most)
-      : points(every_mth(cloud.points, most)), normals(every_mth(cloud.normals, most)), areas(sample_areas(points)) {}
+      : points(at_most(cloud.points, most)), normals(at_most(cloud.normals, most)), areas(sample_areas(points)) {}
 };
 
 /// Outward, unit; zero where the field is.
@@ -112,7 +112,7 @@ WindingReport orient_by_winding(OrientedPointCloud& cloud, const OrientByWinding
     if (report.off_before <= kMostOff) return report;
     if (off_a_half(part.points, part.normals, part.areas, kWider) <= kMostOff) return report;
     if (others) {
-      const double off = off_a_half(part.points, every_mth(*others, kChecked), part.areas);
+      const double off = off_a_half(part.points, at_most(*others, kChecked), part.areas);
       if (off < report.off_before) {
         cloud.normals = *others;
         report.restored = true;

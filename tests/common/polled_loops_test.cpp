@@ -4,6 +4,8 @@
 #include <oneapi/tbb/global_control.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <thread>
@@ -33,13 +35,27 @@ TEST(PolledLoops, ReachEveryValueOnceAndPollFromTheCallingThreadOnly) {
 }
 
 TEST(PolledLoops, EndForAllThreadsWhenTheCallerIsTold) {
+  constexpr std::size_t kValues = 10'000'000;
+  constexpr std::chrono::seconds kPatience{1};  // on one processor there may be no other thread
   for (const std::size_t threads : {1, 3}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     for (const int after : {1, 2}) {  // before the loop, and within it
       int n_polls = 0;
-      const Context told{.cancelled = [&] { return ++n_polls == after; }};
-      EXPECT_THROW(polled_parallel_for(100'000, 1, told, [](std::size_t) { std::this_thread::yield(); }), Cancelled);
+      std::atomic<std::size_t> n_visits = 0;
+      const auto others_have_begun = [&] { return n_visits > 0 || threads == 1 || n_polls == 1; };
+      const Context told{.cancelled = [&] {
+        if (++n_polls < after) return false;
+        const auto end = std::chrono::steady_clock::now() + kPatience;
+        while (!others_have_begun() && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+        return true;
+      }};
+      const auto visit = [&](std::size_t) {
+        ++n_visits;
+        std::this_thread::yield();
+      };
+      EXPECT_THROW(polled_parallel_for(kValues, 1, told, visit), Cancelled);
       EXPECT_EQ(n_polls, after);
+      EXPECT_LT(n_visits, kValues / 1000) << threads;  // less than the others had begun
     }
   }
 }

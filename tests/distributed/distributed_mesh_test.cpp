@@ -34,6 +34,7 @@ Bits bits(const Vec3& x) {
 struct WholeMesh {
   std::map<std::int64_t, std::array<std::int64_t, 4>> tets;
   std::map<std::int64_t, Bits> places;
+  std::size_t n_psi_evaluations = 0;
 };
 
 FastParams without_repair() {
@@ -50,6 +51,7 @@ WholeMesh made_by_one(const BackgroundMesh& background, const AnalyticDomain& do
   const UmResult made = universal_mesh(background, domain, all, {}, seeds);
   EXPECT_EQ(made.status, UmStatus::Success) << made.evidence.what;
   WholeMesh mesh;
+  mesh.n_psi_evaluations = made.n_psi_evaluations;
   const auto& id = made.submesh.background_vertex;
   for (std::size_t t = 0; t < made.submesh.mesh.C.size(); ++t) {
     const Tet& c = made.submesh.mesh.C[t];
@@ -106,6 +108,7 @@ DistributedMesh expect_same(const BackgroundMesh& background, const AnalyticDoma
   std::size_t n_elsewhere = 0;
   for (const auto& [v, x] : mesh.places) n_elsewhere += !one.places.contains(v) || one.places.at(v) != x;
   EXPECT_EQ(n_elsewhere, 0U);
+  EXPECT_GE(part.n_psi_evaluations, one.n_psi_evaluations);  // more than one rank looks at what is between them
   return part;
 }
 

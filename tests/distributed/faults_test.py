@@ -1,6 +1,6 @@
 """`mpirun -n N umtet_mpi` where something goes wrong in one process: one reason, the exit code of one process, no hang.
 
-usage: faults_test.py UMTET_MPI MPIEXEC N
+usage: faults_test.py UMTET_MPI THROWING_RANK KILL_SHIM MPIEXEC N
 """
 import json
 import os
@@ -13,7 +13,10 @@ import tempfile
 import time
 import unittest
 
-UMTET_MPI, MPIEXEC, N = sys.argv[1], sys.argv[2], int(sys.argv[3])
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "faults"))
+from support import ellipsoid, write_ply  # noqa: E402
+
+UMTET_MPI, THROWING_RANK, KILL_SHIM, MPIEXEC, N = *sys.argv[1:5], int(sys.argv[5])
 BALL = ["--implicit", "x^2+y^2+z^2-1", "--box=-1.2,-1.2,-1.2,1.2,1.2,1.2", "--threads", "1", "--no-report", "--progress", "none"]
 # Some six seconds of one process: a signal comes after one of them, and mpirun may take two before it ends what it started.
 LONG = [*BALL, "--h", ".019", "--max-tets", "1e7"]
@@ -68,6 +71,20 @@ class Faults(unittest.TestCase):
                     if rank == 0:
                         self.assertEqual(json.loads(out)["exit_code"], code)
 
+    def test_a_signal_while_all_fit_ends_all_with_its_reason(self):
+        if N == 1:
+            self.skipTest("one process")
+        cloud = write_ply(self.folder / "egg.ply", ellipsoid(4000))
+        for how, code, word in ((signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")):
+            with self.subTest(word):
+                # The second iteration on a band: it alone waits for blocks of others.
+                hook = ["LD_PRELOAD=" + KILL_SHIM, "UMTET_KILL_RANK=0", "UMTET_KILL_STEP=Waitall", "UMTET_KILL_AT=2", f"UMTET_KILL_SIGNAL={int(how)}"]
+                made = subprocess.run([MPIEXEC, "-n", str(N), "--oversubscribe", "env", *hook, UMTET_MPI, "reconstruct", str(cloud), "--set", "reconstruct.spacing=.03", "--threads", "1", "--progress", "none", "--json", "-o", str(self.case)],
+                                      capture_output=True, text=True, timeout=PATIENT)
+                self.assertEqual(made.returncode, code, made.stderr)
+                self.assertEqual(said(made.stderr), [f"umtet: {word} in level-set; the case can be resumed with the same command"])
+                self.assertEqual(json.loads(made.stdout)["exit_code"], code)
+
     def test_a_signal_to_mpirun_ends_all_and_the_case_can_be_resumed(self):
         found, _, lines = self.stopped(signal.SIGTERM, None)
         self.assertNotEqual(found, 0)  # that of mpirun, which may leave no time for a word
@@ -116,6 +133,18 @@ class Faults(unittest.TestCase):
                 made = self.run_with(LONG, limit)
                 self.assertEqual(made.returncode, 9, made.stderr)
                 self.assertEqual(len(said(made.stderr)), 1, made.stderr)
+
+    def test_a_rank_that_throws_ends_all_with_its_reason(self):
+        calls = [(["file", str(self.folder / "file")], 9, "out of memory in mesh")]
+        if N > 1:
+            calls.append((["window"], 1, "psi throws beside an open window"))
+        for call, code, reason in calls:
+            with self.subTest(call[0]):
+                made = subprocess.run([MPIEXEC, "-n", str(N), "--oversubscribe", THROWING_RANK, *call], capture_output=True, text=True,
+                                      timeout=20)
+                self.assertEqual(made.returncode, code, made.stderr)
+                self.assertEqual(len(said(made.stderr)), 1, made.stderr)
+                self.assertIn(reason, made.stderr)
 
     def test_max_memory_is_of_each_process(self):
         # About a million tets take some 500 MB in one process.

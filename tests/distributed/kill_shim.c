@@ -1,12 +1,13 @@
-// Preloaded into umtet_mpi: one rank kills itself, as kill -9 does, when it begins its n-th step. Steps are calls of
-// MPI that wait for others, and what puts files of a case into their places. The same run has the same steps.
+// Preloaded into umtet_mpi: one rank sends itself a signal when it begins its n-th step, that of kill -9 if none is
+// named. Steps are calls of MPI that wait for others, and what puts files of a case into their places. The same run has
+// the same steps.
 //
 //   UMTET_KILL_RANK=r        the rank
 //   UMTET_KILL_AT=n          its step, from 1; none: it lives
 //   UMTET_KILL_STEP=rename   of steps with this name alone
+//   UMTET_KILL_SIGNAL=n      the signal
 //   UMTET_KILL_LOG=/file     of each rank, with .r behind it: how many steps there were; of one that was killed the
-//   name
-//                            of its last, and the time
+//                            name of its last, and the time
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -49,7 +50,7 @@ static void step(const char* name) {
   if (n_steps != number("UMTET_KILL_AT", -1) || number("OMPI_COMM_WORLD_RANK", 0) != number("UMTET_KILL_RANK", -1))
     return;
   log_step(name);
-  raise(SIGKILL);
+  raise((int)number("UMTET_KILL_SIGNAL", SIGKILL));
 }
 
 #define STEP(name, types, values) \

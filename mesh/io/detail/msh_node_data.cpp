@@ -34,7 +34,8 @@ void write_values(CheckedFile& file, const MshNodeData& data, const std::vector<
   write_head(file, data, kComponents<Value>, values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
     const std::int64_t number = data.node.empty() ? static_cast<std::int64_t>(i) : data.node[i];
-    const auto tag = static_cast<std::int32_t>(number) + 1;
+    require_msh_tags(static_cast<std::size_t>(number) + 1);
+    const auto tag = static_cast<std::int32_t>(number + 1);
     is_binary ? file.raw(tag) : file.number(tag);
     for (const double x : components(values[i])) is_binary ? file.raw(x) : file.text(" ").number(x);
     if (!is_binary) file.text("\n");

@@ -2,8 +2,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
-#include <stdexcept>
 #include <vector>
 
 #include "mesh/io/checked_file.h"
@@ -229,9 +227,7 @@ void MshWriter::version41() {
 
 void check(const SolverMesh& mesh) {
   require_consistent(mesh);
-  if (mesh.n_tets() + mesh.n_faces() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
-    throw std::invalid_argument("a .msh file of more than 2^31 elements");
-  }
+  require_msh_tags(mesh.n_tets() + mesh.n_faces());
 }
 
 }  // namespace

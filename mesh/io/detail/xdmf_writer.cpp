@@ -197,7 +197,9 @@ std::vector<std::uint64_t> make_hdf5(const std::filesystem::path& path, const st
     const Handle space(H5Screate_simple(array.columns == 0 ? 1 : 2, size, nullptr), H5Sclose, "H5Screate_simple");
     const Handle set(H5Dcreate2(file, array.name.c_str(), type, space, properties.link, properties.make, H5P_DEFAULT),
                      H5Dclose, "H5Dcreate");
-    begins.push_back(H5Dget_offset(set));
+    const haddr_t begin = H5Dget_offset(set);
+    if (begin == HADDR_UNDEF && array.rows > 0) throw std::runtime_error("H5Dget_offset");
+    begins.push_back(begin);
   }
   checked(H5Fflush(file, H5F_SCOPE_GLOBAL), "H5Fflush");
   return begins;

@@ -5,14 +5,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <functional>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <stdexcept>
 #include <system_error>
+#include <vector>
 
 #include "mesh/io/detail/fixed_width.h"
+#include "mesh/io/msh_piece.h"
 #include "mesh/io/patches.h"
 #include "tests/support/file_size_limit.h"
 #include "tests/support/shell.h"
@@ -296,6 +301,20 @@ TEST(SolverFiles, MeshesThatContradictThemselvesAreNotWritten) {
   mesh = block(1);
   mesh.patches[0].number = 100'000'000;
   EXPECT_THROW(write_nastran(scratch.folder / "a.bdf", mesh), std::invalid_argument);
+}
+
+TEST(SolverFiles, PartsForGmshHaveNoDataOfNodesBeyondItsNumbers) {
+  const Scratch scratch;
+  MshPiece piece;
+  piece.nodes = {Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+  piece.tets = {{0, 1, 2, 3}};
+  piece.tet_number = {0};
+  piece.boundary_data = {{"scan_heat", std::vector<double>(4, 1.)}};
+  const std::int64_t last = std::numeric_limits<std::int32_t>::max() - std::int64_t{1};  // 2^31 - 1 from 1 on
+  piece.node_number = {0, 1, 2, last};
+  EXPECT_NO_THROW(write_msh41_piece(scratch.folder / "a.msh", piece));
+  piece.node_number.back() = last + 1;
+  EXPECT_THROW(write_msh41_piece(scratch.folder / "a.msh", piece), std::invalid_argument);
 }
 
 TEST(SetPatches, NamesAndNumbersThatAFormatWouldLoseAreRefused) {

@@ -6,9 +6,11 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdint>
 #include <fstream>
 #include <string>
 #include <system_error>
+#include <vector>
 
 namespace umtet {
 namespace {
@@ -99,13 +101,14 @@ TEST_F(Artefact, FilesThatTheirWriterAloneKnowsAppearTogether) {
       std::ofstream(temporary / "a") << "new";
       if (fails) throw std::runtime_error("no more");
       std::ofstream(temporary / "b") << "new";
+      return std::vector<fs::path>{temporary / "a", temporary / "b"};
     });
   };
   std::ofstream(folder / "a") << "old";
   EXPECT_THROW(write(true), std::runtime_error);
   EXPECT_EQ(read_text(folder / "a"), "old");
   EXPECT_EQ(n_files(), 1u);
-  EXPECT_EQ(write(false), (std::vector<fs::path>{folder / "b", folder / "a"}));
+  EXPECT_EQ(write(false), (std::vector<fs::path>{folder / "a", folder / "b"}));
   EXPECT_EQ(read_text(folder / "a"), "new");
   EXPECT_EQ(n_files(), 2u);
 }
@@ -130,6 +133,20 @@ TEST_F(Artefact, StampIsXxh3OfTheBytes) {
   write_text_artefact(file, std::string((1 << 20) + 1, 'a'));  // more than one piece
   EXPECT_EQ(stamp(file).size, (1u << 20) + 1);
   EXPECT_THROW(stamp(folder / "none"), std::system_error);
+}
+
+TEST_F(Artefact, OfSeveralFilesThatCannotBeReadTheFirstIsNamed) {
+  // While one thread reads the file before it, others come to the last ones.
+  std::vector<fs::path> files = {folder / "large"};
+  std::ofstream(files.front()) << "x";
+  fs::resize_file(files.front(), std::uintmax_t{1} << 28);
+  for (int k = 0; k < 15; ++k) files.push_back(folder / ("none_" + std::to_string(k)));
+  try {
+    FileStamps().of(files);
+    FAIL();
+  } catch (const std::system_error& e) {
+    EXPECT_NE(std::string(e.what()).find("none_0:"), std::string::npos) << e.what();
+  }
 }
 
 TEST_F(Artefact, StaleTemporariesGoAndOtherFilesStay) {

@@ -177,6 +177,16 @@ TEST(BackgroundChoice, OfAGradedMeshHasAboutTheTetsThatWereAskedFor) {
   }
 }
 
+TEST(BackgroundChoice, ExpectsOfEachOfSeveralDomainsItsOwnTets) {
+  const Parameters p = graded({"mesh.h=.1"});
+  Domain large = ball(), small = ball();
+  small.formula.emplace("x^2+y^2+z^2-.25");
+  BackgroundChoice choice(p, large);
+  choice.edge_length(large);
+  const double h = choice.edge_length(small).h;
+  EXPECT_GT(choice.expected_tets(large, h), 2 * choice.expected_tets(small, h));
+}
+
 TEST(BackgroundChoice, RefusesSizesThatMakeTooManyTets) {
   const Parameters p = graded({"mesh.h=.02", "mesh.max_tets=10000"});
   Domain domain = ball();

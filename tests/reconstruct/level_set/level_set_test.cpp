@@ -128,8 +128,23 @@ TEST(LevelSet, WhatIsForgottenIsMadeAgain) {
   const std::vector<Vec3> points = torus_cloud(500, 8).points;
   std::vector<double> before;
   for (const Vec3& x : points) before.push_back(psi.value(x));
-  for (const double spacing : {psi.spacing(), 1.01 * psi.spacing(), 10.}) {
+  // Where the coefficients are that evaluations have made of the finest level, asked for in steps through the points.
+  const int level = psi.n_levels() - 1;
+  const Lattice& finest = psi.lattice(level);
+  const auto places = [&](std::size_t step) {
+    std::vector<const float*> at(points.size());
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const std::size_t k = step * i % at.size();
+      const Vec3 cell = ((points[k] - finest.origin) / finest.h).array().floor();
+      at[k] = psi.band_window(level, cell.cast<int>()).first;
+    }
+    return at;
+  };
+  // Other steps each time: in one order memory could be given out again as it was.
+  for (const auto& [spacing, step] : {std::pair(psi.spacing(), 1), {1.01 * psi.spacing(), 7}, {10., 11}}) {
+    const std::vector<const float*> made = places(step);
     psi.forget_below(spacing);
+    EXPECT_EQ(places(step + 2) == made, spacing <= finest.h) << spacing;
     for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(psi.value(points[i]), before[i]);
   }
 }

@@ -4,6 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <vector>
+
 #include "reconstruct/solve/multilevel_fit.h"
 #include "tests/support/clouds.h"
 
