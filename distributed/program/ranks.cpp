@@ -181,7 +181,6 @@ std::optional<MadeInParts> Ranks::make(const BackgroundMesh& background, const B
 
 double Ranks::allowed_bytes(const Parameters& parameters) const {
   give_back_freed_memory();  // which counts
-
   const double of_one = parameters.output().max_memory > 0 ? 1 : 1. / n_here_;  // what a machine can give is shared
   return of_one * n() * umtet::allowed_bytes(parameters);
 }

@@ -113,7 +113,7 @@ TEST(StageReports, AReportReadBackIsWrittenAlike) {
 
   CloudReport cloud;
   cloud.box = {Vec3(0, 0, 0), Vec3(1, 1, 1)};
-  cloud.normals = {true, 3, .9, OrientationReport{.9, 1, 5}, 7};
+  cloud.normals = {true, 3, .9, OrientationReport{.9, 1, 5}, 7, 2, 4};
   cloud.notices = {"turned 5"};
   record.numbers = reread(to_json(cloud));
   EXPECT_EQ(to_json(cloud_report(record)).dump(2), to_json(cloud).dump(2));
