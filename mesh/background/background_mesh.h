@@ -40,6 +40,7 @@ class BackgroundMesh {
   explicit BackgroundMesh(GradedMesh mesh);
 
   bool is_lattice() const { return is_lattice_; }
+  bool is_stored() const { return explicit_ != nullptr; }  ///< tet by tet, whoever made it
   /// Of no points and no name for another mesh.
   const Tiling& tiling() const { return tiling_; }
   double h() const { return h_; }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -327,7 +328,11 @@ void FastRun::relax(std::vector<Vec3>& projected) {
     layer_ = linked_active_layer(background_, *costs_->links, inside_, params_.layers, &loose);
     begin_where_kept(kept_, params_.projection, layer_);
   } else {
-    layer_ = costs_ ? linked_active_layer(background_, *costs_->links, inside_, params_.layers)
+    // The tets of a stored mesh are as good as whoever made it: the worst may be anywhere. From instant to instant only
+    // those at the boundary move, because the others are to stay.
+    const bool all_move = background_.is_stored() && !memory_;
+    const int layers = all_move ? std::numeric_limits<int>::max() : params_.layers;
+    layer_ = costs_ ? linked_active_layer(background_, *costs_->links, inside_, layers)
                     : walled_active_layer(background_, inside_, params_.layers);
   }
   LayerFit fit{.smoothing = params_.smoothing};

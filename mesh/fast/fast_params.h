@@ -12,7 +12,8 @@ namespace umtet {
 
 /// docs/constants.md has what other values do.
 struct FastParams {
-  int layers = 2;  ///< layers of vertices behind the boundary that move; >= 1
+  /// Layers of vertices behind the boundary that move; >= 1. In a stored mesh all do, but for domains that move.
+  int layers = 2;
   ClassificationParams classification;
   ProjectionParams projection;
   SmoothingParams smoothing;

@@ -200,7 +200,12 @@ IdSet movable_vertices(const BackgroundMesh& background, const VertexLinks& link
         if (inside.test_any(w) && !movable.test(w)) next.insert_shared(w);
       });
     });
-    for (std::size_t w = 0; w < next.n_words(); ++w) movable.set_word(w, movable.word(w) | next.word(w));
+    bool is_more = false;
+    for (std::size_t w = 0; w < next.n_words(); ++w) {
+      is_more |= next.word(w) != 0;
+      movable.set_word(w, movable.word(w) | next.word(w));
+    }
+    if (!is_more) break;
     front = std::move(next);
   }
   return movable;

@@ -4,7 +4,9 @@
 #include <oneapi/tbb/global_control.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <random>
 
 #include "mesh/core/tet_quality.h"
 #include "mesh/fast/patch_state.h"
@@ -186,6 +188,32 @@ TEST(FastMesh, RepairMakesNothingWorseAndMendsPoorTetsAndFoldedFaces) {
   EXPECT_GT(mended, 0u);
   EXPECT_GT(unturned, 0u);
   EXPECT_GT(unfolded, 0u);
+}
+
+/// Vertices of A15 up to `size` h away from where they belong.
+TetMesh shaken(const BackgroundMesh& lattice, double size) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> away(-size * lattice.h(), size * lattice.h());
+  TetMesh mesh;
+  for (std::int64_t v = 0; v < lattice.n_vertices(); ++v) {
+    mesh.V.push_back(lattice.position(v) + Vec3(away(random), away(random), away(random)));
+  }
+  for (std::int64_t t = 0; t < lattice.n_tets(); ++t) {
+    const std::array<std::int64_t, 4> ids = lattice.tet(t);
+    mesh.C.push_back(
+        {static_cast<int>(ids[0]), static_cast<int>(ids[1]), static_cast<int>(ids[2]), static_cast<int>(ids[3])});
+  }
+  return mesh;
+}
+
+TEST(FastMesh, PoorTetsOfAStoredBackgroundAreRaisedInsideToo) {
+  const AnalyticDomain domain = testing::sphere();
+  const BackgroundMesh background(shaken(background_of(domain, 9000), .27));
+  const UmResult result = universal_mesh(background, domain);
+  ASSERT_EQ(result.status, UmStatus::Success) << result.evidence.what;
+  EXPECT_LT(quality(result, result.submesh.mesh.V).least, .4);
+  EXPECT_GE(quality(result, result.final).least, .75);
+  EXPECT_TRUE(failures(testing::certificate_of(result, domain, background.h())).empty());
 }
 
 // In discs where h is too large most patches have a tet below the last target that nothing mends.
