@@ -39,6 +39,11 @@ void enqueue_around(PNormSmoother& smoother, const BackgroundLayer& cut, const s
 
 }  // namespace
 
+std::size_t most_patches_of(const FlipEffort& effort, int max_tries) {
+  const std::size_t singles = std::min(effort.most_singles, static_cast<std::size_t>(max_tries));
+  return std::max<std::size_t>(1, effort.all_vertices + singles + (effort.pairs ? kFirstOfPair * kSecondOfPair : 0));
+}
+
 Vec3 Positions::of(std::int64_t v, std::size_t& from) const {
   if (const int moved = moved_.find(v); moved >= 0) return moved_to_[moved];
   // The vertices of a patch are near each other in the layer: steps that double.

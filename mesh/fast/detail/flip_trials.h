@@ -53,6 +53,9 @@ struct FlipEffort {
   int more_reach = 0;  ///< edges beyond RepairParams::reach within which a patch moves vertices
 };
 
+/// How many patches are tried for a tet without a misaligned face. @param max_tries  of RepairParams
+std::size_t most_patches_of(const FlipEffort& effort, int max_tries);
+
 /// What flips would make of the patch around one tet, tried on copies. Changes nothing of the mesh.
 class FlipTrials {
  public:

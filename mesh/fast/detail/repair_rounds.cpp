@@ -13,9 +13,9 @@ namespace umtet::detail {
 namespace {
 
 // Tets that are mended at once, while at most kMostWaiting wait for one near them: two for each of sixteen cores. The
-// same for any number of threads, as the result depends on it. Where few patches may still be tried they are fewer: a
-// tet takes up to kPatchesPerTet.
-constexpr std::size_t kAtOnce = 32, kMostWaiting = 256, kPatchesPerTet = 72;
+// same for any number of threads, as the result depends on it. Where few patches may still be tried they are fewer, so
+// that not many more are.
+constexpr std::size_t kAtOnce = 32, kMostWaiting = 256;
 
 bool is_worse(const BadTet& a, const BadTet& b) { return a.badness < b.badness; }
 
@@ -46,6 +46,7 @@ RepairRounds::RepairRounds(const BackgroundMesh& background, const VertexLinks& 
       remote_(remote),
       inside_(inside),
       target_(params.target),
+      most_for_a_tet_(most_patches_of({}, params.max_tries)),
       positions_(background, layer, kept),
       trials_(background, links, psi, classification, params, positions_, inside),
       ranges_(background, links, params.reach + more_reach) {}
@@ -63,6 +64,7 @@ void RepairRounds::allow(const PatchBudget& budget) {
 
 void RepairRounds::aim_at(double target, const FlipEffort& effort) {
   target_ = target;
+  most_for_a_tet_ = most_patches_of(effort, params_.max_tries);
   trials_.retry_with(target, effort);
 }
 
@@ -133,7 +135,7 @@ bool RepairRounds::choose_round() {
   std::vector<TetIds> held;
   std::vector<PatchRanges::Range> before;
   const std::size_t left = most_patches() - std::min(tries_, most_patches());
-  const std::size_t most = std::clamp<std::size_t>(left / kPatchesPerTet, 2, kAtOnce);
+  const std::size_t most = std::clamp<std::size_t>(left / most_for_a_tet_, 2, kAtOnce);
   std::size_t w = 0;
   while (round_.size() < most && held.size() < kMostWaiting && (w < waiting_.size() || next_ < todo_.size())) {
     const TetIds tet = w < waiting_.size() ? waiting_[w++] : todo_[next_++].tet;

@@ -69,6 +69,7 @@ class RepairRounds {
   PatchBudget budget_{};
   std::size_t tries_before_ = 0, kept_before_ = 0;  ///< when the budget was given
   double target_;
+  std::size_t most_for_a_tet_;  ///< patches
   Positions positions_;
   TrialPool trials_;
   PatchRanges ranges_;         ///< of first vertices
