@@ -385,7 +385,8 @@ ChosenSubmesh classified_submesh(const BackgroundMesh& background, ImplicitFunct
 
 UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
                    const FastParams& params, ChosenSubmesh chosen, const Context& context) {
-  return FastRun(background, psi, submesh, params, context, std::move(chosen.links)).fit(std::move(chosen));
+  FastRun run(background, psi, submesh, params, context, std::move(chosen.links));
+  return run.fit(std::move(chosen));
 }
 
 UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
