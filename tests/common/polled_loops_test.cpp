@@ -35,8 +35,8 @@ TEST(PolledLoops, ReachEveryValueOnceAndPollFromTheCallingThreadOnly) {
 }
 
 TEST(PolledLoops, EndForAllThreadsWhenTheCallerIsTold) {
-  constexpr std::size_t kValues = 10'000'000;
-  constexpr std::chrono::seconds kPatience{1};  // on one processor there may be no other thread
+  constexpr std::size_t kValues = 1'000'000'000;  // a thousandth takes a busy machine's time slices many times over
+  constexpr std::chrono::seconds kPatience{1};    // on one processor there may be no other thread
   for (const std::size_t threads : {1, 3}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     for (const int after : {1, 2}) {  // before the loop, and within it
