@@ -141,7 +141,7 @@ class Faults(unittest.TestCase):
         for call, code, reason in calls:
             with self.subTest(call[0]):
                 made = subprocess.run([MPIEXEC, "-n", str(N), "--oversubscribe", THROWING_RANK, *call], capture_output=True, text=True,
-                                      timeout=20)
+                                      timeout=PATIENT)
                 self.assertEqual(made.returncode, code, made.stderr)
                 self.assertEqual(len(said(made.stderr)), 1, made.stderr)
                 self.assertIn(reason, made.stderr)
