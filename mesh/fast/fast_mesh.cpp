@@ -28,8 +28,7 @@ namespace umtet {
 namespace {
 
 // The least gain of a smoothing step in a mesh that begins from the one before, where that of the parameters is less.
-// It trades solves for quality: a mesh that begins near its solution spends most of them on small gains (mesh_bench
-// --benchmark_filter=drifting_ball).
+// It trades solves for quality: a mesh that begins near its solution spends most of them on small gains (moving_bench).
 constexpr double kUpdateLeastGain = 6e-4;
 
 class FastRun {

@@ -13,7 +13,7 @@
 namespace umtet {
 namespace {
 
-// More sweeps save smoothing about what they cost (mesh_bench --benchmark_filter=drifting_ball).
+// More sweeps save smoothing about what they cost (moving_bench).
 constexpr int kSweeps = 3;
 // psi = 0 crosses an edge at every positive vertex, and no tiling has longer ones, in h: farther feet are elsewhere.
 constexpr double kFarthestFoot = 1.5;

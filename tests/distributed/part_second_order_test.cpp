@@ -106,7 +106,6 @@ TEST_P(CurvedPartsOfPlate, AreThoseOfOneProcess) {
 INSTANTIATE_TEST_SUITE_P(Least, CurvedPartsOfPlate, ::testing::Values(.02, .25));
 
 TEST(CurvedPartsTest, TornEdgesAreFound) {
-  if (testing::n_ranks() == 1) GTEST_SKIP() << "between ranks";
   const testing::AnalyticDomain domain = testing::sphere();
   const BackgroundMesh background(a15(), testing::cube_box(1.4), .2);
   const DistributedMesh mesh = distributed_mesh(MPI_COMM_WORLD, background, domain);
@@ -123,7 +122,7 @@ TEST(CurvedPartsTest, TornEdgesAreFound) {
   for (std::size_t e = 0; testing::rank() == 0 && e < edges.ends().size(); ++e)
     curved.mesh.V[mesh.mesh.V.size() + e].x() += 1e-9;
   const auto c = certify_curved_parts(MPI_COMM_WORLD, mesh, owners, edges, curved, domain, background.h(), 0);
-  EXPECT_GT(sum(n_torn), 0u);
+  EXPECT_EQ(sum(n_torn) > 0, testing::n_ranks() > 1);
   EXPECT_EQ(c.n_torn_edges, sum(n_torn));
 }
 

@@ -15,6 +15,7 @@
 #include "distributed/io/shared_file.h"
 #include "distributed/program/together.h"
 #include "pipeline/case/interrupt.h"
+#include "tests/support/domains.h"
 
 namespace {
 
@@ -36,39 +37,25 @@ namespace umtet {
 namespace {
 
 /// A body with parts so thin that there is something to repair.
-class Body {
- public:
-  /// @param windows  that are open; null: it never throws
-  explicit Body(const std::atomic<int>* windows) : windows_(windows) {}
-  double evaluate(const Vec3& x, Vec3* g, Mat3* H) const {
+/// @param windows  psi throws while some are open; null: it never does
+testing::AnalyticDomain body(const std::atomic<int>* windows) {
+  testing::AnalyticDomain domain;
+  domain.psi = [windows](const Vec3& x, Vec3* g, Mat3* H) {
+    if (windows && *windows > 0) throw std::runtime_error("psi throws beside an open window");
     const Vec3 square = x.cwiseProduct(x);
-    if (windows_ && *windows_ > 0) throw std::runtime_error("psi throws beside an open window");
     if (g) *g = 4 * square.cwiseProduct(x) - 2.4 * x;
     if (H) *H = (12 * square - Vec3::Constant(2.4)).asDiagonal();
     return square.squaredNorm() - 1.2 * x.squaredNorm() + .6;
-  }
-  double value(const Vec3& x) const { return evaluate(x, nullptr, nullptr); }
-  Vec3 gradient(const Vec3& x) const {
-    Vec3 g;
-    evaluate(x, &g, nullptr);
-    return g;
-  }
-  Mat3 hessian(const Vec3& x) const {
-    Mat3 H;
-    evaluate(x, nullptr, &H);
-    return H;
-  }
-
- private:
-  const std::atomic<int>* windows_;
-};
+  };
+  return domain;
+}
 
 constexpr double kH = .06;
 const Box kBox(Vec3::Constant(-1.5), Vec3::Constant(1.5));
 
 void throw_beside_window(MPI_Comm comm) {
-  const Body body(rank_in(comm) == 0 ? &n_open : nullptr);
-  together(comm, [&] { distributed_mesh(comm, {a15(), kBox, kH}, body); });
+  const testing::AnalyticDomain domain = body(rank_in(comm) == 0 ? &n_open : nullptr);
+  together(comm, [&] { distributed_mesh(comm, {a15(), kBox, kH}, domain); });
 }
 
 void throw_beside_file(MPI_Comm comm, const char* path) {
