@@ -216,20 +216,21 @@ TEST(FastMesh, PoorTetsOfAStoredBackgroundAreRaisedInsideToo) {
   EXPECT_TRUE(failures(testing::certificate_of(result, domain, background.h())).empty());
 }
 
-// In discs where h is too large most patches have a tet below the last target that nothing mends.
+// In discs where h is too large most patches have a tet below the last target that nothing mends. One disc alone says
+// little: rounding decides which flips are tried, and its least Q is up to .004 less or .015 more with rising targets.
 TEST(FastMesh, TargetsThatRiseReachMoreThanOneTarget) {
   const auto sum_of_least = [](double target_step) {
     double sum = 0;
-    for (const Vec3& axes : {Vec3(1, .3, .08), Vec3(1, .8, .08), Vec3(1, .4, .05)}) {
+    for (const Vec3& axes : {Vec3(1, .4, .05), Vec3(1, .6, .06), Vec3(1, .7, .05), Vec3(1, 1, .07)}) {
       const AnalyticDomain domain = testing::ellipsoid(axes);
-      const BackgroundMesh background = background_of(domain, 1000);
+      const BackgroundMesh background = background_of(domain, 2000);
       UmParams params;
       params.fast.repair.target_step = target_step;
       sum += state_of(universal_mesh(background, domain, params), domain, background.h()).least;
     }
     return sum;
   };
-  EXPECT_GT(sum_of_least(.01), sum_of_least(0) + .01);
+  EXPECT_GT(sum_of_least(.01), sum_of_least(0) + .015);
 }
 
 TEST(FastMesh, PatchesThatAreMendedStayNearARim) {
