@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <numeric>
 
 #include "common/polled_loops.h"
@@ -13,41 +14,87 @@
 namespace umtet {
 namespace {
 
-/// The upper ends of the edges of each vertex to a higher one, ascending, as often as there are tets around them.
-class UpperEnds {
+// Vertices whose edges are listed together, and tets whose range of vertices is known: lists of a few MB.
+constexpr std::size_t kLowEnds = 1 << 14, kTets = 1 << 10;
+// Lists that are made at once, for threads.
+constexpr std::size_t kAtOnce = 16;
+
+/// The edges of tets, each once, listed by parts: those with the lower end in a range of vertices. Tets of neighbouring
+/// places have neighbouring numbers mostly, so that a part has to look at few of them.
+class TetEdges {
  public:
-  UpperEnds(std::size_t n_vertices, const std::vector<Tet>& C) : begin_(n_vertices + 1, 0) {
-    const auto for_each = [&](const auto& f) {
-      for (const Tet& t : C) {
-        for (int a = 0; a < 4; ++a) {
-          for (int b = 0; b < a; ++b) f(std::min(t[a], t[b]), std::max(t[a], t[b]));
-        }
-      }
-    };
-    for_each([&](int low, int) { ++begin_[low + 1]; });
-    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-    upper_.resize(begin_.back());
-    std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
-    for_each([&](int low, int high) { upper_[next[low]++] = high; });
-    tbb::parallel_for(std::size_t{0}, n_vertices, [&](std::size_t v) {
-      std::sort(upper_.begin() + static_cast<std::ptrdiff_t>(begin_[v]),
-                upper_.begin() + static_cast<std::ptrdiff_t>(begin_[v + 1]));
+  TetEdges(std::size_t n_vertices, const std::vector<Tet>& C)
+      : n_vertices_(n_vertices), C_(C), blocks_((C.size() + kTets - 1) / kTets) {
+    tbb::parallel_for(std::size_t{0}, blocks_.size(), [&](std::size_t b) {
+      for_each_tet(b, [&](const Tet& t) {
+        for (const int v : t) blocks_[b] = {std::min(blocks_[b].least, v), std::max(blocks_[b].greatest, v)};
+      });
     });
   }
-  /// Calls f(low, high) once for every edge, ascending.
+
+  std::size_t n_parts() const { return (n_vertices_ + kLowEnds - 1) / kLowEnds; }
+
+  /// Calls f(low, high) for the edges of a part, ascending.
   template <class F>
-  void for_each_edge(const F& f) const {
-    for (std::size_t v = 0; v + 1 < begin_.size(); ++v) {
-      for (std::size_t k = begin_[v]; k < begin_[v + 1]; ++k) {
-        if (k == begin_[v] || upper_[k] != upper_[k - 1]) f(static_cast<int>(v), upper_[k]);
+  void for_each(std::size_t part, const F& f) const {
+    const auto first = static_cast<int>(part * kLowEnds);
+    const int last = static_cast<int>(std::min(n_vertices_, (part + 1) * kLowEnds));
+    const auto for_each_end = [&](const auto& g) {
+      for (std::size_t b = 0; b < blocks_.size(); ++b) {
+        if (blocks_[b].greatest < first || blocks_[b].least >= last) continue;
+        for_each_tet(b, [&](const Tet& t) {
+          for (int j = 0; j < 4; ++j) {
+            for (int k = 0; k < j; ++k) {
+              const auto [low, high] = std::minmax(t[j], t[k]);
+              if (first <= low && low < last) g(low, high);
+            }
+          }
+        });
       }
+    };
+    std::vector<std::size_t> end(static_cast<std::size_t>(last - first) + 1, 0);
+    for_each_end([&](int low, int) { ++end[static_cast<std::size_t>(low - first) + 1]; });
+    std::partial_sum(end.begin(), end.end(), end.begin());
+    std::vector<int> upper(end.back());
+    for_each_end([&](int low, int high) { upper[end[static_cast<std::size_t>(low - first)]++] = high; });
+    auto begin = upper.begin();
+    for (int low = first; low < last; ++low) {
+      const auto of_next = upper.begin() + static_cast<std::ptrdiff_t>(end[static_cast<std::size_t>(low - first)]);
+      std::sort(begin, of_next);
+      std::for_each(begin, std::unique(begin, of_next), [&](int high) { f(low, high); });
+      begin = of_next;
     }
   }
 
  private:
-  std::vector<std::size_t> begin_;
-  std::vector<int> upper_;
+  struct Range {
+    int least = std::numeric_limits<int>::max(), greatest = -1;
+  };
+  template <class F>
+  void for_each_tet(std::size_t block, const F& f) const {
+    for (std::size_t t = block * kTets; t < std::min(C_.size(), (block + 1) * kTets); ++t) f(C_[t]);
+  }
+
+  std::size_t n_vertices_;
+  const std::vector<Tet>& C_;
+  std::vector<Range> blocks_;
 };
+
+/// f(low, high) of every edge.
+template <class F>
+std::vector<double> values_of_edges(const TetMesh& mesh, const F& f) {
+  const TetEdges edges(mesh.V.size(), mesh.C);
+  std::vector<double> values;
+  values.reserve(mesh.V.size() + mesh.C.size() + mesh.C.size() / 8);  // Euler: V + T + boundary faces / 2
+  for (std::size_t part = 0; part < edges.n_parts(); part += kAtOnce) {
+    std::array<std::vector<double>, kAtOnce> of_part;
+    tbb::parallel_for(part, std::min(edges.n_parts(), part + kAtOnce), [&](std::size_t p) {
+      edges.for_each(p, [&](int low, int high) { of_part[p - part].push_back(f(low, high)); });
+    });
+    for (const std::vector<double>& some : of_part) values.insert(values.end(), some.begin(), some.end());
+  }
+  return values;
+}
 
 double length(const std::vector<Vec3>& V, int i, int j) { return (V[i] - V[j]).norm(); }
 
@@ -79,10 +126,13 @@ std::vector<double> asked_sizes(const SizeField& sizes, const std::vector<Vec3>&
 std::vector<double> mean_edges(const std::vector<Vec3>& V, const std::vector<Tet>& C) {
   std::vector<double> sum(V.size());
   std::vector<int> n(V.size());
-  UpperEnds(V.size(), C).for_each_edge([&](int i, int j) {
-    const double l = length(V, i, j);
-    for (const int v : {i, j}) sum[v] += l, ++n[v];
-  });
+  const TetEdges edges(V.size(), C);
+  for (std::size_t part = 0; part < edges.n_parts(); ++part) {
+    edges.for_each(part, [&](int i, int j) {
+      const double l = length(V, i, j);
+      for (const int v : {i, j}) sum[v] += l, ++n[v];
+    });
+  }
   for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = n[i] > 0 ? sum[i] / n[i] : 0;
   return sum;
 }
@@ -92,10 +142,8 @@ SizesReport sizes_report(const TetMesh& mesh, const std::vector<Triangle>& bound
   const auto [least, greatest] = std::minmax_element(asked.begin(), asked.end());
   report.least_asked = *least;
   report.greatest_asked = *greatest;
-  std::vector<double> ratio;
-  UpperEnds(mesh.V.size(), mesh.C).for_each_edge([&](int i, int j) {
-    ratio.push_back(length(mesh.V, i, j) / (.5 * (asked[i] + asked[j])));
-  });
+  std::vector<double> ratio =
+      values_of_edges(mesh, [&](int i, int j) { return length(mesh.V, i, j) / (.5 * (asked[i] + asked[j])); });
   const auto [p01, p50, p99] = quantiles<3>(ratio, {.01, .5, .99});
   report.p01 = p01;
   report.p50 = p50;
