@@ -40,7 +40,8 @@ class BackgroundMesh {
   explicit BackgroundMesh(GradedMesh mesh);
 
   bool is_lattice() const { return is_lattice_; }
-  bool is_stored() const { return explicit_ != nullptr; }  ///< tet by tet, whoever made it
+  bool is_stored() const { return explicit_ != nullptr; }     ///< tet by tet, whoever made it
+  const GradedMesh* graded() const { return graded_.get(); }  ///< null for all others
   /// Of no points and no name for another mesh.
   const Tiling& tiling() const { return tiling_; }
   double h() const { return h_; }

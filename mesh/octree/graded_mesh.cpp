@@ -1,5 +1,6 @@
 #include "mesh/octree/graded_mesh.h"
 
+#include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 namespace umtet {
 namespace {
 
+constexpr std::size_t kTetsPerTask = 1 << 12;
 // A leaf has at most 6 x 8 tets on either side of its faces.
 constexpr int kMaxSteps = 96;
 
@@ -138,9 +140,12 @@ TetMesh to_tet_mesh(const GradedMesh& mesh) {
   stored.C.resize(static_cast<std::size_t>(mesh.n_tets()));
   tbb::parallel_for(std::size_t{0}, stored.V.size(),
                     [&](std::size_t v) { stored.V[v] = mesh.position(static_cast<std::int64_t>(v)); });
-  tbb::parallel_for(std::size_t{0}, stored.C.size(), [&](std::size_t t) {
-    const auto tet = mesh.tet(static_cast<std::int64_t>(t));
-    for (std::size_t k = 0; k < 4; ++k) stored.C[t][k] = static_cast<int>(tet[k]);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, stored.C.size(), kTetsPerTask), [&](const auto& range) {
+    GradedMesh::Reader reader = mesh.reader();
+    for (std::size_t t = range.begin(); t < range.end(); ++t) {
+      const auto tet = reader.tet(static_cast<std::int64_t>(t));
+      for (std::size_t k = 0; k < 4; ++k) stored.C[t][k] = static_cast<int>(tet[k]);
+    }
   });
   return stored;
 }

@@ -46,9 +46,9 @@ class GradedMesh {
   ///        than kMaxOctreeLevel levels or max_leaves, or 2^31 vertices
   explicit GradedMesh(const Grading& grading);
 
-  /// The same with those leaves alone that are around these vertices and vertices within `rings` edges of them, and with
-  /// siblings of these. Vertices and tets keep their keys. The boundary is beyond all these vertices, and if rings > 0
-  /// the tets at those given are the same.
+  /// The same with those leaves alone that are around these vertices and vertices within `rings` edges of them, and
+  /// with siblings of these. Vertices and tets keep their keys. The boundary is beyond all these vertices, and if rings
+  /// > 0 the tets at those given are the same.
   /// @param transition_sweeps  as in Grading
   GradedMesh around(const IdSet& vertices, int rings, int transition_sweeps = 8) const;
 
@@ -69,6 +69,8 @@ class GradedMesh {
   /// 64 (cube_key() of the leaf) + slot.
   std::uint64_t tet_key(std::int64_t tet) const { return tets_.tet_key(tet); }
   std::array<std::int64_t, 4> tet(std::int64_t tet) const { return tets_.tet(tet); }
+  using Reader = OctreeTets::Reader;
+  Reader reader() const { return Reader(tets_); }
   /// Appends the tets at a vertex, ascending.
   void star(std::int64_t vertex, std::vector<std::int64_t>& tets) const { tets_.star(vertex, tets); }
   /// Appends the vertices that share an edge with it, ascending.

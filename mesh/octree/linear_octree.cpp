@@ -76,20 +76,24 @@ LinearOctree::VertexPlace LinearOctree::place_in(int c, std::uint64_t key) const
   return {c, static_cast<int>(offset)};
 }
 
-LinearOctree::VertexPlace LinearOctree::place(int leaf, const CubeCode& code) const {
-  // Over neighbours of one size where there are.
-  int c = leaf, bit = 0;
+/// The leaf that a place of a leaf is in, over neighbours of one size; -1 where some are not.
+int LinearOctree::equal_leaf(int leaf, const CubeCode& code) const {
+  int c = leaf;
   for (int a = 0; a < 3; ++a) {
-    if (code[a] == 2) {
-      c = cell(c).neighbor[2 * a + 1];
-      if (c < 0 || cell(c).level != cell(leaf).level) {
-        const GridPoint p = point(leaf, code);
-        return place_in(locate_from(leaf, p), morton_key(p));
-      }
-    } else {
-      bit += code[a] << a;
-    }
+    if (code[a] < 2) continue;
+    c = cell(c).neighbor[2 * a + 1];
+    if (c < 0 || cell(c).level != cell(leaf).level) return -1;
   }
+  return c;
+}
+
+LinearOctree::VertexPlace LinearOctree::place(int leaf, const CubeCode& code) const {
+  const int c = equal_leaf(leaf, code);
+  if (c < 0) {
+    const GridPoint p = point(leaf, code);
+    return place_in(locate_from(leaf, p), morton_key(p));
+  }
+  const int bit = (code[0] & 1) + 2 * (code[1] & 1) + 4 * (code[2] & 1);
   return cell(c).vertices >> bit & 1 ? VertexPlace{c, bit} : VertexPlace{-1, 0};
 }
 
@@ -138,6 +142,7 @@ void LinearOctree::find_neighbors() {
 /// Upper corners and upper face centres of a leaf that lie in no leaf.
 void LinearOctree::find_points(int leaf, std::vector<std::uint64_t>& points) const {
   const auto add = [&](const CubeCode& code) {
+    if (equal_leaf(leaf, code) >= 0) return;
     const GridPoint p = point(leaf, code);
     if (locate_from(leaf, p) < 0) points.push_back(morton_key(p));
   };

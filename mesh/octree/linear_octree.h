@@ -70,6 +70,7 @@ class LinearOctree {
 
  private:
   VertexPlace place_in(int c, std::uint64_t key) const;
+  int equal_leaf(int leaf, const CubeCode& code) const;
   int locate(std::uint64_t key, std::size_t begin, std::size_t end) const;
   int locate_near(std::size_t c, std::uint64_t key) const;
   std::uint64_t end_key(int c) const;

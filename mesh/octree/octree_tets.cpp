@@ -102,27 +102,10 @@ bool OctreeTets::is_transition(std::int64_t tet) const {
   return (transition_slots(cell) >> tet_slots::select(cell.slots, static_cast<int>(tet - cell.first_tet)) & 1) != 0;
 }
 
-IdSet OctreeTets::transition_vertices() const {
-  IdSet vertices(n_vertices());
-  tbb::parallel_for(0, octree_.n_cells(), [&](int leaf) {
-    for (std::uint64_t slots = octree_.cell(leaf).slots & tet_slots::of_faces(octree_.cell(leaf).coarse); slots != 0;
-         slots &= slots - 1) {
-      for (const std::int64_t v : corners(leaf, std::countr_zero(slots))) vertices.insert_shared(v);
-    }
-  });
-  return vertices;
-}
-
-std::array<std::int64_t, 4> OctreeTets::tet(std::int64_t tet) const {
-  const int leaf = cell_of_tet(tet);
-  const OctreeCell& cell = octree_.cell(leaf);
-  return corners(leaf, tet_slots::select(cell.slots, static_cast<int>(tet - cell.first_tet)));
-}
-
-std::array<std::int64_t, 4> OctreeTets::corners(int leaf, int slot) const {
+template <class VertexAt>
+std::array<std::int64_t, 4> OctreeTets::corners_among(int leaf, int slot, const VertexAt& vertex) const {
   const OctreeCell& cell = octree_.cell(leaf);
   const int f = slot / tet_slots::kPerFace, rest = slot % tet_slots::kPerFace, behind = cell.neighbor[f];
-  const auto vertex = [&](const CubeCode& code) { return vertex_id(octree_.place(leaf, code)); };
   if (cell.coarse >> f & 1) {
     const bool large = (rest & 2) != 0;
     const int i = tet_slots::parent_centre(f, cell.octant), first = i + 1 + rest % 2;
@@ -143,6 +126,43 @@ std::array<std::int64_t, 4> OctreeTets::corners(int leaf, int slot) const {
   const std::int64_t own = centre_id(leaf), other = behind < 0 ? vertex(tet_slots::centre(f)) : centre_id(behind);
   if (f % 2 == 0) return {other, own, ends[0], ends[1]};
   return {own, other, ends[0], ends[1]};
+}
+
+std::array<std::int64_t, 4> OctreeTets::corners(int leaf, int slot) const {
+  return corners_among(leaf, slot, [&](const CubeCode& code) { return vertex_id(octree_.place(leaf, code)); });
+}
+
+IdSet OctreeTets::transition_vertices() const {
+  IdSet vertices(n_vertices());
+  tbb::parallel_for(0, octree_.n_cells(), [&](int leaf) {
+    for (std::uint64_t slots = octree_.cell(leaf).slots & tet_slots::of_faces(octree_.cell(leaf).coarse); slots != 0;
+         slots &= slots - 1) {
+      for (const std::int64_t v : corners(leaf, std::countr_zero(slots))) vertices.insert_shared(v);
+    }
+  });
+  return vertices;
+}
+
+std::array<std::int64_t, 4> OctreeTets::tet(std::int64_t tet) const {
+  const int leaf = cell_of_tet(tet);
+  const OctreeCell& cell = octree_.cell(leaf);
+  return corners(leaf, tet_slots::select(cell.slots, static_cast<int>(tet - cell.first_tet)));
+}
+
+std::array<std::int64_t, 4> OctreeTets::Reader::tet(std::int64_t tet) {
+  if (tet < first_ || tet >= end_) {
+    leaf_ = tets_.cell_of_tet(tet);
+    const OctreeCell& cell = tets_.octree_.cell(leaf_);
+    first_ = cell.first_tet;
+    end_ = first_ + std::popcount(cell.slots);
+    vertex_.fill(kUnknown);
+  }
+  const int slot = tet_slots::select(tets_.octree_.cell(leaf_).slots, static_cast<int>(tet - first_));
+  return tets_.corners_among(leaf_, slot, [&](const CubeCode& code) {
+    std::int64_t& v = vertex_[static_cast<std::size_t>(code_index(code))];
+    if (v == kUnknown) v = tets_.vertex_id(tets_.octree_.place(leaf_, code));
+    return v;
+  });
 }
 
 /// The tet with the centre of a leaf and (that half of) an edge of one of its faces, at this face.

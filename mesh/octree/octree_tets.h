@@ -51,6 +51,7 @@ class OctreeTets {
   bool is_transition(std::int64_t tet) const;
   /// The corners of tets between two sizes.
   IdSet transition_vertices() const;
+  class Reader;
 
  private:
   /// The leaves around a vertex that is no centre, and where it is in them.
@@ -80,6 +81,9 @@ class OctreeTets {
   std::int64_t centre_id(int leaf) const { return vertex_id({leaf, 7}); }
   std::int64_t tet_id(int leaf, int slot) const;
   std::array<std::int64_t, 4> corners(int leaf, int slot) const;
+  /// @param vertex  of each place in the leaf but its centre
+  template <class VertexAt>
+  std::array<std::int64_t, 4> corners_among(int leaf, int slot, const VertexAt& vertex) const;
   std::int64_t tet_at_edge(int leaf, int face, int e, int half) const;
   std::int64_t tet_around_edge(int leaf, int face, int e, int half, bool split) const;
   Around around(std::int64_t vertex) const;
@@ -98,6 +102,22 @@ class OctreeTets {
   GridPoint lowest_ = {kRootWidth, kRootWidth, kRootWidth}, highest_ = {0, 0, 0};
   IdSet first_vertices_;                ///< of the cells, and room for the rank of what comes after the last vertex
   std::vector<std::int32_t> tet_cell_;  ///< of every 16th tet
+};
+
+/// OctreeTets::tet() for tets that are near each other in the order of their ids: the vertices on a leaf, which belong
+/// to a dozen of tets, are looked for once. Of one thread.
+class OctreeTets::Reader {
+ public:
+  explicit Reader(const OctreeTets& tets) : tets_(tets) {}
+  std::array<std::int64_t, 4> tet(std::int64_t tet);
+
+ private:
+  static constexpr std::int64_t kUnknown = -2;
+
+  const OctreeTets& tets_;
+  int leaf_ = -1;
+  std::int64_t first_ = 0, end_ = 0;     ///< tets of the leaf
+  std::array<std::int64_t, 27> vertex_;  ///< by code_index()
 };
 
 }  // namespace umtet

@@ -1,5 +1,9 @@
 #pragma once
 
+#ifdef __BMI2__
+#include <immintrin.h>
+#endif
+
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -56,8 +60,12 @@ std::uint32_t places(const OctreeCell& leaf, std::uint64_t slots);
 inline int rank(std::uint64_t slots, int slot) { return std::popcount(slots & ((std::uint64_t{1} << slot) - 1)); }
 /// The bit that has this rank.
 inline int select(std::uint64_t slots, int rank) {
+#ifdef __BMI2__
+  return std::countr_zero(_pdep_u64(std::uint64_t{1} << rank, slots));
+#else
   for (; rank > 0; --rank) slots &= slots - 1;
   return std::countr_zero(slots);
+#endif
 }
 
 }  // namespace tet_slots

@@ -25,9 +25,10 @@ struct Cube {
 }  // namespace
 
 double cube_size(const SizeField& sizes, const Vec3& centre, double half_width) {
-  const double most = kMostAboveLeast * sizes.least_in(centre, half_width);
-  // Where the cube is split anyway its middle does not matter.
-  return kBccMeanEdge * 2 * half_width > kSizeTolerance * most ? most : std::min(most, sizes.at(centre));
+  const double middle = sizes.at(centre);
+  // Where the cube is split anyway the least in it does not matter.
+  if (kBccMeanEdge * 2 * half_width > kSizeTolerance * middle) return middle;
+  return std::min(middle, kMostAboveLeast * sizes.least_in(centre, half_width));
 }
 
 double expected_graded_tets(const SizeField& sizes, double finest, ImplicitFunctionRef psi, const Box& box,

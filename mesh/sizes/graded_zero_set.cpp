@@ -24,8 +24,9 @@ CutTets cut_tets(const GradedMesh& mesh, ImplicitFunctionRef psi, const Context&
   const auto n_tets = static_cast<std::size_t>(mesh.n_tets());
   std::vector<std::vector<std::array<std::int64_t, 4>>> of_part((n_tets + kPart - 1) / kPart);
   polled_parallel_for(of_part.size(), 64, context, [&](std::size_t part) {
+    GradedMesh::Reader reader = mesh.reader();
     for (std::size_t t = part * kPart; t < std::min(n_tets, (part + 1) * kPart); ++t) {
-      const auto tet = mesh.tet(static_cast<std::int64_t>(t));
+      const auto tet = reader.tet(static_cast<std::int64_t>(t));
       const auto n_inside = std::count_if(tet.begin(), tet.end(), [&](std::int64_t v) { return value[v] < 0; });
       if (n_inside > 0 && n_inside < 4) of_part[part].push_back(tet);
     }

@@ -16,9 +16,12 @@ namespace umtet {
 std::vector<std::int64_t> cut_or_inside_tets(const BackgroundMesh& background, const IdSet& inside);
 
 /// Algorithm 1, steps 14-22, once it is known which tets are in omega_h and which of their vertices are inside.
-/// One tet after the other: emit_submesh() makes the same of the same set.
+/// Tet by tet, with threads: emit_submesh() makes the same of the same set.
 /// @param tets  background ids, ascending
 Submesh assemble_submesh(const BackgroundMesh& background, std::vector<std::int64_t> tets, const IdSet& inside);
+
+/// The same without tets and faces. @param n_tets  receives how many tets there are
+Submesh assemble_vertices(const BackgroundMesh& background, const IdSet& inside, std::size_t& n_tets);
 
 /// The background vertices with psi < 0.                                   Alg. 1, step 7
 /// @param n_evaluations  receives the number of values of psi

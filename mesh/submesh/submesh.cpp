@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -12,6 +13,7 @@
 #include <utility>
 
 #include "common/polled_loops.h"
+#include "mesh/background/tet_reader.h"
 #include "mesh/base/id_set.h"
 #include "mesh/core/asking_psi.h"
 #include "mesh/submesh/assemble_submesh.h"
@@ -22,7 +24,7 @@ namespace {
 // 64 vertices share a word: 16 words are a thousand evaluations of psi, enough to hide the cost of a task.
 constexpr std::size_t kWordsPerTask = 16;
 constexpr std::size_t kWordsPerPoll = kValuesPerPoll / 64;
-constexpr std::int64_t kTetsPerBlock = 1 << 16;
+constexpr std::int64_t kTetsPerBlock = 1 << 14;
 
 unsigned inside_mask(const std::array<std::int64_t, 4>& tet, const IdSet& inside) {
   unsigned mask = 0;
@@ -55,26 +57,6 @@ std::size_t insert_in_blocks(const BackgroundMesh& background, ImplicitFunctionR
 
 }  // namespace
 
-std::vector<std::int64_t> cut_or_inside_tets(const BackgroundMesh& background, const IdSet& inside) {
-  const std::int64_t n_blocks = (background.n_tets() + kTetsPerBlock - 1) / kTetsPerBlock;
-  std::vector<std::vector<std::int64_t>> blocks(static_cast<std::size_t>(n_blocks));
-  tbb::parallel_for(std::int64_t{0}, n_blocks, [&](std::int64_t b) {
-    const std::int64_t end = std::min((b + 1) * kTetsPerBlock, background.n_tets());
-    for (std::int64_t t = b * kTetsPerBlock; t < end; ++t) {
-      if (inside_mask(background.tet(t), inside) != 0) blocks[b].push_back(t);
-    }
-  });
-  std::size_t n = 0;
-  for (const auto& block : blocks) n += block.size();
-  std::vector<std::int64_t> tets;
-  tets.reserve(n);
-  for (auto& block : blocks) {
-    tets.insert(tets.end(), block.begin(), block.end());
-    block = {};
-  }
-  return tets;
-}
-
 IdSet inside_vertices(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t& n_evaluations,
                       const Context& context, const KnownSigns& known) {
   IdSet inside(background.n_vertices());
@@ -105,44 +87,115 @@ IdSet inside_vertices(const BackgroundMesh& background, ImplicitFunctionRef psi,
   return inside;
 }
 
-Submesh assemble_submesh(const BackgroundMesh& background, std::vector<std::int64_t> tets, const IdSet& inside) {
-  constexpr std::size_t kMost = std::numeric_limits<int>::max();
-  IdSet used(background.n_vertices()), positive(background.n_vertices());
-  Submesh result;
-  std::vector<unsigned char> masks(tets.size());
-  for (std::size_t t = 0; t < tets.size(); ++t) {
-    const auto vertices = background.tet(tets[t]);
-    const unsigned mask = inside_mask(vertices, inside);
-    masks[t] = static_cast<unsigned char>(mask);
+namespace {
+
+/// Which background vertices are corners of omega_h, and which of those positive.
+struct Corners {
+  IdSet used, positive;
+
+  explicit Corners(std::int64_t n_vertices) : used(n_vertices), positive(n_vertices) {}
+  void add(const std::array<std::int64_t, 4>& vertices, unsigned mask) {
     for (unsigned k = 0; k < 4; ++k) {
-      used.insert(vertices[k]);
-      if (is_positively_cut(mask) && !(mask >> k & 1)) positive.insert(vertices[k]);  // Alg. 1, step 18
+      used.insert_shared(vertices[k]);
+      if (is_positively_cut(mask) && !(mask >> k & 1)) positive.insert_shared(vertices[k]);  // Alg. 1, step 18
     }
   }
-  const std::size_t n_vertices = used.index();
-  if (tets.size() > kMost || n_vertices > kMost)
-    throw std::length_error("omega_h: more than 2^31 - 1 tets or vertices");
+  /// Those alone. \throw std::length_error for more than 2^31 - 1, of tets, too
+  Submesh vertices(const BackgroundMesh& background, std::size_t n_tets) {
+    constexpr std::size_t kMost = std::numeric_limits<int>::max();
+    const std::size_t n = used.index();
+    if (n_tets > kMost || n > kMost) throw std::length_error("omega_h: more than 2^31 - 1 tets or vertices");
+    Submesh result;
+    result.background_vertex.reserve(n);
+    used.for_each([&](std::int64_t v) { result.background_vertex.push_back(v); });
+    result.mesh.V.resize(n);
+    tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
+      result.mesh.V[i] = background.position(result.background_vertex[i]);  // Alg. 1, step 21
+    });
+    positive.for_each([&](std::int64_t v) { result.positive_vertices.push_back(used.rank(v)); });
+    return result;
+  }
+};
 
-  result.background_vertex.reserve(n_vertices);
-  result.mesh.V.reserve(n_vertices);
-  used.for_each([&](std::int64_t v) {
-    result.background_vertex.push_back(v);
-    result.mesh.V.push_back(background.position(v));  // Alg. 1, step 21
+/// f(block, reader, first, end) for the numbers 0 .. n - 1 by blocks, with threads.
+template <class F>
+void for_each_block(const BackgroundMesh& background, std::int64_t n, const F& f) {
+  tbb::parallel_for(std::int64_t{0}, (n + kTetsPerBlock - 1) / kTetsPerBlock, [&](std::int64_t b) {
+    TetReader reader(background);
+    f(b, reader, b * kTetsPerBlock, std::min((b + 1) * kTetsPerBlock, n));
   });
-  positive.for_each([&](std::int64_t v) { result.positive_vertices.push_back(used.rank(v)); });
+}
 
+}  // namespace
+
+std::vector<std::int64_t> cut_or_inside_tets(const BackgroundMesh& background, const IdSet& inside) {
+  const std::int64_t n_blocks = (background.n_tets() + kTetsPerBlock - 1) / kTetsPerBlock;
+  std::vector<std::vector<std::int64_t>> blocks(static_cast<std::size_t>(n_blocks));
+  for_each_block(background, background.n_tets(),
+                 [&](std::int64_t b, TetReader& reader, std::int64_t first, std::int64_t end) {
+                   for (std::int64_t t = first; t < end; ++t) {
+                     if (inside_mask(reader.tet(t), inside) != 0) blocks[b].push_back(t);
+                   }
+                 });
+  std::size_t n = 0;
+  for (const auto& block : blocks) n += block.size();
+  std::vector<std::int64_t> tets;
+  tets.reserve(n);
+  for (auto& block : blocks) {
+    tets.insert(tets.end(), block.begin(), block.end());
+    block = {};
+  }
+  return tets;
+}
+
+Submesh assemble_submesh(const BackgroundMesh& background, std::vector<std::int64_t> tets, const IdSet& inside) {
+  Corners corners(background.n_vertices());
+  std::vector<unsigned char> masks(tets.size());
+  const auto n_tets = static_cast<std::int64_t>(tets.size());
+  for_each_block(background, n_tets, [&](std::int64_t, TetReader& reader, std::int64_t first, std::int64_t end) {
+    for (std::int64_t t = first; t < end; ++t) {
+      const auto vertices = reader.tet(tets[t]);
+      const unsigned mask = inside_mask(vertices, inside);
+      masks[t] = static_cast<unsigned char>(mask);
+      corners.add(vertices, mask);
+    }
+  });
+  Submesh result = corners.vertices(background, tets.size());
   result.mesh.C.resize(tets.size());
+  for_each_block(background, n_tets, [&](std::int64_t, TetReader& reader, std::int64_t first, std::int64_t end) {
+    for (std::int64_t t = first; t < end; ++t) {
+      const auto vertices = reader.tet(tets[t]);
+      for (std::size_t k = 0; k < 4; ++k) result.mesh.C[t][k] = corners.used.rank(vertices[k]);
+    }
+  });
   for (std::size_t t = 0; t < tets.size(); ++t) {
-    const auto vertices = background.tet(tets[t]);
-    Tet& tet = result.mesh.C[t];
-    for (int k = 0; k < 4; ++k) tet[k] = used.rank(vertices[k]);
     if (!is_positively_cut(masks[t])) continue;
+    const Tet& tet = result.mesh.C[t];
     const auto& face = kTetFace[std::countr_zero(static_cast<unsigned>(masks[t]))];
     result.positive_faces.push_back({tet[face[0]], tet[face[1]], tet[face[2]]});
     result.positive_tets.push_back(static_cast<int>(t));
   }
   result.background_tet = std::move(tets);
   return result;
+}
+
+Submesh assemble_vertices(const BackgroundMesh& background, const IdSet& inside, std::size_t& n_tets) {
+  Corners corners(background.n_vertices());
+  std::atomic<std::size_t> n = 0;
+  for_each_block(background, background.n_tets(),
+                 [&](std::int64_t, TetReader& reader, std::int64_t first, std::int64_t end) {
+                   std::size_t of_block = 0;
+                   for (std::int64_t t = first; t < end; ++t) {
+                     const auto vertices = reader.tet(t);
+                     const unsigned mask = inside_mask(vertices, inside);
+                     if (mask == 0) continue;
+                     ++of_block;
+                     corners.add(vertices, mask);
+                   }
+                   n += of_block;
+                 });
+  n_tets = n;
+  return corners.vertices(background, n_tets);
 }
 
 Submesh find_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t* n_psi_evaluations,

@@ -220,9 +220,9 @@ Submesh emit_submesh(const BackgroundMesh& background, const IdSet& inside) {
 SubmeshOutline outline_submesh(const BackgroundMesh& background, const IdSet& inside) {
   const CellStencil stencil(background);
   if (background.is_lattice() && stencil.fits_a_word()) return Emitter(background, stencil, inside).outline();
-  SubmeshOutline whole{emit_submesh(background, inside), 0};
-  whole.n_tets = whole.submesh.mesh.C.size();
-  return whole;
+  SubmeshOutline outline;
+  outline.submesh = assemble_vertices(background, inside, outline.n_tets);
+  return outline;
 }
 
 }  // namespace umtet

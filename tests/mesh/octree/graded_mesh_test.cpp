@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 #include <stdexcept>
 #include <vector>
@@ -61,6 +62,21 @@ void is_conforming(const Grading& g) {
 TEST(GradedMesh, IsAConformingMeshThatFillsItsRoot) {
   for (const int sweeps : {0, 8}) {
     for (const Grading& g : gradings(sweeps)) is_conforming(g);
+  }
+}
+
+TEST(GradedMesh, AReaderReadsTheTetsInAnyOrder) {
+  std::mt19937_64 random(1);
+  for (const Grading& g : gradings()) {
+    const GradedMesh graded(g);
+    std::vector<std::int64_t> order(static_cast<std::size_t>(graded.n_tets()));
+    std::iota(order.begin(), order.end(), 0);
+    for (int n = 0; n < 3; ++n) {
+      GradedMesh::Reader reader = graded.reader();
+      for (const std::int64_t t : order) ASSERT_EQ(reader.tet(t), graded.tet(t));
+      if (n == 0) std::reverse(order.begin(), order.end());
+      if (n == 1) std::shuffle(order.begin(), order.end(), random);
+    }
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "mesh/classification/configuration_costs.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/octree/graded_mesh.h"
 #include "mesh/sizes/body_size.h"
 #include "mesh/submesh/assemble_submesh.h"
 #include "tests/support/domains.h"
@@ -46,8 +47,25 @@ TEST(EmitSubmesh, IsThePapersOmegaHWhenNoLabelIsChanged) {
     const SubmeshOutline outline = outline_submesh(cut.background, cut.inside);
     EXPECT_EQ(outline.submesh.mesh.V, cut.submesh.mesh.V);
     EXPECT_EQ(outline.submesh.background_vertex, cut.submesh.background_vertex);
+    EXPECT_EQ(outline.submesh.positive_vertices, cut.submesh.positive_vertices);
     EXPECT_EQ(outline.n_tets, cut.submesh.mesh.C.size());
   }
+}
+
+TEST(OutlineSubmesh, HasTheVerticesOfOmegaHOnAGradedBackground) {
+  const AnalyticDomain domain = testing::sphere();
+  Grading grading{.box = domain.box, .finest = .04, .size = {}};
+  grading.size = [](const Vec3& x, double) { return .04 + .1 * (x - Vec3(0, 0, 1)).norm(); };
+  const BackgroundMesh background{GradedMesh(grading)};
+  std::size_t n = 0;
+  const IdSet inside = inside_vertices(background, domain, n);
+  const Submesh emitted = emit_submesh(background, inside);
+  const SubmeshOutline outline = outline_submesh(background, inside);
+  EXPECT_GT(outline.n_tets, 10000u);
+  EXPECT_EQ(outline.n_tets, emitted.mesh.C.size());
+  EXPECT_EQ(outline.submesh.mesh.V, emitted.mesh.V);
+  EXPECT_EQ(outline.submesh.background_vertex, emitted.background_vertex);
+  EXPECT_EQ(outline.submesh.positive_vertices, emitted.positive_vertices);
 }
 
 TEST(CrawlInside, FindsTheVerticesOfTheFullLoop) {
