@@ -1,6 +1,7 @@
 #include "distributed/program/serve.h"
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
 #include <utility>
@@ -144,6 +145,8 @@ void Server::make(const RankCommand& command, const std::vector<Vec3>& seeds) {
   const ImplicitFunctionRef psi = domain_.psi();
   const auto at = held_.try_emplace(command.mesh, comm_, background, psi, params.fast, seeds, command.places()).first;
   if (at->second.is_made()) at->second.summary(psi);
+  // Files have no use for it.
+  if (psi_) psi_->forget_below(std::numeric_limits<double>::infinity());
 }
 
 }  // namespace

@@ -117,6 +117,9 @@ double counting_spacing(const Domain& domain, double h) {
 
 std::vector<Vec3> kept_points(const ZeroSetChoice& pieces) {
   std::vector<Vec3> points;
+  std::size_t n = 0;
+  for (const std::size_t c : pieces.kept) n += pieces.topology.components[c].n_cut_edges;
+  points.reserve(n);
   for (const std::size_t c : pieces.kept) {
     const auto of_piece = pieces.topology.points_of(pieces.topology.components[c]);
     points.insert(points.end(), of_piece.begin(), of_piece.end());

@@ -308,13 +308,13 @@ Measurement measure(const Domain& domain, const TetMesh& mesh, const UmResult& r
   std::optional<SurfaceDistance> surface;
   if (!faces.empty()) surface.emplace(mesh.V, faces);
   const VertexThickness thickness = vertex_thickness(domain, mesh, boundary_vertices, h, context);
-  std::vector<Vec3> psi_points;
-  std::vector<Difference> lost;
+  std::vector<Difference> lost, flips;
   if (surface) {
-    psi_points = kept_points(pieces);
+    const std::vector<Vec3> psi_points = kept_points(pieces);
     std::vector<Vec3> starts = thickness.thin;
     starts.insert(starts.end(), m.mesh.boundary.far_feet.begin(), m.mesh.boundary.far_feet.end());
     lost = lost_parts(domain, psi_points, starts, *surface, h, context);
+    flips = flips_that_show(result.manifold_flips, psi_points, *surface, h, context);
   }
   const PointThickness everywhere = with_lost_parts(thickness, lost, domain, h, context);
   Comparison compared = compare_with_domain(domain, mesh, faces, m.mesh, pieces,
@@ -324,7 +324,7 @@ Measurement measure(const Domain& domain, const TetMesh& mesh, const UmResult& r
   const auto add = [&](const std::vector<Difference>& more) {
     differences.insert(differences.end(), more.begin(), more.end());
   };
-  if (surface) add(flips_that_show(result.manifold_flips, psi_points, *surface, h, context));
+  add(flips);
   add(lost);
   if (surface && !domain.cloud.points.empty()) {
     std::vector<double> d = surface->distances(domain.cloud.points, context);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "common/indices_where.h"
@@ -73,6 +74,8 @@ std::vector<std::string> write_parts(const StageContext& context, const fs::path
   MeshWithBoundary handed{best.parts, best.result.final, best.result.submesh.positive_faces,
                           boundary_data(domain, best.result, best.mid_sides)};
   for (Vec3& x : handed.V) x += domain.shift;
+  // Files have no use for it, and other processes on this machine have.
+  if (domain.level_set) domain.level_set->forget_below(std::numeric_limits<double>::infinity());
   const BoundaryData& of_boundary = handed.data;
   const MeshInParts& parts = *best.parts;
   const auto write = [&](const std::string& name, MeshState state) {
