@@ -13,6 +13,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "mesh/background/tet_reader.h"
 #include "mesh/core/tet_mesh.h"
 
 namespace umtet {
@@ -66,30 +67,42 @@ std::string key_of(const LinkTopology& link) {
   return key;
 }
 
+/// Whole numbers z, y and x as one that sorts in this order. Of more than a million edges all are alike.
+std::uint64_t place_in_order(const Vec3& x) {
+  constexpr double kMost = 1 << 20;
+  std::uint64_t place = 0;
+  for (int a = 2; a >= 0; --a) {
+    place = place << 21 | static_cast<std::uint64_t>(std::llround(std::clamp(x[a], -kMost, kMost - 1) + kMost));
+  }
+  return place;
+}
+
 /// Link and triangles of one vertex after the other, in their order; keeps its memory.
 class Links {
  public:
-  explicit Links(const BackgroundMesh& background) : background_(background) {}
+  explicit Links(const BackgroundMesh& background) : background_(background), tets_(background) {}
 
   void read(std::int64_t v);
   std::size_t n() const { return ordered_.size(); }
-  std::int64_t vertex(std::size_t k) const { return ordered_[k].id; }
+  std::int64_t vertex(std::size_t k) const { return ids_[ordered_[k].among_ids]; }
   const std::vector<TriangleOfLink>& triangles() const { return triangles_; }
   double mean_edge() const { return mean_edge_; }
 
  private:
   struct Neighbour {
-    std::array<std::int64_t, 3> place;  ///< z, y, x
-    std::int64_t id;
+    std::uint64_t place;  ///< z, y, x
+    std::uint32_t among_ids;
     auto operator<=>(const Neighbour&) const = default;
   };
   const BackgroundMesh& background_;
+  TetReader tets_;
   std::vector<std::int64_t> star_;
   std::vector<std::array<std::int64_t, 3>> opposite_;
-  std::vector<std::int64_t> ids_;
+  std::vector<std::int64_t> ids_;  ///< ascending
   std::vector<Vec3> edges_;
   double mean_edge_ = 0;
   std::vector<Neighbour> ordered_;
+  std::vector<std::uint8_t> number_;  ///< of each of ids_ in this order
   std::vector<TriangleOfLink> triangles_;
 };
 
@@ -101,7 +114,7 @@ void Links::read(std::int64_t v) {
   triangles_.clear();
   background_.star(v, star_);
   for (const std::int64_t t : star_) {
-    const auto tet = background_.tet(t);
+    const auto tet = tets_.tet(t);
     const auto& f = kTetFace[static_cast<std::size_t>(std::find(tet.begin(), tet.end(), v) - tet.begin())];
     opposite_.push_back({tet[f[0]], tet[f[1]], tet[f[2]]});
     ids_.insert(ids_.end(), opposite_.back().begin(), opposite_.back().end());
@@ -118,13 +131,14 @@ void Links::read(std::int64_t v) {
   mean_edge_ = ids_.empty() ? 0 : sum / static_cast<double>(ids_.size());
   for (std::size_t k = 0; k < ids_.size(); ++k) {
     const Vec3 d = edges_[k] * (kParts / mean_edge_);
-    ordered_.push_back({{std::llround(d[2]), std::llround(d[1]), std::llround(d[0])}, ids_[k]});
+    ordered_.push_back({place_in_order(d), static_cast<std::uint32_t>(k)});
   }
   std::sort(ordered_.begin(), ordered_.end());
   if (ordered_.size() > kMaxLink) return;
+  number_.resize(ids_.size());
+  for (std::size_t k = 0; k < ordered_.size(); ++k) number_[ordered_[k].among_ids] = static_cast<std::uint8_t>(k);
   const auto number = [&](std::int64_t w) {
-    const auto at = std::find_if(ordered_.begin(), ordered_.end(), [&](const Neighbour& n) { return n.id == w; });
-    return static_cast<std::uint8_t>(at - ordered_.begin());
+    return number_[static_cast<std::size_t>(std::lower_bound(ids_.begin(), ids_.end(), w) - ids_.begin())];
   };
   for (const auto& o : opposite_) {
     // In a cycle from the least: tets are listed by their ids, which says nothing of the shape of a link.
@@ -132,7 +146,10 @@ void Links::read(std::int64_t v) {
     while (made[0] > made[1] || made[0] > made[2]) made = {made[1], made[2], made[0]};
     triangles_.push_back(made);
   }
-  std::sort(triangles_.begin(), triangles_.end());
+  // Not by operator<, which calls memcmp() for three bytes.
+  const auto as_number = [](const TriangleOfLink& t) { return t[0] << 16 | t[1] << 8 | t[2]; };
+  std::sort(triangles_.begin(), triangles_.end(),
+            [&](const TriangleOfLink& a, const TriangleOfLink& b) { return as_number(a) < as_number(b); });
 }
 
 class Lister {

@@ -150,17 +150,22 @@ std::array<std::int64_t, 4> OctreeTets::tet(std::int64_t tet) const {
 }
 
 std::array<std::int64_t, 4> OctreeTets::Reader::tet(std::int64_t tet) {
-  if (tet < first_ || tet >= end_) {
-    leaf_ = tets_.cell_of_tet(tet);
-    const OctreeCell& cell = tets_.octree_.cell(leaf_);
-    first_ = cell.first_tet;
-    end_ = first_ + std::popcount(cell.slots);
-    vertex_.fill(kUnknown);
+  const LinearOctree& octree = tets_->octree_;
+  const auto has = [&](int c) {
+    const OctreeCell& cell = octree.cell(c);
+    return cell.first_tet <= tet && tet < cell.first_tet + std::popcount(cell.slots);
+  };
+  if (last_ < 0 || !has(last_)) last_ = tets_->cell_of_tet(tet);
+  Leaf& leaf = leaves_[static_cast<std::size_t>(last_) % kLeaves];
+  if (leaf.cell != last_) {
+    leaf.cell = last_;
+    leaf.vertex.fill(kUnknown);
   }
-  const int slot = tet_slots::select(tets_.octree_.cell(leaf_).slots, static_cast<int>(tet - first_));
-  return tets_.corners_among(leaf_, slot, [&](const CubeCode& code) {
-    std::int64_t& v = vertex_[static_cast<std::size_t>(code_index(code))];
-    if (v == kUnknown) v = tets_.vertex_id(tets_.octree_.place(leaf_, code));
+  const OctreeCell& cell = octree.cell(last_);
+  const int slot = tet_slots::select(cell.slots, static_cast<int>(tet - cell.first_tet));
+  return tets_->corners_among(last_, slot, [&](const CubeCode& code) {
+    std::int64_t& v = leaf.vertex[static_cast<std::size_t>(code_index(code))];
+    if (v == kUnknown) v = tets_->vertex_id(octree.place(last_, code));
     return v;
   });
 }

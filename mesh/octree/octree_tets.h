@@ -104,20 +104,26 @@ class OctreeTets {
   std::vector<std::int32_t> tet_cell_;  ///< of every 16th tet
 };
 
-/// OctreeTets::tet() for tets that are near each other in the order of their ids: the vertices on a leaf, which belong
-/// to a dozen of tets, are looked for once. Of one thread.
+/// OctreeTets::tet() for tets that are near each other in the order of their ids, or in stars of vertices that are: the
+/// vertices on a leaf, which belong to a dozen of tets, are looked for once. Of one thread.
 class OctreeTets::Reader {
  public:
-  explicit Reader(const OctreeTets& tets) : tets_(tets) {}
+  explicit Reader(const OctreeTets& tets) : tets_(&tets), leaves_(kLeaves) {}
   std::array<std::int64_t, 4> tet(std::int64_t tet);
 
  private:
+  // Around a vertex are eight leaves, or up to 25; those of the next vertex are nearly the same.
+  static constexpr std::size_t kLeaves = 64;
   static constexpr std::int64_t kUnknown = -2;
 
-  const OctreeTets& tets_;
-  int leaf_ = -1;
-  std::int64_t first_ = 0, end_ = 0;     ///< tets of the leaf
-  std::array<std::int64_t, 27> vertex_;  ///< by code_index()
+  struct Leaf {
+    int cell = -1;
+    std::array<std::int64_t, 27> vertex;  ///< by code_index()
+  };
+
+  const OctreeTets* tets_;
+  int last_ = -1;
+  std::vector<Leaf> leaves_;  ///< by the last bits of their numbers
 };
 
 }  // namespace umtet

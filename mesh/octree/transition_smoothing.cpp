@@ -86,12 +86,13 @@ Patch patch_of(const OctreeTets& mesh, const IdSet& moving) {
   });
   for (std::size_t i = 0; i < n; ++i) patch.begin[i + 1] += patch.begin[i];
   patch.tets.resize(tets.index());
-  for_each_in_blocks(tets, [&](std::size_t, std::int64_t t) {
-    for (const std::int64_t v : mesh.tet(t)) vertices.insert_shared(v);
+  const auto reader = [&](std::size_t) { return OctreeTets::Reader(mesh); };
+  for_each_in_blocks(tets, reader, [&](OctreeTets::Reader& read, std::int64_t t) {
+    for (const std::int64_t v : read.tet(t)) vertices.insert_shared(v);
   });
   patch.x.resize(vertices.index());
-  for_each_in_blocks(tets, [&](std::size_t, std::int64_t t) {
-    const auto corners = mesh.tet(t);
+  for_each_in_blocks(tets, reader, [&](OctreeTets::Reader& read, std::int64_t t) {
+    const auto corners = read.tet(t);
     for (std::size_t k = 0; k < 4; ++k)
       patch.tets[static_cast<std::size_t>(tets.rank(t))][k] = vertices.rank(corners[k]);
   });

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 """Graded meshes of bodies given by formulas, beside TetGen, Gmsh and CGAL: one row of Markdown for each mesh.
 
-usage: graded_bodies.py UMTET [--cgal=PROGRAM] [--folder=FOLDER] [BODY ...]
+usage: graded_bodies.py UMTET [--cgal=PROGRAM] [--folder=FOLDER] [--positions=N] [BODY ...]
 
 TetGen (`tetgen -pq1.4/15`) fills the boundary of our mesh, Gmsh and CGAL (PROGRAM: that of cgal_mesh_3.cpp) mesh the
-same body with the same size field. Without BODY all are meshed. In FOLDER the meshes are left to be looked at. Needs
-python3-numpy and python3-meshio, and of tetgen and gmsh what is to be compared with.
+same body with the same size field. Without BODY all are meshed. In FOLDER the meshes are left to be looked at. With
+--positions there is one row for each body instead, with the ranges of N meshes of ours, each with the body elsewhere
+in the octree. Needs python3-numpy and python3-meshio, and of tetgen and gmsh what is to be compared with.
 """
 import contextlib
 import io
@@ -137,19 +138,50 @@ def gmsh(body, folder):
     return timed(["gmsh", "-3", "-nt", "1", "-v", "0", "-format", "msh41", "-o", folder / "gmsh.msh", folder / "body.geo"], TIMEOUT)
 
 
+def meshed(umtet, body, box, folder):
+    done = timed([umtet, "mesh", "--implicit=" + body.psi, "--box=" + box, "--background", "graded", *body.flags,
+                  "--no-report", "--progress", "none", "--threads", "1", "-o", folder / "umtet"])
+    return done, folder / "umtet" / "3-mesh" / "mesh.vtu"
+
+
+def moved(box, k):
+    """A box that is a little longer: its centre is that of the octree. 0: as it is."""
+    corners = [float(x) for x in box.split(",")]
+    for axis, ratio in enumerate((.618, .382, .236)):
+        corners[3 + axis] += .03 * (k * ratio % 1)
+    return ",".join(f"{x:g}" for x in corners)
+
+
+def ranges(umtet, name, n, folder):
+    """The row of a body in n positions."""
+    found = []
+    for k in range(n):
+        done, file = meshed(umtet, BODIES[name], moved(BODIES[name].box, k), folder)
+        points, tets = tets_of(file)
+        q, least, most = measures(points, tets)
+        found.append((len(tets), q.min(), np.quantile(q, .01), least, most, done.cpu, done.code))
+        shutil.rmtree(folder / "umtet")
+    low, high = np.min(found, axis=0), np.max(found, axis=0)
+    return (f"| {name} | {low[0]:,.0f} to {high[0]:,.0f} | {low[1]:.3f} to {high[1]:.3f} | {low[2]:.3f} to {high[2]:.3f} "
+            f"| {low[3]:.1f} to {high[4]:.1f} | {low[5]:.1f} to {high[5]:.1f} | {high[6]:.0f} |")
+
+
 def main():
     options = dict(a[2:].split("=", 1) for a in sys.argv[1:] if a.startswith("--"))
     umtet, *names = [a for a in sys.argv[1:] if not a.startswith("--")]
-    print("| body | mesher | tets | min Q | 1 % Q | dihedral angles | CPU s | exit |\n" + "|---" * 8 + "|", flush=True)
+    n_positions = int(options.get("positions", 0))
+    columns = ["body", *([] if n_positions else ["mesher"]), "tets", "min Q", "1 % Q", "dihedral angles", "CPU s", "exit"]
+    print("| " + " | ".join(columns) + " |\n" + "|---" * len(columns) + "|", flush=True)
     with tempfile.TemporaryDirectory() as temporary:
         for name in names or BODIES:
             body = BODIES[name]
             folder = pathlib.Path(options.get("folder", temporary)) / name.replace(" ", "_").replace(",", "")
             shutil.rmtree(folder, ignore_errors=True)
             folder.mkdir(parents=True)
-            done = timed([umtet, "mesh", "--implicit=" + body.psi, "--box=" + body.box, "--background", "graded", *body.flags,
-                          "--no-report", "--progress", "none", "--threads", "1", "-o", folder / "umtet"])
-            ours = folder / "umtet" / "3-mesh" / "mesh.vtu"
+            if n_positions:
+                print(ranges(umtet, name, n_positions, folder), flush=True)
+                continue
+            done, ours = meshed(umtet, body, body.box, folder)
             print(row(name, "umtet", done, ours), flush=True)
             if ours.exists() and shutil.which("tetgen"):
                 print(row(name, "TetGen", tetgen(ours, folder), folder / "tetgen.mesh"), flush=True)
