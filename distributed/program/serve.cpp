@@ -81,6 +81,8 @@ void Server::obey(const RankCommand& command, const Attached& attached) {
       at->second.curve(domain_.psi(), um_params(parameters()).paper.closest_point);
       return;
     case RankOrder::Write:
+      // Files have no use for it, and nobody asks psi between them.
+      if (psi_) psi_->forget_below(std::numeric_limits<double>::infinity());
       return at->second.write(attached.file, static_cast<MeshState>(command.state), command.moving_alone != 0, {});
     case RankOrder::WriteQuality:
       return at->second.write_quality(attached.file);
@@ -145,8 +147,6 @@ void Server::make(const RankCommand& command, const std::vector<Vec3>& seeds) {
   const ImplicitFunctionRef psi = domain_.psi();
   const auto at = held_.try_emplace(command.mesh, comm_, background, psi, params.fast, seeds, command.places()).first;
   if (at->second.is_made()) at->second.summary(psi);
-  // Files have no use for it.
-  if (psi_) psi_->forget_below(std::numeric_limits<double>::infinity());
 }
 
 }  // namespace

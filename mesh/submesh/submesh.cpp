@@ -55,6 +55,45 @@ std::size_t insert_in_blocks(const BackgroundMesh& background, ImplicitFunctionR
   return n;
 }
 
+/// Which background vertices are corners of omega_h, and which of those positive.
+struct Corners {
+  IdSet used, positive;
+
+  explicit Corners(std::int64_t n_vertices) : used(n_vertices), positive(n_vertices) {}
+  void add(const std::array<std::int64_t, 4>& vertices, unsigned mask) {
+    for (unsigned k = 0; k < 4; ++k) {
+      used.insert_shared(vertices[k]);
+      if (is_positively_cut(mask) && !(mask >> k & 1)) positive.insert_shared(vertices[k]);  // Alg. 1, step 18
+    }
+  }
+  /// Those alone. \throw std::length_error for more than 2^31 - 1, of tets, too
+  Submesh vertices(const BackgroundMesh& background, std::size_t n_tets) {
+    constexpr std::size_t kMost = std::numeric_limits<int>::max();
+    const std::size_t n = used.index();
+    if (n_tets > kMost || n > kMost) throw std::length_error("omega_h: more than 2^31 - 1 tets or vertices");
+    Submesh result;
+    result.background_vertex.reserve(n);
+    used.for_each([&](std::int64_t v) { result.background_vertex.push_back(v); });
+    result.mesh.V.resize(n);
+    tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
+      result.mesh.V[i] = background.position(result.background_vertex[i]);  // Alg. 1, step 21
+    });
+    positive.for_each([&](std::int64_t v) { result.positive_vertices.push_back(used.rank(v)); });
+    return result;
+  }
+};
+
+std::int64_t n_blocks(std::int64_t n) { return (n + kTetsPerBlock - 1) / kTetsPerBlock; }
+
+/// f(block, reader, first, end) for the numbers 0 .. n - 1 by blocks, with threads.
+template <class F>
+void for_each_block(const BackgroundMesh& background, std::int64_t n, const F& f) {
+  tbb::parallel_for(std::int64_t{0}, n_blocks(n), [&](std::int64_t b) {
+    TetReader reader(background);
+    f(b, reader, b * kTetsPerBlock, std::min((b + 1) * kTetsPerBlock, n));
+  });
+}
+
 }  // namespace
 
 IdSet inside_vertices(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t& n_evaluations,
@@ -87,50 +126,8 @@ IdSet inside_vertices(const BackgroundMesh& background, ImplicitFunctionRef psi,
   return inside;
 }
 
-namespace {
-
-/// Which background vertices are corners of omega_h, and which of those positive.
-struct Corners {
-  IdSet used, positive;
-
-  explicit Corners(std::int64_t n_vertices) : used(n_vertices), positive(n_vertices) {}
-  void add(const std::array<std::int64_t, 4>& vertices, unsigned mask) {
-    for (unsigned k = 0; k < 4; ++k) {
-      used.insert_shared(vertices[k]);
-      if (is_positively_cut(mask) && !(mask >> k & 1)) positive.insert_shared(vertices[k]);  // Alg. 1, step 18
-    }
-  }
-  /// Those alone. \throw std::length_error for more than 2^31 - 1, of tets, too
-  Submesh vertices(const BackgroundMesh& background, std::size_t n_tets) {
-    constexpr std::size_t kMost = std::numeric_limits<int>::max();
-    const std::size_t n = used.index();
-    if (n_tets > kMost || n > kMost) throw std::length_error("omega_h: more than 2^31 - 1 tets or vertices");
-    Submesh result;
-    result.background_vertex.reserve(n);
-    used.for_each([&](std::int64_t v) { result.background_vertex.push_back(v); });
-    result.mesh.V.resize(n);
-    tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
-      result.mesh.V[i] = background.position(result.background_vertex[i]);  // Alg. 1, step 21
-    });
-    positive.for_each([&](std::int64_t v) { result.positive_vertices.push_back(used.rank(v)); });
-    return result;
-  }
-};
-
-/// f(block, reader, first, end) for the numbers 0 .. n - 1 by blocks, with threads.
-template <class F>
-void for_each_block(const BackgroundMesh& background, std::int64_t n, const F& f) {
-  tbb::parallel_for(std::int64_t{0}, (n + kTetsPerBlock - 1) / kTetsPerBlock, [&](std::int64_t b) {
-    TetReader reader(background);
-    f(b, reader, b * kTetsPerBlock, std::min((b + 1) * kTetsPerBlock, n));
-  });
-}
-
-}  // namespace
-
 std::vector<std::int64_t> cut_or_inside_tets(const BackgroundMesh& background, const IdSet& inside) {
-  const std::int64_t n_blocks = (background.n_tets() + kTetsPerBlock - 1) / kTetsPerBlock;
-  std::vector<std::vector<std::int64_t>> blocks(static_cast<std::size_t>(n_blocks));
+  std::vector<std::vector<std::int64_t>> blocks(static_cast<std::size_t>(n_blocks(background.n_tets())));
   for_each_block(background, background.n_tets(),
                  [&](std::int64_t b, TetReader& reader, std::int64_t first, std::int64_t end) {
                    for (std::int64_t t = first; t < end; ++t) {
