@@ -157,13 +157,14 @@ class SurfaceSizes {
     return p_.deviation > 0 ? edge_of_deviation(principal_curvatures(psi_, f.x), p_.deviation) : p_.h;
   }
 
-  /// At most h, so short that psi = 0 does not turn by more than max_turn along it.
+  /// At most h, so short that psi = 0 does not turn by more than max_turn along it, or is no farther off than noise.
   double of_turn(const OnSurface& f, double h) const {
     const double least = p_.least_by_turn * p_.h;
     for (int halving = 0; p_.max_turn > 0 && h > least && halving < kMostHalvings; ++halving) {
       const double turn = turn_along(psi_, f.x, f.n, h);
-      if (turn <= p_.max_turn) break;
-      h = std::max(least, h * std::max(.5, p_.max_turn / turn));
+      const double part = std::max(p_.max_turn / turn, std::sqrt(8 * p_.noise / (h * turn)));
+      if (part >= 1) break;
+      h = std::max(least, h * std::max(.5, part));
     }
     return h;
   }
@@ -186,6 +187,7 @@ std::vector<std::string> problems(const SurfaceSizeParams& p) {
   require(p.edges_across >= 0, "edges_across", p.edges_across, ">= 0");
   require(p.max_turn >= 0, "max_turn", p.max_turn, ">= 0");
   require(p.least_by_turn > 0 && p.least_by_turn <= 1, "least_by_turn", p.least_by_turn, "in (0, 1]");
+  require(p.noise >= 0, "noise", p.noise, ">= 0");
   require(p.deviation >= 0, "deviation", p.deviation, ">= 0");
   require(p.constant_layer >= 0, "constant_layer", p.constant_layer, ">= 0");
   require(p.steepest > 0, "steepest", p.steepest, "> 0");

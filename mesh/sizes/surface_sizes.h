@@ -21,6 +21,9 @@ struct SurfaceSizeParams {
   double max_turn = 2 / 2.2;  ///< angle between the normals at the ends of an edge, radians; 0: any
   /// By its turn alone no edge is shorter than this share of h: a sharp edge turns at once, whatever the edge length.
   double least_by_turn = .25;
+  /// An edge may turn by more where psi = 0 is no farther from its middle than this, turn h / 8: the noise of samples
+  /// turns, too.
+  double noise = 0;
   double deviation = 0;       ///< of flat faces from psi = 0, by its curvature; 0: any. Needs Hessians
   double constant_layer = 2;  ///< radius of the sources, in their h
   double steepest = std::numeric_limits<double>::infinity();  ///< a bound of |grad psi|

@@ -135,6 +135,7 @@ bool GradedSizes::add(Domain& domain, const Context& context, double most_tets) 
   s.edges_across *= kSizeTolerance;
   s.max_turn = p.max_turn * std::numbers::pi / 180 / kSizeTolerance;
   if (parameters_.source(keys::mesh::max_turn) >= ParamSource::Set) s.least_by_turn = s.h_min / s.h;
+  s.noise = domain.noise.value_or(0);
   s.deviation = p.max_deviation / (kSizeTolerance * kSizeTolerance);
   if (p.grade_inside) s.edges_across = s.max_turn = 0;
   domain.limit_detail(s.h_min);

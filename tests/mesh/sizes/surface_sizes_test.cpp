@@ -108,6 +108,14 @@ TEST(SurfaceSizes, FollowTheTurnOfTheNormal) {
   for (const SizeSource& s : sources) EXPECT_NEAR(s.h, .5 * .1, .006);
 }
 
+TEST(SurfaceSizes, DoNotFollowTurnsWithinTheNoise) {
+  // An arc of h on a radius R is h^2 / 8 R from its chord.
+  const double R = .1, noise = .002;
+  const auto sources =
+      sizes_of(torus(1, R), .05, {.h = .1, .h_min = .01, .edges_across = 0, .max_turn = .2, .noise = noise});
+  for (const SizeSource& s : sources) EXPECT_NEAR(s.h, std::sqrt(8 * R * noise), .003);
+}
+
 TEST(SurfaceSizes, DoNotFollowASharpEdgeWithoutEnd) {
   const auto cube = [](const Vec3& x, Vec3* g, Mat3*) {
     Eigen::Index axis = 0;
