@@ -36,6 +36,12 @@ constexpr Effort kNoFlips{{.all_vertices = true, .most_singles = 0, .pairs = fal
 constexpr Effort kAllFlips{{.all_vertices = true}, 500, 100, 6};
 constexpr Effort kNoFlipsInListed{{.all_vertices = true, .most_singles = 0, .pairs = false, .more_reach = 1}, 1000};
 constexpr Effort kAllFlipsInListed{{.all_vertices = true}, 1500};
+// A patch of these three passes mends at most two or three of the tets that wait at first, and the target is out of
+// reach where more wait. Then they aim at so much less, which is soon reached: ellipsoids 1:1:.06 and 1:1:.04 (`umtet
+// mesh --background graded --implicit`) take 11 and 22 s of CPU in place of 22 and 31 s without it, and have a least Q
+// of .723 and .730 in place of .723 and .733.
+constexpr std::size_t kMostMended = 5 * (kFewFlips.most + kNoFlipsInListed.most + kAllFlipsInListed.most) / 2;
+constexpr double kLessWhereHopeless = .03;
 // These two come twice: what was raised around a tet may let it be raised. And by smaller steps: a flip that raises the
 // worst tet often leaves more of them a little higher.
 constexpr int kRounds = 2;
@@ -50,17 +56,19 @@ class Repair {
       : rounds_(rounds),
         params_(params),
         is_lattice_(is_lattice),
-        most_patches_(std::min(params.max_patches, kFewPatches + n_tets / kTetsPerPatch)) {}
+        most_patches_(std::min(params.max_patches, kFewPatches + n_tets / kTetsPerPatch)),
+        target_(params.target) {}
 
   RepairReport operator()(const Context& context) {
     if (params_.max_tries == 0) return rounds_.report();
     rounds_.look_at_all();
-    if (!rounds_.has_waiting()) return rounds_.report();
+    if (rounds_.n_waiting() == 0) return rounds_.report();
     if (is_lattice_) {
       begin_pass({.flips = {}, .most = params_.max_patches});
       rounds_.mend(context);
     } else {
-      mend_rising(kFewFlips, params_.target, params_.target_step, context);
+      if (rounds_.n_waiting() > kMostMended) target_ -= kLessWhereHopeless;
+      mend_rising(kFewFlips, target_, params_.target_step, context);
     }
     if (params_.all_vertices) raise(context);
     if (params_.slides) {
@@ -94,7 +102,7 @@ class Repair {
 
   /// What is left, and what is above the target by less than params_.lift.
   void raise(const Context& context) {
-    const double top = params_.target + params_.lift, step = kSmallerSteps * params_.target_step;
+    const double top = target_ + params_.lift, step = kSmallerSteps * params_.target_step;
     for (int round = 0; round < kRounds; ++round) {
       const bool was_raised = mend_rising(is_lattice_ ? kNoFlips : kNoFlipsInListed, top, step, context);
       // Where h is too large for the body there is no end to it.
@@ -106,6 +114,7 @@ class Repair {
   const RepairParams& params_;
   bool is_lattice_;
   std::size_t most_patches_;
+  double target_;
 };
 
 /// \throw std::invalid_argument

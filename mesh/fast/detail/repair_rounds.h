@@ -35,7 +35,7 @@ class RepairRounds {
   void allow(const PatchBudget& budget);
   bool may_try() const { return tries_ < most_patches(); }
   void aim_at(double target, const FlipEffort& effort);
-  bool has_waiting() const { return !later_.empty(); }
+  std::size_t n_waiting() const { return later_.size(); }
   /// Whether a tet that waits is below the target; not counting those with a misaligned face.
   bool is_some_tet_below() const;
   /// Tets that were given up wait again. Of all that wait those go on that are still bad, with what they are like now.
