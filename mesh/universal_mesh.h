@@ -55,7 +55,7 @@ ChosenSubmesh choose_submesh(const BackgroundMesh& background, ImplicitFunctionR
 
 /// The same where a mesh in another background has been made that differs at some places only, an octree that has been
 /// refined there: away from them the mesh stays as it is, to the bit.
-/// @param former  of the same psi and params, UmMode::Fast without walls, and without pieces that were left out
+/// @param former  of the same pieces of psi and the same params, UmMode::Fast without walls
 /// \throw std::invalid_argument naming every broken constraint of params; UmMode::Paper; Cancelled
 ChosenSubmesh choose_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
                              const FormerMesh& former, const Context& context = {});

@@ -10,6 +10,7 @@
 #include "mesh/base/id_blocks.h"
 #include "mesh/core/asking_psi.h"
 #include "mesh/fast/detail/flat_tets.h"
+#include "mesh/submesh/assemble_submesh.h"
 
 namespace umtet {
 namespace {
@@ -87,7 +88,16 @@ FormerStates former_states(const BackgroundMesh& background, const VertexLinks& 
     values[k].value = psi.value(background.position(fresh[k]), values[k].gradient);
   });
   states.psi_evaluations = fresh.size();
-  for (const PsiValue& at : values) at.value < 0 ? states.inside.insert(at.vertex) : states.inside.erase(at.vertex);
+  IdSet of_seeds(0);
+  if (!former.seeds.empty()) {
+    CrawledVertices crawled = crawl_inside(background, psi, former.seeds, context);
+    of_seeds = std::move(crawled.inside);
+    states.psi_evaluations += crawled.n_psi_evaluations;
+  }
+  for (const PsiValue& at : values) {
+    const bool is_inside = former.seeds.empty() ? at.value < 0 : of_seeds.test(at.vertex);
+    is_inside ? states.inside.insert(at.vertex) : states.inside.erase(at.vertex);
+  }
   std::erase_if(values, [&](const PsiValue& at) { return !is_cut(links, states.inside, at.vertex); });
   states.cut = std::move(values);
   return states;

@@ -20,14 +20,15 @@ namespace umtet {
 /// A mesh of the same psi in another background.
 struct FormerMesh {
   const BackgroundMesh& background;
-  const UmResult& mesh;  ///< UmStatus::Success
+  const UmResult& mesh;          ///< UmStatus::Success
+  std::vector<Vec3> seeds = {};  ///< as those of universal_mesh() where it has not all pieces of psi; else none
 };
 
 /// What is left of it in a background that differs at some places only: an octree with smaller leaves there. Away from
 /// them the tets at a vertex are the same, by keys (BackgroundMesh::key_of_vertex()) and places.
 struct FormerStates {
   /// Vertices that count as inside: those that did where the background is the same around them, elsewhere those with
-  /// psi < 0.
+  /// psi < 0, of the pieces with a seed if there are any.
   IdSet inside{0};
   IdSet same{0};  ///< vertices around which the background is the same
   /// Those at which it is not, with a neighbour on the other side: where classify_vertices() has work.

@@ -29,6 +29,7 @@ struct MeshAttempt {
   std::shared_ptr<const SizeField> sizes;         ///< that a graded background was made for
   std::optional<BackgroundMesh> background = {};  ///< that one
   int n_levels = 0;                               ///< of psi then; 0: a formula
+  std::size_t n_pieces = 0, n_dropped = 0;        ///< of psi = 0: that were to be meshed, and that were left out
   /// Of a mesh that several processes have, which `result` has the boundary of.
   std::shared_ptr<const MeshInParts> parts = nullptr;
   std::vector<Vec3> mid_sides = {};  ///< of it, if mesh.order = 2: those of boundary edges

@@ -97,6 +97,8 @@ MeshAttempt MeshMaker::begin(const SizedBackground& background, double h) {
   if (a.sizes) a.background = background.mesh;
   const ZeroSetChoice& pieces = pieces_at(h, a.sizes.get());
   a.n_levels = n_levels_;
+  a.n_pieces = pieces.seeds.size();
+  a.n_dropped = pieces.dropped.size();
   a.thin = find_thin_places(domain_, pieces, h, context_);
   if (!a.thin.empty() && lines_.detail) {
     lines_.detail(fmt::format("{} places are thinner than h = {:.4g} can show for certain:\n{}", a.thin.places.size(),
@@ -108,10 +110,10 @@ MeshAttempt MeshMaker::begin(const SizedBackground& background, double h) {
   return a;
 }
 
-/// Of the same psi, all of which is meshed.
+/// Of the same psi, and the same pieces of it.
 bool MeshMaker::may_keep(const MeshAttempt& former, const ZeroSetChoice& pieces) const {
   return params_.mode == UmMode::Fast && former.made() && former.background && former.n_levels == n_levels_ &&
-         pieces.dropped.empty();
+         former.n_pieces == pieces.seeds.size() && former.n_dropped == pieces.dropped.size();
 }
 
 ChosenSubmesh MeshMaker::choose(const BackgroundMesh& background, const ZeroSetChoice& pieces,
@@ -122,7 +124,8 @@ ChosenSubmesh MeshMaker::choose(const BackgroundMesh& background, const ZeroSetC
   }
   UmParams params = params_for(pieces);
   if (former && may_keep(*former, pieces)) {
-    return choose_submesh(background, domain_.psi(), params, {*former->background, former->result},
+    const auto seeds = pieces.dropped.empty() ? std::vector<Vec3>() : pieces.seeds;
+    return choose_submesh(background, domain_.psi(), params, {*former->background, former->result, seeds},
                           context_.part(kChoice, kFit));
   }
   params.submesh.known = known_signs(background, pieces);

@@ -97,6 +97,40 @@ TEST(FormerMesh, IsTheMeshWhereNothingIsRefined) {
   EXPECT_EQ(after.n_psi_evaluations, 0u);
 }
 
+/// The unit sphere, and one of .1 over its pole, where the background is refined.
+AnalyticDomain two_spheres() {
+  AnalyticDomain domain = testing::sphere();
+  domain.box = testing::cube_box(1.6);
+  domain.psi = [](const Vec3& x, Vec3* g, Mat3* H) {
+    const Vec3 off = x - 1.3 * kPole;
+    const bool is_small = off.norm() - .1 < x.norm() - 1;
+    const Vec3& d = is_small ? off : x;
+    const double r = d.norm();
+    if (g) *g = d / r;
+    if (H) *H = (Mat3::Identity() - d * d.transpose() / (r * r)) / r;
+    return r - (is_small ? .1 : 1);
+  };
+  return domain;
+}
+
+TEST(FormerMesh, HasThePiecesWithASeed) {
+  const AnalyticDomain domain = two_spheres();
+  const BackgroundMesh coarse = refined_at_pole(domain, .1), fine = refined_at_pole(domain, .05);
+  UmParams params;
+  params.submesh.search = SubmeshSearch::Crawl;
+  for (const std::vector<Vec3>& seeds : {std::vector<Vec3>{-kPole}, std::vector<Vec3>{-kPole, 1.2 * kPole}}) {
+    const UmResult before = universal_mesh(coarse, domain, params, {}, seeds);
+    ASSERT_EQ(before.status, UmStatus::Success) << before.evidence.what;
+    const UmResult after =
+        fit_submesh(fine, domain, params, choose_submesh(fine, domain, params, FormerMesh{coarse, before, seeds}));
+    ASSERT_EQ(after.status, UmStatus::Success) << after.evidence.what;
+    ASSERT_GT(after.final.size(), before.final.size());
+    const MeshCertificate c = testing::certificate_of(after, domain, .1);
+    EXPECT_TRUE(failures(c).empty()) << failures(c).front();
+    EXPECT_EQ(c.boundary.components, static_cast<int>(seeds.size()));
+  }
+}
+
 TEST(FormerMesh, DoesNotDependOnThreads) {
   const AnalyticDomain domain = testing::sphere();
   const BackgroundMesh coarse = refined_at_pole(domain, .1), fine = refined_at_pole(domain, .04);
