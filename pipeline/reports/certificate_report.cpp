@@ -39,12 +39,21 @@ CertificateRun run_of(const CasePaths& paths, const StageRecord& mesh, std::size
   return run;
 }
 
+// Of h: sizes go down to edges of which the noise is .3 (kMostNoise), or halfway there.
+constexpr double kNoisy = .15;
+
 /// What to try next when a mesh has failed.
 std::string remedy_for(const Certificate& c) {
   const double h = c.measured.mesh.h;
   const std::optional<double>& gate = c.verdict.min_quality_gate;
   if (c.verdict.reasons.size() == 1 && gate && c.measured.mesh.quality.min < *gate) {
     return fmt::format("another --h (this was {:.4g}), which moves the worst tets, or a lower --min-quality", h);
+  }
+  if (const auto& cloud = c.measured.cloud; c.measured.sizes && cloud && cloud->noise.value_or(0) > kNoisy * h) {
+    return fmt::format(
+        "a larger --h-min (the smallest edges are {:.4g}, and the noise of the samples is {:.2g} of that), which shows "
+        "less of the noise",
+        h, *cloud->noise / h);
   }
   const std::optional<std::vector<ThinPlace>>& thin = c.measured.resolution.too_thin;
   const std::string enough =
