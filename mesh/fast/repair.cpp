@@ -114,7 +114,7 @@ class Repair {
   const RepairParams& params_;
   bool is_lattice_;
   std::size_t most_patches_;
-  double target_;
+  double target_;  ///< that the first pass rises to, and the others by lift above it
 };
 
 /// \throw std::invalid_argument

@@ -74,8 +74,9 @@ struct RepairReport {
 /// of these gets better. A state changes only where classify_vertices() might change it: at simple vertices, without a
 /// new spot where the boundary is no manifold, and not where the body or the gap is thin. So topology stays.
 ///
-/// Where targets rise, the rule is that of the target at the time; but never are more tets of the whole mesh below the
-/// last one than before.
+/// Where targets rise, the rule is that of the target at the time; but never are more tets of the whole mesh below
+/// RepairParams::target than before. Outside of lattices the last one is .03 lower where ten thousand tets and more are
+/// below it at first.
 ///
 /// What nothing helps, and tets above the target by less than lift, are then raised by smooth_all_vertices(), without a
 /// flip and after that with any, against targets that rise from the worst tet on. Outside of lattices, where many tets

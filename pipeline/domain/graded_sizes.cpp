@@ -134,8 +134,11 @@ bool GradedSizes::add(Domain& domain, const Context& context, double most_tets) 
   // Edges may be kSizeTolerance as long as the size: what may not be exceeded asks for as much less.
   s.edges_across *= kSizeTolerance;
   s.max_turn = p.max_turn * std::numbers::pi / 180 / kSizeTolerance;
-  if (parameters_.source(keys::mesh::max_turn) >= ParamSource::Set) s.least_by_turn = s.h_min / s.h;
-  s.noise = domain.noise.value_or(0);
+  if (parameters_.source(keys::mesh::max_turn) >= ParamSource::Set) {
+    s.least_by_turn = s.h_min / s.h;
+  } else {
+    s.noise = domain.noise.value_or(0);
+  }
   s.deviation = p.max_deviation / (kSizeTolerance * kSizeTolerance);
   if (p.grade_inside) s.edges_across = s.max_turn = 0;
   domain.limit_detail(s.h_min);
