@@ -201,6 +201,7 @@ std::vector<SizeSource> surface_sizes(ImplicitFunctionRef psi, const std::vector
   if (!(spacing > 0)) all.push_back(formatted("spacing = %g: must be > 0", spacing));
   if (!all.empty()) throw std::invalid_argument(joined(all, "; "));
   std::vector<Place> places;
+  places.reserve(points.size());
   for (const Vec3& x : points) places.push_back({x, spacing});
   return SurfaceSizes(psi, params, context).of(std::move(places), enough);
 }
