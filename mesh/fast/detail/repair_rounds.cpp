@@ -39,8 +39,7 @@ RepairRounds::RepairRounds(const BackgroundMesh& background, const VertexLinks& 
                            const ClassificationParams& classification, const RepairParams& params,
                            const BackgroundLayer& layer, RemoteLayer* remote, IdSet& inside,
                            const std::vector<KeptVertex>& kept, int more_reach)
-    : background_(background),
-      psi_(psi),
+    : psi_(psi),
       params_(params),
       layer_(layer),
       remote_(remote),

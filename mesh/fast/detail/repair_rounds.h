@@ -60,7 +60,6 @@ class RepairRounds {
   void look(const std::vector<BadTet>& bad);
   std::size_t most_patches() const;
 
-  const BackgroundMesh& background_;
   ImplicitFunctionRef psi_;
   const RepairParams& params_;
   const BackgroundLayer& layer_;
