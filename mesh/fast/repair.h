@@ -75,8 +75,8 @@ struct RepairReport {
 /// new spot where the boundary is no manifold, and not where the body or the gap is thin. So topology stays.
 ///
 /// Where targets rise, the rule is that of the target at the time; but never are more tets of the whole mesh below
-/// RepairParams::target than before. Outside of lattices the last one is .03 lower where ten thousand tets and more are
-/// below it at first.
+/// RepairParams::target than before. Outside of lattices the last one is .03 lower where there are more than ten
+/// thousand bad_tets() up to target + lift at first.
 ///
 /// What nothing helps, and tets above the target by less than lift, are then raised by smooth_all_vertices(), without a
 /// flip and after that with any, against targets that rise from the worst tet on. Outside of lattices, where many tets

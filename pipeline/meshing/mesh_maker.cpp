@@ -40,6 +40,11 @@ constexpr double kPieces = .05, kChoice = .1, kFit = .2, kCertificate = .9, kCur
 /// Whether a search for this h would find the same cells.
 bool are_cells_for(double h, const SignCells& cells) { return cells.size <= h / 2 && h / 2 < 2 * cells.size; }
 
+/// A point of each piece, where not all are meshed.
+std::vector<Vec3> seeds_of_some(const ZeroSetChoice& pieces) {
+  return pieces.dropped.empty() ? std::vector<Vec3>() : pieces.seeds;
+}
+
 }  // namespace
 
 MeshMaker::MeshMaker(Domain& domain, const Parameters& parameters, Context context, MeshLines lines, PartMesher* ranks)
@@ -124,9 +129,8 @@ ChosenSubmesh MeshMaker::choose(const BackgroundMesh& background, const ZeroSetC
   }
   UmParams params = params_for(pieces);
   if (former && may_keep(*former, pieces)) {
-    const auto seeds = pieces.dropped.empty() ? std::vector<Vec3>() : pieces.seeds;
-    return choose_submesh(background, domain_.psi(), params, {*former->background, former->result, seeds},
-                          context_.part(kChoice, kFit));
+    return choose_submesh(background, domain_.psi(), params,
+                          {*former->background, former->result, seeds_of_some(pieces)}, context_.part(kChoice, kFit));
   }
   params.submesh.known = known_signs(background, pieces);
   return choose_submesh(background, domain_.psi(), params, context_.part(kChoice, kFit), pieces.seeds);
@@ -141,8 +145,7 @@ std::optional<MadeInParts> MeshMaker::made_by_ranks(const SizedBackground& backg
     return std::nullopt;
   }
   context_.report("project", kChoice);
-  return ranks_->make(background.mesh, background.box, domain_, params_.fast,
-                      pieces.dropped.empty() ? std::vector<Vec3>() : pieces.seeds,
+  return ranks_->make(background.mesh, background.box, domain_, params_.fast, seeds_of_some(pieces),
                       {h, domain_.shift, coordinate_rounding(domain_)});
 }
 
