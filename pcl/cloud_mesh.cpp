@@ -86,7 +86,8 @@ CloudMesh mesh_of(CloudFile file, const Parameters& parameters, const Watch& wat
   mesh.h = made->h;
   mesh.min_quality = certificate.measured.mesh.quality.min;
   mesh.is_valid = certificate.measured.is_valid;
-  mesh.is_faithful = certificate.measured.is_faithful;
+  mesh.fits_psi = certificate.verdict.fits_psi;
+  mesh.fits_input = certificate.verdict.fits_input;
   mesh.passes = certificate.verdict.passes();
   mesh.certificate = to_json(certificate).dump(2);
   for (const std::string& notice : fitted.notices) mesh.notices.push_back(in_keys(notice));

@@ -142,9 +142,10 @@ py::object certificate(const Points& points,
   Json json = document_head(kVersion);
   json.update(to_json(measured.mesh));
   json["valid"] = measured.is_valid;
-  json["faithful"] = p ? Json(measured.is_faithful) : Json(nullptr);
   json["places"] = p ? to_json(measured.places) : Json(nullptr);
   json.update(to_json(judge(measured, parameters)));
+  // Points and tets alone say nothing about psi, or about what it was made from.
+  if (!p) json["fits_psi"] = json["fits_input"] = nullptr;
   return dict_of(json);
 }
 

@@ -131,7 +131,7 @@ int main(int argc, char* argv[]) try {
   const umtet::CloudMesh mesh = umtet::mesh_cloud(scan);
   for (const std::string& notice : mesh.notices) std::printf("%s\n", notice.c_str());
   std::printf("%zu tets, h = %.3g, min Q %.3f, valid: %s, faithful: %s, verdict: %s\n", mesh.tets.size(), mesh.h,
-              mesh.min_quality, mesh.is_valid ? "yes" : "no", mesh.is_faithful ? "yes" : "no",
+              mesh.min_quality, mesh.is_valid ? "yes" : "no", mesh.fits_psi && mesh.fits_input ? "yes" : "no",
               mesh.passes ? "pass" : "fail");
 
   // 7. Files: the tets for a solver, the boundary for whatever PCL does with it.

@@ -53,7 +53,8 @@ struct CloudMesh {
   double h = 0;            ///< edge length of the background mesh, model units
   double min_quality = 0;  ///< least mean ratio of a tet, in (0, 1]; 1 is regular
   bool is_valid = false;   ///< positive tets, and a boundary that is a closed manifold without self-intersections
-  bool is_faithful = false;                ///< valid, and psi = 0 as far as h can show it
+  bool fits_psi = false;                   ///< it is psi = 0 as far as h can show it
+  bool fits_input = false;                 ///< it fits the cloud
   bool passes = false;                     ///< the verdict of the certificate
   std::string certificate;                 ///< JSON, as certificate.json: docs/reference.md
   std::vector<std::string> notices;        ///< what was changed or guessed

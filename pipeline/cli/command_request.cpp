@@ -7,7 +7,7 @@
 #include "pipeline/domain/background_choice.h"
 #include "pipeline/output/boundary_patches.h"
 #include "pipeline/output/export_case.h"
-#include "pipeline/reports/mesh_place.h"
+#include "pipeline/reports/accepted_defects.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -44,7 +44,7 @@ void read_parameters(const CommandInputs& in, const F& runs, Parameters& paramet
     }
   }
   if (!in.config.empty()) parameters.load(in.config, ParamSource::File);
-  parse_accepted_places(parameters.output().accept);
+  parse_accepted_defects(parameters.output().accept);
 }
 
 /// The cloud that was named: to be read, and to be found again from another folder.

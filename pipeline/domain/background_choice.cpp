@@ -148,7 +148,7 @@ EdgeLength BackgroundChoice::graded_edge_length(const Domain& domain, const Cont
                     "{}, or ask for sizes that are {:.2g} times as large",
                     h, n, p.max_tets, least / h));
   }
-  return representable({least, least}, domain);
+  return representable({.h = least, .least = least, .at_max_tets = true}, domain);
 }
 
 std::optional<double> BackgroundChoice::refine(const std::vector<SizeSource>& wanted, double h) {

@@ -189,6 +189,58 @@ double supported_area(const std::vector<Vec3>& V, const std::vector<Triangle>& f
   return area;
 }
 
+/// Genus of some of the faces when each of their rims gets a disc: n - (V - E + F + rims) / 2 for n connected parts. A
+/// vertex at which fans of faces only touch counts once for each fan.
+int closed_genus(const std::vector<Triangle>& faces, const std::vector<char>& is_in) {
+  std::map<Edge, std::vector<int>> sides;  // faces at each edge
+  int n_faces = 0;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    if (!is_in[f]) continue;
+    ++n_faces;
+    for (int k = 0; k < 3; ++k) {
+      sides[std::minmax(faces[f][k], faces[f][(k + 1) % 3])].push_back(static_cast<int>(f));
+    }
+  }
+  DisjointSets corners(3 * faces.size()), parts(faces.size());
+  const auto corner_at = [&](int face, int vertex) {
+    const Triangle& f = faces[static_cast<std::size_t>(face)];
+    return 3 * face + static_cast<int>(std::find(f.begin(), f.end(), vertex) - f.begin());
+  };
+  for (const auto& [edge, of_edge] : sides) {
+    for (std::size_t k = 1; k < of_edge.size(); ++k) {
+      parts.unite(of_edge[0], of_edge[k]);
+      for (const int v : {edge.first, edge.second}) corners.unite(corner_at(of_edge[0], v), corner_at(of_edge[k], v));
+    }
+  }
+  DisjointSets rims(3 * faces.size());
+  std::set<int> on_rims;
+  for (const auto& [edge, of_edge] : sides) {
+    if (of_edge.size() != 1) continue;
+    const int a = corners.find(corner_at(of_edge[0], edge.first)), b = corners.find(corner_at(of_edge[0], edge.second));
+    rims.unite(a, b);
+    on_rims.insert(a);
+    on_rims.insert(b);
+  }
+  std::set<int> vertices, components, distinct_rims;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    if (!is_in[f]) continue;
+    components.insert(parts.find(static_cast<int>(f)));
+    for (int k = 0; k < 3; ++k) vertices.insert(corners.find(static_cast<int>(3 * f) + k));
+  }
+  for (const int corner : on_rims) distinct_rims.insert(rims.find(corner));
+  const auto chi = static_cast<int>(vertices.size()) - static_cast<int>(sides.size()) + n_faces +
+                   static_cast<int>(distinct_rims.size());
+  return static_cast<int>(components.size()) - chi / 2;
+}
+
+/// The handles that go with what was closed. Where only one line ends each hole and the holes are discs, there are none.
+int guessed_handles(const std::vector<Triangle>& faces, const ClosedHoles& found) {
+  if (found.holes.empty()) return 0;
+  std::vector<char> all(faces.size(), 1), rest(faces.size(), 0);
+  for (std::size_t f = 0; f < faces.size(); ++f) rest[f] = found.of_face[f] < 0 ? 1 : 0;
+  return std::max(0, closed_genus(faces, all) - closed_genus(faces, rest));
+}
+
 }  // namespace
 
 ClosedHoles find_closed_holes(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
@@ -234,8 +286,12 @@ SupportReport support_report(const Domain& domain, const std::vector<Vec3>& V, c
   SupportReport report;
   report.radius = support_radius(domain);
   report.unsupported_area_fraction = unsupported_area_fraction(V, faces, support, report.radius);
-  report.closed_holes = find_closed_holes(V, faces, support, report.radius, context).holes;
+  ClosedHoles found = find_closed_holes(V, faces, support, report.radius, context);
+  report.n_guessed_handles = guessed_handles(faces, found);
+  report.closed_holes = std::move(found.holes);
   report.n_closed_holes = report.closed_holes.size();
+  report.n_guessed_pieces = static_cast<std::size_t>(std::count_if(
+      report.closed_holes.begin(), report.closed_holes.end(), [](const ClosedHole& h) { return h.n_rims == 0; }));
   if (report.n_closed_holes > kListedHoles) report.closed_holes.resize(kListedHoles);
   for (ClosedHole& hole : report.closed_holes) hole.centre += domain.shift;
   return report;

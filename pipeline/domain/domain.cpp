@@ -7,6 +7,7 @@
 #include "pipeline/domain/fitted_domain.h"
 #include "pipeline/domain/handover.h"
 #include "pipeline/domain/wanted_detail.h"
+#include "pipeline/reports/input_facts.h"
 #include "pipeline/reports/stage_reports.h"
 #include "reconstruct/io/level_set_io.h"
 #include "reconstruct/io/point_cloud_io.h"
@@ -32,10 +33,8 @@ LevelSet level_set_of(const std::filesystem::path& file) {
   }
 }
 
-bool cloud_of_triangles(const CasePaths& paths) {
-  const StageState state = inspect_stage(paths, Stage::Cloud, Json::object(), std::nullopt);
-  if (!state.record) return false;
-  const std::vector<RecordedFile>& outputs = state.record->outputs;
+bool is_of_triangles(const CasePaths& paths, const StageRecord& cloud) {
+  const std::vector<RecordedFile>& outputs = cloud.outputs;
   const std::string name = paths.triangles().filename().string();
   return std::any_of(outputs.begin(), outputs.end(), [&](const RecordedFile& f) { return f.name == name; });
 }
@@ -93,12 +92,14 @@ Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handove
                                              : level_set_of(paths.level_set());
     OrientedPointCloud cloud = handover && handover->cloud ? std::move(*std::exchange(handover->cloud, std::nullopt))
                                                            : read_point_cloud(paths.cloud()).cloud;
-    domain = fitted_domain(std::move(psi), std::move(cloud), level_set_report(*state.record),
-                           parse_box(parameters.mesh().box));
+    const LevelSetReport report = level_set_report(*state.record);
+    domain = fitted_domain(std::move(psi), std::move(cloud), report, parse_box(parameters.mesh().box));
+    const StageState cloud_state = inspect_stage(paths, Stage::Cloud, Json::object(), std::nullopt);
+    if (cloud_state.record) domain.facts = input_facts(cloud_report(*cloud_state.record), report);
     domain.fitted = FittedLevelSet(*domain.level_set, [file = paths.level_set()] { return level_set_of(file); });
     if (handover && handover->triangles) {
       domain.triangles = given_triangles(std::move(*std::exchange(handover->triangles, std::nullopt)), domain.shift);
-    } else if (cloud_of_triangles(paths)) {
+    } else if (cloud_state.record && is_of_triangles(paths, *cloud_state.record)) {
       domain.triangles = given_triangles(read_triangles(paths.triangles()).mesh, domain.shift);
     }
   } catch (const CloudRefused& e) {  // all files are ours: what is wrong with them is damage

@@ -16,6 +16,7 @@
 #include "pipeline/domain/fitted_level_set.h"
 #include "pipeline/domain/given_triangles.h"
 #include "pipeline/expression/expression.h"
+#include "pipeline/reports/certificate_report.h"
 #include "reconstruct/cloud/point_cloud.h"
 #include "reconstruct/level_set/grid_fit.h"
 #include "reconstruct/level_set/level_set.h"
@@ -40,6 +41,7 @@ struct Domain {
   std::shared_ptr<const GivenTriangles> triangles;  ///< that bound the body; none of a cloud or a formula
   double cloud_spacing = 0;                         ///< median distance between neighbouring samples, 0 for a formula
   std::optional<double> noise;  ///< standard deviation of the samples along the normal, as the fit took it, model units
+  std::optional<InputFacts> facts;  ///< of the cloud; none for a formula or a grid
   bool complement = false;      ///< mesh.complement: it is {psi > 0} in the box that is meshed, the fluid around a body
 
   /// Cuts psi at the detail that a mesh of edge length h can show: boundary faces fold over what is finer.

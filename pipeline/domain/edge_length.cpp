@@ -105,13 +105,19 @@ EdgeLength choose(Domain& domain, const Parameters& parameters, const Context& c
   const double of_noise = noise_edge(domain), needed = std::max(std::min(of_size, t / kEdgesAcross), of_noise);
   if (p.tets > 0) {
     const double h = h_of(domain, parameters, p.tets);
-    return {h, h, {}, needed, thin.faces};
+    return {.h = h, .least = h, .needed = needed, .graded_faces = thin.faces};
   }
   const double least = h_of(domain, parameters, p.max_tets);
   double h = edge_length_by(of_size, t, [&] { return h_of(domain, parameters, kTetsOfLargeMesh); });
+  const bool at_max_tets = least > std::max(h, of_noise);
   h = std::max(h, least);
-  if (of_noise > h) return {of_noise, least, h, needed, thin.faces};
-  return {h, least, {}, needed, thin.faces};
+  const std::optional<double> of_thin_parts = of_noise > h ? std::optional(h) : std::nullopt;
+  return {.h = std::max(h, of_noise),
+          .least = least,
+          .of_thin_parts = of_thin_parts,
+          .needed = needed,
+          .at_max_tets = at_max_tets,
+          .graded_faces = thin.faces};
 }
 
 Vec3 greatest_coordinates(const Domain& domain) {

@@ -25,6 +25,7 @@ struct EdgeLength {
   double least;  ///< the h that makes about mesh.max_tets tets if the choice of h was left to us, else h
   std::optional<double> of_thin_parts = {};  ///< where noise decided: what these alone would have asked for
   double needed = h;        ///< that noise allows and that gives thin parts 2.2 edges, however many tets that makes
+  bool at_max_tets = false;  ///< mesh.max_tets keeps h larger than thin parts ask for
   double graded_faces = 1;  ///< about the share of boundary faces that edges in proportion to thickness would make
 };
 

@@ -14,6 +14,7 @@
 #include "pipeline/meshing/library_params.h"
 #include "pipeline/meshing/mesh_maker.h"
 #include "pipeline/meshing/mesh_measures.h"
+#include "pipeline/reports/input_facts.h"
 #include "pipeline/reports/place_json.h"
 #include "pipeline/stages/cloud_preparation.h"
 #include "pipeline/stages/level_set_fit.h"
@@ -59,11 +60,14 @@ Reconstruction reconstruct(CloudFile file, const Parameters& parameters, const W
   LevelSetFit fit = fit_level_set(prepared.cloud, std::move(prepared.near), parameters, context_of(watch));
   std::vector<std::string> notices = std::move(prepared.report.notices);
   notices.insert(notices.end(), fit.notices.begin(), fit.notices.end());
-  return {std::move(fit.psi), std::move(prepared.cloud), std::move(fit.report), std::move(notices)};
+  const InputFacts facts = input_facts(prepared.report, fit.report);
+  return {std::move(fit.psi), std::move(prepared.cloud), std::move(fit.report), facts, std::move(notices)};
 }
 
 Domain domain_of(const Reconstruction& r, const std::optional<Box>& box) {
-  return fitted_domain(r.psi, r.cloud, r.report, box);
+  Domain domain = fitted_domain(r.psi, r.cloud, r.report, box);
+  domain.facts = r.facts;
+  return domain;
 }
 
 MeshAttempt make_mesh(Domain& domain, const Parameters& parameters, const Watch& watch, PartMesher* ranks) {

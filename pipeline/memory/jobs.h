@@ -28,6 +28,7 @@ struct Reconstruction {
   LevelSet psi;              ///< near the origin, as the report's shift says
   OrientedPointCloud cloud;  ///< the samples, model coordinates
   LevelSetReport report;
+  InputFacts facts;                  ///< of its normals
   std::vector<std::string> notices;  ///< what was changed or guessed, for the user
 };
 

@@ -23,7 +23,7 @@ struct MeshAttempt {
   UmResult result;
   std::optional<SecondOrder> second;              ///< the mesh with curved edges, if mesh.order = 2
   MeshMeasures measured;                          ///< when there is a mesh
-  std::vector<MeshPlace> places;                  ///< where it is not faithful to psi = 0
+  std::vector<MeshPlace> places;                  ///< where it is not psi = 0
   std::vector<std::string> reasons;               ///< why it will not do, by judge_shape()
   ThinPlaces thin;                                ///< what h is too large for
   std::shared_ptr<const SizeField> sizes;         ///< that a graded background was made for
@@ -42,21 +42,25 @@ struct MeshAttempt {
   std::string complaint() const;
 };
 
-/// Runs `attempt` at choice.h and, while the mesh is not faithful to psi = 0, at .985 of it (if nothing but folded
-/// faces and vertices off psi = 0 is wrong, which come and go with h), then at .8, .64 and .51 of it; never below
-/// choice.least, which is tried instead where it is nearer. Where noise decided h, all of these are shares of what thin
-/// parts ask for, which itself comes first.
+/// Of `effort` below: a whole mesh is made again at most once, and small defects are named and left. More asks for
+/// more: small folds are chased, too, and up to four meshes are made again.
+inline constexpr double kDefaultEffort = 2.5;
+
+/// Runs `attempt` at choice.h and, where that has a defect that is no small one, at an h that is forecast to pass: at
+/// .985 h if nothing but folded faces and vertices off psi = 0 is wrong, which come and go with h; at the h that shows
+/// all that is thin where it failed. Never below choice.least. Where noise decided h, what thin parts ask for comes
+/// first.
 ///
-/// @param effort  the last of these are left out where all attempts together would make more than this many times the
-///                tets of the first (of thin parts), as h alone says: the result does not depend on the machine
+/// @param effort  an h is left out where all attempts together would make more than this many times the tets of the
+///                first (of thin parts), as h alone says: the result does not depend on the machine
 /// @param say     called with why another h is tried, and with which mesh is kept if it is not the last
 /// @return the best of them: a mesh before none, then the one with the fewest reasons against it, then with the fewest
 ///         places, then the last
 MeshAttempt best_attempt(const EdgeLength& choice, double effort, const std::function<MeshAttempt(double h)>& attempt,
                          const std::function<void(const std::string&)>& say);
 
-/// Runs `attempt` at h and, while the mesh is not faithful to psi = 0, with smaller edges where it is not, at most four
-/// times.
+/// Runs `attempt` at h and, while the mesh has a defect that is no small one, with smaller edges at the defects, at most
+/// four times.
 ///
 /// @param attempt  is also given the best of the attempts before, or null: it may leave as it is what did not fail
 /// @param refine  asks for them, and returns the h of all that is asked for then; none where nothing may be finer
@@ -69,6 +73,7 @@ MeshAttempt refined_attempt(double h, double effort,
 
 /// Where an attempt failed, with half the size that was asked for there: the places that smaller edges may mend or, of
 /// one that made no mesh, where it ended. In working coordinates. \pre attempt.sizes
-std::vector<SizeSource> finer_where_it_failed(const MeshAttempt& attempt, const Vec3& shift);
+/// @param effort  as above: it decides which defects are left
+std::vector<SizeSource> finer_where_it_failed(const MeshAttempt& attempt, const Vec3& shift, double effort);
 
 }  // namespace umtet

@@ -168,6 +168,7 @@ void MeshMaker::fit(const SizedBackground& background, ChosenSubmesh chosen, Mes
 }
 
 MeshAttempt MeshMaker::finish(const SizedBackground& background, Begun begun) {
+  ++n_attempts_;
   MeshAttempt a = std::move(begun.attempt);
   const ZeroSetChoice& pieces = pieces_at(a.h, a.sizes.get());
   if (begun.made) {
@@ -195,7 +196,6 @@ MeshAttempt MeshMaker::finish(const SizedBackground& background, Begun begun) {
   a.measured = std::move(made.measures);
   a.places = std::move(made.places);
   curve(a);
-  a.measured.is_faithful = a.measured.reasons.empty() && a.measured.places.empty();
   // Not as output.* asks for: how a mesh is judged does not decide how it is made.
   a.reasons = judge_shape(a.measured).reasons;
   return a;
@@ -249,7 +249,7 @@ MeshAttempt MeshMaker::graded(BackgroundChoice& backgrounds, double h, const Mak
       h, parameters_.mesh().effort,
       [&](double h_of, const MeshAttempt* former) { return attempt_for_tets(h_of, make, former); },
       [&](const MeshAttempt& a) -> std::optional<double> {
-        const std::optional<double> finer = backgrounds.refine(finer_where_it_failed(a, domain_.shift), a.h);
+        const std::optional<double> finer = backgrounds.refine(finer_where_it_failed(a, domain_.shift, parameters_.mesh().effort), a.h);
         const auto most = static_cast<double>(parameters_.mesh().max_tets);
         return finer && backgrounds.expected_tets(domain_, *finer) <= most ? finer : std::nullopt;
       },
@@ -257,13 +257,21 @@ MeshAttempt MeshMaker::graded(BackgroundChoice& backgrounds, double h, const Mak
 }
 
 MeshAttempt MeshMaker::best(BackgroundChoice& backgrounds, const EdgeLength& choice, const MakeBackground& make) {
+  MeshAttempt best = search(backgrounds, choice, make);
+  const MeshParameters& p = parameters_.mesh();
+  best.measured.search = {n_attempts_, p.h > 0 || p.tets > 0, choice.at_max_tets};
+  return best;
+}
+
+MeshAttempt MeshMaker::search(BackgroundChoice& backgrounds, const EdgeLength& choice, const MakeBackground& make) {
   if (backgrounds.is_graded()) return graded(backgrounds, choice.h, make);
   const double effort = parameters_.mesh().effort;
   MeshAttempt of_one_h = best_attempt(
       choice, effort, [&](double h) { return attempt_for_tets(h, make); },
       [this](const std::string& line) { say(line); });
-  if (of_one_h.is_right()) return of_one_h;
-  const double allowed = effort * backgrounds.expected_tets(domain_, choice.h);
+  const bool may_be_remade = n_attempts_ == 1 || effort > kDefaultEffort;
+  if (of_one_h.is_right() || !may_be_remade) return of_one_h;
+  const double allowed = (effort - n_attempts_) * backgrounds.expected_tets(domain_, choice.h);
   try {
     const std::optional<EdgeLength> sizes = backgrounds.grade(domain_, context_);
     if (sizes && backgrounds.expected_tets(domain_, sizes->h) <= allowed) {

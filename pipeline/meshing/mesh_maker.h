@@ -74,6 +74,7 @@ class MeshMaker {
   bool may_keep(const MeshAttempt& former, const ZeroSetChoice& pieces) const;
   MeshAttempt attempt(const SizedBackground& background, double h, const MeshAttempt* former);
   MeshAttempt attempt_for_tets(double h, const MakeBackground& make, const MeshAttempt* former = nullptr);
+  MeshAttempt search(BackgroundChoice& backgrounds, const EdgeLength& choice, const MakeBackground& make);
   MeshAttempt graded(BackgroundChoice& backgrounds, double h, const MakeBackground& make);
   void curve(MeshAttempt& a) const;
   void say(const std::string& line) const {
@@ -88,6 +89,7 @@ class MeshMaker {
   PartMesher* const ranks_;
   std::optional<std::pair<double, ZeroSetChoice>> pieces_;  ///< of psi cut for the h beside them
   int n_levels_ = 0;                                        ///< of psi then; 0: a formula
+  int n_attempts_ = 0;
   bool has_said_alone_ = false;
 };
 

@@ -298,6 +298,7 @@ Measurement measure(const Domain& domain, const TetMesh& mesh, const UmResult& r
   Measurement made;
   MeshMeasures& m = made.measures;
   if (domain.level_set) m.n_points = domain.cloud.points.size();
+  m.input = domain.facts;
   m.mesh = params.certificate ? *params.certificate : certify(input);
   m.coordinate_rounding_over_h = m.mesh.coordinate_rounding / m.mesh.h;
   set_reasons(m);
@@ -342,7 +343,6 @@ Measurement measure(const Domain& domain, const TetMesh& mesh, const UmResult& r
   m.resolution.double_positive_faces = result.double_positive_faces;
   if (params.thin) m.resolution.too_thin = in_model(*params.thin, domain.shift);
   if (params.sizes) m.sizes = sizes_report(mesh, faces, asked_sizes(*params.sizes, mesh.V, context));
-  m.is_faithful = m.reasons.empty() && m.places.empty();
   return made;
 }
 
@@ -354,7 +354,6 @@ MeshMeasures measures_of(MeshCertificate certificate, const Domain* domain, cons
     std::vector<MeshPlace> places = places_of(*domain, differences_of(m.mesh), m.mesh.h, context);
     m.places = report_on(places);
   }
-  m.is_faithful = m.reasons.empty() && m.places.empty();
   return m;
 }
 

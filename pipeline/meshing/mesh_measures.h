@@ -12,7 +12,7 @@
 
 namespace umtet {
 
-/// What is true of the corners of a mesh, and everywhere that it is not faithful to psi = 0.
+/// What is true of the corners of a mesh, and everywhere that it is not psi = 0.
 struct Measurement {
   MeshMeasures measures;
   std::vector<MeshPlace> places;  ///< all of them, in the order of measures.places.listed

@@ -82,11 +82,16 @@ std::string script_json(const Json& json) {
 
 std::string reason_list(const Certificate& certificate) {
   const std::vector<std::string>& accepted = certificate.verdict.accepted;
-  if (certificate.verdict.passes() && accepted.empty()) return "";
+  const std::vector<std::string>& defects = certificate.verdict.defects;
+  if (certificate.verdict.passes() && accepted.empty() && defects.empty()) return "";
   std::string out = "<ul class=\"reasons\">\n";
   for (const std::string& reason : certificate.verdict.reasons) out += "<li>" + html_text(reason) + "</li>\n";
   for (const std::string& what : accepted) out += "<li>Accepted: " + html_text(what) + "</li>\n";
-  if (certificate.remedy) out += "<li>Try " + html_text(*certificate.remedy) + "</li>\n";
+  for (const std::string& what : defects) out += "<li>Defect: " + html_text(what) + "</li>\n";
+  if (const std::optional<Blame>& blame = certificate.blame) {
+    out += "<li>To blame: " + html_text(blame->stage) + " (" + html_text(blame->number) + "). Try " +
+           html_text(blame->remedy) + ".</li>\n";
+  }
   return out + "</ul>";
 }
 
@@ -119,13 +124,11 @@ std::string check_list(const Certificate& c) {
   }
   const PlaceReport& places = c.measured.places;
   if (const std::size_t n = places.n(); n > 0) {
-    add(fmt::format("<a href=\"#places\">places where it is not faithful to ψ = 0: {}</a>", value("/places/n", n)),
-        std::all_of(places.kinds.begin(), places.kinds.end(), [](const auto& k) { return k.n == k.n_small; })
-            ? std::optional<bool>()
-            : false);
-  } else {
-    add("faithful to ψ = 0 everywhere", c.measured.is_faithful);
+    add(fmt::format("<a href=\"#places\">places where it is not ψ = 0: {}</a>", value("/places/n", n)),
+        c.verdict.fits_psi ? std::optional<bool>() : false);
   }
+  add("fits ψ", c.verdict.fits_psi);
+  if (c.measured.n_points) add("fits the input", c.verdict.fits_input);
   if (const std::optional<double>& gate = c.verdict.min_quality_gate) {
     add("min Q at least " + value("/gates/min_quality", gate, 6), mesh.quality.min >= *gate);
   } else {

@@ -103,11 +103,11 @@ std::string place_table(const Certificate& c) {
   const std::size_t n = places.n(), n_listed = places.listed.size();
   const std::string rest = n > n_listed ? fmt::format(" These are the worst {} of {}.", n_listed, n) : "";
   return fmt::format(
-      "<div class=\"table\" id=\"places\"><h2>Where the mesh is not faithful to ψ = 0</h2>\n<p>A place is small where "
-      "it is at most {} h off, or {} h of a thin part is lost, and ψ = 0 is finer there than {} h, which this h cannot "
+      "<div class=\"table\" id=\"places\"><h2>Where the mesh is not ψ = 0</h2>\n<p>A place is small, and the mesh passes, "
+      "where it is no deeper than h and no larger than {} h, or where ψ = 0 is finer than {} h, which this h cannot "
       "show.{}</p>\n<table>\n{}</table>"
       "</div>\n",
-      kSmallOff, kSmallLoss, kLeastEdgesAcross, rest, rows);
+      kSmallSize, kLeastEdgesAcross, rest, rows);
 }
 
 }  // namespace umtet

@@ -13,7 +13,7 @@ std::string hole_table(const Certificate& certificate);
 /// Where samples are off the mesh.
 std::string missed_table(const Certificate& certificate);
 
-/// Where the mesh is not faithful to psi = 0.
+/// Where the mesh is not psi = 0.
 std::string place_table(const Certificate& certificate);
 
 }  // namespace umtet

@@ -17,7 +17,7 @@ struct RunCost {
 struct RunPrediction {
   double h = 0;      ///< mean edge length of the background, model units
   RunCost expected;  ///< of one mesh
-  RunCost most;      ///< if it is not faithful and made again, as mesh.effort allows
+  RunCost most;      ///< if it is made again, as mesh.effort allows
 };
 
 /// By the rule of choose_edge_length(), with the thickness of the samples in place of that of psi, and by the volume

@@ -14,6 +14,34 @@ Json second_order_block(const std::optional<SecondOrderReport>& second) {
   return second ? to_json(*second) : Json(nullptr);
 }
 
+Json to_json(const InputFacts& facts) {
+  return {{"normals_given", facts.normals_given},
+          {"turned", facts.turned},
+          {"turned_by", facts.turned_by},
+          {"doubtful", facts.doubtful},
+          {"opposed", facts.opposed}};
+}
+
+InputFacts input_facts_from(const Json& json) {
+  return {.normals_given = json.at("normals_given"),
+          .turned = number_from(json.at("turned")),
+          .turned_by = json.at("turned_by"),
+          .doubtful = number_from(json.at("doubtful")),
+          .opposed = number_from(json.at("opposed"))};
+}
+
+Json to_json(const SearchReport& search) {
+  return {{"n_attempts", search.n_attempts},
+          {"h_is_given", search.h_is_given},
+          {"at_max_tets", search.at_max_tets}};
+}
+
+SearchReport search_from(const Json& json) {
+  return {.n_attempts = json.at("n_attempts"),
+          .h_is_given = json.at("h_is_given"),
+          .at_max_tets = json.at("at_max_tets")};
+}
+
 /// All that is measured up to the resolution.
 Json measured_blocks(const MeshMeasures& m) {
   Json json = {{"n_points", json_of(m.n_points)}};
@@ -23,8 +51,9 @@ Json measured_blocks(const MeshMeasures& m) {
   if (m.triangles) json["triangles"] = to_json(*m.triangles, m.mesh.h);
   json["resolution"] = to_json(m.resolution, m.mesh.h);
   if (m.sizes) json["sizes"] = to_json(*m.sizes);
+  if (m.input) json["input"] = to_json(*m.input);
+  if (m.search) json["search"] = to_json(*m.search);
   json["valid"] = m.is_valid;
-  json["faithful"] = m.is_faithful;
   json["places"] = to_json(m.places);
   return json;
 }
@@ -46,8 +75,9 @@ MeshMeasures measured_blocks_from(const Json& json) {
   if (json.contains("triangles")) m.triangles = triangle_distances_from(json.at("triangles"));
   m.resolution = resolution_from(json.at("resolution"));
   if (json.contains("sizes")) m.sizes = sizes_from(json.at("sizes"));
+  if (json.contains("input")) m.input = input_facts_from(json.at("input"));
+  if (json.contains("search")) m.search = search_from(json.at("search"));
   m.is_valid = json.at("valid");
-  m.is_faithful = json.at("faithful");
   m.places = places_from(json.at("places"));
   if (!json.contains("order")) return m;
   m.order = json.at("order");
@@ -61,8 +91,23 @@ Verdict verdict_from(const Json& json) {
           .volume_gap_gate = number_from(gates.at("volume_gap")),
           .strict = gates.at("strict"),
           .accept = gates.at("accept"),
+          .is_valid = json.at("valid"),
+          .fits_psi = json.at("fits_psi"),
+          .fits_input = json.at("fits_input"),
           .accepted = json.at("accepted"),
+          .defects = json.at("defects"),
+          .n_defects = json.at("n_defects"),
           .reasons = json.at("reasons")};
+}
+
+Json blame_json(const std::optional<Blame>& blame) {
+  if (!blame) return nullptr;
+  return {{"stage", blame->stage}, {"number", blame->number}, {"remedy", blame->remedy}};
+}
+
+std::optional<Blame> blame_from(const Json& json) {
+  if (json.is_null()) return std::nullopt;
+  return Blame{json.at("stage"), json.at("number"), json.at("remedy")};
 }
 
 Json to_json(const CertificateRun& run) {
@@ -104,7 +149,11 @@ Json to_json(const Verdict& v) {
             {"volume_gap", v.volume_gap_gate},
             {"strict", v.strict},
             {"accept", v.accept}}},
+          {"fits_psi", v.fits_psi},
+          {"fits_input", v.fits_input},
           {"verdict", v.word()},
+          {"n_defects", v.n_defects},
+          {"defects", v.defects},
           {"accepted", v.accepted},
           {"reasons", v.reasons}};
 }
@@ -136,7 +185,7 @@ Json to_json(const Certificate& c) {
   add_order(c.measured, json);
   json["n_tets_asked"] = json_of(c.n_tets_asked);
   json.update(to_json(c.verdict));
-  json["remedy"] = json_of(c.remedy);
+  json["blame"] = blame_json(c.blame);
   if (c.run) json["run"] = to_json(*c.run);
   return json;
 }
@@ -149,7 +198,7 @@ Certificate certificate_from(const Json& json) {
     c.measured = measured_blocks_from(json);
     c.n_tets_asked = optional_from<std::int64_t>(json.at("n_tets_asked"));
     c.verdict = verdict_from(json);
-    c.remedy = optional_from<std::string>(json.at("remedy"));
+    c.blame = blame_from(json.at("blame"));
     if (json.contains("run")) c.run = run_from(json.at("run"));
     return c;
   } catch (const Json::exception& e) {
@@ -167,7 +216,10 @@ Json to_json(const MeshCheck& check) {
   json["domain"] = to_json(check.support);
   json["valid"] = check.is_valid;
   json["places"] = check.places ? to_json(*check.places) : Json(nullptr);
+  json["fits_psi"] = check.places ? Json(check.verdict.fits_psi) : Json(nullptr);
   json["verdict"] = check.verdict.word();
+  json["n_defects"] = check.verdict.n_defects;
+  json["defects"] = check.verdict.defects;
   json["accepted"] = check.verdict.accepted;
   json["reasons"] = check.verdict.reasons;
   return json;

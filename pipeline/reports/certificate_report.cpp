@@ -6,7 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include "pipeline/reports/accepted_defects.h"
+#include "pipeline/reports/blame.h"
 #include "pipeline/reports/certificate_json.h"
+#include "pipeline/reports/input_judgement.h"
 #include "pipeline/reports/stage_reports.h"
 
 namespace umtet {
@@ -39,33 +42,10 @@ CertificateRun run_of(const CasePaths& paths, const StageRecord& mesh, std::size
   return run;
 }
 
-// Of h: sizes go down to edges of which the noise is .3 (kMostNoise), or halfway there.
-constexpr double kNoisy = .15;
-
-/// What to try next when a mesh has failed.
-std::string remedy_for(const Certificate& c) {
-  const double h = c.measured.mesh.h;
-  const std::optional<double>& gate = c.verdict.min_quality_gate;
-  if (c.verdict.reasons.size() == 1 && gate && c.measured.mesh.quality.min < *gate) {
-    return fmt::format("another --h (this was {:.4g}), which moves the worst tets, or a lower --min-quality", h);
-  }
-  if (const auto& cloud = c.measured.cloud; c.measured.sizes && cloud && cloud->noise.value_or(0) > kNoisy * h) {
-    return fmt::format(
-        "a larger --h-min (the smallest edges are {:.4g}, and the noise of the samples is {:.2g} of that), which shows "
-        "less of the noise",
-        h, *cloud->noise / h);
-  }
-  const std::optional<std::vector<ThinPlace>>& thin = c.measured.resolution.too_thin;
-  const std::string enough =
-      thin && !thin->empty() ? fmt::format(": {:.3g} shows what is thinnest", thin->front().h_needed) : "";
-  return fmt::format("a smaller --h (this was {:.4g}), which resolves more of the shape", h) + enough +
-         (c.measured.n_points ? "; where psi itself is wrong there, a finer --spacing" : "");
-}
-
-/// The places of a kind in words.
-std::string said_of(const PlaceReport::OfKind& k, const ZeroSetReport& domain, bool strict) {
+/// The places of a kind in words; small ones too if they count.
+std::string said_of(const PlaceReport::OfKind& k, const ZeroSetReport& domain, bool with_small) {
   const MeshPlace& worst = k.worst;
-  const std::size_t n = strict ? k.n : k.n - k.n_small;
+  const std::size_t n = with_small ? k.n : k.n - k.n_small;
   const std::string places = n == 1 ? "1 place" : fmt::format("{} places", n);
   const std::string at = fmt::format("({:.6g}, {:.6g}, {:.6g})", worst.where.x(), worst.where.y(), worst.where.z());
   const double off = worst.off_over_h;
@@ -87,13 +67,12 @@ std::string said_of(const PlaceReport::OfKind& k, const ZeroSetReport& domain, b
     case PlaceKind::Topology:
       return fmt::format(
           "psi = 0 has {} pieces (and {} dropped ones) of Euler characteristic {} on a grid of spacing {:.3g}, the "
-          "boundary of the mesh {} of {}: h is too large for this shape, most of all at {}",
+          "boundary of the mesh {} of {}; they differ most at {}",
           domain.components_kept, domain.components_dropped.size(), domain.euler_characteristic_of_kept_components,
           domain.counting_spacing, domain.components_meshed, domain.euler_characteristic_meshed, at);
     case PlaceKind::Missed:
       return fmt::format(
-          "samples of the surface are farther than h from the mesh at {}, the worst, {} samples at {}, {:.2g} h: h is "
-          "too large for what is there",
+          "psi = 0 passes by samples that are farther than h from the mesh at {}, the worst, {} samples at {}, {:.2g} h",
           places, worst.n, at, off);
   }
   return "";
@@ -105,24 +84,49 @@ std::vector<std::string> failures(const SecondOrderReport& report) {
   return failures(report.certificate, report.repairs ? report.repairs->n_mid_sides_put_back : 0);
 }
 
+bool fits_psi(const MeshMeasures& m) {
+  const auto is_settled = [](const PlaceReport::OfKind& k) { return k.n == k.n_small; };
+  return m.is_valid && m.reasons.empty() && std::all_of(m.places.kinds.begin(), m.places.kinds.end(), is_settled);
+}
+
+std::string Verdict::word() const {
+  if (!passes()) return "fail";
+  if (n_defects == 0) return "pass";
+  return fmt::format("pass with {} defect{} named", n_defects, n_defects == 1 ? "" : "s");
+}
+
 Verdict judge_shape(const MeshMeasures& measured, bool strict, const std::string& accept) {
   Verdict verdict;
   verdict.reasons = measured.reasons;
   verdict.strict = strict;
   verdict.accept = accept;
-  const std::vector<AcceptedPlaces> accepted = parse_accepted_places(accept);
+  verdict.is_valid = measured.is_valid;
+  verdict.fits_psi = fits_psi(measured);
+  const std::vector<AcceptedDefects> accepted = parse_accepted_defects(accept);
   for (const PlaceReport::OfKind& k : measured.places.kinds) {
-    if (k.n == k.n_small && !strict) continue;
-    const bool is_accepted = std::any_of(accepted.begin(), accepted.end(), [&](const AcceptedPlaces& a) {
-      return a.kind == k.kind && (!a.most_off_over_h || k.max_off_over_h <= *a.most_off_over_h);
-    });
-    (is_accepted ? verdict.accepted : verdict.reasons).push_back(said_of(k, measured.domain, strict));
+    const bool is_defect = k.n == k.n_small && !strict;
+    if (is_defect) verdict.n_defects += k.n;
+    const bool passes = !is_defect && is_accepted(accepted, to_string(k.kind), k.max_off_over_h);
+    (is_defect ? verdict.defects : passes ? verdict.accepted : verdict.reasons)
+        .push_back(said_of(k, measured.domain, strict || is_defect));
   }
   return verdict;
 }
 
 Verdict judge(const MeshMeasures& measured, const Parameters& parameters) {
-  Verdict verdict = judge_shape(measured, parameters.output().strict, parameters.output().accept);
+  const bool strict = parameters.output().strict;
+  const std::string& accept = parameters.output().accept;
+  Verdict verdict = judge_shape(measured, strict, accept);
+  const std::vector<AcceptedDefects> accepted = parse_accepted_defects(accept);
+  for (const InputDefect& defect : input_defects(measured)) {
+    const bool is_named = defect.is_small && !strict;
+    if (is_named) ++verdict.n_defects;
+    if (!defect.is_small) verdict.fits_input = false;
+    const bool passes = !is_named && is_accepted(accepted, to_string(defect.kind), defect.amount);
+    (is_named ? verdict.defects : passes ? verdict.accepted : verdict.reasons).push_back(defect.what);
+  }
+  // A formula is its own input.
+  if (!measured.n_points) verdict.fits_input = verdict.fits_input && verdict.fits_psi;
   const double gate = parameters.output().min_quality;
   if (!(gate > 0)) return verdict;
   verdict.min_quality_gate = gate;
@@ -139,7 +143,7 @@ Certificate verdict_on(MeshMeasures measured, const Parameters& parameters) {
   if (const std::int64_t asked = parameters.mesh().tets; asked > 0) c.n_tets_asked = asked;
   c.verdict = judge(measured, parameters);
   c.measured = std::move(measured);
-  if (!c.verdict.passes()) c.remedy = remedy_for(c);
+  if (!c.verdict.passes()) c.blame = blame_for(c);
   return c;
 }
 

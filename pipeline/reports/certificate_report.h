@@ -55,8 +55,27 @@ struct SampleDistances {
   double p99 = 0;            ///< 99 % of the samples are nearer
   double missed_beyond = 0;  ///< neither noise nor flat faces explain a distance above it: missed_samples.h
   std::optional<std::size_t> n_merged = {};  ///< how many samples the cloud has been merged of
+  std::size_t n_beyond_h = 0;          ///< samples farther than h from the mesh
+  double most_over_h = 0;              ///< largest distance, in the h of its place
+  Vec3 most_at = Vec3::Zero();         ///< the sample with that distance; model coordinates
   std::size_t n_missed_places = 0;
   std::vector<MissedPlace> missed{};  ///< the farthest of them, farthest first
+};
+
+/// What was done to a cloud, or guessed, before psi was fitted: where a wrong body may come from. Shares of its points.
+struct InputFacts {
+  bool normals_given = false;  ///< they came with the cloud; else they were estimated
+  double turned = 0;           ///< given normals that were turned, or estimated ones that something else overruled
+  std::string turned_by;       ///< "neighbours", "winding number", "psi"; empty where none were turned
+  double doubtful = 0;         ///< normals whose outward side is a guess
+  double opposed = 0;          ///< normals that point against grad psi
+};
+
+/// How h was found.
+struct SearchReport {
+  int n_attempts = 1;       ///< meshes that were made or tried
+  bool h_is_given = false;  ///< by the user, as a length or a number of tets
+  bool at_max_tets = false;  ///< mesh.max_tets kept h larger than the body needs
 };
 
 /// Distances between the boundary of the mesh and the triangles that were given, as far as these bound the body.
@@ -109,24 +128,41 @@ struct MeshMeasures {
   std::optional<SizesReport> sizes;   ///< none where the mesh has one h
   std::optional<std::int64_t> order;  ///< 1 or 2; none where only the corners were measured
   std::optional<SecondOrderReport> second_order;
+  std::optional<InputFacts> input;      ///< none where psi is not fitted to samples
+  std::optional<SearchReport> search;   ///< none of a mesh that was made elsewhere
   bool is_valid = true;  ///< tets positive, boundary the closed manifold that it is to be, and not through itself
-  /// Valid, and psi = 0 as far as h can show it: on it, not folded, nothing lost, of its topology, near the samples.
-  bool is_faithful = true;
-  PlaceReport places;                ///< where it is not faithful
+  PlaceReport places;                ///< where it is not psi = 0
   std::vector<std::string> reasons;  ///< what is wrong with it besides
+};
+
+/// The second of the three judgements: the mesh is psi = 0 as far as h can show it, on it, not folded, nothing lost, of
+/// its topology. Small places do not count.
+bool fits_psi(const MeshMeasures& measured);
+
+/// The stage to blame for a mesh that fails, and what helps.
+struct Blame {
+  std::string stage;   ///< "input", "normals", "labels", "level set", "h", "max_tets", "mesh"
+  std::string number;  ///< what was measured there, in words
+  std::string remedy;  ///< what to try, with its flag
 };
 
 /// What a mesh is held against, and what came of it.
 struct Verdict {
-  std::optional<double> min_quality_gate;  ///< the least mean ratio that will do, if one was asked for
-  double volume_gap_gate = kMostGap;       ///< the most of gap_over_volume that will do
-  bool strict = false;                     ///< small places will not do
-  std::string accept;                      ///< the kinds of places that will, as the user gave them
-  std::vector<std::string> accepted;       ///< what for that reason is none of `reasons`
+  std::optional<double> min_quality_gate;  ///< the least mean ratio that passes, if the user set one
+  double volume_gap_gate = kMostGap;       ///< the largest gap_over_volume that passes
+  bool strict = false;                     ///< a named defect fails, too
+  std::string accept;                      ///< the kinds of defects that pass, as the user gave them
+  bool is_valid = true;                    ///< first judgement: proved
+  bool fits_psi = true;                    ///< second: fits_psi()
+  bool fits_input = true;                  ///< third: input_judgement.h
+  std::vector<std::string> accepted;       ///< what passes because of `accept`
+  std::vector<std::string> defects;        ///< what is small, and passes
+  std::size_t n_defects = 0;               ///< how many places and numbers these are
   std::vector<std::string> reasons;        ///< why it fails
 
   bool passes() const { return reasons.empty(); }
-  const char* word() const { return passes() ? "pass" : "fail"; }
+  /// "pass", "pass with N defects named" or "fail".
+  std::string word() const;
 };
 
 /// Times of all stages that made a mesh.
@@ -148,7 +184,7 @@ struct Certificate {
   MeshMeasures measured;
   std::optional<std::int64_t> n_tets_asked;
   Verdict verdict;
-  std::optional<std::string> remedy;  ///< what to try when it fails
+  std::optional<Blame> blame;         ///< none where it passes
   std::optional<CertificateRun> run;  ///< none for a mesh that never was in a case
 };
 
@@ -167,10 +203,10 @@ struct MeshCheck {
 /// output.units; none where none were given.
 std::optional<std::string> units_of(const Parameters& parameters);
 
-/// The reasons of what was measured: its own, one for each kind of places that are neither small nor accepted
-/// (output.strict, output.accept), and that of a broken output.min_quality.
+/// The three judgements. It fails by the reasons of what was measured, by places and differences from the input that are
+/// neither small nor accepted (output.strict, output.accept), and by a broken output.min_quality.
 Verdict judge(const MeshMeasures& measured, const Parameters& parameters);
-/// The same without the gate on quality. @param accept  as output.accept has it
+/// The first two judgements: whether the mesh is what h can show of psi. @param accept  as output.accept has it
 Verdict judge_shape(const MeshMeasures& measured, bool strict = false, const std::string& accept = "");
 
 /// What was measured with its gates and verdict; without `run`.

@@ -22,14 +22,20 @@ std::string thousands(std::size_t n) {
   return s;
 }
 
-/// @param faithful  none where there is no psi to compare with
-std::string verdict_lines(const Verdict& verdict, bool valid, std::optional<bool> faithful,
-                          const std::optional<std::string>& remedy) {
-  const char* to_psi = !faithful ? "" : *faithful ? ", faithful" : ", not faithful";
-  std::string out = fmt::format("verdict   {} ({}{})\n", verdict.word(), valid ? "valid" : "NOT valid", to_psi);
+std::string verdict_lines(const Verdict& verdict, const std::string& judgements, const std::optional<Blame>& blame) {
+  std::string out = fmt::format("verdict   {} ({})\n", verdict.word(), judgements);
   for (const std::string& what : verdict.accepted) out += fmt::format("          accepted: {}\n", what);
+  for (const std::string& what : verdict.defects) out += fmt::format("          defect: {}\n", what);
   for (const std::string& reason : verdict.reasons) out += fmt::format("          - {}\n", reason);
-  if (remedy) out += fmt::format("          try {}\n", *remedy);
+  if (blame) out += fmt::format("blame     {}: {}; try {}\n", blame->stage, blame->number, blame->remedy);
+  return out;
+}
+
+/// The three judgements. A formula is its own input, which makes one of the last two.
+std::string judgements(const Verdict& v, bool has_input) {
+  std::string out = v.is_valid ? "valid" : "NOT valid";
+  out += v.fits_psi ? ", fits psi" : ", does NOT fit psi";
+  if (has_input) out += v.fits_input ? ", fits the input" : ", does NOT fit the input";
   return out;
 }
 
@@ -157,7 +163,7 @@ std::string thin_line(const ResolutionReport& r) {
                      n == 1 ? " is" : "s are", worst.is_gap ? "gap" : "body", worst.thickness, worst.h_needed);
 }
 
-/// Where the mesh is not faithful to psi = 0; empty where it is.
+/// Where the mesh is not psi = 0; empty where it is everywhere.
 std::string places_line(const PlaceReport& places) {
   if (places.empty()) return "";
   std::vector<std::string> kinds;
@@ -167,7 +173,7 @@ std::string places_line(const PlaceReport& places) {
   const std::size_t n = places.n();
   std::size_t n_small = 0;
   for (const PlaceReport::OfKind& k : places.kinds) n_small += k.n_small;
-  return fmt::format("places    {} where the mesh is not faithful to psi = 0, {} of them finer than h can show: {}\n",
+  return fmt::format("places    {} where the mesh is not psi = 0, {} of them small: {}\n",
                      n, n_small, fmt::join(kinds, ", "));
 }
 
@@ -185,15 +191,15 @@ std::string suffix(const std::optional<std::string>& units) { return units ? " "
 std::string summary(const Certificate& c) {
   const std::string unit = suffix(c.units);
   const MeshMeasures& m = c.measured;
-  return verdict_lines(c.verdict, m.is_valid, m.is_faithful, c.remedy) + mesh_lines(m.mesh, unit, c.n_tets_asked) +
+  return verdict_lines(c.verdict, judgements(c.verdict, m.n_points.has_value()), c.blame) + mesh_lines(m.mesh, unit, c.n_tets_asked) +
          sizes_line(m.sizes, unit) + second_order_lines(m.second_order) + domain_line(m.domain) +
          holes_line(m.domain.support, unit) + cloud_line(m, unit) + triangles_line(m, unit) + missed_line(m, unit) +
          thin_line(m.resolution) + places_line(m.places) + time_line(c.run);
 }
 
 std::string summary(const MeshCheck& c) {
-  const std::optional<bool> faithful = c.places ? std::optional(c.verdict.passes() && c.places->empty()) : std::nullopt;
-  return verdict_lines(c.verdict, c.is_valid, faithful, {}) + mesh_lines(c.mesh, suffix(c.units), {}) +
+  const std::string judged = c.places ? judgements(c.verdict, false) : c.is_valid ? "valid" : "NOT valid";
+  return verdict_lines(c.verdict, judged, {}) + mesh_lines(c.mesh, suffix(c.units), {}) +
          second_order_lines(c.second_order) + holes_line(c.support, suffix(c.units)) +
          (c.places ? places_line(*c.places) : "");
 }

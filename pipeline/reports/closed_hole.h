@@ -26,6 +26,10 @@ struct SupportReport {
   double unsupported_area_fraction = 0;  ///< of the boundary
   std::size_t n_closed_holes = 0;
   std::vector<ClosedHole> closed_holes{};  ///< the largest of them, largest first
+  /// Handles of the boundary that are there because of what was closed: its genus, less the genus of what is left when
+  /// all closed holes are cut out and each rim gets a disc.
+  int n_guessed_handles = 0;
+  std::size_t n_guessed_pieces = 0;  ///< pieces of the boundary that no sample is near
 };
 
 }  // namespace umtet

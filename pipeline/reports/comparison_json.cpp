@@ -14,9 +14,10 @@ std::optional<SupportReport> support_from(const Json& json) {
   if (json.at("unsupported_area_fraction").is_null()) return std::nullopt;
   SupportReport support;
   support.unsupported_area_fraction = number_from(json.at("unsupported_area_fraction"));
-  if (!json.contains("support_radius")) return support;  // written before holes were looked for: there are none
   support.radius = number_from(json.at("support_radius"));
   support.n_closed_holes = json.at("n_closed_holes");
+  support.n_guessed_handles = json.at("n_guessed_handles");
+  support.n_guessed_pieces = json.at("n_guessed_pieces");
   support.closed_holes = closed_holes_from(json.at("closed_holes"));
   return support;
 }
@@ -39,11 +40,15 @@ Json to_json(const std::optional<SupportReport>& support) {
     return {{"unsupported_area_fraction", nullptr},
             {"support_radius", nullptr},
             {"n_closed_holes", nullptr},
+            {"n_guessed_handles", nullptr},
+            {"n_guessed_pieces", nullptr},
             {"closed_holes", nullptr}};
   }
   return {{"unsupported_area_fraction", support->unsupported_area_fraction},
           {"support_radius", support->radius},
           {"n_closed_holes", support->n_closed_holes},
+          {"n_guessed_handles", support->n_guessed_handles},
+          {"n_guessed_pieces", support->n_guessed_pieces},
           {"closed_holes", to_json(support->closed_holes)}};
 }
 
@@ -91,6 +96,9 @@ Json to_json(const SampleDistances& d, double h) {
                {"max_distance_over_h", d.max / h},
                {"p99_distance_over_h", d.p99 / h},
                {"missed_beyond", d.missed_beyond},
+               {"n_beyond_h", d.n_beyond_h},
+               {"most_over_h", d.most_over_h},
+               {"most_at", json_of(d.most_at)},
                {"n_missed_places", d.n_missed_places},
                {"missed_places", to_json(d.missed)}};
   if (d.n_merged) json["n_merged"] = *d.n_merged;
@@ -103,8 +111,10 @@ SampleDistances distances_from(const Json& json) {
                     .max = number_from(json.at("max_distance")),
                     .p99 = number_from(json.at("p99_distance"))};
   if (json.contains("n_merged")) d.n_merged = json.at("n_merged");
-  if (!json.contains("missed_beyond")) return d;  // written before they were looked for
   d.missed_beyond = number_from(json.at("missed_beyond"));
+  d.n_beyond_h = json.at("n_beyond_h");
+  d.most_over_h = number_from(json.at("most_over_h"));
+  d.most_at = vector_from(json.at("most_at"));
   d.n_missed_places = json.at("n_missed_places");
   d.missed = missed_places_from(json.at("missed_places"));
   return d;

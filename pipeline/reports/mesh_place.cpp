@@ -1,14 +1,8 @@
 #include "pipeline/reports/mesh_place.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <sstream>
 #include <tuple>
-
-#include "pipeline/case/exit_code.h"
 
 namespace umtet {
 namespace {
@@ -30,8 +24,10 @@ std::optional<PlaceKind> place_kind_of(const std::string& word) {
 }
 
 bool is_small(const MeshPlace& place) {
-  const double most = place.kind == PlaceKind::Thin ? kSmallLoss : kSmallOff;
-  return place.off_over_h <= most && place.feature_over_h && *place.feature_over_h < kLeastEdgesAcross;
+  if (place.off_over_h > kSmallLoss) return false;
+  const bool is_finer_than_h = place.feature_over_h && *place.feature_over_h < kLeastEdgesAcross;
+  if (is_finer_than_h && (place.kind == PlaceKind::Thin || place.off_over_h <= kSmallOff)) return true;
+  return place.kind != PlaceKind::Topology && place.size_over_h <= kSmallSize;
 }
 
 std::size_t PlaceReport::n() const {
@@ -57,32 +53,6 @@ PlaceReport report_on(std::vector<MeshPlace>& places) {
   const auto n_listed = static_cast<std::ptrdiff_t>(std::min(places.size(), kListedPlaces));
   report.listed.assign(places.begin(), places.begin() + n_listed);
   return report;
-}
-
-std::vector<AcceptedPlaces> parse_accepted_places(const std::string& text) {
-  std::vector<AcceptedPlaces> accepted;
-  std::istringstream words(text);
-  for (std::string word; std::getline(words, word, ',');) {
-    const std::size_t colon = word.find(':');
-    const std::optional<PlaceKind> kind = place_kind_of(word.substr(0, colon));
-    if (!kind) {
-      throw UsageError(fmt::format("--accept: '{}' is no kind of place; there are {}", word.substr(0, colon),
-                                   fmt::join(kWords, ", ")));
-    }
-    AcceptedPlaces of_kind{*kind, std::nullopt};
-    if (colon != std::string::npos) {
-      double most = 0;
-      const char *begin = word.data() + colon + 1, *end = word.data() + word.size();
-      const auto [rest, error] = std::from_chars(begin, end, most);
-      if (error != std::errc() || rest != end || !(most >= 0)) {
-        throw UsageError(
-            fmt::format("--accept: '{}' after '{}:' is no number of h", word.substr(colon + 1), to_string(*kind)));
-      }
-      of_kind.most_off_over_h = most;
-    }
-    accepted.push_back(of_kind);
-  }
-  return accepted;
 }
 
 }  // namespace umtet

@@ -25,7 +25,7 @@ const char* to_string(PlaceKind kind);
 /// \return none for a word that is no kind
 std::optional<PlaceKind> place_kind_of(const std::string& word);
 
-/// A place where a mesh is not faithful to psi = 0.
+/// A place where a mesh is not psi = 0.
 struct MeshPlace {
   PlaceKind kind = PlaceKind::Off;
   Vec3 where = Vec3::Zero();  ///< where it is farthest off; model coordinates
@@ -41,13 +41,17 @@ struct MeshPlace {
 /// A mesh of edge length h shows what is this many edges thick; thinner parts may be missing from it.
 inline constexpr double kLeastEdgesAcross = 1.25;
 
-/// The mesh may be this far off, in h, at a small place ...
+/// Where psi = 0 is finer than h can show, a mesh of this h may be this far off, in h, however large the place is ...
 inline constexpr double kSmallOff = .5;
-/// ... and the end of a thin part may be missing as far as that: samples may be as far off, too.
+/// ... and the end of a thin part may be missing as far as this. Elsewhere no small place is deeper ...
 inline constexpr double kSmallLoss = 1;
+/// ... or larger, as the diagonal of a box in h: the faces around one vertex are 2 h across, and the box around a disc
+/// of that diameter has a diagonal of 2 sqrt(2) h at most.
+inline constexpr double kSmallSize = 2.83;
 
-/// At most kSmallOff h off, or kSmallLoss of what is thin, and psi = 0 is finer there than h can show: no mesh of this
-/// h can be asked for more.
+/// A small place is a defect that is named, and the mesh passes. It is no deeper than h and no larger than the faces
+/// around one vertex, or psi = 0 is finer there than h can show. A difference in topology has no size: only the second
+/// makes it small.
 bool is_small(const MeshPlace& place);
 
 /// The places of a mesh, as a document has them.
@@ -71,14 +75,5 @@ inline constexpr std::size_t kListedPlaces = 100;
 
 /// Sorts the places as they are to be listed.
 PlaceReport report_on(std::vector<MeshPlace>& places);
-
-/// What a user accepts of a kind of places.
-struct AcceptedPlaces {
-  PlaceKind kind;
-  std::optional<double> most_off_over_h;  ///< none: however far off
-};
-
-/// Reads "folded,off:0.2". \throw UsageError naming the word
-std::vector<AcceptedPlaces> parse_accepted_places(const std::string& text);
 
 }  // namespace umtet

@@ -124,7 +124,7 @@ TEST(Pcl, ABallIsMeshedWithItsCertificate) {
   int n_calls = 0;
   options.progress = [&](const char*, double) { return ++n_calls > 0; };
   const CloudMesh mesh = mesh_cloud(from_pcl(sphere<pcl::PointNormal>(3000)), options);
-  EXPECT_TRUE(mesh.is_valid && mesh.is_faithful && mesh.passes);
+  EXPECT_TRUE(mesh.is_valid && mesh.fits_psi && mesh.fits_input && mesh.passes);
   EXPECT_EQ(mesh.h, .15);
   EXPECT_GT(mesh.min_quality, .5);
   EXPECT_GT(n_calls, 2);

@@ -78,7 +78,7 @@ Outcome outcome_of(const Body& body) {
   o.made = a.made();
   if (!o.made) return o;
   o.passes = a.is_right();
-  o.faithful = a.measured.is_faithful;
+  o.faithful = fits_psi(a.measured) && a.measured.places.empty();
   o.valid = a.measured.is_valid;
   o.n_places = a.places.size();
   const MeshCertificate::Boundary& boundary = a.measured.mesh.boundary;

@@ -15,9 +15,11 @@ TEST_F(Program, WhatIsTooThinForAGivenHIsAMeshThatFailsAndNamesThePlace) {
   EXPECT_EQ(c["verdict"], "fail");
   EXPECT_EQ(c["boundary"]["embedded"], true);
   EXPECT_EQ(c["valid"], true);
-  EXPECT_EQ(c["faithful"], false);
+  EXPECT_EQ(c["fits_psi"], false);
+  EXPECT_EQ(c["fits_input"], false);
   EXPECT_NE(c["reasons"].dump().find("lacks what is thin"), std::string::npos) << c["reasons"];
-  EXPECT_NE(c["remedy"].get<std::string>().find("shows what is thinnest"), std::string::npos) << c["remedy"];
+  EXPECT_EQ(c["blame"]["stage"], "h") << c["blame"];
+  EXPECT_EQ(c["blame"]["remedy"].get<std::string>().find("--h "), 0u) << c["blame"];
   ASSERT_EQ(c["resolution"]["too_thin"].size(), 1u);
   const Json& place = c["resolution"]["too_thin"][0];
   EXPECT_EQ(place["kind"], "body");
@@ -59,7 +61,7 @@ TEST_F(Program, AMeshFarFromTheSamplesIsNotRight) {
   const Result r = run("run " + std::string(UMTET_SOURCE_DIR) + "/data/clouds/bird.ply --h 1.2 -o bird --json");
   EXPECT_EQ(r.code, 6) << r.err;
   const std::string reasons = Json::parse(r.out)["certificate"]["reasons"].dump();
-  EXPECT_NE(reasons.find("samples of the surface are farther than h from the mesh"), std::string::npos) << reasons;
+  EXPECT_NE(reasons.find("samples that are farther than h from the mesh"), std::string::npos) << reasons;
 }
 
 TEST_F(Program, AnAutomaticHGoesAsLowAsMaxTetsAllows) {

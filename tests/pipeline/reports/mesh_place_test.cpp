@@ -3,13 +3,15 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/case/exit_code.h"
+#include "pipeline/reports/accepted_defects.h"
 #include "pipeline/reports/certificate_report.h"
 
 namespace umtet {
 namespace {
 
-MeshPlace place(PlaceKind kind, double off, std::optional<double> feature = .5) {
-  return {.kind = kind, .off_over_h = off, .feature_over_h = feature};
+/// A place larger than a few faces, unless its size is given.
+MeshPlace place(PlaceKind kind, double off, std::optional<double> feature = .5, double size = 10) {
+  return {.kind = kind, .off_over_h = off, .size_over_h = size, .feature_over_h = feature};
 }
 
 TEST(MeshPlace, IsSmallWhereItIsNearAndFinerThanHCanShow) {
@@ -19,6 +21,15 @@ TEST(MeshPlace, IsSmallWhereItIsNearAndFinerThanHCanShow) {
   EXPECT_FALSE(is_small(place(PlaceKind::Thin, 1.01, 1.2)));
   EXPECT_FALSE(is_small(place(PlaceKind::Folded, 0, 1.25)));
   EXPECT_FALSE(is_small(place(PlaceKind::Folded, 0, std::nullopt)));  // nothing explains it
+}
+
+TEST(MeshPlace, IsSmallWhereItIsNoDeeperThanHAndNoLargerThanAFewFaces) {
+  for (const PlaceKind kind : {PlaceKind::Folded, PlaceKind::Off, PlaceKind::Filled, PlaceKind::Cut, PlaceKind::Thin}) {
+    EXPECT_TRUE(is_small(place(kind, 1, std::nullopt, kSmallSize))) << to_string(kind);
+    EXPECT_FALSE(is_small(place(kind, 1.01, std::nullopt, kSmallSize))) << to_string(kind);
+    EXPECT_FALSE(is_small(place(kind, 1, std::nullopt, kSmallSize + .01))) << to_string(kind);
+  }
+  EXPECT_FALSE(is_small(place(PlaceKind::Topology, .1, std::nullopt, 0))) << "a handle is no matter of size";
 }
 
 TEST(MeshPlace, KindsAreReadAsTheyAreWritten) {
@@ -45,23 +56,27 @@ TEST(MeshPlace, AreListedWorstFirstAndCounted) {
   EXPECT_EQ(report.kinds[2].max_off_over_h, .4);
 }
 
-TEST(AcceptedPlaces, AreKindsAndHowFarOff) {
-  const auto accepted = parse_accepted_places("thin,off:0.2");
-  ASSERT_EQ(accepted.size(), 2u);
-  EXPECT_EQ(accepted[0].kind, PlaceKind::Thin);
-  EXPECT_FALSE(accepted[0].most_off_over_h);
-  EXPECT_EQ(accepted[1].most_off_over_h, .2);
-  EXPECT_TRUE(parse_accepted_places("").empty());
+TEST(AcceptedDefects, AreKindsAndHowMuchOfThem) {
+  const auto accepted = parse_accepted_defects("thin,off:0.2,guessed:.6");
+  ASSERT_EQ(accepted.size(), 3u);
+  EXPECT_EQ(accepted[0].kind, "thin");
+  EXPECT_FALSE(accepted[0].most);
+  EXPECT_EQ(accepted[1].most, .2);
+  EXPECT_TRUE(is_accepted(accepted, "off", .2));
+  EXPECT_FALSE(is_accepted(accepted, "off", .21));
+  EXPECT_FALSE(is_accepted(accepted, "folded", 0));
+  EXPECT_TRUE(parse_accepted_defects("").empty());
   for (const char* bad : {"folds", "off:", "off:x", "off:-1", "off:0.2h", "off,,thin", "off:nan"}) {
-    EXPECT_THROW(parse_accepted_places(bad), UsageError) << bad;
+    EXPECT_THROW(parse_accepted_defects(bad), UsageError) << bad;
   }
 }
 
-TEST(Judge, OverlooksSmallPlacesUnlessItIsStrictAndWhatIsAccepted) {
+TEST(Judge, NamesSmallPlacesUnlessItIsStrictAndTakesWhatIsAccepted) {
   MeshMeasures m;
   std::vector<MeshPlace> places = {place(PlaceKind::Folded, .1)};
   m.places = report_on(places);
-  EXPECT_TRUE(judge_shape(m).passes());
+  EXPECT_EQ(judge_shape(m).word(), "pass with 1 defect named");
+  EXPECT_TRUE(judge_shape(m).fits_psi);
   EXPECT_FALSE(judge_shape(m, true).passes());
   EXPECT_TRUE(judge_shape(m, true, "folded").passes());
   EXPECT_EQ(judge_shape(m, true, "folded:.1").accepted.size(), 1u);
@@ -69,7 +84,10 @@ TEST(Judge, OverlooksSmallPlacesUnlessItIsStrictAndWhatIsAccepted) {
   EXPECT_FALSE(judge_shape(m, true, "off").passes());
   places.push_back(place(PlaceKind::Off, .6));
   m.places = report_on(places);
+  EXPECT_EQ(judge_shape(m).word(), "fail");
+  EXPECT_FALSE(judge_shape(m).fits_psi);
   EXPECT_EQ(judge_shape(m).reasons.size(), 1u);
+  EXPECT_EQ(judge_shape(m).defects.size(), 1u);
   EXPECT_TRUE(judge_shape(m, false, "off").passes());
   m.reasons = {"a tet is inverted"};
   EXPECT_FALSE(judge_shape(m, false, "off").passes());
