@@ -75,8 +75,9 @@ CommandParser::CommandParser() {
 
   CLI::App& run = add_command("run", make_run, "All stages; those whose record matches are not run again");
   add_stage_flags(run);
-  run.add_option("CLOUD", in_.input,
-                 "points: .ply, .pcd, text (.xyz, .csv ...); triangles: .stl, .obj, .off, .ply; or a case, to resume it");
+  run.add_option(
+      "CLOUD", in_.input,
+      "points: .ply, .pcd, text (.xyz, .csv ...); triangles: .stl, .obj, .off, .ply; or a case, to resume it");
   run.add_option("--from", in_.from, "first stage that may run: cloud, level-set, mesh (default cloud)");
   run.add_option("--until", in_.until, "last stage to run (default mesh)");
   add_formats(run, "--export");
@@ -115,7 +116,8 @@ CommandParser::CommandParser() {
 
   CLI::App& inspect =
       add_command("inspect", make_inspect, "What is in a cloud, and what is likely to go wrong with it");
-  inspect.add_option("CLOUD", in_.input, "points: .ply, .pcd, text (.xyz, .csv ...); triangles: .stl, .obj, .off, .ply")
+  inspect
+      .add_option("CLOUD", in_.input, "points: .ply, .pcd, text (.xyz, .csv ...); triangles: .stl, .obj, .off, .ply")
       ->required();
   add_parameter_sources(inspect);
   for (const ParamField& f : params_fields()) {  // how a text is read, and what the prediction follows

@@ -66,6 +66,7 @@ fs::path default_case(const fs::path& source) {
   fs::path stem = source.stem();
   if (source.extension() == ".gz") stem = stem.stem();  // mask.nii.gz
   const auto refuse = [](const std::string& why) { throw UsageError("-o CASE is missing: " + why); };
+  if (source.empty()) refuse("no file has been given");
   if (stem.empty() || stem.string().front() == '.') refuse(source.string() + " has no name to take for it");
   std::error_code unknown;
   if (!fs::exists(stem, unknown)) return stem;

@@ -199,8 +199,8 @@ std::string problem_of_columns(const std::string& columns) {
   std::vector<std::string> names = detail::told_columns(columns);
   if (!detail::has_axes(names)) return "x, y and z must be among them";
   std::sort(names.begin(), names.end());
-  const auto twice = std::adjacent_find(names.begin(), names.end(),
-                                        [](const auto& a, const auto& b) { return !a.empty() && a == b; });
+  const auto twice =
+      std::adjacent_find(names.begin(), names.end(), [](const auto& a, const auto& b) { return !a.empty() && a == b; });
   return twice == names.end() ? "" : *twice + " is there twice";
 }
 

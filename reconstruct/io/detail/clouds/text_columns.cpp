@@ -239,12 +239,15 @@ std::string column_name(std::string_view in_header) {
   const std::string key = lower(name);
   // Of ParaView "Points:0", of its older exports "Points_0", of geodesy "Easting", of others as their names say.
   static constexpr std::pair<const char*, std::array<const char*, 12>> kNames[] = {
-      {"x", {"x", "points:0", "points_0", "points_x", "point_x", "pos_x", "position_x", "x_coord", "coord_x", "xcoord",
-             "x_coordinate", "easting"}},
-      {"y", {"y", "points:1", "points_1", "points_y", "point_y", "pos_y", "position_y", "y_coord", "coord_y", "ycoord",
-             "y_coordinate", "northing"}},
-      {"z", {"z", "points:2", "points_2", "points_z", "point_z", "pos_z", "position_z", "z_coord", "coord_z", "zcoord",
-             "z_coordinate", "elevation"}},
+      {"x",
+       {"x", "points:0", "points_0", "points_x", "point_x", "pos_x", "position_x", "x_coord", "coord_x", "xcoord",
+        "x_coordinate", "easting"}},
+      {"y",
+       {"y", "points:1", "points_1", "points_y", "point_y", "pos_y", "position_y", "y_coord", "coord_y", "ycoord",
+        "y_coordinate", "northing"}},
+      {"z",
+       {"z", "points:2", "points_2", "points_z", "point_z", "pos_z", "position_z", "z_coord", "coord_z", "zcoord",
+        "z_coordinate", "elevation"}},
       {"nx", {"nx", "normals:0", "normals_0", "normals_x", "normal_x", "normalx", "n_x", "normal:0", "xn"}},
       {"ny", {"ny", "normals:1", "normals_1", "normals_y", "normal_y", "normaly", "n_y", "normal:1", "yn"}},
       {"nz", {"nz", "normals:2", "normals_2", "normals_z", "normal_z", "normalz", "n_z", "normal:2", "zn"}},
@@ -274,8 +277,7 @@ TextColumns columns_by_name(std::vector<std::string> names, const SampleRows& ro
   };
   const std::array<std::size_t, 3> rgb = {place("red"), place("green"), place("blue")};
   if (*std::max_element(rgb.begin(), rgb.end()) < names.size()) {
-    const double bytes =
-        bytes_per_unit({values_of(rows, rgb[0]), values_of(rows, rgb[1]), values_of(rows, rgb[2])});
+    const double bytes = bytes_per_unit({values_of(rows, rgb[0]), values_of(rows, rgb[1]), values_of(rows, rgb[2])});
     columns.bytes_per_unit = bytes > 0 ? bytes : 1;
     std::replace_if(
         names.begin(), names.end(), [](const std::string& name) { return lower(name) == "a"; }, "alpha");
@@ -295,8 +297,7 @@ TextColumns columns_by_name(std::vector<std::string> names, const SampleRows& ro
 
 TextColumns columns_by_value(const SampleRows& rows, std::string_view extension) {
   TextColumns columns = Guess(rows, extension)();
-  columns.how =
-      fmt::format("guessed from their values{} (--columns overrules)", scale_told(columns.bytes_per_unit));
+  columns.how = fmt::format("guessed from their values{} (--columns overrules)", scale_told(columns.bytes_per_unit));
   return columns;
 }
 

@@ -18,8 +18,8 @@ constexpr std::string_view kBlanks = " \t";
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 bool begins_like_number(std::string_view line) {
-  const char c = line[std::min(line.find_first_not_of(kBlanks), line.size() - 1)];
-  return is_digit(c) || c == '-' || c == '+' || c == '.' || c == '"';
+  const char c = line[std::min(line.find_first_not_of(" \t\"'"), line.size() - 1)];
+  return is_digit(c) || c == '-' || c == '+' || c == '.';
 }
 
 std::string_view trimmed(std::string_view text) {

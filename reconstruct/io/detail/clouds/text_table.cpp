@@ -61,6 +61,13 @@ std::size_t n_numbers(const std::vector<std::string_view>& tokens, const TextDia
       tokens.begin(), tokens.end(), [&](std::string_view token) { return parse_number(token, dialect, number); }));
 }
 
+/// Leaves out a comment behind the first n columns.
+void cut_comment(std::size_t n, std::vector<std::string_view>& columns) {
+  for (std::size_t c = n; c < columns.size(); ++c) {
+    if (is_comment(columns[c])) return columns.resize(c);
+  }
+}
+
 /// Words that may name columns, however they are separated: those of the comment of a table with commas have blanks.
 std::vector<std::vector<std::string>> readings_of_header(std::string_view line, const TextDialect& dialect) {
   line = without_blanks(line);
@@ -90,7 +97,8 @@ class Beginning {
   TextTable operator()() {
     const std::size_t begin = first_byte(source_);
     const char end = end_of_line(source_.bytes.substr(0, kLongestLine));
-    table_.dialect = dialect_of(lines_of_dialect(source_, begin, end), end);
+    lines_ = lines_of_dialect(source_, begin, end);
+    table_.dialect = dialect_of(lines_, end);
     LineReader lines(source_.bytes, begin, 1, end);
     std::string_view line;
     std::size_t at = begin;
@@ -121,9 +129,10 @@ class Beginning {
     }
     split(line, table_.dialect, tokens_);
     if (tokens_.size() == 1 && !table_.announced && (table_.announced = parse_count(tokens_.front()))) return false;
+    cut_comment(kFewestColumns, tokens_);
     if (n_numbers(tokens_, table_.dialect) >= kFewestColumns) {
       table_.n_columns = tokens_.size();
-      if (tokens_.back().empty()) --table_.n_columns;
+      if (ends_behind_columns()) --table_.n_columns;
       return true;
     }
     double first = 0;
@@ -133,14 +142,23 @@ class Beginning {
     return false;
   }
 
+  /// Whether a separator without a column behind it ends the rows: in none of them a last column stands there.
+  bool ends_behind_columns() const {
+    if (!tokens_.back().empty()) return false;
+    std::vector<std::string_view> tokens;
+    return std::all_of(lines_.begin(), lines_.end(), [&](std::string_view line) {
+      split(line, table_.dialect, tokens);
+      return tokens.size() != table_.n_columns || tokens.back().empty() || n_numbers(tokens, table_.dialect) == 0;
+    });
+  }
+
   [[noreturn]] void refuse_row(std::size_t line) const {
     if (tokens_.size() < kFewestColumns)
       refuse(source_, fmt::format("line {}: {} column{}: a point needs x, y and z", line, tokens_.size(),
                                   tokens_.size() == 1 ? "" : "s"));
     double number = 0;
-    const auto bad = std::find_if(tokens_.begin(), tokens_.end(), [&](std::string_view token) {
-      return !parse_number(token, table_.dialect, number);
-    });
+    const auto bad = std::find_if(tokens_.begin(), tokens_.end(),
+                                  [&](std::string_view token) { return !parse_number(token, table_.dialect, number); });
     refuse(source_, fmt::format("line {}, column {}: {} is not a number: a row is x y z and what else belongs to the "
                                 "point",
                                 line, bad - tokens_.begin() + 1, in_quotes(*bad)));
@@ -165,14 +183,16 @@ class Beginning {
     table_.n_ignored = n_words_;
     for (const Words& words : words_) {
       if (words.is_comment || source_.columns.size() > 0 || !has_axes(words.readings.front())) continue;
-      refuse(source_, fmt::format("line {}: a header of {} names, but line {} has {} columns: name them with --columns, "
-                                  "such as --columns x,y,z",
-                                  words.line, words.readings.front().size(), table_.first_line, table_.n_columns));
+      refuse(source_,
+             fmt::format("line {}: a header of {} names, but line {} has {} columns: name them with --columns, "
+                         "such as --columns x,y,z",
+                         words.line, words.readings.front().size(), table_.first_line, table_.n_columns));
     }
   }
 
   const CloudSource& source_;
   TextTable table_;
+  std::vector<std::string_view> lines_;  ///< the first ones, without comments
   std::vector<Words> words_;
   std::vector<std::string_view> tokens_;
   std::size_t n_words_ = 0;  ///< lines of words that are no comments
@@ -198,8 +218,8 @@ bool is_comment(std::string_view line) {
 std::size_t split_row(std::string_view line, const TextTable& table, std::vector<std::string_view>& columns) {
   split(line, table.dialect, columns);
   const std::size_t n = table.n_columns;
-  if (columns.size() == n + 1 && columns.back().empty()) columns.pop_back();
   if (columns.size() > n && is_comment(columns[n])) columns.resize(n);
+  if (columns.size() == n + 1 && columns.back().empty()) columns.pop_back();
   return columns.size();
 }
 

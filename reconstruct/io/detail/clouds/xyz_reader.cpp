@@ -46,7 +46,9 @@ CloudColumns cloud_columns_of(const CloudSource& source, const TextTable& table,
     refuse(source, fmt::format("line {}: {}: the points have no normals: estimate and orient them first, for example "
                                "in CloudCompare or MeshLab, and export x y z nx ny nz",
                                table.first_line, told(columns)));
-  CloudColumns of_cloud = cloud_columns(source, columns.names, "column");
+  std::vector<std::string> names = columns.names;
+  std::replace(names.begin(), names.end(), std::string(), std::string("left out"));  // no name of a field has a blank
+  CloudColumns of_cloud = cloud_columns(source, names, "column");
   of_cloud.fields.bytes_per_unit = columns.bytes_per_unit;
   return of_cloud;
 }
@@ -107,8 +109,9 @@ class RowReader {
   }
 
   [[noreturn]] void refuse_columns(std::size_t line, std::size_t n) const {
-    refuse(source_, fmt::format("line {}: {} column{}, but {} before: the file is cut short or damaged, export it again",
-                                line, n, n == 1 ? "" : "s", table_.n_columns));
+    refuse(source_,
+           fmt::format("line {}: {} column{}, but {} before: the file is cut short or damaged, export it again", line,
+                       n, n == 1 ? "" : "s", table_.n_columns));
   }
 
   const CloudSource& source_;
