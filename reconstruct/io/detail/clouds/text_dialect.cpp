@@ -125,7 +125,9 @@ bool parse_number(std::string_view token, const TextDialect& dialect, double& nu
   // from_chars knows no plus sign; "+-1" must not become a number by removing it.
   if (token.size() > 1 && token[0] == '+' && token[1] != '-') token.remove_prefix(1);
   std::array<char, 64> digits;  // a double has 24 characters
-  if (dialect.decimal_comma && token.size() <= digits.size() && token.find(',') != std::string_view::npos) {
+  if (dialect.decimal_comma) {
+    // "1.234" is a thousand and more where commas are decimal, or it is not: nobody can tell.
+    if (token.size() > digits.size() || token.find('.') != std::string_view::npos) return false;
     std::memcpy(digits.data(), token.data(), token.size());
     std::replace(digits.begin(), digits.begin() + static_cast<std::ptrdiff_t>(token.size()), ',', '.');
     token = {digits.data(), token.size()};

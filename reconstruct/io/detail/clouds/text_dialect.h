@@ -27,7 +27,7 @@ TextDialect dialect_of(const std::vector<std::string_view>& lines, char end_of_l
 /// The columns of a line, without blanks and quotes around them; empty ones only with Comma and Semicolon.
 void split(std::string_view line, const TextDialect& dialect, std::vector<std::string_view>& columns);
 
-/// A number as C writes it, with a point or the comma of the dialect, whatever the locale.
+/// A number as C writes it, whatever the locale; with decimal_comma no number has a point.
 /// @return false: `token` is no number, or beyond the range of double precision
 bool parse_number(std::string_view token, const TextDialect& dialect, double& number);
 

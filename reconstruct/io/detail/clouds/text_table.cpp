@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <limits>
 #include <utility>
 
@@ -31,6 +32,12 @@ std::size_t first_byte(const CloudSource& source) {
   if (source.bytes.starts_with("\xff\xfe") || source.bytes.starts_with("\xfe\xff"))
     refuse(source, "line 1: a text in UTF-16: save it as UTF-8 or ASCII");
   return source.bytes.starts_with("\xef\xbb\xbf") ? 3 : 0;
+}
+
+std::string lower_case(std::string_view text) {
+  std::string out(text);
+  std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return std::tolower(c); });
+  return out;
 }
 
 char end_of_line(std::string_view bytes) {
@@ -135,6 +142,10 @@ class Beginning {
       if (ends_behind_columns()) --table_.n_columns;
       return true;
     }
+    if (lower_case(tokens_.front()) == "ncols")
+      refuse(source_, fmt::format("line {}: a grid of heights (ESRI), not a table of points: write it as points x y z, "
+                                  "for example with 'gdal_translate -of XYZ'",
+                                  number));
     double first = 0;
     if (parse_number(tokens_.front(), table_.dialect, first)) refuse_row(number);
     if (++n_words_ > kMostWords) refuse_words(words_.front().line);

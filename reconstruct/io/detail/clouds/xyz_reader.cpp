@@ -41,14 +41,15 @@ TextColumns columns_of(const CloudSource& source, const TextTable& table) {
 }
 
 CloudColumns cloud_columns_of(const CloudSource& source, const TextTable& table, const TextColumns& columns) {
-  const bool has_normals = std::find(columns.names.begin(), columns.names.end(), "nx") != columns.names.end();
-  if (source.needs_normals && !has_normals)
+  CloudSource of_any = source;
+  of_any.needs_normals = false;  // what is said of missing ones is said below
+  std::vector<std::string> names = columns.names;
+  std::replace(names.begin(), names.end(), std::string(), std::string("left out"));  // no name of a field has a blank
+  CloudColumns of_cloud = cloud_columns(of_any, names, "column");
+  if (source.needs_normals && !of_cloud.has_normals)
     refuse(source, fmt::format("line {}: {}: the points have no normals: estimate and orient them first, for example "
                                "in CloudCompare or MeshLab, and export x y z nx ny nz",
                                table.first_line, told(columns)));
-  std::vector<std::string> names = columns.names;
-  std::replace(names.begin(), names.end(), std::string(), std::string("left out"));  // no name of a field has a blank
-  CloudColumns of_cloud = cloud_columns(source, names, "column");
   of_cloud.fields.bytes_per_unit = columns.bytes_per_unit;
   return of_cloud;
 }
