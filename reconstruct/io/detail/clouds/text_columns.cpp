@@ -10,6 +10,7 @@
 #include <limits>
 #include <utility>
 
+#include "reconstruct/io/detail/cloud_source.h"
 #include "reconstruct/io/detail/clouds/field_columns.h"
 #include "reconstruct/io/detail/clouds/text_dialect.h"
 
@@ -23,6 +24,9 @@ constexpr double kMostRows = .9;
 constexpr double kByte = 255, kSixteenBits = 65535;
 // More scalars in a row than this are no measurements that someone carries along, but vectors whose meaning is unknown.
 constexpr std::size_t kMostScalars = 2;
+
+// Of names in a line for the user, characters.
+constexpr std::size_t kMostNames = 100;
 
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
@@ -146,7 +150,7 @@ class Guess {
     while (at < n() && !is_number(at)) ++at;
     if (at + 3 < n() && counts_rows(rows_, at)) ++at;
     if (at + 3 > n()) {
-      columns_.problem = fmt::format("{} columns: a point needs x, y and z", n());
+      columns_.problem = "fewer than three of them have numbers";
       return kNone;
     }
     name_three(at, {"x", "y", "z"});
@@ -225,8 +229,12 @@ class Guess {
 
 std::string told(const TextColumns& columns) {
   std::string text = "columns";
-  for (const std::string& name : columns.names) text.append(" ").append(name.empty() ? "-" : name);
-  return text + ", " + columns.how;
+  constexpr std::size_t kMostTold = 24;  // more do not fit into a line
+  for (std::size_t c = 0; c < std::min(columns.names.size(), kMostTold); ++c) {
+    const std::string name = in_quotes(columns.names[c]);
+    text.append(" ").append(columns.names[c].empty() ? "-" : name.substr(1, name.size() - 2));
+  }
+  return text + (columns.names.size() > kMostTold ? " ..., " : ", ") + columns.how;
 }
 
 std::string column_name(std::string_view in_header) {
@@ -286,7 +294,7 @@ TextColumns columns_by_name(std::vector<std::string> names, const SampleRows& ro
   for (std::size_t c = 0; c < names.size(); ++c) {
     const bool is_axis = names[c] == "x" || names[c] == "y" || names[c] == "z";
     if (names[c].empty() || is_axis || rows.n_rows() == 0 || values_of(rows, c).n > 0) continue;
-    no_numbers.append(no_numbers.empty() ? "" : ", ").append(names[c]);
+    if (no_numbers.size() < kMostNames) no_numbers.append(no_numbers.empty() ? "" : ", ").append(in_quotes(names[c]));
     names[c].clear();
   }
   columns.how = fmt::format("{}{}{}", how, scale_told(columns.bytes_per_unit),
