@@ -10,6 +10,8 @@ import numpy as np
 import triangle_mesh
 
 TIMEOUT = 124  # exit code of a run that took too long
+USAGE = 2  # exit code of a flag that the program does not have
+IMAGES = (".nii", ".nii.gz", ".nrrd", ".vti", ".vtk")
 
 
 class Run(NamedTuple):
@@ -42,6 +44,33 @@ def run(umtet, cloud, case, more=(), timeout=None):
     """umtet run into a new folder; one that is there is deleted."""
     shutil.rmtree(case, ignore_errors=True)
     return timed([umtet, "run", cloud, "-o", case, "--no-report", "--progress", "none", *more], timeout)
+
+
+def words_for(file):
+    """The command that makes a mesh of a file, without -o."""
+    return ["mesh", "--level-set", file] if str(file).lower().endswith(IMAGES) else ["run", file]
+
+
+def run_first(umtet, words, alternatives, case, timeout=None):
+    """umtet into a new folder, with the first of several lists of flags that the program knows."""
+    done = None
+    for flags in alternatives:
+        shutil.rmtree(case, ignore_errors=True)
+        done = timed([umtet, *words, *flags, "-o", case, "--no-report", "--progress", "none"], timeout)
+        if done.code != USAGE:
+            break
+    return done
+
+
+def forecast(umtet, file, timeout=None):
+    """What `umtet inspect` expects of a run: tets, seconds and MB; None where it expects nothing."""
+    try:
+        done = subprocess.run([str(umtet), "inspect", str(file), "--json", "--progress", "none"], capture_output=True,
+                              text=True, errors="replace", timeout=timeout, check=False)
+        expected = json.loads(done.stdout)["inspection"]["prediction"]["expected"]
+        return expected["n_tets"], expected["seconds"], expected["memory_MB"]
+    except (subprocess.TimeoutExpired, KeyError, ValueError):
+        return None
 
 
 def number(case, file, *keys):
