@@ -27,6 +27,7 @@ std::string verdict_lines(const Verdict& verdict, bool valid, std::optional<bool
                           const std::optional<std::string>& remedy) {
   const char* to_psi = !faithful ? "" : *faithful ? ", faithful" : ", not faithful";
   std::string out = fmt::format("verdict   {} ({}{})\n", verdict.word(), valid ? "valid" : "NOT valid", to_psi);
+  if (!verdict.accept.empty()) out += fmt::format("          in force: --accept {}\n", verdict.accept);
   for (const std::string& what : verdict.accepted) out += fmt::format("          accepted: {}\n", what);
   for (const std::string& reason : verdict.reasons) out += fmt::format("          - {}\n", reason);
   if (remedy) out += fmt::format("          try {}\n", *remedy);
