@@ -3,10 +3,11 @@
 
 usage: field.py UMTET SHARED FOLDER [--timeout=60] [--only=WORD] [--again]
 
-SHARED holds data/field, data/public and data. Each file is run into a case of its own below FOLDER. Rows go to
-FOLDER/field.csv and field.md as they are made; rows that are there are kept, but with --again. What is right is judged of
-the mesh file (judging.py), not of the certificate. Seconds are of CPU. foretold: tets, seconds and MB of `umtet inspect`
-over what then happened. The last lines count the rows that are right, and forecasts within a factor of two.
+SHARED holds data/field, data/public and data; the clouds of this repository are a fourth group. Each file is run into a
+case of its own below FOLDER. Rows go to FOLDER/field.csv and field.md as they are made; rows that are there are kept, but
+with --again. What is right is judged of the mesh file (judging.py), not of the certificate. Seconds are of CPU, those of
+the timeout too. foretold: tets, seconds and MB of `umtet inspect` over what then happened. The last lines count the rows
+that are right, and forecasts within a factor of two.
 """
 import pathlib
 import shutil
@@ -52,7 +53,7 @@ def solid(low, high, **more):
                     **{"genus": 0, "pieces": 1, "tets": 200_000, "seconds": 5, **more})
 
 
-def field_files():
+def field_files(shared):
     """(file, words before the case, alternatives of flags of which the first that is understood is run, Expected)."""
     run, image = ["run"], ["mesh", "--level-set"]
     tetra = np.array([[0, 0, 0], [.5, .87, 0], [1, 0, 0], [.5, .29, .82]])
@@ -96,7 +97,7 @@ def field_files():
             note="read; 100 points of a sheet"))]
     rows += [(name, run, [], Expected(**EGG)) for name in
              ("cloud.asc", "cloud.csv", "cloud.npts", "hdr.txt", "hdr_nohash.txt", "semi.txt")]
-    return [(pathlib.PurePath("data/field") / name, *rest) for name, *rest in rows]
+    return [(shared / "data/field" / name, *rest) for name, *rest in rows]
 
 
 # Genus by data/README.md and data/public/README.md; pieces where they are known.
@@ -109,6 +110,10 @@ PUBLIC = {"berger_daratech.ply": (7, 1), "berger_daratech_noise.ply": (7, 1), "b
           "vipss_hand_ok_sparse.ply": (1, 1), "nnvipss_chair.ply": (None, None), "nnvipss_helmet.ply": (None, None),
           "stb_bunny_scan.ply": (None, None), "stb_airplane_scan.ply": (None, None),
           "stb_elephant_scan.ply": (None, None), "srb_gargoyle.ply": (0, None)}
+# data/README.md of this repository.
+OURS = pathlib.Path(__file__).resolve().parents[2] / "data/clouds"
+OUR_CLOUDS = {"bird.ply": (0, 1), "blob_nonuniform.ply": (0, 1), "duck.ply": (1, 1), "knot.ply": (7, 1),
+              "torus_hole_noise.ply": (1, 1)}
 SHEETS_INSIDE = {"vipss_vertebra.ply"}  # the volume of the reference counts what is inside twice
 
 
@@ -123,14 +128,14 @@ def reference_volume(file):
 
 def cloud_files(shared):
     rows = []
-    for folder, known in (("data/public", PUBLIC), ("data", CLOUDS)):
+    for folder, known in ((shared / "data/public", PUBLIC), (shared / "data", CLOUDS), (OURS, OUR_CLOUDS)):
         for name, (genus, pieces) in known.items():
-            file = shared / folder / name
+            file = folder / name
             if not file.exists():
                 continue
             # All must pass by default (issue 45, line 3), but where most of the body is a guess.
             seen = name != "stb_airplane_scan.ply"
-            rows.append((pathlib.PurePath(folder) / name, ["run"], [],
+            rows.append((file, ["run"], [],
                          Expected(volume=reference_volume(file), genus=genus, pieces=pieces, seconds=15,
                                   samples=read_cloud(file)[0], refused=() if seen else (4, 6),
                                   says="" if seen else "guess|sample")))
@@ -201,17 +206,18 @@ def main():
     shared, folder = pathlib.Path(shared), pathlib.Path(folder)
     timeout = float(options.get("timeout", 60))
     table = Rows(folder / "field.csv", COLUMNS)
-    for file, words, alternatives, expected in field_files() + cloud_files(shared):
+    for file, words, alternatives, expected in field_files(shared) + cloud_files(shared):
         alternatives = alternatives or [[]]
-        key = " ".join([file.name, *alternatives[0]])
-        if not (shared / file).exists() or options.get("only", "") not in str(file):
+        group = str(file.parent.relative_to(shared)) if shared in file.parents else "data/clouds"
+        key = " ".join([file.name, *alternatives[0]]) + (" of clouds" if group == "data/clouds" else "")
+        if not file.exists() or options.get("only", "") not in str(file):
             continue
         if key in table and "again" not in options:
             continue
         case = folder / "cases" / key.replace(" ", "_").replace(":", "-")
-        foretold = forecast(umtet, shared / file, timeout) if words == ["run"] else None
-        done = run_first(umtet, [*words, shared / file], alternatives, case, timeout)
-        row = row_of(key, shared / file, str(file.parent), case, done, expected, foretold)
+        foretold = forecast(umtet, file, timeout) if words == ["run"] else None
+        done = run_first(umtet, [*words, file], alternatives, case, timeout)
+        row = row_of(key, file, group, case, done, expected, foretold)
         table.add(row)
         print("|", " | ".join(str(row[k]) for k in COLUMNS[:3] + COLUMNS[4:7] + COLUMNS[-1:]), "|", flush=True)
         shutil.rmtree(case, ignore_errors=True)
