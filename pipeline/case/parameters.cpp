@@ -50,6 +50,19 @@ ParamValue parse(const ParamField& f, const std::string& text) {
   }
 }
 
+/// As a shell takes it.
+std::string typed(const ParamValue& value) {
+  const auto* text = std::get_if<std::string>(&value);
+  if (!text) {
+    return std::visit([](const auto& v) { return fmt::format("{}", v); }, value);
+  }
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.,:/=+-_%@";
+  if (!text->empty() && text->find_first_not_of(kPlain) == std::string::npos) return *text;
+  std::string quoted = "'";
+  for (const char c : *text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
 bool is_utf8(const std::string& text) {
   try {
     nlohmann::json(text).dump();
@@ -153,23 +166,46 @@ void Parameters::set(const std::string& assignment) {
   set(assignment.substr(0, equals), assignment.substr(equals + 1), ParamSource::Set, "--set");
 }
 
-/// h, tets and max_deviation are three ways to say one thing: the stronger voice silences the others. False: a stronger
-/// one has spoken already.
+namespace {
+
+/// Parameters that say one thing in several ways: the stronger voice silences the others.
+struct Ways {
+  std::vector<const char*> keys;
+  std::string exclude;  ///< what is wrong with two equally strong ones; empty where both may stand
+};
+
+const std::vector<Ways>& ways() {
+  static const std::vector<Ways> list = {
+      {{keys::mesh::h, keys::mesh::tets, keys::mesh::max_deviation}, "give one of --h, --tets and --max-deviation"},
+      {{keys::output::patch_angle, keys::output::patch_planar}, ""},
+      {{keys::reconstruct::close, keys::reconstruct::keep_open}, ""}};
+  return list;
+}
+
+/// False of a number or a switch that is 0: it says nothing. A word always says something.
+bool speaks(const ParamValue& v) {
+  return v != ParamValue(0.) && v != ParamValue(std::int64_t{0}) && v != ParamValue(false);
+}
+
+}  // namespace
+
+/// False: a stronger voice has spoken already.
 bool Parameters::silences_others(const ParamField& field, const ParamValue& value, ParamSource source) {
-  constexpr std::array kWays = {keys::mesh::h, keys::mesh::tets, keys::mesh::max_deviation};
-  const auto speaks = [](const ParamValue& v) { return v != ParamValue(0.) && v != ParamValue(std::int64_t{0}); };
-  if (std::find(kWays.begin(), kWays.end(), field.key) == kWays.end() || !speaks(value)) return true;
-  for (const char* way : kWays) {
+  const auto same = std::find_if(ways().begin(), ways().end(), [&](const Ways& w) {
+    return std::find(w.keys.begin(), w.keys.end(), field.key) != w.keys.end();
+  });
+  if (same == ways().end() || !speaks(value)) return true;
+  for (const char* way : same->keys) {
     const ParamField& other = detail::field(way);
-    if (way == field.key || !speaks(other.get(other, values_))) continue;
     Origin& origin = origins_.at(way);
+    if (way == field.key || origin.source == ParamSource::Default || !speaks(other.get(other, values_))) continue;
     if (origin.source == source) {
-      throw UsageError(fmt::format("{} and {} exclude each other: give one of --h, --tets and --max-deviation",
-                                   std::min(field.key, other.key), std::max(field.key, other.key)));
+      if (same->exclude.empty()) continue;
+      throw UsageError(fmt::format("{} and {} exclude each other: {}", std::min(field.key, other.key),
+                                   std::max(field.key, other.key), same->exclude));
     }
     if (origin.source > source) return false;
-    other.put(other, other.preset, values_);
-    origin = {};
+    drop(way);
   }
   return true;
 }
@@ -189,12 +225,49 @@ void Parameters::make_cloud_absolute() {
   if (!path.empty()) path = std::filesystem::absolute(path).lexically_normal().string();
 }
 
+void Parameters::drop(const std::string& key) {
+  const ParamField& f = detail::field(key);
+  f.put(f, f.preset, values_);
+  origins_.at(key) = {};
+}
+
+void Parameters::take(const std::string& key, const Parameters& other) {
+  const ParamField& f = detail::field(key);
+  f.put(f, f.get(f, other.values_), values_);
+  origins_.at(key) = other.origins_.at(key);
+}
+
+void Parameters::take_body(const Parameters& other) {
+  for (const char* key :
+       {keys::cloud::file, keys::mesh::implicit, keys::mesh::level_set, keys::mesh::level, keys::mesh::part}) {
+    if (source(key) <= ParamSource::Case) take(key, other);
+  }
+  if (!values_.mesh.implicit.empty() && source(keys::mesh::box) <= ParamSource::Case) take(keys::mesh::box, other);
+}
+
 void Parameters::copy_section(std::string_view name, const Parameters& other) {
   for (const ParamField& f : params_fields()) {
-    if (f.key.substr(0, f.key.find('.')) != name) continue;
-    f.put(f, f.get(f, other.values_), values_);
-    origins_.at(f.key) = other.origins_.at(f.key);
+    if (f.key.substr(0, f.key.find('.')) == name) take(f.key, other);
   }
+}
+
+std::vector<KeptParameter> Parameters::kept() const {
+  constexpr std::array<std::string_view, 3> kInput = {keys::cloud::file, keys::mesh::implicit, keys::mesh::level_set};
+  std::vector<KeptParameter> list;
+  for (const ParamField& f : params_fields()) {
+    const ParamValue value = f.get(f, values_);
+    const bool is_input = std::find(kInput.begin(), kInput.end(), f.key) != kInput.end();
+    if (is_input || source(f.key) != ParamSource::Case || value == f.preset) continue;
+    const bool is_switch = std::holds_alternative<bool>(value);
+    if (!f.flag.empty() && value == ParamValue(true)) {
+      list.push_back({f.key, f.flag});
+    } else if (f.flag.empty() || is_switch) {
+      list.push_back({f.key, "--set " + f.key + "=" + typed(value)});
+    } else {
+      list.push_back({f.key, f.flag + " " + typed(value)});
+    }
+  }
+  return list;
 }
 
 nlohmann::ordered_json Parameters::section(std::string_view name) const {

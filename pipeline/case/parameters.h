@@ -95,8 +95,15 @@ std::string preset_text(const ParamField&);
 /// The candidate with the least edit distance to `word`; empty if none is near enough to be what was meant.
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 
-/// Where a value came from, in rising precedence.
-enum class ParamSource { Default, Case, File, Set, Flag };
+/// Where a value came from, in rising precedence. Derived: computed from other parameters, and computed anew by the
+/// next call; its origin begins with "for ".
+enum class ParamSource { Default, Derived, Case, File, Set, Flag };
+
+/// A parameter that a case has from former calls.
+struct KeptParameter {
+  std::string key;
+  std::string words;  ///< of a call that gives it: "--h 0.02", "--keep-all", "--set mesh.samples=7"
+};
 
 /// The value of every parameter and where it came from.
 class Parameters {
@@ -116,6 +123,11 @@ class Parameters {
   /// Makes the path cloud.file absolute, whoever gave it.
   void make_cloud_absolute();
 
+  /// Makes it the default again, whoever gave it.
+  void drop(const std::string& key);
+  /// Takes from other parameters what says which body the case is of: the cloud, the formula or the grid, with its
+  /// level and part, and the box of a formula. All else stays.
+  void take_body(const Parameters& other);
   /// Takes the whole section from other parameters, sources included.
   void copy_section(std::string_view name, const Parameters& other);
 
@@ -126,6 +138,9 @@ class Parameters {
 
   /// \throw std::out_of_range for a key that the table does not have: a bug of the caller
   ParamSource source(const std::string& key) const { return origins_.at(key).source; }
+
+  /// What is not the default and comes from the case, not from this call. The input of the case is not among it.
+  std::vector<KeptParameter> kept() const;
 
   /// Every value with a comment that says where it came from, behind their checksum; load() takes it back.
   std::string toml() const;
@@ -138,6 +153,7 @@ class Parameters {
     std::string text = "default";
   };
   bool silences_others(const ParamField& field, const ParamValue& value, ParamSource source);
+  void take(const std::string& key, const Parameters& other);
   void assign(const ParamField& field, const ParamValue& value, ParamSource source, const std::string& origin);
 
   ParameterValues values_;

@@ -26,11 +26,25 @@ std::string one_line(std::string s) {
 const std::string kTomlHead =
     "# Effective parameters of this case. Feed it back with --config.\n# Checksum of what follows: ";
 
+// The origin of a derived value begins with it: "for --h".
+constexpr std::string_view kDerivedFrom = "for ";
+
 bool is_as_written(std::string_view text) {
   if (!text.starts_with(kTomlHead)) return false;
   text.remove_prefix(kTomlHead.size());
   const std::size_t line = std::min(text.find('\n'), text.size());
   return line < text.size() && text.substr(0, line) == checksum(text.substr(line + 1));
+}
+
+/// Of a line of case.toml, "key = value  # origin: help", where the value came from; empty where it is not such a line.
+std::string origin_in(std::string_view text, std::size_t line, std::string_view key, const ParamValue& value) {
+  for (; line > 1; --line) text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+  text = text.substr(0, text.find('\n'));
+  const std::string head = fmt::format("{} = {}  # ", key, detail::print(value));
+  if (!text.starts_with(head)) return "";
+  text.remove_prefix(head.size());
+  const std::size_t end = text.find(": ");
+  return end == std::string_view::npos ? "" : std::string(text.substr(0, end));
 }
 
 /// A parameter of 0.9.0 that is no more: files that have it are read as if they had not.
@@ -96,7 +110,10 @@ void Parameters::load(const std::filesystem::path& file, ParamSource source) {
           constexpr const char* kTypes[] = {"true or false", "a whole number", "a number", "a text"};
           throw UsageError(f.key + ": must be " + kTypes[f.preset.index()]);
         }
-        assign(f, value, source, origin);
+        const std::string former =
+            source == ParamSource::Case ? origin_in(text, entry.source().begin.line, key.str(), value) : "";
+        const ParamSource of = former.starts_with(kDerivedFrom) ? ParamSource::Derived : source;
+        assign(f, value, of, former.empty() ? origin : former);
       } catch (const UsageError& e) {
         throw UsageError(at(entry) + e.what());
       }

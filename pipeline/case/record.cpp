@@ -77,16 +77,22 @@ std::string damage(const fs::path& folder, const std::vector<RecordedFile>& outp
   return "";
 }
 
-/// How two sets of parameters differ, as a clause; empty if they do not.
-std::string difference(const std::string& section, const Json& before, const Json& now) {
-  for (const auto& [key, value] : now.items()) {
-    if (!before.contains(key)) return fmt::format("{}.{} is new", section, key);
-    if (before[key] != value) return fmt::format("{}.{} was {}, is {}", section, key, before[key].dump(), value.dump());
-  }
-  return before.size() == now.size() ? "" : "other parameters of " + section;
-}
-
 }  // namespace
+
+std::vector<std::string> differences(const std::string& section, const Json& before, const Json& now) {
+  std::vector<std::string> list;
+  std::size_t n_known = 0;
+  for (const auto& [key, value] : now.items()) {
+    n_known += before.contains(key);
+    if (!before.contains(key)) {
+      list.push_back(fmt::format("{}.{} is new", section, key));
+    } else if (before[key] != value) {
+      list.push_back(fmt::format("{}.{} was {}, is {}", section, key, before[key].dump(), value.dump()));
+    }
+  }
+  if (n_known < before.size()) list.push_back("other parameters of " + section);
+  return list;
+}
 
 std::string seal_of(const Json& document) {
   Json open = document;
@@ -150,7 +156,8 @@ StageState inspect_stage(const CasePaths& paths, Stage stage, const Json& parame
   if (const std::string what = damage(paths.folder(stage), record.outputs, *paths.stamps); !what.empty()) {
     return {Kind::Damaged, what, {}};
   }
-  std::string reason = difference(section_of(stage), record.parameters, parameters);
+  std::string reason =
+      fmt::format("{}", fmt::join(differences(section_of(stage), record.parameters, parameters), "; "));
   if (version != kVersion) reason = "made by version " + version;
   if (reason.empty() && inputs && *inputs != record.inputs) reason = "its input has changed";
   const Kind kind = reason.empty() ? Kind::Done : Kind::Changed;

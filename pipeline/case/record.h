@@ -69,6 +69,10 @@ struct StageState {
 StageState inspect_stage(const CasePaths& paths, Stage stage, const Json& parameters,
                          const std::optional<std::vector<RecordedFile>>& inputs);
 
+/// How the parameters of a section differ, a clause for each that does, such as "mesh.h was 0.0, is 0.02"; empty if
+/// they are the same.
+std::vector<std::string> differences(const std::string& section, const Json& before, const Json& now);
+
 /// The record as it stands; whether its outputs are there is not looked at.
 /// \throw ArtefactDamaged, std::system_error naming the file
 StageRecord read_record(const CasePaths& paths, Stage stage);

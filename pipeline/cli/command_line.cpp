@@ -140,6 +140,7 @@ CommandParser::CommandParser() {
   add_parameter_flags(exports, {"output"},
                       {keys::output::units, keys::output::max_memory, keys::output::min_quality, keys::output::strict,
                        keys::output::accept});
+  add_fresh(exports, "patches and names as this call says, not as former ones did");
 
   CLI::App& report =
       add_command("report", make_report, "CASE/report.html: certificate, mesh and curves on one page, offline");
@@ -223,7 +224,12 @@ void CommandParser::add_stage_flags(CLI::App& command) {
   add_timeout(command, "seconds that the run may take; then exit 9, resumable");
   command.add_option("-o", in_.output, "the folder of the case (default: the name of the file without extension)");
   command.add_flag("--force", in_.force, "run the stages although their records match");
+  add_fresh(command,
+            "take nothing but the input from former calls on the case: what this call does not say is the default; "
+            "stages that match are not made again");
 }
+
+void CommandParser::add_fresh(CLI::App& command, const char* help) { command.add_flag("--fresh", in_.fresh, help); }
 
 void CommandParser::add_value(CLI::App& command, const ParamField& field) {
   command.add_option(field.flag, in_.values[field.key], described(field))->type_name(type_of(field));

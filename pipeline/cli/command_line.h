@@ -46,7 +46,9 @@ struct CheckCommand {
 struct ExportCommand {
   std::filesystem::path case_folder;
   std::vector<std::string> formats;
-  Parameters parameters;  ///< of the case, and those of output.* that the call gives
+  Parameters parameters;                  ///< of the case, and those of output.* that the call gives
+  bool fresh = false;                     ///< those of output.* are not taken from the case
+  std::vector<std::string> changed = {};  ///< against those of the case: differences()
 };
 
 struct ReportCommand {

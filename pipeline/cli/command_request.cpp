@@ -89,6 +89,14 @@ fs::path default_case(const fs::path& source) {
   return stem;
 }
 
+/// Adds what the case has from former calls; of a fresh call, its input alone.
+void take_case(const fs::path& toml, bool fresh, Parameters& parameters) {
+  if (!fresh) return parameters.load(toml, ParamSource::Case);
+  Parameters former;
+  former.load(toml, ParamSource::Case);
+  parameters.take_body(former);
+}
+
 /// The stages first..last of the case or cloud that was given, or as --from and --until say.
 /// @param input_is_case  the word that was given is no cloud
 Command make_stages(const CLI::App& app, const CommandInputs& in, Stage first, Stage last, bool input_is_case) {
@@ -96,6 +104,7 @@ Command make_stages(const CLI::App& app, const CommandInputs& in, Stage first, S
   request.parameters = flag_parameters(app, in);
   Parameters& parameters = request.parameters;
   request.force = in.force;
+  request.fresh = in.fresh;
   request.report = !in.no_report;
   request.from = in.from.empty() ? first : parse_stage(in.from);
   request.until = in.until.empty() ? last : parse_stage(in.until);
@@ -118,7 +127,7 @@ Command make_stages(const CLI::App& app, const CommandInputs& in, Stage first, S
     request.case_folder = in.input;
     const fs::path toml = CasePaths{in.input}.parameters();
     if (!fs::exists(toml)) throw UsageError(in.input + " is not a case: it has no case.toml");
-    parameters.load(toml, ParamSource::Case);
+    take_case(toml, in.fresh, parameters);
     if (request.from == Stage::Cloud && parameters.source(keys::cloud::file) > ParamSource::Case) take_cloud(request);
   } else {
     const std::string name = app.get_name();
@@ -216,9 +225,18 @@ Command make_check(const CLI::App& app, const CommandInputs& in) {
 }
 
 Command make_export(const CLI::App& app, const CommandInputs& in) {
-  ExportCommand command{in.input, in.formats, flag_parameters(app, in)};
+  ExportCommand command{in.input, in.formats, flag_parameters(app, in), in.fresh};
   const fs::path toml = CasePaths{in.input}.parameters();
-  if (fs::exists(toml)) command.parameters.load(toml, ParamSource::Case);
+  if (fs::exists(toml)) {
+    Parameters former;
+    former.load(toml, ParamSource::Case);
+    if (in.fresh) {
+      for (const Stage stage : kStages) command.parameters.copy_section(section_of(stage), former);
+    } else {
+      command.parameters.load(toml, ParamSource::Case);
+    }
+    command.changed = differences("output", former.section("output"), command.parameters.section("output"));
+  }
   require_walls(command.parameters);
   return command;
 }

@@ -29,6 +29,7 @@
 #include "pipeline/reports/certificate_summary.h"
 #include "pipeline/run/evolve.h"
 #include "pipeline/run/run.h"
+#include "pipeline/stages/stale_mesh.h"
 
 namespace umtet {
 namespace {
@@ -110,6 +111,8 @@ Output Execution::operator()(RunCommand& command) const {
   output.code = outcome.code;
   output.document = {{"case", request.case_folder.string()},
                      {"stages_run", stages},
+                     {"kept", outcome.kept},
+                     {"changed", outcome.changed},
                      {"files", names(outcome.files)},
                      {"certificate", outcome.certificate ? to_json(*outcome.certificate) : Json(nullptr)}};
   if (outcome.certificate) output.text = summary(*outcome.certificate);
@@ -171,9 +174,26 @@ std::shared_ptr<const MeshWithBoundary> Execution::parts_of(const ExportCommand&
   return run_case(request, progress).parts;
 }
 
+/// How the boundary is divided by what former calls said.
+void tell_patches(const ExportCommand& command, Progress& progress) {
+  const auto concerns = [](const std::string& text) {
+    const auto keys = {keys::output::label_names, keys::output::label_min_area, keys::output::patch_angle,
+                       keys::output::patch_planar};
+    return std::any_of(keys.begin(), keys.end(), [&](const char* key) { return text.starts_with(key); });
+  };
+  for (const KeptParameter& kept : command.parameters.kept()) {
+    if (concerns(kept.key)) progress.say("export: keeps " + kept.words + " (--fresh drops it)");
+  }
+  for (const std::string& change : command.changed) {
+    if (concerns(change)) progress.say("export: " + change);
+  }
+}
+
 Output Execution::operator()(const ExportCommand& command) const {
   require_case(command.case_folder);
   require_formats(command.formats);
+  tell_patches(command, progress);
+  if (ranks.n == 1 || !is_in_pieces(command.formats)) require_current_mesh({command.case_folder});
   std::shared_ptr<const MeshWithBoundary> parts;
   if (ranks.n > 1 && is_in_pieces(command.formats)) parts = parts_of(command);
   const auto files = exports_of({command.case_folder}, command.formats, command.parameters, progress, parts.get());
@@ -186,6 +206,7 @@ Output Execution::operator()(const ReportCommand& command) const {
   require_case(command.case_folder);
   const CasePaths paths{command.case_folder};
   const CaseLock lock(paths.root);
+  require_current_mesh(paths);
   progress.report("report", "write", .5);
   report_case(paths);
   progress.clear();
@@ -197,6 +218,7 @@ Output Execution::operator()(const ViewCommand& command) const {
   require_case(command.case_folder);
   const CasePaths paths{command.case_folder};
   const CaseLock lock(paths.root);
+  require_current_mesh(paths);
   const std::vector<std::filesystem::path> files = write_view(paths, progress);
   progress.clear();
   return output_of_files(files);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "pipeline/case/exit_code.h"
+#include "pipeline/case/interrupt.h"
 #include "pipeline/stages/cloud_preparation.h"
 #include "reconstruct/cloud/cloud_arrays.h"
 #include "reconstruct/cloud/cloud_neighbours.h"
@@ -82,12 +84,34 @@ std::vector<std::string> troubles(const CloudSurvey& s, const CloudFileReport& f
   return list;
 }
 
+/// Of `umtet run` by the same parameters. What would end it is said, and its costs are guessed from the samples.
+RunPrediction prediction_of(CloudFile scan, const fs::path& file, const CloudSurvey& survey, double area,
+                            const Parameters& parameters) {
+  std::string obstacle;
+  try {
+    return predict_run(std::move(scan), file, parameters, until_interrupted());
+  } catch (const CloudRefused& e) {
+    obstacle = e.what();
+  } catch (const SolveError& e) {
+    obstacle = e.what();
+  } catch (const SolveTooLarge& e) {
+    obstacle = e.what();
+  } catch (const MeshingImpossible& e) {
+    obstacle = e.what();
+  } catch (const ResourceLimit& e) {
+    obstacle = e.what();
+  }
+  RunPrediction run = predict_run(survey, area, parameters);
+  run.obstacle = std::move(obstacle);
+  return run;
+}
+
 }  // namespace
 
 CloudInspection inspect_cloud(const fs::path& file, const Parameters& parameters, Progress& progress) {
   progress.report("inspect", "read", 0);
   require_regular_file(file);
-  const ScanSource source = read_source(file, parameters);
+  ScanSource source = read_source(file, parameters);
   const CloudFile& scan = source.cloud;
   progress.report("inspect", "survey", .3);
   CloudSurvey s = [&] {
@@ -100,10 +124,13 @@ CloudInspection inspect_cloud(const fs::path& file, const Parameters& parameters
   std::vector<double> area = sample_areas(scan.cloud.points);
   std::nth_element(area.begin(), area.begin() + static_cast<std::ptrdiff_t>(area.size() / 2), area.end());
   Resolution lattice = choose_resolution(std::sqrt(area[area.size() / 2]), kMeshEdge * s.diagonal, s.noise);
-  RunPrediction prediction = predict_run(s, std::accumulate(area.begin(), area.end(), 0.), parameters);
-  std::vector<std::string> list = troubles(s, scan.report);
-  return {file.string(),      scan.report, field_names(scan.cloud), source.triangles, std::move(s),
-          std::move(lattice), prediction,  std::move(list)};
+  std::vector<std::string> list = troubles(s, scan.report), fields = field_names(scan.cloud);
+  CloudFileReport report = scan.report;
+  progress.report("inspect", "foretell the run", .6);
+  RunPrediction prediction =
+      prediction_of(std::move(source.cloud), file, s, std::accumulate(area.begin(), area.end(), 0.), parameters);
+  return {file.string(), std::move(report),  std::move(fields),     std::move(source.triangles),
+          std::move(s),  std::move(lattice), std::move(prediction), std::move(list)};
 }
 
 Json to_json(const CloudInspection& inspection) {
@@ -182,9 +209,11 @@ std::string inspection_text(const CloudInspection& inspection) {
                      s.dropped.n_small_components);
   out += fmt::format("lattice   {:.4g}: {}\n", inspection.lattice.spacing, inspection.lattice.reason);
   const RunPrediction& run = inspection.prediction;
-  out += fmt::format(
-      "a run    about {:.2g} tets at h = {:.3g}: {:.2g} s of one thread, {:.0f} MB; at most {:.2g} s, {:.0f} MB\n",
-      run.expected.n_tets, run.h, run.expected.seconds, run.expected.memory_MB, run.most.seconds, run.most.memory_MB);
+  if (!run.obstacle.empty()) out += fmt::format("a run     is likely to end without a mesh: {}\n", run.obstacle);
+  out += fmt::format("{}about {:.2g} tets {} {:.3g}: {:.2g} s of one thread, {:.0f} MB; at most {:.2g} s, {:.0f} MB\n",
+                     run.obstacle.empty() ? "a run     " : "          else ", run.expected.n_tets,
+                     run.is_graded ? "of edges that follow the body, from" : "at h =", run.h, run.expected.seconds,
+                     run.expected.memory_MB, run.most.seconds, run.most.memory_MB);
   if (inspection.troubles.empty()) out += "trouble   none seen\n";
   for (const std::string& trouble : inspection.troubles) out += "trouble   " + trouble + "\n";
   return out;

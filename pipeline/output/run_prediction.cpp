@@ -4,10 +4,18 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "mesh/sizes/body_size.h"
 #include "pipeline/domain/background_choice.h"
 #include "pipeline/domain/edge_length.h"
+#include "pipeline/domain/fitted_domain.h"
+#include "pipeline/stages/cloud_preparation.h"
+#include "pipeline/stages/level_set_fit.h"
+#include "reconstruct/cloud/cloud_arrays.h"
+#include "reconstruct/cloud/morton_order.h"
 #include "reconstruct/solve/resolution.h"
 
 namespace umtet {
@@ -23,6 +31,30 @@ constexpr double kBytesPerTet = 500;
 RunCost cost(double n_points, double n_tets) {
   return {n_tets, kSecondsOfStart + kSecondsPerPoint * n_points + kSecondsPerTet * n_tets,
           (kBytesOfStart + kBytesPerPoint * n_points + kBytesPerTet * n_tets) / 1e6};
+}
+
+// A surface of as much area as the square of its diagonal has 3.7 spacings of so many samples along an edge of the
+// default mesh: psi has what h is chosen by. The fit of more takes seconds.
+constexpr std::size_t kMostFitted = 60'000;
+
+/// Evenly along a curve that fills space.
+void keep_few(OrientedPointCloud& cloud) {
+  const std::size_t n = cloud.points.size(), step = (n + kMostFitted - 1) / kMostFitted;
+  if (step < 2) return;
+  sort_in_space(cloud);
+  std::vector<std::uint32_t> kept;
+  for (std::size_t i = 0; i < n; i += step) kept.push_back(static_cast<std::uint32_t>(i));
+  keep_samples(cloud, kept);
+}
+
+/// The cost of one mesh, and of all of them: these have mesh.effort times the tets of the first, and none has more than
+/// mesh.max_tets.
+void add_costs(double n_points, double n_tets, const MeshParameters& p, RunPrediction& run) {
+  run.expected = cost(n_points, n_tets);
+  const double all = std::max(1., p.effort) * n_tets;
+  run.most = cost(n_points, all);
+  run.most.n_tets = std::min(all, std::max(n_tets, static_cast<double>(p.max_tets)));
+  run.most.memory_MB = cost(n_points, run.most.n_tets).memory_MB;
 }
 
 /// As large as it can be.
@@ -65,14 +97,24 @@ RunPrediction predict_run(const CloudSurvey& survey, double area, const Paramete
         edge_length_by(kMeshEdge * survey.diagonal, thin, [&] { return h_of(static_cast<double>(kTetsOfLargeMesh)); });
     run.h = std::max({run.h, h_of(max_tets), survey.noise / kMostNoise});
   }
-  const double n_tets = std::max(1., expected_tets(tiling, body, run.h, source));
-  const auto n_points = static_cast<double>(survey.n_points);
-  run.expected = cost(n_points, n_tets);
-  // All meshes together have p.effort times the tets of the first; none has more than mesh.max_tets.
-  const double all = std::max(1., p.effort) * n_tets;
-  run.most = cost(n_points, all);
-  run.most.n_tets = std::min(all, std::max(n_tets, max_tets));
-  run.most.memory_MB = cost(n_points, run.most.n_tets).memory_MB;
+  add_costs(static_cast<double>(survey.n_points), std::max(1., expected_tets(tiling, body, run.h, source)), p, run);
+  return run;
+}
+
+RunPrediction predict_run(CloudFile scan, const std::filesystem::path& file, const Parameters& parameters,
+                          const Context& context) {
+  const auto n_points = static_cast<double>(scan.cloud.points.size());
+  keep_few(scan.cloud);
+  PreparedCloud prepared = prepare_cloud(std::move(scan), file, parameters);
+  LevelSetFit fit = fit_level_set(prepared.cloud, std::move(prepared.near), parameters, context);
+  Domain domain =
+      fitted_domain(std::move(fit.psi), std::move(prepared.cloud), fit.report, parse_box(parameters.mesh().box));
+  domain.complement = parameters.mesh().complement;
+  BackgroundChoice background(parameters, domain);
+  RunPrediction run;
+  run.h = background.edge_length(domain, context).h;
+  run.is_graded = background.is_graded();
+  add_costs(n_points, std::max(1., background.expected_tets(domain, run.h)), parameters.mesh(), run);
   return run;
 }
 
@@ -85,7 +127,12 @@ Json to_json(const RunCost& cost) {
 }  // namespace
 
 Json to_json(const RunPrediction& prediction) {
-  return {{"h", prediction.h}, {"expected", to_json(prediction.expected)}, {"most", to_json(prediction.most)}};
+  Json json = {{"h", prediction.h},
+               {"graded", prediction.is_graded},
+               {"expected", to_json(prediction.expected)},
+               {"most", to_json(prediction.most)}};
+  if (!prediction.obstacle.empty()) json["obstacle"] = prediction.obstacle;
+  return json;
 }
 
 }  // namespace umtet

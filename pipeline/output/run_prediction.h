@@ -1,8 +1,13 @@
 #pragma once
 
+#include <filesystem>
+#include <string>
+
+#include "common/context.h"
 #include "pipeline/case/json_values.h"
 #include "pipeline/case/parameters.h"
 #include "reconstruct/cloud/cloud_survey.h"
+#include "reconstruct/io/point_cloud_io.h"
 
 namespace umtet {
 
@@ -15,16 +20,26 @@ struct RunCost {
 
 /// What `umtet run` of a cloud is likely to take: for a scheduler that has to know before.
 struct RunPrediction {
-  double h = 0;      ///< mean edge length of the background, model units
-  RunCost expected;  ///< of one mesh
-  RunCost most;      ///< if it is made again, as mesh.effort allows
+  double h = 0;            ///< mean edge length of the background, of its smallest edges if it is graded; model units
+  bool is_graded = false;  ///< edges follow the body
+  RunCost expected;        ///< of one mesh
+  RunCost most;            ///< if it is made again, as mesh.effort allows
+  std::string obstacle{};  ///< why a run is likely to end without a mesh; the costs are then those of the samples alone
 };
 
-/// By the rule of choose_edge_length(), with the thickness of the samples in place of that of psi, and by the volume
-/// and area behind the samples: as if the surface were closed. Where normals do not say the volume it is that of the
-/// ball of this area, or of the box if that is less: no body of the area has more. A mesh whose sizes vary has fewer
-/// tets. For mesh.max_deviation, a background in a file and the fluid in a box it is mesh.max_tets, since nothing is
-/// known of these.
+/// By the choice that a run makes: psi is fitted to the samples, to every m-th of them where there are more than
+/// 60,000, and BackgroundChoice chooses h or sizes for it. Tets are those that it expects.
+/// @param file  for messages
+/// \throw CloudRefused, SolveError, SolveTooLarge, MeshingImpossible, ResourceLimit, UsageError  as the run does;
+///        Cancelled
+RunPrediction predict_run(CloudFile scan, const std::filesystem::path& file, const Parameters& parameters,
+                          const Context& context = {});
+
+/// By the samples alone, where there is no psi: by the rule of choose_edge_length(), with the thickness of the samples
+/// in place of that of psi, and by the volume and area behind the samples: as if the surface were closed. Where normals
+/// do not say the volume it is that of the ball of this area, or of the box if that is less: no body of the area has
+/// more. For mesh.max_deviation, a background in a file and the fluid in a box the number of tets is mesh.max_tets,
+/// since nothing is known of these.
 /// @param area  of all samples together
 RunPrediction predict_run(const CloudSurvey& survey, double area, const Parameters& parameters);
 

@@ -24,6 +24,7 @@ std::string thousands(std::size_t n) {
 
 std::string verdict_lines(const Verdict& verdict, const std::string& judgements, const std::optional<Blame>& blame) {
   std::string out = fmt::format("verdict   {} ({})\n", verdict.word(), judgements);
+  if (!verdict.accept.empty()) out += fmt::format("          in force: --accept {}\n", verdict.accept);
   for (const std::string& what : verdict.accepted) out += fmt::format("          accepted: {}\n", what);
   for (const std::string& what : verdict.defects) out += fmt::format("          defect: {}\n", what);
   for (const std::string& reason : verdict.reasons) out += fmt::format("          - {}\n", reason);

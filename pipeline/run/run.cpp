@@ -37,13 +37,17 @@ class CaseRun {
   RunOutcome finish(const std::vector<StageRecord>& records);
 
  private:
-  void take_former_parameters();
+  std::optional<Parameters> former_parameters();
+  void take_former_parameters(const Parameters& former);
   void sample_for_h();
+  void tell_changes(const Parameters& former);
+  bool is_kept(Stage stage) const;
   StageState state_of(Stage stage) const;
   bool is_fine_enough(Stage stage, const StageRecord& record) const;
   bool lacks_parts(Stage stage, const StageState& state) const;
   bool must_run(Stage stage, const StageState& state) const;
   void make(Stage stage);
+  void tell(Stage stage, const StageState& state) const;
   void certify(const StageRecord& mesh);
   void report();
 
@@ -57,38 +61,73 @@ class CaseRun {
   RunOutcome outcome_;
 };
 
-/// case.toml goes on telling what the stages were made with that this run leaves alone.
-void CaseRun::take_former_parameters() {
-  if (!fs::exists(paths_.parameters())) return;
-  const auto is_kept = [&](Stage stage) {
-    return (stage < request_.from || stage > request_.until) && fs::exists(paths_.record(stage));
-  };
+/// Those of case.toml; none where there is no such file, or it is of no use any more.
+std::optional<Parameters> CaseRun::former_parameters() {
+  if (!fs::exists(paths_.parameters())) return std::nullopt;
   Parameters former;
   try {
     former.load(paths_.parameters(), ParamSource::Case);
   } catch (const ArtefactDamaged&) {
-    if (request_.strict || std::any_of(std::begin(kStages), std::end(kStages), is_kept)) throw;
+    if (request_.strict || std::any_of(std::begin(kStages), std::end(kStages), [&](Stage s) { return is_kept(s); }))
+      throw;
     progress_.warn(paths_.parameters().string() + ": cut short, damaged or edited; making it again");
-    return;
+    return std::nullopt;
   }
+  return former;
+}
+
+/// True for what this run leaves alone.
+bool CaseRun::is_kept(Stage stage) const {
+  return (stage < request_.from || stage > request_.until) && fs::exists(paths_.record(stage));
+}
+
+/// case.toml goes on telling what the stages were made with that this run leaves alone.
+void CaseRun::take_former_parameters(const Parameters& former) {
   for (const Stage stage : kStages) {
     if (is_kept(stage)) parameters_.copy_section(section_of(stage), former);
   }
   if (request_.until < Stage::Mesh && fs::exists(paths_.certificate())) parameters_.copy_section("output", former);
 }
 
+/// What the case has from former calls, and what is not so any more.
+void CaseRun::tell_changes(const Parameters& former) {
+  for (const KeptParameter& kept : parameters_.kept()) {
+    const auto made_with = std::find_if(kStages.begin(), kStages.end(), [&](Stage stage) {
+      return is_kept(stage) && kept.key.starts_with(section_of(stage) + std::string("."));
+    });
+    const std::string why = made_with != kStages.end()
+                                ? fmt::format(" (the stage {} is not run)", to_string(*made_with))
+                            : request_.fresh ? ""
+                                             : " (--fresh drops it)";
+    progress_.say("case: keeps " + kept.words + why);
+    outcome_.kept.push_back(kept.words);
+  }
+  for (const char* section : {"cloud", "reconstruct", "mesh", "output"}) {
+    for (std::string& change : differences(section, former.section(section), parameters_.section(section))) {
+      progress_.say(fmt::format("case: {}", change));
+      outcome_.changed.push_back(std::move(change));
+    }
+  }
+  if (const std::string& was = former.cloud().file, &is = parameters_.cloud().file; was != is && !was.empty()) {
+    outcome_.changed.push_back(fmt::format("{} was {}, is {}", keys::cloud::file, was, is.empty() ? "none" : is));
+    progress_.say("case: " + outcome_.changed.back());
+  }
+}
+
 // Samples for each h that was asked for, along an edge: what a mesh of such edges can show.
 constexpr double kSamplesAnEdge = 2.5;
 
 /// Triangles are sampled as finely as the mesh needs, unless the user said how. That is a parameter like all others, so
-/// that another h makes other samples.
+/// that another h makes other samples; one that a former h has left goes with it.
 void CaseRun::sample_for_h() {
   if (request_.from != Stage::Cloud || request_.until != Stage::Mesh || !parameters_.mesh().implicit.empty()) return;
+  const char* key = keys::cloud::sample_spacing;
+  if (parameters_.source(key) == ParamSource::Derived) parameters_.drop(key);
+  if (parameters_.source(key) > ParamSource::Case || parameters_.cloud().sample_spacing > 0) return;
   const fs::path source = request_.source.empty() ? fs::path(parameters_.cloud().file) : request_.source;
-  if (parameters_.source(keys::cloud::sample_spacing) > ParamSource::Case || !(parameters_.mesh().h > 0)) return;
-  if (!fs::is_regular_file(source) || !is_of_triangles(source, parameters_)) return;
-  parameters_.set(keys::cloud::sample_spacing, fmt::format("{}", parameters_.mesh().h / kSamplesAnEdge),
-                  ParamSource::Case, "for --h");
+  if (!(parameters_.mesh().h > 0) || !fs::is_regular_file(source) || !is_of_triangles(source, parameters_)) return;
+  parameters_.drop(key);
+  parameters_.set(key, fmt::format("{}", parameters_.mesh().h / kSamplesAnEdge), ParamSource::Derived, "for --h");
 }
 
 StageState CaseRun::state_of(Stage stage) const {
@@ -119,6 +158,17 @@ bool CaseRun::lacks_parts(Stage stage, const StageState& state) const {
   return stage == Stage::Mesh && request_.ranks && request_.needs_parts && !mesh_report(*state.record).measured.sizes;
 }
 
+/// Why a stage is not done. Parameters that tell_changes() has told of are not told of again.
+void CaseRun::tell(Stage stage, const StageState& state) const {
+  const Json now = parameters_.section(section_of(stage));
+  std::vector<std::string> reasons = differences(section_of(stage), state.record->parameters, now);
+  const auto is_told = [&](const std::string& reason) {
+    return std::find(outcome_.changed.begin(), outcome_.changed.end(), reason) != outcome_.changed.end();
+  };
+  const bool all_told = !reasons.empty() && std::all_of(reasons.begin(), reasons.end(), is_told);
+  progress_.say(fmt::format("{}: {}", to_string(stage), all_told ? "made again with other parameters" : state.reason));
+}
+
 bool CaseRun::must_run(Stage stage, const StageState& state) const {
   using Kind = StageState::Kind;
   const std::string name = to_string(stage);
@@ -135,7 +185,7 @@ bool CaseRun::must_run(Stage stage, const StageState& state) const {
       progress_.warn(name + ": made as fine as another mesh needs (umtet run makes it again)");
     return false;
   }
-  if (state.kind == Kind::Changed) progress_.say(name + ": " + state.reason);
+  if (state.kind == Kind::Changed) tell(stage, state);
   if (state.kind == Kind::Done && !is_fine_enough(stage, *state.record)) {
     progress_.say(name + ": made as fine as another mesh needs");
     return true;
@@ -222,8 +272,10 @@ void CaseRun::report() {
 void CaseRun::begin() {
   refuse_foreign_folder(paths_);
   remove_stale_temporaries(paths_.root);  // of a run that was killed when its stages were done
-  take_former_parameters();
+  const std::optional<Parameters> former = former_parameters();
+  if (former) take_former_parameters(*former);
   sample_for_h();
+  if (former) tell_changes(*former);
 }
 
 std::vector<Stage> CaseRun::stages() const {

@@ -21,6 +21,7 @@ struct RunRequest {
   std::filesystem::path source;  ///< the cloud; empty: the case has its own, or there is a formula
   Parameters parameters;
   Stage from = Stage::Cloud, until = Stage::Mesh;
+  bool fresh = false;   ///< nothing but the input is taken from former calls
   bool force = false;   ///< run the stages from..until although they are done
   bool strict = false;  ///< a damaged artefact is an error instead of a reason to make it again
   bool report = true;   ///< make report.html beside a certificate
@@ -34,6 +35,8 @@ struct RunRequest {
 
 struct RunOutcome {
   std::vector<Stage> stages_run;
+  std::vector<std::string> kept;                  ///< from former calls: Parameters::kept()
+  std::vector<std::string> changed;               ///< against former calls: differences() of all sections
   std::optional<Certificate> certificate;         ///< when 3-mesh is done and part of the call
   std::vector<std::filesystem::path> files;       ///< that the user may want to open
   std::shared_ptr<const MeshWithBoundary> parts;  ///< where they were to be kept

@@ -1,7 +1,10 @@
 """Runs umtet and CGAL's Poisson reconstruction, and reads what they leave: seconds, numbers, surfaces, distances."""
 import json
+import math
 import os
+import resource
 import shutil
+import signal
 import subprocess
 from typing import NamedTuple
 
@@ -10,6 +13,8 @@ import numpy as np
 import triangle_mesh
 
 TIMEOUT = 124  # exit code of a run that took too long
+USAGE = 2  # exit code of a flag that the program does not have
+IMAGES = (".nii", ".nii.gz", ".nrrd", ".vti", ".vtk")
 
 
 class Run(NamedTuple):
@@ -25,13 +30,26 @@ class Run(NamedTuple):
         return next((line for line in lines if line.startswith("umtet:")), lines[-1])
 
 
+def limited(timeout):
+    """For subprocess.run: an end after so many seconds of CPU, which a busy machine does not change; and, where nothing is
+    computed, after twenty times as many of the clock."""
+    if timeout is None:
+        return {}
+    seconds = math.ceil(timeout)
+    return {"timeout": 20 * timeout,
+            "preexec_fn": lambda: resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))}
+
+
 def timed(command, timeout=None):
+    """@param timeout  seconds of CPU"""
     before = os.times()
     try:
         done = subprocess.run([str(word) for word in command], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
-                              text=True, errors="replace", timeout=timeout, check=False)
+                              text=True, errors="replace", check=False, **limited(timeout))
         code, stderr = done.returncode, done.stderr
     except subprocess.TimeoutExpired:
+        code, stderr = TIMEOUT, ""
+    if code in (TIMEOUT, -signal.SIGXCPU):
         code, stderr = TIMEOUT, f"more than {timeout:g} s"
     after = os.times()
     cpu = after.children_user + after.children_system - before.children_user - before.children_system
@@ -42,6 +60,33 @@ def run(umtet, cloud, case, more=(), timeout=None):
     """umtet run into a new folder; one that is there is deleted."""
     shutil.rmtree(case, ignore_errors=True)
     return timed([umtet, "run", cloud, "-o", case, "--no-report", "--progress", "none", *more], timeout)
+
+
+def words_for(file):
+    """The command that makes a mesh of a file, without -o."""
+    return ["mesh", "--level-set", file] if str(file).lower().endswith(IMAGES) else ["run", file]
+
+
+def run_first(umtet, words, alternatives, case, timeout=None):
+    """umtet into a new folder, with the first of several lists of flags that the program knows."""
+    done = None
+    for flags in alternatives:
+        shutil.rmtree(case, ignore_errors=True)
+        done = timed([umtet, *words, *flags, "-o", case, "--no-report", "--progress", "none"], timeout)
+        if done.code != USAGE:
+            break
+    return done
+
+
+def forecast(umtet, file, timeout=None):
+    """What `umtet inspect` expects of a run: tets, seconds and MB; None where it expects nothing."""
+    try:
+        done = subprocess.run([str(umtet), "inspect", str(file), "--json", "--progress", "none"], capture_output=True,
+                              text=True, errors="replace", check=False, **limited(timeout))
+        expected = json.loads(done.stdout)["inspection"]["prediction"]["expected"]
+        return expected["n_tets"], expected["seconds"], expected["memory_MB"]
+    except (subprocess.TimeoutExpired, KeyError, ValueError):
+        return None
 
 
 def number(case, file, *keys):

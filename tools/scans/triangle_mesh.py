@@ -1,14 +1,34 @@
 """Triangle meshes as vtkPolyData: corners, random points, distances, genus."""
+import pathlib
+
 import numpy as np
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 
+READERS = {".ply": vtk.vtkPLYReader, ".stl": vtk.vtkSTLReader, ".obj": vtk.vtkOBJReader}
+
+
 def read(file):
-    reader = vtk.vtkPLYReader()
+    """A PLY, STL or OBJ; corners of an STL at the same place are one."""
+    reader = READERS[pathlib.Path(file).suffix.lower()]()
     reader.SetFileName(str(file))
     reader.Update()
     return reader.GetOutput()
+
+
+def joined(mesh):
+    """Triangles only, and corners at the same place are one."""
+    triangles = vtk.vtkTriangleFilter()
+    triangles.PassLinesOff()
+    triangles.PassVertsOff()
+    triangles.SetInputData(mesh)
+    clean = vtk.vtkCleanPolyData()
+    clean.PointMergingOn()
+    clean.SetTolerance(0)
+    clean.SetInputConnection(triangles.GetOutputPort())
+    clean.Update()
+    return clean.GetOutput()
 
 
 def corners(mesh):

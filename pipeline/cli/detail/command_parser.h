@@ -17,7 +17,7 @@ struct CommandInputs {
   std::map<std::string, std::string> values;  ///< by key
   std::map<std::string, bool> switches;       ///< by key
   int jobs = 1;
-  bool force = false, resume = false, collect = false, no_report = false, quiet = false, verbose = false;
+  bool fresh = false, force = false, resume = false, collect = false, no_report = false, quiet = false, verbose = false;
 };
 
 /// Makes a command of what was read.
@@ -50,6 +50,7 @@ class CommandParser {
   CLI::Option& add_formats(CLI::App& command, const char* flag);
   void add_parameter_sources(CLI::App& command);
   void add_stage_flags(CLI::App& command);
+  void add_fresh(CLI::App& command, const char* help);
   void add_timeout(CLI::App& command, const char* help);
   void add_batch();
   void add_value(CLI::App& command, const ParamField& field);

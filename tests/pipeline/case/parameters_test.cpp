@@ -138,6 +138,49 @@ TEST(Parameters, EdgeLengthAndCountExcludeEachOther) {
   EXPECT_EQ(p.mesh().h, 0);
 }
 
+TEST(Parameters, TheStrongerOfTwoThatContradictStandsAlone) {
+  const TomlFile file("[output]\npatch_planar = 5\n[reconstruct]\nkeep_open = true\n");
+  Parameters p;
+  p.set("output.patch_angle", "30", ParamSource::Flag, "--patch-angle");
+  p.set("reconstruct.close", "auto", ParamSource::Flag, "--close");
+  p.load(file.path, ParamSource::File);
+  EXPECT_EQ(p.output().patch_planar, 0);
+  EXPECT_EQ(p.output().patch_angle, 30);
+  EXPECT_FALSE(p.reconstruct().keep_open);
+  Parameters late;
+  late.load(file.path, ParamSource::File);
+  late.set("output.patch_angle", "30", ParamSource::Flag, "--patch-angle");
+  late.set("reconstruct.close", "smooth", ParamSource::Flag, "--close");
+  EXPECT_EQ(late.output().patch_planar, 0);
+  EXPECT_FALSE(late.reconstruct().keep_open);
+  Parameters both;  // given together they stand together
+  both.set("output.patch_planar=5");
+  both.set("output.patch_angle=30");
+  EXPECT_EQ(both.output().patch_planar, 5);
+  EXPECT_EQ(both.output().patch_angle, 30);
+}
+
+TEST(Parameters, WhatACaseKeepsIsInTheWordsOfACall) {
+  Parameters p;
+  p.set("mesh.h", "0.1", ParamSource::Flag, "--h");
+  p.set("mesh.samples=7");
+  p.set("cloud.keep_all=true");
+  p.set("cloud.merge=false");
+  p.set("output.label_names=1=left foot");
+  p.set("cloud.file=a.ply");
+  p.set("cloud.sample_spacing", "0.04", ParamSource::Derived, "for --h");
+  const TomlFile file(p.toml());
+  Parameters q;
+  q.load(file.path, ParamSource::Case);
+  std::vector<std::string> words;
+  for (const KeptParameter& kept : q.kept()) words.push_back(kept.words);
+  EXPECT_EQ(words, (std::vector<std::string>{"--keep-all", "--set cloud.merge=false", "--h 0.1", "--set mesh.samples=7",
+                                             "--label-names '1=left foot'"}));
+  EXPECT_EQ(q.source(keys::cloud::sample_spacing), ParamSource::Derived);
+  EXPECT_EQ(q.toml(), p.toml());  // origins stay
+  EXPECT_TRUE(p.kept().empty());  // of the call itself
+}
+
 TEST(Parameters, WholeNumbersMayHaveAnExponentButNoFraction) {
   Parameters p;
   p.set("mesh.tets=1e6");
