@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "mesh/certify/boundary_surface.h"
 #include "mesh/certify/quality_report.h"
 #include "pipeline/domain/domain.h"
 
@@ -38,6 +39,18 @@ Spread spread_of(const std::vector<Vec3>& x, std::vector<double> d) {
                     static_cast<double>(d.size()));
   s.p99 = quantile(d, .99);
   return s;
+}
+
+/// Of a boundary without corners that are at one place.
+TriangleBody body_of(const std::vector<Vec3>& V, const std::vector<Triangle>& faces) {
+  const SurfaceTopology surface = surface_topology(V, faces);
+  TriangleBody body{.area = surface.area,
+                    .n_pieces = surface.components.size(),
+                    .euler_characteristic = surface.euler_characteristic,
+                    .is_closed = surface.closed_manifold,
+                    .is_manifold = surface.closed_manifold};
+  for (const SurfaceComponent& piece : surface.components) body.volume += piece.volume;
+  return body;
 }
 
 /// Cuts the longest edge of what is longer than sqrt(most2) until nothing is, or there are so many.
@@ -83,7 +96,8 @@ TriangleMesh whole(const TriangleMesh& mesh) {
 std::shared_ptr<const GivenTriangles> given_triangles(TriangleMesh mesh, const Vec3& shift) {
   for (Vec3& x : mesh.V) x -= shift;
   SurfaceDistance distance(mesh.V, mesh.F);
-  return std::make_shared<const GivenTriangles>(GivenTriangles{std::move(mesh), std::move(distance)});
+  const TriangleBody body = measure_body(mesh);
+  return std::make_shared<const GivenTriangles>(GivenTriangles{std::move(mesh), std::move(distance), body});
 }
 
 TriangleDistances triangle_distances(const Domain& domain, const std::vector<Vec3>& V,
@@ -118,7 +132,9 @@ TriangleDistances triangle_distances(const Domain& domain, const std::vector<Vec
           .rms_back = back.rms,
           .p99_back = back.p99,
           .max_back = back.max,
-          .farthest_back = back.farthest + domain.shift};
+          .farthest_back = back.farthest + domain.shift,
+          .body = given.body,
+          .mesh = body_of(V, faces)};
 }
 
 }  // namespace umtet

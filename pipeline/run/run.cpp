@@ -81,9 +81,15 @@ void CaseRun::take_former_parameters() {
 constexpr double kSamplesAnEdge = 2.5;
 
 /// Triangles are sampled as finely as the mesh needs, unless the user said how. That is a parameter like all others, so
-/// that another h makes other samples.
+/// that another h makes other samples. So is whether openings are closed before psi is fitted.
 void CaseRun::sample_for_h() {
-  if (request_.from != Stage::Cloud || request_.until != Stage::Mesh || !parameters_.mesh().implicit.empty()) return;
+  if (request_.from != Stage::Cloud || !parameters_.mesh().implicit.empty()) return;
+  const HoleClosing close = parameters_.reconstruct().close;
+  const bool is_left =
+      parameters_.reconstruct().keep_open || close == HoleClosing::Smooth || close == HoleClosing::None;
+  if (is_left && parameters_.source(keys::cloud::cap) <= ParamSource::Case)
+    parameters_.set(keys::cloud::cap, "false", ParamSource::Case, "for --close");
+  if (request_.until != Stage::Mesh) return;
   const fs::path source = request_.source.empty() ? fs::path(parameters_.cloud().file) : request_.source;
   if (parameters_.source(keys::cloud::sample_spacing) > ParamSource::Case || !(parameters_.mesh().h > 0)) return;
   if (!fs::is_regular_file(source) || !is_of_triangles(source, parameters_)) return;
