@@ -14,6 +14,7 @@
 #include "pipeline/case/exit_code.h"
 #include "pipeline/domain/background_choice.h"
 #include "pipeline/domain/deviation.h"
+#include "pipeline/domain/thick_body.h"
 #include "reconstruct/cloud/cloud_arrays.h"
 #include "reconstruct/solve/resolution.h"
 
@@ -79,6 +80,37 @@ ThinPart thin_part(const Domain& domain, double limit, const Context& context) {
   return {thin, faces};
 }
 
+// So many tets are enough for a body that is thin all over, where it is made of two layers pressed flat (thick_body.h):
+// a plate of a hundredth of its diagonal has one edge across then. What the thickened rims take comes on top.
+constexpr double kTetsOfThinBody = 120'000;
+// Of the triangles: thinner parts are less than what a mesh is chosen for.
+constexpr double kThinTriangles = .005;
+
+/// Of triangles, which say where a body is thin; psi may be thinner where it is fitted badly. However thin it is, two
+/// layers of tets go through: h follows the number of tets.
+EdgeLength of_triangles(Domain& domain, const Parameters& parameters, const Context& context) {
+  const double of_size = kMeshEdge * domain.diagonal;
+  const double least = h_of(domain, parameters, parameters.mesh().max_tets);
+  const TriangleThickness thickness = triangle_thickness(domain, kEdgesAcross * of_size, context);
+  const double thin = thickness.share(kThinTriangles);
+  double h = of_size;
+  if (thin < kEdgesAcross * of_size) {
+    const auto n_tets = [&](double edge) {
+      return expected_tets(tiling_of(parameters), thickened_size(domain.size(), thickness, edge), edge,
+                           classification_source(parameters));
+    };
+    double low = thin / kEdgesAcross, high = of_size;
+    if (n_tets(low) <= kTetsOfThinBody) high = low;
+    while (high > 1.01 * low) {
+      const double middle = std::sqrt(low * high);
+      (n_tets(middle) > kTetsOfThinBody ? low : high) = middle;
+    }
+    h = high;
+  }
+  h = std::max(h, least);
+  return {h, least, {}, h, 1};
+}
+
 /// By curvature. \throw ResourceLimit
 EdgeLength by_deviation(Domain& domain, const Parameters& parameters, double deviation, const Context& context) {
   const std::int64_t max_tets = parameters.mesh().max_tets;
@@ -99,6 +131,7 @@ EdgeLength choose(Domain& domain, const Parameters& parameters, const Context& c
     return {p.h, p.h};
   }
   if (p.tets == 0 && p.max_deviation > 0) return by_deviation(domain, parameters, p.max_deviation, context);
+  if (p.tets == 0 && may_be_thickened(domain, parameters)) return of_triangles(domain, parameters, context);
   const double of_size = kMeshEdge * domain.diagonal, limit = kEdgesAcross * of_size;
   const ThinPart thin = domain.level_set ? thin_part(domain, limit, context) : ThinPart{limit};
   const double t = thin.thickness;

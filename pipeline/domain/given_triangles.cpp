@@ -8,23 +8,13 @@
 #include "mesh/certify/boundary_surface.h"
 #include "mesh/certify/quality_report.h"
 #include "pipeline/domain/domain.h"
+#include "reconstruct/triangles/cut_triangles.h"
 
 namespace umtet {
 namespace {
 
 // Pieces of large triangles are not more than so many times the triangles and faces, and some.
 constexpr std::size_t kPieces = 4, kPiecesAnyway = 100000;
-
-double edge2(const TriangleMesh& mesh, const Triangle& t, int k) {
-  return (mesh.V[t[k]] - mesh.V[t[(k + 1) % 3]]).squaredNorm();
-}
-
-int longest_edge(const TriangleMesh& mesh, const Triangle& t) {
-  int longest = 0;
-  for (int k = 1; k < 3; ++k)
-    if (edge2(mesh, t, k) > edge2(mesh, t, longest)) longest = k;
-  return longest;
-}
 
 struct Spread {
   double rms = 0, p99 = 0, max = 0;
@@ -51,25 +41,6 @@ TriangleBody body_of(const std::vector<Vec3>& V, const std::vector<Triangle>& fa
                     .is_manifold = surface.closed_manifold};
   for (const SurfaceComponent& piece : surface.components) body.volume += piece.volume;
   return body;
-}
-
-/// Cuts the longest edge of what is longer than sqrt(most2) until nothing is, or there are so many.
-TriangleMesh cut(const TriangleMesh& mesh, double most2, std::size_t most_pieces) {
-  TriangleMesh pieces{mesh.V, {}, {}};
-  for (std::vector<Triangle> left = mesh.F; !left.empty();) {
-    const Triangle t = left.back();
-    left.pop_back();
-    const int k = longest_edge(pieces, t);
-    if (!(edge2(pieces, t, k) > most2) || pieces.F.size() + left.size() >= most_pieces) {
-      pieces.F.push_back(t);
-      continue;
-    }
-    const int a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3], middle = static_cast<int>(pieces.V.size());
-    pieces.V.push_back((pieces.V[a] + pieces.V[b]) / 2);
-    left.push_back({a, middle, c});
-    left.push_back({middle, b, c});
-  }
-  return pieces;
 }
 
 /// Those of which no part is inside of the body, with their vertices.
@@ -119,7 +90,8 @@ TriangleDistances triangle_distances(const Domain& domain, const std::vector<Vec
   // Pieces not larger than the faces.
   const double edge2 = edge2_sum / static_cast<double>(faces.size());
   const TriangleMesh pieces =
-      cut(whole(given.mesh), edge2, kPieces * (given.mesh.F.size() + faces.size()) + kPiecesAnyway);
+      cut_triangles(whole(given.mesh), std::sqrt(edge2), kPieces * (given.mesh.F.size() + faces.size()) + kPiecesAnyway)
+          .mesh;
   std::vector<Vec3> y = domain.cloud.points;
   y.insert(y.end(), pieces.V.begin(), pieces.V.end());
   for (std::size_t f = 0; f < pieces.F.size(); ++f) y.push_back(pieces.centroid(f));

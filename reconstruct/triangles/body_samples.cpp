@@ -6,6 +6,7 @@
 
 #include "common/formatted.h"
 #include "reconstruct/triangles/body_thickness.h"
+#include "reconstruct/triangles/cut_triangles.h"
 #include "reconstruct/triangles/triangle_samples.h"
 #include "reconstruct/triangles/triangle_tree.h"
 #include "reconstruct/triangles/triangle_winding.h"
@@ -123,56 +124,27 @@ double area_of(const TriangleMesh& mesh) {
   return area;
 }
 
-/// Triangles cut at their longest edge until none is longer than `most`, each with the one that it is of.
-struct Pieces {
-  TriangleMesh mesh;
-  std::vector<std::uint32_t> of;
-};
-
-Pieces cut(const TriangleMesh& mesh, double most) {
-  Pieces made{{mesh.V, {}, {}}, {}};
-  std::vector<std::pair<Triangle, std::uint32_t>> left;
-  const std::size_t n_most = kMostPieces + 2 * mesh.F.size();
-  for (std::uint32_t f = 0; f < mesh.F.size(); ++f) left.emplace_back(mesh.F[f], f);
-  while (!left.empty()) {
-    const auto [t, f] = left.back();
-    left.pop_back();
-    int longest = 0;
-    const auto length = [&, t = t](int k) { return (made.mesh.V[t[k]] - made.mesh.V[t[(k + 1) % 3]]).norm(); };
-    for (int k = 1; k < 3; ++k)
-      if (length(k) > length(longest)) longest = k;
-    if (!(length(longest) > most) || made.mesh.F.size() + left.size() >= n_most) {
-      made.mesh.F.push_back(t);
-      made.of.push_back(f);
-      continue;
-    }
-    const int a = t[longest], b = t[(longest + 1) % 3], c = t[(longest + 2) % 3];
-    const auto middle = static_cast<int>(made.mesh.V.size());
-    made.mesh.V.push_back((made.mesh.V[a] + made.mesh.V[b]) / 2);
-    left.push_back({{a, middle, c}, f});
-    left.push_back({{middle, b, c}, f});
-  }
-  return made;
-}
-
 /// Least thickness at some places of each piece.
-std::vector<double> thickness_of_pieces(const TriangleMesh& mesh, const Pieces& pieces, double limit,
+std::vector<double> thickness_of_pieces(const TriangleMesh& mesh, const TrianglePieces& pieces, double limit,
                                         const Context& context) {
-  constexpr std::size_t kPlaces = 4;
+  // Of many pieces each is small.
+  constexpr std::size_t kFew = 50000;
+  const std::size_t n_places = pieces.mesh.F.size() < kFew ? 4 : 1;
   std::vector<Vec3> points;
   std::vector<std::uint32_t> faces;
   for (std::size_t f = 0; f < pieces.mesh.F.size(); ++f) {
     const Vec3 centre = pieces.mesh.centroid(f);
     points.push_back(centre);
     // Not on an edge: rays along it would meet what is beside it.
-    for (int k = 0; k < 3; ++k) points.push_back(centre + .9 * (pieces.mesh.corner(f, k) - centre));
-    faces.insert(faces.end(), kPlaces, pieces.of[f]);
+    for (int k = 0; k + 1 < static_cast<int>(n_places); ++k)
+      points.push_back(centre + .9 * (pieces.mesh.corner(f, k) - centre));
+    faces.insert(faces.end(), n_places, pieces.of[f]);
   }
   const std::vector<double> t = sheet_thickness(mesh, TriangleTree(mesh), points, faces, limit, context);
   std::vector<double> least(pieces.mesh.F.size());
   for (std::size_t f = 0; f < least.size(); ++f)
-    least[f] = *std::min_element(t.begin() + static_cast<std::ptrdiff_t>(kPlaces * f),
-                                 t.begin() + static_cast<std::ptrdiff_t>(kPlaces * (f + 1)));
+    least[f] = *std::min_element(t.begin() + static_cast<std::ptrdiff_t>(n_places * f),
+                                 t.begin() + static_cast<std::ptrdiff_t>(n_places * (f + 1)));
   return least;
 }
 
@@ -180,7 +152,7 @@ std::vector<double> thickness_of_pieces(const TriangleMesh& mesh, const Pieces& 
 TriangleSamples samples_by_thickness(const TriangleMesh& mesh, TriangleReport& report, const Context& context) {
   const double spacing = report.spacing, limit = kAcross * spacing;
   report.least_spacing = spacing;
-  const Pieces pieces = cut(mesh, kPiece * spacing);
+  const TrianglePieces pieces = cut_triangles(mesh, kPiece * spacing, kMostPieces + 2 * mesh.F.size());
   const std::vector<double> t = thickness_of_pieces(mesh, pieces, limit, context);
   std::vector<std::pair<double, double>> spectrum;  // thickness and area
   double area = 0, thin = 0, finest = spacing;

@@ -52,13 +52,22 @@ class Rays {
 
 }  // namespace
 
-std::vector<double> sheet_thickness(const TriangleMesh& mesh, const TriangleTree& tree, const std::vector<Vec3>& points,
-                                    const std::vector<std::uint32_t>& faces, double limit, const Context& context) {
-  std::vector<double> t(points.size());
+std::vector<FacingSheets> facing_sheets(const TriangleMesh& mesh, const TriangleTree& tree,
+                                        const std::vector<Vec3>& points, const std::vector<std::uint32_t>& faces,
+                                        double limit, const Context& context) {
+  std::vector<FacingSheets> found(points.size());
   const Rays rays(mesh, tree, limit);
   polled_parallel_for(points.size(), kValuesPerPoll, context, [&](std::size_t i) {
-    t[i] = std::min(rays.along(points[i], faces[i], -1), rays.along(points[i], faces[i], 1));
+    found[i] = {rays.along(points[i], faces[i], -1), rays.along(points[i], faces[i], 1)};
   });
+  return found;
+}
+
+std::vector<double> sheet_thickness(const TriangleMesh& mesh, const TriangleTree& tree, const std::vector<Vec3>& points,
+                                    const std::vector<std::uint32_t>& faces, double limit, const Context& context) {
+  std::vector<double> t;
+  for (const FacingSheets& s : facing_sheets(mesh, tree, points, faces, limit, context))
+    t.push_back(std::min(s.body, s.gap));
   return t;
 }
 

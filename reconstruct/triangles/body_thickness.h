@@ -8,8 +8,13 @@
 
 namespace umtet {
 
-/// How far it is from places on triangles to the sheet on the other side, by a ray along the normal: through the body
-/// or, outside, to the sheet that faces it, whichever is nearer.
+/// Distances along the normal to the sheets on both sides; infinite where there is none.
+struct FacingSheets {
+  double body, gap;  ///< through the body, and outside of it; model units
+};
+
+/// How far it is from places on triangles to the sheets on the other side, by a ray along the normal: through the body
+/// and, outside, to the sheet that faces it.
 ///
 /// A sheet that meets the triangle in a ridge or a notch does not count, where the two are all that is there: a wedge
 /// is as thin as one likes near its ridge, and no edge length shows more of it than another. Its planes meet at the
@@ -17,8 +22,12 @@ namespace umtet {
 ///
 /// @param points  each on the triangle of `faces` beside it
 /// @param limit   distances are looked for up to here, model units; farther sheets count as infinite
-/// @return one distance a point, infinite where there is none
 /// \pre triangles look outward. Does not depend on threads. \throw Cancelled
+std::vector<FacingSheets> facing_sheets(const TriangleMesh& mesh, const TriangleTree& tree,
+                                        const std::vector<Vec3>& points, const std::vector<std::uint32_t>& faces,
+                                        double limit, const Context& context = {});
+
+/// The nearer of both for each place.
 std::vector<double> sheet_thickness(const TriangleMesh& mesh, const TriangleTree& tree, const std::vector<Vec3>& points,
                                     const std::vector<std::uint32_t>& faces, double limit, const Context& context = {});
 
