@@ -3,19 +3,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "mesh/certify/quality_report.h"
+#include "mesh/implicit/foot_point.h"
 #include "mesh/implicit/thickness.h"
 #include "mesh/sizes/body_size.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/domain/background_choice.h"
 #include "pipeline/domain/deviation.h"
 #include "pipeline/domain/thick_body.h"
+#include "pipeline/domain/zero_set_choice.h"
 #include "reconstruct/cloud/cloud_arrays.h"
+#include "reconstruct/cloud/neighbour_tree.h"
 #include "reconstruct/solve/resolution.h"
 
 namespace umtet {
@@ -61,6 +66,42 @@ struct ThinPart {
   double faces = 1;  ///< mean of (that / thickness)^2: about the share of faces that edges in proportion would make
 };
 
+/// Whether samples back psi = 0 at a place: one of the nearest looks to the side that psi rises to. Along the rim of a
+/// sheet that was closed flat, samples are near to what closes it and look the other way.
+bool is_backed(const Domain& domain, const NeighbourTree& tree, const Vec3& x, const Vec3& gradient) {
+  constexpr std::size_t kNearest = 8;
+  std::array<Neighbour, kNearest> room;
+  const double radius = support_radius(domain);
+  for (const Neighbour& near : tree.k_nearest(x, room))
+    if (near.distance2 <= radius * radius && domain.cloud.normals[near.point].dot(gradient) > 0) return true;
+  return false;
+}
+
+/// Thickness of what samples show on both sides. A sheet that closes a hole is a guess, and no reason for a small h: a
+/// relief that is closed flat is as thin as one likes along its rim. @param t  of the samples, at most the limit
+void leave_out_guesses(const Domain& domain, ImplicitFunctionRef psi, const std::vector<Vec3>& samples, double step,
+                       double limit, const Context& context, std::vector<double>& t) {
+  std::vector<std::size_t> thin;
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < t.size(); ++i)
+    if (t[i] < limit) thin.push_back(i), points.push_back(samples[i]);
+  if (thin.empty() || domain.cloud.normals.size() != domain.cloud.points.size()) return;
+  const NeighbourTree tree(domain.cloud.points);
+  const std::vector<SheetDistances> sheets = sheet_distances(psi, points, step, limit, context, domain.steepest());
+  for (std::size_t k = 0; k < thin.size(); ++k) {
+    const Foot foot = foot_point(psi, points[k], step);
+    if (!foot.found) continue;
+    t[thin[k]] = limit;
+    for (const auto& [side, distance] : {std::pair{-1., sheets[k].body}, std::pair{1., sheets[k].gap}}) {
+      if (!(distance < limit)) continue;
+      const Vec3 other = foot.point + side * distance * foot.normal;
+      Vec3 gradient;
+      psi.value(other, gradient);
+      if (is_backed(domain, tree, other, gradient)) t[thin[k]] = std::min(t[thin[k]], distance);
+    }
+  }
+}
+
 ThinPart thin_part(const Domain& domain, double limit, const Context& context) {
   const std::vector<Vec3>& all = domain.cloud.points;
   const std::vector<int>& counts = domain.cloud.counts;
@@ -70,8 +111,11 @@ ThinPart thin_part(const Domain& domain, double limit, const Context& context) {
        every_mth(n / kThicknessSamples + 1, all.size(), [&](std::size_t row) { return count_of(counts, row); }))
     samples.push_back(all[i]);
   // psi has no sheets much closer together than its lattice.
+  const double step = .25 * domain.level_set->spacing();
   std::vector<double> t = domain.with_psi_apart([&](ImplicitFunctionRef psi) {
-    return thickness(psi, samples, .25 * domain.level_set->spacing(), limit, context, domain.steepest());
+    std::vector<double> all = thickness(psi, samples, step, limit, context, domain.steepest());
+    leave_out_guesses(domain, psi, samples, step, limit, context, all);
+    return all;
   });
   std::sort(t.begin(), t.end());
   const double thin = quantile(t, kThinShare);
