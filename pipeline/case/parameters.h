@@ -21,6 +21,7 @@ enum class SampleWeights { Area, Paper };
 enum class MaxEntPrior { CompactC2, Gaussian };
 enum class FitSolver { Auto, Multilevel, Full, Assembled };
 enum class HoleClosing { Auto, Smooth, Flat, None };
+enum class TouchingPieces { Apart, Fuse };
 enum class MeshingMode { Fast, Paper };
 enum class RelaxationDirections { Random, Axes };
 enum class Projection { Newton, Damped, Paper };

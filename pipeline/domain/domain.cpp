@@ -33,6 +33,21 @@ LevelSet level_set_of(const std::filesystem::path& file) {
   }
 }
 
+/// psi and a constant, which is in the span of max-ent functions: they sum to one.
+LevelSet raised(const LevelSet& psi, double by) {
+  LevelSetLevel coarsest = psi.coarsest();
+  for (double& c : coarsest.coefficients) c += by;
+  std::vector<LevelSetBand> bands;
+  for (int level = 1; level < psi.n_levels(); ++level) bands.push_back(psi.band(level));
+  return {psi.prior(), std::move(coarsest), std::move(bands)};
+}
+
+/// Of the mesh that the case has.
+double level_shift_of(const CasePaths& paths) {
+  const StageState state = inspect_stage(paths, Stage::Mesh, Json::object(), std::nullopt);
+  return state.record ? mesh_report(*state.record).measured.domain.level_shift : 0;
+}
+
 bool is_of_triangles(const CasePaths& paths, const StageRecord& cloud) {
   const std::vector<RecordedFile>& outputs = cloud.outputs;
   const std::string name = paths.triangles().filename().string();
@@ -53,10 +68,21 @@ Domain formula_domain(const Parameters& parameters, std::optional<double> t) {
 }
 
 void Domain::limit_detail(double h) {
-  if (fitted) level_set = fitted->band_limited(kLeastSpacing * h);
+  if (!fitted) return;
+  level_set = fitted->band_limited(kLeastSpacing * h);
+  if (level_shift != 0) level_set = raised(*level_set, -level_shift);
+}
+
+void Domain::shift_level(double by, double h) {
+  level_shift = by;
+  limit_detail(h);
 }
 
 const BodySize& Domain::size() const {
+  // Of triangles these are exact, and thinner than any grid if need be.
+  if (triangles && triangles->body.is_closed && !complement && !size_)
+    size_.emplace(box, BodySize{triangles->body.volume, triangles->body.area});
+  if (triangles && triangles->body.is_closed && !complement) return size_->second;
   const bool known = size_ && size_->first.min() == box.min() && size_->first.max() == box.max();
   if (!known)
     size_.emplace(box, with_psi_apart([&](ImplicitFunctionRef psi) { return body_size(psi, box, steepest()); }));
@@ -102,6 +128,7 @@ Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handove
     } else if (cloud_state.record && is_of_triangles(paths, *cloud_state.record)) {
       domain.triangles = given_triangles(read_triangles(paths.triangles()).mesh, domain.shift);
     }
+    if (domain.triangles) domain.level_shift = level_shift_of(paths);
   } catch (const CloudRefused& e) {  // all files are ours: what is wrong with them is damage
     throw ArtefactDamaged(e.what());
   }

@@ -42,10 +42,13 @@ struct Domain {
   double cloud_spacing = 0;                         ///< median distance between neighbouring samples, 0 for a formula
   std::optional<double> noise;  ///< standard deviation of the samples along the normal, as the fit took it, model units
   std::optional<InputFacts> facts;  ///< of the cloud; none for a formula or a grid
+  double level_shift = 0;       ///< taken off the fitted psi wherever it is cut for an h, model units
   bool complement = false;      ///< mesh.complement: it is {psi > 0} in the box that is meshed, the fluid around a body
 
   /// Cuts psi at the detail that a mesh of edge length h can show: boundary faces fold over what is finer.
   void limit_detail(double h);
+  /// Takes this off the psi that was cut last, and off every one that will be; 0: nothing. \pre fitted
+  void shift_level(double by, double h);
 
   /// A bound of |grad psi|: a fitted psi has gradients of length one at its samples, and hardly longer ones anywhere; a
   /// formula may have any.

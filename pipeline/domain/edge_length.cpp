@@ -3,18 +3,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "mesh/certify/quality_report.h"
+#include "mesh/implicit/foot_point.h"
 #include "mesh/implicit/thickness.h"
 #include "mesh/sizes/body_size.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/domain/background_choice.h"
 #include "pipeline/domain/deviation.h"
+#include "pipeline/domain/thick_body.h"
+#include "pipeline/domain/zero_set_choice.h"
 #include "reconstruct/cloud/cloud_arrays.h"
+#include "reconstruct/cloud/neighbour_tree.h"
 #include "reconstruct/solve/resolution.h"
 
 namespace umtet {
@@ -60,6 +66,42 @@ struct ThinPart {
   double faces = 1;  ///< mean of (that / thickness)^2: about the share of faces that edges in proportion would make
 };
 
+/// Whether samples back psi = 0 at a place: one of the nearest looks to the side that psi rises to. Along the rim of a
+/// sheet that was closed flat, samples are near to what closes it and look the other way.
+bool is_backed(const Domain& domain, const NeighbourTree& tree, const Vec3& x, const Vec3& gradient) {
+  constexpr std::size_t kNearest = 8;
+  std::array<Neighbour, kNearest> room;
+  const double radius = support_radius(domain);
+  for (const Neighbour& near : tree.k_nearest(x, room))
+    if (near.distance2 <= radius * radius && domain.cloud.normals[near.point].dot(gradient) > 0) return true;
+  return false;
+}
+
+/// Thickness of what samples show on both sides. A sheet that closes a hole is a guess, and no reason for a small h: a
+/// relief that is closed flat is as thin as one likes along its rim. @param t  of the samples, at most the limit
+void leave_out_guesses(const Domain& domain, ImplicitFunctionRef psi, const std::vector<Vec3>& samples, double step,
+                       double limit, const Context& context, std::vector<double>& t) {
+  std::vector<std::size_t> thin;
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < t.size(); ++i)
+    if (t[i] < limit) thin.push_back(i), points.push_back(samples[i]);
+  if (thin.empty() || domain.cloud.normals.size() != domain.cloud.points.size()) return;
+  const NeighbourTree tree(domain.cloud.points);
+  const std::vector<SheetDistances> sheets = sheet_distances(psi, points, step, limit, context, domain.steepest());
+  for (std::size_t k = 0; k < thin.size(); ++k) {
+    const Foot foot = foot_point(psi, points[k], step);
+    if (!foot.found) continue;
+    t[thin[k]] = limit;
+    for (const auto& [side, distance] : {std::pair{-1., sheets[k].body}, std::pair{1., sheets[k].gap}}) {
+      if (!(distance < limit)) continue;
+      const Vec3 other = foot.point + side * distance * foot.normal;
+      Vec3 gradient;
+      psi.value(other, gradient);
+      if (is_backed(domain, tree, other, gradient)) t[thin[k]] = std::min(t[thin[k]], distance);
+    }
+  }
+}
+
 ThinPart thin_part(const Domain& domain, double limit, const Context& context) {
   const std::vector<Vec3>& all = domain.cloud.points;
   const std::vector<int>& counts = domain.cloud.counts;
@@ -69,14 +111,48 @@ ThinPart thin_part(const Domain& domain, double limit, const Context& context) {
        every_mth(n / kThicknessSamples + 1, all.size(), [&](std::size_t row) { return count_of(counts, row); }))
     samples.push_back(all[i]);
   // psi has no sheets much closer together than its lattice.
+  const double step = .25 * domain.level_set->spacing();
   std::vector<double> t = domain.with_psi_apart([&](ImplicitFunctionRef psi) {
-    return thickness(psi, samples, .25 * domain.level_set->spacing(), limit, context, domain.steepest());
+    std::vector<double> all = thickness(psi, samples, step, limit, context, domain.steepest());
+    leave_out_guesses(domain, psi, samples, step, limit, context, all);
+    return all;
   });
   std::sort(t.begin(), t.end());
   const double thin = quantile(t, kThinShare);
   double faces = 0;
   for (const double x : t) faces += std::pow(thin / std::max(x, thin), 2) / static_cast<double>(t.size());
   return {thin, faces};
+}
+
+// So many tets are enough for a body that is thin all over, where it is made of two layers pressed flat (thick_body.h):
+// a plate of a hundredth of its diagonal has one edge across then. What the thickened rims take comes on top.
+constexpr double kTetsOfThinBody = 120'000;
+// Of the triangles: thinner parts are less than what a mesh is chosen for.
+constexpr double kThinTriangles = .005;
+
+/// Of triangles, which say where a body is thin; psi may be thinner where it is fitted badly. However thin it is, two
+/// layers of tets go through: h follows the number of tets.
+EdgeLength of_triangles(Domain& domain, const Parameters& parameters, const Context& context) {
+  const double of_size = kMeshEdge * domain.diagonal;
+  const double least = h_of(domain, parameters, parameters.mesh().max_tets);
+  const TriangleThickness thickness = triangle_thickness(domain, kEdgesAcross * of_size, context);
+  const double thin = thickness.share(kThinTriangles);
+  double h = of_size;
+  if (thin < kEdgesAcross * of_size) {
+    const auto n_tets = [&](double edge) {
+      return expected_tets(tiling_of(parameters), thickened_size(domain.size(), thickness, edge), edge,
+                           classification_source(parameters));
+    };
+    double low = thin / kEdgesAcross, high = of_size;
+    if (n_tets(low) <= kTetsOfThinBody) high = low;
+    while (high > 1.01 * low) {
+      const double middle = std::sqrt(low * high);
+      (n_tets(middle) > kTetsOfThinBody ? low : high) = middle;
+    }
+    h = high;
+  }
+  h = std::max(h, least);
+  return {h, least, {}, h, 1};
 }
 
 /// By curvature. \throw ResourceLimit
@@ -99,6 +175,7 @@ EdgeLength choose(Domain& domain, const Parameters& parameters, const Context& c
     return {p.h, p.h};
   }
   if (p.tets == 0 && p.max_deviation > 0) return by_deviation(domain, parameters, p.max_deviation, context);
+  if (p.tets == 0 && may_be_thickened(domain, parameters)) return of_triangles(domain, parameters, context);
   const double of_size = kMeshEdge * domain.diagonal, limit = kEdgesAcross * of_size;
   const ThinPart thin = domain.level_set ? thin_part(domain, limit, context) : ThinPart{limit};
   const double t = thin.thickness;

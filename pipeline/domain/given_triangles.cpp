@@ -5,25 +5,16 @@
 #include <numeric>
 #include <utility>
 
+#include "mesh/certify/boundary_surface.h"
 #include "mesh/certify/quality_report.h"
 #include "pipeline/domain/domain.h"
+#include "reconstruct/triangles/cut_triangles.h"
 
 namespace umtet {
 namespace {
 
 // Pieces of large triangles are not more than so many times the triangles and faces, and some.
 constexpr std::size_t kPieces = 4, kPiecesAnyway = 100000;
-
-double edge2(const TriangleMesh& mesh, const Triangle& t, int k) {
-  return (mesh.V[t[k]] - mesh.V[t[(k + 1) % 3]]).squaredNorm();
-}
-
-int longest_edge(const TriangleMesh& mesh, const Triangle& t) {
-  int longest = 0;
-  for (int k = 1; k < 3; ++k)
-    if (edge2(mesh, t, k) > edge2(mesh, t, longest)) longest = k;
-  return longest;
-}
 
 struct Spread {
   double rms = 0, p99 = 0, max = 0;
@@ -40,23 +31,16 @@ Spread spread_of(const std::vector<Vec3>& x, std::vector<double> d) {
   return s;
 }
 
-/// Cuts the longest edge of what is longer than sqrt(most2) until nothing is, or there are so many.
-TriangleMesh cut(const TriangleMesh& mesh, double most2, std::size_t most_pieces) {
-  TriangleMesh pieces{mesh.V, {}, {}};
-  for (std::vector<Triangle> left = mesh.F; !left.empty();) {
-    const Triangle t = left.back();
-    left.pop_back();
-    const int k = longest_edge(pieces, t);
-    if (!(edge2(pieces, t, k) > most2) || pieces.F.size() + left.size() >= most_pieces) {
-      pieces.F.push_back(t);
-      continue;
-    }
-    const int a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3], middle = static_cast<int>(pieces.V.size());
-    pieces.V.push_back((pieces.V[a] + pieces.V[b]) / 2);
-    left.push_back({a, middle, c});
-    left.push_back({middle, b, c});
-  }
-  return pieces;
+/// Of a boundary without corners that are at one place.
+TriangleBody body_of(const std::vector<Vec3>& V, const std::vector<Triangle>& faces) {
+  const SurfaceTopology surface = surface_topology(V, faces);
+  TriangleBody body{.area = surface.area,
+                    .n_pieces = surface.components.size(),
+                    .euler_characteristic = surface.euler_characteristic,
+                    .is_closed = surface.closed_manifold,
+                    .is_manifold = surface.closed_manifold};
+  for (const SurfaceComponent& piece : surface.components) body.volume += piece.volume;
+  return body;
 }
 
 /// Those of which no part is inside of the body, with their vertices.
@@ -83,7 +67,8 @@ TriangleMesh whole(const TriangleMesh& mesh) {
 std::shared_ptr<const GivenTriangles> given_triangles(TriangleMesh mesh, const Vec3& shift) {
   for (Vec3& x : mesh.V) x -= shift;
   SurfaceDistance distance(mesh.V, mesh.F);
-  return std::make_shared<const GivenTriangles>(GivenTriangles{std::move(mesh), std::move(distance)});
+  const TriangleBody body = measure_body(mesh);
+  return std::make_shared<const GivenTriangles>(GivenTriangles{std::move(mesh), std::move(distance), body});
 }
 
 TriangleDistances triangle_distances(const Domain& domain, const std::vector<Vec3>& V,
@@ -105,7 +90,8 @@ TriangleDistances triangle_distances(const Domain& domain, const std::vector<Vec
   // Pieces not larger than the faces.
   const double edge2 = edge2_sum / static_cast<double>(faces.size());
   const TriangleMesh pieces =
-      cut(whole(given.mesh), edge2, kPieces * (given.mesh.F.size() + faces.size()) + kPiecesAnyway);
+      cut_triangles(whole(given.mesh), std::sqrt(edge2), kPieces * (given.mesh.F.size() + faces.size()) + kPiecesAnyway)
+          .mesh;
   std::vector<Vec3> y = domain.cloud.points;
   y.insert(y.end(), pieces.V.begin(), pieces.V.end());
   for (std::size_t f = 0; f < pieces.F.size(); ++f) y.push_back(pieces.centroid(f));
@@ -118,7 +104,9 @@ TriangleDistances triangle_distances(const Domain& domain, const std::vector<Vec
           .rms_back = back.rms,
           .p99_back = back.p99,
           .max_back = back.max,
-          .farthest_back = back.farthest + domain.shift};
+          .farthest_back = back.farthest + domain.shift,
+          .body = given.body,
+          .mesh = body_of(V, faces)};
 }
 
 }  // namespace umtet

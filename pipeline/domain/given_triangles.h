@@ -6,6 +6,7 @@
 #include "common/context.h"
 #include "mesh/implicit/surface_distance.h"
 #include "pipeline/reports/certificate_report.h"
+#include "reconstruct/triangles/triangle_body.h"
 #include "reconstruct/triangles/triangle_mesh.h"
 
 namespace umtet {
@@ -17,6 +18,7 @@ struct Domain;
 struct GivenTriangles {
   TriangleMesh mesh;
   SurfaceDistance distance;
+  TriangleBody body;  ///< what they bound
 };
 
 /// @param shift  taken off their coordinates
@@ -25,7 +27,7 @@ std::shared_ptr<const GivenTriangles> given_triangles(TriangleMesh mesh, const V
 
 /// Distances between the boundary of a mesh and the given triangles, both ways: of vertices and centres of its faces,
 /// and of the samples and of corners and centres of those triangles that bound the body with all of themselves. These
-/// are cut into pieces of the size of the faces.
+/// are cut into pieces of the size of the faces. With size and topology of what both bound.
 /// @param surface  of these faces
 /// \pre domain.triangles is there. \throw Cancelled
 TriangleDistances triangle_distances(const Domain& domain, const std::vector<Vec3>& V,

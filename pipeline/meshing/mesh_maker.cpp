@@ -17,6 +17,7 @@
 #include "pipeline/meshing/made_mesh.h"
 #include "pipeline/meshing/mesh_measures.h"
 #include "pipeline/meshing/second_order.h"
+#include "pipeline/meshing/volume_match.h"
 
 namespace umtet {
 namespace {
@@ -77,8 +78,17 @@ const ZeroSetChoice& MeshMaker::pieces_at(double h, const SizeField* sizes) {
   return pieces_->second;
 }
 
-UmParams MeshMaker::params_for(const ZeroSetChoice& pieces) const {
+// Share of the surface that is thinner than two layers of tets: then flat tets are the rule, and what repair may reach
+// of them is the aim.
+constexpr double kMostlyThin = .3;
+
+UmParams MeshMaker::params_for(const ZeroSetChoice& pieces, double h) const {
   UmParams params = params_;
+  if (is_thickened_) {
+    const double thickness = thickness_->second.share(kMostlyThin);
+    const double aim = quality_within_reach(thickness, h);
+    if (aim < params.fast.quality_target()) params.fast.set_quality_target(aim);
+  }
   // The full loop would mesh every piece; crawling starts from the ones to keep.
   if (!pieces.dropped.empty()) params.submesh.search = SubmeshSearch::Crawl;
   return params;
@@ -94,12 +104,22 @@ KnownSigns MeshMaker::known_signs(const BackgroundMesh& background, const ZeroSe
   return {[map](const Vec3& x) { return (*map)(x); }, reach};
 }
 
+/// None where the body is as thick as the tets need it, or may not be thickened.
+const TriangleThickness* MeshMaker::thin_triangles(const BackgroundMesh& background, const ZeroSetChoice& pieces,
+                                                   double h) {
+  if (!may_be_thickened(domain_, parameters_) || ranks_ || !background.is_lattice() || !pieces.dropped.empty())
+    return nullptr;
+  if (!thickness_ || thickness_->first < h) thickness_ = {h, triangle_thickness(domain_, kEdgesAcross * h, context_)};
+  return thickness_->second.share(0) < kEdgesAcross * h ? &thickness_->second : nullptr;
+}
+
 /// psi cut for h, and what h is too large for.
 MeshAttempt MeshMaker::begin(const SizedBackground& background, double h) {
   MeshAttempt a;
   a.h = h;
   a.sizes = background.sizes;
   if (a.sizes) a.background = background.mesh;
+  domain_.level_shift = 0;
   const ZeroSetChoice& pieces = pieces_at(h, a.sizes.get());
   a.n_levels = n_levels_;
   a.n_pieces = pieces.seeds.size();
@@ -127,7 +147,13 @@ ChosenSubmesh MeshMaker::choose(const BackgroundMesh& background, const ZeroSetC
     lines_.detail(fmt::format("h = {:.6g}, background of {} tets, psi = 0 in {} pieces", background.h(),
                               background.n_tets(), pieces.topology.components.size()));
   }
-  UmParams params = params_for(pieces);
+  const TriangleThickness* thin = thin_triangles(background, pieces, background.h());
+  is_thickened_ = thin != nullptr;
+  UmParams params = params_for(pieces, background.h());
+  if (thin) {
+    const ThickBody body(domain_, *thin, background.h());
+    return choose_submesh(background, body, params, context_.part(kChoice, kFit));
+  }
   if (former && may_keep(*former, pieces)) {
     return choose_submesh(background, domain_.psi(), params,
                           {*former->background, former->result, seeds_of_some(pieces)}, context_.part(kChoice, kFit));
@@ -162,8 +188,9 @@ MeshMaker::Begun MeshMaker::choose(const SizedBackground& background, double h, 
 
 void MeshMaker::fit(const SizedBackground& background, ChosenSubmesh chosen, MeshAttempt& a) {
   const ZeroSetChoice& pieces = pieces_at(a.h, a.sizes.get());
-  a.result = fit_submesh(background.mesh, domain_.psi(), params_for(pieces), std::move(chosen),
+  a.result = fit_submesh(background.mesh, domain_.psi(), params_for(pieces, a.h), std::move(chosen),
                          context_.part(kFit, kCertificate));
+  if (a.made()) match_volume(domain_, a.h, params_.fast.projection.closest_point, a.result, context_);
   round_to_file(a.result, domain_.shift);
 }
 
@@ -194,6 +221,7 @@ MeshAttempt MeshMaker::finish(const SizedBackground& background, Begun begun) {
   a.result.final = std::move(mesh.V);
   a.result.submesh.mesh.C = std::move(mesh.C);
   a.measured = std::move(made.measures);
+  a.measured.domain.level_shift = domain_.level_shift;
   a.places = std::move(made.places);
   curve(a);
   // Not as output.* asks for: how a mesh is judged does not decide how it is made.

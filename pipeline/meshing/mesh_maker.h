@@ -12,6 +12,7 @@
 #include "pipeline/case/parameters.h"
 #include "pipeline/domain/background_choice.h"
 #include "pipeline/domain/domain.h"
+#include "pipeline/domain/thick_body.h"
 #include "pipeline/domain/zero_set_choice.h"
 #include "pipeline/meshing/mesh_attempts.h"
 #include "pipeline/meshing/part_mesher.h"
@@ -69,7 +70,8 @@ class MeshMaker {
   std::optional<MadeInParts> made_by_ranks(const SizedBackground& background, const ZeroSetChoice& pieces, double h);
   MeshAttempt finish(const SizedBackground& background, Begun begun);
   void fit(const SizedBackground& background, ChosenSubmesh chosen, MeshAttempt& a);
-  UmParams params_for(const ZeroSetChoice& pieces) const;
+  UmParams params_for(const ZeroSetChoice& pieces, double h) const;
+  const TriangleThickness* thin_triangles(const BackgroundMesh& background, const ZeroSetChoice& pieces, double h);
   KnownSigns known_signs(const BackgroundMesh& background, const ZeroSetChoice& pieces) const;
   bool may_keep(const MeshAttempt& former, const ZeroSetChoice& pieces) const;
   MeshAttempt attempt(const SizedBackground& background, double h, const MeshAttempt* former);
@@ -90,6 +92,9 @@ class MeshMaker {
   std::optional<std::pair<double, ZeroSetChoice>> pieces_;  ///< of psi cut for the h beside them
   int n_levels_ = 0;                                        ///< of psi then; 0: a formula
   int n_attempts_ = 0;
+  /// Of the triangles, up to what the h beside it asks for, once that has been measured.
+  std::optional<std::pair<double, TriangleThickness>> thickness_;
+  bool is_thickened_ = false;  ///< the vertices that were chosen last
   bool has_said_alone_ = false;
 };
 

@@ -16,6 +16,7 @@
 #include "pipeline/reports/mesh_place.h"
 #include "pipeline/reports/missed_place.h"
 #include "pipeline/reports/thin_place.h"
+#include "reconstruct/triangles/triangle_body.h"
 
 // What certificate.json, the record of 3-mesh and the answers of `umtet check` say about a mesh. Lengths in model units
 // unless a name says otherwise; certificate_json.h writes and reads them.
@@ -45,6 +46,7 @@ struct ZeroSetReport {
   std::vector<std::string> components_dropped;  ///< for each that is not meshed, why
   std::optional<bool> components_proved;        ///< no piece is unseen; none where there is no proof to be had
   std::optional<SupportReport> support;         ///< none for a formula
+  double level_shift = 0;  ///< taken off psi, so that the mesh has the volume of the triangles; model units
 };
 
 /// Distances of the samples to the boundary of the mesh. That of a merged sample is the rms over those that it was
@@ -85,6 +87,10 @@ struct TriangleDistances {
   Vec3 farthest = Vec3::Zero();                     ///< where that is; model coordinates
   double rms_back = 0, p99_back = 0, max_back = 0;  ///< of samples, corners and centres of triangles to the mesh
   Vec3 farthest_back = Vec3::Zero();
+  /// Size and topology of what the triangles bound: none read from a certificate that lacks it.
+  std::optional<TriangleBody> body = {};
+  /// The same of the mesh, of its boundary without walls.
+  TriangleBody mesh = {};
 };
 
 /// What the mesh can resolve at its edge length.

@@ -65,6 +65,7 @@ Json to_json(const ZeroSetReport& r) {
                {"topology_at", r.topology_at ? json_of(*r.topology_at) : Json(nullptr)},
                {"components_dropped", r.components_dropped},
                {"components_proved", json_of(r.components_proved)}};
+  if (r.level_shift != 0) json["level_shift"] = r.level_shift;
   json.update(to_json(r.support));
   return json;
 }
@@ -83,7 +84,8 @@ ZeroSetReport zero_set_from(const Json& json) {
           .topology_at = at.is_null() ? std::nullopt : std::optional(vector_from(at)),
           .components_dropped = json.at("components_dropped"),
           .components_proved = optional_from<bool>(json.at("components_proved")),
-          .support = support_from(json)};
+          .support = support_from(json),
+          .level_shift = json.value("level_shift", 0.)};
 }
 
 Json to_json(const SampleDistances& d, double h) {
@@ -120,30 +122,58 @@ SampleDistances distances_from(const Json& json) {
   return d;
 }
 
+namespace {
+
+Json to_json(const TriangleBody& b) {
+  return {{"volume", b.volume},       {"area", b.area},
+          {"pieces", b.n_pieces},     {"euler_characteristic", b.euler_characteristic},
+          {"genus", b.genus()},       {"closed", b.is_closed},
+          {"manifold", b.is_manifold}};
+}
+
+TriangleBody triangle_body_from(const Json& json) {
+  return {.volume = number_from(json.at("volume")),
+          .area = number_from(json.at("area")),
+          .n_pieces = json.at("pieces"),
+          .euler_characteristic = json.at("euler_characteristic"),
+          .is_closed = json.at("closed"),
+          .is_manifold = json.at("manifold")};
+}
+
+}  // namespace
+
 Json to_json(const TriangleDistances& d, double h) {
-  return {{"n_triangles", d.n_triangles},
-          {"rms_distance", d.rms},
-          {"p99_distance", d.p99},
-          {"max_distance", d.max},
-          {"max_distance_over_h", d.max / h},
-          {"farthest", json_of(d.farthest)},
-          {"rms_distance_back", d.rms_back},
-          {"p99_distance_back", d.p99_back},
-          {"max_distance_back", d.max_back},
-          {"max_distance_back_over_h", d.max_back / h},
-          {"farthest_back", json_of(d.farthest_back)}};
+  Json json = {{"n_triangles", d.n_triangles},
+               {"rms_distance", d.rms},
+               {"p99_distance", d.p99},
+               {"max_distance", d.max},
+               {"max_distance_over_h", d.max / h},
+               {"farthest", json_of(d.farthest)},
+               {"rms_distance_back", d.rms_back},
+               {"p99_distance_back", d.p99_back},
+               {"max_distance_back", d.max_back},
+               {"max_distance_back_over_h", d.max_back / h},
+               {"farthest_back", json_of(d.farthest_back)}};
+  if (!d.body) return json;
+  json["body"] = to_json(*d.body);
+  json["mesh"] = to_json(d.mesh);
+  return json;
 }
 
 TriangleDistances triangle_distances_from(const Json& json) {
-  return {.n_triangles = json.at("n_triangles"),
-          .rms = number_from(json.at("rms_distance")),
-          .p99 = number_from(json.at("p99_distance")),
-          .max = number_from(json.at("max_distance")),
-          .farthest = vector_from(json.at("farthest")),
-          .rms_back = number_from(json.at("rms_distance_back")),
-          .p99_back = number_from(json.at("p99_distance_back")),
-          .max_back = number_from(json.at("max_distance_back")),
-          .farthest_back = vector_from(json.at("farthest_back"))};
+  TriangleDistances d{.n_triangles = json.at("n_triangles"),
+                      .rms = number_from(json.at("rms_distance")),
+                      .p99 = number_from(json.at("p99_distance")),
+                      .max = number_from(json.at("max_distance")),
+                      .farthest = vector_from(json.at("farthest")),
+                      .rms_back = number_from(json.at("rms_distance_back")),
+                      .p99_back = number_from(json.at("p99_distance_back")),
+                      .max_back = number_from(json.at("max_distance_back")),
+                      .farthest_back = vector_from(json.at("farthest_back"))};
+  if (!json.contains("body")) return d;
+  d.body = triangle_body_from(json.at("body"));
+  d.mesh = triangle_body_from(json.at("mesh"));
+  return d;
 }
 
 Json to_json(const ResolutionReport& r, double h) {

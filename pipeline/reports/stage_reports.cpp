@@ -45,6 +45,17 @@ NormalsReport normals_from(const Json& json) {
   return n;
 }
 
+std::vector<PlaneCap> caps_from(const Json& json) {
+  std::vector<PlaneCap> caps;
+  for (const Json& cap : json)
+    caps.push_back({.centre = vector_from(cap.at("centre")),
+                    .normal = vector_from(cap.at("normal")),
+                    .area = number_from(cap.at("area")),
+                    .off_plane = number_from(cap.at("off_plane")),
+                    .n_triangles = cap.at("n_triangles")});
+  return caps;
+}
+
 TrianglesReport triangles_from(const Json& json) {
   TrianglesReport t;
   t.n_vertices = json.at("n_vertices");
@@ -68,6 +79,16 @@ TrianglesReport triangles_from(const Json& json) {
   b.n_inside_out = json.at("n_samples_inside_out");
   b.unsure = number_from(json.at("unsure"));
   t.n_boundary = json.at("n_boundary");
+  t.n_labels = json.value("n_labels", std::size_t{0});
+  b.least_spacing = json.value("least_sample_spacing", b.spacing);
+  if (json.contains("thickness") && json.at("thickness").is_number()) b.thickness = json.at("thickness").get<double>();
+  if (json.contains("caps")) b.caps = caps_from(json.at("caps"));
+  if (json.contains("touching")) {
+    const Json& touching = json.at("touching");
+    b.touching = {.n_contacts = touching.at("contacts"),
+                  .n_pieces = touching.at("pieces"),
+                  .width = number_from(touching.at("width"))};
+  }
   t.label_names = json.at("label_names");
   return t;
 }
@@ -187,28 +208,41 @@ Report report_of(const StageRecord& record, Report (*from)(const Json&)) {
 Json to_json(const TrianglesReport& t) {
   const TriangleReport& b = t.body;
   const FaceSidesReport& s = b.sides;
-  return {{"n_vertices", t.n_vertices},
-          {"n_faces", t.n_faces},
-          {"n_polygons", t.n_polygons},
-          {"n_triangles", b.n_triangles},
-          {"n_degenerate", b.dropped.n_degenerate},
-          {"n_duplicates", b.dropped.n_duplicates},
-          {"n_open_edges", s.n_open_edges},
-          {"n_branching_edges", s.n_branching_edges},
-          {"n_one_sided_edges", s.n_one_sided_edges},
-          {"weld_distance", s.weld_distance},
-          {"n_patches", s.n_patches},
-          {"n_closed_patches", s.n_closed_patches},
-          {"n_turned", s.n_turned},
-          {"n_cavities", s.n_cavities},
-          {"n_inner_shells", s.n_inner_shells},
-          {"sample_spacing", b.spacing},
-          {"n_samples", b.n_samples},
-          {"n_samples_inside", b.n_inside},
-          {"n_samples_inside_out", b.n_inside_out},
-          {"unsure", b.unsure},
-          {"n_boundary", t.n_boundary},
-          {"label_names", t.label_names}};
+  Json caps = Json::array();
+  for (const PlaneCap& cap : b.caps)
+    caps.push_back({{"centre", json_of(cap.centre)},
+                    {"normal", json_of(cap.normal)},
+                    {"area", cap.area},
+                    {"off_plane", cap.off_plane},
+                    {"n_triangles", cap.n_triangles}});
+  return {
+      {"n_vertices", t.n_vertices},
+      {"n_faces", t.n_faces},
+      {"n_polygons", t.n_polygons},
+      {"n_triangles", b.n_triangles},
+      {"n_degenerate", b.dropped.n_degenerate},
+      {"n_duplicates", b.dropped.n_duplicates},
+      {"n_open_edges", s.n_open_edges},
+      {"n_branching_edges", s.n_branching_edges},
+      {"n_one_sided_edges", s.n_one_sided_edges},
+      {"weld_distance", s.weld_distance},
+      {"n_patches", s.n_patches},
+      {"n_closed_patches", s.n_closed_patches},
+      {"n_turned", s.n_turned},
+      {"n_cavities", s.n_cavities},
+      {"n_inner_shells", s.n_inner_shells},
+      {"sample_spacing", b.spacing},
+      {"least_sample_spacing", b.least_spacing},
+      {"thickness", b.thickness ? Json(*b.thickness) : Json()},
+      {"caps", std::move(caps)},
+      {"touching", {{"contacts", b.touching.n_contacts}, {"pieces", b.touching.n_pieces}, {"width", b.touching.width}}},
+      {"n_samples", b.n_samples},
+      {"n_samples_inside", b.n_inside},
+      {"n_samples_inside_out", b.n_inside_out},
+      {"unsure", b.unsure},
+      {"n_boundary", t.n_boundary},
+      {"label_names", t.label_names},
+      {"n_labels", t.n_labels}};
 }
 
 Json to_json(const CloudReport& r) {

@@ -34,7 +34,8 @@ struct TrianglesReport {
   std::size_t n_vertices = 0, n_faces = 0, n_polygons = 0;  ///< as the file counts them
   TriangleReport body;
   std::size_t n_boundary = 0;            ///< of triangles.ply
-  std::vector<std::string> label_names;  ///< of label 1, 2 ..., as the file has them
+  std::vector<std::string> label_names;  ///< of label 1, 2 ..., as the file has them, and those of caps
+  std::size_t n_labels = 0;              ///< the greatest of the file, 0 without
 };
 
 /// Samples that became one a cell (merged_samples.h).

@@ -118,9 +118,17 @@ void CaseRun::tell_changes(const Parameters& former) {
 constexpr double kSamplesAnEdge = 2.5;
 
 /// Triangles are sampled as finely as the mesh needs, unless the user said how. That is a parameter like all others, so
-/// that another h makes other samples; one that a former h has left goes with it.
+/// that another h makes other samples; one that a former h has left goes with it. So is whether openings are closed
+/// before psi is fitted.
 void CaseRun::sample_for_h() {
-  if (request_.from != Stage::Cloud || request_.until != Stage::Mesh || !parameters_.mesh().implicit.empty()) return;
+  if (request_.from != Stage::Cloud || !parameters_.mesh().implicit.empty()) return;
+  const HoleClosing close = parameters_.reconstruct().close;
+  const bool is_left =
+      parameters_.reconstruct().keep_open || close == HoleClosing::Smooth || close == HoleClosing::None;
+  if (parameters_.source(keys::cloud::cap) == ParamSource::Derived) parameters_.drop(keys::cloud::cap);
+  if (is_left && parameters_.source(keys::cloud::cap) <= ParamSource::Case)
+    parameters_.set(keys::cloud::cap, "false", ParamSource::Derived, "for --close");
+  if (request_.until != Stage::Mesh) return;
   const char* key = keys::cloud::sample_spacing;
   if (parameters_.source(key) == ParamSource::Derived) parameters_.drop(key);
   if (parameters_.source(key) > ParamSource::Case || parameters_.cloud().sample_spacing > 0) return;

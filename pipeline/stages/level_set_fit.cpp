@@ -123,9 +123,20 @@ void leave_out_finer(const OrientedPointCloud& cloud, const NeighbourDistances& 
   if (params.finest > 0) report.wanted = wanted_mesh(parameters);
 }
 
+// As choose_resolution() has it: 1.25 spacings of samples.
+constexpr double kSpacings = 1.25;
+
+/// Where the samples of thin parts ask for a finer lattice than the median sample does: that one; else 0.
+double lattice_of(const ExactSamples& exact, const NeighbourDistances& near, const SsdParams& params) {
+  // Samples are rarely nearer to each other than .8 of the spacing of most (triangle_samples.h).
+  constexpr double kAsDense = .8;
+  if (exact.least_spacing > kAsDense * sample_spacing(near)) return 0;
+  return kSpacings * exact.least_spacing / params.detail;
+}
+
 /// @param cloud  near the origin
 LevelSetFit fit_near_origin(OrientedPointCloud& cloud, NeighbourDistances near, const Parameters& parameters,
-                            const Context& context, BandRefiner* bands) {
+                            const Context& context, BandRefiner* bands, const std::optional<ExactSamples>& exact) {
   SsdParams params = ssd_params(parameters);
   params.bands = bands;
   params.max_memory = allowed_bytes(parameters);
@@ -137,15 +148,16 @@ LevelSetFit fit_near_origin(OrientedPointCloud& cloud, NeighbourDistances near, 
     const OrientedPointCloud few = is_even ? OrientedPointCloud() : picked(cloud, near.representatives);
     const OrientedPointCloud& even = is_even ? cloud : few;
     const NeighbourTree tree(even.points);
-    const double noise = parameters.reconstruct().noise;
+    const double noise = exact && parameters.reconstruct().noise < 0 ? 0 : parameters.reconstruct().noise;
     const double of_samples = noise >= 0 ? noise : noise_along_normals(even, tree);
     if (noise < 0) params.local_noise = noise_of_all(cloud, even, tree, of_samples);
     params.noise = noise >= 0 || cloud.counts.empty() ? of_samples : noise_before_merging(even, tree);
     report.thickness = thickness_percentiles(even, tree);
   }
   if (!cloud.counts.empty()) leave_out_finer(cloud, near, parameters, params, report);
+  if (exact && params.spacing == 0) params.spacing = lattice_of(*exact, near, params);
   SsdFit fit = fit_turning_opposed(cloud, params, context, &near);
-  if (parameters.reconstruct().noise < 0) {
+  if (!exact && parameters.reconstruct().noise < 0) {
     for (int round = 0; round < kNoiseRounds && (leaves_less(fit.report, params.noise) ||
                                                  (round == 0 && leaves_more(fit.report, params.noise, params.finest)));
          ++round) {
@@ -167,10 +179,10 @@ LevelSetFit fit_near_origin(OrientedPointCloud& cloud, NeighbourDistances near, 
 }  // namespace
 
 LevelSetFit fit_level_set(OrientedPointCloud& cloud, NeighbourDistances near, const Parameters& parameters,
-                          const Context& context, BandRefiner* bands) {
+                          const Context& context, BandRefiner* bands, const std::optional<ExactSamples>& exact) {
   const Vec3 shift = far_origin_shift(cloud);
   for (Vec3& x : cloud.points) x -= shift;
-  LevelSetFit fit = fit_near_origin(cloud, std::move(near), parameters, context, bands);
+  LevelSetFit fit = fit_near_origin(cloud, std::move(near), parameters, context, bands, exact);
   for (Vec3& x : cloud.points) x += shift;
   fit.report.shift = shift;
   return fit;

@@ -25,6 +25,15 @@ OrientedPointCloud take_cloud(const StageContext& context) {
   }
 }
 
+/// Of a cloud of triangles whose normals are those of the triangles.
+std::optional<ExactSamples> exact_samples(const CasePaths& paths) {
+  const StageState state = inspect_stage(paths, Stage::Cloud, Json::object(), std::nullopt);
+  if (!state.record) return std::nullopt;
+  const CloudReport report = cloud_report(*state.record);
+  if (!report.triangles || !report.normals.given) return std::nullopt;
+  return ExactSamples{report.triangles->body.least_spacing};
+}
+
 }  // namespace
 
 void run_level_set_stage(const StageContext& context) {
@@ -37,7 +46,7 @@ void run_level_set_stage(const StageContext& context) {
   LevelSetFit fit = [&] {
     try {
       return fit_level_set(cloud, std::exchange(context.handover.near, {}), context.parameters, call,
-                           context.ranks ? context.ranks->bands() : nullptr);
+                           context.ranks ? context.ranks->bands() : nullptr, exact_samples(context.paths));
     } catch (const SolveTooLarge& e) {
       throw ResourceLimit(e.what());
     } catch (const SolveError& e) {

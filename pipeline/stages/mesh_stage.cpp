@@ -186,7 +186,7 @@ void run_mesh_stage(const StageContext& context) {
                 run_of_stage(seconds.count(), context.threads)},
                outputs);
   if (best.parts) return;  // nobody has the mesh
-  stage.domain().limit_detail(best.h);
+  stage.domain().shift_level(best.measured.domain.level_shift, best.h);
   context.handover.domain = std::move(stage.domain());
 }
 

@@ -15,8 +15,24 @@ namespace {
 // Of samples at which the side is a guess: what is worth a line.
 constexpr double kUnsure = .01;
 
+std::vector<std::string> names_of_caps(std::size_t n) {
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < n; ++k) names.push_back(fmt::format("opening_{}", k + 1));
+  return names;
+}
+
+/// Names of labels are as many as labels, or none: a file may have labels without.
+void name_caps(TrianglesReport& t) {
+  const std::vector<PlaneCap>& caps = t.body.caps;
+  if (caps.empty()) return;
+  // Without labels of the file all other triangles are label 1.
+  if (t.label_names.empty() && t.n_labels == 0) t.label_names.emplace_back("wall");
+  if (t.label_names.size() < t.n_labels) return;
+  for (std::string& name : names_of_caps(caps.size())) t.label_names.push_back(std::move(name));
+}
+
 /// What was mended, and how sure it is.
-std::vector<std::string> notices_of(const TrianglesReport& t, const TriangleFileReport& file) {
+std::vector<std::string> notices_of(const TrianglesReport& t, const TriangleFileReport& file, Touching touching) {
   std::vector<std::string> list;
   const auto say = [&]<class... T>(fmt::format_string<T...> format, T&&... args) {
     list.push_back(fmt::format(format, std::forward<T>(args)...));
@@ -26,8 +42,17 @@ std::vector<std::string> notices_of(const TrianglesReport& t, const TriangleFile
   const auto percent = [&](std::size_t n, std::size_t of) {
     return 100. * static_cast<double>(n) / static_cast<double>(of);
   };
-  say("{} triangles in {} patch{}, {} open edges; {} samples {:.3g} apart", b.n_triangles, s.n_patches,
-      s.n_patches == 1 ? "" : "es", s.n_open_edges, b.n_samples, b.spacing);
+  say("{} triangles in {} patch{}, {} open edges; {} samples {:.3g} apart{}", b.n_triangles, s.n_patches,
+      s.n_patches == 1 ? "" : "es", s.n_open_edges, b.n_samples, b.spacing,
+      b.least_spacing < b.spacing ? fmt::format(", {:.3g} where the body or a gap is thin", b.least_spacing) : "");
+  if (!b.caps.empty())
+    say("closed {} opening{} by the plane of {} rim: patch{} {} (--close smooth, or --set cloud.cap=false, does not)",
+        b.caps.size(), b.caps.size() == 1 ? "" : "s", b.caps.size() == 1 ? "its" : "each one's",
+        b.caps.size() == 1 ? "" : "es", fmt::join(names_of_caps(b.caps.size()), ", "));
+  if (b.touching.n_contacts > 0)
+    say("{} closed pieces meet along edges or at corners: {} there, {:.3g} wide ({})", b.touching.n_pieces,
+        touching == Touching::Apart ? "a gap is left" : "a neck is added", 2 * b.touching.width,
+        touching == Touching::Apart ? "--touching fuse joins them" : "--touching apart parts them");
   if (b.dropped.n_degenerate + b.dropped.n_duplicates > 0)
     say("dropped {} triangles without an area and {} that were there twice", b.dropped.n_degenerate,
         b.dropped.n_duplicates);
@@ -67,11 +92,20 @@ ScanSource read_source(const fs::path& source, const Parameters& parameters, con
     throw CloudRefused(source.string() + ": --columns is about tables in text, not about triangles");
   TriangleFile file = read_triangles(source);
   const NormalsOf how = parameters.cloud().normals;
+  const Touching touching = parameters.cloud().touching == TouchingPieces::Fuse ? Touching::Fuse : Touching::Apart;
   ScanSource scan;
+  const std::size_t n_labels =
+      file.mesh.labels.empty()
+          ? 0
+          : static_cast<std::size_t>(std::max(0, *std::max_element(file.mesh.labels.begin(), file.mesh.labels.end())));
   BodySamples body = [&] {
     try {
       return sample_body(std::move(file.mesh),
-                         {.spacing = parameters.cloud().sample_spacing, .turn = how != NormalsOf::Given}, context);
+                         {.spacing = parameters.cloud().sample_spacing,
+                          .turn = how != NormalsOf::Given,
+                          .cap = parameters.cloud().cap,
+                          .touching = touching},
+                         context);
     } catch (const std::invalid_argument& e) {
       throw CloudRefused(fmt::format("{}: {}", source.string(), e.what()));
     }
@@ -92,9 +126,11 @@ ScanSource read_source(const fs::path& source, const Parameters& parameters, con
               .n_polygons = file.report.n_polygons,
               .body = std::move(body.report),
               .n_boundary = body.boundary.F.size(),
-              .label_names = std::move(file.report.label_names)};
+              .label_names = std::move(file.report.label_names),
+              .n_labels = n_labels};
+  name_caps(t.report);
   t.boundary = std::move(body.boundary);
-  t.notices = notices_of(t.report, file.report);
+  t.notices = notices_of(t.report, file.report, touching);
   return scan;
 }
 

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "reconstruct/triangles/triangle_mesh.h"
+#include "reconstruct/winding/sample_tree.h"
+
+namespace umtet {
+
+/// The point of the triangle abc that is nearest to x [Ericson2005].
+Vec3 closest_on_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// Which triangle a question led to.
+struct TriangleHit {
+  std::uint32_t face = 0;
+  double distance = std::numeric_limits<double>::infinity();  ///< from where the question began, model units
+  Vec3 point = Vec3::Zero();
+};
+
+/// Rays and nearest triangles, from a binary tree of boxes. Keeps its own copy of the triangles. Immutable; queries are
+/// thread-safe.
+class TriangleTree {
+ public:
+  /// \throw std::invalid_argument  no triangle, or 2^31 and more. Cost: O(n log n)
+  explicit TriangleTree(const TriangleMesh& mesh);
+
+  /// Which triangles count.
+  using Counts = std::function<bool(std::uint32_t face)>;
+
+  /// The first triangle that counts on the ray from x along the unit vector d, farther than `from` and up to `to`.
+  std::optional<TriangleHit> first_on_ray(const Vec3& x, const Vec3& d, double from, double to,
+                                          const Counts& counts) const;
+  /// The nearest triangle that counts, nearer than `within`.
+  std::optional<TriangleHit> nearest(const Vec3& x, double within, const Counts& counts) const;
+
+ private:
+  struct Corners {
+    Vec3 x;  ///< centroid
+    std::array<Vec3, 3> at;
+    std::uint32_t number;
+  };
+  struct Node : SampleTreeNode {
+    Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+  };
+  std::vector<Corners> triangles_;
+  std::vector<Node> nodes_;  ///< parents before children
+};
+
+}  // namespace umtet
