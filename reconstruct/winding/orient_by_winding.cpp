@@ -28,6 +28,9 @@ constexpr double kBetter = 0.75;
 // Normals that are off at more patches bound nothing: a thin plate that was taken for one sheet is off at all. Their
 // consistency says nothing then.
 constexpr double kUnbounded = 0.5;
+// Nor are normals believed then of which more than one in 40 is turned at random, p of 1 - 2 p (1 - p): those that
+// follow noise of a spacing have .91 to .94, right ones of the plate .97 and more.
+constexpr double kCoherent = 0.95;
 // Where more patches than this are off, or it is not certain, the next attempt, with more samples, knows better.
 constexpr double kUnsettled = 0.1;
 // Cosine of the angle from which on an estimated direction is not believed: that of a fit to both sheets of a thin
@@ -190,7 +193,8 @@ WindingReport orient_by_winding(OrientedPointCloud& cloud, const OrientByWinding
       report.off_tried = after;
       report.consistency_tried = consistent;
     }
-    const bool is_certain = consistent >= report.consistency_before || (before > kUnbounded && after <= kClosed);
+    const bool is_certain =
+        consistent >= report.consistency_before || (before > kUnbounded && after <= kClosed && consistent >= kCoherent);
     if (after < kBetter * before && is_certain) {
       best = std::move(field);
       params = &attempt.params;

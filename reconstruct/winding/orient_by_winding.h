@@ -56,7 +56,8 @@ struct OrientByWinding {
 ///    1/2 there, too. They are certain if
 ///      - they are off at a quarter fewer patches, and
 ///      - no less consistent with one another than the cloud's are (consistency()), or the cloud's are off at more than
-///        half of the patches, so that they bound nothing, and these at less than one in 25.
+///        half of the patches, so that they bound nothing, and these at less than one in 25, with a consistency of .95
+///        or more.
 /// 3. They are taken if they explain samples better that neither they nor the fit knew: how.explains_better.
 ///
 /// Then they decide over the signs of all normals; over directions, if these may change, on a cloud that is sparse

@@ -14,8 +14,9 @@ namespace {
 
 // w jumps by one across the surface.
 constexpr double kOff = 0.25;
-// A patch reaches so many deviations of the noise, which holds nearly all of it, and so many spacings: a dozen samples.
-constexpr double kDeviations = 3, kSpacings = 2;
+// A patch reaches so many deviations of the noise, which holds nearly all of it, and so many spacings: 7 samples of a
+// clean cloud, and 20 or more where noise of a spacing puts w at single samples off by a half.
+constexpr double kDeviations = 3, kSpacings = 1.5;
 // The jump is taken where neither the noise (deviations) nor single samples (spacings) show, at so many samples, whose
 // median is then known to 2 %.
 constexpr double kJumpDeviations = 2.5;
@@ -83,7 +84,7 @@ double patches_off_a_half(const std::vector<Vec3>& points, const std::vector<Vec
   for (std::size_t i = 0; i < n; i += std::max<std::size_t>(1, n / kJumps))
     jumps.push_back(w(points[i] - away * normals[i]) - w(points[i] + away * normals[i]));
   const double jump = std::max(1., median(std::move(jumps))),
-               reach = std::max(kDeviations * noise, kSpacings * spacing);
+               reach = std::hypot(kDeviations * noise, kSpacings * spacing);
   const std::vector<double> values = w.evaluate(points);
   const NeighbourTree tree(points);
   std::vector<std::uint8_t> is_off(n);

@@ -36,8 +36,8 @@ double off_a_half(const std::vector<Vec3>& points, const std::vector<Vec3>& norm
 /// The same of patches, for samples with noise: single ones are off because they do not lie on the surface, but w - 1/2
 /// is odd across it, so its mean over a patch that reaches through the noise vanishes where the sides are right.
 ///
-/// For each sample the mean of w / j over the samples within max(3 noise, 2 s) whose normals are within 90 degrees of
-/// its own; s is the root of the median area. j is the median jump of w across the samples, at least 1: noise of a
+/// For each sample the mean of w / j over the samples within hypot(3 noise, 1.5 s) whose normals are within 90 degrees
+/// of its own; s is the root of the median area. j is the median jump of w across the samples, at least 1: noise of a
 /// spacing makes areas behind samples, which are those of neighbours in space, up to twice as large.
 /// @param noise  standard deviation along the normal, model units
 /// @return the share of samples at which that mean is off 1/2 by more than a quarter. Below .02 where the samples are
