@@ -17,6 +17,7 @@ using ParamValue = std::variant<bool, std::int64_t, double, std::string>;
 
 // What a text with a fixed vocabulary may say; the values stand in the order of its words in parameters.def.
 enum class NormalsOf { Auto, Given, Estimate };
+enum class WindingCheck { Auto, Off };
 enum class SampleWeights { Area, Paper };
 enum class MaxEntPrior { CompactC2, Gaussian };
 enum class FitSolver { Auto, Multilevel, Full, Assembled };

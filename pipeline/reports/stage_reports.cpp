@@ -8,6 +8,53 @@
 namespace umtet {
 namespace {
 
+// In the order of WindingReport::Verdict.
+constexpr std::array kWindingVerdicts = {"agrees", "uncertain", "not better", "taken"};
+
+Json to_json(const HeldOutResidual& r) {
+  return {{"spacing", r.spacing},
+          {"rms_value", r.rms_value},
+          {"normal_defect", r.normal_defect},
+          {"opposed_share", r.opposed_share}};
+}
+
+HeldOutResidual held_out_from(const Json& json) {
+  return {.spacing = number_from(json.at("spacing")),
+          .rms_value = number_from(json.at("rms_value")),
+          .normal_defect = number_from(json.at("normal_defect")),
+          .opposed_share = number_from(json.at("opposed_share"))};
+}
+
+Json to_json(const WindingCheckReport& w) {
+  Json json = {{"verdict", kWindingVerdicts[static_cast<std::size_t>(w.verdict)]},
+               {"restored", w.restored},
+               {"off_before", w.off_before},
+               {"off_after", w.off_after},
+               {"off_tried", w.off_tried},
+               {"consistency_before", w.consistency_before},
+               {"consistency_tried", w.consistency_tried}};
+  if (w.held_out_before) json["held_out_before"] = to_json(*w.held_out_before);
+  if (w.held_out_tried) json["held_out_tried"] = to_json(*w.held_out_tried);
+  return json;
+}
+
+WindingCheckReport winding_from(const Json& json) {
+  WindingCheckReport w;
+  const auto* const verdict =
+      std::find(kWindingVerdicts.begin(), kWindingVerdicts.end(), json.at("verdict").get<std::string>());
+  if (verdict == kWindingVerdicts.end()) throw ArtefactDamaged("the winding number said nothing known of the normals");
+  w.verdict = static_cast<WindingReport::Verdict>(verdict - kWindingVerdicts.begin());
+  w.restored = json.at("restored");
+  w.off_before = number_from(json.at("off_before"));
+  w.off_after = number_from(json.at("off_after"));
+  w.off_tried = number_from(json.at("off_tried"));
+  w.consistency_before = number_from(json.at("consistency_before"));
+  w.consistency_tried = number_from(json.at("consistency_tried"));
+  if (json.contains("held_out_before")) w.held_out_before = held_out_from(json.at("held_out_before"));
+  if (json.contains("held_out_tried")) w.held_out_tried = held_out_from(json.at("held_out_tried"));
+  return w;
+}
+
 Json to_json(const NormalsReport& n) {
   Json json = {{"source", n.given ? "given" : "estimated"}};
   if (n.missing) json["missing"] = *n.missing;
@@ -22,6 +69,7 @@ Json to_json(const NormalsReport& n) {
   if (n.turned_to_viewpoints) json["turned_to_viewpoints"] = *n.turned_to_viewpoints;
   if (n.turned_by_winding) json["turned_by_winding"] = *n.turned_by_winding;
   if (n.replaced_by_winding) json["replaced_by_winding"] = *n.replaced_by_winding;
+  if (n.winding) json["winding"] = to_json(*n.winding);
   return json;
 }
 
@@ -42,6 +90,7 @@ NormalsReport normals_from(const Json& json) {
   if (json.contains("turned_to_viewpoints")) n.turned_to_viewpoints = json.at("turned_to_viewpoints");
   if (json.contains("turned_by_winding")) n.turned_by_winding = json.at("turned_by_winding");
   if (json.contains("replaced_by_winding")) n.replaced_by_winding = json.at("replaced_by_winding");
+  if (json.contains("winding")) n.winding = winding_from(json.at("winding"));
   return n;
 }
 

@@ -11,11 +11,26 @@
 #include "pipeline/reports/certificate_report.h"
 #include "reconstruct/cloud/normal_orientation.h"
 #include "reconstruct/solve/fit_ssd.h"
+#include "reconstruct/solve/held_out.h"
 #include "reconstruct/triangles/body_samples.h"
+#include "reconstruct/winding/orient_by_winding.h"
 
 // What the stages find out: `numbers` of their records. Lengths in model units. The functions below are the only place
 // where these have names in JSON.
 namespace umtet {
+
+/// What the winding number of all samples said of the normals that neighbours agreed on, and how sure it was. The
+/// numbers of samples stand in NormalsReport.
+struct WindingCheckReport {
+  WindingReport::Verdict verdict = WindingReport::Verdict::Agrees;
+  bool restored = false;                 ///< given normals that had been turned were turned back
+  double off_before = 0, off_after = 0;  ///< share of patches that bound no body (patches_off_a_half), in [0, 1]: of
+                                         ///< the normals as they were, and as they are left
+  double off_tried = 0;  ///< of the normals that the winding number proposed; 0 where it proposed none
+  double consistency_before = 0, consistency_tried = 0;  ///< of both; 0 where it proposed none
+  /// How well fits to a part of the samples explain others, with both; none where it was not certain.
+  std::optional<HeldOutResidual> held_out_before, held_out_tried;
+};
 
 /// Where the normals of a cloud are from, and what was done to them.
 struct NormalsReport {
@@ -27,6 +42,7 @@ struct NormalsReport {
   std::optional<std::size_t> turned_to_viewpoints;  ///< by cloud.orient_from, or the scanner position of the file
   /// By the winding number, where it decided: normals that look to the other side, directions that it gave.
   std::optional<std::size_t> turned_by_winding, replaced_by_winding;
+  std::optional<WindingCheckReport> winding;  ///< none where it was not asked
 };
 
 /// Of triangles that were sampled.

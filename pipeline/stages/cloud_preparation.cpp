@@ -17,7 +17,8 @@
 #include "reconstruct/cloud/normal_orientation.h"
 #include "reconstruct/cloud/scanner_positions.h"
 #include "reconstruct/io/triangle_mesh_io.h"
-#include "reconstruct/winding/winding_normals.h"
+#include "reconstruct/solve/held_out.h"
+#include "reconstruct/winding/orient_by_winding.h"
 #include "reconstruct/winding/winding_outliers.h"
 
 namespace umtet {
@@ -70,6 +71,7 @@ class Preparation {
   void take(const OrientationReport& r);
   void say_doubt();
   void look_to_origins();
+  bool explains_better(const SplitCloud& former, const SplitCloud& proposed);
   void ask_winding_number(const std::vector<Vec3>* as_given);
   template <class... T>
   void notice(fmt::format_string<T...> format, T&&... args) {
@@ -197,20 +199,54 @@ void Preparation::find_normals() {
   say_doubt();
 }
 
+/// Fits to the known samples of both, and what they say of the held-out ones. A fit that cannot be made explains
+/// nothing.
+bool Preparation::explains_better(const SplitCloud& former, const SplitCloud& proposed) {
+  WindingCheckReport& w = *normals().winding;
+  const double noise = noise_along_normals(cloud_.points);
+  const auto residual = [&](const SplitCloud& cloud) -> std::optional<HeldOutResidual> {
+    try {
+      return held_out_residual(cloud.known, cloud.held_out, noise);
+    } catch (const SolveError&) {
+    } catch (const std::invalid_argument&) {
+    }
+    return std::nullopt;
+  };
+  w.held_out_before = residual(former);
+  w.held_out_tried = residual(proposed);
+  if (!w.held_out_tried) return false;
+  return !w.held_out_before || w.held_out_tried->energy() < w.held_out_before->energy();
+}
+
 /// Neighbours err where two sheets are nearer to each other than to the next sample, and one error turns a whole part:
 /// the winding number sees all samples at once. Given normals that were consistent are not asked about; those that are
 /// now are not overruled: noise and missing parts are no reason to.
 void Preparation::ask_winding_number(const std::vector<Vec3>* as_given) {
+  if (parameters_.cloud().winding == WindingCheck::Off) return;
+  normals().winding.emplace();
   const bool are_consistent = normals().given && normals().orientation->consistency_after >= kConsistent;
   const WindingReport r = orient_by_winding(
-      cloud_, {.directions_may_change = !normals().given, .others = as_given, .only_others = are_consistent});
+      cloud_, {.directions_may_change = !normals().given,
+               .others = as_given,
+               .only_others = are_consistent,
+               .near = &near_,
+               .covering = &covering_,
+               .explains_better = [this](const SplitCloud& a, const SplitCloud& b) { return explains_better(a, b); }});
   is_closed_ = r.is_closed();
+  WindingCheckReport& w = *normals().winding;
+  w.verdict = r.verdict;
+  w.off_before = r.off_before;
+  w.off_after = r.off_after;
+  w.off_tried = r.off_tried;
+  w.consistency_before = r.consistency_before;
+  w.consistency_tried = r.consistency_tried;
+  w.restored = r.restored;
   if (r.restored) {
     normals().orientation->n_turned = 0;
     normals().orientation->consistency_after = normals().consistency;
     notice("turned them back: the winding number of all samples is for the normals as given");
   }
-  if (!r.taken) return;
+  if (r.verdict != WindingReport::Verdict::Taken) return;
   if (is_closed_) normals().orientation->n_doubtful = 0;
   normals().turned_by_winding = r.n_turned;
   normals().replaced_by_winding = r.n_replaced;

@@ -1,55 +1,32 @@
 #include "reconstruct/winding/winding_normals.h"
 
-#include <array>
-#include <cmath>
-#include <stdexcept>
+#include <oneapi/tbb/parallel_for.h>
 
-#include "common/formatted.h"
-#include "reconstruct/cloud/cloud_neighbours.h"
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "reconstruct/cloud/neighbour_tree.h"
 #include "reconstruct/winding/fast_winding_number.h"
 
 namespace umtet {
 namespace {
 
-// Samples that check, and that decide at first. A cloud that has no more is sparse: its parts are a few samples across,
-// and neighbours tell directions worse than the field does.
-constexpr std::size_t kChecked = 4000;
 // w jumps by one across the surface.
 constexpr double kOff = 0.25;
-// Right normals have fewer of their samples off, with this softening or, where noise puts samples off, a wider one.
-constexpr double kMostOff = 0.02, kWider = 3;
-// So have those of a closed surface with thin parts.
-constexpr double kClosed = 0.04;
-// Others have to be off at this share of that, at most, before given or estimated ones are overruled.
-constexpr double kBetter = 0.75;
-// Where more samples than this are off, the next attempt, with more of them, knows better.
-constexpr double kUnsettled = 0.1;
-// Cosine of the angle from which on an estimated direction is not believed: that of a fit to both sheets of a thin
-// part.
-constexpr double kContradiction = 0.7;
+// A patch reaches so many deviations of the noise, which holds nearly all of it, and so many spacings: 7 samples of a
+// clean cloud, and 20 or more where noise of a spacing puts w at single samples off by a half.
+constexpr double kDeviations = 3, kSpacings = 1.5;
+// The jump is taken where neither the noise (deviations) nor single samples (spacings) show, at so many samples, whose
+// median is then known to 2 %.
+constexpr double kJumpDeviations = 2.5;
+constexpr std::size_t kJumps = 1000;
 
-struct Attempt {
-  std::size_t n_samples;
-  WindingNormalsParams params;
-};
-// Clean samples and parts as thin as those of so few are apart; noise of a spacing, and thinner parts.
-constexpr std::array<Attempt, 2> kAttempts = {Attempt{kChecked, {}},
-                                              Attempt{16000, {.rounds = 10, .widest = 4, .narrowest = 2}}};
-
-/// Every m-th of them: `most`, or fewer.
-std::vector<Vec3> at_most(const std::vector<Vec3>& all, std::size_t most) {
-  const std::size_t m = (all.size() + most - 1) / most;
-  std::vector<Vec3> some;
-  for (std::size_t i = 0; i < all.size(); i += m) some.push_back(all[i]);
-  return some;
+double median(std::vector<double> v) {
+  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+  std::nth_element(v.begin(), middle, v.end());
+  return *middle;
 }
-
-struct Part {
-  std::vector<Vec3> points, normals;
-  std::vector<double> areas;
-  Part(const OrientedPointCloud& cloud, std::size_t most)
-      : points(at_most(cloud.points, most)), normals(at_most(cloud.normals, most)), areas(sample_areas(points)) {}
-};
 
 /// Outward, unit; zero where the field is.
 std::vector<Vec3> normals_of(const FastWindingNumber& w, const std::vector<Vec3>& places) {
@@ -98,59 +75,35 @@ double off_a_half(const std::vector<Vec3>& points, const std::vector<Vec3>& norm
   return static_cast<double>(n_off) / static_cast<double>(points.size());
 }
 
-bool WindingReport::is_closed() const { return off_after <= kClosed; }
+double patches_off_a_half(const std::vector<Vec3>& points, const std::vector<Vec3>& normals,
+                          const std::vector<double>& areas, double noise) {
+  const FastWindingNumber w(points, normals, areas, {.softening = WindingNormalsParams{}.narrowest});
+  const std::size_t n = points.size();
+  const double spacing = std::sqrt(median(areas)), away = spacing + kJumpDeviations * noise;
+  std::vector<double> jumps;
+  for (std::size_t i = 0; i < n; i += std::max<std::size_t>(1, n / kJumps))
+    jumps.push_back(w(points[i] - away * normals[i]) - w(points[i] + away * normals[i]));
+  const double jump = std::max(1., median(std::move(jumps))),
+               reach = std::hypot(kDeviations * noise, kSpacings * spacing);
+  const std::vector<double> values = w.evaluate(points);
+  const NeighbourTree tree(points);
+  std::vector<std::uint8_t> is_off(n);
+  tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
+    std::vector<std::uint32_t> patch;
+    tree.within(points[i], reach * reach, [&](std::uint32_t j, double) {
+      if (j == i || normals[i].dot(normals[j]) > 0) patch.push_back(j);
+    });
+    std::sort(patch.begin(), patch.end());  // the search gives them in no order, and sums depend on it
+    double sum = 0;
+    for (const std::uint32_t j : patch) sum += values[j];
+    is_off[i] = std::abs(sum / (jump * static_cast<double>(patch.size())) - 0.5) > kOff ? 1 : 0;
+  });
+  return static_cast<double>(std::count(is_off.begin(), is_off.end(), 1)) / static_cast<double>(n);
+}
 
-WindingReport orient_by_winding(OrientedPointCloud& cloud, const OrientByWinding& how) {
-  const std::vector<Vec3>* const others = how.others;
-  if (others && others->size() != cloud.points.size())
-    throw std::invalid_argument(
-        formatted("%zu points but %zu other normals: must be equal", cloud.points.size(), others->size()));
-  WindingReport report;
-  {
-    const Part part(cloud, kChecked);
-    report.off_before = report.off_after = off_a_half(part.points, part.normals, part.areas);
-    if (report.off_before <= kMostOff) return report;
-    if (off_a_half(part.points, part.normals, part.areas, kWider) <= kMostOff) return report;
-    if (others) {
-      const double off = off_a_half(part.points, at_most(*others, kChecked), part.areas);
-      if (off < report.off_before) {
-        cloud.normals = *others;
-        report.restored = true;
-        report.off_before = report.off_after = off;
-      }
-    }
-  }
-  if (how.only_others) return report;
-  std::vector<Vec3> best;  // of all points
-  for (const auto& [n_samples, params] : kAttempts) {
-    const Part part(cloud, n_samples);
-    const FastWindingNumber w(part.points, winding_normals(part.points, part.areas, params), part.areas,
-                              {.softening = params.narrowest});
-    const double before = off_a_half(part.points, part.normals, part.areas, params.narrowest),
-                 after = off_a_half(part.points, normals_of(w, part.points), part.areas, params.narrowest);
-    if (after < kBetter * before) {
-      best = normals_of(w, cloud.points);
-      report.off_before = before;
-      report.off_after = after;
-    }
-    if (after <= kUnsettled || cloud.points.size() <= n_samples) break;
-  }
-  if (best.empty()) return report;
-  report.taken = true;
-  const bool is_sparse = cloud.points.size() <= kChecked;
-  for (std::size_t i = 0; i < best.size(); ++i) {
-    Vec3& n = cloud.normals[i];
-    const double cosine = n.dot(best[i]);
-    if (n.isZero(0) || best[i].isZero(0)) continue;
-    report.n_turned += cosine < 0 ? 1 : 0;
-    if (how.directions_may_change && (is_sparse || std::abs(cosine) < kContradiction)) {
-      n = best[i];
-      ++report.n_replaced;
-    } else if (cosine < 0) {
-      n = -n;
-    }
-  }
-  return report;
+std::vector<Vec3> normals_by_winding(const std::vector<Vec3>& points, const std::vector<double>& areas,
+                                     const std::vector<Vec3>& places, const WindingNormalsParams& params) {
+  return normals_of({points, winding_normals(points, areas, params), areas, {.softening = params.narrowest}}, places);
 }
 
 }  // namespace umtet

@@ -33,30 +33,21 @@ std::vector<Vec3> winding_normals(const std::vector<Vec3>& points, const std::ve
 double off_a_half(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const std::vector<double>& areas,
                   double softening = WindingNormalsParams{}.narrowest);
 
-/// What the winding number said of a cloud's normals.
-struct WindingReport {
-  double off_before = 0, off_after = 0;  ///< off_a_half of a part of the samples
-  /// The samples are all round a body, and the normals point out of it.
-  bool is_closed() const;
-  bool restored = false;       ///< the others were off at fewer samples than the cloud's, which they replaced
-  bool taken = false;          ///< winding_normals did better, and decided
-  std::size_t n_turned = 0;    ///< normals on whose side it decided otherwise
-  std::size_t n_replaced = 0;  ///< normals whose direction it gave, too
-};
+/// The same of patches, for samples with noise: single ones are off because they do not lie on the surface, but w - 1/2
+/// is odd across it, so its mean over a patch that reaches through the noise vanishes where the sides are right.
+///
+/// For each sample the mean of w / j over the samples within hypot(3 noise, 1.5 s) whose normals are within 90 degrees
+/// of its own; s is the root of the median area. j is the median jump of w across the samples, at least 1: noise of a
+/// spacing makes areas behind samples, which are those of neighbours in space, up to twice as large.
+/// @param noise  standard deviation along the normal, model units
+/// @return the share of samples at which that mean is off 1/2 by more than a quarter. Below .02 where the samples are
+///         all round a body and their normals point out of it; about 1 of a single sheet, whose mean is 0.
+double patches_off_a_half(const std::vector<Vec3>& points, const std::vector<Vec3>& normals,
+                          const std::vector<double>& areas, double noise);
 
-struct OrientByWinding {
-  bool directions_may_change = false;  ///< or signs alone
-  const std::vector<Vec3>* others =
-      nullptr;               ///< that the cloud had before: taken back if they are off at fewer samples
-  bool only_others = false;  ///< winding_normals is not tried
-};
-
-/// Checks normals by the winding number of at most 4000 samples. Where it is off a half at more than one sample in 50,
-/// softened by noise, too, winding_normals is tried, and decides over all normals if it is off at a quarter fewer:
-/// signs everywhere; directions, if these may change, on a cloud that is sparse, and where they contradict it by more
-/// than 45 degrees. Zero normals stay. A cloud that passes the check is left alone, for a few hundredths of a second.
-/// @param cloud  sorted in space (morton_order.h): every m-th of its points are spread evenly
-/// \throw std::invalid_argument  as FastWindingNumber; fewer than two distinct places; not as many others as points
-WindingReport orient_by_winding(OrientedPointCloud& cloud, const OrientByWinding& how);
+/// Outward unit normals at places: -grad w / |grad w| of winding_normals() of some samples, softened as in its last
+/// round; zero where the field is. @param points, areas  of the samples
+std::vector<Vec3> normals_by_winding(const std::vector<Vec3>& points, const std::vector<double>& areas,
+                                     const std::vector<Vec3>& places, const WindingNormalsParams& params = {});
 
 }  // namespace umtet

@@ -190,3 +190,27 @@ def random_bracket(random, n):
     keep = random.permutation(len(x))[:n]
     g = gradient(x[keep])
     return x[keep], g / np.linalg.norm(g, axis=1)[:, None]
+
+
+def random_trefoil(random, n, tube=0.35):
+    """A tube of this radius around the trefoil (sin t + 2 sin 2t, cos t - 2 cos 2t, -sin 3t): a knot of genus 1."""
+    t, v = random.uniform(0, 2 * np.pi, (2, 20 * n))
+    place = np.stack([np.sin(t) + 2 * np.sin(2 * t), np.cos(t) - 2 * np.cos(2 * t), -np.sin(3 * t)], 1)
+    first = np.stack([np.cos(t) + 4 * np.cos(2 * t), -np.sin(t) + 4 * np.sin(2 * t), -3 * np.cos(3 * t)], 1)
+    second = np.stack([-np.sin(t) - 8 * np.sin(2 * t), -np.cos(t) + 8 * np.cos(2 * t), 9 * np.sin(3 * t)], 1)
+    speed = np.linalg.norm(first, axis=1)
+    along = first / speed[:, None]
+    bend = second - np.sum(second * along, 1)[:, None] * along
+    curvature = np.linalg.norm(bend, axis=1) / speed ** 2
+    inward = bend / np.linalg.norm(bend, axis=1)[:, None]
+    normal = np.cos(v)[:, None] * inward + np.sin(v)[:, None] * np.cross(along, inward)
+    area = speed * (1 - curvature * tube * np.cos(v))  # over that of the parameters
+    keep = (random.uniform(0, area.max(), len(t)) < area).nonzero()[0][:n]
+    return (place + tube * normal)[keep], normal[keep]
+
+
+def trefoil_volume(tube=0.35, n=100_000):
+    """pi r^2 times the length of the curve (Pappus)."""
+    t = np.arange(n) * 2 * np.pi / n
+    first = np.stack([np.cos(t) + 4 * np.cos(2 * t), -np.sin(t) + 4 * np.sin(2 * t), -3 * np.cos(3 * t)], 1)
+    return np.pi * tube ** 2 * np.linalg.norm(first, axis=1).mean() * 2 * np.pi

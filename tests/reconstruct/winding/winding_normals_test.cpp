@@ -3,59 +3,17 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
 #include "reconstruct/cloud/cloud_neighbours.h"
-#include "reconstruct/cloud/morton_order.h"
-#include "reconstruct/cloud/normal_estimation.h"
-#include "reconstruct/cloud/normal_orientation.h"
-#include "tests/support/clouds.h"
+#include "tests/reconstruct/winding/winding_clouds.h"
 #include "tests/support/sampled_domains.h"
 
 namespace umtet {
 namespace {
 
-std::size_t n_wrong(const std::vector<Vec3>& normals, const std::vector<Vec3>& truth) {
-  std::size_t wrong = 0;
-  for (std::size_t i = 0; i < truth.size(); ++i) wrong += normals[i].dot(truth[i]) > 0 ? 0 : 1;
-  return wrong;
-}
-
-double rms_angle_deg(const std::vector<Vec3>& normals, const std::vector<Vec3>& truth) {
-  double sum = 0;
-  for (std::size_t i = 0; i < truth.size(); ++i)
-    sum += std::pow(std::acos(std::clamp(normals[i].dot(truth[i]), -1., 1.)), 2);
-  return std::sqrt(sum / static_cast<double>(truth.size())) * 180 / std::numbers::pi;
-}
-
-/// n of its samples, each farthest from those before.
-OrientedPointCloud spread(const OrientedPointCloud& cloud, std::size_t n) {
-  OrientedPointCloud few;
-  std::vector<double> distance2(cloud.points.size(), 1e300);
-  for (std::size_t next = 0; few.points.size() < n;) {
-    few.points.push_back(cloud.points[next]);
-    few.normals.push_back(cloud.normals[next]);
-    for (std::size_t i = 0; i < distance2.size(); ++i)
-      distance2[i] = std::min(distance2[i], (cloud.points[i] - few.points.back()).squaredNorm());
-    next = static_cast<std::size_t>(std::max_element(distance2.begin(), distance2.end()) - distance2.begin());
-  }
-  return few;
-}
+using test::n_wrong, test::rms_angle_deg, test::spread, test::thin_plate;
 
 std::vector<Vec3> from_nothing(const OrientedPointCloud& cloud) {
   return winding_normals(cloud.points, sample_areas(cloud.points));
-}
-
-OrientedPointCloud sorted(OrientedPointCloud cloud) {
-  sort_in_space(cloud);
-  return cloud;
-}
-
-/// Two sheets and their rim, a spacing apart: neighbours of a sample are on both.
-OrientedPointCloud thin_plate(double spacing) {
-  return test::box_cloud({40 * spacing, 40 * spacing, spacing}, spacing);
 }
 
 TEST(WindingNormals, FiftyPointsOfATorusHaveTheirNormals) {
@@ -90,78 +48,42 @@ TEST(WindingNormals, ChangeNeitherWithUnitNorWithThreads) {
   EXPECT_EQ(from_nothing(cloud), normals);
 }
 
-TEST(OrientByWinding, RightNormalsAreLeftAlone) {
-  for (const testing::AnalyticDomain& domain : testing::domains()) {
-    OrientedPointCloud cloud = sorted(test::sampled(domain, 8000));
-    const std::vector<Vec3> truth = cloud.normals;
-    const WindingReport report = orient_by_winding(cloud, {.directions_may_change = true});
-    EXPECT_FALSE(report.taken) << domain.name;
-    EXPECT_LT(report.off_before, 0.04) << domain.name;
-    EXPECT_EQ(cloud.normals, truth) << domain.name;
+double patches_off(const OrientedPointCloud& cloud, double noise) {
+  return patches_off_a_half(cloud.points, cloud.normals, sample_areas(cloud.points), noise);
+}
+
+TEST(PatchesOffAHalf, AreFewWhateverTheNoiseWhereSidesAreRight) {
+  constexpr double kSpacing = .063;  // of 4000 points of the torus
+  for (const double spacings : {0., .25, .5, 1., 1.7}) {
+    const double noise = spacings * kSpacing;
+    for (const std::uint64_t seed : {1, 2}) {
+      const OrientedPointCloud cloud = test::with_noise(test::torus_cloud(4000, seed), noise, seed);
+      EXPECT_LT(patches_off(cloud, noise), .02) << spacings << ' ' << seed;
+      if (spacings > .4)
+        EXPECT_GT(off_a_half(cloud.points, cloud.normals, sample_areas(cloud.points)), .1) << "single samples are";
+    }
   }
 }
 
-TEST(OrientByWinding, TurnsWhatIsWrongAndKeepsDirections) {
-  OrientedPointCloud cloud = sorted(test::torus_cloud(8000));
-  const std::vector<Vec3> truth = cloud.normals;
-  for (std::size_t i = 0; i < truth.size(); ++i)
-    if (cloud.points[i].x() > 0.3) cloud.normals[i] = -truth[i];
-  const WindingReport report = orient_by_winding(cloud, {});
-  EXPECT_TRUE(report.taken);
-  EXPECT_TRUE(report.is_closed());
-  EXPECT_GT(report.n_turned, 2000U);
-  EXPECT_EQ(report.n_replaced, 0U);
-  EXPECT_EQ(cloud.normals, truth);
-}
-
-TEST(OrientByWinding, SparseCloudsWithoutNormalsComeOutRight) {
-  for (const std::size_t n : {50, 200}) {
-    OrientedPointCloud cloud = sorted(spread(test::torus_cloud(2000), n));
-    const std::vector<Vec3> truth = cloud.normals;
-    cloud.normals = estimate_normals(cloud.points).normals;
-    orient_normals(cloud);
-    orient_by_winding(cloud, {.directions_may_change = true});
-    EXPECT_EQ(n_wrong(cloud.normals, truth), 0U) << n;
+TEST(PatchesOffAHalf, AreThoseThatLookToTheWrongSide) {
+  for (const double noise : {0., .03, .06}) {
+    OrientedPointCloud cloud = test::with_noise(test::torus_cloud(4000), noise);
+    std::size_t n_turned = 0;
+    for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+      if (cloud.points[i].x() < .9) continue;
+      cloud.normals[i] = -cloud.normals[i];
+      ++n_turned;
+    }
+    EXPECT_GT(patches_off(cloud, noise), .5 * static_cast<double>(n_turned) / 4000) << noise;
   }
 }
 
-TEST(OrientByWinding, ThinPlatesWithoutNormalsComeOutRight) {
-  OrientedPointCloud cloud = sorted(thin_plate(0.1));
-  const std::vector<Vec3> truth = cloud.normals;
-  cloud.normals = estimate_normals(cloud.points).normals;
-  orient_normals(cloud);
-  orient_by_winding(cloud, {.directions_may_change = true});
-  EXPECT_LE(n_wrong(cloud.normals, truth), truth.size() / 100);
-}
-
-TEST(OrientByWinding, SoDoThoseWithManySamples) {
-  OrientedPointCloud cloud = sorted(test::box_cloud({4, 4, 0.05}, 0.05));
-  const std::vector<Vec3> truth = cloud.normals;
-  ASSERT_GT(truth.size(), 12000U);
-  for (Vec3& n : cloud.normals)
-    if (n.z() < 0) n = -n;  // as of a single sheet
-  EXPECT_TRUE(orient_by_winding(cloud, {.directions_may_change = true}).taken);
-  EXPECT_LE(n_wrong(cloud.normals, truth), truth.size() / 100);
-}
-
-TEST(OrientByWinding, TakesOthersBackThatAreBetter) {
-  OrientedPointCloud cloud = sorted(test::torus_cloud(8000));
-  const std::vector<Vec3> truth = cloud.normals;
-  for (std::size_t i = 0; i < truth.size(); i += 2) cloud.normals[i] = -truth[i];
-  const WindingReport report = orient_by_winding(cloud, {.directions_may_change = true, .others = &truth});
-  EXPECT_TRUE(report.restored);
-  EXPECT_FALSE(report.taken);
-  EXPECT_EQ(cloud.normals, truth);
-  const std::vector<Vec3> few(3, Vec3::UnitX());
-  cloud.normals.assign(truth.size(), Vec3::UnitX());
-  EXPECT_THROW(orient_by_winding(cloud, {.directions_may_change = true, .others = &few}), std::invalid_argument);
-}
-
-TEST(OrientByWinding, ZeroNormalsStay) {
-  OrientedPointCloud cloud = sorted(test::torus_cloud(2000));
-  for (std::size_t i = 0; i < cloud.normals.size(); ++i) cloud.normals[i] *= i % 3 == 0 ? 0 : i % 3 == 1 ? 1 : -1;
-  orient_by_winding(cloud, {.directions_may_change = true});
-  for (std::size_t i = 0; i < cloud.normals.size(); i += 3) EXPECT_TRUE(cloud.normals[i].isZero(0));
+TEST(PatchesOffAHalf, AreAllOfASingleSheet) {
+  OrientedPointCloud plate = thin_plate(.1);
+  EXPECT_LT(patches_off(plate, .05), .05);
+  for (Vec3& n : plate.normals)
+    if (n.z() < 0) n = -n;
+  EXPECT_GT(patches_off(plate, .05), .8);
 }
 
 }  // namespace

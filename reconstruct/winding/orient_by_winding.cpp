@@ -1,0 +1,219 @@
+#include "reconstruct/winding/orient_by_winding.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "common/formatted.h"
+#include "reconstruct/cloud/cloud_neighbours.h"
+#include "reconstruct/cloud/cloud_survey.h"
+#include "reconstruct/cloud/normal_orientation.h"
+#include "reconstruct/winding/winding_normals.h"
+
+namespace umtet {
+namespace {
+
+using Verdict = WindingReport::Verdict;
+
+// Samples that check, and that decide at first. A cloud that has no more is sparse: its parts are a few samples across,
+// and neighbours tell directions worse than the field does.
+constexpr std::size_t kChecked = 4000;
+// Right normals have fewer of their samples off, with the usual softening or a wider one, or fewer of their patches.
+constexpr double kMostOff = 0.02, kWider = 3;
+// So have those of a closed surface with thin parts.
+constexpr double kClosed = 0.04;
+// Others have to be off at this share of that, at most, before given or estimated ones are overruled.
+constexpr double kBetter = 0.75;
+// Normals that are off at more patches bound nothing: a thin plate that was taken for one sheet is off at all. Their
+// consistency says nothing then.
+constexpr double kUnbounded = 0.5;
+// Nor are normals believed then of which more than one in 40 is turned at random, p of 1 - 2 p (1 - p): those that
+// follow noise of a spacing have .91 to .94, right ones of the plate .97 and more.
+constexpr double kCoherent = 0.95;
+// Where more patches than this are off, or it is not certain, the next attempt, with more samples, knows better.
+constexpr double kUnsettled = 0.1;
+// Cosine of the angle from which on an estimated direction is not believed: that of a fit to both sheets of a thin
+// part.
+constexpr double kContradiction = 0.7;
+// Of a sparse cloud every fifth sample is held out, as in cross-validation: half of them would be another body.
+constexpr std::size_t kFold = 5;
+
+// Samples of which the noise is taken: the median of so many is known to 5 %, and patches do not ask for more.
+constexpr std::size_t kNoiseSamples = 500;
+
+struct Attempt {
+  std::size_t n_samples;
+  WindingNormalsParams params;
+};
+// Clean samples and parts as thin as those of so few are apart; noise of a spacing, and thinner parts.
+constexpr std::array<Attempt, 2> kAttempts = {Attempt{kChecked, {}},
+                                              Attempt{16000, {.rounds = 10, .widest = 4, .narrowest = 2}}};
+
+/// Every m-th of them: `most`, or fewer.
+std::vector<Vec3> at_most(const std::vector<Vec3>& all, std::size_t most) {
+  const std::size_t m = (all.size() + most - 1) / most;
+  std::vector<Vec3> some;
+  for (std::size_t i = 0; i < all.size(); i += m) some.push_back(all[i]);
+  return some;
+}
+
+/// Some of the samples of a cloud, for several sets of normals of all of them.
+struct Part {
+  std::size_t most;
+  std::vector<Vec3> points;
+  std::vector<double> areas;
+  Part(const OrientedPointCloud& cloud, std::size_t n)
+      : most(n), points(at_most(cloud.points, n)), areas(sample_areas(points)) {}
+  std::vector<Vec3> of(const std::vector<Vec3>& normals) const { return at_most(normals, most); }
+  double off(const std::vector<Vec3>& normals, double noise) const {
+    return patches_off_a_half(points, of(normals), areas, noise);
+  }
+};
+
+double consistency_of(const OrientedPointCloud& cloud, const std::vector<Vec3>& normals, const OrientByWinding& how) {
+  OrientedPointCloud other;
+  other.points = cloud.points;
+  other.normals = normals;
+  return consistency(other, {}, how.near, how.covering);
+}
+
+double noise_of(const OrientedPointCloud& cloud) {
+  return cloud.points.size() < kFewestSurveyed ? 0 : noise_along_normals(cloud.points, kNoiseSamples);
+}
+
+/// Numbers of the samples that are known and held out: few enough of both that two fits take a second.
+struct Split {
+  std::vector<std::size_t> known, held_out;
+  explicit Split(std::size_t n) {
+    if (n <= kChecked) {
+      for (std::size_t i = 0; i < n; ++i) (i % kFold == kFold / 2 ? held_out : known).push_back(i);
+      return;
+    }
+    const std::size_t m = (n + kChecked - 1) / kChecked;
+    for (std::size_t i = 0; i < n; i += m) known.push_back(i);
+    for (std::size_t i = m / 2; i < n; i += m) held_out.push_back(i);
+  }
+};
+
+std::vector<Vec3> picked(const std::vector<Vec3>& all, const std::vector<std::size_t>& numbers) {
+  std::vector<Vec3> some;
+  some.reserve(numbers.size());
+  for (const std::size_t i : numbers) some.push_back(all[i]);
+  return some;
+}
+
+/// Those of `points` that have both a former and a proposed normal.
+void add(const std::vector<Vec3>& points, const std::vector<Vec3>& former, const std::vector<Vec3>& proposed,
+         OrientedPointCloud& as_former, OrientedPointCloud& as_proposed) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (former[i].isZero(0) || proposed[i].isZero(0)) continue;
+    as_former.points.push_back(points[i]);
+    as_former.normals.push_back(former[i]);
+    as_proposed.points.push_back(points[i]);
+    as_proposed.normals.push_back(proposed[i]);
+  }
+}
+
+/// Normals of the known samples alone, at these and at the held-out ones, against those of the cloud.
+bool explain_better(const OrientedPointCloud& cloud, const WindingNormalsParams& params, const OrientByWinding& how) {
+  if (!how.explains_better) return true;
+  const Split split(cloud.points.size());
+  const std::vector<Vec3> known = picked(cloud.points, split.known), others = picked(cloud.points, split.held_out);
+  std::vector<Vec3> places = known;
+  places.insert(places.end(), others.begin(), others.end());
+  const std::vector<Vec3> found = normals_by_winding(known, sample_areas(known), places, params);
+  const auto middle = found.begin() + static_cast<std::ptrdiff_t>(known.size());
+  SplitCloud former, proposed;
+  add(known, picked(cloud.normals, split.known), {found.begin(), middle}, former.known, proposed.known);
+  add(others, picked(cloud.normals, split.held_out), {middle, found.end()}, former.held_out, proposed.held_out);
+  return how.explains_better(former, proposed);
+}
+
+/// @param field  normals of the winding number at all samples
+void overrule(OrientedPointCloud& cloud, const std::vector<Vec3>& field, bool directions_may_change,
+              WindingReport& report) {
+  const bool is_sparse = field.size() <= kChecked;
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    Vec3& n = cloud.normals[i];
+    const double cosine = n.dot(field[i]);
+    if (n.isZero(0) || field[i].isZero(0)) continue;
+    report.n_turned += cosine < 0 ? 1 : 0;
+    if (directions_may_change && (is_sparse || std::abs(cosine) < kContradiction)) {
+      n = field[i];
+      ++report.n_replaced;
+    } else if (cosine < 0) {
+      n = -n;
+    }
+  }
+}
+
+}  // namespace
+
+bool WindingReport::is_closed() const { return off_after <= kClosed; }
+
+WindingReport orient_by_winding(OrientedPointCloud& cloud, const OrientByWinding& how) {
+  const std::vector<Vec3>* const others = how.others;
+  if (others && others->size() != cloud.points.size())
+    throw std::invalid_argument(
+        formatted("%zu points but %zu other normals: must be equal", cloud.points.size(), others->size()));
+  WindingReport report;
+  double noise = 0;
+  {
+    const Part part(cloud, kChecked);
+    const std::vector<Vec3> normals = part.of(cloud.normals);
+    for (const double softening : {WindingNormalsParams{}.narrowest, kWider}) {
+      const double off = off_a_half(part.points, normals, part.areas, softening);
+      if (softening < kWider) report.off_before = report.off_after = off;
+      if (off <= kMostOff) return report;
+    }
+    noise = noise_of(cloud);
+    report.off_before = report.off_after = part.off(cloud.normals, noise);
+    if (report.off_before <= kMostOff) return report;
+    if (others) {
+      const double off = part.off(*others, noise);
+      if (off < report.off_before) {
+        cloud.normals = *others;
+        report.restored = true;
+        report.off_after = off;
+      }
+    }
+  }
+  if (how.only_others || report.off_after <= kMostOff) return report;
+  report.consistency_before = consistency_of(cloud, cloud.normals, how);
+  std::vector<Vec3> best;  // of all points
+  const WindingNormalsParams* params = nullptr;
+  report.off_tried = 1;
+  for (const Attempt& attempt : kAttempts) {
+    const Part part(cloud, attempt.n_samples);
+    std::vector<Vec3> field = normals_by_winding(part.points, part.areas, cloud.points, attempt.params);
+    const double before = part.off(cloud.normals, noise), after = part.off(field, noise),
+                 consistent = consistency_of(cloud, field, how);
+    if (after < report.off_tried) {
+      report.off_tried = after;
+      report.consistency_tried = consistent;
+    }
+    const bool is_certain =
+        consistent >= report.consistency_before || (before > kUnbounded && after <= kClosed && consistent >= kCoherent);
+    if (after < kBetter * before && is_certain) {
+      best = std::move(field);
+      params = &attempt.params;
+      report.off_before = before;
+      report.off_tried = after;
+      report.consistency_tried = consistent;
+    }
+    if ((after <= kUnsettled && !best.empty()) || cloud.points.size() <= attempt.n_samples) break;
+  }
+  report.verdict = Verdict::Uncertain;
+  if (best.empty()) return report;
+  if (!explain_better(cloud, *params, how)) {
+    report.verdict = Verdict::NotBetter;
+    return report;
+  }
+  report.verdict = Verdict::Taken;
+  report.off_after = report.off_tried;
+  overrule(cloud, best, how.directions_may_change, report);
+  return report;
+}
+
+}  // namespace umtet
