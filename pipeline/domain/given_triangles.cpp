@@ -17,13 +17,16 @@ namespace {
 constexpr std::size_t kPieces = 4, kPiecesAnyway = 100000;
 
 struct Spread {
-  double rms = 0, p99 = 0, max = 0;
+  double rms = 0, p99 = 0, max = 0, max_over_h = 0;
   Vec3 farthest = Vec3::Zero();
 };
 
-Spread spread_of(const std::vector<Vec3>& x, std::vector<double> d) {
+Spread spread_of(const std::vector<Vec3>& x, std::vector<double> d, const MeshEdge& h) {
   const auto farthest = std::max_element(d.begin(), d.end()) - d.begin();
-  Spread s{.max = d[farthest], .farthest = x[farthest]};
+  Spread s{.max = d[farthest], .max_over_h = d[farthest] / h.at(x[farthest]), .farthest = x[farthest]};
+  for (std::size_t i = 0; i < d.size() && !h.is_uniform(); ++i) {
+    if (d[i] > s.max_over_h * h.least()) s.max_over_h = std::max(s.max_over_h, d[i] / h.at(x[i]));
+  }
   std::sort(d.begin(), d.end());
   s.rms = std::sqrt(std::transform_reduce(d.begin(), d.end(), 0., std::plus<>(), [](double v) { return v * v; }) /
                     static_cast<double>(d.size()));
@@ -73,7 +76,7 @@ std::shared_ptr<const GivenTriangles> given_triangles(TriangleMesh mesh, const V
 
 TriangleDistances triangle_distances(const Domain& domain, const std::vector<Vec3>& V,
                                      const std::vector<Triangle>& faces, const SurfaceDistance& surface,
-                                     const Context& context) {
+                                     const MeshEdge& h, const Context& context) {
   const GivenTriangles& given = *domain.triangles;
   std::vector<std::uint8_t> is_used(V.size(), 0);
   std::vector<Vec3> x;
@@ -85,7 +88,7 @@ TriangleDistances triangle_distances(const Domain& domain, const std::vector<Vec
   }
   for (std::size_t v = 0; v < V.size(); ++v)
     if (is_used[v]) x.push_back(V[v]);
-  const Spread there = spread_of(x, given.distance.distances(x, context));
+  const Spread there = spread_of(x, given.distance.distances(x, context), h);
 
   // Pieces not larger than the faces.
   const double edge2 = edge2_sum / static_cast<double>(faces.size());
@@ -95,15 +98,17 @@ TriangleDistances triangle_distances(const Domain& domain, const std::vector<Vec
   std::vector<Vec3> y = domain.cloud.points;
   y.insert(y.end(), pieces.V.begin(), pieces.V.end());
   for (std::size_t f = 0; f < pieces.F.size(); ++f) y.push_back(pieces.centroid(f));
-  const Spread back = spread_of(y, surface.distances(y, context));
+  const Spread back = spread_of(y, surface.distances(y, context), h);
   return {.n_triangles = given.mesh.F.size(),
           .rms = there.rms,
           .p99 = there.p99,
           .max = there.max,
+          .max_over_h = there.max_over_h,
           .farthest = there.farthest + domain.shift,
           .rms_back = back.rms,
           .p99_back = back.p99,
           .max_back = back.max,
+          .max_back_over_h = back.max_over_h,
           .farthest_back = back.farthest + domain.shift,
           .body = given.body,
           .mesh = body_of(V, faces)};

@@ -5,6 +5,7 @@
 
 #include "common/context.h"
 #include "mesh/implicit/surface_distance.h"
+#include "pipeline/domain/mesh_edge.h"
 #include "pipeline/reports/certificate_report.h"
 #include "reconstruct/triangles/triangle_body.h"
 #include "reconstruct/triangles/triangle_mesh.h"
@@ -32,6 +33,6 @@ std::shared_ptr<const GivenTriangles> given_triangles(TriangleMesh mesh, const V
 /// \pre domain.triangles is there. \throw Cancelled
 TriangleDistances triangle_distances(const Domain& domain, const std::vector<Vec3>& V,
                                      const std::vector<Triangle>& faces, const SurfaceDistance& surface,
-                                     const Context& context);
+                                     const MeshEdge& h, const Context& context);
 
 }  // namespace umtet

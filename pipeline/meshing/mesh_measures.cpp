@@ -333,7 +333,7 @@ Measurement measure(const Domain& domain, const TetMesh& mesh, const UmResult& r
     m.cloud = sample_distances(domain, before_merging(domain.cloud, std::move(d)), h,
                                m.mesh.boundary.max_centroid_distance_over_h.value_or(0));
   }
-  if (surface && domain.triangles) m.triangles = triangle_distances(domain, mesh.V, faces, *surface, context);
+  if (surface && domain.triangles) m.triangles = triangle_distances(domain, mesh.V, faces, *surface, h, context);
   made.places = places_of(domain, differences, h, context);
   if (compared.place) made.places.push_back(*compared.place);
   m.places = report_on(made.places);

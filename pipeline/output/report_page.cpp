@@ -169,9 +169,9 @@ std::string headline_cards(const Certificate& c) {
          "99&nbsp;% of the samples nearer; max " + value("/cloud/max_distance_over_h", cloud->max / mesh.h, 3) + " h");
   }
   if (const std::optional<TriangleDistances>& given = c.measured.triangles) {
-    card(value("/triangles/max_distance_over_h", given->max / mesh.h, 3) + " h",
+    card(value("/triangles/max_distance_over_h", given->max_over_h, 3) + " h",
          "the mesh from the given triangles at most; they from it " +
-             value("/triangles/max_distance_back_over_h", given->max_back / mesh.h, 3) + " h");
+             value("/triangles/max_distance_back_over_h", given->max_back_over_h, 3) + " h");
   }
   return out;
 }

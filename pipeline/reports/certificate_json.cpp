@@ -19,7 +19,9 @@ Json to_json(const InputFacts& facts) {
           {"turned", facts.turned},
           {"turned_by", facts.turned_by},
           {"doubtful", facts.doubtful},
-          {"opposed", facts.opposed}};
+          {"opposed", facts.opposed},
+          {"consistency", facts.consistency},
+          {"off_a_half", json_of(facts.off_a_half)}};
 }
 
 InputFacts input_facts_from(const Json& json) {
@@ -27,19 +29,18 @@ InputFacts input_facts_from(const Json& json) {
           .turned = number_from(json.at("turned")),
           .turned_by = json.at("turned_by"),
           .doubtful = number_from(json.at("doubtful")),
-          .opposed = number_from(json.at("opposed"))};
+          .opposed = number_from(json.at("opposed")),
+          .consistency = number_from(json.at("consistency")),
+          .off_a_half = optional_from<double>(json.at("off_a_half"))};
 }
 
 Json to_json(const SearchReport& search) {
-  return {{"n_attempts", search.n_attempts},
-          {"h_is_given", search.h_is_given},
-          {"at_max_tets", search.at_max_tets}};
+  return {{"n_attempts", search.n_attempts}, {"h_is_given", search.h_is_given}, {"at_max_tets", search.at_max_tets}};
 }
 
 SearchReport search_from(const Json& json) {
-  return {.n_attempts = json.at("n_attempts"),
-          .h_is_given = json.at("h_is_given"),
-          .at_max_tets = json.at("at_max_tets")};
+  return {
+      .n_attempts = json.at("n_attempts"), .h_is_given = json.at("h_is_given"), .at_max_tets = json.at("at_max_tets")};
 }
 
 /// All that is measured up to the resolution.
@@ -48,7 +49,7 @@ Json measured_blocks(const MeshMeasures& m) {
   json.update(mesh_blocks(m.mesh, m.coordinate_rounding_over_h));
   json["domain"] = to_json(m.domain);
   json["cloud"] = m.cloud ? to_json(*m.cloud, m.mesh.h) : Json(nullptr);
-  if (m.triangles) json["triangles"] = to_json(*m.triangles, m.mesh.h);
+  if (m.triangles) json["triangles"] = to_json(*m.triangles);
   json["resolution"] = to_json(m.resolution, m.mesh.h);
   if (m.sizes) json["sizes"] = to_json(*m.sizes);
   if (m.input) json["input"] = to_json(*m.input);

@@ -57,9 +57,9 @@ struct SampleDistances {
   double p99 = 0;            ///< 99 % of the samples are nearer
   double missed_beyond = 0;  ///< neither noise nor flat faces explain a distance above it: missed_samples.h
   std::optional<std::size_t> n_merged = {};  ///< how many samples the cloud has been merged of
-  std::size_t n_beyond_h = 0;          ///< samples farther than h from the mesh
-  double most_over_h = 0;              ///< largest distance, in the h of its place
-  Vec3 most_at = Vec3::Zero();         ///< the sample with that distance; model coordinates
+  std::size_t n_beyond_h = 0;                ///< samples farther than h from the mesh
+  double most_over_h = 0;                    ///< largest distance, in the h of its place
+  Vec3 most_at = Vec3::Zero();               ///< the sample with that distance; model coordinates
   std::size_t n_missed_places = 0;
   std::vector<MissedPlace> missed{};  ///< the farthest of them, farthest first
 };
@@ -71,12 +71,14 @@ struct InputFacts {
   std::string turned_by;       ///< "neighbours", "winding number", "psi"; empty where none were turned
   double doubtful = 0;         ///< normals whose outward side is a guess
   double opposed = 0;          ///< normals that point against grad psi
+  double consistency = 1;      ///< share of neighbouring pairs whose signs agree in the end
+  std::optional<double> off_a_half;  ///< share of patches that bound no body by the winding number; none: not asked
 };
 
 /// How h was found.
 struct SearchReport {
-  int n_attempts = 1;       ///< meshes that were made or tried
-  bool h_is_given = false;  ///< by the user, as a length or a number of tets
+  int n_attempts = 1;        ///< meshes that were made or tried
+  bool h_is_given = false;   ///< by the user, as a length or a number of tets
   bool at_max_tets = false;  ///< mesh.max_tets kept h larger than the body needs
 };
 
@@ -84,8 +86,10 @@ struct SearchReport {
 struct TriangleDistances {
   std::size_t n_triangles = 0;
   double rms = 0, p99 = 0, max = 0;                 ///< of vertices and centres of boundary faces to the triangles
+  double max_over_h = 0;                            ///< the largest in the h of its place
   Vec3 farthest = Vec3::Zero();                     ///< where that is; model coordinates
   double rms_back = 0, p99_back = 0, max_back = 0;  ///< of samples, corners and centres of triangles to the mesh
+  double max_back_over_h = 0;
   Vec3 farthest_back = Vec3::Zero();
   /// Size and topology of what the triangles bound: none read from a certificate that lacks it.
   std::optional<TriangleBody> body = {};
@@ -134,10 +138,10 @@ struct MeshMeasures {
   std::optional<SizesReport> sizes;   ///< none where the mesh has one h
   std::optional<std::int64_t> order;  ///< 1 or 2; none where only the corners were measured
   std::optional<SecondOrderReport> second_order;
-  std::optional<InputFacts> input;      ///< none where psi is not fitted to samples
-  std::optional<SearchReport> search;   ///< none of a mesh that was made elsewhere
+  std::optional<InputFacts> input;     ///< none where psi is not fitted to samples
+  std::optional<SearchReport> search;  ///< none of a mesh that was made elsewhere
   bool is_valid = true;  ///< tets positive, boundary the closed manifold that it is to be, and not through itself
-  PlaceReport places;                ///< where it is not psi = 0
+  PlaceReport places;    ///< where it is not psi = 0
   std::vector<std::string> reasons;  ///< what is wrong with it besides
 };
 
@@ -209,8 +213,8 @@ struct MeshCheck {
 /// output.units; none where none were given.
 std::optional<std::string> units_of(const Parameters& parameters);
 
-/// The three judgements. It fails by the reasons of what was measured, by places and differences from the input that are
-/// neither small nor accepted (output.strict, output.accept), and by a broken output.min_quality.
+/// The three judgements. It fails by the reasons of what was measured, by places and differences from the input that
+/// are neither small nor accepted (output.strict, output.accept), and by a broken output.min_quality.
 Verdict judge(const MeshMeasures& measured, const Parameters& parameters);
 /// The first two judgements: whether the mesh is what h can show of psi. @param accept  as output.accept has it
 Verdict judge_shape(const MeshMeasures& measured, bool strict = false, const std::string& accept = "");

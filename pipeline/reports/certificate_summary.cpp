@@ -138,8 +138,8 @@ std::string triangles_line(const MeshMeasures& m, const std::string& unit) {
   const double h = m.mesh.h;
   return fmt::format(
       "triangles {} bound the body; mesh to them rms {} ({} h), max {} h; they to the mesh rms {} ({} h), max {} h\n",
-      thousands(d.n_triangles), show(d.rms, "{:.3g}") + unit, show(d.rms / h, "{:.4f}"), show(d.max / h, "{:.3f}"),
-      show(d.rms_back, "{:.3g}") + unit, show(d.rms_back / h, "{:.4f}"), show(d.max_back / h, "{:.3f}"));
+      thousands(d.n_triangles), show(d.rms, "{:.3g}") + unit, show(d.rms / h, "{:.4f}"), show(d.max_over_h, "{:.3f}"),
+      show(d.rms_back, "{:.3g}") + unit, show(d.rms_back / h, "{:.4f}"), show(d.max_back_over_h, "{:.3f}"));
 }
 
 /// Where samples are not on the mesh; empty if they all are.
@@ -174,8 +174,8 @@ std::string places_line(const PlaceReport& places) {
   const std::size_t n = places.n();
   std::size_t n_small = 0;
   for (const PlaceReport::OfKind& k : places.kinds) n_small += k.n_small;
-  return fmt::format("places    {} where the mesh is not psi = 0, {} of them small: {}\n",
-                     n, n_small, fmt::join(kinds, ", "));
+  return fmt::format("places    {} where the mesh is not psi = 0, {} of them small: {}\n", n, n_small,
+                     fmt::join(kinds, ", "));
 }
 
 std::string time_line(const std::optional<CertificateRun>& run) {
@@ -192,10 +192,10 @@ std::string suffix(const std::optional<std::string>& units) { return units ? " "
 std::string summary(const Certificate& c) {
   const std::string unit = suffix(c.units);
   const MeshMeasures& m = c.measured;
-  return verdict_lines(c.verdict, judgements(c.verdict, m.n_points.has_value()), c.blame) + mesh_lines(m.mesh, unit, c.n_tets_asked) +
-         sizes_line(m.sizes, unit) + second_order_lines(m.second_order) + domain_line(m.domain) +
-         holes_line(m.domain.support, unit) + cloud_line(m, unit) + triangles_line(m, unit) + missed_line(m, unit) +
-         thin_line(m.resolution) + places_line(m.places) + time_line(c.run);
+  return verdict_lines(c.verdict, judgements(c.verdict, m.n_points.has_value()), c.blame) +
+         mesh_lines(m.mesh, unit, c.n_tets_asked) + sizes_line(m.sizes, unit) + second_order_lines(m.second_order) +
+         domain_line(m.domain) + holes_line(m.domain.support, unit) + cloud_line(m, unit) + triangles_line(m, unit) +
+         missed_line(m, unit) + thin_line(m.resolution) + places_line(m.places) + time_line(c.run);
 }
 
 std::string summary(const MeshCheck& c) {

@@ -37,12 +37,8 @@ TopologyProof topology_of(const std::string& word) {
 
 Json to_json(const std::optional<SupportReport>& support) {
   if (!support) {
-    return {{"unsupported_area_fraction", nullptr},
-            {"support_radius", nullptr},
-            {"n_closed_holes", nullptr},
-            {"n_guessed_handles", nullptr},
-            {"n_guessed_pieces", nullptr},
-            {"closed_holes", nullptr}};
+    return {{"unsupported_area_fraction", nullptr}, {"support_radius", nullptr},   {"n_closed_holes", nullptr},
+            {"n_guessed_handles", nullptr},         {"n_guessed_pieces", nullptr}, {"closed_holes", nullptr}};
   }
   return {{"unsupported_area_fraction", support->unsupported_area_fraction},
           {"support_radius", support->radius},
@@ -142,17 +138,17 @@ TriangleBody triangle_body_from(const Json& json) {
 
 }  // namespace
 
-Json to_json(const TriangleDistances& d, double h) {
+Json to_json(const TriangleDistances& d) {
   Json json = {{"n_triangles", d.n_triangles},
                {"rms_distance", d.rms},
                {"p99_distance", d.p99},
                {"max_distance", d.max},
-               {"max_distance_over_h", d.max / h},
+               {"max_distance_over_h", d.max_over_h},
                {"farthest", json_of(d.farthest)},
                {"rms_distance_back", d.rms_back},
                {"p99_distance_back", d.p99_back},
                {"max_distance_back", d.max_back},
-               {"max_distance_back_over_h", d.max_back / h},
+               {"max_distance_back_over_h", d.max_back_over_h},
                {"farthest_back", json_of(d.farthest_back)}};
   if (!d.body) return json;
   json["body"] = to_json(*d.body);
@@ -165,10 +161,12 @@ TriangleDistances triangle_distances_from(const Json& json) {
                       .rms = number_from(json.at("rms_distance")),
                       .p99 = number_from(json.at("p99_distance")),
                       .max = number_from(json.at("max_distance")),
+                      .max_over_h = number_from(json.at("max_distance_over_h")),
                       .farthest = vector_from(json.at("farthest")),
                       .rms_back = number_from(json.at("rms_distance_back")),
                       .p99_back = number_from(json.at("p99_distance_back")),
                       .max_back = number_from(json.at("max_distance_back")),
+                      .max_back_over_h = number_from(json.at("max_distance_back_over_h")),
                       .farthest_back = vector_from(json.at("farthest_back"))};
   if (!json.contains("body")) return d;
   d.body = triangle_body_from(json.at("body"));

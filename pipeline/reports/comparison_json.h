@@ -22,7 +22,7 @@ Json to_json(const SampleDistances& distances, double h);
 SampleDistances distances_from(const Json& json);
 
 /// The block `triangles`.
-Json to_json(const TriangleDistances& distances, double h);
+Json to_json(const TriangleDistances& distances);
 TriangleDistances triangle_distances_from(const Json& json);
 
 /// The block `resolution`.

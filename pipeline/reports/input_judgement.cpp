@@ -47,15 +47,49 @@ void add_guesses(const SupportReport& support, std::vector<InputDefect>& defects
   }
 }
 
-void add_distances(const TriangleDistances& d, double h, std::vector<InputDefect>& defects) {
-  const bool is_back = d.max_back > d.max;
-  const double deep = std::max(d.max, d.max_back) / h;
+/// Where the triangles are open, the mesh goes on without them: only the way back counts.
+void add_distances(const TriangleDistances& d, bool is_closed, std::vector<InputDefect>& defects) {
+  const bool is_back = !is_closed || d.max_back_over_h > d.max_over_h;
+  const double deep = is_back ? d.max_back_over_h : d.max_over_h;
   if (deep <= 1) return;
-  defects.push_back({InputDefectKind::Distance, deep, deep <= kDeeplyMissed,
-                     is_back ? fmt::format("the triangles are up to {:.2g} h from the mesh, most of all at {}", deep,
-                                           at(d.farthest_back))
-                             : fmt::format("the mesh is up to {:.2g} h from the triangles, most of all at {}", deep,
-                                           at(d.farthest))});
+  defects.push_back(
+      {InputDefectKind::Distance, deep, deep <= kDeeplyMissed,
+       is_back
+           ? fmt::format("the triangles are up to {:.2g} h from the mesh, most of all at {}", deep, at(d.farthest_back))
+           : fmt::format("the mesh is up to {:.2g} h from the triangles, most of all at {}", deep, at(d.farthest))});
+}
+
+/// Flat faces between vertices on a curved psi = 0 explain gap_over_volume.
+void add_volume(double given, double made, double explained, std::vector<InputDefect>& defects) {
+  const double off = std::abs(made - given) / std::abs(given), unexplained = off - explained;
+  if (unexplained <= kVolumeNamed) return;
+  defects.push_back({InputDefectKind::Volume, unexplained, unexplained <= kVolumeFails,
+                     fmt::format("the volume is {:.6g}, and {:.6g} is given ({:+.2g} %)", made, given,
+                                 100 * (made - given) / std::abs(given))});
+}
+
+void add_topology(std::size_t given_pieces, long given_genus, const TriangleBody& made,
+                  std::vector<InputDefect>& defects) {
+  if (made.n_pieces != given_pieces) {
+    defects.push_back(
+        {InputDefectKind::Pieces, std::abs(static_cast<double>(made.n_pieces) - static_cast<double>(given_pieces)),
+         false, fmt::format("the boundary has {}, and {} are given", counted(made.n_pieces, "piece"), given_pieces)});
+  }
+  if (made.genus() != given_genus) {
+    defects.push_back({InputDefectKind::Genus, std::abs(static_cast<double>(made.genus() - given_genus)), false,
+                       fmt::format("the boundary has genus {}, and {} is given", made.genus(), given_genus)});
+  }
+}
+
+void add_triangles(const MeshMeasures& m, std::vector<InputDefect>& defects) {
+  const TriangleDistances& d = *m.triangles;
+  const bool is_closed = d.body && d.body->is_closed;
+  if (!is_closed && m.domain.support) add_guesses(*m.domain.support, defects);
+  add_distances(d, is_closed, defects);
+  if (is_closed) {
+    add_volume(d.body->volume, std::abs(d.mesh.volume), m.mesh.boundary.gap_over_volume.value_or(0), defects);
+  }
+  if (is_closed && d.body->is_manifold) add_topology(d.body->n_pieces, d.body->genus(), d.mesh, defects);
 }
 
 }  // namespace
@@ -70,9 +104,12 @@ std::optional<InputDefectKind> input_defect_kind_of(const std::string& word) {
 
 std::vector<InputDefect> input_defects(const MeshMeasures& m) {
   std::vector<InputDefect> defects;
-  if (m.cloud && !m.triangles) add_missed(m, defects);
-  if (m.domain.support && !m.triangles) add_guesses(*m.domain.support, defects);
-  if (m.triangles) add_distances(*m.triangles, m.mesh.h, defects);
+  if (m.triangles) {
+    add_triangles(m, defects);
+    return defects;
+  }
+  if (m.cloud) add_missed(m, defects);
+  if (m.domain.support) add_guesses(*m.domain.support, defects);
   return defects;
 }
 

@@ -38,7 +38,14 @@ Certificate full_certificate() {
               .components_dropped = {"piece"},
               .components_proved = true,
               .support = SupportReport{.3, .25, 101, {{Vec3(1, 2, 3), 4, .1, 1, 10, 7, 2, 1}}, 2, 1}};
-  m.cloud = {.noise = .01, .rms = .1, .max = .7, .p99 = .5, .missed_beyond = .2, .n_beyond_h = 1010, .most_over_h = 3, .n_missed_places = 101};
+  m.cloud = {.noise = .01,
+             .rms = .1,
+             .max = .7,
+             .p99 = .5,
+             .missed_beyond = .2,
+             .n_beyond_h = 1010,
+             .most_over_h = 3,
+             .n_missed_places = 101};
   m.cloud->missed = {{Vec3(3, 2, 1), .7, 20}};
   m.resolution = {.9, 1.5, 3, 4, std::vector<ThinPlace>(1)};
   m.resolution.too_thin->front().is_gap = true;
@@ -49,7 +56,7 @@ Certificate full_certificate() {
   m.second_order = SecondOrderReport{{}, SecondOrderReport::Repairs{1, 2, 3, 4}};
   m.second_order->certificate.min_scaled_jacobian_upper = .5;
   c.n_tets_asked = 20;
-  m.input = InputFacts{true, .1, "psi", .2, .3};
+  m.input = InputFacts{true, .1, "psi", .2, .3, .9, .01};
   m.search = SearchReport{2, true, true};
   std::vector<MeshPlace> places = {
       {.kind = PlaceKind::Missed, .where = Vec3(1, 0, 0), .off_over_h = 2, .n = 12},
@@ -89,8 +96,8 @@ TEST(CertificateJson, WhatIsMissingIsDamage) {
     Json lacking = json;
     lacking.erase(key);
     // of meshes whose corners alone were measured, that never were in a case, or that have one h
-    const bool may_lack =
-        key == "schema" || key == "sizes" || key == "input" || key == "search" || key == "tool" || key == "verdict" || key == "order" || key == "run";
+    const bool may_lack = key == "schema" || key == "sizes" || key == "input" || key == "search" || key == "tool" ||
+                          key == "verdict" || key == "order" || key == "run";
     if (may_lack) {
       EXPECT_NO_THROW(certificate_from(lacking)) << key;
     } else {

@@ -84,6 +84,47 @@ TEST(InputJudgement, HandlesWithoutSamplesFailWhereMuchIsGuessed) {
   EXPECT_NE(c.verdict.reasons.front().find("6 handles"), std::string::npos) << c.verdict.reasons.front();
 }
 
+/// Of closed triangles around a volume of 1.
+MeshMeasures of_triangles(double volume, std::size_t n_pieces = 1, long characteristic = 2) {
+  MeshMeasures m = right();
+  const TriangleBody given{
+      .volume = 1, .n_pieces = 1, .euler_characteristic = 2, .is_closed = true, .is_manifold = true};
+  m.triangles = TriangleDistances{};
+  m.triangles->body = given;
+  m.triangles->mesh = given;
+  m.triangles->mesh.volume = volume;
+  m.triangles->mesh.n_pieces = n_pieces;
+  m.triangles->mesh.euler_characteristic = characteristic;
+  return m;
+}
+
+TEST(InputJudgement, TheVolumeOfTrianglesIsKeptButForWhatFlatFacesExplain) {
+  EXPECT_EQ(judged(of_triangles(.996)).verdict.word(), "pass");
+  EXPECT_EQ(judged(of_triangles(.99)).verdict.word(), "pass with 1 defect named");
+  EXPECT_EQ(judged(of_triangles(1.03)).verdict.word(), "fail");
+  MeshMeasures coarse = of_triangles(.97);
+  coarse.mesh.boundary.gap_over_volume = .03;
+  EXPECT_EQ(judged(coarse).verdict.word(), "pass");
+}
+
+TEST(InputJudgement, PiecesAndHandlesAreThoseOfTheTriangles) {
+  EXPECT_NE(judged(of_triangles(1, 2, 4)).verdict.reasons.front().find("2 pieces"), std::string::npos);
+  EXPECT_NE(judged(of_triangles(1, 1, 0)).verdict.reasons.front().find("genus 1"), std::string::npos);
+  MeshMeasures overlapping = of_triangles(1, 1, 0);
+  overlapping.triangles->body->is_manifold = false;
+  EXPECT_TRUE(judged(overlapping).verdict.passes()) << "nothing is known of their topology";
+}
+
+TEST(InputJudgement, OpenTrianglesAreNotMissedWhereTheMeshClosesThem) {
+  MeshMeasures m = of_triangles(1);
+  m.triangles->max_over_h = 5;
+  EXPECT_EQ(judged(m).verdict.word(), "fail");
+  m.triangles->body->is_closed = false;
+  EXPECT_EQ(judged(m).verdict.word(), "pass");
+  m.triangles->max_back_over_h = 2;
+  EXPECT_EQ(judged(m).verdict.word(), "pass with 1 defect named");
+}
+
 TEST(InputJudgement, StrictNamesNothingAndAcceptTakesItsKinds) {
   Parameters strict;
   strict.set("output.strict=true");
