@@ -8,6 +8,7 @@
 #include "pipeline/output/boundary_patches.h"
 #include "pipeline/output/export_case.h"
 #include "pipeline/reports/mesh_place.h"
+#include "reconstruct/io/grid_io.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -53,6 +54,23 @@ void take_cloud(RunRequest& request) {
   request.parameters.make_cloud_absolute();
 }
 
+/// \throw UsageError for what is said of an image where there is none
+void require_image(const Parameters& parameters) {
+  if (!parameters.mesh().level_set.empty()) return;
+  for (const char* key : {keys::mesh::level, keys::mesh::above, keys::mesh::part, keys::mesh::part_smooth}) {
+    if (parameters.source(key) >= ParamSource::Set)
+      throw UsageError(std::string(key) + " is for images and segmentations (.nii, .nrrd, .vti, .vtk)");
+  }
+}
+
+/// The image that was named, whose one stage is the mesh; its path is to be found again from another folder.
+void take_image(const std::string& input, RunRequest& request) {
+  if (request.until != Stage::Mesh) throw UsageError(input + " is an image: its one stage is the mesh (umtet run)");
+  request.parameters.set(keys::mesh::level_set, fs::absolute(input).lexically_normal().string(), ParamSource::Flag,
+                         "command line");
+  request.from = Stage::Mesh;
+}
+
 /// The stages first..last of the case or cloud that was given, or as --from and --until say.
 /// @param input_is_case  the word that was given is no cloud
 Command make_stages(const CLI::App& app, const CommandInputs& in, Stage first, Stage last, bool input_is_case) {
@@ -88,7 +106,9 @@ Command make_stages(const CLI::App& app, const CommandInputs& in, Stage first, S
     const std::string name = app.get_name();
     if (in.output.empty()) throw UsageError(name + ": -o CASE is missing");
     request.case_folder = in.output;
-    if (first == Stage::Mesh) {
+    if (!in.input.empty() && is_grid_file(in.input)) {
+      take_image(in.input, request);
+    } else if (first == Stage::Mesh) {
       if (!has_own_psi(parameters.mesh()))
         throw UsageError("mesh: give a CASE, or --implicit EXPR with --box and -o, or --level-set GRID with -o");
     } else {
@@ -98,6 +118,7 @@ Command make_stages(const CLI::App& app, const CommandInputs& in, Stage first, S
       if (request.from == Stage::Cloud) take_cloud(request);
     }
   }
+  require_image(parameters);
   require_walls(parameters);
   require_graded(parameters);
   return RunCommand{std::move(request), in.formats};

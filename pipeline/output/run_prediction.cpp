@@ -1,5 +1,7 @@
 #include "pipeline/output/run_prediction.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -65,8 +67,16 @@ RunPrediction predict_run(const CloudSurvey& survey, double area, const Paramete
         edge_length_by(kMeshEdge * survey.diagonal, thin, [&] { return h_of(static_cast<double>(kTetsOfLargeMesh)); });
     run.h = std::max({run.h, h_of(max_tets), survey.noise / kMostNoise});
   }
-  const double n_tets = std::max(1., expected_tets(tiling, body, run.h, source));
-  const auto n_points = static_cast<double>(survey.n_points);
+  return prediction_of(run.h, expected_tets(tiling, body, run.h, source), static_cast<double>(survey.n_points),
+                       parameters);
+}
+
+RunPrediction prediction_of(double h, double n_tets, double n_points, const Parameters& parameters) {
+  const MeshParameters& p = parameters.mesh();
+  const auto max_tets = static_cast<double>(p.max_tets);
+  n_tets = std::max(1., n_tets);
+  RunPrediction run;
+  run.h = h;
   run.expected = cost(n_points, n_tets);
   // All meshes together have p.effort times the tets of the first; none has more than mesh.max_tets.
   const double all = std::max(1., p.effort) * n_tets;
@@ -86,6 +96,12 @@ Json to_json(const RunCost& cost) {
 
 Json to_json(const RunPrediction& prediction) {
   return {{"h", prediction.h}, {"expected", to_json(prediction.expected)}, {"most", to_json(prediction.most)}};
+}
+
+std::string prediction_text(const RunPrediction& run) {
+  return fmt::format(
+      "a run    about {:.2g} tets at h = {:.3g}: {:.2g} s of one thread, {:.0f} MB; at most {:.2g} s, {:.0f} MB\n",
+      run.expected.n_tets, run.h, run.expected.seconds, run.expected.memory_MB, run.most.seconds, run.most.memory_MB);
 }
 
 }  // namespace umtet
