@@ -25,7 +25,7 @@ struct LabelVolume {
 
 /// What fit_mask() returned, with its pieces, area and curvature.
 ///
-/// Integrals over psi = 0 are sums over its crossings with the lines between voxels [Cauchy and Crofton]: along axis a
+/// Integrals over psi = 0 are sums over its crossings with the lines between voxels (Cauchy and Crofton): along axis a
 /// there are int |n_a| dA / (area of a voxel across a) of them, so one stands for |n_a| times that area.
 /// @param kernel  of fit_mask_by_kernel()
 LabelVolume label_volume(MaskFit& fit, std::optional<std::int64_t> part, std::optional<double> kernel);
