@@ -90,6 +90,19 @@ LevelRange::Side side_of(const Grid& grid, double level, const MeshParameters& p
   return LevelRange::Side::Above;
 }
 
+/// Diagonal of the box around the nodes inside, with half a step on all sides.
+double diagonal_of_body(const Grid& grid) {
+  Eigen::AlignedBox3d box;
+  std::size_t at = 0;
+  for (int k = 0; k < grid.n[2]; ++k) {
+    for (int j = 0; j < grid.n[1]; ++j) {
+      for (int i = 0; i < grid.n[0]; ++i)
+        if (grid.values[at++] < 0) box.extend(Vec3(grid.axes * Vec3(i, j, k)));
+    }
+  }
+  return box.diagonal().norm() + grid.steps().norm();
+}
+
 /// psi of an image and a level.
 void take_level(Grid grid, LevelRange level, const MeshParameters& p, Domain& domain) {
   using Side = LevelRange::Side;
@@ -122,6 +135,7 @@ void take_level(Grid grid, LevelRange level, const MeshParameters& p, Domain& do
     }
     domain.notices.push_back(p.level_set + ": " + other);
   }
+  domain.diagonal = diagonal_of_body(grid);
   domain.grid = std::make_shared<const GridLevelSet>(interpolate(std::move(grid)));
 }
 
@@ -163,7 +177,8 @@ Domain grid_domain(const Parameters& parameters) {
     throw GridRefused(p.level_set + ": " + e.what());
   }
   domain.box = parse_box(p.box).value_or(domain.grid->box());
-  domain.diagonal = domain.labels ? domain.labels->diagonal : domain.box.diagonal().norm();
+  if (domain.labels) domain.diagonal = domain.labels->diagonal;
+  if (!(domain.diagonal > 0)) domain.diagonal = domain.box.diagonal().norm();
   return domain;
 }
 
