@@ -12,6 +12,7 @@
 #include "mesh/background/tiling.h"
 #include "pipeline/case/detail/param_field.h"
 #include "pipeline/case/exit_code.h"
+#include "pipeline/case/level_range.h"
 
 namespace umtet {
 namespace {
@@ -99,6 +100,7 @@ void check(const ParamField& f, const ParamValue& value) {
   // TOML and JSON hold nothing else.
   if (t && !is_utf8(*t)) throw UsageError(f.key + ": the text is not valid UTF-8");
   if (f.key == keys::mesh::box) parse_box(*t);
+  if (f.key == keys::mesh::level) parse_level(*t);
   if (f.key == keys::mesh::background) check_background(*t);
 }
 

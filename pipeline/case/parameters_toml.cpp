@@ -106,6 +106,9 @@ void Parameters::load(const std::filesystem::path& file, ParamSource source) {
           value = *entry.value<double>();
         } else if (f.preset.index() == 3 && entry.is_string()) {
           value = *entry.value<std::string>();
+        } else if (f.key == keys::mesh::level && entry.is_number()) {  // 0: no level, as cases of 0.9 have it
+          const double level = *entry.value<double>();
+          value = level == 0 ? std::string() : decimal(level);
         } else {
           constexpr const char* kTypes[] = {"true or false", "a whole number", "a number", "a text"};
           throw UsageError(f.key + ": must be " + kTypes[f.preset.index()]);

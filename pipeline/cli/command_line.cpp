@@ -21,7 +21,8 @@ constexpr const char* kExamples =
   umtet mesh duck --h 0.02                   another mesh size; the level set is not fitted again
   umtet mesh duck --max-deviation 0.001      flat faces at most so far from the surface
   umtet mesh --implicit 'x^2+y^2+z^2-1' --box=-1.2,-1.2,-1.2,1.2,1.2,1.2 --tets 100000 -o ball
-  umtet mesh --level-set sdf.vti -o part     a level set that another program computed; a segmentation: mask.nii.gz
+  umtet mesh --level-set sdf.vti -o part     a level set that another program computed
+  umtet run mask.nii.gz --part 4 -o liver    part 4 of a segmentation; of an image: umtet run ct.nii.gz --level 300: -o bone
   umtet mesh duck --complement --box-walls --box=-2,-1.5,-2,4,2,2 --h .08    the fluid around it, in a box
   umtet evolve --implicit '(x-t)^2+y^2+z^2-1' --box=-2,-2,-2,4,2,2 --h .1 --t 0:0.5:2 -o moving
   umtet batch LIST -o scans --jobs 2         many scans; one table of verdicts, reasons and times
@@ -35,7 +36,10 @@ constexpr const char* kExamples =
 
 /// What a scan does not have: psi comes from it.
 const std::vector<std::string> kOwnPsi = {keys::mesh::implicit, keys::mesh::level_set, keys::mesh::level,
-                                          keys::mesh::part, keys::mesh::part_smooth};
+                                          keys::mesh::above,    keys::mesh::part,      keys::mesh::part_smooth};
+/// What an image has, which stands where a cloud could.
+const std::vector<std::string> kOfImages = {keys::mesh::level, keys::mesh::above, keys::mesh::part,
+                                            keys::mesh::part_smooth};
 
 constexpr const char* kExitCodes = R"(
 Exit codes: 0 all well | 1 a bug of ours | 2 usage | 3 input refused | 4 reconstruction failed
@@ -75,14 +79,14 @@ CommandParser::CommandParser() {
 
   CLI::App& run = add_command("run", make_run, "All stages; those whose record matches are not run again");
   add_stage_flags(run);
-  run.add_option(
-      "CLOUD", in_.input,
-      "points: .ply, .pcd, text (.xyz, .csv ...); triangles: .stl, .obj, .off, .ply; or a case, to resume it");
+  run.add_option("CLOUD", in_.input,
+                 "points: .ply, .pcd, text (.xyz, .csv ...); triangles: .stl, .obj, .off, .ply; an image: .nii, .nrrd, "
+                 ".vti, .vtk, also .gz; or a case, to resume it");
   run.add_option("--from", in_.from, "first stage that may run: cloud, level-set, mesh (default cloud)");
   run.add_option("--until", in_.until, "last stage to run (default mesh)");
   add_formats(run, "--export");
   run.add_flag("--no-report", in_.no_report, "do not make report.html");
-  add_parameter_flags(run, {"cloud", "reconstruct", "mesh", "output"}, kOwnPsi);
+  add_parameter_flags(run, {"cloud", "reconstruct", "mesh", "output"}, {keys::mesh::implicit, keys::mesh::level_set});
 
   CLI::App& reconstruct = add_command("reconstruct", make_reconstruct, "Stage one only: the level set");
   add_stage_flags(reconstruct);
@@ -107,23 +111,33 @@ CommandParser::CommandParser() {
   evolve.add_option("--clouds", in_.clouds, "a text file with the path of a cloud a line, instead of --implicit");
   evolve.add_option("--t", in_.times, "FROM:STEP:TO, the times; --implicit may have t in it");
   evolve.add_option("--skip", in_.skip, "times to leave out: --skip 3.1,3.4");
-  add_parameter_flags(evolve, {"cloud", "reconstruct", "mesh", "output"},
-                      {keys::mesh::level_set, keys::mesh::level, keys::mesh::part, keys::mesh::part_smooth,
-                       keys::mesh::keep_iterates, keys::mesh::order, keys::mesh::effort, keys::output::label_names,
-                       keys::output::label_min_area, keys::output::patch_angle, keys::output::patch_planar});
+  add_parameter_flags(
+      evolve, {"cloud", "reconstruct", "mesh", "output"},
+      {keys::mesh::level_set, keys::mesh::level, keys::mesh::above, keys::mesh::part, keys::mesh::part_smooth,
+       keys::mesh::keep_iterates, keys::mesh::order, keys::mesh::effort, keys::output::label_names,
+       keys::output::label_min_area, keys::output::patch_angle, keys::output::patch_planar});
 
   add_batch();
 
   CLI::App& inspect =
-      add_command("inspect", make_inspect, "What is in a cloud, and what is likely to go wrong with it");
+      add_command("inspect", make_inspect, "What is in a cloud or an image, and what is likely to go wrong with it");
   inspect
-      .add_option("CLOUD", in_.input, "points: .ply, .pcd, text (.xyz, .csv ...); triangles: .stl, .obj, .off, .ply")
+      .add_option(
+          "CLOUD", in_.input,
+          "points: .ply, .pcd, text (.xyz, .csv ...); triangles: .stl, .obj, .off, .ply; an image: .nii, .nrrd, "
+          ".vti, .vtk, also .gz")
       ->required();
   add_parameter_sources(inspect);
   for (const ParamField& f : params_fields()) {  // how a text is read, and what the prediction follows
     if (f.key == keys::cloud::columns || f.key == keys::mesh::h || f.key == keys::mesh::tets ||
         f.key == keys::mesh::max_tets)
       add_value(inspect, f);
+    if (std::find(kOfImages.begin(), kOfImages.end(), f.key) == kOfImages.end()) continue;
+    if (std::holds_alternative<bool>(f.preset)) {
+      inspect.add_flag(f.flag, in_.switches[f.key], f.help);
+    } else {
+      add_value(inspect, f);
+    }
   }
 
   CLI::App& check = add_command("check", make_check, "Validity and quality of any tet mesh; exit 6 when it fails");

@@ -12,6 +12,7 @@
 #include "pipeline/output/boundary_patches.h"
 #include "pipeline/output/export_case.h"
 #include "pipeline/reports/accepted_defects.h"
+#include "reconstruct/io/grid_io.h"
 #include "reconstruct/io/point_cloud_io.h"
 
 namespace umtet {
@@ -97,6 +98,23 @@ void take_case(const fs::path& toml, bool fresh, Parameters& parameters) {
   parameters.take_body(former);
 }
 
+/// \throw UsageError for what is said of an image where there is none
+void require_image(const Parameters& parameters) {
+  if (!parameters.mesh().level_set.empty()) return;
+  for (const char* key : {keys::mesh::level, keys::mesh::above, keys::mesh::part, keys::mesh::part_smooth}) {
+    if (parameters.source(key) >= ParamSource::Set)
+      throw UsageError(std::string(key) + " is for images and segmentations (.nii, .nrrd, .vti, .vtk)");
+  }
+}
+
+/// The image that was named, whose one stage is the mesh; its path is to be found again from another folder.
+void take_image(const std::string& input, RunRequest& request) {
+  if (request.until != Stage::Mesh) throw UsageError(input + " is an image: its one stage is the mesh (umtet run)");
+  request.parameters.set(keys::mesh::level_set, fs::absolute(input).lexically_normal().string(), ParamSource::Flag,
+                         "command line");
+  request.from = Stage::Mesh;
+}
+
 /// The stages first..last of the case or cloud that was given, or as --from and --until say.
 /// @param input_is_case  the word that was given is no cloud
 Command make_stages(const CLI::App& app, const CommandInputs& in, Stage first, Stage last, bool input_is_case) {
@@ -132,7 +150,9 @@ Command make_stages(const CLI::App& app, const CommandInputs& in, Stage first, S
   } else {
     const std::string name = app.get_name();
     request.case_folder = in.output;
-    if (first == Stage::Mesh) {
+    if (!in.input.empty() && is_grid_file(in.input)) {
+      take_image(in.input, request);
+    } else if (first == Stage::Mesh) {
       if (!has_own_psi(parameters.mesh()))
         throw UsageError("mesh: give a CASE, or --implicit EXPR with --box and -o, or --level-set GRID with -o");
     } else {
@@ -144,9 +164,10 @@ Command make_stages(const CLI::App& app, const CommandInputs& in, Stage first, S
     if (in.output.empty()) {
       const std::string& grid = parameters.mesh().level_set;
       if (first == Stage::Mesh && grid.empty()) throw UsageError("-o CASE is missing: a formula has no name");
-      request.case_folder = default_case(first == Stage::Mesh ? grid : parameters.cloud().file);
+      request.case_folder = default_case(grid.empty() ? parameters.cloud().file : grid);
     }
   }
+  require_image(parameters);
   require_walls(parameters);
   require_graded(parameters);
   return RunCommand{std::move(request), in.formats};

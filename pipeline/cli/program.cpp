@@ -23,6 +23,7 @@
 #include "pipeline/output/case_diff.h"
 #include "pipeline/output/export_case.h"
 #include "pipeline/output/inspect.h"
+#include "pipeline/output/inspect_image.h"
 #include "pipeline/output/report.h"
 #include "pipeline/output/view_files.h"
 #include "pipeline/reports/certificate_json.h"
@@ -30,6 +31,7 @@
 #include "pipeline/run/evolve.h"
 #include "pipeline/run/run.h"
 #include "pipeline/stages/stale_mesh.h"
+#include "reconstruct/io/grid_io.h"
 
 namespace umtet {
 namespace {
@@ -130,6 +132,11 @@ Output Execution::operator()(const CheckCommand& command) const {
 
 Output Execution::operator()(const InspectCommand& command) const {
   set_work_at_hand("inspect");
+  if (is_grid_file(command.cloud)) {
+    const ImageInspection found = inspect_image(command.cloud, command.parameters, progress);
+    progress.clear();
+    return {ExitCode::Success, inspection_text(found), {{"inspection", to_json(found)}}};
+  }
   const CloudInspection found = inspect_cloud(command.cloud, command.parameters, progress);
   progress.clear();
   return {ExitCode::Success, inspection_text(found), {{"inspection", to_json(found)}}};

@@ -86,7 +86,8 @@ BackgroundChoice::BackgroundChoice(const Parameters& parameters, const Domain& d
 
 bool BackgroundChoice::may_be_graded(const Domain& domain) const {
   const MeshParameters& p = parameters_.mesh();
-  return is_ours_ && domain.level_set && p.mode == MeshingMode::Fast && !walls_ && p.h == 0 && p.max_deviation == 0;
+  return is_ours_ && (domain.level_set || domain.labels) && p.mode == MeshingMode::Fast && !walls_ && p.h == 0 &&
+         p.max_deviation == 0;
 }
 
 /// @param one  the choice of one h

@@ -6,6 +6,7 @@
 #include "pipeline/case/exit_code.h"
 #include "pipeline/domain/fitted_domain.h"
 #include "pipeline/domain/handover.h"
+#include "pipeline/domain/label_volume.h"
 #include "pipeline/domain/wanted_detail.h"
 #include "pipeline/reports/input_facts.h"
 #include "pipeline/reports/stage_reports.h"
@@ -84,8 +85,13 @@ const BodySize& Domain::size() const {
     size_.emplace(box, BodySize{triangles->body.volume, triangles->body.area});
   if (triangles && triangles->body.is_closed && !complement) return size_->second;
   const bool known = size_ && size_->first.min() == box.min() && size_->first.max() == box.max();
-  if (!known)
-    size_.emplace(box, with_psi_apart([&](ImplicitFunctionRef psi) { return body_size(psi, box, steepest()); }));
+  if (known) return size_->second;
+  // Thin parts of a segmentation fall between the places of an estimate.
+  const auto measured = [&](ImplicitFunctionRef psi) {
+    return labels && !complement ? BodySize{labels->report.volume_of_psi, labels->area}
+                                 : body_size(psi, box, steepest());
+  };
+  size_.emplace(box, with_psi_apart(measured));
   return size_->second;
 }
 

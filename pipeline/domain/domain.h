@@ -24,6 +24,7 @@
 namespace umtet {
 
 struct Handover;
+struct LabelVolume;
 
 /// What 3-mesh works on, and what a mesh is judged against: psi, where to look for it, and the samples behind it.
 /// All lengths and places are in working coordinates: model coordinates minus `shift`.
@@ -39,11 +40,12 @@ struct Domain {
   std::vector<std::string> notices;                 ///< of how psi was made, for the user
   OrientedPointCloud cloud;                         ///< empty for a formula
   std::shared_ptr<const GivenTriangles> triangles;  ///< that bound the body; none of a cloud or a formula
+  std::shared_ptr<const LabelVolume> labels;        ///< the voxels that `grid` was made of; none of a field
   double cloud_spacing = 0;                         ///< median distance between neighbouring samples, 0 for a formula
   std::optional<double> noise;  ///< standard deviation of the samples along the normal, as the fit took it, model units
   std::optional<InputFacts> facts;  ///< of the cloud; none for a formula or a grid
-  double level_shift = 0;       ///< taken off the fitted psi wherever it is cut for an h, model units
-  bool complement = false;      ///< mesh.complement: it is {psi > 0} in the box that is meshed, the fluid around a body
+  double level_shift = 0;           ///< taken off the fitted psi wherever it is cut for an h, model units
+  bool complement = false;  ///< mesh.complement: it is {psi > 0} in the box that is meshed, the fluid around a body
 
   /// Cuts psi at the detail that a mesh of edge length h can show: boundary faces fold over what is finer.
   void limit_detail(double h);
@@ -88,7 +90,7 @@ struct Domain {
 /// \throw UsageError (a formula without a box), ExpressionError
 Domain formula_domain(const Parameters&, std::optional<double> t = std::nullopt);
 
-/// The grid of mesh.level_set, in mesh.box or where it has values.
+/// The grid of mesh.level_set, in mesh.box or where it has values; of a segmentation around the body.
 /// \throw GridRefused, UsageError, ResourceLimit, std::system_error
 Domain grid_domain(const Parameters&);
 

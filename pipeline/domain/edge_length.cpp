@@ -17,6 +17,7 @@
 #include "pipeline/case/exit_code.h"
 #include "pipeline/domain/background_choice.h"
 #include "pipeline/domain/deviation.h"
+#include "pipeline/domain/label_volume.h"
 #include "pipeline/domain/thick_body.h"
 #include "pipeline/domain/zero_set_choice.h"
 #include "reconstruct/cloud/cloud_arrays.h"
@@ -29,6 +30,11 @@ namespace {
 // Where that makes more than kTetsOfLargeMesh tets, fewer edges across have to do: classification and repair mend what
 // comes out wrong down to about 1.9, and (1.9 / 2.2)^3 is two thirds of the tets.
 constexpr double kFewerEdgesAcross = 1.9;
+// Of a volume that is known: a third of the 3 % that a mesh of a segmentation may differ by.
+constexpr double kLostVolume = .01;
+// A mesh of a segmentation has edges of this share of a voxel or more, as far as its body is not thin: psi has waves of
+// two voxels and longer.
+constexpr double kLeastOfVoxel = .5;
 constexpr double kThinShare = .01;  // that is thinner than what h is chosen for
 // The most that rounding may move a vertex, in edges: far less than anything that counts in a mesh.
 constexpr double kMostRounding = 1e-6;
@@ -102,19 +108,31 @@ void leave_out_guesses(const Domain& domain, ImplicitFunctionRef psi, const std:
   }
 }
 
-ThinPart thin_part(const Domain& domain, double limit, const Context& context) {
+/// Samples of psi = 0, evenly: clouds are sorted in space, and crossings of a segmentation by layers.
+std::vector<Vec3> samples_of(const Domain& domain) {
+  if (domain.labels) {
+    const std::vector<Vec3>& all = domain.labels->surface;
+    std::vector<Vec3> samples;
+    for (std::size_t i = 0; i < all.size(); i += all.size() / kThicknessSamples + 1) samples.push_back(all[i]);
+    return samples;
+  }
   const std::vector<Vec3>& all = domain.cloud.points;
   const std::vector<int>& counts = domain.cloud.counts;
   const std::size_t n = sum_of_counts(counts, all.size());
-  std::vector<Vec3> samples;  // evenly, as the cloud is sorted in space
+  std::vector<Vec3> samples;
   for (const std::size_t i :
        every_mth(n / kThicknessSamples + 1, all.size(), [&](std::size_t row) { return count_of(counts, row); }))
     samples.push_back(all[i]);
+  return samples;
+}
+
+ThinPart thin_part(const Domain& domain, double limit, const Context& context) {
   // psi has no sheets much closer together than its lattice.
-  const double step = .25 * domain.level_set->spacing();
+  const std::vector<Vec3> samples = samples_of(domain);
+  const double step = .25 * (domain.labels ? domain.labels->step() : domain.level_set->spacing());
   std::vector<double> t = domain.with_psi_apart([&](ImplicitFunctionRef psi) {
     std::vector<double> all = thickness(psi, samples, step, limit, context, domain.steepest());
-    leave_out_guesses(domain, psi, samples, step, limit, context, all);
+    if (domain.level_set) leave_out_guesses(domain, psi, samples, step, limit, context, all);
     return all;
   });
   std::sort(t.begin(), t.end());
@@ -152,7 +170,15 @@ EdgeLength of_triangles(Domain& domain, const Parameters& parameters, const Cont
     h = high;
   }
   h = std::max(h, least);
-  return {h, least, {}, h, 1};
+  return {.h = h, .least = least};
+}
+
+/// The h at which flat faces cut off at most a share kLostVolume of a segmentation: triangles with edges of h and
+/// corners on a surface lie h^2 (k1 + k2) / 16 below it in the mean.
+double edge_of_volume(const LabelVolume& labels) {
+  const double bulge = std::abs(labels.mean_curvature);
+  if (!(bulge > 0)) return std::numeric_limits<double>::infinity();
+  return std::sqrt(16 * kLostVolume * labels.report.volume_of_psi / bulge);
 }
 
 /// By curvature. \throw ResourceLimit
@@ -176,8 +202,10 @@ EdgeLength choose(Domain& domain, const Parameters& parameters, const Context& c
   }
   if (p.tets == 0 && p.max_deviation > 0) return by_deviation(domain, parameters, p.max_deviation, context);
   if (p.tets == 0 && may_be_thickened(domain, parameters)) return of_triangles(domain, parameters, context);
-  const double of_size = kMeshEdge * domain.diagonal, limit = kEdgesAcross * of_size;
-  const ThinPart thin = domain.level_set ? thin_part(domain, limit, context) : ThinPart{limit};
+  const double of_diagonal = kMeshEdge * domain.diagonal;
+  const double least_of_volume = domain.labels ? edge_of_volume(*domain.labels) : of_diagonal;
+  const double of_size = std::min(of_diagonal, least_of_volume), limit = kEdgesAcross * of_size;
+  const ThinPart thin = domain.level_set || domain.labels ? thin_part(domain, limit, context) : ThinPart{limit};
   const double t = thin.thickness;
   const double of_noise = noise_edge(domain), needed = std::max(std::min(of_size, t / kEdgesAcross), of_noise);
   if (p.tets > 0) {
@@ -186,6 +214,8 @@ EdgeLength choose(Domain& domain, const Parameters& parameters, const Context& c
   }
   const double least = h_of(domain, parameters, p.max_tets);
   double h = edge_length_by(of_size, t, [&] { return h_of(domain, parameters, kTetsOfLargeMesh); });
+  // The voxels have nothing finer, unless a part is thin.
+  if (domain.labels) h = std::max(h, std::min(kLeastOfVoxel * domain.labels->step(), t / kEdgesAcross));
   const bool at_max_tets = least > std::max(h, of_noise);
   h = std::max(h, least);
   const std::optional<double> of_thin_parts = of_noise > h ? std::optional(h) : std::nullopt;

@@ -1,30 +1,151 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "pipeline/case/exit_code.h"
+#include "pipeline/case/level_range.h"
 #include "pipeline/case/memory.h"
 #include "pipeline/domain/domain.h"
+#include "pipeline/domain/label_volume.h"
 #include "reconstruct/io/grid_io.h"
+#include "reconstruct/level_set/image_level.h"
+#include "reconstruct/level_set/label_parts.h"
 
 namespace umtet {
 namespace {
 
-// A value, its coefficient; of a segmentation also two distances, and the nodes around it.
-constexpr double kBytesPerNode = 50;
+// A value, its coefficient; of a segmentation also distances, bounds and iterates in single precision.
+constexpr double kBytesPerNode = 70;
+// Parts that a message lists.
+constexpr std::size_t kListed = 12;
+// Layers of nodes around a body that reaches the wall: room for the mesh.
+constexpr int kLayersAtWall = 6;
+
+std::string number_of(double v) { return fmt::format("{:.10g}", v); }
+
+/// "1 (179 voxels), 4 (20 voxels) and 3 more".
+std::string parts_text(const std::vector<LabelPart>& parts) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kListed, parts.size()); ++i) {
+    text += fmt::format("{}{} ({} voxel{})", i > 0 ? ", " : "", number_of(parts[i].number), parts[i].n_voxels,
+                        parts[i].n_voxels == 1 ? "" : "s");
+  }
+  if (parts.size() > kListed) text += fmt::format(" and {} more", parts.size() - kListed);
+  return text;
+}
+
+/// The part that was asked for. \throw GridRefused  there is no such part
+std::optional<std::int64_t> part_of(const Grid& grid, const MeshParameters& p, Domain& domain) {
+  const std::vector<LabelPart> parts = label_parts(grid);
+  if (parts.empty()) throw GridRefused(p.level_set + ": all voxels are 0: there is no body");
+  const auto wanted = static_cast<double>(p.part);
+  std::size_t n_at_wall = 0;
+  for (const LabelPart& part : parts) {
+    if (p.part == 0 || part.number == wanted) n_at_wall += part.at_wall ? 1 : 0;
+  }
+  if (p.part > 0 && std::none_of(parts.begin(), parts.end(), [&](const auto& q) { return q.number == wanted; })) {
+    throw GridRefused(fmt::format("{}: there is no part {}; the parts are {}", p.level_set, p.part, parts_text(parts)));
+  }
+  if (n_at_wall > 0)
+    domain.notices.push_back(p.level_set + ": the body reaches the wall of the image, where it ends flat");
+  if (p.part == 0 && parts.size() > 1) {
+    domain.notices.push_back(
+        fmt::format("{}: all parts together are the body (--part N: one of them): {}", p.level_set, parts_text(parts)));
+  }
+  return p.part > 0 ? std::optional(p.part) : std::nullopt;
+}
 
 /// psi of a segmentation, and what was done to it in words.
-GridLevelSet psi_of_parts(Grid grid, const MeshParameters& p, Domain& domain) {
-  const double step = grid.steps().minCoeff();
-  const auto part = p.part > 0 ? std::optional(static_cast<double>(p.part)) : std::nullopt;
-  MaskFit fit = fit_mask(std::move(grid), part, p.part_smooth);
-  domain.notices.push_back(
-      fmt::format("{}: a segmentation of {} voxels{}, made smooth over {:.2g} voxels (--part-smooth): {} voxels have "
-                  "changed sides, by at most {:.2g} voxels",
-                  p.level_set, fit.report.n_inside, part ? fmt::format(" of part {}", p.part) : "", p.part_smooth,
-                  fit.report.n_changed, fit.report.farthest_changed / step));
-  return std::move(fit.psi);
+void take_parts(const Grid& grid, const MeshParameters& p, Domain& domain) {
+  const std::optional<std::int64_t> part = part_of(grid, p, domain);
+  const auto number = part ? std::optional(static_cast<double>(*part)) : std::nullopt;
+  const auto kernel = p.part_smooth >= 0 ? std::optional(p.part_smooth) : std::nullopt;
+  MaskFit fit = kernel ? fit_mask_by_kernel(grid, number, *kernel) : fit_mask(grid, number);
+  const MaskReport& r = fit.report;
+  const std::string how = kernel ? fmt::format("made smooth over {:.2g} voxels (--part-smooth)", *kernel)
+                                 : "made smooth between its voxels";
+  domain.notices.push_back(fmt::format(
+      "{}: a segmentation of {} voxels{}, {}: the volume is {:.5g}, {:+.2f} % of that of the voxels, and {} voxels "
+      "have "
+      "changed sides, by at most {:.2g} voxels",
+      p.level_set, r.n_inside, part ? fmt::format(" of part {}", *part) : "", how, r.volume,
+      100 * (r.volume / r.volume_of_voxels - 1), r.n_changed, r.farthest_changed / fit.voxels.steps().minCoeff()));
+  domain.labels = std::make_shared<const LabelVolume>(label_volume(fit, part, kernel));
+  domain.grid = std::make_shared<const GridLevelSet>(std::move(fit.psi));
+}
+
+/// The side of a level that is the body: the one that does not reach the wall of the image, or reaches less of it;
+/// below where neither does.
+LevelRange::Side side_of(const Grid& grid, double level, const MeshParameters& p, Domain& domain) {
+  const double below = wall_share(grid, [&](double v) { return v < level; });
+  const double above = wall_share(grid, [&](double v) { return v > level; });
+  if (below == 0 || below < above) return LevelRange::Side::Below;
+  domain.notices.push_back(fmt::format(
+      "{}: what is below {:g} reaches {} of the image, so what is above is the body (--level :{:g}: what is "
+      "below)",
+      p.level_set, level, above > 0 ? fmt::format("{:.0f} % of the wall", 100 * below) : "the wall", level));
+  return LevelRange::Side::Above;
+}
+
+/// Diagonal of the box around the nodes inside, with half a step on all sides.
+double diagonal_of_body(const Grid& grid) {
+  Eigen::AlignedBox3d box;
+  std::size_t at = 0;
+  for (int k = 0; k < grid.n[2]; ++k) {
+    for (int j = 0; j < grid.n[1]; ++j) {
+      for (int i = 0; i < grid.n[0]; ++i)
+        if (grid.values[at++] < 0) box.extend(Vec3(grid.axes * Vec3(i, j, k)));
+    }
+  }
+  return box.diagonal().norm() + grid.steps().norm();
+}
+
+/// psi of an image and a level.
+void take_level(Grid grid, LevelRange level, const MeshParameters& p, Domain& domain) {
+  using Side = LevelRange::Side;
+  if (p.above && level.side != Side::Either && level.side != Side::Above)
+    throw UsageError("--above and --level " + p.level + ": one of them says which side is the body");
+  if (p.above) level.side = Side::Above;
+  if (level.side == Side::Either) level.side = side_of(grid, level.low, p, domain);
+  const auto [least, greatest] = std::minmax_element(grid.values.begin(), grid.values.end());
+  const double low = *least, high = *greatest;
+  const auto none = [&](const char* where) {
+    throw GridRefused(fmt::format(
+        "{}: no value is {} {}: they are from {:g} to {:g}", p.level_set, where,
+        level.side == Side::Above ? fmt::format("{:g}", level.low) : fmt::format("{:g}", level.high), low, high));
+  };
+  if (level.side == Side::Above && !(high > level.low)) none("above");
+  if (level.side == Side::Below && !(low < level.high)) none("below");
+  if (level.side == Side::Above) take_above(grid, level.low);
+  if (level.side == Side::Below) take_below(grid, level.high);
+  if (level.side == Side::Between) take_between(grid, level.low, level.high);
+  if (std::none_of(grid.values.begin(), grid.values.end(), [](double v) { return v < 0; }))
+    throw GridRefused(fmt::format("{}: no value is between {:g} and {:g}", p.level_set, level.low, level.high));
+  if (close_at_wall(grid, kLayersAtWall)) {
+    std::string other;
+    if (level.side == Side::Below) {
+      other = fmt::format(
+          "what is below {:g} reaches the wall of the image, where it ends flat; for what is above, add --above",
+          level.high);
+    } else {
+      other = "the body reaches the wall of the image, where it ends flat";
+    }
+    domain.notices.push_back(p.level_set + ": " + other);
+  }
+  domain.diagonal = diagonal_of_body(grid);
+  domain.grid = std::make_shared<const GridLevelSet>(interpolate(std::move(grid)));
+}
+
+[[noreturn]] void ask_for_level(const Grid& grid, const MeshParameters& p) {
+  const auto [least, greatest] = std::minmax_element(grid.values.begin(), grid.values.end());
+  const double level = suggested_level(grid);
+  throw GridRefused(
+      fmt::format("{}: an image of grey values from {:g} to {:g}: say with --level which of them are the body, such as "
+                  "--level {:g}: for what is above {:g} (:{:g} for what is below)",
+                  p.level_set, *least, *greatest, level, level, level));
 }
 
 }  // namespace
@@ -32,24 +153,32 @@ GridLevelSet psi_of_parts(Grid grid, const MeshParameters& p, Domain& domain) {
 Domain grid_domain(const Parameters& parameters) {
   const MeshParameters& p = parameters.mesh();
   if (!p.implicit.empty()) throw UsageError("--implicit and --level-set: one of them is psi");
+  const std::optional<LevelRange> level = parse_level(p.level);
+  if (p.above && !level) throw UsageError("--above needs --level");
+  if (p.part > 0 && level) throw UsageError("--part and --level: one of them says what the body is");
   Domain domain;
   domain.complement = p.complement;
   const double allowed = allowed_bytes(parameters);
   Grid grid = read_grid(p.level_set, allowed > 0 ? std::min(1e9, allowed / kBytesPerNode) : 1e9);
-  const bool has_level = parameters.source(keys::mesh::level) != ParamSource::Default;
   try {
-    if (is_segmentation(grid) && !has_level) {
-      domain.grid = std::make_shared<const GridLevelSet>(psi_of_parts(std::move(grid), p, domain));
-    } else {
-      if (p.part > 0) throw UsageError("--part: " + p.level_set + " holds no whole numbers of parts");
-      for (double& v : grid.values) v -= p.level;
+    const GridKind kind = level ? GridKind::Image : kind_of(grid);
+    if (p.part > 0 && !has_whole_values(grid))
+      throw UsageError("--part: " + p.level_set + " holds no whole numbers of parts");
+    if (level) {
+      take_level(std::move(grid), *level, p, domain);
+    } else if (kind == GridKind::Segmentation || p.part > 0) {
+      take_parts(grid, p, domain);
+    } else if (kind == GridKind::LevelSet) {
       domain.grid = std::make_shared<const GridLevelSet>(interpolate(std::move(grid)));
+    } else {
+      ask_for_level(grid, p);
     }
   } catch (const std::invalid_argument& e) {
     throw GridRefused(p.level_set + ": " + e.what());
   }
   domain.box = parse_box(p.box).value_or(domain.grid->box());
-  domain.diagonal = domain.box.diagonal().norm();
+  if (domain.labels) domain.diagonal = domain.labels->diagonal;
+  if (!(domain.diagonal > 0)) domain.diagonal = domain.box.diagonal().norm();
   return domain;
 }
 

@@ -9,6 +9,7 @@
 #include "mesh/implicit/surface_distance.h"
 #include "mesh/sizes/graded_zero_set.h"
 #include "pipeline/domain/component_proof.h"
+#include "pipeline/domain/label_volume.h"
 
 namespace umtet {
 namespace {
@@ -111,7 +112,9 @@ void choose_among(const Domain& domain, ZeroSetChoice& choice, const Context& co
 double support_radius(const Domain& domain) { return kSupportRadius * domain.cloud_spacing; }
 
 double counting_spacing(const Domain& domain, double h) {
-  const double wanted = domain.level_set ? std::min(h, domain.level_set->spacing()) : h;
+  const double wanted = domain.level_set ? std::min(h, domain.level_set->spacing())
+                        : domain.labels  ? std::min(h, domain.labels->step() / 2)
+                                         : h;
   return std::max(wanted, std::cbrt(domain.box.volume() / kMaxGridNodes));
 }
 

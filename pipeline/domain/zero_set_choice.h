@@ -31,8 +31,8 @@ inline constexpr double kSupportRadius = 3;
 /// That distance, model units: the one place that says how far samples support the surface.
 double support_radius(const Domain& domain);
 
-/// Spacing of the grid on which the pieces are counted for a mesh of edge length h: min(h, lattice spacing), but as
-/// coarse as 5e7 nodes in the box ask for.
+/// Spacing of the grid on which the pieces are counted for a mesh of edge length h: min(h, lattice spacing), of a
+/// segmentation min(h, half a voxel), but as coarse as 5e7 nodes in the box ask for.
 double counting_spacing(const Domain& domain, double h);
 
 /// Pieces of a level set that no samples back are artefacts of the fit.

@@ -18,6 +18,7 @@
 #include "pipeline/domain/component_proof.h"
 #include "pipeline/domain/edge_length.h"
 #include "pipeline/domain/given_triangles.h"
+#include "pipeline/domain/label_volume.h"
 #include "pipeline/domain/missed_samples.h"
 #include "pipeline/meshing/mesh_places.h"
 #include "pipeline/meshing/mesh_sizes.h"
@@ -334,6 +335,8 @@ Measurement measure(const Domain& domain, const TetMesh& mesh, const UmResult& r
                                m.mesh.boundary.max_centroid_distance_over_h.value_or(0));
   }
   if (surface && domain.triangles) m.triangles = triangle_distances(domain, mesh.V, faces, *surface, h, context);
+  if (domain.labels && !domain.complement && !params.certificate)
+    m.labels = label_volume_report(domain, mesh, faces, context);
   made.places = places_of(domain, differences, h, context);
   if (compared.place) made.places.push_back(*compared.place);
   m.places = report_on(made.places);

@@ -208,12 +208,7 @@ std::string inspection_text(const CloudInspection& inspection) {
                      inspection.n_not_finite(), s.dropped.n_duplicates, s.dropped.n_outliers,
                      s.dropped.n_small_components);
   out += fmt::format("lattice   {:.4g}: {}\n", inspection.lattice.spacing, inspection.lattice.reason);
-  const RunPrediction& run = inspection.prediction;
-  if (!run.obstacle.empty()) out += fmt::format("a run     is likely to end without a mesh: {}\n", run.obstacle);
-  out += fmt::format("{}about {:.2g} tets {} {:.3g}: {:.2g} s of one thread, {:.0f} MB; at most {:.2g} s, {:.0f} MB\n",
-                     run.obstacle.empty() ? "a run     " : "          else ", run.expected.n_tets,
-                     run.is_graded ? "of edges that follow the body, from" : "at h =", run.h, run.expected.seconds,
-                     run.expected.memory_MB, run.most.seconds, run.most.memory_MB);
+  out += prediction_text(inspection.prediction);
   if (inspection.troubles.empty()) out += "trouble   none seen\n";
   for (const std::string& trouble : inspection.troubles) out += "trouble   " + trouble + "\n";
   return out;

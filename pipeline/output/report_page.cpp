@@ -128,7 +128,7 @@ std::string check_list(const Certificate& c) {
         c.verdict.fits_psi ? std::optional<bool>() : false);
   }
   add("fits ψ", c.verdict.fits_psi);
-  if (c.measured.n_points) add("fits the input", c.verdict.fits_input);
+  if (has_input(c.measured)) add("fits the input", c.verdict.fits_input);
   if (const std::optional<double>& gate = c.verdict.min_quality_gate) {
     add("min Q at least " + value("/gates/min_quality", gate, 6), mesh.quality.min >= *gate);
   } else {

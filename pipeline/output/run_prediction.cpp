@@ -1,5 +1,7 @@
 #include "pipeline/output/run_prediction.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -47,16 +49,6 @@ void keep_few(OrientedPointCloud& cloud) {
   keep_samples(cloud, kept);
 }
 
-/// The cost of one mesh, and of all of them: these have mesh.effort times the tets of the first, and none has more than
-/// mesh.max_tets.
-void add_costs(double n_points, double n_tets, const MeshParameters& p, RunPrediction& run) {
-  run.expected = cost(n_points, n_tets);
-  const double all = std::max(1., p.effort) * n_tets;
-  run.most = cost(n_points, all);
-  run.most.n_tets = std::min(all, std::max(n_tets, static_cast<double>(p.max_tets)));
-  run.most.memory_MB = cost(n_points, run.most.n_tets).memory_MB;
-}
-
 /// As large as it can be.
 BodySize body_of(const CloudSurvey& survey, double area) {
   const double ball = std::pow(area, 1.5) / (6 * std::sqrt(std::numbers::pi));
@@ -97,8 +89,8 @@ RunPrediction predict_run(const CloudSurvey& survey, double area, const Paramete
         edge_length_by(kMeshEdge * survey.diagonal, thin, [&] { return h_of(static_cast<double>(kTetsOfLargeMesh)); });
     run.h = std::max({run.h, h_of(max_tets), survey.noise / kMostNoise});
   }
-  add_costs(static_cast<double>(survey.n_points), std::max(1., expected_tets(tiling, body, run.h, source)), p, run);
-  return run;
+  return prediction_of(run.h, expected_tets(tiling, body, run.h, source), static_cast<double>(survey.n_points),
+                       parameters);
 }
 
 RunPrediction predict_run(CloudFile scan, const std::filesystem::path& file, const Parameters& parameters,
@@ -111,10 +103,24 @@ RunPrediction predict_run(CloudFile scan, const std::filesystem::path& file, con
       fitted_domain(std::move(fit.psi), std::move(prepared.cloud), fit.report, parse_box(parameters.mesh().box));
   domain.complement = parameters.mesh().complement;
   BackgroundChoice background(parameters, domain);
-  RunPrediction run;
-  run.h = background.edge_length(domain, context).h;
+  const double h = background.edge_length(domain, context).h;
+  RunPrediction run = prediction_of(h, background.expected_tets(domain, h), n_points, parameters);
   run.is_graded = background.is_graded();
-  add_costs(n_points, std::max(1., background.expected_tets(domain, run.h)), parameters.mesh(), run);
+  return run;
+}
+
+RunPrediction prediction_of(double h, double n_tets, double n_points, const Parameters& parameters) {
+  const MeshParameters& p = parameters.mesh();
+  const auto max_tets = static_cast<double>(p.max_tets);
+  n_tets = std::max(1., n_tets);
+  RunPrediction run;
+  run.h = h;
+  run.expected = cost(n_points, n_tets);
+  // All meshes together have p.effort times the tets of the first; none has more than mesh.max_tets.
+  const double all = std::max(1., p.effort) * n_tets;
+  run.most = cost(n_points, all);
+  run.most.n_tets = std::min(all, std::max(n_tets, max_tets));
+  run.most.memory_MB = cost(n_points, run.most.n_tets).memory_MB;
   return run;
 }
 
@@ -133,6 +139,16 @@ Json to_json(const RunPrediction& prediction) {
                {"most", to_json(prediction.most)}};
   if (!prediction.obstacle.empty()) json["obstacle"] = prediction.obstacle;
   return json;
+}
+
+std::string prediction_text(const RunPrediction& run) {
+  std::string out;
+  if (!run.obstacle.empty()) out += fmt::format("a run     is likely to end without a mesh: {}\n", run.obstacle);
+  return out +
+         fmt::format("{}about {:.2g} tets {} {:.3g}: {:.2g} s of one thread, {:.0f} MB; at most {:.2g} s, {:.0f} MB\n",
+                     run.obstacle.empty() ? "a run     " : "          else ", run.expected.n_tets,
+                     run.is_graded ? "of edges that follow the body, from" : "at h =", run.h, run.expected.seconds,
+                     run.expected.memory_MB, run.most.seconds, run.most.memory_MB);
 }
 
 }  // namespace umtet

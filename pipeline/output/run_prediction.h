@@ -43,6 +43,11 @@ RunPrediction predict_run(CloudFile scan, const std::filesystem::path& file, con
 /// @param area  of all samples together
 RunPrediction predict_run(const CloudSurvey& survey, double area, const Parameters& parameters);
 
+/// What a mesh of about so many tets takes. @param n_points  of a cloud that psi is fitted to, else 0
+RunPrediction prediction_of(double h, double n_tets, double n_points, const Parameters& parameters);
+
 Json to_json(const RunPrediction& prediction);
+/// The line `a run` of `umtet inspect`.
+std::string prediction_text(const RunPrediction& prediction);
 
 }  // namespace umtet

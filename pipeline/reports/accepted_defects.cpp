@@ -15,8 +15,9 @@ namespace {
 
 std::vector<std::string> kinds() {
   std::vector<std::string> words;
-  for (int k = 0; k <= static_cast<int>(PlaceKind::Missed); ++k) words.emplace_back(to_string(static_cast<PlaceKind>(k)));
-  for (int k = 0; k <= static_cast<int>(InputDefectKind::Genus); ++k) {
+  for (int k = 0; k <= static_cast<int>(PlaceKind::Missed); ++k)
+    words.emplace_back(to_string(static_cast<PlaceKind>(k)));
+  for (int k = 0; k <= static_cast<int>(InputDefectKind::Voxels); ++k) {
     const std::string word = to_string(static_cast<InputDefectKind>(k));
     if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(word);
   }
@@ -33,8 +34,8 @@ std::vector<AcceptedDefects> parse_accepted_defects(const std::string& text) {
     const std::size_t colon = word.find(':');
     AcceptedDefects of_kind{word.substr(0, colon), std::nullopt};
     if (std::find(known.begin(), known.end(), of_kind.kind) == known.end()) {
-      throw UsageError(fmt::format("--accept: '{}' is no kind of defect; the kinds are {}", of_kind.kind,
-                                   fmt::join(known, ", ")));
+      throw UsageError(
+          fmt::format("--accept: '{}' is no kind of defect; the kinds are {}", of_kind.kind, fmt::join(known, ", ")));
     }
     if (colon != std::string::npos) {
       double most = 0;
@@ -52,9 +53,8 @@ std::vector<AcceptedDefects> parse_accepted_defects(const std::string& text) {
 }
 
 bool is_accepted(const std::vector<AcceptedDefects>& accepted, const std::string& kind, double amount) {
-  return std::any_of(accepted.begin(), accepted.end(), [&](const AcceptedDefects& a) {
-    return a.kind == kind && (!a.most || amount <= *a.most);
-  });
+  return std::any_of(accepted.begin(), accepted.end(),
+                     [&](const AcceptedDefects& a) { return a.kind == kind && (!a.most || amount <= *a.most); });
 }
 
 }  // namespace umtet

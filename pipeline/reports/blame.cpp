@@ -41,7 +41,8 @@ std::optional<Blame> blame_of_normals(const MeshMeasures& m) {
                                  : "a cloud with normals, or --orient-from FILE with the positions of the scanner";
   if (facts.turned > kManyWrong) {
     return Blame{"normals",
-                 fmt::format("{:.2g} % of the normals were turned, by {}", 100 * facts.turned, facts.turned_by), remedy};
+                 fmt::format("{:.2g} % of the normals were turned, by {}", 100 * facts.turned, facts.turned_by),
+                 remedy};
   }
   if (facts.doubtful > kManyWrong) {
     return Blame{"normals", fmt::format("the outward side of {:.2g} % of the samples is a guess", 100 * facts.doubtful),
@@ -65,6 +66,16 @@ std::optional<Blame> blame_of_noise(const MeshMeasures& m) {
                  fmt::format("--h {:.3g}, which shows less of the noise", noise / kNoiseShows)};
   }
   return std::nullopt;
+}
+
+std::optional<Blame> blame_of_labels(const MeshMeasures& m, const std::vector<InputDefect>& defects) {
+  if (!m.labels || !m.labels->kernel) return std::nullopt;
+  const LabelVolumeReport& r = *m.labels;
+  if (std::all_of(defects.begin(), defects.end(), [](const InputDefect& d) { return d.is_small; })) return std::nullopt;
+  return Blame{"labels",
+               fmt::format("smoothing of the mask by {:.2g} voxels changes its volume by {:+.2g} %", *r.kernel,
+                           100 * (r.volume_of_psi / r.volume_of_voxels - 1)),
+               fmt::format("--part-smooth {:.2g}, or no --part-smooth, which keeps the volume", *r.kernel / 2)};
 }
 
 /// The h that shows every place that is not small, as far as psi = 0 explains them.
@@ -100,7 +111,7 @@ Blame blame_of_mesh(const MeshMeasures& m) {
 
 Blame blame_of_psi(const MeshMeasures& m) {
   const std::optional<double>& spacing = m.domain.level_set_spacing;
-  if (!spacing) return {"level set", "psi is not the given body", "--level-set with a finer grid"};
+  if (!spacing) return {"h", fmt::format("h is {:.4g}, and the mesh fits psi", m.mesh.h), "a smaller --h"};
   return {"level set", fmt::format("the finest lattice of psi has a spacing of {:.3g}", *spacing),
           fmt::format("--spacing {:.3g}, which rounds less", .5 * *spacing)};
 }
@@ -111,12 +122,14 @@ Blame blame_for(const Certificate& c) {
   const MeshMeasures& m = c.measured;
   const std::optional<double>& gate = c.verdict.min_quality_gate;
   if (c.verdict.reasons.size() == 1 && gate && m.mesh.quality.min < *gate) {
-    return {"mesh", fmt::format("the least Q is {:.4f}", m.mesh.quality.min),
-            fmt::format("another --h (this was {:.4g}), which moves the worst tets, or a lower --min-quality", m.mesh.h)};
+    return {
+        "mesh", fmt::format("the least Q is {:.4f}", m.mesh.quality.min),
+        fmt::format("another --h (this was {:.4g}), which moves the worst tets, or a lower --min-quality", m.mesh.h)};
   }
   if (auto blame = blame_of_guesses(m, input_defects(m))) return *blame;
   if (auto blame = blame_of_normals(m)) return *blame;
   if (auto blame = blame_of_noise(m)) return *blame;
+  if (auto blame = blame_of_labels(m, input_defects(m))) return *blame;
   if (!c.verdict.is_valid || !c.verdict.fits_psi || c.verdict.fits_input) return blame_of_mesh(m);
   return blame_of_psi(m);
 }

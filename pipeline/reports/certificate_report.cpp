@@ -72,7 +72,8 @@ std::string said_of(const PlaceReport::OfKind& k, const ZeroSetReport& domain, b
           domain.counting_spacing, domain.components_meshed, domain.euler_characteristic_meshed, at);
     case PlaceKind::Missed:
       return fmt::format(
-          "psi = 0 passes by samples that are farther than h from the mesh at {}, the worst, {} samples at {}, {:.2g} h",
+          "psi = 0 passes by samples that are farther than h from the mesh at {}, the worst, {} samples at {}, {:.2g} "
+          "h",
           places, worst.n, at, off);
   }
   return "";
@@ -88,6 +89,8 @@ bool fits_psi(const MeshMeasures& m) {
   const auto is_settled = [](const PlaceReport::OfKind& k) { return k.n == k.n_small; };
   return m.is_valid && m.reasons.empty() && std::all_of(m.places.kinds.begin(), m.places.kinds.end(), is_settled);
 }
+
+bool has_input(const MeshMeasures& m) { return m.n_points || m.labels; }
 
 std::string Verdict::word() const {
   if (!passes()) return "fail";
@@ -107,7 +110,9 @@ Verdict judge_shape(const MeshMeasures& measured, bool strict, const std::string
     const bool is_defect = k.n == k.n_small && !strict;
     if (is_defect) verdict.n_defects += k.n;
     const bool passes = !is_defect && is_accepted(accepted, to_string(k.kind), k.max_off_over_h);
-    (is_defect ? verdict.defects : passes ? verdict.accepted : verdict.reasons)
+    (is_defect ? verdict.defects
+     : passes  ? verdict.accepted
+               : verdict.reasons)
         .push_back(said_of(k, measured.domain, strict || is_defect));
   }
   return verdict;
@@ -126,7 +131,7 @@ Verdict judge(const MeshMeasures& measured, const Parameters& parameters) {
     (is_named ? verdict.defects : passes ? verdict.accepted : verdict.reasons).push_back(defect.what);
   }
   // A formula is its own input.
-  if (!measured.n_points) verdict.fits_input = verdict.fits_input && verdict.fits_psi;
+  if (!has_input(measured)) verdict.fits_input = verdict.fits_input && verdict.fits_psi;
   const double gate = parameters.output().min_quality;
   if (!(gate > 0)) return verdict;
   verdict.min_quality_gate = gate;

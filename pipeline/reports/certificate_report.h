@@ -13,6 +13,7 @@
 #include "pipeline/case/record.h"
 #include "pipeline/case/version.h"
 #include "pipeline/reports/closed_hole.h"
+#include "pipeline/reports/label_report.h"
 #include "pipeline/reports/mesh_place.h"
 #include "pipeline/reports/missed_place.h"
 #include "pipeline/reports/thin_place.h"
@@ -134,6 +135,7 @@ struct MeshMeasures {
   ZeroSetReport domain;
   std::optional<SampleDistances> cloud;        ///< none for a formula
   std::optional<TriangleDistances> triangles;  ///< none where none were given
+  std::optional<LabelVolumeReport> labels;     ///< none where the input has no voxels of a body
   ResolutionReport resolution;
   std::optional<SizesReport> sizes;   ///< none where the mesh has one h
   std::optional<std::int64_t> order;  ///< 1 or 2; none where only the corners were measured
@@ -148,6 +150,8 @@ struct MeshMeasures {
 /// The second of the three judgements: the mesh is psi = 0 as far as h can show it, on it, not folded, nothing lost, of
 /// its topology. Small places do not count.
 bool fits_psi(const MeshMeasures& measured);
+/// Whether something else than psi was given: samples, triangles or labels.
+bool has_input(const MeshMeasures& measured);
 
 /// The stage to blame for a mesh that fails, and what helps.
 struct Blame {

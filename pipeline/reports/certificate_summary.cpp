@@ -142,6 +142,24 @@ std::string triangles_line(const MeshMeasures& m, const std::string& unit) {
       show(d.rms_back, "{:.3g}") + unit, show(d.rms_back / h, "{:.4f}"), show(d.max_back_over_h, "{:.3f}"));
 }
 
+std::string pieces_text(const PieceCount& count) {
+  return count.by_points == count.by_faces ? fmt::format("{}", count.by_points)
+                                           : fmt::format("{} to {}", count.by_points, count.by_faces);
+}
+
+/// The mesh beside the voxels of a segmentation; empty if there are none.
+std::string labels_line(const MeshMeasures& m, const std::string& unit) {
+  if (!m.labels) return "";
+  const LabelVolumeReport& r = *m.labels;
+  return fmt::format(
+      "voxels    {} of volume {}, the mesh {:+.2f} %; pieces {}, the mesh {}; {} voxel{} changed sides, {} by more "
+      "than "
+      "half a voxel, the farthest {:.2g} voxels\n",
+      thousands(r.n_voxels), show(r.volume_of_voxels, "{:.6g}") + unit,
+      100 * (r.volume_of_mesh / r.volume_of_voxels - 1), pieces_text(r.pieces), r.pieces_of_mesh, r.n_changed,
+      r.n_changed == 1 ? "" : "s", r.n_changed_far, r.farthest_changed);
+}
+
 /// Where samples are not on the mesh; empty if they all are.
 std::string missed_line(const MeshMeasures& m, const std::string& unit) {
   if (!m.cloud || m.cloud->missed.empty()) return "";
@@ -192,10 +210,11 @@ std::string suffix(const std::optional<std::string>& units) { return units ? " "
 std::string summary(const Certificate& c) {
   const std::string unit = suffix(c.units);
   const MeshMeasures& m = c.measured;
-  return verdict_lines(c.verdict, judgements(c.verdict, m.n_points.has_value()), c.blame) +
+  return verdict_lines(c.verdict, judgements(c.verdict, has_input(m)), c.blame) +
          mesh_lines(m.mesh, unit, c.n_tets_asked) + sizes_line(m.sizes, unit) + second_order_lines(m.second_order) +
          domain_line(m.domain) + holes_line(m.domain.support, unit) + cloud_line(m, unit) + triangles_line(m, unit) +
-         missed_line(m, unit) + thin_line(m.resolution) + places_line(m.places) + time_line(c.run);
+         labels_line(m, unit) + missed_line(m, unit) + thin_line(m.resolution) + places_line(m.places) +
+         time_line(c.run);
 }
 
 std::string summary(const MeshCheck& c) {

@@ -9,7 +9,8 @@
 namespace umtet {
 namespace {
 
-constexpr std::array<const char*, 7> kWords = {"missed", "guessed", "handles", "pieces", "distance", "volume", "genus"};
+constexpr std::array<const char*, 8> kWords = {"missed",   "guessed", "handles", "pieces",
+                                               "distance", "volume",  "genus",   "voxels"};
 
 std::string at(const Vec3& x) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", x.x(), x.y(), x.z()); }
 
@@ -92,6 +93,34 @@ void add_triangles(const MeshMeasures& m, std::vector<InputDefect>& defects) {
   if (is_closed && d.body->is_manifold) add_topology(d.body->n_pieces, d.body->genus(), d.mesh, defects);
 }
 
+std::string text_of(const PieceCount& count) {
+  return count.by_points == count.by_faces ? fmt::format("{}", count.by_points)
+                                           : fmt::format("{} to {}", count.by_points, count.by_faces);
+}
+
+void add_labels(const LabelVolumeReport& r, std::vector<InputDefect>& defects) {
+  const auto add_count = [&](const PieceCount& given, std::size_t made, const char* thing) {
+    if (given.allows(made)) return;
+    const double off = made < given.by_points ? static_cast<double>(given.by_points - made)
+                                              : static_cast<double>(made - given.by_faces);
+    defects.push_back({InputDefectKind::Pieces, off, false,
+                       fmt::format("the mesh has {}, and the voxels have {}", counted(made, thing), text_of(given))});
+  };
+  add_count(r.pieces, r.pieces_of_mesh, "piece");
+  add_count(r.cavities, r.cavities_of_mesh, "inner wall");
+  const double off = r.volume_of_mesh / r.volume_of_voxels - 1;
+  if (std::abs(off) > kVoxelsNamed) {
+    defects.push_back({InputDefectKind::Volume, std::abs(off), std::abs(off) <= kVoxelsFail,
+                       fmt::format("the volume is {:.6g}, and the voxels have {:.6g} ({:+.2g} %)", r.volume_of_mesh,
+                                   r.volume_of_voxels, 100 * off)});
+  }
+  if (r.n_changed_far == 0) return;
+  const double share = static_cast<double>(r.n_changed_far) / static_cast<double>(r.n_voxels);
+  defects.push_back({InputDefectKind::Voxels, share, share <= kFewChanged,
+                     fmt::format("{} changed sides by more than half a voxel{}", counted(r.n_changed_far, "voxel"),
+                                 r.farthest_at ? ", most of all at " + at(*r.farthest_at) : "")});
+}
+
 }  // namespace
 
 const char* to_string(InputDefectKind kind) { return kWords.at(static_cast<std::size_t>(kind)); }
@@ -108,6 +137,7 @@ std::vector<InputDefect> input_defects(const MeshMeasures& m) {
     add_triangles(m, defects);
     return defects;
   }
+  if (m.labels) add_labels(*m.labels, defects);
   if (m.cloud) add_missed(m, defects);
   if (m.domain.support) add_guesses(*m.domain.support, defects);
   return defects;

@@ -26,6 +26,10 @@ struct GridRefused : std::runtime_error {
 /// \throw std::system_error  cannot be opened or read
 Grid read_grid(const std::filesystem::path& file, double max_nodes = 1e9);
 
+/// True for a regular file that begins as one of these, plain or compressed. \throw std::system_error  cannot be opened
+/// or read
+bool is_grid_file(const std::filesystem::path& file);
+
 /// What its head is enough for: format and number of nodes. \throw as read_grid()
 void check_grid_head(const std::filesystem::path& file, double max_nodes = 1e9);
 

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <cstddef>
-#include <optional>
-
 #include "reconstruct/level_set/grid.h"
 #include "reconstruct/level_set/level_set.h"
 
@@ -19,6 +16,8 @@ class GridLevelSet {
   double value(const Vec3& x) const { return evaluate(x, nullptr, nullptr); }
   /// Around all nodes, model coordinates.
   const Eigen::AlignedBox3d& box() const { return box_; }
+  /// The same function of node coordinates.
+  const LevelSet& in_nodes() const { return psi_; }
 
  private:
   LevelSet psi_;
@@ -34,24 +33,5 @@ class GridLevelSet {
 /// second differences of the values.
 /// \pre problems(grid) is empty
 GridLevelSet interpolate(Grid grid);
-
-/// What became of a segmentation.
-struct MaskReport {
-  std::size_t n_inside = 0;     ///< voxels of the body
-  std::size_t n_changed = 0;    ///< voxels whose centre is on the other side of psi = 0 now
-  double farthest_changed = 0;  ///< how far from psi = 0 the farthest of them is, model units
-};
-
-struct MaskFit {
-  GridLevelSet psi;
-  MaskReport report;
-};
-
-/// psi of a segmentation: signed distances to the voxels of the other side, made smooth by a Gaussian, and
-/// interpolated. A flat side keeps its place; a ball of radius R loses about smooth^2 / R of it, in steps.
-/// @param part    the number of the body's voxels; none: all that is not zero
-/// @param smooth  standard deviation in steps of each axis, >= 0; with less than .7 the steps of the voxels show
-/// \pre problems(grid) is empty \throw std::invalid_argument  no voxel is inside, or all are
-MaskFit fit_mask(Grid grid, std::optional<double> part, double smooth);
 
 }  // namespace umtet

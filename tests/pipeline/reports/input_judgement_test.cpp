@@ -125,6 +125,43 @@ TEST(InputJudgement, OpenTrianglesAreNotMissedWhereTheMeshClosesThem) {
   EXPECT_EQ(judged(m).verdict.word(), "pass with 1 defect named");
 }
 
+/// Of a segmentation of 1000 voxels in one piece.
+MeshMeasures of_labels(double volume) {
+  MeshMeasures m;
+  m.mesh.h = kH;
+  m.labels = LabelVolumeReport{.n_voxels = 1000,
+                               .volume_of_voxels = 1000,
+                               .volume_of_psi = volume,
+                               .volume_of_mesh = volume,
+                               .pieces = {1, 1},
+                               .cavities = {0, 0},
+                               .pieces_of_mesh = 1};
+  return m;
+}
+
+TEST(InputJudgement, VoxelsKeepTheirVolumePiecesAndSides) {
+  EXPECT_EQ(judged(of_labels(1000)).verdict.word(), "pass");
+  EXPECT_EQ(judged(of_labels(980)).verdict.word(), "pass with 1 defect named");
+  EXPECT_EQ(judged(of_labels(960)).verdict.word(), "fail");
+  MeshMeasures m = of_labels(1000);
+  m.labels->pieces_of_mesh = 2;
+  EXPECT_EQ(judged(m).verdict.word(), "fail");
+  m = of_labels(1000);
+  m.labels->n_changed_far = 10;
+  EXPECT_EQ(judged(m).verdict.word(), "pass with 1 defect named");
+  m.labels->n_changed_far = 11;
+  EXPECT_EQ(judged(m).verdict.word(), "fail");
+}
+
+TEST(Blame, GoesToTheSmoothingOfAMaskThatLosesItsVolume) {
+  MeshMeasures m = of_labels(720);
+  m.labels->kernel = 1;
+  const Blame b = *judged(m).blame;
+  EXPECT_EQ(b.stage, "labels");
+  EXPECT_NE(b.number.find("-28 %"), std::string::npos) << b.number;
+  EXPECT_EQ(b.remedy.find("--part-smooth 0.5"), 0u) << b.remedy;
+}
+
 TEST(InputJudgement, StrictNamesNothingAndAcceptTakesItsKinds) {
   Parameters strict;
   strict.set("output.strict=true");

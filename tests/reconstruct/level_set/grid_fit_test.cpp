@@ -7,7 +7,6 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
-#include <numbers>
 #include <random>
 
 using namespace umtet;
@@ -44,12 +43,6 @@ double error_of(const GridLevelSet& psi) {
   double most = 0;
   for (const Vec3& x : directions(2000)) most = std::max(most, std::abs(psi.value(x)));
   return most;
-}
-
-Grid mask_of(int n) {
-  Grid mask = grid_of(n, [](const Vec3& x) { return ball(x) < 0 ? 3. : 0.; });
-  mask.is_whole = true;
-  return mask;
 }
 
 }  // namespace
@@ -111,57 +104,6 @@ TEST(GridFit, TheErrorOfASphereFallsWithTheGrid) {
   EXPECT_LT(e_32, e_16 / 4);
   EXPECT_LT(e_64, e_32 / 3);
   EXPECT_LT(e_64, 3e-4 * 2.6 / 63);  // of a step
-}
-
-TEST(GridFit, ASegmentationComesOutSmooth) {
-  const int n = 48;
-  const double step = 2.6 / (n - 1);
-  const MaskFit fit = fit_mask(mask_of(n), std::nullopt, 1);
-  EXPECT_NEAR(static_cast<double>(fit.report.n_inside) * step * step * step, 4 * std::numbers::pi / 3, .05);
-  EXPECT_LT(fit.report.n_changed, fit.report.n_inside / 50);
-  EXPECT_LT(fit.report.farthest_changed, .5 * step);
-  double worst = 0, worst_raw = 0;
-  const MaskFit raw = fit_mask(mask_of(n), std::nullopt, 0);
-  EXPECT_EQ(raw.report.n_changed, 0U);
-  for (const Vec3& x : directions(500)) {
-    Vec3 g;
-    EXPECT_LT(std::abs(fit.psi.evaluate(x, &g, nullptr)), .5 * step);
-    worst = std::max(worst, (g.normalized() - x).norm());
-    raw.psi.evaluate(x, &g, nullptr);
-    worst_raw = std::max(worst_raw, (g.normalized() - x).norm());
-  }
-  EXPECT_LT(worst, .2);  // radians
-  EXPECT_GT(worst_raw, 2 * worst);
-}
-
-TEST(GridFit, APartIsChosenByItsNumber) {
-  Grid mask = mask_of(24);
-  for (std::size_t i = 0; i < mask.size() / 2; ++i) mask.values[i] *= 2;  // below z = 0: part 6
-  const MaskFit lower = fit_mask(mask, 6, .7), whole = fit_mask(mask, std::nullopt, .7);
-  EXPECT_GT(lower.psi.value({0, 0, .3}), 0);
-  EXPECT_LT(lower.psi.value({0, 0, -.3}), 0);
-  EXPECT_LT(whole.psi.value({0, 0, .3}), 0);
-  EXPECT_THROW(fit_mask(mask, 5, .7), std::invalid_argument);
-}
-
-TEST(GridFit, APartThatTouchesTheWallOfTheImageEndsThere) {
-  Grid mask = grid_of(12, [](const Vec3& x) { return x.x() > 0 ? 1. : 0.; });
-  const MaskFit fit = fit_mask(mask, std::nullopt, .7);
-  EXPECT_LT(fit.psi.value({1, 0, 0}), 0);
-  EXPECT_GT(fit.psi.value({1.9, 0, 0}), 0);
-  EXPECT_GT(fit.psi.box().max().x(), 2);
-}
-
-TEST(Grid, SegmentationsAreToldFromFields) {
-  Grid grid = mask_of(8);
-  EXPECT_TRUE(is_segmentation(grid));
-  grid.is_whole = false;
-  EXPECT_FALSE(is_segmentation(grid));
-  grid.is_whole = true;
-  grid.values[5] = -1;
-  EXPECT_FALSE(is_segmentation(grid));
-  for (std::size_t i = 0; i < grid.size(); ++i) grid.values[i] = static_cast<double>(i);
-  EXPECT_FALSE(is_segmentation(grid));
 }
 
 TEST(Grid, EveryFaultIsNamed) {
