@@ -210,6 +210,7 @@ LevelSetReport level_set_from(const Json& json) {
   LevelSetReport r;
   r.shift = vector_from(json.at("shift"));
   r.noise = number_from(json.at("noise"));
+  if (json.contains("noise_bias")) r.noise_bias = number_from(json.at("noise_bias"));
   if (const Json& t = json.at("thickness_percentiles_1_5_50"); !t.is_null()) {
     const Eigen::Vector3d percentiles = vector_from(t);
     r.thickness = {percentiles[0], percentiles[1], percentiles[2]};
@@ -329,6 +330,7 @@ Json to_json(const LevelSetReport& r) {
                {"spacing", fit.spacing},
                {"smoothing", fit.smoothing},
                {"noise", r.noise},
+               {"noise_bias", r.noise_bias},
                {"reason", fit.reason},
                {"cloud_spacing", fit.cloud_spacing},
                {"thickness_percentiles_1_5_50", json_of(r.thickness)},

@@ -26,7 +26,7 @@ struct WindingCheckReport {
   bool restored = false;                 ///< given normals that had been turned were turned back
   double off_before = 0, off_after = 0;  ///< share of patches that bound no body (patches_off_a_half), in [0, 1]: of
                                          ///< the normals as they were, and as they are left
-  double off_tried = 0;  ///< of the normals that the winding number proposed; 0 where it proposed none
+  double off_tried = 0;                  ///< of the normals that the winding number proposed; 0 where it proposed none
   double consistency_before = 0, consistency_tried = 0;  ///< of both; 0 where it proposed none
   /// How well fits to a part of the samples explain others, with both; none where it was not certain.
   std::optional<HeldOutResidual> held_out_before, held_out_tried;
@@ -82,7 +82,8 @@ struct CloudReport {
 struct LevelSetReport {
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< taken off all coordinates before the fit
   SsdReport fit;
-  double noise = 0;                                ///< of the samples along the normal, as the fit took it
+  double noise = 0;       ///< of the samples along the normal, as the fit took it
+  double noise_bias = 0;  ///< that was added to psi (noise_bias.h); 0 where noise does not decide its spacing
   std::optional<std::array<double, 3>> thickness;  ///< 1, 5 and 50 % of the distances between opposed samples; none
                                                    ///< where none face one another
   std::optional<Json> wanted = {};  ///< wanted_mesh(), where finer lattices were left out because it shows none

@@ -17,6 +17,7 @@
 #include "reconstruct/cloud/enclosed_volume.h"
 #include "reconstruct/cloud/local_noise.h"
 #include "reconstruct/cloud/merged_samples.h"
+#include "reconstruct/solve/noise_bias.h"
 #include "reconstruct/solve/turned_fit.h"
 
 namespace umtet {
@@ -166,6 +167,10 @@ LevelSetFit fit_near_origin(OrientedPointCloud& cloud, NeighbourDistances near, 
     }
   }
   report.noise = params.noise;
+  if (fit.report.noise_decided) {  // else it is a small part of psi's own error
+    report.noise_bias = noise_bias(fit.psi, cloud, params.noise);
+    fit.psi = shifted(fit.psi, report.noise_bias);
+  }
   require_body(fit.report);
   refuse_volume(cloud, fit.report);
   std::vector<std::string> notices;

@@ -31,8 +31,6 @@ constexpr double kUnbounded = 0.5;
 // Nor are normals believed then of which more than one in 40 is turned at random, p of 1 - 2 p (1 - p): those that
 // follow noise of a spacing have .91 to .94, right ones of the plate .97 and more.
 constexpr double kCoherent = 0.95;
-// Where more patches than this are off, or it is not certain, the next attempt, with more samples, knows better.
-constexpr double kUnsettled = 0.1;
 // Cosine of the angle from which on an estimated direction is not believed: that of a fit to both sheets of a thin
 // part.
 constexpr double kContradiction = 0.7;
@@ -46,7 +44,7 @@ struct Attempt {
   std::size_t n_samples;
   WindingNormalsParams params;
 };
-// Clean samples and parts as thin as those of so few are apart; noise of a spacing, and thinner parts.
+// Clean samples and parts as thin as those of so few are apart; noise, and thinner parts.
 constexpr std::array<Attempt, 2> kAttempts = {Attempt{kChecked, {}},
                                               Attempt{16000, {.rounds = 10, .widest = 4, .narrowest = 2}}};
 
@@ -184,25 +182,24 @@ WindingReport orient_by_winding(OrientedPointCloud& cloud, const OrientByWinding
   std::vector<Vec3> best;  // of all points
   const WindingNormalsParams* params = nullptr;
   report.off_tried = 1;
+  const Part fine(cloud, kAttempts.back().n_samples);  // shows thinner parts than those that were checked
+  const double before = fine.off(cloud.normals, noise);
   for (const Attempt& attempt : kAttempts) {
     const Part part(cloud, attempt.n_samples);
     std::vector<Vec3> field = normals_by_winding(part.points, part.areas, cloud.points, attempt.params);
-    const double before = part.off(cloud.normals, noise), after = part.off(field, noise),
-                 consistent = consistency_of(cloud, field, how);
-    if (after < report.off_tried) {
-      report.off_tried = after;
-      report.consistency_tried = consistent;
-    }
+    const double after = fine.off(field, noise), consistent = consistency_of(cloud, field, how);
     const bool is_certain =
         consistent >= report.consistency_before || (before > kUnbounded && after <= kClosed && consistent >= kCoherent);
-    if (after < kBetter * before && is_certain) {
-      best = std::move(field);
-      params = &attempt.params;
-      report.off_before = before;
+    const bool is_best = after < kBetter * before && is_certain && (best.empty() || after < report.off_tried);
+    if (is_best || (best.empty() && after < report.off_tried)) {
       report.off_tried = after;
       report.consistency_tried = consistent;
     }
-    if ((after <= kUnsettled && !best.empty()) || cloud.points.size() <= attempt.n_samples) break;
+    if (is_best) {
+      best = std::move(field);
+      params = &attempt.params;
+    }
+    if ((after <= kMostOff && !best.empty()) || cloud.points.size() <= attempt.n_samples) break;
   }
   report.verdict = Verdict::Uncertain;
   if (best.empty()) return report;
@@ -211,6 +208,7 @@ WindingReport orient_by_winding(OrientedPointCloud& cloud, const OrientByWinding
     return report;
   }
   report.verdict = Verdict::Taken;
+  report.off_before = before;
   report.off_after = report.off_tried;
   overrule(cloud, best, how.directions_may_change, report);
   return report;
