@@ -179,12 +179,12 @@ TriangleSamples samples_by_thickness(const TriangleMesh& mesh, TriangleReport& r
   while (n_samples(finest) > kMostSamples && finest < spacing) finest *= 1.05;
   finest = std::clamp(finest, std::ldexp(spacing, -kMostHalvings), spacing);
   report.least_spacing = finest;
-  std::vector<TriangleMesh> kinds;
-  std::vector<std::vector<std::uint32_t>> of;
+  // Kind 0 has the spacing of what is thick, kind k > 0 finest * 2^(k - 1).
+  std::vector<TriangleMesh> kinds(1);
+  std::vector<std::vector<std::uint32_t>> of(1);
   for (std::size_t f = 0; f < t.size(); ++f) {
-    // Kind k has samples finest * 2^k apart.
-    const double ratio = std::min(t[f] / kAcross, spacing) / finest;
-    const auto k = static_cast<std::size_t>(std::clamp(std::floor(std::log2(std::max(ratio, 1.)) + 1e-6), 0., 20.));
+    std::size_t k = 0;
+    if (t[f] < limit) k = 1 + static_cast<std::size_t>(std::max(0., std::floor(std::log2(t[f] / kAcross / finest))));
     if (kinds.size() <= k) {
       kinds.resize(k + 1);
       of.resize(k + 1);
@@ -196,8 +196,8 @@ TriangleSamples samples_by_thickness(const TriangleMesh& mesh, TriangleReport& r
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     if (kinds[k].F.empty()) continue;
     kinds[k].V = pieces.mesh.V;
-    const TriangleSamples some =
-        sample_triangles(kinds[k], std::min(std::ldexp(finest, static_cast<int>(k)), spacing), k, context);
+    const double of_kind = k == 0 ? spacing : std::ldexp(finest, static_cast<int>(k) - 1);
+    const TriangleSamples some = sample_triangles(kinds[k], std::min(of_kind, spacing), k, context);
     all.points.insert(all.points.end(), some.points.begin(), some.points.end());
     for (const std::uint32_t f : some.faces) all.faces.push_back(of[k][f]);
   }
