@@ -217,13 +217,26 @@ void label_caps(TriangleMesh& mesh, std::size_t n_before, const std::vector<Plan
   }
 }
 
-void require_surface(const TriangleReport& report) {
-  const double open = static_cast<double>(report.sides.n_open_edges) / (3 * static_cast<double>(report.n_triangles));
-  if (open < kNoSurface || report.unsure < kNoBody) return;
+/// Before anything is sampled: random triangles would ask for as many samples as there may be.
+void require_surface(const TriangleMesh& mesh, const TriangleReport& report, const Context& context) {
+  constexpr std::size_t kAsked = 2000;  // triangles, evenly picked: 500 of them are at kNoBody
+  const double open = static_cast<double>(report.sides.n_open_edges) / (3 * static_cast<double>(mesh.F.size()));
+  if (open < kNoSurface) return;
+  std::vector<Vec3> centres;
+  std::vector<std::uint32_t> faces;
+  const std::size_t every = (mesh.F.size() + kAsked - 1) / kAsked;
+  for (std::size_t f = every / 2; f < mesh.F.size(); f += every) {
+    centres.push_back(mesh.centroid(f));
+    faces.push_back(static_cast<std::uint32_t>(f));
+  }
+  const std::vector<double> w = TriangleWinding(mesh)(before(mesh, centres, faces), context);
+  const auto n = std::count_if(w.begin(), w.end(), [](double x) { return std::abs(x - std::round(x)) > kUnsure; });
+  const double unsure = static_cast<double>(n) / static_cast<double>(w.size());
+  if (unsure < kNoBody) return;
   throw NoBody(
       formatted("the triangles bound no body: %.0f %% of their edges belong to one triangle alone, and which side is "
-                "inside is a guess for %.0f %% of the surface; give a surface that is closed, but for holes",
-                100 * open, 100 * report.unsure));
+                "inside is a guess for %.0f %% of them; give a surface that is closed, but for holes",
+                100 * open, 100 * unsure));
 }
 
 }  // namespace
@@ -248,6 +261,7 @@ BodySamples sample_body(TriangleMesh mesh, const BodySampleParams& params, const
   report.dropped = drop_useless_faces(mesh);
   if (mesh.F.empty()) throw std::invalid_argument("no triangle has an area");
   if (params.turn) report.sides = orient_outward(mesh, context);
+  if (params.turn) require_surface(mesh, report, context);
   const std::size_t n_given = mesh.F.size();
   if (params.cap) {
     report.caps = cap_plane_rims(mesh, report.sides.weld_distance);
@@ -293,7 +307,6 @@ BodySamples sample_body(TriangleMesh mesh, const BodySampleParams& params, const
     if (!mesh.labels.empty()) made.cloud.labels.push_back(mesh.labels[samples.faces[i]]);
   }
   report.unsure = static_cast<double>(n_unsure) / static_cast<double>(place.size());
-  require_surface(report);
   made.boundary = on_boundary(mesh, shares_on_boundary(mesh, samples, place, w, context));
   return made;
 }
