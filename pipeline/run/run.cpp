@@ -91,14 +91,18 @@ void CaseRun::take_former_parameters(const Parameters& former) {
 
 /// What the case has from former calls, and what is not so any more.
 void CaseRun::tell_changes(const Parameters& former) {
+  Parameters fresh;
+  fresh.take_body(former);
   for (const KeptParameter& kept : parameters_.kept()) {
     const auto made_with = std::find_if(kStages.begin(), kStages.end(), [&](Stage stage) {
       return is_kept(stage) && kept.key.starts_with(section_of(stage) + std::string("."));
     });
-    const std::string why = made_with != kStages.end()
-                                ? fmt::format(" (the stage {} is not run)", to_string(*made_with))
-                            : request_.fresh ? ""
-                                             : " (--fresh drops it)";
+    std::string why;
+    if (made_with != kStages.end()) {
+      why = fmt::format(" (the stage {} is not run)", to_string(*made_with));
+    } else if (!request_.fresh && fresh.source(kept.key) != ParamSource::Case) {
+      why = " (--fresh drops it)";
+    }
     progress_.say("case: keeps " + kept.words + why);
     outcome_.kept.push_back(kept.words);
   }

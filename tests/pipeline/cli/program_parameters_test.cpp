@@ -75,9 +75,11 @@ TEST_F(ProgramParameters, FreshDropsParametersAndKeepsResults) {
   EXPECT_EQ(run("run egg").code, 0);  // and stays so
   // A formula and its box are what the case is of.
   ASSERT_EQ(run(ball + "--seed 5").code, 0);
+  const std::string box = "case: keeps --box -1.3,-1.3,-1.3,1.3,1.3,1.3";
+  EXPECT_TRUE(says(run("mesh ball"), box));  // which --fresh does not drop
   const Result other = run("mesh ball --fresh --tets 2000");
   EXPECT_EQ(other.code, 0) << other.err;
-  EXPECT_TRUE(says(other, "case: keeps --box -1.3,-1.3,-1.3,1.3,1.3,1.3")) << other.err;
+  EXPECT_TRUE(says(other, box)) << other.err;
   EXPECT_TRUE(mentions(other, "case: mesh.seed was 5, is ")) << other.err;
 }
 
