@@ -33,6 +33,11 @@ void write_inp(const std::filesystem::path& path, const SolverMesh& mesh);
 /// whose property is the number of the patch; the nodes of a patch are the SET1 of that number. Names are comments.
 void write_nastran(const std::filesystem::path& path, const SolverMesh& mesh);
 
+/// FEBio, febio_spec 4.0: a <Mesh> with the tets as tet4 or tet10 in a part of the name of the body, and for every
+/// patch a <NodeSet> and a <Surface> of its name, tri3 or tri6 counter-clockwise from outside; with several patches
+/// also both of `boundary`. No material and no step: <Mesh from="mesh.feb"/> in a model takes it.
+void write_feb(const std::filesystem::path& path, const SolverMesh& mesh);
+
 /// VTK XML. The tets with all data and, for every patch, 0/1 at its nodes under its name.
 void write_vtu(const std::filesystem::path& path, const SolverMesh& mesh);
 /// The faces, with the same nodes; cell data `patch`, and field data NAME = number for every patch.

@@ -55,6 +55,7 @@ const std::vector<ExportFormat>& formats_known() {
       {"mesh", {{".mesh", write_medit}}, {}},
       {"inp", {{".inp", write_inp}}, {}},
       {"bdf", {{".bdf", write_nastran}}, {}},
+      {"feb", {{".feb", write_feb}}, {}},
       {"xdmf",
        {{".h5", write_hdf5},
         {".xdmf", [](const fs::path& p, const SolverMesh& m) { write_xdmf(p, m, "mesh.h5"); }},

@@ -11,8 +11,9 @@
 
 namespace umtet {
 
-/// "vtu", "msh" (Gmsh 4.1), "msh22" (Gmsh 2.2), "mesh" (MEDIT), "inp" (Abaqus, CalculiX), "bdf" (Nastran), "xdmf" (with
-/// HDF5), "stl", "obj", "ply" (the boundary); "pvtu" and "pmsh" (Gmsh 4.1), of which each process writes its own part.
+/// "vtu", "msh" (Gmsh 4.1), "msh22" (Gmsh 2.2), "mesh" (MEDIT), "inp" (Abaqus, CalculiX), "bdf" (Nastran), "feb"
+/// (FEBio), "xdmf" (with HDF5), "stl", "obj", "ply" (the boundary); "pvtu" and "pmsh" (Gmsh 4.1), of which each process
+/// writes its own part.
 const std::vector<std::string>& export_formats();
 
 /// Whether one of these is written of what several processes have, and whether one of them is in pieces.

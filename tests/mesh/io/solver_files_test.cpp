@@ -92,6 +92,7 @@ std::vector<Format> formats() {
           {"a.mesh", write_medit},
           {"a.inp", write_inp},
           {"a.bdf", write_nastran},
+          {"a.feb", write_feb},
           {"a.h5", write_hdf5},
           {"a.xdmf", [](P p, M m) { write_xdmf(p, m, "a.h5"); }},
           {"faces.xdmf", [](P p, M m) { write_boundary_xdmf(p, m, "a.h5"); }},
@@ -166,7 +167,7 @@ TEST(SolverFiles, MeshioFindsWhatWasWritten) {
     for (const Format& format : formats()) {
       format.write(scratch.folder / format.file, mesh);
       if (format.file == "a.mesh" && mesh.nodes_per_tet == 10) continue;  // meshio knows no MEDIT tets of ten nodes
-      if (format.file != "a.h5") files.push_back(scratch.folder / format.file);
+      if (!has(format.file, {"h5", "feb"})) files.push_back(scratch.folder / format.file);
     }
     const auto found = read_back(files);
     ASSERT_EQ(found.size(), files.size());
@@ -234,6 +235,45 @@ TEST(SolverFiles, GmshFindsWhatWasWritten) {
       expect_areas(json, mesh, 1e-9);
       if (has(name, {"mesh.again", "bdf"})) continue;
       for (const MeshPart& patch : mesh.patches) EXPECT_EQ(json["names"].value(patch.name, -1), patch.number);
+    }
+  }
+}
+
+TEST(SolverFiles, AnXmlParserFindsInFilesOfFebioWhatWasWritten) {
+  for (const SolverMesh& mesh : {block(2), quadratic()}) {
+    const Scratch scratch;
+    const fs::path file = scratch.folder / "a.feb";
+    write_feb(file, mesh);
+    const std::string out =
+        test::shell(std::string(test::kPython) + " " UMTET_SOURCE_DIR "/tests/support/read_feb.py " + file.string());
+    const Json found = Json::parse(out.substr(0, out.find('\n')), nullptr, false);
+    ASSERT_FALSE(found.is_discarded()) << out;
+    EXPECT_TRUE(found["wrong"].empty()) << found["wrong"];
+    EXPECT_EQ(found["type"], mesh.nodes_per_tet == 4 ? "tet4" : "tet10");
+    EXPECT_EQ(found["part"], "body");
+    EXPECT_EQ(found["tets"], mesh.n_tets());
+    ASSERT_EQ(found["nodes"].size(), mesh.nodes.size());
+    for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
+      for (int k = 0; k < 3; ++k) EXPECT_EQ(found["nodes"][i][k].get<double>(), mesh.nodes[i][k]) << i;
+    }
+    const auto from_one = [](std::vector<int> ids) {
+      for (int& i : ids) ++i;
+      return ids;
+    };
+    const std::vector<std::vector<int>> nodes = patch_nodes(mesh);
+    const FaceGeometry faces = face_geometry(mesh);
+    ASSERT_EQ(found["sets"].size(), mesh.patches.size() + 1);
+    ASSERT_EQ(found["surfaces"].size(), mesh.patches.size() + 1);
+    EXPECT_EQ(found["sets"]["boundary"], from_one(boundary_nodes(mesh)));
+    EXPECT_EQ(found["surfaces"]["boundary"]["facets"], mesh.n_faces());
+    for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
+      const std::string& name = mesh.patches[p].name;
+      EXPECT_EQ(found["sets"][name], from_one(nodes[p]));
+      Vec3 area = Vec3::Zero();
+      for (std::size_t f = 0; f < mesh.n_faces(); ++f) {
+        if (mesh.face_patch[f] == static_cast<int>(p)) area += faces.area[f] * faces.normal[f];
+      }
+      for (int k = 0; k < 3; ++k) EXPECT_NEAR(found["surfaces"][name]["area"][k].get<double>(), area[k], 1e-12);
     }
   }
 }

@@ -15,7 +15,7 @@
 namespace umtet {
 namespace {
 
-const std::string kAllFormats = "vtu,msh,msh22,mesh,inp,bdf,xdmf,stl,obj,ply,pvtu,pmsh";
+const std::string kAllFormats = "vtu,msh,msh22,mesh,inp,bdf,feb,xdmf,stl,obj,ply,pvtu,pmsh";
 
 std::set<std::string> names_in(const fs::path& folder) {
   std::set<std::string> names;
@@ -80,13 +80,21 @@ TEST_F(Export, LabelsOfPointsBecomeSetsOfEveryFile) {
       "mesh.vtu",     "mesh_boundary.vtu", "mesh.msh",     "mesh_22.msh",        "mesh.mesh",    "mesh.inp",
       "mesh.bdf",     "mesh.h5",           "mesh.xdmf",    "mesh_boundary.xdmf", "mesh.stl",     "mesh.obj",
       "mesh.ply",     "mesh.Feet.stl",     "mesh.top.stl", "mesh.Feet.obj",      "mesh.top.obj", "mesh.Feet.ply",
-      "mesh.top.ply", "mesh.pvtu",         "mesh_0.vtu",   "mesh_part_1.msh"};
+      "mesh.top.ply", "mesh.pvtu",         "mesh_0.vtu",   "mesh_part_1.msh",    "mesh.feb"};
   EXPECT_EQ(names_in(out), expected);
+  const std::string feb = test::shell(std::string(test::kPython) + " " UMTET_SOURCE_DIR "/tests/support/read_feb.py " +
+                                      (out / "mesh.feb").string());
+  const Json of_febio = Json::parse(feb.substr(0, feb.find('\n')));
+  EXPECT_TRUE(of_febio["wrong"].empty()) << of_febio["wrong"];
   const Inp inp(out / "mesh.inp");
   for (const int i : inp.node_set.at("Feet")) EXPECT_LT(inp.node.at(i).z(), .3);
   for (const int i : inp.node_set.at("top")) EXPECT_GT(inp.node.at(i).z(), -.1);
   EXPECT_LT(inp.node_set.at("boundary").size(), inp.node_set.at("Feet").size() + inp.node_set.at("top").size());
   EXPECT_NEAR(inp.area.at("top").z() / 3.14159 / .8, 1, .1);  // the ellipse it is cut off at
+  for (const auto& [name, nodes] : inp.node_set) EXPECT_EQ(of_febio["sets"][name], Json(nodes)) << name;
+  for (const auto& [name, area] : inp.area) {
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(of_febio["surfaces"][name]["area"][k].get<double>(), area[k], 1e-9) << name;
+  }
   // Another program finds the same sets under the same names in all files.
   if (!test::succeeds(std::string(test::kPython) + " -c 'import meshio, h5py'")) GTEST_SKIP() << "no meshio";
   std::string command = std::string(test::kPython) + " " UMTET_SOURCE_DIR "/tests/support/read_back.py";
