@@ -118,6 +118,7 @@ Json to_json(const CloudInspection& inspection) {
     json["triangles"] = to_json(inspection.triangles->report);
     json["triangles"]["notices"] = inspection.triangles->notices;
   }
+  if (!inspection.read.columns.empty()) json["columns"] = inspection.read.columns;
   if (!inspection.fields.empty()) json["fields"] = inspection.fields;
   Json normals = {{"present", s.has_normals}, {"lines_of_sight", s.has_lines_of_sight}};
   if (s.has_normals) {
@@ -156,6 +157,9 @@ std::string inspection_text(const CloudInspection& inspection) {
     for (std::size_t i = 0; i < inspection.triangles->report.label_names.size(); ++i)
       out += fmt::format("label     {} = {}\n", i + 1, inspection.triangles->report.label_names[i]);
   }
+  constexpr std::string_view kColumns = "columns ";  // which their line begins with, too
+  if (const std::string& columns = inspection.read.columns; !columns.empty())
+    out += fmt::format("columns   {}\n", columns.substr(std::min(kColumns.size(), columns.size())));
   const Vec3 size = s.high - s.low;
   out += fmt::format("box       {:.6g} x {:.6g} x {:.6g}, diagonal {:.6g}\n", size.x(), size.y(), size.z(), s.diagonal);
   out += fmt::format("spacing   median {:.4g}, 1 % {:.4g}, 99 % {:.4g}; density varies {:.1f} : 1\n", s.spacing[1],

@@ -106,6 +106,7 @@ CloudReport cloud_from(const Json& json) {
           .triangles = json.contains("triangles") ? std::optional(triangles_from(json.at("triangles"))) : std::nullopt,
           .n_points = json.at("n_points"),
           .fields = json.value("fields", std::vector<std::string>()),
+          .columns = json.value("columns", std::string()),
           .merged = json.contains("merged") ? std::optional(merged_from(json.at("merged"))) : std::nullopt,
           .box = {vector_from(json.at("box_min")), vector_from(json.at("box_max"))},
           .notices = json.at("notices")};
@@ -226,6 +227,7 @@ Json to_json(const CloudReport& r) {
                {"notices", r.notices}};
   if (r.triangles) json["triangles"] = to_json(*r.triangles);
   if (!r.fields.empty()) json["fields"] = r.fields;
+  if (!r.columns.empty()) json["columns"] = r.columns;
   if (const std::optional<MergedReport>& m = r.merged) {
     json["merged"] = {{"n_points", m->n_points}, {"n_samples", m->n_samples}, {"cell", m->cell}, {"wanted", m->wanted}};
   }

@@ -55,6 +55,7 @@ struct CloudReport {
   std::optional<TrianglesReport> triangles;  ///< none of a cloud
   std::size_t n_points = 0;                  ///< that are left
   std::vector<std::string> fields = {};      ///< what they carry: field_names()
+  std::string columns = {};                  ///< of a text: CloudFileReport::columns
   std::optional<MergedReport> merged = {};   ///< none where samples are what they were
   Eigen::AlignedBox3d box;                   ///< of them
   std::vector<std::string> notices;          ///< what was changed or guessed, for the user

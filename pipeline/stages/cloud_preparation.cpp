@@ -92,6 +92,8 @@ class Preparation {
 };
 
 void Preparation::tell_fields() {
+  result_.report.columns = file_.columns;
+  if (!file_.columns.empty()) notice("{}", file_.columns);
   result_.report.fields = field_names(cloud_);
   if (!result_.report.fields.empty())
     notice("the mesh gets what the samples carry: {}", fmt::join(result_.report.fields, ", "));
@@ -321,7 +323,8 @@ std::vector<RecordedFile> source_inputs(const fs::path& source, const Parameters
   };
   require_regular_file(source);
   // Gigabytes that are no scan are not read for their checksum.
-  is_of_triangles(source, parameters) ? check_triangles_head(source) : check_scan_head(source);
+  is_of_triangles(source, parameters) ? check_triangles_head(source)
+                                      : check_scan_head(source, parameters.cloud().columns);
   std::vector<RecordedFile> inputs = {input("source", source)};
   const std::string& viewpoints = parameters.cloud().orient_from;
   if (!viewpoints.empty() && is_too_large_a_text(viewpoints))

@@ -61,7 +61,10 @@ bool is_of_triangles(const fs::path& source, const Parameters& parameters) {
 }
 
 ScanSource read_source(const fs::path& source, const Parameters& parameters, const Context& context) {
-  if (!is_of_triangles(source, parameters)) return {read_scan(source), {}};
+  const std::string& columns = parameters.cloud().columns;
+  if (!is_of_triangles(source, parameters)) return {read_scan(source, columns), {}};
+  if (!columns.empty())
+    throw CloudRefused(source.string() + ": --columns is about tables in text, not about triangles");
   TriangleFile file = read_triangles(source);
   const NormalsOf how = parameters.cloud().normals;
   ScanSource scan;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <ostream>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "reconstruct/cloud/cloud_survey.h"
 #include "reconstruct/io/detail/clouds/cloud_readers.h"
 #include "reconstruct/io/detail/clouds/field_columns.h"
+#include "reconstruct/io/detail/clouds/text_columns.h"
 #include "reconstruct/io/detail/extent.h"
 #include "reconstruct/io/detail/file_bytes.h"
 #include "reconstruct/io/detail/little_endian.h"
@@ -48,17 +50,22 @@ Format format_of(const CloudSource& source, const std::filesystem::path& file) {
   if (starts_with("# .PCD") || starts_with("VERSION ")) return Format::Pcd;
   if (extension == ".ply") return Format::Ply;
   if (extension == ".pcd") return Format::Pcd;
-  if (extension == ".xyz" || extension == ".txt" || extension == ".pts") return Format::Xyz;
+  constexpr std::string_view kTexts[] = {".xyz", ".txt", ".pts", ".asc", ".csv", ".xyzn", ".xyzrgb", ".npts"};
+  if (std::find(std::begin(kTexts), std::end(kTexts), extension) != std::end(kTexts)) return Format::Xyz;
   refuse_survey_formats(source, extension);
+  if (detail::is_xyz(source)) return Format::Xyz;
   refuse(source,
-         "neither PLY, PCD nor OFF by its first line, and the extension is none of .xyz .txt .pts .stl .obj .off: "
-         "convert it to one of these");
+         "neither PLY, PCD nor OFF by its first line, no table of numbers, and the extension is none of .xyz .txt .csv "
+         ".asc .pts .stl .obj .off: convert it to one of these");
 }
 
 void check_head(const CloudSource& head, const std::filesystem::path& file) {
   detail::refuse_endless_line(head);
+  const Format format = format_of(head, file);
+  if (format != Format::Xyz && !head.columns.empty())
+    refuse(head, "--columns is about tables in text: PLY and PCD name their properties and fields themselves");
   if (head.bytes_left_out == 0) return;  // then the reader itself is as fast
-  switch (format_of(head, file)) {
+  switch (format) {
     case Format::Ply:
       return detail::check_ply_head(head);
     case Format::Pcd:
@@ -87,12 +94,15 @@ bool is_in_blocks(const CloudSource& head, const std::filesystem::path& file) {
 }
 
 /// Block by block where that can be: gigabytes of bytes are not held beside what they mean.
-CloudFile parse(FileBytes& bytes, const std::filesystem::path& file, bool needs_normals) {
-  check_head(bytes.source(needs_normals), file);
-  const CloudSource head = bytes.source(needs_normals);
+CloudFile parse(FileBytes& bytes, const std::filesystem::path& file, bool needs_normals, const std::string& columns) {
+  CloudSource head = bytes.source(needs_normals);
+  head.columns = columns;
+  check_head(head, file);
   if (head.bytes_left_out > 0 && is_in_blocks(head, file)) return parse(bytes.in_blocks(needs_normals), file);
   bytes.read_rest();
-  return parse(bytes.source(needs_normals), file);
+  CloudSource whole = bytes.source(needs_normals);
+  whole.columns = columns;
+  return parse(whole, file);
 }
 
 /// Counts the points for which bad(i) holds; names the first.
@@ -167,9 +177,9 @@ void drop_unusable(const CloudSource& source, CloudFile& file) {
 
 }  // namespace
 
-CloudFile read_point_cloud(const std::filesystem::path& file) {
+CloudFile read_point_cloud(const std::filesystem::path& file, const std::string& columns) {
   FileBytes bytes(file);
-  CloudFile result = parse(bytes, file, true);
+  CloudFile result = parse(bytes, file, true, columns);
   const CloudSource source = bytes.source(true);  // names the file
   check_numbers(source, result.cloud);
   result.report.n_points = result.cloud.points.size();
@@ -177,11 +187,26 @@ CloudFile read_point_cloud(const std::filesystem::path& file) {
   return result;
 }
 
-void check_scan_head(const std::filesystem::path& file) { check_head(FileBytes(file).source(false), file); }
-
-CloudFile read_scan(const std::filesystem::path& file) {
+void check_scan_head(const std::filesystem::path& file, const std::string& columns) {
   FileBytes bytes(file);
-  CloudFile result = parse(bytes, file, false);
+  CloudSource head = bytes.source(false);
+  head.columns = columns;
+  check_head(head, file);
+}
+
+std::string problem_of_columns(const std::string& columns) {
+  if (columns.empty()) return "";
+  std::vector<std::string> names = detail::told_columns(columns);
+  if (!detail::has_axes(names)) return "x, y and z must be among them";
+  std::sort(names.begin(), names.end());
+  const auto twice =
+      std::adjacent_find(names.begin(), names.end(), [](const auto& a, const auto& b) { return !a.empty() && a == b; });
+  return twice == names.end() ? "" : *twice + " is there twice";
+}
+
+CloudFile read_scan(const std::filesystem::path& file, const std::string& columns) {
+  FileBytes bytes(file);
+  CloudFile result = parse(bytes, file, false, columns);
   const CloudSource source = bytes.source(false);  // names the file
   result.cloud.counts = {}, result.cloud.spreads = {};
   result.report.n_points = result.cloud.points.size();

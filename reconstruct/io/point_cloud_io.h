@@ -21,7 +21,7 @@ inline constexpr std::size_t kMostFields = 16;
 
 /// What was found in a cloud file besides the points.
 struct CloudFileReport {
-  std::string format;  ///< "ply ascii", "ply binary little endian", "pcd compressed", "xyz" ...
+  std::string format;  ///< "ply ascii", "ply binary little endian", "pcd compressed", "text" ...
   std::size_t n_points = 0;
   std::size_t n_normals_rescaled = 0;  ///< normals that were not unit to 1e-3 and have been made so
   std::size_t n_points_dropped = 0;    ///< read_scan: coordinates NaN, infinite or beyond 1e50
@@ -29,6 +29,7 @@ struct CloudFileReport {
   bool of_triangles = false;           ///< samples of triangles: their normals are sure, and there is no outlier
   std::optional<Vec3> viewpoint = {};  ///< where the scanner stood: VIEWPOINT of a .pcd, unless it is 0 0 0 1 0 0 0
   std::vector<std::string> fields_left_out = {};  ///< beyond the first kMostFields, or of a name that is there twice
+  std::string columns = {};  ///< of a text: what its columns are and how that is known, in one line for the user
 };
 
 struct CloudFile {
@@ -36,29 +37,36 @@ struct CloudFile {
   CloudFileReport report;
 };
 
-/// Reads .ply, .pcd, .xyz/.txt/.pts by content, then by extension. Double precision throughout.
+/// Reads PLY and PCD, known by their first line, and tables of numbers in text, whatever their extension. Double
+/// precision throughout.
 ///
 /// PLY: ascii, binary little and big endian, any scalar type and property order, extra and list properties, other
-/// elements before and after `vertex`, comments, CRLF headers. PCD: ascii, binary, binary_compressed. XYZ: 6 columns
-/// x y z nx ny nz separated by blanks, tabs or commas, '#' and '//' comments; a first line with the number of points
-/// (.pts) is checked. Normals are nx ny nz or normal_x normal_y normal_z.
-/// Labels, where there are any, are the property or field `label` (or `patch`), or a column of XYZ behind the others:
-/// whole numbers of 32 bits. A .pts file, or an XYZ file with more than 64 different ones, is refused there: its last
-/// column is an intensity or a colour.
+/// elements before and after `vertex`, comments, CRLF headers. PCD: ascii, binary, binary_compressed. Normals are
+/// nx ny nz or normal_x normal_y normal_z.
+///
+/// Text: a row of numbers for each point, separated by blanks, tabs, commas or semicolons, also with decimal commas
+/// where no comma separates columns. '#', '//' and '%' begin comments. Before the rows there may be a number of points
+/// (.pts), which is checked, and lines of a header. A header (also in a comment) with a name for each column, x, y and
+/// z among them, says what the columns are (column_name()); else their values say it (columns_by_value()), and
+/// CloudFileReport::columns says what was guessed. `columns` overrules both.
+///
+/// Labels, where there are any, are the property or field `label` (or `patch`), or a last column of text with at most
+/// 64 different whole numbers: whole numbers of 32 bits.
 /// Where the scanner stood, where that is known of each point, are the properties or fields sx sy sz, or origin_x
 /// origin_y origin_z.
-/// Colours are red, green and blue, bytes or 0..1 in floating point, or rgb or rgba of PCD, four bytes in a number.
-/// Every other property, field or column of one number a point that has a name is a field of the samples, up to
-/// kMostFields. The columns of XYZ have names if a comment before them has one for each, x, y and z among them; r g b
-/// are colours there. Normals are made unit. At least 10 points; duplicates stay.
+/// Colours are red, green and blue, bytes, 16 bits or 0..1, or rgb or rgba of PCD, four bytes in a number.
+/// Every other property, field or column of one number a point is a field of the samples, up to kMostFields. Normals
+/// are made unit. At least 10 points; duplicates stay.
 ///
 /// No count of a header is believed before it was compared with the size of the file: memory stays below a small
 /// multiple of it.
 ///
-/// \throw CloudRefused         malformed, empty, non-finite or beyond 1e50, without normals,
-///                             or all within 1e-50
+/// @param columns  of text: a word for each column, with commas between them; "-" or "skip" leaves one out, and so do
+///                 words that are missing at the end; empty: as above. See problem_of_columns()
+/// \throw CloudRefused         malformed, empty, non-finite or beyond 1e50, without normals, or all within 1e-50; of a
+///                             text names line and column; `columns` that do not fit, or given for another format
 /// \throw std::system_error    the file cannot be opened or read; names it
-CloudFile read_point_cloud(const std::filesystem::path& file);
+CloudFile read_point_cloud(const std::filesystem::path& file, const std::string& columns = {});
 
 /// Reads the same files for clean(), estimate_normals() and survey(): points without normals give a cloud with none,
 /// unusable normals become zero, and points that are no numbers are dropped and counted. Counts and spreads are left
@@ -68,11 +76,14 @@ CloudFile read_point_cloud(const std::filesystem::path& file);
 /// as
 ///                             survey() needs
 /// \throw std::system_error    the file cannot be opened or read; names it
-CloudFile read_scan(const std::filesystem::path& file);
+CloudFile read_scan(const std::filesystem::path& file, const std::string& columns = {});
 
 /// Refuses by its first megabyte what read_scan() would refuse by its header, its first rows, or a count that cannot
 /// be: at once, however large the file is. \throw CloudRefused, std::system_error  as read_scan()
-void check_scan_head(const std::filesystem::path& file);
+void check_scan_head(const std::filesystem::path& file, const std::string& columns = {});
+
+/// A sentence that says why read_scan() takes no such columns of any file; empty if it may take them.
+std::string problem_of_columns(const std::string& columns);
 
 /// Binary little-endian PLY, double x y z nx ny nz and, where there are any, int label, uchar red green blue, int
 /// umtet_count, double umtet_spread and the fields as double; read_point_cloud gives the same bits back. Origins are

@@ -18,7 +18,8 @@ import zlib
 
 STORED = pathlib.Path(__file__).resolve().parent / "files"
 TARGETS = {".stl": "triangles_stl", ".obj": "triangles_obj", ".off": "triangles_off",
-           ".ply": "cloud_ply", ".pcd": "cloud_pcd", ".xyz": "cloud_xyz", ".pts": "cloud_xyz", ".vti": "level_set",
+           ".ply": "cloud_ply", ".pcd": "cloud_pcd", ".xyz": "cloud_xyz", ".pts": "cloud_xyz", ".csv": "cloud_xyz",
+           ".asc": "cloud_xyz", ".vti": "level_set",
            ".vtu": "mesh_vtu", ".msh": "mesh_msh", ".mesh": "mesh_mesh",
            ".nrrd": "grid_nrrd", ".nii": "grid_nifti", ".vtk": "grid_vtk",
            ".grid": "grid_vti"}  # ImageData, which has any name here: .vti is that of our own level sets
@@ -240,16 +241,20 @@ def xyz_cases():
     yield "two_columns", b"1 2\n" * N, ["line 1"]
     yield "two_lines", b"1 2\n3 4\n", ["line 1"]
     yield "one_point", b"1 2 3\n", ["1 points"], ["line 1", "no normals"]
-    yield "eight_columns", b"# head\n1 2 3 0 0 1 7 8\n", ["line 2", "8 columns"]
+    yield "eight_columns", b"# head\n" + labelled(lambda i: "7 8.5"), None
+    yield "unknown_vectors", "".join(f"{line} {3 * i} {-1.5 * i} {i % 7}\n" for i, line in enumerate(bare.splitlines())).encode(), \
+        ["line 1", "columns 4 to 6", "--columns x,y,z,nx,ny,nz"]
+    yield "many_scalars", labelled(lambda i: f"{i} {-2 * i} {i * i} {7 - i}"), ["line 1", "columns 7 to 10", "--columns"]
     yield "nine_points", ("\n".join(LINES[:9]) + "\n").encode(), ["9 points", "30"], ["9 points", "10"]
     yield "ragged", with_line(6, "1 2 3").encode(), ["line 7"]
     yield "three_then_six", (bare + TEXT).encode(), ["line 101"], ["line 1"]
     yield "mostly_bad", (bare + 101 * "nan 0 0\n").encode(), ["101 of 201"], ["line 1"]
-    yield "word", ("x y z\n" + TEXT).encode(), ["line 1", "'x'"], ["line 1"]
-    yield "six_words", ("x y z nx ny nz\n" + TEXT).encode(), ["line 1", "'x'"]
-    yield "commas", TEXT.replace(".", ",").encode(), ["line 1", "decimal"]
-    yield "commas_three", b"0,1 0,2 0,3\n", ["line 1", "decimal"]  # six columns if commas separated
-    yield "semicolons", b"0,1;0,2;0,3;0,0;0,0;1,0\n", ["line 1"]
+    yield "word", ("x y z\n" + TEXT).encode(), ["line 1", "3 names", "line 2", "6 columns", "--columns"]
+    yield "six_words", ("x y z nx ny nz\n" + TEXT).encode(), None
+    yield "commas", TEXT.replace(".", ",").encode(), None
+    yield "commas_three", b"0,1 0,2 0,3\n", ["1 points"], ["line 1", "no normals"]  # six columns if commas separated
+    yield "semicolons", b"0,1;0,2;0,3;0,0;0,0;1,0\n", ["1 points"], ["line 1", "no normals"]
+    yield "commas_of_both", TEXT.replace(".", ",").encode() + b"1.5 2,5 3 0 0 1\n", ["line 101, column 1", "'1.5'"]
     yield "overflow", with_line(6, "1e999 0 0 0 0 1").encode(), ["line 7"]
     yield "infinite", with_line(6, "inf 0 0 0 0 1").replace(LINES[9], "0 nan 0 0 0 1").encode(), None, ["point 7 ", "2 such"]
     yield "beyond", with_line(6, "1e51 0 0 0 0 1").encode(), None, ["point 7 ", "1e50"]
@@ -258,22 +263,63 @@ def xyz_cases():
     yield "long_last_line", TEXT.encode() + (1 << 17) * b"1", ["line 101: 131072 bytes long"]
     yield "nul", bytes(5000), ["line 1"]
     yield "random", random.Random(3).randbytes(5000), ["line 1"]
-    yield "hundred_labels", labelled(lambda i: i), ["100 different", "64"]
-    yield "colours", "".join(line + " 12 200 17 3\n" for line in bare.splitlines()).encode(), ["no normals"]
+    yield "hundred_labels", labelled(lambda i: i), None
+    yield "colours", "".join(line + " 12 200 17 3\n" for line in bare.splitlines()).encode(), None, ["no normals"]
     yield "named", b"//X Y Z Nx Ny Nz R G B Heat\n" + labelled(lambda i: "1 2 999 -7.5"), None
     yield "named_twice", b"# x y z x y z\n" + TEXT.encode(), ["column x more than once"]
     yield "names_without_end", b"# x y z " + 30000 * b"t " + b"\n" + TEXT.encode(), None
-    yield "one_place", flat(lambda i: (1, 2, 3)), ["1 different places"]
-    yield "corners", flat(lambda i: (i & 1, i >> 1 & 1, i >> 2 & 1)), ["8 different places"]
-    yield "line", flat(lambda i: (i, 2 * i, 5)), ["one line"]
-    yield "plane", flat(lambda i: (i % 7, i // 7, i % 7 + i // 7)), ["one plane"]
+    yield "one_place", flat(lambda i: (1, 2, 3)), ["1 different places"], ["no normals"]
+    yield "corners", flat(lambda i: (i & 1, i >> 1 & 1, i >> 2 & 1)), ["8 different places"], ["no normals"]
+    yield "line", flat(lambda i: (i, 2 * i, 5)), ["one line"], ["no normals"]
+    yield "plane", flat(lambda i: (i % 7, i // 7, i % 7 + i // 7)), ["one plane"], ["no normals"]
     yield "tiny", "".join(" ".join(repr(v if k > 2 else 1e-52 * v) for k, v in enumerate(r)) + "\n" for r in ROWS).encode(), \
         ["1e-50"]
 
 
+    yield "utf16", b"\xff\xfe" + TEXT.encode("utf-16-le"), ["line 1", "UTF-8"]
+    yield "latin1", "# größe\n".encode("latin-1") + TEXT.encode(), None
+    yield "hundred_headers", 100 * b"some words\n" + TEXT.encode(), ["line 1", "no row of three"]
+    yield "only_comments", 1000 * b"# 1 2 3\n", ["line 1", "no row of three"]
+    yield "only_header", b"x y z\n", ["line 1", "no row of three"]
+    yield "control", TEXT.replace(" ", "\x01", 1).encode(), ["line 1"]
+    yield "half_a_number", TEXT.encode() + b"1 2 3 0 0 1e\n", ["line 101, column 6", "'1e'"]
+    yield "half_a_row", TEXT.encode()[:-60], ["line 100", "cut short"]
+    yield "json", b'{"points": [[1, 2, 3], [4, 5, 6]]}\n', ["line 1"]
+    yield "html", b"<!DOCTYPE html>\n<html><body>404</body></html>\n", ["line 1", "no row of three"]
+    yield "deep_quotes", 5000 * b'"' + b"\n" + TEXT.encode(), None
+    yield "wild", labelled(lambda i: ("nan inf", "-inf 1e308", "1e-320 -0", "NA null")[i % 4]), None
+    yield "old_mac", TEXT.replace("\n", "\r").encode(), None
+    yield "chemistry", b"100\na molecule\n" + "".join("C " + line + "\n" for line in bare.splitlines()).encode(), None, ["no normals"]
+
+
+def csv_cases():
+    table = TEXT.replace(" ", ",")
+    yield "table", b"x,y,z,nx,ny,nz\n" + table.encode(), None
+    yield "empty_names", b",,,,,\n" + table.encode(), None
+    yield "empty_fields", 1000 * b",,,,,\n", ["line 1", "no row of three"]
+    yield "no_coordinates", b"x,y,z,nx,ny,nz\n1,2,3,0,0,1\n" + 200 * b",,,0,0,1\n", ["200 of 201"], ["point 2 "]
+    yield "trailing", b"x;y;z;\n" + "".join(";".join(line.split()[:3]) + ";\n" for line in LINES).encode(), None, ["no normals"]
+    yield "ragged", table.encode() + b"1,2,3,,0,1,\n1,2,3,4,5,6,7\n", ["line 102", "7 columns"]
+    yield "no_axes", b"a,b,c,d,e,f\n" + table.encode(), None
+    yield "words", "".join(f"{line},hot\n" for line in table.splitlines()).encode(), None
+    yield "word_in_row", table.encode() + b"1,2,zero,0,0,1\n", ["line 101, column 3", "'zero'"]
+    yield "commas", TEXT.replace(".", ",").replace(" ", ";").encode(), None
+    yield "rgb_twice", b"x,y,z,r,g,b,red\n" + "".join(",".join(line.split()[:3]) + ",1,2,3,4\n" for line in LINES).encode(), None, ["no normals"]
+
+
+def asc_cases():
+    yield "six", TEXT.encode(), None
+    yield "esri_grid", b"ncols 4\nnrows 6\nxllcorner 0.0\ncellsize 50\n-9999 -9999 5 2\n", ["line 1", "grid of heights", "gdal_translate"]
+
+
 def pts_cases():
     yield "counted", ("101\n" + TEXT).encode(), ["101", "100"]
-    yield "leica", b"100\n" + labelled(lambda i: 1), ["intensities"]
+    yield "leica", b"100\n" + labelled(lambda i: 1), None
+    yield "two_scans", b"100\n" + TEXT.encode() + b"100\n" + TEXT.encode(), None
+    yield "second_cut", b"100\n" + TEXT.encode() + b"7\n" + TEXT.encode()[:300], ["cut short"]
+    yield "second_count", b"100\n" + TEXT.encode() + b"18446744073709551615\n1 2 3 0 0 1\n", ["line 102", "18446744073709551615"]
+    yield "count_wraps", b"18446744073709551615\n" + TEXT.encode(), ["18446744073709551615", "100"]
+    yield "only_count", b"100\n", ["no row of three"]
 
 
 def las_cases():
@@ -286,7 +332,10 @@ def e57_cases():
 
 
 def unknown_cases():
-    yield "cloud", TEXT.encode(), ["none of .xyz"]
+    yield "cloud", TEXT.encode(), None
+    yield "words", b"a list of points\n" + TEXT.encode(), ["none of .xyz"]
+    yield "comments", b"# a list of points\n" + TEXT.encode(), None
+    yield "mesh", b"*NODE\n1, 0., 0., 0.\n2, 1., 0., 0.\n", ["none of .xyz"]
     yield "las", b"LASF" + bytes(371), ["LAS", "pdal translate"]
 
 
@@ -692,9 +741,9 @@ STORED_WORDS = {
     "appended_beside_underscore.vtu": ["appended data without a beginning"],
     "far_numbers.msh": ["tet 1: its node 3 does not exist"],
     "band.vti": ["hash"], "unknown_type.vti": ["an array of a kind"],
-    "counted_labels.xyz": ["intensities"], "bare_crlf.ply": ["12 points"],
+    "bare_crlf.ply": ["12 points"],
 }
-STORED_STRICT = {"counted_labels.xyz": ["line 2", "4 columns"], "bare_crlf.ply": ["no normals"]}
+STORED_STRICT = {"counted_labels.xyz": ["line 2", "no normals"], "bare_crlf.ply": ["no normals"]}
 
 
 def stored_cases():
@@ -717,7 +766,7 @@ HUGE = [
                   b"property float y\nproperty float z\nend_header\n", ["99999999999 x vertex"], ["no normals"]),
     ("noise.pcd", b"\x8fU\n", ["no line of a PCD header"]),
     ("no_x.pcd", b"VERSION .7\nFIELDS y\nSIZE 4\nTYPE F\nCOUNT 1\nWIDTH 9\nHEIGHT 1\nPOINTS 9\nDATA binary\n", ["field x"]),
-    ("noise.xyz", b"1 2 3 0 0 1\nU 2\n", ["line 2"]),
+    ("noise.xyz", b"1 2 3 0 0 1\nU 2\n", ["line 2"], ["line 1", "no normals"]),
     ("zeros.stl", b"", ["0 triangles"]),
     ("zeros.obj", b"", ["line 1 does not end"]),
     ("zeros.off", b"", ["line 1 does not end"]),
@@ -743,6 +792,7 @@ def made_cases():
     for name, data, words, *strict in face_cases():
         yield Case(name + ".ply", data, words, *(strict or [words]), target="triangles_ply")
     for suffix, family in ((".ply", ply_cases), (".pcd", pcd_cases), (".xyz", xyz_cases), (".pts", pts_cases),
+                           (".csv", csv_cases), (".asc", asc_cases),
                            (".las", las_cases), (".e57", e57_cases), (".points", unknown_cases), (".msh", msh_cases), (".mesh", mesh_cases), (".vtu", vtu_cases),
                            (".nrrd", nrrd_cases), (".nii", nifti_cases), (".vtk", vtk_cases), (".grid", image_cases),
                            (".stl", stl_cases), (".obj", obj_cases), (".off", off_cases),

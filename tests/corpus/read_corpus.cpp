@@ -40,8 +40,9 @@ int main(int argc, char** argv) {
     } else if (umtet::holds_triangles(file)) {
       answer<umtet::CloudRefused>(file, "read_triangles", umtet::read_triangles);
     } else {
-      answer<umtet::CloudRefused>(file, "read_scan", umtet::read_scan);
-      answer<umtet::CloudRefused>(file, "read_point_cloud", umtet::read_point_cloud);
+      answer<umtet::CloudRefused>(file, "read_scan", [](const auto& path) { return umtet::read_scan(path); });
+      answer<umtet::CloudRefused>(file, "read_point_cloud",
+                                  [](const auto& path) { return umtet::read_point_cloud(path); });
     }
   }
 }

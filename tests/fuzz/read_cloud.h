@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "reconstruct/cloud/cloud_arrays.h"
 #include "reconstruct/io/point_cloud_io.h"
@@ -26,11 +27,13 @@ inline bool is_read_back(const OrientedPointCloud& cloud) {
 
 /// A cloud of finite numbers with unit normals, no more points than the file has bytes, or a refusal. Of names only
 /// what our own files can hold.
-inline int read_cloud(const InputFile& file, const std::uint8_t* data, std::size_t size) {
+/// @param columns  of a text, besides those that it says itself
+inline int read_cloud(const InputFile& file, const std::uint8_t* data, std::size_t size, const char* columns = "") {
   const std::filesystem::path& path = file.write(data, size);
-  for (const auto read : {read_scan, read_point_cloud}) {
+  for (const auto& [read, told] :
+       {std::pair{read_scan, ""}, std::pair{read_point_cloud, ""}, std::pair{read_scan, columns}}) {
     try {
-      const OrientedPointCloud cloud = read(path).cloud;
+      const OrientedPointCloud cloud = read(path, told).cloud;
       // LZF packs at most 264 bytes into 3, and a point has at least three.
       require(cloud.points.size() <= 30 * size);
       for_each_array(cloud,

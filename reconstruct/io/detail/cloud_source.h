@@ -19,6 +19,7 @@ struct CloudSource {
   std::size_t bytes_left_out = 0;
   FileBytes* rest =
       nullptr;  ///< what reads them block by block (ByteWindow); null: there are none, or all are in memory
+  std::string_view columns = {};  ///< what the user says of the columns of a text; empty: nothing
 
   std::size_t size() const { return bytes.size() + bytes_left_out; }  ///< of the file
 };

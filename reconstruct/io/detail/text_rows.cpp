@@ -9,7 +9,7 @@ namespace umtet::detail {
 
 bool LineReader::next(std::string_view& line) {
   if (next_ >= bytes_.size()) return false;
-  const std::size_t end = std::min(bytes_.find('\n', next_), bytes_.size());
+  const std::size_t end = std::min(bytes_.find(end_, next_), bytes_.size());
   line = bytes_.substr(next_, end - next_);
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
   next_ = std::min(end + 1, bytes_.size());

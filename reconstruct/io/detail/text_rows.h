@@ -14,8 +14,9 @@ namespace umtet::detail {
 class LineReader {
  public:
   /// @param first_line  number of the line at `offset`, counted from 1
-  LineReader(std::string_view bytes, std::size_t offset = 0, std::size_t first_line = 1)
-      : bytes_(bytes), next_(offset), line_(first_line - 1) {}
+  /// @param end         ends a line instead of LF
+  LineReader(std::string_view bytes, std::size_t offset = 0, std::size_t first_line = 1, char end = '\n')
+      : bytes_(bytes), next_(offset), line_(first_line - 1), end_(end) {}
 
   /// The next line without its end; false at the end of the file.
   bool next(std::string_view& line);
@@ -29,6 +30,7 @@ class LineReader {
   std::string_view bytes_;
   std::size_t next_;
   std::size_t line_;
+  char end_;
 };
 
 /// The parts of `line` between runs of separators.

@@ -11,6 +11,9 @@ void check_ply_head(const CloudSource& head);
 void check_pcd_head(const CloudSource& head);
 void check_xyz_head(const CloudSource& head);
 
+/// Whether it is a table of numbers, whatever the extension of the file says.
+bool is_xyz(const CloudSource& head);
+
 /// Whether the points are stored as numbers one after the other, so that a block of them can be read at a time.
 bool is_in_blocks_ply(const CloudSource& head);
 bool is_in_blocks_pcd(const CloudSource& head);

@@ -1,168 +1,181 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
+#include <filesystem>
+#include <limits>
 #include <utility>
 
 #include "reconstruct/io/detail/clouds/cloud_columns.h"
 #include "reconstruct/io/detail/clouds/cloud_readers.h"
+#include "reconstruct/io/detail/clouds/text_columns.h"
+#include "reconstruct/io/detail/clouds/text_table.h"
+#include "reconstruct/io/detail/file_bytes.h"
 #include "reconstruct/io/detail/text_rows.h"
 
 namespace umtet::detail {
 namespace {
 
-constexpr std::array<std::size_t, 10> kColumns = {0, 1, 2, 3, 4, 5, 6};  // x y z nx ny nz label, or x y z label
 // More different whole numbers in a column without a name are intensities.
 constexpr std::size_t kMostLabels = 64;
-// Of a damaged or binary file a line may be gigabytes.
-constexpr std::size_t kLongestLine = 1 << 16;
 
-bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
-
-/// "0,25": one comma inside, a digit on both sides.
-bool has_decimal_comma(std::string_view token) {
-  const std::size_t comma = token.find(',');
-  return comma != std::string_view::npos && comma > 0 && comma + 1 < token.size() && is_digit(token[comma - 1]) &&
-         is_digit(token[comma + 1]) && token.find(',', comma + 1) == std::string_view::npos;
-}
-
-/// Commas separate columns, so "0,1 0,2 0,3" would pass as six columns: where blanks separate numbers too, a comma
-/// between digits is a decimal comma.
-void refuse_decimal_commas(const CloudSource& source, std::size_t line,
-                           const std::vector<std::string_view>& by_blanks) {
-  if (by_blanks.size() > 1 && std::any_of(by_blanks.begin(), by_blanks.end(), has_decimal_comma))
-    refuse(source, fmt::format("line {}: numbers with decimal commas: export with decimal points", line));
-}
-
-[[noreturn]] void refuse_columns(const CloudSource& source, std::size_t line, std::size_t n_columns,
-                                 std::size_t n_before) {
-  if (n_before != 0)
-    refuse(source, fmt::format("line {}: {} columns, but {} before: the file is cut short or damaged, export it again",
-                               line, n_columns, n_before));
-  if (!source.needs_normals)
-    refuse(source,
-           fmt::format("line {}: {} columns, expected x y z or x y z nx ny nz, and perhaps a label", line, n_columns));
-  if (n_columns == 3)
-    refuse(source, fmt::format("line {}: three columns, so the points have no normals: estimate and orient them first, "
-                               "for example in CloudCompare or MeshLab, and export x y z nx ny nz",
-                               line));
-  refuse(source,
-         fmt::format("line {}: {} columns, expected the six of x y z nx ny nz, and perhaps a label", line, n_columns));
-}
-
-/// A last column is the label only if nothing speaks against it: scanners write x y z intensity r g b, too.
-void check_labels(const CloudSource& source, const OrientedPointCloud& cloud, bool is_pts) {
-  if (cloud.labels.empty()) return;
-  const char* const remedy = "export x y z nx ny nz and a label, or PLY, where columns have names";
-  if (is_pts) refuse(source, fmt::format("a .pts file with intensities or colours, which are no labels: {}", remedy));
-  std::vector<int> labels = cloud.labels;
-  std::sort(labels.begin(), labels.end());
-  const auto n = static_cast<std::size_t>(std::unique(labels.begin(), labels.end()) - labels.begin());
-  if (n > kMostLabels)
-    refuse(source, fmt::format("the last column has {} different whole numbers, more than the {} that are taken for "
-                               "labels: {}",
-                               n, kMostLabels, remedy));
-  const auto is_unit = [](const Vec3& normal) { return std::abs(normal.stableNorm() - 1) < .1; };
-  const auto n_unit = std::count_if(cloud.normals.begin(), cloud.normals.end(), is_unit);
-  if (2 * static_cast<std::size_t>(n_unit) < cloud.normals.size())
-    refuse(source, fmt::format("seven columns, but the fourth to sixth are no normals: {}", remedy));
-}
-
-/// The names of columns that a comment gives, "//X Y Z R G B Scalar_field Nx Ny Nz"; none unless x, y and z are among
-/// them. Those that say what a column is are in lower case.
-std::vector<std::string> names_in(std::string_view line) {
-  std::vector<std::string_view> tokens;
-  split(line.substr(std::min(line.find_first_not_of("#/"), line.size())), " \t,", tokens);
-  std::vector<std::string> names;
-  for (const std::string_view token : tokens) {
-    std::string lower(token);
-    std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
-    const auto is_one_of = [&](const auto&... names) { return ((lower == names) || ...); };
-    if (is_one_of("r", "red")) {
-      names.emplace_back("red");
-    } else if (is_one_of("g", "green")) {
-      names.emplace_back("green");
-    } else if (is_one_of("b", "blue")) {
-      names.emplace_back("blue");
-    } else {
-      names.push_back(is_reserved(lower) ? lower : std::string(token));
-    }
+TextColumns columns_of(const CloudSource& source, const TextTable& table) {
+  const SampleRows rows = sample_rows(source, table);
+  if (!source.columns.empty()) {
+    std::vector<std::string> names = told_columns(source.columns);
+    if (names.size() > table.n_columns)
+      refuse(source, fmt::format("line {}: {} columns, but --columns names {}", table.first_line, table.n_columns,
+                                 names.size()));
+    return columns_by_name(std::move(names), rows, "as --columns says");
   }
-  const auto is_there = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
-  return is_there("x") && is_there("y") && is_there("z") ? names : std::vector<std::string>();
+  if (!table.header.empty()) return columns_by_name(table.header, rows, "as the header says");
+  const std::string extension = table.announced ? ".pts" : lower_extension(source.name);
+  return columns_by_value(rows, extension);
 }
 
-struct Rows {
-  CloudColumns columns{kColumns};
-  bool have_names = false;
-  std::optional<std::uint64_t> announced;  ///< the number of points of the first line: .pts files start with it
+[[noreturn]] void refuse_problem(const CloudSource& source, const TextTable& table, const TextColumns& columns) {
+  refuse(source, fmt::format("line {}: {} columns: {}: say what they are, such as --columns x,y,z,nx,ny,nz, or leave "
+                             "them out, --columns x,y,z",
+                             table.first_line, table.n_columns, columns.problem));
+}
+
+CloudColumns cloud_columns_of(const CloudSource& source, const TextTable& table, const TextColumns& columns) {
+  CloudSource of_any = source;
+  of_any.needs_normals = false;  // what is said of missing ones is said below
+  std::vector<std::string> names = columns.names;
+  std::replace(names.begin(), names.end(), std::string(), std::string("left out"));  // no name of a field has a blank
+  CloudColumns of_cloud = cloud_columns(of_any, names, "column");
+  if (source.needs_normals && !of_cloud.has_normals)
+    refuse(source, fmt::format("line {}: {}: the points have no normals: estimate and orient them first, for example "
+                               "in CloudCompare or MeshLab, and export x y z nx ny nz",
+                               table.first_line, told(columns)));
+  of_cloud.fields.bytes_per_unit = columns.bytes_per_unit;
+  return of_cloud;
+}
+
+/// Reads the rows of a table.
+class RowReader {
+ public:
+  RowReader(const CloudSource& source, const TextTable& table, const CloudColumns& columns)
+      : source_(source), table_(table), columns_(columns), row_(table.n_columns) {
+    wanted_ = columns.fields.wanted();
+    wanted_.insert(wanted_.end(), columns.begin(), columns.end());
+    std::sort(wanted_.begin(), wanted_.end());
+  }
+
+  /// Appends a point for each. @return how many points were announced, where a number of them stands before the rows
+  std::optional<std::uint64_t> operator()(OrientedPointCloud& cloud) {
+    begin_cloud(cloud, columns_, 0);  // how many rows there are is not known
+    std::optional<std::uint64_t> announced = table_.announced;
+    LineReader lines(source_.bytes, table_.begin, table_.first_line, table_.dialect.end_of_line);
+    std::string_view line;
+    while (lines.next_filled(line)) {
+      if (line.size() > kLongestLine)
+        refuse(source_,
+               fmt::format("line {}: {} bytes long: this is no text with a point a line", lines.line(), line.size()));
+      const std::size_t n = split_row(line, table_, tokens_);
+      if (is_comment(line)) continue;
+      if (n == 1 && announced == cloud.points.size()) {  // the next scan of a .pts file
+        if (const std::optional<std::uint64_t> more = parse_count(tokens_.front())) {
+          if (*more > source_.bytes.size()) refuse_count(lines.line(), *more);
+          *announced += *more;
+          continue;
+        }
+      }
+      if (n != table_.n_columns) refuse_columns(lines.line(), n);
+      for (const std::size_t c : wanted_) row_[c] = number(lines.line(), c);
+      append_point(source_, cloud, row_, columns_);
+    }
+    return announced;
+  }
+
+ private:
+  double number(std::size_t line, std::size_t column) const {
+    const std::string_view token = tokens_[column];
+    double value = 0;
+    if (parse_number(token, table_.dialect, value)) return value;
+    if (is_missing(token)) return std::numeric_limits<double>::quiet_NaN();
+    refuse(source_, fmt::format("line {}, column {}: {} is not a number of double precision{}", line, column + 1,
+                                in_quotes(token), remedy(token)));
+  }
+
+  const char* remedy(std::string_view token) const {
+    if (token.find(',') == std::string_view::npos) return ": remove the line, or export the file again";
+    return ": if that is a decimal comma, separate columns by semicolons or tabs";
+  }
+
+  [[noreturn]] void refuse_count(std::size_t line, std::uint64_t count) const {
+    refuse(source_, fmt::format("line {}: {} points are announced, more than the file can hold", line, count));
+  }
+
+  [[noreturn]] void refuse_columns(std::size_t line, std::size_t n) const {
+    refuse(source_,
+           fmt::format("line {}: {} column{}, but {} before: the file is cut short or damaged, export it again", line,
+                       n, n == 1 ? "" : "s", table_.n_columns));
+  }
+
+  const CloudSource& source_;
+  const TextTable& table_;
+  const CloudColumns& columns_;
+  std::vector<std::size_t> wanted_;
+  std::vector<std::string_view> tokens_;
+  std::vector<double> row_;
 };
 
-CloudColumns columns_by_number(std::size_t n) {
-  CloudColumns columns{kColumns};
-  columns.has_normals = n >= 6;
-  columns.has_labels = n % 3 == 1;
-  return columns;
+/// Whole numbers of 32 bits, few of them different.
+bool are_labels(const std::vector<double>& values) {
+  std::vector<double> different;
+  for (const double v : values) {
+    if (!(v == std::trunc(v)) || std::abs(v) > std::numeric_limits<int>::max()) return false;
+    const auto at = std::lower_bound(different.begin(), different.end(), v);
+    if (at != different.end() && *at == v) continue;
+    if (different.size() == kMostLabels) return false;
+    different.insert(at, v);
+  }
+  return true;
 }
 
-/// Appends a point for every row.
-Rows read_rows(const CloudSource& source, OrientedPointCloud& cloud) {
-  LineReader lines(source.bytes);
-  std::string_view line;
-  std::vector<std::string_view> tokens;
-  std::vector<double> row;
-  std::vector<std::string> names;
-  Rows rows;
-  bool first = true;
-  while (lines.next_filled(line)) {
-    if (line.size() > kLongestLine)
-      refuse(source,
-             fmt::format("line {}: {} bytes long: this is no text with a point a line", lines.line(), line.size()));
-    split(line, " \t", tokens);
-    const bool is_comment = tokens.front().starts_with('#') || tokens.front().starts_with("//");
-    if (is_comment && row.empty()) {
-      if (std::vector<std::string> found = names_in(line); !found.empty()) names = std::move(found);
-    }
-    if (is_comment) continue;
-    const bool may_announce = std::exchange(first, false) && tokens.size() == 1;
-    if (may_announce && (rows.announced = parse_count(tokens.front()))) continue;
-    refuse_decimal_commas(source, lines.line(), tokens);
-    split(line, " \t,", tokens);
-    const std::size_t n = tokens.size();
-    const bool fits = names.size() == n || n == 6 || n == 7 || ((n == 3 || n == 4) && !source.needs_normals);
-    if (!fits || (!row.empty() && n != row.size())) refuse_columns(source, lines.line(), n, fits ? row.size() : 0);
-    if (row.empty()) {
-      rows.have_names = names.size() == n;
-      rows.columns = rows.have_names ? cloud_columns(source, names, "column") : columns_by_number(n);
-      begin_cloud(cloud, rows.columns, 0);  // how many rows there are is not known
-      row.resize(n);
-    }
-    for (std::size_t c = 0; c < row.size(); ++c) row[c] = parse_number(source, lines.line(), tokens[c]);
-    append_point(source, cloud, row, rows.columns);
-  }
-  return rows;
+/// A last column that may be one becomes the label.
+void find_label(OrientedPointCloud& cloud, const FieldColumns& fields, TextColumns& columns) {
+  const auto scalar = std::find_if(fields.scalars.begin(), fields.scalars.end(),
+                                   [&](const FieldColumns::Scalar& s) { return s.at == columns.perhaps_label; });
+  if (scalar == fields.scalars.end()) return;
+  const auto field = cloud.fields.begin() + (scalar - fields.scalars.begin());
+  if (!are_labels(field->values)) return;
+  cloud.labels.assign(field->values.begin(), field->values.end());
+  cloud.fields.erase(field);
+  columns.names[columns.perhaps_label] = "label";
 }
 
 }  // namespace
 
+bool is_xyz(const CloudSource& source) { return is_table(source); }
+
 void check_xyz_head(const CloudSource& head) {
   CloudSource whole_lines = head;
-  whole_lines.bytes = head.bytes.substr(0, head.bytes.rfind('\n') + 1);
+  const TextTable table = find_table(head);
+  whole_lines.bytes = head.bytes.substr(0, head.bytes.rfind(table.dialect.end_of_line) + 1);
+  if (table.begin > whole_lines.bytes.size()) return;
+  const TextColumns columns = columns_of(whole_lines, table);
+  if (!columns.problem.empty()) return;  // the rest of the rows may tell
   OrientedPointCloud cloud;
-  read_rows(whole_lines, cloud);
+  RowReader(whole_lines, table, cloud_columns_of(head, table, columns))(cloud);
 }
 
 CloudFile read_xyz(const CloudSource& source) {
   CloudFile file;
-  file.report.format = "xyz";
-  const Rows rows = read_rows(source, file.cloud);
-  const std::optional<std::uint64_t>& announced = rows.announced;
-  file.report.fields_left_out = rows.columns.fields.left_out;
+  file.report.format = "text";
+  const TextTable table = find_table(source);
+  TextColumns columns = columns_of(source, table);
+  if (!columns.problem.empty()) refuse_problem(source, table, columns);
+  const CloudColumns of_cloud = cloud_columns_of(source, table, columns);
+  const std::optional<std::uint64_t> announced = RowReader(source, table, of_cloud)(file.cloud);
   if (announced && *announced != file.cloud.points.size())
     refuse(source, fmt::format("the first line announces {} points, {} follow: the file is cut short or was edited",
                                *announced, file.cloud.points.size()));
-  if (!rows.have_names) check_labels(source, file.cloud, announced.has_value());
+  find_label(file.cloud, of_cloud.fields, columns);
+  file.report.fields_left_out = of_cloud.fields.left_out;
+  file.report.columns = told(columns);
   return file;
 }
 
