@@ -14,6 +14,7 @@
 
 #include "mesh/background/a15_box.h"
 #include "mesh/moving_mesh.h"
+#include "pipeline/case/exit_code.h"
 #include "pipeline/case/version.h"
 #include "pipeline/domain/background_choice.h"
 #include "pipeline/memory/given_cloud.h"
@@ -23,11 +24,14 @@
 #include "pipeline/reports/certificate_json.h"
 #include "pipeline/reports/mesh_json.h"
 #include "pipeline/reports/place_json.h"
+#include "pipeline/stages/cloud_preparation.h"
+#include "pipeline/stages/scan_source.h"
 #include "pipeline/stages/stages.h"
 #include "python/arguments.h"
 #include "python/errors.h"
 #include "python/interruptible.h"
 #include "reconstruct/io/level_set_io.h"
+#include "reconstruct/io/point_cloud_io.h"
 
 namespace py = pybind11;
 
@@ -163,6 +167,19 @@ Reconstruction reconstruct_arrays(const Points& points, const std::optional<Poin
   });
 }
 
+/// Of a file as `umtet reconstruct` reads it.
+Reconstruction reconstruct_file(const std::filesystem::path& file, const Settings& settings, const py::object& progress,
+                                int threads) {
+  const Parameters parameters = parameters_of(settings);
+  if (const std::string problem = problem_of_columns(parameters.cloud().columns); !problem.empty())
+    throw UsageError("columns: " + problem);
+  return interruptible(progress, threads, [file, parameters](const Watch& watch) {
+    require_regular_file(file);
+    ScanSource source = read_source(file, parameters, polls_of(watch));
+    return reconstruct(std::move(source.cloud), parameters, watch);
+  });
+}
+
 /// psi, its gradients (order 1) or Hessians (order 2) at points, without the GIL.
 py::array_t<double> evaluate(const Reconstruction& r, const Points& points, int order) {
   std::vector<Vec3> x = vectors(points, "points");
@@ -263,6 +280,7 @@ void bind(py::module_& m) {
       .def("update", &update);
   m.def("mesh", &mesh);
   m.def("reconstruct", &reconstruct_arrays);
+  m.def("reconstruct_file", &reconstruct_file);
   m.def("certificate", &certificate);
   m.def("parameters", [] {
     std::vector<std::string> keys;

@@ -55,17 +55,24 @@ def reconstruct(points: Any, normals: Optional[npt.ArrayLike] = None, *, normal_
 
     points (n, 3), 30 at least; normals (n, 3) outward, of any length, or None: estimated and oriented. In place of points
     an object that has them: a cloud or a surface mesh of Open3D, pyvista, meshio or trimesh. Of a mesh the vertices
-    count, with its normals; one of few large faces is sampled before (Open3D: sample_points_uniformly). Outliers and
+    count, with its normals; one of few large faces is sampled before (Open3D: sample_points_uniformly). Or the
+    pathlib.Path of a file that `umtet run` reads; columns="x,y,z,nx,ny,nz" are those of a table in text. Outliers and
     duplicates are dropped (keep_all=True keeps outliers), a minority of turned normals is turned back (not with
     normal_source="given"); `report["notices"]` says what was done. Parameters: spacing, detail, smooth, noise, flip, ...
 
     Returns a LevelSet: value(points), gradient(points), hessian(points), box (2, 3), points and normals that were used,
     report, save("level_set.vti"). ReconstructionError: the samples do not bound a body, or it would not fit in memory.
     """
-    if isinstance(points, (str, bytes)) or hasattr(points, "__fspath__"):
-        raise TypeError("points: an array (n, 3) is wanted; files are read by `umtet run`")
-    x, n = cloud_of(points, normals)
+    if isinstance(points, (str, bytes)):
+        raise TypeError("points: an array (n, 3) or the pathlib.Path of a file is wanted")
     parameters["normals"] = normal_source
+    if isinstance(points, os.PathLike):
+        if normals is not None:
+            raise TypeError("normals: those of the file are taken")
+        return _core.reconstruct_file(points, settings(("cloud", "reconstruct"), parameters), progress, threads)
+    if parameters.get("columns") is not None:
+        raise TypeError("columns: are those of a file")
+    x, n = cloud_of(points, normals)
     return _core.reconstruct(x, n, settings(("cloud", "reconstruct"), parameters), progress, threads)
 
 

@@ -105,6 +105,24 @@ class Reconstruct(unittest.TestCase):
             with open(f"{folder}/egg.msh", "rb") as file:
                 self.assertIn(b'"closed_holes"', file.read())
 
+    def test_files_are_read_as_the_program_reads_them(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "egg.csv"
+            rows = np.c_[self.points, self.normals, np.arange(len(self.points)) * .5 - 3]
+            np.savetxt(file, rows, fmt="%.17g", delimiter=";", header="X;Y;Z;Nx;Ny;Nz;Heat", comments="")
+            psi = umtet.reconstruct(file)
+            self.assertTrue(any("as the header says" in notice for notice in psi.report["notices"]))
+            same = umtet.reconstruct(file, columns="x,y,z,nx,ny,nz")
+            x = self.points[:7] * 1.01
+            self.assertTrue(np.array_equal(psi.value(x), same.value(x)))
+            self.assertTrue(np.allclose(psi.value(x), umtet.reconstruct(self.points, self.normals).value(x), rtol=1e-9))
+            with self.assertRaisesRegex(umtet.ReconstructionError, "7 columns"):
+                umtet.reconstruct(file, columns=["x", "y", "z", "-", "-", "-", "heat", "time"])
+            with self.assertRaisesRegex(ValueError, "columns"):
+                umtet.reconstruct(file, columns="x,y")
+            with self.assertRaises(OSError):
+                umtet.reconstruct(pathlib.Path(folder) / "none.csv")
+
     def test_no_body_is_a_reconstruction_error(self):
         with self.assertRaises(umtet.ReconstructionError) as e:
             umtet.reconstruct(self.points, -self.normals, normal_source="given")
@@ -123,8 +141,10 @@ class Reconstruct(unittest.TestCase):
                 umtet.reconstruct(*arguments)
         with self.assertRaisesRegex(ValueError, "detail"):
             umtet.reconstruct(self.points, self.normals, detail=-1)
-        with self.assertRaisesRegex(TypeError, "files are read by"):
+        with self.assertRaisesRegex(TypeError, "pathlib.Path"):
             umtet.reconstruct("scan.ply")
+        with self.assertRaisesRegex(TypeError, "columns"):
+            umtet.reconstruct(self.points, columns="x,y,z")
         with self.assertRaisesRegex(TypeError, "detial"):
             umtet.reconstruct(self.points, self.normals, detial=1)
 
