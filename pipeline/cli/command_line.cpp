@@ -15,7 +15,8 @@ namespace umtet {
 namespace {
 
 constexpr const char* kExamples =
-    R"(  umtet run duck.ply -o duck                 from a scan to a certified mesh; run again: resumes, or does nothing
+    R"(  umtet run duck.ply                         from a scan to a certified mesh in duck/; run again: resumes
+  umtet run scan.csv --columns x,y,z,-,nx,ny,nz -o scan    a table whose columns cannot be guessed
   umtet reconstruct duck.ply -o duck         the level set only; umtet mesh duck goes on from there
   umtet mesh duck --h 0.02                   another mesh size; the level set is not fitted again
   umtet mesh duck --max-deviation 0.001      flat faces at most so far from the surface
@@ -74,7 +75,9 @@ CommandParser::CommandParser() {
 
   CLI::App& run = add_command("run", make_run, "All stages; those whose record matches are not run again");
   add_stage_flags(run);
-  run.add_option("CLOUD", in_.input, "points: .ply, .pcd, .xyz; triangles: .stl, .obj, .off, .ply; or a case, to resume it");
+  run.add_option(
+      "CLOUD", in_.input,
+      "points: .ply, .pcd, text (.xyz, .csv ...); triangles: .stl, .obj, .off, .ply; or a case, to resume it");
   run.add_option("--from", in_.from, "first stage that may run: cloud, level-set, mesh (default cloud)");
   run.add_option("--until", in_.until, "last stage to run (default mesh)");
   add_formats(run, "--export");
@@ -113,10 +116,14 @@ CommandParser::CommandParser() {
 
   CLI::App& inspect =
       add_command("inspect", make_inspect, "What is in a cloud, and what is likely to go wrong with it");
-  inspect.add_option("CLOUD", in_.input, "points: .ply, .pcd, .xyz; triangles: .stl, .obj, .off, .ply")->required();
+  inspect
+      .add_option("CLOUD", in_.input, "points: .ply, .pcd, text (.xyz, .csv ...); triangles: .stl, .obj, .off, .ply")
+      ->required();
   add_parameter_sources(inspect);
-  for (const ParamField& f : params_fields()) {  // those that the prediction follows
-    if (f.key == keys::mesh::h || f.key == keys::mesh::tets || f.key == keys::mesh::max_tets) add_value(inspect, f);
+  for (const ParamField& f : params_fields()) {  // how a text is read, and what the prediction follows
+    if (f.key == keys::cloud::columns || f.key == keys::mesh::h || f.key == keys::mesh::tets ||
+        f.key == keys::mesh::max_tets)
+      add_value(inspect, f);
   }
 
   CLI::App& check = add_command("check", make_check, "Validity and quality of any tet mesh; exit 6 when it fails");
@@ -214,7 +221,7 @@ void CommandParser::add_timeout(CLI::App& command, const char* help) {
 void CommandParser::add_stage_flags(CLI::App& command) {
   add_parameter_sources(command);
   add_timeout(command, "seconds that the run may take; then exit 9, resumable");
-  command.add_option("-o", in_.output, "the folder of the case");
+  command.add_option("-o", in_.output, "the folder of the case (default: the name of the file without extension)");
   command.add_flag("--force", in_.force, "run the stages although their records match");
 }
 

@@ -1,13 +1,18 @@
 // What the words of a call ask for, command by command.
 
+#include <fmt/format.h>
+
 #include <filesystem>
 
+#include "pipeline/case/case_folder.h"
+#include "pipeline/case/exit_code.h"
 #include "pipeline/cli/command_line.h"
 #include "pipeline/cli/detail/command_parser.h"
 #include "pipeline/domain/background_choice.h"
 #include "pipeline/output/boundary_patches.h"
 #include "pipeline/output/export_case.h"
 #include "pipeline/reports/mesh_place.h"
+#include "reconstruct/io/point_cloud_io.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -45,12 +50,43 @@ void read_parameters(const CommandInputs& in, const F& runs, Parameters& paramet
   }
   if (!in.config.empty()) parameters.load(in.config, ParamSource::File);
   parse_accepted_places(parameters.output().accept);
+  if (const std::string problem = problem_of_columns(parameters.cloud().columns); !problem.empty())
+    throw UsageError(fmt::format("--columns {}: {}", parameters.cloud().columns, problem));
 }
 
 /// The cloud that was named: to be read, and to be found again from another folder.
 void take_cloud(RunRequest& request) {
   request.source = request.parameters.cloud().file;
   request.parameters.make_cloud_absolute();
+}
+
+/// The case of a file for which -o names none: its stem, in the current folder.
+/// \throw UsageError  that is a file, a folder of something else, or the case of another file
+fs::path default_case(const fs::path& source) {
+  fs::path stem = source.stem();
+  if (source.extension() == ".gz") stem = stem.stem();  // mask.nii.gz
+  const auto refuse = [](const std::string& why) { throw UsageError("-o CASE is missing: " + why); };
+  if (source.empty()) refuse("no file has been given");
+  if (stem.empty() || stem.string().front() == '.') refuse(source.string() + " has no name to take for it");
+  std::error_code unknown;
+  if (!fs::exists(stem, unknown)) return stem;
+  const CasePaths paths{stem};
+  if (!fs::is_directory(stem)) refuse(stem.string() + " is a file");
+  if (!fs::exists(paths.parameters())) {
+    if (!fs::is_empty(stem)) refuse(stem.string() + " is a folder, and no case");
+    return stem;
+  }
+  Parameters former;
+  try {
+    former.load(paths.parameters(), ParamSource::Case);
+  } catch (const ArtefactDamaged&) {
+    return stem;  // the run says so
+  }
+  const std::string& cloud = former.cloud().file;
+  const fs::path of_case = cloud.empty() ? fs::path(former.mesh().level_set) : fs::path(cloud);
+  if (fs::weakly_canonical(of_case) != fs::weakly_canonical(source))
+    refuse(fmt::format("{} is the case of {}", stem.string(), of_case.empty() ? "a formula" : of_case.string()));
+  return stem;
 }
 
 /// The stages first..last of the case or cloud that was given, or as --from and --until say.
@@ -86,7 +122,6 @@ Command make_stages(const CLI::App& app, const CommandInputs& in, Stage first, S
     if (request.from == Stage::Cloud && parameters.source(keys::cloud::file) > ParamSource::Case) take_cloud(request);
   } else {
     const std::string name = app.get_name();
-    if (in.output.empty()) throw UsageError(name + ": -o CASE is missing");
     request.case_folder = in.output;
     if (first == Stage::Mesh) {
       if (!has_own_psi(parameters.mesh()))
@@ -96,6 +131,11 @@ Command make_stages(const CLI::App& app, const CommandInputs& in, Stage first, S
       if (parameters.cloud().file.empty() && request.from == Stage::Cloud)
         throw UsageError(name + ": CLOUD is missing");
       if (request.from == Stage::Cloud) take_cloud(request);
+    }
+    if (in.output.empty()) {
+      const std::string& grid = parameters.mesh().level_set;
+      if (first == Stage::Mesh && grid.empty()) throw UsageError("-o CASE is missing: a formula has no name");
+      request.case_folder = default_case(first == Stage::Mesh ? grid : parameters.cloud().file);
     }
   }
   require_walls(parameters);

@@ -154,6 +154,82 @@ TEST_F(Program, FoldersThatAreNoCasesAreNotOverwritten) {
   EXPECT_NE(file.err.find("a part of this path is a file"), std::string::npos) << file.err;
 }
 
+TEST_F(Program, TheCaseOfAFileIsItsStemUnlessThatIsSomethingElse) {
+  const std::string quick = " --until cloud";
+  const Result r = run("run egg.ply --json" + quick);
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_EQ(Json::parse(r.out)["case"], "egg");
+  EXPECT_TRUE(fs::exists(folder / "egg/1-cloud/cloud.ply"));
+  EXPECT_NE(run("run egg.ply" + quick).err.find("nothing to do: egg is up to date"), std::string::npos);
+  EXPECT_EQ(run("run ./egg.ply --flip" + quick).code, 0) << "the same file in other words";
+  // Another file of that name, a folder of something else, and a file.
+  fs::create_directories(folder / "there");
+  fs::copy_file(cloud, folder / "there/egg.ply");
+  fs::copy_file(cloud, folder / "notes.ply");
+  fs::create_directories(folder / "notes");
+  std::ofstream(folder / "notes/a.txt") << "precious";
+  fs::copy_file(cloud, folder / "scan");
+  std::ofstream(folder / "scan.xyz") << "0 0 0\n";
+  for (const auto& [call, why] : {std::pair{"run there/egg.ply", "egg is the case of"},
+                                  {"run notes.ply", "notes is a folder, and no case"},
+                                  {"reconstruct scan.xyz", "scan is a file"},
+                                  {"run scan", "scan is a file"}}) {
+    const Result refused = run(call);
+    EXPECT_EQ(refused.code, 2) << call;
+    EXPECT_NE(refused.err.find("-o CASE is missing"), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find(why), std::string::npos) << refused.err;
+  }
+  EXPECT_EQ(fs::directory_iterator(folder / "notes")->path().filename(), "a.txt");
+  EXPECT_EQ(run("run none.ply").code, 7);
+  EXPECT_FALSE(fs::exists(folder / "none"));
+  fs::create_directories(folder / "empty");
+  fs::copy_file(cloud, folder / "empty.ply");
+  EXPECT_EQ(run("run empty.ply" + quick).code, 0) << "an empty folder is in nobody's way";
+}
+
+TEST_F(Program, ColumnsOfATextAreGuessedSaidAndOverruled) {
+  std::ofstream text(folder / "egg.csv");
+  text << "X;Y;Z;Intensity;Nx;Ny;Nz\n";
+  std::istringstream in(content(cloud));
+  std::string line;
+  while (std::getline(in, line) && line != "end_header") {
+  }
+  std::vector<std::string> rows;
+  for (std::string v; std::getline(in, line);) {
+    std::istringstream words(line);
+    std::vector<std::string> w;
+    while (words >> v) w.push_back(v);
+    w.insert(w.begin() + 3, std::to_string(.25 * static_cast<double>(w.size() + rows.size())));
+    rows.push_back("");
+    for (std::size_t k = 0; k < w.size(); ++k) rows.back() += (k > 0 ? ";" : "") + w[k];
+    std::replace(rows.back().begin(), rows.back().end(), '.', ',');
+    text << rows.back() << '\n';
+  }
+  text.close();
+  const std::string header = "columns x y z Intensity nx ny nz, as the header says";
+  const Result r = run("run egg.csv --until cloud");
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_NE(r.err.find("cloud: " + header), std::string::npos) << r.err;
+  const auto record = [&](const std::string& name) {
+    return Json::parse(content(folder / name / "1-cloud/record.json"))["numbers"];
+  };
+  EXPECT_EQ(record("egg")["columns"], header);
+  EXPECT_EQ(record("egg")["fields"], Json({"Intensity"}));
+  EXPECT_EQ(record("egg")["n_points"], 600);
+  ASSERT_EQ(run("run egg.csv --until cloud --columns x,y,z,-,nx,ny,nz -o told").code, 0);
+  EXPECT_FALSE(record("told").contains("fields"));
+  EXPECT_EQ(content(folder / "told/1-cloud/cloud.ply").size() + 600 * sizeof(double) +
+                std::string("property double Intensity\n").size(),
+            content(folder / "egg/1-cloud/cloud.ply").size());
+  EXPECT_NE(run("inspect egg.csv").out.find("columns   x y z Intensity nx ny nz, as the header says"),
+            std::string::npos);
+  EXPECT_EQ(Json::parse(run("inspect egg.csv --json --columns x,y,z").out)["inspection"]["normals"]["present"], false);
+  const Result refused = run("run egg.csv --columns x,y,z,a,b,c,d,e -o refused");
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_NE(refused.err.find("7 columns, but --columns names 8"), std::string::npos) << refused.err;
+  EXPECT_EQ(run("run egg.ply --columns x,y,z -o refused").code, 3);
+}
+
 TEST_F(Program, AFullDiskIsFileTroubleAndLeavesNoHalfFile) {
   // 40 blocks of 512 or 1024 bytes: the record would fit, the meshes do not.
   const Result r = run(ball, "ulimit -f 40;");
