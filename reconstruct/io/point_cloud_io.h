@@ -82,7 +82,7 @@ CloudFile read_scan(const std::filesystem::path& file, const std::string& column
 /// be: at once, however large the file is. \throw CloudRefused, std::system_error  as read_scan()
 void check_scan_head(const std::filesystem::path& file, const std::string& columns = {});
 
-/// What is wrong with the columns that read_scan() takes, without a file; empty if nothing is.
+/// A sentence that says why read_scan() takes no such columns of any file; empty if it may take them.
 std::string problem_of_columns(const std::string& columns);
 
 /// Binary little-endian PLY, double x y z nx ny nz and, where there are any, int label, uchar red green blue, int

@@ -17,15 +17,15 @@
 namespace umtet::detail {
 namespace {
 
-// Normals with one decimal have lengths within .09 of 1; exported in other units, of another number.
+// Rounding to one decimal changes the length of a unit vector by up to .05 sqrt(3) = .087.
 constexpr double kOneLength = .1;
-// Of the rows of a sample: scans have normals that are missing or damaged.
+// The share of rows that have normals of one length; the other normals of a scan may be damaged.
 constexpr double kMostRows = .9;
 constexpr double kByte = 255, kSixteenBits = 65535;
-// More scalars in a row than this are no measurements that someone carries along, but vectors whose meaning is unknown.
+// Three columns that are left may be a vector, such as a normal, whose meaning must not be lost.
 constexpr std::size_t kMostScalars = 2;
 
-// Of names in a line for the user, characters.
+// Characters of names in a line for the user.
 constexpr std::size_t kMostNames = 100;
 
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
@@ -36,7 +36,7 @@ std::string lower(std::string_view text) {
   return out;
 }
 
-/// What the numbers of a column are in the rows of a sample.
+/// Properties of the numbers of a column, in the rows of a sample.
 struct ColumnValues {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   bool whole = true;
@@ -61,7 +61,7 @@ std::array<ColumnValues, 3> values_of_three(const SampleRows& rows, std::size_t 
   return {values_of(rows, column), values_of(rows, column + 1), values_of(rows, column + 2)};
 }
 
-/// Of colours within such columns a value times this is 0..255; 0: they hold no colours.
+/// @return a colour's value times this is 0..255; 0: the columns hold no colours
 double bytes_per_unit(const std::array<ColumnValues, 3>& rgb) {
   double low = 0, high = 0;
   bool whole = true, all_large = true;
@@ -245,7 +245,7 @@ std::string column_name(std::string_view in_header) {
   std::string name(in_header);
   std::replace(name.begin(), name.end(), ' ', '_');
   const std::string key = lower(name);
-  // Of ParaView "Points:0", of its older exports "Points_0", of geodesy "Easting", of others as their names say.
+  // ParaView writes "Points:0" or "Points_0", geodesists "Easting", CloudCompare "Rf" for colours from 0 to 1.
   static constexpr std::pair<const char*, std::array<const char*, 12>> kNames[] = {
       {"x",
        {"x", "points:0", "points_0", "points_x", "point_x", "pos_x", "position_x", "x_coord", "coord_x", "xcoord",

@@ -17,7 +17,7 @@ struct SampleRows {
   double at(std::size_t row, std::size_t column) const { return values[row * n_columns + column]; }
 };
 
-/// What the columns of a text are.
+/// The meaning of the columns of a text.
 struct TextColumns {
   /// One a column, as cloud_columns() takes them: x, y, z, nx, ny, nz, red, green, blue, label, or the name of a field;
   /// empty for a column that is left out.
@@ -37,18 +37,19 @@ std::string told(const TextColumns& columns);
 /// "index", no name). Other names stay as they are.
 std::string column_name(std::string_view in_header);
 
-/// Whether x, y and z are among them. @param names  of column_name()
+/// @return x, y and z are among the names. @param names  of column_name()
 bool has_axes(const std::vector<std::string>& names);
 
-/// Columns whose names are known; `rows` say how colours are scaled and which columns hold no numbers.
+/// Columns with names. The rows tell how colours are scaled and which columns hold no numbers.
 /// @param names  of column_name(), one a column; of --columns also fewer, then the others are left out
 /// @param how  who gives the names: "as the header says"
 TextColumns columns_by_name(std::vector<std::string> names, const SampleRows& rows, std::string_view how);
 
 /// Columns without names. The first three with numbers are x, y, z; a first column that counts the rows is left out.
-/// Of the others three in a row are the normal if they are vectors of one length with both signs, else colours if all
-/// are whole and within 0..255 (or 0..65535), or within 0..1. What is left is a field: one is the intensity, or the
-/// label (TextColumns::perhaps_label), two have the names of their places. More than two are a problem.
+/// Three more in a row are the normal if they are vectors of one length with both signs. They are colours if all
+/// numbers are whole and within 0..255 (or 0..65535), or within 0..1. The remaining columns are fields: a single one is
+/// the intensity, or the label (TextColumns::perhaps_label), and two have the names of their places. More than two are
+/// a problem.
 /// @param extension  ".xyzn" and ".npts" name six columns, ".xyzrgb" too; of ".pts" an intensity is before the colours
 TextColumns columns_by_value(const SampleRows& rows, std::string_view extension);
 

@@ -43,7 +43,7 @@ void split_at(std::string_view line, char separator, std::vector<std::string_vie
   }
 }
 
-/// What the commas of a line are.
+/// The use of commas in a line.
 struct Commas {
   bool any = false;
   bool all_decimal = true;  ///< each is alone in its word, between two digits
@@ -126,7 +126,7 @@ bool parse_number(std::string_view token, const TextDialect& dialect, double& nu
   if (token.size() > 1 && token[0] == '+' && token[1] != '-') token.remove_prefix(1);
   std::array<char, 64> digits;  // a double has 24 characters
   if (dialect.decimal_comma) {
-    // "1.234" is a thousand and more where commas are decimal, or it is not: nobody can tell.
+    // Where commas are decimal, nobody can tell whether "1.234" is more than a thousand.
     if (token.size() > digits.size() || token.find('.') != std::string_view::npos) return false;
     std::memcpy(digits.data(), token.data(), token.size());
     std::replace(digits.begin(), digits.begin() + static_cast<std::ptrdiff_t>(token.size()), ',', '.');

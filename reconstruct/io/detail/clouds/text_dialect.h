@@ -19,8 +19,8 @@ struct TextDialect {
   char end_of_line = '\n';     ///< or '\r', where no line ends otherwise
 };
 
-/// What most of the lines follow, of those that begin like a number where there are such. A comma between two digits is
-/// a decimal comma where blanks or semicolons separate the columns and no number has a point.
+/// The dialect of most lines; lines that do not begin like a number count only if no line does. A comma between two
+/// digits is a decimal comma where blanks or semicolons separate the columns and no number has a point.
 /// @param lines  not blank, without comments
 TextDialect dialect_of(const std::vector<std::string_view>& lines, char end_of_line);
 
@@ -31,7 +31,7 @@ void split(std::string_view line, const TextDialect& dialect, std::vector<std::s
 /// @return false: `token` is no number, or beyond the range of double precision
 bool parse_number(std::string_view token, const TextDialect& dialect, double& number);
 
-/// Whether a column says that nothing was measured: it is empty, or NA, N/A, null, none or "-", in any case.
+/// @return the column says that nothing was measured: it is empty, or NA, N/A, null, none or "-", in any case
 bool is_missing(std::string_view token);
 
 }  // namespace umtet::detail

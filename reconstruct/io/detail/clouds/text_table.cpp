@@ -12,8 +12,6 @@
 namespace umtet::detail {
 namespace {
 
-// Of a damaged or binary file a line may be gigabytes.
-constexpr std::size_t kLongestLine = 1 << 16;
 // Lines that show the dialect: decimal commas show in the first coordinate that is no whole number.
 constexpr std::size_t kLinesOfDialect = 256;
 // Lines of words before the rows: title, date, instrument, units. Headers of scanners have up to a dozen.
@@ -153,7 +151,7 @@ class Beginning {
     return false;
   }
 
-  /// Whether a separator without a column behind it ends the rows: in none of them a last column stands there.
+  /// @return the rows end with a separator: no row has a column behind it
   bool ends_behind_columns() const {
     if (!tokens_.back().empty()) return false;
     std::vector<std::string_view> tokens;

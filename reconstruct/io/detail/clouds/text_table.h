@@ -13,7 +13,10 @@
 
 namespace umtet::detail {
 
-/// Where the rows of a table of numbers begin in a text, and what stands before them.
+/// A longer line is no row: of a damaged or binary file a line may be gigabytes.
+inline constexpr std::size_t kLongestLine = 1 << 16;
+
+/// The beginning of a table of numbers in a text, and the lines before it.
 struct TextTable {
   TextDialect dialect;
   std::size_t begin = 0;                   ///< byte of the first row
@@ -27,10 +30,11 @@ struct TextTable {
 /// \throw CloudRefused  the text does not begin with a table of three or more columns of numbers: names line and column
 TextTable find_table(const CloudSource& source);
 
-/// Whether it does, and has no other words before it than a header: files that have the extension of no format.
+/// @return the text begins with such a table, and has no other words before it than a header; this is asked about files
+/// with the extension of no format
 bool is_table(const CloudSource& source);
 
-/// Whether a line of a table is one of its comments. @param line  not blank
+/// @return the line is a comment
 bool is_comment(std::string_view line);
 
 /// Splits a line of the table. A comment behind the last column, and a separator without a column behind it, are left

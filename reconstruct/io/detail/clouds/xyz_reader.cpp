@@ -18,7 +18,6 @@ namespace {
 
 // More different whole numbers in a column without a name are intensities.
 constexpr std::size_t kMostLabels = 64;
-constexpr std::size_t kLongestLine = 1 << 16;
 
 TextColumns columns_of(const CloudSource& source, const TextTable& table) {
   const SampleRows rows = sample_rows(source, table);
