@@ -75,6 +75,7 @@ struct ThinPart {
 /// Whether samples back psi = 0 at a place: one of the nearest looks to the side that psi rises to. Along the rim of a
 /// sheet that was closed flat, samples are near to what closes it and look the other way.
 bool is_backed(const Domain& domain, const NeighbourTree& tree, const Vec3& x, const Vec3& gradient) {
+  // Some of them are of the other side of a rim, however thin it is: as many as a sample has around it on one sheet.
   constexpr std::size_t kNearest = 8;
   std::array<Neighbour, kNearest> room;
   const double radius = support_radius(domain);

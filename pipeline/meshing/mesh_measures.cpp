@@ -246,6 +246,28 @@ Comparison compare_with_domain(const Domain& domain, const TetMesh& mesh, const 
   return made;
 }
 
+/// Closed triangles say what the body is. What psi = 0 has and they have not, such as an ear at a corner, is a fault of
+/// psi: a mesh that lacks it is right.
+void leave_out_faults_of_psi(const Domain& domain, const MeshEdge& h, const Context& context,
+                             std::vector<Difference>& differences) {
+  if (!domain.triangles || !domain.triangles->body.is_closed) return;
+  std::vector<Vec3> x;
+  for (const Difference& d : differences) x.push_back(d.where);
+  const std::vector<double> off = domain.triangles->distance.distances(x, context);
+  std::size_t k = 0;
+  std::erase_if(differences, [&](const Difference& d) {
+    const bool is_of_psi = d.kind == PlaceKind::Thin || d.kind == PlaceKind::Filled || d.kind == PlaceKind::Cut;
+    return off[k++] > kSmallOff * h.at(d.where) && is_of_psi;
+  });
+}
+
+/// The boundary has the pieces and handles of the given triangles.
+bool has_topology_of(const std::optional<TriangleDistances>& triangles) {
+  if (!triangles || !triangles->body || !triangles->body->is_closed || !triangles->body->is_manifold) return false;
+  return triangles->mesh.n_pieces == triangles->body->n_pieces &&
+         triangles->mesh.euler_characteristic == triangles->body->euler_characteristic;
+}
+
 /// The largest distance asked for with mesh.max_deviation is a promise: a mesh that breaks it gets a reason.
 std::optional<std::string> deviation_reason(double asked, const MeshCertificate& mesh) {
   if (asked == 0 || !mesh.boundary.max_centroid_distance_over_h) return std::nullopt;
@@ -337,8 +359,9 @@ Measurement measure(const Domain& domain, const TetMesh& mesh, const UmResult& r
   if (surface && domain.triangles) m.triangles = triangle_distances(domain, mesh.V, faces, *surface, h, context);
   if (domain.labels && !domain.complement && !params.certificate)
     m.labels = label_volume_report(domain, mesh, faces, context);
+  leave_out_faults_of_psi(domain, h, context, differences);
   made.places = places_of(domain, differences, h, context);
-  if (compared.place) made.places.push_back(*compared.place);
+  if (compared.place && !has_topology_of(m.triangles)) made.places.push_back(*compared.place);
   m.places = report_on(made.places);
   m.resolution.kappa_h_max = max_curvature(domain.psi(), mesh, boundary_vertices, h, context);
   m.resolution.feature_size_over_h_min = thickness.least_over_h;

@@ -43,7 +43,7 @@ TEST(GridIo, EveryFormatHoldsTheSameBall) {
 TEST(GridIo, EveryFormatHoldsTheSameMask) {
   for (const char* name : {"grid_nifti/mask.nii", "grid_nrrd/mask.nrrd"}) {
     const Grid grid = read_grid(kFiles / name);
-    EXPECT_TRUE(is_segmentation(grid)) << name;
+    EXPECT_TRUE(grid.is_whole) << name;
     for (int at = 0; at < 7 * 6 * 8; ++at) {
       EXPECT_EQ(grid.values[static_cast<std::size_t>(at)] != 0, ball(at % 7, at / 7 % 6, at / 42) < 0) << name;
     }
