@@ -214,7 +214,7 @@ TEST_F(Program, ColumnsOfATextAreGuessedSaidAndOverruled) {
     return Json::parse(content(folder / name / "1-cloud/record.json"))["numbers"];
   };
   EXPECT_EQ(record("egg")["columns"], header);
-  EXPECT_EQ(record("egg")["fields"], Json({"Intensity"}));
+  EXPECT_EQ(record("egg")["fields"], Json::array({"Intensity"}));
   EXPECT_EQ(record("egg")["n_points"], 600);
   ASSERT_EQ(run("run egg.csv --until cloud --columns x,y,z,-,nx,ny,nz -o told").code, 0);
   EXPECT_FALSE(record("told").contains("fields"));
