@@ -79,7 +79,8 @@ class SmallerEdges {
   /// The h to try after this attempt, or none.
   std::optional<double> next(const MeshAttempt& last) {
     if (left_-- == 0) return std::nullopt;
-    if (choice_.of_thin_parts && !is_begun_) {
+    // Thin parts that noise hides do not show at any h: samples are as far off as they are thick.
+    if (choice_.of_thin_parts && !is_begun_ && asks_for_more(effort_)) {
       is_begun_ = true;
       return h_ = unit_ = *choice_.of_thin_parts;
     }
@@ -90,6 +91,7 @@ class SmallerEdges {
       return nearby;
     }
     std::optional<double> smaller = h_that_shows(last, effort_);
+    if (choice_.of_thin_parts && !is_begun_) smaller.reset();
     if (asks_for_more(effort_)) smaller = std::min(smaller.value_or(kRefinement * h_), kRefinement * h_);
     if (!smaller) return std::nullopt;
     *smaller = std::max(*smaller, choice_.least);

@@ -48,8 +48,8 @@ inline constexpr double kDefaultEffort = 2.5;
 
 /// Runs `attempt` at choice.h and, where that has a defect that is no small one, at an h that is forecast to pass: at
 /// .985 h if nothing but folded faces and vertices off psi = 0 is wrong, which come and go with h; at the h that shows
-/// all that is thin where it failed. Never below choice.least. Where noise decided h, what thin parts ask for comes
-/// first.
+/// all that is thin where it failed. Never below choice.least. Where noise decided h, what thin parts ask for is tried
+/// with more effort only.
 ///
 /// @param effort  an h is left out where all attempts together would make more than this many times the tets of the
 ///                first (of thin parts), as h alone says: the result does not depend on the machine

@@ -84,18 +84,24 @@ bool leaves_more(const SsdReport& report, double noise, double finest) {
 // |grad psi - n|^2 of samples that have a surface is below .27 with normals 30 degrees off, and below .36 with noise of
 // half the thickness of a body; of noise in a ball it is .35 and more.
 constexpr double kDoubtfulDefect = .3;
+// Of the diagonal: where normals follow psi all the same, the samples are this far off it. The noisiest scans of
+// benchmarks have .014.
+constexpr double kDoubtfulNoise = .05;
 // Of points that fill a volume.
 constexpr double kVolumeDimension = 2.5;
 
 /// No surface is there to be found.
-void refuse_volume(const OrientedPointCloud& cloud, const SsdReport& r) {
-  if (r.normal_defect < kDoubtfulDefect) return;
+void refuse_volume(const OrientedPointCloud& cloud, const SsdReport& r, double noise) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : cloud.points) box.extend(x);
+  if (r.normal_defect < kDoubtfulDefect && noise < kDoubtfulNoise * box.diagonal().norm()) return;
   const double dimension = correlation_dimension(cloud.points);
   if (dimension < kVolumeDimension) return;
   throw SolveError(
-      fmt::format("the samples are no surface: their number within r grows like r^{:.2g}, and the normals are off "
-                  "the gradient of psi by {:.2g} (mean square); give samples of a surface",
-                  dimension, r.normal_defect));
+      fmt::format("the samples are no surface: their number within r grows like r^{:.2g}, the normals are off the "
+                  "gradient of psi by {:.2g} (mean square), and the samples off psi = 0 by {:.2g}; give samples of a "
+                  "surface",
+                  dimension, r.normal_defect, noise));
 }
 
 void require_body(const SsdReport& r) {
@@ -172,7 +178,7 @@ LevelSetFit fit_near_origin(OrientedPointCloud& cloud, NeighbourDistances near, 
     fit.psi = shifted(fit.psi, report.noise_bias);
   }
   require_body(fit.report);
-  refuse_volume(cloud, fit.report);
+  refuse_volume(cloud, fit.report, report.noise);
   std::vector<std::string> notices;
   if (const std::size_t n = fit.report.n_turned_normals; n > 0)
     notices.push_back(fmt::format("turned {} normals that psi opposed, and fitted again", n));

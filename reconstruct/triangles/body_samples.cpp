@@ -239,6 +239,30 @@ void require_surface(const TriangleMesh& mesh, const TriangleReport& report, con
                 100 * open, 100 * unsure));
 }
 
+/// Openings are closed first, as their triangles look: which side of a closed wall is inside is sure, and the inner
+/// wall of a pipe that is open at its ends is not. Where triangles along a rim contradict one another, they are turned
+/// first.
+void close_and_turn(const BodySampleParams& params, const Context& context, TriangleMesh& mesh,
+                    TriangleReport& report) {
+  const std::size_t n_given = mesh.F.size();
+  if (params.cap) report.caps = cap_plane_rims(mesh, 0);
+  if (params.turn) {
+    report.sides = orient_outward(mesh, context);
+    require_surface(mesh, report, context);
+  }
+  if (params.cap && params.turn && report.caps.empty()) {
+    report.caps = cap_plane_rims(mesh, report.sides.weld_distance);
+    if (!report.caps.empty()) orient_outward(mesh, context);
+  }
+  if (report.caps.empty()) return;
+  label_caps(mesh, n_given, report.caps);
+  std::size_t f = n_given;
+  for (PlaneCap& cap : report.caps) {
+    if (mesh.area_vector(f).dot(cap.normal) < 0) cap.normal = -cap.normal;
+    f += cap.n_triangles;
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> problems(const BodySampleParams& params) {
@@ -260,17 +284,8 @@ BodySamples sample_body(TriangleMesh mesh, const BodySampleParams& params, const
   report.n_triangles = mesh.F.size();
   report.dropped = drop_useless_faces(mesh);
   if (mesh.F.empty()) throw std::invalid_argument("no triangle has an area");
-  if (params.turn) report.sides = orient_outward(mesh, context);
-  if (params.turn) require_surface(mesh, report, context);
   const std::size_t n_given = mesh.F.size();
-  if (params.cap) {
-    report.caps = cap_plane_rims(mesh, report.sides.weld_distance);
-    if (!report.caps.empty()) {
-      label_caps(mesh, n_given, report.caps);
-      // What has been closed says better which side is inside.
-      if (params.turn) orient_outward(mesh, context);
-    }
-  }
+  close_and_turn(params, context, mesh, report);
   report.spacing = default_spacing(mesh);
   if (params.spacing > 0) report.spacing = std::min(report.spacing, params.spacing);
   if (const double n = area_of(mesh) / (report.spacing * report.spacing); n > kTooMany)

@@ -38,8 +38,8 @@ def spread(low, high):
     return lambda a: a.ndim == 1 and a.min() >= low and a.max() <= high and np.ptp(a) > .5 * (high - low)
 
 
-EGG = {"volume": 4 / 3 * np.pi * 1. * .7 * .5, "genus": 0, "pieces": 1, "seconds": 15}  # half axes 1, .7, .5
-COLOUR = ("colour", lambda a: constant(120)(a if a.ndim == 1 else a[:, 0]))
+EGG = {"genus": 0, "pieces": 1, "seconds": 15}  # the upper part of an ellipsoid, open below: its volume is a guess
+COLOUR = ("colour", lambda a: constant(120, 120 / 255)(a if a.ndim == 1 else a[:, 0]))
 FRACTION = ("colour", lambda a: constant(.5, 127, 127.5, 128)(a if a.ndim == 1 else a[:, 0]))
 
 

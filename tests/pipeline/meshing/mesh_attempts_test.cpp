@@ -90,8 +90,11 @@ TEST(BestAttempt, TheBetterMeshIsKept) {
   EXPECT_NE(s.said.back().find("keeping h = 1"), std::string::npos) << s.said.back();
 }
 
-TEST(BestAttempt, WhatNoiseHidesIsTriedOnce) {
-  EXPECT_EQ(Story({kFold, 0}, kDefaultEffort, {.h = 1, .least = 0, .of_thin_parts = .5}).tried, (H{1, .5}));
+TEST(BestAttempt, WhatNoiseHidesIsTriedWithMoreEffortOnly) {
+  const EdgeLength of_noise = {.h = 1, .least = 0, .of_thin_parts = .5};
+  EXPECT_EQ(Story({kThin}, kDefaultEffort, of_noise).tried, H{1});
+  EXPECT_EQ(Story({kFold, 0}, kDefaultEffort, of_noise).tried, (H{1, .985}));
+  EXPECT_EQ(Story({kThin, 0}, 8, of_noise).tried, (H{1, .5}));
 }
 
 TEST(BestAttempt, NeverGoesBelowTheLeastH) {
@@ -103,7 +106,7 @@ TEST(BestAttempt, NeverGoesBelowTheLeastH) {
 TEST(BestAttempt, MoreEffortChasesSmallFoldsAndTriesMore) {
   EXPECT_EQ(Story({kSmallFold, 0}, 8).tried, (H{1, .985}));
   EXPECT_EQ(Story({kSmallCut}, 8).tried, H{1}) << "no h is known to do without";
-  EXPECT_EQ(Story({1, 1, 1, 1}, 8).tried, (H{1, .985, .8, .64}));
+  EXPECT_EQ(Story({1, 1, 1, 1}, 8).tried, (H{1, .985, .8, .8 * .8}));
   EXPECT_EQ(Story({kVeryThin, 0}, 8).tried, (H{1, .6}));
   EXPECT_EQ(Story({kThin, kThin, 0}, 8).tried.size(), 3u);
 }

@@ -109,7 +109,8 @@ TEST(MeshMaker, WhereNoOneEdgeLengthDoesEdgesFollowTheBody) {
     EXPECT_EQ(best.is_right(), may_be_graded);
     EXPECT_EQ(best.sizes != nullptr, may_be_graded);
     EXPECT_EQ(backgrounds.is_graded(), may_be_graded);
-    EXPECT_EQ(said.back().find("no one h does") != std::string::npos, may_be_graded) << said.back();
+    const auto is_of_grading = [](const std::string& line) { return line.find("no one h does") != std::string::npos; };
+    EXPECT_EQ(std::any_of(said.begin(), said.end(), is_of_grading), may_be_graded);
   }
 }
 

