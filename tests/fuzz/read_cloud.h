@@ -3,7 +3,6 @@
 #include <cstdlib>
 #include <sstream>
 #include <string>
-#include <utility>
 
 #include "reconstruct/cloud/cloud_arrays.h"
 #include "reconstruct/io/point_cloud_io.h"
@@ -30,8 +29,12 @@ inline bool is_read_back(const OrientedPointCloud& cloud) {
 /// @param columns  of a text, besides those that it says itself
 inline int read_cloud(const InputFile& file, const std::uint8_t* data, std::size_t size, const char* columns = "") {
   const std::filesystem::path& path = file.write(data, size);
+  struct Reading {
+    CloudFile (*read)(const std::filesystem::path&, const std::string&);
+    const char* columns;
+  };
   for (const auto& [read, told] :
-       {std::pair{read_scan, ""}, std::pair{read_point_cloud, ""}, std::pair{read_scan, columns}}) {
+       {Reading{read_scan, ""}, Reading{read_point_cloud, ""}, Reading{read_scan, columns}}) {
     try {
       const OrientedPointCloud cloud = read(path, told).cloud;
       // LZF packs at most 264 bytes into 3, and a point has at least three.
