@@ -43,7 +43,7 @@ class Mesh:
     @property
     def certified(self) -> bool:
         """True if nothing is wrong with it; certificate["reasons"] lists what is."""
-        return self.certificate is not None and bool(self.certificate["verdict"] == "pass")
+        return self.certificate is not None and bool(self.certificate["verdict"].startswith("pass"))
 
     @property
     def cells_dict(self) -> dict[str, npt.NDArray[np.int32]]:

@@ -71,7 +71,7 @@ class MeshPart:
     @property
     def certified(self) -> bool:
         """True if nothing is wrong with the whole mesh; certificate["reasons"] lists what is."""
-        return bool(self.certificate["verdict"] == "pass")
+        return bool(self.certificate["verdict"].startswith("pass"))
 
     def __repr__(self) -> str:
         return (f"<umtet.MeshPart: {len(self.tets)} of {self.n_tets} tets, {len(self.points)} of {self.n_vertices} "
