@@ -102,7 +102,8 @@ SampleDistances sample_distances(const Domain& domain, const std::vector<double>
     const double h_at = beyond[i], explained = std::max(of_noise, flatness_over_h * h_at);
     beyond[i] = std::min(explained, h_at);
     over_h[i] = d[i] / h_at;
-    if (over_h[i] > 1) s.n_beyond_h += static_cast<std::size_t>(count_of(counts, i));
+    const bool is_noise = d[i] <= kNoisesFar * domain.noise.value_or(0);
+    if (over_h[i] > 1 && !is_noise) s.n_beyond_h += static_cast<std::size_t>(count_of(counts, i));
     if (over_h[i] > s.most_over_h) s.most_over_h = over_h[i], s.most_at = domain.cloud.points[i] + domain.shift;
     explained2 += explained * explained;
   }

@@ -58,7 +58,9 @@ MeshMaker::MeshMaker(Domain& domain, const Parameters& parameters, Context conte
 
 const ZeroSetChoice& MeshMaker::pieces_at(double h, const SizeField* sizes) {
   domain_.limit_detail(h);
-  if (!pieces_ || pieces_->first != h) {
+  // A grid and a graded mesh of the same h count on other edges.
+  const bool is_counted = pieces_ && pieces_->first == h && (pieces_->second.share > 0) == (sizes != nullptr);
+  if (!is_counted) {
     context_.report("components", kPieces);
     const int n_levels = domain_.level_set ? domain_.level_set->n_levels() : 0;
     std::optional<SignCells> known;

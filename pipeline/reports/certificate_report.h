@@ -58,7 +58,7 @@ struct SampleDistances {
   double p99 = 0;            ///< 99 % of the samples are nearer
   double missed_beyond = 0;  ///< neither noise nor flat faces explain a distance above it: missed_samples.h
   std::optional<std::size_t> n_merged = {};  ///< how many samples the cloud has been merged of
-  std::size_t n_beyond_h = 0;                ///< samples farther than h from the mesh
+  std::size_t n_beyond_h = 0;                ///< samples farther from the mesh than h, and than noise explains
   double most_over_h = 0;                    ///< largest distance, in the h of its place
   Vec3 most_at = Vec3::Zero();               ///< the sample with that distance; model coordinates
   std::size_t n_missed_places = 0;

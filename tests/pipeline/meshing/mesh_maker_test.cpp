@@ -114,5 +114,16 @@ TEST(MeshMaker, WhereNoOneEdgeLengthDoesEdgesFollowTheBody) {
   }
 }
 
+TEST(MeshMaker, PiecesAreCountedOnTheEdgesOfTheMeshThatIsMade) {
+  Domain domain = dumbbell_domain();
+  const Parameters parameters;
+  MeshMaker maker(domain, parameters, {});
+  const double h = .02 * domain.diagonal;
+  const SizeField sizes({{domain.box.center(), h, domain.diagonal}}, {.h_min = h});
+  EXPECT_EQ(maker.pieces_at(h).share, 0) << "a grid";
+  EXPECT_GT(maker.pieces_at(h, &sizes).share, 0) << "a graded mesh of the same h";
+  EXPECT_EQ(maker.pieces_at(h).share, 0);
+}
+
 }  // namespace
 }  // namespace umtet
