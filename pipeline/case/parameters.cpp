@@ -240,8 +240,8 @@ void Parameters::take(const std::string& key, const Parameters& other) {
 }
 
 void Parameters::take_body(const Parameters& other) {
-  for (const char* key :
-       {keys::cloud::file, keys::mesh::implicit, keys::mesh::level_set, keys::mesh::level, keys::mesh::part}) {
+  for (const char* key : {keys::cloud::file, keys::mesh::implicit, keys::mesh::level_set, keys::mesh::level,
+                          keys::mesh::above, keys::mesh::part}) {
     if (source(key) <= ParamSource::Case) take(key, other);
   }
   if (!values_.mesh.implicit.empty() && source(keys::mesh::box) <= ParamSource::Case) take(keys::mesh::box, other);

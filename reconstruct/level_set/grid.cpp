@@ -17,7 +17,7 @@ constexpr int kLeastNodes = 6;
 constexpr double kFlat = 1e-6;
 // Nothing lies between two parts and what is around them.
 constexpr std::size_t kFewValues = 3;
-// Of label maps of the suite and of public ones 0 to .1 of the nodes rise (layers of one voxel do), of grey images .3
+// Of label maps of the suite 0 to .1 of the nodes rise (layers of one voxel do), of grey images .3
 // and more.
 constexpr double kMostRising = .2;
 

@@ -3,27 +3,32 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace umtet {
 namespace {
 
-constexpr int kParts = 3;  // of a cell along each axis
+// A cell with a zero is halved this often along each axis.
+constexpr int kHalvings = 2;
 
-/// The share of a cell, from its lowest corner on, where psi < 0.
-double share_below(const LevelSet& psi, const Vec3& corner) {
-  const LevelSetApart apart(psi);
-  double sum = 0;
-  for (int k = 0; k < kParts; ++k) {
-    for (int j = 0; j < kParts; ++j) {
-      for (int i = 0; i < kParts; ++i) {
-        Vec3 g;
-        const double v = apart.evaluate(corner + (Vec3(i, j, k) + Vec3::Constant(.5)) / kParts, &g, nullptr);
-        const double width = std::max(g.lpNorm<1>() / kParts, 1e-12);
-        sum += std::clamp(.5 - v / width, 0., 1.);
-      }
-    }
+/// The share of a cube around `middle` where psi < 0.
+double share_below(const LevelSetApart& psi, const Vec3& middle, double size, int halvings) {
+  Vec3 g;
+  Mat3 H;
+  const double at_middle = psi.evaluate(middle, &g, &H);
+  const double bend = size * size * H.norm();
+  // By Taylor's formula no value in the cube differs by more; the factor is for the change of H within it.
+  if (std::abs(at_middle) > .5 * size * g.lpNorm<1>() + bend) return at_middle < 0 ? 1 : 0;
+  if (halvings == 0) {
+    const double mean = at_middle + size * size * H.trace() / 24;
+    return std::clamp(.5 - mean / std::max(size * g.lpNorm<1>(), 1e-12), 0., 1.);
   }
-  return sum / (kParts * kParts * kParts);
+  double sum = 0;
+  for (int q = 0; q < 8; ++q) {
+    const Vec3 to(q & 1 ? 1 : -1, q & 2 ? 1 : -1, q & 4 ? 1 : -1);
+    sum += share_below(psi, middle + size / 4 * to, size / 2, halvings - 1);
+  }
+  return sum / 8;
 }
 
 }  // namespace
@@ -37,6 +42,7 @@ std::vector<double> volumes_of_pieces(const LevelSet& psi, const std::vector<flo
     double volume;
   };
   std::vector<std::vector<Share>> of_slab(static_cast<std::size_t>(n[2]));
+  const LevelSetApart apart(psi);
   tbb::parallel_for(0, n[2] - 1, [&](int k) {
     for (int j = 0; j + 1 < n[1]; ++j) {
       for (int i = 0; i + 1 < n[0]; ++i) {
@@ -48,7 +54,7 @@ std::vector<double> volumes_of_pieces(const LevelSet& psi, const std::vector<flo
           if (piece < 0) piece = owner[at];
         }
         if (piece < 0 || low >= slack) continue;
-        const double share = high <= -slack ? 1 : share_below(psi, lattice.origin + lattice.h * Vec3(i, j, k));
+        const double share = high <= -slack ? 1 : share_below(apart, Vec3(i + .5, j + .5, k + .5), 1, kHalvings);
         if (share > 0) of_slab[k].push_back({piece, share});
       }
     }

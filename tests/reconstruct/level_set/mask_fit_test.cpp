@@ -92,10 +92,9 @@ TEST(MaskFit, EveryBodyKeepsItsVolumeAndEveryVoxelItsSide) {
 TEST(MaskFit, TheVolumeIsThatOfTheFunctionBetweenVoxels) {
   for (const Body& body : bodies()) {
     const MaskFit fit = fit_mask(body.image, std::nullopt);
-    const VoxelMask fine = sampled(fit, 4);
+    const VoxelMask fine = sampled(fit, 8);
     const auto n = static_cast<double>(std::count(fine.inside.begin(), fine.inside.end(), 1));
-    // A mesh may differ by 3 %; counting 64 places a voxel is good to 1 %.
-    EXPECT_NEAR(n / 64 * fit.voxels.voxel_volume(), fit.report.volume, .03 * fit.report.volume) << body.name;
+    EXPECT_NEAR(n / 512 * fit.voxels.voxel_volume(), fit.report.volume, .01 * fit.report.volume) << body.name;
   }
 }
 
