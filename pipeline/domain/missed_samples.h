@@ -16,7 +16,7 @@ std::vector<double> before_merging(const OrientedPointCloud& cloud, std::vector<
 inline constexpr std::size_t kFewestMissed = 10;
 /// Of the noise of a sample: one in 400 is farther off.
 inline constexpr double kNoisesMissed = 3;
-/// One in 150,000 samples of normal noise is farther off than so many times its standard deviation.
+/// Multiple of the noise beyond which one in 150,000 normally distributed samples lies.
 inline constexpr double kNoisesFar = 4.5;
 /// Places that a document lists. All are counted.
 inline constexpr std::size_t kListedMisses = 100;

@@ -11,7 +11,7 @@
 namespace umtet {
 namespace {
 
-// Relative difference of volumes that is none, and that of the last round: what is left of a thousandth after one more.
+// Relative differences of volume: below the first the volumes count as equal, and below the second the rounds end.
 constexpr double kSame = 1e-3, kSettled = 1e-5;
 constexpr int kRounds = 3;
 // In h: a shift of more is no correction, but another body.
