@@ -162,6 +162,7 @@ LevelSetFit fit_near_origin(OrientedPointCloud& cloud, NeighbourDistances near, 
     report.thickness = thickness_percentiles(even, tree);
   }
   if (!cloud.counts.empty()) leave_out_finer(cloud, near, parameters, params, report);
+  params.bounded = exact.has_value();
   if (exact && params.spacing == 0) params.spacing = lattice_of(*exact, near, params);
   SsdFit fit = fit_turning_opposed(cloud, params, context, &near);
   if (!exact && parameters.reconstruct().noise < 0) {
