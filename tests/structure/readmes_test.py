@@ -96,7 +96,7 @@ def missing_files(text, folder):
             if not exists(token, folder):
                 found.append(token)
         elif (pair := re.fullmatch(r"([a-z_]+)/([\w/]+)", token)) and (folder / pair[1]).is_dir():
-            if not any((folder / (token + end)).exists() for end in ("", ".h", ".cpp", ".py")):
+            if not any((root / (token + end)).exists() for root in (folder, SOURCES) for end in ("", ".h", ".cpp", ".py")):
                 found.append(token)
     return found
 
