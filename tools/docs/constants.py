@@ -191,7 +191,7 @@ def page(known):
     by_name = {n.name: n for n in known}
     lines = [
         "# Measured parameters", "",
-        "What other values of a parameter do to quality and work. `tools/docs/constants.py` writes this page from the sources and "
+        "This page shows the effect of other parameter values on quality and work. `tools/docs/constants.py` writes this page from the sources and "
         "`data/constants/sensitivity.csv`; a test fails when it is stale. All other constants are explained where they are defined.",
         "",
         f"`{COMMAND}` makes the numbers. It meshes 126 bodies ([bodies.h](../tools/sensitivity/bodies.h)) with 10,000 to 40,000 tets each: "
