@@ -14,9 +14,8 @@ enum class ClosestPointMethod {
 };
 
 struct ClosestPointParams {
-  ClosestPointMethod method = ClosestPointMethod::Newton;  ///< mesh_bench --benchmark_filter=closest_points compares
-  int max_iterations = 60;  ///< evaluations of psi before the slower, surer way is taken (Paper: at most); >= 1
-  // tol: certificates require 1e-8 h, two orders of magnitude more.
+  ClosestPointMethod method = ClosestPointMethod::Newton;
+  int max_iterations = 60;   ///< evaluations of psi before the slower, surer way is taken (Paper: at most); >= 1
   double tol = 1e-10;        ///< stop needs |psi| / |grad psi| <= tol * length ...
   double foot_tol = 1e-7;    ///< ... and a next step along the surface of at most foot_tol * length
   double max_distance = 10;  ///< a foot farther than max_distance * length from x is not a closest point

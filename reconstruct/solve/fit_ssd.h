@@ -34,9 +34,9 @@ struct SsdParams {
   double smooth = 1;  ///< > 0: multiplies the smoothing that is chosen
   double alpha =
       1e-2;  ///< alpha of eq. (10), in its units; > 0 (SsdWeights::Paper); below, the duck grows spurious parts
-  SsdWeights weights = SsdWeights::Area;     ///< Paper: only on a full lattice
-  LmePrior prior;                            ///< which max-ent functions; Gaussian: only on a full lattice
-  SsdSolver solver = SsdSolver::Multilevel;  ///< reconstruct_bench compares them
+  SsdWeights weights = SsdWeights::Area;  ///< Paper: only on a full lattice
+  LmePrior prior;                         ///< which max-ent functions; Gaussian: only on a full lattice
+  SsdSolver solver = SsdSolver::Multilevel;
   double tolerance = 1e-4;  ///< PCG on a full lattice stops at this relative residual, in a multilevel fit without
                             ///< bands at five times as much (psi is then < .0004 h rms off); in (0, 1)
   double band_tolerance =
