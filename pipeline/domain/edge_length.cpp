@@ -204,8 +204,11 @@ EdgeLength choose(Domain& domain, const Parameters& parameters, const Context& c
   if (p.tets == 0 && p.max_deviation > 0) return by_deviation(domain, parameters, p.max_deviation, context);
   if (p.tets == 0 && may_be_thickened(domain, parameters)) return of_triangles(domain, parameters, context);
   const double of_diagonal = kMeshEdge * domain.diagonal;
-  const double least_of_volume = domain.labels ? edge_of_volume(*domain.labels) : of_diagonal;
-  const double of_size = std::min(of_diagonal, least_of_volume), limit = kEdgesAcross * of_size;
+  // The voxels have nothing finer, unless a part is thin.
+  const double of_size = domain.labels ? std::min(std::max(of_diagonal, kLeastOfVoxel * domain.labels->step()),
+                                                  edge_of_volume(*domain.labels))
+                                       : of_diagonal;
+  const double limit = kEdgesAcross * of_size;
   const ThinPart thin = domain.level_set || domain.labels ? thin_part(domain, limit, context) : ThinPart{limit};
   const double t = thin.thickness;
   const double of_noise = noise_edge(domain), needed = std::max(std::min(of_size, t / kEdgesAcross), of_noise);
@@ -215,8 +218,6 @@ EdgeLength choose(Domain& domain, const Parameters& parameters, const Context& c
   }
   const double least = h_of(domain, parameters, p.max_tets);
   double h = edge_length_by(of_size, t, [&] { return h_of(domain, parameters, kTetsOfLargeMesh); });
-  // The voxels have nothing finer, unless a part is thin.
-  if (domain.labels) h = std::max(h, std::min(kLeastOfVoxel * domain.labels->step(), t / kEdgesAcross));
   const bool at_max_tets = least > std::max(h, of_noise);
   h = std::max(h, least);
   const std::optional<double> of_thin_parts = of_noise > h ? std::optional(h) : std::nullopt;

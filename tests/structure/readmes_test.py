@@ -95,7 +95,7 @@ def missing_files(text, folder, files):
     """Names in code style that look like files of the sources and are none. @param folder  of the document"""
     found = []
     for token in CODE.findall("\n".join(line for _, line in prose(text))):
-        if token in NO_FILES:
+        if token in NO_FILES or token.startswith("build/"):
             continue
         top = (SOURCES / token.split("/")[0]).is_dir()
         if re.fullmatch(r"[\w./-]+\.(h|cpp)", token) or re.fullmatch(r"[\w.-]+/[\w./-]+\.(py|toml|csv|md)", token) and top:
