@@ -307,7 +307,7 @@ void FastRun::measure_assumptions() {
 
 /// Flips vertices where that mends a tet.
 void FastRun::repair_classification() {
-  if (!costs_) return;
+  if (!costs_ || (params_.flips_follow && !background_.is_lattice())) return;
   RepairParams params = params_.repair;
   params.target += costs_->repair_target - kQualityTarget;
   if (!background_.is_lattice()) params.lift = 0;

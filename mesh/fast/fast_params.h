@@ -21,6 +21,8 @@ struct FastParams {
   /// fewer solves, and lowers the 1 % quantile of Q.
   double update_margin = .033;
   RepairParams repair;
+  /// Outside of lattices: no repair(), because flip_submesh() follows.
+  bool flips_follow = false;
 
   /// The mean ratio that every tet is to reach in the end, on lattices of A15 and Z.
   double quality_target() const { return repair.target + repair.lift; }

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,8 @@ struct UmResult {
   std::size_t obtuse_conditioning_angles = 0;
   std::size_t double_positive_faces = 0;
   std::size_t n_psi_evaluations = 0;
+  /// The mesh before flip_submesh(), whose tets are a set of tets of the background; null where no flip was made.
+  std::shared_ptr<const UmResult> of_background = nullptr;
   /// Vertex coordinates after every projection pass, same numbering; where PaperParams::keep_iterates says so.
   std::vector<std::vector<Vec3>> iterates;
 };

@@ -1,5 +1,6 @@
 #include "pipeline/meshing/library_params.h"
 
+#include <cstdlib>
 #include <string>
 
 #include "pipeline/case/exit_code.h"
@@ -43,6 +44,7 @@ UmParams um_params(const Parameters& p) {
   UmParams um;
   um.mode = p.mesh().mode == MeshingMode::Paper ? UmMode::Paper : UmMode::Fast;
   um.fast.set_quality_target(p.mesh().target_quality);
+  um.fast.flips_follow = std::getenv("FLIPS") != nullptr;
   um.paper.projection_passes = static_cast<int>(p.mesh().projection_passes);
   um.paper.relaxation_iterations = static_cast<int>(p.mesh().relaxation_iterations);
   um.paper.samples = static_cast<int>(p.mesh().samples);

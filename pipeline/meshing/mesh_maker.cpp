@@ -14,6 +14,7 @@
 #include "pipeline/domain/edge_length.h"
 #include "pipeline/domain/too_thin.h"
 #include "pipeline/meshing/library_params.h"
+#include "mesh/fast/flipped_submesh.h"
 #include "pipeline/meshing/made_mesh.h"
 #include "pipeline/meshing/mesh_measures.h"
 #include "pipeline/meshing/second_order.h"
@@ -36,7 +37,7 @@ constexpr int kFinerGrids = 3;
 // on a grid, and those of another octree than its own.
 constexpr double kShareOfSizes = .8;
 // Where each part of an attempt begins, as a share of its time.
-constexpr double kPieces = .05, kChoice = .1, kFit = .2, kCertificate = .9, kCurving = .95;
+constexpr double kPieces = .05, kChoice = .1, kFit = .2, kFlips = .6, kCertificate = .9, kCurving = .95;
 
 /// Whether a search for this h would find the same cells.
 bool are_cells_for(double h, const SignCells& cells) { return cells.size <= h / 2 && h / 2 < 2 * cells.size; }
@@ -158,7 +159,8 @@ ChosenSubmesh MeshMaker::choose(const BackgroundMesh& background, const ZeroSetC
   }
   if (former && may_keep(*former, pieces)) {
     return choose_submesh(background, domain_.psi(), params,
-                          {*former->background, former->result, seeds_of_some(pieces)}, context_.part(kChoice, kFit));
+                          {*former->background, former->result.of_background ? *former->result.of_background : former->result,
+                           seeds_of_some(pieces)}, context_.part(kChoice, kFit));
   }
   params.submesh.known = known_signs(background, pieces);
   return choose_submesh(background, domain_.psi(), params, context_.part(kChoice, kFit), pieces.seeds);
@@ -192,8 +194,20 @@ void MeshMaker::fit(const SizedBackground& background, ChosenSubmesh chosen, Mes
   const ZeroSetChoice& pieces = pieces_at(a.h, a.sizes.get());
   a.result = fit_submesh(background.mesh, domain_.psi(), params_for(pieces, a.h), std::move(chosen),
                          context_.part(kFit, kCertificate));
+  if (a.made() && !background.mesh.is_lattice() && params_.fast.flips_follow) flip(a);
   if (a.made()) match_volume(domain_, a.h, params_.fast.projection.closest_point, a.result, context_);
   round_to_file(a.result, domain_.shift);
+}
+
+void MeshMaker::flip(MeshAttempt& a) const {
+  LocalFlipParams params;
+  if (parameters_.source(keys::mesh::target_quality) >= ParamSource::Case)
+    params.target = parameters_.mesh().target_quality;
+  const LocalFlipReport r = flip_submesh(domain_.psi(), a.h, params, a.result, context_.part(kFlips, kCertificate));
+  if (lines_.detail) {
+    lines_.detail(fmt::format("flips: {} edges removed, {} collapsed, {} patches smoothed in {} tries; {} tets are below {:.3g}",
+                              r.n_removed_edges, r.n_collapsed, r.n_smoothed, r.tries, r.n_below, params.target));
+  }
 }
 
 MeshAttempt MeshMaker::finish(const SizedBackground& background, Begun begun) {

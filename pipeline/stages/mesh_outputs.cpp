@@ -39,10 +39,9 @@ std::string series_of(const std::vector<std::string>& files) {
 /// Figure 8: of each stage the quality vector of the mesh, and of its tets with a positive vertex.
 class QualityCurves {
  public:
-  explicit QualityCurves(const UmResult& result) : positive_vertices_(result.submesh.positive_vertices) {}
-  void add(const std::string& stage, const MeshFile& content) {
+  void add(const std::string& stage, const MeshFile& content, const std::vector<int>& positive_vertices) {
     const auto& Q = std::get<std::vector<double>>(content.cell_data.at("mean_ratio"));
-    auto [all, boundary] = quality_vectors(content.mesh.C, Q, positive_vertices_, content.mesh.V.size());
+    auto [all, boundary] = quality_vectors(content.mesh.C, Q, positive_vertices, content.mesh.V.size());
     of_mesh_.push_back({stage, std::move(all)});
     of_boundary_.push_back({"boundary_" + stage, std::move(boundary)});
   }
@@ -52,7 +51,6 @@ class QualityCurves {
   }
 
  private:
-  const std::vector<int>& positive_vertices_;
   std::vector<QualityCurve> of_mesh_, of_boundary_;
 };
 
@@ -97,11 +95,15 @@ std::vector<std::string> write_whole(const StageContext& context, const fs::path
                                      MeshAttempt& best) {
   UmResult& result = best.result;
   std::vector<std::string> names;
-  QualityCurves curves(result);
+  QualityCurves curves;
+  // Of a mesh whose tets were flipped, what came before has the tets of the background.
+  const UmResult& chosen = result.of_background ? *result.of_background : result;
+  const std::vector<int>& chosen_vertices = chosen.submesh.positive_vertices;
   // What does not move is stored once, in mesh.vtu. All meshes of a series have to have the same tets.
   const bool is_series = context.parameters.mesh().keep_iterates;
-  const std::vector<std::size_t> moving = is_series ? std::vector<std::size_t>() : moving_tets(result);
-  MeshFile content = taken_content(domain, result);
+  const std::vector<std::size_t> moving = is_series ? std::vector<std::size_t>() : moving_tets(chosen);
+  MeshFile content =
+      result.of_background ? mesh_content(domain, chosen, chosen.submesh.mesh.V) : taken_content(domain, result);
   const auto write = [&](const std::string& name) {
     names.push_back(name);
     write_mesh(folder / name, content);
@@ -112,16 +114,17 @@ std::vector<std::string> write_whole(const StageContext& context, const fs::path
     write_mesh(folder / name, part_of(content, moving));
   };
   write_moving("omega_h.vtu");
-  curves.add("omega_h", content);
+  curves.add("omega_h", content, chosen_vertices);
   for (std::size_t k = 0; k < result.iterates.size(); ++k) {
     move_to(domain, result.iterates[k], content);
     write(fmt::format("pass_{}.vtu", k + 1));
   }
-  move_to(domain, result.projected, content);
+  move_to(domain, chosen.projected, content);
   write_moving("projected.vtu");
-  curves.add("projected", content);
+  curves.add("projected", content, chosen_vertices);
+  if (result.of_background) content = taken_content(domain, result);
   move_to(domain, result.final, content);
-  curves.add("final", content);
+  curves.add("final", content, result.submesh.positive_vertices);
   add_support(domain, result, content);
   if (best.sizes) {
     content.point_data["h"] = asked_sizes(*best.sizes, result.final, until_interrupted());
