@@ -18,7 +18,7 @@
 #include "distributed/program/shared_level_set.h"
 #include "distributed/program/together.h"
 #include "pipeline/case/memory.h"
-#include "pipeline/domain/domain.h"
+#include "body/body.h"
 
 namespace umtet {
 namespace {

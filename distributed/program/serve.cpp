@@ -15,8 +15,8 @@
 #include "distributed/program/same_call.h"
 #include "distributed/program/shared_level_set.h"
 #include "distributed/program/together.h"
-#include "pipeline/domain/background_choice.h"
-#include "pipeline/meshing/library_params.h"
+#include "body/sizing/background_choice.h"
+#include "body/library_params.h"
 
 namespace umtet {
 namespace {

@@ -6,18 +6,18 @@
 #include <utility>
 
 #include "pipeline/case/memory.h"
-#include "pipeline/domain/background_choice.h"
-#include "pipeline/domain/edge_length.h"
-#include "pipeline/domain/fitted_domain.h"
-#include "pipeline/domain/too_thin.h"
-#include "pipeline/domain/zero_set_choice.h"
-#include "pipeline/meshing/library_params.h"
-#include "pipeline/meshing/mesh_maker.h"
-#include "pipeline/meshing/mesh_measures.h"
-#include "pipeline/reports/input_facts.h"
+#include "body/sizing/background_choice.h"
+#include "body/sizing/edge_length.h"
+#include "body/fitted_domain.h"
+#include "body/sizing/too_thin.h"
+#include "body/pieces/zero_set_choice.h"
+#include "body/library_params.h"
+#include "body/search/mesh_maker.h"
+#include "body/fidelity/measure.h"
+#include "body/scan/input_facts.h"
 #include "pipeline/reports/place_json.h"
-#include "pipeline/stages/cloud_preparation.h"
-#include "pipeline/stages/level_set_fit.h"
+#include "body/scan/cloud_preparation.h"
+#include "body/scan/level_set_fit.h"
 
 namespace umtet {
 namespace {

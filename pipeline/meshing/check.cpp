@@ -10,10 +10,10 @@
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
-#include "pipeline/domain/closed_holes.h"
-#include "pipeline/domain/domain.h"
-#include "pipeline/domain/edge_length.h"
-#include "pipeline/meshing/mesh_measures.h"
+#include "body/fidelity/closed_holes.h"
+#include "body/body.h"
+#include "body/sizing/edge_length.h"
+#include "body/fidelity/measure.h"
 #include "pipeline/reports/stage_reports.h"
 
 namespace umtet {

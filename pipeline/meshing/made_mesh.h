@@ -6,7 +6,7 @@
 
 #include "mesh/io/tet_mesh_io.h"
 #include "mesh/universal_mesh.h"
-#include "pipeline/domain/domain.h"
+#include "body/body.h"
 #include "pipeline/meshing/part_mesher.h"
 
 namespace umtet {

@@ -1,8 +1,8 @@
 #include "pipeline/meshing/part_mesher.h"
 
 #include "mesh/classification/configuration_costs.h"
-#include "pipeline/domain/background_choice.h"
-#include "pipeline/domain/graded_sizes.h"
+#include "body/sizing/background_choice.h"
+#include "body/sizing/graded_sizes.h"
 
 namespace umtet {
 

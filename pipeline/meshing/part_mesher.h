@@ -17,7 +17,7 @@
 #include "mesh/submesh/um_result.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/parameters.h"
-#include "pipeline/domain/domain.h"
+#include "body/body.h"
 #include "pipeline/reports/certificate_report.h"
 #include "reconstruct/solve/multilevel_fit.h"
 

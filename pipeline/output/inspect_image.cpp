@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/domain/background_choice.h"
-#include "pipeline/domain/domain.h"
+#include "body/sizing/background_choice.h"
+#include "body/body.h"
 #include "reconstruct/io/grid_io.h"
 #include "reconstruct/level_set/image_level.h"
 

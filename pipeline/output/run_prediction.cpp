@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "mesh/sizes/body_size.h"
-#include "pipeline/domain/background_choice.h"
-#include "pipeline/domain/edge_length.h"
-#include "pipeline/domain/fitted_domain.h"
-#include "pipeline/stages/cloud_preparation.h"
-#include "pipeline/stages/level_set_fit.h"
+#include "body/sizing/background_choice.h"
+#include "body/sizing/edge_length.h"
+#include "body/fitted_domain.h"
+#include "body/scan/cloud_preparation.h"
+#include "body/scan/level_set_fit.h"
 #include "reconstruct/cloud/cloud_arrays.h"
 #include "reconstruct/cloud/morton_order.h"
 #include "reconstruct/solve/resolution.h"

@@ -17,7 +17,7 @@
 #include "common/polled_loops.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
-#include "pipeline/domain/domain.h"
+#include "body/body.h"
 #include "pipeline/reports/stage_reports.h"
 #include "pipeline/stages/stages.h"
 

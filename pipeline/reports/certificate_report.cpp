@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/reports/accepted_defects.h"
+#include "body/fidelity/accepted_defects.h"
 #include "pipeline/reports/blame.h"
 #include "pipeline/reports/certificate_json.h"
-#include "pipeline/reports/input_judgement.h"
+#include "body/fidelity/input_judgement.h"
 #include "pipeline/reports/stage_reports.h"
 
 namespace umtet {

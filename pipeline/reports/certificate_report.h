@@ -12,11 +12,11 @@
 #include "pipeline/case/parameters.h"
 #include "pipeline/case/record.h"
 #include "pipeline/case/version.h"
-#include "pipeline/reports/closed_hole.h"
+#include "body/fidelity/closed_hole.h"
 #include "pipeline/reports/label_report.h"
-#include "pipeline/reports/mesh_place.h"
-#include "pipeline/reports/missed_place.h"
-#include "pipeline/reports/thin_place.h"
+#include "body/fidelity/mesh_place.h"
+#include "body/fidelity/missed_place.h"
+#include "body/sizing/thin_place.h"
 #include "reconstruct/triangles/triangle_body.h"
 
 // What certificate.json, the record of 3-mesh and the answers of `umtet check` say about a mesh. Lengths in model units

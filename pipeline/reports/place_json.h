@@ -3,10 +3,10 @@
 #include <vector>
 
 #include "pipeline/case/json_values.h"
-#include "pipeline/reports/closed_hole.h"
-#include "pipeline/reports/mesh_place.h"
-#include "pipeline/reports/missed_place.h"
-#include "pipeline/reports/thin_place.h"
+#include "body/fidelity/closed_hole.h"
+#include "body/fidelity/mesh_place.h"
+#include "body/fidelity/missed_place.h"
+#include "body/sizing/thin_place.h"
 
 // The places that documents list, as JSON: a list, an object a place. What reads them throws Json::exception where
 // something is missing. docs/reference.md says what the names mean.

@@ -5,11 +5,11 @@
 #include <algorithm>
 
 #include "pipeline/case/interrupt.h"
-#include "pipeline/domain/wanted_detail.h"
+#include "body/sizing/wanted_detail.h"
 #include "pipeline/output/report.h"
 #include "pipeline/reports/certificate_json.h"
 #include "pipeline/run/renewal.h"
-#include "pipeline/stages/cloud_preparation.h"
+#include "body/scan/cloud_preparation.h"
 #include "pipeline/stages/scan_source.h"
 #include "pipeline/stages/stages.h"
 

@@ -4,7 +4,7 @@
 #include <system_error>
 
 #include "pipeline/case/interrupt.h"
-#include "pipeline/stages/sample_merging.h"
+#include "body/scan/sample_merging.h"
 #include "pipeline/stages/scan_source.h"
 #include "pipeline/stages/stages.h"
 #include "reconstruct/io/point_cloud_io.h"

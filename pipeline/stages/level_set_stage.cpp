@@ -6,7 +6,7 @@
 #include "pipeline/case/interrupt.h"
 #include "pipeline/reports/stage_reports.h"
 #include "pipeline/stages/given_normals.h"
-#include "pipeline/stages/level_set_fit.h"
+#include "body/scan/level_set_fit.h"
 #include "pipeline/stages/stages.h"
 #include "reconstruct/cloud/cloud_neighbours.h"
 #include "reconstruct/io/level_set_io.h"

@@ -16,9 +16,9 @@
 #include "pipeline/case/artefact.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/meshing/made_mesh.h"
-#include "pipeline/meshing/mesh_places.h"
-#include "pipeline/meshing/mesh_sizes.h"
-#include "pipeline/meshing/second_order.h"
+#include "body/fidelity/mesh_places.h"
+#include "body/fidelity/mesh_sizes.h"
+#include "body/search/second_order.h"
 
 namespace umtet {
 namespace fs = std::filesystem;

@@ -23,7 +23,7 @@
 #include "distributed/solver_part.h"
 #include "distributed/vertex_owners.h"
 #include "pipeline/case/exit_code.h"
-#include "pipeline/domain/domain.h"
+#include "body/body.h"
 #include "pipeline/memory/jobs.h"
 #include "pipeline/reports/certificate_json.h"
 #include "python/arguments.h"

@@ -24,8 +24,8 @@
 #include "mesh/io/tet_mesh_io.h"
 #include "mesh/sizes/body_size.h"
 #include "mesh/universal_mesh.h"
-#include "pipeline/stages/cloud_preparation.h"
-#include "pipeline/stages/level_set_fit.h"
+#include "body/scan/cloud_preparation.h"
+#include "body/scan/level_set_fit.h"
 #include "tests/support/bench_domains.h"
 #include "tests/support/clouds.h"
 

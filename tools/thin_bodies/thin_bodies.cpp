@@ -27,7 +27,7 @@
 
 #include "mesh/background/background_mesh.h"
 #include "mesh/implicit/surface_distance.h"
-#include "pipeline/meshing/mesh_maker.h"
+#include "body/search/mesh_maker.h"
 #include "tools/thin_bodies/bodies.h"
 
 using namespace umtet;
