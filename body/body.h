@@ -8,28 +8,25 @@
 #include <utility>
 #include <vector>
 
+#include "body/fitted_level_set.h"
+#include "body/given_triangles.h"
+#include "body/input_facts.h"
+#include "body/shared_function.h"
 #include "mesh/background/background_mesh.h"
 #include "mesh/core/implicit_function.h"
 #include "mesh/sizes/body_size.h"
-#include "pipeline/case/case_folder.h"
-#include "pipeline/case/parameters.h"
-#include "body/fitted_level_set.h"
-#include "body/given_triangles.h"
-#include "pipeline/expression/expression.h"
-#include "pipeline/reports/certificate_report.h"
 #include "reconstruct/cloud/point_cloud.h"
 #include "reconstruct/level_set/grid_fit.h"
 #include "reconstruct/level_set/level_set.h"
 
 namespace umtet {
 
-struct Handover;
 struct LabelVolume;
 
-/// What 3-mesh works on, and what a mesh is judged against: psi, where to look for it, and the samples behind it.
+/// What is meshed, and what a mesh is judged against: psi, where to look for it, and the samples behind it.
 /// All lengths and places are in working coordinates: model coordinates minus `shift`.
 struct Domain {
-  std::optional<Expression> formula;  ///< one of these four is there
+  std::optional<SharedFunction> formula;  ///< with a Hessian; one of these four is there
   std::shared_ptr<const GridLevelSet> grid;
   std::optional<LevelSet> level_set;            ///< psi; cut where limit_detail() said
   std::optional<ImplicitFunctionRef> function;  ///< the caller's, who keeps it; with a Hessian
@@ -45,7 +42,8 @@ struct Domain {
   std::optional<double> noise;  ///< standard deviation of the samples along the normal, as the fit took it, model units
   std::optional<InputFacts> facts;  ///< of the cloud; none for a formula or a grid
   double level_shift = 0;           ///< taken off the fitted psi wherever it is cut for an h, model units
-  bool complement = false;  ///< mesh.complement: it is {psi > 0} in the box that is meshed, the fluid around a body
+  bool complement =
+      false;  ///< MeshOptions::complement: it is {psi > 0} in the box that is meshed, the fluid around a body
 
   /// Cuts psi at the detail that a mesh of edge length h can show: boundary faces fold over what is finer.
   void limit_detail(double h);
@@ -65,7 +63,7 @@ struct Domain {
   ImplicitFunctionRef body() const {
     if (function) return *function;
     if (grid) return *grid;
-    return formula ? ImplicitFunctionRef(*formula) : ImplicitFunctionRef(*level_set);
+    return formula ? formula->ref() : ImplicitFunctionRef(*level_set);
   }
   /// f(psi): psi() for places that are far apart (LevelSetApart).
   template <class F>
@@ -85,19 +83,5 @@ struct Domain {
  private:
   mutable std::optional<std::pair<Box, BodySize>> size_;  ///< of psi in that box
 };
-
-/// mesh.implicit in mesh.box. @param t  what t stands for in the text; without it there is no such name
-/// \throw UsageError (a formula without a box), ExpressionError
-Domain formula_domain(const Parameters&, std::optional<double> t = std::nullopt);
-
-/// The grid of mesh.level_set, in mesh.box or where it has values; of a segmentation around the body.
-/// \throw GridRefused, UsageError, ResourceLimit, std::system_error
-Domain grid_domain(const Parameters&);
-
-/// The formula of mesh.implicit or the grid of mesh.level_set, or the level set and the cloud of the case.
-/// @param handover  what there is of them in memory is taken from there, and not read
-/// \throw UsageError (a formula without a box), ExpressionError, GridRefused, ResourceLimit, ArtefactDamaged,
-///        std::system_error
-Domain load_domain(const CasePaths&, const Parameters&, Handover* handover = nullptr);
 
 }  // namespace umtet

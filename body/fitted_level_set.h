@@ -7,6 +7,9 @@
 
 namespace umtet {
 
+/// Levels of psi with a smaller spacing, in edges of the mesh, are left out: faces fold over detail they cannot follow.
+inline constexpr double kLeastSpacing = .7;
+
 /// A level set of which a mesh needs the coarser levels, and now and then all. The finer ones, which are most of its
 /// memory, may be put aside where they can be had again.
 class FittedLevelSet {

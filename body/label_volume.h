@@ -2,10 +2,10 @@
 
 #include <vector>
 
+#include "body/body.h"
+#include "body/label_report.h"
 #include "common/context.h"
 #include "mesh/core/tet_mesh.h"
-#include "body/body.h"
-#include "pipeline/reports/label_report.h"
 #include "reconstruct/level_set/mask_fit.h"
 
 namespace umtet {

@@ -20,8 +20,8 @@ import tomllib
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 TABLE, REASONS, MEASURED = ROOT / "docs/constants.md", ROOT / "docs/constants.toml", ROOT / "data/constants/sensitivity.csv"
 FILES = ["mesh/core/quality_target.h"]
-FOLDERS = ["mesh/classification", "mesh/fast", "mesh/implicit", "pipeline/domain", "pipeline/meshing", "pipeline/stages", "reconstruct/cloud",
-           "reconstruct/triangles", "reconstruct/winding", "reconstruct/solve"]
+FOLDERS = ["body", "mesh/classification", "mesh/fast", "mesh/implicit", "pipeline/domain", "pipeline/meshing", "pipeline/stages",
+           "reconstruct/cloud", "reconstruct/triangles", "reconstruct/winding", "reconstruct/solve"]
 COMMAND = "build/release/tools/sensitivity > data/constants/sensitivity.csv"
 UNITS = {"failed": "bodies without a mesh, share", "left": "tets that smoothing leaves below the target, in 10^5 at the boundary",
          "below": "the same after repair", "least_q": "min Q", "quantile": "1 % quantile of Q",

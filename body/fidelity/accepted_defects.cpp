@@ -6,7 +6,7 @@
 #include <charconv>
 #include <sstream>
 
-#include "pipeline/case/exit_code.h"
+#include "body/errors.h"
 #include "body/fidelity/input_judgement.h"
 #include "body/fidelity/mesh_place.h"
 

@@ -8,9 +8,9 @@
 #include <set>
 #include <utility>
 
+#include "body/pieces/zero_set_choice.h"
 #include "common/disjoint_sets.h"
 #include "mesh/implicit/surface_distance.h"
-#include "body/pieces/zero_set_choice.h"
 
 namespace umtet {
 namespace {
@@ -233,7 +233,8 @@ int closed_genus(const std::vector<Triangle>& faces, const std::vector<char>& is
   return static_cast<int>(components.size()) - chi / 2;
 }
 
-/// The handles that go with what was closed. Where only one line ends each hole and the holes are discs, there are none.
+/// The handles that go with what was closed. Where only one line ends each hole and the holes are discs, there are
+/// none.
 int guessed_handles(const std::vector<Triangle>& faces, const ClosedHoles& found) {
   if (found.holes.empty()) return 0;
   std::vector<char> all(faces.size(), 1), rest(faces.size(), 0);

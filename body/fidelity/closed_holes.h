@@ -3,9 +3,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "mesh/core/tet_mesh.h"
 #include "body/body.h"
 #include "body/fidelity/closed_hole.h"
+#include "mesh/core/tet_mesh.h"
 
 namespace umtet {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/reports/certificate_report.h"
+#include "body/fidelity/mesh_measures.h"
 
 // The third judgement: whether a mesh fits what was given. It is a function of what measure() found out.
 namespace umtet {

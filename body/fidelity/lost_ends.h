@@ -2,11 +2,11 @@
 
 #include <vector>
 
+#include "body/body.h"
+#include "body/fidelity/lost_surface.h"
+#include "body/fidelity/mesh_edge.h"
 #include "common/context.h"
 #include "mesh/implicit/surface_distance.h"
-#include "body/body.h"
-#include "body/fidelity/mesh_edge.h"
-#include "body/fidelity/lost_surface.h"
 
 namespace umtet {
 

@@ -2,10 +2,10 @@
 
 #include <vector>
 
-#include "common/context.h"
-#include "mesh/implicit/surface_distance.h"
 #include "body/body.h"
 #include "body/fidelity/mesh_edge.h"
+#include "common/context.h"
+#include "mesh/implicit/surface_distance.h"
 
 namespace umtet {
 

@@ -7,6 +7,14 @@
 #include <span>
 #include <utility>
 
+#include "body/fidelity/closed_holes.h"
+#include "body/fidelity/mesh_places.h"
+#include "body/fidelity/mesh_sizes.h"
+#include "body/fidelity/missed_samples.h"
+#include "body/fidelity/triangle_distances.h"
+#include "body/label_volume.h"
+#include "body/pieces/component_proof.h"
+#include "body/sizing/edge_length.h"
 #include "common/polled_loops.h"
 #include "mesh/certify/boundary_surface.h"
 #include "mesh/core/asking_psi.h"
@@ -14,14 +22,6 @@
 #include "mesh/implicit/surface_distance.h"
 #include "mesh/implicit/thickness.h"
 #include "mesh/sizes/graded_zero_set.h"
-#include "body/fidelity/closed_holes.h"
-#include "body/pieces/component_proof.h"
-#include "body/sizing/edge_length.h"
-#include "body/given_triangles.h"
-#include "body/label_volume.h"
-#include "body/fidelity/missed_samples.h"
-#include "body/fidelity/mesh_places.h"
-#include "body/fidelity/mesh_sizes.h"
 
 namespace umtet {
 namespace {

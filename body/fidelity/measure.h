@@ -2,13 +2,13 @@
 
 #include <vector>
 
-#include "mesh/sizes/size_field.h"
-#include "mesh/universal_mesh.h"
 #include "body/body.h"
 #include "body/fidelity/mesh_edge.h"
-#include "body/sizing/too_thin.h"
+#include "body/fidelity/mesh_measures.h"
 #include "body/pieces/zero_set_choice.h"
-#include "pipeline/reports/certificate_report.h"
+#include "body/sizing/too_thin.h"
+#include "mesh/sizes/size_field.h"
+#include "mesh/universal_mesh.h"
 
 namespace umtet {
 

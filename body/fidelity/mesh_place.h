@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "body/thin_place.h"
 #include "common/vec3.h"
 
 namespace umtet {
@@ -37,9 +38,6 @@ struct MeshPlace {
   std::optional<double> h_needed{};  ///< that shows such a feature, model units
   std::size_t n = 1;                 ///< of its vertices, faces, points or samples
 };
-
-/// A mesh of edge length h shows what is this many edges thick; thinner parts may be missing from it.
-inline constexpr double kLeastEdgesAcross = 1.25;
 
 /// Where psi = 0 is finer than h can show, a mesh of this h may be this far off, in h, however large the place is ...
 inline constexpr double kSmallOff = .5;

@@ -5,16 +5,14 @@
 #include <limits>
 #include <utility>
 
+#include "body/fidelity/lost_ends.h"
+#include "body/fidelity/lost_surface.h"
+#include "body/pieces/clusters.h"
 #include "common/polled_loops.h"
 #include "mesh/core/asking_psi.h"
 #include "mesh/implicit/curvature.h"
 #include "mesh/implicit/foot_point.h"
 #include "mesh/implicit/thickness.h"
-#include "mesh/io/tet_mesh_io.h"
-#include "pipeline/case/artefact.h"
-#include "body/pieces/clusters.h"
-#include "body/fidelity/lost_ends.h"
-#include "body/fidelity/lost_surface.h"
 #include "reconstruct/cloud/neighbour_tree.h"
 
 namespace umtet {
@@ -160,31 +158,6 @@ std::vector<MeshPlace> places_of(const Domain& domain, const std::vector<Differe
     }
   }
   return places;
-}
-
-void write_places(const std::filesystem::path& file, const std::vector<MeshPlace>& places) {
-  std::vector<Vec3> points;
-  std::vector<double> off, size, feature;
-  std::vector<std::uint8_t> kind, small;
-  std::vector<std::int64_t> n;
-  for (const MeshPlace& place : places) {
-    points.push_back(place.where);
-    kind.push_back(static_cast<std::uint8_t>(place.kind));
-    off.push_back(place.off_over_h);
-    size.push_back(place.size_over_h);
-    feature.push_back(place.feature_over_h.value_or(0));
-    small.push_back(is_small(place) ? 1 : 0);
-    n.push_back(static_cast<std::int64_t>(place.n));
-  }
-  write_artefact(file, [&](const std::filesystem::path& temporary) {
-    write_vtp(temporary, points,
-              {{"kind", kind},
-               {"off_over_h", off},
-               {"size_over_h", size},
-               {"feature_over_h", feature},
-               {"small", small},
-               {"n", n}});
-  });
 }
 
 }  // namespace umtet

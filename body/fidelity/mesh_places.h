@@ -1,15 +1,14 @@
 #pragma once
 
-#include <filesystem>
 #include <vector>
 
+#include "body/body.h"
+#include "body/fidelity/mesh_edge.h"
+#include "body/fidelity/mesh_place.h"
+#include "body/pieces/zero_set_choice.h"
 #include "mesh/certify/certificate.h"
 #include "mesh/implicit/surface_distance.h"
 #include "mesh/submesh/um_result.h"
-#include "body/body.h"
-#include "body/fidelity/mesh_edge.h"
-#include "body/pieces/zero_set_choice.h"
-#include "body/fidelity/mesh_place.h"
 
 // Where a mesh is not what psi = 0 is. All coordinates are working coordinates, but for those of MeshPlace.
 namespace umtet {
@@ -53,9 +52,5 @@ MeshPlace topology_place(const Domain& domain, const ZeroSetChoice& counted, con
 /// Cost: some twenty values of psi a difference. The result does not depend on the number of threads. \throw Cancelled
 std::vector<MeshPlace> places_of(const Domain& domain, const std::vector<Difference>& differences, const MeshEdge& h,
                                  const Context& context = {});
-
-/// A point a place with `kind` (the number of its PlaceKind), `off_over_h`, `size_over_h`, `feature_over_h` (0: none),
-/// `small` (0/1) and `n`; complete or not at all. \throw std::system_error naming the file
-void write_places(const std::filesystem::path& file, const std::vector<MeshPlace>& places);
 
 }  // namespace umtet

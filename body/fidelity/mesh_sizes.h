@@ -2,10 +2,10 @@
 
 #include <vector>
 
+#include "body/fidelity/mesh_measures.h"
 #include "common/context.h"
 #include "mesh/core/tet_mesh.h"
 #include "mesh/sizes/size_field.h"
-#include "pipeline/reports/certificate_report.h"
 
 namespace umtet {
 

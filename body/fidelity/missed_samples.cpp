@@ -6,9 +6,9 @@
 #include <numeric>
 #include <utility>
 
+#include "body/pieces/zero_set_choice.h"
 #include "common/disjoint_sets.h"
 #include "mesh/certify/quality_report.h"
-#include "body/pieces/zero_set_choice.h"
 #include "reconstruct/cloud/cloud_arrays.h"
 #include "reconstruct/cloud/neighbour_tree.h"
 

@@ -4,7 +4,7 @@
 
 #include "body/body.h"
 #include "body/fidelity/mesh_edge.h"
-#include "pipeline/reports/certificate_report.h"
+#include "body/fidelity/mesh_measures.h"
 
 namespace umtet {
 

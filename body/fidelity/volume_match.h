@@ -1,9 +1,9 @@
 #pragma once
 
+#include "body/body.h"
 #include "common/context.h"
 #include "mesh/implicit/closest_point.h"
 #include "mesh/universal_mesh.h"
-#include "body/body.h"
 
 namespace umtet {
 

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include "body/label_volume.h"
+#include "body/pieces/component_proof.h"
 #include "mesh/implicit/surface_distance.h"
 #include "mesh/sizes/graded_zero_set.h"
-#include "body/pieces/component_proof.h"
-#include "body/label_volume.h"
 
 namespace umtet {
 namespace {

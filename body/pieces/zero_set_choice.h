@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "body/body.h"
 #include "mesh/implicit/zero_set.h"
 #include "mesh/sizes/size_field.h"
-#include "body/body.h"
 #include "reconstruct/level_set/sign_cells.h"
 
 namespace umtet {

@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <sstream>
+#include <algorithm>
+#include <utility>
 
-#include "pipeline/case/artefact.h"
-#include "pipeline/stages/scan_source.h"
 #include "reconstruct/cloud/cleaning.h"
 #include "reconstruct/cloud/cloud_arrays.h"
 #include "reconstruct/cloud/cloud_survey.h"
@@ -16,13 +14,11 @@
 #include "reconstruct/cloud/normal_estimation.h"
 #include "reconstruct/cloud/normal_orientation.h"
 #include "reconstruct/cloud/scanner_positions.h"
-#include "reconstruct/io/triangle_mesh_io.h"
 #include "reconstruct/solve/held_out.h"
 #include "reconstruct/winding/orient_by_winding.h"
 #include "reconstruct/winding/winding_outliers.h"
 
 namespace umtet {
-namespace fs = std::filesystem;
 namespace {
 
 // Share of neighbours whose signs agree in a cloud whose normals are right but for noise.
@@ -32,29 +28,10 @@ constexpr double kConsistent = .97;
 constexpr double kMostAway = .25;
 constexpr std::size_t kFewestPoints = kFewestSurveyed;  // the fit needs an estimate of the noise
 
-/// Three numbers a line, '#' begins a comment.
-std::vector<Vec3> read_viewpoints(const fs::path& file) {
-  std::ifstream in(file);
-  if (!in) throw std::system_error(errno, std::generic_category(), file.string() + ": cannot be opened");
-  std::vector<Vec3> points;
-  std::string line;
-  for (int number = 1; std::getline(in, line); ++number) {
-    std::istringstream words(line.substr(0, line.find('#')));
-    Vec3 x;
-    if (!(words >> std::ws) || words.eof()) continue;
-    if (!(words >> x[0] >> x[1] >> x[2]) || !x.allFinite()) {
-      throw CloudRefused(fmt::format("{}:{}: not three numbers; a viewpoint is a line x y z", file.string(), number));
-    }
-    points.push_back(x);
-  }
-  if (points.empty()) throw CloudRefused(file.string() + ": no viewpoint; give lines x y z");
-  return points;
-}
-
 class Preparation {
  public:
-  Preparation(CloudFile&& file, const fs::path& source, const Parameters& parameters)
-      : source_(source), parameters_(parameters), file_(file.report), cloud_(std::move(file.cloud)) {}
+  Preparation(CloudFile&& file, const std::string& name, const BodyOptions& options)
+      : name_(name), options_(options), file_(file.report), cloud_(std::move(file.cloud)) {}
   PreparedCloud operator()();
 
  private:
@@ -82,8 +59,8 @@ class Preparation {
     return 100. * static_cast<double>(n) / static_cast<double>(cloud_.points.size());
   }
 
-  const fs::path& source_;
-  const Parameters& parameters_;
+  const std::string& name_;
+  const BodyOptions& options_;
   const CloudFileReport file_;
   OrientedPointCloud cloud_;
   Neighbourhoods near_;              ///< of the cleaned cloud
@@ -104,7 +81,7 @@ void Preparation::tell_fields() {
 
 void Preparation::clean_points() {
   CleaningParams params;
-  params.outliers = !parameters_.cloud().keep_all && !file_.of_triangles;
+  params.outliers = !options_.scan.keep_all && !file_.of_triangles;
   const CleaningReport r = clean(cloud_, params, &near_, &covering_);
   const std::size_t n_not_finite = file_.n_points_dropped + r.n_not_finite;
   result_.report.dropped = {.not_finite = n_not_finite,
@@ -119,7 +96,7 @@ void Preparation::clean_points() {
   }
   if (cloud_.points.size() < kFewestPoints) {
     throw CloudRefused(fmt::format("{}: {} points are left after cleaning, {} are needed; --keep-all keeps outliers",
-                                   source_.string(), cloud_.points.size(), kFewestPoints));
+                                   name_, cloud_.points.size(), kFewestPoints));
   }
 }
 
@@ -151,7 +128,7 @@ void Preparation::fill_missing() {
 
 /// What was given as normals may say where the scanners stood; it does not say how the surface lies.
 void Preparation::part_with_lines_of_sight() {
-  if (cloud_.normals.empty() || file_.of_triangles || parameters_.cloud().normals != NormalsOf::Auto) return;
+  if (cloud_.normals.empty() || file_.of_triangles || options_.scan.normals != NormalsOf::Auto) return;
   if (!are_lines_of_sight(cloud_, near_, covering_)) return;
   notice(
       "the normals of the file are none: they do not stand on the surface of its points (--normals given keeps them)");
@@ -165,7 +142,7 @@ void Preparation::part_with_lines_of_sight() {
 
 void Preparation::find_normals() {
   part_with_lines_of_sight();
-  const NormalsOf how = parameters_.cloud().normals;
+  const NormalsOf how = options_.scan.normals;
   if (!cloud_.normals.empty() && how != NormalsOf::Estimate) {
     normals().given = true;
     fill_missing();
@@ -192,7 +169,7 @@ void Preparation::find_normals() {
   take(r);
   notice("estimated the normals and oriented them: {:.1f} % consistent, {} piece{}", 100 * r.consistency_after,
          r.n_components, r.n_components == 1 ? "" : "s");
-  if (parameters_.cloud().orient_from.empty()) {
+  if (!options_.viewpoints) {
     ask_winding_number(nullptr);
     look_to_origins();
   }
@@ -222,7 +199,7 @@ bool Preparation::explains_better(const SplitCloud& former, const SplitCloud& pr
 /// the winding number sees all samples at once. Given normals that were consistent are not asked about; those that are
 /// now are not overruled: noise and missing parts are no reason to.
 void Preparation::ask_winding_number(const std::vector<Vec3>* as_given) {
-  if (parameters_.cloud().winding == WindingCheck::Off) return;
+  if (options_.scan.winding == WindingCheck::Off) return;
   normals().winding.emplace();
   const bool are_consistent = normals().given && normals().orientation->consistency_after >= kConsistent;
   const WindingReport r = orient_by_winding(
@@ -282,7 +259,7 @@ std::size_t Preparation::drop_if(Goes&& goes) {
 
 /// Outliers that only normals show. On scan lines nearest neighbours say nothing.
 void Preparation::drop_off_surface() {
-  if (parameters_.cloud().keep_all || file_.of_triangles || !covering_.is_even()) return;
+  if (options_.scan.keep_all || file_.of_triangles || !covering_.is_even()) return;
   const std::vector<std::uint8_t> is_outlier = winding_outliers(cloud_, near_);
   const std::size_t n = drop_if([&](std::size_t i) { return is_outlier[i] != 0; });
   result_.report.dropped.outliers += n;
@@ -298,22 +275,20 @@ void Preparation::drop_undefined() {
   if (kept < n) notice("dropped {} points whose normal cannot be told", n - kept);
   if (kept < kFewestPoints) {
     throw CloudRefused(
-        fmt::format("{}: no surface: the normals of {} of {} points cannot be told", source_.string(), n - kept, n));
+        fmt::format("{}: no surface: the normals of {} of {} points cannot be told", name_, n - kept, n));
   }
 }
 
 void Preparation::orient_as_told() {
-  if (const std::string& file = parameters_.cloud().orient_from; !file.empty()) {
-    normals().turned_to_viewpoints = orient_from(cloud_, read_viewpoints(file));
-  }
+  if (options_.viewpoints) normals().turned_to_viewpoints = orient_from(cloud_, options_.viewpoints());
   // One scanner does not see a body from all sides: a position with such a cloud is what is left of one of its scans.
-  if (file_.viewpoint && !normals().given && !is_closed_ && parameters_.cloud().orient_from.empty()) {
+  if (file_.viewpoint && !normals().given && !is_closed_ && !options_.viewpoints) {
     const Vec3& v = *file_.viewpoint;
     normals().turned_to_viewpoints = orient_from(cloud_, {v});
     notice("the normals look to the scanner at {:.6g} {:.6g} {:.6g}, the VIEWPOINT of the file (--orient-from decides)",
            v[0], v[1], v[2]);
   }
-  if (parameters_.cloud().flip) flip(cloud_);
+  if (options_.scan.flip) flip(cloud_);
 }
 
 PreparedCloud Preparation::operator()() {
@@ -344,33 +319,18 @@ PreparedCloud Preparation::operator()() {
 
 }  // namespace
 
-void require_regular_file(const fs::path& file) {
-  const fs::file_status status = fs::status(file);
-  if (fs::is_directory(status)) throw CloudRefused(file.string() + ": a folder; give the file of the cloud");
-  if (fs::exists(status) && !fs::is_regular_file(status)) {
-    throw CloudRefused(file.string() + ": not a regular file; copy what it yields to a file and give that");
-  }
+std::string fields_left_out(const CloudFileReport& file) {
+  constexpr std::size_t kListed = 8;
+  const std::vector<std::string>& names = file.fields_left_out;
+  if (names.empty()) return {};
+  const std::vector<std::string> listed(names.begin(), names.begin() + std::min(names.size(), kListed));
+  return fmt::format("left out {} field{} ({}{}): {} are kept, and one of each name", names.size(),
+                     names.size() == 1 ? "" : "s", fmt::join(listed, ", "), names.size() > kListed ? " ..." : "",
+                     kMostFields);
 }
 
-std::vector<RecordedFile> source_inputs(const fs::path& source, const Parameters& parameters, FileStamps& stamps) {
-  const auto input = [&stamps](const char* name, const fs::path& file) {
-    require_regular_file(file);
-    return RecordedFile{name, stamps.of(file)};
-  };
-  require_regular_file(source);
-  // Gigabytes that are no scan are not read for their checksum.
-  is_of_triangles(source, parameters) ? check_triangles_head(source)
-                                      : check_scan_head(source, parameters.cloud().columns);
-  std::vector<RecordedFile> inputs = {input("source", source)};
-  const std::string& viewpoints = parameters.cloud().orient_from;
-  if (!viewpoints.empty() && is_too_large_a_text(viewpoints))
-    throw CloudRefused(viewpoints + ": too large for viewpoints, lines x y z");
-  if (!viewpoints.empty()) inputs.push_back(input("viewpoints", viewpoints));
-  return inputs;
-}
-
-PreparedCloud prepare_cloud(CloudFile file, const fs::path& source, const Parameters& parameters) {
-  return Preparation(std::move(file), source, parameters)();
+PreparedCloud prepare_cloud(CloudFile file, const std::string& name, const BodyOptions& options) {
+  return Preparation(std::move(file), name, options)();
 }
 
 }  // namespace umtet

@@ -1,14 +1,11 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
-#include <vector>
 
-#include "pipeline/case/parameters.h"
-#include "pipeline/case/record.h"
-#include "pipeline/reports/stage_reports.h"
+#include "body/options.h"
+#include "body/scan/scan_reports.h"
+#include "reconstruct/cloud/cloud_file.h"
 #include "reconstruct/cloud/cloud_neighbours.h"
-#include "reconstruct/io/point_cloud_io.h"
 
 namespace umtet {
 
@@ -19,22 +16,17 @@ struct PreparedCloud {
   CloudReport report;
 };
 
-/// \throw CloudRefused  a device, a pipe or a folder: there is no telling where it ends
-void require_regular_file(const std::filesystem::path& file);
-
-/// The files that 1-cloud reads: the user's cloud, and the viewpoints of cloud.orient_from.
-/// \throw CloudRefused (not a regular file), std::system_error
-std::vector<RecordedFile> source_inputs(const std::filesystem::path& source, const Parameters& parameters,
-                                        FileStamps& stamps);
-
-/// Sorts a scan in space, cleans it and gives every point an outward normal, as the parameters of the section `cloud`
-/// say.
+/// Sorts a scan in space, cleans it and gives every point an outward normal, as ScanOptions say.
 ///
 /// Normals that came with the scan are scored, and a minority that is turned over is turned back (normals = auto),
-/// taken as they are (given) or thrown away (estimate). Missing ones are estimated. cloud.orient_from and cloud.flip
+/// taken as they are (given) or thrown away (estimate). Missing ones are estimated. Viewpoints and ScanOptions::flip
 /// have the last word.
 ///
-/// \throw CloudRefused  fewer than 10 points are left; not a file of viewpoints
-PreparedCloud prepare_cloud(CloudFile file, const std::filesystem::path& source, const Parameters& parameters);
+/// @param name  of the scan, for messages
+/// \throw CloudRefused  fewer than 10 points are left; what options.viewpoints throws
+PreparedCloud prepare_cloud(CloudFile file, const std::string& name, const BodyOptions& options);
+
+/// Which columns of numbers were not taken along, and why; empty if all were.
+std::string fields_left_out(const CloudFileReport& file);
 
 }  // namespace umtet

@@ -8,9 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "pipeline/case/memory.h"
 #include "body/sizing/wanted_detail.h"
-#include "body/library_params.h"
 #include "reconstruct/cloud/cloud_neighbours.h"
 #include "reconstruct/cloud/cloud_survey.h"
 #include "reconstruct/cloud/covering.h"
@@ -116,7 +114,7 @@ void require_body(const SsdReport& r) {
 }
 
 /// Of samples that were merged for a mesh: no lattice that it has no use for.
-void leave_out_finer(const OrientedPointCloud& cloud, const NeighbourDistances& near, const Parameters& parameters,
+void leave_out_finer(const OrientedPointCloud& cloud, const NeighbourDistances& near, const BodyOptions& options,
                      SsdParams& params, LevelSetReport& report) {
   if (params.spacing > 0) return;
   const std::vector<std::uint32_t> one(cloud.points.size(), 0);
@@ -126,8 +124,8 @@ void leave_out_finer(const OrientedPointCloud& cloud, const NeighbourDistances& 
   for (const Vec3& x : cloud.points) box.extend(x);
   scan.diagonal = box.diagonal().norm();
   if (report.thickness) scan.thickness = report.thickness->front();
-  params.finest = finest_lattice(parameters, scan);
-  if (params.finest > 0) report.wanted = wanted_mesh(parameters);
+  params.finest = finest_lattice(options, scan);
+  report.left_out_finer = params.finest > 0;
 }
 
 // As choose_resolution() has it: 1.25 spacings of samples.
@@ -142,11 +140,11 @@ double lattice_of(const ExactSamples& exact, const NeighbourDistances& near, con
 }
 
 /// @param cloud  near the origin
-LevelSetFit fit_near_origin(OrientedPointCloud& cloud, NeighbourDistances near, const Parameters& parameters,
+LevelSetFit fit_near_origin(OrientedPointCloud& cloud, NeighbourDistances near, const BodyOptions& options,
                             const Context& context, BandRefiner* bands, const std::optional<ExactSamples>& exact) {
-  SsdParams params = ssd_params(parameters);
+  SsdParams params = ssd_params(options.fit);
   params.bands = bands;
-  params.max_memory = allowed_bytes(parameters);
+  params.max_memory = options.max_memory;
   context.report("noise", 0);
   LevelSetReport report;
   if (near.nearest.empty()) near = covered_distances(cloud.points, cloud.counts);
@@ -155,16 +153,16 @@ LevelSetFit fit_near_origin(OrientedPointCloud& cloud, NeighbourDistances near, 
     const OrientedPointCloud few = is_even ? OrientedPointCloud() : picked(cloud, near.representatives);
     const OrientedPointCloud& even = is_even ? cloud : few;
     const NeighbourTree tree(even.points);
-    const double noise = exact && parameters.reconstruct().noise < 0 ? 0 : parameters.reconstruct().noise;
+    const double noise = exact && options.fit.noise < 0 ? 0 : options.fit.noise;
     const double of_samples = noise >= 0 ? noise : noise_along_normals(even, tree);
     if (noise < 0) params.local_noise = noise_of_all(cloud, even, tree, of_samples);
     params.noise = noise >= 0 || cloud.counts.empty() ? of_samples : noise_before_merging(even, tree);
     report.thickness = thickness_percentiles(even, tree);
   }
-  if (!cloud.counts.empty()) leave_out_finer(cloud, near, parameters, params, report);
+  if (!cloud.counts.empty()) leave_out_finer(cloud, near, options, params, report);
   if (exact && params.spacing == 0) params.spacing = lattice_of(*exact, near, params);
   SsdFit fit = fit_turning_opposed(cloud, params, context, &near);
-  if (!exact && parameters.reconstruct().noise < 0) {
+  if (!exact && options.fit.noise < 0) {
     for (int round = 0; round < kNoiseRounds && (leaves_less(fit.report, params.noise) ||
                                                  (round == 0 && leaves_more(fit.report, params.noise, params.finest)));
          ++round) {
@@ -189,11 +187,11 @@ LevelSetFit fit_near_origin(OrientedPointCloud& cloud, NeighbourDistances near, 
 
 }  // namespace
 
-LevelSetFit fit_level_set(OrientedPointCloud& cloud, NeighbourDistances near, const Parameters& parameters,
+LevelSetFit fit_level_set(OrientedPointCloud& cloud, NeighbourDistances near, const BodyOptions& options,
                           const Context& context, BandRefiner* bands, const std::optional<ExactSamples>& exact) {
   const Vec3 shift = far_origin_shift(cloud);
   for (Vec3& x : cloud.points) x -= shift;
-  LevelSetFit fit = fit_near_origin(cloud, std::move(near), parameters, context, bands, exact);
+  LevelSetFit fit = fit_near_origin(cloud, std::move(near), options, context, bands, exact);
   for (Vec3& x : cloud.points) x += shift;
   fit.report.shift = shift;
   return fit;

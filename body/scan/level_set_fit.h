@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "body/options.h"
+#include "body/scan/scan_reports.h"
 #include "common/context.h"
-#include "pipeline/case/parameters.h"
-#include "pipeline/reports/stage_reports.h"
 #include "reconstruct/cloud/cloud_neighbours.h"
 #include "reconstruct/cloud/point_cloud.h"
 #include "reconstruct/level_set/level_set.h"
@@ -25,7 +25,7 @@ struct ExactSamples {
   double least_spacing = 0;  ///< model units, > 0
 };
 
-/// What 2-level-set computes: the noise, unless reconstruct.noise gives it, psi, and whether it bounds a body.
+/// The noise, unless FitOptions::noise gives it, psi, and whether it bounds a body.
 /// @param cloud  model coordinates, which it has again afterwards; normals that psi opposes are turned over
 /// (turned_fit.h)
 /// @param near   of its points, with their covering; empty: searched here
@@ -35,7 +35,7 @@ struct ExactSamples {
 /// \throw SolveError     no psi, or one that bounds no body, or samples that fill a volume
 /// \throw Cancelled
 /// Reports "noise" and the steps of fit_ssd().
-LevelSetFit fit_level_set(OrientedPointCloud& cloud, NeighbourDistances near, const Parameters& parameters,
+LevelSetFit fit_level_set(OrientedPointCloud& cloud, NeighbourDistances near, const BodyOptions& options,
                           const Context& context, BandRefiner* bands = nullptr,
                           const std::optional<ExactSamples>& exact = std::nullopt);
 

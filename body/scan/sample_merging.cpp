@@ -50,19 +50,18 @@ MergedSamples merged_but_where_thin(const OrientedPointCloud& all, const SampleC
 
 }  // namespace
 
-PreparedCloud prepare_merged(CloudFile file, const std::filesystem::path& source, const Parameters& parameters) {
+PreparedCloud prepare_merged(CloudFile file, const std::string& name, const BodyOptions& options) {
   const std::size_t n = file.cloud.points.size();
-  if (n < kLeastMean * kFewestCells || file.report.of_triangles)
-    return prepare_cloud(std::move(file), source, parameters);
-  if (parameters.cloud().normals == NormalsOf::Estimate) file.cloud.normals = {};
+  if (n < kLeastMean * kFewestCells || file.report.of_triangles) return prepare_cloud(std::move(file), name, options);
+  if (options.scan.normals == NormalsOf::Estimate) file.cloud.normals = {};
   const CoreBox core = core_box(file.cloud.points);
-  const double largest = largest_cell(parameters, core.diagonal);
-  if (!(largest > 0)) return prepare_cloud(std::move(file), source, parameters);
+  const double largest = largest_cell(options, core.diagonal);
+  if (!(largest > 0)) return prepare_cloud(std::move(file), name, options);
   const bool has_normals = !file.cloud.normals.empty();
   const auto prepare = [&](MergedSamples merged, double cell) {
     const std::size_t n_merged = merged.cloud.points.size();
-    PreparedCloud prepared = prepare_cloud({std::move(merged.cloud), file.report}, source, parameters);
-    prepared.report.merged = {n, n_merged, cell, wanted_mesh(parameters)};
+    PreparedCloud prepared = prepare_cloud({std::move(merged.cloud), file.report}, name, options);
+    prepared.report.merged = {n, n_merged, cell};
     prepared.report.notices.insert(
         prepared.report.notices.begin(),
         fmt::format("merged {} points in cells of {:.3g}, which leaves {} samples: the mesh shows nothing finer "
@@ -81,16 +80,16 @@ PreparedCloud prepare_merged(CloudFile file, const std::filesystem::path& source
     has_two_sheets = static_cast<double>(merged.n_two_sided) > kThinShare * static_cast<double>(cells.size());
   }
   if (merged.cloud.points.empty() || (has_two_sheets && !has_normals))
-    return prepare_cloud(std::move(file), source, parameters);
+    return prepare_cloud(std::move(file), name, options);
   PreparedCloud prepared = prepare(std::move(merged), cell);
   const double thin = thin_share(prepared.cloud);
   if (thin >= kThinnestInCells * cell && !has_two_sheets) return prepared;
   if (has_normals) {
-    cell = cell_where_thin(parameters, cell, thin);
+    cell = cell_where_thin(options, cell, thin);
     merged = merged_but_where_thin(file.cloud, SampleCells(file.cloud.points, cell, core.middle), prepared.cloud);
     if (kLeastMean * merged.cloud.points.size() <= n) return prepare(std::move(merged), cell);
   }
-  return prepare_cloud(std::move(file), source, parameters);
+  return prepare_cloud(std::move(file), name, options);
 }
 
 }  // namespace umtet

@@ -12,6 +12,6 @@ namespace umtet {
 /// still closer. Without normals, by which two sheets in a cell are told apart, cells are smaller, eight samples in the
 /// mean, and all samples of a thin body stay.
 /// \throw as prepare_cloud()
-PreparedCloud prepare_merged(CloudFile file, const std::filesystem::path& source, const Parameters& parameters);
+PreparedCloud prepare_merged(CloudFile file, const std::string& name, const BodyOptions& options);
 
 }  // namespace umtet

@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "body/fidelity/mesh_measures.h"
+#include "body/search/part_maker.h"
+#include "body/sizing/edge_length.h"
+#include "body/sizing/too_thin.h"
 #include "mesh/background/background_mesh.h"
 #include "mesh/certify/quadratic_tets.h"
 #include "mesh/sizes/size_field.h"
 #include "mesh/universal_mesh.h"
-#include "body/sizing/edge_length.h"
-#include "body/sizing/too_thin.h"
-#include "pipeline/meshing/part_mesher.h"
-#include "pipeline/reports/certificate_report.h"
 
 namespace umtet {
 
@@ -59,8 +59,8 @@ inline constexpr double kDefaultEffort = 2.5;
 MeshAttempt best_attempt(const EdgeLength& choice, double effort, const std::function<MeshAttempt(double h)>& attempt,
                          const std::function<void(const std::string&)>& say);
 
-/// Runs `attempt` at h and, while the mesh has a defect that is no small one, with smaller edges at the defects, at most
-/// four times.
+/// Runs `attempt` at h and, while the mesh has a defect that is no small one, with smaller edges at the defects, at
+/// most four times.
 ///
 /// @param attempt  is also given the best of the attempts before, or null: it may leave as it is what did not fail
 /// @param refine  asks for them, and returns the h of all that is asked for then; none where nothing may be finer

@@ -9,15 +9,15 @@
 #include <optional>
 #include <utility>
 
-#include "pipeline/case/exit_code.h"
+#include "body/errors.h"
+#include "body/fidelity/measure.h"
+#include "body/fidelity/verdict.h"
+#include "body/fidelity/volume_match.h"
 #include "body/pieces/component_proof.h"
+#include "body/search/rounded_mesh.h"
+#include "body/search/second_order.h"
 #include "body/sizing/edge_length.h"
 #include "body/sizing/too_thin.h"
-#include "body/library_params.h"
-#include "pipeline/meshing/made_mesh.h"
-#include "body/fidelity/measure.h"
-#include "body/search/second_order.h"
-#include "body/fidelity/volume_match.h"
 
 namespace umtet {
 namespace {
@@ -48,12 +48,12 @@ std::vector<Vec3> seeds_of_some(const ZeroSetChoice& pieces) {
 
 }  // namespace
 
-MeshMaker::MeshMaker(Domain& domain, const Parameters& parameters, Context context, MeshLines lines, PartMesher* ranks)
+MeshMaker::MeshMaker(Domain& domain, BodyOptions options, Context context, MeshLines lines, PartMaker* ranks)
     : domain_(domain),
-      parameters_(parameters),
+      options_(std::move(options)),
       context_(std::move(context)),
       lines_(std::move(lines)),
-      params_(um_params(parameters)),
+      params_(um_params(options_.mesh)),
       ranks_(ranks) {}
 
 const ZeroSetChoice& MeshMaker::pieces_at(double h, const SizeField* sizes) {
@@ -109,7 +109,7 @@ KnownSigns MeshMaker::known_signs(const BackgroundMesh& background, const ZeroSe
 /// None where the body is as thick as the tets need it, or may not be thickened.
 const TriangleThickness* MeshMaker::thin_triangles(const BackgroundMesh& background, const ZeroSetChoice& pieces,
                                                    double h) {
-  if (!may_be_thickened(domain_, parameters_) || ranks_ || !background.is_lattice() || !pieces.dropped.empty())
+  if (!may_be_thickened(domain_, options_) || ranks_ || !background.is_lattice() || !pieces.dropped.empty())
     return nullptr;
   if (!thickness_ || thickness_->first < h) thickness_ = {h, triangle_thickness(domain_, kEdgesAcross * h, context_)};
   return thickness_->second.share(0) < kEdgesAcross * h ? &thickness_->second : nullptr;
@@ -219,7 +219,7 @@ MeshAttempt MeshMaker::finish(const SizedBackground& background, Begun begun) {
   TetMesh mesh{std::move(a.result.final), std::move(a.result.submesh.mesh.C)};  // lent: there is no copy of all tets
   const MeshCertificate* of_parts = begun.made ? &begun.made->certificate : nullptr;
   Measurement made = measure(domain_, mesh, a.result, pieces, h,
-                             {&a.thin, parameters_.mesh().max_deviation, a.sizes.get(), of_parts}, context_);
+                             {&a.thin, options_.mesh.max_deviation, a.sizes.get(), of_parts}, context_);
   a.result.final = std::move(mesh.V);
   a.result.submesh.mesh.C = std::move(mesh.C);
   a.measured = std::move(made.measures);
@@ -236,7 +236,7 @@ MeshAttempt MeshMaker::attempt(const SizedBackground& background, double h, cons
 }
 
 void MeshMaker::curve(MeshAttempt& a) const {
-  const std::int64_t order = parameters_.mesh().order;
+  const std::int64_t order = options_.mesh.order;
   a.measured.order = order;
   if (order < 2) return;
   context_.report("second order", kCurving);
@@ -254,7 +254,7 @@ void MeshMaker::curve(MeshAttempt& a) const {
 /// The estimate behind mesh.tets knows the shape from a few thousand samples. Where it is far off, the number of tets
 /// at one h gives the next, before anything is moved. Few tets jump with h, to either side of the number asked for.
 MeshAttempt MeshMaker::attempt_for_tets(double h, const MakeBackground& make, const MeshAttempt* former) {
-  const auto asked = static_cast<double>(parameters_.mesh().tets);
+  const auto asked = static_cast<double>(options_.mesh.tets);
   if (asked == 0) return attempt(make(h), h, former);
   double nearest = h, least_miss = std::numeric_limits<double>::infinity();
   std::optional<double> makes_more, makes_less;
@@ -276,11 +276,12 @@ MeshAttempt MeshMaker::attempt_for_tets(double h, const MakeBackground& make, co
 
 MeshAttempt MeshMaker::graded(BackgroundChoice& backgrounds, double h, const MakeBackground& make) {
   return refined_attempt(
-      h, parameters_.mesh().effort,
+      h, options_.mesh.effort,
       [&](double h_of, const MeshAttempt* former) { return attempt_for_tets(h_of, make, former); },
       [&](const MeshAttempt& a) -> std::optional<double> {
-        const std::optional<double> finer = backgrounds.refine(finer_where_it_failed(a, domain_.shift, parameters_.mesh().effort), a.h);
-        const auto most = static_cast<double>(parameters_.mesh().max_tets);
+        const std::optional<double> finer =
+            backgrounds.refine(finer_where_it_failed(a, domain_.shift, options_.mesh.effort), a.h);
+        const auto most = static_cast<double>(options_.mesh.max_tets);
         return finer && backgrounds.expected_tets(domain_, *finer) <= most ? finer : std::nullopt;
       },
       [this](const std::string& line) { say(line); });
@@ -288,14 +289,14 @@ MeshAttempt MeshMaker::graded(BackgroundChoice& backgrounds, double h, const Mak
 
 MeshAttempt MeshMaker::best(BackgroundChoice& backgrounds, const EdgeLength& choice, const MakeBackground& make) {
   MeshAttempt best = search(backgrounds, choice, make);
-  const MeshParameters& p = parameters_.mesh();
+  const MeshOptions& p = options_.mesh;
   best.measured.search = {n_attempts_, p.h > 0 || p.tets > 0, choice.at_max_tets};
   return best;
 }
 
 MeshAttempt MeshMaker::search(BackgroundChoice& backgrounds, const EdgeLength& choice, const MakeBackground& make) {
   if (backgrounds.is_graded()) return graded(backgrounds, choice.h, make);
-  const double effort = parameters_.mesh().effort;
+  const double effort = options_.mesh.effort;
   MeshAttempt of_one_h = best_attempt(
       choice, effort, [&](double h) { return attempt_for_tets(h, make); },
       [this](const std::string& line) { say(line); });

@@ -6,16 +6,16 @@
 #include <utility>
 #include <vector>
 
+#include "body/body.h"
+#include "body/options.h"
+#include "body/pieces/zero_set_choice.h"
+#include "body/search/mesh_attempts.h"
+#include "body/search/part_maker.h"
+#include "body/sizing/background_choice.h"
+#include "body/sizing/thick_body.h"
 #include "common/context.h"
 #include "mesh/background/background_mesh.h"
 #include "mesh/universal_mesh.h"
-#include "pipeline/case/parameters.h"
-#include "body/sizing/background_choice.h"
-#include "body/body.h"
-#include "body/sizing/thick_body.h"
-#include "body/pieces/zero_set_choice.h"
-#include "body/search/mesh_attempts.h"
-#include "pipeline/meshing/part_mesher.h"
 
 namespace umtet {
 
@@ -27,16 +27,15 @@ struct MeshLines {
 
 using MakeBackground = std::function<SizedBackground(double h)>;
 
-/// Meshes a domain and measures what came out, as the section `mesh` of the parameters says: the one way that leads to
-/// the meshes of `umtet mesh`, `umtet evolve` and Python's umtet.mesh.
+/// Meshes a domain and measures what came out, as MeshOptions says: the one way that leads to the meshes of `umtet
+/// mesh`, `umtet evolve` and Python's umtet.mesh.
 class MeshMaker {
  public:
-  /// The domain and the parameters stay where they are. The context is told of "components", the steps of
+  /// The domain stays where it is. The context is told of "components", the steps of
   /// choose_submesh() and fit_submesh(), "certify" and "second order"; fractions are those of one attempt.
   /// @param ranks  make the mesh, where several processes do; null: this one does
   /// \throw UsageError as um_params()
-  MeshMaker(Domain& domain, const Parameters& parameters, Context context, MeshLines lines = {},
-            PartMesher* ranks = nullptr);
+  MeshMaker(Domain& domain, BodyOptions options, Context context, MeshLines lines = {}, PartMaker* ranks = nullptr);
 
   /// psi, cut for h, meshed in this background. A mesh whose certificate fails is a result; so is none.
   /// \throw MeshingImpossible  no sample is near psi = 0; Cancelled
@@ -84,11 +83,11 @@ class MeshMaker {
   }
 
   Domain& domain_;
-  const Parameters& parameters_;
+  const BodyOptions options_;
   const Context context_;
   const MeshLines lines_;
   const UmParams params_;
-  PartMesher* const ranks_;
+  PartMaker* const ranks_;
   std::optional<std::pair<double, ZeroSetChoice>> pieces_;  ///< of psi cut for the h beside them
   int n_levels_ = 0;                                        ///< of psi then; 0: a formula
   int n_attempts_ = 0;

@@ -9,84 +9,67 @@
 #include <string>
 #include <utility>
 
+#include "body/errors.h"
+#include "body/sizing/mesh_memory.h"
 #include "mesh/background/a15_box.h"
 #include "mesh/base/id_set.h"
 #include "mesh/core/asking_psi.h"
-#include "mesh/io/tet_mesh_io.h"
 #include "mesh/octree/graded_mesh.h"
 #include "mesh/sizes/graded_size.h"
-#include "pipeline/case/exit_code.h"
-#include "pipeline/case/memory.h"
 #include "reconstruct/solve/resolution.h"
 
 namespace umtet {
-namespace fs = std::filesystem;
-namespace {
 
-BackgroundMesh read_background(const fs::path& file, const Vec3& shift) {
-  TetMesh mesh = read_tet_mesh(file).mesh;
-  for (Vec3& x : mesh.V) x -= shift;
-  try {
-    return BackgroundMesh(std::move(mesh));
-  } catch (const std::invalid_argument& e) {
-    throw MeshFileRefused(file, "as a background mesh", e.what());
-  }
+const Tiling& tiling_of(const MeshOptions& options) {
+  return options.background == "auto" ? a15() : tiling_named(options.background);
 }
 
-}  // namespace
-
-const Tiling& tiling_of(const Parameters& parameters) {
-  const std::string& name = parameters.mesh().background;
-  return name == "auto" ? a15() : tiling_named(name);
-}
-
-std::optional<fs::path> background_file(const Parameters& parameters) {
-  const std::string& name = parameters.mesh().background;
+bool has_own_background(const BodyOptions& options) {
+  const std::string& name = options.mesh.background;
   const auto names = tiling_names();
-  const bool is_named = name == "auto" || is_graded(parameters);
-  if (is_named || std::find(names.begin(), names.end(), name) != names.end()) return std::nullopt;
-  return name;
+  return name != "auto" && name != "graded" && std::find(names.begin(), names.end(), name) == names.end();
 }
 
-void require_walls(const Parameters& parameters) {
-  const bool walls = parameters.mesh().box_walls;
-  const std::string& name = parameters.mesh().background;
-  const bool is_a15 = name == "a15" || (name == "auto" && !is_graded(parameters));
+void require_walls(const BodyOptions& options) {
+  const bool walls = options.mesh.box_walls;
+  const std::string& name = options.mesh.background;
+  const bool is_a15 = name == "a15" || (name == "auto" && !is_graded(options));
   if (walls && !is_a15) throw UsageError("--box-walls is for --background a15");
-  if (walls || !parameters.mesh().complement) return;
+  if (walls || !options.mesh.complement) return;
   throw UsageError("--complement needs --box-walls: what is around the body ends at the flat walls of --box");
 }
 
-ClassificationSource classification_source(const Parameters& parameters) {
-  const bool is_tiling = !is_graded(parameters) && !background_file(parameters);
-  const bool chosen = parameters.mesh().mode == MeshingMode::Fast && !parameters.mesh().box_walls && is_tiling;
+ClassificationSource classification_source(const BodyOptions& options) {
+  const bool is_tiling = !is_graded(options) && !has_own_background(options);
+  const bool chosen = options.mesh.mode == UmMode::Fast && !options.mesh.box_walls && is_tiling;
   return chosen ? ClassificationSource::Chosen : ClassificationSource::Psi;
 }
 
-BackgroundChoice::BackgroundChoice(const Parameters& parameters, const Domain& domain)
-    : parameters_(parameters),
-      is_ours_(parameters.mesh().background == "auto" && !umtet::is_graded(parameters)),
+BackgroundChoice::BackgroundChoice(BodyOptions options, const Domain& domain)
+    : options_(std::move(options)),
+      is_ours_(options_.mesh.background == "auto" && !umtet::is_graded(options_)),
       tiling_(&a15()),
-      source_(classification_source(parameters)),
-      walls_(parameters.mesh().box_walls) {
-  require_walls(parameters);
-  require_graded(parameters);
-  if (umtet::is_graded(parameters)) {
-    graded_.emplace(parameters, domain.shift);
+      source_(classification_source(options_)),
+      walls_(options_.mesh.box_walls) {
+  require_walls(options_);
+  require_graded(options_);
+  if (umtet::is_graded(options_)) {
+    graded_.emplace(options_, domain.shift);
     return;
   }
-  const std::optional<fs::path> file = background_file(parameters);
-  if (!file) tiling_ = &tiling_of(parameters);
-  if (!file) return;
-  if (parameters.mesh().h > 0 || parameters.mesh().tets > 0) {
-    throw UsageError("--h and --tets: " + file->string() + " has its own edge lengths");
+  const bool is_given = has_own_background(options_);
+  if (!is_given) tiling_ = &tiling_of(options_.mesh);
+  if (!is_given) return;
+  if (options_.mesh.h > 0 || options_.mesh.tets > 0) {
+    throw UsageError("--h and --tets: " + options_.mesh.background + " has its own edge lengths");
   }
-  given_.emplace(read_background(*file, domain.shift));
+  if (!options_.background) throw UsageError("mesh.background = " + options_.mesh.background + ": unknown");
+  given_.emplace(options_.background(domain.shift));
 }
 
 bool BackgroundChoice::may_be_graded(const Domain& domain) const {
-  const MeshParameters& p = parameters_.mesh();
-  return is_ours_ && (domain.level_set || domain.labels) && p.mode == MeshingMode::Fast && !walls_ && p.h == 0 &&
+  const MeshOptions& p = options_.mesh;
+  return is_ours_ && (domain.level_set || domain.labels) && p.mode == UmMode::Fast && !walls_ && p.h == 0 &&
          p.max_deviation == 0;
 }
 
@@ -99,7 +82,7 @@ void BackgroundChoice::grade_if_worth_it(Domain& domain, const EdgeLength& one, 
   constexpr double kFewFaces = 1. / 3;
   if (one.needed > least || one.graded_faces > kFewFaces) return;
   const double uniform = umtet::expected_tets(*tiling_, domain.size(), one.needed, source_);
-  GradedSizes sizes(parameters_, domain.shift);
+  GradedSizes sizes(options_, domain.shift);
   if (!sizes.add(domain, context, uniform / kWorthIt)) return;
   const double h = sizes.finest();
   Known graded{h, std::make_shared<const SizeField>(sizes.field(h, context)), {}};
@@ -113,7 +96,7 @@ void BackgroundChoice::grade_if_worth_it(Domain& domain, const EdgeLength& one, 
 EdgeLength BackgroundChoice::edge_length(Domain& domain, const Context& context) {
   if (given_) return {given_->h(), given_->h()};
   if (!graded_) {
-    const EdgeLength uniform = choose_edge_length(domain, parameters_, context);
+    const EdgeLength uniform = choose_edge_length(domain, options_, context);
     if (!is_decided_ && may_be_graded(domain)) grade_if_worth_it(domain, uniform, context);
     is_decided_ = true;
     return graded_ ? graded_edge_length(domain, context) : uniform;
@@ -125,7 +108,7 @@ EdgeLength BackgroundChoice::edge_length(Domain& domain, const Context& context)
 
 std::optional<EdgeLength> BackgroundChoice::grade(Domain& domain, const Context& context) {
   if (graded_ || !may_be_graded(domain)) return std::nullopt;
-  GradedSizes sizes(parameters_, domain.shift);
+  GradedSizes sizes(options_, domain.shift);
   sizes.add(domain, context);
   graded_.emplace(std::move(sizes));
   known_.reset();
@@ -133,7 +116,7 @@ std::optional<EdgeLength> BackgroundChoice::grade(Domain& domain, const Context&
 }
 
 EdgeLength BackgroundChoice::graded_edge_length(const Domain& domain, const Context& context) const {
-  const MeshParameters& p = parameters_.mesh();
+  const MeshOptions& p = options_.mesh;
   if (p.tets > 0) {
     const double h = h_of_graded_tets(*graded_, domain, static_cast<double>(p.tets), context);
     return representable({h, h}, domain);
@@ -143,7 +126,7 @@ EdgeLength BackgroundChoice::graded_edge_length(const Domain& domain, const Cont
     return representable({h, p.h > 0 ? h : h * h_ratio_of_tets(n / static_cast<double>(p.max_tets))}, domain);
   }
   const double least = h_of_graded_tets(*graded_, domain, static_cast<double>(p.max_tets), context);
-  if (p.h > 0 || p.max_deviation > 0 || !p.size.empty() || !p.size_at.empty()) {
+  if (p.h > 0 || p.max_deviation > 0 || options_.sizes || options_.label_sizes) {
     throw ResourceLimit(
         fmt::format("these sizes, {:.4g} where they are least, make about {:.2g} tets: raise --max-tets "
                     "{}, or ask for sizes that are {:.2g} times as large",
@@ -172,9 +155,9 @@ double BackgroundChoice::expected_tets(const Domain& domain, double h) const {
 }
 
 double BackgroundChoice::least_h(const Domain& domain) const {
-  if (!graded_) return least_h_of_max_tets(domain, parameters_);
+  if (!graded_) return least_h_of_max_tets(domain, options_);
   const double h = graded_->finest();
-  return h * h_ratio_of_tets(expected_tets(domain, h) / static_cast<double>(parameters_.mesh().max_tets));
+  return h * h_ratio_of_tets(expected_tets(domain, h) / static_cast<double>(options_.mesh.max_tets));
 }
 
 /// Of cubes that meet the box. Where one body alone has been asked for: first without those that the slope of psi shows

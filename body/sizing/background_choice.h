@@ -1,31 +1,31 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <optional>
 
-#include "mesh/background/background_mesh.h"
-#include "mesh/sizes/body_size.h"
-#include "pipeline/case/parameters.h"
 #include "body/body.h"
+#include "body/options.h"
 #include "body/sizing/edge_length.h"
 #include "body/sizing/graded_sizes.h"
+#include "mesh/background/background_mesh.h"
+#include "mesh/sizes/body_size.h"
 
 namespace umtet {
 
-/// The tiling that mesh.background names; a15() where it leaves the choice to us. \throw std::invalid_argument  a file
-const Tiling& tiling_of(const Parameters&);
+/// The tiling that `background` names; a15() where it leaves the choice to us.
+/// \throw std::invalid_argument  it names none
+const Tiling& tiling_of(const MeshOptions&);
 
-/// The mesh file that mesh.background names, if it is no tiling and not graded.
-std::optional<std::filesystem::path> background_file(const Parameters&);
+/// The caller brings the background mesh: `mesh.background` is no tiling and not graded.
+bool has_own_background(const BodyOptions&);
 
-/// \throw UsageError for mesh.box_walls with another background than a15, or mesh.complement without mesh.box_walls
-void require_walls(const Parameters&);
+/// \throw UsageError  mesh.box_walls with another background than a15, or mesh.complement without mesh.box_walls
+void require_walls(const BodyOptions&);
 
-/// What classifies the vertices in a mesh of these parameters: fast mode chooses in backgrounds that are a tiling and
+/// What classifies the vertices in a mesh of these options: fast mode chooses in backgrounds that are a tiling and
 /// have no walls.
-ClassificationSource classification_source(const Parameters&);
+ClassificationSource classification_source(const BodyOptions&);
 
 /// A background mesh, the box that it was asked to cover, and the sizes that it was made for if it is graded.
 struct SizedBackground {
@@ -34,21 +34,21 @@ struct SizedBackground {
   std::shared_ptr<const SizeField> sizes = nullptr;
 };
 
-/// What --background and --box-walls ask for: a lattice or a box of any edge length, a graded mesh of any edge length
-/// at its finest place, or a mesh that has its own.
+/// What MeshOptions::background and box_walls ask for: a lattice or a box of any edge length, a graded mesh of any edge
+/// length at its finest place, or a mesh that has its own.
 class BackgroundChoice {
  public:
-  /// Reads the file, if it is one, or that of sizes. Coordinates in it are model coordinates.
-  /// \throw UsageError when h or a number of tets is given for a file, or as require_walls() and GradedSizes;
-  ///        MeshFileRefused, std::system_error
-  BackgroundChoice(const Parameters& parameters, const Domain& domain);
+  /// Takes the background of the caller, if there is one, or the sizes.
+  /// \throw UsageError  h or a number of tets is given for a background of the caller, or as require_walls() and
+  ///        GradedSizes; what the functions of the options throw
+  BackgroundChoice(BodyOptions options, const Domain& domain);
 
-  /// That of the file.
+  /// That of the caller's background.
   std::optional<double> own_h() const { return given_ ? std::optional(given_->h()) : std::nullopt; }
-  /// That of the file, of the sizes that this domain and all former ones ask for, or choose_edge_length(). Where
-  /// mesh.background is auto and neither --h nor --max-deviation is given, the first domain decides, if it is a level
-  /// set of samples: a graded mesh where that takes less than half the tets of the one h that its thin parts need.
-  /// \throw as choose_edge_length() and GradedSizes::add()
+  /// That of the caller's background, of the sizes that this domain and all former ones ask for, or
+  /// choose_edge_length(). Where the background is "auto" and neither h nor max_deviation is given, the first domain
+  /// decides, if it is a level set of samples: a graded mesh where that takes less than half the tets of the one h that
+  /// its thin parts need. \throw as choose_edge_length() and GradedSizes::add()
   EdgeLength edge_length(Domain& domain, const Context& context = {});
   /// Where the choice is ours and one h has not shown all of this domain: takes the sizes that it asks for.
   /// @return none where the choice is not ours, as above. \throw as edge_length()
@@ -78,7 +78,7 @@ class BackgroundChoice {
   const std::shared_ptr<const SizeField>& sizes_for(double h) const;
   BackgroundMesh graded(const Domain& domain, double h, const Context& context) const;
 
-  const Parameters& parameters_;
+  const BodyOptions options_;
   std::optional<BackgroundMesh> given_;
   std::optional<GradedSizes> graded_;
   /// What has been asked of graded_ last.
@@ -91,7 +91,7 @@ class BackgroundChoice {
   const bool is_ours_;       ///< mesh.background is auto, and no sizes are given
   bool is_decided_ = false;  ///< by the first domain
   double uniform_tets_ = 0;
-  const Tiling* tiling_;  ///< that the number of tets is estimated by, for a file too
+  const Tiling* tiling_;  ///< that the number of tets is estimated by, for a background of the caller, too
   ClassificationSource source_;
   bool walls_;
 };

@@ -4,10 +4,10 @@
 #include <limits>
 #include <vector>
 
+#include "body/pieces/zero_set_choice.h"
 #include "common/polled_loops.h"
 #include "mesh/core/asking_psi.h"
 #include "mesh/implicit/curvature.h"
-#include "body/pieces/zero_set_choice.h"
 
 namespace umtet {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "common/context.h"
 #include "body/body.h"
+#include "common/context.h"
 
 namespace umtet {
 

@@ -10,16 +10,16 @@
 #include <utility>
 #include <vector>
 
+#include "body/errors.h"
+#include "body/label_volume.h"
+#include "body/pieces/zero_set_choice.h"
+#include "body/sizing/background_choice.h"
+#include "body/sizing/deviation.h"
+#include "body/sizing/thick_body.h"
 #include "mesh/certify/quality_report.h"
 #include "mesh/implicit/foot_point.h"
 #include "mesh/implicit/thickness.h"
 #include "mesh/sizes/body_size.h"
-#include "pipeline/case/exit_code.h"
-#include "body/sizing/background_choice.h"
-#include "body/sizing/deviation.h"
-#include "body/label_volume.h"
-#include "body/sizing/thick_body.h"
-#include "body/pieces/zero_set_choice.h"
 #include "reconstruct/cloud/cloud_arrays.h"
 #include "reconstruct/cloud/neighbour_tree.h"
 #include "reconstruct/solve/resolution.h"
@@ -42,10 +42,10 @@ constexpr double kMostRounding = 1e-6;
 constexpr std::size_t kThicknessSamples = 20000;
 
 /// \throw MeshingImpossible when psi < 0 at none of the places where it is sampled
-double h_of(const Domain& domain, const Parameters& parameters, std::int64_t n_tets) {
+double h_of(const Domain& domain, const BodyOptions& options, std::int64_t n_tets) {
   try {
-    return h_for_tets(tiling_of(parameters), domain.size(), static_cast<double>(n_tets),
-                      classification_source(parameters));
+    return h_for_tets(tiling_of(options.mesh), domain.size(), static_cast<double>(n_tets),
+                      classification_source(options));
   } catch (const std::invalid_argument& e) {
     throw MeshingImpossible(std::string("no edge length can be chosen: ") + e.what() +
                             "; give --h, or a --box around the place where psi < 0");
@@ -53,11 +53,11 @@ double h_of(const Domain& domain, const Parameters& parameters, std::int64_t n_t
 }
 
 /// \throw ResourceLimit
-void refuse_too_many(const Domain& domain, const Parameters& parameters, double h) {
-  const std::int64_t max_tets = parameters.mesh().max_tets;
+void refuse_too_many(const Domain& domain, const BodyOptions& options, double h) {
+  const std::int64_t max_tets = options.mesh.max_tets;
   double least = 0;
   try {
-    least = h_of(domain, parameters, max_tets);
+    least = h_of(domain, options, max_tets);
   } catch (const MeshingImpossible&) {
     return;  // the domain is smaller than the grid of the estimate: so are its tets few
   }
@@ -151,16 +151,16 @@ constexpr double kThinTriangles = .005;
 
 /// Of triangles, which say where a body is thin; psi may be thinner where it is fitted badly. However thin it is, two
 /// layers of tets go through: h follows the number of tets.
-EdgeLength of_triangles(Domain& domain, const Parameters& parameters, const Context& context) {
+EdgeLength of_triangles(Domain& domain, const BodyOptions& options, const Context& context) {
   const double of_size = kMeshEdge * domain.diagonal;
-  const double least = h_of(domain, parameters, parameters.mesh().max_tets);
+  const double least = h_of(domain, options, options.mesh.max_tets);
   const TriangleThickness thickness = triangle_thickness(domain, kEdgesAcross * of_size, context);
   const double thin = thickness.share(kThinTriangles);
   double h = of_size;
   if (thin < kEdgesAcross * of_size) {
     const auto n_tets = [&](double edge) {
-      return expected_tets(tiling_of(parameters), thickened_size(domain.size(), thickness, edge), edge,
-                           classification_source(parameters));
+      return expected_tets(tiling_of(options.mesh), thickened_size(domain.size(), thickness, edge), edge,
+                           classification_source(options));
     };
     double low = thin / kEdgesAcross, high = of_size;
     if (n_tets(low) <= kTetsOfThinBody) high = low;
@@ -183,9 +183,9 @@ double edge_of_volume(const LabelVolume& labels) {
 }
 
 /// By curvature. \throw ResourceLimit
-EdgeLength by_deviation(Domain& domain, const Parameters& parameters, double deviation, const Context& context) {
-  const std::int64_t max_tets = parameters.mesh().max_tets;
-  const double least = h_of(domain, parameters, max_tets);
+EdgeLength by_deviation(Domain& domain, const BodyOptions& options, double deviation, const Context& context) {
+  const std::int64_t max_tets = options.mesh.max_tets;
+  const double least = h_of(domain, options, max_tets);
   const double h = h_for_deviation(domain, deviation, kMostOfDiagonal * domain.diagonal, least, context);
   if (h > least) return {h, least};
   throw ResourceLimit(
@@ -195,14 +195,14 @@ EdgeLength by_deviation(Domain& domain, const Parameters& parameters, double dev
 }
 
 /// The choice, without regard to how it will be written.
-EdgeLength choose(Domain& domain, const Parameters& parameters, const Context& context) {
-  const MeshParameters& p = parameters.mesh();
+EdgeLength choose(Domain& domain, const BodyOptions& options, const Context& context) {
+  const MeshOptions& p = options.mesh;
   if (p.tets == 0 && p.h > 0) {
-    refuse_too_many(domain, parameters, p.h);
+    refuse_too_many(domain, options, p.h);
     return {p.h, p.h};
   }
-  if (p.tets == 0 && p.max_deviation > 0) return by_deviation(domain, parameters, p.max_deviation, context);
-  if (p.tets == 0 && may_be_thickened(domain, parameters)) return of_triangles(domain, parameters, context);
+  if (p.tets == 0 && p.max_deviation > 0) return by_deviation(domain, options, p.max_deviation, context);
+  if (p.tets == 0 && may_be_thickened(domain, options)) return of_triangles(domain, options, context);
   const double of_diagonal = kMeshEdge * domain.diagonal;
   const double least_of_volume = domain.labels ? edge_of_volume(*domain.labels) : of_diagonal;
   const double of_size = std::min(of_diagonal, least_of_volume), limit = kEdgesAcross * of_size;
@@ -210,11 +210,11 @@ EdgeLength choose(Domain& domain, const Parameters& parameters, const Context& c
   const double t = thin.thickness;
   const double of_noise = noise_edge(domain), needed = std::max(std::min(of_size, t / kEdgesAcross), of_noise);
   if (p.tets > 0) {
-    const double h = h_of(domain, parameters, p.tets);
+    const double h = h_of(domain, options, p.tets);
     return {.h = h, .least = h, .needed = needed, .graded_faces = thin.faces};
   }
-  const double least = h_of(domain, parameters, p.max_tets);
-  double h = edge_length_by(of_size, t, [&] { return h_of(domain, parameters, kTetsOfLargeMesh); });
+  const double least = h_of(domain, options, p.max_tets);
+  double h = edge_length_by(of_size, t, [&] { return h_of(domain, options, kTetsOfLargeMesh); });
   // The voxels have nothing finer, unless a part is thin.
   if (domain.labels) h = std::max(h, std::min(kLeastOfVoxel * domain.labels->step(), t / kEdgesAcross));
   const bool at_max_tets = least > std::max(h, of_noise);
@@ -246,16 +246,16 @@ double coordinate_rounding(const Domain& domain) {
   return rounding.norm();
 }
 
-double least_h_of_max_tets(const Domain& domain, const Parameters& parameters) {
-  return h_of(domain, parameters, parameters.mesh().max_tets);
+double least_h_of_max_tets(const Domain& domain, const BodyOptions& options) {
+  return h_of(domain, options, options.mesh.max_tets);
 }
 
 double least_h_in_file(const Domain& domain) { return coordinate_rounding(domain) / kMostRounding; }
 
 double noise_edge(const Domain& domain) { return domain.noise.value_or(0) / kMostNoise; }
 
-EdgeLength choose_edge_length(Domain& domain, const Parameters& parameters, const Context& context) {
-  return representable(choose(domain, parameters, context), domain);
+EdgeLength choose_edge_length(Domain& domain, const BodyOptions& options, const Context& context) {
+  return representable(choose(domain, options, context), domain);
 }
 
 EdgeLength representable(EdgeLength choice, const Domain& domain) {

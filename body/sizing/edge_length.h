@@ -4,9 +4,9 @@
 #include <functional>
 #include <optional>
 
-#include "common/context.h"
-#include "pipeline/case/parameters.h"
 #include "body/body.h"
+#include "body/options.h"
+#include "common/context.h"
 
 namespace umtet {
 
@@ -24,9 +24,9 @@ struct EdgeLength {
   double h;      ///< model units
   double least;  ///< the h that makes about mesh.max_tets tets if the choice of h was left to us, else h
   std::optional<double> of_thin_parts = {};  ///< where noise decided: what these alone would have asked for
-  double needed = h;        ///< that noise allows and that gives thin parts 2.2 edges, however many tets that makes
+  double needed = h;         ///< that noise allows and that gives thin parts 2.2 edges, however many tets that makes
   bool at_max_tets = false;  ///< mesh.max_tets keeps h larger than thin parts ask for
-  double graded_faces = 1;  ///< about the share of boundary faces that edges in proportion to thickness would make
+  double graded_faces = 1;   ///< about the share of boundary faces that edges in proportion to thickness would make
 };
 
 /// The edge length of the background mesh.
@@ -39,7 +39,7 @@ struct EdgeLength {
 /// @param domain  where psi has to be cut to choose h, it stays cut
 /// \throw ResourceLimit      mesh.h or mesh.max_deviation asks for more than mesh.max_tets tets
 /// \throw MeshingImpossible  psi < 0 nowhere, or an h below least_h_in_file()
-EdgeLength choose_edge_length(Domain& domain, const Parameters& parameters, const Context& context = {});
+EdgeLength choose_edge_length(Domain& domain, const BodyOptions& options, const Context& context = {});
 
 /// The default h of a body, as far as neither noise nor mesh.max_tets decides: see choose_edge_length().
 /// @param of_size   .015 diagonal
@@ -51,7 +51,7 @@ double edge_length_by(double of_size, double thin, const std::function<double()>
 inline constexpr std::int64_t kTetsOfLargeMesh = 1'150'000;
 
 /// The h at which about mesh.max_tets tets are made. \throw MeshingImpossible  psi < 0 nowhere
-double least_h_of_max_tets(const Domain& domain, const Parameters& parameters);
+double least_h_of_max_tets(const Domain& domain, const BodyOptions& options);
 
 /// The h of which the noise of the samples is as much as it may be: .3; 0 without noise.
 double noise_edge(const Domain& domain);

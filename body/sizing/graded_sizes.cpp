@@ -5,18 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <memory>
+#include <map>
 #include <numbers>
+#include <utility>
 
+#include "body/errors.h"
+#include "body/pieces/zero_set_choice.h"
+#include "body/sizing/edge_length.h"
 #include "common/polled_loops.h"
 #include "mesh/core/asking_psi.h"
 #include "mesh/sizes/graded_size.h"
 #include "mesh/sizes/surface_sizes.h"
-#include "pipeline/case/exit_code.h"
-#include "pipeline/case/label_names.h"
-#include "body/sizing/edge_length.h"
-#include "pipeline/domain/size_file.h"
-#include "body/pieces/zero_set_choice.h"
 #include "reconstruct/solve/resolution.h"
 
 namespace umtet {
@@ -34,24 +33,20 @@ constexpr double kPower = 2.5;
 constexpr double kGoodEnough = .05;
 constexpr int kMostRounds = 6;
 
-std::map<int, double> label_sizes(const Parameters& p) {
-  return parse_label_sizes(p.mesh().size_at, parse_label_names(p.output().label_names));
-}
-
 /// The flags of sizes that are given.
-std::vector<std::string> given_sizes(const Parameters& parameters) {
-  const MeshParameters& p = parameters.mesh();
+std::vector<std::string> given_sizes(const BodyOptions& options) {
+  const MeshOptions& p = options.mesh;
   std::vector<std::string> flags;
   const auto note = [&](bool is_given, const char* flag) {
     if (is_given) flags.emplace_back(flag);
   };
-  note(!p.size.empty(), "--size");
-  note(!p.size_at.empty(), "--size-at");
+  note(static_cast<bool>(options.sizes), "--size");
+  note(static_cast<bool>(options.label_sizes), "--size-at");
   note(p.h_min > 0, "--h-min");
   note(p.h_max > 0, "--h-max");
   note(p.grade_inside, "--grade-inside");
-  note(parameters.source(keys::mesh::max_turn) >= ParamSource::Set, "--max-turn");
-  note(parameters.source(keys::mesh::grade) >= ParamSource::Set, "--grade");
+  note(options.max_turn_is_given, "--max-turn");
+  note(options.grade_is_given, "--grade");
   return flags;
 }
 
@@ -82,14 +77,15 @@ std::vector<Vec3> places_inside(const Domain& domain, const Context& context) {
 
 }  // namespace
 
-bool is_graded(const Parameters& p) {
-  return p.mesh().background == "graded" || (p.mesh().background == "auto" && !given_sizes(p).empty());
+bool is_graded(const BodyOptions& options) {
+  const std::string& background = options.mesh.background;
+  return background == "graded" || (background == "auto" && !given_sizes(options).empty());
 }
 
-void require_graded(const Parameters& parameters) {
-  const MeshParameters& p = parameters.mesh();
-  if (!is_graded(parameters)) {
-    const std::vector<std::string> flags = given_sizes(parameters);
+void require_graded(const BodyOptions& options) {
+  const MeshOptions& p = options.mesh;
+  if (!is_graded(options)) {
+    const std::vector<std::string> flags = given_sizes(options);
     if (!flags.empty()) throw UsageError(fmt::format("{} is for --background graded", flags.front()));
     return;
   }
@@ -97,30 +93,23 @@ void require_graded(const Parameters& parameters) {
     throw UsageError(fmt::format("--h-min {} is above --h-max {}", p.h_min, p.h_max));
   }
   if (p.h > 0 && p.h_min > p.h) throw UsageError(fmt::format("--h-min {} is above --h {}", p.h_min, p.h));
-  if (p.grade_inside && !(p.max_deviation == 0 && p.size_at.empty() && p.size.empty())) {
+  if (p.grade_inside && !(p.max_deviation == 0 && !options.sizes && !options.label_sizes)) {
     throw UsageError("--grade-inside keeps --h on all of the boundary: without --max-deviation, --size and --size-at");
   }
-  label_sizes(parameters);
+  if (options.label_sizes) options.label_sizes();
 }
 
-GradedSizes::GradedSizes(const Parameters& parameters, const Vec3& shift) : parameters_(parameters), shift_(shift) {
-  const std::string& size = parameters.mesh().size;
-  if (is_size_file(size)) {
-    asked_ = read_sizes(size);
-    for (SizeSource& s : asked_) s.x -= shift;
-  } else if (!size.empty()) {
-    try {
-      const auto formula = std::make_shared<const Expression>(size);
-      formula_ = [formula, shift](const Vec3& x) { return formula->value(x + shift); };
-    } catch (const ExpressionError& e) {
-      throw UsageError(
-          fmt::format("--size is neither a .vtu, .csv, .xyz or .txt file nor a formula of x, y and z: {}", e.what()));
-    }
-  }
+GradedSizes::GradedSizes(BodyOptions options, const Vec3& shift) : options_(std::move(options)), shift_(shift) {
+  if (!options_.sizes) return;
+  GivenSizes given = options_.sizes();
+  asked_ = std::move(given.sources);
+  for (SizeSource& s : asked_) s.x -= shift;
+  if (given.function) formula_ = [f = std::move(given.function), shift](const Vec3& x) { return f(x + shift); };
+  formula_name_ = std::move(given.name);
 }
 
 bool GradedSizes::add(Domain& domain, const Context& context, double most_tets) {
-  const MeshParameters& p = parameters_.mesh();
+  const MeshOptions& p = options_.mesh;
   const double largest = p.h_max > 0 ? p.h_max : std::numeric_limits<double>::infinity();
   const double of_noise = noise_edge(domain);
   SurfaceSizeParams s;
@@ -134,7 +123,7 @@ bool GradedSizes::add(Domain& domain, const Context& context, double most_tets) 
   // Edges may be kSizeTolerance as long as the size: what may not be exceeded asks for as much less.
   s.edges_across *= kSizeTolerance;
   s.max_turn = p.max_turn * std::numbers::pi / 180 / kSizeTolerance;
-  if (parameters_.source(keys::mesh::max_turn) >= ParamSource::Set) {
+  if (options_.max_turn_is_given) {
     s.least_by_turn = s.h_min / s.h;
   } else {
     s.noise = domain.noise.value_or(0);
@@ -161,13 +150,13 @@ bool GradedSizes::add(Domain& domain, const Context& context, double most_tets) 
       surface_sizes(domain.psi(), points, std::max(pieces.topology.spacing, s.h), s, context, make_too_many);
   if (too_many) return false;
   sources_.insert(sources_.end(), on_surface.begin(), on_surface.end());
-  const std::map<int, double> of_label = label_sizes(parameters_);
-  if (!of_label.empty() && domain.cloud.labels.empty()) {
-    throw UsageError("--size-at " + p.size_at + ": the points have no labels");
+  const LabelSizes of_label = options_.label_sizes ? options_.label_sizes() : LabelSizes();
+  if (!of_label.factors.empty() && domain.cloud.labels.empty()) {
+    throw UsageError("--size-at " + of_label.name + ": the points have no labels");
   }
   for (std::size_t i = 0; i < domain.cloud.labels.size(); ++i) {
-    const auto at = of_label.find(domain.cloud.labels[i]);
-    if (at == of_label.end()) continue;
+    const auto at = of_label.factors.find(domain.cloud.labels[i]);
+    if (at == of_label.factors.end()) continue;
     const double h = std::max(s.h_min, at->second * s.h);
     sources_.push_back({domain.cloud.points[i], h, std::max(p.constant_layer * h, 2 * domain.cloud_spacing)});
   }
@@ -180,7 +169,7 @@ bool GradedSizes::add(Domain& domain, const Context& context, double most_tets) 
 
 /// A formula that is no length in the body asks for tets without end, unless mesh.h_min says how far it is raised.
 void GradedSizes::require_lengths(const std::vector<Vec3>& inside) const {
-  if (!formula_ || parameters_.mesh().h_min > 0) return;
+  if (!formula_ || options_.mesh.h_min > 0) return;
   std::optional<Vec3> worst;
   double least = 0;
   const auto look = [&](const Vec3& x) {
@@ -196,7 +185,7 @@ void GradedSizes::require_lengths(const std::vector<Vec3>& inside) const {
   throw UsageError(fmt::format(
       "--size {} is {:.4g} at ({:.4g}, {:.4g}, {:.4g}), which is in the body: edge lengths are above 0. --h-min raises "
       "what is less",
-      parameters_.mesh().size, least, at.x(), at.y(), at.z()));
+      formula_name_, least, at.x(), at.y(), at.z()));
 }
 
 /// With what the user asks for: at the sources, and on a lattice inside.
@@ -216,7 +205,7 @@ void GradedSizes::find_finest(const Domain& domain, const Context& context) {
 }
 
 std::optional<double> GradedSizes::refine(const std::vector<SizeSource>& wanted, double h) {
-  const double factor = h / finest_, given = parameters_.mesh().h_min;
+  const double factor = h / finest_, given = options_.mesh.h_min;
   const double floor = given > 0 ? given : kLeastOfFloor * h_min_;
   const std::size_t n = finer_.size();
   double least = finest_;
@@ -233,13 +222,13 @@ std::optional<double> GradedSizes::refine(const std::vector<SizeSource>& wanted,
 }
 
 SizeField GradedSizes::field(double h, const Context& context) const {
-  const double factor = h / finest_, h_max = parameters_.mesh().h_max;
+  const double factor = h / finest_, h_max = options_.mesh.h_max;
   std::vector<SizeSource> all = asked_;
   all.insert(all.end(), sources_.begin(), sources_.end());
   for (SizeSource& s : all) s.h *= factor, s.radius *= factor;
-  SizeFieldParams params{.grade = parameters_.mesh().grade, .h_min = factor * h_min_};
+  SizeFieldParams params{.grade = options_.mesh.grade, .h_min = factor * h_min_};
   // The floor is for what thickness and curvature ask for; who asks for less by a file or a formula means it.
-  if (parameters_.mesh().h_min == 0) {
+  if (options_.mesh.h_min == 0) {
     for (const SizeSource& s : asked_) params.h_min = std::min(params.h_min, factor * s.h);
     if (formula_) params.h_min *= kLeastOfH;
   }

@@ -6,32 +6,32 @@
 #include <string>
 #include <vector>
 
+#include "body/body.h"
+#include "body/options.h"
 #include "common/context.h"
 #include "mesh/sizes/size_field.h"
-#include "pipeline/case/parameters.h"
-#include "body/body.h"
 
 namespace umtet {
 
-/// mesh.background asks for a graded mesh: by its name or, where it is auto, because sizes are given.
-bool is_graded(const Parameters&);
+/// The options ask for a graded mesh: by mesh.background or, where it is "auto", because sizes are given.
+bool is_graded(const BodyOptions&);
 
 /// \throw UsageError where sizes are given for a background that has its own, or sizes that contradict each other
-void require_graded(const Parameters&);
+void require_graded(const BodyOptions&);
 
 /// The edge lengths that a graded background is made for: what the boundary of one or more domains needs, and what the
 /// user asks for. They are known up to a factor, for a number of tets or for another attempt; h is always that of the
 /// smallest edges.
 class GradedSizes {
  public:
-  /// Reads mesh.size. @param shift  of the domains to come
-  /// \throw UsageError for a formula that is none; MeshFileRefused, std::system_error
-  GradedSizes(const Parameters& parameters, const Vec3& shift);
+  /// @param shift  of the domains to come
+  /// \throw what options.sizes throws
+  GradedSizes(BodyOptions options, const Vec3& shift);
 
   /// Takes in what psi = 0 of this domain asks for: mesh.h (or a tenth of the diagonal where mesh.max_deviation
   /// decides, else .015 of it), less by thickness, by the turn of the normal, by mesh.max_deviation and by
-  /// mesh.size_at; with mesh.grade_inside mesh.h alone. Not below mesh.h_min, or a sixteenth of h and what noise / .3
-  /// allows. psi is looked at with all the detail that sizes of h_min show; on return it is cut there.
+  /// BodyOptions::label_sizes; with mesh.grade_inside mesh.h alone. Not below mesh.h_min, or a sixteenth of h and what
+  /// noise / .3 allows. psi is looked at with all the detail that sizes of h_min show; on return it is cut there.
   /// @param most_tets  where some of the sizes already make more tets, the others are not looked for
   /// @return false then, and nothing was taken in
   /// \throw MeshingImpossible  psi = 0 nowhere in the box; UsageError, also for a formula that is not above 0 on
@@ -53,12 +53,13 @@ class GradedSizes {
   void require_lengths(const std::vector<Vec3>& inside) const;
   void find_finest(const Domain& domain, const Context& context);
 
-  const Parameters& parameters_;
+  const BodyOptions options_;
   const Vec3 shift_;
-  std::vector<SizeSource> asked_;               ///< by the user
+  std::vector<SizeSource> asked_;               ///< by the caller
   std::vector<SizeSource> finer_;               ///< where a mesh failed
-  std::function<double(const Vec3&)> formula_;  ///< the user's, or none
-  std::vector<SizeSource> sources_;             ///< of psi = 0
+  std::function<double(const Vec3&)> formula_;  ///< the caller's, or none
+  std::string formula_name_;
+  std::vector<SizeSource> sources_;  ///< of psi = 0
   Box box_;
   double h_min_ = 0, finest_ = 0;
   int n_domains_ = 0;

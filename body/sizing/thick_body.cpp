@@ -38,9 +38,9 @@ constexpr double kOfSlab = .75;
 
 }  // namespace
 
-bool may_be_thickened(const Domain& domain, const Parameters& parameters) {
+bool may_be_thickened(const Domain& domain, const BodyOptions& options) {
   return domain.triangles && domain.triangles->body.is_closed && domain.fitted && !domain.complement &&
-         classification_source(parameters) == ClassificationSource::Chosen;
+         classification_source(options) == ClassificationSource::Chosen;
 }
 
 double TriangleThickness::share(double part) const {

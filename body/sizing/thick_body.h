@@ -3,16 +3,17 @@
 #include <memory>
 #include <vector>
 
+#include "body/body.h"
+#include "body/options.h"
 #include "common/context.h"
 #include "mesh/core/implicit_function.h"
 #include "mesh/sizes/body_size.h"
-#include "body/body.h"
 
 namespace umtet {
 
 /// Whether vertices may be chosen by a body that has been thickened: that of closed triangles, in fast mode, without
 /// walls, in a background of one edge length.
-bool may_be_thickened(const Domain& domain, const Parameters& parameters);
+bool may_be_thickened(const Domain& domain, const BodyOptions& options);
 
 /// How thin the triangles of a body are, at samples that stand for equal areas of them.
 struct TriangleThickness {

@@ -7,10 +7,8 @@
 #include <numeric>
 #include <optional>
 
-#include "mesh/implicit/thickness.h"
-#include "mesh/io/tet_mesh_io.h"
-#include "pipeline/case/artefact.h"
 #include "body/pieces/clusters.h"
+#include "mesh/implicit/thickness.h"
 
 namespace umtet {
 namespace {
@@ -146,23 +144,6 @@ std::string described(const ThinPlaces& thin, const Vec3& shift) {
   }
   if (thin.places.size() > kListed) out += fmt::format("\n  and {} more", thin.places.size() - kListed);
   return out;
-}
-
-void write_thin_places(const std::filesystem::path& file, const ThinPlaces& thin, const Vec3& shift) {
-  std::vector<Vec3> points = thin.points;
-  std::vector<double> h_needed;
-  std::vector<std::int64_t> place;
-  std::vector<std::uint8_t> gap;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    points[i] += shift;
-    place.push_back(thin.place[i]);
-    h_needed.push_back(thin.places[thin.place[i]].h_needed);
-    gap.push_back(thin.places[thin.place[i]].is_gap);
-  }
-  write_artefact(file, [&](const std::filesystem::path& temporary) {
-    write_vtp(temporary, points,
-              {{"thickness", thin.thickness}, {"h_needed", h_needed}, {"place", place}, {"gap", gap}});
-  });
 }
 
 }  // namespace umtet

@@ -1,14 +1,11 @@
 #pragma once
 
-#include <Eigen/Geometry>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "body/body.h"
 #include "body/pieces/zero_set_choice.h"
-#include "body/fidelity/mesh_place.h"
-#include "body/sizing/thin_place.h"
+#include "body/thin_place.h"
 
 namespace umtet {
 
@@ -42,9 +39,5 @@ std::vector<ThinPlace> in_model(const ThinPlaces&, const Vec3& shift);
 
 /// The first few in words, a line each, without a newline at the end.
 std::string described(const ThinPlaces&, const Vec3& shift);
-
-/// The points with `thickness`, `h_needed`, `place` and `gap` (0/1), in model coordinates; complete or not at all.
-/// \throw std::system_error naming the file
-void write_thin_places(const std::filesystem::path& file, const ThinPlaces&, const Vec3& shift);
 
 }  // namespace umtet

@@ -2,16 +2,9 @@
 
 #include <optional>
 
-#include "pipeline/case/json_values.h"
-#include "pipeline/case/parameters.h"
+#include "body/options.h"
 
 namespace umtet {
-
-/// Levels of psi with a smaller spacing, in edges of the mesh, are left out: faces fold over detail they cannot follow.
-inline constexpr double kLeastSpacing = .7;
-
-/// The parameters that say how fine the mesh will be, as records keep them of stages that made nothing finer.
-Json wanted_mesh(const Parameters& parameters);
 
 /// The edge of the largest cells in which samples may be merged: half the spacing of the finest lattice that the mesh
 /// uses, .35 h, where the fit itself takes the mean of samples. Where h is left to us it may become half of what it is
@@ -20,13 +13,13 @@ Json wanted_mesh(const Parameters& parameters);
 /// merged: mesh.max_deviation, sizes, another background than a tiling or
 ///         ours, reconstruct.weights = paper, cloud.merge = false
 /// @param diagonal  of the cloud, model units
-double largest_cell(const Parameters& parameters, double diagonal);
+double largest_cell(const BodyOptions& options, double diagonal);
 
 /// The edge of cells for a body with thin parts: that of the h that these lead to, a 2.2th of their thickness, if h is
 /// left to us.
 /// @param largest    largest_cell()
 /// @param thickness  that 1 % of the samples fall below, model units
-double cell_where_thin(const Parameters& parameters, double largest, double thickness);
+double cell_where_thin(const BodyOptions& options, double largest, double thickness);
 
 /// What merged samples say of the body.
 struct ScanSize {
@@ -38,6 +31,6 @@ struct ScanSize {
 /// The spacing of the finest lattice that the mesh will use, and a twentieth more, for an h that is estimated: for
 /// mesh.h, for the h of mesh.tets, or for the one that choose_edge_length() takes for a body without thin parts.
 /// @return 0 if that cannot be told, as where parts thinner than 2.2 h decide
-double finest_lattice(const Parameters& parameters, const ScanSize& scan);
+double finest_lattice(const BodyOptions& options, const ScanSize& scan);
 
 }  // namespace umtet

@@ -177,7 +177,7 @@ TEST(InputJudgement, StrictNamesNothingAndAcceptTakesItsKinds) {
 TEST(Judge, AFormulaIsItsOwnInput) {
   MeshMeasures m = unlike_psi(.05);
   m.n_points.reset(), m.cloud.reset(), m.input.reset(), m.domain.support.reset();
-  const Verdict v = judge(m, Parameters());
+  const Verdict v = judge(m, VerdictOptions());
   EXPECT_FALSE(v.fits_psi);
   EXPECT_FALSE(v.fits_input);
 }

@@ -4,16 +4,17 @@
 
 #include <gtest/gtest.h>
 
-#include "body/pieces/clusters.h"
 #include "body/fidelity/lost_ends.h"
 #include "body/fidelity/lost_surface.h"
+#include "body/pieces/clusters.h"
+#include "pipeline/expression/expression.h"
 
 namespace umtet {
 namespace {
 
 Domain domain_of(const std::string& formula, const Vec3& corner) {
   Domain domain;
-  domain.formula.emplace(formula);
+  domain.formula = shared_function(Expression(formula));
   domain.box = Box(-corner, corner);
   domain.diagonal = domain.box.diagonal().norm();
   return domain;

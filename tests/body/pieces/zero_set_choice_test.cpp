@@ -5,9 +5,10 @@
 #include <cmath>
 #include <functional>
 
-#include "mesh/universal_mesh.h"
-#include "body/pieces/component_proof.h"
 #include "body/fidelity/measure.h"
+#include "body/pieces/component_proof.h"
+#include "mesh/universal_mesh.h"
+#include "pipeline/expression/expression.h"
 
 namespace umtet {
 namespace {
@@ -118,7 +119,7 @@ TEST(ChooseComponents, FalseSheetsAroundAndInsideTheBodyAreDroppedThoughSamplesA
 
 TEST(ChooseComponents, FormulasAndBodiesFarFromAllSamplesAreTakenAsTheyAre) {
   Domain formula;
-  formula.formula.emplace("(x^2+y^2+z^2-1) * ((x-3)^2+y^2+z^2-1)");
+  formula.formula = shared_function(Expression("(x^2+y^2+z^2-1) * ((x-3)^2+y^2+z^2-1)"));
   formula.box = Box(Vec3(-1.5, -1.5, -1.5), Vec3(4.5, 1.5, 1.5));
   EXPECT_EQ(choose_components(formula, .2).seeds.size(), 2u);
 
@@ -130,7 +131,7 @@ TEST(ChooseComponents, FormulasAndBodiesFarFromAllSamplesAreTakenAsTheyAre) {
 
 TEST(CountingSpacing, IsBoundedByTheNodesOfTheBox) {
   Domain d;
-  d.formula.emplace("x");
+  d.formula = shared_function(Expression("x"));
   d.box = Box(Vec3::Zero(), Vec3::Ones());
   EXPECT_EQ(counting_spacing(d, .1), .1);
   EXPECT_NEAR(counting_spacing(d, 1e-6), std::cbrt(1 / 5e7), 1e-12);

@@ -12,7 +12,7 @@
 namespace umtet {
 namespace {
 
-LevelSetFit fit_of(OrientedPointCloud cloud) { return fit_level_set(cloud, {}, Parameters(), {}); }
+LevelSetFit fit_of(OrientedPointCloud cloud) { return fit_level_set(cloud, {}, BodyOptions(), {}); }
 
 TEST(LevelSetFit, PsiLeavesAsMuchAsThereIsNoise) {
   for (const double noise : {.01, .03}) {
@@ -76,19 +76,19 @@ TEST(LevelSetFit, NoiseInABallIsNoBody) {
 
 TEST(EdgeLength, IsNotBelowWhatNoiseShows) {
   OrientedPointCloud cloud = test::with_noise(test::torus_cloud(20000), .03);
-  LevelSetFit fit = fit_level_set(cloud, {}, Parameters(), {});
+  LevelSetFit fit = fit_level_set(cloud, {}, BodyOptions(), {});
   Domain domain;
   domain.cloud = std::move(cloud);
   domain.box = fit.psi.domain();
   domain.diagonal = 4.05;
   domain.fitted = domain.level_set = std::move(fit.psi);
   domain.noise = fit.report.noise;
-  const EdgeLength choice = choose_edge_length(domain, Parameters());
+  const EdgeLength choice = choose_edge_length(domain, BodyOptions());
   EXPECT_NEAR(choice.h, *domain.noise / .3, 1e-9);
   ASSERT_TRUE(choice.of_thin_parts);
   EXPECT_LT(*choice.of_thin_parts, choice.h);
   domain.noise = 0;
-  const EdgeLength clean = choose_edge_length(domain, Parameters());
+  const EdgeLength clean = choose_edge_length(domain, BodyOptions());
   EXPECT_FALSE(clean.of_thin_parts);
   EXPECT_EQ(clean.h, *choice.of_thin_parts);
 }

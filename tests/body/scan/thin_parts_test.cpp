@@ -58,7 +58,7 @@ double thickness_of(const LevelSet& psi, double x, double y, double reach) {
 
 void expect_thickness(const Blade& blade, double from_x, double to_x) {
   OrientedPointCloud cloud = samples_of(blade, 1);
-  const LevelSet psi = fit_level_set(cloud, {}, Parameters(), {}).psi;
+  const LevelSet psi = fit_level_set(cloud, {}, BodyOptions(), {}).psi;
   for (double x = from_x; x <= to_x; x += .1) {
     for (double y = .15; y < .9; y += .1) {
       const double t = blade.thickness(x);

@@ -8,6 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/domain/body_options.h"
+#include "pipeline/expression/expression.h"
+
 namespace umtet {
 namespace {
 
@@ -21,11 +24,11 @@ TEST(MeshMaker, TwoBallsThatNearlyTouchHaveTheSameBytesInEveryRun) {
   const std::string text = ball("+") + "*" + ball("-");
   const auto mesh = [&] {
     Domain domain;
-    domain.formula.emplace(text);
+    domain.formula = shared_function(Expression(text));
     domain.box = Box(Vec3::Constant(-5.5), Vec3::Constant(5.5));
     domain.diagonal = domain.box.diagonal().norm();
     const Parameters parameters;
-    return MeshMaker(domain, parameters, {}).attempt({BackgroundMesh(a15(), domain.box, 1)}, 1);
+    return MeshMaker(domain, body_options(parameters), {}).attempt({BackgroundMesh(a15(), domain.box, 1)}, 1);
   };
   const MeshAttempt first = mesh();
   ASSERT_TRUE(first.made());
@@ -54,7 +57,7 @@ TEST(MeshMaker, CellsOfAnEarlierHAreThoseOfASearch) {
   domain.cloud.points = domain.cloud.normals = {{1, 0, 0}};
   domain.cloud_spacing = .1;
   const Parameters parameters;
-  MeshMaker maker(domain, parameters, {});
+  MeshMaker maker(domain, body_options(parameters), {});
   for (const double h : {.3, .29, .22, .19, .25}) {  // cubes of .1, .1, .1, .05, .1
     const SignCells cells = maker.pieces_at(h).cells.value(), found = sign_cells(*domain.level_set, h / 2);
     EXPECT_EQ(cells.size, found.size) << h;
@@ -93,7 +96,7 @@ TEST(MeshMaker, WhereNoOneEdgeLengthDoesEdgesFollowTheBody) {
     Domain domain = dumbbell_domain();
     Parameters parameters;
     parameters.set(std::string("mesh.background=") + background);
-    BackgroundChoice backgrounds(parameters, domain);
+    BackgroundChoice backgrounds(body_options(parameters), domain);
     const EdgeLength choice = backgrounds.edge_length(domain);
     ASSERT_FALSE(backgrounds.is_graded());
     // Lattices in which the rod gets lost.
@@ -102,7 +105,8 @@ TEST(MeshMaker, WhereNoOneEdgeLengthDoesEdgesFollowTheBody) {
                                      : SizedBackground{BackgroundMesh(a15(), domain.box, 8 * h)};
     };
     std::vector<std::string> said;
-    MeshMaker maker(domain, parameters, {}, {.say = [&](const std::string& line) { said.push_back(line); }});
+    MeshMaker maker(domain, body_options(parameters), {},
+                    {.say = [&](const std::string& line) { said.push_back(line); }});
     const MeshAttempt best = maker.best(backgrounds, choice, make);
     ASSERT_TRUE(best.made());
     const bool may_be_graded = std::string(background) == "auto";
@@ -117,7 +121,7 @@ TEST(MeshMaker, WhereNoOneEdgeLengthDoesEdgesFollowTheBody) {
 TEST(MeshMaker, PiecesAreCountedOnTheEdgesOfTheMeshThatIsMade) {
   Domain domain = dumbbell_domain();
   const Parameters parameters;
-  MeshMaker maker(domain, parameters, {});
+  MeshMaker maker(domain, body_options(parameters), {});
   const double h = .02 * domain.diagonal;
   const SizeField sizes({{domain.box.center(), h, domain.diagonal}}, {.h_min = h});
   EXPECT_EQ(maker.pieces_at(h).share, 0) << "a grid";

@@ -6,17 +6,19 @@
 
 #include <cmath>
 
+#include "body/sizing/background_choice.h"
 #include "mesh/sizes/graded_size.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/label_names.h"
-#include "body/sizing/background_choice.h"
+#include "pipeline/domain/body_options.h"
+#include "pipeline/expression/expression.h"
 
 namespace umtet {
 namespace {
 
 Domain ball() {
   Domain domain;
-  domain.formula.emplace("x^2+y^2+z^2-1");
+  domain.formula = shared_function(Expression("x^2+y^2+z^2-1"));
   domain.box = Box(Vec3::Constant(-1.3), Vec3::Constant(1.3));
   domain.diagonal = domain.box.diagonal().norm();
   return domain;
@@ -31,7 +33,7 @@ Parameters graded(const std::vector<std::string>& more) {
 
 TEST(GradedSizes, OfAThickBodyAreHOnTheBoundaryAndGrowInside) {
   const Parameters p = graded({"mesh.h=.1"});
-  GradedSizes sizes(p, Vec3::Zero());
+  GradedSizes sizes(body_options(p), Vec3::Zero());
   Domain domain = ball();
   sizes.add(domain);
   EXPECT_EQ(sizes.finest(), .1);
@@ -44,8 +46,8 @@ TEST(GradedSizes, OfAThickBodyAreHOnTheBoundaryAndGrowInside) {
 TEST(GradedSizes, AreNotLookedForWhereTheyMakeTooManyTets) {
   const Parameters p = graded({"mesh.h=.1"});
   Domain domain = ball();
-  domain.formula.emplace("x^2+y^2+100*z^2-1");
-  GradedSizes sizes(p, Vec3::Zero());
+  domain.formula = shared_function(Expression("x^2+y^2+100*z^2-1"));
+  GradedSizes sizes(body_options(p), Vec3::Zero());
   EXPECT_FALSE(sizes.add(domain, {}, 100));
   EXPECT_EQ(sizes.n_domains(), 0);
   EXPECT_TRUE(sizes.add(domain, {}, 1e6));
@@ -56,7 +58,7 @@ TEST(GradedSizes, AreNotLookedForWhereTheyMakeTooManyTets) {
 
 TEST(GradedSizes, KeepTheirGradeAtAnotherH) {
   const Parameters p = graded({"mesh.h=.1", "mesh.constant_layer=0"});
-  GradedSizes sizes(p, Vec3::Zero());
+  GradedSizes sizes(body_options(p), Vec3::Zero());
   Domain domain = ball();
   sizes.add(domain);
   const SizeField half = sizes.field(.05);
@@ -67,7 +69,7 @@ TEST(GradedSizes, KeepTheirGradeAtAnotherH) {
 
 TEST(GradedSizes, OfAFormulaAreItsValues) {
   const Parameters p = graded({"mesh.h=.2", "mesh.size=0.02+0.1*sqrt(x^2+y^2+(z-1)^2)"});
-  GradedSizes sizes(p, Vec3::Zero());
+  GradedSizes sizes(body_options(p), Vec3::Zero());
   Domain domain = ball();
   sizes.add(domain);
   const SizeField field = sizes.field(sizes.finest());
@@ -80,7 +82,7 @@ TEST(GradedSizes, AreNotBelowTheFloorNorAboveTheCeiling) {
   const Parameters p = graded({"mesh.h=.2", "mesh.size=0.001", "mesh.h_min=.05", "mesh.h_max=.15"});
   EXPECT_THROW(GradedSizes(p, Vec3::Zero()), UsageError);  // it does not depend on x, y or z
   const Parameters q = graded({"mesh.h=.2", "mesh.size=0.001+0.4*(z-1)^2", "mesh.h_min=.05", "mesh.h_max=.15"});
-  GradedSizes sizes(q, Vec3::Zero());
+  GradedSizes sizes(body_options(q), Vec3::Zero());
   Domain domain = ball();
   sizes.add(domain);
   const SizeField field = sizes.field(sizes.finest());
@@ -94,7 +96,7 @@ TEST(GradedSizes, AreNotBelowTheFloorNorAboveTheCeiling) {
 std::string complaint_about(const std::string& size, const std::vector<std::string>& more = {}) {
   Parameters p = graded({"mesh.h=.2", "mesh.size=" + size});
   for (const std::string& assignment : more) p.set(assignment);
-  GradedSizes sizes(p, Vec3(1000, 0, 0));
+  GradedSizes sizes(body_options(p), Vec3(1000, 0, 0));
   Domain domain = ball();
   try {
     sizes.add(domain);
@@ -118,7 +120,7 @@ TEST(GradedSizes, AFormulaThatIsNoLengthInTheBodyIsRefusedWithAPlace) {
 TEST(GradedSizes, ShiftedCoordinatesAreThoseOfTheModel) {
   const Vec3 shift(1000, 0, 0);
   const Parameters p = graded({"mesh.h=.2", "mesh.size=0.02+0.1*sqrt((x-1000)^2+y^2+(z-1)^2)"});
-  GradedSizes sizes(p, shift);
+  GradedSizes sizes(body_options(p), shift);
   Domain domain = ball();
   sizes.add(domain);
   EXPECT_NEAR(sizes.field(sizes.finest()).at({0, 0, 1}), .02, .002);
@@ -131,12 +133,12 @@ TEST(GradedSizes, OfLabelsAreFactorsOfH) {
     EXPECT_THROW(parse_label_sizes(bad, names), UsageError) << bad;
   }
   const Parameters p = graded({"mesh.h=.1", "mesh.size_at=head=.5", "output.label_names=3=head"});
-  GradedSizes sizes(p, Vec3::Zero());
+  GradedSizes sizes(body_options(p), Vec3::Zero());
   Domain domain = ball();
   EXPECT_THROW(sizes.add(domain), UsageError);  // no labels
   domain.cloud.points = {{0, 0, 1}, {0, 0, -1}};
   domain.cloud.labels = {3, 4};
-  GradedSizes labelled(p, Vec3::Zero());
+  GradedSizes labelled(body_options(p), Vec3::Zero());
   labelled.add(domain);
   EXPECT_NEAR(labelled.field(labelled.finest()).at({0, 0, 1}), .05, .003);
   EXPECT_NEAR(labelled.field(labelled.finest()).at({0, 0, -1}), .1, .005);
@@ -163,7 +165,7 @@ TEST(GradedSizes, AreForGradedBackgroundsOnly) {
 TEST(BackgroundChoice, OfAGradedMeshHasAboutTheTetsThatWereAskedFor) {
   const Parameters p = graded({"mesh.tets=60000"});
   Domain domain = ball();
-  BackgroundChoice choice(p, domain);
+  BackgroundChoice choice(body_options(p), domain);
   const EdgeLength h = choice.edge_length(domain);
   EXPECT_NEAR(choice.expected_tets(domain, h.h), 60000, 6000);
   const SizedBackground made = choice.make(domain, h.h, 60000, 1e12);
@@ -180,8 +182,8 @@ TEST(BackgroundChoice, OfAGradedMeshHasAboutTheTetsThatWereAskedFor) {
 TEST(BackgroundChoice, ExpectsOfEachOfSeveralDomainsItsOwnTets) {
   const Parameters p = graded({"mesh.h=.1"});
   Domain large = ball(), small = ball();
-  small.formula.emplace("x^2+y^2+z^2-.25");
-  BackgroundChoice choice(p, large);
+  small.formula = shared_function(Expression("x^2+y^2+z^2-.25"));
+  BackgroundChoice choice(body_options(p), large);
   choice.edge_length(large);
   const double h = choice.edge_length(small).h;
   EXPECT_GT(choice.expected_tets(large, h), 2 * choice.expected_tets(small, h));
@@ -190,7 +192,7 @@ TEST(BackgroundChoice, ExpectsOfEachOfSeveralDomainsItsOwnTets) {
 TEST(BackgroundChoice, RefusesSizesThatMakeTooManyTets) {
   const Parameters p = graded({"mesh.h=.02", "mesh.max_tets=10000"});
   Domain domain = ball();
-  BackgroundChoice choice(p, domain);
+  BackgroundChoice choice(body_options(p), domain);
   EXPECT_THROW(choice.edge_length(domain), ResourceLimit);
 }
 

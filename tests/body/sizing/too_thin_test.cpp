@@ -11,8 +11,10 @@
 
 #include <numbers>
 
-#include "mesh/implicit/curvature.h"
 #include "body/sizing/deviation.h"
+#include "mesh/implicit/curvature.h"
+#include "pipeline/expression/expression.h"
+#include "pipeline/meshing/place_files.h"
 
 namespace umtet {
 namespace {
@@ -21,7 +23,7 @@ namespace fs = std::filesystem;
 
 Domain domain_of(const std::string& formula, const Vec3& corner) {
   Domain domain;
-  domain.formula.emplace(formula);
+  domain.formula = shared_function(Expression(formula));
   domain.box = Box(-corner, corner);
   domain.diagonal = domain.box.diagonal().norm();
   return domain;

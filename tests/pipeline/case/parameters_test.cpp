@@ -40,16 +40,16 @@ TEST(Parameters, DefaultsAreInsideTheirOwnRanges) {
 
 TEST(Parameters, WordsOfAVocabularyAreValuesOfAnEnum) {
   Parameters p;
-  EXPECT_EQ(p.mesh().mode, MeshingMode::Fast);
-  EXPECT_EQ(p.reconstruct().solver, FitSolver::Auto);
+  EXPECT_EQ(p.mesh().mode, UmMode::Fast);
+  EXPECT_EQ(p.reconstruct().solver, std::nullopt);
   p.set("mesh.mode=paper");
   p.set("reconstruct.solver=assembled");
   p.set("cloud.normals=estimate");
   p.set("mesh.closest_point=damped");
-  EXPECT_EQ(p.mesh().mode, MeshingMode::Paper);
-  EXPECT_EQ(p.reconstruct().solver, FitSolver::Assembled);
+  EXPECT_EQ(p.mesh().mode, UmMode::Paper);
+  EXPECT_EQ(p.reconstruct().solver, SsdSolver::Assembled);
   EXPECT_EQ(p.cloud().normals, NormalsOf::Estimate);
-  EXPECT_EQ(p.mesh().closest_point, Projection::Damped);
+  EXPECT_EQ(p.mesh().closest_point, ClosestPointMethod::Damped);
   for (const ParamField& f : params_fields()) {
     for (const std::string& word : f.choices) {
       p.set(f.key + "=" + word);

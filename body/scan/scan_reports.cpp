@@ -1,4 +1,4 @@
-#include "body/scan/input_facts.h"
+#include "body/scan/scan_reports.h"
 
 #include <algorithm>
 #include <array>

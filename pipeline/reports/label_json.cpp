@@ -1,4 +1,4 @@
-#include "pipeline/reports/label_report.h"
+#include "pipeline/reports/label_json.h"
 
 namespace umtet {
 namespace {

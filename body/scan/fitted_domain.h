@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "body/body.h"
-#include "pipeline/reports/stage_reports.h"
+#include "body/scan/scan_reports.h"
 
 namespace umtet {
 

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "common/vec3.h"
-#include "pipeline/case/json_values.h"
 
 namespace umtet {
 
@@ -35,9 +34,5 @@ struct LabelVolumeReport {
   std::optional<Vec3> farthest_at;   ///< where that is; model coordinates
   bool operator==(const LabelVolumeReport&) const = default;
 };
-
-/// The block `labels`.
-Json to_json(const LabelVolumeReport& report);
-LabelVolumeReport label_volume_from(const Json& json);
 
 }  // namespace umtet

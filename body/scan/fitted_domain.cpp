@@ -1,4 +1,4 @@
-#include "body/fitted_domain.h"
+#include "body/scan/fitted_domain.h"
 
 #include <utility>
 

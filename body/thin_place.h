@@ -6,6 +6,9 @@
 
 namespace umtet {
 
+/// A mesh of edge length h shows what is this many edges thick; thinner parts may be missing from it.
+inline constexpr double kLeastEdgesAcross = 1.25;
+
 /// A connected place where the body, or the gap outside it, is too thin for a mesh of some edge length. Lengths in
 /// model units; places in working coordinates, but for those of in_model().
 struct ThinPlace {
