@@ -126,10 +126,10 @@ struct BodyOptions {
   double max_memory = 0;           ///< bytes that the fit may take; 0: no limit
 };
 
-/// @throw UsageError with every broken constraint
+/// \throw UsageError with every broken constraint
 SsdParams ssd_params(const FitOptions& options);
 
-/// @throw UsageError with every broken constraint
+/// \throw UsageError with every broken constraint
 UmParams um_params(const MeshOptions& options);
 
 }  // namespace umtet

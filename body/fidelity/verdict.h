@@ -36,7 +36,7 @@ struct Verdict {
 };
 
 /// The three judgements. It fails by the reasons of what was measured, by places and differences from the input that
-/// are neither small nor accepted, and by a broken gate. @throw UsageError  `accept` names no kind
+/// are neither small nor accepted, and by a broken gate. \throw UsageError  `accept` names no kind
 Verdict judge(const MeshMeasures& measured, const VerdictOptions& options);
 /// The first two judgements: whether the mesh is what h can show of psi. @param accept  as VerdictOptions has it
 Verdict judge_shape(const MeshMeasures& measured, bool strict = false, const std::string& accept = "");

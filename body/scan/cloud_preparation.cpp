@@ -48,7 +48,7 @@ class Preparation {
   void take(const OrientationReport& r);
   void say_doubt();
   void look_to_origins();
-  bool explains_better(const SplitCloud& former, const SplitCloud& proposed);
+  bool explains_better(const SplitCloud& former, const SplitCloud& proposed, bool is_certain);
   void ask_winding_number(const std::vector<Vec3>* as_given);
   template <class... T>
   void notice(fmt::format_string<T...> format, T&&... args) {
@@ -177,8 +177,8 @@ void Preparation::find_normals() {
 }
 
 /// Fits to the known samples of both, and what they say of the held-out ones. A fit that cannot be made explains
-/// nothing.
-bool Preparation::explains_better(const SplitCloud& former, const SplitCloud& proposed) {
+/// nothing. Normals of which the winding number is not certain are not fitted unless the former bound no body.
+bool Preparation::explains_better(const SplitCloud& former, const SplitCloud& proposed, bool is_certain) {
   WindingCheckReport& w = *normals().winding;
   const double noise = noise_along_normals(cloud_.points);
   const auto residual = [&](const SplitCloud& cloud) -> std::optional<HeldOutResidual> {
@@ -190,8 +190,9 @@ bool Preparation::explains_better(const SplitCloud& former, const SplitCloud& pr
     return std::nullopt;
   };
   w.held_out_before = residual(former);
+  if (!is_certain && w.held_out_before && w.held_out_before->bounds_a_body) return false;
   w.held_out_tried = residual(proposed);
-  if (!w.held_out_tried) return false;
+  if (!w.held_out_tried || !(is_certain || w.held_out_tried->bounds_a_body)) return false;
   return !w.held_out_before || w.held_out_tried->energy() < w.held_out_before->energy();
 }
 
@@ -202,13 +203,15 @@ void Preparation::ask_winding_number(const std::vector<Vec3>* as_given) {
   if (options_.scan.winding == WindingCheck::Off) return;
   normals().winding.emplace();
   const bool are_consistent = normals().given && normals().orientation->consistency_after >= kConsistent;
-  const WindingReport r = orient_by_winding(
-      cloud_, {.directions_may_change = !normals().given,
-               .others = as_given,
-               .only_others = are_consistent,
-               .near = &near_,
-               .covering = &covering_,
-               .explains_better = [this](const SplitCloud& a, const SplitCloud& b) { return explains_better(a, b); }});
+  const WindingReport r =
+      orient_by_winding(cloud_, {.directions_may_change = !normals().given,
+                                 .others = as_given,
+                                 .only_others = are_consistent,
+                                 .near = &near_,
+                                 .covering = &covering_,
+                                 .explains_better = [this](const SplitCloud& a, const SplitCloud& b, bool is_certain) {
+                                   return explains_better(a, b, is_certain);
+                                 }});
   is_closed_ = r.is_closed();
   WindingCheckReport& w = *normals().winding;
   w.verdict = r.verdict;

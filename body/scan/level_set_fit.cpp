@@ -160,6 +160,7 @@ LevelSetFit fit_near_origin(OrientedPointCloud& cloud, NeighbourDistances near, 
     report.thickness = thickness_percentiles(even, tree);
   }
   if (!cloud.counts.empty()) leave_out_finer(cloud, near, options, params, report);
+  params.bounded = exact.has_value();
   if (exact && params.spacing == 0) params.spacing = lattice_of(*exact, near, params);
   SsdFit fit = fit_turning_opposed(cloud, params, context, &near);
   if (!exact && options.fit.noise < 0) {

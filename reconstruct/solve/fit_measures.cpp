@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
+
+#include "reconstruct/solve/outer_wall.h"
 
 namespace umtet {
 namespace {
@@ -64,19 +65,7 @@ void measure_fit(const OrientedPointCloud& cloud, const LevelSet& psi, const std
   report.rms_value = std::sqrt(value2 / all_counted);
   report.normal_defect = 2 * report.energy_normal / all;
 
-  constexpr int kWallSamples = 16;  // along each edge of a face
-  report.least_wall_value = std::numeric_limits<double>::infinity();
-  const Eigen::AlignedBox3d& box = psi.domain();
-  for (int face = 0; face < 6; ++face) {
-    for (int s = 0; s < kWallSamples * kWallSamples; ++s) {
-      const int row = s / kWallSamples, column = s % kWallSamples;
-      Vec3 t;  // position in the box, 0 .. 1 on each axis
-      t[face / 2] = face % 2;
-      t[(face / 2 + 1) % 3] = (column + 0.5) / kWallSamples;
-      t[(face / 2 + 2) % 3] = (row + 0.5) / kWallSamples;
-      report.least_wall_value = std::min(report.least_wall_value, psi.value(box.min() + t.cwiseProduct(box.sizes())));
-    }
-  }
+  report.least_wall_value = least_wall_value(psi);
 }
 
 }  // namespace umtet

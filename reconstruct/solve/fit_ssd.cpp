@@ -13,6 +13,7 @@
 #include "reconstruct/solve/closing.h"
 #include "reconstruct/solve/fit_measures.h"
 #include "reconstruct/solve/multigrid.h"
+#include "reconstruct/solve/outer_wall.h"
 #include "reconstruct/solve/resolution.h"
 #include "reconstruct/solve/ssd_assembled.h"
 #include "reconstruct/solve/ssd_band.h"
@@ -297,7 +298,7 @@ LevelSet fit_multilevel(const Problem& problem, SsdReport& report) {
     ++n_bands;
   }
   LevelSamples samples;
-  const auto fit_coarsest = [&](const Eigen::AlignedBox3d& box, const ClosingPlan* closing) {
+  const auto fit_coarsest = [&](const Eigen::AlignedBox3d& box, const ClosingPlan* closing, bool with_wall = false) {
     const Hierarchy hierarchy = choose_hierarchy(box, coarsest, padding, problem.tables.width());
     samples = samples_of_levels(problem, hierarchy.finest, n_bands);
     require_memory(problem, hierarchy, samples);
@@ -306,10 +307,15 @@ LevelSet fit_multilevel(const Problem& problem, SsdReport& report) {
       const std::vector<SsdSample> more = closing->samples(hierarchy.finest);
       all.insert(all.end(), more.begin(), more.end());
     }
+    if (with_wall) {
+      const std::vector<SsdSample> more = wall_samples(hierarchy.finest, samples.here[0]);
+      all.insert(all.end(), more.begin(), more.end());
+    }
     return fit_lattice(problem, hierarchy, std::move(all), (n_bands > 0 ? 1 : kLoneTolerance) * params.tolerance,
                        report);
   };
   LevelSet psi = fit_coarsest(problem.box, nullptr);
+  if (params.bounded && least_wall_value(psi) < 0) psi = fit_coarsest(problem.box, nullptr, true);
   const ClosingPlan closing(psi, std::move(samples.here[0]), params.closing);
   if (closing.is_needed()) psi = fit_coarsest(closing.box(), &closing);
   report.holes = closing.holes();

@@ -48,6 +48,8 @@ struct SsdParams {
   double max_memory = 0;            ///< bytes that fitting may take; 0: no limit
   int padding =
       5;  ///< lattice cells around the cloud's box; >= 1, and >= 4 for the mesher: projections fail at the hull
+  bool bounded = false;  ///< the samples are known to be all of the boundary of a body: where psi < 0 reaches the wall,
+                         ///< it is fitted again with wall_samples(); only of SsdSolver::Multilevel
   BandRefiner* bands = nullptr;  ///< makes those of SsdSolver::Multilevel; null: refine()
 };
 

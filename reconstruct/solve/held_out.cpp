@@ -26,6 +26,7 @@ HeldOutResidual held_out_residual(const OrientedPointCloud& known, const Oriente
   const SsdFit fit = fit_ssd(known, params, context, &near);
   HeldOutResidual residual;
   residual.spacing = fit.report.spacing;
+  residual.bounds_a_body = fit.report.least_wall_value >= 0;
   for (std::size_t i = 0; i < held_out.points.size(); ++i) {
     Vec3 gradient;
     residual.rms_value += std::pow(fit.psi.evaluate(held_out.points[i], &gradient, nullptr), 2);

@@ -69,6 +69,18 @@ struct Part {
   }
 };
 
+/// Normals of all samples by the winding number.
+struct Proposal {
+  std::vector<Vec3> normals;
+  const WindingNormalsParams* params = nullptr;
+  bool is_certain = false;
+  double off = 1, consistency = 0;  ///< patches_off_a_half(), consistency()
+
+  bool is_better_than(const Proposal& other) const {
+    return is_certain != other.is_certain ? is_certain : off < other.off;
+  }
+};
+
 double consistency_of(const OrientedPointCloud& cloud, const std::vector<Vec3>& normals, const OrientByWinding& how) {
   OrientedPointCloud other;
   other.points = cloud.points;
@@ -114,18 +126,18 @@ void add(const std::vector<Vec3>& points, const std::vector<Vec3>& former, const
 }
 
 /// Normals of the known samples alone, at these and at the held-out ones, against those of the cloud.
-bool explain_better(const OrientedPointCloud& cloud, const WindingNormalsParams& params, const OrientByWinding& how) {
-  if (!how.explains_better) return true;
+bool explain_better(const OrientedPointCloud& cloud, const Proposal& proposal, const OrientByWinding& how) {
+  if (!how.explains_better) return proposal.is_certain;
   const Split split(cloud.points.size());
   const std::vector<Vec3> known = picked(cloud.points, split.known), others = picked(cloud.points, split.held_out);
   std::vector<Vec3> places = known;
   places.insert(places.end(), others.begin(), others.end());
-  const std::vector<Vec3> found = normals_by_winding(known, sample_areas(known), places, params);
+  const std::vector<Vec3> found = normals_by_winding(known, sample_areas(known), places, *proposal.params);
   const auto middle = found.begin() + static_cast<std::ptrdiff_t>(known.size());
   SplitCloud former, proposed;
   add(known, picked(cloud.normals, split.known), {found.begin(), middle}, former.known, proposed.known);
   add(others, picked(cloud.normals, split.held_out), {middle, found.end()}, former.held_out, proposed.held_out);
-  return how.explains_better(former, proposed);
+  return how.explains_better(former, proposed, proposal.is_certain);
 }
 
 /// @param field  normals of the winding number at all samples
@@ -179,38 +191,34 @@ WindingReport orient_by_winding(OrientedPointCloud& cloud, const OrientByWinding
   }
   if (how.only_others || report.off_after <= kMostOff) return report;
   report.consistency_before = consistency_of(cloud, cloud.normals, how);
-  std::vector<Vec3> best;  // of all points
-  const WindingNormalsParams* params = nullptr;
-  report.off_tried = 1;
+  Proposal best;
   const Part fine(cloud, kAttempts.back().n_samples);  // shows thinner parts than those that were checked
   const double before = fine.off(cloud.normals, noise);
   for (const Attempt& attempt : kAttempts) {
     const Part part(cloud, attempt.n_samples);
-    std::vector<Vec3> field = normals_by_winding(part.points, part.areas, cloud.points, attempt.params);
-    const double after = fine.off(field, noise), consistent = consistency_of(cloud, field, how);
-    const bool is_certain =
-        consistent >= report.consistency_before || (before > kUnbounded && after <= kClosed && consistent >= kCoherent);
-    const bool is_best = after < kBetter * before && is_certain && (best.empty() || after < report.off_tried);
-    if (is_best || (best.empty() && after < report.off_tried)) {
-      report.off_tried = after;
-      report.consistency_tried = consistent;
-    }
-    if (is_best) {
-      best = std::move(field);
-      params = &attempt.params;
-    }
-    if ((after <= kMostOff && !best.empty()) || cloud.points.size() <= attempt.n_samples) break;
+    Proposal p;
+    p.params = &attempt.params;
+    p.normals = normals_by_winding(part.points, part.areas, cloud.points, attempt.params);
+    p.off = fine.off(p.normals, noise);
+    p.consistency = consistency_of(cloud, p.normals, how);
+    p.is_certain =
+        p.off < kBetter * before && (p.consistency >= report.consistency_before ||
+                                     (before > kUnbounded && p.off <= kClosed && p.consistency >= kCoherent));
+    if (!best.params || p.is_better_than(best)) best = std::move(p);
+    if ((best.off <= kMostOff && best.is_certain) || cloud.points.size() <= attempt.n_samples) break;
   }
+  report.off_tried = best.off;
+  report.consistency_tried = best.consistency;
   report.verdict = Verdict::Uncertain;
-  if (best.empty()) return report;
-  if (!explain_better(cloud, *params, how)) {
-    report.verdict = Verdict::NotBetter;
+  if (!(best.off < kBetter * before)) return report;
+  if (!explain_better(cloud, best, how)) {
+    if (best.is_certain) report.verdict = Verdict::NotBetter;
     return report;
   }
   report.verdict = Verdict::Taken;
   report.off_before = before;
   report.off_after = report.off_tried;
-  overrule(cloud, best, how.directions_may_change, report);
+  overrule(cloud, best.normals, how.directions_may_change, report);
   return report;
 }
 

@@ -14,7 +14,7 @@ namespace umtet {
 struct WindingReport {
   enum class Verdict {
     Agrees,     ///< with the normals as they are: nothing was tried
-    Uncertain,  ///< its own normals are off as much, or less consistent: those of the cloud stay
+    Uncertain,  ///< its own normals are off as much, or less consistent and those of the cloud bound a body: these stay
     NotBetter,  ///< held-out samples are explained better by the cloud's, which stay
     Taken,      ///< its own normals decided
   };
@@ -45,8 +45,10 @@ struct OrientByWinding {
   const Neighbourhoods* near = nullptr;  ///< of the cloud, over OrientationParams::neighbours; null: searched
   const Covering* covering = nullptr;    ///< of the cloud; null: it is sampled evenly
   /// Whether the second of two splits of the same samples, whose normals the winding number of the known ones gives,
-  /// explains the held-out samples better than the first, which has the cloud's. Null: not asked.
-  std::function<bool(const SplitCloud& former, const SplitCloud& proposed)> explains_better = nullptr;
+  /// explains the held-out samples better than the first, which has the cloud's. Where the winding number is not
+  /// certain, the first must also bound no body, and the second must bound one. Null: nothing is compared, and only
+  /// certain normals are taken.
+  std::function<bool(const SplitCloud& former, const SplitCloud& proposed, bool is_certain)> explains_better = nullptr;
 };
 
 /// Checks normals by the winding number of at most 4000 samples, and overrules them where it is certain.
@@ -58,7 +60,8 @@ struct OrientByWinding {
 ///      - no less consistent with one another than the cloud's are (consistency()), or the cloud's are off at more than
 ///        half of the patches, so that they bound nothing, and these at less than one in 25, with a consistency of .95
 ///        or more.
-/// 3. They are taken if they explain samples better that neither they nor the fit knew: how.explains_better.
+/// 3. They are taken if they explain samples better that neither they nor the fit knew: how.explains_better. Normals
+///    that are off at a quarter fewer patches but are not certain are taken if the cloud's bound no body besides.
 ///
 /// Then they decide over the signs of all normals; over directions, if these may change, on a cloud that is sparse
 /// (4000 samples or fewer), and where the two differ by more than 45 degrees.

@@ -135,6 +135,25 @@ TEST(OrientByWinding, NormalsThatFollowNoiseAreUncertain) {
   EXPECT_EQ(cloud.normals, before);
 }
 
+TEST(OrientByWinding, WhereItIsNotCertainTheFitDecides) {
+  const OrientedPointCloud given = [] {
+    OrientedPointCloud cloud = Propagated(test::with_noise(test::torus_cloud(4000), 1.7 * .063)).cloud;
+    for (std::size_t i = 0; i < cloud.normals.size(); ++i)
+      if (cloud.points[i].x() > 0) cloud.normals[i] = -cloud.normals[i];
+    return cloud;
+  }();
+  for (const bool is_better : {false, true}) {
+    const auto judge = [&](const SplitCloud&, const SplitCloud&, bool is_certain) {
+      EXPECT_FALSE(is_certain);
+      return is_better;
+    };
+    OrientedPointCloud cloud = given;
+    const WindingReport report = orient_by_winding(cloud, {.directions_may_change = true, .explains_better = judge});
+    EXPECT_EQ(report.verdict, is_better ? Verdict::Taken : Verdict::Uncertain);
+    EXPECT_EQ(cloud.normals == given.normals, !is_better);
+  }
+}
+
 TEST(OrientByWinding, HeldOutSamplesDecide) {
   OrientedPointCloud cloud = sorted(test::torus_cloud(8000));
   const std::vector<Vec3> truth = cloud.normals;
@@ -142,7 +161,8 @@ TEST(OrientByWinding, HeldOutSamplesDecide) {
     if (cloud.points[i].x() > 0.3) cloud.normals[i] = -truth[i];
   const std::vector<Vec3> before = cloud.normals;
   for (const bool is_better : {false, true}) {
-    const auto judge = [&](const SplitCloud& former, const SplitCloud& proposed) {
+    const auto judge = [&](const SplitCloud& former, const SplitCloud& proposed, bool is_certain) {
+      EXPECT_TRUE(is_certain);
       EXPECT_EQ(former.known.points, proposed.known.points);
       EXPECT_EQ(former.held_out.points, proposed.held_out.points);
       EXPECT_GT(former.held_out.points.size(), 1000U);
