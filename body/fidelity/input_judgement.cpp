@@ -1,10 +1,10 @@
 #include "body/fidelity/input_judgement.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "common/formatted.h"
 
 namespace umtet {
 namespace {
@@ -12,9 +12,9 @@ namespace {
 constexpr std::array<const char*, 8> kWords = {"missed",   "guessed", "handles", "pieces",
                                                "distance", "volume",  "genus",   "voxels"};
 
-std::string at(const Vec3& x) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", x.x(), x.y(), x.z()); }
+std::string at(const Vec3& x) { return formatted("(%.6g, %.6g, %.6g)", x.x(), x.y(), x.z()); }
 
-std::string counted(std::size_t n, const char* thing) { return fmt::format("{} {}{}", n, thing, n == 1 ? "" : "s"); }
+std::string counted(std::size_t n, const char* thing) { return formatted("%zu %s%s", n, thing, n == 1 ? "" : "s"); }
 
 void add_missed(const MeshMeasures& m, std::vector<InputDefect>& defects) {
   const SampleDistances& cloud = *m.cloud;
@@ -22,9 +22,10 @@ void add_missed(const MeshMeasures& m, std::vector<InputDefect>& defects) {
   const std::size_t n_samples = cloud.n_merged.value_or(m.n_points.value_or(1));
   const double deep = cloud.most_over_h;
   const double share = static_cast<double>(cloud.n_beyond_h) / static_cast<double>(n_samples);
-  defects.push_back({InputDefectKind::Missed, deep, deep <= kDeeplyMissed || share <= kFewMissed,
-                     fmt::format("{} ({:.2g} % of all) are farther than h from the mesh, up to {:.2g} h at {}",
-                                 counted(cloud.n_beyond_h, "sample"), 100 * share, deep, at(cloud.most_at))});
+  defects.push_back(
+      {InputDefectKind::Missed, deep, deep <= kDeeplyMissed || share <= kFewMissed,
+       formatted("%s (%.2g %% of all) are farther than h from the mesh, up to %.2g h at %s",
+                 counted(cloud.n_beyond_h, "sample").c_str(), 100 * share, deep, at(cloud.most_at).c_str())});
 }
 
 void add_guesses(const SupportReport& support, std::vector<InputDefect>& defects) {
@@ -34,17 +35,17 @@ void add_guesses(const SupportReport& support, std::vector<InputDefect>& defects
     const std::string where =
         support.closed_holes.empty() ? "" : ", the largest part at " + at(support.closed_holes.front().centre);
     defects.push_back({InputDefectKind::Guessed, guessed, guessed <= kMostlyGuessed,
-                       fmt::format("{:.0f} % of the boundary is a guess: no sample is within {:.3g} of it{}",
-                                   100 * guessed, support.radius, where)});
+                       formatted("%.0f %% of the boundary is a guess: no sample is within %.3g of it%s", 100 * guessed,
+                                 support.radius, where.c_str())});
   }
   // Where little is guessed, a gap across a limb can be the reason, and the guess is right.
   if (const int n = support.n_guessed_handles; n > 0) {
     defects.push_back({InputDefectKind::Handles, static_cast<double>(n), !is_much,
-                       fmt::format("no sample supports {}", counted(static_cast<std::size_t>(n), "handle"))});
+                       formatted("no sample supports %s", counted(static_cast<std::size_t>(n), "handle").c_str())});
   }
   if (const std::size_t n = support.n_guessed_pieces; n > 0) {
     defects.push_back({InputDefectKind::Pieces, static_cast<double>(n), !is_much,
-                       fmt::format("no sample is near {} of the boundary", counted(n, "piece"))});
+                       formatted("no sample is near %s of the boundary", counted(n, "piece").c_str())});
   }
 }
 
@@ -53,11 +54,11 @@ void add_distances(const TriangleDistances& d, bool is_closed, std::vector<Input
   const bool is_back = !is_closed || d.max_back_over_h > d.max_over_h;
   const double deep = is_back ? d.max_back_over_h : d.max_over_h;
   if (deep <= 1) return;
-  defects.push_back(
-      {InputDefectKind::Distance, deep, deep <= kDeeplyMissed,
-       is_back
-           ? fmt::format("the triangles are up to {:.2g} h from the mesh, most of all at {}", deep, at(d.farthest_back))
-           : fmt::format("the mesh is up to {:.2g} h from the triangles, most of all at {}", deep, at(d.farthest))});
+  defects.push_back({InputDefectKind::Distance, deep, deep <= kDeeplyMissed,
+                     is_back ? formatted("the triangles are up to %.2g h from the mesh, most of all at %s", deep,
+                                         at(d.farthest_back).c_str())
+                             : formatted("the mesh is up to %.2g h from the triangles, most of all at %s", deep,
+                                         at(d.farthest).c_str())});
 }
 
 /// Flat faces between vertices on a curved psi = 0 explain gap_over_volume.
@@ -65,8 +66,8 @@ void add_volume(double given, double made, double explained, std::vector<InputDe
   const double off = std::abs(made - given) / std::abs(given), unexplained = off - explained;
   if (unexplained <= kVolumeNamed) return;
   defects.push_back({InputDefectKind::Volume, unexplained, unexplained <= kVolumeFails,
-                     fmt::format("the volume is {:.6g}, and {:.6g} is given ({:+.2g} %)", made, given,
-                                 100 * (made - given) / std::abs(given))});
+                     formatted("the volume is %.6g, and %.6g is given (%+.2g %%)", made, given,
+                               100 * (made - given) / std::abs(given))});
 }
 
 void add_topology(std::size_t given_pieces, long given_genus, const TriangleBody& made,
@@ -74,11 +75,12 @@ void add_topology(std::size_t given_pieces, long given_genus, const TriangleBody
   if (made.n_pieces != given_pieces) {
     defects.push_back(
         {InputDefectKind::Pieces, std::abs(static_cast<double>(made.n_pieces) - static_cast<double>(given_pieces)),
-         false, fmt::format("the boundary has {}, and {} are given", counted(made.n_pieces, "piece"), given_pieces)});
+         false,
+         formatted("the boundary has %s, and %zu are given", counted(made.n_pieces, "piece").c_str(), given_pieces)});
   }
   if (made.genus() != given_genus) {
     defects.push_back({InputDefectKind::Genus, std::abs(static_cast<double>(made.genus() - given_genus)), false,
-                       fmt::format("the boundary has genus {}, and {} is given", made.genus(), given_genus)});
+                       formatted("the boundary has genus %ld, and %ld is given", made.genus(), given_genus)});
   }
 }
 
@@ -94,8 +96,8 @@ void add_triangles(const MeshMeasures& m, std::vector<InputDefect>& defects) {
 }
 
 std::string text_of(const PieceCount& count) {
-  return count.by_points == count.by_faces ? fmt::format("{}", count.by_points)
-                                           : fmt::format("{} to {}", count.by_points, count.by_faces);
+  return count.by_points == count.by_faces ? formatted("%zu", count.by_points)
+                                           : formatted("%zu to %zu", count.by_points, count.by_faces);
 }
 
 void add_labels(const LabelVolumeReport& r, std::vector<InputDefect>& defects) {
@@ -103,22 +105,24 @@ void add_labels(const LabelVolumeReport& r, std::vector<InputDefect>& defects) {
     if (given.allows(made)) return;
     const double off = made < given.by_points ? static_cast<double>(given.by_points - made)
                                               : static_cast<double>(made - given.by_faces);
-    defects.push_back({InputDefectKind::Pieces, off, false,
-                       fmt::format("the mesh has {}, and the voxels have {}", counted(made, thing), text_of(given))});
+    defects.push_back(
+        {InputDefectKind::Pieces, off, false,
+         formatted("the mesh has %s, and the voxels have %s", counted(made, thing).c_str(), text_of(given).c_str())});
   };
   add_count(r.pieces, r.pieces_of_mesh, "piece");
   add_count(r.cavities, r.cavities_of_mesh, "inner wall");
   const double off = r.volume_of_mesh / r.volume_of_voxels - 1;
   if (std::abs(off) > kVoxelsNamed) {
     defects.push_back({InputDefectKind::Volume, std::abs(off), std::abs(off) <= kVoxelsFail,
-                       fmt::format("the volume is {:.6g}, and the voxels have {:.6g} ({:+.2g} %)", r.volume_of_mesh,
-                                   r.volume_of_voxels, 100 * off)});
+                       formatted("the volume is %.6g, and the voxels have %.6g (%+.2g %%)", r.volume_of_mesh,
+                                 r.volume_of_voxels, 100 * off)});
   }
   if (r.n_changed_far == 0) return;
   const double share = static_cast<double>(r.n_changed_far) / static_cast<double>(r.n_voxels);
-  defects.push_back({InputDefectKind::Voxels, share, share <= kFewChanged,
-                     fmt::format("{} changed sides by more than half a voxel{}", counted(r.n_changed_far, "voxel"),
-                                 r.farthest_at ? ", most of all at " + at(*r.farthest_at) : "")});
+  defects.push_back(
+      {InputDefectKind::Voxels, share, share <= kFewChanged,
+       formatted("%s changed sides by more than half a voxel%s", counted(r.n_changed_far, "voxel").c_str(),
+                 (r.farthest_at ? ", most of all at " + at(*r.farthest_at) : std::string()).c_str())});
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 #include "body/fidelity/measure.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -15,6 +13,7 @@
 #include "body/label_volume.h"
 #include "body/pieces/component_proof.h"
 #include "body/sizing/edge_length.h"
+#include "common/formatted.h"
 #include "common/polled_loops.h"
 #include "mesh/certify/boundary_surface.h"
 #include "mesh/core/asking_psi.h"
@@ -239,7 +238,7 @@ Comparison compare_with_domain(const Domain& domain, const TetMesh& mesh, const 
     for (const Vec3& at : proof.unseen) {
       const Vec3 x = at + domain.shift;
       report.components_dropped.push_back(
-          fmt::format("piece at ({:.6g}, {:.6g}, {:.6g}): smaller than an edge", x.x(), x.y(), x.z()));
+          formatted("piece at (%.6g, %.6g, %.6g): smaller than an edge", x.x(), x.y(), x.z()));
     }
   }
   if (domain.has_samples()) report.support = support_report(domain, mesh.V, faces, context);
@@ -273,7 +272,7 @@ std::optional<std::string> deviation_reason(double asked, const MeshCertificate&
   if (asked == 0 || !mesh.boundary.max_centroid_distance_over_h) return std::nullopt;
   const double made = mesh.boundary.max_centroid_distance;
   if (made <= asked) return std::nullopt;
-  return fmt::format("a face centre is {:.4g} from psi = 0, more than the {:.4g} of --max-deviation", made, asked);
+  return formatted("a face centre is %.4g from psi = 0, more than the %.4g of --max-deviation", made, asked);
 }
 
 /// Those that the certificate of the tets has.

@@ -1,12 +1,11 @@
 #include "body/fidelity/verdict.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <vector>
 
 #include "body/fidelity/accepted_defects.h"
 #include "body/fidelity/input_judgement.h"
+#include "common/formatted.h"
 
 namespace umtet {
 namespace {
@@ -15,35 +14,35 @@ namespace {
 std::string said_of(const PlaceReport::OfKind& k, const ZeroSetReport& domain, bool with_small) {
   const MeshPlace& worst = k.worst;
   const std::size_t n = with_small ? k.n : k.n - k.n_small;
-  const std::string places = n == 1 ? "1 place" : fmt::format("{} places", n);
-  const std::string at = fmt::format("({:.6g}, {:.6g}, {:.6g})", worst.where.x(), worst.where.y(), worst.where.z());
+  const std::string places = n == 1 ? "1 place" : formatted("%zu places", n);
+  const std::string at = formatted("(%.6g, %.6g, %.6g)", worst.where.x(), worst.where.y(), worst.where.z());
   const double off = worst.off_over_h;
   switch (k.kind) {
     case PlaceKind::Folded:
-      return fmt::format("the boundary is folded over at {}, the worst, of {} faces at {}, {:.2g} h off psi = 0",
-                         places, worst.n, at, off);
+      return formatted("the boundary is folded over at %s, the worst, of %zu faces at %s, %.2g h off psi = 0",
+                       places.c_str(), worst.n, at.c_str(), off);
     case PlaceKind::Off:
-      return fmt::format("the boundary is off psi = 0 at {}, the worst at {} by {:.2g} h", places, at, off);
+      return formatted("the boundary is off psi = 0 at %s, the worst at %s by %.2g h", places.c_str(), at.c_str(), off);
     case PlaceKind::Filled:
-      return fmt::format("a gap is filled, for the boundary to be a manifold, at {}, the worst at {}, {:.2g} h deep",
-                         places, at, off);
+      return formatted("a gap is filled, for the boundary to be a manifold, at %s, the worst at %s, %.2g h deep",
+                       places.c_str(), at.c_str(), off);
     case PlaceKind::Cut:
-      return fmt::format("body is cut away, for the boundary to be a manifold, at {}, the worst at {}, {:.2g} h deep",
-                         places, at, off);
+      return formatted("body is cut away, for the boundary to be a manifold, at %s, the worst at %s, %.2g h deep",
+                       places.c_str(), at.c_str(), off);
     case PlaceKind::Thin:
-      return fmt::format("the mesh lacks what is thin at {}: psi = 0 is {:.2g} h from its boundary at {}", places, off,
-                         at);
+      return formatted("the mesh lacks what is thin at %s: psi = 0 is %.2g h from its boundary at %s", places.c_str(),
+                       off, at.c_str());
     case PlaceKind::Topology:
-      return fmt::format(
-          "psi = 0 has {} pieces (and {} dropped ones) of Euler characteristic {} on a grid of spacing {:.3g}, the "
-          "boundary of the mesh {} of {}; they differ most at {}",
+      return formatted(
+          "psi = 0 has %zu pieces (and %zu dropped ones) of Euler characteristic %ld on a grid of spacing %.3g, the "
+          "boundary of the mesh %d of %ld; they differ most at %s",
           domain.components_kept, domain.components_dropped.size(), domain.euler_characteristic_of_kept_components,
-          domain.counting_spacing, domain.components_meshed, domain.euler_characteristic_meshed, at);
+          domain.counting_spacing, domain.components_meshed, domain.euler_characteristic_meshed, at.c_str());
     case PlaceKind::Missed:
-      return fmt::format(
-          "psi = 0 passes by samples that are farther than h from the mesh at {}, the worst, {} samples at {}, {:.2g} "
+      return formatted(
+          "psi = 0 passes by samples that are farther than h from the mesh at %s, the worst, %zu samples at %s, %.2g "
           "h",
-          places, worst.n, at, off);
+          places.c_str(), worst.n, at.c_str(), off);
   }
   return "";
 }
@@ -64,7 +63,7 @@ bool has_input(const MeshMeasures& m) { return m.n_points || m.labels; }
 std::string Verdict::word() const {
   if (!passes()) return "fail";
   if (n_defects == 0) return "pass";
-  return fmt::format("pass with {} defect{} named", n_defects, n_defects == 1 ? "" : "s");
+  return formatted("pass with %zu defect%s named", n_defects, n_defects == 1 ? "" : "s");
 }
 
 Verdict judge_shape(const MeshMeasures& measured, bool strict, const std::string& accept) {
@@ -105,7 +104,7 @@ Verdict judge(const MeshMeasures& measured, const VerdictOptions& options) {
   verdict.min_quality_gate = gate;
   const double least = measured.mesh.quality.min;
   if (least < gate) {
-    verdict.reasons.push_back(fmt::format("min quality {:.4f} is below the gate of {:.4f}", least, gate));
+    verdict.reasons.push_back(formatted("min quality %.4f is below the gate of %.4f", least, gate));
   }
   return verdict;
 }

@@ -1,13 +1,12 @@
 #include "body/pieces/zero_set_choice.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "body/label_volume.h"
 #include "body/pieces/component_proof.h"
+#include "common/formatted.h"
 #include "mesh/implicit/surface_distance.h"
 #include "mesh/sizes/graded_zero_set.h"
 
@@ -102,8 +101,8 @@ void choose_among(const Domain& domain, ZeroSetChoice& choice, const Context& co
     }
     const Vec3 at = pieces[c].seed + domain.shift;
     choice.dropped.push_back(
-        fmt::format("piece of area {:.3g} at ({:.6g}, {:.6g}, {:.6g}): {} of at least {} samples within {:.3g} of it",
-                    pieces[c].area, at.x(), at.y(), at.z(), backing[c], wanted[c], radius));
+        formatted("piece of area %.3g at (%.6g, %.6g, %.6g): %zu of at least %zu samples within %.3g of it",
+                  pieces[c].area, at.x(), at.y(), at.z(), backing[c], wanted[c], radius));
   }
 }
 

@@ -1,10 +1,9 @@
 #include "body/scan/cloud_preparation.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <utility>
 
+#include "common/formatted.h"
 #include "reconstruct/cloud/cleaning.h"
 #include "reconstruct/cloud/cloud_arrays.h"
 #include "reconstruct/cloud/cloud_survey.h"
@@ -50,10 +49,7 @@ class Preparation {
   void look_to_origins();
   bool explains_better(const SplitCloud& former, const SplitCloud& proposed, bool is_certain);
   void ask_winding_number(const std::vector<Vec3>* as_given);
-  template <class... T>
-  void notice(fmt::format_string<T...> format, T&&... args) {
-    result_.report.notices.push_back(fmt::format(format, std::forward<T>(args)...));
-  }
+  void notice(std::string line) { result_.report.notices.push_back(std::move(line)); }
   NormalsReport& normals() { return result_.report.normals; }
   double percent(std::size_t n) const {
     return 100. * static_cast<double>(n) / static_cast<double>(cloud_.points.size());
@@ -72,11 +68,11 @@ class Preparation {
 
 void Preparation::tell_fields() {
   result_.report.columns = file_.columns;
-  if (!file_.columns.empty()) notice("{}", file_.columns);
+  if (!file_.columns.empty()) notice(file_.columns);
   result_.report.fields = field_names(cloud_);
   if (!result_.report.fields.empty())
-    notice("the mesh gets what the samples carry: {}", fmt::join(result_.report.fields, ", "));
-  if (const std::string left_out = fields_left_out(file_); !left_out.empty()) notice("{}", left_out);
+    notice(formatted("the mesh gets what the samples carry: %s", joined(result_.report.fields, ", ").c_str()));
+  if (const std::string left_out = fields_left_out(file_); !left_out.empty()) notice(left_out);
 }
 
 void Preparation::clean_points() {
@@ -88,15 +84,16 @@ void Preparation::clean_points() {
                             .duplicates = r.n_duplicates,
                             .outliers = r.n_outliers,
                             .small_components = r.n_small_components};
-  if (n_not_finite > 0) notice("dropped {} points that are no numbers", n_not_finite);
-  if (r.n_duplicates > 0) notice("dropped {} duplicates", r.n_duplicates);
+  if (n_not_finite > 0) notice(formatted("dropped %zu points that are no numbers", n_not_finite));
+  if (r.n_duplicates > 0) notice(formatted("dropped %zu duplicates", r.n_duplicates));
   if (r.n_outliers + r.n_small_components > 0) {
-    notice("dropped {} outliers and {} points in {} small pieces far from the rest (--keep-all keeps them)",
-           r.n_outliers, r.n_small_components, r.n_small_component_pieces);
+    notice(
+        formatted("dropped %zu outliers and %zu points in %zu small pieces far from the rest (--keep-all keeps them)",
+                  r.n_outliers, r.n_small_components, r.n_small_component_pieces));
   }
   if (cloud_.points.size() < kFewestPoints) {
-    throw CloudRefused(fmt::format("{}: {} points are left after cleaning, {} are needed; --keep-all keeps outliers",
-                                   name_, cloud_.points.size(), kFewestPoints));
+    throw CloudRefused(formatted("%s: %zu points are left after cleaning, %zu are needed; --keep-all keeps outliers",
+                                 name_.c_str(), cloud_.points.size(), kFewestPoints));
   }
 }
 
@@ -108,8 +105,8 @@ void Preparation::take(const OrientationReport& r) {
 void Preparation::say_doubt() {
   const std::size_t n_doubtful = normals().orientation->n_doubtful;
   if (n_doubtful > 0) {
-    notice("which side is outside is a guess for {:.1f} % of the points (--flip or --orient-from decide)",
-           percent(n_doubtful));
+    notice(formatted("which side is outside is a guess for %.1f %% of the points (--flip or --orient-from decide)",
+                     percent(n_doubtful)));
   }
 }
 
@@ -123,7 +120,7 @@ void Preparation::fill_missing() {
   for (std::size_t i = 0; i < cloud_.normals.size(); ++i) {
     if (cloud_.normals[i].isZero(0)) cloud_.normals[i] = estimated.normals[i];
   }
-  notice("estimated {} normals that were missing", missing);
+  notice(formatted("estimated %zu normals that were missing", missing));
 }
 
 /// What was given as normals may say where the scanners stood; it does not say how the surface lies.
@@ -156,9 +153,9 @@ void Preparation::find_normals() {
     say_doubt();
     if (r.n_turned > 0) {
       notice(
-          "turned {} of the given normals ({:.1f} %): they were {:.1f} % consistent, now {:.1f} % "
-          "(--normals given keeps them)",
-          r.n_turned, percent(r.n_turned), 100 * r.consistency, 100 * r.consistency_after);
+          formatted("turned %zu of the given normals (%.1f %%): they were %.1f %% consistent, now %.1f %% "
+                    "(--normals given keeps them)",
+                    r.n_turned, percent(r.n_turned), 100 * r.consistency, 100 * r.consistency_after));
       ask_winding_number(&as_given);
     }
     return;
@@ -167,8 +164,8 @@ void Preparation::find_normals() {
   cloud_.normals = std::move(estimated.normals);
   const OrientationReport r = orient_normals(cloud_, {}, &near_, &covering_);
   take(r);
-  notice("estimated the normals and oriented them: {:.1f} % consistent, {} piece{}", 100 * r.consistency_after,
-         r.n_components, r.n_components == 1 ? "" : "s");
+  notice(formatted("estimated the normals and oriented them: %.1f %% consistent, %zu piece%s",
+                   100 * r.consistency_after, r.n_components, r.n_components == 1 ? "" : "s"));
   if (!options_.viewpoints) {
     ask_winding_number(nullptr);
     look_to_origins();
@@ -231,8 +228,9 @@ void Preparation::ask_winding_number(const std::vector<Vec3>* as_given) {
   normals().turned_by_winding = r.n_turned;
   normals().replaced_by_winding = r.n_replaced;
   normals().orientation->consistency_after = consistency(cloud_, {}, &near_, &covering_);
-  notice("the winding number decided which side is outside: turned {} normals ({:.1f} %), took {} directions from it",
-         r.n_turned, percent(r.n_turned), r.n_replaced);
+  notice(formatted(
+      "the winding number decided which side is outside: turned %zu normals (%.1f %%), took %zu directions from it",
+      r.n_turned, percent(r.n_turned), r.n_replaced));
 }
 
 /// Lines of sight that are guessed to be such do not overrule the winding number, which gives directions and sides.
@@ -244,8 +242,8 @@ void Preparation::look_to_origins() {
   }
   normals().turned_to_viewpoints = orient_to_origins(cloud_);
   normals().orientation->n_doubtful = 0;
-  notice("the normals look to the scanner that saw each point, by the {} of the file (--orient-from decides)",
-         sights_are_guessed_ ? "normals" : "columns");
+  notice(formatted("the normals look to the scanner that saw each point, by the %s of the file (--orient-from decides)",
+                   sights_are_guessed_ ? "normals" : "columns"));
 }
 
 /// @return how many
@@ -267,7 +265,8 @@ void Preparation::drop_off_surface() {
   const std::size_t n = drop_if([&](std::size_t i) { return is_outlier[i] != 0; });
   result_.report.dropped.outliers += n;
   if (n > 0)
-    notice("dropped {} more outliers, inside or outside of what the samples enclose (--keep-all keeps them)", n);
+    notice(formatted("dropped %zu more outliers, inside or outside of what the samples enclose (--keep-all keeps them)",
+                     n));
 }
 
 /// A point whose neighbours all lie at one place, or on a line, has no normal.
@@ -275,10 +274,10 @@ void Preparation::drop_undefined() {
   const std::size_t n = cloud_.points.size();
   drop_if([&](std::size_t i) { return cloud_.normals[i].isZero(0); });
   const std::size_t kept = cloud_.points.size();
-  if (kept < n) notice("dropped {} points whose normal cannot be told", n - kept);
+  if (kept < n) notice(formatted("dropped %zu points whose normal cannot be told", n - kept));
   if (kept < kFewestPoints) {
     throw CloudRefused(
-        fmt::format("{}: no surface: the normals of {} of {} points cannot be told", name_, n - kept, n));
+        formatted("%s: no surface: the normals of %zu of %zu points cannot be told", name_.c_str(), n - kept, n));
   }
 }
 
@@ -288,8 +287,9 @@ void Preparation::orient_as_told() {
   if (file_.viewpoint && !normals().given && !is_closed_ && !options_.viewpoints) {
     const Vec3& v = *file_.viewpoint;
     normals().turned_to_viewpoints = orient_from(cloud_, {v});
-    notice("the normals look to the scanner at {:.6g} {:.6g} {:.6g}, the VIEWPOINT of the file (--orient-from decides)",
-           v[0], v[1], v[2]);
+    notice(formatted(
+        "the normals look to the scanner at %.6g %.6g %.6g, the VIEWPOINT of the file (--orient-from decides)", v[0],
+        v[1], v[2]));
   }
   if (options_.scan.flip) flip(cloud_);
 }
@@ -327,9 +327,9 @@ std::string fields_left_out(const CloudFileReport& file) {
   const std::vector<std::string>& names = file.fields_left_out;
   if (names.empty()) return {};
   const std::vector<std::string> listed(names.begin(), names.begin() + std::min(names.size(), kListed));
-  return fmt::format("left out {} field{} ({}{}): {} are kept, and one of each name", names.size(),
-                     names.size() == 1 ? "" : "s", fmt::join(listed, ", "), names.size() > kListed ? " ..." : "",
-                     kMostFields);
+  return formatted("left out %zu field%s (%s%s): %zu are kept, and one of each name", names.size(),
+                   names.size() == 1 ? "" : "s", joined(listed, ", ").c_str(), names.size() > kListed ? " ..." : "",
+                   kMostFields);
 }
 
 PreparedCloud prepare_cloud(CloudFile file, const std::string& name, const BodyOptions& options) {

@@ -1,6 +1,5 @@
 #include "body/scan/level_set_fit.h"
 
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include "body/sizing/wanted_detail.h"
+#include "common/formatted.h"
 #include "reconstruct/cloud/cloud_neighbours.h"
 #include "reconstruct/cloud/cloud_survey.h"
 #include "reconstruct/cloud/covering.h"
@@ -38,8 +38,8 @@ std::string described(const std::vector<FittedHole>& holes) {
   };
   const auto flat = count(FittedHole::How::Flat), smooth = count(FittedHole::How::Smooth);
   if (flat + smooth == 0) return "";
-  return fmt::format("closed where no sample is: {} hole{} flat, {} smoothly (--close chooses, --keep-open does not)",
-                     flat, flat == 1 ? "" : "s", smooth);
+  return formatted("closed where no sample is: %td hole%s flat, %td smoothly (--close chooses, --keep-open does not)",
+                   flat, flat == 1 ? "" : "s", smooth);
 }
 
 // Of normals that were turned and psi fitted again as often as that helped. Noise as large as the parts of a body
@@ -96,21 +96,21 @@ void refuse_volume(const OrientedPointCloud& cloud, const SsdReport& r, double n
   const double dimension = correlation_dimension(cloud.points);
   if (dimension < kVolumeDimension) return;
   throw SolveError(
-      fmt::format("the samples are no surface: their number within r grows like r^{:.2g}, the normals are off the "
-                  "gradient of psi by {:.2g} (mean square), and the samples off psi = 0 by {:.2g}; give samples of a "
-                  "surface",
-                  dimension, r.normal_defect, noise));
+      formatted("the samples are no surface: their number within r grows like r^%.2g, the normals are off the "
+                "gradient of psi by %.2g (mean square), and the samples off psi = 0 by %.2g; give samples of a "
+                "surface",
+                dimension, r.normal_defect, noise));
 }
 
 void require_body(const SsdReport& r) {
   const double opposed = opposed_share(r);
   const bool open = r.least_wall_value < 0;
   if (!open && opposed <= kHopeless) return;
-  throw SolveError(fmt::format(
-      "{}: {:.1f} % of the {} normals point against its gradient; {}orient the normals consistently, outward",
-      open ? "psi < 0 reaches the wall of its box: the samples do not bound a body with outward normals"
-           : "psi was fitted, but the normals disagree with one another",
-      100 * opposed, r.n_points, open ? "check that the surface is closed, and " : ""));
+  throw SolveError(
+      formatted("%s: %.1f %% of the %zu normals point against its gradient; %sorient the normals consistently, outward",
+                open ? "psi < 0 reaches the wall of its box: the samples do not bound a body with outward normals"
+                     : "psi was fitted, but the normals disagree with one another",
+                100 * opposed, r.n_points, open ? "check that the surface is closed, and " : ""));
 }
 
 /// Of samples that were merged for a mesh: no lattice that it has no use for.
@@ -180,7 +180,7 @@ LevelSetFit fit_near_origin(OrientedPointCloud& cloud, NeighbourDistances near, 
   refuse_volume(cloud, fit.report, report.noise);
   std::vector<std::string> notices;
   if (const std::size_t n = fit.report.n_turned_normals; n > 0)
-    notices.push_back(fmt::format("turned {} normals that psi opposed, and fitted again", n));
+    notices.push_back(formatted("turned %zu normals that psi opposed, and fitted again", n));
   if (std::string closed = described(fit.report.holes); !closed.empty()) notices.push_back(std::move(closed));
   report.fit = std::move(fit.report);
   return {std::move(fit.psi), std::move(report), std::move(notices)};

@@ -1,12 +1,11 @@
 #include "body/scan/sample_merging.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <limits>
 #include <utility>
 
 #include "body/sizing/wanted_detail.h"
+#include "common/formatted.h"
 #include "reconstruct/cloud/cloud_survey.h"
 #include "reconstruct/cloud/merged_samples.h"
 #include "reconstruct/cloud/neighbour_tree.h"
@@ -64,9 +63,9 @@ PreparedCloud prepare_merged(CloudFile file, const std::string& name, const Body
     prepared.report.merged = {n, n_merged, cell};
     prepared.report.notices.insert(
         prepared.report.notices.begin(),
-        fmt::format("merged {} points in cells of {:.3g}, which leaves {} samples: the mesh shows nothing finer "
-                    "(--set cloud.merge=false keeps all)",
-                    n, cell, n_merged));
+        formatted("merged %zu points in cells of %.3g, which leaves %zu samples: the mesh shows nothing finer "
+                  "(--set cloud.merge=false keeps all)",
+                  n, cell, n_merged));
     return prepared;
   };
   double cell = 0;

@@ -1,13 +1,13 @@
 #include "body/search/mesh_attempts.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <tuple>
 #include <utility>
 #include <vector>
+
+#include "common/formatted.h"
 
 namespace umtet {
 namespace {
@@ -127,7 +127,7 @@ std::string MeshAttempt::complaint() const {
   if (!reasons.empty()) return reasons.front();
   const std::size_t n = measured.places.n();
   if (n == 0) return "";
-  return fmt::format("it has {} small defect{}", n, n == 1 ? "" : "s");
+  return formatted("it has %zu small defect%s", n, n == 1 ? "" : "s");
 }
 
 MeshAttempt best_attempt(const EdgeLength& choice, double effort, const std::function<MeshAttempt(double h)>& attempt,
@@ -139,7 +139,7 @@ MeshAttempt best_attempt(const EdgeLength& choice, double effort, const std::fun
   std::string why = best.complaint();
   std::optional<double> next_h = may_improve(best, effort) ? smaller.next(best) : std::nullopt;
   while (next_h) {
-    say(fmt::format("h = {:.4g} will not do ({}); trying {:.4g}", h, why, *next_h));
+    say(formatted("h = %.4g will not do (%s); trying %.4g", h, why.c_str(), *next_h));
     h = *next_h;
     MeshAttempt next = attempt(h);
     next_h = may_improve(next, effort) ? smaller.next(next) : std::nullopt;
@@ -147,7 +147,7 @@ MeshAttempt best_attempt(const EdgeLength& choice, double effort, const std::fun
     keeps_last = !is_worse(next, best);
     if (keeps_last) best = std::move(next);
   }
-  if (!keeps_last) say(fmt::format("h = {:.4g} will not do either ({}); keeping h = {:.4g}", h, why, best.h));
+  if (!keeps_last) say(formatted("h = %.4g will not do either (%s); keeping h = %.4g", h, why.c_str(), best.h));
   return best;
 }
 
@@ -169,10 +169,10 @@ MeshAttempt refined_attempt(double h, double effort,
       best = std::move(last);
       has_best = true;
     } else if (!next) {
-      say(fmt::format("smaller edges will not do either ({}); keeping those of {} tets", why, tets_of(best)));
+      say(formatted("smaller edges will not do either (%s); keeping those of %.0f tets", why.c_str(), tets_of(best)));
     }
     if (!next) return best;
-    say(fmt::format("the mesh will not do ({}); trying smaller edges where it failed", why));
+    say(formatted("the mesh will not do (%s); trying smaller edges where it failed", why.c_str()));
     last = attempt(*next, &best);
   }
 }

@@ -1,7 +1,5 @@
 #include "body/search/mesh_maker.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,6 +16,7 @@
 #include "body/search/second_order.h"
 #include "body/sizing/edge_length.h"
 #include "body/sizing/too_thin.h"
+#include "common/formatted.h"
 
 namespace umtet {
 namespace {
@@ -128,12 +127,12 @@ MeshAttempt MeshMaker::begin(const SizedBackground& background, double h) {
   a.n_dropped = pieces.dropped.size();
   a.thin = find_thin_places(domain_, pieces, h, context_);
   if (!a.thin.empty() && lines_.detail) {
-    lines_.detail(fmt::format("{} places are thinner than h = {:.4g} can show for certain:\n{}", a.thin.places.size(),
-                              h, described(a.thin, domain_.shift)));
+    lines_.detail(formatted("%zu places are thinner than h = %.4g can show for certain:\n%s", a.thin.places.size(), h,
+                            described(a.thin, domain_.shift).c_str()));
   }
   const std::size_t n = pieces.dropped.size(), n_said = std::min(n, kSaidPieces);
   for (std::size_t k = 0; k < n_said; ++k) say("left out a " + pieces.dropped[k]);
-  if (n > n_said) say(fmt::format("left out {} more pieces, which the certificate lists", n - n_said));
+  if (n > n_said) say(formatted("left out %zu more pieces, which the certificate lists", n - n_said));
   return a;
 }
 
@@ -146,8 +145,8 @@ bool MeshMaker::may_keep(const MeshAttempt& former, const ZeroSetChoice& pieces)
 ChosenSubmesh MeshMaker::choose(const BackgroundMesh& background, const ZeroSetChoice& pieces,
                                 const MeshAttempt* former) {
   if (lines_.detail) {
-    lines_.detail(fmt::format("h = {:.6g}, background of {} tets, psi = 0 in {} pieces", background.h(),
-                              background.n_tets(), pieces.topology.components.size()));
+    lines_.detail(formatted("h = %.6g, background of %lld tets, psi = 0 in %zu pieces", background.h(),
+                            static_cast<long long>(background.n_tets()), pieces.topology.components.size()));
   }
   const TriangleThickness* thin = thin_triangles(background, pieces, background.h());
   is_thickened_ = thin != nullptr;
@@ -209,9 +208,9 @@ MeshAttempt MeshMaker::finish(const SizedBackground& background, Begun begun) {
   const std::size_t n_flips = a.result.manifold_flips.size(), n_back = a.result.n_stepped_back;
   if (n_flips + n_back > 0 && lines_.detail) {
     lines_.detail(
-        fmt::format("{} vertices changed sides, so that the boundary is a manifold; {} went back from psi = "
-                    "0, so that it does not meet itself",
-                    n_flips, n_back));
+        formatted("%zu vertices changed sides, so that the boundary is a manifold; %zu went back from psi = "
+                  "0, so that it does not meet itself",
+                  n_flips, n_back));
   }
   context_.report("certify", kCertificate);
   if (!a.made()) return a;
@@ -269,7 +268,7 @@ MeshAttempt MeshMaker::attempt_for_tets(double h, const MakeBackground& make, co
     const double better = ++n_misses == kMostMisses  ? nearest
                           : makes_more && makes_less ? std::sqrt(*makes_more * *makes_less)
                                                      : h * std::cbrt(ratio);
-    say(fmt::format("h = {:.4g} makes {:.2g} times the tets asked for; trying {:.4g}", h, ratio, better));
+    say(formatted("h = %.4g makes %.2g times the tets asked for; trying %.4g", h, ratio, better));
     h = std::max(better, least_h_in_file(domain_));
   }
 }
@@ -306,10 +305,10 @@ MeshAttempt MeshMaker::search(BackgroundChoice& backgrounds, const EdgeLength& c
   try {
     const std::optional<EdgeLength> sizes = backgrounds.grade(domain_, context_);
     if (sizes && backgrounds.expected_tets(domain_, sizes->h) <= allowed) {
-      say(fmt::format("no one h does ({}); trying edges that follow the body", of_one_h.complaint()));
+      say(formatted("no one h does (%s); trying edges that follow the body", of_one_h.complaint().c_str()));
       MeshAttempt of_sizes = graded(backgrounds, sizes->h, make);
       if (of_sizes.is_right() || (of_sizes.made() && !of_one_h.made())) return of_sizes;
-      say(fmt::format("they will not do either ({}); keeping h = {:.4g}", of_sizes.complaint(), of_one_h.h));
+      say(formatted("they will not do either (%s); keeping h = %.4g", of_sizes.complaint().c_str(), of_one_h.h));
     }
   } catch (const MeshingImpossible& e) {
     say(std::string("edges that follow the body are not possible: ") + e.what());
@@ -322,8 +321,8 @@ MeshAttempt MeshMaker::search(BackgroundChoice& backgrounds, const EdgeLength& c
 
 std::string too_thin_text(const MeshAttempt& a, const Vec3& shift) {
   const std::size_t n = a.thin.places.size();
-  return fmt::format("h = {:.4g} is too large: {}; {} place{} thinner than it can show\n{}", a.h, a.complaint(), n,
-                     n == 1 ? " is" : "s are", described(a.thin, shift));
+  return formatted("h = %.4g is too large: %s; %zu place%s thinner than it can show\n%s", a.h, a.complaint().c_str(), n,
+                   n == 1 ? " is" : "s are", described(a.thin, shift).c_str());
 }
 
 }  // namespace umtet

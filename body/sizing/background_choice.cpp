@@ -1,7 +1,5 @@
 #include "body/sizing/background_choice.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +9,7 @@
 
 #include "body/errors.h"
 #include "body/sizing/mesh_memory.h"
+#include "common/formatted.h"
 #include "mesh/background/a15_box.h"
 #include "mesh/base/id_set.h"
 #include "mesh/core/asking_psi.h"
@@ -128,9 +127,9 @@ EdgeLength BackgroundChoice::graded_edge_length(const Domain& domain, const Cont
   const double least = h_of_graded_tets(*graded_, domain, static_cast<double>(p.max_tets), context);
   if (p.h > 0 || p.max_deviation > 0 || options_.sizes || options_.label_sizes) {
     throw ResourceLimit(
-        fmt::format("these sizes, {:.4g} where they are least, make about {:.2g} tets: raise --max-tets "
-                    "{}, or ask for sizes that are {:.2g} times as large",
-                    h, n, p.max_tets, least / h));
+        formatted("these sizes, %.4g where they are least, make about %.2g tets: raise --max-tets "
+                  "%lld, or ask for sizes that are %.2g times as large",
+                  h, n, static_cast<long long>(p.max_tets), least / h));
   }
   return representable({.h = least, .least = least, .at_max_tets = true}, domain);
 }
@@ -206,7 +205,7 @@ SizedBackground BackgroundChoice::make(const Domain& domain, double h, std::int6
     require_memory(background, expected(background), allowed);
     return {std::move(background), domain.box, graded_ ? sizes_for(h) : nullptr};
   } catch (const std::invalid_argument& e) {  // h and the box have been checked: their tets are too many to count
-    throw ResourceLimit(fmt::format("h = {:.4g}: no background mesh: {}", h, e.what()));
+    throw ResourceLimit(formatted("h = %.4g: no background mesh: %s", h, e.what()));
   }
 }
 

@@ -1,7 +1,5 @@
 #include "body/sizing/edge_length.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,6 +14,7 @@
 #include "body/sizing/background_choice.h"
 #include "body/sizing/deviation.h"
 #include "body/sizing/thick_body.h"
+#include "common/formatted.h"
 #include "mesh/certify/quality_report.h"
 #include "mesh/implicit/foot_point.h"
 #include "mesh/implicit/thickness.h"
@@ -63,8 +62,8 @@ void refuse_too_many(const Domain& domain, const BodyOptions& options, double h)
   }
   // The estimate is good to 10 % in the number of tets, which is 3 % in h.
   if (h >= .97 * least) return;
-  throw ResourceLimit(fmt::format("h = {:.4g} makes more than {} tets (that many at h = {:.4g}): raise --max-tets", h,
-                                  max_tets, least));
+  throw ResourceLimit(formatted("h = %.4g makes more than %lld tets (that many at h = %.4g): raise --max-tets", h,
+                                static_cast<long long>(max_tets), least));
 }
 
 struct ThinPart {
@@ -189,9 +188,9 @@ EdgeLength by_deviation(Domain& domain, const BodyOptions& options, double devia
   const double h = h_for_deviation(domain, deviation, kMostOfDiagonal * domain.diagonal, least, context);
   if (h > least) return {h, least};
   throw ResourceLimit(
-      fmt::format("--max-deviation {:.4g} needs more than {} tets (that many at h = {:.4g}): raise "
-                  "--max-tets",
-                  deviation, max_tets, least));
+      formatted("--max-deviation %.4g needs more than %lld tets (that many at h = %.4g): raise "
+                "--max-tets",
+                deviation, static_cast<long long>(max_tets), least));
 }
 
 /// The choice, without regard to how it will be written.
@@ -262,12 +261,13 @@ EdgeLength representable(EdgeLength choice, const Domain& domain) {
   const double least = least_h_in_file(domain);
   if (choice.h < least) {
     const double far = greatest_coordinates(domain).maxCoeff();
-    throw MeshingImpossible(fmt::format(
-        "h = {:.4g} is too small for coordinates of {:.3g}: they are rounded to multiples of {:.2g} in any "
-        "file of doubles, and boundary vertices would miss psi = 0 by more than {:g} h; move the input "
-        "nearer to the origin{}",
+    throw MeshingImpossible(formatted(
+        "h = %.4g is too small for coordinates of %.3g: they are rounded to multiples of %.2g in any "
+        "file of doubles, and boundary vertices would miss psi = 0 by more than %g h; move the input "
+        "nearer to the origin%s",
         choice.h, far, std::nextafter(far, std::numeric_limits<double>::infinity()) - far, kMostRounding,
-        least < kMeshEdge * 10 * domain.diagonal ? fmt::format(", or give --h {:.3g} or more", least) : ""));
+        (least < kMeshEdge * 10 * domain.diagonal ? formatted(", or give --h %.3g or more", least) : std::string())
+            .c_str()));
   }
   choice.least = std::max(choice.least, least);
   return choice;

@@ -1,7 +1,5 @@
 #include "body/sizing/graded_sizes.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -12,6 +10,7 @@
 #include "body/errors.h"
 #include "body/pieces/zero_set_choice.h"
 #include "body/sizing/edge_length.h"
+#include "common/formatted.h"
 #include "common/polled_loops.h"
 #include "mesh/core/asking_psi.h"
 #include "mesh/sizes/graded_size.h"
@@ -86,13 +85,14 @@ void require_graded(const BodyOptions& options) {
   const MeshOptions& p = options.mesh;
   if (!is_graded(options)) {
     const std::vector<std::string> flags = given_sizes(options);
-    if (!flags.empty()) throw UsageError(fmt::format("{} is for --background graded", flags.front()));
+    if (!flags.empty()) throw UsageError(formatted("%s is for --background graded", flags.front().c_str()));
     return;
   }
   if (p.h_max > 0 && p.h_min > p.h_max) {
-    throw UsageError(fmt::format("--h-min {} is above --h-max {}", p.h_min, p.h_max));
+    throw UsageError(formatted("--h-min %s is above --h-max %s", shortest(p.h_min).c_str(), shortest(p.h_max).c_str()));
   }
-  if (p.h > 0 && p.h_min > p.h) throw UsageError(fmt::format("--h-min {} is above --h {}", p.h_min, p.h));
+  if (p.h > 0 && p.h_min > p.h)
+    throw UsageError(formatted("--h-min %s is above --h %s", shortest(p.h_min).c_str(), shortest(p.h).c_str()));
   if (p.grade_inside && !(p.max_deviation == 0 && !options.sizes && !options.label_sizes)) {
     throw UsageError("--grade-inside keeps --h on all of the boundary: without --max-deviation, --size and --size-at");
   }
@@ -182,10 +182,10 @@ void GradedSizes::require_lengths(const std::vector<Vec3>& inside) const {
   for (const Vec3& x : inside) look(x);
   if (!worst) return;
   const Vec3 at = *worst + shift_;
-  throw UsageError(fmt::format(
-      "--size {} is {:.4g} at ({:.4g}, {:.4g}, {:.4g}), which is in the body: edge lengths are above 0. --h-min raises "
+  throw UsageError(formatted(
+      "--size %s is %.4g at (%.4g, %.4g, %.4g), which is in the body: edge lengths are above 0. --h-min raises "
       "what is less",
-      formula_name_, least, at.x(), at.y(), at.z()));
+      formula_name_.c_str(), least, at.x(), at.y(), at.z()));
 }
 
 /// With what the user asks for: at the sources, and on a lattice inside.

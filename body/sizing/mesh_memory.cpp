@@ -1,8 +1,7 @@
 #include "body/sizing/mesh_memory.h"
 
-#include <fmt/format.h>
-
 #include "body/errors.h"
+#include "common/formatted.h"
 
 namespace umtet {
 namespace {
@@ -18,9 +17,9 @@ void require_memory(const BackgroundMesh& background, double n_tets, double allo
   const double need = kBytesPerTet * n_tets + kBytesPerBackgroundVertex * static_cast<double>(background.n_vertices()) +
                       kBytesPerBackgroundTet * static_cast<double>(background.n_tets());
   if (need <= allowed) return;
-  throw ResourceLimit(fmt::format(
-      "h = {:.4g}: about {:.3g} tets in a background mesh of {:.3g} need {:.3g} GB of memory, and {:.3g} GB are "
-      "allowed: fewer --tets or a larger --h{}",
+  throw ResourceLimit(formatted(
+      "h = %.4g: about %.3g tets in a background mesh of %.3g need %.3g GB of memory, and %.3g GB are "
+      "allowed: fewer --tets or a larger --h%s",
       background.h(), n_tets, static_cast<double>(background.n_tets()), need / 1e9, allowed / 1e9,
       n_tets < .01 * static_cast<double>(background.n_tets()) ? ", or a --box closer around the domain" : ""));
 }

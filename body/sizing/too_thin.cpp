@@ -1,13 +1,12 @@
 #include "body/sizing/too_thin.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
 #include <optional>
 
 #include "body/pieces/clusters.h"
+#include "common/formatted.h"
 #include "mesh/implicit/thickness.h"
 
 namespace umtet {
@@ -137,12 +136,11 @@ std::string described(const ThinPlaces& thin, const Vec3& shift) {
   for (std::size_t k = 0; k < std::min(kListed, thin.places.size()); ++k) {
     const ThinPlace& p = thin.places[k];
     const Vec3 at = p.centre + shift, size = p.box.sizes();
-    out += fmt::format(
-        "{}  {} down to {:.3g} thick around ({:.6g}, {:.6g}, {:.6g}), {:.2g} x {:.2g} x {:.2g} wide: needs h = {:.3g}",
-        k > 0 ? "\n" : "", p.is_gap ? "gap" : "body", p.thickness, at.x(), at.y(), at.z(), size.x(), size.y(), size.z(),
-        p.h_needed);
+    out += formatted("%s  %s down to %.3g thick around (%.6g, %.6g, %.6g), %.2g x %.2g x %.2g wide: needs h = %.3g",
+                     k > 0 ? "\n" : "", p.is_gap ? "gap" : "body", p.thickness, at.x(), at.y(), at.z(), size.x(),
+                     size.y(), size.z(), p.h_needed);
   }
-  if (thin.places.size() > kListed) out += fmt::format("\n  and {} more", thin.places.size() - kListed);
+  if (thin.places.size() > kListed) out += formatted("\n  and %zu more", thin.places.size() - kListed);
   return out;
 }
 

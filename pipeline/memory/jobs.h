@@ -9,6 +9,7 @@
 #include "body/body.h"
 #include "pipeline/memory/watch.h"
 #include "body/search/mesh_attempts.h"
+#include "pipeline/meshing/part_mesher.h"
 #include "pipeline/reports/certificate_report.h"
 #include "pipeline/reports/stage_reports.h"
 #include "reconstruct/io/point_cloud_io.h"
