@@ -69,7 +69,7 @@ foreach(component IN LISTS umtet_components)
   install(FILES ${PROJECT_BINARY_DIR}/${pc_name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 endforeach()
 
-foreach(folder common reconstruct mesh body pipeline)
+foreach(folder common reconstruct mesh body umtet pipeline)
   install(DIRECTORY ${folder} DESTINATION ${umtet_headers} COMPONENT development
     FILES_MATCHING PATTERN "*.h" PATTERN "*.def" PATTERN detail EXCLUDE PATTERN examples EXCLUDE PATTERN cli EXCLUDE)
 endforeach()

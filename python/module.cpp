@@ -21,7 +21,7 @@
 #include "pipeline/case/version.h"
 #include "pipeline/domain/body_options.h"
 #include "pipeline/domain/load_domain.h"
-#include "pipeline/memory/given_cloud.h"
+#include "body/scan/given_cloud.h"
 #include "pipeline/memory/mesh_object.h"
 #include "pipeline/reports/certificate_json.h"
 #include "pipeline/reports/mesh_json.h"

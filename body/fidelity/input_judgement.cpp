@@ -100,7 +100,8 @@ std::string text_of(const PieceCount& count) {
                                            : formatted("%zu to %zu", count.by_points, count.by_faces);
 }
 
-void add_labels(const LabelVolumeReport& r, std::vector<InputDefect>& defects) {
+/// @param explained  share of the volume between flat faces and a curved psi = 0: what h takes is no fault of psi
+void add_labels(const LabelVolumeReport& r, double explained, std::vector<InputDefect>& defects) {
   const auto add_count = [&](const PieceCount& given, std::size_t made, const char* thing) {
     if (given.allows(made)) return;
     const double off = made < given.by_points ? static_cast<double>(given.by_points - made)
@@ -112,7 +113,7 @@ void add_labels(const LabelVolumeReport& r, std::vector<InputDefect>& defects) {
   add_count(r.pieces, r.pieces_of_mesh, "piece");
   add_count(r.cavities, r.cavities_of_mesh, "inner wall");
   const double off = r.volume_of_mesh / r.volume_of_voxels - 1;
-  if (std::abs(off) > kVoxelsNamed) {
+  if (std::abs(off) > kVoxelsNamed + std::min(explained, kVoxelsNamed)) {
     defects.push_back({InputDefectKind::Volume, std::abs(off), std::abs(off) <= kVoxelsFail,
                        formatted("the volume is %.6g, and the voxels have %.6g (%+.2g %%)", r.volume_of_mesh,
                                  r.volume_of_voxels, 100 * off)});
@@ -141,7 +142,7 @@ std::vector<InputDefect> input_defects(const MeshMeasures& m) {
     add_triangles(m, defects);
     return defects;
   }
-  if (m.labels) add_labels(*m.labels, defects);
+  if (m.labels) add_labels(*m.labels, m.mesh.boundary.gap_over_volume.value_or(0), defects);
   if (m.cloud) add_missed(m, defects);
   if (m.domain.support) add_guesses(*m.domain.support, defects);
   return defects;

@@ -55,7 +55,7 @@ std::vector<std::size_t> backing_samples(const Domain& domain, const ZeroSetTopo
 
 /// Whether there is a sample within `radius` of the first piece; false may also mean that a few hundred were not.
 bool has_sample(const Domain& domain, const ZeroSetTopology& topology, double radius) {
-  constexpr std::size_t kLookedAt = 300;
+  constexpr std::size_t kLookedAt = 300;  // samples searched near a piece: bounds the time
   const auto points = topology.points_of(topology.components.front());
   const std::vector<Vec3>& samples = domain.cloud.points;
   const auto is_near = [&](const Vec3& x) {

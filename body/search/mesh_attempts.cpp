@@ -54,18 +54,6 @@ bool may_improve_nearby(const MeshAttempt& a, double effort) {
          });
 }
 
-/// The h that is forecast to show all that an attempt does not; none where a place has nothing thin to explain it.
-std::optional<double> h_that_shows(const MeshAttempt& a, double effort) {
-  if (!a.made()) return a.thin.empty() ? std::nullopt : std::optional(kMargin * a.thin.h_needed());
-  std::optional<double> h;
-  for (const MeshPlace& place : a.places) {
-    if (is_left(place, effort)) continue;
-    if (!place.h_needed) return std::nullopt;
-    h = std::min(h.value_or(*place.h_needed), *place.h_needed);
-  }
-  return h ? std::optional(kMargin * *h) : std::nullopt;
-}
-
 /// The edge lengths to try, one after the other.
 class SmallerEdges {
  public:
@@ -121,6 +109,17 @@ bool is_worse(const MeshAttempt& a, const MeshAttempt& b) {
 }
 
 }  // namespace
+
+std::optional<double> h_that_shows(const MeshAttempt& a, double effort) {
+  if (!a.made()) return a.thin.empty() ? std::nullopt : std::optional(kMargin * a.thin.h_needed());
+  std::optional<double> h;
+  for (const MeshPlace& place : a.places) {
+    if (is_left(place, effort)) continue;
+    if (!place.h_needed) return std::nullopt;
+    h = std::min(h.value_or(*place.h_needed), *place.h_needed);
+  }
+  return h ? std::optional(kMargin * *h) : std::nullopt;
+}
 
 std::string MeshAttempt::complaint() const {
   if (!made()) return result.evidence.what;

@@ -203,8 +203,11 @@ EdgeLength choose(Domain& domain, const BodyOptions& options, const Context& con
   if (p.tets == 0 && p.max_deviation > 0) return by_deviation(domain, options, p.max_deviation, context);
   if (p.tets == 0 && may_be_thickened(domain, options)) return of_triangles(domain, options, context);
   const double of_diagonal = kMeshEdge * domain.diagonal;
-  const double least_of_volume = domain.labels ? edge_of_volume(*domain.labels) : of_diagonal;
-  const double of_size = std::min(of_diagonal, least_of_volume), limit = kEdgesAcross * of_size;
+  // The voxels have nothing finer, unless a part is thin.
+  const double of_size = domain.labels ? std::min(std::max(of_diagonal, kLeastOfVoxel * domain.labels->step()),
+                                                  edge_of_volume(*domain.labels))
+                                       : of_diagonal;
+  const double limit = kEdgesAcross * of_size;
   const ThinPart thin = domain.level_set || domain.labels ? thin_part(domain, limit, context) : ThinPart{limit};
   const double t = thin.thickness;
   const double of_noise = noise_edge(domain), needed = std::max(std::min(of_size, t / kEdgesAcross), of_noise);
@@ -214,8 +217,6 @@ EdgeLength choose(Domain& domain, const BodyOptions& options, const Context& con
   }
   const double least = h_of(domain, options, p.max_tets);
   double h = edge_length_by(of_size, t, [&] { return h_of(domain, options, kTetsOfLargeMesh); });
-  // The voxels have nothing finer, unless a part is thin.
-  if (domain.labels) h = std::max(h, std::min(kLeastOfVoxel * domain.labels->step(), t / kEdgesAcross));
   const bool at_max_tets = least > std::max(h, of_noise);
   h = std::max(h, least);
   const std::optional<double> of_thin_parts = of_noise > h ? std::optional(h) : std::nullopt;

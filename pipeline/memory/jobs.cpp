@@ -10,9 +10,8 @@
 #include "body/scan/cloud_preparation.h"
 #include "body/scan/fitted_domain.h"
 #include "body/scan/level_set_fit.h"
+#include "body/search/best_mesh.h"
 #include "body/search/mesh_maker.h"
-#include "body/sizing/background_choice.h"
-#include "body/sizing/edge_length.h"
 #include "body/sizing/too_thin.h"
 #include "pipeline/case/memory.h"
 #include "pipeline/domain/body_options.h"
@@ -20,15 +19,6 @@
 
 namespace umtet {
 namespace {
-
-// Foretelling the number of tets takes a million values of psi, whatever h is: some ten seconds of one of Python.
-// Where h is given it is left out, and memory is asked for as many as are allowed.
-EdgeLength edge_length(Domain& domain, BackgroundChoice& background, const BodyOptions& options, const Watch& watch) {
-  const double h = options.mesh.h;
-  const bool is_given = h >= least_h_in_file(domain) && h > 0 && !is_graded(options) && !background.own_h();
-  if (domain.function && is_given) return {h, h};
-  return background.edge_length(domain, polls_of(watch));
-}
 
 MeshingFailed too_thin(const MeshAttempt& best, const Vec3& shift) {
   return {fmt::format("{}\n  h = {:.3g} may show them", too_thin_text(best, shift), best.thin.h_needed()),
@@ -71,15 +61,8 @@ Domain domain_of(const Reconstruction& r, const std::optional<Box>& box) {
 }
 
 MeshAttempt make_mesh(Domain& domain, const Parameters& parameters, const Watch& watch, PartMesher* ranks) {
-  watch("size", 0);
-  domain.complement = parameters.mesh().complement;
-  const BodyOptions options = body_options(parameters);
-  BackgroundChoice background(options, domain);
-  MeshMaker maker(domain, options, context_of(watch), {}, ranks);
-  const std::int64_t n_tets = domain.function ? parameters.mesh().max_tets : parameters.mesh().tets;
   const double allowed = ranks ? ranks->allowed_bytes(parameters) : allowed_bytes(parameters);
-  const auto make = [&](double h) { return background.make(domain, h, n_tets, allowed); };
-  MeshAttempt best = maker.best(background, edge_length(domain, background, options, watch), make);
+  MeshAttempt best = best_mesh(domain, body_options(parameters), allowed, context_of(watch), ranks);
   if (best.fell_through()) throw too_thin(best, domain.shift);
   if (!best.made()) throw failure(best.result, best.h, domain.shift);
   return best;

@@ -22,7 +22,7 @@
 namespace umtet {
 namespace {
 
-constexpr std::size_t kNeighbours = Neighbourhoods::kDefault;
+constexpr std::size_t kNeighbours = Neighbourhoods::kDefault;  // the neighbours that all steps share
 // The plane is that of the points within 1.2 times the 12th neighbour: above an outlier four spacings off its surface
 // there are some 30.
 constexpr double kPlaneReach2 = 1.44;
@@ -73,7 +73,8 @@ std::vector<std::uint8_t> later_duplicates(const std::vector<Vec3>& points) {
 /// kSpacings of their spacings. The plane and not a quadric: curvature then counts as deviation, and sharp tips of
 /// clean bodies stay.
 bool is_off_plane(const std::vector<Vec3>& points, const Vec3& x, std::span<const Neighbour> around) {
-  constexpr double kDeviations = 5, kSpacings = 2.5;
+  constexpr double kDeviations = 5;  // standard deviations of the points around off their plane
+  constexpr double kSpacings = 2.5;  // spacings of the points around, besides kDeviations of their deviations
   const auto n = static_cast<double>(around.size());
   Vec3 mean = Vec3::Zero();
   double scale2 = 0;

@@ -33,7 +33,7 @@ NeighbourDistances neighbour_distances(const std::vector<Vec3>& points, const Ne
 double median_spacing(const std::vector<Vec3>& points);
 double median_spacing(const NeighbourDistances& near);
 
-inline constexpr int kAreaNeighbours = 12;
+inline constexpr int kAreaNeighbours = 12;  ///< Neighbourhoods::kDefault: two rings of samples
 
 /// a_i: the area of surface that sample i stands for (model units squared).
 ///

@@ -23,7 +23,7 @@
 namespace umtet {
 namespace {
 
-constexpr std::size_t kNoiseNeighbours = 24;
+constexpr std::size_t kNoiseNeighbours = 24;  // four times the 6 coefficients of a quadric
 
 double percentile(std::vector<double>& values, double share) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -94,8 +94,9 @@ double noise_along_normals(const std::vector<Vec3>& points, const NeighbourTree&
 }
 
 double noise_along_normals(const OrientedPointCloud& cloud, const NeighbourTree& tree, std::size_t sampled_points) {
-  constexpr std::size_t kPairs = 8;  // of each sample and its nearest ones, which are up to two spacings away
-  constexpr double kMostOfDistance = .5, kDeviationsOfMedian = 1.4826;
+  constexpr std::size_t kPairs = 8;       // of each sample and its nearest ones, which are up to two spacings away
+  constexpr double kMostOfDistance = .5;  // noise above this share of the sample spacing comes from quadrics alone
+  constexpr double kDeviationsOfMedian = 1.4826;  // 1 / quantile(3/4) of the normal distribution
   const double of_quadrics = noise_along_normals(cloud.points, tree, sampled_points);
   if (cloud.normals.empty()) return of_quadrics;
   const std::vector<std::uint32_t> picked = evenly_picked(tree, sampled_points);

@@ -19,6 +19,7 @@ namespace umtet {
 std::vector<int> vote_labels(const OrientedPointCloud& cloud, const std::vector<Vec3>& places,
                              const std::vector<Vec3>& normals);
 
-inline constexpr int kVoters = 5, kNearby = 32;
+inline constexpr int kVoters = 5;   ///< samples that vote: see above
+inline constexpr int kNearby = 32;  ///< nearest samples among which the voters are searched
 
 }  // namespace umtet

@@ -11,9 +11,9 @@
 namespace umtet {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr std::size_t kProbes = 1000;          // which fix the median angle to 3 % of the range of angles
-constexpr double kLargestDoubt = 5 * kDegree;  // a quarter of the angle that is looked for
+constexpr double kDegree = std::numbers::pi / 180;  // unit
+constexpr std::size_t kProbes = 1000;               // which fix the median angle to 3 % of the range of angles
+constexpr double kLargestDoubt = 5 * kDegree;       // a quarter of the angle that is looked for
 // A scanner afar sees a ball at 45 degrees in the median: less than half of that.
 constexpr double kFarthestNormal = 20 * kDegree;
 

@@ -31,7 +31,7 @@ struct Closer {
   std::size_t neighbours;
   double variance_drop;
 };
-constexpr std::array<Closer, 2> kCloser = {Closer{12, 1.0 / 16}, Closer{9, 1.0 / 125}};
+constexpr std::array<Closer, 2> kCloser = {Closer{12, 1.0 / 16}, Closer{9, 1.0 / 125}};  // of Closer
 
 /// The angle that noise leaves on a normal, from n neighbours within radius.
 double noise_angle(const LocalQuadric& quadric, double radius, std::size_t n) {

@@ -214,7 +214,7 @@ std::vector<SignEdge> sign_graph(const OrientedPointCloud& cloud, const Neighbou
 
 SignAgreement sign_agreement(const OrientedPointCloud& cloud, const Neighbourhoods& near) {
   constexpr std::size_t kChunk = 4096;
-  constexpr double kContested = 0.25;
+  constexpr double kContested = 0.25;  // share of a point's weight against its sign from which it counts as contested
   const std::size_t n = near.size();
   std::vector<SignAgreement> sums((n + kChunk - 1) / kChunk);
   tbb::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t c) {

@@ -99,8 +99,8 @@ constexpr int kSmoothingDegree = 3;
 // @param x, v, Av  room for size() + kPad numbers
 double largest_eigenvalue(const SsdOperator& op, const std::vector<float>& inverse_diagonal, float* x, float* v,
                           float* Av, std::vector<float>& workspace) {
-  constexpr int kSteps = 10;
-  constexpr double kMargin = 1.1;
+  constexpr int kSteps = 10;       // of Lanczos' method, which converges from below
+  constexpr double kMargin = 1.1;  // covers what kSteps steps lack
   const std::ptrdiff_t n = op.size();
   const float* D = inverse_diagonal.data();
   for_chunks(n, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {

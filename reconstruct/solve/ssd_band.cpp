@@ -143,7 +143,7 @@ SsdBand::SsdBand(const LmeTables& tables, LatticeBlocks blocks, double kappa, co
 }
 
 double SsdBand::expected_bytes(const std::vector<SsdSample>& samples, int half_width) {
-  constexpr double kPerNode = 5 * sizeof(float) + 16, kPerSample = 180;
+  constexpr double kPerNode = 5 * sizeof(float) + 16, kPerSample = 180;  // bytes: an estimate
   return kNodes * kPerNode * static_cast<double>(blocks_of(samples, half_width).size()) +
          kPerSample * static_cast<double>(samples.size());
 }

@@ -245,7 +245,7 @@ void require_surface(const TriangleMesh& mesh, const TriangleReport& report, con
 void close_and_turn(const BodySampleParams& params, const Context& context, TriangleMesh& mesh,
                     TriangleReport& report) {
   const std::size_t n_given = mesh.F.size();
-  if (params.cap) report.caps = cap_plane_rims(mesh, 0);
+  if (params.cap) report.caps = cap_plane_rims(mesh, find_patches(mesh).weld_distance);
   if (params.turn) {
     report.sides = orient_outward(mesh, context);
     require_surface(mesh, report, context);

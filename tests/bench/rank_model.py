@@ -28,7 +28,7 @@ PHASES = ("start", "bands", "share_psi", "alone_psi", "partition", "signs", "cla
           "boundary", "alone_measures", "files", "alone_files")
 ALONE = ("start", "alone_psi", "repair", "boundary", "alone_measures", "alone_files")  # of rank 0; others wait
 BLOCK_TETS = 4**3 * 46  # distributed/block_curve.h
-ON_GRID = "pieces of psi = 0 and its size"
+ON_GRID = "components of psi = 0 and its size"
 GRID_TETS = 5e7 / .435  # that grid has 5e7 nodes at most (kMaxGridNodes), and .435 for each tet of this torus
 SAMPLES_A_FACE = 3.9  # dense_cloud.py 2000000, run with --h .03: 192,530 samples, 49,968 faces
 READ_SECONDS, READ_BYTES = .6e-6, 64  # of a point that is merged (docs/performance.md, "Reconstruction")
@@ -155,26 +155,26 @@ def model(file):
     add("rest of the certificate", "s of rank 0", formula, of_first(["alone_measures"]), ["1", "face"])
     add("checksums of files", "s of rank 0", formula, of_first(["alone_files"]), ["1", "tet"])
     # One rank makes its bands there, too.
-    add("of a scan: cloud, coarsest lattice", "s of rank 0", [r for r in scan if r["n"] > 1], of_first(["start"]), ["1", "sample"])
-    add("of a scan: sizes and pieces of psi = 0", "s of rank 0", [r for r in scan if r["n"] > 1], of_first(["alone_psi"]), ["1", "sample"])
-    add("of a scan: rest of the certificate", "s of rank 0", scan, of_first(["alone_measures"]), ["1", "face"])
+    add("scan: cloud, coarsest lattice", "s of rank 0", [r for r in scan if r["n"] > 1], of_first(["start"]), ["1", "sample"])
+    add("scan: sizes and components of psi = 0", "s of rank 0", [r for r in scan if r["n"] > 1], of_first(["alone_psi"]), ["1", "sample"])
+    add("scan: rest of the certificate", "s of rank 0", scan, of_first(["alone_measures"]), ["1", "face"])
     add("sent for certificate and files", "bytes of all ranks", [r for r in formula if r["n"] > 1],
         lambda r: sum(rank[p]["sent"] for p in IN_PIECES for rank in r["ranks"]) * r["n"] / (r["n"] - 1), ["tet"])
     add("written", "bytes of all ranks", formula, lambda r: sum(rank["files"]["written"] for rank in r["ranks"]), ["tet", "face"])
     of_part = ["1", "tet of a rank", "neighbouring tet of a rank"]
-    add("peak memory of a formula", "bytes of rank 0", formula, peak(True), of_part + ["face"])
-    add("peak memory of a formula, others", "bytes of a rank", [r for r in formula if r["n"] > 1], peak(False), of_part)
-    add("peak memory of a scan", "bytes of rank 0", scan, peak(True), ["1", "sample", "sample of a rank", "tet of a rank"])
-    add("peak memory of a scan, others", "bytes of a rank", [r for r in scan if r["n"] > 1], peak(False), ["1", "sample", "sample of a rank", "tet of a rank"])
+    add("peak memory, formula", "bytes of rank 0", formula, peak(True), of_part + ["face"])
+    add("peak memory, formula, others", "bytes of a rank", [r for r in formula if r["n"] > 1], peak(False), of_part)
+    add("peak memory, scan", "bytes of rank 0", scan, peak(True), ["1", "sample", "sample of a rank", "tet of a rank"])
+    add("peak memory, scan, others", "bytes of a rank", [r for r in scan if r["n"] > 1], peak(False), ["1", "sample", "sample of a rank", "tet of a rank"])
     several = [r for r in formula if r["n"] > 1]
     counts = {"exchanges": max(most("exchanges", IN_MESH)(r) for r in formula),
               "collectives": max(most("collectives", PHASES)(r) - rounds(r["tets"], r["n"]) * per_round(formula) for r in formula),
               "collectives a round": per_round(formula),
-              "bytes of exchanges to sqrt(faces of a rank)": max(most("sent", IN_MESH)(r) / math.sqrt(r["faces"] / r["n"]) for r in several),
-              "most to mean CPU s of ranks": max(most("cpu", IN_MESH + IN_PIECES)(r) * r["n"] / together(IN_MESH + IN_PIECES)(r)
+              "bytes of exchanges / sqrt(faces of a rank)": max(most("sent", IN_MESH)(r) / math.sqrt(r["faces"] / r["n"]) for r in several),
+              "largest / mean CPU s of ranks": max(most("cpu", IN_MESH + IN_PIECES)(r) * r["n"] / together(IN_MESH + IN_PIECES)(r)
                                                  for r in several),
-              "faces to tets^(2/3)": max(r["faces"] / r["tets"] ** (2 / 3) for r in formula),
-              "s of an Allreduce of two ranks": data["latency"]}
+              "faces / tets^(2/3)": max(r["faces"] / r["tets"] ** (2 / 3) for r in formula),
+              "s for an Allreduce of two ranks": data["latency"]}
     return terms, counts
 
 
@@ -202,9 +202,9 @@ def show_held_out(file, terms):
         said = lambda names: sum(value_of(terms, name, *at) for name in names)
         rows = {"mesh, certificate and files, s of all ranks": (said(["mesh", "certificate", "files"]), together(IN_MESH + IN_PIECES)(run)),
                 "rank 0 alone, s": (said(OF_FIRST), of_first(ALONE)(run)),
-                "peak memory of rank 0, MB": (said(["peak memory of a formula"]) / 1e6, peak(True)(run) / 1e6),
-                "peak memory of others, MB": (said(["peak memory of a formula, others"]) / 1e6, peak(False)(run) / 1e6)}
-        print(f"\n| {run['tets']} tets by {run['n']} ranks, not fitted | model | measured |\n|---|---|---|")
+                "peak memory of rank 0, MB": (said(["peak memory, formula"]) / 1e6, peak(True)(run) / 1e6),
+                "peak memory of others, MB": (said(["peak memory, formula, others"]) / 1e6, peak(False)(run) / 1e6)}
+        print(f"\n| {run['tets']} tets by {run['n']} ranks | model | measured |\n|---|---|---|")
         for name, (model_says, measured) in rows.items():
             print(f"| {name} | {two_digits(model_says)} | {two_digits(measured)} |")
 
@@ -216,14 +216,14 @@ def two_digits(x):
 
 def readable(factor, unit, is_time):
     if is_time:
-        x, of = (factor, "s") if unit == "1" else (1e6 * factor, f"µs a {unit}") if factor >= 1e-6 else (1e9 * factor, f"ns a {unit}")
+        x, of = (factor, "s") if unit == "1" else (1e6 * factor, f"µs per {unit}") if factor >= 1e-6 else (1e9 * factor, f"ns per {unit}")
         return f"{two_digits(x)} {of}"
-    return f"{factor / 1e6:.0f} MB" if unit == "1" else f"{factor:.0f} B a {unit}"
+    return f"{factor / 1e6:.0f} MB" if unit == "1" else f"{factor:.0f} B per {unit}"
 
 
 def show_fit(file):
     terms, counts = model(file)
-    print("| term | of | fitted | worst error |\n|---|---|---|---|")
+    print("| term | ranks | fitted | worst error |\n|---|---|---|---|")
     for name, (who, factors, worst) in terms.items():
         unit, _, of = who.partition(" of ")
         print(f"| {name} | {of} | {' + '.join(readable(x, per, unit == 's') for per, x in factors.items())} | {worst:.0%} |")
@@ -235,10 +235,10 @@ def show_fit(file):
 
 def predict(file, latency=None, tets=10e9, points=1e9):
     terms, counts = model(file)
-    faces = counts["faces to tets^(2/3)"] * tets ** (2 / 3)
+    faces = counts["faces / tets^(2/3)"] * tets ** (2 / 3)
     samples = min(points, SAMPLES_A_FACE * faces)
-    latency = float(latency or counts["s of an Allreduce of two ranks"])
-    spread = counts["most to mean CPU s of ranks"]
+    latency = float(latency or counts["s for an Allreduce of two ranks"])
+    spread = counts["largest / mean CPU s of ranks"]
 
     def value(name, n):
         return value_of(terms, name, tets, faces, samples, n)
@@ -253,7 +253,7 @@ def predict(file, latency=None, tets=10e9, points=1e9):
         row(f"{title or name}, rank 0 alone, s", lambda n: value(name, n))
 
     print(f"{tets:.2g} tets, {faces:.2g} boundary faces; {samples:.2g} samples of {points:.2g} points; {1e6 * latency:.2g} µs a message\n")
-    print("| of a formula | 64 ranks | 4096 ranks |\n|---|---|---|")
+    print("| formula | 64 ranks | 4096 ranks |\n|---|---|---|")
     for name in ("mesh", "certificate", "files"):
         each(name)
     row("exchanges with neighbours, s", lambda n: counts["exchanges"] * NEIGHBOURS * latency)
@@ -262,19 +262,19 @@ def predict(file, latency=None, tets=10e9, points=1e9):
     for name in OF_FIRST:
         alone(name)
     row("sent by each rank for certificate and files, GB", lambda n: value("sent for certificate and files", n) / n / 1e9)
-    row("sent by each rank to neighbours, MB", lambda n: counts["bytes of exchanges to sqrt(faces of a rank)"] * math.sqrt(faces / n) / 1e6)
+    row("sent by each rank to neighbours, MB", lambda n: counts["bytes of exchanges / sqrt(faces of a rank)"] * math.sqrt(faces / n) / 1e6)
     row("written, TB", lambda n: value("written", n) / 1e12)
-    row("peak memory of rank 0, GB", lambda n: value("peak memory of a formula", n) / 1e9)
-    row("peak memory of others, GB", lambda n: value("peak memory of a formula, others", n) / 1e9)
-    print("\n| of a scan besides | 64 ranks | 4096 ranks |\n|---|---|---|")
+    row("peak memory of rank 0, GB", lambda n: value("peak memory, formula", n) / 1e9)
+    row("peak memory of others, GB", lambda n: value("peak memory, formula, others", n) / 1e9)
+    print("\n| scan, in addition | 64 ranks | 4096 ranks |\n|---|---|---|")
     row("reads and merges points, rank 0 alone, s", lambda n: points * READ_SECONDS)
-    alone("of a scan: cloud, coarsest lattice", "cloud, coarsest lattice")
+    alone("scan: cloud, coarsest lattice", "cloud, coarsest lattice")
     each("bands of a fit")
     row("sums of conjugate gradients from rank to rank, s", lambda n: 2 * n * ITERATIONS * LEVELS * latency)
-    alone("of a scan: sizes and pieces of psi = 0", "sizes and pieces of psi = 0")
-    alone("of a scan: rest of the certificate", "rest of the certificate")
-    row("peak memory of rank 0, GB", lambda n: max(value("peak memory of a scan", n), points * READ_BYTES) / 1e9)
-    row("peak memory of others, GB", lambda n: value("peak memory of a scan, others", n) / 1e9)
+    alone("scan: sizes and components of psi = 0", "sizes and components of psi = 0")
+    alone("scan: rest of the certificate", "rest of the certificate")
+    row("peak memory of rank 0, GB", lambda n: max(value("peak memory, scan", n), points * READ_BYTES) / 1e9)
+    row("peak memory of others, GB", lambda n: value("peak memory, scan, others", n) / 1e9)
 
 
 def allow_root():

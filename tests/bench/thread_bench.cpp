@@ -138,7 +138,7 @@ void print(const std::string& program, const std::string& text, int n_threads) {
   const Seconds one = of_processes(program, text, 1, 1), beside = of_processes(program, text, n_threads, 1),
                 many = of_processes(program, text, 1, n_threads);
   std::printf(
-      "\n%s: seconds\n\n| phase | one thread | beside others | %d threads | alone | share |\n"
+      "\n%s: seconds\n\n| phase | one thread | beside others | %d threads | serial | share |\n"
       "|---|---|---|---|---|---|\n",
       text.c_str(), n_threads);
   double all_one = 0, all_beside = 0, all_many = 0, all_alone = 0;

@@ -1,5 +1,5 @@
 // Fig. 14: what eq. (9) takes of four backgrounds, and the meshes made of that. Small, and in the ordinary run; the
-// drawing is docs/figures.py --only 14.
+// drawing is tools/docs/figures.py --only 14.
 
 #include <gtest/gtest.h>
 

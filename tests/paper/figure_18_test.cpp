@@ -48,7 +48,7 @@ Timed timed(const domains::AnalyticDomain& domain, double h) {
 
 TEST(Figure18, TimeGrowsWithThePositiveFaces) {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  std::printf("Figure 18, small     tets   positive faces   us per face (paper and larger meshes: docs/figures.py)\n");
+  std::printf("Figure 18, small     tets   positive faces   us per face (larger: tools/docs/figures.py)\n");
   for (const domains::AnalyticDomain& domain : {domains::sphere(), domains::torus(), domains::perforated_plate(3, 1)}) {
     SCOPED_TRACE(domain.name);
     const Timed small = timed(domain, h_for_tets(domain, domain.box, 60000));

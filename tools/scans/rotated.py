@@ -67,7 +67,7 @@ def main():
     parser.add_argument("--rotations", type=int, default=30)
     parser.add_argument("--seed", type=int, default=1)
     a = parser.parse_args()
-    print("| body | exit code: poses | pieces | tets | min Q | 1 % of Q | off, h |\n|---|---|---|---|---|---|---|")
+    print("| body | exit code: poses | components | tets | min Q | 1 % of Q | distance, h |\n|---|---|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as folder:
         case = os.path.join(folder, "case")
         for name, (formula, half, size) in (("eq. (9)", EQUATION_9), ("T6", T6)):

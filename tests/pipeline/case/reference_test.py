@@ -66,7 +66,7 @@ class Reference(unittest.TestCase):
         self.expect((self.at / "scans/batch.csv").read_text().split("\n")[0].split(","), "batch.csv")
 
     def test_the_table_of_parameters_is_fresh(self):
-        check = subprocess.run([sys.executable, REPOSITORY / "docs/parameters.py", PROGRAM, "--check"], capture_output=True, text=True)
+        check = subprocess.run([sys.executable, REPOSITORY / "tools/docs/parameters.py", PROGRAM, "--check"], capture_output=True, text=True)
         self.assertEqual(check.returncode, 0, check.stdout + check.stderr)
 
     def test_commands_are_documented(self):

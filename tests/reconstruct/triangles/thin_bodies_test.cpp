@@ -174,6 +174,22 @@ TEST(PlaneCaps, BetweenTwoTubesTheEndsAreRings) {
   for (const Vec3& x : pipe.cloud.points) EXPECT_GT(std::hypot(x.x(), x.y()), .39);
 }
 
+TEST(PlaneCaps, CornersThatDifferByRoundOffAreNoRims) {
+  // A can whose ends have corners of their own, one bit beside those of its side.
+  TriangleMesh can = sample_body(open_tube(.5)).boundary;
+  for (std::size_t f = 0; f < can.F.size(); ++f) {
+    if (std::abs(can.area_vector(f).normalized().z()) < .5) continue;
+    for (int& v : can.F[f]) {
+      can.V.emplace_back(can.V[v] * (1 + 2e-16));
+      v = static_cast<int>(can.V.size()) - 1;
+    }
+  }
+  can.labels.clear();
+  const BodySamples body = sample_body(can);
+  EXPECT_TRUE(body.report.caps.empty());
+  EXPECT_NEAR(measure_body(body.boundary).volume, std::numbers::pi * .5, .01);
+}
+
 TEST(PlaneCaps, SheetsAndBallsStayOpen) {
   TriangleMesh sheet = cube();
   sheet.F.resize(2);

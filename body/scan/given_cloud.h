@@ -1,7 +1,7 @@
 #pragma once
 
+#include "reconstruct/cloud/cloud_file.h"
 #include "reconstruct/cloud/point_cloud.h"
-#include "reconstruct/io/point_cloud_io.h"
 
 namespace umtet {
 

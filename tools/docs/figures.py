@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Figures 8, 9/10, 14, 15, 18 to 21B and 24 to 26 of the paper by this project, as docs/figure_8.svg, figure_10.svg ...
 
-usage: docs/figures.py [--only 14,24] [--data build/figures] [--peers build/peers] [--programs FOLDER] [--umtet PROGRAM]
+usage: tools/docs/figures.py [--only 14,24] [--data build/figures] [--peers build/peers] [--programs FOLDER] [--umtet PROGRAM]
                        [--swimmer PROGRAM] [--most 8000000]
 
 What is missing of the data is made: Figure 8 by `umtet run --mode paper`, 9/10 by tests/bench/peers/compare.py, 14 and 15
@@ -28,7 +28,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy  # noqa: E402
 import drawn_figures  # noqa: E402
 from mesh_svg import Mesh  # noqa: E402
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 GENUS = {"sphere": 0, "torus": 1, "plate_3": 3, "plate_18": 18, "banchoff_chmutov_8": 81}
 plt.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "umtet", "font.size": 9, "axes.grid": True,
                      "grid.alpha": .3, "path.simplify_threshold": .6, "savefig.dpi": 150, "legend.frameon": False, "axes.spines.top": False, "axes.spines.right": False})

@@ -1,10 +1,9 @@
-#include "pipeline/memory/given_cloud.h"
-
-#include <fmt/format.h>
+#include "body/scan/given_cloud.h"
 
 #include <stdexcept>
 #include <utility>
 
+#include "common/formatted.h"
 #include "reconstruct/cloud/cloud_arrays.h"
 
 namespace umtet {
@@ -15,7 +14,7 @@ constexpr double kFarthest = 1e50;
 
 void require_length(const char* name, std::size_t n, std::size_t n_points) {
   if (n == 0 || n == n_points) return;
-  throw std::invalid_argument(fmt::format("{}: as many as points are wanted, or none: {} for {}", name, n, n_points));
+  throw std::invalid_argument(formatted("%s: as many as points are wanted, or none: %zu for %zu", name, n, n_points));
 }
 
 }  // namespace
@@ -27,7 +26,7 @@ CloudFile given_cloud(OrientedPointCloud cloud) {
   require_length("origins", cloud.origins.size(), n);
   for (std::size_t i = 0; i < n; ++i) {
     if (cloud.points[i].cwiseAbs().maxCoeff() <= kFarthest && cloud.points[i].allFinite()) continue;
-    throw std::invalid_argument(fmt::format("points[{}] is not finite, or beyond 1e50", i));
+    throw std::invalid_argument(formatted("points[%zu] is not finite, or beyond 1e50", i));
   }
   for (Vec3& n : cloud.normals) n = n.allFinite() && !n.isZero(0) ? unit_normal(n) : Vec3::Zero();
   CloudFile file;

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Picture of a tet mesh: its surface on the left, the tets behind a cut on the right, coloured by mean ratio.
 
-usage: xvfb-run -a docs/render.py duck/3-mesh/mesh.vtu docs/duck.png [--up y] [--cut x]
+usage: xvfb-run -a tools/docs/render.py duck/3-mesh/mesh.vtu docs/duck.png [--up y] [--cut x]
 Needs Debian's python3-vtk9, xvfb and libgl1-mesa-dri.
 """
 import argparse

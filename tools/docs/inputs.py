@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """inputs.png: what people have, each with its one command, and the meshes that come of it.
 
-usage: PYTHONPATH=build/release/python xvfb-run -a docs/inputs.py UMTET [PICTURE]
+usage: PYTHONPATH=build/release/python xvfb-run -a tools/docs/inputs.py UMTET [PICTURE]
 
 Makes an STL of a duck, a PCD of two views of it, an array of numpy and a NIfTI mask, runs the commands of
 docs/using.md, and prints one line for each. Needs Debian's python3-vtk9, python3-pil, fonts-dejavu-core, xvfb and
@@ -20,12 +20,13 @@ import umtet
 from PIL import Image, ImageDraw, ImageFont
 
 HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
 SIZE = (850, 350)  # of a panel
 
 
 def duck():
     """Points and normals of data/clouds/duck.ply."""
-    data = (HERE.parent / "data/clouds/duck.ply").read_bytes()
+    data = (ROOT / "data/clouds/duck.ply").read_bytes()
     head, _, body = data.partition(b"end_header\n")
     names = [line.split()[1:] for line in head.decode().splitlines() if line.startswith("property")]
     kind = {"float": "<f4", "double": "<f8"}
@@ -35,7 +36,7 @@ def duck():
 
 def stl(umtet_program, folder):
     """The boundary of a mesh of the duck, as another program would have it."""
-    run([umtet_program, "run", HERE.parent / "data/clouds/duck.ply", "-o", folder / "whole", "--export", "stl"])
+    run([umtet_program, "run", ROOT / "data/clouds/duck.ply", "-o", folder / "whole", "--export", "stl"])
     [file] = (folder / "whole").rglob("*.stl")
     (folder / "duck.stl").write_bytes(file.read_bytes())
 
@@ -107,7 +108,7 @@ def line(caption, seconds, certificate):
 
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
-    picture = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else HERE / "inputs.png")
+    picture = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else ROOT / "docs/inputs.png")
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
         stl(program, folder), pcd(folder), nifti(folder)

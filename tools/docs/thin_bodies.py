@@ -3,7 +3,7 @@
 import csv
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 COLOURS = {"plate": "#1f77b4", "blade": "#d62728", "rod": "#2ca02c", "cone": "#9467bd", "balls": "#ff7f0e",
            "slabs": "#7f7f7f"}
 LEFT, TOP, WIDTH, HEIGHT, MOST = 50, 15, 460, 220, 3.0

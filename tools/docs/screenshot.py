@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Picture of a report in a window of 1400 x 1060 pixels.
 
-usage: docs/screenshot.py duck/report.html docs/report.png ['axis=0&colour=none']
+usage: tools/docs/screenshot.py duck/report.html docs/report.png ['axis=0&colour=none']
 The third argument sets controls of the page by their id. Needs Debian's chromium.
 """
 import pathlib

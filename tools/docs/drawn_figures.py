@@ -8,7 +8,7 @@ import numpy as np
 
 from mesh_svg import Mesh, Page, axes_of_view
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
 EQUATION_9 = "2*y*(y^2-3*x^2)*(1-z^2)+(x^2+y^2)^2-(9*z^2-1)*(1-z^2)"
 EQUATION_13 = "x^2+y^2+z^2+sin(t*x)+sin(t*y)+sin(t*z)-1"
