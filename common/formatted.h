@@ -1,5 +1,6 @@
 #pragma once
 
+#include <charconv>
 #include <cstdarg>
 #include <cstdio>
 #include <string>
@@ -18,6 +19,12 @@ namespace umtet {
   va_end(again);
   va_end(arguments);
   return text;
+}
+
+/// The shortest text that reads back as the same number.
+inline std::string shortest(double x) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, x).ptr};
 }
 
 /// The items one after the other, with `separator` between them.

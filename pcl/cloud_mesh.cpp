@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "pipeline/case/exit_code.h"
-#include "pipeline/memory/given_cloud.h"
+#include "body/scan/given_cloud.h"
 #include "pipeline/memory/jobs.h"
 #include "pipeline/memory/mesh_object.h"
 #include "pipeline/memory/without_flags.h"

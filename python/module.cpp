@@ -12,19 +12,20 @@
 #include <memory>
 #include <string>
 
+#include "body/fidelity/measure.h"
+#include "body/scan/cloud_preparation.h"
+#include "body/sizing/background_choice.h"
 #include "mesh/background/a15_box.h"
 #include "mesh/moving_mesh.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/version.h"
-#include "pipeline/domain/background_choice.h"
-#include "pipeline/memory/given_cloud.h"
+#include "pipeline/domain/body_options.h"
+#include "pipeline/domain/load_domain.h"
+#include "body/scan/given_cloud.h"
 #include "pipeline/memory/mesh_object.h"
-#include "pipeline/meshing/library_params.h"
-#include "pipeline/meshing/mesh_measures.h"
 #include "pipeline/reports/certificate_json.h"
 #include "pipeline/reports/mesh_json.h"
 #include "pipeline/reports/place_json.h"
-#include "pipeline/stages/cloud_preparation.h"
 #include "pipeline/stages/scan_source.h"
 #include "pipeline/stages/stages.h"
 #include "python/arguments.h"
@@ -65,7 +66,7 @@ struct Moving {
   explicit Moving(const Settings& settings)
       : parameters(walls_checked(parameters_of(settings))),
         box(wanted_box(parameters)),
-        mesher(background(), um_params(parameters)) {}
+        mesher(background(), um_params(parameters.mesh())) {}
 
   static Parameters walls_checked(Parameters parameters) {
     require_walls(parameters);
@@ -77,7 +78,7 @@ struct Moving {
   }
   BackgroundMesh background() const {
     if (parameters.mesh().box_walls) return BackgroundMesh(a15_box(box, parameters.mesh().h));
-    return {tiling_of(parameters), box, parameters.mesh().h};
+    return {tiling_of(parameters.mesh()), box, parameters.mesh().h};
   }
 };
 
@@ -147,7 +148,7 @@ py::object certificate(const Points& points,
   json.update(to_json(measured.mesh));
   json["valid"] = measured.is_valid;
   json["places"] = p ? to_json(measured.places) : Json(nullptr);
-  json.update(to_json(judge(measured, parameters)));
+  json.update(to_json(judge(measured, parameters.output())));
   // Points and tets alone say nothing about psi, or about what it was made from.
   if (!p) json["fits_psi"] = json["fits_input"] = nullptr;
   return dict_of(json);

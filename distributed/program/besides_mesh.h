@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pipeline/domain/domain.h"
+#include "body/body.h"
 
 namespace umtet {
 

@@ -8,7 +8,7 @@
 
 #include "distributed/fit/part_refine.h"
 #include "mesh/core/implicit_function.h"
-#include "pipeline/domain/domain.h"
+#include "body/body.h"
 #include "pipeline/meshing/part_mesher.h"
 
 // What rank 0 says to the others, who do it with it.

@@ -18,7 +18,7 @@
 #include "distributed/program/shared_level_set.h"
 #include "distributed/program/together.h"
 #include "pipeline/case/memory.h"
-#include "pipeline/domain/domain.h"
+#include "body/body.h"
 
 namespace umtet {
 namespace {
@@ -49,7 +49,7 @@ auto Ranks::with_all(const char* then, const F& work) const {
   return together(comm_, work);
 }
 
-class Ranks::Handle final : public MeshInParts {
+class Ranks::Handle final : public WrittenInParts {
  public:
   Handle(Ranks& ranks, std::int64_t mesh) : ranks_(ranks), mesh_(mesh) {}
   Handle(const Handle&) = delete;

@@ -15,8 +15,8 @@
 #include "distributed/program/same_call.h"
 #include "distributed/program/shared_level_set.h"
 #include "distributed/program/together.h"
-#include "pipeline/domain/background_choice.h"
-#include "pipeline/meshing/library_params.h"
+#include "body/sizing/background_choice.h"
+#include "pipeline/domain/load_domain.h"
 
 namespace umtet {
 namespace {
@@ -78,7 +78,7 @@ void Server::obey(const RankCommand& command, const Attached& attached) {
     case RankOrder::Make:
       return make(command, attached.seeds);
     case RankOrder::Curve:
-      at->second.curve(domain_.psi(), um_params(parameters()).paper.closest_point);
+      at->second.curve(domain_.psi(), um_params(parameters().mesh()).paper.closest_point);
       return;
     case RankOrder::Write:
       // Files have no use for it, and nobody asks psi between them.
@@ -142,8 +142,8 @@ void Server::take_domain(const RankCommand& command) {
 
 void Server::make(const RankCommand& command, const std::vector<Vec3>& seeds) {
   if (is_fitted_) domain_.level_set = psi_;
-  const BackgroundMesh background(tiling_of(parameters()), command.given_box(), command.lattice_h);
-  const UmParams params = um_params(parameters());
+  const BackgroundMesh background(tiling_of(parameters().mesh()), command.given_box(), command.lattice_h);
+  const UmParams params = um_params(parameters().mesh());
   const ImplicitFunctionRef psi = domain_.psi();
   const auto at = held_.try_emplace(command.mesh, comm_, background, psi, params.fast, seeds, command.places()).first;
   if (at->second.is_made()) at->second.summary(psi);

@@ -7,7 +7,7 @@
 
 #include "distributed/program/held_mesh.h"
 #include "pipeline/case/parameters.h"
-#include "pipeline/domain/domain.h"
+#include "body/body.h"
 
 namespace umtet {
 

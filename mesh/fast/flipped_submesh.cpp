@@ -62,7 +62,8 @@ void list_positive_faces(const std::vector<Triangle>& walls, Submesh& submesh) {
         (k > 0 && faces[k - 1].key == faces[k].key) || (k + 1 < faces.size() && faces[k + 1].key == faces[k].key);
     if (!is_twin && faces[k].tet >= 0) alone.push_back(faces[k]);
   }
-  std::stable_sort(alone.begin(), alone.end(), [](const BoundaryFace& a, const BoundaryFace& b) { return a.tet < b.tet; });
+  std::stable_sort(alone.begin(), alone.end(),
+                   [](const BoundaryFace& a, const BoundaryFace& b) { return a.tet < b.tet; });
   submesh.positive_faces.clear();
   submesh.positive_tets.clear();
   for (const BoundaryFace& f : alone) {
@@ -77,7 +78,8 @@ LocalFlipReport flip_submesh(ImplicitFunctionRef psi, double h, const LocalFlipP
                              const Context& context) {
   LocalFlipReport report;
   if (result.status != UmStatus::Success) return report;
-  FlippedMesh made = flip_locally(result.final, result.submesh.mesh.C, strata(psi, h, result), psi, params, report, context);
+  FlippedMesh made =
+      flip_locally(result.final, result.submesh.mesh.C, strata(psi, h, result), psi, params, report, context);
   result.n_psi_evaluations += report.psi_evaluations;
   if (report.n_collapsed + report.n_removed_edges == 0) {
     result.final = std::move(made.V);
@@ -111,7 +113,8 @@ LocalFlipReport flip_submesh(ImplicitFunctionRef psi, double h, const LocalFlipP
   now.mesh.C = std::move(made.C);
   std::vector<std::int64_t> background_tet;
   background_tet.reserve(made.origin.size());
-  for (const std::int64_t t : made.origin) background_tet.push_back(t < 0 ? -1 : now.background_tet[static_cast<std::size_t>(t)]);
+  for (const std::int64_t t : made.origin)
+    background_tet.push_back(t < 0 ? -1 : now.background_tet[static_cast<std::size_t>(t)]);
   now.background_tet = std::move(background_tet);
   list_positive_faces(result.walls, now);
   return report;

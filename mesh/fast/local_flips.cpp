@@ -57,9 +57,18 @@ bool contains(const Tet& t, int v) { return t[0] == v || t[1] == v || t[2] == v 
 
 /// The other two vertices of a tet with the edge (a, b), so that (a, b, first, second) is positive.
 std::pair<int, int> opposite_edge(const Tet& t, int a, int b) {
-  constexpr std::array<std::array<int, 4>, 12> kEven = {{{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 0, 3, 2},
-                                                         {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 0, 1, 3}, {2, 1, 3, 0},
-                                                         {2, 3, 0, 1}, {3, 0, 2, 1}, {3, 1, 0, 2}, {3, 2, 1, 0}}};
+  constexpr std::array<std::array<int, 4>, 12> kEven = {{{0, 1, 2, 3},
+                                                         {0, 2, 3, 1},
+                                                         {0, 3, 1, 2},
+                                                         {1, 0, 3, 2},
+                                                         {1, 2, 0, 3},
+                                                         {1, 3, 2, 0},
+                                                         {2, 0, 1, 3},
+                                                         {2, 1, 3, 0},
+                                                         {2, 3, 0, 1},
+                                                         {3, 0, 2, 1},
+                                                         {3, 1, 0, 2},
+                                                         {3, 2, 1, 0}}};
   for (const auto& p : kEven)
     if (t[p[0]] == a && t[p[1]] == b) return {t[p[2]], t[p[3]]};
   return {-1, -1};
@@ -153,7 +162,8 @@ class LocalFlips {
     for (std::size_t t = 0; t < C_.size(); ++t) enqueue(static_cast<int>(t));
     const auto at_first = static_cast<double>(std::max<std::size_t>(1, queue_.size()));
     for (std::size_t n = 0; !queue_.empty(); ++n) {
-      if (n % kTriesPerPoll == 0) context.report("flips", 1 - std::min(1., static_cast<double>(queue_.size()) / at_first));
+      if (n % kTriesPerPoll == 0)
+        context.report("flips", 1 - std::min(1., static_cast<double>(queue_.size()) / at_first));
       const auto [q, tet, version] = queue_.top();
       queue_.pop();
       if (alive_[tet] && version_[tet] == version) mend(tet);
@@ -185,7 +195,8 @@ class LocalFlips {
   void enqueue(int tet) {
     const Tet& t = C_[tet];
     double q = quality(V_, t);
-    const auto n_on_boundary = std::count_if(t.begin(), t.end(), [&](int v) { return stratum_[v] == Stratum::Boundary; });
+    const auto n_on_boundary =
+        std::count_if(t.begin(), t.end(), [&](int v) { return stratum_[v] == Stratum::Boundary; });
     if (n_on_boundary >= 3) q = std::min(q, quality_of_cosine(least_cosine(t)));
     if (q < params_.target) queue_.emplace(q, tet, version_[tet]);
   }
@@ -227,7 +238,8 @@ class LocalFlips {
     for (int k = 0; k < n; ++k) edge[k] = opposite_edge(C_[tets[k]], a, b);
     int first = 0;
     for (int k = 0; k < n; ++k) {
-      const bool has_before = std::any_of(edge.begin(), edge.begin() + n, [&](auto e) { return e.second == edge[k].first; });
+      const bool has_before =
+          std::any_of(edge.begin(), edge.begin() + n, [&](auto e) { return e.second == edge[k].first; });
       if (!has_before) first = k;
     }
     ring.vertices = {edge[first].first};
@@ -292,7 +304,8 @@ class LocalFlips {
   }
 
   /// Vertex a goes into b.
-  void offer_collapse(int a, int b, const std::vector<int>& around, const Ring& ring, std::vector<Candidate>& candidates) {
+  void offer_collapse(int a, int b, const std::vector<int>& around, const Ring& ring,
+                      std::vector<Candidate>& candidates) {
     if (stratum_[a] == Stratum::Fixed) return;
     if (stratum_[a] == Stratum::Boundary && (ring.is_closed || stratum_[b] != Stratum::Boundary)) return;
     Candidate c{Operation::Collapse, a, b, kInfinity, {}, {}};
@@ -310,7 +323,8 @@ class LocalFlips {
     // The link condition [Dey1999]: who is a neighbour of both lies around their edge.
     for (const int t : incidence_.of(a)) {
       for (const int v : C_[t]) {
-        if (v == a || v == b || std::find(ring.vertices.begin(), ring.vertices.end(), v) != ring.vertices.end()) continue;
+        if (v == a || v == b || std::find(ring.vertices.begin(), ring.vertices.end(), v) != ring.vertices.end())
+          continue;
         if (std::any_of(around.begin(), around.end(), [&](int s) { return contains(C_[s], v); })) continue;
         if (are_neighbours(v, b)) return;
       }
@@ -386,9 +400,15 @@ class LocalFlips {
     if (!is_better(made, old)) return false;
     commit(c, patch);
     switch (c.operation) {
-      case Operation::Smooth: ++report_.n_smoothed; break;
-      case Operation::RemoveEdge: ++report_.n_removed_edges; break;
-      case Operation::Collapse: ++report_.n_collapsed; break;
+      case Operation::Smooth:
+        ++report_.n_smoothed;
+        break;
+      case Operation::RemoveEdge:
+        ++report_.n_removed_edges;
+        break;
+      case Operation::Collapse:
+        ++report_.n_collapsed;
+        break;
     }
     return true;
   }
@@ -496,7 +516,8 @@ class LocalFlips {
       for (const auto& f : kFaces) {
         const Triangle face = {t[f[0]], t[f[1]], t[f[2]]};
         const bool is_candidate =
-            std::all_of(face.begin(), face.end(), [&](int v) { return stratum_[patch.vertices[v]] == Stratum::Boundary; }) &&
+            std::all_of(face.begin(), face.end(),
+                        [&](int v) { return stratum_[patch.vertices[v]] == Stratum::Boundary; }) &&
             std::any_of(face.begin(), face.end(), [&](int v) { return patch.moves[v] != 0; });
         if (!is_candidate) continue;
         Triangle key = face;

@@ -14,8 +14,8 @@ namespace umtet {
 /// Parameters of flip_locally().
 struct LocalFlipParams {
   double target = .78;  ///< mean ratio: tets below it are mended; in (0, 1)
-  /// Range of edge lengths, relative to the mean edge length around their ends in the mesh that is given. Edges that are
-  /// outside of it already may stay so.
+  /// Range of edge lengths, relative to the mean edge length around their ends in the mesh that is given. Edges that
+  /// are outside of it already may stay so.
   double shortest = .5, longest = 1.7;
   int most_candidates = 4;  ///< operations that are tried for one tet, those with the best worst tet first; >= 0
 };
@@ -54,7 +54,8 @@ struct FlippedMesh {
 /// For each tet below the target, the worst first, these operations are tried on a copy of the patch around it:
 ///   - removal of one of its edges: the ring of up to eight tets around the edge becomes the best triangulation of the
 ///     ring's polygon, by dynamic programming [Klincsek1980, Shewchuk2002];
-///   - collapse of one of its edges: an inner vertex into any other, a boundary vertex into a neighbour on the boundary;
+///   - collapse of one of its edges: an inner vertex into any other, a boundary vertex into a neighbour on the
+///   boundary;
 ///   - where neither helps, no change of connectivity.
 /// After each, the vertices of the patch are moved by Newton's method on the p-norm of 1/Q of their rings, those of the
 /// boundary in their tangent planes and back to psi = 0. The first operation is kept with which

@@ -10,6 +10,7 @@
 #include "common/context.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/interrupt.h"
+#include "pipeline/case/thin_place_json.h"
 #include "pipeline/expression/expression.h"
 #include "reconstruct/io/grid_io.h"
 #include "reconstruct/io/point_cloud_io.h"
@@ -73,7 +74,10 @@ Failure failure_of(const std::exception_ptr& error) {
   } catch (const SolveError& e) {
     return {ExitCode::ReconstructionFailed, e.what()};
   } catch (const TooThin& e) {
-    return {ExitCode::MeshingImpossible, e.what(), e.evidence};
+    const TooThin::Evidence& thin = e.evidence;
+    return {ExitCode::MeshingImpossible,
+            e.what(),
+            {{"too_thin", to_json(thin.places, thin.h)}, {"h_enough", json_of(thin.h_enough)}}};
   } catch (const MeshingImpossible& e) {
     return {ExitCode::MeshingImpossible, e.what()};
   } catch (const CertificateFailed& e) {

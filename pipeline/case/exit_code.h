@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "body/errors.h"
+
 namespace umtet {
 
 /// What the program returns; the numbers are part of its contract.
@@ -23,30 +25,12 @@ enum class ExitCode {
   Terminated = 143,
 };
 
-/// The call itself is wrong: unknown flag or key, a value out of range, a stage that is not there.
-struct UsageError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-/// No mesh of this domain at this h; what() has the status and its evidence.
-struct MeshingImpossible : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-/// The same, because the domain is thinner than this h can show.
-struct TooThin : MeshingImpossible {
-  TooThin(const std::string& message, nlohmann::ordered_json evidence)
-      : MeshingImpossible(message), evidence(std::move(evidence)) {}
-  nlohmann::ordered_json evidence;  ///< too_thin: places, as in a certificate; h_enough: for all, or null
-};
 /// A mesh was made, but its certificate says no; what() has the first reason.
 struct CertificateFailed : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 /// A file of the case is not what its record says, or not of its format.
 struct ArtefactDamaged : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-/// The work would need more than the caller allowed.
-struct ResourceLimit : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 /// A file or folder cannot be used; what() is a sentence with the remedy. Where the system's own words say more it is a

@@ -15,11 +15,6 @@
 namespace umtet {
 namespace {
 
-// Peak of a whole run over its tets, about.
-constexpr double kBytesPerTet = 500;
-// The searches for omega_h keep up to four bits per vertex of the background mesh, with ranks, and two per tet.
-constexpr double kBytesPerBackgroundVertex = 1, kBytesPerBackgroundTet = .25;
-
 // mesh.vtu of a ball: 5.7 MB for 98 thousand tets, 58 bytes a tet.
 constexpr double kFileBytesPerTet = 60;
 // The default of glibc and of TBB for a thread.
@@ -83,17 +78,6 @@ void require_disk(const std::filesystem::path& folder, double n_tets) {
   throw ResourceLimit(fmt::format(
       "{}: the meshes need about {:.3g} GB of disk, and {:.3g} GB are free: make room, or fewer --tets, a larger --h",
       folder.string(), need / 1e9, static_cast<double>(space.available) / 1e9));
-}
-
-void require_memory(const BackgroundMesh& background, double n_tets, double allowed) {
-  const double need = kBytesPerTet * n_tets + kBytesPerBackgroundVertex * static_cast<double>(background.n_vertices()) +
-                      kBytesPerBackgroundTet * static_cast<double>(background.n_tets());
-  if (need <= allowed) return;
-  throw ResourceLimit(fmt::format(
-      "h = {:.4g}: about {:.3g} tets in a background mesh of {:.3g} need {:.3g} GB of memory, and {:.3g} GB are "
-      "allowed: fewer --tets or a larger --h{}",
-      background.h(), n_tets, static_cast<double>(background.n_tets()), need / 1e9, allowed / 1e9,
-      n_tets < .01 * static_cast<double>(background.n_tets()) ? ", or a --box closer around the domain" : ""));
 }
 
 }  // namespace umtet

@@ -2,7 +2,6 @@
 
 #include <filesystem>
 
-#include "mesh/background/background_mesh.h"
 #include "pipeline/case/parameters.h"
 
 namespace umtet {
@@ -19,10 +18,5 @@ void limit_memory(double bytes, int threads);
 /// @param n_tets  about how many tets all files together have
 /// \throw ResourceLimit with the estimate, when it is more than the disk has
 void require_disk(const std::filesystem::path& folder, double n_tets);
-
-/// To call before a mesh is made: is there memory for it?
-/// @param n_tets  about how many tets it will have
-/// \throw ResourceLimit with the estimate, when it is more than `allowed`
-void require_memory(const BackgroundMesh& background, double n_tets, double allowed);
 
 }  // namespace umtet

@@ -11,52 +11,57 @@
 #include <variant>
 #include <vector>
 
+#include "body/options.h"
+#include "reconstruct/triangles/touching_pieces.h"
+
 namespace umtet {
 
 using ParamValue = std::variant<bool, std::int64_t, double, std::string>;
 
-// What a text with a fixed vocabulary may say; the values stand in the order of its words in parameters.def.
-enum class NormalsOf { Auto, Given, Estimate };
-enum class WindingCheck { Auto, Off };
-enum class SampleWeights { Area, Paper };
-enum class MaxEntPrior { CompactC2, Gaussian };
-enum class FitSolver { Auto, Multilevel, Full, Assembled };
-enum class HoleClosing { Auto, Smooth, Flat, None };
-enum class TouchingPieces { Apart, Fuse };
-enum class MeshingMode { Fast, Paper };
-enum class RelaxationDirections { Random, Axes };
-enum class Projection { Newton, Damped, Paper };
-enum class MaxMinSearch { Exact, Golden };
+// The sections of the parameters: options of the library with what only a program has, names of files and formulas in
+// text. parameters.def lists all fields with their ranges.
 
-// The fields, their meaning, units, ranges and defaults are those of parameters.def.
-
-/// The section [cloud]: how a scan is prepared.
-struct CloudParameters {
-#define UMTET_CLOUD(type, name, ...) type name{};
-#include "pipeline/case/parameters.def"
+/// The section [cloud]: which scan, and how it is prepared.
+struct CloudParameters : ScanOptions {
+  std::string file;                     ///< the point cloud or triangle mesh
+  std::string columns;                  ///< of a table in text
+  std::string orient_from;              ///< file of viewpoints; empty: none
+  double sample_spacing = 0;            ///< largest of the samples of triangles, model units; 0: chosen
+  bool as_points = false;               ///< a PLY with faces is the cloud of its vertices
+  Touching touching = Touching::Apart;  ///< what becomes of pieces of triangles that meet along an edge or at a corner
+  bool cap = true;                      ///< closes openings of triangles with a plane rim by that plane
 };
 
 /// The section [reconstruct]: how psi is fitted.
-struct ReconstructParameters {
-#define UMTET_RECONSTRUCT(type, name, ...) type name{};
-#include "pipeline/case/parameters.def"
+struct ReconstructParameters : FitOptions {
+  bool keep_open = false;  ///< the same as Closing::None
 };
 
 /// The section [mesh]: what is meshed, how fine and how.
-struct MeshParameters {
-#define UMTET_MESH(type, name, ...) type name{};
-#include "pipeline/case/parameters.def"
+struct MeshParameters : MeshOptions {
+  std::string implicit;     ///< formula of psi; empty: none
+  std::string level_set;    ///< file of a grid; empty: none
+  std::string level;        ///< the body of an image, as parse_level() reads it
+  bool above = false;       ///< the body is above `level`
+  std::int64_t part = 0;    ///< number of the body in a segmentation; 0: all that is not 0
+  double part_smooth = -1;  ///< standard deviation of a kernel, voxels; -1: no kernel
+  std::string box;          ///< as parse_box() reads it; empty: around the level set
+  std::string size;         ///< edge lengths: a formula or a file; empty: none
+  std::string size_at;      ///< edge lengths by label, as parse_label_sizes() reads them
 };
 
 /// The section [output]: limits, gates, names.
-struct OutputParameters {
-#define UMTET_OUTPUT(type, name, ...) type name{};
-#include "pipeline/case/parameters.def"
+struct OutputParameters : VerdictOptions {
+  std::string units;           ///< name of the model unit, a label
+  double max_memory = 0;       ///< GB that a stage may take; 0: what the machine can give
+  std::string label_names;     ///< as parse_label_names() reads them
+  double label_min_area = -1;  ///< smaller islands of a label go, model units^2; -1: what three samples stand for
+  double patch_angle = 0;      ///< degrees at which patches end; 0: where the surface ends
+  double patch_planar = 0;     ///< degrees within which a patch is flat; 0: off
 };
 
 /// All of them, at first at their defaults.
 struct ParameterValues {
-  ParameterValues();
   CloudParameters cloud;
   ReconstructParameters reconstruct;
   MeshParameters mesh;
@@ -65,7 +70,7 @@ struct ParameterValues {
 
 /// The names of parameters in files and behind --set: keys::mesh::h is "mesh.h".
 namespace keys {
-#define UMTET_PARAMETER(section, type, name, ...)    \
+#define UMTET_PARAMETER(section, name, ...)          \
   namespace section {                                \
   inline constexpr char name[] = #section "." #name; \
   }

@@ -4,14 +4,14 @@
 
 #include <filesystem>
 
+#include "body/fidelity/accepted_defects.h"
 #include "pipeline/case/case_folder.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/cli/command_line.h"
 #include "pipeline/cli/detail/command_parser.h"
-#include "pipeline/domain/background_choice.h"
+#include "pipeline/domain/body_options.h"
 #include "pipeline/output/boundary_patches.h"
 #include "pipeline/output/export_case.h"
-#include "pipeline/reports/accepted_defects.h"
 #include "reconstruct/io/grid_io.h"
 #include "reconstruct/io/point_cloud_io.h"
 

@@ -5,11 +5,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "body/label_volume.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/level_range.h"
 #include "pipeline/case/memory.h"
-#include "pipeline/domain/domain.h"
-#include "pipeline/domain/label_volume.h"
+#include "pipeline/domain/load_domain.h"
 #include "reconstruct/io/grid_io.h"
 #include "reconstruct/level_set/image_level.h"
 #include "reconstruct/level_set/label_parts.h"

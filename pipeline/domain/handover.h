@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "mesh/io/tet_mesh_io.h"
-#include "pipeline/domain/domain.h"
+#include "body/body.h"
 #include "reconstruct/cloud/cloud_neighbours.h"
 #include "reconstruct/cloud/point_cloud.h"
 #include "reconstruct/level_set/level_set.h"

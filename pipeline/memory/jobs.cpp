@@ -5,31 +5,20 @@
 #include <algorithm>
 #include <utility>
 
+#include "body/fidelity/measure.h"
+#include "body/pieces/zero_set_choice.h"
+#include "body/scan/cloud_preparation.h"
+#include "body/scan/fitted_domain.h"
+#include "body/scan/level_set_fit.h"
+#include "body/search/best_mesh.h"
+#include "body/search/mesh_maker.h"
+#include "body/sizing/too_thin.h"
 #include "pipeline/case/memory.h"
-#include "pipeline/domain/background_choice.h"
-#include "pipeline/domain/edge_length.h"
-#include "pipeline/domain/fitted_domain.h"
-#include "pipeline/domain/too_thin.h"
-#include "pipeline/domain/zero_set_choice.h"
-#include "pipeline/meshing/library_params.h"
-#include "pipeline/meshing/mesh_maker.h"
-#include "pipeline/meshing/mesh_measures.h"
-#include "pipeline/reports/input_facts.h"
+#include "pipeline/domain/body_options.h"
 #include "pipeline/reports/place_json.h"
-#include "pipeline/stages/cloud_preparation.h"
-#include "pipeline/stages/level_set_fit.h"
 
 namespace umtet {
 namespace {
-
-// Foretelling the number of tets takes a million values of psi, whatever h is: some ten seconds of one of Python.
-// Where h is given it is left out, and memory is asked for as many as are allowed.
-EdgeLength edge_length(Domain& domain, BackgroundChoice& background, const Parameters& parameters, const Watch& watch) {
-  const double h = parameters.mesh().h;
-  const bool is_given = h >= least_h_in_file(domain) && h > 0 && !is_graded(parameters) && !background.own_h();
-  if (domain.function && is_given) return {h, h};
-  return background.edge_length(domain, polls_of(watch));
-}
 
 MeshingFailed too_thin(const MeshAttempt& best, const Vec3& shift) {
   return {fmt::format("{}\n  h = {:.3g} may show them", too_thin_text(best, shift), best.thin.h_needed()),
@@ -56,8 +45,9 @@ MeshingFailed failure(const UmResult& result, double h, const Vec3& shift) {
 
 Reconstruction reconstruct(CloudFile file, const Parameters& parameters, const Watch& watch) {
   watch("prepare", 0);
-  PreparedCloud prepared = prepare_cloud(std::move(file), "points", parameters);
-  LevelSetFit fit = fit_level_set(prepared.cloud, std::move(prepared.near), parameters, context_of(watch));
+  const BodyOptions options = body_options(parameters);
+  PreparedCloud prepared = prepare_cloud(std::move(file), "points", options);
+  LevelSetFit fit = fit_level_set(prepared.cloud, std::move(prepared.near), options, context_of(watch));
   std::vector<std::string> notices = std::move(prepared.report.notices);
   notices.insert(notices.end(), fit.notices.begin(), fit.notices.end());
   const InputFacts facts = input_facts(prepared.report, fit.report);
@@ -71,14 +61,8 @@ Domain domain_of(const Reconstruction& r, const std::optional<Box>& box) {
 }
 
 MeshAttempt make_mesh(Domain& domain, const Parameters& parameters, const Watch& watch, PartMesher* ranks) {
-  watch("size", 0);
-  domain.complement = parameters.mesh().complement;
-  BackgroundChoice background(parameters, domain);
-  MeshMaker maker(domain, parameters, context_of(watch), {}, ranks);
-  const std::int64_t n_tets = domain.function ? parameters.mesh().max_tets : parameters.mesh().tets;
   const double allowed = ranks ? ranks->allowed_bytes(parameters) : allowed_bytes(parameters);
-  const auto make = [&](double h) { return background.make(domain, h, n_tets, allowed); };
-  MeshAttempt best = maker.best(background, edge_length(domain, background, parameters, watch), make);
+  MeshAttempt best = best_mesh(domain, body_options(parameters), allowed, context_of(watch), ranks);
   if (best.fell_through()) throw too_thin(best, domain.shift);
   if (!best.made()) throw failure(best.result, best.h, domain.shift);
   return best;

@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "pipeline/case/parameters.h"
-#include "pipeline/domain/domain.h"
+#include "body/body.h"
 #include "pipeline/memory/watch.h"
-#include "pipeline/meshing/mesh_attempts.h"
+#include "body/search/mesh_attempts.h"
+#include "pipeline/meshing/part_mesher.h"
 #include "pipeline/reports/certificate_report.h"
 #include "pipeline/reports/stage_reports.h"
 #include "reconstruct/io/point_cloud_io.h"

@@ -10,7 +10,7 @@
 #include "mesh/io/surface_files.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/meshing/made_mesh.h"
-#include "pipeline/meshing/second_order.h"
+#include "pipeline/meshing/second_order_file.h"
 #include "pipeline/output/boundary_patches.h"
 
 namespace umtet {

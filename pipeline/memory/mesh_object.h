@@ -9,8 +9,8 @@
 #include "mesh/certify/quadratic_tets.h"
 #include "mesh/universal_mesh.h"
 #include "pipeline/case/parameters.h"
-#include "pipeline/domain/domain.h"
-#include "pipeline/meshing/mesh_attempts.h"
+#include "body/body.h"
+#include "body/search/mesh_attempts.h"
 #include "pipeline/reports/certificate_report.h"
 
 namespace umtet {

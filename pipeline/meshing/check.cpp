@@ -5,15 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "body/body.h"
+#include "body/fidelity/closed_holes.h"
+#include "body/fidelity/measure.h"
+#include "body/sizing/edge_length.h"
 #include "mesh/certify/boundary_surface.h"
 #include "mesh/certify/certificate.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
-#include "pipeline/domain/closed_holes.h"
-#include "pipeline/domain/domain.h"
-#include "pipeline/domain/edge_length.h"
-#include "pipeline/meshing/mesh_measures.h"
+#include "pipeline/domain/load_domain.h"
 #include "pipeline/reports/stage_reports.h"
 
 namespace umtet {
@@ -117,7 +118,7 @@ MeshCheck check_mesh(const fs::path& file, const std::optional<fs::path>& agains
   if (domain && domain->has_samples()) {
     check.support = support_report(*domain, mesh.V, faces_but(walls, mesh), until_interrupted());
   }
-  check.verdict = judge(measured, parameters);
+  check.verdict = judge(measured, parameters.output());
   return check;
 }
 

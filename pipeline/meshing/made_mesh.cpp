@@ -49,12 +49,6 @@ MeshFile content_of(const Domain& domain, TetMesh mesh, std::vector<std::int64_t
 
 }  // namespace
 
-void round_to_file(UmResult& result, const Vec3& shift) {
-  for (auto* V : {&result.submesh.mesh.V, &result.projected, &result.final}) {
-    for (Vec3& x : *V) x = (x + shift) - shift;
-  }
-}
-
 void set_support(const Domain& domain, const std::vector<Vec3>& V, const std::vector<int>& vertices,
                  std::vector<double>& support) {
   std::vector<Vec3> x;

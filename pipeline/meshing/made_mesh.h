@@ -4,16 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "body/body.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "mesh/universal_mesh.h"
-#include "pipeline/domain/domain.h"
 #include "pipeline/meshing/part_mesher.h"
 
 namespace umtet {
-
-/// Makes the vertices those that a file will hold, in working coordinates: it stores x + shift, rounded, and taking the
-/// shift off again is exact (far_origin_shift). From here on that is the mesh: it is this one that is measured.
-void round_to_file(UmResult& result, const Vec3& shift);
 
 /// Point data of a mesh with walls: 1 at their vertices, else 0. psi = 0 stays two edges away: a face is of a wall if
 /// its corners are.

@@ -1,18 +1,22 @@
 #include "pipeline/meshing/part_mesher.h"
 
+#include "body/sizing/background_choice.h"
 #include "mesh/classification/configuration_costs.h"
-#include "pipeline/domain/background_choice.h"
-#include "pipeline/domain/graded_sizes.h"
+#include "pipeline/domain/body_options.h"
 
 namespace umtet {
 
+std::shared_ptr<const WrittenInParts> written_in_parts(const std::shared_ptr<const MeshInParts>& mesh) {
+  return std::static_pointer_cast<const WrittenInParts>(mesh);
+}
+
 std::string for_one_process(const Parameters& parameters) {
   const MeshParameters& mesh = parameters.mesh();
-  if (mesh.mode != MeshingMode::Fast) return "--mode paper";
+  if (mesh.mode != UmMode::Fast) return "--mode paper";
   if (mesh.box_walls || mesh.complement) return "a mesh with walls";
   if (mesh.keep_iterates) return "--keep-iterates";
   if (background_file(parameters) || is_graded(parameters)) return "a background that is no lattice";
-  if (!configuration_costs(tiling_of(parameters))) return "a background whose tiling has no costs";
+  if (!configuration_costs(tiling_of(mesh))) return "a background whose tiling has no costs";
   return "";
 }
 

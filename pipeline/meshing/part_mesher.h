@@ -8,21 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "mesh/background/background_mesh.h"
-#include "mesh/certify/certificate.h"
-#include "mesh/fast/fast_params.h"
-#include "mesh/implicit/closest_point.h"
+#include "body/errors.h"
+#include "body/search/part_maker.h"
 #include "mesh/io/solver_mesh.h"
 #include "mesh/io/tet_mesh_io.h"
-#include "mesh/submesh/um_result.h"
-#include "pipeline/case/exit_code.h"
 #include "pipeline/case/parameters.h"
-#include "pipeline/domain/domain.h"
-#include "pipeline/reports/certificate_report.h"
 #include "reconstruct/solve/multilevel_fit.h"
 
-// A mesh that several processes make, and that none of them has as a whole. Who they are and how they speak with each
-// other is not known here.
+// Files of a mesh that several processes make, and what the program asks of these.
 namespace umtet {
 
 /// Processes were called for different meshes. what() says what differs.
@@ -62,19 +55,9 @@ struct PieceData {
   BoundaryData of_vertices;
 };
 
-/// What there is of a mesh of second order besides.
-struct CurvedInParts {
-  SecondOrderReport report;
-  std::vector<Vec3> mid_sides;  ///< those of boundary edges
-};
-
-/// Such a mesh. It is gone everywhere when the last who has this is.
-class MeshInParts {
+/// A mesh in parts that its processes write to files.
+class WrittenInParts : public MeshInParts {
  public:
-  virtual ~MeshInParts() = default;
-  /// What one process makes by curved_mesh() and measures of it: MeshState::Final is of second order from now on.
-  /// @param domain  that it was made in
-  virtual CurvedInParts curve(const Domain& domain, const ClosestPointParams& params) const = 0;
   /// The .vtu that one process writes of this state, of all tets or of those with a vertex that moves.
   /// @param data  names are greater than those of standard data
   /// \throw std::system_error naming the file
@@ -89,46 +72,25 @@ class MeshInParts {
                                                           const PieceData* data) const = 0;
 };
 
+/// The mesh of an attempt that a PartMesher has made. \pre mesh is not null
+std::shared_ptr<const WrittenInParts> written_in_parts(const std::shared_ptr<const MeshInParts>& mesh);
+
 /// With what this process knows of its boundary.
 struct MeshWithBoundary {
-  std::shared_ptr<const MeshInParts> mesh;
+  std::shared_ptr<const WrittenInParts> mesh;
   std::vector<Vec3> V;          ///< vertices of the boundary, model coordinates
   std::vector<Triangle> faces;  ///< in their order in the whole mesh
   BoundaryData data;
 };
 
-struct MadeInParts {
-  UmResult result;  ///< without tets: positive faces, their vertices in `final`, and what is said of the whole
-  MeshCertificate certificate;
-  std::size_t n_tets = 0, n_chosen_tets = 0;
-  std::shared_ptr<const MeshInParts> mesh;
-};
-
-/// How a file will hold vertices, and what of psi = 0 they are held against.
-struct RoundedPlaces {
-  double h;         ///< CertificateInput::h
-  Vec3 shift;       ///< Domain::shift
-  double rounding;  ///< CertificateInput::coordinate_rounding
-};
-
-class PartMesher {
+/// Processes of the program. All meshes that they make are WrittenInParts.
+class PartMesher : public PartMaker {
  public:
-  virtual ~PartMesher() = default;
   /// Bytes that a mesh may take in all processes together: output.max_memory in each, or what machines like this one
   /// can give.
   virtual double allowed_bytes(const Parameters& parameters) const = 0;
-  /// What one process makes in this lattice by universal_mesh(), rounds to a file and certifies: the same to the bit.
-  /// None where there is no mesh; why, one process finds out.
-  /// @param box     that the background was asked to cover
-  /// @param domain  cut for places.h; the same one whenever this is called, unless forget_domain() is called before
-  /// @param seeds   of SubmeshSearch::Crawl, where some pieces of psi = 0 are left out; else empty
-  virtual std::optional<MadeInParts> make(const BackgroundMesh& background, const Box& box, const Domain& domain,
-                                          const FastParams& params, const std::vector<Vec3>& seeds,
-                                          const RoundedPlaces& places) = 0;
   /// The next mesh is one of another domain: of a fit, or of the formula at another t.
   virtual void forget_domain(std::optional<double> t) = 0;
-  /// How many processes.
-  virtual int n() const = 0;
   /// Threads of each while all work; what this one does alone has those of the program.
   virtual void set_threads(int n) = 0;
   /// Who makes the bands of a fit before; null: this process does.

@@ -2,7 +2,7 @@
 
 #include "common/polled_loops.h"
 #include "pipeline/case/interrupt.h"
-#include "pipeline/domain/zero_set_choice.h"
+#include "body/pieces/zero_set_choice.h"
 #include "reconstruct/cloud/field_transfer.h"
 
 namespace umtet {

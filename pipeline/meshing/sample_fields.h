@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "mesh/io/tet_mesh_io.h"
-#include "pipeline/domain/domain.h"
+#include "body/body.h"
 
 namespace umtet {
 

@@ -12,7 +12,7 @@
 #include "mesh/io/planar_pieces.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
-#include "pipeline/domain/closed_holes.h"
+#include "body/fidelity/closed_holes.h"
 #include "pipeline/meshing/made_mesh.h"
 #include "reconstruct/cloud/label_votes.h"
 

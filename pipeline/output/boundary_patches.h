@@ -10,7 +10,7 @@
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/label_names.h"
 #include "pipeline/case/parameters.h"
-#include "pipeline/reports/closed_hole.h"
+#include "body/fidelity/closed_hole.h"
 #include "reconstruct/cloud/point_cloud.h"
 
 namespace umtet {

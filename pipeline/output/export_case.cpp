@@ -164,7 +164,7 @@ std::vector<fs::path> write_format(const ExportFormat& format, const fs::path& f
   return written;
 }
 
-std::vector<fs::path> write_pieces(PieceFormat format, const fs::path& folder, const MeshInParts& parts,
+std::vector<fs::path> write_pieces(PieceFormat format, const fs::path& folder, const WrittenInParts& parts,
                                    const PieceData* data) {
   const char* name = format == PieceFormat::Pvtu   ? "mesh.pvtu"
                      : format == PieceFormat::Xdmf ? "mesh.xdmf"

@@ -8,7 +8,7 @@
 
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
-#include "pipeline/stages/cloud_preparation.h"
+#include "body/scan/cloud_preparation.h"
 #include "reconstruct/cloud/cloud_arrays.h"
 #include "reconstruct/cloud/cloud_neighbours.h"
 #include "reconstruct/cloud/cloud_survey.h"

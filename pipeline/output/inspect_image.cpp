@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/domain/background_choice.h"
-#include "pipeline/domain/domain.h"
+#include "body/body.h"
+#include "body/sizing/background_choice.h"
+#include "pipeline/domain/body_options.h"
+#include "pipeline/domain/load_domain.h"
 #include "reconstruct/io/grid_io.h"
 #include "reconstruct/level_set/image_level.h"
 
@@ -32,7 +34,7 @@ void predict(const Parameters& given, ImageInspection& found) {
   Parameters parameters = given;
   parameters.set(keys::mesh::level_set, found.file, ParamSource::Flag, "command line");
   Domain domain = grid_domain(parameters);
-  BackgroundChoice background(parameters, domain);
+  BackgroundChoice background(body_options(parameters), domain);
   const EdgeLength choice = background.edge_length(domain);
   found.prediction = prediction_of(choice.h, background.expected_tets(domain, choice.h), 0, parameters);
   found.notices = domain.notices;

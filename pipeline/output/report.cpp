@@ -11,6 +11,7 @@
 
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
+#include "pipeline/domain/load_domain.h"
 #include "pipeline/output/boundary_patches.h"
 #include "pipeline/output/detail/report_sources.h"
 #include "pipeline/output/report_page.h"

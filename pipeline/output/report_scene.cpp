@@ -14,7 +14,7 @@
 #include "common/polled_loops.h"
 #include "mesh/io/patches.h"
 #include "pipeline/case/interrupt.h"
-#include "pipeline/domain/zero_set_choice.h"
+#include "body/pieces/zero_set_choice.h"
 #include "pipeline/meshing/made_mesh.h"
 #include "pipeline/meshing/sample_fields.h"
 #include "pipeline/output/detail/worst_tets.h"

@@ -8,7 +8,7 @@
 #include "mesh/io/solver_mesh.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/json_values.h"
-#include "pipeline/domain/domain.h"
+#include "body/body.h"
 
 namespace umtet {
 

@@ -10,12 +10,13 @@
 #include <utility>
 #include <vector>
 
+#include "body/scan/cloud_preparation.h"
+#include "body/scan/fitted_domain.h"
+#include "body/scan/level_set_fit.h"
+#include "body/sizing/background_choice.h"
+#include "body/sizing/edge_length.h"
 #include "mesh/sizes/body_size.h"
-#include "pipeline/domain/background_choice.h"
-#include "pipeline/domain/edge_length.h"
-#include "pipeline/domain/fitted_domain.h"
-#include "pipeline/stages/cloud_preparation.h"
-#include "pipeline/stages/level_set_fit.h"
+#include "pipeline/domain/body_options.h"
 #include "reconstruct/cloud/cloud_arrays.h"
 #include "reconstruct/cloud/morton_order.h"
 #include "reconstruct/solve/resolution.h"
@@ -72,8 +73,8 @@ bool is_known(const Parameters& parameters) {
 RunPrediction predict_run(const CloudSurvey& survey, double area, const Parameters& parameters) {
   const MeshParameters& p = parameters.mesh();
   const BodySize body = body_of(survey, area);
-  const ClassificationSource source = classification_source(parameters);
-  const Tiling& tiling = is_known(parameters) && p.background != "graded" ? tiling_of(parameters) : a15();
+  const ClassificationSource source = classification_source(body_options(parameters));
+  const Tiling& tiling = is_known(parameters) && p.background != "graded" ? tiling_of(p) : a15();
   const auto max_tets = static_cast<double>(p.max_tets);
   const auto h_of = [&](double n) { return h_for_tets(tiling, body, n, source); };
   RunPrediction run;
@@ -96,13 +97,14 @@ RunPrediction predict_run(const CloudSurvey& survey, double area, const Paramete
 RunPrediction predict_run(CloudFile scan, const std::filesystem::path& file, const Parameters& parameters,
                           const Context& context) {
   const auto n_points = static_cast<double>(scan.cloud.points.size());
+  const BodyOptions options = body_options(parameters);
   keep_few(scan.cloud);
-  PreparedCloud prepared = prepare_cloud(std::move(scan), file, parameters);
-  LevelSetFit fit = fit_level_set(prepared.cloud, std::move(prepared.near), parameters, context);
+  PreparedCloud prepared = prepare_cloud(std::move(scan), file.string(), options);
+  LevelSetFit fit = fit_level_set(prepared.cloud, std::move(prepared.near), options, context);
   Domain domain =
       fitted_domain(std::move(fit.psi), std::move(prepared.cloud), fit.report, parse_box(parameters.mesh().box));
   domain.complement = parameters.mesh().complement;
-  BackgroundChoice background(parameters, domain);
+  BackgroundChoice background(options, domain);
   const double h = background.edge_length(domain, context).h;
   RunPrediction run = prediction_of(h, background.expected_tets(domain, h), n_points, parameters);
   run.is_graded = background.is_graded();

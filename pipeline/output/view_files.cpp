@@ -14,10 +14,11 @@
 
 #include <cmath>
 
+#include "body/body.h"
 #include "common/polled_loops.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
-#include "pipeline/domain/domain.h"
+#include "pipeline/domain/load_domain.h"
 #include "pipeline/reports/stage_reports.h"
 #include "pipeline/stages/stages.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "pipeline/reports/input_judgement.h"
+#include "body/fidelity/input_judgement.h"
 
 namespace umtet {
 namespace {

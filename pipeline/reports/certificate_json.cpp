@@ -2,6 +2,7 @@
 
 #include "pipeline/case/exit_code.h"
 #include "pipeline/reports/comparison_json.h"
+#include "pipeline/reports/label_json.h"
 #include "pipeline/reports/mesh_json.h"
 #include "pipeline/reports/place_json.h"
 

@@ -2,11 +2,11 @@
 
 #include <vector>
 
+#include "body/fidelity/closed_hole.h"
+#include "body/fidelity/mesh_place.h"
+#include "body/fidelity/missed_place.h"
 #include "pipeline/case/json_values.h"
-#include "pipeline/reports/closed_hole.h"
-#include "pipeline/reports/mesh_place.h"
-#include "pipeline/reports/missed_place.h"
-#include "pipeline/reports/thin_place.h"
+#include "pipeline/case/thin_place_json.h"
 
 // The places that documents list, as JSON: a list, an object a place. What reads them throws Json::exception where
 // something is missing. docs/reference.md says what the names mean.
@@ -17,10 +17,6 @@ std::vector<ClosedHole> closed_holes_from(const Json& list);
 
 Json to_json(const std::vector<MissedPlace>& places);
 std::vector<MissedPlace> missed_places_from(const Json& list);
-
-/// @param h  the edge length that the places are too thin for
-Json to_json(const std::vector<ThinPlace>& places, double h);
-std::vector<ThinPlace> thin_places_from(const Json& list);
 
 /// An object: the number of all, what there is of each kind, and the list.
 Json to_json(const PlaceReport& report);

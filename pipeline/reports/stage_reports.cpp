@@ -157,10 +157,7 @@ BandReport band_from(const Json& json) {
 }
 
 MergedReport merged_from(const Json& json) {
-  return {.n_points = json.at("n_points"),
-          .n_samples = json.at("n_samples"),
-          .cell = number_from(json.at("cell")),
-          .wanted = json.at("wanted")};
+  return {.n_points = json.at("n_points"), .n_samples = json.at("n_samples"), .cell = number_from(json.at("cell"))};
 }
 
 CloudReport cloud_from(const Json& json) {
@@ -234,7 +231,7 @@ LevelSetReport level_set_from(const Json& json) {
   fit.n_turned_normals = json.at("n_turned_normals");
   for (const Json& hole : json.at("holes")) fit.holes.push_back(fitted_hole_from(hole));
   fit.least_wall_value = number_from(json.at("least_wall_value"));
-  if (json.contains("wanted")) r.wanted = json.at("wanted");
+  r.left_out_finer = json.contains("wanted");
   return r;
 }
 
@@ -295,7 +292,7 @@ Json to_json(const TrianglesReport& t) {
       {"n_labels", t.n_labels}};
 }
 
-Json to_json(const CloudReport& r) {
+Json to_json(const CloudReport& r, const Json& wanted) {
   Json json = {{"format", r.format},
                {"n_points_in_file", r.n_points_in_file},
                {"n_normals_rescaled", r.n_normals_rescaled},
@@ -313,12 +310,12 @@ Json to_json(const CloudReport& r) {
   if (!r.fields.empty()) json["fields"] = r.fields;
   if (!r.columns.empty()) json["columns"] = r.columns;
   if (const std::optional<MergedReport>& m = r.merged) {
-    json["merged"] = {{"n_points", m->n_points}, {"n_samples", m->n_samples}, {"cell", m->cell}, {"wanted", m->wanted}};
+    json["merged"] = {{"n_points", m->n_points}, {"n_samples", m->n_samples}, {"cell", m->cell}, {"wanted", wanted}};
   }
   return json;
 }
 
-Json to_json(const LevelSetReport& r) {
+Json to_json(const LevelSetReport& r, const Json& wanted) {
   const SsdReport& fit = r.fit;
   Json bands = Json::array();
   for (const BandReport& band : fit.bands) bands.push_back(to_json(band));
@@ -346,7 +343,7 @@ Json to_json(const LevelSetReport& r) {
                {"n_turned_normals", fit.n_turned_normals},
                {"holes", holes},
                {"least_wall_value", fit.least_wall_value}};
-  if (r.wanted) json["wanted"] = *r.wanted;
+  if (r.left_out_finer) json["wanted"] = wanted;
   return json;
 }
 
@@ -359,6 +356,14 @@ Json to_json(const MeshReport& r) {
 CloudReport cloud_report(const StageRecord& record) { return report_of(record, &cloud_from); }
 LevelSetReport level_set_report(const StageRecord& record) { return report_of(record, &level_set_from); }
 MeshReport mesh_report(const StageRecord& record) { return report_of(record, &mesh_from); }
+
+std::optional<Json> wanted_of(const StageRecord& record) {
+  return report_of<std::optional<Json>>(record, [](const Json& json) -> std::optional<Json> {
+    const Json& from = json.contains("merged") ? json.at("merged") : json;
+    if (!from.contains("wanted")) return std::nullopt;
+    return std::optional<Json>(std::in_place, from.at("wanted"));
+  });
+}
 
 std::vector<std::string> label_names_of_file(const CasePaths& paths) {
   const StageState state = inspect_stage(paths, Stage::Cloud, Json::object(), std::nullopt);

@@ -7,16 +7,17 @@
 #include <exception>
 #include <optional>
 
+#include "body/body.h"
+#include "body/search/mesh_maker.h"
+#include "body/sizing/background_choice.h"
+#include "body/sizing/edge_length.h"
 #include "mesh/universal_mesh.h"
 #include "pipeline/case/artefact.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/case/memory.h"
-#include "pipeline/domain/background_choice.h"
-#include "pipeline/domain/domain.h"
-#include "pipeline/domain/edge_length.h"
-#include "pipeline/meshing/library_params.h"
+#include "pipeline/domain/body_options.h"
+#include "pipeline/domain/load_domain.h"
 #include "pipeline/meshing/made_mesh.h"
-#include "pipeline/meshing/mesh_maker.h"
 #include "pipeline/meshing/part_mesher.h"
 #include "pipeline/reports/certificate_json.h"
 #include "pipeline/run/evolve_tables.h"
@@ -63,10 +64,12 @@ class Evolution {
  public:
   Evolution(const EvolveRequest& request, Progress& progress)
       : request_(request), parameters_(request.parameters), progress_(progress), of_clouds_(!request.clouds.empty()) {
-    um_params(parameters_);                         // what is wrong with them is wrong for all instants
+    um_params(parameters_.mesh());                  // what is wrong with them is wrong for all instants
     if (parameters_.mesh().background == "auto") {  // for all instants, which no single one decides
       parameters_.set(keys::mesh::background, is_graded(parameters_) ? "graded" : "a15", ParamSource::Flag, "evolve");
     }
+    // From instant to instant tets are told apart by their numbers in the background.
+    parameters_.set(keys::mesh::flips, "false", ParamSource::Flag, "evolve");
     for (TimeStep& at : time_steps(request.times, request.skip, request.clouds)) {
       const std::string name = fmt::format("step_{:04}.vtu", steps_.size());
       Step& step = steps_.emplace_back();
@@ -173,7 +176,7 @@ void Evolution::look_at(Step& step) {
                     "are shifted, not alike: move all clouds nearer to the origin",
                     d.x(), d.y(), d.z()));
   }
-  if (!choice_) choice_.emplace(parameters_, domain);
+  if (!choice_) choice_.emplace(body_options(parameters_), domain);
   const bool counts = !first_ || parameters_.mesh().tets == 0;
   if (is_graded(parameters_)) {
     h_ = choice_->edge_length(domain, until_interrupted()).h;  // of all instants so far
@@ -209,13 +212,13 @@ MeshAttempt Evolution::make(Step& step, Domain& domain) {
   const Context call{.progress = [&](const char* at, double part) { report(step, at, part); },
                      .cancelled = until_interrupted().cancelled};
   if (request_.ranks) request_.ranks->forget_domain(of_clouds_ ? std::nullopt : std::optional(step.at.t));
-  MeshMaker maker(domain, parameters_, call, {.say = [this](const std::string& line) { progress_.say(line); }},
-                  request_.ranks);
+  MeshMaker maker(domain, body_options(parameters_), call,
+                  {.say = [this](const std::string& line) { progress_.say(line); }}, request_.ranks);
   MeshAttempt a = maker.attempt(*background_, h_);
   stop_if_interrupted();
   if (a.fell_through()) throw MeshingImpossible(too_thin_text(a, domain.shift));
   if (!a.made()) throw MeshingImpossible(failure_text(a.result, h_, domain.shift));
-  step.verdict = judge(a.measured, parameters_);
+  step.verdict = judge(a.measured, parameters_.output());
   step.measured = std::move(a.measured);
   return a;
 }
@@ -224,7 +227,7 @@ void Evolution::write(const Step& step, const Domain& domain, const MeshAttempt&
   const fs::path file = request_.folder / step.file;
   if (!made.parts) return write_mesh(file, final_content(domain, made.result));
   write_artefact(file, [&](const fs::path& temporary) {
-    made.parts->write(temporary, MeshState::Final, false, boundary_data(domain, made.result));
+    written_in_parts(made.parts)->write(temporary, MeshState::Final, false, boundary_data(domain, made.result));
   });
 }
 

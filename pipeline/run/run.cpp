@@ -4,12 +4,12 @@
 
 #include <algorithm>
 
+#include "body/scan/cloud_preparation.h"
+#include "body/sizing/wanted_detail.h"
 #include "pipeline/case/interrupt.h"
-#include "pipeline/domain/wanted_detail.h"
 #include "pipeline/output/report.h"
 #include "pipeline/reports/certificate_json.h"
 #include "pipeline/run/renewal.h"
-#include "pipeline/stages/cloud_preparation.h"
 #include "pipeline/stages/scan_source.h"
 #include "pipeline/stages/stages.h"
 
@@ -126,9 +126,8 @@ constexpr double kSamplesAnEdge = 2.5;
 /// before psi is fitted.
 void CaseRun::sample_for_h() {
   if (request_.from != Stage::Cloud || !parameters_.mesh().implicit.empty()) return;
-  const HoleClosing close = parameters_.reconstruct().close;
-  const bool is_left =
-      parameters_.reconstruct().keep_open || close == HoleClosing::Smooth || close == HoleClosing::None;
+  const Closing close = parameters_.reconstruct().close;
+  const bool is_left = parameters_.reconstruct().keep_open || close == Closing::Smooth || close == Closing::None;
   if (parameters_.source(keys::cloud::cap) == ParamSource::Derived) parameters_.drop(keys::cloud::cap);
   if (is_left && parameters_.source(keys::cloud::cap) <= ParamSource::Case)
     parameters_.set(keys::cloud::cap, "false", ParamSource::Derived, "for --close");
@@ -156,12 +155,7 @@ StageState CaseRun::state_of(Stage stage) const {
 /// Where samples are dense, the first stages keep no more than the mesh that was asked for can show.
 bool CaseRun::is_fine_enough(Stage stage, const StageRecord& record) const {
   if (stage == Stage::Mesh || request_.until != Stage::Mesh) return true;
-  std::optional<Json> wanted;
-  if (stage == Stage::LevelSet) {
-    wanted = level_set_report(record).wanted;
-  } else if (const std::optional<MergedReport> merged = cloud_report(record).merged) {
-    wanted = merged->wanted;
-  }
+  const std::optional<Json> wanted = wanted_of(record);
   return !wanted || *wanted == wanted_mesh(parameters_);
 }
 

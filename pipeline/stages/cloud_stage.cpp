@@ -3,8 +3,9 @@
 #include <fstream>
 #include <system_error>
 
+#include "body/scan/sample_merging.h"
 #include "pipeline/case/interrupt.h"
-#include "pipeline/stages/sample_merging.h"
+#include "pipeline/domain/body_options.h"
 #include "pipeline/stages/scan_source.h"
 #include "pipeline/stages/stages.h"
 #include "reconstruct/io/point_cloud_io.h"
@@ -20,7 +21,7 @@ void run_cloud_stage(const StageContext& context, const fs::path& source) {
   const std::vector<RecordedFile> inputs = source_inputs(source, context.parameters, *context.paths.stamps);
   ScanSource scan = read_source(source, context.parameters, {.cancelled = until_interrupted().cancelled});
   context.progress.report("cloud", "prepare", .2);
-  PreparedCloud prepared = prepare_merged(std::move(scan.cloud), source, context.parameters);
+  PreparedCloud prepared = prepare_merged(std::move(scan.cloud), source.string(), body_options(context.parameters));
   if (scan.triangles) add_triangles(*scan.triangles, prepared.report);
   stop_if_interrupted();
   for (const std::string& notice : prepared.report.notices) context.progress.say("cloud: " + notice);
@@ -47,10 +48,14 @@ void run_cloud_stage(const StageContext& context, const fs::path& source) {
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   StageRun run = run_of_stage(seconds.count(), context.threads);
   run.source = fs::absolute(source).string();
-  write_record(
-      context.paths,
-      {Stage::Cloud, context.parameters.section("cloud"), inputs, {}, to_json(prepared.report), std::move(run)},
-      outputs);
+  write_record(context.paths,
+               {Stage::Cloud,
+                context.parameters.section("cloud"),
+                inputs,
+                {},
+                to_json(prepared.report, wanted_mesh(context.parameters)),
+                std::move(run)},
+               outputs);
   context.handover.cloud = std::move(prepared.cloud);
   context.handover.near = std::move(prepared.near);
   if (scan.triangles) context.handover.triangles = std::move(scan.triangles->boundary);

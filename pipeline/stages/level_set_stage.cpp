@@ -2,11 +2,12 @@
 #include <optional>
 #include <utility>
 
+#include "body/scan/level_set_fit.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
+#include "pipeline/domain/body_options.h"
 #include "pipeline/reports/stage_reports.h"
 #include "pipeline/stages/given_normals.h"
-#include "pipeline/stages/level_set_fit.h"
 #include "pipeline/stages/stages.h"
 #include "reconstruct/cloud/cloud_neighbours.h"
 #include "reconstruct/io/level_set_io.h"
@@ -45,7 +46,7 @@ void run_level_set_stage(const StageContext& context) {
       .cancelled = until_interrupted().cancelled};
   LevelSetFit fit = [&] {
     try {
-      return fit_level_set(cloud, std::exchange(context.handover.near, {}), context.parameters, call,
+      return fit_level_set(cloud, std::exchange(context.handover.near, {}), body_options(context.parameters), call,
                            context.ranks ? context.ranks->bands() : nullptr, exact_samples(context.paths));
     } catch (const SolveTooLarge& e) {
       throw ResourceLimit(e.what());
@@ -63,7 +64,7 @@ void run_level_set_stage(const StageContext& context) {
                 context.parameters.section("reconstruct"),
                 inputs,
                 {},
-                to_json(fit.report),
+                to_json(fit.report, wanted_mesh(context.parameters)),
                 run_of_stage(seconds.count(), context.threads)},
                {"level_set.vti"});
   context.handover.cloud = std::move(cloud);

@@ -9,6 +9,9 @@
 #include <limits>
 #include <utility>
 
+#include "body/fidelity/mesh_places.h"
+#include "body/fidelity/mesh_sizes.h"
+#include "body/search/second_order.h"
 #include "common/indices_where.h"
 #include "mesh/certify/quality_report.h"
 #include "mesh/io/mesh_part.h"
@@ -16,9 +19,8 @@
 #include "pipeline/case/artefact.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/meshing/made_mesh.h"
-#include "pipeline/meshing/mesh_places.h"
-#include "pipeline/meshing/mesh_sizes.h"
-#include "pipeline/meshing/second_order.h"
+#include "pipeline/meshing/place_files.h"
+#include "pipeline/meshing/second_order_file.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -69,13 +71,14 @@ std::vector<std::size_t> moving_tets(const UmResult& result) {
 /// The files of meshes and of their qualities, of a mesh that nobody has as a whole.
 std::vector<std::string> write_parts(const StageContext& context, const fs::path& folder, const Domain& domain,
                                      const MeshAttempt& best) {
-  MeshWithBoundary handed{best.parts, best.result.final, best.result.submesh.positive_faces,
+  const std::shared_ptr<const WrittenInParts> written = written_in_parts(best.parts);
+  MeshWithBoundary handed{written, best.result.final, best.result.submesh.positive_faces,
                           boundary_data(domain, best.result, best.mid_sides)};
   for (Vec3& x : handed.V) x += domain.shift;
   // Files have no use for it, and other processes on this machine have.
   if (domain.level_set) domain.level_set->forget_below(std::numeric_limits<double>::infinity());
   const BoundaryData& of_boundary = handed.data;
-  const MeshInParts& parts = *best.parts;
+  const WrittenInParts& parts = *written;
   const auto write = [&](const std::string& name, MeshState state) {
     const bool is_final = state == MeshState::Final;
     write_artefact(folder / name, [&](const fs::path& temporary) {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/domain/domain.h"
-#include "pipeline/meshing/mesh_attempts.h"
+#include "body/body.h"
+#include "body/search/mesh_attempts.h"
 #include "pipeline/stages/stages.h"
 
 namespace umtet {

@@ -4,18 +4,19 @@
 #include <chrono>
 #include <optional>
 
+#include "body/body.h"
+#include "body/search/mesh_maker.h"
+#include "body/sizing/background_choice.h"
+#include "body/sizing/edge_length.h"
+#include "body/sizing/too_thin.h"
 #include "mesh/universal_mesh.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/case/memory.h"
-#include "pipeline/domain/background_choice.h"
-#include "pipeline/domain/domain.h"
-#include "pipeline/domain/edge_length.h"
-#include "pipeline/domain/too_thin.h"
-#include "pipeline/domain/wanted_detail.h"
+#include "pipeline/domain/body_options.h"
+#include "pipeline/domain/load_domain.h"
 #include "pipeline/meshing/made_mesh.h"
-#include "pipeline/meshing/mesh_maker.h"
-#include "pipeline/reports/place_json.h"
+#include "pipeline/meshing/place_files.h"
 #include "pipeline/reports/stage_reports.h"
 #include "pipeline/stages/given_normals.h"
 #include "pipeline/stages/mesh_outputs.h"
@@ -34,8 +35,8 @@ class MeshStage {
   explicit MeshStage(const StageContext& context)
       : context_(context),
         domain_(load_domain(context.paths, context.parameters, &context.handover)),
-        background_(context.parameters, domain_),
-        maker_(domain_, context.parameters, call(), lines(), context.ranks) {}
+        background_(body_options(context.parameters), domain_),
+        maker_(domain_, body_options(context.parameters), call(), lines(), context.ranks) {}
 
   /// Of the best h. \throw MeshingImpossible when there is none
   MeshAttempt best_mesh();
@@ -134,8 +135,7 @@ void MeshStage::refuse_thin(const MeshAttempt& best) {
   message += remedy_for(thin, h_enough) + "\n  look at " + file.string();
   message += doubt_about_given_normals(context_.paths);
   if (keeps) message += "\n  the former mesh and its certificate have been kept";
-  throw TooThin(message,
-                {{"too_thin", to_json(in_model(thin, domain_.shift), thin.h)}, {"h_enough", json_of(h_enough)}});
+  throw TooThin(message, {in_model(thin, domain_.shift), thin.h, h_enough});
 }
 
 MeshAttempt MeshStage::best_mesh() {

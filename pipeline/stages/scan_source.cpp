@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "pipeline/case/artefact.h"
 #include "reconstruct/cloud/cloud_survey.h"
 #include "reconstruct/triangles/body_samples.h"
 
@@ -81,6 +82,31 @@ std::vector<std::string> notices_of(const TrianglesReport& t, const TriangleFile
 
 }  // namespace
 
+void require_regular_file(const fs::path& file) {
+  const fs::file_status status = fs::status(file);
+  if (fs::is_directory(status)) throw CloudRefused(file.string() + ": a folder; give the file of the cloud");
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    throw CloudRefused(file.string() + ": not a regular file; copy what it yields to a file and give that");
+  }
+}
+
+std::vector<RecordedFile> source_inputs(const fs::path& source, const Parameters& parameters, FileStamps& stamps) {
+  const auto input = [&stamps](const char* name, const fs::path& file) {
+    require_regular_file(file);
+    return RecordedFile{name, stamps.of(file)};
+  };
+  require_regular_file(source);
+  // Gigabytes that are no scan are not read for their checksum.
+  is_of_triangles(source, parameters) ? check_triangles_head(source)
+                                      : check_scan_head(source, parameters.cloud().columns);
+  std::vector<RecordedFile> inputs = {input("source", source)};
+  const std::string& viewpoints = parameters.cloud().orient_from;
+  if (!viewpoints.empty() && is_too_large_a_text(viewpoints))
+    throw CloudRefused(viewpoints + ": too large for viewpoints, lines x y z");
+  if (!viewpoints.empty()) inputs.push_back(input("viewpoints", viewpoints));
+  return inputs;
+}
+
 bool is_of_triangles(const fs::path& source, const Parameters& parameters) {
   return holds_triangles(source, parameters.cloud().as_points ? PlyFaces::Ignored : PlyFaces::Surface);
 }
@@ -92,7 +118,7 @@ ScanSource read_source(const fs::path& source, const Parameters& parameters, con
     throw CloudRefused(source.string() + ": --columns is about tables in text, not about triangles");
   TriangleFile file = read_triangles(source);
   const NormalsOf how = parameters.cloud().normals;
-  const Touching touching = parameters.cloud().touching == TouchingPieces::Fuse ? Touching::Fuse : Touching::Apart;
+  const Touching touching = parameters.cloud().touching;
   ScanSource scan;
   const std::size_t n_labels =
       file.mesh.labels.empty()
@@ -132,16 +158,6 @@ ScanSource read_source(const fs::path& source, const Parameters& parameters, con
   t.boundary = std::move(body.boundary);
   t.notices = notices_of(t.report, file.report, touching);
   return scan;
-}
-
-std::string fields_left_out(const CloudFileReport& file) {
-  constexpr std::size_t kListed = 8;
-  const std::vector<std::string>& names = file.fields_left_out;
-  if (names.empty()) return {};
-  const std::vector<std::string> listed(names.begin(), names.begin() + std::min(names.size(), kListed));
-  return fmt::format("left out {} field{} ({}{}): {} are kept, and one of each name", names.size(),
-                     names.size() == 1 ? "" : "s", fmt::join(listed, ", "), names.size() > kListed ? " ..." : "",
-                     kMostFields);
 }
 
 void add_triangles(const SampledTriangles& triangles, CloudReport& report) {

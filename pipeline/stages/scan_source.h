@@ -7,6 +7,7 @@
 
 #include "common/context.h"
 #include "pipeline/case/parameters.h"
+#include "pipeline/case/record.h"
 #include "pipeline/reports/stage_reports.h"
 #include "reconstruct/io/point_cloud_io.h"
 #include "reconstruct/io/triangle_mesh_io.h"
@@ -26,6 +27,14 @@ struct ScanSource {
   std::optional<SampledTriangles> triangles;
 };
 
+/// \throw CloudRefused  a device, a pipe or a folder: there is no telling where it ends
+void require_regular_file(const std::filesystem::path& file);
+
+/// The files that 1-cloud reads: the user's cloud, and the viewpoints of cloud.orient_from.
+/// \throw CloudRefused (not a regular file), std::system_error
+std::vector<RecordedFile> source_inputs(const std::filesystem::path& source, const Parameters& parameters,
+                                        FileStamps& stamps);
+
 /// STL, OBJ, OFF, and PLY with faces unless cloud.as_points. \throw std::system_error
 bool is_of_triangles(const std::filesystem::path& source, const Parameters& parameters);
 
@@ -33,9 +42,6 @@ bool is_of_triangles(const std::filesystem::path& source, const Parameters& para
 /// cloud.normals = estimate, on the side that triangles look to for cloud.normals = given.
 /// \throw CloudRefused  as the readers, or triangles that do not bound a body; std::system_error; Cancelled
 ScanSource read_source(const std::filesystem::path& source, const Parameters& parameters, const Context& context = {});
-
-/// Which columns of numbers were not taken along, and why; empty if all were.
-std::string fields_left_out(const CloudFileReport& file);
 
 /// Puts what is known of the triangles into the report of their samples, notices first.
 void add_triangles(const SampledTriangles& triangles, CloudReport& report);

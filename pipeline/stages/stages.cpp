@@ -4,7 +4,7 @@
 
 #include "pipeline/case/artefact.h"
 #include "pipeline/case/exit_code.h"
-#include "pipeline/domain/background_choice.h"
+#include "pipeline/domain/body_options.h"
 #include "pipeline/domain/size_file.h"
 #include "reconstruct/io/grid_io.h"
 

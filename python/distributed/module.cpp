@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "body/body.h"
 #include "distributed/collect.h"
 #include "distributed/curved_solver_part.h"
 #include "distributed/program/ranks.h"
@@ -23,7 +24,7 @@
 #include "distributed/solver_part.h"
 #include "distributed/vertex_owners.h"
 #include "pipeline/case/exit_code.h"
-#include "pipeline/domain/domain.h"
+#include "pipeline/domain/load_domain.h"
 #include "pipeline/memory/jobs.h"
 #include "pipeline/reports/certificate_json.h"
 #include "python/arguments.h"

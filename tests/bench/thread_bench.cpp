@@ -20,12 +20,12 @@
 #include <utility>
 #include <vector>
 
+#include "body/scan/cloud_preparation.h"
+#include "body/scan/level_set_fit.h"
 #include "mesh/certify/certificate.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "mesh/sizes/body_size.h"
 #include "mesh/universal_mesh.h"
-#include "pipeline/stages/cloud_preparation.h"
-#include "pipeline/stages/level_set_fit.h"
 #include "tests/support/bench_domains.h"
 #include "tests/support/clouds.h"
 
@@ -85,12 +85,12 @@ void mesh(const testing::AnalyticDomain& domain, ImplicitFunctionRef psi, double
 }
 
 void fit(const OrientedPointCloud& cloud, Phases& phases) {
-  const Parameters parameters;
+  const BodyOptions options;
   phases.begin("prepare");
-  PreparedCloud prepared = prepare_cloud({cloud, {}}, "memory", parameters);
+  PreparedCloud prepared = prepare_cloud({cloud, {}}, "memory", options);
   phases.begin("noise");
   const Context context{.progress = [&](const char* step, double) { phases.begin(step); }, .cancelled = {}};
-  fit_level_set(prepared.cloud, std::move(prepared.near), parameters, context);
+  fit_level_set(prepared.cloud, std::move(prepared.near), options, context);
   phases.end();
 }
 

@@ -6,7 +6,7 @@ import sys
 import unittest
 
 SOURCES = pathlib.Path(sys.argv.pop(1)).resolve()
-TOPS = ("common", "reconstruct", "mesh", "distributed")  # folders whose READMEs name every header
+TOPS = ("common", "reconstruct", "mesh", "body", "umtet", "distributed")  # folders whose READMEs name every header
 INNER = {"detail", "tables", "tilings"}  # a README names these folders as a whole
 CODE = re.compile(r"`([^`\n]+)`")
 NO_FILES = {"mesh.h", "docs/api/html"}  # a parameter; made by doxygen

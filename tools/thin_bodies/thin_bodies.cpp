@@ -25,9 +25,10 @@
 #include <string>
 #include <vector>
 
+#include "body/search/mesh_maker.h"
 #include "mesh/background/background_mesh.h"
 #include "mesh/implicit/surface_distance.h"
-#include "pipeline/meshing/mesh_maker.h"
+#include "pipeline/expression/expression.h"
 #include "tools/thin_bodies/bodies.h"
 
 using namespace umtet;
@@ -69,11 +70,10 @@ bool is_near_a_place(const Vec3& x, const std::vector<MeshPlace>& places) {
 Outcome outcome_of(const Body& body) {
   Outcome o{.family = body.family, .formula = body.formula, .thickness = body.thickness};
   Domain domain;
-  domain.formula.emplace(body.formula);
+  domain.formula = shared_function(Expression(body.formula));
   domain.box = body.box;
   domain.diagonal = body.box.diagonal().norm();
-  const Parameters parameters;
-  MeshMaker maker(domain, parameters, {});
+  MeshMaker maker(domain, BodyOptions(), {});
   const MeshAttempt a = maker.attempt({BackgroundMesh(a15(), body.box, 1)}, 1);
   o.made = a.made();
   if (!o.made) return o;

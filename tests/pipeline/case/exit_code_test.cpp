@@ -35,6 +35,16 @@ TEST(ExitCode, AMeshThatIsThereButNotCertifiedIsNotOneThatIsNotThere) {
   EXPECT_EQ(failure(CertificateFailed("?")).code, ExitCode::GateFailed);
 }
 
+TEST(ExitCode, WhatIsTooThinHasItsPlacesAsEvidence) {
+  ThinPlace place;
+  place.thickness = .01;
+  const Failure known = failure(TooThin("?", {{place}, .1, .02})), unknown = failure(TooThin("?", {{place}, .1, {}}));
+  EXPECT_EQ(known.code, ExitCode::MeshingImpossible);
+  EXPECT_EQ(known.evidence.at("too_thin").size(), 1U);
+  EXPECT_EQ(known.evidence.at("h_enough"), .02);
+  EXPECT_TRUE(unknown.evidence.at("h_enough").is_null());
+}
+
 TEST(ExitCode, UsageAndFilesKeepTheirs) {
   EXPECT_EQ(failure(UsageError("?")).code, ExitCode::Usage);
   EXPECT_EQ(failure(std::system_error(ENOSPC, std::generic_category())).code, ExitCode::FileTrouble);

@@ -29,6 +29,50 @@ struct TomlFile {
   const fs::path path = fs::temp_directory_path() / ("umtet_parameters_" + std::to_string(::getpid()) + ".toml");
 };
 
+/// Stands for any field of an aggregate.
+struct Any {
+  template <class T>
+  operator T() const;  // NOLINT(google-explicit-constructor)
+};
+
+/// How many fields an aggregate has; a base class counts as one.
+template <class T, class... Fields>
+constexpr std::size_t n_fields() {
+  if constexpr (requires { T{Fields{}..., Any{}}; }) {
+    return n_fields<T, Fields..., Any>();
+  } else if constexpr (requires { T{Fields{}..., std::optional<SsdSolver>{}}; }) {
+    return n_fields<T, Fields..., std::optional<SsdSolver>>();
+  } else {
+    return sizeof...(Fields);
+  }
+}
+
+template <class Class, class T>
+Class class_of(T Class::*);
+
+/// How many parameters are fields of the class itself.
+template <class Class>
+constexpr std::size_t n_reached() {
+  std::size_t n = 0;
+#define UMTET_CLOUD(name, ...) n += std::is_same_v<Class, decltype(class_of(&CloudParameters::name))> ? 1 : 0;
+#define UMTET_RECONSTRUCT(name, ...) \
+  n += std::is_same_v<Class, decltype(class_of(&ReconstructParameters::name))> ? 1 : 0;
+#define UMTET_MESH(name, ...) n += std::is_same_v<Class, decltype(class_of(&MeshParameters::name))> ? 1 : 0;
+#define UMTET_OUTPUT(name, ...) n += std::is_same_v<Class, decltype(class_of(&OutputParameters::name))> ? 1 : 0;
+#include "pipeline/case/parameters.def"
+  return n;
+}
+
+// parameters.def reaches every option of the library, and every field of the sections besides.
+static_assert(n_reached<ScanOptions>() == n_fields<ScanOptions>());
+static_assert(n_reached<FitOptions>() == n_fields<FitOptions>());
+static_assert(n_reached<MeshOptions>() == n_fields<MeshOptions>());
+static_assert(n_reached<VerdictOptions>() == n_fields<VerdictOptions>());
+static_assert(n_reached<CloudParameters>() == n_fields<CloudParameters>() - 1);
+static_assert(n_reached<ReconstructParameters>() == n_fields<ReconstructParameters>() - 1);
+static_assert(n_reached<MeshParameters>() == n_fields<MeshParameters>() - 1);
+static_assert(n_reached<OutputParameters>() == n_fields<OutputParameters>() - 1);
+
 TEST(Parameters, DefaultsAreInsideTheirOwnRanges) {
   for (const ParamField& f : params_fields()) {
     Parameters p;
@@ -40,16 +84,16 @@ TEST(Parameters, DefaultsAreInsideTheirOwnRanges) {
 
 TEST(Parameters, WordsOfAVocabularyAreValuesOfAnEnum) {
   Parameters p;
-  EXPECT_EQ(p.mesh().mode, MeshingMode::Fast);
-  EXPECT_EQ(p.reconstruct().solver, FitSolver::Auto);
+  EXPECT_EQ(p.mesh().mode, UmMode::Fast);
+  EXPECT_EQ(p.reconstruct().solver, std::nullopt);
   p.set("mesh.mode=paper");
   p.set("reconstruct.solver=assembled");
   p.set("cloud.normals=estimate");
   p.set("mesh.closest_point=damped");
-  EXPECT_EQ(p.mesh().mode, MeshingMode::Paper);
-  EXPECT_EQ(p.reconstruct().solver, FitSolver::Assembled);
+  EXPECT_EQ(p.mesh().mode, UmMode::Paper);
+  EXPECT_EQ(p.reconstruct().solver, SsdSolver::Assembled);
   EXPECT_EQ(p.cloud().normals, NormalsOf::Estimate);
-  EXPECT_EQ(p.mesh().closest_point, Projection::Damped);
+  EXPECT_EQ(p.mesh().closest_point, ClosestPointMethod::Damped);
   for (const ParamField& f : params_fields()) {
     for (const std::string& word : f.choices) {
       p.set(f.key + "=" + word);

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "mesh/io/patches.h"
+#include "pipeline/domain/load_domain.h"
 #include "pipeline/output/report_page.h"
 #include "pipeline/output/report_plot.h"
 #include "tests/support/box_tets.h"

@@ -113,20 +113,32 @@ TEST(StageReports, AReportReadBackIsWrittenAlike) {
   record.numbers = reread(to_json(mesh));
   EXPECT_EQ(to_json(mesh_report(record)).dump(2), to_json(mesh).dump(2));
 
+  const Json wanted = {{"h", .1}};
   CloudReport cloud;
   cloud.box = {Vec3(0, 0, 0), Vec3(1, 1, 1)};
   cloud.normals = {true, 3, .9, OrientationReport{.9, 1, 5}, 7, 2, 4};
   cloud.notices = {"turned 5"};
-  record.numbers = reread(to_json(cloud));
-  EXPECT_EQ(to_json(cloud_report(record)).dump(2), to_json(cloud).dump(2));
+  record.numbers = reread(to_json(cloud, wanted));
+  EXPECT_EQ(to_json(cloud_report(record), wanted).dump(2), to_json(cloud, wanted).dump(2));
+
+  EXPECT_FALSE(wanted_of(record));
+  cloud.merged = MergedReport{1000, 100, .5};
+  record.numbers = reread(to_json(cloud, wanted));
+  EXPECT_EQ(to_json(cloud_report(record), wanted).dump(2), to_json(cloud, wanted).dump(2));
+  EXPECT_EQ(wanted_of(record), wanted);
 
   LevelSetReport psi;
   psi.shift = {1, 2, 3};
   psi.fit.residuals = {1, .1};
   psi.fit.bands.resize(2);
   psi.thickness = {.1, .2, .3};
-  record.numbers = reread(to_json(psi));
-  EXPECT_EQ(to_json(level_set_report(record)).dump(2), to_json(psi).dump(2));
+  record.numbers = reread(to_json(psi, wanted));
+  EXPECT_EQ(to_json(level_set_report(record), wanted).dump(2), to_json(psi, wanted).dump(2));
+  EXPECT_FALSE(wanted_of(record));
+  psi.left_out_finer = true;
+  record.numbers = reread(to_json(psi, wanted));
+  EXPECT_EQ(to_json(level_set_report(record), wanted).dump(2), to_json(psi, wanted).dump(2));
+  EXPECT_EQ(wanted_of(record), wanted);
   record.numbers.erase("shift");
   EXPECT_THROW(level_set_report(record), ArtefactDamaged);
 }

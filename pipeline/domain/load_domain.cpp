@@ -1,0 +1,85 @@
+#include "pipeline/domain/load_domain.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "body/given_triangles.h"
+#include "body/scan/fitted_domain.h"
+#include "pipeline/case/exit_code.h"
+#include "pipeline/domain/handover.h"
+#include "pipeline/expression/expression.h"
+#include "pipeline/reports/stage_reports.h"
+#include "reconstruct/io/level_set_io.h"
+#include "reconstruct/io/point_cloud_io.h"
+#include "reconstruct/io/triangle_mesh_io.h"
+
+namespace umtet {
+
+static_assert(JointlyEvaluated<Expression>);
+
+namespace {
+
+/// The file of a case has the same bits.
+LevelSet level_set_of(const std::filesystem::path& file) {
+  try {
+    return read_level_set(file);
+  } catch (const LevelSetRefused& e) {  // the file is ours: what is wrong with it is damage
+    throw ArtefactDamaged(e.what());
+  }
+}
+
+/// Of the mesh that the case has.
+double level_shift_of(const CasePaths& paths) {
+  const StageState state = inspect_stage(paths, Stage::Mesh, Json::object(), std::nullopt);
+  return state.record ? mesh_report(*state.record).measured.domain.level_shift : 0;
+}
+
+bool is_of_triangles(const CasePaths& paths, const StageRecord& cloud) {
+  const std::vector<RecordedFile>& outputs = cloud.outputs;
+  const std::string name = paths.triangles().filename().string();
+  return std::any_of(outputs.begin(), outputs.end(), [&](const RecordedFile& f) { return f.name == name; });
+}
+
+}  // namespace
+
+Domain formula_domain(const Parameters& parameters, std::optional<double> t) {
+  const std::optional<Box> box = parse_box(parameters.mesh().box);
+  if (!box) throw UsageError("--implicit needs --box x0,y0,z0,x1,y1,z1");
+  Domain domain;
+  domain.formula = shared_function(Expression(parameters.mesh().implicit, t));
+  domain.box = *box;
+  domain.diagonal = box->diagonal().norm();
+  domain.complement = parameters.mesh().complement;
+  return domain;
+}
+
+Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handover* handover) {
+  if (!parameters.mesh().level_set.empty()) return grid_domain(parameters);
+  if (!parameters.mesh().implicit.empty()) return formula_domain(parameters);
+  const StageState state = inspect_stage(paths, Stage::LevelSet, parameters.section("reconstruct"), std::nullopt);
+  if (!state.record) throw ArtefactDamaged(state.reason);
+  Domain domain;
+  try {
+    LevelSet psi = handover && handover->psi ? std::move(*std::exchange(handover->psi, std::nullopt))
+                                             : level_set_of(paths.level_set());
+    OrientedPointCloud cloud = handover && handover->cloud ? std::move(*std::exchange(handover->cloud, std::nullopt))
+                                                           : read_point_cloud(paths.cloud()).cloud;
+    const LevelSetReport report = level_set_report(*state.record);
+    domain = fitted_domain(std::move(psi), std::move(cloud), report, parse_box(parameters.mesh().box));
+    const StageState cloud_state = inspect_stage(paths, Stage::Cloud, Json::object(), std::nullopt);
+    if (cloud_state.record) domain.facts = input_facts(cloud_report(*cloud_state.record), report);
+    domain.fitted = FittedLevelSet(*domain.level_set, [file = paths.level_set()] { return level_set_of(file); });
+    if (handover && handover->triangles) {
+      domain.triangles = given_triangles(std::move(*std::exchange(handover->triangles, std::nullopt)), domain.shift);
+    } else if (cloud_state.record && is_of_triangles(paths, *cloud_state.record)) {
+      domain.triangles = given_triangles(read_triangles(paths.triangles()).mesh, domain.shift);
+    }
+    if (domain.triangles) domain.level_shift = level_shift_of(paths);
+  } catch (const CloudRefused& e) {  // all files are ours: what is wrong with them is damage
+    throw ArtefactDamaged(e.what());
+  }
+  domain.complement = parameters.mesh().complement;
+  return domain;
+}
+
+}  // namespace umtet

@@ -1,0 +1,52 @@
+#include "pipeline/meshing/place_files.h"
+
+#include <cstdint>
+
+#include "mesh/io/tet_mesh_io.h"
+#include "pipeline/case/artefact.h"
+
+namespace umtet {
+
+void write_places(const std::filesystem::path& file, const std::vector<MeshPlace>& places) {
+  std::vector<Vec3> points;
+  std::vector<double> off, size, feature;
+  std::vector<std::uint8_t> kind, small;
+  std::vector<std::int64_t> n;
+  for (const MeshPlace& place : places) {
+    points.push_back(place.where);
+    kind.push_back(static_cast<std::uint8_t>(place.kind));
+    off.push_back(place.off_over_h);
+    size.push_back(place.size_over_h);
+    feature.push_back(place.feature_over_h.value_or(0));
+    small.push_back(is_small(place) ? 1 : 0);
+    n.push_back(static_cast<std::int64_t>(place.n));
+  }
+  write_artefact(file, [&](const std::filesystem::path& temporary) {
+    write_vtp(temporary, points,
+              {{"kind", kind},
+               {"off_over_h", off},
+               {"size_over_h", size},
+               {"feature_over_h", feature},
+               {"small", small},
+               {"n", n}});
+  });
+}
+
+void write_thin_places(const std::filesystem::path& file, const ThinPlaces& thin, const Vec3& shift) {
+  std::vector<Vec3> points = thin.points;
+  std::vector<double> h_needed;
+  std::vector<std::int64_t> place;
+  std::vector<std::uint8_t> gap;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i] += shift;
+    place.push_back(thin.place[i]);
+    h_needed.push_back(thin.places[thin.place[i]].h_needed);
+    gap.push_back(thin.places[thin.place[i]].is_gap);
+  }
+  write_artefact(file, [&](const std::filesystem::path& temporary) {
+    write_vtp(temporary, points,
+              {{"thickness", thin.thickness}, {"h_needed", h_needed}, {"place", place}, {"gap", gap}});
+  });
+}
+
+}  // namespace umtet
