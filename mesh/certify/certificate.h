@@ -60,8 +60,8 @@ struct MeshCertificate {
     std::optional<double> max_centroid_distance_over_h;  ///< from face centroids to their closest points
     double max_centroid_distance = 0;                    ///< the same in model units
     std::optional<double> min_cos_normal;                ///< cos(face normal, grad psi) at projected centroids
-    /// Volume between the flat faces and psi = 0, counted on both sides, divided by the volume of the mesh. If the
-    /// volume of the body that the mesh surrounds with walls is smaller, it is divided by that.
+    /// Volume between the flat faces and psi = 0, counted on both sides, divided by the volume of the mesh. In a mesh
+    /// with walls it is divided by the volume that the other faces enclose if this is smaller.
     std::optional<double> gap_over_volume;
     std::size_t n_cos_below_half = 0;     ///< faces with cos < .5
     std::size_t n_unprojected_faces = 0;  ///< faces without a point of psi = 0 found from their centroid
