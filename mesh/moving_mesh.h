@@ -59,7 +59,7 @@ struct UmUpdate {
 class UniversalMesh {
  public:
   /// @param params  UmMode::Fast. `seeds` and `search` are not used: the first update, and any update after an empty
-  /// domain, evaluates psi at every vertex
+  ///                domain, evaluates psi at every vertex
   /// \throw std::invalid_argument naming every broken constraint, or for UmMode::Paper
   explicit UniversalMesh(BackgroundMesh background, const UmParams& params = {});
   ~UniversalMesh();

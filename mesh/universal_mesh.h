@@ -66,7 +66,7 @@ ChosenSubmesh choose_submesh(const BackgroundMesh& background, ImplicitFunctionR
 /// Second step of universal_mesh(): moves vertices until the boundary is on psi = 0 and the tets are well shaped.
 /// Reports the steps "project", "relax" and, in UmMode::Fast, "repair".
 /// @param chosen  result of choose_submesh() for the same background, psi and params; a failure there is passed on as
-/// the result
+///                the result
 /// \throw std::invalid_argument naming every broken constraint of params; Cancelled
 UmResult fit_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
                      ChosenSubmesh chosen, const Context& context = {});

@@ -33,8 +33,8 @@ struct SurfaceComponent {
 };
 
 /// Topology and size of a triangle surface, computed from its indices.
-struct SurfaceTopology {                     ///< ascending by least vertex
-  std::vector<SurfaceComponent> components;  ///< ascending in their least vertex
+struct SurfaceTopology {
+  std::vector<SurfaceComponent> components;  ///< ascending by least vertex
   std::vector<int> component;                ///< of each face
   std::vector<int> vertices;                 ///< vertices used by the faces, ascending
   std::size_t n_edges = 0;
@@ -48,7 +48,8 @@ struct SurfaceTopology {                     ///< ascending by least vertex
   bool closed_manifold = false;
 };
 
-double face_area(const Vec3& a, const Vec3& b, const Vec3& c);  // Area of a triangle.
+/// Area of a triangle.
+double face_area(const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// Computes the topology of a triangle surface.
 /// \throw std::invalid_argument for an index out of range or a face with a repeated vertex

@@ -113,7 +113,7 @@ inline constexpr double kMostGap = .1;
 ///
 /// psi must be thread-safe. Cost: O(n log n). Uses threads over tets and faces; the result does not depend on them.
 /// \throw std::invalid_argument without a mesh or tets, for an index out of range, or if background_V is missing;
-/// Cancelled
+///        Cancelled
 MeshCertificate certify(const CertificateInput&);
 
 class CertificateMemory;
@@ -124,7 +124,7 @@ class CertificateMemory;
 /// removed. The surface is measured anew. Cost: proportional to the surface and the changed tets, plus some ns for each
 /// of the other tets.
 /// @param vertex_id, tet_id  ids that identify vertices and tets of the two meshes, ascending. They are not trusted:
-/// they only say where to look
+///                           they only say where to look
 /// @param memory             empty at first; receives the data that the next call uses
 MeshCertificate certify(const CertificateInput&, const std::vector<std::int64_t>& vertex_id,
                         const std::vector<std::int64_t>& tet_id, CertificateMemory& memory);

@@ -19,6 +19,7 @@ inline QuadraticNodes nodes_of(const QuadraticTetMesh& mesh, const QuadraticTet&
 /// With the ten control points of x(l) = sum b_ij l_i l_j over all ordered pairs,
 ///
 ///     dx/dl_j - dx/dl_0 = sum_i l_i a[i][j - 1],   a[i][j - 1] = 2 (b_ij - b_i0),
+///     b_ii = V_i,   b_ij = 2 m_ij - (V_i + V_j) / 2   with m_ij the mid-side.
 using JacobianColumns = std::array<std::array<Vec3, 3>, 4>;
 JacobianColumns jacobian_columns(const QuadraticNodes& x);
 

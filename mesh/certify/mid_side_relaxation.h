@@ -15,7 +15,7 @@ class MidSideRelaxation {
   /// Keeps references to all arguments but h.
   /// @param kind    role of every mid-side, by vertex index minus n_corners
   /// @param at_rim  for each tet of a part of a mesh: 1 if other tets at one of its edges are not in the part; null:
-  /// none
+  ///                none
   MidSideRelaxation(QuadraticTetMesh& mesh, std::size_t n_corners, std::vector<MidSide>& kind, ImplicitFunctionRef psi,
                     double h, const SecondOrderParams& params, const std::vector<char>* at_rim = nullptr);
 

@@ -53,7 +53,7 @@ struct SecondOrder {
 /// @param psi           C2 near the boundary, negative inside; thread-safe
 /// @param h             edge length that the tolerances of params.closest_point are relative to, model units, > 0
 /// \throw std::invalid_argument for an index out of range, a face with an edge of no tet, params with problems();
-/// Cancelled
+///        Cancelled
 /// Cost: 1.5 closest points per face and .2 microseconds per tet, and more only where mid-sides are relaxed; 140 bytes
 /// per tet. The result does not depend on threads.
 SecondOrder quadratic_tets(const TetMesh& mesh, const std::vector<Triangle>& curved_faces, ImplicitFunctionRef psi,

@@ -45,7 +45,7 @@ struct SecondOrderInput {
 /// Measures all fields of a second-order certificate, without a verdict. The result does not depend on threads.
 /// Cost: .3 microseconds per tet, four values of psi per boundary face.
 /// \throw std::invalid_argument without a mesh, tets or h, for an index out of range or a tet that repeats a corner;
-/// Cancelled
+///        Cancelled
 SecondOrderCertificate certify_second_order(const SecondOrderInput&);
 
 /// The reasons why a certificate fails; empty if it passes. The reasons are a Jacobian that is not positive, torn

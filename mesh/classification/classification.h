@@ -84,11 +84,11 @@ bool is_thin(ImplicitFunctionRef psi, const Vec3& foot, const Vec3& normal, doub
 ///
 /// @param inside  the vertices with psi < 0 on entry; none of them, nor a neighbour, on the background boundary
 /// @param last    inside vertices of the former mesh, or null: a former state that costs at most `keep` more is the
-/// initial state
+///                initial state
 /// @param known   psi at all vertices with a neighbour on the other side, or null
 /// @param part    part of a lattice whose other parts are classified by other processes, or null. `inside` is then
-/// correct within five rings of own vertices. In the report, candidates and flips count all processes, the rest this
-/// part
+///                correct within five rings of own vertices. In the report, candidates and flips count all processes,
+///                the rest this part
 /// \throw std::invalid_argument naming every broken constraint of params, Cancelled
 /// \throw std::invalid_argument naming every broken constraint of params, Cancelled
 ClassificationReport classify_vertices(const BackgroundMesh& background, const VertexLinks& links,

@@ -47,7 +47,7 @@ std::vector<std::int64_t> vertices_not_manifold(const BackgroundMesh& background
 /// @param bad          result of vertices_not_manifold()
 /// @param inside       receives the changes; may become empty
 /// @param read         if other processes store the classification: called before a bad vertex is examined; inserts the
-/// inside vertices within kManifoldReach edges into `inside`, unless it has done so before
+///                     inside vertices within kManifoldReach edges into `inside`, unless it has done so before
 /// \throw Cancelled
 ManifoldReport make_manifold(const BackgroundMesh& background, const VertexLinks* links, ImplicitFunctionRef psi,
                              const ClassificationParams& params, bool has_walls, const std::vector<std::int64_t>& bad,

@@ -24,8 +24,8 @@ struct AllVertexReport {
 /// and its position is the point where the line along its normal meets psi = 0. The gradient is therefore exact.
 ///
 /// @param layer  a small layer of a few hundred vertices; the vertices that are not Fixed move. On return it has the
-/// positions with the greatest least Q that were found. It stays unchanged if a tet is not positive or a Boundary
-/// vertex does not reach psi = 0
+///               positions with the greatest least Q that were found. It stays unchanged if a tet is not positive or a
+///               Boundary vertex does not reach psi = 0
 /// @param goal   mean ratio at which the iteration stops, at the first positions that reach it
 /// Cost: 40 ns per tet and evaluation, with about 100 evaluations (`mesh_bench --benchmark_filter=all_vertices`). Runs
 /// in one thread.

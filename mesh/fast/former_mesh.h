@@ -31,8 +31,8 @@ struct FormerMesh {
 struct FormerStates {
   /// Vertices that count as inside. Where the background is the same around a vertex, the former state holds. Elsewhere
   /// they are the vertices with psi < 0, restricted to the components with a seed if there are seeds.
-  IdSet inside{0};  ///< vertices around which the background is the same
-  IdSet same{0};    ///< vertices around which the background is the same
+  IdSet inside{0};
+  IdSet same{0};  ///< vertices around which the background is the same
   /// The other vertices that have a neighbour on the other side: classify_vertices() works on them.
   PsiValues cut;
   std::size_t psi_evaluations = 0;

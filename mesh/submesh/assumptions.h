@@ -40,7 +40,7 @@ struct ConditioningAngles {
 /// of acute tets they are acute for any domain.
 ///
 /// @param distance  |phi| at submesh.positive_vertices, in their order; among equally close vertices the first of the
-/// face is proximal
+///                  face is proximal
 /// \throw std::invalid_argument if the number of distances differs from the number of positive vertices
 ConditioningAngles conditioning_angles(const Submesh& submesh, std::span<const double> distance);
 

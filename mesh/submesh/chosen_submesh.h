@@ -23,10 +23,10 @@ struct KeptVertex {
 
 /// The tets of the background mesh that become the mesh, before any vertex has moved.
 struct ChosenSubmesh {
-  UmStatus status = UmStatus::Success;  ///< set when status != Success
-  UmEvidence evidence;          ///< background vertices that count as inside; if it is empty, `submesh` is whole
-  IdSet inside{0};              ///< omega_h: complete, or its vertices only
-  Submesh submesh;              ///< omega_h: whole, or its vertices only
+  UmStatus status = UmStatus::Success;
+  UmEvidence evidence;          ///< set when status != Success
+  IdSet inside{0};              ///< background vertices that count as inside; if it is empty, `submesh` is whole
+  Submesh submesh;              ///< omega_h: complete, or its vertices only
   bool is_whole = false;        ///< `submesh` includes its tets and faces
   std::vector<Triangle> walls;  ///< for BackgroundBoundary::Wall: see UmResult::walls
   std::vector<ManifoldFlip> manifold_flips;

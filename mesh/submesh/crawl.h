@@ -25,7 +25,7 @@ struct Crawl {
 ///
 /// @param seeds  at least one point within a few h of every component of the boundary, cavities included
 /// @return equal to find_submesh() bit for bit if every component has its seed and every outside vertex next to an
-/// inside one is positive. The second condition fails only where Omega's complement is thinner than an edge.
+///         inside one is positive. The second condition fails only where Omega's complement is thinner than an edge.
 /// Cost: about ten values of psi per positive vertex; memory: a few bits per background vertex and tet. The search and
 /// the flood are serial; the tets are then listed by all threads, in a few nanoseconds per cell of the background.
 /// \throw Cancelled

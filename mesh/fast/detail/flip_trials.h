@@ -22,8 +22,8 @@ using TetIds = std::array<std::int64_t, 4>;
 /// Positions of the vertices of a mesh under repair: moved by repair, or those of the layer, kept, or of the background
 /// mesh.
 class Positions {
- public:  // Keeps references. @param kept  ascending
-  /// Keeps all by reference. @param kept  ascending
+ public:
+  /// Keeps references. @param kept  ascending
   Positions(const BackgroundMesh& background, const BackgroundLayer& layer, const std::vector<KeptVertex>& kept)
       : background_(background), layer_(layer), kept_(kept) {}
 
