@@ -5,29 +5,29 @@
 
 namespace umtet {
 
-/// What a call throws that was cancelled through its Context.
+/// Exception of a call that was cancelled through its Context.
 struct Cancelled : std::runtime_error {
   Cancelled() : std::runtime_error("cancelled by the caller") {}
 };
 
-/// How a caller follows a call of some seconds and ends it. Both functions are called by the thread that made the call,
-/// and may throw, which ends the call too; either may be empty.
+/// Progress and cancellation callbacks for long-running calls. The calling thread invokes both functions. They may
+/// throw, which also ends the call. Either may be empty.
 struct Context {
-  /// Where the work stands: the name of a step, and the part of the call at hand that is done, in [0, 1].
+  /// Receives the name of a step, and the completed fraction of the current call, in [0, 1].
   std::function<void(const char* step, double fraction)> progress = {};
-  /// Called between pieces of work of some milliseconds; true ends the call with Cancelled.
+  /// Called every few milliseconds between pieces of work; if it returns true, the call ends with Cancelled.
   std::function<bool()> cancelled = {};
 
-  /// \throw Cancelled
+  /// Checks for cancellation. \throw Cancelled
   void poll() const {
     if (cancelled && cancelled()) throw Cancelled();
   }
-  /// \throw Cancelled
+  /// Reports progress and checks for cancellation. \throw Cancelled
   void report(const char* step, double fraction) const {
     if (progress) progress(step, fraction);
     poll();
   }
-  /// For a call that is a part of this one: its [0, 1] is [begin, end] here.
+  /// Context for a nested call whose progress [0, 1] is mapped to [begin, end] of this one.
   Context part(double begin, double end) const {
     if (!progress) return {.cancelled = cancelled};
     return {.progress = [whole = progress, begin, end](const char* step,

@@ -7,12 +7,12 @@
 
 namespace umtet {
 
-/// Union-find. The least member represents a set, so that representatives do not depend on the order of the unions.
+/// Union-find. A set is represented by its least member, so that representatives do not depend on the order of unions.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t n = 0) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
   std::size_t size() const { return parent_.size(); }
-  /// A new set of one; returns its member.
+  /// Adds a set with one member and returns the member.
   int add() {
     parent_.push_back(static_cast<int>(parent_.size()));
     return parent_.back();

@@ -9,11 +9,11 @@
 
 namespace umtet {
 
-/// An empty vector with room for n values, of whose memory every page has been touched by one of the threads. The first
-/// touch of a page costs more than what is then written to it, and a vector that grows is filled by one thread.
+/// An empty vector with capacity for n values, whose memory pages have been touched by all threads. The first touch of
+/// a page costs more than later writes to it, and a growing vector is filled by one thread.
 template <class T>
 std::vector<T> reserved(std::size_t n) {
-  constexpr std::size_t kPage = 4096, kPagesPerTask = 512;  // a huge page, where there are any
+  constexpr std::size_t kPage = 4096, kPagesPerTask = 512;  // a huge page if the system has them
   std::vector<T> room;
   room.reserve(n);
   auto* const begin = reinterpret_cast<unsigned char*>(room.data());
@@ -25,7 +25,7 @@ std::vector<T> reserved(std::size_t n) {
   return room;
 }
 
-/// n values, of memory touched like that.
+/// A vector of n values, in memory touched by all threads.
 template <class T>
 std::vector<T> touched(std::size_t n) {
   std::vector<T> values = reserved<T>(n);
@@ -33,7 +33,7 @@ std::vector<T> touched(std::size_t n) {
   return values;
 }
 
-/// The same values, by all threads.
+/// Copies values with all threads.
 template <class T>
 std::vector<T> copied(std::span<const T> values) {
   constexpr std::size_t kValuesPerTask = 1 << 16;
@@ -45,7 +45,7 @@ std::vector<T> copied(std::span<const T> values) {
   return copy;
 }
 
-/// values[which[k]] for every k, by all threads.
+/// Gathers values[which[k]] for every k, with all threads.
 template <class T>
 std::vector<T> picked(std::span<const T> values, std::span<const std::size_t> which) {
   std::vector<T> some = touched<T>(which.size());

@@ -9,7 +9,7 @@
 
 namespace umtet {
 
-/// What printf() would print, as a string: for messages of the libraries, which then need no library for text.
+/// Returns a string formatted as by printf(), so that messages of the libraries need no formatting library.
 [[gnu::format(printf, 1, 2)]] inline std::string formatted(const char* format, ...) {
   std::va_list arguments, again;
   va_start(arguments, format);
@@ -27,7 +27,7 @@ inline std::string shortest(double x) {
   return {text, std::to_chars(text, text + sizeof text, x).ptr};
 }
 
-/// The items one after the other, with `separator` between them.
+/// Concatenates items with `separator` between them.
 inline std::string joined(const std::vector<std::string>& items, std::string_view separator) {
   std::string all;
   for (const std::string& item : items) {

@@ -8,7 +8,7 @@
 
 namespace umtet {
 
-/// The indices below n for which `holds`, ascending, looked for by all threads.
+/// The indices below n that satisfy `holds`, ascending, found by all threads.
 template <class Index, class Holds>
 std::vector<Index> indices_where(std::size_t n, const Holds& holds) {
   constexpr std::size_t kChunk = 1 << 14;

@@ -12,18 +12,18 @@
 
 #include "common/context.h"
 
-// Loops over all threads that a Context can end. The thread that made the call polls between pieces of its own work and
-// no thread waits for it to do so: a barrier at each poll would cost more than the work between two of them.
+// Parallel loops that a Context can cancel. The calling thread polls between pieces of its own work, and no thread
+// waits for it: a barrier at each poll would cost more than the work between two polls.
 namespace umtet {
 
-/// Calls of psi, or of something that costs a few of them, between two polls: a hundredth of a second for a psi that
-/// takes ten microseconds a value, and still a thousand times the cost of a poll.
+/// Evaluations of psi, or operations that cost a few of them, between two polls. This is a hundredth of a second for a
+/// psi that takes ten microseconds per value, and still a thousand times the cost of a poll.
 inline constexpr std::size_t kValuesPerPoll = 1 << 12;
 
 namespace detail {
 
-/// f(i) for every i of the range, with a poll before every `per_poll` of them, by the thread that made the call. What
-/// another one leaves undone is that of a call that ends. \throw Cancelled
+/// Calls f(i) for every i of the range. The calling thread polls before every `per_poll` calls; other threads stop
+/// early only if the loop is being cancelled. \throw Cancelled
 template <class F>
 void polled_range(const tbb::blocked_range<std::size_t>& range, std::size_t per_poll, std::thread::id caller,
                   const Context& context, const F& f) {
@@ -40,8 +40,8 @@ void polled_range(const tbb::blocked_range<std::size_t>& range, std::size_t per_
 
 }  // namespace detail
 
-/// f(i) for every i < n, threads over i. Polls once at least, and before every `per_poll` values of the thread that
-/// made the call. \throw Cancelled
+/// Calls f(i) for every i < n, with threads over i. The calling thread polls at least once, and before every `per_poll`
+/// of its values. \throw Cancelled
 template <class F>
 void polled_parallel_for(std::size_t n, std::size_t per_poll, const Context& context, const F& f) {
   context.poll();
@@ -50,8 +50,9 @@ void polled_parallel_for(std::size_t n, std::size_t per_poll, const Context& con
                     [&](const auto& range) { detail::polled_range(range, per_poll, caller, context, f); });
 }
 
-/// The sum of what f(i, sum) adds for every begin <= i < end, threads over at least `per_task` values each; polls as
-/// above. The sum has to be the same in any order: T is an integer, or several. \throw Cancelled
+/// Sum of the contributions of f(i, sum) for begin <= i < end, with threads over at least `per_task` values each. Polls
+/// as polled_parallel_for(). The sum must be the same in any order: T is an integer, or consists of several. \throw
+/// Cancelled
 template <class T, class F>
 T polled_parallel_sum(std::size_t begin, std::size_t end, std::size_t per_task, std::size_t per_poll,
                       const Context& context, const F& f) {

@@ -7,8 +7,8 @@
 
 namespace umtet {
 
-/// Blocks of 4^3 cells of vertices of a lattice, those by which classify_vertices() works: vertices of cell c, which
-/// counts from -1, are in block (c + 1) / 4. They lie on the Morton curve of their numbers.
+/// Morton curve of blocks of 4^3 cells of a lattice, the blocks of classify_vertices(). Vertices of cell c, which
+/// counts from -1, are in block (c + 1) / 4.
 class BlockCurve {
  public:
   using Block = std::array<std::int64_t, 3>;
@@ -23,7 +23,7 @@ class BlockCurve {
   static Block block_of(const BackgroundMesh::Cell& cell) {
     return {(cell[0] + 1) / kCells, (cell[1] + 1) / kCells, (cell[2] + 1) / kCells};
   }
-  /// Places on the curve are 0 .. length() - 1; not all of them have a block that is there.
+  /// Positions on the curve are 0 .. length() - 1; not every position has a block.
   std::uint64_t length() const { return std::uint64_t{1} << 3 * bits_; }
   static std::uint64_t place(const Block& block);
   static Block block_at(std::uint64_t place);

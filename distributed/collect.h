@@ -9,7 +9,7 @@
 
 #include "distributed/mpi_count.h"
 
-// Lists that go to rank 0 or come from it: short ones, of what is rare in a mesh; and what all have together.
+// Gather and broadcast of short lists of rare objects to and from rank 0, and reductions over all ranks.
 namespace umtet {
 
 inline int rank_in(MPI_Comm comm) {
@@ -18,15 +18,15 @@ inline int rank_in(MPI_Comm comm) {
   return rank;
 }
 
-/// Of what all ranks count. Collective.
+/// Sum of a count over all ranks. Collective.
 inline std::size_t sum(MPI_Comm comm, std::size_t n) {
   std::uint64_t all = n;
   MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_UINT64_T, MPI_SUM, comm);
   return all;
 }
 
-/// What all ranks have, in their order; on rank 0, and nothing elsewhere. Collective. T has no pointers.
-/// \throw std::length_error on rank 0 above 2^31 - 1 members, and on one that has as many
+/// Gathers lists on rank 0, in the order of ranks; the result is empty on other ranks. Collective. T has no pointers.
+/// \throw std::length_error above 2^31 - 1 members, on rank 0 or on a rank with that many
 template <class T>
 std::vector<T> gathered(MPI_Comm comm, const std::vector<T>& own) {
   constexpr const char* kTooMany = "a list of more than 2^31 - 1 members";
@@ -49,8 +49,8 @@ std::vector<T> gathered(MPI_Comm comm, const std::vector<T>& own) {
   return result;
 }
 
-/// What rank 0 has becomes the list of the others, of any length. Collective. T has no pointers.
-/// @param own  of rank 0
+/// Broadcasts a list of any length from rank 0 to the others. Collective. T has no pointers.
+/// @param own  read on rank 0
 template <class T>
 void broadcast(MPI_Comm comm, const std::vector<T>& own, std::vector<T>& list) {
   constexpr std::size_t kAtOnce = 1 << 30;  // MPI counts by int
@@ -62,7 +62,7 @@ void broadcast(MPI_Comm comm, const std::vector<T>& own, std::vector<T>& list) {
     MPI_Bcast(const_cast<std::byte*>(from + at), static_cast<int>(std::min(kAtOnce, all - at)), MPI_BYTE, 0, comm);
 }
 
-/// What rank 0 has becomes what all have.
+/// Broadcasts a list from rank 0 in place.
 template <class T>
 void broadcast(MPI_Comm comm, std::vector<T>& list) {
   broadcast(comm, list, list);

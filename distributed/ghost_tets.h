@@ -9,15 +9,15 @@
 
 namespace umtet {
 
-/// A tet of another rank that has a vertex with own ones in common. Numbers are those of the whole mesh.
+/// A ghost tet: a tet of another rank that shares a vertex with local tets. Numbers are those of the whole mesh.
 struct GhostTet {
   std::int64_t tet;
   std::int64_t corner[4];
   double place[4][3];
-  int rank;  ///< whose it is
+  int rank;  ///< rank of the tet
 };
 
-/// Those next to the own tets, by numbers. Collective.
+/// The ghost tets of a local mesh, ascending by number. Collective.
 std::vector<GhostTet> ghost_tets(MPI_Comm comm, const DistributedMesh& mesh, const SolverPart& part);
 
 }  // namespace umtet

@@ -10,11 +10,11 @@
 
 namespace umtet {
 
-/// What a rank has of a lattice: its own blocks, and those next to them, which it knows. A block is four cells wide and
-/// an edge at most half a cell, so eight rings around an own vertex are known.
+/// The part of a lattice on a rank: its own blocks and those next to them, the known ones. A block is four cells wide
+/// and an edge at most half a cell, so eight rings around an own vertex are known.
 ///
-/// Ids without further mention are those of lattice(), a box of cells around all that is known. They ascend as those of
-/// the whole lattice do.
+/// Ids are those of lattice(), a box of cells around all known blocks, unless stated otherwise. They ascend in the
+/// order of the whole lattice.
 class LatticePart {
  public:
   LatticePart(const BackgroundMesh& whole, const Partition& partition, int rank);
@@ -22,19 +22,19 @@ class LatticePart {
   const BackgroundMesh& whole() const { return whole_; }
   const BackgroundMesh& lattice() const { return lattice_; }
   std::int64_t to_whole(std::int64_t v) const;
-  /// -1 where it is not known.
+  /// The id in lattice(); -1 for a vertex that is not known.
   std::int64_t from_whole(std::int64_t v) const;
 
-  const IdSet& own() const { return own_; }      ///< vertices
-  const IdSet& known() const { return known_; }  ///< vertices, the own ones among them
-  /// The rank that has it. \pre known
+  const IdSet& own() const { return own_; }      ///< own vertices
+  const IdSet& known() const { return known_; }  ///< known vertices, own ones included
+  /// The rank that owns it. \pre known
   int owner(std::int64_t v) const { return owner_[at(v)]; }
   /// The other ranks that know it, ascending. \pre known
   const std::vector<int>& knowers(std::int64_t v) const { return knowers_[at(v)]; }
-  /// Ranks with a block next to an own one, ascending.
+  /// Ranks with a block next to an own block, ascending.
   const std::vector<int>& neighbours() const { return neighbours_; }
 
-  /// f(cell, number in the whole lattice) for the cells of tets in own blocks, ascending.
+  /// Calls f(cell, number in the whole lattice) for the cells of tets in own blocks, ascending.
   template <class F>
   void for_each_own_cell(const F& f) const {
     const auto &n = lattice_.n_cells(), &first = lattice_.first_cell(), &all = whole_.n_cells();
@@ -52,7 +52,7 @@ class LatticePart {
   static BackgroundMesh::Cell sum(const BackgroundMesh::Cell& a, const BackgroundMesh::Cell& b) {
     return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
   }
-  /// The number of a block in lattice(), which begins with a block of the whole.
+  /// The index of a block in lattice(), which begins with a block of the whole.
   std::size_t at(const BlockCurve::Block& b) const {
     return static_cast<std::size_t>(b[0] + n_blocks_[0] * (b[1] + n_blocks_[1] * b[2]));
   }
@@ -64,11 +64,11 @@ class LatticePart {
   const BackgroundMesh& whole_;
   const BlockCurve curve_;
   const int rank_;
-  std::vector<BlockCurve::Block> own_blocks_;  ///< numbers in the whole
-  BlockCurve::Block first_block_ = {};         ///< of lattice(), in the whole
+  std::vector<BlockCurve::Block> own_blocks_;  ///< indices in the whole lattice
+  BlockCurve::Block first_block_ = {};         ///< first block of lattice(), in the whole lattice
   BlockCurve::Block n_blocks_ = {1, 1, 1};
   BackgroundMesh lattice_;
-  std::vector<int> owner_;                 ///< by block of lattice(); -1 where it is not known
+  std::vector<int> owner_;                 ///< by block of lattice(); -1 for blocks that are not known
   std::vector<std::vector<int>> knowers_;  ///< by block of lattice()
   std::vector<int> neighbours_;
   IdSet own_{0}, known_{0};

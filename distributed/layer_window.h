@@ -16,23 +16,24 @@
 
 namespace umtet {
 
-/// States and places of the vertices of all ranks, block by block, open to any of them by MPI's one-sided access.
+/// States and positions of the vertices of all ranks, block by block, which any rank can read by MPI one-sided
+/// communication.
 class LayerWindow {
  public:
   using Places = std::vector<std::pair<std::int64_t, Vec3>>;
 
-  /// Collective; copies what own blocks hold. @param places  of own vertices that are not where the background has them
+  /// Copies the data of own blocks. Collective. @param places  positions of own vertices off the background
   LayerWindow(MPI_Comm comm, const LatticePart& part, const Partition& partition, const IdSet& inside,
               const Places& places);
-  ~LayerWindow();  ///< collective, unless something is thrown
+  ~LayerWindow();  ///< collective, unless an exception is propagating
   LayerWindow(const LayerWindow&) = delete;
   LayerWindow& operator=(const LayerWindow&) = delete;
 
-  /// The vertices of these blocks that are inside or not where the background has them, by ids of the whole. Not
+  /// The vertices of these blocks that are inside or off their background positions, by ids of the whole lattice. Not
   /// collective.
   std::vector<LayerVertex> get(const std::vector<BlockCurve::Block>& blocks);
-  std::size_t n_gets() const { return n_gets_; }  ///< of other ranks
-  std::size_t bytes() const { return bytes_; }    ///< in these
+  std::size_t n_gets() const { return n_gets_; }  ///< reads of other ranks
+  std::size_t bytes() const { return bytes_; }    ///< bytes of these reads
 
  private:
   /// A vertex that moves.
@@ -40,17 +41,17 @@ class LayerWindow {
     std::int64_t vertex;
     double place[3];
   };
-  /// Words of the header of a block: where its entries begin, how many they are, and a bit for each vertex that is
-  /// inside, 64 cells for each type.
+  /// Words of the header of a block: the begin of its entries, their number, and a bit per vertex that is set for
+  /// inside vertices, 64 cells per type.
   std::size_t n_words() const { return 2 + static_cast<std::size_t>(part_.whole().n_types()); }
-  /// Memory of this rank that others may read.
+  /// Memory of this rank that other ranks can read.
   template <class T>
   struct Open {
     MPI_Win window = MPI_WIN_NULL;  ///< none for a single rank
-    std::vector<T> alone;           ///< then it is here
+    std::vector<T> alone;           ///< the data of a single rank
     T* own = nullptr;
   };
-  /// A part of a list that a rank has.
+  /// A range of a list on a rank.
   struct Piece {
     int rank;
     std::size_t first, n;
@@ -70,21 +71,22 @@ class LayerWindow {
   const LatticePart& part_;
   const Partition& partition_;
   const int rank_;
-  Open<std::uint64_t> headers_;  ///< by place on the own piece of the curve
+  Open<std::uint64_t> headers_;  ///< by position on the own piece of the curve
   Open<Entry> entries_;
   std::size_t n_gets_ = 0, bytes_ = 0;
   const Unwinding unwinding_;
 };
 
-/// What is around vertices of the whole lattice, each block once.
+/// Reader of the blocks around vertices of the whole lattice; it returns each block once.
 class BlocksAround {
  public:
-  /// @param edges  that a reader looks around a vertex
+  /// @param edges  distance in edges around a vertex that the caller needs
   BlocksAround(const BackgroundMesh& whole, LayerWindow& window, int edges)
       : whole_(whole), window_(window), cells_((edges + 1) / 2) {}
-  /// All within so many edges of a vertex, and what else is in the blocks, but for blocks that were given before.
+  /// All vertices within this distance of a vertex, and all others in the same blocks, except for blocks returned
+  /// before.
   std::vector<LayerVertex> operator()(std::int64_t vertex);
-  /// All within so many edges of it has been given.
+  /// True if all vertices within this distance have been returned.
   bool has_given(std::int64_t vertex) const;
 
  private:
@@ -93,8 +95,8 @@ class BlocksAround {
 
   const BackgroundMesh& whole_;
   LayerWindow& window_;
-  std::int64_t cells_;             ///< no edge of a lattice is longer than half a cell along an axis
-  std::set<std::uint64_t> given_;  ///< places of blocks
+  std::int64_t cells_;             ///< no edge of a lattice exceeds half a cell along an axis
+  std::set<std::uint64_t> given_;  ///< positions of blocks
 };
 
 }  // namespace umtet

@@ -11,33 +11,33 @@
 
 namespace umtet {
 
-/// A tet of second order by ids of the background, on its way to another rank.
+/// A ten-node tet as sent to another rank, by ids of the background.
 struct SentTet {
-  std::int64_t id, corner[4], kind[6];  ///< kinds of its mid-sides, a MidSide each
-  double place[10][3];                  ///< of its nodes
+  std::int64_t id, corner[4], kind[6];  ///< kind: MidSide of its mid-sides
+  double place[10][3];                  ///< positions of its nodes
 };
 
-/// A mid-side that was moved, or has become one of another kind.
+/// A mid-side whose position or kind has changed.
 struct MovedMidSide {
   std::array<std::int64_t, 2> edge;  ///< ids of its corners, the lower one first
   std::int64_t kind;
   double place[3];
 };
 
-/// Some tets of a mesh of second order, in which mid-sides are relaxed as in the whole.
+/// A patch of ten-node tets in which mid-sides are relaxed as in the whole mesh.
 class MidSidePatch {
  public:
-  /// Around those that it has, over edges. Tets that are there already are passed over.
+  /// Adds a ring of tets around the present ones, over edges. Tets that are already in the patch are skipped.
   void add_ring(const std::vector<SentTet>& tets);
-  /// Edges of all tets, ascending.
+  /// The edges of all tets, ascending.
   std::vector<std::array<std::int64_t, 2>> edges() const;
 
   struct Relaxed {
-    bool has_met_rim = false;  ///< more tets are needed: nothing else holds
+    bool has_met_rim = false;  ///< more tets are required; the other fields are then invalid
     std::vector<MovedMidSide> moved;
     std::size_t n_slid = 0, n_relaxed = 0;  ///< as in SecondOrder
   };
-  /// MidSideRelaxation of the tets of the first ring.
+  /// Result of MidSideRelaxation for the tets of the first ring.
   Relaxed relaxed(ImplicitFunctionRef psi, double h, const SecondOrderParams& params) const;
 
  private:

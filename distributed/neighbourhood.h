@@ -10,33 +10,34 @@
 
 namespace umtet {
 
-/// What a rank has sent.
+/// Communication statistics of a rank.
 struct Traffic {
   std::size_t exchanges = 0;   ///< neighbourhood collectives
   std::size_t reductions = 0;  ///< collectives over all ranks
-  std::size_t messages = 0;    ///< to one neighbour each, that are not empty
-  std::size_t bytes = 0;       ///< in these
+  std::size_t messages = 0;    ///< non-empty messages, to one neighbour each
+  std::size_t bytes = 0;       ///< in these messages
 };
 
-/// The ranks next to this one, by MPI's neighbourhood collectives, and reductions over all ranks. Every call is
-/// collective over the ranks of the communicator, from the thread that has initialised MPI.
+/// Exchange with neighbouring ranks by MPI's neighbourhood collectives, and reductions over all ranks. Every call is
+/// collective over the communicator, and made from the thread that initialised MPI.
 class Neighbourhood {
  public:
   using Bytes = std::vector<std::byte>;
 
-  /// @param ranks  ascending, without this one; each of them names this one, too
+  /// @param ranks  ascending, without this rank; the relation is symmetric
   Neighbourhood(MPI_Comm comm, std::vector<int> ranks);
-  ~Neighbourhood();  ///< collective, unless something is thrown
+  ~Neighbourhood();  ///< collective, unless an exception is propagating
   Neighbourhood(const Neighbourhood&) = delete;
   Neighbourhood& operator=(const Neighbourhood&) = delete;
 
   const std::vector<int>& ranks() const { return ranks_; }
-  /// The number of a rank among ranks(). \pre it is there
+  /// The index of a rank in ranks(). \pre it is a neighbour
   std::size_t number(int rank) const;
-  /// Messages of any length, one for each neighbour, in the order of ranks(). \throw std::length_error above 2 GB
+  /// Exchanges one message of any length with each neighbour, in the order of ranks(). \throw std::length_error above 2
+  /// GB
   std::vector<Bytes> exchange(const std::vector<Bytes>& out);
-  /// The same where both sides know how long messages are.
-  /// @param in  of the lengths that come
+  /// Exchanges messages whose lengths both sides know.
+  /// @param in  has the lengths of the incoming messages
   void exchange(const std::vector<Bytes>& out, std::vector<Bytes>& in);
   std::size_t sum(std::size_t n);
   std::size_t max(std::size_t n);
@@ -51,14 +52,14 @@ class Neighbourhood {
   const Unwinding unwinding_;
 };
 
-/// Appends the bytes of a value that has no pointers.
+/// Appends the bytes of a value without pointers.
 template <class T>
 void put(Neighbourhood::Bytes& bytes, const T& value) {
   const auto* first = reinterpret_cast<const std::byte*>(&value);
   bytes.insert(bytes.end(), first, first + sizeof(T));
 }
 
-/// The value at `at`, which goes on behind it.
+/// Reads the value at position `at`, and advances `at`.
 template <class T>
 T take(const Neighbourhood::Bytes& bytes, std::size_t& at) {
   T value;

@@ -10,12 +10,13 @@
 
 namespace umtet {
 
-/// What is on several ranks, vertices or edges of a mesh, between those who have it and the one rank that owns each.
+/// Exchange of data on shared items, such as vertices or edges, between the ranks that have them and the one rank that
+/// owns each.
 class OwnerExchange {
  public:
-  /// @param n_owned  how many items this rank owns, of whomever
-  /// @param asked   by rank: own items that it owns
-  /// @param wanted  by rank: what this rank owns of the items that it has, in the order in which it has them
+  /// @param n_owned  number of items that this rank owns, on any rank
+  /// @param asked    by rank: local items that the other rank owns
+  /// @param wanted   by rank: indices of items owned here that the other rank has, in its order of items
   OwnerExchange(MPI_Comm comm, std::size_t n_items, std::size_t n_owned, std::vector<std::vector<std::size_t>> asked,
                 std::vector<std::vector<std::size_t>> wanted)
       : comm_(comm), n_items_(n_items), n_owned_(n_owned), asked_(std::move(asked)), wanted_(std::move(wanted)) {}
@@ -23,8 +24,8 @@ class OwnerExchange {
   std::size_t n_items() const { return n_items_; }
   std::size_t n_owned() const { return n_owned_; }
 
-  /// What owners know, for all who have the items. Collective.
-  /// @param of_owned  by number of what is owned   @return by item
+  /// Sends values from owners to all ranks that have the items. Collective.
+  /// @param of_owned  by index of the owned item   @return by item
   template <class T>
   std::vector<T> tell(const std::vector<T>& of_owned) const {
     std::vector<std::vector<T>> out(wanted_.size());
@@ -36,8 +37,9 @@ class OwnerExchange {
       for (std::size_t k = 0; k < in[r].size(); ++k) told[asked_[r][k]] = in[r][k];
     return told;
   }
-  /// What all who have items know of them, for owners: take(number, value), once for each who has it. Collective.
-  /// @param value  of an item, without pointers
+  /// Sends values from all ranks that have items to the owners: take(index, value) is called once per rank that has the
+  /// item. Collective.
+  /// @param value  function of an item; its result contains no pointers
   template <class Value, class Take>
   void ask(const Value& value, const Take& take) const {
     using T = decltype(value(std::size_t{0}));
@@ -49,7 +51,7 @@ class OwnerExchange {
       for (std::size_t k = 0; k < in[r].size(); ++k) take(wanted_[r][k], in[r][k]);
   }
 
-  /// Whether any who has it says so, of what is owned: by number of that. Collective.
+  /// Logical or over all ranks that have an item, for the owned items, by index. Collective.
   /// @param of_items  0 or 1
   template <class T>
   std::vector<T> any_of_owned(const std::vector<T>& of_items) const {
@@ -57,13 +59,13 @@ class OwnerExchange {
     ask([&](std::size_t item) { return of_items[item]; }, [&](std::size_t k, T is_so) { owned[k] |= is_so; });
     return owned;
   }
-  /// The same for all who have the items: by item. Collective.
+  /// Logical or over all ranks that have an item, for the local items. Collective.
   template <class T>
   std::vector<T> any(const std::vector<T>& of_items) const {
     return tell(any_of_owned(of_items));
   }
 
-  /// What two of the same ranks exchange, by one: items and owned ones of the second come behind those of the first.
+  /// Combines two exchanges between the same ranks: items and owned items of the second follow those of the first.
   friend OwnerExchange joined(const OwnerExchange& first, const OwnerExchange& second) {
     OwnerExchange both = first;
     both.n_items_ += second.n_items_;

@@ -10,12 +10,12 @@
 
 namespace umtet {
 
-/// certify() of the mesh that all ranks have together, with its positive faces: the same in every number and list, to
-/// the bit, for any number of ranks. The mesh is not trusted more than there. Collective; the same on all ranks.
-/// @param h                    CertificateInput::h, of the same meaning
-/// @param psi                  thread-safe; of all ranks or of none
+/// Distributed version of certify(), with positive faces: every number and list is the same to the bit for any number
+/// of ranks. The mesh is equally not trusted. Collective; the same on all ranks.
+/// @param h                    see CertificateInput::h
+/// @param psi                  thread-safe; given on all ranks or on none
 /// @param coordinate_rounding  CertificateInput::coordinate_rounding
-/// \throw std::invalid_argument on all ranks where none has a tet
+/// \throw std::invalid_argument on all ranks if no rank has a tet
 MeshCertificate certify_parts(MPI_Comm comm, const DistributedMesh& mesh, double h,
                               std::optional<ImplicitFunctionRef> psi, double coordinate_rounding = 0);
 

@@ -6,7 +6,7 @@
 
 namespace umtet {
 
-/// States of vertices between ranks, while each classifies those of its own blocks.
+/// Exchange of vertex states between ranks, each of which classifies the vertices of its own blocks.
 class PartClassification final : public ClassificationPart {
  public:
   PartClassification(const LatticePart& part, Neighbourhood& ranks) : part_(part), ranks_(ranks) {}

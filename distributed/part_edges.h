@@ -14,26 +14,26 @@
 
 namespace umtet {
 
-/// The edges of a mesh of all ranks between those who have tets with them and the one rank that owns each: that of its
-/// lower vertex.
+/// Exchange of edge data of a distributed mesh between the ranks with tets at an edge and the one rank that owns it,
+/// the owner of its lower vertex.
 class PartEdges {
  public:
-  /// Corners of an edge, ids in the background, the lower one first.
+  /// Corners of an edge as ids in the background, the lower one first.
   using Ids = std::array<std::int64_t, 2>;
 
   /// Collective.
   PartEdges(MPI_Comm comm, const DistributedMesh& mesh, const VertexOwners& owners);
 
-  /// Of edges of the own mesh, ascending as those of the whole do.
+  /// Numbering of the local edges; ascending in the order of the whole mesh.
   const MidSideNumbers& number() const { return number_; }
-  /// Of these, their vertices in the own mesh, the lower one first.
+  /// The local vertices of each edge, the lower one first.
   const std::vector<std::array<int, 2>>& ends() const { return ends_; }
-  /// Those that are owned, ascending.
+  /// The owned edges, ascending.
   const std::vector<Ids>& owned() const { return owned_; }
-  /// Of these, how many edges of all ranks are before each.
+  /// For each owned edge, the number of edges of all ranks before it.
   const std::vector<std::int64_t>& global() const { return global_; }
-  std::int64_t n_all() const { return n_all_; }  ///< of all ranks
-  /// Between edges of the own mesh and places in owned().
+  std::int64_t n_all() const { return n_all_; }  ///< number of edges on all ranks
+  /// Exchange between local edges and indices into owned().
   const OwnerExchange& exchange() const { return exchange_; }
 
  private:

@@ -14,20 +14,21 @@
 
 namespace umtet {
 
-/// A rank's part of a mesh that may meet itself.
+/// A rank's part of a mesh that may intersect itself.
 struct PartSurface {
-  const TetMesh& mesh;                                       ///< own tets and all their vertices, in their places
-  const std::vector<std::int64_t>& vertex;                   ///< of each vertex, by ids of LatticePart
-  const IdSet& inside;                                       ///< of known vertices
-  const std::vector<std::pair<std::int64_t, Vec3>>& places;  ///< of own vertices off the background, ascending
+  const TetMesh& mesh;                                       ///< local tets and all their vertices, at their positions
+  const std::vector<std::int64_t>& vertex;                   ///< id of each vertex in LatticePart
+  const IdSet& inside;                                       ///< for known vertices
+  const std::vector<std::pair<std::int64_t, Vec3>>& places;  ///< positions of own vertices off the background,
+                                                             ///< ascending
 };
 
-/// step_back() of what all ranks have together. Whether two faces of the boundary meet or a tet is not positive each
-/// rank finds of its own, with the faces of its neighbours near by. That is hardly ever so; where it is, rank 0 reads
-/// the blocks around and lets vertices step back, as one process does.
+/// Distributed version of step_back(). Each rank tests whether two boundary faces intersect or a tet is not positive,
+/// for its own faces and tets and the nearby faces of its neighbours. This is rare; if it occurs, rank 0 reads the
+/// blocks around and moves vertices back, as one process does.
 ///
-/// Collective. @return the vertices that have stepped back and where they are, by ids of the whole, ascending; the same
-/// on all ranks
+/// Collective. @return the vertices that were moved back with their positions, by ids of the whole lattice, ascending;
+/// the same on all ranks
 std::vector<std::pair<std::int64_t, Vec3>> step_parts_back(MPI_Comm comm, const LatticePart& part,
                                                            const Partition& partition, Neighbourhood& ranks,
                                                            const PartSurface& surface);

@@ -11,13 +11,13 @@
 
 namespace umtet {
 
-/// How many self_intersections() the boundary of all ranks has. Space is divided into cubes; faces in a cube that
-/// several ranks have go to the first of these, and a pair is counted in one cube that it is in. Collective.
-/// @param edge  of a cube: a few edges of the mesh
+/// Number of self_intersections() of the boundary of the whole mesh. Space is divided into cubes. Faces in a cube that
+/// several ranks share are sent to the first of these, and a pair is counted in one of its cubes. Collective.
+/// @param edge  edge length of a cube: a few edges of the mesh
 std::size_t meetings_of_parts(MPI_Comm comm, const DistributedMesh& mesh, const PartBoundary& boundary, double edge);
 
-/// How many pieces are wrongly_nested(). Collective. \pre a closed manifold that does not meet itself
-/// @param volumes  of the pieces
+/// Number of components that are wrongly_nested(). Collective. \pre a closed manifold without self-intersections
+/// @param volumes  of the components
 std::size_t wrongly_nested_of_parts(MPI_Comm comm, const DistributedMesh& mesh, const PartBoundary& boundary,
                                     const BoundaryTopology& topology, const std::vector<EnclosedVolume>& volumes);
 

@@ -14,22 +14,22 @@
 
 namespace umtet {
 
-/// What repair has changed, by ids of the whole, ascending; the same on all ranks.
+/// Changes made by repair, by ids of the whole lattice, ascending; the same on all ranks.
 struct PartRepair {
   std::vector<std::int64_t> flipped;
   std::vector<std::pair<std::int64_t, Vec3>> moved;
-  std::size_t n_gets = 0, bytes = 0;  ///< that rank 0 has read of others, and 0 elsewhere
-  std::size_t psi_evaluations = 0;    ///< of this rank: most are of rank 0
+  std::size_t n_gets = 0, bytes = 0;  ///< reads of other ranks by rank 0; 0 elsewhere
+  std::size_t psi_evaluations = 0;    ///< on this rank: most are on rank 0
 };
 
-/// Where a layer has the vertices that move, ascending.
+/// The positions of the vertices of a layer that move, ascending.
 std::vector<std::pair<std::int64_t, Vec3>> places_of(const BackgroundLayer& layer);
 
-/// repair() of the layer that all ranks have together. How many patches it tries is bounded, whatever the size of the
-/// mesh, and which ones depends on how many were tried before: so rank 0 does it, and reads the blocks around bad tets
-/// from those that have them. It holds a bit for each vertex of the background.
+/// Distributed version of repair(), for the layer of all ranks together. The number of patches tried is bounded for any
+/// size of the mesh, and the choice of patches depends on the number tried before. Rank 0 therefore runs it, and reads
+/// the blocks around bad tets from the ranks that have them. It stores a bit per vertex of the background.
 ///
-/// Collective. @param layer  of own vertices, smoothed, with the places of others up to date
+/// Collective. @param layer  layer of own vertices, smoothed, with the present positions of others
 PartRepair repair_parts(MPI_Comm comm, const LatticePart& part, const Partition& partition, ImplicitFunctionRef psi,
                         const ClassificationParams& classification, const RepairParams& params,
                         const BackgroundLayer& layer, const IdSet& inside);

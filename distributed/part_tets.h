@@ -7,10 +7,11 @@
 
 namespace umtet {
 
-/// Fills n_tets, volume, quality and h of the certificate of what all ranks have together, as one process does: sums
-/// are those of the same tets in the same order, and quantiles are selected by counting. Collective; the same on all
+/// Computes n_tets, volume, quality and h of the certificate of the whole mesh, with the same result as one process:
+/// sums are over the same tets in the same order, and quantiles are selected by counting. Collective; the same on all
 /// ranks.
-/// @param h  certificate.h if > 0   \pre a tet, on some rank
+/// @param h  certificate.h if > 0
+/// \pre there is a tet on some rank
 void measure_tets_of_parts(MPI_Comm comm, const DistributedMesh& mesh, double h, MeshCertificate& certificate);
 
 }  // namespace umtet

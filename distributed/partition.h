@@ -10,10 +10,10 @@
 
 namespace umtet {
 
-/// Which rank has which blocks: a rank has a piece of the curve.
+/// Partition of the blocks among ranks: each rank has a piece of the Morton curve.
 class Partition {
  public:
-  /// @param begins  where the piece of each rank begins, ascending, and at last the end of the curve
+  /// @param begins  begin of each rank's piece, ascending, and the end of the curve
   explicit Partition(std::vector<std::uint64_t> begins) : begins_(std::move(begins)) {}
   int n_ranks() const { return static_cast<int>(begins_.size()) - 1; }
   std::uint64_t begin(int rank) const { return begins_[rank]; }
@@ -24,10 +24,10 @@ class Partition {
   std::vector<std::uint64_t> begins_;
 };
 
-/// Pieces of about equal work. psi at the corners of a block says whether the boundary is in it, all of it is inside or
-/// nothing is; what that misses costs balance and nothing else. Each rank looks at its share of the curve. The same for
-/// the same number of ranks. Collective.
-/// @param held  bytes that rank 0 holds besides its part, which is so much smaller (first_share()); read there
+/// Partition into pieces of about equal work. psi at the corners of a block indicates whether the block contains the
+/// boundary, is inside, or is outside; errors of this test affect only the balance. Each rank evaluates its share of
+/// the curve. The result is the same for the same number of ranks. Collective.
+/// @param held  bytes of other data on rank 0, by which its part is reduced (first_share()); read there
 Partition balanced_partition(MPI_Comm comm, const BackgroundMesh& lattice, ImplicitFunctionRef psi, double held = 0);
 
 }  // namespace umtet

@@ -4,8 +4,8 @@
 
 namespace umtet {
 
-/// What this rank does from now on, for profilers of MPI: they take the place of MPI_Pcontrol(), which does nothing
-/// without one. tests/bench/rank_traffic.c is one.
+/// Marks the begin of a phase of this rank for MPI profilers. They replace MPI_Pcontrol(), which otherwise has no
+/// effect. tests/bench/rank_traffic.c is one.
 inline void begin_phase(const char* name) { MPI_Pcontrol(1, name); }
 
 }  // namespace umtet

@@ -9,24 +9,24 @@
 
 namespace umtet {
 
-/// Doubles that go from piece to piece in the order of an IdOrder: what is added to them is added in that order, as one
-/// process does.
+/// Ordered sum: doubles that are passed from piece to piece in the order of an IdOrder. Contributions are added in this
+/// order, as in one process.
 class PieceChain {
  public:
-  /// Collective. All are 0 at first.
+  /// Starts with zeros. Collective.
   PieceChain(MPI_Comm comm, std::size_t n_values);
-  ~PieceChain();  ///< collective, unless something is thrown
+  ~PieceChain();  ///< collective, unless an exception is propagating
   PieceChain(const PieceChain&) = delete;
   PieceChain& operator=(const PieceChain&) = delete;
 
-  /// Adds what is in this rank's piece of a round: add(values). Each rank calls it once a round.
+  /// Adds the contributions of this rank's piece of a round by add(values). Each rank calls it once per round.
   template <class Add>
   void pass(const Add& add) {
     receive();
     add(values_);
     send();
   }
-  /// What they have become. Collective, once, behind the last round.
+  /// The final values. Collective, once, after the last round.
   const std::vector<double>& end();
 
  private:
@@ -35,7 +35,7 @@ class PieceChain {
 
   MPI_Comm comm_ = MPI_COMM_NULL;
   int rank_ = 0, n_ranks_ = 1;
-  bool is_begun_ = false;  ///< of rank 0: it has passed them on
+  bool is_begun_ = false;  ///< on rank 0: the values have been passed on
   std::vector<double> values_, sent_;
   MPI_Request request_ = MPI_REQUEST_NULL;
   const Unwinding unwinding_;

@@ -11,13 +11,13 @@
 
 namespace umtet {
 
-/// Places of vertices between ranks, while each moves its own.
+/// Exchange of vertex positions between ranks, each of which moves its own vertices.
 class SharedLayer final : public LayerExchange {
  public:
   /// Collective.
   /// @param layer    layer_part() of own vertices
-  /// @param movable  all that move, as far as the layer reaches
-  /// \throw std::logic_error where two ranks are not of one mind about which vertices move
+  /// @param movable  all vertices that move, within the extent of the layer
+  /// \throw std::logic_error if two ranks disagree about which vertices move
   SharedLayer(const LatticePart& part, Neighbourhood& ranks, const BackgroundLayer& layer, const IdSet& movable);
 
   int n_colours() const override { return n_colours_; }
@@ -25,12 +25,12 @@ class SharedLayer final : public LayerExchange {
   std::size_t sum(std::size_t n) override { return ranks_.sum(n); }
 
  private:
-  /// Vertices of the layer, in an order that both sides have: by colour, ascending within one.
+  /// Vertices of the layer in an order common to both sides: by colour, ascending within a colour.
   struct List {
     std::vector<int> vertices;
-    std::vector<std::size_t> begin;  ///< of each colour
+    std::vector<std::size_t> begin;  ///< begin of each colour
   };
-  /// What is shared with one neighbour.
+  /// Vertices shared with a neighbour.
   struct Shared {
     List own, theirs;
   };

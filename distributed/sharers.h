@@ -8,24 +8,24 @@
 
 #include "distributed/owner_exchange.h"
 
-// Who else has what a rank has, and how solvers number it. The items are vertices, or nodes of second order. All
-// functions but first_ranks() are collective.
+// Ranks that share the items of a rank, and the numbering for solvers. The items are vertices, or nodes of ten-node
+// tets. All functions but first_ranks() are collective.
 namespace umtet {
 
-/// Items of a rank that other ranks have tets with, too.
+/// Local items at which other ranks have tets, too.
 struct Sharers {
-  std::vector<int> vertex;         ///< of the own mesh, ascending
-  std::vector<std::size_t> begin;  ///< of each in `rank`, and at last the end
-  std::vector<int> rank;           ///< of each vertex ascending, without this one
+  std::vector<int> vertex;         ///< shared local vertices, ascending
+  std::vector<std::size_t> begin;  ///< begin of each vertex's ranks in `rank`, and the end of the last
+  std::vector<int> rank;           ///< ranks of each vertex, ascending, without this one
 };
 
 Sharers sharers_of(MPI_Comm comm, const OwnerExchange& items);
 
-/// Of each item the least rank that has a tet with it.
+/// For each item, the least rank with a tet at it.
 std::vector<int> first_ranks(MPI_Comm comm, std::size_t n_items, const Sharers& sharers);
 
-/// Of each item its number where each rank counts those that it is the first of, one rank after the other; in the
-/// order of items.
+/// For each item, its number if each rank numbers the items of which it is the first rank, in order, after those of
+/// lower ranks.
 std::vector<std::int64_t> numbers_by_rank(MPI_Comm comm, const std::vector<int>& first_rank,
                                           const OwnerExchange& items);
 

@@ -13,24 +13,26 @@
 
 namespace umtet {
 
-/// A part of a mesh of all ranks as solvers number and divide it.
+/// A local mesh with the numbering and partition that solvers use.
 struct SolverPart {
-  std::size_t n_vertices = 0, n_tets = 0, n_faces = 0;  ///< of all ranks; of faces those on the boundary
-  std::vector<std::int64_t> global_vertex, global_tet;  ///< of own ones, their numbers in the mesh of one process
-  /// Of each vertex the least rank that has a tet with it. Other than the owner of a DistributedMesh it has the vertex.
+  std::size_t n_vertices = 0, n_tets = 0, n_faces = 0;  ///< on all ranks; n_faces counts boundary faces
+  std::vector<std::int64_t> global_vertex, global_tet;  ///< numbers of local vertices and tets in the mesh of one
+                                                        ///< process
+  /// Per vertex, the least rank with a tet at it. Unlike the owner in a DistributedMesh, this rank has the vertex.
   std::vector<int> owner;
-  /// Of each vertex its number where each rank counts what it owns, one rank after the other; in the order of vertices.
+  /// Per vertex, its number if each rank numbers its owned vertices, in order, after those of lower ranks.
   std::vector<std::int64_t> solver_vertex;
   Sharers sharers;
-  std::vector<Triangle> boundary;         ///< faces of own tets on the boundary of the whole mesh, outward
-  std::vector<std::int64_t> global_face;  ///< of each of these, its number among those of all ranks
-  std::vector<int> patch;                 ///< of each of these faces; index into patches
-  std::vector<int> boundary_vertices;     ///< own ones on it, ascending, also those without an own face there
+  std::vector<Triangle> boundary;         ///< boundary faces of the whole mesh with a local tet, outward
+  std::vector<std::int64_t> global_face;  ///< number of each boundary face on all ranks
+  std::vector<int> patch;                 ///< index into patches of each boundary face
+  std::vector<int> boundary_vertices;  ///< local vertices on the boundary, ascending, also those without a local face
+                                       ///< there
   std::vector<std::string>
-      patches;  ///< names, of all ranks: `boundary`, or `boundary_1` ... by area as in `umtet export`
+      patches;  ///< names on all ranks: `boundary`, or `boundary_1` ... by area as in `umtet export`
 };
 
-/// Collective.
+/// Computes the numbering. Collective.
 SolverPart solver_part(MPI_Comm comm, const DistributedMesh& mesh);
 SolverPart solver_part(MPI_Comm comm, const DistributedMesh& mesh, const VertexOwners& owners);
 

@@ -4,9 +4,9 @@
 
 namespace umtet {
 
-/// A member of what is destroyed by collective calls: whether something has been thrown since it was made. Others may
-/// not know of that and wait elsewhere. together() ends them, but only once all destructors have returned: these then
-/// call nothing that is collective.
+/// Member of objects with collective destructors: tells whether an exception has been thrown since its construction.
+/// Other ranks may not know of the exception and wait elsewhere. together() ends them, but only after all destructors
+/// have returned, so these must not make collective calls then.
 class Unwinding {
  public:
   explicit operator bool() const { return std::uncaught_exceptions() > n_; }

@@ -12,24 +12,24 @@
 
 namespace umtet {
 
-/// The vertices of a mesh between those who have tets with them and the one rank that owns each. An owner need not have
-/// a tet with it.
+/// Exchange of vertex data of a distributed mesh between the ranks with tets at a vertex and the one rank that owns it.
+/// An owner need not have a tet at it.
 class VertexOwners {
  public:
   /// Collective.
   VertexOwners(MPI_Comm comm, const DistributedMesh& mesh) : VertexOwners(comm, mesh, {}) {}
 
-  /// Those that are owned, by ids in the background, ascending.
+  /// The owned vertices, as ids in the background, ascending.
   const std::vector<std::int64_t>& ids() const { return ids_; }
   std::size_t number(std::int64_t id) const {
     return static_cast<std::size_t>(std::lower_bound(ids_.begin(), ids_.end(), id) - ids_.begin());
   }
-  /// Of each vertex of the mesh whether ranks besides this one have tets with it.
+  /// For each local vertex, whether other ranks have tets at it.
   const std::vector<char>& shared() const { return shared_; }
 
-  /// Between vertices of the mesh and places in ids().
+  /// Exchange between local vertices and indices into ids().
   const OwnerExchange& exchange() const { return exchange_; }
-  /// Its tell() and ask(). Collective.
+  /// tell() and ask() of exchange(). Collective.
   template <class T>
   std::vector<T> tell(const std::vector<T>& of_owned) const {
     return exchange_.tell(of_owned);

@@ -16,53 +16,57 @@
 namespace umtet {
 
 enum class UmMode {
-  /// Beyond the paper: chosen inside vertices, backtracking projection and p-norm smoothing of a layer, repair;
+  /// Extends the paper: chosen inside vertices, backtracking projection, p-norm smoothing of a layer, repair; see
   /// fast_mesh.h
   Fast,
-  Paper,  ///< Algorithm 1 to the letter; algorithm_1.h
+  Paper,  ///< Algorithm 1 to the letter; see algorithm_1.h
 };
 
 struct UmParams {
   UmMode mode = UmMode::Fast;
   SubmeshParams submesh = {};
-  FastParams fast = {};    ///< of UmMode::Fast
-  PaperParams paper = {};  ///< of UmMode::Paper
+  FastParams fast = {};    ///< parameters of UmMode::Fast
+  PaperParams paper = {};  ///< parameters of UmMode::Paper
 };
 
-/// Every broken constraint, not just the first; empty when the parameters are usable.
+/// All broken constraints, not just the first; empty if the parameters are valid.
 std::vector<std::string> problems(const UmParams&);
 
-/// A boundary-fitting mesh of {psi < 0}: Algorithm 1 of the paper, or what goes beyond it (fast_mesh.h).
+/// Boundary-fitting mesh of {psi < 0}, by Algorithm 1 of the paper or by its extension in fast_mesh.h.
 ///
-/// Foreseen failures are statuses with evidence; the arrays of the result then hold the last iterate. In UmMode::Fast
-/// there is a mesh wherever psi has an inside that h can show and that stays off the background boundary. In
-/// UmMode::Paper a double positive face or an obtuse conditioning angle breaks an assumption of the algorithm but need
-/// not break the mesh: both are counted in the result, and become the status only when a projection diverges or a tet
-/// inverts right there. With double positive faces the boundary of the mesh is not the set of positive faces, which a
-/// certificate will say.
-/// Around a body in a box: psi is a Complement (implicit_function.h), the background boundary a wall; walls are flat in
-/// an a15_box().
+/// Foreseen failures are statuses with evidence; the arrays of the result then hold the last iterate.
+/// - UmMode::Fast makes a mesh whenever psi has an inside that h can resolve and that stays off the background
+///   boundary.
+/// - In UmMode::Paper a double positive face or an obtuse conditioning angle breaks an assumption of the algorithm, but
+///   need not break the mesh. Both are counted in the result. They become the status only if a projection diverges or a
+///   tet inverts at that face or angle. With double positive faces the boundary of the mesh is not the set of positive
+///   faces, and the certificate reports this.
+/// - To mesh the outside of a body in a box, pass a Complement (implicit_function.h) as psi and make the background
+///   boundary a wall. Walls are flat in an a15_box().
+///
 /// @param seeds  for SubmeshSearch::Crawl: at least one point near every component of the boundary
 /// \throw std::invalid_argument naming every broken constraint of params; Cancelled
 UmResult universal_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params = {},
                         const Context& context = {}, const std::vector<Vec3>& seeds = {});
 
-/// The first of its two steps: which tets of the background become the mesh. Reports "search" and "submesh".
-/// @param seeds  as above
+/// First step of universal_mesh(): chooses the tets of the background that become the mesh. Reports the steps "search"
+/// and "submesh".
+/// @param seeds  as in universal_mesh()
 /// \throw std::invalid_argument naming every broken constraint of params; Cancelled
 ChosenSubmesh choose_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params = {},
                              const Context& context = {}, const std::vector<Vec3>& seeds = {});
 
-/// The same where a mesh in another background has been made that differs at some places only, an octree that has been
-/// refined there: away from them the mesh stays as it is, to the bit.
-/// @param former  of the same pieces of psi and the same params, UmMode::Fast without walls
-/// \throw std::invalid_argument naming every broken constraint of params; UmMode::Paper; Cancelled
+/// Chooses the tets where a mesh already exists in another background that differs from this one only locally, such as
+/// an octree before refinement. Away from the differences the mesh stays the same to the bit.
+/// @param former  made with the same components of psi and the same params, in UmMode::Fast without walls
+/// \throw std::invalid_argument naming every broken constraint of params, or for UmMode::Paper; Cancelled
 ChosenSubmesh choose_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
                              const FormerMesh& former, const Context& context = {});
 
-/// The second: their vertices move until the boundary is on psi = 0 and the tets are well shaped.
-/// Reports "project", "relax" and, in UmMode::Fast, "repair".
-/// @param chosen  by choose_submesh() of the same background, psi and params: what failed there is the result
+/// Second step of universal_mesh(): moves vertices until the boundary is on psi = 0 and the tets are well shaped.
+/// Reports the steps "project", "relax" and, in UmMode::Fast, "repair".
+/// @param chosen  result of choose_submesh() for the same background, psi and params; a failure there is passed on as
+///                the result
 /// \throw std::invalid_argument naming every broken constraint of params; Cancelled
 UmResult fit_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params,
                      ChosenSubmesh chosen, const Context& context = {});

@@ -16,20 +16,20 @@
 #include "pipeline/memory/jobs.h"
 #include "python/function.h"
 
-// What Python gives, as the libraries want it, and back.
+// Conversion between arguments of Python and of the libraries.
 namespace umtet::python {
 
 using Points = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
 using Settings = std::vector<std::pair<std::string, std::string>>;  ///< key and text of a parameter
 
-/// \throw UsageError
+/// Parses settings. \throw UsageError
 Parameters parameters_of(const Settings& settings);
 
-/// Asks for Ctrl-C and tells the callback, both at most every 20 ms.
+/// A watch that checks for Ctrl-C and calls the callback, both at most every 20 ms.
 /// @param progress  a callable (step, fraction), or None; it must outlive the watch
 Watch watch_of(const pybind11::object& progress);
 
-/// Runs f without the GIL. @param threads  0: as many as the machine has
+/// Runs f without the GIL. @param threads  0: all hardware threads
 template <class F>
 auto in_arena(int threads, const F& f) {
   const pybind11::gil_scoped_release no_gil;
@@ -37,7 +37,7 @@ auto in_arena(int threads, const F& f) {
   return arena.execute(f);
 }
 
-/// Rows of an array (n, 3). \throw std::invalid_argument  with its name
+/// Rows of an array (n, 3). \throw std::invalid_argument with its name
 std::vector<Vec3> vectors(const Points& a, const char* name);
 
 pybind11::array_t<double> array(const std::vector<Vec3>& x, const Vec3& shift);
@@ -57,17 +57,18 @@ pybind11::array_t<T> array(const std::vector<T>& v) {
 
 pybind11::object dict_of(const Json& json);
 
-/// The psi of a call, in any of its forms, as a domain; keeps alive what the domain refers to.
+/// The psi of a call, in any of its forms, as a domain. Keeps alive the objects that the domain refers to.
 struct Psi {
   std::shared_ptr<Function> function;
   Domain domain;
   int threads;  ///< one for a callable, so that no thread waits for the GIL
 };
 
+/// Converts an argument to a psi.
 /// @param psi  a Reconstruction, a formula (text) or a callable
 /// @param box  model coordinates; a Reconstruction has its own
-/// @param t  what t stands for in a formula
-/// \throw std::invalid_argument, ExpressionError, and what the callable raises
+/// @param t    value of t in a formula
+/// \throw std::invalid_argument, ExpressionError, and exceptions of the callable
 Psi psi_of(const pybind11::object& psi, const std::optional<Box>& box, std::optional<double> t, int threads);
 
 }  // namespace umtet::python

@@ -4,8 +4,8 @@
 
 namespace umtet::python {
 
-/// The exceptions of the module, MeshingError, ReconstructionError and Cancelled, and what is thrown in C++ as one of
-/// them or of Python's own.
+/// Registers the exceptions of the module, MeshingError, ReconstructionError and Cancelled, and the translation of C++
+/// exceptions to these or to Python's own.
 void register_errors(pybind11::module_& m);
 
 }  // namespace umtet::python

@@ -15,23 +15,24 @@
 namespace umtet::python {
 
 /// psi as a Python callable: f(points (n, 3)) -> values (n,), or (values, gradients (n, 3)), or (values, gradients,
-/// Hessians (n, 3, 3)). What it does not return is made of central differences. It is asked in blocks, of some hundred
-/// points where derivatives are wanted and of some thousand values.
+/// Hessians (n, 3, 3)). Derivatives that it does not return are computed by central differences. It is called in blocks
+/// of some hundred points for derivatives and of some thousand points for values.
 ///
-/// A callable that answers a block with an exception, or with another number of values, is one of single points (3,).
+/// A callable that raises an exception for a block, or returns another number of values, is called with single points
+/// (3,).
 ///
-/// The GIL is taken in every call, so that calls of several threads wait for each other.
+/// Every call acquires the GIL, so calls of several threads wait for each other.
 class Function final : private SideBySide {
  public:
-  /// Calls it once or twice, near `probe`, to see what it takes and returns.
-  /// @param length  of the domain, > 0: steps of differences are 6e-6 of it, 1.2e-4 for Hessians made of values
-  /// \throw std::invalid_argument  not of these shapes; what the callable raises
+  /// Calls the callable once or twice, near `probe`, to determine its arguments and results.
+  /// @param length  size of the domain, > 0: steps of differences are 6e-6 of it, 1.2e-4 for Hessians from values
+  /// \throw std::invalid_argument for other shapes; exceptions of the callable
   Function(pybind11::object callable, const Vec3& probe, double length);
 
   double value(const Vec3& x) const { return evaluate(x, nullptr, nullptr); }
   double evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const;
   void values(std::span<const Vec3> x, double* out) const;
-  /// Null for a callable of single points.
+  /// Null for a callable with single points.
   const SideBySide* side_by_side() const { return takes_blocks_ ? this : nullptr; }
 
  private:
@@ -46,7 +47,7 @@ class Function final : private SideBySide {
 
   pybind11::object callable_;
   bool takes_blocks_ = true;
-  int order_ = 0;  ///< of the derivatives that it returns
+  int order_ = 0;  ///< order of the derivatives that it returns
   double step_, wide_step_;
   std::unique_ptr<Fibers> fibers_;
 };

@@ -15,15 +15,15 @@
 
 namespace umtet::python {
 
-/// Threads that still work although nobody waits for them: they end where their job asks next.
+/// Number of abandoned threads that still work; they end at the next poll of their job.
 inline std::atomic<int> n_left_behind{0};
 
-/// Of a job in a thread of its own: `stopped` stops it. It touches Python only while the caller still waits.
+/// Watch of a job in a separate thread, which `stopped` stops. It uses Python only while the caller waits.
 Watch watch_in_thread(const pybind11::object& progress, std::shared_ptr<std::atomic<bool>> stopped);
 
-/// Runs f(watch) in a thread of its own and waits for it without the GIL, so that Ctrl-C is answered at once, also in
-/// steps that do not ask: then f is left behind to end by itself.
-/// @param f  owns all that it uses, and nothing of Python
+/// Runs f(watch) in a separate thread and waits for it without the GIL. Ctrl-C is therefore handled immediately, also
+/// in steps that do not poll; f is then abandoned and ends by itself.
+/// @param f  owns all data that it uses, and no Python objects
 template <class F>
 auto interruptible(const pybind11::object& progress, int threads, F f) {
   using Result = std::invoke_result_t<F&, const Watch&>;
@@ -35,7 +35,7 @@ auto interruptible(const pybind11::object& progress, int threads, F f) {
   std::future<Result> result = task.get_future();
   std::thread worker([task = std::move(task)]() mutable {
     task();
-    task = {};  // what it owns goes before the interpreter may
+    task = {};  // frees its data before the interpreter may end
     --n_left_behind;
   });
   ++n_left_behind;
@@ -43,7 +43,7 @@ auto interruptible(const pybind11::object& progress, int threads, F f) {
   while (result.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) {
     const pybind11::gil_scoped_acquire gil;
     if (PyErr_CheckSignals() == 0) continue;
-    *stopped = true;  // with the GIL: no callback is running, or will
+    *stopped = true;  // with the GIL: no callback is running or will run
     worker.detach();
     throw pybind11::error_already_set();
   }

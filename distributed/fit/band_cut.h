@@ -5,22 +5,23 @@
 #include "reconstruct/basis/lattice_blocks.h"
 #include "reconstruct/solve/ssd_sample.h"
 
-// Which rank solves which blocks of a band: consecutive ones, in their order.
+// Partition of the blocks of a band: each rank solves consecutive blocks.
 namespace umtet {
 
-/// Where the blocks of each rank begin, and how many there are: pieces of about equal work, which is also their memory.
+/// The first block of each rank, and the number of blocks at the end. The pieces have about equal work, and therefore
+/// memory.
 /// @param samples  of the band, in block order
-/// @param held     bytes that rank 0 holds besides for each of them: its piece is so much smaller (first_share())
+/// @param held     bytes of other data on rank 0 per sample, by which its piece is reduced (first_share())
 std::vector<int> cut_band(const LatticeBlocks& blocks, const std::vector<SsdSample>& samples, int n_ranks,
                           double held = 0);
 
-/// The rank that has a block. @param begin  by cut_band()
+/// The rank of a block. @param begin  result of cut_band()
 int rank_of_block(const std::vector<int>& begin, int block);
 
-/// The blocks begin .. end - 1 and those next to them, ascending.
+/// The blocks begin .. end - 1 and their neighbours, ascending.
 std::vector<int> with_neighbours(const LatticeBlocks& blocks, int begin, int end);
 
-/// Runs of samples (block_runs) whose functions belong to a block of each rank, ascending.
+/// For each rank, the runs of samples (block_runs()) with a function in one of its blocks, ascending.
 std::vector<std::vector<std::size_t>> runs_of_ranks(const LatticeBlocks& blocks, const std::vector<int>& begin,
                                                     const std::vector<SsdSample>& samples,
                                                     const std::vector<std::size_t>& runs);

@@ -8,20 +8,21 @@
 
 namespace umtet {
 
-/// The other parts of a band, by MPI. Calls are collective.
+/// Communication between parts of a band by MPI. All calls are collective.
 class BandNeighbours final : public OtherParts {
  public:
-  /// Collective. \throw std::length_error above 2^31 - 1 values between two ranks
-  /// @param known  blocks of this part, by their numbers in the whole band, ascending
-  /// @param begin  by cut_band()
+  /// Collective.
+  /// @param known  indices of the blocks of this part in the whole band, ascending
+  /// @param begin  result of cut_band()
+  /// \throw std::length_error above 2^31 - 1 values between two ranks
   BandNeighbours(MPI_Comm comm, const std::vector<int>& known, const std::vector<int>& begin);
 
-  /// From rank to rank, each of which goes on with the sum of those before: what one process adds up, to the bit.
+  /// Passes the sum from rank to rank, each adding its values: the result equals the sum of one process to the bit.
   double sum(const std::vector<double>& of_blocks) override;
   void fill(float* values) override;
 
  private:
-  /// Blocks between this rank and another, by their numbers in the part.
+  /// Blocks shared with another rank, by index in the part.
   struct Neighbour {
     int rank;
     std::vector<int> sent, received;

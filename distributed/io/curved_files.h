@@ -12,32 +12,32 @@
 #include "distributed/part_edges.h"
 #include "distributed/part_second_order.h"
 
-// Files of tets of second order that all ranks have. All functions are collective.
+// Files of distributed ten-node tets. All functions are collective.
 namespace umtet {
 
-/// What a rank has of them.
+/// Ten-node tets of a rank for a file.
 struct CurvedPiece {
-  const DistributedMesh& mesh;  ///< with the places of the file
+  const DistributedMesh& mesh;  ///< with the positions of the file
   const PartEdges& edges;
   const CurvedParts& curved;
-  Vec3 shift;  ///< that takes mid-sides there
+  Vec3 shift;  ///< translation of mid-sides to these positions
 };
 
-/// Point data of mid-sides on the boundary, of the edges that a rank owns. All ranks have the same arrays, those of the
-/// VertexValues beside it.
+/// Point data of mid-sides on the boundary, for the edges that a rank owns. All ranks have the same arrays, which are
+/// those of the corresponding VertexValues.
 struct MidSideValues {
-  std::vector<std::size_t> edges;           ///< places in PartEdges::owned(), ascending
-  std::vector<std::vector<double>> arrays;  ///< by edge, as many components as VertexValues has
+  std::vector<std::size_t> edges;           ///< indices into PartEdges::owned(), ascending
+  std::vector<std::vector<double>> arrays;  ///< by edge, with the number of components in VertexValues
 };
 
-/// write_whole_vtu() of second order, as write_vtu() has it.
-/// @param boundary  of the vertices of the own mesh
-/// \throw KnownToAll naming the file; what is there then is no mesh
+/// write_whole_vtu() for ten-node tets, with the format of write_vtu().
+/// @param boundary  of the local vertices
+/// \throw KnownToAll naming the file, which is then not a valid mesh
 void write_whole_vtu(MPI_Comm comm, const std::filesystem::path& file, const CurvedPiece& piece,
                      const std::vector<std::uint8_t>& boundary, const VertexValues& of_vertices,
                      const MidSideValues& of_mid_sides);
 
-/// write_pvtu() of second order: `global_vertex` and `owner` are of nodes, which are corners and then mid-sides.
+/// write_pvtu() for ten-node tets: `global_vertex` and `owner` refer to nodes, which are corners and then mid-sides.
 /// \throw KnownToAll naming a file
 std::vector<std::filesystem::path> write_curved_pvtu(MPI_Comm comm, const std::filesystem::path& pvtu,
                                                      const CurvedPiece& piece, const PieceExtras& extras = {},

@@ -12,31 +12,31 @@
 #include "distributed/id_order.h"
 #include "mesh/certify/quality_report.h"
 
-// What files of a whole mesh hold of nodes and tets, in the order of their ids: piece after piece, as columns. No rank
-// has more than a piece at a time. All functions are collective.
+// Nodes and tets of a whole mesh for files, in the order of their ids, piece by piece, as columns. No rank holds more
+// than a piece at a time. All functions are collective.
 namespace umtet {
 
 inline constexpr std::size_t kRowsPerPiece = 1 << 16;  // some megabytes
 
 /// A piece of consecutive nodes.
 struct NodeColumns {
-  std::size_t first = 0;  ///< how many are before it
+  std::size_t first = 0;  ///< number of nodes before it
   std::vector<std::int64_t> id;
   std::vector<std::uint8_t> boundary;
-  std::vector<double> places;  ///< three of a node
+  std::vector<double> places;  ///< three per node
 };
 
-/// A piece of consecutive tets of n nodes.
+/// A piece of consecutive tets with n nodes each.
 template <class Index>
 struct TetColumns {
   std::size_t first = 0;
   std::vector<std::int64_t> id;
   std::vector<double> quality;  ///< mean ratio
-  std::vector<Index> nodes;     ///< n of a tet
+  std::vector<Index> nodes;     ///< n per tet
 };
 
-/// Calls put(NodeColumns) for each of this rank's pieces, as often on all ranks.
-/// @param ids  of nodes that are owned, ascending; `places` and `boundary` are of the same
+/// Calls put(NodeColumns) for each of this rank's pieces, equally often on all ranks.
+/// @param ids  of the owned nodes, ascending; `places` and `boundary` are in the same order
 template <class Put>
 void put_nodes(MPI_Comm comm, const std::vector<std::int64_t>& ids, const std::vector<Vec3>& places,
                const std::vector<std::uint8_t>& boundary, const Put& put) {
@@ -59,9 +59,9 @@ void put_nodes(MPI_Comm comm, const std::vector<std::int64_t>& ids, const std::v
   }
 }
 
-/// Calls put(first, values) for each of this rank's pieces, as often on all ranks: `n` numbers of a node, and how many
-/// nodes are before it.
-/// @param values  of nodes that are owned, n of each, one after the other
+/// Calls put(first, values) for each of this rank's pieces, equally often on all ranks: `n` numbers per node, and the
+/// number of nodes before it.
+/// @param values  n per owned node, one after the other
 template <std::size_t n, class T, class Put>
 void put_values(MPI_Comm comm, const std::vector<std::int64_t>& ids, const std::vector<T>& values, const Put& put) {
   struct Row {
@@ -81,8 +81,8 @@ void put_values(MPI_Comm comm, const std::vector<std::int64_t>& ids, const std::
   }
 }
 
-/// Calls put(TetColumns<Index>) for each of this rank's pieces, as often on all ranks.
-/// @param node  node(t, k): the number in the whole mesh of node k of own tet t
+/// Calls put(TetColumns<Index>) for each of this rank's pieces, equally often on all ranks.
+/// @param node  node(t, k) is the number in the whole mesh of node k of local tet t
 template <std::size_t n, class Index, class Node, class Put>
 void put_tets(MPI_Comm comm, const DistributedMesh& mesh, const Node& node, const Put& put) {
   struct Row {

@@ -13,25 +13,26 @@
 
 namespace umtet {
 
-/// What a rank has of a .vtu with standard data: the nodes that it owns, and its tets. Lists stay where they are.
+/// A rank's contribution to a .vtu file with standard data: its owned nodes and its tets. Referenced lists must outlive
+/// the object.
 struct VtuRows {
-  /// Of nodes, ascending, in the order of the file. Vertices have those of the background; those of mid-sides are
-  /// greater, from first_mid_side on.
+  /// Ids of the nodes, ascending, in the order of the file. Vertices have their background ids; ids of mid-sides are
+  /// greater, beginning with first_mid_side.
   const std::vector<std::int64_t>& ids;
   std::int64_t first_mid_side;
-  const std::vector<Vec3>& places;            ///< of nodes
+  const std::vector<Vec3>& places;            ///< positions of the nodes
   const std::vector<std::uint8_t>& boundary;  ///< of nodes
-  const VertexValues& fields;  ///< what they are, of all ranks: ascending by name, behind the names of standard data
-  /// Of the nodes the numbers of this array of `fields`, one after the other. Collective.
+  const VertexValues& fields;  ///< names of the fields, on all ranks: ascending, after the names of standard data
+  /// Values of a field of `fields` at the nodes, one after the other. Collective.
   std::function<std::vector<double>(std::size_t field)> values;
-  const DistributedMesh& mesh;  ///< with its tets
-  std::size_t nodes_per_tet;    ///< 4, or 10 of second order
+  const DistributedMesh& mesh;  ///< contains the tets
+  std::size_t nodes_per_tet;    ///< 4, or 10 for ten-node tets
   /// The number in the whole mesh of node k of tet t.
   std::function<std::int64_t(std::size_t t, std::size_t k)> node;
 };
 
-/// The file of all ranks, by MPI-IO: each has pieces of consecutive nodes and tets in turn, and writes them where they
-/// belong. Collective. \throw KnownToAll naming the file; what is there then is no mesh
+/// Writes one file by all ranks, with MPI-IO: each rank receives pieces of consecutive nodes and tets in turn, and
+/// writes them at their positions. Collective. \throw KnownToAll naming the file, which is then not a valid mesh
 void write_ordered_vtu(MPI_Comm comm, const std::filesystem::path& file, const VtuRows& rows);
 
 }  // namespace umtet

@@ -13,14 +13,14 @@
 
 namespace umtet {
 
-/// Arrays of a .vtu that all ranks write piece by piece, in the order of an IdOrder. Three bytes are four characters:
-/// what is left of a piece goes to the next one.
+/// Arrays of a .vtu file that all ranks write piece by piece, in the order of an IdOrder. Three bytes are encoded as
+/// four characters, and the remainder of a piece is passed to the next one.
 class SharedArrays {
  public:
-  /// @param arrays  stay where they are
+  /// @param arrays  must outlive the object
   SharedArrays(MPI_Comm comm, SharedFile& file, std::vector<const VtuShape::Array*> arrays);
 
-  /// This rank's piece of one array in the round at hand. @param first  byte of the array that it begins with
+  /// Sets this rank's piece of an array in the current round. @param first  position of its first byte in the array
   template <class T>
   void put(std::size_t array, std::size_t first, const std::vector<T>& values) {
     Piece& piece = pieces_[array];
@@ -28,11 +28,11 @@ class SharedArrays {
     piece.bytes.resize(values.size() * sizeof(T));
     if (!values.empty()) std::memcpy(piece.bytes.data(), values.data(), piece.bytes.size());
   }
-  /// Ends the round: writes. Collective.
+  /// Writes and ends the round. Collective.
   void write();
 
  private:
-  static constexpr std::size_t kTail = 2;  ///< bytes that may be left of groups of three
+  static constexpr std::size_t kTail = 2;  ///< maximum remainder of groups of three bytes
 
   struct Piece {
     std::size_t first = 0;
@@ -44,7 +44,7 @@ class SharedArrays {
   SharedFile& file_;
   std::vector<const VtuShape::Array*> arrays_;
   std::vector<Piece> pieces_;
-  std::vector<unsigned char> before_;  ///< of rank 0: what the last rank had left in the round before
+  std::vector<unsigned char> before_;  ///< on rank 0: the remainder of the last rank in the previous round
 };
 
 }  // namespace umtet

@@ -11,23 +11,23 @@
 
 namespace umtet {
 
-/// Trouble with a file that all ranks throw together.
+/// Error of a file that all ranks throw together.
 struct KnownToAll : std::system_error {
   using std::system_error::system_error;
 };
 
-/// A file that all ranks write, each where it says. What goes wrong on one is known to all at the end.
+/// A file that all ranks write, each at its own positions. Errors of a rank are reported to all at the end.
 class SharedFile {
  public:
   /// Collective.
   SharedFile(MPI_Comm comm, std::filesystem::path file);
-  ~SharedFile();  ///< collective, unless something is thrown
+  ~SharedFile();  ///< collective, unless an exception is propagating
   SharedFile(const SharedFile&) = delete;
   SharedFile& operator=(const SharedFile&) = delete;
 
-  /// Not collective. Nothing is written any more once something went wrong.
+  /// Writes text at a position. Not collective. Nothing is written after an error.
   void write(std::uint64_t at, std::string_view text);
-  /// Collective. The file is then this long. \throw KnownToAll naming the file
+  /// Closes the file with this length. Collective. \throw KnownToAll naming the file
   void close(std::uint64_t size);
 
  private:
@@ -36,7 +36,7 @@ class SharedFile {
   MPI_Comm comm_;
   std::filesystem::path path_;
   MPI_File file_ = MPI_FILE_NULL;
-  int error_ = 0;  ///< of errno
+  int error_ = 0;  ///< an errno
   const Unwinding unwinding_;
 };
 

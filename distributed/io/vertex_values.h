@@ -14,14 +14,14 @@ struct VertexValues {
   struct Array {
     std::string name;
     std::size_t n_components;    ///< 1 or 3
-    double none;                 ///< of vertices that no rank has values of
-    std::vector<double> values;  ///< n_components a vertex of the own mesh; read where `has`
+    double none;                 ///< value of vertices without data on any rank
+    std::vector<double> values;  ///< n_components per vertex of the local mesh; read where `has` is set
   };
   std::vector<Array> arrays;
-  std::vector<char> has;  ///< by vertex of the own mesh
+  std::vector<char> has;  ///< by vertex of the local mesh
 };
 
-/// Of vertices that are owned, what any who has them says. Collective.
+/// Values of an array at owned vertices, from any rank that has them. Collective.
 template <std::size_t n>
 std::vector<std::array<double, n>> values_of_owned(const VertexOwners& owners, const VertexValues& all,
                                                    const VertexValues::Array& array) {
@@ -44,7 +44,7 @@ std::vector<std::array<double, n>> values_of_owned(const VertexOwners& owners, c
   return owned;
 }
 
-/// One number after the other.
+/// Concatenates arrays.
 template <std::size_t n>
 std::vector<double> flat(const std::vector<std::array<double, n>>& values) {
   std::vector<double> list;

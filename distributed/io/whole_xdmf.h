@@ -9,10 +9,13 @@
 
 namespace umtet {
 
-/// What `umtet export --format xdmf` writes of the whole mesh, with the same arrays in the HDF5 file: NAME.h5,
-/// NAME.xdmf and NAME_boundary.xdmf. HDF5 says on rank 0 where each array is, and each rank writes its pieces of them
-/// there by MPI-IO: the parallel HDF5 cannot be in one process with the serial one, which VTK needs. Collective.
-/// @return the files, the same on all ranks \pre all ranks see one file system. \throw KnownToAll naming a file
+/// Writes the files of `umtet export --format xdmf` for the whole mesh, with the same arrays in the HDF5 file: NAME.h5,
+/// NAME.xdmf and NAME_boundary.xdmf. HDF5 on rank 0 determines the position of each array, and each rank writes its
+/// pieces there by MPI-IO. The reason is that parallel HDF5 cannot be in one process with the serial one, which VTK
+/// needs. Collective.
+/// @return the files, the same on all ranks
+/// \pre all ranks have a common file system
+/// \throw KnownToAll naming a file
 std::vector<std::filesystem::path> write_whole_xdmf(MPI_Comm comm, const std::filesystem::path& xdmf,
                                                     const DistributedMesh& mesh);
 

@@ -9,8 +9,8 @@
 
 namespace umtet {
 
-/// What one rank writes, and whether all have. A std::system_error of any rank all throw, as KnownToAll; what else
-/// write() throws is for together(). Collective.
+/// Writes a file on some ranks, and checks success on all. If a rank has a std::system_error, all ranks throw
+/// KnownToAll; other exceptions of write() are left to together(). Collective.
 template <class Write>
 void write_together(MPI_Comm comm, const std::filesystem::path& file, bool does, const Write& write) {
   int error = 0;

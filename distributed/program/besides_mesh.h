@@ -4,9 +4,10 @@
 
 namespace umtet {
 
-/// About how many bytes the rank that runs the program holds of a domain, besides its part of the mesh: samples, levels
-/// of psi that h does not show, the pieces of psi = 0, and the boundary on which it measures what others do not.
-/// @param domain  cut for h
+/// Estimated memory in bytes of a domain on the rank that runs the program, besides its local mesh: samples, levels of
+/// psi that h does not resolve, the components of psi = 0, and the boundary on which it measures what other ranks do
+/// not.
+/// @param domain  limited to the resolution of h
 double bytes_besides_mesh(const Domain& domain, double h);
 
 }  // namespace umtet

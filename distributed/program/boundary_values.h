@@ -9,18 +9,18 @@
 
 namespace umtet {
 
-/// What rank 0 knows of vertices of the boundary, on the ranks that have positive faces with them. Collective.
+/// Sends the boundary data of vertices from rank 0 to the ranks with positive faces at them. Collective.
 /// @param data  read on rank 0
 VertexValues shared_values(MPI_Comm comm, const DistributedMesh& mesh, const BoundaryData& data);
 
-/// The same of mid-sides on the boundary: those that each rank owns, one rank after the other.
-/// @param edges      of this rank, places in PartEdges::owned()
-/// @param n_of_rank  how many each has, on rank 0
+/// The same for mid-sides on the boundary, in the order of their owning ranks.
+/// @param edges      edges of this rank, indices into PartEdges::owned()
+/// @param n_of_rank  number of edges per rank, on rank 0
 MidSideValues shared_mid_side_values(MPI_Comm comm, const std::vector<std::size_t>& edges,
                                      const std::vector<std::size_t>& n_of_rank, const BoundaryData& data);
 
-/// What pieces hold besides standard data: patches, which ranks ask rank 0 for, and values of vertices.
-/// @param data  read on rank 0, where it stays while the result is used
+/// Data of pieces besides standard data: patches, which ranks request from rank 0, and values of vertices.
+/// @param data  read on rank 0, where it must outlive the use of the result
 PieceExtras piece_extras(MPI_Comm comm, const DistributedMesh& mesh, const PieceData& data);
 
 }  // namespace umtet

@@ -7,8 +7,8 @@
 
 namespace umtet {
 
-/// Pages of the heap that nothing is in go back to the system. The program keeps them, because to touch them again
-/// costs time (keep_freed_memory()); but several ranks share a machine, and what one has freed another needs.
+/// Returns unused heap pages to the system. The program normally keeps them, because touching them again costs time
+/// (keep_freed_memory()). But several ranks share a machine, and one rank may need the memory that another has freed.
 inline void give_back_freed_memory() {
 #ifdef __GLIBC__
   malloc_trim(0);

@@ -16,10 +16,10 @@
 
 namespace umtet {
 
-/// A rank's part with the places of the model, for who calls it in memory.
+/// A rank's local mesh with positions in model coordinates, for callers in memory.
 struct TakenMesh {
   DistributedMesh mesh;
-  /// Of second order.
+  /// Data of ten-node tets.
   struct Curved {
     PartEdges edges;
     CurvedParts parts;
@@ -27,16 +27,16 @@ struct TakenMesh {
   std::optional<Curved> curved;
 };
 
-/// A rank's part of a mesh of all ranks, as files will hold it, and what all do with theirs. All functions are
+/// A rank's local mesh as files will store it, with the operations that all ranks make together. All functions are
 /// collective.
 class HeldMesh {
  public:
-  /// @param held  of distributed_mesh()
+  /// @param held  see distributed_mesh()
   HeldMesh(MPI_Comm comm, const BackgroundMesh& background, ImplicitFunctionRef psi, const FastParams& params,
            const std::vector<Vec3>& seeds, const RoundedPlaces& places, double held = 0);
 
   bool is_made() const { return mesh_.status == PartsStatus::Success; }
-  /// All but the handle: the boundary is on rank 0, what is said of the whole on all ranks. \pre is_made()
+  /// Everything except the handle: the boundary is on rank 0, data of the whole mesh on all ranks. \pre is_made()
   MadeInParts summary(ImplicitFunctionRef psi) const;
   /// MeshInParts::curve(); mid-sides are on rank 0. \pre is_made()
   CurvedInParts curve(ImplicitFunctionRef psi, const ClosestPointParams& params);
@@ -47,19 +47,19 @@ class HeldMesh {
   /// MeshInParts::write_pieces(). @param data  read on rank 0; null on all ranks or on none \throw KnownToAll
   std::vector<std::filesystem::path> write_pieces(const std::filesystem::path& file, PieceFormat format,
                                                   const PieceData* data);
-  /// The part itself; of second order after curve().
+  /// The local mesh itself; with ten-node tets after curve().
   TakenMesh release() &&;
 
  private:
   std::vector<Vec3> chosen() const;
   template <class Write>
   auto with_places(std::vector<Vec3>& V, const Write& write);
-  /// Of second order.
+  /// Ten-node tets.
   struct Curved {
     PartEdges edges;
     CurvedParts parts;
-    std::vector<std::size_t> on_boundary;  ///< of the edges that are owned, those there
-    std::vector<std::size_t> n_of_rank;    ///< on rank 0, how many of these each has
+    std::vector<std::size_t> on_boundary;  ///< owned edges on the boundary
+    std::vector<std::size_t> n_of_rank;    ///< on rank 0, the number of these edges per rank
   };
   void gather_boundary(UmResult& result) const;
   void gather_mid_sides(std::vector<Vec3>& mid_sides);
@@ -74,7 +74,7 @@ class HeldMesh {
   DistributedMesh mesh_;
   std::optional<Curved> curved_;
   bool knows_boundary_ = false;
-  std::vector<std::uint8_t> boundary_;  ///< on_boundary(), once it is needed
+  std::vector<std::uint8_t> boundary_;  ///< on_boundary(), computed when first needed
 };
 
 }  // namespace umtet

@@ -11,7 +11,7 @@
 #include "body/body.h"
 #include "pipeline/meshing/part_mesher.h"
 
-// What rank 0 says to the others, who do it with it.
+// Commands of rank 0 to the other ranks, which execute them together with it.
 namespace umtet {
 
 enum class RankOrder : std::int64_t {
@@ -30,20 +30,20 @@ enum class RankOrder : std::int64_t {
   End
 };
 
-/// An order and its numbers: those that it has no use for are as they are here. It is sent as bytes.
+/// A command with its numeric arguments; unused ones keep their defaults. It is sent as bytes.
 struct RankCommand {
   RankOrder order = RankOrder::End;
-  std::int64_t mesh = 0;   ///< its number; of the end the exit code
-  std::int64_t state = 0;  ///< a MeshState, of pieces a PieceFormat, of samples their level
+  std::int64_t mesh = 0;   ///< number of the mesh; for End the exit code
+  std::int64_t state = 0;  ///< a MeshState; for pieces a PieceFormat; for samples their level
   std::int64_t moving_alone = 0;
-  std::int64_t has_data = 0;   ///< of pieces: a PieceData
-  std::int64_t is_fitted = 0;  ///< the domain: there is a level set of samples, else psi is that of the call
-  std::int64_t has_t = 0;      ///< the domain: of a formula that is taken at t
+  std::int64_t has_data = 0;   ///< for pieces: there is a PieceData
+  std::int64_t is_fitted = 0;  ///< for the domain: psi is a level set fitted to samples, else it is that of the call
+  std::int64_t has_t = 0;      ///< for the domain: a formula is taken at t
   double t = 0;
   double lattice_h = 0, h = 0, shift[3] = {}, rounding = 0;
-  double box[2][3] = {};  ///< of the domain; of a mesh what its background was asked to cover
+  double box[2][3] = {};  ///< of the domain; for a mesh, the box that its background had to cover
   double kappa = 0, tolerance = 0;
-  double spacing = 0;  ///< of the finest level that is kept
+  double spacing = 0;  ///< of the finest level to be kept
   std::int64_t max_iterations = 0;
 
   void set_places(const RoundedPlaces& places);
@@ -53,10 +53,10 @@ struct RankCommand {
   RefineParams refine_params() const { return {kappa, tolerance, static_cast<int>(max_iterations)}; }
 };
 
-/// What belongs to it and has any length.
+/// Arguments of variable length.
 struct Attached {
-  std::string file = {};         ///< that is written
-  std::vector<Vec3> seeds = {};  ///< of a mesh
+  std::string file = {};         ///< output file
+  std::vector<Vec3> seeds = {};  ///< seeds of a mesh
 };
 
 struct Heard {
@@ -64,10 +64,10 @@ struct Heard {
   Attached attached;
 };
 
-/// Of rank 0: to all others, who hear() it. Collective with that.
+/// Sends a command from rank 0 to all others, which call hear(). Collective with hear().
 void say(MPI_Comm comm, const RankCommand& command, const Attached& attached = {});
 
-/// Of the other ranks, which sleep until rank 0 says something.
+/// Receives a command on the other ranks, which sleep until rank 0 sends one.
 Heard hear(MPI_Comm comm);
 
 }  // namespace umtet

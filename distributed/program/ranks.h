@@ -15,23 +15,24 @@
 #include "pipeline/case/parameters.h"
 #include "pipeline/meshing/part_mesher.h"
 
-// The ranks of the program as rank 0 has them, which runs it: the others do with it what it says, in serve().
+// The ranks of the program as seen by rank 0, which runs it. The other ranks execute its commands in serve().
 namespace umtet {
 
-/// Of rank 0. The others serve() meanwhile.
+/// Interface of rank 0 to all ranks. The other ranks run serve() meanwhile.
 class Ranks final : public PartMesher, public BandRefiner {
  public:
-  /// @param n_here  ranks on this machine
-  /// @param call  its parameters of a mesh, asked for when the first is to be made: all ranks have to have the same
+  /// @param n_here  number of ranks on this machine
+  /// @param call    returns the parameters of a mesh; called before the first mesh is made, to check that all ranks
+  ///                have the same
   Ranks(MPI_Comm comm, int n_here, std::function<Json()> call) : comm_(comm), n_here_(n_here), call_(std::move(call)) {}
-  /// Lets the others go, with the exit code of the program. Collective.
+  /// Ends the other ranks with the exit code of the program. Collective.
   void end(int code);
-  /// What this rank has of a mesh that make() made, with the places of the model; the others have theirs from serve().
-  /// Collective, once a mesh.
+  /// Releases the local mesh of this rank, made by make(), with positions in model coordinates; the other ranks get
+  /// theirs from serve(). Collective, once per mesh.
   TakenMesh release(const MeshInParts& mesh);
 
   double allowed_bytes(const Parameters& parameters) const override;
-  /// \throw UsageError where the others were called for another mesh
+  /// \throw UsageError if the other ranks were called for another mesh
   std::optional<MadeInParts> make(const BackgroundMesh& background, const Box& box, const Domain& domain,
                                   const FastParams& params, const std::vector<Vec3>& seeds,
                                   const RoundedPlaces& places) override;
@@ -54,16 +55,16 @@ class Ranks final : public PartMesher, public BandRefiner {
   int n_here_;
   std::function<Json()> call_;
   int threads_ = 1;
-  bool has_told_ = false;           ///< the others have the domain
-  std::optional<double> t_;         ///< of it
-  std::map<int, BandPart> bands_;   ///< that are to be refined
-  std::optional<LevelSet> shared_;  ///< that the others have, here without the last band of refine()
-  int n_shared_ = 0;                ///< its levels
+  bool has_told_ = false;           ///< the other ranks have the domain
+  std::optional<double> t_;         ///< t of that domain
+  std::map<int, BandPart> bands_;   ///< bands to be refined
+  std::optional<LevelSet> shared_;  ///< the level set of the other ranks, here without the last band of refine()
+  int n_shared_ = 0;                ///< number of its levels
   std::int64_t next_ = 0;
   std::map<std::int64_t, HeldMesh> held_;
 };
 
-/// How many of these ranks are on this machine. Collective.
+/// The number of ranks on this machine. Collective.
 int n_ranks_here(MPI_Comm comm);
 
 }  // namespace umtet

@@ -8,9 +8,9 @@
 
 namespace umtet {
 
-/// Whether all ranks are to make the same mesh. Collective.
+/// Checks that all ranks were called for the same mesh. Collective.
 /// @param mine  the parameters of this rank, by name
-/// @return the first difference to rank 0, as a sentence, the same on all ranks; empty if there is none
+/// @return the first difference from rank 0, as a sentence, the same on all ranks; empty if there is none
 std::string difference_of_calls(MPI_Comm comm, const Json& mine);
 
 }  // namespace umtet

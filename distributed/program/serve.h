@@ -11,11 +11,11 @@
 
 namespace umtet {
 
-/// Of the ranks other than 0, which has Ranks: does what it says, until it says the end. Collective. @return the exit
-/// code
-/// @param parameters  is called before the first work
-/// @param domain  of a psi that is not fitted to samples; null: load_domain()
-/// @param taken  what this rank has of what Ranks::release() gives away
+/// Main loop of the ranks other than 0: executes the commands of rank 0 (Ranks) until the end. Collective. @return the
+/// exit code
+/// @param parameters  called before the first work
+/// @param domain      makes the domain of a psi that is not fitted to samples; null: load_domain()
+/// @param taken       receives the part of this rank when Ranks::release() is called
 int serve(MPI_Comm comm, const std::function<Parameters()>& parameters, const std::function<Domain()>& domain = {},
           std::optional<TakenMesh>* taken = nullptr);
 

@@ -8,9 +8,9 @@
 
 namespace umtet {
 
-/// The level set of rank 0, bit by bit, on all ranks. Collective.
+/// Broadcasts the level set of rank 0, bit by bit, to all ranks. Collective.
 /// @param own  read on rank 0
-/// @return the same on all ranks; on rank 0 it shares the coefficients of `own`
+/// @return the level set on all ranks; on rank 0 it shares the coefficients of `own`
 LevelSet shared_level_set(MPI_Comm comm, const std::optional<LevelSet>& own);
 
 }  // namespace umtet

@@ -11,8 +11,8 @@
 
 namespace umtet {
 
-/// What work() returns, which all ranks do at once. What goes wrong on one of them, while others wait for it, ends all:
-/// with its reason and its exit code. \throw KnownToAll, as work() does
+/// Runs work() on all ranks at once and returns its result. An exception on one rank, for which others may wait, ends
+/// all ranks with its message and exit code. \throw KnownToAll, as work() does
 template <class F>
 auto together(MPI_Comm comm, const F& work) {
   try {

@@ -7,27 +7,27 @@
 
 namespace umtet {
 
-/// A tet mesh that is stored, with who meets whom: the other kind of background mesh, without a lattice behind it.
-/// Lists ascend. About 60 bytes a tet. Immutable.
+/// A stored tet mesh with its adjacency lists, used as a background mesh without a lattice. Lists ascend. About 60
+/// bytes per tet. Immutable.
 class ExplicitMesh {
  public:
-  /// \throw std::invalid_argument naming the first violation: no tets, an index out of range, a tet that is inverted or
-  /// flat (exact), a face of three tets or of two on the same side of it
+  /// \throw std::invalid_argument naming the first violation: no tets, an index out of range, an inverted or flat tet
+  ///        (exact test), a face of three tets, or a face with two tets on the same side
   explicit ExplicitMesh(TetMesh mesh);
 
   const TetMesh& mesh() const { return mesh_; }
   double mean_edge() const { return mean_edge_; }
-  /// Of the edges at a vertex; 0 without any.
+  /// Mean length of the edges at a vertex; 0 for a vertex without edges.
   double mean_edge(int vertex) const { return mean_edge_at_[vertex]; }
   /// The tets at a vertex.
   std::span<const int> star(int vertex) const { return list(star_begin_, star_, vertex); }
-  /// The vertices it shares an edge with.
+  /// The vertices that share an edge with the vertex.
   std::span<const int> link(int vertex) const { return list(link_begin_, link_, vertex); }
-  /// Behind the face opposite to local vertex `face`, or -1.
+  /// The tet behind the face opposite to local vertex `face`, or -1.
   int neighbor(int tet, int face) const { return neighbor_[4 * static_cast<std::size_t>(tet) + face]; }
-  /// True for a vertex of a face with one tet.
+  /// True for a vertex of a face that belongs to one tet only.
   bool on_boundary(int vertex) const { return on_boundary_[vertex]; }
-  /// A tet at the vertex nearest to x, by looking at all, or -1 outside the bounding box.
+  /// A tet at the vertex nearest to x, by a search over all vertices, or -1 outside the bounding box.
   int tet_near(const Vec3& x) const;
 
  private:

@@ -9,12 +9,12 @@
 
 namespace umtet {
 
-/// What is added to the id of a lattice vertex for the ids of its link, in the order of TilingTables::link. What that
-/// gives in the outermost layer of cells is said at BackgroundMesh::id_step().
+/// Id differences from a lattice vertex to the vertices of its link, in the order of TilingTables::link.
+/// BackgroundMesh::id_step() describes the results in the outermost layer of cells.
 class LinkSteps {
  public:
-  LinkSteps() = default;  ///< of no lattice
-  /// Those of a lattice; any other mesh has none.
+  LinkSteps() = default;  ///< for no lattice
+  /// Differences for a lattice; empty for any other mesh.
   explicit LinkSteps(const BackgroundMesh& background) : steps_(background.n_types()) {
     for (int type = 0; type < background.n_types(); ++type) {
       for (const Tiling::Corner& c : background.tiling_tables().link[type])
@@ -26,8 +26,8 @@ class LinkSteps {
   int type(std::int64_t v) const { return static_cast<int>(v % static_cast<std::int64_t>(steps_.size())); }
   const std::vector<std::int64_t>& at(std::int64_t v) const { return steps_[type(v)]; }
 
-  /// Bit k: link vertex k is inside. Inside vertices are off the background boundary, so that a step that leaves the
-  /// range of ids, or leads to a wrong one in the outermost layer of cells, finds none of them.
+  /// Bit k is set if link vertex k is inside. Inside vertices are off the background boundary, so a step that leaves
+  /// the range of ids, or leads to a wrong id in the outermost layer of cells, does not find an inside vertex.
   LinkMask mask(std::int64_t v, const IdSet& inside) const {
     LinkMask mask = 0;
     int k = 0;

@@ -9,8 +9,8 @@
 
 namespace umtet {
 
-/// BackgroundMesh::tet() for many tets that are near each other in the order of their ids, in any kind of background:
-/// several times as fast in a graded one (OctreeTets::Reader). Of one thread.
+/// Reader with the results of BackgroundMesh::tet(), for many tets with nearby ids in any kind of background. In a
+/// graded mesh it is several times as fast (OctreeTets::Reader). Use it in one thread.
 class TetReader {
  public:
   explicit TetReader(const BackgroundMesh& background) : background_(background) {

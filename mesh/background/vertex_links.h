@@ -11,31 +11,33 @@
 
 namespace umtet {
 
-/// The link of every vertex of a background mesh: who is there, and what it looks like as bit masks.
+/// The links of all vertices of a background mesh: their vertices, and their topology as bit masks.
 ///
-/// In a lattice a vertex is of one of a few types, and nothing is stored per vertex. The links of any other background
-/// are listed: some 70 bytes a vertex. Vertices whose links look the same, in the same order and at the same edge
-/// length within a percent, are of one type there; in regular parts of a mesh that is one type for each edge length.
+/// In a lattice every vertex is of one of a few types, and nothing is stored per vertex. The links of any other
+/// background are listed, in about 70 bytes per vertex. Two vertices are there of one type if their links are the same,
+/// in the same order and with the same edge length within a percent. Regular parts of a mesh have one type per edge
+/// length.
 class VertexLinks {
  public:
-  /// Of a lattice. @param of_types  one per vertex type; kept by reference
+  /// Links of a lattice. @param of_types  one per vertex type; stored by reference
   VertexLinks(const BackgroundMesh& lattice, const std::vector<LinkTopology>& of_types);
-  /// Of any background that is no lattice. Cost: some microseconds a vertex, by all threads.
-  /// @return null where a vertex has more than kMaxLink neighbours, which no mask can hold
+  /// Links of a background that is not a lattice. Cost: some microseconds per vertex, by all threads.
+  /// @return null if a vertex has more than kMaxLink neighbours, which do not fit into a mask
   static std::shared_ptr<const VertexLinks> listed(const BackgroundMesh& background);
 
   bool is_lattice() const { return listed_.type.empty(); }
   int type(std::int64_t v) const { return is_lattice() ? steps_.type(v) : listed_.type[v]; }
-  /// One per type.
+  /// The topologies, one per type.
   const std::vector<LinkTopology>& topologies() const { return *topologies_; }
   const LinkTopology& of_type(int type) const { return (*topologies_)[type]; }
   const LinkTopology& at(std::int64_t v) const { return of_type(type(v)); }
 
-  /// Link vertex k of v. In the outermost layer of cells of a lattice it may be no id (BackgroundMesh::id_step()).
+  /// Link vertex k of v. In the outermost layer of cells of a lattice it may not be a valid id
+  /// (BackgroundMesh::id_step()).
   std::int64_t neighbour(std::int64_t v, int k) const {
     return is_lattice() ? v + steps_.at(v)[k] : listed_.vertices[listed_.begin[v] + static_cast<std::size_t>(k)];
   }
-  /// f(w) for the link vertices of v, in the order of the topology.
+  /// Calls f(w) for the link vertices w of v, in the order of the topology.
   template <class F>
   void for_each(std::int64_t v, const F& f) const {
     if (is_lattice()) {
@@ -44,8 +46,9 @@ class VertexLinks {
       for (std::size_t k = listed_.begin[v]; k < listed_.begin[v + 1]; ++k) f(std::int64_t{listed_.vertices[k]});
     }
   }
-  /// Bit k: link vertex k is inside. Inside vertices are off the background boundary, so that a step that leaves the
-  /// range of ids of a lattice, or leads to a wrong one in its outermost layer of cells, finds none of them.
+  /// Bit k is set if link vertex k is inside. Inside vertices are off the background boundary, so a step that leaves
+  /// the range of ids of a lattice, or leads to a wrong id in its outermost layer of cells, does not find an inside
+  /// vertex.
   LinkMask mask(std::int64_t v, const IdSet& inside) const {
     if (is_lattice()) return steps_.mask(v, inside);
     LinkMask mask = 0;
@@ -65,7 +68,7 @@ class VertexLinks {
 
   LinkSteps steps_;
   Listed listed_;
-  const std::vector<LinkTopology>* topologies_;  ///< the caller's, or those of listed_: links stay where they are
+  const std::vector<LinkTopology>* topologies_;  ///< the caller's, or those in listed_: the object is not movable
  public:
   VertexLinks(const VertexLinks&) = delete;
   VertexLinks& operator=(const VertexLinks&) = delete;

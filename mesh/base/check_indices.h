@@ -9,7 +9,8 @@
 
 namespace umtet {
 
-/// \throw std::invalid_argument naming the first simplex with a vertex that is out of range or its own twice
+/// Checks the vertex indices of simplices.
+/// \throw std::invalid_argument naming the first simplex with a vertex that is out of range or repeated
 /// @param name  of a simplex, for the message
 template <std::size_t N>
 void check_indices(const std::vector<std::array<int, N>>& simplices, std::size_t n_vertices, const char* name) {

@@ -11,13 +11,12 @@
 
 namespace umtet {
 
-/// Words of a set in a block, of 64 ids each: the unit of work of a thread. About a tenth of the ids are in an active
-/// layer.
+/// Words of 64 ids per block, the unit of work of a thread. About a tenth of the ids are in an active layer.
 inline constexpr std::size_t kWordsPerBlock = 16;
 
 inline std::size_t n_blocks(const IdSet& set) { return (set.n_words() + kWordsPerBlock - 1) / kWordsPerBlock; }
 
-/// Calls f(state, id) with what begin(block) has returned for its block.
+/// Calls f(state, id) for the members of a set, where state is the result of begin(block) for the id's block.
 template <class Begin, class F>
 void for_each_in_blocks(const IdSet& set, const Begin& begin, const F& f) {
   tbb::parallel_for(std::size_t{0}, n_blocks(set), [&](std::size_t b) {
@@ -31,7 +30,8 @@ void for_each_in_blocks(const IdSet& set, const Begin& begin, const F& f) {
   });
 }
 
-/// Calls f(block, id) for the members of a set, threads over blocks of the same ids whatever their number.
+/// Calls f(block, id) for the members of a set. Uses threads over blocks; the blocks do not depend on the number of
+/// threads.
 template <class F>
 void for_each_in_blocks(const IdSet& set, const F& f) {
   for_each_in_blocks(

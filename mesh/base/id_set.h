@@ -8,17 +8,17 @@
 
 namespace umtet {
 
-/// A set of background ids, one bit each, with the rank of every member once index() was called.
+/// Bit set of background ids, with the rank of every member after index().
 class IdSet {
  public:
   explicit IdSet(std::int64_t n_ids) : words_(static_cast<std::size_t>((n_ids + 63) / 64), 0) {}
 
   bool test(std::int64_t id) const { return words_[id >> 6] >> (id & 63) & 1; }
-  /// As test(); false for any number that is no id.
+  /// As test(), but returns false for any number that is not an id.
   bool test_any(std::int64_t id) const { return static_cast<std::uint64_t>(id) < 64 * words_.size() && test(id); }
   void insert(std::int64_t id) { words_[id >> 6] |= std::uint64_t{1} << (id & 63); }
 
-  /// As insert(), for threads that may meet in one word.
+  /// As insert(), for threads that may write to the same word at once.
   void insert_shared(std::int64_t id) {
     const std::atomic_ref word(words_[id >> 6]);
     const std::uint64_t bit = std::uint64_t{1} << (id & 63);
@@ -26,21 +26,21 @@ class IdSet {
   }
   void erase(std::int64_t id) { words_[id >> 6] &= ~(std::uint64_t{1} << (id & 63)); }
 
-  /// Of the same ids.
+  /// Equality of two sets over the same ids.
   bool operator==(const IdSet& other) const { return words_ == other.words_; }
   std::size_t n_words() const { return words_.size(); }
   std::uint64_t word(std::size_t w) const { return words_[w]; }
-  /// Threads may set different words at once.
+  /// Threads may set different words at the same time.
   void set_word(std::size_t w, std::uint64_t bits) { words_[w] = bits; }
 
-  /// True only if there is no member in first .. end - 1. Looks at whole words.
+  /// True only if the set has no member in first .. end - 1. Examines whole words, so it may return false otherwise.
   bool is_empty_around(std::int64_t first, std::int64_t end) const {
     std::uint64_t any = 0;
     for (std::int64_t w = first >> 6; w <= (end - 1) >> 6; ++w) any |= words_[w];
     return any == 0;
   }
 
-  /// Prepares rank(); call again after an insertion. Returns the number of members.
+  /// Prepares rank(); call it again after an insertion. Returns the number of members.
   std::size_t index() {
     before_.resize(words_.size());
     std::size_t n = 0;

@@ -9,12 +9,12 @@
 
 namespace umtet {
 
-/// The first of those that break a rule, by number, and how many there are.
+/// Violations of a rule: the number of the first object that breaks it, and their count.
 struct Violations {
   std::size_t first = std::numeric_limits<std::size_t>::max(), count = 0;
 };
 
-/// The i < n for which bad(i). Threads over i; the result does not depend on them.
+/// Finds the i < n with bad(i). Uses threads over i; the result does not depend on them.
 template <class Predicate>
 Violations find_violations(std::size_t n, Predicate&& bad) {
   constexpr std::size_t kPerTask = 4096;  // a predicate takes tens of nanoseconds

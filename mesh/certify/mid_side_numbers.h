@@ -6,22 +6,23 @@
 
 namespace umtet {
 
-/// The edges of a tet mesh, numbered: ascending in their lower vertex, then in the other.
+/// Numbering of the edges of a tet mesh, ascending by lower vertex, then by the other.
 class MidSideNumbers {
  public:
   /// \throw std::invalid_argument naming the first tet with an index outside 0 .. n_vertices - 1 or a repeated vertex
-  /// Cost: O(n_tets), threads over vertices, result independent of them; 24 bytes a tet while it runs.
+  /// Cost: O(n_tets), with 24 bytes of working memory per tet. Uses threads over vertices; the result does not depend
+  /// on them.
   MidSideNumbers(const std::vector<Tet>& C, std::size_t n_vertices);
 
   std::size_t n_edges() const { return higher_.size(); }
-  /// Number of the edge between two vertices, -1 where there is none.
+  /// Number of the edge between two vertices; -1 if there is no such edge.
   int operator()(int a, int b) const;
 
-  /// The mesh with straight edges and a node at the middle of each: vertex n_vertices + number.
+  /// The quadratic mesh with straight edges and a node at the middle of each edge: vertex n_vertices + number.
   QuadraticTetMesh straight_mesh(const TetMesh& mesh) const;
 
  private:
-  std::vector<int> first_;   ///< by vertex: number of its first edge to a higher one
+  std::vector<int> first_;   ///< by vertex: number of its first edge to a higher vertex
   std::vector<int> higher_;  ///< by edge: the higher vertex
 };
 

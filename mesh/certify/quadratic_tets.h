@@ -14,36 +14,39 @@ namespace umtet {
 struct SecondOrderParams {
   ClosestPointParams closest_point;
   /// Mid-sides are relaxed around a tet whose min det / mean det may be below this. A higher target raises the least
-  /// value and the time; in bodies one edge thick the target itself is not reached.
+  /// value and the time; bodies that are one edge thick do not reach the target.
   double target = .3;
-  /// Where it is still not proved to be above this, mid-sides go back towards their chords, off psi = 0: a last resort
-  /// that relaxation makes rare.
+  /// Where min det / mean det is still not proved to exceed this value, mid-sides move back towards their chords, off
+  /// psi = 0. Relaxation makes this last resort rare.
   double least = .02;
-  int sweeps = 30;  ///< of relaxation; >= 0
+  int sweeps = 30;  ///< sweeps of relaxation; >= 0
 };
 
-/// Every broken constraint, not just the first.
+/// All broken constraints, not just the first.
 std::vector<std::string> problems(const SecondOrderParams&);
 
-/// Tets of second order, and what had to be done for their Jacobians.
+/// Ten-node tets, and statistics of the changes made for their Jacobians.
 struct SecondOrder {
   QuadraticTetMesh mesh;                ///< the first vertices are those of the linear mesh
-  std::vector<int> boundary_mid_sides;  ///< of edges of the curved faces, ascending indices into mesh.V
-  std::vector<int> off_surface;         ///< those of them that are not on psi = 0, ascending
-  std::size_t n_unprojected = 0;        ///< those of these that found no point of psi = 0 near their chord
+  std::vector<int> boundary_mid_sides;  ///< mid-sides of edges of the curved faces, ascending indices into mesh.V
+  std::vector<int> off_surface;         ///< boundary mid-sides that are not on psi = 0, ascending
+  std::size_t n_unprojected = 0;        ///< mid-sides in off_surface without a point of psi = 0 near their chord
   std::size_t n_slid = 0;               ///< boundary mid-sides moved along psi = 0
   std::size_t n_relaxed = 0;            ///< mid-sides inside that are not at the middle of their chord
-  std::size_t n_psi_evaluations = 0;    ///< at most, for the projections
+  std::size_t n_psi_evaluations = 0;    ///< upper bound, for the projections
 };
 
-/// Tets with 10 nodes whose boundary follows psi = 0 to second order, on the corners of a linear mesh.
+/// Ten-node tets whose boundary follows psi = 0 to second order, made from the corners of a linear mesh.
 ///
-/// 1. Mid-sides are the middles of the edges; those of edges of `curved_faces` go to their closest points on psi = 0.
+/// 1. Mid-sides begin at the middles of the edges. Mid-sides of edges of `curved_faces` move to their closest points on
+///    psi = 0.
 /// 2. Around every tet with min det dx/dl / mean det < params.target, mid-sides take Gauss-Newton steps, one after the
-///    other, on  sum over the tets at the edge and their 20 coefficients of max(0, params.target - c / (6 |K|))^2,
-///    boundary mid-sides along psi = 0, the others anywhere. Nothing moves where the coefficients are above the target.
-/// 3. Last resort: the mid-sides of a tet whose least Jacobian is not above params.least are halved towards their
-///    chords, four times, then put there. A tet with all of them there is the linear one: this ends.
+///    other, on  sum over the tets at the edge and their 20 coefficients of max(0, params.target - c / (6 |K|))^2.
+///    Boundary mid-sides move along psi = 0, the others anywhere. Nothing moves where the coefficients are above the
+///    target.
+/// 3. Last resort: the mid-sides of a tet whose least Jacobian does not exceed params.least are halved towards their
+///    chords four times, then put on them. A tet with all mid-sides on their chords is the linear tet, so the loop
+///    ends.
 ///
 /// @param mesh          positively oriented tets
 /// @param curved_faces  the boundary faces that lie on psi = 0; empty: all edges stay straight
@@ -51,8 +54,8 @@ struct SecondOrder {
 /// @param h             edge length that the tolerances of params.closest_point are relative to, model units, > 0
 /// \throw std::invalid_argument for an index out of range, a face with an edge of no tet, params with problems();
 ///        Cancelled
-/// Cost: 1.5 closest points a face and .2 microseconds a tet, more only where mid-sides are relaxed; 140 bytes a tet.
-/// Result independent of threads.
+/// Cost: 1.5 closest points per face and .2 microseconds per tet, and more only where mid-sides are relaxed; 140 bytes
+/// per tet. The result does not depend on threads.
 SecondOrder quadratic_tets(const TetMesh& mesh, const std::vector<Triangle>& curved_faces, ImplicitFunctionRef psi,
                            double h, const SecondOrderParams& params = {}, const Context& context = {});
 

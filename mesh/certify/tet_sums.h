@@ -3,10 +3,11 @@
 #include <array>
 #include <cstddef>
 
-// How a certificate adds up what it measures of tets: the same doubles to the bit, whoever has measured them.
+// Summation of the measures of tets in a certificate: the sums are the same to the bit, whichever process has measured
+// the tets.
 namespace umtet {
 
-/// Consecutive tets that are summed by themselves, before the sums are added one after the other.
+/// Number of consecutive tets that are summed first, before their sums are added in order.
 inline constexpr std::size_t kTetsPerSum = 1 << 10;
 
 struct TetSums {
@@ -19,8 +20,8 @@ struct TetSums {
   }
 };
 
-/// Sums of n <= kTetsPerSum consecutive tets, in four lanes, as tets are measured (tet_packs.h).
-/// @param value  value(k) is what the k-th of them adds, a TetSums
+/// Sums over n <= kTetsPerSum consecutive tets, in four lanes, in which tets are measured (tet_packs.h).
+/// @param value  value(k) returns the contribution of the k-th tet, a TetSums
 template <class Value>
 TetSums block_sums(std::size_t n, const Value& value) {
   std::array<TetSums, 4> lane;

@@ -17,8 +17,8 @@
 
 namespace umtet {
 
-/// Vertices within three edges of an edge between inside and outside, and all that classify_vertices() knows about
-/// them, by rank.
+/// Narrow band of vertices within three edges of an edge between inside and outside, with all data of
+/// classify_vertices() about them, by rank.
 class ClassificationBand {
  public:
   struct Block {
@@ -27,7 +27,7 @@ class ClassificationBand {
 
   /// @param inside  the vertices with psi < 0
   /// @param known   psi at all vertices with a neighbour on the other side, or null
-  /// @param part    of the vertices, or null: all
+  /// @param part    restricts the band to a part of the vertices; null: all
   /// \throw Cancelled
   ClassificationBand(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
                      const ClassificationParams& params, const IdSet& inside, const Context& context,
@@ -36,19 +36,19 @@ class ClassificationBand {
   std::size_t size() const { return id.size(); }
 
   std::vector<std::int64_t> id;  ///< ascending
-  /// Ranks of the neighbours of v, -1 where they are not in the band.
+  /// Ranks of the neighbours of v; -1 for neighbours that are not in the band.
   std::span<const int> link(std::size_t v) const { return {ranks_.data() + first_[v], first_[v + 1] - first_[v]}; }
-  /// The rank of a vertex, -1 where it is not in the band.
+  /// The rank of a vertex; -1 if it is not in the band.
   int find(std::int64_t v) const { return band_.test_any(v) ? band_.rank(v) : -1; }
   std::vector<int> type;
   std::vector<std::uint8_t> is_inside;
-  std::vector<std::uint8_t> movable;  ///< it may be flipped
-  std::vector<std::uint8_t> held;     ///< it is not, because of most_stretch
+  std::vector<std::uint8_t> movable;  ///< may be flipped
+  std::vector<std::uint8_t> held;     ///< may not be flipped because of most_stretch
   std::vector<LinkMask> mask;
   std::vector<float> phi;            ///< signed distance in LinkTopology::unit
-  std::vector<Vec3> foot, normal;    ///< on psi = 0 and there; not set at the band's edge
+  std::vector<Vec3> foot, normal;    ///< foot point on psi = 0 and normal there; not set at the band's edge
   std::vector<std::uint32_t> order;  ///< vertices that may be flipped, block by block
-  /// Per colour: vertices of two blocks of one are nine rings apart. All in one block where there are no cells.
+  /// Per colour. Vertices of two blocks of one colour are nine rings apart. Without cells there is one block.
   std::array<std::vector<Block>, 8> blocks;
   std::size_t psi_evaluations = 0;
 
@@ -65,7 +65,7 @@ class ClassificationBand {
   bool is_outermost(std::int64_t id) const;
   bool is_visited(std::size_t v) const { return movable[v] != 0 && (!part_ || part_->owns(id[v])); }
   double unit(std::size_t v) const { return links_.of_type(type[v]).unit * background_.h(); }
-  /// Farther than any vertex that may change, in units.
+  /// A distance greater than that of any vertex that may change, in units.
   float far() const { return static_cast<float>(params_.reach_in + params_.reach_out + 1); }
 
   const BackgroundMesh& background_;
@@ -76,8 +76,8 @@ class ClassificationBand {
   const PsiValues* known_;
   const ClassificationPart* part_;
   IdSet band_;
-  std::vector<int> known_at_;       ///< where in known_ a vertex is, or -1; empty without
-  std::vector<std::size_t> first_;  ///< into ranks_
+  std::vector<int> known_at_;       ///< index of each vertex in known_, or -1; empty without known_
+  std::vector<std::size_t> first_;  ///< offsets into ranks_
   std::vector<int> ranks_;
 };
 

@@ -10,28 +10,27 @@
 
 namespace umtet {
 
-/// How well the tets around a boundary vertex can be shaped when its link has this configuration: measured, not
-/// derived.
+/// Attainable quality of the tets around a boundary vertex whose link has this configuration; measured, not derived.
 struct ConfigurationQuality {
   int site;              ///< LinkTopology::site
   int n_positive_faces;  ///< bv
   int n_tets;            ///< nt
-  double quality;        ///< the worst mean ratio of its ring that can be reached
+  double quality;        ///< the greatest worst mean ratio of the ring that can be reached
 };
 
 /// The cost of a configuration of the link around an outside vertex.
 class StarCostTable {
  public:
-  /// @param good  a quality that costs nothing, above all in the list: see configuration_costs.cpp
+  /// @param good  the quality that costs nothing, above all in the list: see configuration_costs.cpp
   StarCostTable(const std::vector<LinkTopology>& links, std::span<const ConfigurationQuality> qualities, double good);
-  /// Of every manifold configuration cost(bv, nt), whatever the site.
+  /// Table in which every manifold configuration costs cost(bv, nt), whatever the site.
   StarCostTable(const std::vector<LinkTopology>& links, const std::function<float(int, int)>& cost);
 
   float operator()(int site, const LinkState& s) const {
     const OfSite& of = of_site_[static_cast<std::size_t>(site)];
     return s.manifold ? of.cost[s.n_positive_faces * of.row + s.n_tets] : not_manifold_;
   }
-  /// Sets the cost of every configuration to f(), in no order that means anything.
+  /// Sets the cost of every configuration to a value of f(), in unspecified order.
   template <class F>
   void generate(const F& f) {
     for (OfSite& of : of_site_) std::generate(of.cost.begin(), of.cost.end(), f);
@@ -40,7 +39,7 @@ class StarCostTable {
 
  private:
   struct OfSite {
-    std::size_t row = 0;      ///< triangles of the link, and one more
+    std::size_t row = 0;      ///< number of triangles of the link plus one
     std::vector<float> cost;  ///< by positive faces, then by tets
   };
   void make_rows(const std::vector<LinkTopology>& links);

@@ -9,19 +9,20 @@
 #include "common/polled_loops.h"
 #include "mesh/core/implicit_function.h"
 
-// Loops whose bodies ask psi: by all threads, or in blocks if psi wants that. The results are the same.
+// Loops whose bodies evaluate psi: with all threads, or in blocks if psi requests it. The results are the same.
 namespace umtet {
 
-/// Points of a block of values: a megabyte or two with the answers, and a thousand times what a call costs.
+/// Points per block: a megabyte or two of memory with the values, and enough work to outweigh the cost of a call a
+/// thousand times.
 inline constexpr std::size_t kPointsPerBlock = 1 << 14;
 
-/// f(i) for every i < n, which do not depend on each other. Threads over i, with a poll before every `per_poll` of
-/// them; a psi that is asked in blocks is asked by the thread that called. \throw Cancelled
+/// Calls f(i) for every i < n; the calls must not depend on each other. Uses threads over i, and polls before every
+/// `per_poll` calls. If psi is evaluated in blocks, the calling thread evaluates it. \throw Cancelled
 template <class F>
 void for_each_asking(ImplicitFunctionRef psi, std::size_t n, std::size_t per_poll, const Context& context, const F& f) {
   const SideBySide* side_by_side = psi.side_by_side();
   if (!side_by_side) return polled_parallel_for(n, per_poll, context, f);
-  // At the end of a piece the blocks get smaller.
+  // Blocks get smaller towards the end of a piece.
   const std::size_t piece = std::max(per_poll, kPointsPerBlock);
   for (std::size_t begin = 0; begin < n; begin += piece) {
     context.poll();
@@ -29,8 +30,9 @@ void for_each_asking(ImplicitFunctionRef psi, std::size_t n, std::size_t per_pol
   }
 }
 
-/// The sum of what f(i, sum) adds for every begin <= i < end, like that; of integers, whose order does not matter.
-/// @param per_task  values that a thread takes at least
+/// Sum of the contributions of f(i, sum) for begin <= i < end, by threads or in blocks; for integers, whose order does
+/// not matter.
+/// @param per_task  least number of values per task of a thread
 template <class T, class F>
 T sum_asking(ImplicitFunctionRef psi, std::size_t begin, std::size_t end, std::size_t per_task, const Context& context,
              const F& f) {
@@ -40,7 +42,8 @@ T sum_asking(ImplicitFunctionRef psi, std::size_t begin, std::size_t end, std::s
   return sum;
 }
 
-/// take(i, psi(point(i))) for every i < n in ascending order, of a psi that is asked in blocks. \throw Cancelled
+/// Calls take(i, psi(point(i))) for every i < n in ascending order, for a psi that is evaluated in blocks. \throw
+/// Cancelled
 template <class Point, class Take>
 void take_in_blocks(ImplicitFunctionRef psi, std::size_t n, const Context& context, const Point& point,
                     const Take& take) {
@@ -55,7 +58,7 @@ void take_in_blocks(ImplicitFunctionRef psi, std::size_t n, const Context& conte
   }
 }
 
-/// psi(point(i)) for every i < n: by all threads, or in blocks. \throw Cancelled
+/// psi(point(i)) for every i < n, by all threads or in blocks. \throw Cancelled
 template <class Point>
 std::vector<double> values_at(ImplicitFunctionRef psi, std::size_t n, const Context& context, const Point& point) {
   std::vector<double> value(n);

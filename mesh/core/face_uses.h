@@ -10,10 +10,10 @@
 
 namespace umtet {
 
-/// A face of a tet, under its least vertex.
+/// A face of a tet, filed under its least vertex.
 struct FaceUse {
   std::uint64_t rest;    ///< the other two vertices, ascending, 32 bits each
-  std::uint64_t source;  ///< 2 (4 tet + local face) + 1 where it runs against ascending vertices
+  std::uint64_t source;  ///< 2 (4 tet + local face), plus 1 if its orientation is opposite to ascending vertices
 
   bool reversed() const { return (source & 1) != 0; }
   std::size_t place() const { return source / 2; }  ///< 4 tet + local face
@@ -28,7 +28,7 @@ inline void add_faces(const Tet& tet, std::size_t t, int v, std::vector<FaceUse>
   for (int k = 0; k < 4; ++k) {
     if (k == own) continue;
     const auto& f = kTetFace[k];
-    // The face from v on: it is a cycle.
+    // The corners after v in the cyclic order of the face.
     const int at = f[0] == own ? 0 : f[1] == own ? 1 : 2;
     const int p = tet[f[(at + 1) % 3]], q = tet[f[(at + 2) % 3]];
     if (p < v || q < v) continue;

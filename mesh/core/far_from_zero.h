@@ -6,12 +6,12 @@
 
 namespace umtet {
 
-/// True only where psi has no zero within some distance of x along every axis. Thread-safe.
+/// Returns true only if psi has no zero within some distance of x along every axis. Thread-safe.
 using FarFromZero = std::function<bool(const Vec3& x)>;
 
-/// Where the sign of psi is that of any other place within reach.
+/// Regions in which psi is known not to change sign.
 struct KnownSigns {
-  FarFromZero far = {};  ///< to `reach`; empty: nothing is known
+  FarFromZero far = {};  ///< for the distance `reach`; empty: nothing is known
   double reach = 0;      ///< model units
 };
 

@@ -9,14 +9,14 @@
 
 namespace umtet {
 
-/// A function that shares work between its derivatives has evaluate(): value returned, gradient and Hessian written
-/// where the pointers are not null.
+/// A function that computes value and derivatives together by evaluate(), which returns the value and writes the
+/// gradient and the Hessian to pointers that are not null.
 template <class F>
 concept JointlyEvaluated = requires(const F f, const Vec3 x, Vec3* g, Mat3* H) {
   { f.evaluate(x, g, H) } -> std::convertible_to<double>;
 };
 
-/// What the mesher needs of psi: Omega = {psi < 0}, psi C2 near the boundary     [Rangarajan2018, eq. (8)]
+/// Requirements on psi: Omega = {psi < 0}, psi C2 near the boundary             [Rangarajan2018, eq. (8)]
 template <class F>
 concept ImplicitFunction = JointlyEvaluated<F> || requires(const F f, const Vec3 x) {
   { f.value(x) } -> std::convertible_to<double>;
@@ -28,27 +28,27 @@ concept TwiceDifferentiable = JointlyEvaluated<F> ||(ImplicitFunction<F>&& requi
   { f.hessian(x) } -> std::convertible_to<Mat3>;
 });
 
-/// Runs calls that ask psi side by side in one thread: a call that has asked waits until all others have asked, too, or
-/// are done. Then one block of points answers them all.
+/// Runner of calls that evaluate psi side by side in one thread. A call that requests a value waits until all other
+/// calls have requested one or have returned. One block of points then answers all requests.
 class SideBySide {
  public:
-  /// f(i) for every i < n, in any order. \pre none of them waits for another. \throw what f or psi throws
+  /// Calls f(i) for every i < n, in any order. \pre no call waits for another \throw any exception of f or psi
   virtual void for_each(std::size_t n, const std::function<void(std::size_t)>& f) const = 0;
 
  protected:
   ~SideBySide() = default;
 };
 
-/// A psi for which a call costs so much that it is to be asked in blocks. values(): out[i] = psi(x[i]), the same
-/// numbers as one by one. side_by_side(): may be null, which is no blocks after all.
+/// A psi whose calls are so costly that it should be evaluated in blocks. values() sets out[i] = psi(x[i]), the same
+/// numbers as single calls. side_by_side() may return null, which disables blocks.
 template <class F>
 concept AskedInBlocks = requires(const F f, std::span<const Vec3> x, double* out) {
   f.values(x, out);
   { f.side_by_side() } -> std::convertible_to<const SideBySide*>;
 };
 
-/// Non-owning view of any ImplicitFunction: one indirect call per evaluation. The function must outlive it.
-/// Thread-safe when the function's const members are.
+/// Non-owning reference to any ImplicitFunction, with one indirect call per evaluation. The function must outlive it.
+/// Thread-safe if the function's const members are.
 class ImplicitFunctionRef {
  public:
   template <ImplicitFunction F>
@@ -76,12 +76,12 @@ class ImplicitFunctionRef {
   }
   bool has_hessian() const { return has_hessian_; }
 
-  /// out[i] = value(x[i]); one call of the function if it is asked in blocks.
+  /// Sets out[i] = psi(x[i]); a single call of the function if it is evaluated in blocks.
   void values(std::span<const Vec3> x, double* out) const {
     if (values_) return values_(object_, x, out);
     for (const Vec3& at : x) *out++ = value(at);
   }
-  /// Null for a function that is not asked in blocks: loops over points then use threads (mesh/core/asking_psi.h).
+  /// Null for a function that is not evaluated in blocks; loops over points then use threads (mesh/core/asking_psi.h).
   const SideBySide* side_by_side() const { return side_by_side_; }
 
  private:
@@ -111,7 +111,7 @@ class ImplicitFunctionRef {
   bool has_hessian_;
 };
 
-/// -psi, the level set of the complement of Omega. psi must outlive it.
+/// -psi, the level set function of the complement of Omega. psi must outlive it.
 template <ImplicitFunction F>
 class Complement {
  public:

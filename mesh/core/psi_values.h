@@ -7,12 +7,12 @@
 
 namespace umtet {
 
-/// psi and its gradient at a vertex of the background, where they have been evaluated already.
+/// Known value and gradient of psi at a vertex of the background.
 struct PsiValue {
   std::int64_t vertex;
   double value;
   Vec3 gradient;
 };
-using PsiValues = std::vector<PsiValue>;  ///< ascending vertices
+using PsiValues = std::vector<PsiValue>;  ///< ascending by vertex
 
 }  // namespace umtet

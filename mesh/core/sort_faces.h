@@ -9,10 +9,10 @@
 
 namespace umtet {
 
-/// Sorts faces as triples of vertices: into groups of near first vertices by counting, about as many as there are
-/// faces, then in these groups, which are small. \pre indices in 0 .. n_vertices - 1
+/// Sorts faces as triples of vertices. A counting sort makes groups of similar first vertices, about as many as there
+/// are faces; each of these small groups is then sorted. \pre indices in 0 .. n_vertices - 1
 inline void sort_faces(std::vector<Triangle>& faces, std::size_t n_vertices) {
-  int shift = 0;  // of a first vertex, to its group
+  int shift = 0;  // from a first vertex to its group
   while (n_vertices >> shift > faces.size()) ++shift;
   std::vector<std::size_t> end((n_vertices >> shift) + 2, 0);
   for (const Triangle& f : faces) ++end[(f[0] >> shift) + 1];

@@ -18,11 +18,11 @@ inline double sum_of_squared_edges(const Vec3& a, const Vec3& b, const Vec3& c, 
          (d - b).squaredNorm() + (d - c).squaredNorm();
 }
 
-/// 12 cbrt(9) / 6^(2/3) = 12 cbrt(1/4): the factor of eq. (6) when the volume comes as volume6().
+/// 12 cbrt(9) / 6^(2/3) = 12 cbrt(1/4): the factor of eq. (6) for a volume given by volume6().
 inline constexpr double kMeanRatioFactor = 7.559526299369239;
 
 /// Mean ratio Q(K) = 12 cbrt(9) |mu|^(2/3) sign(mu) / sum of squared edge lengths            [Rangarajan2018, eq. (6)]
-/// 1 for a regular tet, 0 flat, < 0 inverted.
+/// 1 for a regular tet, 0 for a flat one, < 0 for an inverted one.
 inline double mean_ratio(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const double root = std::cbrt(volume6(a, b, c, d));
   return kMeanRatioFactor * root * std::abs(root) / sum_of_squared_edges(a, b, c, d);

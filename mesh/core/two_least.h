@@ -6,8 +6,8 @@
 
 namespace umtet {
 
-/// The two least vertices of a tet. Only under these has it faces, if each is put under its least vertex: three and
-/// one.
+/// The two least vertices of a tet. If each face is filed under its least vertex, a tet has faces under these two only:
+/// three and one.
 struct TwoLeast {
   int first, second;
 

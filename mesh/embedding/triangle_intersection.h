@@ -6,14 +6,14 @@
 
 namespace umtet {
 
-/// Exact sign of the orientation of a, b, c, their coordinate `axis` left out: +1 counter-clockwise where the next two
-/// axes are x and y.
+/// Exact sign of the orientation of a, b, c projected along coordinate `axis`: +1 if counter-clockwise with the next
+/// two axes as x and y.
 int projected_orientation_sign(const Vec3& a, const Vec3& b, const Vec3& c, int axis);
 
-/// Whether two triangles meet, as closed sets, elsewhere than in the vertices and the edge that they share by index.
-/// Exact: no tolerance, also where they are in one plane.
-/// \pre neither is degenerate (of collinear corners), and they are not the same three vertices
-/// Cost: two orientation signs for most pairs that are not near.
+/// Tests whether two triangles, as closed sets, intersect outside of the vertices and the edge that they share by
+/// index. Exact, without tolerance, also for coplanar triangles.
+/// \pre neither is degenerate (with collinear corners), and they do not have the same three vertices
+/// Cost: two orientation signs for most pairs that are not close.
 bool meet_beyond_shared(const std::vector<Vec3>& V, const Triangle& f, const Triangle& g);
 
 }  // namespace umtet

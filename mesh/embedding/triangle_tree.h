@@ -8,8 +8,8 @@
 
 namespace umtet {
 
-/// A bounding volume tree of triangles: halves at the median of the longer axis of centroids,
-/// with the same shape for any number of threads. Keeps what it is made of by reference.
+/// Bounding volume tree of triangles. Nodes are halved at the median of the longer axis of centroids; the shape is the
+/// same for any number of threads. Keeps references to its arguments.
 class TriangleTree {
  public:
   using Box = Eigen::AlignedBox3d;
@@ -17,7 +17,7 @@ class TriangleTree {
   /// \pre indices are in range. Cost: O(n log n), threads over halves
   TriangleTree(const std::vector<Vec3>& V, const std::vector<Triangle>& faces);
 
-  /// Triangles are kept in the order of the leaves: a leaf is a range of it.
+  /// Triangles are stored in the order of the leaves; a leaf is a range of this order.
   std::size_t n_leaves() const { return leaves_.size(); }
   const std::vector<int>& order() const { return order_; }
   struct Range {
@@ -25,10 +25,10 @@ class TriangleTree {
   };
   Range leaf(std::size_t k) const { return leaves_[k]; }
   const Box& leaf_box(std::size_t k) const { return boxes_[first_leaf_ + k]; }
-  /// The box of the triangle at a place of order().
+  /// The box of the triangle at an index of order().
   const Box& box_at(int place) const { return triangle_boxes_[static_cast<std::size_t>(place)]; }
 
-  /// Calls f(k) for every leaf k >= first whose box the predicate accepts; ascending.
+  /// Calls f(k) for every leaf k >= first whose box the predicate accepts, ascending.
   template <class Accepts, class F>
   void for_leaves(std::size_t first, const Accepts& accepts, const F& f) const {
     std::size_t stack[64];
@@ -47,7 +47,7 @@ class TriangleTree {
   }
 
  private:
-  /// Of a complete binary tree, whose leaves are numbered from the left.
+  /// The last leaf below a node of a complete binary tree, whose leaves are numbered from the left.
   std::size_t last_leaf_below(std::size_t node) const {
     while (node < first_leaf_) node = 2 * node + 2;
     return node - first_leaf_;
@@ -59,7 +59,7 @@ class TriangleTree {
   std::vector<int> order_;
   std::vector<Box> triangle_boxes_;  ///< in the order of order_
   std::vector<Range> leaves_;
-  std::vector<Box> boxes_;  ///< of the nodes; the children of k are 2 k + 1 and 2 k + 2
+  std::vector<Box> boxes_;  ///< boxes of the nodes; the children of k are 2 k + 1 and 2 k + 2
   std::size_t first_leaf_ = 0;
 };
 

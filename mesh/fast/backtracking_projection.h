@@ -12,49 +12,55 @@
 
 namespace umtet {
 
-/// docs/constants.md has what other values do.
+/// Parameters of project(). docs/constants.md lists the effect of other values.
 struct ProjectionParams {
-  int passes = 3;       ///< N_P: parts of the way, with smoothing of inner vertices after each; >= 1
-  int max_rounds = 20;  ///< attempts in all, those of passes included; >= passes
-  /// Mean ratio: a step leaves every tet of the star at this or more, or not worse than its worst; in (0, 1)
+  int passes = 3;  ///< N_P: the way to psi = 0 is made in this many parts, with smoothing of inner vertices after each;
+                   ///< >= 1
+  int max_rounds = 20;  ///< attempts in all, passes included; >= passes
+  /// Mean ratio: a step leaves every tet of the star at or above this value, or at least as good as the star's worst
+  /// tet; in (0, 1)
   double least_quality = .2;
   int sweeps = 3;             ///< sweeps of smoothing after each round; >= 0
-  SmoothingParams smoothing;  ///< max_sweeps is not used, sweeps is
+  SmoothingParams smoothing;  ///< its max_sweeps is not used; `sweeps` takes its place
   ClosestPointParams closest_point;
 };
 
-/// Every broken constraint, not just the first.
+/// All broken constraints, not just the first.
 std::vector<std::string> problems(const ProjectionParams&);
 
 struct NotArrived {
   enum class Reason {
-    NoFoot,  ///< the closest point was not found from where it is
-    Guard    ///< the last attempt would have left a tet below least_quality and worse than it was
+    NoFoot,  ///< no closest point was found from the vertex's position
+    Guard    ///< the last attempt would have left a tet below least_quality and worse than before
   };
   int vertex;
   Reason reason;
 };
 
 struct ProjectionReport {
-  std::size_t boundary = 0;             ///< Boundary vertices
-  std::vector<NotArrived> not_arrived;  ///< ascending vertex; empty when all is well
+  std::size_t boundary = 0;             ///< number of Boundary vertices
+  std::vector<NotArrived> not_arrived;  ///< ascending by vertex; empty if all arrived
   int rounds = 0;
-  std::size_t stopped_short = 0;    ///< vertices the guard held back at least once
-  std::size_t psi_evaluations = 0;  ///< those of the smoothing included
-  double min_quality = 1;           ///< the worst tet with a vertex that is not Fixed; by project(layer) only
-  SmoothingReport smoothing;        ///< what it says of the layer, too
+  std::size_t stopped_short = 0;    ///< vertices that the guard held back at least once
+  std::size_t psi_evaluations = 0;  ///< includes the evaluations of smoothing
+  double min_quality = 1;  ///< mean ratio of the worst tet with a vertex that is not Fixed; set by project(layer) only
+  SmoothingReport smoothing;  ///< includes the state of the layer that smoothing reports
 };
 
-/// Moves the Boundary vertices of a layer to their closest points on psi = 0.     [Rangarajan2018, Alg. 1, 23-30]
+/// Projects the Boundary vertices of a layer onto psi = 0, with backtracking on quality.     [Rangarajan2018, Alg. 1,
+/// 23-30]
 ///
-/// In pass k of N_P each vertex is offered k / N_P of its way, colour by colour, and takes as much of the step (all of
-/// it, a half, a quarter, an eighth) as leaves every tet of its ring at Q >= least_quality, or not worse than its
-/// worst. Inner vertices are smoothed after each pass but the last. If some were held back, those that have arrived
-/// slide on the surface and make room, and the others try again; in every third round these relax like inner vertices
-/// first. Their feet are found anew from where they are. A layer without a tet at Q <= 0 gets none.
+/// In pass k of N_P each vertex is offered k / N_P of its way to its closest point, colour by colour. It takes the
+/// longest of four steps (whole, half, quarter, eighth) that leaves every tet of its ring at Q >= least_quality, or at
+/// least as good as the ring's worst tet. Inner vertices are smoothed after each pass but the last.
 ///
-/// Vertices that arrive satisfy |psi| / |grad psi| <= 1e-10 h (closest_point.tol). The same bytes for any number of
-/// threads. The smoother must be of the layer as it is; afterwards it can go on with its queue and its rings.
+/// If some vertices were held back, those that have arrived slide on the surface and make room, and the others try
+/// again. In every third round the vertices held back first relax like inner vertices, and their foot points are
+/// computed from their new positions. No tet with Q <= 0 is created in a layer without one.
+///
+/// Vertices that arrive satisfy |psi| / |grad psi| <= 1e-10 h (closest_point.tol). The bytes are the same for any
+/// number of threads.
+/// @param smoother  of the layer in its present state; it can be used afterwards with its queue and its rings
 /// \throw std::invalid_argument naming every broken constraint of params, Cancelled
 ProjectionReport project(PNormSmoother& smoother, ImplicitFunctionRef psi, const ProjectionParams& params = {},
                          const Context& context = {});

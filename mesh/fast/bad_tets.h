@@ -11,14 +11,16 @@
 
 namespace umtet {
 
-/// A tet of a layer that repair() has to look at.
+/// A tet of a layer that repair() has to improve.
 struct BadTet {
-  double badness;  ///< Q; below 0, the cosine of its face less 1, if that is misaligned: folded over ones are the worst
+  double badness;  ///< Q; if its face is misaligned, the cosine of the face minus 1, which is below 0: folded over
+                   ///< faces are the worst
   std::array<std::int64_t, 4> tet;
 };
 
-/// The tets of a layer that are below a mean ratio or have a misaligned face (patch_state.h), in its order.
-/// @param n_evaluations  is raised by the number of values of psi
+/// The tets of a layer with a mean ratio below a target or a misaligned face (patch_state.h), in the order of the
+/// layer.
+/// @param n_evaluations  is increased by the number of evaluations of psi
 std::vector<BadTet> bad_tets(const BackgroundLayer& layer, const IdSet& inside, ImplicitFunctionRef psi, double target,
                              std::size_t& n_evaluations);
 

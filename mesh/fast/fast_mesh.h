@@ -19,57 +19,64 @@
 
 namespace umtet {
 
-/// A boundary-fitting mesh of {psi < 0}, better and some ten times faster than Algorithm 1.
+/// Boundary-fitting mesh of {psi < 0}, of higher quality than Algorithm 1 and about ten times faster.
 ///
-/// classification: which background vertices near psi = 0 count as inside is chosen for the shape of the tets
-/// (classification.h), where that has costs (configuration_costs.h); layer: only the boundary of omega_h and two layers
-/// behind it move (linked_active_layer.h); projection: boundary vertices walk to psi = 0 as far as no tet of
-/// their rings falls below Q = .2 or what it had (backtracking_projection.h); smoothing: p-norm Newton steps where a
-/// tet is below the target (p_norm_smoothing.h); tangential relaxation: boundary vertices slide on to ridges that h
-/// does not resolve (tangential_relaxation.h); repair: vertices change between inside and outside where a tet is still
-/// below the target (repair.h).
+/// 1. Classification: the background vertices near psi = 0 that count as inside are chosen for the shape of the tets
+///    (classification.h), if the background has costs (configuration_costs.h).
+/// 2. Layer: only the boundary of omega_h and two layers behind it move (linked_active_layer.h).
+/// 3. Projection: boundary vertices move towards psi = 0 while every tet of their rings stays at Q >= .2, or at least
+///    as good as the ring's worst tet (backtracking_projection.h).
+/// 4. Smoothing: p-norm Newton steps where a tet is below the target (p_norm_smoothing.h).
+/// 5. Tangential relaxation: boundary vertices slide onto ridges that h does not resolve (tangential_relaxation.h).
+/// 6. Repair: vertices change between inside and outside where a tet is still below the target (repair.h).
 ///
-/// It always ends in a mesh, unless psi has no inside in the background or reaches its boundary: the boundary of
-/// omega_h is a manifold by the choice of its tets (manifold_boundary.h), no tet is let invert on the way, and where
-/// the boundary meets itself in the end, vertices go back (step_back.h). Vertices may then be off psi = 0, which a
-/// certificate says.
+/// The result is always a mesh, unless psi has no inside in the background or reaches the background boundary: the
+/// choice of tets makes the boundary of omega_h a manifold (manifold_boundary.h), no tet may invert on the way, and
+/// where the final boundary meets itself, vertices go back (step_back.h). Such vertices may be off psi = 0, and the
+/// certificate reports this.
 ///
-/// The result is that of universal_mesh(): omega_h of the chosen inside vertices, with the background's ids. The same
-/// bytes for any number of threads. psi must be thread-safe. Reports the steps "project", "relax" and "repair". \pre
-/// params are those universal_mesh() accepts
-/// @param chosen  by classified_submesh(): what failed there is the result
+/// The result has the form of universal_mesh(): omega_h of the chosen inside vertices, with the ids of the background.
+/// The bytes are the same for any number of threads. psi must be thread-safe. Reports the steps "project", "relax" and
+/// "repair".
+/// \pre universal_mesh() accepts the params
+/// @param chosen  result of classified_submesh(); a failure there is passed on as the result
 /// \throw Cancelled
 UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
                    const FastParams& params, ChosenSubmesh chosen, const Context& context = {});
 
-/// The step before: which vertices count as inside, and how many tets that makes, at a quarter of what listing them
-/// costs. Repair may change both by a few. Reports the steps "search" and "submesh".
-/// @param seeds  as those of universal_mesh(). \throw Cancelled
+/// The step before fast_mesh(): chooses the vertices that count as inside and counts the tets of omega_h, at a quarter
+/// of the cost of listing them. Repair may change both slightly. Reports the steps "search" and "submesh".
+/// @param seeds  as in universal_mesh()
+/// \throw Cancelled
 ChosenSubmesh classified_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi,
                                  const SubmeshParams& submesh, const FastParams& params, const Context& context = {},
                                  const std::vector<Vec3>& seeds = {});
 
-/// The same where a mesh in a background that differs at some places only has been made: what is not near these stays
-/// as it is, its classification and its places. \pre no walls; psi and params are those of that mesh. \throw Cancelled
+/// Chooses the inside vertices where a mesh already exists in a background that differs only locally. Away from the
+/// differences, classification and positions stay unchanged.
+/// \pre no walls; psi and params are the same as for that mesh
+/// \throw Cancelled
 ChosenSubmesh classified_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi,
                                  const SubmeshParams& submesh, const FastParams& params, const FormerMesh& former,
                                  const Context& context = {});
 
-/// What the mesh of one psi leaves to that of the next, in the same background mesh.
+/// State that one mesh passes to the mesh of the next psi in the same background.
 struct FastMemory {
-  IdSet negative{0};                                 ///< psi < 0
-  IdSet inside{0};                                   ///< as classified
+  IdSet negative{0};                                 ///< vertices with psi < 0
+  IdSet inside{0};                                   ///< vertices classified as inside
   std::vector<std::pair<std::int64_t, Vec3>> moved;  ///< vertices off their background places, ascending
-  std::size_t n_recalled = 0;                        ///< of these, how many the last mesh began with
-  std::shared_ptr<const VertexLinks> links;          ///< of the background
+  std::size_t n_recalled = 0;  ///< the number of moved vertices that began at their position in the last mesh
+  std::shared_ptr<const VertexLinks> links;  ///< links of the background
 };
 
-/// The same from known inside vertices, those with psi < 0. The classification stays as
-/// in `memory` if psi has the signs it had everywhere, else where another costs little less
-/// (ClassificationParams::keep), and the layer begins near its places there (warm_start.h). There is no tangential
-/// relaxation.
-/// @param memory  empty (no `moved`) at first; receives that of this mesh, or becomes empty if there is none
-/// @param known   of this psi, its values at the vertices where the search for `inside` evaluated it
+/// Boundary-fitting mesh from known inside vertices, those with psi < 0, warm-started from the last mesh. There is no
+/// tangential relaxation.
+///
+/// If psi has the same sign as before at every vertex, the classification stays as in `memory`; otherwise it stays
+/// where another costs little less (ClassificationParams::keep). The layer begins near its positions in the last mesh
+/// (warm_start.h).
+/// @param memory  empty (no `moved`) at first; receives the state of this mesh, or becomes empty if no mesh was made
+/// @param known   values of this psi at the vertices where the search for `inside` evaluated it
 UmResult fast_mesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
                    const FastParams& params, const Context& context, IdSet inside, FastMemory& memory,
                    const PsiValues& known = {});

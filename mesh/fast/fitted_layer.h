@@ -11,23 +11,24 @@
 
 namespace umtet {
 
-/// How a layer is fitted to psi = 0.
+/// Options for fitting a layer to psi = 0.
 struct LayerFit {
   SmoothingParams smoothing;
-  bool is_on_surface = false;  ///< its boundary vertices are on psi = 0 already
-  /// relax_tangentially(), which asks psi at every face: half the cost of an update. With it, whether each vertex of
-  /// the layer is inside
+  bool is_on_surface = false;  ///< the boundary vertices are on psi = 0 already
+  /// Whether each vertex of the layer is inside, for relax_tangentially(); null: no tangential relaxation. It evaluates
+  /// psi at every face, which is half the cost of an update.
   const std::vector<std::uint8_t>* inside = nullptr;
 };
 
 struct FittedLayer {
-  std::vector<Vec3> projected;  ///< places between projection and relaxation, by vertex of the layer
+  std::vector<Vec3> projected;  ///< positions between projection and relaxation, by vertex of the layer
   std::size_t psi_evaluations = 0;
 };
 
-/// Boundary vertices of the layer go to psi = 0, as far as no tet inverts, and the layer is relaxed: project(), then
-/// PNormSmoother::run() over all of it, then relax_tangentially(), and project() again where a vertex was held back.
-/// Reports the step "relax". \throw Cancelled
+/// Fits a layer to psi = 0: moves its boundary vertices towards psi = 0 without inverting a tet, and relaxes the layer.
+/// The steps are project(), PNormSmoother::run() over the whole layer, relax_tangentially(), and project() again if a
+/// vertex was held back. Reports the step "relax".
+/// \throw Cancelled
 FittedLayer fit_layer(PNormSmoother& smoother, ImplicitFunctionRef psi, const FastParams& params, const LayerFit& fit,
                       const Context& context = {});
 

@@ -21,37 +21,40 @@ namespace umtet {
 struct FormerMesh {
   const BackgroundMesh& background;
   const UmResult& mesh;          ///< UmStatus::Success
-  std::vector<Vec3> seeds = {};  ///< as those of universal_mesh() where it has not all pieces of psi; else none
+  std::vector<Vec3> seeds = {};  ///< seeds as in universal_mesh() if the mesh does not contain all components of psi;
+                                 ///< else empty
 };
 
-/// What is left of it in a background that differs at some places only: an octree with smaller leaves there. Away from
-/// them the tets at a vertex are the same, by keys (BackgroundMesh::key_of_vertex()) and places.
+/// The states of a former mesh that carry over to a background that differs only locally, such as an octree with
+/// smaller leaves there. Away from the differences the tets at a vertex are the same, by keys
+/// (BackgroundMesh::key_of_vertex()) and by positions.
 struct FormerStates {
-  /// Vertices that count as inside: those that did where the background is the same around them, elsewhere those with
-  /// psi < 0, of the pieces with a seed if there are any.
+  /// Vertices that count as inside. Where the background is the same around a vertex, the former state holds. Elsewhere
+  /// they are the vertices with psi < 0, restricted to the components with a seed if there are seeds.
   IdSet inside{0};
   IdSet same{0};  ///< vertices around which the background is the same
-  /// Those at which it is not, with a neighbour on the other side: where classify_vertices() has work.
+  /// The other vertices that have a neighbour on the other side: classify_vertices() works on them.
   PsiValues cut;
   std::size_t psi_evaluations = 0;
 };
-/// Cost: some 200 ns a vertex of the background, by all threads. \throw Cancelled
+/// Carries the states of a former mesh over to a background. Cost: about 200 ns per vertex of the background, by all
+/// threads. \throw Cancelled
 FormerStates former_states(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
                            const FormerMesh& former, const Context& context = {});
 
-/// The vertices of omega_h that keep the places of the former mesh, ascending: with the same background around them and
-/// the same neighbours inside.
+/// The vertices of omega_h that keep their positions in the former mesh, ascending: the background around them is the
+/// same, and so are their inside neighbours.
 /// @param before  FormerStates::inside
-/// @param inside  of the mesh to come
+/// @param inside  inside vertices of the new mesh
 std::vector<KeptVertex> kept_vertices(const BackgroundMesh& background, const VertexLinks& links,
                                       const FormerMesh& former, const FormerStates& states, const IdSet& inside);
 
-/// Which vertices of omega_h may move: within a few edges of one that is not kept.
+/// The vertices of omega_h that may move: they are within a few edges of a vertex that is not kept.
 IdSet loose_vertices(const BackgroundMesh& background, const VertexLinks& links, const IdSet& inside,
                      const std::vector<KeptVertex>& kept);
 
-/// Puts those vertices of a layer that are kept where the former mesh had them. Where that leaves a tet with a vertex
-/// that is not kept below least_quality, vertices that may move go back to the background.
+/// Puts the kept vertices of a layer at their positions in the former mesh. Where a tet with a vertex that is not kept
+/// then falls below least_quality, vertices that may move go back to the background.
 void begin_where_kept(const std::vector<KeptVertex>& kept, const ProjectionParams& projection, BackgroundLayer& layer);
 
 }  // namespace umtet

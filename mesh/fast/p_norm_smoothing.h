@@ -17,93 +17,101 @@
 
 namespace umtet {
 
-/// docs/constants.md has what other values do.
+/// Parameters of p-norm smoothing. docs/constants.md lists the effect of other values.
 struct SmoothingParams {
-  double target = kQualityTarget;  ///< mean ratio every tet is to reach; in (0, 1)
+  double target = kQualityTarget;  ///< mean ratio that every tet should reach; in (0, 1)
   /// A vertex is solved while its worst tet is below target + margin; >= 0
   double margin = .034;
-  double fine_gain = 2e-5;    ///< relative gain in the norm of 1/Q below which a solve is no move; in (0, 1/96)
-  double least_step = .0075;  ///< of h: a shorter move enqueues no neighbour; >= 0
-  /// In place of fine_gain where a tet of the star is below the target; in (0, 1/96). There any move enqueues the
-  /// neighbours. What smoothing wins there by smaller steps it takes from the tets around, and leaves a region just
-  /// below the target where there were a few bad tets.
+  double fine_gain = 2e-5;    ///< a solve with a smaller relative gain in the norm of 1/Q is no move; in (0, 1/96)
+  double least_step = .0075;  ///< in units of h: a shorter move does not enqueue neighbours; >= 0
+  /// Replaces fine_gain where a tet of the star is below the target; in (0, 1/96). In that case any move enqueues the
+  /// neighbours. Gains by smaller steps are made at the expense of surrounding tets, and turn a few bad tets into a
+  /// region just below the target.
   double least_gain = 3e-4;
-  int max_sweeps = 60;  ///< over the vertices in the queue; >= 0
-  /// A vertex that slid is off the surface by a sagitta only, where Damped settles in as many steps as Newton and needs
-  /// no Hessian.
+  int max_sweeps = 60;  ///< sweeps over the vertices in the queue; >= 0
+  /// A vertex that slid is off the surface by a sagitta only. There Damped converges in as many steps as Newton and
+  /// needs no Hessian.
   ClosestPointParams closest_point{.method = ClosestPointMethod::Damped};
 };
 
-/// Every broken constraint, not just the first.
+/// All broken constraints, not just the first.
 std::vector<std::string> problems(const SmoothingParams&);
 
 struct SmoothingReport {
   int sweeps = 0;
-  std::size_t checks = 0;           ///< at a ring, to see whether its vertex needs a solve
+  std::size_t checks = 0;           ///< checks of a ring, to see whether its vertex needs a solve
   std::size_t solves = 0;           ///< Newton solves for one vertex
   std::size_t moves = 0;            ///< solves that moved their vertex
-  std::size_t psi_evaluations = 0;  ///< of psi and its derivatives, for vertices on the boundary
-  bool settled = false;             ///< nothing moved in the last sweep; false: max_sweeps used up
-  // Of the layer as it is left; not filled by PNormSmoother::run().
-  std::size_t tangled = 0;  ///< vertices left with a tet of V <= 0 in their ring, Fixed ones not counted
-  double min_quality = 1;   ///< mean ratio of the worst tet with a vertex that is not Fixed; 1 without any
+  std::size_t psi_evaluations = 0;  ///< evaluations of psi and its derivatives, for vertices on the boundary
+  bool settled = false;             ///< nothing moved in the last sweep; false: all max_sweeps were used
+  // The final state of the layer; not set by PNormSmoother::run().
+  std::size_t tangled = 0;  ///< vertices with a tet of V <= 0 in their ring, without Fixed ones
+  double min_quality = 1;   ///< mean ratio of the worst tet with a vertex that is not Fixed; 1 if there is none
 
-  SmoothingReport& operator+=(const SmoothingReport& later);  ///< counters add up, the state is the later one's
+  SmoothingReport& operator+=(const SmoothingReport& later);  ///< adds counters; the state is the later one's
 };
 
-/// Maximises the worst mean ratio around each vertex of a layer, one vertex at a time.
+/// p-norm smoothing of vertex positions: raises the worst mean ratio around each vertex of a layer, one vertex at a
+/// time.
 ///
-/// 1/Q is proportional to L / V^(2/3), convex in the place of one vertex while V > 0, and so is the p-norm of the 1/Q
-/// of its ring. A solve makes a Newton step on that norm for p = 48 and one for p = 96, through F = Q^-3 = L^3 / (432
-/// V^2) and its powers 16 and 32, so that it takes no roots. A step is at most .5 h long, h that of the vertex, leaves
-/// every V a fifth of its value or more, and is halved until the sum of the powers falls. A solve counts if it lowers
-/// sum F^32 over the ring: that sum over the whole layer falls monotonically, and no solve leaves its ring with less
-/// than n^(-1/96) of the worst quality it had, n tets: 3.4 % at 28.
+/// 1/Q is proportional to L / V^(2/3), which is convex in the position of one vertex while V > 0, and so is the p-norm
+/// of 1/Q over the vertex's ring. A solve makes one Newton step on this norm for p = 48 and one for p = 96. It works on
+/// F = Q^-3 = L^3 / (432 V^2) and its powers 16 and 32, so that it needs no roots.
 ///
-/// A boundary vertex takes the steps in its tangent plane and is then put back on psi = 0; the solve counts by the sum
-/// there. Steps are over-relaxed, where that lowers the sum, too: alone, a vertex goes less far than with its
-/// neighbours. Where some V <= 0, V + sigma takes the place of V, with sigma > -min V: the same convex problem, solved
-/// again with ever smaller sigma until all V > 0; such a solve counts if it raises min V.
+/// - A step is at most .5 h long, with the h of the vertex, and leaves every V at a fifth of its value or more. It is
+///   halved until the sum of the powers falls.
+/// - A solve counts if it lowers sum F^32 over the ring. This sum over the whole layer therefore falls monotonically,
+///   and no solve leaves its ring with less than n^(-1/96) of its worst quality before, for n tets: a loss of 3.4 % for
+///   28.
+/// - A boundary vertex takes steps in its tangent plane and is then projected back onto psi = 0; the sum at the
+///   projected point decides whether the solve counts.
+/// - Steps are over-relaxed where this lowers the sum, too: a vertex alone moves less far than together with its
+///   neighbours.
+/// - Where some V <= 0, V + sigma replaces V, with sigma > -min V. This is the same convex problem, solved repeatedly
+///   with decreasing sigma until all V > 0 (simultaneous untangling and smoothing). Such a solve counts if it raises
+///   min V.
 ///
-/// Vertices are solved colour by colour, those of one colour by all threads, and again when they, or a neighbour in a
-/// tet below target + margin, have moved, by least_step or more where no tet is below the target: the same bytes for
-/// any number of threads. Does not allocate inside a sweep.
+/// Vertices are solved colour by colour, the vertices of one colour by all threads. A vertex is solved again when it,
+/// or a neighbour in a tet below target + margin, has moved; where no tet is below the target, only moves of at least
+/// least_step count. The bytes are the same for any number of threads. Nothing is allocated inside a sweep.
 class PNormSmoother {
  public:
-  /// Every vertex of the layer that is not Fixed is in the queue.
+  /// Enqueues every vertex of the layer that is not Fixed.
   /// \throw std::invalid_argument for a vertex with more than kMaxRing tets, unless Fixed
   explicit PNormSmoother(ActiveLayer& layer);
 
-  /// The layer is a part of one that several processes move: they call what follows together. Of reports, what was
-  /// moved last decides for all whether a layer has settled; counts are those of the part.
+  /// Declares the layer a part of one that several processes move; they then call all following functions together. In
+  /// reports, `settled` is decided for all processes by the last moves, while counts are counts of the part.
   void share(LayerExchange& exchange) { exchange_ = &exchange; }
   int n_colours() const { return exchange_ ? exchange_->n_colours() : static_cast<int>(colour_begin_.size()) - 1; }
-  /// Vertices of this colour have been moved and enqueued: passes that on if the layer is shared.
+  /// To be called after vertices of this colour were moved and enqueued: exchanges the changes if the layer is shared.
   void pass_on(int colour) {
     if (exchange_) exchange_->after(colour, layer_.V, queued_);
   }
-  /// Over all processes that share the layer.
+  /// Sum over all processes that share the layer.
   std::size_t sum(std::size_t n) const { return exchange_ ? exchange_->sum(n) : n; }
 
-  /// Puts vertex i and all vertices of its ring in the queue: to be called when i was moved from outside. Vertices that
-  /// share no tet may be enqueued by different threads at once.
+  /// Enqueues vertex i and all vertices of its ring. Call it after i was moved from outside. Different threads may
+  /// enqueue vertices that share no tet at the same time.
   void enqueue(int i);
-  /// Puts every vertex in the queue that was not Fixed at construction.
+  /// Enqueues every vertex that was not Fixed at construction.
   void enqueue_all();
   /// Empties the queue.
   void dequeue_all();
-  /// Solves vertices in the queue until none is left, or for max_sweeps; those left stay for the next call. Roles are
-  /// read anew: the caller may hold vertices by making them Fixed for a while, which leaves them in the queue.
-  /// What it says of the layer is left to measure(), which checks at every tet.
+  /// Solves vertices in the queue until the queue is empty, or for max_sweeps sweeps. The remaining vertices stay in
+  /// the queue for the next call.
+  ///
+  /// Roles are read anew at each call: the caller may hold vertices by making them Fixed temporarily, and they stay in
+  /// the queue. The final state of the layer is not reported; measure() computes it by a check of every tet.
   /// \throw std::invalid_argument naming every broken constraint of params, Cancelled
   SmoothingReport run(ImplicitFunctionRef psi, const SmoothingParams& params, const Context& context = {});
 
-  /// Fills in what a report says of the layer.
+  /// Sets the fields of a report that describe the layer's state.
   void measure(SmoothingReport& report) const;
 
   ActiveLayer& layer() { return layer_; }
   const ActiveLayer& layer() const { return layer_; }
-  /// The ring of a vertex that was not Fixed at construction, around its present place.
+  /// The ring of a vertex that was not Fixed at construction, around its present position.
   OneRing ring(int i) const { return OneRing(layer_.V[i], layer_.V, faces(i)); }
 
  private:
@@ -117,16 +125,16 @@ class PNormSmoother {
   };
 
   ActiveLayer& layer_;
-  LayerExchange* exchange_ = nullptr;      ///< or null: there is one process
-  std::vector<Range> faces_of_;            ///< per vertex, in faces_
-  std::unique_ptr<Triangle[]> faces_;      ///< opposite to a vertex in the tets of its ring; of those not Fixed, in the
-                                           ///< order of by_colour_, in which sweeps read them
-  std::vector<int> by_colour_;             ///< vertices, ascending within a colour
+  LayerExchange* exchange_ = nullptr;  ///< null: there is one process
+  std::vector<Range> faces_of_;        ///< per vertex, into faces_
+  std::unique_ptr<Triangle[]> faces_;  ///< faces opposite to a vertex in the tets of its ring, for vertices that are
+                                       ///< not Fixed, in the order of by_colour_, in which sweeps read them
+  std::vector<int> by_colour_;         ///< vertices, ascending within a colour
   std::vector<std::size_t> colour_begin_;  ///< into by_colour_
   std::vector<unsigned char> queued_;      ///< per vertex
 };
 
-/// PNormSmoother for one call.
+/// Runs a PNormSmoother once over a layer.
 SmoothingReport smooth(ActiveLayer& layer, ImplicitFunctionRef psi, const SmoothingParams& params = {},
                        const Context& context = {});
 

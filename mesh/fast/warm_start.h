@@ -13,21 +13,24 @@
 namespace umtet {
 
 struct WarmStart {
-  std::vector<unsigned char> recalled;  ///< per vertex of the layer: it began at its place in the last mesh
+  std::vector<unsigned char> recalled;  ///< per vertex of the layer: whether it began at its position in the last mesh
   std::size_t n_recalled = 0;
-  bool is_on_surface = false;  ///< all Boundary vertices are: none is left to project
+  bool is_on_surface = false;  ///< all Boundary vertices are on psi = 0: none is left to project
   std::size_t psi_evaluations = 0;
 };
 
-/// Where the layer of a domain that has moved begins: on psi = 0 at once, with the rest drawn along.
+/// Warm start of the layer of a domain that has moved: boundary vertices begin on psi = 0, and the others are drawn
+/// along.
 ///
-/// A vertex that is inside or outside as in `memory`, with all its neighbours, is recalled: it begins at its place
-/// there. Boundary vertices then go to their closest points, and recalled inner ones move as the vertices around them
-/// do in the mean, one sweep of it. Inner ones that are not recalled are displaced from the background by u, with u_i
-/// the mean of u over the other vertices of the tets at i, from three sweeps over these equations. Where that leaves a
-/// tet below projection.least_quality, its vertices go back to the background, and project() takes them from there.
+/// A vertex is recalled if it and all its neighbours are inside or outside as in `memory`: it begins at its position
+/// there. Boundary vertices then move to their closest points. Recalled inner vertices move by the mean displacement of
+/// the vertices around them, in one sweep. Inner vertices that are not recalled are displaced from the background by u,
+/// with u_i the mean of u over the other vertices of the tets at i, from three sweeps over these equations. Where a tet
+/// then falls below projection.least_quality, its vertices go back to the background, and project() moves them from
+/// there.
 ///
-/// @param layer   at the places of the background; receives those to begin with. The same for any number of threads
+/// The result is the same for any number of threads.
+/// @param layer   at the positions of the background; receives the initial positions
 /// @param inside  the inside vertices of this mesh
 /// \throw Cancelled
 WarmStart warm_start(const BackgroundMesh& background, ImplicitFunctionRef psi, const IdSet& inside,

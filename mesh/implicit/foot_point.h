@@ -6,19 +6,21 @@
 
 namespace umtet {
 
-/// A point of psi = 0 near x.
+/// Foot point: a point of psi = 0 near x.
 struct Foot {
   bool found = false;
   double distance = std::numeric_limits<double>::infinity();
   Vec3 point = Vec3::Zero();
-  Vec3 normal = Vec3::Zero();  ///< grad psi / |grad psi| there
+  Vec3 normal = Vec3::Zero();  ///< grad psi / |grad psi| at the foot point
 };
 
-/// The closest point of psi = 0 to x, by alternating a step along the surface towards the foot of x and a return to the
-/// surface. Only steps that come nearer are taken, so the distance is never below the true one nor above that of the
-/// first point found. Written apart from the mesher's own projection on purpose: a certificate must not share its
+/// Closest point of psi = 0 to x, by alternating a step along the surface towards the foot of x and a return to the
+/// surface.
+///
+/// Only steps that reduce the distance are taken, so the distance is never below the true one nor above that of the
+/// first point found. The code is deliberately separate from the mesher's projection: a certificate must not share its
 /// errors.
-/// @param h  edge length: no step is longer than half of it
+/// @param h  edge length; no step is longer than half of it
 Foot foot_point(ImplicitFunctionRef psi, const Vec3& x, double h);
 
 }  // namespace umtet

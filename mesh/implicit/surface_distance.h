@@ -14,13 +14,13 @@ namespace umtet {
 /// points.
 double point_triangle_distance(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// Exact distances to a triangle surface.
+/// Exact distances from points to a triangle surface.
 ///
-/// A kd-tree over centroids with one provable rule: no point of triangle k is nearer to x than |x - m_k| - r, where
-/// m_k is its centroid and r the greatest centroid-corner distance of all. The search therefore ends only when every
-/// remaining centroid is farther than (best distance so far) + r. Triangles whose r differ by two and more have trees
-/// of their own.
-/// Keeps its own copy of the triangles. Immutable; queries are thread-safe.
+/// The search uses a kd-tree over centroids and one provable bound: no point of triangle k is closer to x than |x -
+/// m_k| - r, where m_k is its centroid and r the greatest centroid-corner distance of all. The search therefore ends
+/// only when every remaining centroid is farther than (best distance so far) + r. Triangles whose r differ by a factor
+/// of two or more are in separate trees. The object keeps its own copy of the triangles. Immutable; queries are
+/// thread-safe.
 class SurfaceDistance {
  public:
   /// \throw std::invalid_argument without faces, for an index out of range or a corner that is not finite
@@ -30,7 +30,7 @@ class SurfaceDistance {
   SurfaceDistance& operator=(SurfaceDistance&&) noexcept;
 
   double distance(const Vec3& x) const;
-  /// One distance per point; threads over points. Takes half the time for points that follow each other in space.
+  /// One distance per point. Uses threads over points. Takes half the time if consecutive points are close in space.
   /// \throw Cancelled
   std::vector<double> distances(const std::vector<Vec3>& x, const Context& context = {}) const;
 
@@ -39,8 +39,8 @@ class SurfaceDistance {
   std::unique_ptr<Index> index_;
 };
 
-/// Distances to samples: a kd-tree that several questions share. Keeps its own copy of the samples. Immutable; queries
-/// are thread-safe.
+/// Distances from points to samples, by a kd-tree for repeated queries. Keeps its own copy of the samples. Immutable;
+/// queries are thread-safe.
 class SampleDistance {
  public:
   /// \throw std::invalid_argument without samples or for one that is not finite
@@ -49,7 +49,7 @@ class SampleDistance {
   SampleDistance(SampleDistance&&) noexcept;
   SampleDistance& operator=(SampleDistance&&) noexcept;
 
-  /// Distance from each x to the nearest sample, model units; threads over x. \throw Cancelled
+  /// Distance from each x to the nearest sample, model units. Uses threads over x. \throw Cancelled
   std::vector<double> distances(const std::vector<Vec3>& x, const Context& context = {}) const;
 
  private:
@@ -57,17 +57,18 @@ class SampleDistance {
   std::unique_ptr<Index> index_;
 };
 
-/// The same for one call, of samples that are not copied; the tree is gone afterwards.
+/// Distances from points to samples for a single call; samples are not copied, and the tree is not kept.
 /// \throw std::invalid_argument without samples or for one that is not finite; Cancelled
 std::vector<double> distances_to_samples(const std::vector<Vec3>& samples, const std::vector<Vec3>& x,
                                          const Context& context = {});
 
-/// Share of the surface that no data backs: what belongs to vertices (a third of the faces around each) that are
-/// farther than `radius` (three sample spacings, say) from every sample. Not faces by their centroids, which samples
-/// much finer than the faces are far from wherever psi = 0 is curved. 0 for an empty surface. \throw Cancelled
+/// Fraction of the surface area without support by data: the area of vertices (a third of the faces around each)
+/// farther than `radius` (for example three sample spacings) from every sample. Vertices are tested rather than face
+/// centroids, because where psi = 0 is curved, centroids are far from samples that are much denser than the faces. 0
+/// for an empty surface. \throw Cancelled
 double unsupported_area_fraction(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
                                  const SampleDistance& samples, double radius, const Context& context = {});
-/// The same where the distances are known. @param distance  by vertex; of those without a face it may be anything
+/// The same fraction from known distances. @param distance  by vertex; arbitrary for vertices without a face
 double unsupported_area_fraction(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
                                  const std::vector<double>& distance, double radius);
 

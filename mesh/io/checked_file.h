@@ -10,7 +10,7 @@
 
 namespace umtet {
 
-/// An output file that cannot lose bytes silently: every write and the close are checked.
+/// Output file that detects every failed write: all writes and the close are checked.
 /// \throw std::system_error naming the path, from every member but the destructor
 class CheckedFile {
  public:
@@ -20,19 +20,19 @@ class CheckedFile {
   CheckedFile& operator=(const CheckedFile&) = delete;
 
   CheckedFile& text(std::string_view s) { return bytes(s.data(), s.size()); }
-  /// Shortest text that reads back to the same value, in any locale.
+  /// Writes the shortest text that reads back to the same value, in any locale.
   template <typename T>
   requires std::integral<T> || std::floating_point<T> CheckedFile& number(T value) {
     char digits[32];
     const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
     return bytes(digits, static_cast<std::size_t>(end - digits));
   }
-  /// The value as it lies in memory.
+  /// Writes the value's bytes as in memory.
   template <typename T>
   requires std::integral<T> || std::floating_point<T> CheckedFile& raw(T value) {
     return bytes(reinterpret_cast<const char*>(&value), sizeof value);
   }
-  /// Flushes and closes. Without it the file counts as not written.
+  /// Flushes and closes. A file that was not closed counts as not written.
   void close();
 
  private:

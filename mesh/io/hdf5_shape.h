@@ -10,27 +10,29 @@
 
 #include "mesh/io/solver_mesh.h"
 
-// The files of write_hdf5() and write_xdmf() for those who write a part of the arrays each.
+// Layout of the files of write_hdf5() and write_xdmf(), for processes that write a part of the arrays each.
 namespace umtet {
 
 struct Hdf5Array {
   std::string name;
-  std::variant<double, int, std::int64_t, std::uint8_t> type;  ///< of its values
-  std::size_t rows, columns = 0;                               ///< 0: a list
+  std::variant<double, int, std::int64_t, std::uint8_t> type;  ///< type of its values
+  std::size_t rows, columns = 0;                               ///< 0: a one-dimensional array
 };
 
-/// Makes a file in which these arrays have their room, each in one piece, but no values yet: with them it is what HDF5
-/// would have written. @return where each begins, in bytes \throw std::runtime_error for what HDF5 cannot write
+/// Creates an HDF5 file with contiguous space for these arrays, without values. With the values written, the file
+/// equals the one that HDF5 would write.
+/// @return the begin of each array in bytes
+/// \throw std::runtime_error for arrays that HDF5 cannot write
 std::vector<std::uint64_t> make_hdf5(const std::filesystem::path& path, const std::vector<Hdf5Array>& arrays);
 
-/// What is in such a file of tets with standard data.
+/// Contents of an HDF5 file of tets with standard data.
 struct XdmfShape {
   std::size_t n_nodes = 0, n_tets = 0, n_faces = 0;
   std::vector<MeshPart> patches;
 
-  /// Node numbers are of 64 bits, not of 32.
+  /// True if node numbers have 64 bits, false if they have 32.
   bool has_wide_ids() const { return n_nodes > static_cast<std::size_t>(std::numeric_limits<int>::max()); }
-  /// Names of 0/1 arrays of nodes: all of the boundary, and the patches if they are several.
+  /// Names of the 0/1 arrays of nodes: one for the whole boundary, and one per patch if there are several.
   std::vector<std::string> node_sets() const {
     std::vector<std::string> names = {kWholeBoundary};
     for (const MeshPart& patch : patches)
@@ -39,7 +41,7 @@ struct XdmfShape {
   }
 };
 
-/// write_xdmf() and write_boundary_xdmf() (solver_files.h) of a file of this shape.
+/// write_xdmf() and write_boundary_xdmf() (solver_files.h) for an HDF5 file of this shape.
 void write_xdmf(const std::filesystem::path& path, const XdmfShape& shape, const std::string& hdf5);
 void write_boundary_xdmf(const std::filesystem::path& path, const XdmfShape& shape, const std::string& hdf5);
 

@@ -7,8 +7,9 @@
 
 namespace umtet {
 
-/// Some tets of a mesh with their vertices and all data of both, in the order that they have there.
-/// @param tets  ascending, indices into whole.mesh.C \pre !whole.quadratic
+/// Extracts some tets of a mesh with their vertices and all data of both, in their order in the mesh.
+/// @param tets  ascending, indices into whole.mesh.C
+/// \pre !whole.quadratic
 MeshFile part_of(const MeshFile& whole, const std::vector<std::size_t>& tets);
 
 }  // namespace umtet

@@ -8,7 +8,7 @@
 
 namespace umtet {
 
-/// A .pvtu of pieces that all have these arrays; their values do not matter.
+/// Text of a .pvtu file whose pieces all contain these arrays; values are not used.
 /// @param pieces  names of .vtu files in the same folder
 std::string pvtu_text(const std::map<std::string, FieldValues>& point_data,
                       const std::map<std::string, FieldValues>& cell_data, const std::vector<std::string>& pieces);

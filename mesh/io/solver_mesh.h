@@ -13,15 +13,15 @@
 
 namespace umtet {
 
-/// A named part of a mesh. The number is what goes where a format has no names: Gmsh's physical group, MEDIT's
-/// reference, Nastran's property.
+/// A named part of a mesh. Formats without names use the number: Gmsh's physical group, MEDIT's reference, Nastran's
+/// property.
 struct MeshPart {
   std::string name;  ///< a letter, then letters, digits, '_', '-' and '.'; see problem_of_name()
   int number = 0;    ///< >= 1
 };
 
-/// What solver files hold: tets of 4 or 10 nodes, and their boundary faces in named patches. Every boundary face is in
-/// one patch and every tet in the body; the nodes of a patch are its node set, and nodes on a border are in several.
+/// A mesh for solver files: tets with 4 or 10 nodes, and their boundary faces in named patches. Every boundary face is
+/// in one patch and every tet in the body. The nodes of a patch are its node set; nodes on a border are in several.
 struct SolverMesh {
   std::vector<Vec3> nodes;    ///< model units
   int nodes_per_tet = 4;      ///< 4 or 10
@@ -31,9 +31,9 @@ struct SolverMesh {
   std::vector<int> face_patch;              ///< index into patches
   std::vector<MeshPart> patches;
   MeshPart body{"body", 1};
-  std::map<std::string, FieldValues> point_data;  ///< one value a node; formats that cannot hold it leave it out
-  std::map<std::string, FieldValues> cell_data;   ///< one value a tet; the same
-  /// One value a node, NaN where none is known: what may become a boundary condition. As point_data, and in .msh too.
+  std::map<std::string, FieldValues> point_data;  ///< one value per node; formats that cannot store it omit it
+  std::map<std::string, FieldValues> cell_data;   ///< one value per tet; formats that cannot store it omit it
+  /// Values for boundary conditions: one value per node, NaN where unknown. Written as point_data, and to .msh, too.
   std::map<std::string, FieldValues> boundary_data;
 
   std::size_t n_tets() const { return tets.size() / static_cast<std::size_t>(nodes_per_tet); }
@@ -42,35 +42,37 @@ struct SolverMesh {
   std::span<const int> tet(std::size_t t) const {
     return {tets.data() + t * static_cast<std::size_t>(nodes_per_tet), static_cast<std::size_t>(nodes_per_tet)};
   }
-  /// nodes_per_face() ids: corners, counter-clockwise from outside, then the middles of 01 12 20.
+  /// nodes_per_face() ids: corners, counter-clockwise from outside, then the mid-sides of 01 12 20.
   std::array<int, 6> face(std::size_t f) const;
-  /// The same of all faces, one after the other.
+  /// The same for all faces, one after the other.
   std::vector<int> faces() const;
 };
 
-/// Finds the boundary faces; all of them are one patch "boundary", number 2.
-/// \throw std::invalid_argument  nodes_per_tet is not 4 or 10, an id out of range, or ids that are not whole tets
+/// Makes a solver mesh and finds its boundary faces, which form one patch "boundary", number 2.
+/// \throw std::invalid_argument if nodes_per_tet is not 4 or 10, for an id out of range, or an incomplete last tet
 SolverMesh solver_mesh(std::vector<Vec3> nodes, int nodes_per_tet, std::vector<int> tets);
 SolverMesh solver_mesh(const TetMesh& mesh);
 SolverMesh solver_mesh(const QuadraticTetMesh& mesh);
 
-/// Empty for a name that every format keeps: at most 64 letters, digits, '_', '-', '.', the first a letter.
+/// Checks a name. Returns an empty text for a name that every format keeps: at most 64 letters, digits, '_', '-', '.',
+/// the first a letter.
 /// (CalculiX cuts names at 80 and removes blanks, and a comma ends a name of Abaqus.)
 std::string problem_of_name(const std::string& name);
 
-/// Puts the faces into patches. The body gets the least number that no patch has.
-/// \throw std::invalid_argument  not one patch a face, an index out of range, a problem of a name, a number below 1,
-///        or two parts with one number or with names that differ in case only (Abaqus does not tell them apart)
+/// Assigns the faces to patches. The body gets the least number that no patch has.
+/// \throw std::invalid_argument if there is not one patch per face, for an index out of range, a problem of a name, a
+///        number below 1, or two parts with the same number or with names that differ in case only (Abaqus does not
+///        distinguish them)
 void set_patches(SolverMesh& mesh, std::vector<int> face_patch, std::vector<MeshPart> patches);
 
 /// The nodes of every patch, ascending.
 std::vector<std::vector<int>> patch_nodes(const SolverMesh& mesh);
 /// The nodes of all patches, ascending.
 std::vector<int> boundary_nodes(const SolverMesh& mesh);
-/// The name of all patches together, where there are several: no patch may have it then.
+/// The name of all patches together if there are several; no patch may then have this name.
 inline constexpr const char* kWholeBoundary = "boundary";
 
-/// \throw std::invalid_argument  sizes or indices that contradict each other
+/// Checks a mesh. \throw std::invalid_argument for sizes or indices that contradict each other
 void require_consistent(const SolverMesh& mesh);
 
 }  // namespace umtet

@@ -9,36 +9,36 @@
 
 namespace umtet {
 
-/// A place in a cube in half widths, 0 to 2 along each axis.
+/// A position in a cube in units of half its width, 0 to 2 along each axis.
 using CubeCode = std::array<int, 3>;
 constexpr int code_index(const CubeCode& c) { return c[0] + 3 * (c[1] + 3 * c[2]); }
 
-/// A leaf, or a vertex whose own place is in no leaf.
+/// A leaf, or a vertex whose position is not in any leaf.
 struct OctreeCell {
   static constexpr std::uint8_t kPoint = 0xff;
 
   std::array<std::int32_t, 6> neighbor = {-1, -1, -1, -1, -1, -1};  ///< see LinearOctree
   std::uint32_t first_vertex = 0;
   std::uint8_t level = kPoint;
-  std::uint8_t vertices = 1;  ///< bit x + 2 y + 4 z: a vertex at (x, y, z) half widths from the lower corner
-  std::uint8_t coarse = 0;    ///< bit per face: the leaf behind is twice as wide
-  std::uint8_t octant = 0;    ///< x + 2 y + 4 z, its place in its parent
-  std::uint64_t slots = 0;    ///< bit per tet that may be there: tet_slots.h
+  std::uint8_t vertices = 1;  ///< bit x + 2 y + 4 z: there is a vertex at (x, y, z) half widths from the lower corner
+  std::uint8_t coarse = 0;    ///< bit per face: the leaf behind it is twice as wide
+  std::uint8_t octant = 0;    ///< x + 2 y + 4 z, position in the parent
+  std::uint64_t slots = 0;    ///< bit per possible tet: tet_slots.h
   std::int64_t first_tet = 0;
 
   bool is_leaf() const { return level != kPoint; }
 };
 
-/// The leaves of a balanced octree in Morton order [Burstedde2011], with their neighbours, and the vertices of a mesh
-/// on them: corners and centres of leaves, and centres of faces that no leaf is behind.
+/// The leaves of a balanced octree in Morton order [Burstedde2011] with their neighbours, and the vertices of a mesh on
+/// them: corners and centres of leaves, and centres of faces without a leaf behind.
 ///
-/// A vertex belongs to the half-open cube it lies in, so that the vertices of a leaf are its lower corner and its
-/// centre, and those of its lower edge mid-points and face centres that are corners of finer leaves. The few that lie
-/// in no leaf (at upper walls) are cells of their own. In Morton order of cells the vertices are in Morton order, too,
-/// and none is stored.
+/// A vertex belongs to the half-open cube that contains it. The vertices of a leaf are therefore its lower corner, its
+/// centre, and those of its lower edge mid-points and face centres that are corners of finer leaves. The few vertices
+/// that lie in no leaf (at upper walls) are separate cells. Vertices are in Morton order if cells are, and none is
+/// stored.
 ///
-/// Face 2 a is the lower one along axis a, 2 a + 1 the upper. Behind it is the leaf of the same size or twice the size,
-/// or of the four of half the size the one with the least coordinates, or none (-1).
+/// Face 2 a is the lower one along axis a, 2 a + 1 the upper. The neighbour behind a face is the leaf of the same or of
+/// twice the size, or, of four leaves of half the size, the one with the least coordinates, or none (-1).
 class LinearOctree {
  public:
   /// @param cubes  sorted cube_key()s of a balanced octree
@@ -47,23 +47,23 @@ class LinearOctree {
   int n_cells() const { return static_cast<int>(cells_.size()); }
   const OctreeCell& cell(int c) const { return cells_[static_cast<std::size_t>(c)]; }
   OctreeCell& cell(int c) { return cells_[static_cast<std::size_t>(c)]; }
-  /// Of its lower corner, or the point.
+  /// Key of the lower corner of a leaf, or of the point.
   std::uint64_t corner_key(int c) const { return keys_[static_cast<std::size_t>(c)]; }
   std::int64_t n_vertices() const { return n_vertices_; }
-  /// The leaf or point whose half-open cube this key is in, or -1.
+  /// The leaf or point whose half-open cube contains this key, or -1.
   int locate(std::uint64_t key) const { return locate(key, 0, keys_.size()); }
   int locate(const GridPoint& p) const { return is_in_root(p) ? locate(morton_key(p)) : -1; }
-  /// The same for a place near a cell: over faces, by searching only where these lead to no leaf.
+  /// The same for a position near a cell; goes across faces, and searches only where these lead to no leaf.
   int locate_from(int c, const GridPoint& p) const;
-  /// Of a leaf.
+  /// Grid point of a position in a leaf.
   GridPoint point(int leaf, const CubeCode& code) const;
-  /// A place as cell and bit of its vertices, or {-1, 0} where no vertex is.
+  /// A vertex as cell and bit in OctreeCell::vertices; {-1, 0} if there is no vertex.
   struct VertexPlace {
     int cell, bit;
   };
   VertexPlace place(std::uint64_t key) const { return place_in(locate(key), key); }
   VertexPlace place(int leaf, const CubeCode& code) const;
-  /// Whether the mid-point of the edge between two faces of a leaf is a vertex.
+  /// True if the mid-point of the edge between two faces of a leaf is a vertex.
   bool is_edge_split(int leaf, int face, int other_face) const;
   /// Of the four leaves behind a face, the one at the given sides of the other two axes (a + 1, a + 2 modulo 3).
   int small_leaf(int leaf, int face, bool upper_u, bool upper_v) const;

@@ -10,8 +10,9 @@
 
 namespace umtet {
 
-/// Integer coordinates in the root cube of an octree, which is 2^kRootBits wide whatever the depth of the tree. A leaf
-/// of level l is 2^(kRootBits - l) wide; those of the last level are 2, so that their centres are grid points too.
+/// Integer coordinates in the root cube of an octree, which has width 2^kRootBits for any depth of the tree. A leaf of
+/// level l has width 2^(kRootBits - l). Leaves of the last level have width 2, so that their centres are grid points,
+/// too.
 using GridPoint = std::array<std::int32_t, 3>;
 
 inline constexpr int kMaxOctreeLevel = 17;
@@ -20,7 +21,7 @@ inline constexpr std::int32_t kRootWidth = 1 << kRootBits;
 
 inline constexpr std::uint64_t kEveryThirdBit = 0x1249249249249249;
 
-/// Bit i of a coordinate becomes bit 3 i.
+/// Moves bit i of a coordinate to bit 3 i.
 inline std::uint64_t spread_bits(std::uint64_t x) {
 #ifdef __BMI2__
   return _pdep_u64(x, kEveryThirdBit);
@@ -46,8 +47,8 @@ inline std::int32_t collected_bits(std::uint64_t x) {
 #endif
 }
 
-/// Morton key: the bits of x, y and z in turn, x lowest. A cube of the octree is an interval of keys: its lower corner
-/// has the least, its centre is the corner of its last child.
+/// Morton key: the interleaved bits of x, y and z, x lowest. A cube of the octree is an interval of keys. Its lower
+/// corner has the least key, and its centre is the corner of its last child.
 inline std::uint64_t morton_key(const GridPoint& p) {
   return spread_bits(static_cast<std::uint64_t>(p[0])) | spread_bits(static_cast<std::uint64_t>(p[1])) << 1 |
          spread_bits(static_cast<std::uint64_t>(p[2])) << 2;
@@ -64,11 +65,11 @@ inline bool is_in_root(const GridPoint& p) {
   return true;
 }
 
-/// Where half the width of a cube of this level stands in a key: three bits, one an axis.
+/// Position in a key of half the width of a cube of this level: three bits, one per axis.
 inline int half_width_shift(int level) { return 3 * (kRootBits - 1 - level); }
 inline std::int32_t width(int level) { return kRootWidth >> level; }
 
-/// The key of a cube's centre names the cube: no cube of another level has the same. Its lowest bit says the level.
+/// Identifies a cube by the key of its centre, which no cube of another level has. The lowest set bit gives the level.
 inline std::uint64_t cube_key(std::uint64_t corner, int level) {
   return corner | std::uint64_t{7} << half_width_shift(level);
 }

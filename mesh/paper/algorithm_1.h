@@ -21,22 +21,22 @@ struct PaperParams {
   int relaxation_iterations = 25;  ///< N_R of Algorithms 1 and 2; >= 0
   int samples = 20;                ///< N_S: 2 N_S + 1 candidates in [-h, h], eq. (7); >= 1
   DirectionRule directions = DirectionRule::Random;  ///< Section 3.8(d); least_quality in mesh_bench compares
-  /// Exact; GoldenSection, the paper's faster, suboptimal choice (Fig. 18), in a build without GSL.
+  /// Exact; in a build without GSL GoldenSection, the paper's faster, suboptimal choice (Fig. 18).
   MaxMin max_min = kBestMaxMin;
   ClosestPointParams closest_point;
   std::uint64_t seed = 0;      ///< random tangents of boundary dvr are a function of (seed, iteration, vertex)
-  bool keep_iterates = false;  ///< UmResult::iterates
+  bool keep_iterates = false;  ///< stores UmResult::iterates
 };
 
-/// Every broken constraint, not just the first; empty when the parameters are usable.
+/// All broken constraints, not just the first; empty if the parameters are valid.
 std::vector<std::string> problems(const PaperParams&);
 
 /// Algorithm 1 of the paper to the letter, steps 23-35: projection and relaxation of omega_h   [Rangarajan2018]
 ///
-/// A double positive face or an obtuse conditioning angle becomes the status only when a projection diverges or a tet
-/// inverts right there. Reports the steps "project" and "relax". psi must be thread-safe.
-/// \pre params are those that universal_mesh() accepts
-/// @param chosen  by submesh_by_sign(): what failed there is the result
+/// A double positive face or an obtuse conditioning angle becomes the status only if a projection diverges or a tet
+/// inverts at it. Reports the steps "project" and "relax". psi must be thread-safe.
+/// \pre universal_mesh() accepts the params
+/// @param chosen  result of submesh_by_sign(); a failure there is passed on as the result
 /// \throw Cancelled
 UmResult algorithm_1(const BackgroundMesh& background, ImplicitFunctionRef psi, const SubmeshParams& submesh,
                      const PaperParams& params, ChosenSubmesh chosen, const Context& context = {});

@@ -17,12 +17,14 @@ struct BoundaryDvrParams {
   ClosestPointParams closest_point;
 };
 
-/// One iteration of Algorithm 3: every vertex in ascending order is offered the places pi(V_i + lambda d_i) for
-/// lambda = -h, -h + h / N_S, ..., h along a tangent d_i that turns from iteration to iteration, and takes the best if
-/// the worst quality of its ring rises. lambda = 0 is where the vertex is, so its sample is the quality it has. A place
-/// whose projection does not settle is no candidate; among equals the first counts.
-/// @return evaluations of psi
-/// \pre every vertex lies on {psi = 0}, every tet at it has Q > 0
+/// Directional vertex relaxation of boundary vertices: one iteration of Algorithm 3. In ascending order, every vertex
+/// is offered the positions pi(V_i + lambda d_i) for lambda = -h, -h + h / N_S, ..., h along a tangent d_i that turns
+/// from iteration to iteration. It takes the best one if the worst quality of its ring rises.
+///
+/// lambda = 0 is the vertex's position, so its sample is the present quality. A position whose projection does not
+/// converge is no candidate; among equals the first counts.
+/// @return number of evaluations of psi
+/// \pre every vertex is on {psi = 0}, and every tet at it has Q > 0
 std::size_t boundary_dvr(MovingMesh& mesh, const RelaxationOrder& boundary,
                          std::span<const std::int64_t> background_vertex, ImplicitFunctionRef psi,
                          const BoundaryDvrParams& params, int iteration);

@@ -12,28 +12,28 @@
 
 namespace umtet {
 
-/// A tet mesh whose vertices move while its connectivity stays: coordinates, the faces opposite to each vertex in its
-/// 1-ring, and which vertices are worth relaxing again.
+/// A tet mesh with moving vertices and fixed connectivity: coordinates, the faces opposite to each vertex in its
+/// 1-ring, and marks of vertices that need no relaxation.
 class MovingMesh {
  public:
-  /// @param rings_are_optimal  no relaxation would move anything as long as nothing has moved; see Tiling
+  /// @param rings_are_optimal  relaxation does not move any vertex until a vertex has been moved; see Tiling
   /// \throw std::invalid_argument for a vertex with more than kMaxRing tets
   explicit MovingMesh(const TetMesh& mesh, bool rings_are_optimal = false);
 
   std::vector<Vec3> V;  ///< change it through move()
 
   std::span<const Triangle> one_ring(int i) const { return {faces_.data() + begin_[i], faces_.data() + begin_[i + 1]}; }
-  /// The ring of i around its present place.
+  /// The ring of i around its present position.
   OneRing ring(int i) const { return OneRing(V[i], V, one_ring(i)); }
 
-  /// Positions vertex i at x; it and its neighbours are relaxed again at their next turn. Vertices that share no tet
-  /// may be moved by different threads at once.
+  /// Moves vertex i to x, and marks it and its neighbours for relaxation at their next turn. Different threads may move
+  /// vertices that share no tet at the same time.
   void move(int i, const Vec3& x);
 
-  /// The axis that stands for all directions: settled only in an optimal ring where nothing has moved yet.
+  /// Stands for all directions: settled only in an optimal ring in which no vertex has been moved.
   static constexpr int kAnyDirection = 3;
-  /// False if vertex i, or a neighbour, has moved since settle(i, axis). If true, relaxing i along the axis again would
-  /// leave it where it is, by the same arithmetic on the same numbers.
+  /// False if vertex i, or a neighbour, has moved since settle(i, axis). If true, another relaxation of i along the
+  /// axis would not move it, because the arithmetic is the same on the same numbers.
   bool is_settled(int i, int axis) const { return (settled_[i] >> axis & 1) != 0; }
   void settle(int i, int axis) { settled_[i] = static_cast<unsigned char>(settled_[i] | 1u << axis); }
 
@@ -43,18 +43,18 @@ class MovingMesh {
   std::vector<unsigned char> settled_;  ///< a bit per axis, and one for kAnyDirection
 };
 
-/// An order of relaxation that threads may follow and that gives the bits of the sequential one: vertex i is in level
-/// 1 + the highest level among its lower-numbered neighbours in the list, so that all vertices it depends on have
-/// moved, and vertices of one level share no tet.
+/// An order of relaxation for threads that gives the same bits as the sequential order. Vertex i is in level 1 + the
+/// highest level among its lower-numbered neighbours in the list. All vertices it depends on have then moved, and
+/// vertices of one level share no tet.
 class RelaxationOrder {
  public:
-  /// @param vertices  I_R or I^+: to be relaxed in ascending order
+  /// @param vertices  I_R or I^+, to be relaxed in ascending order
   RelaxationOrder(const MovingMesh& mesh, std::vector<int> vertices);
 
   const std::vector<int>& vertices() const { return vertices_; }  ///< ascending
-  /// Calls relax(i) for every vertex that wants(i), in an order equivalent to ascending i. wants(i) is
-  /// called when all vertices that i depends on have moved.
-  /// @param side_by_side  of the psi that relax(i) asks, if it is asked in blocks
+  /// Calls relax(i) for every vertex i with wants(i), in an order equivalent to ascending i. wants(i) is called after
+  /// all vertices that i depends on have moved.
+  /// @param side_by_side  of the psi that relax(i) evaluates, if it is evaluated in blocks
   void for_each(const std::function<bool(int)>& wants, const std::function<void(int)>& relax,
                 const SideBySide* side_by_side = nullptr) const;
 
@@ -68,19 +68,19 @@ struct DvrParams {
   DirectionRule directions = DirectionRule::AxesInTurn;
   MaxMin max_min = kBestMaxMin;
   std::uint64_t seed = 0;
-  bool skip_settled = true;  ///< leave out relaxations that cannot move their vertex; never changes the result
+  bool skip_settled = true;  ///< skips relaxations that cannot move their vertex; does not change the result
 };
 
-/// Iterations first .. first + n - 1 of Algorithm 2: vertices in ascending order, each to the max-min point of its ring
-/// along its direction, eq. (5) [RangarajanLew2017]. A vertex stays unless the worst quality of its ring rises by more
-/// than rounding.
-/// @param background_vertex  per vertex, the id that random directions are a function of
+/// Directional vertex relaxation: iterations first .. first + n - 1 of Algorithm 2. In ascending order, each vertex
+/// moves to the max-min point of its ring along its direction, eq. (5) [RangarajanLew2017]. A vertex stays unless the
+/// worst quality of its ring rises by more than rounding.
+/// @param background_vertex  per vertex, the id that determines its random directions
 /// @return number of moves
 /// \pre every tet at a relaxed vertex has Q > 0
 std::size_t dvr(MovingMesh& mesh, const RelaxationOrder& relaxed, std::span<const std::int64_t> background_vertex,
                 const DvrParams& params, int first_iteration, int n_iterations);
 
-/// A relative gain of min f below this is rounding: vertices in a perfect part of the lattice must not drift.
+/// A smaller relative gain of min f is rounding: vertices in a perfect part of the lattice must not drift.
 inline constexpr double kLeastGain = 1e-10;
 
 }  // namespace umtet

@@ -11,44 +11,45 @@
 
 namespace umtet {
 
-/// What decides the edge length on psi = 0; lengths in model units.
+/// Parameters of the edge length on psi = 0; lengths in model units.
 struct SurfaceSizeParams {
-  double h;           ///< the most
-  double h_min;       ///< the least
-  double grade = .3;  ///< of the field that the sources are for
-  /// Edges across the body, and across a gap outside; 0: thickness does not count.
+  double h;           ///< maximum
+  double h_min;       ///< minimum
+  double grade = .3;  ///< grade of the field that the sources are for
+  /// Number of edges across the body, and across a gap outside; 0: thickness does not count.
   double edges_across = 2.2;
-  double max_turn = 2 / 2.2;  ///< angle between the normals at the ends of an edge, radians; 0: any
-  /// By its turn alone no edge is shorter than this share of h: a sharp edge turns at once, whatever the edge length.
+  double max_turn = 2 / 2.2;  ///< angle between the normals at the ends of an edge, radians; 0: no limit
+  /// Lower limit, relative to h, of the edge length by max_turn alone: at a sharp edge the normal turns at any edge
+  /// length.
   double least_by_turn = .25;
-  /// An edge may turn by more where psi = 0 is no farther from its middle than this, turn h / 8: the noise of samples
-  /// turns, too.
+  /// An edge may exceed max_turn where psi = 0 is within this distance, turn h / 8, of its midpoint: the noise of
+  /// samples turns the normal, too.
   double noise = 0;
-  double deviation = 0;       ///< of flat faces from psi = 0, by its curvature; 0: any. Needs Hessians
-  double constant_layer = 2;  ///< radius of the sources, in their h
-  double steepest = std::numeric_limits<double>::infinity();  ///< a bound of |grad psi|
+  double deviation = 0;       ///< of flat faces from psi = 0, by its curvature; 0: no limit. Requires Hessians
+  double constant_layer = 2;  ///< radius of the sources, in multiples of their h
+  double steepest = std::numeric_limits<double>::infinity();  ///< an upper bound of |grad psi|
 };
 
-/// Every broken constraint.
+/// All broken constraints.
 std::vector<std::string> problems(const SurfaceSizeParams&);
 
-/// Sources on psi = 0, each with the least of
+/// Size sources on psi = 0. The size of each is the least of
 ///
 ///     h,   t / edges_across,   max_turn / (turn of the normal a length),   sqrt(6.8 deviation / (|k1| + |k2|)),
 ///
-/// t the distance along the normal to the other side of the body or of the gap, and not less than h_min. The default
-/// of max_turn is that of a ball or a rod with 2.2 edges across it: h = 2 R / 2.2.
+/// with t the distance along the normal to the other side of the body or of the gap, but at least h_min. The default of
+/// max_turn is the turn for a ball or a rod with 2.2 edges across it: h = 2 R / 2.2.
 ///
-/// Points that are farther apart than all sources together ask for get others between them, at half the distance in
-/// the tangent plane, until none are: psi is looked at as finely as it is going to be meshed, and nowhere else. The
-/// radius of the sources covers what is between them.
+/// Where points are farther apart than the sources require, points are inserted at half the distance in the tangent
+/// plane, until no gap is left. psi is therefore evaluated as finely as it will be meshed, and nowhere else. The radius
+/// of the sources covers the space between them.
 ///
-/// @param points   of psi = 0, or within `spacing` of it: on all of the surface, no farther apart than `spacing`. Those
-///                 that do not reach it are left out
-/// @param enough   asked before more points are put between others than there have been so far, with their sources:
-///                 true ends it with these. May be empty
-/// Cost: some forty values of psi a point. Threads over points; the result does not depend on them.
-/// \throw std::invalid_argument  problems(), or a spacing that is not > 0; Cancelled
+/// @param points   on psi = 0, or within `spacing` of it; they cover the whole surface, at most `spacing` apart. Points
+///                 from which psi = 0 is not reached are dropped
+/// @param enough   called with the present sources before more points are inserted than there have been so far; if it
+///                 returns true, these sources are returned. May be empty
+/// Cost: about forty values of psi per point. Uses threads over points; the result does not depend on them.
+/// \throw std::invalid_argument for problems(), or a spacing that is not > 0; Cancelled
 std::vector<SizeSource> surface_sizes(ImplicitFunctionRef psi, const std::vector<Vec3>& points, double spacing,
                                       const SurfaceSizeParams& params, const Context& context = {},
                                       const std::function<bool(const std::vector<SizeSource>&)>& enough = {});

@@ -8,29 +8,30 @@
 namespace umtet {
 
 /// The part of omega_h that moves: the tets of a few layers behind the boundary, with the rings of their vertices. All
-/// else stays in the background mesh as it is.
+/// other vertices keep their background positions.
 struct ActiveLayer {
   enum class Role : std::uint8_t {
-    Fixed,    ///< its ring is not complete in the layer, or it is beyond the last layer
+    Fixed,    ///< the ring is not complete in the layer, or the vertex is beyond the last layer
     Inner,    ///< relaxes freely
     Boundary  ///< a positive vertex: projected onto psi = 0, relaxes in its tangent plane
   };
   std::vector<Vec3> V;
   std::vector<Tet> C;      ///< indices into V, positively oriented in the background mesh
   std::vector<Role> role;  ///< per vertex
-  /// Per vertex: those of one colour share no tet. Small numbers from 0, and -1 or any for Fixed ones.
+  /// Colour per vertex; vertices of one colour share no tet. Small numbers from 0; arbitrary or -1 for Fixed vertices.
   std::vector<int> colour;
   std::vector<int> ring_begin, ring;  ///< the tets of vertex v: ring[ring_begin[v]] .. ring[ring_begin[v + 1] - 1]
   double h = 0;                       ///< mean edge length of the background mesh, model units
-  std::vector<double> local_h;        ///< per vertex, the same of the edges at it; empty: h everywhere
+  std::vector<double> local_h;        ///< per vertex, mean length of its background edges; empty: h everywhere
 
   double h_at(int v) const { return local_h.empty() ? h : local_h[v]; }
 };
 
-/// Fills in ring_begin and ring, ascending, from V and C.
+/// Computes ring_begin and ring, ascending, from V and C.
 void list_rings(ActiveLayer& layer);
 
-/// Each vertex that is not Fixed, in ascending order, takes the least colour that no lower vertex of its ring has.
+/// Greedy colouring: each vertex that is not Fixed, in ascending order, takes the least colour unused by the lower
+/// vertices of its ring.
 void colour_greedily(ActiveLayer& layer);
 
 }  // namespace umtet

@@ -12,20 +12,20 @@
 
 namespace umtet {
 
-/// The tets with a vertex inside, ascending.                                 Alg. 1, steps 14-16
+/// The tets with an inside vertex, ascending.                                 Alg. 1, steps 14-16
 std::vector<std::int64_t> cut_or_inside_tets(const BackgroundMesh& background, const IdSet& inside);
 
-/// Algorithm 1, steps 14-22, once it is known which tets are in omega_h and which of their vertices are inside.
-/// Tet by tet, with threads: emit_submesh() makes the same of the same set.
+/// Assembles omega_h from its tets and inside vertices: Algorithm 1, steps 14-22. Works tet by tet, with threads;
+/// emit_submesh() makes the same result from the same set.
 /// @param tets  background ids, ascending
 Submesh assemble_submesh(const BackgroundMesh& background, std::vector<std::int64_t> tets, const IdSet& inside);
 
-/// The same without tets and faces. @param n_tets  receives how many tets there are
+/// Assembles omega_h without tets and faces. @param n_tets  receives the number of tets
 Submesh assemble_vertices(const BackgroundMesh& background, const IdSet& inside, std::size_t& n_tets);
 
 /// The background vertices with psi < 0.                                   Alg. 1, step 7
 /// @param n_evaluations  receives the number of values of psi
-/// @param known          spares those of vertices within its reach of the one before
+/// @param known          saves evaluations at vertices within its reach of the former mesh
 /// \throw Cancelled
 IdSet inside_vertices(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t& n_evaluations,
                       const Context& context = {}, const KnownSigns& known = {});

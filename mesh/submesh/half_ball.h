@@ -10,19 +10,19 @@
 
 namespace umtet {
 
-/// Tells of any outside vertex of any background whether the boundary of omega_h is a manifold there: LinkState says
-/// the same of the vertices of a lattice that are off the background boundary.
+/// Tests whether the boundary of omega_h is a manifold at an outside vertex of any background. For vertices of a
+/// lattice off the background boundary, LinkState gives the same answer.
 ///
-/// The tets of omega_h at the vertex are those with an inside vertex. They have to be a half-ball: the triangles of the
-/// link with an inside vertex a disc, and none of the vertex's positive faces
-/// may have tets of omega_h on both sides. On the background boundary, which is then a wall, the link is a disc itself.
-/// Keeps its memory from call to call: one for each thread.
+/// The tets of omega_h at the vertex are those with an inside vertex. They have to form a half-ball: the triangles of
+/// the link with an inside vertex form a disc, and no positive face at the vertex has tets of omega_h on both sides. On
+/// the background boundary, which is then a wall, the link itself is a disc. The object keeps its working memory
+/// between calls; use one object per thread.
 class HalfBall {
  public:
-  /// Keeps the background by reference.
+  /// Keeps a reference to the background.
   explicit HalfBall(const BackgroundMesh& background) : background_(background) {}
 
-  /// @param v  an outside vertex; true also where no tet of omega_h is
+  /// @param v  an outside vertex; the result is true also if no tet of omega_h is at it
   bool operator()(std::int64_t v, const IdSet& inside);
 
  private:
@@ -38,9 +38,9 @@ class HalfBall {
 
   const BackgroundMesh& background_;
   std::vector<std::int64_t> star_;
-  std::vector<std::array<std::int64_t, 3>> triangles_;  ///< of the link, those with an inside vertex
-  std::vector<std::pair<Edge, int>> edges_;             ///< with their triangles
-  std::vector<Edge> rim_;                               ///< edges of one triangle
+  std::vector<std::array<std::int64_t, 3>> triangles_;  ///< triangles of the link with an inside vertex
+  std::vector<std::pair<Edge, int>> edges_;             ///< with the index of their triangle
+  std::vector<Edge> rim_;                               ///< edges that belong to one triangle only
   std::vector<std::int64_t> vertices_;
 };
 

@@ -10,14 +10,14 @@
 namespace umtet {
 
 struct NothingInside {
-  UmStatus status;  ///< EmptyDomain, or PsiNotFinite where no vertex of the background has a number
+  UmStatus status;  ///< EmptyDomain, or PsiNotFinite if psi is finite at no vertex of the background
   UmEvidence evidence;
 };
 
-/// Why no background vertex was found inside: what is not finite counts as outside, and its first place is the
-/// evidence.
-/// @param search  what else to say about the search
-/// Cost: psi at every vertex of the background, once more. \throw Cancelled
+/// Finds the reason why no background vertex is inside. A vertex where psi is not finite counts as outside, and the
+/// first such vertex is the evidence.
+/// @param search  further text about the search
+/// Cost: one more evaluation of psi at every vertex of the background. \throw Cancelled
 NothingInside nothing_inside(const BackgroundMesh& background, ImplicitFunctionRef psi, const Context& context,
                              const std::string& search = {});
 

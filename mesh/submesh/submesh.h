@@ -14,10 +14,10 @@ namespace umtet {
 
 /// T^{omega_h}: the tets of the background mesh with at least one vertex in Omega       [Rangarajan2018, Section 2.2.1]
 ///
-/// Vertices and tets are numbered anew, in ascending order of their background ids, so that two searches that find
-/// the same set return equal bytes.
+/// Vertices and tets are renumbered in ascending order of their background ids, so that two searches that find the same
+/// set return equal bytes.
 struct Submesh {
-  TetMesh mesh;                                 ///< coordinates are those of the background mesh
+  TetMesh mesh;                                 ///< with coordinates of the background mesh
   std::vector<std::int64_t> background_vertex;  ///< id in the universal mesh of each vertex, ascending
   std::vector<std::int64_t> background_tet;     ///< id in the universal mesh of each tet, ascending
   std::vector<Triangle> positive_faces;         ///< Gamma_h^+, local vertex ids, outward; one per positively cut tet
@@ -28,10 +28,11 @@ struct Submesh {
 /// A tet is positively cut if exactly one of its four vertices is inside; `inside` bit k belongs to local vertex k.
 inline bool is_positively_cut(unsigned inside) { return inside == 1 || inside == 2 || inside == 4 || inside == 8; }
 
-/// Algorithm 1, steps 1-22: evaluates psi at every vertex of the background mesh.
-/// Cost: one value of psi per background vertex. A vertex with psi = 0 counts as outside.
-/// @param n_psi_evaluations  if not null, receives that number
-/// @param known              spares some of them
+/// Finds omega_h by evaluating psi at every vertex of the background mesh: Algorithm 1, steps 1-22. A vertex with psi =
+/// 0 counts as outside.
+/// Cost: one value of psi per background vertex.
+/// @param n_psi_evaluations  if not null, receives the number of evaluations
+/// @param known              known signs, which save evaluations
 /// \throw std::length_error if omega_h has more than 2^31 - 1 tets or vertices; Cancelled
 Submesh find_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi,
                      std::size_t* n_psi_evaluations = nullptr, const Context& context = {},

@@ -4,21 +4,22 @@
 
 namespace umtet {
 
-/// What becomes of a domain that reaches the background boundary.
+/// Treatment of a domain that reaches the background boundary.
 enum class BackgroundBoundary {
-  Refuse,  ///< UmStatus::DomainLeavesBackground
-  /// The background boundary is a wall: it bounds the mesh where Omega reaches it, and stays where it is. The inside
-  /// and outside vertices, which are chosen and repaired off the background boundary only, stay those of psi but for
-  /// those that part double positive faces (double_faces.h).
+  Refuse,  ///< fails with UmStatus::DomainLeavesBackground
+  /// The background boundary is a wall: it bounds the mesh where Omega reaches it, and its vertices do not move.
+  /// Classification and repair are restricted to a domain off the background boundary, so vertices are inside or
+  /// outside by the sign of psi, except for those flipped to make the boundary a manifold (manifold_boundary.h).
   Wall,
 };
 enum class SubmeshSearch { FullLoop, Crawl };  ///< Alg. 1, steps 1-22, or Section 3.8(c) from given seeds
 
-/// Which background tets omega_h is looked for in.
+/// Search for the background tets of omega_h.
 struct SubmeshParams {
   SubmeshSearch search = SubmeshSearch::FullLoop;
   BackgroundBoundary background_boundary = BackgroundBoundary::Refuse;
-  KnownSigns known = {};  ///< of psi: of SubmeshSearch::FullLoop, spares values and changes nothing
+  KnownSigns known = {};  ///< known signs of psi for SubmeshSearch::FullLoop: they save evaluations and do not change
+                          ///< the result
 };
 
 }  // namespace umtet

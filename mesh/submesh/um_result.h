@@ -24,41 +24,41 @@ enum class UmStatus {
 };
 const char* to_string(UmStatus);
 
-/// What happened, where: ids of the background mesh (-1 = does not apply), a place in model units, a sentence.
+/// Evidence of a failure: ids of the background mesh (-1 = does not apply), a position in model units, a sentence.
 struct UmEvidence {
   std::int64_t background_vertex = -1;
   std::int64_t background_tet = -1;
   Vec3 where = Vec3::Zero();
-  std::size_t count = 0;  ///< how many places break the rule; the fields above describe the first
+  std::size_t count = 0;  ///< number of places that break the rule; the fields above describe the first
   std::string what;
 };
 
-/// A background vertex whose class was changed so that the boundary of omega_h is a manifold there: a bridge is filled
-/// or a web is cut.
+/// A background vertex whose class was changed to make the boundary of omega_h a manifold there: a bridge was filled or
+/// a web was cut.
 struct ManifoldFlip {
   std::int64_t background_vertex;
   Vec3 where;
-  bool is_filled;   ///< inside now; else it has been removed
+  bool is_filled;   ///< true: the vertex is now inside; false: it was removed from the inside
   double distance;  ///< signed, from psi = 0 to the vertex, model units
 };
 
 struct UmResult {
   UmStatus status = UmStatus::Success;
-  UmEvidence evidence;  ///< filled when status != Success
+  UmEvidence evidence;  ///< set when status != Success
   Submesh submesh;      ///< omega_h with background coordinates (step 22)
   std::vector<Triangle>
       walls;  ///< BackgroundBoundary::Wall: the faces of omega_h on the background boundary, local vertex ids, outward
   std::vector<Vec3> projected;               ///< vertex coordinates after step 30, same numbering
   std::vector<Vec3> final;                   ///< vertex coordinates of T^{Omega_h} (step 35), same numbering
   std::vector<ManifoldFlip> manifold_flips;  ///< UmMode::Fast; ascending in background_vertex
-  std::size_t n_stepped_back = 0;  ///< UmMode::Fast: vertices that are off psi = 0 so that the mesh is embedded
+  std::size_t n_stepped_back = 0;            ///< UmMode::Fast: vertices moved off psi = 0 to make the mesh embedded
   double conditioning_angle_max_deg = 0;
   std::size_t obtuse_conditioning_angles = 0;
   std::size_t double_positive_faces = 0;
   std::size_t n_psi_evaluations = 0;
   /// The mesh before flip_submesh(), whose tets are a set of tets of the background; null where no flip was made.
   std::shared_ptr<const UmResult> of_background = nullptr;
-  /// Vertex coordinates after every projection pass, same numbering; where PaperParams::keep_iterates says so.
+  /// Vertex coordinates after every projection pass, same numbering; only if PaperParams::keep_iterates is set.
   std::vector<std::vector<Vec3>> iterates;
 };
 

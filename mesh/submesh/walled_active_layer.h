@@ -6,11 +6,11 @@
 
 namespace umtet {
 
-/// The layer of linked_active_layer() where omega_h may reach the background boundary, whose vertices are walls and do
-/// not move: through stars and links instead of tables of bit masks, with a greedy colouring of the layer's own
-/// vertices in ascending order. The same vertices, roles and tets. Cost: linear in the stars of the inside vertices,
-/// some ten times that of linked_active_layer().
-/// @param inside  its vertices on the background boundary stay where they are
+/// Variant of linked_active_layer() for an omega_h that may reach the background boundary, whose vertices are walls and
+/// do not move. It uses stars and links instead of tables of bit masks, and a greedy colouring of the layer's own
+/// vertices in ascending order. Vertices, roles and tets are the same. Cost: linear in the stars of the inside
+/// vertices, about ten times the cost of linked_active_layer().
+/// @param inside  its vertices on the background boundary do not move
 BackgroundLayer walled_active_layer(const BackgroundMesh& background, const IdSet& inside, int layers = 2);
 
 }  // namespace umtet

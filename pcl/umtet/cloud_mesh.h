@@ -12,76 +12,76 @@
 
 #define UMTET_PCL_API __attribute__((visibility("default")))
 
-// From samples of a surface to tets, in memory: what umtet_pcl exports. Plain types alone cross its border: those of
-// Eigen and PCL are laid out and freed as the flags of each side say. C++17.
+// From samples of a surface to tets, in memory: the interface exported by umtet_pcl. Only plain types cross it, because
+// the layout and deallocation of Eigen's and PCL's types depend on the compiler flags of each side. C++17.
 namespace umtet {
 
 struct MeshObject;
 
 using Coordinates = std::vector<std::array<double, 3>>;
 
-/// Samples of a surface. All lengths are in one unit, the model's.
+/// Samples of a surface. All lengths are in the unit of the model.
 struct ScannedCloud {
   Coordinates points;
-  Coordinates normals;     ///< out of the body, of any length; none where all are missing, zero or NaN where one is
-  Coordinates viewpoints;  ///< where the sensor stood that saw a point; none where all are unknown, NaN where one is
-  std::size_t n_not_finite = 0;  ///< points that were left out for not being finite
+  Coordinates normals;           ///< outward, of any length; empty if there are none, zero or NaN for a missing one
+  Coordinates viewpoints;        ///< position of the sensor that saw a point; empty if unknown, NaN for an unknown one
+  std::size_t n_not_finite = 0;  ///< points dropped because they are not finite
 
-  /// Another view of the same surface, in the same coordinates.
+  /// Appends another view of the same surface, in the same coordinates.
   ScannedCloud& operator+=(const ScannedCloud& view);
 };
 
-/// How a mesh is made.
+/// Options of mesh_cloud().
 struct CloudMeshOptions {
-  double h = 0;  ///< edge length, model units; 0: as size, thin parts and noise of the samples ask for
-  /// More parameters with their values as `umtet run --set` takes them, such as {"mesh.tets", "20000"} or
+  double h = 0;  ///< edge length, model units; 0: chosen from size, thin parts and noise of the samples
+  /// Additional parameters with their values, as for `umtet run --set`, such as {"mesh.tets", "20000"} or
   /// {"cloud.normals", "estimate"}: docs/reference.md.
   std::vector<std::pair<std::string, std::string>> set{};
-  int threads = 0;  ///< 0: all that the machine has. The mesh does not depend on it
-  /// Called by the thread that made the call with the step and its part in [0, 1] that is done; false ends the call.
+  int threads = 0;  ///< 0: all hardware threads. The mesh does not depend on it
+  /// Called by the calling thread with the step and its completed fraction in [0, 1]; false ends the call.
   std::function<bool(const char* step, double fraction)> progress{};
 };
 
-/// A tet mesh whose boundary is psi = 0, and what is certified of it.
+/// A tet mesh whose boundary is psi = 0, with its certificate.
 struct CloudMesh {
-  Coordinates points;                        ///< vertices; of a mesh of second order the corners
-  std::vector<std::array<int, 4>> tets;      ///< of points; positive volumes
-  std::vector<std::array<int, 3>> boundary;  ///< triangles of points, counter-clockwise from outside
+  Coordinates points;                        ///< vertices; the corners of a ten-node mesh
+  std::vector<std::array<int, 4>> tets;      ///< indices into points; positive volumes
+  std::vector<std::array<int, 3>> boundary;  ///< triangles, indices into points, counter-clockwise from outside
   std::vector<int> boundary_vertices;        ///< ascending
-  Coordinates boundary_normals;              ///< of boundary_vertices: grad psi, unit, outward
-  ScannedCloud samples;    ///< what psi was fitted to: cleaned, sorted in space, each with a unit normal; no viewpoints
-  double h = 0;            ///< edge length of the background mesh, model units
-  double min_quality = 0;  ///< least mean ratio of a tet, in (0, 1]; 1 is regular
-  bool is_valid = false;   ///< positive tets, and a boundary that is a closed manifold without self-intersections
-  bool fits_psi = false;                   ///< it is psi = 0 as far as h can show it
-  bool fits_input = false;                 ///< it fits the cloud
-  bool passes = false;                     ///< the verdict of the certificate
-  std::string certificate;                 ///< JSON, as certificate.json: docs/reference.md
-  std::vector<std::string> notices;        ///< what was changed or guessed
+  Coordinates boundary_normals;              ///< at boundary_vertices: grad psi, unit, outward
+  ScannedCloud samples;     ///< the samples of the fit: cleaned, sorted in space, with unit normals; no viewpoints
+  double h = 0;             ///< edge length of the background mesh, model units
+  double min_quality = 0;   ///< least mean ratio of a tet, in (0, 1]; 1 is regular
+  bool is_valid = false;    ///< positive tets, and a boundary that is a closed manifold without self-intersections
+  bool fits_psi = false;    ///< the boundary is psi = 0 within the resolution of h
+  bool fits_input = false;  ///< the boundary fits the cloud
+  bool passes = false;      ///< the verdict of the certificate
+  std::string certificate;  ///< JSON, as certificate.json: docs/reference.md
+  std::vector<std::string> notices;        ///< changes and guesses
   std::shared_ptr<const MeshObject> made;  ///< for save()
 
-  /// @param file  .vtu, .msh, .mesh, or .stl of the boundary
+  /// Saves the mesh. @param file  .vtu, .msh, .mesh, or .stl for the boundary
   /// \throw std::invalid_argument for another suffix; std::system_error naming the file
   UMTET_PCL_API void save(const std::string& file) const;
 };
 
-/// No mesh can be made of this cloud.
+/// Error for a cloud that cannot be meshed.
 struct UMTET_PCL_API CloudMeshError : std::runtime_error {
   CloudMeshError(const std::string& message, std::string evidence)
       : std::runtime_error(message), evidence(std::move(evidence)) {}
-  std::string evidence;  ///< JSON: "status", and the places and lengths that it is about
+  std::string evidence;  ///< JSON: "status", with the relevant positions and lengths
 };
 
-/// Cleans the cloud, gives each sample an outward normal, fits psi and meshes {psi < 0}: the mesh that `umtet run`
-/// makes of a file with these samples.
+/// Meshes the body of a point cloud: cleans the cloud, gives each sample an outward normal, fits psi and meshes {psi <
+/// 0}. The mesh equals the one that `umtet run` makes of a file with these samples.
 ///
-/// Normals that are given win over viewpoints, and a minority that is turned over is turned back. Where there are none,
-/// they are estimated and look to the viewpoints of their points. A mesh whose certificate fails is returned, too.
+/// Given normals take precedence over viewpoints, and a minority that is turned over is corrected. Missing normals are
+/// estimated and oriented towards the viewpoints of their points. A mesh whose certificate fails is returned, too.
 ///
-/// \throw CloudMeshError  samples that are no surface or bound no body, no mesh at this h, too little memory, or
-///        options.progress has ended it
-/// \throw std::invalid_argument  a parameter that is not known, or not of its range; normals or viewpoints, but not as
-///        many as points; a point that is not finite
+/// \throw CloudMeshError if the samples are not a surface or bound no body, there is no mesh at this h, there is too
+///        little memory, or options.progress has ended the call
+/// \throw std::invalid_argument for a parameter that is unknown or out of range, if the numbers of points and normals
+///        or viewpoints differ, or for a point that is not finite
 UMTET_PCL_API CloudMesh mesh_cloud(const ScannedCloud& cloud, const CloudMeshOptions& options = {});
 
 inline ScannedCloud& ScannedCloud::operator+=(const ScannedCloud& view) {

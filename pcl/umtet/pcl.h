@@ -9,18 +9,18 @@
 #include <algorithm>
 #include <cmath>
 
-// Clouds of PCL to umtet and back. Templates alone: they are compiled as the rest of the user's code is, with the Eigen
-// that his PCL takes.
+// Conversion between clouds of PCL and umtet. These are templates, so they are compiled with the flags of the user's
+// code and the Eigen version of the user's PCL.
 //
-// Coordinates of PCL are float: they are rounded by up to 6e-8 of their distance from the origin. That does no harm
+// Coordinates of PCL are float: they are rounded by up to 6e-8 of their distance from the origin. This is harmless
 // below some thousandths of h, the edge length of the mesh. A cloud farther out, as in UTM coordinates, has to be moved
-// to the origin before it becomes one of PCL: from_pcl() cannot bring back what is lost, and to_pcl() loses it anew.
+// to the origin before it becomes a PCL cloud: from_pcl() cannot restore lost digits, and to_pcl() loses them again.
 namespace umtet {
 
-/// Points of any type that has x, y, z; normals if the type has them. Points that are not finite are left out and
-/// counted.
-/// @param viewpoint  where the sensor stood, in the coordinates of the points. pcl::transformPointCloud() leaves
-///                   sensor_origin_ as it is: after a registration, give the moved one
+/// Converts points of any type with x, y, z, and normals if the type has them. Points that are not finite are dropped
+/// and counted.
+/// @param viewpoint  position of the sensor, in the coordinates of the points. pcl::transformPointCloud() does not
+///                   change sensor_origin_: after a registration, pass the transformed position
 template <class PointT>
 ScannedCloud from_pcl(const pcl::PointCloud<PointT>& cloud, const Eigen::Vector3f& viewpoint) {
   ScannedCloud made;
@@ -37,8 +37,8 @@ ScannedCloud from_pcl(const pcl::PointCloud<PointT>& cloud, const Eigen::Vector3
   return made;
 }
 
-/// The same with the sensor_origin_ of the cloud, the VIEWPOINT of its PCD. One that nobody has set, (0, 0, 0) and not
-/// turned, is unknown.
+/// Converts a cloud with its sensor_origin_, which is the VIEWPOINT of its PCD file, as viewpoint. An unset one, (0, 0,
+/// 0) without rotation, is unknown.
 template <class PointT>
 ScannedCloud from_pcl(const pcl::PointCloud<PointT>& cloud) {
   const bool is_set = !cloud.sensor_origin_.template head<3>().isZero(0) ||
@@ -47,7 +47,7 @@ ScannedCloud from_pcl(const pcl::PointCloud<PointT>& cloud) {
   return from_pcl(cloud, Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()));
 }
 
-/// The points, with their normals if there are any and PointT has them.
+/// Converts points, with normals if they are given and PointT has them.
 template <class PointT>
 pcl::PointCloud<PointT> to_pcl(const Coordinates& points, const Coordinates& normals) {
   pcl::PointCloud<PointT> made;
@@ -67,13 +67,13 @@ pcl::PointCloud<PointT> to_pcl(const Coordinates& points, const Coordinates& nor
   return made;
 }
 
-/// A cloud without its viewpoints, such as the samples that a mesh was made of.
+/// Converts a cloud without its viewpoints, for example the samples of a mesh.
 template <class PointT>
 pcl::PointCloud<PointT> to_pcl(const ScannedCloud& cloud) {
   return to_pcl<PointT>(cloud.points, cloud.normals);
 }
 
-/// The vertices at the boundary of a mesh, by boundary_vertices, with the normals of psi = 0.
+/// Converts the boundary vertices of a mesh, in the order of boundary_vertices, with the normals of psi = 0.
 template <class PointT>
 pcl::PointCloud<PointT> to_pcl(const CloudMesh& mesh) {
   Coordinates points;
@@ -82,7 +82,7 @@ pcl::PointCloud<PointT> to_pcl(const CloudMesh& mesh) {
   return to_pcl<PointT>(points, mesh.boundary_normals);
 }
 
-/// The boundary of a mesh: those vertices as pcl::PointNormal, and its triangles.
+/// Converts the boundary of a mesh: its vertices as pcl::PointNormal, and its triangles.
 inline pcl::PolygonMesh to_polygon_mesh(const CloudMesh& mesh) {
   pcl::PolygonMesh made;
   pcl::toPCLPointCloud2(to_pcl<pcl::PointNormal>(mesh), made.cloud);

@@ -21,8 +21,8 @@ struct LatticeJet {
   Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
 };
 
-/// The numbers of a jet as four partial sums each: f, fx fy fz, fxx fxy fxz fyy fyz fzz. Terms are added lane by lane,
-/// and the lanes once at the end.
+/// Accumulator of a jet with four partial sums per number: f, fx fy fz, fxx fxy fxz fyy fyz fzz. Terms are added lane
+/// by lane, and the lanes are added once at the end.
 template <JetOrder order>
 struct JetPacks {
   static constexpr int kNumbers = order == kValue ? 1 : order == kGradient ? 4 : 10;
@@ -30,7 +30,7 @@ struct JetPacks {
 
   JetPacks() {
 #pragma GCC unroll 10
-    for (int q = 0; q < kNumbers; ++q) f[q] = Pack4d{};  // GCC makes a slow string instruction of "= {}"
+    for (int q = 0; q < kNumbers; ++q) f[q] = Pack4d{};  // GCC compiles "= {}" to a slow string instruction
   }
   LatticeJet sum() const {
     double s[10];
@@ -43,7 +43,7 @@ struct JetPacks {
   }
 };
 
-/// The nodes 0 .. W - 1 of two neighbouring rows as W / 2 vectors: four nodes of either, then what is left. Of W = 6
+/// Loads the nodes 0 .. W - 1 of two neighbouring rows as W / 2 vectors: four nodes of each, then the rests. For W = 6
 /// the rests of both rows share a vector.
 template <int W, class Coefficient>
 void load_rows(const Coefficient* row, const Coefficient* next, Pack4d* c) {
@@ -52,12 +52,13 @@ void load_rows(const Coefficient* row, const Coefficient* next, Pack4d* c) {
   if constexpr (W == 8) c[2] = four(row + 4), c[3] = four(next + 4);
 }
 
-/// Adds sum c_a N_a over the W^3 nodes around a point: contraction over z, y, then x, whose W nodes are four lanes and
-/// a rest.
-/// Every product is added by fused(): GCC is free to fuse either product of a b + c d, and psi alone has to have the
-/// bits of psi with its derivatives.
+/// Adds sum c_a N_a over the W^3 nodes around a point, by contraction over z, y, then x, whose W nodes are four lanes
+/// and a rest.
+/// Every product is added by fused(): GCC may fuse either product of a b + c d, and psi alone must have the same bits
+/// as psi with its derivatives.
 /// @param base    coefficient (double or float) of the first node of all axes
-/// @param nx, nxy distance of coefficients along y and z: numbers, or integral constants where they are known
+/// @param base    coefficient (double or float) of the first node of all axes
+/// @param nx, nxy strides of coefficients along y and z: numbers, or integral constants if they are known
 template <int W, JetOrder order, class Coefficient, class Nx, class Nxy>
 [[gnu::noinline, gnu::noclone]] void contract(const LmeBasis3d& B, const Coefficient* base, Nx nx, Nxy nxy,
                                               JetPacks<order>& sum) {
@@ -70,8 +71,8 @@ template <int W, JetOrder order, class Coefficient, class Nx, class Nxy>
     load_rows<W>(row, row + nx, c);
     for (int d = 0; d <= order; ++d)
       for (int v = 0; v < kVectors; ++v) s[d][v] = zN[d][0] * c[v];
-        // Not unrolled: GCC would load all of z at once, which is more than there are registers, and loads are what
-        // limits.
+        // Not unrolled: GCC would load all of z at once, which exceeds the number of registers, and loads are the
+        // bottleneck.
 #pragma GCC unroll 1
     for (int k = 1; k < W; ++k) {
       row += nxy;
@@ -82,8 +83,8 @@ template <int W, JetOrder order, class Coefficient, class Nx, class Nxy>
     for (int d = 0; d <= order; ++d)
       for (int v = 0; v < kVectors; ++v) a[pair][d][v] = s[d][v];
   }
-  // Sums over y, and what they add to the jet.
-  // weight(d, t), term(d, t): derivative d in y, or in z, of the t-th of n terms; x(N): the lanes of x they belong to
+  // Sums over y, and their contributions to the jet. weight(d, t), term(d, t): derivative d in y, or in z, of the t-th
+  // of n terms; x(N): their lanes of x
   const auto along_yx = [&](int n, auto weight, auto term, auto x) {
     constexpr int kSums = order == kValue ? 1 : order == kGradient ? 3 : 6;
     constexpr int kY[6] = {0, 1, 0, 2, 1, 0}, kZ[6] = {0, 0, 1, 0, 1, 2};
@@ -123,7 +124,7 @@ template <int W, JetOrder order, class Coefficient, class Nx, class Nxy>
   }
 }
 
-/// The same alone, of a whole lattice.
+/// Contraction on a whole lattice.
 /// @param c  coefficients of a lattice of n nodes
 template <int W, JetOrder order, class Coefficient>
 LatticeJet contract(const LmeBasis3d& B, const Eigen::Vector3i& n, const Coefficient* c) {
@@ -133,7 +134,7 @@ LatticeJet contract(const LmeBasis3d& B, const Eigen::Vector3i& n, const Coeffic
   return sum.sum();
 }
 
-/// f(std::integral_constant<int, W>) for a support of `width` = 4, 6 or 8 nodes an axis.
+/// Calls f(std::integral_constant<int, W>) for a support of `width` = 4, 6 or 8 nodes per axis.
 template <class F>
 decltype(auto) dispatch_width(int width, F&& f) {
   if (width == 4) return f(std::integral_constant<int, 4>{});

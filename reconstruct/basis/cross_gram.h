@@ -18,19 +18,19 @@ class CrossGram {
   double m(int d) const { return at(m_, d); }
   double s(int d) const { return at(s_, d); }
   double b(int d) const { return at(b_, d); }
-  /// |d| <= reach() where an entry can differ from zero.
+  /// Entries can be nonzero for |d| <= reach().
   int reach() const { return reach_; }
 
-  /// The coarse nodes whose functions meet those of the fine nodes first .. first + 7: the first on each axis ...
-  /// @param first  of a block of LatticeBlocks: 1 - half_width and multiples of 8 from there
+  /// The first coarse node on each axis whose functions meet those of the fine nodes first .. first + 7.
+  /// @param first  of a block of LatticeBlocks: 1 - half_width plus a multiple of 8
   Eigen::Vector3i window_begin(const Eigen::Vector3i& first) const;
-  /// ... and how many there are on an axis.
+  /// The number of these coarse nodes on an axis.
   int window_size() const { return (LatticeBlocks::kEdge - 1 + 2 * reach_) / (1 << k_) + 1; }
 
   /// out_a += int H(N_a) : H(sum_b C_b N_b) dV in units of the finer lattice, for the 8 x 8 x 8 nodes a of a block that
-  /// begins at fine node `first`: products of the three axes, as in HessianEnergy. Single precision, that of what a
-  /// band adds to psi.
-  /// @param C  window_size()^3 coefficients of the coarser lattice from window_begin(first) on, x fastest
+  /// begins at fine node `first`, as products of the three axes, like HessianEnergy. Single precision, as the
+  /// coefficients of a band.
+  /// @param C  window_size()^3 coefficients of the coarser lattice, beginning at window_begin(first), x fastest
   void add_energy(const Eigen::Vector3i& first, const float* C, float* out) const;
 
  private:
@@ -44,7 +44,7 @@ class CrossGram {
   double at(const std::vector<double>& a, int d) const { return d < -reach_ || d > reach_ ? 0 : a[d + reach_]; }
   int k_, reach_, shift_;
   std::vector<double> m_, s_, b_;  // entry d at d + reach_
-  std::vector<Axis> axes_;         // by the place of a block among those that begin in one coarse cell: 2^k / 8, or one
+  std::vector<Axis> axes_;         // one per position of a block relative to a coarse cell: 2^k / 8, or one
 };
 
 }  // namespace umtet

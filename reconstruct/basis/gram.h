@@ -6,12 +6,12 @@
 
 namespace umtet {
 
-/// Symmetric banded matrix of one axis; row i holds columns i - half .. i + half, entries outside the axis are zero.
+/// Symmetric banded matrix of one axis. Row i holds columns i - half .. i + half; entries outside the axis are zero.
 template <class T>
 struct BandMatrixOf {
   int n = 0, half = 0;
   std::vector<T> a;         ///< n rows of 2 half + 1 entries
-  std::vector<T> diagonal;  ///< the same by diagonals: entry (i, i + o) at (o + half) n + i, for vectors of rows
+  std::vector<T> diagonal;  ///< the same by diagonals, for vectors of rows: entry (i, i + o) is at (o + half) n + i
 
   T operator()(int i, int j) const { return a[static_cast<std::size_t>(i) * (2 * half + 1) + (j - i + half)]; }
   const T* row(int i) const { return a.data() + static_cast<std::size_t>(i) * (2 * half + 1); }
@@ -27,16 +27,16 @@ struct AxisGramOf {
 using AxisGram = AxisGramOf<double>;
 AxisGram axis_gram(const LmeTables& tables, int n);
 
-/// The Hessian energy int H(f) : H(f) dV over the hull of a lattice, in lattice units, applied to coefficients without
-/// a matrix: it is the sum of tensor products
+/// Matrix-free Hessian energy int H(f) : H(f) dV over the hull of a lattice, in lattice units. It is the sum of tensor
+/// products
 ///   b x m x m + m x b x m + m x m x b + 2 (s x s x m + s x m x s + m x s x s).
 /// In model units int H:H = h times this, for coefficients in units of h.        [Rangarajan2018, eq. (10), third term]
 class HessianEnergy {
  public:
   HessianEnergy(const LmeTables& tables, const Eigen::Vector3i& n);
 
-  /// y = kappa K c. Arrays of n_x n_y n_z numbers; planes in parallel, bits independent of the number of threads.
-  /// `workspace` grows to three arrays of that size. In single precision it takes half the time.
+  /// y = kappa K c, for arrays of n_x n_y n_z numbers. Planes run in parallel; the bits do not depend on the number of
+  /// threads. `workspace` grows to three arrays of that size. Single precision takes half the time.
   void apply(double kappa, const double* c, double* y, std::vector<double>& workspace) const;
   void apply(double kappa, const float* c, float* y, std::vector<float>& workspace) const;
   /// y += kappa diag(K)
@@ -48,7 +48,7 @@ class HessianEnergy {
  private:
   Eigen::Vector3i n_;
   AxisGram axes_[3];
-  AxisGramOf<float> single_[3];  // the same, rounded
+  AxisGramOf<float> single_[3];  // axes_ rounded to single precision
 };
 
 }  // namespace umtet

@@ -10,22 +10,22 @@
 
 namespace umtet {
 
-/// A set of blocks of 8 x 8 x 8 nodes of a lattice: storage for coefficients near a surface only.
+/// Set of blocks of 8 x 8 x 8 nodes of a lattice: sparse storage for coefficients near a surface.
 ///
 /// Block (bx, by, bz) holds the nodes 8 b - shift .. 8 b - shift + 7 of each axis, with shift = R - 1. The functions
-/// that live in the cells 8 b .. 8 b + 7 then belong to the blocks b and b + 1 of each axis and to no others.
+/// that are nonzero in the cells 8 b .. 8 b + 7 then belong to the blocks b and b + 1 of each axis and to no others.
 class LatticeBlocks {
  public:
   static constexpr int kEdge = 8, kNodes = kEdge * kEdge * kEdge;
 
-  /// @param blocks  in any order, repetitions allowed; those outside the lattice are left out
+  /// @param blocks  in any order, repetitions allowed; blocks outside the lattice are dropped
   LatticeBlocks(const Lattice& lattice, int half_width, std::vector<Eigen::Vector3i> blocks);
 
   const Lattice& lattice() const { return lattice_; }
   int size() const { return static_cast<int>(blocks_.size()); }
   /// Sorted by z, y, x.
   const std::vector<Eigen::Vector3i>& blocks() const { return blocks_; }
-  /// Index of a block, -1 where there is none.
+  /// Index of a block; -1 if it is not in the set.
   int at(const Eigen::Vector3i& block) const {
     if ((block.array() < 0).any() || (block.array() >= n_.array()).any()) return -1;
     return index_[block[0] + static_cast<std::size_t>(n_[0]) * (block[1] + static_cast<std::size_t>(n_[1]) * block[2])];
@@ -33,15 +33,15 @@ class LatticeBlocks {
   /// The first node of a block; may be negative for blocks at the wall.
   Eigen::Vector3i first_node(int index) const { return kEdge * blocks_[index] - Eigen::Vector3i::Constant(shift_); }
   int shift() const { return shift_; }
-  /// Blocks along each axis that cover the lattice.
+  /// Number of blocks along each axis that cover the lattice.
   const Eigen::Vector3i& n_blocks() const { return n_; }
 
-  /// The 27 blocks around a block, itself in the middle, x fastest; -1 where there is none.
+  /// The 27 blocks around a block, itself in the middle, x fastest; -1 for blocks that are not in the set.
   std::array<int, 27> neighbours(int index) const;
 
-  /// Copies the box of nodes first .. first + n - 1 of values stored by block (kNodes each, x fastest) to `out`, x
-  /// fastest with rows of `row` values; zero where there is no block. False when all of the box is zero for that
-  /// reason.
+  /// Copies the box of nodes first .. first + n - 1 from values stored by block (kNodes each, x fastest) to `out`, x
+  /// fastest with rows of `row` values. Values are zero where there is no block. Returns false if no block meets the
+  /// box.
   template <class T, class Out>
   bool copy_window(const T* values, const Eigen::Vector3i& first, const Eigen::Vector3i& n, int row, Out* out) const;
 

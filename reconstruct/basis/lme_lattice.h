@@ -10,42 +10,43 @@
 
 namespace umtet {
 
-/// Values of the max-ent functions of one axis at one point: those of nodes first, first + 1, ... The lanes that no
-/// node has are zero, so that loops may run over all eight.
+/// Values of the max-ent functions of one axis at one point, for the nodes first, first + 1, ... Lanes without a node
+/// are zero, so that loops may run over all eight.
 struct alignas(32) LmeBasis1d {
   static constexpr int kPackSize = 8;
   double N[kPackSize], dN[kPackSize], ddN[kPackSize];  ///< functions and derivatives with respect to x / h
   int first = 0;
 };
 
-/// The lattice functions N_a(x) = p_i(x) p_j(y) p_k(z) at one point: a Gaussian prior and its compact relative are
-/// products over the axes, and so is Z; the three-dimensional max-ent functions are therefore tensor products, hull
-/// included.
+/// The lattice functions N_a(x) = p_i(x) p_j(y) p_k(z) at one point. A Gaussian prior and its compact relative are
+/// products over the axes, and so is Z. The three-dimensional max-ent functions are therefore tensor products, also at
+/// the hull.
 struct LmeBasis3d {
   LmeBasis1d x, y, z;
 };
 
-/// Where a point lies among the nodes of the three axes; elements x, y, z and one that is not used.
+/// Position of a point among the nodes of the three axes, with elements x, y, z and an unused one.
 struct LmePlace {
-  simd::Pack4i cell, piece, first;  ///< of the axis; of the tables; the first node that has a function there
-  simd::Pack4d s;                   ///< in the piece, 0 .. 1
+  simd::Pack4i cell, piece, first;  ///< cell of the axis; piece of the tables; first node with a nonzero function there
+  simd::Pack4d s;                   ///< position in the piece, 0 .. 1
 };
 
-/// One-dimensional max-ent functions on the nodes 0, 1, ..., n - 1 (unit spacing), by Newton's method on log Z.
+/// Evaluates one-dimensional local max-ent functions on the nodes 0, 1, ..., n - 1 (unit spacing), by Newton's method
+/// on log Z.
 ///
 /// p_a = w_a e^{lambda d_a} / Z with d_a = x - a and lambda from sum p_a d_a = 0. With W_a = e^{lambda d_a} / Z:
 ///   p'  = W w' + p e,                e_a = lambda' d_a - <w'/w>,  lambda' = -(1 + sum W w' d) / J,  J = sum p d^2
 ///   p'' = T - p (sum T + d sum T d / J),   T = W w'' + 2 W w' e + p e^2
-/// which needs no quotient w'/w and so holds up to the edge of the support.              [ArroyoOrtiz2006, Section 3]
+/// which needs no quotient w'/w and is therefore valid up to the edge of the support.     [ArroyoOrtiz2006, Section 3]
 ///
-/// @param x  in [0, n - 1]; at the two ends the limit from inside is taken
+/// @param x  in [0, n - 1]; at the two ends the limit from inside is used
 /// @param n  >= 2 half_width(prior)
 LmeBasis1d evaluate_lme_1d(const LmePrior& prior, int n, double x);
 
-/// The same functions from tables: in a lattice cell they depend only on how many nodes there are to the left and to
-/// the right of it, up to the support. Each table holds quintic Hermite pieces of (N, N', N''), so tabulated functions
-/// are C2, sum to one and reproduce x exactly as the originals do. Only for CompactC2 (a cut Gaussian jumps inside a
-/// cell).
+/// Tabulated max-ent functions of a lattice. In a lattice cell they depend only on the numbers of nodes to the left and
+/// to the right of it, up to the support. Each table holds quintic Hermite pieces of (N, N', N''), so tabulated
+/// functions are C2, sum to one and reproduce x exactly, like the originals. For CompactC2 only (a cut Gaussian jumps
+/// inside a cell).
 class LmeTables {
  public:
   explicit LmeTables(const LmePrior& prior);
@@ -60,12 +61,13 @@ class LmeTables {
     evaluate_3d<Second ? 2 : 1>({n, n, n}, {x, x, x}, 1, B);
     out = B.x;
   }
-  /// Three axes at once; derivatives up to `order` with respect to x / scale: scale = 1 / h gives those in model units.
+  /// Three axes at once; derivatives up to `order` with respect to x / scale. scale = 1 / h gives derivatives in model
+  /// units.
   template <int order>
   void evaluate_3d(const Eigen::Vector3i& n, const Eigen::Vector3d& xi, double scale, LmeBasis3d& out) const {
     evaluate_at<order>(locate(n, xi), n, xi, scale, out);
   }
-  /// The two steps of that. Finding the place is a long chain of short operations: those of several points side by side
+  /// The two steps of evaluate_3d(). Finding the place is a long chain of short operations; several points side by side
   /// cost little more than one.
   LmePlace locate(const Eigen::Vector3i& n, const Eigen::Vector3d& xi) const;
   template <int order>
@@ -85,7 +87,7 @@ class LmeTables {
   void evaluate_exactly(const Eigen::Vector3i& n, const Eigen::Vector3d& xi, double scale, LmeBasis3d& out) const;
   void move_inside(const LmePlace& place, LmeBasis3d& out) const;
 
-  // 256 pieces a cell: N'' is right to 2e-9 (gamma = 1.2, R = 3), N to rounding.
+  // 256 pieces per cell: N'' has an error of 2e-9 (gamma = 1.2, R = 3), N of rounding.
   static constexpr int kPieces = 256;
   template <class Int>
   static Int first_piece(Int nodes_left, Int nodes_right) {
@@ -98,7 +100,7 @@ class LmeTables {
 
 template <int order>
 inline void LmeTables::evaluate_piece(const Piece& piece, double s, double scale, LmeBasis1d& out) {
-  // Horner's scheme for the value carries those of the derivatives along.
+  // Horner's scheme for the value also evaluates the derivatives.
   const Lanes* c = piece.c;
   Lanes N = c[5] * s + c[4], dN = c[5], ddN = c[5];
   for (int m = 3; m >= 0; --m) {
@@ -136,7 +138,7 @@ inline void LmeTables::evaluate_at(const LmePlace& place, const Eigen::Vector3i&
   if (moved[0] | moved[1] | moved[2]) move_inside(place, out);
 }
 
-/// Nodes of a cubic lattice: node (i, j, k) at origin + h (i, j, k), index i + n_x (j + n_y k).
+/// Cubic lattice: node (i, j, k) is at origin + h (i, j, k), with index i + n_x (j + n_y k).
 struct Lattice {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   double h = 1;
@@ -149,7 +151,7 @@ struct Lattice {
   bool operator==(const Lattice& o) const { return origin == o.origin && h == o.h && n == o.n; }
 };
 
-/// @param xi  (x - origin) / h, inside [0, n - 1] on each axis
+/// Evaluates the lattice functions at a point. @param xi  (x - origin) / h, inside [0, n - 1] on each axis
 template <bool Second>
 void evaluate_lme_3d(const LmeTables& tables, const Eigen::Vector3i& n, const Eigen::Vector3d& xi, LmeBasis3d& out) {
   tables.evaluate_3d<Second ? 2 : 1>(n, xi, 1, out);

@@ -5,13 +5,13 @@
 
 namespace umtet {
 
-/// The prior w of p_a(x) = w(x - x_a) exp(lambda . (x - x_a)) / Z, as a function of t = (x - x_a) / h on one axis; in
-/// three dimensions w is the product over the axes.
+/// Prior w of the local max-ent functions p_a(x) = w(x - x_a) exp(lambda . (x - x_a)) / Z, as a function of t = (x -
+/// x_a) / h on one axis. In three dimensions w is the product over the axes.
 ///
-/// CompactC2: w = exp(-(gamma - s / R^2) t^2) (1 - t^2 / R^2)^s for |t| < R, s = 4: support R, and the same curvature
-/// at t = 0 as the Gaussian. It is C3, more than its name says; max-ent functions inherit that, and their tables
+/// CompactC2: w = exp(-(gamma - s / R^2) t^2) (1 - t^2 / R^2)^s for |t| < R, s = 4. It has support R and the curvature
+/// of the Gaussian at t = 0. It is C3, more than its name says; max-ent functions inherit this, and their tables
 /// (LmeTables) are C2.
-/// Gaussian: exp(-gamma t^2), cut where it falls below epsilon: the paper's, which jumps at the cut.
+/// Gaussian: exp(-gamma t^2), cut where it falls below epsilon. This is the paper's prior, which jumps at the cut.
 ///                                                                     [ArroyoOrtiz2006; Rangarajan2018, Section 3.7]
 struct LmePrior {
   enum class Kind { CompactC2, Gaussian };
@@ -24,12 +24,12 @@ struct LmePrior {
   bool operator==(const LmePrior&) const = default;
 };
 
-/// Every broken constraint; empty when the prior is usable.
+/// All broken constraints; empty if the prior is valid.
 std::vector<std::string> problems(const LmePrior&);
 
-/// Where w ends, in spacings: R, or sqrt(ln(1/epsilon) / gamma).
+/// Radius of w's support in spacings: R, or sqrt(ln(1/epsilon) / gamma).
 double radius(const LmePrior&);
-/// radius() rounded up: 2 half_width() nodes of an axis can have a value in one lattice cell. At most 4.
+/// radius() rounded up: 2 half_width() nodes per axis can be nonzero in a lattice cell. At most 4.
 int half_width(const LmePrior&);
 
 /// w and its first two derivatives with respect to t; zero beyond the radius.

@@ -8,8 +8,8 @@
 
 namespace umtet::simd {
 
-// Vectors of the compiler, not Eigen's, which have no casts between four numbers of different kinds and no rests of
-// two.
+// Compiler vector types are used because Eigen's have no casts between vectors of four numbers of different types, and
+// no rests of two.
 using Pack4d = double __attribute__((vector_size(32)));
 using Pack4i = int __attribute__((vector_size(16)));
 
@@ -18,7 +18,7 @@ inline Pack4d four(const float* a) { return Pack4d{a[0], a[1], a[2], a[3]}; }
 /// a0 a1 b0 b1
 inline Pack4d two_and_two(const double* a, const double* b) { return Pack4d{a[0], a[1], b[0], b[1]}; }
 inline Pack4d two_and_two(const float* a, const float* b) {
-  // Pairs are loaded as one number of eight bytes each: two instructions, where four floats take seven.
+  // Pairs are loaded as one eight-byte number each: two instructions, where four floats take seven.
   using Pack2d = double __attribute__((vector_size(16)));
   using Pack4f = float __attribute__((vector_size(16)));
   double pair[2];
@@ -28,7 +28,7 @@ inline Pack4d two_and_two(const float* a, const float* b) {
 }
 
 inline Pack4d all(double a) { return Pack4d{a, a, a, a}; }
-/// a b + c: rounded once where the machine that is compiled for can.
+/// a b + c, rounded once if the target machine supports it.
 inline Pack4d fused(Pack4d a, Pack4d b, Pack4d c) {
 #ifdef __FMA__
   return _mm256_fmadd_pd(a, b, c);

@@ -11,44 +11,47 @@
 namespace umtet {
 
 struct CleaningParams {
-  bool outliers = true;  ///< false: only what is no number and what is there twice goes (--keep-all)
+  bool outliers = true;  ///< false: drops only points that are not finite and duplicates (--keep-all)
   double suspicious_crowd =
-      3;  ///< this many times the points that its spacing predicts around it: an outlier if off their plane; > 1
-  double certain_crowd = 20;  ///< this many times: an outlier wherever it is; >= suspicious_crowd
+      3;  ///< times the number of points that its spacing predicts around it: an outlier if off their plane; > 1
+  double certain_crowd = 20;  ///< times that number: an outlier anywhere; >= suspicious_crowd
   std::size_t small_component_points =
       100;  ///< a small component has fewer points than this, and less than a hundredth of the cloud,
-  double small_component_distance = 10;  ///< and is this many of its own spacings from the rest; > 1
+  double small_component_distance = 10;  ///< and its distance from the rest is this many of its own spacings; > 1
 };
 std::vector<std::string> problems(const CleaningParams&);
 
 struct CleaningReport {
-  std::vector<std::uint32_t> kept;     ///< which points of the cloud that came are left, ascending
-  std::size_t n_not_finite = 0;        ///< coordinates NaN, infinite or beyond 1e50
-  std::size_t n_duplicates = 0;        ///< at the place of an earlier point
-  std::size_t n_outliers = 0;          ///< far from a surface for how near its points are to each other
-  std::size_t n_small_components = 0;  ///< points of small pieces far from the rest
+  std::vector<std::uint32_t> kept;     ///< indices of the remaining points in the original cloud, ascending
+  std::size_t n_not_finite = 0;        ///< points with coordinates that are NaN, infinite or beyond 1e50
+  std::size_t n_duplicates = 0;        ///< points at the position of an earlier one
+  std::size_t n_outliers = 0;          ///< points far from a surface, relative to the spacing of its points
+  std::size_t n_small_components = 0;  ///< points of small components far from the rest
   std::size_t n_small_component_pieces = 0;
 };
 
-/// Drops what is no sample of a surface. Normals may be missing (an empty array).
+/// Cleaning of a scan: drops points that are not samples of a surface. Normals may be missing (an empty array).
 ///
-/// Of points at one place the first is kept with its normal: an average would change bits, and cancel where both sides
-/// of a sheet meet.
+/// - Duplicates: of the points at one position the first is kept with its normal. An average would change bits, and
+///   would cancel where both sides of a sheet meet.
+/// - Outliers are sparse points beside dense ones. Let d be the distance of the 12th neighbour. On a surface, the ball
+///   of radius 3 d contains 9 * 12 points at any density. It contains three times as many beside a region that is
+///   scanned five times as densely, or if the point is four spacings away from a surface; the plane of the neighbours
+///   distinguishes these cases. Twenty times as many occur on no surface.
 ///
-/// An outlier is sparse beside something dense. Let d be the distance of the 12th neighbour: on a surface the ball of
-/// radius 3 d holds 9 * 12 points whatever the density; three times that beside a region scanned five times as densely,
-/// or when the point is four spacings away from a surface; the plane of its neighbours tells these apart. Twenty times
-/// is no surface at all. That judges by the place and not by the cloud, as PCL's StatisticalOutlierRemoval does, which
-/// takes one threshold from all distances: it drops the sparse part of clouds whose density varies, and one point far
-/// away hides all others. It does not matter how far away outliers are, nor that they are neighbours of each other.
+/// The criterion is local. PCL's StatisticalOutlierRemoval instead takes one threshold from all distances: it drops the
+/// sparse part of clouds with varying density, and a single far point hides all others. Here the distance of outliers
+/// does not matter, nor whether they are neighbours of each other.
 ///
-/// On scan lines representatives (covering.h) are judged, and what they stand for goes with them: a line is far from
-/// the next one for how near its points are to each other.
+/// On scan lines, representatives (covering.h) are tested, and the points that they represent are dropped with them:
+/// relative to the spacing on a line, the next line is far away.
 ///
-/// @param neighbours  if given: becomes the twelve nearest of what is left (empty for fewer than two points)
-/// @param covers_left  if given: becomes the covering of that
-/// \throw std::invalid_argument  an array that has not as many entries as there are points; a problem of the parameters
-/// Cost: O(n log n), a few microseconds a point. The result does not depend on the number of threads.
+/// @param neighbours   if given: receives the twelve nearest neighbours of the remaining points (empty for fewer than
+///                     two points)
+/// @param covers_left  if given: receives the covering of the remaining points
+/// \throw std::invalid_argument for an array whose length differs from the number of points, or a problem of the
+///        parameters
+/// Cost: O(n log n), a few microseconds per point. The result does not depend on the number of threads.
 CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params = {}, Neighbourhoods* neighbours = nullptr,
                      Covering* covers_left = nullptr);
 

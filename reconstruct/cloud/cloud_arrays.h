@@ -10,8 +10,8 @@
 
 namespace umtet {
 
-/// Calls visit(array, what it holds) for every array of a cloud that has an entry a sample, the points first. Those
-/// that may be missing and are empty are left out.
+/// Calls visit(array, description) for every array of a cloud with an entry per sample, the points first. Optional
+/// arrays that are empty are skipped.
 template <class Cloud, class Visit>
 void for_each_array(Cloud& cloud, Visit&& visit) {
   const auto if_there = [&](auto& array, const std::string& name) {
@@ -27,32 +27,32 @@ void for_each_array(Cloud& cloud, Visit&& visit) {
   for (auto& field : cloud.fields) visit(field.values, "values of " + field.name);
 }
 
-/// \throw std::invalid_argument  an array that has not as many entries as there are points
+/// Checks a cloud. \throw std::invalid_argument for an array whose length differs from the number of points
 void require_equal_lengths(const OrientedPointCloud& cloud);
 
-/// What a sample carries besides its place and side: "rgb" where there are colours, and the names of the fields.
+/// Names of the data of samples besides position and normal: "rgb" if there are colours, and the names of the fields.
 std::vector<std::string> field_names(const OrientedPointCloud& cloud);
 
-/// Leaves these samples. @param rows  ascending
+/// Keeps these samples and drops the others. @param rows  ascending
 void keep_samples(OrientedPointCloud& cloud, const std::vector<std::uint32_t>& rows);
 
-/// A normal of length 1. One that is unit to rounding stays what it is, so that a written cloud is read back bit by
+/// Normalises a normal. A normal that is unit to rounding is unchanged, so that a written cloud is read back bit by
 /// bit.
 /// @param n  finite, not zero
 Vec3 unit_normal(Vec3 n);
 
-/// How many points a sample stands for. @param counts  OrientedPointCloud::counts
+/// The number of points that a sample represents. @param counts  OrientedPointCloud::counts
 inline std::size_t count_of(const std::vector<int>& counts, std::size_t sample) {
   return counts.empty() ? 1 : static_cast<std::size_t>(counts[sample]);
 }
-/// How many all of them stand for.
+/// The number of points that all samples represent.
 inline std::size_t sum_of_counts(const std::vector<int>& counts, std::size_t n_samples) {
   return counts.empty() ? n_samples : std::accumulate(counts.begin(), counts.end(), std::size_t{0});
 }
 
-/// Every m-th of the rows 0 .. size - 1; where a row stands for several samples, the rows of every m-th of these.
+/// Every m-th of the rows 0 .. size - 1. If rows represent several samples, the rows of every m-th sample.
 /// @param m      >= 1
-/// @param count  count(row), of samples that the row stands for
+/// @param count  count(row) is the number of samples that the row represents
 template <class Count>
 std::vector<std::size_t> every_mth(std::size_t m, std::size_t size, Count&& count) {
   std::vector<std::size_t> rows;

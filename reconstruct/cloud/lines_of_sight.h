@@ -5,19 +5,20 @@
 
 namespace umtet {
 
-/// Whether the vectors that a cloud has as normals are none. Some scanners store the direction to themselves there: it
-/// is smooth from sample to sample and looks outward, so only the positions tell. Of up to 1,000 samples, evenly along
-/// the order of points, the angle between the vector and the normal of the quadric through the neighbours is taken;
-/// samples whose neighbours leave more than 5 degrees of doubt are not asked.
+/// Tests whether the vectors given as normals are lines of sight. Some scanners store the direction to themselves
+/// there. It varies smoothly from sample to sample and points outward, so only the positions reveal it. For up to 1,000
+/// samples, evenly along the order of points, the angle between the vector and the normal of the quadric through the
+/// neighbours is measured. Samples whose neighbours leave an uncertainty of more than 5 degrees are skipped.
 ///
-/// True where at least half were asked and half of these are more than 20 degrees off. A scanner sees a ball from afar
-/// with a median of 45 degrees, and from all sides nothing else. Right normals leave what noise and edges do, 5 degrees
-/// at most over data/clouds; given normals with a noise of 20 are worse than those of the positions.
+/// The result is true if at least half of the samples were measured and half of these differ by more than 20 degrees.
+/// For a ball seen from afar the median is 45 degrees, and a scan from all sides contains nothing else. Right normals
+/// differ by the effects of noise and edges, 5 degrees at most over data/clouds; given normals with a noise of 20
+/// degrees are worse than the normals from positions.
 ///
-/// @param near      the nearest of all points
+/// @param near      the nearest neighbours of all points
 /// @param covering  of the points: on scan lines the neighbours are those of the representatives
-/// \throw std::invalid_argument  not as many normals, or rows of neighbours, as points
-/// Cost: of a thousand quadrics.
+/// \throw std::invalid_argument if the numbers of normals, rows of neighbours and points differ
+/// Cost: that of a thousand quadrics.
 bool are_lines_of_sight(const OrientedPointCloud& cloud, const Neighbourhoods& near, const Covering& covering);
 
 }  // namespace umtet

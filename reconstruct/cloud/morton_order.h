@@ -7,17 +7,18 @@
 
 namespace umtet {
 
-/// The lowest 21 bits of v, two zeros between each of them: of three of them a Morton code is made.
+/// Spreads the lowest 21 bits of v, with two zeros between each: three such numbers form a Morton code.
 std::uint64_t spread_bits(std::uint64_t v);
 
-/// The points along Morton's curve through their bounding box, those of one of its 2^63 cells by their coordinates, and
-/// those at one place as they come: successive points are near each other, and every m-th of them are spread
-/// evenly. Any coordinates, finite or not. Does not depend on the number of threads.
+/// Order of the points along Morton's curve through their bounding box. Points in one of its 2^63 cells are ordered by
+/// their coordinates, and points at one position keep their order. Successive points are close to each other, and every
+/// m-th of them are spread evenly. Coordinates may be arbitrary, finite or not. Does not depend on the number of
+/// threads.
 std::vector<std::uint32_t> morton_order(const std::vector<Vec3>& points);
 
-/// Puts a cloud in that order. What is made from it then does not depend on the order in which the points came, and
-/// neighbours in space are neighbours in memory, which makes everything after it faster.
-/// All but the points may be missing.
+/// Sorts a cloud into Morton order. Results made from it then do not depend on the original order of the points, and
+/// neighbours in space are neighbours in memory, which makes all later steps faster. All arrays but the points may be
+/// missing.
 void sort_in_space(OrientedPointCloud& cloud);
 
 }  // namespace umtet

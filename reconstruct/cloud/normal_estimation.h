@@ -9,33 +9,34 @@
 namespace umtet {
 
 struct NormalEstimationParams {
-  int neighbours = 24;        ///< of the first neighbourhood; >= 8. Four times the coefficients of a quadric
-  double noise_angle = 2;     ///< degrees that noise may leave on a normal before the neighbourhood grows; > 0
-  double largest_growth = 9;  ///< of its radius; >= 1. Nine times of 24 neighbours are what 2000 would fill
+  int neighbours = 24;        ///< size of the first neighbourhood; >= 8. Four times the coefficients of a quadric
+  double noise_angle = 2;     ///< permitted effect of noise on a normal, degrees, before the neighbourhood grows; > 0
+  double largest_growth = 9;  ///< maximum growth of its radius; >= 1. Nine times the radius of 24 neighbours would
+                              ///< contain 2000
 };
 std::vector<std::string> problems(const NormalEstimationParams&);
 
 struct EstimatedNormals {
-  std::vector<Vec3> normals;    ///< unit, signs without meaning; zero where all neighbours lie at one place
+  std::vector<Vec3> normals;    ///< unit, signs arbitrary; zero if all neighbours are at one position
   std::size_t n_undefined = 0;  ///< zero normals
-  std::size_t n_widened = 0;    ///< points whose noise made a larger radius necessary
+  std::size_t n_widened = 0;    ///< points whose noise required a larger radius
 };
 
-/// Directions of the normals, from quadrics through neighbourhoods that grow with the noise met in them.
+/// Normal estimation: directions of the normals from quadrics through neighbourhoods that grow with the noise.
 ///
 /// n neighbours within r and noise sigma leave an angle of 2 sigma / (r sqrt(n)). The radius grows by sqrt(3) until
-/// that is below params.noise_angle: at once where sigma < spacing / 4. Wide neighbourhoods are looked up among every
-/// 3rd, 9th, ... point, so that the cost of a step stays the same.
+/// this is below params.noise_angle; it is below at once if sigma < spacing / 4. Wide neighbourhoods are searched among
+/// every 3rd, 9th, ... point, so that the cost of a step is constant.
 ///
-/// Double throughout: PCL's points are float, so its estimation would lose scans of 1e7 from the origin and the last
-/// digits of all others.
-/// On scan lines the neighbours of a point are the representatives around it (covering.h): those on its own line have
-/// no plane.
+/// All computations are in double: PCL's points are float, so its estimation would fail for scans at 1e7 from the
+/// origin and lose the last digits of all others. On scan lines the neighbours of a point are the representatives
+/// around it (covering.h), because the points on its own line define no plane.
 ///
 /// @param covering  of the points; null: they are sampled evenly
-/// \throw std::invalid_argument  fewer than 3 points, a coordinate not finite, a problem of the parameters
-/// Cost: O(n log n), and several times as much with noise of spacings. The result does not depend on the number of
-/// threads.
+/// \throw std::invalid_argument for fewer than 3 points, a coordinate that is not finite, or a problem of the
+///        parameters
+/// Cost: O(n log n), and several times as much if noise is as large as spacings. The result does not depend on the
+/// number of threads.
 EstimatedNormals estimate_normals(const std::vector<Vec3>& points, const NormalEstimationParams& params = {},
                                   const Covering* covering = nullptr);
 

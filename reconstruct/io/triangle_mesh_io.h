@@ -10,14 +10,14 @@
 
 namespace umtet {
 
-/// What was found in a file of triangles besides them.
+/// Properties of a triangle file besides the triangles.
 struct TriangleFileReport {
   std::string format;                    ///< "stl binary", "obj" ...
-  std::size_t n_vertices = 0;            ///< as the file counts them; three a triangle in STL
-  std::size_t n_faces = 0;               ///< as the file counts them
-  std::size_t n_polygons = 0;            ///< of these, with more than three corners: cut into triangles
-  std::vector<std::string> label_names;  ///< of label 1, 2 ...: solids, groups or materials; empty without
-  std::size_t n_groups_ignored = 0;      ///< more than kMostGroups: they are no parts of a boundary
+  std::size_t n_vertices = 0;            ///< as counted by the file; three per triangle in STL
+  std::size_t n_faces = 0;               ///< as counted by the file
+  std::size_t n_polygons = 0;            ///< faces with more than three corners, which were cut into triangles
+  std::vector<std::string> label_names;  ///< names of labels 1, 2 ...: solids, groups or materials; empty without names
+  std::size_t n_groups_ignored = 0;      ///< number of groups if above kMostGroups: they are not parts of a boundary
 };
 
 struct TriangleFile {
@@ -25,43 +25,48 @@ struct TriangleFile {
   TriangleFileReport report;
 };
 
-/// More different groups or materials than this are ignored.
+/// Maximum number of different groups or materials; more are ignored.
 inline constexpr std::size_t kMostGroups = 64;
 
-/// What a PLY with faces is: a surface, or the cloud of its vertices.
+/// Interpretation of a PLY file with faces: a surface, or the cloud of its vertices.
 enum class PlyFaces { Surface, Ignored };
 
-/// Is a file one of triangles: STL, OBJ or OFF by its extension, OFF or PLY by its first line? A PLY is one if it has
-/// at least a quarter as many faces as vertices; with fewer its points are the scan. Reads the beginning only.
+/// Tests whether a file contains triangles: STL, OBJ or OFF by its extension, OFF or PLY by its first line. A PLY file
+/// does if it has at least a quarter as many faces as vertices; with fewer, its points are the scan. Reads the
+/// beginning only.
 ///
-/// \throw std::system_error  the file cannot be opened or read; names it
+/// \throw std::system_error naming the file, if it cannot be opened or read
 bool holds_triangles(const std::filesystem::path& file, PlyFaces faces = PlyFaces::Surface);
 
-/// Reads STL (ascii, binary), OBJ, OFF (ascii) and PLY with faces. Double precision throughout.
+/// Reads a triangle mesh in STL (ascii, binary), OBJ, OFF (ascii) or PLY with faces. All numbers are in double
+/// precision.
 ///
-/// STL: binary by its size, whatever it begins with; several solids. OBJ: v and f with negative and all other kinds of
-/// indices, lines that go on behind a backslash; lines, curves and texture coordinates are stepped over, materials are
-/// names: no other file is opened. OFF: also with colours, normals, texture coordinates. PLY: as read_scan(), and the
-/// list vertex_indices or vertex_index.
-/// Polygons are cut into triangles inside of them, concave ones too. Vertices that no face uses are left out.
+/// - STL: binary is detected by the file size, whatever the first bytes; there may be several solids.
+/// - OBJ: v and f with negative and all other kinds of indices, and lines continued after a backslash. Lines, curves
+///   and texture coordinates are skipped. Materials are only names: no other file is opened.
+/// - OFF: also with colours, normals and texture coordinates.
+/// - PLY: as read_scan(), and the list vertex_indices or vertex_index.
 ///
-/// Labels are 1, 2 ... in the order in which they come: solids of STL; of OBJ the groups (g), else the materials
-/// (usemtl), else the objects (o), whichever there are several of. PLY: property `label` (or `patch`) of the faces, as
-/// it is, without names. Normals of files are not looked at: the order of corners says the same.
+/// Polygons, also concave ones, are cut into triangles inside of them. Vertices without a face are dropped.
 ///
-/// No count is believed before it is compared with the size of the file, and no index before it is compared with the
-/// number of vertices.
+/// Labels are 1, 2 ... in order of appearance: solids of STL; for OBJ the groups (g), else the materials (usemtl), else
+/// the objects (o), the first of these of which there are several. For PLY they are the property `label` (or `patch`)
+/// of the faces, unchanged and without names. Normals in files are ignored, because the order of corners gives the
+/// orientation.
 ///
-/// \throw CloudRefused         malformed, cut short, no faces, an index or a coordinate that is none, or all within a
-///                             plane
-/// \throw std::system_error    the file cannot be opened or read; names it
+/// Every count is compared with the size of the file, and every index with the number of vertices, before it is used.
+///
+/// \throw CloudRefused for a file that is malformed or truncated, no faces, an invalid index or coordinate, or corners
+///        that are all in a plane
+/// \throw std::system_error naming the file, if it cannot be opened or read
 TriangleFile read_triangles(const std::filesystem::path& file);
 
-/// Refuses by its first megabyte what read_triangles() would refuse for what is there. \throw  as read_triangles()
+/// Checks the first megabyte of a file, and rejects what read_triangles() would reject there. \throw as
+/// read_triangles()
 void check_triangles_head(const std::filesystem::path& file);
 
-/// Binary little-endian PLY with double x y z, vertex_indices of int and, where there are any, int label;
-/// read_triangles() gives the same back. The caller owns the stream and checks it.
+/// Writes binary little-endian PLY: double x y z, vertex_indices of int and, if present, int label. read_triangles()
+/// returns the same mesh. The caller owns the stream and checks it.
 void write_ply(std::ostream&, const TriangleMesh&);
 
 }  // namespace umtet

@@ -5,18 +5,18 @@
 
 namespace umtet {
 
-/// psi fitted to a grid: a level set in the coordinates (i, j, k) of the grid's nodes, which may be stretched, rotated
-/// and sheared against those of the model. C2; satisfies the mesher's ImplicitFunction; thread-safe.
+/// Level set function fitted to a grid. It is defined in the coordinates (i, j, k) of the grid's nodes, which may be
+/// stretched, rotated and sheared against model coordinates. C2; satisfies the mesher's ImplicitFunction; thread-safe.
 class GridLevelSet {
  public:
-  /// @param psi  in node coordinates, values in model units
+  /// @param psi  function of node coordinates, with values in model units
   GridLevelSet(LevelSet psi, const Vec3& origin, const Mat3& axes);
 
   double evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const;
   double value(const Vec3& x) const { return evaluate(x, nullptr, nullptr); }
-  /// Around all nodes, model coordinates.
+  /// Bounding box of all nodes, model coordinates.
   const Eigen::AlignedBox3d& box() const { return box_; }
-  /// The same function of node coordinates.
+  /// The same function in node coordinates.
   const LevelSet& in_nodes() const { return psi_; }
 
  private:
@@ -26,11 +26,11 @@ class GridLevelSet {
   Eigen::AlignedBox3d box_;
 };
 
-/// The max-ent functions of the default prior whose sum has the given values at the nodes, by one banded system an
-/// axis.
+/// Interpolation of a grid by max-ent functions of the default prior: their sum has the given values at the nodes.
+/// Solves one banded system per axis.
 ///
-/// Between the nodes linear functions are met to rounding, of others there is a ripple of about half a hundredth of the
-/// second differences of the values.
+/// Between the nodes, linear functions are reproduced to rounding. Other functions have a ripple of about half a
+/// hundredth of the second differences of the values.
 /// \pre problems(grid) is empty
 GridLevelSet interpolate(Grid grid);
 

@@ -6,7 +6,7 @@
 
 namespace umtet {
 
-/// The share of the nodes on the six outermost layers of a grid whose value is inside.
+/// Fraction of the nodes in the six outermost layers of a grid whose value is inside.
 template <class IsInside>
 double wall_share(const Grid& grid, const IsInside& is_inside) {
   std::size_t n_inside = 0, n_wall = 0, at = 0;
@@ -24,20 +24,20 @@ double wall_share(const Grid& grid, const IsInside& is_inside) {
   return static_cast<double>(n_inside) / static_cast<double>(n_wall);
 }
 
-/// A level between the dark and the bright values of an image, with few digits: the middle between the means of the two
-/// classes that Otsu's threshold makes.                                                                     [Otsu1979]
+/// A level between the dark and the bright values of an image, with few digits: the midpoint between the means of the
+/// two classes of Otsu's threshold.                                                                     [Otsu1979]
 double suggested_level(const Grid& grid);
 
-/// Changes values v to low - v (above), v - high (below) or (v - low)(v - high) / (high - low): negative inside, with
-/// the slope of the image at both levels.
+/// Converts image values v to a level set: low - v (above), v - high (below) or (v - low)(v - high) / (high - low). The
+/// result is negative inside, with the slope of the image at both levels.
 void take_above(Grid& grid, double low);
 void take_below(Grid& grid, double high);
 void take_between(Grid& grid, double low, double high);
 
-/// Ends a body at the wall of the image, half a step beyond its outermost nodes: psi becomes
-/// max(psi, s d) on the grid and on `layers` layers of nodes around it, d the signed distance to the wall and s the
-/// mean change of psi a length where it changes signs: it falls alike there.
-/// @return whether the body reaches the wall; else the grid stays as it is
+/// Closes a body at the wall of the image, half a step beyond its outermost nodes. psi becomes max(psi, s d) on the
+/// grid and on `layers` layers of nodes around it. d is the signed distance to the wall, and s is the mean change of
+/// psi per unit length where it changes sign, so that psi has a similar slope there.
+/// @return whether the body reaches the wall; otherwise the grid is unchanged
 bool close_at_wall(Grid& grid, int layers);
 
 }  // namespace umtet

@@ -8,33 +8,34 @@
 
 namespace umtet {
 
-/// Values between bounds at the nodes of a grid, the first axis fastest.
+/// Values with bounds at the nodes of a grid, first axis fastest.
 struct BoundedValues {
   Eigen::Vector3i n = Eigen::Vector3i::Zero();
-  std::vector<float> value;           ///< in: where the search starts; out: the minimiser
-  std::vector<float> low, high;       ///< low <= high; only those of free nodes are read
-  std::vector<std::uint8_t> is_free;  ///< 1: may change. None of the two outermost layers of nodes
+  std::vector<float> value;           ///< in: initial values; out: the minimiser
+  std::vector<float> low, high;       ///< low <= high; read at free nodes only
+  std::vector<std::uint8_t> is_free;  ///< 1: may change. Nodes of the two outermost layers are not free
 };
 
-/// How far the search goes.
+/// Parameters of minimise_hessian().
 struct LeastHessianParams {
   int max_iterations = 300;
-  /// Waves of 2 pi / pull^(1/4) steps and longer stay as they were at the start.
+  /// Waves with a length of 2 pi / pull^(1/4) steps or more keep their initial values.
   double pull = 0;
-  /// The search ends where no value has changed by more than this in an iteration, in units of the values.
+  /// The iteration stops when no value changes by more than this in an iteration, in units of the values.
   double tolerance = 1e-4;
 };
 
-/// Minimises the Hessian energy of the grid under bounds,
+/// Minimises the Hessian energy of a grid function under bounds,
 ///
 ///     min  1/2 sum_nodes |H u|^2 + pull (u - u0)^2,   low <= u <= high,   H u the second differences, mixed ones
 ///     included,
 ///
-/// u0 the values that the search starts from. On a grid the gradient of the first term is L L u, L the Laplacian of
-/// seven points: the squares of the six second differences sum up to it. Accelerated projected gradient with restarts
-/// [BeckTeboulle2009; ODonoghueCandes2015]: iterates are always within the bounds, and an iteration reads each free
-/// node twice. Waves of some ten nodes and less, such as the stairs of a mask, are gone after a few hundred iterations.
-/// @param weights  of the second differences along each axis, 1 / step^2 in any unit
+/// with u0 the initial values. On a grid the gradient of the first term is L L u, with L the seven-point Laplacian,
+/// because the squares of the six second differences sum to it. The method is an accelerated projected gradient method
+/// with restarts [BeckTeboulle2009; ODonoghueCandes2015]. Iterates always satisfy the bounds, and an iteration reads
+/// each free node twice. Waves of about ten nodes and less, such as the stairs of a mask, vanish within a few hundred
+/// iterations.
+/// @param weights  weights of the second differences along each axis, 1 / step^2 in any unit
 /// @return the number of iterations. The result does not depend on the number of threads.
 int minimise_hessian(BoundedValues& u, const Vec3& weights, const LeastHessianParams& params = {});
 

@@ -15,27 +15,27 @@ namespace simd {
 struct LatticeJet;
 }
 
-/// Coefficients psi_a, in model units, of all max-ent functions of one lattice.
+/// Coefficients psi_a, in model units, of all max-ent functions of a lattice.
 struct LevelSetLevel {
   Lattice lattice;
   std::vector<double> coefficients;  ///< lattice.size() values, x fastest
 };
 
-/// Coefficients of a finer lattice near the surface, in model units: its nodes outside the blocks, and those inside
-/// that no sample needs, have none.
+/// Coefficients of a finer lattice in a narrow band around the surface, in model units. Nodes outside the blocks, and
+/// nodes inside that no sample needs, have no coefficients.
 ///
-/// Single precision: a band holds what the coarser levels leave over, a hundredth of its spacing and less. Sums are
-/// made in double, so psi is as smooth as its functions.
+/// Single precision suffices: a band represents the residual of the coarser levels, a hundredth of its spacing and
+/// less. Sums are computed in double, so psi is as smooth as its functions.
 struct LevelSetBand {
   LatticeBlocks blocks;
-  std::vector<float> coefficients;  ///< LatticeBlocks::kNodes a block
+  std::vector<float> coefficients;  ///< LatticeBlocks::kNodes per block
 };
 
-/// Copies n^3 coefficients of a lattice from node `first` on to `out`, x fastest, zero where there is no node; false if
-/// there is none at all.
+/// Copies n^3 coefficients of a lattice, beginning at node `first`, to `out`, x fastest, with zero where there is no
+/// node. Returns false if no node exists.
 bool copy_window(const LevelSetLevel& level, const Eigen::Vector3i& first, int n, double* out);
 
-/// Coefficients of the nodes of a box of a lattice: that of node (i, j, k), from the first one on, is
+/// Coefficients of the nodes in a box of a lattice. The coefficient of node (i, j, k), counted from the first node, is
 /// first[i + row * j + layer * k].
 template <class T>
 struct CoefficientWindow {
@@ -43,38 +43,39 @@ struct CoefficientWindow {
   std::ptrdiff_t row, layer;
 };
 
-/// psi(x) = sum over levels of sum_a psi_a N_a(x), negative inside: C2 on its domain, and satisfies the mesher's
-/// ImplicitFunction. The first level is a full lattice; each of the others is a correction in a band around the
-/// surface, on a lattice of half the spacing that shares the coarser one's nodes.
+/// Level set function psi(x) = sum over levels of sum_a psi_a N_a(x), negative inside. It is C2 on its domain and
+/// satisfies the mesher's ImplicitFunction. The first level is a full lattice. Each of the others is a correction in a
+/// band around the surface, on a lattice of half the spacing that contains the coarser one's nodes.
 ///
-/// Copies share their coefficients. All const members are thread-safe. None allocates but band_limited() and, in bands,
-/// the first evaluation in a block of 8 x 8 x 8 cells.
+/// Copies share their coefficients. All const members are thread-safe. Only band_limited() and, in bands, the first
+/// evaluation in a block of 8 x 8 x 8 cells allocate memory.
 class LevelSet {
  public:
-  /// @param bands  coarse to fine, each as fine as 2, 4, 8, ... times the coarsest lattice
-  /// \throw std::invalid_argument  sizes or lattices that do not match, or below 2 half_width nodes on an axis
+  /// @param bands  coarse to fine, with spacings of 1/2, 1/4, 1/8, ... of the coarsest lattice's
+  /// \throw std::invalid_argument for sizes or lattices that do not match, or less than 2 half_width nodes on an axis
   LevelSet(const LmePrior& prior, LevelSetLevel coarsest, std::vector<LevelSetBand> bands = {});
 
-  /// The sum with one more level.
+  /// The sum with an additional level.
   LevelSet with_band(LevelSetBand band) const;
-  /// psi down to a spacing: without the levels that are finer (the coarsest always stays).
+  /// psi without the levels of a smaller spacing (the coarsest level always stays).
   LevelSet band_limited(double spacing) const;
 
-  /// Frees what evaluations have made of the levels of a smaller spacing, which is three times their coefficients; the
-  /// next ones make it again. Nobody may evaluate this level set, or a copy of it, meanwhile.
+  /// Frees the caches that evaluations have built for levels of a smaller spacing, three times the size of their
+  /// coefficients. Later evaluations rebuild them. No thread may evaluate this level set, or a copy of it, during the
+  /// call.
   void forget_below(double spacing) const;
 
   double value(const Vec3& x) const;
   Vec3 gradient(const Vec3& x) const;
   Mat3 hessian(const Vec3& x) const;
-  /// psi(x); its gradient and Hessian where the pointers are not null. Outside the domain psi continues with the value
-  /// at the closest point of the domain plus the distance to it: positive far from the body, and without a new zero
-  /// there.
+  /// Value of psi at x, with gradient and Hessian if the pointers are not null. Outside the domain, psi is continued by
+  /// the value at the closest point of the domain plus the distance to it. It is therefore positive far from the body,
+  /// and has no new zero there.
   double evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const { return evaluate(x, false, gradient, hessian); }
-  /// The same of one term of the sum, inside the domain: level 0 is the coarsest.
+  /// Value of one term of the sum, inside the domain; level 0 is the coarsest.
   double evaluate_level(int level, const Vec3& x, Vec3* gradient, Mat3* hessian) const;
 
-  /// Where psi is defined: the hull of the coarsest lattice's nodes.
+  /// Domain of psi: the bounding box of the coarsest lattice's nodes.
   const Eigen::AlignedBox3d& domain() const { return domain_; }
   int n_levels() const { return 1 + static_cast<int>(bands_.size()); }
   const Lattice& lattice(int level) const {
@@ -88,14 +89,15 @@ class LevelSet {
   /// @param level  1 .. n_levels() - 1
   const LevelSetBand& band(int level) const { return bands_[level - 1]->data; }
 
-  /// The coefficients of the functions that count in a cell of the coarsest lattice, 2 half_width along each axis.
+  /// Coefficients of the functions that are nonzero in a cell of the coarsest lattice, 2 half_width along each axis.
   CoefficientWindow<double> coarsest_window(const Eigen::Vector3i& cell) const;
-  /// The same in a band; `first` is null where it has none. @param level  1 .. n_levels() - 1
+  /// The same for a band; `first` is null if the band has none there. @param level  1 .. n_levels() - 1
   CoefficientWindow<float> band_window(int level, const Eigen::Vector3i& cell) const;
 
  private:
-  // For evaluation each block of 8 x 8 x 8 cells has a copy of all coefficients that count in it: no gathering. It is
-  // made when someone first evaluates there: a mesh reads the levels that its h can show, near psi = 0.
+  // For evaluation, each block of 8 x 8 x 8 cells has a copy of all coefficients that are used in it, so no gathering
+  // is needed. It is made at the first evaluation in the block: a mesh evaluates only the levels that its h can
+  // resolve, near psi = 0.
   struct Band {
     LevelSetBand data;
     Eigen::Vector3i n;                                       // cell blocks along each axis
@@ -113,7 +115,7 @@ class LevelSet {
     const float* make_window(std::size_t index) const;
   };
   friend class LevelSetApart;
-  // Of a place that is apart from others no copy is made.
+  // `apart`: no copy is made for an isolated position.
   double evaluate(const Vec3& x, bool apart, Vec3* gradient, Mat3* hessian) const;
   // The sum of the levels first .. end - 1.
   simd::LatticeJet sum_levels(const Vec3& x, int first, int end, bool apart, Vec3* gradient, Mat3* hessian) const;
@@ -126,8 +128,8 @@ class LevelSet {
   Eigen::AlignedBox3d domain_;
 };
 
-/// A level set for places that are far apart, such as those of a coarse grid: the same numbers to the bit, and it makes
-/// and keeps nothing for others beside them. The level set must outlive it.
+/// A view of a level set for positions that are far apart, such as those of a coarse grid. Values are the same to the
+/// bit, but no caches are built. The level set must outlive it.
 class LevelSetApart {
  public:
   explicit LevelSetApart(const LevelSet& psi) : psi_(psi) {}

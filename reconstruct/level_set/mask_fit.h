@@ -10,7 +10,7 @@
 
 namespace umtet {
 
-/// The voxels of a body, cut out of an image with some layers of voxels around them. Voxel (i, j, k) has its centre at
+/// The voxels of a body, cut out of an image with some layers of voxels around them. The centre of voxel (i, j, k) is
 /// origin + axes (i, j, k).
 struct BodyVoxels {
   VoxelMask mask;
@@ -22,47 +22,50 @@ struct BodyVoxels {
   Vec3 centre(int i, int j, int k) const { return origin + axes * Vec3(i, j, k); }
 };
 
-/// Cuts out what is inside. @param layers  around it, outside; where the image ends, its voxels end, too
-/// @param part  the number of the body's voxels; none: all that is not zero
-/// \throw std::invalid_argument  no voxel is inside
+/// Cuts the inside voxels out of an image.
+/// @param layers  number of layers of outside voxels around them, as far as the image extends
+/// @param part  the number of the body's voxels; none: all voxels that are not zero
+/// \throw std::invalid_argument if no voxel is inside
 BodyVoxels body_voxels(const Grid& grid, std::optional<double> part, int layers);
 
-/// What became of the voxels of a body.
+/// Report on the voxels of a body.
 struct MaskReport {
   std::size_t n_inside = 0;     ///< voxels of the body
-  std::size_t n_changed = 0;    ///< voxels whose centre is on the other side of psi = 0 now
-  double farthest_changed = 0;  ///< how far from psi = 0 the farthest of them is, model units
-  double volume_of_voxels = 0;  ///< of all of them together, model units^3
-  double volume = 0;            ///< of {psi < 0}
-  int n_iterations = 0;         ///< of the search
+  std::size_t n_changed = 0;    ///< voxels whose centre has changed to the other side of psi = 0
+  double farthest_changed = 0;  ///< greatest distance from psi = 0 among them, model units
+  double volume_of_voxels = 0;  ///< volume of all voxels, model units^3
+  double volume = 0;            ///< volume of {psi < 0}
+  int n_iterations = 0;         ///< iterations of the minimisation
 };
 
 struct MaskFit {
   GridLevelSet psi;
   MaskReport report;
   BodyVoxels voxels;
-  std::vector<Vec3> surface;  ///< where psi = 0 between voxels that are neighbours along an axis, model coordinates
+  std::vector<Vec3> surface;  ///< zeros of psi between voxels that are neighbours along an axis, model coordinates
 };
 
-/// psi of a mask: the one of least Hessian energy whose signs at the centres of voxels are those of the mask,
+/// Fits a level set to a mask: the psi of least Hessian energy whose signs at the voxel centres are those of the mask,
 ///
 ///     min  1/2 sum |H psi|^2,   psi <= -m inside,   psi >= m outside,   |psi - d| <= one voxel,
 ///
-/// d the signed distance to the faces between inside and outside [Whitaker2000; Lempitsky2010]. The margin m is .1
-/// voxels, at which surfaces are as smooth as without any, and .25 voxels where the body or a gap is thinner than
-/// three. Then psi + s m, with an s of each piece between -.9 and .9, gives each piece of the body the volume of its
-/// voxels, as far as no centre changes sides. The coefficients interpolate psi at the centres, so psi is C2.
+/// with d the signed distance to the faces between inside and outside [Whitaker2000; Lempitsky2010]. The margin m is .1
+/// voxels, at which surfaces are as smooth as without a margin, and .25 voxels where the body or a gap is thinner than
+/// three voxels. Afterwards s m is added to psi, with an s for each component between -.9 and .9, so that each
+/// component of the body has the volume of its voxels, provided that no centre changes sides. The coefficients
+/// interpolate psi at the centres, so psi is C2.
 ///
-/// Only voxels within five layers of a face are searched; beyond, psi is d. The axes are taken as orthogonal.
+/// Only voxels within five layers of a face are variables; beyond these, psi is d. The axes are taken as orthogonal.
 /// The result does not depend on the number of threads.
-/// @param part  the number of the body's voxels; none: all that is not zero
-/// \pre problems(grid) is empty \throw std::invalid_argument  no voxel is inside
+/// @param part  the number of the body's voxels; none: all voxels that are not zero
+/// \pre problems(grid) is empty
+/// \throw std::invalid_argument if no voxel is inside
 MaskFit fit_mask(const Grid& grid, std::optional<double> part);
 
-/// psi of a mask by a kernel: signed distances to the voxels of the other side, made smooth by a Gaussian, and
-/// interpolated. A flat side keeps its place; a ball of radius R loses about smooth^2 / R of it, in steps, and what is
-/// thinner than the kernel vanishes.
-/// @param smooth  standard deviation in steps of each axis, >= 0; with less than .7 the steps of the voxels show
+/// Fits a level set to a mask by smoothing: signed distances to the voxels of the other side are convolved with a
+/// Gaussian and interpolated. A flat side keeps its position. A ball of radius R loses about smooth^2 / R of R, in
+/// steps, and features thinner than the kernel vanish.
+/// @param smooth  standard deviation in steps of each axis, >= 0; below .7 the stairs of the voxels are visible
 /// \pre, \throw  as fit_mask()
 MaskFit fit_mask_by_kernel(const Grid& grid, std::optional<double> part, double smooth);
 

@@ -8,7 +8,7 @@
 
 namespace umtet {
 
-/// A line of values through a grid.
+/// A line of values through a grid, with stride.
 template <class T>
 struct VoxelLine {
   T* at;
@@ -17,7 +17,8 @@ struct VoxelLine {
   T& operator[](int i) const { return at[i * stride]; }
 };
 
-/// f(line) for all lines along an axis of a grid of n values, the first axis fastest. Threads work on different lines.
+/// Calls f(line) for all lines along an axis of a grid of n values, first axis fastest. Threads work on different
+/// lines.
 template <class T, class F>
 void for_each_line(std::vector<T>& values, const Eigen::Vector3i& n, int axis, const F& f) {
   const std::ptrdiff_t nx = n[0], nxy = nx * n[1];

@@ -8,18 +8,19 @@
 
 namespace umtet {
 
-/// What makes two voxels neighbours: a common face, or any common point.
+/// Connectivity of voxels: by common faces, or by any common points.
 enum class VoxelNeighbours { Faces, Points };
 
-/// The connected pieces of the voxels of one side.
+/// Connected components of the voxels of one side.
 struct VoxelPieces {
-  std::vector<std::int32_t> piece;    ///< of each voxel, -1 for those of the other side; in the order of first voxels
-  std::vector<std::size_t> n_voxels;  ///< of each piece
+  std::vector<std::int32_t> piece;    ///< component of each voxel, in the order of first voxels; -1 for voxels of the
+                                      ///< other side
+  std::vector<std::size_t> n_voxels;  ///< voxels of each component
 
   std::size_t n() const { return n_voxels.size(); }
 };
 
-/// \throw std::length_error  a grid of 2^31 voxels or more
+/// Connected-component labelling. \throw std::length_error for a grid of 2^31 voxels or more
 VoxelPieces voxel_pieces(const VoxelMask& mask, char side, VoxelNeighbours neighbours);
 
 }  // namespace umtet

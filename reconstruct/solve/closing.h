@@ -11,15 +11,15 @@
 
 namespace umtet {
 
-/// How psi closes a body where a scan has no samples.
+/// Closing of a body where a scan has no samples.
 enum class Closing {
-  Auto,    ///< each hole as its rim says: smooth where the surface bends together there, else flat
-  Smooth,  ///< the surface goes on with the curvature it has along the rim, no farther than a sphere through the rim
-  Flat,    ///< along the surface that sees as many samples from inside as from outside
-  None,    ///< as the Hessian energy alone has it, to the wall of the box where nothing closes it
+  Auto,    ///< each hole as its rim requires: smooth if the surface bends together there, else flat
+  Smooth,  ///< continues the surface with the curvature along the rim, no farther than a sphere through the rim
+  Flat,    ///< along the surface from which as many samples are seen from inside as from outside
+  None,    ///< by the Hessian energy alone; the body extends to the wall of the box if nothing closes it
 };
 
-/// A hole of the scan, model units, and what became of it.
+/// A hole of the scan, model units, and its closing.
 struct FittedHole {
   ScanHole hole;
   enum class How {
@@ -29,30 +29,30 @@ struct FittedHole {
   } how = How::AsFitted;
 };
 
-/// What has to be said where no sample is, after a first fit.
-///
-/// psi is left as it is wherever the functional alone closes it well. It does not where psi < 0 reaches the wall of the
-/// box, or goes farther from the flat closing of a hole than ScanHole::bulge() to where hardly any sample has its inner
-/// side (by the winding number, a level that depends on the rim as for a ball). There the second fit gets
+/// Plan for closing a body where there are no samples, made after a first fit.
+/// psi is unchanged wherever the functional alone closes it well. It does not if psi < 0 reaches the wall of the box,
+/// or extends farther from the flat closing of a hole than ScanHole::bulge() to a region where few samples have their
+/// inner side (by the winding number, at a level that depends on the rim as for a ball). There the second fit gets
 ///
 ///  - samples of the flat closing, with normals, for holes that are closed flat;
-///  - weak values for far cells, around a hole that is closed smoothly the distance to the algebraic spheres of the
-///    samples, as far as a sphere through its rim goes, and elsewhere plus or minus the distance to the nearest sample,
-///    by the winding number.
+///  - weak values for far cells. Around a hole that is closed smoothly they are the distance to the algebraic spheres
+///    of the samples, up to a sphere through its rim. Elsewhere they are plus or minus the distance to the nearest
+///    sample, by the winding number.
 ///
-/// Samples are merged ones of the coarsest lattice, and only that lattice hears of the above: bands follow samples.
+/// Samples are the merged ones of the coarsest lattice, and only this lattice uses these additions: bands follow
+/// samples.
 class ClosingPlan {
  public:
-  /// @param psi  of the first fit, on one lattice
-  /// @param samples  of the surface, in the units of that lattice, w_gradient = area / h^2
+  /// @param psi      result of the first fit, on one lattice
+  /// @param samples  samples of the surface, in the units of that lattice, w_gradient = area / h^2
   ClosingPlan(const LevelSet& psi, std::vector<SsdSample> samples, Closing closing);
 
-  /// False: psi is as it should be, or cannot be mended: it ends at the wall, and the samples are a sheet.
+  /// False if psi needs no second fit, or cannot be repaired: it ends at the wall, and the samples are a sheet.
   bool is_needed() const { return is_needed_; }
-  /// What a second fit has to cover, model units: the box of the samples, and how far smooth closings may go.
+  /// Region of a second fit, model units: the box of the samples, extended by the reach of smooth closings.
   const Eigen::AlignedBox3d& box() const { return box_; }
   const std::vector<FittedHole>& holes() const { return closed_; }
-  /// What a second fit gets beside the samples, in units of its lattice. @pre is_needed()
+  /// Additional samples of a second fit, in units of its lattice. @pre is_needed()
   std::vector<SsdSample> samples(const Lattice& lattice) const;
 
  private:
@@ -62,7 +62,7 @@ class ClosingPlan {
   bool is_flat(int hole) const;
   std::optional<double> value_at(const Vec3& xi, double nearest) const;
 
-  Lattice lattice_;  ///< of the first fit: its units are those of all that follows
+  Lattice lattice_;  ///< lattice of the first fit; all members below are in its units
   Closing closing_;
   std::vector<SsdSample> surface_;
   ScanHoles found_;
@@ -70,7 +70,7 @@ class ClosingPlan {
   Eigen::AlignedBox3d box_;
   bool is_needed_ = false;
   std::optional<ScaledWindingNumber> winding_;
-  std::optional<NeighbourTree> closing_tree_;  ///< of found_.places
+  std::optional<NeighbourTree> closing_tree_;  ///< tree of found_.places
   std::optional<AlgebraicSpheres> spheres_;
 };
 

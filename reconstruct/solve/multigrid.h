@@ -12,7 +12,7 @@ namespace umtet {
 ///
 /// Coefficients are not samples: a function with coefficients c is c smoothed by a kernel of variance h^2 / (2 gamma),
 /// so coefficients sampled from the coarse function would be smoothed twice. The coarse max-ent functions with gamma_P
-/// = 4 gamma / 3 have the variance that is missing: (2h)^2 / (2 gamma_P) = (2h)^2 / (2 gamma) - h^2 / (2 gamma).
+/// = 4 gamma / 3 have the missing variance: (2h)^2 / (2 gamma_P) = (2h)^2 / (2 gamma) - h^2 / (2 gamma).
 struct AxisProlongation {
   int n_coarse = 0, n_fine = 0, width = 0;
   std::vector<int> first;     ///< first coarse node of each fine node
@@ -21,10 +21,10 @@ struct AxisProlongation {
   AxisProlongation(const LmePrior& prior, int n_coarse);
 };
 
-/// Symmetric V-cycle for an SsdOperator: lattices h, 2h, 4h, ..., each re-discretised, Chebyshev-Jacobi smoothing,
-/// dense Cholesky on the coarsest. Where a level has many samples in a cell, its operator is built from their weighted
-/// means: the preconditioner changes, the solution does not. All of it but the factor is in single precision: PCG asks
-/// it for one digit at a time.
+/// Multigrid preconditioner: a symmetric V-cycle for an SsdOperator on lattices h, 2h, 4h, ..., each re-discretised,
+/// with Chebyshev-Jacobi smoothing and dense Cholesky on the coarsest. If a level has many samples per cell, its
+/// operator is built from their weighted means; this changes the preconditioner, but not the solution. All but the
+/// factor is in single precision, because PCG needs one digit at a time.
 class Multigrid {
  public:
   /// @param n_levels  the lattice's cells along each axis must be divisible by 2^(n_levels - 1)
@@ -56,9 +56,9 @@ struct PcgReport {
   std::vector<double> residuals;  ///< |r_k| / |r_0|, the first is 1
 };
 
-/// Preconditioned conjugate gradients for A c = b from c = 0.
+/// Preconditioned conjugate gradient method for A c = b from c = 0.
 /// @param c  size() + kPad doubles, overwritten
-/// @param progress  called once an iteration with the relative residual; what it throws passes through
+/// @param progress  called once per iteration with the relative residual; its exceptions are passed on
 PcgReport solve_pcg(const SsdOperator& A, Multigrid& M, const std::vector<double>& b, double tolerance,
                     int max_iterations, std::vector<double>& c, const std::function<void(double)>& progress);
 

@@ -5,16 +5,15 @@
 
 namespace umtet {
 
-/// How far noise moves a curved surface. Samples that are off by sigma in all directions lie, on average, outside of a
-/// convex place, sigma^2 H off it: H = 1/2 div(grad psi / |grad psi|) is its mean curvature, 1 / r on a sphere. A body
-/// that is fitted to them is larger by sigma^2 times the integral of H over its surface.
+/// Bias of a curved surface by noise. Samples with noise sigma in all directions lie, on average, outside of a convex
+/// surface, at a distance of sigma^2 H. H = 1/2 div(grad psi / |grad psi|) is the mean curvature, 1 / r on a sphere. A
+/// body fitted to such samples is too large by sigma^2 times the integral of H over its surface.
 /// @param noise  sigma, standard deviation of the samples along each axis, model units
-/// @return sigma^2 times the mean of H at the samples, where grad psi tells it; no curvature counts that is greater
-/// than
-///         1 / h, h the spacing of psi; model units
+/// @return sigma^2 times the mean of H at the samples where grad psi determines it; curvatures are limited to 1 / h,
+///         with h the spacing of psi; model units
 double noise_bias(const LevelSet& psi, const OrientedPointCloud& cloud, double noise);
 
-/// psi + c: its functions sum to one.
+/// psi + c, by adding c to all coefficients, because the functions sum to one.
 LevelSet shifted(const LevelSet& psi, double c);
 
 }  // namespace umtet

@@ -4,7 +4,7 @@
 
 namespace umtet {
 
-/// The solve cannot go on; what() has the size, the parameter and what the solver said.
+/// Error of a solver; what() contains the size, the parameter and the solver's message.
 struct SolveError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

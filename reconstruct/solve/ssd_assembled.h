@@ -7,21 +7,22 @@
 
 namespace umtet {
 
-/// A of an SsdOperator as a sparse matrix: the reference for small problems, up to 1331 entries a row at R = 3.
+/// Assembles A of an SsdOperator as a sparse matrix. It is the reference for small problems, with up to 1331 entries
+/// per row at R = 3.
 Eigen::SparseMatrix<double> assemble(const SsdOperator& op);
 
 /// Solves A c = r by Eigen's SimplicialLDLT.
-/// \throw SolveError  the factorisation failed
+/// \throw SolveError if the factorisation fails
 std::vector<double> solve_assembled(const SsdOperator& op);
 
-/// The same functional over scattered max-ent functions of any node set, assembled and solved directly.
+/// SSD fit over scattered max-ent functions of any node set, assembled and solved directly.
 ///
 /// The Hessian energy is integrated over the hull of the nodes with Gauss points (2 x 2 x 2) on a grid of cells of edge
-/// `quadrature_cell`; points outside the hull, where no max-ent function exists, do not count.
-/// @param samples  w_value, w_gradient and normal of each; xi in the nodes' own (model) units
+/// `quadrature_cell`. Points outside the hull, where no max-ent function exists, are skipped.
+/// @param samples  w_value, w_gradient and normal of each; xi in the (model) units of the nodes
 /// @param energy_weight  multiplies ½ ∫ H:H dV
 /// @return coefficients f_a, one per node
-/// \throw SolveError  the factorisation failed, or a sample lies outside the hull of the nodes
+/// \throw SolveError if the factorisation fails, or a sample lies outside the hull of the nodes
 std::vector<double> fit_scattered(const LmeScattered& basis, const std::vector<SsdSample>& samples,
                                   double energy_weight, double quadrature_cell);
 

@@ -16,64 +16,66 @@
 namespace umtet {
 
 struct BodySampleParams {
-  double spacing = 0;                   ///< of the samples at most, model units; 0: default_spacing()
-  bool turn = true;                     ///< false: triangles look to the side that they look to
+  double spacing = 0;                   ///< maximum spacing of the samples, model units; 0: default_spacing()
+  bool turn = true;                     ///< false: triangles keep their orientation
   bool cap = true;                      ///< close openings with a plane rim by that plane (plane_caps.h)
-  Touching touching = Touching::Apart;  ///< what becomes of pieces that meet along an edge or at a corner
+  Touching touching = Touching::Apart;  ///< treatment of pieces that meet along an edge or at a corner
 };
 std::vector<std::string> problems(const BodySampleParams&);
 
-/// What the triangles were like, and what became of them.
+/// Properties of the triangles, and the changes made to them.
 struct TriangleReport {
-  std::size_t n_triangles = 0;  ///< as they came
+  std::size_t n_triangles = 0;  ///< as given
   DroppedFaces dropped;
   FaceSidesReport sides;
-  double spacing = 0;                    ///< of the samples
+  double spacing = 0;                    ///< spacing of the samples
   double least_spacing = 0;              ///< where the body, or a gap in it, is thin
-  std::optional<double> thickness = {};  ///< that a two-hundredth of the surface falls below; none where all is thick
-  std::size_t n_samples = 0;             ///< of all triangles
-  std::size_t n_inside = 0;              ///< of these, inside of the body: of inner walls, and where bodies overlap
-  std::size_t n_inside_out = 0;          ///< between outside and inside-out: no boundary of the body
-  /// Share of the samples at which the winding number is not within a quarter of a whole number: which side is inside
-  /// is a guess there.
+  std::optional<double> thickness = {};  ///< thickness below which a two-hundredth of the surface lies; none if the
+                                         ///< body is thick everywhere
+  std::size_t n_samples = 0;             ///< samples of all triangles
+  std::size_t n_inside = 0;              ///< samples inside the body: of inner walls, and where bodies overlap
+  std::size_t n_inside_out = 0;  ///< samples between outside and inside-out, which are not on the body's boundary
+  /// Fraction of the samples at which the winding number differs from a whole number by more than a quarter. There the
+  /// inner side is a guess.
   double unsure = 0;
   std::vector<PlaneCap> caps = {};  ///< openings that were closed
   TouchingReport touching = {};
 };
 
-/// The triangles bound no body; what() says why.
+/// Error for triangles that bound no body; what() states the reason.
 struct NoBody : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
-/// The boundary of the body that triangles bound, as a scan.
+/// The boundary of the body bounded by triangles, sampled as a scan.
 struct BodySamples {
-  /// Labels where the triangles have some, or an opening was closed: the first cap has the least label above all
-  /// others, the next one that and one more, and triangles without a label are 1 then.
+  /// With labels if the triangles have labels, or an opening was closed. The first cap has the least label above all
+  /// others, the next caps follow, and triangles without a label then have label 1.
   OrientedPointCloud cloud;
-  TriangleMesh boundary;  ///< the triangles on the boundary, outward; label 0: only a part of it is
+  TriangleMesh boundary;  ///< the triangles on the boundary, outward; label 0: only a part of the triangle is on it
   TriangleReport report;
 };
 
-/// Samples of the boundary of {w > 1/2}, w the winding number of all triangles (triangle_winding.h) once they look
-/// outward (face_sides.h) and openings with a plane rim are closed. Spread as sample_triangles() does; normals are
-/// those of the triangles. Where the body, or a gap between two sheets of it, is thinner than three spacings
-/// (body_thickness.h) samples are nearer to each other, a third of that: there the triangles are cut into pieces of
-/// some spacings, each of which has a spacing of its own, one of a few.
+/// Samples the boundary of {w > 1/2}, with w the winding number of all triangles (triangle_winding.h) after they are
+/// oriented outward (face_sides.h) and openings with a plane rim are closed. Samples are distributed as by
+/// sample_triangles(); normals are those of the triangles. Where the body, or a gap between two sheets of it, is
+/// thinner than three spacings (body_thickness.h), the spacing is a third of the thickness. The triangles are cut there
+/// into pieces of some spacings, and each piece has one of a few spacings.
 ///
-/// A sample stays where w is near zero just before it, at most .3: then it falls to that from behind it, by one. Where
-/// a part is missing it falls from less than one, and lower. Before an inner wall, which has the body on both sides, it
-/// is about 1/2, and inside of an overlap 1.
+/// A sample is kept if w is close to zero just in front of it, at most .3: w then falls by one to this value from
+/// behind the sample. Where a part is missing, it falls from less than one to a lower value. In front of an inner wall,
+/// which has the body on both sides, it is about 1/2, and inside of an overlap 1.
 ///
-/// \throw std::invalid_argument  a problem of params; no triangle has an area; more than 20 million samples
-/// \throw NoBody     triangles that hardly share an edge, and whose winding number is no whole number
+/// \throw std::invalid_argument for a problem of params, if no triangle has an area, or for more than 20 million
+///        samples
+/// \throw NoBody for triangles that share few edges, and whose winding number is not a whole number
 /// \throw Cancelled
 ///
-/// Cost: O(n log n), some ten microseconds a sample. The result does not depend on the number of threads.
+/// Cost: O(n log n), about ten microseconds per sample. The result does not depend on the number of threads.
 BodySamples sample_body(TriangleMesh mesh, const BodySampleParams& params = {}, const Context& context = {});
 
-/// The spacing that is chosen: .006 of the diagonal, or as many samples as the triangles have corners if that is
-/// finer; at most a million samples.
+/// The default spacing: .006 of the diagonal, or the spacing with as many samples as the triangles have corners if this
+/// is finer; at most a million samples.
 double default_spacing(const TriangleMesh& mesh);
 
 }  // namespace umtet

@@ -8,13 +8,13 @@
 
 namespace umtet {
 
-/// Triangles in pieces, without labels.
+/// Triangles cut into pieces, without labels.
 struct TrianglePieces {
   TriangleMesh mesh;
-  std::vector<std::uint32_t> of;  ///< which triangle each piece is of
+  std::vector<std::uint32_t> of;  ///< the original triangle of each piece
 };
 
-/// Cuts the longest edge of what is longer than `most` in the middle until nothing is, or there are `most_pieces`.
+/// Bisects the longest edge of triangles until none is longer than `most`, or there are `most_pieces`.
 TrianglePieces cut_triangles(const TriangleMesh& mesh, double most, std::size_t most_pieces);
 
 }  // namespace umtet

@@ -9,13 +9,13 @@
 
 namespace umtet {
 
-using Triangle = std::array<int, 3>;  ///< vertex indices, counter-clockwise seen from outside, where the file is right
+using Triangle = std::array<int, 3>;  ///< vertex indices, counter-clockwise seen from outside if the file is correct
 
-/// A surface as CAD programs and scanners export it: any triangles, which need not fit one another.
+/// Triangle soup, as CAD programs and scanners export it: arbitrary triangles, which need not fit together.
 struct TriangleMesh {
   std::vector<Vec3> V;           ///< finite; model units
-  std::vector<Triangle> F;       ///< into V
-  std::vector<int> labels = {};  ///< which part of the surface a triangle is of; or empty
+  std::vector<Triangle> F;       ///< indices into V
+  std::vector<int> labels = {};  ///< part of the surface that a triangle belongs to; optional
 
   const Vec3& corner(std::size_t f, int k) const { return V[F[f][k]]; }
   Vec3 centroid(std::size_t f) const { return (corner(f, 0) + corner(f, 1) + corner(f, 2)) / 3; }

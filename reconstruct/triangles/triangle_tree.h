@@ -12,30 +12,30 @@
 
 namespace umtet {
 
-/// The point of the triangle abc that is nearest to x [Ericson2005].
+/// Closest point of the triangle abc to x [Ericson2005].
 Vec3 closest_on_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// Which triangle a question led to.
+/// Triangle found by a query.
 struct TriangleHit {
   std::uint32_t face = 0;
-  double distance = std::numeric_limits<double>::infinity();  ///< from where the question began, model units
+  double distance = std::numeric_limits<double>::infinity();  ///< from the query position, model units
   Vec3 point = Vec3::Zero();
 };
 
-/// Rays and nearest triangles, from a binary tree of boxes. Keeps its own copy of the triangles. Immutable; queries are
-/// thread-safe.
+/// Bounding volume tree for ray casting and nearest-triangle queries. Keeps its own copy of the triangles. Immutable;
+/// queries are thread-safe.
 class TriangleTree {
  public:
-  /// \throw std::invalid_argument  no triangle, or 2^31 and more. Cost: O(n log n)
+  /// \throw std::invalid_argument for no triangles, or 2^31 and more. Cost: O(n log n)
   explicit TriangleTree(const TriangleMesh& mesh);
 
-  /// Which triangles count.
+  /// Predicate that selects triangles.
   using Counts = std::function<bool(std::uint32_t face)>;
 
-  /// The first triangle that counts on the ray from x along the unit vector d, farther than `from` and up to `to`.
+  /// The first selected triangle on the ray from x along the unit vector d, farther than `from` and up to `to`.
   std::optional<TriangleHit> first_on_ray(const Vec3& x, const Vec3& d, double from, double to,
                                           const Counts& counts) const;
-  /// The nearest triangle that counts, nearer than `within`.
+  /// The nearest selected triangle within the distance `within`.
   std::optional<TriangleHit> nearest(const Vec3& x, double within, const Counts& counts) const;
 
  private:

@@ -8,20 +8,23 @@
 
 namespace umtet {
 
-/// A node of a binary tree over an array of samples: samples first .. last - 1. Its left child is the next node.
+/// A node of a binary tree over an array of samples: samples first .. last - 1. Its left child is the next node in the
+/// array.
 struct SampleTreeNode {
   std::uint32_t first = 0, last = 0;
-  std::uint32_t right = 0;  ///< the right child; 0: a leaf
+  std::uint32_t right = 0;  ///< index of the right child; 0: a leaf
 };
 
-/// A node holds half the samples of its parent: a walk that keeps the right children it has yet to see keeps no more.
+/// Maximum depth. A node has half the samples of its parent, so a traversal keeps at most this many pending right
+/// children.
 inline constexpr std::size_t kDeepestSampleTree = 40;
 
-/// Sorts samples first .. last - 1 so that each node holds a half, along the longest axis of its box, of its parent's,
-/// and appends the nodes, parents before children. A sum over a cluster costs about as much as `leaf` samples.
-/// @param samples  each with a place x and a number that no other has
+/// Builds a tree. Sorts samples first .. last - 1 so that each node has half the samples of its parent, split along the
+/// longest axis of the parent's box, and appends the nodes, parents before children.
+/// @param samples  each with a position x and a unique number
 /// @param nodes    derived from SampleTreeNode
-/// @return the first of the appended nodes. Cost: O(n log n)
+/// @param leaf     maximum size of a leaf; a sum over a cluster costs about as much as `leaf` samples
+/// @return index of the first appended node. Cost: O(n log n)
 template <class Sample, class Node>
 std::uint32_t grow_sample_tree(std::vector<Sample>& samples, std::vector<Node>& nodes, std::uint32_t leaf,
                                std::uint32_t first, std::uint32_t last) {

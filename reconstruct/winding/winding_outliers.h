@@ -8,16 +8,18 @@
 
 namespace umtet {
 
-/// Samples that lie on no surface, one flag each: inside or outside of what all samples enclose, |w - 1/2| > .4 of
-/// their winding number, and apart: their fourth neighbour is 2.5 times as far away as that of their neighbours (or
-/// four times what is usual in the cloud, where all around are outliers, too). Cleaning finds what is sparse beside
-/// something dense, from points alone; this is for what fills a volume, and for what is near the surface. At the tip of
-/// a spike w is small, too, but its samples are as near to each other as elsewhere. Of merged samples distances are
-/// taken as they were before.
+/// Detects samples that lie on no surface, with a flag for each. A sample is an outlier if it is
+/// - inside or outside of the volume that all samples enclose: |w - 1/2| > .4 for its winding number, and
+/// - isolated: its fourth neighbour is 2.5 times as far away as that of its neighbours (or four times the usual
+///   distance in the cloud, where all samples around are outliers, too).
+///
+/// Cleaning detects sparse points beside dense ones, from points alone; this function is for samples that fill a
+/// volume, and for samples near the surface. At the tip of a spike w is small, too, but its samples are as close to
+/// each other as elsewhere. For merged samples, distances before merging are used.
 /// @param cloud  sorted in space (morton_order.h); unit or zero normals
-/// @param near   of its points
-/// Cost: a pass over the neighbours; where samples are apart, a winding number of at most 30,000 samples, a tenth of a
-/// second. The result does not depend on the number of threads.
+/// @param near   neighbourhoods of its points
+/// Cost: a pass over the neighbours, and, if samples are isolated, a winding number of at most 30,000 samples, which
+/// takes a tenth of a second. The result does not depend on the number of threads.
 std::vector<std::uint8_t> winding_outliers(const OrientedPointCloud& cloud, const Neighbourhoods& near);
 
 }  // namespace umtet

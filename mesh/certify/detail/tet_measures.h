@@ -8,11 +8,12 @@
 
 namespace umtet::detail {
 
-/// Fills n_tets, n_vertices, volume, quality and h of a certificate. Threads over tets; the result does not depend on
-/// them. Holds a byte a vertex, and the qualities of some hundredths of the tets.
+/// Computes n_tets, n_vertices, volume, quality and h of a certificate. Uses threads over tets; the result does not
+/// depend on them. Working memory: a byte per vertex, and the qualities of a few per cent of the tets.
 /// @param h       certificate.h if > 0
-/// @param memory  if not null, of what is known of the tets, and receives that
-/// \pre at least one tet, all indices in range   \throw Cancelled
+/// @param memory  if not null, supplies known values of tets, and receives new ones
+/// \pre at least one tet, all indices in range
+/// \throw Cancelled
 void measure_tets(const TetMesh& mesh, double h, const Context& context, CertificateMemory* memory,
                   MeshCertificate& certificate);
 

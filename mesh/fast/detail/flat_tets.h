@@ -9,7 +9,7 @@
 
 namespace umtet::detail {
 
-/// go_back(v) for the corners of tets below a mean ratio, until none of these has a corner that has left its place.
+/// Calls go_back(v) for the corners of tets below a mean ratio, until no corner of such a tet satisfies has_left(v).
 template <class HasLeft, class GoBack>
 void go_back_where_flat(const ActiveLayer& layer, double least_quality, const HasLeft& has_left,
                         const GoBack& go_back) {
@@ -19,7 +19,7 @@ void go_back_where_flat(const ActiveLayer& layer, double least_quality, const Ha
     const double V = volume6(a, b, c, d), L = sum_of_squared_edges(a, b, c, d);
     return !(V * std::abs(V) >= least_f * (L * L * L));
   };
-  // A vertex that goes back may leave a tet flat that was not.
+  // A vertex that goes back may make another tet flat.
   for (bool again = true; again;) {
     again = false;
     for (const Tet& t : layer.C) {

@@ -18,10 +18,10 @@ class FlipCandidates {
  public:
   struct Candidate {
     std::int64_t vertex;
-    float cost;  ///< by which the flip changes the star costs around
+    float cost;  ///< change of the star costs around the vertex by the flip
   };
 
-  /// Keeps what it is given by reference: `inside` is read at every call.
+  /// Keeps references to its arguments: `inside` is read at every call.
   FlipCandidates(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
                  const ClassificationParams& classification, const RepairParams& params, const IdSet& inside)
       : background_(background),
@@ -32,8 +32,8 @@ class FlipCandidates {
         costs_(classification.costs ? *classification.costs : a15_star_costs()),
         inside_(inside) {}
 
-  /// Those of a tet's vertices and their neighbours, the most promising first, max_tries at most.
-  /// @param n_evaluations  receives the number of values of psi
+  /// Candidates among a tet's vertices and their neighbours, the most promising first, at most max_tries.
+  /// @param n_evaluations  receives the number of evaluations of psi
   std::vector<Candidate> operator()(const std::array<std::int64_t, 4>& tet, std::size_t& n_evaluations) const;
 
  private:

@@ -19,10 +19,11 @@ namespace umtet::detail {
 
 using TetIds = std::array<std::int64_t, 4>;
 
-/// Where the vertices of a mesh under repair are: moved, or in the layer, or kept, or in the background mesh.
+/// Positions of the vertices of a mesh under repair: moved by repair, or those of the layer, kept, or of the background
+/// mesh.
 class Positions {
  public:
-  /// Keeps all by reference. @param kept  ascending
+  /// Keeps references. @param kept  ascending
   Positions(const BackgroundMesh& background, const BackgroundLayer& layer, const std::vector<KeptVertex>& kept)
       : background_(background), layer_(layer), kept_(kept) {}
 
@@ -30,7 +31,7 @@ class Positions {
     std::size_t from = 0;
     return of(v, from);
   }
-  /// @param from  where in the layer to look; receives where it was found, for the next greater one
+  /// @param from  index in the layer where the search begins; receives the index found, for the next greater vertex
   Vec3 of(std::int64_t v, std::size_t& from) const;
   void move(std::int64_t v, const Vec3& x);
   bool has_moved(std::int64_t v) const { return moved_.test(v); }
@@ -43,32 +44,33 @@ class Positions {
   std::vector<Vec3> moved_to_;
 };
 
-/// What is tried for one tet.
+/// Which trials are made for one tet.
 struct FlipEffort {
-  /// Patches without misaligned faces that smoothing leaves below the target are given to smooth_all_vertices(), at
+  /// smooth_all_vertices() is applied to patches without misaligned faces that smoothing leaves below the target, at
   /// first without flips.
   bool all_vertices = false;
-  std::size_t most_singles = std::numeric_limits<std::size_t>::max();  ///< candidates, the most promising ones
-  bool pairs = true;                                                   ///< where no single flip helps
+  std::size_t most_singles = std::numeric_limits<std::size_t>::max();  ///< number of single flips tried, the most
+                                                                       ///< promising ones
+  bool pairs = true;                                                   ///< pairs are tried if no single flip helps
   int more_reach = 0;  ///< edges beyond RepairParams::reach within which a patch moves vertices
 };
 
-/// How many patches are tried for a tet without a misaligned face. @param max_tries  of RepairParams
+/// The number of patches tried for a tet without a misaligned face. @param max_tries  RepairParams::max_tries
 std::size_t most_patches_of(const FlipEffort& effort, int max_tries);
 
-/// What flips would make of the patch around one tet, tried on copies. Changes nothing of the mesh.
+/// Trials of flips in the patch around one tet, made on copies. The mesh does not change.
 class FlipTrials {
  public:
   struct Best {
     BackgroundLayer layer;
     PatchState state;
     std::vector<std::int64_t> flips;
-    std::ptrdiff_t more_below_target = 0;  ///< tets below RepairParams::target, than before
-    bool found = false;                    ///< something betters the patch
+    std::ptrdiff_t more_below_target = 0;  ///< increase of the number of tets below RepairParams::target
+    bool found = false;                    ///< some trial improves the patch
     bool is_perfect() const { return found && state.is_perfect(); }
   };
 
-  /// Keeps what it is given by reference, but for `inside`, of which it has its own copy.
+  /// Keeps references to its arguments, except for `inside`, which is copied.
   FlipTrials(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
              const ClassificationParams& classification, const RepairParams& params, const Positions& places,
              const IdSet& inside)
@@ -83,26 +85,27 @@ class FlipTrials {
   FlipTrials(const FlipTrials&) = delete;  // candidates_ reads inside_
   FlipTrials& operator=(const FlipTrials&) = delete;
 
-  /// The best that was found for a tet.
-  /// @param most_tries  patches
+  /// The best change found for a tet.
+  /// @param most_tries  number of patches
   Best operator()(const TetIds& tet, std::size_t most_tries);
-  /// The patch around these vertices after relax_tangentially(), or as it is if that would make it worse.
+  /// The patch around these vertices after relax_tangentially(), or unchanged if this would make it worse.
   BackgroundLayer slid(const std::vector<std::int64_t>& centres);
   bool is_misaligned(const TetIds& tet);
-  /// In omega_h, and below the target or with a misaligned face.
+  /// True if the tet is in omega_h, and below the target or with a misaligned face.
   bool is_bad(const TetIds& tet);
-  /// From now on the target is this mean ratio, in place of params.target.
+  /// Replaces the target params.target by another mean ratio from now on.
   void retry_with(double target, const FlipEffort& effort) {
     target_ = target;
     effort_ = effort;
   }
   void flip(std::int64_t v) { inside_.test(v) ? inside_.erase(v) : inside_.insert(v); }
 
-  std::size_t tries = 0;            ///< patches shaped, of all calls
-  std::size_t psi_evaluations = 0;  ///< of all calls
+  std::size_t tries = 0;            ///< patches shaped, in all calls
+  std::size_t psi_evaluations = 0;  ///< in all calls
 
  private:
-  /// Where a patch's vertices start from: where they are, or (a fold stays a fold under small steps) the lattice.
+  /// Initial positions of a patch's vertices: the present ones, or the lattice's (a fold stays a fold under small
+  /// steps).
   enum class Start { Here, Lattice };
 
   BackgroundLayer patch(const std::vector<std::int64_t>& centres, Start start) const;

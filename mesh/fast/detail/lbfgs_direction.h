@@ -4,18 +4,17 @@
 
 namespace umtet::detail {
 
-/// Where to go by the limited-memory BFGS method: -H g, H the inverse Hessian that the last steps suggest.
-///                                                                     [LiuNocedal1989; NocedalWright2006,
-///                                                                     Algorithm 7.4]
+/// Search direction of the limited-memory BFGS method: -H g, with H the inverse Hessian estimated from the last steps.
+///                                                     [LiuNocedal1989; NocedalWright2006, Algorithm 7.4]
 class LbfgsDirection {
  public:
   explicit LbfgsDirection(Eigen::Index n) : s_(n, kPairs), y_(n, kPairs) {}
 
-  /// No step is known: the direction is -g.
+  /// True if no step is known: the direction is -g.
   bool is_steepest() const { return n_ == 0; }
 
-  /// @param s, y  a step, and the change of the gradient over it. Where the function is not convex along it, it is left
-  ///              out: H stays positive definite
+  /// Adds a step. A step along which the function is not convex is left out, so that H stays positive definite.
+  /// @param s, y  the step, and the change of the gradient over it
   void add(const Eigen::VectorXd& s, const Eigen::VectorXd& y) {
     const double curvature = s.dot(y);
     if (!(curvature > kLeastCosine * s.norm() * y.norm())) return;
@@ -27,7 +26,7 @@ class LbfgsDirection {
     n_ = n_ < kPairs ? n_ + 1 : kPairs;
   }
 
-  /// @param direction  receives it, in the size of g
+  /// @param direction  receives the direction, of the size of g
   void find(const Eigen::VectorXd& g, Eigen::VectorXd& direction) const {
     direction = -g;
     Eigen::Matrix<double, kPairs, 1> a;
@@ -47,8 +46,8 @@ class LbfgsDirection {
   }
 
  private:
-  static constexpr int kPairs = 8;  // 3 to 20 do; [LiuNocedal1989] has no gain from more
-  // Of the cosine of s and y: with less the next steps would be as long as rounding makes them.
+  static constexpr int kPairs = 8;  // 3 to 20 work; [LiuNocedal1989] reports no gain from more
+  // Bound on the cosine between s and y: below it the lengths of the next steps would be determined by rounding.
   static constexpr double kLeastCosine = 1e-9;
 
   Eigen::Matrix<double, Eigen::Dynamic, kPairs> s_, y_;

@@ -10,8 +10,8 @@
 
 namespace umtet::detail {
 
-/// How far what repair does for a tet may reach, seen from one of its vertices: what is done for two tets farther from
-/// each other does not meet, and may be done at once.
+/// Bounds on the region that the repair of a tet may change, seen from one of its vertices. Repairs of two tets whose
+/// ranges do not meet are independent and can run at once.
 class PatchRanges {
  public:
   struct Range {
@@ -23,11 +23,11 @@ class PatchRanges {
     }
   };
 
-  /// Keeps both by reference.
-  /// @param reach  of RepairParams
+  /// Keeps references.
+  /// @param reach  RepairParams::reach
   PatchRanges(const BackgroundMesh& background, const VertexLinks& links, int reach);
 
-  /// Finds those of these vertices, by all threads. In lattices, where all reach equally far, there is nothing to find.
+  /// Computes the ranges of these vertices, by all threads. In lattices all ranges are equal, and nothing is computed.
   void find(const std::vector<std::int64_t>& vertices);
   Range of(std::int64_t vertex);
 

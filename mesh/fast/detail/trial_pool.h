@@ -9,11 +9,11 @@
 
 namespace umtet::detail {
 
-/// FlipTrials for as many threads as ask for one at a time: each has its own copy of the classification. All are told
-/// of every flip and of every target, so that it does not matter which of them is taken.
+/// A pool of FlipTrials, one per concurrent thread, each with its own copy of the classification. Every flip and every
+/// target is passed to all of them, so the choice of instance does not affect results.
 class TrialPool {
  public:
-  /// Keeps what it is given by reference. @param inside  is changed together with flip(), while no thread asks
+  /// Keeps references to its arguments. @param inside  is changed together with flip(), while no thread uses the pool
   TrialPool(const BackgroundMesh& background, const VertexLinks& links, ImplicitFunctionRef psi,
             const ClassificationParams& classification, const RepairParams& params, const Positions& positions,
             const IdSet& inside)
@@ -28,10 +28,10 @@ class TrialPool {
     free_.push_back(add());
   }
 
-  /// For the thread that changes the mesh, while no other one asks.
+  /// The instance for the thread that changes the mesh, while no other thread uses the pool.
   FlipTrials& first() { return all_.front(); }
 
-  /// f(trials), with trials that no other thread has meanwhile. Thread-safe.
+  /// Calls f(trials) with an instance that no other thread uses meanwhile. Thread-safe.
   template <class F>
   auto with_one(const F& f) {
     const Borrowed borrowed(*this);

@@ -5,10 +5,10 @@
 
 namespace umtet::detail {
 
-/// Characters of n bytes in base64, with what fills up the last group (RFC 4648, Section 4).
+/// Length of n bytes in base64, including padding (RFC 4648, Section 4).
 constexpr std::size_t base64_length(std::size_t n) { return (n + 2) / 3 * 4; }
 
-/// Writes base64_length(bytes.size()) characters.
+/// Encodes bytes as base64_length(bytes.size()) characters.
 void encode_base64(std::span<const unsigned char> bytes, char* text);
 
 }  // namespace umtet::detail

@@ -6,13 +6,13 @@
 
 namespace umtet::detail {
 
-/// A number for a field of a text format with so many characters: the shortest text that reads back to the same value
-/// where that fits, else as many digits as do.
+/// A number formatted for a text field of fixed width: the shortest text that reads back to the same value if it fits,
+/// else as many digits as fit.
 class FixedWidth {
  public:
   enum class Style {
     C,        ///< 1e-05
-    Nastran,  ///< 1.E-5: a real has a point
+    Nastran,  ///< 1.E-5: a real number contains a point
   };
   /// @param width  12..24
   FixedWidth(double value, int width, Style style) {
@@ -39,7 +39,7 @@ class FixedWidth {
         exponent = true;
         if (!point) out[n++] = '.';
         out[n++] = 'E';
-        out[n++] = digits_[++k];                             // its sign
+        out[n++] = digits_[++k];                             // sign of the exponent
         while (digits_[k + 1] == '0' && k + 2 < size_) ++k;  // "E-05" wastes a digit
         continue;
       }

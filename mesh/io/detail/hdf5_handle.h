@@ -10,7 +10,8 @@
 
 namespace umtet::detail {
 
-/// Debian's HDF5 is not for several threads, and reports on stderr; what goes wrong is told by its return values.
+/// Guard for calls of HDF5. It serialises them, because Debian's HDF5 is not thread-safe, and suppresses reports on
+/// stderr, because return values indicate errors.
 class QuietHdf5 {
  public:
   QuietHdf5() : lock_(mutex()) {
@@ -37,7 +38,7 @@ T checked(T result, const char* what) {
   return result;
 }
 
-/// An object of HDF5 with the function that closes it.
+/// An HDF5 object with the function that closes it.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t), const char* what) : id_(checked(id, what)), close_(close) {}

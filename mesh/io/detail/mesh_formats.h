@@ -12,33 +12,35 @@
 
 namespace umtet::detail {
 
-/// A bounded walk over the bytes of a file that is held in memory. Nothing here reads past the end; what cannot be
-/// read is refused with its place.
+/// Bounds-checked cursor over the bytes of a file in memory. It does not read past the end; invalid input is rejected
+/// with its position.
 class ByteCursor {
  public:
-  /// @param comment  a word that begins with it, and the rest of its line, is no word; '\0': there are no comments
+  /// @param comment  a word that begins with this character starts a comment up to the end of the line; '\0': no
+  ///                 comments
   ByteCursor(const std::filesystem::path& path, std::string_view bytes, char comment = '\0')
       : path_(path), bytes_(bytes), comment_(comment) {}
 
   std::size_t position() const { return at_; }
   std::size_t remaining() const { return bytes_.size() - at_; }
   [[noreturn]] void refuse(const std::string& reason) const;
-  /// The rest of the line without its end; moves behind it.
+  /// The rest of the line without its end; moves to the next line.
   std::string_view line();
-  /// The next word between blanks, empty at the end of the file.
+  /// The next word between blanks; empty at the end of the file.
   std::string_view word();
-  /// The next word as a number. `what` names it in the refusal.
+  /// The next word as a number. `what` names it in the error.
   template <typename T>
   T number(const char* what);
-  /// A value as it lies in memory.
+  /// A value stored as in memory.
   template <typename T>
   T raw(const char* what);
   void skip(std::size_t n_bytes, const char* what);
-  /// Moves behind the first line that equals `text`, or refuses.
+  /// Moves to the line after the first one that equals `text`; rejects the file if there is none.
   void skip_behind_line(std::string_view text);
-  /// The next word as a count of records, refused if they cannot fit: each takes at least `least_bytes`.
+  /// The next word as a count of records, which is rejected if they cannot fit into the file: each takes at least
+  /// `least_bytes`.
   std::size_t count(const char* what, std::size_t least_bytes);
-  /// The same for a count already read.
+  /// Checks a count that was already read in the same way.
   std::size_t checked_count(std::uint64_t n, const char* what, std::size_t least_bytes) const;
 
  private:
@@ -48,37 +50,40 @@ class ByteCursor {
   std::size_t at_ = 0;
 };
 
-/// The bytes of a regular file. Of a large one the first megabyte has to hold the keyword of its format: else it is
-/// refused before the rest is read.
+/// Reads a regular file. The first megabyte of a large file has to contain the keyword of its format; otherwise the
+/// file is rejected before the rest is read.
 /// @param keyword  compared without regard to case
 /// \throw std::system_error naming the path, MeshFileRefused
 std::string file_bytes(const std::filesystem::path& path, std::string_view keyword);
 
-/// Nodes and tets as they stand in a file, by node number.
+/// Nodes and tets as stored in a file, by node number.
 struct NumberedMesh {
-  std::vector<std::int64_t> number;  ///< of each node
+  std::vector<std::int64_t> number;  ///< number of each node
   std::vector<Vec3> point;
   std::vector<std::array<std::int64_t, 4>> tets;  ///< node numbers
-  /// Of those tets that have ten nodes, the other six in the order of QuadraticTet.
+  /// For tets with ten nodes, the other six in the order of QuadraticTet.
   std::vector<std::array<std::int64_t, 6>> mid_sides;
 };
 
 using MidSideNodes = std::array<int, 6>;
 
 /// Sorts by node number, renumbers the tets and drops unused nodes.
-/// \throw MeshFileRefused for a node number that is missing or given twice, and as refuse_broken_tets()
+/// \throw MeshFileRefused for a node number that is missing or repeated, and under the conditions of
+///        refuse_broken_tets()
 MeshFile assemble(const std::filesystem::path& path, NumberedMesh&& numbered);
 
-/// \throw MeshFileRefused for a tet with a node twice or with a node that has no finite place, by the numbers of the
-///        file: of vertex i and of tet t
+/// Checks the tets of a file.
+/// \throw MeshFileRefused for a tet with a repeated node or with a node whose position is not finite, with the numbers
+///        of the file: of vertex i and of tet t
 void refuse_broken_tets(const std::filesystem::path& path, const TetMesh& mesh,
                         const std::function<std::int64_t(std::size_t)>& vertex_number,
                         const std::function<std::int64_t(std::size_t)>& tet_number);
 
-/// Fills file.quadratic if there are mid-sides for every tet; corners come first, and both kinds keep their order.
-/// To be called before drop_unused_vertices(). @param mid_sides  indices into file.mesh.V
-/// @param vertex_number  of vertex i in the file
-/// \throw MeshFileRefused for a mid-side that has no finite place, or is a corner
+/// Sets file.quadratic if there are mid-sides for every tet. Corners come first, and both kinds keep their order. Call
+/// it before drop_unused_vertices().
+/// @param mid_sides      indices into file.mesh.V
+/// @param vertex_number  number of vertex i in the file
+/// \throw MeshFileRefused for a mid-side whose position is not finite, or that is a corner
 void take_mid_sides(const std::filesystem::path& path, MeshFile& file, const std::vector<MidSideNodes>& mid_sides,
                     const std::function<std::int64_t(std::size_t)>& vertex_number);
 

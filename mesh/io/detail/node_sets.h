@@ -4,7 +4,7 @@
 
 namespace umtet::detail {
 
-/// All data of nodes, with 0/1 under the name of every patch and of all of them; data of the same name give way.
+/// All node data, with 0/1 arrays for every patch and for all patches, which replace data with the same name.
 inline std::map<std::string, FieldValues> with_node_sets(const SolverMesh& mesh) {
   std::map<std::string, FieldValues> arrays = mesh.point_data;
   arrays.insert(mesh.boundary_data.begin(), mesh.boundary_data.end());
@@ -19,7 +19,7 @@ inline std::map<std::string, FieldValues> with_node_sets(const SolverMesh& mesh)
   return arrays;
 }
 
-/// The number of the patch of every face.
+/// The patch number of every face.
 inline std::vector<std::int64_t> patch_numbers(const SolverMesh& mesh) {
   std::vector<std::int64_t> numbers;
   numbers.reserve(mesh.n_faces());

@@ -12,7 +12,7 @@ struct SharedEdge {
   int face, other;
 };
 
-/// The edges that two boundary faces have, by corners; those of one or of more than two join nothing.
+/// The edges shared by exactly two boundary faces, by corners.
 std::vector<SharedEdge> shared_edges(const SolverMesh& mesh);
 
 }  // namespace umtet::detail

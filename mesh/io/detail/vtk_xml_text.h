@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-// The text between the arrays of VTK's XML files, as this project writes them.
+// Text between the arrays of VTK XML files, as written by this project.
 namespace umtet::detail {
 
 template <typename T>
@@ -29,7 +29,7 @@ inline std::string escaped(const std::string& name) {
   return text;
 }
 
-/// @param type  of the grid
+/// @param type  type of the grid
 inline std::string file_begin(const std::string& type) {
   return "<?xml version=\"1.0\"?>\n<VTKFile type=\"" + type +
          "\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<" + type + ">\n";

@@ -7,17 +7,17 @@
 
 namespace umtet::detail {
 
-/// Goes through the bytes of a file once: all of them in memory, or, of a source that is read in blocks, a block.
+/// Sequential reader of the bytes of a file, which are all in memory, or read in blocks by the source.
 class ByteWindow {
  public:
-  /// @param at  byte of the file to begin with, among those that the source holds
+  /// @param at  first byte to read; the source has to hold it
   ByteWindow(const CloudSource& source, std::size_t at) : source_(source), window_(source.bytes), at_(at) {}
 
-  std::size_t at() const { return at_; }  ///< byte of the file
+  std::size_t at() const { return at_; }  ///< position in the file
   std::size_t bytes_left() const { return source_.size() - at_; }
   /// The next n bytes, valid until the next call; null if the file ends before.
   const char* take(std::size_t n);
-  /// \throw CloudRefused  anything but blanks and NUL padding follows
+  /// \throw CloudRefused if anything but blanks and NUL padding follows
   void refuse_surplus();
 
  private:
@@ -25,7 +25,7 @@ class ByteWindow {
 
   const CloudSource& source_;
   std::string_view window_;
-  std::size_t begin_ = 0;  ///< byte of the file where the window begins
+  std::size_t begin_ = 0;  ///< position in the file where the window begins
   std::size_t at_;
 };
 

@@ -10,29 +10,30 @@ namespace umtet::detail {
 
 class FileBytes;
 
-/// A cloud file in memory, or its beginning, and its name for messages. The bytes outlive every reader.
+/// A cloud file in memory, or its beginning, with its name for messages. The bytes have to outlive every reader.
 struct CloudSource {
   std::string name;
   std::string_view bytes;
   bool needs_normals = true;  ///< false: points without normals make a cloud without normals
-  /// Of the file, behind `bytes`. The readers need all of it, check_ply_head() and the like do not.
+  /// Number of bytes of the file after `bytes`. The readers need the whole file; check_ply_head() and the like do not.
   std::size_t bytes_left_out = 0;
-  FileBytes* rest =
-      nullptr;  ///< what reads them block by block (ByteWindow); null: there are none, or all are in memory
-  std::string_view columns = {};  ///< what the user says of the columns of a text; empty: nothing
+  FileBytes* rest = nullptr;  ///< reads them block by block (ByteWindow); null: there are none, or all are in memory
+  std::string_view columns = {};  ///< the user's description of the columns of a text; empty: none
 
-  std::size_t size() const { return bytes.size() + bytes_left_out; }  ///< of the file
+  std::size_t size() const { return bytes.size() + bytes_left_out; }  ///< size of the file
 };
 
-/// \throw CloudRefused  always: "NAME: what"
+/// Rejects the file. \throw CloudRefused  always: "NAME: what"
 [[noreturn]] void refuse(const CloudSource& source, const std::string& what);
 
-/// A piece of a file as it may be shown on a terminal: quoted, clipped to 40 characters, unprintable bytes as '?'.
+/// A piece of a file in a form that is safe on a terminal: quoted, clipped to 40 characters, with '?' for unprintable
+/// bytes.
 std::string in_quotes(std::string_view text);
 
-/// \throw CloudRefused  anything but blanks and NUL padding from `offset` on: then a count of the header is wrong
+/// Checks the end of the data. \throw CloudRefused for anything but blanks and NUL padding from `offset` on: a count of
+/// the header is then wrong
 void refuse_surplus(const CloudSource& source, std::size_t offset);
-/// The same of some bytes of the file. @param offset  where they begin
+/// The same for some bytes of the file. @param offset  their position in the file
 void refuse_surplus(const CloudSource& source, std::string_view bytes, std::size_t offset);
 
 }  // namespace umtet::detail

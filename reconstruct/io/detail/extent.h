@@ -7,11 +7,12 @@
 
 namespace umtet::detail {
 
-// Sixth powers of lengths, products of volumes, must stay normal doubles; no unit makes a body so large or so small.
+// Maximum coordinate: sixth powers of lengths, as products of volumes, must be normal doubles. No unit makes a body so
+// large or so small.
 inline constexpr double kFarthest = 1e50;
 
-/// A body needs samples in three dimensions, and more than a handful of places.
-/// \throw CloudRefused  fewer than `fewest` different places, all on a line or a plane, or within 1e-50
+/// Checks that points extend in three dimensions and have sufficiently many positions.
+/// \throw CloudRefused for fewer than `fewest` different positions, or positions on a line or a plane, or within 1e-50
 void check_extent(const CloudSource& source, const std::vector<Vec3>& points, std::size_t fewest);
 
 }  // namespace umtet::detail

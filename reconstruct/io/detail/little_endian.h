@@ -6,7 +6,7 @@
 
 namespace umtet::detail {
 
-/// Writes a number at `at`, little-endian, and moves behind it.
+/// Writes a number at `at` in little-endian order, and advances `at`.
 template <class T>
 void put(char*& at, T value) {
   auto bytes = std::bit_cast<std::array<char, sizeof(T)>>(value);

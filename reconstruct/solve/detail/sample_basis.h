@@ -13,7 +13,7 @@ using FloatPack = Eigen::Array<float, LmeBasis1d::kPackSize, 1>;
 using FloatIn = Eigen::Map<const FloatPack>;
 inline Eigen::Map<FloatPack> float_pack(float* at) { return Eigen::Map<FloatPack>(at); }
 
-/// What is stored of a sample in single precision: eight lanes of N and N' in x, W values each in y and z, and the two
+/// Stored data of a sample in single precision: eight lanes of N and N' in x, W values each in y and z, and the two
 /// weights.
 template <int W>
 struct SampleBasis {
@@ -44,7 +44,7 @@ struct SampleBasis {
   }
 };
 
-/// y += q N + g . grad N over the W^3 nodes of a sample, as add_sample.
+/// y += q N + g . grad N over the W^3 nodes of a sample, with the conventions of add_sample().
 template <int W, class Nx, class Nxy>
 void scatter_sample(const SampleBasis<W>& B, float q, float gx, float gy, float gz, float* y, Nx nx, Nxy nxy) {
   const FloatPack N = B.xN(), t = q * N + gx * B.xdN(), ty = gy * N, tz = gz * N;
@@ -59,13 +59,13 @@ void scatter_sample(const SampleBasis<W>& B, float q, float gx, float gy, float 
   }
 }
 
-/// y += (w_v N N^T + w_g grad N . grad N^T) c over the W^3 nodes of a sample. Eight-lane loads and stores reach past
+/// y += (w_v N N^T + w_g grad N . grad N^T) c over the W^3 nodes of a sample. Eight-lane loads and stores extend beyond
 /// the last node of a row, and add zero there.
 /// @param c, y    at the first node of all axes
 /// @param nx, nxy distance of nodes along y and z
 template <int W, class Nx, class Nxy>
 void add_sample(const SampleBasis<W>& B, const float* c, float* y, Nx nx, Nxy nxy) {
-  // Plane by plane: 2 W sums stay in registers, and a weight in z is loaded once.
+  // Plane by plane: 2 W sums stay in registers, and each weight in z is loaded once.
   FloatPack a[W], az[W];
 #pragma GCC unroll 8
   for (int j = 0; j < W; ++j) a[j].setZero(), az[j].setZero();

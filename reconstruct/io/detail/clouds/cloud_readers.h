@@ -4,21 +4,21 @@
 
 namespace umtet::detail {
 
-/// What the beginning of a file is enough for: its header and, of binary files, counts against the size of the file; of
-/// XYZ the rows that are there. Headers are shorter than this beginning.
-/// \throw CloudRefused  as the reader would
+/// Check the beginning of a file: its header and, for binary files, its counts against the size of the file; for XYZ
+/// the rows it contains. Headers are shorter than this beginning.
+/// \throw CloudRefused under the conditions of the reader
 void check_ply_head(const CloudSource& head);
 void check_pcd_head(const CloudSource& head);
 void check_xyz_head(const CloudSource& head);
 
-/// Whether it is a table of numbers, whatever the extension of the file says.
+/// True if the file is a table of numbers, whatever its extension.
 bool is_xyz(const CloudSource& head);
 
-/// Whether the points are stored as numbers one after the other, so that a block of them can be read at a time.
+/// True if the points are stored as consecutive numbers, so that they can be read in blocks.
 bool is_in_blocks_ply(const CloudSource& head);
 bool is_in_blocks_pcd(const CloudSource& head);
 
-/// One reader per format. They check the shape of the file; what the numbers are is checked by read_point_cloud.
+/// One reader per format. Readers check the structure of the file; read_point_cloud() checks the values.
 /// \throw CloudRefused
 CloudFile read_ply(const CloudSource& source);
 CloudFile read_pcd(const CloudSource& source);

@@ -13,20 +13,20 @@
 
 namespace umtet::detail {
 
-/// Takes the content of one list of an item.
+/// Receives the content of one list of an item.
 struct PlyList {
-  std::size_t property = 0;  ///< which property of the element it is
-  std::size_t most = 0;      ///< values; longer lists are refused
+  std::size_t property = 0;  ///< index of the property in its element
+  std::size_t most = 0;      ///< maximum number of values; longer lists are rejected
   std::vector<double> values;
 };
 
-/// Reads items one after the other; values get one number per property (a list gives its length, its content is
-/// stepped over unless it is the `wanted` one).
+/// Reads items of a binary body one after the other. `values` receive one number per property (for a list its length;
+/// its content is skipped unless it is the `wanted` one).
 class BinaryBody {
  public:
   BinaryBody(const CloudSource& source, const PlyHeader& header);
 
-  /// The least an item takes.
+  /// Minimum size of an item.
   static std::size_t bytes_per_item(const PlyElement& element);
   std::size_t bytes_left() const { return bytes_.bytes_left(); }
   std::string place() const;
@@ -41,7 +41,7 @@ class BinaryBody {
   bool swap_;
 };
 
-/// The same for text: one item per line.
+/// Reads items of a text body, one item per line.
 class AsciiBody {
  public:
   AsciiBody(const CloudSource& source, const PlyHeader& header)
@@ -65,7 +65,7 @@ class AsciiBody {
 /// "vertex 3 of 8".
 std::string place_of(const PlyElement& element, std::uint64_t item);
 
-/// Before memory is asked for. \throw CloudRefused  the header announces more than the file can hold
+/// Checks a count before memory is allocated. \throw CloudRefused if the header announces more than the file can hold
 template <class Body>
 void check_count(const CloudSource& source, const Body& body, const PlyElement& element);
 

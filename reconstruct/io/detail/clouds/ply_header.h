@@ -24,18 +24,18 @@ struct PlyProperty {
 
 struct PlyElement {
   std::string name;
-  std::uint64_t count = 0;  ///< as announced: compare with the file before use
+  std::uint64_t count = 0;  ///< as announced: has to be compared with the size of the file
   std::vector<PlyProperty> properties;
 };
 
 struct PlyHeader {
   PlyFormat format = PlyFormat::Ascii;
-  std::vector<PlyElement> elements;  ///< exactly one is called "vertex"
-  std::size_t body = 0;              ///< byte where the data begin
-  std::size_t body_line = 0;         ///< and its line, from 1
+  std::vector<PlyElement> elements;  ///< exactly one is named "vertex"
+  std::size_t body = 0;              ///< position of the data in the file
+  std::size_t body_line = 0;         ///< line of the data, from 1
 };
 
-/// \throw CloudRefused  with the line that is wrong
+/// Parses the header of a PLY file. \throw CloudRefused with the invalid line
 PlyHeader parse_ply_header(const CloudSource& source);
 
 }  // namespace umtet::detail

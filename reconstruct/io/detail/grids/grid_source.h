@@ -13,63 +13,65 @@
 
 namespace umtet::detail {
 
-/// How a number is stored.
+/// Storage type of a number.
 struct NumberType {
   enum class Kind { Signed, Unsigned, Float };
   Kind kind;
   int bytes;  ///< 1, 2, 4 or 8
 };
 
-/// Of numbers as text, with what is between them: not less.
+/// Minimum size of a number as text, with its separator.
 inline constexpr double kBytesOfWord = 2;
 
-/// Of a name that C, VTK or NRRD have for it ("unsigned char", "uint8_t", "UInt8", "vtktypeint64", "float" ...).
+/// Storage type for a name used by C, VTK or NRRD ("unsigned char", "uint8_t", "UInt8", "vtktypeint64", "float" ...).
 std::optional<NumberType> number_type(std::string_view name);
 
-/// The numbers of some bytes, appended. @param swap  the bytes of each are the wrong way round
+/// Appends the numbers stored in some bytes. @param swap  reverses the bytes of each number
 void append_numbers(std::string_view bytes, NumberType type, bool swap, std::vector<double>& out);
 
-/// Thrown in place of reading on where only the head of a file is wanted.
+/// Thrown to stop reading if only the head of a file is requested.
 struct EndOfHead {};
 
-/// The bytes of a file, unpacked if it is one of gzip, from the front to the back.
+/// Sequential reader of a file, which is decompressed if it is compressed by gzip.
 class GridSource {
  public:
   enum class Part { Whole, Head };
-  /// @param max_nodes  a grid may have
+  /// @param max_nodes  maximum number of nodes of a grid
   /// @param part  Head: require_nodes() throws EndOfHead after its checks
-  /// \throw GridRefused  not a regular file \throw std::system_error
+  /// \throw GridRefused if it is not a regular file
+  /// \throw std::system_error
   GridSource(const std::filesystem::path& file, double max_nodes, Part part = Part::Whole);
   ~GridSource();
   GridSource(const GridSource&) = delete;
   GridSource& operator=(const GridSource&) = delete;
 
-  /// The next bytes without taking them, fewer at the end; at most kHead. Only at the front.
+  /// The next bytes without consuming them, at most kHead, and fewer at the end. At the front of the file only.
   std::string_view head();
-  /// Takes n bytes; memory grows as they come. \throw GridRefused  there are not so many
+  /// Reads n bytes; memory grows with the data. \throw GridRefused if there are fewer
   std::string take(std::uint64_t n);
-  /// Takes a line, without its end. \throw GridRefused  at the end of the file, or longer than kLongestLine
+  /// Reads a line, without its end. \throw GridRefused at the end of the file, or for a line longer than kLongestLine
   std::string line();
-  /// Takes what comes before `stop`, and `stop`. \throw GridRefused  at the end of the file, or after `most` bytes
+  /// Reads up to and including `stop`. \throw GridRefused at the end of the file, or after `most` bytes
   std::string until(char stop, std::uint64_t most);
-  /// Leaves n bytes out. \throw GridRefused  there are not so many
+  /// Skips n bytes. \throw GridRefused if there are fewer
   void skip(std::uint64_t n);
-  /// Leaves out what comes before `stop`. \throw GridRefused  at the end of the file
+  /// Skips to `stop`. \throw GridRefused at the end of the file
   void skip_to(char stop);
-  /// Leaves out what consists of these.
+  /// Skips all characters of this set.
   void skip_while(std::string_view characters);
-  /// What is left is of gzip, whatever came before.
+  /// Decompresses the remaining bytes by gzip, whatever came before.
   void unpack_rest();
 
-  /// No more nodes than are allowed, and, with so many bytes each, than the file can have.
+  /// Checks that there are no more nodes than permitted, and no more than the file can contain with this number of
+  /// bytes each.
   /// \throw GridRefused
   void require_nodes(const std::vector<std::int64_t>& counts, double bytes_each);
-  /// Takes the numbers of n nodes. \throw GridRefused
+  /// Reads the numbers of n nodes. \throw GridRefused
   std::vector<double> take_numbers(std::uint64_t n, NumberType type, bool swap);
-  /// The same written as text. \throw GridRefused
+  /// Reads numbers written as text. \throw GridRefused
   std::vector<double> take_words(std::uint64_t n);
 
-  /// \throw GridRefused  "FILE: byte N: what"
+  /// Rejects the file. \throw GridRefused  "FILE: byte N: what"
   [[noreturn]] void refuse(const std::string& what) const;
   const std::string& name() const { return name_; }
   static constexpr std::size_t kHead = 4096, kLongestLine = 1 << 16;
@@ -83,18 +85,18 @@ class GridSource {
   void* gzip_ = nullptr;  ///< gzFile
   double file_size_ = 0, max_nodes_ = 0;
   Part part_;
-  std::string buffer_;  ///< read, but not taken yet, from next_ on
+  std::string buffer_;  ///< read, but not consumed, from next_ on
   std::size_t next_ = 0;
   std::uint64_t taken_ = 0;
 };
 
-/// \throw GridRefused  not a number, or something behind it
+/// Parse a word. \throw GridRefused if it is not a number, or if anything follows it
 double number_of(const GridSource& source, std::string_view word);
 std::int64_t count_of(const GridSource& source, std::string_view word);
-/// Between blanks.
+/// The words of a text, separated by blanks.
 std::vector<std::string_view> words_of(std::string_view text);
 
-/// One reader for each format; they check the shape of the file. \throw GridRefused
+/// One reader per format; they check the structure of the file. \throw GridRefused
 Grid read_nrrd(GridSource& source);
 Grid read_nifti(GridSource& source);
 Grid read_structured_points(GridSource& source);

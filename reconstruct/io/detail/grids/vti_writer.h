@@ -9,18 +9,18 @@
 
 namespace umtet::detail {
 
-/// Text and inline base64 arrays of a .vti, on their way to the file piece by piece. VTK's own writer holds copies of
-/// the arrays and the whole text twice, takes four times as long, and returns success on a full disk.
+/// Writer of the text and inline base64 arrays of a .vti file, piece by piece. VTK's own writer holds copies of the
+/// arrays and the whole text twice, takes four times as long, and returns success on a full disk.
 class VtiWriter {
  public:
   explicit VtiWriter(const std::filesystem::path& file) : path_(file), out_(file, std::ios::binary) {}
   VtiWriter& text(std::string_view);
-  /// One of FieldData, which names how many values there are.
+  /// Writes an array of FieldData, which states its number of values.
   VtiWriter& field(const std::string& name, const std::vector<double>& values);
   VtiWriter& field(const std::string& name, const std::vector<float>& values);
-  /// One of PointData.
+  /// Writes an array of PointData.
   VtiWriter& points(const std::string& name, const std::vector<double>& values);
-  /// \throw std::system_error  where not all of it could be written
+  /// \throw std::system_error if not everything could be written
   void close();
 
  private:

@@ -12,10 +12,10 @@
 
 namespace umtet::detail {
 
-/// Real polygons have a handful of corners. Cutting them takes time that grows like their square.
+/// Maximum number of corners. Real polygons have few, and cutting takes time that grows like their square.
 inline constexpr std::size_t kMostCorners = 500;
 
-/// Numbers for names, in the order in which they come.
+/// Assigns numbers to names in order of appearance.
 class NameTable {
  public:
   int number_of(std::string_view name);
@@ -26,41 +26,42 @@ class NameTable {
   std::unordered_map<std::string, int> numbers_;
 };
 
-/// What a reader of polygons has collected so far.
+/// Polygons collected by a reader.
 struct PolygonSoup {
   std::vector<Vec3> V;
   std::vector<std::int64_t> corners;  ///< of all polygons, from 0
-  std::vector<std::size_t> ends;      ///< of each in `corners`
-  std::vector<int> labels;            ///< of each; or empty
+  std::vector<std::size_t> ends;      ///< end of each polygon in `corners`
+  std::vector<int> labels;            ///< of each polygon; or empty
 
   std::size_t size() const { return ends.size(); }
   std::size_t begin(std::size_t polygon) const { return polygon == 0 ? 0 : ends[polygon - 1]; }
 };
 
-/// Corners of a simple polygon in some plane, cut into n - 2 triangles of its own corners, by clipping ears; fans where
-/// it is not simple. @return corners by their place in `polygon`
+/// Triangulates a simple polygon in some plane by ear clipping: n - 2 triangles of its own corners; a fan if it is not
+/// simple. @return corners as indices into `polygon`
 std::vector<std::array<int, 3>> cut_polygon(const std::vector<Vec3>& polygon);
 
-/// Checks what was collected and cuts it into triangles.
-/// @param names  the labels are their numbers, and become 1, 2 ... if there are several, not more than kMostGroups
-/// \throw CloudRefused  no faces, too few or too many corners, an index out of range, a coordinate that is no number
+/// Checks the collected polygons and cuts them into triangles.
+/// @param names  names of the labels. The labels become 1, 2 ... if there are several, but at most kMostGroups
+/// \throw CloudRefused for no faces, too few or too many corners, an index out of range, or a coordinate that is not a
+///        number
 TriangleFile triangles_of(const CloudSource& source, PolygonSoup soup, std::string format,
                           const NameTable* names = nullptr);
 
-/// What the beginning of a file is enough for. \throw CloudRefused  as the readers
+/// Check the beginning of a file. \throw CloudRefused under the conditions of the readers
 void check_stl_head(const CloudSource& head);
 void check_obj_head(const CloudSource& head);
 void check_off_head(const CloudSource& head);
 
-/// One reader a format. \throw CloudRefused
+/// One reader per format. \throw CloudRefused
 TriangleFile read_stl(const CloudSource& source);
 TriangleFile read_obj(const CloudSource& source);
 TriangleFile read_off(const CloudSource& source);
 TriangleFile read_ply_faces(const CloudSource& source);
 
-/// Has it at least a quarter as many faces as vertices? False for a header that is none.
+/// True if there are at least a quarter as many faces as vertices. False for an invalid header.
 bool ply_has_surface(const CloudSource& head);
-/// OFF, COFF, NOFF ... by its first word.
+/// True if the first word is OFF, COFF, NOFF ...
 bool begins_as_off(const CloudSource& head);
 
 }  // namespace umtet::detail
