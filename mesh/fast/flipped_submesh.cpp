@@ -33,6 +33,7 @@ struct BoundaryFace {
 
 /// Faces of one tet, by tet and by face within it; none of them among the walls.
 void list_positive_faces(const std::vector<Triangle>& walls, Submesh& submesh) {
+  // Faces of a tet, counter-clockwise seen from outside.
   constexpr std::array<std::array<int, 3>, 4> kFaces = {{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
   // Only faces whose corners all lie on the boundary can be such: few of all.
   std::vector<std::uint8_t> on_boundary(submesh.mesh.V.size(), 0);

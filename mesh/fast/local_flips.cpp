@@ -57,6 +57,7 @@ bool contains(const Tet& t, int v) { return t[0] == v || t[1] == v || t[2] == v 
 
 /// The other two vertices of a tet with the edge (a, b), so that (a, b, first, second) is positive.
 std::pair<int, int> opposite_edge(const Tet& t, int a, int b) {
+  // The even permutations of the corners.
   constexpr std::array<std::array<int, 4>, 12> kEven = {{{0, 1, 2, 3},
                                                          {0, 2, 3, 1},
                                                          {0, 3, 1, 2},
@@ -261,7 +262,7 @@ class LocalFlips {
     return std::any_of(tets.begin(), tets.end(), [&](int t) { return contains(C_[t], b); });
   }
 
-  /// The triangulation of a ring whose worst tet is best [Klincsek1980].
+  /// The triangulation of a ring whose worst tet is best [Klincsek1980], [Shewchuk2002].
   void offer_removal(int a, int b, const std::vector<int>& tets, const Ring& ring, std::vector<Candidate>& candidates) {
     const std::vector<int>& r = ring.vertices;
     const auto n = static_cast<int>(r.size());

@@ -19,7 +19,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TABLE, MEASURED = ROOT / "docs/constants.md", ROOT / "data/constants/sensitivity.csv"
 FILES = ["mesh/core/quality_target.h"]
-FOLDERS = ["body", "mesh/classification", "mesh/fast", "mesh/implicit", "pipeline/stages",
+FOLDERS = ["body", "mesh/classification", "mesh/fast", "mesh/implicit", "pipeline/domain", "pipeline/meshing", "pipeline/stages",
            "reconstruct/cloud", "reconstruct/triangles", "reconstruct/winding", "reconstruct/solve"]
 # Numbers that decide nothing about results: markers, units, indices, sizes of blocks.
 SELF_EXPLANATORY = {"kInfinity", "kNaN", "kNone", "kAny", "kNoSpacing", "kLeafSize", "kInPlane", "kUpward", "kTriangles", "kListed", "kRoundedUp",
