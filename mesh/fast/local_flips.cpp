@@ -12,8 +12,10 @@
 
 #include "mesh/core/max_min.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/fast/all_vertex_smoothing.h"
 #include "mesh/fast/detail/ring_newton.h"
 #include "mesh/implicit/closest_point.h"
+#include "mesh/submesh/active_layer.h"
 
 namespace umtet {
 namespace {
@@ -115,7 +117,12 @@ struct Ring {
   bool is_closed = false;     ///< else the edge lies on the boundary, and so do its faces with the first and the last
 };
 
-enum class Operation { Smooth, RemoveEdge, Collapse };
+enum class Operation {
+  Smooth,     ///< vertices one by one
+  SmoothAll,  ///< all vertices of the patch at once (all_vertex_smoothing.h)
+  RemoveEdge,
+  Collapse
+};
 
 struct Candidate {
   Operation operation = Operation::Smooth;
@@ -365,6 +372,8 @@ class LocalFlips {
     std::sort(c.old_tets.begin(), c.old_tets.end());
     c.old_tets.erase(std::unique(c.old_tets.begin(), c.old_tets.end()), c.old_tets.end());
     for (const int t : c.old_tets) c.new_tets.push_back(C_[t]);
+    if (attempt(c)) return;
+    c.operation = Operation::SmoothAll;
     attempt(c);
   }
 
@@ -396,21 +405,14 @@ class LocalFlips {
       after.push_back(C_[t]);
     }
     Patch patch = patch_of(after);
-    shape(patch);
+    c.operation == Operation::SmoothAll ? shape_at_once(patch) : shape(patch);
     const PatchMeasure made = measured(patch);
     if (!is_better(made, old)) return false;
     commit(c, patch);
-    switch (c.operation) {
-      case Operation::Smooth:
-        ++report_.n_smoothed;
-        break;
-      case Operation::RemoveEdge:
-        ++report_.n_removed_edges;
-        break;
-      case Operation::Collapse:
-        ++report_.n_collapsed;
-        break;
-    }
+    std::size_t& n = c.operation == Operation::RemoveEdge ? report_.n_removed_edges
+                     : c.operation == Operation::Collapse ? report_.n_collapsed
+                                                          : report_.n_smoothed;
+    ++n;
     return true;
   }
 
@@ -461,6 +463,22 @@ class LocalFlips {
       }
       if (is_good || !has_moved) return;
     }
+  }
+
+  /// The same where single vertices gain nothing.
+  void shape_at_once(Patch& patch) {
+    ActiveLayer layer;
+    layer.V = patch.V;
+    layer.C = patch.C;
+    for (std::size_t v = 0; v < patch.V.size(); ++v) {
+      const bool is_on_boundary = stratum_[patch.vertices[v]] == Stratum::Boundary;
+      layer.role.push_back(!patch.moves[v]  ? ActiveLayer::Role::Fixed
+                           : is_on_boundary ? ActiveLayer::Role::Boundary
+                                            : ActiveLayer::Role::Inner);
+      layer.local_h.push_back(edge_[patch.vertices[v]]);
+    }
+    report_.psi_evaluations += smooth_all_vertices(layer, psi_, params_.target).psi_evaluations;
+    patch.V = std::move(layer.V);
   }
 
   bool solve(Patch& patch, std::size_t v, const OneRing& ring) {
@@ -552,7 +570,7 @@ class LocalFlips {
   void commit(const Candidate& c, const Patch& patch) {
     for (std::size_t v = 0; v < patch.V.size(); ++v)
       if (patch.moves[v]) V_[patch.vertices[v]] = patch.V[v];
-    if (c.operation != Operation::Smooth) {
+    if (c.operation == Operation::RemoveEdge || c.operation == Operation::Collapse) {
       for (const int t : c.old_tets) {
         alive_[t] = 0;
         for (const int v : C_[t]) incidence_.remove(v, t);
