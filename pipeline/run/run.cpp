@@ -7,6 +7,7 @@
 #include "body/scan/cloud_preparation.h"
 #include "body/sizing/wanted_detail.h"
 #include "pipeline/case/interrupt.h"
+#include "pipeline/domain/body_options.h"
 #include "pipeline/output/report.h"
 #include "pipeline/reports/certificate_json.h"
 #include "pipeline/run/renewal.h"
