@@ -37,7 +37,7 @@ struct RankCommand {
   std::int64_t state = 0;  ///< a MeshState; for pieces a PieceFormat; for samples their level
   std::int64_t moving_alone = 0;
   std::int64_t has_data = 0;   ///< for pieces: there is a PieceData
-  std::int64_t is_fitted = 0;  ///< for the domain: psi is a level set fitted to samples, else it is that of the call
+  std::int64_t is_fitted = 0;  ///< for the domain: psi is a level set fitted to samples, else the psi of the call
   std::int64_t has_t = 0;      ///< for the domain: a formula is taken at t
   double t = 0;
   double lattice_h = 0, h = 0, shift[3] = {}, rounding = 0;

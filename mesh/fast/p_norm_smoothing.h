@@ -101,7 +101,7 @@ class PNormSmoother {
   /// Solves vertices in the queue until the queue is empty, or for max_sweeps sweeps. The remaining vertices stay in
   /// the queue for the next call.
   ///
-  /// Roles are read anew at each call: the caller may hold vertices by making them Fixed temporarily, and they stay in
+  /// Roles are read at each call: the caller may hold vertices by making them Fixed temporarily, and they stay in
   /// the queue. The final state of the layer is not reported; measure() computes it by a check of every tet.
   /// \throw std::invalid_argument naming every broken constraint of params, Cancelled
   SmoothingReport run(ImplicitFunctionRef psi, const SmoothingParams& params, const Context& context = {});

@@ -12,8 +12,7 @@ namespace umtet {
 /// evidence for a failure at the same place.
 struct BrokenAssumption {
   std::size_t count = 0;        ///< number of faces or tets that break it
-  std::vector<bool> at_vertex;  ///< per vertex of omega_h, true if it belongs to such a face or tet; empty if there is
-                                ///< none
+  std::vector<bool> at_vertex;  ///< per vertex of omega_h, true if it belongs to such a face or tet; empty if none does
 
   bool holds() const { return count == 0; }
   /// True if one of the vertices belongs to a face or tet that breaks it.

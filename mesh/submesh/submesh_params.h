@@ -18,8 +18,7 @@ enum class SubmeshSearch { FullLoop, Crawl };  ///< Alg. 1, steps 1-22, or Secti
 struct SubmeshParams {
   SubmeshSearch search = SubmeshSearch::FullLoop;
   BackgroundBoundary background_boundary = BackgroundBoundary::Refuse;
-  KnownSigns known = {};  ///< known signs of psi for SubmeshSearch::FullLoop: they save evaluations and do not change
-                          ///< the result
+  KnownSigns known = {};  ///< signs of psi known in advance, for FullLoop: they only save evaluations
 };
 
 }  // namespace umtet

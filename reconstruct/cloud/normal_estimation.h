@@ -11,8 +11,7 @@ namespace umtet {
 struct NormalEstimationParams {
   int neighbours = 24;        ///< size of the first neighbourhood; >= 8. Four times the coefficients of a quadric
   double noise_angle = 2;     ///< permitted effect of noise on a normal, degrees, before the neighbourhood grows; > 0
-  double largest_growth = 9;  ///< maximum growth of its radius; >= 1. Nine times the radius of 24 neighbours would
-                              ///< contain 2000
+  double largest_growth = 9;  ///< maximum growth of its radius; >= 1. A radius nine times that of 24 contains 2000
 };
 std::vector<std::string> problems(const NormalEstimationParams&);
 

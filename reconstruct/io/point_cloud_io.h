@@ -28,8 +28,7 @@ struct CloudFileReport {
   std::size_t n_points_dropped = 0;    ///< read_scan(): points with coordinates that are NaN, infinite or beyond 1e50
   std::size_t n_normals_missing = 0;   ///< read_scan(): zero, NaN or infinite normals; they are zero in the cloud
   bool of_triangles = false;           ///< samples of triangles: their normals are certain, and there are no outliers
-  std::optional<Vec3> viewpoint = {};  ///< position of the scanner: VIEWPOINT of a .pcd file, unless it is 0 0 0 1 0 0
-                                       ///< 0
+  std::optional<Vec3> viewpoint = {};  ///< scanner position: VIEWPOINT of a .pcd file, unless it is 0 0 0 1 0 0 0
   std::vector<std::string> fields_left_out = {};  ///< fields beyond the first kMostFields, or with a duplicate name
   std::string columns = {};  ///< for a text: its columns and how they were determined, in one line for the user
 };
