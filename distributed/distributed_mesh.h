@@ -15,6 +15,7 @@
 
 namespace umtet {
 
+/// Success of distributed_mesh(), or the reason of its failure.
 enum class PartsStatus {
   Success,
   EmptyDomain,             ///< psi < 0 at no background vertex, or no body is left that h can resolve

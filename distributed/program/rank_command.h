@@ -14,6 +14,7 @@
 // Commands of rank 0 to the other ranks, which execute them together with it.
 namespace umtet {
 
+/// Kind of a command.
 enum class RankOrder : std::int64_t {
   LevelSet,
   CutLevelSet,
@@ -59,6 +60,7 @@ struct Attached {
   std::vector<Vec3> seeds = {};  ///< seeds of a mesh
 };
 
+/// A command as received by the other ranks.
 struct Heard {
   RankCommand command;
   Attached attached;

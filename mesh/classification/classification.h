@@ -44,6 +44,7 @@ struct ClassificationParams {
 /// All broken constraints, not just the first.
 std::vector<std::string> problems(const ClassificationParams&);
 
+/// Report of classify_vertices().
 struct ClassificationReport {
   std::size_t candidates = 0;              ///< vertices whose state may change
   std::size_t shifted = 0;                 ///< states changed by the shift

@@ -27,6 +27,7 @@ struct ProjectionParams {
 /// All broken constraints, not just the first.
 std::vector<std::string> problems(const ProjectionParams&);
 
+/// A Boundary vertex that did not reach psi = 0, with the reason.
 struct NotArrived {
   enum class Reason {
     NoFoot,  ///< no closest point was found from the vertex's position
@@ -36,6 +37,7 @@ struct NotArrived {
   Reason reason;
 };
 
+/// Report of project().
 struct ProjectionReport {
   std::size_t boundary = 0;             ///< number of Boundary vertices
   std::vector<NotArrived> not_arrived;  ///< ascending by vertex; empty if all arrived

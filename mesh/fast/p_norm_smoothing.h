@@ -37,6 +37,7 @@ struct SmoothingParams {
 /// All broken constraints, not just the first.
 std::vector<std::string> problems(const SmoothingParams&);
 
+/// Report of p-norm smoothing: work done, and state of the layer.
 struct SmoothingReport {
   int sweeps = 0;
   std::size_t checks = 0;           ///< checks of a ring, to see whether its vertex needs a solve

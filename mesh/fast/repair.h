@@ -56,6 +56,7 @@ struct RepairParams {
 /// All broken constraints, not just the first.
 std::vector<std::string> problems(const RepairParams&);
 
+/// Changes made by repair(), and its work.
 struct RepairReport {
   std::size_t tries = 0;  ///< patches shaped on a copy
   std::size_t psi_evaluations = 0;

@@ -10,6 +10,7 @@
 
 namespace umtet {
 
+/// Report of step_back().
 struct StepBackReport {
   std::size_t n_pairs = 0, n_inverted = 0;  ///< before: pairs of faces that meet, tets that are not positive
   int rounds = 0;

@@ -23,6 +23,7 @@ struct ZeroSetComponent {
   std::size_t first_cut_point = 0;  ///< its n_cut_edges points begin here in ZeroSetTopology::cut_points
 };
 
+/// Topology of {psi = 0}: its components and cut points.
 struct ZeroSetTopology {
   std::vector<ZeroSetComponent> components;  ///< descending in area
   long euler_characteristic = 0;             ///< sum over components

@@ -25,6 +25,7 @@ struct BrokenAssumption {
 /// domain is too thin or too curved for h there. `count` counts each face once. Cost: a sort of the positive faces.
 BrokenAssumption double_positive_faces(const Submesh&);
 
+/// The greatest conditioning angle, and the tets with an angle that is not acute.
 struct ConditioningAngles {
   double max_deg = 0;          ///< maximum over all tets, 0 without positive faces
   BrokenAssumption not_acute;  ///< positively cut tets with an angle of 90 degrees or more, up to rounding

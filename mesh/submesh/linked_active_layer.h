@@ -54,6 +54,7 @@ std::vector<std::uint8_t> inside_of(const BackgroundLayer& layer, const IdSet& i
 /// Cost: some ns per tet, and a few per cell of the background mesh.
 Submesh emit_submesh(const BackgroundMesh& background, const IdSet& inside);
 
+/// The vertices of omega_h and the number of its tets.
 struct SubmeshOutline {
   Submesh submesh;  ///< contains the vertices; tets and faces may be missing
   std::size_t n_tets = 0;

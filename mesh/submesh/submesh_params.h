@@ -12,6 +12,7 @@ enum class BackgroundBoundary {
   /// outside by the sign of psi, except for those flipped to make the boundary a manifold (manifold_boundary.h).
   Wall,
 };
+/// Search for the inside vertices.
 enum class SubmeshSearch { FullLoop, Crawl };  ///< Alg. 1, steps 1-22, or Section 3.8(c) from given seeds
 
 /// Search for the background tets of omega_h.

@@ -10,6 +10,7 @@
 
 namespace umtet {
 
+/// Success of universal_mesh(), or the reason of its failure.
 enum class UmStatus {
   Success,
   EmptyDomain,             ///< psi >= 0, or not finite, at every background vertex
@@ -41,6 +42,7 @@ struct ManifoldFlip {
   double distance;  ///< signed, from psi = 0 to the vertex, model units
 };
 
+/// Result of universal_mesh(): omega_h, the vertex positions of its stages, and statistics.
 struct UmResult {
   UmStatus status = UmStatus::Success;
   UmEvidence evidence;  ///< set when status != Success

@@ -21,6 +21,7 @@ struct TooFewPoints : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
+/// Parameters of survey().
 struct SurveyParams {
   CleaningParams cleaning;
   OrientationParams orientation;

@@ -8,6 +8,7 @@
 
 namespace umtet {
 
+/// Parameters of estimate_normals().
 struct NormalEstimationParams {
   int neighbours = 24;        ///< size of the first neighbourhood; >= 8. Four times the coefficients of a quadric
   double noise_angle = 2;     ///< permitted effect of noise on a normal, degrees, before the neighbourhood grows; > 0
@@ -15,6 +16,7 @@ struct NormalEstimationParams {
 };
 std::vector<std::string> problems(const NormalEstimationParams&);
 
+/// Result of estimate_normals().
 struct EstimatedNormals {
   std::vector<Vec3> normals;    ///< unit, signs arbitrary; zero if all neighbours are at one position
   std::size_t n_undefined = 0;  ///< zero normals

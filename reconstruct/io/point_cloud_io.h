@@ -33,6 +33,7 @@ struct CloudFileReport {
   std::string columns = {};  ///< for a text: its columns and how they were determined, in one line for the user
 };
 
+/// A cloud read from a file.
 struct CloudFile {
   OrientedPointCloud cloud;
   CloudFileReport report;

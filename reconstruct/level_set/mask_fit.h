@@ -38,6 +38,7 @@ struct MaskReport {
   int n_iterations = 0;         ///< iterations of the minimisation
 };
 
+/// Result of fit_mask() and fit_mask_by_kernel().
 struct MaskFit {
   GridLevelSet psi;
   MaskReport report;

@@ -16,13 +16,16 @@
 
 namespace umtet {
 
+/// Weights of the samples.
 enum class SsdWeights { Area, Paper };  ///< a_i by area and scale-free; or eq. (10) taken literally
+/// Solver of fit_ssd().
 enum class SsdSolver {
   Multilevel,  ///< full solve on a coarse lattice, corrections in bands of finer ones: the cost follows the surface
   Full,        ///< one full lattice: matrix-free PCG + V-cycle
   Assembled,   ///< one full lattice: sparse LDLT (small problems)
 };
 
+/// Parameters of fit_ssd().
 struct SsdParams {
   double spacing = 0;  ///< spacing of the finest lattice, model units; 0: chosen from spacing and noise of the samples
   double smoothing = 0;  ///< c of ½ Σ a (f²/l² + |∇f − n|²) + (c h / 2) ∫ H:H (SsdWeights::Area); 0: from the noise
@@ -40,9 +43,9 @@ struct SsdParams {
                             ///< bands at five times this (psi is then < .0004 h rms off); in (0, 1)
   double band_tolerance =
       0.1;  ///< the same for the bands of the multilevel fit, relative to the residual of the coarser levels
-  int max_iterations = 200;     ///< >= 1
-  int coarsest_nodes = 150000;  ///< maximum number of nodes of the full lattice of the multilevel fit, which shows
-                                ///< every part of a body; > 0
+  int max_iterations = 200;         ///< >= 1
+  int coarsest_nodes = 150000;      ///< maximum number of nodes of the full lattice of the multilevel fit, which shows
+                                    ///< every part of a body; > 0
   Closing closing = Closing::Auto;  ///< closing of regions without samples; SsdSolver::Multilevel only
   double max_memory = 0;            ///< maximum memory of a fit in bytes; 0: no limit
   int padding =
@@ -53,6 +56,7 @@ struct SsdParams {
 /// All broken constraints, not just the first; empty if the parameters are valid.
 std::vector<std::string> problems(const SsdParams&);
 
+/// Report of fit_ssd().
 struct SsdReport {
   std::size_t n_points = 0, n_nodes = 0;
   double spacing = 0;          ///< spacing h of the finest lattice
@@ -78,6 +82,7 @@ struct SolveTooLarge : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Result of fit_ssd().
 struct SsdFit {
   LevelSet psi;
   SsdReport report;
