@@ -12,6 +12,7 @@
 // Gather and broadcast of short lists of rare objects to and from rank 0, and reductions over all ranks.
 namespace umtet {
 
+/// The rank of this process in a communicator.
 inline int rank_in(MPI_Comm comm) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);

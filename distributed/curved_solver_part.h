@@ -31,6 +31,7 @@ struct CurvedSolverPart {
   std::vector<int> boundary_nodes;  ///< local nodes on the boundary, ascending, also those without a local face there
 };
 
+/// Computes the numbering of nodes and six-node faces.
 CurvedSolverPart curved_solver_part(MPI_Comm comm, const DistributedMesh& mesh, const VertexOwners& owners,
                                     const PartEdges& edges, const CurvedParts& curved, const SolverPart& part);
 

@@ -15,6 +15,7 @@
 
 namespace umtet {
 
+/// Success of distributed_mesh(), or the reason of its failure.
 enum class PartsStatus {
   Success,
   EmptyDomain,             ///< psi < 0 at no background vertex, or no body is left that h can resolve
@@ -24,12 +25,11 @@ const char* to_string(PartsStatus);
 
 /// The local mesh of a rank: its part of a distributed mesh.
 struct DistributedMesh {
-  PartsStatus status = PartsStatus::Success;  ///< the same on all ranks; unless Success, there is no mesh
-  std::size_t n_places = 0;                   ///< vertices that break the rule, on all ranks
-  std::vector<std::int64_t> background_tet;  ///< ids of the local tets in the background, ascending; each tet is on one
-                                             ///< rank
-  TetMesh mesh;                              ///< the local tets, and all their vertices
-  std::vector<Vec3> projected;               ///< UmResult::projected
+  PartsStatus status = PartsStatus::Success;    ///< the same on all ranks; unless Success, there is no mesh
+  std::size_t n_places = 0;                     ///< vertices that break the rule, on all ranks
+  std::vector<std::int64_t> background_tet;     ///< background ids of the local tets, ascending; no tet is on two ranks
+  TetMesh mesh;                                 ///< the local tets, and all their vertices
+  std::vector<Vec3> projected;                  ///< UmResult::projected
   std::vector<std::int64_t> background_vertex;  ///< id of each vertex, ascending
   std::vector<ManifoldFlip> manifold_flips;     ///< UmResult::manifold_flips of all ranks
   std::size_t n_chosen_tets = 0;                ///< ChosenSubmesh::n_tets of all ranks

@@ -19,8 +19,7 @@ struct PartSurface {
   const TetMesh& mesh;                                       ///< local tets and all their vertices, at their positions
   const std::vector<std::int64_t>& vertex;                   ///< id of each vertex in LatticePart
   const IdSet& inside;                                       ///< for known vertices
-  const std::vector<std::pair<std::int64_t, Vec3>>& places;  ///< positions of own vertices off the background,
-                                                             ///< ascending
+  const std::vector<std::pair<std::int64_t, Vec3>>& places;  ///< own vertices off the background, ascending
 };
 
 /// Distributed version of step_back(). Each rank tests whether two boundary faces intersect or a tet is not positive,

@@ -19,6 +19,7 @@ struct Sharers {
   std::vector<int> rank;           ///< ranks of each vertex, ascending, without this one
 };
 
+/// Finds the sharers of all local items.
 Sharers sharers_of(MPI_Comm comm, const OwnerExchange& items);
 
 /// For each item, the least rank with a tet at it.

@@ -16,8 +16,7 @@ namespace umtet {
 /// A local mesh with the numbering and partition that solvers use.
 struct SolverPart {
   std::size_t n_vertices = 0, n_tets = 0, n_faces = 0;  ///< on all ranks; n_faces counts boundary faces
-  std::vector<std::int64_t> global_vertex, global_tet;  ///< numbers of local vertices and tets in the mesh of one
-                                                        ///< process
+  std::vector<std::int64_t> global_vertex, global_tet;  ///< numbers of vertices and tets in the mesh of one process
   /// Per vertex, the least rank with a tet at it. Unlike the owner in a DistributedMesh, this rank has the vertex.
   std::vector<int> owner;
   /// Per vertex, its number if each rank numbers its owned vertices, in order, after those of lower ranks.
@@ -26,8 +25,7 @@ struct SolverPart {
   std::vector<Triangle> boundary;         ///< boundary faces of the whole mesh with a local tet, outward
   std::vector<std::int64_t> global_face;  ///< number of each boundary face on all ranks
   std::vector<int> patch;                 ///< index into patches of each boundary face
-  std::vector<int> boundary_vertices;  ///< local vertices on the boundary, ascending, also those without a local face
-                                       ///< there
+  std::vector<int> boundary_vertices;     ///< local vertices on the boundary, ascending, with or without a local face
   std::vector<std::string>
       patches;  ///< names on all ranks: `boundary`, or `boundary_1` ... by area as in `umtet export`
 };

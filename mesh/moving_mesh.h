@@ -14,8 +14,7 @@ namespace umtet {
 /// family of meshes.
 struct SparsityPattern {
   std::vector<std::int64_t> row_begin;  ///< offsets into column: one entry per background vertex, and one more
-  std::vector<std::int64_t> column;  ///< the vertices that share an edge with the row's vertex, ascending, without the
-                                     ///< vertex itself
+  std::vector<std::int64_t> column;     ///< neighbours along edges, ascending, without the row's vertex
 };
 /// The sparsity pattern of a background mesh.
 /// Cost: 8 bytes per neighbour; A15 has fourteen neighbours per vertex.
@@ -48,7 +47,7 @@ struct UmUpdate {
 /// A vertex changes sides only if psi = 0 passes over it. The search therefore walks from the last boundary and stops
 /// where vertices no longer change; its cost does not depend on the size of the background. Vertices stay inside or
 /// outside where this costs as little as a change. They begin at their last position, or are drawn along by the
-/// boundary (warm_start.h), instead of at their background position. Smoothing and repair are those of fast_mesh(). A
+/// boundary (warm_start.h), instead of at their background position. Smoothing and repair work as in fast_mesh(). A
 /// mesh is therefore as good as one made from scratch (1 % quantile and mean of Q within .01; the least Q is above the
 /// same target), but not the same to the bit, because it depends on the meshes before it. The bytes are the same for
 /// any number of threads.

@@ -15,6 +15,7 @@
 
 namespace umtet {
 
+/// Method of universal_mesh().
 enum class UmMode {
   /// Extends the paper: chosen inside vertices, backtracking projection, p-norm smoothing of a layer, repair; see
   /// fast_mesh.h
@@ -22,6 +23,7 @@ enum class UmMode {
   Paper,  ///< Algorithm 1 to the letter; see algorithm_1.h
 };
 
+/// Parameters of universal_mesh().
 struct UmParams {
   UmMode mode = UmMode::Fast;
   SubmeshParams submesh = {};

@@ -40,6 +40,7 @@ auto in_arena(int threads, const F& f) {
 /// Rows of an array (n, 3). \throw std::invalid_argument with its name
 std::vector<Vec3> vectors(const Points& a, const char* name);
 
+/// An array (n, 3) of x + shift.
 pybind11::array_t<double> array(const std::vector<Vec3>& x, const Vec3& shift);
 
 template <std::size_t n>
@@ -55,6 +56,7 @@ pybind11::array_t<T> array(const std::vector<T>& v) {
   return pybind11::array_t<T>(static_cast<pybind11::ssize_t>(v.size()), v.data());
 }
 
+/// A dict with the content of a JSON value.
 pybind11::object dict_of(const Json& json);
 
 /// The psi of a call, in any of its forms, as a domain. Keeps alive the objects that the domain refers to.

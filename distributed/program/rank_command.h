@@ -14,6 +14,7 @@
 // Commands of rank 0 to the other ranks, which execute them together with it.
 namespace umtet {
 
+/// Kind of a command.
 enum class RankOrder : std::int64_t {
   LevelSet,
   CutLevelSet,
@@ -37,7 +38,7 @@ struct RankCommand {
   std::int64_t state = 0;  ///< a MeshState; for pieces a PieceFormat; for samples their level
   std::int64_t moving_alone = 0;
   std::int64_t has_data = 0;   ///< for pieces: there is a PieceData
-  std::int64_t is_fitted = 0;  ///< for the domain: psi is a level set fitted to samples, else it is that of the call
+  std::int64_t is_fitted = 0;  ///< for the domain: psi is a level set fitted to samples, else the psi of the call
   std::int64_t has_t = 0;      ///< for the domain: a formula is taken at t
   double t = 0;
   double lattice_h = 0, h = 0, shift[3] = {}, rounding = 0;
@@ -59,6 +60,7 @@ struct Attached {
   std::vector<Vec3> seeds = {};  ///< seeds of a mesh
 };
 
+/// A command as received by the other ranks.
 struct Heard {
   RankCommand command;
   Attached attached;

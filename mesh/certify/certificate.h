@@ -15,14 +15,12 @@ namespace umtet {
 /// A defect of a boundary: a vertex or a face that is not on psi = 0, or a face that is folded over.
 struct BoundaryFault {
   enum class Kind : std::uint8_t {
-    Off,     ///< a vertex farther than kVertexTolerance h from psi = 0, or a face without a point of psi = 0 near its
-             ///< centroid
+    Off,  ///< a vertex farther than kVertexTolerance h from psi = 0, or a face without a foot point near its centroid
     Folded,  ///< a face with cos(normal, grad psi) <= 0
   };
   Kind kind;
   Vec3 where;       ///< position of the vertex, or centroid of the face
-  double distance;  ///< distance from psi = 0, model units; for a face without a point of psi = 0 near it the lower
-                    ///< bound h
+  double distance;  ///< distance from psi = 0, model units; the lower bound h for a face without a foot point
 };
 
 /// Measured properties of a tet mesh, independent of how the mesh was made. Lengths are in model units, ratios in h.
@@ -50,8 +48,7 @@ struct MeshCertificate {
     /// If closed_manifold without self-intersections: components inside a body, or cavities outside of any body.
     std::size_t n_wrongly_nested = 0;
     std::optional<bool> equals_positive_faces;  ///< the boundary equals the positive and wall faces together, as a set
-    std::size_t n_moved_wall_vertices = 0;  ///< wall vertices not at their position in CertificateInput::background_V,
-                                            ///< to the bit
+    std::size_t n_moved_wall_vertices = 0;      ///< wall vertices not at CertificateInput::background_V, to the bit
     int components = 0;
     long euler_characteristic = 0;
     long genus = 0;  ///< sum over components; meaningful if closed_manifold
@@ -71,7 +68,7 @@ struct MeshCertificate {
     std::vector<Vec3> far_feet{};
   } boundary;
   /// True if all tets are positive and the boundary is a closed manifold without self-intersections whose components
-  /// are nested as those of a solid. The mesh is then embedded: no two tets overlap (docs/method.md, Section 9).
+  /// are nested as in a solid. The mesh is then embedded: no two tets overlap (docs/method.md, Section 9).
   bool is_embedded() const {
     return quality.n_inverted == 0 && boundary.closed_manifold && boundary.n_self_intersections == 0 &&
            boundary.n_wrongly_nested == 0;
@@ -86,12 +83,10 @@ struct CertificateInput {
   double h = 0;  ///< edge length; <= 0: the mean over tets of the root mean square edge length is used
   const std::vector<Triangle>* positive_faces = nullptr;  ///< optional: compared with the boundary as a set
   std::optional<ImplicitFunctionRef> psi;                 ///< optional: distances and normals
-  double coordinate_rounding = 0;  ///< bound on the change of a vertex by the file's rounding of coordinates, model
-                                   ///< units
+  double coordinate_rounding = 0;  ///< bound on the displacement of a vertex by rounding in the file, model units
   Context context = {};
   const std::vector<Triangle>* wall_faces = nullptr;  ///< optional: boundary faces that are not on psi = 0
-  const std::vector<Vec3>* background_V = nullptr;    ///< required positions by vertex, used at walls; given together
-                                                      ///< with wall_faces
+  const std::vector<Vec3>* background_V = nullptr;    ///< required positions by vertex, used at walls; with wall_faces
   /// Optional, by vertex, > 0: the edge length of the ratios at this vertex and at its faces, instead of h.
   const std::vector<double>* local_h = nullptr;
 };
@@ -121,8 +116,8 @@ class CertificateMemory;
 /// bit.
 ///
 /// Tets that are unchanged to the bit keep their measured values, and faces are counted where tets were added or
-/// removed. The surface is measured anew. Cost: proportional to the surface and the changed tets, plus some ns for each
-/// of the other tets.
+/// removed. The surface is always measured again. Cost: proportional to the surface and the changed tets, plus some ns
+/// for each of the other tets.
 /// @param vertex_id, tet_id  ids that identify vertices and tets of the two meshes, ascending. They are not trusted:
 ///                           they only say where to look
 /// @param memory             empty at first; receives the data that the next call uses
@@ -137,8 +132,8 @@ std::vector<std::string> invalidities(const MeshCertificate&);
 /// empty.
 std::vector<std::string> coarseness(const MeshCertificate&);
 
-/// The reasons why a certificate fails; empty if it passes. They are those of invalidities() and coarseness(), and the
-/// faults of the boundary:
+/// The reasons why a certificate fails; empty if it passes. They include the reasons of invalidities() and
+/// coarseness(), and the faults of the boundary:
 /// - a vertex farther than kVertexTolerance h from psi = 0,
 /// - a face without a point of psi = 0 near it,
 /// - a face that is folded over.

@@ -8,6 +8,7 @@ namespace umtet {
 
 using QuadraticNodes = std::array<Vec3, 10>;  ///< nodes of one tet, in the order of QuadraticTet
 
+/// The nodes of a ten-node tet.
 inline QuadraticNodes nodes_of(const QuadraticTetMesh& mesh, const QuadraticTet& tet) {
   QuadraticNodes x;
   for (int n = 0; n < 10; ++n) x[n] = mesh.V[tet[n]];

@@ -11,6 +11,7 @@
 
 namespace umtet {
 
+/// Parameters of quadratic_tets().
 struct SecondOrderParams {
   ClosestPointParams closest_point;
   /// Mid-sides are relaxed around a tet whose min det / mean det may be below this. A higher target raises the least

@@ -10,6 +10,7 @@ namespace umtet {
 /// Number of consecutive tets that are summed first, before their sums are added in order.
 inline constexpr std::size_t kTetsPerSum = 1 << 10;
 
+/// Sums over tets: six times the volume, root mean square edge lengths, and mean ratios.
 struct TetSums {
   double volume6 = 0, rms_edges = 0, qualities = 0;
 

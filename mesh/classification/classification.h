@@ -44,6 +44,7 @@ struct ClassificationParams {
 /// All broken constraints, not just the first.
 std::vector<std::string> problems(const ClassificationParams&);
 
+/// Report of classify_vertices().
 struct ClassificationReport {
   std::size_t candidates = 0;              ///< vertices whose state may change
   std::size_t shifted = 0;                 ///< states changed by the shift
@@ -51,8 +52,7 @@ struct ClassificationReport {
   std::size_t flips = 0;                   ///< states changed by the descent
   std::size_t stretched = 0;               ///< vertices near the boundary that kept their state because of most_stretch
   std::size_t thin = 0;                    ///< candidates that kept their state because of least_thickness
-  std::vector<std::int64_t> not_manifold;  ///< outside vertices where the boundary of omega_h is not a manifold;
-                                           ///< ascending
+  std::vector<std::int64_t> not_manifold;  ///< outside vertices with a non-manifold boundary of omega_h; ascending
   int sweeps = 0;
   bool settled = false;  ///< the descent ended because it found no further change, not by max_sweeps
   std::size_t psi_evaluations = 0;

@@ -65,7 +65,7 @@ class ClassificationBand {
   bool is_outermost(std::int64_t id) const;
   bool is_visited(std::size_t v) const { return movable[v] != 0 && (!part_ || part_->owns(id[v])); }
   double unit(std::size_t v) const { return links_.of_type(type[v]).unit * background_.h(); }
-  /// A distance greater than that of any vertex that may change, in units.
+  /// An upper bound on the distance of any vertex that may change, in units.
   float far() const { return static_cast<float>(params_.reach_in + params_.reach_out + 1); }
 
   const BackgroundMesh& background_;

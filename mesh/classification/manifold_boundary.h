@@ -15,6 +15,7 @@
 
 namespace umtet {
 
+/// Report of make_manifold().
 struct ManifoldReport {
   std::vector<ManifoldFlip> flips;  ///< all changed states, ascending
   std::size_t n_bad = 0;            ///< outside vertices where the boundary was not a manifold

@@ -62,6 +62,7 @@ double quality_of(double f);
 /// f of a tet with the given Q.
 double f_of_quality(double Q);
 
+/// Result of max_min().
 struct MaxMinResult {
   double lambda = 0;     ///< lambda_opt, 0 if nothing better was found or the ring is not valid at 0
   double f = 0;          ///< min_j f_j(lambda)

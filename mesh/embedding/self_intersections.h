@@ -19,9 +19,9 @@ namespace umtet {
 std::vector<std::array<int, 2>> self_intersections(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
                                                    const Context& context = {});
 
-/// Components of a closed, oriented surface without self-intersections that are nested differently from those of a
-/// solid, ascending. The winding number of the whole surface has to be 0 on a component's outer side and 1 on its inner
-/// side. Wrong are a body inside another body, and a cavity without a body around it.
+/// Components of a closed, oriented surface without self-intersections whose nesting is impossible for a solid,
+/// ascending. The winding number of the whole surface has to be 0 on a component's outer side and 1 on its inner side.
+/// Wrong are a body inside another body, and a cavity without a body around it.
 /// @param component    per face, 0 .. n_components - 1
 /// \pre closed manifold, no self_intersections()
 std::vector<int> wrongly_nested(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,

@@ -7,6 +7,7 @@
 
 namespace umtet {
 
+/// Report of smooth_all_vertices().
 struct AllVertexReport {
   double least = 0;     ///< mean ratio of the worst tet with a vertex that moves; 0 if the layer did not change
   int evaluations = 0;  ///< evaluations of the norm

@@ -14,8 +14,7 @@ namespace umtet {
 
 /// Parameters of project(). docs/constants.md lists the effect of other values.
 struct ProjectionParams {
-  int passes = 3;  ///< N_P: the way to psi = 0 is made in this many parts, with smoothing of inner vertices after each;
-                   ///< >= 1
+  int passes = 3;  ///< N_P: number of parts of the way to psi = 0, with smoothing of inner vertices after each; >= 1
   int max_rounds = 20;  ///< attempts in all, passes included; >= passes
   /// Mean ratio: a step leaves every tet of the star at or above this value, or at least as good as the star's worst
   /// tet; in (0, 1)
@@ -28,6 +27,7 @@ struct ProjectionParams {
 /// All broken constraints, not just the first.
 std::vector<std::string> problems(const ProjectionParams&);
 
+/// A Boundary vertex that did not reach psi = 0, with the reason.
 struct NotArrived {
   enum class Reason {
     NoFoot,  ///< no closest point was found from the vertex's position
@@ -37,6 +37,7 @@ struct NotArrived {
   Reason reason;
 };
 
+/// Report of project().
 struct ProjectionReport {
   std::size_t boundary = 0;             ///< number of Boundary vertices
   std::vector<NotArrived> not_arrived;  ///< ascending by vertex; empty if all arrived

@@ -64,7 +64,7 @@ ChosenSubmesh classified_submesh(const BackgroundMesh& background, ImplicitFunct
 struct FastMemory {
   IdSet negative{0};                                 ///< vertices with psi < 0
   IdSet inside{0};                                   ///< vertices classified as inside
-  std::vector<std::pair<std::int64_t, Vec3>> moved;  ///< vertices off their background places, ascending
+  std::vector<std::pair<std::int64_t, Vec3>> moved;  ///< vertices off their background positions, ascending
   std::size_t n_recalled = 0;  ///< the number of moved vertices that began at their position in the last mesh
   std::shared_ptr<const VertexLinks> links;  ///< links of the background
 };

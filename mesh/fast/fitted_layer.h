@@ -20,6 +20,7 @@ struct LayerFit {
   const std::vector<std::uint8_t>* inside = nullptr;
 };
 
+/// Result of fit_layer().
 struct FittedLayer {
   std::vector<Vec3> projected;  ///< positions between projection and relaxation, by vertex of the layer
   std::size_t psi_evaluations = 0;

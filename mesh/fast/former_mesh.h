@@ -21,8 +21,7 @@ namespace umtet {
 struct FormerMesh {
   const BackgroundMesh& background;
   const UmResult& mesh;          ///< UmStatus::Success
-  std::vector<Vec3> seeds = {};  ///< seeds as in universal_mesh() if the mesh does not contain all components of psi;
-                                 ///< else empty
+  std::vector<Vec3> seeds = {};  ///< as in universal_mesh() if some components of psi are not meshed; else empty
 };
 
 /// The states of a former mesh that carry over to a background that differs only locally, such as an octree with

@@ -35,6 +35,10 @@ constexpr double kLostQuality = .003;
 // Of the least Q of a patch before, what the worst new tet needs before its vertices move. Below it one patch in ten is
 // mended (`mesh_bench --benchmark_filter=flips`).
 constexpr double kPromising = .6;
+// What is left after that is tried again with more candidates and a lower bar, and all vertices of a patch move at
+// once: that mends half of it or more, at ten times the cost of a try.
+constexpr double kPromisingAtLast = .4;
+constexpr int kMoreCandidates = 3;  // times as many
 // Sweeps over the vertices of a patch, at most.
 constexpr int kSweeps = 6;
 constexpr double kVertexGain = 2e-4;  // of the norm of 1/Q of a ring: less is no move
@@ -167,7 +171,16 @@ class LocalFlips {
   }
 
   FlippedMesh operator()(const Context& context) {
-    for (std::size_t t = 0; t < C_.size(); ++t) enqueue(static_cast<int>(t));
+    for (is_last_ = false;; is_last_ = true) {
+      mend_all(context);
+      if (is_last_) return result();
+    }
+  }
+
+ private:
+  void mend_all(const Context& context) {
+    for (std::size_t t = 0; t < C_.size(); ++t)
+      if (alive_[t]) enqueue(static_cast<int>(t));
     const auto at_first = static_cast<double>(std::max<std::size_t>(1, queue_.size()));
     for (std::size_t n = 0; !queue_.empty(); ++n) {
       if (n % kTriesPerPoll == 0)
@@ -176,10 +189,8 @@ class LocalFlips {
       queue_.pop();
       if (alive_[tet] && version_[tet] == version) mend(tet);
     }
-    return result();
   }
 
- private:
   using Queued = std::tuple<double, int, int>;  ///< mean ratio, tet, its version
 
   void measure_edges() {
@@ -354,12 +365,12 @@ class LocalFlips {
         offer_collapse(b, a, tets, ring, candidates);
       }
     }
-    const double bar = kPromising * quality(V_, corners);
+    const double bar = (is_last_ ? kPromisingAtLast : kPromising) * quality(V_, corners);
     std::erase_if(candidates, [&](const Candidate& c) { return c.least < bar; });
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const Candidate& x, const Candidate& y) { return x.least > y.least; });
-    if (static_cast<int>(candidates.size()) > params_.most_candidates)
-      candidates.resize(static_cast<std::size_t>(params_.most_candidates));
+    const auto most = static_cast<std::size_t>(params_.most_candidates) * (is_last_ ? kMoreCandidates : 1);
+    if (candidates.size() > most) candidates.resize(most);
     return candidates;
   }
 
@@ -405,7 +416,8 @@ class LocalFlips {
       after.push_back(C_[t]);
     }
     Patch patch = patch_of(after);
-    c.operation == Operation::SmoothAll ? shape_at_once(patch) : shape(patch);
+    if (c.operation != Operation::SmoothAll) shape(patch);
+    if (c.operation == Operation::SmoothAll || is_last_) shape_at_once(patch);
     const PatchMeasure made = measured(patch);
     if (!is_better(made, old)) return false;
     commit(c, patch);
@@ -618,6 +630,7 @@ class LocalFlips {
   LocalFlipReport& report_;
   const ClosestPointParams closest_point_{.method = ClosestPointMethod::Damped};
   const double good_f_ = f_of_quality(std::min(.999, params_.target + .02));
+  bool is_last_ = false;  ///< the last pass
   std::priority_queue<Queued, std::vector<Queued>, std::greater<>> queue_;
   std::vector<int> moving_, patch_tets_, kept_tets_;
   std::vector<std::pair<Triangle, Triangle>> faces_;

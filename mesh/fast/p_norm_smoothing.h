@@ -37,6 +37,7 @@ struct SmoothingParams {
 /// All broken constraints, not just the first.
 std::vector<std::string> problems(const SmoothingParams&);
 
+/// Report of p-norm smoothing: work done, and state of the layer.
 struct SmoothingReport {
   int sweeps = 0;
   std::size_t checks = 0;           ///< checks of a ring, to see whether its vertex needs a solve
@@ -101,7 +102,7 @@ class PNormSmoother {
   /// Solves vertices in the queue until the queue is empty, or for max_sweeps sweeps. The remaining vertices stay in
   /// the queue for the next call.
   ///
-  /// Roles are read anew at each call: the caller may hold vertices by making them Fixed temporarily, and they stay in
+  /// Roles are read at each call: the caller may hold vertices by making them Fixed temporarily, and they stay in
   /// the queue. The final state of the layer is not reported; measure() computes it by a check of every tet.
   /// \throw std::invalid_argument naming every broken constraint of params, Cancelled
   SmoothingReport run(ImplicitFunctionRef psi, const SmoothingParams& params, const Context& context = {});

@@ -34,8 +34,7 @@ struct RepairParams {
   double target_step = .01;
   /// Tets above the target by less than this are raised to target + lift, in few patches. >= 0; 0: they stay unchanged
   double lift = .01;
-  bool slides = true;  ///< patches are given to relax_tangentially() at the end, because smoothing has undone that
-                       ///< relaxation
+  bool slides = true;  ///< patches are given to relax_tangentially() at the end, because smoothing undoes it
   /// In edges: a vertex higher than this is not flipped. The value exceeds ClassificationParams::reach_out, because
   /// repair examines the mesh itself and not a cost of distance; >= 0
   double reach_out = .5;
@@ -57,6 +56,7 @@ struct RepairParams {
 /// All broken constraints, not just the first.
 std::vector<std::string> problems(const RepairParams&);
 
+/// Changes made by repair(), and its work.
 struct RepairReport {
   std::size_t tries = 0;  ///< patches shaped on a copy
   std::size_t psi_evaluations = 0;

@@ -10,6 +10,7 @@
 
 namespace umtet {
 
+/// Report of step_back().
 struct StepBackReport {
   std::size_t n_pairs = 0, n_inverted = 0;  ///< before: pairs of faces that meet, tets that are not positive
   int rounds = 0;
@@ -25,8 +26,8 @@ struct StepBackReport {
 /// tet is not positive, vertices move a quarter of their way back to the background position in each round.
 ///
 /// In the background mesh all tets are positive and no faces meet. In each round that finds a defect, some vertex that
-/// is off its background position moves closer to it, so the loop ends. If there is no defect, nothing changes and the
-/// cost is that of the two tests.
+/// is off its background position moves closer to it, so the loop ends. If there is no defect, nothing changes, and
+/// only the two tests are paid for.
 /// @param walls  boundary faces whose vertices do not move
 /// @param h      edge length of the background at a vertex, model units
 /// @param V      the positions, numbered as submesh.mesh.V; receives the new ones

@@ -25,6 +25,7 @@ struct TangentialRelaxationParams {
 /// All broken constraints, not just the first.
 std::vector<std::string> problems(const TangentialRelaxationParams&);
 
+/// Report of relax_tangentially().
 struct TangentialRelaxationReport {
   std::size_t vertices = 0;         ///< vertices with a face farther from psi = 0 than least_chord h
   std::size_t moves = 0;            ///< moves of these vertices, in all sweeps together

@@ -12,6 +12,7 @@
 
 namespace umtet {
 
+/// Report of warm_start().
 struct WarmStart {
   std::vector<unsigned char> recalled;  ///< per vertex of the layer: whether it began at its position in the last mesh
   std::size_t n_recalled = 0;

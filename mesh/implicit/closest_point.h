@@ -7,12 +7,14 @@
 
 namespace umtet {
 
+/// Iteration of closest_point().
 enum class ClosestPointMethod {
   Paper,   ///< the iteration of Section 3.8(a) to the letter; diverges where curvature times distance nears 1
   Damped,  ///< the normal step of Paper, with the step along the surface damped if the foot point does not settle
   Newton,  ///< Newton's method on y - x + mu grad psi(y) = 0, psi(y) = 0, with safeguards; Damped if psi has no Hessian
 };
 
+/// Parameters of closest_point().
 struct ClosestPointParams {
   ClosestPointMethod method = ClosestPointMethod::Newton;
   int max_iterations = 60;   ///< evaluations of psi before a slower, safer method takes over (Paper: in all); >= 1
@@ -24,6 +26,7 @@ struct ClosestPointParams {
 /// All broken constraints, not just the first.
 std::vector<std::string> problems(const ClosestPointParams&);
 
+/// Result of closest_point().
 struct ClosestPoint {
   Vec3 point;              ///< pi(x), or the last iterate
   double t = 0;            ///< converges to -phi(x), minus the signed distance

@@ -17,9 +17,9 @@ struct Foot {
 /// Closest point of psi = 0 to x, by alternating a step along the surface towards the foot of x and a return to the
 /// surface.
 ///
-/// Only steps that reduce the distance are taken, so the distance is never below the true one nor above that of the
-/// first point found. The code is deliberately separate from the mesher's projection: a certificate must not share its
-/// errors.
+/// Only steps that reduce the distance are taken, so the result is never below the true distance nor above the distance
+/// of the first point found. The code is deliberately separate from the mesher's projection: a certificate must not
+/// share its errors.
 /// @param h  edge length; no step is longer than half of it
 Foot foot_point(ImplicitFunctionRef psi, const Vec3& x, double h);
 

@@ -23,10 +23,11 @@ struct ZeroSetComponent {
   std::size_t first_cut_point = 0;  ///< its n_cut_edges points begin here in ZeroSetTopology::cut_points
 };
 
+/// Topology of {psi = 0}: its components and cut points.
 struct ZeroSetTopology {
   std::vector<ZeroSetComponent> components;  ///< descending in area
   long euler_characteristic = 0;             ///< sum over components
-  double spacing = 0;                        ///< the spacing used, at most that of the call
+  double spacing = 0;                        ///< the spacing used, at most the argument `spacing`
   std::size_t n_not_finite = 0;              ///< nodes where psi is not finite; they count as outside
   std::vector<Vec3> cut_points;              ///< zeros of psi on the cut edges (linear), component by component
   std::vector<double> cut_areas;             ///< share of the surface area of each cut point

@@ -13,6 +13,7 @@
 // Layout of the files of write_hdf5() and write_xdmf(), for processes that write a part of the arrays each.
 namespace umtet {
 
+/// Name, value type and size of an array in an HDF5 file.
 struct Hdf5Array {
   std::string name;
   std::variant<double, int, std::int64_t, std::uint8_t> type;  ///< type of its values

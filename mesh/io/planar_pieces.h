@@ -12,7 +12,8 @@ namespace umtet {
 /// Region growing begins at the flattest face. Faces join over edges while their normal is within `angle` of the
 /// plane's normal, which is the mean over its faces; the faces are collected again until the set does not change. A
 /// plane is kept if
-/// - the faces at those of its vertices that have all their faces in it have at least the area `least`: a single row of
+/// - the faces at its inner vertices (with all their faces in the plane) have at least the area `least`: a single row
+/// of
 ///   faces is flat on any round surface, too; and
 /// - the root mean square of the angles between its faces and the plane is below angle / 3. An evenly curved surface
 ///   fills the tolerance, with angle / sqrt(3) on a cylinder and angle / sqrt(2) on a sphere.

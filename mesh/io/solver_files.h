@@ -12,6 +12,7 @@ namespace umtet {
 /// std::invalid_argument for a mesh that is inconsistent or has more nodes or elements than the format can count, and
 /// std::system_error naming the path if any write fails.
 
+/// Encoding of a Gmsh file.
 enum class MshEncoding { Ascii, Binary };
 
 /// Writes Gmsh 2.2. The body and every patch are physical groups; faces come before tets. Boundary data are $NodeData.

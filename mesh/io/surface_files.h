@@ -8,6 +8,7 @@
 
 namespace umtet {
 
+/// File format of a surface.
 enum class SurfaceFormat { Stl, Obj, Ply };  ///< binary STL and PLY, text OBJ
 
 /// Writes a surface through OpenMesh. The caller sees the complete file or none.

@@ -16,7 +16,7 @@ struct OctreeRules {
 };
 
 /// The leaves of the smallest balanced octree that splits all cubes required by the rules: leaves with a common corner,
-/// edge or face differ by at most one level. The eight children of a cube that is not wanted are omitted together.
+/// edge or face differ by at most one level. The eight children of a cube are omitted together if `wanted` rejects it.
 ///
 /// Balancing goes from the finest level to the coarsest, in one pass: the neighbours of a split cube must exist, so
 /// their parents are split [Sundar2008].

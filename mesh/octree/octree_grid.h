@@ -34,6 +34,7 @@ inline std::uint64_t spread_bits(std::uint64_t x) {
 #endif
 }
 
+/// Inverse of spread_bits(): moves bit 3 i to bit i.
 inline std::int32_t collected_bits(std::uint64_t x) {
 #ifdef __BMI2__
   return static_cast<std::int32_t>(_pext_u64(x, kEveryThirdBit));

@@ -16,6 +16,7 @@
 
 namespace umtet {
 
+/// Parameters of algorithm_1().
 struct PaperParams {
   int projection_passes = 5;       ///< N_P: positive vertices reach the boundary in this many steps, eq. (1); >= 1
   int relaxation_iterations = 25;  ///< N_R of Algorithms 1 and 2; >= 0

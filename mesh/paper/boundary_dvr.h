@@ -10,6 +10,7 @@
 
 namespace umtet {
 
+/// Parameters of boundary_dvr().
 struct BoundaryDvrParams {
   int samples = 20;        ///< N_S: 2 N_S + 1 candidates in [-h, h], eq. (7); >= 1
   double h = 0;            ///< half-width of the samples, > 0, model units

@@ -64,6 +64,7 @@ class RelaxationOrder {
   std::vector<std::size_t> levels_;  ///< begin of each level in by_level_, and the end
 };
 
+/// Parameters of dvr().
 struct DvrParams {
   DirectionRule directions = DirectionRule::AxesInTurn;
   MaxMin max_min = kBestMaxMin;

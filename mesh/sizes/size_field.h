@@ -11,6 +11,7 @@
 
 namespace umtet {
 
+/// Parameters of a SizeField.
 struct SizeFieldParams {
   double grade = .3;  ///< maximum growth of edge length per unit distance: the Lipschitz constant of h
   double h_min = 0;   ///< model units

@@ -30,6 +30,7 @@ Submesh assemble_vertices(const BackgroundMesh& background, const IdSet& inside,
 IdSet inside_vertices(const BackgroundMesh& background, ImplicitFunctionRef psi, std::size_t& n_evaluations,
                       const Context& context = {}, const KnownSigns& known = {});
 
+/// Result of crawl_inside().
 struct CrawledVertices {
   IdSet inside;
   std::vector<std::size_t> lost_seeds;

@@ -12,8 +12,7 @@ namespace umtet {
 /// evidence for a failure at the same place.
 struct BrokenAssumption {
   std::size_t count = 0;        ///< number of faces or tets that break it
-  std::vector<bool> at_vertex;  ///< per vertex of omega_h, true if it belongs to such a face or tet; empty if there is
-                                ///< none
+  std::vector<bool> at_vertex;  ///< per vertex of omega_h, true if it belongs to such a face or tet; empty if none does
 
   bool holds() const { return count == 0; }
   /// True if one of the vertices belongs to a face or tet that breaks it.
@@ -26,6 +25,7 @@ struct BrokenAssumption {
 /// domain is too thin or too curved for h there. `count` counts each face once. Cost: a sort of the positive faces.
 BrokenAssumption double_positive_faces(const Submesh&);
 
+/// The greatest conditioning angle, and the tets with an angle that is not acute.
 struct ConditioningAngles {
   double max_deg = 0;          ///< maximum over all tets, 0 without positive faces
   BrokenAssumption not_acute;  ///< positively cut tets with an angle of 90 degrees or more, up to rounding

@@ -10,6 +10,7 @@
 
 namespace umtet {
 
+/// Result of crawl().
 struct Crawl {
   Submesh submesh;
   std::vector<std::size_t> lost_seeds;  ///< indices of the seeds from which no positively cut tet was found

@@ -21,9 +21,9 @@ struct BackgroundLayer {
 /// Extracts the active layer from the background mesh, restricted to the tets with an inside vertex: positive vertices,
 /// `layers` layers of other vertices behind them, and the rings of all these vertices.
 ///
-/// The layer contains the whole ring of every vertex that moves. Colours are those of a colouring of the vertex types,
-/// or, outside of lattices, of a greedy colouring.
-/// Cost: linear in the layer, plus a scan of the bits of the background's vertices.
+/// The layer contains the whole ring of every vertex that moves. In a lattice the colour of a vertex follows from its
+/// type; otherwise the colouring is greedy. Cost: linear in the layer, plus a scan of the bits of the background's
+/// vertices.
 /// @param inside  contains no vertex of the background boundary
 /// @param among   only these vertices may move; null: all
 /// \throw std::invalid_argument if a vertex type of the tiling is its own neighbour (types are then not a colouring)
@@ -54,6 +54,7 @@ std::vector<std::uint8_t> inside_of(const BackgroundLayer& layer, const IdSet& i
 /// Cost: some ns per tet, and a few per cell of the background mesh.
 Submesh emit_submesh(const BackgroundMesh& background, const IdSet& inside);
 
+/// The vertices of omega_h and the number of its tets.
 struct SubmeshOutline {
   Submesh submesh;  ///< contains the vertices; tets and faces may be missing
   std::size_t n_tets = 0;

@@ -9,6 +9,7 @@
 
 namespace umtet {
 
+/// Status and evidence of a domain without an inside vertex.
 struct NothingInside {
   UmStatus status;  ///< EmptyDomain, or PsiNotFinite if psi is finite at no vertex of the background
   UmEvidence evidence;

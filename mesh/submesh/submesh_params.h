@@ -12,14 +12,14 @@ enum class BackgroundBoundary {
   /// outside by the sign of psi, except for those flipped to make the boundary a manifold (manifold_boundary.h).
   Wall,
 };
+/// Search for the inside vertices.
 enum class SubmeshSearch { FullLoop, Crawl };  ///< Alg. 1, steps 1-22, or Section 3.8(c) from given seeds
 
 /// Search for the background tets of omega_h.
 struct SubmeshParams {
   SubmeshSearch search = SubmeshSearch::FullLoop;
   BackgroundBoundary background_boundary = BackgroundBoundary::Refuse;
-  KnownSigns known = {};  ///< known signs of psi for SubmeshSearch::FullLoop: they save evaluations and do not change
-                          ///< the result
+  KnownSigns known = {};  ///< signs of psi known in advance, for FullLoop: they only save evaluations
 };
 
 }  // namespace umtet

@@ -11,6 +11,7 @@
 
 namespace umtet {
 
+/// Success of universal_mesh(), or the reason of its failure.
 enum class UmStatus {
   Success,
   EmptyDomain,             ///< psi >= 0, or not finite, at every background vertex
@@ -42,6 +43,7 @@ struct ManifoldFlip {
   double distance;  ///< signed, from psi = 0 to the vertex, model units
 };
 
+/// Result of universal_mesh(): omega_h, the vertex positions of its stages, and statistics.
 struct UmResult {
   UmStatus status = UmStatus::Success;
   UmEvidence evidence;  ///< set when status != Success

@@ -12,6 +12,7 @@ namespace umtet::simd {
 using LmePack = Eigen::Array<double, LmeBasis1d::kPackSize, 1>;
 using LmePackMap = Eigen::Map<const LmePack, Eigen::Aligned32>;
 
+/// Order of the highest derivatives in a jet.
 enum JetOrder { kValue = 0, kGradient = 1, kHessian = 2 };
 
 /// f = sum c_a N_a and its derivatives up to `order`.

@@ -13,6 +13,7 @@ namespace umtet::simd {
 using Pack4d = double __attribute__((vector_size(32)));
 using Pack4i = int __attribute__((vector_size(16)));
 
+/// Loads four consecutive numbers.
 inline Pack4d four(const double* a) { return Pack4d{a[0], a[1], a[2], a[3]}; }
 inline Pack4d four(const float* a) { return Pack4d{a[0], a[1], a[2], a[3]}; }
 /// a0 a1 b0 b1
@@ -27,6 +28,7 @@ inline Pack4d two_and_two(const float* a, const float* b) {
   return Pack4d{f[0], f[1], f[2], f[3]};
 }
 
+/// Four copies of a number.
 inline Pack4d all(double a) { return Pack4d{a, a, a, a}; }
 /// a b + c, rounded once if the target machine supports it.
 inline Pack4d fused(Pack4d a, Pack4d b, Pack4d c) {

@@ -10,6 +10,7 @@
 
 namespace umtet {
 
+/// Parameters of clean().
 struct CleaningParams {
   bool outliers = true;  ///< false: drops only points that are not finite and duplicates (--keep-all)
   double suspicious_crowd =
@@ -21,6 +22,7 @@ struct CleaningParams {
 };
 std::vector<std::string> problems(const CleaningParams&);
 
+/// Report of clean(): the points kept and dropped.
 struct CleaningReport {
   std::vector<std::uint32_t> kept;     ///< indices of the remaining points in the original cloud, ascending
   std::size_t n_not_finite = 0;        ///< points with coordinates that are NaN, infinite or beyond 1e50

@@ -14,10 +14,8 @@ struct NeighbourDistances {
   std::vector<double> nearest;      ///< d_1: to the nearest other position, model units
   std::vector<double> mean_square;  ///< (d_1^2 + ... + d_k^2) / k, model units squared
   int k = 0;                      ///< neighbours in mean_square: the k of the call, or positions - 1 if there are fewer
-  std::vector<int> multiplicity;  ///< number of points that share this position, or the area of its representative
-                                  ///< (covering.h); >= 1
-  std::vector<std::uint32_t> representatives = {};  ///< representatives of a cloud on scan lines, ascending; empty: all
-                                                    ///< points
+  std::vector<int> multiplicity;  ///< points at this position, or the area of its representative (covering.h); >= 1
+  std::vector<std::uint32_t> representatives = {};  ///< representatives on scan lines, ascending; empty: all points
   std::vector<double> weights = {};                 ///< weights of merged samples' areas (relative_counts()); empty: 1
 };
 

@@ -21,6 +21,7 @@ struct TooFewPoints : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
+/// Parameters of survey().
 struct SurveyParams {
   CleaningParams cleaning;
   OrientationParams orientation;
@@ -44,8 +45,7 @@ struct CloudSurvey {
   double density_variation = 1;  ///< ratio of the 99th to the 1st percentile of the sample areas; 2.5 for white noise
 
   bool has_normals = false;
-  bool has_lines_of_sight = false;  ///< true: given in place of normals, see lines_of_sight.h; the cloud then has no
-                                    ///< normals
+  bool has_lines_of_sight = false;  ///< true: given in place of normals (lines_of_sight.h), which are then absent
   std::size_t n_normals_zero = 0, n_normals_not_unit = 0;  ///< not unit: to 1e-3
   double consistency = 0;  ///< consistency of the signs of given normals, see normal_orientation.h
   double openness = 0;     ///< |sum a n| / sum a of given normals: 0 for a closed surface

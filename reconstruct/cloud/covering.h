@@ -37,8 +37,8 @@ struct Covering {
 /// and a third of the neighbours suffice for more.
 /// @param points  sorted in space, or in random order
 /// @param near    the twelve nearest neighbours of all points
-/// Cost: for even clouds a few per cent of the cost of their neighbours; otherwise that of a search for twice as many
-/// points. Does not depend on the number of threads.
+/// Cost: for even clouds a few per cent of the cost of their neighbours; otherwise a search for the neighbours of twice
+/// as many points. Does not depend on the number of threads.
 Covering covering(const std::vector<Vec3>& points, const Neighbourhoods& near);
 
 /// Extracts points with all their data. @param points  ascending

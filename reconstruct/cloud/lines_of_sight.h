@@ -16,9 +16,9 @@ namespace umtet {
 /// degrees are worse than the normals from positions.
 ///
 /// @param near      the nearest neighbours of all points
-/// @param covering  of the points: on scan lines the neighbours are those of the representatives
+/// @param covering  of the points: on scan lines the representatives' neighbours are used
 /// \throw std::invalid_argument if the numbers of normals, rows of neighbours and points differ
-/// Cost: that of a thousand quadrics.
+/// Cost: a thousand quadric fits.
 bool are_lines_of_sight(const OrientedPointCloud& cloud, const Neighbourhoods& near, const Covering& covering);
 
 }  // namespace umtet

@@ -59,6 +59,7 @@ CoreBox core_box(const std::vector<Vec3>& points);
 /// @param largest  model units, > 0
 SampleCells cells_for(const std::vector<Vec3>& points, const CoreBox& core, double largest, std::size_t fewest);
 
+/// Result of merged_samples().
 struct MergedSamples {
   OrientedPointCloud cloud;  ///< with counts and spreads, cells along Morton's curve
   std::size_t n_two_sided =

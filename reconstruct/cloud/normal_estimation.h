@@ -8,14 +8,15 @@
 
 namespace umtet {
 
+/// Parameters of estimate_normals().
 struct NormalEstimationParams {
   int neighbours = 24;        ///< size of the first neighbourhood; >= 8. Four times the coefficients of a quadric
   double noise_angle = 2;     ///< permitted effect of noise on a normal, degrees, before the neighbourhood grows; > 0
-  double largest_growth = 9;  ///< maximum growth of its radius; >= 1. Nine times the radius of 24 neighbours would
-                              ///< contain 2000
+  double largest_growth = 9;  ///< maximum growth of its radius; >= 1. A radius nine times that of 24 contains 2000
 };
 std::vector<std::string> problems(const NormalEstimationParams&);
 
+/// Result of estimate_normals().
 struct EstimatedNormals {
   std::vector<Vec3> normals;    ///< unit, signs arbitrary; zero if all neighbours are at one position
   std::size_t n_undefined = 0;  ///< zero normals

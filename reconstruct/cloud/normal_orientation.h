@@ -9,6 +9,7 @@
 
 namespace umtet {
 
+/// Parameters of orient_normals() and repair_normals().
 struct OrientationParams {
   int neighbours = 12;  ///< of every point, over which signs are propagated; in 4..64
   /// Repair turns a region if this fraction of the evidence along its border is against it; in [0.5, 1). A wrong region

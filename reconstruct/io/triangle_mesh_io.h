@@ -20,6 +20,7 @@ struct TriangleFileReport {
   std::size_t n_groups_ignored = 0;      ///< number of groups if above kMostGroups: they are not parts of a boundary
 };
 
+/// A triangle mesh read from a file.
 struct TriangleFile {
   TriangleMesh mesh;
   TriangleFileReport report;

@@ -15,8 +15,7 @@ struct Grid {
   Vec3 origin = Vec3::Zero();
   Mat3 axes = Mat3::Identity();  ///< one column per axis: the step to the next node
   std::vector<double> values;    ///< first axis fastest
-  bool is_whole = false;  ///< stored as integers, not as floating point numbers; values may also be whole if this is
-                          ///< false
+  bool is_whole = false;  ///< stored as integers, not floating point numbers; false does not exclude whole values
 
   std::size_t size() const { return static_cast<std::size_t>(n[0]) * n[1] * n[2]; }
   /// Distances between nodes along each axis, model units.

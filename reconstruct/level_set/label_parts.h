@@ -11,8 +11,7 @@ namespace umtet {
 struct LabelPart {
   double number = 0;
   std::size_t n_voxels = 0;
-  Eigen::Vector3i first = Eigen::Vector3i::Zero(), last = Eigen::Vector3i::Zero();  ///< first and last voxel of its
-                                                                                    ///< bounding box
+  Eigen::Vector3i first = Eigen::Vector3i::Zero(), last = Eigen::Vector3i::Zero();  ///< bounding box, in voxels
   bool at_wall = false;  ///< true if it has a voxel in an outermost layer of the image
 };
 

@@ -23,7 +23,7 @@ struct BodyVoxels {
 };
 
 /// Cuts the inside voxels out of an image.
-/// @param layers  number of layers of outside voxels around them, as far as the image extends
+/// @param layers  number of layers of outside voxels around them, clipped to the image
 /// @param part  the number of the body's voxels; none: all voxels that are not zero
 /// \throw std::invalid_argument if no voxel is inside
 BodyVoxels body_voxels(const Grid& grid, std::optional<double> part, int layers);
@@ -38,6 +38,7 @@ struct MaskReport {
   int n_iterations = 0;         ///< iterations of the minimisation
 };
 
+/// Result of fit_mask() and fit_mask_by_kernel().
 struct MaskFit {
   GridLevelSet psi;
   MaskReport report;

@@ -13,8 +13,7 @@ enum class VoxelNeighbours { Faces, Points };
 
 /// Connected components of the voxels of one side.
 struct VoxelPieces {
-  std::vector<std::int32_t> piece;    ///< component of each voxel, in the order of first voxels; -1 for voxels of the
-                                      ///< other side
+  std::vector<std::int32_t> piece;    ///< component of each voxel, ordered by first voxels; -1 for the other side
   std::vector<std::size_t> n_voxels;  ///< voxels of each component
 
   std::size_t n() const { return n_voxels.size(); }

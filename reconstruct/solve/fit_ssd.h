@@ -16,13 +16,16 @@
 
 namespace umtet {
 
+/// Weights of the samples.
 enum class SsdWeights { Area, Paper };  ///< a_i by area and scale-free; or eq. (10) taken literally
+/// Solver of fit_ssd().
 enum class SsdSolver {
   Multilevel,  ///< full solve on a coarse lattice, corrections in bands of finer ones: the cost follows the surface
   Full,        ///< one full lattice: matrix-free PCG + V-cycle
   Assembled,   ///< one full lattice: sparse LDLT (small problems)
 };
 
+/// Parameters of fit_ssd().
 struct SsdParams {
   double spacing = 0;  ///< spacing of the finest lattice, model units; 0: chosen from spacing and noise of the samples
   double smoothing = 0;  ///< c of ½ Σ a (f²/l² + |∇f − n|²) + (c h / 2) ∫ H:H (SsdWeights::Area); 0: from the noise
@@ -55,6 +58,7 @@ struct SsdParams {
 /// All broken constraints, not just the first; empty if the parameters are valid.
 std::vector<std::string> problems(const SsdParams&);
 
+/// Report of fit_ssd().
 struct SsdReport {
   std::size_t n_points = 0, n_nodes = 0;
   double spacing = 0;          ///< spacing h of the finest lattice
@@ -80,6 +84,7 @@ struct SolveTooLarge : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Result of fit_ssd().
 struct SsdFit {
   LevelSet psi;
   SsdReport report;

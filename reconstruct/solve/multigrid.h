@@ -50,6 +50,7 @@ class Multigrid {
   std::vector<float> workspace_, transfer_;
 };
 
+/// Convergence history of solve_pcg().
 struct PcgReport {
   int iterations = 0;
   bool converged = false;

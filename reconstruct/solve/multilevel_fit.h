@@ -10,6 +10,7 @@ namespace umtet {
 
 class SsdBand;
 
+/// Report of the solve in one band.
 struct BandReport {
   double spacing = 0;         ///< spacing of the level's lattice, model units
   double smoothing = 0;       ///< smoothing c used

@@ -15,6 +15,7 @@
 
 namespace umtet {
 
+/// Parameters of sample_body().
 struct BodySampleParams {
   double spacing = 0;                   ///< maximum spacing of the samples, model units; 0: default_spacing()
   bool turn = true;                     ///< false: triangles keep their orientation

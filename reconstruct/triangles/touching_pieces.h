@@ -18,6 +18,7 @@ enum class Touching {
   Fuse    ///< make a neck
 };
 
+/// Report on the contacts of a surface.
 struct TouchingReport {
   std::size_t n_contacts = 0;  ///< contact points examined, one in half a width along an edge
   std::size_t n_pieces = 0;    ///< pieces that meet others, or themselves

@@ -8,6 +8,7 @@
 
 namespace umtet {
 
+/// Samples of triangles.
 struct TriangleSamples {
   std::vector<Vec3> points;
   std::vector<std::uint32_t> faces;  ///< the triangle of each point

@@ -10,9 +10,9 @@
 
 namespace umtet {
 
+/// Parameters of FastWindingNumber.
 struct WindingNumberParams {
-  double beta = 2;  ///< a cluster of samples is evaluated as one term beyond beta times its radius; > 1, or infinity:
-                    ///< all samples
+  double beta = 2;  ///< a cluster of samples is one term beyond beta times its radius; > 1, or infinity: no clusters
   double softening = 1;  ///< r_i relative to the radius sqrt(a_i / pi) of the disc that sample i represents; >= 0
 };
 std::vector<std::string> problems(const WindingNumberParams&);

@@ -21,8 +21,7 @@ struct WindingReport {
   };
   Verdict verdict = Verdict::Agrees;
   bool restored = false;  ///< `others` were off at fewer samples than the cloud's normals, and replaced them first
-  double off_before = 0, off_after = 0;  ///< patches_off_a_half() of a part of the samples; off_after: with the cloud's
-                                         ///< final normals
+  double off_before = 0, off_after = 0;  ///< patches_off_a_half() of some samples, before and with the final normals
   double off_tried = 0;                  ///< with the best of its own normals, if there were any
   double consistency_before = 0, consistency_tried = 0;  ///< consistency() of the cloud's normals and of the best of
                                                          ///< its own; 0 if none were tried
@@ -44,8 +43,7 @@ struct OrientByWinding {
   const std::vector<Vec3>* others =
       nullptr;                           ///< former normals of the cloud: restored if they are off at fewer samples
   bool only_others = false;              ///< winding_normals() is not tried
-  const Neighbourhoods* near = nullptr;  ///< neighbourhoods of the cloud, with OrientationParams::neighbours; null:
-                                         ///< they are searched
+  const Neighbourhoods* near = nullptr;  ///< neighbourhoods with OrientationParams::neighbours; null: searched
   const Covering* covering = nullptr;    ///< covering of the cloud; null: it is sampled evenly
   /// Returns whether the second split explains the held-out samples better than the first. Both splits contain the same
   /// samples; the first has the cloud's normals, the second those from the winding number of the known samples. If
@@ -54,7 +52,7 @@ struct OrientByWinding {
   std::function<bool(const SplitCloud& former, const SplitCloud& proposed, bool is_certain)> explains_better = nullptr;
 };
 
-/// Checks normals by the winding number of at most 4000 samples, and overrules them where it is certain.
+/// Checks normals by the winding number of at most 4000 samples, and replaces them if the result is certain.
 ///
 /// 1. The normals stay if w is off a half at no more than one sample in 50, or at one patch in 50, at any noise.
 /// 2. Otherwise winding_normals() are tried. Noise can mislead them: they turn samples off the surface so that w is 1/2

@@ -7,6 +7,7 @@
 
 namespace umtet {
 
+/// Parameters of winding_normals().
 struct WindingNormalsParams {
   int rounds = 6;          ///< >= 1; more change little
   double widest = 3;       ///< softening of the first round (fast_winding_number.h): sides spread over large parts; > 0

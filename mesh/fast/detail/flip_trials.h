@@ -49,8 +49,7 @@ struct FlipEffort {
   /// smooth_all_vertices() is applied to patches without misaligned faces that smoothing leaves below the target, at
   /// first without flips.
   bool all_vertices = false;
-  std::size_t most_singles = std::numeric_limits<std::size_t>::max();  ///< number of single flips tried, the most
-                                                                       ///< promising ones
+  std::size_t most_singles = std::numeric_limits<std::size_t>::max();  ///< single flips tried, most promising first
   bool pairs = true;                                                   ///< pairs are tried if no single flip helps
   int more_reach = 0;  ///< edges beyond RepairParams::reach within which a patch moves vertices
 };

@@ -38,6 +38,7 @@ struct Bar {
   bool passed(double sum_there) const { return sum_there < sum * (1 - least_gain); }
 };
 
+/// A displacement y of a vertex, with the sum that a Bar judges.
 struct Displacement {
   Vec3 y;
   double sum;  ///< Bar::sum at y; NaN if the bar is tangled
@@ -53,6 +54,7 @@ Displacement best_displacement(const OneRing& ring, const Bar& bar, double h, co
 /// The tets of the ring for which 1/F, with the sign of V, is below `good_f` at 0 or at y.
 std::bitset<kMaxRing> tets_below_target(const OneRing& ring, const Vec3& y, double good_f);
 
+/// A power sum over a ring, with the derivatives of its logarithm.
 struct PowerSum {
   double sum = 0;                ///< infinite if some V <= 0
   Vec3 gradient = Vec3::Zero();  ///< of ln(sum) / p

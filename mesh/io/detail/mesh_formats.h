@@ -90,6 +90,7 @@ void take_mid_sides(const std::filesystem::path& path, MeshFile& file, const std
 /// Drops the vertices (and their data) that no tet uses.
 void drop_unused_vertices(MeshFile& file);
 
+/// One reader per format, for read_tet_mesh().
 MeshFile read_vtu(const std::filesystem::path& path);
 MeshFile read_msh(const std::filesystem::path& path);
 MeshFile read_medit(const std::filesystem::path& path);

@@ -21,6 +21,7 @@ inline constexpr const char* kVtkType<std::uint8_t> = "UInt8";
 
 inline constexpr const char* kThreeComponents = " NumberOfComponents=\"3\"";
 
+/// Escapes a name for an XML attribute.
 inline std::string escaped(const std::string& name) {
   std::string text;
   for (const char c : name) {

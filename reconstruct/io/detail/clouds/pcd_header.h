@@ -10,8 +10,10 @@
 
 namespace umtet::detail {
 
+/// Encoding of the data of a PCD file.
 enum class PcdData { Ascii, Binary, Compressed };
 
+/// A field of the points in a PCD file.
 struct PcdField {
   std::string name;
   char kind = 'F';         ///< 'F' floating point, 'I' signed, 'U' unsigned
@@ -20,6 +22,7 @@ struct PcdField {
   std::size_t offset = 0;  ///< byte in a point; for compressed files, in the unpacked point
 };
 
+/// Header of a PCD file.
 struct PcdHeader {
   PcdData data = PcdData::Ascii;
   std::vector<PcdField> fields;  ///< without the padding fields "_" in compressed files, as in their data

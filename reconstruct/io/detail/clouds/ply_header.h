@@ -12,6 +12,7 @@ namespace umtet::detail {
 enum class PlyFormat { Ascii, BinaryLittleEndian, BinaryBigEndian };
 enum class PlyType { Int8, UInt8, Int16, UInt16, Int32, UInt32, Float32, Float64 };
 
+/// Size of a value in bytes.
 std::size_t byte_size(PlyType type);
 
 /// A scalar, or a list: its length as count_type, then that many values.
@@ -22,12 +23,14 @@ struct PlyProperty {
   PlyType count_type = PlyType::UInt8;
 };
 
+/// An element of a PLY file: its count and properties.
 struct PlyElement {
   std::string name;
   std::uint64_t count = 0;  ///< as announced: has to be compared with the size of the file
   std::vector<PlyProperty> properties;
 };
 
+/// Header of a PLY file.
 struct PlyHeader {
   PlyFormat format = PlyFormat::Ascii;
   std::vector<PlyElement> elements;  ///< exactly one is named "vertex"
