@@ -32,6 +32,8 @@ constexpr int kPower = 18;
 constexpr double kLeastGain = .02;
 // The least Q of a patch may fall by this much where the sum falls.
 constexpr double kLostQuality = .003;
+// In the last pass it is enough that the worst tet reaches the target, or rises by this much while the sum does not.
+constexpr double kLeastRaise = 5e-4;
 // Of the least Q of a patch before, what the worst new tet needs before its vertices move. Below it one patch in ten is
 // mended (`mesh_bench --benchmark_filter=flips`).
 constexpr double kPromising = .6;
@@ -429,8 +431,10 @@ class LocalFlips {
   }
 
   bool is_better(const PatchMeasure& made, const PatchMeasure& old) const {
-    return made.sum < (1 - kLeastGain) * old.sum && made.least >= old.least - kLostQuality &&
-           made.shortest >= std::min(params_.shortest, old.shortest) &&
+    const bool has_less = made.sum < (1 - kLeastGain) * old.sum && made.least >= old.least - kLostQuality;
+    const bool has_raised =
+        is_last_ && (made.least >= params_.target || (made.sum <= old.sum && made.least > old.least + kLeastRaise));
+    return (has_less || has_raised) && made.shortest >= std::min(params_.shortest, old.shortest) &&
            made.longest <= std::max(params_.longest, old.longest) &&
            made.least_cosine >= std::min(kAligned, old.least_cosine) &&
            made.farthest <= std::max(kFaceDistance, old.farthest);

@@ -61,8 +61,11 @@ struct FlippedMesh {
 /// boundary in their tangent planes and back to psi = 0. The first operation is kept with which
 ///   - the sum of (target / Q)^18 over the patch falls by 2 % or more, misaligned boundary faces counted like bad tets;
 ///   - the least Q of the patch falls by no more than .003;
-///   - edges stay within the range of the parameters, boundary faces within 60 degrees of psi = 0 or nearer to it than
+///   - the edges stay within the range of the parameters, boundary faces within 60 degrees of psi = 0 or nearer to it than
 ///     before, and their centroids near psi = 0.
+/// Tets that are still below the target are tried once more, with more candidates, and with all vertices of a patch moved
+/// at once (all_vertex_smoothing.h). There it is enough that the worst tet of the patch reaches the target, or rises by
+/// 5e-4 while the sum does not.
 /// Operations change neither the topology of the body nor of its boundary. One thread; the same bytes on every run.
 ///
 /// @param V, C      a valid mesh: every tet positive; moved in
