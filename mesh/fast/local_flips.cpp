@@ -37,6 +37,9 @@ constexpr double kLeastRaise = 5e-4;
 // Of the least Q of a patch before, what the worst new tet needs before its vertices move. Below it one patch in ten is
 // mended (`mesh_bench --benchmark_filter=flips`).
 constexpr double kPromising = .6;
+// Where a body is thinner than its tets, no operation helps, and each that is kept near by would have all tried again:
+// a tet is left as it is once this often nothing helped at each of its vertices. A pass counts anew.
+constexpr int kMostFailures = 6;
 // What is left after that is tried again with more candidates and a lower bar, and all vertices of a patch move at
 // once: that mends half of it or more, at ten times the cost of a try.
 constexpr double kPromisingAtLast = .4;
@@ -181,6 +184,7 @@ class LocalFlips {
 
  private:
   void mend_all(const Context& context) {
+    failures_.assign(V_.size(), 0);
     for (std::size_t t = 0; t < C_.size(); ++t)
       if (alive_[t]) enqueue(static_cast<int>(t));
     const auto at_first = static_cast<double>(std::max<std::size_t>(1, queue_.size()));
@@ -377,17 +381,24 @@ class LocalFlips {
   }
 
   void mend(int tet) {
+    const Tet corners = C_[tet];
+    if (std::all_of(corners.begin(), corners.end(), [&](int v) { return failures_[v] >= kMostFailures; })) return;
+    if (was_mended(tet)) return;
+    for (const int v : corners) failures_[v] = static_cast<std::uint8_t>(std::min(255, failures_[v] + 1));
+  }
+
+  bool was_mended(int tet) {
     for (const Candidate& c : candidates_of(tet))
-      if (attempt(c)) return;
+      if (attempt(c)) return true;
     Candidate c;
     for (const int v : C_[tet])
       for (const int t : incidence_.of(v)) c.old_tets.push_back(t);
     std::sort(c.old_tets.begin(), c.old_tets.end());
     c.old_tets.erase(std::unique(c.old_tets.begin(), c.old_tets.end()), c.old_tets.end());
     for (const int t : c.old_tets) c.new_tets.push_back(C_[t]);
-    if (attempt(c)) return;
+    if (attempt(c)) return true;
     c.operation = Operation::SmoothAll;
-    attempt(c);
+    return attempt(c);
   }
 
   /// @return whether it was kept
@@ -634,7 +645,8 @@ class LocalFlips {
   LocalFlipReport& report_;
   const ClosestPointParams closest_point_{.method = ClosestPointMethod::Damped};
   const double good_f_ = f_of_quality(std::min(.999, params_.target + .02));
-  bool is_last_ = false;  ///< the last pass
+  std::vector<std::uint8_t> failures_;  ///< per vertex, in this pass
+  bool is_last_ = false;                ///< the last pass
   std::priority_queue<Queued, std::vector<Queued>, std::greater<>> queue_;
   std::vector<int> moving_, patch_tets_, kept_tets_;
   std::vector<std::pair<Triangle, Triangle>> faces_;

@@ -7,6 +7,8 @@
 #include <string>
 
 #include "pipeline/case/parameters.h"
+#include "pipeline/reports/blame.h"
+#include "pipeline/reports/certificate_report.h"
 
 namespace umtet {
 namespace {
