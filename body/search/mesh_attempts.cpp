@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "body/fidelity/input_judgement.h"
 #include "common/formatted.h"
 
 namespace umtet {
@@ -38,13 +39,15 @@ bool is_left(const MeshPlace& place, double effort) {
          place.kind == PlaceKind::Thin;
 }
 
-bool may_improve(const MeshAttempt& a, double effort) {
-  if (a.made()) {
-    return !a.reasons.empty() ||
-           !std::all_of(a.places.begin(), a.places.end(), [&](const MeshPlace& p) { return is_left(p, effort); });
-  }
-  return a.result.status != UmStatus::EmptyDomain && a.result.status != UmStatus::PsiNotFinite &&
-         a.result.status != UmStatus::DomainLeavesBackground;
+/// psi has so much that no sample supports that the mesh fails, and the mesh only repeats it: no other mesh of the same
+/// psi passes.
+bool fails_by_guesses(const MeshAttempt& a) {
+  const bool repeats_psi =
+      a.measured.mesh.boundary.euler_characteristic >= a.measured.domain.euler_characteristic_of_kept_components;
+  const std::vector<InputDefect> defects = input_defects(a.measured);
+  return std::any_of(defects.begin(), defects.end(), [&](const InputDefect& d) {
+    return !d.is_small && (d.kind == InputDefectKind::Guessed || (d.kind == InputDefectKind::Handles && repeats_psi));
+  });
 }
 
 /// Another h may fold nothing; what is missing or too thin is as thin at an h that is hardly smaller.
@@ -119,6 +122,16 @@ std::optional<double> h_that_shows(const MeshAttempt& a, double effort) {
     h = std::min(h.value_or(*place.h_needed), *place.h_needed);
   }
   return h ? std::optional(kMargin * *h) : std::nullopt;
+}
+
+bool may_improve(const MeshAttempt& a, double effort) {
+  if (a.made()) {
+    if (!asks_for_more(effort) && fails_by_guesses(a)) return false;
+    return !a.reasons.empty() ||
+           !std::all_of(a.places.begin(), a.places.end(), [&](const MeshPlace& p) { return is_left(p, effort); });
+  }
+  return a.result.status != UmStatus::EmptyDomain && a.result.status != UmStatus::PsiNotFinite &&
+         a.result.status != UmStatus::DomainLeavesBackground;
 }
 
 std::string MeshAttempt::complaint() const {

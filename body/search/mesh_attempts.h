@@ -46,6 +46,10 @@ struct MeshAttempt {
 /// more: small folds are chased, too, and up to four meshes are made again.
 inline constexpr double kDefaultEffort = 2.5;
 
+/// Whether another mesh of the same psi may be better: something is wrong that is no small defect, and it is not psi
+/// that no sample supports.
+bool may_improve(const MeshAttempt& attempt, double effort);
+
 /// The h that is forecast to show all that an attempt does not; none where a defect has nothing thin to explain it, or
 /// where the mesh fails without a defect that has a place.
 std::optional<double> h_that_shows(const MeshAttempt& attempt, double effort);

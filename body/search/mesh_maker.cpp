@@ -319,7 +319,7 @@ MeshAttempt MeshMaker::search(BackgroundChoice& backgrounds, const EdgeLength& c
   // A mesh is made again only where a forecast says that it will pass.
   const bool may_be_remade =
       effort > kDefaultEffort || (n_attempts_ == 1 && (!of_one_h.made() || h_that_shows(of_one_h, effort)));
-  if (of_one_h.is_right() || !may_be_remade) return of_one_h;
+  if (of_one_h.is_right() || !may_be_remade || !may_improve(of_one_h, effort)) return of_one_h;
   const double allowed = (effort - n_attempts_) * backgrounds.expected_tets(domain_, choice.h);
   try {
     const std::optional<EdgeLength> sizes = backgrounds.grade(domain_, context_);
