@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "body/fidelity/measure.h"
+#include "body/fidelity/verdict.h"
 #include "body/pieces/component_proof.h"
 #include "mesh/universal_mesh.h"
 #include "pipeline/expression/expression.h"

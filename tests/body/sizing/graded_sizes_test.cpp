@@ -80,7 +80,7 @@ TEST(GradedSizes, OfAFormulaAreItsValues) {
 
 TEST(GradedSizes, AreNotBelowTheFloorNorAboveTheCeiling) {
   const Parameters p = graded({"mesh.h=.2", "mesh.size=0.001", "mesh.h_min=.05", "mesh.h_max=.15"});
-  EXPECT_THROW(GradedSizes(p, Vec3::Zero()), UsageError);  // it does not depend on x, y or z
+  EXPECT_THROW(GradedSizes(body_options(p), Vec3::Zero()), UsageError);  // it does not depend on x, y or z
   const Parameters q = graded({"mesh.h=.2", "mesh.size=0.001+0.4*(z-1)^2", "mesh.h_min=.05", "mesh.h_max=.15"});
   GradedSizes sizes(body_options(q), Vec3::Zero());
   Domain domain = ball();
