@@ -57,6 +57,19 @@ bool may_improve_nearby(const MeshAttempt& a, double effort) {
          });
 }
 
+/// The h that is forecast to show all that an attempt does not; none where a defect has nothing thin to explain it, or
+/// where the mesh fails without a defect that has a place.
+std::optional<double> h_that_shows(const MeshAttempt& a, double effort) {
+  if (!a.made()) return a.thin.empty() ? std::nullopt : std::optional(kMargin * a.thin.h_needed());
+  std::optional<double> h;
+  for (const MeshPlace& place : a.places) {
+    if (is_left(place, effort)) continue;
+    if (!place.h_needed) return std::nullopt;
+    h = std::min(h.value_or(*place.h_needed), *place.h_needed);
+  }
+  return h ? std::optional(kMargin * *h) : std::nullopt;
+}
+
 /// The edge lengths to try, one after the other.
 class SmallerEdges {
  public:
@@ -112,17 +125,6 @@ bool is_worse(const MeshAttempt& a, const MeshAttempt& b) {
 }
 
 }  // namespace
-
-std::optional<double> h_that_shows(const MeshAttempt& a, double effort) {
-  if (!a.made()) return a.thin.empty() ? std::nullopt : std::optional(kMargin * a.thin.h_needed());
-  std::optional<double> h;
-  for (const MeshPlace& place : a.places) {
-    if (is_left(place, effort)) continue;
-    if (!place.h_needed) return std::nullopt;
-    h = std::min(h.value_or(*place.h_needed), *place.h_needed);
-  }
-  return h ? std::optional(kMargin * *h) : std::nullopt;
-}
 
 bool may_improve(const MeshAttempt& a, double effort) {
   if (a.made()) {

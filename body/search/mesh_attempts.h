@@ -50,10 +50,6 @@ inline constexpr double kDefaultEffort = 2.5;
 /// that no sample supports.
 bool may_improve(const MeshAttempt& attempt, double effort);
 
-/// The h that is forecast to show all that an attempt does not; none where a defect has nothing thin to explain it, or
-/// where the mesh fails without a defect that has a place.
-std::optional<double> h_that_shows(const MeshAttempt& attempt, double effort);
-
 /// Runs `attempt` at choice.h and, where that has a defect that is no small one, at an h that is forecast to pass: at
 /// .985 h if nothing but folded faces and vertices off psi = 0 is wrong, which come and go with h; at the h that shows
 /// all that is thin where it failed. Never below choice.least. Where noise decided h, what thin parts ask for is tried

@@ -316,9 +316,7 @@ MeshAttempt MeshMaker::search(BackgroundChoice& backgrounds, const EdgeLength& c
   MeshAttempt of_one_h = best_attempt(
       choice, effort, [&](double h) { return attempt_for_tets(h, make); },
       [this](const std::string& line) { say(line); });
-  // A mesh is made again only where a forecast says that it will pass.
-  const bool may_be_remade =
-      effort > kDefaultEffort || (n_attempts_ == 1 && (!of_one_h.made() || h_that_shows(of_one_h, effort)));
+  const bool may_be_remade = n_attempts_ == 1 || effort > kDefaultEffort;
   if (of_one_h.is_right() || !may_be_remade || !may_improve(of_one_h, effort)) return of_one_h;
   const double allowed = (effort - n_attempts_) * backgrounds.expected_tets(domain_, choice.h);
   try {

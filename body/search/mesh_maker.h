@@ -42,8 +42,8 @@ class MeshMaker {
   MeshAttempt attempt(const SizedBackground& background, double h) { return attempt(background, h, nullptr); }
 
   /// The best_attempt() from this h on, each in a background of its own; where sizes vary, the refined_attempt(). Where
-  /// the choice between the two is ours and one h does not do, sizes that vary are tried after all, if they are
-  /// forecast to show what one h does not and make no more than mesh.effort times the tets of that h. Where mesh.tets
+  /// the choice between the two is ours and one h does not do, sizes that vary are tried after all, if
+  /// may_improve() and they make no more than mesh.effort times the tets of that h. Where mesh.tets
   /// asks for a number that h misses by more than a tenth, which shows before anything is moved, another h takes its
   /// place.
   /// @param choice  of `backgrounds`

@@ -19,6 +19,8 @@ constexpr int kSmallFold = 100, kSmallCut = 101;
 constexpr int kFold = 102, kThin = 103, kVeryThin = 104;
 // A mesh that lacks a handle, and nothing thin explains it.
 constexpr int kHandle = 105;
+// Half of a fold's boundary is where no sample is, and a handle of psi that no sample supports.
+constexpr int kGuessed = 106, kGuessedHandle = 107;
 constexpr double kAnyEffort = 1000;
 
 MeshAttempt with_place(const MeshPlace& place) {
@@ -29,15 +31,34 @@ MeshAttempt with_place(const MeshPlace& place) {
   return a;
 }
 
+MeshAttempt guessed(double share, int n_handles) {
+  MeshAttempt a = with_place({.kind = PlaceKind::Folded, .off_over_h = .8, .size_over_h = 9});
+  a.measured.domain.support = SupportReport{.radius = .3};
+  a.measured.domain.support->unsupported_area_fraction = share;
+  a.measured.domain.support->n_guessed_handles = n_handles;
+  return a;
+}
+
 MeshAttempt ended_as(int outcome) {
   switch (outcome) {
-    case kSmallFold: return with_place({.kind = PlaceKind::Folded, .off_over_h = .8});
-    case kSmallCut: return with_place({.kind = PlaceKind::Cut, .off_over_h = .8});
-    case kFold: return with_place({.kind = PlaceKind::Folded, .off_over_h = .8, .size_over_h = 9});
-    case kThin: return with_place({.kind = PlaceKind::Thin, .off_over_h = 2, .feature_over_h = 2, .h_needed = .9 / .97});
-    case kVeryThin: return with_place({.kind = PlaceKind::Thin, .off_over_h = 2, .h_needed = .6 / .97});
-    case kHandle: return with_place({.kind = PlaceKind::Topology, .off_over_h = 2});
-    default: break;
+    case kSmallFold:
+      return with_place({.kind = PlaceKind::Folded, .off_over_h = .8});
+    case kSmallCut:
+      return with_place({.kind = PlaceKind::Cut, .off_over_h = .8});
+    case kFold:
+      return with_place({.kind = PlaceKind::Folded, .off_over_h = .8, .size_over_h = 9});
+    case kThin:
+      return with_place({.kind = PlaceKind::Thin, .off_over_h = 2, .feature_over_h = 2, .h_needed = .9 / .97});
+    case kVeryThin:
+      return with_place({.kind = PlaceKind::Thin, .off_over_h = 2, .h_needed = .6 / .97});
+    case kGuessed:
+      return guessed(.6, 0);
+    case kGuessedHandle:
+      return guessed(.3, 1);
+    case kHandle:
+      return with_place({.kind = PlaceKind::Topology, .off_over_h = 2});
+    default:
+      break;
   }
   MeshAttempt a;
   if (outcome < 0) {
@@ -80,6 +101,12 @@ TEST(BestAttempt, AWholeMeshIsMadeAgainOnceAndOnlyWhereItIsForecastToPass) {
   EXPECT_EQ(Story({kHandle}).tried, H{1}) << "no h is known to show it";
   EXPECT_EQ(Story({kEmpty}).tried, H{1});
   EXPECT_EQ(Story({kInverted}).tried, H{1}) << "nothing thin explains it";
+}
+
+TEST(BestAttempt, WhatPsiInventsIsNotMeshedAgain) {
+  EXPECT_EQ(Story({kGuessed}).tried, H{1});
+  EXPECT_EQ(Story({kGuessedHandle}).tried, H{1});
+  EXPECT_EQ(Story({kGuessed, 0}, 8).tried.size(), 2U) << "unless the user spends more";
 }
 
 TEST(BestAttempt, TheBetterMeshIsKept) {

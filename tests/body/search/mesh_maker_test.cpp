@@ -91,9 +91,28 @@ Domain dumbbell_domain() {
   return domain;
 }
 
+/// Nodes near psi = 0, but for the rod: no sample asks for small edges.
+void add_samples_of_the_balls(Domain& domain) {
+  constexpr double kStep = .05, kNear = .025, kEnd = .5;
+  domain.cloud = {};
+  for (double x = -1.4; x <= 1.4; x += kStep) {
+    for (double y = -.7; y <= .7; y += kStep) {
+      for (double z = -.7; z <= .7; z += kStep) {
+        const Vec3 at(x, y, z);
+        Vec3 gradient;
+        const double value = domain.level_set->evaluate(at, &gradient, nullptr);
+        if (std::abs(x) < kEnd || std::abs(value) > kNear * gradient.norm()) continue;
+        domain.cloud.points.push_back(at - value / gradient.squaredNorm() * gradient);
+        domain.cloud.normals.push_back(gradient.normalized());
+      }
+    }
+  }
+}
+
 TEST(MeshMaker, WhereNoOneEdgeLengthDoesEdgesFollowTheBody) {
   for (const char* background : {"auto", "a15"}) {
     Domain domain = dumbbell_domain();
+    add_samples_of_the_balls(domain);
     Parameters parameters;
     parameters.set(std::string("mesh.background=") + background);
     BackgroundChoice backgrounds(body_options(parameters), domain);
