@@ -25,6 +25,7 @@
 #include <string>
 #include <vector>
 
+#include "body/fidelity/verdict.h"
 #include "body/search/mesh_maker.h"
 #include "mesh/background/background_mesh.h"
 #include "mesh/implicit/surface_distance.h"
