@@ -37,7 +37,7 @@ void Domain::shift_level(double by, double h) {
 }
 
 const BodySize& Domain::size() const {
-  // Of triangles these are exact, and thinner than any grid if need be.
+  // Volume and area of closed triangles are exact, however thin the body is; a grid would have to resolve it.
   if (triangles && triangles->body.is_closed && !complement && !size_)
     size_.emplace(box, BodySize{triangles->body.volume, triangles->body.area});
   if (triangles && triangles->body.is_closed && !complement) return size_->second;

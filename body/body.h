@@ -23,7 +23,7 @@ namespace umtet {
 
 struct LabelVolume;
 
-/// What is meshed, and what a mesh is judged against: psi, where to look for it, and the samples behind it.
+/// A body: the level set psi that is meshed, the box that contains it, and the samples that a mesh is judged against.
 /// All lengths and places are in working coordinates: model coordinates minus `shift`.
 struct Domain {
   std::optional<SharedFunction> formula;  ///< with a Hessian; one of these four is there

@@ -8,7 +8,7 @@
 
 #include "body/thin_place.h"
 
-// What calls of this library throw besides CloudRefused, SolveError and Cancelled.
+// The exceptions of this library, besides CloudRefused, SolveError and Cancelled.
 namespace umtet {
 
 /// The call itself is wrong: an option out of range, or options that contradict each other.

@@ -16,15 +16,15 @@
 #include "mesh/certify/second_order_certificate.h"
 #include "reconstruct/triangles/triangle_body.h"
 
-// What is measured of a finished mesh. Lengths in model units unless a name says otherwise.
+// Measurements of a finished mesh. Lengths are in model units unless a name says otherwise.
 namespace umtet {
 
 /// Whether the boundary of a mesh has the pieces and the Euler characteristic of psi = 0.
 enum class TopologyProof {
   Same,
   Differs,
-  /// The counts differ, and the grid of that of psi = 0 is coarser than the mesh; or they are the same, and psi = 0 is
-  /// thinner somewhere than that grid can see.
+  /// The counts differ, but psi = 0 was counted on a grid coarser than the mesh; or the counts agree, but psi = 0 is
+  /// somewhere thinner than that grid resolves.
   NotProved,
 };
 
