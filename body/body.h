@@ -4,7 +4,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "body/given_triangles.h"
 #include "body/input_facts.h"
 #include "body/shared_function.h"
+#include "common/message.h"
 #include "mesh/background/background_mesh.h"
 #include "mesh/core/implicit_function.h"
 #include "mesh/sizes/body_size.h"
@@ -34,7 +34,7 @@ struct Domain {
   Box box;                                      ///< what the background mesh has to cover
   double diagonal = 0;                          ///< of the cloud's box, or of `box` for a formula
   Vec3 shift = Vec3::Zero();
-  std::vector<std::string> notices;                 ///< of how psi was made, for the user
+  std::vector<Message> notices;                     ///< of how psi was made, for the user
   OrientedPointCloud cloud;                         ///< empty for a formula
   std::shared_ptr<const GivenTriangles> triangles;  ///< that bound the body; none of a cloud or a formula
   std::shared_ptr<const LabelVolume> labels;        ///< the voxels that `grid` was made of; none of a field

@@ -1,24 +1,24 @@
 #pragma once
 
 #include <optional>
-#include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "body/thin_place.h"
+#include "common/message.h"
 
-// The exceptions of this library, besides CloudRefused, SolveError and Cancelled.
+// The errors of this library, besides CloudRefused, SolveError, SolveTooLarge and Cancelled. Each carries a message
+// with the fact and its remedies: a remedy names an option by its place in BodyOptions or umtet::Options.
 namespace umtet {
 
 /// The call itself is wrong: an option out of range, or options that contradict each other.
-struct UsageError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct UsageError : ExplainedError {
+  using ExplainedError::ExplainedError;
 };
 
-/// There is no mesh of this domain at this h; what() has the status and its evidence.
-struct MeshingImpossible : std::runtime_error {
-  using std::runtime_error::runtime_error;
+/// There is no mesh of this domain at this h; what() states the status and its evidence.
+struct MeshingImpossible : ExplainedError {
+  using ExplainedError::ExplainedError;
 };
 
 /// There is none because the domain is thinner than this h can show.
@@ -29,13 +29,13 @@ struct TooThin : MeshingImpossible {
     double h = 0;                    ///< that they are too thin for
     std::optional<double> h_enough;  ///< an h that shows all of them; none: unknown
   };
-  TooThin(const std::string& message, Evidence evidence) : MeshingImpossible(message), evidence(std::move(evidence)) {}
+  TooThin(Message message, Evidence evidence) : MeshingImpossible(std::move(message)), evidence(std::move(evidence)) {}
   Evidence evidence;
 };
 
 /// The work would need more than the caller allowed.
-struct ResourceLimit : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct ResourceLimit : ExplainedError {
+  using ExplainedError::ExplainedError;
 };
 
 }  // namespace umtet

@@ -9,6 +9,9 @@
 
 namespace umtet {
 
+/// Samples of triangles along an edge of a given h: what a mesh of such edges can show.
+inline constexpr double kSamplesAnEdge = 2.5;
+
 /// The triangles that a user gave and that bound the body, in working coordinates; of those with label 0 a part is
 /// inside.
 struct GivenTriangles {

@@ -7,7 +7,7 @@
 #include "mesh/background/background_mesh.h"
 #include "mesh/core/implicit_function.h"
 #include "mesh/fast/fast_params.h"
-#include "mesh/fast/former_mesh.h"
+#include "mesh/fast/update/former_mesh.h"
 #include "mesh/paper/algorithm_1.h"
 #include "mesh/submesh/chosen_submesh.h"
 #include "mesh/submesh/submesh_params.h"

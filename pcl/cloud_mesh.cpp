@@ -7,11 +7,11 @@
 #include <exception>
 #include <filesystem>
 
-#include "pipeline/case/exit_code.h"
 #include "body/scan/given_cloud.h"
+#include "pipeline/case/exit_code.h"
+#include "pipeline/case/option_words.h"
 #include "pipeline/memory/jobs.h"
 #include "pipeline/memory/mesh_object.h"
-#include "pipeline/memory/without_flags.h"
 #include "pipeline/reports/certificate_json.h"
 #include "reconstruct/solve/solve_error.h"
 
@@ -55,10 +55,6 @@ CloudFile file_of(const ScannedCloud& cloud) {
   return file;
 }
 
-std::string in_keys(const std::string& message) {
-  return without_flags(message, [](const ParamField& field) { return field.key; });
-}
-
 Coordinates boundary_normals(Domain& domain, const MeshAttempt& best) {
   domain.limit_detail(best.h);
   std::vector<Vec3> normals;
@@ -90,14 +86,18 @@ CloudMesh mesh_of(CloudFile file, const Parameters& parameters, const Watch& wat
   mesh.fits_input = certificate.verdict.fits_input;
   mesh.passes = certificate.verdict.passes();
   mesh.certificate = to_json(certificate).dump(2);
-  for (const std::string& notice : fitted.notices) mesh.notices.push_back(in_keys(notice));
-  for (const std::string& notice : made->domain.notices) mesh.notices.push_back(in_keys(notice));
+  for (const Message& notice : fitted.notices) mesh.notices.push_back(text_of(notice, as_key));
+  for (const Message& notice : made->domain.notices) mesh.notices.push_back(text_of(notice, as_key));
   mesh.made = made;
   return mesh;
 }
 
 [[noreturn]] void fail(const std::exception& e, const Json& evidence) {
-  throw CloudMeshError(in_keys(e.what()), evidence.dump());
+  throw CloudMeshError(e.what(), evidence.dump());
+}
+
+[[noreturn]] void fail(const ExplainedError& e, const Json& evidence) {
+  throw CloudMeshError(text_of(e.message, as_key), evidence.dump());
 }
 
 /// The exception at hand as one that crosses the border: the types of the pipeline are not known there.
@@ -119,7 +119,7 @@ CloudMesh mesh_of(CloudFile file, const Parameters& parameters, const Watch& wat
   } catch (const Cancelled& e) {
     fail(e, {{"status", "Cancelled"}});
   } catch (const UsageError& e) {
-    throw std::invalid_argument(in_keys(e.what()));
+    throw std::invalid_argument(text_of(e.message, as_key));
   }
 }
 

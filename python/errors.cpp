@@ -6,10 +6,9 @@
 
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/exit_code.h"
-#include "pipeline/case/parameters.h"
+#include "pipeline/case/option_words.h"
 #include "pipeline/expression/expression.h"
 #include "pipeline/memory/jobs.h"
-#include "pipeline/memory/without_flags.h"
 #include "python/arguments.h"
 #include "reconstruct/io/grid_io.h"
 #include "reconstruct/io/point_cloud_io.h"
@@ -20,14 +19,12 @@ namespace py = pybind11;
 namespace umtet::python {
 namespace {
 
-/// With keyword arguments in the place of flags.
-std::string in_python(const std::string& message) {
-  return without_flags(message, [](const ParamField& field) { return field.key.substr(field.key.find('.') + 1); });
-}
+/// The message with keyword arguments in place of options.
+std::string said(const ExplainedError& error) { return text_of(error.message, as_keyword); }
 
 /// Raises `type` with an attribute `evidence`.
-void raise(const py::handle& type, const char* message, const Json& evidence) {
-  const py::object error = type(in_python(message));
+void raise(const py::handle& type, const std::string& message, const Json& evidence) {
+  const py::object error = type(message);
   error.attr("evidence") = dict_of(evidence);
   PyErr_SetObject(type.ptr(), error.ptr());
 }
@@ -44,25 +41,25 @@ void register_errors(py::module_& m) {
     } catch (const MeshingFailed& e) {
       raise(meshing, e.what(), e.evidence);
     } catch (const MeshingImpossible& e) {
-      raise(meshing, e.what(), Json::object());
+      raise(meshing, said(e), Json::object());
     } catch (const ResourceLimit& e) {
-      raise(meshing, e.what(), {{"status", "ResourceLimit"}});
+      raise(meshing, said(e), {{"status", "ResourceLimit"}});
     } catch (const SolveError& e) {
       raise(reconstruction, e.what(), {{"status", "SolveError"}});
     } catch (const SolveTooLarge& e) {
-      raise(reconstruction, e.what(), {{"status", "SolveTooLarge"}});
+      raise(reconstruction, said(e), {{"status", "SolveTooLarge"}});
     } catch (const GridRefused& e) {
-      PyErr_SetString(PyExc_ValueError, e.what());
+      PyErr_SetString(PyExc_ValueError, said(e).c_str());
     } catch (const CloudRefused& e) {
-      raise(reconstruction, e.what(), {{"status", "CloudRefused"}});
+      raise(reconstruction, said(e), {{"status", "CloudRefused"}});
     } catch (const Cancelled& e) {
       cancelled(e.what());
     } catch (const UsageError& e) {
-      PyErr_SetString(PyExc_ValueError, in_python(e.what()).c_str());
+      PyErr_SetString(PyExc_ValueError, said(e).c_str());
     } catch (const ExpressionError& e) {
-      PyErr_SetString(PyExc_ValueError, in_python(e.what()).c_str());
+      PyErr_SetString(PyExc_ValueError, e.what());
     } catch (const MeshFileRefused& e) {
-      PyErr_SetString(PyExc_ValueError, in_python(e.what()).c_str());
+      PyErr_SetString(PyExc_ValueError, e.what());
     } catch (const std::system_error& e) {
       PyErr_SetString(PyExc_OSError, e.what());
     }

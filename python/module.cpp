@@ -14,14 +14,15 @@
 
 #include "body/fidelity/measure.h"
 #include "body/scan/cloud_preparation.h"
+#include "body/scan/given_cloud.h"
 #include "body/sizing/background_choice.h"
 #include "mesh/background/a15_box.h"
 #include "mesh/moving_mesh.h"
 #include "pipeline/case/exit_code.h"
+#include "pipeline/case/option_words.h"
 #include "pipeline/case/version.h"
 #include "pipeline/domain/body_options.h"
 #include "pipeline/domain/load_domain.h"
-#include "body/scan/given_cloud.h"
 #include "pipeline/memory/mesh_object.h"
 #include "pipeline/reports/certificate_json.h"
 #include "pipeline/reports/mesh_json.h"
@@ -239,7 +240,7 @@ void bind(py::module_& m) {
                                                {"cloud_spacing", fit.cloud_spacing},
                                                {"rms_value", fit.rms_value},
                                                {"n_opposed_normals", fit.n_opposed_normals},
-                                               {"notices", r.notices}});
+                                               {"notices", texts_of(r.notices, as_keyword)}});
                              })
       .def("save", [](const Reconstruction& r, const std::filesystem::path& file) {
         write_level_set(file, r.psi, r.report.shift);
@@ -259,7 +260,7 @@ void bind(py::module_& m) {
       .def_property_readonly("background_tet",
                              [](const MeshObject& a) { return array(a.result.submesh.background_tet); })
       .def_readonly("h", &MeshObject::h)
-      .def_property_readonly("notices", [](const MeshObject& a) { return a.domain.notices; })
+      .def_property_readonly("notices", [](const MeshObject& a) { return texts_of(a.domain.notices, as_keyword); })
       .def_property_readonly(
           "certificate", [](const MeshObject& a) { return dict_of(a.certificate ? to_json(*a.certificate) : Json()); })
       .def("patches",

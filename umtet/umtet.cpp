@@ -1,7 +1,10 @@
 #include "umtet/umtet.h"
 
+#include <optional>
 #include <stdexcept>
 
+#include "body/given_triangles.h"
+#include "body/option_names.h"
 #include "body/scan/fitted_domain.h"
 #include "body/scan/given_cloud.h"
 #include "body/scan/level_set_fit.h"
@@ -9,11 +12,13 @@
 #include "body/search/best_mesh.h"
 #include "body/search/mesh_maker.h"
 #include "common/formatted.h"
+#include "reconstruct/cloud/survey/cloud_survey.h"
+#include "reconstruct/cloud/transfer/label_votes.h"
 
 namespace umtet {
 namespace {
 
-/// Throws what an attempt without a mesh is evidence of.
+/// Throws the error that explains why the attempt has no mesh.
 [[noreturn]] void refuse(const MeshAttempt& best, const Vec3& shift) {
   if (best.fell_through()) {
     throw TooThin(formatted("%s\n  h = %.3g may show them", too_thin_text(best, shift).c_str(), best.thin.h_needed()),
@@ -23,6 +28,18 @@ namespace {
   const Vec3 at = e.where + shift;
   throw MeshingImpossible(formatted("no mesh at h = %.6g: %s: %s, at (%.9g, %.9g, %.9g)", best.h,
                                     to_string(best.result.status), e.what.c_str(), at.x(), at.y(), at.z()));
+}
+
+/// The labels of the faces by the samples next to them; empty where the samples have none.
+std::vector<int> labels_of(const OrientedPointCloud& cloud, const std::vector<Vec3>& V,
+                           const std::vector<Triangle>& faces) {
+  if (cloud.labels.empty()) return {};
+  std::vector<Vec3> centroids, normals;
+  for (const auto& [a, b, c] : faces) {
+    centroids.push_back((V[a] + V[b] + V[c]) / 3);
+    normals.push_back((V[b] - V[a]).cross(V[c] - V[a]).normalized());
+  }
+  return vote_labels(cloud, centroids, normals);
 }
 
 Mesh mesh_of(Domain domain, const Options& options) {
@@ -37,6 +54,7 @@ Mesh mesh_of(Domain domain, const Options& options) {
             .measures = std::move(best.measured),
             .verdict = {},
             .notices = std::move(domain.notices)};
+  mesh.labels = labels_of(domain.cloud, mesh.points, mesh.boundary);
   for (Vec3& x : mesh.points) x += domain.shift;
   if (best.second) {
     mesh.curved = std::move(best.second->mesh);
@@ -46,12 +64,14 @@ Mesh mesh_of(Domain domain, const Options& options) {
   return mesh;
 }
 
-}  // namespace
-
-FittedBody fit_body(OrientedPointCloud cloud, const Options& options) {
+/// @param of_triangles  what the samples are of; null: a scan
+FittedBody fit(CloudFile file, const char* name, const TriangleReport* of_triangles, const Options& options) {
   options.context.report("prepare", 0);
-  PreparedCloud prepared = prepare_merged(given_cloud(std::move(cloud)), "points", options.body);
-  LevelSetFit fit = fit_level_set(prepared.cloud, std::move(prepared.near), options.body, options.context);
+  PreparedCloud prepared = prepare_merged(std::move(file), name, options.body);
+  std::optional<ExactSamples> exact;
+  if (of_triangles && prepared.report.normals.given) exact = ExactSamples{of_triangles->least_spacing};
+  LevelSetFit fit =
+      fit_level_set(prepared.cloud, std::move(prepared.near), options.body, options.context, nullptr, exact);
   FittedBody body{.psi = std::move(fit.psi),
                   .cloud = std::move(prepared.cloud),
                   .report = std::move(fit.report),
@@ -62,8 +82,64 @@ FittedBody fit_body(OrientedPointCloud cloud, const Options& options) {
   return body;
 }
 
+BodySampleParams sample_params(const Options& options) {
+  BodySampleParams params = options.triangles;
+  if (params.spacing == 0) params.spacing = options.body.mesh.h / kSamplesAnEdge;
+  const Closing close = options.body.fit.close;
+  params.cap = params.cap && close != Closing::Smooth && close != Closing::None;
+  params.turn = params.turn && options.body.scan.normals != NormalsOf::Given;
+  return params;
+}
+
+/// The samples as a reader of files returns them.
+CloudFile sampled_cloud(OrientedPointCloud samples, const TriangleReport& report, const Options& options) {
+  const std::size_t n = samples.points.size();
+  if (n < kFewestSurveyed) {
+    throw CloudRefused(formatted("triangles: %zu of %zu samples lie on the boundary of a body, %zu are needed", n,
+                                 report.n_samples, kFewestSurveyed),
+                       {{Change::Lower, option::sample_spacing},
+                        {Change::Give, {option::normals, "given"}, "if the sides of the triangles are right"}});
+  }
+  CloudFile file{.cloud = std::move(samples), .report = {}};
+  file.report.n_points = n;
+  file.report.of_triangles = options.body.scan.normals != NormalsOf::Estimate;
+  if (!file.report.of_triangles) file.cloud.normals.clear();
+  return file;
+}
+
+/// \throw std::invalid_argument  a mesh that is no mesh of triangles
+void require_triangles(const TriangleMesh& mesh) {
+  const auto n = static_cast<int>(mesh.V.size());
+  for (const Triangle& f : mesh.F)
+    for (const int v : f)
+      if (v < 0 || v >= n) throw std::invalid_argument("triangles: an index that the vertices do not have");
+  if (!mesh.labels.empty() && mesh.labels.size() != mesh.F.size())
+    throw std::invalid_argument("triangles: as many labels as triangles are needed, or none");
+  for (const Vec3& x : mesh.V)
+    if (!x.allFinite()) throw std::invalid_argument("triangles: a coordinate is not finite");
+}
+
+}  // namespace
+
+FittedBody fit_body(OrientedPointCloud cloud, const Options& options) {
+  return fit(given_cloud(std::move(cloud)), "points", nullptr, options);
+}
+
+FittedBody fit_body(TriangleMesh triangles, const Options& options) {
+  require_triangles(triangles);
+  options.context.report("sample", 0);
+  BodySamples samples =
+      sample_body(std::move(triangles), sample_params(options), {.cancelled = options.context.cancelled});
+  CloudFile file = sampled_cloud(std::move(samples.cloud), samples.report, options);
+  FittedBody body = fit(std::move(file), "triangles", &samples.report, options);
+  body.boundary = std::move(samples.boundary);
+  body.triangles = std::move(samples.report);
+  return body;
+}
+
 Mesh mesh_body(const FittedBody& body, const Options& options) {
   Domain domain = fitted_domain(body.psi, body.cloud, body.report, options.box);
+  if (body.boundary) domain.triangles = given_triangles(*body.boundary, domain.shift);
   domain.facts = body.facts;
   domain.notices = body.notices;
   return mesh_of(std::move(domain), options);
@@ -73,8 +149,12 @@ Mesh mesh_body(OrientedPointCloud cloud, const Options& options) {
   return mesh_body(fit_body(std::move(cloud), options), options);
 }
 
+Mesh mesh_body(TriangleMesh triangles, const Options& options) {
+  return mesh_body(fit_body(std::move(triangles), options), options);
+}
+
 Mesh mesh_body(const SharedFunction& psi, const Options& options) {
-  if (!options.box) throw std::invalid_argument("box: missing; a function needs one around the place where psi < 0");
+  if (!options.box) throw std::invalid_argument("box: missing; a function needs a box around the region where psi < 0");
   Domain domain;
   domain.formula = psi;
   domain.box = *options.box;

@@ -7,6 +7,7 @@
 #include "body/errors.h"
 #include "body/fidelity/input_judgement.h"
 #include "body/fidelity/mesh_place.h"
+#include "body/option_names.h"
 #include "common/formatted.h"
 
 namespace umtet {
@@ -33,16 +34,16 @@ std::vector<AcceptedDefects> parse_accepted_defects(const std::string& text) {
     const std::size_t colon = word.find(':');
     AcceptedDefects of_kind{word.substr(0, colon), std::nullopt};
     if (std::find(known.begin(), known.end(), of_kind.kind) == known.end()) {
-      throw UsageError(formatted("--accept: '%s' is no kind of defect; the kinds are %s", of_kind.kind.c_str(),
-                                 joined(known, ", ").c_str()));
+      throw UsageError({option::accept, formatted(": '%s' is no kind of defect; the kinds are %s", of_kind.kind.c_str(),
+                                                  joined(known, ", ").c_str())});
     }
     if (colon != std::string::npos) {
       double most = 0;
       const char *begin = word.data() + colon + 1, *end = word.data() + word.size();
       const auto [rest, error] = std::from_chars(begin, end, most);
       if (error != std::errc() || rest != end || !(most >= 0)) {
-        throw UsageError(formatted("--accept: '%s' after '%s:' is not a number", word.substr(colon + 1).c_str(),
-                                   of_kind.kind.c_str()));
+        throw UsageError({option::accept, formatted(": '%s' after '%s:' is not a number",
+                                                    word.substr(colon + 1).c_str(), of_kind.kind.c_str())});
       }
       of_kind.most = most;
     }

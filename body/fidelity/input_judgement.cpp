@@ -9,8 +9,8 @@
 namespace umtet {
 namespace {
 
-constexpr std::array<const char*, 8> kWords = {"missed",   "guessed", "handles", "pieces",
-                                               "distance", "volume",  "genus",   "voxels"};
+constexpr std::array<const char*, 9> kWords = {"missed", "guessed", "handles", "pieces", "distance",
+                                               "volume", "genus",   "voxels",  "noise"};
 
 std::string at(const Vec3& x) { return formatted("(%.6g, %.6g, %.6g)", x.x(), x.y(), x.z()); }
 
@@ -26,6 +26,17 @@ void add_missed(const MeshMeasures& m, std::vector<InputDefect>& defects) {
       {InputDefectKind::Missed, deep, deep <= kDeeplyMissed || share <= kFewMissed,
        formatted("%s (%.2g %% of all) are farther than h from the mesh, up to %.2g h at %s",
                  counted(cloud.n_beyond_h, "sample").c_str(), 100 * share, deep, at(cloud.most_at).c_str())});
+}
+
+/// Samples cannot tell what is finer than their noise, so nothing else shows whether psi has lost it.
+void add_noise(const MeshMeasures& m, std::vector<InputDefect>& defects) {
+  const double noise = m.cloud->noise.value_or(0) / m.mesh.h;
+  if (!(noise >= kMuchNoise)) return;
+  defects.push_back(
+      {InputDefectKind::Noise, noise, true,
+       formatted("the noise of the samples is %.2g h: walls, gaps and handles thinner than a few h may be "
+                 "lost or invented",
+                 noise)});
 }
 
 void add_guesses(const SupportReport& support, std::vector<InputDefect>& defects) {
@@ -145,6 +156,7 @@ std::vector<InputDefect> input_defects(const MeshMeasures& m) {
   if (m.labels) add_labels(*m.labels, m.mesh.boundary.gap_over_volume.value_or(0), defects);
   if (m.cloud) add_missed(m, defects);
   if (m.domain.support) add_guesses(*m.domain.support, defects);
+  if (m.cloud) add_noise(m, defects);
   return defects;
 }
 

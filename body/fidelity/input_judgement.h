@@ -19,10 +19,11 @@ enum class InputDefectKind {
   Volume,    ///< not the given volume; relative difference, of triangles less what flat faces explain
   Genus,     ///< another number of handles than the triangles have; difference
   Voxels,    ///< centres of voxels are on the other side of the boundary, farther than half a voxel; share of all
+  Noise,     ///< the noise of the samples hides what is finer; its standard deviation, h
 };
 
-/// As documents and --accept have it: "missed", "guessed", "handles", "pieces", "distance", "volume", "genus",
-/// "voxels".
+/// As documents and VerdictOptions::accept have it: "missed", "guessed", "handles", "pieces", "distance", "volume", "genus",
+/// "voxels", "noise".
 const char* to_string(InputDefectKind kind);
 std::optional<InputDefectKind> input_defect_kind_of(const std::string& word);
 
@@ -41,6 +42,8 @@ inline constexpr double kMostlyGuessed = .5;
 /// Missed samples as deep as this, in h, are no noise of the mesh: where they are more than kFewMissed of all samples
 /// the mesh fails. Outliers that cleaning has left are fewer.
 inline constexpr double kDeeplyMissed = 3, kFewMissed = .01;
+/// Noise, in h, from which a mesh is no plain pass. By default h is at least the noise over kMostNoise.
+inline constexpr double kMuchNoise = .25;
 /// Single samples of noise are off by any distance; fewer than these are no defect.
 inline constexpr std::size_t kFewestBeyondH = 10;
 /// Relative differences of volume from triangles, beyond what flat faces explain: named, and failing.

@@ -272,7 +272,7 @@ std::optional<std::string> deviation_reason(double asked, const MeshCertificate&
   if (asked == 0 || !mesh.boundary.max_centroid_distance_over_h) return std::nullopt;
   const double made = mesh.boundary.max_centroid_distance;
   if (made <= asked) return std::nullopt;
-  return formatted("a face centre is %.4g from psi = 0, more than the %.4g of --max-deviation", made, asked);
+  return formatted("a face centre is %.4g from psi = 0, more than the largest allowed deviation of %.4g", made, asked);
 }
 
 /// Those that the certificate of the tets has.

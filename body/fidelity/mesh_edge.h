@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/vec3.h"
-#include "reconstruct/cloud/neighbour_tree.h"
+#include "reconstruct/cloud/neighbours/neighbour_tree.h"
 
 namespace umtet {
 

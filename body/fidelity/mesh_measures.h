@@ -13,7 +13,7 @@
 #include "body/label_report.h"
 #include "body/thin_place.h"
 #include "mesh/certify/certificate.h"
-#include "mesh/certify/second_order_certificate.h"
+#include "mesh/second_order/second_order_certificate.h"
 #include "reconstruct/triangles/triangle_body.h"
 
 // Measurements of a finished mesh. Lengths are in model units unless a name says otherwise.

@@ -13,7 +13,7 @@
 #include "mesh/implicit/curvature.h"
 #include "mesh/implicit/foot_point.h"
 #include "mesh/implicit/thickness.h"
-#include "reconstruct/cloud/neighbour_tree.h"
+#include "reconstruct/cloud/neighbours/neighbour_tree.h"
 
 namespace umtet {
 namespace {

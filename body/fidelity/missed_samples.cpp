@@ -10,7 +10,7 @@
 #include "common/disjoint_sets.h"
 #include "mesh/certify/quality_report.h"
 #include "reconstruct/cloud/cloud_arrays.h"
-#include "reconstruct/cloud/neighbour_tree.h"
+#include "reconstruct/cloud/neighbours/neighbour_tree.h"
 
 namespace umtet {
 namespace {

@@ -3,16 +3,17 @@
 #include <algorithm>
 #include <utility>
 
+#include "body/option_names.h"
 #include "common/formatted.h"
-#include "reconstruct/cloud/cleaning.h"
+#include "reconstruct/cloud/cleaning/cleaning.h"
+#include "reconstruct/cloud/cleaning/covering.h"
 #include "reconstruct/cloud/cloud_arrays.h"
-#include "reconstruct/cloud/cloud_survey.h"
-#include "reconstruct/cloud/covering.h"
-#include "reconstruct/cloud/lines_of_sight.h"
-#include "reconstruct/cloud/morton_order.h"
-#include "reconstruct/cloud/normal_estimation.h"
-#include "reconstruct/cloud/normal_orientation.h"
-#include "reconstruct/cloud/scanner_positions.h"
+#include "reconstruct/cloud/neighbours/morton_order.h"
+#include "reconstruct/cloud/normals/lines_of_sight.h"
+#include "reconstruct/cloud/normals/normal_estimation.h"
+#include "reconstruct/cloud/normals/normal_orientation.h"
+#include "reconstruct/cloud/normals/scanner_positions.h"
+#include "reconstruct/cloud/survey/cloud_survey.h"
 #include "reconstruct/solve/held_out.h"
 #include "reconstruct/winding/orient_by_winding.h"
 #include "reconstruct/winding/winding_outliers.h"
@@ -49,7 +50,9 @@ class Preparation {
   void look_to_origins();
   bool explains_better(const SplitCloud& former, const SplitCloud& proposed, bool is_certain);
   void ask_winding_number(const std::vector<Vec3>* as_given);
-  void notice(std::string line) { result_.report.notices.push_back(std::move(line)); }
+  void notice(std::string fact, std::vector<Remedy> remedies = {}) {
+    result_.report.notices.emplace_back(std::move(fact), std::move(remedies));
+  }
   NormalsReport& normals() { return result_.report.normals; }
   double percent(std::size_t n) const {
     return 100. * static_cast<double>(n) / static_cast<double>(cloud_.points.size());
@@ -68,7 +71,10 @@ class Preparation {
 
 void Preparation::tell_fields() {
   result_.report.columns = file_.columns;
-  if (!file_.columns.empty()) notice(file_.columns);
+  if (!file_.columns.empty()) {
+    notice(file_.columns, file_.columns_are_guessed ? std::vector<Remedy>{{Change::Use, option::columns, "overrules"}}
+                                                    : std::vector<Remedy>());
+  }
   result_.report.fields = field_names(cloud_);
   if (!result_.report.fields.empty())
     notice(formatted("the mesh gets what the samples carry: %s", joined(result_.report.fields, ", ").c_str()));
@@ -87,13 +93,14 @@ void Preparation::clean_points() {
   if (n_not_finite > 0) notice(formatted("dropped %zu points that are no numbers", n_not_finite));
   if (r.n_duplicates > 0) notice(formatted("dropped %zu duplicates", r.n_duplicates));
   if (r.n_outliers + r.n_small_components > 0) {
-    notice(
-        formatted("dropped %zu outliers and %zu points in %zu small pieces far from the rest (--keep-all keeps them)",
-                  r.n_outliers, r.n_small_components, r.n_small_component_pieces));
+    notice(formatted("dropped %zu outliers and %zu points in %zu small pieces far from the rest", r.n_outliers,
+                     r.n_small_components, r.n_small_component_pieces),
+           {{Change::Use, option::keep_all, "keeps them"}});
   }
   if (cloud_.points.size() < kFewestPoints) {
-    throw CloudRefused(formatted("%s: %zu points are left after cleaning, %zu are needed; --keep-all keeps outliers",
-                                 name_.c_str(), cloud_.points.size(), kFewestPoints));
+    throw CloudRefused(formatted("%s: %zu points are left after cleaning, %zu are needed", name_.c_str(),
+                                 cloud_.points.size(), kFewestPoints),
+                       {{Change::Use, option::keep_all, "keeps outliers"}});
   }
 }
 
@@ -105,8 +112,8 @@ void Preparation::take(const OrientationReport& r) {
 void Preparation::say_doubt() {
   const std::size_t n_doubtful = normals().orientation->n_doubtful;
   if (n_doubtful > 0) {
-    notice(formatted("which side is outside is a guess for %.1f %% of the points (--flip or --orient-from decide)",
-                     percent(n_doubtful)));
+    notice(formatted("which side is outside is a guess for %.1f %% of the points", percent(n_doubtful)),
+           {{Change::Use, option::flip, "turns them over"}, {Change::Use, option::viewpoints, "decides"}});
   }
 }
 
@@ -127,8 +134,8 @@ void Preparation::fill_missing() {
 void Preparation::part_with_lines_of_sight() {
   if (cloud_.normals.empty() || file_.of_triangles || options_.scan.normals != NormalsOf::Auto) return;
   if (!are_lines_of_sight(cloud_, near_, covering_)) return;
-  notice(
-      "the normals of the file are none: they do not stand on the surface of its points (--normals given keeps them)");
+  notice("the normals of the file are none: they do not stand on the surface of its points",
+         {{Change::Use, {option::normals, "given"}, "keeps them"}});
   if (cloud_.origins.empty()) {
     cloud_.origins = cloud_.points;
     for (std::size_t i = 0; i < cloud_.points.size(); ++i) cloud_.origins[i] += cloud_.normals[i];
@@ -152,10 +159,9 @@ void Preparation::find_normals() {
     take(r);
     say_doubt();
     if (r.n_turned > 0) {
-      notice(
-          formatted("turned %zu of the given normals (%.1f %%): they were %.1f %% consistent, now %.1f %% "
-                    "(--normals given keeps them)",
-                    r.n_turned, percent(r.n_turned), 100 * r.consistency, 100 * r.consistency_after));
+      notice(formatted("turned %zu of the given normals (%.1f %%): they were %.1f %% consistent, now %.1f %%",
+                       r.n_turned, percent(r.n_turned), 100 * r.consistency, 100 * r.consistency_after),
+             {{Change::Use, {option::normals, "given"}, "keeps them"}});
       ask_winding_number(&as_given);
     }
     return;
@@ -242,8 +248,9 @@ void Preparation::look_to_origins() {
   }
   normals().turned_to_viewpoints = orient_to_origins(cloud_);
   normals().orientation->n_doubtful = 0;
-  notice(formatted("the normals look to the scanner that saw each point, by the %s of the file (--orient-from decides)",
-                   sights_are_guessed_ ? "normals" : "columns"));
+  notice(formatted("the normals look to the scanner that saw each point, by the %s of the file",
+                   sights_are_guessed_ ? "normals" : "columns"),
+         {{Change::Use, option::viewpoints, "decides"}});
 }
 
 /// @return how many
@@ -264,9 +271,10 @@ void Preparation::drop_off_surface() {
   const std::vector<std::uint8_t> is_outlier = winding_outliers(cloud_, near_);
   const std::size_t n = drop_if([&](std::size_t i) { return is_outlier[i] != 0; });
   result_.report.dropped.outliers += n;
-  if (n > 0)
-    notice(formatted("dropped %zu more outliers, inside or outside of what the samples enclose (--keep-all keeps them)",
-                     n));
+  if (n > 0) {
+    notice(formatted("dropped %zu more outliers, inside or outside of what the samples enclose", n),
+           {{Change::Use, option::keep_all, "keeps them"}});
+  }
 }
 
 /// A point whose neighbours all lie at one place, or on a line, has no normal.
@@ -287,9 +295,8 @@ void Preparation::orient_as_told() {
   if (file_.viewpoint && !normals().given && !is_closed_ && !options_.viewpoints) {
     const Vec3& v = *file_.viewpoint;
     normals().turned_to_viewpoints = orient_from(cloud_, {v});
-    notice(formatted(
-        "the normals look to the scanner at %.6g %.6g %.6g, the VIEWPOINT of the file (--orient-from decides)", v[0],
-        v[1], v[2]));
+    notice(formatted("the normals look to the scanner at %.6g %.6g %.6g, the VIEWPOINT of the file", v[0], v[1], v[2]),
+           {{Change::Use, option::viewpoints, "decides"}});
   }
   if (options_.scan.flip) flip(cloud_);
 }

@@ -5,7 +5,7 @@
 #include "body/options.h"
 #include "body/scan/scan_reports.h"
 #include "reconstruct/cloud/cloud_file.h"
-#include "reconstruct/cloud/cloud_neighbours.h"
+#include "reconstruct/cloud/neighbours/cloud_neighbours.h"
 
 namespace umtet {
 

@@ -7,14 +7,15 @@
 #include <optional>
 #include <utility>
 
+#include "body/option_names.h"
 #include "body/sizing/wanted_detail.h"
 #include "common/formatted.h"
-#include "reconstruct/cloud/cloud_neighbours.h"
-#include "reconstruct/cloud/cloud_survey.h"
-#include "reconstruct/cloud/covering.h"
-#include "reconstruct/cloud/enclosed_volume.h"
-#include "reconstruct/cloud/local_noise.h"
-#include "reconstruct/cloud/merged_samples.h"
+#include "reconstruct/cloud/cleaning/covering.h"
+#include "reconstruct/cloud/cleaning/merged_samples.h"
+#include "reconstruct/cloud/neighbours/cloud_neighbours.h"
+#include "reconstruct/cloud/normals/enclosed_volume.h"
+#include "reconstruct/cloud/survey/cloud_survey.h"
+#include "reconstruct/cloud/survey/local_noise.h"
 #include "reconstruct/solve/noise_bias.h"
 #include "reconstruct/solve/turned_fit.h"
 
@@ -31,15 +32,16 @@ std::optional<std::array<double, 3>> thickness_percentiles(const OrientedPointCl
   return {{at(.01), at(.05), at(.5)}};
 }
 
-/// Which holes of the scan were closed, and how; empty where the fit alone closes all.
-std::string described(const std::vector<FittedHole>& holes) {
+/// States how the holes of the scan were closed; none where the fit alone closes all.
+std::optional<Message> described(const std::vector<FittedHole>& holes) {
   const auto count = [&](FittedHole::How how) {
     return std::count_if(holes.begin(), holes.end(), [how](const FittedHole& h) { return h.how == how; });
   };
   const auto flat = count(FittedHole::How::Flat), smooth = count(FittedHole::How::Smooth);
-  if (flat + smooth == 0) return "";
-  return formatted("closed where no sample is: %td hole%s flat, %td smoothly (--close chooses, --keep-open does not)",
-                   flat, flat == 1 ? "" : "s", smooth);
+  if (flat + smooth == 0) return std::nullopt;
+  return Message(
+      formatted("closed where no sample is: %td hole%s flat, %td smoothly", flat, flat == 1 ? "" : "s", smooth),
+      {{Change::Use, option::close, "chooses"}, {Change::Use, {option::close, "none"}, "does not"}});
 }
 
 // Of normals that were turned and psi fitted again as often as that helped. Noise as large as the parts of a body
@@ -178,10 +180,10 @@ LevelSetFit fit_near_origin(OrientedPointCloud& cloud, NeighbourDistances near, 
   }
   require_body(fit.report);
   refuse_volume(cloud, fit.report, report.noise);
-  std::vector<std::string> notices;
+  std::vector<Message> notices;
   if (const std::size_t n = fit.report.n_turned_normals; n > 0)
-    notices.push_back(formatted("turned %zu normals that psi opposed, and fitted again", n));
-  if (std::string closed = described(fit.report.holes); !closed.empty()) notices.push_back(std::move(closed));
+    notices.emplace_back(formatted("turned %zu normals that psi opposed, and fitted again", n));
+  if (std::optional<Message> closed = described(fit.report.holes)) notices.push_back(std::move(*closed));
   report.fit = std::move(fit.report);
   return {std::move(fit.psi), std::move(report), std::move(notices)};
 }

@@ -1,13 +1,13 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "body/options.h"
 #include "body/scan/scan_reports.h"
 #include "common/context.h"
-#include "reconstruct/cloud/cloud_neighbours.h"
+#include "common/message.h"
+#include "reconstruct/cloud/neighbours/cloud_neighbours.h"
 #include "reconstruct/cloud/point_cloud.h"
 #include "reconstruct/level_set/level_set.h"
 #include "reconstruct/solve/multilevel_fit.h"
@@ -17,7 +17,7 @@ namespace umtet {
 struct LevelSetFit {
   LevelSet psi;
   LevelSetReport report;
-  std::vector<std::string> notices;  ///< what was changed or guessed, for the user
+  std::vector<Message> notices;  ///< what was changed or guessed, for the user
 };
 
 /// What is known of samples of triangles: they have no noise, and their spacing goes with the thickness of the body.

@@ -4,11 +4,12 @@
 #include <limits>
 #include <utility>
 
+#include "body/option_names.h"
 #include "body/sizing/wanted_detail.h"
 #include "common/formatted.h"
-#include "reconstruct/cloud/cloud_survey.h"
-#include "reconstruct/cloud/merged_samples.h"
-#include "reconstruct/cloud/neighbour_tree.h"
+#include "reconstruct/cloud/cleaning/merged_samples.h"
+#include "reconstruct/cloud/neighbours/neighbour_tree.h"
+#include "reconstruct/cloud/survey/cloud_survey.h"
 
 namespace umtet {
 namespace {
@@ -63,9 +64,9 @@ PreparedCloud prepare_merged(CloudFile file, const std::string& name, const Body
     prepared.report.merged = {n, n_merged, cell};
     prepared.report.notices.insert(
         prepared.report.notices.begin(),
-        formatted("merged %zu points in cells of %.3g, which leaves %zu samples: the mesh shows nothing finer "
-                  "(--set cloud.merge=false keeps all)",
-                  n, cell, n_merged));
+        Message(formatted("merged %zu points in cells of %.3g, which leaves %zu samples: the mesh shows nothing finer",
+                          n, cell, n_merged),
+                {{Change::Use, {option::merge, "false"}, "keeps all"}}));
     return prepared;
   };
   double cell = 0;

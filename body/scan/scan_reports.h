@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "body/input_facts.h"
-#include "reconstruct/cloud/normal_orientation.h"
+#include "common/message.h"
+#include "reconstruct/cloud/normals/normal_orientation.h"
 #include "reconstruct/solve/fit_ssd.h"
 #include "reconstruct/solve/held_out.h"
 #include "reconstruct/triangles/body_samples.h"
@@ -72,7 +73,7 @@ struct CloudReport {
   std::string columns = {};                  ///< of a text: CloudFileReport::columns
   std::optional<MergedReport> merged = {};   ///< none where samples are what they were
   Eigen::AlignedBox3d box;                   ///< of them
-  std::vector<std::string> notices;          ///< what was changed or guessed, for the user
+  std::vector<Message> notices;              ///< what was changed or guessed, for the user
 };
 
 /// The fit of psi.

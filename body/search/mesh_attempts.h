@@ -11,7 +11,7 @@
 #include "body/sizing/edge_length.h"
 #include "body/sizing/too_thin.h"
 #include "mesh/background/background_mesh.h"
-#include "mesh/certify/quadratic_tets.h"
+#include "mesh/second_order/quadratic_tets.h"
 #include "mesh/sizes/size_field.h"
 #include "mesh/universal_mesh.h"
 

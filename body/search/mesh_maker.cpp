@@ -17,7 +17,7 @@
 #include "body/sizing/edge_length.h"
 #include "body/sizing/too_thin.h"
 #include "common/formatted.h"
-#include "mesh/fast/flipped_submesh.h"
+#include "mesh/fast/flips/flipped_submesh.h"
 
 namespace umtet {
 namespace {
@@ -328,9 +328,9 @@ MeshAttempt MeshMaker::search(BackgroundChoice& backgrounds, const EdgeLength& c
       say(formatted("they will not do either (%s); keeping h = %.4g", of_sizes.complaint().c_str(), of_one_h.h));
     }
   } catch (const MeshingImpossible& e) {
-    say(std::string("edges that follow the body are not possible: ") + e.what());
+    say("edges that follow the body are not possible: " + e.message);
   } catch (const ResourceLimit& e) {
-    say(std::string("edges that follow the body are not possible: ") + e.what());
+    say("edges that follow the body are not possible: " + e.message);
   }
   backgrounds.drop_grading();
   return of_one_h;

@@ -14,6 +14,7 @@
 #include "body/sizing/background_choice.h"
 #include "body/sizing/thick_body.h"
 #include "common/context.h"
+#include "common/message.h"
 #include "mesh/background/background_mesh.h"
 #include "mesh/universal_mesh.h"
 
@@ -21,7 +22,7 @@ namespace umtet {
 
 /// What is said to the user while a mesh is made; either may be empty, and may throw, which ends the work.
 struct MeshLines {
-  std::function<void(const std::string& line)> say = {};     ///< what the user should know
+  std::function<void(const Message& line)> say = {};         ///< what the user should know
   std::function<void(const std::string& line)> detail = {};  ///< what explains a result
 };
 
@@ -80,7 +81,7 @@ class MeshMaker {
   MeshAttempt search(BackgroundChoice& backgrounds, const EdgeLength& choice, const MakeBackground& make);
   MeshAttempt graded(BackgroundChoice& backgrounds, double h, const MakeBackground& make);
   void curve(MeshAttempt& a) const;
-  void say(const std::string& line) const {
+  void say(const Message& line) const {
     if (lines_.say) lines_.say(line);
   }
 

@@ -2,8 +2,8 @@
 
 #include "body/body.h"
 #include "body/fidelity/mesh_measures.h"
-#include "mesh/certify/quadratic_tets.h"
-#include "mesh/certify/second_order_certificate.h"
+#include "mesh/second_order/quadratic_tets.h"
+#include "mesh/second_order/second_order_certificate.h"
 #include "mesh/universal_mesh.h"
 
 namespace umtet {

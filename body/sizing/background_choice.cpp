@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "body/errors.h"
+#include "body/option_names.h"
 #include "body/sizing/mesh_memory.h"
 #include "common/formatted.h"
 #include "mesh/background/a15_box.h"
@@ -33,9 +34,12 @@ void require_walls(const BodyOptions& options) {
   const bool walls = options.mesh.box_walls;
   const std::string& name = options.mesh.background;
   const bool is_a15 = name == "a15" || (name == "auto" && !is_graded(options));
-  if (walls && !is_a15) throw UsageError("--box-walls is for --background a15");
+  if (walls && !is_a15) {
+    throw UsageError({option::box_walls, " is for ", Setting(option::background, "a15")});
+  }
   if (walls || !options.mesh.complement) return;
-  throw UsageError("--complement needs --box-walls: what is around the body ends at the flat walls of --box");
+  throw UsageError({option::complement, " needs ", option::box_walls,
+                    ": what is around the body ends at the flat walls of ", option::box});
 }
 
 ClassificationSource classification_source(const BodyOptions& options) {
@@ -60,9 +64,9 @@ BackgroundChoice::BackgroundChoice(BodyOptions options, const Domain& domain)
   if (!is_given) tiling_ = &tiling_of(options_.mesh);
   if (!is_given) return;
   if (options_.mesh.h > 0 || options_.mesh.tets > 0) {
-    throw UsageError("--h and --tets: " + options_.mesh.background + " has its own edge lengths");
+    throw UsageError({option::h, " and ", option::tets, ": " + options_.mesh.background + " has its own edge lengths"});
   }
-  if (!options_.background) throw UsageError("mesh.background = " + options_.mesh.background + ": unknown");
+  if (!options_.background) throw UsageError({Setting(option::background, options_.mesh.background), ": unknown"});
   given_.emplace(options_.background(domain.shift));
 }
 
@@ -127,9 +131,11 @@ EdgeLength BackgroundChoice::graded_edge_length(const Domain& domain, const Cont
   const double least = h_of_graded_tets(*graded_, domain, static_cast<double>(p.max_tets), context);
   if (p.h > 0 || p.max_deviation > 0 || options_.sizes || options_.label_sizes) {
     throw ResourceLimit(
-        formatted("these sizes, %.4g where they are least, make about %.2g tets: raise --max-tets "
-                  "%lld, or ask for sizes that are %.2g times as large",
-                  h, n, static_cast<long long>(p.max_tets), least / h));
+        formatted(
+            "these sizes, %.4g where they are least, make about %.2g tets, more than %lld (that many at sizes that "
+            "are %.2g times as large)",
+            h, n, static_cast<long long>(p.max_tets), least / h),
+        {{Change::Raise, option::max_tets}});
   }
   return representable({.h = least, .least = least, .at_max_tets = true}, domain);
 }

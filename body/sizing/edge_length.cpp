@@ -1,7 +1,6 @@
 #include "body/sizing/edge_length.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -10,9 +9,11 @@
 
 #include "body/errors.h"
 #include "body/label_volume.h"
+#include "body/option_names.h"
 #include "body/pieces/zero_set_choice.h"
 #include "body/sizing/background_choice.h"
 #include "body/sizing/deviation.h"
+#include "body/sizing/sheet_support.h"
 #include "body/sizing/thick_body.h"
 #include "common/formatted.h"
 #include "mesh/certify/quality_report.h"
@@ -20,7 +21,6 @@
 #include "mesh/implicit/thickness.h"
 #include "mesh/sizes/body_size.h"
 #include "reconstruct/cloud/cloud_arrays.h"
-#include "reconstruct/cloud/neighbour_tree.h"
 #include "reconstruct/solve/resolution.h"
 
 namespace umtet {
@@ -46,8 +46,8 @@ double h_of(const Domain& domain, const BodyOptions& options, std::int64_t n_tet
     return h_for_tets(tiling_of(options.mesh), domain.size(), static_cast<double>(n_tets),
                       classification_source(options));
   } catch (const std::invalid_argument& e) {
-    throw MeshingImpossible(std::string("no edge length can be chosen: ") + e.what() +
-                            "; give --h, or a --box around the place where psi < 0");
+    throw MeshingImpossible(std::string("no edge length can be chosen: ") + e.what(),
+                            {{Change::Give, option::h}, {Change::Give, option::box, "around the place where psi < 0"}});
   }
 }
 
@@ -62,8 +62,9 @@ void refuse_too_many(const Domain& domain, const BodyOptions& options, double h)
   }
   // The estimate is good to 10 % in the number of tets, which is 3 % in h.
   if (h >= .97 * least) return;
-  throw ResourceLimit(formatted("h = %.4g makes more than %lld tets (that many at h = %.4g): raise --max-tets", h,
-                                static_cast<long long>(max_tets), least));
+  throw ResourceLimit(formatted("h = %.4g makes more than %lld tets (that many at h = %.4g)", h,
+                                static_cast<long long>(max_tets), least),
+                      {{Change::Raise, option::max_tets}});
 }
 
 struct ThinPart {
@@ -71,20 +72,7 @@ struct ThinPart {
   double faces = 1;  ///< mean of (that / thickness)^2: about the share of faces that edges in proportion would make
 };
 
-/// Whether samples back psi = 0 at a place: one of the nearest looks to the side that psi rises to. Along the rim of a
-/// sheet that was closed flat, samples are near to what closes it and look the other way.
-bool is_backed(const Domain& domain, const NeighbourTree& tree, const Vec3& x, const Vec3& gradient) {
-  // Some of them are of the other side of a rim, however thin it is: as many as a sample has around it on one sheet.
-  constexpr std::size_t kNearest = 8;
-  std::array<Neighbour, kNearest> room;
-  const double radius = support_radius(domain);
-  for (const Neighbour& near : tree.k_nearest(x, room))
-    if (near.distance2 <= radius * radius && domain.cloud.normals[near.point].dot(gradient) > 0) return true;
-  return false;
-}
-
-/// Thickness of what samples show on both sides. A sheet that closes a hole is a guess, and no reason for a small h: a
-/// relief that is closed flat is as thin as one likes along its rim. @param t  of the samples, at most the limit
+/// Limits thickness to what samples show on both sides. @param t  thickness at the samples, at most the limit
 void leave_out_guesses(const Domain& domain, ImplicitFunctionRef psi, const std::vector<Vec3>& samples, double step,
                        double limit, const Context& context, std::vector<double>& t) {
   std::vector<std::size_t> thin;
@@ -92,7 +80,7 @@ void leave_out_guesses(const Domain& domain, ImplicitFunctionRef psi, const std:
   for (std::size_t i = 0; i < t.size(); ++i)
     if (t[i] < limit) thin.push_back(i), points.push_back(samples[i]);
   if (thin.empty() || domain.cloud.normals.size() != domain.cloud.points.size()) return;
-  const NeighbourTree tree(domain.cloud.points);
+  const SheetSupport is_supported(domain);
   const std::vector<SheetDistances> sheets = sheet_distances(psi, points, step, limit, context, domain.steepest());
   for (std::size_t k = 0; k < thin.size(); ++k) {
     const Foot foot = foot_point(psi, points[k], step);
@@ -103,7 +91,7 @@ void leave_out_guesses(const Domain& domain, ImplicitFunctionRef psi, const std:
       const Vec3 other = foot.point + side * distance * foot.normal;
       Vec3 gradient;
       psi.value(other, gradient);
-      if (is_backed(domain, tree, other, gradient)) t[thin[k]] = std::min(t[thin[k]], distance);
+      if (is_supported(other, gradient)) t[thin[k]] = std::min(t[thin[k]], distance);
     }
   }
 }
@@ -188,9 +176,9 @@ EdgeLength by_deviation(Domain& domain, const BodyOptions& options, double devia
   const double h = h_for_deviation(domain, deviation, kMostOfDiagonal * domain.diagonal, least, context);
   if (h > least) return {h, least};
   throw ResourceLimit(
-      formatted("--max-deviation %.4g needs more than %lld tets (that many at h = %.4g): raise "
-                "--max-tets",
-                deviation, static_cast<long long>(max_tets), least));
+      {Setting(option::max_deviation, formatted("%.4g", deviation)),
+       formatted(" needs more than %lld tets (that many at h = %.4g)", static_cast<long long>(max_tets), least)},
+      {{Change::Raise, option::max_tets}});
 }
 
 /// The choice, without regard to how it will be written.
@@ -262,13 +250,15 @@ EdgeLength representable(EdgeLength choice, const Domain& domain) {
   const double least = least_h_in_file(domain);
   if (choice.h < least) {
     const double far = greatest_coordinates(domain).maxCoeff();
-    throw MeshingImpossible(formatted(
-        "h = %.4g is too small for coordinates of %.3g: they are rounded to multiples of %.2g in any "
-        "file of doubles, and boundary vertices would miss psi = 0 by more than %g h; move the input "
-        "nearer to the origin%s",
-        choice.h, far, std::nextafter(far, std::numeric_limits<double>::infinity()) - far, kMostRounding,
-        (least < kMeshEdge * 10 * domain.diagonal ? formatted(", or give --h %.3g or more", least) : std::string())
-            .c_str()));
+    std::vector<Remedy> remedies;
+    if (least < kMeshEdge * 10 * domain.diagonal)
+      remedies.push_back({Change::Give, {option::h, formatted("%.3g", least)}, "or more"});
+    throw MeshingImpossible(
+        formatted("h = %.4g is too small for coordinates of %.3g: they are rounded to multiples of %.2g in any file of "
+                  "doubles, and boundary vertices would miss psi = 0 by more than %g h; move the input nearer to the "
+                  "origin",
+                  choice.h, far, std::nextafter(far, std::numeric_limits<double>::infinity()) - far, kMostRounding),
+        remedies);
   }
   choice.least = std::max(choice.least, least);
   return choice;

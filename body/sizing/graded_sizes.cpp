@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "body/errors.h"
+#include "body/option_names.h"
 #include "body/pieces/zero_set_choice.h"
 #include "body/sizing/edge_length.h"
+#include "body/sizing/sheet_support.h"
 #include "common/formatted.h"
 #include "common/polled_loops.h"
 #include "mesh/core/asking_psi.h"
@@ -32,21 +36,21 @@ constexpr double kPower = 2.5;
 constexpr double kGoodEnough = .05;
 constexpr int kMostRounds = 6;
 
-/// The flags of sizes that are given.
-std::vector<std::string> given_sizes(const BodyOptions& options) {
+/// The options by which sizes are given.
+std::vector<Option> given_sizes(const BodyOptions& options) {
   const MeshOptions& p = options.mesh;
-  std::vector<std::string> flags;
-  const auto note = [&](bool is_given, const char* flag) {
-    if (is_given) flags.emplace_back(flag);
+  std::vector<Option> given;
+  const auto note = [&](bool is_given, Option option) {
+    if (is_given) given.push_back(option);
   };
-  note(static_cast<bool>(options.sizes), "--size");
-  note(static_cast<bool>(options.label_sizes), "--size-at");
-  note(p.h_min > 0, "--h-min");
-  note(p.h_max > 0, "--h-max");
-  note(p.grade_inside, "--grade-inside");
-  note(options.max_turn_is_given, "--max-turn");
-  note(options.grade_is_given, "--grade");
-  return flags;
+  note(static_cast<bool>(options.sizes), option::sizes);
+  note(static_cast<bool>(options.label_sizes), option::label_sizes);
+  note(p.h_min > 0, option::h_min);
+  note(p.h_max > 0, option::h_max);
+  note(p.grade_inside, option::grade_inside);
+  note(options.max_turn_is_given, option::max_turn);
+  note(options.grade_is_given, option::grade);
+  return given;
 }
 
 bool has_less_h(const SizeSource& a, const SizeSource& b) { return a.h < b.h; }
@@ -84,17 +88,19 @@ bool is_graded(const BodyOptions& options) {
 void require_graded(const BodyOptions& options) {
   const MeshOptions& p = options.mesh;
   if (!is_graded(options)) {
-    const std::vector<std::string> flags = given_sizes(options);
-    if (!flags.empty()) throw UsageError(formatted("%s is for --background graded", flags.front().c_str()));
+    const std::vector<Option> given = given_sizes(options);
+    if (!given.empty()) throw UsageError({given.front(), " is for ", Setting(option::background, "graded")});
     return;
   }
   if (p.h_max > 0 && p.h_min > p.h_max) {
-    throw UsageError(formatted("--h-min %s is above --h-max %s", shortest(p.h_min).c_str(), shortest(p.h_max).c_str()));
+    throw UsageError(
+        {Setting(option::h_min, shortest(p.h_min)), " is above ", Setting(option::h_max, shortest(p.h_max))});
   }
   if (p.h > 0 && p.h_min > p.h)
-    throw UsageError(formatted("--h-min %s is above --h %s", shortest(p.h_min).c_str(), shortest(p.h).c_str()));
+    throw UsageError({Setting(option::h_min, shortest(p.h_min)), " is above ", Setting(option::h, shortest(p.h))});
   if (p.grade_inside && !(p.max_deviation == 0 && !options.sizes && !options.label_sizes)) {
-    throw UsageError("--grade-inside keeps --h on all of the boundary: without --max-deviation, --size and --size-at");
+    throw UsageError({option::grade_inside, " keeps ", option::h, " on all of the boundary: without ",
+                      option::max_deviation, ", ", option::sizes, " and ", option::label_sizes});
   }
   if (options.label_sizes) options.label_sizes();
 }
@@ -130,14 +136,18 @@ bool GradedSizes::add(Domain& domain, const Context& context, double most_tets) 
   }
   s.deviation = p.max_deviation / (kSizeTolerance * kSizeTolerance);
   if (p.grade_inside) s.edges_across = s.max_turn = 0;
+  std::optional<SheetSupport> support;
+  if (domain.level_set && !domain.cloud.points.empty() &&
+      domain.cloud.normals.size() == domain.cloud.points.size()) {
+    s.is_known = std::cref(support.emplace(domain));
+  }
   domain.limit_detail(s.h_min);
   const ZeroSetChoice pieces = choose_components(domain, std::min(s.h, kMeshEdge * domain.diagonal), context);
   const std::vector<Vec3> points = kept_points(pieces);
   if (points.empty()) {
     throw MeshingImpossible(
-        "no edge length can be chosen: psi = 0 is nowhere in the box; give a --box around the place where psi < 0, or "
-        "a "
-        "smaller --h");
+        "no edge length can be chosen: psi = 0 is nowhere in the box",
+        {{Change::Give, option::box, "around the place where psi < 0"}, {Change::Lower, option::h}});
   }
   bool too_many = false;
   const auto make_too_many = [&](const std::vector<SizeSource>& sources) {
@@ -152,7 +162,7 @@ bool GradedSizes::add(Domain& domain, const Context& context, double most_tets) 
   sources_.insert(sources_.end(), on_surface.begin(), on_surface.end());
   const LabelSizes of_label = options_.label_sizes ? options_.label_sizes() : LabelSizes();
   if (!of_label.factors.empty() && domain.cloud.labels.empty()) {
-    throw UsageError("--size-at " + of_label.name + ": the points have no labels");
+    throw UsageError({Setting(option::label_sizes, of_label.name), ": the points have no labels"});
   }
   for (std::size_t i = 0; i < domain.cloud.labels.size(); ++i) {
     const auto at = of_label.factors.find(domain.cloud.labels[i]);
@@ -182,10 +192,10 @@ void GradedSizes::require_lengths(const std::vector<Vec3>& inside) const {
   for (const Vec3& x : inside) look(x);
   if (!worst) return;
   const Vec3 at = *worst + shift_;
-  throw UsageError(formatted(
-      "--size %s is %.4g at (%.4g, %.4g, %.4g), which is in the body: edge lengths are above 0. --h-min raises "
-      "what is less",
-      formula_name_.c_str(), least, at.x(), at.y(), at.z()));
+  throw UsageError({Setting(option::sizes, formula_name_),
+                    formatted(" is %.4g at (%.4g, %.4g, %.4g), which is in the body: edge lengths are above 0", least,
+                              at.x(), at.y(), at.z())},
+                   {{Change::Use, option::h_min, "raises what is less"}});
 }
 
 /// With what the user asks for: at the sources, and on a lattice inside.
@@ -251,8 +261,8 @@ double h_of_graded_tets(const GradedSizes& sizes, const Domain& domain, double n
         expected_graded_tets(sizes.field(h, context), h, domain.psi(), domain.box, domain.steepest(), context);
     if (!(n > 0)) {
       throw MeshingImpossible(
-          "no edge length can be chosen: psi is not negative at any of the places looked at in the box; give --h, or a "
-          "--box around the place where psi < 0");
+          "no edge length can be chosen: psi is not negative at any of the places looked at in the box",
+          {{Change::Give, option::h}, {Change::Give, option::box, "around the place where psi < 0"}});
     }
     const double ratio = n / n_tets;
     if (std::abs(ratio - 1) < kGoodEnough) break;

@@ -1,6 +1,9 @@
 #include "body/sizing/mesh_memory.h"
 
+#include <vector>
+
 #include "body/errors.h"
+#include "body/option_names.h"
 #include "common/formatted.h"
 
 namespace umtet {
@@ -17,11 +20,14 @@ void require_memory(const BackgroundMesh& background, double n_tets, double allo
   const double need = kBytesPerTet * n_tets + kBytesPerBackgroundVertex * static_cast<double>(background.n_vertices()) +
                       kBytesPerBackgroundTet * static_cast<double>(background.n_tets());
   if (need <= allowed) return;
-  throw ResourceLimit(formatted(
-      "h = %.4g: about %.3g tets in a background mesh of %.3g need %.3g GB of memory, and %.3g GB are "
-      "allowed: fewer --tets or a larger --h%s",
-      background.h(), n_tets, static_cast<double>(background.n_tets()), need / 1e9, allowed / 1e9,
-      n_tets < .01 * static_cast<double>(background.n_tets()) ? ", or a --box closer around the domain" : ""));
+  std::vector<Remedy> remedies = {{Change::Lower, option::tets}, {Change::Raise, option::h}};
+  if (n_tets < .01 * static_cast<double>(background.n_tets()))
+    remedies.push_back({Change::Give, option::box, "closer around the domain"});
+  throw ResourceLimit(
+      formatted(
+          "h = %.4g: about %.3g tets in a background mesh of %.3g need %.3g GB of memory, and %.3g GB are allowed",
+          background.h(), n_tets, static_cast<double>(background.n_tets()), need / 1e9, allowed / 1e9),
+      remedies);
 }
 
 }  // namespace umtet

@@ -7,7 +7,7 @@
 
 #include "body/sizing/background_choice.h"
 #include "body/sizing/edge_length.h"
-#include "reconstruct/cloud/neighbour_tree.h"
+#include "reconstruct/cloud/neighbours/neighbour_tree.h"
 #include "reconstruct/triangles/body_thickness.h"
 #include "reconstruct/triangles/cut_triangles.h"
 #include "reconstruct/triangles/triangle_samples.h"

@@ -19,7 +19,7 @@ constexpr double kLeastAttempt = .5;
 // Bodies that fill a twentieth of the cube of their diagonal have half of kMeshEdge as their h with so many tets: an
 // A15 has 9 tets in h^3.
 constexpr double kTetsOfDefault = 1e6;
-// An h that is estimated from samples is good to 3 % (edge_length.cpp); --tets moves it by as much.
+// An h that is estimated from samples is good to 3 % (edge_length.cpp); MeshOptions::tets moves it by as much.
 constexpr double kEstimated = 1.05;
 
 bool is_uniform(const BodyOptions& options) {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "distributed/first_share.h"
+#include "distributed/partition/first_share.h"
 
 namespace umtet {
 namespace {

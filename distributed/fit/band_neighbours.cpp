@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "distributed/all_to_all.h"
+#include "distributed/exchange/all_to_all.h"
+#include "distributed/exchange/mpi_count.h"
 #include "distributed/fit/band_cut.h"
-#include "distributed/mpi_count.h"
 
 namespace umtet {
 namespace {

@@ -5,10 +5,10 @@
 #include <limits>
 #include <utility>
 
-#include "distributed/collect.h"
+#include "distributed/exchange/collect.h"
+#include "distributed/exchange/phase.h"
 #include "distributed/fit/band_cut.h"
 #include "distributed/fit/band_neighbours.h"
-#include "distributed/phase.h"
 #include "reconstruct/solve/ssd_band.h"
 
 namespace umtet {

@@ -5,10 +5,10 @@
 #include <map>
 #include <utility>
 
-#include "distributed/curved_solver_part.h"
 #include "distributed/io/ordered_vtu.h"
 #include "distributed/io/standard_data.h"
-#include "distributed/solver_part.h"
+#include "distributed/solver/curved_solver_part.h"
+#include "distributed/solver/solver_part.h"
 #include "mesh/certify/quality_report.h"
 #include "mesh/io/tet_mesh_io.h"
 

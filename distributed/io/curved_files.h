@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "distributed/distributed_mesh.h"
 #include "distributed/io/part_files.h"
-#include "distributed/part_edges.h"
-#include "distributed/part_second_order.h"
+#include "distributed/mesh/distributed_mesh.h"
+#include "distributed/second_order/part_edges.h"
+#include "distributed/second_order/part_second_order.h"
 
 // Files of distributed ten-node tets. All functions are collective.
 namespace umtet {

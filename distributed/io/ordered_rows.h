@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "distributed/distributed_mesh.h"
-#include "distributed/id_order.h"
+#include "distributed/exchange/id_order.h"
+#include "distributed/mesh/distributed_mesh.h"
 #include "mesh/certify/quality_report.h"
 
 // Nodes and tets of a whole mesh for files, in the order of their ids, piece by piece, as columns. No rank holds more

@@ -1,6 +1,6 @@
 #include "distributed/io/ordered_vtu.h"
 
-#include "distributed/collect.h"
+#include "distributed/exchange/collect.h"
 #include "distributed/io/ordered_rows.h"
 #include "distributed/io/shared_arrays.h"
 #include "distributed/io/shared_file.h"
@@ -62,7 +62,7 @@ void Writer::write() {
 
 void Writer::nodes() {
   constexpr std::int64_t kNoVertex = -1;  // of the background, for a mid-side
-  SharedArrays arrays(comm_, file_, {&shape_.arrays[0], &shape_.arrays[1], from_end(4)});
+  SharedArrays arrays(file_, {&shape_.arrays[0], &shape_.arrays[1], from_end(4)});
   put_nodes(comm_, rows_.ids, rows_.places, rows_.boundary, [&](NodeColumns& columns) {
     for (std::int64_t& id : columns.id)
       if (id >= rows_.first_mid_side) id = kNoVertex;
@@ -75,7 +75,7 @@ void Writer::nodes() {
 
 void Writer::field(std::size_t a) {
   const std::vector<double> values = rows_.values(a);
-  SharedArrays arrays(comm_, file_, {&shape_.arrays[kStandard + a]});
+  SharedArrays arrays(file_, {&shape_.arrays[kStandard + a]});
   const bool is_vector = rows_.fields.arrays[a].n_components == 3;
   const auto put = [&](std::size_t first, const std::vector<double>& column) {
     arrays.put(0, (is_vector ? 24 : 8) * first, column);
@@ -87,7 +87,7 @@ void Writer::field(std::size_t a) {
 template <std::size_t n, class Index>
 void Writer::tets() {
   constexpr std::uint8_t kType = n == 4 ? 10 : 24;  // VTK_TETRA, VTK_QUADRATIC_TETRA
-  SharedArrays arrays(comm_, file_, {from_end(6), from_end(5), from_end(3), from_end(2), from_end(1)});
+  SharedArrays arrays(file_, {from_end(6), from_end(5), from_end(3), from_end(2), from_end(1)});
   put_tets<n, Index>(comm_, rows_.mesh, rows_.node, [&](const TetColumns<Index>& columns) {
     const std::size_t first = columns.first;
     std::vector<Index> ends;

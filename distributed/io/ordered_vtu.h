@@ -8,8 +8,8 @@
 #include <functional>
 #include <vector>
 
-#include "distributed/distributed_mesh.h"
 #include "distributed/io/vertex_values.h"
+#include "distributed/mesh/distributed_mesh.h"
 
 namespace umtet {
 

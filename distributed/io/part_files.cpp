@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "distributed/collect.h"
-#include "distributed/ghost_tets.h"
+#include "distributed/exchange/collect.h"
 #include "distributed/io/ordered_vtu.h"
 #include "distributed/io/standard_data.h"
 #include "distributed/io/write_together.h"
-#include "distributed/solver_part.h"
+#include "distributed/solver/ghost_tets.h"
+#include "distributed/solver/solver_part.h"
 #include "mesh/certify/quality_report.h"
 #include "mesh/io/checked_file.h"
 #include "mesh/io/msh_piece.h"

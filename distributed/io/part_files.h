@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "distributed/distributed_mesh.h"
 #include "distributed/io/vertex_values.h"
-#include "distributed/solver_part.h"
+#include "distributed/mesh/distributed_mesh.h"
+#include "distributed/solver/solver_part.h"
 #include "mesh/io/solver_mesh.h"
 #include "mesh/io/tet_mesh_io.h"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "distributed/selection.h"
-#include "distributed/vertex_owners.h"
+#include "distributed/exchange/selection.h"
+#include "distributed/mesh/vertex_owners.h"
 #include "mesh/certify/quality_report.h"
 
 namespace umtet {

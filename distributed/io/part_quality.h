@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "distributed/distributed_mesh.h"
+#include "distributed/mesh/distributed_mesh.h"
 #include "mesh/io/quality_csv.h"
 
 namespace umtet {

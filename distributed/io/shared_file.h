@@ -7,7 +7,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "distributed/unwinding.h"
+#include "distributed/exchange/unwinding.h"
 
 namespace umtet {
 

@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "distributed/id_order.h"
-#include "distributed/part_boundary.h"
+#include "distributed/certify/part_boundary.h"
+#include "distributed/exchange/id_order.h"
 
 namespace umtet {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "distributed/distributed_mesh.h"
-#include "distributed/vertex_owners.h"
+#include "distributed/mesh/distributed_mesh.h"
+#include "distributed/mesh/vertex_owners.h"
 
 namespace umtet {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "distributed/vertex_owners.h"
+#include "distributed/mesh/vertex_owners.h"
 
 namespace umtet {
 

@@ -8,13 +8,13 @@
 #include <system_error>
 #include <utility>
 
-#include "distributed/collect.h"
-#include "distributed/id_order.h"
+#include "distributed/exchange/collect.h"
+#include "distributed/exchange/id_order.h"
 #include "distributed/io/ordered_rows.h"
 #include "distributed/io/shared_file.h"
 #include "distributed/io/standard_data.h"
 #include "distributed/io/write_together.h"
-#include "distributed/solver_part.h"
+#include "distributed/solver/solver_part.h"
 #include "mesh/io/hdf5_shape.h"
 
 namespace umtet {

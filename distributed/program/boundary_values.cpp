@@ -7,8 +7,8 @@
 #include <variant>
 #include <vector>
 
-#include "distributed/all_to_all.h"
-#include "distributed/collect.h"
+#include "distributed/exchange/all_to_all.h"
+#include "distributed/exchange/collect.h"
 
 namespace umtet {
 namespace {

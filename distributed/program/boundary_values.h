@@ -2,9 +2,9 @@
 
 #include <mpi.h>
 
-#include "distributed/distributed_mesh.h"
 #include "distributed/io/curved_files.h"
 #include "distributed/io/part_files.h"
+#include "distributed/mesh/distributed_mesh.h"
 #include "pipeline/meshing/part_mesher.h"
 
 namespace umtet {

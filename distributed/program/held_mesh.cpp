@@ -7,15 +7,15 @@
 #include <utility>
 #include <vector>
 
-#include "distributed/collect.h"
+#include "distributed/certify/part_boundary.h"
+#include "distributed/certify/part_certificate.h"
+#include "distributed/exchange/collect.h"
+#include "distributed/exchange/phase.h"
 #include "distributed/io/curved_files.h"
 #include "distributed/io/part_quality.h"
 #include "distributed/io/standard_data.h"
 #include "distributed/io/whole_xdmf.h"
 #include "distributed/io/write_together.h"
-#include "distributed/part_boundary.h"
-#include "distributed/part_certificate.h"
-#include "distributed/phase.h"
 #include "distributed/program/boundary_values.h"
 #include "mesh/io/quality_csv.h"
 #include "mesh/submesh/assumptions.h"

@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "distributed/distributed_mesh.h"
 #include "distributed/io/curved_files.h"
 #include "distributed/io/part_files.h"
-#include "distributed/part_second_order.h"
+#include "distributed/mesh/distributed_mesh.h"
+#include "distributed/second_order/part_second_order.h"
 #include "mesh/background/background_mesh.h"
 #include "pipeline/meshing/part_mesher.h"
 

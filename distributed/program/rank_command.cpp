@@ -4,7 +4,7 @@
 #include <chrono>
 #include <thread>
 
-#include "distributed/collect.h"
+#include "distributed/exchange/collect.h"
 #include "distributed/program/freed_memory.h"
 
 namespace umtet {

@@ -10,7 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "distributed/phase.h"
+#include "body/body.h"
+#include "distributed/exchange/phase.h"
 #include "distributed/program/besides_mesh.h"
 #include "distributed/program/freed_memory.h"
 #include "distributed/program/rank_command.h"
@@ -18,7 +19,6 @@
 #include "distributed/program/shared_level_set.h"
 #include "distributed/program/together.h"
 #include "pipeline/case/memory.h"
-#include "body/body.h"
 
 namespace umtet {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "distributed/collect.h"
+#include "distributed/exchange/collect.h"
 #include "pipeline/case/version.h"
 
 namespace umtet {

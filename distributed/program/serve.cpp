@@ -7,15 +7,15 @@
 #include <utility>
 #include <vector>
 
+#include "body/sizing/background_choice.h"
+#include "distributed/exchange/phase.h"
 #include "distributed/fit/part_refine.h"
 #include "distributed/io/shared_file.h"
-#include "distributed/phase.h"
 #include "distributed/program/held_mesh.h"
 #include "distributed/program/rank_command.h"
 #include "distributed/program/same_call.h"
 #include "distributed/program/shared_level_set.h"
 #include "distributed/program/together.h"
-#include "body/sizing/background_choice.h"
 #include "pipeline/domain/load_domain.h"
 
 namespace umtet {

@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "distributed/collect.h"
-#include "distributed/phase.h"
+#include "distributed/exchange/collect.h"
+#include "distributed/exchange/phase.h"
 
 namespace umtet {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <exception>
 
-#include "distributed/collect.h"
+#include "distributed/exchange/collect.h"
 #include "distributed/io/shared_file.h"
 #include "pipeline/case/exit_code.h"
 

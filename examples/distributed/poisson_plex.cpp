@@ -18,9 +18,9 @@
 #include <map>
 #include <vector>
 
-#include "distributed/collect.h"
-#include "distributed/distributed_mesh.h"
-#include "distributed/solver_part.h"
+#include "distributed/exchange/collect.h"
+#include "distributed/mesh/distributed_mesh.h"
+#include "distributed/solver/solver_part.h"
 #include "mesh/background/background_mesh.h"
 
 namespace {

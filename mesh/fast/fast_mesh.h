@@ -1,18 +1,15 @@
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <utility>
 #include <vector>
 
 #include "common/context.h"
 #include "mesh/background/background_mesh.h"
-#include "mesh/background/vertex_links.h"
 #include "mesh/base/id_set.h"
 #include "mesh/core/implicit_function.h"
 #include "mesh/core/psi_values.h"
 #include "mesh/fast/fast_params.h"
-#include "mesh/fast/former_mesh.h"
+#include "mesh/fast/update/fast_memory.h"
+#include "mesh/fast/update/former_mesh.h"
 #include "mesh/submesh/chosen_submesh.h"
 #include "mesh/submesh/submesh_params.h"
 #include "mesh/submesh/um_result.h"
@@ -59,15 +56,6 @@ ChosenSubmesh classified_submesh(const BackgroundMesh& background, ImplicitFunct
 ChosenSubmesh classified_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi,
                                  const SubmeshParams& submesh, const FastParams& params, const FormerMesh& former,
                                  const Context& context = {});
-
-/// State that one mesh passes to the mesh of the next psi in the same background.
-struct FastMemory {
-  IdSet negative{0};                                 ///< vertices with psi < 0
-  IdSet inside{0};                                   ///< vertices classified as inside
-  std::vector<std::pair<std::int64_t, Vec3>> moved;  ///< vertices off their background positions, ascending
-  std::size_t n_recalled = 0;  ///< the number of moved vertices that began at their position in the last mesh
-  std::shared_ptr<const VertexLinks> links;  ///< links of the background
-};
 
 /// Boundary-fitting mesh from known inside vertices, those with psi < 0, warm-started from the last mesh. There is no
 /// tangential relaxation.

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "mesh/classification/classification.h"
-#include "mesh/fast/backtracking_projection.h"
-#include "mesh/fast/p_norm_smoothing.h"
-#include "mesh/fast/repair.h"
+#include "mesh/fast/projection/backtracking_projection.h"
+#include "mesh/fast/repair/repair.h"
+#include "mesh/fast/smoothing/p_norm_smoothing.h"
 
 namespace umtet {
 

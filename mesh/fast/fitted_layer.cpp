@@ -1,7 +1,7 @@
 #include "mesh/fast/fitted_layer.h"
 
-#include "mesh/fast/backtracking_projection.h"
-#include "mesh/fast/tangential_relaxation.h"
+#include "mesh/fast/projection/backtracking_projection.h"
+#include "mesh/fast/smoothing/tangential_relaxation.h"
 
 namespace umtet {
 

@@ -7,7 +7,7 @@
 #include "common/context.h"
 #include "mesh/core/implicit_function.h"
 #include "mesh/fast/fast_params.h"
-#include "mesh/fast/p_norm_smoothing.h"
+#include "mesh/fast/smoothing/p_norm_smoothing.h"
 
 namespace umtet {
 

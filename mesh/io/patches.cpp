@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "common/disjoint_sets.h"
-#include "mesh/io/detail/shared_edges.h"
+#include "mesh/io/detail/surface/shared_edges.h"
 
 namespace umtet {
 

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "mesh/io/detail/shared_edges.h"
+#include "mesh/io/detail/surface/shared_edges.h"
 #include "mesh/io/patches.h"
 
 namespace umtet {

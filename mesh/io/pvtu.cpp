@@ -3,7 +3,7 @@
 #include <type_traits>
 #include <variant>
 
-#include "mesh/io/detail/vtk_xml_text.h"
+#include "common/vtk_xml/appended_writer.h"
 
 namespace umtet {
 namespace {

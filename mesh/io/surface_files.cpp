@@ -1,14 +1,9 @@
 #include "mesh/io/surface_files.h"
 
-#include <OpenMesh/Core/IO/MeshIO.hh>
-#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
-#include <OpenMesh/Core/System/omstream.hh>
-#include <algorithm>
+#include <array>
+#include <cstdint>
 #include <limits>
-#include <mutex>
-#include <sstream>
 #include <stdexcept>
-#include <string>
 
 #include "mesh/base/check_indices.h"
 #include "mesh/io/checked_file.h"
@@ -16,79 +11,92 @@
 namespace umtet {
 namespace {
 
-struct SurfaceTraits : OpenMesh::DefaultTraits {
-  using Point = OpenMesh::Vec3d;
-};
-using HalfEdgeMesh = OpenMesh::TriMesh_ArrayKernelT<SurfaceTraits>;
+using Vec3f = Eigen::Vector3f;
 
-/// OpenMesh reports complex edges and written files on its global streams; a library of ours prints nothing.
-class QuietOpenMesh {
- public:
-  QuietOpenMesh() : lock_(mutex()), err_(omerr().is_enabled()), log_(omlog().is_enabled()) {
-    omerr().disable();
-    omlog().disable();
-  }
-  ~QuietOpenMesh() {
-    if (err_) omerr().enable();
-    if (log_) omlog().enable();
-  }
-  QuietOpenMesh(const QuietOpenMesh&) = delete;
-  QuietOpenMesh& operator=(const QuietOpenMesh&) = delete;
-
- private:
-  static std::mutex& mutex() {
-    static std::mutex m;
-    return m;
-  }
-  std::lock_guard<std::mutex> lock_;
-  bool err_, log_;
+/// The surface over its own vertices, in single precision.
+struct Surface {
+  std::vector<Vec3f> V;
+  std::vector<Triangle> faces;
 };
 
-/// The surface as half-edges, over its own vertices; `refused` counts the faces that do not fit a 2-manifold.
-HalfEdgeMesh half_edges(const std::vector<Vec3>& V, const std::vector<Triangle>& faces, std::size_t& refused) {
+Surface surface_of(const std::vector<Vec3>& V, const std::vector<Triangle>& faces) {
   check_indices(faces, V.size(), "face");
-  std::vector<int> vertices;
-  for (const Triangle& f : faces) vertices.insert(vertices.end(), f.begin(), f.end());
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  HalfEdgeMesh mesh;
-  mesh.reserve(vertices.size(), 3 * faces.size() / 2, faces.size());
-  std::vector<OpenMesh::VertexHandle> handle(V.size());
-  for (const int v : vertices) handle[v] = mesh.add_vertex(OpenMesh::Vec3d(V[v].x(), V[v].y(), V[v].z()));
-  const QuietOpenMesh quiet;
-  refused = 0;
-  for (const Triangle& f : faces) refused += !mesh.add_face(handle[f[0]], handle[f[1]], handle[f[2]]).is_valid();
-  return mesh;
+  std::vector<int> id(V.size(), -1);
+  for (const Triangle& f : faces) {
+    for (const int v : f) id[v] = 0;
+  }
+  Surface surface;
+  for (std::size_t v = 0; v < V.size(); ++v) {
+    if (id[v] < 0) continue;
+    id[v] = static_cast<int>(surface.V.size());
+    surface.V.push_back(V[v].cast<float>());
+  }
+  for (const Triangle& f : faces) surface.faces.push_back({id[f[0]], id[f[1]], id[f[2]]});
+  return surface;
+}
+
+void write(CheckedFile& file, const Vec3f& x) {
+  for (const float c : x) file.raw(c);
+}
+
+void write_stl(CheckedFile& file, const Surface& surface) {
+  constexpr std::size_t kHeader = 80;
+  if (surface.faces.size() > std::numeric_limits<std::uint32_t>::max()) {
+    throw std::invalid_argument("write_surface: STL counts faces in 32 bits");
+  }
+  std::string header = "binary STL";  // not "solid", by which readers know text
+  header.resize(kHeader, ' ');
+  file.text(header).raw(static_cast<std::uint32_t>(surface.faces.size()));
+  for (const Triangle& f : surface.faces) {
+    const Vec3f &a = surface.V[f[0]], &b = surface.V[f[1]], &c = surface.V[f[2]];
+    const Vec3 normal = (b - a).cast<double>().cross((c - a).cast<double>());
+    write(file, normal.stableNormalized().cast<float>());
+    for (const Vec3f* x : {&a, &b, &c}) write(file, *x);
+    file.raw(std::uint16_t{0});
+  }
+}
+
+void write_ply(CheckedFile& file, const Surface& surface) {
+  file.text("ply\nformat binary_little_endian 1.0\nelement vertex ").number(surface.V.size());
+  file.text("\nproperty float x\nproperty float y\nproperty float z\nelement face ").number(surface.faces.size());
+  file.text("\nproperty list uchar int vertex_indices\nend_header\n");
+  for (const Vec3f& x : surface.V) write(file, x);
+  for (const Triangle& f : surface.faces) {
+    file.raw(std::uint8_t{3});
+    for (const int v : f) file.raw(v);
+  }
+}
+
+void write_obj(CheckedFile& file, const Surface& surface) {
+  for (const Vec3f& x : surface.V) {
+    file.text("v");
+    for (const float c : x) file.text(" ").number(c);
+    file.text("\n");
+  }
+  for (const Triangle& f : surface.faces) {
+    file.text("f");
+    for (const int v : f) file.text(" ").number(v + 1);
+    file.text("\n");
+  }
 }
 
 }  // namespace
 
-HalfEdgeCount count_half_edges(const std::vector<Vec3>& V, const std::vector<Triangle>& faces) {
-  HalfEdgeCount count;
-  const HalfEdgeMesh mesh = half_edges(V, faces, count.n_refused_faces);
-  count.has_boundary =
-      std::any_of(mesh.halfedges_begin(), mesh.halfedges_end(), [&](const auto h) { return mesh.is_boundary(h); });
-  return count;
-}
-
 void write_surface(const std::filesystem::path& path, const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
                    SurfaceFormat format) {
-  std::size_t refused = 0;
-  const HalfEdgeMesh mesh = half_edges(V, faces, refused);
-  if (refused > 0) {
-    throw std::invalid_argument("cannot write " + path.string() + ": " + std::to_string(refused) +
-                                " faces do not fit a manifold");
-  }
-  const char* const extension = format == SurfaceFormat::Stl ? ".stl" : format == SurfaceFormat::Obj ? ".obj" : ".ply";
-  OpenMesh::IO::Options options = OpenMesh::IO::Options::Default;
-  if (format != SurfaceFormat::Obj) options += OpenMesh::IO::Options::Binary;
-  const QuietOpenMesh quiet;
-  std::ostringstream out;  // OpenMesh calls a cut file a success, so it writes to memory and we write the file
-  const bool written =
-      OpenMesh::IO::write_mesh(mesh, out, extension, options, std::numeric_limits<float>::max_digits10);
-  if (!written || !out) throw std::runtime_error("cannot write " + path.string() + ": OpenMesh gave up");
+  const Surface surface = surface_of(V, faces);
   CheckedFile file(path);
-  file.text(out.view());
+  switch (format) {
+    case SurfaceFormat::Stl:
+      write_stl(file, surface);
+      break;
+    case SurfaceFormat::Obj:
+      write_obj(file, surface);
+      break;
+    case SurfaceFormat::Ply:
+      write_ply(file, surface);
+      break;
+  }
   file.close();
 }
 

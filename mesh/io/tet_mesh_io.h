@@ -59,8 +59,8 @@ MeshFile with_standard_data(TetMesh mesh, std::vector<std::int64_t> background_v
 /// \throw std::system_error if the file cannot be read, MeshFileRefused for invalid content
 MeshFile read_tet_mesh(const std::filesystem::path& path);
 
-/// Writes VTK XML: inline base64 blocks with 64-bit headers, double coordinates, 32-bit connectivity if sufficient.
-/// Written block by block, without a copy of the mesh; 60 bytes per tet.
+/// Writes VTK XML: raw appended data with 64-bit headers, double coordinates, 32-bit connectivity if sufficient.
+/// Written block by block, without a copy of the mesh; 45 bytes per tet.
 /// \throw std::invalid_argument for data of the wrong size, std::system_error naming the path if writing fails
 void write_vtu(const std::filesystem::path& path, const MeshFile& file);
 

@@ -8,16 +8,14 @@
 
 namespace umtet {
 
-/// Layout of the file that write_vtu() makes, for processes that write a part of it each. Its arrays are base64 text of
-/// an eight-byte header, which contains the number of value bytes, and of the values.
+/// Layout of the file that write_vtu() makes, for processes that write a part of it each. Its arrays are raw bytes.
 struct VtuShape {
   struct Array {
     std::string name;
-    std::uint64_t begin = 0;    ///< position of its text in the file
+    std::uint64_t begin = 0;    ///< position of its values in the file
     std::uint64_t n_bytes = 0;  ///< size of its values
-    std::uint64_t n_encoded() const { return 8 + n_bytes; }
   };
-  std::vector<std::pair<std::uint64_t, std::string>> texts;  ///< positions and texts of everything between arrays
+  std::vector<std::pair<std::uint64_t, std::string>> texts;  ///< positions and texts of everything outside the arrays
   std::vector<Array> arrays;  ///< point fields, tet fields, then Points, connectivity, offsets, types
   bool has_wide_ids = false;  ///< connectivity and offsets have 64 bits instead of 32
 };
@@ -34,8 +32,5 @@ struct VtuField {
 /// @param nodes_per_tet  4, or 10 for quadratic tets
 VtuShape vtu_shape(std::size_t n_points, std::size_t n_tets, const std::vector<VtuField>& point_fields,
                    const std::vector<VtuField>& cell_fields, std::size_t nodes_per_tet = 4);
-
-/// Base64 text of bytes: 4 characters for every 3 bytes, and 4 for the remainder.
-std::string base64(const unsigned char* bytes, std::size_t n);
 
 }  // namespace umtet

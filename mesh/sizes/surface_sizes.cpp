@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <tuple>
@@ -150,7 +151,18 @@ class SurfaceSizes {
     if (p_.edges_across == 0) return p_.h;
     const SheetSearch search{kFirstStep * p_.h_min, p_.edges_across * p_.h, p_.steepest, kGrowth};
     const SheetDistances d = sheet_distances_from(psi_, f.x, f.n, search);
-    return std::min(d.body, d.gap) / p_.edges_across;
+    return std::min(known_thickness(f, -d.body), known_thickness(f, d.gap)) / p_.edges_across;
+  }
+
+  /// The distance from one sheet to the other if both are known, else infinity.
+  /// @param along  signed distance along the normal to the other sheet; infinite: there is none
+  double known_thickness(const OnSurface& f, double along) const {
+    const double distance = std::abs(along);
+    if (!p_.is_known || !(distance < p_.edges_across * p_.h)) return distance;
+    const Vec3 other = f.x + along * f.n;
+    Vec3 gradient;
+    psi_.value(other, gradient);
+    return p_.is_known(f.x, f.n) && p_.is_known(other, gradient) ? distance : std::numeric_limits<double>::infinity();
   }
 
   double of_deviation(const OnSurface& f) const {

@@ -20,11 +20,11 @@ namespace {
 constexpr std::string_view kTemporaryPrefix = ".tmp-";
 
 [[noreturn]] void fail(int code, const fs::path& file, const std::string& what) {
-  // 0 would read "Success" in the message.
+  // Code 0 would appear as "Success" in the message.
   throw std::system_error(code != 0 ? code : EIO, std::generic_category(), file.string() + ": " + what);
 }
 
-/// A file descriptor that knows which artefact to name when something fails.
+/// A file descriptor that names the artefact in its errors.
 class Descriptor {
  public:
   Descriptor(const fs::path& path, int flags, const fs::path& artefact)
@@ -54,7 +54,7 @@ class Descriptor {
   }
 
   void sync() {
-    // EINVAL: a file system without fsync (some network and FUSE mounts); there is nothing more to ask of it.
+    // EINVAL: the file system does not support fsync (some network and FUSE mounts).
     if (::fsync(fd_) != 0 && errno != EINVAL) fail(errno, artefact_, "cannot flush to disk");
   }
 
@@ -69,7 +69,7 @@ class Descriptor {
   int fd_;
 };
 
-/// Opening a pipe waits for its writer, and /dev/zero has no end.
+/// Opens a regular file. Opening a pipe would wait for its writer, and /dev/zero never ends.
 Descriptor open_regular(const fs::path& file) {
   std::error_code ignored;
   const fs::file_type type = fs::status(file, ignored).type();
@@ -103,7 +103,7 @@ struct TemporaryFile {
 
 fs::path folder_of(const fs::path& file) { return file.parent_path().empty() ? fs::path(".") : file.parent_path(); }
 
-/// A temporary file in the same folder: filled, not empty, and on the disk.
+/// Writes a temporary file in the same folder, checks that it is not empty, and flushes it to disk.
 std::unique_ptr<TemporaryFile> written_beside(const fs::path& file,
                                               const std::function<void(const fs::path&)>& writer) {
   auto temporary = std::make_unique<TemporaryFile>();
@@ -122,7 +122,7 @@ std::unique_ptr<TemporaryFile> written_beside(const fs::path& file,
   }
   std::error_code status;
   const std::uintmax_t size = fs::file_size(temporary->path, status);
-  if (status) fail(status.value(), file, "not written: the temporary file is gone");
+  if (status) fail(status.value(), file, "not written: the temporary file is missing");
   if (size == 0) fail(EIO, file, "not written: the temporary file is empty");
   Descriptor written(temporary->path, O_RDONLY, file);
   written.sync();
@@ -135,7 +135,7 @@ void take_place(TemporaryFile& temporary, const fs::path& file) {
   temporary.path.clear();
 }
 
-/// To the disk with the name of the file.
+/// Flushes the folder of the file to disk, and with it the name of the file.
 void sync_folder_of(const fs::path& file) { Descriptor(folder_of(file), O_RDONLY | O_DIRECTORY, file).sync(); }
 
 }  // namespace
@@ -162,7 +162,7 @@ std::vector<FileStamp> FileStamps::of(const std::vector<fs::path>& files) {
   std::vector<Identity> identities(files.size());
   std::vector<std::size_t> unknown;
   for (std::size_t i = 0; i < files.size(); ++i) {
-    // What it was before it is read: changed meanwhile, it is another the next time.
+    // The identity before reading: if the file changes meanwhile, it counts as another file the next time.
     struct stat status {};
     const bool exists = ::stat(files[i].c_str(), &status) == 0;
     identities[i] = {status.st_dev, status.st_ino, static_cast<std::uintmax_t>(status.st_size), status.st_mtim.tv_sec,
@@ -182,7 +182,7 @@ std::vector<FileStamp> FileStamps::of(const std::vector<fs::path>& files) {
       thrown[k] = std::current_exception();
     }
   });
-  for (const std::exception_ptr& error : thrown)  // of several the first, whatever threads do
+  for (const std::exception_ptr& error : thrown)  // the first of several errors, independent of threads
     if (error) std::rethrow_exception(error);
   for (const std::size_t i : unknown) {
     ++n_read_[files[i]];

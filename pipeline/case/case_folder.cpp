@@ -39,12 +39,13 @@ Stage parse_stage(const std::string& name) {
     names.push_back(to_string(stage));
   }
   const std::string near = nearest(name, names);
-  throw UsageError("no stage is called " + name +
-                   (near.empty() ? "; there are cloud, level-set, mesh" : "; did you mean " + near + "?"));
+  throw UsageError("unknown stage " + name +
+                   (near.empty() ? "; the stages are cloud, level-set, mesh" : "; did you mean " + near + "?"));
 }
 
 void remove_view(const CasePaths& paths) {
   for (const char* name : kViewFiles) fs::remove(paths.view() / name);
+  fs::remove(paths.view() / "zero.vtp");  // version 0.9 wrote it
   std::error_code not_empty;
   fs::remove(paths.view(), not_empty);
 }
@@ -81,7 +82,7 @@ CaseLock::CaseLock(const fs::path& root) : root_(root), created_(fs::create_dire
     throw FileTrouble(root.string() + ": another umtet" + (pid.empty() ? "" : ", process " + pid + ",") +
                       " is working on this case; wait until it ends, or choose another folder with -o");
   }
-  // The kernel drops the lock with the process, so a pid left behind by a killed run means nothing.
+  // The kernel releases the lock when the process ends, so a pid left by a killed run has no meaning.
   const std::string pid = std::to_string(::getpid());
   if (::ftruncate(fd_, 0) != 0 || ::pwrite(fd_, pid.data(), pid.size(), 0) != static_cast<ssize_t>(pid.size())) {
     const int code = errno;
@@ -96,7 +97,7 @@ CaseLock::~CaseLock() {
     fs::remove(root_ / kLockName, ignored);
     fs::remove(root_, ignored);
   } else if (::ftruncate(fd_, 0) != 0) {
-    // An unreadable pid in the lock file only spoils a message.
+    // If the pid in the lock file cannot be read, only a message suffers.
   }
   ::close(fd_);
 }

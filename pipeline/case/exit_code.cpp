@@ -10,6 +10,7 @@
 #include "common/context.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/interrupt.h"
+#include "pipeline/case/option_words.h"
 #include "pipeline/case/thin_place_json.h"
 #include "pipeline/expression/expression.h"
 #include "reconstruct/io/grid_io.h"
@@ -23,7 +24,7 @@ constexpr const char* kPleaseReport =
     "\n  this is a bug of umtet: please report it with the command and the case folder (or the input, if there is "
     "none)";
 
-/// What a user can do about an error of the system; empty where its own words are enough.
+/// Returns what a user can do about a system error; empty if the system's message is sufficient.
 const char* remedy(const std::error_code& code) {
   if (code == std::errc::no_such_file_or_directory) return "; check the path";
   if (code == std::errc::permission_denied || code == std::errc::operation_not_permitted) {
@@ -42,6 +43,9 @@ std::string message(const std::filesystem::filesystem_error& e) {
   return place + ": " + e.code().message() + remedy(e.code());
 }
 
+/// The message in the words of the command line.
+std::string said(const ExplainedError& e) { return text_of(e.message, as_flag); }
+
 }  // namespace
 
 Interrupted::Interrupted(int signal)
@@ -59,16 +63,16 @@ Failure failure_of(const std::exception_ptr& error) {
             : e.signal == SIGTERM ? ExitCode::Terminated
                                   : ExitCode::Interrupted,
             e.what()};
-  } catch (const Cancelled&) {  // until_interrupted() said so
+  } catch (const Cancelled&) {  // by until_interrupted()
     return failure_of(std::make_exception_ptr(Interrupted(interrupt_signal())));
   } catch (const UsageError& e) {
-    return {ExitCode::Usage, e.what()};
+    return {ExitCode::Usage, said(e)};
   } catch (const ExpressionError& e) {
     return {ExitCode::Usage, e.what()};
   } catch (const CloudRefused& e) {
-    return {ExitCode::InputRefused, e.what()};
+    return {ExitCode::InputRefused, said(e)};
   } catch (const GridRefused& e) {
-    return {ExitCode::InputRefused, e.what()};
+    return {ExitCode::InputRefused, said(e)};
   } catch (const MeshFileRefused& e) {
     return {ExitCode::InputRefused, e.what()};
   } catch (const SolveError& e) {
@@ -76,16 +80,16 @@ Failure failure_of(const std::exception_ptr& error) {
   } catch (const TooThin& e) {
     const TooThin::Evidence& thin = e.evidence;
     return {ExitCode::MeshingImpossible,
-            e.what(),
+            said(e),
             {{"too_thin", to_json(thin.places, thin.h)}, {"h_enough", json_of(thin.h_enough)}}};
   } catch (const MeshingImpossible& e) {
-    return {ExitCode::MeshingImpossible, e.what()};
+    return {ExitCode::MeshingImpossible, said(e)};
   } catch (const CertificateFailed& e) {
     return {ExitCode::GateFailed, e.what()};
   } catch (const ArtefactDamaged& e) {
     return {ExitCode::ArtefactCorrupt, e.what()};
   } catch (const ResourceLimit& e) {
-    return {ExitCode::ResourceLimit, e.what()};
+    return {ExitCode::ResourceLimit, said(e)};
   } catch (const std::bad_alloc&) {
     return {ExitCode::ResourceLimit, std::string("out of memory in ") + work_at_hand()};
   } catch (const FileTrouble& e) {
@@ -94,12 +98,12 @@ Failure failure_of(const std::exception_ptr& error) {
     return {ExitCode::FileTrouble, message(e)};
   } catch (const std::system_error& e) {
     return {ExitCode::FileTrouble, e.what() + std::string(remedy(e.code()))};
-  } catch (const std::length_error& e) {  // a lattice, grid or mesh of more parts than there are numbers for
+  } catch (const std::length_error& e) {  // a lattice, grid or mesh with more elements than indices can count
     return {ExitCode::ResourceLimit, e.what()};
-  } catch (const std::exception& e) {  // also std::invalid_argument: what a user can get wrong is checked before
+  } catch (const std::exception& e) {  // including std::invalid_argument: user errors are checked before
     return {ExitCode::Bug, std::string("internal error: ") + e.what() + kPleaseReport};
   } catch (...) {
-    return {ExitCode::Bug, std::string("internal error of an unknown kind") + kPleaseReport};
+    return {ExitCode::Bug, std::string("internal error of unknown type") + kPleaseReport};
   }
 }
 

@@ -9,7 +9,7 @@
 
 namespace umtet {
 
-/// What the program returns; the numbers are part of its contract.
+/// Exit codes of the program; the numbers are a documented interface.
 enum class ExitCode {
   Success = 0,
   Bug = 1,
@@ -17,7 +17,7 @@ enum class ExitCode {
   InputRefused = 3,
   ReconstructionFailed = 4,
   MeshingImpossible = 5,  ///< not possible at this h
-  GateFailed = 6,         ///< made, but a gate or the certificate failed
+  GateFailed = 6,         ///< a mesh was made, but a gate or the certificate failed
   FileTrouble = 7,
   ArtefactCorrupt = 8,
   ResourceLimit = 9,
@@ -25,20 +25,20 @@ enum class ExitCode {
   Terminated = 143,
 };
 
-/// A mesh was made, but its certificate says no; what() has the first reason.
+/// A mesh was made, but its certificate fails; what() contains the first reason.
 struct CertificateFailed : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
-/// A file of the case is not what its record says, or not of its format.
+/// A file of the case does not match its record, or is not in its format.
 struct ArtefactDamaged : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
-/// A file or folder cannot be used; what() is a sentence with the remedy. Where the system's own words say more it is a
-/// std::system_error.
+/// A file or folder cannot be used; what() is a sentence with the remedy. If the message of the system says more,
+/// std::system_error is thrown instead.
 struct FileTrouble : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
-/// A signal asked to stop and the case has been left resumable.
+/// A signal requested the end of the program, and the case can be resumed.
 struct Interrupted : std::runtime_error {
   explicit Interrupted(int signal);
   int signal;
@@ -46,12 +46,13 @@ struct Interrupted : std::runtime_error {
 
 struct Failure {
   ExitCode code;
-  std::string message;                                                 ///< one or a few lines, without a final newline
-  nlohmann::ordered_json evidence = nlohmann::ordered_json::object();  ///< what else a program may want to know
+  std::string message;  ///< one or several lines, without a final newline
+  nlohmann::ordered_json evidence = nlohmann::ordered_json::object();  ///< further data for programs
 };
 
-/// The one place where exceptions become exit codes. What is not one of the types above or of the libraries' is a bug:
-/// in particular std::invalid_argument, because parameters and input are checked before they reach the libraries.
+/// Converts exceptions to exit codes; no other function does. Messages name options by their flags (option_words.h). An
+/// exception that is neither one of the types above nor a type of the libraries is a bug. This includes
+/// std::invalid_argument, because parameters and input are checked before they reach the libraries.
 /// \pre error is not null
 Failure failure_of(const std::exception_ptr& error);
 

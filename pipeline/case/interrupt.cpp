@@ -26,20 +26,21 @@ namespace {
 std::atomic<int> asked_by{0};
 std::atomic<const char*> work{"start"};
 std::atomic<bool> in_own_time{false};
-std::atomic<const char*> answers_to{nullptr};  ///< the command whose caller waits for a document
-std::atomic<bool> last_word_taken{false};  ///< the one that finds it false answers and ends the process; no other does
+std::atomic<const char*> answers_to{nullptr};  ///< the command whose caller expects a document
+std::atomic<bool> last_word_taken{false};      ///< the thread that finds it false answers and ends the process
 std::atomic<bool> last_word_said{false};
-std::atomic<std::int64_t> reader_has_until{0};  ///< in us of the monotonic clock; 0: as long as it takes
-pthread_t first_thread;                         ///< where signals are answered, one after the other
+std::atomic<std::int64_t> reader_has_until{0};  ///< in us of the monotonic clock; 0: no limit
+pthread_t first_thread;                         ///< the thread that answers signals, one after the other
 std::terminate_handler other_end = nullptr;
-// Else a signal handler may not touch them.
+// Otherwise a signal handler must not access them.
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<const char*>::is_always_lock_free &&
               std::atomic<bool>::is_always_lock_free && std::atomic<std::int64_t>::is_always_lock_free);
 
-// Steps poll more often than this; a few library calls on large clouds take longer, and the process ends within them.
-// The promise is a fifth of a second, and the kernel needs part of it to free the memory of a large process.
+// Steps poll more often than this. A few library calls on large clouds take longer; the process ends during such a
+// call. The documented limit is a fifth of a second, and the kernel needs part of it to free the memory of a large
+// process.
 constexpr int kPatienceMicroseconds = 100'000;
-// After a signal the process waits no longer than this for a reader of its answer that does not read.
+// After a signal, the process waits at most this long for a reader that does not read the answer.
 constexpr int kReaderMicroseconds = 5'000'000;
 
 int code_of(int signal) { return signal == SIGALRM ? static_cast<int>(ExitCode::ResourceLimit) : 128 + signal; }
@@ -55,7 +56,7 @@ std::int64_t now() {
   return std::int64_t{1'000'000} * time.tv_sec + time.tv_nsec / 1000;
 }
 
-/// A few words in one piece and without an allocation: what fits into PIPE_BUF a pipe takes whole.
+/// Builds a short text without allocation and writes it in one call: a pipe takes up to PIPE_BUF bytes atomically.
 class Words {
  public:
   Words& operator<<(std::string_view text) {
@@ -77,8 +78,9 @@ class Words {
   std::size_t size_ = 0;
 };
 
-/// Writes the message and the document of a failure where nothing can be allocated or caught, and ends. Every file of a
-/// case is renamed into place when it is whole, so the process may end at any instruction.
+/// Writes the message and the document of a failure and ends the process, in a context where nothing can be
+/// allocated or caught. Every file of a case is renamed into place when it is complete, so the process may end at
+/// any instruction.
 /// @param code  the status in digits
 [[noreturn]] void end_now(const Words& error, const char* code, int status) {
   (Words() << "\numtet: " << error.text() << "\n").write(STDERR_FILENO);
@@ -90,7 +92,7 @@ class Words {
   ::_exit(status);
 }
 
-/// Ends the process, unless the program is writing its own answer: that may finish, within kReaderMicroseconds.
+/// Ends the process, unless the program is writing its own answer, which may finish within kReaderMicroseconds.
 void stop_now(int signal) {
   if (!last_word_taken.exchange(true)) {
     const char* what = signal == SIGALRM ? "out of time" : signal == SIGTERM ? "terminated" : "interrupted";
@@ -106,7 +108,7 @@ void stop_now(int signal) {
   set_timer(until - time);
 }
 
-/// The first signal sets the request to stop and a timer. A second signal, or the timer, ends the process at once.
+/// The first signal requests a stop and starts a timer. A second signal, or the timer, ends the process at once.
 void answer(int signal) {
   const bool is_timer = signal == SIGALRM;
   int first = 0;
@@ -115,8 +117,9 @@ void answer(int signal) {
   if (!in_own_time) set_timer(kPatienceMicroseconds);
 }
 
-/// The kernel gives a signal to any thread, and several signals to several. Each is passed on to the first, where it
-/// waits until the one before has been answered (sa_mask), and where the program itself answers.
+/// The kernel delivers a signal to any thread, and several signals to several threads. Each is forwarded to the
+/// first thread. There it waits until the signal before has been answered (sa_mask), and the program's own answer
+/// is written in this thread, too.
 extern "C" void hear(int signal) {
   const int error = errno;
   if (::pthread_equal(::pthread_self(), first_thread)) {
@@ -127,7 +130,8 @@ extern "C" void hear(int signal) {
   errno = error;
 }
 
-/// nlohmann's ordered_map and libstdc++'s directory_iterator allocate in noexcept functions.
+/// Handles out-of-memory in noexcept functions: nlohmann's ordered_map and libstdc++'s directory_iterator allocate
+/// in such functions.
 [[noreturn]] void end_without_catcher() {
   try {
     if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
@@ -135,7 +139,7 @@ extern "C" void hear(int signal) {
     const int status = static_cast<int>(ExitCode::ResourceLimit);
     const bool is_first = ::pthread_equal(::pthread_self(), first_thread);
     if (is_first && last_word_taken.exchange(true))
-      ::_exit(status);  // this thread was writing the answer: no second one
+      ::_exit(status);  // this thread was writing the answer: there is no second answer
     if (!is_first) take_last_word();
     end_now(Words() << "out of memory in " << work.load(), "9", status);
   } catch (...) {
@@ -161,7 +165,7 @@ void install_signal_handlers() {
 
 void stop_after(double seconds) {
   const double whole = std::floor(seconds);
-  // A timer of zero would be none.
+  // A timer of zero would be disabled.
   const long rest = std::max(1L, static_cast<long>(1e6 * (seconds - whole)));
   const itimerval once{{0, 0}, {static_cast<time_t>(whole), rest}};
   ::setitimer(ITIMER_REAL, &once, nullptr);
@@ -173,7 +177,7 @@ void answer_stops_in_json(const char* command) { answers_to = command; }
 
 void take_last_word() {
   if (!last_word_taken.exchange(true)) return;
-  for (;;) ::pause();  // until the thread that answers ends the process
+  for (;;) ::pause();  // until the answering thread ends the process
 }
 
 void say_no_more() { last_word_said = true; }

@@ -9,10 +9,10 @@ namespace umtet {
 
 using Json = nlohmann::ordered_json;
 
-// Values in the documents that we write and read back. What these read throws Json::exception where the document has
-// something else.
+// Conversions of values in the documents that the program writes and reads back. The functions that read throw
+// Json::exception if the document contains a value of another type.
 
-/// null where there is no value.
+/// Returns null if there is no value.
 template <class T>
 Json json_of(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
@@ -20,7 +20,7 @@ Json json_of(const std::optional<T>& value) {
 
 inline Json json_of(const Eigen::Vector3d& x) { return {x.x(), x.y(), x.z()}; }
 
-/// JSON has null for NaN and infinity; it is read as NaN.
+/// Reads a number. JSON contains null in place of NaN and infinity; null is read as NaN.
 inline double number_from(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }

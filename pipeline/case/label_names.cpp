@@ -10,11 +10,12 @@
 
 #include "mesh/io/solver_mesh.h"
 #include "pipeline/case/exit_code.h"
+#include "pipeline/case/parameters.h"
 
 namespace umtet {
 namespace {
 
-/// All of a text as a number, or none.
+/// Converts a whole text to a number; returns nothing if that fails.
 template <class Number>
 std::optional<Number> number_of(std::string_view text) {
   Number number{};
@@ -41,15 +42,16 @@ std::map<int, std::string> parse_label_names(const std::string& text) {
   std::istringstream items(text);
   for (std::string item; std::getline(items, item, ',');) {
     const auto refuse = [&](const std::string& what) {
-      throw UsageError(fmt::format("--label-names '{}': {}; give LABEL=NAME,LABEL=NAME", item, what));
+      throw UsageError(
+          {Option{keys::output::label_names}, fmt::format(" '{}': {}; give LABEL=NAME,LABEL=NAME", item, what)});
     };
     const std::size_t equals = std::min(item.find('='), item.size());
     const std::optional<int> label = number_of<int>(std::string_view(item).substr(0, equals));
     if (!label || equals == item.size()) refuse("not LABEL=NAME");
     const std::string name = item.substr(equals + 1);
     if (const std::string problem = problem_of_name(name); !problem.empty()) refuse("the name " + problem);
-    if (!taken.insert(lower_case(name)).second) refuse("that name is taken (case aside)");
-    if (!names.emplace(*label, name).second) refuse("that label has a name already");
+    if (!taken.insert(lower_case(name)).second) refuse("the name is already in use (ignoring case)");
+    if (!names.emplace(*label, name).second) refuse("the label already has a name");
   }
   return names;
 }
@@ -77,18 +79,19 @@ std::map<int, double> parse_label_sizes(const std::string& text, const std::map<
   std::istringstream items(text);
   for (std::string item; std::getline(items, item, ',');) {
     const auto refuse = [&](const std::string& what) {
-      throw UsageError(
-          fmt::format("--size-at '{}': {}; give LABEL=FACTOR,LABEL=FACTOR with factors of h in (0, 1], and labels as "
-                      "numbers or as --label-names names them",
-                      item, what));
+      throw UsageError({Option{keys::mesh::size_at},
+                        fmt::format(" '{}': {}; give LABEL=FACTOR,LABEL=FACTOR with factors of h in (0, 1], and labels "
+                                    "as numbers or by their names in ",
+                                    item, what),
+                        Option{keys::output::label_names}});
     };
     const std::size_t equals = std::min(item.find('='), item.size());
     if (equals == item.size()) refuse("not LABEL=FACTOR");
     const std::optional<int> label = label_of(item.substr(0, equals), names);
-    if (!label) refuse("no label has that name");
+    if (!label) refuse("no label has this name");
     const std::optional<double> factor = number_of<double>(std::string_view(item).substr(equals + 1));
     if (!factor || !(*factor > 0 && *factor <= 1)) refuse("not a factor");
-    if (!factors.emplace(*label, *factor).second) refuse("that label has a factor already");
+    if (!factors.emplace(*label, *factor).second) refuse("the label already has a factor");
   }
   return factors;
 }

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "pipeline/case/exit_code.h"
+#include "pipeline/case/parameters.h"
 
 namespace umtet {
 namespace {
@@ -26,10 +27,8 @@ std::optional<LevelRange> parse_level(const std::string& text) {
   const std::string_view all = text;
   const std::size_t colon = all.find(':');
   const auto wrong = [&]() -> LevelRange {
-    throw UsageError(fmt::format(
-        "--level {}: a number is expected, or 300: for what is above it, :300 for what is below, 200:500 for what is "
-        "between",
-        text));
+    throw UsageError({Setting(Option{keys::mesh::level}, text),
+                      ": give a number, or 300: for values above, :300 for values below, 200:500 for values between"});
   };
   if (colon == std::string_view::npos) {
     const std::optional<double> at = number(all);

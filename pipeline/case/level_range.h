@@ -5,15 +5,16 @@
 
 namespace umtet {
 
-/// Which values of an image are inside of the body: what mesh.level says.
+/// The values of an image that are inside the body, as mesh.level specifies them.
 struct LevelRange {
   enum class Side { Either, Above, Below, Between };
   Side side = Side::Either;
-  double low = 0, high = 0;  ///< the same but for Between
+  double low = 0, high = 0;  ///< equal except for Side::Between
 };
 
-/// "300" is either side, "300:" above, ":300" below, "200:500" between; none for an empty text.
-/// \throw UsageError  anything else
+/// Parses a level: "300" is either side, "300:" above, ":300" below, "200:500" between. Returns nothing for an
+/// empty text.
+/// \throw UsageError  any other text
 std::optional<LevelRange> parse_level(const std::string& text);
 
 }  // namespace umtet

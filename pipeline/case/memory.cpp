@@ -10,24 +10,25 @@
 #include <limits>
 #include <string>
 
+#include "body/option_names.h"
 #include "pipeline/case/exit_code.h"
 
 namespace umtet {
 namespace {
 
-// mesh.vtu of a ball: 5.7 MB for 98 thousand tets, 58 bytes a tet.
-constexpr double kFileBytesPerTet = 60;
-// The default of glibc and of TBB for a thread.
+// mesh.vtu of a ball: 4.3 MB for 98 thousand tets, 44 bytes a tet.
+constexpr double kFileBytesPerTet = 45;
+// Default stack size of a thread in glibc and TBB.
 constexpr double kStackBytes = 8 << 20;
-// AddressSanitizer's allocator ends the process where the system refuses it memory; what is asked for beforehand
-// (require_memory) is refused there, too.
+// AddressSanitizer's allocator ends the process if the system refuses memory; requests that are checked beforehand
+// (require_memory) are refused with it, too.
 #ifdef __SANITIZE_ADDRESS__
 constexpr bool kAllocationsMayFail = false;
 #else
 constexpr bool kAllocationsMayFail = true;
 #endif
 
-/// What the process has mapped for writing; 0 where the system does not say.
+/// Returns the bytes that the process has mapped for writing; 0 if the system does not report them.
 double data_bytes() {
   std::ifstream in("/proc/self/status");
   std::string line;
@@ -37,7 +38,7 @@ double data_bytes() {
   return 0;
 }
 
-/// What the system says it can give without swapping; infinite where it does not say.
+/// Returns the bytes that the system can provide without swapping; infinity if it does not report them.
 double available_bytes() {
   double least = std::numeric_limits<double>::infinity();
   std::ifstream in("/proc/meminfo");
@@ -75,9 +76,10 @@ void require_disk(const std::filesystem::path& folder, double n_tets) {
   const std::filesystem::space_info space = std::filesystem::space(folder, unknown);
   const double need = kFileBytesPerTet * n_tets;
   if (unknown || need <= static_cast<double>(space.available)) return;
-  throw ResourceLimit(fmt::format(
-      "{}: the meshes need about {:.3g} GB of disk, and {:.3g} GB are free: make room, or fewer --tets, a larger --h",
-      folder.string(), need / 1e9, static_cast<double>(space.available) / 1e9));
+  throw ResourceLimit(
+      fmt::format("{}: the meshes need about {:.3g} GB of disk, and {:.3g} GB are free: free disk space",
+                  folder.string(), need / 1e9, static_cast<double>(space.available) / 1e9),
+      {{Change::Lower, option::tets}, {Change::Raise, option::h}});
 }
 
 }  // namespace umtet

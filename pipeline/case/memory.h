@@ -6,17 +6,17 @@
 
 namespace umtet {
 
-/// Bytes that a stage may take: output.max_memory, or what the system says it can give.
+/// Returns the maximum memory of a stage in bytes: output.max_memory, or the amount that the system can provide.
 double allowed_bytes(const Parameters& parameters);
 
-/// From now on, no more than `bytes` can be allocated: beyond that there is std::bad_alloc.
-/// @param threads  whose stacks are not counted
+/// Limits the memory of the process to `bytes`: larger requests throw std::bad_alloc.
+/// @param threads  number of threads whose stacks are not counted
 void limit_memory(double bytes, int threads);
 
-/// To call before a mesh is made: is there room for its files?
-/// @param folder  that exists
-/// @param n_tets  about how many tets all files together have
-/// \throw ResourceLimit with the estimate, when it is more than the disk has
+/// Checks, before a mesh is made, that the disk has room for its files.
+/// @param folder  exists
+/// @param n_tets  approximate number of tets in all files together
+/// \throw ResourceLimit  the estimate, which the message contains, exceeds the free space
 void require_disk(const std::filesystem::path& folder, double n_tets);
 
 }  // namespace umtet

@@ -13,7 +13,8 @@ using detail::kAboveZero;
 
 constexpr double kHuge = 1e100;
 
-/// The values of a vocabulary in the order of its words in parameters.def: that of the enumeration, but for these.
+/// Maps the words of a vocabulary, in the order of parameters.def, to the values of the enumeration in its order;
+/// the templates below handle the exceptions.
 template <class T>
 struct Words {
   static constexpr bool are_there = std::is_enum_v<T>;
@@ -21,7 +22,7 @@ struct Words {
   static T value_of(std::size_t word) { return static_cast<T>(word); }
 };
 
-/// By a list of the values.
+/// Maps the words to a list of values.
 template <class T, T... values>
 struct ListedWords {
   static constexpr bool are_there = true;
@@ -37,7 +38,7 @@ template <>
 struct Words<ClosestPointMethod> : ListedWords<ClosestPointMethod, ClosestPointMethod::Newton,
                                                ClosestPointMethod::Damped, ClosestPointMethod::Paper> {};
 
-/// The first word leaves the choice to the library.
+/// The first word leaves the choice to the library; the others are values in order.
 template <class T>
 struct Words<std::optional<T>> {
   static constexpr bool are_there = true;
@@ -47,8 +48,8 @@ struct Words<std::optional<T>> {
   }
 };
 
-/// The row of one field of a section.
-/// @param row  has what the line of the parameter says
+/// Completes the row of one field of a section.
+/// @param row  contains the fields that parameters.def sets
 template <auto section, auto field>
 ParamField row_of(const char* key, ParamField row) {
   row.key = key;

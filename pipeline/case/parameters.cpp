@@ -21,7 +21,7 @@ template <class T>
 T parse_number(const ParamField& f, const std::string& text) {
   T v{};
   const char* end = text.data() + text.size();
-  if constexpr (std::is_integral_v<T>) {          // 1e6 is a whole number too
+  if constexpr (std::is_integral_v<T>) {          // 1e6 is a whole number, too
     constexpr double kExact = 9007199254740992.;  // 2^53
     double whole = 0;
     const auto [stop, error] = std::from_chars(text.data(), end, whole);
@@ -51,7 +51,7 @@ ParamValue parse(const ParamField& f, const std::string& text) {
   }
 }
 
-/// As a shell takes it.
+/// Returns a value as the argument of a shell.
 std::string typed(const ParamValue& value) {
   const auto* text = std::get_if<std::string>(&value);
   if (!text) {
@@ -97,7 +97,7 @@ void check(const ParamField& f, const ParamValue& value) {
   if (t && !f.choices.empty() && std::find(f.choices.begin(), f.choices.end(), *t) == f.choices.end()) {
     throw UsageError(fmt::format("{} = {}: this version has {} only", f.key, *t, fmt::join(f.choices, ", ")));
   }
-  // TOML and JSON hold nothing else.
+  // TOML and JSON contain only UTF-8.
   if (t && !is_utf8(*t)) throw UsageError(f.key + ": the text is not valid UTF-8");
   if (f.key == keys::mesh::box) parse_box(*t);
   if (f.key == keys::mesh::level) parse_level(*t);
@@ -127,7 +127,7 @@ std::string preset_text(const ParamField& f) {
 
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
   std::string best;
-  // Further away than a third of the word is a different word.
+  // A candidate whose distance is larger than a third of the word is a different word.
   std::size_t best_distance = word.size() / 3 + 2;
   bool best_goes_on = false;
   for (const std::string& candidate : candidates) {
@@ -142,7 +142,8 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
         row[j + 1] = std::min({replace, row[j] + 1, diagonal + 1});
       }
     }
-    // Of two at the same distance, the one that the word is the beginning of: --tet is --tets, not --set.
+    // Of two candidates at the same distance, prefer the one that begins with the word: --tet is --tets, not
+    // --set.
     const bool goes_on = candidate.starts_with(word);
     if (row.back() < best_distance || (row.back() == best_distance && goes_on && !best_goes_on && !best.empty())) {
       best_distance = row.back();
@@ -170,28 +171,28 @@ void Parameters::set(const std::string& assignment) {
 
 namespace {
 
-/// Parameters that say one thing in several ways: the stronger voice silences the others.
+/// Parameters that set the same thing in different ways: the source of higher precedence overrides the others.
 struct Ways {
   std::vector<const char*> keys;
-  std::string exclude;  ///< what is wrong with two equally strong ones; empty where both may stand
+  bool exclude;  ///< two of equal precedence are an error
 };
 
 const std::vector<Ways>& ways() {
-  static const std::vector<Ways> list = {
-      {{keys::mesh::h, keys::mesh::tets, keys::mesh::max_deviation}, "give one of --h, --tets and --max-deviation"},
-      {{keys::output::patch_angle, keys::output::patch_planar}, ""},
-      {{keys::reconstruct::close, keys::reconstruct::keep_open}, ""}};
+  static const std::vector<Ways> list = {{{keys::mesh::h, keys::mesh::tets, keys::mesh::max_deviation}, true},
+                                         {{keys::output::patch_angle, keys::output::patch_planar}, false},
+                                         {{keys::reconstruct::close, keys::reconstruct::keep_open}, false}};
   return list;
 }
 
-/// False of a number or a switch that is 0: it says nothing. A word always says something.
+/// Returns false for a number or switch that is 0, since it sets nothing. A text always sets something.
 bool speaks(const ParamValue& v) {
   return v != ParamValue(0.) && v != ParamValue(std::int64_t{0}) && v != ParamValue(false);
 }
 
 }  // namespace
 
-/// False: a stronger voice has spoken already.
+/// Resets the parameters that this value overrides. Returns false if another parameter of higher precedence
+/// overrides it.
 bool Parameters::silences_others(const ParamField& field, const ParamValue& value, ParamSource source) {
   const auto same = std::find_if(ways().begin(), ways().end(), [&](const Ways& w) {
     return std::find(w.keys.begin(), w.keys.end(), field.key) != w.keys.end();
@@ -202,9 +203,10 @@ bool Parameters::silences_others(const ParamField& field, const ParamValue& valu
     Origin& origin = origins_.at(way);
     if (way == field.key || origin.source == ParamSource::Default || !speaks(other.get(other, values_))) continue;
     if (origin.source == source) {
-      if (same->exclude.empty()) continue;
-      throw UsageError(fmt::format("{} and {} exclude each other: {}", std::min(field.key, other.key),
-                                   std::max(field.key, other.key), same->exclude));
+      if (!same->exclude) continue;
+      throw UsageError({fmt::format("{} and {} are mutually exclusive: give one of ", std::min(field.key, other.key),
+                                    std::max(field.key, other.key)),
+                        Option{same->keys[0]}, ", ", Option{same->keys[1]}, " and ", Option{same->keys[2]}});
     }
     if (origin.source > source) return false;
     drop(way);
@@ -276,7 +278,7 @@ nlohmann::ordered_json Parameters::section(std::string_view name) const {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   for (const ParamField& f : params_fields()) {
     const std::size_t dot = f.key.find('.');
-    // A cloud is known by its bytes, which the record lists among its inputs; it may move.
+    // A cloud is identified by its bytes, which the record lists among its inputs, so its path may change.
     if (f.key.substr(0, dot) != name || f.key == keys::cloud::file) continue;
     std::visit([&](const auto& v) { json[f.key.substr(dot + 1)] = v; }, f.get(f, values_));
   }
@@ -301,8 +303,8 @@ std::optional<Eigen::AlignedBox3d> parse_box(const std::string& text) {
   }
   const Eigen::AlignedBox3d box(Eigen::Vector3d(v[0], v[1], v[2]), Eigen::Vector3d(v[3], v[4], v[5]));
   if (!(box.sizes().array() > 0).all())
-    throw UsageError("mesh.box = " + text + ": empty; the first corner is the lower one");
-  if (!std::isfinite(box.volume())) throw UsageError("mesh.box = " + text + ": too large: its volume is not a number");
+    throw UsageError("mesh.box = " + text + ": empty; the first corner must be the lower one");
+  if (!std::isfinite(box.volume())) throw UsageError("mesh.box = " + text + ": too large: its volume is not finite");
   return box;
 }
 

@@ -1,4 +1,4 @@
-// Parameters as text: what case.toml and the files of --config hold.
+// Parameters as text, in case.toml and in files for --config.
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -14,7 +14,7 @@
 namespace umtet {
 namespace {
 
-/// Names for comments: a control character would end the comment.
+/// Returns a name for use in a comment, where a control character would end the comment.
 std::string one_line(std::string s) {
   for (char& c : s) {
     if (static_cast<unsigned char>(c) < 32 || c == 127) c = '?';
@@ -22,11 +22,12 @@ std::string one_line(std::string s) {
   return s;
 }
 
-// A line that is lost from case.toml would be a parameter that silently has its default again.
+// If a line of case.toml were lost, its parameter would silently have its default again. The checksum prevents this.
+// Files of former versions begin with the same text, so it must not change.
 const std::string kTomlHead =
     "# Effective parameters of this case. Feed it back with --config.\n# Checksum of what follows: ";
 
-// The origin of a derived value begins with it: "for --h".
+// The beginning of the origin of a derived value: "for --h".
 constexpr std::string_view kDerivedFrom = "for ";
 
 bool is_as_written(std::string_view text) {
@@ -36,7 +37,8 @@ bool is_as_written(std::string_view text) {
   return line < text.size() && text.substr(0, line) == checksum(text.substr(line + 1));
 }
 
-/// Of a line of case.toml, "key = value  # origin: help", where the value came from; empty where it is not such a line.
+/// Returns the origin of a value from a line of case.toml, "key = value  # origin: help"; empty if the line does
+/// not have this form.
 std::string origin_in(std::string_view text, std::size_t line, std::string_view key, const ParamValue& value) {
   for (; line > 1; --line) text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
   text = text.substr(0, text.find('\n'));
@@ -47,10 +49,10 @@ std::string origin_in(std::string_view text, std::size_t line, std::string_view 
   return end == std::string_view::npos ? "" : std::string(text.substr(0, end));
 }
 
-/// A parameter of 0.9.0 that is no more: files that have it are read as if they had not.
+/// Returns whether the key is a parameter of 0.9.0 that no longer exists: it is ignored in files.
 bool is_former(const std::string& key) { return key == "mesh.allow_thin"; }
 
-/// The shortest decimal that reads back as the same double, always recognisable as a TOML float.
+/// Returns the shortest decimal that reads back as the same double, always in the form of a TOML float.
 std::string decimal(double v) {
   std::string s = fmt::format("{}", v);
   if (s.find_first_of(".e") == std::string::npos) s += ".0";
@@ -71,13 +73,13 @@ std::string detail::print(const ParamValue& value) {
 void Parameters::load(const std::filesystem::path& file, ParamSource source) {
   if (is_too_large_a_text(file)) {
     if (source == ParamSource::Case) throw ArtefactDamaged(file.string() + ": too large for parameters");
-    throw UsageError(file.string() + ": too large for a file of parameters");
+    throw UsageError(file.string() + ": too large for a parameter file");
   }
   const std::string text = read_text(file);
   if (source == ParamSource::Case && !is_as_written(text)) {
     throw ArtefactDamaged(file.string() +
-                          ": cut short, damaged or edited: `umtet run CLOUD -o CASE` with its flags makes "
-                          "it again, --config takes an edited one");
+                          ": truncated, damaged or edited: `umtet run CLOUD -o CASE` with its flags makes "
+                          "it again; --config reads an edited file");
   }
   toml::table root;
   try {
@@ -106,7 +108,7 @@ void Parameters::load(const std::filesystem::path& file, ParamSource source) {
           value = *entry.value<double>();
         } else if (f.preset.index() == 3 && entry.is_string()) {
           value = *entry.value<std::string>();
-        } else if (f.key == keys::mesh::level && entry.is_number()) {  // 0: no level, as cases of 0.9 have it
+        } else if (f.key == keys::mesh::level && entry.is_number()) {  // 0: no level, as in cases of 0.9
           const double level = *entry.value<double>();
           value = level == 0 ? std::string() : decimal(level);
         } else {
@@ -118,7 +120,7 @@ void Parameters::load(const std::filesystem::path& file, ParamSource source) {
         const ParamSource of = former.starts_with(kDerivedFrom) ? ParamSource::Derived : source;
         assign(f, value, of, former.empty() ? origin : former);
       } catch (const UsageError& e) {
-        throw UsageError(at(entry) + e.what());
+        throw UsageError(at(entry) + e.message);
       }
     }
   }

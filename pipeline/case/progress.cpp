@@ -13,8 +13,8 @@ namespace umtet {
 namespace {
 
 using namespace std::chrono_literals;
-constexpr auto kBarPeriod = 100ms;  // faster is flicker
-constexpr auto kLinePeriod = 5s;    // a log file is read by people
+constexpr auto kBarPeriod = 100ms;  // faster updates flicker
+constexpr auto kLinePeriod = 5s;    // people read log files
 constexpr int kBarWidth = 30;
 
 bool is_set(const char* name) {
@@ -23,7 +23,7 @@ bool is_set(const char* name) {
 }
 
 void put(const std::string& text) {
-  // Nobody is left to tell when stderr itself cannot be written.
+  // If stderr cannot be written, there is no way to report it.
   std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);
 }
@@ -37,7 +37,7 @@ Progress::Progress(ProgressMode mode, Verbosity verbosity) : verbosity_(verbosit
   display_ = mode == ProgressMode::None || verbosity == Verbosity::Quiet ? Display::None
              : mode == ProgressMode::Auto && smart                       ? Display::Bar
                                                                          : Display::Lines;
-  // The first line comes after a period: short stages need none.
+  // The first line is printed after one period: short stages print none.
   if (display_ == Display::Lines) next_ += kLinePeriod;
 }
 

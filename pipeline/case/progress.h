@@ -6,10 +6,10 @@
 
 namespace umtet {
 
-enum class ProgressMode { Auto, Plain, None };  ///< Auto: a bar on a terminal, else a line every few seconds
+enum class ProgressMode { Auto, Plain, None };  ///< Auto: a bar on a terminal, otherwise a line every few seconds
 enum class Verbosity { Quiet, Normal, Verbose };
 
-/// Talks to the user on stderr: lines, and how far the running stage is. Not thread-safe.
+/// Prints messages and the progress of the running stage on stderr. Not thread-safe.
 class Progress {
  public:
   Progress(ProgressMode mode, Verbosity verbosity);
@@ -17,15 +17,15 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  void say(std::string_view line);     ///< unless quiet
-  void detail(std::string_view line);  ///< if verbose
-  void warn(std::string_view line);    ///< always
+  void say(std::string_view line);     ///< prints the line unless quiet
+  void detail(std::string_view line);  ///< prints the line if verbose
+  void warn(std::string_view line);    ///< always prints the line
 
-  /// Where the work stands; cheap enough for inner loops of milliseconds.
+  /// Reports the progress of the work; cheap enough for inner loops of milliseconds.
   /// @param fraction  of the whole stage, in [0, 1]
-  /// @return false when a signal has asked to stop
+  /// @return false if a signal has requested a stop
   bool report(std::string_view stage, std::string_view step, double fraction);
-  /// Clears the bar, if there is one.
+  /// Clears the bar if it is drawn.
   void clear();
 
  private:

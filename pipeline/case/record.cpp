@@ -14,7 +14,7 @@ namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
-// Readers accept this schema only; a record of another one is a stage to run again.
+// Readers accept this schema only; a stage with a record of another schema is run again.
 constexpr int kSchema = 2;
 
 constexpr const char* kSeal = "checksum";
@@ -51,7 +51,7 @@ StageRun run_from(const Json& json) {
           json.value("source", "")};
 }
 
-/// All of it but the version.
+/// Reads all fields except the version.
 StageRecord record_from(Stage stage, const Json& json) {
   return {stage,
           json.at("parameters"),
@@ -61,13 +61,13 @@ StageRecord record_from(Stage stage, const Json& json) {
           run_from(json.at("run"))};
 }
 
-/// The first output that is not what was written, as a clause; empty if all are.
+/// Returns a clause about the first output that differs from what was written; empty if there is none.
 std::string damage(const fs::path& folder, const std::vector<RecordedFile>& outputs, FileStamps& stamps) {
   for (const RecordedFile& f : outputs) {
-    // A name with a slash would make the record of a stage vouch for files elsewhere.
+    // A name with a slash would let the record of a stage vouch for files elsewhere.
     if (f.name.find('/') != std::string::npos) return "record.json names a file outside its folder";
     const fs::path file = folder / f.name;
-    if (!fs::exists(file)) return file.string() + " is gone";
+    if (!fs::exists(file)) return file.string() + " is missing";
     const FileStamp now = stamps.of(file);
     if (now.size != f.stamp.size) {
       return file.string() + " has " + std::to_string(now.size) + " bytes instead of " + std::to_string(f.stamp.size);
@@ -139,13 +139,13 @@ StageState inspect_stage(const CasePaths& paths, Stage stage, const Json& parame
                          const std::optional<std::vector<RecordedFile>>& inputs) {
   using Kind = StageState::Kind;
   const fs::path file = paths.record(stage);
-  if (!fs::exists(file)) return {Kind::Missing, "there is no " + file.string(), {}};
+  if (!fs::exists(file)) return {Kind::Missing, file.string() + " does not exist", {}};
   StageRecord record;
   std::string version;
   try {
     const Json json = Json::parse(read_text(file));
     if (json.at("schema") != kSchema || json.at("stage") != to_string(stage)) {
-      return {Kind::Missing, file.string() + " is of another schema", {}};
+      return {Kind::Missing, file.string() + " has another schema", {}};
     }
     if (!seal_holds(json)) return {Kind::Damaged, file.string() + " does not match its own checksum", {}};
     version = json.at("version");
@@ -183,7 +183,7 @@ StageRun run_of_stage(double seconds, int threads) {
   std::strftime(date.data(), date.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
-  const double peak_MB = static_cast<double>(usage.ru_maxrss) / 1024;  // Linux counts in KiB
+  const double peak_MB = static_cast<double>(usage.ru_maxrss) / 1024;  // Linux reports KiB
   return {seconds, peak_MB, threads, host.data(), date.data(), {}};
 }
 

@@ -7,8 +7,8 @@
 
 namespace umtet {
 
-/// A list, an object a place.
-/// @param h  the edge length that the places are too thin for
+/// Returns a list with one object per thin place.
+/// @param h  the edge length for which the places are too thin
 Json to_json(const std::vector<ThinPlace>& places, double h);
 std::vector<ThinPlace> thin_places_from(const Json& list);
 

@@ -2,7 +2,7 @@
 
 namespace umtet {
 
-/// Version of the program, part of every record: another version does its work again.
+/// Version of the program, stored in every record: another version repeats its stages.
 extern const char* const kVersion;
 
 }  // namespace umtet

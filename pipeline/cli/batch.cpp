@@ -24,13 +24,14 @@ namespace fs = std::filesystem;
 namespace {
 
 using namespace std::chrono_literals;
-constexpr auto kPollPeriod = 10ms;  // short beside the tenths of a second that the smallest scan takes
-// A child ends 0.1 s after its time is over, unless the system holds it.
+constexpr auto kPollPeriod = 10ms;  // short compared with the tenths of a second of the smallest scan
+// A child ends 0.1 s after its time limit, unless the system blocks it.
 constexpr double kGraceSeconds = 5;
 
 std::string value_text(const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
 
-/// --set for every parameter that is not at its default. The cloud is the child's own.
+/// Returns --set arguments for all parameters that differ from their defaults, except the cloud: each child has its
+/// own.
 std::vector<std::string> assignments(const Parameters& parameters) {
   const Parameters defaults;
   std::vector<std::string> out;
@@ -45,7 +46,8 @@ std::vector<std::string> assignments(const Parameters& parameters) {
   return out;
 }
 
-/// The names of files are those of cases, each once; those of the batch's own files are taken.
+/// Returns a unique case name for each scan, made from its file name. The names of the batch's own files are
+/// reserved.
 std::vector<std::string> case_names(const std::vector<fs::path>& scans) {
   std::set<std::string> taken = {"logs", "batch.csv", "batch.html", "batch.json"};
   std::vector<std::string> names;
@@ -98,20 +100,20 @@ class Batch {
   const std::vector<std::string> settings_;
   std::vector<fs::path> scans_;
   std::vector<BatchRow> rows_;
-  std::map<std::string, BatchRow> former_;  ///< by case
-  std::vector<std::size_t> waiting_;        ///< rows, the next one last
+  std::map<std::string, BatchRow> former_;  ///< former rows by case name
+  std::vector<std::size_t> waiting_;        ///< indices of rows; the next scan is the last element
   std::vector<Running> running_;
   std::size_t n_done_ = 0;
 };
 
-/// Failures that another try by the same parameters would only repeat.
+/// Returns whether the failure would only repeat with the same parameters.
 bool Batch::is_settled(const BatchRow& former) const {
   const auto code = static_cast<ExitCode>(former.exit_code);
   return code == ExitCode::InputRefused || code == ExitCode::ReconstructionFailed ||
          code == ExitCode::MeshingImpossible || code == ExitCode::GateFailed;
 }
 
-/// All of them wait.
+/// Makes a row for each scan of the list. All rows have the verdict "waiting".
 void Batch::name_rows() {
   scans_ = listed_clouds(request_.list);
   const std::vector<std::string> names = case_names(scans_);
@@ -134,7 +136,7 @@ void Batch::list_scans() {
     try {
       row.key = checksum(stamp(scans_[k]).xxh3 + " " + settings);
     } catch (const std::system_error&) {
-      // Its run will say what is wrong with the file.
+      // The run of this scan reports what is wrong with the file.
     }
     const auto former = former_.find(row.name);
     const bool same = former != former_.end() && !row.key.empty() && former->second.key == row.key;
@@ -173,7 +175,7 @@ void Batch::read_answer(BatchRow& row, const Json& answer) const {
   row.n_tets = static_cast<std::int64_t>(certificate.measured.mesh.n_tets);
   row.min_quality = certificate.measured.mesh.quality.min;
   if (!certificate.verdict.passes()) row.reason = certificate.verdict.reasons.front();
-  // The times of a mesh that was there already are those of its making.
+  // If the mesh was already there, the times are those of the run that made it.
   const auto former = former_.find(row.name);
   if (answer.at("stages_run").empty() && former != former_.end() && former->second.exit_code == row.exit_code) {
     row.seconds = former->second.seconds;
@@ -181,7 +183,7 @@ void Batch::read_answer(BatchRow& row, const Json& answer) const {
   }
 }
 
-/// \pre the row waits
+/// \pre the verdict of the row is "waiting"
 void Batch::collect_row(BatchRow& row) const {
   try {
     const Json answer = Json::parse(read_text(log(row, ".json")));
@@ -194,11 +196,11 @@ void Batch::collect_row(BatchRow& row) const {
       row.peak_memory_MB = certificate.run->peak_memory_MB;
     }
   } catch (const Json::exception&) {
-    row.reason = "its answer is not whole: it runs, or was ended by force";
+    row.reason = "the answer is incomplete: the scan is still running, or its process was killed";
   } catch (const ArtefactDamaged&) {
-    row.reason = "its answer holds a certificate that is damaged";
+    row.reason = "the certificate in the answer is damaged";
   } catch (const std::system_error&) {
-    // No answer at all: it has not been run.
+    // There is no answer: the scan has not been run.
   }
 }
 
@@ -206,7 +208,7 @@ void Batch::finish(const Running& child, const ChildEnd& end) {
   BatchRow& row = rows_[child.row];
   row.seconds = end.seconds;
   row.peak_memory_MB = end.peak_memory_MB;
-  if (end.signal == SIGTERM) {  // before it had a handler for it
+  if (end.signal == SIGTERM) {  // the child had not installed its handler yet
     row.verdict = verdict_of(static_cast<int>(ExitCode::Terminated));
     row.reason = "terminated";
   } else if (end.signal != 0) {
@@ -214,18 +216,18 @@ void Batch::finish(const Running& child, const ChildEnd& end) {
     row.reason = child.killed
                      ? fmt::format("did not stop within {} s after its time limit, and was killed", kGraceSeconds)
                      : fmt::format("ended by signal {} ({}){}", end.signal, ::strsignal(end.signal),
-                                   end.signal == SIGKILL ? "; the system does so when memory runs out" : "");
+                                   end.signal == SIGKILL ? "; the system kills processes when memory runs out" : "");
   } else {
     row.exit_code = end.exit_code;
     row.verdict = verdict_of(end.exit_code);
     try {
       read_answer(row, Json::parse(read_text(log(row, ".json"))));
     } catch (const Json::exception&) {
-      // The answer is not whole, or the process ended before it; the last line of the log says why.
+      // The answer is incomplete, or the process ended before writing it; the last line of the log says why.
     } catch (const ArtefactDamaged&) {
-      // The same of the certificate in it.
+      // The certificate in the answer is incomplete, for the same reasons.
     } catch (const std::system_error&) {
-      // There is no answer at all.
+      // There is no answer.
     }
     if (row.reason.empty() && row.verdict != "pass") row.reason = last_line(log(row, ".log"));
     if (row.reason.empty() && row.verdict != "pass") row.reason = fmt::format("exit code {}", end.exit_code);
@@ -235,7 +237,7 @@ void Batch::finish(const Running& child, const ChildEnd& end) {
                             row.reason.empty() ? "" : ": ", row.reason));
 }
 
-/// True when a child has ended.
+/// Returns whether a child has ended.
 bool Batch::reap() {
   bool any = false;
   for (std::size_t k = 0; k < running_.size();) {
@@ -255,7 +257,7 @@ bool Batch::reap() {
   return any;
 }
 
-/// Their cases are whole and free when this returns.
+/// Stops all children. Afterwards their cases are consistent and unlocked.
 void Batch::stop_children() {
   for (const Running& child : running_) child.process->send(SIGTERM);
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(kGraceSeconds);
@@ -310,14 +312,13 @@ void Batch::require_own_folder() const {
   }
   const std::vector<fs::path> files = batch_files(request_.folder);
   if (fs::exists(files.front()) && !fs::exists(files.back())) {
-    throw UsageError(files.front().string() +
-                     " is in the way, and no batch of ours has made it: choose another folder");
+    throw UsageError(files.front().string() + " exists and was not made by umtet batch: choose another folder");
   }
 }
 
 BatchOutcome Batch::collect() {
   if (!fs::is_directory(request_.folder / "logs"))
-    throw UsageError(request_.folder.string() + ": no scan has left an answer in logs/ there");
+    throw UsageError(request_.folder.string() + ": logs/ contains no answer of a scan");
   const CaseLock lock(request_.folder);
   require_own_folder();
   set_work_at_hand("batch");
@@ -335,7 +336,7 @@ BatchOutcome Batch::collect() {
 BatchOutcome Batch::operator()() {
   const CaseLock lock(request_.folder);
   require_own_folder();
-  stop_in_own_time();  // not before the scans have
+  stop_in_own_time();  // the scans stop first
   set_work_at_hand("batch");
   list_scans();
   fs::create_directories(request_.folder / "logs");

@@ -11,39 +11,40 @@
 
 namespace umtet {
 
-/// Many scans by the same parameters, on this machine.
+/// Many scans with the same parameters, on this machine.
 struct BatchRequest {
-  std::filesystem::path list;  ///< of listed_clouds()
+  std::filesystem::path list;  ///< text file that listed_clouds() reads
   std::filesystem::path folder;
   Parameters parameters;
-  std::vector<std::string> formats;  ///< exported from every mesh
-  int jobs = 1;                      ///< scans at a time
-  int threads = 1;                   ///< of every scan
-  double timeout = 0;                ///< seconds for a scan; 0: any
-  bool resume = false;               ///< scans that failed by themselves are not tried again
-  bool force = false;                ///< of `umtet run`
-  bool collect = false;              ///< nothing is run, see collect_batch()
+  std::vector<std::string> formats;  ///< export formats for every mesh
+  int jobs = 1;                      ///< number of scans that run at the same time
+  int threads = 1;                   ///< threads per scan
+  double timeout = 0;                ///< maximum seconds per scan; 0: no limit
+  bool resume = false;               ///< do not repeat scans whose failure would only repeat
+  bool force = false;                ///< --force of `umtet run`
+  bool collect = false;              ///< run nothing, see collect_batch()
 };
 
 struct BatchOutcome {
-  Json rows = Json::array();  ///< by scan: what batch.json has
+  Json rows = Json::array();  ///< one element per scan, as in batch.json
   std::vector<std::filesystem::path> files;
-  std::string text;                   ///< for people
-  ExitCode code = ExitCode::Success;  ///< GateFailed when a scan does not pass
+  std::string text;                   ///< table in text
+  ExitCode code = ExitCode::Success;  ///< GateFailed if a scan does not pass
 };
 
-/// Runs `umtet run SCAN -o FOLDER/NAME` for every scan, in processes of their own: whatever becomes of one, a crash
-/// included, is a row, and the others go on. The tables of write_batch() are complete after every scan; what a scan
-/// said is in FOLDER/logs. Cases that are whole are not made again. A scan that runs out of time is asked to stop, and
-/// killed when it does not.
-/// \throw UsageError (also for a folder that is a case, or has a batch.csv that is none of ours), Interrupted when the
-///        scans that ran have stopped, std::system_error when a table cannot be written
+/// Runs `umtet run SCAN -o FOLDER/NAME` for every scan, each in its own process. If one fails or crashes, its row
+/// says so, and the others continue. The tables of write_batch() are complete after every scan; FOLDER/logs
+/// contains the output of each scan. Finished cases are not made again. A scan that exceeds its time limit receives
+/// a signal to stop, and is killed if it does not stop.
+/// \throw UsageError (also if the folder is a case, or contains a batch.csv that umtet did not write), Interrupted
+///   after the running scans have stopped, std::system_error if a table cannot be written
 BatchOutcome run_batch(const BatchRequest& request, Progress& progress);
 
-/// The tables of what other machines have made in the folder: of every scan FOLDER/logs/NAME.json has what
-/// `umtet run SCAN -o FOLDER/NAME --json` printed, and FOLDER/logs/NAME.log what it said. A scan without an answer that
-/// is whole waits. Seconds and memory are those of the records of the cases. Nothing is run, and no scan is read.
-/// \throw as run_batch()
+/// Writes the tables from results that other machines left in the folder. For every scan, FOLDER/logs/NAME.json
+/// contains the standard output of `umtet run SCAN -o FOLDER/NAME --json`, and FOLDER/logs/NAME.log its messages. A
+/// scan without a complete answer has the verdict "waiting". Seconds and memory come from the records of the cases.
+/// Nothing is run, and no scan is read.
+/// \throw the exceptions of run_batch()
 BatchOutcome collect_batch(const BatchRequest& request, Progress& progress);
 
 }  // namespace umtet

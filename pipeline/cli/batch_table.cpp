@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kSchema = 1;
 
-/// The name of a file in a link: what is no letter, digit or one of -._~/ is written as %XX.
+/// Returns a file name for use in a link: every character other than letters, digits and -._~/ becomes %XX.
 std::string link(std::string_view name) {
   std::string out;
   for (const char c : name) {
@@ -42,7 +42,7 @@ std::string csv(const std::vector<BatchRow>& rows) {
   return out;
 }
 
-// Blue and orange of Okabe and Ito are told apart with any eyes; the words say the same without colour.
+// Blue and orange of Okabe and Ito can be distinguished by all readers; the words say the same without colour.
 constexpr const char* kHead = R"(<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>umtet batch</title><style>
 body{font:15px/1.4 sans-serif;margin:2em;color:#222}

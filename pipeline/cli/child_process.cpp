@@ -14,16 +14,16 @@
 namespace umtet {
 namespace {
 
-// The file that runs, even when another one has been installed under its name meanwhile.
+// The executable of this process, even if another file has been installed under its name meanwhile.
 constexpr const char* kThisProgram = "/proc/self/exe";
-constexpr int kCannotStart = 127;  // as shells have it
+constexpr int kCannotStart = 127;  // as in shells
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-/// Between fork and exec: only calls that are safe in a signal handler.
+/// Runs between fork and exec, so it makes only calls that are safe in a signal handler.
 [[noreturn]] void become(const ChildCall& call, char* const* argv, pid_t parent, const sigset_t& mask) {
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (::getppid() != parent) ::_exit(kCannotStart);  // it ended before the line above
+  if (::getppid() != parent) ::_exit(kCannotStart);  // the parent ended before the line above
   for (const int signal : {SIGINT, SIGTERM, SIGALRM}) ::signal(signal, SIG_DFL);
   ::sigprocmask(SIG_SETMASK, &mask, nullptr);
   const auto redirect = [](int target, const char* file, int flags) {
@@ -47,7 +47,7 @@ ChildProcess::ChildProcess(const ChildCall& call) : start_(now()) {
   for (const std::string& argument : call.arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
   const pid_t parent = ::getpid();
-  // A signal before exec would be taken by our own handler, and lost.
+  // Before exec, our own handler would take a signal, and the signal would be lost.
   sigset_t all, mask;
   ::sigfillset(&all);
   ::sigprocmask(SIG_SETMASK, &all, &mask);
@@ -79,7 +79,7 @@ std::optional<ChildEnd> ChildProcess::poll() {
     end.exit_code = WEXITSTATUS(status);
   }
   end.seconds = seconds();
-  end.peak_memory_MB = static_cast<double>(usage.ru_maxrss) / 1024;  // Linux counts in KiB
+  end.peak_memory_MB = static_cast<double>(usage.ru_maxrss) / 1024;  // Linux reports KiB
   return end;
 }
 

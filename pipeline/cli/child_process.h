@@ -9,35 +9,35 @@
 
 namespace umtet {
 
-/// A call of this same program, in a process of its own.
+/// A call of this program in a separate process.
 struct ChildCall {
-  std::vector<std::string> arguments;          ///< without the name of the program
-  std::filesystem::path standard_out, errors;  ///< files that are made or emptied; there is nothing on stdin
+  std::vector<std::string> arguments;          ///< arguments without the program name
+  std::filesystem::path standard_out, errors;  ///< files that are created or truncated; stdin is empty
 };
 
 /// How a child ended.
 struct ChildEnd {
-  int exit_code = 0;  ///< that of exit(), or 0
-  int signal = 0;     ///< that ended it, or 0
+  int exit_code = 0;  ///< argument of exit(), or 0
+  int signal = 0;     ///< signal that ended the process, or 0
   double seconds = 0;
   double peak_memory_MB = 0;
 };
 
-/// Runs beside its parent, and is asked to stop (SIGTERM) when the parent ends, however that happens.
+/// A process that runs in parallel with its parent. It receives SIGTERM when the parent ends for any reason.
 class ChildProcess {
  public:
   /// \pre the calling thread lives as long as the child; no other thread holds a lock that the child needs
-  /// \throw std::system_error when there can be no further process
+  /// \throw std::system_error if no further process can be started
   explicit ChildProcess(const ChildCall& call);
-  /// Kills and reaps a child that is still there.
+  /// Kills and reaps the child if it still runs.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// nullopt: it still runs. To be called again until it does not.
+  /// Returns how the child ended, or nullopt while it still runs. Do not call it again after the child has ended.
   std::optional<ChildEnd> poll();
   void send(int signal) const;
-  double seconds() const;  ///< since it was started
+  double seconds() const;  ///< seconds since the start
 
  private:
   pid_t pid_ = -1;  ///< -1: reaped

@@ -15,38 +15,38 @@ namespace umtet {
 namespace {
 
 constexpr const char* kExamples =
-    R"(  umtet run duck.ply                         from a scan to a certified mesh in duck/; run again: resumes
+    R"(  umtet run duck.ply                         from a scan to a certified mesh in duck/; a second call resumes
   umtet run scan.csv --columns x,y,z,-,nx,ny,nz -o scan    a table whose columns cannot be guessed
-  umtet reconstruct duck.ply -o duck         the level set only; umtet mesh duck goes on from there
+  umtet reconstruct duck.ply -o duck         the level set only; umtet mesh duck continues from it
   umtet mesh duck --h 0.02                   another mesh size; the level set is not fitted again
-  umtet mesh duck --max-deviation 0.001      flat faces at most so far from the surface
+  umtet mesh duck --max-deviation 0.001      flat faces at most this far from the surface
   umtet mesh --implicit 'x^2+y^2+z^2-1' --box=-1.2,-1.2,-1.2,1.2,1.2,1.2 --tets 100000 -o ball
   umtet mesh --level-set sdf.vti -o part     a level set that another program computed
   umtet run mask.nii.gz --part 4 -o liver    part 4 of a segmentation; of an image: umtet run ct.nii.gz --level 300: -o bone
-  umtet mesh duck --complement --box-walls --box=-2,-1.5,-2,4,2,2 --h .08    the fluid around it, in a box
+  umtet mesh duck --complement --box-walls --box=-2,-1.5,-2,4,2,2 --h .08    the fluid around the duck, in a box
   umtet evolve --implicit '(x-t)^2+y^2+z^2-1' --box=-2,-2,-2,4,2,2 --h .1 --t 0:0.5:2 -o moving
   umtet batch LIST -o scans --jobs 2         many scans; one table of verdicts, reasons and times
-  umtet inspect duck.ply                     spacing, noise, normals, thickness; what is likely to go wrong
+  umtet inspect duck.ply                     spacing, noise, normals, thickness, likely problems
   umtet check part.msh                       validity and quality of any tet mesh
   umtet export duck --format inp,vtu         files for solvers, in duck/4-export
-  umtet report duck                          duck/report.html: what a browser shows of it, offline
+  umtet report duck                          duck/report.html: a page for the browser, offline
   umtet view duck                            then: paraview --script=duck/5-view/view.py
-  umtet diff duck other                      which stage is the first to differ, and by how much
+  umtet diff duck other                      the first stage that differs, and by how much
 )";
 
-/// What a scan does not have: psi comes from it.
+/// Parameters that do not apply to scans, because psi is fitted to the scan.
 const std::vector<std::string> kOwnPsi = {keys::mesh::implicit, keys::mesh::level_set, keys::mesh::level,
                                           keys::mesh::above,    keys::mesh::part,      keys::mesh::part_smooth};
-/// What an image has, which stands where a cloud could.
+/// Parameters of an image that is given in place of a cloud.
 const std::vector<std::string> kOfImages = {keys::mesh::level, keys::mesh::above, keys::mesh::part,
                                             keys::mesh::part_smooth};
 
 constexpr const char* kExitCodes = R"(
-Exit codes: 0 all well | 1 a bug of ours | 2 usage | 3 input refused | 4 reconstruction failed
-  5 meshing not possible at this h | 6 made, but a gate or the certificate failed | 7 file trouble
+Exit codes: 0 success | 1 bug in umtet | 2 usage | 3 input refused | 4 reconstruction failed
+  5 meshing not possible at this h | 6 mesh made, but a gate or the certificate failed | 7 file error
   8 artefact corrupt | 9 resource limit | 130, 143 interrupted, resumable)";
 
-/// Examples, all or those of one command, and exit codes.
+/// Returns the examples of all commands or of one command, followed by the exit codes.
 std::string footer(const std::string& command = "") {
   std::string text = "Examples:\n", line;
   for (std::istringstream lines(kExamples); std::getline(lines, line);) {
@@ -55,14 +55,14 @@ std::string footer(const std::string& command = "") {
   return text + kExitCodes;
 }
 
-/// What a value is, in the words that CLI11 has for its own.
+/// Returns the type of a value in the words of CLI11.
 const char* type_of(const ParamField& f) {
   return std::holds_alternative<double>(f.preset)         ? "FLOAT"
          : std::holds_alternative<std::int64_t>(f.preset) ? "INT"
                                                           : "TEXT";
 }
 
-/// Help, choices and default of a parameter.
+/// Returns help, choices and default of a parameter.
 std::string described(const ParamField& f) {
   const std::string preset = preset_text(f);
   return f.help + (f.choices.empty() ? "" : fmt::format(" {{{}}}", fmt::join(f.choices, ","))) +
@@ -73,43 +73,42 @@ std::string described(const ParamField& f) {
 
 CommandParser::CommandParser() {
   app_.set_version_flag("--version", std::string("umtet ") + kVersion);
-  app_.add_flag("--json", result_.options.json, "one JSON document on stdout, also on failure");
+  app_.add_flag("--json", result_.options.json, "print one JSON document on stdout, also on failure");
   app_.require_subcommand(1);
   app_.footer(footer());
 
-  CLI::App& run = add_command("run", make_run, "All stages; those whose record matches are not run again");
+  CLI::App& run = add_command("run", make_run, "Run all stages; stages with a matching record are not repeated");
   add_stage_flags(run);
   run.add_option("CLOUD", in_.input,
-                 "points: .ply, .pcd, text (.xyz, .csv ...); triangles: .stl, .obj, .off, .ply; an image: .nii, .nrrd, "
-                 ".vti, .vtk, also .gz; or a case, to resume it");
-  run.add_option("--from", in_.from, "first stage that may run: cloud, level-set, mesh (default cloud)");
+                 "points: .ply, .pcd, text (.xyz, .csv ...); triangles: .stl, .obj, .off, .ply; image: .nii, .nrrd, "
+                 ".vti, .vtk, also .gz; or a case to resume");
+  run.add_option("--from", in_.from, "first stage to run: cloud, level-set, mesh (default cloud)");
   run.add_option("--until", in_.until, "last stage to run (default mesh)");
   add_formats(run, "--export");
   run.add_flag("--no-report", in_.no_report, "do not make report.html");
   add_parameter_flags(run, {"cloud", "reconstruct", "mesh", "output"}, {keys::mesh::implicit, keys::mesh::level_set});
 
-  CLI::App& reconstruct = add_command("reconstruct", make_reconstruct, "Stage one only: the level set");
+  CLI::App& reconstruct = add_command("reconstruct", make_reconstruct, "Run stage one only: fit the level set");
   add_stage_flags(reconstruct);
-  reconstruct.add_option("CLOUD", in_.input, "points or triangles; or a case, to fit again with other parameters");
+  reconstruct.add_option("CLOUD", in_.input, "points or triangles; or a case to fit again with other parameters");
   add_parameter_flags(reconstruct, {"cloud", "reconstruct", "output"},
                       {keys::output::units, keys::output::min_quality, keys::output::accept, keys::output::label_names,
                        keys::output::label_min_area, keys::output::patch_angle, keys::output::patch_planar});
 
   CLI::App& mesh =
-      add_command("mesh", make_mesh, "Stage two only: from the level set of CASE, from a formula, or from a grid");
+      add_command("mesh", make_mesh, "Run stage two only: mesh the level set of CASE, a formula, or a grid");
   add_stage_flags(mesh);
   mesh.add_option("CASE", in_.input, "a case with a level set");
   add_formats(mesh, "--export");
   mesh.add_flag("--no-report", in_.no_report, "do not make report.html");
   add_parameter_flags(mesh, {"mesh", "output"});
 
-  CLI::App& evolve =
-      add_command("evolve", make_evolve, "A domain that moves: every instant meshed in one background mesh");
+  CLI::App& evolve = add_command("evolve", make_evolve, "Mesh a moving domain: all instants in one background mesh");
   add_parameter_sources(evolve);
-  add_timeout(evolve, "seconds that all instants may take together; then exit 9");
-  evolve.add_option("-o", in_.output, "the folder of the meshes");
-  evolve.add_option("--clouds", in_.clouds, "a text file with the path of a cloud a line, instead of --implicit");
-  evolve.add_option("--t", in_.times, "FROM:STEP:TO, the times; --implicit may have t in it");
+  add_timeout(evolve, "maximum seconds for all instants together; then exit 9");
+  evolve.add_option("-o", in_.output, "folder for the meshes");
+  evolve.add_option("--clouds", in_.clouds, "text file with one path of a cloud per line, instead of --implicit");
+  evolve.add_option("--t", in_.times, "times, as FROM:STEP:TO; --implicit may contain t");
   evolve.add_option("--skip", in_.skip, "times to leave out: --skip 3.1,3.4");
   add_parameter_flags(
       evolve, {"cloud", "reconstruct", "mesh", "output"},
@@ -120,15 +119,14 @@ CommandParser::CommandParser() {
   add_batch();
 
   CLI::App& inspect =
-      add_command("inspect", make_inspect, "What is in a cloud or an image, and what is likely to go wrong with it");
+      add_command("inspect", make_inspect, "Report the contents of a cloud or an image, and likely problems");
   inspect
-      .add_option(
-          "CLOUD", in_.input,
-          "points: .ply, .pcd, text (.xyz, .csv ...); triangles: .stl, .obj, .off, .ply; an image: .nii, .nrrd, "
-          ".vti, .vtk, also .gz")
+      .add_option("CLOUD", in_.input,
+                  "points: .ply, .pcd, text (.xyz, .csv ...); triangles: .stl, .obj, .off, .ply; image: .nii, .nrrd, "
+                  ".vti, .vtk, also .gz")
       ->required();
   add_parameter_sources(inspect);
-  for (const ParamField& f : params_fields()) {  // how a text is read, and what the prediction follows
+  for (const ParamField& f : params_fields()) {  // the reading of a text, and the prediction
     if (f.key == keys::cloud::columns || f.key == keys::mesh::h || f.key == keys::mesh::tets ||
         f.key == keys::mesh::max_tets)
       add_value(inspect, f);
@@ -140,48 +138,51 @@ CommandParser::CommandParser() {
     }
   }
 
-  CLI::App& check = add_command("check", make_check, "Validity and quality of any tet mesh; exit 6 when it fails");
+  CLI::App& check =
+      add_command("check", make_check, "Check validity and quality of any tet mesh; exit 6 if the check fails");
   check.add_option("MESH", in_.input, ".vtu, .msh or .mesh")->required();
-  check.add_option("--against", in_.against, "a case whose surface the mesh should fit");
+  check.add_option("--against", in_.against, "case whose surface the mesh should fit");
   add_parameter_sources(check);
   add_parameter_flags(check, {"output"},
                       {keys::output::max_memory, keys::output::label_names, keys::output::label_min_area,
                        keys::output::patch_angle, keys::output::patch_planar});
 
-  CLI::App& exports = add_command("export", make_export, "Files for solvers and viewers, in CASE/4-export");
+  CLI::App& exports = add_command("export", make_export, "Write files for solvers and viewers to CASE/4-export");
   exports.add_option("CASE", in_.input, "a case with a mesh")->required();
   add_formats(exports, "--format").required();
   add_parameter_flags(exports, {"output"},
                       {keys::output::units, keys::output::max_memory, keys::output::min_quality, keys::output::strict,
                        keys::output::accept});
-  add_fresh(exports, "patches and names as this call says, not as former ones did");
+  add_fresh(exports, "take patches and names from this call alone, not from former calls");
 
   CLI::App& report =
-      add_command("report", make_report, "CASE/report.html: certificate, mesh and curves on one page, offline");
+      add_command("report", make_report, "Write CASE/report.html: certificate, mesh and curves on one page, offline");
   report.add_option("CASE", in_.input, "a case with a certificate")->required();
 
-  CLI::App& view = add_command("view", make_view, "CASE/5-view: psi on a grid, psi = 0 and a script for ParaView");
+  CLI::App& view =
+      add_command("view", make_view, "Write CASE/5-view: psi on a grid, psi = 0 and a script for ParaView");
   view.add_option("CASE", in_.input, "a case with a mesh")->required();
 
-  CLI::App& diff =
-      add_command("diff", make_diff, "The first stage in which two cases differ, and by how much each does");
-  diff.add_option("CASE_A", in_.input, "a case")->required();
-  diff.add_option("CASE_B", in_.other_case, "another")->required();
+  CLI::App& diff = add_command("diff", make_diff,
+                               "Report the first stage in which two cases differ, and the differences of each stage");
+  diff.add_option("CASE_A", in_.input, "first case")->required();
+  diff.add_option("CASE_B", in_.other_case, "second case")->required();
 }
 
 void CommandParser::add_batch() {
-  CLI::App& batch = add_command(
-      "batch", make_batch, "Many scans by the same parameters on one machine, each in a process of its own; one table");
+  CLI::App& batch =
+      add_command("batch", make_batch,
+                  "Run many scans with the same parameters on one machine, each in its own process; write one table");
   add_parameter_sources(batch);
-  add_timeout(batch, "seconds that a scan may take; then it is a row with exit code 9");
-  batch.add_option("LIST", in_.input, "a text file with the path of a cloud a line")->required();
-  batch.add_option("-o", in_.output, "the folder of the cases and of batch.csv, batch.html");
-  batch.add_option("--jobs", in_.jobs, "scans at a time; they share the threads (default 1)")
+  add_timeout(batch, "maximum seconds per scan; then its row has exit code 9");
+  batch.add_option("LIST", in_.input, "text file with one path of a cloud per line")->required();
+  batch.add_option("-o", in_.output, "folder for the cases and for batch.csv, batch.html");
+  batch.add_option("--jobs", in_.jobs, "number of scans at a time; they share the threads (default 1)")
       ->check(CLI::Range(1, 1024, "1 to 1024"));
-  batch.add_flag("--resume", in_.resume, "scans whose input or mesh was refused are not tried again");
+  batch.add_flag("--resume", in_.resume, "do not repeat scans whose input or mesh was refused");
   batch.add_flag("--collect", in_.collect,
-                 "run nothing: tables of what other machines have left in the folder (examples/cluster)");
-  batch.add_flag("--force", in_.force, "run all stages although their records match");
+                 "run nothing; write the tables from the results of other machines in the folder (examples/cluster)");
+  batch.add_flag("--force", in_.force, "run all stages, even if their records match");
   add_formats(batch, "--export");
   add_parameter_flags(batch, {"cloud", "reconstruct", "mesh", "output"}, kOwnPsi);
 }
@@ -194,19 +195,19 @@ CLI::App& CommandParser::add_command(const char* name, CommandMaker make, const 
   CLI::App& command = *app_.add_subcommand(name, description);
   command.footer(footer(std::string(name) + " "));
   command.callback([this, &command, make] {
-    if (in_.quiet && in_.verbose) throw UsageError("-q and -v exclude each other");
+    if (in_.quiet && in_.verbose) throw UsageError("-q and -v are mutually exclusive");
     CommonOptions& options = result_.options;
     options.verbosity = in_.quiet ? Verbosity::Quiet : in_.verbose ? Verbosity::Verbose : Verbosity::Normal;
     result_.name = command.get_name();
     result_.command = make(command, in_);
   });
-  command.add_flag("--json", result_.options.json, "one JSON document on stdout, also on failure");
+  command.add_flag("--json", result_.options.json, "print one JSON document on stdout, also on failure");
   command
       .add_option("--threads", result_.options.threads,
                   "number of threads; results do not depend on it (default: all processors)")
       ->check(CLI::Range(1, 4096, "1 to 4096"));
-  command.add_flag("-q,--quiet", in_.quiet, "no messages but warnings and errors");
-  command.add_flag("-v,--verbose", in_.verbose, "more messages");
+  command.add_flag("-q,--quiet", in_.quiet, "print only warnings and errors");
+  command.add_flag("-v,--verbose", in_.verbose, "print more messages");
   command
       .add_option_function<std::string>(
           "--progress",
@@ -215,32 +216,32 @@ CLI::App& CommandParser::add_command(const char* name, CommandMaker make, const 
                                        : mode == "none" ? ProgressMode::None
                                                         : ProgressMode::Auto;
           },
-          "auto: a bar on a terminal, else lines; plain: lines; none (default auto)")
+          "auto: a bar on a terminal, otherwise lines; plain: lines; none (default auto)")
       ->check(CLI::IsMember({"auto", "plain", "none"}));
   return command;
 }
 
-/// For the commands that take any parameter.
+/// Adds the flags of commands that accept any parameter.
 void CommandParser::add_parameter_sources(CLI::App& command) {
   command.add_option("--config", in_.config, "TOML file with parameters, such as the case.toml of another case");
-  command.add_option("--set", in_.assignments, "any parameter: --set mesh.samples=10; see case.toml for all")
+  command.add_option("--set", in_.assignments, "set any parameter: --set mesh.samples=10; case.toml lists all")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
 void CommandParser::add_timeout(CLI::App& command, const char* help) {
-  // A timer of the system takes no more than a year without doubt.
+  // The timer of the system supports about a year for certain.
   command.add_option("--timeout", result_.options.timeout, help)->check(CLI::Range(0., 3e7, "0 to 3e7"));
 }
 
 void CommandParser::add_stage_flags(CLI::App& command) {
   add_parameter_sources(command);
-  add_timeout(command, "seconds that the run may take; then exit 9, resumable");
-  command.add_option("-o", in_.output, "the folder of the case (default: the name of the file without extension)");
-  command.add_flag("--force", in_.force, "run the stages although their records match");
+  add_timeout(command, "maximum seconds for the run; then exit 9, resumable");
+  command.add_option("-o", in_.output, "folder of the case (default: the file name without its extension)");
+  command.add_flag("--force", in_.force, "run the stages, even if their records match");
   add_fresh(command,
-            "take nothing but the input from former calls on the case: what this call does not say is the default; "
-            "stages that match are not made again");
+            "take only the input of the case from former calls; parameters that this call does not set have their  "
+            "defaults; stages that match are not repeated");
 }
 
 void CommandParser::add_fresh(CLI::App& command, const char* help) { command.add_flag("--fresh", in_.fresh, help); }
@@ -264,12 +265,12 @@ void CommandParser::add_parameter_flags(CLI::App& command, const std::vector<std
   }
 }
 
-/// Turns what CLI11 says into a UsageError that names the nearest flag or command.
+/// Converts an error of CLI11 into a UsageError that names the nearest flag or command.
 void CommandParser::refuse(const CLI::ParseError& e, int argc, const char* const* argv) const {
   const std::vector<CLI::App*> parsed = app_.get_subcommands();
   if (parsed.empty()) {
     const char* const* flag = std::find_if(argv + 1, argv + argc, [](std::string_view a) { return a != "--json"; });
-    throw UsageError(flag == argv + argc ? "no command; try umtet --help"
+    throw UsageError(flag == argv + argc ? "no command given; try umtet --help"
                                          : fmt::format("unknown flag {}; try umtet --help", *flag));
   }
   const CLI::App& command = *parsed.front();
@@ -287,14 +288,15 @@ void CommandParser::refuse(const CLI::ParseError& e, int argc, const char* const
     }
     const std::string near = nearest(flag, flags);
     throw UsageError(fmt::format("{}: unknown flag {}{}", command.get_name(), flag,
-                                 !others.empty() ? fmt::format("; it belongs to {}", fmt::join(others, ", "))
+                                 !others.empty() ? fmt::format("; it is a flag of {}", fmt::join(others, ", "))
                                  : near.empty()  ? ""
                                                  : "; did you mean " + near + "?"));
   }
   throw UsageError(command.get_name() + ": " + e.what());
 }
 
-/// The first word must be a command, whatever flags are around it: CLI11 would answer any word with the general help.
+/// Checks that the first word is a command, whatever flags surround it: CLI11 would answer any word with the
+/// general help.
 void CommandParser::check_command(int argc, const char* const* argv) const {
   const char* const* word = std::find_if(argv + 1, argv + argc, [](const char* a) { return a[0] != '-'; });
   if (word == argv + argc) return;
@@ -303,15 +305,16 @@ void CommandParser::check_command(int argc, const char* const* argv) const {
   if (std::find(commands.begin(), commands.end(), *word) != commands.end()) return;
   std::string near = nearest(*word, commands);
   std::error_code unknown;
-  if (std::filesystem::exists(*word, unknown)) near = std::string("umtet run ") + *word;  // a cloud or a case
+  if (std::filesystem::exists(*word, unknown))
+    near = std::string("umtet run ") + *word;  // the word names a cloud or a case
   throw UsageError(
       fmt::format("unknown command {}{}", *word, near.empty() ? "; try umtet --help" : "; did you mean " + near + "?"));
 }
 
 namespace {
 
-/// The words of the call, the last one first, as CLI11 takes them. Behind "--box=" it would look for the value in the
-/// next word: an empty one is put there.
+/// Returns the words of the call in reverse order, as CLI11 expects them. After "--box=", CLI11 would look for the
+/// value in the next word, so an empty word is inserted.
 std::vector<std::string> words_of(int argc, const char* const* argv) {
   std::vector<std::string> words;
   for (int k = 1; k < argc; ++k) {

@@ -12,16 +12,16 @@
 
 namespace umtet {
 
-// What a call of the program may ask for, a struct for each command.
+// The requests of a call, one struct per command.
 
 struct TextAnswer {
-  std::string text;  ///< help or version, for stdout
+  std::string text;  ///< help or version, to be printed on stdout
 };
 
 /// umtet run, reconstruct, mesh.
 struct RunCommand {
   RunRequest request;                ///< but for its threads
-  std::vector<std::string> formats;  ///< exported from the mesh
+  std::vector<std::string> formats;  ///< export formats of the mesh
 };
 
 struct EvolveCommand {
@@ -34,21 +34,21 @@ struct BatchCommand {
 
 struct InspectCommand {
   std::filesystem::path cloud;
-  Parameters parameters;  ///< of the run that is predicted
+  Parameters parameters;  ///< parameters of the predicted run
 };
 
 struct CheckCommand {
   std::filesystem::path mesh;
-  std::optional<std::filesystem::path> against;  ///< a case
-  Parameters parameters;                         ///< output.*
+  std::optional<std::filesystem::path> against;  ///< case to compare with
+  Parameters parameters;                         ///< output.* only
 };
 
 struct ExportCommand {
   std::filesystem::path case_folder;
   std::vector<std::string> formats;
-  Parameters parameters;                  ///< of the case, and those of output.* that the call gives
-  bool fresh = false;                     ///< those of output.* are not taken from the case
-  std::vector<std::string> changed = {};  ///< against those of the case: differences()
+  Parameters parameters;                  ///< parameters of the case, and output.* of the call
+  bool fresh = false;                     ///< do not take output.* from the case
+  std::vector<std::string> changed = {};  ///< differences() from the parameters of the case
 };
 
 struct ReportCommand {
@@ -66,28 +66,28 @@ struct DiffCommand {
 using Command = std::variant<TextAnswer, RunCommand, EvolveCommand, BatchCommand, InspectCommand, CheckCommand,
                              ExportCommand, ReportCommand, ViewCommand, DiffCommand>;
 
-/// What every command takes.
+/// Options of all commands.
 struct CommonOptions {
-  double timeout = 0;  ///< seconds that the command may take, of a batch every scan; 0: any
-  bool json = false;   ///< answer by one document
+  double timeout = 0;  ///< maximum seconds of the command, or of each scan of a batch; 0: no limit
+  bool json = false;   ///< answer with one document
   ProgressMode progress = ProgressMode::Auto;
   Verbosity verbosity = Verbosity::Normal;
-  int threads = 0;  ///< 0: as many as the machine has; the jobs of a batch share them
+  int threads = 0;  ///< 0: all processors of the machine; the jobs of a batch share them
 };
 
-/// A call of the program, understood.
+/// A parsed call of the program.
 struct CommandLine {
   std::string name;  ///< "run", "reconstruct", ..., "batch"; empty for a TextAnswer
   Command command;
   CommonOptions options;
 };
 
-/// What --help says, for documents that are made from it.
+/// The contents of --help, for documents that are generated from it.
 struct OptionHelp {
-  std::vector<std::string> flags;  ///< "-o", "--h"; of an argument without a flag its name
+  std::vector<std::string> flags;  ///< "-o", "--h"; the name of an argument without a flag
   bool is_flag = true, takes_value = false;
   std::string help;
-  std::vector<std::string> choices;  ///< of a value with a fixed vocabulary
+  std::vector<std::string> choices;  ///< choices of a value with a fixed vocabulary
 };
 struct CommandHelp {
   std::string name, help;
@@ -99,8 +99,8 @@ struct ProgramHelp {
 };
 ProgramHelp program_help();
 
-/// \throw UsageError, with the nearest flag or command where there is one; std::system_error for a --config that cannot
-///        be read
+/// Parses the words of a call. \throw UsageError, with the nearest flag or command if there is one;
+/// std::system_error if a --config file cannot be read
 CommandLine parse_command_line(int argc, const char* const* argv);
 
 }  // namespace umtet

@@ -1,4 +1,4 @@
-// What the words of a call ask for, command by command.
+// Converts the words of a call into requests, one function per command.
 
 #include <fmt/format.h>
 
@@ -19,8 +19,8 @@ namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
-/// Parameters by the flags of this command. All commands share the storage of their flags; only those of this one have
-/// been touched.
+/// Returns the parameters that the flags of this command set. All commands share the storage of their flags; only
+/// the flags of this command can have been set.
 Parameters flag_parameters(const CLI::App& app, const CommandInputs& in) {
   Parameters parameters;
   for (const ParamField& f : params_fields()) {
@@ -35,9 +35,9 @@ Parameters flag_parameters(const CLI::App& app, const CommandInputs& in) {
   return parameters;
 }
 
-/// Adds --set and --config. A file may be about more than this command; --set and flags are refused where they would
-/// change nothing.
-/// @param runs  whether the command runs this stage
+/// Adds --set and --config. A file may contain parameters of other commands; --set and flags are refused if they
+/// would have no effect.
+/// @param runs  returns whether the command runs this stage
 template <class F>
 void read_parameters(const CommandInputs& in, const F& runs, Parameters& parameters) {
   for (const std::string& assignment : in.assignments) parameters.set(assignment);
@@ -55,33 +55,33 @@ void read_parameters(const CommandInputs& in, const F& runs, Parameters& paramet
     throw UsageError(fmt::format("--columns {}: {}", parameters.cloud().columns, problem));
 }
 
-/// The cloud that was named: to be read, and to be found again from another folder.
+/// Takes the cloud that the call names. Its path becomes absolute so that it is found from other folders.
 void take_cloud(RunRequest& request) {
   request.source = request.parameters.cloud().file;
   request.parameters.make_cloud_absolute();
 }
 
-/// The case of a file for which -o names none: its stem, in the current folder.
-/// \throw UsageError  that is a file, a folder of something else, or the case of another file
+/// Returns the default case of a file: its stem, in the current folder.
+/// \throw UsageError  the stem is a file, a folder with other contents, or the case of another file
 fs::path default_case(const fs::path& source) {
   fs::path stem = source.stem();
   if (source.extension() == ".gz") stem = stem.stem();  // mask.nii.gz
   const auto refuse = [](const std::string& why) { throw UsageError("-o CASE is missing: " + why); };
-  if (source.empty()) refuse("no file has been given");
-  if (stem.empty() || stem.string().front() == '.') refuse(source.string() + " has no name to take for it");
+  if (source.empty()) refuse("no input file is given");
+  if (stem.empty() || stem.string().front() == '.') refuse(source.string() + " has no name for the case");
   std::error_code unknown;
   if (!fs::exists(stem, unknown)) return stem;
   const CasePaths paths{stem};
   if (!fs::is_directory(stem)) refuse(stem.string() + " is a file");
   if (!fs::exists(paths.parameters())) {
-    if (!fs::is_empty(stem)) refuse(stem.string() + " is a folder, and no case");
+    if (!fs::is_empty(stem)) refuse(stem.string() + " is a folder but not a case");
     return stem;
   }
   Parameters former;
   try {
     former.load(paths.parameters(), ParamSource::Case);
   } catch (const ArtefactDamaged&) {
-    return stem;  // the run says so
+    return stem;  // the run reports the damage
   }
   const std::string& cloud = former.cloud().file;
   const fs::path of_case = cloud.empty() ? fs::path(former.mesh().level_set) : fs::path(cloud);
@@ -90,7 +90,7 @@ fs::path default_case(const fs::path& source) {
   return stem;
 }
 
-/// Adds what the case has from former calls; of a fresh call, its input alone.
+/// Adds the parameters that the case has from former calls; with `fresh`, only those that define its input.
 void take_case(const fs::path& toml, bool fresh, Parameters& parameters) {
   if (!fresh) return parameters.load(toml, ParamSource::Case);
   Parameters former;
@@ -98,25 +98,28 @@ void take_case(const fs::path& toml, bool fresh, Parameters& parameters) {
   parameters.take_body(former);
 }
 
-/// \throw UsageError for what is said of an image where there is none
+/// \throw UsageError if parameters of images are set but there is no image
 void require_image(const Parameters& parameters) {
   if (!parameters.mesh().level_set.empty()) return;
   for (const char* key : {keys::mesh::level, keys::mesh::above, keys::mesh::part, keys::mesh::part_smooth}) {
     if (parameters.source(key) >= ParamSource::Set)
-      throw UsageError(std::string(key) + " is for images and segmentations (.nii, .nrrd, .vti, .vtk)");
+      throw UsageError(std::string(key) + " applies only to images and segmentations (.nii, .nrrd, .vti, .vtk)");
   }
 }
 
-/// The image that was named, whose one stage is the mesh; its path is to be found again from another folder.
+/// Takes the image that the call names. An image needs only the mesh stage. Its path becomes absolute so that it is
+/// found from other folders.
 void take_image(const std::string& input, RunRequest& request) {
-  if (request.until != Stage::Mesh) throw UsageError(input + " is an image: its one stage is the mesh (umtet run)");
+  if (request.until != Stage::Mesh)
+    throw UsageError(input + " is an image, which needs only the mesh stage (umtet run)");
   request.parameters.set(keys::mesh::level_set, fs::absolute(input).lexically_normal().string(), ParamSource::Flag,
                          "command line");
   request.from = Stage::Mesh;
 }
 
-/// The stages first..last of the case or cloud that was given, or as --from and --until say.
-/// @param input_is_case  the word that was given is no cloud
+/// Makes the command that runs the stages first..last, or the stages between --from and --until, of the given case
+/// or cloud.
+/// @param input_is_case  the given word is a case, not a cloud
 Command make_stages(const CLI::App& app, const CommandInputs& in, Stage first, Stage last, bool input_is_case) {
   RunRequest request;
   request.parameters = flag_parameters(app, in);
@@ -127,24 +130,24 @@ Command make_stages(const CLI::App& app, const CommandInputs& in, Stage first, S
   request.from = in.from.empty() ? first : parse_stage(in.from);
   request.until = in.until.empty() ? last : parse_stage(in.until);
   if (!in.formats.empty() && request.until != Stage::Mesh)
-    throw UsageError("--export needs a mesh, and --until is before it");
+    throw UsageError("--export needs a mesh, but --until stops before the mesh");
   if (request.from > request.until) throw UsageError("--from " + in.from + " is after --until " + in.until);
 
   read_parameters(
       in, [&](Stage stage) { return stage >= request.from && stage <= request.until; }, parameters);
-  // How a case is judged stays with it; whether damage stops a run is asked of each.
+  // The criteria of the verdict are stored with the case, but each call decides whether damage stops the run.
   request.strict = parameters.output().strict && parameters.source(keys::output::strict) >= ParamSource::Set;
   if (input_is_case) {
     if (parameters.source(keys::mesh::implicit) == ParamSource::Flag)
-      throw UsageError("--implicit goes with -o, without CASE");
+      throw UsageError("--implicit needs -o instead of CASE");
     if (parameters.source(keys::mesh::level_set) == ParamSource::Flag)
-      throw UsageError("--level-set goes with -o, without CASE");
+      throw UsageError("--level-set needs -o instead of CASE");
     if (!in.output.empty() && fs::path(in.output) != fs::path(in.input)) {
-      throw UsageError("-o " + in.output + ": the case is " + in.input + " already");
+      throw UsageError("-o " + in.output + ": the call already names the case " + in.input);
     }
     request.case_folder = in.input;
     const fs::path toml = CasePaths{in.input}.parameters();
-    if (!fs::exists(toml)) throw UsageError(in.input + " is not a case: it has no case.toml");
+    if (!fs::exists(toml)) throw UsageError(in.input + " is not a case: it contains no case.toml");
     take_case(toml, in.fresh, parameters);
     if (request.from == Stage::Cloud && parameters.source(keys::cloud::file) > ParamSource::Case) take_cloud(request);
   } else {
@@ -163,7 +166,7 @@ Command make_stages(const CLI::App& app, const CommandInputs& in, Stage first, S
     }
     if (in.output.empty()) {
       const std::string& grid = parameters.mesh().level_set;
-      if (first == Stage::Mesh && grid.empty()) throw UsageError("-o CASE is missing: a formula has no name");
+      if (first == Stage::Mesh && grid.empty()) throw UsageError("-o CASE is missing: a formula has no file name");
       request.case_folder = default_case(grid.empty() ? parameters.cloud().file : grid);
     }
   }
@@ -197,7 +200,7 @@ Command make_evolve(const CLI::App& app, const CommandInputs& in) {
   read_parameters(
       in, [&](Stage stage) { return of_clouds || stage == Stage::Mesh; }, request.parameters);
   const bool formula = !request.parameters.mesh().implicit.empty();
-  if (!request.parameters.mesh().level_set.empty()) throw UsageError("evolve: mesh.level_set does not move");
+  if (!request.parameters.mesh().level_set.empty()) throw UsageError("evolve: mesh.level_set cannot change with time");
   if (formula == of_clouds) throw UsageError("evolve: give --implicit EXPR with --box, or --clouds LIST");
   if (request.parameters.mesh().order != 1) throw UsageError("evolve: mesh.order must be 1");
   if (in.output.empty()) throw UsageError("evolve: -o FOLDER is missing");
@@ -216,14 +219,15 @@ Command make_batch(const CLI::App& app, const CommandInputs& in) {
   read_parameters(
       in, [](Stage) { return true; }, request.parameters);
   if (in.output.empty()) throw UsageError("batch: -o FOLDER is missing");
-  if (has_own_psi(request.parameters.mesh())) throw UsageError("batch: mesh.implicit or mesh.level_set is no scan");
+  if (has_own_psi(request.parameters.mesh())) throw UsageError("batch: mesh.implicit and mesh.level_set are not scans");
   request.list = in.input;
   request.folder = in.output;
   request.formats = in.formats;
   request.jobs = in.jobs;
   request.resume = in.resume;
   request.collect = in.collect;
-  if (in.collect && (in.force || in.resume)) throw UsageError("batch: --collect runs nothing: no --force, no --resume");
+  if (in.collect && (in.force || in.resume))
+    throw UsageError("batch: --collect runs nothing, so --force and --resume do not apply");
   request.force = in.force;
   require_walls(request.parameters);
   return BatchCommand{std::move(request)};

@@ -1,6 +1,6 @@
-// Large blocks of the program's memory are in huge pages, where the system has them (madvise(2), Linux): the arrays of
-// a mesh of millions of tets are touched for the first time in a few faults instead of thousands. docs/performance.md
-// has what that is worth. This is the program's own business, so it is no part of a library.
+// Places large blocks of the program's memory in huge pages if the system supports them (madvise(2), Linux): the
+// first access to the arrays of a mesh with millions of tets then causes a few page faults instead of thousands.
+// docs/performance.md shows the gain. This concerns only the program, so it is not part of a library.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,7 +15,7 @@
 namespace {
 
 constexpr std::uintptr_t kHugePage = std::uintptr_t{1} << 21;
-// At most half of a block of this size, its ends, is in small pages.
+// In a block of this size, at most half of the memory, at both ends, is in small pages.
 constexpr std::size_t kLeast = 2 * kHugePage;
 
 void* block_of(std::size_t size) {
@@ -23,7 +23,7 @@ void* block_of(std::size_t size) {
   if (!block || size < kLeast) return block;
   const auto begin = reinterpret_cast<std::uintptr_t>(block), first = (begin + kHugePage - 1) / kHugePage * kHugePage;
   const std::uintptr_t end = (begin + size) / kHugePage * kHugePage;
-  madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE);  // a wish: without it the pages are small ones
+  madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE);  // a hint that the system may ignore
   return block;
 }
 

@@ -36,7 +36,7 @@
 namespace umtet {
 namespace {
 
-/// What goes to stdout: lines for people, or one document for programs.
+/// The output to stdout: lines for people, or one document for programs.
 struct Output {
   ExitCode code = ExitCode::Success;
   std::string text;
@@ -68,10 +68,10 @@ std::vector<std::filesystem::path> exports_of(const CasePaths& paths, const std:
 }
 
 void require_case(const std::filesystem::path& folder) {
-  if (!std::filesystem::exists(folder)) throw UsageError(folder.string() + ": there is no such case");
+  if (!std::filesystem::exists(folder)) throw UsageError(folder.string() + ": no such case");
 }
 
-/// Does the work of a command and says what goes to stdout.
+/// Executes a command and returns its output to stdout.
 struct Execution {
   const CommonOptions& options;
   Progress& progress;
@@ -93,7 +93,7 @@ struct Execution {
 Output Execution::operator()(RunCommand& command) const {
   RunRequest& request = command.request;
   request.threads = options.threads;
-  if (for_one_process(request.parameters).empty()) request.ranks = ranks.mesher;
+  if (!for_one_process(request.parameters)) request.ranks = ranks.mesher;
   request.keeps_parts = takes_parts(command.formats);
   request.needs_parts = is_in_pieces(command.formats);
   RunOutcome outcome = run_case(request, progress);
@@ -145,7 +145,7 @@ Output Execution::operator()(const InspectCommand& command) const {
 Output Execution::operator()(EvolveCommand& command) const {
   set_work_at_hand("evolve");
   command.request.threads = options.threads;
-  if (for_one_process(command.request.parameters).empty()) command.request.ranks = ranks.mesher;
+  if (!for_one_process(command.request.parameters)) command.request.ranks = ranks.mesher;
   const EvolveOutcome outcome = evolve(command.request, progress);
   progress.clear();
   return {outcome.code,
@@ -164,15 +164,15 @@ Output Execution::operator()(BatchCommand& command) const {
           {{"scans", outcome.rows}, {"files", names(outcome.files)}}};
 }
 
-/// What the processes have of the mesh of a case: they make it once more, by its own parameters. None where one process
-/// makes it.
+/// Makes the mesh of a case again, with its own parameters, so that each process has its local mesh. Returns null
+/// if a single process makes the mesh.
 std::shared_ptr<const MeshWithBoundary> Execution::parts_of(const ExportCommand& command) const {
   RunRequest request;
   request.case_folder = command.case_folder;
   const CasePaths paths{command.case_folder};
   if (!std::filesystem::exists(paths.parameters())) return nullptr;
   request.parameters.load(paths.parameters(), ParamSource::Case);
-  if (!for_one_process(request.parameters).empty()) return nullptr;
+  if (for_one_process(request.parameters)) return nullptr;
   request.from = Stage::Mesh;
   request.report = std::filesystem::exists(paths.report());
   request.threads = options.threads;
@@ -181,7 +181,7 @@ std::shared_ptr<const MeshWithBoundary> Execution::parts_of(const ExportCommand&
   return run_case(request, progress).parts;
 }
 
-/// How the boundary is divided by what former calls said.
+/// Reports settings of former calls that divide the boundary into patches.
 void tell_patches(const ExportCommand& command, Progress& progress) {
   const auto concerns = [](const std::string& text) {
     const auto keys = {keys::output::label_names, keys::output::label_min_area, keys::output::patch_angle,
@@ -238,7 +238,8 @@ Output Execution::operator()(const DiffCommand& command) const {
   return {ExitCode::Success, diff_text(found), {{"diff", to_json(found)}}};
 }
 
-/// Limits of memory and time that this process is to keep. Those of a batch are for its scans, each a process.
+/// Applies the limits of memory and time to this process. The limits of a batch apply to its scans, which run in
+/// their own processes.
 void keep_limits(const Command& command, const CommonOptions& options) {
   if (std::holds_alternative<BatchCommand>(command)) return;
   const OutputParameters limits = std::visit(
@@ -252,18 +253,19 @@ void keep_limits(const Command& command, const CommonOptions& options) {
   if (options.timeout > 0) stop_after(options.timeout);
 }
 
-/// Of several processes. \throw UsageError for what one process does
+/// Checks a call with several processes. \throw UsageError if the command runs in a single process
 void require_ranks(const Command& command) {
   const auto* run = std::get_if<RunCommand>(&command);
   const auto* evolve = std::get_if<EvolveCommand>(&command);
   if (std::holds_alternative<ExportCommand>(command)) return;
-  if (!run && !evolve) throw UsageError("one process does that: without mpirun");
+  if (!run && !evolve) throw UsageError("this command runs in a single process; start it without mpirun");
   if (run && run->request.until < Stage::Mesh) return;
-  const std::string reason = for_one_process(run ? run->request.parameters : evolve->request.parameters);
-  if (!reason.empty()) throw UsageError(reason + " is for one process: several of them mesh a lattice without walls");
+  const auto reason = for_one_process(run ? run->request.parameters : evolve->request.parameters);
+  if (reason)
+    throw UsageError(*reason + " requires a single process; several processes can only mesh a lattice without walls");
 }
 
-/// @param json  is set as soon as the call is understood, for the document of a failure
+/// @param json  set as soon as the call is parsed; decides the form of a failure
 Output execute(int argc, char** argv, const RanksOfProgram& ranks, bool& json, std::string& name) {
   CommandLine call = parse_command_line(argc, argv);
   CommonOptions& options = call.options;
@@ -283,7 +285,7 @@ Output execute(int argc, char** argv, const RanksOfProgram& ranks, bool& json, s
   return std::visit(execution, call.command);
 }
 
-/// To stderr, if it can be written; where it cannot, the exit code has to do. (fmt::print would throw.)
+/// Writes to stderr. If that fails, only the exit code reports the error. (fmt::print would throw.)
 template <class... T>
 void complain(fmt::format_string<T...> format, T&&... args) {
   const std::string text = fmt::format(format, std::forward<T>(args)...);
@@ -297,7 +299,7 @@ bool print(const std::string& text) {
 }  // namespace
 
 int run_program(int argc, char** argv, const RanksOfProgram& ranks) {
-  // A call that cannot be understood still gets a document if --json is in it.
+  // A call that cannot be parsed still gets a document if it contains --json.
   bool json = std::any_of(argv, argv + argc, [](const char* a) { return std::string_view(a) == "--json"; });
   if (json) answer_stops_in_json("");
   std::string command;
@@ -316,7 +318,7 @@ int run_program(int argc, char** argv, const RanksOfProgram& ranks) {
   }
   if (json) {
     Json document = {{"schema", 1}, {"command", command}, {"exit_code", static_cast<int>(output.code)}};
-    if (output.document.is_object()) document.update(output.document);  // --version and --help have none
+    if (output.document.is_object()) document.update(output.document);  // --version and --help have no document
     output.text = document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   }
   take_last_word();

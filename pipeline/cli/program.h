@@ -4,17 +4,17 @@ namespace umtet {
 
 class PartMesher;
 
-/// The processes that are one call of the program, of which this one speaks.
+/// The processes that execute one call of the program together, and their view from this process.
 struct RanksOfProgram {
-  PartMesher* mesher = nullptr;  ///< by which they make a mesh; null: there is no MPI
-  int n = 1, n_here = 1;         ///< of all, and of those on this machine, which share its processors
+  PartMesher* mesher = nullptr;  ///< makes meshes in all processes; null: there is no MPI
+  int n = 1, n_here = 1;         ///< number of all processes, and of those on this machine, which share its processors
 };
 
-/// Parses the call, runs it, prints data on stdout and the rest on stderr. @return the exit code
+/// Parses and runs the call. Prints data on stdout and everything else on stderr. @return the exit code
 int run_program(int argc, char** argv, const RanksOfProgram& ranks = {});
 
-/// Arrays of some megabytes come and go in every stage. Freed memory is kept for the next one: if it were given back to
-/// the system, the kernel would have to clear every page anew.
+/// Keeps freed memory for the next allocation. Every stage allocates and frees arrays of some megabytes; if they
+/// were returned to the system, the kernel would have to clear every page again.
 void keep_freed_memory();
 
 }  // namespace umtet

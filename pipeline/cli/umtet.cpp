@@ -1,4 +1,4 @@
-// The program of one process.
+// The program that runs in a single process.
 
 #include "pipeline/case/interrupt.h"
 #include "pipeline/cli/program.h"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "body/errors.h"
+#include "body/option_names.h"
 #include "body/sizing/background_choice.h"
 #include "body/sizing/graded_sizes.h"
 #include "mesh/io/tet_mesh_io.h"
@@ -41,8 +42,9 @@ GivenSizes given_sizes(const std::string& size) {
     const auto formula = std::make_shared<const Expression>(size);
     given.function = [formula](const Vec3& x) { return formula->value(x); };
   } catch (const ExpressionError& e) {
-    throw UsageError(
-        fmt::format("--size is neither a .vtu, .csv, .xyz or .txt file nor a formula of x, y and z: {}", e.what()));
+    throw UsageError({option::sizes, std::string(" is neither a .vtu, .csv, .xyz or .txt file nor a formula of x, y "
+                                                 "and z: ") +
+                                         e.what()});
   }
   return given;
 }

@@ -9,21 +9,22 @@
 
 namespace umtet {
 
-/// What the parameters say to the library. Files and formulas of backgrounds and sizes are read when they are needed;
-/// fits may take allowed_bytes().
-/// The functions of the result throw UsageError for a formula or labels that are none, MeshFileRefused and
+/// Converts parameters to options of the library. Files and formulas of backgrounds and sizes are read when the library
+/// calls the functions of the result; fits may use allowed_bytes().
+/// The functions of the result throw UsageError for an invalid formula or invalid labels, MeshFileRefused and
 /// std::system_error.
 BodyOptions body_options(const Parameters& parameters);
 
-/// The mesh file that mesh.background names, if it is no tiling and not graded.
+/// Returns the mesh file that mesh.background names; nothing if it is a tiling or graded.
 std::optional<std::filesystem::path> background_file(const Parameters& parameters);
 
-/// As the functions of the same names for BodyOptions, which say more.
+/// Equivalent to the functions of the same names for BodyOptions, which are documented there.
 void require_walls(const Parameters& parameters);
 void require_graded(const Parameters& parameters);
 bool is_graded(const Parameters& parameters);
 
-/// The parameters that say how fine the mesh will be, as records keep them of stages that made nothing finer.
+/// Returns the parameters that determine the resolution of the mesh. Stages store them in their records if they left
+/// out detail that this mesh cannot show.
 Json wanted_mesh(const Parameters& parameters);
 
 }  // namespace umtet

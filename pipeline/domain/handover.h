@@ -3,9 +3,9 @@
 #include <memory>
 #include <optional>
 
-#include "mesh/io/tet_mesh_io.h"
 #include "body/body.h"
-#include "reconstruct/cloud/cloud_neighbours.h"
+#include "mesh/io/tet_mesh_io.h"
+#include "reconstruct/cloud/neighbours/cloud_neighbours.h"
 #include "reconstruct/cloud/point_cloud.h"
 #include "reconstruct/level_set/level_set.h"
 #include "reconstruct/triangles/triangle_mesh.h"
@@ -14,16 +14,16 @@ namespace umtet {
 
 struct MeshWithBoundary;
 
-/// What the stages of a run leave in memory for those after them: bit by bit what their files hold, which so need not
-/// be read back. Empty where a stage had been done before.
+/// Results that the stages of a run keep in memory for later stages: bit for bit the contents of their files, so the
+/// files need not be read back. A field is empty if its stage was already done before the run.
 struct Handover {
   std::optional<OrientedPointCloud> cloud;        ///< cloud.ply
   std::optional<TriangleMesh> triangles;          ///< triangles.ply
-  NeighbourDistances near;                        ///< of its points, or empty
+  NeighbourDistances near;                        ///< distances for the points of the cloud, or empty
   std::optional<LevelSet> psi;                    ///< level_set.vti
-  std::optional<Domain> domain;                   ///< what was meshed, psi cut for h
-  MeshFile mesh;                                  ///< mesh.vtu, beside the domain
-  std::shared_ptr<const MeshWithBoundary> parts;  ///< in the place of both, of a mesh that several processes have
+  std::optional<Domain> domain;                   ///< the meshed domain, with psi cut for h
+  MeshFile mesh;                                  ///< mesh.vtu; set together with the domain
+  std::shared_ptr<const MeshWithBoundary> parts;  ///< a distributed mesh, in place of domain and mesh
 };
 
 }  // namespace umtet

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "body/given_triangles.h"
+#include "body/option_names.h"
 #include "body/scan/fitted_domain.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/domain/handover.h"
@@ -19,16 +20,16 @@ static_assert(JointlyEvaluated<Expression>);
 
 namespace {
 
-/// The file of a case has the same bits.
+/// Reads the level set of a case; its file contains the same bits as the level set that was written.
 LevelSet level_set_of(const std::filesystem::path& file) {
   try {
     return read_level_set(file);
-  } catch (const LevelSetRefused& e) {  // the file is ours: what is wrong with it is damage
+  } catch (const LevelSetRefused& e) {  // umtet wrote the file, so an error in it is damage
     throw ArtefactDamaged(e.what());
   }
 }
 
-/// Of the mesh that the case has.
+/// Returns the level shift of the mesh of the case.
 double level_shift_of(const CasePaths& paths) {
   const StageState state = inspect_stage(paths, Stage::Mesh, Json::object(), std::nullopt);
   return state.record ? mesh_report(*state.record).measured.domain.level_shift : 0;
@@ -44,7 +45,7 @@ bool is_of_triangles(const CasePaths& paths, const StageRecord& cloud) {
 
 Domain formula_domain(const Parameters& parameters, std::optional<double> t) {
   const std::optional<Box> box = parse_box(parameters.mesh().box);
-  if (!box) throw UsageError("--implicit needs --box x0,y0,z0,x1,y1,z1");
+  if (!box) throw UsageError({Option{keys::mesh::implicit}, " needs ", Setting(option::box, "x0,y0,z0,x1,y1,z1")});
   Domain domain;
   domain.formula = shared_function(Expression(parameters.mesh().implicit, t));
   domain.box = *box;
@@ -75,7 +76,7 @@ Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handove
       domain.triangles = given_triangles(read_triangles(paths.triangles()).mesh, domain.shift);
     }
     if (domain.triangles) domain.level_shift = level_shift_of(paths);
-  } catch (const CloudRefused& e) {  // all files are ours: what is wrong with them is damage
+  } catch (const CloudRefused& e) {  // umtet wrote all files, so an error in them is damage
     throw ArtefactDamaged(e.what());
   }
   domain.complement = parameters.mesh().complement;

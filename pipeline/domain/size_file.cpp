@@ -18,7 +18,8 @@ namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
-// Points along an edge of a mesh that asks for sizes far smaller than its own tets: 165 in a tet.
+// Maximum number of points along an edge of a mesh whose requested sizes are much smaller than its own tets: 165 in a
+// tet.
 constexpr int kMostPerEdge = 8;
 
 constexpr std::array<const char*, 4> endings = {".vtu", ".csv", ".xyz", ".txt"};
@@ -49,7 +50,7 @@ SizeSource checked(const fs::path& file, const std::string& place, const Vec3& x
   return {x, h};
 }
 
-/// Which columns are x, y, z and the size.
+/// The columns of x, y, z and the size.
 using Columns = std::array<std::size_t, 4>;
 
 std::optional<Columns> columns_of(const std::vector<std::string_view>& names) {
@@ -84,7 +85,7 @@ std::vector<SizeSource> read_text_sizes(const fs::path& file) {
     std::array<double, 4> v{};
     for (std::size_t k = 0; k < 4; ++k) {
       const auto value = columns[k] < words.size() ? number(words[columns[k]]) : std::nullopt;
-      if (!value) throw MeshFileRefused(file, place, "not four numbers; a point is a line x y z size");
+      if (!value) throw MeshFileRefused(file, place, "not four numbers; a line of a point is x y z size");
       v[k] = *value;
     }
     sources.push_back(checked(file, place, {v[0], v[1], v[2]}, v[3]));
@@ -93,7 +94,7 @@ std::vector<SizeSource> read_text_sizes(const fs::path& file) {
   return sources;
 }
 
-/// Points of a tet between its corners, as far apart as the least of their sizes; nothing where edges are shorter.
+/// Adds points of a tet between its corners, spaced by the smallest of the corner sizes; none if the edges are shorter.
 void add_inside(const TetMesh& mesh, const Tet& tet, const std::vector<double>& h, std::vector<SizeSource>& sources) {
   double longest = 0, least = h[tet[0]];
   for (int a = 0; a < 4; ++a) {
@@ -123,7 +124,7 @@ std::vector<SizeSource> read_mesh_sizes(const fs::path& file) {
       h = &std::get<std::vector<double>>(at->second);
     }
   }
-  if (!h) throw MeshFileRefused(file, "point data", "neither size nor h, of floating point numbers");
+  if (!h) throw MeshFileRefused(file, "point data", "neither size nor h with floating-point numbers");
   std::vector<SizeSource> sources;
   for (std::size_t i = 0; i < h->size(); ++i) {
     sources.push_back(checked(file, fmt::format("point {}", i), content.mesh.V[i], (*h)[i]));

@@ -22,7 +22,8 @@ std::vector<Vec3> read_viewpoints(const std::filesystem::path& file) {
     Vec3 x;
     if (!(words >> std::ws) || words.eof()) continue;
     if (!(words >> x[0] >> x[1] >> x[2]) || !x.allFinite()) {
-      throw CloudRefused(fmt::format("{}:{}: not three numbers; a viewpoint is a line x y z", file.string(), number));
+      throw CloudRefused(
+          fmt::format("{}:{}: not three numbers; a line of a viewpoint is x y z", file.string(), number));
     }
     points.push_back(x);
   }

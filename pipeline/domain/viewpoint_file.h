@@ -7,8 +7,8 @@
 
 namespace umtet {
 
-/// Points of a text with three numbers a line; '#' begins a comment.
-/// \throw CloudRefused  a line that is no point, or no point at all; std::system_error
+/// Reads points from a text with three numbers per line; '#' begins a comment.
+/// \throw CloudRefused  a line is not a point, or there is no point; std::system_error
 std::vector<Vec3> read_viewpoints(const std::filesystem::path& file);
 
 }  // namespace umtet

@@ -24,7 +24,7 @@ TetMesh channel(double n_tets) {
 
 std::string why(const UmResult& result) {
   const Vec3& x = result.evidence.where;
-  return fmt::format("{}: {} at {:.4g}, {:.4g}, {:.4g}, {} in all", to_string(result.status), result.evidence.what,
+  return fmt::format("{}: {} at {:.4g}, {:.4g}, {:.4g}, {} in total", to_string(result.status), result.evidence.what,
                      x.x(), x.y(), x.z(), result.evidence.count);
 }
 
@@ -56,8 +56,8 @@ FluidMesh ChannelMesher::mesh(ImplicitFunctionRef fluid) const {
                                                .wall_faces = &made.walls,
                                                .background_V = &omega_h.mesh.V});
   for (const std::string& reason : failures(certificate)) {
-    // The share of the body's volume that flat faces miss is no failure here: it depends on --tets, and the table of a
-    // stroke has it (volume_gap).
+    // The share of the body's volume that flat faces miss is not a failure here: it depends on --tets, and the table of
+    // a stroke contains it (volume_gap).
     if (!reason.starts_with("volume_gap")) throw CertificateFailed(reason);
   }
 

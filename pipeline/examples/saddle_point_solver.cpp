@@ -20,7 +20,7 @@ void check(PetscErrorCode code) {
   throw StokesError(fmt::format("PETSc: error {} ({})", int(code), text ? text : "no text"));
 }
 
-/// PETSc for this process, without its signal handlers, its file of options and its messages.
+/// Starts PETSc for this process, without its signal handlers, its file of options and its messages.
 void start_petsc() {
   struct Session {
     Session() {
@@ -36,7 +36,7 @@ void start_petsc() {
   static const Session session;
 }
 
-/// Rows of neighbours, each sorted, of the graph that joins all nodes of a tet.
+/// Computes the sorted rows of neighbours in the graph that connects all nodes of a tet.
 void neighbour_rows(int n, std::span<const Tet> tets, std::vector<int>& row, std::vector<int>& column) {
   std::vector<int> first(std::size_t(n) + 1, 0), tet_of(4 * tets.size());
   for (const Tet& K : tets) {
@@ -82,7 +82,7 @@ struct SaddlePointSolver::Petsc {
   }
 
   void make_krylov_solver() {
-    check(PetscOptionsCreate(&options));  // for three-dimensional problems, as hypre's manual has it
+    check(PetscOptionsCreate(&options));  // for three-dimensional problems, as recommended by hypre's manual
     check(PetscOptionsInsertString(options,
                                    "-pc_hypre_boomeramg_coarsen_type HMIS -pc_hypre_boomeramg_interp_type ext+i "
                                    "-pc_hypre_boomeramg_P_max 4"));
@@ -173,7 +173,7 @@ std::size_t SaddlePointSolver::at(int i, int j) const {
 }
 
 void SaddlePointSolver::multiply(const double* x, double* y) const {
-  constexpr std::size_t kGrain = 2048;  // rows, some 100 microseconds: less is not worth waking a thread
+  constexpr std::size_t kGrain = 2048;  // rows, some 100 microseconds: less work does not justify waking a thread
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, row_.size() - 1, kGrain), [&](const auto& rows) {
     for (std::size_t i = rows.begin(); i < rows.end(); ++i) {
       Eigen::Vector4d sum = Eigen::Vector4d::Zero();
@@ -224,9 +224,8 @@ KrylovReport SaddlePointSolver::solve(std::span<const double> b, std::span<doubl
   check(KSPSetResidualHistory(P.krylov, nullptr, 0, PETSC_TRUE));
   if (n_history && history[0] > 0) report.residual = history[std::size_t(n_history) - 1] / history[0];
   if (reason < 0) {
-    throw StokesError(
-        fmt::format("MINRES: {} after {} iterations with {} unknowns; residual {:.3g} of that at the start",
-                    KSPConvergedReasons[reason], report.iterations, b.size(), report.residual));
+    throw StokesError(fmt::format("MINRES: {} after {} iterations with {} unknowns; relative residual {:.3g}",
+                                  KSPConvergedReasons[reason], report.iterations, b.size(), report.residual));
   }
   return report;
 }

@@ -79,7 +79,7 @@ void StokesSolver::assemble(std::span<const Vec3> V, std::span<const int> fluid,
   for (const int i : fixed) fixed_[std::size_t(i)] = 1;
 
   const double mu = params_.viscosity;
-  std::vector<Vec3> flux(V.size(), Vec3::Zero());  // int grad N_i: not zero on the boundary only
+  std::vector<Vec3> flux(V.size(), Vec3::Zero());  // int grad N_i: nonzero on the boundary only
   std::vector<double> flux_scale(V.size(), 0.);    // zero: not a vertex of the fluid
   share_.assign(V.size(), 0.);
   volume_ = 0;
@@ -109,7 +109,7 @@ void StokesSolver::assemble(std::span<const Vec3> V, std::span<const int> fluid,
     }
   }
 
-  // What is no unknown gets an identity row. A boundary with a free vertex determines the pressure.
+  // Values that are not unknowns get an identity row. A boundary with a free vertex determines the pressure.
   wet_.clear();
   enclosed_ = true;
   std::size_t n_fixed = 0;
@@ -165,7 +165,7 @@ StokesFlow StokesSolver::solve(std::span<const Vec3> velocity, std::span<const V
   if (!f.empty() && f.size() != n) throw std::invalid_argument(fmt::format("{} forces for {} vertices", f.size(), n));
   if (wet_.empty()) throw std::invalid_argument("solve() before assemble()");
 
-  // The unknowns are what is added to the given velocities.
+  // The unknowns are added to the given velocities.
   StokesFlow flow{std::vector<Vec3>(n, Vec3::Zero()), std::vector<double>(n, 0.), {}};
   for (const int i : wet_) {
     if (fixed_[std::size_t(i)]) flow.u[std::size_t(i)] = velocity[std::size_t(i)];

@@ -13,11 +13,11 @@ namespace umtet {
 struct StokesParams {
   double viscosity = 1;            ///< mu > 0
   double stabilisation = 1. / 12;  ///< delta_K = stabilisation h_K^2 / mu; > 0
-  double tolerance = 1e-6;         ///< of the linear solver: residual over that at the start; in (0, 1)
-  int max_iterations = 500;        ///< of the linear solver; >= 1
+  double tolerance = 1e-6;         ///< relative residual at which the linear solver stops; in (0, 1)
+  int max_iterations = 500;        ///< iterations of the linear solver; >= 1
 };
 
-/// Every broken constraint, not just the first.
+/// Returns every broken constraint, not just the first.
 std::vector<std::string> problems(const StokesParams&);
 
 /// Velocities and pressures by vertex of the background; zero at vertices outside the fluid.
@@ -45,23 +45,25 @@ class StokesSolver {
   /// \throw std::invalid_argument for bad parameters or an index out of range
   StokesSolver(int n_vertices, std::span<const Tet> background, const StokesParams&);
 
-  /// Fills the matrices for another fluid; no pattern is made.
-  /// @param V     all vertices of the background; those of the fluid where they are now.
+  /// Fills the matrices for another fluid; the pattern stays.
+  /// @param V     all vertices of the background; vertices of the fluid at their current positions.
   /// @param fluid numbers of background tets, connected through faces.
-  /// @param fixed vertices where the velocity is given; others of them than the fluid's are of no account.
-  /// \throw std::invalid_argument for a tet whose volume is not positive, or less than three fixed vertices
+  /// @param fixed vertices where the velocity is given; vertices outside the fluid are ignored.
+  /// \throw std::invalid_argument  the volume of a tet is not positive, or there are less than three fixed vertices
   void assemble(std::span<const Vec3> V, std::span<const int> fluid, std::span<const int> fixed);
 
   /// @param velocity by vertex; read at fixed vertices only.
   /// @param f        force per volume, by vertex; empty: none.
-  /// \pre assemble() was called. \throw StokesError when the linear solver gives up
+  /// \pre assemble() was called. \throw StokesError  the linear solver fails
   StokesFlow solve(std::span<const Vec3> velocity, std::span<const Vec3> f = {});
 
-  /// The force of the fluid on whatever holds vertex i, by vertex: minus the residual of the momentum equation there,
-  /// -int sigma n N_i with n out of the fluid. The force on a body is the sum over its vertices, eq. (19).
+  /// Returns the force of the fluid on the object that holds vertex i, by vertex: minus the residual of the momentum
+  /// equation there, -int sigma n N_i with n out of the fluid. The force on a body is the sum over its vertices, eq.
+  /// (19).
   ///
-  /// Zero at vertices that are not fixed, to the tolerance of the solver, and the sum over all is int f, to rounding.
-  /// @param f that of solve().
+  /// It is zero at vertices that are not fixed, to the tolerance of the solver, and the sum over all vertices is int f,
+  /// up to rounding.
+  /// @param f  the argument of solve().
   std::vector<Vec3> forces(const StokesFlow& flow, std::span<const Vec3> f = {}) const;
 
  private:
@@ -76,7 +78,7 @@ class StokesSolver {
   std::vector<char> fixed_;    // by vertex: the velocity is not an unknown
   bool enclosed_ = false;      // the whole boundary is fixed
   std::vector<double> share_;  // by vertex: int N_i
-  double volume_ = 0;          // of the fluid
+  double volume_ = 0;          // volume of the fluid
 };
 
 }  // namespace umtet

@@ -30,11 +30,12 @@ std::string pvd(std::span<const SwimRow> rows, const auto& file_of) {
   return text + "</Collection>\n</VTKFile>\n";
 }
 
-/// A curve with marks in a frame of 560 x 200 at (60, top): points (t, y), least and greatest values at the axes.
+/// Draws a curve with marks in a frame of 560 x 200 at (60, top): points (t, y), with the minimum and maximum at the
+/// axes.
 std::string panel(double top, const char* name, const std::vector<std::pair<double, double>>& points) {
   double t0 = points.front().first, t1 = points.back().first, y0 = 0, y1 = 0;
   for (const auto& [t, y] : points) y0 = std::min(y0, y), y1 = std::max(y1, y);
-  // A curve of one point, or all zero, has a frame too.
+  // A curve with one point, or with all values zero, also has a frame.
   if (!(t1 > t0)) t0 -= .5, t1 += .5;
   if (!(y1 > y0)) y0 -= .5, y1 += .5;
   const auto px = [&](double t) { return 60 + 560 * (t - t0) / (t1 - t0); };

@@ -9,30 +9,30 @@
 
 namespace umtet {
 
-/// What the table has beside the motion.
+/// A row of the table: the motion and further values.
 struct SwimRow {
   SwimStep step;
   double min_quality;  ///< mean ratio of the worst tet of the fluid
-  std::size_t n_tets;  ///< of the fluid
+  std::size_t n_tets;  ///< number of tets of the fluid
   double volume_gap;   ///< FluidMesh::volume_gap
-  double seconds;      ///< since the row before, meshing and files included
+  double seconds;      ///< seconds since the previous row, including meshing and files
 };
 
-/// The worst mean ratio of the fluid's tets. @param background all tets, FluidMesh::tets are numbers of them
+/// Returns the minimum mean ratio of the fluid's tets. @param background  all tets, which FluidMesh::tets refers to
 double min_quality(const FluidMesh& fluid, std::span<const Tet> background);
 
-/// One run's files in a folder, each whole at any time, and made anew from all rows so far:
+/// The files of one run in a folder. Each is complete at any time, and rewritten from all rows so far:
 /// swimmer.csv, swimmer.svg (z0' and z0 over t), swimmer.pvd (the fields by time), fields/NNN.vtu.
 class SwimFiles {
  public:
-  /// Makes the folders. \throw std::system_error naming what failed, as do all below
+  /// Creates the folders. \throw std::system_error  names the file that failed; all functions below throw it, too
   explicit SwimFiles(std::filesystem::path folder);
 
-  /// fields/NNN.vtu: the fluid's mesh with components of u^phi and u^z, p^phi, p^z and ids of the background.
+  /// Writes fields/NNN.vtu: the fluid's mesh with components of u^phi and u^z, p^phi, p^z and ids of the background.
   /// The flow of a free swimmer is u^phi + z0' u^z, eq. (20).
   void write_fields(std::size_t row, const FluidMesh& fluid, std::span<const Tet> background,
                     const ForceFreeMotion& motion) const;
-  /// @param fields  were written for all rows: swimmer.pvd lists them
+  /// @param fields  whether fields were written for all rows: then swimmer.pvd lists them
   void write_tables(std::span<const SwimRow> rows, bool fields) const;
 
  private:

@@ -13,7 +13,7 @@ struct Parts {
   Vec3 grad_A, grad_B;
 };
 
-/// A and B of eq. (14) at x, given in coordinates that move with the swimmer.
+/// Returns A and B of eq. (14) at x, in coordinates that move with the swimmer.
 Parts parts(const Vec3& x, double t) {
   const double r2 = x.x() * x.x() + x.y() * x.y(), from_bulge = x.z() - t, c = std::cos(kPi * t / 16);
   return {r2 / 2 + x.z() * x.z() / 64 - 1, r2 + from_bulge * from_bulge - 25. / 4 * c * c,

@@ -21,11 +21,12 @@ class Swimmer {
   double value(const Vec3& x) const { return evaluate(x, nullptr, nullptr); }
   double evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const;
 
-  /// d psi / dt where the body is held, z0 fixed.
+  /// d psi / dt for a body at rest, with z0 fixed.
   double time_derivative(const Vec3& x) const;
 
-  /// v_t(x - z0 e_z) = -(d psi / dt) grad psi / |grad psi|^2, eq. (15): what the surface does besides its translation.
-  /// \pre x near the surface, where the gradient does not vanish
+  /// v_t(x - z0 e_z) = -(d psi / dt) grad psi / |grad psi|^2, eq. (15): the velocity of the surface without its
+  /// translation.
+  /// \pre x is near the surface, where the gradient does not vanish
   Vec3 deformation_velocity(const Vec3& x) const;
 
   double time() const { return t_; }

@@ -1,11 +1,11 @@
-// umtet_swimmer -o FOLDER: the swimmer of [Rangarajan2018, Section 4.3] over one stroke: 17 instants, two Stokes flows
-// each, on meshes that are parts of one universal mesh of the channel.
+// umtet_swimmer -o FOLDER simulates the swimmer of [Rangarajan2018, Section 4.3] over one stroke: 17 instants with two
+// Stokes flows each, on meshes that are parts of one universal mesh of the channel.
 //
 //   umtet_swimmer -o stroke                            300 000 tets, some minutes
 //   umtet_swimmer -o quick --tets 40000 --steps 4      seconds
 //
-// FOLDER: swimmer.csv, swimmer.svg, swimmer.pvd, fields/NNN.vtu. Exit codes are those of umtet, 6 also where no flow
-// is found.
+// FOLDER contains swimmer.csv, swimmer.svg, swimmer.pvd, fields/NNN.vtu. Exit codes are the exit codes of umtet; 6 is
+// also returned if no flow is found.
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -65,8 +65,12 @@ int run_program(int argc, char** argv) {
   CLI::App app{"The swimmer of Rangarajan, Kabaria & Lew (2018), Section 4.3"};
   app.add_option("-o,--output", call.folder, "folder for swimmer.csv, swimmer.svg, swimmer.pvd and fields/")
       ->required();
-  app.add_option("--tets", call.n_tets, "of the channel, about")->check(CLI::Range(1e4, 2e7))->capture_default_str();
-  app.add_option("--steps", call.swim.steps, "forward Euler steps")->check(CLI::Range(1, 999))->capture_default_str();
+  app.add_option("--tets", call.n_tets, "approximate number of tets of the channel")
+      ->check(CLI::Range(1e4, 2e7))
+      ->capture_default_str();
+  app.add_option("--steps", call.swim.steps, "number of forward Euler steps")
+      ->check(CLI::Range(1, 999))
+      ->capture_default_str();
   app.add_option("--dt", call.swim.dt, "time of a step")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--t0", call.swim.t0, "first instant; a stroke is -8 to 8")->capture_default_str();
   app.add_option("--threads", call.threads)->check(CLI::Range(1, 1024))->capture_default_str();

@@ -24,7 +24,7 @@ std::string at_column(const std::string& text, std::size_t column, const std::st
          "^";
 }
 
-/// psi with derivatives up to an order: byte codes that work on the same variables, one after the other.
+/// psi with derivatives up to an order: several byte codes that use the same variables, executed one after the other.
 class Evaluator {
  public:
   explicit Evaluator(const Assignments& assignments)
@@ -83,18 +83,18 @@ struct Expression::Impl {
     const GiNaC::ex psi = read_expression(text, t).psi;
     try {
       for (const std::size_t order : {0, 1, 2}) assignments[order] = chain_rule(psi, static_cast<int>(order));
-    } catch (const std::exception& e) {  // GiNaC: 0^z has a value, and no derivative
+    } catch (const std::exception& e) {  // GiNaC: 0^z has a value but no derivative
       throw ExpressionError(text, 1, std::string("no derivative: ") + e.what());
     }
     try {
       for (const std::size_t order : {0, 1, 2}) evaluators.local()[order](Vec3::Zero());
-    } catch (const mu::ParserError& e) {  // it reads its text at the first call
+    } catch (const mu::ParserError& e) {  // muParser parses its text at the first call
       throw ExpressionError(text, 1, "cannot be evaluated: " + e.GetMsg());
     }
   }
 
   std::string text;
-  std::array<Assignments, 3> assignments;  ///< of psi; of psi and gradient; of psi, gradient and Hessian
+  std::array<Assignments, 3> assignments;  ///< for psi; for psi and gradient; for psi, gradient and Hessian
   mutable tbb::enumerable_thread_specific<Evaluators> evaluators{[this] {
     return Evaluators{Evaluator(assignments[0]), Evaluator(assignments[1]), Evaluator(assignments[2])};
   }};

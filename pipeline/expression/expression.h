@@ -9,30 +9,31 @@
 
 namespace umtet {
 
-/// The text is not an expression this program can differentiate. what() has the column and a caret under the place.
+/// The text is not an expression that the program can differentiate. what() contains the column and a caret under the
+/// error.
 struct ExpressionError : std::runtime_error {
   ExpressionError(const std::string& text, std::size_t column, const std::string& message);
   std::size_t column;  ///< 1-based; text.size() + 1 when something is missing at the end
 };
 
-/// psi given as text in x, y, z; Omega = {psi < 0}. A JointlyEvaluated implicit function.
+/// psi, given as text in x, y, z; Omega = {psi < 0}. A JointlyEvaluated implicit function.
 ///
-/// A family of them has t in its text; each member is an Expression of its own, in which t is a number.
+/// A family of functions contains t in its text; each member is a separate Expression in which t is a number.
 ///
 /// Grammar: + - * / ^ ( ), numbers, x y z pi, and sin cos tan asin acos atan sinh cosh tanh exp log sqrt of one
-/// argument. ^ binds to the right and before a sign: -x^2 = -(x^2), 2^3^2 = 2^9, 2^-1 = .5. There is no abs: psi must
-/// be C2.
+/// argument. ^ binds to the right and before a sign: -x^2 = -(x^2), 2^3^2 = 2^9, 2^-1 = .5. There is no abs, because
+/// psi must be C2.
 ///
-/// muParser reads the text, GiNaC differentiates it exactly (decimal numbers are kept as fractions), muParser evaluates
-/// psi, its gradient and its Hessian. Each reading of a text is the same function to the last bit. Thread-safe: every
-/// thread gets its own evaluators at its first call.
-/// Where the formula has no real value (log of a negative number) the result is NaN.
+/// muParser parses the text, GiNaC differentiates it exactly (decimal numbers are kept as fractions), and muParser
+/// evaluates psi, its gradient and its Hessian. Parsing the same text again gives the same function to the last bit.
+/// Thread-safe: every thread gets its own evaluators at its first call.
+/// The result is NaN where the formula has no real value (log of a negative number).
 /// Licence: GiNaC is GPL-2+, so a program that links this file is GPL as a whole.
 class Expression {
  public:
-  /// \throw ExpressionError  not in the grammar, a number or power out of range, a pole or an imaginary number among
-  ///                         the constants, or nothing that depends on x, y or z
-  /// @param t  finite; read as the shortest decimal number for it: .1 is a tenth. Without it there is no name t
+  /// \throw ExpressionError  the text does not follow the grammar, a number or power is out of range, the constants
+  ///   contain a pole or an imaginary number, or nothing depends on x, y or z
+  /// @param t  finite; converted to the shortest decimal number: .1 is a tenth. Without it, the name t is unknown
   explicit Expression(const std::string& text, std::optional<double> t = std::nullopt);
   ~Expression();
   Expression(Expression&&) noexcept;
@@ -40,7 +41,7 @@ class Expression {
 
   const std::string& text() const;
   double value(const Vec3& x) const { return evaluate(x, nullptr, nullptr); }
-  /// value; gradient and Hessian where the pointers are not null
+  /// Returns the value, and stores gradient and Hessian if the pointers are not null.
   double evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const;
 
  private:

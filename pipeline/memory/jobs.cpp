@@ -48,7 +48,7 @@ Reconstruction reconstruct(CloudFile file, const Parameters& parameters, const W
   const BodyOptions options = body_options(parameters);
   PreparedCloud prepared = prepare_cloud(std::move(file), "points", options);
   LevelSetFit fit = fit_level_set(prepared.cloud, std::move(prepared.near), options, context_of(watch));
-  std::vector<std::string> notices = std::move(prepared.report.notices);
+  std::vector<Message> notices = std::move(prepared.report.notices);
   notices.insert(notices.end(), fit.notices.begin(), fit.notices.end());
   const InputFacts facts = input_facts(prepared.report, fit.report);
   return {std::move(fit.psi), std::move(prepared.cloud), std::move(fit.report), facts, std::move(notices)};

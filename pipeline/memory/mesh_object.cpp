@@ -23,7 +23,7 @@ SolverMesh all_of(const MeshObject& m, const MeshFile& content) {
   return solver_mesh(curved);
 }
 
-/// With the holes that the certificate names as a patch.
+/// Returns the mesh with the holes of the certificate as a patch.
 SolverMesh for_solver(const MeshObject& m, const MeshFile& content) {
   SolverMesh made = all_of(m, content);
   if (!m.certificate) return made;
@@ -61,7 +61,7 @@ std::vector<std::int64_t> MeshObject::background_vertices() const {
 
 std::vector<QuadraticTriangle> MeshObject::curved_boundary() const {
   const std::vector<int>& mid_sides = second->boundary_mid_sides;
-  std::map<std::pair<int, int>, int> between;  // corners, the lesser first
+  std::map<std::pair<int, int>, int> between;  // key: corners, the smaller one first
   for (const QuadraticTet& t : second->mesh.C) {
     for (int k = 0; k < 6; ++k) {
       const auto [p, q] = kMidSideEdge[k];
@@ -102,7 +102,7 @@ void MeshObject::save(const std::filesystem::path& file) const {
   if (suffix == ".stl") {
     return write_surface(file, content.mesh.V, result.submesh.positive_faces, SurfaceFormat::Stl);
   }
-  throw std::invalid_argument(file.string() + ": .vtu, .msh, .mesh or .stl is wanted");
+  throw std::invalid_argument(file.string() + ": unknown suffix; use .vtu, .msh, .mesh or .stl");
 }
 
 }  // namespace umtet

@@ -6,14 +6,15 @@
 
 namespace umtet {
 
-/// Called by the thread that called the job, every few milliseconds of work. It stops the job by throwing.
-/// @param step  null: still in the step that was named last
+/// A callback that the thread of the job calls every few milliseconds of work. It stops the job by throwing.
+/// @param step  null: the step is the same as in the previous call
 /// @param fraction  of the step, in [0, 1]
 using Watch = std::function<void(const char* step, double fraction)>;
 
-/// A call of a library that the watch follows and, where it throws, ends; it must outlive the context.
+/// Returns a context for a call of a library: the watch receives its progress and, by throwing, cancels it. The watch
+/// must outlive the context.
 Context context_of(const Watch& watch);
-/// The same of a call that is a part of one whose steps are told otherwise.
+/// Returns a context for a call whose steps are reported elsewhere: the watch only cancels it.
 Context polls_of(const Watch& watch);
 
 }  // namespace umtet

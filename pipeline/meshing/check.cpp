@@ -23,13 +23,13 @@ namespace {
 
 Domain domain_of_case(const fs::path& root) {
   const CasePaths paths{root};
-  if (!fs::exists(paths.parameters())) throw UsageError(root.string() + " is not a case: it has no case.toml");
+  if (!fs::exists(paths.parameters())) throw UsageError(root.string() + " is not a case: it contains no case.toml");
   Parameters parameters;
   parameters.load(paths.parameters(), ParamSource::Case);
   return load_domain(paths, parameters);
 }
 
-/// Faces of the boundary in the sides of the box.
+/// Returns the boundary faces that lie in the sides of the box.
 std::vector<Triangle> faces_at_walls(const TetMesh& mesh, const Box& box, double tolerance) {
   std::vector<Triangle> walls;
   for (const Triangle& f : boundary_faces(mesh.C, mesh.V.size()).triangles) {
@@ -45,7 +45,7 @@ std::vector<Triangle> faces_at_walls(const TetMesh& mesh, const Box& box, double
   return walls;
 }
 
-/// The boundary without the faces at walls, of which both lists have the same corners in the same order.
+/// Returns the boundary without the faces at walls. Both lists have the same corners in the same order.
 std::vector<Triangle> faces_but(std::vector<Triangle> walls, const TetMesh& mesh) {
   std::vector<Triangle> faces = boundary_faces(mesh.C, mesh.V.size()).triangles;
   std::sort(walls.begin(), walls.end());
@@ -73,7 +73,7 @@ MeshCheck check_mesh(const fs::path& file, const std::optional<fs::path>& agains
   progress.report("check", "read", 0);
   MeshFile content = read_tet_mesh(file);
   TetMesh& mesh = content.mesh;
-  if (mesh.C.empty()) throw MeshFileRefused(file, "the whole file", "it has no tets");
+  if (mesh.C.empty()) throw MeshFileRefused(file, "the whole file", "it contains no tets");
   progress.detail(fmt::format("check: {} tets, {} vertices", mesh.C.size(), mesh.V.size()));
   CertificateInput input;
   input.mesh = &mesh;
@@ -87,7 +87,7 @@ MeshCheck check_mesh(const fs::path& file, const std::optional<fs::path>& agains
       for (Vec3& x : content.quadratic->V) x -= domain->shift;
     }
     const StageState state = inspect_stage(CasePaths{*against}, Stage::Mesh, Json::object(), std::nullopt);
-    // Without a mesh of its own the case says nothing about h: the mesh's own edge length is the unit then.
+    // If the case has no mesh, it does not define h: the edge length of the checked mesh is the unit.
     if (state.record) {
       input.h = mesh_report(*state.record).measured.mesh.h;
       domain->limit_detail(input.h);
@@ -97,7 +97,7 @@ MeshCheck check_mesh(const fs::path& file, const std::optional<fs::path>& agains
     if (domain->complement) {
       walls = faces_at_walls(mesh, domain->box, 2 * input.coordinate_rounding);
       input.wall_faces = &walls;
-      input.background_V = &mesh.V;  // where they are is where they are to be
+      input.background_V = &mesh.V;  // the vertices are already at their final positions
     }
     progress.detail("check: against psi of " + against->string());
   }

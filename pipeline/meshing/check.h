@@ -10,10 +10,11 @@
 
 namespace umtet {
 
-/// Judges any .vtu, .msh or .mesh: counts, quality, boundary; with a case also distances and normals against its psi.
+/// Measures and judges any .vtu, .msh or .mesh: counts, quality, boundary; with a case also distances and normals
+/// relative to its psi.
 /// @param against     a case whose level set or formula the mesh should fit
-/// @param parameters  output.min_quality is the gate on the least mean ratio (0: none), output.units goes into the
-///                    document
+/// @param parameters  output.min_quality is the gate on the minimum mean ratio (0: none), output.units goes into the
+///   document
 /// \throw MeshFileRefused, UsageError, ArtefactDamaged, Interrupted, std::system_error
 MeshCheck check_mesh(const std::filesystem::path& mesh, const std::optional<std::filesystem::path>& against,
                      const Parameters& parameters, Progress& progress);

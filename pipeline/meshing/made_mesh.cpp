@@ -15,18 +15,18 @@ namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kNoSupport = -1;  // of vertices that are not on the boundary
+constexpr double kNoSupport = -1;  // for vertices that are not on the boundary
 
 const char* remedy(UmStatus status) {
   switch (status) {
     case UmStatus::EmptyDomain:
-      return "a smaller --h, or a --box around the place where psi < 0, may find it";
+      return "a smaller --h, or a --box around the region where psi < 0, may find it";
     case UmStatus::PsiNotFinite:
-      return "psi has to have a value in all of the --box: a root, a logarithm or a quotient of it has none";
+      return "psi must have a value in the whole --box: a root, a logarithm or a quotient in it is undefined";
     case UmStatus::BoundaryNearWall:
-      return "give a larger --box or a smaller --h: the body has to be two edges off its walls";
+      return "give a larger --box or a smaller --h: the body must be two edges away from the walls of the box";
     case UmStatus::DomainLeavesBackground:
-      return "give a larger --box, with room of two edges around the domain";
+      return "give a larger --box, with a margin of two edges around the domain";
     default:
       return "a smaller --h (or a larger --tets) resolves more of the shape";
   }
@@ -84,7 +84,7 @@ void add_support(const Domain& domain, const UmResult& result, MeshFile& content
 
 BoundaryData boundary_data(const Domain& domain, const UmResult& result, const std::vector<Vec3>& mid_sides) {
   MeshFile content;
-  UmResult boundary;  // all of it, and nothing else
+  UmResult boundary;  // the whole boundary, and nothing else
   boundary.final = result.final;
   boundary.final.insert(boundary.final.end(), mid_sides.begin(), mid_sides.end());
   boundary.submesh.positive_vertices.resize(boundary.final.size());

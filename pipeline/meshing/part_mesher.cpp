@@ -10,14 +10,14 @@ std::shared_ptr<const WrittenInParts> written_in_parts(const std::shared_ptr<con
   return std::static_pointer_cast<const WrittenInParts>(mesh);
 }
 
-std::string for_one_process(const Parameters& parameters) {
+std::optional<Message> for_one_process(const Parameters& parameters) {
   const MeshParameters& mesh = parameters.mesh();
-  if (mesh.mode != UmMode::Fast) return "--mode paper";
+  if (mesh.mode != UmMode::Fast) return Message{Setting(Option{keys::mesh::mode}, "paper")};
   if (mesh.box_walls || mesh.complement) return "a mesh with walls";
-  if (mesh.keep_iterates) return "--keep-iterates";
-  if (background_file(parameters) || is_graded(parameters)) return "a background that is no lattice";
+  if (mesh.keep_iterates) return Message{Option{keys::mesh::keep_iterates}};
+  if (background_file(parameters) || is_graded(parameters)) return "a background that is not a lattice";
   if (!configuration_costs(tiling_of(mesh))) return "a background whose tiling has no costs";
-  return "";
+  return std::nullopt;
 }
 
 }  // namespace umtet

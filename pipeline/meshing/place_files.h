@@ -8,12 +8,12 @@
 
 namespace umtet {
 
-/// A point a place with `kind` (the number of its PlaceKind), `off_over_h`, `size_over_h`, `feature_over_h` (0: none),
-/// `small` (0/1) and `n`; complete or not at all. \throw std::system_error naming the file
+/// Writes one point per defect, with `kind` (the number of its PlaceKind), `off_over_h`, `size_over_h`,
+/// `feature_over_h` (0: none), `small` (0/1) and `n`, atomically. \throw std::system_error  names the file
 void write_places(const std::filesystem::path& file, const std::vector<MeshPlace>& places);
 
-/// The points with `thickness`, `h_needed`, `place` and `gap` (0/1), in model coordinates; complete or not at all.
-/// \throw std::system_error naming the file
+/// Writes the points with `thickness`, `h_needed`, `place` and `gap` (0/1), in model coordinates, atomically.
+/// \throw std::system_error  names the file
 void write_thin_places(const std::filesystem::path& file, const ThinPlaces&, const Vec3& shift);
 
 }  // namespace umtet

@@ -1,14 +1,14 @@
 #include "pipeline/meshing/sample_fields.h"
 
+#include "body/pieces/zero_set_choice.h"
 #include "common/polled_loops.h"
 #include "pipeline/case/interrupt.h"
-#include "body/pieces/zero_set_choice.h"
-#include "reconstruct/cloud/field_transfer.h"
+#include "reconstruct/cloud/transfer/field_transfer.h"
 
 namespace umtet {
 namespace {
 
-/// One value each of `vertices` into an array of n.
+/// Stores one value for each of `vertices` in an array of n values.
 template <class Value>
 void put(const std::vector<Value>& values, const std::vector<int>& vertices, std::size_t n, const Value& none,
          FieldValues& any) {
@@ -28,7 +28,7 @@ void set_sample_fields(const Domain& domain, const std::vector<Vec3>& V, const s
   const double reach = support_radius(domain);
   if ((cloud.fields.empty() && cloud.colours.empty()) || !(reach > 0)) return;
   std::vector<Vec3> places(vertices.size()), normals(vertices.size());
-  const ImplicitFunctionRef psi = domain.body();  // of the fluid around a body, too: samples look out of the body
+  const ImplicitFunctionRef psi = domain.body();  // even if the fluid is meshed: samples face out of the body
   polled_parallel_for(vertices.size(), kValuesPerPoll, until_interrupted(), [&](std::size_t k) {
     places[k] = V[vertices[k]];
     psi.value(places[k], normals[k]);

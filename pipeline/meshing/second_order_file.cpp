@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Of the edges of these faces; some more than once.
+/// Returns the mid-sides of the edges of these faces; some occur more than once.
 std::vector<int> mid_sides_of(const std::vector<Triangle>& faces, const QuadraticTetMesh& mesh) {
   std::vector<std::pair<int, int>> edges;
   for (const Triangle& f : faces) {

@@ -8,21 +8,24 @@
 #include <limits>
 #include <numeric>
 
+#include "body/fidelity/closed_holes.h"
 #include "mesh/io/patches.h"
 #include "mesh/io/planar_pieces.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
-#include "body/fidelity/closed_holes.h"
 #include "pipeline/meshing/made_mesh.h"
-#include "reconstruct/cloud/label_votes.h"
+#include "reconstruct/cloud/transfer/label_votes.h"
 
 namespace umtet {
 namespace {
 
-// Samples with a wrong label that make an island: a majority of the voters. Islands smaller than their area go.
+constexpr Option kLabelNames{keys::output::label_names};
+
+// Number of samples with a wrong label that make an island: a majority of the voters. Islands smaller than their area
+// are removed.
 constexpr int kIslandSamples = kVoters / 2 + 1;
-// Least area of a plane, in mean faces. About as many as a vertex has around it with their neighbours, the least that
-// tells flat from round: with fewer, single faces of a sphere would be planes.
+// Minimum area of a plane, in mean faces. It is about the number of faces around a vertex and its neighbours, the
+// minimum that distinguishes flat from round: with fewer, single faces of a sphere would be planes.
 constexpr double kLeastPlane = 20;
 
 std::string name_of(int label, const std::map<int, std::string>& names) {
@@ -31,13 +34,14 @@ std::string name_of(int label, const std::map<int, std::string>& names) {
   return label < 0 ? fmt::format("patch_m{}", -static_cast<long>(label)) : fmt::format("patch_{}", label);
 }
 
-/// Patches of the labels that are there, in ascending order of the labels.
+/// Returns the patches of the existing labels in ascending order.
 std::vector<MeshPart> label_patches(const std::vector<int>& labels, const std::map<int, std::string>& names) {
   long free = std::max(0, labels.back());
   std::vector<MeshPart> patches;
   for (const int label : labels) {
     const long number = label > 0 ? label : ++free;
-    if (number >= std::numeric_limits<int>::max()) throw UsageError("labels beyond 2147483646 have no number in files");
+    if (number >= std::numeric_limits<int>::max())
+      throw UsageError("labels beyond 2147483646 cannot be numbers in files");
     patches.push_back({name_of(label, names), static_cast<int>(number)});
   }
   return patches;
@@ -49,7 +53,7 @@ bool has_walls(const std::vector<char>& at_wall) {
   return std::find(at_wall.begin(), at_wall.end(), 1) != at_wall.end();
 }
 
-/// False when nothing is flat, besides walls.
+/// Returns false if nothing is flat except walls.
 bool divide_by_planes(SolverMesh& mesh, const std::vector<char>& at_wall, double angle) {
   const FaceGeometry faces = face_geometry(mesh);
   const double area = std::accumulate(faces.area.begin(), faces.area.end(), 0.);
@@ -86,12 +90,12 @@ void divide_by_labels(SolverMesh& mesh, const std::vector<char>& at_wall, const 
   const std::vector<int> in_cloud = distinct(cloud.labels);
   for (const auto& [label, name] : names) {
     if (has_walls(at_wall) && lower_case(name) == kWalls) {
-      throw UsageError(
-          fmt::format("--label-names {}={}: the faces at the walls of the box have that name", label, name));
+      throw UsageError({Setting(kLabelNames, fmt::format("{}={}", label, name)),
+                        ": this name is reserved for the faces at the walls of the box"});
     }
     if (std::binary_search(in_cloud.begin(), in_cloud.end(), label)) continue;
-    throw UsageError(fmt::format("--label-names {}={}: no point has that label; there are {}", label, name,
-                                 fmt::join(in_cloud, ", ")));
+    throw UsageError({Setting(kLabelNames, fmt::format("{}={}", label, name)),
+                      fmt::format(": no point has this label; the labels are {}", fmt::join(in_cloud, ", "))});
   }
   add_names_of_file(names_of_file, names);
   const FaceGeometry faces = face_geometry(mesh);
@@ -161,7 +165,7 @@ void divide_but_holes(SolverMesh& mesh, const std::vector<char>& at_wall, const 
   if (!cloud.labels.empty()) return divide_by_labels(mesh, at_wall, cloud, parameters, names_of_file, warn);
   if (!parameters.output().label_names.empty()) {
     throw UsageError(
-        "--label-names: the points have no labels (PLY property label, PCD field label, or a last column)");
+        {kLabelNames, ": the points have no labels (PLY property label, PCD field label, or a last column)"});
   }
   const double angle = parameters.output().patch_angle, planar = parameters.output().patch_planar;
   if (planar > 0 && mesh.n_faces() > 0) {
@@ -181,7 +185,7 @@ void divide_but_holes(SolverMesh& mesh, const std::vector<char>& at_wall, const 
     for (int p = 0, k = 1; p < n; ++p) {
       if (piece_at_wall[p] != walls) continue;
       patch_of[p] = static_cast<int>(patches.size());
-      // The body keeps the number 1 that it has without patches.
+      // The body keeps the number 1, which it also has without patches.
       patches.push_back({walls && n_walls == 1 ? name : fmt::format("{}_{}", name, k++), patch_of[p] + 2});
     }
   }
@@ -202,10 +206,10 @@ void take_holes(SolverMesh& mesh, const std::vector<char>& in_holes, const Warn&
     MeshPart part = mesh.patches[p];
     number = std::max(number, part.number);
     if (n_left[p] == 0) {
-      warn(fmt::format("no boundary face is left to {}: all are in {}", part.name, kClosedHoles));
+      warn(fmt::format("no boundary face is left in {}: all are in {}", part.name, kClosedHoles));
       continue;
     }
-    // Of several patches none has the name of all of them.
+    // If there are several patches, none has the name of all patches together.
     if (part.name == kWholeBoundary) part.name += "_1";
     index[p] = static_cast<int>(patches.size());
     patches.push_back(std::move(part));
@@ -227,8 +231,8 @@ void divide_boundary(SolverMesh& mesh, const MarkedFaces& marked, const Oriented
   if (!marked.in_holes.empty()) {
     for (const auto& [label, name] : parse_label_names(parameters.output().label_names)) {
       if (lower_case(name) != kClosedHoles) continue;
-      throw UsageError(
-          fmt::format("--label-names {}={}: the faces that no sample supports have that name", label, name));
+      throw UsageError({Setting(kLabelNames, fmt::format("{}={}", label, name)),
+                        ": this name is reserved for faces that no sample supports"});
     }
   }
   divide_but_holes(mesh, marked.at_wall, cloud, parameters, names_of_file, warn);

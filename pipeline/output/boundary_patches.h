@@ -15,34 +15,34 @@
 
 namespace umtet {
 
-/// What the user should know of patches that did not come out as asked for.
+/// Receives a message for the user about patches that differ from the request.
 using Warn = std::function<void(const std::string&)>;
 
-/// Boundary faces that are patches of their own, whatever the others are: 1 for them, 0 for others. Empty: none.
+/// Boundary faces that form separate patches, independent of the others: 1 for such faces, 0 for others. Empty: none.
 struct MarkedFaces {
   std::vector<char> at_wall;   ///< at the walls of a box
-  std::vector<char> in_holes;  ///< of closed_holes
+  std::vector<char> in_holes;  ///< in closed_holes
 };
 
-/// Of a mesh and its file, which has `wall` and `support` where they are known.
-/// @param support  of the certificate of the mesh
+/// Returns the marked faces of a mesh from its file, which contains `wall` and `support` if they are known.
+/// @param support  support of the certificate of the mesh
 MarkedFaces marked_faces(const SolverMesh& mesh, const MeshFile& file, const std::optional<SupportReport>& support);
 
-/// Makes the faces of holes the patch "closed_holes". It has the number after all that are there, patches and body,
-/// which keep theirs. A patch that it leaves without faces is gone, which is said. A patch "boundary" becomes
-/// "boundary_1": where there are several, all of them together have that name. Nothing changes without holes.
+/// Moves the faces of holes to the patch "closed_holes". Its number follows all existing numbers of patches and body,
+/// which do not change. A patch that loses all its faces is removed, and `warn` reports it. A patch "boundary" becomes
+/// "boundary_1", because "boundary" names all patches together if there are several. Nothing changes without holes.
 void take_holes(SolverMesh& mesh, const std::vector<char>& in_holes, const Warn& warn);
 
-/// Puts the boundary faces into patches: by the labels of the cloud where it has any (the votes of the nearest samples,
-/// then islands below output.label_min_area go), else by output.patch_planar or else output.patch_angle where set,
-/// else by connected pieces. A positive label is the number of its patch, others get the numbers after the largest; a
-/// patch without a name is patch_LABEL, region_N, plane_N (and rest) or boundary_N. Labels that no face has are said,
-/// and that nothing is flat. Faces at walls are patches of their own: "walls", or by angle or plane walls_1, walls_2
-/// ...
-/// Then take_holes().
-/// \throw UsageError  as parse_label_names(), or a name for a label that the cloud does not have, or that of the walls
-/// or holes
-/// @param names_of_file  of label 1, 2 ..., where output.label_names has none
+/// Divides the boundary faces into patches. If the cloud has labels, they decide (by votes of the nearest samples; then
+/// islands below output.label_min_area are removed); otherwise output.patch_planar or else output.patch_angle if set;
+/// otherwise connected components. A positive label is the number of its patch; others get the numbers after the
+/// largest label. A patch without a name is patch_LABEL, region_N, plane_N (and rest) or boundary_N. `warn` reports
+/// labels without faces, and a boundary without flat parts. Faces at walls are separate patches: "walls", or by angle
+/// or plane walls_1, walls_2 ...
+/// Then calls take_holes().
+/// \throw UsageError  the exceptions of parse_label_names(), a name for a label that the cloud does not have, or a name
+///   that is reserved for walls or holes
+/// @param names_of_file  names of labels 1, 2 ... without a name in output.label_names
 void divide_boundary(SolverMesh& mesh, const MarkedFaces& marked, const OrientedPointCloud& cloud,
                      const Parameters& parameters, const Warn& warn,
                      const std::vector<std::string>& names_of_file = {});

@@ -20,7 +20,7 @@ namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
-// Lines of differing numbers a stage in the text; the document has them all.
+// Maximum number of differing numbers per stage in the text; the document contains all.
 constexpr std::size_t kListed = 8;
 
 using Measures = std::vector<std::pair<std::string, StageDiff::Measure>>;
@@ -34,7 +34,7 @@ Spread spread(const std::vector<double>& d) {
   return {max, d.empty() ? 0 : std::sqrt(sum / static_cast<double>(d.size()))};
 }
 
-/// Adds every leaf in which the two documents differ.
+/// Adds every leaf that differs between the two documents.
 void add_differences(const Json& a, const Json& b, const std::string& pointer, std::vector<ValueDifference>& list) {
   if (a == b) return;
   if (!a.is_object() || !b.is_object()) {
@@ -119,7 +119,7 @@ Measures mesh_difference(const CasePaths& a, const CasePaths& b, const StageReco
 }
 
 std::optional<StageRecord> record_of(const CasePaths& paths, Stage stage) {
-  // Parameters do not matter here: whatever made the stage, it must be whole.
+  // Parameters do not matter here, but the stage must be complete.
   StageState state = inspect_stage(paths, stage, Json::object(), std::nullopt);
   if (state.kind == StageState::Kind::Damaged) throw ArtefactDamaged(state.reason);
   return std::move(state.record);
@@ -131,7 +131,7 @@ Measures difference_of(Stage stage, const CasePaths& a, const CasePaths& b, cons
     if (stage == Stage::Cloud) return cloud_difference(a, b);
     if (stage == Stage::LevelSet) return level_set_difference(a, b, record_a, record_b);
     return mesh_difference(a, b, record_a, record_b);
-  } catch (const CloudRefused& e) {  // these files are ours: what is wrong with them is damage
+  } catch (const CloudRefused& e) {  // umtet wrote these files, so an error in them is damage
     throw ArtefactDamaged(e.what());
   } catch (const LevelSetRefused& e) {
     throw ArtefactDamaged(e.what());
@@ -184,7 +184,7 @@ Json to_json(const StageDiff& s) {
   return json;
 }
 
-/// A list of objects, such as holes or thin places, is said by its length.
+/// Returns a value as text. A list of objects, such as holes or thin places, is represented by its length.
 std::string shown(const Json& value) {
   if (!value.is_array() || value.empty() || !value.front().is_object()) return value.dump();
   return fmt::format("[{} entr{}]", value.size(), value.size() == 1 ? "y" : "ies");
@@ -223,7 +223,7 @@ std::optional<Stage> CaseDiff::first_difference() const {
 CaseDiff diff_cases(const CasePaths& a, const CasePaths& b, Progress& progress) {
   for (const CasePaths* paths : {&a, &b}) {
     if (!fs::exists(paths->parameters())) {
-      throw UsageError(paths->root.string() + " is not a case: it has no case.toml");
+      throw UsageError(paths->root.string() + " is not a case: it contains no case.toml");
     }
   }
   CaseDiff diff{a.root.string(), b.root.string(), {}};
@@ -248,7 +248,7 @@ Json to_json(const CaseDiff& diff) {
 std::string diff_text(const CaseDiff& diff) {
   const std::optional<Stage> first = diff.first_difference();
   std::string out =
-      first ? std::string("first difference: ") + to_string(*first) + "\n" : "the same files in all stages\n";
+      first ? std::string("first difference: ") + to_string(*first) + "\n" : "all stages have the same files\n";
   for (const StageDiff& s : diff.stages) {
     if (!s.in_a && !s.in_b) continue;
     out += std::string(to_string(s.stage)) + ": ";

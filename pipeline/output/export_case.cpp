@@ -25,7 +25,7 @@ namespace {
 
 using Writer = std::function<void(const fs::path&, const SolverMesh&)>;
 
-/// A file of a format: mesh<ending>, in 4-export.
+/// A file of a format: mesh<ending> in 4-export.
 struct ExportedFile {
   std::string ending;
   Writer write;
@@ -34,8 +34,8 @@ struct ExportedFile {
 struct ExportFormat {
   std::string name;
   std::vector<ExportedFile> files;
-  std::optional<SurfaceFormat> surface = {};  ///< then each of several patches has a file of its own too
-  std::optional<PieceFormat> pieces = {};     ///< then `files` are those of one process
+  std::optional<SurfaceFormat> surface = {};  ///< if set, each of several patches also has its own file
+  std::optional<PieceFormat> pieces = {};     ///< if set, `files` are the files of one process
 };
 
 const std::vector<ExportFormat>& formats_known() {
@@ -93,7 +93,7 @@ std::vector<PendingFile> files_of(const ExportFormat& format, const fs::path& fo
   return files;
 }
 
-/// How files of pieces begin and end; there is a number between.
+/// Returns the beginning and the end of names of files per process; a number is between them.
 std::pair<std::string, std::string> around_number(PieceFormat format) {
   return format == PieceFormat::Pvtu ? std::pair("mesh_", ".vtu") : std::pair("mesh_part_", ".msh");
 }
@@ -117,7 +117,7 @@ bool is_exported(const std::string& name) {
   return false;
 }
 
-/// The cloud that the mesh was made of; empty for a formula or a grid, and where 1-cloud has been taken away.
+/// Returns the cloud from which the mesh was made; empty for a formula or a grid, and if 1-cloud has been removed.
 OrientedPointCloud cloud_of_case(const CasePaths& paths, const StageRecord& mesh) {
   for (const char* key : {"implicit", "level_set"}) {
     if (!mesh.parameters.value(key, "").empty()) return {};
@@ -132,7 +132,7 @@ OrientedPointCloud cloud_of_case(const CasePaths& paths, const StageRecord& mesh
   }
 }
 
-/// Patches that had other names in a former export have other files, and there may have been more pieces.
+/// Removes files of a former export: patches may have had other names, and there may have been more files per process.
 void remove_former(const ExportFormat& format, const CasePaths& paths, const std::vector<fs::path>& written) {
   for (const fs::path& file : exported_files(paths)) {
     const bool is_boundary = format.surface && file.extension() == format.files.front().ending;
@@ -142,8 +142,8 @@ void remove_former(const ExportFormat& format, const CasePaths& paths, const std
   }
 }
 
-/// Connected pieces of the boundary, as processes know them. Other patches, and what samples carry, are found in the
-/// whole mesh.
+/// Returns whether patches are connected components of the boundary, which the processes know. Other patches, and data
+/// of samples, require the whole mesh.
 bool has_simple_patches(const Parameters& parameters) {
   return has_own_psi(parameters.mesh()) && parameters.output().patch_angle == 0 &&
          parameters.output().patch_planar == 0 && parameters.output().label_names.empty();
@@ -154,7 +154,7 @@ const ExportFormat& format_of(const std::string& name) {
                        [&](const ExportFormat& f) { return f.name == name; });
 }
 
-/// The files of one format; they take their places when all of them are written.
+/// Writes the files of one format; they are moved into place when all of them are written.
 std::vector<fs::path> write_format(const ExportFormat& format, const fs::path& folder, const SolverMesh& mesh) {
   const std::vector<PendingFile> files = files_of(format, folder, mesh);
   write_artefacts(files);
@@ -175,7 +175,7 @@ std::vector<fs::path> write_pieces(PieceFormat format, const fs::path& folder, c
 
 /// \throw UsageError, ArtefactDamaged
 StageRecord mesh_record(const CasePaths& paths) {
-  // Parameters do not matter here: whatever made the mesh, it must be whole.
+  // Parameters do not matter here, but the mesh must be complete.
   const StageState state = inspect_stage(paths, Stage::Mesh, Json::object(), std::nullopt);
   if (state.kind == StageState::Kind::Damaged) throw ArtefactDamaged(state.reason);
   if (!state.record) throw UsageError("nothing to export: " + state.reason + "; umtet mesh makes it");
@@ -205,7 +205,7 @@ SolverMesh mesh_of_case(const CasePaths& paths, const Parameters& parameters, Pr
       if (is_of_scan(it->first)) mesh.boundary_data.insert(of_nodes.extract(it));
       it = next;
     }
-    // What else is read for points is read for corners.
+    // Other point data belong to corners only.
     if (!file.quadratic) mesh.point_data = std::move(file.point_data);
     mesh.cell_data = std::move(file.cell_data);
     divide_boundary(mesh, marked, cloud_of_case(paths, record), parameters, warn_of(progress),
@@ -231,8 +231,8 @@ void require_formats(const std::vector<std::string>& formats) {
   for (const std::string& format : formats) {
     if (std::find(export_formats().begin(), export_formats().end(), format) != export_formats().end()) continue;
     const std::string near = nearest(format, export_formats());
-    throw UsageError(fmt::format("no format {}; {}", format,
-                                 near.empty() ? fmt::format("there are {}", fmt::join(export_formats(), ", "))
+    throw UsageError(fmt::format("unknown format {}; {}", format,
+                                 near.empty() ? fmt::format("the formats are {}", fmt::join(export_formats(), ", "))
                                               : fmt::format("did you mean {}?", near)));
   }
 }
@@ -278,9 +278,9 @@ std::vector<fs::path> export_case(const CasePaths& paths, const std::vector<std:
   };
   const auto has = [&](const char* name) { return std::find(formats.begin(), formats.end(), name) != formats.end(); };
   const bool is_curved = parts ? parameters.mesh().order > 1 : has("pmsh") && whole().nodes_per_tet == 10;
-  if (is_curved && has("pmsh")) throw UsageError("pmsh has tets of 4 nodes (--order 1)");
+  if (is_curved && has("pmsh")) throw UsageError("pmsh supports only tets of 4 nodes (--order 1)");
   if (has("mesh") && whole().nodes_per_tet == 10) {
-    progress.warn("export: FreeFEM finds no tets in mesh.mesh: it reads those of 4 nodes (--order 1)");
+    progress.warn("export: FreeFEM finds no tets in mesh.mesh: it reads only tets of 4 nodes (--order 1)");
   }
   fs::create_directories(paths.exports());
   remove_stale_temporaries(paths.exports());

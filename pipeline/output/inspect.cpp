@@ -6,12 +6,13 @@
 #include <cmath>
 #include <numeric>
 
+#include "body/scan/cloud_preparation.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
-#include "body/scan/cloud_preparation.h"
+#include "pipeline/case/option_words.h"
 #include "reconstruct/cloud/cloud_arrays.h"
-#include "reconstruct/cloud/cloud_neighbours.h"
-#include "reconstruct/cloud/cloud_survey.h"
+#include "reconstruct/cloud/neighbours/cloud_neighbours.h"
+#include "reconstruct/cloud/survey/cloud_survey.h"
 #include "reconstruct/io/point_cloud_io.h"
 #include "reconstruct/solve/resolution.h"
 
@@ -19,20 +20,20 @@ namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
-// Bounds of shares and ratios beyond which a cloud is worth a warning.
+// Bounds of shares and ratios beyond which a warning is given.
 constexpr double kConsistent = .98, kVariation = 30, kShareDropped = .01, kOpen = .05, kUlp = 1e-3, kFloatUlp = .1;
-// A body thinner than this many edges of the default mesh: faces of the mesh fold.
+// If a body is thinner than this many edges of the default mesh, faces of the mesh fold.
 constexpr double kThin = 2.2 * kMeshEdge;
 
-/// What may go wrong, and what to do about it.
+/// Returns likely problems with remedies.
 std::vector<std::string> troubles(const CloudSurvey& s, const CloudFileReport& file) {
   std::vector<std::string> list;
   const auto trouble = [&]<class... T>(fmt::format_string<T...> format, T&&... args) {
     list.push_back(fmt::format(format, std::forward<T>(args)...));
   };
   const auto n = static_cast<double>(s.n_points);
-  if (file.n_points_dropped > 0) trouble("{} points are no numbers: they are dropped", file.n_points_dropped);
-  if (s.dropped.n_duplicates > 0) trouble("{} points are there twice: one of each is kept", s.dropped.n_duplicates);
+  if (file.n_points_dropped > 0) trouble("{} points are not finite: they are dropped", file.n_points_dropped);
+  if (s.dropped.n_duplicates > 0) trouble("{} points are duplicates: one of each is kept", s.dropped.n_duplicates);
   if (const std::size_t junk = s.dropped.n_outliers + s.dropped.n_small_components;
       static_cast<double>(junk) > kShareDropped * n) {
     trouble("{} points ({:.1f} %) are far from any surface: they are dropped; --keep-all keeps them", junk,
@@ -41,25 +42,25 @@ std::vector<std::string> troubles(const CloudSurvey& s, const CloudFileReport& f
   if (const std::string left_out = fields_left_out(file); !left_out.empty()) list.push_back(left_out);
   if (s.has_lines_of_sight) {
     trouble(
-        "the normals are none, they do not stand on the surface of the points: true ones are estimated; "
+        "the normals are not perpendicular to the surface of the points: they are replaced by estimated normals; "
         "--normals given keeps them");
   } else if (!s.has_normals) {
     trouble(
-        "no normals: they are estimated and oriented; check the result, or give the scanner's place with "
+        "no normals: they are estimated and oriented; check the result, or give the position of the scanner with "
         "--orient-from");
   } else {
     if (s.n_normals_zero > 0) trouble("{} normals are missing: they are estimated", s.n_normals_zero);
     if (s.consistency < kConsistent) {
       trouble(
-          "the normals agree with their neighbours to {:.1f} % only: a turned minority is turned back; "
-          "--normals estimate throws them away",
+          "only {:.1f} % of the normals agree with their neighbours: a reversed minority is turned back; "
+          "--normals estimate discards them",
           100 * s.consistency);
     }
     if (s.volume < 0) trouble("the normals point inward: they are turned");
     if (s.openness > kOpen) {
       trouble(
-          "the surface is open or sampled on one side (|sum a n| / sum a = {:.2f}): what closes it is a guess, "
-          "which the certificate and the patch closed_holes name",
+          "the surface is open or sampled on one side (|sum a n| / sum a = {:.2f}): its closure is a guess, "
+          "which the certificate and the patch closed_holes show",
           s.openness);
     }
   }
@@ -71,35 +72,36 @@ std::vector<std::string> troubles(const CloudSurvey& s, const CloudFileReport& f
             s.noise_over_spacing);
   }
   if (s.thickness && (*s.thickness)[0] < kThin * s.diagonal) {
-    trouble("1 % of the body is thinner than {:.3g}: the mesh needs --h {:.2g} or smaller to show it",
+    trouble("1 % of the body is thinner than {:.3g}: the mesh needs --h {:.2g} or smaller to resolve it",
             (*s.thickness)[0], (*s.thickness)[0] / 2.2);
   }
   if (s.ulp_over_spacing > kUlp) {
-    trouble("coordinates of {:.3g} leave {:.1g} of the spacing to rounding: move the cloud nearer to the origin",
+    trouble("coordinates of {:.3g} have a rounding error of {:.1g} of the spacing: move the cloud closer to the origin",
             s.farthest_coordinate, s.ulp_over_spacing);
   } else if (s.float_ulp_over_spacing > kFloatUlp) {
-    trouble("if these coordinates ever were single precision, they hold steps of {:.1g} spacings",
+    trouble("if these coordinates were ever in single precision, they have steps of {:.1g} spacings",
             s.float_ulp_over_spacing);
   }
   return list;
 }
 
-/// Of `umtet run` by the same parameters. What would end it is said, and its costs are guessed from the samples.
+/// Predicts `umtet run` with the same parameters. A failure is reported as an obstacle, and costs are then estimated
+/// from the samples.
 RunPrediction prediction_of(CloudFile scan, const fs::path& file, const CloudSurvey& survey, double area,
                             const Parameters& parameters) {
   std::string obstacle;
   try {
     return predict_run(std::move(scan), file, parameters, until_interrupted());
   } catch (const CloudRefused& e) {
-    obstacle = e.what();
+    obstacle = text_of(e.message, as_flag);
   } catch (const SolveError& e) {
     obstacle = e.what();
   } catch (const SolveTooLarge& e) {
-    obstacle = e.what();
+    obstacle = text_of(e.message, as_flag);
   } catch (const MeshingImpossible& e) {
-    obstacle = e.what();
+    obstacle = text_of(e.message, as_flag);
   } catch (const ResourceLimit& e) {
-    obstacle = e.what();
+    obstacle = text_of(e.message, as_flag);
   }
   RunPrediction run = predict_run(survey, area, parameters);
   run.obstacle = std::move(obstacle);
@@ -126,7 +128,7 @@ CloudInspection inspect_cloud(const fs::path& file, const Parameters& parameters
   Resolution lattice = choose_resolution(std::sqrt(area[area.size() / 2]), kMeshEdge * s.diagonal, s.noise);
   std::vector<std::string> list = troubles(s, scan.report), fields = field_names(scan.cloud);
   CloudFileReport report = scan.report;
-  progress.report("inspect", "foretell the run", .6);
+  progress.report("inspect", "predict the run", .6);
   RunPrediction prediction =
       prediction_of(std::move(source.cloud), file, s, std::accumulate(area.begin(), area.end(), 0.), parameters);
   return {file.string(), std::move(report),  std::move(fields),     std::move(source.triangles),
@@ -143,7 +145,7 @@ Json to_json(const CloudInspection& inspection) {
                {"density_variation", s.density_variation}};
   if (inspection.triangles) {
     json["triangles"] = to_json(inspection.triangles->report);
-    json["triangles"]["notices"] = inspection.triangles->notices;
+    json["triangles"]["notices"] = texts_of(inspection.triangles->notices, as_flag);
   }
   if (!inspection.read.columns.empty()) json["columns"] = inspection.read.columns;
   if (!inspection.fields.empty()) json["fields"] = inspection.fields;
@@ -180,22 +182,25 @@ std::string inspection_text(const CloudInspection& inspection) {
   std::string out = fmt::format("cloud     {}: {}, {} {}\n", inspection.file, inspection.read.format, s.n_points,
                                 inspection.triangles ? "samples of its triangles" : "points");
   if (inspection.triangles) {
-    for (const std::string& notice : inspection.triangles->notices) out += "triangles " + notice + "\n";
+    for (const std::string& notice : texts_of(inspection.triangles->notices, as_flag))
+      out += "triangles " + notice + "\n";
     for (std::size_t i = 0; i < inspection.triangles->report.label_names.size(); ++i)
       out += fmt::format("label     {} = {}\n", i + 1, inspection.triangles->report.label_names[i]);
   }
-  constexpr std::string_view kColumns = "columns ";  // which their line begins with, too
+  constexpr std::string_view kColumns = "columns ";  // their line begins with this word, too
   if (const std::string& columns = inspection.read.columns; !columns.empty())
-    out += fmt::format("columns   {}\n", columns.substr(std::min(kColumns.size(), columns.size())));
+    out += fmt::format("columns   {}{}\n", columns.substr(std::min(kColumns.size(), columns.size())),
+                       inspection.read.columns_are_guessed ? "; --columns overrules" : "");
   const Vec3 size = s.high - s.low;
   out += fmt::format("box       {:.6g} x {:.6g} x {:.6g}, diagonal {:.6g}\n", size.x(), size.y(), size.z(), s.diagonal);
   out += fmt::format("spacing   median {:.4g}, 1 % {:.4g}, 99 % {:.4g}; density varies {:.1f} : 1\n", s.spacing[1],
                      s.spacing[0], s.spacing[2], s.density_variation);
   if (s.has_normals) {
-    out += fmt::format("normals   {:.1f} % consistent, {}; {} missing, {} made unit\n", 100 * s.consistency,
+    out += fmt::format("normals   {:.1f} % consistent, {}; {} missing, {} normalised\n", 100 * s.consistency,
                        s.volume > 0 ? "outward" : "inward", s.n_normals_zero, inspection.read.n_normals_rescaled);
   } else {
-    out += fmt::format("normals   none{}\n", s.has_lines_of_sight ? "; what is called so may be lines of sight" : "");
+    out += fmt::format("normals   none{}\n",
+                       s.has_lines_of_sight ? "; the vectors in the file may be lines of sight" : "");
   }
   if (!inspection.fields.empty()) out += fmt::format("fields    {}\n", fmt::join(inspection.fields, ", "));
   out += fmt::format("noise     {:.3g} ({:.3g} spacings, {:.2g} of the diagonal)\n", s.noise, s.noise_over_spacing,
@@ -204,7 +209,7 @@ std::string inspection_text(const CloudInspection& inspection) {
     const auto& [p01, p05, median] = *s.thickness;
     out += fmt::format("thickness 1 % {:.4g}, 5 % {:.4g}, median {:.4g}\n", p01, p05, median);
   }
-  out += fmt::format("dropped   {} no numbers, {} duplicates, {} outliers, {} in small pieces\n",
+  out += fmt::format("dropped   {} not finite, {} duplicates, {} outliers, {} in small components\n",
                      inspection.n_not_finite(), s.dropped.n_duplicates, s.dropped.n_outliers,
                      s.dropped.n_small_components);
   out += fmt::format("lattice   {:.4g}: {}\n", inspection.lattice.spacing, inspection.lattice.reason);

@@ -10,35 +10,35 @@
 #include "pipeline/case/progress.h"
 #include "pipeline/output/run_prediction.h"
 #include "pipeline/stages/scan_source.h"
-#include "reconstruct/cloud/cloud_survey.h"
+#include "reconstruct/cloud/survey/cloud_survey.h"
 #include "reconstruct/io/point_cloud_io.h"
 #include "reconstruct/solve/resolution.h"
 
 namespace umtet {
 
-/// What is in a cloud file.
+/// The contents of a cloud file.
 struct CloudInspection {
   std::string file;  ///< as the user gave it
   CloudFileReport read;
-  std::vector<std::string> fields;            ///< what the points carry: field_names()
-  std::optional<SampledTriangles> triangles;  ///< none of a cloud; then the survey is of its samples
+  std::vector<std::string> fields;            ///< names of the data of the points: field_names()
+  std::optional<SampledTriangles> triangles;  ///< none for a cloud; if set, the survey covers its samples
   CloudSurvey survey;
-  Resolution lattice;                 ///< that a fit would choose
-  RunPrediction prediction;           ///< of `umtet run` by the same parameters
-  std::vector<std::string> troubles;  ///< what is likely to go wrong, each with its remedy
+  Resolution lattice;                 ///< lattice that a fit would choose
+  RunPrediction prediction;           ///< prediction for `umtet run` with the same parameters
+  std::vector<std::string> troubles;  ///< likely problems, each with its remedy
 
   std::size_t n_not_finite() const { return read.n_points_dropped + survey.dropped.n_not_finite; }
 };
 
-/// Nothing is changed and nothing is written.
-/// @param parameters  of the run that is predicted, and by which the file is read
+/// Inspects a cloud. Changes and writes nothing.
+/// @param parameters  parameters of the predicted run, also used to read the file
 /// \throw CloudRefused, UsageError, std::system_error
 CloudInspection inspect_cloud(const std::filesystem::path& file, const Parameters& parameters, Progress& progress);
 
-/// What `umtet inspect --json` answers.
+/// Returns the answer of `umtet inspect --json`.
 Json to_json(const CloudInspection& inspection);
 
-/// The same in lines for people.
+/// Returns the inspection as text.
 std::string inspection_text(const CloudInspection& inspection);
 
 }  // namespace umtet

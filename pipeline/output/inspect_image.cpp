@@ -8,6 +8,7 @@
 
 #include "body/body.h"
 #include "body/sizing/background_choice.h"
+#include "pipeline/case/option_words.h"
 #include "pipeline/domain/body_options.h"
 #include "pipeline/domain/load_domain.h"
 #include "reconstruct/io/grid_io.h"
@@ -16,7 +17,7 @@
 namespace umtet {
 namespace {
 
-// Parts that are listed for people; the document has all of them.
+// Maximum number of parts in the text; the document contains all.
 constexpr std::size_t kListed = 40;
 
 const char* name_of(GridKind kind) {
@@ -37,7 +38,7 @@ void predict(const Parameters& given, ImageInspection& found) {
   BackgroundChoice background(body_options(parameters), domain);
   const EdgeLength choice = background.edge_length(domain);
   found.prediction = prediction_of(choice.h, background.expected_tets(domain, choice.h), 0, parameters);
-  found.notices = domain.notices;
+  found.notices = texts_of(domain.notices, as_flag);
 }
 
 }  // namespace
@@ -110,17 +111,17 @@ std::string inspection_text(const ImageInspection& found) {
         part.shape.thickness_median, part.voxels.at_wall ? ", reaches the wall of the image" : "");
   }
   if (found.parts.size() > kListed)
-    out += fmt::format("          and {} parts more (--json lists them)\n", found.parts.size() - kListed);
+    out += fmt::format("          and {} more parts (--json lists them)\n", found.parts.size() - kListed);
   if (found.suggested_level) {
     const double level = *found.suggested_level;
-    out += fmt::format("level     such as --level {:g}: for what is above {:g}, which {}; :{:g} for what is below\n",
+    out += fmt::format("level     such as --level {:g}: for values above {:g}, which {}; :{:g} for values below\n",
                        level, level,
-                       found.wall_above > 0 ? fmt::format("reaches {:.0f} % of the wall", 100 * found.wall_above)
-                                            : "does not reach the wall of the image",
+                       found.wall_above > 0 ? fmt::format("reach {:.0f} % of the wall", 100 * found.wall_above)
+                                            : "do not reach the wall of the image",
                        level);
   }
   for (const std::string& notice : found.notices) out += "notice    " + notice + "\n";
-  out += found.prediction ? prediction_text(*found.prediction) : "a run     needs --level\n";
+  out += found.prediction ? prediction_text(*found.prediction) : "a run     requires --level\n";
   return out;
 }
 

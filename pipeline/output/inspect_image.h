@@ -14,34 +14,34 @@
 
 namespace umtet {
 
-/// What is in the file of an image, a level set or a segmentation.
+/// The contents of a file with an image, a level set or a segmentation.
 struct ImageInspection {
   struct Part {
     LabelPart voxels;
     PartShape shape;
-    double volume = 0;  ///< of the voxels, model units^3
+    double volume = 0;  ///< volume of the voxels, model units^3
   };
   std::string file;  ///< as the user gave it
   GridKind kind = GridKind::Image;
   Eigen::Vector3i n = Eigen::Vector3i::Zero();
-  Vec3 steps = Vec3::Zero();                ///< of a voxel, model units
-  double least = 0, greatest = 0;           ///< value
-  std::vector<Part> parts;                  ///< of a segmentation, ascending in their numbers
-  std::optional<double> suggested_level;    ///< of an image
-  double wall_above = 0;                    ///< the share of the wall whose values are above that
-  std::optional<RunPrediction> prediction;  ///< of `umtet run` by the same parameters; none where a level is missing
-  std::vector<std::string> notices;         ///< of that run
+  Vec3 steps = Vec3::Zero();              ///< size of a voxel, model units
+  double least = 0, greatest = 0;         ///< range of values
+  std::vector<Part> parts;                ///< parts of a segmentation, ascending by number
+  std::optional<double> suggested_level;  ///< suggested level of an image
+  double wall_above = 0;                  ///< share of the wall with values above the suggested level
+  std::optional<RunPrediction> prediction;  ///< for `umtet run` with the same parameters; none if a level is missing
+  std::vector<std::string> notices;  ///< notices of that run
 };
 
-/// Nothing is changed and nothing is written.
-/// @param parameters  of the run that is predicted: mesh.level, mesh.part and so on
+/// Inspects an image. Changes and writes nothing.
+/// @param parameters  parameters of the predicted run: mesh.level, mesh.part and so on
 /// \throw GridRefused, UsageError, MeshingImpossible, std::system_error
 ImageInspection inspect_image(const std::filesystem::path& file, const Parameters& parameters, Progress& progress);
 
-/// What `umtet inspect --json` answers.
+/// Returns the answer of `umtet inspect --json`.
 Json to_json(const ImageInspection& inspection);
 
-/// The same in lines for people.
+/// Returns the inspection as text.
 std::string inspection_text(const ImageInspection& inspection);
 
 }  // namespace umtet

@@ -8,9 +8,10 @@
 namespace umtet {
 namespace {
 
-constexpr std::uint8_t kOpposite = 3;  // the corner of each tet behind its face
+constexpr std::uint8_t kOpposite = 3;  // index of the corner of each tet behind its face
 
-/// The faces, each with a tet of its own: their fourth corners are one node behind all others, which means nothing.
+/// Returns the faces, each with its own tet. The fourth corner of all tets is one node after all others, which has no
+/// meaning.
 SolverMesh with_faces_alone(const MeshWithBoundary& mesh) {
   SolverMesh made;
   made.nodes = mesh.V;
@@ -28,7 +29,7 @@ SolverMesh with_faces_alone(const MeshWithBoundary& mesh) {
   return made;
 }
 
-/// What marks faces.
+/// Returns a file with the data that mark faces.
 MeshFile file_of(const MeshWithBoundary& mesh) {
   MeshFile file;
   file.mesh.V = mesh.V;
@@ -46,7 +47,7 @@ PieceData piece_data(const MeshWithBoundary& mesh, const OrientedPointCloud& clo
   SolverMesh faces = with_faces_alone(mesh);
   divide_boundary(faces, marked_faces(faces, file_of(mesh), support), cloud, parameters, warn, names_of_file);
   PieceData made{std::move(faces.patches), faces.body.number, std::move(faces.face_patch), mesh.data};
-  if (parameters.mesh().order > 1)  // files of one process have no more
+  if (parameters.mesh().order > 1)  // files of one process contain no more
     std::erase_if(made.of_vertices.arrays, [](const BoundaryData::Array& a) { return !is_of_scan(a.name); });
   return made;
 }

@@ -10,10 +10,10 @@
 
 namespace umtet {
 
-/// divide_boundary() of a mesh that several processes have, by its boundary alone, and what its vertices carry.
-/// @param cloud    that the mesh was made of, or none
-/// @param support  of the certificate of the mesh
-/// \throw UsageError  as divide_boundary()
+/// Calls divide_boundary() for a distributed mesh, with its boundary alone, and collects the data of its vertices.
+/// @param cloud    the cloud from which the mesh was made, or an empty cloud
+/// @param support  support of the certificate of the mesh
+/// \throw UsageError  the exceptions of divide_boundary()
 PieceData piece_data(const MeshWithBoundary& mesh, const OrientedPointCloud& cloud,
                      const std::optional<SupportReport>& support, const Parameters& parameters, const Warn& warn,
                      const std::vector<std::string>& names_of_file);

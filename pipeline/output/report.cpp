@@ -27,12 +27,13 @@ namespace {
 
 constexpr int kAngleBins = 90, kQualityBins = 100;
 constexpr double kDegrees = 57.29577951308232;
-// Angles of all tets of a large mesh would take as long as the rest of the report.
+// Maximum number of tets whose angles are computed: for all tets of a large mesh this would take as long as the rest of
+// the report.
 constexpr std::size_t kAngleTets = 200'000;
-// Bytes of the page with what it was made from: names of labels may take some thousand.
+// Bytes at the beginning of the page that contain its sources: names of labels may take some thousand.
 constexpr std::size_t kHead = 100'000;
 
-/// Shares in percent of the six dihedral angles, in bins from 0 to 180 degrees, of one tet in `step`.
+/// Returns the shares of the six dihedral angles in percent, in bins from 0 to 180 degrees, for one tet in `step`.
 std::vector<double> angle_shares(const TetMesh& mesh, std::size_t step) {
   std::vector<double> share(kAngleBins, 0);
   for (std::size_t at = 0; at < mesh.C.size(); at += step) {
@@ -63,7 +64,7 @@ std::string angle_plot(const TetMesh& mesh) {
                    {{"", "c0", histogram_outline(angle_shares(mesh, step), 0, 180)}});
 }
 
-/// Numbers of tets by mean ratio, in bins from 0 to 1.
+/// Returns the numbers of tets by mean ratio, in bins from 0 to 1.
 std::vector<double> quality_counts(const MeshFile& mesh) {
   std::vector<double> count(kQualityBins, 0);
   for (const double q : std::get<std::vector<double>>(mesh.cell_data.at("mean_ratio")))
@@ -71,15 +72,15 @@ std::vector<double> quality_counts(const MeshFile& mesh) {
   return count;
 }
 
-/// The columns of quality.csv behind the first, which is the x of all of them.
+/// Returns the columns of quality.csv after the first, which is the x of all curves.
 std::vector<PlotCurve> quality_curves_of(const fs::path& file) {
-  // Solid: all vertices; dashed: those of tets at the boundary.
+  // Solid: all vertices; dashed: vertices of tets at the boundary.
   std::vector<PlotCurve> curves = {{"cut out of the background", "c0", {}},
                                    {"projected on ψ = 0", "c1", {}},
                                    {"final mesh", "c2", {}},
                                    {"", "c0 dashed", {}},
                                    {"", "c1 dashed", {}},
-                                   {"the same at the boundary", "c2 dashed", {}}};
+                                   {"dashed: at the boundary", "c2 dashed", {}}};
   std::istringstream in(read_text(file));
   std::string line;
   std::getline(in, line);
@@ -110,7 +111,7 @@ std::string shown_text(const SceneHead& scene) {
   if (scene.n_points != 0) text += ", " + part(scene.n_points_shown, scene.n_points, "samples");
   text += ".";
   if (scene.n_faces != scene.n_faces_shown) text += " The surface is coarsened for the view.";
-  if (scene.planes) text += " Of the tets, the worst and those at the middle planes of the box.";
+  if (scene.planes) text += " Only the worst tets and the tets at the middle planes of the box are shown.";
   return text +
          " Positions are rounded to 1/65535 of the box, colours to 1/255 of their range. Deviation is |ψ| / |∇ψ|.";
 }
@@ -121,7 +122,7 @@ std::string title_of(const CasePaths& paths) {
   return html_text(name.string());
 }
 
-/// mesh.vtu, and psi as it was meshed. \throw ArtefactDamaged, std::system_error
+/// Reads mesh.vtu, and psi as it was meshed. \throw ArtefactDamaged, std::system_error
 Handover read_back(const CasePaths& paths, const Parameters& parameters, double h) {
   Handover read;
   read.domain = load_domain(paths, parameters);
@@ -160,7 +161,7 @@ Figures figures_of(const CasePaths& paths, const Parameters& parameters, const M
   return f;
 }
 
-/// The mesh with the patches that exported files have.
+/// Returns the mesh with the patches of exported files.
 SolverMesh divided(const CasePaths& paths, const MeshFile& mesh, const Domain& domain, const Parameters& parameters,
                    const std::optional<SupportReport>& support) {
   SolverMesh made = solver_mesh(mesh.mesh);
@@ -170,12 +171,12 @@ SolverMesh divided(const CasePaths& paths, const MeshFile& mesh, const Domain& d
         made, marked_faces(made, mesh, support), domain.cloud, parameters, [](const std::string&) {},
         label_names_of_file(paths));
   } catch (const UsageError&) {
-    // Names for labels that are not there: an export refuses them, here all faces stay one patch.
+    // An export refuses names for labels that do not exist; here all faces then stay one patch.
   }
   return made;
 }
 
-/// What patches depend on beside the mesh.
+/// Returns the settings that patches depend on besides the mesh.
 std::string patch_settings(const Parameters& parameters) {
   return html_text(fmt::format("{} {} {} {}", parameters.output().label_names, parameters.output().label_min_area,
                                parameters.output().patch_angle, parameters.output().patch_planar));
@@ -243,7 +244,7 @@ bool report_is_of(const CasePaths& paths, const Certificate& certificate, const 
 
 void report_case(const CasePaths& paths) {
   if (!fs::exists(paths.parameters()) || !fs::exists(paths.certificate())) {
-    throw UsageError(paths.root.string() + ": there is no certificate to report on; umtet run makes one");
+    throw UsageError(paths.root.string() + ": there is no certificate; umtet run makes one");
   }
   Parameters parameters;
   parameters.load(paths.parameters(), ParamSource::Case);

@@ -5,20 +5,20 @@
 
 namespace umtet {
 
-/// Writes CASE/report.html: the certificate, the mesh to turn and cut, curves, times and parameters in one file that
-/// needs no network. It names the certificate it was made from.
-/// @param parameters   those that the stages were made with
-/// @param certificate  as in certificate.json. \pre the stages it is about are done
-/// @param handover     what there is in memory of mesh and domain is not read
+/// Writes CASE/report.html: the certificate, an interactive view of the mesh, curves, times and parameters in one file
+/// that needs no network. It names the certificate from which it was made.
+/// @param parameters   parameters with which the stages were made
+/// @param certificate  as in certificate.json. \pre its stages are done
+/// @param handover     mesh and domain in memory are not read again
 /// \throw ArtefactDamaged, Interrupted, std::system_error
 void write_report(const CasePaths& paths, const Parameters& parameters, const Certificate& certificate,
                   const Handover& handover = {});
 
-/// True when CASE/report.html was made from this certificate and shows the patches of these parameters.
+/// Returns whether CASE/report.html was made from this certificate and shows the patches of these parameters.
 bool report_is_of(const CasePaths& paths, const Certificate& certificate, const Parameters& parameters);
 
-/// `umtet report`: write_report() of a case as it is on disk.
-/// \throw UsageError when there is no certificate; ArtefactDamaged, Interrupted, std::system_error
+/// `umtet report`: calls write_report() for a case on disk.
+/// \throw UsageError  there is no certificate; ArtefactDamaged, Interrupted, std::system_error
 void report_case(const CasePaths& paths);
 
 }  // namespace umtet

@@ -20,7 +20,7 @@ std::string thousands(const std::string& digits) {
   return s;
 }
 
-/// A value of the certificate, marked with where certificate.json has it.
+/// Returns a value of the certificate, marked with its position in certificate.json.
 std::string marked(const char* pointer, const std::string& text) {
   return fmt::format("<span data-certificate=\"{}\">{}</span>", pointer, text);
 }
@@ -89,7 +89,7 @@ std::string reason_list(const Certificate& certificate) {
   for (const std::string& what : accepted) out += "<li>Accepted: " + html_text(what) + "</li>\n";
   for (const std::string& what : defects) out += "<li>Defect: " + html_text(what) + "</li>\n";
   if (const std::optional<Blame>& blame = certificate.blame) {
-    out += "<li>To blame: " + html_text(blame->stage) + " (" + html_text(blame->number) + "). Try " +
+    out += "<li>Cause: " + html_text(blame->stage) + " (" + html_text(blame->number) + "). Try " +
            html_text(blame->remedy) + ".</li>\n";
   }
   return out + "</ul>";
@@ -104,13 +104,13 @@ std::string check_list(const Certificate& c) {
   add("inverted tets: " + value("/quality/n_inverted", mesh.quality.n_inverted), mesh.quality.n_inverted == 0);
   add("closed manifold boundary", mesh.boundary.closed_manifold);
   add("boundary free of self-intersections", mesh.boundary.n_self_intersections == 0);
-  add("it is the surface that was to be fitted", mesh.boundary.equals_positive_faces);
-  // What cannot be proved is open, not wrong.
+  add("the boundary is the surface to be fitted", mesh.boundary.equals_positive_faces);
+  // A statement that cannot be proved is open, not wrong.
   const bool proved = c.measured.domain.components_proved.value_or(false);
-  add("all pieces of ψ = 0 proved to be seen", proved ? std::optional(true) : std::nullopt);
+  add("all components of ψ = 0 proved to be found", proved ? std::optional(true) : std::nullopt);
   if (const std::optional<double>& gap = mesh.boundary.gap_over_volume) {
     const double most = c.verdict.volume_gap_gate;
-    add(fmt::format("between faces and ψ = 0 at most {:.3g} % of the volume", 100 * most), *gap <= most);
+    add(fmt::format("volume between faces and ψ = 0 at most {:.3g} % of the volume", 100 * most), *gap <= most);
   }
   if (const std::optional<SupportReport>& support = c.measured.domain.support; support && support->n_closed_holes > 0) {
     add(fmt::format("<a href=\"#holes\">holes closed without samples: {}</a>",
@@ -118,13 +118,13 @@ std::string check_list(const Certificate& c) {
         std::nullopt);
   }
   if (const std::optional<SampleDistances>& cloud = c.measured.cloud; cloud && cloud->n_missed_places > 0) {
-    add(fmt::format("<a href=\"#missed\">places where samples are off the mesh: {}</a>",
+    add(fmt::format("<a href=\"#missed\">places where the mesh misses samples: {}</a>",
                     value("/cloud/n_missed_places", cloud->n_missed_places)),
         std::nullopt);
   }
   const PlaceReport& places = c.measured.places;
   if (const std::size_t n = places.n(); n > 0) {
-    add(fmt::format("<a href=\"#places\">places where it is not ψ = 0: {}</a>", value("/places/n", n)),
+    add(fmt::format("<a href=\"#places\">defects, where the mesh is not ψ = 0: {}</a>", value("/places/n", n)),
         c.verdict.fits_psi ? std::optional<bool>() : false);
   }
   add("fits ψ", c.verdict.fits_psi);
@@ -154,23 +154,24 @@ std::string headline_cards(const Certificate& c) {
   if (const std::optional<SizesReport>& sizes = c.measured.sizes) {
     card(value("/sizes/shortest_boundary_edge", sizes->shortest_boundary_edge, 3) + "–" +
              value("/sizes/longest_boundary_edge", sizes->longest_boundary_edge, 3) + units,
-         "edges of the boundary; of all, half are shorter than " + value("/sizes/edge_over_asked/p50", sizes->p50, 3) +
-             " of the size asked for");
+         "edges of the boundary; half of all edges are shorter than " +
+             value("/sizes/edge_over_asked/p50", sizes->p50, 3) + " of the requested size");
   } else {
     card(value("/h", mesh.h) + units, "edge length h of the background");
   }
   card(value("/boundary/n_faces", b.n_faces), "boundary faces; genus " + value("/boundary/genus", b.genus) +
-                                                  ", pieces " + value("/boundary/components", b.components));
+                                                  ", components " + value("/boundary/components", b.components));
   card(value("/boundary/max_centroid_distance_over_h", b.max_centroid_distance_over_h, 3) + " h",
        "face centres off ψ&nbsp;=&nbsp;0; vertices " +
            value("/boundary/max_vertex_distance_over_h", b.max_vertex_distance_over_h, 2) + " h");
   if (const std::optional<SampleDistances>& cloud = c.measured.cloud) {
     card(value("/cloud/p99_distance_over_h", cloud->p99 / mesh.h, 3) + " h",
-         "99&nbsp;% of the samples nearer; max " + value("/cloud/max_distance_over_h", cloud->max / mesh.h, 3) + " h");
+         "distance of 99&nbsp;% of the samples; max " + value("/cloud/max_distance_over_h", cloud->max / mesh.h, 3) +
+             " h");
   }
   if (const std::optional<TriangleDistances>& given = c.measured.triangles) {
     card(value("/triangles/max_distance_over_h", given->max_over_h, 3) + " h",
-         "the mesh from the given triangles at most; they from it " +
+         "maximum distance from the mesh to the given triangles; from them to the mesh " +
              value("/triangles/max_distance_back_over_h", given->max_back_over_h, 3) + " h");
   }
   return out;

@@ -22,7 +22,7 @@ const char* said_of(PlaceKind kind) {
     case PlaceKind::Thin:
       return "thin part lost";
     case PlaceKind::Topology:
-      return "pieces or handles that differ";
+      return "components or handles that differ";
     case PlaceKind::Missed:
       return "samples missed";
   }
@@ -54,8 +54,8 @@ std::string hole_table(const Certificate& c) {
   const std::string rest = n > n_listed ? fmt::format(" These are the largest {} of {}.", n_listed, n) : "";
   return fmt::format(
       "<div class=\"table\" id=\"holes\"><h2>{} of the scan closed without samples: {}{:.2g} % of the boundary</h2>\n"
-      "<p>No sample is near {} of the surface: the shape there is a guess of the fit. In exported files it is the "
-      "patch <code>closed_holes</code>, which reaches up to the samples around.{}</p>\n<table>\n{}</table></div>\n",
+      "<p>No sample is near {} of the surface: the shape there is a guess of the fit. In exported files, it is the "
+      "patch <code>closed_holes</code>, which extends to the surrounding samples.{}</p>\n<table>\n{}</table></div>\n",
       n == 1 ? "1 hole" : fmt::format("{} holes", n), n > n_listed ? "over " : "", 100 * part,
       n == 1 ? "this part" : "these parts", rest, rows);
 }
@@ -75,8 +75,9 @@ std::string missed_table(const Certificate& c) {
   const std::size_t n = cloud->n_missed_places, n_listed = cloud->missed.size();
   const std::string rest = n > n_listed ? fmt::format(" These are the farthest {} of {}.", n_listed, n) : "";
   return fmt::format(
-      "<div class=\"table\" id=\"missed\"><h2>Samples that are off the mesh</h2>\n<p>Neither noise nor flat faces "
-      "explain why these are farther than {:.3g} from it: detail that psi or h is too coarse for, a second sheet, "
+      "<div class=\"table\" id=\"missed\"><h2>Samples that the mesh misses</h2>\n<p>Neither noise nor flat faces "
+      "explain why these samples are farther than {:.3g} from the mesh. Possible causes: detail that psi or h is too "
+      "coarse for, a second sheet, "
       "outliers.{}</p>\n<table>\n{}</table></div>\n",
       cloud->missed_beyond, rest, rows);
 }
@@ -103,9 +104,10 @@ std::string place_table(const Certificate& c) {
   const std::size_t n = places.n(), n_listed = places.listed.size();
   const std::string rest = n > n_listed ? fmt::format(" These are the worst {} of {}.", n_listed, n) : "";
   return fmt::format(
-      "<div class=\"table\" id=\"places\"><h2>Where the mesh is not ψ = 0</h2>\n<p>A place is small, and the mesh passes, "
-      "where it is no deeper than h and no larger than {} h, or where ψ = 0 is finer than {} h, which this h cannot "
-      "show.{}</p>\n<table>\n{}</table>"
+      "<div class=\"table\" id=\"places\"><h2>Defects: where the mesh is not ψ = 0</h2>\n<p>A defect is small, and the "
+      "mesh passes, "
+      "if it is no deeper than h and no larger than {} h, or if ψ = 0 is finer than {} h, which this h cannot "
+      "resolve.{}</p>\n<table>\n{}</table>"
       "</div>\n",
       kSmallSize, kLeastEdgesAcross, rest, rows);
 }

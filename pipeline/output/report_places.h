@@ -4,16 +4,17 @@
 
 #include "pipeline/reports/certificate_report.h"
 
-// Tables of places in report.html; empty where there are none. A button lets the viewer show what it is about.
+// Tables of defects, holes and missed places in report.html; empty if there are none. Each row with a button lets the
+// viewer show its location.
 namespace umtet {
 
-/// The holes that were closed.
+/// Returns the table of holes that were closed.
 std::string hole_table(const Certificate& certificate);
 
-/// Where samples are off the mesh.
+/// Returns the table of samples that the mesh misses.
 std::string missed_table(const Certificate& certificate);
 
-/// Where the mesh is not psi = 0.
+/// Returns the table of defects, where the mesh is not psi = 0.
 std::string place_table(const Certificate& certificate);
 
 }  // namespace umtet

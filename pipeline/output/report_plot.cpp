@@ -9,7 +9,7 @@
 namespace umtet {
 namespace {
 
-// Units of the drawing: the document, and the axes in it.
+// Dimensions of the document and of the axes in it, in drawing units.
 constexpr double kWidth = 560, kHeight = 300, kLeft = 62, kRight = 530, kTop = 34, kBottom = 250;
 constexpr double kLegendStep = 17, kCharacter = 6.2;
 
@@ -27,7 +27,7 @@ struct Axis {
   std::vector<double> round_off();
 };
 
-/// Ends at round numbers; returns the ticks.
+/// Extends the axis to round numbers; returns the ticks.
 std::vector<double> Axis::round_off() {
   if (!(last >= first)) first = 0, last = 1;
   if (last - first < 1e-12 * std::max(1., std::abs(last))) last = first + 1;
@@ -43,7 +43,7 @@ std::vector<double> Axis::round_off() {
   } else if (last - first > 8) {
     step = std::ceil((last - first) / 8);
   }
-  // A hair of rounding must not cost a step.
+  // Rounding errors must not add a step.
   first = step * std::floor(first / step + 1e-9);
   last = step * std::ceil(last / step - 1e-9);
   std::vector<double> ticks;
@@ -55,7 +55,7 @@ std::vector<double> Axis::round_off() {
   return ticks;
 }
 
-/// 0.0001 to 1000000 in full: an axis has room for that.
+/// Writes 0.0001 to 1000000 in full, for which an axis has room.
 std::string tick_text(double t) {
   return t != 0 && (std::abs(t) < 1e-4 || std::abs(t) > 1e6) ? fmt::format("{:.0e}", t) : fmt::format("{:.7g}", t);
 }
@@ -105,7 +105,8 @@ void LinePlot::draw_curve(const PlotCurve& curve) {
   svg_ += fmt::format("<polyline class=\"curve {}\" points=\"{}\"/>\n", curve.css_class, points);
 }
 
-/// On a panel at the left, where quality vectors leave room below the final mesh and above the projected one.
+/// Draws the legend on a panel at the left, where quality vectors leave room below the final mesh and above the
+/// projected mesh.
 void LinePlot::draw_legend() {
   std::size_t longest = 0;
   double n = 0;

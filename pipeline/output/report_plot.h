@@ -6,11 +6,11 @@
 
 namespace umtet {
 
-/// A line of a plot: class c0 ... c5 gives its colour; dashed lines have the class `dashed` too.
+/// A line of a plot. The class c0 ... c5 gives its colour; dashed lines also have the class `dashed`.
 struct PlotCurve {
   std::string name;
   std::string css_class;
-  std::vector<std::array<double, 2>> points;  ///< those that an axis cannot show (log of <= 0, not finite) are left out
+  std::vector<std::array<double, 2>> points;  ///< those that an axis cannot show (log of <= 0, not finite) are omitted
 };
 
 struct PlotAxes {
@@ -18,11 +18,11 @@ struct PlotAxes {
   bool log_x = false, log_y = false;
 };
 
-/// Curves, axes with round ticks, and a legend where more than one has a name: one <svg> element, coloured by the
-/// style sheet of the page. Texts must be free of markup.
+/// Returns a plot as one <svg> element: curves, axes with round ticks, and a legend if more than one curve has a name.
+/// The style sheet of the page defines the colours. Texts must not contain markup.
 std::string line_plot(const PlotAxes& axes, const std::vector<PlotCurve>& curves);
 
-/// The outline of a histogram of equal bins from `first` to `last`.
+/// Returns the outline of a histogram of equal bins from `first` to `last`.
 std::vector<std::array<double, 2>> histogram_outline(const std::vector<double>& heights, double first, double last);
 
 }  // namespace umtet

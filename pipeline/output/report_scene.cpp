@@ -35,7 +35,7 @@ std::uint8_t in_steps(double value, double least, double most) {
   return static_cast<std::uint8_t>(std::lround(kSteps8 * std::clamp((value - least) / (most - least), 0., 1.)));
 }
 
-/// The same with room for what is not known.
+/// Converts a value to steps, with one step reserved for unknown values.
 std::uint8_t in_known_steps(double value, double least, double most) {
   if (std::isnan(value)) return kNoValue;
   if (!(most > least)) return 0;
@@ -92,7 +92,7 @@ class SceneMaker {
     write_bytes(("vertex_field_" + std::to_string(scene_.head.fields.size())).c_str(), bytes);
     scene_.head.fields.push_back(std::move(field));
   }
-  /// Numbers the vertices that are shown, in the order they are met.
+  /// Numbers the vertices that are shown, in the order of first use.
   int shown(int vertex) {
     int& id = shown_id_[vertex];
     if (id < 0) {
@@ -144,13 +144,13 @@ void SceneMaker::take_patches(const SolverMesh& divided) {
 }
 
 /// Moves the corners in a cell of a grid to one of them and drops the faces that vanish; cells grow until few enough
-/// are left. The drawing stays closed.
+/// faces are left. The surface stays closed.
 void SceneMaker::coarsen_faces() {
   double area = 0;
   for (const FacedTet& f : faces_) {
     area += (mesh_.V[f[1]] - mesh_.V[f[0]]).cross(mesh_.V[f[2]] - mesh_.V[f[0]]).norm() / 2;
   }
-  // Two triangles a square of the grid, about.
+  // About two triangles per square of the grid.
   double cell = std::sqrt(2 * area / static_cast<double>(caps_.faces));
   for (std::vector<std::size_t> kept; kept.empty() || kept.size() > caps_.faces; cell *= 1.1) {
     kept.clear();
@@ -178,8 +178,8 @@ void SceneMaker::coarsen_faces() {
   }
 }
 
-/// All tets, or the worst and those at the middle planes. A tet is drawn at a cut when a neighbour is on its other
-/// side; centroids of neighbours are at most half the longest edge apart.
+/// Selects all tets, or the worst tets and the tets at the middle planes. A tet is drawn at a cut if a neighbour is on
+/// the other side; centroids of neighbours are at most half the longest edge apart.
 void SceneMaker::take_tets() {
   const std::vector<double>& q = *field(file_.cell_data, "mean_ratio");
   const std::size_t n = mesh_.C.size(), n_worst = std::min(caps_.worst, n);

@@ -18,17 +18,17 @@
 #include "mesh/sizes/body_size.h"
 #include "pipeline/domain/body_options.h"
 #include "reconstruct/cloud/cloud_arrays.h"
-#include "reconstruct/cloud/morton_order.h"
+#include "reconstruct/cloud/neighbours/morton_order.h"
 #include "reconstruct/solve/resolution.h"
 
 namespace umtet {
 namespace {
 
-// Of whole runs on one thread: the clouds of data/clouds, and ellipsoids of 0.05 to 1 M points with 0.1 to 4 M tets
-// (tests/bench/ellipsoid_cloud.py). tests/examples/cluster_test.py holds the first to them.
+// Measured for whole runs with one thread: the clouds of data/clouds, and ellipsoids of 0.05 to 1 M points with 0.1 to
+// 4 M tets (tests/bench/ellipsoid_cloud.py). tests/examples/cluster_test.py checks the former.
 constexpr double kSecondsPerPoint = 14e-6, kSecondsPerTet = 3.5e-6, kSecondsOfStart = .2;
 constexpr double kBytesPerPoint = 700, kBytesOfStart = 45e6;
-// The share of memory by which a run is allowed to begin (pipeline/case/memory.cpp).
+// The memory per tet by which a run decides whether it may begin (pipeline/case/memory.cpp).
 constexpr double kBytesPerTet = 500;
 
 RunCost cost(double n_points, double n_tets) {
@@ -36,11 +36,11 @@ RunCost cost(double n_points, double n_tets) {
           (kBytesOfStart + kBytesPerPoint * n_points + kBytesPerTet * n_tets) / 1e6};
 }
 
-// A surface of as much area as the square of its diagonal has 3.7 spacings of so many samples along an edge of the
-// default mesh: psi has what h is chosen by. The fit of more takes seconds.
+// With this many samples, a surface whose area is the square of its diagonal has 3.7 spacings along an edge of the
+// default mesh, so psi contains the data by which h is chosen. The fit of more samples takes seconds.
 constexpr std::size_t kMostFitted = 60'000;
 
-/// Evenly along a curve that fills space.
+/// Keeps samples evenly along a space-filling curve.
 void keep_few(OrientedPointCloud& cloud) {
   const std::size_t n = cloud.points.size(), step = (n + kMostFitted - 1) / kMostFitted;
   if (step < 2) return;
@@ -50,7 +50,7 @@ void keep_few(OrientedPointCloud& cloud) {
   keep_samples(cloud, kept);
 }
 
-/// As large as it can be.
+/// Returns the largest possible size of the body.
 BodySize body_of(const CloudSurvey& survey, double area) {
   const double ball = std::pow(area, 1.5) / (6 * std::sqrt(std::numbers::pi));
   const double box = (survey.high - survey.low).prod();
@@ -62,7 +62,8 @@ BodySize body_of(const CloudSurvey& survey, double area) {
           .area = area};
 }
 
-/// What h is not chosen by: --h and --tets come first, curvature and the walls of a box are not known.
+/// Returns whether h follows from the samples: --h and --tets take precedence, and curvature and the walls of a box are
+/// not known.
 bool is_known(const Parameters& parameters) {
   const MeshParameters& p = parameters.mesh();
   return !background_file(parameters) && !p.complement && (p.max_deviation == 0 || p.h > 0 || p.tets > 0);
@@ -118,7 +119,7 @@ RunPrediction prediction_of(double h, double n_tets, double n_points, const Para
   RunPrediction run;
   run.h = h;
   run.expected = cost(n_points, n_tets);
-  // All meshes together have p.effort times the tets of the first; none has more than mesh.max_tets.
+  // All meshes together have p.effort times the tets of the first mesh; none has more than mesh.max_tets.
   const double all = std::max(1., p.effort) * n_tets;
   run.most = cost(n_points, all);
   run.most.n_tets = std::min(all, std::max(n_tets, max_tets));
@@ -146,11 +147,11 @@ Json to_json(const RunPrediction& prediction) {
 std::string prediction_text(const RunPrediction& run) {
   std::string out;
   if (!run.obstacle.empty()) out += fmt::format("a run     is likely to end without a mesh: {}\n", run.obstacle);
-  return out +
-         fmt::format("{}about {:.2g} tets {} {:.3g}: {:.2g} s of one thread, {:.0f} MB; at most {:.2g} s, {:.0f} MB\n",
-                     run.obstacle.empty() ? "a run     " : "          else ", run.expected.n_tets,
-                     run.is_graded ? "of edges that follow the body, from" : "at h =", run.h, run.expected.seconds,
-                     run.expected.memory_MB, run.most.seconds, run.most.memory_MB);
+  return out + fmt::format(
+                   "{}about {:.2g} tets {} {:.3g}: {:.2g} s with one thread, {:.0f} MB; at most {:.2g} s, {:.0f} MB\n",
+                   run.obstacle.empty() ? "a run     " : "          else ", run.expected.n_tets,
+                   run.is_graded ? "with edges that follow the body, from" : "at h =", run.h, run.expected.seconds,
+                   run.expected.memory_MB, run.most.seconds, run.most.memory_MB);
 }
 
 }  // namespace umtet

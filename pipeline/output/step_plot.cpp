@@ -7,7 +7,7 @@
 namespace umtet {
 namespace {
 
-// Pixels: the document, and the axes in it.
+// Dimensions of the document and of the axes in it, in pixels.
 constexpr double kWidth = 640, kHeight = 300, kLeft = 50, kRight = 620, kTop = 30, kBottom = 255;
 
 class Plot {
@@ -62,8 +62,8 @@ std::string Plot::operator()() {
       "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
       kWidth, kHeight);
   axes();
-  curve(&StepQuality::p01, "#1f77b4", "1 % of the tets below", kLeft + 120);
-  curve(&StepQuality::min, "#2ca02c", "least mean ratio", kLeft);
+  curve(&StepQuality::p01, "#1f77b4", "1 % quantile", kLeft + 120);
+  curve(&StepQuality::min, "#2ca02c", "minimum mean ratio", kLeft);
   for (const StepQuality& s : steps_) {
     if (!s.made) svg_ += fmt::format("<path d=\"M{:.1f} {}V{}\" stroke=\"#d62728\"/>\n", x(s.t), kTop, kBottom);
   }

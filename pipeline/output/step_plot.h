@@ -5,14 +5,14 @@
 
 namespace umtet {
 
-/// A point of the plot: qualities of the mesh at a time.
+/// A point of the plot: the qualities of the mesh at one time.
 struct StepQuality {
   double t;
-  bool made;  ///< else the time is marked, and the qualities are not read
+  bool made;  ///< false: the time is marked, and the qualities are ignored
   double min, p01;
 };
 
-/// Least mean ratio and its 1 % quantile over time, as in Fig. 21 of the paper: an SVG document.
+/// Returns an SVG document with the minimum mean ratio and its 1 % quantile over time, as in Fig. 21 of the paper.
 std::string step_plot(const std::vector<StepQuality>& steps);
 
 }  // namespace umtet

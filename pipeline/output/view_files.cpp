@@ -1,16 +1,6 @@
 #include "pipeline/output/view_files.h"
 
 #include <fmt/format.h>
-#include <vtkFloatArray.h>
-#include <vtkFlyingEdges3D.h>
-#include <vtkImageData.h>
-#include <vtkNew.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
-#include <vtkPolyData.h>
-#include <vtkSmartPointer.h>
-#include <vtkXMLImageDataWriter.h>
-#include <vtkXMLPolyDataWriter.h>
 
 #include <cmath>
 
@@ -21,94 +11,40 @@
 #include "pipeline/domain/load_domain.h"
 #include "pipeline/reports/stage_reports.h"
 #include "pipeline/stages/stages.h"
+#include "reconstruct/io/image_io.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
-// psi and |grad psi| in single precision: 16 MB.
+// psi and |grad psi| in single precision take 16 MB.
 constexpr double kMostNodes = 2e6;
 constexpr std::size_t kValuesPerPoll = 100'000;
 
-vtkSmartPointer<vtkFloatArray> values(const char* name, std::size_t n) {
-  auto array = vtkSmartPointer<vtkFloatArray>::New();
-  array->SetName(name);
-  array->SetNumberOfValues(static_cast<vtkIdType>(n));
-  return array;
-}
-
-/// psi at the nodes of a grid that fills the box, in model coordinates.
-vtkSmartPointer<vtkImageData> sampled(const Domain& domain, double h) {
+/// Returns psi at the nodes of a grid that fills the box, in model coordinates.
+Image sampled(const Domain& domain, double h) {
   const Vec3 size = domain.box.sizes();
   double spacing = std::max(h / 2, std::cbrt(size.prod() / kMostNodes));
   Eigen::Vector3i n;
-  // Round-off and a node more on each axis: a little coarser, until it fits.
+  // Because of rounding and one more node per axis, the grid is coarsened a little until it fits.
   for (;; spacing *= 1.02) {
     n = (size / spacing).array().ceil().cast<int>() + 1;
     if (n.cast<double>().prod() <= kMostNodes) break;
   }
   const Vec3 step = size.cwiseQuotient((n.array() - 1).matrix().cast<double>()), origin = domain.box.min();
   const std::size_t n_nodes = static_cast<std::size_t>(n.x()) * n.y() * n.z();
-  const vtkSmartPointer<vtkFloatArray> psi = values("psi", n_nodes), slope = values("grad_psi", n_nodes);
+  std::vector<float> psi(n_nodes), slope(n_nodes);
   polled_parallel_for(n_nodes, kValuesPerPoll, until_interrupted(), [&](std::size_t k) {
     const std::size_t row = k / n.x(), layer = row / n.y();
     const Vec3 at(static_cast<double>(k % n.x()), static_cast<double>(row % n.y()), static_cast<double>(layer));
     Vec3 g;
-    psi->SetValue(static_cast<vtkIdType>(k), static_cast<float>(domain.psi().value(origin + at.cwiseProduct(step), g)));
-    slope->SetValue(static_cast<vtkIdType>(k), static_cast<float>(g.norm()));
+    psi[k] = static_cast<float>(domain.psi().value(origin + at.cwiseProduct(step), g));
+    slope[k] = static_cast<float>(g.norm());
   });
-  const Vec3 shown = origin + domain.shift;
-  auto image = vtkSmartPointer<vtkImageData>::New();
-  image->SetDimensions(n.data());
-  image->SetOrigin(shown.data());
-  image->SetSpacing(step.data());
-  image->GetPointData()->SetScalars(psi);
-  image->GetPointData()->AddArray(slope);
-  return image;
+  return {n, origin + domain.shift, step, {{"psi", std::move(psi)}, {"grad_psi", std::move(slope)}}};
 }
 
-/// psi = 0 of the grid, then one step y = x - psi grad psi / |grad psi|^2 a vertex, of at most half a cell.
-vtkSmartPointer<vtkPolyData> zero_surface(vtkImageData* image, const Domain& domain) {
-  vtkNew<vtkFlyingEdges3D> contour;
-  contour->SetInputData(image);
-  contour->SetValue(0, 0);
-  contour->ComputeNormalsOff();
-  contour->ComputeScalarsOff();
-  contour->Update();
-  vtkSmartPointer<vtkPolyData> surface = contour->GetOutput();
-  const vtkIdType n = surface->GetNumberOfPoints();
-  const double reach = Vec3(image->GetSpacing()).norm() / 2;
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  const vtkSmartPointer<vtkFloatArray> slope = values("grad_psi", static_cast<std::size_t>(n));
-  for (vtkIdType i = 0; i < n; ++i) {
-    Vec3 x;
-    surface->GetPoint(i, x.data());
-    Vec3 g;
-    const double value = domain.psi().value(x - domain.shift, g);
-    const Vec3 step = -value / g.squaredNorm() * g;
-    if (step.norm() <= reach) x += step;
-    points->InsertNextPoint(x.data());
-    slope->SetValue(i, static_cast<float>(g.norm()));
-  }
-  surface->SetPoints(points);
-  surface->GetPointData()->AddArray(slope);
-  return surface;
-}
-
-/// Into memory: VTK's writers report success on a full disk, write_text_artefact() does not.
-template <class Writer>
-void write_vtk(const fs::path& file, vtkDataObject* data) {
-  vtkNew<Writer> writer;
-  writer->SetInputData(data);
-  writer->SetWriteToOutputString(true);
-  writer->SetDataModeToBinary();
-  writer->SetHeaderTypeToUInt64();
-  if (!writer->Write()) throw std::runtime_error(file.string() + ": VTK could not write it");
-  write_text_artefact(file, writer->GetOutputString());
-}
-
-/// A path as Python reads it: JSON's escapes are Python's too.
+/// Returns a path as a Python string: Python understands the escapes of JSON.
 std::string python_text(const fs::path& path) {
   return Json(fs::absolute(path).lexically_normal().string()).dump(-1, ' ', true, Json::error_handler_t::replace);
 }
@@ -138,7 +74,7 @@ cut = Slice(Input=psi, SliceType="Plane")
 cut.SliceType.Origin = {centre}
 cut.SliceType.Normal = [0.0, 0.0, 1.0]
 coloured(shown(cut, "2 psi, cut", Opacity=0.6), "POINTS", "psi")
-zero = XMLPolyDataReader(FileName=[path("5-view/zero.vtp")])
+zero = Contour(Input=psi, ContourBy=["POINTS", "psi"], Isosurfaces=[0.0])
 coloured(shown(zero, "2 psi = 0, by slope", Opacity=0.25), "POINTS", "grad_psi")
 mesh = XMLUnstructuredGridReader(FileName=[path("3-mesh/mesh.vtu")])
 tets = Clip(Input=mesh, ClipType="Plane")
@@ -164,7 +100,8 @@ Render(view)
 }  // namespace
 
 std::vector<fs::path> write_view(const CasePaths& paths, Progress& progress) {
-  if (!fs::exists(paths.parameters())) throw UsageError(paths.root.string() + " is not a case: it has no case.toml");
+  if (!fs::exists(paths.parameters()))
+    throw UsageError(paths.root.string() + " is not a case: it contains no case.toml");
   Parameters parameters;
   parameters.load(paths.parameters(), ParamSource::Case);
   const StageState state = inspect_stage(paths, Stage::Mesh, parameters.section("mesh"), std::nullopt);
@@ -183,14 +120,12 @@ std::vector<fs::path> write_view(const CasePaths& paths, Progress& progress) {
   files.reserve(kViewFiles.size());
   for (const char* name : kViewFiles) files.push_back(folder / name);
   progress.report("view", "psi", 0);
-  const vtkSmartPointer<vtkImageData> image = sampled(domain, h);
+  const Image image = sampled(domain, h);
   stop_if_interrupted();
-  write_vtk<vtkXMLImageDataWriter>(files[0], image);
-  progress.report("view", "psi = 0", .6);
-  write_vtk<vtkXMLPolyDataWriter>(files[1], zero_surface(image, domain));
+  write_artefact(files[0], [&](const fs::path& path) { write_image(path, image); });
   const Vec3 centre = domain.box.center() + domain.shift;
   write_text_artefact(
-      files[2],
+      files[1],
       fmt::format(fmt::runtime(kScript), fmt::arg("case", python_text(paths.root)),
                   fmt::arg("radius", .002 * domain.diagonal),
                   fmt::arg("support_radius", has_holes ? fmt::format("{:.17g}", support->radius) : "None"),

@@ -10,11 +10,11 @@
 namespace umtet {
 namespace {
 
-// A fit bears a few wrong normals; a patch of this share of them is a wall of its own in psi.
+// A fit tolerates a few wrong normals; a patch with this share of them is a separate wall in psi.
 constexpr double kManyWrong = .05;
-// Of h: sizes go down to edges of which the noise is .3 (kMostNoise), or halfway there.
+// In units of h: sizes decrease until the noise is .3 of an edge (kMostNoise), or halfway there.
 constexpr double kNoisy = .15;
-// Of h: from here on the mesh shows the noise of the samples.
+// In units of h: from this value on, the mesh shows the noise of the samples.
 constexpr double kNoiseShows = .3;
 
 bool fails_by(const std::vector<InputDefect>& defects, InputDefectKind kind) {
@@ -27,8 +27,8 @@ std::optional<Blame> blame_of_guesses(const MeshMeasures& m, const std::vector<I
   if (is_guess || fails_by(defects, InputDefectKind::Handles) || fails_by(defects, InputDefectKind::Pieces)) {
     const double guessed = m.domain.support ? m.domain.support->unsupported_area_fraction : 1;
     return Blame{"input", fmt::format("no sample is near {:.0f} % of the boundary", 100 * guessed),
-                 "a scan of what is missing; --close flat or smooth closes it in another way, and --accept "
-                 "guessed,handles,pieces takes the guess"};
+                 "a scan of the missing part; --close flat or smooth closes it in another way, and --accept "
+                 "guessed,handles,pieces accepts the guess"};
   }
   return std::nullopt;
 }
@@ -78,7 +78,7 @@ std::optional<Blame> blame_of_labels(const MeshMeasures& m, const std::vector<In
                fmt::format("--part-smooth {:.2g}, or no --part-smooth, which keeps the volume", *r.kernel / 2)};
 }
 
-/// The h that shows every place that is not small, as far as psi = 0 explains them.
+/// Returns the h that resolves all defects that are not small, where psi = 0 explains them.
 std::optional<double> h_that_shows(const MeshMeasures& m) {
   std::optional<double> least;
   for (const MeshPlace& place : m.places.listed) {
@@ -95,11 +95,11 @@ Blame blame_of_mesh(const MeshMeasures& m) {
   const double h = m.mesh.h;
   const std::optional<double> shows = h_that_shows(m);
   if (shows && *shows < h && m.search && m.search->at_max_tets) {
-    return {"max_tets", fmt::format("--max-tets keeps h at {:.4g}, and what is thinnest needs {:.3g}", h, *shows),
+    return {"max_tets", fmt::format("--max-tets limits h to {:.4g}, and the thinnest part needs {:.3g}", h, *shows),
             "a larger --max-tets"};
   }
   if (shows && *shows < h) {
-    return {"h", fmt::format("h is {:.4g}, and what is thinnest needs {:.3g}", h, *shows),
+    return {"h", fmt::format("h is {:.4g}, and the thinnest part needs {:.3g}", h, *shows),
             fmt::format("--h {:.3g}{}", *shows, m.n_points ? ", or --background graded" : "")};
   }
   if (!m.is_valid || !coarseness(m.mesh).empty() || !m.reasons.empty()) {
@@ -113,7 +113,7 @@ Blame blame_of_psi(const MeshMeasures& m) {
   const std::optional<double>& spacing = m.domain.level_set_spacing;
   if (!spacing) return {"h", fmt::format("h is {:.4g}, and the mesh fits psi", m.mesh.h), "a smaller --h"};
   return {"level set", fmt::format("the finest lattice of psi has a spacing of {:.3g}", *spacing),
-          fmt::format("--spacing {:.3g}, which rounds less", .5 * *spacing)};
+          fmt::format("--spacing {:.3g}, which rounds edges less", .5 * *spacing)};
 }
 
 }  // namespace
@@ -123,7 +123,7 @@ Blame blame_for(const Certificate& c) {
   const std::optional<double>& gate = c.verdict.min_quality_gate;
   if (c.verdict.reasons.size() == 1 && gate && m.mesh.quality.min < *gate) {
     return {
-        "mesh", fmt::format("the least Q is {:.4f}", m.mesh.quality.min),
+        "mesh", fmt::format("the minimum Q is {:.4f}", m.mesh.quality.min),
         fmt::format("another --h (this was {:.4g}), which moves the worst tets, or a lower --min-quality", m.mesh.h)};
   }
   if (auto blame = blame_of_guesses(m, input_defects(m))) return *blame;

@@ -4,9 +4,9 @@
 
 namespace umtet {
 
-/// The stage to blame for a certificate that fails, the number that says so, and a remedy with its flag. The first of
-/// these that applies: parts that were not given, normals, noise, --max-tets, h, psi, the mesh itself. A stage comes
-/// before those that work on its result, because no later stage can mend it.
+/// Returns the stage that causes a certificate to fail, the number that shows it, and a remedy with its flag. The first
+/// of these causes that applies is chosen: missing parts of the input, normals, noise, --max-tets, h, psi, the mesh
+/// itself. A stage comes before the stages that work on its result, because later stages cannot repair it.
 /// \pre !certificate.verdict.passes()
 Blame blame_for(const Certificate& certificate);
 

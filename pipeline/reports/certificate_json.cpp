@@ -44,7 +44,7 @@ SearchReport search_from(const Json& json) {
       .n_attempts = json.at("n_attempts"), .h_is_given = json.at("h_is_given"), .at_max_tets = json.at("at_max_tets")};
 }
 
-/// All that is measured up to the resolution.
+/// The measurements up to the resolution.
 Json measured_blocks(const MeshMeasures& m) {
   Json json = {{"n_points", json_of(m.n_points)}};
   json.update(mesh_blocks(m.mesh, m.coordinate_rounding_over_h));
@@ -67,7 +67,7 @@ void add_order(const MeshMeasures& m, Json& json) {
   json["second_order"] = second_order_block(m.second_order);
 }
 
-/// All that is measured but the reasons.
+/// All measurements except the reasons.
 MeshMeasures measured_blocks_from(const Json& json) {
   MeshMeasures m;
   m.n_points = optional_from<std::size_t>(json.at("n_points"));

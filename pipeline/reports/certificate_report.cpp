@@ -11,7 +11,7 @@
 namespace umtet {
 namespace {
 
-/// From the records of the stages.
+/// Collects the data of the runs from the records of the stages.
 CertificateRun run_of(const CasePaths& paths, const StageRecord& mesh, std::size_t n_tets,
                       const Parameters& parameters) {
   CertificateRun run;

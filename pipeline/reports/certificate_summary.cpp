@@ -10,7 +10,7 @@
 namespace umtet {
 namespace {
 
-/// "-" where there is no number.
+/// Returns "-" if there is no number.
 std::string show(const std::optional<double>& value, const char* format) {
   if (!value || std::isnan(*value)) return "-";
   return fmt::format(fmt::runtime(format), *value);
@@ -32,7 +32,7 @@ std::string verdict_lines(const Verdict& verdict, const std::string& judgements,
   return out;
 }
 
-/// The three judgements. A formula is its own input, which makes one of the last two.
+/// Returns the three judgements. A formula is its own input, so the last two judgements coincide.
 std::string judgements(const Verdict& v, bool has_input) {
   std::string out = v.is_valid ? "valid" : "NOT valid";
   out += v.fits_psi ? ", fits psi" : ", does NOT fit psi";
@@ -54,11 +54,11 @@ std::string boundary_line(const MeshCertificate::Boundary& b) {
   return line;
 }
 
-/// Counts, quality and boundary.
+/// Returns the lines with counts, quality and boundary.
 std::string mesh_lines(const MeshCertificate& c, const std::string& unit, std::optional<std::int64_t> n_tets_asked) {
   const MeshCertificate::Quality& q = c.quality;
   const std::string asked =
-      n_tets_asked ? fmt::format(" (asked for {})", thousands(static_cast<std::size_t>(*n_tets_asked))) : "";
+      n_tets_asked ? fmt::format(" (requested: {})", thousands(static_cast<std::size_t>(*n_tets_asked))) : "";
   std::string out = fmt::format("mesh      {} tets{}, {} vertices, {} boundary faces; h = {}{}, volume {}{}\n",
                                 thousands(c.n_tets), asked, thousands(c.n_vertices), thousands(c.boundary.n_faces),
                                 show(c.h, "{:.5g}"), unit, show(c.volume, "{:.6g}"), unit.empty() ? "" : unit + "^3");
@@ -69,17 +69,18 @@ std::string mesh_lines(const MeshCertificate& c, const std::string& unit, std::o
   return out + "boundary  " + boundary_line(c.boundary) + "\n";
 }
 
-/// What the edges of a graded mesh are beside the sizes that were asked for; empty for others.
+/// Compares the edges of a graded mesh with the requested sizes; empty for other meshes.
 std::string sizes_line(const std::optional<SizesReport>& s, const std::string& unit) {
   if (!s) return "";
   return fmt::format(
-      "sizes     {:.4g} to {:.4g}{} asked for; edges over that: 1 % {:.2f} | 50 % {:.2f} | 99 % {:.2f}; boundary edges "
+      "sizes     {:.4g} to {:.4g}{} requested; edges relative to that: 1 % {:.2f} | 50 % {:.2f} | 99 % {:.2f}; "
+      "boundary edges "
       "{:.4g} to {:.4g}\n",
       s->least_asked, s->greatest_asked, unit, s->p01, s->p50, s->p99, s->shortest_boundary_edge,
       s->longest_boundary_edge);
 }
 
-/// What is true of tets of second order; empty for others.
+/// Returns the lines on tets of second order; empty for other meshes.
 std::string second_order_lines(const std::optional<SecondOrderReport>& report) {
   if (!report) return "";
   const SecondOrderCertificate& s = report->certificate;
@@ -106,7 +107,7 @@ std::string domain_line(const ZeroSetReport& d) {
   return out + "\n";
 }
 
-/// What was closed without samples; empty if nothing was.
+/// Returns the line on holes that were closed without samples; empty if there are none.
 std::string holes_line(const std::optional<SupportReport>& support, const std::string& unit) {
   if (!support || support->closed_holes.empty()) return "";
   const std::size_t n = support->n_closed_holes;
@@ -116,7 +117,7 @@ std::string holes_line(const std::optional<SupportReport>& support, const std::s
     deepest = std::max(deepest, hole.deepest);
   }
   return fmt::format(
-      "holes     {} closed where no sample is: {}{:.3g} % of the boundary, deepest {:.3g}{} from a sample\n", n,
+      "holes     {} closed where there are no samples: {}{:.3g} % of the boundary, up to {:.3g}{} from a sample\n", n,
       n > support->closed_holes.size() ? "over " : "", 100 * part, deepest, unit);
 }
 
@@ -131,13 +132,14 @@ std::string cloud_line(const MeshMeasures& m, const std::string& unit) {
                      show(d.rms / h, "{:.4f}"), show(d.p99 / h, "{:.4f}"), show(d.max / h, "{:.4f}"));
 }
 
-/// How far the mesh is from the triangles that were given, and they from it; empty if none were.
+/// Returns the line on the distances between the mesh and the given triangles; empty without triangles.
 std::string triangles_line(const MeshMeasures& m, const std::string& unit) {
   if (!m.triangles) return "";
   const TriangleDistances& d = *m.triangles;
   const double h = m.mesh.h;
   return fmt::format(
-      "triangles {} bound the body; mesh to them rms {} ({} h), max {} h; they to the mesh rms {} ({} h), max {} h\n",
+      "triangles {} bound the body; distance from the mesh to them rms {} ({} h), max {} h; from them to the mesh rms "
+      "{} ({} h), max {} h\n",
       thousands(d.n_triangles), show(d.rms, "{:.3g}") + unit, show(d.rms / h, "{:.4f}"), show(d.max_over_h, "{:.3f}"),
       show(d.rms_back, "{:.3g}") + unit, show(d.rms_back / h, "{:.4f}"), show(d.max_back_over_h, "{:.3f}"));
 }
@@ -147,7 +149,7 @@ std::string pieces_text(const PieceCount& count) {
                                            : fmt::format("{} to {}", count.by_points, count.by_faces);
 }
 
-/// The mesh beside the voxels of a segmentation; empty if there are none.
+/// Compares the mesh with the voxels of a segmentation; empty without voxels.
 std::string labels_line(const MeshMeasures& m, const std::string& unit) {
   if (!m.labels) return "";
   const LabelVolumeReport& r = *m.labels;
@@ -160,7 +162,7 @@ std::string labels_line(const MeshMeasures& m, const std::string& unit) {
       r.n_changed == 1 ? "" : "s", r.n_changed_far, r.farthest_changed);
 }
 
-/// Where samples are not on the mesh; empty if they all are.
+/// Returns the line on missed samples; empty if there are none.
 std::string missed_line(const MeshMeasures& m, const std::string& unit) {
   if (!m.cloud || m.cloud->missed.empty()) return "";
   const std::size_t n = m.cloud->n_missed_places;
@@ -173,7 +175,7 @@ std::string missed_line(const MeshMeasures& m, const std::string& unit) {
       worst.farthest.x(), worst.farthest.y(), worst.farthest.z());
 }
 
-/// Which places are thinner than the mesh can show; empty if there are none.
+/// Returns the line on places that are thinner than the mesh can show; empty if there are none.
 std::string thin_line(const ResolutionReport& r) {
   if (!r.too_thin || r.too_thin->empty()) return "";
   const std::size_t n = r.too_thin->size();
@@ -182,7 +184,7 @@ std::string thin_line(const ResolutionReport& r) {
                      n == 1 ? " is" : "s are", worst.is_gap ? "gap" : "body", worst.thickness, worst.h_needed);
 }
 
-/// Where the mesh is not psi = 0; empty where it is everywhere.
+/// Returns the line on defects, where the mesh is not psi = 0; empty if there are none.
 std::string places_line(const PlaceReport& places) {
   if (places.empty()) return "";
   std::vector<std::string> kinds;
@@ -192,7 +194,7 @@ std::string places_line(const PlaceReport& places) {
   const std::size_t n = places.n();
   std::size_t n_small = 0;
   for (const PlaceReport::OfKind& k : places.kinds) n_small += k.n_small;
-  return fmt::format("places    {} where the mesh is not psi = 0, {} of them small: {}\n", n, n_small,
+  return fmt::format("defects   {} where the mesh is not psi = 0, {} of them small: {}\n", n, n_small,
                      fmt::join(kinds, ", "));
 }
 

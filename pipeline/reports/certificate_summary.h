@@ -6,9 +6,9 @@
 
 namespace umtet {
 
-/// A few aligned lines for people: verdict, counts, quality, boundary, domain, cloud, time.
+/// Returns a few aligned lines of text: verdict, counts, quality, boundary, domain, cloud, time.
 std::string summary(const Certificate& certificate);
-/// The shorter ones of a mesh that was checked.
+/// Returns the shorter summary of a mesh that was checked.
 std::string summary(const MeshCheck& check);
 
 }  // namespace umtet

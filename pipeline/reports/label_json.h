@@ -5,7 +5,7 @@
 
 namespace umtet {
 
-/// The block `labels`.
+/// Returns the block `labels`.
 Json to_json(const LabelVolumeReport& report);
 LabelVolumeReport label_volume_from(const Json& json);
 

@@ -3,17 +3,17 @@
 #include "pipeline/case/json_values.h"
 #include "pipeline/reports/certificate_report.h"
 
-// What is true of a mesh by itself, as JSON. What reads it throws Json::exception where something is missing.
-// docs/reference.md says what the names mean.
+// Measurements of a mesh alone, as JSON. The functions that read throw Json::exception if a value is missing.
+// docs/reference.md explains the names.
 namespace umtet {
 
-/// The counts, the blocks `quality` and `boundary`.
+/// Returns the counts, and the blocks `quality` and `boundary`.
 Json to_json(const MeshCertificate& certificate);
-/// The same for a mesh of a file that rounds coordinates by so much.
+/// Returns the same for a mesh from a file that rounds coordinates by this amount.
 Json mesh_blocks(const MeshCertificate& certificate, double coordinate_rounding_over_h);
 MeshCertificate mesh_from(const Json& json);
 
-/// The block `second_order`.
+/// Returns the block `second_order`.
 Json to_json(const SecondOrderReport& report);
 SecondOrderReport second_order_from(const Json& json);
 

@@ -22,7 +22,7 @@ Json json_of_place(const MeshPlace& place) {
 PlaceKind kind_from(const Json& json) {
   const std::string word = json.at("kind");
   const std::optional<PlaceKind> kind = place_kind_of(word);
-  if (!kind) throw ArtefactDamaged("'" + word + "' is no kind of place");
+  if (!kind) throw ArtefactDamaged("'" + word + "' is not a kind of defect");
   return *kind;
 }
 

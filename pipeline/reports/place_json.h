@@ -8,8 +8,8 @@
 #include "pipeline/case/json_values.h"
 #include "pipeline/case/thin_place_json.h"
 
-// The places that documents list, as JSON: a list, an object a place. What reads them throws Json::exception where
-// something is missing. docs/reference.md says what the names mean.
+// Defects, holes and missed places in documents, as JSON: a list with one object per element. The functions that read
+// throw Json::exception if a value is missing. docs/reference.md explains the names.
 namespace umtet {
 
 Json to_json(const std::vector<ClosedHole>& holes);
@@ -18,7 +18,7 @@ std::vector<ClosedHole> closed_holes_from(const Json& list);
 Json to_json(const std::vector<MissedPlace>& places);
 std::vector<MissedPlace> missed_places_from(const Json& list);
 
-/// An object: the number of all, what there is of each kind, and the list.
+/// Returns an object with the total number, the numbers by kind, and the list.
 Json to_json(const PlaceReport& report);
 PlaceReport places_from(const Json& json);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/case/exit_code.h"
+#include "pipeline/case/option_words.h"
 #include "pipeline/reports/certificate_json.h"
 
 namespace umtet {
@@ -42,7 +43,7 @@ WindingCheckReport winding_from(const Json& json) {
   WindingCheckReport w;
   const auto* const verdict =
       std::find(kWindingVerdicts.begin(), kWindingVerdicts.end(), json.at("verdict").get<std::string>());
-  if (verdict == kWindingVerdicts.end()) throw ArtefactDamaged("the winding number said nothing known of the normals");
+  if (verdict == kWindingVerdicts.end()) throw ArtefactDamaged("the result of the winding number is unknown");
   w.verdict = static_cast<WindingReport::Verdict>(verdict - kWindingVerdicts.begin());
   w.restored = json.at("restored");
   w.off_before = number_from(json.at("off_before"));
@@ -160,6 +161,12 @@ MergedReport merged_from(const Json& json) {
   return {.n_points = json.at("n_points"), .n_samples = json.at("n_samples"), .cell = number_from(json.at("cell"))};
 }
 
+std::vector<Message> messages_from(const Json& texts) {
+  std::vector<Message> messages;
+  for (const Json& text : texts) messages.emplace_back(text.get<std::string>());
+  return messages;
+}
+
 CloudReport cloud_from(const Json& json) {
   const Json& dropped = json.at("dropped");
   return {.format = json.at("format"),
@@ -176,7 +183,7 @@ CloudReport cloud_from(const Json& json) {
           .columns = json.value("columns", std::string()),
           .merged = json.contains("merged") ? std::optional(merged_from(json.at("merged"))) : std::nullopt,
           .box = {vector_from(json.at("box_min")), vector_from(json.at("box_max"))},
-          .notices = json.at("notices")};
+          .notices = messages_from(json.at("notices"))};
 }
 
 constexpr std::array kHowClosed = {"as fitted", "smooth", "flat"};  // in the order of FittedHole::How
@@ -198,7 +205,7 @@ FittedHole fitted_hole_from(const Json& json) {
   h.hole.depth = number_from(json.at("depth"));
   h.hole.rim_cosine = number_from(json.at("rim_cosine"));
   const auto* const how = std::find(kHowClosed.begin(), kHowClosed.end(), json.at("closed").get<std::string>());
-  if (how == kHowClosed.end()) throw ArtefactDamaged("a hole of the level set is closed in no known way");
+  if (how == kHowClosed.end()) throw ArtefactDamaged("the way in which a hole of the level set is closed is unknown");
   h.how = static_cast<FittedHole::How>(how - kHowClosed.begin());
   return h;
 }
@@ -246,7 +253,8 @@ Report report_of(const StageRecord& record, Report (*from)(const Json&)) {
   try {
     return from(record.numbers);
   } catch (const Json::exception& e) {
-    throw ArtefactDamaged(fmt::format("the record of {} lacks a number: {}", to_string(record.stage), e.what()));
+    throw ArtefactDamaged(
+        fmt::format("a number is missing in the record of {}: {}", to_string(record.stage), e.what()));
   }
 }
 
@@ -305,7 +313,7 @@ Json to_json(const CloudReport& r, const Json& wanted) {
                {"n_points", r.n_points},
                {"box_min", json_of(r.box.min())},
                {"box_max", json_of(r.box.max())},
-               {"notices", r.notices}};
+               {"notices", texts_of(r.notices, as_flag)}};
   if (r.triangles) json["triangles"] = to_json(*r.triangles);
   if (!r.fields.empty()) json["fields"] = r.fields;
   if (!r.columns.empty()) json["columns"] = r.columns;

@@ -15,6 +15,7 @@
 #include "pipeline/case/artefact.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/case/memory.h"
+#include "pipeline/case/option_words.h"
 #include "pipeline/domain/body_options.h"
 #include "pipeline/domain/load_domain.h"
 #include "pipeline/meshing/made_mesh.h"
@@ -31,14 +32,14 @@ namespace {
 
 using Step = EvolveStep;
 
-/// A failure that concerns one instant only; others may succeed.
+/// Returns whether a failure concerns a single instant, so that others may succeed.
 bool concerns_one_step(ExitCode code) {
   switch (code) {
-    case ExitCode::Usage:  // a formula that has no value at this t
+    case ExitCode::Usage:  // a formula that is undefined at this t
     case ExitCode::InputRefused:
     case ExitCode::ReconstructionFailed:
     case ExitCode::MeshingImpossible:
-    case ExitCode::FileTrouble:  // its cloud: our own files are not written where this is called
+    case ExitCode::FileTrouble:  // the cloud of the instant: no files of umtet are written where this is called
     case ExitCode::ArtefactCorrupt:
     case ExitCode::ResourceLimit:
       return true;
@@ -49,7 +50,7 @@ bool concerns_one_step(ExitCode code) {
 
 double least_quality(const Step& step) { return step.measured->mesh.quality.min; }
 
-/// A step in the answer to --json.
+/// Returns a step for the answer to --json.
 Json to_json(const Step& step) {
   Json json = {{"t", step.at.t}, {"file", step.made() ? Json(step.file) : Json(nullptr)}, {"seconds", step.seconds}};
   if (step.made()) {
@@ -64,11 +65,11 @@ class Evolution {
  public:
   Evolution(const EvolveRequest& request, Progress& progress)
       : request_(request), parameters_(request.parameters), progress_(progress), of_clouds_(!request.clouds.empty()) {
-    um_params(parameters_.mesh());                  // what is wrong with them is wrong for all instants
-    if (parameters_.mesh().background == "auto") {  // for all instants, which no single one decides
+    um_params(parameters_.mesh());                  // an error in them concerns all instants
+    if (parameters_.mesh().background == "auto") {  // one background serves all instants, so no single instant decides
       parameters_.set(keys::mesh::background, is_graded(parameters_) ? "graded" : "a15", ParamSource::Flag, "evolve");
     }
-    // From instant to instant tets are told apart by their numbers in the background.
+    // Tets are identified from instant to instant by their numbers in the background.
     parameters_.set(keys::mesh::flips, "false", ParamSource::Flag, "evolve");
     for (TimeStep& at : time_steps(request.times, request.skip, request.clouds)) {
       const std::string name = fmt::format("step_{:04}.vtu", steps_.size());
@@ -104,21 +105,21 @@ class Evolution {
   Progress& progress_;
   const bool of_clouds_;
   std::vector<Step> steps_;
-  std::optional<Domain> first_;  ///< of the first instant that has one, its box that of all
+  std::optional<Domain> first_;  ///< domain of the first instant that has one, with the box of all instants
   double h_ = 0;
   std::optional<BackgroundChoice> choice_;
   std::optional<SizedBackground> background_;
   const std::shared_ptr<FileStamps> stamps_ = std::make_shared<FileStamps>();
 };
 
-/// Runs f; what goes wrong with this instant alone is written down.
+/// Runs f and records failures that concern this instant alone.
 template <class F>
 void Evolution::guarded(Step& step, const F& f) {
   const auto start = std::chrono::steady_clock::now();
   try {
     f();
   } catch (const CallsDiffer&) {
-    throw;  // so they would at each step
+    throw;  // these failures would repeat at each step
   } catch (...) {
     const Failure failure = failure_of(std::current_exception());
     if (!concerns_one_step(failure.code)) throw;
@@ -139,7 +140,7 @@ void Evolution::take_folder() {
     if (name[0] == '.') continue;
     if (!ours) {
       throw UsageError(entry.path().string() + " is in the way: " + request_.folder.string() +
-                       " is no folder of umtet evolve; choose another with -o");
+                       " is not a folder of umtet evolve; choose another folder with -o");
     }
     if (name.starts_with("step_") && name.ends_with(".vtu")) former.push_back(entry.path());
   }
@@ -152,7 +153,7 @@ Domain Evolution::domain_of(const Step& step) const {
   return of_clouds_ ? load_domain(case_of(step), parameters_) : formula_domain(parameters_, step.at.t);
 }
 
-/// Makes the level set of a cloud; takes what the background has to know of every instant.
+/// Makes the level set of a cloud, and collects what the background needs to know of every instant.
 void Evolution::look_at(Step& step) {
   step.looked_at = true;
   if (of_clouds_) {
@@ -171,15 +172,15 @@ void Evolution::look_at(Step& step) {
   Domain domain = domain_of(step);
   if (first_ && domain.shift != first_->shift) {
     const Vec3 d = domain.shift - first_->shift;
-    throw MeshingImpossible(
-        fmt::format("this cloud is ({:.3g}, {:.3g}, {:.3g}) away from the first, and so far from the origin that both "
-                    "are shifted, not alike: move all clouds nearer to the origin",
-                    d.x(), d.y(), d.z()));
+    throw MeshingImpossible(fmt::format(
+        "this cloud is ({:.3g}, {:.3g}, {:.3g}) away from the first cloud, and so far from the origin that both "
+        "are shifted, by different vectors: move all clouds closer to the origin",
+        d.x(), d.y(), d.z()));
   }
   if (!choice_) choice_.emplace(body_options(parameters_), domain);
   const bool counts = !first_ || parameters_.mesh().tets == 0;
   if (is_graded(parameters_)) {
-    h_ = choice_->edge_length(domain, until_interrupted()).h;  // of all instants so far
+    h_ = choice_->edge_length(domain, until_interrupted()).h;  // smallest of all instants so far
   } else if (counts) {
     const double h = choice_->edge_length(domain, until_interrupted()).h;
     h_ = first_ ? std::min(h_, h) : h;
@@ -192,7 +193,7 @@ void Evolution::look_at(Step& step) {
 }
 
 void Evolution::choose_background() {
-  // A formula has one box at all times; with h given, too, the others can wait until it is their turn.
+  // A formula has the same box at all times; if h is given, too, the other instants can wait until their turn.
   const bool one_tells_all =
       !of_clouds_ && !is_graded(parameters_) && (parameters_.mesh().h > 0 || parameters_.mesh().tets > 0);
   for (Step& step : steps_) {
@@ -207,13 +208,13 @@ void Evolution::choose_background() {
   progress_.say(fmt::format("one background of {} tets, h = {:.6g}", background_->mesh.n_tets(), h_));
 }
 
-/// As umtet mesh does at a given h.
+/// Makes the mesh of a step in the same way as umtet mesh with a given h.
 MeshAttempt Evolution::make(Step& step, Domain& domain) {
   const Context call{.progress = [&](const char* at, double part) { report(step, at, part); },
                      .cancelled = until_interrupted().cancelled};
   if (request_.ranks) request_.ranks->forget_domain(of_clouds_ ? std::nullopt : std::optional(step.at.t));
   MeshMaker maker(domain, body_options(parameters_), call,
-                  {.say = [this](const std::string& line) { progress_.say(line); }}, request_.ranks);
+                  {.say = [this](const Message& line) { progress_.say(text_of(line, as_flag)); }}, request_.ranks);
   MeshAttempt a = maker.attempt(*background_, h_);
   stop_if_interrupted();
   if (a.fell_through()) throw MeshingImpossible(too_thin_text(a, domain.shift));

@@ -11,24 +11,24 @@
 
 namespace umtet {
 
-/// An instant of `umtet evolve`, and what has become of it.
+/// An instant of `umtet evolve`, and its result.
 struct EvolveStep {
   TimeStep at;
-  std::string file;   ///< its name in the folder
-  std::string error;  ///< why there is no mesh
+  std::string file;   ///< name of the file in the folder
+  std::string error;  ///< reason why there is no mesh
   std::exception_ptr thrown;
-  std::optional<MeshMeasures> measured;  ///< while there is a mesh
-  Verdict verdict;                       ///< on it
-  double seconds = 0;                    ///< mesh and certificate; of a cloud also its level set
-  bool looked_at = false;                ///< what the background has to know of it has been taken
+  std::optional<MeshMeasures> measured;  ///< measurements; set if there is a mesh
+  Verdict verdict;                       ///< verdict on the measurements
+  double seconds = 0;                    ///< time of mesh and certificate; for a cloud, also of its level set
+  bool looked_at = false;                ///< the data that the background needs have been collected
 
   bool made() const { return measured.has_value(); }
 };
 
 inline constexpr const char* kSeries = "series.pvd";
 
-/// quality.csv, quality.svg and series.pvd, with the steps that are made or have failed so far; each complete or not at
-/// all. \throw std::system_error naming the file
+/// Writes quality.csv, quality.svg and series.pvd, with the steps that have been made or have failed so far; each file
+/// atomically. \throw std::system_error  names the file
 void write_tables(const std::filesystem::path& folder, const std::vector<EvolveStep>& steps);
 
 }  // namespace umtet

@@ -20,7 +20,7 @@ std::vector<std::string> artefacts_in(const fs::path& folder, Stage stage) {
   return names;
 }
 
-/// Files of a user in the same folder stay.
+/// Moves the files of a stage into place. Files of a user in the same folder stay.
 void move_in(const CasePaths& paths, Stage stage) {
   const CasePaths former{paths.root};
   const fs::path from = paths.folder(stage), to = former.folder(stage);
@@ -34,7 +34,7 @@ void move_in(const CasePaths& paths, Stage stage) {
   fs::rename(paths.record(stage), former.record(stage));
 }
 
-/// 4-export is derived data: it is made again by a call that the user knows.
+/// Removes 4-export. It contains derived data that the user can make again with a known call.
 void remove_exports(const CasePaths& paths, Progress& progress) {
   std::string removed;
   for (const fs::path& file : exported_files(paths)) {
@@ -49,8 +49,8 @@ bool renews_any(const CasePaths& paths) {
   return std::find(paths.renewed.begin(), paths.renewed.end(), true) != paths.renewed.end();
 }
 
-/// A run that is killed while it moves leaves CASE/.next without records, or with that of a stage that has none in its
-/// place; this one has been made there anew.
+/// Removes superseded stages in CASE/.next. A run that is killed while it moves files leaves CASE/.next without
+/// records, or with the record of a stage that has none in its place; this run has made that stage in its place.
 void remove_superseded(const CasePaths& paths, const std::vector<Stage>& made) {
   CasePaths next{paths.root};
   next.renewed.fill(true);
@@ -68,7 +68,7 @@ bool same_mesh(const CasePaths& paths) {
 }  // namespace
 
 bool holds_results(const CasePaths& paths, Stage stage) {
-  if (renews_any(paths)) return true;  // what follows a stage in .next must not be ahead of it
+  if (renews_any(paths)) return true;  // the stages after a stage in .next must not be replaced before it
   const CasePaths former{paths.root};
   return std::any_of(kStages.begin(), kStages.end(),
                      [&](Stage later) { return later >= stage && fs::exists(former.record(later)); });
@@ -78,15 +78,15 @@ void refuse_foreign_folder(const CasePaths& paths) {
   if (fs::exists(paths.parameters())) return;
   std::vector<fs::path> in_the_way;
   for (const Stage stage : kStages) {
-    if (fs::exists(paths.record(stage))) return;  // a case that has lost its case.toml
+    if (fs::exists(paths.record(stage))) return;  // a case without its case.toml
     for (const std::string& name : artefacts_in(paths.folder(stage), stage)) {
       in_the_way.push_back(paths.folder(stage) / name);
     }
   }
   if (fs::exists(paths.certificate())) in_the_way.push_back(paths.certificate());
   if (in_the_way.empty()) return;
-  throw UsageError(in_the_way.front().string() + " is in the way, and " + paths.root.string() +
-                   " is not a case (it has no case.toml): choose another folder with -o, or move the file away");
+  throw UsageError(in_the_way.front().string() + " already exists, and " + paths.root.string() +
+                   " is not a case (it contains no case.toml): choose another folder with -o, or move the file away");
 }
 
 void replace_former(const StageContext& context, CasePaths& paths, const std::vector<Stage>& made) {

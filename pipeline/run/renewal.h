@@ -4,20 +4,20 @@
 
 namespace umtet {
 
-/// Finished stages are made anew beside the former ones, in CASE/.next, and take their place when all stages of the
-/// call are done: a run that fails or is stopped leaves the case as it was, with its certificate.
+/// If a stage is finished, it is made again beside the former result, in CASE/.next, and replaces it when all stages of
+/// the call are done. A run that fails or is stopped thus leaves the case and its certificate unchanged.
 
-/// True when the stage, or one made from it, is finished: then it must not be made in place.
+/// Returns whether the stage, or a stage made from it, is finished: then it must not be made in place.
 bool holds_results(const CasePaths&, Stage);
 
-/// \throw UsageError when there is no case.toml, but files in the way that no run of ours has finished
+/// \throw UsageError  there is no case.toml, but there are files that no run of umtet has finished
 void refuse_foreign_folder(const CasePaths&);
 
-/// Puts the stages of paths.renewed in their places and empties CASE/.next. The certificate and the exported files of a
-/// mesh that is replaced are withdrawn before, each stage's record is replaced last: killed on the way, stages are
-/// missing, but none claims what is not there. Then paths.renewed is empty.
+/// Moves the stages of paths.renewed into place and empties CASE/.next. The certificate and the exported files of a
+/// mesh that is replaced are removed first, and each stage's record is replaced last: a killed run may leave stages
+/// missing, but no record of files that do not exist. Afterwards paths.renewed is empty.
 /// @param context  context.paths is `paths`
-/// @param made     stages made by this run; what CASE/.next holds of them is superseded where nothing is renewed
+/// @param made     stages made by this run; their copies in CASE/.next are superseded if nothing is renewed
 /// \throw std::system_error
 void replace_former(const StageContext& context, CasePaths& paths, const std::vector<Stage>& made);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "body/given_triangles.h"
 #include "body/scan/cloud_preparation.h"
 #include "body/sizing/wanted_detail.h"
 #include "pipeline/case/interrupt.h"
@@ -27,14 +28,14 @@ class CaseRun {
         parameters_(request.parameters),
         context_{paths_, parameters_, progress, request.threads, handover_, request.ranks} {}
 
-  /// Looks at what there is, and refuses a folder that is none of ours.
+  /// Inspects the case, and refuses a folder that umtet did not make.
   void begin();
-  /// Those that this run is about.
+  /// Returns the stages of this run.
   std::vector<Stage> stages() const;
-  /// Sees to it that the stage is done. Where something finished would be replaced, it is done beside it.
+  /// Makes the stage unless it is done. If it would replace a finished result, it is made beside it.
   StageRecord ensure(Stage stage);
-  /// Puts what was made into its place; certificate and report.
-  /// @param records  of stages()
+  /// Moves new results into place, and writes certificate and report.
+  /// @param records  records of stages()
   RunOutcome finish(const std::vector<StageRecord>& records);
 
  private:
@@ -56,13 +57,13 @@ class CaseRun {
   Progress& progress_;
   CasePaths paths_;
   Parameters
-      parameters_;  ///< those asked for, and for finished stages that are not asked for those they were made with
+      parameters_;  ///< requested parameters; for finished stages outside the request, the parameters that made them
   Handover handover_;
   const StageContext context_;
   RunOutcome outcome_;
 };
 
-/// Those of case.toml; none where there is no such file, or it is of no use any more.
+/// Returns the parameters of case.toml; none if the file does not exist or is unusable.
 std::optional<Parameters> CaseRun::former_parameters() {
   if (!fs::exists(paths_.parameters())) return std::nullopt;
   Parameters former;
@@ -71,18 +72,18 @@ std::optional<Parameters> CaseRun::former_parameters() {
   } catch (const ArtefactDamaged&) {
     if (request_.strict || std::any_of(std::begin(kStages), std::end(kStages), [&](Stage s) { return is_kept(s); }))
       throw;
-    progress_.warn(paths_.parameters().string() + ": cut short, damaged or edited; making it again");
+    progress_.warn(paths_.parameters().string() + ": truncated, damaged or edited; making it again");
     return std::nullopt;
   }
   return former;
 }
 
-/// True for what this run leaves alone.
+/// Returns whether this run leaves the stage alone.
 bool CaseRun::is_kept(Stage stage) const {
   return (stage < request_.from || stage > request_.until) && fs::exists(paths_.record(stage));
 }
 
-/// case.toml goes on telling what the stages were made with that this run leaves alone.
+/// Keeps the parameters of stages that this run leaves alone, so that case.toml still describes them.
 void CaseRun::take_former_parameters(const Parameters& former) {
   for (const Stage stage : kStages) {
     if (is_kept(stage)) parameters_.copy_section(section_of(stage), former);
@@ -90,7 +91,7 @@ void CaseRun::take_former_parameters(const Parameters& former) {
   if (request_.until < Stage::Mesh && fs::exists(paths_.certificate())) parameters_.copy_section("output", former);
 }
 
-/// What the case has from former calls, and what is not so any more.
+/// Reports the parameters that the case keeps from former calls, and those that change.
 void CaseRun::tell_changes(const Parameters& former) {
   Parameters fresh;
   fresh.take_body(former);
@@ -119,12 +120,9 @@ void CaseRun::tell_changes(const Parameters& former) {
   }
 }
 
-// Samples for each h that was asked for, along an edge: what a mesh of such edges can show.
-constexpr double kSamplesAnEdge = 2.5;
-
-/// Triangles are sampled as finely as the mesh needs, unless the user said how. That is a parameter like all others, so
-/// that another h makes other samples; one that a former h has left goes with it. So is whether openings are closed
-/// before psi is fitted.
+/// Triangles are sampled as finely as the mesh needs, unless the user sets the spacing. The spacing is a parameter like
+/// all others, so another h makes other samples; a spacing derived from a former h is dropped with it. The same applies
+/// to closing openings before psi is fitted.
 void CaseRun::sample_for_h() {
   if (request_.from != Stage::Cloud || !parameters_.mesh().implicit.empty()) return;
   const Closing close = parameters_.reconstruct().close;
@@ -153,19 +151,20 @@ StageState CaseRun::state_of(Stage stage) const {
   return inspect_stage(paths_, stage, parameters_.section(section_of(stage)), inputs);
 }
 
-/// Where samples are dense, the first stages keep no more than the mesh that was asked for can show.
+/// If samples are dense, the first stages keep only the detail that the requested mesh can show.
 bool CaseRun::is_fine_enough(Stage stage, const StageRecord& record) const {
   if (stage == Stage::Mesh || request_.until != Stage::Mesh) return true;
   const std::optional<Json> wanted = wanted_of(record);
   return !wanted || *wanted == wanted_mesh(parameters_);
 }
 
-/// A mesh is done, but what each process has of it is not there. That of one process, which has sizes, never had parts.
+/// Returns whether a mesh is done but the local meshes of the processes are missing. A mesh of a single process, which
+/// has sizes, never had local meshes.
 bool CaseRun::lacks_parts(Stage stage, const StageState& state) const {
   return stage == Stage::Mesh && request_.ranks && request_.needs_parts && !mesh_report(*state.record).measured.sizes;
 }
 
-/// Why a stage is not done. Parameters that tell_changes() has told of are not told of again.
+/// Reports why a stage is not done. Changes that tell_changes() has reported are not repeated.
 void CaseRun::tell(Stage stage, const StageState& state) const {
   const Json now = parameters_.section(section_of(stage));
   std::vector<std::string> reasons = differences(section_of(stage), state.record->parameters, now);
@@ -186,19 +185,19 @@ bool CaseRun::must_run(Stage stage, const StageState& state) const {
   }
   if (stage < request_.from) {
     if (state.kind == Kind::Missing) {
-      throw UsageError(state.reason + ": the stage " + name + " has to be run first (umtet run, umtet reconstruct)");
+      throw UsageError(state.reason + ": run the stage " + name + " first (umtet run, umtet reconstruct)");
     }
     if (!is_fine_enough(stage, *state.record))
-      progress_.warn(name + ": made as fine as another mesh needs (umtet run makes it again)");
+      progress_.warn(name + ": made for a mesh of another resolution (umtet run makes it again)");
     return false;
   }
   if (state.kind == Kind::Changed) tell(stage, state);
   if (state.kind == Kind::Done && !is_fine_enough(stage, *state.record)) {
-    progress_.say(name + ": made as fine as another mesh needs");
+    progress_.say(name + ": made for a mesh of another resolution");
     return true;
   }
   if (state.kind == Kind::Done && lacks_parts(stage, state)) {
-    progress_.say("mesh: made again, for files that each process writes a part of");
+    progress_.say("mesh: made again, for files to which each process writes its part");
     return true;
   }
   return request_.force || state.kind != Kind::Done;
@@ -231,7 +230,7 @@ void CaseRun::make(Stage stage) {
     if (stage == Stage::Cloud) {
       fs::path source = request_.source;
       if (source.empty()) source = parameters_.cloud().file;
-      if (source.empty()) throw UsageError("no cloud: give one");
+      if (source.empty()) throw UsageError("no cloud given");
       run_cloud_stage(context_, source);
     } else if (stage == Stage::LevelSet) {
       run_level_set_stage(context_);
@@ -239,7 +238,7 @@ void CaseRun::make(Stage stage) {
       run_mesh_stage(context_);
     }
   } catch (...) {
-    // Half a stage is of no use; whole ones before it are there for the next run.
+    // An unfinished stage is useless; complete stages before it are kept for the next run.
     std::error_code ignored;
     if (paths_.renews(stage)) fs::remove_all(paths_.folder(stage), ignored);
     throw;
@@ -264,7 +263,7 @@ void CaseRun::certify(const StageRecord& mesh) {
   if (!outcome_.certificate->verdict.passes()) outcome_.code = ExitCode::GateFailed;
 }
 
-/// A report is of the certificate beside it, or there is none.
+/// Writes the report of the certificate beside it; otherwise there is no report.
 void CaseRun::report() {
   const bool fits = report_is_of(paths_, *outcome_.certificate, parameters_);
   if (!request_.report && !fits) fs::remove(paths_.report());
@@ -278,7 +277,7 @@ void CaseRun::report() {
 
 void CaseRun::begin() {
   refuse_foreign_folder(paths_);
-  remove_stale_temporaries(paths_.root);  // of a run that was killed when its stages were done
+  remove_stale_temporaries(paths_.root);  // of a run that was killed after its stages were done
   const std::optional<Parameters> former = former_parameters();
   if (former) take_former_parameters(*former);
   sample_for_h();

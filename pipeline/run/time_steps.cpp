@@ -23,7 +23,7 @@ double number(const std::string& text, const std::string& flag) {
   double t = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), t);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(t)) {
-    throw UsageError(fmt::format("{}: \"{}\" is no number", flag, text));
+    throw UsageError(fmt::format("{}: \"{}\" is not a number", flag, text));
   }
   return rounded(t);
 }
@@ -37,9 +37,9 @@ std::vector<std::string> split(const std::string& text, char at) {
 
 std::vector<double> range(const std::string& text) {
   const std::vector<std::string> parts = split(text, ':');
-  if (parts.size() != 3) throw UsageError("--t " + text + ": FROM:STEP:TO is needed, such as 0:0.1:4.5");
+  if (parts.size() != 3) throw UsageError("--t " + text + ": must be FROM:STEP:TO, such as 0:0.1:4.5");
   const double from = number(parts[0], "--t"), step = number(parts[1], "--t"), to = number(parts[2], "--t");
-  if (!(step > 0) || to < from) throw UsageError("--t " + text + ": STEP must be > 0, and TO not before FROM");
+  if (!(step > 0) || to < from) throw UsageError("--t " + text + ": STEP must be > 0, and TO must not be before FROM");
   const double n = std::floor((to - from) / step * (1 + 1e-12) + 1e-9);
   if (!(n < kMostSteps)) throw UsageError(fmt::format("--t {}: more than {} steps", text, kMostSteps));
   std::vector<double> times;
@@ -53,28 +53,29 @@ std::vector<double> range(const std::string& text) {
 }  // namespace
 
 std::vector<fs::path> listed_clouds(const fs::path& list) {
-  constexpr std::size_t kLongestPath = 4096;  // Linux opens none that is longer
-  if (is_too_large_a_text(list)) throw UsageError(list.string() + ": too large for a list of clouds, one path a line");
+  constexpr std::size_t kLongestPath = 4096;  // Linux opens no longer path
+  if (is_too_large_a_text(list))
+    throw UsageError(list.string() + ": too large for a list of clouds with one path per line");
   std::vector<fs::path> clouds;
   for (std::string line : split(read_text(list), '\n')) {
     if (line.size() > kLongestPath)
-      throw UsageError(list.string() + ": a line longer than any path: one path a line is needed");
-    // Such a path would end there, and may be that of a folder.
+      throw UsageError(list.string() + ": a line is longer than any path; give one path per line");
+    // The path would end at this character, and may then be the path of a folder.
     if (line.find('\0') != std::string::npos)
-      throw UsageError(list.string() + ": not a text: one path a line is needed");
+      throw UsageError(list.string() + ": not a text file; give one path per line");
     while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back()))) line.pop_back();
     if (!line.empty() && line[0] != '#') clouds.push_back(fs::absolute(list).parent_path() / line);
   }
-  if (clouds.empty()) throw UsageError(list.string() + " names no cloud: one path a line is needed");
-  // A cloud instead of a list has thousands of lines; one that is missing among others is a matter of its own.
+  if (clouds.empty()) throw UsageError(list.string() + " names no cloud; give one path per line");
+  // A cloud given instead of a list has thousands of lines; a single missing file among others is reported separately.
   const auto is_there = [](const fs::path& cloud) {
     std::error_code unknown;
     return fs::exists(cloud, unknown);
   };
   if (std::none_of(clouds.begin(), clouds.end(), is_there)) {
     throw UsageError(
-        fmt::format("{}: none of the {} files that it names is there (the first: {}); it is to be a list "
-                    "with the path of a cloud a line",
+        fmt::format("{}: none of the {} files that it names exists (the first: {}); give a list "
+                    "with one path of a cloud per line",
                     list.string(), clouds.size(), clouds.front().string()));
   }
   return clouds;
@@ -102,7 +103,7 @@ std::vector<TimeStep> time_steps(const std::string& times, const std::string& sk
   for (const std::string& part : split(skip, ',')) {
     const double t = number(part, "--skip");
     if (std::erase_if(steps, [&](const TimeStep& s) { return s.t == t; }) == 0) {
-      throw UsageError("--skip " + part + ": there is no such time");
+      throw UsageError("--skip " + part + ": no such time");
     }
   }
   if (steps.empty()) throw UsageError("--skip leaves no time");

@@ -5,6 +5,7 @@
 
 #include "body/scan/sample_merging.h"
 #include "pipeline/case/interrupt.h"
+#include "pipeline/case/option_words.h"
 #include "pipeline/domain/body_options.h"
 #include "pipeline/stages/scan_source.h"
 #include "pipeline/stages/stages.h"
@@ -17,18 +18,19 @@ namespace fs = std::filesystem;
 void run_cloud_stage(const StageContext& context, const fs::path& source) {
   const auto start = std::chrono::steady_clock::now();
   context.progress.report("cloud", "read", 0);
-  // Stamped before they are parsed: if a file changes meanwhile, the next run sees other bytes and reads it again.
+  // Files are stamped before they are parsed: if a file changes meanwhile, the next run finds another stamp and reads
+  // it again.
   const std::vector<RecordedFile> inputs = source_inputs(source, context.parameters, *context.paths.stamps);
   ScanSource scan = read_source(source, context.parameters, {.cancelled = until_interrupted().cancelled});
   context.progress.report("cloud", "prepare", .2);
   PreparedCloud prepared = prepare_merged(std::move(scan.cloud), source.string(), body_options(context.parameters));
   if (scan.triangles) add_triangles(*scan.triangles, prepared.report);
   stop_if_interrupted();
-  for (const std::string& notice : prepared.report.notices) context.progress.say("cloud: " + notice);
+  for (const std::string& notice : texts_of(prepared.report.notices, as_flag)) context.progress.say("cloud: " + notice);
 
   begin_writing(context, Stage::Cloud);
   write_artefact(context.paths.cloud(), [&](const fs::path& temporary) {
-    errno = 0;  // streams do not promise to set it
+    errno = 0;  // streams need not set errno
     std::ofstream out(temporary, std::ios::binary);
     write_ply(out, prepared.cloud);
     out.close();

@@ -8,7 +8,7 @@
 namespace umtet {
 namespace {
 
-// Share of normals that agree with their neighbours: noise and sharp edges alone do not bring it below this.
+// Share of normals that agree with their neighbours; noise and sharp edges alone do not reduce it below this value.
 constexpr double kLeastAgreed = .9;
 
 }  // namespace
@@ -20,8 +20,8 @@ std::string doubt_about_given_normals(const CasePaths& paths) {
   const double agreed = normals.consistency;
   if (!normals.given || agreed >= kLeastAgreed) return "";
   return fmt::format(
-      "\n  as given, {:.1f} % of the normals agree with their neighbours, as where two sides of a body are nearer to "
-      "each other than its samples: no level set tells such sides apart, more samples do",
+      "\n  {:.1f} % of the given normals agree with their neighbours, as if two sides of a body were closer to "
+      "each other than its samples: a level set cannot separate such sides; use more samples",
       100 * agreed);
 }
 

@@ -26,7 +26,7 @@ namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
-/// The meshes of these files in ParaView, in this order: time is their number.
+/// Returns a .pvd file that shows the meshes of these files in ParaView in this order; their time is their index.
 std::string series_of(const std::vector<std::string>& files) {
   std::string pvd =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
@@ -38,7 +38,7 @@ std::string series_of(const std::vector<std::string>& files) {
   return pvd + "</Collection>\n</VTKFile>\n";
 }
 
-/// Figure 8: of each stage the quality vector of the mesh, and of its tets with a positive vertex.
+/// The curves of Figure 8: for each stage, the quality vectors of the mesh and of its tets with a positive vertex.
 class QualityCurves {
  public:
   void add(const std::string& stage, const MeshFile& content, const std::vector<int>& positive_vertices) {
@@ -56,7 +56,7 @@ class QualityCurves {
   std::vector<QualityCurve> of_mesh_, of_boundary_;
 };
 
-/// Those with a vertex that moves once they are chosen.
+/// Returns the tets with a vertex that moves after the choice.
 std::vector<std::size_t> moving_tets(const UmResult& result) {
   const std::vector<Vec3>& chosen = result.submesh.mesh.V;
   std::vector<std::uint8_t> moves(chosen.size());
@@ -68,14 +68,14 @@ std::vector<std::size_t> moving_tets(const UmResult& result) {
       C.size(), [&](std::size_t t) { return moves[C[t][0]] || moves[C[t][1]] || moves[C[t][2]] || moves[C[t][3]]; });
 }
 
-/// The files of meshes and of their qualities, of a mesh that nobody has as a whole.
+/// Writes the files of meshes and of their qualities for a distributed mesh, which no process has as a whole.
 std::vector<std::string> write_parts(const StageContext& context, const fs::path& folder, const Domain& domain,
                                      const MeshAttempt& best) {
   const std::shared_ptr<const WrittenInParts> written = written_in_parts(best.parts);
   MeshWithBoundary handed{written, best.result.final, best.result.submesh.positive_faces,
                           boundary_data(domain, best.result, best.mid_sides)};
   for (Vec3& x : handed.V) x += domain.shift;
-  // Files have no use for it, and other processes on this machine have.
+  // The files do not need the level set, but other processes on this machine need its memory.
   if (domain.level_set) domain.level_set->forget_below(std::numeric_limits<double>::infinity());
   const BoundaryData& of_boundary = handed.data;
   const WrittenInParts& parts = *written;
@@ -93,16 +93,16 @@ std::vector<std::string> write_parts(const StageContext& context, const fs::path
   return {"omega_h.vtu", "projected.vtu", "mesh.vtu", "quality.csv"};
 }
 
-/// The same of a mesh that is here; its tets are lent to the files.
+/// Writes the same files for a mesh in this process; its tets are lent to the files.
 std::vector<std::string> write_whole(const StageContext& context, const fs::path& folder, const Domain& domain,
                                      MeshAttempt& best) {
   UmResult& result = best.result;
   std::vector<std::string> names;
   QualityCurves curves;
-  // Of a mesh whose tets were flipped, what came before has the tets of the background.
+  // If tets were flipped, the earlier stages have the tets of the background.
   const UmResult& chosen = result.of_background ? *result.of_background : result;
   const std::vector<int>& chosen_vertices = chosen.submesh.positive_vertices;
-  // What does not move is stored once, in mesh.vtu. All meshes of a series have to have the same tets.
+  // Tets that do not move are stored once, in mesh.vtu. All meshes of a series must have the same tets.
   const bool is_series = context.parameters.mesh().keep_iterates;
   const std::vector<std::size_t> moving = is_series ? std::vector<std::size_t>() : moving_tets(chosen);
   MeshFile content =

@@ -10,16 +10,16 @@
 
 namespace umtet {
 
-/// The files of the mesh stage but for its record, all in 3-mesh/, in place of those of the former run: omega_h.vtu,
-/// projected.vtu, mesh.vtu, quality.csv; too_thin.vtp and places.vtp where there are such places; pass_N.vtu and
-/// iterates.pvd where iterates were kept. Unless they were, omega_h.vtu and projected.vtu hold the tets with a vertex
-/// that moves: the others are those of mesh.vtu. What mesh.vtu holds is handed over to the stages to come.
-/// @param best  gives its tets, their ids and the chosen vertices away
-/// @return their names. \throw Cancelled, std::system_error naming the file
+/// Writes all files of the mesh stage except its record to 3-mesh/, and replaces the files of the former run:
+/// omega_h.vtu, projected.vtu, mesh.vtu, quality.csv; too_thin.vtp and places.vtp if there are thin places or defects;
+/// pass_N.vtu and iterates.pvd if iterates were kept. If they were not kept, omega_h.vtu and projected.vtu contain only
+/// tets with a vertex that moves; the others are in mesh.vtu. The contents of mesh.vtu are handed over to later stages.
+/// @param best  its tets, their ids and the chosen vertices are moved out
+/// @return the names of the files. \throw Cancelled, std::system_error  names the file
 std::vector<std::string> write_mesh_outputs(const StageContext& context, const Domain& domain, MeshAttempt& best);
 
-/// What is left of a mesh that is none, or is not right, into 3-mesh/failed/, emptied before: omega_h.vtu and, as
-/// projected.vtu, the last iterate. @return that folder. \throw std::system_error naming the file
+/// Writes the remains of a mesh that failed, or is incorrect, to 3-mesh/failed/, which is emptied first: omega_h.vtu
+/// and, as projected.vtu, the last iterate. @return that folder. \throw std::system_error  names the file
 std::filesystem::path write_failed_mesh(const CasePaths& paths, const Domain& domain, const UmResult& result);
 
 }  // namespace umtet

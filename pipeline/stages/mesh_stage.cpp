@@ -13,6 +13,7 @@
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/case/memory.h"
+#include "pipeline/case/option_words.h"
 #include "pipeline/domain/body_options.h"
 #include "pipeline/domain/load_domain.h"
 #include "pipeline/meshing/made_mesh.h"
@@ -26,8 +27,8 @@ namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
-// Tets with a vertex that moves, to h^2 of boundary: 17 of a sphere of 50 thousand tets, 19 of one and of a torus of
-// 500 thousand. The other meshes of a case hold these alone.
+// Number of tets with a vertex that moves, per h^2 of boundary: 17 for a sphere of 50 thousand tets, 19 for a sphere
+// and a torus of 500 thousand. The other meshes of a case contain only these tets.
 constexpr double kMovingTets = 20;
 
 class MeshStage {
@@ -38,7 +39,7 @@ class MeshStage {
         background_(body_options(context.parameters), domain_),
         maker_(domain_, body_options(context.parameters), call(), lines(), context.ranks) {}
 
-  /// Of the best h. \throw MeshingImpossible when there is none
+  /// Returns the mesh of the best h. \throw MeshingImpossible  there is none
   MeshAttempt best_mesh();
 
   Domain& domain() { return domain_; }
@@ -63,11 +64,11 @@ Context MeshStage::call() const {
 }
 
 MeshLines MeshStage::lines() const {
-  return {.say = [this](const std::string& line) { context_.progress.say("mesh: " + line); },
+  return {.say = [this](const Message& line) { context_.progress.say("mesh: " + text_of(line, as_flag)); },
           .detail = [this](const std::string& line) { context_.progress.detail("mesh: " + line); }};
 }
 
-/// With room on the disk for the meshes in it.
+/// Makes the background and checks that the disk has room for its meshes.
 SizedBackground MeshStage::background_of(double h) {
   stop_if_interrupted();
   const Parameters& p = context_.parameters;
@@ -84,17 +85,17 @@ void MeshStage::refuse(const UmResult& result, double h) {
   const fs::path folder = write_failed_mesh(context_.paths, domain_, result);
   const std::size_t n = result.submesh.mesh.V.size();
   std::string message = failure_text(result, h, domain_.shift);
-  if (n > 0) message += "\n  look at omega_h.vtu and projected.vtu (the last iterate) in " + folder.string();
-  if (context_.paths.renews(Stage::Mesh)) message += "\n  the former mesh and its certificate have been kept";
+  if (n > 0) message += "\n  see omega_h.vtu and projected.vtu (the last iterate) in " + folder.string();
+  if (context_.paths.renews(Stage::Mesh)) message += "\n  the former mesh and its certificate are kept";
   throw MeshingImpossible(message);
 }
 
-// A smaller h lets detail of psi in that may be thinner still: h falls at most kThinRounds times, at least to kThinStep
-// of itself each time.
+// With a smaller h, psi contains more detail, which may be thinner still: h is reduced at most kThinRounds times, by a
+// factor of at most kThinStep each time.
 constexpr int kThinRounds = 8;
 constexpr double kThinStep = .9;
 
-/// An h at which nothing is thin any more, as far as --max-tets allows.
+/// Returns an h for which nothing is too thin, within the limit of --max-tets.
 EdgeLength MeshStage::enough_for(const ThinPlaces& thin) {
   EdgeLength choice{thin.h, background_.least_h(domain_)};
   double needed = thin.h_needed();
@@ -109,18 +110,18 @@ EdgeLength MeshStage::enough_for(const ThinPlaces& thin) {
 
 std::string MeshStage::remedy_for(const ThinPlaces& thin, std::optional<double>& h_enough) {
   if (background_.own_h()) return fmt::format("a background with edges of {:.3g} may show them", thin.h_needed());
-  // A plate so thin that no place of the grid on which bodies are measured is inside it.
+  // A plate so thin that it contains no point of the grid on which bodies are measured.
   if (!(domain_.size().volume > 0)) return fmt::format("h = {:.3g} may show them", thin.h_needed());
   const EdgeLength enough = enough_for(thin);
   if (!(enough.h < thin.h && enough.h > enough.least)) {
-    return fmt::format("that takes more than {} tets: raise --max-tets", context_.parameters.mesh().max_tets);
+    return fmt::format("that requires more than {} tets: increase --max-tets", context_.parameters.mesh().max_tets);
   }
   h_enough = enough.h;
   return fmt::format("h = {:.3g} is enough, about {:.2g} tets", enough.h, background_.expected_tets(domain_, enough.h));
 }
 
-/// Throws what is too thin for any mesh, and writes the thin places to too_thin.vtp: in 3-mesh, or in
-/// 3-mesh/failed where a finished mesh is to be kept.
+/// Throws TooThin if no mesh is possible, and writes the thin places to too_thin.vtp: in 3-mesh, or in 3-mesh/failed if
+/// a finished mesh is kept.
 void MeshStage::refuse_thin(const MeshAttempt& best) {
   const ThinPlaces& thin = best.thin;
   const bool keeps = context_.paths.renews(Stage::Mesh);
@@ -132,29 +133,29 @@ void MeshStage::refuse_thin(const MeshAttempt& best) {
   write_thin_places(file, thin, domain_.shift);
   std::string message = too_thin_text(best, domain_.shift) + "\n  ";
   std::optional<double> h_enough;
-  message += remedy_for(thin, h_enough) + "\n  look at " + file.string();
+  message += remedy_for(thin, h_enough) + "\n  see " + file.string();
   message += doubt_about_given_normals(context_.paths);
-  if (keeps) message += "\n  the former mesh and its certificate have been kept";
+  if (keeps) message += "\n  the former mesh and its certificate are kept";
   throw TooThin(message, {in_model(thin, domain_.shift), thin.h, h_enough});
 }
 
 MeshAttempt MeshStage::best_mesh() {
-  for (const std::string& notice : domain_.notices) context_.progress.say("mesh: " + notice);
+  for (const std::string& notice : texts_of(domain_.notices, as_flag)) context_.progress.say("mesh: " + notice);
   context_.progress.report("mesh", "size", 0);
   const EdgeLength choice = background_.edge_length(domain_, until_interrupted());
-  // The fit and the choice have looked at all levels.
+  // The fit and the choice have already used all levels.
   if (domain_.fitted) domain_.fitted->put_aside_below(kLeastSpacing * choice.h);
   if (choice.of_thin_parts) {
     context_.progress.say(
-        fmt::format("mesh: h = {:.4g}, so that the noise of the samples is {:.2g} of it: what is thinner does not show "
+        fmt::format("mesh: h = {:.4g}, so that the noise of the samples is {:.2g} h: thinner parts are not resolved "
                     "(--h decides)",
                     choice.h, *domain_.noise / choice.h));
   }
   if (const double n = background_.uniform_tets(); n > 0) {
-    context_.progress.say(
-        fmt::format("mesh: graded, with edges from {:.4g} on: one h for the thin parts of this body would make about "
-                    "{:.2g} tets, not {:.2g} (--background a15: one h)",
-                    choice.h, n, background_.expected_tets(domain_, choice.h)));
+    context_.progress.say(fmt::format(
+        "mesh: graded, with edges of at least {:.4g}: a single h for the thin parts of this body would make about "
+        "{:.2g} tets instead of {:.2g} (--background a15 uses a single h)",
+        choice.h, n, background_.expected_tets(domain_, choice.h)));
   }
   MeshAttempt best = maker_.best(background_, choice, [this](double h) { return background_of(h); });
   stop_if_interrupted();
@@ -185,7 +186,7 @@ void run_mesh_stage(const StageContext& context) {
                 to_json(report),
                 run_of_stage(seconds.count(), context.threads)},
                outputs);
-  if (best.parts) return;  // nobody has the mesh
+  if (best.parts) return;  // no process has the whole mesh
   stage.domain().shift_level(best.measured.domain.level_shift, best.h);
   context.handover.domain = std::move(stage.domain());
 }

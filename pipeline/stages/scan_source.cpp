@@ -6,14 +6,14 @@
 #include <utility>
 
 #include "pipeline/case/artefact.h"
-#include "reconstruct/cloud/cloud_survey.h"
+#include "reconstruct/cloud/survey/cloud_survey.h"
 #include "reconstruct/triangles/body_samples.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
-// Of samples at which the side is a guess: what is worth a line.
+// Share of samples with a guessed side that is reported.
 constexpr double kUnsure = .01;
 
 std::vector<std::string> names_of_caps(std::size_t n) {
@@ -22,21 +22,24 @@ std::vector<std::string> names_of_caps(std::size_t n) {
   return names;
 }
 
-/// Names of labels are as many as labels, or none: a file may have labels without.
+/// Names the caps. There are as many names as labels, or none: a file may have labels without names.
 void name_caps(TrianglesReport& t) {
   const std::vector<PlaneCap>& caps = t.body.caps;
   if (caps.empty()) return;
-  // Without labels of the file all other triangles are label 1.
+  // Without labels in the file, all other triangles have label 1.
   if (t.label_names.empty() && t.n_labels == 0) t.label_names.emplace_back("wall");
   if (t.label_names.size() < t.n_labels) return;
   for (std::string& name : names_of_caps(caps.size())) t.label_names.push_back(std::move(name));
 }
 
-/// What was mended, and how sure it is.
-std::vector<std::string> notices_of(const TrianglesReport& t, const TriangleFileReport& file, Touching touching) {
-  std::vector<std::string> list;
+/// Returns the repairs, and how certain they are.
+std::vector<Message> notices_of(const TrianglesReport& t, const TriangleFileReport& file, Touching touching) {
+  std::vector<Message> list;
   const auto say = [&]<class... T>(fmt::format_string<T...> format, T&&... args) {
-    list.push_back(fmt::format(format, std::forward<T>(args)...));
+    list.emplace_back(fmt::format(format, std::forward<T>(args)...));
+  };
+  const auto remedy = [&](Setting setting, const char* effect) {
+    list.back().remedies.push_back({Change::Use, std::move(setting), effect});
   };
   const TriangleReport& b = t.body;
   const FaceSidesReport& s = b.sides;
@@ -46,37 +49,42 @@ std::vector<std::string> notices_of(const TrianglesReport& t, const TriangleFile
   say("{} triangles in {} patch{}, {} open edges; {} samples {:.3g} apart{}", b.n_triangles, s.n_patches,
       s.n_patches == 1 ? "" : "es", s.n_open_edges, b.n_samples, b.spacing,
       b.least_spacing < b.spacing ? fmt::format(", {:.3g} where the body or a gap is thin", b.least_spacing) : "");
-  if (!b.caps.empty())
-    say("closed {} opening{} by the plane of {} rim: patch{} {} (--close smooth, or --set cloud.cap=false, does not)",
-        b.caps.size(), b.caps.size() == 1 ? "" : "s", b.caps.size() == 1 ? "its" : "each one's",
-        b.caps.size() == 1 ? "" : "es", fmt::join(names_of_caps(b.caps.size()), ", "));
-  if (b.touching.n_contacts > 0)
-    say("{} closed pieces meet along edges or at corners: {} there, {:.3g} wide ({})", b.touching.n_pieces,
-        touching == Touching::Apart ? "a gap is left" : "a neck is added", 2 * b.touching.width,
-        touching == Touching::Apart ? "--touching fuse joins them" : "--touching apart parts them");
+  if (!b.caps.empty()) {
+    say("closed {} opening{} by the plane of {} rim: patch{} {}", b.caps.size(), b.caps.size() == 1 ? "" : "s",
+        b.caps.size() == 1 ? "its" : "each one's", b.caps.size() == 1 ? "" : "es",
+        fmt::join(names_of_caps(b.caps.size()), ", "));
+    remedy({Option{keys::reconstruct::close}, "smooth"}, "does not");
+    remedy({Option{keys::cloud::cap}, "false"}, "does not");
+  }
+  if (b.touching.n_contacts > 0) {
+    const bool apart = touching == Touching::Apart;
+    say("{} closed components meet along edges or at corners: {} there, {:.3g} wide", b.touching.n_pieces,
+        apart ? "a gap is left" : "a neck is added", 2 * b.touching.width);
+    remedy({Option{keys::cloud::touching}, apart ? "fuse" : "apart"}, apart ? "joins them" : "separates them");
+  }
   if (b.dropped.n_degenerate + b.dropped.n_duplicates > 0)
-    say("dropped {} triangles without an area and {} that were there twice", b.dropped.n_degenerate,
-        b.dropped.n_duplicates);
-  if (s.weld_distance > 0) say("corners nearer than {:.2g} count as one", s.weld_distance);
-  if (s.n_turned > 0)
-    say("turned {} triangles ({:.1f} %), so that all look outward (--normals given keeps them)", s.n_turned,
-        percent(s.n_turned, b.n_triangles));
+    say("dropped {} triangles without area and {} duplicate triangles", b.dropped.n_degenerate, b.dropped.n_duplicates);
+  if (s.weld_distance > 0) say("corners closer than {:.2g} are merged", s.weld_distance);
+  if (s.n_turned > 0) {
+    say("turned {} triangles ({:.1f} %), so that all face outward", s.n_turned, percent(s.n_turned, b.n_triangles));
+    remedy({Option{keys::cloud::normals}, "given"}, "keeps them");
+  }
   if (s.n_one_sided_edges > 0)
-    say("at {} edges the sides of neighbours contradict one another: part of the surface is one-sided",
+    say("at {} edges the sides of neighbouring triangles contradict each other: part of the surface is one-sided",
         s.n_one_sided_edges);
-  if (s.n_cavities > 0) say("{} closed shells inside of others look inward: cavities", s.n_cavities);
+  if (s.n_cavities > 0) say("{} closed shells inside others face inward: they are cavities", s.n_cavities);
   if (s.n_inner_shells > 0)
-    say("{} closed shells inside of others look outward: the body is solid there (turn them for cavities)",
+    say("{} closed shells inside others face outward: the body is solid there (turn them to get cavities)",
         s.n_inner_shells);
   if (b.n_inside + b.n_inside_out > 0)
-    say("left out {:.1f} % of the surface, which is inside of the body: inner walls and overlaps, by the winding "
+    say("left out {:.1f} % of the surface, which is inside the body: inner walls and overlaps, by the winding "
         "number",
         percent(b.n_inside + b.n_inside_out, b.n_samples));
   if (b.unsure > kUnsure)
-    say("which side is inside is a guess for {:.1f} % of the surface: the winding number is no whole number there",
+    say("the inside is a guess for {:.1f} % of the surface: the winding number is not a whole number there",
         100 * b.unsure);
   if (file.n_groups_ignored > 0)
-    say("{} groups or materials, more than {}: they are no patches", file.n_groups_ignored, kMostGroups);
+    say("{} groups or materials, more than {}: they are ignored", file.n_groups_ignored, kMostGroups);
   return list;
 }
 
@@ -86,7 +94,7 @@ void require_regular_file(const fs::path& file) {
   const fs::file_status status = fs::status(file);
   if (fs::is_directory(status)) throw CloudRefused(file.string() + ": a folder; give the file of the cloud");
   if (fs::exists(status) && !fs::is_regular_file(status)) {
-    throw CloudRefused(file.string() + ": not a regular file; copy what it yields to a file and give that");
+    throw CloudRefused(file.string() + ": not a regular file; copy its output to a file and give that file");
   }
 }
 
@@ -96,13 +104,13 @@ std::vector<RecordedFile> source_inputs(const fs::path& source, const Parameters
     return RecordedFile{name, stamps.of(file)};
   };
   require_regular_file(source);
-  // Gigabytes that are no scan are not read for their checksum.
+  // Gigabytes that are not a scan are not read for their checksum.
   is_of_triangles(source, parameters) ? check_triangles_head(source)
                                       : check_scan_head(source, parameters.cloud().columns);
   std::vector<RecordedFile> inputs = {input("source", source)};
   const std::string& viewpoints = parameters.cloud().orient_from;
   if (!viewpoints.empty() && is_too_large_a_text(viewpoints))
-    throw CloudRefused(viewpoints + ": too large for viewpoints, lines x y z");
+    throw CloudRefused(viewpoints + ": too large for a file of viewpoints with lines x y z");
   if (!viewpoints.empty()) inputs.push_back(input("viewpoints", viewpoints));
   return inputs;
 }
@@ -115,7 +123,8 @@ ScanSource read_source(const fs::path& source, const Parameters& parameters, con
   const std::string& columns = parameters.cloud().columns;
   if (!is_of_triangles(source, parameters)) return {read_scan(source, columns), {}};
   if (!columns.empty())
-    throw CloudRefused(source.string() + ": --columns is about tables in text, not about triangles");
+    throw CloudRefused(
+        {source.string() + ": ", Option{keys::cloud::columns}, " applies to text tables, not to triangles"});
   TriangleFile file = read_triangles(source);
   const NormalsOf how = parameters.cloud().normals;
   const Touching touching = parameters.cloud().touching;
@@ -138,9 +147,10 @@ ScanSource read_source(const fs::path& source, const Parameters& parameters, con
   }();
   if (body.cloud.points.size() < kFewestSurveyed)
     throw CloudRefused(
-        fmt::format("{}: {} of {} samples lie on the boundary of a body, {} are needed: a smaller "
-                    "--sample-spacing, or --normals given if the sides of the triangles are right",
-                    source.string(), body.cloud.points.size(), body.report.n_samples, kFewestSurveyed));
+        fmt::format("{}: {} of {} samples lie on the boundary of a body, {} are needed", source.string(),
+                    body.cloud.points.size(), body.report.n_samples, kFewestSurveyed),
+        {{Change::Lower, Option{keys::cloud::sample_spacing}},
+         {Change::Give, {Option{keys::cloud::normals}, "given"}, "if the sides of the triangles are right"}});
   scan.cloud.report.format = file.report.format;
   scan.cloud.report.n_points = body.cloud.points.size();
   scan.cloud.cloud = std::move(body.cloud);

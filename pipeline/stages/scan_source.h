@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/context.h"
+#include "common/message.h"
 #include "pipeline/case/parameters.h"
 #include "pipeline/case/record.h"
 #include "pipeline/reports/stage_reports.h"
@@ -14,36 +15,38 @@
 
 namespace umtet {
 
-/// What was given as triangles and has been sampled.
+/// Input triangles that have been sampled.
 struct SampledTriangles {
   TrianglesReport report;
-  TriangleMesh boundary;             ///< the triangles that bound the body, outward
-  std::vector<std::string> notices;  ///< what was mended, for the user
+  TriangleMesh boundary;         ///< the triangles that bound the body, facing outward
+  std::vector<Message> notices;  ///< repairs that the user should know about
 };
 
-/// A scan as its file has it: points, or samples of triangles.
+/// The contents of a scan file: points, or samples of triangles.
 struct ScanSource {
   CloudFile cloud;
   std::optional<SampledTriangles> triangles;
 };
 
-/// \throw CloudRefused  a device, a pipe or a folder: there is no telling where it ends
+/// \throw CloudRefused  a device, a pipe or a folder: their size is unknown
 void require_regular_file(const std::filesystem::path& file);
 
-/// The files that 1-cloud reads: the user's cloud, and the viewpoints of cloud.orient_from.
+/// Returns the files that 1-cloud reads: the user's cloud, and the viewpoints of cloud.orient_from.
 /// \throw CloudRefused (not a regular file), std::system_error
 std::vector<RecordedFile> source_inputs(const std::filesystem::path& source, const Parameters& parameters,
                                         FileStamps& stamps);
 
-/// STL, OBJ, OFF, and PLY with faces unless cloud.as_points. \throw std::system_error
+/// Returns whether the file contains triangles: STL, OBJ, OFF, and PLY with faces unless cloud.as_points. \throw
+/// std::system_error
 bool is_of_triangles(const std::filesystem::path& source, const Parameters& parameters);
 
-/// Reads points as they are, and samples triangles: at most cloud.sample_spacing apart, without normals for
-/// cloud.normals = estimate, on the side that triangles look to for cloud.normals = given.
-/// \throw CloudRefused  as the readers, or triangles that do not bound a body; std::system_error; Cancelled
+/// Reads points as they are, and samples triangles with a spacing of at most cloud.sample_spacing. Samples have no
+/// normals for cloud.normals = estimate, and the sides of the triangles for cloud.normals = given.
+/// \throw CloudRefused  the exceptions of the readers, or triangles that do not bound a body; std::system_error;
+///   Cancelled
 ScanSource read_source(const std::filesystem::path& source, const Parameters& parameters, const Context& context = {});
 
-/// Puts what is known of the triangles into the report of their samples, notices first.
+/// Adds the report on triangles to the report of their samples, notices first.
 void add_triangles(const SampledTriangles& triangles, CloudReport& report);
 
 }  // namespace umtet

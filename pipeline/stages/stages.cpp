@@ -19,7 +19,7 @@ std::vector<RecordedFile> recorded_inputs(const CasePaths& paths, Stage stage, c
       inputs.push_back({file, paths.stamps->of(file)});
     }
     if (const std::string& file = parameters.mesh().level_set; !file.empty()) {
-      check_grid_head(file);  // gigabytes that are no grid are not read for their checksum
+      check_grid_head(file);  // gigabytes that are not a grid are not read for their checksum
       inputs.push_back({file, paths.stamps->of(file)});
     }
   }

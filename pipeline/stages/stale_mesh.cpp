@@ -12,7 +12,7 @@ namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
-/// The stage in whose folder a file of the case is; none for a file of the user.
+/// Returns the stage in whose folder a file of the case is; none for a file of the user.
 std::optional<Stage> stage_of(const CasePaths& paths, const std::string& name) {
   for (const Stage stage : kStages) {
     if (name.starts_with(paths.folder(stage).filename().string() + "/")) return stage;
@@ -20,13 +20,13 @@ std::optional<Stage> stage_of(const CasePaths& paths, const std::string& name) {
   return std::nullopt;
 }
 
-/// What the record of its stage says of a file now; none where the stage has been taken away.
+/// Returns the current stamp of a file in the record of its stage; none if the stage has been removed.
 std::optional<FileStamp> stamp_in_case(const CasePaths& paths, Stage stage, const std::string& name) {
   if (!fs::exists(paths.record(stage))) return std::nullopt;
   for (const RecordedFile& f : read_record(paths, stage).outputs) {
     if (name.ends_with("/" + f.name)) return f.stamp;
   }
-  return FileStamp{};  // the stage does not make it any more
+  return FileStamp{};  // the stage no longer makes this file
 }
 
 std::string changed_input(const CasePaths& paths, const StageRecord& mesh) {
@@ -38,12 +38,12 @@ std::string changed_input(const CasePaths& paths, const StageRecord& mesh) {
       continue;
     }
     const std::optional<FileStamp> now = stamp_in_case(paths, *stage, input.name);
-    if (now && *now != input.stamp) return fmt::format("the stage {} was made again since", to_string(*stage));
+    if (now && *now != input.stamp) return fmt::format("the stage {} has been made again since", to_string(*stage));
   }
   return "";
 }
 
-/// Parameters that both know: another version may have more.
+/// Compares parameters that both versions know: another version may have more.
 std::string changed_parameters(const CasePaths& paths, const StageRecord& mesh) {
   if (!fs::exists(paths.parameters())) return "";
   Parameters parameters;
@@ -70,8 +70,9 @@ void require_current_mesh(const CasePaths& paths) {
   const std::string reason = stale_reason(paths, read_record(paths, Stage::Mesh));
   if (reason.empty()) return;
   const std::string root = paths.root.string();
-  throw UsageError(fmt::format("{}: the mesh is not of what the case holds now ({}); `umtet run {}` makes it again",
-                               root, reason, root));
+  throw UsageError(
+      fmt::format("{}: the mesh does not match the current contents of the case ({}); `umtet run {}` makes it again",
+                  root, reason, root));
 }
 
 }  // namespace umtet

@@ -7,15 +7,15 @@
 
 namespace umtet {
 
-/// Why the mesh of a case is not of what the case holds now, as a clause: its cloud or level set was made again since,
-/// or a file that it was made from, or a parameter of [mesh] in case.toml has another value. Empty where nothing of
-/// this is so. Files that are gone have not changed, and another version of the program is no reason.
+/// Returns a clause that explains why the mesh of a case is out of date: its cloud or level set, or a file from which
+/// it was made, has been made again, or a parameter of [mesh] in case.toml has another value. Empty if the mesh is
+/// current. Missing files do not count as changed, and another version of the program is not a reason.
 /// @param mesh  the record of 3-mesh
 /// \throw ArtefactDamaged, std::system_error
 std::string stale_reason(const CasePaths& paths, const StageRecord& mesh);
 
-/// Refuses such a mesh, with the command that makes it again. Does nothing where there is no mesh.
-/// \throw UsageError; as stale_reason()
+/// Refuses a mesh that is out of date, and names the command that makes it again. Does nothing if there is no mesh.
+/// \throw UsageError; the exceptions of stale_reason()
 void require_current_mesh(const CasePaths& paths);
 
 }  // namespace umtet

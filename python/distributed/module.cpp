@@ -16,13 +16,14 @@
 #include <vector>
 
 #include "body/body.h"
-#include "distributed/collect.h"
-#include "distributed/curved_solver_part.h"
+#include "body/option_names.h"
+#include "distributed/exchange/collect.h"
+#include "distributed/mesh/vertex_owners.h"
 #include "distributed/program/ranks.h"
 #include "distributed/program/serve.h"
 #include "distributed/program/together.h"
-#include "distributed/solver_part.h"
-#include "distributed/vertex_owners.h"
+#include "distributed/solver/curved_solver_part.h"
+#include "distributed/solver/solver_part.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/domain/load_domain.h"
 #include "pipeline/memory/jobs.h"
@@ -70,9 +71,8 @@ bool is_of_grid(const Request& request, const Parameters& parameters) {
 
 /// \throw UsageError for what one process makes
 void require_ranks(const Parameters& parameters) {
-  const std::string reason = for_one_process(parameters);
-  if (!reason.empty())
-    throw UsageError(reason + " is for one process: several of them mesh in a lattice without walls");
+  if (const std::optional<Message> reason = for_one_process(parameters))
+    throw UsageError(*reason + " is for one process: several of them mesh in a lattice without walls");
 }
 
 Psi psi_asked_for(const Request& request, const Parameters& parameters, int threads) {
@@ -102,8 +102,10 @@ MeshPart make(MPI_Comm comm, const Request& request, const py::object& progress)
     const Watch watch = watch_of(progress);
     in_arena(threads, [&] {
       MeshAttempt best = make_mesh(psi.domain, *parameters, watch, &ranks);
-      if (!best.parts)
-        throw UsageError("--background a15 is wanted: where edges follow the body, one process makes the mesh");
+      if (!best.parts) {
+        throw UsageError({Setting(option::background, "a15"),
+                          " is needed: where edges follow the body, one process makes the mesh"});
+      }
       made.taken = ranks.release(*best.parts);
       made.h = best.h;
       made.certificate = to_json(verdict_on(std::move(best.measured), *parameters)).dump();

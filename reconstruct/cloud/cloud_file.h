@@ -2,18 +2,18 @@
 
 #include <cstddef>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "common/message.h"
 #include "reconstruct/cloud/point_cloud.h"
 
 namespace umtet {
 
 /// Error for the content of a cloud file. what() is a sentence with the file, the location (line, byte or point number)
 /// and the remedy.
-struct CloudRefused : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct CloudRefused : ExplainedError {
+  using ExplainedError::ExplainedError;
 };
 
 /// Maximum number of fields; further fields are dropped.
@@ -31,6 +31,7 @@ struct CloudFileReport {
                                        ///< 0
   std::vector<std::string> fields_left_out = {};  ///< fields beyond the first kMostFields, or with a duplicate name
   std::string columns = {};  ///< for a text: its columns and how they were determined, in one line for the user
+  bool columns_are_guessed = false;  ///< from their values; the argument `columns` of read_scan() overrules the guess
 };
 
 struct CloudFile {

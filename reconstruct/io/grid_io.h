@@ -1,15 +1,15 @@
 #pragma once
 
 #include <filesystem>
-#include <stdexcept>
 
+#include "common/message.h"
 #include "reconstruct/level_set/grid.h"
 
 namespace umtet {
 
 /// Error for a file that is not a readable grid. what() contains the file, the location in it and the reason.
-struct GridRefused : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct GridRefused : ExplainedError {
+  using ExplainedError::ExplainedError;
 };
 
 /// Reads a grid of one number per node. The first bytes of the file determine the format:

@@ -1,46 +1,23 @@
 #include "reconstruct/io/level_set_io.h"
 
 #include <fmt/format.h>
-#include <vtkDataArray.h>
-#include <vtkDoubleArray.h>
-#include <vtkErrorCode.h>
-#include <vtkFieldData.h>
-#include <vtkFloatArray.h>
-#include <vtkImageData.h>
-#include <vtkNew.h>
-#include <vtkObject.h>
-#include <vtkPointData.h>
-#include <vtkXMLImageDataReader.h>
 #include <xxhash.h>
 
 #include <algorithm>
-#include <cerrno>
+#include <charconv>
 #include <cmath>
-#include <fstream>
-#include <system_error>
+#include <map>
+#include <utility>
+#include <variant>
 
-#include "reconstruct/io/detail/grids/vti_precheck.h"
+#include "common/vtk_xml/array_reader.h"
 #include "reconstruct/io/detail/grids/vti_writer.h"
 
 namespace umtet {
 
 namespace {
 
-// VTK prints what goes wrong; a library prints nothing. What matters is found from error codes and from the data
-// instead.
-class QuietVtk {
- public:
-  QuietVtk() : before_(vtkObject::GetGlobalWarningDisplay()) { vtkObject::GlobalWarningDisplayOff(); }
-  ~QuietVtk() { vtkObject::SetGlobalWarningDisplay(before_); }
-  QuietVtk(const QuietVtk&) = delete;
-  QuietVtk& operator=(const QuietVtk&) = delete;
-
- private:
-  int before_;
-};
-
-// Two halves of the hash of all coefficients: VTK's reader leaves arrays as they were, without an error, where base64
-// is damaged.
+// Two halves of the hash of all coefficients.
 std::vector<double> hash(const LevelSet& psi) {
   XXH64_hash_t h = XXH64(psi.coarsest().coefficients.data(),
                          static_cast<std::size_t>(psi.coarsest().lattice.size()) * sizeof(double), 0);
@@ -54,23 +31,131 @@ std::vector<double> hash(const LevelSet& psi) {
 
 std::string band_name(int level, const char* what) { return fmt::format("level_{}_{}", level, what); }
 
-// @param size  0: any
-template <class Array = vtkDoubleArray, class Value = double>
-std::vector<Value> read_field(vtkImageData* image, const std::string& name, std::size_t size, const std::string& file) {
-  auto* a = Array::SafeDownCast(image->GetFieldData()->GetArray(name.c_str()));
-  if (!a || (size > 0 && static_cast<std::size_t>(a->GetNumberOfValues()) != size)) {
-    throw LevelSetRefused(fmt::format("{}: field data '{}' with {} numbers is missing: not a level set of this program",
-                                      file, name, size));
-  }
-  return {a->GetPointer(0), a->GetPointer(0) + a->GetNumberOfValues()};
-}
+using Values = std::variant<std::vector<double>, std::vector<float>>;
 
-// The bands of a file of n_bytes, on lattices that follow from the coarsest one.
-std::vector<LevelSetBand> read_bands(vtkImageData* image, const Lattice& coarsest, int half_width, double n_bytes,
+// The arrays of a .vti that write_level_set() made. Strict: what else ImageData may hold is refused.
+class LevelSetFile {
+ public:
+  explicit LevelSetFile(const std::filesystem::path& path)
+      : source_(path,
+                [](const std::string& file, const std::string& what) { throw LevelSetRefused(file + ": " + what); }),
+        tags_(source_),
+        arrays_(source_) {
+    detail::XmlTag tag;
+    bool has_appended = false;
+    while (!has_appended && tags_.next(tag)) {
+      if (!tag.is_closing) open(tag);
+      has_appended = tag.name == "AppendedData";
+    }
+    if (has_appended) arrays_.read_appended(tag);
+    arrays_.finish();
+    if (!has_piece_) source_.refuse("the file is cut");
+  }
+
+  const Eigen::Vector3i& n() const { return n_; }
+  double n_bytes() const { return source_.most_bytes(); }
+  bool has_field(const std::string& name) const { return fields_.contains(name); }
+  // @param size  0: any
+  template <class Value = double>
+  std::vector<Value> field(const std::string& name, std::size_t size) {
+    const auto found = fields_.find(name);
+    auto* values = found == fields_.end() ? nullptr : std::get_if<std::vector<Value>>(&found->second);
+    if (!values || (size > 0 && values->size() != size)) {
+      throw LevelSetRefused(
+          fmt::format("{}: field data '{}' with {} numbers is missing: not a level set of this program", source_.name(),
+                      name, size));
+    }
+    return std::move(*values);
+  }
+  // Null if they are none of doubles.
+  std::vector<double>* of_points(const std::string& name) {
+    const auto found = points_.find(name);
+    return found == points_.end() ? nullptr : std::get_if<std::vector<double>>(&found->second);
+  }
+
+ private:
+  void open(const detail::XmlTag& tag) {
+    static const std::map<std::string_view, std::vector<std::string_view>> kParents = {
+        {"VTKFile", {""}},
+        {"ImageData", {"VTKFile"}},
+        {"FieldData", {"ImageData"}},
+        {"Piece", {"ImageData"}},
+        {"PointData", {"Piece"}},
+        {"CellData", {"Piece"}},
+        {"AppendedData", {"VTKFile"}},
+        {"DataArray", {"FieldData", "PointData"}}};
+    const auto it = kParents.find(tag.name);
+    if (it == kParents.end() || std::find(it->second.begin(), it->second.end(), tags_.parent()) == it->second.end())
+      source_.refuse("not what a level set of this program has here");
+    if (tag.name == "VTKFile") {
+      arrays_.take_root(tag, "ImageData");
+      if (!arrays_.is_little_endian() || !arrays_.has_wide_headers() || arrays_.is_packed()) {
+        source_.refuse("not a VTK ImageData file of this program");
+      }
+    }
+    if (tag.name == "ImageData") take_extent(tag["WholeExtent"]);
+    if (tag.name == "Piece") {
+      if (has_piece_ || tag["Extent"] != extent_) source_.refuse("a piece that is not the whole");
+      has_piece_ = true;
+    }
+    if (tag.name == "DataArray") take_array(tag);
+  }
+
+  // "0 n-1 0 n-1 0 n-1"; no more nodes than the file has bytes.
+  void take_extent(std::string_view text) {
+    extent_ = text;
+    double n_nodes = 1;
+    const char *at = text.data(), *end = at + text.size();
+    for (int k = 0; k < 6; ++k) {
+      while (at != end && *at == ' ') ++at;
+      std::uint32_t value = 0;
+      const auto [stop, error] = std::from_chars(at, end, value);
+      if (error != std::errc() || (k % 2 == 0 && value != 0)) source_.refuse("an extent that is not 0 n 0 n 0 n");
+      at = stop;
+      if (k % 2 == 0) continue;
+      n_nodes *= double(value) + 1;
+      if (n_nodes > n_bytes()) source_.refuse("more nodes than the file has bytes");
+      n_[k / 2] = static_cast<int>(value) + 1;
+    }
+    if (at != end) source_.refuse("an extent that is not 0 n 0 n 0 n");
+  }
+
+  void take_array(const detail::XmlTag& tag) {
+    const detail::XmlArray array = arrays_.array(tag);
+    const bool is_float = array.type && array.type->kind == detail::NumberType::Kind::Float;
+    if (!is_float || array.format == detail::XmlArray::Format::Ascii || array.name.empty() || array.n_components != 1) {
+      source_.refuse("an array of a kind that a level set does not have");
+    }
+    const bool is_field = tags_.parent() == "FieldData";
+    const std::uint64_t n =
+        is_field ? tag.count("NumberOfTuples", source_) : static_cast<std::uint64_t>(n_.cast<std::int64_t>().prod());
+    if (static_cast<double>(n) > n_bytes()) source_.refuse("NumberOfTuples is no count");
+    auto& arrays = is_field ? fields_ : points_;
+    const auto [at, is_new] = arrays.try_emplace(array.name);
+    if (!is_new) source_.refuse("an array that is there twice");
+    Values& values = at->second;
+    if (array.type->bytes == 4) values = std::vector<float>();
+    arrays_.read(array, n, {.doubles = [&values](std::span<const double> some) {
+                   std::visit([&](auto& all) { all.insert(all.end(), some.begin(), some.end()); }, values);
+                 }});
+  }
+
+  detail::ByteStream source_;
+  detail::XmlTags tags_;
+  detail::ArrayReader arrays_;
+  std::string extent_;
+  Eigen::Vector3i n_ = Eigen::Vector3i::Zero();
+  bool has_piece_ = false;
+  std::map<std::string, Values> fields_, points_;
+};
+
+// The bands, on lattices that follow from the coarsest one.
+std::vector<LevelSetBand> read_bands(LevelSetFile& content, const Lattice& coarsest, int half_width,
                                      const std::string& file) {
+  const double n_bytes = content.n_bytes();
   std::vector<LevelSetBand> bands;
   Lattice lattice = coarsest;
-  for (int level = 1; image->GetFieldData()->HasArray(band_name(level, "blocks").c_str()); ++level) {
+  for (int level = 1; content.has_field(band_name(level, "blocks")); ++level) {
     // A band around a surface has more bytes than its lattice has blocks.
     const Eigen::Array3d n_blocks = 2 * lattice.n.array().cast<double>() / LatticeBlocks::kEdge;
     if (n_blocks.prod() > n_bytes || n_blocks.maxCoeff() > n_bytes) {
@@ -78,7 +163,7 @@ std::vector<LevelSetBand> read_bands(vtkImageData* image, const Lattice& coarses
     }
     lattice.h /= 2;
     lattice.n = (2 * (lattice.n.array() - 1) + 1).matrix();
-    const std::vector<double> corners = read_field(image, band_name(level, "blocks"), 0, file);
+    const std::vector<double> corners = content.field(band_name(level, "blocks"), 0);
     std::vector<Eigen::Vector3i> blocks;
     for (std::size_t i = 0; i + 3 <= corners.size(); i += 3) {
       const Eigen::Vector3d at(corners[i], corners[i + 1], corners[i + 2]);
@@ -90,8 +175,7 @@ std::vector<LevelSetBand> read_bands(vtkImageData* image, const Lattice& coarses
     if (corners.size() % 3 != 0 || band.blocks.blocks() != blocks) {
       throw LevelSetRefused(fmt::format("{}: the blocks of level {} are not in order", file, level));
     }
-    band.coefficients =
-        read_field<vtkFloatArray, float>(image, band_name(level, "psi_a"), blocks.size() * LatticeBlocks::kNodes, file);
+    band.coefficients = content.field<float>(band_name(level, "psi_a"), blocks.size() * LatticeBlocks::kNodes);
     bands.push_back(std::move(band));
   }
   return bands;
@@ -102,45 +186,36 @@ std::vector<LevelSetBand> read_bands(vtkImageData* image, const Lattice& coarses
 void write_level_set(const std::filesystem::path& file, const LevelSet& psi, const Vec3& shown_at) {
   const LevelSetLevel& level = psi.coarsest();
   const Lattice& L = level.lattice;
-  const Vec3 origin = L.origin + shown_at;
-  const std::string extent = fmt::format("0 {} 0 {} 0 {}", L.n[0] - 1, L.n[1] - 1, L.n[2] - 1);
-  detail::VtiWriter out(file);
-  out.text("<?xml version=\"1.0\"?>\n")
-      .text("<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n")
-      .text(fmt::format("<ImageData WholeExtent=\"{}\" Origin=\"{} {} {}\" Spacing=\"{} {} {}\" "
-                        "Direction=\"1 0 0 0 1 0 0 0 1\">\n<FieldData>\n",
-                        extent, origin[0], origin[1], origin[2], L.h, L.h, L.h));
-  out.field("lattice", std::vector<double>{L.origin[0], L.origin[1], L.origin[2], L.h, double(L.n[0]), double(L.n[1]),
-                                           double(L.n[2])});
+  const detail::ImageNodes nodes{L.n, L.origin + shown_at, Vec3::Constant(L.h)};
+  detail::AppendedWriter out;
+  const auto field = [&out]<class T>(const std::string& name, std::span<const T> values) {
+    out.array(name, values, fmt::format(" NumberOfTuples=\"{}\"", values.size()));
+  };
   const LmePrior& prior = psi.prior();
-  out.field("prior", std::vector<double>{double(prior.kind), prior.gamma, double(prior.support), prior.epsilon});
+  const std::vector<double> lattice{L.origin[0],    L.origin[1],    L.origin[2],   L.h,
+                                    double(L.n[0]), double(L.n[1]), double(L.n[2])},
+      of_prior{double(prior.kind), prior.gamma, double(prior.support), prior.epsilon}, check = hash(psi);
+  detail::begin_image(out, nodes);
+  field("lattice", std::span(lattice));
+  field("prior", std::span(of_prior));
+  std::vector<std::vector<double>> corners(static_cast<std::size_t>(psi.n_levels()));
   for (int l = 1; l < psi.n_levels(); ++l) {
     const LevelSetBand& band = psi.band(l);
-    std::vector<double> corners;
-    for (const Eigen::Vector3i& b : band.blocks.blocks()) corners.insert(corners.end(), b.begin(), b.end());
-    out.field(band_name(l, "blocks"), corners).field(band_name(l, "psi_a"), band.coefficients);
+    std::vector<double>& of_level = corners[static_cast<std::size_t>(l)];
+    for (const Eigen::Vector3i& b : band.blocks.blocks()) of_level.insert(of_level.end(), b.begin(), b.end());
+    field(band_name(l, "blocks"), std::span<const double>(of_level));
+    field(band_name(l, "psi_a"), std::span<const float>(band.coefficients));
   }
-  out.field("xxh64", hash(psi)).text(fmt::format("</FieldData>\n<Piece Extent=\"{}\">\n", extent));
-  out.text("<PointData Scalars=\"psi_a\">\n").points("psi_a", level.coefficients);
-  out.text("</PointData>\n<CellData>\n</CellData>\n</Piece>\n</ImageData>\n</VTKFile>\n").close();
+  field("xxh64", std::span(check));
+  detail::begin_point_data(out, nodes, "psi_a");
+  out.array("psi_a", std::span(level.coefficients));
+  detail::write_image(file, out);
 }
 
 LevelSet read_level_set(const std::filesystem::path& path) {
   const std::string file = path.string();
-  if (std::ifstream probe(path, std::ios::binary); !probe) {
-    throw std::system_error(errno ? errno : EIO, std::generic_category(), fmt::format("{}: cannot be opened", file));
-  }
-  detail::precheck_vti(path);
-  const QuietVtk quiet;
-  vtkNew<vtkXMLImageDataReader> reader;
-  reader->SetFileName(file.c_str());
-  reader->Update();
-  vtkImageData* image = reader->GetOutput();
-  if (reader->GetErrorCode() != vtkErrorCode::NoError || !image) {
-    throw LevelSetRefused(
-        fmt::format("{}: damaged: {}", file, vtkErrorCode::GetStringFromErrorCode(reader->GetErrorCode())));
-  }
-  const std::vector<double> l = read_field(image, "lattice", 7, file), p = read_field(image, "prior", 4, file);
+  LevelSetFile content(path);
+  const std::vector<double> l = content.field("lattice", 7), p = content.field("prior", 4);
   const auto is_finite = [](double v) { return std::isfinite(v); };
   if (!std::all_of(l.begin(), l.end(), is_finite) || !std::all_of(p.begin(), p.end(), is_finite)) {
     throw LevelSetRefused(file + ": 'lattice' or 'prior' is absurd");
@@ -152,23 +227,22 @@ LevelSet read_level_set(const std::filesystem::path& path) {
   const std::vector<std::string> wrong = problems(prior);
   if (p[0] != 0 && p[0] != 1) throw LevelSetRefused(file + ": unknown prior");
   if (!wrong.empty()) throw LevelSetRefused(file + ": " + wrong.front());
-  const int* dims = image->GetDimensions();
+  const Eigen::Vector3i& dims = content.n();
   Lattice lattice{{l[0], l[1], l[2]}, l[3], {dims[0], dims[1], dims[2]}};
   if (l[4] != dims[0] || l[5] != dims[1] || l[6] != dims[2] || !(l[3] > 0)) {
     throw LevelSetRefused(file + ": the field data 'lattice' does not fit the image");
   }
-  auto* a = vtkDoubleArray::SafeDownCast(image->GetPointData()->GetArray("psi_a"));
-  if (!a || a->GetNumberOfComponents() != 1 || a->GetNumberOfTuples() != lattice.size()) {
+  std::vector<double>* a = content.of_points("psi_a");
+  if (!a || static_cast<std::int64_t>(a->size()) != lattice.size()) {
     throw LevelSetRefused(fmt::format("{}: point data 'psi_a' with {} doubles is missing", file, lattice.size()));
   }
-  std::vector<double> c(a->GetPointer(0), a->GetPointer(0) + lattice.size());
+  std::vector<double> c = std::move(*a);
   for (const double v : c) {
     if (!std::isfinite(v)) throw LevelSetRefused(file + ": a coefficient is not finite");
   }
   try {
-    const auto n_bytes = static_cast<double>(std::filesystem::file_size(path));
-    LevelSet psi(prior, {lattice, std::move(c)}, read_bands(image, lattice, half_width(prior), n_bytes, file));
-    if (read_field(image, "xxh64", 2, file) != hash(psi)) {
+    LevelSet psi(prior, {lattice, std::move(c)}, read_bands(content, lattice, half_width(prior), file));
+    if (content.field("xxh64", 2) != hash(psi)) {
       throw LevelSetRefused(file + ": damaged: the coefficients do not have the hash that was written with them");
     }
     return psi;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "reconstruct/cloud/cloud_arrays.h"
-#include "reconstruct/cloud/cloud_survey.h"
+#include "reconstruct/cloud/survey/cloud_survey.h"
 #include "reconstruct/io/detail/clouds/cloud_readers.h"
 #include "reconstruct/io/detail/clouds/field_columns.h"
 #include "reconstruct/io/detail/clouds/text_columns.h"
@@ -24,6 +24,7 @@ namespace {
 using detail::check_extent;
 using detail::CloudSource;
 using detail::FileBytes;
+using detail::kColumns;
 using detail::refuse;
 
 constexpr std::size_t kFewestPoints = 10;  // of a surface; what surveys a scan needs more
@@ -63,7 +64,7 @@ void check_head(const CloudSource& head, const std::filesystem::path& file) {
   detail::refuse_endless_line(head);
   const Format format = format_of(head, file);
   if (format != Format::Xyz && !head.columns.empty())
-    refuse(head, "--columns is about tables in text: PLY and PCD name their properties and fields themselves");
+    refuse(head, {kColumns, " is about tables in text: PLY and PCD name their properties and fields themselves"});
   if (head.bytes_left_out == 0) return;  // then the reader itself is as fast
   switch (format) {
     case Format::Ply:

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "reconstruct/cloud/neighbour_tree.h"
+#include "reconstruct/cloud/neighbours/neighbour_tree.h"
 #include "reconstruct/level_set/level_set.h"
 #include "reconstruct/solve/algebraic_spheres.h"
 #include "reconstruct/solve/scan_holes.h"

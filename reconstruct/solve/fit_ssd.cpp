@@ -9,7 +9,7 @@
 
 #include "common/first_touch.h"
 #include "common/formatted.h"
-#include "reconstruct/cloud/covering.h"
+#include "reconstruct/cloud/cleaning/covering.h"
 #include "reconstruct/solve/closing.h"
 #include "reconstruct/solve/fit_measures.h"
 #include "reconstruct/solve/multigrid.h"
@@ -202,6 +202,9 @@ constexpr int kLeastMultilevelPadding = 5;
 constexpr double kLoneTolerance = 5;
 // Samples are merged in half-spacing cubes on every level.
 constexpr double kMergeCube = 0.5;
+// Fields of SsdParams, as messages name them.
+constexpr Option kDetail{"detail"}, kMaxMemory{"max_memory"};
+
 // A sample that stands for more than 4 h^2 has no neighbour within about 2 h.
 constexpr double kMostArea = 4;
 
@@ -226,10 +229,9 @@ void require_memory(const Problem& problem, const Hierarchy& hierarchy, const Le
     need += level + 1 < n_levels ? kKept * samples.bytes[level] : (1 + kKept) * samples.bytes[level];
   }
   if (need <= limit) return;
-  throw SolveTooLarge(
-      formatted("a finest spacing of %.4g needs %.3g GB of memory, %.3g GB are allowed: choose a "
-                "larger spacing (--detail below 1), or allow more",
-                hierarchy.finest.h / std::exp2(n_levels - 1.0), need / 1e9, limit / 1e9));
+  throw SolveTooLarge(formatted("a finest spacing of %.4g needs %.3g GB of memory, %.3g GB are allowed",
+                                hierarchy.finest.h / std::exp2(n_levels - 1.0), need / 1e9, limit / 1e9),
+                      {{Change::Lower, kDetail, "for a larger spacing"}, {Change::Raise, kMaxMemory}});
 }
 
 Lattice refined(Lattice lattice, int times) {

@@ -1,13 +1,13 @@
 #pragma once
 
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "common/context.h"
+#include "common/message.h"
 #include "reconstruct/basis/lme_prior.h"
-#include "reconstruct/cloud/cloud_neighbours.h"
+#include "reconstruct/cloud/neighbours/cloud_neighbours.h"
 #include "reconstruct/cloud/point_cloud.h"
 #include "reconstruct/level_set/level_set.h"
 #include "reconstruct/solve/closing.h"
@@ -80,8 +80,8 @@ struct SsdReport {
 };
 
 /// Error for a fit that would exceed the memory limit; what() states the need, the limit and the remedy.
-struct SolveTooLarge : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct SolveTooLarge : ExplainedError {
+  using ExplainedError::ExplainedError;
 };
 
 /// Result of fit_ssd().

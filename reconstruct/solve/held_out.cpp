@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "reconstruct/cloud/covering.h"
+#include "reconstruct/cloud/cleaning/covering.h"
 
 namespace umtet {
 namespace {

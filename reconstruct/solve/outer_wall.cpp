@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "reconstruct/cloud/neighbour_tree.h"
+#include "reconstruct/cloud/neighbours/neighbour_tree.h"
 
 namespace umtet {
 namespace {

@@ -7,7 +7,7 @@
 #include <unordered_map>
 
 #include "common/disjoint_sets.h"
-#include "reconstruct/cloud/neighbour_tree.h"
+#include "reconstruct/cloud/neighbours/neighbour_tree.h"
 
 namespace umtet {
 namespace {

@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "reconstruct/cloud/neighbour_tree.h"
+#include "reconstruct/cloud/neighbours/neighbour_tree.h"
 
 namespace umtet {
 namespace {

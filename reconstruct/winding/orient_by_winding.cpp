@@ -6,9 +6,9 @@
 #include <stdexcept>
 
 #include "common/formatted.h"
-#include "reconstruct/cloud/cloud_neighbours.h"
-#include "reconstruct/cloud/cloud_survey.h"
-#include "reconstruct/cloud/normal_orientation.h"
+#include "reconstruct/cloud/neighbours/cloud_neighbours.h"
+#include "reconstruct/cloud/normals/normal_orientation.h"
+#include "reconstruct/cloud/survey/cloud_survey.h"
 #include "reconstruct/winding/winding_normals.h"
 
 namespace umtet {

@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
-#include "reconstruct/cloud/covering.h"
-#include "reconstruct/cloud/neighbourhoods.h"
+#include "reconstruct/cloud/cleaning/covering.h"
+#include "reconstruct/cloud/neighbours/neighbourhoods.h"
 #include "reconstruct/cloud/point_cloud.h"
 
 namespace umtet {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "reconstruct/cloud/neighbour_tree.h"
+#include "reconstruct/cloud/neighbours/neighbour_tree.h"
 #include "reconstruct/winding/fast_winding_number.h"
 
 namespace umtet {

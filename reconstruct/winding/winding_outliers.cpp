@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reconstruct/cloud/cloud_neighbours.h"
+#include "reconstruct/cloud/neighbours/cloud_neighbours.h"
 #include "reconstruct/winding/fast_winding_number.h"
 
 namespace umtet {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "reconstruct/cloud/neighbourhoods.h"
+#include "reconstruct/cloud/neighbours/neighbourhoods.h"
 #include "reconstruct/cloud/point_cloud.h"
 
 namespace umtet {

@@ -27,14 +27,14 @@ COLUMNS = ("cpu", "cpu_in_mpi", "collectives", "exchanges", "messages", "sent", 
 PHASES = ("start", "bands", "share_psi", "alone_psi", "partition", "signs", "classify", "project", "repair", "emit", "embed", "certify",
           "boundary", "alone_measures", "files", "alone_files")
 ALONE = ("start", "alone_psi", "repair", "boundary", "alone_measures", "alone_files")  # of rank 0; others wait
-BLOCK_TETS = 4**3 * 46  # distributed/block_curve.h
+BLOCK_TETS = 4**3 * 46  # distributed/partition/block_curve.h
 ON_GRID = "components of psi = 0 and its size"
 GRID_TETS = 5e7 / .435  # that grid has 5e7 nodes at most (kMaxGridNodes), and .435 for each tet of this torus
 SAMPLES_A_FACE = 3.9  # dense_cloud.py 2000000, run with --h .03: 192,530 samples, 49,968 faces
 READ_SECONDS, READ_BYTES = .6e-6, 64  # of a point that is merged (docs/performance.md, "Reconstruction")
 ITERATIONS, LEVELS = 10, 12  # of a fit; each level has half the spacing of the one before
 NEIGHBOURS = 26  # ranks next to one
-PIECE = 1 << 16  # tets, distributed/part_tets.cpp and io/part_files.cpp
+PIECE = 1 << 16  # tets, distributed/certify/part_tets.cpp and io/part_files.cpp
 
 
 def traffic(mpiexec, program, library, n, arguments, folder):

@@ -1,5 +1,5 @@
 // Preloaded into umtet_mpi: what each rank takes and sends, by phase. MPI's profiling interface counts; MPI_Pcontrol(1,
-// NAME) begins a phase (distributed/phase.h).
+// NAME) begins a phase (distributed/exchange/phase.h).
 //
 //   UMTET_TRAFFIC=/file      of each rank, with .r behind it: a line for each phase
 //

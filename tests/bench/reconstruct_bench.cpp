@@ -7,9 +7,9 @@
 
 #include "reconstruct/basis/lme_lattice.h"
 #include "reconstruct/basis/lme_scattered.h"
-#include "reconstruct/cloud/cloud_neighbours.h"
-#include "reconstruct/cloud/cloud_survey.h"
-#include "reconstruct/cloud/morton_order.h"
+#include "reconstruct/cloud/neighbours/cloud_neighbours.h"
+#include "reconstruct/cloud/neighbours/morton_order.h"
+#include "reconstruct/cloud/survey/cloud_survey.h"
 #include "reconstruct/solve/fit_ssd.h"
 #include "reconstruct/solve/ssd_operator.h"
 #include "tests/support/clouds.h"

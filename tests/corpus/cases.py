@@ -243,13 +243,13 @@ def xyz_cases():
     yield "one_point", b"1 2 3\n", ["1 points"], ["line 1", "no normals"]
     yield "eight_columns", b"# head\n" + labelled(lambda i: "7 8.5"), None
     yield "unknown_vectors", "".join(f"{line} {3 * i} {-1.5 * i} {i % 7}\n" for i, line in enumerate(bare.splitlines())).encode(), \
-        ["line 1", "columns 4 to 6", "--columns x,y,z,nx,ny,nz"]
-    yield "many_scalars", labelled(lambda i: f"{i} {-2 * i} {i * i} {7 - i}"), ["line 1", "columns 7 to 10", "--columns"]
+        ["line 1", "columns 4 to 6", "give ", "x,y,z,nx,ny,nz"]
+    yield "many_scalars", labelled(lambda i: f"{i} {-2 * i} {i * i} {7 - i}"), ["line 1", "columns 7 to 10", "give "]
     yield "nine_points", ("\n".join(LINES[:9]) + "\n").encode(), ["9 points", "30"], ["9 points", "10"]
     yield "ragged", with_line(6, "1 2 3").encode(), ["line 7"]
     yield "three_then_six", (bare + TEXT).encode(), ["line 101"], ["line 1"]
     yield "mostly_bad", (bare + 101 * "nan 0 0\n").encode(), ["101 of 201"], ["line 1"]
-    yield "word", ("x y z\n" + TEXT).encode(), ["line 1", "3 names", "line 2", "6 columns", "--columns"]
+    yield "word", ("x y z\n" + TEXT).encode(), ["line 1", "3 names", "line 2", "6 columns", "to name them"]
     yield "six_words", ("x y z nx ny nz\n" + TEXT).encode(), None
     yield "commas", TEXT.replace(".", ",").encode(), None
     yield "commas_three", b"0,1 0,2 0,3\n", ["1 points"], ["line 1", "no normals"]  # six columns if commas separated
@@ -370,8 +370,11 @@ def vtu_cases():
         ["more than the file can hold"]
     yield "nest", grid + b"</VTKFile>", ["do not nest"]
     yield "other", b"<VTKFile type=\"PolyData\"></VTKFile>", ["UnstructuredGrid"]
-    # What the parser behind VTK sees otherwise than a search for letters would.
     raw = (STORED / "mesh_vtu/appended_raw.vtu").read_bytes()
+    yield "no_appended_data", raw[:raw.index(b"<AppendedData")] + b"</VTKFile>", ["no appended data"]
+    yield "types_missing", raw.replace(b"types", b"kinds"), ["no cell types"]
+    yield "offsets_missing", raw.replace(b'"offsets"', b'"onsets"'), ["offsets missing"]
+    # What a parser of XML sees otherwise than a search for letters would.
     for name, before, after, words in (
             ("offset_in_note", b'offset="96"', b"Note=\"a offset='96'\" offset=\"97\"", ["more parts than bytes"]),
             ("offset_as_reference", b'offset="96"', b'offset="&#57;7"', ["references to characters"]),
@@ -539,7 +542,8 @@ def image_cases():
     yield "packed_damaged", image(appended=head + bytes(len(blocks)), compressor=zlib_), ["damaged zlib"]
     yield "packed_lies", image(appended=struct.pack("<4Q", 1, 1 << 40, 0, 10), compressor=zlib_), ["not as long as its nodes"]
     yield "packed_huge", image(appended=struct.pack("<4Q", 2 ** 63, 2 ** 63, 0, 10), compressor=zlib_), ["a count that is none"]
-    yield "lz4", image(compressor=' compressor="vtkLZ4DataCompressor"'), ["'vtkLZ4DataCompressor'"]
+    yield "lzma", image(compressor=' compressor="vtkLZMADataCompressor"'), ["'vtkLZMADataCompressor'"]
+    yield "lz4", image(compressor=' compressor="vtkLZ4DataCompressor"'), ["a count that is none"]
     yield "count", image(appended=struct.pack("<Q", 1 << 60) + DOUBLES), ["a count that is none"]
     yield "count_less", image(appended=struct.pack("<Q", 80) + DOUBLES), ["not as long as its nodes"]
     yield "offset_far", image('type="Float64" format="appended" offset="999999999"'), ["the file is cut"]
@@ -731,13 +735,13 @@ def face_cases():
     yield "faces_flat", faces_ply(2) + v + f[:16], ["one plane"]
 
 
-# As ParaView and others write them. VTK divides by the size of a part before it is compressed.
+# As ParaView and others write them.
 no_bytes = ["parts of 0 bytes"]
 STORED_WORDS = {
-    "appended_no_bytes.vtu": no_bytes, "parts_of_no_bytes.vtu": no_bytes, "no_parts_of_no_bytes.vtu": no_bytes,
-    "offset_without_format.vtu": no_bytes, "last_offset.vtu": ["more than the file can hold"],
-    "damaged_cell_data.vtu": ["VTK cannot read it"],  # and has no point data
-    # VTK would count offsets from the first byte behind the tag, find other headers there, and believe them: 8 GB.
+    "appended_no_bytes.vtu": no_bytes, "no_parts_of_no_bytes.vtu": no_bytes,
+    "parts_of_no_bytes.vtu": ["three components"],  # its points have eight
+    "offset_without_format.vtu": ["'appended]'"], "last_offset.vtu": ["more than the file can hold"],
+    "damaged_cell_data.vtu": ["damaged zlib"],
     "appended_beside_underscore.vtu": ["appended data without a beginning"],
     "far_numbers.msh": ["tet 1: its node 3 does not exist"],
     "band.vti": ["hash"], "unknown_type.vti": ["an array of a kind"],

@@ -91,7 +91,7 @@ def measure(file, samples):
 
 
 ONE_SIDED = ((4,), ["reaches the wall", "the surface is closed"])
-TOO_NEAR = ((4, 6), ["two sides of a body are nearer to each other than its samples"])
+TOO_NEAR = ((4, 6), ["two sides of a body were closer to each other than its samples"])
 # Cloud, arguments, and what must come of it: volume, how far it may be off, and how far the farthest sample may be from
 # the mesh; or exit codes and words of the reason.
 SHAPES = {

@@ -12,7 +12,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "distributed/distributed_mesh.h"
+#include "distributed/mesh/distributed_mesh.h"
 #include "mesh/sizes/body_size.h"
 #include "mesh/universal_mesh.h"
 #include "tests/support/domains.h"

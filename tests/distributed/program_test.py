@@ -254,7 +254,7 @@ class Program(unittest.TestCase):
         cloud = self.folder / "dumbbell.ply"
         write_cloud(cloud, dumbbell())
         said = self.compare([str(cloud)], "run", ["mesh: one process makes this mesh: its background is no lattice"])
-        self.assertIn("mesh: graded, with edges from", said)
+        self.assertIn("mesh: graded, with edges of at least", said)
         case, arguments = self.folder / "case", [str(cloud), "--export", "pvtu"]
         of_ranks(case, arguments, "run")
         again = of_ranks(case, arguments, "run")

@@ -10,9 +10,9 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "distributed/collect.h"
-#include "distributed/distributed_mesh.h"
+#include "distributed/exchange/collect.h"
 #include "distributed/io/shared_file.h"
+#include "distributed/mesh/distributed_mesh.h"
 #include "distributed/program/together.h"
 #include "pipeline/case/interrupt.h"
 #include "tests/support/domains.h"

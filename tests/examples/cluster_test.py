@@ -75,7 +75,7 @@ class Cluster(unittest.TestCase):
             self.assertEqual(run("batch", "list", "-o", "out", "--collect", cwd=folder).returncode, 6)
             rows = table(folder / "out")
             self.assertEqual([r["verdict"] for r in rows.values()], ["waiting"] * 3)
-            self.assertIn("not whole", rows["duck"]["reason"])
+            self.assertIn("incomplete", rows["duck"]["reason"])
             self.assertEqual([p.name for p in (folder / "out").iterdir() if p.is_dir()], ["logs"])  # nothing was run
             self.assertEqual(run("batch", "list", "-o", "out", "--collect", "--resume", cwd=folder).returncode, 2)
 

@@ -1,14 +1,19 @@
 #!/usr/bin/python3
 """Meshes have the bytes they had: checksums of the meshes of clouds, formulas, modes and steps in mesh_bytes.json.
 
-usage: mesh_bytes.py UMTET SOURCES [NAME ...] [--write]
+usage: mesh_bytes.py UMTET SOURCES [NAME ...] [--write | --contents]
 
+--contents: a checksum is that of the file with each array in its place, in base64, instead of appended. Version 0.9 wrote
+files like that, so this compares points, tets and all arrays with a mesh_bytes.json of it, bit by bit.
 Bytes are those of one compiler and one instruction set; with others this says what differs, and no more. Certificates
 are stored beside the checksums, without the block `run` and the version, so that a difference can be read.
 """
+import base64
 import hashlib
 import json
 import os
+import re
+import struct
 import subprocess
 import sys
 import tempfile
@@ -42,9 +47,24 @@ def commands(umtet, sources, name, case):
     return [umtet, "mesh"] + MESHES[name] + ["-o", case, "--no-report"] + quiet
 
 
+def inline(file):
+    """The bytes of a file with raw appended arrays as those of one whose arrays are inline, in base64."""
+    begin = b'<AppendedData encoding="raw">\n_'
+    end = b"\n</AppendedData>\n"
+    tags, data = file.split(begin, 1)
+
+    def block(found):
+        at = int(found.group(1))
+        size, = struct.unpack_from("<Q", data, at)
+        return b' format="binary">\n' + base64.b64encode(data[at:at + 8 + size]) + b"\n</DataArray>\n"
+
+    return re.sub(rb' format="appended" offset="(\d+)"/>\n', block, tags) + data[data.rindex(end) + len(end):]
+
+
 def checksum(path):
     with open(path, "rb") as f:
-        return hashlib.sha256(f.read()).hexdigest()
+        content = f.read()
+    return hashlib.sha256(inline(content) if "--contents" in sys.argv else content).hexdigest()
 
 
 def measured(umtet, sources, name, folder):
@@ -60,7 +80,7 @@ def measured(umtet, sources, name, folder):
 
 def main():
     umtet, sources = sys.argv[1:3]
-    names = [a for a in sys.argv[3:] if a != "--write"] or NAMES
+    names = [a for a in sys.argv[3:] if not a.startswith("--")] or NAMES
     stored = {}
     if os.path.exists(STORED):
         with open(STORED, encoding="utf8") as f:

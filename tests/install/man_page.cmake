@@ -11,7 +11,7 @@ foreach(text run reconstruct mesh evolve batch inspect check export report view 
     message(FATAL_ERROR "umtet ${text} has no part of its own:\n${page}")
   endif()
 endforeach()
-foreach(text "--implicit" "--background" "EXIT STATUS" "0 all well" "umtet - from an oriented")
+foreach(text "--implicit" "--background" "EXIT STATUS" "0 success" "umtet - certified tetrahedral meshes")
   string(FIND "${page}" "${text}" at)
   if(at LESS 0)
     message(FATAL_ERROR "${text} is not in the man page:\n${page}")

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "mesh/certify/certificate.h"
-#include "mesh/certify/quadratic_tets.h"
-#include "mesh/certify/second_order_certificate.h"
+#include "mesh/second_order/quadratic_tets.h"
+#include "mesh/second_order/second_order_certificate.h"
 #include "mesh/universal_mesh.h"
 #include "reconstruct/io/point_cloud_io.h"
 #include "reconstruct/solve/fit_ssd.h"

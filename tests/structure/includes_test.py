@@ -5,7 +5,7 @@ import sys
 import unittest
 
 SOURCES = pathlib.Path(sys.argv.pop(1)).resolve()
-TOPS = ("common", "mesh", "distributed", "reconstruct", "body", "umtet", "pipeline", "python", "pcl", "examples", "tools")
+TOPS = ("common", "mesh", "distributed", "reconstruct", "body", "umtet", "pipeline", "python", "pcl", "openmesh", "examples", "tools")
 
 
 def declared(text):

@@ -5,15 +5,19 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
+#include "body/option_names.h"
 #include "pipeline/case/artefact.h"
 #include "pipeline/expression/expression.h"
 #include "pipeline/reports/certificate_report.h"
 #include "pipeline/reports/stage_reports.h"
 #include "pipeline/run/run.h"
 #include "reconstruct/io/point_cloud_io.h"
+#include "reconstruct/io/triangle_mesh_io.h"
+#include "tests/reconstruct/triangles/solids.h"
 #include "tests/support/clouds.h"
 
 namespace umtet {
@@ -53,6 +57,69 @@ TEST(Umtet, TheCertificateOfACloudIsThatOfTheProgram) {
   EXPECT_EQ(measured_by(mesh).dump(1), program.dump(1));
   EXPECT_TRUE(mesh.verdict.passes()) << mesh.verdict.reasons.front();
   EXPECT_EQ(mesh.tets.size(), mesh.measures.mesh.n_tets);
+}
+
+TEST(Umtet, TheCertificateOfTrianglesIsThatOfTheProgram) {
+  const Folder folder;
+  const fs::path file = folder.path / "torus.ply";
+  const TriangleMesh torus = test::torus();
+  {
+    std::ofstream out(file, std::ios::binary);
+    write_ply(out, torus);
+  }
+  RunRequest request;
+  request.source = file;
+  request.parameters.set("cloud.file", file.string(), ParamSource::Flag, "test");
+  request.parameters.set("mesh.h", ".12", ParamSource::Flag, "test");
+  const Json program = measured_by_program(folder.path, request);
+  Options options;
+  options.body.mesh.h = .12;
+  const FittedBody body = fit_body(torus, options);
+  EXPECT_EQ(body.triangles.value().n_triangles, torus.F.size());
+  const Mesh mesh = mesh_body(body, options);
+  EXPECT_EQ(measured_by(mesh).dump(1), program.dump(1));
+  EXPECT_TRUE(mesh.verdict.passes()) << mesh.verdict.reasons.front();
+}
+
+TEST(Umtet, BoundaryFacesHaveTheLabelsOfTheSamples) {
+  OrientedPointCloud cloud = test::torus_cloud(6000);
+  EXPECT_TRUE(mesh_body(cloud).labels.empty());
+  for (const Vec3& x : cloud.points) cloud.labels.push_back(x.x() > 0 ? 7 : 3);
+  Options options;
+  options.body.mesh.h = .12;
+  const Mesh mesh = mesh_body(cloud, options);
+  ASSERT_EQ(mesh.labels.size(), mesh.boundary.size());
+  for (std::size_t f = 0; f < mesh.boundary.size(); ++f) {
+    const auto& [a, b, c] = mesh.boundary[f];
+    const double x = (mesh.points[a].x() + mesh.points[b].x() + mesh.points[c].x()) / 3;
+    if (std::abs(x) > .12) {
+      EXPECT_EQ(mesh.labels[f], x > 0 ? 7 : 3) << x;
+    }
+  }
+}
+
+TEST(Umtet, TrianglesThatAreNoneAreRefused) {
+  TriangleMesh mesh = test::torus();
+  mesh.F.front()[1] = static_cast<int>(mesh.V.size());
+  EXPECT_THROW(mesh_body(mesh), std::invalid_argument);
+  mesh = test::torus();
+  mesh.labels = {1};
+  EXPECT_THROW(mesh_body(mesh), std::invalid_argument);
+}
+
+TEST(Umtet, AnErrorNamesTheOptionThatHelps) {
+  Options options;
+  options.box = Box(Vec3::Constant(-2), Vec3::Constant(2));
+  options.body.mesh.h = .001;
+  try {
+    mesh_body(Expression("x^2 + y^2 + z^2 - 1"), options);
+    ADD_FAILURE() << "a mesh of more tets than max_tets";
+  } catch (const ResourceLimit& e) {
+    ASSERT_EQ(e.message.remedies.size(), 1u);
+    EXPECT_EQ(e.message.remedies.front().change, Change::Raise);
+    EXPECT_EQ(e.message.remedies.front().setting.option, option::max_tets);
+    EXPECT_NE(std::string(e.what()).find("raise mesh.max_tets"), std::string::npos) << e.what();
+  }
 }
 
 TEST(Umtet, TheCertificateOfAFormulaIsThatOfTheProgram) {

@@ -9,7 +9,7 @@
 #include "mesh/background/background_mesh.h"
 #include "mesh/base/id_set.h"
 #include "mesh/fast/fast_params.h"
-#include "mesh/fast/tangential_relaxation.h"
+#include "mesh/fast/smoothing/tangential_relaxation.h"
 #include "tools/sensitivity/bodies.h"
 
 namespace umtet::sensitivity {

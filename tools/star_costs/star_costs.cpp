@@ -21,7 +21,7 @@
 #include "mesh/classification/classification.h"
 #include "mesh/classification/configuration_costs.h"
 #include "mesh/core/tet_quality.h"
-#include "mesh/fast/backtracking_projection.h"
+#include "mesh/fast/projection/backtracking_projection.h"
 #include "mesh/sizes/body_size.h"
 #include "mesh/submesh/assemble_submesh.h"
 #include "mesh/submesh/linked_active_layer.h"

@@ -104,13 +104,16 @@ std::size_t ByteCursor::count(const char* what, std::size_t least_bytes) {
   return checked_count(number<std::uint64_t>(what), what, least_bytes);
 }
 
+void require_regular_file(const std::filesystem::path& path) {
+  std::error_code error;
+  if (std::filesystem::is_regular_file(path, error)) return;
+  if (!error) error = std::make_error_code(std::errc::invalid_argument);
+  throw std::system_error(error, "cannot read " + path.string() + " as a file");
+}
+
 std::string file_bytes(const std::filesystem::path& path, std::string_view keyword) {
   constexpr std::size_t kHead = 1 << 20;
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) {
-    if (!error) error = std::make_error_code(std::errc::invalid_argument);
-    throw std::system_error(error, "cannot read " + path.string() + " as a file");
-  }
+  require_regular_file(path);
   errno = 0;
   std::ifstream in(path, std::ios::binary);
   const std::size_t size = in ? std::filesystem::file_size(path) : 0;

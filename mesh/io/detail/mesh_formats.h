@@ -50,6 +50,9 @@ class ByteCursor {
   std::size_t at_ = 0;
 };
 
+/// Rejects a path that is not a regular file. \throw std::system_error naming the path
+void require_regular_file(const std::filesystem::path& path);
+
 /// Reads a regular file. The first megabyte of a large file has to contain the keyword of its format; otherwise the
 /// file is rejected before the rest is read.
 /// @param keyword  compared without regard to case

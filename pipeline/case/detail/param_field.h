@@ -6,13 +6,13 @@
 
 namespace umtet::detail {
 
-/// The least value of parameters that must be > 0.
+/// The minimum of parameters that must be > 0.
 inline constexpr double kAboveZero = 1e-300;
 
-/// The row of a key. \throw UsageError that names the nearest
+/// Returns the field of a key. \throw UsageError  names the nearest key
 const ParamField& field(const std::string& key);
 
-/// A value as TOML reads it back.
+/// Returns a value in TOML.
 std::string print(const ParamValue& value);
 
 }  // namespace umtet::detail

@@ -7,21 +7,21 @@
 
 #include "pipeline/cli/command_line.h"
 
-// Commands and flags of the program: what CLI11 reads of them, what is said of them, and what a call asks for.
+// Commands and flags of the program: their help, their parsing by CLI11, and their conversion to requests.
 namespace umtet {
 
-/// Where CLI11 leaves what it read, as text; the table of parameters knows the types.
+/// The values that CLI11 has read, as text; the table of parameters knows their types.
 struct CommandInputs {
   std::string input, output, config, from, until, against, clouds, times, skip, other_case;
   std::vector<std::string> assignments, formats;
-  std::map<std::string, std::string> values;  ///< by key
-  std::map<std::string, bool> switches;       ///< by key
+  std::map<std::string, std::string> values;  ///< values of parameters by key
+  std::map<std::string, bool> switches;       ///< values of switches by key
   int jobs = 1;
   bool fresh = false, force = false, resume = false, collect = false, no_report = false, quiet = false, verbose = false;
 };
 
-/// Makes a command of what was read.
-/// @param app  the one that was called: tells which flags were given
+/// Makes a command from the values that were read.
+/// @param app  the subcommand of the call: tells which flags were given
 /// \throw UsageError; std::system_error for a --config or case.toml that cannot be read
 using CommandMaker = Command (*)(const CLI::App& app, const CommandInputs& in);
 Command make_run(const CLI::App& app, const CommandInputs& in);
@@ -36,13 +36,14 @@ Command make_report(const CLI::App& app, const CommandInputs& in);
 Command make_view(const CLI::App& app, const CommandInputs& in);
 Command make_diff(const CLI::App& app, const CommandInputs& in);
 
-/// The table of all commands. CLI11 writes into its members: it stays where it is.
+/// The table of all commands. It cannot be copied because CLI11 holds pointers to its members.
 class CommandParser {
  public:
   CommandParser();
   CommandParser(const CommandParser&) = delete;
   CommandParser& operator=(const CommandParser&) = delete;
-  CommandLine parse(int argc, const char* const* argv);  ///< once. \throw as parse_command_line()
+  /// Call it once. \throw the exceptions of parse_command_line()
+  CommandLine parse(int argc, const char* const* argv);
   const CLI::App& app() const { return app_; }
 
  private:
@@ -59,7 +60,7 @@ class CommandParser {
   void check_command(int argc, const char* const* argv) const;
   [[noreturn]] void refuse(const CLI::ParseError& e, int argc, const char* const* argv) const;
 
-  CLI::App app_{"umtet: from an oriented point cloud to a certified tetrahedral mesh", "umtet"};
+  CLI::App app_{"umtet: certified tetrahedral meshes from oriented point clouds", "umtet"};
   CommandInputs in_;
   CommandLine result_;
 };

@@ -6,7 +6,7 @@
 namespace umtet {
 namespace {
 
-/// The names v0, v1, ... in a text, with what is between them: f(text before, name), and f(rest, "") at the end.
+/// Visits the names v0, v1, ... in a text: calls f(text before, name) for each, and f(rest, "") at the end.
 template <class F>
 void for_each_name(const std::string& text, F&& f) {
   std::size_t from = 0;
@@ -22,7 +22,7 @@ void for_each_name(const std::string& text, F&& f) {
 }  // namespace
 
 void inline_single_uses(Assignments& all) {
-  constexpr std::size_t kMaxLength = 1500;  // ten results are one text, and muParser refuses 20000 characters
+  constexpr std::size_t kMaxLength = 1500;  // ten results form one text, and muParser refuses 20000 characters
   std::unordered_map<std::string, int> uses;
   const auto count = [&](const std::string& text) {
     std::string last;
@@ -34,7 +34,7 @@ void inline_single_uses(Assignments& all) {
   for (const auto& [name, text] : all.texts) count(text);
   for (const std::string& text : all.results) count(text);
 
-  std::unordered_map<std::string, std::string> single;  // and not yet written into another
+  std::unordered_map<std::string, std::string> single;  // texts that are used once and not yet inlined
   const auto expand = [&](std::string& text) {
     std::string longer;
     for_each_name(text, [&](const std::string& before, const std::string& name) {

@@ -13,20 +13,21 @@ namespace {
 
 constexpr std::array<std::pair<std::size_t, std::size_t>, 6> kPairs{{{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}}};
 
-/// What an operation is and what it is of. Names and digits; the empty text is 0.
+/// The value and the derivatives of an operation, as names and digits; an empty text is 0.
 struct Term {
   std::string value;
   std::array<std::string, 3> gradient;
   std::array<std::string, 6> hessian;
 };
 
-/// The partial derivatives of an operation on two operands; on one, those by the other are 0.
+/// The partial derivatives of an operation with two operands; with one operand, the derivatives with respect to the
+/// other are 0.
 struct Partials {
   std::array<std::string, 2> first;
   std::array<std::string, 3> second;  ///< 00 01 11
 };
 
-/// Products and sums of texts, of which the empty one is 0.
+/// Products and sums of texts; an empty text is 0.
 std::string times(const std::string& a, const std::string& b) {
   if (a.empty() || b.empty()) return "";
   return a == "1" ? b : b == "1" ? a : a + "*" + b;
@@ -68,8 +69,8 @@ class Writer {
   std::map<std::string, std::pair<GiNaC::realsymbol, GiNaC::ex>> sums_;  ///< key -> the symbol of that name, the sum
 };
 
-/// e written out. Operands of sums and products are in the order of their keys: GiNaC's order depends on addresses, and
-/// rounding would differ from run to run.
+/// Returns e as text. Operands of sums and products are in the order of their keys: GiNaC's order depends on addresses,
+/// and rounding would differ from run to run.
 const std::string& Writer::key(const GiNaC::ex& e) {
   if (const auto known = keys_.find(e); known != keys_.end()) return known->second;
   std::ostringstream text;
@@ -94,7 +95,7 @@ std::vector<GiNaC::ex> Writer::operands(const GiNaC::ex& e) {
   return all;
 }
 
-/// Whether the term of least key, signs and numbers apart, is negative.
+/// Returns whether the term with the smallest key, ignoring signs and numbers, is negative.
 bool Writer::begins_with_minus(const GiNaC::ex& sum) {
   std::string least;
   bool is_negative = false;
@@ -114,9 +115,9 @@ bool Writer::begins_with_minus(const GiNaC::ex& sum) {
   return is_negative;
 }
 
-/// e, in which sums that are factors or bases of whole powers are symbols. From those GiNaC takes out the sign of their
-/// first term; which one that is depends on addresses, and on how many symbols there were before. Here it is the term
-/// of least key.
+/// Returns e with symbols in place of sums that are factors or bases of whole powers. From such sums GiNaC extracts the
+/// sign of their first term. Which term is first depends on addresses, and on the number of symbols created before;
+/// here it is the term with the smallest key.
 GiNaC::ex Writer::with_signs(const GiNaC::ex& e) {
   if (is_number(e)) return e;
   if (GiNaC::is_a<GiNaC::function>(e)) {
@@ -146,7 +147,7 @@ GiNaC::ex Writer::factor(const GiNaC::ex& e) {
   return sign * sums_.try_emplace(name, GiNaC::realsymbol(name), s).first->second.first;
 }
 
-/// A name for `text`, unless it is one, or digits.
+/// Assigns `text` to a name and returns the name; returns `text` if it is a name or digits.
 std::string Writer::keep(const std::string& text) {
   if (std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isalnum(c); })) return text;
   const auto [known, is_new] = names_.try_emplace(text, "v" + std::to_string(result_.texts.size()));
@@ -154,19 +155,20 @@ std::string Writer::keep(const std::string& text) {
   return known->second;
 }
 
-/// The double nearest to a number, as a name; NaN where it is not real, as asin(2).
+/// Returns the double nearest to a number, as a name; NaN if it is not real, as asin(2).
 std::string Writer::number(const GiNaC::ex& e) {
   const GiNaC::ex value = e.evalf();
   const bool is_real = GiNaC::is_a<GiNaC::numeric>(value) && GiNaC::ex_to<GiNaC::numeric>(value).is_real();
   const double v = is_real ? GiNaC::ex_to<GiNaC::numeric>(value).to_double() : std::numeric_limits<double>::quiet_NaN();
-  if (v == 1) return "1";  // times() knows it
+  if (v == 1) return "1";  // times() handles 1
   const std::string name = "k" + std::to_string(result_.constants.size());
   const auto [known, is_new] = names_.try_emplace("number " + key(e), name);
   if (is_new) result_.constants.emplace_back(name, v);
   return known->second;
 }
 
-/// Products and roots instead of muParser's ^, which is pow() but for squares, cubes and fourth powers of a name.
+/// Writes products and roots instead of muParser's ^, which is pow() except for squares, cubes and fourth powers of a
+/// name.
 std::string Writer::write_power(const std::string& base, const GiNaC::ex& exponent) {
   if (GiNaC::is_a<GiNaC::numeric>(exponent)) {
     const GiNaC::numeric n = GiNaC::ex_to<GiNaC::numeric>(exponent);
@@ -233,7 +235,8 @@ Term Writer::product(const Term& a, const Term& b) {
   return f;
 }
 
-/// A power or a function: its partial derivatives are those of the same operation on symbols named as the operands.
+/// Handles a power or a function: its partial derivatives are the derivatives of the same operation on symbols named as
+/// the operands.
 Term Writer::operation(const GiNaC::ex& e) {
   std::vector<Term> of;
   GiNaC::exvector names;
@@ -251,7 +254,7 @@ Term Writer::operation(const GiNaC::ex& e) {
     return GiNaC::is_a<GiNaC::symbol>(name) ? g.diff(GiNaC::ex_to<GiNaC::symbol>(name)) : GiNaC::ex(0);
   };
   const auto text = [&](const GiNaC::ex& g) { return g.is_zero() ? "" : write(g.subs(f == value)); };
-  of.resize(2);  // a function's second operand is 0
+  of.resize(2);  // the second operand of a function is 0
   names.resize(2);
   Partials partials;
   for (std::size_t k = 0; order_ > 0 && k < 2; ++k) partials.first[k] = text(by(f, names[k]));
@@ -270,7 +273,7 @@ Term Writer::kept(const Term& t) {
   return names;
 }
 
-/// Assigns e's value and derivatives.
+/// Assigns the value and derivatives of e.
 Term Writer::term(const GiNaC::ex& e) {
   Term t;
   if (is_number(e)) {

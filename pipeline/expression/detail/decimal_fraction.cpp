@@ -49,7 +49,7 @@ GiNaC::numeric fraction_of_decimal(const std::string& number) {
     if (given.size() > kMostExponent) throw std::out_of_range(number);
     exponent += std::stol(given);
   }
-  // Leading zeros would make GiNaC read an octal number.
+  // GiNaC would read a number with leading zeros as octal.
   const std::size_t first = mantissa.find_first_not_of('0');
   if (first == std::string::npos) return 0;
   mantissa.erase(0, first);

@@ -16,13 +16,13 @@
 namespace umtet {
 namespace {
 
-// Longer texts are no formulas any more.
+// Longer texts are not formulas.
 constexpr std::size_t kMaxText = 4096;
-// x^n beyond this overflows double already for |x| = 2.
+// x^n with a larger exponent overflows double even for |x| = 2.
 constexpr double kMaxExponent = 1000;
 
-/// muParser hands numbers to its operators; ours are handles: indices of the expressions built so far. So one library
-/// decides what the text means, and GiNaC sees that meaning instead of reading the text a second time.
+/// muParser passes numbers to its operators; here the numbers are handles: indices of the expressions built so far.
+/// Thus one library parses the text, and GiNaC receives the result instead of parsing the text again.
 class Builder {
  public:
   Builder(const std::string& text, std::optional<double> t) : text_(text), t_(t) {}
@@ -33,7 +33,7 @@ class Builder {
  private:
   struct Node {
     GiNaC::ex e;
-    std::size_t column;  ///< where it starts in the text, 1-based
+    std::size_t column;  ///< start in the text, 1-based
   };
 
   double add(const GiNaC::ex& e, std::size_t column);
@@ -75,7 +75,7 @@ GiNaC::numeric Builder::number(const std::string& digits, std::size_t column) co
   }
 }
 
-/// 0.1 is a tenth, as it would be in the text.
+/// Returns the time as an exact fraction: 0.1 is a tenth, as in the text.
 GiNaC::ex Builder::time() const {
   std::array<char, 32> digits;
   const auto end = std::to_chars(digits.begin(), digits.end(), std::abs(*t_)).ptr;
@@ -83,7 +83,7 @@ GiNaC::ex Builder::time() const {
   return *t_ < 0 ? -n : n;
 }
 
-/// Numbers and names that are not functions. \return whether the text at `s` starts with one.
+/// Reads numbers, and names that are not functions. \return whether the text at `s` starts with one
 int Builder::read_leaf(const char* s, int* pos, double* handle) {
   const std::size_t column = static_cast<std::size_t>(*pos) + 1;
   if (const std::size_t n = length_of_decimal(s); n > 0) {
@@ -108,8 +108,8 @@ int Builder::read_leaf(const char* s, int* pos, double* handle) {
   return 1;
 }
 
-/// The value of what does not depend on x, y, z, also of what GiNaC keeps as it is written, such as 2^pi; none if that
-/// is not real.
+/// Returns the value of an expression that does not depend on x, y, z, even if GiNaC keeps it symbolic, such as 2^pi;
+/// nothing if the value is not real.
 std::optional<double> Builder::constant(const GiNaC::ex& e) const {
   if (GiNaC::is_a<GiNaC::numeric>(e)) return GiNaC::ex_to<GiNaC::numeric>(e).to_double();
   for (const GiNaC::realsymbol& s : symbols_) {
@@ -121,30 +121,30 @@ std::optional<double> Builder::constant(const GiNaC::ex& e) const {
 }
 
 GiNaC::ex Builder::power(const Node& base, const Node& exponent) const {
-  // Before it is computed: CLN would ask for the memory of 9^9^9^9^.3 to the last digit.
+  // Checked before the power is computed: CLN would allocate memory for 9^9^9^9^.3 to the last digit.
   if (const std::optional<double> n = constant(exponent.e)) {
     double decades = 0;
     if (const std::optional<double> b = constant(base.e)) decades = *n * std::log10(std::abs(*b));
     if (std::abs(*n) > kMaxExponent || (std::isfinite(decades) && std::abs(decades) > 300)) {
-      throw ExpressionError(text_, exponent.column, "this power is out of range");
+      throw ExpressionError(text_, exponent.column, "the power is out of range");
     }
   }
   GiNaC::ex e = GiNaC::pow(base.e, exponent.e);
   if (GiNaC::is_a<GiNaC::power>(e) && GiNaC::is_a<GiNaC::numeric>(e.op(1)) &&
       GiNaC::abs(GiNaC::ex_to<GiNaC::numeric>(e.op(1))) > GiNaC::numeric(static_cast<long>(kMaxExponent))) {
-    throw ExpressionError(text_, exponent.column, "this power is out of range");
+    throw ExpressionError(text_, exponent.column, "the power is out of range");
   }
   return e;
 }
 
-/// Runs one operation of GiNaC and gives its refusals a place in the text.
+/// Runs one operation of GiNaC and adds the position in the text to its errors.
 template <class F>
 double Builder::binary(double a, double b, F&& f) {
   const Node left = node(a), right = node(b);
   try {
     const GiNaC::ex e = f(left, right);
     if (const std::optional<double> value = constant(e); value && !std::isfinite(*value)) {
-      throw ExpressionError(text_, left.column, "a constant out of range");
+      throw ExpressionError(text_, left.column, "a constant is out of range");
     }
     return add(e, left.column);
   } catch (const ExpressionError&) {
@@ -210,7 +210,7 @@ const std::pair<const char*, mu::fun_type1> kFunctions[] = {
     {"acos", Callbacks::acos_}, {"atan", Callbacks::atan_}, {"sinh", Callbacks::sinh_}, {"cosh", Callbacks::cosh_},
     {"tanh", Callbacks::tanh_}, {"exp", Callbacks::exp_},   {"log", Callbacks::log_},   {"sqrt", Callbacks::sqrt_}};
 
-/// muParser with nothing in it but the grammar of the header.
+/// Returns a muParser that knows only the grammar of the header.
 mu::Parser grammar() {
   mu::Parser p;
   p.ClearConst();
@@ -230,7 +230,8 @@ mu::Parser grammar() {
   return p;
 }
 
-/// muParser takes everything up to the next blank or bracket for a token, and adds a blank to the text.
+/// Returns the token of an error. muParser takes everything up to the next blank or bracket as a token, and appends a
+/// blank to the text.
 std::string offending_token(const mu::ParserError& e) {
   const std::string& token = e.GetToken();
   if (!token.empty() && std::string("+-*/^").find(token[0]) != std::string::npos) return token.substr(0, 1);
@@ -261,7 +262,7 @@ std::string refusal(const mu::ParserError& e) {
   }
 }
 
-/// What other languages have and a C2 function cannot be made of.
+/// Refuses functions of other languages that are not C2.
 void refuse_kinks(const std::string& text) {
   for (std::size_t k = 0; k < text.size();) {
     std::size_t end = k;
@@ -274,7 +275,7 @@ void refuse_kinks(const std::string& text) {
   }
 }
 
-/// The character that begins at byte k, all of its bytes.
+/// Returns all bytes of the character that begins at byte k.
 std::string character(const std::string& text, std::size_t k) {
   std::size_t n = 1;
   while (k + n < text.size() && (static_cast<unsigned char>(text[k + n]) & 0xc0) == 0x80) ++n;
@@ -285,7 +286,7 @@ GiNaC::ex Builder::build() {
   if (text_.find_first_not_of(" \t") == std::string::npos) throw ExpressionError(text_, 1, "the expression is empty");
   if (text_.size() > kMaxText) throw ExpressionError(text_, kMaxText + 1, "longer than 4096 characters");
   refuse_kinks(text_);
-  for (std::size_t k = 0; k < text_.size(); ++k) {  // muParser has more signs than we do: , ? : = " ...
+  for (std::size_t k = 0; k < text_.size(); ++k) {  // muParser accepts further signs: , ? : = " ...
     const unsigned char c = static_cast<unsigned char>(text_[k]);
     if (!(c < 128 && (std::isalnum(c) || std::string(" \t._+-*/^()").find(text_[k]) != std::string::npos))) {
       throw ExpressionError(text_, k + 1, "unexpected character " + character(text_, k));
@@ -302,7 +303,7 @@ GiNaC::ex Builder::build() {
         return e;
       }
     }
-    throw ExpressionError(text_, 1, "depends on none of x, y, z");
+    throw ExpressionError(text_, 1, "the formula does not depend on x, y or z");
   } catch (const mu::ParserError& e) {
     const long pos = e.GetPos();
     const std::size_t column = pos < 0 ? text_.size() + 1 : std::min<std::size_t>(pos + 1, text_.size() + 1);

@@ -8,14 +8,14 @@
 
 namespace umtet {
 
-/// A formula as GiNaC holds it; all its numbers are exact fractions.
+/// A formula in GiNaC; all its numbers are exact fractions.
 struct SymbolicExpression {
   GiNaC::ex psi;
   std::array<GiNaC::realsymbol, 3> symbols;  ///< x, y, z
 };
 
-/// Reads the grammar that pipeline/expression/expression.h describes.
-/// @param t  the fraction that the shortest decimal number for this double is; without it there is no name t
+/// Parses the grammar that pipeline/expression/expression.h describes.
+/// @param t  converted to the fraction of its shortest decimal number; without it, the name t is unknown
 /// \throw ExpressionError
 SymbolicExpression read_expression(const std::string& text, std::optional<double> t = std::nullopt);
 

@@ -4,7 +4,7 @@
 
 namespace umtet {
 
-// The files of report/ and three.js, put into the program by report/embed.cmake.
+// The files of report/ and three.js, embedded in the program by report/embed.cmake.
 std::string_view report_page_html();
 std::string_view report_page_css();
 std::string_view report_viewer_js();

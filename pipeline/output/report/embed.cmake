@@ -1,5 +1,5 @@
-# cmake -DOUT=FILE.cpp "-DFILES=function=path|function=path" -P embed.cmake: each file as a function of
-# detail/report_sources.h. As numbers: compilers may refuse literals so long.
+# cmake -DOUT=FILE.cpp "-DFILES=function=path|function=path" -P embed.cmake: writes each file as a function of
+# detail/report_sources.h. The bytes are numbers, because compilers may refuse such long literals.
 string(REPLACE "|" ";" FILES "${FILES}")
 file(WRITE "${OUT}.new" "#include \"pipeline/output/detail/report_sources.h\"\n\nnamespace umtet {\n")
 foreach(entry IN LISTS FILES)

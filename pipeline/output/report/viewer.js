@@ -1,10 +1,10 @@
-// The view of a mesh: reads the arrays in the page (report_scene.h says what they hold) and draws them when something
-// has changed. What a test wants to know is left in the data- attributes of <body>.
+// The view of a mesh: reads the arrays in the page (see report_scene.h) and draws them when something
+// has changed. The data- attributes of <body> contain data for tests.
 "use strict";
 (function () {
   const $ = (id) => document.getElementById(id);
   const state = document.body.dataset;
-  // Milliseconds since the page was asked for.
+  // Milliseconds since the page was requested.
   const marks = {};
   const mark = (name) => {
     marks[name] = Math.round(performance.now());
@@ -21,7 +21,7 @@
     return b;
   }
   const has = (name) => $("block-" + name) !== null;
-  // Decoded when it is first asked for: the surface is on the screen before anybody cuts it open.
+  // Decodes data at the first use, so that the surface appears before it can be cut.
   const once = (make) => {
     let made;
     return () => made === undefined ? (made = make()) : made;
@@ -30,7 +30,7 @@
     const b = bytes(name);
     return info.index_bytes === 2 ? new Uint16Array(b.buffer) : new Uint32Array(b.buffer);
   };
-  // Places relative to the middle of the box: single precision is enough for them.
+  // Returns positions relative to the middle of the box, for which single precision suffices.
   function places(name) {
     const steps = new Uint16Array(bytes(name).buffer);
     const x = new Float32Array(steps.length);
@@ -38,10 +38,10 @@
     return x;
   }
 
-  // Viridis: even steps for every kind of eye, and in grey.
+  // Viridis: perceptually uniform, also in grey and for colour-blind readers.
   const kStops = ["440154", "482878", "3e4989", "31688e", "26828e", "1f9e89", "35b779", "6ece58", "b5de2b", "fde725"];
   const kPatches = ["0072b2", "e69f00", "009e73", "cc79a7", "56b4e9", "d55e00", "f0e442", "999999"];
-  const kAlarm = [235, 110, 20];  // seen on light and dark, beside grey
+  const kAlarm = [235, 110, 20];  // visible on light and dark backgrounds, and next to grey
   const rgb = (hex) => [0, 2, 4].map((k) => parseInt(hex.substr(k, 2), 16));
   const ramp = [];
   for (let v = 0; v < 256; ++v) {
@@ -50,7 +50,7 @@
     ramp.push(a.map((c, i) => Math.round(c + (at - k) * (b[i] - c))));
   }
   const reversed = ramp.slice().reverse();
-  // Grey where there are samples, and from yellow to dark red where none supports the surface.
+  // Grey near samples, and yellow to dark red where no sample supports the surface.
   const kGuess = [[254, 196, 79], [236, 112, 20], [140, 20, 4]], kBacked = [[206, 214, 222], [120, 138, 156]];
   const blend = (a, b, s) => a.map((c, i) => Math.round(c + s * (b[i] - c)));
   const support = [];
@@ -64,18 +64,18 @@
   for (let v = 0; v < 256; ++v) patchColours.push(rgb(kPatches[v % kPatches.length]));
   const plain = new Array(256).fill([226, 196, 128]);
 
-  // What the samples carry: viridis up to 254, and grey where it is not known.
+  // Data of the samples: viridis up to 254, and grey where they are unknown.
   const kNoValue = 255, kUnknown = [150, 155, 165];
   const known = ramp.map((c, v) => v === kNoValue ? kUnknown : ramp[Math.round(v * 255 / 254)]);
   const fields = info.fields.map((f, k) => ({
     id: "field_" + k, name: f.name, legend: f.name, field: f, vertex: "vertex_field_" + k, ramp: f.of_colours ? null : known,
   }));
 
-  // Bright is good: small distances at the bright end.
+  // Bright is good: small distances are at the bright end.
   const kinds = [
     {id: "quality", name: "quality (mean ratio)", key: "quality", face: "face_quality", ramp: ramp},
     {id: "deviation", name: "deviation of face centres", legend: "deviation of face centres", key: "deviation", face: "face_deviation", ramp: reversed},
-    {id: "support", name: "support (next sample)", legend: "distance to the next sample", key: "support", vertex: "vertex_support", ramp: support},
+    {id: "support", name: "support (nearest sample)", legend: "distance to the nearest sample", key: "support", vertex: "vertex_support", ramp: support},
     {id: "size", name: "edge length", legend: "mean edge length", key: "edge_length", vertex: "vertex_edge_length", ramp: ramp},
     {id: "patch", name: "patch", face: "face_patch", ramp: patchColours},
     ...fields,
@@ -99,7 +99,7 @@
      X[3 * list[4 * k + 3] + axis]) / 4;
   const kTetFaces = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
-  // Triangles that share no corners: each has colours of its own, and weights that tell how near an edge is.
+  // Triangles that share no corners: each has its own colours, and weights that measure the distance to an edge.
   function Soup(capacity) {
     const position = new Float32Array(9 * capacity), colour = new Uint8Array(9 * capacity);
     let n = 0;
@@ -149,7 +149,7 @@
           float light = 0.42 + 0.63 * abs(dot(n, normalize(vec3(0.25, 0.45, 1.0))));
           vec3 d = corner / max(fwidth(corner), 1e-9);
           float line = 1.0 - smoothstep(0.3, 1.3, min(min(d.x, d.y), d.z));
-          // Where triangles are a few pixels wide, their edges would be all that is seen.
+          // Where triangles are only a few pixels wide, their edges would hide everything else.
           float size = 1.0 / max(max(fwidth(corner.x), fwidth(corner.y)), fwidth(corner.z));
           line *= edges * 0.55 * smoothstep(2.0, 9.0, size);
           gl_FragColor = vec4(mix(tint * light, vec3(0.05), line), opacity);
@@ -173,12 +173,12 @@
   renderer.setClearColor(0, 0);
   const world = new THREE.Scene();
   const camera = new THREE.PerspectiveCamera(28, 1, 0.01, 100);
-  // The surface lies on the faces of tets behind it: it is drawn a hair in front.
+  // The surface lies on the faces of tets behind it, so it is drawn slightly in front.
   const surface = new THREE.Mesh(new THREE.BufferGeometry(),
                                  material({polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -1}));
   const inside = new THREE.Mesh(new THREE.BufferGeometry(), material({}));
   const radius = Math.max(Math.hypot(...info.box_size) / 2, 1e-300);
-  // Half of the samples are behind the flat faces that they made: they are drawn a little nearer.
+  // Half of the samples are behind the flat faces made from them, so they are drawn slightly closer.
   const cloud = new THREE.Points(new THREE.BufferGeometry(), new THREE.ShaderMaterial({
     vertexShader: `
       void main() {
@@ -215,9 +215,9 @@
     const behind = (list, k) => !cut || cut.sign * centroid(list, k, cut.axis) <= cut.at;
     const shell = new Soup(nFaces), values = kind.bytes(), grey = [150, 155, 165];
     const tint = (v) => worst || !kind.ramp ? grey : kind.ramp[v];
-    // Of vertices the value is linear on a face, not the colour: bounds between colours are where the value is.
+    // Values at vertices, not colours, are linear on a face, so that boundaries between colours are at the correct values.
     const ramped = Boolean(kind.vertex && kind.ramp) && !worst;
-    // A face with a corner of no value has none.
+    // A face with a corner without a value has no value.
     const unknown = (corners) => kind.field && corners.some((v) => values[v * (kind.ramp ? 1 : 3)] === kNoValue);
     const coloured = (v) => [0, 1, 2].map((k) => Math.round(values[3 * v + k] * 255 / 254));
     surface.material.uniforms.ramped.value = ramped ? 1 : 0;
@@ -255,7 +255,7 @@
     }
   }
 
-  // The worst ones alone, or those at the cut.
+  // The worst tets alone, or the tets at the cut.
   function tetsInside(cut, nWorst, behind) {
     const T = tets(), Q = tetQuality(), taken = [];
     const drawn = (t) => {
@@ -291,17 +291,17 @@
     if (kind.id === "support") supportLegend(add);
   }
 
-  // Where on the bar the guess begins, in words.
+  // States where on the bar the guess begins.
   function supportLegend(add) {
     const far = number(info.support_radius), note = add("name", $("legend"));
     if (guessFrom === 1) {
-      note.textContent = `no place is farther than ${far} (3 spacings) from every sample`;
+      note.textContent = `no point is farther than ${far} (3 spacings) from the nearest sample`;
       return;
     }
-    note.textContent = `yellow to red: a guess, farther than ${far} (3 spacings) from every sample`;
+    note.textContent = `yellow to red: a guess, farther than ${far} (3 spacings) from the nearest sample`;
   }
 
-  // The largest patches by name, with their shares of the area.
+  // Lists the largest patches by name, with their shares of the area.
   function patchLegend(add) {
     const whole = info.patches.reduce((sum, p) => sum + p.area, 0), kMost = 16;
     const order = info.patches.map((p, k) => k).sort((a, b) => info.patches[b].area - info.patches[a].area || a - b);
@@ -315,21 +315,21 @@
     if (order.length > kMost) add("name", $("legend")).textContent = `and ${order.length - kMost} smaller patches`;
   }
 
-  // A turntable around a target: angles, distance over that of home, target.
+  // A turntable around a target: angles, distance relative to the home position, target.
   const kHome = {turn: 0.6, lift: 0.35, away: 1};
   let eye = Object.assign({x: 0, y: 0, z: 0}, kHome);
   function axes() {
     const up = Number($("up").value), e = (k) => new THREE.Vector3().setComponent(k % 3, 1);
     return {up: e(up), right: e(up + 1), front: e(up + 2)};
   }
-  /** Towards the camera. */
+  /** The direction towards the camera. */
   function back(a, {turn, lift}) {
     const cos = Math.cos(lift);
     return new THREE.Vector3().addScaledVector(a.front, cos * Math.cos(turn)).addScaledVector(a.right, cos * Math.sin(turn))
       .addScaledVector(a.up, Math.sin(lift));
   }
   const kSlope = Math.tan(camera.fov * Math.PI / 360);
-  /** The least distance from which all of the body is seen, with a margin of a twentieth. */
+  /** The minimum distance from which the whole body is visible, with a margin of a twentieth. */
   function homeDistance(a) {
     const of = `${$("up").value} ${camera.aspect}`;
     if (homeDistance.of === of) return homeDistance.is;
@@ -365,7 +365,7 @@
     renderer.render(world, camera);
   }
 
-  // How many pixels are not background, once, for who wants to know whether there is a picture.
+  // Counts the pixels that are not background, once, so that a test can check whether there is a picture.
   function ready() {
     const gl = renderer.getContext(), w = gl.drawingBufferWidth, h = gl.drawingBufferHeight;
     const pixels = new Uint8Array(4 * w * h);
@@ -407,8 +407,8 @@
     eye.away = Math.max(0.02, Math.min(5, eye.away * Math.exp(0.001 * e.deltaY)));
     draw();
   }, {passive: false});
-  // A place of the surface: the camera looks at it from outside, so near that it fills a third. Its faces are those of
-  // which no corner is left out.
+  // Shows a region of the surface: the camera looks at it from outside, so close that it fills a third of the view. Its
+  // faces are the faces without an omitted corner.
   function lookAt(where, wide, isLeftOut) {
     $("axis").value = "";
     $("worst").checked = false;
@@ -456,7 +456,7 @@
   });
   window.addEventListener("resize", draw);
 
-  // Of a large mesh only the tets at the middle planes are here.
+  // The page contains only tets at the middle planes of a large mesh.
   if (info.planes !== null) {
     for (const option of Array.from($("axis").options)) {
       if (option.value !== "" && !info.planes.includes(Number(option.value))) option.remove();
@@ -464,7 +464,7 @@
     $("place").disabled = true;
   }
   $("worst-number").max = info.n_worst;
-  // #colour=patch&axis=0&worst=1: a view to open with; #hole=1: the first one that was closed; #spot=1: the first place.
+  // #colour=patch&axis=0&worst=1: the initial view; #hole=1: the first hole that was closed; #spot=1: the first defect.
   const asked = new URLSearchParams(location.hash.slice(1));
   const hole = holes[Number(asked.get("hole")) - 1], spot = spots[Number(asked.get("spot")) - 1];
   if (hole) showHole(hole);

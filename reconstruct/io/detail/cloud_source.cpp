@@ -2,17 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 namespace umtet::detail {
 
-void refuse(const CloudSource& source, const std::string& what) { throw CloudRefused(source.name + ": " + what); }
-
-std::string in_quotes(std::string_view text) {
-  constexpr std::size_t kShown = 40;
-  std::string shown(text.substr(0, kShown));
-  for (char& c : shown)
-    if (c < ' ' || c > '~') c = '?';
-  return fmt::format("'{}{}'", shown, text.size() > kShown ? "..." : "");
-}
+void refuse(const CloudSource& source, Message what) { throw CloudRefused(source.name + ": " + std::move(what)); }
 
 void refuse_surplus(const CloudSource& source, std::size_t offset) {
   if (offset < source.bytes.size()) refuse_surplus(source, source.bytes.substr(offset), offset);

@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "common/in_quotes.h"
+#include "common/message.h"
 #include "reconstruct/io/point_cloud_io.h"
 
 namespace umtet::detail {
@@ -23,12 +25,11 @@ struct CloudSource {
   std::size_t size() const { return bytes.size() + bytes_left_out; }  ///< size of the file
 };
 
-/// Rejects the file. \throw CloudRefused  always: "NAME: what"
-[[noreturn]] void refuse(const CloudSource& source, const std::string& what);
+/// The argument `columns` of read_scan(), as messages name it.
+inline constexpr Option kColumns{"columns"};
 
-/// A piece of a file in a form that is safe on a terminal: quoted, clipped to 40 characters, with '?' for unprintable
-/// bytes.
-std::string in_quotes(std::string_view text);
+/// Rejects the file. \throw CloudRefused  always: "NAME: what"
+[[noreturn]] void refuse(const CloudSource& source, Message what);
 
 /// Checks the end of the data. \throw CloudRefused for anything but blanks and NUL padding from `offset` on: a count of
 /// the header is then wrong

@@ -60,6 +60,17 @@ TEST(InputJudgement, AMeshThatHasAllSamplesPasses) {
   EXPECT_FALSE(c.blame);
 }
 
+TEST(InputJudgement, NoiseThatHidesDetailsIsNamed) {
+  MeshMeasures m = right();
+  m.cloud->noise = .2 * kH;
+  EXPECT_EQ(judged(m).verdict.word(), "pass");
+  m.cloud->noise = .3 * kH;
+  const Verdict noisy = judged(m).verdict;
+  EXPECT_EQ(noisy.word(), "pass with 1 defect named");
+  EXPECT_TRUE(noisy.fits_input);
+  EXPECT_NE(noisy.defects.at(0).find("noise of the samples is 0.3 h"), std::string::npos) << noisy.defects.at(0);
+}
+
 TEST(InputJudgement, NothingWithDeeplyMissedSamplesIsAPlainPass) {
   EXPECT_EQ(judged(missing(9, 2)).verdict.word(), "pass") << "single samples";
   EXPECT_EQ(judged(missing(15, 2)).verdict.word(), "pass with 1 defect named");

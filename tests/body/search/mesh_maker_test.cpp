@@ -125,7 +125,7 @@ TEST(MeshMaker, WhereNoOneEdgeLengthDoesEdgesFollowTheBody) {
     };
     std::vector<std::string> said;
     MeshMaker maker(domain, body_options(parameters), {},
-                    {.say = [&](const std::string& line) { said.push_back(line); }});
+                    {.say = [&](const Message& line) { said.push_back(text_of(line)); }});
     const MeshAttempt best = maker.best(backgrounds, choice, make);
     ASSERT_TRUE(best.made());
     const bool may_be_graded = std::string(background) == "auto";

@@ -108,7 +108,7 @@ std::string complaint_about(const std::string& size, const std::vector<std::stri
 
 TEST(GradedSizes, AFormulaThatIsNoLengthInTheBodyIsRefusedWithAPlace) {
   const std::string said = complaint_about("x-1000");
-  EXPECT_NE(said.find("--size x-1000 is -"), std::string::npos) << said;
+  EXPECT_NE(said.find("sizes = x-1000 is -"), std::string::npos) << said;
   EXPECT_NE(said.find("at (999"), std::string::npos) << said;
   EXPECT_NE(complaint_about(".5-(x-1000)^2-y^2-z^2"), "");  // on the boundary alone
   EXPECT_NE(complaint_about("(x-1000)^2+y^2+z^2-.3"), "");  // inside alone

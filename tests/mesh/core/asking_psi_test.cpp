@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "mesh/certify/certificate.h"
-#include "mesh/certify/quadratic_tets.h"
 #include "mesh/implicit/thickness.h"
 #include "mesh/implicit/zero_set.h"
+#include "mesh/second_order/quadratic_tets.h"
 #include "mesh/sizes/body_size.h"
 #include "mesh/universal_mesh.h"
 #include "tests/support/domains.h"

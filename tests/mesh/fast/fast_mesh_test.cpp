@@ -9,7 +9,7 @@
 #include <random>
 
 #include "mesh/core/tet_quality.h"
-#include "mesh/fast/patch_state.h"
+#include "mesh/fast/defects/patch_state.h"
 #include "mesh/octree/graded_mesh.h"
 #include "mesh/sizes/body_size.h"
 #include "tests/support/bench_domains.h"

@@ -16,7 +16,7 @@
 #include <system_error>
 #include <vector>
 
-#include "mesh/io/detail/fixed_width.h"
+#include "mesh/io/detail/solvers/fixed_width.h"
 #include "mesh/io/msh_piece.h"
 #include "mesh/io/patches.h"
 #include "tests/support/file_size_limit.h"

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <string>
 
-#include "mesh/certify/quadratic_tets.h"
+#include "mesh/second_order/quadratic_tets.h"
 #include "tests/support/domains.h"
 #include "tests/support/mesh_files.h"
 

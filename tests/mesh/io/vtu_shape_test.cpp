@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -20,11 +19,7 @@ namespace {
 
 template <class T>
 std::string text_of(const std::vector<T>& values) {
-  const std::uint64_t n = values.size() * sizeof(T);
-  std::vector<unsigned char> bytes(8 + n);
-  std::memcpy(bytes.data(), &n, 8);
-  std::memcpy(bytes.data() + 8, values.data(), n);
-  return base64(bytes.data(), bytes.size());
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
 TEST(VtuShape, SaysWhereWriteVtuPutsEverything) {
@@ -60,7 +55,7 @@ TEST(VtuShape, SaysWhereWriteVtuPutsEverything) {
   for (const auto& [at, text] : shape.texts) made.replace(at, text.size(), text);
   for (const VtuShape::Array& a : shape.arrays) {
     const std::string& text = arrays.at(a.name);
-    ASSERT_EQ(text.size(), (a.n_encoded() + 2) / 3 * 4) << a.name;
+    ASSERT_EQ(text.size(), a.n_bytes) << a.name;
     made.replace(a.begin, text.size(), text);
   }
   const std::filesystem::path file = std::filesystem::temp_directory_path() / "umtet_vtu_shape.vtu";
@@ -76,7 +71,7 @@ TEST(VtuShape, IdsBeyondTwoToThe31AreWide) {
   EXPECT_TRUE(shape.has_wide_ids);
   EXPECT_EQ(shape.arrays[2].name, "connectivity");
   EXPECT_EQ(shape.arrays[2].n_bytes, 32 * n);
-  EXPECT_GT(shape.arrays[3].begin, 4 * (32 * n / 3));
+  EXPECT_GT(shape.arrays[1].begin, 32 * n);
 }
 
 }  // namespace

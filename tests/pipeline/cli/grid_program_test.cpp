@@ -82,7 +82,7 @@ TEST_F(Program, AKernelIsUsedWhereItIsAskedFor) {
   write_nrrd<unsigned char>(folder / "mask.nrrd", "uchar", 48, is_in_sphere);
   const Result r = run("mesh --level-set mask.nrrd --part-smooth 1 -o mask --h .12");
   ASSERT_EQ(r.code, 0) << r.err;
-  EXPECT_NE((r.out + r.err).find("made smooth over 1 voxels (--part-smooth)"), std::string::npos) << r.out << r.err;
+  EXPECT_NE((r.out + r.err).find("smoothed over 1 voxels (--part-smooth)"), std::string::npos) << r.out << r.err;
   EXPECT_EQ(labels_of(folder / "mask/certificate.json")["kernel"], 1);
 }
 
@@ -121,7 +121,7 @@ TEST_F(Program, TheSideOfALevelIsTheOneThatDoesNotReachTheWall) {
     EXPECT_NEAR(Json::parse(r.out)["certificate"]["volume"].get<double>(), kVolume * .343, .05) << level;
   }
   const Result below = run("run ct.nrrd -o below --h .2 --json --level :500");
-  EXPECT_NE(below.err.find("add --above"), std::string::npos) << below.err;
+  EXPECT_NE(below.err.find("give --above"), std::string::npos) << below.err;
   EXPECT_EQ(run("run ct.nrrd -o ct --level 5:3").code, 2);
   EXPECT_EQ(run("run ct.nrrd -o ct --level :500 --above").code, 2);
 }

@@ -41,13 +41,13 @@ TEST_F(Program, UsageErrorsNameThePlaceAndTheRemedy) {
       {"mesh --implicit 'x^2+y^2-1' -o a", "--box"},
       {"run egg.ply -o a --smoth 1", "did you mean --smooth?"},
       {"run egg.ply -o a --tet 1000", "did you mean --tets?"},
-      {"mesh egg --spacing 1", "--spacing; it belongs to umtet run, umtet reconstruct, "},
+      {"mesh egg --spacing 1", "--spacing; it is a flag of umtet run, umtet reconstruct, "},
       {"run egg.ply -o a --set mesh.sampels=1", "did you mean mesh.samples?"},
-      {"run egg.ply -o a --tets 10 --h 1", "exclude each other"},
+      {"run egg.ply -o a --tets 10 --h 1", "mutually exclusive"},
       {"run egg.ply -o a --mode quick", "fast, paper only"},
       {"run egg.ply -o a --background bcc", "must be a15, z, slab, cube, graded, auto or"},
       {"run egg.ply -o a --from mehs", "did you mean mesh?"},
-      {"mesh --implicit 'x^2+y^2+z^2-1' --box -2,-2,-2,2,2,2", "-o CASE is missing: a formula has no name"},
+      {"mesh --implicit 'x^2+y^2+z^2-1' --box -2,-2,-2,2,2,2", "-o CASE is missing: a formula has no file name"},
       {"run egg.ply -o a --columns x,y", "x, y and z must be among them"},
       {"run", "CLOUD is missing"},
       {"rum egg.ply -o a", "did you mean run?"},
@@ -84,7 +84,7 @@ TEST_F(Program, WhatHasNoEndOrTakesTooMuchIsRefusedAtOnce) {
     EXPECT_NE(r.err.find("large: too large"), std::string::npos) << arguments << "\n" << r.err;
   }
   std::ofstream(folder / "long") << std::string(1 << 20, 'x');
-  EXPECT_NE(run("batch long -o a", at_once).err.find("a line longer than any path"), std::string::npos);
+  EXPECT_NE(run("batch long -o a", at_once).err.find("a line is longer than any path"), std::string::npos);
   EXPECT_FALSE(fs::exists(folder / "a"));
   const Result many = run("mesh --implicit 'x^2+y^2+z^2-1' --box -1.3,-1.3,-1.3,1.3,1.3,1.3 --tets 1e11 -o a", at_once);
   EXPECT_EQ(many.code, 9) << many.err;
@@ -253,7 +253,7 @@ TEST_F(Program, AThinPartIsGradedWhereThatTakesLessThanHalfTheTets) {
   write_dumbbell(folder / "dumbbell.xyz");
   const Result r = run("run dumbbell.xyz -o dumbbell --no-report --json");
   ASSERT_EQ(r.code, 0) << r.err;
-  EXPECT_NE(r.err.find("mesh: graded, with edges from"), std::string::npos) << r.err;
+  EXPECT_NE(r.err.find("mesh: graded, with edges of at least"), std::string::npos) << r.err;
   const Json certificate = Json::parse(std::ifstream(folder / "dumbbell/certificate.json"));
   EXPECT_EQ(certificate["boundary"]["genus"], 0);
   EXPECT_EQ(certificate["boundary"]["components"], 1);

@@ -171,7 +171,7 @@ TEST_F(Program, TheCaseOfAFileIsItsStemUnlessThatIsSomethingElse) {
   fs::copy_file(cloud, folder / "scan");
   std::ofstream(folder / "scan.xyz") << "0 0 0\n";
   for (const auto& [call, why] : {std::pair{"run there/egg.ply", "egg is the case of"},
-                                  {"run notes.ply", "notes is a folder, and no case"},
+                                  {"run notes.ply", "notes is a folder but not a case"},
                                   {"reconstruct scan.xyz", "scan is a file"},
                                   {"run scan", "scan is a file"}}) {
     const Result refused = run(call);

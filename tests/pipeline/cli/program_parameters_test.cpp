@@ -104,7 +104,7 @@ TEST_F(ProgramParameters, AMeshOfAFormerLevelSetIsNotHandedOut) {
   for (const char* call : {"export egg --format inp", "report egg", "view egg"}) {
     const Result r = run(call);
     EXPECT_EQ(r.code, 2) << call << r.err;
-    EXPECT_TRUE(mentions(r, "the stage level-set was made again since")) << call << r.err;
+    EXPECT_TRUE(mentions(r, "the stage level-set has been made again since")) << call << r.err;
     EXPECT_TRUE(mentions(r, "`umtet run egg`")) << call << r.err;
   }
   EXPECT_EQ(files_of("egg"), before);

@@ -127,7 +127,7 @@ TEST_F(Program, TheNumberOfTetsIsMadeAlsoInALargeBoxAndReported) {
   const Json c = Json::parse(r.out)["certificate"];
   EXPECT_NEAR(c["n_tets"].get<double>(), 600, 100);
   EXPECT_EQ(c["n_tets_asked"], 600);
-  EXPECT_NE(run("mesh a").out.find("(asked for 600)"), std::string::npos);
+  EXPECT_NE(run("mesh a").out.find("(requested: 600)"), std::string::npos);
 }
 
 TEST_F(Program, AFewOutliersMakeABubbleThatIsLeftOut) {

@@ -101,8 +101,8 @@ TEST_F(Program, ADeviationThatCannotBeKeptIsNoPass) {
 }
 
 TEST_F(Program, TheWaysToChooseHExcludeEachOther) {
-  const std::pair<const char*, const char*> cases[] = {{"--max-deviation .1 --h .1", "exclude each other"},
-                                                       {"--max-deviation .1 --tets 100", "exclude each other"},
+  const std::pair<const char*, const char*> cases[] = {{"--max-deviation .1 --h .1", "mutually exclusive"},
+                                                       {"--max-deviation .1 --tets 100", "mutually exclusive"},
                                                        {"--max-deviation -1", "must be in"},
                                                        {"--max-deviation nan", "must be in"},
                                                        {"--max-deviation 1mm", "not a number"},

@@ -51,8 +51,8 @@ TEST_F(TrianglesProgram, SoupsEndCertifiedWithTheGenusOfTheBody) {
     EXPECT_LT(c["triangles"]["rms_distance"], .12 * .05);
     if (name != "overlap") EXPECT_LT(c["triangles"]["max_distance"], .12 * .6);  // over a gap
     EXPECT_LT(c["triangles"]["rms_distance_back"], .12 * (name == "overlap" ? .2 : .05));
-    if (name == "turned" || name == "all") EXPECT_NE(r.err.find("look outward"), std::string::npos) << r.err;
-    if (name == "overlap") EXPECT_NE(r.err.find("inside of the body"), std::string::npos) << r.err;
+    if (name == "turned" || name == "all") EXPECT_NE(r.err.find("face outward"), std::string::npos) << r.err;
+    if (name == "overlap") EXPECT_NE(r.err.find("inside the body"), std::string::npos) << r.err;
     if (name == "clean") EXPECT_EQ(triangles_of(name)["n_turned"], 0);
   }
 }

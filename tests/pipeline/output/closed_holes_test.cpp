@@ -53,7 +53,7 @@ TEST_F(Holes, AHoleIsNamed) {
   write_ball_with_a_hole("ball.xyz");
   const Result r = run("run ball.xyz -o ball --tets 20000 --units mm --export inp,msh22");
   ASSERT_EQ(r.code, 0) << r.err;
-  EXPECT_NE(r.out.find("\nholes     1 closed where no sample is: "), std::string::npos) << r.out;
+  EXPECT_NE(r.out.find("\nholes     1 closed where there are no samples: "), std::string::npos) << r.out;
   const Json domain = certificate("ball")["domain"];
   EXPECT_EQ(domain["n_closed_holes"], 1);
   ASSERT_EQ(domain["closed_holes"].size(), 1u);

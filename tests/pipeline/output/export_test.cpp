@@ -153,7 +153,7 @@ TEST_F(Export, NamesAreCheckedBeforeAnythingIsMade) {
   ASSERT_EQ(run("run labelled.ply -o egg --tets 3000 --label-names 4=Feet").code, 0);
   const Result none = run("export egg --format stl --label-names 5=Feet");
   EXPECT_EQ(none.code, 2);
-  EXPECT_NE(none.err.find("there are 2, 4"), std::string::npos) << none.err;
+  EXPECT_NE(none.err.find("the labels are 2, 4"), std::string::npos) << none.err;
   // The names of the run hold until others are given.
   ASSERT_EQ(run("export egg --format stl").code, 0);
   EXPECT_TRUE(fs::exists(folder / "egg/4-export/mesh.Feet.stl"));

@@ -83,7 +83,7 @@ TEST_F(DenseClouds, AreMergedAgainForAFinerMesh) {
   EXPECT_EQ(run("run dense.ply -o case --h .12 --no-report").err.find("cloud: done"), std::string::npos);
   const Result finer = run("run dense.ply -o case --h .035 --no-report");
   ASSERT_EQ(finer.code, 0) << finer.err;
-  EXPECT_NE(finer.err.find("made as fine as another mesh needs"), std::string::npos) << finer.err;
+  EXPECT_NE(finer.err.find("made for a mesh of another resolution"), std::string::npos) << finer.err;
   const Json numbers = record(folder / "case/1-cloud")["numbers"];
   EXPECT_LE(numbers.value("/merged/cell"_json_pointer, 0.), cell);
   EXPECT_LT(record(folder / "case/2-level-set")["numbers"]["spacing"], .8 * .035);

@@ -232,7 +232,7 @@ TEST_F(TextCloud, ExtensionsNameSixColumns) {
     body += fmt::format("{} {} {} {} {} {}\n", x.x(), x.y(), x.z(), n.x(), n.y(), n.z());
   }
   for (const char* name : {"a.xyzn", "a.npts"}) expect(name, body, "xyz n");
-  EXPECT_NE(refusal("a.xyz", body).find("--columns"), std::string::npos);
+  EXPECT_NE(refusal("a.xyz", body).find("give columns"), std::string::npos);
   expect("a.xyzrgb", rows(cloud_, "xyz f"), "xyz f");
   expect("a.xyzrgb", rows(cloud_, "xyz c"), "xyz c");
   for (const char* name : {"a.dat", "a.tab", "a", "a.TXT"}) expect(name, rows(cloud_, "xyz n"), "xyz n");
@@ -263,7 +263,7 @@ TEST_F(TextCloud, WhatCannotBeGuessedAsksForColumns) {
     constant += fmt::format("{} {} {} 0 0 1\n", x.x(), x.y(), x.z());
   }
   const std::string text = refusal("a.xyz", unknown);
-  for (const char* part : {"a.xyz", "line 1", "columns 4 to 6", "--columns x,y,z,nx,ny,nz"})
+  for (const char* part : {"a.xyz", "line 1", "columns 4 to 6", "give columns = x,y,z,nx,ny,nz"})
     EXPECT_NE(text.find(part), std::string::npos) << text;
   expect("a.xyz", unknown, "xyz", "x,y,z");
   EXPECT_EQ(scan("a.xyz", unknown, "x,y,z,u,v,w").cloud.fields.size(), 3u);
@@ -282,15 +282,14 @@ TEST_F(TextCloud, ColumnsThatAreToldOverruleHeadersAndValues) {
   expect("a.txt", body, "xyz n c", "x;y;z;nx;ny;nz;red;green;blue");
   const CloudFile turned = scan("a.txt", body, "z,x,y");
   EXPECT_EQ(turned.cloud.points[5], Vec3(cloud_.points[5].y(), cloud_.points[5].z(), cloud_.points[5].x()));
-  EXPECT_NE(turned.report.columns.find("as --columns says"), std::string::npos) << turned.report.columns;
+  EXPECT_NE(turned.report.columns.find("as given"), std::string::npos) << turned.report.columns;
   EXPECT_EQ(scan("a.txt", rows(cloud_, "xyz l"), "x,y,z,label").cloud.labels.size(), kPoints);
   EXPECT_EQ(scan("a.txt", rows(cloud_, "xyz l"), "x,y,z,intensity").cloud.fields.size(), 1u);
   // A word stands in a column that is left out.
   expect("a.txt", rows(cloud_, "xyz t n"), "xyz n", "x,y,z,-,nx,ny,nz");
-  EXPECT_NE(refusal("a.txt", rows(cloud_, "xyz n"), "x,y,z,nx,ny,nz,i").find("6 columns, but --columns names 7"),
+  EXPECT_NE(refusal("a.txt", rows(cloud_, "xyz n"), "x,y,z,nx,ny,nz,i").find("6 columns, but columns names 7"),
             std::string::npos);
-  EXPECT_NE(refusal("a.ply", ply("ascii") + text_, "x,y,z").find("--columns is about tables in text"),
-            std::string::npos);
+  EXPECT_NE(refusal("a.ply", ply("ascii") + text_, "x,y,z").find("columns is about tables in text"), std::string::npos);
   for (const char* fits : {"", "x,y,z", "-,z,y,x", "x y z nx ny nz intensity", "X,Y,Z,a,b"})
     EXPECT_EQ(problem_of_columns(fits), "") << fits;
   for (const char* bad : {"x,y", "a,b,c", "x,y,z,x", "x,y,z,heat,heat", ","})
@@ -355,7 +354,7 @@ TEST_F(TextCloud, RefusalsNameFileLineColumnAndRemedy) {
       {"one.asc", "a\n1\n2\n", {"line 3", "1 column"}},
       {"head.csv",
        "x,y,z,nx\n" + rows(cloud_, "xyz n", {","}),
-       {"line 1", "4 names", "line 2", "6 columns", "--columns"}},
+       {"line 1", "4 names", "line 2", "6 columns", "give columns"}},
       {"words.txt", "this is\na letter\n", {"line 1", "no row of three or more numbers"}},
       {"first.xyz", "1 2 x\n" + body, {"line 1", "column 3", "'x'"}},
       {"binary.xyz", std::string("\x01\x02\x03\0\x04\n", 6), {"line 1", "no table of points"}},

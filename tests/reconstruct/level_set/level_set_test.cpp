@@ -237,21 +237,30 @@ TEST(LevelSetIo, BandsComeBackBitEqual) {
   std::filesystem::remove(file);
 }
 
-// VTK's reader follows a null pointer, allocates what is announced, or leaves arrays as they were: none of this gets
-// there.
-TEST(LevelSetIo, RefusesWhatVtkWouldNotSurvive) {
+std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// As this version writes it, and as 0.9 did, in base64.
+TEST(LevelSetIo, RefusesWhatContradictsItself) {
   const std::filesystem::path file = scratch("hostile.vti");
   write_level_set(file, torus_level_set());
-  std::ifstream in(file, std::ios::binary);
-  const std::string good((std::istreambuf_iterator<char>(in)), {});
+  const std::string raw = bytes_of(file);
+  const std::string base64 = bytes_of(std::filesystem::path(UMTET_SOURCE_DIR) / "tests/corpus/files/level_set/one.vti");
   using Change = std::pair<const char*, const char*>;
-  for (const auto& [from, to] :
-       {Change{"Float64", "Float42"}, Change{"Float64", "Float32"},
-        Change{"NumberOfTuples=\"7\"", "NumberOfTuples=\"4000000000\""},
-        Change{"WholeExtent=\"0 ", "WholeExtent=\"0 4000000000"}, Change{"Piece Extent=\"0 ", "Piece Extent=\"0  "},
-        Change{"</PointData>", "</CellData>"}, Change{"AAAA", "AAA"},
-        Change{"format=\"binary\"", "format=\"appended\" offset=\"9\""}, Change{"<?xml", "<!DOCTYPE x><?xml"}}) {
-    std::string text = good;
+  const std::vector<Change> of_both = {
+      {"Float64", "Float42"},
+      {"Float64", "Float32"},
+      {"NumberOfTuples=\"7\"", "NumberOfTuples=\"4000000000\""},
+      {"WholeExtent=\"0 ", "WholeExtent=\"0 4000000000"},
+      {"Piece Extent=\"0 ", "Piece Extent=\"0  "},
+      {"</PointData>", "</CellData>"},
+      {"type=\"ImageData\"", "type=\"ImageData\" compressor=\"vtkZLibDataCompressor\""},
+      {"LittleEndian", "BigEndian"},
+      {"<?xml", "<!DOCTYPE x><?xml"}};
+  const auto expect_refused = [&](std::string text, const Change& change) {
+    const auto& [from, to] = change;
     ASSERT_NE(text.find(from), std::string::npos) << from;
     text.replace(text.find(from), std::string(from).size(), to);
     std::ofstream(file, std::ios::binary) << text;
@@ -261,7 +270,16 @@ TEST(LevelSetIo, RefusesWhatVtkWouldNotSurvive) {
     } catch (const LevelSetRefused& refused) {
       EXPECT_NE(std::string(refused.what()).find("byte "), std::string::npos) << refused.what();
     }
+  };
+  for (const Change& change : of_both) {
+    expect_refused(raw, change);
+    expect_refused(base64, change);
   }
+  expect_refused(base64, {"AAAA", "AAA"});
+  expect_refused(base64, {"format=\"binary\"", "format=\"appended\" offset=\"9\""});
+  expect_refused(raw, {"offset=\"0\"", "offset=\"9\""});
+  expect_refused(raw, {"encoding=\"raw\"", "encoding=\"base64\""});
+  expect_refused(raw, {"</VTKFile>", "</VTK"});
   std::filesystem::remove(file);
 }
 
@@ -276,7 +294,7 @@ TEST(LevelSetIo, RefusesWhatIsNotALevelSet) {
   const std::uintmax_t size = std::filesystem::file_size(file);
   std::fstream damaged(file, std::ios::in | std::ios::out | std::ios::binary);
   damaged.seekp(static_cast<std::streamoff>(size / 2));
-  damaged.put('!');  // no letter of base64
+  damaged.put('!');
   damaged.close();
   EXPECT_THROW(read_level_set(file), LevelSetRefused);
   write_level_set(file, torus_level_set());

@@ -8,8 +8,8 @@
 #include <cstring>
 #include <numbers>
 
-#include "reconstruct/cloud/cloud_survey.h"
-#include "reconstruct/cloud/morton_order.h"
+#include "reconstruct/cloud/neighbours/morton_order.h"
+#include "reconstruct/cloud/survey/cloud_survey.h"
 #include "reconstruct/solve/fit_ssd.h"
 #include "reconstruct/solve/resolution.h"
 #include "reconstruct/solve/ssd_assembled.h"

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "reconstruct/cloud/neighbour_tree.h"
+#include "reconstruct/cloud/neighbours/neighbour_tree.h"
 #include "reconstruct/triangles/triangle_samples.h"
 #include "tests/reconstruct/triangles/solids.h"
 

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-#include "reconstruct/cloud/cloud_neighbours.h"
+#include "reconstruct/cloud/neighbours/cloud_neighbours.h"
 #include "tests/support/clouds.h"
 #include "tests/support/sampled_domains.h"
 

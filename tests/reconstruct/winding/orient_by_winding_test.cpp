@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "reconstruct/cloud/normal_estimation.h"
-#include "reconstruct/cloud/normal_orientation.h"
+#include "reconstruct/cloud/normals/normal_estimation.h"
+#include "reconstruct/cloud/normals/normal_orientation.h"
 #include "tests/reconstruct/winding/winding_clouds.h"
 #include "tests/support/sampled_domains.h"
 

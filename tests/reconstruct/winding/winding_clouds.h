@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "reconstruct/cloud/morton_order.h"
+#include "reconstruct/cloud/neighbours/morton_order.h"
 #include "reconstruct/cloud/point_cloud.h"
 #include "tests/support/clouds.h"
 

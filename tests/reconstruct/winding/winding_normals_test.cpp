@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
-#include "reconstruct/cloud/cloud_neighbours.h"
+#include "reconstruct/cloud/neighbours/cloud_neighbours.h"
 #include "tests/reconstruct/winding/winding_clouds.h"
 #include "tests/support/sampled_domains.h"
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "reconstruct/cloud/morton_order.h"
+#include "reconstruct/cloud/neighbours/morton_order.h"
 #include "tests/support/clouds.h"
 #include "tests/support/sampled_domains.h"
 

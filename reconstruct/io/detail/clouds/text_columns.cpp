@@ -305,7 +305,8 @@ TextColumns columns_by_name(std::vector<std::string> names, const SampleRows& ro
 
 TextColumns columns_by_value(const SampleRows& rows, std::string_view extension) {
   TextColumns columns = Guess(rows, extension)();
-  columns.how = fmt::format("guessed from their values{} (--columns overrules)", scale_told(columns.bytes_per_unit));
+  columns.how = fmt::format("guessed from their values{}", scale_told(columns.bytes_per_unit));
+  columns.are_guessed = true;
   return columns;
 }
 

@@ -25,7 +25,8 @@ struct TextColumns {
   double bytes_per_unit = 1;  ///< factor from a colour's value to 0..255
   /// This column becomes the label if it contains whole numbers with few different values; -1: there is none.
   std::size_t perhaps_label = static_cast<std::size_t>(-1);
-  std::string how;      ///< source of the names: "guessed from their values"
+  std::string how;           ///< source of the names: "guessed from their values"
+  bool are_guessed = false;  ///< from their values
   std::string problem;  ///< reason why the columns are unknown; else empty
 };
 
@@ -41,7 +42,8 @@ std::string column_name(std::string_view in_header);
 bool has_axes(const std::vector<std::string>& names);
 
 /// Columns with names. The rows determine how colours are scaled and which columns contain no numbers.
-/// @param names  results of column_name(), one per column; for --columns possibly fewer, then the others are dropped
+/// @param names  results of column_name(), one per column; for the argument `columns` possibly fewer, then the others are
+///               dropped
 /// @param how    source of the names: "as the header says"
 TextColumns columns_by_name(std::vector<std::string> names, const SampleRows& rows, std::string_view how);
 
@@ -56,7 +58,7 @@ TextColumns columns_by_name(std::vector<std::string> names, const SampleRows& ro
 ///                   colours
 TextColumns columns_by_value(const SampleRows& rows, std::string_view extension);
 
-/// The words of --columns, mapped by column_name(); "-" and "skip" drop a column.
+/// The words of the argument `columns`, mapped by column_name(); "-" and "skip" drop a column.
 std::vector<std::string> told_columns(std::string_view columns);
 
 }  // namespace umtet::detail

@@ -192,10 +192,9 @@ class Beginning {
     table_.n_ignored = n_words_;
     for (const Words& words : words_) {
       if (words.is_comment || source_.columns.size() > 0 || !has_axes(words.readings.front())) continue;
-      refuse(source_,
-             fmt::format("line {}: a header of {} names, but line {} has {} columns: name them with --columns, "
-                         "such as --columns x,y,z",
-                         words.line, words.readings.front().size(), table_.first_line, table_.n_columns));
+      refuse(source_, {fmt::format("line {}: a header of {} names, but line {} has {} columns", words.line,
+                                   words.readings.front().size(), table_.first_line, table_.n_columns),
+                       {{Change::Give, kColumns, "to name them, such as x,y,z"}}});
     }
   }
 

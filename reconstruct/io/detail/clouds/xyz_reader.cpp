@@ -24,9 +24,9 @@ TextColumns columns_of(const CloudSource& source, const TextTable& table) {
   if (!source.columns.empty()) {
     std::vector<std::string> names = told_columns(source.columns);
     if (names.size() > table.n_columns)
-      refuse(source, fmt::format("line {}: {} columns, but --columns names {}", table.first_line, table.n_columns,
-                                 names.size()));
-    return columns_by_name(std::move(names), rows, "as --columns says");
+      refuse(source, {fmt::format("line {}: {} columns, but ", table.first_line, table.n_columns), kColumns,
+                      fmt::format(" names {}", names.size())});
+    return columns_by_name(std::move(names), rows, "as given");
   }
   if (!table.header.empty()) return columns_by_name(table.header, rows, "as the header says");
   const std::string extension = table.announced ? ".pts" : lower_extension(source.name);
@@ -34,9 +34,9 @@ TextColumns columns_of(const CloudSource& source, const TextTable& table) {
 }
 
 [[noreturn]] void refuse_problem(const CloudSource& source, const TextTable& table, const TextColumns& columns) {
-  refuse(source, fmt::format("line {}: {} columns: {}: say what they are, such as --columns x,y,z,nx,ny,nz, or leave "
-                             "them out, --columns x,y,z",
-                             table.first_line, table.n_columns, columns.problem));
+  refuse(source, {fmt::format("line {}: {} columns: {}", table.first_line, table.n_columns, columns.problem),
+                  {{Change::Give, {kColumns, "x,y,z,nx,ny,nz"}, "or the like to say what they are"},
+                   {Change::Give, {kColumns, "x,y,z"}, "to leave them out"}}});
 }
 
 CloudColumns cloud_columns_of(const CloudSource& source, const TextTable& table, const TextColumns& columns) {
@@ -176,6 +176,7 @@ CloudFile read_xyz(const CloudSource& source) {
   find_label(file.cloud, of_cloud.fields, columns);
   file.report.fields_left_out = of_cloud.fields.left_out;
   file.report.columns = told(columns);
+  file.report.columns_are_guessed = columns.are_guessed;
   return file;
 }
 

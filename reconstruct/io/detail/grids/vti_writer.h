@@ -1,34 +1,25 @@
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
-#include <fstream>
+#include <span>
 #include <string>
-#include <string_view>
-#include <vector>
+
+#include "common/vec3.h"
+#include "common/vtk_xml/appended_writer.h"
 
 namespace umtet::detail {
 
-/// Writer of the text and inline base64 arrays of a .vti file, piece by piece. VTK's own writer holds copies of the
-/// arrays and the whole text twice, takes four times as long, and returns success on a full disk.
-class VtiWriter {
- public:
-  explicit VtiWriter(const std::filesystem::path& file) : path_(file), out_(file, std::ios::binary) {}
-  VtiWriter& text(std::string_view);
-  /// Writes an array of FieldData, which states its number of values.
-  VtiWriter& field(const std::string& name, const std::vector<double>& values);
-  VtiWriter& field(const std::string& name, const std::vector<float>& values);
-  /// Writes an array of PointData.
-  VtiWriter& points(const std::string& name, const std::vector<double>& values);
-  /// \throw std::system_error if not everything could be written
-  void close();
-
- private:
-  template <class T>
-  VtiWriter& array(const std::string& attributes, const std::vector<T>& values);
-
-  std::filesystem::path path_;
-  std::ofstream out_;
+/// The nodes of a VTK ImageData.
+struct ImageNodes {
+  Eigen::Vector3i n;
+  Vec3 origin, spacing;
 };
+
+/// Writes the beginning of a .vti: the grid and the start of the field data.
+void begin_image(AppendedWriter& out, const ImageNodes& nodes);
+/// Ends the field data and begins the point data. @param scalars  the array that viewers show first
+void begin_point_data(AppendedWriter& out, const ImageNodes& nodes, const std::string& scalars);
+/// Ends the point data and writes the file. \throw std::system_error naming the path if the file is incomplete
+void write_image(const std::filesystem::path& path, AppendedWriter& out);
 
 }  // namespace umtet::detail

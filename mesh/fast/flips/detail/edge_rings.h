@@ -1,0 +1,70 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "mesh/core/tet_mesh.h"
+#include "mesh/core/tet_quality.h"
+#include "mesh/fast/flips/local_flips.h"
+
+namespace umtet::detail {
+
+inline bool contains(const Tet& t, int v) { return t[0] == v || t[1] == v || t[2] == v || t[3] == v; }
+
+inline double mean_ratio_of(const std::vector<Vec3>& V, const Tet& t) {
+  return mean_ratio(V[t[0]], V[t[1]], V[t[2]], V[t[3]]);
+}
+
+/// The tets around each vertex of a mesh whose tets come and go.
+class Incidence {
+ public:
+  Incidence(std::size_t n_vertices, const std::vector<Tet>& C);
+
+  std::span<const int> of(int v) const {
+    if (list_of_[v] >= 0) return lists_[list_of_[v]];
+    return {tets_.data() + begin_[v], begin_[v + 1] - begin_[v]};
+  }
+  void add(int v, int tet) { list(v).push_back(tet); }
+  void remove(int v, int tet) { std::erase(list(v), tet); }
+
+ private:
+  std::vector<int>& list(int v);
+
+  std::vector<std::size_t> begin_;
+  std::vector<int> tets_, list_of_;
+  std::vector<std::vector<int>> lists_;  ///< of the vertices whose tets have changed
+};
+
+/// Most tets around an edge that is removed: with nine or more tets, the best triangulation is rarely better than the
+/// ring.
+inline constexpr int kMostRing = 8;
+
+/// The vertices around an edge (a, b), in cyclic order.
+struct EdgeRing {
+  std::vector<int> vertices;  ///< counter-clockwise seen from b
+  bool is_closed = false;  ///< otherwise the edge and its faces with the first and the last vertex are on the boundary
+};
+
+/// A tet mesh whose tets come and go.
+struct ChangingMesh {
+  /// Keeps a reference to the strata.
+  ChangingMesh(std::vector<Vec3> positions, std::vector<Tet> tets, const std::vector<VertexStratum>& strata)
+      : V(std::move(positions)), C(std::move(tets)), incidence(V.size(), C), stratum(strata) {}
+
+  /// The tets with the edge (a, b).
+  std::vector<int> tets_at(int a, int b) const;
+  /// The ring of the edge (a, b). It is empty if the tets form no ring or are more than kMostRing.
+  /// @param tets  tets_at(a, b)
+  EdgeRing ring_of(int a, int b, const std::vector<int>& tets) const;
+  bool are_neighbours(int a, int b) const;
+
+  std::vector<Vec3> V;
+  std::vector<Tet> C;   ///< tets that are gone stay in this list
+  Incidence incidence;  ///< lists only the tets that are in the mesh
+  const std::vector<VertexStratum>& stratum;
+};
+
+}  // namespace umtet::detail

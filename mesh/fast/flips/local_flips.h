@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/context.h"
+#include "mesh/core/implicit_function.h"
+#include "mesh/core/tet_mesh.h"
+
+namespace umtet {
+
+/// Parameters of flip_locally().
+struct LocalFlipParams {
+  double target = .78;  ///< mean ratio: tets below it are mended; in (0, 1)
+  /// Range of edge lengths, relative to the mean edge length around their ends in the mesh that is given. Edges that
+  /// are outside of it already may stay so.
+  double shortest = .5, longest = 1.7;
+  int most_candidates = 4;  ///< operations that are tried for one tet, those with the best worst tet first; >= 0
+};
+
+/// Every broken constraint, not just the first.
+std::vector<std::string> problems(const LocalFlipParams&);
+
+/// What flip_locally() did.
+struct LocalFlipReport {
+  std::size_t tries = 0;            ///< patches that were optimised
+  std::size_t n_removed_edges = 0;  ///< edge removals that were kept
+  std::size_t n_collapsed = 0;      ///< edge collapses that were kept
+  std::size_t n_smoothed = 0;       ///< patches that were only optimised, and kept
+  std::size_t n_below = 0;          ///< tets below the target at the end
+  std::size_t psi_evaluations = 0;
+};
+
+/// How a vertex may move.
+enum class VertexStratum : std::uint8_t {
+  Fixed,    ///< not at all
+  Inner,    ///< in space
+  Boundary  ///< on psi = 0
+};
+
+/// A tet mesh whose connectivity changes.
+struct FlippedMesh {
+  std::vector<Vec3> V;  ///< vertices that are in no tet stay where they were
+  std::vector<Tet> C;   ///< positively oriented
+  /// Per tet: its number in the mesh that was given, or -1 for a tet that an operation made. Numbers ascend, and tets
+  /// with -1 come last.
+  std::vector<std::int64_t> origin;
+};
+
+/// Raises tets below a target by local changes of connectivity.
+///
+/// For each tet below the target, the worst first, these operations are tried on a copy of the patch around it:
+///   - removal of one of its edges: the ring of up to eight tets around the edge becomes the best triangulation of the
+///     ring's polygon, by dynamic programming [Klincsek1980, Shewchuk2002];
+///   - collapse of one of its edges: an inner vertex into any other, a boundary vertex into a neighbour on the
+///   boundary;
+///   - where neither helps, no change of connectivity.
+/// After each, the vertices of the patch are moved by Newton's method on the p-norm of 1/Q of their rings, those of the
+/// boundary in their tangent planes and back to psi = 0. The first operation is kept with which
+///   - the sum of (target / Q)^18 over the patch falls by 2 % or more, misaligned boundary faces counted like bad tets;
+///   - the least Q of the patch falls by no more than .003;
+///   - the edges stay within the range of the parameters, boundary faces within 60 degrees of psi = 0 or nearer to it
+///     than before, and their centroids near psi = 0.
+///
+/// Tets that are still below the target are tried once more, with more candidates, and with all vertices of a patch
+/// moved at once (all_vertex_smoothing.h). There it is enough that the worst tet of the patch reaches the target, or
+/// rises by 5e-4 while the sum does not.
+///
+/// Operations change neither the topology of the body nor of its boundary. One thread; the same bytes on every run.
+///
+/// @param V, C      a valid mesh: every tet positive; moved in
+/// @param stratum   per vertex; Boundary ones lie on psi = 0 and on the boundary of the mesh
+/// \throw std::invalid_argument naming every broken constraint, Cancelled
+FlippedMesh flip_locally(std::vector<Vec3> V, std::vector<Tet> C, const std::vector<VertexStratum>& stratum,
+                         ImplicitFunctionRef psi, const LocalFlipParams& params, LocalFlipReport& report,
+                         const Context& context = {});
+
+}  // namespace umtet

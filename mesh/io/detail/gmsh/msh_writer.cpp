@@ -1,0 +1,245 @@
+#include <Eigen/Geometry>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "mesh/io/checked_file.h"
+#include "mesh/io/detail/gmsh/msh_node_data.h"
+#include "mesh/io/solver_files.h"
+
+namespace umtet {
+namespace {
+
+/// Gmsh's type of an element, and its node order: place k of an element of ours is node order[k]. It differs from VTK's
+/// in the last two middles of a tet.
+struct ElementKind {
+  int type;
+  int n_nodes;
+  std::array<int, 10> order = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
+};
+
+ElementKind tet_kind(const SolverMesh& mesh) { return {mesh.nodes_per_tet == 4 ? 4 : 11, mesh.nodes_per_tet}; }
+ElementKind face_kind(const SolverMesh& mesh) { return {mesh.nodes_per_tet == 4 ? 2 : 9, mesh.nodes_per_face()}; }
+
+class MshWriter {
+ public:
+  MshWriter(const std::filesystem::path& path, const SolverMesh& mesh, MshEncoding encoding)
+      : mesh_(mesh), binary_(encoding == MshEncoding::Binary), file_(path), faces_of_(mesh.patches.size()) {
+    for (std::size_t f = 0; f < mesh.n_faces(); ++f) faces_of_[mesh.face_patch[f]].push_back(static_cast<int>(f));
+    for (const std::vector<int>& faces : faces_of_) n_patches_ += !faces.empty();
+  }
+  void version22();
+  void version41();
+
+ private:
+  template <typename T>
+  void put(T value, const char* separator);
+  void put_point(const Vec3& x, const char* last);
+  template <typename Id>
+  void put_nodes(const int* ids, const ElementKind& kind);
+  void head(const char* version);
+  void element22(const ElementKind& kind, int group, const int* ids);
+  void block22(const ElementKind& kind, std::size_t n);
+  void entities41();
+  void nodes41();
+  void block41(int dimension, int entity, int third, std::size_t n);
+  void elements41();
+  void boundary_data();
+
+  const SolverMesh& mesh_;
+  bool binary_;
+  CheckedFile file_;
+  std::vector<std::vector<int>> faces_of_;  ///< by patch
+  std::uint64_t n_patches_ = 0;             ///< that have faces
+  std::int32_t id_ = 0;                     ///< of the last element
+};
+
+/// One number, followed by a separator in ascii files only.
+template <typename T>
+void MshWriter::put(T value, const char* separator) {
+  if (binary_) {
+    file_.raw(value);
+  } else {
+    file_.number(value).text(separator);
+  }
+}
+
+void MshWriter::put_point(const Vec3& x, const char* last) {
+  for (int k = 0; k < 3; ++k) put(x[k], k < 2 ? " " : last);
+}
+
+template <typename Id>
+void MshWriter::put_nodes(const int* ids, const ElementKind& kind) {
+  for (int k = 0; k < kind.n_nodes; ++k) {
+    put(static_cast<Id>(ids[kind.order[k]]) + Id{1}, k + 1 < kind.n_nodes ? " " : "\n");
+  }
+}
+
+void MshWriter::head(const char* version) {
+  file_.text("$MeshFormat\n").text(version).text(binary_ ? " 1 8\n" : " 0 8\n");
+  if (binary_) file_.raw(std::int32_t{1}).text("\n");  // tells the reader our byte order
+  file_.text("$EndMeshFormat\n$PhysicalNames\n").number(mesh_.patches.size() + 1).text("\n");
+  for (const MeshPart& patch : mesh_.patches) {
+    file_.text("2 ").number(patch.number).text(" \"").text(patch.name).text("\"\n");
+  }
+  file_.text("3 ").number(mesh_.body.number).text(" \"").text(mesh_.body.name).text("\"\n$EndPhysicalNames\n");
+}
+
+void MshWriter::block22(const ElementKind& kind, std::size_t n) {
+  if (binary_ && n > 0) file_.raw(std::int32_t{kind.type}).raw(static_cast<std::int32_t>(n)).raw(std::int32_t{2});
+}
+
+void MshWriter::element22(const ElementKind& kind, int group, const int* ids) {
+  put(++id_, " ");
+  if (!binary_) file_.number(kind.type).text(" 2 ");
+  put(std::int32_t{group}, " ");  // physical group
+  put(std::int32_t{group}, " ");  // entity
+  put_nodes<std::int32_t>(ids, kind);
+}
+
+void MshWriter::version22() {
+  head("2.2");
+  file_.text("$Nodes\n").number(mesh_.nodes.size()).text("\n");
+  for (std::size_t i = 0; i < mesh_.nodes.size(); ++i) {
+    put(static_cast<std::int32_t>(i) + 1, " ");
+    put_point(mesh_.nodes[i], "\n");
+  }
+  file_.text("$EndNodes\n$Elements\n").number(mesh_.n_tets() + mesh_.n_faces()).text("\n");
+  block22(face_kind(mesh_), mesh_.n_faces());
+  for (std::size_t p = 0; p < faces_of_.size(); ++p) {
+    for (const int f : faces_of_[p]) element22(face_kind(mesh_), mesh_.patches[p].number, mesh_.face(f).data());
+  }
+  block22(tet_kind(mesh_), mesh_.n_tets());
+  for (std::size_t t = 0; t < mesh_.n_tets(); ++t) {
+    element22(tet_kind(mesh_), mesh_.body.number, mesh_.tet(t).data());
+  }
+  file_.text("$EndElements\n");
+  boundary_data();
+  file_.close();
+}
+
+/// The same in both versions.
+void MshWriter::boundary_data() {
+  for (const auto& [name, values] : mesh_.boundary_data) write_node_data(file_, {name, values}, binary_);
+}
+
+void MshWriter::entities41() {
+  Eigen::AlignedBox3d whole;
+  for (const Vec3& x : mesh_.nodes) whole.extend(x);
+  if (mesh_.nodes.empty()) whole.extend(Vec3::Zero().eval());
+  const auto put_entity = [&](int entity, const Eigen::AlignedBox3d& box, std::uint64_t n_bounding) {
+    put(std::int32_t{entity}, " ");
+    put_point(box.min(), " ");
+    put_point(box.max(), " ");
+    put(std::uint64_t{1}, " ");  // physical group
+    put(std::int32_t{entity}, " ");
+    put(n_bounding, n_bounding ? " " : "\n");
+  };
+  file_.text("$Entities\n");
+  put(std::uint64_t{0}, " ");
+  put(std::uint64_t{0}, " ");
+  put(n_patches_, " ");
+  put(std::uint64_t{1}, "\n");
+  for (std::size_t p = 0; p < faces_of_.size(); ++p) {
+    Eigen::AlignedBox3d box;
+    for (const int f : faces_of_[p]) {
+      const std::array<int, 6> ids = mesh_.face(f);
+      for (int k = 0; k < mesh_.nodes_per_face(); ++k) box.extend(mesh_.nodes[ids[k]]);
+    }
+    if (!box.isEmpty()) put_entity(mesh_.patches[p].number, box, 0);
+  }
+  put_entity(mesh_.body.number, whole, n_patches_);
+  for (std::size_t p = 0, n = 0; p < faces_of_.size(); ++p) {
+    if (!faces_of_[p].empty()) put(std::int32_t{mesh_.patches[p].number}, ++n < n_patches_ ? " " : "\n");
+  }
+  file_.text("$EndEntities\n");
+}
+
+void MshWriter::block41(int dimension, int entity, int third, std::size_t n) {
+  put(std::int32_t{dimension}, " ");
+  put(std::int32_t{entity}, " ");
+  put(std::int32_t{third}, " ");
+  put(std::uint64_t{n}, "\n");
+}
+
+void MshWriter::nodes41() {
+  // A node belongs to the entity of least dimension it lies on; on a border of patches to the first.
+  const std::size_t n_patches = mesh_.patches.size();
+  std::vector<std::vector<int>> nodes_of = patch_nodes(mesh_);
+  nodes_of.emplace_back();
+  std::vector<char> taken(mesh_.nodes.size(), 0);
+  for (std::size_t p = 0; p < n_patches; ++p) {
+    std::erase_if(nodes_of[p], [&](int i) { return taken[i] != 0; });
+    for (const int i : nodes_of[p]) taken[i] = 1;
+  }
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    if (!taken[i]) nodes_of[n_patches].push_back(static_cast<int>(i));
+  }
+  std::uint64_t n_blocks = 0;
+  for (const std::vector<int>& ids : nodes_of) n_blocks += !ids.empty();
+  file_.text("$Nodes\n");
+  put(n_blocks, " ");
+  put(std::uint64_t{mesh_.nodes.size()}, " ");
+  put(std::uint64_t{mesh_.nodes.empty() ? 0u : 1u}, " ");
+  put(std::uint64_t{mesh_.nodes.size()}, "\n");
+  for (std::size_t p = 0; p <= n_patches; ++p) {
+    if (nodes_of[p].empty()) continue;
+    block41(p < n_patches ? 2 : 3, p < n_patches ? mesh_.patches[p].number : mesh_.body.number, 0, nodes_of[p].size());
+    for (const int i : nodes_of[p]) put(static_cast<std::uint64_t>(i) + 1, "\n");
+    for (const int i : nodes_of[p]) put_point(mesh_.nodes[i], "\n");
+  }
+  file_.text("$EndNodes\n");
+}
+
+void MshWriter::elements41() {
+  const std::uint64_t n = mesh_.n_tets() + mesh_.n_faces();
+  file_.text("$Elements\n");
+  put(n_patches_ + (mesh_.n_tets() > 0 ? 1 : 0), " ");
+  put(n, " ");
+  put(std::uint64_t{n > 0}, " ");
+  put(n, "\n");
+  const ElementKind face = face_kind(mesh_), tet = tet_kind(mesh_);
+  for (std::size_t p = 0; p < faces_of_.size(); ++p) {
+    if (faces_of_[p].empty()) continue;
+    block41(2, mesh_.patches[p].number, face.type, faces_of_[p].size());
+    for (const int f : faces_of_[p]) {
+      put(static_cast<std::uint64_t>(++id_), " ");
+      put_nodes<std::uint64_t>(mesh_.face(f).data(), face);
+    }
+  }
+  if (mesh_.n_tets() > 0) block41(3, mesh_.body.number, tet.type, mesh_.n_tets());
+  for (std::size_t t = 0; t < mesh_.n_tets(); ++t) {
+    put(static_cast<std::uint64_t>(++id_), " ");
+    put_nodes<std::uint64_t>(mesh_.tet(t).data(), tet);
+  }
+  file_.text("$EndElements\n");
+}
+
+void MshWriter::version41() {
+  head("4.1");
+  entities41();
+  nodes41();
+  elements41();
+  boundary_data();
+  file_.close();
+}
+
+void check(const SolverMesh& mesh) {
+  require_consistent(mesh);
+  require_msh_tags(mesh.n_tets() + mesh.n_faces());
+}
+
+}  // namespace
+
+void write_msh22(const std::filesystem::path& path, const SolverMesh& mesh, MshEncoding encoding) {
+  check(mesh);
+  MshWriter(path, mesh, encoding).version22();
+}
+
+void write_msh41(const std::filesystem::path& path, const SolverMesh& mesh, MshEncoding encoding) {
+  check(mesh);
+  MshWriter(path, mesh, encoding).version41();
+}
+
+}  // namespace umtet
