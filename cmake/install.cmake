@@ -43,7 +43,7 @@ set(vtk_xml_requires "tbb fmt zlib liblz4")
 set(mesh_io_requires "umtet-mesh umtet-vtk_xml fmt")
 set(mesh_io_libs "-lhdf5_serial")  # hdf5-serial.pc names a folder that the linker does not search
 set(cloud_io_requires "umtet-reconstruct umtet-vtk_xml fmt libxxhash liblzf")
-set(pipeline_requires "umtet-body umtet-mesh_io umtet-cloud_io nlohmann_json tomlplusplus muparser ginac")
+set(pipeline_requires "umtet-body umtet-mesh_io umtet-cloud_io nlohmann_json tomlplusplus")
 list(JOIN umtet_definitions " -D" pc_definitions)
 file(RELATIVE_PATH pc_up /p/${CMAKE_INSTALL_LIBDIR}/pkgconfig /p)
 string(REGEX REPLACE "/$" "" pc_up ${pc_up})

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "common/vec3.h"
+#include "pipeline/expression/tape.h"
 
 namespace umtet {
 
@@ -24,29 +24,24 @@ struct ExpressionError : std::runtime_error {
 /// argument. ^ binds to the right and before a sign: -x^2 = -(x^2), 2^3^2 = 2^9, 2^-1 = .5. There is no abs, because
 /// psi must be C2.
 ///
-/// muParser parses the text, GiNaC differentiates it exactly (decimal numbers are kept as fractions), and muParser
-/// evaluates psi, its gradient and its Hessian. Parsing the same text again gives the same function to the last bit.
-/// Thread-safe: every thread gets its own evaluators at its first call.
+/// The text becomes a tape of operations, executed in the order in which the text gives them; gradient and Hessian
+/// follow by the chain rule. Parsing the same text again gives the same function to the last bit. Thread-safe.
 /// The result is NaN where the formula has no real value (log of a negative number).
-/// Licence: GiNaC is GPL-2+, so a program that links this file is GPL as a whole.
 class Expression {
  public:
-  /// \throw ExpressionError  the text does not follow the grammar, a number or power is out of range, the constants
-  ///   contain a pole or an imaginary number, or nothing depends on x, y or z
-  /// @param t  finite; converted to the shortest decimal number: .1 is a tenth. Without it, the name t is unknown
-  explicit Expression(const std::string& text, std::optional<double> t = std::nullopt);
-  ~Expression();
-  Expression(Expression&&) noexcept;
-  Expression& operator=(Expression&&) noexcept;
+  /// \throw ExpressionError  the text does not follow the grammar, a number or power is out of range, a constant has no
+  ///   real value, or nothing depends on x, y or z
+  /// @param t  finite; without it, the name t is unknown
+  explicit Expression(std::string text, std::optional<double> t = std::nullopt);
 
-  const std::string& text() const;
+  const std::string& text() const { return text_; }
   double value(const Vec3& x) const { return evaluate(x, nullptr, nullptr); }
   /// Returns the value, and stores gradient and Hessian if the pointers are not null.
-  double evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const;
+  double evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const { return tape_.evaluate(x, gradient, hessian); }
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::string text_;
+  Tape tape_;
 };
 
 }  // namespace umtet
