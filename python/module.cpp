@@ -25,8 +25,8 @@
 #include "pipeline/domain/load_domain.h"
 #include "pipeline/memory/mesh_object.h"
 #include "pipeline/reports/certificate_json.h"
+#include "pipeline/reports/defect_json.h"
 #include "pipeline/reports/mesh_json.h"
-#include "pipeline/reports/place_json.h"
 #include "pipeline/stages/scan_source.h"
 #include "pipeline/stages/stages.h"
 #include "python/arguments.h"
@@ -148,7 +148,7 @@ py::object certificate(const Points& points,
   Json json = document_head(kVersion);
   json.update(to_json(measured.mesh));
   json["valid"] = measured.is_valid;
-  json["places"] = p ? to_json(measured.places) : Json(nullptr);
+  json["places"] = p ? to_json(measured.defects) : Json(nullptr);
   json.update(to_json(judge(measured, parameters.output())));
   // Points and tets alone say nothing about psi, or about what it was made from.
   if (!p) json["fits_psi"] = json["fits_input"] = nullptr;

@@ -6,7 +6,7 @@
 
 #include "body/errors.h"
 #include "body/fidelity/input_judgement.h"
-#include "body/fidelity/mesh_place.h"
+#include "body/fidelity/mesh_defect.h"
 #include "body/option_names.h"
 #include "common/formatted.h"
 
@@ -15,8 +15,8 @@ namespace {
 
 std::vector<std::string> kinds() {
   std::vector<std::string> words;
-  for (int k = 0; k <= static_cast<int>(PlaceKind::Missed); ++k)
-    words.emplace_back(to_string(static_cast<PlaceKind>(k)));
+  for (int k = 0; k <= static_cast<int>(DefectKind::Missed); ++k)
+    words.emplace_back(to_string(static_cast<DefectKind>(k)));
   for (int k = 0; k <= static_cast<int>(InputDefectKind::Voxels); ++k) {
     const std::string word = to_string(static_cast<InputDefectKind>(k));
     if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(word);

@@ -6,7 +6,7 @@
 
 namespace umtet {
 
-/// Defects of one kind that a user accepts. The kind is a word of PlaceKind or of InputDefectKind ("missed" is both).
+/// Defects of one kind that a user accepts. The kind is a word of DefectKind or of InputDefectKind ("missed" is both).
 struct AcceptedDefects {
   std::string kind;
   std::optional<double> most;  ///< in h for places, else in the unit of InputDefectKind; none: any amount

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "body/fidelity/closed_holes.h"
-#include "body/fidelity/mesh_places.h"
+#include "body/fidelity/mesh_defects.h"
 #include "body/fidelity/mesh_sizes.h"
 #include "body/fidelity/missed_samples.h"
 #include "body/fidelity/triangle_distances.h"
@@ -142,7 +142,7 @@ std::vector<Difference> lost_samples(const Domain& domain, const ZeroSetChoice& 
   if (n <= kFewSamples || static_cast<double>(n) <= kSmallShare * static_cast<double>(d.size())) return {};
   std::vector<Difference> all;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    if (lost[i]) all.push_back({PlaceKind::Missed, x[i], distance[i]});
+    if (lost[i]) all.push_back({DefectKind::Missed, x[i], distance[i]});
   }
   return all;
 }
@@ -155,7 +155,7 @@ constexpr std::size_t kMostRepeated = 10'000'000;
 /// What psi = 0 has, and where the mesh differs from it, if it does.
 struct Comparison {
   ZeroSetReport report;
-  std::optional<MeshPlace> place;
+  std::optional<MeshDefect> defect;
 };
 
 /// What compare_with_zero_set() looks at besides the mesh and the pieces.
@@ -216,12 +216,12 @@ Comparison compare_with_zero_set(const Domain& domain, const MeshCertificate& ce
   const auto n_pieces = static_cast<std::size_t>(std::abs(static_cast<int>(counted->seeds.size()) - of_psi));
   const auto n_handles = static_cast<std::size_t>(std::abs(counted->euler_characteristic - characteristic) / 2);
   const std::size_t n = std::max<std::size_t>(1, n_pieces + n_handles);
-  MeshPlace place{.kind = PlaceKind::Topology, .n = n};
-  if (params.surface) place = topology_place(domain, *counted, *params.surface, params.h, n, context);
+  MeshDefect defect{.kind = DefectKind::Topology, .n = n};
+  if (params.surface) defect = topology_defect(domain, *counted, *params.surface, params.h, n, context);
   const bool is_coarser = counted->share == 0 && counted->topology.spacing > params.h.least();
   report.topology = is_coarser ? TopologyProof::NotProved : TopologyProof::Differs;
-  report.topology_at = place.where;
-  if (report.topology == TopologyProof::Differs) made.place = place;
+  report.topology_at = defect.where;
+  if (report.topology == TopologyProof::Differs) made.defect = defect;
   return made;
 }
 
@@ -255,7 +255,7 @@ void leave_out_faults_of_psi(const Domain& domain, const MeshEdge& h, const Cont
   const std::vector<double> off = domain.triangles->distance.distances(x, context);
   std::size_t k = 0;
   std::erase_if(differences, [&](const Difference& d) {
-    const bool is_of_psi = d.kind == PlaceKind::Thin || d.kind == PlaceKind::Filled || d.kind == PlaceKind::Cut;
+    const bool is_of_psi = d.kind == DefectKind::Thin || d.kind == DefectKind::Filled || d.kind == DefectKind::Cut;
     return off[k++] > kSmallOff * h.at(d.where) && is_of_psi;
   });
 }
@@ -359,9 +359,9 @@ Measurement measure(const Domain& domain, const TetMesh& mesh, const UmResult& r
   if (domain.labels && !domain.complement && !params.certificate)
     m.labels = label_volume_report(domain, mesh, faces, context);
   leave_out_faults_of_psi(domain, h, context, differences);
-  made.places = places_of(domain, differences, h, context);
-  if (compared.place && !has_topology_of(m.triangles)) made.places.push_back(*compared.place);
-  m.places = report_on(made.places);
+  made.defects = defects_of(domain, differences, h, context);
+  if (compared.defect && !has_topology_of(m.triangles)) made.defects.push_back(*compared.defect);
+  m.defects = report_on(made.defects);
   m.resolution.kappa_h_max = max_curvature(domain.psi(), mesh, boundary_vertices, h, context);
   m.resolution.feature_size_over_h_min = thickness.least_over_h;
   m.resolution.obtuse_conditioning_angles = result.obtuse_conditioning_angles;
@@ -376,8 +376,8 @@ MeshMeasures measures_of(MeshCertificate certificate, const Domain* domain, cons
   m.mesh = std::move(certificate);
   set_reasons(m);
   if (domain) {
-    std::vector<MeshPlace> places = places_of(*domain, differences_of(m.mesh), m.mesh.h, context);
-    m.places = report_on(places);
+    std::vector<MeshDefect> defects = defects_of(*domain, differences_of(m.mesh), m.mesh.h, context);
+    m.defects = report_on(defects);
   }
   return m;
 }

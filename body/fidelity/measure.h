@@ -15,7 +15,7 @@ namespace umtet {
 /// What is true of the corners of a mesh, and everywhere that it is not psi = 0.
 struct Measurement {
   MeshMeasures measures;
-  std::vector<MeshPlace> places;  ///< all of them, in the order of measures.places.listed
+  std::vector<MeshDefect> defects;  ///< all of them, in the order of measures.defects.listed
 };
 
 /// What else a mesh is held against.

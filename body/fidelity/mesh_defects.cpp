@@ -1,4 +1,4 @@
-#include "body/fidelity/mesh_places.h"
+#include "body/fidelity/mesh_defects.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,10 +39,10 @@ std::vector<double> features(const Domain& domain, const std::vector<Vec3>& poin
   return f;
 }
 
-void set_feature(double feature, double h, MeshPlace& place) {
+void set_feature(double feature, double h, MeshDefect& defect) {
   if (!(feature < kInfinity)) return;
-  place.feature_over_h = feature / h;
-  place.h_needed = feature / kLeastEdgesAcross;
+  defect.feature_over_h = feature / h;
+  defect.h_needed = feature / kLeastEdgesAcross;
 }
 
 }  // namespace
@@ -50,8 +50,8 @@ void set_feature(double feature, double h, MeshPlace& place) {
 std::vector<Difference> differences_of(const MeshCertificate& certificate) {
   std::vector<Difference> all;
   for (const BoundaryFault& fault : certificate.boundary.faults) {
-    all.push_back(
-        {fault.kind == BoundaryFault::Kind::Folded ? PlaceKind::Folded : PlaceKind::Off, fault.where, fault.distance});
+    all.push_back({fault.kind == BoundaryFault::Kind::Folded ? DefectKind::Folded : DefectKind::Off, fault.where,
+                   fault.distance});
   }
   return all;
 }
@@ -74,7 +74,7 @@ std::vector<Difference> lost_parts(const Domain& domain, const std::vector<Vec3>
   }
   std::vector<Difference> lost;
   for (const LostPoint& point : lost_surface(domain, std::move(seeds), boundary, h, kSmallOff, context)) {
-    lost.push_back({PlaceKind::Thin, point.where, point.distance});
+    lost.push_back({DefectKind::Thin, point.where, point.distance});
   }
   return lost;
 }
@@ -86,7 +86,7 @@ std::vector<Difference> flips_that_show(const std::vector<ManifoldFlip>& flips, 
   const NeighbourTree tree(psi_points);
   for (const ManifoldFlip& flip : flips) {
     context.poll();
-    Difference farthest{flip.is_filled ? PlaceKind::Filled : PlaceKind::Cut, flip.where, 0};
+    Difference farthest{flip.is_filled ? DefectKind::Filled : DefectKind::Cut, flip.where, 0};
     const double h_at = h.at(flip.where);
     tree.within(flip.where, h_at * h_at, [&](std::uint32_t i, double) {
       const double d = boundary.distance(psi_points[i]);
@@ -97,13 +97,13 @@ std::vector<Difference> flips_that_show(const std::vector<ManifoldFlip>& flips, 
   return all;
 }
 
-MeshPlace topology_place(const Domain& domain, const ZeroSetChoice& counted, const SurfaceDistance& boundary,
-                         const MeshEdge& h, std::size_t n, const Context& context) {
+MeshDefect topology_defect(const Domain& domain, const ZeroSetChoice& counted, const SurfaceDistance& boundary,
+                           const MeshEdge& h, std::size_t n, const Context& context) {
   const std::vector<Vec3> points = kept_points(counted);
-  MeshPlace place;
-  place.kind = PlaceKind::Topology;
-  place.n = n;
-  if (points.empty()) return place;
+  MeshDefect defect;
+  defect.kind = DefectKind::Topology;
+  defect.n = n;
+  if (points.empty()) return defect;
   const std::vector<double> h_at = h.at(points);
   const std::vector<double> t = thickness(domain.body(), points, h_at, kStep, kReach, context, domain.steepest());
   const std::vector<double> d = boundary.distances(points, context);
@@ -115,31 +115,31 @@ MeshPlace topology_place(const Domain& domain, const ZeroSetChoice& counted, con
     if (is_thin(i) > is_thin(at) || (is_thin(i) == is_thin(at) && d[i] > d[at])) at = i;
   }
   if (is_thin(at)) feature = t[at];
-  place.where = points[at] + domain.shift;
-  place.off_over_h = off_over_h;
-  set_feature(feature, h_at[at], place);
-  return place;
+  defect.where = points[at] + domain.shift;
+  defect.off_over_h = off_over_h;
+  set_feature(feature, h_at[at], defect);
+  return defect;
 }
 
-std::vector<MeshPlace> places_of(const Domain& domain, const std::vector<Difference>& differences, const MeshEdge& h,
-                                 const Context& context) {
+std::vector<MeshDefect> defects_of(const Domain& domain, const std::vector<Difference>& differences, const MeshEdge& h,
+                                   const Context& context) {
   std::vector<Vec3> points;
   for (const Difference& d : differences) points.push_back(d.where);
   if (points.empty()) return {};
   const std::vector<double> h_at = h.at(points);
   const std::vector<double> feature = features(domain, points, h_at, context);
-  std::vector<MeshPlace> places;
-  for (const PlaceKind kind : {PlaceKind::Folded, PlaceKind::Off, PlaceKind::Filled, PlaceKind::Cut, PlaceKind::Thin,
-                               PlaceKind::Topology, PlaceKind::Missed}) {
+  std::vector<MeshDefect> defects;
+  for (const DefectKind kind : {DefectKind::Folded, DefectKind::Off, DefectKind::Filled, DefectKind::Cut,
+                                DefectKind::Thin, DefectKind::Topology, DefectKind::Missed}) {
     std::vector<std::size_t> of_kind;
     std::vector<Vec3> x;
     for (std::size_t i = 0; i < differences.size(); ++i) {
       if (differences[i].kind == kind) of_kind.push_back(i), x.push_back(points[i]);
     }
     for (const std::vector<int>& members : members_of(clusters(x, h.least()))) {
-      MeshPlace place;
-      place.kind = kind;
-      place.n = members.size();
+      MeshDefect defect;
+      defect.kind = kind;
+      defect.n = members.size();
       double least = kInfinity, farthest = -1, h_there = h.least();
       Box box;
       for (const int k : members) {
@@ -149,15 +149,15 @@ std::vector<MeshPlace> places_of(const Domain& domain, const std::vector<Differe
         if (differences[i].off <= farthest) continue;
         farthest = differences[i].off;
         h_there = h_at[i];
-        place.where = points[i] + domain.shift;
+        defect.where = points[i] + domain.shift;
       }
-      place.off_over_h = farthest / h_there;
-      place.size_over_h = box.diagonal().norm() / h_there;
-      set_feature(least, h_there, place);
-      places.push_back(place);
+      defect.off_over_h = farthest / h_there;
+      defect.size_over_h = box.diagonal().norm() / h_there;
+      set_feature(least, h_there, defect);
+      defects.push_back(defect);
     }
   }
-  return places;
+  return defects;
 }
 
 }  // namespace umtet

@@ -3,19 +3,19 @@
 #include <vector>
 
 #include "body/body.h"
+#include "body/fidelity/mesh_defect.h"
 #include "body/fidelity/mesh_edge.h"
-#include "body/fidelity/mesh_place.h"
 #include "body/pieces/zero_set_choice.h"
 #include "mesh/certify/certificate.h"
 #include "mesh/implicit/surface_distance.h"
 #include "mesh/submesh/um_result.h"
 
-// Where a mesh is not what psi = 0 is. All coordinates are working coordinates, but for those of MeshPlace.
+// Where a mesh is not what psi = 0 is. All coordinates are working coordinates, but for those of MeshDefect.
 namespace umtet {
 
 /// A point of psi = 0 or of the boundary of a mesh, where the two differ.
 struct Difference {
-  PlaceKind kind;
+  DefectKind kind;
   Vec3 where;
   double off;  ///< how far it is from the other one, model units
 };
@@ -44,13 +44,13 @@ std::vector<Difference> flips_that_show(const std::vector<ManifoldFlip>& flips, 
 /// there is no feature to explain it, and the place is the farthest point of all.
 /// @param counted  the pieces of psi = 0 as they were counted, at a spacing <= h
 /// @param n        by how many pieces and handles the two differ \throw Cancelled
-MeshPlace topology_place(const Domain& domain, const ZeroSetChoice& counted, const SurfaceDistance& boundary,
-                         const MeshEdge& h, std::size_t n, const Context& context = {});
+MeshDefect topology_defect(const Domain& domain, const ZeroSetChoice& counted, const SurfaceDistance& boundary,
+                           const MeshEdge& h, std::size_t n, const Context& context = {});
 
 /// Differences of a kind that are within an edge or two of each other are one place.
 ///
 /// Cost: some twenty values of psi a difference. The result does not depend on the number of threads. \throw Cancelled
-std::vector<MeshPlace> places_of(const Domain& domain, const std::vector<Difference>& differences, const MeshEdge& h,
-                                 const Context& context = {});
+std::vector<MeshDefect> defects_of(const Domain& domain, const std::vector<Difference>& differences, const MeshEdge& h,
+                                   const Context& context = {});
 
 }  // namespace umtet

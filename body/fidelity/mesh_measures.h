@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "body/fidelity/closed_hole.h"
-#include "body/fidelity/mesh_place.h"
+#include "body/fidelity/mesh_defect.h"
 #include "body/fidelity/missed_place.h"
 #include "body/input_facts.h"
 #include "body/label_report.h"
@@ -128,7 +128,7 @@ struct MeshMeasures {
   std::optional<InputFacts> input;     ///< none where psi is not fitted to samples
   std::optional<SearchReport> search;  ///< none of a mesh that was made elsewhere
   bool is_valid = true;  ///< tets positive, boundary the closed manifold that it is to be, and not through itself
-  PlaceReport places;    ///< where it is not psi = 0
+  DefectReport defects;  ///< where it is not psi = 0
   std::vector<std::string> reasons;  ///< what is wrong with it besides
 };
 

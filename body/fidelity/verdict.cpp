@@ -11,38 +11,39 @@ namespace umtet {
 namespace {
 
 /// The places of a kind in words; small ones too if they count.
-std::string said_of(const PlaceReport::OfKind& k, const ZeroSetReport& domain, bool with_small) {
-  const MeshPlace& worst = k.worst;
+std::string said_of(const DefectReport::OfKind& k, const ZeroSetReport& domain, bool with_small) {
+  const MeshDefect& worst = k.worst;
   const std::size_t n = with_small ? k.n : k.n - k.n_small;
-  const std::string places = n == 1 ? "1 place" : formatted("%zu places", n);
+  const std::string defects = n == 1 ? "1 place" : formatted("%zu places", n);
   const std::string at = formatted("(%.6g, %.6g, %.6g)", worst.where.x(), worst.where.y(), worst.where.z());
   const double off = worst.off_over_h;
   switch (k.kind) {
-    case PlaceKind::Folded:
+    case DefectKind::Folded:
       return formatted("the boundary is folded over at %s, the worst, of %zu faces at %s, %.2g h off psi = 0",
-                       places.c_str(), worst.n, at.c_str(), off);
-    case PlaceKind::Off:
-      return formatted("the boundary is off psi = 0 at %s, the worst at %s by %.2g h", places.c_str(), at.c_str(), off);
-    case PlaceKind::Filled:
+                       defects.c_str(), worst.n, at.c_str(), off);
+    case DefectKind::Off:
+      return formatted("the boundary is off psi = 0 at %s, the worst at %s by %.2g h", defects.c_str(), at.c_str(),
+                       off);
+    case DefectKind::Filled:
       return formatted("a gap is filled, for the boundary to be a manifold, at %s, the worst at %s, %.2g h deep",
-                       places.c_str(), at.c_str(), off);
-    case PlaceKind::Cut:
+                       defects.c_str(), at.c_str(), off);
+    case DefectKind::Cut:
       return formatted("body is cut away, for the boundary to be a manifold, at %s, the worst at %s, %.2g h deep",
-                       places.c_str(), at.c_str(), off);
-    case PlaceKind::Thin:
-      return formatted("the mesh lacks what is thin at %s: psi = 0 is %.2g h from its boundary at %s", places.c_str(),
+                       defects.c_str(), at.c_str(), off);
+    case DefectKind::Thin:
+      return formatted("the mesh lacks what is thin at %s: psi = 0 is %.2g h from its boundary at %s", defects.c_str(),
                        off, at.c_str());
-    case PlaceKind::Topology:
+    case DefectKind::Topology:
       return formatted(
           "psi = 0 has %zu pieces (and %zu dropped ones) of Euler characteristic %ld on a grid of spacing %.3g, the "
           "boundary of the mesh %d of %ld; they differ most at %s",
           domain.components_kept, domain.components_dropped.size(), domain.euler_characteristic_of_kept_components,
           domain.counting_spacing, domain.components_meshed, domain.euler_characteristic_meshed, at.c_str());
-    case PlaceKind::Missed:
+    case DefectKind::Missed:
       return formatted(
           "psi = 0 passes by samples that are farther than h from the mesh at %s, the worst, %zu samples at %s, %.2g "
           "h",
-          places.c_str(), worst.n, at.c_str(), off);
+          defects.c_str(), worst.n, at.c_str(), off);
   }
   return "";
 }
@@ -54,8 +55,8 @@ std::vector<std::string> failures(const SecondOrderReport& report) {
 }
 
 bool fits_psi(const MeshMeasures& m) {
-  const auto is_settled = [](const PlaceReport::OfKind& k) { return k.n == k.n_small; };
-  return m.is_valid && m.reasons.empty() && std::all_of(m.places.kinds.begin(), m.places.kinds.end(), is_settled);
+  const auto is_settled = [](const DefectReport::OfKind& k) { return k.n == k.n_small; };
+  return m.is_valid && m.reasons.empty() && std::all_of(m.defects.kinds.begin(), m.defects.kinds.end(), is_settled);
 }
 
 bool has_input(const MeshMeasures& m) { return m.n_points || m.labels; }
@@ -74,7 +75,7 @@ Verdict judge_shape(const MeshMeasures& measured, bool strict, const std::string
   verdict.is_valid = measured.is_valid;
   verdict.fits_psi = fits_psi(measured);
   const std::vector<AcceptedDefects> accepted = parse_accepted_defects(accept);
-  for (const PlaceReport::OfKind& k : measured.places.kinds) {
+  for (const DefectReport::OfKind& k : measured.defects.kinds) {
     const bool is_defect = k.n == k.n_small && !strict;
     if (is_defect) verdict.n_defects += k.n;
     const bool passes = !is_defect && is_accepted(accepted, to_string(k.kind), k.max_off_over_h);

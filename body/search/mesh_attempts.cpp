@@ -33,10 +33,10 @@ bool asks_for_more(double effort) { return effort > kDefaultEffort; }
 
 /// A place that a smaller h, or smaller edges there, can mend. Small ones are named and left, unless the user spends
 /// more effort; then those stay that are as good as h can show, because folds come and go with h and gaps do not.
-bool is_left(const MeshPlace& place, double effort) {
-  if (!is_small(place)) return false;
-  return !asks_for_more(effort) || place.kind == PlaceKind::Filled || place.kind == PlaceKind::Cut ||
-         place.kind == PlaceKind::Thin;
+bool is_left(const MeshDefect& defect, double effort) {
+  if (!is_small(defect)) return false;
+  return !asks_for_more(effort) || defect.kind == DefectKind::Filled || defect.kind == DefectKind::Cut ||
+         defect.kind == DefectKind::Thin;
 }
 
 /// psi has so much that no sample supports that the mesh fails, and the mesh only repeats it: no other mesh of the same
@@ -52,8 +52,8 @@ bool fails_by_guesses(const MeshAttempt& a) {
 
 /// Another h may fold nothing; what is missing or too thin is as thin at an h that is hardly smaller.
 bool may_improve_nearby(const MeshAttempt& a, double effort) {
-  return a.made() && std::all_of(a.places.begin(), a.places.end(), [&](const MeshPlace& p) {
-           return is_left(p, effort) || p.kind == PlaceKind::Folded || p.kind == PlaceKind::Off;
+  return a.made() && std::all_of(a.defects.begin(), a.defects.end(), [&](const MeshDefect& p) {
+           return is_left(p, effort) || p.kind == DefectKind::Folded || p.kind == DefectKind::Off;
          });
 }
 
@@ -62,10 +62,10 @@ bool may_improve_nearby(const MeshAttempt& a, double effort) {
 std::optional<double> h_that_shows(const MeshAttempt& a, double effort) {
   if (!a.made()) return a.thin.empty() ? std::nullopt : std::optional(kMargin * a.thin.h_needed());
   std::optional<double> h;
-  for (const MeshPlace& place : a.places) {
-    if (is_left(place, effort)) continue;
-    if (!place.h_needed) return std::nullopt;
-    h = std::min(h.value_or(*place.h_needed), *place.h_needed);
+  for (const MeshDefect& defect : a.defects) {
+    if (is_left(defect, effort)) continue;
+    if (!defect.h_needed) return std::nullopt;
+    h = std::min(h.value_or(*defect.h_needed), *defect.h_needed);
   }
   return h ? std::optional(kMargin * *h) : std::nullopt;
 }
@@ -120,7 +120,7 @@ class SmallerEdges {
 };
 
 bool is_worse(const MeshAttempt& a, const MeshAttempt& b) {
-  const auto rank = [](const MeshAttempt& x) { return std::tuple(!x.made(), x.reasons.size(), x.places.size()); };
+  const auto rank = [](const MeshAttempt& x) { return std::tuple(!x.made(), x.reasons.size(), x.defects.size()); };
   return rank(a) > rank(b);
 }
 
@@ -130,7 +130,7 @@ bool may_improve(const MeshAttempt& a, double effort) {
   if (a.made()) {
     if (!asks_for_more(effort) && fails_by_guesses(a)) return false;
     return !a.reasons.empty() ||
-           !std::all_of(a.places.begin(), a.places.end(), [&](const MeshPlace& p) { return is_left(p, effort); });
+           !std::all_of(a.defects.begin(), a.defects.end(), [&](const MeshDefect& p) { return is_left(p, effort); });
   }
   return a.result.status != UmStatus::EmptyDomain && a.result.status != UmStatus::PsiNotFinite &&
          a.result.status != UmStatus::DomainLeavesBackground;
@@ -139,7 +139,7 @@ bool may_improve(const MeshAttempt& a, double effort) {
 std::string MeshAttempt::complaint() const {
   if (!made()) return result.evidence.what;
   if (!reasons.empty()) return reasons.front();
-  const std::size_t n = measured.places.n();
+  const std::size_t n = measured.defects.n();
   if (n == 0) return "";
   return formatted("it has %zu small defect%s", n, n == 1 ? "" : "s");
 }
@@ -200,10 +200,10 @@ std::vector<SizeSource> finer_where_it_failed(const MeshAttempt& a, const Vec3& 
     finer.push_back({x, asked / 2, size / 2 + kAround * asked});
   };
   if (!a.made()) add(a.result.evidence.where, 0);
-  for (const MeshPlace& place : a.places) {
-    if (is_left(place, effort)) continue;
-    const Vec3 x = place.where - shift;
-    add(x, place.size_over_h * a.sizes->at(x));
+  for (const MeshDefect& defect : a.defects) {
+    if (is_left(defect, effort)) continue;
+    const Vec3 x = defect.where - shift;
+    add(x, defect.size_over_h * a.sizes->at(x));
   }
   return finer;
 }

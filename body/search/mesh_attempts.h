@@ -23,7 +23,7 @@ struct MeshAttempt {
   UmResult result;
   std::optional<SecondOrder> second;              ///< the mesh with curved edges, if mesh.order = 2
   MeshMeasures measured;                          ///< when there is a mesh
-  std::vector<MeshPlace> places;                  ///< where it is not psi = 0
+  std::vector<MeshDefect> defects;                ///< where it is not psi = 0
   std::vector<std::string> reasons;               ///< why it will not do, by judge_shape()
   ThinPlaces thin;                                ///< what h is too large for
   std::shared_ptr<const SizeField> sizes;         ///< that a graded background was made for

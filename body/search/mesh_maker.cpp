@@ -240,7 +240,7 @@ MeshAttempt MeshMaker::finish(const SizedBackground& background, Begun begun) {
   a.result.submesh.mesh.C = std::move(mesh.C);
   a.measured = std::move(made.measures);
   a.measured.domain.level_shift = domain_.level_shift;
-  a.places = std::move(made.places);
+  a.defects = std::move(made.defects);
   curve(a);
   // Not as output.* asks for: how a mesh is judged does not decide how it is made.
   a.reasons = judge_shape(a.measured).reasons;

@@ -15,7 +15,7 @@
 #include "body/sizing/too_thin.h"
 #include "pipeline/case/memory.h"
 #include "pipeline/domain/body_options.h"
-#include "pipeline/reports/place_json.h"
+#include "pipeline/reports/defect_json.h"
 
 namespace umtet {
 namespace {

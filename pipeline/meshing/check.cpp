@@ -114,7 +114,7 @@ MeshCheck check_mesh(const fs::path& file, const std::optional<fs::path>& agains
     for (std::string& reason : failures(*check.second_order)) measured.reasons.push_back(std::move(reason));
   }
   check.is_valid = measured.is_valid;
-  if (domain) check.places = measured.places;
+  if (domain) check.defects = measured.defects;
   if (domain && domain->has_samples()) {
     check.support = support_report(*domain, mesh.V, faces_but(walls, mesh), until_interrupted());
   }

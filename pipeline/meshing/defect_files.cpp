@@ -1,4 +1,4 @@
-#include "pipeline/meshing/place_files.h"
+#include "pipeline/meshing/defect_files.h"
 
 #include <cstdint>
 
@@ -7,19 +7,19 @@
 
 namespace umtet {
 
-void write_places(const std::filesystem::path& file, const std::vector<MeshPlace>& places) {
+void write_defects(const std::filesystem::path& file, const std::vector<MeshDefect>& defects) {
   std::vector<Vec3> points;
   std::vector<double> off, size, feature;
   std::vector<std::uint8_t> kind, small;
   std::vector<std::int64_t> n;
-  for (const MeshPlace& place : places) {
-    points.push_back(place.where);
-    kind.push_back(static_cast<std::uint8_t>(place.kind));
-    off.push_back(place.off_over_h);
-    size.push_back(place.size_over_h);
-    feature.push_back(place.feature_over_h.value_or(0));
-    small.push_back(is_small(place) ? 1 : 0);
-    n.push_back(static_cast<std::int64_t>(place.n));
+  for (const MeshDefect& defect : defects) {
+    points.push_back(defect.where);
+    kind.push_back(static_cast<std::uint8_t>(defect.kind));
+    off.push_back(defect.off_over_h);
+    size.push_back(defect.size_over_h);
+    feature.push_back(defect.feature_over_h.value_or(0));
+    small.push_back(is_small(defect) ? 1 : 0);
+    n.push_back(static_cast<std::int64_t>(defect.n));
   }
   write_artefact(file, [&](const std::filesystem::path& temporary) {
     write_vtp(temporary, points,

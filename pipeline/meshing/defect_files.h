@@ -3,14 +3,14 @@
 #include <filesystem>
 #include <vector>
 
-#include "body/fidelity/mesh_place.h"
+#include "body/fidelity/mesh_defect.h"
 #include "body/sizing/too_thin.h"
 
 namespace umtet {
 
-/// Writes one point per defect, with `kind` (the number of its PlaceKind), `off_over_h`, `size_over_h`,
+/// Writes one point per defect, with `kind` (the number of its DefectKind), `off_over_h`, `size_over_h`,
 /// `feature_over_h` (0: none), `small` (0/1) and `n`, atomically. \throw std::system_error  names the file
-void write_places(const std::filesystem::path& file, const std::vector<MeshPlace>& places);
+void write_defects(const std::filesystem::path& file, const std::vector<MeshDefect>& defects);
 
 /// Writes the points with `thickness`, `h_needed`, `place` and `gap` (0/1), in model coordinates, atomically.
 /// \throw std::system_error  names the file

@@ -14,8 +14,8 @@
 #include "pipeline/domain/load_domain.h"
 #include "pipeline/output/boundary_patches.h"
 #include "pipeline/output/detail/report_sources.h"
+#include "pipeline/output/report_defects.h"
 #include "pipeline/output/report_page.h"
-#include "pipeline/output/report_places.h"
 #include "pipeline/output/report_plot.h"
 #include "pipeline/output/report_scene.h"
 #include "pipeline/reports/certificate_json.h"
@@ -220,7 +220,7 @@ void write_report(const CasePaths& paths, const Parameters& parameters, const Ce
                                   {"checks", check_list(certificate)},
                                   {"cards", headline_cards(certificate)},
                                   {"shown", shown_text(scene.head)},
-                                  {"places", place_table(certificate)},
+                                  {"places", defect_table(certificate)},
                                   {"holes", hole_table(certificate)},
                                   {"missed", missed_table(certificate)},
                                   {"figures", figures.figures},

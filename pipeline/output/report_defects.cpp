@@ -1,4 +1,4 @@
-#include "pipeline/output/report_places.h"
+#include "pipeline/output/report_defects.h"
 
 #include <fmt/format.h>
 
@@ -9,21 +9,21 @@
 namespace umtet {
 namespace {
 
-const char* said_of(PlaceKind kind) {
+const char* said_of(DefectKind kind) {
   switch (kind) {
-    case PlaceKind::Folded:
+    case DefectKind::Folded:
       return "folded over";
-    case PlaceKind::Off:
+    case DefectKind::Off:
       return "off ψ = 0";
-    case PlaceKind::Filled:
+    case DefectKind::Filled:
       return "gap filled";
-    case PlaceKind::Cut:
+    case DefectKind::Cut:
       return "body cut away";
-    case PlaceKind::Thin:
+    case DefectKind::Thin:
       return "thin part lost";
-    case PlaceKind::Topology:
+    case DefectKind::Topology:
       return "components or handles that differ";
-    case PlaceKind::Missed:
+    case DefectKind::Missed:
       return "samples missed";
   }
   return "";
@@ -82,9 +82,9 @@ std::string missed_table(const Certificate& c) {
       cloud->missed_beyond, rest, rows);
 }
 
-std::string place_table(const Certificate& c) {
-  const PlaceReport& places = c.measured.places;
-  if (places.empty()) return "";
+std::string defect_table(const Certificate& c) {
+  const DefectReport& defects = c.measured.defects;
+  if (defects.empty()) return "";
   const std::string unit = c.units ? ", " + html_text(*c.units) : "";
   std::string rows = fmt::format(
       "<tr><th></th><th>what</th><th>where{0}</th><th>off, h</th><th>size, h</th><th>feature of ψ = 0, h</th><th>shown "
@@ -92,8 +92,8 @@ std::string place_table(const Certificate& c) {
       "<th>of</th><th></th></tr>\n",
       unit);
   const auto number = [](const std::optional<double>& x) { return x ? fmt::format("{:.3g}", *x) : std::string("–"); };
-  for (std::size_t k = 0; k < places.listed.size(); ++k) {
-    const MeshPlace& p = places.listed[k];
+  for (std::size_t k = 0; k < defects.listed.size(); ++k) {
+    const MeshDefect& p = defects.listed[k];
     rows += fmt::format(
         "<tr><td><button type=\"button\" data-place=\"{}\">show {}</button></td><td>{}</td>"
         "<td>({:.4g}, {:.4g}, "
@@ -101,7 +101,7 @@ std::string place_table(const Certificate& c) {
         k, k + 1, said_of(p.kind), p.where.x(), p.where.y(), p.where.z(), p.off_over_h, p.size_over_h,
         number(p.feature_over_h), number(p.h_needed), p.n, is_small(p) ? "small" : "");
   }
-  const std::size_t n = places.n(), n_listed = places.listed.size();
+  const std::size_t n = defects.n(), n_listed = defects.listed.size();
   const std::string rest = n > n_listed ? fmt::format(" These are the worst {} of {}.", n_listed, n) : "";
   return fmt::format(
       "<div class=\"table\" id=\"places\"><h2>Defects: where the mesh is not ψ = 0</h2>\n<p>A defect is small, and the "

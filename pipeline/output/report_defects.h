@@ -15,6 +15,6 @@ std::string hole_table(const Certificate& certificate);
 std::string missed_table(const Certificate& certificate);
 
 /// Returns the table of defects, where the mesh is not psi = 0.
-std::string place_table(const Certificate& certificate);
+std::string defect_table(const Certificate& certificate);
 
 }  // namespace umtet

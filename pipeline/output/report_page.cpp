@@ -122,8 +122,8 @@ std::string check_list(const Certificate& c) {
                     value("/cloud/n_missed_places", cloud->n_missed_places)),
         std::nullopt);
   }
-  const PlaceReport& places = c.measured.places;
-  if (const std::size_t n = places.n(); n > 0) {
+  const DefectReport& defects = c.measured.defects;
+  if (const std::size_t n = defects.n(); n > 0) {
     add(fmt::format("<a href=\"#places\">defects, where the mesh is not ψ = 0: {}</a>", value("/places/n", n)),
         c.verdict.fits_psi ? std::optional<bool>() : false);
   }

@@ -81,9 +81,9 @@ std::optional<Blame> blame_of_labels(const MeshMeasures& m, const std::vector<In
 /// Returns the h that resolves all defects that are not small, where psi = 0 explains them.
 std::optional<double> h_that_shows(const MeshMeasures& m) {
   std::optional<double> least;
-  for (const MeshPlace& place : m.places.listed) {
-    if (is_small(place) || !place.h_needed) continue;
-    least = std::min(least.value_or(*place.h_needed), *place.h_needed);
+  for (const MeshDefect& defect : m.defects.listed) {
+    if (is_small(defect) || !defect.h_needed) continue;
+    least = std::min(least.value_or(*defect.h_needed), *defect.h_needed);
   }
   if (!least && m.resolution.too_thin && !m.resolution.too_thin->empty()) {
     least = m.resolution.too_thin->front().h_needed;
@@ -105,7 +105,7 @@ Blame blame_of_mesh(const MeshMeasures& m) {
   if (!m.is_valid || !coarseness(m.mesh).empty() || !m.reasons.empty()) {
     return {"h", fmt::format("h is {:.4g}", h), "a smaller --h"};
   }
-  return {"mesh", fmt::format("{} defects at h = {:.4g}", m.places.n(), h),
+  return {"mesh", fmt::format("{} defects at h = {:.4g}", m.defects.n(), h),
           fmt::format("another --h, such as {:.4g}, or a larger --effort", .97 * h)};
 }
 

@@ -2,9 +2,9 @@
 
 #include "pipeline/case/exit_code.h"
 #include "pipeline/reports/comparison_json.h"
+#include "pipeline/reports/defect_json.h"
 #include "pipeline/reports/label_json.h"
 #include "pipeline/reports/mesh_json.h"
-#include "pipeline/reports/place_json.h"
 
 namespace umtet {
 namespace {
@@ -57,7 +57,7 @@ Json measured_blocks(const MeshMeasures& m) {
   if (m.input) json["input"] = to_json(*m.input);
   if (m.search) json["search"] = to_json(*m.search);
   json["valid"] = m.is_valid;
-  json["places"] = to_json(m.places);
+  json["places"] = to_json(m.defects);
   return json;
 }
 
@@ -82,7 +82,7 @@ MeshMeasures measured_blocks_from(const Json& json) {
   if (json.contains("input")) m.input = input_facts_from(json.at("input"));
   if (json.contains("search")) m.search = search_from(json.at("search"));
   m.is_valid = json.at("valid");
-  m.places = places_from(json.at("places"));
+  m.defects = defects_from(json.at("places"));
   if (!json.contains("order")) return m;
   m.order = json.at("order");
   if (!json.at("second_order").is_null()) m.second_order = second_order_from(json.at("second_order"));
@@ -219,8 +219,8 @@ Json to_json(const MeshCheck& check) {
   json["second_order"] = second_order_block(check.second_order);
   json["domain"] = to_json(check.support);
   json["valid"] = check.is_valid;
-  json["places"] = check.places ? to_json(*check.places) : Json(nullptr);
-  json["fits_psi"] = check.places ? Json(check.verdict.fits_psi) : Json(nullptr);
+  json["places"] = check.defects ? to_json(*check.defects) : Json(nullptr);
+  json["fits_psi"] = check.defects ? Json(check.verdict.fits_psi) : Json(nullptr);
   json["verdict"] = check.verdict.word();
   json["n_defects"] = check.verdict.n_defects;
   json["defects"] = check.verdict.defects;

@@ -3,7 +3,7 @@
 #include "pipeline/case/json_values.h"
 #include "pipeline/reports/certificate_report.h"
 
-// Certificates and records in JSON. They consist of the blocks of mesh_json.h, comparison_json.h and place_json.h.
+// Certificates and records in JSON. They consist of the blocks of mesh_json.h, comparison_json.h and defect_json.h.
 // Names are in the order of the documents. docs/reference.md explains them.
 namespace umtet {
 

@@ -25,8 +25,8 @@ struct Blame {
 /// Times of all stages that made the mesh.
 struct CertificateRun {
   std::vector<std::pair<std::string, double>> seconds;  ///< by section of the parameters, in the order of the stages
-  std::optional<double> points_per_s;  ///< points per second of the fit; none for a formula
-  std::optional<double> tets_per_s;    ///< tets per second of the mesher
+  std::optional<double> points_per_s;                   ///< points per second of the fit; none for a formula
+  std::optional<double> tets_per_s;                     ///< tets per second of the mesher
   double peak_memory_MB = 0;
   int threads = 0;
   std::string host, date;  ///< host and date of the mesh
@@ -53,7 +53,7 @@ struct MeshCheck {
   std::optional<SecondOrderReport> second_order;  ///< for tets with 10 nodes
   std::optional<SupportReport> support;           ///< from the samples of a case
   bool is_valid = true;
-  std::optional<PlaceReport> places;  ///< defects; none without a case to compare with
+  std::optional<DefectReport> defects;  ///< defects; none without a case to compare with
   Verdict verdict;
 };
 

@@ -185,15 +185,15 @@ std::string thin_line(const ResolutionReport& r) {
 }
 
 /// Returns the line on defects, where the mesh is not psi = 0; empty if there are none.
-std::string places_line(const PlaceReport& places) {
-  if (places.empty()) return "";
+std::string defects_line(const DefectReport& defects) {
+  if (defects.empty()) return "";
   std::vector<std::string> kinds;
-  for (const PlaceReport::OfKind& k : places.kinds) {
+  for (const DefectReport::OfKind& k : defects.kinds) {
     kinds.push_back(fmt::format("{} {} (up to {:.2g} h)", k.n, to_string(k.kind), k.max_off_over_h));
   }
-  const std::size_t n = places.n();
+  const std::size_t n = defects.n();
   std::size_t n_small = 0;
-  for (const PlaceReport::OfKind& k : places.kinds) n_small += k.n_small;
+  for (const DefectReport::OfKind& k : defects.kinds) n_small += k.n_small;
   return fmt::format("defects   {} where the mesh is not psi = 0, {} of them small: {}\n", n, n_small,
                      fmt::join(kinds, ", "));
 }
@@ -215,15 +215,15 @@ std::string summary(const Certificate& c) {
   return verdict_lines(c.verdict, judgements(c.verdict, has_input(m)), c.blame) +
          mesh_lines(m.mesh, unit, c.n_tets_asked) + sizes_line(m.sizes, unit) + second_order_lines(m.second_order) +
          domain_line(m.domain) + holes_line(m.domain.support, unit) + cloud_line(m, unit) + triangles_line(m, unit) +
-         labels_line(m, unit) + missed_line(m, unit) + thin_line(m.resolution) + places_line(m.places) +
+         labels_line(m, unit) + missed_line(m, unit) + thin_line(m.resolution) + defects_line(m.defects) +
          time_line(c.run);
 }
 
 std::string summary(const MeshCheck& c) {
-  const std::string judged = c.places ? judgements(c.verdict, false) : c.is_valid ? "valid" : "NOT valid";
+  const std::string judged = c.defects ? judgements(c.verdict, false) : c.is_valid ? "valid" : "NOT valid";
   return verdict_lines(c.verdict, judged, {}) + mesh_lines(c.mesh, suffix(c.units), {}) +
          second_order_lines(c.second_order) + holes_line(c.support, suffix(c.units)) +
-         (c.places ? places_line(*c.places) : "");
+         (c.defects ? defects_line(*c.defects) : "");
 }
 
 }  // namespace umtet

@@ -3,7 +3,7 @@
 #include <array>
 #include <string>
 
-#include "pipeline/reports/place_json.h"
+#include "pipeline/reports/defect_json.h"
 
 namespace umtet {
 namespace {

@@ -1,4 +1,4 @@
-#include "pipeline/reports/place_json.h"
+#include "pipeline/reports/defect_json.h"
 
 #include <stdexcept>
 #include <string>
@@ -8,25 +8,25 @@
 namespace umtet {
 namespace {
 
-Json json_of_place(const MeshPlace& place) {
-  return {{"kind", to_string(place.kind)},
-          {"where", json_of(place.where)},
-          {"off_over_h", place.off_over_h},
-          {"size_over_h", place.size_over_h},
-          {"feature_over_h", json_of(place.feature_over_h)},
-          {"h_needed", json_of(place.h_needed)},
-          {"small", is_small(place)},
-          {"n", place.n}};
+Json json_of_defect(const MeshDefect& defect) {
+  return {{"kind", to_string(defect.kind)},
+          {"where", json_of(defect.where)},
+          {"off_over_h", defect.off_over_h},
+          {"size_over_h", defect.size_over_h},
+          {"feature_over_h", json_of(defect.feature_over_h)},
+          {"h_needed", json_of(defect.h_needed)},
+          {"small", is_small(defect)},
+          {"n", defect.n}};
 }
 
-PlaceKind kind_from(const Json& json) {
+DefectKind kind_from(const Json& json) {
   const std::string word = json.at("kind");
-  const std::optional<PlaceKind> kind = place_kind_of(word);
+  const std::optional<DefectKind> kind = defect_kind_of(word);
   if (!kind) throw ArtefactDamaged("'" + word + "' is not a kind of defect");
   return *kind;
 }
 
-MeshPlace place_from(const Json& json) {
+MeshDefect defect_from(const Json& json) {
   return {.kind = kind_from(json),
           .where = vector_from(json.at("where")),
           .off_over_h = number_from(json.at("off_over_h")),
@@ -79,35 +79,35 @@ std::vector<MissedPlace> missed_places_from(const Json& list) {
   std::vector<MissedPlace> places;
   for (const Json& json : list) {
     places.push_back({.farthest = vector_from(json.at("farthest")),
-                      .distance = number_from(json.at("distance")),
-                      .n_samples = json.at("n_samples")});
+                       .distance = number_from(json.at("distance")),
+                       .n_samples = json.at("n_samples")});
   }
   return places;
 }
 
-Json to_json(const PlaceReport& report) {
+Json to_json(const DefectReport& report) {
   Json kinds = Json::array(), list = Json::array();
-  for (const PlaceReport::OfKind& k : report.kinds) {
+  for (const DefectReport::OfKind& k : report.kinds) {
     kinds.push_back({{"kind", to_string(k.kind)},
                      {"n", k.n},
                      {"n_small", k.n_small},
                      {"max_off_over_h", k.max_off_over_h},
-                     {"worst", json_of_place(k.worst)}});
+                     {"worst", json_of_defect(k.worst)}});
   }
-  for (const MeshPlace& place : report.listed) list.push_back(json_of_place(place));
+  for (const MeshDefect& defect : report.listed) list.push_back(json_of_defect(defect));
   return {{"n", report.n()}, {"kinds", std::move(kinds)}, {"listed", std::move(list)}};
 }
 
-PlaceReport places_from(const Json& json) {
-  PlaceReport report;
+DefectReport defects_from(const Json& json) {
+  DefectReport report;
   for (const Json& k : json.at("kinds")) {
     report.kinds.push_back({.kind = kind_from(k),
                             .n = k.at("n"),
                             .n_small = k.at("n_small"),
-                            .worst = place_from(k.at("worst")),
+                            .worst = defect_from(k.at("worst")),
                             .max_off_over_h = number_from(k.at("max_off_over_h"))});
   }
-  for (const Json& place : json.at("listed")) report.listed.push_back(place_from(place));
+  for (const Json& defect : json.at("listed")) report.listed.push_back(defect_from(defect));
   return report;
 }
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "body/fidelity/closed_hole.h"
-#include "body/fidelity/mesh_place.h"
+#include "body/fidelity/mesh_defect.h"
 #include "body/fidelity/missed_place.h"
 #include "pipeline/case/json_values.h"
 #include "pipeline/case/thin_place_json.h"
@@ -19,7 +19,7 @@ Json to_json(const std::vector<MissedPlace>& places);
 std::vector<MissedPlace> missed_places_from(const Json& list);
 
 /// Returns an object with the total number, the numbers by kind, and the list.
-Json to_json(const PlaceReport& report);
-PlaceReport places_from(const Json& json);
+Json to_json(const DefectReport& report);
+DefectReport defects_from(const Json& json);
 
 }  // namespace umtet

@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-#include "body/fidelity/mesh_places.h"
+#include "body/fidelity/mesh_defects.h"
 #include "body/fidelity/mesh_sizes.h"
 #include "body/search/second_order.h"
 #include "common/indices_where.h"
@@ -18,8 +18,8 @@
 #include "mesh/io/quality_csv.h"
 #include "pipeline/case/artefact.h"
 #include "pipeline/case/interrupt.h"
+#include "pipeline/meshing/defect_files.h"
 #include "pipeline/meshing/made_mesh.h"
-#include "pipeline/meshing/place_files.h"
 #include "pipeline/meshing/second_order_file.h"
 
 namespace umtet {
@@ -162,9 +162,9 @@ std::vector<std::string> write_mesh_outputs(const StageContext& context, const D
     write_thin_places(folder / "too_thin.vtp", best.thin, domain.shift);
     names.emplace_back("too_thin.vtp");
   }
-  if (!best.places.empty()) {
-    write_places(folder / "places.vtp", best.places);
-    names.emplace_back("places.vtp");
+  if (!best.defects.empty()) {
+    write_defects(folder / "defects.vtp", best.defects);
+    names.emplace_back("defects.vtp");
   }
   return names;
 }

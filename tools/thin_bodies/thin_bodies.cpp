@@ -63,9 +63,9 @@ struct Outcome {
   bool unreported() const { return made && (n_unreported > 0 || (!same_topology && !reports_topology)); }
 };
 
-bool is_near_a_place(const Vec3& x, const std::vector<MeshPlace>& places) {
+bool is_near_a_place(const Vec3& x, const std::vector<MeshDefect>& places) {
   return std::any_of(places.begin(), places.end(),
-                     [&](const MeshPlace& p) { return (p.where - x).norm() <= p.size_over_h + kNear; });
+                     [&](const MeshDefect& p) { return (p.where - x).norm() <= p.size_over_h + kNear; });
 }
 
 Outcome outcome_of(const Body& body) {
@@ -79,16 +79,16 @@ Outcome outcome_of(const Body& body) {
   o.made = a.made();
   if (!o.made) return o;
   o.passes = a.is_right();
-  o.faithful = fits_psi(a.measured) && a.measured.places.empty();
+  o.faithful = fits_psi(a.measured) && a.measured.defects.empty();
   o.valid = a.measured.is_valid;
-  o.n_places = a.places.size();
+  o.n_places = a.defects.size();
   const MeshCertificate::Boundary& boundary = a.measured.mesh.boundary;
   o.same_topology = boundary.components == body.n_pieces && boundary.euler_characteristic == 2L * body.n_pieces;
   o.reports_topology = a.measured.domain.topology != TopologyProof::Same;
   const std::vector<Triangle>& faces = a.result.submesh.positive_faces;
   const auto look = [&](const Vec3& x, double off, double tolerance, double& largest) {
     largest = std::max(largest, off);
-    if (off > kSmallOff + tolerance && !is_near_a_place(x, a.places)) ++o.n_unreported;
+    if (off > kSmallOff + tolerance && !is_near_a_place(x, a.defects)) ++o.n_unreported;
   };
   const std::vector<double> lost = SurfaceDistance(a.result.final, faces).distances(body.surface);
   for (std::size_t i = 0; i < lost.size(); ++i) look(body.surface[i], lost[i], kSteps, o.lost);

@@ -47,9 +47,9 @@ MeshMeasures guessing(double share, int n_handles = 0) {
 /// Not psi = 0 at a place that is not small.
 MeshMeasures unlike_psi(std::optional<double> h_needed) {
   MeshMeasures m = right();
-  std::vector<MeshPlace> places = {
-      {.kind = PlaceKind::Thin, .off_over_h = 2, .size_over_h = 5, .feature_over_h = 1, .h_needed = h_needed}};
-  m.places = report_on(places);
+  std::vector<MeshDefect> places = {
+      {.kind = DefectKind::Thin, .off_over_h = 2, .size_over_h = 5, .feature_over_h = 1, .h_needed = h_needed}};
+  m.defects = report_on(places);
   return m;
 }
 

@@ -1,57 +1,58 @@
-#include "body/fidelity/mesh_place.h"
+#include "body/fidelity/mesh_defect.h"
 
 #include <gtest/gtest.h>
 
-#include "pipeline/case/exit_code.h"
 #include "body/fidelity/accepted_defects.h"
+#include "pipeline/case/exit_code.h"
 #include "pipeline/reports/certificate_report.h"
 
 namespace umtet {
 namespace {
 
 /// A place larger than a few faces, unless its size is given.
-MeshPlace place(PlaceKind kind, double off, std::optional<double> feature = .5, double size = 10) {
+MeshDefect defect(DefectKind kind, double off, std::optional<double> feature = .5, double size = 10) {
   return {.kind = kind, .off_over_h = off, .size_over_h = size, .feature_over_h = feature};
 }
 
-TEST(MeshPlace, IsSmallWhereItIsNearAndFinerThanHCanShow) {
-  EXPECT_TRUE(is_small(place(PlaceKind::Folded, .5, 1.2)));
-  EXPECT_FALSE(is_small(place(PlaceKind::Folded, .51, 1.2)));
-  EXPECT_TRUE(is_small(place(PlaceKind::Thin, 1, 1.2)));
-  EXPECT_FALSE(is_small(place(PlaceKind::Thin, 1.01, 1.2)));
-  EXPECT_FALSE(is_small(place(PlaceKind::Folded, 0, 1.25)));
-  EXPECT_FALSE(is_small(place(PlaceKind::Folded, 0, std::nullopt)));  // nothing explains it
+TEST(MeshDefect, IsSmallWhereItIsNearAndFinerThanHCanShow) {
+  EXPECT_TRUE(is_small(defect(DefectKind::Folded, .5, 1.2)));
+  EXPECT_FALSE(is_small(defect(DefectKind::Folded, .51, 1.2)));
+  EXPECT_TRUE(is_small(defect(DefectKind::Thin, 1, 1.2)));
+  EXPECT_FALSE(is_small(defect(DefectKind::Thin, 1.01, 1.2)));
+  EXPECT_FALSE(is_small(defect(DefectKind::Folded, 0, 1.25)));
+  EXPECT_FALSE(is_small(defect(DefectKind::Folded, 0, std::nullopt)));  // nothing explains it
 }
 
-TEST(MeshPlace, IsSmallWhereItIsNoDeeperThanHAndNoLargerThanAFewFaces) {
-  for (const PlaceKind kind : {PlaceKind::Folded, PlaceKind::Off, PlaceKind::Filled, PlaceKind::Cut, PlaceKind::Thin}) {
-    EXPECT_TRUE(is_small(place(kind, 1, std::nullopt, kSmallSize))) << to_string(kind);
-    EXPECT_FALSE(is_small(place(kind, 1.01, std::nullopt, kSmallSize))) << to_string(kind);
-    EXPECT_FALSE(is_small(place(kind, 1, std::nullopt, kSmallSize + .01))) << to_string(kind);
+TEST(MeshDefect, IsSmallWhereItIsNoDeeperThanHAndNoLargerThanAFewFaces) {
+  for (const DefectKind kind :
+       {DefectKind::Folded, DefectKind::Off, DefectKind::Filled, DefectKind::Cut, DefectKind::Thin}) {
+    EXPECT_TRUE(is_small(defect(kind, 1, std::nullopt, kSmallSize))) << to_string(kind);
+    EXPECT_FALSE(is_small(defect(kind, 1.01, std::nullopt, kSmallSize))) << to_string(kind);
+    EXPECT_FALSE(is_small(defect(kind, 1, std::nullopt, kSmallSize + .01))) << to_string(kind);
   }
-  EXPECT_FALSE(is_small(place(PlaceKind::Topology, .1, std::nullopt, 0))) << "a handle is no matter of size";
+  EXPECT_FALSE(is_small(defect(DefectKind::Topology, .1, std::nullopt, 0))) << "a handle is no matter of size";
 }
 
-TEST(MeshPlace, KindsAreReadAsTheyAreWritten) {
-  for (int k = 0; k <= static_cast<int>(PlaceKind::Missed); ++k) {
-    const auto kind = static_cast<PlaceKind>(k);
-    EXPECT_EQ(place_kind_of(to_string(kind)), kind);
+TEST(MeshDefect, KindsAreReadAsTheyAreWritten) {
+  for (int k = 0; k <= static_cast<int>(DefectKind::Missed); ++k) {
+    const auto kind = static_cast<DefectKind>(k);
+    EXPECT_EQ(defect_kind_of(to_string(kind)), kind);
   }
-  EXPECT_EQ(place_kind_of("fold"), std::nullopt);
+  EXPECT_EQ(defect_kind_of("fold"), std::nullopt);
 }
 
-TEST(MeshPlace, AreListedWorstFirstAndCounted) {
-  std::vector<MeshPlace> places = {place(PlaceKind::Cut, .3), place(PlaceKind::Folded, .1, std::nullopt),
-                                   place(PlaceKind::Cut, .4)};
-  for (std::size_t k = 0; k < kListedPlaces; ++k) places.push_back(place(PlaceKind::Filled, .01));
-  const PlaceReport report = report_on(places);
-  EXPECT_EQ(report.n(), kListedPlaces + 3);
-  EXPECT_EQ(report.listed.size(), kListedPlaces);
-  EXPECT_EQ(report.listed[0].kind, PlaceKind::Folded);  // not small, though nearest but for the filled ones
+TEST(MeshDefect, AreListedWorstFirstAndCounted) {
+  std::vector<MeshDefect> defects = {defect(DefectKind::Cut, .3), defect(DefectKind::Folded, .1, std::nullopt),
+                                     defect(DefectKind::Cut, .4)};
+  for (std::size_t k = 0; k < kListedDefects; ++k) defects.push_back(defect(DefectKind::Filled, .01));
+  const DefectReport report = report_on(defects);
+  EXPECT_EQ(report.n(), kListedDefects + 3);
+  EXPECT_EQ(report.listed.size(), kListedDefects);
+  EXPECT_EQ(report.listed[0].kind, DefectKind::Folded);  // not small, though nearest but for the filled ones
   EXPECT_EQ(report.listed[1].off_over_h, .4);
   ASSERT_EQ(report.kinds.size(), 3u);
   EXPECT_EQ(report.kinds[0].n_small, 0u);
-  EXPECT_EQ(report.kinds[2].kind, PlaceKind::Cut);
+  EXPECT_EQ(report.kinds[2].kind, DefectKind::Cut);
   EXPECT_EQ(report.kinds[2].n, 2u);
   EXPECT_EQ(report.kinds[2].max_off_over_h, .4);
 }
@@ -73,8 +74,8 @@ TEST(AcceptedDefects, AreKindsAndHowMuchOfThem) {
 
 TEST(Judge, NamesSmallPlacesUnlessItIsStrictAndTakesWhatIsAccepted) {
   MeshMeasures m;
-  std::vector<MeshPlace> places = {place(PlaceKind::Folded, .1)};
-  m.places = report_on(places);
+  std::vector<MeshDefect> defects = {defect(DefectKind::Folded, .1)};
+  m.defects = report_on(defects);
   EXPECT_EQ(judge_shape(m).word(), "pass with 1 defect named");
   EXPECT_TRUE(judge_shape(m).fits_psi);
   EXPECT_FALSE(judge_shape(m, true).passes());
@@ -82,8 +83,8 @@ TEST(Judge, NamesSmallPlacesUnlessItIsStrictAndTakesWhatIsAccepted) {
   EXPECT_EQ(judge_shape(m, true, "folded:.1").accepted.size(), 1u);
   EXPECT_FALSE(judge_shape(m, true, "folded:.05").passes());
   EXPECT_FALSE(judge_shape(m, true, "off").passes());
-  places.push_back(place(PlaceKind::Off, .6));
-  m.places = report_on(places);
+  defects.push_back(defect(DefectKind::Off, .6));
+  m.defects = report_on(defects);
   EXPECT_EQ(judge_shape(m).word(), "fail");
   EXPECT_FALSE(judge_shape(m).fits_psi);
   EXPECT_EQ(judge_shape(m).reasons.size(), 1u);

@@ -1,6 +1,6 @@
 // Places of formulas whose features are known.
 
-#include "body/fidelity/mesh_places.h"
+#include "body/fidelity/mesh_defects.h"
 
 #include <gtest/gtest.h>
 
@@ -30,49 +30,49 @@ TEST(Clusters, JoinWhatIsNear) {
   EXPECT_EQ(members_of(set), (std::vector<std::vector<int>>{{0, 2}, {1, 3}}));
 }
 
-TEST(MeshPlaces, HaveTheFeatureOfPsiAndTheHThatShowsIt) {
+TEST(MeshDefects, HaveTheFeatureOfPsiAndTheHThatShowsIt) {
   Domain twins = domain_of(kTwins, {2.6, 1.4, 1.4});
   twins.shift = Vec3(10, 0, 0);
-  const std::vector<Difference> differences = {{PlaceKind::Folded, Vec3(.05, 0, 0), .01},
-                                               {PlaceKind::Folded, Vec3(-.05, 0, 0), .02},
-                                               {PlaceKind::Off, Vec3(.05, 0, 0), .03},
-                                               {PlaceKind::Folded, Vec3(2.05, 0, 0), .01}};
-  const std::vector<MeshPlace> places = places_of(twins, differences, .2);
-  ASSERT_EQ(places.size(), 3u);
-  EXPECT_EQ(places[0].kind, PlaceKind::Folded);
-  EXPECT_EQ(places[0].n, 2u);
-  EXPECT_NEAR(places[0].off_over_h, .1, 1e-12);
-  EXPECT_NEAR((places[0].where - Vec3(9.95, 0, 0)).norm(), 0, 1e-12);
-  ASSERT_TRUE(places[0].feature_over_h);
-  EXPECT_NEAR(*places[0].feature_over_h, .5, .02);  // the gap of .1
-  EXPECT_NEAR(*places[0].h_needed, .1 / kLeastEdgesAcross, .005);
-  EXPECT_TRUE(is_small(places[0]));
-  EXPECT_FALSE(places[1].feature_over_h);  // a ball of radius 5 h, far from the other: nothing is fine there
-  EXPECT_TRUE(is_small(places[1])) << "no larger than a face";
-  EXPECT_EQ(places[2].kind, PlaceKind::Off);
+  const std::vector<Difference> differences = {{DefectKind::Folded, Vec3(.05, 0, 0), .01},
+                                               {DefectKind::Folded, Vec3(-.05, 0, 0), .02},
+                                               {DefectKind::Off, Vec3(.05, 0, 0), .03},
+                                               {DefectKind::Folded, Vec3(2.05, 0, 0), .01}};
+  const std::vector<MeshDefect> defects = defects_of(twins, differences, .2);
+  ASSERT_EQ(defects.size(), 3u);
+  EXPECT_EQ(defects[0].kind, DefectKind::Folded);
+  EXPECT_EQ(defects[0].n, 2u);
+  EXPECT_NEAR(defects[0].off_over_h, .1, 1e-12);
+  EXPECT_NEAR((defects[0].where - Vec3(9.95, 0, 0)).norm(), 0, 1e-12);
+  ASSERT_TRUE(defects[0].feature_over_h);
+  EXPECT_NEAR(*defects[0].feature_over_h, .5, .02);  // the gap of .1
+  EXPECT_NEAR(*defects[0].h_needed, .1 / kLeastEdgesAcross, .005);
+  EXPECT_TRUE(is_small(defects[0]));
+  EXPECT_FALSE(defects[1].feature_over_h);  // a ball of radius 5 h, far from the other: nothing is fine there
+  EXPECT_TRUE(is_small(defects[1])) << "no larger than a face";
+  EXPECT_EQ(defects[2].kind, DefectKind::Off);
 }
 
-TEST(MeshPlaces, AreSmallWhereCurvatureIsFinerThanH) {
+TEST(MeshDefects, AreSmallWhereCurvatureIsFinerThanH) {
   // At its ends the spindle has radius of curvature .2^2 / 1 = .04, and is thinner than that on the way there.
   const Domain spindle = domain_of("x^2+(y/0.2)^2+(z/0.2)^2-1", {1.2, .4, .4});
-  const std::vector<Difference> at_end = {{PlaceKind::Off, Vec3(1, 0, 0), .01}};
-  const std::vector<MeshPlace> places = places_of(spindle, at_end, .1);
-  ASSERT_TRUE(places[0].feature_over_h);
-  EXPECT_NEAR(*places[0].feature_over_h, .8, .01);  // 2 x .04 / .1
-  EXPECT_FALSE(places_of(spindle, at_end, .03)[0].feature_over_h);
+  const std::vector<Difference> at_end = {{DefectKind::Off, Vec3(1, 0, 0), .01}};
+  const std::vector<MeshDefect> defects = defects_of(spindle, at_end, .1);
+  ASSERT_TRUE(defects[0].feature_over_h);
+  EXPECT_NEAR(*defects[0].feature_over_h, .8, .01);  // 2 x .04 / .1
+  EXPECT_FALSE(defects_of(spindle, at_end, .03)[0].feature_over_h);
 }
 
-TEST(MeshPlaces, ATopologyThatDiffersIsWherePsiIsThin) {
+TEST(MeshDefects, ATopologyThatDiffersIsWherePsiIsThin) {
   const Domain twins = domain_of(kTwins, {2.6, 1.4, 1.4});
   const ZeroSetChoice counted = choose_components(twins, .1);
   // A boundary that is far from all of it but for one point of the gap.
   const std::vector<Vec3> V = {{0, .1, 0}, {0, -.1, .1}, {0, -.1, -.1}};
-  const MeshPlace place = topology_place(twins, counted, SurfaceDistance(V, {{0, 1, 2}}), .2, 3);
-  EXPECT_EQ(place.n, 3u);
-  EXPECT_LT(std::abs(place.where.x()), .2);
-  ASSERT_TRUE(place.feature_over_h);
-  EXPECT_LT(*place.feature_over_h, kLeastEdgesAcross);
-  EXPECT_GT(place.off_over_h, 9);  // the far ends of the balls have no boundary near them
+  const MeshDefect defect = topology_defect(twins, counted, SurfaceDistance(V, {{0, 1, 2}}), .2, 3);
+  EXPECT_EQ(defect.n, 3u);
+  EXPECT_LT(std::abs(defect.where.x()), .2);
+  ASSERT_TRUE(defect.feature_over_h);
+  EXPECT_LT(*defect.feature_over_h, kLeastEdgesAcross);
+  EXPECT_GT(defect.off_over_h, 9);  // the far ends of the balls have no boundary near them
 }
 
 TEST(LostEnds, AWireIsFollowedToItsEndFromWhereTheMeshEnds) {

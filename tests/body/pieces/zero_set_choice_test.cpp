@@ -158,7 +158,7 @@ std::string text_of(const std::vector<std::string>& reasons) {
 TEST(Measure, TopologyIsComparedAlsoWhenAPieceIsDropped) {
   const Domain good = domain([](const Vec3& x) { return std::min(ball(x, {0, 0, 0}, 1), ball(x, kCorner, .25)); });
   const MeshMeasures whole = measured(good, good, .2);
-  EXPECT_TRUE(whole.places.empty()) << text_of(judge_shape(whole).reasons);
+  EXPECT_TRUE(whole.defects.empty()) << text_of(judge_shape(whole).reasons);
   EXPECT_EQ(whole.domain.topology, TopologyProof::Same);
   EXPECT_EQ(whole.domain.components_of_zero_set, 2u);
   EXPECT_EQ(whole.domain.components_meshed, 1);

@@ -13,7 +13,7 @@ namespace umtet {
 namespace {
 
 constexpr int kInverted = -1, kEmpty = -2;
-// Meshes without reasons, with a place each that is small.
+// Meshes without reasons, with a defect each that is small.
 constexpr int kSmallFold = 100, kSmallCut = 101;
 // Meshes with a reason: a large fold, and a lack of what h = .9 or .6 shows.
 constexpr int kFold = 102, kThin = 103, kVeryThin = 104;
@@ -23,16 +23,16 @@ constexpr int kHandle = 105;
 constexpr int kGuessed = 106, kGuessedHandle = 107;
 constexpr double kAnyEffort = 1000;
 
-MeshAttempt with_place(const MeshPlace& place) {
+MeshAttempt with_defect(const MeshDefect& defect) {
   MeshAttempt a;
-  a.places = {place};
-  a.measured.places = report_on(a.places);
-  if (!is_small(place)) a.reasons = {"a place"};
+  a.defects = {defect};
+  a.measured.defects = report_on(a.defects);
+  if (!is_small(defect)) a.reasons = {"a defect"};
   return a;
 }
 
 MeshAttempt guessed(double share, int n_handles) {
-  MeshAttempt a = with_place({.kind = PlaceKind::Folded, .off_over_h = .8, .size_over_h = 9});
+  MeshAttempt a = with_defect({.kind = DefectKind::Folded, .off_over_h = .8, .size_over_h = 9});
   a.measured.domain.support = SupportReport{.radius = .3};
   a.measured.domain.support->unsupported_area_fraction = share;
   a.measured.domain.support->n_guessed_handles = n_handles;
@@ -42,21 +42,21 @@ MeshAttempt guessed(double share, int n_handles) {
 MeshAttempt ended_as(int outcome) {
   switch (outcome) {
     case kSmallFold:
-      return with_place({.kind = PlaceKind::Folded, .off_over_h = .8});
+      return with_defect({.kind = DefectKind::Folded, .off_over_h = .8});
     case kSmallCut:
-      return with_place({.kind = PlaceKind::Cut, .off_over_h = .8});
+      return with_defect({.kind = DefectKind::Cut, .off_over_h = .8});
     case kFold:
-      return with_place({.kind = PlaceKind::Folded, .off_over_h = .8, .size_over_h = 9});
+      return with_defect({.kind = DefectKind::Folded, .off_over_h = .8, .size_over_h = 9});
     case kThin:
-      return with_place({.kind = PlaceKind::Thin, .off_over_h = 2, .feature_over_h = 2, .h_needed = .9 / .97});
+      return with_defect({.kind = DefectKind::Thin, .off_over_h = 2, .feature_over_h = 2, .h_needed = .9 / .97});
     case kVeryThin:
-      return with_place({.kind = PlaceKind::Thin, .off_over_h = 2, .h_needed = .6 / .97});
+      return with_defect({.kind = DefectKind::Thin, .off_over_h = 2, .h_needed = .6 / .97});
     case kGuessed:
       return guessed(.6, 0);
     case kGuessedHandle:
       return guessed(.3, 1);
     case kHandle:
-      return with_place({.kind = PlaceKind::Topology, .off_over_h = 2});
+      return with_defect({.kind = DefectKind::Topology, .off_over_h = 2});
     default:
       break;
   }
@@ -193,8 +193,8 @@ TEST(FinerWhereItFailed, HalvesTheSizesOfWhatSmallerEdgesMayMend) {
   MeshAttempt a;
   a.sizes =
       std::make_shared<const SizeField>(std::vector<SizeSource>{{Vec3::Zero(), .2, 10}}, SizeFieldParams{.h_min = .01});
-  a.places = {{.kind = PlaceKind::Folded, .where = Vec3(1, 0, 5), .off_over_h = .2, .size_over_h = 3},
-              {.kind = PlaceKind::Cut, .where = Vec3(2, 0, 5), .feature_over_h = .5}};
+  a.defects = {{.kind = DefectKind::Folded, .where = Vec3(1, 0, 5), .off_over_h = .2, .size_over_h = 3},
+               {.kind = DefectKind::Cut, .where = Vec3(2, 0, 5), .feature_over_h = .5}};
   const std::vector<SizeSource> finer = finer_where_it_failed(a, Vec3(0, 0, 5), kDefaultEffort);
   ASSERT_EQ(finer.size(), 1u);  // the cut is as good as h can show
   EXPECT_EQ(finer[0].x, Vec3(1, 0, 0));
@@ -202,7 +202,7 @@ TEST(FinerWhereItFailed, HalvesTheSizesOfWhatSmallerEdgesMayMend) {
   EXPECT_NEAR(finer[0].radius, .5 * 3 * .2 + 2 * .2, 1e-12);
   a.result.status = UmStatus::InvertedTet;
   a.result.evidence.where = Vec3(0, 1, 0);
-  a.places.clear();
+  a.defects.clear();
   const std::vector<SizeSource> where_it_ended = finer_where_it_failed(a, Vec3(0, 0, 5), kDefaultEffort);
   ASSERT_EQ(where_it_ended.size(), 1u);
   EXPECT_EQ(where_it_ended[0].x, Vec3(0, 1, 0));

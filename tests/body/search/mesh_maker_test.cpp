@@ -41,7 +41,7 @@ TEST(MeshMaker, TwoBallsThatNearlyTouchHaveTheSameBytesInEveryRun) {
       ASSERT_EQ(first.result.final[i], again.result.final[i]) << threads;
     }
     EXPECT_EQ(first.reasons, again.reasons);
-    EXPECT_EQ(first.places.size(), again.places.size());
+    EXPECT_EQ(first.defects.size(), again.defects.size());
   }
 }
 

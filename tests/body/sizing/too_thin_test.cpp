@@ -14,7 +14,7 @@
 #include "body/sizing/deviation.h"
 #include "mesh/implicit/curvature.h"
 #include "pipeline/expression/expression.h"
-#include "pipeline/meshing/place_files.h"
+#include "pipeline/meshing/defect_files.h"
 
 namespace umtet {
 namespace {

@@ -29,10 +29,10 @@ TEST_F(Program, WhatIsTooThinForAGivenHIsAMeshThatFailsAndNamesThePlace) {
   EXPECT_GT(fs::file_size(folder / "lens/3-mesh/mesh.vtu"), 0u);
   EXPECT_FALSE(fs::exists(folder / "lens/3-mesh/failed"));
   // A lens has a rim thinner than any h, which comes out right.
-  EXPECT_TRUE(fs::exists(folder / "lens/3-mesh/places.vtp"));
+  EXPECT_TRUE(fs::exists(folder / "lens/3-mesh/defects.vtp"));
   const Result fine = run(kLens + "--json --h .05");
   EXPECT_EQ(fine.code, 0) << fine.err;
-  EXPECT_FALSE(fs::exists(folder / "lens/3-mesh/places.vtp"));
+  EXPECT_FALSE(fs::exists(folder / "lens/3-mesh/defects.vtp"));
 }
 
 TEST_F(Program, ThinPlacesThatComeOutRightAreNamedInTheCertificate) {

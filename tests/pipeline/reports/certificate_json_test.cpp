@@ -58,10 +58,10 @@ Certificate full_certificate() {
   c.n_tets_asked = 20;
   m.input = InputFacts{true, .1, "psi", .2, .3, .9, .01};
   m.search = SearchReport{2, true, true};
-  std::vector<MeshPlace> places = {
-      {.kind = PlaceKind::Missed, .where = Vec3(1, 0, 0), .off_over_h = 2, .n = 12},
-      {.kind = PlaceKind::Folded, .where = Vec3(0, 1, 0), .off_over_h = .1, .feature_over_h = .4, .h_needed = .1}};
-  m.places = report_on(places);
+  std::vector<MeshDefect> defects = {
+      {.kind = DefectKind::Missed, .where = Vec3(1, 0, 0), .off_over_h = 2, .n = 12},
+      {.kind = DefectKind::Folded, .where = Vec3(0, 1, 0), .off_over_h = .1, .feature_over_h = .4, .h_needed = .1}};
+  m.defects = report_on(defects);
   c.verdict = {.min_quality_gate = .2,
                .volume_gap_gate = .1,
                .strict = true,
