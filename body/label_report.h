@@ -8,30 +8,31 @@
 
 namespace umtet {
 
-/// A count of pieces of voxels: fewer where voxels hold together that have a common point, more where they need a
-/// common face. A smooth surface may join or part voxels that have less than a face in common.
+/// The number of connected pieces of a set of voxels, counted in two ways: voxels are connected if they share a point,
+/// or only if they share a face. A smooth surface may join or separate voxels that share only a point or an edge, so
+/// allows() accepts every number between the two counts.
 struct PieceCount {
-  std::size_t by_points = 0, by_faces = 0;
+  std::size_t by_points = 0, by_faces = 0;  ///< by_points <= by_faces
 
   bool allows(std::size_t n) const { return by_points <= n && n <= by_faces; }
   bool operator==(const PieceCount&) const = default;
 };
 
-/// The voxels of a segmentation that were meshed beside the mesh.
+/// Comparison of a mesh with the voxels of the segmentation that it was made from.
 struct LabelVolumeReport {
-  std::optional<std::int64_t> part;  ///< its number; none: all that is not 0
-  std::optional<double> kernel;      ///< standard deviation of mesh.part_smooth in voxels; none: no kernel
-  std::size_t n_voxels = 0;          ///< of the body
-  double volume_of_voxels = 0;       ///< of all of them together, model units^3
-  double volume_of_psi = 0;          ///< of {psi < 0}
-  double volume_of_mesh = 0;         ///< of its tets
-  PieceCount pieces, cavities;       ///< of the body; of what is outside, without the piece around the body
-  std::size_t pieces_of_mesh = 0;    ///< of its tets, by common vertices
-  std::size_t cavities_of_mesh = 0;  ///< pieces of its boundary that are none of these
-  std::size_t n_changed = 0;         ///< voxels of the body and around it whose centre is on the other side of the mesh
-  std::size_t n_changed_far = 0;     ///< those farther than half a voxel from its boundary
-  double farthest_changed = 0;       ///< of all of them, in voxels
-  std::optional<Vec3> farthest_at;   ///< where that is; model coordinates
+  std::optional<std::int64_t> part;  ///< label of the meshed part; empty if all labels other than 0 are meshed
+  std::optional<double> kernel;      ///< standard deviation of mesh.part_smooth in voxels; empty if no kernel is used
+  std::size_t n_voxels = 0;          ///< number of voxels in the body
+  double volume_of_voxels = 0;       ///< total volume of these voxels, model units^3
+  double volume_of_psi = 0;          ///< volume of {psi < 0}
+  double volume_of_mesh = 0;         ///< total volume of the tets
+  PieceCount pieces, cavities;       ///< pieces of the body; pieces of the outside, except the one around the body
+  std::size_t pieces_of_mesh = 0;    ///< connected pieces of the tets; tets are connected by common vertices
+  std::size_t cavities_of_mesh = 0;  ///< pieces of the boundary in excess of pieces_of_mesh
+  std::size_t n_changed = 0;         ///< voxels whose centre is inside the mesh but not in the body, or the reverse
+  std::size_t n_changed_far = 0;     ///< those of n_changed that are farther than half a voxel from the boundary
+  double farthest_changed = 0;       ///< largest distance of a changed voxel from the boundary, in voxels
+  std::optional<Vec3> farthest_at;   ///< position of the voxel with this distance; model coordinates
   bool operator==(const LabelVolumeReport&) const = default;
 };
 

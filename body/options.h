@@ -16,28 +16,29 @@
 // FitOptions, MeshOptions and VerdictOptions their flags and ranges; the ranges are checked there.
 namespace umtet {
 
-/// Which normals of a scan are used.
+/// The source of the normals of a scan.
 enum class NormalsOf {
-  Auto,     ///< those of the scan, with a turned minority turned back; estimated ones where there are none
-  Given,    ///< those of the scan, as they are
-  Estimate  ///< estimated ones
+  Auto,     ///< the normals of the scan, after a reversed minority is turned over; missing normals are estimated
+  Given,    ///< the normals of the scan, unchanged
+  Estimate  ///< all normals are estimated
 };
 
 enum class WindingCheck {
-  Auto,  ///< the winding number of all samples overrules estimated and turned normals where it is certain
+  Auto,  ///< the winding number of all samples overrules estimated and turned normals if it is certain
   Off
 };
 
-/// How a scan is prepared for the fit.
+/// Options for the preparation of a scan before the fit.
 struct ScanOptions {
   bool keep_all = false;  ///< keeps outliers and small pieces far from the rest
   NormalsOf normals = NormalsOf::Auto;
   WindingCheck winding = WindingCheck::Auto;
-  bool merge = true;  ///< merges samples that are denser than the mesh can show, from 200,000 points on
+  /// Merges samples that are denser than the mesh can resolve, if there are at least 200,000 points.
+  bool merge = true;
   bool flip = false;  ///< turns all normals over at the end
 };
 
-/// How psi is fitted to the samples. Fields without a comment are those of SsdParams.
+/// Options for the fit of psi to the samples. SsdParams documents the fields without a comment.
 struct FitOptions {
   double spacing = SsdParams().spacing;
   double smoothing = SsdParams().smoothing;
@@ -50,7 +51,7 @@ struct FitOptions {
   double gamma = LmePrior().gamma;
   std::int64_t support = LmePrior().support;
   double epsilon = LmePrior().epsilon;
-  std::optional<SsdSolver> solver = {};  ///< none: Multilevel, or Full where the weights or the prior need it
+  std::optional<SsdSolver> solver = {};  ///< empty: Multilevel, or Full if the weights or the prior require it
   Closing close = SsdParams().closing;
   double tolerance = SsdParams().tolerance;
   double band_tolerance = SsdParams().band_tolerance;
@@ -58,27 +59,32 @@ struct FitOptions {
   std::int64_t padding = SsdParams().padding;
 };
 
-/// How fine a body is meshed, and how. Lengths are in model units; 0 leaves a choice to the library.
+/// Options for the mesh: edge lengths and method. Lengths are in model units; with 0 the library chooses the value.
 struct MeshOptions {
-  double h = 0;                       ///< edge length of the background mesh
-  std::int64_t tets = 0;              ///< number of tets to aim at, instead of h
-  double max_deviation = 0;           ///< largest distance of flat faces from psi = 0, instead of h
-  std::int64_t max_tets = 2'000'000;  ///< most tets, unless `tets` is larger: about a minute and 1 GB
-  double effort = 2.5;  ///< all attempts together have at most this many times the tets of the first; >= 1
+  double h = 0;              ///< edge length of the background mesh
+  std::int64_t tets = 0;     ///< approximate number of tets, instead of h
+  double max_deviation = 0;  ///< largest distance of flat faces from psi = 0, instead of h
+  /// Maximum number of tets, unless `tets` is larger; 2 million take about a minute and 1 GB.
+  std::int64_t max_tets = 2'000'000;
+  /// Limits the total number of tets of all attempts, as a multiple of the tets of the first attempt; >= 1.
+  double effort = 2.5;
   /// "auto", "graded", one of tiling_names(), or any other name: then BodyOptions::background makes the mesh.
   std::string background = "auto";
-  double grade = .3;          ///< growth of edge lengths per unit length (graded)
-  double h_min = 0;           ///< least edge length (graded); 0: h / 16, and what noise allows
-  double h_max = 0;           ///< largest edge length (graded); 0: h on the boundary, as `grade` allows inside
-  double max_turn = 52;       ///< degrees by which the surface may turn along an edge (graded); 0: any
-  double constant_layer = 2;  ///< edge lengths start to grow at this many of them from the boundary (graded)
+  double grade = .3;  ///< growth of edge lengths per unit length (graded)
+  double h_min = 0;   ///< least edge length (graded); 0: the larger of h / 16 and the least that noise allows
+  /// Largest edge length (graded); 0: h on the boundary, in the interior only `grade` limits it.
+  double h_max = 0;
+  /// Largest angle in degrees by which the surface may turn along an edge (graded); 0: no limit.
+  double max_turn = 52;
+  /// Distance from the boundary, in edge lengths, at which edge lengths start to grow (graded).
+  double constant_layer = 2;
   bool grade_inside = false;  ///< keeps h on the whole boundary (graded)
   bool box_walls = false;     ///< fills the box up to flat walls
   bool complement = false;    ///< meshes {psi > 0} up to the walls of the box
   UmMode mode = UmMode::Fast;
-  std::int64_t order = 1;  ///< of the tets, 1 or 2; with 2 the mid-sides of boundary edges are on psi = 0
+  std::int64_t order = 1;  ///< order of the tets, 1 or 2; with 2 the mid-side nodes of boundary edges are on psi = 0
   double target_quality = FastParams().quality_target();
-  bool flips = true;  ///< local flips raise the tets of a mesh whose background is no lattice (flipped_submesh.h)
+  bool flips = true;  ///< local flips improve the tets if the background is not a lattice (flipped_submesh.h)
   std::int64_t projection_passes = PaperParams().projection_passes;
   std::int64_t relaxation_iterations = PaperParams().relaxation_iterations;
   std::int64_t samples = PaperParams().samples;
@@ -89,42 +95,47 @@ struct MeshOptions {
   bool keep_iterates = PaperParams().keep_iterates;
 };
 
-/// What a mesh has to pass besides being valid and faithful.
+/// Additional requirements of the verdict, besides validity and fidelity.
 struct VerdictOptions {
-  double min_quality = 0;   ///< least mean ratio that passes; 0: any
-  bool strict = false;      ///< small defects fail, too
-  std::string accept = {};  ///< kinds of defects that pass, as parse_accepted_defects() reads them
+  double min_quality = 0;   ///< least mean ratio that passes; 0: no limit
+  bool strict = false;      ///< small defects fail as well
+  std::string accept = {};  ///< kinds of defects that pass, in the format of parse_accepted_defects()
 };
 
-/// Edge lengths by place, from points or from a function. They ask for a graded background.
+/// Edge lengths that depend on position, from points or from a function. They require a graded background.
 struct GivenSizes {
-  std::vector<SizeSource> sources = {};                ///< model coordinates
-  std::function<double(const Vec3& x)> function = {};  ///< of model coordinates; empty: none
-  std::string name = {};                               ///< of the function, for messages
+  std::vector<SizeSource> sources = {};  ///< model coordinates
+  /// Edge length at x, model coordinates; empty if there is no function.
+  std::function<double(const Vec3& x)> function = {};
+  std::string name = {};  ///< name of the function in messages
 };
 
-/// Edge lengths by label of the cloud. They ask for a graded background.
+/// Edge lengths for the labels of the cloud. They require a graded background.
 struct LabelSizes {
-  std::map<int, double> factors = {};  ///< of h, in (0, 1]
-  std::string name = {};               ///< of the list, for messages
+  std::map<int, double> factors = {};  ///< factors of h by label, in (0, 1]
+  std::string name = {};               ///< name of the list in messages
 };
 
-/// All options for the way from a scan or a psi to a mesh.
+/// All options for making a mesh from a scan or from psi.
 struct BodyOptions {
   ScanOptions scan = {};
   FitOptions fit = {};
   MeshOptions mesh = {};
-  /// Where scanners stood: normals look to the nearest. Called when it is needed, and may throw; empty: unknown.
+  /// Returns the positions of the scanners; normals are turned towards the nearest one. It is called when needed, and
+  /// may throw. Empty: the positions are unknown.
   std::function<std::vector<Vec3>()> viewpoints = {};
-  /// Makes the background mesh, in coordinates from which `shift` has been taken off, where `mesh.background` is not a
-  /// name of the library. May throw.
+  /// Makes the background mesh if `mesh.background` is not a name of the library. Its coordinates are model coordinates
+  /// minus `shift`. May throw.
   std::function<BackgroundMesh(const Vec3& shift)> background = {};
-  /// Edge lengths that the caller gives. Called when they are needed, and may throw; empty: none are given.
+  /// Returns the edge lengths of the caller. It is called when needed, and may throw. Empty: the caller gives none.
   std::function<GivenSizes()> sizes = {};
-  std::function<LabelSizes()> label_sizes = {};  ///< the same by label
-  bool grade_is_given = false;                   ///< the caller has chosen `mesh.grade`: asks for a graded background
-  bool max_turn_is_given = false;  ///< the same of `mesh.max_turn`, which then holds within the noise, too
-  double max_memory = 0;           ///< bytes that the fit may take; 0: no limit
+  std::function<LabelSizes()> label_sizes = {};  ///< like `sizes`, for labels
+  /// The caller has set `mesh.grade`, which requires a graded background.
+  bool grade_is_given = false;
+  /// The caller has set `mesh.max_turn`: like `grade_is_given`; the limit then also holds within the noise of the
+  /// samples.
+  bool max_turn_is_given = false;
+  double max_memory = 0;  ///< bytes of memory that the fit may use; 0: no limit
 };
 
 /// \throw UsageError with every broken constraint

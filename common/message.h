@@ -25,22 +25,22 @@ struct Setting {
   // NOLINTNEXTLINE(google-explicit-constructor): an option alone is a setting
   Setting(Option option, std::string value = {}) : option(option), value(std::move(value)) {}
   Option option;
-  std::string value;  ///< empty: the option alone
+  std::string value;  ///< empty if the option has no value
 };
 
-/// What a caller does with an option.
+/// The instruction of a remedy: how the user should change an option.
 enum class Change {
-  Use,    ///< sets it; the note of the remedy states the effect
-  Give,   ///< gives it a value
-  Raise,  ///< gives it a larger value
-  Lower   ///< gives it a smaller value
+  Use,    ///< set the option; the note of the remedy states the effect
+  Give,   ///< set the option to a value
+  Raise,  ///< set the option to a larger value
+  Lower   ///< set the option to a smaller value
 };
 
-/// A change of an option that avoids an error, or what a notice reports.
+/// A change of an option that avoids an error, or avoids the behaviour that a notice reports.
 struct Remedy {
   Change change;
   Setting setting;
-  std::string note = {};  ///< of Use: the effect, such as "keeps them"; else words that complete the instruction
+  std::string note = {};  ///< for Use the effect, such as "keeps them"; otherwise words that complete the instruction
 };
 
 /// A fact, and the options that change it.
@@ -59,13 +59,13 @@ struct Message {
   std::vector<Remedy> remedies;
 };
 
-/// The message with words in front of its fact.
+/// Returns the message with words in front of its fact.
 inline Message operator+(std::string words, Message message) {
   message.fact.insert(message.fact.begin(), std::move(words));
   return message;
 }
 
-/// The message with words after its fact.
+/// Returns the message with words after its fact.
 inline Message operator+(Message message, std::string words) {
   message.fact.emplace_back(std::move(words));
   return message;
@@ -89,7 +89,7 @@ inline std::string text_of(const Remedy& remedy, const OptionWords& words = in_s
   return remedy.note.empty() ? text : text + " " + remedy.note;
 }
 
-/// The fact, then the remedies: "3 outliers are dropped; scan.keep_all keeps them".
+/// Returns the fact, followed by the remedies: "3 outliers are dropped; scan.keep_all keeps them".
 inline std::string text_of(const Message& message, const OptionWords& words = in_structs) {
   std::string text;
   for (const Message::Piece& piece : message.fact) {
@@ -104,7 +104,7 @@ inline std::string text_of(const Message& message, const OptionWords& words = in
   return text;
 }
 
-/// The texts of several messages.
+/// Returns the texts of several messages.
 inline std::vector<std::string> texts_of(const std::vector<Message>& messages, const OptionWords& words = in_structs) {
   std::vector<std::string> texts;
   texts.reserve(messages.size());

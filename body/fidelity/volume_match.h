@@ -7,17 +7,18 @@
 
 namespace umtet {
 
-/// Shifts the level of psi until a mesh has the volume of the triangles, and moves its boundary onto the new psi = 0.
+/// Shifts the level of psi until the mesh has the volume that the triangles enclose, and moves the boundary of the mesh
+/// onto the new psi = 0.
 ///
-/// psi rounds edges, and flat faces cut corners: a bar of four edges a side loses some per cent. The shift e of the
-/// level solves V(e) = V of the triangles by Newton's method, V' = area, in three rounds at most. Nothing happens where
-/// the two differ by less than a thousandth or where triangles bound no closed body. What has been done is taken back
-/// where e would be more than a tenth of h, a vertex finds no point of psi = 0, or a tet would lose half its mean
-/// ratio.
+/// psi rounds edges, and flat faces cut corners: a bar four edges wide loses a few per cent of its volume. The shift e
+/// of the level is the solution of V(e) = V(triangles) by Newton's method with V' = area, in at most three iterations.
+/// The function does nothing if the volumes differ by less than a thousandth, or if the triangles do not bound a closed
+/// body. It undoes all changes if e exceeds a tenth of h, if the projection of a vertex onto psi = 0 fails, or if a tet
+/// would lose half of its mean ratio.
 ///
-/// @param h        edge length for which psi is cut
-/// @param result   `final` moves. Vertices that are not on psi = 0 stay where they are.
-/// @return whether it has the volume of the triangles within a thousandth; false, too, where that has no meaning
+/// @param h        edge length of the mesh, which determines the detail of psi (Domain::limit_detail())
+/// @param result   the vertices in `final` move. Vertices that are not on psi = 0 keep their positions.
+/// @return true if the volumes agree within a thousandth; false also if there are no triangles that bound a closed body
 bool match_volume(Domain& domain, double h, const ClosestPointParams& params, UmResult& result,
                   const Context& context = {});
 

@@ -9,24 +9,26 @@
 
 namespace umtet {
 
-/// A cloud that can be fitted, and what had to be done to the scan for it.
+/// A cloud that is ready for the fit, and a report of the changes to the scan.
 struct PreparedCloud {
   OrientedPointCloud cloud;
-  NeighbourDistances near;  ///< of its points, for areas; empty where preparing did not need them
+  /// Neighbour distances of the points, for sample areas; empty if the preparation did not need them.
+  NeighbourDistances near;
   CloudReport report;
 };
 
-/// Sorts a scan in space, cleans it and gives every point an outward normal, as ScanOptions say.
+/// Sorts the points of a scan in space, drops unusable points (CloudReport::dropped), and gives every point an outward
+/// normal, according to ScanOptions.
 ///
-/// Normals that came with the scan are scored, and a minority that is turned over is turned back (normals = auto),
-/// taken as they are (given) or thrown away (estimate). Missing ones are estimated. Viewpoints and ScanOptions::flip
-/// have the last word.
+/// The treatment of the normals of the scan depends on ScanOptions::normals. Auto: their consistency is measured, and a
+/// reversed minority is turned over. Given: they stay unchanged. Estimate: they are discarded. Missing normals are
+/// estimated. Viewpoints and ScanOptions::flip are applied last.
 ///
-/// @param name  of the scan, for messages
-/// \throw CloudRefused  fewer than 10 points are left; what options.viewpoints throws
+/// @param name  name of the scan in messages
+/// \throw CloudRefused  fewer than 10 points remain; also any exception of options.viewpoints
 PreparedCloud prepare_cloud(CloudFile file, const std::string& name, const BodyOptions& options);
 
-/// Which columns of numbers were not taken along, and why; empty if all were.
+/// Returns a text that lists the columns of the file that were ignored, with reasons; empty if all were used.
 std::string fields_left_out(const CloudFileReport& file);
 
 }  // namespace umtet

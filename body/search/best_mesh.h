@@ -8,13 +8,13 @@
 
 namespace umtet {
 
-/// Meshes a domain with the background, edge lengths and attempts that the options ask for: BackgroundChoice and
-/// MeshMaker::best(). The vertices are in working coordinates.
-/// @param domain   takes MeshOptions::complement from the options
-/// @param allowed  bytes that the mesh may take
-/// @param ranks    make the mesh, where several processes do; null: this one does
-/// @return the best attempt. A mesh whose certificate fails is a result; so is none.
-/// \throw MeshingImpossible, ResourceLimit, UsageError, Cancelled, and what the functions of the options throw
+/// Meshes a domain with the background, edge lengths and attempts that the options specify (BackgroundChoice,
+/// MeshMaker::best()). The vertices are in working coordinates.
+/// @param domain   receives MeshOptions::complement from the options
+/// @param allowed  bytes of memory that the mesh may use
+/// @param ranks    makes the mesh in several processes; null: this process makes the mesh
+/// @return the best attempt. A mesh whose certificate fails is also returned, and so is an attempt without a mesh.
+/// \throw MeshingImpossible, ResourceLimit, UsageError, Cancelled, and any exception of a function in the options
 /// Reports "size" and the steps of MeshMaker.
 MeshAttempt best_mesh(Domain& domain, const BodyOptions& options, double allowed, const Context& context = {},
                       PartMaker* ranks = nullptr);

@@ -10,7 +10,8 @@
 namespace umtet::detail {
 
 /// Sequential reader of a regular file, which is decompressed if it is compressed by gzip. It trusts no count in the
-/// file: memory grows with the bytes that are read. Functions that reject a file throw the exception of its Refusal.
+/// file: memory grows with the bytes that are read. Functions that reject a file throw the exception of the Refusal
+/// that the constructor receives.
 class ByteStream {
  public:
   /// Throws the exception by which a reader rejects the content of a file.
@@ -23,9 +24,10 @@ class ByteStream {
   ByteStream(const ByteStream&) = delete;
   ByteStream& operator=(const ByteStream&) = delete;
 
-  /// The next n bytes without consuming them, and fewer at the end. At the front of the file only.
+  /// Returns the next n bytes without consuming them, or fewer at the end of the file. May only be called at the
+  /// beginning of the file.
   std::string_view head(std::size_t n = kHead);
-  /// The next byte without consuming it; NUL at the end.
+  /// Returns the next byte without consuming it; NUL at the end.
   char peek() { return has_more() ? buffer_[next_] : '\0'; }
   /// Reads n bytes. Rejects a file with fewer.
   std::string take(std::uint64_t n);
@@ -44,7 +46,7 @@ class ByteStream {
   /// Passes words between blanks to `take`, which returns false after the last word that it needs. The words also end
   /// before '<' and at the end of the file. @return false if they ended while `take` needed more
   bool words(const std::function<bool(std::string_view)>& take);
-  /// Decompresses the remaining bytes by gzip, whatever came before.
+  /// Decompresses the remaining bytes by gzip, even if the file begins with uncompressed bytes.
   void unpack_rest();
 
   [[noreturn]] void refuse(const std::string& what) const;
@@ -63,7 +65,7 @@ class ByteStream {
   Refusal refusal_;
   void* gzip_ = nullptr;  ///< gzFile
   double file_size_ = 0;
-  std::string buffer_;  ///< read, but not consumed, from next_ on
+  std::string buffer_;  ///< bytes read from the file; those from next_ on are not yet consumed
   std::size_t next_ = 0;
   std::uint64_t taken_ = 0;
 };

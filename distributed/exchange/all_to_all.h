@@ -10,7 +10,7 @@
 namespace umtet {
 
 /// Exchanges lists between all ranks (MPI_Alltoallv): sends out[r] to rank r, and returns the list from each rank.
-/// Collective. T has no pointers.
+/// Collective. T must not contain pointers.
 /// \throw std::length_error above 2^31 - 1 members
 template <class T>
 std::vector<std::vector<T>> all_to_all(MPI_Comm comm, const std::vector<std::vector<T>>& out) {

@@ -31,7 +31,7 @@ class IdOrder {
   /// Indices into `ids` of the local items sent in a round: from begin(round) to begin(round + 1).
   std::size_t begin(std::size_t round) const { return begin_[round * n_ranks_]; }
 
-  /// The piece of this rank, ascending. Collective.
+  /// Returns the piece of this rank, in ascending order of ids. Collective.
   /// @param row  row(k) is the data sent for ids[k], a T without pointers, with a member `id`
   template <class T, class Row>
   std::vector<T> piece(std::size_t round, const Row& row) const {
@@ -47,9 +47,10 @@ class IdOrder {
     std::sort(all.begin(), all.end(), [](const T& a, const T& b) { return a.id < b.id; });
     return all;
   }
-  /// For each local id, the number of ids of all ranks below it. Collective.
+  /// Returns for each local id the number of smaller ids on all ranks. Collective.
   std::vector<std::int64_t> numbers() const { return sums_before(std::vector<std::int64_t>(ids_.size(), 1)); }
-  /// For each local id, the sum of the values of all ids below it. Collective. @param values  of the local ids
+  /// Returns for each local id the sum of the values of all smaller ids. Collective.
+  /// @param values  values of the local ids
   std::vector<std::int64_t> sums_before(const std::vector<std::int64_t>& values) const;
 
  private:

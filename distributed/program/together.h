@@ -11,8 +11,9 @@
 
 namespace umtet {
 
-/// Runs work() on all ranks at once and returns its result. An exception on one rank, for which others may wait, ends
-/// all ranks with its message and exit code. \throw KnownToAll, as work() does
+/// Runs work() on all ranks at once and returns its result. If work() throws on one rank, other ranks may be waiting
+/// for that rank, so all ranks end, with the message and exit code of the exception.
+/// \throw KnownToAll  if work() throws it
 template <class F>
 auto together(MPI_Comm comm, const F& work) {
   try {

@@ -22,7 +22,7 @@ class LinkSteps {
     }
   }
 
-  /// As BackgroundMesh::type().
+  /// Returns the type of a lattice vertex, like BackgroundMesh::type().
   int type(std::int64_t v) const { return static_cast<int>(v % static_cast<std::int64_t>(steps_.size())); }
   const std::vector<std::int64_t>& at(std::int64_t v) const { return steps_[type(v)]; }
 

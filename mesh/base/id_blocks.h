@@ -30,7 +30,7 @@ void for_each_in_blocks(const IdSet& set, const Begin& begin, const F& f) {
   });
 }
 
-/// Calls f(block, id) for the members of a set. Uses threads over blocks; the blocks do not depend on the number of
+/// Calls f(block, id) for the members of a set, with blocks in parallel. The blocks do not depend on the number of
 /// threads.
 template <class F>
 void for_each_in_blocks(const IdSet& set, const F& f) {

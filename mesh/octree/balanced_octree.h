@@ -11,7 +11,7 @@ namespace umtet {
 struct OctreeRules {
   int max_level = 0;                          ///< <= kMaxOctreeLevel
   std::function<bool(std::uint64_t)> splits;  ///< whether a cube is too wide for a leaf
-  std::function<bool(std::uint64_t)> wanted;  ///< whether the children of a cube are needed; empty: all are
+  std::function<bool(std::uint64_t)> wanted;  ///< whether the children of a cube are needed; if empty, all are
   std::size_t max_leaves = 0;
 };
 

@@ -9,7 +9,8 @@ namespace umtet {
 
 /// Returns the counts, and the blocks `quality` and `boundary`.
 Json to_json(const MeshCertificate& certificate);
-/// Returns the same for a mesh from a file that rounds coordinates by this amount.
+/// Returns these blocks for a mesh from a file.
+/// @param coordinate_rounding_over_h  largest rounding error of a coordinate in the file, in h
 Json mesh_blocks(const MeshCertificate& certificate, double coordinate_rounding_over_h);
 MeshCertificate mesh_from(const Json& json);
 

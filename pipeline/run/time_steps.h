@@ -14,7 +14,7 @@ struct TimeStep {
 
 /// Returns the requested instants of `umtet evolve`, ascending.
 /// @param times  "FROM:STEP:TO", both ends included; numbers are rounded to 12 digits, so that 0:0.1:4.5 contains 0.3
-///   and not its neighbour. It may be empty with clouds: 0, 1, 2, ...
+///   and not its neighbour. If `clouds` is given it may be empty: the instants are then 0, 1, 2, ...
 /// @param skip  some of the times, separated by commas; may be empty
 /// @param clouds  a text file with one path of a cloud per line, relative to the folder of the file; empty lines and
 ///   lines that begin with # are ignored. Empty: no clouds. The clouds themselves are not read.
@@ -24,7 +24,8 @@ std::vector<TimeStep> time_steps(const std::string& times, const std::string& sk
                                  const std::filesystem::path& clouds);
 
 /// Returns the paths of a list in the form above.
-/// \throw UsageError  it names no cloud, or no file that exists; std::system_error  it cannot be read
+/// \throw UsageError  the list names no cloud, or a cloud that does not exist; std::system_error  the list cannot be
+///                    read
 std::vector<std::filesystem::path> listed_clouds(const std::filesystem::path& list);
 
 /// Returns the shortest decimal number for t.

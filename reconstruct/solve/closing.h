@@ -13,9 +13,10 @@ namespace umtet {
 
 /// Closing of a body where a scan has no samples.
 enum class Closing {
-  Auto,    ///< each hole as its rim requires: smooth if the surface bends together there, else flat
+  /// Decides for each hole by its rim: smooth if the surface curves together there (ScanHole::rim_cosine), else flat.
+  Auto,
   Smooth,  ///< continues the surface with the curvature along the rim, no farther than a sphere through the rim
-  Flat,    ///< along the surface from which as many samples are seen from inside as from outside
+  Flat,    ///< along the surface on which the winding number of the samples is 1/2
   None,    ///< by the Hessian energy alone; the body extends to the wall of the box if nothing closes it
 };
 
@@ -30,9 +31,10 @@ struct FittedHole {
 };
 
 /// Plan for closing a body where there are no samples, made after a first fit.
-/// psi is unchanged wherever the functional alone closes it well. It does not if psi < 0 reaches the wall of the box,
-/// or extends farther from the flat closing of a hole than ScanHole::bulge() to a region where few samples have their
-/// inner side (by the winding number, at a level that depends on the rim as for a ball). There the second fit gets
+/// psi is unchanged wherever the functional alone closes it well. A second fit is needed if {psi < 0} reaches the wall
+/// of the box, or if it extends farther from the flat closing of a hole than ScanHole::bulge(), to points at which the
+/// winding number of the samples is low (the threshold depends on the rim, as for a ball). In these regions the second
+/// fit gets
 ///
 ///  - samples of the flat closing, with normals, for holes that are closed flat;
 ///  - weak values for far cells. Around a hole that is closed smoothly they are the distance to the algebraic spheres

@@ -26,13 +26,16 @@ std::vector<SignEdge> sign_graph(const OrientedPointCloud& cloud, const Neighbou
 
 /// Agreement of the pairs with the present signs, computed without building the graph.
 struct SignAgreement {
-  double agrees = 0, all = 0;   ///< sums of |weight|
-  std::size_t n_contested = 0;  ///< points whose pairs disagree with them by more than a quarter, or are undecided
+  double agrees = 0, all = 0;  ///< sums of |weight|
+  /// Points whose disagreeing pairs have more than a quarter of the weight of all their pairs, or whose pairs are
+  /// undecided.
+  std::size_t n_contested = 0;
   double share() const { return all > 0 ? agrees / all : 1; }
 };
 
-/// Measures the agreement. At the border of a region that is turned over, half of the points' pairs cross it, and for a
-/// single point all do: without contested points there is no such region. Sums have a fixed order.
+/// Measures the agreement. At the border of a region of reversed normals, half of the pairs of each point cross the
+/// border; for a single reversed point, all pairs do. So there is no such region if no point is contested. Sums have a
+/// fixed order.
 SignAgreement sign_agreement(const OrientedPointCloud& cloud, const Neighbourhoods& near);
 
 /// Components joined by agreeing pairs, subject to kSureBorder; numbered by first points.
