@@ -7,25 +7,26 @@
 
 namespace umtet {
 
-/// Levels of psi with a smaller spacing, in edges of the mesh, are left out: faces fold over detail they cannot follow.
+/// Levels of psi with a smaller spacing, in edge lengths of the mesh, are omitted: faces fold over detail that they
+/// cannot follow.
 inline constexpr double kLeastSpacing = .7;
 
-/// A level set of which a mesh needs the coarser levels, and now and then all. The finer ones, which are most of its
-/// memory, may be put aside where they can be had again.
+/// A level set whose finer levels can be released. A mesh needs the coarser levels, and only occasionally all levels.
+/// The finer levels take most of the memory, so they may be released if they can be made again.
 class FittedLevelSet {
  public:
-  /// @param again  makes the same level set, to the bit; empty: nothing is put aside
+  /// @param again  makes the same level set again, bit by bit; if empty, no level is released
   FittedLevelSet(LevelSet psi, std::function<LevelSet()> again = {})  // NOLINT(google-explicit-constructor)
       : held_(std::move(psi)), again_(std::move(again)) {}
 
-  /// With all levels. Not to be called by several threads. \throw what `again` throws
+  /// Returns the level set with all levels. Not thread-safe. \throw any exception of `again`
   const LevelSet& whole() const;
-  /// LevelSet::band_limited() of it. As whole().
+  /// Returns whole().band_limited(spacing), with the same restrictions as whole().
   LevelSet band_limited(double spacing) const;
-  /// What is in memory.
+  /// Returns the levels that are in memory.
   const LevelSet& held() const { return held_; }
-  /// Levels of a smaller spacing are put aside. Where they could not be had again, what evaluations have made of them
-  /// is freed. Nobody may evaluate this level set, or a copy of it, meanwhile.
+  /// Releases the levels of a smaller spacing. If they could not be made again, it keeps them and frees only the data
+  /// that evaluations have cached. No thread may evaluate this level set or a copy of it during the call.
   void put_aside_below(double spacing);
 
  private:

@@ -9,18 +9,19 @@
 
 namespace umtet {
 
-/// Samples of triangles along an edge of a given h: what a mesh of such edges can show.
+/// Number of samples of triangles per edge length h, if h is given: more samples show detail that such a mesh cannot
+/// resolve.
 inline constexpr double kSamplesAnEdge = 2.5;
 
-/// The triangles that a user gave and that bound the body, in working coordinates; of those with label 0 a part is
-/// inside.
+/// The triangles of the user that bound the body, in working coordinates. Triangles with label 0 are partly inside the
+/// body.
 struct GivenTriangles {
   TriangleMesh mesh;
   SurfaceDistance distance;
-  TriangleBody body;  ///< what they bound
+  TriangleBody body;  ///< the body that they bound
 };
 
-/// @param shift  taken off their coordinates
+/// @param shift  vector that is subtracted from the coordinates
 /// \throw std::invalid_argument  no triangles
 std::shared_ptr<const GivenTriangles> given_triangles(TriangleMesh mesh, const Vec3& shift);
 

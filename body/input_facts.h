@@ -5,15 +5,17 @@
 
 namespace umtet {
 
-/// What was done to a cloud, or guessed, before psi was fitted: where a wrong body may come from. Shares of its points.
+/// Changes and guesses that were made to a cloud before psi was fitted: they are the possible causes of a wrong body.
+/// Numbers are shares of the points, in [0, 1].
 struct InputFacts {
   bool normals_given = false;  ///< they came with the cloud; else they were estimated
-  double turned = 0;           ///< given normals that were turned, or estimated ones that something else overruled
-  std::string turned_by;       ///< "neighbours", "winding number", "psi"; empty where none were turned
+  double turned = 0;           ///< given normals that were turned over, or estimated normals that `turned_by` overruled
+  std::string turned_by;       ///< "neighbours", "winding number", "psi"; empty if none were turned
   double doubtful = 0;         ///< normals whose outward side is a guess
   double opposed = 0;          ///< normals that point against grad psi
   double consistency = 1;      ///< share of neighbouring pairs whose signs agree in the end
-  std::optional<double> off_a_half;  ///< share of patches that bound no body by the winding number; none: not asked
+  /// Share of patches that bound no body according to the winding number; empty if it was not computed.
+  std::optional<double> off_a_half;
 };
 
 }  // namespace umtet

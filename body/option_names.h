@@ -2,7 +2,7 @@
 
 #include "common/message.h"
 
-// The options that messages of this library name, by their places in BodyOptions and in umtet::Options.
+// The options that messages of this library name, by their positions in BodyOptions and in umtet::Options.
 namespace umtet::option {
 
 inline constexpr Option keep_all{"scan.keep_all"};
@@ -10,7 +10,7 @@ inline constexpr Option normals{"scan.normals"};
 inline constexpr Option merge{"scan.merge"};
 inline constexpr Option flip{"scan.flip"};
 inline constexpr Option viewpoints{"viewpoints"};
-inline constexpr Option columns{"columns"};  ///< of read_scan()
+inline constexpr Option columns{"columns"};  ///< parameter of read_scan()
 inline constexpr Option sample_spacing{"triangles.spacing"};
 inline constexpr Option close{"fit.close"};
 inline constexpr Option h{"mesh.h"};
@@ -30,7 +30,7 @@ inline constexpr Option label_sizes{"label_sizes"};
 inline constexpr Option box{"box"};
 inline constexpr Option accept{"verdict.accept"};
 
-/// All of them, so that a test can check the names that front ends give them.
+/// All options, so that a test can check the names that front ends give them.
 inline constexpr Option kAll[] = {keep_all,   normals, merge,       flip,          viewpoints,   columns,
                                   close,      h,       tets,        max_deviation, max_tets,     background,
                                   grade,      h_min,   h_max,       max_turn,      grade_inside, box_walls,

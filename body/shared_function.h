@@ -13,7 +13,7 @@ class SharedFunction {
   template <ImplicitFunction F>
   explicit SharedFunction(std::shared_ptr<const F> f) : ref_(*f), owner_(std::move(f)) {}
 
-  /// Valid while a copy of this object is there.
+  /// Valid while a copy of this object exists.
   ImplicitFunctionRef ref() const { return ref_; }
 
  private:

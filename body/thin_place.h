@@ -6,18 +6,18 @@
 
 namespace umtet {
 
-/// A mesh of edge length h shows what is this many edges thick; thinner parts may be missing from it.
+/// A mesh resolves parts of this thickness, in edge lengths; thinner parts may be missing from it.
 inline constexpr double kLeastEdgesAcross = 1.25;
 
-/// A connected place where the body, or the gap outside it, is too thin for a mesh of some edge length. Lengths in
-/// model units; places in working coordinates, but for those of in_model().
+/// A connected region in which the body, or the gap outside it, is too thin for a mesh of some edge length. Lengths are
+/// in model units, positions in working coordinates (in_model() converts them to model coordinates).
 struct ThinPlace {
   bool is_gap = false;
-  Eigen::AlignedBox3d box;     ///< of the points of the boundary that belong to it
-  Vec3 centre = Vec3::Zero();  ///< their mean
-  double thickness = 0;        ///< the least
-  double area = 0;             ///< of the boundary that belongs to it, both sides
-  double h_needed = 0;         ///< the largest edge length at which it is not too thin any more
+  Eigen::AlignedBox3d box;     ///< box of the points of psi = 0 in the region
+  Vec3 centre = Vec3::Zero();  ///< mean of these points
+  double thickness = 0;        ///< least thickness
+  double area = 0;             ///< area of psi = 0 in the region, on both sides
+  double h_needed = 0;         ///< largest edge length for which the region is not too thin
 };
 
 }  // namespace umtet

@@ -23,8 +23,8 @@
 #include "reconstruct/triangles/body_samples.h"
 #include "reconstruct/triangles/triangle_mesh.h"
 
-// From a scan, triangles, a level set or a function to a certified tetrahedral mesh, in memory: the way of `umtet run`
-// without files. Include this header alone.
+// Makes a certified tetrahedral mesh of a scan, triangles, a level set or a function in memory, as `umtet run` does
+// with files. Users include only this header.
 //
 //   const umtet::Mesh mesh = umtet::mesh_body(cloud);
 //   std::printf("%zu tets: %s\n", mesh.tets.size(), mesh.verdict.word().c_str());
@@ -34,11 +34,13 @@ namespace umtet {
 struct Options {
   BodyOptions body = {};
   VerdictOptions verdict = {};
-  /// How triangles are sampled. Spacing 0: from mesh.h if it is given, else default_spacing(). NormalsOf::Given turns
-  /// no triangles; Closing::Smooth and Closing::None leave plane openings to the fit.
+  /// Options for sampling triangles. With spacing 0, the spacing follows from mesh.h if it is given, else from
+  /// default_spacing(). With NormalsOf::Given no triangle is turned over. With Closing::Smooth and Closing::None the
+  /// fit closes plane openings.
   BodySampleParams triangles = {};
-  std::optional<Box> box = {};                                  ///< that the background has to cover; none: that of psi
-  double max_memory = std::numeric_limits<double>::infinity();  ///< bytes that the mesh may take
+  /// Box that the background must cover; empty: the box of psi.
+  std::optional<Box> box = {};
+  double max_memory = std::numeric_limits<double>::infinity();  ///< bytes of memory that the mesh may use
   Context context = {};                                         ///< progress and cancellation
 };
 
@@ -47,29 +49,32 @@ struct Mesh {
   std::vector<Vec3> points;
   std::vector<Tet> tets;           ///< positive orientation
   std::vector<Triangle> boundary;  ///< faces on psi = 0, counter-clockwise from outside
-  std::vector<int> labels = {};    ///< of each boundary face, if the input has labels: vote_labels() of the samples
+  std::vector<int> labels = {};    ///< label of each boundary face, if the input has labels (vote_labels())
   std::vector<Triangle> walls;     ///< faces in the walls of the box, with MeshOptions::box_walls
-  std::optional<QuadraticTetMesh> curved = {};  ///< the same with mid-sides, with MeshOptions::order = 2
-  double h = 0;                                 ///< edge length of the background, the least if it is graded
-  MeshMeasures measures;                        ///< what is true of it
-  Verdict verdict;                              ///< whether that will do, and why not
-  std::vector<Message> notices = {};            ///< what was changed or guessed on the way; text_of() says it
+  std::optional<QuadraticTetMesh> curved = {};  ///< the mesh with mid-sides, with MeshOptions::order = 2
+  /// Edge length of the background; the least edge length if it is graded.
+  double h = 0;
+  MeshMeasures measures;              ///< all measurements of the mesh
+  Verdict verdict;                    ///< the judgements of the mesh, with reasons
+  std::vector<Message> notices = {};  ///< changes and guesses; text_of() returns their texts
 };
 
 /// psi of a scan or of triangles.
 struct FittedBody {
-  LevelSet psi;              ///< in working coordinates: those of the cloud less report.shift
-  OrientedPointCloud cloud;  ///< the samples that it was fitted to
+  LevelSet psi;              ///< in working coordinates, which are those of the cloud minus report.shift
+  OrientedPointCloud cloud;  ///< the samples to which it was fitted
   LevelSetReport report;
-  InputFacts facts;                              ///< what was done to the normals, or guessed
-  std::optional<TriangleMesh> boundary = {};     ///< the given triangles on the boundary of the body, outward
-  std::optional<TriangleReport> triangles = {};  ///< what was changed in the given triangles
-  std::vector<Message> notices;                  ///< what was changed or guessed; text_of() says it
+  InputFacts facts;  ///< changes and guesses of normals
+  /// The triangles of the input on the boundary of the body, oriented outwards.
+  std::optional<TriangleMesh> boundary = {};
+  std::optional<TriangleReport> triangles = {};  ///< changes to the triangles of the input
+  std::vector<Message> notices;                  ///< changes and guesses; text_of() returns their texts
 };
 
 /// Cleans a scan, orients its normals and fits psi.
-/// @param cloud  without normals, or with zero ones, these are estimated
-/// \throw std::invalid_argument  arrays of different lengths, or points that are not finite or beyond 1e50
+/// @param cloud  missing or zero normals are estimated
+/// \throw std::invalid_argument  arrays of different lengths, or points that are not finite or have a coordinate beyond
+///   1e50
 /// \throw CloudRefused, SolveError, SolveTooLarge, UsageError, Cancelled
 FittedBody fit_body(OrientedPointCloud cloud, const Options& options = {});
 
@@ -79,8 +84,8 @@ FittedBody fit_body(OrientedPointCloud cloud, const Options& options = {});
 /// \throw CloudRefused, SolveError, SolveTooLarge, UsageError, Cancelled
 FittedBody fit_body(TriangleMesh triangles, const Options& options = {});
 
-/// Meshes {psi < 0}. A mesh whose certificate fails is returned all the same: see Mesh::verdict. The mesh of triangles
-/// is also measured against them.
+/// Meshes {psi < 0}. A mesh whose certificate fails is also returned (Mesh::verdict). If the input is triangles, the
+/// mesh is also compared with them.
 ///
 /// \throw TooThin            there is no mesh, as the body is thinner than h can show
 /// \throw MeshingImpossible  there is no mesh for another reason
@@ -94,7 +99,7 @@ Mesh mesh_body(TriangleMesh triangles, const Options& options = {});
 /// Meshes {psi < 0} of a function with a Hessian. \throw as mesh_body(); std::invalid_argument  there is no options.box
 Mesh mesh_body(const SharedFunction& psi, const Options& options);
 
-/// The same for any implicit function, for instance a LevelSet, which is moved or copied.
+/// Meshes {psi < 0} of any implicit function, for instance a LevelSet, which is moved or copied.
 template <ImplicitFunction F>
 Mesh mesh_body(F psi, const Options& options) {
   return mesh_body(shared_function(std::move(psi)), options);

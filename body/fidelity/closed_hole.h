@@ -7,29 +7,30 @@
 
 namespace umtet {
 
-/// A connected part of the boundary that was closed without samples, up to the samples at its rim. Lengths in model
-/// units.
+/// A connected part of the boundary that was closed without samples. It ends at the samples of its rim. Lengths are in
+/// model units.
 struct ClosedHole {
   Vec3 centre = Vec3::Zero();  ///< mean of its surface, model coordinates
   double area = 0;
-  double area_fraction = 0;  ///< of the surface on psi = 0
-  double deepest = 0;        ///< largest distance of its vertices to the nearest sample
+  double area_fraction = 0;  ///< area divided by the area of all boundary faces on psi = 0
+  double deepest = 0;        ///< largest distance from a vertex of the part to the nearest sample
   double deepest_over_spacing = 0;
-  double rim_length = 0;    ///< of all its rims
+  double rim_length = 0;    ///< total length of its rims
   double rim_diameter = 0;  ///< largest distance between two points of its rims
-  std::size_t n_rims = 0;   ///< closed lines in which it ends; 0: a piece of the boundary that no sample is near
+  /// Number of closed lines that bound it; 0: it is a complete piece of the boundary without a sample near it.
+  std::size_t n_rims = 0;
 };
 
-/// What of the boundary of a mesh is a guess.
+/// The parts of the boundary of a mesh that are guesses.
 struct SupportReport {
-  double radius = 0;                     ///< farther than this from every sample the boundary is unsupported
-  double unsupported_area_fraction = 0;  ///< of the boundary
+  double radius = 0;                     ///< the boundary is unsupported where every sample is farther away than this
+  double unsupported_area_fraction = 0;  ///< unsupported share of the area of the boundary
   std::size_t n_closed_holes = 0;
-  std::vector<ClosedHole> closed_holes{};  ///< the largest of them, largest first
-  /// Handles of the boundary that are there because of what was closed: its genus, less the genus of what is left when
-  /// all closed holes are cut out and each rim gets a disc.
+  std::vector<ClosedHole> closed_holes{};  ///< the largest holes, in descending order
+  /// Number of handles of the boundary that are guesses: the genus of the boundary, minus its genus after every closed
+  /// hole has been removed and every rim closed with a disc.
   int n_guessed_handles = 0;
-  std::size_t n_guessed_pieces = 0;  ///< pieces of the boundary that no sample is near
+  std::size_t n_guessed_pieces = 0;  ///< number of pieces of the boundary without a sample near them
 };
 
 }  // namespace umtet

@@ -6,55 +6,60 @@
 
 #include "body/fidelity/mesh_measures.h"
 
-// The third judgement: whether a mesh fits what was given. It is a function of what measure() found out.
+// The third judgement: whether a mesh fits the input. It is a function of the result of measure().
 namespace umtet {
 
-/// A way in which a mesh can differ from a cloud, triangles or labels. `amount` of an InputDefect is in the unit below.
+/// The ways in which a mesh can differ from a cloud, triangles or labels. The end of each comment gives the amount that
+/// InputDefect::amount states, and its unit.
 enum class InputDefectKind {
-  Missed,    ///< samples are farther than h from the mesh; largest distance, h
-  Guessed,   ///< no sample is near the boundary; share of its area
-  Handles,   ///< handles of the boundary that no sample supports; count
-  Pieces,    ///< pieces of the boundary that no sample supports, or another number than the triangles have; count
-  Distance,  ///< triangles and boundary are farther than h from each other; largest distance, h
-  Volume,    ///< not the given volume; relative difference, of triangles less what flat faces explain
-  Genus,     ///< another number of handles than the triangles have; difference
-  Voxels,    ///< centres of voxels are on the other side of the boundary, farther than half a voxel; share of all
-  Noise,     ///< the noise of the samples hides what is finer; its standard deviation, h
+  Missed,    ///< samples are farther than h from the mesh; largest distance, in h
+  Guessed,   ///< parts of the boundary have no sample near them; their share of the area
+  Handles,   ///< no sample supports some handles of the boundary; number of these handles
+  Pieces,    ///< no sample supports some pieces of the boundary, or the number of pieces is wrong; number of pieces
+  Distance,  ///< the triangles and the boundary are farther than h apart; largest distance, in h
+  /// The volume differs from the input; relative difference, for triangles minus the part that flat faces explain.
+  Volume,
+  Genus,  ///< the number of handles differs from the triangles; difference
+  /// Centres of voxels are more than half a voxel on the wrong side of the boundary; share of the body's voxels.
+  Voxels,
+  Noise,  ///< the noise of the samples hides finer features; its standard deviation, in h
 };
 
-/// As documents and VerdictOptions::accept have it: "missed", "guessed", "handles", "pieces", "distance", "volume", "genus",
-/// "voxels", "noise".
+/// Returns the word that documents and VerdictOptions::accept use: "missed", "guessed", "handles", "pieces",
+/// "distance", "volume", "genus", "voxels", "noise".
 const char* to_string(InputDefectKind kind);
 std::optional<InputDefectKind> input_defect_kind_of(const std::string& word);
 
-/// One difference between a mesh and what was given.
+/// A difference between a mesh and its input.
 struct InputDefect {
   InputDefectKind kind;
   double amount = 0;
-  bool is_small = false;  ///< the mesh passes, and the defect is named
-  std::string what;       ///< one clause with its number and its place
+  bool is_small = false;  ///< the mesh passes, and the verdict names the defect
+  std::string what;       ///< one clause with the amount and the position
 };
 
-/// A boundary is a guess where no sample is near; beyond this share of it a mesh is no plain pass ...
+/// The boundary is a guess where no sample is near. If the share of guesses exceeds this value, the verdict names a
+/// defect ...
 inline constexpr double kMuchGuessed = .2;
-/// ... and beyond this one, where most of it is invented, none at all.
+/// ... and above this value, at which most of the boundary is a guess, the mesh fails.
 inline constexpr double kMostlyGuessed = .5;
-/// Missed samples as deep as this, in h, are no noise of the mesh: where they are more than kFewMissed of all samples
-/// the mesh fails. Outliers that cleaning has left are fewer.
+/// Distances of missed samples above kDeeplyMissed h are not noise. If also more than the share kFewMissed of all
+/// samples is missed, the mesh fails. Outliers that remain after cleaning are fewer.
 inline constexpr double kDeeplyMissed = 3, kFewMissed = .01;
-/// Noise, in h, from which a mesh is no plain pass. By default h is at least the noise over kMostNoise.
+/// Noise, in h, from which the verdict names a defect. By default h is at least noise / kMostNoise.
 inline constexpr double kMuchNoise = .25;
-/// Single samples of noise are off by any distance; fewer than these are no defect.
+/// Single noisy samples can be at any distance from the mesh; fewer than this number are not a defect.
 inline constexpr std::size_t kFewestBeyondH = 10;
-/// Relative differences of volume from triangles, beyond what flat faces explain: named, and failing.
+/// Relative differences between the volumes of mesh and triangles, beyond the part that flat faces explain: above the
+/// first the verdict names a defect, above the second the mesh fails.
 inline constexpr double kVolumeNamed = .005, kVolumeFails = .02;
-/// The same from voxels, which know their volume less well: a layer of .02 voxels on a ball of six is 1 %.
+/// The same limits for voxels, whose volume is less certain: a layer of .02 voxels on a ball of six voxels is 1 %.
 inline constexpr double kVoxelsNamed = .01, kVoxelsFail = .03;
-/// More than this share of voxels on the other side is no accident of noise.
+/// If more than this share of voxels is on the wrong side, noise is not the reason, and the mesh fails.
 inline constexpr double kFewChanged = .01;
 
-/// All differences between the mesh and the cloud, the triangles or the labels, in the order of InputDefectKind; empty
-/// for a formula, which is its own psi.
+/// Returns all differences between the mesh and the cloud, the triangles or the labels, in the order of
+/// InputDefectKind; none for a formula, because it is psi itself.
 std::vector<InputDefect> input_defects(const MeshMeasures& measured);
 
 }  // namespace umtet

@@ -9,20 +9,20 @@
 
 namespace umtet {
 
-/// A point of psi = 0, and how far it is from the boundary of a mesh, model units.
+/// A point of psi = 0, and its distance from the boundary of a mesh, model units.
 struct LostPoint {
   Vec3 where;
   double distance;
 };
 
-/// Follows psi = 0 from points that a mesh has lost to all that it has lost there [Bloomenthal1988]: a plate much
-/// thinner than h has points of a grid in it here and there only.
+/// Finds the complete part of psi = 0 that a mesh has lost, from some of its points, by following psi = 0
+/// [Bloomenthal1988]: a plate much thinner than h contains only a few points of a grid.
 ///
-/// From each point eight steps of h / 2 go along psi = 0. Where one leads into a cube of edge h / 2 without a point,
-/// and farther than `beyond` from the boundary, it goes on from there.
-/// @param seeds   farther than `beyond` from the boundary
-/// @param beyond  in h
-/// @return the seeds and then the others
+/// From each point, eight steps of h / 2 follow psi = 0. A step that ends in a cube of edge h / 2 without a point, and
+/// farther than `beyond` from the boundary, adds a point.
+/// @param seeds   points farther than `beyond` from the boundary
+/// @param beyond  distance in h
+/// @return the seeds, followed by the other points
 /// Cost: at most eight foot points for each cube that the lost surface meets. The result does not depend on the number
 /// of threads. \throw Cancelled
 std::vector<LostPoint> lost_surface(const Domain& domain, std::vector<LostPoint> seeds, const SurfaceDistance& boundary,

@@ -12,33 +12,37 @@
 
 namespace umtet {
 
-/// What is true of the corners of a mesh, and everywhere that it is not psi = 0.
+/// Measurements of a mesh with flat faces, and all its defects.
 struct Measurement {
   MeshMeasures measures;
-  std::vector<MeshDefect> defects;  ///< all of them, in the order of measures.defects.listed
+  std::vector<MeshDefect> defects;  ///< all defects, in the order of measures.defects.listed
 };
 
-/// What else a mesh is held against.
+/// Optional data for measure().
 struct MeasureParams {
-  const ThinPlaces* thin = nullptr;  ///< of psi as it was meshed; null: not looked for
-  double max_deviation = 0;          ///< of face centres from psi = 0, model units: more is a reason; 0: any will do
-  const SizeField* sizes = nullptr;  ///< that a graded mesh was made for
-  /// Of the whole mesh, where the result has its boundary only; null: it is made of the result.
+  const ThinPlaces* thin = nullptr;  ///< thin places of the psi that was meshed; null if they were not searched
+  /// Largest permitted distance of face centres from psi = 0, model units; 0: no limit.
+  double max_deviation = 0;
+  const SizeField* sizes = nullptr;  ///< the sizes for which a graded mesh was made
+  /// Certificate of the whole mesh, if the result contains only its boundary; null: it is made from the result.
   const MeshCertificate* certificate = nullptr;
 };
 
-/// The edge length that a mesh was made with: in a background that is no lattice, at each vertex of the boundary.
-/// @param h  that the background was asked to have
+/// Returns the edge length of a mesh. If the background is not a lattice, it varies: there is one value for each vertex
+/// of the boundary.
+/// @param h  edge length that was requested for the background
 MeshEdge mesh_edge(const BackgroundMesh& background, const UmResult& result, double h);
 
+/// Measures a mesh.
 /// @param mesh    the tets of the result, with its final vertices
-/// @param result  all else of it
-/// @param h  that the mesh was made with. \throw Cancelled
+/// @param result  the result of the algorithm
+/// @param h       edge length of the mesh
+/// \throw Cancelled
 Measurement measure(const Domain& domain, const TetMesh& mesh, const UmResult& result, const ZeroSetChoice& pieces,
                     const MeshEdge& h, const MeasureParams& params = {}, const Context& context = {});
 
-/// What the certificate of a mesh says that was made elsewhere.
-/// @param domain  of the psi that it was certified with; null: without
+/// Returns the measurements of a mesh that was not made by this library, from its certificate.
+/// @param domain  domain of the psi that it was certified against; null if there was none
 MeshMeasures measures_of(MeshCertificate certificate, const Domain* domain, const Context& context = {});
 
 }  // namespace umtet

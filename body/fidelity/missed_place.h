@@ -6,11 +6,11 @@
 
 namespace umtet {
 
-/// Samples beside one another that the mesh passes by: neither their noise nor the flatness of its faces explains how
-/// far off they are.
+/// A defect of kind Missed: adjacent samples whose distance from the mesh is larger than their noise and the flatness
+/// of the faces explain.
 struct MissedPlace {
   Vec3 farthest = Vec3::Zero();  ///< the sample that is farthest from the mesh; model coordinates
-  double distance = 0;           ///< of it; model units
+  double distance = 0;           ///< distance of this sample, model units
   std::size_t n_samples = 0;
 };
 

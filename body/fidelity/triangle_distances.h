@@ -10,11 +10,12 @@
 
 namespace umtet {
 
-/// Distances between the boundary of a mesh and the given triangles, both ways: of vertices and centres of its faces,
-/// and of the samples and of corners and centres of those triangles that bound the body with all of themselves. These
-/// are cut into pieces of the size of the faces. With size and topology of what both bound.
-/// @param surface  of these faces
-/// \pre domain.triangles is there. \throw Cancelled
+/// Measures the distances between the boundary of a mesh and the triangles of the input in both directions: from the
+/// vertices and centres of the boundary faces, and from the samples and from the corners and centres of the triangles
+/// that lie completely on the boundary of the body. These triangles are first cut into pieces of the size of the
+/// boundary faces. The result also contains the size and topology of the bodies that the mesh and the triangles bound.
+/// @param surface  distance to these faces
+/// \pre domain.triangles is set. \throw Cancelled
 TriangleDistances triangle_distances(const Domain& domain, const std::vector<Vec3>& V,
                                      const std::vector<Triangle>& faces, const SurfaceDistance& surface,
                                      const MeshEdge& h, const Context& context);

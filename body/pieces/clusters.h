@@ -6,12 +6,12 @@
 
 namespace umtet {
 
-/// Sets of points: those in one cube of edge `size`, or in cubes that touch, are together.
-/// @return one number a point, the least index in its set
+/// Groups points: points in the same cube of edge `size`, or in cubes that touch, belong to the same set.
+/// @return for each point the least index in its set
 /// Cost: O(n log n).
 std::vector<int> clusters(const std::vector<Vec3>& x, double size);
 
-/// The members of each set, ascending; the sets by their least members.
+/// Returns the members of each set in ascending order. The sets are in the order of their least members.
 std::vector<std::vector<int>> members_of(const std::vector<int>& set);
 
 }  // namespace umtet

@@ -11,49 +11,54 @@
 
 namespace umtet {
 
-/// The pieces of psi = 0, counted on a grid or a graded mesh of its own, and which of them are meshed.
+/// The pieces of psi = 0, counted on a separate grid or graded mesh, and the choice of the pieces that are meshed.
 struct ZeroSetChoice {
   ZeroSetTopology topology;
-  double share = 0;                  ///< of the sizes that a graded mesh has; 0: a grid
-  std::vector<std::size_t> kept;     ///< which of topology.components are meshed
-  std::optional<SignCells> cells;    ///< of a level set, edge h / 2 or less, if searched: they hold every zero
-  std::vector<Vec3> seeds;           ///< one point of each piece that is kept
-  long euler_characteristic = 0;     ///< of the kept pieces together
-  std::vector<std::string> dropped;  ///< for each of the others, why
+  double share = 0;               ///< edge lengths of the counting mesh, as a share of the sizes; 0: a grid was used
+  std::vector<std::size_t> kept;  ///< indices of the topology.components that are meshed
+  /// Sign cells of a level set, edge h / 2 or less, if they were searched: they contain every zero.
+  std::optional<SignCells> cells;
+  std::vector<Vec3> seeds;           ///< a point of each kept piece
+  long euler_characteristic = 0;     ///< Euler characteristic of all kept pieces together
+  std::vector<std::string> dropped;  ///< the reason for each other piece
 };
 
-/// Where psi = 0 cuts the edges of the grid, of all pieces that are kept.
+/// Returns the points at which the kept pieces of psi = 0 cut the edges of the grid.
 std::vector<Vec3> kept_points(const ZeroSetChoice& pieces);
 
-/// A patch of surface this many sample spacings from any sample is a guess of the fit.
+/// Support radius in sample spacings: a patch of surface that is farther from every sample is a guess of the fit.
 inline constexpr double kSupportRadius = 3;
 
-/// That distance, model units: the one place that says how far samples support the surface.
+/// Returns the support radius of the samples, model units. It is the only definition of this distance.
 double support_radius(const Domain& domain);
 
-/// Spacing of the grid on which the pieces are counted for a mesh of edge length h: min(h, lattice spacing), of a
-/// segmentation min(h, half a voxel), but as coarse as 5e7 nodes in the box ask for.
+/// Returns the spacing of the grid on which the pieces are counted for a mesh of edge length h: min(h, lattice
+/// spacing), or min(h, half a voxel) for a segmentation. It is larger if the grid would have more than 5e7 nodes.
 double counting_spacing(const Domain& domain, double h);
 
-/// Pieces of a level set that no samples back are artefacts of the fit.
+/// Counts the pieces of psi = 0 and chooses those that are meshed. Pieces of a level set without the support of samples
+/// are artefacts of the fit.
 ///
-/// Every sample backs the one piece that is nearest to it (to its cut points), if it is within three sample spacings,
-/// or one spacing of the counting grid where that is more. So a false sheet around, inside or across the body gets
-/// none of the body's samples. A piece is kept if at least 10 samples back it, and at least a fiftieth of what it would
-/// have with as many samples per area as the piece that most samples back: a second body may be scanned seven times
-/// as coarsely. The piece that most samples back is kept if it has one. A formula has no artefacts: all is kept.
+/// Every sample supports the one piece whose cut points are nearest to it, if the distance is at most kSupportRadius
+/// sample spacings or, if that is larger, one spacing of the counting grid. So a false sheet around, inside or across
+/// the body gets no samples of the body. A piece is kept if at least 10 samples support it, and if its number of
+/// samples per area is at least a fiftieth of that of the piece with the most samples: the sample spacing of a second
+/// body may be seven times as large. The piece with the most samples is kept if it has at least one. A formula has no
+/// artefacts, so all its pieces are kept.
 ///
-/// @param h      edge length of the mesh to come; the grid has counting_spacing(domain, h)
-/// @param cells  of an earlier count of the same psi at a larger h, which need no second search; null: searched
-/// Cost: one value of psi per node of the grid (of a level set: per node within its spacing of a sign cell), one
-/// nearest-point query per sample and piece whose box it is near. \throw std::length_error  a box too unlike a cube for
-/// the grid \throw Cancelled
+/// @param h      edge length of the mesh; the grid has the spacing counting_spacing(domain, h)
+/// @param cells  sign cells of an earlier count of the same psi at a larger h; null: they are searched
+/// Cost: one value of psi per node of the grid (for a level set only near sign cells), and one nearest-point query per
+/// sample and piece whose box is near it.
+/// \throw std::length_error  the box is too elongated for the grid
+/// \throw Cancelled
 ZeroSetChoice choose_components(const Domain& domain, double h, const Context& context = {},
                                 const SignCells* cells = nullptr);
 
-/// The same for a mesh of these sizes: counted by graded_zero_set() at this share of them.
-/// @param finest  the least of the sizes
-/// @param cells   have edges of half the longest on which it was counted / sqrt(3)
+/// Makes the same choice for a mesh of varying sizes: graded_zero_set() counts the pieces.
+/// @param finest  the least size
+/// @param share   edge lengths of the counting mesh, as a share of the sizes
+/// @param cells   their edge is half of (longest edge of the counting mesh) / sqrt(3)
 ZeroSetChoice choose_components(const Domain& domain, const SizeField& sizes, double finest, double share,
                                 const Context& context = {}, const SignCells* cells = nullptr);
 

@@ -7,10 +7,10 @@
 
 namespace umtet {
 
-/// psi with the samples that it was fitted to; no triangles.
-/// @param psi    near the origin, as the report's shift says
-/// @param cloud  model coordinates; may be empty
-/// @param box    what the background mesh has to cover, model coordinates; none: that of psi
+/// Returns a domain that consists of psi and the samples to which it was fitted, without triangles.
+/// @param psi    level set near the origin; report.shift moves it to model coordinates
+/// @param cloud  samples, model coordinates; may be empty
+/// @param box    box that the background mesh must cover, model coordinates; empty: the box of psi
 Domain fitted_domain(LevelSet psi, OrientedPointCloud cloud, const LevelSetReport& report,
                      const std::optional<Box>& box);
 

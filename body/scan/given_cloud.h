@@ -5,10 +5,10 @@
 
 namespace umtet {
 
-/// A cloud in memory as read_scan() gives one of a file, so that the same samples make the same mesh: normals are unit,
-/// to the last bit by the same rule, and unusable ones are zero.
-/// @param cloud  model coordinates; normals, labels and origins are of all points or of none
-/// \throw std::invalid_argument  a point that is not finite or beyond 1e50; an array of another length
+/// Converts a cloud in memory to the form that read_scan() returns for a file, so that the same samples make the same
+/// mesh. Normals are normalised by the same rule, with bit-identical results, and unusable normals become zero.
+/// @param cloud  samples in model coordinates; the arrays of normals, labels and origins are complete or empty
+/// \throw std::invalid_argument  a point is not finite or has a coordinate beyond 1e50; an array has the wrong length
 CloudFile given_cloud(OrientedPointCloud cloud);
 
 }  // namespace umtet

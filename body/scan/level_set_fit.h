@@ -17,22 +17,22 @@ namespace umtet {
 struct LevelSetFit {
   LevelSet psi;
   LevelSetReport report;
-  std::vector<Message> notices;  ///< what was changed or guessed, for the user
+  std::vector<Message> notices;  ///< notices to the user about changes and guesses
 };
 
-/// What is known of samples of triangles: they have no noise, and their spacing goes with the thickness of the body.
+/// Properties of samples of triangles: they have no noise, and their spacing varies with the thickness of the body.
 struct ExactSamples {
-  double least_spacing = 0;  ///< model units, > 0
+  double least_spacing = 0;  ///< least spacing of the samples, model units, > 0
 };
 
-/// The noise, unless FitOptions::noise gives it, psi, and whether it bounds a body.
-/// @param cloud  model coordinates, which it has again afterwards; normals that psi opposes are turned over
-/// (turned_fit.h)
-/// @param near   of its points, with their covering; empty: searched here
-/// @param bands  makes the bands of the fit; null: this process does
-/// @param exact  of a cloud of triangles; none: of a scanner
-/// \throw SolveTooLarge  psi would not fit in the memory that is allowed
-/// \throw SolveError     no psi, or one that bounds no body, or samples that fill a volume
+/// Measures the noise unless FitOptions::noise gives it, fits psi, and checks that psi bounds a body.
+/// @param cloud  samples in model coordinates. Their normals are turned over where psi requires it (turned_fit.h);
+///               coordinates are the same after the call.
+/// @param near   neighbour distances of the points, with their covering; empty: they are computed
+/// @param bands  computes the bands of the fit; null: this process computes them
+/// @param exact  set for samples of triangles; empty for samples of a scanner
+/// \throw SolveTooLarge  the fit would need more memory than is allowed
+/// \throw SolveError     the solve fails, psi bounds no body, or the samples fill a volume
 /// \throw Cancelled
 /// Reports "noise" and the steps of fit_ssd().
 LevelSetFit fit_level_set(OrientedPointCloud& cloud, NeighbourDistances near, const BodyOptions& options,

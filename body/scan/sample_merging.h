@@ -4,13 +4,14 @@
 
 namespace umtet {
 
-/// prepare_cloud() of the samples merged in cells (merged_samples.h), where at least two share a cell in the mean and
-/// 100,000 cells are left: before neighbours and normals, so that all of it costs as much as there are cells.
+/// Merges samples in cells (merged_samples.h) and calls prepare_cloud() for the result. It merges only if cells contain
+/// at least two samples on average and there are at least 100,000 cells. Because it merges before the search for
+/// neighbours and normals, their cost is proportional to the number of cells.
 ///
-/// Cells are those of largest_cell(). Where more than 1 % of them have two sheets or 1 % of the samples face another
-/// one within 3.5 cells, they are those of cell_where_thin(), and samples stay what they are near the sheets that are
-/// still closer. Without normals, by which two sheets in a cell are told apart, cells are smaller, eight samples in the
-/// mean, and all samples of a thin body stay.
+/// The size of a cell is largest_cell(). If more than 1 % of the cells contain two sheets, or 1 % of the samples face
+/// another sheet within 3.5 cells, the size is cell_where_thin(), and samples near sheets that are still closer are not
+/// merged. Without normals, two sheets in a cell cannot be distinguished. Cells then are smaller, with eight samples on
+/// average, and no sample of a thin body is merged.
 /// \throw as prepare_cloud()
 PreparedCloud prepare_merged(CloudFile file, const std::string& name, const BodyOptions& options);
 

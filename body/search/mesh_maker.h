@@ -20,43 +20,46 @@
 
 namespace umtet {
 
-/// What is said to the user while a mesh is made; either may be empty, and may throw, which ends the work.
+/// Receivers of messages while a mesh is made. Each may be empty. If one throws, the work ends with its exception.
 struct MeshLines {
-  std::function<void(const Message& line)> say = {};         ///< what the user should know
-  std::function<void(const std::string& line)> detail = {};  ///< what explains a result
+  std::function<void(const Message& line)> say = {};         ///< facts that the user should know
+  std::function<void(const std::string& line)> detail = {};  ///< details that explain a result
 };
 
 using MakeBackground = std::function<SizedBackground(double h)>;
 
-/// Meshes a domain and measures what came out, as MeshOptions says: the one way that leads to the meshes of `umtet
-/// mesh`, `umtet evolve` and Python's umtet.mesh.
+/// Meshes a domain according to MeshOptions and measures the mesh. `umtet mesh`, `umtet evolve` and umtet.mesh in
+/// Python all use it.
 class MeshMaker {
  public:
-  /// The domain stays where it is. The context is told of "components", the steps of
-  /// choose_submesh() and fit_submesh(), "certify" and "second order"; fractions are those of one attempt.
-  /// @param ranks  make the mesh, where several processes do; null: this one does
-  /// \throw UsageError as um_params()
+  /// The domain must outlive this object and must not move. The context receives reports of "components", the steps of
+  /// choose_submesh() and fit_submesh(), "certify" and "second order"; fractions refer to one attempt.
+  /// @param ranks  makes the mesh in several processes; null: this process makes the mesh
+  /// \throw UsageError  as um_params()
   MeshMaker(Domain& domain, BodyOptions options, Context context, MeshLines lines = {}, PartMaker* ranks = nullptr);
 
-  /// psi, cut for h, meshed in this background. A mesh whose certificate fails is a result; so is none.
+  /// Meshes psi with the detail for h in this background. It also returns a mesh whose certificate fails, and an
+  /// attempt without a mesh.
   /// \throw MeshingImpossible  no sample is near psi = 0; Cancelled
   MeshAttempt attempt(const SizedBackground& background, double h) { return attempt(background, h, nullptr); }
 
-  /// The best_attempt() from this h on, each in a background of its own; where sizes vary, the refined_attempt(). Where
-  /// the choice between the two is ours and one h does not do, sizes that vary are tried after all, if
-  /// may_improve() and they make no more than mesh.effort times the tets of that h. Where mesh.tets
-  /// asks for a number that h misses by more than a tenth, which shows before anything is moved, another h takes its
-  /// place.
-  /// @param choice  of `backgrounds`
-  /// @param make    backgrounds.make(), and what else is to happen before an attempt
+  /// Returns best_attempt() from choice.h on, with a new background for each attempt, or refined_attempt() if sizes
+  /// vary. If the library chooses between one h and varying sizes, and the best attempt with one h is not good, it also
+  /// tries varying sizes, provided that may_improve() and that these make no more than mesh.effort times as many tets.
+  /// If the number of tets differs from mesh.tets by more than a tenth, which is known before vertices move, another h
+  /// is used.
+  /// @param choice  edge length that `backgrounds` chose
+  /// @param make    calls backgrounds.make(), and does all other work before an attempt
   MeshAttempt best(BackgroundChoice& backgrounds, const EdgeLength& choice, const MakeBackground& make);
 
-  /// The pieces of psi = 0, psi cut for h: kept until another h is asked for.
-  /// @param sizes  for a graded mesh, of which h is the least. \throw Cancelled
+  /// Returns the pieces of psi = 0 with the detail for h. The result is kept until the function is called with another
+  /// h.
+  /// @param sizes  sizes of a graded mesh, whose minimum is h; null for one h
+  /// \throw Cancelled
   const ZeroSetChoice& pieces_at(double h, const SizeField* sizes = nullptr);
 
  private:
-  /// An attempt, and which tets it is about or, where several processes make it, what it has become.
+  /// An attempt in progress: its chosen tets or, if several processes make it, the finished mesh.
   struct Begun {
     MeshAttempt attempt;
     ChosenSubmesh chosen;
@@ -91,17 +94,17 @@ class MeshMaker {
   const MeshLines lines_;
   const UmParams params_;
   PartMaker* const ranks_;
-  std::optional<std::pair<double, ZeroSetChoice>> pieces_;  ///< of psi cut for the h beside them
-  int n_levels_ = 0;                                        ///< of psi then; 0: a formula
+  std::optional<std::pair<double, ZeroSetChoice>> pieces_;  ///< h, and the pieces of psi with the detail for h
+  int n_levels_ = 0;                                        ///< number of levels of psi at this h; 0: a formula
   int n_attempts_ = 0;
-  /// Of the triangles, up to what the h beside it asks for, once that has been measured.
+  /// h, and the thickness of the triangles measured up to the limit for h; empty before the first measurement.
   std::optional<std::pair<double, TriangleThickness>> thickness_;
-  bool is_thickened_ = false;  ///< the vertices that were chosen last
+  bool is_thickened_ = false;  ///< the last choice of vertices used a thickened body
   bool has_said_alone_ = false;
 };
 
-/// What is wrong, and the first of the thin places; some lines, without a newline at the end. Coordinates are those of
-/// the model: `shift` is added. \pre !attempt.thin.empty()
+/// Returns a text of several lines about the failure and the first thin places, without a newline at the end. Its
+/// coordinates are model coordinates: working coordinates plus `shift`. \pre !attempt.thin.empty()
 std::string too_thin_text(const MeshAttempt& attempt, const Vec3& shift);
 
 }  // namespace umtet

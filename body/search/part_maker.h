@@ -13,33 +13,34 @@
 #include "mesh/implicit/closest_point.h"
 #include "mesh/submesh/um_result.h"
 
-// A mesh that several processes make, and that none of them has as a whole. Who they are and how they speak with each
-// other is not known here.
+// A mesh that several processes make and store in parts. These interfaces do not depend on MPI.
 namespace umtet {
 
-/// What there is of a mesh of second order besides.
+/// The results for a mesh of second order.
 struct CurvedInParts {
   SecondOrderReport report;
-  std::vector<Vec3> mid_sides;  ///< those of boundary edges
+  std::vector<Vec3> mid_sides;  ///< mid-sides of the boundary edges
 };
 
-/// Such a mesh. All processes free it when the last handle is destroyed.
+/// A mesh stored in parts. All processes free their local meshes when the last handle is destroyed.
 class MeshInParts {
  public:
   virtual ~MeshInParts() = default;
-  /// What one process makes by curved_mesh() and measures of it: the final mesh is of second order from now on.
-  /// @param domain  that it was made in
+  /// Makes the mesh of second order, as curved_mesh() does in one process, and measures it. The mesh is of second order
+  /// after the call.
+  /// @param domain  the domain of the mesh
   virtual CurvedInParts curve(const Domain& domain, const ClosestPointParams& params) const = 0;
 };
 
 struct MadeInParts {
-  UmResult result;  ///< without tets: positive faces, their vertices in `final`, and what is said of the whole
+  /// Result without tets: positive faces, their vertices in `final`, and the facts about the whole mesh.
+  UmResult result;
   MeshCertificate certificate;
   std::size_t n_tets = 0, n_chosen_tets = 0;
   std::shared_ptr<const MeshInParts> mesh;
 };
 
-/// How a file will hold vertices, and what of psi = 0 they are held against.
+/// The data for rounding vertices as in a file, and for certifying them.
 struct RoundedPlaces {
   double h;         ///< CertificateInput::h
   Vec3 shift;       ///< Domain::shift
@@ -50,16 +51,16 @@ struct RoundedPlaces {
 class PartMaker {
  public:
   virtual ~PartMaker() = default;
-  /// What one process makes in this lattice by universal_mesh(), rounds to a file and certifies: the same to the bit.
-  /// None where there is no mesh; why, one process finds out.
-  /// @param box     that the background was asked to cover
-  /// @param domain  cut for places.h; the same one whenever this is called, unless PartMesher::forget_domain() is
-  /// called before
-  /// @param seeds   of SubmeshSearch::Crawl, where some pieces of psi = 0 are left out; else empty
+  /// Makes the mesh in this lattice, rounds it as in a file and certifies it. The result is bit-identical to
+  /// universal_mesh() in one process. It is empty if there is no mesh; the caller then finds the reason in one process.
+  /// @param box     box that the background was requested to cover
+  /// @param domain  domain with the detail for places.h. It must be the same in all calls, unless
+  ///                PartMesher::forget_domain() is called in between.
+  /// @param seeds   seeds of SubmeshSearch::Crawl if some pieces of psi = 0 are dropped; otherwise empty
   virtual std::optional<MadeInParts> make(const BackgroundMesh& background, const Box& box, const Domain& domain,
                                           const FastParams& params, const std::vector<Vec3>& seeds,
                                           const RoundedPlaces& places) = 0;
-  /// How many processes.
+  /// The number of processes.
   virtual int n() const = 0;
 };
 

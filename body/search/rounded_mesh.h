@@ -5,8 +5,8 @@
 
 namespace umtet {
 
-/// Makes the vertices those that a file will hold, in working coordinates: it stores x + shift, rounded, and taking the
-/// shift off again is exact (far_origin_shift). From here on that is the mesh: it is this one that is measured.
+/// Rounds the vertices to the values that a file stores, in working coordinates: a file stores x + shift, rounded, and
+/// the subtraction of the shift is exact (far_origin_shift). All later measurements are of these rounded vertices.
 void round_to_file(UmResult& result, const Vec3& shift);
 
 }  // namespace umtet

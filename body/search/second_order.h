@@ -8,12 +8,14 @@
 
 namespace umtet {
 
-/// The final mesh of a result with curved edges (MeshOptions::order = 2), its mid-sides where a file will hold them.
+/// Returns the final mesh of a result with curved edges (MeshOptions::order = 2). Its mid-sides are rounded to the
+/// values that a file stores.
 /// \pre result.status == UmStatus::Success, and round_to_file(result) \throw Cancelled
 SecondOrder curved_mesh(const Domain& domain, const UmResult& result, double h, const ClosestPointParams& params,
                         const Context& context = {});
 
-/// What is true of it, with what had to be done for the Jacobians. \throw Cancelled
+/// Measures a mesh of second order. The report also contains the corrections that were made for positive Jacobians.
+/// \throw Cancelled
 SecondOrderReport measure_second_order(const Domain& domain, const UmResult& result, const SecondOrder& second,
                                        double h, const Context& context = {});
 

@@ -5,13 +5,13 @@
 
 namespace umtet {
 
-/// The largest edge length at which flat faces stay within `deviation` of psi = 0, by its curvature: the least
-/// edge_of_deviation().
+/// Returns the largest edge length for which flat faces stay within `deviation` of psi = 0, according to its curvature:
+/// the minimum of edge_of_deviation().
 ///
-/// psi is taken as it is cut for the h that results: h is lowered from `start` until it is fine enough for the detail
-/// that it lets in. On return domain is cut for the result.
+/// The detail of psi depends on h: h decreases from `start` until it suffices for the psi with the detail for h. On
+/// return, domain has the detail for the result.
 /// @param deviation, start  model units, > 0
-/// @return at most `start`; not above start, and `least` where even that is too coarse
+/// @return at most `start`; `least` if the deviation requires a smaller h
 /// \throw Cancelled
 double h_for_deviation(Domain& domain, double deviation, double start, double least, const Context& context = {});
 

@@ -13,40 +13,42 @@
 
 namespace umtet {
 
-/// The options ask for a graded mesh: by mesh.background or, where it is "auto", because sizes are given.
+/// Returns whether the options require a graded mesh: by mesh.background or, if this is "auto", by sizes.
 bool is_graded(const BodyOptions&);
 
-/// \throw UsageError where sizes are given for a background that has its own, or sizes that contradict each other
+/// \throw UsageError  sizes are given for a background that is not graded, or sizes contradict each other
 void require_graded(const BodyOptions&);
 
-/// The edge lengths that a graded background is made for: what the boundary of one or more domains needs, and what the
-/// user asks for. They are known up to a factor, for a number of tets or for another attempt; h is always that of the
-/// smallest edges.
+/// The edge lengths of a graded background: the lengths that the boundary of one or more domains requires, and those
+/// that the user requests. A common factor scales them, for a number of tets or for another attempt; h is always the
+/// length of the smallest edges.
 class GradedSizes {
  public:
-  /// @param shift  of the domains to come
-  /// \throw what options.sizes throws
+  /// @param shift  shift of all domains
+  /// \throw any exception of options.sizes
   GradedSizes(BodyOptions options, const Vec3& shift);
 
-  /// Takes in what psi = 0 of this domain asks for: mesh.h (or a tenth of the diagonal where mesh.max_deviation
-  /// decides, else .015 of it), less by thickness, by the turn of the normal, by mesh.max_deviation and by
-  /// BodyOptions::label_sizes; with mesh.grade_inside mesh.h alone. Not below mesh.h_min, or a sixteenth of h and what
-  /// noise / .3 allows. psi is looked at with all the detail that sizes of h_min show; on return it is cut there.
-  /// @param most_tets  where some of the sizes already make more tets, the others are not looked for
-  /// @return false then, and nothing was taken in
-  /// \throw MeshingImpossible  psi = 0 nowhere in the box; UsageError, also for a formula that is not above 0 on
-  ///        psi = 0 or inside, if there is no mesh.h_min; Cancelled
+  /// Adds the sizes that psi = 0 of this domain requires: mesh.h (by default a tenth of the diagonal if
+  /// mesh.max_deviation is given, else .015 of the diagonal), reduced according to thickness, the turn of the normal,
+  /// mesh.max_deviation and BodyOptions::label_sizes; with mesh.grade_inside only mesh.h. Sizes are at least
+  /// mesh.h_min; by default at least h / 16 and noise / .3. psi has the detail for h_min, also on return.
+  /// @param most_tets  if some of the sizes already make more tets than this, the search for sizes ends
+  /// @return false if the search ended for this reason; no sizes were added
+  /// \throw MeshingImpossible  psi = 0 nowhere in the box
+  /// \throw UsageError  contradictory options; also a size function that is not positive on psi = 0 or inside, if
+  ///                    mesh.h_min is not given
+  /// \throw Cancelled
   bool add(Domain& domain, const Context& context = {}, double most_tets = std::numeric_limits<double>::infinity());
 
-  /// Asks for less where a mesh failed, with all sizes times h / finest(): where that is not below mesh.h_min, or a
-  /// quarter of the floor without it. Such sources are no more than asked for.
-  /// @return h with the same factor, of what is the finest then; none where nothing may be finer
+  /// Adds smaller sizes where a mesh failed. The comparison uses all sizes times h / finest(). Sizes do not fall below
+  /// mesh.h_min or, if it is not given, a quarter of the default minimum. These sources need not be met exactly.
+  /// @return the least size after the change, with the same factor; empty if no size may be smaller
   std::optional<double> refine(const std::vector<SizeSource>& wanted, double h);
 
-  int n_domains() const { return n_domains_; }  ///< that were taken in
-  /// The h of the sizes as they are: the least on the boundary, and inside. \pre add() has been called
+  int n_domains() const { return n_domains_; }  ///< number of domains that were added
+  /// Returns the least unscaled size on the boundary and inside. \pre add() has been called
   double finest() const { return finest_; }
-  /// All sizes times h / finest(); `grade` is kept. \throw Cancelled
+  /// Returns the field of all sizes times h / finest(); `grade` does not change. \throw Cancelled
   SizeField field(double h, const Context& context = {}) const;
 
  private:
@@ -55,20 +57,20 @@ class GradedSizes {
 
   const BodyOptions options_;
   const Vec3 shift_;
-  std::vector<SizeSource> asked_;               ///< by the caller
-  std::vector<SizeSource> finer_;               ///< where a mesh failed
-  std::function<double(const Vec3&)> formula_;  ///< the caller's, or none
+  std::vector<SizeSource> asked_;               ///< requested by the caller
+  std::vector<SizeSource> finer_;               ///< added where a mesh failed
+  std::function<double(const Vec3&)> formula_;  ///< function of the caller, or empty
   std::string formula_name_;
-  std::vector<SizeSource> sources_;  ///< of psi = 0
+  std::vector<SizeSource> sources_;  ///< required by psi = 0
   Box box_;
   double h_min_ = 0, finest_ = 0;
   int n_domains_ = 0;
 };
 
-/// By what about h changes if there are to be 1 / n as many tets.
+/// Returns the approximate factor of h that divides the number of tets by n.
 double h_ratio_of_tets(double n);
 
-/// The h at which about n tets are taken, by the estimate of the library. \throw MeshingImpossible  psi < 0 nowhere
+/// Returns the h for about n_tets tets, by the estimate of the library. \throw MeshingImpossible  psi < 0 nowhere
 double h_of_graded_tets(const GradedSizes& sizes, const Domain& domain, double n_tets, const Context& context = {});
 
 }  // namespace umtet

@@ -4,9 +4,10 @@
 
 namespace umtet {
 
-/// To call before a mesh is made: is there memory for it?
-/// @param n_tets  about how many tets it will have
-/// \throw ResourceLimit with the estimate, when it is more than `allowed`
+/// Checks before a mesh is made that there is enough memory for it.
+/// @param n_tets   approximate number of tets of the mesh
+/// @param allowed  bytes of memory that the mesh may use
+/// \throw ResourceLimit  with the estimate, if it exceeds `allowed`
 void require_memory(const BackgroundMesh& background, double n_tets, double allowed);
 
 }  // namespace umtet

@@ -9,12 +9,15 @@ namespace umtet {
 /// reason for short edges: a relief that is closed flat becomes arbitrarily thin along its rim.
 class SheetSupport {
  public:
-  /// \pre the cloud of the domain has points, and a normal for each of them. The domain must outlive this object
+  /// \pre the cloud of the domain has points, and a normal for each point. The domain outlives this object.
   explicit SheetSupport(const Domain& domain);
 
-  /// Whether one of the eight samples nearest to x is within support_radius() and faces the side to which psi rises.
-  /// Along the rim of a sheet that was closed flat, samples are near the closing sheet and face the other way.
-  /// @param x  on psi = 0  @param gradient  of psi at x. Thread-safe
+  /// Returns whether one of the eight samples nearest to x is within support_radius() and has its normal in the
+  /// direction in which psi increases. Along the rim of a sheet that was closed flat, samples are near the closing
+  /// sheet, but their normals have the opposite direction.
+  /// Thread-safe.
+  /// @param x         point on psi = 0
+  /// @param gradient  gradient of psi at x
   bool operator()(const Vec3& x, const Vec3& gradient) const;
 
  private:

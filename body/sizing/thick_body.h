@@ -11,51 +11,58 @@
 
 namespace umtet {
 
-/// Whether vertices may be chosen by a body that has been thickened: that of closed triangles, in fast mode, without
-/// walls, in a background of one edge length.
+/// Returns whether a thickened body may be used to choose the vertices: the body of closed triangles, in fast mode,
+/// without walls, in a background with one edge length.
 bool may_be_thickened(const Domain& domain, const BodyOptions& options);
 
-/// How thin the triangles of a body are, at samples that stand for equal areas of them.
+/// The thickness of a body of triangles and of the gaps outside it, at samples that represent equal areas.
 struct TriangleThickness {
-  std::vector<Vec3> points;   ///< on the triangles, working coordinates
-  std::vector<double> body;   ///< to the sheet behind each, model units; infinite beyond the limit
-  std::vector<double> gap;    ///< to the sheet before it
+  std::vector<Vec3> points;  ///< samples on the triangles, working coordinates
+  /// Distance from each sample to the sheet behind it, model units; infinite beyond the limit.
+  std::vector<double> body;
+  std::vector<double> gap;    ///< distance from each sample to the sheet in front of it
   double area_of_sample = 0;  ///< model units^2
 
-  /// What this share of the samples is thinner than, body or gap; infinite where fewer are thin.
+  /// Returns the quantile `part` of the least thickness of body and gap at the samples; infinite if it exceeds the
+  /// limit.
   double share(double part) const;
 };
 
-/// Measured by rays (body_thickness.h) up to `limit`. \pre domain.triangles \throw Cancelled
+/// Measures thickness by rays (body_thickness.h) up to `limit`, model units.
+/// \pre domain.triangles
+/// \throw Cancelled
 TriangleThickness triangle_thickness(const Domain& domain, double limit, const Context& context = {});
 
-/// So thick, in h, a body is made before its boundary vertices are chosen: two edges and a fifth across, as everywhere
-/// (kEdgesAcross).
+/// Returns the distance, model units, by which each side of a body moves outwards before the boundary vertices are
+/// chosen: the thickness then is kEdgesAcross h.
 double thickening(double thickness, double h);
 
-/// Volume and area that the number of tets follows: of the body with what thickening adds to it.
+/// Returns the volume of the thickened body and the area of the body, from which the number of tets is estimated.
 BodySize thickened_size(const BodySize& size, const TriangleThickness& thickness, double h);
 
-/// Least mean ratio that is worth repairing for where the body is `thickness` thick: of a slab of regular tets of 2.2
-/// edges, pressed to that, three quarters; measured on plates, tubes and boxes of .5 to 1.3 h.
+/// Returns the mean ratio that repair can reach where the body has this thickness: three quarters of the mean ratio of
+/// a slab of regular tets, 2.2 edges thick, that is compressed to this thickness. It was measured on plates, tubes and
+/// boxes of .5 to 1.3 h.
 double quality_within_reach(double thickness, double h);
 
-/// Negative in a body that is closed and has been thickened where it is thinner than 2.2 h, by up to 1.1 h on each
-/// side: the signed distance to its triangles, less that thickening. Vertices that are chosen by it leave two layers of
-/// tets between two sheets, however near these are; projection then presses the tets flat. Where a gap outside is thin,
-/// its walls do not come nearer to each other than 1.1 h by this.
+/// An implicit function, negative in a closed body that is thickened where it is thinner than 2.2 h, by up to 1.1 h on
+/// each side: the signed distance to its triangles minus the thickening. If it classifies the vertices, there are two
+/// layers of tets between two sheets at any distance; projection then compresses the tets. Thickening does not make a
+/// gap outside thinner than 1.1 h.
 ///
-/// The thickening of a place is the greatest of the samples around, less half their distance, so that it changes
-/// slowly. Beyond three h from the triangles the value is 3 h, with the sign of psi.
+/// The thickening at a point is the maximum, over the samples around it, of the thickening at the sample minus half the
+/// distance of the sample, so it changes slowly. At distances beyond 3 h from the triangles the value is 3 h with the
+/// sign of psi.
 class ThickBody {
  public:
-  /// @param domain     stays where it is; \\pre its triangles bound a closed body
-  /// @param thickness  up to 2.2 h and more
+  /// @param domain     its triangles bound a closed body; it must outlive this object and must not move
+  /// @param thickness  thickness, measured up to a limit of at least 2.2 h
   ThickBody(const Domain& domain, const TriangleThickness& thickness, double h);
   ~ThickBody();
   ThickBody(ThickBody&&) noexcept;
 
-  /// The gradient is that of the distance alone, unit; the Hessian that of a plane, zero.
+  /// Evaluates the function. The gradient ignores changes of the thickening: it is the unit gradient of the distance.
+  /// The Hessian is zero.
   double evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const;
   double value(const Vec3& x) const { return evaluate(x, nullptr, nullptr); }
 

@@ -9,35 +9,36 @@
 
 namespace umtet {
 
-/// All thin places, and the points of the boundary that they consist of.
+/// All thin places, and the points of psi = 0 that belong to them.
 struct ThinPlaces {
-  double h = 0;                   ///< the edge length they are too thin for
-  std::vector<ThinPlace> places;  ///< ascending in h_needed: worst first
-  std::vector<Vec3> points;       ///< of psi = 0
-  std::vector<double> thickness;  ///< of each point
-  std::vector<int> place;         ///< of each point, into places
+  double h = 0;                   ///< edge length for which they are too thin
+  std::vector<ThinPlace> places;  ///< in ascending order of h_needed: worst first
+  std::vector<Vec3> points;       ///< points of psi = 0
+  std::vector<double> thickness;  ///< thickness at each point
+  std::vector<int> place;         ///< index into `places` for each point
 
   bool empty() const { return places.empty(); }
-  double h_needed() const { return places.front().h_needed; }  ///< for all of them. \pre !empty()
+  /// Edge length that suffices for all places. \pre !empty().
+  double h_needed() const { return places.front().h_needed; }
 };
 
-/// A place is too thin if it is thinner than kLeastEdgesAcross on more than this much of the boundary, in h^2: a few
-/// samples at a sharp edge, or of noise, do no harm.
+/// Least area of a thin place, in h^2: a place is too thin if it is thinner than kLeastEdgesAcross on a larger area of
+/// the boundary. A few samples at a sharp edge, or noise, are not a thin place.
 inline constexpr double kLeastThinArea = 0.5;
 
-/// What a mesh of edge length h cannot show, before it is made.
+/// Predicts the places that a mesh of edge length h cannot resolve.
 ///
-/// The thickness of psi, as it is cut for h, at the cut points of the pieces that are kept. Thin points half an edge
-/// apart or less are one place. The h that a place needs is that of psi with all its detail.
-/// @param pieces  of choose_components(domain, h)
-/// Cost: some twenty values of psi a cut point. The result does not depend on the number of threads.
+/// It measures the thickness of psi with the detail for h, at the cut points of the kept pieces. Thin points that are
+/// at most half an edge apart form one place. The h that a place requires is computed with the full detail of psi.
+/// @param pieces  result of choose_components(domain, h)
+/// Cost: about twenty values of psi per cut point. The result does not depend on the number of threads.
 /// \throw Cancelled
 ThinPlaces find_thin_places(const Domain& domain, const ZeroSetChoice& pieces, double h, const Context& context = {});
 
-/// The places in model coordinates: `shift` is added.
+/// Returns the places in model coordinates: working coordinates plus `shift`.
 std::vector<ThinPlace> in_model(const ThinPlaces&, const Vec3& shift);
 
-/// The first few in words, a line each, without a newline at the end.
+/// Returns a description of the first few places, one per line, without a newline at the end.
 std::string described(const ThinPlaces&, const Vec3& shift);
 
 }  // namespace umtet
