@@ -10,8 +10,9 @@
 
 namespace umtet {
 
-/// Distributed version of certify(), with positive faces: every number and list is the same to the bit for any number
-/// of ranks. The mesh is equally not trusted. Collective; the same on all ranks.
+/// Distributed version of certify(), with positive faces: every number and list is bit-identical for any number of
+/// ranks. Like certify(), it does not rely on the algorithm that made the mesh. Collective; the result is the same on
+/// all ranks.
 /// @param h                    see CertificateInput::h
 /// @param psi                  thread-safe; given on all ranks or on none
 /// @param coordinate_rounding  CertificateInput::coordinate_rounding

@@ -12,22 +12,23 @@
 // Gather and broadcast of short lists of rare objects to and from rank 0, and reductions over all ranks.
 namespace umtet {
 
-/// The rank of this process in a communicator.
+/// Returns the rank of this process in a communicator.
 inline int rank_in(MPI_Comm comm) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   return rank;
 }
 
-/// Sum of a count over all ranks. Collective.
+/// Returns the sum of a count over all ranks. Collective.
 inline std::size_t sum(MPI_Comm comm, std::size_t n) {
   std::uint64_t all = n;
   MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_UINT64_T, MPI_SUM, comm);
   return all;
 }
 
-/// Gathers lists on rank 0, in the order of ranks; the result is empty on other ranks. Collective. T has no pointers.
-/// \throw std::length_error above 2^31 - 1 members, on rank 0 or on a rank with that many
+/// Gathers lists on rank 0, in the order of ranks; the result is empty on other ranks. Collective. T must not contain
+/// pointers.
+/// \throw std::length_error  above 2^31 - 1 members in total on rank 0, or in the list of a rank
 template <class T>
 std::vector<T> gathered(MPI_Comm comm, const std::vector<T>& own) {
   constexpr const char* kTooMany = "a list of more than 2^31 - 1 members";
@@ -50,8 +51,8 @@ std::vector<T> gathered(MPI_Comm comm, const std::vector<T>& own) {
   return result;
 }
 
-/// Broadcasts a list of any length from rank 0 to the others. Collective. T has no pointers.
-/// @param own  read on rank 0
+/// Broadcasts a list of any length from rank 0 to the others. Collective. T must not contain pointers.
+/// @param own  the list of rank 0; ignored on other ranks
 template <class T>
 void broadcast(MPI_Comm comm, const std::vector<T>& own, std::vector<T>& list) {
   constexpr std::size_t kAtOnce = 1 << 30;  // MPI counts by int

@@ -24,20 +24,20 @@ class Neighbourhood {
  public:
   using Bytes = std::vector<std::byte>;
 
-  /// @param ranks  ascending, without this rank; the relation is symmetric
+  /// @param ranks  the neighbours of this rank, ascending, without the rank itself; the relation must be symmetric
   Neighbourhood(MPI_Comm comm, std::vector<int> ranks);
   ~Neighbourhood();  ///< collective, unless an exception is propagating
   Neighbourhood(const Neighbourhood&) = delete;
   Neighbourhood& operator=(const Neighbourhood&) = delete;
 
   const std::vector<int>& ranks() const { return ranks_; }
-  /// The index of a rank in ranks(). \pre it is a neighbour
+  /// Returns the index of a rank in ranks(). \pre it is a neighbour
   std::size_t number(int rank) const;
-  /// Exchanges one message of any length with each neighbour, in the order of ranks(). \throw std::length_error above 2
-  /// GB
+  /// Exchanges one message of any length with each neighbour, in the order of ranks().
+  /// \throw std::length_error  above 2 GB
   std::vector<Bytes> exchange(const std::vector<Bytes>& out);
   /// Exchanges messages whose lengths both sides know.
-  /// @param in  has the lengths of the incoming messages
+  /// @param in  must have the lengths of the incoming messages
   void exchange(const std::vector<Bytes>& out, std::vector<Bytes>& in);
   std::size_t sum(std::size_t n);
   std::size_t max(std::size_t n);

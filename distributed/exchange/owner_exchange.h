@@ -15,8 +15,9 @@ namespace umtet {
 class OwnerExchange {
  public:
   /// @param n_owned  number of items that this rank owns, on any rank
-  /// @param asked    by rank: local items that the other rank owns
-  /// @param wanted   by rank: indices of items owned here that the other rank has, in its order of items
+  /// @param asked    for each rank, the local items that the other rank owns
+  /// @param wanted   for each rank, the indices of items that this rank owns and the other rank has, in the order of
+  ///                 the other rank
   OwnerExchange(MPI_Comm comm, std::size_t n_items, std::size_t n_owned, std::vector<std::vector<std::size_t>> asked,
                 std::vector<std::vector<std::size_t>> wanted)
       : comm_(comm), n_items_(n_items), n_owned_(n_owned), asked_(std::move(asked)), wanted_(std::move(wanted)) {}
@@ -25,7 +26,8 @@ class OwnerExchange {
   std::size_t n_owned() const { return n_owned_; }
 
   /// Sends values from owners to all ranks that have the items. Collective.
-  /// @param of_owned  by index of the owned item   @return by item
+  /// @param of_owned  one value per owned item
+  /// @return one value per local item
   template <class T>
   std::vector<T> tell(const std::vector<T>& of_owned) const {
     std::vector<std::vector<T>> out(wanted_.size());
@@ -51,15 +53,15 @@ class OwnerExchange {
       for (std::size_t k = 0; k < in[r].size(); ++k) take(wanted_[r][k], in[r][k]);
   }
 
-  /// Logical or over all ranks that have an item, for the owned items, by index. Collective.
-  /// @param of_items  0 or 1
+  /// Returns for each owned item the logical or over all ranks that have the item. Collective.
+  /// @param of_items  0 or 1 for each local item
   template <class T>
   std::vector<T> any_of_owned(const std::vector<T>& of_items) const {
     std::vector<T> owned(n_owned_, 0);
     ask([&](std::size_t item) { return of_items[item]; }, [&](std::size_t k, T is_so) { owned[k] |= is_so; });
     return owned;
   }
-  /// Logical or over all ranks that have an item, for the local items. Collective.
+  /// Returns for each local item the logical or over all ranks that have the item. Collective.
   template <class T>
   std::vector<T> any(const std::vector<T>& of_items) const {
     return tell(any_of_owned(of_items));

@@ -4,8 +4,8 @@
 
 namespace umtet {
 
-/// Marks the begin of a phase of this rank for MPI profilers. They replace MPI_Pcontrol(), which otherwise has no
-/// effect. tests/bench/rank_traffic.c is one.
+/// Marks the beginning of a phase of this rank for MPI profilers, such as tests/bench/rank_traffic.c. A profiler
+/// replaces MPI_Pcontrol(), which otherwise has no effect.
 inline void begin_phase(const char* name) { MPI_Pcontrol(1, name); }
 
 }  // namespace umtet

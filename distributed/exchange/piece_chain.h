@@ -26,7 +26,7 @@ class PieceChain {
     add(values_);
     send();
   }
-  /// The final values. Collective, once, after the last round.
+  /// Returns the final values. Collective; to be called once, after the last round.
   const std::vector<double>& end();
 
  private:

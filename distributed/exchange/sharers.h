@@ -12,7 +12,7 @@
 // tets. All functions but first_ranks() are collective.
 namespace umtet {
 
-/// Local items at which other ranks have tets, too.
+/// Local items at which other ranks also have tets.
 struct Sharers {
   std::vector<int> vertex;         ///< shared local vertices, ascending
   std::vector<std::size_t> begin;  ///< begin of each vertex's ranks in `rank`, and the end of the last
@@ -22,11 +22,11 @@ struct Sharers {
 /// Finds the sharers of all local items.
 Sharers sharers_of(MPI_Comm comm, const OwnerExchange& items);
 
-/// For each item, the least rank with a tet at it.
+/// Returns for each item the least rank with a tet at it.
 std::vector<int> first_ranks(MPI_Comm comm, std::size_t n_items, const Sharers& sharers);
 
-/// For each item, its number if each rank numbers the items of which it is the first rank, in order, after those of
-/// lower ranks.
+/// Returns for each item its number in this numbering: each rank numbers in order the items whose first rank it is, and
+/// its numbers follow those of lower ranks.
 std::vector<std::int64_t> numbers_by_rank(MPI_Comm comm, const std::vector<int>& first_rank,
                                           const OwnerExchange& items);
 

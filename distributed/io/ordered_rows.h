@@ -16,7 +16,7 @@
 // than a piece at a time. All functions are collective.
 namespace umtet {
 
-inline constexpr std::size_t kRowsPerPiece = 1 << 16;  // some megabytes
+inline constexpr std::size_t kRowsPerPiece = 1 << 16;  // a few megabytes
 
 /// A piece of consecutive nodes.
 struct NodeColumns {
@@ -36,7 +36,7 @@ struct TetColumns {
 };
 
 /// Calls put(NodeColumns) for each of this rank's pieces, equally often on all ranks.
-/// @param ids  of the owned nodes, ascending; `places` and `boundary` are in the same order
+/// @param ids  ids of the owned nodes, ascending; `places` and `boundary` are in the same order
 template <class Put>
 void put_nodes(MPI_Comm comm, const std::vector<std::int64_t>& ids, const std::vector<Vec3>& places,
                const std::vector<std::uint8_t>& boundary, const Put& put) {
@@ -59,9 +59,9 @@ void put_nodes(MPI_Comm comm, const std::vector<std::int64_t>& ids, const std::v
   }
 }
 
-/// Calls put(first, values) for each of this rank's pieces, equally often on all ranks: `n` numbers per node, and the
-/// number of nodes before it.
-/// @param values  n per owned node, one after the other
+/// Calls put(first, values) for each of this rank's pieces, equally often on all ranks. `first` is the number of nodes
+/// before the piece, and `values` are n numbers per node.
+/// @param values  n numbers per owned node, consecutive
 template <std::size_t n, class T, class Put>
 void put_values(MPI_Comm comm, const std::vector<std::int64_t>& ids, const std::vector<T>& values, const Put& put) {
   struct Row {

@@ -21,13 +21,14 @@ struct VtuRows {
   const std::vector<std::int64_t>& ids;
   std::int64_t first_mid_side;
   const std::vector<Vec3>& places;            ///< positions of the nodes
-  const std::vector<std::uint8_t>& boundary;  ///< of nodes
-  const VertexValues& fields;  ///< names of the fields, on all ranks: ascending, after the names of standard data
-  /// Values of a field of `fields` at the nodes, one after the other. Collective.
+  const std::vector<std::uint8_t>& boundary;  ///< boundary flags of the nodes
+  /// Fields with the same names on all ranks, in ascending order, after the names of standard data.
+  const VertexValues& fields;
+  /// Returns the values of a field of `fields` at the nodes, consecutive. Collective.
   std::function<std::vector<double>(std::size_t field)> values;
   const DistributedMesh& mesh;  ///< contains the tets
   std::size_t nodes_per_tet;    ///< 4, or 10 for ten-node tets
-  /// The number in the whole mesh of node k of tet t.
+  /// Returns the number in the whole mesh of node k of tet t.
   std::function<std::int64_t(std::size_t t, std::size_t k)> node;
 };
 

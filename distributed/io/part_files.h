@@ -22,21 +22,21 @@ namespace umtet {
 
 /// Writes the file that write_vtu() makes of the whole mesh with_standard_data(), byte for byte, by MPI-IO. Each rank
 /// receives pieces of consecutive vertices and tets in turn, and writes them at their positions.
-/// @param boundary  of the vertices of the local mesh, if it differs from that of its tets
-/// @param more      names are greater than those of standard data, and ascending
+/// @param boundary  boundary flags of the local vertices; null: they are computed from the tets
+/// @param more      additional arrays, with ascending names after the names of standard data
 /// \pre all ranks have a common file system
 /// \throw KnownToAll naming the file, which is then not a valid mesh
 void write_whole_vtu(MPI_Comm comm, const std::filesystem::path& file, const DistributedMesh& mesh,
                      const std::vector<std::uint8_t>* boundary = nullptr, const VertexValues& more = {});
 
-/// Extracts some tets with their vertices. \pre ascending
+/// Extracts some tets with their vertices. \pre `tets` is ascending
 DistributedMesh some_of(const DistributedMesh& mesh, const std::vector<std::size_t>& tets);
 
 /// Data of pieces besides standard data.
 struct PieceExtras {
   std::vector<MeshPart> patches;  ///< patches of the boundary; empty: those of SolverPart, with numbers from 2
   int body_number = 1;
-  /// Maps numbers of faces on all ranks to indices into `patches`. Collective; null without patches.
+  /// Maps numbers of faces in the whole mesh to indices into `patches`. Collective; null if there are no patches.
   std::function<std::vector<int>(const std::vector<std::int64_t>& global_face)> patch_of;
   VertexValues values;  ///< point data of a .pvtu file, boundary data of a .msh file
 };
@@ -50,9 +50,9 @@ struct PieceExtras {
 std::vector<std::filesystem::path> write_pvtu(MPI_Comm comm, const std::filesystem::path& pvtu,
                                               const DistributedMesh& mesh, const PieceExtras& extras = {});
 
-/// The same for pieces that ranks write by themselves.
+/// Writes the NAME.pvtu file for pieces that write() writes.
 /// @param has_piece  whether this rank has a piece
-/// @param point_data, cell_data  of the local piece; all ranks have the same arrays
+/// @param point_data, cell_data  data of the local piece; all ranks have the same arrays
 /// @param write      writes the local piece
 std::vector<std::filesystem::path> write_pvtu(MPI_Comm comm, const std::filesystem::path& pvtu, bool has_piece,
                                               const std::map<std::string, FieldValues>& point_data,

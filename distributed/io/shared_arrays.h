@@ -14,7 +14,7 @@ namespace umtet {
 /// Arrays of a .vtu file that all ranks write piece by piece, in the order of an IdOrder.
 class SharedArrays {
  public:
-  /// @param arrays  must outlive the object
+  /// @param arrays  arrays of the file; they must outlive the object
   SharedArrays(SharedFile& file, std::vector<const VtuShape::Array*> arrays);
 
   /// Sets this rank's piece of an array in the current round. @param first  position of its first byte in the array

@@ -36,7 +36,7 @@ class SharedFile {
   MPI_Comm comm_;
   std::filesystem::path path_;
   MPI_File file_ = MPI_FILE_NULL;
-  int error_ = 0;  ///< an errno
+  int error_ = 0;  ///< errno of the first error; 0: none
   const Unwinding unwinding_;
 };
 

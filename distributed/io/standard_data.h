@@ -14,20 +14,20 @@ namespace umtet {
 /// whole mesh.
 struct StandardData {
   VertexOwners owners;
-  std::vector<std::uint8_t> boundary;    ///< of the owned vertices
-  std::vector<std::int64_t> number;      ///< of the owned vertices
-  std::vector<std::int64_t> own_number;  ///< of the local vertices
+  std::vector<std::uint8_t> boundary;    ///< boundary flags of the owned vertices
+  std::vector<std::int64_t> number;      ///< numbers of the owned vertices in the whole mesh
+  std::vector<std::int64_t> own_number;  ///< numbers of the local vertices in the whole mesh
 };
 
 /// Computes standard data. Collective.
-/// @param boundary  of the local vertices, if it is known; null: computed by counting faces
+/// @param boundary  boundary flags of the local vertices, if they are known; null: they are computed by counting faces
 StandardData standard_data(MPI_Comm comm, const DistributedMesh& mesh,
                            const std::vector<std::uint8_t>* boundary = nullptr);
 
-/// For each local vertex, whether it is on the boundary of the whole mesh. Collective.
+/// Returns for each local vertex whether it is on the boundary of the whole mesh. Collective.
 std::vector<std::uint8_t> on_boundary(MPI_Comm comm, const DistributedMesh& mesh);
 
-/// Positions of the owned vertices. Collective.
+/// Returns the positions of the owned vertices. Collective.
 std::vector<Vec3> places_of_owned(const VertexOwners& owners, const TetMesh& mesh);
 
 }  // namespace umtet

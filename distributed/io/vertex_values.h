@@ -18,10 +18,10 @@ struct VertexValues {
     std::vector<double> values;  ///< n_components per vertex of the local mesh; read where `has` is set
   };
   std::vector<Array> arrays;
-  std::vector<char> has;  ///< by vertex of the local mesh
+  std::vector<char> has;  ///< for each vertex of the local mesh, whether it has data
 };
 
-/// Values of an array at owned vertices, from any rank that has them. Collective.
+/// Returns the values of an array at owned vertices, from any rank that has them. Collective.
 template <std::size_t n>
 std::vector<std::array<double, n>> values_of_owned(const VertexOwners& owners, const VertexValues& all,
                                                    const VertexValues::Array& array) {

@@ -9,8 +9,9 @@
 
 namespace umtet {
 
-/// Writes a file on some ranks, and checks success on all. If a rank has a std::system_error, all ranks throw
-/// KnownToAll; other exceptions of write() are left to together(). Collective.
+/// Writes a file on some ranks, and checks success on all. If write() throws a std::system_error on a rank, all ranks
+/// throw KnownToAll; together() handles other exceptions. Collective.
+/// @param does  whether this rank calls write()
 template <class Write>
 void write_together(MPI_Comm comm, const std::filesystem::path& file, bool does, const Write& write) {
   int error = 0;

@@ -25,9 +25,11 @@ const char* to_string(PartsStatus);
 
 /// The local mesh of a rank: its part of a distributed mesh.
 struct DistributedMesh {
-  PartsStatus status = PartsStatus::Success;    ///< the same on all ranks; unless Success, there is no mesh
-  std::size_t n_places = 0;                     ///< vertices that break the rule, on all ranks
-  std::vector<std::int64_t> background_tet;     ///< background ids of the local tets, ascending; no tet is on two ranks
+  PartsStatus status = PartsStatus::Success;  ///< the same on all ranks; there is a mesh only if it is Success
+  /// Number of vertices on all ranks at which the reason of a failure applies.
+  std::size_t n_places = 0;
+  /// Background ids of the local tets, ascending; each tet is on one rank.
+  std::vector<std::int64_t> background_tet;
   TetMesh mesh;                                 ///< the local tets, and all their vertices
   std::vector<Vec3> projected;                  ///< UmResult::projected
   std::vector<std::int64_t> background_vertex;  ///< id of each vertex, ascending
@@ -37,20 +39,22 @@ struct DistributedMesh {
   std::vector<int> owner;                       ///< owning rank of each vertex
   std::vector<Triangle> positive_faces;         ///< Submesh::positive_faces of the local tets
   std::vector<int> positive_tets;               ///< Submesh::positive_tets
-  std::size_t n_psi_evaluations = 0;            ///< on all ranks; points between ranks are evaluated more than once
-  Traffic traffic;                              ///< except for repair
-  std::size_t n_gets = 0, bytes_got = 0;        ///< reads of other ranks by repair; counted on rank 0, which runs it
+  /// Total of all ranks; points near borders between ranks are evaluated more than once.
+  std::size_t n_psi_evaluations = 0;
+  Traffic traffic;                        ///< communication, except in repair
+  std::size_t n_gets = 0, bytes_got = 0;  ///< reads of other ranks by repair; counted on rank 0, which runs it
 };
 
 /// Distributed version of fast_mesh(): makes the same mesh of {psi < 0}, byte for byte, for any number of ranks and
 /// threads, by chosen inside vertices, projection, smoothing, tangential relaxation, repair, and removal of
-/// self-intersections. Each rank holds its own blocks and those next to them. README.md describes the dependencies.
+/// self-intersections. Each rank stores its own blocks and adjacent blocks. README.md describes the dependencies.
 ///
 /// Collective; all ranks pass the same arguments. psi must be thread-safe.
 /// @param background  a lattice over a tiling with costs (configuration_costs.h)
 /// @param seeds       if not empty, seeds of SubmeshSearch::Crawl: components of psi = 0 without a seed are not meshed
-/// @param held        bytes of other data on rank 0, whose share of the mesh is reduced accordingly; read there
-/// \throw std::invalid_argument for another kind of background, or naming every broken constraint of params
+/// @param held        bytes that rank 0 holds for other purposes, which reduce its share of the mesh; used on rank 0
+///                    only
+/// \throw std::invalid_argument  for another kind of background; for params, with every broken constraint
 DistributedMesh distributed_mesh(MPI_Comm comm, const BackgroundMesh& background, ImplicitFunctionRef psi,
                                  const FastParams& params = {}, const std::vector<Vec3>& seeds = {}, double held = 0);
 

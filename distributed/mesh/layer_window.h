@@ -29,8 +29,8 @@ class LayerWindow {
   LayerWindow(const LayerWindow&) = delete;
   LayerWindow& operator=(const LayerWindow&) = delete;
 
-  /// The vertices of these blocks that are inside or off their background positions, by ids of the whole lattice. Not
-  /// collective.
+  /// Returns the vertices of these blocks that are inside or off their background positions, with ids of the whole
+  /// lattice. Not collective.
   std::vector<LayerVertex> get(const std::vector<BlockCurve::Block>& blocks);
   std::size_t n_gets() const { return n_gets_; }  ///< reads of other ranks
   std::size_t bytes() const { return bytes_; }    ///< bytes of these reads
@@ -47,7 +47,7 @@ class LayerWindow {
   /// Memory of this rank that other ranks can read.
   template <class T>
   struct Open {
-    MPI_Win window = MPI_WIN_NULL;  ///< none for a single rank
+    MPI_Win window = MPI_WIN_NULL;  ///< MPI_WIN_NULL for a single rank
     std::vector<T> alone;           ///< the data of a single rank
     T* own = nullptr;
   };
@@ -71,7 +71,7 @@ class LayerWindow {
   const LatticePart& part_;
   const Partition& partition_;
   const int rank_;
-  Open<std::uint64_t> headers_;  ///< by position on the own piece of the curve
+  Open<std::uint64_t> headers_;  ///< headers by position on the piece of the curve of this rank
   Open<Entry> entries_;
   std::size_t n_gets_ = 0, bytes_ = 0;
   const Unwinding unwinding_;
@@ -83,10 +83,10 @@ class BlocksAround {
   /// @param edges  distance in edges around a vertex that the caller needs
   BlocksAround(const BackgroundMesh& whole, LayerWindow& window, int edges)
       : whole_(whole), window_(window), cells_((edges + 1) / 2) {}
-  /// All vertices within this distance of a vertex, and all others in the same blocks, except for blocks returned
-  /// before.
+  /// Returns all vertices within this distance of a vertex, and all other vertices in the same blocks, except for
+  /// blocks that were returned before.
   std::vector<LayerVertex> operator()(std::int64_t vertex);
-  /// True if all vertices within this distance have been returned.
+  /// Returns whether all vertices within this distance have been returned.
   bool has_given(std::int64_t vertex) const;
 
  private:
@@ -96,7 +96,7 @@ class BlocksAround {
   const BackgroundMesh& whole_;
   LayerWindow& window_;
   std::int64_t cells_;             ///< no edge of a lattice exceeds half a cell along an axis
-  std::set<std::uint64_t> given_;  ///< positions of blocks
+  std::set<std::uint64_t> given_;  ///< positions of the returned blocks on the curve
 };
 
 }  // namespace umtet

@@ -12,10 +12,10 @@
 namespace umtet {
 
 /// Distributed version of crawl_inside(): its inside vertices in the whole lattice, restricted to the known vertices of
-/// lattice(). Rank 0 crawls as one process does: along psi = 0, and through the interior by bits. It sends the result
-/// to the others a megabyte at a time. Collective.
+/// lattice(). Rank 0 crawls like a single process: along psi = 0, and through the interior with one bit per vertex. It
+/// sends the result to the others a megabyte at a time. Collective.
 /// @param seeds  read on rank 0
-/// @param n_psi_evaluations  on rank 0, is increased by the number of evaluations
+/// @param n_psi_evaluations  counter that is increased on rank 0 by the number of evaluations
 IdSet crawl_part(MPI_Comm comm, const LatticePart& part, ImplicitFunctionRef psi, const std::vector<Vec3>& seeds,
                  std::size_t& n_psi_evaluations);
 

@@ -19,12 +19,12 @@ class VertexOwners {
   /// Collective.
   VertexOwners(MPI_Comm comm, const DistributedMesh& mesh) : VertexOwners(comm, mesh, {}) {}
 
-  /// The owned vertices, as ids in the background, ascending.
+  /// Returns the background ids of the owned vertices, ascending.
   const std::vector<std::int64_t>& ids() const { return ids_; }
   std::size_t number(std::int64_t id) const {
     return static_cast<std::size_t>(std::lower_bound(ids_.begin(), ids_.end(), id) - ids_.begin());
   }
-  /// For each local vertex, whether other ranks have tets at it.
+  /// Returns for each local vertex whether other ranks have tets at it.
   const std::vector<char>& shared() const { return shared_; }
 
   /// Exchange between local vertices and indices into ids().

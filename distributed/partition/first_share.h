@@ -6,8 +6,9 @@
 // share of the common work is smaller.
 namespace umtet {
 
-/// The fraction of shared work for rank 0. If the work takes `bytes` on all ranks together, every rank then holds
-/// equally much. At least a quarter of an equal share, because ranks also wait for each other.
+/// Returns the fraction of shared work for rank 0. If the work takes `bytes` on all ranks together, all ranks then hold
+/// the same number of bytes. The fraction is at least a quarter of an equal share, because ranks also wait for each
+/// other.
 /// @param held  bytes of other data on rank 0
 inline double first_share(int n_ranks, double held, double bytes) {
   constexpr double kLeast = .25;
@@ -17,7 +18,7 @@ inline double first_share(int n_ranks, double held, double bytes) {
   return std::max(kLeast, 1 - (n - 1) * held / bytes) / n;
 }
 
-/// The fraction of the ranks before this one; ranks after the first have equal shares.
+/// Returns the total fraction of the ranks before this one; all ranks except the first have equal shares.
 inline double share_before(int rank, int n_ranks, double first) {
   return rank == 0 ? 0 : rank >= n_ranks ? 1 : first + (1 - first) * (rank - 1) / (n_ranks - 1);
 }

@@ -10,8 +10,8 @@
 
 namespace umtet {
 
-/// The part of a lattice on a rank: its own blocks and those next to them, the known ones. A block is four cells wide
-/// and an edge at most half a cell, so eight rings around an own vertex are known.
+/// The part of a lattice on a rank: the known blocks, which are its own blocks and adjacent blocks. A block is four
+/// cells wide and an edge at most half a cell along an axis, so eight rings around an own vertex are known.
 ///
 /// Ids are those of lattice(), a box of cells around all known blocks, unless stated otherwise. They ascend in the
 /// order of the whole lattice.
@@ -22,14 +22,14 @@ class LatticePart {
   const BackgroundMesh& whole() const { return whole_; }
   const BackgroundMesh& lattice() const { return lattice_; }
   std::int64_t to_whole(std::int64_t v) const;
-  /// The id in lattice(); -1 for a vertex that is not known.
+  /// Returns the id in lattice(); -1 for a vertex that is not known.
   std::int64_t from_whole(std::int64_t v) const;
 
   const IdSet& own() const { return own_; }      ///< own vertices
-  const IdSet& known() const { return known_; }  ///< known vertices, own ones included
-  /// The rank that owns it. \pre known
+  const IdSet& known() const { return known_; }  ///< known vertices, including own vertices
+  /// Returns the rank that owns a vertex. \pre the vertex is known
   int owner(std::int64_t v) const { return owner_[at(v)]; }
-  /// The other ranks that know it, ascending. \pre known
+  /// Returns the other ranks that know a vertex, ascending. \pre the vertex is known
   const std::vector<int>& knowers(std::int64_t v) const { return knowers_[at(v)]; }
   /// Ranks with a block next to an own block, ascending.
   const std::vector<int>& neighbours() const { return neighbours_; }
@@ -52,7 +52,7 @@ class LatticePart {
   static BackgroundMesh::Cell sum(const BackgroundMesh::Cell& a, const BackgroundMesh::Cell& b) {
     return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
   }
-  /// The index of a block in lattice(), which begins with a block of the whole.
+  /// Returns the index of a block in lattice(), whose first block is a block of the whole lattice.
   std::size_t at(const BlockCurve::Block& b) const {
     return static_cast<std::size_t>(b[0] + n_blocks_[0] * (b[1] + n_blocks_[1] * b[2]));
   }

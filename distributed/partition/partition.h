@@ -27,7 +27,7 @@ class Partition {
 /// Partition into pieces of about equal work. psi at the corners of a block indicates whether the block contains the
 /// boundary, is inside, or is outside; errors of this test affect only the balance. Each rank evaluates its share of
 /// the curve. The result is the same for the same number of ranks. Collective.
-/// @param held  bytes of other data on rank 0, by which its part is reduced (first_share()); read there
+/// @param held  bytes that rank 0 holds for other purposes, which reduce its share (first_share()); used on rank 0 only
 Partition balanced_partition(MPI_Comm comm, const BackgroundMesh& lattice, ImplicitFunctionRef psi, double held = 0);
 
 }  // namespace umtet

@@ -10,17 +10,18 @@
 namespace umtet {
 
 /// Sends the boundary data of vertices from rank 0 to the ranks with positive faces at them. Collective.
-/// @param data  read on rank 0
+/// @param data  used on rank 0 only
 VertexValues shared_values(MPI_Comm comm, const DistributedMesh& mesh, const BoundaryData& data);
 
-/// The same for mid-sides on the boundary, in the order of their owning ranks.
+/// Sends the data of mid-sides on the boundary from rank 0 to their owners. On rank 0, the mid-sides are in the order
+/// of their owning ranks. Collective.
 /// @param edges      edges of this rank, indices into PartEdges::owned()
 /// @param n_of_rank  number of edges per rank, on rank 0
 MidSideValues shared_mid_side_values(MPI_Comm comm, const std::vector<std::size_t>& edges,
                                      const std::vector<std::size_t>& n_of_rank, const BoundaryData& data);
 
 /// Data of pieces besides standard data: patches, which ranks request from rank 0, and values of vertices.
-/// @param data  read on rank 0, where it must outlive the use of the result
+/// @param data  used on rank 0 only, where it must outlive the use of the result
 PieceExtras piece_extras(MPI_Comm comm, const DistributedMesh& mesh, const PieceData& data);
 
 }  // namespace umtet

@@ -16,7 +16,7 @@
 
 namespace umtet {
 
-/// A rank's local mesh with positions in model coordinates, for callers in memory.
+/// The local mesh of a rank with positions in model coordinates, for callers that use it in memory.
 struct TakenMesh {
   DistributedMesh mesh;
   /// Data of ten-node tets.
@@ -27,7 +27,7 @@ struct TakenMesh {
   std::optional<Curved> curved;
 };
 
-/// A rank's local mesh as files will store it, with the operations that all ranks make together. All functions are
+/// The local mesh of a rank with the positions that files store, and its collective operations. All functions are
 /// collective.
 class HeldMesh {
  public:
@@ -36,18 +36,24 @@ class HeldMesh {
            const std::vector<Vec3>& seeds, const RoundedPlaces& places, double held = 0);
 
   bool is_made() const { return mesh_.status == PartsStatus::Success; }
-  /// Everything except the handle: the boundary is on rank 0, data of the whole mesh on all ranks. \pre is_made()
+  /// Returns all members of MadeInParts except `mesh`. The boundary is on rank 0, data of the whole mesh are on all
+  /// ranks.
+  /// \pre is_made()
   MadeInParts summary(ImplicitFunctionRef psi) const;
-  /// MeshInParts::curve(); mid-sides are on rank 0. \pre is_made()
+  /// Implements MeshInParts::curve(); mid-sides are on rank 0. \pre is_made()
   CurvedInParts curve(ImplicitFunctionRef psi, const ClosestPointParams& params);
-  /// MeshInParts::write(). @param data  read on rank 0 \throw KnownToAll
+  /// Implements MeshInParts::write().
+  /// @param data  used on rank 0 only
+  /// \throw KnownToAll
   void write(const std::filesystem::path& file, MeshState state, bool moving_alone, const BoundaryData& data);
-  /// MeshInParts::write_quality(). \throw KnownToAll
+  /// Implements MeshInParts::write_quality(). \throw KnownToAll
   void write_quality(const std::filesystem::path& file);
-  /// MeshInParts::write_pieces(). @param data  read on rank 0; null on all ranks or on none \throw KnownToAll
+  /// Implements MeshInParts::write_pieces().
+  /// @param data  used on rank 0 only, but null on all ranks or on none
+  /// \throw KnownToAll
   std::vector<std::filesystem::path> write_pieces(const std::filesystem::path& file, PieceFormat format,
                                                   const PieceData* data);
-  /// The local mesh itself; with ten-node tets after curve().
+  /// Returns the local mesh, with ten-node tets after curve().
   TakenMesh release() &&;
 
  private:

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "body/body.h"
 #include "distributed/fit/part_refine.h"
 #include "mesh/core/implicit_function.h"
-#include "body/body.h"
 #include "pipeline/meshing/part_mesher.h"
 
 // Commands of rank 0 to the other ranks, which execute them together with it.
@@ -37,14 +37,15 @@ struct RankCommand {
   std::int64_t mesh = 0;   ///< number of the mesh; for End the exit code
   std::int64_t state = 0;  ///< a MeshState; for pieces a PieceFormat; for samples their level
   std::int64_t moving_alone = 0;
-  std::int64_t has_data = 0;   ///< for pieces: there is a PieceData
-  std::int64_t is_fitted = 0;  ///< for the domain: psi is a level set fitted to samples, else the psi of the call
-  std::int64_t has_t = 0;      ///< for the domain: a formula is taken at t
+  std::int64_t has_data = 0;  ///< for pieces: 1 if there is a PieceData
+  /// For the domain: 1 if psi is a level set fitted to samples, 0 if psi is given in the call.
+  std::int64_t is_fitted = 0;
+  std::int64_t has_t = 0;  ///< for the domain: 1 if psi is a formula at time t
   double t = 0;
   double lattice_h = 0, h = 0, shift[3] = {}, rounding = 0;
-  double box[2][3] = {};  ///< of the domain; for a mesh, the box that its background had to cover
+  double box[2][3] = {};  ///< box of the domain; for a mesh, the box that its background must cover
   double kappa = 0, tolerance = 0;
-  double spacing = 0;  ///< of the finest level to be kept
+  double spacing = 0;  ///< spacing of the finest level to be kept
   std::int64_t max_iterations = 0;
 
   void set_places(const RoundedPlaces& places);

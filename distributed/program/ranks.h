@@ -18,17 +18,17 @@
 // The ranks of the program as seen by rank 0, which runs it. The other ranks execute its commands in serve().
 namespace umtet {
 
-/// Interface of rank 0 to all ranks. The other ranks run serve() meanwhile.
+/// Interface of rank 0 to all ranks. The other ranks run serve().
 class Ranks final : public PartMesher, public BandRefiner {
  public:
   /// @param n_here  number of ranks on this machine
-  /// @param call    returns the parameters of a mesh; called before the first mesh is made, to check that all ranks
-  ///                have the same
+  /// @param call    returns the parameters of a mesh; called before the first mesh, to check that all ranks have the
+  ///                same parameters
   Ranks(MPI_Comm comm, int n_here, std::function<Json()> call) : comm_(comm), n_here_(n_here), call_(std::move(call)) {}
   /// Ends the other ranks with the exit code of the program. Collective.
   void end(int code);
-  /// Releases the local mesh of this rank, made by make(), with positions in model coordinates; the other ranks get
-  /// theirs from serve(). Collective, once per mesh.
+  /// Releases the local mesh of this rank, made by make(), with positions in model coordinates; serve() gives the other
+  /// ranks their local meshes. Collective, once per mesh.
   TakenMesh release(const MeshInParts& mesh);
 
   double allowed_bytes(const Parameters& parameters) const override;
@@ -55,16 +55,17 @@ class Ranks final : public PartMesher, public BandRefiner {
   int n_here_;
   std::function<Json()> call_;
   int threads_ = 1;
-  bool has_told_ = false;           ///< the other ranks have the domain
-  std::optional<double> t_;         ///< t of that domain
-  std::map<int, BandPart> bands_;   ///< bands to be refined
-  std::optional<LevelSet> shared_;  ///< the level set of the other ranks, here without the last band of refine()
-  int n_shared_ = 0;                ///< number of its levels
+  bool has_told_ = false;          ///< the other ranks have the domain
+  std::optional<double> t_;        ///< time t of this domain
+  std::map<int, BandPart> bands_;  ///< bands to be refined
+  /// The level set that the other ranks have; this copy lacks the last band of refine().
+  std::optional<LevelSet> shared_;
+  int n_shared_ = 0;  ///< number of its levels
   std::int64_t next_ = 0;
   std::map<std::int64_t, HeldMesh> held_;
 };
 
-/// The number of ranks on this machine. Collective.
+/// Returns the number of ranks on this machine. Collective.
 int n_ranks_here(MPI_Comm comm);
 
 }  // namespace umtet

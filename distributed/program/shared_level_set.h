@@ -8,8 +8,8 @@
 
 namespace umtet {
 
-/// Broadcasts the level set of rank 0, bit by bit, to all ranks. Collective.
-/// @param own  read on rank 0
+/// Broadcasts the level set of rank 0, bit-identical, to all ranks. Collective.
+/// @param own  level set of rank 0; ignored on other ranks
 /// @return the level set on all ranks; on rank 0 it shares the coefficients of `own`
 LevelSet shared_level_set(MPI_Comm comm, const std::optional<LevelSet>& own);
 

@@ -24,13 +24,13 @@ class PartEdges {
   /// Collective.
   PartEdges(MPI_Comm comm, const DistributedMesh& mesh, const VertexOwners& owners);
 
-  /// Numbering of the local edges; ascending in the order of the whole mesh.
+  /// Returns the numbering of the local edges; the order is that of the whole mesh.
   const MidSideNumbers& number() const { return number_; }
-  /// The local vertices of each edge, the lower one first.
+  /// Returns the local vertices of each edge, the lower one first.
   const std::vector<std::array<int, 2>>& ends() const { return ends_; }
   /// The owned edges, ascending.
   const std::vector<Ids>& owned() const { return owned_; }
-  /// For each owned edge, the number of edges of all ranks before it.
+  /// Returns for each owned edge the number of edges before it in the whole mesh.
   const std::vector<std::int64_t>& global() const { return global_; }
   std::int64_t n_all() const { return n_all_; }  ///< number of edges on all ranks
   /// Exchange between local edges and indices into owned().

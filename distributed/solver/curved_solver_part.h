@@ -22,12 +22,12 @@ namespace umtet {
 /// The data of a SolverPart on vertices and faces, for nodes and six-node faces. Tets and patches are those of the
 /// SolverPart.
 struct CurvedSolverPart {
-  std::size_t n_nodes = 0;                  ///< on all ranks
-  std::vector<std::int64_t> global_node;    ///< in the mesh of one process: mid-sides follow all vertices
+  std::size_t n_nodes = 0;                  ///< number of nodes of the whole mesh
+  std::vector<std::int64_t> global_node;    ///< numbers in the mesh of one process, where mid-sides follow all vertices
   std::vector<int> owner;                   ///< least rank with a tet at the node
-  std::vector<std::int64_t> solver_node;    ///< as SolverPart::solver_vertex
-  Sharers sharers;                          ///< of nodes
-  std::vector<QuadraticTriangle> boundary;  ///< by face of SolverPart::boundary
+  std::vector<std::int64_t> solver_node;    ///< numbers of nodes like SolverPart::solver_vertex
+  Sharers sharers;                          ///< ranks that share each node
+  std::vector<QuadraticTriangle> boundary;  ///< six-node faces in the order of SolverPart::boundary
   std::vector<int> boundary_nodes;  ///< local nodes on the boundary, ascending, also those without a local face there
 };
 
@@ -35,8 +35,8 @@ struct CurvedSolverPart {
 CurvedSolverPart curved_solver_part(MPI_Comm comm, const DistributedMesh& mesh, const VertexOwners& owners,
                                     const PartEdges& edges, const CurvedParts& curved, const SolverPart& part);
 
-/// Exchange of node data between ranks with tets at a node and the one rank that owns it. Owned are vertices in the
-/// order of VertexOwners::ids(), then mid-sides in the order of PartEdges::owned().
+/// Exchange of node data between ranks with tets at a node and the one rank that owns it. The owned nodes are the
+/// vertices in the order of VertexOwners::ids(), followed by the mid-sides in the order of PartEdges::owned().
 OwnerExchange node_exchange(const VertexOwners& owners, const PartEdges& edges);
 
 }  // namespace umtet

@@ -17,7 +17,7 @@ struct GhostTet {
   int rank;  ///< rank of the tet
 };
 
-/// The ghost tets of a local mesh, ascending by number. Collective.
+/// Returns the ghost tets of a local mesh, ascending by number. Collective.
 std::vector<GhostTet> ghost_tets(MPI_Comm comm, const DistributedMesh& mesh, const SolverPart& part);
 
 }  // namespace umtet

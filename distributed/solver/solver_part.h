@@ -15,11 +15,12 @@ namespace umtet {
 
 /// A local mesh with the numbering and partition that solvers use.
 struct SolverPart {
-  std::size_t n_vertices = 0, n_tets = 0, n_faces = 0;  ///< on all ranks; n_faces counts boundary faces
+  std::size_t n_vertices = 0, n_tets = 0, n_faces = 0;  ///< numbers in the whole mesh; n_faces counts boundary faces
   std::vector<std::int64_t> global_vertex, global_tet;  ///< numbers of vertices and tets in the mesh of one process
-  /// Per vertex, the least rank with a tet at it. Unlike the owner in a DistributedMesh, this rank has the vertex.
+  /// Per vertex, the least rank with a tet at it. Unlike the owner in a DistributedMesh, this rank has a local tet with
+  /// the vertex.
   std::vector<int> owner;
-  /// Per vertex, its number if each rank numbers its owned vertices, in order, after those of lower ranks.
+  /// Number of each vertex if each rank numbers its owned vertices in order, following the numbers of lower ranks.
   std::vector<std::int64_t> solver_vertex;
   Sharers sharers;
   std::vector<Triangle> boundary;         ///< boundary faces of the whole mesh with a local tet, outward
