@@ -10,7 +10,7 @@ namespace umtet::python {
 namespace py = pybind11;
 namespace {
 
-// Taking the GIL costs; a fifth of a second is what Ctrl-C may take.
+// Acquiring the GIL takes time; Ctrl-C may take a fifth of a second.
 constexpr auto kPatience = std::chrono::milliseconds(20);
 
 /// False of Python or of numpy, as comparisons give it.
@@ -58,7 +58,7 @@ Watch watch_in_thread(const py::object& progress, std::shared_ptr<std::atomic<bo
 }
 
 std::vector<Vec3> vectors(const Points& a, const char* name) {
-  if (a.ndim() != 2 || a.shape(1) != 3) throw std::invalid_argument(std::string(name) + ": an array (n, 3) is wanted");
+  if (a.ndim() != 2 || a.shape(1) != 3) throw std::invalid_argument(std::string(name) + " must be an array (n, 3)");
   std::vector<Vec3> out(static_cast<std::size_t>(a.shape(0)));
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = Eigen::Map<const Vec3>(a.data() + 3 * i);
   return out;
@@ -76,7 +76,7 @@ py::array_t<double> array(const std::vector<Vec3>& x, const Vec3& shift) {
 py::object dict_of(const Json& json) { return py::module_::import("json").attr("loads")(json.dump()); }
 
 Psi psi_of(const py::object& psi, const std::optional<Box>& box, std::optional<double> t, int threads) {
-  if (t && !std::isfinite(*t)) throw std::invalid_argument("t: a finite number is wanted");
+  if (t && !std::isfinite(*t)) throw std::invalid_argument("t must be a finite number");
   if (py::isinstance<Reconstruction>(psi)) {
     return {nullptr, domain_of(psi.cast<const Reconstruction&>(), box), threads};
   }
@@ -89,7 +89,7 @@ Psi psi_of(const py::object& psi, const std::optional<Box>& box, std::optional<d
     domain.formula = shared_function(Expression(psi.cast<std::string>(), t));
     return out;
   }
-  if (PyCallable_Check(psi.ptr()) == 0) throw py::type_error("psi: a LevelSet, a formula or a callable is wanted");
+  if (PyCallable_Check(psi.ptr()) == 0) throw py::type_error("psi must be a LevelSet, a formula or a callable");
   out.threads = 1;
   out.function = std::make_shared<Function>(psi, box->center(), domain.diagonal);
   domain.function.emplace(*out.function);

@@ -18,12 +18,12 @@ using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 // Central differences err by step^2 and by eps / step: least at the cube root of eps; second ones at the fourth root.
 constexpr double kStep = 6e-6, kWideStep = 1.2e-4;
 
-/// The numbers of a result.
+/// Appends the numbers of a result.
 void read_numbers(const py::handle& result, std::size_t size, const char* what, std::vector<double>& out) {
   const Array a = Array::ensure(result);
   if (!a || result.is_none()) {  // numpy makes a NaN of None
     PyErr_Clear();
-    throw std::invalid_argument(std::string("psi: its ") + what + " are no array of numbers");
+    throw std::invalid_argument(std::string("psi: its ") + what + " are not an array of numbers");
   }
   if (static_cast<std::size_t>(a.size()) != size) {
     throw std::invalid_argument(std::string("psi: its ") + what + " are " + std::to_string(a.size()) +
@@ -32,7 +32,7 @@ void read_numbers(const py::handle& result, std::size_t size, const char* what, 
   out.insert(out.end(), a.data(), a.data() + size);
 }
 
-/// New ones: the callable may keep them.
+/// Makes new arrays, because the callable may keep them.
 Array array_of(std::span<const Vec3> x) {
   Array points({static_cast<py::ssize_t>(x.size()), py::ssize_t{3}});
   double* p = points.mutable_data();
@@ -41,17 +41,17 @@ Array array_of(std::span<const Vec3> x) {
 }
 Array array_of(const Vec3& x) { return Array(py::ssize_t{3}, x.data()); }
 
-/// How many derivatives a result has beside values.
+/// The number of derivatives in a result: 0 to 2.
 int order_of(const py::object& result) {
   const int order = py::isinstance<py::tuple>(result) ? static_cast<int>(py::len(result)) - 1 : 0;
-  if (order < 0 || order > 2) throw std::invalid_argument("psi: a tuple of 1 to 3 arrays is wanted");
+  if (order < 0 || order > 2) throw std::invalid_argument("psi must return an array, or a tuple of 1 to 3 arrays");
   return order;
 }
 
 int wanted_of(const Question& question) { return question.hessian ? 2 : question.gradient ? 1 : 0; }
 
-// Of values alone: the centre; six neighbours for the gradient; six wider ones and twelve on the diagonals for the
-// Hessian. Of gradients: the centre and six neighbours.
+// Points of the differences. If there are values only: the centre; six neighbours for the gradient; six wider ones and
+// twelve on the diagonals for the Hessian. If there are gradients: the centre and six neighbours.
 constexpr std::array<std::size_t, 3> kPointsByValues = {1, 7, 25};
 constexpr std::size_t kPointsByGradients = 7;
 constexpr std::array<std::pair<int, int>, 3> kPairs = {{{0, 1}, {0, 2}, {1, 2}}};
@@ -74,7 +74,7 @@ Function::Function(py::object callable, const Vec3& probe, double length)
   fibers_ = std::make_unique<Fibers>([this](std::span<Question* const> questions) { answer(questions); });
 }
 
-/// At two points: nothing that is made for one point (3,) gives two values of them.
+/// Evaluates at two points, because a callable for one point (3,) does not return two values for them.
 void Function::try_at(const Vec3& x) {
   const std::array<Vec3, 2> points = {x, x + Vec3::Constant(step_)};
   order_ = order_of(callable_(takes_blocks_ ? array_of(points) : array_of(x)));
@@ -86,7 +86,7 @@ bool Function::takes_points(const Vec3& x) {
   try {
     try_at(x);
   } catch (const std::exception&) {
-    return false;  // what was wrong with the block is what the user is told
+    return false;  // the user gets the message about the block
   }
   return true;
 }
@@ -95,7 +95,7 @@ Function::Answer Function::call(std::span<const Vec3> x, int wanted) const {
   Answer answer;
   const auto ask = [&](const Array& points, std::size_t n) {
     const py::object result = callable_(points);
-    if (order_ != order_of(result)) throw std::invalid_argument("psi: it returns now more arrays, now fewer");
+    if (order_ != order_of(result)) throw std::invalid_argument("psi: it returns different numbers of arrays");
     if (!py::isinstance<py::tuple>(result)) return read_numbers(result, n, "values", answer.values);
     const auto parts = py::reinterpret_borrow<py::tuple>(result);
     read_numbers(parts[0], n, "values", answer.values);
@@ -126,7 +126,7 @@ void Function::values(std::span<const Vec3> x, double* out) const {
   std::copy(answer.values.begin(), answer.values.end(), out);
 }
 
-/// All that they need in one call.
+/// Answers all questions with one call.
 void Function::answer(std::span<Question* const> questions) const {
   std::vector<Vec3> points;
   std::vector<std::size_t> first;

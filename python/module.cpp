@@ -57,7 +57,7 @@ MeshObject mesh(const py::object& psi, const Settings& settings, std::optional<d
   return in_arena(1, [&] { return job(watch); });
 }
 
-/// UniversalMesh with its parameters.
+/// A UniversalMesh and its parameters.
 struct Moving {
   Parameters parameters;
   Box box;
@@ -87,7 +87,8 @@ py::tuple update(Moving& moving, const py::object& psi, std::optional<double> t,
                  bool certify, const py::object& progress, int threads) {
   Psi p = psi_of(psi, moving.box, t, threads);
   if (!p.domain.shift.isZero(0)) {
-    throw std::invalid_argument("psi: a cloud so far from the origin is fitted near it; move it there before");
+    throw std::invalid_argument(
+        "psi: its cloud is far from the origin, and was moved to it for the fit; move the cloud before reconstruct()");
   }
   const double h = moving.mesher.background().h();
   p.domain.limit_detail(h);
@@ -119,12 +120,12 @@ py::tuple update(Moving& moving, const py::object& psi, std::optional<double> t,
 py::object certificate(const Points& points,
                        const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>& tets,
                        const py::object& psi, const Settings& settings, std::optional<double> t, double h) {
-  if (tets.ndim() != 2 || tets.shape(1) != 4) throw std::invalid_argument("tets: an array (m, 4) is wanted");
+  if (tets.ndim() != 2 || tets.shape(1) != 4) throw std::invalid_argument("tets must be an array (m, 4)");
   TetMesh given{vectors(points, "points"), std::vector<Tet>(static_cast<std::size_t>(tets.shape(0)))};
   const std::int64_t* i = tets.data();
   for (Tet& tet : given.C) {
     for (int& vertex : tet) {
-      if (*i < 0 || *i >= points.shape(0)) throw std::invalid_argument("tets: an index that points do not have");
+      if (*i < 0 || *i >= points.shape(0)) throw std::invalid_argument("tets: an index is not in the range of points");
       vertex = static_cast<int>(*i++);
     }
   }
@@ -150,7 +151,7 @@ py::object certificate(const Points& points,
   json["valid"] = measured.is_valid;
   json["places"] = p ? to_json(measured.defects) : Json(nullptr);
   json.update(to_json(judge(measured, parameters.output())));
-  // Points and tets alone say nothing about psi, or about what it was made from.
+  // Points and tets contain no information about psi, or about its source.
   if (!p) json["fits_psi"] = json["fits_input"] = nullptr;
   return dict_of(json);
 }
@@ -161,7 +162,7 @@ Reconstruction reconstruct_arrays(const Points& points, const std::optional<Poin
   cloud.points = vectors(points, "points");
   if (normals) cloud.normals = vectors(*normals, "normals");
   if (normals && cloud.normals.size() != cloud.points.size()) {
-    throw std::invalid_argument("normals: as many as points are wanted, or None");
+    throw std::invalid_argument("normals must be an array with one normal per point, or None");
   }
   CloudFile file = given_cloud(std::move(cloud));
   const Parameters parameters = parameters_of(settings);
@@ -170,7 +171,7 @@ Reconstruction reconstruct_arrays(const Points& points, const std::optional<Poin
   });
 }
 
-/// Of a file as `umtet reconstruct` reads it.
+/// Reconstructs a file that `umtet reconstruct` reads.
 Reconstruction reconstruct_file(const std::filesystem::path& file, const Settings& settings, const py::object& progress,
                                 int threads) {
   const Parameters parameters = parameters_of(settings);
@@ -183,7 +184,7 @@ Reconstruction reconstruct_file(const std::filesystem::path& file, const Setting
   });
 }
 
-/// psi, its gradients (order 1) or Hessians (order 2) at points, without the GIL.
+/// Returns psi, its gradients (order 1) or Hessians (order 2) at points, without the GIL.
 py::array_t<double> evaluate(const Reconstruction& r, const Points& points, int order) {
   std::vector<Vec3> x = vectors(points, "points");
   const LevelSet& psi = r.psi;
@@ -214,13 +215,13 @@ void bind(py::module_& m) {
   py::class_<Reconstruction>(m, "LevelSet")
       .def(
           "value", [](const Reconstruction& r, const Points& points) { return evaluate(r, points, 0); },
-          py::arg("points"), "psi at points (n, 3): (n,). Model units, negative inside.")
+          py::arg("points"), "Returns psi (n,) at points (n, 3). Model units, negative inside.")
       .def(
           "gradient", [](const Reconstruction& r, const Points& points) { return evaluate(r, points, 1); },
-          py::arg("points"), "Its gradients (n, 3).")
+          py::arg("points"), "Returns its gradients (n, 3).")
       .def(
           "hessian", [](const Reconstruction& r, const Points& points) { return evaluate(r, points, 2); },
-          py::arg("points"), "Its Hessians (n, 3, 3).")
+          py::arg("points"), "Returns its Hessians (n, 3, 3).")
       .def_property_readonly("box",
                              [](const Reconstruction& r) {
                                const Box box = r.psi.domain();

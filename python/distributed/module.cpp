@@ -1,5 +1,5 @@
-// umtet._distributed: the C++ behind umtet.mesh(comm=...), which umtet/_parts.py has the documentation of. In a module
-// of its own: umtet without it needs no MPI. Exceptions and LevelSet are those of umtet._core.
+// umtet._distributed: the C++ code of umtet.mesh(comm=...), which umtet/_parts.py documents. It is a separate module so
+// that umtet does not require MPI. Exceptions and LevelSet are defined in umtet._core.
 
 #include <mpi.h>
 #include <pybind11/numpy.h>
@@ -35,7 +35,8 @@ namespace py = pybind11;
 namespace umtet::python {
 namespace {
 
-/// A communicator of mpi4py by its number in Fortran; messages of ours are kept apart from those of its user.
+/// A copy of a communicator of mpi4py, given by its number in Fortran. A copy keeps messages of umtet separate from
+/// messages of the user.
 class Communicator {
  public:
   explicit Communicator(int number) { MPI_Comm_dup(MPI_Comm_f2c(static_cast<MPI_Fint>(number)), &comm_); }
@@ -48,7 +49,7 @@ class Communicator {
   MPI_Comm comm_ = MPI_COMM_NULL;
 };
 
-/// What is asked for, as Python says it.
+/// The arguments of the call in Python.
 struct Request {
   py::object psi;
   Settings settings;
@@ -56,11 +57,11 @@ struct Request {
   int threads;
 };
 
-/// Nodes are vertices, and of second order also mid-sides.
+/// Nodes are vertices and, for second order, mid-sides.
 struct MeshPart {
   TakenMesh taken;
   SolverPart part;
-  std::optional<CurvedSolverPart> curved;  ///< of second order
+  std::optional<CurvedSolverPart> curved;  ///< for second order
   double h = 0;
   std::string certificate;  ///< JSON
 };
@@ -69,7 +70,7 @@ bool is_of_grid(const Request& request, const Parameters& parameters) {
   return request.psi.is_none() && !parameters.mesh().level_set.empty();
 }
 
-/// \throw UsageError for what one process makes
+/// \throw UsageError for a mesh that only one process can make
 void require_ranks(const Parameters& parameters) {
   if (const std::optional<Message> reason = for_one_process(parameters))
     throw UsageError(*reason + " is for one process: several of them mesh in a lattice without walls");
@@ -80,7 +81,7 @@ Psi psi_asked_for(const Request& request, const Parameters& parameters, int thre
   return psi_of(request.psi, parse_box(parameters.mesh().box), request.t, threads);
 }
 
-/// Processors of a machine are shared by its ranks; a callable is asked by the thread that called.
+/// The ranks on a machine share its processors; only the calling thread evaluates a callable.
 int threads_of(int n_here, const Request& request) {
   if (PyCallable_Check(request.psi.ptr()) != 0) return 1;
   return request.threads > 0 ? request.threads : std::max(1, tbb::info::default_concurrency() / n_here);
@@ -88,7 +89,7 @@ int threads_of(int n_here, const Request& request) {
 
 Json parameters_of_mesh(const Parameters& parameters) { return parameters.section("mesh"); }
 
-/// Of rank 0.
+/// Makes the mesh on rank 0.
 MeshPart make(MPI_Comm comm, const Request& request, const py::object& progress) {
   const int n_here = n_ranks_here(comm), threads = threads_of(n_here, request);
   std::optional<Parameters> parameters;
@@ -118,7 +119,7 @@ MeshPart make(MPI_Comm comm, const Request& request, const py::object& progress)
   return made;
 }
 
-/// Of the other ranks. @return none where rank 0 has thrown
+/// Helps rank 0 on the other ranks. @return empty if rank 0 has thrown
 std::optional<MeshPart> help(MPI_Comm comm, const Request& request) {
   const int threads = threads_of(n_ranks_here(comm), request);
   std::shared_ptr<Function> function;
@@ -135,7 +136,7 @@ std::optional<MeshPart> help(MPI_Comm comm, const Request& request) {
   return MeshPart{std::move(*taken), {}, std::nullopt, 0, ""};
 }
 
-/// What solvers want to know of it. Collective.
+/// Computes the numbering for solvers. Collective.
 void add_numbers(MPI_Comm comm, MeshPart& a) {
   const DistributedMesh& mesh = a.taken.mesh;
   const VertexOwners owners(comm, mesh);
@@ -174,14 +175,15 @@ py::array_t<int> tets(const MeshPart& a) {
   return a.taken.curved ? array(a.taken.curved->parts.mesh.C) : array(a.taken.mesh.mesh.C);
 }
 
-/// -1 of mid-sides.
+/// Background ids of the nodes; -1 for mid-sides.
 std::vector<std::int64_t> background_vertices(const MeshPart& a) {
   std::vector<std::int64_t> ids = a.taken.mesh.background_vertex;
   ids.resize(points(a).size(), -1);
   return ids;
 }
 
-/// By rank the nodes that it has, too, in the order of their numbers in the whole mesh: the same order there.
+/// For each other rank, the nodes that it also has, in the order of their numbers in the whole mesh, which is the same
+/// on both ranks.
 py::dict shared(const MeshPart& a) {
   std::map<int, std::vector<int>> by_rank;
   const Sharers& s = a.curved ? a.curved->sharers : a.part.sharers;

@@ -1,6 +1,6 @@
-"""Clouds and meshes of other packages by their arrays; none of these packages is imported.
+"""Reads the arrays of clouds and meshes of other packages, without importing these packages.
 
-Known are objects with the attributes of Open3D (points, normals; vertices, triangles, vertex_normals), pyvista (points,
+It accepts objects with the attributes of Open3D (points, normals; vertices, triangles, vertex_normals), pyvista (points,
 point_data, faces, cells_dict), meshio (points, point_data, cells_dict) and trimesh (vertices, faces).
 """
 from typing import Any, Optional
@@ -12,7 +12,7 @@ _VTK_TETRA, _VTK_TRIANGLE = 10, 5
 
 
 def _attribute(thing: Any, *names: str) -> Any:
-    """The first of them that there is and that is not empty."""
+    """Returns the first of these attributes that exists and is not empty."""
     for name in names:
         value = getattr(thing, name, None)
         if value is not None and not callable(value) and len(value) > 0:
@@ -35,7 +35,7 @@ def _triangles(thing: Any) -> Optional[npt.NDArray[np.int64]]:
     array = np.asarray(faces, np.int64)
     if array.ndim == 1:  # pyvista: the number of corners before each face
         if len(array) % 4 or (array[::4] != 3).any():
-            raise ValueError("points: a mesh of triangles is wanted: its triangulate() makes one")
+            raise ValueError("points: a mesh must consist of triangles; its triangulate() makes them")
         array = array.reshape(-1, 4)[:, 1:]
     if array.ndim != 2 or array.shape[1] != 3:
         raise ValueError(f"points: its faces are an array {array.shape}, not triangles (m, 3)")
@@ -43,7 +43,7 @@ def _triangles(thing: Any) -> Optional[npt.NDArray[np.int64]]:
 
 
 def _vertex_normals(points: npt.NDArray[np.float64], triangles: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
-    """Those of the triangles around, by area."""
+    """Returns vertex normals: sums of the normals of the adjacent triangles, weighted by area."""
     a, b, c = (points[triangles[:, k]] for k in range(3))
     twice_area = np.cross(b - a, c - a)
     normals = np.zeros_like(points)
@@ -53,7 +53,8 @@ def _vertex_normals(points: npt.NDArray[np.float64], triangles: npt.NDArray[np.i
 
 
 def cloud_of(points: Any, normals: Any) -> tuple[npt.NDArray[np.float64], Optional[npt.NDArray[np.float64]]]:
-    """Points and normals of arrays, or of an object that has them; of a surface mesh the vertices."""
+    """Returns points and normals: the arguments if they are arrays, otherwise the arrays of an object. The points of a
+    surface mesh are its vertices."""
     found = None if isinstance(points, (np.ndarray, list, tuple)) else _attribute(points, "points", "vertices")
     if found is None:
         return points, normals
@@ -69,11 +70,11 @@ def cloud_of(points: Any, normals: Any) -> tuple[npt.NDArray[np.float64], Option
 
 
 def tets_of(mesh: Any) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
-    """Points and tets of a mesh, of a tet with 10 nodes its corners."""
+    """Returns the points and tets of a mesh; for tets with 10 nodes only the corners."""
     points = _attribute(mesh, "points")
     tets = _attribute(mesh, "tets")
     if tets is None:
         tets = _cells(mesh, "tetra", _VTK_TETRA)
     if points is None or tets is None:
-        raise TypeError("tets: an array (m, 4) is wanted, or in place of points a mesh that has points and tets")
+        raise TypeError("tets must be an array (m, 4), or points must be a mesh that contains points and tets")
     return np.asarray(points, float), np.asarray(tets)[:, :4]

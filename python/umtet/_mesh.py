@@ -1,4 +1,4 @@
-"""Meshes as their users hold them."""
+"""The results of umtet.mesh() and UniversalMesh.update()."""
 import os
 from typing import Any, Optional, Union
 
@@ -15,13 +15,17 @@ _VTK_TETS = {4: 10, 10: 24}
 class Mesh:
     """A tet mesh that fits {psi = 0}, with the ids of its background.
 
-    points (n, 3) float64; tets (m, 4), positive; boundary (k, 3), counter-clockwise from outside; walls (w, 3), the faces
-    at the walls of the box (complement=True); boundary_vertices;
-    background_vertex (n,), background_tet (m,): ids in the universal mesh; h, its mean edge length; certificate, the
-    keys of certificate.json but for `run` and the checksum; notices, what was done to a grid.
+    points: (n, 3) float64.
+    tets: (m, 4) indices into points, with positive orientation.
+    boundary: (k, 3) faces on psi = 0, counter-clockwise from outside. walls: (w, 3) faces in the walls of the box
+    (complement=True). boundary_vertices: the nodes on psi = 0.
+    background_vertex, background_tet: (n,) and (m,) ids in the background mesh. h: its mean edge length.
+    certificate: a dict with the keys of certificate.json, except `run` and the checksum.
+    notices: texts about changes to a grid that was read.
 
-    Of mesh(order=2): tets (m, 10), the corners, then the middles of 01 12 20 03 13 23 as VTK has them; boundary (k, 6),
-    the corners, then the middles of 01 12 20; mid-sides come behind the corners in points and have background_vertex -1.
+    With mesh(order=2), tets is (m, 10): the corners, then the mid-sides of the edges 01 12 20 03 13 23, in the order of
+    VTK. boundary is (k, 6): the corners, then the mid-sides of 01 12 20. In points, mid-sides follow the corners; their
+    background_vertex is -1.
     """
     points: npt.NDArray[np.float64]
     tets: npt.NDArray[np.int32]
@@ -42,32 +46,34 @@ class Mesh:
 
     @property
     def certified(self) -> bool:
-        """True if nothing is wrong with it; certificate["reasons"] lists what is."""
+        """True if the certificate passes; otherwise certificate["reasons"] lists the reasons."""
         return self.certificate is not None and bool(self.certificate["verdict"].startswith("pass"))
 
     @property
     def cells_dict(self) -> dict[str, npt.NDArray[np.int32]]:
-        """Tets and boundary faces, walls among them, by meshio's names: tetra and triangle, or tetra10 and triangle6."""
+        """Tets and boundary faces, including walls, by the names of meshio: tetra and triangle, or tetra10, triangle6."""
         faces = np.concatenate(list(self.patches().values()))
         return {_CELL_NAMES[self.tets.shape[1]]: self.tets, _CELL_NAMES[faces.shape[1]]: faces}
 
     def patches(self, **parameters: Any) -> dict[str, npt.NDArray[np.int32]]:
-        """Boundary faces by name: boundary, or boundary_1, boundary_2 ... if they are several pieces; walls, closed_holes.
+        """Returns the boundary faces of each patch: boundary, or boundary_1, boundary_2 ... if there are several pieces;
+        walls; closed_holes.
 
-        patch_angle=30: region_1 ..., which end where faces meet at more degrees. patch_planar=1: plane_1 ..., what is
-        flat within so many, and rest.
+        patch_angle=30 divides the boundary into region_1 ... along edges at which faces meet at more than 30 degrees.
+        patch_planar=1 makes patches plane_1 ... of faces that are flat within 1 degree, and rest.
         """
         return self._core.patches(settings((), parameters, output=PATCHES))
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
         """Writes .vtu (with ids and quality), .msh (Gmsh), .mesh (MEDIT), or .stl (the boundary).
 
-        Where the certificate lists closed_holes, .msh and .mesh have them as the patch of that name (MEDIT: number 3).
+        If the certificate lists closed_holes, .msh and .mesh contain a patch of this name (MEDIT: number 3).
         """
         self._core.save(path)
 
     def to_meshio(self, **parameters: Any) -> Any:
-        """A meshio.Mesh: the tets, and a block of faces and a cell set for each patch. Parameters: those of patches()."""
+        """Returns a meshio.Mesh of the tets, with a block of faces and a cell set for each patch. Takes the parameters of
+        patches()."""
         import meshio  # type: ignore[import]
         patches = self.patches(**parameters)
         cells = [(_CELL_NAMES[self.tets.shape[1]], self.tets)]
@@ -80,7 +86,7 @@ class Mesh:
         return meshio.Mesh(self.points, cells, point_data={"background_vertex": self.background_vertex}, cell_sets=sets)
 
     def to_vtk(self) -> Any:
-        """A vtkUnstructuredGrid of the tets, with background_vertex and background_tet."""
+        """Returns a vtkUnstructuredGrid of the tets, with background_vertex and background_tet."""
         from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray  # type: ignore[import]
         from vtkmodules.vtkCommonCore import vtkPoints  # type: ignore[import]
         from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid  # type: ignore[import]
@@ -99,7 +105,7 @@ class Mesh:
         return grid
 
     def to_pyvista(self) -> Any:
-        """The same as a pyvista.UnstructuredGrid."""
+        """Returns to_vtk() as a pyvista.UnstructuredGrid."""
         import pyvista  # type: ignore[import]
         return pyvista.wrap(self.to_vtk())
 
@@ -108,8 +114,8 @@ class Mesh:
 
 
 class Update:
-    """The mesh at one time, and what is new since the last: vertices_entered, vertices_left, vertices_moved,
-    tets_entered, tets_left, background ids in ascending order."""
+    """The mesh at one instant, and the changes since the last: vertices_entered, vertices_left, vertices_moved,
+    tets_entered and tets_left are background ids in ascending order."""
     mesh: Mesh
     vertices_entered: npt.NDArray[np.int64]
     vertices_left: npt.NDArray[np.int64]

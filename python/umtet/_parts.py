@@ -1,4 +1,4 @@
-"""A mesh of several processes, as each of them holds it."""
+"""A mesh of several processes, of which each has a local mesh."""
 import pickle
 from typing import TYPE_CHECKING, Any, Optional, Protocol
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Communicator(Protocol):
-    """What is used of mpi4py.MPI.Comm."""
+    """The part of mpi4py.MPI.Comm that is used."""
     @property
     def rank(self) -> int:
         ...
@@ -25,25 +25,29 @@ class Communicator(Protocol):
 
 
 class MeshPart:
-    """What one process has of a mesh: its tets, with all their vertices. Each tet is in one part; vertices between parts
-    are in all that have tets with them. A process may have none.
+    """The local mesh of one process: its tets, with all their vertices. Each tet is in one local mesh; a vertex is in all
+    local meshes that contain a tet with it. A local mesh may be empty.
 
-    points (n, 3); tets (m, 4), indices into points, positive; boundary (k, 3), faces of these tets on the boundary of the
-    whole mesh, counter-clockwise from outside; patches, the same by name: boundary, or boundary_1, boundary_2 ... where it
-    is several pieces, the same names in all processes. boundary_vertices: points on it, also those whose faces are others'.
+    points: (n, 3). tets: (m, 4) indices into points, with positive orientation.
+    boundary: (k, 3) faces of these tets on the boundary of the whole mesh, counter-clockwise from outside.
+    patches: these faces by name: boundary, or boundary_1, boundary_2 ... if there are several pieces. The names are the
+    same in all processes.
+    boundary_vertices: the points on the boundary of the whole mesh, also those without a local boundary face.
 
-    global_vertex (n,), global_tet (m,), global_face (k,): numbers in the whole mesh: places in points, tets and
-    boundary of what umtet.mesh() makes in one process. owner (n,): the process that owns a vertex, the first that has
-    it. solver_vertex (n,): its number where each process counts those that it owns, one process after the other, in the
-    order of points. shared: of each other process the vertices that it has, too, in one order on both sides.
-    background_vertex, background_tet: ids in the background.
+    global_vertex (n,), global_tet (m,), global_face (k,): indices into points, tets and boundary of the mesh that
+    umtet.mesh() makes in one process.
+    owner (n,): the owner of each vertex, which is the first process with this vertex.
+    solver_vertex (n,): a number of each vertex. Each process numbers the vertices that it owns in the order of points,
+    following the numbers of the processes before it.
+    shared: for each other process, the vertices that it also has, in the same order in both processes.
+    background_vertex, background_tet: ids in the background mesh.
 
-    Of mesh(order=2): tets (m, 10) and boundary (k, 6), patches among them, have the nodes in the order that Mesh has them.
-    points are these nodes, corners before mid-sides, and what is said of vertices is said of nodes: global_vertex, owner,
-    solver_vertex, shared, boundary_vertices, n_vertices. In the whole mesh, too, mid-sides come behind all corners; their
-    background_vertex is -1.
+    With mesh(order=2), tets is (m, 10) and boundary and patches are (k, 6), with the node order of Mesh. points contains
+    corners, then mid-sides, and global_vertex, owner, solver_vertex, shared, boundary_vertices and n_vertices refer to
+    these nodes. In the whole mesh mid-sides also follow all corners; their background_vertex is -1.
 
-    n_vertices, n_tets: of all. h, certificate: as of umtet.Mesh, of the whole mesh, in all processes. comm: what was given.
+    n_vertices, n_tets: numbers in the whole mesh. h, certificate: as in umtet.Mesh, for the whole mesh, in all processes.
+    comm: the communicator.
     """
     points: npt.NDArray[np.float64]
     tets: npt.NDArray[np.int32]
@@ -70,7 +74,7 @@ class MeshPart:
 
     @property
     def certified(self) -> bool:
-        """True if nothing is wrong with the whole mesh; certificate["reasons"] lists what is."""
+        """True if the certificate of the whole mesh passes; otherwise certificate["reasons"] lists the reasons."""
         return bool(self.certificate["verdict"].startswith("pass"))
 
     def __repr__(self) -> str:
@@ -82,24 +86,24 @@ def _as_sent(error: BaseException) -> BaseException:
     try:
         pickle.loads(pickle.dumps(error))
         return error
-    except Exception:  # what an exception of others holds may be anything
+    except Exception:  # an exception of the user may contain any object
         return RuntimeError(f"{type(error).__name__}: {error}")
 
 
 def mesh_of_all(comm: Communicator, psi: Any, settings: Settings, t: Optional[float], progress: Any, threads: int) -> MeshPart:
-    """umtet.mesh(comm=comm). What the first process raises all raise."""
+    """Implements umtet.mesh(comm=comm). An exception of the first process is raised in all processes."""
     try:
         from . import _distributed
     except ImportError as error:
         raise ImportError("comm: this umtet is built without MPI (umtet._distributed is missing): cmake --preset mpi "
                           "builds it") from error
     if not hasattr(comm, "py2f"):
-        raise TypeError("comm: a communicator of mpi4py is wanted, such as MPI.COMM_WORLD")
+        raise TypeError("comm must be a communicator of mpi4py, such as MPI.COMM_WORLD")
     part: Optional["_distributed.MeshPart"] = None
     failure: Optional[BaseException] = None
     try:
         part = _distributed.mesh(comm.py2f(), psi, settings, t, progress if comm.rank == 0 else None, threads)
-    except BaseException as error:  # Ctrl-C, too: the others wait
+    except BaseException as error:  # also Ctrl-C, because the other processes wait
         failure = error
     told = comm.bcast(_as_sent(failure) if failure else None, root=0)
     if failure or told:

@@ -1,4 +1,4 @@
-"""Keyword arguments as parameters of the program."""
+"""Converts keyword arguments to parameters of the program."""
 import os
 from typing import Any, Iterable, Mapping, Optional, Sequence
 
@@ -9,11 +9,11 @@ from . import _core
 
 Settings = list[tuple[str, str]]
 
-_KEYS: dict[str, dict[str, str]] = {}  # of a keyword argument, by section: mesh.h is h of mesh()
+_KEYS: dict[str, dict[str, str]] = {}  # for each section, the parameter of each keyword argument: mesh.h is h of mesh()
 for _key in _core.parameters():
     _section, _name = _key.split(".")
     _KEYS.setdefault(_section, {})[_name] = _key
-for _name in ("implicit", "keep_iterates"):  # of the program
+for _name in ("implicit", "keep_iterates"):  # only for the program
     _KEYS["mesh"].pop(_name, None)
 for _name in ("file", "orient_from"):
     _KEYS["cloud"].pop(_name, None)
@@ -33,7 +33,7 @@ def _text(value: Any) -> str:
 
 def settings(sections: Sequence[str], arguments: Mapping[str, Any], without: Iterable[str] = (),
              output: Sequence[str] = _OUTPUT) -> Settings:
-    """Keyword arguments as parameters of the table."""
+    """Converts keyword arguments to parameters of pipeline/case/parameters.def."""
     known = {name: key for s in sections for name, key in _KEYS[s].items() if name not in without}
     known.update({name: "output." + name for name in output if "output." + name in _core.parameters()})
     made = []
@@ -47,10 +47,10 @@ def settings(sections: Sequence[str], arguments: Mapping[str, Any], without: Ite
 
 
 def box_of(box: Optional[npt.ArrayLike]) -> Optional[npt.NDArray[np.float64]]:
-    """(x0, y0, z0, x1, y1, z1), or two corners."""
+    """Returns a box as (x0, y0, z0, x1, y1, z1). It may be given as these numbers or as two corners."""
     if box is None:
         return None
     numbers = np.asarray(box, float)
     if numbers.size != 6:
-        raise ValueError("box: six numbers are wanted, x0, y0, z0, x1, y1, z1")
+        raise ValueError("box must be six numbers, x0, y0, z0, x1, y1, z1")
     return numbers.ravel()

@@ -330,7 +330,7 @@ class Failures(unittest.TestCase):
             umtet.mesh(BALL, box=BOX, mode="fats")
         with self.assertRaisesRegex(ValueError, "points \\(n, 3\\)"):
             umtet.mesh(lambda x: np.zeros(len(x) + 1), box=BOX, h=.2)
-        with self.assertRaisesRegex(ValueError, "no array of numbers"):
+        with self.assertRaisesRegex(ValueError, "not an array of numbers"):
             umtet.mesh(lambda x: None, box=BOX, h=.2)
         with self.assertRaisesRegex(ValueError, "finite"):
             umtet.mesh("x^2+y^2+z^2-t", box=BOX, h=.2, t=np.nan)
