@@ -53,7 +53,7 @@ UmResult universal_mesh(const BackgroundMesh& background, ImplicitFunctionRef ps
 
 /// First step of universal_mesh(): chooses the tets of the background that become the mesh. Reports the steps "search"
 /// and "submesh".
-/// @param seeds  as in universal_mesh()
+/// @param seeds  as for universal_mesh()
 /// \throw std::invalid_argument naming every broken constraint of params; Cancelled
 ChosenSubmesh choose_submesh(const BackgroundMesh& background, ImplicitFunctionRef psi, const UmParams& params = {},
                              const Context& context = {}, const std::vector<Vec3>& seeds = {});

@@ -122,7 +122,7 @@ class BackgroundMesh {
   double h_, unit_;  ///< unit_: model units per unit of the tiling
   Vec3 origin_;
   Cell n_;           ///< cells in x, y, z
-  Cell first_ = {};  ///< for a part: the position of its cell (0, 0, 0) in the whole
+  Cell first_ = {};  ///< position in the whole lattice of cell (0, 0, 0) of a part
   int n_types_, n_cell_tets_;
 };
 

@@ -13,7 +13,7 @@ namespace umtet {
 /// BackgroundMesh::id_step() describes the results in the outermost layer of cells.
 class LinkSteps {
  public:
-  LinkSteps() = default;  ///< for no lattice
+  LinkSteps() = default;  ///< makes an object without a lattice
   /// Differences for a lattice; empty for any other mesh.
   explicit LinkSteps(const BackgroundMesh& background) : steps_(background.n_types()) {
     for (int type = 0; type < background.n_types(); ++type) {

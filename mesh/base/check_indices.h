@@ -11,7 +11,7 @@ namespace umtet {
 
 /// Checks the vertex indices of simplices.
 /// \throw std::invalid_argument naming the first simplex with a vertex that is out of range or repeated
-/// @param name  of a simplex, for the message
+/// @param name  name of a simplex in the message
 template <std::size_t N>
 void check_indices(const std::vector<std::array<int, N>>& simplices, std::size_t n_vertices, const char* name) {
   const auto is_good = [n_vertices](const std::array<int, N>& simplex) {

@@ -35,7 +35,7 @@ struct SurfaceComponent {
 /// Topology and size of a triangle surface, computed from its indices.
 struct SurfaceTopology {
   std::vector<SurfaceComponent> components;  ///< ascending by least vertex
-  std::vector<int> component;                ///< of each face
+  std::vector<int> component;                ///< component of each face
   std::vector<int> vertices;                 ///< vertices used by the faces, ascending
   std::size_t n_edges = 0;
   std::size_t n_nonmanifold_edges = 0;     ///< edges without exactly two faces

@@ -53,10 +53,11 @@ struct MeshCertificate {
     long euler_characteristic = 0;
     long genus = 0;  ///< sum over components; meaningful if closed_manifold
     double area = 0;
-    std::optional<double> max_vertex_distance_over_h;    ///< |psi| / |grad psi| at boundary vertices
-    std::optional<double> max_centroid_distance_over_h;  ///< from face centroids to their closest points
-    double max_centroid_distance = 0;                    ///< the same in model units
-    std::optional<double> min_cos_normal;                ///< cos(face normal, grad psi) at projected centroids
+    std::optional<double> max_vertex_distance_over_h;  ///< |psi| / |grad psi| at boundary vertices
+    /// Largest distance from a face centroid to its closest point, in h.
+    std::optional<double> max_centroid_distance_over_h;
+    double max_centroid_distance = 0;      ///< the same in model units
+    std::optional<double> min_cos_normal;  ///< cos(face normal, grad psi) at projected centroids
     /// Volume between the flat faces and psi = 0, counted on both sides, divided by the volume of the mesh. In a mesh
     /// with walls it is divided by the volume that the other faces enclose if this is smaller.
     std::optional<double> gap_over_volume;

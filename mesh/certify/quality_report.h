@@ -15,10 +15,10 @@ void measure_mean_ratios(const TetMesh& mesh, std::vector<double>& Q, std::size_
 
 /// Quality vectors Q(S) = asc(q_1, ..., q_alpha), q_i = min Q(K) over the tets K at vertex i
 ///                                                                              [Rangarajan2018, Section 3.3]
-/// The first component is the least quality; a bad tet appears up to four times. Vertices without a tet are left out.
+/// The first component is the least quality; a bad tet appears up to four times. Vertices without a tet are omitted.
 struct QualityVectors {
-  std::vector<double> all;       ///< of all tets of the mesh
-  std::vector<double> boundary;  ///< of the tets with a positive vertex, T_boundary of Fig. 8
+  std::vector<double> all;       ///< qualities of all tets of the mesh
+  std::vector<double> boundary;  ///< qualities of the tets with a positive vertex, T_boundary of Fig. 8
 };
 
 /// Computes the quality vectors of a mesh.

@@ -11,7 +11,7 @@ using FarFromZero = std::function<bool(const Vec3& x)>;
 
 /// Regions in which psi is known not to change sign.
 struct KnownSigns {
-  FarFromZero far = {};  ///< for the distance `reach`; empty: nothing is known
+  FarFromZero far = {};  ///< whether psi has no zero within the distance `reach`; empty if this is unknown
   double reach = 0;      ///< model units
 };
 

@@ -68,7 +68,8 @@ std::vector<double> distances_to_samples(const std::vector<Vec3>& samples, const
 /// for an empty surface. \throw Cancelled
 double unsupported_area_fraction(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
                                  const SampleDistance& samples, double radius, const Context& context = {});
-/// The same fraction from known distances. @param distance  by vertex; arbitrary for vertices without a face
+/// Returns the same fraction from known distances.
+/// @param distance  distance of each vertex; arbitrary for vertices without a face
 double unsupported_area_fraction(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
                                  const std::vector<double>& distance, double radius);
 

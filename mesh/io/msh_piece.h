@@ -29,7 +29,7 @@ struct MshPiece {
   std::vector<Tet> ghosts;      ///< tets of other parts that share a node with own tets
   std::vector<std::int64_t> ghost_number;
   std::vector<int> ghost_part;
-  std::map<std::string, FieldValues> boundary_data;  ///< at nodes of tets, as in SolverMesh
+  std::map<std::string, FieldValues> boundary_data;  ///< point data at nodes of tets, as in SolverMesh
 };
 
 /// Writes one file of a partitioned mesh in Gmsh 4.1, binary: the entities of write_msh41(), an entity of this part for

@@ -49,7 +49,7 @@ class GradedMesh {
   /// The part of this mesh around some vertices: the leaves around them and around vertices within `rings` edges of
   /// them, and the siblings of these leaves. Vertices and tets keep their keys. The boundary is beyond all these
   /// vertices. If rings > 0, the tets at the given vertices are the same.
-  /// @param transition_sweeps  as in Grading
+  /// @param transition_sweeps  number of sweeps, as in Grading
   GradedMesh around(const IdSet& vertices, int rings, int transition_sweeps = 8) const;
 
   std::int64_t n_vertices() const { return tets_.n_vertices(); }
@@ -58,8 +58,9 @@ class GradedMesh {
   Eigen::AlignedBox3d box() const;  ///< bounding box of the vertices
   /// Mean edge length of the smallest tets.
   double finest() const { return finest_; }
-  std::size_t n_bytes() const;                                                            ///< memory used
-  std::int64_t n_moved() const { return static_cast<std::int64_t>(offsets_.by.size()); }  ///< by smooth_transitions()
+  std::size_t n_bytes() const;  ///< memory used
+  /// Number of vertices that smooth_transitions() moved.
+  std::int64_t n_moved() const { return static_cast<std::int64_t>(offsets_.by.size()); }
 
   Vec3 position(std::int64_t vertex) const;
   /// Morton key of the vertex in the root cube.

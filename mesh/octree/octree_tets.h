@@ -57,7 +57,7 @@ class OctreeTets {
   /// The leaves around a vertex that is not a centre, and the position of the vertex in them.
   struct Around {
     int n = 0;
-    std::array<std::pair<int, int>, 8> leaves;  ///< with code_index()
+    std::array<std::pair<int, int>, 8> leaves;  ///< leaves, each with its code_index()
     bool of_one_size = false;                   ///< eight leaves of one size, by octant
     bool is_complete = true;                    ///< no leaf is missing
   };
@@ -120,12 +120,12 @@ class OctreeTets::Reader {
 
   struct Leaf {
     int cell = -1;
-    std::array<std::int64_t, 27> vertex;  ///< by code_index()
+    std::array<std::int64_t, 27> vertex;  ///< vertices by code_index()
   };
 
   const OctreeTets* tets_;
   int last_ = -1;
-  std::vector<Leaf> leaves_;  ///< by the last bits of the leaves' numbers
+  std::vector<Leaf> leaves_;  ///< entries indexed by the last bits of the leaf number
 };
 
 }  // namespace umtet

@@ -31,7 +31,7 @@ struct VertexOffsets {
 /// tets. A vertex depends on the vertices within as many edges as there are sweeps, in an order that does not depend on
 /// threads. Far from a change of the grading, vertices therefore stay the same bit by bit.
 ///
-/// @param mesh    with vertices at their positions in the octree
+/// @param mesh    mesh with vertices at their positions in the octree
 /// @param moving  the vertices that may move
 VertexOffsets smooth_transitions(const OctreeTets& mesh, IdSet moving, int n_sweeps);
 

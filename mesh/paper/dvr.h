@@ -54,7 +54,7 @@ class RelaxationOrder {
   const std::vector<int>& vertices() const { return vertices_; }  ///< ascending
   /// Calls relax(i) for every vertex i with wants(i), in an order equivalent to ascending i. wants(i) is called after
   /// all vertices that i depends on have moved.
-  /// @param side_by_side  of the psi that relax(i) evaluates, if it is evaluated in blocks
+  /// @param side_by_side  SideBySide of the psi that relax(i) evaluates, if psi is evaluated in blocks; else null
   void for_each(const std::function<bool(int)>& wants, const std::function<void(int)>& relax,
                 const SideBySide* side_by_side = nullptr) const;
 

@@ -22,8 +22,8 @@ class MidSideNumbers {
   QuadraticTetMesh straight_mesh(const TetMesh& mesh) const;
 
  private:
-  std::vector<int> first_;   ///< by vertex: number of its first edge to a higher vertex
-  std::vector<int> higher_;  ///< by edge: the higher vertex
+  std::vector<int> first_;   ///< for each vertex, the number of its first edge to a higher vertex
+  std::vector<int> higher_;  ///< for each edge, the higher vertex
 };
 
 }  // namespace umtet

@@ -48,7 +48,7 @@ class MidSideRelaxation {
   const std::vector<char>* const at_rim_;
   bool has_met_rim_ = false;
   std::size_t n_psi_evaluations_ = 0;
-  std::vector<std::size_t> begin_;  ///< by mid-side: begin of its tets in tets_
+  std::vector<std::size_t> begin_;  ///< for each mid-side, the begin of its tets in tets_
   std::vector<int> tets_;
 };
 

@@ -31,7 +31,7 @@ double expected_tets(const Tiling& tiling, const BodySize& size, double h,
                      ClassificationSource source = ClassificationSource::Psi);
 /// Expected number of tets for the body_size() of psi. \throw std::invalid_argument for an empty box, too
 double expected_tets(const Tiling& tiling, ImplicitFunctionRef psi, const Box& box, double h);
-double expected_tets(ImplicitFunctionRef psi, const Box& box, double h);  ///< for A15
+double expected_tets(ImplicitFunctionRef psi, const Box& box, double h);  ///< expected_tets() in a lattice of A15
 
 /// Mean edge length h at which omega_h has about n_tets tets, by the same estimate.
 /// \throw std::invalid_argument for n_tets <= 0, an empty box, or if no sample is inside
@@ -39,6 +39,6 @@ double h_for_tets(const Tiling& tiling, const BodySize& size, double n_tets,
                   ClassificationSource source = ClassificationSource::Psi);
 double h_for_tets(const Tiling& tiling, ImplicitFunctionRef psi, const Box& box, double n_tets);
 double h_for_tets(ImplicitFunctionRef psi, const Box& box, double n_tets,
-                  ClassificationSource source = ClassificationSource::Psi);  ///< for A15
+                  ClassificationSource source = ClassificationSource::Psi);  ///< h_for_tets() in A15
 
 }  // namespace umtet

@@ -25,11 +25,12 @@ struct SurfaceSizeParams {
   /// An edge may exceed max_turn where psi = 0 is within this distance, turn h / 8, of its midpoint: the noise of
   /// samples turns the normal, too.
   double noise = 0;
-  double deviation = 0;       ///< of flat faces from psi = 0, by its curvature; 0: no limit. Requires Hessians
+  /// Largest distance of flat faces from psi = 0, by its curvature; 0: no limit. Requires Hessians.
+  double deviation = 0;
   /// Whether the sheet of psi = 0 at x, where psi has this gradient, is known: thickness counts only between two sheets
   /// that are. Called by several threads. Empty: all are.
   std::function<bool(const Vec3& x, const Vec3& gradient)> is_known;
-  double constant_layer = 2;  ///< radius of the sources, in multiples of their h
+  double constant_layer = 2;                                  ///< radius of the sources, in multiples of their h
   double steepest = std::numeric_limits<double>::infinity();  ///< an upper bound of |grad psi|
 };
 

@@ -39,7 +39,7 @@ class HalfBall {
   const BackgroundMesh& background_;
   std::vector<std::int64_t> star_;
   std::vector<std::array<std::int64_t, 3>> triangles_;  ///< triangles of the link with an inside vertex
-  std::vector<std::pair<Edge, int>> edges_;             ///< with the index of their triangle
+  std::vector<std::pair<Edge, int>> edges_;             ///< edges, each with the index of its triangle
   std::vector<Edge> rim_;                               ///< edges that belong to one triangle only
   std::vector<std::int64_t> vertices_;
 };

@@ -4,7 +4,7 @@
 
 #include "common/message.h"
 
-// What users of the program, of Python and of PCL call the options that messages of the libraries name.
+// The names that users of the program, of Python and of PCL see for options in messages of the libraries.
 namespace umtet {
 
 /// The key of the parameter that is this option: "cloud.keep_all" for "scan.keep_all". A key of the program, such as

@@ -22,7 +22,7 @@ class Progress {
   void warn(std::string_view line);    ///< always prints the line
 
   /// Reports the progress of the work; cheap enough for inner loops of milliseconds.
-  /// @param fraction  of the whole stage, in [0, 1]
+  /// @param fraction  finished fraction of the stage, in [0, 1]
   /// @return false if a signal has requested a stop
   bool report(std::string_view stage, std::string_view step, double fraction);
   /// Clears the bar if it is drawn.

@@ -34,7 +34,7 @@ struct Reconstruction {
 };
 
 /// Cleans the cloud, orients its normals and fits psi, with the sections `cloud` and `reconstruct` of the parameters.
-/// @param file  of given_cloud(); zero normals count as missing; if there are none at all, they are estimated
+/// @param file  result of given_cloud(). Zero normals count as missing. Without normals, all are estimated.
 /// \throw UsageError, CloudRefused, SolveError, SolveTooLarge, and the exceptions of `watch`
 Reconstruction reconstruct(CloudFile file, const Parameters& parameters, const Watch& watch);
 

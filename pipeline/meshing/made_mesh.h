@@ -18,7 +18,7 @@ inline constexpr const char* kAtWall = "wall";
 /// Returns the contents of the file of omega_h with its vertices at V: model coordinates, ids of the background, walls.
 MeshFile mesh_content(const Domain& domain, const UmResult& result, const std::vector<Vec3>& V);
 
-/// Returns the same for the chosen mesh; moves tets, positions and ids out of the result.
+/// Returns the chosen mesh; moves tets, positions and ids out of the result.
 MeshFile taken_content(const Domain& domain, UmResult& result);
 
 /// Moves the vertices of the mesh to V, for another stage. \pre V has as many vertices as the mesh, and no support has

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "body/fidelity/closed_hole.h"
 #include "mesh/io/solver_mesh.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/label_names.h"
 #include "pipeline/case/parameters.h"
-#include "body/fidelity/closed_hole.h"
 #include "reconstruct/cloud/point_cloud.h"
 
 namespace umtet {
@@ -20,8 +20,8 @@ using Warn = std::function<void(const std::string&)>;
 
 /// Boundary faces that form separate patches, independent of the others: 1 for such faces, 0 for others. Empty: none.
 struct MarkedFaces {
-  std::vector<char> at_wall;   ///< at the walls of a box
-  std::vector<char> in_holes;  ///< in closed_holes
+  std::vector<char> at_wall;   ///< flags of faces at the walls of a box
+  std::vector<char> in_holes;  ///< flags of faces in closed_holes
 };
 
 /// Returns the marked faces of a mesh from its file, which contains `wall` and `support` if they are known.

@@ -18,7 +18,7 @@ namespace umtet {
 
 /// The contents of a cloud file.
 struct CloudInspection {
-  std::string file;  ///< as the user gave it
+  std::string file;  ///< path as given by the user
   CloudFileReport read;
   std::vector<std::string> fields;            ///< names of the data of the points: field_names()
   std::optional<SampledTriangles> triangles;  ///< none for a cloud; if set, the survey covers its samples

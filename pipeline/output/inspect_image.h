@@ -21,16 +21,16 @@ struct ImageInspection {
     PartShape shape;
     double volume = 0;  ///< volume of the voxels, model units^3
   };
-  std::string file;  ///< as the user gave it
+  std::string file;  ///< path as given by the user
   GridKind kind = GridKind::Image;
   Eigen::Vector3i n = Eigen::Vector3i::Zero();
-  Vec3 steps = Vec3::Zero();              ///< size of a voxel, model units
-  double least = 0, greatest = 0;         ///< range of values
-  std::vector<Part> parts;                ///< parts of a segmentation, ascending by number
-  std::optional<double> suggested_level;  ///< suggested level of an image
-  double wall_above = 0;                  ///< share of the wall with values above the suggested level
+  Vec3 steps = Vec3::Zero();                ///< size of a voxel, model units
+  double least = 0, greatest = 0;           ///< range of values
+  std::vector<Part> parts;                  ///< parts of a segmentation, ascending by number
+  std::optional<double> suggested_level;    ///< suggested level of an image
+  double wall_above = 0;                    ///< share of the wall with values above the suggested level
   std::optional<RunPrediction> prediction;  ///< for `umtet run` with the same parameters; none if a level is missing
-  std::vector<std::string> notices;  ///< notices of that run
+  std::vector<std::string> notices;         ///< notices of that run
 };
 
 /// Inspects an image. Changes and writes nothing.

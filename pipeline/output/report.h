@@ -8,7 +8,8 @@ namespace umtet {
 /// Writes CASE/report.html: the certificate, an interactive view of the mesh, curves, times and parameters in one file
 /// that needs no network. It names the certificate from which it was made.
 /// @param parameters   parameters with which the stages were made
-/// @param certificate  as in certificate.json. \pre its stages are done
+/// @param certificate  content of certificate.json
+/// \pre its stages are done
 /// @param handover     mesh and domain in memory are not read again
 /// \throw ArtefactDamaged, Interrupted, std::system_error
 void write_report(const CasePaths& paths, const Parameters& parameters, const Certificate& certificate,

@@ -4,8 +4,8 @@
 
 #include "pipeline/reports/certificate_report.h"
 
-// Tables of defects, holes and missed places in report.html; empty if there are none. Each row with a button lets the
-// viewer show its location.
+// Tables of defects, holes and groups of missed samples in report.html; empty if there are none. Each row with a button
+// lets the viewer show its location.
 namespace umtet {
 
 /// Returns the table of holes that were closed.

@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
+#include "body/body.h"
 #include "mesh/io/solver_mesh.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/json_values.h"
-#include "body/body.h"
 
 namespace umtet {
 
@@ -40,7 +40,7 @@ struct SceneHead {
     double least = 0, most = 0;
   };
   Range quality, deviation;          ///< ranges of the colours; deviation in model units
-  std::optional<Range> edge_length;  ///< at vertices, model units; none for a mesh with a single h
+  std::optional<Range> edge_length;  ///< range at vertices, model units; empty for a mesh with a single h
   std::optional<Range> support;      ///< distances to samples, model units; none for a formula
   double support_radius = 0;         ///< beyond this distance from every sample, the surface is a guess
   struct Field {

@@ -14,7 +14,7 @@ namespace umtet {
 /// The cost of a run that makes this many tets.
 struct RunCost {
   double n_tets = 0;
-  double seconds = 0;    ///< with one thread, on the machine of docs/performance.md
+  double seconds = 0;    ///< seconds with one thread, on the machine of docs/performance.md
   double memory_MB = 0;  ///< peak memory of the process
 };
 
@@ -30,7 +30,7 @@ struct RunPrediction {
 
 /// Predicts a run by its own choice of resolution: psi is fitted to the samples, or to every m-th sample of more than
 /// 60,000, and BackgroundChoice chooses h or sizes and gives the expected number of tets.
-/// @param file  for messages
+/// @param file  name of the file in messages
 /// \throw CloudRefused, SolveError, SolveTooLarge, MeshingImpossible, ResourceLimit, UsageError  as in the run;
 ///   Cancelled
 RunPrediction predict_run(CloudFile scan, const std::filesystem::path& file, const Parameters& parameters,
@@ -41,7 +41,7 @@ RunPrediction predict_run(CloudFile scan, const std::filesystem::path& file, con
 /// closed. If the normals do not determine the volume, it is the volume of a ball of this area, or of the box if that
 /// is smaller: no body of this area has more. For mesh.max_deviation, a background in a file and the fluid in a box,
 /// the number of tets is mesh.max_tets, because nothing is known about them.
-/// @param area  of all samples together
+/// @param area  total area of all samples
 RunPrediction predict_run(const CloudSurvey& survey, double area, const Parameters& parameters);
 
 /// Returns the cost of a mesh of about n_tets tets. @param n_points  number of points to which psi is fitted, or 0

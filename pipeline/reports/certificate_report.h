@@ -24,9 +24,10 @@ struct Blame {
 
 /// Times of all stages that made the mesh.
 struct CertificateRun {
-  std::vector<std::pair<std::string, double>> seconds;  ///< by section of the parameters, in the order of the stages
-  std::optional<double> points_per_s;                   ///< points per second of the fit; none for a formula
-  std::optional<double> tets_per_s;                     ///< tets per second of the mesher
+  /// Seconds of each section of the parameters, in the order of the stages.
+  std::vector<std::pair<std::string, double>> seconds;
+  std::optional<double> points_per_s;  ///< points per second of the fit; none for a formula
+  std::optional<double> tets_per_s;    ///< tets per second of the mesher
   double peak_memory_MB = 0;
   int threads = 0;
   std::string host, date;  ///< host and date of the mesh
@@ -47,11 +48,11 @@ struct Certificate {
 
 /// Measurements and verdict of a mesh from a file: a Certificate without the parts that need more than the mesh.
 struct MeshCheck {
-  std::string file;                  ///< as the user gave it
+  std::string file;                  ///< path as given by the user
   std::optional<std::string> units;  ///< unit of lengths, for the reader
   MeshCertificate mesh;
-  std::optional<SecondOrderReport> second_order;  ///< for tets with 10 nodes
-  std::optional<SupportReport> support;           ///< from the samples of a case
+  std::optional<SecondOrderReport> second_order;  ///< set for tets with 10 nodes
+  std::optional<SupportReport> support;           ///< set if the case has samples
   bool is_valid = true;
   std::optional<DefectReport> defects;  ///< defects; none without a case to compare with
   Verdict verdict;

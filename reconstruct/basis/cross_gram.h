@@ -21,8 +21,9 @@ class CrossGram {
   /// Entries can be nonzero for |d| <= reach().
   int reach() const { return reach_; }
 
-  /// The first coarse node on each axis whose functions meet those of the fine nodes first .. first + 7.
-  /// @param first  of a block of LatticeBlocks: 1 - half_width plus a multiple of 8
+  /// Returns the first coarse node on each axis whose function overlaps a function of the fine nodes first .. first +
+  /// 7.
+  /// @param first  first node of a block of LatticeBlocks: 1 - half_width plus a multiple of 8
   Eigen::Vector3i window_begin(const Eigen::Vector3i& first) const;
   /// The number of these coarse nodes on an axis.
   int window_size() const { return (LatticeBlocks::kEdge - 1 + 2 * reach_) / (1 << k_) + 1; }

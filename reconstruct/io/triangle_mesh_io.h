@@ -13,8 +13,8 @@ namespace umtet {
 /// Properties of a triangle file besides the triangles.
 struct TriangleFileReport {
   std::string format;                    ///< "stl binary", "obj" ...
-  std::size_t n_vertices = 0;            ///< as counted by the file; three per triangle in STL
-  std::size_t n_faces = 0;               ///< as counted by the file
+  std::size_t n_vertices = 0;            ///< number in the file; three per triangle in STL
+  std::size_t n_faces = 0;               ///< number in the file
   std::size_t n_polygons = 0;            ///< faces with more than three corners, which were cut into triangles
   std::vector<std::string> label_names;  ///< names of labels 1, 2 ...: solids, groups or materials; empty without names
   std::size_t n_groups_ignored = 0;      ///< number of groups if above kMostGroups: they are not parts of a boundary

@@ -29,7 +29,7 @@ struct SampleColumns {
 /// The mean position of samples of a curved surface is off the surface. Its value is that of the functions described by
 /// the samples, to third order: f(mean) = sum w (v_i + ½ n_i · (mean − x_i)) / sum w, the trapezoid rule from x_i to
 /// the mean, in which the mean's own gradient cancels.
-/// @param cube  in lattice spacings: 1 or ½
+/// @param cube  edge of the cubes in lattice spacings: 1 or ½
 std::vector<SsdSample> merge_samples(const std::vector<SsdSample>& samples, double cube);
 
 /// The same for n samples that are computed on demand, by several threads and more than once each.

@@ -26,11 +26,11 @@ std::vector<std::string> problems(const BodySampleParams&);
 
 /// Properties of the triangles, and the changes made to them.
 struct TriangleReport {
-  std::size_t n_triangles = 0;  ///< as given
+  std::size_t n_triangles = 0;  ///< number of triangles of the input
   DroppedFaces dropped;
   FaceSidesReport sides;
   double spacing = 0;                    ///< spacing of the samples
-  double least_spacing = 0;              ///< where the body, or a gap in it, is thin
+  double least_spacing = 0;              ///< least spacing, used where the body or a gap in it is thin
   std::optional<double> thickness = {};  ///< thickness below which a two-hundredth of the surface lies; none if the
                                          ///< body is thick everywhere
   std::size_t n_samples = 0;             ///< samples of all triangles

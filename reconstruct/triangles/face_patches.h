@@ -9,13 +9,15 @@ namespace umtet {
 
 /// Patches of triangles connected through edges of two triangles each, which therefore have a common orientation.
 struct FacePatches {
-  std::vector<std::uint32_t> patch;     ///< by triangle: its patch, from 0
-  std::vector<std::uint8_t> is_turned;  ///< by triangle: oriented opposite to most of its patch, by area
-  std::vector<std::uint8_t> is_closed;  ///< by patch: as many triangles end at each of its edges as begin
-  std::size_t n_open_edges = 0;         ///< edges of one triangle
-  std::size_t n_branching_edges = 0;    ///< edges of three and more triangles
-  std::size_t n_one_sided_edges = 0;    ///< edges where orientations contradict each other, as on a Moebius strip
-  double weld_distance = 0;             ///< corners closer than this are identified; model units
+  std::vector<std::uint32_t> patch;  ///< patch of each triangle, from 0
+  /// For each triangle, whether its orientation is opposite to most of the area of its patch.
+  std::vector<std::uint8_t> is_turned;
+  /// For each patch, whether each edge has the same number of triangles in both directions.
+  std::vector<std::uint8_t> is_closed;
+  std::size_t n_open_edges = 0;       ///< edges of one triangle
+  std::size_t n_branching_edges = 0;  ///< edges of three and more triangles
+  std::size_t n_one_sided_edges = 0;  ///< edges where orientations contradict each other, as on a Moebius strip
+  double weld_distance = 0;           ///< corners closer than this are identified; model units
 
   std::size_t size() const { return is_closed.size(); }
 };

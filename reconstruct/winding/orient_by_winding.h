@@ -22,7 +22,8 @@ struct WindingReport {
   Verdict verdict = Verdict::Agrees;
   bool restored = false;  ///< `others` were off at fewer samples than the cloud's normals, and replaced them first
   double off_before = 0, off_after = 0;  ///< patches_off_a_half() of some samples, before and with the final normals
-  double off_tried = 0;                  ///< with the best of its own normals, if there were any
+  /// patches_off_a_half() with the best normals that it proposed, if there were any.
+  double off_tried = 0;
   double consistency_before = 0, consistency_tried = 0;  ///< consistency() of the cloud's normals and of the best of
                                                          ///< its own; 0 if none were tried
   std::size_t n_turned = 0;                              ///< normals whose side it changed

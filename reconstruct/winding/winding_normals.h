@@ -52,7 +52,8 @@ double patches_off_a_half(const std::vector<Vec3>& points, const std::vector<Vec
                           const std::vector<double>& areas, double noise);
 
 /// Outward unit normals at given positions: -grad w / |grad w| for the winding_normals() of some samples, softened as
-/// in its last round; zero where the field is zero. @param points, areas  of the samples
+/// in its last round; zero where the field is zero.
+/// @param points, areas  positions and areas of the samples
 std::vector<Vec3> normals_by_winding(const std::vector<Vec3>& points, const std::vector<double>& areas,
                                      const std::vector<Vec3>& places, const WindingNormalsParams& params = {});
 

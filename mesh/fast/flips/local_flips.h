@@ -23,7 +23,7 @@ struct LocalFlipParams {
 /// Every broken constraint, not just the first.
 std::vector<std::string> problems(const LocalFlipParams&);
 
-/// What flip_locally() did.
+/// Counts of the changes by flip_locally().
 struct LocalFlipReport {
   std::size_t tries = 0;            ///< patches that were optimised
   std::size_t n_removed_edges = 0;  ///< edge removals that were kept
@@ -36,8 +36,8 @@ struct LocalFlipReport {
 /// How a vertex may move.
 enum class VertexStratum : std::uint8_t {
   Fixed,    ///< not at all
-  Inner,    ///< in space
-  Boundary  ///< on psi = 0
+  Inner,    ///< moves freely
+  Boundary  ///< stays on psi = 0
 };
 
 /// A tet mesh whose connectivity changes.

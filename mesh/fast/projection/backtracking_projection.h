@@ -61,7 +61,7 @@ struct ProjectionReport {
 ///
 /// Vertices that arrive satisfy |psi| / |grad psi| <= 1e-10 h (closest_point.tol). The bytes are the same for any
 /// number of threads.
-/// @param smoother  of the layer in its present state; it can be used afterwards with its queue and its rings
+/// @param smoother  smoother of the layer in its present state; its queue and its rings are valid after the call
 /// \throw std::invalid_argument naming every broken constraint of params, Cancelled
 ProjectionReport project(PNormSmoother& smoother, ImplicitFunctionRef psi, const ProjectionParams& params = {},
                          const Context& context = {});

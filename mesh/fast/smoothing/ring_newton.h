@@ -25,7 +25,7 @@ struct Directions {
   Eigen::Matrix<double, 3, 2> tangents;
 };
 
-/// The quality that a new position has to exceed: that of the ring at y = 0.
+/// The quality of the ring at y = 0, which a new position must exceed.
 struct Bar {
   double scale;                                          ///< the greatest F
   double sum = std::numeric_limits<double>::infinity();  ///< sum of (F / scale)^p for the last p, if all V > 0
@@ -57,8 +57,8 @@ std::bitset<kMaxRing> tets_below_target(const OneRing& ring, const Vec3& y, doub
 /// A power sum over a ring, with the derivatives of its logarithm.
 struct PowerSum {
   double sum = 0;                ///< infinite if some V <= 0
-  Vec3 gradient = Vec3::Zero();  ///< of ln(sum) / p
-  Mat3 hessian = Mat3::Zero();   ///< of ln(sum) / p
+  Vec3 gradient = Vec3::Zero();  ///< gradient of ln(sum) / p
+  Mat3 hessian = Mat3::Zero();   ///< Hessian of ln(sum) / p
 };
 
 /// sum_j (F_j(y) / scale)^p over a ring, p = 2^log2_p, and the derivatives of ln(sum) / p, from which the Newton steps

@@ -44,9 +44,9 @@ struct TangentialRelaxationReport {
 ///
 /// After each sweep the vertices behind the boundary are smoothed while the boundary is held. Vertices are solved
 /// colour by colour; the bytes are the same for any number of threads.
-/// @param smoother   of a layer whose boundary vertices are on psi = 0
+/// @param smoother   smoother of a layer whose boundary vertices are on psi = 0
 /// @param inside     per vertex of the layer; boundary faces have their three vertices outside
-/// @param smoothing  for the vertices behind the boundary; its max_sweeps is not used
+/// @param smoothing  parameters for the vertices behind the boundary; its max_sweeps is not used
 /// \throw std::invalid_argument naming every broken constraint, Cancelled
 TangentialRelaxationReport relax_tangentially(PNormSmoother& smoother, const std::vector<std::uint8_t>& inside,
                                               ImplicitFunctionRef psi, const TangentialRelaxationParams& params,

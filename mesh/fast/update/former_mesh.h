@@ -20,8 +20,9 @@ namespace umtet {
 /// A mesh of the same psi in another background.
 struct FormerMesh {
   const BackgroundMesh& background;
-  const UmResult& mesh;          ///< UmStatus::Success
-  std::vector<Vec3> seeds = {};  ///< as in universal_mesh() if some components of psi are not meshed; else empty
+  const UmResult& mesh;  ///< UmStatus::Success
+  /// Seeds of universal_mesh() if some components of psi are not meshed; otherwise empty.
+  std::vector<Vec3> seeds = {};
 };
 
 /// The states of a former mesh that carry over to a background that differs only locally, such as an octree with

@@ -50,7 +50,7 @@ class SampleCells {
 /// samples picked by their coordinates.
 struct CoreBox {
   Vec3 middle = Vec3::Zero();
-  double diagonal = 0;  ///< of the box
+  double diagonal = 0;  ///< diagonal of the box
 };
 /// @param points  finite, at least one
 CoreBox core_box(const std::vector<Vec3>& points);
@@ -93,7 +93,7 @@ std::vector<double> relative_counts(const std::vector<int>& counts, const Neighb
 /// nearest samples with n_i . n_j > .9 of sample i, weighted by counts n_j, minus the square of its mean. The result is
 /// the median over evenly picked samples i.
 /// @param cloud  merged, with normals; \pre not empty
-/// @param tree   of its points
+/// @param tree   tree of the points of the cloud
 double noise_before_merging(const OrientedPointCloud& cloud, const NeighbourTree& tree,
                             std::size_t sampled_points = 5000);
 

@@ -16,7 +16,7 @@ namespace umtet {
 /// degrees are worse than the normals from positions.
 ///
 /// @param near      the nearest neighbours of all points
-/// @param covering  of the points: on scan lines the representatives' neighbours are used
+/// @param covering  covering of the points: on scan lines the neighbours of the representatives are used
 /// \throw std::invalid_argument if the numbers of normals, rows of neighbours and points differ
 /// Cost: a thousand quadric fits.
 bool are_lines_of_sight(const OrientedPointCloud& cloud, const Neighbourhoods& near, const Covering& covering);

@@ -33,7 +33,7 @@ struct EstimatedNormals {
 /// origin and lose the last digits of all others. On scan lines the neighbours of a point are the representatives
 /// around it (covering.h), because the points on its own line define no plane.
 ///
-/// @param covering  of the points; null: they are sampled evenly
+/// @param covering  covering of the points; null if they are sampled evenly
 /// \throw std::invalid_argument for fewer than 3 points, a coordinate that is not finite, or a problem of the
 ///        parameters
 /// Cost: O(n log n), and several times as much if noise is as large as spacings. The result does not depend on the

@@ -11,7 +11,7 @@ namespace umtet {
 
 /// Parameters of orient_normals() and repair_normals().
 struct OrientationParams {
-  int neighbours = 12;  ///< of every point, over which signs are propagated; in 4..64
+  int neighbours = 12;  ///< number of neighbours of every point over which signs are propagated; in 4..64
   /// Repair turns a region if this fraction of the evidence along its border is against it; in [0.5, 1). A wrong region
   /// of a clean cloud has 1. Noise lowers it, and makes right regions look wrong with a little more than 0.5: lower
   /// values turn these, too, and higher ones leave wrong regions unchanged.

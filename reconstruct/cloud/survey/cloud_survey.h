@@ -36,7 +36,7 @@ using Percentiles = std::array<double, 3>;
 /// Statistics of a cloud. Lengths are in model units. All but the first count describe the cloud without the points in
 /// `dropped`.
 struct CloudSurvey {
-  std::size_t n_points = 0;  ///< of the cloud as given
+  std::size_t n_points = 0;  ///< number of points of the given cloud
   CleaningReport dropped;    ///< points that cleaning would drop
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
   double diagonal = 0;
@@ -102,7 +102,8 @@ std::vector<double> thicknesses(const OrientedPointCloud& cloud, const Neighbour
                                 std::size_t sampled_points = 5000);
 
 /// The samples with another sample within `reach` whose normal differs by more than 107 degrees. They belong to thinner
-/// parts and gaps, and to edges of less than 73 degrees. @param tree  of the points of the cloud, which has normals
+/// parts and gaps, and to edges of less than 73 degrees.
+/// @param tree  tree of the points of the cloud, which must have normals
 std::vector<Vec3> near_other_sheets(const OrientedPointCloud& cloud, const NeighbourTree& tree, double reach);
 
 }  // namespace umtet

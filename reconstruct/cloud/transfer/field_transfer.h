@@ -25,7 +25,7 @@ struct SurfaceFields {
 /// A position has no value if every sample on its side is at least `reach` away, or if the closer samples have no
 /// value.
 ///
-/// @param normals  of any length; zero: no side, and samples of all sides count
+/// @param normals  normals of any length; if a normal is zero, samples on all sides count
 /// @param reach    model units, > 0
 /// \throw std::invalid_argument for a cloud without points, or without a normal and a value of every field for each
 ///        point, or if the numbers of normals and positions differ; Cancelled

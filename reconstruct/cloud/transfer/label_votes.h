@@ -14,7 +14,7 @@ namespace umtet {
 /// With a random fraction p of wrong labels, one voter is wrong with probability p, three with 3 p^2 and five with 10
 /// p^3, to leading order: 5 %, .7 % and .1 % for p = .05. More voters than five would remove narrow strips.
 ///
-/// @param normals  of any length; zero: no side
+/// @param normals  normals of any length; if a normal is zero, samples on all sides count
 /// \throw std::invalid_argument for a cloud without points, labels or normals, or if the numbers of normals and
 ///        positions differ
 /// Cost: O(n log n). The result does not depend on the number of threads.
