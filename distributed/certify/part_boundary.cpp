@@ -15,9 +15,9 @@ namespace {
 
 /// A face of a tet.
 struct FaceUse {
-  std::array<std::int64_t, 3> corners;  ///< by ids of the background, ascending
+  std::array<std::int64_t, 3> corners;  ///< background ids, ascending
   std::int64_t id;
-  int is_odd;  ///< whether it runs against ascending corners
+  int is_odd;  ///< 1 if the orientation of the face is opposite to the ascending order
 
   friend bool operator<(const FaceUse& a, const FaceUse& b) {
     return a.corners != b.corners ? a.corners < b.corners : a.id < b.id;
@@ -34,7 +34,7 @@ FaceUse use_of(const DistributedMesh& mesh, std::size_t t, std::size_t k) {
   return {v, 4 * mesh.background_tet[t] + static_cast<std::int64_t>(k), is_odd ? 1 : 0};
 }
 
-/// @return ids of the faces that one tet has, ascending
+/// Counts the uses of each face, and adds the faults to `boundary`. @return ids of the faces of a single tet, ascending
 std::vector<std::int64_t> count(std::vector<FaceUse> uses, PartBoundary& boundary) {
   std::vector<std::int64_t> single;
   std::sort(uses.begin(), uses.end());
@@ -48,17 +48,17 @@ std::vector<std::int64_t> count(std::vector<FaceUse> uses, PartBoundary& boundar
   return single;
 }
 
-/// Faces under vertices that others have, too.
+/// Faces whose least vertex other ranks also have.
 class SharedFaces {
  public:
   SharedFaces(MPI_Comm comm, const DistributedMesh& mesh, const std::vector<char>& shared);
-  /// Appends the ids of those of one tet.
+  /// Appends the ids of the faces of a single tet. Collective.
   void add_single(PartBoundary& boundary) const;
 
  private:
   MPI_Comm comm_;
-  std::vector<FaceUse> here_;              ///< a corner is of this rank alone, so nobody else has the face
-  std::vector<std::vector<FaceUse>> out_;  ///< by the owner of the least corner
+  std::vector<FaceUse> here_;              ///< no other rank has one of the corners, so no other rank has the face
+  std::vector<std::vector<FaceUse>> out_;  ///< for each rank, the faces whose least corner it owns
 };
 
 SharedFaces::SharedFaces(MPI_Comm comm, const DistributedMesh& mesh, const std::vector<char>& shared) : comm_(comm) {
@@ -101,14 +101,14 @@ void sum(MPI_Comm comm, std::initializer_list<std::size_t*> counts) {
   for (std::size_t* c : counts) *c = n[k++];
 }
 
-/// A face at one of its corners: around it, from one of the others to the other.
+/// A face at one of its corners, and its other corners in the order around this corner.
 struct FanStep {
   std::int64_t corner, from, to;
 };
 
-/// What the faces at one vertex are like.
+/// Counts of the edges and faces at one vertex.
 struct Fan {
-  std::int64_t n_edges = 0;                                      ///< to vertices with greater ids
+  std::int64_t n_edges = 0;                                      ///< number of edges to vertices with greater ids
   std::size_t n_nonmanifold_edges = 0, n_misoriented_edges = 0;  ///< among these
   bool is_one = true;
 };
@@ -117,7 +117,7 @@ Fan fan_of(std::span<const FanStep> steps) {
   struct Use {
     std::int64_t other;
     int step;
-    bool is_outward;  ///< the edge runs away from the vertex
+    bool is_outward;  ///< the face has the edge in the direction away from the vertex
   };
   std::vector<Use> uses;
   for (std::size_t k = 0; k < steps.size(); ++k) {
@@ -141,7 +141,7 @@ Fan fan_of(std::span<const FanStep> steps) {
   return fan;
 }
 
-/// The faces at vertices that are owned, vertex by vertex.
+/// Returns the faces at owned vertices, sorted by vertex. Collective.
 std::vector<FanStep> fans_of_owned(MPI_Comm comm, const DistributedMesh& mesh, const PartBoundary& boundary) {
   int n_ranks = 1;
   MPI_Comm_size(comm, &n_ranks);
@@ -156,7 +156,7 @@ std::vector<FanStep> fans_of_owned(MPI_Comm comm, const DistributedMesh& mesh, c
   return all;
 }
 
-/// Labels of own faces, and of vertices that are owned: the least vertex of their piece.
+/// Labels of local faces and of owned vertices. A label is the least vertex of the piece.
 struct Labels {
   std::vector<std::int64_t> of_faces, of_owned;
 };
@@ -167,7 +167,7 @@ Labels labels_of(MPI_Comm comm, const DistributedMesh& mesh, const VertexOwners&
     pieces.unite(f[0], f[1]);
     pieces.unite(f[0], f[2]);
   }
-  // Of the least vertex of each piece of the own part; vertices ascend as their ids do.
+  // label[v] is valid for the least vertex v of each local piece; local vertices are in the order of their ids.
   std::vector<std::int64_t> label = mesh.background_vertex, owned = owners.ids();
   for (int changes = 1; changes != 0;) {
     owners.ask([&](std::size_t v) { return label[pieces.find(static_cast<int>(v))]; },
@@ -187,7 +187,7 @@ Labels labels_of(MPI_Comm comm, const DistributedMesh& mesh, const VertexOwners&
   return labels;
 }
 
-/// The same of parts of pieces that several ranks have.
+/// Joins the parts of pieces that several ranks have, and returns all pieces on all ranks. Collective.
 std::vector<BoundaryPiece> joined(MPI_Comm comm, const std::map<std::int64_t, BoundaryPiece>& own) {
   std::vector<BoundaryPiece> parts;
   for (const auto& [label, piece] : own) parts.push_back(piece);

@@ -23,9 +23,9 @@
 namespace umtet {
 namespace {
 
-// A foot point takes half a dozen values of psi: some hundredths of a second for a cheap one.
+// A foot point takes about six values of psi: a few hundredths of a second in total for a cheap psi.
 constexpr std::size_t kFacesPerPiece = kValuesPerPoll;
-// Cubes in which faces are held against each other, in edges: a face is in one or two of them.
+// Edge of the cubes in which faces are tested for intersection, in edges of the mesh: a face is in one or two cubes.
 constexpr double kEdgesPerCube = 4;
 
 /// A face in the order of ids.
@@ -37,7 +37,7 @@ struct OrderedFace {
   Vec3 corner(std::size_t k) const { return {place[k][0], place[k][1], place[k][2]}; }
 };
 
-/// What a vertex, by its id, or a face adds to the lists of a certificate.
+/// An entry of a vertex or a face, with its id, for the lists of a certificate.
 struct SentFault {
   std::int64_t is_face, id, kind;
   double where[3], distance;
@@ -50,7 +50,7 @@ struct SentFoot {
 void put(const Vec3& x, double (&to)[3]) { std::copy_n(x.data(), 3, to); }
 Vec3 vector(const double (&x)[3]) { return {x[0], x[1], x[2]}; }
 
-/// What is about psi, of the vertices and faces that this rank measures.
+/// Distances from psi = 0 of the vertices and faces that this rank measures.
 class OwnDistances {
  public:
   OwnDistances(const MeshCertificate& certificate) : h_(certificate.h), rounding_(certificate.coordinate_rounding) {
@@ -64,7 +64,7 @@ class OwnDistances {
     add_face(face, h_, own_);
     keep(1, id);
   }
-  /// Of all ranks. Collective.
+  /// Joins the distances of all ranks. Collective.
   void join(MPI_Comm comm, MeshCertificate::Boundary& boundary) const;
 
  private:
@@ -88,7 +88,7 @@ class OwnDistances {
 };
 
 void OwnDistances::join(MPI_Comm comm, MeshCertificate::Boundary& boundary) const {
-  // The least cosine with the opposite sign: all are maxima.
+  // The least cosine has the opposite sign, so that all values are maxima.
   double most[4] = {*own_.max_vertex_distance_over_h, *own_.max_centroid_distance_over_h, own_.max_centroid_distance,
                     -*own_.min_cos_normal};
   MPI_Allreduce(MPI_IN_PLACE, most, 4, MPI_DOUBLE, MPI_MAX, comm);
@@ -132,12 +132,12 @@ class PartCertificate {
   const VertexOwners owners_;
   PartBoundary boundary_;
   BoundaryTopology topology_;
-  std::vector<EnclosedVolume> volumes_;  ///< of the pieces of the boundary
+  std::vector<EnclosedVolume> volumes_;  ///< volumes of the pieces of the boundary
   MeshCertificate certificate_;
 };
 
-/// As sets of triples. A face of the boundary has one tet, and each tet is on one rank: the sets are the same if they
-/// are on each rank.
+/// Compares both as sets of triples. A boundary face has one tet, and each tet is on one rank, so the sets are equal if
+/// they are equal on each rank.
 void PartCertificate::compare_with_positive_faces() {
   using Face = std::pair<std::int64_t, Triangle>;
   const auto face = [](std::int64_t id, Triangle f) {
@@ -155,7 +155,7 @@ void PartCertificate::compare_with_positive_faces() {
   certificate_.n_positive_faces = sum(comm_, positive.size());
 }
 
-/// Areas and volumes, and distances if there is a psi, in the order of the faces.
+/// Measures areas and volumes, and distances if there is a psi, in the order of the faces.
 void PartCertificate::measure_faces(OwnDistances* distances) {
   const std::size_t n_pieces = topology_.pieces.size();
   const IdOrder order(comm_, boundary_.id, kFacesPerPiece);

@@ -14,7 +14,7 @@ namespace {
 
 using FaceBox = Eigen::AlignedBox3d;
 
-/// A face between ranks.
+/// A face in a message to another rank.
 struct SentFace {
   std::int64_t id;
   std::int64_t corner[3];
@@ -37,12 +37,13 @@ FaceBox box_of(const SentFace& face) {
   return box;
 }
 
-/// Cubes that fill space, by numbers.
+/// Numbers of the cubes of a regular grid.
 class Cubes {
  public:
   explicit Cubes(double edge) : edge_(edge) {}
 
-  /// Cubes with one number are far from each other: whoever looks at one looks at both.
+  /// Returns the number of the cube that contains x. Cubes with the same number are far apart, and the same rank tests
+  /// both.
   std::int64_t at(const Vec3& x) const { return number(cell(x)); }
   template <class F>
   void for_each(const FaceBox& box, const F& f) const {
@@ -71,12 +72,14 @@ class Cubes {
   double edge_;
 };
 
-/// Which rank counts the pairs in each cube that this rank has faces in: the first of those that have.
+/// Returns for each cube with local faces the rank that counts the pairs in it: the first rank with faces in the cube.
+/// Collective.
 std::unordered_map<std::int64_t, int> counters_of(MPI_Comm comm, const std::set<std::int64_t>& cubes) {
   int n_ranks = 1;
   MPI_Comm_size(comm, &n_ranks);
   const auto n = static_cast<std::size_t>(n_ranks);
-  // Who knows a cube is arithmetic; the factor, 2^64 over the golden ratio, spreads neighbours.
+  // A hash of the cube selects the rank that finds its counter; the factor, 2^64 over the golden ratio, distributes
+  // neighbouring cubes.
   const auto knower = [&](std::int64_t cube) {
     return static_cast<std::size_t>((static_cast<std::uint64_t>(cube) * 0x9e3779b97f4a7c15u >> 32) % n);
   };

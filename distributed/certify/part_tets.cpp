@@ -22,31 +22,31 @@ constexpr std::size_t kTetsPerPiece = 64 * kTetsPerSum;  // two megabytes
 constexpr std::size_t kPacksPerTask = 1 << 8;
 constexpr std::array<double, 3> kQuantiles = {0, .001, .01};
 
-/// What is sent of a tet.
+/// The data of a tet that are sent.
 struct MeasuredTet {
   std::int64_t id;
   TetSums terms;
 };
 
-/// The first tet with the extreme of something.
+/// An extreme value over tets, and the first tet with this value.
 struct ExtremeTet {
   double value = std::numeric_limits<double>::infinity();
   std::int64_t id = std::numeric_limits<std::int64_t>::max();
   double dihedral_deg = 0;
 };
 
-/// The extremes, counts and qualities of own tets, a round at a time.
+/// The extremes, counts and qualities of local tets, measured in rounds.
 class OwnTets {
  public:
   OwnTets(const DistributedMesh& mesh, std::size_t n_lowest) : mesh_(mesh), n_lowest_(n_lowest) {}
 
-  /// Measures tets first .. end - 1 and keeps what is to be sent of them. Each tet once, ascending.
+  /// Measures tets first .. end - 1 and keeps their terms(). Each tet must be measured once, in ascending order.
   void measure(std::size_t first, std::size_t end);
   const TetSums& terms(std::size_t tet) const { return terms_[tet - first_]; }
   std::size_t n_inverted() const { return n_inverted_; }
-  /// Those of the lowest qualities that own tets have, ascending.
+  /// Returns the n_lowest least qualities of local tets, ascending.
   std::vector<double> lowest() &&;
-  /// With its dihedral angle.
+  /// Returns the extreme, with the dihedral angle of the tet.
   ExtremeTet least_cotangent() const { return with_angle(least_, false); }
   ExtremeTet greatest_cotangent() const { return with_angle(greatest_, true); }
 
@@ -58,7 +58,7 @@ class OwnTets {
   std::size_t n_lowest_, first_ = 0, n_inverted_ = 0;
   std::vector<TetSums> terms_;
   std::vector<double> lowest_;
-  ExtremeTet least_, greatest_;  ///< of cotangents; the greatest with the opposite sign, by places of tets
+  ExtremeTet least_, greatest_;  ///< extreme cotangents with local tet numbers; the greatest has the opposite sign
 };
 
 void OwnTets::measure(std::size_t first, std::size_t end) {
@@ -100,7 +100,7 @@ std::vector<double> OwnTets::lowest() && {
 
 ExtremeTet OwnTets::with_angle(const ExtremeTet& extreme, bool is_least_angle) const {
   if (mesh_.mesh.C.empty()) return extreme;
-  // Without any number one process takes its first tet.
+  // If all cotangents are NaN, one process takes its first tet.
   const bool has_none = extreme.id == std::numeric_limits<std::int64_t>::max();
   const std::size_t place = has_none ? 0 : static_cast<std::size_t>(extreme.id);
   const Tet& t = mesh_.mesh.C[place];
@@ -109,7 +109,7 @@ ExtremeTet OwnTets::with_angle(const ExtremeTet& extreme, bool is_least_angle) c
   return {extreme.value, mesh_.background_tet[place], is_least_angle ? range.min_deg : range.max_deg};
 }
 
-/// The dihedral angle of the first tet with the least value, of all ranks.
+/// Returns the dihedral angle of the first tet of all ranks with the least value. Collective.
 double angle_of_first(MPI_Comm comm, const ExtremeTet& own) {
   int n_ranks = 1;
   MPI_Comm_size(comm, &n_ranks);

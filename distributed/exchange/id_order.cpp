@@ -27,7 +27,7 @@ std::vector<std::int64_t> IdOrder::sums_before(const std::vector<std::int64_t>& 
   };
   struct Named {
     Valued of;
-    std::size_t from, place;  ///< a rank, and a place in its message
+    std::size_t from, place;  ///< a rank, and a position in its message
   };
   std::vector<std::int64_t> sums;
   sums.reserve(ids_.size());

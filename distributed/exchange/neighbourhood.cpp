@@ -15,7 +15,7 @@ struct Layout {
   Neighbourhood::Bytes bytes;
 };
 
-/// One behind the other. \throw std::length_error
+/// Concatenates messages. \throw std::length_error
 Layout laid_out(const std::vector<Neighbourhood::Bytes>& messages) {
   Layout all;
   std::size_t n = 0;

@@ -21,7 +21,7 @@ void PieceChain::receive() {
 void PieceChain::send() {
   is_begun_ = true;
   if (n_ranks_ == 1) return;
-  // Not waited for at once: the next rank may be in a collective call of the next round.
+  // The wait comes later, because the next rank may be in a collective call of the next round.
   MPI_Wait(&request_, MPI_STATUS_IGNORE);
   sent_ = values_;
   MPI_Isend(sent_.data(), static_cast<int>(sent_.size()), MPI_DOUBLE, (rank_ + 1) % n_ranks_, 0, comm_, &request_);

@@ -7,7 +7,7 @@
 namespace umtet {
 namespace {
 
-/// Ascends as x does, and is its own inverse.
+/// Maps the bits of a double to an integer with the same order. The map is its own inverse.
 std::int64_t ordered_bits(std::int64_t bits) {
   return bits >= 0 ? bits : bits ^ std::numeric_limits<std::int64_t>::max();
 }
@@ -20,8 +20,8 @@ std::vector<std::int64_t> bounds_of(MPI_Comm comm, const std::vector<std::int64_
   std::int64_t least = own.empty() ? Limits::max() : own.front(), most = own.empty() ? Limits::min() : own.back();
   MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPI_INT64_T, MPI_MIN, comm);
   MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_INT64_T, MPI_MAX, comm);
-  if (least > most) return std::vector<std::int64_t>(counts.size(), 0);  // there is none
-  // Distances from the least, unsigned: they may be as far apart as 64 bits allow.
+  if (least > most) return std::vector<std::int64_t>(counts.size(), 0);  // no rank has a value
+  // Unsigned distances from the least value, because the range may need all 64 bits.
   const auto at = [&](std::uint64_t distance) {
     return static_cast<std::int64_t>(static_cast<std::uint64_t>(least) + distance);
   };

@@ -8,7 +8,7 @@ namespace umtet {
 
 Sharers sharers_of(MPI_Comm comm, const OwnerExchange& items) {
   const int own_rank = rank_in(comm);
-  std::vector<std::vector<int>> users(items.n_owned());  // ascending, as ranks are heard in their order
+  std::vector<std::vector<int>> users(items.n_owned());  // ascending, because messages are read in the order of ranks
   items.ask([&](std::size_t) { return own_rank; }, [&](std::size_t k, int rank) { users[k].push_back(rank); });
   std::size_t most = 0;
   for (const auto& list : users) most = std::max(most, list.size());

@@ -7,13 +7,13 @@
 namespace umtet {
 namespace {
 
-// Of a sample and of its functions.
+// Bytes of a sample, and of the functions at it.
 constexpr double kBytesPerSample = 88 + 147;
-// What a block of 512 nodes costs in samples: five vectors of 2 kB to their bytes; in time about the same, by the
-// operations of the energy of a block and of the functions of a sample.
+// Cost of a block of 512 nodes, in samples: in memory five vectors of 2 kB per block against the bytes of a sample; in
+// time about the same ratio, of the operations for the energy of a block to those for the functions of a sample.
 constexpr double kSamplesPerBlock = 45;
 
-/// The block that the first functions of these samples belong to.
+/// Returns the block of the first functions at a sample.
 int block_of(const LatticeBlocks& blocks, const SsdSample& s) { return blocks.at(cell_of(s) / LatticeBlocks::kEdge); }
 
 }  // namespace

@@ -16,10 +16,11 @@ namespace {
 
 constexpr std::size_t kNodes = LatticeBlocks::kNodes;
 constexpr std::size_t kSamplesAtOnce = 1 << 16;  // 6 MB
-// That rank 0 has of each sample besides: place and normal, distances to neighbours, area, noise, and who shares it.
+// Other bytes per sample on rank 0: position and normal, distances to neighbours, area, noise, and the ranks that share
+// it.
 constexpr double kHeldOfSample = 48 + 20 + 8 + 8 + 4;
 
-/// In messages of some megabytes: there is no copy of all.
+/// Sends runs of samples in messages of a few megabytes, without a copy of all.
 void send_runs(MPI_Comm comm, int rank, const std::vector<SsdSample>& samples, const std::vector<std::size_t>& runs,
                const std::vector<std::size_t>& list) {
   std::uint64_t n = 0;
@@ -50,7 +51,7 @@ std::vector<SsdSample> received_runs(MPI_Comm comm) {
   return samples;
 }
 
-/// Those of this rank, of all that rank 0 has.
+/// Distributes the samples of rank 0, and returns those that this rank needs. Collective.
 std::vector<SsdSample> own_samples(MPI_Comm comm, const LatticeBlocks& blocks, const std::vector<int>& begin,
                                    std::vector<SsdSample> all) {
   if (rank_in(comm) != 0) return received_runs(comm);
@@ -58,7 +59,7 @@ std::vector<SsdSample> own_samples(MPI_Comm comm, const LatticeBlocks& blocks, c
   const auto lists = runs_of_ranks(blocks, begin, all, runs);
   for (std::size_t r = 1; r < lists.size(); ++r) send_runs(comm, static_cast<int>(r), all, runs, lists[r]);
   std::size_t n = 0;
-  for (const std::size_t run : lists[0]) {  // ascending: none is overwritten before it is moved
+  for (const std::size_t run : lists[0]) {  // in ascending order, so that no sample is overwritten before it is moved
     for (std::size_t i = runs[run]; i < runs[run + 1]; ++i) all[n++] = all[i];
   }
   all.resize(n);
@@ -66,7 +67,7 @@ std::vector<SsdSample> own_samples(MPI_Comm comm, const LatticeBlocks& blocks, c
   return all;
 }
 
-/// Of the whole band, from the blocks that each rank has.
+/// Returns the coefficients of the whole band from the blocks of each rank. Collective.
 std::vector<float> joined(MPI_Comm comm, const std::vector<int>& begin, const float* own) {
   constexpr std::size_t kAtOnce = 1 << 28;
   const int rank = rank_in(comm);

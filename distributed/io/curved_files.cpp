@@ -22,12 +22,12 @@ class OwnedNodes {
   OwnedNodes(MPI_Comm comm, const CurvedPiece& piece, const std::vector<std::uint8_t>& boundary);
 
   const StandardData& vertices() const { return vertices_; }
-  /// Of vertices in the background; those of mid-sides follow, from first_mid_side() on.
+  /// Background ids of the owned vertices, followed by ids of the owned mid-sides, which begin at first_mid_side().
   const std::vector<std::int64_t>& ids() const { return ids_; }
   std::int64_t first_mid_side() const { return first_mid_side_; }
   const std::vector<Vec3>& places() const { return V_; }
   const std::vector<std::uint8_t>& boundary() const { return boundary_; }
-  /// Of the nodes of the own mesh, in the whole mesh.
+  /// Numbers in the whole mesh of the nodes of the local mesh.
   const std::vector<std::int64_t>& own_numbers() const { return own_numbers_; }
 
  private:
@@ -63,7 +63,7 @@ OwnedNodes::OwnedNodes(MPI_Comm comm, const CurvedPiece& piece, const std::vecto
                              [&](std::size_t k, char is) { boundary_[first + k] = static_cast<std::uint8_t>(is); });
 }
 
-/// Of the nodes that are owned.
+/// Returns the values at the owned nodes. Collective.
 template <std::size_t n>
 std::vector<std::array<double, n>> values_of(const VertexOwners& owners, std::size_t n_owned,
                                              const VertexValues& of_vertices, std::size_t a,
@@ -78,7 +78,7 @@ std::vector<std::array<double, n>> values_of(const VertexOwners& owners, std::si
   return values;
 }
 
-/// 0/1 at the nodes of each patch and of all of them, as `umtet export` has them.
+/// Adds 0/1 arrays for the nodes of each patch and of the boundary, as in files of `umtet export`.
 void add_node_sets(const SolverPart& part, const CurvedSolverPart& curved, const OwnerExchange& nodes,
                    std::map<std::string, FieldValues>& data) {
   std::vector<std::string> names = part.patches;
@@ -93,7 +93,7 @@ void add_node_sets(const SolverPart& part, const CurvedSolverPart& curved, const
   }
 }
 
-/// Of the nodes of the own mesh.
+/// Adds the values of an array at the nodes of the local mesh.
 void add_values(const VertexOwners& owners, const OwnerExchange& nodes, const VertexValues& of_vertices, std::size_t a,
                 const MidSideValues& of_mid_sides, std::map<std::string, FieldValues>& data) {
   const VertexValues::Array& array = of_vertices.arrays[a];

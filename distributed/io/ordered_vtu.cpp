@@ -13,7 +13,7 @@ using Field = VtuField::Type;
 
 constexpr std::size_t kStandard = 2;  // arrays of nodes that all meshes have
 
-/// Writes the arrays of a mesh where its shape has them.
+/// Writes the arrays of a mesh at the positions that its shape determines.
 class Writer {
  public:
   Writer(MPI_Comm comm, const std::filesystem::path& path, const VtuRows& rows);
@@ -24,7 +24,7 @@ class Writer {
   void field(std::size_t a);
   template <std::size_t n, class Index>
   void tets();
-  /// The last ones of the shape are background_tet, mean_ratio, Points, connectivity, offsets and types.
+  /// The last arrays of the shape are background_tet, mean_ratio, Points, connectivity, offsets and types.
   const VtuShape::Array* from_end(std::size_t k) const { return &shape_.arrays[shape_.arrays.size() - k]; }
 
   MPI_Comm comm_;
@@ -61,7 +61,7 @@ void Writer::write() {
 }
 
 void Writer::nodes() {
-  constexpr std::int64_t kNoVertex = -1;  // of the background, for a mid-side
+  constexpr std::int64_t kNoVertex = -1;  // the background vertex of a mid-side
   SharedArrays arrays(file_, {&shape_.arrays[0], &shape_.arrays[1], from_end(4)});
   put_nodes(comm_, rows_.ids, rows_.places, rows_.boundary, [&](NodeColumns& columns) {
     for (std::int64_t& id : columns.id)

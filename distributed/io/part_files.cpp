@@ -31,10 +31,10 @@ std::vector<int> ranks_with(MPI_Comm comm, bool has_one) {
   return ranks;
 }
 
-/// 0/1 at the vertices of each patch, as `umtet export` has them.
+/// Adds 0/1 arrays for the vertices of each patch, as in files of `umtet export`.
 void add_node_sets(const SolverPart& part, const VertexOwners& owners, std::map<std::string, FieldValues>& data) {
   for (std::size_t p = 0; p < part.patches.size(); ++p) {
-    if (part.patches[p] == kWholeBoundary) continue;  // `boundary` is there for all
+    if (part.patches[p] == kWholeBoundary) continue;  // `boundary` exists in any case
     std::vector<std::uint8_t> is_in(part.owner.size(), 0);
     for (std::size_t f = 0; f < part.boundary.size(); ++f) {
       if (part.patch[f] != static_cast<int>(p)) continue;
@@ -44,7 +44,7 @@ void add_node_sets(const SolverPart& part, const VertexOwners& owners, std::map<
   }
 }
 
-/// Of the vertices of the own mesh, also of those of which another rank alone knows the values.
+/// Adds the values at the vertices of the local mesh, including values that only another rank has.
 void add_values(const VertexOwners& owners, const VertexValues& values, std::map<std::string, FieldValues>& data) {
   for (const VertexValues::Array& array : values.arrays) {
     if (array.n_components == 3) {
@@ -177,7 +177,7 @@ std::vector<fs::path> write_msh_pieces(MPI_Comm comm, const fs::path& msh, const
   piece.face_number = part.global_face;
   piece.face_patch = part.patch;
   add_values(owners, extras.values, piece.boundary_data);
-  std::map<std::int64_t, int> node;  // by numbers in the whole mesh: own ones that others have, and those of ghosts
+  std::map<std::int64_t, int> node;  // local nodes by number in the whole mesh: shared vertices and vertices of ghosts
   for (const int v : part.sharers.vertex) node[part.global_vertex[v]] = v;
   for (const GhostTet& ghost : ghost_tets(comm, mesh, part)) {
     Tet& tet = piece.ghosts.emplace_back();

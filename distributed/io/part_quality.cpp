@@ -13,7 +13,7 @@ namespace {
 constexpr double kNoTet = std::numeric_limits<double>::infinity();
 constexpr std::size_t kTetsAtOnce = 1 << 16;  // half a megabyte of Q
 
-/// The least Q at each vertex that is owned, ascending, those without a tet left out.
+/// Returns the least Q at each owned vertex with a tet, in ascending order. Collective.
 std::vector<double> least_at_owned(const VertexOwners& owners, const std::vector<double>& least) {
   std::vector<double> owned(owners.ids().size(), kNoTet);
   owners.ask([&](std::size_t v) { return least[v]; },
@@ -28,7 +28,7 @@ std::vector<double> least_at_owned(const VertexOwners& owners, const std::vector
 QualitySamples quality_samples(MPI_Comm comm, DistributedMesh& mesh,
                                const std::vector<std::pair<std::string, std::vector<Vec3>*>>& stages) {
   const VertexOwners owners(comm, mesh);
-  // A vertex may be positive by a tet of another rank.
+  // The tet that makes a vertex positive may be on another rank.
   std::vector<char> is_positive(mesh.mesh.V.size(), 0);
   for (const Triangle& f : mesh.positive_faces)
     for (const int v : f) is_positive[v] = 1;

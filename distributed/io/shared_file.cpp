@@ -8,7 +8,7 @@
 namespace umtet {
 namespace {
 
-// Of one call: MPI counts in int.
+// Maximum number of bytes per call, because MPI counts in int.
 constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;
 
 int errno_of(int error) {
@@ -53,7 +53,8 @@ void SharedFile::write(std::uint64_t at, std::string_view text) {
                            &status));
     if (error_ != 0) return;
     MPI_Get_count(&status, MPI_BYTE, &n);
-    if (n != static_cast<int>(some.size())) error_ = ENOSPC;  // a short write is no error to all implementations
+    // Not all implementations report a short write as an error.
+    if (n != static_cast<int>(some.size())) error_ = ENOSPC;
     at += some.size();
     text.remove_prefix(some.size());
   }

@@ -27,7 +27,7 @@ struct OrderedFace {
   std::int64_t patch;
 };
 
-/// The HDF5 file, whose arrays are known by their places in a list.
+/// The HDF5 file, whose arrays are identified by their positions in a list.
 class Arrays {
  public:
   Arrays(MPI_Comm comm, const fs::path& file, const std::vector<Hdf5Array>& arrays) : begin_(arrays.size()) {
@@ -37,7 +37,7 @@ class Arrays {
         size_ = fs::file_size(file);
       } catch (const std::system_error&) {
         throw;
-      } catch (const std::runtime_error&) {  // HDF5 does not say why
+      } catch (const std::runtime_error&) {  // HDF5 does not give the reason
         throw std::system_error(std::make_error_code(std::errc::io_error));
       }
     });
@@ -45,7 +45,7 @@ class Arrays {
     MPI_Bcast(&size_, 1, MPI_UINT64_T, 0, comm);
     file_.emplace(comm, file);
   }
-  /// @param first  how many values are before these
+  /// @param first  number of values before these
   template <class T>
   void put(std::size_t array, std::size_t first, const std::vector<T>& values) {
     file_->write(begin_[array] + first * sizeof(T),

@@ -26,10 +26,10 @@
 namespace umtet {
 namespace {
 
-/// Where vertices are that have left the background, ascending.
+/// Vertices that are not at their background positions, with their positions, ascending.
 using Places = std::vector<std::pair<std::int64_t, Vec3>>;
 
-/// Those of `later` take the place of earlier ones.
+/// Returns the union of both lists; positions in `later` replace earlier ones.
 Places replaced(const Places& earlier, Places later) {
   const auto is_less = [](const auto& a, const auto& b) { return a.first < b.first; };
   const auto n = static_cast<std::ptrdiff_t>(later.size());
@@ -100,11 +100,11 @@ class PartRun {
   const LatticePart part_;
   Neighbourhood ranks_;
   const BackgroundCosts costs_;
-  ClassificationParams classification_;  ///< with the costs
-  IdSet inside_;                         ///< of known vertices
+  ClassificationParams classification_;  ///< parameters, including the costs
+  IdSet inside_;                         ///< inside vertices among the known vertices
   BackgroundLayer layer_;
-  Places places_, projected_;         ///< of own vertices that are not where the background has them: at last, between
-  std::vector<std::int64_t> vertex_;  ///< those of the result, by ids of the part
+  Places places_, projected_;         ///< own vertices off their background positions: finally, and after projection
+  std::vector<std::int64_t> vertex_;  ///< vertices of the result, as ids in lattice()
   DistributedMesh result_;
 };
 
@@ -187,7 +187,7 @@ void PartRun::repair() {
   result_.n_psi_evaluations += made.psi_evaluations;
 }
 
-/// The own ones among places by ids of the whole.
+/// Returns the own vertices in a list with ids of the whole lattice.
 Places PartRun::own_of(const Places& moved) const {
   Places own;
   for (const auto& [there, x] : moved) {
@@ -197,15 +197,15 @@ Places PartRun::own_of(const Places& moved) const {
   return own;
 }
 
-/// Where an own vertex is.
+/// Returns the position of an own vertex.
 Vec3 PartRun::place(const Places& of_own, std::int64_t v) const {
   const auto found =
       std::lower_bound(of_own.begin(), of_own.end(), v, [](const auto& a, std::int64_t id) { return a.first < id; });
   return found != of_own.end() && found->first == v ? found->second : part_.lattice().position(v);
 }
 
-/// f(vertex of type 0 of the cell, steps from there to the corners, id in the whole) for the tets of own cells with a
-/// vertex inside.
+/// Calls f(vertex of type 0 of the cell, id steps from it to the corners, id in the whole lattice) for the tets of own
+/// cells with an inside vertex.
 template <class F>
 void PartRun::for_each_tet(const F& f) const {
   const BackgroundMesh& lattice = part_.lattice();
@@ -224,7 +224,7 @@ void PartRun::for_each_tet(const F& f) const {
   });
 }
 
-/// By ids of lattice().
+/// Lists the tets, with the ids of lattice().
 void PartRun::list_tets(IdSet& used) {
   std::size_t n = 0;
   for_each_tet([&](std::int64_t first, const auto& corners, std::int64_t) {
@@ -267,7 +267,7 @@ void PartRun::list_positive_faces() {
   }
 }
 
-/// Places of vertices of others are asked for, and the others answer.
+/// Requests the positions of vertices that other ranks own, and answers such requests. Collective.
 void PartRun::fetch(const Places& of_own, std::vector<Vec3>& V) {
   V.resize(vertex_.size());
   std::vector<Neighbourhood::Bytes> asked(ranks_.ranks().size()), answers(asked.size());
@@ -297,7 +297,7 @@ void PartRun::fetch(const Places& of_own, std::vector<Vec3>& V) {
   }
 }
 
-/// Vertices go back where the mesh meets itself.
+/// Moves vertices back where the mesh intersects itself.
 void PartRun::embed() {
   begin_phase("embed");
   const auto moved = step_parts_back(comm_, part_, partition_, ranks_, {result_.mesh, vertex_, inside_, places_});

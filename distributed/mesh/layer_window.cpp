@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::int64_t kCells = BlockCurve::kCells;
 
-/// Among the cells of its block.
+/// Index of a cell in its block.
 std::int64_t number_in_block(const BackgroundMesh::Cell& cell) {
   return (cell[0] + 1) % kCells + kCells * ((cell[1] + 1) % kCells + kCells * ((cell[2] + 1) % kCells));
 }
@@ -21,16 +21,16 @@ std::int64_t number_in_block(const BackgroundMesh::Cell& cell) {
 template <class T>
 LayerWindow::Open<T> LayerWindow::opened(std::vector<T> list) const {
   Open<T> open;
-  if (partition_.n_ranks() == 1) {  // Open MPI has no window of one rank
+  if (partition_.n_ranks() == 1) {  // Open MPI does not support a window of a single rank
     open.alone = std::move(list);
     open.own = open.alone.data();
     return open;
   }
-  // Allocated by MPI: on one machine that is shared memory.
+  // MPI allocates the window, which is shared memory on one machine.
   MPI_Win_allocate(static_cast<MPI_Aint>(list.size() * sizeof(T)), sizeof(T), MPI_INFO_NULL, comm_, &open.own,
                    &open.window);
   std::copy(list.begin(), list.end(), open.own);
-  MPI_Barrier(comm_);  // before anybody reads
+  MPI_Barrier(comm_);  // before any rank reads
   MPI_Win_lock_all(0, open.window);
   return open;
 }
@@ -83,7 +83,7 @@ void LayerWindow::list_own(const IdSet& inside, const Places& places, std::vecto
   }
 }
 
-/// One piece behind the other.
+/// Reads pieces into consecutive memory.
 template <class T>
 std::vector<T> LayerWindow::read(const Open<T>& open, const std::vector<Piece>& pieces) {
   std::size_t n = 0;
@@ -106,7 +106,7 @@ std::vector<T> LayerWindow::read(const Open<T>& open, const std::vector<Piece>& 
   return list;
 }
 
-/// What a header and its entries say.
+/// Appends the vertices that a header and its entries describe.
 void LayerWindow::add(const BlockCurve::Block& block, const std::uint64_t* header, const Entry* entries,
                       std::vector<LayerVertex>& list) const {
   const BackgroundMesh& whole = part_.whole();

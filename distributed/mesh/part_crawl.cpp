@@ -30,7 +30,7 @@ IdSet crawl_part(MPI_Comm comm, const LatticePart& part, ImplicitFunctionRef psi
     MPI_Bcast(words.data(), static_cast<int>(words.size()), MPI_UINT64_T, 0, comm);
   };
   IdSet inside(part.lattice().n_vertices());
-  part.known().for_each([&](std::int64_t v) {  // ascending in the whole, too
+  part.known().for_each([&](std::int64_t v) {  // ids in the whole lattice are also ascending
     const std::int64_t id = part.to_whole(v);
     while (id >= 64 * end) go_on();
     if (words[static_cast<std::size_t>((id >> 6) - begin)] >> (id & 63) & 1) inside.insert(v);

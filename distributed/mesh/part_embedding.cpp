@@ -15,8 +15,8 @@
 namespace umtet {
 namespace {
 
-// Edges around a vertex that steps back in which all is read: vertices move by less than an edge or two, and what meets
-// their faces then is among what lies there.
+// Distance in edges around a vertex that steps back within which all data are read: vertices move by at most two edges,
+// so all faces that their faces can meet lie in this region.
 constexpr int kReach = 16;
 
 struct SentFace {
@@ -29,11 +29,11 @@ struct SentPlace {
   double place[3];
 };
 
-/// The faces of the boundary that a rank looks at: its own, and those of others near by behind them.
+/// The boundary faces that a rank tests: its own faces, followed by nearby faces of other ranks.
 class NearFaces {
  public:
   NearFaces(const LatticePart& part, Neighbourhood& ranks, const PartSurface& surface);
-  /// Ids of the corners of faces that meet, one of them an own one.
+  /// Adds the ids of the corners of intersecting faces, if one of the two is an own face.
   void add_meeting(std::set<std::int64_t>& vertices) const;
 
  private:
@@ -42,7 +42,7 @@ class NearFaces {
   std::vector<Triangle> faces_;
   std::size_t n_own_ = 0;
   std::vector<Vec3> V_;
-  std::vector<std::int64_t> id_;  ///< in the whole, of V_
+  std::vector<std::int64_t> id_;  ///< ids in the whole lattice of the vertices V_
   std::unordered_map<std::int64_t, int> number_;
 };
 
@@ -75,7 +75,7 @@ NearFaces::NearFaces(const LatticePart& part, Neighbourhood& ranks, const PartSu
       own[k] = number(face.corner[k], x);
     }
     faces_.push_back(own);
-    // Whoever has a tet whose face may meet this one has a block next to that of this corner.
+    // A rank with a face that can meet this one has a block next to the block of this corner.
     for (const int rank : part.knowers(surface.vertex[t[kTetFace[alone][0]]])) put(out[ranks.number(rank)], face);
   }
   n_own_ = faces_.size();
@@ -99,7 +99,7 @@ void NearFaces::add_meeting(std::set<std::int64_t>& vertices) const {
   }
 }
 
-/// Corners of own tets that are not positive and of faces that meet.
+/// Returns the corners of own tets that are not positive, and of intersecting faces.
 std::vector<std::int64_t> places_to_mend(const LatticePart& part, Neighbourhood& ranks, const PartSurface& surface) {
   std::set<std::int64_t> vertices;
   NearFaces(part, ranks, surface).add_meeting(vertices);
@@ -111,7 +111,8 @@ std::vector<std::int64_t> places_to_mend(const LatticePart& part, Neighbourhood&
   return {vertices.begin(), vertices.end()};
 }
 
-/// All that has been read around these vertices steps back. Where it does so near the rim of that, more is read.
+/// Applies step_back() to the mesh in the region around these vertices. If a vertex near the rim of the region moves, a
+/// larger region is read.
 std::vector<SentPlace> mended(const BackgroundMesh& whole, LayerWindow& window, std::vector<std::int64_t> around) {
   BlocksAround blocks(whole, window, kReach);
   IdSet inside(whole.n_vertices());

@@ -11,7 +11,7 @@
 namespace umtet {
 namespace {
 
-/// A flip between ranks.
+/// A flip in a message to another rank.
 struct SentFlip {
   std::int64_t vertex;
   std::int64_t is_filled;

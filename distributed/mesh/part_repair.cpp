@@ -10,7 +10,7 @@
 namespace umtet {
 namespace {
 
-/// A bad tet with all that is_bad() asks of it.
+/// A bad tet, with all data that is_bad() needs.
 struct SentTet {
   double badness;
   std::int64_t corner[4];
@@ -23,8 +23,8 @@ struct Moved {
   double place[3];
 };
 
-/// Of the tets whose first corner is own: each tet of the whole layer is of one rank, and those with one first corner
-/// are in their order. (The first is the least that moves.)
+/// Returns the bad tets whose first corner is an own vertex, so that each tet of the whole layer is on one rank. Tets
+/// with the same first corner keep their order. (The first corner is the least corner that moves.)
 std::vector<SentTet> own_bad_tets(const LatticePart& part, ImplicitFunctionRef psi, const RepairParams& params,
                                   const BackgroundLayer& layer, const IdSet& inside, std::size_t& n_evaluations) {
   const auto& ids = layer.background_vertex;
@@ -46,7 +46,7 @@ std::vector<SentTet> own_bad_tets(const LatticePart& part, ImplicitFunctionRef p
 
 class GatheredLayer final : public RemoteLayer {
  public:
-  /// @param tets  of all ranks, those of one first corner in their order
+  /// @param tets  bad tets of all ranks; tets with the same first corner are in the order of the whole layer
   GatheredLayer(BlocksAround blocks, std::vector<SentTet> tets, std::size_t n_tets)
       : blocks_(std::move(blocks)), n_tets_(n_tets) {
     std::stable_sort(tets.begin(), tets.end(),

@@ -7,7 +7,8 @@ namespace {
 
 using Lists = std::vector<std::vector<std::size_t>>;
 
-/// @param ids  are listed, ascending   @param n_users  how many ranks have each
+/// @param ids      receives the ids, ascending
+/// @param n_users  receives the number of ranks that have each
 OwnerExchange exchange_of(MPI_Comm comm, const DistributedMesh& mesh, std::vector<std::int64_t>& ids,
                           std::vector<int>& n_users) {
   int n_ranks = 1;

@@ -6,14 +6,14 @@
 namespace umtet {
 namespace {
 
-constexpr int kMostBits = 21;  // of a number, so that three of them make a place of 63
+constexpr int kMostBits = 21;  // bits per coordinate, so that a position on the curve has 63 bits
 
 }  // namespace
 
 BlockCurve::BlockCurve(const BackgroundMesh& lattice) {
   std::int64_t most = 1;
   for (int a = 0; a < 3; ++a) {
-    n_[a] = (lattice.n_cells()[a] + 1) / kCells + 1;  // the last cell of vertices is that behind the last cell of tets
+    n_[a] = (lattice.n_cells()[a] + 1) / kCells + 1;  // the last cell with vertices follows the last cell with tets
     most = std::max(most, n_[a]);
   }
   bits_ = std::bit_width(static_cast<std::uint64_t>(most - 1));

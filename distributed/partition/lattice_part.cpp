@@ -6,7 +6,7 @@
 namespace umtet {
 namespace {
 
-/// f(block) for a block and all next to it.
+/// Calls f(block) for a block and all adjacent blocks.
 template <class F>
 void for_each_next_to(const BlockCurve::Block& b, const F& f) {
   for (std::int64_t k = -1; k <= 1; ++k) {
@@ -25,7 +25,7 @@ LatticePart::LatticePart(const BackgroundMesh& whole, const Partition& partition
   mark_vertices();
 }
 
-/// Own blocks, and the box around them and those next to them.
+/// Finds the own blocks, and the box around them and their adjacent blocks.
 void LatticePart::list_blocks(const Partition& partition) {
   BlockCurve::Block low = {}, high = {};
   for (std::uint64_t place = partition.begin(rank_); place < partition.end(rank_); ++place) {
@@ -39,8 +39,8 @@ void LatticePart::list_blocks(const Partition& partition) {
   }
   BackgroundMesh::Cell first = {}, n = {1, 1, 1};
   for (int a = 0; a < 3 && !own_blocks_.empty(); ++a) {
-    // Colours of blocks alternate: with an even one as the first they are those of the whole. There is a block more
-    // than is known, so that nothing known is at the rim.
+    // Colours of blocks alternate, so an even first block keeps the colours of the whole lattice. The box has one more
+    // layer of blocks than is known, so that no known vertex is at the rim.
     first_block_[a] = std::max<std::int64_t>(0, low[a] - 2) / 2 * 2;
     const std::int64_t end = std::min(high[a] + 2, curve_.n()[a]);
     n_blocks_[a] = end - first_block_[a];
@@ -73,15 +73,15 @@ void LatticePart::find_owners(const Partition& partition) {
     for_each_next_to(block, [&](const BlockCurve::Block& b) {
       if (!curve_.holds(b)) return;
       const int owner = partition.owner(b);
-      // Ranks with no block next to an own one change nothing that is needed here, and need nothing from here.
+      // Ranks without a block next to an own block neither change data that this rank needs, nor need data from it.
       if (owner != rank_ && neighbours.count(owner) != 0) knowers.insert(owner);
     });
     knowers_[here(block)].assign(knowers.begin(), knowers.end());
   }
 }
 
-/// Vertices of known blocks, but for those where lattice() has been cut out of the whole: a step from there may lead
-/// out of its ids.
+/// Marks the vertices of known blocks, except vertices on the rim of lattice(), from which an id step may lead out of
+/// its ids.
 void LatticePart::mark_vertices() {
   own_ = known_ = IdSet(lattice_.n_vertices());
   const auto &n = lattice_.n_cells(), &first = lattice_.first_cell(), &all = whole_.n_cells();

@@ -7,13 +7,14 @@
 namespace umtet {
 namespace {
 
-// What a block costs, in units of asking psi at its vertices, about 20 us for a cheap formula. A block with a piece of
-// the boundary has some 130 positive faces of 10.8 us (docs/performance.md), and half its tets. A block inside has 46 *
-// 64 tets, of some .3 us each for the certificate and the files: so pieces are also of about equal memory.
+// Cost of a block, in units of the evaluations of psi at its vertices, which take about 20 us for a cheap formula. A
+// block with a piece of the boundary has about 130 positive faces of 10.8 us (docs/performance.md), and half of its
+// tets. A block inside has 46 * 64 tets of about .3 us each for the certificate and the files, so pieces also have
+// about equal memory.
 constexpr std::uint8_t kOutside = 1, kInside = 40, kBoundary = 90;
 
-// At the peak, on all ranks together: (479 - 40) MB for each 5 M tets (README.md, 20 M tets by 4 ranks; 40 MB has a
-// rank that waits).
+// Peak memory of all ranks together: (479 - 40) MB for each 5 M tets (README.md, 20 M tets by 4 ranks; a waiting rank
+// uses 40 MB).
 constexpr double kBytesPerTet = 88;
 
 std::uint8_t weight(const BackgroundMesh& lattice, const BlockCurve& curve, const BlockCurve::Block& block,
@@ -66,7 +67,8 @@ Partition balanced_partition(MPI_Comm comm, const BackgroundMesh& lattice, Impli
     return static_cast<double>(sum) >=
            share_before(static_cast<int>(r), n_ranks, first_of_all) * static_cast<double>(all);
   };
-  // Piece r begins at the first block before which there is the share of the ranks before it, or more.
+  // Piece r begins at the first block for which the work of all blocks before it is at least the share of the ranks
+  // before r.
   std::vector<std::uint64_t> found(n + 1, curve.length()), begins(n + 1);
   std::uint64_t next = 0;
   for (std::uint64_t place = first, sum = before; place < last; sum += weights[place++ - first]) {

@@ -5,9 +5,9 @@
 namespace umtet {
 namespace {
 
-// For a piece of boundary of h^2, of points of psi = 0 and of faces; and more where psi is fitted to samples, by its
-// cells and the distances of samples. With these no rank is far from the others in the README's runs of 4.8 M and 20 M
-// tets of a formula, and of 7.1 M and 20 M tets of samples, by 4 ranks.
+// Bytes per area h^2 of the boundary, for points of psi = 0 and for faces; if psi is fitted to samples, also for its
+// cells and the distances of samples. They were chosen so that all ranks have similar peaks in the runs of ../README.md
+// with 4 ranks: 4.8 M and 20 M tets of a formula, 7.1 M and 20 M tets of samples.
 constexpr double kBytesPerSquare = 600, kBytesPerFittedSquare = 1100;
 
 }  // namespace

@@ -13,13 +13,13 @@
 namespace umtet {
 namespace {
 
-/// The array of a name without its values.
+/// The description of an array, without its name and values.
 struct Head {
   std::int64_t n_characters, n_components;
   double none;
 };
 
-/// All ranks have the arrays then, and no values.
+/// Returns the arrays of rank 0 without values on all ranks. Collective.
 VertexValues without_values(MPI_Comm comm, const BoundaryData& data) {
   std::vector<Head> heads;
   std::vector<char> names;
@@ -39,7 +39,7 @@ VertexValues without_values(MPI_Comm comm, const BoundaryData& data) {
   return made;
 }
 
-/// Of vertices in this order, one value after the other.
+/// Returns the values of an array at these vertices, in this order.
 std::vector<double> picked(const BoundaryData::Array& array, const std::vector<std::size_t>& vertices) {
   std::vector<double> list;
   for (const std::size_t v : vertices) {
@@ -52,7 +52,7 @@ std::vector<double> picked(const BoundaryData::Array& array, const std::vector<s
   return list;
 }
 
-/// Of faces by their numbers among those of all ranks.
+/// Returns the patches of faces, which are given by their numbers in the whole mesh. Collective.
 std::vector<int> patches_of(MPI_Comm comm, const PieceData& data, const std::vector<std::int64_t>& faces) {
   int n_ranks = 1;
   MPI_Comm_size(comm, &n_ranks);
@@ -79,7 +79,7 @@ VertexValues shared_values(MPI_Comm comm, const DistributedMesh& mesh, const Bou
   std::vector<std::vector<std::int64_t>> asked(static_cast<std::size_t>(n_ranks));
   for (std::size_t v = 0; v < made.has.size(); ++v)
     if (made.has[v]) asked[0].push_back(mesh.background_vertex[v]);
-  std::vector<std::vector<std::size_t>> wanted;  // of each rank, places in data.vertices
+  std::vector<std::vector<std::size_t>> wanted;  // for each rank, indices into data.vertices
   for (const auto& ids : all_to_all(comm, asked)) {
     std::vector<std::size_t>& places = wanted.emplace_back();
     for (const std::int64_t id : ids)
@@ -109,7 +109,7 @@ MidSideValues shared_mid_side_values(MPI_Comm comm, const std::vector<std::size_
   MPI_Comm_size(comm, &n_ranks);
   for (std::size_t a = 0; a < n_arrays; ++a) {
     std::vector<std::vector<double>> answers(static_cast<std::size_t>(n_ranks));
-    std::size_t first = data.vertices.size();  // on rank 0, which alone has arrays
+    std::size_t first = data.vertices.size();  // on rank 0, the only rank with arrays
     for (std::size_t r = 0; r < n_of_rank.size() && !data.arrays.empty(); ++r) {
       std::vector<std::size_t> places(n_of_rank[r]);
       std::iota(places.begin(), places.end(), first);

@@ -25,7 +25,7 @@ namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
-/// A positive face on its way to rank 0.
+/// A positive face in a message to rank 0.
 struct SentFace {
   std::int64_t id;
   std::int64_t corner[3];
@@ -45,7 +45,7 @@ HeldMesh::HeldMesh(MPI_Comm comm, const BackgroundMesh& background, ImplicitFunc
   }
 }
 
-/// Places before anything moves, rounded as the others are.
+/// Returns the positions before projection, rounded like the other positions.
 std::vector<Vec3> HeldMesh::chosen() const {
   std::vector<Vec3> V;
   for (const std::int64_t v : mesh_.background_vertex)
@@ -53,7 +53,8 @@ std::vector<Vec3> HeldMesh::chosen() const {
   return V;
 }
 
-/// Faces in the order of their tets, and their vertices in that of their ids, as in the whole mesh.
+/// Gathers the boundary on rank 0: faces in the order of their tets and vertices in the order of their ids, as in the
+/// whole mesh.
 void HeldMesh::gather_boundary(UmResult& result) const {
   begin_phase("boundary");
   std::vector<SentFace> faces;
@@ -83,7 +84,7 @@ void HeldMesh::gather_boundary(UmResult& result) const {
   for (std::size_t v = 0; v < ids.size(); ++v) result.submesh.positive_vertices.push_back(static_cast<int>(v));
 }
 
-/// Conditioning angles, by positive faces of own tets.
+/// Counts violations of the assumptions about conditioning angles, at the positive faces of local tets.
 void HeldMesh::measure_assumptions(UmResult& result) const {
   Submesh own;
   for (const std::int64_t v : mesh_.background_vertex) own.mesh.V.push_back(background_.position(v));
@@ -141,7 +142,7 @@ CurvedInParts HeldMesh::curve(ImplicitFunctionRef psi, const ClosestPointParams&
   return made;
 }
 
-/// Those of boundary edges to rank 0, from one rank after the other.
+/// Gathers the mid-sides of boundary edges on rank 0, in the order of ranks.
 void HeldMesh::gather_mid_sides(std::vector<Vec3>& mid_sides) {
   struct Said {
     char is_curved;
@@ -177,7 +178,7 @@ MidSideValues HeldMesh::mid_side_values(const BoundaryData& data) const {
   return shared_mid_side_values(comm_, curved_->on_boundary, curved_->n_of_rank, data);
 }
 
-/// While the mesh has these places, moved to where the model is.
+/// Calls write() while the mesh has the positions V, in model coordinates.
 template <class Write>
 auto HeldMesh::with_places(std::vector<Vec3>& V, const Write& write) {
   for (Vec3& x : V) x += places_.shift;

@@ -10,10 +10,10 @@
 namespace umtet {
 namespace {
 
-/// What rank 0 has becomes what all have.
+/// Broadcasts bytes from rank 0.
 void pass_on(MPI_Comm comm, Heard& heard) {
-  give_back_freed_memory();  // of the work before
-  // Rank 0 may work alone for minutes: the others sleep meanwhile, and leave it their processors.
+  give_back_freed_memory();  // memory of the former work
+  // Rank 0 may work alone for minutes. The other ranks sleep, so that it can use their processors.
   MPI_Request request;
   MPI_Ibcast(&heard.command, sizeof heard.command, MPI_BYTE, 0, comm, &request);
   int has_come = 0;

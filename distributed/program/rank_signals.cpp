@@ -14,12 +14,13 @@
 namespace umtet {
 namespace {
 
-struct sigaction former[NSIG];  // of rank 0
-std::atomic<int> asked_by{0};   // of rank 0: a signal of what started it, until it is answered
+struct sigaction former[NSIG];  // the former handlers of rank 0
+std::atomic<int> asked_by{0};   // on rank 0: a signal of the launcher that is not yet handled; else 0
 int own_rank = 0;
-static_assert(std::atomic<int>::is_always_lock_free);  // else a signal handler may not touch it
+static_assert(std::atomic<int>::is_always_lock_free);  // otherwise a signal handler must not use it
 
-// Of rank 0, before it answers what started it; twice what mpirun leaves to those that it ends.
+// Delay before rank 0 handles a signal of the launcher: twice the time that mpirun leaves to the processes that it
+// ends.
 constexpr int kPatienceSeconds = 2;
 
 bool is_of_launcher(const siginfo_t* info) { return info->si_code <= 0 && info->si_pid == ::getppid(); }
@@ -27,7 +28,7 @@ bool is_of_launcher(const siginfo_t* info) { return info->si_code <= 0 && info->
 extern "C" void answer_of_first(int signal, siginfo_t* info, void*) {
   if (signal == SIGALRM) {
     const int waiting = asked_by.exchange(0);
-    if (waiting != 0) signal = waiting;  // else time is over, or the patience of install_signal_handlers()
+    if (waiting != 0) signal = waiting;  // otherwise the alarm is for the time limit, or of install_signal_handlers()
   } else if (is_of_launcher(info)) {
     asked_by = signal;
     const itimerval once{{0, 0}, {kPatienceSeconds, 0}};

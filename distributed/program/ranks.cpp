@@ -23,7 +23,7 @@
 namespace umtet {
 namespace {
 
-// Phases of what rank 0 does alone: with psi, with the boundary, and behind files that all write.
+// Phases in which rank 0 works alone: with psi, with the boundary, and after files that all ranks write.
 constexpr const char *kPsi = "alone_psi", *kMeasures = "alone_measures", *kFiles = "alone_files";
 
 struct NextPhase {
@@ -31,7 +31,7 @@ struct NextPhase {
   ~NextPhase() { begin_phase(name); }
 };
 
-/// Whether the levels that both have are the same: the same coefficients in memory.
+/// Returns whether the common levels of both are identical: the same coefficients in memory.
 bool begin_alike(const LevelSet& a, const LevelSet& b) {
   bool same = &a.coarsest() == &b.coarsest();
   for (int level = 1; same && level < std::min(a.n_levels(), b.n_levels()); ++level)
@@ -41,7 +41,8 @@ bool begin_alike(const LevelSet& a, const LevelSet& b) {
 
 }  // namespace
 
-/// What rank 0 does while all others do. @param then  the phase of what it does alone behind that
+/// Does collective work on rank 0.
+/// @param then  name of the following phase, in which rank 0 works alone
 template <class F>
 auto Ranks::with_all(const char* then, const F& work) const {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads_));
@@ -93,8 +94,9 @@ int Ranks::n() const {
   return n;
 }
 
-/// Bands that an h does not show are on rank 0 alone: where they are needed after all, psi is sent again. The last band
-/// of a fit is not kept here to be recognised: what begins with the levels that it was made for has no other.
+/// Sends psi to the other ranks, unless they have it. Only rank 0 holds the bands that h does not resolve; if a smaller
+/// h requires them, psi is sent again. `shared_` does not contain the last band of a fit. It is not needed for the
+/// comparison, because there is only one band for the levels before it.
 void Ranks::share(const LevelSet& psi) {
   const bool is_there = shared_ && psi.n_levels() <= n_shared_ && begin_alike(*shared_, psi);
   if (is_there && psi.n_levels() == n_shared_) return;
@@ -120,8 +122,8 @@ LevelSet Ranks::refine(const LevelSet& psi, double kappa, double tolerance, int 
   command.max_iterations = max_iterations;
   say(comm_, command);
   BandPart part = std::move(bands_.extract(psi.n_levels()).mapped());
-  // What it throws, a signal above all, does not end all at once: it is answered as in one process, when the others
-  // wait no more.
+  // An exception of go_on(), in particular after a signal, does not end all ranks at once. It is rethrown, as in one
+  // process, when the other ranks have finished.
   std::exception_ptr thrown;
   const auto go_on_together = [&](double residual) {
     if (thrown) return;
@@ -173,15 +175,16 @@ std::optional<MadeInParts> Ranks::make(const BackgroundMesh& background, const B
     give_back_freed_memory();
     return summary;
   });
-  // Behind what all do: its end tells them to drop the mesh, also where there is none.
+  // Created after the collective work, because its destructor tells the other ranks to drop the mesh, even if there is
+  // none.
   auto handle = std::make_shared<const Handle>(*this, command.mesh);
   if (made) made->mesh = std::move(handle);
   return made;
 }
 
 double Ranks::allowed_bytes(const Parameters& parameters) const {
-  give_back_freed_memory();  // which counts
-  const double of_one = parameters.output().max_memory > 0 ? 1 : 1. / n_here_;  // what a machine can give is shared
+  give_back_freed_memory();                                                     // freed memory would count as used
+  const double of_one = parameters.output().max_memory > 0 ? 1 : 1. / n_here_;  // ranks share a machine
   return of_one * n() * umtet::allowed_bytes(parameters);
 }
 

@@ -34,7 +34,7 @@ std::string difference_of_calls(MPI_Comm comm, const Json& mine) {
   std::string complaint;
   if (const std::string there(first.begin(), first.end()); there != text)
     complaint = first_difference(Json::parse(there), own, rank_in(comm));
-  // The first of them speaks.
+  // The first rank that differs sends its sentence.
   int n_ranks = 1;
   MPI_Comm_size(comm, &n_ranks);
   int least = complaint.empty() ? n_ranks : rank_in(comm);

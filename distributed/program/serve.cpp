@@ -36,7 +36,7 @@ class Server {
       try {
         together(comm_, [&] { obey(heard.command, heard.attached); });
       } catch (const KnownToAll&) {
-        // Rank 0 says it.
+        // Rank 0 prints the message.
       }
     }
   }
@@ -55,16 +55,16 @@ class Server {
   const std::function<Domain()>& ask_domain_;
   std::optional<TakenMesh>* taken_;
   std::optional<Parameters> parameters_;
-  std::map<int, BandPart> bands_;  ///< that are to be refined
-  std::optional<LevelSet> psi_;    ///< as far as an h shows it
+  std::map<int, BandPart> bands_;  ///< bands to be refined
+  std::optional<LevelSet> psi_;    ///< psi with the levels that h resolves
   Domain domain_;
-  bool is_fitted_ = false;  ///< to samples: psi_ is that of the domain
+  bool is_fitted_ = false;  ///< psi is fitted to samples: the level set of domain_ is psi_
   std::map<std::int64_t, HeldMesh> held_;
 };
 
 void Server::obey(const RankCommand& command, const Attached& attached) {
   const auto at = held_.find(command.mesh);
-  const PieceData none;  // rank 0 has it
+  const PieceData none;  // only rank 0 has data
   switch (command.order) {
     case RankOrder::LevelSet:
     case RankOrder::CutLevelSet:
@@ -81,7 +81,7 @@ void Server::obey(const RankCommand& command, const Attached& attached) {
       at->second.curve(domain_.psi(), um_params(parameters().mesh()).paper.closest_point);
       return;
     case RankOrder::Write:
-      // Files have no use for it, and nobody asks psi between them.
+      // Files do not need it, and psi is not evaluated between them.
       if (psi_) psi_->forget_below(std::numeric_limits<double>::infinity());
       return at->second.write(attached.file, static_cast<MeshState>(command.state), command.moving_alone != 0, {});
     case RankOrder::WriteQuality:
@@ -97,7 +97,7 @@ void Server::obey(const RankCommand& command, const Attached& attached) {
       held_.erase(at);
       return;
     case RankOrder::End:
-      return;  // operator() sees it before
+      return;  // operator() handles it before
   }
 }
 
@@ -107,7 +107,7 @@ const Parameters& Server::parameters() {
 }
 
 void Server::take_samples(int level) {
-  parameters();  // and threads
+  parameters();  // also sets the number of threads
   bands_.insert_or_assign(level, band_part(comm_, {}, 0, {}));
 }
 
@@ -129,7 +129,7 @@ void Server::take_level_set(const RankCommand& command) {
 }
 
 void Server::take_domain(const RankCommand& command) {
-  if (!difference_of_calls(comm_, parameters().section("mesh")).empty()) return;  // rank 0 says it
+  if (!difference_of_calls(comm_, parameters().section("mesh")).empty()) return;  // rank 0 prints the message
   if (!command.is_fitted) {
     domain_ = ask_domain_     ? ask_domain_()
               : command.has_t ? formula_domain(parameters(), command.t)

@@ -10,7 +10,7 @@
 namespace umtet {
 namespace {
 
-/// What a level set is besides blocks and coefficients.
+/// The data of a level set except blocks and coefficients.
 struct Head {
   std::int64_t n_levels, kind, support, n[3];
   double gamma, epsilon, origin[3], h;

@@ -32,11 +32,11 @@ int rank_of(MPI_Comm comm) {
   return rank;
 }
 
-// What Open MPI 4.1 maps when it starts, 220 MB here (VmPeak before and after MPI_Init_thread()), and what a mesh
-// takes. Where it cannot map all of that it waits for ever, or crashes.
+// Address space that Open MPI 4.1 maps at the start, 220 MB here (VmPeak before and after MPI_Init_thread()), plus the
+// needs of a mesh. If Open MPI cannot map all of it, it waits for ever or crashes.
 constexpr double kLeastAddresses = 3.2e8;
 
-/// Under a limit of addresses (ulimit -v) that is too low for MPI.
+/// Returns false, with a message, if the limit of the address space (ulimit -v) is too low for MPI.
 bool has_addresses() {
   rlimit limit{};
   double pages = 0;
@@ -48,7 +48,7 @@ bool has_addresses() {
   return false;
 }
 
-/// Those of a mesh, of a call that several processes take. \throw UsageError as parse_command_line()
+/// Returns the mesh parameters of a call that several processes support. \throw UsageError as parse_command_line()
 Parameters parameters_of(int argc, char** argv) {
   Command command = parse_command_line(argc, argv).command;
   if (auto* evolve = std::get_if<EvolveCommand>(&command)) return std::move(evolve->request.parameters);
@@ -56,7 +56,7 @@ Parameters parameters_of(int argc, char** argv) {
   return std::move(std::get<RunCommand>(command).request.parameters);
 }
 
-/// Rank 0 says what is wrong with a call; the others need it only where nothing is.
+/// Runs a rank other than 0. Rank 0 reports errors of a call; the other ranks only parse a correct one.
 int run_other_rank(int argc, char** argv, int n_here) {
   set_work_at_hand("mesh");
   std::unique_ptr<tbb::global_control> threads;
@@ -78,8 +78,8 @@ int run_other_rank(int argc, char** argv, int n_here) {
 int main(int argc, char** argv) {
   using namespace umtet;
   keep_freed_memory();
-  std::signal(SIGXFSZ, SIG_IGN);                                           // a limit on files is an error of write()
-  if (!has_addresses()) return static_cast<int>(ExitCode::ResourceLimit);  // which ends the other processes, too
+  std::signal(SIGXFSZ, SIG_IGN);  // exceeding a limit on files is then an error of write()
+  if (!has_addresses()) return static_cast<int>(ExitCode::ResourceLimit);  // this also ends the other processes
   int provided = 0;
   MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
   const bool speaks = rank_of(MPI_COMM_WORLD) == 0;

@@ -38,7 +38,7 @@ std::vector<std::array<std::int64_t, 2>> MidSidePatch::edges() const {
 }
 
 MidSidePatch::Relaxed MidSidePatch::relaxed(ImplicitFunctionRef psi, double h, const SecondOrderParams& params) const {
-  // Numbers here ascend as ids do, so that all is done in the order of the whole mesh.
+  // Local numbers ascend with the ids, so that the order of all work is the order of the whole mesh.
   std::vector<std::int64_t> ids;
   for (const auto& [id, member] : tets_) ids.insert(ids.end(), member.tet.corner, member.tet.corner + 4);
   sort_once(ids);

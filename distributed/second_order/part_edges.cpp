@@ -18,7 +18,7 @@ std::vector<std::array<int, 2>> ends_of(const std::vector<Tet>& C, const MidSide
   return ends;
 }
 
-/// @param owned  are listed
+/// @param owned  receives the owned edges
 OwnerExchange exchange_of(MPI_Comm comm, const DistributedMesh& mesh, const std::vector<std::array<int, 2>>& ends,
                           std::vector<PartEdges::Ids>& owned) {
   int n_ranks = 1;

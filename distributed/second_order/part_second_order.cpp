@@ -44,8 +44,8 @@ class Curving {
   const double h_;
   const SecondOrderParams& params_;
   const std::size_t n_corners_;
-  std::vector<MidSide> kind_;  ///< of each edge of the own mesh
-  std::vector<char> is_sent_;  ///< of each own tet, to rank 0
+  std::vector<MidSide> kind_;  ///< kind of each edge of the local mesh
+  std::vector<char> is_sent_;  ///< for each local tet, whether rank 0 has received it
   CurvedParts made_;
 };
 
@@ -66,7 +66,7 @@ void Curving::project() {
   project_mid_sides(curved, psi_, h_, params_.closest_point, made_.mesh.V, kind_);
 }
 
-/// Of all ranks.
+/// Returns the number of fixed mid-sides on all ranks. Collective.
 std::size_t Curving::n_fixed() const {
   std::vector<char> own(kind_.size());
   for (std::size_t e = 0; e < own.size(); ++e) own[e] = kind_[e] == MidSide::Fixed;
@@ -86,7 +86,7 @@ SentTet Curving::sent(std::size_t tet) const {
   return made;
 }
 
-/// -1 where it is none of the own mesh.
+/// Returns the local number of an edge; -1 if it is not in the local mesh.
 int Curving::own_edge(const PartEdges::Ids& edge) const {
   std::array<int, 2> ends{};
   const std::vector<std::int64_t>& ids = mesh_.background_vertex;
@@ -98,7 +98,7 @@ int Curving::own_edge(const PartEdges::Ids& edge) const {
   return edges_.number()(ends[0], ends[1]);
 }
 
-/// Own tets with one of these edges that rank 0 does not have.
+/// Returns the local tets with one of these edges that rank 0 has not received.
 std::vector<SentTet> Curving::not_sent_at(const std::vector<PartEdges::Ids>& edges) {
   std::vector<char> is_asked(kind_.size(), 0);
   bool any = false;
@@ -137,8 +137,8 @@ void Curving::relax(const std::vector<int>& below) {
   MidSidePatch patch;
   patch.add_ring(gathered(comm_, first));
   MidSidePatch::Relaxed relaxed;
-  // Mid-sides of a tet that has become a bad one are moved, too: each sweep may go one ring of tets farther, and hardly
-  // one does. What has met the rim is done anew with twice the rings.
+  // Mid-sides of a tet that becomes bad also move, so each sweep can reach one more ring of tets; this is rare. If
+  // relaxation reaches the rim of the patch, it is repeated with twice the number of rings.
   int needs_more = 1;
   for (int n_rings = 1; needs_more; n_rings *= 2) {
     for (int ring = 0; ring < n_rings; ++ring) {

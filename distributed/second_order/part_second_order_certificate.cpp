@@ -99,7 +99,8 @@ void CurvedCertificate::measure_jacobians() {
   made_.min_scaled_jacobian_upper = -greatest(-own.upper);
 }
 
-/// By the owners of edges: whether all who have one have the same mid-side, and how far it is from psi = 0.
+/// The owner of each edge checks that all ranks with the edge have the same mid-side, and measures its distance from
+/// psi = 0.
 void CurvedCertificate::measure_mid_sides() {
   struct Said {
     char is_on_boundary;

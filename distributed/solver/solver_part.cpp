@@ -14,16 +14,16 @@ namespace {
 
 constexpr std::size_t kPerPiece = 1 << 16;  // half a megabyte
 
-/// A face on its way to rank 0.
+/// A face in a message to rank 0.
 struct MeasuredFace {
   std::int64_t id;
   double area;
   int piece;
 };
 
-/// Pieces of the boundary by area, the largest first, summed in the order of faces as smooth_pieces() does. Of equal
-/// ones that with the first face is first.
-/// @return the place of each piece
+/// Sorts the pieces of the boundary by area, the largest first. Areas are sums in the order of faces, as in
+/// smooth_pieces(). Among equal areas, the piece with the first face is first.
+/// @return the position of each piece in this order
 std::vector<int> places_by_area(MPI_Comm comm, const DistributedMesh& mesh, const PartBoundary& boundary,
                                 const BoundaryTopology& topology) {
   std::vector<MeasuredFace> faces;
