@@ -132,8 +132,8 @@ struct BodyOptions {
   std::function<LabelSizes()> label_sizes = {};  ///< like `sizes`, for labels
   /// The caller has set `mesh.grade`, which requires a graded background.
   bool grade_is_given = false;
-  /// The caller has set `mesh.max_turn`: like `grade_is_given`; the limit then also holds within the noise of the
-  /// samples.
+  /// The caller has set `mesh.max_turn`, which requires a graded background. Otherwise the default limit makes no edges
+  /// shorter than h / 2, or finer than the noise of the samples allows.
   bool max_turn_is_given = false;
   double max_memory = 0;  ///< bytes of memory that the fit may use; 0: no limit
 };
