@@ -23,18 +23,18 @@ struct SurfaceSizeParams {
   /// length, and on scans shorter edges mostly follow texture.
   double least_by_turn = .5;
   /// An edge may exceed max_turn where psi = 0 is within this distance, turn h / 8, of its midpoint: the noise of
-  /// samples turns the normal, too.
+  /// samples also turns the normal.
   double noise = 0;
   /// Largest distance of flat faces from psi = 0, by its curvature; 0: no limit. Requires Hessians.
   double deviation = 0;
-  /// Whether the sheet of psi = 0 at x, where psi has this gradient, is known: thickness counts only between two sheets
-  /// that are. Called by several threads. Empty: all are.
+  /// Returns whether the sheet of psi = 0 at x, where psi has this gradient, is known. Thickness counts only between
+  /// two known sheets. Called by several threads. Empty: all sheets are known.
   std::function<bool(const Vec3& x, const Vec3& gradient)> is_known;
   double constant_layer = 2;                                  ///< radius of the sources, in multiples of their h
   double steepest = std::numeric_limits<double>::infinity();  ///< an upper bound of |grad psi|
 };
 
-/// All broken constraints.
+/// Returns all broken constraints.
 std::vector<std::string> problems(const SurfaceSizeParams&);
 
 /// Size sources on psi = 0. The size of each is the least of

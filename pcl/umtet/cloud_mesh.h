@@ -23,8 +23,10 @@ using Coordinates = std::vector<std::array<double, 3>>;
 /// Samples of a surface. All lengths are in the unit of the model.
 struct ScannedCloud {
   Coordinates points;
-  Coordinates normals;           ///< outward, of any length; empty if there are none, zero or NaN for a missing one
-  Coordinates viewpoints;        ///< position of the sensor that saw a point; empty if unknown, NaN for an unknown one
+  /// Outward normals of any length; empty if there are none, zero or NaN where a normal is missing.
+  Coordinates normals;
+  /// Position of the sensor that saw each point; empty if all are unknown, NaN if one is unknown.
+  Coordinates viewpoints;
   std::size_t n_not_finite = 0;  ///< points dropped because they are not finite
 
   /// Appends another view of the same surface, in the same coordinates.

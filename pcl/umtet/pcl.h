@@ -37,8 +37,8 @@ ScannedCloud from_pcl(const pcl::PointCloud<PointT>& cloud, const Eigen::Vector3
   return made;
 }
 
-/// Converts a cloud with its sensor_origin_, which is the VIEWPOINT of its PCD file, as viewpoint. An unset one, (0, 0,
-/// 0) without rotation, is unknown.
+/// Converts a cloud with its sensor_origin_, which is the VIEWPOINT of its PCD file, as viewpoint. An unset
+/// sensor_origin_, which is (0, 0, 0) without rotation, counts as unknown.
 template <class PointT>
 ScannedCloud from_pcl(const pcl::PointCloud<PointT>& cloud) {
   const bool is_set = !cloud.sensor_origin_.template head<3>().isZero(0) ||

@@ -109,8 +109,8 @@ struct LayerVertex {
   Vec3 place;
 };
 
-/// A layer in a lattice that is stored by other processes and repaired by this one. This process reads some thousand
-/// places of it, whatever its size.
+/// A layer in a lattice that is stored by other processes and repaired by this one. This process reads a few thousand
+/// positions of it, for any size of the layer.
 class RemoteLayer {
  public:
   /// bad_tets() of the whole layer with the bound target + lift, in the order of the whole layer.

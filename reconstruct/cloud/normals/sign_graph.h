@@ -18,7 +18,7 @@ struct SignEdge {
 
 /// Weight of a pair. On the circle through both points with normal n_a, the normal at b is n_a - 2 (n_a.e) e, e = (x_b
 /// - x_a) / |x_b - x_a|. The weight is the cosine between this normal and n_b, times (1 - c^2)^2 with c = max |n.e|,
-/// because a pair along its normals may equally be the two sides of a sheet, or noise.
+/// because a pair in the direction of its normals may be noise, or the two sides of a sheet.
 double pair_weight(const Vec3& x_a, const Vec3& n_a, const Vec3& x_b, const Vec3& n_b);
 
 /// The graph of pairs of nearest neighbours, each once, ordered by (a, b).
@@ -57,8 +57,8 @@ using Settle = std::function<std::vector<std::int8_t>(const Signs&)>;
 ///
 /// 1. patches of at most kPatchPoints points grow over the most certain pairs (union-find with parity);
 /// 2. the two patches with the greatest |sum of weights| between them are joined, repeatedly;
-/// 3. patches, regions of up to 64 smaller patches, then points are turned over if their pairs to the rest disagree in
-///    sum.
+/// 3. the signs of patches, then of regions of up to 64 smaller patches, then of points are reversed if the sum over
+///    their pairs to all other points disagrees with them.
 ///
 /// Step 2 first uses certain pairs. The resulting components are given to `settle`. It then continues down to the
 /// weakest pairs, except between two settled components, so that touching bodies stay separate.
