@@ -42,9 +42,9 @@ double counting_spacing(const Domain& domain, double h);
 /// Every sample supports the one piece whose cut points are nearest to it, if the distance is at most kSupportRadius
 /// sample spacings or, if that is larger, one spacing of the counting grid. So a false sheet around, inside or across
 /// the body gets no samples of the body. A piece is kept if at least 10 samples support it, and if its number of
-/// samples per area is at least a fiftieth of that of the piece with the most samples: the sample spacing of a second
-/// body may be seven times as large. The piece with the most samples is kept if it has at least one. A formula has no
-/// artefacts, so all its pieces are kept.
+/// samples per area is at least a fiftieth of this number for the piece with the most samples: the sample spacing of a
+/// second body may be seven times as large. The piece with the most samples is kept if it has at least one. A formula
+/// has no artefacts, so all its pieces are kept.
 ///
 /// @param h      edge length of the mesh; the grid has the spacing counting_spacing(domain, h)
 /// @param cells  sign cells of an earlier count of the same psi at a larger h; null: they are searched

@@ -39,9 +39,9 @@ std::string piece_begin(std::size_t n_points, const std::string& counted, std::s
 /// Layout of a VTK XML file with raw appended data: tags as text, then the arrays, each after its number of bytes as 64
 /// bits. This class computes all positions; AppendedWriter also holds the numbers.
 ///
-/// The arrays follow in the reverse order of their tags. meshio 5.3 turns such a file into one in base64: from the first
-/// array on, it looks up the tag with the offset of the array and gives it another offset. Two tags may have the same
-/// offset then, and meshio takes the earlier tag. In this order the earlier tag is always the right one.
+/// The arrays follow in the reverse order of their tags. meshio 5.3 turns such a file into one in base64: from the
+/// first array on, it looks up the tag with the offset of the array and gives it another offset. Two tags may have the
+/// same offset then, and meshio takes the earlier tag. In this order the earlier tag is always the right one.
 class AppendedLayout {
  public:
   struct Array {
@@ -71,7 +71,7 @@ class AppendedLayout {
  private:
   std::string type_, tags_;
   std::vector<Array> arrays_;
-  std::vector<std::size_t> offset_at_;  ///< where the offset of each array goes in tags_
+  std::vector<std::size_t> offset_at_;  ///< position in tags_ of the offset of each array
 };
 
 /// Writer of a file of tags and arrays. It writes the arrays last, piece by piece, without a copy.

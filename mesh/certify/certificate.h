@@ -119,8 +119,8 @@ class CertificateMemory;
 /// Tets that are unchanged to the bit keep their measured values, and faces are counted where tets were added or
 /// removed. The surface is always measured again. Cost: proportional to the surface and the changed tets, plus some ns
 /// for each of the other tets.
-/// @param vertex_id, tet_id  ids that identify vertices and tets of the two meshes, ascending. They are not trusted:
-///                           they only say where to look
+/// @param vertex_id, tet_id  ids that identify vertices and tets of the two meshes, ascending. A wrong id makes the
+///   call slower, but the result stays correct
 /// @param memory             empty at first; receives the data that the next call uses
 MeshCertificate certify(const CertificateInput&, const std::vector<std::int64_t>& vertex_id,
                         const std::vector<std::int64_t>& tet_id, CertificateMemory& memory);

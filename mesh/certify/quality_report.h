@@ -39,7 +39,7 @@ QuantilePlace quantile_place(std::size_t n, double p);
 
 /// Quantile p in [0, 1] of ascending values, linear between neighbours (numpy's default); NaN for no values.
 double quantile(const std::vector<double>& ascending, double p);
-/// Quantile of n values of which only the lowest are given, at least as many as the quantile needs: p (n - 1) + 2 or n.
+/// Quantile of n values, given only the lowest of them: at least p (n - 1) + 2 values, or all n.
 double quantile(const std::vector<double>& lowest, std::size_t n, double p);
 
 }  // namespace umtet

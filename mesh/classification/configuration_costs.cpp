@@ -16,7 +16,7 @@ namespace umtet {
 namespace {
 
 // The quality that costs nothing: above the best in the table of A15, .894, so that every configuration has a cost and
-// good ones are told from better ones.
+// good ones are distinguished from better ones.
 constexpr double kGoodInA15 = .93;
 // The same of the slab, whose best is .901, and of the cube, .834. Tables: star_costs slab 1 60, star_costs cube 1 40.
 constexpr double kGoodInSlab = .936, kGoodInCube = .847;

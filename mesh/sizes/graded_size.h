@@ -21,9 +21,9 @@ inline constexpr double kMostAboveLeast = 1.2;
 /// The size of a cube: the size at its centre, but at most kMostAboveLeast times the least size in it.
 double cube_size(const SizeField& sizes, const Vec3& centre, double half_width);
 
-/// Expected number of tets of a GradedMesh with these sizes that are taken for {psi < 0}. It counts 12 per leaf whose
-/// centre is inside, before the octree is balanced, and adds a share for balance and for the layer by which omega_h
-/// exceeds the domain.
+/// Returns the expected number of tets of a GradedMesh with these sizes in the mesh of {psi < 0}. It counts 12 tets per
+/// leaf whose centre is inside, before the octree is balanced, and adds a share for balancing and for the layer by
+/// which omega_h exceeds the domain.
 /// @param finest    mean edge length of the smallest tets, model units
 /// @param steepest  an upper bound of |grad psi|: cubes farther from psi = 0 are skipped
 /// Cost: one query of sizes and one value of psi per cube. Uses threads over cubes; the result does not depend on them.

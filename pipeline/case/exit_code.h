@@ -33,7 +33,7 @@ struct CertificateFailed : std::runtime_error {
 struct ArtefactDamaged : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
-/// A file or folder cannot be used; what() is a sentence with the remedy. If the message of the system says more,
+/// A file or folder cannot be used; what() is a sentence with the remedy. If the message of the system contains more,
 /// std::system_error is thrown instead.
 struct FileTrouble : std::runtime_error {
   using std::runtime_error::runtime_error;

@@ -33,7 +33,7 @@ struct BatchOutcome {
 };
 
 /// Runs `umtet run SCAN -o FOLDER/NAME` for every scan, each in its own process. If one fails or crashes, its row
-/// says so, and the others continue. The tables of write_batch() are complete after every scan; FOLDER/logs
+/// states this, and the others continue. The tables of write_batch() are complete after every scan; FOLDER/logs
 /// contains the output of each scan. Finished cases are not made again. A scan that exceeds its time limit receives
 /// a signal to stop, and is killed if it does not stop.
 /// \throw UsageError (also if the folder is a case, or contains a batch.csv that umtet did not write), Interrupted

@@ -10,7 +10,8 @@ namespace umtet {
 struct PlotCurve {
   std::string name;
   std::string css_class;
-  std::vector<std::array<double, 2>> points;  ///< those that an axis cannot show (log of <= 0, not finite) are omitted
+  /// Points; those that an axis cannot show (log of <= 0, not finite) are omitted.
+  std::vector<std::array<double, 2>> points;
 };
 
 struct PlotAxes {

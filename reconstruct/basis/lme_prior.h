@@ -9,7 +9,7 @@ namespace umtet {
 /// x_a) / h on one axis. In three dimensions w is the product over the axes.
 ///
 /// CompactC2: w = exp(-(gamma - s / R^2) t^2) (1 - t^2 / R^2)^s for |t| < R, s = 4. It has support R and the curvature
-/// of the Gaussian at t = 0. It is C3, more than its name says; max-ent functions inherit this, and their tables
+/// of the Gaussian at t = 0. It is C3, although its name says C2; max-ent functions inherit this, and their tables
 /// (LmeTables) are C2.
 /// Gaussian: exp(-gamma t^2), cut where it falls below epsilon. This is the paper's prior, which jumps at the cut.
 ///                                                                     [ArroyoOrtiz2006; Rangarajan2018, Section 3.7]

@@ -91,7 +91,8 @@ class LevelSet {
 
   /// Coefficients of the functions that are nonzero in a cell of the coarsest lattice, 2 half_width along each axis.
   CoefficientWindow<double> coarsest_window(const Eigen::Vector3i& cell) const;
-  /// The same for a band; `first` is null if the band has none there. @param level  1 .. n_levels() - 1
+  /// The same coefficients for a band; `first` is null if the band has no coefficients there.
+  /// @param level  1 .. n_levels() - 1
   CoefficientWindow<float> band_window(int level, const Eigen::Vector3i& cell) const;
 
  private:

@@ -12,9 +12,9 @@ namespace umtet {
 double least_wall_value(const LevelSet& psi);
 
 /// Samples at the centres of the outermost cells of a lattice: psi is the distance to the nearest sample of the surface
-/// there, in lattice spacings. Far from its samples the minimiser of the Hessian energy goes on linearly, and behind
-/// the end of a long tube it may so become negative; these samples require that the wall is outside. Their weight (1e-3
-/// of a sample of the surface) decides where nothing else does.
+/// there, in lattice spacings. Far from its samples the minimiser of the Hessian energy is nearly linear, so it may
+/// become negative beyond the end of a long tube; these samples require that the wall is outside. Their weight, 1e-3 of
+/// a sample of the surface, matters only where no other sample determines psi.
 /// @param surface  samples in units of the lattice; not empty
 std::vector<SsdSample> wall_samples(const Lattice& lattice, const std::vector<SsdSample>& surface);
 

@@ -26,9 +26,9 @@ struct SampleColumns {
 
 /// Weighted means of the samples in each cube of edge `cube`, sorted by blocks of 8 x 8 x 8 cells.
 ///
-/// The mean position of samples of a curved surface is off the surface. Its value is that of the functions described by
-/// the samples, to third order: f(mean) = sum w (v_i + ½ n_i · (mean − x_i)) / sum w, the trapezoid rule from x_i to
-/// the mean, in which the mean's own gradient cancels.
+/// The mean position of samples of a curved surface is off the surface. Its value equals, to third order, the value
+/// there of the function that the samples describe: f(mean) = sum w (v_i + ½ n_i · (mean − x_i)) / sum w, the trapezoid
+/// rule from x_i to the mean, in which the gradient at the mean cancels.
 /// @param cube  edge of the cubes in lattice spacings: 1 or ½
 std::vector<SsdSample> merge_samples(const std::vector<SsdSample>& samples, double cube);
 

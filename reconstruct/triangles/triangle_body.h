@@ -15,15 +15,15 @@ struct TriangleBody {
   long euler_characteristic = 0;  ///< sum over all components
   /// The winding number is a whole number everywhere, so that `volume` is the volume of the body.
   bool is_closed = false;
-  /// Each edge has two triangles of its component, so that components and Euler number are those of the body's
-  /// boundary.
+  /// Each edge has two triangles of its component, so that components and Euler characteristic equal those of the
+  /// body's boundary.
   bool is_manifold = false;
 
   long genus() const { return static_cast<long>(n_pieces) - euler_characteristic / 2; }  ///< sum over components
 };
 
 /// Measures triangles that bound a body, outward, as made by sample_body(). Triangles with label 0 are on the boundary
-/// only in part, for example where bodies overlap; then neither volume nor topology is that of the body.
+/// only in part, for example where bodies overlap; then volume and topology differ from the body.
 ///
 /// Triangles are in one component if they share an edge of two triangles (face_patches.h). Bodies that touch along an
 /// edge or at a corner are therefore separate components, and a corner counts once per component.

@@ -10,11 +10,11 @@ namespace umtet {
 
 /// Detects samples that lie on no surface, with a flag for each. A sample is an outlier if it is
 /// - inside or outside of the volume that all samples enclose: |w - 1/2| > .4 for its winding number, and
-/// - isolated: its fourth neighbour is 2.5 times as far away as that of its neighbours (or four times the usual
-///   distance in the cloud, where all samples around are outliers, too).
+/// - isolated: the distance of its fourth neighbour is 2.5 times the same distance at its neighbours (or four times the
+///   usual distance in the cloud, if all samples around are also outliers).
 ///
 /// Cleaning detects sparse points beside dense ones, from points alone; this function is for samples that fill a
-/// volume, and for samples near the surface. At the tip of a spike w is small, too, but its samples are as close to
+/// volume, and for samples near the surface. At the tip of a spike w is also small, but its samples are as close to
 /// each other as elsewhere. For merged samples, distances before merging are used.
 /// @param cloud  sorted in space (morton_order.h); unit or zero normals
 /// @param near   neighbourhoods of its points

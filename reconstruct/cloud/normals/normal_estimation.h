@@ -10,9 +10,10 @@ namespace umtet {
 
 /// Parameters of estimate_normals().
 struct NormalEstimationParams {
-  int neighbours = 24;        ///< size of the first neighbourhood; >= 8. Four times the coefficients of a quadric
-  double noise_angle = 2;     ///< permitted effect of noise on a normal, degrees, before the neighbourhood grows; > 0
-  double largest_growth = 9;  ///< maximum growth of its radius; >= 1. A radius nine times that of 24 contains 2000
+  int neighbours = 24;     ///< size of the first neighbourhood; >= 8. Four times the coefficients of a quadric
+  double noise_angle = 2;  ///< permitted effect of noise on a normal, degrees, before the neighbourhood grows; > 0
+  /// Maximum growth of its radius; >= 1. Nine times the radius of 24 neighbours contains 2000.
+  double largest_growth = 9;
 };
 std::vector<std::string> problems(const NormalEstimationParams&);
 

@@ -33,6 +33,6 @@ struct SurfaceFields {
 SurfaceFields fields_at(const OrientedPointCloud& cloud, const std::vector<Vec3>& places,
                         const std::vector<Vec3>& normals, double reach, const Context& context = {});
 
-inline constexpr int kAveraged = 12;  ///< samples that a mean is taken over: two rings
+inline constexpr int kAveraged = 12;  ///< number of samples per mean: two rings
 
 }  // namespace umtet
