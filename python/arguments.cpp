@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "pipeline/expression/expression.h"
+#include "mesh/expression/expression.h"
 #include "python/interruptible.h"
 
 namespace umtet::python {

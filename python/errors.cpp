@@ -7,7 +7,7 @@
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/option_words.h"
-#include "pipeline/expression/expression.h"
+#include "mesh/expression/expression.h"
 #include "pipeline/memory/jobs.h"
 #include "python/arguments.h"
 #include "reconstruct/io/grid_io.h"

@@ -42,6 +42,13 @@ void write_nastran(const std::filesystem::path& path, const SolverMesh& mesh);
 /// <Mesh from="mesh.feb"/>.
 void write_feb(const std::filesystem::path& path, const SolverMesh& mesh);
 
+/// Writes a blocked .cdb file, which Ansys Mechanical APDL reads by CDREAD: NBLOCK (14 digits), EBLOCK with the tets as
+/// SOLID285 or SOLID187 of material 1, and for every patch a component (CMBLOCK) of its nodes. The elements form a
+/// component with the name of the body, and with several patches there is a component `boundary` of nodes. Names of
+/// components have at most 32 letters, digits and '_': a comment in the file tells the patch of a name that differs.
+/// There is no material and no load. Node and element numbers have at most 9 digits.
+void write_cdb(const std::filesystem::path& path, const SolverMesh& mesh);
+
 /// Writes VTK XML: the tets with all data, and for every patch an array with its name that is 1 at its nodes and 0
 /// elsewhere.
 void write_vtu(const std::filesystem::path& path, const SolverMesh& mesh);

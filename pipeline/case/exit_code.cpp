@@ -12,7 +12,7 @@
 #include "pipeline/case/interrupt.h"
 #include "pipeline/case/option_words.h"
 #include "pipeline/case/thin_place_json.h"
-#include "pipeline/expression/expression.h"
+#include "mesh/expression/expression.h"
 #include "reconstruct/io/grid_io.h"
 #include "reconstruct/io/point_cloud_io.h"
 #include "reconstruct/solve/fit_ssd.h"

@@ -240,7 +240,7 @@ void CommandParser::add_stage_flags(CLI::App& command) {
   command.add_option("-o", in_.output, "folder of the case (default: the file name without its extension)");
   command.add_flag("--force", in_.force, "run the stages, even if their records match");
   add_fresh(command,
-            "take only the input of the case from former calls; parameters that this call does not set have their  "
+            "take only the input of the case from former calls; parameters that this call does not set have their "
             "defaults; stages that match are not repeated");
 }
 

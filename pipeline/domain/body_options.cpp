@@ -15,7 +15,7 @@
 #include "pipeline/case/memory.h"
 #include "pipeline/domain/size_file.h"
 #include "pipeline/domain/viewpoint_file.h"
-#include "pipeline/expression/expression.h"
+#include "mesh/expression/expression.h"
 
 namespace umtet {
 namespace fs = std::filesystem;

@@ -8,7 +8,7 @@
 #include "body/scan/fitted_domain.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/domain/handover.h"
-#include "pipeline/expression/expression.h"
+#include "mesh/expression/expression.h"
 #include "pipeline/reports/stage_reports.h"
 #include "reconstruct/io/level_set_io.h"
 #include "reconstruct/io/point_cloud_io.h"

@@ -1,7 +1,6 @@
 #include "pipeline/meshing/part_mesher.h"
 
 #include "body/sizing/background_choice.h"
-#include "mesh/classification/configuration_costs.h"
 #include "pipeline/domain/body_options.h"
 
 namespace umtet {
@@ -16,7 +15,6 @@ std::optional<Message> for_one_process(const Parameters& parameters) {
   if (mesh.box_walls || mesh.complement) return "a mesh with walls";
   if (mesh.keep_iterates) return Message{Option{keys::mesh::keep_iterates}};
   if (background_file(parameters) || is_graded(parameters)) return "a background that is not a lattice";
-  if (!configuration_costs(tiling_of(mesh))) return "a background whose tiling has no costs";
   return std::nullopt;
 }
 

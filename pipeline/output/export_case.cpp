@@ -56,6 +56,7 @@ const std::vector<ExportFormat>& formats_known() {
       {"inp", {{".inp", write_inp}}, {}},
       {"bdf", {{".bdf", write_nastran}}, {}},
       {"feb", {{".feb", write_feb}}, {}},
+      {"cdb", {{".cdb", write_cdb}}, {}},
       {"xdmf",
        {{".h5", write_hdf5},
         {".xdmf", [](const fs::path& p, const SolverMesh& m) { write_xdmf(p, m, "mesh.h5"); }},

@@ -12,8 +12,8 @@
 namespace umtet {
 
 /// Returns the export formats: "vtu", "msh" (Gmsh 4.1), "msh22" (Gmsh 2.2), "mesh" (MEDIT), "inp" (Abaqus, CalculiX),
-/// "bdf" (Nastran), "feb" (FEBio), "xdmf" (with HDF5), "stl", "obj", "ply" (the boundary); for "pvtu" and "pmsh" (Gmsh
-/// 4.1) each process writes its own part.
+/// "bdf" (Nastran), "feb" (FEBio), "cdb" (Ansys), "xdmf" (with HDF5), "stl", "obj", "ply" (the boundary); for "pvtu"
+/// and "pmsh" (Gmsh 4.1) each process writes its own part.
 const std::vector<std::string>& export_formats();
 
 /// Returns whether one of these formats can be written from a distributed mesh, and whether one of them consists of one

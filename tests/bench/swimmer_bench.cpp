@@ -7,8 +7,8 @@
 
 #include <cstdlib>
 
-#include "pipeline/examples/channel_mesher.h"
-#include "pipeline/examples/stokes.h"
+#include "examples/swimmer/channel_mesher.h"
+#include "examples/swimmer/stokes.h"
 #include "tests/support/domains.h"
 #include "tests/support/sphere_in_channel.h"
 

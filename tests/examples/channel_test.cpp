@@ -14,7 +14,7 @@
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/artefact.h"
 #include "pipeline/case/exit_code.h"
-#include "pipeline/examples/channel_mesher.h"
+#include "examples/swimmer/channel_mesher.h"
 #include "tests/support/domains.h"
 #include "tests/support/sphere_in_channel.h"
 

@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <vector>
 
-#include "pipeline/examples/channel_mesher.h"
-#include "pipeline/examples/swim_files.h"
+#include "examples/swimmer/channel_mesher.h"
+#include "examples/swimmer/swim_files.h"
 
 namespace umtet {
 namespace {

@@ -1,4 +1,4 @@
-#include "pipeline/examples/swimmer.h"
+#include "examples/swimmer/swimmer.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "pipeline/examples/swim.h"
+#include "examples/swimmer/swim.h"
 #include "tests/support/box_tets.h"
 
 namespace umtet {

@@ -1,4 +1,4 @@
-#include "pipeline/expression/expression.h"
+#include "mesh/expression/expression.h"
 
 #include <cstdlib>
 #include <string>

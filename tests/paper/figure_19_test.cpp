@@ -1,5 +1,5 @@
 // Fig. 19 and 21A: the bird, moved by eq. (12), in one background mesh. All instants of a period:
-// pipeline/examples/bird.py.
+// examples/swimmer/bird.py.
 
 #include <gtest/gtest.h>
 

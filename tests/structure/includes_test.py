@@ -10,8 +10,24 @@ TOPS = ("common", "mesh", "distributed", "reconstruct", "body", "umtet", "pipeli
 
 def declared(text):
     """What each folder names, by folder."""
-    lines = (line.split("#")[0].strip() for line in text.splitlines())
+    lines = (line.split("#")[0].strip() for line in text.splitlines() if not line.startswith("not "))
     return {folder.strip(): names.split() for folder, _, names in (line.partition(":") for line in lines if line)}
+
+
+def forbidden(text):
+    """What a folder may not include itself, by folder: folders, and headers that it may."""
+    found = {}
+    for line in text.splitlines():
+        if line.startswith("not "):
+            folder, _, names = line.removeprefix("not ").partition(":")
+            others, _, headers = names.partition(" but ")
+            found[folder.strip()] = (others.split(), headers.split())
+    return found
+
+
+def is_forbidden(file, included, rules):
+    return any(file.startswith(folder + "/") and included not in headers and included.startswith(tuple(f"{o}/" for o in others))
+               for folder, (others, headers) in rules.items())
 
 
 def reach(folder, named, path=()):
@@ -53,7 +69,8 @@ WITHOUT = dict.fromkeys(("body", "umtet"), ("fmt/", "nlohmann/", "vtk", "CLI/", 
 
 class Includes(unittest.TestCase):
     def setUp(self):
-        self.named = declared((pathlib.Path(__file__).parent / "folders.txt").read_text())
+        text = (pathlib.Path(__file__).parent / "folders.txt").read_text()
+        self.named, self.rules = declared(text), forbidden(text)
 
     def test_the_declaration_has_no_cycle(self):
         for folder in self.named:
@@ -71,6 +88,8 @@ class Includes(unittest.TestCase):
                     reason = wrong(file, included, self.named)
                     if reason:
                         found.append(f"{file} -> {included}: {reason}")
+                    if is_forbidden(file, included, self.rules):
+                        found.append(f"{file} -> {included}: this folder may not include it itself")
         self.assertGreater(n, 500)
         self.assertEqual(found, [], "\n" + "\n".join(found))
 
@@ -89,6 +108,9 @@ class Includes(unittest.TestCase):
         for file, included in (("a/x.cpp", "b/y.h"), ("b/x.cpp", "b/c/y.h"), ("d/x.cpp", "b/detail/y.h"),
                                ("d/x.h", "d/detail/y.h"), ("e/x.cpp", "a/y.h"), ("b/new/x.cpp", "a/y.h")):
             self.assertIsNotNone(wrong(file, included, named), f"{file} -> {included}")
+        rules = forbidden("not d: b but b/y.h")
+        for included, is_wrong in (("b/y.h", False), ("b/c/z.h", True), ("a/y.h", False)):
+            self.assertEqual(is_forbidden("d/e/x.cpp", included, rules), is_wrong, included)
         with self.assertRaises(ValueError):
             reach("a", declared("a: b\nb: a"))
 

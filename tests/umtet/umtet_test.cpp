@@ -11,7 +11,7 @@
 
 #include "body/option_names.h"
 #include "pipeline/case/artefact.h"
-#include "pipeline/expression/expression.h"
+#include "mesh/expression/expression.h"
 #include "pipeline/reports/certificate_report.h"
 #include "pipeline/reports/stage_reports.h"
 #include "pipeline/run/run.h"

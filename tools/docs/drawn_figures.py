@@ -68,7 +68,7 @@ def figure_19(data, umtet):
     """The bird's meshes while eq. (12) moves it."""
     folder = data / "figure_19"
     if not (folder / "meshes" / "quality.csv").exists():
-        run(ROOT / "pipeline/examples/bird.py", "--umtet", umtet, "-o", folder)
+        run(ROOT / "examples/swimmer/bird.py", "--umtet", umtet, "-o", folder)
     instants("figure_19.svg", folder / "meshes", (.4, 1.2, 2, 2.8, 3.6, 4.4),
              axes_of_view(30, 25)[:, [1, 2, 0]], 48, 3, (225, 180))  # y is up
 

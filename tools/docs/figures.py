@@ -5,7 +5,7 @@ usage: tools/docs/figures.py [--only 14,24] [--data build/figures] [--peers buil
                        [--swimmer PROGRAM] [--most 8000000]
 
 What is missing of the data is made: Figure 8 by `umtet run --mode paper`, 9/10 by tests/bench/peers/compare.py, 14 and 15
-by `umtet mesh`, 19 by pipeline/examples/bird.py, 20 and 21B by `umtet evolve`, 24 to 26 by umtet_swimmer, 18 by peer_umtet
+by `umtet mesh`, 19 by examples/swimmer/bird.py, 20 and 21B by `umtet evolve`, 24 to 26 by umtet_swimmer, 18 by peer_umtet
 (both programs are built by compare.py --quick). Remove a folder to have its data made anew. Needs Debian's
 python3-matplotlib and python3-vtk9; some fifteen minutes.
 """
@@ -231,7 +231,7 @@ def main():
     parser.add_argument("--peers", type=Path, default=build / "peers")
     parser.add_argument("--programs", type=Path, default=build / "release/tests/bench/peers")
     parser.add_argument("--umtet", type=Path, default=build / "release/pipeline/umtet")
-    parser.add_argument("--swimmer", type=Path, default=build / "release/pipeline/examples/umtet_swimmer")
+    parser.add_argument("--swimmer", type=Path, default=build / "release/examples/swimmer/umtet_swimmer")
     parser.add_argument("--most", type=int, default=8_000_000, help="tets of the largest meshes of Figure 18")
     parser.add_argument("--only", help="these figures: 14,24")
     args = parser.parse_args()

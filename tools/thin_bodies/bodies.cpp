@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "pipeline/expression/expression.h"
+#include "mesh/expression/expression.h"
 #include "tools/star_costs/random.h"
 
 namespace umtet::thin_bodies {

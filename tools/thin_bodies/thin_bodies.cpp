@@ -29,7 +29,7 @@
 #include "body/search/mesh_maker.h"
 #include "mesh/background/background_mesh.h"
 #include "mesh/implicit/surface_distance.h"
-#include "pipeline/expression/expression.h"
+#include "mesh/expression/expression.h"
 #include "tools/thin_bodies/bodies.h"
 
 using namespace umtet;

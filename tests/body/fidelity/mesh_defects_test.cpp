@@ -7,7 +7,7 @@
 #include "body/fidelity/lost_ends.h"
 #include "body/fidelity/lost_surface.h"
 #include "body/pieces/clusters.h"
-#include "pipeline/expression/expression.h"
+#include "mesh/expression/expression.h"
 
 namespace umtet {
 namespace {

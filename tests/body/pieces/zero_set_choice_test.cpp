@@ -9,7 +9,7 @@
 #include "body/fidelity/verdict.h"
 #include "body/pieces/component_proof.h"
 #include "mesh/universal_mesh.h"
-#include "pipeline/expression/expression.h"
+#include "mesh/expression/expression.h"
 
 namespace umtet {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "pipeline/domain/body_options.h"
-#include "pipeline/expression/expression.h"
+#include "mesh/expression/expression.h"
 
 namespace umtet {
 namespace {

@@ -11,7 +11,7 @@
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/label_names.h"
 #include "pipeline/domain/body_options.h"
-#include "pipeline/expression/expression.h"
+#include "mesh/expression/expression.h"
 
 namespace umtet {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "body/sizing/deviation.h"
 #include "mesh/implicit/curvature.h"
-#include "pipeline/expression/expression.h"
+#include "mesh/expression/expression.h"
 #include "pipeline/meshing/defect_files.h"
 
 namespace umtet {

@@ -11,6 +11,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
@@ -93,6 +94,7 @@ std::vector<Format> formats() {
           {"a.inp", write_inp},
           {"a.bdf", write_nastran},
           {"a.feb", write_feb},
+          {"a.cdb", write_cdb},
           {"a.h5", write_hdf5},
           {"a.xdmf", [](P p, M m) { write_xdmf(p, m, "a.h5"); }},
           {"faces.xdmf", [](P p, M m) { write_boundary_xdmf(p, m, "a.h5"); }},
@@ -167,7 +169,7 @@ TEST(SolverFiles, MeshioFindsWhatWasWritten) {
     for (const Format& format : formats()) {
       format.write(scratch.folder / format.file, mesh);
       if (format.file == "a.mesh" && mesh.nodes_per_tet == 10) continue;  // meshio knows no MEDIT tets of ten nodes
-      if (!has(format.file, {"h5", "feb"})) files.push_back(scratch.folder / format.file);
+      if (!has(format.file, {"h5", "feb", "cdb"})) files.push_back(scratch.folder / format.file);
     }
     const auto found = read_back(files);
     ASSERT_EQ(found.size(), files.size());
@@ -239,6 +241,11 @@ TEST(SolverFiles, GmshFindsWhatWasWritten) {
   }
 }
 
+std::vector<int> from_one(std::vector<int> ids) {
+  for (int& i : ids) ++i;
+  return ids;
+}
+
 TEST(SolverFiles, AnXmlParserFindsInFilesOfFebioWhatWasWritten) {
   for (const SolverMesh& mesh : {block(2), quadratic()}) {
     const Scratch scratch;
@@ -256,10 +263,6 @@ TEST(SolverFiles, AnXmlParserFindsInFilesOfFebioWhatWasWritten) {
     for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
       for (int k = 0; k < 3; ++k) EXPECT_EQ(found["nodes"][i][k].get<double>(), mesh.nodes[i][k]) << i;
     }
-    const auto from_one = [](std::vector<int> ids) {
-      for (int& i : ids) ++i;
-      return ids;
-    };
     const std::vector<std::vector<int>> nodes = patch_nodes(mesh);
     const FaceGeometry faces = face_geometry(mesh);
     ASSERT_EQ(found["sets"].size(), mesh.patches.size() + 1);
@@ -275,6 +278,80 @@ TEST(SolverFiles, AnXmlParserFindsInFilesOfFebioWhatWasWritten) {
       }
       for (int k = 0; k < 3; ++k) EXPECT_NEAR(found["surfaces"][name]["area"][k].get<double>(), area[k], 1e-12);
     }
+  }
+}
+
+/// What the formats in a .cdb file find; see read_cdb.py.
+Json read_cdb(const fs::path& file) {
+  const std::string out =
+      test::shell(std::string(test::kPython) + " " UMTET_SOURCE_DIR "/tests/support/read_cdb.py " + file.string());
+  Json found = Json::parse(out.substr(0, out.find('\n')), nullptr, false);
+  EXPECT_FALSE(found.is_discarded()) << out;
+  if (found.is_discarded()) return Json::object();
+  EXPECT_TRUE(found["wrong"].empty()) << found["wrong"];
+  return found;
+}
+
+TEST(SolverFiles, FortranFormatsFindInFilesOfAnsysWhatWasWritten) {
+  for (SolverMesh mesh : {block(), quadratic()}) {
+    mesh.nodes.front().x() = -1.2345678901234567e-101;
+    const Scratch scratch;
+    write_cdb(scratch.folder / "a.cdb", mesh);
+    const Json found = read_cdb(scratch.folder / "a.cdb");
+    EXPECT_EQ(found["type"], mesh.nodes_per_tet == 4 ? "285" : "187");
+    ASSERT_EQ(found["nodes"].size(), mesh.nodes.size());
+    for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
+      for (int k = 0; k < 3; ++k) {
+        const double x = mesh.nodes[i][k];
+        EXPECT_NEAR(found["nodes"][i][k].get<double>(), x, 5.01e-14 * std::abs(x)) << i;  // 14 digits
+      }
+    }
+    ASSERT_EQ(found["elements"].size(), mesh.n_tets());
+    for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
+      const std::span<const int> tet = mesh.tet(t);
+      EXPECT_EQ(found["elements"][t], from_one({tet.begin(), tet.end()})) << t;
+    }
+    std::vector<std::size_t> all(mesh.n_tets());
+    for (std::size_t t = 0; t < all.size(); ++t) all[t] = t + 1;
+    EXPECT_EQ(found["element_sets"], Json({{"body", all}}));
+    std::map<std::string, std::vector<int>> expected = {{"boundary", from_one(boundary_nodes(mesh))}};
+    const std::vector<std::vector<int>> nodes = patch_nodes(mesh);
+    for (std::size_t p = 0; p < nodes.size(); ++p) {
+      std::string name = mesh.patches[p].name;
+      std::replace(name.begin(), name.end(), '-', '_');
+      expected[name] = from_one(nodes[p]);
+    }
+    EXPECT_EQ(found["sets"], Json(expected));
+    if (mesh.nodes_per_tet == 4) {
+      EXPECT_EQ(found["names"], Json({{"head-2", "head_2"}}));
+    }
+  }
+}
+
+TEST(SolverFiles, ComponentsOfAnsysHaveNamesOfTheirOwn) {
+  SolverMesh mesh = block(2);
+  const std::string stem(40, 'x');
+  const std::vector<std::string> names = {"a-b", "a.b",      "A_b",      "all",      "Stat",
+                                          "b",   stem + "1", stem + "2", stem + "3", std::string(32, 'y')};
+  std::vector<MeshPart> patches;
+  std::vector<int> patch(mesh.n_faces());
+  for (std::size_t p = 0; p < names.size(); ++p) patches.push_back({names[p], static_cast<int>(p) + 1});
+  for (std::size_t f = 0; f < patch.size(); ++f) patch[f] = static_cast<int>(f % patches.size());
+  set_patches(mesh, patch, patches);
+  const Scratch scratch;
+  write_cdb(scratch.folder / "a.cdb", mesh);
+  const Json found = read_cdb(scratch.folder / "a.cdb");
+  EXPECT_EQ(found["names"], Json({{"a-b", "a_b_2"},
+                                  {"a.b", "a_b_3"},
+                                  {"all", "all_2"},
+                                  {"Stat", "Stat_2"},
+                                  {stem + "1", stem.substr(0, 32)},
+                                  {stem + "2", stem.substr(0, 30) + "_2"},
+                                  {stem + "3", stem.substr(0, 30) + "_3"}}));
+  const std::vector<std::vector<int>> nodes = patch_nodes(mesh);
+  ASSERT_EQ(found["sets"].size(), names.size() + 1);
+  for (std::size_t p = 0; p < names.size(); ++p) {
+    EXPECT_EQ(found["sets"][found["names"].value(names[p], names[p])], from_one(nodes[p])) << names[p];
   }
 }
 
@@ -387,6 +464,26 @@ TEST(FixedWidth, KeepsAsManyDigitsAsFit) {
   EXPECT_EQ(detail::FixedWidth(0.1, 16, Style::Nastran).text(), "0.1");
   EXPECT_EQ(detail::FixedWidth(1e-5, 16, Style::Nastran).text(), "1.E-5");
   EXPECT_EQ(detail::FixedWidth(-3, 16, Style::Nastran).text(), "-3.");
+}
+
+TEST(FortranReal, HasFourteenDigitsAndAnExponentOfThree) {
+  EXPECT_EQ(detail::FortranReal(0).text(), " 0.0000000000000E+000");
+  EXPECT_EQ(detail::FortranReal(-0.).text(), " 0.0000000000000E+000");
+  EXPECT_EQ(detail::FortranReal(1. / 3).text(), " 3.3333333333333E-001");
+  EXPECT_EQ(detail::FortranReal(-2. / 3e5).text(), "-6.6666666666667E-006");
+  EXPECT_EQ(detail::FortranReal(-9.99999999999999e12).text(), "-1.0000000000000E+013");
+  EXPECT_EQ(detail::FortranReal(std::numeric_limits<double>::max()).text(), " 1.7976931348623E+308");
+  EXPECT_EQ(detail::FortranReal(-std::numeric_limits<double>::denorm_min()).text(), "-4.9406564584125E-324");
+}
+
+TEST(RequireWidth, RefusesNumbersThatAFieldCannotHold) {
+  EXPECT_NO_THROW(detail::require_width(999'999'999, 9, "an Ansys file"));
+  try {
+    detail::require_width(1'000'000'000, 9, "an Ansys file");
+    ADD_FAILURE();
+  } catch (const std::invalid_argument& e) {
+    EXPECT_STREQ(e.what(), "an Ansys file with a number beyond 999999999");
+  }
 }
 
 }  // namespace

@@ -15,7 +15,7 @@
 namespace umtet {
 namespace {
 
-const std::string kAllFormats = "vtu,msh,msh22,mesh,inp,bdf,feb,xdmf,stl,obj,ply,pvtu,pmsh";
+const std::string kAllFormats = "vtu,msh,msh22,mesh,inp,bdf,feb,cdb,xdmf,stl,obj,ply,pvtu,pmsh";
 
 std::set<std::string> names_in(const fs::path& folder) {
   std::set<std::string> names;
@@ -60,6 +60,15 @@ struct Inp {
   }
 };
 
+/// What the formats in a .cdb file find; see read_cdb.py.
+Json read_cdb(const fs::path& file) {
+  const std::string out =
+      test::shell(std::string(test::kPython) + " " UMTET_SOURCE_DIR "/tests/support/read_cdb.py " + file.string());
+  Json found = Json::parse(out.substr(0, out.find('\n')));
+  EXPECT_TRUE(found["wrong"].empty()) << found["wrong"];
+  return found;
+}
+
 class Export : public Program {
  protected:
   /// The egg, its lower part label 4, its upper part 2.
@@ -80,18 +89,24 @@ TEST_F(Export, LabelsOfPointsBecomeSetsOfEveryFile) {
       "mesh.vtu",     "mesh_boundary.vtu", "mesh.msh",     "mesh_22.msh",        "mesh.mesh",    "mesh.inp",
       "mesh.bdf",     "mesh.h5",           "mesh.xdmf",    "mesh_boundary.xdmf", "mesh.stl",     "mesh.obj",
       "mesh.ply",     "mesh.Feet.stl",     "mesh.top.stl", "mesh.Feet.obj",      "mesh.top.obj", "mesh.Feet.ply",
-      "mesh.top.ply", "mesh.pvtu",         "mesh_0.vtu",   "mesh_part_1.msh",    "mesh.feb"};
+      "mesh.top.ply", "mesh.pvtu",         "mesh_0.vtu",   "mesh_part_1.msh",    "mesh.feb",     "mesh.cdb"};
   EXPECT_EQ(names_in(out), expected);
   const std::string feb = test::shell(std::string(test::kPython) + " " UMTET_SOURCE_DIR "/tests/support/read_feb.py " +
                                       (out / "mesh.feb").string());
   const Json of_febio = Json::parse(feb.substr(0, feb.find('\n')));
   EXPECT_TRUE(of_febio["wrong"].empty()) << of_febio["wrong"];
+  const Json of_ansys = read_cdb(out / "mesh.cdb");
+  EXPECT_EQ(of_ansys["element_sets"]["body"].size(), of_febio["tets"]);
+  EXPECT_NEAR(of_ansys["volume"].get<double>(), of_febio["volume"].get<double>(), 1e-12);
   const Inp inp(out / "mesh.inp");
   for (const int i : inp.node_set.at("Feet")) EXPECT_LT(inp.node.at(i).z(), .3);
   for (const int i : inp.node_set.at("top")) EXPECT_GT(inp.node.at(i).z(), -.1);
   EXPECT_LT(inp.node_set.at("boundary").size(), inp.node_set.at("Feet").size() + inp.node_set.at("top").size());
   EXPECT_NEAR(inp.area.at("top").z() / 3.14159 / .8, 1, .1);  // the ellipse it is cut off at
-  for (const auto& [name, nodes] : inp.node_set) EXPECT_EQ(of_febio["sets"][name], Json(nodes)) << name;
+  for (const auto& [name, nodes] : inp.node_set) {
+    EXPECT_EQ(of_febio["sets"][name], Json(nodes)) << name;
+    EXPECT_EQ(of_ansys["sets"][name], Json(nodes)) << name;
+  }
   for (const auto& [name, area] : inp.area) {
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(of_febio["surfaces"][name]["area"][k].get<double>(), area[k], 1e-9) << name;
   }
@@ -127,7 +142,7 @@ TEST_F(Export, LabelsOfPointsBecomeSetsOfEveryFile) {
 TEST_F(Export, CurvedTetsStayCurved) {
   const Result r =
       run("mesh --implicit 'x^2+y^2+z^2-1' --box=-1.3,-1.3,-1.3,1.3,1.3,1.3 --tets 400 --order 2 -o ball "
-          "--json --export vtu,msh,msh22,mesh,inp");
+          "--json --export vtu,msh,msh22,mesh,inp,cdb");
   ASSERT_EQ(r.code, 0) << r.err;
   EXPECT_NE(r.err.find("FreeFEM finds no tets"), std::string::npos) << r.err;
   const Json made = Json::parse(r.out)["certificate"];
@@ -139,6 +154,20 @@ TEST_F(Export, CurvedTetsStayCurved) {
         << file;
   }
   EXPECT_NE(content(out / "mesh.inp").find("TYPE=C3D10"), std::string::npos);
+  const Json cdb = read_cdb(out / "mesh.cdb");
+  EXPECT_EQ(cdb["type"], "187");
+  EXPECT_NEAR(cdb["volume"].get<double>(), made["volume"].get<double>(), 1e-12);
+  // Another program integrates over the same curved tets of a file for Ansys.
+  if (!test::succeeds(std::string(test::kPython) + " -c 'import getfem'")) GTEST_SKIP() << "no getfem";
+  std::ofstream(folder / "volume.py") << "import getfem, sys\n"
+                                         "mesh = getfem.Mesh('import', 'cdb', sys.argv[1])\n"
+                                         "rule = getfem.MeshIm(mesh, getfem.Integ('IM_TETRAHEDRON(6)'))\n"
+                                         "print('volume', repr(getfem.asm('generic', rule, 0, '1', -1)))\n";
+  const std::string said = test::shell(std::string(test::kPython) + " " + (folder / "volume.py").string() + " " +
+                                       (out / "mesh.cdb").string());
+  const std::size_t at = said.find("volume ");
+  ASSERT_NE(at, std::string::npos) << said;
+  EXPECT_NEAR(std::stod(said.substr(at + 7)), made["second_order"]["volume"].get<double>(), 1e-11);
 }
 
 TEST_F(Export, NamesAreCheckedBeforeAnythingIsMade) {
@@ -229,7 +258,8 @@ TEST_F(Export, ADiskThatIsFullAtAnyPointLeavesNoFileAndAValidCase) {
   const std::map<std::string, std::string> largest = {
       {"vtu", "mesh.vtu"}, {"msh", "mesh.msh"}, {"msh22", "mesh_22.msh"}, {"mesh", "mesh.mesh"},
       {"inp", "mesh.inp"}, {"bdf", "mesh.bdf"}, {"xdmf", "mesh.h5"},      {"stl", "mesh.stl"},
-      {"obj", "mesh.obj"}, {"ply", "mesh.ply"}, {"pvtu", "mesh_0.vtu"},   {"pmsh", "mesh_part_1.msh"}};
+      {"obj", "mesh.obj"}, {"ply", "mesh.ply"}, {"pvtu", "mesh_0.vtu"},   {"pmsh", "mesh_part_1.msh"},
+      {"cdb", "mesh.cdb"}, {"feb", "mesh.feb"}};
   for (const auto& [format, file] : largest) {
     for (const double part : {0., .5, 1.}) {
       fs::remove_all(folder / "ball/4-export");

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <charconv>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -11,30 +10,30 @@
 namespace umtet {
 namespace {
 
-constexpr std::size_t kLargestId = 99'999'999;  // fields of eight characters
+constexpr int kFieldWidth = 8;
 constexpr int kFieldsPerLine = 8;
 
 /// A card of whole numbers: fields of 8 characters, continued behind every eighth.
 class Card {
  public:
-  Card(CheckedFile& file, std::string_view name) : file_(file) { pad(name, 8); }
+  Card(CheckedFile& file, std::string_view name) : file_(file) { pad(name, kFieldWidth); }
   Card& field(std::size_t value) {
     if (n_ == kFieldsPerLine) {
       file_.text("+\n");
-      pad("+", 8);
+      pad("+", kFieldWidth);
       n_ = 0;
     }
     ++n_;
     char digits[24];
-    pad({digits, std::to_chars(digits, digits + sizeof digits, value).ptr}, 8);
+    pad({digits, std::to_chars(digits, digits + sizeof digits, value).ptr}, kFieldWidth);
     return *this;
   }
   void end() { file_.text("\n"); }
 
  private:
-  void pad(std::string_view text, std::size_t width) {
+  void pad(std::string_view text, int width) {
     constexpr std::string_view kBlanks = "        ";
-    file_.text(text).text(kBlanks.substr(0, width - text.size()));
+    file_.text(text).text(kBlanks.substr(0, static_cast<std::size_t>(width) - text.size()));
   }
   CheckedFile& file_;
   int n_ = 0;
@@ -60,9 +59,9 @@ void write_nastran(const std::filesystem::path& path, const SolverMesh& mesh) {
   require_consistent(mesh);
   int largest = mesh.body.number;
   for (const MeshPart& patch : mesh.patches) largest = std::max(largest, patch.number);
-  if (std::max({mesh.nodes.size(), mesh.n_tets() + mesh.n_faces(), static_cast<std::size_t>(largest)}) > kLargestId) {
-    throw std::invalid_argument("a Nastran file with a number beyond 99999999");
-  }
+  detail::require_width(
+      std::max({mesh.nodes.size(), mesh.n_tets() + mesh.n_faces(), static_cast<std::size_t>(largest)}), kFieldWidth,
+      "a Nastran file");
   CheckedFile file(path);
   file.text("$ umtet: tets, property ").number(mesh.body.number).text(" = ").text(mesh.body.name).text("\n");
   for (const MeshPart& patch : mesh.patches) {

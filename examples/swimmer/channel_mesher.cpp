@@ -1,4 +1,4 @@
-#include "pipeline/examples/channel_mesher.h"
+#include "examples/swimmer/channel_mesher.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "pipeline/expression/tape.h"
+#include "mesh/expression/tape.h"
 
 #include <array>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "pipeline/examples/swim_files.h"
+#include "examples/swimmer/swim_files.h"
 
 #include <fmt/format.h>
 

@@ -3,11 +3,11 @@
 #include <optional>
 #include <string>
 
-#include "pipeline/expression/tape.h"
+#include "mesh/expression/tape.h"
 
 namespace umtet {
 
-/// Parses the grammar that pipeline/expression/expression.h describes. Equal parts of a formula are one operation, and
+/// Parses the grammar that mesh/expression/expression.h describes. Equal parts of a formula are one operation, and
 /// parts without x, y, z are numbers.
 /// @param t  without it, the name t is unknown
 /// \throw ExpressionError

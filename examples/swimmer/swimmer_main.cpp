@@ -20,8 +20,8 @@
 
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
-#include "pipeline/examples/channel_mesher.h"
-#include "pipeline/examples/swim_files.h"
+#include "examples/swimmer/channel_mesher.h"
+#include "examples/swimmer/swim_files.h"
 
 namespace umtet {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "mesh/background/background_mesh.h"
 #include "mesh/core/implicit_function.h"
-#include "pipeline/examples/swim.h"
+#include "examples/swimmer/swim.h"
 
 namespace umtet {
 

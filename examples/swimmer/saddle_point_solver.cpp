@@ -1,4 +1,4 @@
-#include "pipeline/examples/saddle_point_solver.h"
+#include "examples/swimmer/saddle_point_solver.h"
 
 #include <fmt/format.h>
 #include <petscksp.h>

@@ -1,8 +1,8 @@
-#include "pipeline/expression/expression.h"
+#include "mesh/expression/expression.h"
 
 #include <utility>
 
-#include "pipeline/expression/formula_parser.h"
+#include "mesh/expression/formula_parser.h"
 
 namespace umtet {
 

@@ -10,21 +10,25 @@ namespace umtet {
 
 /// The operations of a tape. a and b are results of earlier operations; c is a number.
 enum class Operator : std::uint8_t {
+  // The coordinates of the point.
   X,
   Y,
-  Z,  // the point
+  Z,
+  // Of a and b.
   Add,
   Subtract,
   Multiply,
   Divide,
-  Power,  // a and b
+  Power,
+  // Of a and c: a + c, c - a, a c, a / c, c / a, a^c, c^a.
   AddNumber,
   SubtractFrom,
   MultiplyBy,
   DivideBy,
   DivideNumber,
   ToNumber,
-  NumberTo,  // a + c, c - a, ..., a^c, c^a
+  NumberTo,
+  // Of a.
   Square,
   Sin,
   Cos,
@@ -37,7 +41,7 @@ enum class Operator : std::uint8_t {
   Tanh,
   Exp,
   Log,
-  Sqrt,  // a
+  Sqrt,
 };
 
 struct Operation {
@@ -50,7 +54,7 @@ struct Operation {
 /// A function of x, y, z as a list of operations; the last one gives its value.
 ///
 /// Derivatives come from the same list by the chain rule, in forward mode: every operation has a value, a gradient and
-/// a Hessian (Griewank and Walther, Evaluating Derivatives, 2008, chapters 3 and 13). The arithmetic does not depend on
+/// a Hessian [Griewank2008, chapters 3 and 13]. The arithmetic does not depend on
 /// which of them are requested.
 struct Tape {
   std::vector<Operation> operations;

@@ -1,4 +1,4 @@
-#include "pipeline/expression/formula_parser.h"
+#include "mesh/expression/formula_parser.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 #include <string_view>
 #include <tuple>
 
-#include "pipeline/expression/expression.h"
+#include "mesh/expression/expression.h"
 
 namespace umtet {
 namespace {

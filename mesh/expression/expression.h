@@ -5,7 +5,7 @@
 #include <string>
 
 #include "common/vec3.h"
-#include "pipeline/expression/tape.h"
+#include "mesh/expression/tape.h"
 
 namespace umtet {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "mesh/core/tet_mesh.h"
-#include "pipeline/examples/saddle_point_solver.h"
+#include "examples/swimmer/saddle_point_solver.h"
 
 namespace umtet {
 

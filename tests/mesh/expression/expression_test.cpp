@@ -1,4 +1,4 @@
-#include "pipeline/expression/expression.h"
+#include "mesh/expression/expression.h"
 
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>

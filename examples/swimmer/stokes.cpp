@@ -1,4 +1,4 @@
-#include "pipeline/examples/stokes.h"
+#include "examples/swimmer/stokes.h"
 
 #include <fmt/format.h>
 

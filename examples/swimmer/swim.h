@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "pipeline/examples/stokes.h"
-#include "pipeline/examples/swimmer.h"
+#include "examples/swimmer/stokes.h"
+#include "examples/swimmer/swimmer.h"
 
 namespace umtet {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "pipeline/examples/swim.h"
+#include "examples/swimmer/swim.h"
 
 namespace umtet {
 

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Section 4.1 of the paper: clouds of a bird in flight, eq. (12), and their meshes in one background mesh.
 
-usage: pipeline/examples/bird.py [--umtet PROGRAM] [-o FOLDER] [--t FROM:STEP:TO] [FLAG OF umtet evolve ...]
+usage: examples/swimmer/bird.py [--umtet PROGRAM] [-o FOLDER] [--t FROM:STEP:TO] [FLAG OF umtet evolve ...]
 
 Writes FOLDER/clouds/bird_0000.ply ... and FOLDER/clouds/list, then calls `umtet evolve` for FOLDER/meshes. The paper does
 not say at which times its bird was meshed: the default is one period, 0:0.4:6. Needs Debian's python3-numpy.

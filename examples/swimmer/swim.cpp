@@ -1,4 +1,4 @@
-#include "pipeline/examples/swim.h"
+#include "examples/swimmer/swim.h"
 
 #include <fmt/format.h>
 

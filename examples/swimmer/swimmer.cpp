@@ -1,4 +1,4 @@
-#include "pipeline/examples/swimmer.h"
+#include "examples/swimmer/swimmer.h"
 
 #include <cmath>
 #include <numbers>
