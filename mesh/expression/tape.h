@@ -14,13 +14,13 @@ enum class Operator : std::uint8_t {
   X,
   Y,
   Z,
-  // Of a and b.
+  // Operations on a and b.
   Add,
   Subtract,
   Multiply,
   Divide,
   Power,
-  // Of a and c: a + c, c - a, a c, a / c, c / a, a^c, c^a.
+  // Operations on a and c: a + c, c - a, a c, a / c, c / a, a^c, c^a.
   AddNumber,
   SubtractFrom,
   MultiplyBy,
@@ -28,7 +28,7 @@ enum class Operator : std::uint8_t {
   DivideNumber,
   ToNumber,
   NumberTo,
-  // Of a.
+  // Operations on a.
   Square,
   Sin,
   Cos,
