@@ -3,12 +3,36 @@
 #include <utility>
 
 namespace umtet {
+namespace {
+
+TriangleMesh whole_triangles(const TriangleMesh& mesh) {
+  TriangleMesh some;
+  std::vector<int> number(mesh.V.size(), -1);
+  for (std::size_t f = 0; f < mesh.F.size(); ++f) {
+    if (!mesh.labels.empty() && mesh.labels[f] == 0) continue;
+    Triangle t = mesh.F[f];
+    for (int& v : t) {
+      if (number[v] < 0) {
+        number[v] = static_cast<int>(some.V.size());
+        some.V.push_back(mesh.V[v]);
+      }
+      v = number[v];
+    }
+    some.F.push_back(t);
+  }
+  return some;
+}
+
+}  // namespace
 
 std::shared_ptr<const GivenTriangles> given_triangles(TriangleMesh mesh, const Vec3& shift) {
   for (Vec3& x : mesh.V) x -= shift;
   SurfaceDistance distance(mesh.V, mesh.F);
   const TriangleBody body = measure_body(mesh);
-  return std::make_shared<const GivenTriangles>(GivenTriangles{std::move(mesh), std::move(distance), body});
+  TriangleMesh whole = whole_triangles(mesh);
+  SharpEdges edges = find_sharp_edges(whole);
+  return std::make_shared<const GivenTriangles>(
+      GivenTriangles{std::move(mesh), std::move(distance), std::move(whole), std::move(edges), body});
 }
 
 }  // namespace umtet

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mesh/implicit/surface_distance.h"
+#include "reconstruct/triangles/sharp_edges.h"
 #include "reconstruct/triangles/triangle_body.h"
 #include "reconstruct/triangles/triangle_mesh.h"
 
@@ -18,7 +19,9 @@ inline constexpr double kSamplesAnEdge = 2.5;
 struct GivenTriangles {
   TriangleMesh mesh;
   SurfaceDistance distance;
-  TriangleBody body;  ///< the body that they bound
+  TriangleMesh whole;  ///< the triangles that are not partly inside, with their vertices
+  SharpEdges edges;    ///< of these
+  TriangleBody body;   ///< the body that they bound
 };
 
 /// @param shift  vector that is subtracted from the coordinates

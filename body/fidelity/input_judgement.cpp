@@ -9,8 +9,8 @@
 namespace umtet {
 namespace {
 
-constexpr std::array<const char*, 9> kWords = {"missed", "guessed", "handles", "pieces", "distance",
-                                               "volume", "genus",   "voxels",  "noise"};
+constexpr std::array<const char*, 10> kWords = {"missed", "guessed", "handles", "pieces", "distance",
+                                                "volume", "genus",   "voxels",  "edges",  "noise"};
 
 std::string at(const Vec3& x) { return formatted("(%.6g, %.6g, %.6g)", x.x(), x.y(), x.z()); }
 
@@ -95,6 +95,13 @@ void add_topology(std::size_t given_pieces, long given_genus, const TriangleBody
   }
 }
 
+void add_edges(const SharpEdgeReport& edges, std::vector<InputDefect>& defects) {
+  if (edges.rounded_length <= kFewRounded * edges.length) return;
+  defects.push_back({InputDefectKind::Edges, edges.max_over_h, true,
+                     formatted("sharp edges are rounded over a length of %.3g of %.3g, by up to %.2g h at %s",
+                               edges.rounded_length, edges.length, edges.max_over_h, at(edges.farthest).c_str())});
+}
+
 void add_triangles(const MeshMeasures& m, std::vector<InputDefect>& defects) {
   const TriangleDistances& d = *m.triangles;
   const bool is_closed = d.body && d.body->is_closed;
@@ -104,6 +111,7 @@ void add_triangles(const MeshMeasures& m, std::vector<InputDefect>& defects) {
     add_volume(d.body->volume, std::abs(d.mesh.volume), m.mesh.boundary.gap_over_volume.value_or(0), defects);
   }
   if (is_closed && d.body->is_manifold) add_topology(d.body->n_pieces, d.body->genus(), d.mesh, defects);
+  if (d.edges) add_edges(*d.edges, defects);
 }
 
 std::string text_of(const PieceCount& count) {

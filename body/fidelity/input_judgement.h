@@ -22,11 +22,12 @@ enum class InputDefectKind {
   Genus,  ///< the number of handles differs from the triangles; difference
   /// Centres of voxels are more than half a voxel on the wrong side of the boundary; share of the body's voxels.
   Voxels,
+  Edges,  ///< sharp edges of the triangles are rounded; largest distance from one to the boundary, in h
   Noise,  ///< the noise of the samples hides finer features; its standard deviation, in h
 };
 
 /// Returns the word that documents and VerdictOptions::accept use: "missed", "guessed", "handles", "pieces",
-/// "distance", "volume", "genus", "voxels", "noise".
+/// "distance", "volume", "genus", "voxels", "edges", "noise".
 const char* to_string(InputDefectKind kind);
 std::optional<InputDefectKind> input_defect_kind_of(const std::string& word);
 
@@ -55,6 +56,8 @@ inline constexpr std::size_t kFewestBeyondH = 10;
 inline constexpr double kVolumeNamed = .005, kVolumeFails = .02;
 /// The same limits for voxels, whose volume is less certain: a layer of .02 voxels on a ball of six voxels is 1 %.
 inline constexpr double kVoxelsNamed = .01, kVoxelsFail = .03;
+/// Rounded edges are a defect from this share of the length of all edges on.
+inline constexpr double kFewRounded = .02;
 /// If more than this share of voxels is on the wrong side, noise is not the reason, and the mesh fails.
 inline constexpr double kFewChanged = .01;
 

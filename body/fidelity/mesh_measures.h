@@ -70,6 +70,15 @@ struct SearchReport {
   bool at_max_tets = false;  ///< mesh.max_tets makes h larger than the body requires
 };
 
+/// The sharp edges of the triangles, and how far the boundary of the mesh is from them.
+struct SharpEdgeReport {
+  std::size_t n_curves = 0, n_corners = 0, n_patches = 0;  ///< see SharpEdges
+  double length = 0;                                       ///< sum over all curves, model units
+  double rounded_length = 0;     ///< part of it that is farther from the boundary than kRounded h
+  double max_over_h = 0;         ///< largest distance from a curve to the boundary, divided by the local h
+  Vec3 farthest = Vec3::Zero();  ///< position of the largest distance; model coordinates
+};
+
 /// Distances between the boundary of the mesh and the triangles of the input that bound the body.
 struct TriangleDistances {
   std::size_t n_triangles = 0;
@@ -83,6 +92,7 @@ struct TriangleDistances {
   std::optional<TriangleBody> body = {};
   /// Size and topology of the mesh, from its boundary without walls.
   TriangleBody mesh = {};
+  std::optional<SharpEdgeReport> edges = {};  ///< empty if the triangles have no sharp edges
 };
 
 /// Comparison of the features of psi with the edge length.

@@ -14,6 +14,7 @@ namespace {
 
 // Pieces of large triangles are not more than so many times the triangles and faces, and some.
 constexpr std::size_t kPieces = 4, kPiecesAnyway = 100000;
+constexpr double kPointsAnEdge = 10000;
 
 struct Spread {
   double rms = 0, p99 = 0, max = 0, max_over_h = 0;
@@ -45,23 +46,35 @@ TriangleBody body_of(const std::vector<Vec3>& V, const std::vector<Triangle>& fa
   return body;
 }
 
-/// Those of which no part is inside of the body, with their vertices.
-TriangleMesh whole(const TriangleMesh& mesh) {
-  TriangleMesh some;
-  std::vector<int> number(mesh.V.size(), -1);
-  for (std::size_t f = 0; f < mesh.F.size(); ++f) {
-    if (!mesh.labels.empty() && mesh.labels[f] == 0) continue;
-    Triangle t = mesh.F[f];
-    for (int& v : t) {
-      if (number[v] < 0) {
-        number[v] = static_cast<int>(some.V.size());
-        some.V.push_back(mesh.V[v]);
+/// Measures the vertices of the curves, and points between them that are at most h apart and share the length.
+SharpEdgeReport edge_report(const GivenTriangles& given, const SurfaceDistance& surface, const MeshEdge& h,
+                            const Context& context) {
+  const SharpEdges& edges = given.edges;
+  SharpEdgeReport report{
+      .n_curves = edges.curves.size(), .n_corners = edges.corners.size(), .n_patches = edges.n_patches};
+  std::vector<Vec3> x;
+  std::vector<double> length;
+  for (const SharpCurve& curve : edges.curves) {
+    report.length += curve.length;
+    for (std::size_t k = 1; k < curve.vertices.size(); ++k) {
+      const Vec3 &a = given.whole.V[curve.vertices[k - 1]], &b = given.whole.V[curve.vertices[k]];
+      const double steps = std::clamp(std::ceil((b - a).norm() / h.nominal()), 1., kPointsAnEdge);
+      for (double i = 0; i < steps; ++i) {
+        x.push_back(a + (i + .5) / steps * (b - a));
+        length.push_back((b - a).norm() / steps);
       }
-      v = number[v];
+      x.insert(x.end(), {a, b});
+      length.insert(length.end(), {0, 0});
     }
-    some.F.push_back(t);
   }
-  return some;
+  const std::vector<double> d = surface.distances(x, context), h_at = h.at(x);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (d[i] > kRounded * h_at[i]) report.rounded_length += length[i];
+    if (d[i] <= report.max_over_h * h_at[i]) continue;
+    report.max_over_h = d[i] / h_at[i];
+    report.farthest = x[i];
+  }
+  return report;
 }
 
 }  // namespace
@@ -85,25 +98,29 @@ TriangleDistances triangle_distances(const Domain& domain, const std::vector<Vec
   // Pieces not larger than the faces.
   const double edge2 = edge2_sum / static_cast<double>(faces.size());
   const TriangleMesh pieces =
-      cut_triangles(whole(given.mesh), std::sqrt(edge2), kPieces * (given.mesh.F.size() + faces.size()) + kPiecesAnyway)
-          .mesh;
+      cut_triangles(given.whole, std::sqrt(edge2), kPieces * (given.mesh.F.size() + faces.size()) + kPiecesAnyway).mesh;
   std::vector<Vec3> y = domain.cloud.points;
   y.insert(y.end(), pieces.V.begin(), pieces.V.end());
   for (std::size_t f = 0; f < pieces.F.size(); ++f) y.push_back(pieces.centroid(f));
   const Spread back = spread_of(y, surface.distances(y, context), h);
-  return {.n_triangles = given.mesh.F.size(),
-          .rms = there.rms,
-          .p99 = there.p99,
-          .max = there.max,
-          .max_over_h = there.max_over_h,
-          .farthest = there.farthest + domain.shift,
-          .rms_back = back.rms,
-          .p99_back = back.p99,
-          .max_back = back.max,
-          .max_back_over_h = back.max_over_h,
-          .farthest_back = back.farthest + domain.shift,
-          .body = given.body,
-          .mesh = body_of(V, faces)};
+  TriangleDistances made{.n_triangles = given.mesh.F.size(),
+                         .rms = there.rms,
+                         .p99 = there.p99,
+                         .max = there.max,
+                         .max_over_h = there.max_over_h,
+                         .farthest = there.farthest + domain.shift,
+                         .rms_back = back.rms,
+                         .p99_back = back.p99,
+                         .max_back = back.max,
+                         .max_back_over_h = back.max_over_h,
+                         .farthest_back = back.farthest + domain.shift,
+                         .body = given.body,
+                         .mesh = body_of(V, faces)};
+  if (!given.edges.curves.empty()) {
+    made.edges = edge_report(given, surface, h, context);
+    made.edges->farthest += domain.shift;
+  }
+  return made;
 }
 
 }  // namespace umtet

@@ -10,6 +10,10 @@
 
 namespace umtet {
 
+/// A sharp edge is rounded where the boundary is farther from it than this, in h. Flat faces of size h are as far from
+/// a curve of radius 1.25 h.
+inline constexpr double kRounded = .1;
+
 /// Measures the distances between the boundary of a mesh and the triangles of the input in both directions: from the
 /// vertices and centres of the boundary faces, and from the samples and from the corners and centres of the triangles
 /// that lie completely on the boundary of the body. These triangles are first cut into pieces of the size of the

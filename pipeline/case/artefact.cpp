@@ -157,18 +157,28 @@ FileStamp stamp(const fs::path& file) {
   return result;
 }
 
+std::optional<FileStamps::Identity> FileStamps::identity_of(const fs::path& file) {
+  struct stat status {};
+  if (::stat(file.c_str(), &status) != 0) return std::nullopt;
+  return Identity{status.st_dev, status.st_ino, static_cast<std::uintmax_t>(status.st_size), status.st_mtim.tv_sec,
+                  status.st_mtim.tv_nsec};
+}
+
+bool FileStamps::knows(const fs::path& file) const {
+  const std::optional<Identity> identity = identity_of(file);
+  return identity && known_.contains(*identity);
+}
+
 std::vector<FileStamp> FileStamps::of(const std::vector<fs::path>& files) {
   std::vector<FileStamp> stamps(files.size());
   std::vector<Identity> identities(files.size());
   std::vector<std::size_t> unknown;
   for (std::size_t i = 0; i < files.size(); ++i) {
     // The identity before reading: if the file changes meanwhile, it counts as another file the next time.
-    struct stat status {};
-    const bool exists = ::stat(files[i].c_str(), &status) == 0;
-    identities[i] = {status.st_dev, status.st_ino, static_cast<std::uintmax_t>(status.st_size), status.st_mtim.tv_sec,
-                     status.st_mtim.tv_nsec};
+    const std::optional<Identity> identity = identity_of(files[i]);
+    identities[i] = identity.value_or(Identity{});
     const auto known = known_.find(identities[i]);
-    if (exists && known != known_.end()) {
+    if (identity && known != known_.end()) {
       stamps[i] = known->second;
     } else {
       unknown.push_back(i);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,6 +35,8 @@ class FileStamps {
   /// Returns the stamps of several files, which all threads read in parallel. \throw the exception of stamp() for
   /// the first file that fails
   std::vector<FileStamp> of(const std::vector<std::filesystem::path>& files);
+  /// Returns whether the file has a stamp and has not changed since.
+  bool knows(const std::filesystem::path& file) const;
   /// Returns how often each file was read, by its path at that time.
   const std::map<std::filesystem::path, int>& n_read() const { return n_read_; }
 
@@ -44,6 +47,8 @@ class FileStamps {
     std::int64_t seconds = 0, nanoseconds = 0;  ///< time of the last change
     auto operator<=>(const Identity&) const = default;
   };
+  static std::optional<Identity> identity_of(const std::filesystem::path& file);
+
   std::map<Identity, FileStamp> known_;
   std::map<std::filesystem::path, int> n_read_;
 };

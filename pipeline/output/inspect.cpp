@@ -15,6 +15,7 @@
 #include "reconstruct/cloud/survey/cloud_survey.h"
 #include "reconstruct/io/point_cloud_io.h"
 #include "reconstruct/solve/resolution.h"
+#include "reconstruct/triangles/sharp_edges.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -85,6 +86,15 @@ std::vector<std::string> troubles(const CloudSurvey& s, const CloudFileReport& f
   return list;
 }
 
+void add_sharp_edges(const TriangleMesh& boundary, std::vector<std::string>& troubles) {
+  const SharpEdges edges = find_sharp_edges(boundary);
+  if (edges.curves.empty()) return;
+  troubles.push_back(fmt::format(
+      "{} sharp edges between {} patches, {} corners, a length of {:.4g}: psi is smooth and rounds them within an edge "
+      "length; a smaller --h rounds less",
+      edges.curves.size(), edges.n_patches, edges.corners.size(), edges.length()));
+}
+
 /// Predicts `umtet run` with the same parameters. A failure is reported as an obstacle, and costs are then estimated
 /// from the samples.
 RunPrediction prediction_of(CloudFile scan, const fs::path& file, const CloudSurvey& survey, double area,
@@ -127,6 +137,7 @@ CloudInspection inspect_cloud(const fs::path& file, const Parameters& parameters
   std::nth_element(area.begin(), area.begin() + static_cast<std::ptrdiff_t>(area.size() / 2), area.end());
   Resolution lattice = choose_resolution(std::sqrt(area[area.size() / 2]), kMeshEdge * s.diagonal, s.noise);
   std::vector<std::string> list = troubles(s, scan.report), fields = field_names(scan.cloud);
+  if (source.triangles) add_sharp_edges(source.triangles->boundary, list);
   CloudFileReport report = scan.report;
   progress.report("inspect", "predict the run", .6);
   RunPrediction prediction =

@@ -137,11 +137,21 @@ std::string triangles_line(const MeshMeasures& m, const std::string& unit) {
   if (!m.triangles) return "";
   const TriangleDistances& d = *m.triangles;
   const double h = m.mesh.h;
+  const std::string edges =
+      d.edges ? fmt::format(
+                    "edges     {} sharp edges between {} patches, {} corners; length {}, of which {} is rounded by up "
+                    "to {} h\n",
+                    d.edges->n_curves, d.edges->n_patches, d.edges->n_corners, show(d.edges->length, "{:.4g}") + unit,
+                    show(d.edges->rounded_length, "{:.4g}") + unit, show(d.edges->max_over_h, "{:.2f}"))
+              : "";
   return fmt::format(
-      "triangles {} bound the body; distance from the mesh to them rms {} ({} h), max {} h; from them to the mesh rms "
-      "{} ({} h), max {} h\n",
-      thousands(d.n_triangles), show(d.rms, "{:.3g}") + unit, show(d.rms / h, "{:.4f}"), show(d.max_over_h, "{:.3f}"),
-      show(d.rms_back, "{:.3g}") + unit, show(d.rms_back / h, "{:.4f}"), show(d.max_back_over_h, "{:.3f}"));
+             "triangles {} bound the body; distance from the mesh to them rms {} ({} h), max {} h; from them to the "
+             "mesh rms "
+             "{} ({} h), max {} h\n",
+             thousands(d.n_triangles), show(d.rms, "{:.3g}") + unit, show(d.rms / h, "{:.4f}"),
+             show(d.max_over_h, "{:.3f}"), show(d.rms_back, "{:.3g}") + unit, show(d.rms_back / h, "{:.4f}"),
+             show(d.max_back_over_h, "{:.3f}")) +
+         edges;
 }
 
 std::string pieces_text(const PieceCount& count) {

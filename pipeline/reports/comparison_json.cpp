@@ -150,6 +150,15 @@ Json to_json(const TriangleDistances& d) {
                {"max_distance_back", d.max_back},
                {"max_distance_back_over_h", d.max_back_over_h},
                {"farthest_back", json_of(d.farthest_back)}};
+  if (const std::optional<SharpEdgeReport>& e = d.edges) {
+    json["edges"] = {{"curves", e->n_curves},
+                     {"corners", e->n_corners},
+                     {"patches", e->n_patches},
+                     {"length", e->length},
+                     {"rounded_length", e->rounded_length},
+                     {"max_distance_over_h", e->max_over_h},
+                     {"farthest", json_of(e->farthest)}};
+  }
   if (!d.body) return json;
   json["body"] = to_json(*d.body);
   json["mesh"] = to_json(d.mesh);
@@ -168,6 +177,16 @@ TriangleDistances triangle_distances_from(const Json& json) {
                       .max_back = number_from(json.at("max_distance_back")),
                       .max_back_over_h = number_from(json.at("max_distance_back_over_h")),
                       .farthest_back = vector_from(json.at("farthest_back"))};
+  if (json.contains("edges")) {
+    const Json& e = json.at("edges");
+    d.edges = {.n_curves = e.at("curves"),
+               .n_corners = e.at("corners"),
+               .n_patches = e.at("patches"),
+               .length = number_from(e.at("length")),
+               .rounded_length = number_from(e.at("rounded_length")),
+               .max_over_h = number_from(e.at("max_distance_over_h")),
+               .farthest = vector_from(e.at("farthest"))};
+  }
   if (!json.contains("body")) return d;
   d.body = triangle_body_from(json.at("body"));
   d.mesh = triangle_body_from(json.at("mesh"));

@@ -105,8 +105,10 @@ std::vector<RecordedFile> source_inputs(const fs::path& source, const Parameters
   };
   require_regular_file(source);
   // Gigabytes that are not a scan are not read for their checksum.
-  is_of_triangles(source, parameters) ? check_triangles_head(source)
-                                      : check_scan_head(source, parameters.cloud().columns);
+  if (!stamps.knows(source)) {
+    is_of_triangles(source, parameters) ? check_triangles_head(source)
+                                        : check_scan_head(source, parameters.cloud().columns);
+  }
   std::vector<RecordedFile> inputs = {input("source", source)};
   const std::string& viewpoints = parameters.cloud().orient_from;
   if (!viewpoints.empty() && is_too_large_a_text(viewpoints))

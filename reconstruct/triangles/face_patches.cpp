@@ -9,6 +9,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "reconstruct/triangles/edge_uses.h"
+
 namespace umtet {
 namespace {
 
@@ -23,39 +25,6 @@ constexpr double kFewOpen = .02;
 constexpr double kFewer = .8;
 // Of the squared diagonal: less area is rounding.
 constexpr double kNoArea = 1e-15;
-
-struct EdgeUse {
-  int low, high;
-  std::uint32_t face;
-  bool forward;
-};
-
-/// All that two welded corners bound, sorted by edge. Triangles that welding makes edges of are not there.
-std::vector<EdgeUse> edge_uses(const TriangleMesh& mesh, const std::vector<int>& corner) {
-  std::vector<EdgeUse> uses;
-  uses.reserve(3 * mesh.F.size());
-  for (std::uint32_t f = 0; f < mesh.F.size(); ++f) {
-    const std::array<int, 3> v = {corner[mesh.F[f][0]], corner[mesh.F[f][1]], corner[mesh.F[f][2]]};
-    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
-    for (int k = 0; k < 3; ++k) {
-      const int a = v[k], b = v[(k + 1) % 3];
-      uses.push_back({std::min(a, b), std::max(a, b), f, a < b});
-    }
-  }
-  std::sort(uses.begin(), uses.end(), [](const EdgeUse& x, const EdgeUse& y) {
-    return std::tie(x.low, x.high, x.face) < std::tie(y.low, y.high, y.face);
-  });
-  return uses;
-}
-
-/// f(first, last) for every edge.
-template <class F>
-void for_each_edge(const std::vector<EdgeUse>& uses, F f) {
-  for (std::size_t first = 0, last = 0; first < uses.size(); first = last) {
-    while (last < uses.size() && uses[last].low == uses[first].low && uses[last].high == uses[first].high) ++last;
-    f(first, last);
-  }
-}
 
 std::size_t count_open(const std::vector<EdgeUse>& uses) {
   std::size_t n = 0;

@@ -128,6 +128,17 @@ TEST(InputJudgement, PiecesAndHandlesAreThoseOfTheTriangles) {
   EXPECT_TRUE(judged(overlapping).verdict.passes()) << "nothing is known of their topology";
 }
 
+TEST(InputJudgement, RoundedEdgesAreNamed) {
+  MeshMeasures m = of_triangles(1);
+  m.triangles->edges = {
+      .n_curves = 12, .n_corners = 8, .n_patches = 6, .length = 12, .rounded_length = .1, .max_over_h = .3};
+  EXPECT_EQ(judged(m).verdict.word(), "pass");
+  m.triangles->edges->rounded_length = 11;
+  const Certificate c = judged(m);
+  EXPECT_EQ(c.verdict.word(), "pass with 1 defect named");
+  EXPECT_NE(c.verdict.defects.front().find("11 of 12, by up to 0.3 h"), std::string::npos) << c.verdict.defects.front();
+}
+
 TEST(InputJudgement, OpenTrianglesAreNotMissedWhereTheMeshClosesThem) {
   MeshMeasures m = of_triangles(1);
   m.triangles->max_over_h = 5;

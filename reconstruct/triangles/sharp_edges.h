@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "reconstruct/triangles/triangle_mesh.h"
+
+namespace umtet {
+
+/// Parameters of find_sharp_edges(). The turn of an edge is the angle between the normals of its two triangles.
+struct SharpEdgeParams {
+  double sure_turn = 50;   ///< degrees: from this turn on an edge is sharp
+  double least_turn = 15;  ///< degrees: below this turn an edge is smooth
+  /// Curves with a loose end are noise if they are shorter than this share of the diagonal, or have fewer edges.
+  double least_length = .04;
+  std::size_t fewest_edges = 6;
+};
+
+/// A chain of sharp edges from corner to corner.
+struct SharpCurve {
+  std::vector<int> vertices;  ///< in order; a closed curve repeats the first one at the end
+  double length = 0;          ///< model units
+  bool is_closed() const { return vertices.front() == vertices.back(); }
+};
+
+/// The sharp edges of a triangulated surface, as a graph of curves and corners, and the smooth patches between them.
+struct SharpEdges {
+  std::vector<SharpCurve> curves;
+  std::vector<int> corners;        ///< vertices at which one curve, or three and more, end, or a curve has a kink
+  std::vector<std::size_t> patch;  ///< by triangle
+  std::size_t n_patches = 0;
+
+  double length() const;  ///< sum over the curves
+};
+
+/// Finds the edges at which a surface is not smooth, by the turn of its triangles.
+///
+/// Between the two angles of the parameters, an edge is smooth if it is an edge between facets of a curved surface: on
+/// both sides, the facet has another edge that runs alike, turns alike to the same side, and is at a comparable
+/// distance. A facet is a connected set of coplanar triangles. Edges of three and more triangles are sharp.
+/// \pre every triangle has an area, and triangles face outward. Vertices at one position are identified, see welded().
+/// Cost: O(n log n)
+SharpEdges find_sharp_edges(const TriangleMesh& mesh, const SharpEdgeParams& params = {});
+
+}  // namespace umtet
