@@ -55,7 +55,9 @@ struct OrientByWinding {
 
 /// Checks normals by the winding number of at most 4000 samples, and replaces them if the result is certain.
 ///
-/// 1. The normals stay if w is off a half at no more than one sample in 50, or at one patch in 50, at any noise.
+/// 1. The normals stay if w is off a half at no more than one sample in 50, or at one patch in 50, at any noise. Normals
+///    whose directions may change stay only if fewer than one in 250 samples or patches are off: one thin part can have
+///    wrong sides. The next step then requires a quarter of the patches instead of three quarters.
 /// 2. Otherwise winding_normals() are tried. Noise can mislead them: they turn samples off the surface so that w is 1/2
 ///    there, too. They are certain if
 ///      - they are off at a quarter fewer patches, and

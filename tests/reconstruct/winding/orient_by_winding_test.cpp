@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
 #include "reconstruct/cloud/normals/normal_estimation.h"
 #include "reconstruct/cloud/normals/normal_orientation.h"
 #include "tests/reconstruct/winding/winding_clouds.h"
@@ -35,6 +39,48 @@ TEST(OrientByWinding, TurnsWhatIsWrongAndKeepsDirections) {
   EXPECT_GT(report.n_turned, 2000U);
   EXPECT_EQ(report.n_replaced, 0U);
   EXPECT_EQ(cloud.normals, truth);
+}
+
+/// Turns the samples around one point that are a share of all, at most.
+std::size_t turn_a_part(OrientedPointCloud& cloud, double share) {
+  const Vec3 at = cloud.points[cloud.points.size() / 2];
+  std::vector<double> distance;
+  for (const Vec3& x : cloud.points) distance.push_back((x - at).norm());
+  std::vector<double> sorted = distance;
+  std::sort(sorted.begin(), sorted.end());
+  const double radius = sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size()))];
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < distance.size(); ++i) {
+    if (distance[i] > radius) continue;
+    cloud.normals[i] = -cloud.normals[i];
+    ++n;
+  }
+  return n;
+}
+
+TEST(OrientByWinding, ASmallPartIsTurnedIfItsDirectionsAreEstimates) {
+  OrientedPointCloud cloud = sorted(test::torus_cloud(12000));
+  const std::vector<Vec3> truth = cloud.normals;
+  const std::size_t n = turn_a_part(cloud, .038);
+  OrientedPointCloud given = cloud, refused = cloud;
+  const WindingReport report = orient_by_winding(cloud, {.directions_may_change = true});
+  EXPECT_EQ(report.verdict, Verdict::Taken);
+  EXPECT_EQ(report.n_turned, n);
+  EXPECT_EQ(n_wrong(cloud.normals, truth), 0U);
+  EXPECT_EQ(orient_by_winding(given, {}).verdict, Verdict::Agrees);
+
+  // The splits that are compared differ in this part only.
+  std::size_t n_different = 0;
+  OrientByWinding how{.directions_may_change = true};
+  how.explains_better = [&](const SplitCloud& former, const SplitCloud& proposed, bool is_certain) {
+    EXPECT_TRUE(is_certain);
+    for (std::size_t i = 0; i < former.known.normals.size(); ++i)
+      n_different += former.known.normals[i] != proposed.known.normals[i] ? 1 : 0;
+    return false;
+  };
+  EXPECT_EQ(orient_by_winding(refused, how).verdict, Verdict::NotBetter);
+  EXPECT_GT(n_different, 0U);
+  EXPECT_LT(n_different, 4000 * .06);
 }
 
 TEST(OrientByWinding, SparseCloudsWithoutNormalsComeOutRight) {
