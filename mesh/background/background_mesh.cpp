@@ -237,10 +237,6 @@ std::int64_t BackgroundMesh::key_of_vertex(std::int64_t vertex) const {
   return graded_ ? static_cast<std::int64_t>(graded_->key(vertex)) : vertex;
 }
 
-std::int64_t BackgroundMesh::key_of_tet(std::int64_t tet) const {
-  return graded_ ? static_cast<std::int64_t>(graded_->tet_key(tet)) : tet;
-}
-
 std::int64_t BackgroundMesh::vertex_of_key(std::int64_t key) const {
   if (graded_) return graded_->vertex_of(static_cast<std::uint64_t>(key));
   return key >= 0 && key < n_vertices() ? key : -1;

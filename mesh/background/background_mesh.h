@@ -77,7 +77,6 @@ class BackgroundMesh {
   /// Persistent ids. In a graded mesh they are the same in any grading of its root cube (GradedMesh::key()); in other
   /// kinds they equal the ids.
   std::int64_t key_of_vertex(std::int64_t vertex) const;
-  std::int64_t key_of_tet(std::int64_t tet) const;
   /// The vertex with this key, or -1.
   std::int64_t vertex_of_key(std::int64_t key) const;
 

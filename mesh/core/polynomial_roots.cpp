@@ -64,27 +64,4 @@ double bracketed_root(std::span<const double> coefficients, double lo, double hi
   return gsl_root_fsolver_root(solver);
 }
 
-std::vector<double> real_roots(std::span<const double> coefficients, double imaginary_tol) {
-  for (const double c : coefficients) {
-    if (!std::isfinite(c)) throw std::invalid_argument("real_roots: a coefficient is not finite");
-  }
-  std::size_t n = coefficients.size();
-  while (n > 0 && coefficients[n - 1] == 0) --n;
-  if (n < 2) return {};
-  silence_gsl();
-  const std::unique_ptr<gsl_poly_complex_workspace, decltype(&gsl_poly_complex_workspace_free)> workspace(
-      gsl_poly_complex_workspace_alloc(n), &gsl_poly_complex_workspace_free);
-  if (!workspace) throw std::bad_alloc();
-  std::vector<double> z(2 * (n - 1));
-  if (gsl_poly_complex_solve(coefficients.data(), n, workspace.get(), z.data()) != GSL_SUCCESS) {
-    throw std::runtime_error("real_roots: the eigenvalue iteration did not converge");
-  }
-  std::vector<double> roots;
-  for (std::size_t k = 0; k + 1 < n; ++k) {
-    if (std::abs(z[2 * k + 1]) <= imaginary_tol * std::max(1., std::abs(z[2 * k]))) roots.push_back(z[2 * k]);
-  }
-  std::sort(roots.begin(), roots.end());
-  return roots;
-}
-
 }  // namespace umtet

@@ -133,21 +133,4 @@ std::int64_t GradedMesh::tet_at(const Vec3& x) const {
   return at;
 }
 
-TetMesh to_tet_mesh(const GradedMesh& mesh) {
-  if (mesh.n_tets() > std::numeric_limits<int>::max()) throw std::invalid_argument("more than 2^31 - 1 tets");
-  TetMesh stored;
-  stored.V.resize(static_cast<std::size_t>(mesh.n_vertices()));
-  stored.C.resize(static_cast<std::size_t>(mesh.n_tets()));
-  tbb::parallel_for(std::size_t{0}, stored.V.size(),
-                    [&](std::size_t v) { stored.V[v] = mesh.position(static_cast<std::int64_t>(v)); });
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, stored.C.size(), kTetsPerTask), [&](const auto& range) {
-    GradedMesh::Reader reader = mesh.reader();
-    for (std::size_t t = range.begin(); t < range.end(); ++t) {
-      const auto tet = reader.tet(static_cast<std::int64_t>(t));
-      for (std::size_t k = 0; k < 4; ++k) stored.C[t][k] = static_cast<int>(tet[k]);
-    }
-  });
-  return stored;
-}
-
 }  // namespace umtet

@@ -99,7 +99,4 @@ class GradedMesh {
   VertexOffsets offsets_;
 };
 
-/// Converts to a stored mesh. \throw std::invalid_argument for more than 2^31 - 1 tets
-TetMesh to_tet_mesh(const GradedMesh& mesh);
-
 }  // namespace umtet

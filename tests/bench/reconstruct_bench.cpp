@@ -6,7 +6,7 @@
 #include <tbb/global_control.h>
 
 #include "reconstruct/basis/lme_lattice.h"
-#include "reconstruct/basis/lme_scattered.h"
+#include "tests/support/lme_scattered.h"
 #include "reconstruct/cloud/neighbours/cloud_neighbours.h"
 #include "reconstruct/cloud/neighbours/morton_order.h"
 #include "reconstruct/cloud/survey/cloud_survey.h"

@@ -48,4 +48,16 @@ inline Grading spots(std::uint64_t seed, double finest, double growth, int n_spo
   return g;
 }
 
+inline TetMesh to_tet_mesh(const GradedMesh& mesh) {
+  TetMesh stored;
+  for (std::int64_t v = 0; v < mesh.n_vertices(); ++v) stored.V.push_back(mesh.position(v));
+  GradedMesh::Reader reader = mesh.reader();
+  for (std::int64_t t = 0; t < mesh.n_tets(); ++t) {
+    const auto tet = reader.tet(t);
+    stored.C.push_back(
+        {static_cast<int>(tet[0]), static_cast<int>(tet[1]), static_cast<int>(tet[2]), static_cast<int>(tet[3])});
+  }
+  return stored;
+}
+
 }  // namespace umtet::testing

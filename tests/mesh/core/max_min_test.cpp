@@ -124,38 +124,18 @@ std::vector<double> from_roots(const std::vector<double>& roots) {
   return c;
 }
 
-void expect_roots(const std::vector<double>& roots, double tol, double imaginary_tol = 1e-6) {
-  const std::vector<double> found = real_roots(from_roots(roots), imaginary_tol);
-  ASSERT_EQ(found.size(), roots.size());
-  for (std::size_t k = 0; k < roots.size(); ++k) EXPECT_NEAR(found[k], roots[k], tol);
-}
-
-TEST(RealRoots, AreTheChosenOnes) {
-  expect_roots({1}, 1e-15);
-  expect_roots({-2, 5}, 1e-13);
-  expect_roots({-3, -1, -.5, .25, 1, 2, 3, 4}, 1e-9);
-  expect_roots({.5, .5001}, 1e-9);                                // close
-  expect_roots({1, 1.001, 1.002, 4}, 1e-6);                       // clustered: the error grows with the inverse gaps
-  expect_roots({1, 1, 3}, 1e-6, 1e-5);                            // repeated: half of the digits
-  EXPECT_TRUE(real_roots(std::vector<double>{1, 0, 1}).empty());  // none
-  EXPECT_TRUE(real_roots(std::vector<double>{4}).empty());
-  EXPECT_EQ(real_roots(std::vector<double>{-2, 1, 0, 0}).size(), 1u);  // vanishing leading coefficients
-  EXPECT_THROW(real_roots(std::vector<double>{1, std::nan("")}), std::invalid_argument);
-}
-
-TEST(BracketedRoot, AgreesWithTheEigenvalues) {
+TEST(BracketedRoot, FindsTheChosenRoots) {
   for (int n = 0; n < 200; ++n) {
     std::vector<double> roots;
     for (int k = 0; k < 8; ++k) roots.push_back(random_unit_vector(11, n, k).x());
     std::sort(roots.begin(), roots.end());
     double gap = 2;
     for (int k = 1; k < 8; ++k) gap = std::min(gap, roots[k] - roots[k - 1]);
-    if (gap < .03) continue;  // eigenvalues of closer roots are the less accurate of the two
-    const std::vector<double> c = from_roots(roots), oracle = real_roots(c);
-    ASSERT_EQ(oracle.size(), 8u);
+    if (gap < .03) continue;  // rounding of the coefficients moves closer roots
+    const std::vector<double> c = from_roots(roots);
     for (int k = 1; k + 1 < 8; ++k) {
       const double lo = .5 * (roots[k - 1] + roots[k]), hi = .5 * (roots[k] + roots[k + 1]);
-      EXPECT_NEAR(bracketed_root(c, lo, hi), oracle[k], 1e-6);
+      EXPECT_NEAR(bracketed_root(c, lo, hi), roots[k], 1e-6);
     }
   }
 }

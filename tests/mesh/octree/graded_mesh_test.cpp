@@ -42,7 +42,7 @@ std::vector<Grading> gradings(int transition_sweeps = 0) {
 /// ExplicitMesh refuses tets that are not positive (exactly), and faces of more than two tets or two on one side.
 void is_conforming(const Grading& g) {
   const GradedMesh graded(g);
-  const TetMesh mesh = to_tet_mesh(graded);
+  const TetMesh mesh = testing::to_tet_mesh(graded);
   const ExplicitMesh stored(mesh);
   double volume = 0, q_min = 1;
   for (const Tet& t : mesh.C) {
@@ -90,7 +90,7 @@ TEST(GradedMesh, TransitionsAreSmoothed) {
     for (const int sweeps : {0, 8}) {
       g.transition_sweeps = sweeps;
       const GradedMesh graded(g);
-      const TetMesh mesh = to_tet_mesh(graded);
+      const TetMesh mesh = testing::to_tet_mesh(graded);
       double q_min = 1, least = 180, greatest = 0;
       for (const Tet& t : mesh.C) {
         if (std::any_of(t.begin(), t.end(), [&](int v) { return graded.on_boundary(v); })) continue;
@@ -206,7 +206,7 @@ TEST(GradedMesh, CoversAllCubesThatAreWanted) {
     };
     const GradedMesh graded(g);
     EXPECT_LT(graded.n_leaves(), all);
-    const TetMesh mesh = to_tet_mesh(graded);
+    const TetMesh mesh = testing::to_tet_mesh(graded);
     const ExplicitMesh stored(mesh);
     for (std::size_t v = 0; v < mesh.V.size(); ++v) {
       if (stored.on_boundary(static_cast<int>(v))) {
@@ -263,7 +263,7 @@ TEST(GradedMesh, KnowsWhoMeetsWhomAsAStoredMeshDoes) {
     all.push_back(all.back().around(vertices_in_ball(all.back(), .3), 1, 0));
   }
   for (const GradedMesh& graded : all) {
-    const ExplicitMesh stored(to_tet_mesh(graded));
+    const ExplicitMesh stored(testing::to_tet_mesh(graded));
     std::vector<std::int64_t> list;
     for (int v = 0; v < graded.n_vertices(); ++v) {
       list.clear();
@@ -315,7 +315,7 @@ TEST(GradedMesh, AsABackgroundIsTheMeshItLists) {
   g.finest = .12;
   g.size = [](const Vec3& x, double half_width) { return .12 + .3 * std::max(0., x[0] - half_width); };
   g.transition_sweeps = 0;
-  const BackgroundMesh graded{GradedMesh(g)}, stored(to_tet_mesh(GradedMesh(g)));
+  const BackgroundMesh graded{GradedMesh(g)}, stored(testing::to_tet_mesh(GradedMesh(g)));
   EXPECT_FALSE(graded.is_lattice());
   EXPECT_EQ(graded.h(), .12);
   const Submesh expected = find_submesh(stored, domain);

@@ -1,5 +1,6 @@
 // The Hessian-energy operator against the energy of functions whose integral is known or sampled.
 
+#include "common/vec3.h"
 #include "reconstruct/basis/gram.h"
 
 #include <gtest/gtest.h>

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "reconstruct/basis/lme_lattice.h"
-#include "reconstruct/basis/lme_scattered.h"
+#include "tests/support/lme_scattered.h"
 
 using namespace umtet;
 

@@ -13,6 +13,7 @@
 #include "reconstruct/solve/fit_ssd.h"
 #include "reconstruct/solve/resolution.h"
 #include "reconstruct/solve/ssd_assembled.h"
+#include "tests/support/fit_scattered.h"
 #include "tests/support/clouds.h"
 #include "tests/support/sampled_domains.h"
 

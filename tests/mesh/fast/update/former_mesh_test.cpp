@@ -6,7 +6,9 @@
 #include <oneapi/tbb/global_control.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <set>
 
@@ -43,12 +45,16 @@ std::map<std::int64_t, Vec3> places(const BackgroundMesh& background, const UmRe
   return at;
 }
 
-std::set<std::int64_t> tets_far_from_pole(const BackgroundMesh& background, const UmResult& mesh, double far) {
-  std::set<std::int64_t> keys;
-  for (std::size_t t = 0; t < mesh.submesh.mesh.C.size(); ++t) {
-    if ((mesh.final[mesh.submesh.mesh.C[t][0]] - kPole).norm() > far) {
-      keys.insert(background.key_of_tet(mesh.submesh.background_tet[t]));
-    }
+using TetKey = std::array<std::int64_t, 4>;
+
+/// Tets by the keys of their vertices.
+std::set<TetKey> tets_far_from_pole(const BackgroundMesh& background, const UmResult& mesh, double far) {
+  std::set<TetKey> keys;
+  for (const Tet& tet : mesh.submesh.mesh.C) {
+    if ((mesh.final[tet[0]] - kPole).norm() <= far) continue;
+    TetKey key;
+    for (std::size_t k = 0; k < 4; ++k) key[k] = background.key_of_vertex(mesh.submesh.background_vertex[tet[k]]);
+    keys.insert(key);
   }
   return keys;
 }

@@ -1,4 +1,4 @@
-#include "reconstruct/basis/lme_scattered.h"
+#include "tests/support/lme_scattered.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
