@@ -251,6 +251,7 @@ void leave_out_faults_of_psi(const Domain& domain, const MeshEdge& h, const Cont
                              std::vector<Difference>& differences) {
   if (!domain.triangles || !domain.triangles->body.is_closed) return;
   std::vector<Vec3> x;
+  x.reserve(differences.size());
   for (const Difference& d : differences) x.push_back(d.where);
   const std::vector<double> off = domain.triangles->distance.distances(x, context);
   std::size_t k = 0;

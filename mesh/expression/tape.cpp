@@ -1,5 +1,6 @@
 #include "mesh/expression/tape.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -131,7 +132,7 @@ Jet<order> product(const Jet<order>& a, const Jet<order>& b) {
 template <int order>
 Jet<order> quotient(const Jet<order>& a, const Jet<order>& b) {
   Jet<order> f{a[0] / b[0]};
-  for (std::size_t k = 1; k < 4 && k < f.size(); ++k) f[k] = (a[k] - f[0] * b[k]) / b[0];
+  for (std::size_t k = 1; k < std::min(kSecond, f.size()); ++k) f[k] = (a[k] - f[0] * b[k]) / b[0];
   if constexpr (order > 1) {
     for (std::size_t k = 0; k < kRow.size(); ++k) {
       const std::size_t i = kRow[k], j = kColumn[k], m = kSecond + k;

@@ -16,7 +16,7 @@
 namespace umtet {
 namespace {
 
-constexpr double kRadians = M_PI / 180;
+constexpr double kRadians = M_PI / 180;  // of a degree
 // Degrees: two triangles are in one plane. STL files in single precision turn by less.
 constexpr double kFlatTurn = 1;
 // Edges of a curved surface turn alike and are at like distances within these factors, and run alike within this angle:

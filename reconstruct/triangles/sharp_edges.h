@@ -11,9 +11,9 @@ namespace umtet {
 struct SharpEdgeParams {
   double sure_turn = 50;   ///< degrees: from this turn on an edge is sharp
   double least_turn = 15;  ///< degrees: below this turn an edge is smooth
-  /// Curves with a loose end are noise if they are shorter than this share of the diagonal, or have fewer edges.
+  /// Curves with a loose end are noise if they are shorter than this share of the diagonal, ...
   double least_length = .04;
-  std::size_t fewest_edges = 6;
+  std::size_t fewest_edges = 6;  ///< ... or if they have fewer edges
 };
 
 /// A chain of sharp edges from corner to corner.
