@@ -36,8 +36,8 @@ constexpr int kTriesPerPoll = 64;
 class LocalFlips {
  public:
   LocalFlips(std::vector<Vec3> V, std::vector<Tet> C, const std::vector<Stratum>& stratum, ImplicitFunctionRef psi,
-             const LocalFlipParams& params, LocalFlipReport& report)
-      : mesh_(std::move(V), std::move(C), stratum),
+             const LocalFlipParams& params, LocalFlipReport& report, const StratifiedVertices* strata)
+      : mesh_(std::move(V), std::move(C), stratum, strata),
         n_given_(mesh_.C.size()),
         alive_(mesh_.C.size(), 1),
         version_(mesh_.C.size(), 0),
@@ -93,7 +93,7 @@ class LocalFlips {
       if (n != 1) continue;
       const Vec3 &a = mesh_.V[face[0]], &b = mesh_.V[face[1]], &c = mesh_.V[face[2]];
       Vec3 gradient;
-      psi_.value((a + b + c) / 3, gradient);
+      mesh_.surface_value(psi_, face, (a + b + c) / 3, gradient);
       ++report_.psi_evaluations;
       const Vec3 normal = (b - a).cross(c - a);
       const double cosine = normal.dot(gradient) / (normal.norm() * gradient.norm());
@@ -193,12 +193,13 @@ std::vector<std::string> problems(const LocalFlipParams& params) {
 
 FlippedMesh flip_locally(std::vector<Vec3> V, std::vector<Tet> C, const std::vector<VertexStratum>& stratum,
                          ImplicitFunctionRef psi, const LocalFlipParams& params, LocalFlipReport& report,
-                         const Context& context) {
+                         const Context& context, const StratifiedVertices* strata) {
   std::string all;
   for (const std::string& problem : problems(params)) all += (all.empty() ? "" : "; ") + problem;
-  if (stratum.size() != V.size()) all += (all.empty() ? "" : "; ") + std::string("one stratum for each vertex");
+  if (stratum.size() != V.size() || (strata && strata->of.size() != V.size()))
+    all += (all.empty() ? "" : "; ") + std::string("one stratum for each vertex");
   if (!all.empty()) throw std::invalid_argument(all);
-  return LocalFlips(std::move(V), std::move(C), stratum, psi, params, report)(context);
+  return LocalFlips(std::move(V), std::move(C), stratum, psi, params, report, strata)(context);
 }
 
 }  // namespace umtet

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/context.h"
+#include "mesh/core/boundary_strata.h"
 #include "mesh/core/implicit_function.h"
 #include "mesh/core/tet_mesh.h"
 
@@ -40,6 +41,12 @@ enum class VertexStratum : std::uint8_t {
   Boundary  ///< stays on psi = 0
 };
 
+/// The vertices of a mesh on the strata of a piecewise smooth boundary.
+struct StratifiedVertices {
+  const BoundaryStrata* strata = nullptr;
+  std::vector<int> of;  ///< per vertex; read for Boundary vertices
+};
+
 /// A tet mesh whose connectivity changes.
 struct FlippedMesh {
   std::vector<Vec3> V;  ///< vertices that are in no tet stay where they were
@@ -70,11 +77,17 @@ struct FlippedMesh {
 ///
 /// Operations change neither the topology of the body nor of its boundary. One thread; the same bytes on every run.
 ///
+/// With strata, vertices move on their own patch or curve, and faces are compared with their own patch. An edge on the
+/// boundary is removed where its two faces and the two new ones lie on one patch. A vertex of a patch collapses into
+/// one of the patch or of its border, a vertex of a curve into its neighbour on the curve, a corner into none; every
+/// face stays on its patch. The edges of curves are never removed.
+///
 /// @param V, C      a valid mesh: every tet positive; moved in
 /// @param stratum   per vertex; Boundary ones lie on psi = 0 and on the boundary of the mesh
+/// @param strata    null for a smooth boundary; must outlive the call
 /// \throw std::invalid_argument naming every broken constraint, Cancelled
 FlippedMesh flip_locally(std::vector<Vec3> V, std::vector<Tet> C, const std::vector<VertexStratum>& stratum,
                          ImplicitFunctionRef psi, const LocalFlipParams& params, LocalFlipReport& report,
-                         const Context& context = {});
+                         const Context& context = {}, const StratifiedVertices* strata = nullptr);
 
 }  // namespace umtet
