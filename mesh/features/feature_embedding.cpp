@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <functional>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -24,6 +26,8 @@ constexpr double kLeastGap = .5;     // of the mean: two vertices of a path are 
 constexpr int kLongestShortcut = 5;  // edges of a path that one edge may replace
 constexpr int kVoteSteps = 3;        // of Newton's method from the centroid of a face to psi = 0
 constexpr double kClearVote = .9;    // of the area beside a curve that is missing: else the patch is unknown
+constexpr double kPrice = 1;         // of a vertex of another path, the first time
+constexpr int kMostTurns = 12;       // times that a path is laid
 constexpr int kParts = 3;            // of a closed curve
 
 using Edge = std::pair<int, int>;
@@ -79,6 +83,7 @@ class Embedder {
         h_(h),
         boundary_(V.size(), C, faces),
         owner_(V.size(), kFree),
+        fights_(V.size(), 0),
         places_(V.size()) {}
 
   FeatureEmbedding operator()(const Context& context) {
@@ -90,12 +95,24 @@ class Embedder {
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(),
                      [&](int a, int b) { return graph_.curves[a].length() < graph_.curves[b].length(); });
-    for (const int c : order) {
+    // A path may take a vertex from another one, at a price that rises each time; the other one is then laid again.
+    std::deque<int> waiting(order.begin(), order.end());
+    std::vector<int> n_laid(graph_.curves.size(), 0);
+    while (!waiting.empty()) {
       context.poll();
-      const bool is_made = graph_.curves[c].is_closed() ? close_path(c) : join_corners(c);
-      if (is_made) continue;
+      const int c = waiting.front();
+      waiting.pop_front();
       release(c);
-      made_.defects.push_back({FeatureDefect::Kind::NoPath, c, -1, graph_.curves[c].at(graph_.curves[c].length() / 2)});
+      if (n_laid[c]++ == kMostTurns) continue;
+      evicted_.clear();
+      if (!(graph_.curves[c].is_closed() ? close_path(c) : join_corners(c))) release(c);
+      for (const int other : evicted_)
+        if (std::find(waiting.begin(), waiting.end(), other) == waiting.end()) waiting.push_back(other);
+    }
+    for (std::size_t c = 0; c < made_.chains.size(); ++c) {
+      if (!made_.chains[c].empty()) continue;
+      const FeatureCurve& curve = graph_.curves[c];
+      made_.defects.push_back({FeatureDefect::Kind::NoPath, static_cast<int>(c), -1, curve.at(curve.length() / 2)});
     }
     while (!assign_patches()) {
     }
@@ -148,7 +165,8 @@ class Embedder {
 
   /// The path of least cost over free vertices, or an empty one.
   template <class MayUse>
-  std::vector<int> shortest_path(const FeatureCurve& curve, int from, int to, const MayUse& may_use) const {
+  std::vector<int> shortest_path(int own, int from, int to, const MayUse& may_use) const {
+    const FeatureCurve& curve = graph_.curves[own];
     std::map<int, std::pair<double, int>> best;  // cost, vertex before
     std::priority_queue<std::pair<double, int>, std::vector<std::pair<double, int>>, std::greater<>> queue;
     best[from] = {0, -1};
@@ -159,9 +177,11 @@ class Embedder {
       if (d > best[v].first) continue;
       if (v == to) break;
       for (const BoundaryGraph::Arc& arc : boundary_.arcs[v]) {
-        if (arc.to != to && (owner_[arc.to] != kFree || !may_use(arc.to))) continue;
+        if (arc.to != to && (owner_[arc.to] == kCorner || owner_[arc.to] == own || !may_use(arc.to))) continue;
         if (!(places_[arc.to].distance < kInfinity)) continue;
-        const double there = d + cost(curve, v, arc);
+        const bool is_taken = arc.to != to && owner_[arc.to] != kFree;
+        const double price = kPrice * (is_taken ? 1 + fights_[arc.to] : .25 * fights_[arc.to]);
+        const double there = d + cost(curve, v, arc) + price;
         const auto [at, is_new] = best.try_emplace(arc.to, there, v);
         if (!is_new && at->second.first <= there) continue;
         at->second = {there, v};
@@ -180,10 +200,10 @@ class Embedder {
     const int from = made_.corner_vertex[curve.ends[0]], to = made_.corner_vertex[curve.ends[1]];
     if (from < 0 || to < 0 || from == to) return false;
     measure(c);
-    std::vector<int> path = shortest_path(curve, from, to, [](int) { return true; });
+    std::vector<int> path = shortest_path(c, from, to, [](int) { return true; });
     if (path.size() < 2) return false;
     take_shortcuts(path);
-    for (std::size_t k = 1; k + 1 < path.size(); ++k) owner_[path[k]] = c;
+    for (std::size_t k = 1; k + 1 < path.size(); ++k) take(path[k], c);
     made_.chains[c] = std::move(path);
     return true;
   }
@@ -220,13 +240,13 @@ class Embedder {
       const int to = anchor[(k + 1) % kParts];
       const double begin = offset(anchor[k], start), end = k + 1 < kParts ? offset(to, start) : length;
       const double slack = length / (4 * kParts);
-      const std::vector<int> path = shortest_path(curve, anchor[k], to, [&](int v) {
+      const std::vector<int> path = shortest_path(c, anchor[k], to, [&](int v) {
         const double s = offset(v, start);
         return (s > begin - slack && s < end + slack) || s - length > begin - slack || s + length < end + slack;
       });
       if (path.size() < 2) return false;
       for (std::size_t i = 1; i < path.size(); ++i) {
-        owner_[path[i]] = c;
+        take(path[i], c);
         loop.push_back(path[i]);
       }
     }
@@ -257,6 +277,17 @@ class Embedder {
         break;
       }
     }
+  }
+
+  /// A path takes a vertex, from another path if need be.
+  void take(int v, int c) {
+    const int before = owner_[v];
+    if (before >= 0 && before != c) {
+      ++fights_[v];
+      evicted_.push_back(before);
+      release(before);
+    }
+    owner_[v] = c;
   }
 
   void release(int c) {
@@ -415,7 +446,9 @@ class Embedder {
   const std::vector<Triangle>& faces_;
   const double h_;
   const BoundaryGraph boundary_;
-  std::vector<int> owner_;  ///< per vertex: its curve, kCorner or kFree
+  std::vector<int> owner_;    ///< per vertex: its curve, kCorner or kFree
+  std::vector<int> fights_;   ///< per vertex: how often a path has lost it to another
+  std::vector<int> evicted_;  ///< the paths that lost vertices to the last one
   std::vector<FeatureCurve::Place> places_;
   FeatureEmbedding made_;
 };

@@ -44,8 +44,9 @@ double best_wedge_quality(double angle_deg, int k);
 ///
 ///        (distance / h)^2 + .15 length / h + 8 max(0, .95 - Q_max(angle / k))^2
 ///
-///    for k tets at the edge, within 4 h of the curve. Paths do not meet except at corners. A closed curve is divided
-///    in three. Shortcuts by a single edge are taken.
+///    for k tets at the edge, within 4 h of the curve. Paths do not meet except at corners: a path may take a vertex
+///    from another, at a price that rises with every time that the vertex was taken, and the other path is laid again.
+///    A closed curve is divided in three. Shortcuts by a single edge are taken.
 /// 3. The faces between paths are one patch each: one that all curves around have in common, and that most of them lie
 ///    nearest to.
 ///

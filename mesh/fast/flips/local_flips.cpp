@@ -146,8 +146,9 @@ class LocalFlips {
         alive_.push_back(1);
         version_.push_back(0);
         for (const int v : t) mesh_.incidence.add(v, id);
-        enqueue(id);
       }
+      // Once all of them are there: a face between two new tets is not on the boundary.
+      for (std::size_t k = mesh_.C.size() - c.new_tets.size(); k < mesh_.C.size(); ++k) enqueue(static_cast<int>(k));
     }
     for (const int t : c.changes_tets() ? trials_.kept_tets() : trials_.patch_tets()) {
       ++version_[t];
