@@ -12,6 +12,7 @@ constexpr int kMostSteps = 30;        // of Newton's method; it converges in thr
 constexpr double kArrived = 1e-11;    // in h; the step that follows squares what is left
 constexpr double kFarthest = 2;       // in h, from where the method starts
 constexpr double kLeastSine = 1e-3;   // of the angle between two patches: below it they are parallel
+constexpr double kOnBoundary = 1e-6;  // in h: where psi is larger, a point of a patch is beyond its curves
 constexpr double kKeptFromEnd = .05;  // in h: a curve vertex stays this far from the plane through an end
 
 }  // namespace
@@ -90,6 +91,12 @@ bool BoundaryStrata::foot(int stratum, const Vec3& x, double h, Vec3& place) con
     }
   }
   if (!has_arrived) return false;
+  if (n == 1 && !s.patches.empty() && domain_->n_patches() > 1) {
+    // Beyond its curves the zero set goes on, but not the boundary.
+    Vec3 g;
+    const double psi = domain_->evaluate(y, &g, nullptr);
+    if (!(std::abs(psi) <= kOnBoundary * h * g.norm())) return false;
+  }
   for (const Stratum::End& end : s.ends) {
     const Vec3 d = y - end.place;
     if (d.squaredNorm() < end.within * end.within && d.dot(end.tangent) < kKeptFromEnd * h) return false;

@@ -48,7 +48,7 @@ class BoundaryStrata {
   /// Newton's method from x to the stratum, with the shortest steps: f_p = 0 for its patches.
   /// @param h     edge length: a step is at most h, and the result is within 1e-10 h of each zero set
   /// @param place receives the point
-  /// @return whether the method converged within 2 h, on the right side of the ends of a curve
+  /// @return whether the method converged within 2 h, at a point of the boundary; on a curve, between its ends
   bool foot(int stratum, const Vec3& x, double h, Vec3& place) const;
   /// The value of a patch (-1: of psi as a whole), oriented so that it is negative inside.
   double value(int patch, const Vec3& x, Vec3* gradient) const;

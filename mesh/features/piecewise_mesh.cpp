@@ -13,30 +13,68 @@
 namespace umtet {
 namespace {
 
-/// The layer's strata and the points of curves and corners that its vertices go to.
-std::vector<Vec3> set_strata(const FeatureGraph& graph, const FeatureEmbedding& embedded, const BoundaryStrata& strata,
-                             const std::vector<int>& of_layer, ActiveLayer& layer) {
-  layer.strata = &strata;
-  layer.stratum.assign(layer.V.size(), -1);
-  std::vector<int> in_layer(embedded.stratum.size(), -1);
-  for (std::size_t v = 0; v < of_layer.size(); ++v) {
-    if (of_layer[v] < 0) continue;
-    layer.stratum[v] = embedded.stratum[of_layer[v]];
-    in_layer[of_layer[v]] = static_cast<int>(v);
+// Rounds in which a vertex that has no foot on its patch goes between its neighbours.
+constexpr int kAverages = 8;
+
+/// Targets for vertices of patches whose feet are beyond the curves around: between the targets of their neighbours.
+void place_between_neighbours(const std::vector<Triangle>& faces, const FeatureEmbedding& embedded,
+                              const BoundaryStrata& strata, const std::vector<Vec3>& V, double h,
+                              std::vector<Vec3>& target) {
+  std::vector<std::vector<int>> neighbours(V.size());
+  for (const Triangle& f : faces)
+    for (int k = 0; k < 3; ++k) neighbours[f[k]].push_back(f[(k + 1) % 3]);  // every edge has two faces, one each way
+  std::vector<int> lost;
+  std::vector<Vec3> place = target;
+  for (std::size_t v = 0; v < V.size(); ++v) {
+    if (embedded.stratum[v] < 0 || target[v].allFinite()) continue;
+    if (strata.foot(embedded.stratum[v], V[v], h, place[v])) continue;
+    place[v] = V[v];
+    lost.push_back(static_cast<int>(v));
   }
-  std::vector<Vec3> target(layer.V.size(), Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
+  std::vector<std::uint8_t> is_found(V.size(), 0);
+  for (int round = 0; round < kAverages; ++round) {
+    for (const int v : lost) {
+      Vec3 sum = Vec3::Zero();
+      int n = 0;
+      for (const int w : neighbours[v]) {
+        if (!strata.is_in_closure(embedded.stratum[w], embedded.stratum[v]) || !place[w].allFinite()) continue;
+        sum += place[w];
+        ++n;
+      }
+      Vec3 foot;
+      if (n == 0 || !strata.foot(embedded.stratum[v], sum / n, h, foot)) continue;
+      place[v] = foot;
+      is_found[v] = 1;
+    }
+  }
+  for (const int v : lost)
+    if (is_found[v]) target[v] = place[v];
+}
+
+/// The layer's strata and the points that its vertices go to.
+std::vector<Vec3> set_strata(const FeatureGraph& graph, const FeatureEmbedding& embedded, const BoundaryStrata& strata,
+                             const Submesh& submesh, const std::vector<int>& of_layer, ActiveLayer& layer) {
+  const std::vector<Vec3>& V = submesh.mesh.V;
+  std::vector<Vec3> target(V.size(), Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
   for (std::size_t c = 0; c < embedded.chains.size(); ++c) {
     const std::vector<int>& chain = embedded.chains[c];
     for (std::size_t k = 0; k < chain.size(); ++k) {
-      const int v = in_layer[chain[k]];
       const Vec3 on_polyline = graph.curves[c].at(embedded.chain_arc[c][k]);
       Vec3 place;
-      if (strata.foot(layer.stratum[v], on_polyline, layer.h_at(v), place)) target[v] = place;
+      if (strata.foot(embedded.stratum[chain[k]], on_polyline, layer.h, place)) target[chain[k]] = place;
     }
   }
   for (std::size_t c = 0; c < embedded.corner_vertex.size(); ++c)
-    if (const int v = embedded.corner_vertex[c]; v >= 0) target[in_layer[v]] = graph.corners[c].place;
-  return target;
+    if (const int v = embedded.corner_vertex[c]; v >= 0) target[v] = graph.corners[c].place;
+  place_between_neighbours(submesh.positive_faces, embedded, strata, V, layer.h, target);
+
+  layer.strata = &strata;
+  std::vector<Vec3> of_vertices;
+  for (const int v : of_layer) {
+    layer.stratum.push_back(embedded.stratum[v]);
+    of_vertices.push_back(target[v]);
+  }
+  return of_vertices;
 }
 
 /// The faces of exactly one tet, outward, in the order of their tets.
@@ -149,7 +187,7 @@ PiecewiseMesh make_piecewise_mesh(const PiecewiseDomain& domain, const Backgroun
     const auto at = std::lower_bound(submesh.background_vertex.begin(), submesh.background_vertex.end(), id);
     of_layer.push_back(static_cast<int>(at - submesh.background_vertex.begin()));
   }
-  const std::vector<Vec3> target = set_strata(made.graph, embedded, strata, of_layer, part.layer);
+  const std::vector<Vec3> target = set_strata(made.graph, embedded, strata, submesh, of_layer, part.layer);
   PNormSmoother smoother(part.layer);
   const StratifiedProjectionReport projected = project_onto_strata(smoother, psi, target, params.projection, context);
   smoother.enqueue_all();
