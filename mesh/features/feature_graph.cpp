@@ -13,6 +13,7 @@ namespace umtet {
 namespace {
 
 constexpr double kSeedReach = 2.5;    // in h: patches nearer than this to a seed are tried in pairs
+constexpr double kLeft = 4;           // in h: a curve this far from all seeds has left the body
 constexpr double kStep = .2;          // in h, along a curve: the sagitta at a radius of h is .005 h
 constexpr double kSameCurve = .2;     // in h
 constexpr double kSameCorner = 1e-3;  // in h
@@ -39,7 +40,12 @@ struct Quadrants {
 
 class Tracer {
  public:
-  Tracer(const PiecewiseDomain& domain, double h) : domain_(domain), h_(h), values_(domain.n_patches()) {}
+  Tracer(const PiecewiseDomain& domain, const std::vector<Vec3>& seeds, double h)
+      : domain_(domain), h_(h), values_(domain.n_patches()) {
+    for (const Vec3& x : seeds) box_.extend(x);
+    box_.min().array() -= kLeft * h;
+    box_.max().array() += kLeft * h;
+  }
 
   void seed(const Vec3& x) {
     std::vector<int> near;
@@ -216,7 +222,7 @@ class Tracer {
         const std::optional<Vec3> there = is_found ? tangent(pair, next) : std::nullopt;
         is_found = there && there->dot(*along) > .85;
       }
-      if (!is_found) return lost(x);
+      if (!is_found || !box_.contains(next)) return lost(x);
       if (!(quadrants(pair, next) == around)) {
         const int corner = end_between(pair, around, x, next);
         if (corner < 0) return lost(x);
@@ -281,6 +287,7 @@ class Tracer {
 
   const PiecewiseDomain& domain_;
   const double h_;
+  Eigen::AlignedBox3d box_;  ///< a curve that leaves it is no longer followed
   std::vector<double> values_;
   FeatureGraph graph_;
 };
@@ -331,7 +338,7 @@ double FeatureCurve::angle_deg_at(double s) const {
 
 FeatureGraph trace_features(const PiecewiseDomain& domain, const std::vector<Vec3>& seeds, double h,
                             const Context& context) {
-  Tracer tracer(domain, h);
+  Tracer tracer(domain, seeds, h);
   if (domain.n_patches() < 2) return tracer.graph();
   for (std::size_t k = 0; k < seeds.size(); ++k) {
     if (k % 1024 == 0) context.poll();

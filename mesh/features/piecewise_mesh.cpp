@@ -154,9 +154,18 @@ void flip(ImplicitFunctionRef psi, const BoundaryStrata& strata, const std::vect
 }  // namespace
 
 PiecewiseMeshParams::PiecewiseMeshParams() {
-  // Edges of 90 degrees and less are left with one tet only if its neighbours may be long: with 1.6 edges instead of
-  // 2.3 the least Q of a cube is .68 instead of .80 (edges up to 3.2 below 40 degrees).
-  local_flips = {.target = .8, .shortest = .45, .longest = 2.3, .most_candidates = 6};
+  // The farthest shift that classification accepts: with .1 the least Q of a wedge of 45 degrees is .71 instead of .78.
+  classification.shift = .15;
+  // Edges of 90 degrees and less are left with one tet only if its neighbours may be long: with edges up to 1.6 instead
+  // of 2.3 lengths the least Q of a cube is .68 instead of .80. A target of .81 leaves the worst tets .01 higher than
+  // one of .8, and the lower bar and the many trials raise a wedge of 60 degrees from .75 to .78.
+  local_flips = {.target = .81,
+                 .shortest = .45,
+                 .longest = 2.3,
+                 .most_candidates = 6,
+                 .promising = .45,
+                 .promising_at_last = .3,
+                 .most_failures = 20};
 }
 
 PiecewiseMesh make_piecewise_mesh(const PiecewiseDomain& domain, const BackgroundMesh& background,

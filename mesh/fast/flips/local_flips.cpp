@@ -19,16 +19,8 @@ namespace {
 using Stratum = VertexStratum;
 using Operation = detail::FlipCandidate::Operation;
 
-// The worst new tet of an operation needs this share of the least Q before, before its vertices move. Below it one
-// patch in ten is mended (`mesh_bench --benchmark_filter=flips`).
-constexpr double kPromising = .6;
-// Where a body is thinner than its tets, no operation helps, and each operation that is kept nearby would have all of
-// them tried again. A tet is left as it is once this many trials at each of its vertices have not helped. Each pass
-// counts anew.
-constexpr int kMostFailures = 6;
 // The remaining tets are tried again with more candidates and a lower bar, and all vertices of a patch move at once:
 // this mends half of them or more, at ten times the cost of a try.
-constexpr double kPromisingAtLast = .4;
 constexpr int kMoreCandidates = 3;  // times as many
 constexpr int kTriesPerPoll = 64;
 
@@ -104,7 +96,8 @@ class LocalFlips {
 
   void mend(int tet) {
     const Tet corners = mesh_.C[tet];
-    if (std::all_of(corners.begin(), corners.end(), [&](int v) { return failures_[v] >= kMostFailures; })) return;
+    if (std::all_of(corners.begin(), corners.end(), [&](int v) { return failures_[v] >= params_.most_failures; }))
+      return;
     if (was_mended(tet)) return;
     for (const int v : corners) failures_[v] = static_cast<std::uint8_t>(std::min(255, failures_[v] + 1));
   }
@@ -112,7 +105,7 @@ class LocalFlips {
   bool was_mended(int tet) {
     const auto most = static_cast<std::size_t>(params_.most_candidates) * (is_last_ ? kMoreCandidates : 1);
     for (const detail::FlipCandidate& c :
-         detail::edge_operations(mesh_, tet, is_last_ ? kPromisingAtLast : kPromising, most))
+         detail::edge_operations(mesh_, tet, is_last_ ? params_.promising_at_last : params_.promising, most))
       if (attempt(c)) return true;
     detail::FlipCandidate c = detail::smoothing_around(mesh_, tet);
     if (attempt(c)) return true;
@@ -188,6 +181,9 @@ std::vector<std::string> problems(const LocalFlipParams& params) {
   if (!(params.target > 0 && params.target < 1)) p.emplace_back("target must be in (0, 1)");
   if (!(params.shortest > 0 && params.shortest < 1)) p.emplace_back("shortest must be in (0, 1)");
   if (!(params.longest > 1)) p.emplace_back("longest must be > 1");
+  if (!(params.promising >= 0)) p.emplace_back("promising must be >= 0");
+  if (!(params.promising_at_last >= 0)) p.emplace_back("promising_at_last must be >= 0");
+  if (params.most_failures < 1 || params.most_failures > 255) p.emplace_back("most_failures must be 1 to 255");
   if (params.most_candidates < 0) p.emplace_back("most_candidates must be >= 0");
   return p;
 }

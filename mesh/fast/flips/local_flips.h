@@ -19,6 +19,14 @@ struct LocalFlipParams {
   /// are outside of it already may stay so.
   double shortest = .5, longest = 1.7;
   int most_candidates = 4;  ///< operations that are tried for one tet, those with the best worst tet first; >= 0
+  /// The worst new tet of an operation needs this share of the mean ratio of the tet, before its vertices move; >= 0.
+  /// Below .6 one patch in ten is mended (`mesh_bench --benchmark_filter=flips`).
+  double promising = .6;
+  double promising_at_last = .4;  ///< the same in the last pass
+  /// Where a body is thinner than its tets, no operation helps, and each operation that is kept nearby would have all
+  /// of them tried again. A tet is left as it is once this many trials at each of its vertices have not helped, in each
+  /// pass; 1 to 255.
+  int most_failures = 6;
 };
 
 /// Every broken constraint, not just the first.

@@ -98,8 +98,8 @@ void PatchTrials::list_tets(const FlipCandidate& c) {
 
 bool PatchTrials::is_better(const PatchMeasure& made, const PatchMeasure& old, bool is_last) const {
   const bool has_less = made.sum < (1 - kLeastGain) * old.sum && made.least >= old.least - kLostQuality;
-  const bool has_raised =
-      is_last && (made.least >= params_.target || (made.sum <= old.sum && made.least > old.least + kLeastRaise));
+  const bool has_raised = is_last && ((made.least >= params_.target && old.least < params_.target) ||
+                                      (made.sum <= old.sum && made.least > old.least + kLeastRaise));
   return (has_less || has_raised) && made.shortest >= std::min(params_.shortest, old.shortest) &&
          made.longest <= std::max(params_.longest, old.longest) &&
          made.least_cosine >= std::min(kAligned, old.least_cosine) &&
