@@ -85,7 +85,12 @@ class LocalFlips {
       if (n != 1) continue;
       const Vec3 &a = mesh_.V[face[0]], &b = mesh_.V[face[1]], &c = mesh_.V[face[2]];
       Vec3 gradient;
-      mesh_.surface_value(psi_, face, (a + b + c) / 3, gradient);
+      const Vec3 centroid = (a + b + c) / 3;
+      if (mesh_.stratified) {
+        mesh_.value_on_patch(face, centroid, gradient);
+      } else {
+        psi_.value(centroid, gradient);
+      }
       ++report_.psi_evaluations;
       const Vec3 normal = (b - a).cross(c - a);
       const double cosine = normal.dot(gradient) / (normal.norm() * gradient.norm());
@@ -139,9 +144,12 @@ class LocalFlips {
         alive_.push_back(1);
         version_.push_back(0);
         for (const int v : t) mesh_.incidence.add(v, id);
+        if (!mesh_.stratified) enqueue(id);
       }
-      // Once all of them are there: a face between two new tets is not on the boundary.
-      for (std::size_t k = mesh_.C.size() - c.new_tets.size(); k < mesh_.C.size(); ++k) enqueue(static_cast<int>(k));
+      // With strata once all of them are there: before, a face between two new tets looks like one of the boundary, and
+      // the tet is tried in vain. A smooth boundary keeps its bytes.
+      if (mesh_.stratified)
+        for (std::size_t k = mesh_.C.size() - c.new_tets.size(); k < mesh_.C.size(); ++k) enqueue(static_cast<int>(k));
     }
     for (const int t : c.changes_tets() ? trials_.kept_tets() : trials_.patch_tets()) {
       ++version_[t];

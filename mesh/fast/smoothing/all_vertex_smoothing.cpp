@@ -120,18 +120,7 @@ class LayerNorm {
       const Free& f = free_[k];
       Vec3 s = slope_[k];
       if (layer_.role[f.vertex] == Role::Boundary && layer_.strata) {
-        // x(u) stays on the stratum, and T^T (x(u) - x_0) = T^T u to first order, as the steps of foot() are normal:
-        // dx/du = S (T^T S)^-1 T^T for tangents S at x.
-        Vec3 of_u = Vec3::Zero();
-        if (f.free.n == 1) {
-          const Vec3 t = f.free.tangents.col(0), there = f.free_there.tangents.col(0);
-          of_u = s.dot(there) / t.dot(there) * t;
-        } else if (f.free.n == 2) {
-          const Eigen::Matrix2d M = f.free_there.tangents.transpose() * f.free.tangents;
-          const Eigen::Vector2d along = f.free_there.tangents.transpose() * s;
-          of_u = f.free.tangents * (M.inverse() * along);
-        }
-        s = of_u;
+        s = on_stratum(f, s);
       } else if (layer_.role[f.vertex] == Role::Boundary) {
         // x = x_0 + T u + z(u) n and psi(x) = 0: dz/du = -T^T grad psi / (n . grad psi).
         s -= s.dot(f.normal) / f.gradient.dot(f.normal) * f.gradient;
@@ -174,8 +163,23 @@ class LayerNorm {
     return false;
   }
 
+  // Not inlined: the rounding of smooth boundaries would change with the code around it.
+
+  /// The slope by u. x(u) stays on the stratum, and T^T (x(u) - x_0) = T^T u to first order, as the steps of foot() are
+  /// normal: dx/du = S (T^T S)^-1 T^T for tangents S at x.
+  [[gnu::noinline]] static Vec3 on_stratum(const Free& f, const Vec3& s) {
+    if (f.free.n == 0) return Vec3::Zero();
+    if (f.free.n == 1) {
+      const Vec3 t = f.free.tangents.col(0), there = f.free_there.tangents.col(0);
+      return s.dot(there) / t.dot(there) * t;
+    }
+    const Eigen::Matrix2d M = f.free_there.tangents.transpose() * f.free.tangents;
+    const Eigen::Vector2d along = f.free_there.tangents.transpose() * s;
+    return f.free.tangents * (M.inverse() * along);
+  }
+
   /// The foot of the displaced place on the stratum, and the directions there.
-  bool land_on_stratum(Free& f, const Vec3& d) {
+  [[gnu::noinline]] bool land_on_stratum(Free& f, const Vec3& d) {
     const int stratum = layer_.stratum[f.vertex];
     if (f.free.n == 0) {
       layer_.V[f.vertex] = f.from;

@@ -108,8 +108,9 @@ class VertexSolver {
     }
   }
 
-  /// As slide(), on a patch or a curve; a corner stays where it is.
-  void slide_on_stratum(int i, const OneRing& ring, const detail::Bar& bar, Result& result) const {
+  /// As slide(), on a patch or a curve; a corner stays where it is. Not inlined: the rounding of smooth boundaries
+  /// would change with the code around it.
+  [[gnu::noinline]] void slide_on_stratum(int i, const OneRing& ring, const detail::Bar& bar, Result& result) const {
     const Vec3& x = layer_.V[i];
     const double h = layer_.h_at(i);
     const FreeDirections free = layer_.strata->directions(layer_.stratum[i], x);

@@ -70,11 +70,9 @@ struct ChangingMesh {
   bool moves(int v) const {
     return stratum[v] != VertexStratum::Fixed && (stratum[v] == VertexStratum::Inner || dimension(v) > 0);
   }
-  /// The function of a boundary face's patch, at x.
-  double surface_value(ImplicitFunctionRef psi, const Triangle& f, const Vec3& x, Vec3& gradient) const {
-    if (!stratified) return psi.value(x, gradient);
-    return stratified->strata->value(std::max(-1, patch_of(f[0], f[1], f[2])), x, &gradient);
-  }
+  /// The function of a boundary face's patch, at x. Not inlined, as is solve_on_stratum(): the rounding of smooth
+  /// boundaries would change with the code around it.
+  [[gnu::noinline]] double value_on_patch(const Triangle& f, const Vec3& x, Vec3& gradient) const;
 
   std::vector<Vec3> V;
   std::vector<Tet> C;   ///< tets that are gone stay in this list

@@ -98,8 +98,10 @@ void PatchTrials::list_tets(const FlipCandidate& c) {
 
 bool PatchTrials::is_better(const PatchMeasure& made, const PatchMeasure& old, bool is_last) const {
   const bool has_less = made.sum < (1 - kLeastGain) * old.sum && made.least >= old.least - kLostQuality;
-  const bool has_raised = is_last && ((made.least >= params_.target && old.least < params_.target) ||
-                                      (made.sum <= old.sum && made.least > old.least + kLeastRaise));
+  // A misaligned face may bring in a patch whose tets are good already: with strata that is no reason to keep an
+  // operation, which could go on for ever.
+  const bool has_reached = made.least >= params_.target && (!mesh_.stratified || old.least < params_.target);
+  const bool has_raised = is_last && (has_reached || (made.sum <= old.sum && made.least > old.least + kLeastRaise));
   return (has_less || has_raised) && made.shortest >= std::min(params_.shortest, old.shortest) &&
          made.longest <= std::max(params_.longest, old.longest) &&
          made.least_cosine >= std::min(kAligned, old.least_cosine) &&
@@ -194,7 +196,7 @@ bool PatchTrials::solve(FlipPatch& patch, std::size_t v, const OneRing& ring) {
   return true;
 }
 
-bool PatchTrials::solve_on_stratum(int vertex, const OneRing& ring, const Bar& bar, Vec3& x) {
+[[gnu::noinline]] bool PatchTrials::solve_on_stratum(int vertex, const OneRing& ring, const Bar& bar, Vec3& x) {
   const BoundaryStrata& strata = *mesh_.stratified->strata;
   const int stratum = mesh_.stratified->of[vertex];
   const double h = edge_[vertex];
@@ -255,8 +257,11 @@ void PatchTrials::measure_faces(const FlipPatch& patch, PatchMeasure& m) {
     const Vec3 &a = patch.V[f[0]], &b = patch.V[f[1]], &c = patch.V[f[2]];
     const Vec3 normal = (b - a).cross(c - a);
     Vec3 gradient;
-    const Triangle face = {patch.vertices[f[0]], patch.vertices[f[1]], patch.vertices[f[2]]};
-    const double value = mesh_.surface_value(psi_, face, (a + b + c) / 3, gradient);
+    const Vec3 centroid = (a + b + c) / 3;
+    const double value = mesh_.stratified
+                             ? mesh_.value_on_patch({patch.vertices[f[0]], patch.vertices[f[1]], patch.vertices[f[2]]},
+                                                    centroid, gradient)
+                             : psi_.value(centroid, gradient);
     ++report_.psi_evaluations;
     const double slope = gradient.norm(), cosine = normal.dot(gradient) / (normal.norm() * slope);
     const double h = (edge_[patch.vertices[f[0]]] + edge_[patch.vertices[f[1]]] + edge_[patch.vertices[f[2]]]) / 3;
