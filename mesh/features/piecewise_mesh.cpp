@@ -1,6 +1,7 @@
 #include "mesh/features/piecewise_mesh.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -13,6 +14,10 @@
 namespace umtet {
 namespace {
 
+constexpr double kOnStratum = 1e-8;  // in h; projection leaves a thousandth of it
+// Degrees. At a sharper edge a single tet fills the wedge over a long way: with edges up to 2.3 instead of 3.2 lengths
+// the least Q of a wedge of 30 degrees is .50 instead of .74.
+constexpr double kSharpAngle = 40, kLongestAtSharp = 3.2;
 // Rounds in which a vertex that has no foot on its patch goes between its neighbours.
 constexpr int kAverages = 8;
 
@@ -108,11 +113,10 @@ std::vector<Triangle> boundary_faces(const std::vector<Tet>& C, const std::vecto
 }
 
 /// Flips, and the numbers of the vertices that are left.
-void flip(ImplicitFunctionRef psi, const BoundaryStrata& strata, const std::vector<int>& fixed,
-          const LocalFlipParams& params, PiecewiseMesh& made, const Context& context) {
+void flip(ImplicitFunctionRef psi, const BoundaryStrata& strata, const LocalFlipParams& params, PiecewiseMesh& made,
+          const Context& context) {
   std::vector<VertexStratum> moves;
   for (const int s : made.stratum) moves.push_back(s < 0 ? VertexStratum::Inner : VertexStratum::Boundary);
-  for (const int v : fixed) moves[v] = VertexStratum::Fixed;
   const StratifiedVertices vertices{&strata, made.stratum};
   FlippedMesh flipped =
       flip_locally(std::move(made.mesh.V), std::move(made.mesh.C), moves, psi, params, made.flips, context, &vertices);
@@ -148,6 +152,22 @@ void flip(ImplicitFunctionRef psi, const BoundaryStrata& strata, const std::vect
   for (const Triangle& f : made.faces) {
     const int patch = strata.patch_of(made.stratum[f[0]], made.stratum[f[1]], made.stratum[f[2]]);
     made.face_patch.push_back(std::max(patch, -1));
+  }
+}
+
+/// Names the vertices that are not on their corner, curve or patch.
+void list_off_strata(const BoundaryStrata& strata, double h, PiecewiseMesh& made) {
+  for (std::size_t v = 0; v < made.mesh.V.size(); ++v) {
+    if (made.stratum[v] < 0) continue;
+    const Vec3& x = made.mesh.V[v];
+    const Stratum& s = strata[made.stratum[v]];
+    const auto is_off = [&](int patch) {
+      Vec3 g;
+      const double f = strata.value(patch, x, &g);
+      return !(std::abs(f) <= kOnStratum * h * g.norm());
+    };
+    const bool is_off_one = s.patches.empty() ? is_off(-1) : std::any_of(s.patches.begin(), s.patches.end(), is_off);
+    if (is_off_one) made.defects.push_back({FeatureDefect::Kind::NotOnStratum, -1, -1, x});
   }
 }
 
@@ -203,8 +223,6 @@ PiecewiseMesh make_piecewise_mesh(const PiecewiseDomain& domain, const Backgroun
   smoother.run(psi, params.smoothing, context);
   made.mesh = std::move(submesh.mesh);
   for (std::size_t v = 0; v < of_layer.size(); ++v) made.mesh.V[of_layer[v]] = part.layer.V[v];
-  for (const int v : projected.not_arrived)
-    made.defects.push_back({FeatureDefect::Kind::NotOnStratum, -1, -1, part.layer.V[v]});
   made.background_vertex = std::move(submesh.background_vertex);
   made.faces = std::move(submesh.positive_faces);
   made.face_patch = std::move(embedded.face_patch);
@@ -212,9 +230,12 @@ PiecewiseMesh make_piecewise_mesh(const PiecewiseDomain& domain, const Backgroun
   made.stratum = std::move(embedded.stratum);
   made.corner_vertex = std::move(embedded.corner_vertex);
   made.chains = std::move(embedded.chains);
-  std::vector<int> fixed;
-  for (const int v : projected.not_arrived) fixed.push_back(of_layer[v]);
-  if (params.flips) flip(psi, strata, fixed, params.local_flips, made, context);
+  LocalFlipParams local_flips = params.local_flips;
+  for (const FeatureCurve& c : made.graph.curves)
+    if (*std::min_element(c.angle_deg.begin(), c.angle_deg.end()) < kSharpAngle)
+      local_flips.longest = std::max(local_flips.longest, kLongestAtSharp);
+  if (params.flips) flip(psi, strata, local_flips, made, context);
+  list_off_strata(strata, h, made);
   return made;
 }
 

@@ -18,6 +18,29 @@ constexpr int kRoundsPerDetour = 3;
 // A vertex that is held back this often no longer insists on its own point of the curve: the nearest one will do.
 constexpr int kRoundsForTarget = 8;
 
+/// Puts vertices onto their strata although tets invert, and untangles. The layer stays unchanged where that fails.
+bool leap(PNormSmoother& smoother, ImplicitFunctionRef psi, const std::vector<Vec3>& target,
+          const std::vector<int>& vertices, const SmoothingParams& params, const Context& context) {
+  ActiveLayer& layer = smoother.layer();
+  const std::vector<Vec3> before = layer.V;
+  bool has_place = true;
+  for (const int v : vertices) {
+    Vec3 place = target[v];
+    has_place =
+        has_place && (place.allFinite() || layer.strata->foot(layer.stratum[v], layer.V[v], layer.h_at(v), place));
+    if (has_place) layer.V[v] = place;
+  }
+  if (has_place) {
+    smoother.enqueue_all();
+    smoother.run(psi, params, context);
+    SmoothingReport report;
+    smoother.measure(report);
+    if (report.tangled == 0) return true;
+  }
+  layer.V = before;
+  return false;
+}
+
 }  // namespace
 
 StratifiedProjectionReport project_onto_strata(PNormSmoother& smoother, ImplicitFunctionRef psi,
@@ -78,6 +101,7 @@ StratifiedProjectionReport project_onto_strata(PNormSmoother& smoother, Implicit
     for (const int v : under_way) layer.role[v] = Role::Fixed;
   }
   for (const int v : under_way) layer.role[v] = Role::Boundary;
+  if (!under_way.empty() && leap(smoother, psi, target, under_way, params.smoothing, context)) under_way.clear();
   report.not_arrived = std::move(under_way);
   return report;
 }

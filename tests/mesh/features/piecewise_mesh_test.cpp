@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <map>
 #include <string>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "mesh/certify/certificate.h"
 #include "mesh/core/boundary_strata.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/features/feature_measures.h"
 #include "tests/support/piecewise_bodies.h"
 
 namespace umtet {
@@ -25,7 +27,12 @@ using testing::Placement;
 using testing::random_placement;
 
 constexpr double kH = 2. / 9;
-constexpr unsigned kPlacements = 5;
+
+/// UMTET_PLACEMENTS sets the number of positions of each body.
+unsigned n_placements() {
+  const char* n = std::getenv("UMTET_PLACEMENTS");
+  return n ? static_cast<unsigned>(std::max(1, std::atoi(n))) : 5;
+}
 
 BackgroundMesh background_of(const PiecewiseBody& body, double h) {
   const double R = body.radius + 4 * h;
@@ -121,7 +128,7 @@ class PiecewiseMeshes : public ::testing::TestWithParam<Law> {};
 // The table of least Q by body that the test prints is the measurement.
 TEST_P(PiecewiseMeshes, HaveEveryCurveAndGoodTetsInAnyPosition) {
   std::vector<double> least;
-  for (unsigned seed = 0; seed < kPlacements; ++seed) {
+  for (unsigned seed = 0; seed < n_placements(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const PiecewiseBody body = piecewise_body(GetParam().body, random_placement(seed, kH));
     const PiecewiseMesh made = make_piecewise_mesh(body.domain, background_of(body, kH));
@@ -131,6 +138,15 @@ TEST_P(PiecewiseMeshes, HaveEveryCurveAndGoodTetsInAnyPosition) {
     ASSERT_EQ(made.graph.curves.size(), static_cast<std::size_t>(body.curves));
     expect_curves_are_covered(made);
     expect_vertices_and_faces_on_their_strata(body, made);
+
+    const FeatureMeasures features = measure_features(body.domain, made, kH);
+    EXPECT_EQ(features.n_missed_corners + features.n_missed_curves + features.n_faces_without_patch, 0U);
+    EXPECT_EQ(features.missed_length, 0);
+    EXPECT_NEAR(features.length, body.curve_length, .01 * body.curve_length);
+    EXPECT_LE(features.farthest_vertex, 1e-8);
+    EXPECT_LE(features.worst_angle_deg, body.has_flat_faces ? 1e-6 : 20);
+    EXPECT_LE(features.farthest_point, body.has_flat_faces ? 1e-8 : .2);
+    EXPECT_GT(features.least_cosine, .9);
 
     CertificateInput input;
     input.mesh = &made.mesh;
@@ -153,7 +169,8 @@ TEST_P(PiecewiseMeshes, HaveEveryCurveAndGoodTetsInAnyPosition) {
 
 INSTANTIATE_TEST_SUITE_P(Bodies, PiecewiseMeshes,
                          ::testing::Values(Law{"cube", .77}, Law{"cylinder", .77}, Law{"L", .75}, Law{"lens", .78},
-                                           Law{"balls", .78}, Law{"cube-ball", .76}, Law{"wedge60", .72}),
+                                           Law{"balls", .78}, Law{"cube-ball", .76}, Law{"wedge60", .72},
+                                           Law{"wedge45", .70}),
                          [](const auto& law) {
                            std::string name = law.param.body;
                            std::erase(name, '-');
@@ -197,6 +214,10 @@ TEST(PiecewiseMesh, CurvesThatCannotBeEmbeddedAreNamedAndTheMeshIsValid) {
   const PiecewiseMesh made = make_piecewise_mesh(domain, background_of(cube, kH));
   ASSERT_EQ(made.status, UmStatus::Success);
   EXPECT_FALSE(made.defects.empty());
+  const FeatureMeasures features = measure_features(domain, made, kH);
+  EXPECT_GT(features.n_missed_curves, 0U);
+  EXPECT_GT(features.missed_length, 0);
+  EXPECT_LT(features.missed_length, features.length);
   CertificateInput input;
   input.mesh = &made.mesh;
   const MeshCertificate certificate = certify(input);
