@@ -35,6 +35,11 @@ constexpr std::array<std::pair<std::string_view, Operator>, 12> kFunctions{{{"si
                                                                             {"sqrt", Operator::Sqrt}}};
 constexpr std::array<std::string_view, 8> kKinks{"abs", "fabs", "min", "max", "sign", "floor", "ceil", "round"};
 
+constexpr std::array<std::string_view, 4> kFolds{"abs", "fabs", "min", "max"};  // in a piecewise formula
+constexpr std::array<Operator, 7> kIncreasing{Operator::Asin, Operator::Atan, Operator::Sinh, Operator::Tanh,
+                                              Operator::Exp,  Operator::Log,  Operator::Sqrt};
+constexpr std::size_t kMostLeaves = 256;
+
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_of_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
@@ -44,13 +49,23 @@ struct Part {
   int operation = -1;  ///< -1: the number
   double number = 0;
   double exponent = 1;  ///< of a power with a number as exponent
-  bool is_number() const { return operation < 0; }
+  int fold = -1;        ///< a max or min of two parts, by its number; -1: none
+  bool is_number() const { return operation < 0 && fold < 0; }
+  bool is_fold() const { return fold >= 0; }
+};
+
+/// max or min of two parts.
+struct Fold {
+  bool is_max;
+  Part left, right;
 };
 
 class Parser {
  public:
-  Parser(const std::string& text, std::optional<double> t) : text_(text), t_(t) {}
+  Parser(const std::string& text, std::optional<double> t, bool has_folds)
+      : text_(text), t_(t), has_folds_(has_folds) {}
   Tape parse();
+  PiecewiseFormula parse_piecewise();
 
  private:
   [[noreturn]] void refuse(std::size_t column, const std::string& message) const {
@@ -59,6 +74,15 @@ class Parser {
   [[noreturn]] void refuse_next() const;
   char peek();
   bool take(char c);
+
+  Part whole();
+  Part fold(bool is_max, const Part& a, const Part& b);
+  template <class F>
+  Part distribute(const Part& a, bool turns, const F& f);
+  Part negative(const Part& a, std::size_t column);
+  Part fold_of_arguments(std::string_view name, std::size_t column);
+  void refuse_fold(const Part& a, const char* where) const;
+  int add_nodes(const Part& a, PiecewiseFormula& formula, std::map<int, int>& tape_of) const;
 
   Part sum();
   Part product();
@@ -77,7 +101,10 @@ class Parser {
   const std::string& text_;
   std::optional<double> t_;
   std::size_t at_ = 0;
+  bool has_folds_;
   int depth_ = 0;
+  std::vector<Fold> folds_;
+  std::size_t n_leaves_ = 0;  ///< of folds made so far
   Tape tape_;
   std::map<std::tuple<Operator, int, int, std::uint64_t>, int> known_;
 };
@@ -115,14 +142,112 @@ void Parser::refuse_next() const {
   refuse(column, "unexpected \"" + text_.substr(at_, end - at_) + "\"");
 }
 
-Tape Parser::parse() {
+Part Parser::whole() {
   if (text_.find_first_not_of(" \t") == std::string::npos) refuse(1, "the expression is empty");
   if (text_.size() > kMaxText) refuse(kMaxText + 1, "longer than " + std::to_string(kMaxText) + " characters");
   const Part psi = sum();
   if (peek() != '\0') refuse_next();
   if (psi.is_number()) refuse(1, "the formula does not depend on x, y or z");
+  return psi;
+}
+
+Tape Parser::parse() {
+  const Part psi = whole();
   tape_.operations.resize(static_cast<std::size_t>(psi.operation) + 1);
   return std::move(tape_);
+}
+
+/// The operations that one of them needs, renumbered.
+Tape needed_for(const Tape& all, int last) {
+  std::vector<int> number(static_cast<std::size_t>(last) + 1, -1);
+  number[last] = 0;
+  for (int k = last; k >= 0; --k) {
+    if (number[k] < 0) continue;
+    const Operation& o = all.operations[k];
+    if (o.a >= 0) number[o.a] = 0;
+    if (o.b >= 0) number[o.b] = 0;
+  }
+  Tape tape;
+  for (int k = 0; k <= last; ++k) {
+    if (number[k] < 0) continue;
+    number[k] = static_cast<int>(tape.operations.size());
+    Operation o = all.operations[k];
+    if (o.a >= 0) o.a = number[o.a];
+    if (o.b >= 0) o.b = number[o.b];
+    tape.operations.push_back(o);
+  }
+  return tape;
+}
+
+PiecewiseFormula Parser::parse_piecewise() {
+  const Part psi = whole();
+  PiecewiseFormula formula;
+  std::map<int, int> tape_of;
+  add_nodes(psi, formula, tape_of);
+  return formula;
+}
+
+/// Adds the nodes of a part; returns the number of its own.
+int Parser::add_nodes(const Part& a, PiecewiseFormula& formula, std::map<int, int>& tape_of) const {
+  PiecewiseFormula::Node node;
+  if (a.is_fold()) {
+    const Fold& f = folds_[static_cast<std::size_t>(a.fold)];
+    node.is_leaf = false;
+    node.is_max = f.is_max;
+    node.left = add_nodes(f.left, formula, tape_of);
+    node.right = add_nodes(f.right, formula, tape_of);
+  } else {
+    const auto [at, is_new] = tape_of.try_emplace(a.operation, static_cast<int>(formula.tapes.size()));
+    if (is_new) formula.tapes.push_back(needed_for(tape_, a.operation));
+    node.tape = at->second;
+  }
+  formula.nodes.push_back(node);
+  return static_cast<int>(formula.nodes.size()) - 1;
+}
+
+Part Parser::fold(bool is_max, const Part& a, const Part& b) {
+  if (a.is_number() && b.is_number())
+    return {a.column, -1, is_max ? std::max(a.number, b.number) : std::min(a.number, b.number)};
+  for (const Part* p : {&a, &b})
+    if (p->is_number()) refuse(p->column, "a number in max, min or abs is no boundary");
+  if (!a.is_fold() && a.operation == b.operation) return a;
+  if (++n_leaves_ > kMostLeaves) refuse(a.column, "max, min and abs make more than 256 smooth functions");
+  folds_.push_back({is_max, a, b});
+  Part p{a.column};
+  p.fold = static_cast<int>(folds_.size()) - 1;
+  return p;
+}
+
+/// f of every smooth part. @param turns  f decreases: max becomes min
+template <class F>
+Part Parser::distribute(const Part& a, bool turns, const F& f) {
+  if (!a.is_fold()) return f(a);
+  const Fold of = folds_[static_cast<std::size_t>(a.fold)];  // a copy: the list grows
+  const Part left = distribute(of.left, turns, f), right = distribute(of.right, turns, f);
+  return fold(of.is_max != turns, left, right);
+}
+
+Part Parser::negative(const Part& a, std::size_t column) {
+  return distribute(a, true, [&](const Part& b) {
+    return b.is_number() ? constant(-b.number, column, column) : operation(Operator::SubtractFrom, column, b.operation);
+  });
+}
+
+void Parser::refuse_fold(const Part& a, const char* where) const {
+  if (a.is_fold()) refuse(a.column, std::string("max, min or abs in ") + where + ": the edge cannot be found");
+}
+
+/// The arguments of max, min or abs, behind the bracket.
+Part Parser::fold_of_arguments(std::string_view name, std::size_t column) {
+  Part a = sum();
+  if (name == "abs" || name == "fabs") {
+    a = a.is_number() ? Part{a.column, -1, std::abs(a.number)} : fold(true, a, negative(a, column));
+  } else {
+    if (peek() != ',') refuse(at_ + 1, std::string(name) + " needs two arguments or more, between commas");
+    while (take(',')) a = fold(name == "max", a, sum());
+  }
+  if (!take(')')) at_ < text_.size() ? refuse_next() : refuse(at_ + 1, "a closing bracket is missing");
+  return a;
 }
 
 Part Parser::sum() {
@@ -159,7 +284,7 @@ Part Parser::signed_power() {
   Part a;
   if (take('-')) {
     const Part b = signed_power();
-    a = b.is_number() ? constant(-b.number, column, column) : operation(Operator::SubtractFrom, column, b.operation);
+    a = negative(b, column);
   } else if (take('+')) {
     a = signed_power();
   } else {
@@ -212,6 +337,11 @@ Part Parser::name() {
     if (!take(')')) at_ < text_.size() ? refuse_next() : refuse(at_ + 1, "a closing bracket is missing");
     return unary(f, a, column);
   }
+  if (has_folds_ && std::find(kFolds.begin(), kFolds.end(), name) != kFolds.end()) {
+    at_ = end;
+    if (!take('(')) refuse(column, std::string(name) + " needs its arguments in brackets");
+    return fold_of_arguments(name, column);
+  }
   if (std::find(kKinks.begin(), kKinks.end(), name) != kKinks.end()) {
     refuse(column, std::string(name) + " is not smooth; psi must be C2");
   }
@@ -234,6 +364,11 @@ Part Parser::operation(Operator f, std::size_t column, int a, int b, double c) {
 }
 
 Part Parser::unary(Operator f, const Part& a, std::size_t column) {
+  if (a.is_fold()) {
+    if (std::find(kIncreasing.begin(), kIncreasing.end(), f) == kIncreasing.end())
+      refuse_fold(a, "a function that does not increase");
+    return distribute(a, false, [&](const Part& b) { return unary(f, b, column); });
+  }
   if (!a.is_number()) return operation(f, column, a.operation);
   const double value = apply(f, a.number);
   if (f == Operator::Log && a.number == 0) refuse(a.column, "no value: log of zero");
@@ -242,6 +377,20 @@ Part Parser::unary(Operator f, const Part& a, std::size_t column) {
 }
 
 Part Parser::binary(Operator f, const Part& a, const Part& b) {
+  if (a.is_fold() || b.is_fold()) {
+    const bool is_sum = f == Operator::Add || f == Operator::Subtract;
+    if (!is_sum && !a.is_number()) refuse_fold(b, f == Operator::Multiply ? "a product" : "a divisor");
+    if (!is_sum && !b.is_number()) refuse_fold(a, f == Operator::Multiply ? "a product" : "a quotient");
+    if (f == Operator::Divide) refuse_fold(b, "a divisor");
+    if (a.is_fold()) {
+      if (f == Operator::Multiply && b.number == 0) return {a.column, -1, 0};
+      const bool turns = !is_sum && b.number < 0;
+      return distribute(a, turns, [&](const Part& part) { return binary(f, part, b); });
+    }
+    if (f == Operator::Multiply && a.number == 0) return {a.column, -1, 0};
+    const bool turns = f == Operator::Subtract || (f == Operator::Multiply && a.number < 0);
+    return distribute(b, turns, [&](const Part& part) { return binary(f, a, part); });
+  }
   if (f == Operator::Divide && b.is_number() && b.number == 0) refuse(b.column, "no value: division by zero");
   if (a.is_number() && b.is_number()) return constant(apply(f, a.number, b.number), a.column, a.column);
   if (!a.is_number() && !b.is_number()) return operation(f, a.column, a.operation, b.operation);
@@ -268,6 +417,8 @@ Part Parser::whole_power(const Part& base, int n) {
 }
 
 Part Parser::power(const Part& base, const Part& exponent) {
+  refuse_fold(base, "a power");
+  refuse_fold(exponent, "a power");
   if (!exponent.is_number()) {
     if (!base.is_number()) return operation(Operator::Power, base.column, base.operation, exponent.operation);
     if (base.number <= 0) refuse(1, "no derivative: the base of a variable power is not positive");
@@ -299,6 +450,10 @@ Part Parser::power(const Part& base, const Part& exponent) {
 
 }  // namespace
 
-Tape parse_formula(const std::string& text, std::optional<double> t) { return Parser(text, t).parse(); }
+Tape parse_formula(const std::string& text, std::optional<double> t) { return Parser(text, t, false).parse(); }
+
+PiecewiseFormula parse_piecewise_formula(const std::string& text, std::optional<double> t) {
+  return Parser(text, t, true).parse_piecewise();
+}
 
 }  // namespace umtet

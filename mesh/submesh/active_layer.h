@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "mesh/core/boundary_strata.h"
 #include "mesh/core/tet_mesh.h"
 
 namespace umtet {
@@ -23,6 +24,10 @@ struct ActiveLayer {
   std::vector<int> ring_begin, ring;  ///< the tets of vertex v: ring[ring_begin[v]] .. ring[ring_begin[v + 1] - 1]
   double h = 0;                       ///< mean edge length of the background mesh, model units
   std::vector<double> local_h;        ///< per vertex, mean length of its background edges; empty: h everywhere
+  /// The strata of a piecewise smooth boundary, and per vertex the one that a Boundary vertex moves on. Null: all of
+  /// them move on psi = 0.
+  const BoundaryStrata* strata = nullptr;
+  std::vector<int> stratum;
 
   double h_at(int v) const { return local_h.empty() ? h : local_h[v]; }
 };

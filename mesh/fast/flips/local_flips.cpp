@@ -19,16 +19,8 @@ namespace {
 using Stratum = VertexStratum;
 using Operation = detail::FlipCandidate::Operation;
 
-// The worst new tet of an operation needs this share of the least Q before, before its vertices move. Below it one
-// patch in ten is mended (`mesh_bench --benchmark_filter=flips`).
-constexpr double kPromising = .6;
-// Where a body is thinner than its tets, no operation helps, and each operation that is kept nearby would have all of
-// them tried again. A tet is left as it is once this many trials at each of its vertices have not helped. Each pass
-// counts anew.
-constexpr int kMostFailures = 6;
 // The remaining tets are tried again with more candidates and a lower bar, and all vertices of a patch move at once:
 // this mends half of them or more, at ten times the cost of a try.
-constexpr double kPromisingAtLast = .4;
 constexpr int kMoreCandidates = 3;  // times as many
 constexpr int kTriesPerPoll = 64;
 
@@ -36,8 +28,8 @@ constexpr int kTriesPerPoll = 64;
 class LocalFlips {
  public:
   LocalFlips(std::vector<Vec3> V, std::vector<Tet> C, const std::vector<Stratum>& stratum, ImplicitFunctionRef psi,
-             const LocalFlipParams& params, LocalFlipReport& report)
-      : mesh_(std::move(V), std::move(C), stratum),
+             const LocalFlipParams& params, LocalFlipReport& report, const StratifiedVertices* strata)
+      : mesh_(std::move(V), std::move(C), stratum, strata),
         n_given_(mesh_.C.size()),
         alive_(mesh_.C.size(), 1),
         version_(mesh_.C.size(), 0),
@@ -93,7 +85,12 @@ class LocalFlips {
       if (n != 1) continue;
       const Vec3 &a = mesh_.V[face[0]], &b = mesh_.V[face[1]], &c = mesh_.V[face[2]];
       Vec3 gradient;
-      psi_.value((a + b + c) / 3, gradient);
+      const Vec3 centroid = (a + b + c) / 3;
+      if (mesh_.stratified) {
+        mesh_.value_on_patch(face, centroid, gradient);
+      } else {
+        psi_.value(centroid, gradient);
+      }
       ++report_.psi_evaluations;
       const Vec3 normal = (b - a).cross(c - a);
       const double cosine = normal.dot(gradient) / (normal.norm() * gradient.norm());
@@ -104,7 +101,8 @@ class LocalFlips {
 
   void mend(int tet) {
     const Tet corners = mesh_.C[tet];
-    if (std::all_of(corners.begin(), corners.end(), [&](int v) { return failures_[v] >= kMostFailures; })) return;
+    if (std::all_of(corners.begin(), corners.end(), [&](int v) { return failures_[v] >= params_.most_failures; }))
+      return;
     if (was_mended(tet)) return;
     for (const int v : corners) failures_[v] = static_cast<std::uint8_t>(std::min(255, failures_[v] + 1));
   }
@@ -112,7 +110,7 @@ class LocalFlips {
   bool was_mended(int tet) {
     const auto most = static_cast<std::size_t>(params_.most_candidates) * (is_last_ ? kMoreCandidates : 1);
     for (const detail::FlipCandidate& c :
-         detail::edge_operations(mesh_, tet, is_last_ ? kPromisingAtLast : kPromising, most))
+         detail::edge_operations(mesh_, tet, is_last_ ? params_.promising_at_last : params_.promising, most))
       if (attempt(c)) return true;
     detail::FlipCandidate c = detail::smoothing_around(mesh_, tet);
     if (attempt(c)) return true;
@@ -146,8 +144,12 @@ class LocalFlips {
         alive_.push_back(1);
         version_.push_back(0);
         for (const int v : t) mesh_.incidence.add(v, id);
-        enqueue(id);
+        if (!mesh_.stratified) enqueue(id);
       }
+      // With strata once all of them are there: before, a face between two new tets looks like one of the boundary, and
+      // the tet is tried in vain. A smooth boundary keeps its bytes.
+      if (mesh_.stratified)
+        for (std::size_t k = mesh_.C.size() - c.new_tets.size(); k < mesh_.C.size(); ++k) enqueue(static_cast<int>(k));
     }
     for (const int t : c.changes_tets() ? trials_.kept_tets() : trials_.patch_tets()) {
       ++version_[t];
@@ -187,18 +189,22 @@ std::vector<std::string> problems(const LocalFlipParams& params) {
   if (!(params.target > 0 && params.target < 1)) p.emplace_back("target must be in (0, 1)");
   if (!(params.shortest > 0 && params.shortest < 1)) p.emplace_back("shortest must be in (0, 1)");
   if (!(params.longest > 1)) p.emplace_back("longest must be > 1");
+  if (!(params.promising >= 0)) p.emplace_back("promising must be >= 0");
+  if (!(params.promising_at_last >= 0)) p.emplace_back("promising_at_last must be >= 0");
+  if (params.most_failures < 1 || params.most_failures > 255) p.emplace_back("most_failures must be 1 to 255");
   if (params.most_candidates < 0) p.emplace_back("most_candidates must be >= 0");
   return p;
 }
 
 FlippedMesh flip_locally(std::vector<Vec3> V, std::vector<Tet> C, const std::vector<VertexStratum>& stratum,
                          ImplicitFunctionRef psi, const LocalFlipParams& params, LocalFlipReport& report,
-                         const Context& context) {
+                         const Context& context, const StratifiedVertices* strata) {
   std::string all;
   for (const std::string& problem : problems(params)) all += (all.empty() ? "" : "; ") + problem;
-  if (stratum.size() != V.size()) all += (all.empty() ? "" : "; ") + std::string("one stratum for each vertex");
+  if (stratum.size() != V.size() || (strata && strata->of.size() != V.size()))
+    all += (all.empty() ? "" : "; ") + std::string("one stratum for each vertex");
   if (!all.empty()) throw std::invalid_argument(all);
-  return LocalFlips(std::move(V), std::move(C), stratum, psi, params, report)(context);
+  return LocalFlips(std::move(V), std::move(C), stratum, psi, params, report, strata)(context);
 }
 
 }  // namespace umtet

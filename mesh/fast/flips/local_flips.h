@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/context.h"
+#include "mesh/core/boundary_strata.h"
 #include "mesh/core/implicit_function.h"
 #include "mesh/core/tet_mesh.h"
 
@@ -18,6 +19,14 @@ struct LocalFlipParams {
   /// are outside of it already may stay so.
   double shortest = .5, longest = 1.7;
   int most_candidates = 4;  ///< operations that are tried for one tet, those with the best worst tet first; >= 0
+  /// The worst new tet of an operation needs this share of the mean ratio of the tet, before its vertices move; >= 0.
+  /// Below .6 one patch in ten is mended (`mesh_bench --benchmark_filter=flips`).
+  double promising = .6;
+  double promising_at_last = .4;  ///< the same in the last pass
+  /// Where a body is thinner than its tets, no operation helps, and each operation that is kept nearby would have all
+  /// of them tried again. A tet is left as it is once this many trials at each of its vertices have not helped, in each
+  /// pass; 1 to 255.
+  int most_failures = 6;
 };
 
 /// Every broken constraint, not just the first.
@@ -38,6 +47,12 @@ enum class VertexStratum : std::uint8_t {
   Fixed,    ///< not at all
   Inner,    ///< moves freely
   Boundary  ///< stays on psi = 0
+};
+
+/// The vertices of a mesh on the strata of a piecewise smooth boundary.
+struct StratifiedVertices {
+  const BoundaryStrata* strata = nullptr;
+  std::vector<int> of;  ///< per vertex; read for Boundary vertices
 };
 
 /// A tet mesh whose connectivity changes.
@@ -70,11 +85,17 @@ struct FlippedMesh {
 ///
 /// Operations change neither the topology of the body nor of its boundary. One thread; the same bytes on every run.
 ///
+/// With strata, vertices move on their own patch or curve, and faces are compared with their own patch. An edge on the
+/// boundary is removed where its two faces and the two new ones lie on one patch. A vertex of a patch collapses into
+/// one of the patch or of its border, a vertex of a curve into its neighbour on the curve, a corner into none; every
+/// face stays on its patch. The edges of curves are never removed.
+///
 /// @param V, C      a valid mesh: every tet positive; moved in
 /// @param stratum   per vertex; Boundary ones lie on psi = 0 and on the boundary of the mesh
+/// @param strata    null for a smooth boundary; must outlive the call
 /// \throw std::invalid_argument naming every broken constraint, Cancelled
 FlippedMesh flip_locally(std::vector<Vec3> V, std::vector<Tet> C, const std::vector<VertexStratum>& stratum,
                          ImplicitFunctionRef psi, const LocalFlipParams& params, LocalFlipReport& report,
-                         const Context& context = {});
+                         const Context& context = {}, const StratifiedVertices* strata = nullptr);
 
 }  // namespace umtet

@@ -22,8 +22,8 @@ constexpr int kLog2Powers[] = {5, 7, 9};
 constexpr int kMostSteps = 60;  // for each p: patches of repair settle in 20 to 40
 // Relative gain of ||1/Q||_p by a step below which the next p has its turn.
 constexpr double kLeastGain = 1e-5;
-// Longest move of a vertex along an axis in a step, in edges: farther off, the pairs of L-BFGS say nothing. And of the first step,
-// whose length no pair suggests.
+// Longest move of a vertex along an axis in a step, in edges: farther off, the pairs of L-BFGS say nothing. And of the
+// first step, whose length no pair suggests.
 constexpr double kLongestMove = .2, kFirstMove = .02;
 // Of the decrease that the slope promises, what a step has to bring [NocedalWright2006, Section 3.1], and how often it
 // is halved for that.
@@ -65,8 +65,13 @@ class LayerNorm {
     for (Free& f : free_) {
       f.from = layer_.V[f.vertex];
       if (layer_.role[f.vertex] != Role::Boundary) continue;
-      psi_.value(f.from, f.gradient);
       ++psi_evaluations_;
+      if (layer_.strata) {
+        f.free = layer_.strata->directions(layer_.stratum[f.vertex], f.from);
+        f.free_there = f.free;
+        continue;
+      }
+      psi_.value(f.from, f.gradient);
       f.normal = f.gradient.normalized();
     }
   }
@@ -79,6 +84,8 @@ class LayerNorm {
       const Vec3 d = edge_ * u.segment<3>(3 * static_cast<Eigen::Index>(k));
       if (layer_.role[f.vertex] != Role::Boundary) {
         layer_.V[f.vertex] = f.from + d;
+      } else if (layer_.strata) {
+        if (!land_on_stratum(f, d)) return kInfinity;
       } else if (!land(f, f.from + d - d.dot(f.normal) * f.normal)) {
         return kInfinity;
       }
@@ -112,7 +119,9 @@ class LayerNorm {
     for (std::size_t k = 0; k < free_.size(); ++k) {
       const Free& f = free_[k];
       Vec3 s = slope_[k];
-      if (layer_.role[f.vertex] == Role::Boundary) {
+      if (layer_.role[f.vertex] == Role::Boundary && layer_.strata) {
+        s = on_stratum(f, s);
+      } else if (layer_.role[f.vertex] == Role::Boundary) {
         // x = x_0 + T u + z(u) n and psi(x) = 0: dz/du = -T^T grad psi / (n . grad psi).
         s -= s.dot(f.normal) / f.gradient.dot(f.normal) * f.gradient;
         s -= s.dot(f.normal) * f.normal;
@@ -125,7 +134,8 @@ class LayerNorm {
   struct Free {
     int vertex;
     Vec3 from = Vec3::Zero(), normal = Vec3::Zero();
-    Vec3 gradient = Vec3::Zero();  ///< of psi, where the vertex is
+    Vec3 gradient = Vec3::Zero();               ///< of psi, where the vertex is
+    FreeDirections free = {}, free_there = {};  ///< with strata: at `from`, and where the vertex is
   };
   struct Corners {
     const Vec3 &a, &b, &c, &d;
@@ -151,6 +161,38 @@ class LayerNorm {
     at = f.from;
     f.gradient = f.normal;
     return false;
+  }
+
+  // Not inlined: the rounding of smooth boundaries would change with the code around it.
+
+  /// The slope by u. x(u) stays on the stratum, and T^T (x(u) - x_0) = T^T u to first order, as the steps of foot() are
+  /// normal: dx/du = S (T^T S)^-1 T^T for tangents S at x.
+  [[gnu::noinline]] static Vec3 on_stratum(const Free& f, const Vec3& s) {
+    if (f.free.n == 0) return Vec3::Zero();
+    if (f.free.n == 1) {
+      const Vec3 t = f.free.tangents.col(0), there = f.free_there.tangents.col(0);
+      return s.dot(there) / t.dot(there) * t;
+    }
+    const Eigen::Matrix2d M = f.free_there.tangents.transpose() * f.free.tangents;
+    const Eigen::Vector2d along = f.free_there.tangents.transpose() * s;
+    return f.free.tangents * (M.inverse() * along);
+  }
+
+  /// The foot of the displaced place on the stratum, and the directions there.
+  [[gnu::noinline]] bool land_on_stratum(Free& f, const Vec3& d) {
+    const int stratum = layer_.stratum[f.vertex];
+    if (f.free.n == 0) {
+      layer_.V[f.vertex] = f.from;
+      return true;
+    }
+    const auto T = f.free.tangents.leftCols(f.free.n);
+    const Vec3 along = T * (T.transpose() * d);
+    ++psi_evaluations_;
+    if (along.norm() > edge_ || !layer_.strata->foot(stratum, f.from + along, edge_, layer_.V[f.vertex])) return false;
+    f.free_there = layer_.strata->directions(stratum, layer_.V[f.vertex]);
+    if (f.free_there.n != f.free.n) return false;
+    const Eigen::Matrix2d M = f.free_there.tangents.transpose() * f.free.tangents;
+    return f.free.n == 1 ? std::abs(M(0, 0)) > kLeastSlope : std::abs(M.determinant()) > kLeastSlope;
   }
 
   /// Q^3 is proportional to V^2 / L^3.

@@ -65,7 +65,9 @@ class VertexSolver {
     detail::silence_padding(ring);
     result.good = ring.f_here >= target_f_;
     const detail::Bar bar(ring, layer_.h_at(i), result.good ? fine_gain_ : least_gain_);
-    if (layer_.role[i] == ActiveLayer::Role::Inner) {
+    if (layer_.role[i] == ActiveLayer::Role::Boundary && layer_.strata) {
+      slide_on_stratum(i, ring, bar, result);
+    } else if (layer_.role[i] == ActiveLayer::Role::Inner) {
       const detail::Displacement best = detail::best_displacement(ring, bar, layer_.h_at(i), {});
       result.moved = best.passed(ring, bar);
       result.place = layer_.V[i] + over_relaxed(ring, bar, best.y, kInnerFactor);
@@ -102,6 +104,28 @@ class VertexSolver {
       if (!foot.converged || !bar.passed(ring, foot.point - x)) continue;
       result.moved = true;
       result.place = foot.point;
+      return;
+    }
+  }
+
+  /// As slide(), on a patch or a curve; a corner stays where it is. Not inlined: the rounding of smooth boundaries
+  /// would change with the code around it.
+  [[gnu::noinline]] void slide_on_stratum(int i, const OneRing& ring, const detail::Bar& bar, Result& result) const {
+    const Vec3& x = layer_.V[i];
+    const double h = layer_.h_at(i);
+    const FreeDirections free = layer_.strata->directions(layer_.stratum[i], x);
+    ++result.psi_evaluations;
+    if (free.n == 0) return;
+    const detail::Directions along{.plane = true, .tangents = free.tangents, .line = free.n == 1};
+    const detail::Displacement best = detail::best_displacement(ring, bar, h, along);
+    if (!best.passed(ring, bar)) return;
+    Vec3 y = over_relaxed(ring, bar, best.y, kBoundaryFactor);
+    for (int trial = 0; trial < kSlides && (trial == 0 || bar.passed(ring, y)); ++trial, y *= .5) {
+      Vec3 foot;
+      ++result.psi_evaluations;
+      if (!layer_.strata->foot(layer_.stratum[i], x + y, h, foot) || !bar.passed(ring, foot - x)) continue;
+      result.moved = true;
+      result.place = foot;
       return;
     }
   }

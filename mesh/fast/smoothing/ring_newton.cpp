@@ -130,11 +130,19 @@ Vec3 solve(const Mat3& H, const Vec3& b) {
   return (c0 * b.x() + c1 * b.y() + c2 * b.z()) / det;
 }
 
+/// The Newton step along a line. Not inlined: the rounding of the other steps would change with the code around them.
+[[gnu::noinline]] Vec3 step_on_line(const Mat3& H, const Vec3& gradient, const Vec3& t) {
+  const double curvature = t.dot(H * t);
+  if (!(curvature > 0)) return Vec3::Zero();
+  return -(t.dot(gradient) / curvature) * t;
+}
+
 /// The Newton step for a sum and its derivatives, along these directions.
 Vec3 step_of(const PowerSum& at, const Directions& directions) {
   // The p-norm of 1/Q is exp(ln(sum) / 3 p): its Newton step goes with this matrix. That of the sum itself would
   // shrink like 1 / p far from the optimum, where one tet rules.
   const Mat3 H = at.hessian + at.gradient * at.gradient.transpose() / 3;
+  if (directions.line) return step_on_line(H, at.gradient, directions.tangents.col(0));
   if (!directions.plane) return -solve(H, at.gradient);
   const auto& tangents = directions.tangents;
   const Eigen::Matrix2d H2 = tangents.transpose() * H * tangents;

@@ -19,10 +19,11 @@ inline constexpr double kNorm = 96;
 /// functions below except power_sum().
 void silence_padding(OneRing& ring);
 
-/// Allowed directions of a vertex: all of space, or a plane.
+/// Allowed directions of a vertex: all of space, a plane, or a line.
 struct Directions {
   bool plane = false;
   Eigen::Matrix<double, 3, 2> tangents;
+  bool line = false;  ///< the first tangent alone; then `plane` is not looked at
 };
 
 /// The quality of the ring at y = 0, which a new position must exceed.

@@ -13,6 +13,47 @@ using Stratum = VertexStratum;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// Whether the boundary faces (a, b, c) and (a, b, d), and those that replace them, are on one patch.
+bool lies_on_one_patch(const ChangingMesh& mesh, int a, int b, int c, int d) {
+  const int patch = mesh.patch_of(a, b, c);
+  return patch >= -1 && mesh.patch_of(a, b, d) == patch && mesh.patch_of(a, c, d) == patch &&
+         mesh.patch_of(b, c, d) == patch;
+}
+
+/// Whether boundary vertex a may collapse into b as far as their strata are concerned.
+bool keeps_patches(const ChangingMesh& mesh, int a, int b, const EdgeRing& ring) {
+  const BoundaryStrata& strata = *mesh.stratified->strata;
+  const std::vector<int>& of = mesh.stratified->of;
+  const int dimension = strata[of[a]].dimension;
+  if (dimension == 0 || !strata.is_in_closure(of[b], of[a])) return false;
+  if (dimension == 1) {
+    // The edge has to be one of the curve: its faces are on both patches.
+    const int left = mesh.patch_of(a, b, ring.vertices.front()), right = mesh.patch_of(a, b, ring.vertices.back());
+    if (left < 0 || right < 0 || left == right) return false;
+  }
+  std::vector<Triangle> faces;  // at a, from all tets, sorted
+  for (const int t : mesh.incidence.of(a)) {
+    for (const auto& f : kTetFace) {
+      Triangle face = {mesh.C[t][f[0]], mesh.C[t][f[1]], mesh.C[t][f[2]]};
+      if (std::find(face.begin(), face.end(), a) == face.end()) continue;
+      if (std::any_of(face.begin(), face.end(), [&](int v) { return mesh.stratum[v] == Stratum::Inner; })) continue;
+      std::sort(face.begin(), face.end());
+      faces.push_back(face);
+    }
+  }
+  std::sort(faces.begin(), faces.end());
+  for (std::size_t k = 0; k < faces.size(); ++k) {
+    const Triangle& f = faces[k];
+    const bool is_twin = (k > 0 && faces[k - 1] == f) || (k + 1 < faces.size() && faces[k + 1] == f);
+    if (is_twin || std::find(f.begin(), f.end(), b) != f.end()) continue;
+    Triangle moved = f;
+    std::replace(moved.begin(), moved.end(), a, b);
+    const int patch = mesh.patch_of(f[0], f[1], f[2]);
+    if (patch < -1 || mesh.patch_of(moved[0], moved[1], moved[2]) != patch) return false;
+  }
+  return true;
+}
+
 /// Offers the triangulation of a ring whose worst tet is best [Klincsek1980], [Shewchuk2002].
 void offer_removal(const ChangingMesh& mesh, int a, int b, const std::vector<int>& tets, const EdgeRing& ring,
                    std::vector<FlipCandidate>& candidates) {
@@ -24,6 +65,7 @@ void offer_removal(const ChangingMesh& mesh, int a, int b, const std::vector<int
     if (stratum[a] != Stratum::Boundary || stratum[b] != Stratum::Boundary) return;
     if (stratum[r.front()] != Stratum::Boundary || stratum[r.back()] != Stratum::Boundary) return;
     if (mesh.are_neighbours(r.front(), r.back())) return;
+    if (mesh.stratified && !lies_on_one_patch(mesh, a, b, r.front(), r.back())) return;
   }
   std::array<std::array<double, kMostRing + 1>, kMostRing + 1> best{};
   std::array<std::array<int, kMostRing + 1>, kMostRing + 1> middle{};
@@ -63,6 +105,7 @@ void offer_collapse(const ChangingMesh& mesh, int a, int b, const std::vector<in
   const std::vector<Stratum>& stratum = mesh.stratum;
   if (stratum[a] == Stratum::Fixed) return;
   if (stratum[a] == Stratum::Boundary && (ring.is_closed || stratum[b] != Stratum::Boundary)) return;
+  if (stratum[a] == Stratum::Boundary && mesh.stratified && !keeps_patches(mesh, a, b, ring)) return;
   FlipCandidate c{Operation::Collapse, a, b, kInfinity, {}, {}};
   for (const int t : mesh.incidence.of(a)) {
     c.old_tets.push_back(t);

@@ -81,6 +81,10 @@ EdgeRing ChangingMesh::ring_of(int a, int b, const std::vector<int>& tets) const
   return ring;
 }
 
+double ChangingMesh::value_on_patch(const Triangle& f, const Vec3& x, Vec3& gradient) const {
+  return stratified->strata->value(std::max(-1, patch_of(f[0], f[1], f[2])), x, &gradient);
+}
+
 bool ChangingMesh::are_neighbours(int a, int b) const {
   const std::span<const int> tets = incidence.of(a);
   return std::any_of(tets.begin(), tets.end(), [&](int t) { return contains(C[t], b); });

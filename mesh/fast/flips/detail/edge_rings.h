@@ -50,9 +50,10 @@ struct EdgeRing {
 
 /// A tet mesh whose tets come and go.
 struct ChangingMesh {
-  /// Keeps a reference to the strata.
-  ChangingMesh(std::vector<Vec3> positions, std::vector<Tet> tets, const std::vector<VertexStratum>& strata)
-      : V(std::move(positions)), C(std::move(tets)), incidence(V.size(), C), stratum(strata) {}
+  /// Keeps references to the strata. @param patches  null for a smooth boundary
+  ChangingMesh(std::vector<Vec3> positions, std::vector<Tet> tets, const std::vector<VertexStratum>& strata,
+               const StratifiedVertices* patches = nullptr)
+      : V(std::move(positions)), C(std::move(tets)), incidence(V.size(), C), stratum(strata), stratified(patches) {}
 
   /// The tets with the edge (a, b).
   std::vector<int> tets_at(int a, int b) const;
@@ -60,11 +61,24 @@ struct ChangingMesh {
   /// @param tets  tets_at(a, b)
   EdgeRing ring_of(int a, int b, const std::vector<int>& tets) const;
   bool are_neighbours(int a, int b) const;
+  /// The patch of a face whose corners are on the boundary (BoundaryStrata::patch_of()); 0 for a smooth boundary.
+  int patch_of(int a, int b, int c) const {
+    return stratified ? stratified->strata->patch_of(stratified->of[a], stratified->of[b], stratified->of[c]) : 0;
+  }
+  int dimension(int v) const { return stratified ? (*stratified->strata)[stratified->of[v]].dimension : 2; }
+  /// Whether a vertex may move.
+  bool moves(int v) const {
+    return stratum[v] != VertexStratum::Fixed && (stratum[v] == VertexStratum::Inner || dimension(v) > 0);
+  }
+  /// The function of a boundary face's patch, at x. Not inlined, as is solve_on_stratum(): the rounding of smooth
+  /// boundaries would change with the code around it.
+  [[gnu::noinline]] double value_on_patch(const Triangle& f, const Vec3& x, Vec3& gradient) const;
 
   std::vector<Vec3> V;
   std::vector<Tet> C;   ///< tets that are gone stay in this list
   Incidence incidence;  ///< lists only the tets that are in the mesh
   const std::vector<VertexStratum>& stratum;
+  const StratifiedVertices* stratified;
 };
 
 }  // namespace umtet::detail

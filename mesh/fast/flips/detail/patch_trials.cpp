@@ -85,7 +85,7 @@ void PatchTrials::list_tets(const FlipCandidate& c) {
   moving_.clear();
   for (const Tet& t : c.new_tets)
     for (const int v : t)
-      if (mesh_.stratum[v] != Stratum::Fixed) moving_.push_back(v);
+      if (mesh_.moves(v)) moving_.push_back(v);
   std::sort(moving_.begin(), moving_.end());
   moving_.erase(std::unique(moving_.begin(), moving_.end()), moving_.end());
   patch_tets_.clear();
@@ -98,8 +98,10 @@ void PatchTrials::list_tets(const FlipCandidate& c) {
 
 bool PatchTrials::is_better(const PatchMeasure& made, const PatchMeasure& old, bool is_last) const {
   const bool has_less = made.sum < (1 - kLeastGain) * old.sum && made.least >= old.least - kLostQuality;
-  const bool has_raised =
-      is_last && (made.least >= params_.target || (made.sum <= old.sum && made.least > old.least + kLeastRaise));
+  // A misaligned face may bring in a patch whose tets are good already: with strata that is no reason to keep an
+  // operation, which could go on for ever.
+  const bool has_reached = made.least >= params_.target && (!mesh_.stratified || old.least < params_.target);
+  const bool has_raised = is_last && (has_reached || (made.sum <= old.sum && made.least > old.least + kLeastRaise));
   return (has_less || has_raised) && made.shortest >= std::min(params_.shortest, old.shortest) &&
          made.longest <= std::max(params_.longest, old.longest) &&
          made.least_cosine >= std::min(kAligned, old.least_cosine) &&
@@ -158,7 +160,9 @@ void PatchTrials::shape_at_once(FlipPatch& patch) {
                          : is_on_boundary ? ActiveLayer::Role::Boundary
                                           : ActiveLayer::Role::Inner);
     layer.local_h.push_back(edge_[patch.vertices[v]]);
+    if (mesh_.stratified) layer.stratum.push_back(mesh_.stratified->of[patch.vertices[v]]);
   }
+  if (mesh_.stratified) layer.strata = mesh_.stratified->strata;
   report_.psi_evaluations += smooth_all_vertices(layer, psi_, params_.target).psi_evaluations;
   patch.V = std::move(layer.V);
 }
@@ -174,6 +178,7 @@ bool PatchTrials::solve(FlipPatch& patch, std::size_t v, const OneRing& ring) {
     x += best.y;
     return true;
   }
+  if (mesh_.stratified) return solve_on_stratum(vertex, ring, bar, x);
   Vec3 gradient;
   psi_.value(x, gradient);
   ++report_.psi_evaluations;
@@ -188,6 +193,23 @@ bool PatchTrials::solve(FlipPatch& patch, std::size_t v, const OneRing& ring) {
   report_.psi_evaluations += static_cast<std::size_t>(foot.iterations);
   if (!foot.converged || !bar.passed(ring, foot.point - x)) return false;
   x = foot.point;
+  return true;
+}
+
+[[gnu::noinline]] bool PatchTrials::solve_on_stratum(int vertex, const OneRing& ring, const Bar& bar, Vec3& x) {
+  const BoundaryStrata& strata = *mesh_.stratified->strata;
+  const int stratum = mesh_.stratified->of[vertex];
+  const double h = edge_[vertex];
+  const FreeDirections free = strata.directions(stratum, x);
+  ++report_.psi_evaluations;
+  if (free.n == 0) return false;
+  const Displacement best =
+      best_displacement(ring, bar, h, {.plane = true, .tangents = free.tangents, .line = free.n == 1});
+  Vec3 foot;
+  if (!best.passed(ring, bar) || !strata.foot(stratum, x + best.y, h, foot)) return false;
+  ++report_.psi_evaluations;
+  if (!bar.passed(ring, foot - x)) return false;
+  x = foot;
   return true;
 }
 
@@ -235,7 +257,11 @@ void PatchTrials::measure_faces(const FlipPatch& patch, PatchMeasure& m) {
     const Vec3 &a = patch.V[f[0]], &b = patch.V[f[1]], &c = patch.V[f[2]];
     const Vec3 normal = (b - a).cross(c - a);
     Vec3 gradient;
-    const double value = psi_.value((a + b + c) / 3, gradient);
+    const Vec3 centroid = (a + b + c) / 3;
+    const double value = mesh_.stratified
+                             ? mesh_.value_on_patch({patch.vertices[f[0]], patch.vertices[f[1]], patch.vertices[f[2]]},
+                                                    centroid, gradient)
+                             : psi_.value(centroid, gradient);
     ++report_.psi_evaluations;
     const double slope = gradient.norm(), cosine = normal.dot(gradient) / (normal.norm() * slope);
     const double h = (edge_[patch.vertices[f[0]]] + edge_[patch.vertices[f[1]]] + edge_[patch.vertices[f[2]]]) / 3;

@@ -12,6 +12,7 @@
 #include "mesh/core/tet_mesh.h"
 #include "mesh/fast/flips/detail/edge_operations.h"
 #include "mesh/fast/flips/local_flips.h"
+#include "mesh/fast/smoothing/ring_newton.h"
 #include "mesh/implicit/closest_point.h"
 
 namespace umtet::detail {
@@ -68,6 +69,7 @@ class PatchTrials {
   void shape(FlipPatch& patch);
   void shape_at_once(FlipPatch& patch);
   bool solve(FlipPatch& patch, std::size_t v, const OneRing& ring);
+  bool solve_on_stratum(int vertex, const OneRing& ring, const Bar& bar, Vec3& x);
   PatchMeasure measured(const FlipPatch& patch);
   void measure_faces(const FlipPatch& patch, PatchMeasure& m);
 

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "mesh/core/piecewise_domain.h"
+#include "mesh/core/tet_mesh.h"
+
+namespace umtet {
+
+/// A piece of the boundary of a piecewise smooth domain: a patch, a curve where two patches meet, or a corner where
+/// three or more do. A vertex on it satisfies one equation for each patch, and has the other directions free.
+struct Stratum {
+  /// An end of a curve, beyond which a vertex must not slide.
+  struct End {
+    Vec3 place;
+    Vec3 tangent;   ///< of unit length, into the curve
+    double within;  ///< distance from the end in which the tangent describes the curve, model units
+  };
+
+  int dimension = 2;          ///< degrees of freedom: 2 on a patch, 1 on a curve, 0 at a corner
+  std::vector<int> patches;   ///< ascending; empty: the surface psi = 0 as a whole, where no patch is known
+  Vec3 place = Vec3::Zero();  ///< of a corner
+  std::vector<End> ends;      ///< of a curve that is not closed
+};
+
+/// The free directions of a boundary vertex.
+struct FreeDirections {
+  int n = 0;                                                                   ///< columns that are set
+  Eigen::Matrix<double, 3, 2> tangents = Eigen::Matrix<double, 3, 2>::Zero();  ///< orthonormal
+};
+
+/// The strata of a boundary, and the moves of vertices on them. Thread-safe as far as the domain is.
+class BoundaryStrata {
+ public:
+  /// @param domain  must outlive this
+  BoundaryStrata(const PiecewiseDomain& domain, std::vector<Stratum> strata)
+      : domain_(&domain), strata_(std::move(strata)) {}
+
+  const PiecewiseDomain& domain() const { return *domain_; }
+  std::size_t size() const { return strata_.size(); }
+  const Stratum& operator[](int stratum) const { return strata_[stratum]; }
+
+  /// The directions in which a vertex at x may move on its stratum. Fewer than its dimension where gradients vanish or
+  /// are parallel.
+  FreeDirections directions(int stratum, const Vec3& x) const;
+  /// Newton's method from x to the stratum, with the shortest steps: f_p = 0 for its patches.
+  /// @param h     edge length: a step is at most h, and the result is within 1e-10 h of each zero set
+  /// @param place receives the point
+  /// @return whether the method converged within 2 h, at a point of the boundary; on a curve, between its ends
+  bool foot(int stratum, const Vec3& x, double h, Vec3& place) const;
+  /// The value of a patch (-1: of psi as a whole), oriented so that it is negative inside.
+  double value(int patch, const Vec3& x, Vec3* gradient) const;
+
+  /// The patch of a boundary face with corners of these strata: their only common patch, -1 if one of them belongs to
+  /// no patch, and -2 if no patch or several are common to all.
+  int patch_of(int a, int b, int c) const;
+  /// Whether stratum a is b or a part of its border: a vertex on b may collapse into one on a.
+  bool is_in_closure(int a, int b) const;
+
+ private:
+  const PiecewiseDomain* domain_;
+  std::vector<Stratum> strata_;
+};
+
+}  // namespace umtet
