@@ -58,10 +58,10 @@ SharpEdgeReport edge_report(const GivenTriangles& given, const SurfaceDistance& 
     report.length += curve.length;
     for (std::size_t k = 1; k < curve.vertices.size(); ++k) {
       const Vec3 &a = given.whole.V[curve.vertices[k - 1]], &b = given.whole.V[curve.vertices[k]];
-      const double steps = std::clamp(std::ceil((b - a).norm() / h.nominal()), 1., kPointsAnEdge);
-      for (double i = 0; i < steps; ++i) {
-        x.push_back(a + (i + .5) / steps * (b - a));
-        length.push_back((b - a).norm() / steps);
+      const int n = static_cast<int>(std::clamp(std::ceil((b - a).norm() / h.nominal()), 1., kPointsAnEdge));
+      for (int i = 0; i < n; ++i) {
+        x.push_back(a + (i + .5) / n * (b - a));
+        length.push_back((b - a).norm() / n);
       }
       x.insert(x.end(), {a, b});
       length.insert(length.end(), {0, 0});
