@@ -19,7 +19,6 @@
 
 #include "mesh/certify/certificate.h"
 #include "mesh/embedding/self_intersections.h"
-#include "mesh/fast/flips/flipped_submesh.h"
 #include "mesh/implicit/closest_point.h"
 #include "mesh/implicit/surface_distance.h"
 #include "mesh/io/tet_mesh_io.h"
@@ -31,8 +30,6 @@
 #include "tests/support/bench_domains.h"
 #include "tests/support/clouds.h"
 #include "tests/support/gradings.h"
-#include "tests/support/sampled_domains.h"
-#include "umtet/umtet.h"
 
 using namespace umtet;
 
@@ -56,27 +53,6 @@ struct Meshed {
   OrientedPointCloud cloud = test::torus_cloud(kPoints);
   LevelSet psi = fit_ssd(cloud, {}).psi;
 };
-
-/// Sizes from .06 to .3 across a sphere, with local flips.
-void mesh_graded_body() {
-  const testing::AnalyticDomain domain = testing::sphere();
-  Grading grading = testing::spots(0, .06, .2, 1);
-  grading.box = domain.box;
-  const BackgroundMesh background{GradedMesh(grading)};
-  UmParams params;
-  params.fast.flips_follow = true;
-  UmResult result = fit_submesh(background, domain, params, choose_submesh(background, domain, params));
-  benchmark::DoNotOptimize(flip_submesh(domain, background.h(), {}, result));
-}
-
-/// A box of 12 triangles.
-TriangleMesh part_with_edges() {
-  TriangleMesh mesh;
-  for (int i = 0; i < 8; ++i) mesh.V.emplace_back(2. * (i & 1), 1.5 * (i >> 1 & 1), 1. * (i >> 2 & 1));
-  mesh.F = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-            {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-  return mesh;
-}
 
 std::vector<Phase> phases(const Meshed& m, const std::filesystem::path& file) {
   std::vector<Phase> all;
@@ -113,15 +89,6 @@ std::vector<Phase> phases(const Meshed& m, const std::filesystem::path& file) {
   phase("distances", [&] {
     const SurfaceDistance distance(m.mesh.V, m.result.submesh.positive_faces);
     benchmark::DoNotOptimize(distance.distances(m.cloud.points));
-  });
-  phase("graded body", mesh_graded_body);
-  phase("thin scan", [cloud = test::sampled(testing::ellipsoid({1, .8, .08}), kPoints)] {
-    benchmark::DoNotOptimize(mesh_body(cloud));
-  });
-  phase("part with edges", [] {
-    Options options;
-    options.body.mesh.h = .15;
-    benchmark::DoNotOptimize(mesh_body(part_with_edges(), options));
   });
   phase("writing", [&, file] { write_vtu(file, {.mesh = m.mesh, .point_data = {}, .cell_data = {}}); });
   return all;
