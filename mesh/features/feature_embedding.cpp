@@ -464,6 +464,7 @@ double best_wedge_quality(double angle_deg, int k) {
 
 std::vector<Stratum> strata_of(const PiecewiseDomain& domain, const FeatureGraph& graph, double h) {
   std::vector<Stratum> strata;
+  strata.reserve(static_cast<std::size_t>(domain.n_patches()) + 1 + graph.curves.size() + graph.corners.size());
   for (int p = 0; p < domain.n_patches(); ++p) strata.push_back({.dimension = 2, .patches = {p}, .ends = {}});
   strata.push_back({.dimension = 2, .patches = {}, .ends = {}});
   for (const FeatureCurve& c : graph.curves) {

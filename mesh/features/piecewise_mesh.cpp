@@ -108,6 +108,7 @@ std::vector<Triangle> boundary_faces(const std::vector<Tet>& C, const std::vecto
   }
   std::stable_sort(alone.begin(), alone.end(), [](const Face& a, const Face& b) { return a.tet < b.tet; });
   std::vector<Triangle> faces;
+  faces.reserve(alone.size());
   for (const Face& f : alone) faces.push_back(f.face);
   return faces;
 }
