@@ -30,7 +30,7 @@ struct LabelVolumeReport {
   std::size_t pieces_of_mesh = 0;    ///< connected pieces of the tets; tets are connected by common vertices
   std::size_t cavities_of_mesh = 0;  ///< pieces of the boundary in excess of pieces_of_mesh
   std::size_t n_changed = 0;         ///< voxels whose centre is inside the mesh but not in the body, or the reverse
-  std::size_t n_changed_far = 0;     ///< those of n_changed that are farther than half a voxel from the boundary
+  std::size_t n_changed_far = 0;     ///< voxels of n_changed farther than half a voxel from the boundary
   double farthest_changed = 0;       ///< largest distance of a changed voxel from the boundary, in voxels
   std::optional<Vec3> farthest_at;   ///< position of the voxel with this distance; model coordinates
   bool operator==(const LabelVolumeReport&) const = default;

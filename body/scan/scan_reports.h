@@ -55,7 +55,7 @@ struct TrianglesReport {
   std::size_t n_vertices = 0, n_faces = 0, n_polygons = 0;  ///< numbers in the file
   TriangleReport body;
   std::size_t n_boundary = 0;            ///< number of triangles in triangles.ply
-  std::vector<std::string> label_names;  ///< names of the labels 1, 2, ...: those of the file, then those of caps
+  std::vector<std::string> label_names;  ///< names of the labels 1, 2, ...: first of the file, then of the caps
   std::size_t n_labels = 0;              ///< the greatest label in the file, 0 if there are none
 };
 

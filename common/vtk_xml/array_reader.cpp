@@ -39,7 +39,7 @@ int base64_digit(char c) {
 
 }  // namespace
 
-/// The bytes of a block: those of the file, or what base64 stands for.
+/// Reads the bytes of a block, raw or decoded from base64.
 class ArrayReader::BlockBytes {
  public:
   BlockBytes(ByteStream& source, bool is_base64) : source_(source), is_base64_(is_base64) {}
@@ -55,7 +55,7 @@ class ArrayReader::BlockBytes {
     }
     return taken;
   }
-  /// What comes now is encoded by itself.
+  /// The next bytes begin a new base64 sequence.
   void begin_anew() { decoded_.clear(), next_ = 0; }
   /// Nothing is left over: of base64, the bytes of its last group.
   bool is_at_end() const { return next_ == decoded_.size(); }
@@ -166,7 +166,7 @@ void ArrayReader::read(const XmlArray& array, std::optional<std::uint64_t> n, Nu
 
 void ArrayReader::read_appended(const XmlTag& tag) {
   const std::string_view encoding = tag["encoding"];
-  if (encoding != "raw" && encoding != "base64") source_.refuse("AppendedData: encoding raw or base64 is wanted");
+  if (encoding != "raw" && encoding != "base64") source_.refuse("AppendedData: the encoding must be raw or base64");
   source_.skip_while(" \t\r\n\v\f");
   if (source_.take(1) != "_") source_.refuse("appended data without a beginning");
   std::stable_sort(appended_.begin(), appended_.end(),
@@ -250,8 +250,8 @@ void ArrayReader::read_block(const XmlArray& array, bool is_base64, std::optiona
   if (!bytes.is_at_end()) source_.refuse("a binary block that is longer than its header says");
 }
 
-/// Counts of parts, of their bytes and of those of the last one before they were packed; packed bytes of each; and the
-/// parts. A last one of 0 bytes is as long as the others.
+/// Reads compressed blocks. Their header contains the number of blocks, the uncompressed bytes of a block and of the
+/// last block (0: as many as the others), and the compressed bytes of each block.
 void ArrayReader::read_packed(const XmlArray& array, BlockBytes& bytes, std::optional<std::uint64_t> n_bytes,
                               const NumberSink& sink) {
   const auto most = static_cast<std::uint64_t>(source_.most_bytes());
