@@ -23,8 +23,8 @@ constexpr int kAverages = 8;
 
 /// Targets for vertices of patches whose feet are beyond the curves around: between the targets of their neighbours.
 void place_between_neighbours(const std::vector<Triangle>& faces, const FeatureEmbedding& embedded,
-                              const BoundaryStrata& strata, const std::vector<Vec3>& V, double h,
-                              std::vector<Vec3>& target) {
+                              const BoundaryStrata& strata, const std::vector<Vec3>& V,
+                              const std::vector<double>& h, std::vector<Vec3>& target) {
   std::vector<std::vector<int>> neighbours(V.size());
   for (const Triangle& f : faces)
     for (int k = 0; k < 3; ++k) neighbours[f[k]].push_back(f[(k + 1) % 3]);  // every edge has two faces, one each way
@@ -32,7 +32,7 @@ void place_between_neighbours(const std::vector<Triangle>& faces, const FeatureE
   std::vector<Vec3> place = target;
   for (std::size_t v = 0; v < V.size(); ++v) {
     if (embedded.stratum[v] < 0 || target[v].allFinite()) continue;
-    if (strata.foot(embedded.stratum[v], V[v], h, place[v])) continue;
+    if (strata.foot(embedded.stratum[v], V[v], h[v], place[v])) continue;
     place[v] = V[v];
     lost.push_back(static_cast<int>(v));
   }
@@ -47,7 +47,7 @@ void place_between_neighbours(const std::vector<Triangle>& faces, const FeatureE
         ++n;
       }
       Vec3 foot;
-      if (n == 0 || !strata.foot(embedded.stratum[v], sum / n, h, foot)) continue;
+      if (n == 0 || !strata.foot(embedded.stratum[v], sum / n, h[v], foot)) continue;
       place[v] = foot;
       is_found[v] = 1;
     }
@@ -58,7 +58,8 @@ void place_between_neighbours(const std::vector<Triangle>& faces, const FeatureE
 
 /// The layer's strata and the points that its vertices go to.
 std::vector<Vec3> set_strata(const FeatureGraph& graph, const FeatureEmbedding& embedded, const BoundaryStrata& strata,
-                             const Submesh& submesh, const std::vector<int>& of_layer, ActiveLayer& layer) {
+                             const Submesh& submesh, const std::vector<double>& h, const std::vector<int>& of_layer,
+                             ActiveLayer& layer) {
   const std::vector<Vec3>& V = submesh.mesh.V;
   std::vector<Vec3> target(V.size(), Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
   for (std::size_t c = 0; c < embedded.chains.size(); ++c) {
@@ -66,12 +67,12 @@ std::vector<Vec3> set_strata(const FeatureGraph& graph, const FeatureEmbedding& 
     for (std::size_t k = 0; k < chain.size(); ++k) {
       const Vec3 on_polyline = graph.curves[c].at(embedded.chain_arc[c][k]);
       Vec3 place;
-      if (strata.foot(embedded.stratum[chain[k]], on_polyline, layer.h, place)) target[chain[k]] = place;
+      if (strata.foot(embedded.stratum[chain[k]], on_polyline, h[chain[k]], place)) target[chain[k]] = place;
     }
   }
   for (std::size_t c = 0; c < embedded.corner_vertex.size(); ++c)
     if (const int v = embedded.corner_vertex[c]; v >= 0) target[v] = graph.corners[c].place;
-  place_between_neighbours(submesh.positive_faces, embedded, strata, V, layer.h, target);
+  place_between_neighbours(submesh.positive_faces, embedded, strata, V, h, target);
 
   layer.strata = &strata;
   std::vector<Vec3> of_vertices;
@@ -134,6 +135,7 @@ void flip(ImplicitFunctionRef psi, const BoundaryStrata& strata, const LocalFlip
   };
   keep(flipped.V);
   keep(made.background_vertex);
+  keep(made.h);
   keep(made.stratum);
   for (Tet& t : flipped.C)
     for (int& v : t) v = number[v];
@@ -157,18 +159,12 @@ void flip(ImplicitFunctionRef psi, const BoundaryStrata& strata, const LocalFlip
 }
 
 /// Names the vertices that are not on their corner, curve or patch.
-void list_off_strata(const BoundaryStrata& strata, double h, PiecewiseMesh& made) {
+void list_off_strata(const BoundaryStrata& strata, PiecewiseMesh& made) {
   for (std::size_t v = 0; v < made.mesh.V.size(); ++v) {
     if (made.stratum[v] < 0) continue;
     const Vec3& x = made.mesh.V[v];
-    const Stratum& s = strata[made.stratum[v]];
-    const auto is_off = [&](int patch) {
-      Vec3 g;
-      const double f = strata.value(patch, x, &g);
-      return !(std::abs(f) <= kOnStratum * h * g.norm());
-    };
-    const bool is_off_one = s.patches.empty() ? is_off(-1) : std::any_of(s.patches.begin(), s.patches.end(), is_off);
-    if (is_off_one) made.defects.push_back({FeatureDefect::Kind::NotOnStratum, -1, -1, x});
+    if (!(strata.distance(made.stratum[v], x) <= kOnStratum * made.h[v]))
+      made.defects.push_back({FeatureDefect::Kind::NotOnStratum, -1, -1, x});
   }
 }
 
@@ -190,7 +186,8 @@ PiecewiseMeshParams::PiecewiseMeshParams() {
 }
 
 PiecewiseMesh make_piecewise_mesh(const PiecewiseDomain& domain, const BackgroundMesh& background,
-                                  const PiecewiseMeshParams& params, const Context& context) {
+                                  const PiecewiseMeshParams& params, const Context& context,
+                                  const FeatureGraph* graph) {
   PiecewiseMesh made;
   const ImplicitFunctionRef psi(domain);
   FastParams fast;
@@ -200,13 +197,13 @@ PiecewiseMesh make_piecewise_mesh(const PiecewiseDomain& domain, const Backgroun
   made.evidence = chosen.evidence;
   if (chosen.status != UmStatus::Success) return made;
   Submesh submesh = chosen.is_whole ? std::move(chosen.submesh) : emit_submesh(background, chosen.inside);
-  const double h = background.h();
+  for (const std::int64_t v : submesh.background_vertex) made.h.push_back(background.h(v));
 
   std::vector<Vec3> seeds;
   for (const int v : submesh.positive_vertices) seeds.push_back(submesh.mesh.V[v]);
-  made.graph = trace_features(domain, seeds, h, context);
+  made.graph = graph ? *graph : trace_features(domain, seeds, background.h(), context);
   FeatureEmbedding embedded =
-      embed_features(domain, made.graph, submesh.mesh.V, submesh.mesh.C, submesh.positive_faces, h, context);
+      embed_features(domain, made.graph, submesh.mesh.V, submesh.mesh.C, submesh.positive_faces, made.h, context);
   made.defects = made.graph.defects;
   made.defects.insert(made.defects.end(), embedded.defects.begin(), embedded.defects.end());
   const BoundaryStrata strata(domain, embedded.strata);
@@ -217,7 +214,7 @@ PiecewiseMesh make_piecewise_mesh(const PiecewiseDomain& domain, const Backgroun
     const auto at = std::lower_bound(submesh.background_vertex.begin(), submesh.background_vertex.end(), id);
     of_layer.push_back(static_cast<int>(at - submesh.background_vertex.begin()));
   }
-  const std::vector<Vec3> target = set_strata(made.graph, embedded, strata, submesh, of_layer, part.layer);
+  const std::vector<Vec3> target = set_strata(made.graph, embedded, strata, submesh, made.h, of_layer, part.layer);
   PNormSmoother smoother(part.layer);
   const StratifiedProjectionReport projected = project_onto_strata(smoother, psi, target, params.projection, context);
   smoother.enqueue_all();
@@ -236,7 +233,7 @@ PiecewiseMesh make_piecewise_mesh(const PiecewiseDomain& domain, const Backgroun
     if (*std::min_element(c.angle_deg.begin(), c.angle_deg.end()) < kSharpAngle)
       local_flips.longest = std::max(local_flips.longest, kLongestAtSharp);
   if (params.flips) flip(psi, strata, local_flips, made, context);
-  list_off_strata(strata, h, made);
+  list_off_strata(strata, made);
   return made;
 }
 

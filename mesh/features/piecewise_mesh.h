@@ -38,6 +38,7 @@ struct PiecewiseMesh {
   UmEvidence evidence;  ///< set when status != Success
   TetMesh mesh;
   std::vector<std::int64_t> background_vertex;  ///< id in the background of each vertex, ascending
+  std::vector<double> h;                        ///< edge length of the background at each vertex
   std::vector<Triangle> faces;                  ///< the boundary, outward
   std::vector<int> face_patch;                  ///< per face; -1: no single patch
   FeatureGraph graph;                           ///< the curves and corners of the domain
@@ -64,8 +65,10 @@ struct PiecewiseMesh {
 ///    tets at every edge, where one would often be better.
 ///
 /// The bytes are the same for any number of threads.
+/// @param graph  the curves and corners; null: they are traced. \pre not null unless domain.decides_by_signs()
 /// \throw std::invalid_argument naming every broken constraint of params; Cancelled
 PiecewiseMesh make_piecewise_mesh(const PiecewiseDomain& domain, const BackgroundMesh& background,
-                                  const PiecewiseMeshParams& params = {}, const Context& context = {});
+                                  const PiecewiseMeshParams& params = {}, const Context& context = {},
+                                  const FeatureGraph* graph = nullptr);
 
 }  // namespace umtet
