@@ -5,18 +5,16 @@
 
 #include "body/given_triangles.h"
 #include "body/option_names.h"
+#include "body/piecewise_body.h"
 #include "body/scan/fitted_domain.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/domain/handover.h"
-#include "mesh/expression/expression.h"
 #include "pipeline/reports/stage_reports.h"
 #include "reconstruct/io/level_set_io.h"
 #include "reconstruct/io/point_cloud_io.h"
 #include "reconstruct/io/triangle_mesh_io.h"
 
 namespace umtet {
-
-static_assert(JointlyEvaluated<Expression>);
 
 namespace {
 
@@ -47,7 +45,7 @@ Domain formula_domain(const Parameters& parameters, std::optional<double> t) {
   const std::optional<Box> box = parse_box(parameters.mesh().box);
   if (!box) throw UsageError({Option{keys::mesh::implicit}, " needs ", Setting(option::box, "x0,y0,z0,x1,y1,z1")});
   Domain domain;
-  domain.formula = shared_function(Expression(parameters.mesh().implicit, t));
+  set_formula(domain, parameters.mesh().implicit, t);
   domain.box = *box;
   domain.diagonal = box->diagonal().norm();
   domain.complement = parameters.mesh().complement;
