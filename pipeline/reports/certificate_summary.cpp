@@ -164,7 +164,7 @@ std::string features_line(const std::optional<FeatureReport>& f) {
   std::string out = "edges     " + counted(f->n_curves, "sharp edge", "sharp edges") + ", " +
                     counted(f->n_corners, "corner", "corners") + ", " + counted(f->n_patches, "patch", "patches");
   out += f->has_all() ? ": all in the mesh"
-                      : fmt::format(": the mesh lacks {}, {} and {:.2g} % of their length",
+                      : fmt::format(": the mesh lacks {}, {} and {:.3g} % of their length",
                                     counted(f->n_missed_curves, "edge", "edges"),
                                     counted(f->n_missed_corners, "corner", "corners"),
                                     f->length > 0 ? 100 * f->missed_length / f->length : 0);

@@ -106,7 +106,7 @@ TEST_F(Program, OptionsThatSharpEdgesExcludeAreRefusedByName) {
     EXPECT_EQ(r.code, 2) << option;
     EXPECT_NE(r.err.find("sharp edges"), std::string::npos) << r.err;
   }
-  const Result both_sides = run("mesh --implicit 'max(x^2+y^2+z^2-1,1-x^2-y^2-z^2)'" + kBox + "--h .3 -o a");
+  const Result both_sides = run("mesh --implicit 'max(x^2+y^2+z^2-1,-(x^2+y^2+z^2-1))'" + kBox + "--h .3 -o a");
   EXPECT_EQ(both_sides.code, 2);
   EXPECT_NE(both_sides.err.find("both of its sides"), std::string::npos) << both_sides.err;
   const Result product = run("mesh --implicit 'x*max(y,z)-1'" + kBox + "--h .3 -o a");
