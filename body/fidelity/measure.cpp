@@ -279,9 +279,6 @@ std::optional<std::string> deviation_reason(double asked, const MeshCertificate&
   return formatted("a face centre is %.4g from psi = 0, more than the largest allowed deviation of %.4g", made, asked);
 }
 
-// In h: what the file of a mesh leaves of the distance of a vertex to its patch.
-constexpr double kOnPatch = 1e-6;
-
 /// certify() with the patches of the mesh.
 MeshCertificate certify_patches(const PiecewiseBody& body, CertificateInput input, const PiecewiseMesh& features) {
   input.psi.reset();
@@ -306,8 +303,7 @@ MeshCertificate certify_against(const Domain& domain, CertificateInput input) {
   if (!domain.piecewise) return certificate;
   const PiecewiseDomain& body = domain.piecewise->domain;
   const std::vector<Triangle> faces = boundary_faces(input.mesh->C, input.mesh->V.size()).triangles;
-  const double tolerance = kOnPatch * certificate.h + input.coordinate_rounding;
-  const std::vector<int> patch = patches_by_position(body, input.mesh->V, faces, tolerance, input.context);
+  const std::vector<int> patch = patches_by_position(domain, input.mesh->V, faces, certificate.h, input.context);
   measure_against_patches(body, input.mesh->V, faces, patch, input.context, certificate);
   return certificate;
 }

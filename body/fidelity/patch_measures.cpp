@@ -6,12 +6,17 @@
 #include <limits>
 #include <utility>
 
+#include "body/piecewise_body.h"
+#include "body/sizing/edge_length.h"
 #include "common/polled_loops.h"
 #include "mesh/certify/surface_measures.h"
 #include "mesh/core/asking_psi.h"
 
 namespace umtet {
 namespace {
+
+// In h: what the file of a mesh leaves of the distance of a vertex to its patch.
+constexpr double kOnPatch = 1e-6;
 
 /// One patch, negative inside, as an implicit function; psi as a whole for -1.
 struct Patch {
@@ -55,6 +60,11 @@ std::vector<int> patches_by_position(const PiecewiseDomain& body, const std::vec
     }
   });
   return patch;
+}
+
+std::vector<int> patches_by_position(const Domain& domain, const std::vector<Vec3>& V,
+                                     const std::vector<Triangle>& faces, double h, const Context& context) {
+  return patches_by_position(domain.piecewise->domain, V, faces, kOnPatch * h + coordinate_rounding(domain), context);
 }
 
 void measure_against_patches(const PiecewiseDomain& body, const std::vector<Vec3>& V,

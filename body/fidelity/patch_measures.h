@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "body/body.h"
 #include "common/context.h"
 #include "mesh/certify/certificate.h"
 #include "mesh/core/piecewise_domain.h"
@@ -15,6 +16,10 @@ namespace umtet {
 /// Cost: one value of each patch per vertex. \throw Cancelled
 std::vector<int> patches_by_position(const PiecewiseDomain& body, const std::vector<Vec3>& V,
                                      const std::vector<Triangle>& faces, double tolerance, const Context& context = {});
+
+/// The same for a mesh of domain.piecewise with edge length h, from its file. V are working coordinates.
+std::vector<int> patches_by_position(const Domain& domain, const std::vector<Vec3>& V,
+                                     const std::vector<Triangle>& faces, double h, const Context& context = {});
 
 /// Fills the measures of a certificate that refer to psi: each face is measured against its own patch, and each vertex
 /// against the patches of all its faces. psi as a whole is not differentiable at sharp edges, and the foot of a face on

@@ -1,8 +1,13 @@
 // umtet mesh --implicit with max, min and abs, from outside: bodies with sharp edges.
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "mesh/io/tet_mesh_io.h"
 #include "tests/pipeline/cli/program_fixture.h"
@@ -97,6 +102,79 @@ TEST_F(Program, EdgesThatTheMeshLacksAreNamedWithTheirPlace) {
   EXPECT_GT(f["missed_curves"].get<int>(), 0);
   EXPECT_GT(f["missed_length"].get<double>(), 0);
   EXPECT_EQ(run("run groove --strict").code == 0, false);
+}
+
+/// The node sets of an .inp file by name, and its nodes.
+struct InpFile {
+  std::map<std::string, std::vector<std::size_t>> sets;
+  std::vector<Vec3> nodes;
+
+  explicit InpFile(const fs::path& file) {
+    std::istringstream in(content(file));
+    std::string line, set;
+    bool in_nodes = false;
+    while (std::getline(in, line)) {
+      if (line.starts_with("*")) {
+        in_nodes = line == "*NODE";
+        set = line.starts_with("*NSET, NSET=") ? line.substr(12) : "";
+        continue;
+      }
+      std::replace(line.begin(), line.end(), ',', ' ');
+      std::istringstream numbers(line);
+      std::size_t id = 0;
+      if (in_nodes) {
+        Vec3 x;
+        numbers >> id >> x[0] >> x[1] >> x[2];
+        nodes.push_back(x);
+      }
+      if (!set.empty())
+        while (numbers >> id) sets[set].push_back(id - 1);
+    }
+  }
+};
+
+TEST_F(Program, PatchesAndCurvesOfACubeAreSetsOfExportedFiles) {
+  const Result r = run("mesh --implicit 'max(abs(x),abs(y),abs(z))-1'" + kBox +
+                       "--h .3 -o cube --no-report --export inp,msh,msh22,vtu,feb,cdb");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const InpFile inp(folder / "cube/4-export/mesh.inp");
+  const auto n_walls = [&](std::size_t node) {
+    return std::count_if(inp.nodes[node].begin(), inp.nodes[node].end(),
+                         [](double c) { return std::abs(std::abs(c) - 1) < 1e-9; });
+  };
+  int n_patches = 0, n_curves = 0;
+  std::map<std::size_t, int> curves_at;
+  for (const auto& [name, nodes] : inp.sets) {
+    SCOPED_TRACE(name);
+    if (name.starts_with("patch_")) {
+      ++n_patches;
+      for (const std::size_t v : nodes) EXPECT_GE(n_walls(v), 1);
+    } else if (name.starts_with("curve_")) {
+      ++n_curves;
+      for (const std::size_t v : nodes) {
+        EXPECT_GE(n_walls(v), 2);
+        ++curves_at[v];
+      }
+    }
+  }
+  EXPECT_EQ(n_patches, 6);
+  EXPECT_EQ(n_curves, 12);
+  for (const auto& [node, n] : curves_at) EXPECT_EQ(n, n_walls(node) == 3 ? 3 : 1);
+  EXPECT_EQ(std::count_if(curves_at.begin(), curves_at.end(), [](const auto& c) { return c.second == 3; }), 8);
+  for (const char* file : {"mesh.inp", "mesh.msh", "mesh_22.msh", "mesh.vtu", "mesh.feb", "mesh.cdb"}) {
+    std::string text = content(folder / "cube/4-export" / file);
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+    for (const char* name : {"patch_6", "curve_12"}) EXPECT_NE(text.find(name), std::string::npos) << file << name;
+  }
+  const std::string lines = content(folder / "cube/3-mesh/features.vtp");
+  EXPECT_NE(lines.find("NumberOfLines=\"12\""), std::string::npos);
+  // A solver's reader sees the same tets.
+  const MeshFile mesh = read_tet_mesh(folder / "cube/3-mesh/mesh.vtu");
+  for (const char* file : {"mesh.msh", "mesh_22.msh"})
+    EXPECT_EQ(read_tet_mesh(folder / "cube/4-export" / file).mesh.C.size(), mesh.mesh.C.size()) << file;
+  // Flags of the user go before.
+  ASSERT_EQ(run("export cube --format inp --patch-angle 100").code, 0);
+  EXPECT_EQ(InpFile(folder / "cube/4-export/mesh.inp").sets.count("patch_1"), 0U);
 }
 
 TEST_F(Program, OptionsThatSharpEdgesExcludeAreRefusedByName) {
