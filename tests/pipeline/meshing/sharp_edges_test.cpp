@@ -177,6 +177,23 @@ TEST_F(Program, PatchesAndCurvesOfACubeAreSetsOfExportedFiles) {
   EXPECT_EQ(InpFile(folder / "cube/4-export/mesh.inp").sets.count("patch_1"), 0U);
 }
 
+TEST_F(Program, InspectCountsTheEdgesOfAFormula) {
+  const Result r = run("inspect --implicit 'max(abs(x),abs(y),abs(z))-1'" + kBox + "--h .2 --json");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const Json found = Json::parse(r.out)["inspection"];
+  EXPECT_EQ(found["edges"]["curves"], 12);
+  EXPECT_EQ(found["edges"]["corners"], 8);
+  EXPECT_EQ(found["edges"]["patches"], 6);
+  EXPECT_EQ(found["edges"]["faults"], 0);
+  EXPECT_NEAR(found["edges"]["length"].get<double>(), 24, 1e-6);
+  EXPECT_NEAR(found["edges"]["min_angle_deg"].get<double>(), 90, 1e-6);
+  EXPECT_EQ(found["pieces"], 1);
+  EXPECT_NEAR(found["area"].get<double>(), 24, 3);
+  EXPECT_NE(run("inspect --implicit 'x^2+y^2+z^2-1'" + kBox).out.find("smooth"), std::string::npos);
+  EXPECT_EQ(run("inspect").code, 2);
+  EXPECT_EQ(run("inspect egg.ply --implicit 'x^2+y^2+z^2-1'" + kBox).code, 2);
+}
+
 TEST_F(Program, OptionsThatSharpEdgesExcludeAreRefusedByName) {
   const std::string cylinder = "mesh --implicit 'max(x^2+y^2-1,abs(z)-1)'" + kBox + "--h .3 -o a ";
   for (const char* option : {"--background graded", "--order 2", "--mode paper", "--complement --box-walls"}) {
