@@ -5,6 +5,7 @@
 
 #include "body/given_triangles.h"
 #include "body/option_names.h"
+#include "body/piecewise_body.h"
 #include "body/scan/fitted_domain.h"
 #include "body/scan/given_cloud.h"
 #include "body/scan/level_set_fit.h"
@@ -54,6 +55,10 @@ Mesh mesh_of(Domain domain, const Options& options) {
             .measures = std::move(best.measured),
             .verdict = {},
             .notices = std::move(domain.notices)};
+  if (best.features) {
+    mesh.patches = best.features->face_patch;
+    mesh.curves = best.features->chains;
+  }
   mesh.labels = labels_of(domain.cloud, mesh.points, mesh.boundary);
   for (Vec3& x : mesh.points) x += domain.shift;
   if (best.second) {
@@ -107,6 +112,15 @@ CloudFile sampled_cloud(OrientedPointCloud samples, const TriangleReport& report
   return file;
 }
 
+/// The domain of a function, without the function. \throw std::invalid_argument  there is no box
+Domain domain_in_box(const Options& options) {
+  if (!options.box) throw std::invalid_argument("box: missing; a function needs a box around the region where psi < 0");
+  Domain domain;
+  domain.box = *options.box;
+  domain.diagonal = options.box->diagonal().norm();
+  return domain;
+}
+
 /// \throw std::invalid_argument  a mesh that is no mesh of triangles
 void require_triangles(const TriangleMesh& mesh) {
   const auto n = static_cast<int>(mesh.V.size());
@@ -153,12 +167,15 @@ Mesh mesh_body(TriangleMesh triangles, const Options& options) {
   return mesh_body(fit_body(std::move(triangles), options), options);
 }
 
+Mesh mesh_body(const PiecewiseDomain& body, const Options& options) {
+  Domain domain = domain_in_box(options);
+  set_body(domain, std::make_shared<const PiecewiseBody>(PiecewiseBody{body}));
+  return mesh_of(std::move(domain), options);
+}
+
 Mesh mesh_body(const SharedFunction& psi, const Options& options) {
-  if (!options.box) throw std::invalid_argument("box: missing; a function needs a box around the region where psi < 0");
-  Domain domain;
+  Domain domain = domain_in_box(options);
   domain.formula = psi;
-  domain.box = *options.box;
-  domain.diagonal = options.box->diagonal().norm();
   return mesh_of(std::move(domain), options);
 }
 

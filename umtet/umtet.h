@@ -15,6 +15,7 @@
 #include "body/shared_function.h"
 #include "common/context.h"
 #include "common/message.h"
+#include "mesh/core/piecewise_domain.h"
 #include "mesh/core/tet_mesh.h"
 #include "mesh/second_order/quadratic_tets.h"
 #include "reconstruct/cloud/cloud_file.h"
@@ -50,7 +51,11 @@ struct Mesh {
   std::vector<Tet> tets;           ///< positive orientation
   std::vector<Triangle> boundary;  ///< faces on psi = 0, counter-clockwise from outside
   std::vector<int> labels = {};    ///< label of each boundary face, if the input has labels (vote_labels())
-  std::vector<Triangle> walls;     ///< faces in the walls of the box, with MeshOptions::box_walls
+  /// For a piecewise smooth body: the patch of each boundary face (-1: none), and the vertices of each sharp edge in
+  /// order (of a closed one with the first at the end again; empty: the mesh lacks it).
+  std::vector<int> patches = {};
+  std::vector<std::vector<int>> curves = {};
+  std::vector<Triangle> walls;                  ///< faces in the walls of the box, with MeshOptions::box_walls
   std::optional<QuadraticTetMesh> curved = {};  ///< the mesh with mid-sides, with MeshOptions::order = 2
   /// Edge length of the background; the least edge length if it is graded.
   double h = 0;
@@ -98,6 +103,10 @@ Mesh mesh_body(TriangleMesh triangles, const Options& options = {});
 
 /// Meshes {psi < 0} of a function with a Hessian. \throw as mesh_body(); std::invalid_argument  there is no options.box
 Mesh mesh_body(const SharedFunction& psi, const Options& options);
+
+/// Meshes a body whose boundary is piecewise smooth: its sharp edges are chains of edges, its corners vertices
+/// (domain_of_formula() in mesh/features/formula_domain.h). \throw as the former
+Mesh mesh_body(const PiecewiseDomain& body, const Options& options);
 
 /// Meshes {psi < 0} of any implicit function, for instance a LevelSet, which is moved or copied.
 template <ImplicitFunction F>

@@ -22,6 +22,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSamples = 20000;
 // Edges of a closed curve: fewer turn by more than 52 degrees each.
 constexpr double kEdgesOfLoop = 7;
+// Fillets of a smaller radius than this many deviations may be cut off: a chord of 90 degrees is .41 radii from the
+// corner of its tangents.
+constexpr double kRoundedFillet = 2;
 // Curves are looked at in steps of this share of the size there.
 constexpr double kStep = .5;
 constexpr std::size_t kPerPoll = 64;
@@ -55,7 +58,8 @@ class FeatureSizes {
     for (std::size_t i = 0; i < t.size(); ++i) add(samples.points[i], t[i] / params_.edges_across, spacing);
   }
 
-  /// Across the edges of smooth patches: the turn over the distance between the middles of both triangles.
+  /// Across the edges of smooth patches: the turn over the height of the wider triangle. A narrow triangle beside a wide
+  /// one is a matter of the triangulation.
   void of_turn() {
     const std::vector<EdgeUse> uses = edge_uses(mesh_, welded(mesh_.V, find_patches(mesh_).weld_distance));
     for_each_edge(uses, [&](std::size_t begin, std::size_t end) {
@@ -65,8 +69,11 @@ class FeatureSizes {
       const Vec3 &a = mesh_.V[uses[begin].low], &b = mesh_.V[uses[begin].high];
       const Vec3 m = mesh_.area_vector(f), n = mesh_.area_vector(g);
       const double turn = std::atan2(m.cross(n).norm(), m.dot(n)), length = (b - a).norm();
-      const double apart = (m.norm() + n.norm()) / length;  // the mean of both heights
-      const double size = params_.max_turn * apart / turn;
+      const double apart = 2 * std::max(m.norm(), n.norm()) / length;
+      if (!(turn > 0)) return;
+      const double curvature = turn / apart;
+      if (curvature * kRoundedFillet * params_.deviation > 1) return;
+      const double size = std::min(params_.max_turn / curvature, std::sqrt(8 * params_.deviation / curvature));
       if (!(size < params_.h)) return;
       const auto n_points = static_cast<int>(std::ceil(length / std::max(size, params_.h_min)));
       for (int k = 0; k <= n_points; ++k) add(a + k * (b - a) / n_points, size, apart);

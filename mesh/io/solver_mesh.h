@@ -20,6 +20,12 @@ struct MeshPart {
   int number = 0;    ///< >= 1
 };
 
+/// A curve of edges in the boundary, between two patches. Its number counts among curves alone.
+struct MeshCurve {
+  MeshPart part;
+  std::vector<std::array<int, 2>> edges;  ///< pairs of corners
+};
+
 /// A mesh for solver files: tets with 4 or 10 nodes, and their boundary faces in named patches. Every boundary face is
 /// in one patch and every tet in the body. The nodes of a patch are its node set; nodes on a border are in several.
 struct SolverMesh {
@@ -31,6 +37,8 @@ struct SolverMesh {
   std::vector<int> face_patch;              ///< index into patches
   std::vector<MeshPart> patches;
   MeshPart body{"body", 1};
+  /// Sharp edges: sets of nodes, and lines in .msh. Formats without such sets omit them; so do tets with 10 nodes.
+  std::vector<MeshCurve> curves;
   std::map<std::string, FieldValues> point_data;  ///< one value per node; formats that cannot store it omit it
   std::map<std::string, FieldValues> cell_data;   ///< one value per tet; formats that cannot store it omit it
   /// Values for boundary conditions: one value per node, NaN where unknown. Written as point_data, and to .msh, too.
@@ -67,6 +75,11 @@ void set_patches(SolverMesh& mesh, std::vector<int> face_patch, std::vector<Mesh
 
 /// The nodes of every patch, ascending.
 std::vector<std::vector<int>> patch_nodes(const SolverMesh& mesh);
+/// The nodes of a curve, ascending.
+std::vector<int> curve_nodes(const MeshCurve& curve);
+/// Sets the curves. \throw std::invalid_argument for a node that does not exist, a problem of a name, or a name of
+///        another part, as set_patches()
+void set_curves(SolverMesh& mesh, std::vector<MeshCurve> curves);
 /// The nodes of all patches, ascending.
 std::vector<int> boundary_nodes(const SolverMesh& mesh);
 /// The name of all patches together if there are several; no patch may then have this name.

@@ -6,9 +6,14 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <set>
+#include <tuple>
 
 #include "body/fidelity/closed_holes.h"
+#include "body/fidelity/patch_measures.h"
+#include "common/disjoint_sets.h"
 #include "mesh/io/patches.h"
 #include "mesh/io/planar_pieces.h"
 #include "pipeline/case/exit_code.h"
@@ -160,8 +165,67 @@ std::vector<char> faces_in_holes(const SolverMesh& mesh, const MeshFile& file,
   return in_holes;
 }
 
-void divide_but_holes(SolverMesh& mesh, const std::vector<char>& at_wall, const OrientedPointCloud& cloud,
+/// The edges between faces of two patches, as curves that end where more than two patches meet.
+std::vector<MeshCurve> curves_between(const SolverMesh& mesh) {
+  struct Edge {
+    std::array<int, 2> ends, patches;
+  };
+  std::map<std::array<int, 2>, int> seen;
+  std::vector<Edge> edges;
+  std::map<int, std::set<std::array<int, 2>>> pairs;  // of patches, by vertex
+  for (std::size_t f = 0; f < mesh.n_faces(); ++f) {
+    const std::array<int, 6> face = mesh.face(f);
+    for (int k = 0; k < 3; ++k) {
+      const auto [a, b] = std::minmax(face[k], face[(k + 1) % 3]);
+      const auto [at, is_new] = seen.try_emplace({a, b}, mesh.face_patch[f]);
+      if (is_new || at->second == mesh.face_patch[f]) continue;
+      const auto [p, q] = std::minmax(at->second, mesh.face_patch[f]);
+      edges.push_back({{a, b}, {p, q}});
+      for (const int v : {a, b}) pairs[v].insert({p, q});
+    }
+  }
+  std::sort(edges.begin(), edges.end(),
+            [](const Edge& a, const Edge& b) { return std::tie(a.patches, a.ends) < std::tie(b.patches, b.ends); });
+  DisjointSets connected(edges.size());
+  std::map<std::pair<std::array<int, 2>, int>, int> first;  // edge of a pair of patches at a vertex
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    for (const int v : edges[e].ends) {
+      if (pairs[v].size() > 1) continue;
+      const auto [at, is_new] = first.try_emplace({edges[e].patches, v}, static_cast<int>(e));
+      if (!is_new) connected.unite(static_cast<int>(e), at->second);
+    }
+  }
+  std::map<int, std::size_t> number;
+  std::vector<MeshCurve> curves;
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const auto [at, is_new] = number.try_emplace(connected.find(static_cast<int>(e)), curves.size());
+    if (is_new) {
+      const int k = static_cast<int>(curves.size()) + 1;
+      curves.push_back({{fmt::format("curve_{}", k), k}, {}});
+    }
+    curves[at->second].edges.push_back(edges[e].ends);
+  }
+  return curves;
+}
+
+void divide_by_body(SolverMesh& mesh, const std::vector<int>& of_body) {
+  const std::vector<int> all = distinct(of_body);
+  if (all.size() < 2) return;
+  std::vector<MeshPart> patches;
+  for (const int p : all) {
+    // The body keeps the number 1, which it also has without patches.
+    patches.push_back({p < 0 ? "rest" : fmt::format("patch_{}", p + 1), static_cast<int>(patches.size()) + 2});
+  }
+  std::vector<int> face_patch;
+  for (const int p : of_body)
+    face_patch.push_back(static_cast<int>(std::lower_bound(all.begin(), all.end(), p) - all.begin()));
+  set_patches(mesh, std::move(face_patch), std::move(patches));
+  set_curves(mesh, curves_between(mesh));
+}
+
+void divide_but_holes(SolverMesh& mesh, const MarkedFaces& marked, const OrientedPointCloud& cloud,
                       const Parameters& parameters, const std::vector<std::string>& names_of_file, const Warn& warn) {
+  const std::vector<char>& at_wall = marked.at_wall;
   if (!cloud.labels.empty()) return divide_by_labels(mesh, at_wall, cloud, parameters, names_of_file, warn);
   if (!parameters.output().label_names.empty()) {
     throw UsageError(
@@ -172,6 +236,7 @@ void divide_but_holes(SolverMesh& mesh, const std::vector<char>& at_wall, const 
     if (divide_by_planes(mesh, at_wall, planar)) return;
     warn(fmt::format("no part of the boundary is flat within {} degrees", planar));
   }
+  if (!marked.of_body.empty() && angle == 0) return divide_by_body(mesh, marked.of_body);
   std::vector<int> pieces = smooth_pieces(mesh, angle > 0 ? angle : 180);
   const int n = pieces.empty() ? 0 : *std::max_element(pieces.begin(), pieces.end()) + 1;
   if (n < 2) return;
@@ -222,6 +287,17 @@ void take_holes(SolverMesh& mesh, const std::vector<char>& in_holes, const Warn&
   set_patches(mesh, std::move(face_patch), std::move(patches));
 }
 
+void mark_patches(const Domain& domain, const SolverMesh& mesh, const std::vector<Vec3>& V, double h,
+                  MarkedFaces& marked) {
+  if (!domain.piecewise) return;
+  std::vector<Triangle> faces;
+  for (std::size_t f = 0; f < mesh.n_faces(); ++f) {
+    const std::array<int, 6> face = mesh.face(f);
+    faces.push_back({face[0], face[1], face[2]});
+  }
+  marked.of_body = patches_by_position(domain, V, faces, h, until_interrupted());
+}
+
 MarkedFaces marked_faces(const SolverMesh& mesh, const MeshFile& file, const std::optional<SupportReport>& support) {
   return {faces_at_walls(mesh, file), faces_in_holes(mesh, file, support)};
 }
@@ -235,7 +311,7 @@ void divide_boundary(SolverMesh& mesh, const MarkedFaces& marked, const Oriented
                         ": this name is reserved for faces that no sample supports"});
     }
   }
-  divide_but_holes(mesh, marked.at_wall, cloud, parameters, names_of_file, warn);
+  divide_but_holes(mesh, marked, cloud, parameters, names_of_file, warn);
   take_holes(mesh, marked.in_holes, warn);
 }
 

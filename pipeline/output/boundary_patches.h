@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "body/body.h"
 #include "body/fidelity/closed_hole.h"
 #include "mesh/io/solver_mesh.h"
 #include "mesh/io/tet_mesh_io.h"
@@ -22,11 +23,19 @@ using Warn = std::function<void(const std::string&)>;
 struct MarkedFaces {
   std::vector<char> at_wall;   ///< flags of faces at the walls of a box
   std::vector<char> in_holes;  ///< flags of faces in closed_holes
+  /// Patch of Domain::piecewise of each face, from 0; -1: none. Empty for a smooth body.
+  std::vector<int> of_body = {};
 };
 
 /// Returns the marked faces of a mesh from its file, which contains `wall` and `support` if they are known.
 /// @param support  support of the certificate of the mesh
 MarkedFaces marked_faces(const SolverMesh& mesh, const MeshFile& file, const std::optional<SupportReport>& support);
+
+/// Sets MarkedFaces::of_body for a mesh of a body with sharp edges; else it does nothing.
+/// @param V  vertices of the faces, working coordinates
+/// @param h  edge length of the mesh
+void mark_patches(const Domain& domain, const SolverMesh& mesh, const std::vector<Vec3>& V, double h,
+                  MarkedFaces& marked);
 
 /// Moves the faces of holes to the patch "closed_holes". Its number follows all existing numbers of patches and body,
 /// which do not change. A patch that loses all its faces is removed, and `warn` reports it. A patch "boundary" becomes
@@ -35,7 +44,8 @@ void take_holes(SolverMesh& mesh, const std::vector<char>& in_holes, const Warn&
 
 /// Divides the boundary faces into patches. If the cloud has labels, they decide (by votes of the nearest samples; then
 /// islands below output.label_min_area are removed); otherwise output.patch_planar or else output.patch_angle if set;
-/// otherwise connected components. A positive label is the number of its patch; others get the numbers after the
+/// otherwise the patches of a body with sharp edges, patch_N, and the edges between them as curves, curve_N; otherwise
+/// connected components. A positive label is the number of its patch; others get the numbers after the
 /// largest label. A patch without a name is patch_LABEL, region_N, plane_N (and rest) or boundary_N. `warn` reports
 /// labels without faces, and a boundary without flat parts. Faces at walls are separate patches: "walls", or by angle
 /// or plane walls_1, walls_2 ...

@@ -42,6 +42,7 @@ class CaseRun {
   std::optional<Parameters> former_parameters();
   void take_former_parameters(const Parameters& former);
   void sample_for_h();
+  void smooth_edges();
   void tell_changes(const Parameters& former);
   bool is_kept(Stage stage) const;
   StageState state_of(Stage stage) const;
@@ -120,6 +121,20 @@ void CaseRun::tell_changes(const Parameters& former) {
   }
 }
 
+/// Sharp edges are for flat tets of the fast mode, without walls; for others the level set is one smooth function.
+void CaseRun::smooth_edges() {
+  const char* key = keys::reconstruct::edges;
+  if (parameters_.source(key) == ParamSource::Derived) parameters_.drop(key);
+  if (parameters_.source(key) > ParamSource::Case || request_.until != Stage::Mesh) return;
+  const MeshParameters& mesh = parameters_.mesh();
+  const char* why = mesh.order > 1                   ? "for --order 2"
+                    : mesh.mode == UmMode::Paper     ? "for --mode paper"
+                    : mesh.box_walls                 ? "for --box-walls"
+                    : background_file(parameters_)    ? "for --background"
+                                                     : nullptr;
+  if (why) parameters_.set(key, "off", ParamSource::Derived, why);
+}
+
 /// Triangles are sampled as finely as the mesh needs, unless the user sets the spacing. The spacing is a parameter like
 /// all others, so another h makes other samples; a spacing derived from a former h is dropped with it. The same applies
 /// to closing openings before psi is fitted.
@@ -130,6 +145,7 @@ void CaseRun::sample_for_h() {
   if (parameters_.source(keys::cloud::cap) == ParamSource::Derived) parameters_.drop(keys::cloud::cap);
   if (is_left && parameters_.source(keys::cloud::cap) <= ParamSource::Case)
     parameters_.set(keys::cloud::cap, "false", ParamSource::Derived, "for --close");
+  smooth_edges();
   if (request_.until != Stage::Mesh) return;
   const char* key = keys::cloud::sample_spacing;
   if (parameters_.source(key) == ParamSource::Derived) parameters_.drop(key);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +13,7 @@
 #include "body/option_names.h"
 #include "pipeline/case/artefact.h"
 #include "mesh/expression/expression.h"
+#include "mesh/features/formula_domain.h"
 #include "pipeline/reports/certificate_report.h"
 #include "pipeline/reports/stage_reports.h"
 #include "pipeline/run/run.h"
@@ -137,6 +139,34 @@ TEST(Umtet, TheCertificateOfAFormulaIsThatOfTheProgram) {
   const Mesh mesh = mesh_body(Expression(ellipsoid), options);
   EXPECT_EQ(measured_by(mesh).dump(1), program.dump(1));
   EXPECT_EQ(mesh.verdict.word(), "pass");
+}
+
+TEST(Umtet, ABodyWithSharpEdgesHasThemAndItsCertificateIsThatOfTheProgram) {
+  const Folder folder;
+  const std::string can = "max(x^2+y^2-1,abs(z)-1)";
+  Options options;
+  options.box = Box(Vec3::Constant(-1.5), Vec3::Constant(1.5));
+  options.body.mesh.h = .25;
+  const Mesh mesh = mesh_body(domain_of_formula(can), options);
+  EXPECT_EQ(mesh.verdict.word(), "pass");
+  ASSERT_EQ(mesh.patches.size(), mesh.boundary.size());
+  EXPECT_EQ(*std::min_element(mesh.patches.begin(), mesh.patches.end()), 0);
+  EXPECT_EQ(*std::max_element(mesh.patches.begin(), mesh.patches.end()), 2);
+  ASSERT_EQ(mesh.curves.size(), 2U);
+  for (const std::vector<int>& curve : mesh.curves) {
+    ASSERT_GT(curve.size(), 10U);
+    EXPECT_EQ(curve.front(), curve.back());
+    for (const int v : curve) {
+      EXPECT_NEAR(mesh.points[v].head<2>().norm(), 1, 1e-9);
+      EXPECT_NEAR(std::abs(mesh.points[v].z()), 1, 1e-9);
+    }
+  }
+  RunRequest request;
+  request.from = Stage::Mesh;
+  request.parameters.set("mesh.implicit", can, ParamSource::Flag, "test");
+  request.parameters.set("mesh.box", "-1.5,-1.5,-1.5,1.5,1.5,1.5", ParamSource::Flag, "test");
+  request.parameters.set("mesh.h", ".25", ParamSource::Flag, "test");
+  EXPECT_EQ(measured_by(mesh).dump(1), measured_by_program(folder.path, request).dump(1));
 }
 
 TEST(Umtet, WhatHasNoMeshIsAnErrorWithEvidence) {
