@@ -22,9 +22,13 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSamples = 20000;
 // Edges of a closed curve: fewer turn by more than 52 degrees each.
 constexpr double kEdgesOfLoop = 7;
-// Fillets of a smaller radius than this many deviations may be cut off: a chord of 90 degrees is .41 radii from the
+// A fillet of a smaller radius than this many deviations is not resolved: a chord of 90 degrees is .41 radii from the
 // corner of its tangents.
-constexpr double kRoundedFillet = 2;
+constexpr double kRoundedFillet = 1;
+// Two points of a curve are at a neck if the way along the curve is this many times their distance: half a circle is
+// 1.57 times its diameter.
+constexpr double kAlongNeck = 3;
+constexpr double kHere = 1e-6;  // of the length: nearer than this along the curve is the point itself
 // Curves are looked at in steps of this share of the size there.
 constexpr double kStep = .5;
 constexpr std::size_t kPerPoll = 64;
@@ -85,6 +89,22 @@ class FeatureSizes {
     return a.ends[0] == b.ends[0] || a.ends[0] == b.ends[1] || a.ends[1] == b.ends[0] || a.ends[1] == b.ends[1];
   }
 
+  /// Distance from x to the nearest point of its own curve that is much farther along the curve: infinite if the curve
+  /// has no neck at x.
+  static double neck(const Polyline& line, bool is_closed, const Vec3& x, double s) {
+    const std::vector<Vec3>& points = line.points();
+    double least = kInfinity;
+    for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+      const Vec3 d = points[k + 1] - points[k];
+      const double t = std::clamp((x - points[k]).dot(d) / d.squaredNorm(), 0., 1.);
+      const double distance = (x - points[k] - t * d).norm(), arc = line.arc()[k] + t * d.norm();
+      double along = std::abs(arc - s);
+      if (is_closed) along = std::min(along, line.length() - along);
+      if (along > std::max(kAlongNeck * distance, kHere * line.length())) least = std::min(least, distance);
+    }
+    return least;
+  }
+
   void of_curves(const Context& context) {
     const std::size_t n = graph_.curves.size();
     std::vector<Polyline> lines;
@@ -105,6 +125,7 @@ class FeatureSizes {
           if (other == c || are_adjacent(curve, graph_.curves[other])) continue;
           if (boxes[other].exteriorDistance(x) < nearest) nearest = std::min(nearest, lines[other].nearest(x).distance);
         }
+        nearest = std::min(nearest, neck(lines[c], curve.is_closed(), x, s));
         const double h = std::clamp(std::min(own, nearest / params_.edges_across), params_.h_min, params_.h);
         found[c].push_back({x, h, params_.constant_layer * h});
         if (s == length) break;

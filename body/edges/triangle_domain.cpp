@@ -14,14 +14,24 @@
 
 #include "reconstruct/triangles/edge_uses.h"
 #include "reconstruct/triangles/face_patches.h"
+#include "reconstruct/triangles/patch_primitive.h"
 #include "reconstruct/triangles/patch_surface.h"
 #include "reconstruct/triangles/triangle_tree.h"
 
 namespace umtet {
 namespace {
 
-// Of the diagonal. STL files store coordinates with 24 bits: 6e-8 of their size.
-constexpr double kPlaneTolerance = 1e-6;
+// Of the diagonal, of a vertex from its plane, sphere, cylinder or cone. STL files store coordinates with 24 bits: 6e-8 of
+// their size.
+constexpr double kVertexTolerance = 1e-6;
+// Of the diagonal, of the facets: half of the deviation that is asked of the faces of a mesh by default.
+constexpr double kFacetTolerance = 2.5e-4;
+// Points of a curve for each of its edges in the file, where it is the common zero set of two such surfaces.
+constexpr int kPointsAnEdge = 4;
+// Cosine of the least angle between the normals of two surfaces that define their curve: 15 degrees.
+constexpr double kMostCos = .966;
+constexpr int kMostNewton = 20;
+constexpr double kConverged = 1e-14;  // of the coordinates
 constexpr int kParts = 3;  // of a curve that returns to its corner
 
 /// A sharp edge and what is on its sides.
@@ -51,6 +61,8 @@ class Surface {
   const SharpSide& side(int a, int b) const { return sharp_.at(edge_of(a, b)); }
   const std::vector<int>& patches_at(int vertex) const { return at_[first_[vertex]].patches; }
   ActivePatch psi(const Vec3& x) const;
+  /// Moves x to the common zero of two exact patches, by the shortest steps. \return whether there is one near x
+  bool correct(const std::array<int, 2>& pair, Vec3& x) const;
 
  private:
   struct AroundVertex {
@@ -61,7 +73,7 @@ class Surface {
   std::pair<int, int> edge_of(int a, int b) const { return std::minmax(first_[a], first_[b]); }
   void measure_edges();
   void measure_vertices();
-  PatchFunction function_of(TriangleMesh patch) const;
+  PatchFunction function_of(TriangleMesh patch);
   ActivePatch at_vertex(const Vec3& x, int v) const;
 
   TriangleMesh mesh_;
@@ -72,6 +84,7 @@ class Surface {
   std::vector<std::array<const SharpSide*, 3>> side_;  ///< per triangle: from corner k to k + 1; null where smooth
   std::vector<AroundVertex> at_;                       ///< per welded vertex
   std::vector<PatchFunction> patches_;
+  std::vector<std::uint8_t> is_exact_;  ///< per patch: a plane, sphere, cylinder or cone
   bool is_closed_ = true;
 };
 
@@ -117,15 +130,11 @@ void Surface::measure_vertices() {
   for (const auto& [edge, side] : sharp_) at_[edge.first].is_on_curve = at_[edge.second].is_on_curve = true;
 }
 
-PatchFunction Surface::function_of(TriangleMesh patch) const {
-  const PatchPlane plane = mean_plane(patch);
-  if (plane.farthest <= kPlaneTolerance * diagonal_of(mesh_)) {
-    return [plane](const Vec3& x, Vec3* g, Mat3* H) {
-      if (g) *g = plane.normal;
-      if (H) H->setZero();
-      return plane.normal.dot(x) - plane.offset;
-    };
-  }
+PatchFunction Surface::function_of(TriangleMesh patch) {
+  const double diagonal = diagonal_of(mesh_);
+  const auto primitive = fit_primitive(patch, {kVertexTolerance * diagonal, kFacetTolerance * diagonal});
+  is_exact_.push_back(primitive ? 1 : 0);
+  if (primitive) return [p = *primitive](const Vec3& x, Vec3* g, Mat3* H) { return p.evaluate(x, g, H); };
   return [surface = std::make_shared<const PatchSurface>(std::move(patch))](const Vec3& x, Vec3* g, Mat3* H) {
     if (H) H->setZero();
     return surface->evaluate(x, g);
@@ -168,6 +177,20 @@ ActivePatch Surface::psi(const Vec3& x) const {
   return {patches_[p](x, nullptr, nullptr), p};
 }
 
+bool Surface::correct(const std::array<int, 2>& pair, Vec3& x) const {
+  const auto [p, q] = pair;
+  if (p == q || !is_exact_[p] || !is_exact_[q]) return false;
+  for (int k = 0; k < kMostNewton; ++k) {
+    Vec3 a, b;
+    const double f = patches_[p](x, &a, nullptr), g = patches_[q](x, &b, nullptr), c = a.dot(b), det = 1 - c * c;
+    if (!(std::abs(c) < kMostCos)) return false;
+    const Vec3 step = (c * g - f) / det * a + (c * f - g) / det * b;
+    x += step;
+    if (step.norm() <= kConverged * x.norm()) return true;
+  }
+  return true;
+}
+
 /// A curve of the file with its corners.
 class GraphMaker {
  public:
@@ -208,7 +231,28 @@ class GraphMaker {
       const std::size_t before = k > 0 ? k - 1 : has_ends ? 0 : n - 1, after = k < n ? k : has_ends ? n - 1 : 0;
       curve.angle_deg.push_back((angle[before] + angle[after]) / 2);
     }
+    refine(curve);
     graph_.curves.push_back(std::move(curve));
+  }
+
+  /// The common zero set of two exact patches: the points of the file, which are on chords, and more between them.
+  void refine(FeatureCurve& curve) const {
+    FeatureCurve fine = curve;
+    fine.is_given = false;
+    fine.points.clear(), fine.arc.clear(), fine.angle_deg.clear();
+    const std::size_t n = (curve.points.size() - 1) * kPointsAnEdge;
+    for (std::size_t k = 0; k <= n; ++k) {
+      const std::size_t i = std::min(k / kPointsAnEdge, curve.points.size() - 2);
+      const double t = static_cast<double>(k - i * kPointsAnEdge) / kPointsAnEdge;
+      Vec3 x = (1 - t) * curve.points[i] + t * curve.points[i + 1];
+      const bool is_end = k == 0 || k == n;
+      if (!(is_end && !curve.is_closed()) && !surface_.correct(curve.patches, x)) return;
+      fine.arc.push_back(fine.points.empty() ? 0 : fine.arc.back() + (x - fine.points.back()).norm());
+      fine.points.push_back(x);
+      fine.angle_deg.push_back((1 - t) * curve.angle_deg[i] + t * curve.angle_deg[i + 1]);
+    }
+    if (curve.is_closed()) fine.points.back() = fine.points.front();
+    curve = std::move(fine);
   }
 
   const TriangleMesh& mesh_;

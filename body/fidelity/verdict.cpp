@@ -62,7 +62,7 @@ bool fits_psi(const MeshMeasures& m) {
   return m.is_valid && m.reasons.empty() && std::all_of(m.defects.kinds.begin(), m.defects.kinds.end(), is_settled);
 }
 
-bool has_input(const MeshMeasures& m) { return m.n_points || m.labels; }
+bool has_input(const MeshMeasures& m) { return m.n_points || m.labels || m.triangles; }
 
 std::string Verdict::word() const {
   if (!passes()) return "fail";

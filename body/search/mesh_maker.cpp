@@ -113,7 +113,7 @@ KnownSigns MeshMaker::known_signs(const BackgroundMesh& background, const ZeroSe
 /// None where the body is as thick as the tets need it, or may not be thickened.
 const TriangleThickness* MeshMaker::thin_triangles(const BackgroundMesh& background, const ZeroSetChoice& pieces,
                                                    double h) {
-  if (!may_be_thickened(domain_, options_) || domain_.piecewise || ranks_ || !background.is_lattice() ||
+  if (!may_be_thickened(domain_, options_) || ranks_ || !background.is_lattice() ||
       !pieces.dropped.empty())
     return nullptr;
   if (!thickness_ || thickness_->first < h) thickness_ = {h, triangle_thickness(domain_, kEdgesAcross * h, context_)};

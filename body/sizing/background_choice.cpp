@@ -101,18 +101,19 @@ void BackgroundChoice::grade_if_worth_it(Domain& domain, const EdgeLength& one, 
   uniform_tets_ = uniform;
 }
 
-/// The least size on the features of a body of triangles with sharp edges, as one h or, if this takes less than half of
-/// the tets, as the least of varying sizes.
+/// The least size on the features of a body of triangles with sharp edges, as one h or, if that takes more than twice the
+/// tets, the least of varying sizes.
 EdgeLength BackgroundChoice::edge_length_by_edges(Domain& domain, const Context& context) {
   GradedSizes sizes(options_, domain.shift);
   sizes.add(domain, context);
   const double h = sizes.finest();
   Known graded{h, std::make_shared<const SizeField>(sizes.field(h, context)), {}};
   graded.n_tets = expected_graded_tets(*graded.sizes, h, domain.psi(), domain.box, domain.steepest(), context);
-  const double uniform = umtet::expected_tets(*tiling_, domain.size(), h, source_);
+  const double one = least_edged_size(domain, options_.mesh, context);
+  const double uniform = umtet::expected_tets(*tiling_, domain.size(), one, source_);
   is_decided_ = true;
   if (uniform <= kWorthIt * *graded.n_tets && uniform <= static_cast<double>(options_.mesh.max_tets))
-    return options_.mesh.tets > 0 ? choose_edge_length(domain, options_, context) : representable({h, h}, domain);
+    return options_.mesh.tets > 0 ? choose_edge_length(domain, options_, context) : representable({one, one}, domain);
   graded_.emplace(std::move(sizes));
   known_ = std::move(graded);
   uniform_tets_ = uniform;

@@ -41,15 +41,18 @@ bool is_of_triangles(const CasePaths& paths, const StageRecord& cloud) {
 }
 
 /// Triangles with sharp edges: a function for each smooth patch.
-Domain domain_with_edges(const CasePaths& paths, const Parameters& parameters, const Vec3& shift, Handover* handover) {
+Domain domain_with_edges(const CasePaths& paths, const Parameters& parameters, const LevelSetReport& report,
+                         Handover* handover) {
   EdgedTriangles edged = handover && handover->edged.body
                              ? std::exchange(handover->edged, {})
-                             : edged_triangles(read_triangles(paths.triangles()).mesh, shift, parameters);
+                             : edged_triangles(read_triangles(paths.triangles()).mesh, report.shift, parameters);
   if (!edged.body) throw ArtefactDamaged(paths.triangles().string() + ": has no sharp edges");
   OrientedPointCloud cloud = handover && handover->cloud ? std::move(*std::exchange(handover->cloud, std::nullopt))
                                                          : read_point_cloud(paths.cloud()).cloud;
-  return edged_domain(std::move(edged.triangles), std::move(edged.body), std::move(cloud), shift,
-                      parse_box(parameters.mesh().box), parameters.mesh().h);
+  Domain domain = edged_domain(std::move(edged.triangles), std::move(edged.body), std::move(cloud), report.shift,
+                               parse_box(parameters.mesh().box), parameters.mesh().h);
+  domain.cloud_spacing = report.fit.cloud_spacing;
+  return domain;
 }
 
 }  // namespace
@@ -73,7 +76,10 @@ Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handove
   Domain domain;
   try {
     if (has_edges(*state.record)) {
-      domain = domain_with_edges(paths, parameters, level_set_report(*state.record).shift, handover);
+      const LevelSetReport report = level_set_report(*state.record);
+      domain = domain_with_edges(paths, parameters, report, handover);
+      const StageState cloud = inspect_stage(paths, Stage::Cloud, Json::object(), std::nullopt);
+      if (cloud.record) domain.facts = input_facts(cloud_report(*cloud.record), report);
       domain.complement = parameters.mesh().complement;
       return domain;
     }

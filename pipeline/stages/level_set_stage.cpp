@@ -61,6 +61,10 @@ LevelSetReport write_edges(const StageContext& context, const EdgedTriangles& ed
   curves.graph = *edged.body->graph;
   curves.chains.resize(curves.graph.curves.size());
   report.shift = edged.shift;
+  const StageState state = inspect_stage(context.paths, Stage::Cloud, Json::object(), std::nullopt);
+  const TriangleReport& samples = cloud_report(*state.record).triangles->body;
+  report.fit.n_points = samples.n_samples;
+  report.fit.cloud_spacing = samples.spacing;
   write_features(context.paths.folder(Stage::LevelSet) / kFeatureFile, curves, edged.shift);
   return report;
 }

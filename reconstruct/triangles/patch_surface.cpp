@@ -95,20 +95,4 @@ std::vector<TriangleMesh> split_patches(const TriangleMesh& mesh, const SharpEdg
   return patches;
 }
 
-PatchPlane mean_plane(const TriangleMesh& patch) {
-  PatchPlane plane;
-  Vec3 centre = Vec3::Zero();
-  double area = 0;
-  for (std::size_t f = 0; f < patch.F.size(); ++f) {
-    const Vec3 vector = patch.area_vector(f);
-    plane.normal += vector;
-    centre += vector.norm() * patch.centroid(f);
-    area += vector.norm();
-  }
-  plane.normal.normalize();
-  plane.offset = plane.normal.dot(centre) / area;
-  for (const Vec3& x : patch.V) plane.farthest = std::max(plane.farthest, std::abs(plane.normal.dot(x) - plane.offset));
-  return plane;
-}
-
 }  // namespace umtet

@@ -40,14 +40,4 @@ class PatchSurface {
 /// The triangles of each patch, by number of the patch. Vertices of no triangle are left out.
 std::vector<TriangleMesh> split_patches(const TriangleMesh& mesh, const SharpEdges& edges);
 
-/// The plane n . x = d on which all vertices of some triangles lie within a tolerance.
-struct PatchPlane {
-  Vec3 normal = Vec3::Zero();  ///< of unit length, outward
-  double offset = 0;           ///< d, model units
-  double farthest = 0;         ///< distance of the farthest vertex, model units
-};
-/// The mean plane of some triangles: the normal is the mean of their normals by area, the offset that of the centre of
-/// area.
-PatchPlane mean_plane(const TriangleMesh& patch);
-
 }  // namespace umtet
