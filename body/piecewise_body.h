@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "body/body.h"
 #include "mesh/core/piecewise_domain.h"
@@ -15,6 +16,9 @@ struct PiecewiseBody {
   PiecewiseDomain domain;  ///< working coordinates
   /// The curves and corners, working coordinates, if they are known; empty: each mesh traces them.
   std::optional<FeatureGraph> graph = {};
+  /// For triangles: TriangleDomain::curvature of the patches; empty for others.
+  std::vector<double> curvature = {};
+  double tolerance = 0;  ///< distance within which the curves and corners lie on their patches, model units
 };
 
 /// Makes the body that of `domain`: psi is its psi, with the derivatives of the active patch.

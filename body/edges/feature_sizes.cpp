@@ -2,9 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <map>
 
 #include "common/polled_loops.h"
 #include "mesh/core/polyline.h"
@@ -22,9 +25,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSamples = 20000;
 // Edges of a closed curve: fewer turn by more than 52 degrees each.
 constexpr double kEdgesOfLoop = 7;
-// A fillet of a smaller radius than this many deviations is not resolved: a chord of 90 degrees is .41 radii from the
-// corner of its tangents.
-constexpr double kRoundedFillet = 1;
+// Side of the cubes in which the curvature is measured, in spacings of the samples: of a plane they have nine.
+constexpr double kCube = 3;
+constexpr double kFewestSamples = 4.5;
 // Two points of a curve are at a neck if the way along the curve is this many times their distance: half a circle is
 // 1.57 times its diameter.
 constexpr double kAlongNeck = 3;
@@ -36,12 +39,13 @@ constexpr std::size_t kPerPoll = 64;
 class FeatureSizes {
  public:
   FeatureSizes(const TriangleMesh& mesh, const SharpEdges& edges, const FeatureGraph& graph,
-               const FeatureSizeParams& params)
-      : mesh_(mesh), edges_(edges), graph_(graph), params_(params) {}
+               const std::vector<double>& curvature, const FeatureSizeParams& params)
+      : mesh_(mesh), edges_(edges), graph_(graph), curvature_(curvature), params_(params) {}
 
   std::vector<SizeSource> operator()(const Context& context) {
+    sample(context);
     of_thickness(context);
-    of_turn();
+    of_curvature();
     of_curves(context);
     return std::move(sources_);
   }
@@ -52,19 +56,41 @@ class FeatureSizes {
     sources_.push_back({x, h, std::max(params_.constant_layer * h, extent)});
   }
 
-  void of_thickness(const Context& context) {
+  void sample(const Context& context) {
     double area = 0;
     for (std::size_t f = 0; f < mesh_.F.size(); ++f) area += mesh_.area_vector(f).norm();
-    const double spacing = std::sqrt(area / kSamples);
-    const TriangleSamples samples = sample_triangles(mesh_, spacing, 0, context);
-    const std::vector<double> t = sheet_thickness(mesh_, TriangleTree(mesh_), samples.points, samples.faces,
-                                                  params_.edges_across * params_.h, context);
-    for (std::size_t i = 0; i < t.size(); ++i) add(samples.points[i], t[i] / params_.edges_across, spacing);
+    spacing_ = std::sqrt(area / kSamples);
+    cube_ = kCube * spacing_;
+    samples_ = sample_triangles(mesh_, spacing_, 0, context);
+    area_of_sample_ = area / static_cast<double>(samples_.points.size());
   }
 
-  /// Across the edges of smooth patches: the turn over the height of the wider triangle. A narrow triangle beside a wide
-  /// one is a matter of the triangulation.
-  void of_turn() {
+  void of_thickness(const Context& context) {
+    const std::vector<double> t = sheet_thickness(mesh_, TriangleTree(mesh_), samples_.points, samples_.faces,
+                                                  params_.edges_across * params_.h, context);
+    for (std::size_t i = 0; i < t.size(); ++i) add(samples_.points[i], t[i] / params_.edges_across, spacing_);
+  }
+
+  double by_curvature(double curvature) const {
+    if (!(curvature > 0)) return kInfinity;
+    return std::min(params_.max_turn / curvature, std::sqrt(8 * params_.deviation / curvature));
+  }
+
+  /// Turn times length, and area, of the cubes that samples of a smooth patch lie in.
+  struct Cube {
+    double turn = 0, area = 0;
+  };
+  using Key = std::array<std::int64_t, 4>;  // patch, and three coordinates
+  Key key_of(std::size_t patch, const Vec3& x) const {
+    const Eigen::Array3d at = (x / cube_).array().floor();
+    return {static_cast<std::int64_t>(patch), static_cast<std::int64_t>(at[0]), static_cast<std::int64_t>(at[1]),
+            static_cast<std::int64_t>(at[2])};
+  }
+
+  void of_curvature() {
+    std::map<Key, Cube> cubes;
+    for (std::size_t i = 0; i < samples_.points.size(); ++i)
+      cubes[key_of(edges_.patch[samples_.faces[i]], samples_.points[i])].area += area_of_sample_;
     const std::vector<EdgeUse> uses = edge_uses(mesh_, welded(mesh_.V, find_patches(mesh_).weld_distance));
     for_each_edge(uses, [&](std::size_t begin, std::size_t end) {
       if (end - begin != 2) return;
@@ -73,15 +99,21 @@ class FeatureSizes {
       const Vec3 &a = mesh_.V[uses[begin].low], &b = mesh_.V[uses[begin].high];
       const Vec3 m = mesh_.area_vector(f), n = mesh_.area_vector(g);
       const double turn = std::atan2(m.cross(n).norm(), m.dot(n)), length = (b - a).norm();
-      const double apart = 2 * std::max(m.norm(), n.norm()) / length;
-      if (!(turn > 0)) return;
-      const double curvature = turn / apart;
-      if (curvature * kRoundedFillet * params_.deviation > 1) return;
-      const double size = std::min(params_.max_turn / curvature, std::sqrt(8 * params_.deviation / curvature));
-      if (!(size < params_.h)) return;
-      const auto n_points = static_cast<int>(std::ceil(length / std::max(size, params_.h_min)));
-      for (int k = 0; k <= n_points; ++k) add(a + k * (b - a) / n_points, size, apart);
+      const auto n_parts = static_cast<int>(std::ceil(2 * length / cube_));
+      for (int k = 0; k < n_parts; ++k) {
+        const auto at = cubes.find(key_of(edges_.patch[f], a + (k + .5) / n_parts * (b - a)));
+        if (at != cubes.end()) at->second.turn += turn * length / n_parts;
+      }
     });
+    for (std::size_t i = 0; i < samples_.points.size(); ++i) {
+      const std::size_t patch = edges_.patch[samples_.faces[i]];
+      const Cube& cube = cubes.at(key_of(patch, samples_.points[i]));
+      const double known = patch < curvature_.size() ? curvature_[patch] : -1;
+      // A cube that the patch hardly meets has too few samples to measure its area.
+      const double area = std::max(cube.area, kFewestSamples * area_of_sample_);
+      const double size = by_curvature(known >= 0 ? known : cube.turn / area);
+      if (size < params_.h) add(samples_.points[i], size, known >= 0 ? spacing_ : cube_);
+    }
   }
 
   bool are_adjacent(const FeatureCurve& a, const FeatureCurve& b) const {
@@ -138,15 +170,19 @@ class FeatureSizes {
   const TriangleMesh& mesh_;
   const SharpEdges& edges_;
   const FeatureGraph& graph_;
+  const std::vector<double>& curvature_;
   const FeatureSizeParams& params_;
+  TriangleSamples samples_;
+  double spacing_ = 0, cube_ = 0, area_of_sample_ = 0;
   std::vector<SizeSource> sources_;
 };
 
 }  // namespace
 
 std::vector<SizeSource> feature_sizes(const TriangleMesh& mesh, const SharpEdges& edges, const FeatureGraph& graph,
-                                      const FeatureSizeParams& params, const Context& context) {
-  return FeatureSizes(mesh, edges, graph, params)(context);
+                                      const std::vector<double>& curvature, const FeatureSizeParams& params,
+                                      const Context& context) {
+  return FeatureSizes(mesh, edges, graph, curvature, params)(context);
 }
 
 }  // namespace umtet

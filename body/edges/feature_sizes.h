@@ -27,11 +27,15 @@ struct FeatureSizeParams {
 ///
 /// but at least h_min, with t the distance along the normal to the other side of the body or of a gap
 /// (body_thickness.h), d the distance of a curve from the nearest curve that has no corner in common with it, or from
-/// itself at a neck, l the length of a curve, or a seventh of the length of a closed one, and k the turn of the triangles
-/// a length. Turns of a radius below the deviation do not count.
-/// @param edges  sharp edges of the mesh, and `graph` its curves
+/// itself at a neck, l the length of a curve, or a seventh of the length of a closed one, and k the curvature.
+///
+/// Where the curvature of a patch is not known, k is the mean over a cube of some samples of the surface: the sum of
+/// turn times length over the edges in it, divided by its area [Cohen-Steiner2003]. Smaller turns are texture.
+/// @param edges      sharp edges of the mesh, and `graph` its curves
+/// @param curvature  largest curvature of each patch; -1 if it is not known
 /// \pre the mesh is closed, and triangles face outward. The result does not depend on threads. \throw Cancelled
 std::vector<SizeSource> feature_sizes(const TriangleMesh& mesh, const SharpEdges& edges, const FeatureGraph& graph,
-                                      const FeatureSizeParams& params, const Context& context = {});
+                                      const std::vector<double>& curvature, const FeatureSizeParams& params,
+                                      const Context& context = {});
 
 }  // namespace umtet

@@ -58,6 +58,7 @@ class Surface {
 
   bool is_closed() const { return is_closed_; }
   const std::vector<PatchFunction>& patches() const { return patches_; }
+  const std::vector<double>& curvature() const { return curvature_; }
   const SharpSide& side(int a, int b) const { return sharp_.at(edge_of(a, b)); }
   const std::vector<int>& patches_at(int vertex) const { return at_[first_[vertex]].patches; }
   ActivePatch psi(const Vec3& x) const;
@@ -84,6 +85,7 @@ class Surface {
   std::vector<std::array<const SharpSide*, 3>> side_;  ///< per triangle: from corner k to k + 1; null where smooth
   std::vector<AroundVertex> at_;                       ///< per welded vertex
   std::vector<PatchFunction> patches_;
+  std::vector<double> curvature_;       ///< per patch, as TriangleDomain::curvature
   std::vector<std::uint8_t> is_exact_;  ///< per patch: a plane, sphere, cylinder or cone
   bool is_closed_ = true;
 };
@@ -134,6 +136,8 @@ PatchFunction Surface::function_of(TriangleMesh patch) {
   const double diagonal = diagonal_of(mesh_);
   const auto primitive = fit_primitive(patch, {kVertexTolerance * diagonal, kFacetTolerance * diagonal});
   is_exact_.push_back(primitive ? 1 : 0);
+  const bool is_plane = primitive && primitive->kind == PatchPrimitive::Kind::Plane;
+  curvature_.push_back(is_plane ? 0 : primitive && primitive->radius > 0 ? 1 / primitive->radius : -1);
   if (primitive) return [p = *primitive](const Vec3& x, Vec3* g, Mat3* H) { return p.evaluate(x, g, H); };
   return [surface = std::make_shared<const PatchSurface>(std::move(patch))](const Vec3& x, Vec3* g, Mat3* H) {
     if (H) H->setZero();
@@ -269,7 +273,7 @@ std::optional<TriangleDomain> triangle_domain(const TriangleMesh& mesh, const Sh
   FeatureGraph graph = GraphMaker(mesh, edges, *surface).graph();
   return TriangleDomain{
       PiecewiseDomain::of_patches(surface->patches(), [surface](const Vec3& x) { return surface->psi(x); }),
-      std::move(graph)};
+      std::move(graph), surface->curvature(), kVertexTolerance * diagonal_of(mesh)};
 }
 
 }  // namespace umtet

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "mesh/core/piecewise_domain.h"
 #include "mesh/features/feature_graph.h"
@@ -13,6 +14,9 @@ namespace umtet {
 struct TriangleDomain {
   PiecewiseDomain domain;
   FeatureGraph graph;
+  /// Largest curvature of each patch that is a plane, sphere or cylinder, 1 / model units; -1 for others.
+  std::vector<double> curvature;
+  double tolerance;  ///< distance within which the curves and corners lie on their patches, model units
 };
 
 /// The domain inside of some triangles, with one function for each smooth patch.

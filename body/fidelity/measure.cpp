@@ -283,7 +283,7 @@ std::optional<std::string> deviation_reason(double asked, const MeshCertificate&
 MeshCertificate certify_patches(const PiecewiseBody& body, CertificateInput input, const PiecewiseMesh& features) {
   input.psi.reset();
   MeshCertificate certificate = certify(input);
-  measure_against_patches(body.domain, input.mesh->V, features.faces, features.face_patch, input.context, certificate);
+  measure_against_patches(body, input.mesh->V, features.faces, features.face_patch, input.context, certificate);
   return certificate;
 }
 
@@ -301,10 +301,9 @@ MeshCertificate certify_against(const Domain& domain, CertificateInput input) {
   if (!domain.piecewise) input.psi = domain.psi();
   MeshCertificate certificate = certify(input);
   if (!domain.piecewise) return certificate;
-  const PiecewiseDomain& body = domain.piecewise->domain;
   const std::vector<Triangle> faces = boundary_faces(input.mesh->C, input.mesh->V.size()).triangles;
   const std::vector<int> patch = patches_by_position(domain, input.mesh->V, faces, certificate.h, input.context);
-  measure_against_patches(body, input.mesh->V, faces, patch, input.context, certificate);
+  measure_against_patches(*domain.piecewise, input.mesh->V, faces, patch, input.context, certificate);
   return certificate;
 }
 

@@ -64,12 +64,13 @@ std::vector<int> patches_by_position(const PiecewiseDomain& body, const std::vec
 
 std::vector<int> patches_by_position(const Domain& domain, const std::vector<Vec3>& V,
                                      const std::vector<Triangle>& faces, double h, const Context& context) {
-  return patches_by_position(domain.piecewise->domain, V, faces, kOnPatch * h + coordinate_rounding(domain), context);
+  return patches_by_position(domain.piecewise->domain, V, faces, kOnPatch * h + coordinate_rounding(domain) + domain.piecewise->tolerance, context);
 }
 
-void measure_against_patches(const PiecewiseDomain& body, const std::vector<Vec3>& V,
+void measure_against_patches(const PiecewiseBody& of, const std::vector<Vec3>& V,
                              const std::vector<Triangle>& faces, const std::vector<int>& patch, const Context& context,
                              MeshCertificate& certificate) {
+  const PiecewiseDomain& body = of.domain;
   std::vector<std::pair<int, int>> vertices;  // and a patch
   for (std::size_t f = 0; f < faces.size(); ++f)
     for (const int v : faces[f]) vertices.emplace_back(v, patch[f]);
@@ -93,7 +94,7 @@ void measure_against_patches(const PiecewiseDomain& body, const std::vector<Vec3
     const int v = vertices[i].first;
     double farthest = 0;
     for (; i < vertices.size() && vertices[i].first == v; ++i) farthest = std::max(farthest, distance[i]);
-    add_vertex(V[v], farthest, h, certificate.coordinate_rounding, boundary);
+    add_vertex(V[v], farthest, h, certificate.coordinate_rounding + of.tolerance, boundary);
   }
   double gap = 0;
   for (const FaceMeasure& f : face) {

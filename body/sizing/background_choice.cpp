@@ -23,6 +23,9 @@ namespace {
 
 // Graded tets are of lower quality, so they have to be fewer by this factor.
 constexpr double kWorthIt = 2;
+// Where sizes follow the features of a body with sharp edges, flips make graded tets as good: it is enough if they are
+// this much fewer.
+constexpr double kWorthItAtEdges = 1.25;
 
 }  // namespace
 
@@ -101,8 +104,8 @@ void BackgroundChoice::grade_if_worth_it(Domain& domain, const EdgeLength& one, 
   uniform_tets_ = uniform;
 }
 
-/// The least size on the features of a body of triangles with sharp edges, as one h or, if that takes more than twice the
-/// tets, the least of varying sizes.
+/// The least size on the features of a body of triangles with sharp edges, as one h or, if that takes a quarter more tets,
+/// the least of varying sizes.
 EdgeLength BackgroundChoice::edge_length_by_edges(Domain& domain, const Context& context) {
   GradedSizes sizes(options_, domain.shift);
   sizes.add(domain, context);
@@ -112,7 +115,7 @@ EdgeLength BackgroundChoice::edge_length_by_edges(Domain& domain, const Context&
   const double one = least_edged_size(domain, options_.mesh, context);
   const double uniform = umtet::expected_tets(*tiling_, domain.size(), one, source_);
   is_decided_ = true;
-  if (uniform <= kWorthIt * *graded.n_tets && uniform <= static_cast<double>(options_.mesh.max_tets))
+  if (uniform <= kWorthItAtEdges * *graded.n_tets && uniform <= static_cast<double>(options_.mesh.max_tets))
     return options_.mesh.tets > 0 ? choose_edge_length(domain, options_, context) : representable({one, one}, domain);
   graded_.emplace(std::move(sizes));
   known_ = std::move(graded);

@@ -133,7 +133,8 @@ std::vector<SizeSource> edged_sizes(const Domain& domain, const MeshOptions& p, 
   s.edges_across = edges_across;
   s.deviation = p.max_deviation > 0 ? p.max_deviation / (kSizeTolerance * kSizeTolerance)
                                     : kEdgedDeviation * domain.diagonal;
-  return feature_sizes(domain.triangles->whole, domain.triangles->edges, *domain.piecewise->graph, s, context);
+  const PiecewiseBody& body = *domain.piecewise;
+  return feature_sizes(domain.triangles->whole, domain.triangles->edges, *body.graph, body.curvature, s, context);
 }
 
 double least_edged_size(const Domain& domain, const MeshOptions& options, const Context& context) {

@@ -8,6 +8,7 @@
 #include "body/scan/cloud_preparation.h"
 #include "body/sizing/wanted_detail.h"
 #include "pipeline/case/interrupt.h"
+#include "pipeline/case/option_words.h"
 #include "pipeline/domain/body_options.h"
 #include "pipeline/domain/edged_case.h"
 #include "pipeline/output/report.h"
@@ -326,10 +327,11 @@ bool CaseRun::may_smooth_edges() const {
          has_edges(read_record(paths_, Stage::LevelSet));
 }
 
-/// Returns the first reason for which a mesh with edges fails; empty if it passes.
+/// Returns the first reason for which a mesh with edges is wrong; empty if it is right, whatever else is asked of it.
 std::string CaseRun::failure_of_edges(const std::vector<StageRecord>& records) const {
   const Verdict verdict = judge(mesh_report(records.back()).measured, parameters_.output());
-  return verdict.passes() ? "" : verdict.reasons.front();
+  const bool is_right = verdict.is_valid && verdict.fits_psi && verdict.fits_input;
+  return is_right || verdict.passes() ? "" : verdict.reasons.front();
 }
 
 std::vector<StageRecord> CaseRun::make_all() {
@@ -340,10 +342,10 @@ std::vector<StageRecord> CaseRun::make_all() {
     if (may_smooth_edges()) failure = failure_of_edges(records);
   } catch (const MeshingImpossible& e) {
     if (!may_smooth_edges()) throw;
-    failure = e.message;
+    failure = text_of(e.message, as_flag);
   } catch (const ResourceLimit& e) {
     if (!may_smooth_edges()) throw;
-    failure = e.message;
+    failure = text_of(e.message, as_flag);
   }
   if (failure.empty()) return records;
   progress_.warn("mesh: with sharp edges it fails (" + failure +

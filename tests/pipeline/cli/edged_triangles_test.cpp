@@ -1,0 +1,128 @@
+// The program on triangles with sharp edges: a function for every smooth patch, and every edge in the mesh.
+
+#include <array>
+#include <vector>
+
+#include "reconstruct/triangles/triangle_mesh.h"
+#include "tests/pipeline/cli/program_fixture.h"
+#include "tests/reconstruct/triangles/solids.h"
+
+namespace umtet {
+namespace {
+
+class EdgedTriangles : public Program {
+ protected:
+  void write_stl(const std::string& name, const TriangleMesh& mesh) const {
+    std::ofstream out(folder / name);
+    out.precision(17);
+    out << "solid part\n";
+    for (std::size_t f = 0; f < mesh.F.size(); ++f) {
+      out << "facet normal 0 0 0\nouter loop\n";
+      for (int k = 0; k < 3; ++k) out << "vertex " << mesh.corner(f, k).transpose() << '\n';
+      out << "endloop\nendfacet\n";
+    }
+    out << "endsolid\n";
+  }
+  Json certificate_of(const std::string& name) const {
+    return Json::parse(content(folder / name / "certificate.json"));
+  }
+};
+
+/// Corners off the lattice's planes.
+TriangleMesh tilted_cube() {
+  TriangleMesh mesh = test::cube();
+  const Mat3 R = Eigen::AngleAxisd(.6, Vec3(3, 1, 2).normalized()).toRotationMatrix();
+  for (Vec3& x : mesh.V) x = R * x + Vec3(10, 20, 30);
+  return mesh;
+}
+
+TEST_F(EdgedTriangles, ACubeIsACube) {
+  write_stl("cube.stl", tilted_cube());
+  const Result r = run("run cube.stl -o cube --strict");
+  ASSERT_EQ(r.code, 0) << r.out << r.err;
+  const Json c = certificate_of("cube");
+  EXPECT_EQ(c["verdict"], "pass");
+  EXPECT_EQ(c["features"]["curves"], 12);
+  EXPECT_EQ(c["features"]["corners"], 8);
+  EXPECT_EQ(c["features"]["patches"], 6);
+  EXPECT_EQ(c["features"]["missed_curves"], 0);
+  EXPECT_NEAR(c["volume"].get<double>(), 1, 1e-9);
+  EXPECT_LT(c["triangles"]["max_distance"].get<double>(), 1e-9);
+  EXPECT_LT(c["triangles"]["max_distance_back"].get<double>(), 1e-9);
+  EXPECT_GE(c["quality"]["min"].get<double>(), .75);
+  EXPECT_LE(c["n_tets"].get<int>(), 60000);
+  EXPECT_TRUE(fs::exists(folder / "cube/2-level-set/features.vtp"));
+  EXPECT_FALSE(fs::exists(folder / "cube/2-level-set/level_set.vti"));
+  // A finished case is left alone, and the mesh stage repeats alone to the bit.
+  EXPECT_NE(run("run cube").err.find("up to date"), std::string::npos);
+  const std::string before = content(folder / "cube/3-mesh/mesh.vtu");
+  ASSERT_EQ(run("mesh cube --force").code, 0);
+  EXPECT_EQ(content(folder / "cube/3-mesh/mesh.vtu"), before);
+  EXPECT_EQ(run("check cube/3-mesh/mesh.vtu --against cube --strict").code, 0);
+}
+
+TEST_F(EdgedTriangles, APlateThinnerThanItsEdgesIsExact) {
+  TriangleMesh plate = test::cube();
+  for (Vec3& x : plate.V) x = x.cwiseProduct(Vec3(40, 25, 1));
+  write_stl("plate.stl", plate);
+  const Result r = run("run plate.stl -o plate --no-report");
+  ASSERT_EQ(r.code, 0) << r.out << r.err;
+  const Json c = certificate_of("plate");
+  EXPECT_NEAR(c["volume"].get<double>(), 1000, 1e-6);
+  EXPECT_EQ(c["features"]["missed_curves"], 0);
+  EXPECT_LE(c["n_tets"].get<int>(), 200000);
+}
+
+TEST_F(EdgedTriangles, EdgesOffAndCurvedTetsMakeOneSmoothLevelSet) {
+  write_stl("cube.stl", tilted_cube());
+  for (const char* how : {"--edges off", "--order 2"}) {
+    SCOPED_TRACE(how);
+    const Result r = run("run cube.stl -o smooth --fresh --no-report --h .12 " + std::string(how));
+    EXPECT_NE(r.code, 2) << r.err;
+    EXPECT_TRUE(fs::exists(folder / "smooth/2-level-set/level_set.vti"));
+    EXPECT_FALSE(certificate_of("smooth").contains("features"));
+  }
+}
+
+TEST_F(EdgedTriangles, SmoothTrianglesHaveNoFeatures) {
+  write_stl("torus.stl", test::torus());
+  const Result r = run("run torus.stl -o torus --no-report --h .12");
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_TRUE(fs::exists(folder / "torus/2-level-set/level_set.vti"));
+  EXPECT_FALSE(certificate_of("torus").contains("features"));
+}
+
+/// A block with a groove of 8 degrees, in which there is no room for tets.
+TriangleMesh grooved_block() {
+  const std::vector<std::array<double, 2>> outline = {{.5, .3}, {.45, 1}, {0, 1}, {0, 0}, {1, 0}, {1, 1}, {.55, 1}};
+  const int n = static_cast<int>(outline.size());
+  TriangleMesh mesh;
+  for (const double z : {0., 1.})
+    for (const auto& p : outline) mesh.V.emplace_back(p[0], p[1], z);
+  for (int k = 1; k + 1 < n; ++k) {
+    mesh.F.push_back({0, k + 1, k});
+    mesh.F.push_back({n, n + k, n + k + 1});
+  }
+  for (int k = 0; k < n; ++k) {
+    const int next = (k + 1) % n;
+    mesh.F.push_back({k, next, n + next});
+    mesh.F.push_back({k, n + next, n + k});
+  }
+  return mesh;
+}
+
+TEST_F(EdgedTriangles, AMeshWithEdgesThatFailsIsMadeAgainWithoutThem) {
+  write_stl("block.stl", grooved_block());
+  const Result r = run("run block.stl -o block --no-report --h .12");
+  EXPECT_NE(r.code, 2) << r.err;
+  EXPECT_NE(r.err.find("one smooth level set"), std::string::npos) << r.err;
+  EXPECT_TRUE(fs::exists(folder / "block/2-level-set/level_set.vti"));
+  EXPECT_TRUE(certificate_of("block")["boundary"]["closed_manifold"].get<bool>());
+  // Who asks for edges gets them, and what is wrong with them.
+  const Result asked = run("run block.stl -o asked --no-report --h .12 --edges auto");
+  EXPECT_EQ(asked.code, 6) << asked.out;
+  EXPECT_TRUE(certificate_of("asked").contains("features"));
+}
+
+}  // namespace
+}  // namespace umtet
