@@ -26,8 +26,8 @@ constexpr double kRelax = .5, kRepair = .6;
 
 /// Targets for vertices of patches whose feet are beyond the curves around: between the targets of their neighbours.
 void place_between_neighbours(const std::vector<Triangle>& faces, const FeatureEmbedding& embedded,
-                              const BoundaryStrata& strata, const std::vector<Vec3>& V,
-                              const std::vector<double>& h, std::vector<Vec3>& target) {
+                              const BoundaryStrata& strata, const std::vector<Vec3>& V, const std::vector<double>& h,
+                              std::vector<Vec3>& target) {
   std::vector<std::vector<int>> neighbours(V.size());
   for (const Triangle& f : faces)
     for (int k = 0; k < 3; ++k) neighbours[f[k]].push_back(f[(k + 1) % 3]);  // every edge has two faces, one each way
@@ -240,6 +240,10 @@ PiecewiseMesh fit_piecewise_mesh(const PiecewiseDomain& domain, const Background
   };
   project_onto_strata(smoother, psi, target, params.projection, context);
   made.projected = with_layer();
+  for (int v = 0; v < static_cast<int>(part.layer.V.size()); ++v)
+    part.layer.ball.push_back(part.layer.role[v] == ActiveLayer::Role::Boundary
+                                  ? strata.ball_on_patch(part.layer.stratum[v], part.layer.V[v], part.layer.h_at(v))
+                                  : BallOnPatch{});
   context.report("relax", kRelax);
   smoother.enqueue_all();
   smoother.run(psi, params.smoothing, context);
