@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace umtet {
 namespace {
@@ -14,6 +15,12 @@ constexpr double kFarthest = 2;       // in h, from where the method starts
 constexpr double kLeastSine = 1e-3;   // of the angle between two patches: below it they are parallel
 constexpr double kOnBoundary = 1e-6;  // in h: where psi is larger, a point of a patch is beyond its curves
 constexpr double kKeptFromEnd = .05;  // in h: a curve vertex stays this far from the plane through an end
+
+/// Whether a point of the zero set of a patch is on the boundary, and not beyond the curves of the patch.
+/// @param slope  of the patch there
+bool is_on_boundary(const PiecewiseDomain& domain, const Vec3& x, double slope, double h) {
+  return std::abs(domain.value(x)) <= kOnBoundary * h * slope;
+}
 
 }  // namespace
 
@@ -56,7 +63,18 @@ FreeDirections BoundaryStrata::directions(int stratum, const Vec3& x) const {
   return free;
 }
 
-bool BoundaryStrata::foot(int stratum, const Vec3& x, double h, Vec3& place) const {
+BallOnPatch BoundaryStrata::ball_on_patch(int stratum, const Vec3& x, double h) const {
+  const Stratum& s = strata_[stratum];
+  if (s.dimension != 2 || !s.border) return {x, 0};
+  Vec3 gradient;
+  value(s.patches[0], x, &gradient);
+  if (!is_on_boundary(*domain_, x, gradient.norm(), h)) return {x, 0};
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const auto& curve : *s.border) nearest = std::min(nearest, curve->nearest(x).distance);
+  return {x, nearest / 2};
+}
+
+bool BoundaryStrata::foot(int stratum, const Vec3& x, double h, Vec3& place, const BallOnPatch* ball) const {
   const Stratum& s = strata_[stratum];
   if (s.dimension == 0) {
     place = s.place;
@@ -65,6 +83,7 @@ bool BoundaryStrata::foot(int stratum, const Vec3& x, double h, Vec3& place) con
   Vec3 y = x;
   const int n = s.dimension == 2 ? 1 : 2;
   bool has_arrived = false;
+  double slope = 0;  // of a patch
   if (s.course) {
     y = s.course->nearest(x).point;
     has_arrived = (y - x).squaredNorm() <= kFarthest * kFarthest * h * h;
@@ -77,6 +96,7 @@ bool BoundaryStrata::foot(int stratum, const Vec3& x, double h, Vec3& place) con
       const double f = value(s.patches.empty() ? -1 : s.patches[0], y, &g);
       const double g2 = g.squaredNorm();
       if (!(g2 > 0) || !std::isfinite(f)) return false;
+      slope = std::sqrt(g2);
       step = -f / g2 * g;
       off = step.norm();
     } else {
@@ -102,9 +122,8 @@ bool BoundaryStrata::foot(int stratum, const Vec3& x, double h, Vec3& place) con
   if (!has_arrived) return false;
   if (n == 1 && !s.patches.empty() && domain_->n_patches() > 1) {
     // Beyond its curves the zero set goes on, but not the boundary.
-    Vec3 g;
-    const double psi = domain_->evaluate(y, &g, nullptr);
-    if (!(std::abs(psi) <= kOnBoundary * h * g.norm())) return false;
+    const bool is_known = ball && (y - ball->centre).norm() < ball->radius;
+    if (!is_known && !is_on_boundary(*domain_, y, slope, h)) return false;
   }
   for (const Stratum::End& end : s.ends) {
     const Vec3 d = y - end.place;

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "mesh/core/piecewise_domain.h"
@@ -28,12 +29,20 @@ struct Stratum {
   std::vector<End> ends;      ///< of a curve that is not closed
   /// Of a curve that is known as a polyline: its vertices are on it, and the patches are not evaluated. Null otherwise.
   std::shared_ptr<const Polyline> course = nullptr;
+  /// Of a patch whose curves are known as polylines: they are its border. No value: the border is not known.
+  std::optional<std::vector<std::shared_ptr<const Polyline>>> border = std::nullopt;
 };
 
 /// The free directions of a boundary vertex.
 struct FreeDirections {
   int n = 0;                                                                   ///< columns that are set
   Eigen::Matrix<double, 3, 2> tangents = Eigen::Matrix<double, 3, 2>::Zero();  ///< orthonormal
+};
+
+/// A ball around a point of a patch. The part of the patch inside of the ball is far from the border of the patch.
+struct BallOnPatch {
+  Vec3 centre = Vec3::Zero();
+  double radius = -1;  ///< model units; 0 where nothing is known, negative where nobody has asked
 };
 
 /// The strata of a boundary, and the moves of vertices on them. Thread-safe as far as the domain is.
@@ -53,8 +62,14 @@ class BoundaryStrata {
   /// Newton's method from x to the stratum, with the shortest steps: f_p = 0 for its patches.
   /// @param h     edge length: a step is at most h, and the result is within 1e-10 h of each zero set
   /// @param place receives the point
+  /// @param ball  null, or ball_on_patch() of this stratum: psi is not evaluated where the foot is in the ball
   /// @return whether the method converged within 2 h, at a point of the boundary; on a curve, between its ends
-  bool foot(int stratum, const Vec3& x, double h, Vec3& place) const;
+  bool foot(int stratum, const Vec3& x, double h, Vec3& place, const BallOnPatch* ball = nullptr) const;
+  /// The ball around a point of a patch whose radius is half of the distance to the border of the patch. The zero set
+  /// of the patch passes no border in the ball, so that a foot there is on the boundary, as x is. The radius is 0 where
+  /// x is not on the boundary, the stratum is no patch, or its border is not known.
+  /// @param h  edge length, as that of foot()
+  BallOnPatch ball_on_patch(int stratum, const Vec3& x, double h) const;
   /// Distance of x from the stratum by its equations to first order, or from its place or course, model units.
   double distance(int stratum, const Vec3& x) const;
   /// The value of a patch (-1: of psi as a whole), oriented so that it is negative inside.

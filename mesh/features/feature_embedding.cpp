@@ -487,14 +487,25 @@ std::vector<Stratum> strata_of(const PiecewiseDomain& domain, const FeatureGraph
     }
     strata.push_back(std::move(s));
   }
+  // Other curves come from seeds, and one that has none is not among them: no border is sure.
+  if (!domain.decides_by_signs()) {
+    for (int p = 0; p < domain.n_patches(); ++p) strata[p].border.emplace();
+    for (std::size_t k = 0; k < graph.curves.size(); ++k) {
+      const Stratum& s = strata[static_cast<std::size_t>(domain.n_patches()) + 1 + k];
+      for (const int p : s.patches) {
+        if (!s.course) strata[p].border.reset();
+        if (strata[p].border) strata[p].border->push_back(s.course);
+      }
+    }
+  }
   for (const FeatureCorner& c : graph.corners)
     strata.push_back({.dimension = 0, .patches = c.patches, .place = c.place, .ends = {}});
   return strata;
 }
 
 FeatureEmbedding embed_features(const PiecewiseDomain& domain, const FeatureGraph& graph, const std::vector<Vec3>& V,
-                                const std::vector<Tet>& C, const std::vector<Triangle>& faces, const std::vector<double>& h,
-                                const Context& context) {
+                                const std::vector<Tet>& C, const std::vector<Triangle>& faces,
+                                const std::vector<double>& h, const Context& context) {
   return Embedder(domain, graph, V, C, faces, h)(context);
 }
 

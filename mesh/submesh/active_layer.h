@@ -28,6 +28,7 @@ struct ActiveLayer {
   /// them move on psi = 0.
   const BoundaryStrata* strata = nullptr;
   std::vector<int> stratum;
+  std::vector<BallOnPatch> ball;  ///< per vertex, as BoundaryStrata::foot() takes it; empty: none is known
 
   double h_at(int v) const { return local_h.empty() ? h : local_h[v]; }
 };

@@ -57,7 +57,7 @@ class LayerNorm {
   }
 
   Eigen::Index n_unknowns() const { return 3 * static_cast<Eigen::Index>(free_.size()); }
-  bool has_tets() const { return !tets_.empty(); }
+  std::size_t n_tets() const { return tets_.size(); }
   double least() const { return least_; }  ///< mean ratio at the last finite value()
   std::size_t psi_evaluations() const { return psi_evaluations_; }
 
@@ -188,7 +188,9 @@ class LayerNorm {
     const auto T = f.free.tangents.leftCols(f.free.n);
     const Vec3 along = T * (T.transpose() * d);
     ++psi_evaluations_;
-    if (along.norm() > edge_ || !layer_.strata->foot(stratum, f.from + along, edge_, layer_.V[f.vertex])) return false;
+    const BallOnPatch* ball = layer_.ball.empty() ? nullptr : &layer_.ball[f.vertex];
+    if (along.norm() > edge_) return false;
+    if (!layer_.strata->foot(stratum, f.from + along, edge_, layer_.V[f.vertex], ball)) return false;
     f.free_there = layer_.strata->directions(stratum, layer_.V[f.vertex]);
     if (f.free_there.n != f.free.n) return false;
     const Eigen::Matrix2d M = f.free_there.tangents.transpose() * f.free.tangents;
@@ -234,13 +236,14 @@ struct Best {
 };
 
 /// Steps of L-BFGS until they gain little, or reach the goal.
-void minimise(LayerNorm& norm, int log2_power, double goal, const ActiveLayer& layer, Best& best, int& evaluations) {
+/// @return phi_p at the end, up to ln kMeanRatioFactor; -infinity where it falls on, +infinity if it was never finite
+double minimise(LayerNorm& norm, int log2_power, double goal, const ActiveLayer& layer, Best& best, int& evaluations) {
   norm.begin_here();
   VectorXd u = VectorXd::Zero(norm.n_unknowns()), g(u.size()), next_u(u.size()), next_g(u.size()), step(u.size());
   detail::LbfgsDirection direction(u.size());
   double phi = norm.value(u, log2_power);
   ++evaluations;
-  if (phi == kInfinity) return;
+  if (phi == kInfinity) return phi;
   best.meet(norm.least(), layer);
   norm.gradient(g);
   for (int k = 0; k < kMostSteps; ++k) {
@@ -252,7 +255,7 @@ void minimise(LayerNorm& norm, int log2_power, double goal, const ActiveLayer& l
       step *= kLongestMove / longest;
     }
     const double slope = step.dot(g);
-    if (!(slope < 0)) return;
+    if (!(slope < 0)) return phi;
     double next = kInfinity, share = 1;
     for (int halving = 0; halving <= kMostHalvings; ++halving, share /= 2) {
       next_u = u + share * step;
@@ -262,27 +265,31 @@ void minimise(LayerNorm& norm, int log2_power, double goal, const ActiveLayer& l
     }
     if (!(next < phi)) {
       norm.value(u, log2_power);  // puts the vertices back
-      return;
+      return phi;
     }
     norm.gradient(next_g);
     direction.add(next_u - u, next_g - g);
     u.swap(next_u);
     g.swap(next_g);
     best.meet(norm.least(), layer);
-    if (best.least >= goal || phi - next < kLeastGain) return;
+    if (best.least >= goal || phi - next < kLeastGain) return next;
     phi = next;
   }
+  return -kInfinity;  // not at a minimum yet
 }
 
 }  // namespace
 
-AllVertexReport smooth_all_vertices(ActiveLayer& layer, ImplicitFunctionRef psi, double goal) {
+AllVertexReport smooth_all_vertices(ActiveLayer& layer, ImplicitFunctionRef psi, double goal, double needed) {
   AllVertexReport report;
   LayerNorm norm(layer, psi);
-  if (!norm.has_tets()) return report;
+  if (norm.n_tets() == 0) return report;
   Best best{0, layer.V};
   for (const int log2_power : kLog2Powers) {
-    if (best.least < goal) minimise(norm, log2_power, goal, layer, best, report.evaluations);
+    if (best.least >= goal) break;
+    const double phi = minimise(norm, log2_power, goal, layer, best, report.evaluations);
+    const double spread = std::log(static_cast<double>(norm.n_tets())) / std::ldexp(3., log2_power);
+    if (phi < kInfinity && kMeanRatioFactor * std::exp(spread - phi) < needed) break;
   }
   layer.V = std::move(best.places);
   report.least = best.least;

@@ -28,8 +28,10 @@ struct AllVertexReport {
 ///               positions with the greatest least Q that were found. It stays unchanged if a tet is not positive or a
 ///               Boundary vertex does not reach psi = 0
 /// @param goal   mean ratio at which the iteration stops, at the first positions that reach it
+/// @param needed mean ratio: greater p are not tried where no positions near a minimum of phi_p reach this, by
+///               min Q <= n^(1/p) exp(-phi_p)
 /// Cost: 40 ns per tet and evaluation, with about 100 evaluations (`mesh_bench --benchmark_filter=all_vertices`). Runs
 /// in one thread.
-AllVertexReport smooth_all_vertices(ActiveLayer& layer, ImplicitFunctionRef psi, double goal);
+AllVertexReport smooth_all_vertices(ActiveLayer& layer, ImplicitFunctionRef psi, double goal, double needed = 0);
 
 }  // namespace umtet

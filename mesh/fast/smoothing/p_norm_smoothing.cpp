@@ -120,10 +120,11 @@ class VertexSolver {
     const detail::Displacement best = detail::best_displacement(ring, bar, h, along);
     if (!best.passed(ring, bar)) return;
     Vec3 y = over_relaxed(ring, bar, best.y, kBoundaryFactor);
+    const BallOnPatch* ball = layer_.ball.empty() ? nullptr : &layer_.ball[i];
     for (int trial = 0; trial < kSlides && (trial == 0 || bar.passed(ring, y)); ++trial, y *= .5) {
       Vec3 foot;
       ++result.psi_evaluations;
-      if (!layer_.strata->foot(layer_.stratum[i], x + y, h, foot) || !bar.passed(ring, foot - x)) continue;
+      if (!layer_.strata->foot(layer_.stratum[i], x + y, h, foot, ball) || !bar.passed(ring, foot - x)) continue;
       result.moved = true;
       result.place = foot;
       return;

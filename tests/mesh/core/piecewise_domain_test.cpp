@@ -4,7 +4,9 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
+#include <vector>
 
 #include "mesh/core/boundary_strata.h"
 #include "tests/support/domains.h"
@@ -86,6 +88,43 @@ TEST_F(Strata, AFootBeyondTheCurvesOfAPatchIsRefused) {
   // The lower ball of the lens ends at z = 0; its zero set goes on.
   const Vec3 beyond(std::sqrt(1 - .36), 0, .5 - .6 + .2);
   EXPECT_FALSE(strata.foot(0, beyond, .2, foot));
+}
+
+TEST(StrataWithBorders, PsiIsNotAskedInABallFarFromTheBorder) {
+  // The wedge x < 0, z < 0. Its faces are the patches, and the y axis is the curve between them.
+  const auto plane = [](const Vec3& n) {
+    return [n](const Vec3& x, Vec3* g, Mat3* H) {
+      if (g) *g = n;
+      if (H) H->setZero();
+      return n.dot(x);
+    };
+  };
+  int n_asked = 0;
+  const PiecewiseDomain wedge =
+      PiecewiseDomain::of_patches({plane({1, 0, 0}), plane({0, 0, 1})}, [&n_asked](const Vec3& x) {
+        ++n_asked;
+        return x.x() > x.z() ? ActivePatch{x.x(), 0} : ActivePatch{x.z(), 1};
+      });
+  const auto axis = std::make_shared<const Polyline>(std::vector<Vec3>{{0, -5, 0}, {0, 5, 0}});
+  const Stratum top{.dimension = 2, .patches = {1}, .ends = {}, .border = {{axis}}},
+      unknown{.dimension = 2, .patches = {1}, .ends = {}},
+      curve{.dimension = 1, .patches = {0, 1}, .ends = {}, .course = axis};
+  const BoundaryStrata strata(wedge, {top, unknown, curve});
+
+  const BallOnPatch ball = strata.ball_on_patch(0, {-.8, .1, 0}, .2);
+  EXPECT_DOUBLE_EQ(ball.radius, .4);
+  EXPECT_EQ(n_asked, 1);
+  Vec3 foot;
+  EXPECT_TRUE(strata.foot(0, {-.5, .1, .1}, .2, foot, &ball));
+  EXPECT_EQ(foot, Vec3(-.5, .1, 0));
+  EXPECT_EQ(n_asked, 1) << "inside of the ball";
+  EXPECT_TRUE(strata.foot(0, {-.3, .1, .1}, .2, foot, &ball));
+  EXPECT_EQ(n_asked, 2) << "outside of the ball";
+  EXPECT_FALSE(strata.foot(0, {.1, .1, .1}, .2, foot, &ball)) << "beyond the curve";
+
+  EXPECT_EQ(strata.ball_on_patch(0, {.8, .1, 0}, .2).radius, 0) << "not on the boundary";
+  EXPECT_EQ(strata.ball_on_patch(1, {-.8, .1, 0}, .2).radius, 0) << "no border is known";
+  EXPECT_EQ(strata.ball_on_patch(2, {0, .1, 0}, .2).radius, 0) << "on a curve";
 }
 
 TEST_F(Strata, FreeDirectionsAreTangents) {

@@ -63,7 +63,8 @@ bool PatchTrials::operator()(const FlipCandidate& c, bool is_last, FlipPatch& pa
   }
   patch = patch_of(after);
   if (c.operation != Operation::SmoothAll) shape(patch);
-  if (c.operation == Operation::SmoothAll || is_last) shape_at_once(patch);
+  if (c.operation == Operation::SmoothAll || is_last)
+    shape_at_once(patch, mesh_.stratified ? old.least - kLostQuality : 0);
   return is_better(measured(patch), old, is_last);
 }
 
@@ -149,8 +150,9 @@ void PatchTrials::shape(FlipPatch& patch) {
   }
 }
 
-/// The same where single vertices gain nothing.
-void PatchTrials::shape_at_once(FlipPatch& patch) {
+/// The same where single vertices gain nothing. It ends early where the least Q of the patch will not be the needed
+/// one.
+void PatchTrials::shape_at_once(FlipPatch& patch, double needed) {
   ActiveLayer layer;
   layer.V = patch.V;
   layer.C = patch.C;
@@ -160,10 +162,12 @@ void PatchTrials::shape_at_once(FlipPatch& patch) {
                          : is_on_boundary ? ActiveLayer::Role::Boundary
                                           : ActiveLayer::Role::Inner);
     layer.local_h.push_back(edge_[patch.vertices[v]]);
-    if (mesh_.stratified) layer.stratum.push_back(mesh_.stratified->of[patch.vertices[v]]);
+    if (!mesh_.stratified) continue;
+    layer.stratum.push_back(mesh_.stratified->of[patch.vertices[v]]);
+    layer.ball.push_back(patch.moves[v] && is_on_boundary ? ball_of(patch.vertices[v]) : BallOnPatch{});
   }
   if (mesh_.stratified) layer.strata = mesh_.stratified->strata;
-  report_.psi_evaluations += smooth_all_vertices(layer, psi_, params_.target).psi_evaluations;
+  report_.psi_evaluations += smooth_all_vertices(layer, psi_, params_.target, needed).psi_evaluations;
   patch.V = std::move(layer.V);
 }
 
@@ -196,6 +200,16 @@ bool PatchTrials::solve(FlipPatch& patch, std::size_t v, const OneRing& ring) {
   return true;
 }
 
+/// A ball that contains the vertex in the mesh, if there is one.
+[[gnu::noinline]] const BallOnPatch& PatchTrials::ball_of(int vertex) {
+  if (ball_.empty()) ball_.resize(mesh_.V.size());
+  BallOnPatch& ball = ball_[vertex];
+  const Vec3& x = mesh_.V[vertex];
+  if (ball.radius < 0 || (ball.radius > 0 && (x - ball.centre).norm() > ball.radius / 2))
+    ball = mesh_.stratified->strata->ball_on_patch(mesh_.stratified->of[vertex], x, edge_[vertex]);
+  return ball;
+}
+
 [[gnu::noinline]] bool PatchTrials::solve_on_stratum(int vertex, const OneRing& ring, const Bar& bar, Vec3& x) {
   const BoundaryStrata& strata = *mesh_.stratified->strata;
   const int stratum = mesh_.stratified->of[vertex];
@@ -206,7 +220,7 @@ bool PatchTrials::solve(FlipPatch& patch, std::size_t v, const OneRing& ring) {
   const Displacement best =
       best_displacement(ring, bar, h, {.plane = true, .tangents = free.tangents, .line = free.n == 1});
   Vec3 foot;
-  if (!best.passed(ring, bar) || !strata.foot(stratum, x + best.y, h, foot)) return false;
+  if (!best.passed(ring, bar) || !strata.foot(stratum, x + best.y, h, foot, &ball_of(vertex))) return false;
   ++report_.psi_evaluations;
   if (!bar.passed(ring, foot - x)) return false;
   x = foot;

@@ -67,15 +67,17 @@ class PatchTrials {
   bool is_better(const PatchMeasure& made, const PatchMeasure& old, bool is_last) const;
   FlipPatch patch_of(const std::vector<Tet>& tets);
   void shape(FlipPatch& patch);
-  void shape_at_once(FlipPatch& patch);
+  void shape_at_once(FlipPatch& patch, double needed);
   bool solve(FlipPatch& patch, std::size_t v, const OneRing& ring);
   bool solve_on_stratum(int vertex, const OneRing& ring, const Bar& bar, Vec3& x);
+  const BallOnPatch& ball_of(int vertex);
   PatchMeasure measured(const FlipPatch& patch);
   void measure_faces(const FlipPatch& patch, PatchMeasure& m);
 
   const ChangingMesh& mesh_;
-  std::vector<int> local_;    ///< per vertex, while a patch is made
-  std::vector<double> edge_;  ///< mean length at each vertex, at first
+  std::vector<int> local_;         ///< per vertex, while a patch is made
+  std::vector<double> edge_;       ///< mean length at each vertex, at first
+  std::vector<BallOnPatch> ball_;  ///< per vertex, with strata: around a place where it has been
   ImplicitFunctionRef psi_;
   const LocalFlipParams& params_;
   LocalFlipReport& report_;

@@ -42,8 +42,8 @@ TEST(AllVertexSmoothing, RaisesWhatOneVertexAtATimeCannot) {
   }
 }
 
-TEST(AllVertexSmoothing, OneVertexComesToTheMaxMinOfItsRing) {
-  // A regular octahedron's eight tets around its centre are alike: no other place is as good.
+/// The eight tets of a regular octahedron around a vertex that is not yet at its centre.
+ActiveLayer octahedron() {
   ActiveLayer layer;
   layer.V = {{.2, -.1, .15}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   for (const int x : {1, 2}) {
@@ -58,8 +58,25 @@ TEST(AllVertexSmoothing, OneVertexComesToTheMaxMinOfItsRing) {
   layer.role[0] = Role::Inner;
   layer.h = 1;
   testing::complete(layer);
+  return layer;
+}
+
+TEST(AllVertexSmoothing, OneVertexComesToTheMaxMinOfItsRing) {
+  // At the centre the eight tets are alike: no other place is as good.
+  ActiveLayer layer = octahedron();
   smooth_all_vertices(layer, testing::sphere(), kNoGoal);
   EXPECT_LT(layer.V[0].norm(), .005);
+}
+
+TEST(AllVertexSmoothing, EndsWhereTheNeededQualityIsOutOfReach) {
+  ActiveLayer free = octahedron(), low = free, high = free;
+  const AllVertexReport all = smooth_all_vertices(free, testing::sphere(), kNoGoal);
+  // The bound of the first p is above what is reached by a factor of 8^(1/96) = 1.022.
+  EXPECT_EQ(smooth_all_vertices(low, testing::sphere(), kNoGoal, 1.01 * all.least).evaluations, all.evaluations);
+  EXPECT_EQ(low.V, free.V);
+  const AllVertexReport some = smooth_all_vertices(high, testing::sphere(), kNoGoal, 1.03 * all.least);
+  EXPECT_LT(some.evaluations, all.evaluations);
+  EXPECT_NEAR(some.least, all.least, .01);
 }
 
 TEST(AllVertexSmoothing, FixedVerticesStay) {
