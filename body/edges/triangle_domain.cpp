@@ -31,7 +31,7 @@ constexpr int kPointsAnEdge = 4;
 // Cosine of the least angle between the normals of two surfaces that define their curve: 15 degrees.
 constexpr double kMostCos = .966;
 constexpr int kMostNewton = 20;
-constexpr double kConverged = 1e-14;  // of the coordinates
+constexpr double kConverged = 1e-13;  // of the coordinates
 constexpr int kParts = 3;  // of a curve that returns to its corner
 
 /// A sharp edge and what is on its sides.
@@ -49,6 +49,7 @@ class Surface {
     for (std::size_t f = 0; f < patch_.size(); ++f) patch_[f] = static_cast<int>(edges.patch[f]);
     for (const SharpCurve& c : edges.curves)
       for (std::size_t k = 0; k + 1 < c.vertices.size(); ++k) sharp_[edge_of(c.vertices[k], c.vertices[k + 1])] = {};
+    farthest_ = 2 * kFacetTolerance * diagonal_of(mesh);
     side_.assign(mesh.F.size(), {});
     at_.resize(mesh.V.size());
     measure_edges();
@@ -62,7 +63,8 @@ class Surface {
   const SharpSide& side(int a, int b) const { return sharp_.at(edge_of(a, b)); }
   const std::vector<int>& patches_at(int vertex) const { return at_[first_[vertex]].patches; }
   ActivePatch psi(const Vec3& x) const;
-  /// Moves x to the common zero of two exact patches, by the shortest steps. \return whether there is one near x
+  /// Moves x to the common zero of two patches, by the shortest steps. \return whether there is one near x, and one of the
+  /// patches is exact
   bool correct(const std::array<int, 2>& pair, Vec3& x) const;
 
  private:
@@ -87,6 +89,7 @@ class Surface {
   std::vector<PatchFunction> patches_;
   std::vector<double> curvature_;       ///< per patch, as TriangleDomain::curvature
   std::vector<std::uint8_t> is_exact_;  ///< per patch: a plane, sphere, cylinder or cone
+  double farthest_ = 0;  ///< of points of the file from the common zeros of exact patches, model units
   bool is_closed_ = true;
 };
 
@@ -183,16 +186,18 @@ ActivePatch Surface::psi(const Vec3& x) const {
 
 bool Surface::correct(const std::array<int, 2>& pair, Vec3& x) const {
   const auto [p, q] = pair;
-  if (p == q || !is_exact_[p] || !is_exact_[q]) return false;
+  if (p == q || (!is_exact_[p] && !is_exact_[q])) return false;
+  const Vec3 start = x;
   for (int k = 0; k < kMostNewton; ++k) {
     Vec3 a, b;
     const double f = patches_[p](x, &a, nullptr), g = patches_[q](x, &b, nullptr), c = a.dot(b), det = 1 - c * c;
     if (!(std::abs(c) < kMostCos)) return false;
     const Vec3 step = (c * g - f) / det * a + (c * f - g) / det * b;
     x += step;
-    if (step.norm() <= kConverged * x.norm()) return true;
+    if ((x - start).norm() > farthest_) return false;
+    if (step.norm() <= kConverged * (x.norm() + farthest_)) return true;
   }
-  return true;
+  return false;
 }
 
 /// A curve of the file with its corners.
@@ -239,7 +244,7 @@ class GraphMaker {
     graph_.curves.push_back(std::move(curve));
   }
 
-  /// The common zero set of two exact patches: the points of the file, which are on chords, and more between them.
+  /// The common zero set of two patches, if one is exact: the points of the file, which are on chords, and more between them.
   void refine(FeatureCurve& curve) const {
     FeatureCurve fine = curve;
     fine.is_given = false;

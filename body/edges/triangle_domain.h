@@ -27,8 +27,8 @@ struct TriangleDomain {
 /// is a vertex of a curve, psi is the distance from it, with the sign of the angle-weighted normal of all triangles
 /// around [Baerentzen2005].
 ///
-/// The curves are those of `edges`, as polylines; between two surfaces that are no triangles and meet at 15 degrees or
-/// more, they are their common zero sets. Curves that return to a corner are divided in three.
+/// The curves are those of `edges`, as polylines; where two patches meet at 15 degrees or more, and one of them is no
+/// triangles, they are the common zero sets. Curves that return to a corner are divided in three.
 /// @param mesh   triangles that face outward
 /// @param edges  find_sharp_edges() of these triangles
 /// @return none if the surface is no closed manifold: each edge has two triangles, in opposite directions

@@ -186,8 +186,8 @@ PiecewiseMeshParams::PiecewiseMeshParams() {
   // Tets between .8 and .81 are left: with them, and with 20 failures instead of 3, the flips of a thin plate of 81,000
   // tets take 103 s instead of 25, and its least Q is .768 instead of .760 (`umtet run plate.stl --h 1`, 100 x 60 x 1).
   local_flips = {.target = .81,
-                 .mend_below = .8,
-                 .mend_below_at_last = .8,
+                 .mend_below = .785,
+                 .mend_below_at_last = .785,
                  .shortest = .45,
                  .longest = 2.3,
                  .most_candidates = 6,
