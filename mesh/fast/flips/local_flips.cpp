@@ -73,7 +73,8 @@ class LocalFlips {
     const auto n_on_boundary =
         std::count_if(t.begin(), t.end(), [&](int v) { return mesh_.stratum[v] == Stratum::Boundary; });
     if (n_on_boundary >= 3) q = std::min(q, detail::quality_of_cosine(params_.target, least_cosine(t)));
-    if (q < params_.target) queue_.emplace(q, tet, version_[tet]);
+    if (q < std::min(params_.target, is_last_ ? params_.mend_below_at_last : params_.mend_below))
+      queue_.emplace(q, tet, version_[tet]);
   }
 
   /// Of the faces of a tet that lie on the boundary.
@@ -106,8 +107,8 @@ class LocalFlips {
 
   void mend(int tet) {
     const Tet corners = mesh_.C[tet];
-    if (std::all_of(corners.begin(), corners.end(), [&](int v) { return failures_[v] >= params_.most_failures; }))
-      return;
+    const int most = is_last_ ? params_.most_failures_at_last : params_.most_failures;
+    if (std::all_of(corners.begin(), corners.end(), [&](int v) { return failures_[v] >= most; })) return;
     if (was_mended(tet)) return;
     for (const int v : corners) failures_[v] = static_cast<std::uint8_t>(std::min(255, failures_[v] + 1));
   }
@@ -197,6 +198,10 @@ std::vector<std::string> problems(const LocalFlipParams& params) {
   if (!(params.promising >= 0)) p.emplace_back("promising must be >= 0");
   if (!(params.promising_at_last >= 0)) p.emplace_back("promising_at_last must be >= 0");
   if (params.most_failures < 1 || params.most_failures > 255) p.emplace_back("most_failures must be 1 to 255");
+  if (params.most_failures_at_last < 1 || params.most_failures_at_last > 255)
+    p.emplace_back("most_failures_at_last must be 1 to 255");
+  if (!(params.mend_below > 0)) p.emplace_back("mend_below must be > 0");
+  if (!(params.mend_below_at_last > 0)) p.emplace_back("mend_below_at_last must be > 0");
   if (params.most_candidates < 0) p.emplace_back("most_candidates must be >= 0");
   return p;
 }

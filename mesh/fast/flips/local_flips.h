@@ -15,6 +15,9 @@ namespace umtet {
 /// Parameters of flip_locally().
 struct LocalFlipParams {
   double target = .78;  ///< mean ratio: tets below it are mended; in (0, 1)
+  /// Tets are mended only where their mean ratio is also below this one, and then up to the target; > 0.
+  double mend_below = 1;
+  double mend_below_at_last = 1;  ///< the same in the last pass
   /// Range of edge lengths, relative to the mean edge length around their ends in the mesh that is given. Edges that
   /// are outside of it already may stay so.
   double shortest = .5, longest = 1.7;
@@ -24,9 +27,10 @@ struct LocalFlipParams {
   double promising = .6;
   double promising_at_last = .4;  ///< the same in the last pass
   /// Where a body is thinner than its tets, no operation helps, and each operation that is kept nearby would have all
-  /// of them tried again. A tet is left as it is once this many trials at each of its vertices have not helped, in each
-  /// pass; 1 to 255.
+  /// of them tried again. A tet is left as it is once this many trials at each of its vertices have not helped; 1 to
+  /// 255.
   int most_failures = 6;
+  int most_failures_at_last = 6;  ///< the same in the last pass, which counts anew
 };
 
 /// Every broken constraint, not just the first.

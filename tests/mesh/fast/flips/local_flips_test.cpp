@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "mesh/core/tet_quality.h"
 #include "mesh/fast/flips/flipped_submesh.h"
@@ -117,6 +118,30 @@ TEST(LocalFlips, LeaveAMeshAloneThatReachesTheTarget) {
   EXPECT_EQ(report.tries, 0U);
 }
 
+TEST(LocalFlips, MendOnlyTetsBelowTheBarOfEachPass) {
+  const GradedBall made;
+  const auto flipped = [&](double first, double last) {
+    LocalFlipReport report;
+    LocalFlipParams params;
+    params.mend_below = first;
+    params.mend_below_at_last = last;
+    const FlippedMesh mesh =
+        flip_locally(made.result.final, made.result.submesh.mesh.C, made.strata(), made.ball, params, report);
+    return std::pair(report.tries, least_quality(mesh.V, mesh.C));
+  };
+  const double least = least_quality(made.result.final, made.result.submesh.mesh.C),
+               bar = (least + LocalFlipParams().target) / 2;
+  EXPECT_EQ(flipped(.9 * least, .9 * least).first, 0U);
+  const auto [few, least_of_few] = flipped(bar, bar);
+  const auto [many, least_of_many] = flipped(1, 1);
+  EXPECT_GT(few, 0U);
+  EXPECT_LT(few, many);
+  EXPECT_GE(least_of_few, bar);
+  EXPECT_GE(least_of_many, LocalFlipParams().target);
+  EXPECT_GT(flipped(.9 * least, bar).first, 0U) << "the last pass has a bar of its own";
+  EXPECT_GT(flipped(bar, .9 * least).first, 0U) << "and so has the first";
+}
+
 TEST(LocalFlips, FixedVerticesStay) {
   const GradedBall made;
   std::vector<VertexStratum> strata = made.strata();
@@ -159,6 +184,10 @@ TEST(LocalFlips, AnEdgeBetweenFlatTetsIsRemoved) {
 
 TEST(LocalFlips, WrongParametersAreNamed) {
   EXPECT_EQ(problems(LocalFlipParams{.target = 1, .shortest = 2, .longest = .5, .most_candidates = -1}).size(), 4U);
+  LocalFlipParams wrong;
+  wrong.mend_below = wrong.mend_below_at_last = 0;
+  wrong.most_failures = wrong.most_failures_at_last = 0;
+  EXPECT_EQ(problems(wrong).size(), 4U);
   LocalFlipReport report;
   EXPECT_THROW(flip_locally({}, {}, {}, testing::sphere(), {.target = 0}, report), std::invalid_argument);
   EXPECT_THROW(flip_locally({Vec3::Zero()}, {}, {}, testing::sphere(), {}, report), std::invalid_argument);
