@@ -181,10 +181,9 @@ PiecewiseMeshParams::PiecewiseMeshParams() {
   // The farthest shift that classification accepts: with .1 the least Q of a wedge of 45 degrees is .71 instead of .78.
   classification.shift = .15;
   // Edges of 90 degrees and less are left with one tet only if its neighbours may be long: with edges up to 1.6 instead
-  // of 2.3 lengths the least Q of a cube is .68 instead of .80. A target of .81 leaves the worst tets .01 higher than
-  // one of .8, and the lower bar and the many trials raise a wedge of 60 degrees from .75 to .78.
-  // Tets between .8 and .81 are left: with them, and with 20 failures instead of 3, the flips of a thin plate of 81,000
-  // tets take 103 s instead of 25, and its least Q is .768 instead of .760 (`umtet run plate.stl --h 1`, 100 x 60 x 1).
+  // of 2.3 lengths the least Q of a cube is .68 instead of .80. The lower promise raises a wedge of 60 degrees. All
+  // tets below the target mended, and 20 failures, take 2.5 times the time on joint.obj and eight times on a plate as
+  // thick as an edge, for a least Q that is .02 higher on a cube (`umtet run cube.obj`).
   local_flips = {.target = .81,
                  .mend_below = .785,
                  .mend_below_at_last = .785,
@@ -192,9 +191,7 @@ PiecewiseMeshParams::PiecewiseMeshParams() {
                  .longest = 2.3,
                  .most_candidates = 6,
                  .promising = .45,
-                 .promising_at_last = .3,
-                 .most_failures = 3,
-                 .most_failures_at_last = 3};
+                 .promising_at_last = .3};
 }
 
 PiecewiseMesh make_piecewise_mesh(const PiecewiseDomain& domain, const BackgroundMesh& background,

@@ -129,14 +129,17 @@ TEST(LocalFlips, MendOnlyTetsBelowTheBarOfEachPass) {
         flip_locally(made.result.final, made.result.submesh.mesh.C, made.strata(), made.ball, params, report);
     return std::pair(report.tries, least_quality(mesh.V, mesh.C));
   };
-  EXPECT_EQ(flipped(.3, .3).first, 0U);
-  const auto [few, least_of_few] = flipped(.7, .7);
+  const double least = least_quality(made.result.final, made.result.submesh.mesh.C),
+               bar = (least + LocalFlipParams().target) / 2;
+  EXPECT_EQ(flipped(.9 * least, .9 * least).first, 0U);
+  const auto [few, least_of_few] = flipped(bar, bar);
   const auto [many, least_of_many] = flipped(1, 1);
   EXPECT_GT(few, 0U);
   EXPECT_LT(few, many);
-  EXPECT_GE(least_of_few, .7);
+  EXPECT_GE(least_of_few, bar);
   EXPECT_GE(least_of_many, LocalFlipParams().target);
-  EXPECT_GE(flipped(.3, .7).second, .7) << "the last pass alone";
+  EXPECT_GT(flipped(.9 * least, bar).first, 0U) << "the last pass has a bar of its own";
+  EXPECT_GT(flipped(bar, .9 * least).first, 0U) << "and so has the first";
 }
 
 TEST(LocalFlips, FixedVerticesStay) {
