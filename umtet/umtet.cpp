@@ -3,6 +3,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "body/edges/edged_body.h"
+#include "body/errors.h"
 #include "body/given_triangles.h"
 #include "body/option_names.h"
 #include "body/piecewise_body.h"
@@ -12,6 +14,7 @@
 #include "body/scan/sample_merging.h"
 #include "body/search/best_mesh.h"
 #include "body/search/mesh_maker.h"
+#include "body/sizing/background_choice.h"
 #include "common/formatted.h"
 #include "reconstruct/cloud/survey/cloud_survey.h"
 #include "reconstruct/cloud/transfer/label_votes.h"
@@ -70,9 +73,7 @@ Mesh mesh_of(Domain domain, const Options& options) {
 }
 
 /// @param of_triangles  what the samples are of; null: a scan
-FittedBody fit(CloudFile file, const char* name, const TriangleReport* of_triangles, const Options& options) {
-  options.context.report("prepare", 0);
-  PreparedCloud prepared = prepare_merged(std::move(file), name, options.body);
+FittedBody fit(PreparedCloud prepared, const TriangleReport* of_triangles, const Options& options) {
   std::optional<ExactSamples> exact;
   if (of_triangles && prepared.report.normals.given) exact = ExactSamples{of_triangles->least_spacing};
   LevelSetFit fit =
@@ -133,27 +134,79 @@ void require_triangles(const TriangleMesh& mesh) {
     if (!x.allFinite()) throw std::invalid_argument("triangles: a coordinate is not finite");
 }
 
-}  // namespace
-
-FittedBody fit_body(OrientedPointCloud cloud, const Options& options) {
-  return fit(given_cloud(std::move(cloud)), "points", nullptr, options);
+PreparedCloud prepare(CloudFile file, const char* name, const Options& options) {
+  options.context.report("prepare", 0);
+  return prepare_merged(std::move(file), name, options.body);
 }
 
-FittedBody fit_body(TriangleMesh triangles, const Options& options) {
+/// Triangles that bound a body, and their samples.
+struct SampledTriangles {
+  PreparedCloud samples;
+  TriangleMesh boundary;
+  TriangleReport report;
+};
+
+SampledTriangles sampled(TriangleMesh triangles, const Options& options) {
   require_triangles(triangles);
   options.context.report("sample", 0);
   BodySamples samples =
       sample_body(std::move(triangles), sample_params(options), {.cancelled = options.context.cancelled});
   CloudFile file = sampled_cloud(std::move(samples.cloud), samples.report, options);
-  FittedBody body = fit(std::move(file), "triangles", &samples.report, options);
-  body.boundary = std::move(samples.boundary);
-  body.triangles = std::move(samples.report);
+  return {prepare(std::move(file), "triangles", options), std::move(samples.boundary), std::move(samples.report)};
+}
+
+FittedBody fit(SampledTriangles triangles, const Options& options) {
+  FittedBody body = fit(std::move(triangles.samples), &triangles.report, options);
+  body.boundary = std::move(triangles.boundary);
+  body.triangles = std::move(triangles.report);
   return body;
+}
+
+/// Meshes of bodies with sharp edges have flat tets of the fast mode, without walls, in a background of the library.
+bool may_keep_edges(const Options& options) {
+  const MeshOptions& mesh = options.body.mesh;
+  return options.body.fit.edges == SharpEdgeUse::Auto && options.body.scan.normals != NormalsOf::Estimate &&
+         mesh.order == 1 && mesh.mode == UmMode::Fast && !mesh.box_walls && !has_own_background(options.body);
+}
+
+/// The mesh with the sharp edges of the triangles; none if there are no such edges, or if it is not right.
+std::optional<Mesh> mesh_with_edges(const SampledTriangles& triangles, const Options& options) {
+  if (!may_keep_edges(options)) return std::nullopt;
+  const Vec3 shift = middle_of(triangles.boundary);
+  auto given = given_triangles(triangles.boundary, shift, options.body.fit.feature_angle);
+  auto body = edged_body(*given);
+  if (!body) return std::nullopt;
+  Domain domain = edged_domain(std::move(given), std::move(body), triangles.samples.cloud, shift, options.box,
+                               options.body.mesh.h);
+  LevelSetReport report;
+  report.fit.n_points = triangles.report.n_samples;
+  domain.cloud_spacing = report.fit.cloud_spacing = triangles.report.spacing;
+  domain.facts = input_facts(triangles.samples.report, report);
+  domain.notices = triangles.samples.report.notices;
+  try {
+    Mesh mesh = mesh_of(std::move(domain), options);
+    const Verdict& v = mesh.verdict;
+    if (v.passes() || (v.is_valid && v.fits_psi && v.fits_input)) return mesh;
+  } catch (const MeshingImpossible&) {  // one smooth level set may do
+  } catch (const ResourceLimit&) {
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+FittedBody fit_body(OrientedPointCloud cloud, const Options& options) {
+  return fit(prepare(given_cloud(std::move(cloud)), "points", options), nullptr, options);
+}
+
+FittedBody fit_body(TriangleMesh triangles, const Options& options) {
+  return fit(sampled(std::move(triangles), options), options);
 }
 
 Mesh mesh_body(const FittedBody& body, const Options& options) {
   Domain domain = fitted_domain(body.psi, body.cloud, body.report, options.box);
-  if (body.boundary) domain.triangles = given_triangles(*body.boundary, domain.shift);
+  if (body.boundary)
+    domain.triangles = given_triangles(*body.boundary, domain.shift, options.body.fit.feature_angle);
   domain.facts = body.facts;
   domain.notices = body.notices;
   return mesh_of(std::move(domain), options);
@@ -164,7 +217,9 @@ Mesh mesh_body(OrientedPointCloud cloud, const Options& options) {
 }
 
 Mesh mesh_body(TriangleMesh triangles, const Options& options) {
-  return mesh_body(fit_body(std::move(triangles), options), options);
+  SampledTriangles body = sampled(std::move(triangles), options);
+  if (std::optional<Mesh> mesh = mesh_with_edges(body, options)) return std::move(*mesh);
+  return mesh_body(fit(std::move(body), options), options);
 }
 
 Mesh mesh_body(const PiecewiseDomain& body, const Options& options) {

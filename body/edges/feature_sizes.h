@@ -30,7 +30,7 @@ struct FeatureSizeParams {
 /// itself at a neck, l the length of a curve, or a seventh of the length of a closed one, and k the curvature.
 ///
 /// Where the curvature of a patch is not known, k is the mean over a cube of some samples of the surface: the sum of
-/// turn times length over the edges in it, divided by its area [Cohen-Steiner2003]. Smaller turns are texture.
+/// turn times length over the edges in it, divided by its area [CohenSteiner2003]. Smaller turns are texture.
 /// @param edges      sharp edges of the mesh, and `graph` its curves
 /// @param curvature  largest curvature of each patch; -1 if it is not known
 /// \pre the mesh is closed, and triangles face outward. The result does not depend on threads. \throw Cancelled

@@ -11,6 +11,7 @@
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
+#include "pipeline/domain/edged_case.h"
 #include "pipeline/reports/stage_reports.h"
 #include "pipeline/stages/stages.h"
 #include "reconstruct/io/level_set_io.h"
@@ -60,6 +61,9 @@ Measures cloud_difference(const CasePaths& a, const CasePaths& b) {
 
 Measures level_set_difference(const CasePaths& a, const CasePaths& b, const StageRecord& record_a,
                               const StageRecord& record_b) {
+  // A level set and functions of patches have nothing to compare at samples that lie on both.
+  if (has_edges(record_a) || has_edges(record_b))
+    return {{"keeps_edges_a", has_edges(record_a)}, {"keeps_edges_b", has_edges(record_b)}};
   const LevelSet psi_a = read_level_set(a.level_set()), psi_b = read_level_set(b.level_set());
   const Vec3 shift_a = level_set_report(record_a).shift, shift_b = level_set_report(record_b).shift;
   const std::vector<Vec3> x = read_point_cloud(a.cloud()).cloud.points;

@@ -6,16 +6,17 @@
 #include <cmath>
 #include <numeric>
 
+#include "body/edges/edged_body.h"
 #include "body/scan/cloud_preparation.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/case/option_words.h"
+#include "pipeline/domain/edged_case.h"
 #include "reconstruct/cloud/cloud_arrays.h"
 #include "reconstruct/cloud/neighbours/cloud_neighbours.h"
 #include "reconstruct/cloud/survey/cloud_survey.h"
 #include "reconstruct/io/point_cloud_io.h"
 #include "reconstruct/solve/resolution.h"
-#include "reconstruct/triangles/sharp_edges.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -86,21 +87,26 @@ std::vector<std::string> troubles(const CloudSurvey& s, const CloudFileReport& f
   return list;
 }
 
-void add_sharp_edges(const TriangleMesh& boundary, std::vector<std::string>& troubles) {
-  const SharpEdges edges = find_sharp_edges(boundary);
+/// Says what becomes of the sharp edges of triangles.
+void add_sharp_edges(const EdgedTriangles& edged, SampledTriangles& triangles, std::vector<std::string>& troubles) {
+  const SharpEdges& edges = edged.triangles->edges;
   if (edges.curves.empty()) return;
-  troubles.push_back(fmt::format(
-      "{} sharp edges between {} patches, {} corners, a length of {:.4g}: psi is smooth and rounds them within an edge "
-      "length; a smaller --h rounds less",
-      edges.curves.size(), edges.n_patches, edges.corners.size(), edges.length()));
+  const std::string found = fmt::format("{} sharp edges, {} corners, {} patches, a length of {:.4g}", edges.curves.size(),
+                                        edges.corners.size(), edges.n_patches, edges.length());
+  if (edged.body) {
+    triangles.notices.emplace_back(found + ": each patch gets a function of its own, and the mesh has the edges");
+  } else {
+    troubles.push_back(found + ": psi is smooth and rounds them within an edge length; a smaller --h rounds less");
+  }
 }
 
 /// Predicts `umtet run` with the same parameters. A failure is reported as an obstacle, and costs are then estimated
 /// from the samples.
 RunPrediction prediction_of(CloudFile scan, const fs::path& file, const CloudSurvey& survey, double area,
-                            const Parameters& parameters) {
+                            const EdgedTriangles& edged, const Parameters& parameters) {
   std::string obstacle;
   try {
+    if (edged.body) return predict_run(edged, parameters, until_interrupted());
     return predict_run(std::move(scan), file, parameters, until_interrupted());
   } catch (const CloudRefused& e) {
     obstacle = text_of(e.message, as_flag);
@@ -137,11 +143,15 @@ CloudInspection inspect_cloud(const fs::path& file, const Parameters& parameters
   std::nth_element(area.begin(), area.begin() + static_cast<std::ptrdiff_t>(area.size() / 2), area.end());
   Resolution lattice = choose_resolution(std::sqrt(area[area.size() / 2]), kMeshEdge * s.diagonal, s.noise);
   std::vector<std::string> list = troubles(s, scan.report), fields = field_names(scan.cloud);
-  if (source.triangles) add_sharp_edges(source.triangles->boundary, list);
+  EdgedTriangles edged;
+  if (source.triangles) {
+    edged = edged_triangles(source.triangles->boundary, middle_of(source.triangles->boundary), parameters);
+    add_sharp_edges(edged, *source.triangles, list);
+  }
   CloudFileReport report = scan.report;
   progress.report("inspect", "predict the run", .6);
   RunPrediction prediction =
-      prediction_of(std::move(source.cloud), file, s, std::accumulate(area.begin(), area.end(), 0.), parameters);
+      prediction_of(std::move(source.cloud), file, s, std::accumulate(area.begin(), area.end(), 0.), edged, parameters);
   return {file.string(), std::move(report),  std::move(fields),     std::move(source.triangles),
           std::move(s),  std::move(lattice), std::move(prediction), std::move(list)};
 }

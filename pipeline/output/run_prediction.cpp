@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "body/edges/edged_body.h"
 #include "body/scan/cloud_preparation.h"
 #include "body/scan/fitted_domain.h"
 #include "body/scan/level_set_fit.h"
@@ -30,6 +31,10 @@ constexpr double kSecondsPerPoint = 14e-6, kSecondsPerTet = 3.5e-6, kSecondsOfSt
 constexpr double kBytesPerPoint = 700, kBytesOfStart = 45e6;
 // The memory per tet by which a run decides whether it may begin (pipeline/case/memory.cpp).
 constexpr double kBytesPerTet = 500;
+
+// With sharp edges most of the time is spent on flips: 19 to 80 microseconds per tet of a cube, quartet's joint and
+// block, and a plate as thick as an edge (`umtet run`).
+constexpr double kSecondsPerEdgedTet = 40e-6;
 
 RunCost cost(double n_points, double n_tets) {
   return {n_tets, kSecondsOfStart + kSecondsPerPoint * n_points + kSecondsPerTet * n_tets,
@@ -108,6 +113,17 @@ RunPrediction predict_run(CloudFile scan, const std::filesystem::path& file, con
   BackgroundChoice background(options, domain);
   const double h = background.edge_length(domain, context).h;
   RunPrediction run = prediction_of(h, background.expected_tets(domain, h), n_points, parameters);
+  run.is_graded = background.is_graded();
+  return run;
+}
+
+RunPrediction predict_run(const EdgedTriangles& edged, const Parameters& parameters, const Context& context) {
+  Domain domain = edged_domain(edged.triangles, edged.body, {}, edged.shift, parse_box(parameters.mesh().box),
+                               parameters.mesh().h);
+  BackgroundChoice background(body_options(parameters), domain);
+  const double h = background.edge_length(domain, context).h, n_tets = background.expected_tets(domain, h);
+  RunPrediction run = prediction_of(h, n_tets, 0, parameters);
+  for (RunCost* c : {&run.expected, &run.most}) c->seconds += kSecondsPerEdgedTet * n_tets;
   run.is_graded = background.is_graded();
   return run;
 }

@@ -6,6 +6,7 @@
 #include "common/context.h"
 #include "pipeline/case/json_values.h"
 #include "pipeline/case/parameters.h"
+#include "pipeline/domain/edged_case.h"
 #include "reconstruct/cloud/survey/cloud_survey.h"
 #include "reconstruct/io/point_cloud_io.h"
 
@@ -35,6 +36,10 @@ struct RunPrediction {
 ///   Cancelled
 RunPrediction predict_run(CloudFile scan, const std::filesystem::path& file, const Parameters& parameters,
                           const Context& context = {});
+
+/// Predicts a run that keeps the sharp edges of triangles. \pre edged.body
+/// \throw MeshingImpossible, ResourceLimit, UsageError  as in the run; Cancelled
+RunPrediction predict_run(const EdgedTriangles& edged, const Parameters& parameters, const Context& context = {});
 
 /// Predicts a run from the samples alone, if there is no psi: by the rule of choose_edge_length(), with the thickness
 /// of the samples in place of the thickness of psi, and with the volume and area of the samples as if the surface were

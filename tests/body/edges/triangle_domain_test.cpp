@@ -12,6 +12,7 @@
 #include "mesh/core/tet_quality.h"
 #include "mesh/features/feature_measures.h"
 #include "mesh/features/piecewise_mesh.h"
+#include "reconstruct/triangles/triangle_tree.h"
 #include "reconstruct/triangles/triangle_winding.h"
 #include "tests/reconstruct/triangles/solids.h"
 #include "tests/support/piecewise_bodies.h"
