@@ -11,6 +11,21 @@ namespace {
 // Of the diagonal: lower triangles have no certain normal. STL files store coordinates with 24 bits.
 constexpr double kSliver = 1e-6;
 
+// A sample of a closed surface may be taken to be inside where the winding number is not exact, as in a narrow groove.
+// Where bodies overlap, or have inner walls, more of the area is inside.
+constexpr double kFewInside = .01;
+
+/// Returns whether at most a small share of the area is on triangles that are partly inside.
+bool is_on_boundary(const TriangleMesh& mesh) {
+  double all = 0, inside = 0;
+  for (std::size_t f = 0; f < mesh.F.size(); ++f) {
+    const double area = mesh.area_vector(f).norm();
+    all += area;
+    if (!mesh.labels.empty() && mesh.labels[f] == 0) inside += area;
+  }
+  return inside <= kFewInside * all;
+}
+
 TriangleMesh whole_triangles(const TriangleMesh& mesh) {
   TriangleMesh some;
   std::vector<int> number(mesh.V.size(), -1);
@@ -35,8 +50,8 @@ std::shared_ptr<const GivenTriangles> given_triangles(TriangleMesh mesh, const V
   for (Vec3& x : mesh.V) x -= shift;
   SurfaceDistance distance(mesh.V, mesh.F);
   const TriangleBody body = measure_body(mesh);
-  TriangleMesh whole = whole_triangles(mesh);
-  const bool is_whole = whole.F.size() == mesh.F.size();
+  const bool is_whole = body.is_closed && body.is_manifold && is_on_boundary(mesh);
+  TriangleMesh whole = is_whole ? TriangleMesh{mesh.V, mesh.F} : whole_triangles(mesh);
   remove_slivers(whole, kSliver * diagonal_of(whole));
   SharpEdges edges = find_sharp_edges(whole, {.sure_turn = sure_turn});
   return std::make_shared<const GivenTriangles>(

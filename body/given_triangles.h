@@ -20,7 +20,7 @@ struct GivenTriangles {
   TriangleMesh mesh;
   SurfaceDistance distance;
   TriangleMesh whole;  ///< the triangles that are not partly inside, with their vertices and without slivers
-  bool is_whole;       ///< no triangle is partly inside
+  bool is_whole;       ///< all triangles bound the body: `whole` is a closed manifold
   SharpEdges edges;    ///< of `whole`
   TriangleBody body;   ///< the body that they bound
 };

@@ -21,8 +21,7 @@ Box box_of(const TriangleMesh& mesh) {
 }  // namespace
 
 std::shared_ptr<const PiecewiseBody> edged_body(const GivenTriangles& triangles) {
-  const bool is_whole = triangles.body.is_closed && triangles.body.is_manifold && triangles.is_whole;
-  if (!is_whole || triangles.edges.curves.empty()) return nullptr;
+  if (!triangles.is_whole || triangles.edges.curves.empty()) return nullptr;
   std::optional<TriangleDomain> made = triangle_domain(triangles.whole, triangles.edges);
   if (!made) return nullptr;
   return std::make_shared<const PiecewiseBody>(PiecewiseBody{std::move(made->domain), std::move(made->graph), std::move(made->curvature),

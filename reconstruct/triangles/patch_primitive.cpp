@@ -120,8 +120,16 @@ std::optional<PatchPrimitive> cone_of(const TriangleMesh& patch, const NormalAxi
   made.point = origin + solver.solve(b);
   // The axis points to the triangles; the normals, outward or inward, then make the angle 90 degrees + alpha with it.
   made.axis = (origin - made.point).dot(normals.axis) < 0 ? Vec3(-normals.axis) : normals.axis;
-  made.sine = std::abs(normals.mean);
-  made.cosine = std::sqrt(1 - made.sine * made.sine);
+  // Facets are chords: their planes have another angle than the cone through the vertices.
+  double rz = 0, zz = 0;
+  for (const Vec3& x : patch.V) {
+    const double z = (x - made.point).dot(made.axis), r = (x - made.point - z * made.axis).norm();
+    rz += r * z;
+    zz += z * z;
+  }
+  const double angle = std::atan2(rz, zz);
+  made.sine = std::sin(angle);
+  made.cosine = std::cos(angle);
   return made;
 }
 

@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "common/disjoint_sets.h"
@@ -75,6 +76,8 @@ class Finder {
   double second_turn_around(std::size_t e) const;
   void trace(bool ends_at_kinks);
   bool is_corner(int v, bool at_kinks) const;
+  std::optional<double> turn_of_curve(int v) const;
+  int other_end(std::size_t e, int v) const { return edges_[e].a == v ? edges_[e].b : edges_[e].a; }
   bool drop_loose_curves();
 
   const TriangleMesh& mesh_;
@@ -173,15 +176,25 @@ bool Finder::turns_like_its_neighbours(std::size_t e) const {
   return false;
 }
 
-/// A vertex at which a curve ends, or has a kink.
-bool Finder::is_corner(int v, bool at_kinks) const {
+/// Turn of a curve at a vertex of two sharp edges, degrees; none at others.
+std::optional<double> Finder::turn_of_curve(int v) const {
   const std::vector<std::size_t>& edges = sharp_at_.at(v);
-  if (edges.size() != 2 || !at_kinks) return edges.size() != 2;
-  const auto direction = [&](std::size_t e) {
-    const int other = edges_[e].a == v ? edges_[e].b : edges_[e].a;
-    return Vec3((at(other) - at(v)).normalized());
-  };
-  return direction(edges[0]).dot(direction(edges[1])) > -std::cos(params_.kink_turn * kRadians);
+  if (edges.size() != 2) return std::nullopt;
+  const Vec3 in = at(v) - at(other_end(edges[0], v)), out = at(other_end(edges[1], v)) - at(v);
+  return std::atan2(in.cross(out).norm(), in.dot(out)) / kRadians;
+}
+
+/// A vertex at which a curve ends, or has a kink: a turn that is not like the turns at both of its neighbours.
+bool Finder::is_corner(int v, bool at_kinks) const {
+  const std::optional<double> turn = turn_of_curve(v);
+  if (!turn || !at_kinks) return !turn;
+  if (*turn >= params_.sure_turn) return true;
+  if (*turn < params_.kink_turn) return false;
+  const std::vector<std::size_t>& edges = sharp_at_.at(v);
+  return !std::all_of(edges.begin(), edges.end(), [&](std::size_t e) {
+    const std::optional<double> beside = turn_of_curve(other_end(e, v));
+    return beside && *beside >= *turn / kLikeTurn;
+  });
 }
 
 void Finder::trace(bool ends_at_kinks) {

@@ -196,7 +196,7 @@ TEST_F(Program, InspectCountsTheEdgesOfAFormula) {
 
 TEST_F(Program, OptionsThatSharpEdgesExcludeAreRefusedByName) {
   const std::string cylinder = "mesh --implicit 'max(x^2+y^2-1,abs(z)-1)'" + kBox + "--h .3 -o a ";
-  for (const char* option : {"--background graded", "--order 2", "--mode paper", "--complement --box-walls"}) {
+  for (const char* option : {"--order 2", "--mode paper", "--complement --box-walls"}) {
     const Result r = run(cylinder + option);
     EXPECT_EQ(r.code, 2) << option;
     EXPECT_NE(r.err.find("sharp edges"), std::string::npos) << r.err;

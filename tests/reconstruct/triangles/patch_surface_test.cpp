@@ -59,7 +59,7 @@ TEST(PatchSurface, NewtonsMethodArrives) {
   std::uniform_real_distribution<double> at(.1, .9);
   for (int k = 0; k < 100; ++k) {
     Vec3 x(at(random), at(random), at(random));
-    for (int step = 0; step < 3; ++step) {
+    for (int step = 0; step < 6; ++step) {
       Vec3 g;
       const double value = f.evaluate(x, &g);
       x -= value * g;
